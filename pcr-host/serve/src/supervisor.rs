@@ -19,7 +19,7 @@ use crate::entry::{Entry, Keep, Layout};
 use crate::event::Event;
 use crate::fault::Fault;
 use crate::robot::{Abilities, Robot, remember};
-use pcr_core::{Full, Motion, Order, Orders, Piece, Progress, Reach, Region, Tolerances, Unchanged};
+use pcr_core::{Motion, Order, Orders, Piece, Progress, Reach, Region, Tolerances, Unchanged};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
@@ -246,9 +246,9 @@ impl Supervisor {
         let name = robot.name.clone();
         self.robots.push(Robot { path: self.spent + 1, ..robot });
         let place = self.robots.len() - 1;
-        if let Err(full) = self.inserted(place) {
+        if let Err(fault) = self.inserted(place) {
             self.robots.pop();
-            return Err(Fault::invalid(full));
+            return Err(fault);
         }
         self.census += 1;
         self.names.insert(name, place);
@@ -261,14 +261,13 @@ impl Supervisor {
         Ok(())
     }
 
-    fn inserted(&mut self, place: usize) -> Result<(), Full> {
+    fn inserted(&mut self, place: usize) -> Result<(), Fault> {
         let fleet = fleet(&self.robots);
         loop {
             match self.orders.insert(&fleet, place) {
                 Ok(()) => return Ok(()),
-                Err(Unchanged::Full(full)) => self.orders.grow(full)?,
-                // The table is that of the robots.
-                Err(Unchanged::Mismatch(_)) => return Err(Full::Agents),
+                Err(Unchanged::Full(full)) => self.orders.grow(full).map_err(Fault::invalid)?,
+                Err(Unchanged::Mismatch(mismatch)) => return Err(Fault::invalid(mismatch)),
             }
         }
     }
@@ -276,7 +275,7 @@ impl Supervisor {
     /// Removes a robot: somebody has seen that it is not there any more. To remove it twice is no error.
     ///
     /// # Errors
-    /// [`Fault::Broken`].
+    /// [`Fault::Broken`]; [`Fault::Invalid`] if the table of orders is not that of the robots.
     pub fn remove(&mut self, name: &str) -> Result<bool, Fault> {
         self.works()?;
         let Ok(place) = self.place(name) else { return Ok(false) };

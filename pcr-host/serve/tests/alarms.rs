@@ -72,6 +72,21 @@ fn beyond_its_hold() {
 }
 
 #[test]
+fn off_its_path_further_than_any_path_can_be() {
+    let disc = Disc::new();
+    let mut own = crossing(&disc);
+    // Nobody knows where it is.
+    own.off("north", [5e7, 0.0], 0.0, 1.0).unwrap();
+    let events = own.settle(1.0).unwrap();
+    assert_eq!(names(&events), ["alarm north", "stop east"]);
+    // So it is after a restart.
+    let mut own = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+    let events = own.settle(0.0).unwrap();
+    assert!(names(&events).contains(&"stop east".into()), "{events:?}");
+    assert!(matches!(own.off("north", [f64::NAN, 0.0], 0.0, 1.0), Err(Fault::Invalid { .. })));
+}
+
+#[test]
 fn off_its_path() {
     let disc = Disc::new();
     let mut own = crossing(&disc);

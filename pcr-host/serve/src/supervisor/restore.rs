@@ -9,7 +9,7 @@ use std::fmt;
 
 /// Why a journal cannot be gone on with.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Damaged(String);
+pub struct Damaged(pub(crate) String);
 
 impl fmt::Display for Damaged {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -6,7 +6,7 @@ use super::lane::{Lane, Post, Profile, To};
 use super::topics::{Interface, Key, Kind};
 use crate::event::Event;
 use crate::robot::Robot;
-use crate::supervisor::Supervisor;
+use crate::supervisor::{Damaged, Supervisor};
 use serde::Serialize;
 use std::collections::{BTreeSet, HashMap};
 
@@ -86,10 +86,14 @@ const LOOK: f64 = 0.1;
 
 impl Bridge {
     /// Of these vehicles, with what the supervisor remembers of them.
-    pub fn new(settings: Settings, profiles: Vec<Profile>, supervisor: &Supervisor) -> Self {
-        let lanes: Vec<Lane> = profiles.into_iter().map(|profile| Lane::new(profile, supervisor)).collect();
+    ///
+    /// # Errors
+    /// [`Damaged`] where that cannot be read.
+    pub fn new(settings: Settings, profiles: Vec<Profile>, supervisor: &Supervisor) -> Result<Self, Damaged> {
+        let lanes = profiles.into_iter().map(|profile| Lane::new(profile, supervisor));
+        let lanes: Vec<Lane> = lanes.collect::<Result<_, _>>()?;
         let places = lanes.iter().enumerate().map(|(place, lane)| (lane.profile().key.clone(), place)).collect();
-        Self {
+        Ok(Self {
             settings,
             touched: (0..lanes.len()).collect(),
             lanes,
@@ -100,7 +104,7 @@ impl Bridge {
             log: Vec::new(),
             said: 0.0,
             looked: f64::NEG_INFINITY,
-        }
+        })
     }
 
     /// What to subscribe to.

@@ -9,6 +9,7 @@ mod job;
 mod maps;
 mod mirror;
 mod newest;
+mod notes;
 mod orders;
 mod past;
 mod pause;
@@ -24,7 +25,7 @@ use super::state::{State, StateError};
 use super::topics::{Key, Kind};
 use super::version::Version;
 use crate::robot::Abilities;
-use crate::supervisor::Supervisor;
+use crate::supervisor::{Damaged, Supervisor};
 use newest::Newest;
 use past::{Noted, Past};
 use pause::Pauses;
@@ -99,17 +100,20 @@ pub struct Lane {
 
 impl Lane {
     /// Of a vehicle, with what the supervisor remembers of it.
-    pub fn new(profile: Profile, supervisor: &Supervisor) -> Self {
+    ///
+    /// # Errors
+    /// [`Damaged`] where that cannot be read.
+    pub fn new(profile: Profile, supervisor: &Supervisor) -> Result<Self, Damaged> {
         let name = profile.key.to_string();
         let robot = supervisor.robot(&name).ok();
-        let job = robot.and_then(Job::remembered);
-        let [orders, cancels] = ["orders", "cancels"].map(|key| Past::remembered(key, robot));
+        let job = Job::remembered(robot)?;
+        let (orders, cancels) = (Past::remembered("orders", robot)?, Past::remembered("cancels", robot)?);
         let (newest, sent) = (BTreeMap::new(), BTreeMap::new());
         let (errors, posts) = (Vec::new(), Vec::new());
         let version = job.as_ref().and_then(|job| Version::of(&job.version));
-        let pauses = Pauses::remembered(robot);
+        let pauses = Pauses::remembered(robot)?;
         let (state, heard_at, astray) = (None, 0.0, None);
-        Self {
+        Ok(Self {
             profile,
             name,
             version,
@@ -127,7 +131,7 @@ impl Lane {
             ahead: None,
             misfit: None,
             elsewhere: None,
-        }
+        })
     }
 
     /// What the supervisor calls it.

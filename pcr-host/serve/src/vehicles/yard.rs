@@ -11,7 +11,7 @@ use super::weather::{Climate, Weather};
 use super::world::World;
 use crate::event::Event;
 use crate::fault::Fault;
-use crate::supervisor::Supervisor;
+use crate::supervisor::{Damaged, Supervisor};
 use crate::vda5050::bridge::{self, Bridge, Publish};
 use crate::vda5050::door::Limits;
 use crate::vda5050::lane::Profile;
@@ -102,7 +102,7 @@ impl<W: Write> Yard<W> {
         let World { profiles, vehicles, manager } = world;
         let names = vehicles.iter().map(|it| Recorded { name: it.key().to_string(), radius: it.abilities().radius });
         let record = Record::new(record, &names.collect::<Vec<_>>())?;
-        let bridge = bridge(&interfaces, &profiles, &supervisor);
+        let bridge = bridge(&interfaces, &profiles, &supervisor).map_err(io::Error::other)?;
         let Settings { method, climate, seed, .. } = settings;
         let members = vehicles.into_iter().enumerate().map(|(k, vehicle)| {
             let own = 1_000 * seed + 2 * k as u64;
@@ -262,10 +262,14 @@ impl<W: Write> Yard<W> {
     }
 
     /// The supervisor is killed, and another one goes on in its place.
-    pub fn revive(&mut self, supervisor: Supervisor) {
+    ///
+    /// # Errors
+    /// As [`Bridge::new`].
+    pub fn revive(&mut self, supervisor: Supervisor) -> Result<(), Damaged> {
+        self.bridge = bridge(&self.interfaces, &self.profiles, &supervisor)?;
         self.supervisor = supervisor;
-        self.bridge = bridge(&self.interfaces, &self.profiles, &self.supervisor);
         self.bridge.greet();
+        Ok(())
     }
 
     /// Goes on until everybody has done what it had to do, and no more; how many have not within a time \[s\].
@@ -330,7 +334,11 @@ impl<W: Write> Yard<W> {
     }
 }
 
-fn bridge([manager, vehicles]: &[Interface; 2], profiles: &[Profile], supervisor: &Supervisor) -> Bridge {
+fn bridge(
+    [manager, vehicles]: &[Interface; 2],
+    profiles: &[Profile],
+    supervisor: &Supervisor,
+) -> Result<Bridge, Damaged> {
     let settings = bridge::Settings { manager: manager.clone(), vehicles: vehicles.clone(), limits: Limits::default() };
     Bridge::new(settings, profiles.to_vec(), supervisor)
 }

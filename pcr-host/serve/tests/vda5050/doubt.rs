@@ -26,7 +26,7 @@ impl Lone {
         let [manager, vehicles] = interfaces();
         let topics = bridge::Settings { manager, vehicles, limits: Limits::default() };
         let supervisor = Supervisor::new(settings(), Box::new(Nowhere));
-        let bridge = Bridge::new(topics, vec![profile(key(), &CAN)], &supervisor);
+        let bridge = Bridge::new(topics, vec![profile(key(), &CAN)], &supervisor).unwrap();
         let start = Start { x: 0.0, y: 0.0, heading: 0.0 };
         let vehicle = Vehicle::new(key(), Version::V2_1, "map", CAN, start, 1);
         let mut own = Self { vehicle, supervisor, bridge, time: 0.0 };
@@ -323,6 +323,16 @@ fn a_place_on_another_map_counts_for_nothing() {
         own.turn();
     }
     assert_eq!(own.supervisor.robot("sim/001").unwrap().course.start().x, 40.0);
+}
+
+/// It was neither believed nor was there an alarm.
+#[test]
+fn a_vehicle_further_away_than_any_path_can_be_is_not_where_it_may_be() {
+    let mut own = Lone::driving();
+    let mut state = own.state();
+    state["agvPosition"]["x"] = json!(5e7);
+    own.hears(Kind::State, &state);
+    assert!(own.has_alarm());
 }
 
 /// A vehicle was believed to be on its way within its margin and as much more as it said less than nothing.

@@ -30,7 +30,8 @@ impl Row {
         let [manager, vehicle] = interfaces();
         let topics = bridge::Settings { manager, vehicles: vehicle, limits: Limits::default() };
         let supervisor = Supervisor::new(settings(), Box::new(Nowhere));
-        let bridge = Bridge::new(topics, keys.iter().map(|key| profile(key.clone(), &CAN)).collect(), &supervisor);
+        let bridge =
+            Bridge::new(topics, keys.iter().map(|key| profile(key.clone(), &CAN)).collect(), &supervisor).unwrap();
         Self { vehicles, supervisor, bridge, released: [0; 2] }
     }
 

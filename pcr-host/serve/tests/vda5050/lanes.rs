@@ -59,7 +59,7 @@ impl Pair {
     fn bridge(supervisor: &Supervisor) -> Bridge {
         let [manager, vehicles] = interfaces();
         let settings = bridge::Settings { manager, vehicles, limits: Limits::default() };
-        Bridge::new(settings, vec![profile(key(), &CAN)], supervisor)
+        Bridge::new(settings, vec![profile(key(), &CAN)], supervisor).unwrap()
     }
 
     /// Killed, and another one in its place.
@@ -157,6 +157,26 @@ fn order(id: &str, update: u64, first: u64, places: &[[f64; 2]], released: usize
 
 const TO: [[f64; 2]; 3] = [[0.0, 0.0], [5.0, 0.0], [5.0, 5.0]];
 const FRO: [[f64; 2]; 3] = [[5.0, 5.0], [5.0, 0.0], [0.0, 0.0]];
+
+/// An order was forgotten, and a pause of the manager was ended.
+#[test]
+fn notes_of_the_journal_that_cannot_be_read_are_an_error() {
+    let mut own = Pair::new();
+    own.order("1", &TO);
+    own.lasts(1.0);
+    let [manager, vehicles] = interfaces();
+    let settings = bridge::Settings { manager, vehicles, limits: Limits::default() };
+    let bridge = |own: &Pair| Bridge::new(settings.clone(), vec![profile(key(), &CAN)], &own.supervisor);
+    assert!(bridge(&own).is_ok());
+    for key in ["order", "stops", "sent", "orders", "cancels", "pauses"] {
+        let entries = own.supervisor.snapshot();
+        let mut damaged = Supervisor::restored(self::settings(), entries, Box::new(Nowhere)).unwrap();
+        damaged.note("sim/001", key, json!({ "held": 5 })).unwrap();
+        let own = Pair { supervisor: damaged, ..Pair::new() };
+        let why = bridge(&own).err().map(|why| why.to_string()).unwrap_or_default();
+        assert!(why.starts_with(&format!("sim/001, {key}: ")), "{key}: {why:?}");
+    }
+}
 
 #[test]
 fn an_order_that_is_lost_is_sent_again() {

@@ -20,7 +20,7 @@ fn key(name: &str) -> Key {
 fn bridge(supervisor: &Supervisor) -> Bridge {
     let [manager, vehicles] = interfaces();
     let topics = bridge::Settings { manager, vehicles, limits: Limits::default() };
-    Bridge::new(topics, ["a", "b"].map(|name| profile(key(name), &CAN)).into(), supervisor)
+    Bridge::new(topics, ["a", "b"].map(|name| profile(key(name), &CAN)).into(), supervisor).unwrap()
 }
 
 /// Two vehicles that stand.

@@ -71,7 +71,7 @@ impl Desk {
         let [manager, vehicles] = interfaces();
         let stop = Arc::new(AtomicBool::new(false));
         let settings = bridge::Settings { manager, vehicles: vehicles.clone(), limits: Limits::default() };
-        let mut bridge = Bridge::new(settings, profiles, &supervisor);
+        let mut bridge = Bridge::new(settings, profiles, &supervisor).unwrap();
         let mut station = Station::open(broker, &vehicles, &bridge, session).unwrap();
         let (log, asked) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicBool::new(false)));
         let (ended, lines, tells) = (stop.clone(), log.clone(), asked.clone());

@@ -51,7 +51,7 @@ fn until(yard: &mut Yard<Vec<u8>>, missions: u64, mut fails: impl FnMut(&mut Yar
 /// The supervisor is killed, and another one goes on with what is in the journal.
 fn restart(yard: &mut Yard<Vec<u8>>) {
     let entries = yard.supervised_by().0.snapshot();
-    yard.revive(Supervisor::restored(at_broker(), entries, Box::new(Nowhere)).unwrap());
+    yard.revive(Supervisor::restored(at_broker(), entries, Box::new(Nowhere)).unwrap()).unwrap();
 }
 
 /// Proves that nobody has touched anybody, and that nobody ever had the right to.
@@ -146,7 +146,7 @@ fn a_supervisor_that_is_killed_at_every_other_write() {
     let mut kills = 0;
     until(&mut yard, 6, |yard| {
         let entries = disc.entries.lock().unwrap().clone();
-        yard.revive(Supervisor::restored(at_broker(), entries, Box::new(disc.clone())).unwrap());
+        yard.revive(Supervisor::restored(at_broker(), entries, Box::new(disc.clone())).unwrap()).unwrap();
         kills += 1;
     });
     eprintln!("killed {kills} times in {:.0} s", yard.time());

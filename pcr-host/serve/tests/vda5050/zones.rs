@@ -20,7 +20,7 @@ fn zones_may_be_entered_and_no_way_may_be_left() {
     let [manager, vehicles] = interfaces();
     let topics = bridge::Settings { manager: manager.clone(), vehicles: vehicles.clone(), limits: Limits::default() };
     let mut supervisor = Supervisor::new(settings(), Box::new(Nowhere));
-    let mut bridge = Bridge::new(topics, vec![profile(key(), &CAN)], &supervisor);
+    let mut bridge = Bridge::new(topics, vec![profile(key(), &CAN)], &supervisor).unwrap();
     let topic = |kind| vehicles.topic(Version::V3_0, &key(), kind);
     let mut vehicle = Vehicle::new(key(), Version::V3_0, "map", CAN, Start { x: 0.0, y: 0.0, heading: 0.0 }, 1);
     let (_, state) = vehicle.out().into_iter().find(|(kind, _)| *kind == Kind::State).unwrap();

@@ -153,7 +153,8 @@ pub(super) fn start(handle: &Handle, supervisor: &Supervisor, fleet: Fleet, log:
     let Fleet { broker, interfaces: [manager, vehicles], profiles } = fleet;
     known(supervisor, &profiles, log)?;
     let settings = Settings { manager, vehicles: vehicles.clone(), limits: Limits::default() };
-    let bridge = Bridge::new(settings, profiles, supervisor);
+    let bridge =
+        Bridge::new(settings, profiles, supervisor).map_err(|why| Stop::arguments(format!("the journal: {why}")))?;
     let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos());
     let session = format!("{}-{now:x}", std::process::id());
     let mut station = Station::open(&broker, &vehicles, &bridge, &session).map_err(Stop::arguments)?;

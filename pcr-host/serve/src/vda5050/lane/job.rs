@@ -3,8 +3,10 @@
 use super::super::held::Held;
 use super::super::order::{Edge, Node, NodePosition};
 use super::super::way::Way;
+use super::notes::noted;
 use crate::course::Start;
 use crate::robot::Robot;
+use crate::supervisor::Damaged;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -98,17 +100,22 @@ impl Job {
         }
     }
 
-    /// What the journal has of it.
-    pub(super) fn remembered(robot: &Robot) -> Option<Self> {
-        let note = |key: &str| robot.notes.get(key).filter(|note| !note.is_null()).cloned();
-        let Given { held, start, version, cancel } = serde_json::from_value(note("order")?).ok()?;
-        let way = Way::new(start, &held).ok()?;
+    /// What the journal has of it; `None` for a robot that has no order.
+    ///
+    /// # Errors
+    /// [`Damaged`] where that cannot be read.
+    pub(super) fn remembered(robot: Option<&Robot>) -> Result<Option<Self>, Damaged> {
+        let Some(given) = noted::<Given>(robot, "order")? else { return Ok(None) };
+        let Given { held, start, version, cancel } = given;
+        let way = Way::new(start, &held).map_err(|fault| Damaged(format!("the order {}: {fault}", held.order_id)))?;
         let mut job = Self { cancel, ..Self::new(held, way, version) };
-        if let Some(stops) = note("stops").and_then(|note| serde_json::from_value(note).ok()) {
-            (job.stops, job.sent) = (stops, note("sent").and_then(|note| serde_json::from_value(note).ok()));
+        if let Some(stops) = noted(robot, "stops")? {
+            (job.stops, job.sent) = (stops, noted(robot, "sent")?);
         }
-        job.asked = job.planned(robot).max(job.waiting(robot).unwrap_or(0));
-        Some(job)
+        if let Some(robot) = robot {
+            job.asked = job.planned(robot).max(job.waiting(robot).unwrap_or(0));
+        }
+        Ok(Some(job))
     }
 
     /// What is to be remembered of the manager's order.

@@ -1,6 +1,8 @@
 //! Names of orders and actions that were used before, remembered with the journal: a message under one of them comes late.
 
+use super::notes::noted;
 use crate::robot::Robot;
+use crate::supervisor::Damaged;
 use serde_json::Value;
 
 /// So many are remembered at least, the last ones.
@@ -24,10 +26,11 @@ pub(super) enum Noted {
 
 impl Past {
     /// Those that the journal has.
-    pub(super) fn remembered(key: &'static str, robot: Option<&Robot>) -> Self {
-        let note = robot.and_then(|robot| robot.notes.get(key)).and_then(Value::as_array);
-        let names = note.into_iter().flatten().filter_map(Value::as_str).map(str::to_owned).collect();
-        Self { key, names }
+    ///
+    /// # Errors
+    /// [`Damaged`] where they are no list of names.
+    pub(super) fn remembered(key: &'static str, robot: Option<&Robot>) -> Result<Self, Damaged> {
+        Ok(Self { key, names: noted(robot, key)?.unwrap_or_default() })
     }
 
     pub(super) fn contains(&self, name: &str) -> bool {

@@ -4,10 +4,11 @@ use super::super::door::Refusal;
 use super::super::messages::{Action, InstantActions};
 use super::super::state::ActionState;
 use super::super::topics::Kind;
+use super::notes::noted;
 use super::release::AGAIN;
 use super::{Lane, To};
 use crate::robot::Robot;
-use crate::supervisor::Supervisor;
+use crate::supervisor::{Damaged, Supervisor};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -48,10 +49,11 @@ struct Kept {
 
 impl Pauses {
     /// What the journal has.
-    pub(super) fn remembered(robot: Option<&Robot>) -> Self {
-        let note = robot.and_then(|robot| robot.notes.get(NOTE)).cloned();
-        let kept = note.and_then(|note| serde_json::from_value(note).ok()).unwrap_or_default();
-        Self { kept, ..Self::default() }
+    ///
+    /// # Errors
+    /// [`Damaged`] where that cannot be read.
+    pub(super) fn remembered(robot: Option<&Robot>) -> Result<Self, Damaged> {
+        Ok(Self { kept: noted(robot, NOTE)?.unwrap_or_default(), ..Self::default() })
     }
 }
 
