@@ -69,7 +69,7 @@ pub trait Scalar:
     /// Least radius of a disc or an arc. A product of four radii, as in the discriminants of P3, then keeps all its
     /// digits; smaller radii would lose digits to underflow, and contacts with them. Coordinates may be 0 or arbitrarily
     /// small, because they are only added, compared, and multiplied by radii. A length of a path below the square of
-    /// this is taken as 0, which moves nothing that can be told apart.
+    /// this is taken as 0, which moves no position by a representable amount.
     const LEAST: Self;
 
     /// Neither NaN nor infinite. Fixed-point formats are always finite.

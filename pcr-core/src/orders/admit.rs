@@ -241,7 +241,7 @@ where
                 return found;
             }
             if !reach.is_stuck() {
-                // At its end it is in nobody's way: who waits for ever would do so without it.
+                // The agent arrives, so it is in no other agent's way: agents that are stuck would be stuck without it.
                 return Ok(());
             }
             let Some(place) = self.culprit(agent, tolerances.gain, reaches) else {

@@ -69,15 +69,15 @@ struct Zone {
 /// Lengths of an edge at which a vehicle is in a zone.
 #[derive(Default)]
 struct Entered {
-    /// It is sure to need it.
+    /// The vehicle is certainly in the zone, at least in part.
     sure: Vec<[f64; 2]>,
-    /// All of it is inside, wherever it is.
+    /// The vehicle is certainly in the zone entirely.
     whole: Vec<[f64; 2]>,
-    /// It may reach into it.
+    /// The vehicle may be in the zone in part.
     possible: Vec<[f64; 2]>,
 }
 
-/// How far vehicles reach.
+/// Bounds on how far vehicles reach from their centres.
 struct Reach {
     /// Of every point at most this far from the centre, all are in the contour; nothing is known where the centre is outside \[m\].
     inner: Option<f64>,
@@ -182,8 +182,8 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         }
     }
     let reach = Reach::of(imported);
-    // Tokens: who is sure to need a zone; who is in it as a whole has the second one of others and bars the third one for them, and who may
-    // reach into it the other way about.
+    // Three tokens for each zone: 0 for certain presence, 1 and 2 for the others. A vehicle that is entirely inside takes token 2 and bars
+    // token 1; one that is possibly inside takes token 1 and bars token 2.
     let count = zones.len();
     let tokens = |zone: usize, Entered { sure, whole, possible }: Entered| {
         let of = |ranges: Vec<[f64; 2]>, takes: usize, bars: usize| {

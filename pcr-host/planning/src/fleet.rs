@@ -36,9 +36,9 @@ pub trait Format: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
     fn held_angle(angle: Self::Angle) -> Angle {
         Angle::Radians(Self::radians(angle))
     }
-    /// By how much of itself a sum may be rounded, twice: 0 in a format that adds exactly.
+    /// Twice the unit roundoff of sums; 0 if the format adds exactly.
     const EPSILON: f64;
-    /// What all numbers are multiples of, in fixed point; 0 in floating point.
+    /// The last digit of a fixed-point format, of which all numbers are multiples; 0 in floating point.
     const STEP: f64 = 0.0;
 }
 

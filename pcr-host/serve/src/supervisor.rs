@@ -30,20 +30,20 @@ pub type Table = Orders<f64, Vec<Region>, Vec<Piece<f64>>, Vec<Order<f64>>>;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// How far the lower end of a place may be behind where a robot has to stop, when it stands \[m\]. Missions are admitted if
-    /// everybody can finish in spite of that.
+    /// Distance by which the reported lower end of a position may be behind the stop at which the robot stands \[m\]. Missions are
+    /// admitted if all robots can finish in spite of it.
     pub width: f64,
-    /// Robots are told how far they may go so long before they would have to brake \[s\]. What they have been told cannot be taken
-    /// back: the longer, the less can be decided otherwise.
+    /// How long before braking a robot is told its next hold \[s\]. A hold that was told cannot be withdrawn, so a longer time leaves
+    /// fewer decisions open.
     pub lookahead: f64,
-    /// So much more than what a robot is told is written into the journal, so that not every step is \[m\]. After a restart it counts
-    /// as told.
+    /// The journal gets a hold that is further than the one told by this \[m\], so that not every hold needs a write. After a restart the
+    /// hold of the journal counts as told.
     pub spare: f64,
-    /// A robot is silent when nothing was heard of it for so long \[s\].
+    /// A robot counts as silent if no message of it came for this long \[s\].
     pub silence: f64,
-    /// Less than this is not worth a message, but up to where it has to wait \[m\].
+    /// A hold that advances by less than this \[m\] is not sent, except if it is where the robot has to wait.
     pub step: f64,
-    /// When somebody has something to do and gets nowhere for so long, it is said why \[s\].
+    /// If a robot with a task has not advanced for this long, the reason is reported \[s\].
     pub patience: f64,
 }
 
@@ -53,28 +53,28 @@ impl Default for Settings {
     }
 }
 
-/// What has happened since the start.
+/// Numbers of events since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Counts {
-    /// Messages with a position.
+    /// Number of position messages.
     pub positions: u64,
-    /// Of these, about a path that the robot does not have any more.
+    /// Number of position messages about a path that the robot no longer has.
     pub outdated: u64,
-    /// Missions asked for.
+    /// Number of missions requested.
     pub missions: u64,
-    /// Missions admitted.
+    /// Number of missions admitted.
     pub admitted: u64,
-    /// Attempts to admit one that were refused.
+    /// Number of attempts to admit a mission that were refused.
     pub refused: u64,
-    /// Missions that were given up.
+    /// Number of missions given up.
     pub dropped: u64,
-    /// Holds that were told.
+    /// Number of holds told.
     pub holds: u64,
-    /// Holds that were computed.
+    /// Number of holds computed.
     pub evaluations: u64,
-    /// Alarms.
+    /// Number of alarms.
     pub alarms: u64,
-    /// Writes of the journal.
+    /// Number of writes of the journal.
     pub writes: u64,
 }
 
@@ -87,26 +87,26 @@ pub struct Supervisor {
     orders: Table,
     reaches: Vec<Reach<f64>>,
     keeper: Box<dyn Keep>,
-    /// What has changed, not yet in the journal.
+    /// Changes that are not in the journal yet.
     entries: Vec<Entry>,
-    /// What is to be told once it is.
+    /// Events to be sent once these changes are in the journal.
     events: Vec<Event>,
-    /// Whose places have changed since they were in the journal.
+    /// For each robot whether its position has changed since it was last written to the journal.
     unsaved: Vec<bool>,
-    /// The number of the next mission that has to wait.
+    /// Number of the next mission that has to wait.
     turn: u64,
-    /// When waiting missions are tried again \[s\], how often they were, and what kept them.
+    /// For each robot with a waiting mission: when it is tried again \[s\], the number of attempts, and what kept it.
     tries: HashMap<String, admission::Try>,
-    /// How often a robot was added or removed.
+    /// Number of times a robot was added or removed.
     census: u64,
-    /// The highest number of a path of a robot that was removed: one that comes has a higher one, or late messages of an earlier one of its
-    /// name would be taken for its own.
+    /// Highest path number of any removed robot. New robots get higher numbers, so late messages of a removed robot with the same name are
+    /// recognised.
     spent: u64,
-    /// The first time that it was told \[s\].
+    /// The first time that the supervisor was given \[s\].
     begun: Option<f64>,
-    /// When it was looked last who gets nowhere \[s\].
+    /// Time of the last search for robots that do not advance \[s\].
     looked: f64,
-    /// Whether somebody may be in the way of somebody who has been allowed to go there.
+    /// Whether a robot may be in the way of another one that was allowed to go there.
     hazards: bool,
     counts: Counts,
     broken: Option<String>,
@@ -273,10 +273,10 @@ impl Supervisor {
         }
     }
 
-    /// Removes a robot: somebody has seen that it is not there any more. To remove it twice is no error.
+    /// Removes a robot, which has to be physically gone. Returns `false` if there is no robot of this name.
     ///
     /// # Errors
-    /// [`Fault::Broken`].
+    /// [`Fault::Broken`], [`Fault::Invalid`] if the table does not belong to the robots.
     pub fn remove(&mut self, name: &str) -> Result<bool, Fault> {
         self.works()?;
         let Ok(place) = self.place(name) else { return Ok(false) };
@@ -293,7 +293,7 @@ impl Supervisor {
         Ok(true)
     }
 
-    /// Remembers something about a robot, with its journal and as long as the robot is there.
+    /// Stores a note about a robot, also in the journal, until the robot is removed.
     ///
     /// # Errors
     /// [`Fault::NoSuchRobot`], [`Fault::Broken`].
@@ -367,13 +367,13 @@ impl Supervisor {
         Ok(std::mem::take(&mut self.events))
     }
 
-    /// Everything that has changed goes into the journal.
+    /// Writes all changes to the journal.
     fn save(&mut self) -> Result<(), Fault> {
         if self.entries.is_empty() {
             return Ok(());
         }
         self.raise_ceilings();
-        // With what is allowed go the places that it follows from: later ones alone would seem to be too far.
+        // Positions are saved with the holds that depend on them. Without the positions, a restored hold would lie too far ahead.
         let unsaved = self.unsaved.iter_mut().zip(&self.robots).filter(|(unsaved, _)| **unsaved);
         let places = unsaved.map(|(unsaved, robot)| {
             *unsaved = false;

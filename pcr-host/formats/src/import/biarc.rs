@@ -82,11 +82,11 @@ impl Along {
         self.longer[0].abs().max(self.longer[1].abs())
     }
 
-    /// Goes on along lines and arcs, and along the parts of the curve that these stand for.
+    /// Follows lines and arcs, and the parts of the curve that these replace.
     ///
-    /// A part of length l, with a chord of length c, is aside of its chord by so much, and along the chord within l - c of
-    /// the same fraction of its length. So are lines and arcs; their chord is the shortest, and they are furthest aside, if
-    /// they are bent most all the way.
+    /// A part of length l and chord c deviates sideways from its chord by at most [`Part::aside`], and along its chord by at most
+    /// l − c from the point at the same fraction. The same holds for lines and arcs of the replacement. For a given length, a
+    /// chord is shortest, and the sideways deviation largest, if the curvature is largest everywhere.
     pub(super) fn follow(&mut self, begin: [f64; 2], pieces: &[Placed], parts: &[Part]) {
         let mut from = begin;
         let whole: f64 = pieces.iter().map(|piece| piece.shape.length()).sum();

@@ -264,7 +264,8 @@ impl Reader<'_> {
         Ok(route::agent(id, &trace, self.vehicle, 0.0))
     }
 
-    /// An outline at a node is as the path arrives there, or as it departs; `ways` are the headings of the edges at both ends.
+    /// Warns if the orientation at a node matches neither the arriving nor the departing edge. `ways` has the headings of each edge at its
+    /// two ends.
     fn thetas(
         &mut self,
         nodes: &[Part<'_>],
@@ -369,7 +370,7 @@ impl Reader<'_> {
         Ok((Agent { footprint, margin, ..stands }, Begin::Never))
     }
 
-    /// A path has to end at the last node that is released: the vehicle does not stand where it ends else.
+    /// The planned path must end at the last released node; otherwise the vehicle drives on beyond its end. Warns if it does not.
     fn goes_on(&mut self, state: &Object<'_>, end: [f64; 2], traversed: &[Value]) -> Result<(), ImportError> {
         let nodes = parts(state, "nodeStates", "node", "nodeId")?;
         let last = nodes.iter().take_while(|node| node.released).last();

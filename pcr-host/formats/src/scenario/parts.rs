@@ -44,8 +44,8 @@ pub struct Stretch {
 impl Agent {
     /// The motion on each segment of the path. A wait where two segments meet belongs to the later one.
     ///
-    /// A stop that is off a border by rounding is at the border, to either side: near a stop, a rounding of the length is no
-    /// rounding of the time, and one of a nanometre is a turn in place.
+    /// A stop within rounding of a segment border, on either side, counts as at the border. Near a stop a tiny error of the length is a
+    /// large error of the time, and a segment of a nanometre is a turn in place.
     pub fn parts(&self) -> Vec<Vec<Part>> {
         let (v0, pieces) = self.motion.pieces(self.length());
         let mut parts = vec![Vec::new(); self.path.len()];

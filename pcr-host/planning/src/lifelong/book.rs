@@ -10,37 +10,37 @@ use super::way::Way;
 use pcr_core::Interval;
 use std::rc::Rc;
 
-/// A region of two ways, and who goes first.
+/// A region of two ways, and its passing order.
 #[derive(Clone, Debug)]
 pub(super) struct Region {
     pub(super) robots: [usize; 2],
-    /// Lengths of each of the two ways in it \[m\].
+    /// Range of lengths of the region on each of the two ways \[m\].
     pub(super) hull: [Interval<f64>; 2],
-    /// Of each of them as the second.
+    /// Gates of each of the two robots, if it is the second.
     gates: [Rc<[Timed]>; 2],
-    /// The nearest and the last of these, if there are any.
+    /// The nearest and the last of these gates, if there are any.
     ends: [Option<[Timed; 2]>; 2],
-    /// Which of the two goes first.
+    /// Which of the two goes first: 0 or 1.
     pub(super) first: usize,
 }
 
 impl Region {
-    /// The gates of whoever is second.
+    /// The gates of the second robot.
     pub(super) fn gates(&self) -> &[Timed] {
         &self.gates[1 - self.first]
     }
 
-    /// The gates of one of the two as the second.
+    /// The gates of one of the two robots, if it is the second.
     pub(super) fn gates_of(&self, second: usize) -> &[Timed] {
         &self.gates[second]
     }
 
-    /// The nearest and the last gate of whoever is second, if there are any.
+    /// The nearest and the last gate of the second robot, if there are any.
     pub(super) fn ends(&self) -> Option<[Timed; 2]> {
         self.ends[1 - self.first]
     }
 
-    /// With the two in the other order.
+    /// The same region with the two robots exchanged.
     fn swapped(&self) -> Self {
         let Self { robots: [a, b], hull: [own, other], gates: [first, second], ends: [head, tail], .. } = self;
         Self {
@@ -52,23 +52,23 @@ impl Region {
         }
     }
 
-    /// Who is second.
+    /// The robot that passes second.
     pub(super) fn second(&self) -> usize {
         self.robots[1 - self.first]
     }
 
-    /// Who is second, and from which length on.
+    /// The robot that passes second, and the length at which the region begins on its way \[m\].
     fn waits(&self) -> (usize, f64) {
         (self.second(), self.hull[1 - self.first].lo)
     }
 
-    /// Whether one of the two has left it behind.
+    /// Whether one of the two robots has left the region.
     pub(super) fn is_over(&self, at: [f64; 2]) -> bool {
         at[0] > self.hull[0].hi || at[1] > self.hull[1].hi
     }
 
-    /// Whether this one of the two can go first: the other one can stop before what it has still to pass, and either the first leaves, or
-    /// the other one need not go further.
+    /// Whether robot `first` of the two can go first: the other can stop at its hold, and `first` leaves the region on its way, or the way
+    /// of the other ends before the last gate.
     pub(super) fn can_be_first(&self, first: usize, at: [f64; 2], stop: [f64; 2], lengths: [f64; 2]) -> bool {
         let second = 1 - first;
         let gates = &self.gates[second];
@@ -80,9 +80,9 @@ impl Region {
 
 /// A pair of atoms of two ways that touch.
 struct Tie<'s> {
-    /// Whose the other way is.
+    /// The robot of the other way.
     other: usize,
-    /// Places on the ways.
+    /// Index of the atom on each of the two ways.
     places: [usize; 2],
     hull: [Interval<f64>; 2],
     contact: &'s Contact,
@@ -93,17 +93,19 @@ struct Tie<'s> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Book {
     regions: Vec<Option<Region>>,
-    /// Of each of them who is second, and from which length on that one may have to wait \[m\]: what is asked for in each step of a robot.
+    /// For each region the robot that passes second, and the length from which on it may have to wait \[m\]. It is kept apart from
+    /// `regions` because each step of a robot reads it.
     seconds: Vec<(usize, f64)>,
+    /// Unused indices of `regions`.
     free: Vec<usize>,
-    /// Those of each robot.
+    /// For each robot the indices of its regions.
     rows: Vec<Vec<usize>>,
-    /// Who has an atom on its way, and as which of it.
+    /// For each atom the robots that have it on their way, with its index on that way.
     on: Vec<Vec<(usize, usize)>>,
 }
 
 impl Book {
-    /// Of robots that stand at nodes apart.
+    /// The book of robots that stand at nodes without touching.
     pub(super) fn new(site: &Site, robots: &[Robot]) -> Self {
         let (rows, on) = (vec![Vec::new(); robots.len()], vec![Vec::new(); site.atoms.len()]);
         let mut book = Self { rows, on, ..Self::default() };

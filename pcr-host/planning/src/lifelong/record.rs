@@ -30,12 +30,12 @@ pub struct Certificate {
 const ROUNDING: f64 = 1e-6;
 
 impl Certificate {
-    /// Nothing is checked yet.
+    /// A certificate before anything is checked.
     pub(super) fn new() -> Self {
         Self { verdict: "undecided", ..Self::default() }
     }
 
-    /// Checks what robots of this radius \[m\] have done since the last window, which began at these places.
+    /// Checks the motions of robots of this radius \[m\] since the beginning of the window.
     pub(super) fn window(&mut self, site: &Site, robots: &mut [Robot], window: &mut Window, radius: f64, end: f64) {
         let begin = window.begin;
         let mut widened = false;
@@ -48,7 +48,8 @@ impl Certificate {
                 let (mut agent, ends, gaps) =
                     agent(site, id as u64, radius, [begin, end], &phases, (&trail, since), place.at)?;
                 *place = Place::of(site, robot);
-                // What is certified is what has been done, or nothing is certified. At a node one edge ends a little beside the next one.
+                // The recorded motion has to lead to where the robot is; otherwise nothing is certified. Two edges that meet at a node
+                // may end slightly beside each other.
                 let apart = (ends[0] - place.at[0]).hypot(ends[1] - place.at[1]);
                 if apart > ROUNDING + gaps + 2.0 * site.off {
                     return Err(format!("robot {id}: its record ends at {ends:?}, it is at {:?}", place.at));
@@ -65,7 +66,7 @@ impl Certificate {
             Ok(movers) => {
                 let found = meetings(&movers);
                 self.steps += found.steps;
-                // Of larger discs it says nothing that they touch.
+                // If the discs were enlarged for such gaps, a contact of the enlarged discs proves nothing.
                 let (contacts, undecided) = (found.contacts.len(), found.undecided.len());
                 self.contacts += if widened { 0 } else { contacts };
                 self.undecided += if widened { contacts + undecided } else { undecided };
@@ -82,7 +83,7 @@ impl Certificate {
     }
 }
 
-/// Where a window begins.
+/// Where and when a window of the check begins.
 #[derive(Clone, Debug)]
 pub(super) struct Window {
     begin: f64,

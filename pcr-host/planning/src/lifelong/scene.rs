@@ -13,15 +13,15 @@ use super::timetable::Timetable;
 use super::waits::Waits;
 use super::way::Kept;
 
-/// What a route costs more: past a robot that stands for good, and for each robot that comes the other way \[s\].
+/// Extra cost of a route past a robot that stands for good, and for each oncoming robot \[s\]. Routes are searched with each pair in turn.
 pub(super) const TOLLS: [[f64; 2]; 4] =
     [[f64::INFINITY, 0.0], [f64::INFINITY, 4.0], [f64::INFINITY, 15.0], [20.0, 4.0]];
 
-/// What it costs others that a robot stands for good where it cuts off a node: about as long as one of them waits; and where that is
-/// not to be, more than any route \[s\].
+/// Cost of a robot that stands for good where it cuts off nodes, per node \[s\]: about the wait of one other robot, or more than any route
+/// where this must not be.
 const HARM: [f64; 2] = [10.0, 1e6];
 
-/// What a decision is about.
+/// The input of a decision: the site, the robots and their orders.
 #[derive(Clone, Copy)]
 pub(super) struct Scene<'s> {
     pub(super) site: &'s Site,
@@ -30,24 +30,24 @@ pub(super) struct Scene<'s> {
     pub(super) locks: &'s Locks,
     pub(super) abilities: &'s Abilities,
     pub(super) network: &'s Routes,
-    /// Where robots may stand for good.
+    /// Nodes where robots may stand for good.
     pub(super) ends: &'s Ends,
     /// Whether there are more robots than safe ends.
     pub(super) crowded: bool,
     /// Whether only the mission that has waited longest is served.
     pub(super) is_urgent: bool,
-    /// The route that the mission which has waited longest wants, and those of whoever stands in its way; whose they are.
+    /// Reserved routes as (robot, route): first that of the mission that has waited longest, then those of robots in its way.
     pub(super) reserved: &'s [(usize, Vec<usize>)],
-    /// How many robots stand for good in the way of an atom.
+    /// For each atom how many robots stand for good in its way.
     pub(super) parked: &'s [u16],
     pub(super) time: f64,
-    /// What the others keep to while one is decided on, in a large fleet.
+    /// In a large fleet: the times that the other robots keep while a decision about one is made.
     pub(super) timetable: Option<&'s Timetable>,
     pub(super) method: Method,
 }
 
 impl Scene<'_> {
-    /// When all are where with the ways and orders that they have.
+    /// The forecast for all robots with their present ways and orders.
     pub(super) fn base(&self) -> Result<Forecast, Vec<Stuck>> {
         let Scene { robots, abilities, time, .. } = *self;
         let waits = &Waits::of(robots, self.book);
@@ -55,8 +55,8 @@ impl Scene<'_> {
         Trial { robots, waits, abilities, time, changed: None, earlier, kept: None }.forecast()
     }
 
-    /// What goals before the last one of a way count: a robot that knows two goals is not twice as important as one that knows one, as
-    /// each gets mission after mission. Where robots have no room to stand, those that are near a goal go first all the same.
+    /// Weight of the goals of a way before the last one. A robot that knows two goals is not twice as important as one that knows one,
+    /// because each gets mission after mission. Where robots have no room to stand, robots near a goal go first all the same.
     pub(super) fn earlier(&self) -> f64 {
         /// On the warehouse graph with 10 robots more missions are done than with 0 or 1.
         const SOME: f64 = 0.3;

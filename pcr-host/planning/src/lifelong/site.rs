@@ -10,16 +10,16 @@ use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 use std::rc::Rc;
 
-/// More room than the discs need, for rounding \[m\].
+/// Additional radius of discs, for rounding \[m\].
 const ROOM: f64 = 1e-4;
 
-/// As many gaps between edges, as large as the largest one, are in what a certificate looks at at once, about.
+/// Number of gaps between edges, each as large as the largest one, that one window of a certificate is assumed to contain.
 const GAPS: f64 = 4.0;
 
-/// Holds follow the first robot in steps of so many radii.
+/// Step of the first robot between two gates, in radii.
 const PITCH: f64 = 2.0;
 
-/// An edge in one direction, or a node to stand at.
+/// An edge in one direction, or a node at which a robot can stand.
 #[derive(Clone, Debug)]
 pub(super) struct Atom {
     /// Nodes where it begins and ends.
@@ -27,7 +27,7 @@ pub(super) struct Atom {
     pub(super) length: f64,
     /// Largest speed on it \[m/s\].
     pub(super) speed: f64,
-    /// Directions at its ends \[rad\]; none of a node.
+    /// Directions at its ends \[rad\]; `None` for a node.
     pub(super) headings: Option<[f64; 2]>,
     pub(super) shapes: Vec<Placed>,
     segments: Vec<Segment<f64>>,
@@ -44,35 +44,35 @@ pub(super) struct Site {
     pub(super) points: Vec<[f64; 2]>,
     /// Edges in their directions, then the nodes.
     pub(super) atoms: Vec<Atom>,
-    /// Those that begin at a node.
+    /// For each node the atoms that begin there.
     pub(super) leaving: Vec<Vec<usize>>,
-    /// Those that end at a node.
+    /// For each node the atoms that end there.
     pub(super) coming: Vec<Vec<usize>>,
-    /// Of the nodes where missions may be, their places.
+    /// Indices of the nodes of the level; missions are among these.
     pub(super) nodes: Vec<usize>,
-    /// For each atom the same edge the other way.
+    /// For each atom the same edge in the other direction.
     pub(super) back: Vec<Option<usize>>,
-    /// For each atom those that may touch it.
+    /// For each atom the atoms on which a robot may touch one on it.
     near: Vec<Vec<usize>>,
-    /// What curves may be off, and their ends from nodes \[m\].
+    /// Bound on the error of curves, and on the distance of their ends from nodes \[m\].
     pub(super) off: f64,
-    /// With margins, and what the curves may be off \[m\].
+    /// Radius of the discs, with margins and the error of curves \[m\].
     radius: f64,
-    /// How they touch, in the same places, once that was asked for.
+    /// The contact of each pair of `near`, at the same indices, computed when it is first needed.
     contacts: Vec<Vec<OnceCell<Option<Contact>>>>,
     covers: RefCell<HashMap<usize, Rc<[usize]>>>,
 }
 
-/// A node, and how a robot stands there.
+/// A node, and the direction in which a robot stands there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct From {
     pub(super) node: usize,
-    /// Its direction, if that is known \[rad\].
+    /// Direction of the robot, if it is known \[rad\].
     pub(super) heading: Option<f64>,
 }
 
 impl Site {
-    /// The level of a layout that has most nodes.
+    /// The site of the level with the most nodes.
     ///
     /// # Errors
     /// An edge that is no path.

@@ -3,7 +3,7 @@
 use super::abilities::Abilities;
 use super::site::{From, Site, wrapped};
 
-/// Angles below are no corner \[rad\].
+/// Largest change of direction that is not a corner \[rad\].
 const STRAIGHT: f64 = 1e-6;
 
 /// A place where a robot stops and turns.
@@ -19,11 +19,11 @@ pub(super) struct Corner {
 #[derive(Clone, Debug)]
 pub(super) struct Way {
     pub(super) atoms: Vec<usize>,
-    /// Length before each atom, and that of all \[m\].
+    /// Length before each atom, and the length of the whole way \[m\].
     pub(super) offsets: Vec<f64>,
     /// Largest speed on each atom \[m/s\].
     pub(super) speeds: Vec<f64>,
-    /// When each atom is left for, and the end reached \[s\].
+    /// Time at which each atom is entered, and time of arrival at the end \[s\].
     times: Vec<f64>,
     pub(super) corners: Vec<Corner>,
     /// Lengths of the goals that are still ahead \[m\].

@@ -1,6 +1,6 @@
-//! Unsafe delays: how much later a vehicle must not set off on one edge than another vehicle on another edge, and at
-//! what times it must not be at a node, because the two would touch. Planners of the CCBS and SIPP families compute
-//! such delays for each pair that they consider.
+//! Unsafe delays: differences of start times at which two vehicles on two edges touch, and times at which a vehicle at a
+//! node touches one on an edge. Planners of the CCBS and SIPP families compute such delays for each pair that they
+//! consider.
 //!
 //! Both vehicles are on their edges from their start until they arrive; before and after that they stand at a node. An
 //! edge that may be travelled in both directions counts as two *ways*. A way also has delays with itself, for two
@@ -21,33 +21,34 @@ use pcr_formats::scenario::{Agent, MotionSpec, Scenario, label};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Agents that are made at once.
+/// Number of agents that are built at a time.
 const STRETCH: usize = 1 << 12;
 
 /// How edges are driven.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Driving {
-    /// Largest speed \[m/s\]; the limit of an edge, where it has one, is a lower one.
+    /// Largest speed \[m/s\]; the speed limit of an edge applies if it is lower.
     pub speed: f64,
-    /// Largest acceleration \[m/s²\]: edges are driven from rest to rest. Without it they are driven at constant speed from end to end.
+    /// Largest acceleration \[m/s²\]: edges are driven from rest to rest. `None`: at constant speed from end to end.
     pub acceleration: Option<f64>,
 }
 
 /// An edge in one direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Way {
-    /// As in the layout.
+    /// Id of the edge in the layout.
     pub edge: Id,
     /// Whether it leads from the end of the edge to its start.
     pub backward: bool,
 }
 
-/// What was found, by places in [`Delays::ways`] and [`Delays::nodes`].
+/// What is unsafe. Numbers are indices into [`Delays::ways`] and [`Delays::nodes`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Unsafe {
-    /// Two ways, the first one not after the second, and how much later than on the first a vehicle may not set off on the second \[s\].
+    /// Two ways, in the order of their indices, and the range of start times on the second minus start times on the first at which
+    /// two vehicles touch \[s\].
     Delays([usize; 2], [f64; 2]),
-    /// A node and a way, and when, from setting off on the way, no other vehicle may stand at the node \[s\].
+    /// A node and a way, and the times after the start on the way at which no other vehicle may stand at the node \[s\].
     Times(usize, usize, [f64; 2]),
     /// Two nodes at which vehicles touch.
     Nodes([usize; 2]),
@@ -57,7 +58,7 @@ pub enum Unsafe {
 pub struct Delays {
     ways: Vec<Way>,
     nodes: Vec<Id>,
-    /// Of ways, then of nodes.
+    /// Indices of ways, then of nodes.
     levels: Vec<[usize; 2]>,
     straight: Vec<Option<Straight>>,
     points: Vec<[f64; 2]>,

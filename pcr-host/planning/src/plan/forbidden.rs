@@ -22,17 +22,17 @@ use crate::rows;
 use pcr_core::{Interval, Motion, RegionRef, Scalar};
 use pcr_formats::scenario::Scenario;
 
-/// What an agent and another one forbid: differences of their delays, own less other, at which they meet \[ticks\], outward.
+/// Differences of two delays (own minus other) at which the two agents meet \[ticks\], rounded outward.
 #[derive(Clone, Copy, Debug)]
 struct Met {
     other: usize,
     ends: [i64; 2],
 }
 
-/// What a region takes until its delays are found \[bytes\].
+/// Memory for a region until its delays are found \[bytes\].
 const BYTES: u64 = 256;
 
-/// For each agent and each other one that it meets the differences of their delays at which they do.
+/// The forbidden differences of delays of all pairs of agents that can meet.
 #[derive(Clone, Debug)]
 pub struct Forbidden {
     /// Sorted by the other agent.
@@ -40,11 +40,11 @@ pub struct Forbidden {
     ticks: Ticks,
     /// When each agent arrives without a delay \[s\].
     ends: Vec<f64>,
-    /// For each agent those that have to start before it.
+    /// For each agent the agents that have to start before it.
     first: Vec<Vec<usize>>,
 }
 
-/// Whose a disc is, and whether it is there before that agent sets off, and after it has arrived.
+/// The agent of a disc, and whether the disc is present before the start of that agent and after its arrival.
 #[derive(Clone, Copy, Debug)]
 struct Owner {
     agent: usize,
@@ -57,7 +57,7 @@ impl Owner {
     }
 }
 
-/// The delays with which two discs meet, each of which stands only where it is there then.
+/// The delays with which two discs meet. `own` and `other` tell whether a disc is there before its start and after its end.
 fn met_with(region: &RegionRef<'_, f64>, own: [bool; 2], other: [bool; 2]) -> Interval<f64> {
     let delays = region.forbidden_delays();
     let [after, before] = sides(region, own, other);
@@ -65,7 +65,8 @@ fn met_with(region: &RegionRef<'_, f64>, own: [bool; 2], other: [bool; 2]) -> In
     if (after || !early) && (before || !late) {
         return delays;
     }
-    // A side without an end is of a disc that would stand, but is not there.
+    // Forbidden delays are unbounded on a side where a disc stands before its start or after its end. If the disc is not there at that
+    // time, that side ends where the delays end with which the two meet under way.
     let passing = region.passing_delays();
     Interval {
         lo: if early && !after { passing.lo } else { delays.lo },
@@ -73,20 +74,20 @@ fn met_with(region: &RegionRef<'_, f64>, own: [bool; 2], other: [bool; 2]) -> In
     }
 }
 
-/// Why an agent cannot start: because of another one, with any delay of either or with late ones only.
+/// Why an agent has no delay: the other agent, and whether they meet with every delay of either.
 struct Blocked {
     by: usize,
     always: bool,
 }
 
-/// An agent without a delay, and because of whom.
+/// An agent without a delay, and the other agent that prevents one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Out {
     /// Place of the agent.
     pub agent: usize,
     /// Place of the other one.
     pub by: usize,
-    /// Whether they meet whenever they start.
+    /// Whether the two meet with all delays.
     pub always: bool,
 }
 

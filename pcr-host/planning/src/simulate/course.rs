@@ -200,7 +200,7 @@ fn is_turn(segment: &Segment<f64>) -> bool {
     matches!(segment.curve(), Curve::Arc { radius: TURN, .. }) && segment.length() > KINK * TURN
 }
 
-/// A course and when an agent is where on it.
+/// A course with the motion of an agent on it.
 #[derive(Clone, Debug)]
 pub struct Drive {
     course: Course,
@@ -215,8 +215,8 @@ impl Drive {
         Self { course: Course::of(motion), phases, start: motion.time().lo }
     }
 
-    /// What is left from a time on \[s\]: the rest of the path, at the speed that the agent has then. It is nowhere where it has been, so
-    /// that this is in nobody's way any more; before that time it is taken to stand there. `None` where rounding leaves no motion.
+    /// The motion from a time on \[s\]: the remaining path, at the speed reached by then. Before that time the agent counts as
+    /// standing where the rest begins, so the places that it has already left are free. `None` if rounding leaves no motion.
     ///
     /// ```
     /// use pcr_core::{Motion, Path, Point, Pose, Profile, Radians};

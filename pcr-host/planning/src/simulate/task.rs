@@ -11,21 +11,21 @@ use pcr_formats::scenario::{Agent, Labels, MotionSpec, Part, PathSegment, Scenar
 /// When the last robot may set off \[s\]: every frame until then is simulated and kept.
 const LATEST: f64 = 1e4;
 
-/// By how much a motion is slower than it could be before that is told, relative.
+/// A motion that takes longer than necessary by more than this share is reported as a warning.
 const SLOWER: f64 = 1e-3;
 
-/// A run: robots, what stands in their way, and their missions.
+/// The task of a run: robots with their missions, and obstacles.
 #[derive(Clone, Debug)]
 pub struct Task {
     /// Name of the scenario.
     pub name: String,
-    /// What its agents are called.
+    /// Labels of its agents.
     pub labels: Labels,
     /// The robots.
     pub robots: Vec<Robot>,
-    /// What does not move.
+    /// Agents that never move.
     pub obstacles: Vec<Obstacle>,
-    /// What was read otherwise than it was written, or is left aside here.
+    /// What the simulation changes or leaves out of the scenario.
     pub warnings: Vec<String>,
 }
 
@@ -36,7 +36,7 @@ pub struct Robot {
     pub id: u64,
     /// Radius of the disc \[m\].
     pub radius: f64,
-    /// Margin to be kept around it \[m\].
+    /// Distance that others keep from the disc \[m\].
     pub margin: f64,
     /// Largest speed \[m/s\] and acceleration \[m/s²\].
     pub limits: Limits<f64>,
@@ -62,7 +62,7 @@ pub struct Obstacle {
     pub centre: Vector,
     /// \[m\]
     pub radius: f64,
-    /// Margin to be kept around it \[m\].
+    /// Distance that others keep from the disc \[m\].
     pub margin: f64,
 }
 

@@ -275,8 +275,9 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The least sum of delays of agents that go one after the other in any order, each later than the one before by at least the
-/// least that it has after any of them: the first has none, and shorter ones before longer ones make the sum least.
+/// Lower bound of the sum of delays of agents that go one after the other, in any order. Each starts later than the one before it by at
+/// least its least gap to any other agent. The sum is least if the gaps are in increasing order and the first agent, without a gap, has
+/// delay 0.
 fn in_sequence(clique: &[usize], raise: impl Fn(usize, usize) -> i64) -> i128 {
     let least = |&agent: &usize| {
         let others = clique.iter().filter(|&&other| other != agent);
@@ -284,7 +285,7 @@ fn in_sequence(clique: &[usize], raise: impl Fn(usize, usize) -> i64) -> i128 {
     };
     let mut least: Vec<i64> = clique.iter().map(least).collect();
     least.sort_unstable();
-    // The longest is that of the first, which does not count.
+    // The first agent has no gap before it. Which agent is first is not known, so the largest gap is left out.
     least.pop();
     (1..).zip(least.iter().rev()).map(|(later, &raise)| later * i128::from(raise)).sum()
 }

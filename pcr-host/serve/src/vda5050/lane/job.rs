@@ -8,55 +8,55 @@ use crate::robot::Robot;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-/// The first node of an order may be so far from where the vehicle stands \[m\]: it goes there straight.
+/// Largest distance between the vehicle and the first node of its order \[m\]; the vehicle goes there in a straight line.
 pub(super) const BEGINS: f64 = 1.0;
 
-/// Where the base of the vehicle's order may end.
+/// A place where the base of the vehicle's order may end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
-    /// The vehicle's number of it.
+    /// Sequence number of the node in the messages to the vehicle.
     pub sequence: u64,
-    /// Length of the way up to it \[m\].
+    /// Length of the way up to the stop \[m\].
     pub length: f64,
-    /// The manager's node there, or the last one before it.
+    /// Index of the manager's node at the stop, or of the last one before it.
     pub node: usize,
-    /// Whether it is in the middle of the edge after that node.
+    /// Whether the stop is in the middle of the edge after that node.
     pub between: bool,
 }
 
-/// An update that was sent.
+/// An order update that was sent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sent {
-    /// The vehicle's number of it.
+    /// Update id in the message to the vehicle.
     pub update: u64,
-    /// The manager's number of what it says.
+    /// Update id of the manager's order from which it was made.
     pub manager: u64,
-    /// Place of its first stop.
+    /// Index of its first stop.
     pub from: usize,
 }
 
 /// An order.
 #[derive(Clone, Debug)]
 pub struct Job {
-    /// As the manager has given it.
+    /// The order as the manager gave it.
     pub held: Held,
-    /// Its path, from where the vehicle stood.
+    /// Path of the order, from where the vehicle stood.
     pub way: Way,
-    /// Edition of the manager's order.
+    /// Edition of VDA 5050 of the manager's order.
     pub version: String,
-    /// Place of the node up to which the supervisor was asked for a way.
+    /// Index of the node up to which the supervisor was asked for a way.
     pub asked: usize,
-    /// What the vehicle has been released, or may have been.
+    /// Stops that the vehicle has been released, or may have been.
     pub stops: Vec<Stop>,
-    /// What was sent last, and when \[s\].
+    /// The last update that was sent.
     pub sent: Option<Sent>,
-    /// When \[s\].
+    /// Time at which it was sent \[s\].
     pub sent_at: f64,
-    /// The update that the vehicle has, and the manager's number of that.
+    /// Update ids of the update that the vehicle has: its own and the manager's.
     pub acknowledged: Option<(u64, u64)>,
-    /// The nodes ahead are not those that the vehicle knows.
+    /// Whether the nodes ahead differ from those that the vehicle knows.
     pub changed: bool,
-    /// The action that cancels it.
+    /// Id of the action that cancels the order.
     pub cancel: Option<String>,
     /// When that was sent \[s\].
     pub cancelled_at: f64,
@@ -129,7 +129,7 @@ impl Job {
         if order == self.held.order_id { self.held.place_of(sequence.parse().ok()?) } else { None }
     }
 
-    /// Place of the node at which the path of the supervisor ends; the first one while nothing is admitted.
+    /// Index of the node at which the supervisor's path ends; 0 while nothing is admitted.
     pub(super) fn planned(&self, robot: &Robot) -> usize {
         robot.mission.as_deref().and_then(|mission| self.place(mission)).unwrap_or(0)
     }
@@ -139,26 +139,27 @@ impl Job {
         robot.mission.as_deref().and_then(|mission| self.place(mission)).is_some()
     }
 
-    /// Place of the node at which a mission ends that waits to be admitted.
+    /// Index of the node at which the mission ends that waits to be admitted.
     fn waiting(&self, robot: &Robot) -> Option<usize> {
         robot.waiting.as_ref().and_then(|waiting| self.place(&waiting.mission))
     }
 
-    /// What is to be added to a length of the supervisor's path for one of the way \[m\]: both end at the same node. It follows from the
-    /// path that the supervisor has now: a mission can be admitted at any time.
+    /// Offset from a length on the supervisor's path to a length on the order's way \[m\]; both end at the same node. It is computed from
+    /// the supervisor's present path, because a mission can be admitted at any time.
     pub(super) fn offset(&self, robot: &Robot) -> f64 {
-        // Until then the vehicle is where the path before ends.
+        // Before the admission the vehicle is at the end of its former path, which is the start of the way.
         let end = if self.is_admitted(robot) { self.way.node(self.planned(robot)).unwrap_or(0.0) } else { 0.0 };
         end - robot.course.length()
     }
 
-    /// Whether the vehicle has had it: an update is sent when the one before it was there, perhaps to another supervisor.
+    /// Whether the vehicle has received the order. An update is only sent after the one before it was received, perhaps while an earlier
+    /// supervisor ran.
     pub(super) fn was_there(&self) -> bool {
         self.acknowledged.is_some() || self.sent.is_some_and(|sent| sent.update > 0)
     }
 
-    /// The order of a vehicle that has lost this one where it is now, if it goes on with the rest of the way as far as that is admitted, and the
-    /// place of the node up to there; none: it goes elsewhere.
+    /// For a vehicle that has lost this order: the new order `held` from where the vehicle is now, if it follows the rest of the admitted
+    /// way, and the index of the node up to which it does. `None` if the new order leads elsewhere.
     pub(super) fn rejoined(
         &self,
         robot: &Robot,

@@ -126,8 +126,8 @@ impl Lane {
             Some(job) if job.held.order_id == state.order_id => {
                 let place = job.stop(state.last_node_sequence_id);
                 let Some(place) = place else {
-                    // A node that it was not released yet, that of an order before at the beginning of this one, or none at all: it has to
-                    // be on its way all the same.
+                    // The vehicle names a node that was not released, a node of an earlier order, or none. If its position is on its path
+                    // anyway, this is not an alarm.
                     if is_new && self.on_its_way(job, robot, pose).is_none() {
                         let _ = supervisor.off(&self.name, at, 0.0, now);
                     }
@@ -136,7 +136,7 @@ impl Lane {
                 let from = job.stops[place].length;
                 let to = job.stops.get(place + 1).map_or(from, |next| next.length);
                 let offset = job.offset(robot);
-                // It counts as passed before the vehicle is all there.
+                // Vehicles report a node as passed when they are near it, so the search begins before the node.
                 let near = job.way.near(at, [from - reach.max(0.0), to], reach);
                 near.map(|lengths| lengths.map(|length| (length - offset).clamp(0.0, end)))
             }
@@ -156,7 +156,7 @@ impl Lane {
             }
         };
         match found {
-            // It has rolled or was pushed back, where others may have the right to go by now.
+            // The vehicle rolled or was pushed back into a part of its path that may already be free for others.
             Some([_, hi]) if is_new && hi < back => _ = supervisor.off(&self.name, at, 0.0, now),
             // It may have passed the next node since, and be on its way back: no alarm, nor the end of one.
             Some([_, hi]) if with == With::Between && hi < back => {}
