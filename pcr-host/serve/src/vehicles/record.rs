@@ -18,9 +18,9 @@ use std::io::{self, BufRead, Write};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Recorded {
-    /// What it is called.
+    /// Name of the vehicle.
     pub name: String,
-    /// Of its disc \[m\].
+    /// Radius of its disc \[m\].
     pub radius: f64,
 }
 

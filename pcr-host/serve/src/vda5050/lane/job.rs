@@ -58,13 +58,13 @@ pub struct Job {
     pub changed: bool,
     /// Id of the action that cancels the order.
     pub cancel: Option<String>,
-    /// When that was sent \[s\].
+    /// Time at which the cancellation was sent \[s\].
     pub cancelled_at: f64,
-    /// Since when the vehicle has lost it \[s\].
+    /// Time since which the vehicle has lost the order \[s\].
     pub lost: Option<f64>,
 }
 
-/// What is remembered of the manager's order.
+/// The part of the manager's order that is stored as a note.
 #[derive(Serialize, Deserialize)]
 struct Given {
     held: Held,
@@ -73,13 +73,13 @@ struct Given {
     cancel: Option<String>,
 }
 
-/// The mission to a node, as the supervisor knows it.
+/// Id of the mission that leads to a node, in the supervisor.
 pub(super) fn mission(held: &Held, node: usize) -> String {
     format!("{}#{}", held.order_id, held.nodes.get(node).map_or(0, |node| node.sequence_id))
 }
 
 impl Job {
-    /// A new order for a vehicle that stands there.
+    /// A new order for a vehicle that stands at the start of the way.
     pub(super) fn new(held: Held, way: Way, version: String) -> Self {
         let first = Stop { sequence: 0, length: way.node(0).unwrap_or(0.0), node: 0, between: false };
         Self {
@@ -98,7 +98,7 @@ impl Job {
         }
     }
 
-    /// What the journal has of it.
+    /// Restores an order from the notes of a robot.
     pub(super) fn remembered(robot: &Robot) -> Option<Self> {
         let note = |key: &str| robot.notes.get(key).filter(|note| !note.is_null()).cloned();
         let Given { held, start, version, cancel } = serde_json::from_value(note("order")?).ok()?;
@@ -111,19 +111,19 @@ impl Job {
         Some(job)
     }
 
-    /// What is to be remembered of the manager's order.
+    /// The manager's order as a note.
     pub(super) fn given(&self) -> Value {
         let Self { held, way, version, cancel, .. } = self;
         let given = Given { held: held.clone(), start: way.start(), version: version.clone(), cancel: cancel.clone() };
         serde_json::to_value(given).unwrap_or_default()
     }
 
-    /// What is to be remembered of the update that was sent last.
+    /// The last update that was sent, as a note.
     pub(super) fn sent_note(&self) -> Value {
         serde_json::to_value(self.sent).unwrap_or_default()
     }
 
-    /// The node that a mission leads to.
+    /// Index of the node to which a mission leads.
     fn place(&self, mission: &str) -> Option<usize> {
         let (order, sequence) = mission.rsplit_once('#')?;
         if order == self.held.order_id { self.held.place_of(sequence.parse().ok()?) } else { None }
@@ -167,7 +167,7 @@ impl Job {
         length: f64,
         version: String,
     ) -> Option<(Self, usize)> {
-        /// The same node.
+        /// Largest distance of equal nodes \[m\].
         const SAME: f64 = 1e-6;
         let place = |node: &Node| node.node_position.as_ref().map(|at| [at.x, at.y]);
         let end = self.planned(robot);
@@ -177,7 +177,8 @@ impl Job {
         let same = |(a, b): (&Node, &Node)| {
             place(a).zip(place(b)).is_some_and(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]) <= SAME)
         };
-        // It begins at the next node, or over a place where it is before that: on the way, not where the vehicle says that it is beside it.
+        // The new order begins at the next node of the way, or with a node before it that lies on the way; the reported
+        // position may be beside the way.
         let skip = usize::from(!same((held.nodes.first()?, rest.first()?)));
         let joins = rest.len() - 1 + skip;
         let follows = self.is_admitted(robot)
@@ -195,17 +196,17 @@ impl Job {
         Some((Self::new(held, way, version), joins))
     }
 
-    /// Where the base of the vehicle ends, or may end.
+    /// The last stop that the vehicle has, or may have.
     pub(super) fn last(&self) -> Stop {
         self.stops.last().copied().unwrap_or(Stop { sequence: 0, length: 0.0, node: 0, between: false })
     }
 
-    /// Place of a stop by the vehicle's number.
+    /// Index of the stop with this sequence number.
     pub(super) fn stop(&self, sequence: u64) -> Option<usize> {
         self.stops.binary_search_by_key(&sequence, |stop| stop.sequence).ok()
     }
 
-    /// Whether the vehicle has all that was sent.
+    /// Whether the vehicle has the last update that was sent.
     pub(super) fn is_acknowledged(&self) -> bool {
         match (self.sent, self.acknowledged) {
             (None, _) => true,
@@ -214,7 +215,7 @@ impl Job {
         }
     }
 
-    /// The node of a stop, as the vehicle gets it.
+    /// The node of a stop, as it is sent to the vehicle.
     pub(super) fn node(&self, stop: Stop, deviation: f64, released: bool) -> Option<Node> {
         let near = self.held.nodes.get(stop.node)?;
         let mut node = if stop.between { self.between(near, stop) } else { near.clone() };
@@ -241,7 +242,7 @@ impl Job {
         }
     }
 
-    /// The name of the node of a stop.
+    /// The node id of a stop.
     fn id(&self, stop: Stop) -> String {
         let node = self.held.nodes.get(stop.node).map_or("", |node| node.node_id.as_str());
         if stop.between {
@@ -251,7 +252,7 @@ impl Job {
         }
     }
 
-    /// The edge from stop to stop, or a part of it, as the vehicle gets it.
+    /// The edge, or part of an edge, between two stops, as it is sent to the vehicle.
     pub(super) fn edge(&self, [from, to]: [Stop; 2], released: bool) -> Option<Edge> {
         let mut edge = self.held.edges.get(from.node)?.clone();
         (edge.sequence_id, edge.released) = (from.sequence + 1, released);
@@ -272,7 +273,7 @@ impl Job {
     }
 }
 
-/// The vehicle may not pass a node further off than its margin covers.
+/// Limits the allowed deviation at a node to what the margin covers.
 fn limit(position: &mut NodePosition, deviation: f64, version: &str) {
     use super::super::version::Version;
     let allowed = position.deviation().ok().flatten().unwrap_or(deviation).min(deviation);

@@ -1,29 +1,29 @@
-//! Names of orders and actions that were used before, remembered with the journal: a message under one of them comes late.
+//! Ids of orders and actions that were used before, also kept in the journal: a message with one of them is a late repetition.
 
 use crate::robot::Robot;
 use serde_json::Value;
 
-/// So many are remembered at least, the last ones.
+/// Smallest number of ids that are kept.
 const MOST: usize = 64;
 
-/// The names of one kind.
+/// The used ids of one kind.
 #[derive(Debug)]
 pub(super) struct Past {
-    /// What the journal calls them.
+    /// Key of the note in the journal.
     pub(super) key: &'static str,
     names: Vec<String>,
 }
 
-/// What the journal is to have of another name.
+/// The change of the note for a new id.
 pub(super) enum Noted {
-    /// This, after what it has.
+    /// Elements to be appended.
     More(Vec<Value>),
-    /// This, in place of what it has.
+    /// A new value of the note.
     All(Value),
 }
 
 impl Past {
-    /// Those that the journal has.
+    /// The ids in the journal.
     pub(super) fn remembered(key: &'static str, robot: Option<&Robot>) -> Self {
         let note = robot.and_then(|robot| robot.notes.get(key)).and_then(Value::as_array);
         let names = note.into_iter().flatten().filter_map(Value::as_str).map(str::to_owned).collect();
@@ -34,7 +34,7 @@ impl Past {
         self.names.iter().any(|known| known == name)
     }
 
-    /// Another one. The list in the journal is cut at times only, so that it is not written with every name.
+    /// Adds an id. The list in the journal is shortened only sometimes, so that it is not written with every id.
     pub(super) fn push(&mut self, name: &str) -> Noted {
         self.names.push(name.to_owned());
         if self.names.len() <= 2 * MOST {
@@ -44,7 +44,7 @@ impl Past {
         Noted::All(self.all())
     }
 
-    /// All of them, for the journal.
+    /// All ids, for the journal.
     pub(super) fn all(&self) -> Value {
         self.names.clone().into()
     }
