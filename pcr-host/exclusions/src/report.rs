@@ -42,7 +42,7 @@ fn extent(out: &mut impl Write, excluded: f64, needed: f64, needless: usize) -> 
 /// What has been written, in a few lines.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn written_table(written: &Written, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
@@ -83,7 +83,7 @@ fn spot(spot: &Spot) -> String {
 /// The audit: what can touch, the deepest first, and what is excluded in vain.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn audit_table(audit: &Audit, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
@@ -147,7 +147,7 @@ pub const AUDIT_HEADER: &str = "finding,a,b,relation,a_from,a_to,b_from,b_to,x,y
 /// A line a finding: `open`, what can touch, and `needless`. A node is `node` and its name, as `a`, and has no lengths.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn audit_csv(audit: &Audit, out: &mut impl Write) -> io::Result<()> {
     out.write_all(AUDIT_HEADER.as_bytes())?;
     for gap in &audit.gaps {

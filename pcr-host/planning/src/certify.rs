@@ -22,7 +22,7 @@ use told::{Asked, Cover, Told};
 pub struct Certified {
     /// Name of the scenario.
     pub name: String,
-    /// What the agents are called, by their numbers.
+    /// Labels of the agents, by their numbers.
     #[serde(skip_serializing_if = "Labels::is_empty")]
     pub labels: Labels,
     /// `proved`, `refuted` or `undecided`; none where the scenario was refused.
@@ -48,7 +48,7 @@ pub struct Certified {
     pub undecided: Vec<Point>,
     /// Why there is no verdict.
     pub error: Option<String>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 
@@ -81,10 +81,10 @@ pub(crate) const VERSION: u32 = 1;
 pub struct Dump {
     /// Name of the scenario.
     pub name: String,
-    /// What its agents are called.
+    /// Labels of its agents.
     #[serde(default)]
     pub labels: Labels,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     #[serde(default)]
     pub warnings: Vec<String>,
     /// That of contact, and that in which margins overlap, if there are any.

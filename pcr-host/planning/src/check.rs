@@ -19,7 +19,7 @@ use serde::Serialize;
 pub struct Verdict {
     /// Name of the scenario.
     pub name: String,
-    /// What the agents are called, by their numbers.
+    /// Labels of the agents, by their numbers.
     #[serde(skip_serializing_if = "Labels::is_empty")]
     pub labels: Labels,
     /// How many agents there are.
@@ -35,7 +35,7 @@ pub struct Verdict {
     pub certificate: Option<Proof>,
     /// Why the scenario was refused.
     pub error: Option<String>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 

@@ -49,7 +49,7 @@ pub struct Locks {
     /// Nodes at which vehicles cannot stand at the same time, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node_pairs: Option<Vec<[Id; 2]>>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 

@@ -19,7 +19,7 @@ pub struct Listing<'a> {
     pub nodes: Vec<Place<'a>>,
     /// The ways between them.
     pub edges: Vec<Way<'a>>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: &'a [String],
 }
 

@@ -105,7 +105,7 @@ impl Request {
 pub struct Plan {
     /// Name of the scenario.
     pub name: String,
-    /// What the agents are called, by their numbers.
+    /// Labels of the agents, by their numbers.
     #[serde(skip_serializing_if = "Labels::is_empty")]
     pub labels: Labels,
     /// How conflicts are avoided.
@@ -134,7 +134,7 @@ pub struct Plan {
     /// Why the scenario was refused.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
     /// What an independent checker has proved of the plan.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -26,7 +26,7 @@ pub use tables::table_of;
 pub struct Answer {
     /// Name of the scenario.
     pub name: String,
-    /// What the agents are called, by their numbers.
+    /// Labels of the agents, by their numbers.
     #[serde(skip_serializing_if = "Labels::is_empty")]
     pub labels: Labels,
     /// Number format of the computation.
@@ -47,7 +47,7 @@ pub struct Answer {
     pub certificate: Option<Vec<Table>>,
     /// Why the scenario was refused.
     pub error: Option<String>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 

@@ -87,7 +87,7 @@ impl Document for Listing<'_> {
 /// One line of JSON.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn json<D: Document>(answer: &D, out: &mut impl Write) -> io::Result<()> {
     #[derive(Serialize)]
     struct Versioned<'a, D> {
@@ -107,7 +107,7 @@ pub const CSV_HEADER: &str = "name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types
 /// margins come last, with 1 in the column `margin`.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn csv(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
     csv_rows(&answer.name, &answer.labels, &answer.regions, false, out)?;
     csv_rows(&answer.name, &answer.labels, answer.margin_regions.as_deref().unwrap_or_default(), true, out)

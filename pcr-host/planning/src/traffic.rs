@@ -65,7 +65,7 @@ pub struct Traffic {
     pub missions: Vec<Travel>,
     /// Why agents have no plan, the first of each `ids`.
     pub unsolved: Vec<Unsolved>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 

@@ -120,7 +120,7 @@ impl Book {
         self.rows[robot].iter().filter_map(|&place| self.regions[place].as_ref())
     }
 
-    /// The regions of a robot with their places, the robot as the first of the two.
+    /// The regions of a robot with their indices; the robot is the first of the two.
     pub(super) fn seen_by(&self, robot: usize) -> impl Iterator<Item = (usize, Region)> {
         self.rows[robot].iter().filter_map(move |&place| {
             let region = self.regions[place].as_ref()?;
@@ -128,7 +128,7 @@ impl Book {
         })
     }
 
-    /// Who goes first at some regions, by their places.
+    /// Sets which robot goes first at some regions, given by their indices.
     pub(super) fn settle(&mut self, firsts: &[(usize, usize)]) {
         for &(place, first) in firsts {
             if let Some(region) = &mut self.regions[place] {
@@ -138,7 +138,7 @@ impl Book {
         }
     }
 
-    /// How far a robot may go.
+    /// Length up to which a robot may go.
     pub(super) fn hold(&self, robot: usize, robots: &[Robot], far: f64) -> f64 {
         let mut least = far;
         for &place in &self.rows[robot] {
@@ -153,7 +153,7 @@ impl Book {
         least
     }
 
-    /// Drops the regions that a robot, or the other one, has left behind.
+    /// Removes the regions that a robot, or the other one, has left.
     pub(super) fn drop_over(&mut self, robot: usize, robots: &[Robot]) {
         let over = |place: &usize| {
             let region = self.regions[*place].as_ref();
@@ -172,7 +172,7 @@ impl Book {
         }
     }
 
-    /// Gives a robot another way, with these regions of it.
+    /// Gives a robot another way, with its regions.
     pub(super) fn exchange(&mut self, robot: usize, old: &Way, new: &Way, regions: Vec<Region>) {
         for place in std::mem::take(&mut self.rows[robot]) {
             self.remove(place);
@@ -200,7 +200,7 @@ impl Book {
         }
     }
 
-    /// Who else has an atom on the rest of its way.
+    /// The other robots that have an atom on the rest of their ways.
     pub(super) fn others_on<'s>(
         &'s self,
         atom: usize,
@@ -211,7 +211,7 @@ impl Book {
         there.filter(move |&(other, place)| other != robot && robots[other].way.offsets[place + 1] >= robots[other].at)
     }
 
-    /// The regions of a way of a robot that is at `at` on it; it is first in none.
+    /// The regions of a way of a robot that is at `at` on it; the robot goes second at all of them.
     pub(super) fn regions(&self, site: &Site, robots: &[Robot], robot: usize, way: &Way, at: f64) -> Vec<Region> {
         let mut ties: Vec<Tie<'_>> = Vec::new();
         for (place, &atom) in way.atoms.iter().enumerate() {
@@ -235,9 +235,9 @@ impl Book {
     }
 }
 
-/// A hold at the beginning of an atom is one before it; before the first there is nothing.
+/// A hold at the beginning of an atom is moved before it; there is nothing before the first atom.
 fn held(at: f64, offset: f64, place: usize) -> f64 {
-    /// So far before \[m\].
+    /// Distance by which it is moved \[m\].
     const BEFORE: f64 = 1e-6;
     match (at > f64::NEG_INFINITY, place) {
         (true, _) => at + offset,
@@ -246,7 +246,7 @@ fn held(at: f64, offset: f64, place: usize) -> f64 {
     }
 }
 
-/// Whoever never leaves on an atom has left at its end, if it goes on there.
+/// A robot that does not leave a contact on an atom has left it at the end of that atom, if its way goes on there.
 fn needed(needs: f64, way: &Way, place: usize) -> f64 {
     match needs < f64::INFINITY {
         true => needs + way.offsets[place],
@@ -260,9 +260,10 @@ fn timed(gate: Gate, first: &Way, second: &Way) -> Timed {
     Timed { gate, comes: second.time(gate.at.clamp(0.0, second.length())), opens }
 }
 
-/// The regions that ties of two robots make, sorted by places: those of atoms that follow one another belong together where they meet.
+/// The regions that are made of the ties of two robots, which are sorted by indices: ties of successive atoms belong together
+/// if they meet.
 fn joined(ties: &mut [Tie<'_>], robot: usize, ways: [&Way; 2]) -> Vec<Region> {
-    /// Lengths as near are the same \[m\].
+    /// Lengths that differ by at most this are equal \[m\].
     const NEAR: f64 = 1e-5;
     let mut parents: Vec<usize> = (0..ties.len()).collect();
     fn root(parents: &mut [usize], mut k: usize) -> usize {

@@ -25,10 +25,10 @@ pub(super) struct Timed {
 /// A robot has left a region when it is this far beyond the last contact \[m\].
 const LEFT: f64 = 1e-6;
 
-/// How two pieces of paths touch.
+/// How robots on two pieces of paths touch.
 #[derive(Clone, Debug)]
 pub(super) struct Contact {
-    /// Lengths of each of them at which they may touch \[m\].
+    /// Range of lengths on each of the two at which they may touch \[m\].
     pub(super) hull: [Interval<f64>; 2],
     /// Gates of each of the two as the second robot. `at` is minus infinity if it has to wait before this piece; `needs` is infinity if
     /// the first robot does not leave the contact on this piece.
@@ -80,7 +80,7 @@ pub(crate) fn gates(regions: &[RegionRef<'_, f64>], pitch: f64) -> Vec<Gate> {
     gates
 }
 
-/// Those that matter: a gate counts if it needs more than all before it.
+/// The gates that matter: a gate counts if it needs more than all before it.
 pub(super) fn pruned(mut gates: Vec<Gate>) -> Vec<Gate> {
     gates.sort_unstable_by(|a, b| a.at.total_cmp(&b.at).then(b.needs.total_cmp(&a.needs)));
     let mut most = f64::NEG_INFINITY;
@@ -92,7 +92,7 @@ pub(super) fn pruned(mut gates: Vec<Gate>) -> Vec<Gate> {
     gates
 }
 
-/// How far the second may go when the first is at `first` \[m\].
+/// Length up to which the second robot may go when the first is at `first` \[m\].
 pub(super) fn hold(gates: &[Timed], first: f64) -> f64 {
     let next = gates.partition_point(|timed| timed.gate.needs <= first);
     gates.get(next).map_or(f64::INFINITY, |timed| timed.gate.at)

@@ -33,7 +33,7 @@ impl Columns {
     /// Writes them as text.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// Errors of the writer.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
         for row in &self.rows {
             let mut line = String::new();
@@ -51,7 +51,7 @@ impl Columns {
     /// The same as a table of Markdown.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// Errors of the writer.
     pub fn write_markdown(&self, out: &mut impl Write) -> io::Result<()> {
         for (k, row) in self.rows.iter().enumerate() {
             writeln!(out, "| {} |", row.join(" | "))?;

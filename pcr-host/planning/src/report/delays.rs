@@ -32,7 +32,7 @@ pub struct DelayTable {
     /// Nodes at which vehicles cannot stand at the same time, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node_pairs: Option<Vec<[Id; 2]>>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 
@@ -118,7 +118,7 @@ impl DelayTable {
 /// A line a delay. A node is `node` and its name, as `a`; two nodes have no times.
 ///
 /// # Errors
-/// Those of the writer, and of [`Delays::each`].
+/// Errors of the writer, and of [`Delays::each`].
 pub fn delays_csv(delays: &Delays, told: Told<'_>, out: &mut impl Write) -> Result<(), LocksUnprinted> {
     out.write_all(DELAYS_HEADER.as_bytes())?;
     let direction = |backward| if backward { "backward" } else { "forward" };
@@ -212,7 +212,7 @@ fn range([from, to]: [f64; 2]) -> [String; 2] {
 /// The delays in columns.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn delays_table(table: &DelayTable, out: &mut impl Write) -> io::Result<()> {
     let name = if table.layout.is_empty() { "layout" } else { &table.layout };
     let (count, Driving { speed, acceleration }) = (table.delays.len(), table.driving);

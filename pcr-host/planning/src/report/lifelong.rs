@@ -13,7 +13,7 @@ stuck,standstill,refused,moved,revised,longest_wait,waiting,starved,driving,turn
 /// A line a method; where nobody has reached a goal there is no ratio, but a reason.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn lifelong_csv(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()> {
     out.write_all(LIFELONG_CSV_HEADER.as_bytes())?;
     for run in &lifelong.runs {
@@ -51,7 +51,7 @@ pub fn lifelong_csv(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()>
 /// What the layout allows, and a line a method.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn lifelong_table(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()> {
     let Lifelong { layout, seed, asked, hours, delays, well_formedness, alone, runs, .. } = lifelong;
     let name = if layout.is_empty() { "layout" } else { layout };

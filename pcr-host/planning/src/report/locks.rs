@@ -37,7 +37,7 @@ impl From<io::Error> for LocksUnprinted {
 /// [`Sweep::each`].
 ///
 /// # Errors
-/// Those of the writer, and of [`Sweep::each`].
+/// Errors of the writer, and of [`Sweep::each`].
 pub fn locks_csv(sweep: &Sweep, told: Told<'_>, out: &mut impl Write) -> Result<(), LocksUnprinted> {
     out.write_all(LOCKS_HEADER.as_bytes())?;
     let name = |(place, id): (usize, &Id)| {
@@ -128,7 +128,7 @@ pub const EDGE_HEADER: &str = "edge,other,from,to,other_from,other_to\n";
 /// A line a lock of an edge.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn edge_csv(locks: &EdgeLocks, out: &mut impl Write) -> io::Result<()> {
     out.write_all(EDGE_HEADER.as_bytes())?;
     let edge = quoted(&locks.edge);
@@ -142,7 +142,7 @@ pub fn edge_csv(locks: &EdgeLocks, out: &mut impl Write) -> io::Result<()> {
 /// The locks of an edge in columns, lengths outward to the millimetre.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn edge_table(locks: &EdgeLocks, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "{}: {}", printable(&locks.edge), counted(locks.partners.len(), "lock"))?;
     let mut columns = Columns::new(&["<other", "from [m]", "to", "other from [m]", "to"]);
@@ -163,7 +163,7 @@ fn range([from, to]: [f64; 2]) -> [String; 2] {
 /// The locks in columns, lengths outward to the millimetre.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn locks_table(locks: &Locks, out: &mut impl Write) -> io::Result<()> {
     let name = if locks.layout.is_empty() { "layout" } else { &locks.layout };
     let mut pairs: Vec<_> = locks.locks.iter().map(|lock| (&lock.a, &lock.b)).collect();
