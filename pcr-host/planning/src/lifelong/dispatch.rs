@@ -25,7 +25,7 @@ const ENDS: usize = 3;
 const WORK: usize = 30_000;
 const FORECASTS: [usize; 2] = [12, 96];
 
-/// The same numbers of forecasts if a forecast looks at some of the robots only.
+/// Largest number of forecasts of a decision in a large fleet.
 const FEW: usize = 2;
 
 /// A way that was admitted.

@@ -138,7 +138,7 @@ struct Together {
 
 fn together(problem: &Problem, staying: &[usize], budget: &mut Budget<'_>) -> Together {
     let mut found = Together { delays: vec![None; problem.len()], conflicts: Vec::new(), stopped: false };
-    // Parts that forbid one another nothing have conflicts of their own.
+    // Independent parts have conflicts of their own.
     for (part, own) in problem.of(staying).apart() {
         let part: Vec<usize> = part.into_iter().map(|place| staying[place]).collect();
         let mut delays = insert::inserted(&own);
@@ -239,9 +239,9 @@ fn hitting(conflicts: &[Vec<usize>], with: &[Vec<usize>], stop: Stop<'_>, fewest
     hit
 }
 
-/// The conflicts in groups: nobody who is left out because of one is because of another one.
+/// The conflicts in independent groups: no agent that can be left out because of one group is affected by another one.
 fn apart<'a>(conflicts: &'a [Vec<usize>], with: &[Vec<usize>]) -> Vec<Vec<&'a Vec<usize>>> {
-    // The agents and the conflicts of each.
+    // Agents and conflicts of each group.
     let mut groups: Vec<(Vec<usize>, Vec<&Vec<usize>>)> = Vec::new();
     for conflict in conflicts {
         let mut agents: Vec<usize> = conflict.iter().flat_map(|&agent| with[agent].iter().copied()).collect();
@@ -259,7 +259,7 @@ fn apart<'a>(conflicts: &'a [Vec<usize>], with: &[Vec<usize>]) -> Vec<Vec<&'a Ve
     groups.into_iter().map(|(_, conflicts)| conflicts).collect()
 }
 
-/// Branch and bound over which agent of a conflict is left out.
+/// Branch and bound: for a conflict, which of its agents is left out.
 struct Hitting<'a> {
     conflicts: &'a [&'a Vec<usize>],
     with: &'a [Vec<usize>],
@@ -267,7 +267,7 @@ struct Hitting<'a> {
     kept: Vec<bool>,
     best: Option<Vec<usize>>,
     nodes: u64,
-    /// Whether it was stopped with some that are few.
+    /// Whether the search was stopped; the best set so far may not be smallest.
     cut: bool,
     stop: Stop<'a>,
 }
@@ -282,7 +282,7 @@ impl Hitting<'_> {
         }
         let is_open = |conflict: &&Vec<usize>| !conflict.iter().any(|&agent| self.out[agent]);
         let open: Vec<&Vec<usize>> = self.conflicts.iter().copied().filter(is_open).collect();
-        // Conflicts that have no agent in common need one each.
+        // Conflicts without a common agent need one agent each.
         let mut used = vec![false; self.out.len()];
         let mut needed = 0;
         for conflict in &open {
@@ -307,7 +307,7 @@ impl Hitting<'_> {
             more.iter().for_each(|&other| self.out[other] = true);
             self.node(count + more.len());
             more.iter().for_each(|&other| self.out[other] = false);
-            // With it the search has been done.
+            // The branch in which it is left out has been searched.
             self.kept[agent] = true;
         }
         choices.iter().for_each(|&agent| self.kept[agent] = false);

@@ -53,7 +53,7 @@ impl Search<'_> {
         self.found(limit)
     }
 
-    /// The sides to branch upon, after those that are the only ones left; and the node that these make.
+    /// Adds all forced sides to a node; returns the two sides to branch on, and the resulting node.
     fn branched(&mut self, chosen: &mut Vec<Chosen>, mut place: usize) -> (Option<[Constraint; 2]>, usize) {
         loop {
             match self.step() {

@@ -8,27 +8,27 @@
 /// An end of an interval that stands for infinity \[ticks\].
 pub(crate) const NEVER: i64 = i64::MAX / 4;
 
-/// Most binary digits of a tick behind the point.
+/// Largest number of binary digits of a tick after the point.
 const FINEST: i32 = 30;
-/// Binary digits that the largest time has beyond a tick at most: one less than a number of double precision holds.
+/// Largest number of binary digits of a time in ticks: one less than `f64` holds.
 const DIGITS: i32 = 52;
-/// By how much each end is rounded outward at most \[ticks\].
+/// Bound on the outward rounding of each end \[ticks\].
 const OUTWARD: i128 = 2;
 
-/// How long a tick is.
+/// The length of a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ticks {
     per_second: f64,
 }
 
 impl Ticks {
-    /// As fine as times up to a latest one allow \[s\].
+    /// The finest ticks for times up to a latest one \[s\].
     pub(crate) fn up_to(latest: f64) -> Self {
         let digits = latest.max(1.0).log2().ceil() as i32 + 1;
         Self { per_second: f64::exp2(f64::from(FINEST.min(DIGITS - digits))) }
     }
 
-    /// What a pair must not have, rounded outward; `limit` and more stands for infinity \[s\].
+    /// A forbidden interval in ticks, rounded outward; values of `limit` or more stand for infinity \[s\].
     pub(crate) fn outward(self, [lo, hi]: [f64; 2], limit: f64) -> [i64; 2] {
         let below = if lo <= -limit { -NEVER } else { (lo * self.per_second).floor() as i64 - 1 };
         [below, if hi >= limit { NEVER } else { (hi * self.per_second).ceil() as i64 + 1 }]
@@ -39,7 +39,7 @@ impl Ticks {
         (seconds * self.per_second).round() as i64
     }
 
-    /// A time, exactly where it has no more digits than a number.
+    /// A time in seconds; exact if it has no more digits than `f64` holds.
     pub(crate) fn seconds(self, ticks: i128) -> f64 {
         ticks as f64 / self.per_second
     }
