@@ -37,7 +37,7 @@ const CONTROLS: usize = 6000;
 pub(crate) trait Rounded: Number {
     /// From a decimal.
     fn from_f64(value: f64) -> Self;
-    /// What it is.
+    /// The exact value.
     fn to_f64(self) -> f64;
 }
 
@@ -96,7 +96,7 @@ pub(crate) trait Supervisor {
     fn exchange(&mut self, bytes: &[u8]) -> Result<Vec<u8>, Box<dyn Error>>;
 }
 
-/// What happened in all runs.
+/// Counts over all runs.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tally {
     pub(crate) runs: usize,
@@ -188,7 +188,7 @@ impl Way {
         }
     }
 
-    /// What arrives now.
+    /// Takes the frames that arrive now.
     fn arrive(&mut self) -> Vec<u8> {
         self.late.iter_mut().for_each(|(steps, _)| *steps -= 1);
         let (due, late) = std::mem::take(&mut self.late).into_iter().partition(|(steps, _)| *steps == 0);
@@ -326,7 +326,7 @@ fn run<S: Rounded>(
     };
     match ask(supervisor, &mut planner, &Request::Order(terms))? {
         Answer::Edition(_) => {}
-        // Who comes as early as possible touches the one before: that may be too near to tell.
+        // A robot that comes as early as possible touches the one before it: such cases may be too close to decide.
         Answer::Refused(Refusal::Meeting(_) | Refusal::Stuck(_)) => return Ok(()),
         other => return Err(format!("no orders but {other:?}").into()),
     }
@@ -341,7 +341,7 @@ fn run<S: Rounded>(
             asks: false,
             told: None,
             path: Some(agent),
-            // Nobody is at the end of it before it was told its length.
+            // No robot is at the end of its path before it was told the length.
             length: S::LIMIT,
             at: 0.0,
             speed: 0.0,
@@ -444,7 +444,7 @@ impl<S: Rounded> Driver<S> {
         if none && !self.asks {
             self.inquire();
         }
-        // The same question again: of its answers, what has come is kept.
+        // The same question again: answers that have already come are kept.
         if self.asks && !(self.waits == 1 || self.waits > 5) {
             return;
         }
@@ -459,7 +459,7 @@ impl<S: Rounded> Driver<S> {
         line.send(self.client.frame(), random, bad, tally);
     }
 
-    /// What it has passed it has passed: rounded down, it is no further than that.
+    /// The length that it reports as passed, rounded down.
     fn reported(&self) -> S {
         if self.at >= self.end() { self.length } else { S::from_f64((self.at - 1e-4).max(0.0)) }
     }
@@ -598,7 +598,7 @@ fn advance<S: Rounded>(drivers: &mut [Driver<S>], tally: &mut Tally) -> Result<(
 const TOUCH: f64 = 1e-3;
 
 impl<S: Rounded> Driver<S> {
-    /// Where it really is, computed here from its path in `f64`, and its radius.
+    /// Its true position, computed here from its path in `f64`, and its radius.
     fn disc(&self) -> Option<([f64; 2], f64)> {
         let path = self.path.as_ref()?;
         let start = &path.start;

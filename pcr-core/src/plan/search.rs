@@ -21,7 +21,7 @@ pub(super) struct Search<'c, S: Scalar, L, I> {
     pub(super) length: S,
 }
 
-/// When the slabs of a cell and its end are blocked.
+/// The times at which the slabs of a cell and its end are blocked.
 struct Blocked<S> {
     slabs: [Times<S>; SLABS],
     end: Times<S>,

@@ -103,11 +103,11 @@ struct Reader<'a> {
     warnings: &'a mut Warnings,
     /// Names of the agents, and when each begins.
     begins: Vec<(String, Begin)>,
-    /// Of all agents.
+    /// The maps of all agents.
     maps: BTreeSet<String>,
 }
 
-/// When an agent begins.
+/// Begin of the motion of an agent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Begin {
     /// It stands, whenever.
@@ -196,7 +196,7 @@ impl Reader<'_> {
         let mut tracer = Tracer::default();
         let mut ways: Vec<Option<[f64; 2]>> = Vec::new();
         let (mut position, mut deviation) = (position(nodes.first(), "nodePosition")?, 0.0_f64);
-        // By which the vehicle may be ahead of its path, or behind.
+        // Difference of lengths: the vehicle may be ahead of its path by this, or behind it.
         let mut longer = 0.0;
         if position.is_none() && edges.is_empty() {
             return Err(nodes

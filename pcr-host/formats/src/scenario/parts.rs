@@ -131,8 +131,8 @@ impl Agent {
     }
 }
 
-/// Which of these segments a stop after this way is at the end of: off by `near` at most. Nothing at the end of the last one, and
-/// of the first one there is so much `left`.
+/// The first of these segments whose end is within `near` of a stop after `way`. `left` is the remaining length of the first
+/// segment. `None` at the end of the last one.
 fn border_at(lengths: &[f64], left: f64, way: f64, near: f64) -> Option<usize> {
     let mut border = left;
     for (k, pair) in lengths.windows(2).enumerate() {
