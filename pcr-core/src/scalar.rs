@@ -170,7 +170,7 @@ pub trait Scalar:
     fn slack(extent: Self) -> Self;
     /// Bound on the rounding error of a sum, a product or a quotient of a few numbers of this magnitude.
     fn rounding(of: Self) -> Self;
-    /// Bound on the error of a path of so many arcs that cannot be carried over from one arc to the next, including the
+    /// Bound on the error of a path of this number of arcs that cannot be carried over from one arc to the next, including the
     /// rounding of angles. `span` is the extent of the path plus the largest diameter of an arc.
     fn drift(arcs: usize, span: Self) -> Self {
         let _ = (arcs, span);
@@ -278,7 +278,7 @@ pub trait Angle<S: Scalar>:
     fn is_finite(self) -> bool;
     /// The bits of the angle, folded to 32, for a checksum.
     fn digest(self) -> u32;
-    /// Whether a heading of so many turns still has an accurate direction; always if angles are modulo one turn.
+    /// Whether a heading with this number of turns still has an accurate direction; always if angles are modulo one turn.
     fn is_in_range(self) -> bool {
         true
     }

@@ -158,17 +158,17 @@ impl Default for Delays {
     }
 }
 
-/// What is asked for.
+/// The options of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
-    /// Robots.
+    /// Number of robots.
     pub agents: usize,
-    /// For how long missions come \[s\].
+    /// Time for which missions come \[s\].
     pub duration: f64,
-    /// What goes wrong.
+    /// Random delays.
     pub delays: Delays,
-    /// Another number gives other missions and delays.
+    /// Seed of missions and delays.
     pub seed: u64,
-    /// How robots are kept apart.
+    /// Method that keeps robots apart.
     pub method: Method,
 }

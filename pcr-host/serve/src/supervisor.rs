@@ -26,7 +26,7 @@ use std::collections::HashMap;
 /// Orders on the heap.
 pub type Table = Orders<f64, Vec<Region>, Vec<Piece<f64>>, Vec<Order<f64>>>;
 
-/// What can be set.
+/// Settings of a supervisor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
@@ -119,7 +119,7 @@ impl std::fmt::Debug for Supervisor {
 }
 
 impl Supervisor {
-    /// Of nobody.
+    /// A supervisor without robots.
     pub fn new(settings: Settings, keeper: Box<dyn Keep>) -> Self {
         Self {
             settings,
@@ -144,17 +144,17 @@ impl Supervisor {
         }
     }
 
-    /// What was set.
+    /// The settings.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// What is drawn.
+    /// The lanes that the page draws.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
 
-    /// All robots, in the order in which they are numbered by the orders.
+    /// All robots, in the order of their indices in the table of orders.
     pub fn robots(&self) -> &[Robot] {
         &self.robots
     }
@@ -167,12 +167,12 @@ impl Supervisor {
         self.place(name).map(|place| &self.robots[place])
     }
 
-    /// Another number whenever a robot was added or removed.
+    /// A number that changes whenever a robot is added or removed.
     pub fn census(&self) -> u64 {
         self.census
     }
 
-    /// For whom a robot has to wait where it may go to, if it is not the end of its path.
+    /// The robot for which a robot has to wait at its hold; `None` if the hold is the end of its path.
     pub fn waits_for(&self, robot: &Robot) -> Option<&str> {
         let wait = robot.hold?;
         let end = robot.course.length();
@@ -181,22 +181,22 @@ impl Supervisor {
         self.robots.get(by).map(|by| by.name.as_str())
     }
 
-    /// The orders, of [`Supervisor::fleet`].
+    /// The passing orders of [`Supervisor::fleet`].
     pub fn orders(&self) -> &Table {
         &self.orders
     }
 
-    /// The robots as the orders take them.
+    /// The motions of the robots, as the table of orders has them.
     pub fn fleet(&self) -> Vec<Motion<'_, f64>> {
         fleet(&self.robots)
     }
 
-    /// What has happened.
+    /// Numbers of events since the start.
     pub fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// Takes another layout, for the page.
+    /// Takes a new layout for the page.
     ///
     /// # Errors
     /// [`Fault::Broken`].
@@ -207,10 +207,10 @@ impl Supervisor {
         Ok(())
     }
 
-    /// Adds a robot that stands. Whoever has not yet been allowed to pass there waits for it until it has a mission.
+    /// Adds a robot that stands. Robots that have not yet been allowed to pass there wait for it until it has a mission.
     ///
     /// # Errors
-    /// [`Fault::RobotExists`], [`Fault::Invalid`]. To add the same one twice is no error before it has a mission.
+    /// [`Fault::RobotExists`], [`Fault::Invalid`]. Adding the same robot twice is no error before it has a mission.
     pub fn add(&mut self, name: &str, abilities: Abilities, start: Start) -> Result<(), Fault> {
         self.works()?;
         if let Ok(robot) = self.robot(name) {
@@ -224,11 +224,11 @@ impl Supervisor {
         self.insert(standing(name, abilities, start)?)
     }
 
-    /// A robot stands somewhere else than on its path, without a mission, as somebody has seen: all that it had been allowed to is void. The
-    /// missions that it had are still known as such.
+    /// Moves a robot to a place off its path, without a mission, after it was seen there: all its rights are void. The ids of
+    /// its missions stay known.
     ///
     /// # Errors
-    /// [`Fault::NoSuchRobot`], [`Fault::Invalid`], and nothing has changed.
+    /// [`Fault::NoSuchRobot`], [`Fault::Invalid`]; nothing has changed then.
     pub fn reseat(&mut self, name: &str, start: Start) -> Result<(), Fault> {
         self.works()?;
         let robot = &self.robots[self.place(name)?];
@@ -267,7 +267,7 @@ impl Supervisor {
             match self.orders.insert(&fleet, place) {
                 Ok(()) => return Ok(()),
                 Err(Unchanged::Full(full)) => self.orders.grow(full)?,
-                // The table is that of the robots.
+                // The table belongs to these robots.
                 Err(Unchanged::Mismatch(_)) => return Err(Full::Agents),
             }
         }
@@ -305,11 +305,10 @@ impl Supervisor {
         Ok(())
     }
 
-    /// Adds to a list that is remembered about a robot, and begins it if there is none. The journal grows by what is added, and not by
-    /// the whole list.
+    /// Appends to a note that is a list; a missing note is an empty list. The journal grows by the new elements only.
     ///
     /// # Errors
-    /// As [`Supervisor::note`], and [`Fault::Invalid`] if what is remembered under that name is no list.
+    /// As [`Supervisor::note`], and [`Fault::Invalid`] if the note is not a list.
     pub fn note_more(&mut self, name: &str, key: &str, more: Vec<serde_json::Value>) -> Result<(), Fault> {
         self.works()?;
         let place = self.place(name)?;
@@ -337,13 +336,13 @@ impl Supervisor {
     }
 
     fn tolerances(&self) -> Tolerances<f64> {
-        /// Less way than this is no progress \[m\].
+        /// Smallest advance that counts as progress \[m\].
         const GAIN: f64 = 1e-3;
         Tolerances { width: self.settings.width, gain: GAIN }
     }
 
-    /// Decides what follows from what was asked and heard: robots are allowed to go on, missions that waited are tried again.
-    /// Nobody may be told of it before [`Supervisor::settle`].
+    /// Decides what follows from requests and positions: raises holds, and tries waiting missions again. The results may not be
+    /// sent before [`Supervisor::settle`].
     pub fn decide(&mut self, now: f64) {
         if self.broken.is_some() {
             return;
@@ -356,10 +355,10 @@ impl Supervisor {
         self.note_standstill(now);
     }
 
-    /// [Decides](Supervisor::decide), and writes the journal. What is returned may be told: it is in there.
+    /// [Decides](Supervisor::decide), and writes the journal. The returned events may be sent, because they are in the journal.
     ///
     /// # Errors
-    /// [`Fault::Broken`]: the journal could not be written. Nothing is told then, now or later.
+    /// [`Fault::Broken`]: the journal could not be written. Nothing may be told then, now or later.
     pub fn settle(&mut self, now: f64) -> Result<Vec<Event>, Fault> {
         self.works()?;
         self.decide(now);
@@ -406,7 +405,8 @@ fn standing(name: &str, abilities: Abilities, start: Start) -> Result<Robot, Fau
     Ok(robot)
 }
 
-/// The robots as the orders take them. Each was built when it was added or admitted; if one were missing, the table would refuse the rest.
+/// The motions of the robots. Each was built when its path was added or admitted; if one were missing, the table would refuse
+/// the others.
 fn fleet(robots: &[Robot]) -> Vec<Motion<'_, f64>> {
     robots.iter().filter_map(|robot| robot.motion().ok()).collect()
 }

@@ -139,14 +139,14 @@ impl Sweep {
         Ok(())
     }
 
-    /// What a row of tracks means for their members.
+    /// The locks of the members of tracks, from a row of tracks.
     fn found(&self, track: usize, row: &[(usize, Extents)]) -> Vec<Found> {
         let own = &self.tracks[track];
         let mut all = Vec::new();
         for &(other, [lengths, other_lengths]) in row {
             let their = &self.tracks[other];
             for (k, &(a, turned)) in own.members.iter().enumerate() {
-                // Of one track each pair of members once.
+                // Each pair of members of one track once.
                 for &(b, other_turned) in their.members.iter().skip(if other == track { k + 1 } else { 0 }) {
                     let (own, their) = (own.on_member(lengths, turned), their.on_member(other_lengths, other_turned));
                     all.push(if a < b {
@@ -212,7 +212,7 @@ impl Sweep {
         Ok(if extents.len() > 1 { joined(extents) } else { extents })
     }
 
-    /// What a disc belongs to, for messages.
+    /// Id of the edge or node of a disc, for messages.
     fn name(&self, disc: usize) -> String {
         let member = self.tracks.get(self.track_of(disc)).and_then(|track| track.members.first());
         member.and_then(|&(place, _)| self.ids.get(place)).map_or_else(String::new, Id::to_string)

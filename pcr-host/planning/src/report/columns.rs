@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use unicode_width::UnicodeWidthStr;
 
-/// What a row of a table takes while the widths of its columns are not known \[bytes\]: up to eleven cells, each a text.
+/// Memory for a row of a table until the widths of its columns are known \[bytes\]: up to eleven cells, each a text.
 pub const ROW_BYTES: u64 = 800;
 
 /// Rows of cells, each column as wide as its widest cell.

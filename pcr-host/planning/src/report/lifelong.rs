@@ -10,7 +10,7 @@ use std::io::{self, Write};
 pub const LIFELONG_CSV_HEADER: &str = "method,robots,missions,missions_per_hour,travel_over_unimpeded,certificate,breaches,\
 stuck,standstill,refused,moved,revised,longest_wait,waiting,starved,driving,turning,stopped,held,aside,idle,decisions,decision_median,decision_p99,idle_because\n";
 
-/// A line a method; where nobody has reached a goal there is no ratio, but a reason.
+/// One line for each method; if no goal was reached, a reason takes the place of the ratio.
 ///
 /// # Errors
 /// Errors of the writer.
@@ -48,7 +48,7 @@ pub fn lifelong_csv(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()>
     Ok(())
 }
 
-/// What the layout allows, and a line a method.
+/// Properties of the layout, and one line for each method.
 ///
 /// # Errors
 /// Errors of the writer.

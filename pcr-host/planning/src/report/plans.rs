@@ -66,7 +66,7 @@ fn means(plan: &Plan) -> &'static str {
     if plan.method == "speed" { "speeds" } else { "start delays" }
 }
 
-/// What a plan costs, and how much less it could.
+/// The cost of a plan, and the gap to its lower bound.
 fn costs(plan: &Plan) -> String {
     let Plan { makespan, sum_of_costs, lower_bound, gap, .. } = plan;
     let what = if plan.objective == "makespan" { "makespan" } else { "sum of costs" };

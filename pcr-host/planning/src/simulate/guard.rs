@@ -39,7 +39,7 @@ impl Guard {
     /// For discs of these radii \[m\] on these courses, without orders yet.
     ///
     /// # Errors
-    /// Those of [`build_ecm`].
+    /// Errors of [`build_ecm`].
     pub(super) fn new(courses: &[Course], radii: &[f64]) -> Result<Self, Full> {
         let drives: Vec<Drive> = courses.iter().filter_map(|course| Drive::at_unit_speed(course.clone())).collect();
         // The supervisor has tried the courses and radii of all robots, and parts of courses are in range as well.

@@ -51,7 +51,7 @@ mod tests {
         assert!(close(narrowed(start, 0.6, [0.9, 0.3], 0.5, &course), 0.5, 0.6));
         assert!(close(narrowed(Interval::new(0.2, 0.4), 0.1, [0.1, 0.0], 0.3, &course), 0.2, 0.4));
         assert!(close(narrowed(Interval::new(1.8, 1.9), 0.5, [1.9, 0.0], 0.3, &course), 1.8, 2.0));
-        // What cannot be is not believed.
+        // An impossible observation is ignored.
         assert!(close(narrowed(start, 0.5, [0.9, 7.0], 0.5, &course), 0.0, 0.5));
     }
 }

@@ -161,7 +161,7 @@ impl Problem<'_> {
         self.obstacles.iter().map(|(drive, radius)| drive.motion(*radius)).collect()
     }
 
-    /// Who stands in the way of a robot, one of those robots that `stay` where they are, or else an obstacle, whatever anybody does.
+    /// What stands in the way of a robot under all plans: a robot for which `stay` holds, or else an obstacle.
     pub(super) fn in_the_way(&self, robot: usize, stay: impl Fn(usize) -> bool) -> Option<InTheWay> {
         let through = self.through(self.robots.get(robot)?)?;
         let motion = through.motion(self.robots.get(robot)?.radius)?;

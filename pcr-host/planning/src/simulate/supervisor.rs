@@ -273,8 +273,8 @@ impl Supervisor {
         })
     }
 
-    /// Of robots with a new mission, who cannot carry it out with any margin, because a robot that stands and `stays` or an obstacle is in
-    /// its way.
+    /// For each robot with a new mission whether it cannot carry it out with any margin, because an obstacle, or a standing
+    /// robot for which `stays` holds, is in its way.
     fn barred(&self, pending: &[bool], stays: impl Fn(usize) -> bool) -> Vec<bool> {
         let Some(robots) = self.states(0, pending) else { return vec![false; pending.len()] };
         let problem = Problem { now: 0.0, robots: &robots, obstacles: &self.obstacles };
@@ -286,7 +286,7 @@ impl Supervisor {
         self.agents.iter().zip(taken).map(|(agent, &taken)| agent.state(margin, taken)).collect()
     }
 
-    /// Lengths travelled before a plan that is made now \[m\].
+    /// Length that each robot has travelled before a plan that is made now \[m\].
     fn offsets(&self, taken: &[bool]) -> Vec<f64> {
         self.agents.iter().zip(taken).map(|(agent, &taken)| agent.to_plan(taken).1.middle()).collect()
     }
@@ -329,7 +329,7 @@ impl Supervisor {
         self.plan = Some(current);
     }
 
-    /// What a robot does in the next frame.
+    /// The command for a robot in the next frame.
     fn command(&mut self, place: usize, time: f64, hold: f64) -> Command {
         let (Some(agent), Some(current)) = (self.agents.get(place), &self.plan) else { return Command::Stay };
         if agent.next.is_some() {
@@ -365,7 +365,7 @@ impl Control for Supervisor {
 
     fn assign(&mut self, robot: usize, course: &Course) {
         if let Some(agent) = self.agents.get_mut(robot) {
-            // What was announced is planned already, or a plan for it is looked for.
+            // An announced mission is in the plan already, or a plan for it is being searched.
             if std::mem::take(&mut agent.release) <= 0.0 {
                 agent.at = Interval::new(agent.course.length(), agent.course.length());
                 agent.next = Some(course.clone());

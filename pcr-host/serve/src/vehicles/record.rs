@@ -240,7 +240,7 @@ pub fn certify(mut text: impl BufRead) -> io::Result<Certificate> {
         return Err(wrong(1, format!("nothing about {}", head.vehicles[none].name)));
     }
     let vehicles = head.vehicles.len();
-    // Of a record that was cut some may not be there yet.
+    // In a record that was cut, some vehicles may have no line yet.
     let there = head.vehicles.into_iter().zip(tracks).filter(|(_, track)| !track.is_empty());
     let (there, tracks): (Vec<_>, Vec<_>) = there.unzip();
     Ok(Certificate { vehicles, ..checked(&there, &tracks, cut) })
@@ -411,7 +411,7 @@ mod tests {
         let other = certify(whole.replacen("\"radius\":0.5", "\"radius\":0.4", 1).as_bytes()).unwrap();
         assert_eq!(other.error.unwrap(), "the record is not as it was written: its checksum is another one");
         assert_eq!(other.verdict, "undecided");
-        // Whoever writes one by hand need not have a checksum.
+        // Records written by hand need no checksum.
         let end = whole.rfind(",\"crc32\"").unwrap();
         assert_eq!(certify(format!("{}}}", &whole[..end]).as_bytes()).unwrap().verdict, "proved");
         let twice = certify(format!("{whole}{whole}").as_bytes()).unwrap_err();
@@ -435,16 +435,16 @@ mod tests {
             assert_eq!(cut.error.unwrap(), "the record is cut: its last line is missing");
         }
         assert_eq!(certify(&whole.as_bytes()[..whole.len() - 1]).unwrap().verdict, "proved");
-        // Who was there and touched somebody did.
+        // A contact that is in the record remains a contact.
         let touched = record(0.999);
         assert_eq!(certify(&touched.as_bytes()[..touched.len() - 50]).unwrap().verdict, "contact");
-        // Where something follows it was not cut, nor where nothing is known of whom.
+        // A record with further lines was not cut, nor one without the names of its vehicles.
         let broken = whole.replacen("]\n", "\n", 1);
         assert!(certify(broken.as_bytes()).unwrap_err().to_string().starts_with("line 2: "));
         assert!(certify(&whole.as_bytes()[..head - 5]).unwrap_err().to_string().starts_with("line 1: "));
     }
 
-    /// Of ways of 10 million kilometres rounding would hide contacts of a millionth of a metre.
+    /// With ways of 10 million kilometres, rounding would hide contacts of a millionth of a metre.
     #[test]
     fn what_rounding_would_hide_is_refused() {
         let record = |points: &str| {

@@ -191,14 +191,14 @@ mod tests {
                     newest.asks("r".into(), k as f64);
                     asked = true;
                 }
-                // Those from before, which are late or were on their way, are no newer ones.
+                // Late messages of the old count are not newer.
                 for late in [490, 510] {
                     let place = newest.clone().take(&header(late, &at(late as u32 + 100)), k as f64 + 0.5, |_| false);
                     assert!(k < after || k > after + 59 || place == Place::Late, "{k} {late}");
                 }
             }
         }
-        // What came in between was newer: the request is as old as that.
+        // A newer message came in between, so the answer to the request proves nothing.
         let mut newest = Newest::default();
         newest.take(&header(500, &at(600)), 0.0, |_| false);
         newest.asks("r".into(), 1.0);
