@@ -56,10 +56,11 @@ const SOME: usize = 20;
 /// Node limit of a search that decides whether delays exist, for up to `FEW` agents. With more agents the limit shrinks in
 /// proportion, because each node takes longer.
 const DECIDING: u64 = 200_000;
-const FEW: u64 = 20;
 /// Largest number of pairs with forbidden delays for which a part of the fleet is searched, unless a search was asked for. A larger
 /// part keeps the best delays known before, with a lower bound.
 const SEARCHED: usize = 20_000;
+/// Number of agents up to which `DECIDING` is not reduced.
+const FEW: u64 = 20;
 
 /// The result of a search.
 #[derive(Clone, Debug, PartialEq)]
