@@ -8,7 +8,7 @@ pub(crate) fn row(flags: impl DoubleEndedIterator<Item = bool>) -> u32 {
 
 /// Adds a number to a checksum. Each bit of either changes every bit of the result about every other time (Wellons'
 /// `triple32`), the last number as well as the first: sums of checksums do not cancel when agents exchange numbers.
-// Not inlined: it would be there for each kind of number.
+// Not inlined: otherwise each number format would have its own copy.
 #[inline(never)]
 pub(crate) fn digest(sum: u32, number: u32) -> u32 {
     // The constant, because the bijection maps 0 to 0.

@@ -173,8 +173,7 @@ pub(crate) fn in_range<S: crate::Scalar>(value: S, what: &'static str) -> Result
     Ok(value)
 }
 
-/// Whether the value is NaN, which compares neither as above nor as below anything. A query must not answer "not in
-/// contact" for it.
+/// Whether the value is NaN. Comparisons with NaN are false, and a query must not read that as "no contact".
 pub(crate) fn is_no_number<S: crate::Scalar>(value: S) -> bool {
     !(value <= S::ZERO || value > S::ZERO)
 }

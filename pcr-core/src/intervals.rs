@@ -41,7 +41,8 @@ impl<S: Scalar, I: Iterator<Item = Interval<S>> + Clone> Iterator for Union<S, I
     type Item = Interval<S>;
 
     fn next(&mut self) -> Option<Interval<S>> {
-        // Ends in the wrong order are put right, and NaN is unlimited: nothing is taken for free, and every step goes on.
+        // Reversed ends are swapped and a NaN end counts as unbounded, so nothing is reported as free by mistake and
+        // the iteration ends.
         let whole = |interval: Interval<S>| if interval.lo <= interval.hi { interval } else { interval.limited() };
         let mut lowest: Option<Interval<S>> = None;
         for interval in self.intervals.clone().map(whole) {

@@ -2,8 +2,9 @@
 //!
 //! Agents are discs that move along given paths. For every ordered pair of agents, the set of (time, travelled length)
 //! at which the two discs overlap is a union of *collision regions*, whose boundary has a closed form. This crate
-//! computes the regions from these closed forms: it does not sample, iterate or build meshes, it assumes nothing about
-//! speeds, and it handles every degenerate case.
+//! computes the regions from these closed forms, without sampling, iteration or meshes. Speeds may be anything that is
+//! not negative. Degenerate positions, such as tangent or concentric segments, are covered by the same bounds
+//! (`tests/tests/degenerate.rs`).
 //!
 //! The modules, in the order in which they depend on one another:
 //!

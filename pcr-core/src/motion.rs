@@ -53,7 +53,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
             let [path, profile] = [path.length(), profile.length()].map(S::millimetres);
             return Err(Invalid::LengthMismatch { path, profile });
         }
-        // `count` would check for overflow.
+        // `fold`, because `Iterator::count` contains an overflow check, which can panic.
         let (arcs, diameter) =
             path.segments().iter().fold((0_usize, S::ZERO), |(arcs, most), segment| match segment.curve() {
                 Curve::Line => (arcs, most),
@@ -61,7 +61,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
             });
         let drift = S::drift(arcs, extent + diameter);
         let top_speed = profile.top_speed();
-        // The agent is nowhere further than this from the place that its profile gives.
+        // Bound on the distance between the agent and the position that its profile gives.
         let lag = S::lag(top_speed, profile.duration()) + gap;
         let (margin, lateness) = (S::ZERO, S::ZERO);
         let digest = path.digest();
@@ -192,7 +192,8 @@ impl<'a, S: Scalar> Motion<'a, S> {
 
     /// A checksum of all that the regions of this agent depend on: path, radius, and its index in the fleet.
     pub(crate) fn digest(&self, place: usize) -> u32 {
-        // Every query checks the whole fleet: both in one step. Places are spread so that no two radii differ as they do.
+        // Radius and index go into the checksum as one number, because every query checks the whole fleet. The index is
+        // multiplied, so that exchanging two agents cannot cancel a change of radius.
         digest(self.digest, self.radius.digest() ^ (place as u32).wrapping_mul(0x9E37_79B9))
     }
 

@@ -233,7 +233,7 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> Pieces<S, P> {
                 None => {}
             }
             index = next;
-            // One that was not joined is alone, and what follows it stays as it is.
+            // A piece that was never joined is a region of its own; the rest of the list is unchanged.
             if group & JOINED == 0 {
                 (rest_head, rest) = (next, self.pending.last);
                 break;

@@ -72,7 +72,7 @@ impl<S: Scalar> Phase<S> {
         let gain = acceleration.times(duration).narrow();
         let mut after = in_range(before + gain, "speed")?;
         if after < S::ZERO {
-            // The rounding error of the acceleration counts multiplied by the duration.
+            // The rounding error of the acceleration is multiplied by the duration.
             if after < -(S::slack(before) + S::slack(acceleration.abs()).times(duration).narrow()) {
                 return Err(Invalid::Negative("speed"));
             }

@@ -232,7 +232,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
     fn intervals(&self, at: S) -> Slices<'a, S> {
         let Self { pair, ref pieces, transposed, .. } = *self;
         let range = self.length();
-        // At NaN the whole region counts as covered.
+        // For NaN the whole range of the region is returned.
         Slices { pair, pieces: pieces.clone(), transposed, at, range, rest: is_no_number(at).then_some(range) }
     }
 }

@@ -69,7 +69,7 @@ pub trait Scalar:
     /// Least radius of a disc or an arc. A product of four radii, as in the discriminants of P3, then keeps all its
     /// digits; smaller radii would lose digits to underflow, and contacts with them. Coordinates may be 0 or arbitrarily
     /// small, because they are only added, compared, and multiplied by radii. A length of a path below the square of
-    /// this is taken as 0, which moves nothing that can be told apart.
+    /// this is taken as 0, which moves no position by a representable amount.
     const LEAST: Self;
 
     /// Neither NaN nor infinite. Fixed-point formats are always finite.
@@ -170,7 +170,7 @@ pub trait Scalar:
     fn slack(extent: Self) -> Self;
     /// Bound on the rounding error of a sum, a product or a quotient of a few numbers of this magnitude.
     fn rounding(of: Self) -> Self;
-    /// Bound on the error of a path of so many arcs that cannot be carried over from one arc to the next, including the
+    /// Bound on the error of a path of this number of arcs that cannot be carried over from one arc to the next, including the
     /// rounding of angles. `span` is the extent of the path plus the largest diameter of an arc.
     fn drift(arcs: usize, span: Self) -> Self {
         let _ = (arcs, span);
@@ -278,7 +278,7 @@ pub trait Angle<S: Scalar>:
     fn is_finite(self) -> bool;
     /// The bits of the angle, folded to 32, for a checksum.
     fn digest(self) -> u32;
-    /// Whether a heading of so many turns still has an accurate direction; always if angles are modulo one turn.
+    /// Whether a heading with this number of turns still has an accurate direction; always if angles are modulo one turn.
     fn is_in_range(self) -> bool {
         true
     }

@@ -35,7 +35,7 @@ unsafe extern "C" {
     fn can_panic() -> !;
 }
 
-/// Nobody defines the function that a panic calls: a program that can panic is not linked.
+/// The function that a panic calls is not defined: a program that can panic is not linked.
 #[cfg(not(feature = "who-panics"))]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {

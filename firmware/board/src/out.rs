@@ -9,7 +9,7 @@ pub fn print(bytes: &[u8]) {
     }
 }
 
-/// The same beside what is printed.
+/// Output beside the printed table.
 pub fn tell(bytes: &[u8]) {
     if let Ok(out) = semihosting::io::stderr() {
         write(out, bytes);

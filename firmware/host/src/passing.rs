@@ -2,8 +2,8 @@
 //!
 //! Each run has a fleet of its own, drawn at random and planned by the supervisor. Every robot is a [`Client`] with a [`Briefing`] and
 //! a [`Robot`], as on its own controller; between them and the supervisor is one line with faults in both directions. Robots stop
-//! at random, get new paths when they have arrived, and in half of the runs forget everything on the way (*restarts*). They move as
-//! they like up to their holds, and where all discs really are is checked ten times a step.
+//! at random, get new paths when they have arrived, and in half of the runs lose their memory on the way (*restarts*). They move
+//! freely up to their holds; the true positions are checked five times per control step.
 
 use pcr_core::scalar::Angle;
 use pcr_core::{Brakes, Curve, Interval, Limits, Pass, Point, Pose, Turn};
@@ -14,30 +14,30 @@ use pcr_supervisor::{
 };
 use std::error::Error;
 
-/// Most robots, and what a supervisor needs for them.
+/// Largest number of robots. The capacities of the supervisor below follow from it.
 pub(crate) const ROBOTS: usize = 5;
 /// Lines and arcs of a path.
 const STEPS: usize = 3;
 const SEGMENTS: usize = ROBOTS * STEPS;
-/// The supervisor's segments, with room for a path that is exchanged.
+/// Capacity of the supervisor for segments, with room for the new path of one robot beside its old one.
 pub(crate) const ROOM: usize = SEGMENTS + STEPS;
-/// Regions of all, and what they are made of.
+/// Capacities for regions, pieces and orders.
 pub(crate) const REGIONS: usize = 48;
 pub(crate) const PIECES: usize = 128;
 pub(crate) const ORDERS: usize = 2 * REGIONS;
 
-/// Seconds between two controls.
+/// Time between two control steps \[s\].
 const STEP: f64 = 0.1;
-/// Controls after which no frame from before a restart can be on its way any more.
+/// Control steps after which no frame from before a restart can still be on the line: 9 s.
 const SILENCE: usize = 90;
-/// Most controls of a run: seconds of driving, and as many of waiting.
+/// Control steps after which a run is given up: 600 s.
 const CONTROLS: usize = 6000;
 
 /// A number of the format, rounded.
 pub(crate) trait Rounded: Number {
     /// From a decimal.
     fn from_f64(value: f64) -> Self;
-    /// What it is.
+    /// The exact value.
     fn to_f64(self) -> f64;
 }
 
@@ -96,7 +96,7 @@ pub(crate) trait Supervisor {
     fn exchange(&mut self, bytes: &[u8]) -> Result<Vec<u8>, Box<dyn Error>>;
 }
 
-/// What happened in all runs.
+/// Counts over all runs.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tally {
     pub(crate) runs: usize,
@@ -188,7 +188,7 @@ impl Way {
         }
     }
 
-    /// What arrives now.
+    /// Takes the frames that arrive now.
     fn arrive(&mut self) -> Vec<u8> {
         self.late.iter_mut().for_each(|(steps, _)| *steps -= 1);
         let (due, late) = std::mem::take(&mut self.late).into_iter().partition(|(steps, _)| *steps == 0);
@@ -326,7 +326,7 @@ fn run<S: Rounded>(
     };
     match ask(supervisor, &mut planner, &Request::Order(terms))? {
         Answer::Edition(_) => {}
-        // Who comes as early as possible touches the one before: that may be too near to tell.
+        // A robot that comes as early as possible touches the one before it: such cases may be too close to decide.
         Answer::Refused(Refusal::Meeting(_) | Refusal::Stuck(_)) => return Ok(()),
         other => return Err(format!("no orders but {other:?}").into()),
     }
@@ -341,7 +341,7 @@ fn run<S: Rounded>(
             asks: false,
             told: None,
             path: Some(agent),
-            // Nobody is at the end of it before it was told its length.
+            // No robot is at the end of its path before it was told the length.
             length: S::LIMIT,
             at: 0.0,
             speed: 0.0,
@@ -444,7 +444,7 @@ impl<S: Rounded> Driver<S> {
         if none && !self.asks {
             self.inquire();
         }
-        // The same question again: of its answers, what has come is kept.
+        // The same question again: answers that have already come are kept.
         if self.asks && !(self.waits == 1 || self.waits > 5) {
             return;
         }
@@ -459,7 +459,7 @@ impl<S: Rounded> Driver<S> {
         line.send(self.client.frame(), random, bad, tally);
     }
 
-    /// What it has passed it has passed: rounded down, it is no further than that.
+    /// The length that it reports as passed, rounded down.
     fn reported(&self) -> S {
         if self.at >= self.end() { self.length } else { S::from_f64((self.at - 1e-4).max(0.0)) }
     }
@@ -573,7 +573,7 @@ pub(crate) fn motions<S: Number, const A: usize, const N: usize, const R: usize>
     Ok(fleet)
 }
 
-/// All go on until the next control; where two touch is an error.
+/// Moves all robots up to the next control step. Two discs that touch are an error.
 fn advance<S: Rounded>(drivers: &mut [Driver<S>], tally: &mut Tally) -> Result<(), Box<dyn Error>> {
     const PARTS: u32 = 5;
     for _ in 0..PARTS {
@@ -594,11 +594,11 @@ fn advance<S: Rounded>(drivers: &mut [Driver<S>], tally: &mut Tally) -> Result<(
     Ok(())
 }
 
-/// A hold may be a touch: more than what the positions here are off is a contact \[m\].
+/// Overlap above which two discs count as touching \[m\]: at a hold they may touch exactly, and the positions here are rounded.
 const TOUCH: f64 = 1e-3;
 
 impl<S: Rounded> Driver<S> {
-    /// Where it really is, computed here from its path in `f64`, and its radius.
+    /// Its true position, computed here from its path in `f64`, and its radius.
     fn disc(&self) -> Option<([f64; 2], f64)> {
         let path = self.path.as_ref()?;
         let start = &path.start;

@@ -104,7 +104,7 @@ pub(crate) fn check<S: Rounded>(command: &[&str]) -> Result<(), Box<dyn Error>> 
     if reports > 60 { Ok(()) } else { Err("the robot did not wait".into()) }
 }
 
-/// The same robot here.
+/// The same robot on the host.
 struct Here<S: Rounded> {
     told: Box<Briefing<S, ROBOTS, SEGMENTS, REGIONS>>,
     robot: Box<Robot<S, ROBOTS, REGIONS, PIECES>>,

@@ -232,7 +232,7 @@ fn damage<S: Number>(link: &mut Link) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What does not fit is refused by name and changes nothing.
+/// A request that does not fit is refused with a reason and changes nothing.
 fn refusals<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let agent = sendable(agents.first().ok_or("no agents")?)?;
     let refused = |agent, what, why| Answer::Refused(Refusal::Agent { agent, what: text(what), why });
@@ -341,7 +341,7 @@ fn conflicts<S: Number>(link: &mut Link, fleet: &[Motion<'_, S>]) -> Result<u16,
     Ok(conflicts - touching)
 }
 
-/// Agents are replanned as they are here, one after the other; then nobody meets anybody, but for a touch.
+/// Agents are planned again one after the other, on both sides alike; afterwards no two agents overlap, though they may touch.
 fn replan<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let store = store(agents)?;
     let mut fleet = store.motions()?;

@@ -1,10 +1,11 @@
-//! Admission of a new path: chooses orders with which its agent can finish, and keeps nobody else from that.
+//! Admission of a new path: chooses orders with which its agent can finish, and that keep no other agent from
+//! finishing.
 //!
 //! For each region of the new path where both orders are possible, the caller says which agent goes first. If the
 //! agent would then wait for ever, orders that keep an agent stuck are reversed, one after the other, each at most once.
-//! If it can finish, it keeps nobody else from that: an agent goes first only in regions that it leaves. Choosing orders
-//! is NP-hard in general. Hence a path that is refused may be possible, but one that is admitted is safe and free of
-//! deadlock.
+//! If it can finish, it keeps no other agent from that: an agent goes first only in regions that it leaves. Choosing
+//! orders is NP-hard in general. Hence a path that is refused may be possible, but one that is admitted is safe and free
+//! of deadlock.
 
 use crate::ecm::Region;
 use crate::error::{Full, Mismatch, Unchanged};
@@ -241,7 +242,7 @@ where
                 return found;
             }
             if !reach.is_stuck() {
-                // At its end it is in nobody's way: who waits for ever would do so without it.
+                // The agent arrives, so it is in no other agent's way: agents that are stuck would be stuck without it.
                 return Ok(());
             }
             let Some(place) = self.culprit(agent, tolerances.gain, reaches) else {

@@ -42,7 +42,7 @@ impl<S: Scalar> Brakes<S> {
         let speed = S::ZERO.max(speed).min(S::LIMIT);
         let ramp = speed.portion(speed, self.deceleration.double());
         let way = speed.times(self.reaction).narrow() + ramp;
-        // Only distances above 0: those of the lowest speeds round to 0.
+        // The slack is added to every speed above 0, because the distance itself rounds to 0 for the lowest speeds.
         if speed > S::ZERO { way + S::slack(way + speed) } else { way }
     }
 

@@ -20,12 +20,12 @@ use crate::scalar::Scalar;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Tolerances<S> {
     /// Uncertainty of places \[m\]: when an agent stands, the known lower end of its place may be behind it by up to
-    /// this. It is known to have left a region only when it is further than this beyond the end of the region. Less than
-    /// 0 is taken as 0.
+    /// this. It is known to have left a region only when it is further than this beyond the end of the region. Negative
+    /// values count as 0.
     pub width: S,
     /// A gain below this \[m\] does not count as progress, because agents that follow one another around a circle may
     /// gain less and less. The number of sweeps of a check is at most the length of all paths divided by this. With 0
-    /// only a gain of 0 is none. Less than 0 is taken as 0.
+    /// every advance counts. Negative values count as 0.
     pub gain: S,
 }
 

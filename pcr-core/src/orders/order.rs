@@ -63,7 +63,8 @@ impl<S: Scalar> Progress<S> {
         self.stop.max(self.at.hi)
     }
 
-    /// The lower end of the place \[m\], not beyond what [`exit`] calls never. NaN stays NaN, which is beyond nothing.
+    /// The lower end of the place \[m\], at most the value that [`exit`] uses for "never". NaN is kept: no comparison
+    /// then says that a region was passed.
     pub(super) fn known(&self) -> S {
         self.at.lo.min(S::LIMIT)
     }

@@ -107,7 +107,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
         self.radius + self.slack.half()
     }
 
-    /// What a disc of this radius covers in the middle of each slab.
+    /// The parts covered by a disc of this radius in the middle of each slab.
     #[inline(never)]
     fn slabs(&self, in_order: &[S], radius: S) -> Slabs {
         let mut slabs = Slabs { any: 0, start: 0, end: 0 };

@@ -46,7 +46,7 @@ pub(crate) enum Reach<S> {
     Whole,
 }
 
-/// Which parts of a segment a disc covers.
+/// The parts of a segment that a disc covers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Covered {
     /// The start of the segment.
@@ -160,7 +160,7 @@ pub(crate) enum Lap {
 impl Lap {
     pub(crate) const ALL: [Self; 4] = [Self::Previous, Self::Same, Self::Next, Self::Whole];
 
-    /// This lap, counted from a foot that has passed backwards through so many laps.
+    /// This lap, counted from a foot that has passed backwards through a number of laps.
     pub(crate) fn less(self, laps: i8) -> Option<Self> {
         match self as i8 - laps {
             _ if self == Self::Whole => Some(self),

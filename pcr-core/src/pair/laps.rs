@@ -12,7 +12,7 @@ use crate::pieces::{NONE, Piece, Pieces};
 use crate::scalar::Scalar;
 use crate::segment::Segment;
 
-/// What the disc covers of the first segment at one length of the second.
+/// The part of the first segment that the disc covers at one length of the second.
 #[derive(Clone, Copy)]
 struct Section<S> {
     footprint: Footprint<S>,
@@ -116,7 +116,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
                 share = Share::End;
             }
         }
-        // Where the whole circle is covered, all laps meet.
+        // If the whole circle is covered, all laps meet.
         for (whole, laps) in [(open[Lap::Whole as usize], before), (before[Lap::Whole as usize], *open)] {
             laps.into_iter().for_each(|lap| pieces.join(whole, lap));
         }

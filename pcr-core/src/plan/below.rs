@@ -173,7 +173,7 @@ fn moves<S: Scalar>(phase: &Phase<S>) -> bool {
     phase.length().length() > S::ZERO
 }
 
-/// A length, so many times.
+/// A length, multiplied by `times`.
 fn multiple<S: Scalar>(mut length: S, mut times: usize) -> S {
     let mut sum = S::ZERO;
     while times > 0 {

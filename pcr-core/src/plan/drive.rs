@@ -75,7 +75,7 @@ fn is_fastest<S: Scalar>(phases: &[Phase<S>], limits: Limits<S>) -> bool {
     })
 }
 
-/// What the fastest motion does, in its order.
+/// The parts of the fastest motion, in their order.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 enum Stage {
     Up,

@@ -27,7 +27,7 @@ pub(super) trait Lattice<S: Scalar> {
 
     /// The cells in order.
     fn cells(&self) -> impl DoubleEndedIterator<Item = Self::Cell>;
-    /// Where a cell ends that begins at a length \[m\].
+    /// End of a cell that begins at a length \[m\].
     fn end(&self, cell: Self::Cell, from: S) -> S;
     /// The motion over a cell from one speed to another.
     fn edge(&self, cell: Self::Cell, from: usize, to: usize) -> Option<impl Borrow<Edge<S>>>;

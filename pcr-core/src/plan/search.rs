@@ -21,7 +21,7 @@ pub(super) struct Search<'c, S: Scalar, L, I> {
     pub(super) length: S,
 }
 
-/// When the slabs of a cell and its end are blocked.
+/// The times at which the slabs of a cell and its end are blocked.
 struct Blocked<S> {
     slabs: [Times<S>; SLABS],
     end: Times<S>,
@@ -153,7 +153,7 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
         match (most, constrained) {
             (Some(region), _) => NoSpeedPlan::Beyond { length: cell.lo, other: region.other() },
             (None, Some(_)) => NoSpeedPlan::Constrained { length: cell.lo },
-            // Nothing is in the way: the speeds are too far apart, or the times exceed the format.
+            // No agent is the cause: the speeds are too far apart, or the times exceed the format.
             (None, None) => NoSpeedPlan::Invalid(Invalid::OutOfRange("speed or time")),
         }
     }

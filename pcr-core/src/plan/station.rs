@@ -1,4 +1,4 @@
-//! What a speed plan stores for each border of cells along the path.
+//! The data that a speed plan stores for each border of cells along the path.
 
 use crate::plan::lattice::LEVELS;
 use crate::plan::times::Times;

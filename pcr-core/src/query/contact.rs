@@ -232,7 +232,8 @@ impl<'a, S: Scalar> Contacts<'a, S> {
             Next { from: to, step: duration.double(), event: None }
         } else {
             let chord = Chord::between(now.apart, ahead.apart);
-            // The distance of agents that go alike may stay at R: steps would then be as short as they can be.
+            // If the relative velocity is constant the chord is exact. Two agents with equal velocities can stay at a
+            // distance of R; with an error above 0 every step would then be as short as possible.
             let error = if window.is_uniform(&now, &ahead) { S::ZERO } else { error };
             let stretch = Stretch { now, ahead, chord, error, duration, radius: self.radius, tolerance, pad };
             if inside { stretch.follow() } else { stretch.search() }

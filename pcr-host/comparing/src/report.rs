@@ -17,7 +17,7 @@ pub const COMPARISON_CSV_HEADER: &str =
 /// A line a method.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn comparison_csv(comparison: &Comparison, out: &mut impl Write) -> io::Result<()> {
     let (name, agents) = (quoted(&comparison.name), comparison.agents);
     for row in &comparison.rows {
@@ -41,7 +41,7 @@ pub fn comparison_csv(comparison: &Comparison, out: &mut impl Write) -> io::Resu
 /// A heading and a table for each question, as text or in Markdown.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn comparison_table(comparison: &Comparison, markdown: bool, out: &mut impl Write) -> io::Result<()> {
     let Comparison { agents, rows, absent, .. } = comparison;
     if !markdown {

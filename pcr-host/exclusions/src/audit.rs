@@ -15,30 +15,30 @@ use std::cell::LazyCell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fmt;
 
-/// What has come of an audit.
+/// The result of an audit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Audit {
     /// Name of the layout.
     pub layout: String,
     /// The vehicle.
     pub vehicle: LockVehicle,
-    /// What has been audited: the format of the exclusions.
+    /// Format of the exclusions.
     pub exclusions: String,
-    /// Groups, blocks, zones or lists of the file.
+    /// Number of groups, blocks, zones or lists of the file.
     pub groups: usize,
-    /// Pairs of edges, and of a node and an edge, on which two vehicles can touch; every edge and itself among them.
+    /// Number of pairs of edges, or of a node and an edge, on which two vehicles can touch; each edge and itself is a pair.
     pub can_touch: usize,
-    /// Those that the rules do not exclude.
+    /// Pairs that can touch and that the rules do not exclude.
     pub gaps: Vec<Gap>,
-    /// Pairs of edges that cannot touch, and are excluded.
+    /// Pairs of edges that cannot touch but are excluded.
     pub needless: Vec<Needless>,
-    /// Of all lengths at which two vehicles can be on two edges at the same time \[m²\], those at which the rules exclude it.
+    /// Area of the lengths at which two vehicles can be on two edges and the rules exclude it, over all pairs \[m²\].
     pub excluded: f64,
-    /// Those at which the table of locks excludes it \[m²\].
+    /// The same area, excluded by the table of locks \[m²\].
     pub needed: f64,
-    /// What was read otherwise than it was written: of the layout, then of the exclusions.
+    /// Warnings about input that was changed or left out when it was read: of the layout, then of the exclusions.
     pub warnings: Vec<String>,
-    /// How many of these are of the layout.
+    /// Number of warnings that are about the layout.
     #[serde(skip)]
     pub of_layout: usize,
 }
@@ -47,9 +47,9 @@ pub struct Audit {
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Spot {
-    /// An edge, as in the layout.
+    /// Id of an edge in the layout.
     Edge(Id),
-    /// A node, as in the layout.
+    /// Id of a node in the layout.
     Node(Id),
 }
 
@@ -62,23 +62,23 @@ impl fmt::Display for Spot {
     }
 }
 
-/// Two places at which two vehicles can touch although they keep to the rules.
+/// Two places at which two vehicles can touch although they keep the rules.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Gap {
-    /// One of them.
+    /// The first place.
     pub a: Spot,
-    /// The other one; the same edge, for two vehicles on one edge.
+    /// The second place; the same edge for two vehicles on one edge.
     pub b: Spot,
-    /// How the two hang together: `same`, `adjacent` (they share a node) or `apart`.
+    /// Relation of the two: `same`, `adjacent` (they share a node) or `apart`.
     pub relation: &'static str,
-    /// Lengths of the first one \[m\]; none of a node.
+    /// Lengths on the first one \[m\]; `None` for a node.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub a_length: Option<[f64; 2]>,
-    /// Lengths of the second one \[m\].
+    /// Lengths on the second one \[m\].
     pub b_length: [f64; 2],
-    /// Between the two centres, where they come nearest \[m\].
+    /// Point between the two centres where they come nearest \[m\].
     pub at: [f64; 2],
-    /// How deep the vehicles overlap there \[m\]; of an outline the deepest of its discs.
+    /// Largest overlap of the vehicles there \[m\]; for an outline that of its discs.
     pub depth: f64,
     /// Floor or map.
     pub level: String,
@@ -87,14 +87,15 @@ pub struct Gap {
 /// Two edges that are excluded and cannot touch.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Needless {
-    /// An edge.
+    /// Id of the first edge.
     pub a: Id,
-    /// Another one.
+    /// Id of the second edge.
     pub b: Id,
 }
 
 impl Audit {
-    /// What rules leave out, and what they exclude in vain. `locks` has nodes.
+    /// Compares rules with the table of locks, which has to include nodes: contacts that are not excluded, and needless
+    /// exclusions.
     pub fn of(imported: &Imported, locks: &Locks, rules: &Rules, target: Target) -> Self {
         let auditor = Auditor::new(imported, rules);
         let mut audit = Self {
@@ -158,7 +159,7 @@ impl Audit {
         self.gaps.extend(done.into_values().flatten());
     }
 
-    /// Whether nothing can touch as long as vehicles keep to the rules.
+    /// Whether no vehicles can touch as long as they keep the rules.
     pub fn suffices(&self) -> bool {
         self.gaps.is_empty()
     }
@@ -195,14 +196,14 @@ impl<'a> Auditor<'a> {
         self.layout().edges[edge].steps().filter_map(move |step| ways?.get(usize::from(step.backward)))
     }
 
-    /// Both edges in all such directions.
+    /// Both edges in all directions in which they may be travelled.
     fn both_ways(&self, [a, b]: [usize; 2]) -> impl Iterator<Item = [&'a Way; 2]> {
         let of_b: Vec<&Way> = self.ways(b).collect();
         self.ways(a).flat_map(move |own| of_b.clone().into_iter().map(move |other| [own, other]))
     }
 
-    /// The tokens of two edges. Where vehicles on both can be on either of two levels, those of each level: who touches is on one of them,
-    /// and has to be kept apart by what holds there.
+    /// The tokens of two edges. If vehicles on both can be on either of two levels, the tokens of each level: vehicles that
+    /// touch are on one level, and have to be kept apart by the tokens of that level.
     fn tokens(&self, pair: [usize; 2]) -> Vec<Vec<usize>> {
         let all: Vec<usize> = self.meetings.tokens(pair).collect();
         let levels = pair.map(|edge| {
@@ -218,12 +219,12 @@ impl<'a> Auditor<'a> {
         common.into_iter().map(of).collect()
     }
 
-    /// Where on two edges vehicles can touch, of these lengths of a lock: the deepest such place.
+    /// The place on two edges, within the lengths of a lock, at which vehicles overlap most.
     fn gap(&self, pair: [usize; 2], [a_length, b_length]: [[f64; 2]; 2]) -> Option<Gap> {
         let mut worst: Option<Gap> = None;
         let mut seen = BTreeSet::new();
         let tokens = self.tokens(pair);
-        // The same for all lengths, and not quick.
+        // The same for all lengths; computed only if needed, because it is slow.
         let discs = LazyCell::new(|| self.discs(pair));
         for ([own, other], tokens) in
             self.both_ways(pair).flat_map(|ways| tokens.iter().map(move |tokens| (ways, tokens)))
@@ -258,10 +259,11 @@ impl<'a> Auditor<'a> {
             let reach = 2.0 * self.radius + edges[0].deviation + edges[1].deviation;
             near(&curves[0], &curves[1], reach)
         } else {
-            // Lengths of a body are not those of its discs: the lock tells that there is contact, the discs how deep at most.
+            // Lengths of a footprint differ from those of its discs: the lock shows that there is contact, the discs bound its
+            // depth.
             discs()
         };
-        // What cannot be told is as deep as can be.
+        // If the depth cannot be determined, the largest possible one is reported.
         let (depth, at) = near.unwrap_or((2.0 * self.radius, self.place(edges[0])));
         let shared = edges[0].ends.iter().any(|end| edges[1].ends.contains(end));
         (depth >= 0.0).then(|| Gap {
@@ -289,12 +291,12 @@ impl<'a> Auditor<'a> {
         all.max_by(|x, y| x.0.total_cmp(&y.0)).map(|(depth, at)| (depth.max(0.0), at))
     }
 
-    /// Where an edge begins.
+    /// The start of an edge.
     fn place(&self, edge: &Edge) -> [f64; 2] {
         self.layout().nodes.get(edge.ends[0]).map_or([0.0; 2], |node| node.at)
     }
 
-    /// A part of an edge; without a length an edge is a point.
+    /// A part of an edge; an edge without length is a point.
     fn stretch(&self, edge: &Edge, lengths: [f64; 2]) -> Vec<Placed> {
         let at = self.place(edge);
         if edge.curve.is_empty() { vec![Placed::line(at, at)] } else { stretch(&edge.curve, lengths) }
@@ -304,7 +306,7 @@ impl<'a> Auditor<'a> {
         self.layout().levels.get(level).cloned().unwrap_or_default()
     }
 
-    /// Where a vehicle on an edge can touch one that stands at a node and does not keep it off.
+    /// The place where a vehicle on an edge can touch one that stands at a node and does not keep it off.
     fn gap_at(&self, node: usize, edge: usize, length: [f64; 2]) -> Option<Gap> {
         let (claim, there) = (self.rules.nodes.get(node)?, self.layout().nodes.get(node)?);
         let (own, stands) = (&self.layout().edges[edge], [Placed::line(there.at, there.at)]);
@@ -314,7 +316,7 @@ impl<'a> Auditor<'a> {
         let gaps = ranges.filter_map(|range| {
             let near = near(&stands, &self.stretch(own, range), 2.0 * self.radius + own.deviation);
             let (depth, at) = near.unwrap_or((2.0 * self.radius, there.at));
-            // Of an outline the lock tells that there is contact.
+            // For an outline, the lock shows that there is contact.
             let depth = if self.imported.vehicle.footprint.is_some() { depth.max(0.0) } else { depth };
             (depth >= 0.0).then(|| Gap {
                 a: Spot::Node(there.id.clone()),
@@ -342,7 +344,7 @@ impl<'a> Auditor<'a> {
         })
     }
 
-    /// Lengths of two edges at which they exclude each other, in the directions in which most are left \[m²\].
+    /// Area of the lengths of two edges at which they exclude each other, in the directions with the least area \[m²\].
     fn area(&self, pair: [usize; 2]) -> f64 {
         let size = |length: [f64; 2]| length[1] - length[0];
         let area = |[own, other]: [&Way; 2]| {
@@ -355,12 +357,12 @@ impl<'a> Auditor<'a> {
     }
 }
 
-/// How deep discs with these radii together overlap where two curves come nearest, and where; below 0 where they do not touch.
+/// Overlap of discs with this sum of radii where two curves come nearest, and the place; negative if they do not touch.
 fn near(a: &[Placed], b: &[Placed], reach: f64) -> Option<(f64, [f64; 2])> {
     let found = nearest(a, b)?;
     let [p, q] = found.points;
     let depth = reach - found.distance;
-    // What the search leaves open counts as contact.
+    // An undecided search counts as contact.
     let depth = if depth < 0.0 && found.least <= reach { 0.0 } else { depth };
     Some((depth, [0, 1].map(|k| (p[k] + q[k]) / 2.0)))
 }

@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-/// A value and where it is.
+/// A value with its span.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Spanned {
     pub(crate) span: Range<usize>,
     pub(crate) value: Value,
 }
 
-/// What it is.
+/// A value.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
     Object(Vec<(String, Spanned)>),
@@ -18,7 +18,7 @@ pub(crate) enum Value {
 }
 
 impl Spanned {
-    /// The value of a JSON text; nothing where it is none.
+    /// The value of a JSON text; `None` if it is invalid.
     pub(crate) fn of(text: &str) -> Option<Self> {
         let start = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
         Reader { text, at: start }.value()
@@ -40,7 +40,7 @@ impl Spanned {
         }
     }
 
-    /// Where a further member goes, and what has to stand before it.
+    /// Offset at which another member can be inserted, and the text that has to precede it.
     pub(crate) fn end_of_members(&self) -> Option<(usize, &'static str)> {
         match &self.value {
             Value::Object(members) => Some(match members.last() {
@@ -62,7 +62,7 @@ impl Reader<'_> {
         self.text.as_bytes().get(self.at..).unwrap_or_default()
     }
 
-    /// The next byte that is no blank.
+    /// The next byte that is not white space.
     fn next(&mut self) -> Option<u8> {
         let blanks = self.rest().iter().take_while(|byte| b" \t\r\n".contains(byte)).count();
         self.at += blanks;
@@ -144,7 +144,7 @@ mod tests {
         assert_eq!(whole.get("b").unwrap().end_of_members().unwrap().1, "");
         assert_eq!(whole.get("d"), None);
         for cut in 0..text.len() {
-            // None of them makes it hang or panic.
+            // No prefix of a text leads to a hang or a panic.
             if let Some(part) = text.get(..cut) {
                 let _ = Spanned::of(part);
             }

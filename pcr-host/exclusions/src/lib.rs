@@ -58,13 +58,13 @@ use pcr_planning::locks::Locks;
 use pcr_planning::memory;
 use std::fmt;
 
-/// What a lock takes again in what is made of the table: names, and members of groups \[bytes\].
+/// Memory for a lock in the rules made of the table: names, and members of groups \[bytes\].
 const LOCK_BYTES: u64 = 256;
 
-/// The table that exclusions are made of, or judged by: all of it has to be in memory.
+/// The table from which exclusions are made, or against which they are checked: all of it has to fit in memory.
 ///
 /// # Errors
-/// Those of [`Locks::of`]; and, before it is tried, for a table of which what is made takes more memory than there is.
+/// Errors of [`Locks::of`]; and an error in advance for a table whose rules would take more memory than there is.
 pub fn table(imported: &Imported) -> Result<Locks, ImportError> {
     let locks = Locks::of(imported, true)?;
     let count = locks.locks.len();
@@ -91,7 +91,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// The layout format whose files hold such exclusions themselves.
+    /// The layout format whose files contain such exclusions themselves.
     pub fn layout(self) -> Option<Format> {
         match self {
             Self::Nav2 => Some(Format::Nav2),
@@ -101,12 +101,12 @@ impl Target {
         }
     }
 
-    /// What the layout of a format holds.
+    /// The exclusions in layout files of a format.
     pub fn of_layout(format: Format) -> Option<Self> {
         [Self::Nav2, Self::Rmf, Self::OpenTcs].into_iter().find(|target| target.layout() == Some(format))
     }
 
-    /// What a file beside a layout is.
+    /// The exclusions in a file beside a layout, told from its text.
     pub fn of_text(text: &str) -> Option<Self> {
         if own::is_locks(text) { Some(Self::Pcr) } else { vda5050::is_zones(text).then_some(Self::Vda5050) }
     }
@@ -124,19 +124,19 @@ impl fmt::Display for Target {
     }
 }
 
-/// What a vehicle takes, and what it bars all others from taking: numbers of tokens, ascending.
+/// Tokens that a vehicle takes, and tokens that it bars for all others: indices in ascending order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Claim {
-    /// What it needs to be free of the bars of others.
+    /// Tokens that no other vehicle may bar while it has them.
     pub takes: Vec<usize>,
-    /// What nobody else may take while it is there.
+    /// Tokens that no other vehicle may take while it is there.
     pub bars: Vec<usize>,
-    /// Nobody may have it at all.
+    /// Whether no vehicle may be there at all.
     pub closed: bool,
 }
 
 impl Claim {
-    /// What one vehicle at a time has.
+    /// The claim of tokens that only one vehicle at a time can have.
     pub(crate) fn exclusive(mut tokens: Vec<usize>) -> Self {
         tokens.sort_unstable();
         tokens.dedup();
@@ -159,7 +159,7 @@ impl Claim {
         false
     }
 
-    /// Whether two vehicles cannot have these claims at the same time, whoever comes first.
+    /// Whether two vehicles cannot have these claims at the same time, in either sequence.
     pub fn excludes(&self, other: &Self) -> bool {
         self.closed || other.closed || (self.keeps_out(other) && other.keeps_out(self))
     }
@@ -168,30 +168,31 @@ impl Claim {
 /// A group, block, zone or list of a file.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Group {
-    /// As in the file.
+    /// Name in the file.
     pub name: String,
     /// Edges of its members.
     pub edges: Vec<String>,
     /// Nodes of its members.
     pub nodes: Vec<String>,
-    /// Corners of a zone \[m\]; none of what is no area.
+    /// Corners of a zone \[m\]; empty for other groups.
     pub outline: Vec<[f64; 2]>,
     /// Level of a zone.
     pub level: usize,
 }
 
-/// What vehicles have to keep to.
+/// The rules that vehicles have to keep.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rules {
     /// For each edge of the layout the way in its direction, and the way back.
     pub edges: Vec<[Way; 2]>,
-    /// For each node of the layout what a vehicle has that stands there.
+    /// For each node of the layout the claim of a vehicle that stands there.
     pub nodes: Vec<Claim>,
-    /// What the file has, as it is named there.
+    /// The groups of the file, with their names there.
     pub groups: Vec<Group>,
-    /// What was read and does nothing, and why.
+    /// Parts of the file that have no effect, with the reasons.
     pub warnings: Vec<String>,
-    /// For each token the level on which it holds, for vehicles that are on one of several at a time; empty where a level does not count.
+    /// For each token the level on which it holds, for vehicles that can be on one of several levels; empty if levels do not
+    /// matter.
     pub levels: Vec<usize>,
 }
 
@@ -211,10 +212,10 @@ impl Rules {
     }
 }
 
-/// Reads the exclusions of a file: of the layout itself, or of one beside it.
+/// Reads the exclusions of a file: the layout itself, or a file beside it.
 ///
 /// # Errors
-/// [`ImportError`] where the file is not of the format, or names what is not in the layout.
+/// [`ImportError`] if the file has another format, or names something that is not in the layout.
 pub fn read(target: Target, text: &str, imported: &Imported) -> Result<Rules, ImportError> {
     match target {
         Target::Nav2 => nav2::read(text, imported),

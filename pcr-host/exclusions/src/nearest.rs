@@ -6,20 +6,20 @@ use pcr_formats::scenario::Placed;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// How far the least distance that is found may be above the true one \[m\].
+/// Bound on the error of the least distance \[m\].
 const CLOSE: f64 = 1e-5;
 
-/// Cells of one pair of pieces at most; what is left then is as far as its bound.
+/// Largest number of cells for a pair of pieces; for the remaining cells their lower bound counts as the distance.
 const MOST: usize = 20_000;
 
-/// Where two stretches come nearest.
+/// The points at which two stretches come nearest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Approach {
     /// Distance of the two points \[m\].
     pub distance: f64,
-    /// No two points are nearer \[m\].
+    /// Lower bound of the distance of any two points \[m\].
     pub least: f64,
-    /// Lengths along the two stretches, from where they begin \[m\].
+    /// Lengths along the two stretches, from their starts \[m\].
     pub lengths: [f64; 2],
     /// The two points \[m\].
     pub points: [[f64; 2]; 2],
@@ -58,7 +58,7 @@ pub(crate) fn point(piece: &Placed, length: f64) -> [f64; 2] {
     part(piece, 0.0, length).end()
 }
 
-/// Where two curves come nearest; nothing where one of them has no piece.
+/// The points at which two curves come nearest; `None` if one of them has no piece.
 pub fn nearest(a: &[Placed], b: &[Placed]) -> Option<Approach> {
     let mut best: Option<Approach> = None;
     let mut before_a = 0.0;
@@ -81,7 +81,7 @@ pub fn nearest(a: &[Placed], b: &[Placed]) -> Option<Approach> {
     best
 }
 
-/// A rectangle of lengths, the one with the least bound first.
+/// A rectangle of lengths; the one with the least bound is examined first.
 struct Cell {
     bound: f64,
     middle: [f64; 2],
@@ -114,14 +114,14 @@ fn approach(a: &Placed, b: &Placed, lengths: [f64; 2]) -> Approach {
     Approach { distance, least: distance, lengths, points }
 }
 
-/// Two pieces; the result need not be the nearest one if that is not below `beat`.
+/// The points at which two pieces come nearest. They may be others if the distance is not below `beat`.
 fn pieces(a: &Placed, b: &Placed, beat: f64) -> Approach {
     if let (PathSegment::Line { .. }, PathSegment::Line { .. }) = (a.shape, b.shape) {
         return lines(a, b);
     }
     let cell = |middle: [f64; 2], half: [f64; 2]| {
         let at = approach(a, b, middle);
-        // A point is no farther along a curve than the length between.
+        // The distance of two points is at most the length of the curve between them.
         (at, Cell { bound: at.distance - half[0] - half[1], middle, half })
     };
     let halves = [a, b].map(|piece| piece.shape.length() / 2.0);
@@ -149,7 +149,7 @@ fn pieces(a: &Placed, b: &Placed, beat: f64) -> Approach {
     best
 }
 
-/// Two segments: crossing, or nearest at an end of one of them.
+/// Two segments cross, or are nearest at an end of one of them.
 fn lines(a: &Placed, b: &Placed) -> Approach {
     let [la, lb] = [a, b].map(|piece| piece.shape.length());
     let [ua, ub] = [a, b].map(|piece| [piece.heading.cos(), piece.heading.sin()]);

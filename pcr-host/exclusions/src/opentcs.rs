@@ -26,10 +26,10 @@ use roxmltree::{Document, Node};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fmt::Write as _;
 
-/// How the names of blocks begin that are written here, and are replaced when they are written again.
+/// Prefix of the names of blocks that are written here; such blocks are replaced when a file is written again.
 const PREFIX: &str = "pcr-block-";
 
-/// By how much envelopes are larger than corridors, for coordinates that are rounded to a millimetre \[m\].
+/// Additional distance of envelopes from corridors, for coordinates that are rounded to a millimetre \[m\].
 const ROUNDING: f64 = 1e-3;
 
 fn parse(text: &str) -> Result<Document<'_>, ImportError> {
@@ -44,7 +44,7 @@ fn name<'a>(node: Node<'a, '_>) -> &'a str {
     node.attribute("name").unwrap_or_default()
 }
 
-/// The places of paths and points in the layout, by name: paths first.
+/// Indices of paths and points in the layout, by name: paths first.
 fn resources(layout: &Layout) -> HashMap<String, usize> {
     let paths = layout.edges.iter().map(|edge| edge.id.to_string());
     let points = layout.nodes.iter().map(|node| node.id.to_string());

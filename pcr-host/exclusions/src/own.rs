@@ -11,10 +11,10 @@ use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fmt::Write as _;
 
-/// What the file says that it is.
+/// Name of the format.
 const FORMAT: &str = "pcr-exclusions";
 
-/// What a text says that it is.
+/// Format of a text.
 #[derive(Deserialize)]
 struct Said {
     #[serde(default)]
@@ -23,8 +23,8 @@ struct Said {
     version: Value,
 }
 
-/// The file, an edge or a node of it, and a lock of that. A number of edges may have hundreds of locks each: they are read without a
-/// tree of values.
+/// The file, an edge or a node of it, and one of its locks. A layout can have hundreds of locks for each edge, so they are read
+/// without a tree of values.
 #[derive(Deserialize)]
 struct File {
     edges: Vec<Entry>,
@@ -41,14 +41,14 @@ struct Entry {
 #[derive(Serialize, Deserialize)]
 struct Lock {
     edge: Id,
-    /// Lengths of the edge.
+    /// Lengths of the other edge.
     other: [f64; 2],
-    /// Lengths of the edge that it is a lock of; none of a node.
+    /// Lengths of the edge that has the lock; `None` for a node.
     #[serde(skip_serializing_if = "Option::is_none")]
     own: Option<[f64; 2]>,
 }
 
-/// Whether a text is such a file.
+/// Whether a text is a file of this format.
 pub(crate) fn is_locks(text: &str) -> bool {
     serde_json::from_str::<Said>(text).is_ok_and(|said| said.format == FORMAT)
 }
@@ -57,7 +57,7 @@ fn outward([from, to]: [f64; 2]) -> [f64; 2] {
     [((from * 1e6).floor() - 1.0).max(0.0) / 1e6, ((to * 1e6).ceil() + 1.0) / 1e6]
 }
 
-/// Writes the locks of a table with nodes, an edge or a node a line.
+/// Writes the locks of a table that includes nodes, one edge or node on each line.
 pub(crate) fn write(imported: &Imported, locks: &Locks) -> String {
     let layout = &imported.layout;
     let mut edges: BTreeMap<&Id, Vec<Lock>> = BTreeMap::new();

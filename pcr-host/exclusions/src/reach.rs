@@ -1,19 +1,19 @@
 //! The lengths of a curve at which its points are near a polygon, or deep in it.
 //!
 //! Whether a point is near enough changes only at a given distance from a side or a corner. All such lengths are roots in
-//! closed form. What is between two of them is near enough or not as a whole, which a point in its middle tells. A pair of
-//! roots that rounding misses is of a contact that is shallower than the rounding.
+//! closed form. All points between two successive roots are near enough or none is, which the point in their middle tells. If
+//! rounding misses a pair of roots, the contact between them is shallower than the rounding.
 
 use crate::nearest::point;
 use crate::outline::depth;
 use pcr_formats::scenario::{PathSegment, Placed};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Roots this close to one another are one \[m\].
+/// Roots that differ by at most this are equal \[m\].
 const SAME: f64 = 1e-9;
 
-/// Lengths of a curve at which its points are no farther than `reach` from a polygon of any shape; below 0 for points that
-/// are at least that deep inside \[m\]. Ascending; those of two pieces that go on are one.
+/// Lengths of a curve at which its points are no farther than `reach` from a polygon of any shape; a negative `reach` means
+/// that points are at least that deep inside \[m\]. In ascending order; ranges of successive pieces are joined.
 pub(crate) fn within(curve: &[Placed], polygon: &[[f64; 2]], reach: f64) -> Vec<[f64; 2]> {
     let mut ranges: Vec<[f64; 2]> = Vec::new();
     let mut before = 0.0;
@@ -40,7 +40,7 @@ pub(crate) fn within(curve: &[Placed], polygon: &[[f64; 2]], reach: f64) -> Vec<
     ranges
 }
 
-/// Lengths of a piece at which it is so far from the line of a side, beside the side, or so far from a corner.
+/// Lengths of a piece at which its distance from the line of a side, beside the side, or from a corner is `far`.
 fn roots(piece: &Placed, polygon: &[[f64; 2]], far: f64) -> Vec<f64> {
     let mut roots = Vec::new();
     let count = polygon.len();
@@ -59,7 +59,7 @@ fn roots(piece: &Placed, polygon: &[[f64; 2]], far: f64) -> Vec<f64> {
                 }));
             }
         }
-        // Beside a side its line is nearer than its end.
+        // Beside a side, the line of the side is nearer than its ends.
         let beyond = |[x, y]: [f64; 2], other: [f64; 2]| {
             (x - b[0]) * (other[0] - b[0]) + (y - b[1]) * (other[1] - b[1]) <= SAME * (1.0 + far)
         };
@@ -71,14 +71,14 @@ fn roots(piece: &Placed, polygon: &[[f64; 2]], far: f64) -> Vec<f64> {
     roots
 }
 
-/// Where a piece meets the line through a point with this unit normal.
+/// Lengths at which a piece meets the line through a point with this unit normal.
 fn on_line(piece: &Placed, through: [f64; 2], normal: [f64; 2]) -> Vec<f64> {
     let off = |[x, y]: [f64; 2]| normal[0] * (x - through[0]) + normal[1] * (y - through[1]);
     match piece.shape {
         PathSegment::Line { length } => {
             let slope = normal[0] * piece.heading.cos() + normal[1] * piece.heading.sin();
             let at = -off(piece.at) / slope;
-            // A parallel one does not change sides.
+            // A parallel line does not change sides.
             if (0.0..=length).contains(&at) { vec![at] } else { Vec::new() }
         }
         PathSegment::Arc { radius, .. } => {
@@ -92,7 +92,7 @@ fn on_line(piece: &Placed, through: [f64; 2], normal: [f64; 2]) -> Vec<f64> {
     }
 }
 
-/// Where a piece meets a circle.
+/// Lengths at which a piece meets a circle.
 fn on_circle(piece: &Placed, [x, y]: [f64; 2], far: f64) -> Vec<f64> {
     match piece.shape {
         PathSegment::Line { length } => {
@@ -110,7 +110,7 @@ fn on_circle(piece: &Placed, [x, y]: [f64; 2], far: f64) -> Vec<f64> {
             let gap = [x - from[0], y - from[1]];
             let apart = gap[0].hypot(gap[1]);
             let cosine = (apart + (radius - far) * (radius + far) / apart) / (2.0 * radius);
-            // Circles with one centre do not cross.
+            // Concentric circles do not cross.
             if cosine.is_nan() || cosine.abs() > 1.0 {
                 return Vec::new();
             }
@@ -120,14 +120,14 @@ fn on_circle(piece: &Placed, [x, y]: [f64; 2], far: f64) -> Vec<f64> {
     }
 }
 
-/// Centre of an arc; of a line where it begins.
+/// Centre of an arc, or start of a line.
 fn centre(piece: &Placed) -> [f64; 2] {
     let PathSegment::Arc { radius, sweep } = piece.shape else { return piece.at };
     let to = piece.heading + FRAC_PI_2.copysign(sweep);
     [piece.at[0] + radius * to.cos(), piece.at[1] + radius * to.sin()]
 }
 
-/// Lengths of an arc at which its centre sees it in these directions.
+/// Lengths of an arc at these directions from its centre.
 fn on_arc(piece: &Placed, directions: [f64; 2]) -> Vec<f64> {
     let PathSegment::Arc { radius, sweep } = piece.shape else { return Vec::new() };
     let first = piece.heading - FRAC_PI_2.copysign(sweep);

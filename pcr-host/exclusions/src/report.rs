@@ -14,7 +14,7 @@ impl Document for Audit {
     const FORMAT: &'static str = "pcr-audit";
 }
 
-/// Rows of a table for reading at most; the rest is counted, and in the other formats.
+/// Largest number of rows of a printed table; the others are counted, and are in the other formats.
 const ROWS: usize = 40;
 
 fn named(layout: &str) -> String {
@@ -32,17 +32,17 @@ fn times(excluded: f64, needed: f64) -> String {
     if needed > 0.0 { format!(", {:.1} times that", excluded / needed) } else { String::new() }
 }
 
-/// How much is excluded beside what is needed.
+/// Prints how much is excluded, and how much is needed.
 fn extent(out: &mut impl Write, excluded: f64, needed: f64, needless: usize) -> io::Result<()> {
     let times = times(excluded, needed);
     writeln!(out, "  lengths of two edges: {needed:.1} m² touch, {excluded:.1} m² are excluded{times}")?;
     writeln!(out, "  pairs of edges that cannot touch and are excluded: {needless}")
 }
 
-/// What has been written, in a few lines.
+/// A summary of written exclusions.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn written_table(written: &Written, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
@@ -68,7 +68,7 @@ pub fn written_table(written: &Written, out: &mut impl Write) -> io::Result<()> 
     said(out, &written.warnings[written.of_layout..])
 }
 
-/// What is to be said of the exclusions; what is of the layout has been said when that was read.
+/// Prints warnings about the exclusions; those about the layout were printed when it was read.
 fn said(out: &mut impl Write, warnings: &[String]) -> io::Result<()> {
     warnings.iter().try_for_each(|warning| writeln!(out, "  {}", printable(warning)))
 }
@@ -80,10 +80,10 @@ fn spot(spot: &Spot) -> String {
     }
 }
 
-/// The audit: what can touch, the deepest first, and what is excluded in vain.
+/// The audit: contacts, the deepest first, and needless exclusions.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn audit_table(audit: &Audit, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
@@ -105,7 +105,7 @@ pub fn audit_table(audit: &Audit, out: &mut impl Write) -> io::Result<()> {
     )?;
     extent(out, audit.excluded, audit.needed, audit.needless.len())?;
     let mut gaps: Vec<&Gap> = audit.gaps.iter().collect();
-    // Those that share no node are the ones that nobody sees in the graph.
+    // Pairs without a common node come first, because the graph does not show them.
     let rank = |gap: &Gap| ["apart", "adjacent", "same"].iter().position(|relation| *relation == gap.relation);
     gaps.sort_by(|a, b| rank(a).cmp(&rank(b)).then(b.depth.total_cmp(&a.depth)));
     if !gaps.is_empty() {
@@ -144,10 +144,11 @@ fn more(out: &mut impl Write, count: usize) -> io::Result<()> {
 /// The header line of [`audit_csv`].
 pub const AUDIT_HEADER: &str = "finding,a,b,relation,a_from,a_to,b_from,b_to,x,y,depth\n";
 
-/// A line a finding: `open`, what can touch, and `needless`. A node is `node` and its name, as `a`, and has no lengths.
+/// One line for each finding: `open` for a contact that is not excluded, and `needless`. A node is `node` and its name, as `a`,
+/// without lengths.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn audit_csv(audit: &Audit, out: &mut impl Write) -> io::Result<()> {
     out.write_all(AUDIT_HEADER.as_bytes())?;
     for gap in &audit.gaps {

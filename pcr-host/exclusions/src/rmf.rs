@@ -25,17 +25,17 @@ use serde_json::{Value, json};
 use std::collections::{BTreeSet, HashMap};
 use units::united;
 
-/// How the names of groups begin that are written here.
+/// Prefix of the names of groups that are written here.
 const PREFIX: &str = "pcr/";
 
-/// Where things are in a file.
+/// The form of a file: where its parameters are, and how they are written.
 #[derive(Clone, Copy)]
 struct Form {
-    /// Place of the parameters in the list of a vertex.
+    /// Index of the parameters in the list of a vertex.
     vertex: usize,
     /// Whether a parameter is a list of its type and its value.
     typed: bool,
-    /// Names of parameters are in quotes, as in JSON, which is YAML, too.
+    /// Whether names of parameters are quoted, as in JSON, which is also YAML.
     quoted: bool,
 }
 
@@ -49,7 +49,7 @@ impl Form {
         Ok((Self { vertex: if graph { 2 } else { 4 }, typed: !graph, quoted }, root))
     }
 
-    /// A parameter: its name and what it is.
+    /// A parameter, with its name and value.
     fn parameter(self, name: &str, value: &str) -> String {
         if self.quoted { format!("\"{name}\": {value}") } else { format!("{name}: {value}") }
     }
@@ -64,7 +64,7 @@ impl Form {
     }
 }
 
-/// Level and place in its list.
+/// Level of a vertex or lane, and its index there.
 fn place_of(id: &Id) -> Option<(&str, usize)> {
     let Id::Text(text) = id else { return None };
     let (level, place) = text.rsplit_once('/')?;
@@ -84,7 +84,7 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
             Value::Null => return Ok(Vec::new()),
             Value::String(name) if name.is_empty() => return Ok(Vec::new()),
             Value::String(name) => name.clone(),
-            // Adapters take any scalar for a name.
+            // Adapters accept any scalar as a name.
             Value::Number(number) => number.to_string(),
             other => return Err(ImportError::new(format!("{kind} {id}, mutex: {other} where a name is expected"))),
         };
@@ -113,20 +113,20 @@ fn spans(text: &str) -> Result<Spanned, ImportError> {
     Spanned::of(text).ok_or_else(|| ImportError::new("YAML in which the places of values cannot be told"))
 }
 
-/// The value of a parameter, which is a list of its type and itself in buildings.
+/// The value of a parameter; in buildings a parameter is a list of type and value.
 fn typed<'a>(parameters: Option<&'a Spanned>, name: &str) -> Option<&'a str> {
     let given = parameters?.get(name)?;
     given.list().get(1).unwrap_or(given).text()
 }
 
-/// What stands in the file for something else as well cannot be changed for one of both.
+/// Refuses to change an element whose text also stands for another one.
 fn own(element: &Spanned, kind: &str, id: &Id) -> Result<(), ImportError> {
     let problem =
         || format!("{kind} {id}: there is an anchor or an alias in it; what is shared cannot be changed for one");
     if element.shared { Err(ImportError::new(problem())) } else { Ok(()) }
 }
 
-/// Writes the groups of a table with nodes; all lanes lead one way.
+/// Writes the groups for a table that includes nodes; all lanes lead in one direction.
 pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks, notes: &mut Notes) -> Result<String, ImportError> {
     let layout = &imported.layout;
     let group = united(layout, locks);
@@ -181,7 +181,7 @@ fn set(edits: &mut Edits, text: &str, form: Form, element: &Spanned, place: usiz
         }
         return Some(());
     }
-    // A vertex of a building may be without a height and a name.
+    // A vertex of a building may lack height and name.
     let missing = match (list.len(), place) {
         (count, place) if count == place => &[][..],
         (3, 4) => &["\"\""],

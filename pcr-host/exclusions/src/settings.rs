@@ -2,7 +2,7 @@
 
 use crate::Target;
 
-/// What is to be written.
+/// Options of a writer.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// The format.
@@ -13,7 +13,7 @@ pub struct Settings {
     pub envelopes: Option<String>,
 }
 
-/// What writers have to say.
+/// Warnings of writers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Notes {
     pub(crate) groups: usize,

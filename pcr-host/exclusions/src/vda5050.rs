@@ -69,21 +69,22 @@ struct Zone {
 /// Lengths of an edge at which a vehicle is in a zone.
 #[derive(Default)]
 struct Entered {
-    /// It is sure to need it.
+    /// The vehicle is certainly in the zone, at least in part.
     sure: Vec<[f64; 2]>,
-    /// All of it is inside, wherever it is.
+    /// The vehicle is certainly in the zone entirely.
     whole: Vec<[f64; 2]>,
-    /// It may reach into it.
+    /// The vehicle may be in the zone in part.
     possible: Vec<[f64; 2]>,
 }
 
-/// How far vehicles reach.
+/// Bounds on how far vehicles reach from their centres.
 struct Reach {
-    /// Of every point at most this far from the centre, all are in the contour; nothing is known where the centre is outside \[m\].
+    /// All points at most this far from the centre are in the contour \[m\]; `None` if the centre is outside, because then
+    /// nothing is known.
     inner: Option<f64>,
-    /// No point of the contour is farther from the centre \[m\].
+    /// Bound on the distance of the points of the contour from the centre \[m\].
     outer: f64,
-    /// How far the centre may be off its edge \[m\].
+    /// Bound on the distance of the centre from its edge \[m\].
     off: f64,
 }
 
@@ -98,7 +99,8 @@ impl Reach {
         Self { inner, outer: vehicle.radius, off: vehicle.margin }
     }
 
-    /// Where on a curve it is in a zone; `deviation` is how far the true curve may be off this one \[m\].
+    /// Lengths of a curve at which a vehicle is in a zone; `deviation` bounds the distance of the true curve from this one
+    /// \[m\].
     fn entered(&self, curve: &[Placed], deviation: f64, zone: &Zone) -> Entered {
         let off = self.off + deviation;
         let far = self.outer + off + POSSIBLE;
@@ -107,7 +109,8 @@ impl Reach {
         }
         let within = |reach| within(curve, &zone.polygon, reach);
         Entered {
-            // Of a contour beside its centre only a zone that holds all of it is sure to hold any of it.
+            // If the centre is outside the contour, only a zone that contains the whole contour is certain to contain a part of
+            // it.
             sure: within(self.inner.unwrap_or(-self.outer) - off - SURE),
             whole: within(-(self.outer + off + SURE)),
             possible: within(far),
@@ -136,7 +139,7 @@ fn bounds(polygon: &[[f64; 2]]) -> [[f64; 2]; 2] {
     [of(f64::min, f64::INFINITY), of(f64::max, f64::NEG_INFINITY)]
 }
 
-/// What two lists of ranges have in common.
+/// The intersection of two lists of ranges.
 fn both(a: &[[f64; 2]], b: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let pairs = a.iter().flat_map(|a| b.iter().map(move |b| [a[0].max(b[0]), a[1].min(b[1])]));
     pairs.filter(|[from, to]| from <= to).collect()
@@ -182,8 +185,8 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         }
     }
     let reach = Reach::of(imported);
-    // Tokens: who is sure to need a zone; who is in it as a whole has the second one of others and bars the third one for them, and who may
-    // reach into it the other way about.
+    // Three tokens for each zone: 0 for certain presence, 1 and 2 for the others. A vehicle that is entirely inside takes token 2 and bars
+    // token 1; one that is possibly inside takes token 1 and bars token 2.
     let count = zones.len();
     let tokens = |zone: usize, Entered { sure, whole, possible }: Entered| {
         let of = |ranges: Vec<[f64; 2]>, takes: usize, bars: usize| {
@@ -235,7 +238,7 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
     let nodes = nodes.collect();
     let mut members: BTreeMap<usize, BTreeSet<String>> = BTreeMap::new();
     for (edge, ways) in layout.edges.iter().zip(&edges) {
-        // Who may reach into it.
+        // Vehicles that may reach into it.
         for mark in ways[0].marks().iter().filter(|mark| !mark.bars && (count..2 * count).contains(&mark.token)) {
             members.entry(mark.token - count).or_default().insert(edge.id.to_string());
         }

@@ -3,36 +3,36 @@
 use granit_parser::{Event, Parser, StructureStyle};
 use std::ops::Range;
 
-/// A value and where it is.
+/// A value with its span.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Spanned {
-    /// What is written for it, without an anchor. That of a block ends with its last value.
+    /// The text of the value, without an anchor. The span of a block ends with its last value.
     pub(crate) span: Range<usize>,
     pub(crate) value: Value,
-    /// Whether an anchor or an alias is in it: the same text is the value of something else.
+    /// Whether it contains an anchor or an alias: then the same text is also the value of something else.
     pub(crate) shared: bool,
 }
 
-/// What it is.
+/// A value.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
     Mapping(Style, Vec<Member>),
     Sequence(Style, Vec<Spanned>),
     Scalar(String),
-    /// It stands for a value elsewhere.
+    /// An alias for a value elsewhere.
     Alias,
 }
 
 /// A member of a mapping.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Member {
-    /// Where its name begins.
+    /// Offset of its name.
     pub(crate) at: usize,
     pub(crate) name: String,
     pub(crate) value: Spanned,
 }
 
-/// In brackets, or a line each.
+/// In brackets, or on lines of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Style {
     Flow,
@@ -40,7 +40,7 @@ pub(crate) enum Style {
 }
 
 impl Spanned {
-    /// The value of the first document; nothing where it is none, or nested too deep.
+    /// The value of the first document; `None` if it is invalid or nested too deep.
     pub(crate) fn of(text: &str) -> Option<Self> {
         let mut parser = Parser::new_from_str(text);
         loop {
@@ -51,7 +51,7 @@ impl Spanned {
         }
     }
 
-    /// A member.
+    /// The value of a member.
     pub(crate) fn get(&self, name: &str) -> Option<&Self> {
         self.members().iter().find(|member| member.name == name).map(|member| &member.value)
     }
@@ -72,7 +72,8 @@ impl Spanned {
         }
     }
 
-    /// What stands in its place for a value on one line: a list may begin in the column of its name, that may not.
+    /// The text for a one-line value in its place. A list may begin in the column of its name; a one-line value may not, and is
+    /// indented.
     pub(crate) fn instead(&self, value: &str) -> String {
         let is_block = matches!(self.value, Value::Sequence(Style::Block, _) | Value::Mapping(Style::Block, _));
         format!("{}{value}", if is_block { "  " } else { "" })
@@ -97,10 +98,10 @@ fn style(given: StructureStyle) -> Style {
     }
 }
 
-/// Where a list begins of which each element has a line: at the dash of its first one, which the parser does not always tell.
+/// Offset of a list with an element on each line: the dash of its first element, which the parser does not always report.
 fn dash(text: &str, first: usize) -> Option<usize> {
     let at = text[..first].rfind('-')?;
-    // An anchor and a tag may be before it.
+    // An anchor and a tag may precede it.
     text[at + 1..first].split_whitespace().all(|word| word.starts_with(['&', '!'])).then_some(at)
 }
 
@@ -115,7 +116,7 @@ where
         let (event, span) = parser.next()?.ok()?;
         Some((event, span.byte_range()?))
     };
-    // The end of a block is told where the next value begins, behind comments that are not part of it.
+    // The parser reports the end of a block where the next value begins, after comments that do not belong to the block.
     let whole = |style: Style, start: Range<usize>, last: Option<usize>, end: Range<usize>| match style {
         Style::Flow => start.start..end.end,
         Style::Block => start.start..last.unwrap_or(start.end),

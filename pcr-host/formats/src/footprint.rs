@@ -24,7 +24,7 @@ const ROUNDING: f64 = 1e-12;
 /// A disc of a cover, in the frame of the vehicle: the reference point travels the path, its heading is ahead.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Disc {
-    /// Of the centre from the reference point, in its heading \[m\].
+    /// Position of the centre ahead of the reference point \[m\].
     pub ahead: f64,
     /// And to its left \[m\].
     pub left: f64,
@@ -176,7 +176,7 @@ fn around(points: &[[f64; 2]]) -> Option<Disc> {
     let centre = [0, 1].map(|axis| 0.5 * (lo[axis] + hi[axis]));
     let radius = points.iter().map(|point| distance(*point, centre)).fold(0.0, f64::max);
     let radius = radius + ROUNDING * (radius + centre[0].abs() + centre[1].abs());
-    // What only touches a cell is in its neighbour.
+    // A cell that the outline only touches is covered by its neighbour.
     (lo[0] < hi[0] && lo[1] < hi[1]).then_some(Disc { ahead: centre[0], left: centre[1], radius })
 }
 

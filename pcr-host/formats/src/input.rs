@@ -200,7 +200,7 @@ pub fn read_all(files: &[PathBuf], options: &Options) -> Result<(Scenario, Vec<(
     let mut all = Warnings::default();
     match import::scenario(format, &texts.join("\n\n"), options, &mut all) {
         Ok(mut scenario) => {
-            // What is said of all of them together is said with the last one.
+            // Messages about all of them together are added to the last one.
             if let Some((_, last)) = warnings.last_mut() {
                 last.add_of_all(&all);
             }

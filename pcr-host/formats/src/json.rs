@@ -273,7 +273,7 @@ fn is_number(word: &str) -> bool {
         && exponent.is_none_or(|exponent| digits(exponent.strip_prefix(['+', '-']).unwrap_or(exponent)))
 }
 
-/// What Python, JavaScript and C write for numbers that are not finite.
+/// Spellings of numbers that are not finite, in Python, JavaScript and C.
 fn is_not_finite(word: &str) -> bool {
     let word = word.strip_prefix(['+', '-']).unwrap_or(word);
     ["nan", "inf", "infinity"].iter().any(|name| word.eq_ignore_ascii_case(name))
@@ -301,7 +301,7 @@ mod tests {
     use super::*;
     use serde_json::Value;
 
-    /// What `serde_json` makes of the same tree.
+    /// The tree as `serde_json` represents it.
     fn value(json: &Json) -> Value {
         match &json.data {
             Data::Null => Value::Null,

@@ -30,7 +30,7 @@ impl fmt::Display for Kept {
 impl std::error::Error for Kept {}
 
 impl Kept {
-    /// That an error of an output is of this kind.
+    /// The kind of error of an output, if it is one.
     pub fn of(error: &io::Error) -> Option<&Self> {
         error.get_ref()?.downcast_ref()
     }
@@ -38,7 +38,7 @@ impl Kept {
 
 /// From now on this file, or standard input for `-`, is not written to, whatever its name: it is read.
 pub fn keep(file: &Path) {
-    // Where that is no file of the system, it cannot be written over either.
+    // If this is not a file of the system, it cannot be overwritten either.
     let file = if file == Path::new("-") { Path::new("/dev/stdin") } else { file };
     let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     if !kept.iter().any(|other| other == file) {
@@ -86,7 +86,7 @@ pub fn write(file: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
 /// The same for content of the kind that is in the file already, which may be one that is kept.
 ///
 /// # Errors
-/// Those of the file system.
+/// Errors of the file system.
 pub fn write_over(file: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
     stream_over(file, |out| out.write_all(content.as_ref()))
 }
@@ -121,7 +121,7 @@ fn stream_over<T, E: From<io::Error>>(file: &Path, fill: impl FnOnce(&mut File) 
 /// Makes a folder, and those that it is in, where they are not there yet.
 ///
 /// # Errors
-/// Those of the file system; [`io::ErrorKind::NotADirectory`] where there is a file of this name.
+/// Errors of the file system; [`io::ErrorKind::NotADirectory`] if there is a file of this name.
 pub fn folder(directory: &Path) -> io::Result<()> {
     match fs::create_dir_all(directory) {
         Err(_) if fs::metadata(directory).is_ok_and(|there| !there.is_dir()) => {
@@ -131,7 +131,7 @@ pub fn folder(directory: &Path) -> io::Result<()> {
     }
 }
 
-/// Where a file is behind all links, be it there or not.
+/// The path of a file behind all links, whether it exists or not.
 fn followed(file: &Path) -> io::Result<PathBuf> {
     /// As many as Linux follows.
     const LINKS: usize = 40;
@@ -164,7 +164,7 @@ fn replace<T, E: From<io::Error>>(
     });
     match done {
         Ok(done) => {
-            // That the new name is on the disk, too. Where folders cannot be opened or synced, it gets there in time.
+            // So that the new name is on the disk. If folders cannot be opened or synced, the system writes it later.
             let _ = File::open(folder).and_then(|folder| folder.sync_all());
             Ok(done)
         }

@@ -116,7 +116,7 @@ pub enum PathSegment {
 }
 
 impl Scenario {
-    /// Agents that nobody has to be warned about.
+    /// A scenario without warnings.
     pub fn new(name: impl Into<String>, agents: Vec<Agent>) -> Self {
         Self { name: name.into(), agents, warnings: Vec::new() }
     }
@@ -184,7 +184,7 @@ impl MotionSpec {
             Self::RestToRest { .. } if length <= 0.0 => (0.0, Vec::new()),
             Self::RestToRest { v_max, a_max } => {
                 let peak = v_max.min((length * a_max).sqrt());
-                // Of a motion that does not reach the largest speed rounding would leave some.
+                // If the motion does not reach the largest speed, rounding would leave a small remainder.
                 let cruise = if peak < *v_max { 0.0 } else { (length / peak - peak / a_max).max(0.0) };
                 (0.0, vec![(peak / a_max, *a_max), (cruise, 0.0), (peak / a_max, -a_max)])
             }

@@ -17,31 +17,31 @@ pub struct Bodies<S: Format> {
     pub scenario: Scenario,
     /// Their motions.
     pub fleet: Fleet<S>,
-    /// Whose they are.
+    /// For each disc the agent to which it belongs.
     pub discs: Vec<Disced>,
 }
 
 /// A disc of an agent.
 pub struct Disced {
-    /// Place of the agent in its scenario.
+    /// Index of the agent in its scenario.
     pub agent: usize,
-    /// None where the agent is the disc.
+    /// `None` if the agent is the disc.
     offset: Option<Box<Offset>>,
     stretch: Range,
-    /// How much larger than in the cover it is \[m\].
+    /// Difference of its radius to that in the cover \[m\].
     pub growth: f64,
 }
 
-/// Where on the path of its agent a disc is there.
+/// The part of the path of its agent on which a disc is present.
 #[derive(Clone, Copy)]
 struct Range {
-    /// Length before it \[m\].
+    /// Length of the path before the part \[m\].
     from: f64,
     /// Length of the whole path \[m\].
     length: f64,
-    /// Its first segment (from 0).
+    /// Index of its first segment.
     first: usize,
-    /// Whether it is at the start and at the end of the path.
+    /// Whether it contains the start, and the end, of the path.
     ends: [bool; 2],
 }
 
@@ -52,7 +52,7 @@ impl Disced {
         Self { agent: place, offset: None, stretch, growth: 0.0 }
     }
 
-    /// The same disc of an agent so many places further.
+    /// The same disc, of the agent whose index is higher by `places`.
     pub(crate) fn moved(self, places: usize) -> Self {
         Self { agent: self.agent + places, ..self }
     }
@@ -132,7 +132,7 @@ impl<S: Format> Bodies<S> {
     }
 }
 
-/// Where the discs of an agent run, and their radii \[m\].
+/// The paths of the discs of an agent, and their radii \[m\].
 pub fn tracks(agent: &Agent) -> Vec<(Vec<Placed>, f64)> {
     let mut bodies = (Vec::new(), Vec::new());
     // In `f64` no disc is refused.

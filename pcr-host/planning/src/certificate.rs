@@ -6,7 +6,8 @@ use crate::fleet::{Fleet, Format, HostEcm};
 use pcr_certify::data::{Agent, Pair, Path, Phase, Piece, Region, Segment, Share, Table, Travel};
 use pcr_core::{Curve, Interval, Motion, RegionRef, Turn, excess};
 
-/// A motion: `heading` is that at the start of its path, `turns` its turns in place, each before the segment of this place.
+/// A motion: `heading` is the heading at the start of its path, `turns` are its turns in place, each before the segment with
+/// this index.
 pub fn agent<S: Format>(id: u64, motion: &Motion<'_, S>, heading: S::Angle, turns: &[(usize, S::Angle)]) -> Agent {
     let path = motion.path();
     let parts = path.segments();

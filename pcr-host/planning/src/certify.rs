@@ -17,57 +17,57 @@ use serde_json::Value;
 use std::path::Path;
 use told::{Asked, Cover, Told};
 
-/// What has been proved of a table.
+/// The result of the proof of a table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Certified {
     /// Name of the scenario.
     pub name: String,
-    /// What the agents are called, by their numbers.
+    /// Labels of the agents, by their numbers.
     #[serde(skip_serializing_if = "Labels::is_empty")]
     pub labels: Labels,
-    /// `proved`, `refuted` or `undecided`; none where the scenario was refused.
+    /// `proved`, `refuted` or `undecided`; `None` if the scenario was refused.
     pub verdict: Option<&'static str>,
-    /// Discs.
+    /// Number of discs.
     pub discs: usize,
-    /// Pairs of discs of different agents, those that are far apart among them: what the verdict is about.
+    /// Number of pairs of discs of different agents, also those far apart: the verdict is about these.
     pub pairs: usize,
-    /// Pairs of segments that were looked at.
+    /// Number of pairs of segments that were examined.
     pub segment_pairs: usize,
-    /// Pieces of the table.
+    /// Number of pieces of the table.
     pub pieces: usize,
-    /// Regions of which the times were looked at.
+    /// Number of regions whose times were examined.
     pub times: usize,
-    /// Evaluations of the bounds on a pair of parts of segments.
+    /// Number of evaluations of the bounds on a pair of parts of segments.
     pub steps: usize,
-    /// The largest margin \[ε\] at which all contacts are covered, if asked for.
+    /// The largest margin \[ε\] for which all contacts are covered, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub margin: Option<f64>,
-    /// Where a promise is broken.
+    /// Points at which a promise is broken.
     pub refuted: Vec<Point>,
-    /// Where the checker's own rounding does not tell.
+    /// Points at which rounding of the checker leaves it open.
     pub undecided: Vec<Point>,
-    /// Why there is no verdict.
+    /// Reason why there is no verdict.
     pub error: Option<String>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 
 /// A point of two paths.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Point {
-    /// What is not kept there, or may not be.
+    /// The promise that is broken, or may be.
     pub promise: &'static str,
-    /// Number of an agent.
+    /// Number of the first agent.
     pub i: u64,
-    /// Number of the other one.
+    /// Number of the second agent.
     pub j: u64,
     /// Length along the path of `i`, or of its disc \[m\].
     pub l_i: f64,
     /// Length along the path of `j` \[m\].
     pub l_j: f64,
-    /// Distance of the centres less the radii there \[m\].
+    /// Distance of the centres minus the radii \[m\].
     pub clearance: f64,
-    /// The same in ε of the pair: from 0 to 1 a table may have it either way.
+    /// That distance in ε of the pair; between 0 and 1 a table may count it as contact or not.
     pub in_excess: f64,
 }
 
@@ -75,21 +75,21 @@ pub struct Point {
 pub(crate) const ANSWERS: &str = "pcr-regions";
 pub(crate) const VERSION: u32 = 1;
 
-/// The tables in an answer of `pcr regions --certificate`, or that which a microcontroller prints. What else is in the answer may be left
-/// out, and otherwise has to be what the tables hold.
+/// The tables in an answer of `pcr regions --certificate`, or the table that a microcontroller prints. Other parts of the
+/// answer may be missing; if present, they have to agree with the tables.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Dump {
     /// Name of the scenario.
     pub name: String,
-    /// What its agents are called.
+    /// Labels of its agents.
     #[serde(default)]
     pub labels: Labels,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     #[serde(default)]
     pub warnings: Vec<String>,
-    /// That of contact, and that in which margins overlap, if there are any.
+    /// The table of contacts, and that of overlaps of margins, if there are any.
     pub certificate: Vec<Table>,
-    /// Why there are no regions.
+    /// Reason why there are no regions.
     #[serde(default)]
     error: Option<String>,
     #[serde(default)]
@@ -102,7 +102,7 @@ pub struct Dump {
     footprints: Vec<Cover>,
 }
 
-/// What a text says that it is, and in which version.
+/// Format and version of a text.
 #[derive(Deserialize)]
 struct Said {
     format: Option<Value>,
@@ -110,10 +110,10 @@ struct Said {
 }
 
 impl Dump {
-    /// Reads one from a file: JSON, or the text that a microcontroller prints.
+    /// Reads the tables from a file: JSON, or the text that a microcontroller prints.
     ///
     /// # Errors
-    /// What is wrong with the file.
+    /// The problem with the file, in words.
     pub fn read(file: &Path) -> Result<Self, String> {
         let text = std::fs::read_to_string(file).map_err(|error| error.to_string())?;
         if text.trim_start().starts_with('{') {
@@ -123,10 +123,11 @@ impl Dump {
         Ok(Self { name, certificate: vec![dump::decode(&text)?], ..Self::default() })
     }
 
-    /// Reads one from a JSON text.
+    /// Reads the tables from a JSON text.
     ///
     /// # Errors
-    /// What is wrong with it: another format or version, two agents of one number, regions that are not those of the tables.
+    /// The problem, in words: another format or version, two agents with one number, or regions that differ from those of the
+    /// tables.
     pub fn of_json(text: &str) -> Result<Self, String> {
         let said: Said = serde_json::from_str(text).map_err(|error| error.to_string())?;
         let (format, version) = (ANSWERS, VERSION);
@@ -163,7 +164,7 @@ impl Dump {
 }
 
 impl Certified {
-    /// What is proved of a table; with its margin, if asked for.
+    /// Proves a table; also finds its margin, if requested.
     pub fn of(name: &str, table: &Table, margin: bool) -> Self {
         let checked = Checker::new(table).and_then(|checker| {
             let findings = checker.check(Margin::Needed)?;
@@ -176,7 +177,7 @@ impl Certified {
         }
     }
 
-    /// With what its agents are called, and with these warnings.
+    /// Sets labels and warnings.
     #[must_use]
     pub fn with(self, labels: &Labels, warnings: &[String]) -> Self {
         Self { labels: labels.clone(), warnings: warnings.to_vec(), ..self }
@@ -225,7 +226,7 @@ impl Certified {
         }
     }
 
-    /// No verdict, and why.
+    /// An answer that says why there is no verdict.
     pub fn refused(name: &str, error: String) -> Self {
         Self {
             name: name.to_owned(),

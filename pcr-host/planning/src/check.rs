@@ -19,10 +19,10 @@ use serde::Serialize;
 pub struct Verdict {
     /// Name of the scenario.
     pub name: String,
-    /// What the agents are called, by their numbers.
+    /// Labels of the agents, by their numbers.
     #[serde(skip_serializing_if = "Labels::is_empty")]
     pub labels: Labels,
-    /// How many agents there are.
+    /// Number of agents.
     #[serde(skip)]
     pub agents: usize,
     /// Sorted by their begin, then by the agents.
@@ -30,24 +30,24 @@ pub struct Verdict {
     /// Every pair, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub closest: Option<Vec<Closest>>,
-    /// What an independent checker has proved, if asked for.
+    /// Result of the independent checker, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Proof>,
     /// Why the scenario was refused.
     pub error: Option<String>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 
-/// Two discs in contact, from begin to end. What is deeper than [`Encounter::tolerance`] is always there, what is
-/// clearer never.
+/// Two discs in contact, from begin to end. Contacts deeper than [`Encounter::tolerance`] are always reported, discs that stay farther
+/// apart than that never.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Conflict {
     /// Number of an agent.
     pub i: u64,
     /// Number of the other one, larger.
     pub j: u64,
-    /// From when to when \[s\].
+    /// Begin and end \[s\].
     pub t: [f64; 2],
     /// Largest overlap: sum of the radii less the separation \[m\].
     pub depth: f64,
@@ -59,14 +59,14 @@ pub struct Conflict {
     pub touching: bool,
 }
 
-/// How near two agents come.
+/// The closest approach of two agents.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Closest {
     /// Number of an agent.
     pub i: u64,
     /// Number of the other one, larger.
     pub j: u64,
-    /// When, for the first time \[s\].
+    /// First time of the closest approach \[s\].
     pub t: f64,
     /// Distance of the centres \[m\].
     pub separation: f64,
@@ -78,12 +78,12 @@ impl Verdict {
     /// The conflicts of a scenario, computed in the format `S`.
     ///
     /// # Errors
-    /// [`Failure`] where a value does not fit the format, or memory does not hold the answer.
+    /// [`Failure`] if a value does not fit the format, or memory does not hold the answer.
     pub fn of<S: Format>(scenario: &Scenario, closest: bool) -> Result<Self, Failure> {
         Self::watched::<S>(scenario, closest, &|_, _| {})
     }
 
-    /// The same, telling how many agents of how many are done.
+    /// The same, with reports of progress: done agents, and all agents.
     ///
     /// # Errors
     /// As [`Verdict::of`].
@@ -92,7 +92,7 @@ impl Verdict {
         Self::between(scenario, &discs, &fleet.motions(), closest, told)
     }
 
-    /// Where margins overlap: the conflicts of discs that are larger by them.
+    /// Overlaps of margins: the conflicts of discs enlarged by their margins.
     ///
     /// # Errors
     /// As [`Verdict::of`].
@@ -126,7 +126,7 @@ impl Verdict {
             }
             told(stretch.end, count);
         }
-        // Those of two agents do not begin together.
+        // No two conflicts of the same agents begin at the same time.
         conflicts.sort_unstable_by(|a, b| a.t[0].total_cmp(&b.t[0]).then((a.i, a.j).cmp(&(b.i, b.j))));
         Ok(Self {
             name: scenario.name.clone(),
@@ -149,7 +149,7 @@ impl Verdict {
         Ok(Self { certificate, ..Self::of::<S>(scenario, closest)? })
     }
 
-    /// No answer, and why.
+    /// An answer that says why there are no conflicts.
     pub fn refused(name: &str, error: String) -> Self {
         Self {
             name: name.to_owned(),
@@ -167,18 +167,18 @@ impl Verdict {
 /// A disc of an agent, and its motion.
 type Body<'a, S> = (&'a Disced, &'a Motion<'a, S>);
 
-/// Agents that are looked at between two words on how far it is.
+/// Number of agents between two reports of progress.
 const STRETCH: usize = 1024;
 
-/// The agents by their numbers, and who may come near whom.
+/// The agents by their numbers, and the pairs that may come near each other.
 struct Pairs<'a, S: Format> {
     /// Numbers of the agents.
     ids: Vec<u64>,
     /// The discs of all agents, one agent after the other.
     bodies: Vec<Body<'a, S>>,
-    /// Where the discs of each agent begin, and where those of the last one end.
+    /// For each agent the index of its first disc, and the total number of discs.
     begins: Vec<usize>,
-    /// Rank of each disc's agent, by the place of the disc.
+    /// For each disc the rank of its agent.
     ranks: Vec<usize>,
     grid: Grid,
     /// From the first start to the last arrival \[s\].
@@ -209,7 +209,7 @@ impl<'a, S: Format> Pairs<'a, S> {
         (self.ids[rank], &self.bodies[self.begins[rank]..self.begins[rank + 1]])
     }
 
-    /// The agents after one that may come near it.
+    /// The agents of higher rank that may come near an agent.
     fn after(&self, agent: usize) -> Vec<usize> {
         let (mut near, mut after) = (Vec::new(), Vec::new());
         for (_, motion) in self.agent(agent).1 {
@@ -222,7 +222,7 @@ impl<'a, S: Format> Pairs<'a, S> {
         after
     }
 
-    /// The conflicts of an agent with those after it; with `closest` how near each of them comes.
+    /// The conflicts of an agent with agents of higher rank; with `closest` also the closest approaches.
     fn of(&self, agent: usize, closest: bool) -> (Vec<Conflict>, Vec<Closest>) {
         let others = if closest { (agent + 1..self.ids.len()).collect() } else { self.after(agent) };
         let (mut conflicts, mut nearest) = (Vec::new(), Vec::new());
@@ -235,13 +235,13 @@ impl<'a, S: Format> Pairs<'a, S> {
     }
 }
 
-/// Where a disc is in contact with nothing that is not there, too.
+/// The area outside of which a disc is in no contact.
 fn area<S: Format>(motion: &Motion<'_, S>) -> [f64; 4] {
     let reach = (motion.radius() + Encounter::new(motion, motion).tolerance()).to_f64();
     grown(motion, reach)
 }
 
-/// The conflicts of two agents, and how near they come if asked for.
+/// The conflicts of two agents, and their closest approach if requested.
 fn encounters<S: Format>(
     (i, first): (u64, &[Body<'_, S>]),
     (j, second): (u64, &[Body<'_, S>]),
@@ -278,10 +278,10 @@ fn encounters<S: Format>(
     (if first.len() * second.len() > 1 { joined(found) } else { found }, closest_of)
 }
 
-/// Times that are one but for rounding \[s\].
+/// Times that differ by less are equal, for rounding \[s\].
 const NEAR: f64 = 1e-9;
 
-/// The conflicts of two agents by those of their discs: what lasts on is one.
+/// The conflicts of two agents from those of their discs; successive contacts are joined.
 fn joined(mut conflicts: Vec<Conflict>) -> Vec<Conflict> {
     conflicts.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
     let hull = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];

@@ -15,7 +15,7 @@ const TABLE: [u32; 256] = {
     table
 };
 
-/// That of some bytes.
+/// The checksum of some bytes.
 pub fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |sum, &byte| TABLE[((sum ^ u32::from(byte)) & 0xFF) as usize] ^ (sum >> 8))
 }

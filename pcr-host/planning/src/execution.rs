@@ -27,45 +27,45 @@ use serde::Deserialize;
 use std::time::{Duration, Instant};
 use switching::Switching;
 
-/// Time between two controls \[s\]: a binary fraction, with which steps of a second are met exactly.
+/// Time between two control steps \[s\]: a power of two, so that whole seconds are met exactly.
 const STEP: f64 = 1.0 / 16.0;
 
-/// Controls between two looks at the whole fleet.
+/// Control steps between two looks at the whole fleet.
 const LOOK: u32 = 16;
 
-/// How long a stop lasts on average, which is known from stops before; of a stop that lasts longer, how much longer is expected \[s\].
+/// Mean duration of a stop, known from earlier stops; also the expected further duration of a stop that lasts longer \[s\].
 const STOP: f64 = 15.0;
 const LOOK_AGAIN: f64 = 1.0;
 
 /// Speed of all robots \[m/s\]: a cell a step.
 const SPEED: f64 = 1.0;
 
-/// Lengths that differ by less are the same, for rounding and for turns in place, which have the length of a tiny arc \[m\].
+/// Lengths that differ by less are equal, for rounding and for turns in place, which have the length of a tiny arc \[m\].
 const NEAR: f64 = 1e-5;
 
-/// By so much discs are larger for their orders than they are, and so far before their holds robots stand: their speeds change within a
-/// nanosecond, and not at once \[m\].
+/// Additional radius of the discs for their orders, and distance at which robots stand before their holds \[m\]: their speeds
+/// change within a nanosecond, not immediately.
 const ROOM: f64 = 1e-6;
 
-/// Ways that are rounding and nothing else \[m\].
+/// Ways below this are rounding \[m\].
 const LEAST: f64 = 1e-9;
 
-/// Times in which each robot is stopped, one after the other \[s\].
+/// For each robot the times in which it is stopped, in increasing order \[s\].
 pub type Stops = Vec<Vec<[f64; 2]>>;
 
-/// How robots are kept apart.
+/// The method that keeps robots apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum By {
     /// By the passing orders of the plan, on the geometry of discs.
     Orders,
-    /// By the same orders, which are turned round where somebody who is late holds others up and has not used its right.
+    /// By the same orders, but an order is reversed if a late robot holds others up and has not used its right.
     Switching,
-    /// By cells: one is entered only when whoever was there before has come to its next one.
+    /// By cells: a robot enters a cell only when the robot that was there before has reached its next cell.
     Cells,
 }
 
 impl By {
-    /// What it is called in tables.
+    /// Its name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Orders => "orders",
@@ -75,35 +75,35 @@ impl By {
     }
 }
 
-/// How it went.
+/// The results of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// Mean time until a robot that has a way is at its end \[s\].
+    /// Mean time of arrival of the robots that have a way \[s\].
     pub travel: f64,
-    /// The same if nobody waited for anybody: what the stops alone cost \[s\].
+    /// Mean time of arrival if no robot waited for another one, from the stops alone \[s\].
     pub alone: f64,
-    /// Until the last one is at its end \[s\].
+    /// Time of the last arrival \[s\].
     pub makespan: f64,
-    /// Robots that wait for one another for ever.
+    /// Number of robots that wait for one another for ever.
     pub stuck: usize,
-    /// What was done, as a scenario.
+    /// The motions of the run, as a scenario.
     pub done: Scenario,
-    /// What the independent checker says of that.
+    /// Result of the independent checker for these motions.
     pub proof: Proof,
-    /// Until the orders were known, and until all were at their ends.
+    /// Computing times until the orders were known, and until all robots had arrived.
     pub times: [Duration; 2],
 }
 
-/// Something that tells robots how far they may go.
+/// A rule that tells robots how far they may go.
 trait Holds {
-    /// How far a robot may go when all are here \[m\]; more than `wanted` does not matter. It never decreases.
+    /// Length up to which a robot may go when all are at `at` \[m\]; values above `wanted` are equivalent. It never decreases.
     fn hold(&mut self, robot: usize, at: &[f64], wanted: f64) -> f64;
 
-    /// Once a second: where all are, and for how much longer they are expected to be stopped \[s\].
+    /// Called once a second with the lengths of all robots, and the expected remaining durations of their stops \[s\].
     fn look(&mut self, _at: &[f64], _stopped: &[f64]) {}
 }
 
-/// Nobody is in anybody's way.
+/// No robot is in another one's way.
 struct Nobody;
 
 impl Holds for Nobody {
@@ -112,10 +112,10 @@ impl Holds for Nobody {
     }
 }
 
-/// Carries a plan out with discs of a radius \[m\], below half a cell, that are stopped at times.
+/// Carries out a plan with discs of a radius below half a cell \[m\], which are stopped at times.
 ///
 /// # Errors
-/// Where the plan has a contact of such discs, or a value is out of range.
+/// A plan with a contact of such discs, or a value out of range.
 pub fn carried_out(plan: &GridPlan, radius: f64, by: By, stops: &Stops) -> Result<Outcome, String> {
     let scenario = plan.scenario(radius + ROOM).map_err(|error| error.to_string())?;
     let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| refused.to_string())?;
@@ -156,7 +156,8 @@ pub fn carried_out(plan: &GridPlan, radius: f64, by: By, stops: &Stops) -> Resul
     })
 }
 
-/// Everybody is stopped with this probability each second that it is not, for 10 to 20 s: the same times whatever they do.
+/// Random stops: each second a robot that is not stopped is stopped with this probability, for 10 to 20 s. The times do not
+/// depend on the motions.
 pub fn random_stops(robots: usize, until: u32, rate: f64, seed: u64) -> Stops {
     let stops = |robot: usize| {
         let mut random = Random(seed ^ (robot as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
@@ -172,11 +173,12 @@ pub fn random_stops(robots: usize, until: u32, rate: f64, seed: u64) -> Stops {
     (0..robots).map(stops).collect()
 }
 
-/// The stops of a situation that is published with a plan (JSON): how many steps each robot has done, `states`, and for how many it is
-/// stopped then, `delay_steps`. They begin when whoever has done most has done that.
+/// The stops of a situation that was published with a plan (JSON): the number of steps that each robot has done, `states`, and
+/// the number of steps for which it is stopped then, `delay_steps`. They begin when the robot with the most steps has done
+/// these.
 ///
 /// # Errors
-/// Where it is no such file, or one for another number of robots.
+/// An invalid file, or one for another number of robots.
 pub fn situation(text: &str, robots: usize) -> Result<Stops, String> {
     #[derive(Deserialize)]
     struct Situation {
@@ -192,16 +194,16 @@ pub fn situation(text: &str, robots: usize) -> Result<Stops, String> {
     Ok(read.delay_steps.into_iter().map(stops).collect())
 }
 
-/// Robots on their way.
+/// Robots under way.
 struct Run<'a> {
     stops: &'a Stops,
     ends: Vec<f64>,
     at: Vec<f64>,
-    /// Stops that are over.
+    /// For each robot the number of stops that are over.
     passed: Vec<usize>,
-    /// When each has come to its end \[s\].
+    /// Times of arrival \[s\].
     arrivals: Vec<f64>,
-    /// What each did: ways of a step \[m\], and for how many steps.
+    /// For each robot its ways per step \[m\], with the number of successive steps.
     done: Vec<Vec<(f64, u32)>>,
 }
 
@@ -213,7 +215,7 @@ impl<'a> Run<'a> {
         Self { stops, ends, at, passed: vec![0; count], arrivals, done: vec![Vec::new(); count] }
     }
 
-    /// Mean time until a robot that has a way is at its end \[s\].
+    /// Mean time of arrival of the robots that have a way \[s\].
     fn travel(&self) -> f64 {
         let travels: Vec<f64> = self.arrivals.iter().copied().filter(|&end| end > 0.0).collect();
         travels.iter().sum::<f64>() / travels.len().max(1) as f64
@@ -223,7 +225,7 @@ impl<'a> Run<'a> {
         self.at[robot] >= self.ends[robot]
     }
 
-    /// Until everybody has arrived, or nobody can go on.
+    /// Runs until all robots have arrived, or none can go on.
     fn driven(mut self, holds: &mut dyn Holds) -> Self {
         for step in 0_u32.. {
             let time = f64::from(step) * STEP;
@@ -254,7 +256,7 @@ impl<'a> Run<'a> {
         self
     }
 
-    /// For how long a robot that is stopped now is expected to be: nobody knows that of a stop, but how long stops are on average \[s\].
+    /// Expected remaining duration of a stop \[s\]: only the mean duration of stops is known.
     fn stopped_for(&mut self, robot: usize, time: f64) -> f64 {
         if !self.is_stopped(robot, time) {
             return 0.0;
@@ -278,7 +280,7 @@ impl<'a> Run<'a> {
         }
         if way > 0.0 {
             self.at[robot] += way;
-            // The last step goes to the end.
+            // The last step ends exactly at the end.
             if self.ends[robot] - self.at[robot] < LEAST {
                 self.at[robot] = self.ends[robot];
                 self.arrivals[robot] = time;
@@ -286,12 +288,12 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// What was done by the agents of a scenario with the same paths.
+    /// The motions of the run in a scenario with the same paths.
     fn scenario(&self, mut scenario: Scenario) -> Scenario {
         for (agent, done) in scenario.agents.iter_mut().zip(&self.done) {
             let sections: Vec<(f64, f64)> =
                 done.iter().map(|&(way, steps)| (way * f64::from(steps), STEP * f64::from(steps))).collect();
-            // Whoever stands on has no motion for it.
+            // Standing at the end needs no motion.
             let moves = sections.iter().rposition(|(way, _)| *way > 0.0).map_or(0, |last| last + 1);
             agent.motion = sectioned(&sections[..moves]);
         }

@@ -36,9 +36,9 @@ pub trait Format: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
     fn held_angle(angle: Self::Angle) -> Angle {
         Angle::Radians(Self::radians(angle))
     }
-    /// By how much of itself a sum may be rounded, twice: 0 in a format that adds exactly.
+    /// Twice the unit roundoff of sums; 0 if the format adds exactly.
     const EPSILON: f64;
-    /// What all numbers are multiples of, in fixed point; 0 in floating point.
+    /// The last digit of a fixed-point format, of which all numbers are multiples; 0 in floating point.
     const STEP: f64 = 0.0;
 }
 
@@ -68,7 +68,7 @@ impl Format for f32 {
     fn to_f64(self) -> f64 {
         f64::from(self)
     }
-    /// Whole turns are taken off first: they would cost the digits of the rest.
+    /// Whole turns are subtracted first: they would cost digits of the rest.
     fn angle(radians: f64) -> Radians<f32> {
         Radians((if radians.abs() > PI { radians - TAU * (radians / TAU).round() } else { radians }) as f32)
     }
@@ -77,7 +77,7 @@ impl Format for f32 {
     }
 }
 
-/// Why an agent of a scenario does not fit a number format: agent, segment, field, value and what is allowed.
+/// The reason why an agent of a scenario does not fit a number format: agent, segment, field, value, and the allowed range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refused {
     agent: String,
@@ -98,10 +98,10 @@ impl fmt::Display for Refused {
 
 impl std::error::Error for Refused {}
 
-/// The number of the format for a field; what it would overflow or lose altogether is refused.
+/// A field as a number of the format; an overflow, or a value that becomes 0, is refused.
 fn number<S: Format>(field: &str, value: f64) -> Result<S, String> {
     let number = S::from_f64(value);
-    // Not by its magnitude: the least number of fixed point has none.
+    // Not compared by magnitude, because the least number of a fixed-point format has none.
     if !number.is_finite() || !(-S::LIMIT..=S::LIMIT).contains(&number) {
         let (value, limit) = (figure(value), S::LIMIT.to_f64());
         Err(format!("{field}: {value} is out of range; allowed is up to {limit:e} in magnitude"))
@@ -112,14 +112,14 @@ fn number<S: Format>(field: &str, value: f64) -> Result<S, String> {
     }
 }
 
-/// What the core refused: a value that follows from several fields.
+/// The message for a value refused by the core, which follows from several fields.
 fn derived<S: Format>(reason: Invalid) -> String {
     let limit = S::LIMIT.to_f64();
     match reason {
         Invalid::OutOfRange(what) => format!("{what} is out of range; allowed is up to {limit:e} in magnitude"),
         Invalid::TooSmall(what) => {
             let least = S::LEAST.to_f64();
-            // To the digits of `f32`, in which most formats have it, where it can hold it.
+            // Printed with the digits of `f32` if `f32` can hold it, because most formats have that limit.
             let least = if least as f32 > 0.0 { format!("{:e}", least as f32) } else { format!("{least:e}") };
             format!("{what} is out of range; the least is {least}")
         }
@@ -133,14 +133,14 @@ pub struct Fleet<S: Scalar> {
     agents: Vec<Parts<S>>,
 }
 
-/// What the motion of one agent borrows.
+/// The data that the motion of one agent borrows.
 #[derive(Clone, Debug)]
 struct Parts<S: Scalar> {
     segments: Vec<Segment<S>>,
-    /// Place of each segment in the scenario: zero lengths are left out there, arcs over one turn are split.
+    /// Index of each segment in the scenario: segments of length 0 are left out, and arcs of more than one turn are split.
     sources: Vec<usize>,
     heading: S::Angle,
-    /// Turns in place, each before the segment of this place.
+    /// Turns in place, each before the segment with this index.
     turns: Vec<(usize, S::Angle)>,
     phases: Vec<Phase<S>>,
     radius: S,
@@ -152,7 +152,7 @@ impl<S: Format> Fleet<S> {
     /// All agents of a scenario.
     ///
     /// # Errors
-    /// [`Refused`] where a value does not fit the number format.
+    /// [`Refused`] if a value does not fit the number format.
     pub fn new(scenario: &Scenario) -> Result<Self, Refused> {
         let agents = scenario.agents.iter().map(|agent| {
             let refused = |(part, problem)| Refused { agent: agent.called(), part, format: S::NAME, problem };
@@ -163,7 +163,7 @@ impl<S: Format> Fleet<S> {
 
     /// The motions, in the order of the scenario.
     pub fn motions(&self) -> Vec<Motion<'_, S>> {
-        // `Parts::new` has built each of them once.
+        // `Parts::new` has built each motion once, so none is missing.
         let motions: Vec<Motion<'_, S>> = self.agents.iter().filter_map(|parts| parts.motion().ok()).collect();
         debug_assert_eq!(motions.len(), self.agents.len());
         motions
@@ -174,26 +174,26 @@ impl<S: Format> Fleet<S> {
         self.agents.get(agent)?.motion().ok()
     }
 
-    /// Adds the agents of another one behind its own.
+    /// Appends the agents of another fleet.
     pub(crate) fn append(&mut self, other: Self) {
         self.agents.extend(other.agents);
     }
 
-    /// Heading at the start of an agent's path, and its turns in place, each before the segment of this place.
+    /// Heading at the start of an agent's path, and its turns in place, each before the segment with this index.
     pub(crate) fn headings(&self, agent: usize) -> Option<(S::Angle, &[Turned<S>])> {
         self.agents.get(agent).map(|parts| (parts.heading, &parts.turns[..]))
     }
 
-    /// Place in the scenario (from 0) of a segment of an agent's motion; `None` for the point of an agent that stands.
+    /// Index in the scenario of a segment of an agent's motion; `None` for the point of an agent that stands.
     pub fn source(&self, agent: usize, segment: usize) -> Option<usize> {
         self.agents.get(agent)?.sources.get(segment).copied()
     }
 }
 
-/// The segment (from 0) before which an agent turns in place, and by how much.
+/// Index of the segment before which an agent turns in place, and the angle.
 pub(crate) type Turned<S> = (usize, <S as Scalar>::Angle);
 
-/// Segment or piece of a profile (from 0) where there is one, and what is wrong there.
+/// Index of a segment or piece of a profile, if the fault is there; and the problem in words.
 type Fault = (Option<(&'static str, usize)>, String);
 
 /// A fault of the agent as a whole.
@@ -223,7 +223,7 @@ impl<S: Format> Parts<S> {
     }
 }
 
-/// The segments of a path, placed one after the other, the place of each in the scenario, and turns in place.
+/// The placed segments of a path, the index of each in the scenario, and turns in place.
 struct Route<S: Scalar> {
     segments: Vec<Segment<S>>,
     sources: Vec<usize>,
@@ -274,7 +274,7 @@ fn place<S: Format>(agent: &Agent) -> Result<Route<S>, Fault> {
     Ok(Route { segments, sources, turns })
 }
 
-/// The angle of a turn in place \[rad\], in a format that has no lengths as small as its radius.
+/// The angle of a turn in place \[rad\], for a format without lengths as small as its radius.
 fn turn_in_place<S: Format>(segment: &PathSegment) -> Option<f64> {
     match *segment {
         PathSegment::Arc { radius: TURN, sweep } if S::from_f64(TURN) == S::ZERO => Some(sweep),
@@ -285,7 +285,7 @@ fn turn_in_place<S: Format>(segment: &PathSegment) -> Option<f64> {
 /// The phases of the motion over a path of this length.
 fn phases<S: Format>(agent: &Agent, length: S) -> Result<Vec<Phase<S>>, Fault> {
     let duration = agent.duration();
-    // The core's division saturates, so what takes too long has to be found here.
+    // The division of the core saturates, so motions that take too long are detected here.
     if S::from_f64(duration) >= S::LIMIT {
         let limit = S::LIMIT.to_f64();
         let duration = figure(duration);
@@ -311,15 +311,14 @@ fn phases<S: Format>(agent: &Agent, length: S) -> Result<Vec<Phase<S>>, Fault> {
     }
 }
 
-/// The motion of an agent that waits while it turns in place. What is less than the last digit of time or speed is
-/// none.
+/// The motion of an agent that waits while it turns in place. Times and speeds below the last digit of the format are dropped.
 fn waiting<S: Format>(agent: &Agent) -> MotionSpec {
     let parts = agent.parts();
     let v0 = parts.iter().flatten().next().map_or(0.0, |part| part.before);
-    // Duration and speed after it.
+    // Duration, and speed after it.
     let mut reached: Vec<(f64, f64)> = Vec::new();
     for part in parts.into_iter().flatten() {
-        // As the speed of a turn in place is.
+        // As for the speed of a turn in place.
         let lost = |value: f64| S::from_f64(value) == S::ZERO;
         let after = if lost(part.after) { 0.0 } else { part.after };
         match reached.last_mut() {
@@ -349,7 +348,8 @@ pub fn build_ecm<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Ful
 /// A table of passing orders on the heap.
 pub type HostOrders<S> = Orders<S, Vec<Region>, Vec<Piece<S>>, Vec<Order<S>>>;
 
-/// The table of passing orders of a fleet of any size, nothing decided: the storage grows until it is large enough for all regions.
+/// The table of passing orders of a fleet of any size, without decisions: the storage grows until it is large enough for all
+/// regions.
 ///
 /// # Errors
 /// As [`build_ecm`].
@@ -368,7 +368,7 @@ pub fn build_orders<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostOrders<S
     }
 }
 
-/// The same with the regions of one agent with all others only.
+/// The table of the regions of one agent with all others.
 ///
 /// # Errors
 /// As [`build_ecm`].
@@ -376,7 +376,7 @@ pub(crate) fn build_ecm_of<S: Scalar>(motions: &[Motion<'_, S>], agent: usize) -
     table_of(motions, agent, [16 * motions.len(), 32 * motions.len()])
 }
 
-/// The same, with storage for so many regions and pieces at first.
+/// The same, with initial storage for these numbers of regions and pieces.
 ///
 /// # Errors
 /// As [`build_ecm`].

@@ -6,6 +6,13 @@
 //! admitted (`docs/theory.md`). For comparison, the same missions are run with locks and with start delays, under the
 //! same random delays.
 //!
+//! Words that the modules share:
+//! - an *atom* is an edge in one direction, or a node at which a robot can stand; a *way* is a list of atoms that follow one another;
+//! - a *tie* is a pair of atoms of two ways on which the two robots can touch; a *region* is a connected set of ties, and has a
+//!   passing order;
+//! - a *gate* of a region is a place where the second robot has to wait until the first has reached a certain length;
+//! - a *safe end* is a node where a robot can stand for good: all other nodes can be reached while robots stand at all safe ends.
+//!
 //! ```text
 //! gates      holds as lists of places to wait                     Contact, Gate
 //! site       atoms: pieces of way, and how robots on them touch   Site
@@ -85,7 +92,7 @@ use pcr_formats::import::Imported;
 use serde::Serialize;
 use site::Site;
 
-/// Where missions can be carried out on a layout without end by vehicles like this, and what stands against it.
+/// The nodes between which vehicles like this can carry out missions without end, the safe ends, and obstacles to it.
 ///
 /// # Errors
 /// An edge that is no path.
@@ -100,11 +107,11 @@ pub fn well_formedness(imported: &Imported, seed: u64) -> Result<WellFormedness,
 pub enum Method {
     /// Passing orders.
     Orders,
-    /// A robot sets off when nobody else has anything in its way, up to its end.
+    /// A robot sets off when no other robot has a lock on any part of its whole route.
     RouteLocks,
-    /// A robot gets one edge after the other, if all can still finish then.
+    /// A robot gets one edge after the other, each only if all robots can still finish.
     EdgeLocks,
-    /// A robot sets off when it is expected to meet nobody; orders keep to that when somebody is late.
+    /// A robot sets off when it is expected to meet no other robot; passing orders enforce this if a robot is late.
     StartDelays,
 }
 
@@ -112,7 +119,7 @@ impl Method {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Orders, Self::RouteLocks, Self::EdgeLocks, Self::StartDelays];
 
-    /// What it is called where programs read it.
+    /// Its name in files.
     pub fn key(self) -> &'static str {
         match self {
             Self::Orders => "orders",
@@ -122,7 +129,7 @@ impl Method {
         }
     }
 
-    /// What it is called in tables.
+    /// Its name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Orders => "orders",
@@ -133,14 +140,14 @@ impl Method {
     }
 }
 
-/// What goes wrong with robots.
+/// Random delays of robots.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Delays {
-    /// Part of the time for which a robot is stopped for no reason.
+    /// Share of the time for which a robot is stopped at random.
     pub stopped: f64,
     /// Mean duration of a stop \[s\].
     pub stop: f64,
-    /// Largest part of its speed that a robot loses, another one each few seconds.
+    /// Largest share of its speed that a robot loses; the share changes every few seconds.
     pub slip: f64,
 }
 
@@ -151,17 +158,17 @@ impl Default for Delays {
     }
 }
 
-/// What is asked for.
+/// The options of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
-    /// Robots.
+    /// Number of robots.
     pub agents: usize,
-    /// For how long missions come \[s\].
+    /// Time for which missions come \[s\].
     pub duration: f64,
-    /// What goes wrong.
+    /// Random delays.
     pub delays: Delays,
-    /// Another number gives other missions and delays.
+    /// Seed of missions and delays.
     pub seed: u64,
-    /// How robots are kept apart.
+    /// Method that keeps robots apart.
     pub method: Method,
 }

@@ -41,29 +41,29 @@ pub struct Locks {
     pub layout: String,
     /// The vehicle.
     pub vehicle: LockVehicle,
-    /// By `a`, then `b`, then the lengths.
+    /// Sorted by `a`, then `b`, then the lengths.
     pub locks: Vec<Lock>,
-    /// What a vehicle that stands at a node blocks, if asked for.
+    /// Lengths of edges that a vehicle standing at a node blocks, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nodes: Option<Vec<NodeLock>>,
-    /// Nodes at which vehicles cannot stand at the same time, if asked for.
+    /// Nodes at which vehicles cannot stand at the same time, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node_pairs: Option<Vec<[Id; 2]>>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 
 /// The vehicle of a table of locks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LockVehicle {
-    /// Its type, where the layout has several.
+    /// Its type, if the layout has several.
     pub name: Option<String>,
-    /// Radius of its disc \[m\], margin included; with a footprint that of the disc around all of it.
+    /// Radius of its disc \[m\], with margin; for a footprint that of the disc around all of it.
     pub radius: f64,
-    /// With a footprint: no point of a disc is farther than this from the outline \[m\].
+    /// For a footprint: no point of a disc is farther than this from the outline \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub overhang: Option<f64>,
-    /// With a footprint: the discs that are computed with, margin included.
+    /// For a footprint: the discs used for the computation, with margin.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub discs: Vec<Disc>,
 }
@@ -71,24 +71,24 @@ pub struct LockVehicle {
 /// Two edges, and the lengths of each within which a vehicle may touch one on the other.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Lock {
-    /// Edge, as in the layout.
+    /// Id of the first edge.
     pub a: Id,
-    /// Edge, after `a` in order.
+    /// Id of the second edge, which comes after `a`.
     pub b: Id,
-    /// From and to, from the start of `a` \[m\].
+    /// Range of lengths from the start of `a` \[m\].
     pub a_length: [f64; 2],
-    /// From and to, from the start of `b` \[m\].
+    /// Range of lengths from the start of `b` \[m\].
     pub b_length: [f64; 2],
 }
 
 /// A node, and the lengths of an edge within which a vehicle may touch one that stands at the node.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NodeLock {
-    /// Node, as in the layout.
+    /// Id of the node.
     pub node: Id,
-    /// Edge.
+    /// Id of the edge.
     pub edge: Id,
-    /// From and to, from the start of the edge \[m\].
+    /// Range of lengths from the start of the edge \[m\].
     pub edge_length: [f64; 2],
 }
 
@@ -96,17 +96,17 @@ pub struct NodeLock {
 pub type Extents = [[f64; 2]; 2];
 
 impl Locks {
-    /// The locks of a layout for its vehicle; with `nodes`, what standing at a node blocks as well, in any heading.
+    /// The locks of a layout for its vehicle; with `nodes` also what a vehicle standing at a node blocks, in any heading.
     ///
     /// Cost: less than a microsecond for each pair of straight segments whose boxes meet, on each core.
     ///
     /// # Errors
-    /// [`ImportError`] for coordinates beyond what can be computed with, and for a table that memory does not hold.
+    /// [`ImportError`] for coordinates that are too large, and for a table that does not fit in memory.
     pub fn of(imported: &Imported, nodes: bool) -> Result<Self, ImportError> {
         Self::watched(imported, nodes, &|_, _| {})
     }
 
-    /// The same, telling how many pairs of how many have been looked at.
+    /// The same, with reports of progress: examined pairs, and all pairs.
     ///
     /// # Errors
     /// As [`Locks::of`].
@@ -115,7 +115,7 @@ impl Locks {
         let mut locks = Self::head(imported, nodes);
         let mut held = 0;
         sweep.each(told, <[Found]>::to_vec, |found| {
-            // Two names a lock.
+            // A lock has two ids.
             held += found.len() as u64 * (size_of::<Lock>() + 64) as u64;
             if held > memory::STEP {
                 let count = locks.locks.len();
@@ -167,7 +167,7 @@ impl Locks {
     }
 }
 
-/// What has to be said of layouts of which routes round the corners.
+/// A warning for layouts whose routes round corners.
 pub fn rounded(layout: &Layout) -> Option<String> {
     let radius = layout.corner_radius.filter(|radius| *radius > 0.0)?;
     Some(format!(
@@ -176,8 +176,8 @@ pub fn rounded(layout: &Layout) -> Option<String> {
     ))
 }
 
-/// What vehicles sweep on all edges and nodes of each level, as the agents whose regions the locks are made of: what has to be certified
-/// of a table of locks.
+/// The swept areas of vehicles on all edges and nodes of each level, as the agents from whose regions the locks are computed. A
+/// certificate of the locks is about these.
 ///
 /// # Errors
 /// As [`Locks::of`].
@@ -203,7 +203,7 @@ fn scenario(rides: &[Ride]) -> Result<Scenario, ImportError> {
     import::checked(&Scenario::new("", agents.collect()))
 }
 
-/// The hulls of those that overlap, again and again until all are apart.
+/// The hulls of overlapping extents, joined until all are disjoint.
 fn joined(extents: Vec<Extents>) -> Vec<Extents> {
     let mut apart: Vec<Extents> = Vec::new();
     for mut next in extents {

@@ -3,11 +3,12 @@
 use std::fmt;
 use std::fs;
 
-/// What is left alone, so that what is small need not ask \[bytes\]: of address space more, as each thread takes it 64 MB at a time.
+/// Memory that stays free, so that small allocations need no check \[bytes\]; of the address space more stays free, because
+/// each thread takes 64 MB of it at a time.
 const RESERVE: u64 = 48 << 20;
 const ADDRESSES: u64 = 160 << 20;
 
-/// What may be taken between two questions \[bytes\].
+/// Memory that may be allocated between two checks \[bytes\].
 pub const STEP: u64 = 16 << 20;
 
 /// An answer, or a part of it, that does not fit into memory.
@@ -34,16 +35,16 @@ impl fmt::Display for TooLarge {
 impl std::error::Error for TooLarge {}
 
 impl TooLarge {
-    /// What an allocation was refused for.
+    /// The error for a refused allocation.
     pub(crate) fn of(what: String) -> Self {
         Self { what, needed: None, left: left().unwrap_or(0) }
     }
 }
 
-/// Asks for some bytes, before they are allocated.
+/// Checks that some bytes can be allocated.
 ///
 /// # Errors
-/// [`TooLarge`], with the number, where the system tells that they are not there.
+/// [`TooLarge`], with the number of bytes, if the system reports less free memory.
 pub fn ask(bytes: u64, what: impl FnOnce() -> String) -> Result<(), TooLarge> {
     match left() {
         Some(left) if bytes > left => Err(TooLarge { what: what(), needed: Some(bytes), left }),
@@ -51,13 +52,13 @@ pub fn ask(bytes: u64, what: impl FnOnce() -> String) -> Result<(), TooLarge> {
     }
 }
 
-/// Asks for a list of so many items of a size \[bytes\], if it is long: asking takes its time.
+/// Checks that a list of `count` items of a size \[bytes\] can be allocated. Only for long lists, because the check takes time.
 pub(crate) fn for_list(count: usize, size: u64) -> Result<(), TooLarge> {
     let bytes = count as u64 * size;
     if bytes < STEP { Ok(()) } else { ask(bytes, || format!("a list of {count}")) }
 }
 
-/// Counts what a list takes while it grows, and asks from time to time.
+/// Counts the memory of a growing list, and checks from time to time.
 #[derive(Debug, Default)]
 pub(crate) struct Held {
     since: u64,
@@ -65,10 +66,10 @@ pub(crate) struct Held {
 }
 
 impl Held {
-    /// Adds some items to a list, which take so many bytes beside it.
+    /// Appends items to a list; together they have `beside` bytes of memory outside of the list.
     ///
     /// # Errors
-    /// [`TooLarge`] where the list, which may have to move to twice the place, does not fit.
+    /// [`TooLarge`] if the list does not fit; it may have to be copied to twice its size.
     pub(crate) fn extend<T>(
         &mut self,
         list: &mut Vec<T>,

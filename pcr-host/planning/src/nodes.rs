@@ -11,24 +11,24 @@ pub struct Listing<'a> {
     pub layout: &'a str,
     /// Floors or maps.
     pub levels: &'a [String],
-    /// Types of vehicles that the file tells apart (`--vehicle`).
+    /// Types of vehicles in the file (`--vehicle`).
     pub vehicle_types: &'a [String],
-    /// Vehicles that the file names.
+    /// Vehicles in the file.
     pub vehicles: &'a [String],
-    /// Where routes may begin and end.
+    /// Nodes at which routes may begin and end.
     pub nodes: Vec<Place<'a>>,
-    /// The ways between them.
+    /// The edges between them.
     pub edges: Vec<Way<'a>>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: &'a [String],
 }
 
 /// A node.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Place<'a> {
-    /// As in the file, and as `--route` takes it.
+    /// Id in the file, also for `--route`.
     pub id: &'a Id,
-    /// What `--route` takes as well: a name, or other ids of the same node.
+    /// Other names for `--route`: a name, or other ids of the same node.
     pub names: Vec<&'a str>,
     /// Its floor or map.
     pub level: &'a str,
@@ -39,28 +39,28 @@ pub struct Place<'a> {
 /// An edge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Way<'a> {
-    /// As in the file.
+    /// Id in the file.
     pub id: &'a Id,
-    /// Node from which it is travelled.
+    /// Id of the node where it begins.
     pub from: &'a Id,
-    /// Node to which it is.
+    /// Id of the node where it ends.
     pub to: &'a Id,
     /// \[m\]
     pub length: f64,
     /// Whether it may be travelled backward as well.
     pub two_way: bool,
-    /// Largest speed \[m/s\], where it is limited.
+    /// Speed limit \[m/s\], if there is one.
     pub speed: Option<f64>,
-    /// The same backward, where it is another one.
+    /// Speed limit backward, if it is another one \[m/s\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_back: Option<f64>,
-    /// Whether nobody may travel on it as the file is.
+    /// Whether the file closes it for all vehicles.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub closed: bool,
 }
 
 impl<'a> Listing<'a> {
-    /// What there is in a layout, in the order of the file.
+    /// The nodes and edges of a layout, in the order of the file.
     pub fn of(layout: &'a Layout) -> Self {
         let mut nodes: Vec<Place<'a>> = layout.nodes.iter().map(|node| Place::of(node, layout)).collect();
         for (alias, place) in &layout.aliases {

@@ -69,16 +69,16 @@ pub enum Priority {
     Best,
 }
 
-/// What is asked for.
+/// The options of a plan.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Request {
     /// How conflicts are avoided.
     pub method: Method,
     /// How the agents are put in order.
     pub priority: Priority,
-    /// What shall be least.
+    /// The objective to be minimized.
     pub objective: Objective,
-    /// Where not all agents can have a plan: one for the others, with as few left out as possible.
+    /// Whether agents may be left out, as few as possible, if not all can have a plan.
     pub leave_out: bool,
     /// How long to search.
     pub effort: Effort,
@@ -105,38 +105,38 @@ impl Request {
 pub struct Plan {
     /// Name of the scenario.
     pub name: String,
-    /// What the agents are called, by their numbers.
+    /// Labels of the agents, by their numbers.
     #[serde(skip_serializing_if = "Labels::is_empty")]
     pub labels: Labels,
     /// How conflicts are avoided.
     pub method: &'static str,
-    /// The agents by priority, or by their starts where none was asked for.
+    /// The agents by priority, or by their starts if no priority was requested.
     pub order: Vec<u64>,
-    /// In the order of the file; none where there is no plan.
+    /// Agents in the order of the file; empty if there is no plan.
     pub agents: Vec<Planned>,
-    /// Those that the plan is not for, as if they were not there.
+    /// Agents that were left out; the plan is made as if they were not there.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<u64>,
-    /// From the earliest start in the file to the last arrival, of the agents of the plan \[s\].
+    /// Time from the earliest start in the file to the last arrival, of the agents of the plan \[s\].
     pub makespan: f64,
     /// Sum over the agents from their start in the file to their arrival \[s\].
     pub sum_of_costs: f64,
-    /// What was to be least: `sum_of_costs` or `makespan`.
+    /// Objective: `sum_of_costs` or `makespan`.
     pub objective: &'static str,
-    /// No plan by this method for the same agents is less by that \[s\].
+    /// Lower bound of the objective of all plans by this method for the same agents \[s\].
     pub lower_bound: f64,
-    /// How much less it could be at most, of itself.
+    /// Difference between objective and lower bound, relative to the objective.
     pub gap: f64,
-    /// Whether nothing is less but for rounding.
+    /// Whether the plan is proved to be the best, except for rounding.
     pub proved: bool,
-    /// Who cannot be planned; each is a set of agents of which at least one has to be left out.
+    /// Sets of agents that cannot be planned; at least one agent of each set has to be left out.
     pub unsolved: Vec<Unsolved>,
     /// Why the scenario was refused.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
-    /// What an independent checker has proved of the plan.
+    /// Result of the independent checker for the plan.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Proof>,
 }
@@ -146,9 +146,9 @@ pub struct Plan {
 pub struct Planned {
     /// Number.
     pub id: u64,
-    /// How much later it starts than the file says \[s\].
+    /// Delay of its start against the file \[s\].
     pub delay: f64,
-    /// When it arrives \[s\].
+    /// Time of arrival \[s\].
     pub t_end: f64,
 }
 
@@ -157,15 +157,15 @@ pub struct Planned {
 pub struct Unsolved {
     /// Their numbers.
     pub ids: Vec<u64>,
-    /// Why.
+    /// Reason, in words.
     pub why: String,
-    /// Where, if it is about two agents and a place.
+    /// Place, if the reason is about two agents and a place.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub spot: Option<Spot>,
 }
 
 impl Unsolved {
-    /// The first agent cannot start because of the second, `always` or after it.
+    /// The reason why the first agent cannot start because of the second; `always`: with all delays.
     pub(crate) fn of(scenario: &Scenario, ids: [u64; 2], always: bool) -> Self {
         let (why, spot) = reason::reason(scenario, ids, always);
         Self { ids: ids.to_vec(), why, spot }
@@ -242,7 +242,7 @@ impl Plan {
         let of_rest = Planner { scenario: &rest, request, motions: &motions };
         let (mut partial, solved) = of_rest.plan(Some(starts.known(&staying)))?;
         partial.labels = plan.labels;
-        // Those that stay are in order.
+        // The remaining agents are in order.
         let leaves = |agent: &usize| staying.binary_search(agent).is_err();
         partial.left_out = (0..planner.motions.len()).filter(leaves).map(|agent| planner.id(agent)).collect();
         partial.unsolved.splice(0..0, plan.unsolved);

@@ -32,7 +32,7 @@ pub struct Queue {
 }
 
 impl Queue {
-    /// Of a fleet. Cost: that of [`Encounter::conflicts`] a pair.
+    /// The queue of a fleet. For each pair it costs as much as [`Encounter::conflicts`].
     pub fn of(fleet: &[Motion<'_, f64>]) -> Self {
         let mut queue = Self::default();
         for other in 0..fleet.len() {

@@ -26,7 +26,7 @@ pub use tables::table_of;
 pub struct Answer {
     /// Name of the scenario.
     pub name: String,
-    /// What the agents are called, by their numbers.
+    /// Labels of the agents, by their numbers.
     #[serde(skip_serializing_if = "Labels::is_empty")]
     pub labels: Labels,
     /// Number format of the computation.
@@ -47,7 +47,7 @@ pub struct Answer {
     pub certificate: Option<Vec<Table>>,
     /// Why the scenario was refused.
     pub error: Option<String>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 
@@ -68,18 +68,18 @@ pub struct Cover {
     pub discs: Vec<Disc>,
 }
 
-/// What is asked for.
+/// The options of a request for regions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Request {
     /// Only the regions of the agent of this number.
     pub agent: Option<u64>,
-    /// Number of slices a region.
+    /// Number of slices for each region.
     pub slices: Option<usize>,
-    /// The tables as they are held.
+    /// Whether the tables are included.
     pub certificate: bool,
 }
 
-/// Why there is no answer.
+/// The reason why there is no answer.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Failure {
@@ -103,17 +103,17 @@ pub enum Failure {
     Ambiguous(String, Vec<u64>),
     /// A number that is that of an agent and the label of others.
     Twofold(u64, String, Vec<u64>),
-    /// A proof is asked for, and there are no two discs of different agents.
+    /// A proof was requested, but there are no two discs of different agents.
     NoPair,
-    /// The memory does not hold what was asked for.
+    /// The answer does not fit in memory.
     TooLarge(TooLarge),
-    /// Something is done for fewer agents only: it would take too long.
+    /// The task is limited to fewer agents, because it would take too long.
     TooMany {
-        /// What.
+        /// The task, in words.
         what: &'static str,
-        /// Agents that there are.
+        /// Number of agents.
         agents: usize,
-        /// Agents for which it is done, at most.
+        /// Largest number of agents for which it is done.
         most: usize,
     },
 }
@@ -264,7 +264,7 @@ impl Answer {
 }
 
 impl Cover {
-    /// Those of an agent, for each stretch of its path with another outline, and the discs that they became.
+    /// The covers of an agent: one for each stretch of its path with another outline, with the resulting discs.
     fn of(agent: &Agent, own: &[Disced]) -> Vec<Self> {
         let covers = agent.outlines().into_iter().filter_map(|outline| {
             let segments = (!agent.loads.is_empty()).then(|| outline.segments.map(|segment| segment + 1));

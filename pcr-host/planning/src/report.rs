@@ -47,11 +47,11 @@ use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// What is printed as JSON: it says what it is, and in which version of its fields.
+/// An answer that is printed as JSON, with its format and version.
 pub trait Document: Serialize {
-    /// What it is; its schema is `docs/schema/FORMAT.schema.json`.
+    /// Name of the format; the schema is `docs/schema/FORMAT.schema.json`.
     const FORMAT: &'static str;
-    /// Counts changes that a program which reads it has to know of; new fields are none.
+    /// Version: counts changes that affect programs which read it; new fields do not.
     const VERSION: u32 = 1;
 }
 
@@ -87,7 +87,7 @@ impl Document for Listing<'_> {
 /// One line of JSON.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn json<D: Document>(answer: &D, out: &mut impl Write) -> io::Result<()> {
     #[derive(Serialize)]
     struct Versioned<'a, D> {
@@ -103,17 +103,17 @@ pub fn json<D: Document>(answer: &D, out: &mut impl Write) -> io::Result<()> {
 /// The header line of [`csv`].
 pub const CSV_HEADER: &str = "name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types,crossings,margin,i_label,j_label\n";
 
-/// A line a region: numbers that read back exactly, flags as 0 and 1, types as `SS+2AA`. Those of the discs with their
-/// margins come last, with 1 in the column `margin`.
+/// One line for each region: numbers that read back exactly, flags as 0 and 1, types as `SS+2AA`. Regions of discs with margins
+/// come last, with 1 in the column `margin`.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn csv(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
     csv_rows(&answer.name, &answer.labels, &answer.regions, false, out)?;
     csv_rows(&answer.name, &answer.labels, answer.margin_regions.as_deref().unwrap_or_default(), true, out)
 }
 
-/// Some of its lines.
+/// Some of these lines.
 fn csv_rows(name: &str, labels: &Labels, regions: &[Region], margin: bool, out: &mut impl Write) -> io::Result<()> {
     let (name, margin) = (quoted(name), u8::from(margin));
     for region in regions {
@@ -161,7 +161,7 @@ fn types(region: &Region) -> String {
     text
 }
 
-/// The titles of the columns of two agents: labels are set to the left.
+/// Titles of the columns of two agents; labels are left-aligned.
 fn agents(labels: &Labels) -> [&'static str; 2] {
     if labels.is_empty() { ["i", "j"] } else { ["<i", "<j"] }
 }
@@ -176,7 +176,7 @@ fn all_called(labels: &Labels, ids: &[u64]) -> String {
     ids.iter().map(|id| called(labels, *id)).collect::<Vec<_>>().join(" and ")
 }
 
-/// How many there are, in words: `1 lock`, `2 locks`.
+/// A number with a noun: `1 lock`, `2 locks`.
 pub fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
@@ -186,7 +186,7 @@ pub fn heading(name: &str) -> String {
     if name.is_empty() { "scenario".into() } else { printable(name) }
 }
 
-/// A name on a terminal: whatever would move the cursor or change colours is escaped.
+/// A name for a terminal: control characters are escaped.
 pub fn printable(name: &str) -> String {
     name.chars().fold(String::new(), |mut text, c| {
         if c.is_control() {

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 pub struct Row<'a, S: Format> {
     /// The agent and those that come near it, in increasing order.
     agents: Vec<u32>,
-    /// Where the agent is among them.
+    /// Index of the agent among them.
     place: usize,
     motions: Vec<Motion<'a, S>>,
     table: HostEcm<S>,
@@ -77,7 +77,7 @@ impl<'a, S: Format> Row<'a, S> {
         &self.agents
     }
 
-    /// Where the agent of the row is among [`Row::agents`], and its number in the table.
+    /// Index of the agent of the row in [`Row::agents`], which is its index in the table.
     pub fn place(&self) -> usize {
         self.place
     }

@@ -64,7 +64,7 @@ use world::World;
 /// Time of a frame \[s\]: the camera of the paper sees 30 a second.
 pub const FRAME: f64 = 1.0 / 30.0;
 
-/// How the robots are controlled.
+/// Controller of the robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Controller {
@@ -77,7 +77,7 @@ pub enum Controller {
 }
 
 impl Controller {
-    /// All of them.
+    /// All controllers.
     pub const ALL: [Self; 3] = [Self::Pcr, Self::Potential, Self::Orca];
 
     /// Name in the output.
@@ -93,7 +93,7 @@ impl Controller {
 /// The settings of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// The same seed gives the same disturbances.
+    /// Seed: the same seed gives the same disturbances.
     pub seed: u64,
     /// Time from one plan to the next \[s\].
     pub replan: f64,
@@ -101,58 +101,59 @@ pub struct Settings {
     pub disturbance: Disturbance,
 }
 
-/// What a controller sees in a frame.
+/// The input of a controller in a frame.
 struct Frame<'a> {
-    /// \[s\]
+    /// Time \[s\].
     time: f64,
     /// Positions with the errors of the camera \[m\].
     seen: &'a [Vector],
-    /// Of the wheels in the last frame \[m/s\].
+    /// Speeds of the wheels in the last frame \[m/s\].
     speeds: &'a [f64],
-    /// Which robots stand at the ends of their paths, which they know.
+    /// For each robot whether it stands at the end of its path, as it knows by itself.
     arrived: &'a [bool],
-    /// The turn in place of each robot that has begun one, which it knows.
+    /// For each robot the turn in place that it has begun, as it knows by itself.
     turning: &'a [Option<Turning>],
 }
 
 /// A plan of the supervisor, for the replay.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
-    /// When it was made \[s\].
+    /// Time at which it was made \[s\].
     pub time: f64,
-    /// What is planned for the robots.
+    /// Planned motions of the robots.
     pub drives: Vec<Drive>,
-    /// Lengths of the courses travelled before \[m\].
+    /// Length that each robot had travelled on its course before the plan \[m\].
     pub offsets: Vec<f64>,
-    /// With their margins \[m\].
+    /// Radii with margins \[m\].
     pub radii: Vec<f64>,
 }
 
-/// Something that tells robots how to move.
+/// A controller, which tells robots how to move.
 trait Control {
-    /// A robot will get this path, its first one, at a time \[s\].
+    /// Announces the first path of a robot, which it will get at a time \[s\].
     fn announce(&mut self, _robot: usize, _course: &Course, _release: f64) {}
     /// A robot that stands gets a path.
     fn assign(&mut self, robot: usize, course: &Course);
     /// A command for each robot.
     fn commands(&mut self, frame: &Frame<'_>) -> Vec<Command>;
-    /// How near its goal a robot has arrived \[m\]; 0 for robots on paths, which know their end, and on the way to another point.
+    /// Distance from its goal at which a robot has arrived \[m\]; 0 for robots on paths, which know their end, and on the way
+    /// to another point.
     fn reach(&self, _robot: usize) -> f64 {
         0.0
     }
-    /// Whether nobody will ever move again but for new missions.
+    /// Whether no robot will move again without new missions.
     fn is_stuck(&self) -> bool {
         false
     }
-    /// Robots whose missions were not begun, and who stands in the way of each.
+    /// Robots whose missions were not begun, and what stands in the way of each.
     fn waiting(&self) -> Vec<(usize, Option<InTheWay>)> {
         Vec::new()
     }
-    /// The plans that were made.
+    /// Takes the plans that were made.
     fn take_snapshots(&mut self) -> Vec<Snapshot> {
         Vec::new()
     }
-    /// What planning took.
+    /// Figures about planning.
     fn planning(&self) -> Option<&Statistics> {
         None
     }
@@ -161,7 +162,7 @@ trait Control {
 /// Runs a task under a controller until all missions are done, or until [`time_limit`].
 ///
 /// # Errors
-/// [`Failure`] where a value is out of range or the table cannot hold the fleet.
+/// [`Failure`] if a value is out of range or the table cannot hold the fleet.
 pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Outcome, Failure> {
     let Disturbance { noise, drift, .. } = settings.disturbance;
     let mut control: Box<dyn Control> = match controller {
@@ -189,8 +190,8 @@ pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Ou
     })
 }
 
-/// When a run is given up \[s\]: eight times as long as the longest missions of a robot take without anybody else, and a
-/// minute.
+/// Time after which a run is given up \[s\]: eight times the time that a robot's missions take without other robots, for the
+/// robot with the longest ones, and a minute.
 pub fn time_limit(task: &Task) -> f64 {
     let robot = |robot: &Robot| {
         let missions = robot.missions.iter();

@@ -17,12 +17,12 @@ use pcr_formats::import::{Id, Imported};
 use pcr_formats::scenario::{Agent, Scenario};
 use serde::Serialize;
 
-/// What is asked for.
+/// The options of a request for missions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
-    /// Agents that shall have missions.
+    /// Number of agents that are to have missions.
     pub agents: usize,
-    /// Another number gives other missions.
+    /// Seed of the missions.
     pub seed: u64,
 }
 
@@ -31,41 +31,41 @@ pub struct Request {
 pub struct Traffic {
     /// Name of the layout.
     pub layout: String,
-    /// From which the missions follow.
+    /// Seed of the missions.
     pub seed: u64,
     /// Radius of the discs, without their margin and the deviation of their paths \[m\].
     pub radius: f64,
-    /// Agents asked for.
+    /// Number of agents requested.
     pub asked: usize,
-    /// Agents that have a mission; for the others there is no room to start or to end.
+    /// Number of agents with a mission; for the others there is no room to start or to end.
     pub placed: usize,
-    /// Missions that were drawn and passed over, in all draws.
+    /// Number of missions that were drawn and rejected, in all draws.
     pub passed_over: usize,
-    /// Why, and how many each.
+    /// Reasons for the rejections, with their numbers.
     pub passed_over_because: Vec<PassedOver>,
-    /// Agents that have a mission and a plan.
+    /// Number of agents with a mission and a plan.
     pub planned: usize,
-    /// Collision regions of the agents that have a mission, both directions of every pair.
+    /// Number of collision regions of the agents with a mission, both directions of every pair.
     pub regions: usize,
-    /// Conflicts of the agents that have a plan if all set off at once.
+    /// Number of conflicts of the agents with a plan if all set off at once.
     pub conflicts_before: usize,
-    /// Conflicts with the plan.
+    /// Number of conflicts with the plan.
     pub conflicts_after: usize,
-    /// What an independent checker has proved of the plan.
+    /// Result of the independent checker for the plan.
     pub certificate: Proof,
-    /// From the start of all to the last arrival \[s\].
+    /// Time from the start of all to the last arrival \[s\].
     pub makespan: f64,
-    /// Sum over the agents of the time until they arrive \[s\].
+    /// Sum of the times of arrival of all agents \[s\].
     pub sum_of_costs: f64,
-    /// The sum of costs if nobody had to wait \[s\].
+    /// The sum of costs if no agent had to wait \[s\].
     pub lower_bound: f64,
-    /// Missions carried out in the makespan, an hour.
+    /// Missions carried out in the makespan, per hour.
     pub missions_per_hour: f64,
     /// The missions, by the number of their agent.
     pub missions: Vec<Travel>,
-    /// Why agents have no plan, the first of each `ids`.
+    /// Reasons why agents have no plan; the first of each `ids` has none.
     pub unsolved: Vec<Unsolved>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 
@@ -147,7 +147,7 @@ impl Traffic {
         Ok((traffic, [missions, plan]))
     }
 
-    /// Whether anybody has a plan, and the plan is proved to be free of contact.
+    /// Whether at least one agent has a plan, and the plan is proved to be free of contact.
     pub fn is_sound(&self) -> bool {
         self.planned > 0 && self.conflicts_after == 0 && self.certificate.verdict == "proved"
     }

@@ -5,19 +5,19 @@ use crate::metrics::Latency;
 use serde_json::{Value, json};
 use std::collections::VecDeque;
 
-/// Events that are remembered.
+/// Number of events that are kept.
 const EVENTS: usize = 100;
 
-/// What is shown.
+/// The published data.
 #[derive(Clone, Debug, Default)]
 pub struct Board {
-    /// How long requests take.
+    /// Latency of requests.
     pub latency: Latency,
     events: VecDeque<(f64, String)>,
 }
 
 impl Board {
-    /// Remembers what was told, but holds.
+    /// Stores an event, unless it is a hold.
     pub fn note(&mut self, now: f64, event: &Event) {
         let robot = event.robot();
         let text = match event {
@@ -39,7 +39,7 @@ impl Board {
         self.events.push_back((now, text));
     }
 
-    /// What was told lately, oldest first.
+    /// The latest events, oldest first.
     pub fn events(&self) -> Vec<Value> {
         self.events.iter().map(|(time, text)| json!({ "time": time, "text": text })).collect()
     }

@@ -10,19 +10,20 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::thread;
 use std::time::Duration;
 
-/// Numbers of clients.
+/// Number of the next client.
 static NEXT: AtomicU64 = AtomicU64::new(1);
 
-/// A client over TCP that is let go has so long to take some of what was for it, and its connection ends.
+/// Time that a disconnected TCP client has to read some of its lines, before the connection ends.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Clients over TCP at a time.
+/// Largest number of TCP clients at a time.
 const MOST: usize = 256;
 
-/// Reads lines from here and writes answers there, until one of them ends. Returns when all that came in is answered.
+/// Reads lines from `input` and writes answers to `output`, until one of them ends. Returns when all lines that were read are
+/// answered.
 ///
 /// # Errors
-/// There is no thread for the answers; nothing is read then.
+/// The thread for the answers cannot be started; nothing is read then.
 pub fn serve(handle: &Handle, input: impl Read, output: impl Write + Send + 'static) -> io::Result<()> {
     let number = NEXT.fetch_add(1, Ordering::Relaxed);
     let (sender, lines) = outbox();
@@ -30,7 +31,7 @@ pub fn serve(handle: &Handle, input: impl Read, output: impl Write + Send + 'sta
     if !handle.send(Input::Opened(number, sender)) {
         return Ok(());
     }
-    // What cannot be read has ended.
+    // An error of reading counts as the end.
     let _ = read(handle, number, BufReader::new(input));
     handle.send(Input::Closed(number));
     let _ = writer.join();
@@ -45,7 +46,7 @@ fn write(lines: &Lines, mut output: impl Write) {
     }
 }
 
-/// Writes all of it. A client that takes nothing for [`PATIENCE`] is waited for, unless it is to get no more.
+/// Writes all bytes. Waits for a slow client, but if the client is being disconnected only for [`PATIENCE`].
 fn put(lines: &Lines, output: &mut impl Write, mut bytes: &[u8]) -> io::Result<()> {
     while !bytes.is_empty() {
         match output.write(bytes) {
@@ -53,7 +54,7 @@ fn put(lines: &Lines, output: &mut impl Write, mut bytes: &[u8]) -> io::Result<(
             Ok(written) => bytes = bytes.get(written..).unwrap_or_default(),
             Err(error) if error.kind() == ErrorKind::Interrupted => {}
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) && !lines.is_closed() => {
-                // An output that does not wait itself.
+                // A non-blocking output.
                 thread::sleep(Duration::from_millis(1));
             }
             Err(error) => return Err(error),
@@ -81,7 +82,7 @@ fn read(handle: &Handle, number: u64, mut input: impl BufRead) -> io::Result<()>
     }
 }
 
-/// The rest of a line that is too long.
+/// Skips the rest of a line that is too long.
 fn skip(input: &mut impl BufRead) -> io::Result<()> {
     loop {
         let bytes = input.fill_buf()?;

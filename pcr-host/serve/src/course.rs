@@ -4,15 +4,15 @@ use pcr_core::{Invalid, Motion, PathRef, Phase, Point, Pose, ProfileRef, Radians
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
-/// Paths begin no further off than this, and are no longer \[m\]: coordinates of maps of the earth are in it, and what they are rounded to is
-/// less than what discs are larger by.
+/// Largest coordinate of a start, and largest length of a path \[m\]. It includes maps in coordinates of the earth, and the
+/// rounding of such numbers is less than the additional radius of the discs.
 pub const FAR: f64 = 2e7;
 
-/// A length that is no further than that from where a shape ends is there \[m\]: sums and messages round lengths. A path that turns off
-/// there is off by twice that at most, half of what discs are larger by.
+/// A length within this of the end of a shape counts as that end \[m\], because sums and messages round lengths. A path that
+/// turns off there is off by at most twice this, half the additional radius of the discs.
 pub const JOINT: f64 = 2.5e-7;
 
-/// Where a path begins.
+/// The pose at which a path begins.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Start {
@@ -24,7 +24,7 @@ pub struct Start {
     pub heading: f64,
 }
 
-/// A part of a path, in the pose in which the one before it ends.
+/// A part of a path; it begins in the pose in which the part before ends.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Shape {
@@ -57,7 +57,7 @@ impl Shape {
         }
     }
 
-    /// From its beginning to any of its places it is no further \[m\].
+    /// Bound on the distance from its start to any of its points \[m\].
     fn extent(self) -> f64 {
         match self {
             Self::Arc { radius, .. } => self.length().min(2.0 * radius),
@@ -65,7 +65,7 @@ impl Shape {
         }
     }
 
-    /// As much of it \[m\].
+    /// The shape cut to this length \[m\].
     fn of_length(self, length: f64) -> Self {
         match self {
             Self::Line { .. } => Self::Line { length },
@@ -75,7 +75,7 @@ impl Shape {
     }
 }
 
-/// From the beginning of these shapes to any of their places it is no further \[m\].
+/// Bound on the distance from the start of these shapes to any of their points \[m\].
 pub fn extent(shapes: &[Shape]) -> f64 {
     shapes.iter().map(|shape| shape.extent()).sum()
 }
@@ -87,12 +87,12 @@ pub struct Course {
     start: Start,
     shapes: Vec<Shape>,
     segments: Vec<Segment<f64>>,
-    /// Length before each shape, and that of all \[m\]: the same numbers as in the segments.
+    /// Length before each shape, and the whole length \[m\]: the same numbers as in the segments.
     offsets: Vec<f64>,
     phases: Vec<Phase<f64>>,
 }
 
-/// A course as files and messages say it.
+/// A course in files and messages.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Sketch {
@@ -115,10 +115,10 @@ impl From<Course> for Sketch {
 }
 
 impl Course {
-    /// Along these shapes; none of them is standing at the start.
+    /// A course along these shapes. Without shapes it is a robot that stands at the start.
     ///
     /// # Errors
-    /// [`Invalid`] as the paths of `pcr_core`.
+    /// [`Invalid`], as for paths of `pcr_core`.
     pub fn new(start: Start, shapes: Vec<Shape>) -> Result<Self, Invalid> {
         for (name, value) in [("x", start.x), ("y", start.y)] {
             if value.abs() > FAR {
@@ -169,7 +169,7 @@ impl Course {
         self.offsets.last().copied().unwrap_or(0.0)
     }
 
-    /// Where it begins.
+    /// Its first pose.
     pub fn start(&self) -> Start {
         self.start
     }
@@ -179,7 +179,7 @@ impl Course {
         &self.shapes
     }
 
-    /// Where a robot is after so much \[m\], limited to the path.
+    /// The pose at a length \[m\], limited to the path.
     pub fn pose(&self, length: f64) -> Start {
         // The constructor has checked them.
         let pose = PathRef::new(&self.segments).map(|path| path.pose_at(length));
@@ -187,7 +187,7 @@ impl Course {
         Start { x: pose.position.x, y: pose.position.y, heading: pose.heading.0 }
     }
 
-    /// As a disc of this radius \[m\] at 1 m/s: orders need no times.
+    /// The motion of a disc of this radius \[m\] at 1 m/s: passing orders need no times.
     ///
     /// # Errors
     /// [`Invalid`] for the radius.
@@ -195,7 +195,7 @@ impl Course {
         self.motion_by(ProfileRef::new(&self.phases)?, radius)
     }
 
-    /// As a disc that moves by a profile from the time 0 on.
+    /// The motion of a disc by a profile, from the time 0 on.
     ///
     /// # Errors
     /// [`Invalid`] for the radius, and a profile of another length.
@@ -203,17 +203,17 @@ impl Course {
         Motion::new(PathRef::new(&self.segments)?, profile, radius, 0.0)
     }
 
-    /// Where a shape ends that ends at this length but for rounding, else the length \[m\].
+    /// The end of a shape that is within rounding of this length, otherwise the length itself \[m\].
     fn joint(&self, length: f64) -> f64 {
         let off = |end: f64| (end - length).abs();
         let near = self.offsets.iter().copied().filter(|&end| off(end) <= JOINT);
         near.min_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(length)
     }
 
-    /// The part between two lengths \[m\]. Where it begins at a turn in place, that is done.
+    /// The part between two lengths \[m\]. A turn in place at its beginning is left out.
     ///
     /// # Errors
-    /// [`Invalid`] where it is no path.
+    /// [`Invalid`] if the part is no path.
     pub fn part(&self, from: f64, to: f64) -> Result<Self, Invalid> {
         let to = self.joint(to);
         let Some(first) = self.ahead(from, to) else { return Self::new(self.arrival(from)?, Vec::new()) };
@@ -227,33 +227,33 @@ impl Course {
         Self::new(self.pose(from), kept)
     }
 
-    /// This course from the part on in which `from` is, up to `to`, and then other shapes; with the length that is left out before
-    /// it \[m\].
+    /// The part from the shape on that contains `from`, up to `to`, followed by other shapes; and the length that is left out
+    /// before it \[m\].
     ///
     /// # Errors
-    /// [`Invalid`] where that is no path.
+    /// [`Invalid`] if the result is no path.
     pub fn rejoined(&self, from: f64, to: f64, shapes: &[Shape]) -> Result<(Self, f64), Invalid> {
         let to = self.joint(to);
         let first = self.ahead(from, to);
         let (start, dropped) = match first {
-            // Nothing of it is ahead: a robot that stands.
+            // The robot stands: nothing of the old path is ahead.
             None => (self.arrival(to)?, to),
             Some(first) => (self.departure(first), self.offsets[first]),
         };
         let kept = self.up_to(first.unwrap_or(self.shapes.len()), to);
         let kept = kept.chain(shapes.iter().copied()).collect();
-        // It does not grow with the turns of all missions before.
+        // Wrapped, so that headings do not grow with the turns of all missions.
         let heading = (start.heading + PI).rem_euclid(TAU) - PI;
         Ok((Self::new(Start { heading, ..start }, kept)?, dropped))
     }
 
-    /// The first shape that goes on from a length, if there is any before another length: no turn in place.
+    /// The first shape, other than a turn in place, that goes beyond `from`, if it begins before `to`.
     fn ahead(&self, from: f64, to: f64) -> Option<usize> {
         let first = (0..self.shapes.len()).find(|&k| self.offsets[k + 1] > from.max(0.0) + JOINT)?;
         (from < to && self.offsets[first] < to).then_some(first)
     }
 
-    /// In which pose a shape begins, after the turns before it.
+    /// The pose in which a shape begins, after the turns before it.
     fn departure(&self, shape: usize) -> Start {
         self.shapes.iter().take(shape).fold(self.start, |Start { x, y, heading }, shape| {
             let (chord, sweep) = match *shape {
@@ -266,16 +266,17 @@ impl Course {
         })
     }
 
-    /// How it arrives at a length \[m\]: before a turn there, but at its end.
+    /// The pose of arrival at a length \[m\]: before a turn in place there, except at the end of the course.
     ///
     /// # Errors
-    /// [`Invalid`] where that is no place.
+    /// [`Invalid`] if there is no such length.
     pub fn arrival(&self, length: f64) -> Result<Start, Invalid> {
         let before = Self::new(self.start, self.up_to(0, self.joint(length)).collect())?;
         Ok(before.pose(before.length()))
     }
 
-    /// The shapes from one on, up to a length; of turns in place those before it, and those at the end of all.
+    /// The shapes from one on, up to a length, with the turns in place before it; those at the length only at the end of the
+    /// course.
     fn up_to(&self, first: usize, to: f64) -> impl Iterator<Item = Shape> {
         (first..self.shapes.len()).filter_map(move |k| {
             let (begin, end, shape) = (self.offsets[k], self.offsets[k + 1], self.shapes[k]);

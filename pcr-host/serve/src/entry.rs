@@ -6,27 +6,27 @@ use pcr_core::Pass;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// What is drawn on the page, and nothing else: it decides nothing.
+/// The lanes that the page draws. They influence no decision.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Layout {
-    /// What it is called.
+    /// Name of the layout.
     pub name: String,
-    /// Ways of robots.
+    /// Lanes, as courses.
     pub lanes: Vec<Course>,
 }
 
-/// How a robot passes a region: `Pass`, written.
+/// How a robot passes a region: a `Pass` in the form that the journal stores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
-    /// Both stay before it.
+    /// Both robots stay before the region.
     Undecided,
     /// The robot goes first.
     First,
-    /// It waits.
+    /// The robot goes second.
     Second,
-    /// It is nothing to anybody any more.
+    /// The order no longer holds anyone.
     Over,
 }
 
@@ -52,134 +52,135 @@ impl From<Side> for Pass {
     }
 }
 
-/// An order of a robot with another one. Those of a pair are in the order of their regions.
+/// A passing order of a robot with another one. The orders of a pair are in the sequence of their regions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Kept {
-    /// The other one.
+    /// Name of the other robot.
     pub with: String,
     /// How the robot passes the region.
     pub pass: Side,
-    /// From which length of the second on it counts \[m\].
+    /// Length of the second robot from which on the order counts \[m\].
     pub since: f64,
-    /// Lengths of the robot and of the other one in the region \[m\]: another library that finds others is noticed.
+    /// Lengths of the region on the paths of the robot and of the other one \[m\]: a library that computes other regions is
+    /// detected by these.
     pub lengths: [[f64; 2]; 2],
 }
 
 /// A robot with all its orders.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Known {
-    /// What it is called.
+    /// Name of the robot.
     pub name: String,
-    /// What it can do.
+    /// Its abilities.
     pub abilities: Abilities,
-    /// The path that it has.
+    /// Its present path.
     pub course: Course,
     /// Number of the path.
     pub path: u64,
-    /// Where the path begins, on the way since the robot was added \[m\].
+    /// Where the path begins, as a length of the way since the robot was added \[m\].
     pub origin: f64,
-    /// The mission that it has got last.
+    /// Id of the mission that it got last.
     pub mission: Option<String>,
-    /// How it was asked for.
+    /// Request of that mission.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub asked: Option<Asked>,
-    /// Missions before.
+    /// Ids of earlier missions.
     pub past: Vec<String>,
-    /// Where it was at least \[m\].
+    /// Length that it has certainly reached \[m\].
     pub at: f64,
-    /// How far it may have been allowed to go \[m\].
+    /// Length up to which it may have been allowed to go \[m\].
     pub ceiling: f64,
-    /// What is wrong with it.
+    /// Its alarm, if there is one.
     pub alarm: Option<Alarm>,
-    /// A mission that waits.
+    /// Its waiting mission, if there is one.
     pub waiting: Option<Waiting>,
-    /// Its orders with all others, in place of those that it had.
+    /// Its orders with all other robots; they replace all that it had before.
     pub orders: Vec<Kept>,
-    /// What others have to remember of it.
+    /// Notes that other modules have stored about it.
     #[serde(default, skip_serializing_if = "Notes::is_empty")]
     pub notes: Notes,
 }
 
-/// A change.
+/// A change of the state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(tag = "entry", rename_all = "snake_case")]
 pub enum Entry {
-    /// Another layout.
+    /// A new layout.
     Layout(Layout),
     /// A new robot, or a robot with a new path.
     Robot(Box<Known>),
-    /// A robot is no more.
+    /// A robot was removed.
     Removed {
-        /// Which.
+        /// Name of the robot.
         robot: String,
     },
-    /// Robots that were removed had paths of numbers up to this one.
+    /// Path numbers up to this one may have been used by robots that were removed.
     Spent {
-        /// It.
+        /// The highest such number.
         path: u64,
     },
-    /// A robot may be allowed to go so far.
+    /// A robot may be allowed to go up to this length.
     Ceiling {
-        /// Which.
+        /// Name of the robot.
         robot: String,
         /// Number of its path.
         path: u64,
-        /// \[m\]
+        /// Length of the path \[m\].
         ceiling: f64,
     },
-    /// Robots were here or further on.
+    /// Lengths that robots have certainly reached.
     Places {
-        /// Which, on which path, and where \[m\].
+        /// Name of the robot, number of its path, and length \[m\].
         places: Vec<(String, u64, f64)>,
     },
-    /// A mission waits, or does no more.
+    /// A mission waits, or no longer waits.
     Waiting {
-        /// Whose.
+        /// Name of the robot.
         robot: String,
-        /// Which.
+        /// The waiting mission; `None` if there is none any more.
         waiting: Option<Waiting>,
     },
-    /// What others have to remember of a robot.
+    /// A note about a robot.
     Note {
-        /// Of which.
+        /// Name of the robot.
         robot: String,
-        /// What it is about.
+        /// Key of the note.
         key: String,
-        /// It, in place of that before.
+        /// The new value of the note.
         note: Value,
     },
-    /// More of a list that others have to remember of a robot.
+    /// More elements for a note that is a list.
     More {
-        /// Of which.
+        /// Name of the robot.
         robot: String,
-        /// What it is about.
+        /// Key of the note.
         key: String,
-        /// After what is in it.
+        /// Elements to be appended.
         more: Vec<Value>,
     },
-    /// Something is wrong with a robot, or no longer.
+    /// The alarm of a robot has begun, changed or ended.
     Alarm {
-        /// With which.
+        /// Name of the robot.
         robot: String,
-        /// What.
+        /// The alarm; `None` if it has ended.
         alarm: Option<Alarm>,
     },
 }
 
-/// Where changes are kept before anybody is told of them.
+/// Storage of changes. Changes are stored before they are sent to robots or clients.
 pub trait Keep: Send {
-    /// Keeps these changes, all or none, for good.
+    /// Stores these changes permanently, all or none.
     ///
     /// # Errors
-    /// Nothing may be told then, now or later.
+    /// The changes may not be stored. Nothing may be told then, now or later.
     fn keep(&mut self, entries: &[Entry]) -> std::io::Result<()>;
 
-    /// Whether a fresh start with everything that is so now would be shorter.
+    /// Whether a new journal with the present state alone would be shorter.
     fn is_long(&self) -> bool {
         false
     }
 
-    /// Begins again with these.
+    /// Begins a new journal with these entries.
     ///
     /// # Errors
     /// As [`Keep::keep`].
@@ -188,7 +189,7 @@ pub trait Keep: Send {
     }
 }
 
-/// Keeps nothing: for tests, and where nothing has to outlive the process.
+/// Stores nothing: for tests, and where nothing has to outlive the process.
 #[derive(Clone, Copy, Debug)]
 pub struct Nowhere;
 

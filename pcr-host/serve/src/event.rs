@@ -3,109 +3,110 @@
 use crate::robot::Alarm;
 use serde::{Deserialize, Serialize};
 
-/// News for whoever talks to robots, and for people. What is told here is in the journal already.
+/// A message to the programs that control robots, and to people. Its content is in the journal already.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum Event {
-    /// A robot may go so far. It never gets less, but with another path.
+    /// A robot may go this far. The hold never decreases while the robot keeps its path.
     Hold {
-        /// Which.
+        /// Name of the robot.
         robot: String,
         /// Number of its path.
         path: u64,
-        /// Length of the path up to which it may go, and stand there \[m\].
+        /// Length of the path up to which the robot may go, and where it may stand \[m\].
         hold: f64,
-        /// For whom it would have to wait there; none at the end of its path or where it is told more as it goes on.
+        /// Robot for which it would have to wait at the hold; `None` at the end of its path, or if it is told a further hold on
+        /// the way.
         #[serde(skip_serializing_if = "Option::is_none")]
         waits_for: Option<String>,
     },
     /// A robot has a new path.
     Admitted {
-        /// Which.
+        /// Name of the robot.
         robot: String,
-        /// Which mission.
+        /// Id of the mission.
         mission: String,
-        /// Number of the path: positions have to name it.
+        /// Number of the path: position messages have to name it.
         path: u64,
         /// Where the path begins, as a length of the way since the robot was added \[m\]: the length `l` of a path that begins at `o` is
         /// the length `l + o - origin` of this one.
         origin: f64,
         /// Length of the new path \[m\].
         length: f64,
-        /// How far the robot had been allowed to go, on the new path \[m\].
+        /// Length of the new path up to which the robot had already been allowed to go \[m\].
         hold: f64,
     },
-    /// A mission cannot be admitted yet. It is tried again; this comes when the reason has changed.
+    /// A mission cannot be admitted yet. It is tried again; this event comes again when the reason changes.
     Waiting {
-        /// Whose.
+        /// Name of the robot.
         robot: String,
-        /// Which mission.
+        /// Id of the mission.
         mission: String,
-        /// Who is in the way, if one is.
+        /// Robot that is in the way, if one is.
         #[serde(skip_serializing_if = "Option::is_none")]
         by: Option<String>,
-        /// Why.
+        /// Reason, in words.
         why: String,
     },
-    /// A mission that waited is given up.
+    /// A mission that waited has been given up.
     Dropped {
-        /// Whose.
+        /// Name of the robot.
         robot: String,
-        /// Which mission.
+        /// Id of the mission.
         mission: String,
-        /// Why.
+        /// Reason, in words.
         why: String,
     },
-    /// Nothing has been heard of a robot for long: it may be anywhere up to its hold.
+    /// No message of a robot has come for a long time: it may be anywhere up to its hold.
     Silent {
-        /// Which.
+        /// Name of the robot.
         robot: String,
-        /// For how long \[s\].
+        /// Time since its last message \[s\].
         since: f64,
     },
-    /// It is heard again.
+    /// A silent robot has sent a message again.
     Heard {
-        /// Which.
+        /// Name of the robot.
         robot: String,
     },
-    /// Somebody has something to do and gets nowhere for long, because of this robot.
+    /// A robot with a task has not advanced for a long time, because of this robot.
     Standstill {
-        /// Which.
+        /// Name of the robot that causes it.
         robot: String,
-        /// For how long it has not moved \[s\].
+        /// Time for which it has not moved \[s\].
         since: f64,
-        /// What it waits for, or that it does not go where it may.
+        /// What it waits for, or that it does not use its hold.
         why: String,
     },
-    /// Something is wrong with a robot.
+    /// A position of a robot is not where the robot may be.
     Alarm {
-        /// With which.
+        /// Name of the robot.
         robot: String,
-        /// What.
+        /// The kind of alarm.
         #[serde(flatten)]
         alarm: Alarm,
     },
-    /// It is where it may be again.
+    /// An alarm has ended: the robot is where it may be.
     Clear {
-        /// Which.
+        /// Name of the robot.
         robot: String,
     },
     /// A robot has to stop at once.
     Stop {
-        /// Which.
+        /// Name of the robot.
         robot: String,
-        /// For whom.
+        /// Robot because of which it has to stop.
         by: String,
     },
-    /// It may go on, as its hold says.
+    /// A stopped robot may go on, up to its hold.
     Go {
-        /// Which.
+        /// Name of the robot.
         robot: String,
     },
 }
 
 impl Event {
-    /// Whom it is about.
+    /// Name of the robot that the event is about.
     pub fn robot(&self) -> &str {
         match self {
             Self::Hold { robot, .. }

@@ -3,58 +3,58 @@
 use serde::Serialize;
 use std::fmt;
 
-/// Why a request is refused; nothing has changed then.
+/// The reason why a request is refused. A refused request changes nothing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "code", rename_all = "snake_case")]
 pub enum Fault {
     /// There is no robot of this name.
     NoSuchRobot,
-    /// There is one of this name already, another one, or one that has had a mission since.
+    /// There is a different robot of this name, or one that has had a mission since it was added.
     RobotExists,
-    /// The robot has a mission of this name with another path.
+    /// The robot has a mission of this id with another path.
     MissionExists,
     /// The robot has no path of this number.
     NoSuchPath {
-        /// The path that it has.
+        /// Number of its present path.
         path: u64,
     },
-    /// It has been allowed to go further than where it should turn off.
+    /// The robot has been allowed to go beyond the length at which the new path leaves.
     Released {
-        /// How far \[m\].
+        /// Its hold \[m\].
         hold: f64,
     },
     /// A path that does not begin where the one before it ends.
     Apart {
-        /// How far off \[m\].
+        /// Distance between the end and the start \[m\].
         distance: f64,
-        /// How far turned \[rad\].
+        /// Angle between the end and the start \[rad\].
         angle: f64,
     },
-    /// A value that is out of range, or a path that is none.
+    /// A value is out of range, or a path is invalid.
     Invalid {
-        /// What is wrong.
+        /// What is wrong, in words.
         why: String,
     },
-    /// What was sent is no request.
+    /// The line is not a request.
     Malformed {
-        /// What is wrong.
+        /// What is wrong, in words.
         why: String,
     },
-    /// The client does not read what is sent to it.
+    /// The client does not read the messages sent to it.
     Slow {
-        /// Bytes that wait for it.
+        /// Number of bytes that wait for it.
         #[serde(skip)]
         bytes: usize,
     },
-    /// The journal cannot be written: no right is given any more.
+    /// The journal cannot be written: no further holds are told.
     Broken {
-        /// Why.
+        /// Reason, in words.
         why: String,
     },
 }
 
 impl Fault {
-    /// Something out of range, in words.
+    /// A value out of range, described in words.
     pub fn invalid(why: impl fmt::Display) -> Self {
         Self::Invalid { why: why.to_string() }
     }

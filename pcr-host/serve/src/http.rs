@@ -13,34 +13,34 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Duration;
 
-/// A request is not longer \[bytes\].
+/// Largest length of a request \[bytes\].
 const LONGEST: usize = 8192;
 
-/// Connections at a time.
+/// Largest number of connections at a time.
 const MOST: usize = 32;
 
-/// A picture of the regions of a robot, from its fleet: drawn by whoever can.
+/// A function that draws the regions of a robot in its fleet.
 pub type Draw = fn(&[Drawn], usize) -> Result<String, String>;
 
-/// A robot as it is drawn.
+/// A robot, as it is drawn.
 #[derive(Clone, Debug)]
 pub struct Drawn {
-    /// What it is called.
+    /// Name of the robot.
     pub name: String,
-    /// What it can do.
+    /// Its abilities.
     pub abilities: crate::robot::Abilities,
-    /// What is left of its path.
+    /// The rest of its path.
     pub course: crate::course::Course,
 }
 
-/// What is served.
+/// The content that is served.
 #[derive(Clone, Debug)]
 pub struct Site {
     /// The page.
     pub page: String,
-    /// The pictures.
+    /// The function that draws pictures, if there is one.
     pub draw: Option<Draw>,
-    /// Names under which it may be asked for: a page of somebody else whose name leads here gets nothing.
+    /// Accepted host names: a foreign page whose host name points here gets no answer.
     pub hosts: Vec<String>,
 }
 
@@ -53,10 +53,10 @@ pub fn listen(handle: &Handle, listener: &TcpListener, site: Site) {
         }
         let (handle, site) = (handle.clone(), site.clone());
         let place = Place::taken(&open);
-        // Whoever no thread is left for gets no answer.
+        // If no thread can be started, the client gets no answer.
         let _ = thread::Builder::new().name("request".into()).spawn(move || {
             let _place = place;
-            // Whoever has gone is not told.
+            // An error means that the client has gone.
             let _ = converse(&handle, &site, stream);
         });
     }
@@ -107,7 +107,7 @@ pub fn answer(handle: &Handle, site: &Site, request: &[u8]) -> (&'static str, &'
     let ended = || plain("503 Service Unavailable", "the supervisor has ended");
     match path {
         "/" => ("200 OK", "text/html", site.page.clone()),
-        // Browsers ask for it with every page.
+        // Browsers request it with every page.
         "/favicon.ico" => ("204 No Content", "text/plain", String::new()),
         "/metrics" => match handle.ask(|supervisor, board, _| metrics::text(supervisor, &board.latency)) {
             Some(text) => ("200 OK", "text/plain; version=0.0.4", text),
@@ -133,7 +133,7 @@ pub fn answer(handle: &Handle, site: &Site, request: &[u8]) -> (&'static str, &'
 fn map(handle: &Handle, site: &Site, query: &str) -> (&'static str, &'static str, String) {
     let plain = |status, text: &str| (status, "text/plain", format!("{text}\n"));
     let Some(draw) = site.draw else { return plain("404 Not Found", "there are no pictures") };
-    // What else is asked, as when, keeps browsers from showing an old one.
+    // Other parameters, such as a time, are ignored; pages add them to bypass the cache.
     let name = query.split('&').find_map(|part| part.strip_prefix("robot=")).map(decoded);
     let Some(name) = name else { return plain("400 Bad Request", "robot=NAME") };
     let fleet = handle.ask(move |supervisor, _, _| {
@@ -151,7 +151,7 @@ fn map(handle: &Handle, site: &Site, query: &str) -> (&'static str, &'static str
     }
 }
 
-/// What `%41` and `+` stand for.
+/// Decodes `%41` and `+`.
 fn decoded(text: &str) -> String {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();

@@ -16,57 +16,58 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// What a journal begins with: what it is, and the version of its frames and entries.
+/// First bytes of a journal: its kind, and the version of its frames and entries.
 pub const HEADER: &[u8; 16] = b"pcr-journal\0\x03\0\0\0";
 
-/// Length, checksum of the frame before, checksum of these two, and of all.
+/// Size of a frame's head: length, checksum of the frame before, checksum of these two, and checksum of the whole frame.
 const FRAME: usize = 16;
 
-/// The part of that which is checked before the length is believed.
+/// Size of the part of the head that is checked before the length is used.
 const BEGIN: usize = 12;
 
-/// Frames are no longer than this \[bytes\].
+/// Largest size of a frame \[bytes\].
 const LONGEST: usize = 1 << 28;
 
-/// A journal that is longer than this, and than so many times what it was at the start, is begun anew \[bytes\].
+/// A new journal is begun when the file is larger than the first number \[bytes\], and larger than the second number times its
+/// size at the start.
 const LONG: (u64, u64) = (16 << 20, 8);
 
-/// The file becomes longer by so many zeros at a time \[bytes\].
+/// Zeros by which the file is extended at a time \[bytes\].
 const ROOM: u64 = 1 << 18;
 
-/// What was found in a journal.
+/// The content of a journal.
 #[derive(Debug)]
 pub struct Found {
     /// The entries, oldest first.
     pub entries: Vec<Entry>,
-    /// Bytes of a last frame that is not complete, and is left out.
+    /// Size of an incomplete last frame, which is left out \[bytes\].
     pub torn: u64,
 }
 
-/// An open journal: nobody else can open it.
+/// An open journal; no other process can open it.
 #[derive(Debug)]
 pub struct Journal {
     folder: PathBuf,
     file: File,
-    /// Locked as long as it is open.
+    /// Locks the folder as long as the journal is open.
     _lock: File,
-    /// Where its frames end, and did after the last start \[bytes\].
+    /// End of its frames, now and at the last start \[bytes\].
     len: u64,
     first: u64,
     /// Checksum of the last frame.
     sum: u32,
-    /// Where its zeros end \[bytes\].
+    /// End of its zeros \[bytes\].
     end: u64,
-    /// A write failed: what is on the disc is not known.
+    /// Whether a write failed: the content of the disc is then unknown.
     failed: bool,
 }
 
 impl Journal {
-    /// Opens the journal in a folder, or begins one there.
+    /// Opens the journal in a folder, or creates one there.
     ///
     /// # Errors
-    /// [`ErrorKind::WouldBlock`] where another process has it open, [`ErrorKind::InvalidData`] where it is damaged or that of another
-    /// version, and what else is wrong with files.
+    /// [`ErrorKind::WouldBlock`] if another process has it open, [`ErrorKind::InvalidData`] if it is damaged or of another
+    /// version, and other errors of files.
     pub fn open(folder: &Path) -> io::Result<(Self, Found)> {
         fs::create_dir_all(folder).map_err(of(folder))?;
         let lock = folder.join("lock");
@@ -86,14 +87,14 @@ impl Journal {
             read(&bytes).map_err(|why| io::Error::new(ErrorKind::InvalidData, why))?;
         let torn = bytes[len..].iter().rposition(|byte| *byte != 0).map_or(0, |last| last as u64 + 1);
         let len = len as u64;
-        // Nothing of an incomplete frame is left where others will be.
+        // The bytes of an incomplete frame are removed, because the next frame begins there.
         file.set_len(len).and_then(|()| file.sync_all()).map_err(of(&path))?;
         file.seek(SeekFrom::Start(len))?;
         let own = Self { folder: folder.into(), file, _lock: lock, len, first: len, sum, end: len, failed: false };
         Ok((own, Found { entries, torn }))
     }
 
-    /// Adds a frame, and returns when it is on the disc; any part of it may be there on an error.
+    /// Adds a frame, and returns when it is on the disc. After an error any part of it may be there.
     fn add(&mut self, frame: &[u8]) -> io::Result<()> {
         let len = self.len + frame.len() as u64;
         if len > self.end {
@@ -149,7 +150,7 @@ fn of(path: &Path) -> impl Fn(io::Error) -> io::Error {
     move |error| io::Error::new(error.kind(), format!("{}: {error}", path.display()))
 }
 
-/// Puts a journal of these bytes in the place of the one that is there, all or nothing.
+/// Replaces the journal by one with these bytes, atomically.
 fn written(folder: &Path, bytes: &[u8]) -> io::Result<()> {
     let (new, path) = (folder.join("journal.new"), folder.join("journal"));
     let create = || {
@@ -159,14 +160,14 @@ fn written(folder: &Path, bytes: &[u8]) -> io::Result<()> {
     };
     create().map_err(of(&new))?;
     fs::rename(&new, &path).map_err(of(&path))?;
-    // The name is on the disc when the folder is.
+    // The new name is on the disc when the folder is.
     File::open(folder).and_then(|folder| folder.sync_all()).map_err(of(folder))
 }
 
-/// What the first frame has instead of the checksum of one before.
+/// In the first frame, stands for the checksum of a frame before.
 pub const FIRST: u32 = 0;
 
-/// The bytes of a batch of entries after a frame of this checksum, and the checksum of theirs.
+/// A frame with a batch of entries, after a frame with the checksum `before`; and the checksum of the new frame.
 ///
 /// # Errors
 /// [`ErrorKind::InvalidInput`] for a batch that is too long.
@@ -184,7 +185,7 @@ pub fn frame(entries: &[Entry], before: u32) -> io::Result<(Vec<u8>, u32)> {
     Ok((frame, sum))
 }
 
-/// The checksum of a frame, by what is before it in the frame and by its entries.
+/// The checksum of a frame, from its head and its entries.
 fn sum(begin: &[u8], text: &[u8]) -> u32 {
     let mut sum = crc32fast::Hasher::new();
     sum.update(begin);
@@ -192,12 +193,12 @@ fn sum(begin: &[u8], text: &[u8]) -> u32 {
     sum.finalize()
 }
 
-/// What is in a journal.
+/// The parsed content of a journal.
 #[derive(Debug)]
 pub struct Frames {
     /// The entries, oldest first.
     pub entries: Vec<Entry>,
-    /// Where the last whole frame ends.
+    /// End of the last complete frame.
     pub end: usize,
     /// Its checksum.
     pub sum: u32,
@@ -206,7 +207,7 @@ pub struct Frames {
 /// Reads the bytes of a journal.
 ///
 /// # Errors
-/// What is wrong, in words.
+/// The damage, in words.
 pub fn read(bytes: &[u8]) -> Result<Frames, String> {
     let (header, version) = HEADER.split_at(12);
     match bytes.get(..HEADER.len()).map(|begin| begin.split_at(12)) {
@@ -232,8 +233,8 @@ pub fn read(bytes: &[u8]) -> Result<Frames, String> {
                 read.end += FRAME + text.len();
                 read.sum = sum;
             }
-            // The next frame is begun when this one is on the disc. (None begins inside of another one: the fourth byte of a length is
-            // no character of JSON.)
+            // A frame is begun only after the one before it is on the disc, so a frame after an incomplete one is damage. (No
+            // frame begins inside another one: the fourth byte of a length is no character of JSON.)
             Err(why) if (1..rest.len()).any(|later| text(&rest[later..]).is_ok()) => return Err(damage(why)),
             Err(why) if !is_torn(rest, read.end) => return Err(damage(why)),
             Err(_) => break,
@@ -246,12 +247,12 @@ fn word(bytes: &[u8], at: usize) -> Option<u32> {
     bytes.get(at..at + 4).and_then(|word| word.try_into().ok()).map(u32::from_le_bytes)
 }
 
-/// The length of the frame that begins here, if that is there.
+/// The length in the head of a frame, if the head is valid.
 fn length(bytes: &[u8]) -> Option<usize> {
     (crc32fast::hash(bytes.get(..8)?) == word(bytes, 8)?).then_some(word(bytes, 0)? as usize)
 }
 
-/// What is in the frame that begins here, the checksum of the one before it and its own, if all of it is there.
+/// Entries, checksum of the frame before, and own checksum of a frame, if it is complete.
 fn text(bytes: &[u8]) -> Result<(&[u8], u32, u32), &'static str> {
     let (before, own) = word(bytes, 4).zip(word(bytes, BEGIN)).ok_or("no whole frame")?;
     let length = length(bytes).ok_or("a length that is none")?;
@@ -262,14 +263,14 @@ fn text(bytes: &[u8]) -> Result<(&[u8], u32, u32), &'static str> {
     }
 }
 
-/// Whether the frame that begins here, at this byte of the file, has never come to the disc as a whole.
+/// Whether this frame, at this byte of the file, was never written completely.
 fn is_torn(bytes: &[u8], at: usize) -> bool {
-    /// What a disc writes as a whole \[bytes\].
+    /// Size that a disc writes atomically \[bytes\].
     const SECTOR: usize = 512;
     let is_missing = |part: &[u8]| part.iter().all(|byte| *byte == 0);
     match length(bytes) {
         Some(length) => bytes.get(FRAME..FRAME + length).is_none_or(|text| text.contains(&0)),
-        // Nothing of it but its beginning, or a sector is missing.
+        // Only its beginning was written, or a sector is missing.
         None => {
             let (_, after) = bytes.split_at(FRAME.min(bytes.len()));
             let (head, next) = bytes.split_at((SECTOR - at % SECTOR).min(BEGIN).min(bytes.len()));

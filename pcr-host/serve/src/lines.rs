@@ -18,27 +18,27 @@ pub const VERSION: u64 = 1;
 /// Longer lines are refused \[bytes\].
 pub const LONGEST: usize = 1 << 20;
 
-/// What is asked for. To ask twice for the same changes nothing.
+/// A request. Repeating a request changes nothing.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "verb", rename_all = "snake_case")]
 enum Verb {
-    /// What is drawn.
+    /// What the page draws.
     Layout(Layout),
-    /// A robot that stands.
+    /// A new robot, which stands.
     Add(Added),
-    /// Another path from a length of the present one on.
+    /// A path that leaves the present one at a length.
     Replace(Proposal),
-    /// A path from the end of the present one on.
+    /// A path that begins at the end of the present one.
     Mission(Proposal),
-    /// A robot is not there any more.
+    /// A robot is removed.
     Remove(Named),
-    /// Where a robot is.
+    /// The position of a robot.
     Position(Report),
-    /// A robot is not on its path.
+    /// A robot is off its path.
     Off(Off),
-    /// What is so.
+    /// A question about the state.
     Query(Question),
-    /// Events are sent from now on, or no longer.
+    /// Whether the client wants events.
     Watch(Watch),
 }
 
@@ -62,7 +62,7 @@ struct Off {
     robot: String,
     x: f64,
     y: f64,
-    /// How long ago \[s\].
+    /// Age of the message \[s\].
     #[serde(default)]
     age: f64,
 }
@@ -78,16 +78,16 @@ fn yes() -> bool {
     true
 }
 
-/// What became of a line.
+/// The result of a line.
 #[derive(Clone, Debug)]
 pub struct Reply {
-    /// The answer; it may be sent when the supervisor has settled.
+    /// The answer. It may be sent after the next [`Supervisor::settle`].
     pub answer: Value,
-    /// Whether whoever sent the line wants events from now on; none: as before.
+    /// Whether the client wants events from now on; `None`: no change.
     pub watches: Option<bool>,
 }
 
-/// Does what a line asks for. It came at a time, from which ages count, and may have waited since \[s\].
+/// Carries out the request of a line. Ages count from the time `came` \[s\]; the line may have waited since.
 pub fn handle(supervisor: &mut Supervisor, line: &[u8], came: f64, now: f64) -> Reply {
     let (id, verb) = read(line);
     let mut watches = None;
@@ -116,17 +116,17 @@ pub fn handle(supervisor: &mut Supervisor, line: &[u8], came: f64, now: f64) -> 
     Reply { answer: answer(id, done), watches }
 }
 
-/// The answer to a line that is longer than [`LONGEST`].
+/// The answer to a line longer than [`LONGEST`].
 pub fn too_long() -> Value {
     refusal(&Fault::Malformed { why: format!("a line is {LONGEST} bytes long at most") })
 }
 
-/// A line to a client that asks for nothing in particular.
+/// An error line that answers no particular request.
 pub fn refusal(fault: &Fault) -> Value {
     answer(Value::Null, Err(fault.clone()))
 }
 
-/// An answer that the journal could not keep: nothing of it is so.
+/// Replaces an answer whose changes could not be stored in the journal.
 pub fn withdrawn(answer: &Value, fault: &Fault) -> Value {
     self::answer(answer.get("id").cloned().unwrap_or(Value::Null), Err(fault.clone()))
 }
@@ -154,7 +154,7 @@ fn answer(id: Value, done: Result<Value, Fault>) -> Value {
     }
 }
 
-/// The `id` of a line, if it can be told, and what it asks for.
+/// The `id` of a line, if it can be read, and its request.
 fn read(line: &[u8]) -> (Value, Result<Verb, Fault>) {
     let malformed = |why: String| Fault::Malformed { why };
     let mut object = match serde_json::from_slice(line) {

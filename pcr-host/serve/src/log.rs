@@ -5,16 +5,16 @@ use std::fmt::Display;
 use std::io::Write;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// How important it is.
+/// The importance of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// Every hold.
+    /// Holds.
     Debug,
-    /// Missions, and who comes and goes.
+    /// Missions, and robots that are added or removed.
     Info,
-    /// What somebody should look at.
+    /// Something that a person should look at.
     Warn,
-    /// What ends the program, or stops robots.
+    /// An error that ends the program or stops robots.
     Error,
 }
 
@@ -39,19 +39,19 @@ impl std::str::FromStr for Level {
     }
 }
 
-/// Writes to standard error what is important enough.
+/// Writes the messages of a level or above to standard error.
 #[derive(Clone, Copy, Debug)]
 pub struct Log {
     least: Level,
 }
 
 impl Log {
-    /// From this level on.
+    /// Writes messages of this level or above.
     pub fn new(least: Level) -> Self {
         Self { least }
     }
 
-    /// A message; values are quoted as JSON.
+    /// Writes a message; values are quoted as JSON.
     pub fn write(self, level: Level, message: &str, values: &[(&str, &dyn Display)]) {
         if level < self.least {
             return;
@@ -62,11 +62,11 @@ impl Log {
             line.push_str(&format!(" {key}={:?}", value.to_string()));
         }
         line.push('\n');
-        // Nobody can be told where standard error is closed.
+        // If standard error is closed, there is no place to report it.
         let _ = std::io::stderr().lock().write_all(line.as_bytes());
     }
 
-    /// What the supervisor says.
+    /// Writes an event of the supervisor.
     pub fn event(self, event: &Event) {
         let level = match event {
             Event::Hold { .. } => Level::Debug,

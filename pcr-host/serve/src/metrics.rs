@@ -4,10 +4,10 @@ use crate::supervisor::Supervisor;
 use std::fmt::Write;
 use std::time::Duration;
 
-/// Upper ends of the classes of a latency \[s\].
+/// Upper bounds of the buckets of a latency \[s\].
 const CLASSES: [f64; 10] = [0.000_1, 0.000_25, 0.000_5, 0.001, 0.002_5, 0.005, 0.01, 0.025, 0.1, 1.0];
 
-/// Times from when a request came until its answer and all that follows from it was sent.
+/// Times from the arrival of a request until its answer and all resulting messages were sent.
 #[derive(Clone, Debug, Default)]
 pub struct Latency {
     classes: [u64; CLASSES.len()],
@@ -16,7 +16,7 @@ pub struct Latency {
 }
 
 impl Latency {
-    /// One more.
+    /// Adds a time.
     pub fn add(&mut self, time: Duration) {
         let seconds = time.as_secs_f64();
         if let Some(class) = CLASSES.iter().position(|end| seconds <= *end) {

@@ -14,14 +14,14 @@ pub const BACKLOG: usize = 8 << 20;
 /// Lines are written together up to this length \[bytes\].
 const BATCH: usize = 1 << 16;
 
-/// The end into which lines go.
+/// The end into which lines are written.
 #[derive(Debug)]
 pub struct Outbox {
     sender: Sender<String>,
     shared: Arc<Shared>,
 }
 
-/// The end from which they come.
+/// The end from which lines are read.
 #[derive(Debug)]
 pub struct Lines {
     receiver: Receiver<String>,
@@ -30,22 +30,22 @@ pub struct Lines {
 
 #[derive(Debug, Default)]
 struct Shared {
-    /// Bytes that wait.
+    /// Number of bytes that wait.
     bytes: AtomicUsize,
     /// No more lines will come.
     is_closed: AtomicBool,
 }
 
-/// Why a client gets no more lines.
+/// The reason why a client gets no more lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lost {
-    /// It is not there any more.
+    /// The client has disconnected.
     Gone,
-    /// It does not read what is sent to it.
+    /// The client does not read the lines sent to it.
     Slow,
 }
 
-/// Both ends.
+/// Creates both ends.
 pub fn outbox() -> (Outbox, Lines) {
     let (sender, receiver) = channel();
     let shared = Arc::<Shared>::default();
@@ -53,14 +53,14 @@ pub fn outbox() -> (Outbox, Lines) {
 }
 
 impl Outbox {
-    /// Sends a line. One that is longer than what may wait is sent if nothing else waits.
+    /// Sends a line. A line that is longer than the backlog is sent if nothing else waits.
     ///
     /// # Errors
     /// [`Lost`]: nothing more may be sent to this client.
     pub fn send(&self, line: String) -> Result<(), Lost> {
         let waiting = self.shared.bytes.load(Ordering::Relaxed);
         if waiting > 0 && waiting.saturating_add(line.len()) > BACKLOG {
-            // It may be gone as well.
+            // This may fail if the client has disconnected as well.
             let _ = self.put(format!("{}\n", lines::refusal(&Fault::Slow { bytes: waiting })));
             return Err(Lost::Slow);
         }
@@ -84,7 +84,7 @@ impl Lines {
     /// The next line; waits for it.
     ///
     /// # Errors
-    /// No more will come.
+    /// No more lines will come.
     pub fn recv(&self) -> Result<String, RecvError> {
         self.receiver.recv().inspect(|line| self.taken(line))
     }
@@ -92,7 +92,7 @@ impl Lines {
     /// The next line, if it comes within a time.
     ///
     /// # Errors
-    /// None has come.
+    /// No line has come.
     pub fn recv_timeout(&self, time: Duration) -> Result<String, RecvTimeoutError> {
         self.receiver.recv_timeout(time).inspect(|line| self.taken(line))
     }
@@ -100,12 +100,12 @@ impl Lines {
     /// The next line, if it is there.
     ///
     /// # Errors
-    /// None is there.
+    /// There is no line.
     pub fn try_recv(&self) -> Result<String, TryRecvError> {
         self.receiver.try_recv().inspect(|line| self.taken(line))
     }
 
-    /// The next lines, to be written together; waits for the first. None: no more will come.
+    /// The next lines, to be written together; waits for the first. `None`: no more will come.
     pub fn batch(&self) -> Option<String> {
         let mut text = self.recv().ok()?;
         while text.len() < BATCH
@@ -116,7 +116,7 @@ impl Lines {
         Some(text)
     }
 
-    /// Whether no more will come than what waits.
+    /// Whether no lines will come beyond those that wait.
     pub fn is_closed(&self) -> bool {
         self.shared.is_closed.load(Ordering::Relaxed)
     }

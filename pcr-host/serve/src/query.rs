@@ -9,42 +9,42 @@ use pcr_core::{Encounter, Interval, Limits, Motion, Profile, safe_intervals};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// A question. Those without fields have braces, or others' fields would be taken with them.
+/// A question. Variants without fields have braces, because serde would otherwise accept unknown fields with them.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Question {
-    /// Everything that is known of all robots, or of one.
+    /// The state of all robots, or of one.
     Robots {
-        /// Which.
+        /// Name of the robot; `None`: all robots.
         #[serde(default)]
         robot: Option<String>,
     },
-    /// How far everybody may go, and who must not go on for the time being.
+    /// The holds of all robots, and which of them must not go on for the time being.
     Holds {},
-    /// The regions of a robot with others, and who goes first.
+    /// The regions of a robot with others, and their passing orders.
     Regions {
-        /// Which.
+        /// Name of the robot.
         robot: String,
     },
-    /// Whom a robot would touch if everybody set off now and waited for nobody: what the orders prevent.
+    /// The robots that a robot would touch if all set off now and none waited: what the orders prevent.
     Conflicts {
-        /// Which.
+        /// Name of the robot.
         robot: String,
     },
-    /// When a part of a robot's path is free, if the others set off now and waited for nobody.
+    /// Times at which a part of a robot's path is free, if the others set off now and did not wait.
     Safe {
-        /// Which.
+        /// Name of the robot.
         robot: String,
-        /// The part \[m\].
+        /// Lengths of the part \[m\].
         length: [f64; 2],
-        /// Until when \[s\] from now.
+        /// End of the time to look at, from now \[s\].
         until: f64,
     },
-    /// What has happened since the start.
+    /// Numbers of events since the start.
     Counts {},
 }
 
-/// A robot as it is told.
+/// The state of a robot, as it is sent in answers.
 #[derive(Clone, Debug, Serialize)]
 pub struct View<'a> {
     robot: &'a str,
@@ -54,7 +54,7 @@ pub struct View<'a> {
     radius: f64,
     at: [f64; 2],
     hold: f64,
-    /// Where it would like to be allowed to.
+    /// Length up to which it would need to go without braking \[m\].
     wanted: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     waits_for: Option<&'a str>,
@@ -72,7 +72,7 @@ pub struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// One robot of a fleet at a time \[s\].
+    /// The state of one robot of a fleet at a time \[s\].
     pub fn of(supervisor: &'a Supervisor, robot: &'a Robot, now: f64) -> Self {
         let extent = robot.extent(now);
         Self {
@@ -116,7 +116,7 @@ pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<
                 let waits_for = supervisor.waits_for(robot);
                 let mut told =
                     json!({ "robot": robot.name, "path": robot.path, "hold": robot.granted, "waits_for": waits_for });
-                // Whoever asks for this alone would otherwise go on to its hold.
+                // A client that only asks for holds would otherwise let a stopped robot go on.
                 if let Some(by) = &robot.stopped {
                     told["stopped_for"] = json!(by);
                 }
@@ -177,7 +177,7 @@ pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<
     }
 }
 
-/// What is left of a path, at full speed from rest.
+/// The rest of a path, at full speed from rest.
 struct Way {
     course: Course,
     profile: Profile<f64, 3>,

@@ -6,19 +6,20 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// Discs are larger by this than they are \[m\]: what rounding does to paths that are cut and joined, and to lengths in messages.
+/// Additional radius of all discs \[m\]: for the rounding of paths that are cut and joined, and of lengths in messages.
 pub const ROOM: f64 = 1e-6;
 
-/// A robot that is further back than it has been by so much more than it may be off, there and here, is not where it was \[m\].
+/// If a robot is behind a length that it had passed by more than this plus twice its margin, it counts as having gone back
+/// \[m\].
 pub const BACK: f64 = 0.05;
 
-/// What a robot can do.
+/// The abilities of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Abilities {
-    /// Radius of the disc that it fits in, turning in place, too \[m\].
+    /// Radius of the disc that contains it, also while it turns in place \[m\].
     pub radius: f64,
-    /// To be kept around it, for what it may be off its path \[m\].
+    /// Distance by which it may be off its path; kept free around it \[m\].
     #[serde(default)]
     pub margin: f64,
     /// Largest speed \[m/s\].
@@ -29,7 +30,7 @@ pub struct Abilities {
 
 impl Abilities {
     /// # Errors
-    /// What is wrong, in words.
+    /// The first value that is out of range, in words.
     pub fn checked(self) -> Result<Self, String> {
         for (name, value) in [("radius", self.radius), ("speed", self.speed), ("acceleration", self.acceleration)] {
             if !(1e-4..=1e4).contains(&value) {
@@ -42,81 +43,82 @@ impl Abilities {
         Ok(self)
     }
 
-    /// Radius that orders are made for \[m\].
+    /// Radius with margin, for which orders are made \[m\].
     pub fn reach(&self) -> f64 {
         self.radius + self.margin + ROOM
     }
 
-    /// The way that it needs to stop from its largest speed \[m\].
+    /// Distance in which it stops from its largest speed \[m\].
     pub fn braking(&self) -> f64 {
         self.speed * self.speed / (2.0 * self.acceleration)
     }
 }
 
-/// Why a robot is not allowed to go on, whatever its orders say.
+/// The reason why a robot may not go on, whatever its orders say.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "why")]
 pub enum Alarm {
-    /// It is beyond what it was allowed to.
+    /// It is beyond its hold.
     Beyond {
-        /// How far it was allowed to go \[m\].
+        /// Its hold \[m\].
         told: f64,
-        /// Where it says it may be \[m\].
+        /// Upper end of the reported position \[m\].
         at: f64,
     },
-    /// It is further back than it has been: others may have the right to go there.
+    /// It is behind a length that it had passed: others may be allowed to go there.
     Back {
-        /// How far it had come \[m\].
+        /// Length that it had passed \[m\].
         passed: f64,
-        /// Between which lengths of its path it is \[m\].
+        /// Lengths of its path between which it is now \[m\].
         between: [f64; 2],
     },
     /// It is not on its path.
     Off {
-        /// Where it is \[m\].
+        /// Position \[m\].
         x: f64,
         /// \[m\]
         y: f64,
     },
 }
 
-/// A mission that waits until it can be admitted.
+/// A mission that waits to be admitted.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Waiting {
-    /// What the fleet manager calls it.
+    /// Id that the fleet manager gave it.
     pub mission: String,
-    /// From which length of the present path on it goes otherwise \[m\].
+    /// Length of the present path at which the mission leaves it \[m\].
     pub after: f64,
-    /// Number of that path.
+    /// Number of the present path.
     pub path: u64,
-    /// The shapes from there on.
+    /// Shapes of the mission's path.
     pub shapes: Vec<Shape>,
-    /// Its turn: lower ones are tried first.
+    /// Number in the queue: missions with lower numbers are tried first.
     pub turn: u64,
 }
 
-/// How a mission was asked for: who asks again under its name has to ask for the same.
+/// The request of a mission. A second request under the same id has to be equal to it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Asked {
-    /// At which length of the path before it begins \[m\].
+    /// Length of the path before at which the mission begins \[m\].
     pub after: f64,
-    /// How many shapes at the end of the path are its own.
+    /// Number of shapes at the end of the path that belong to the mission.
     pub shapes: usize,
 }
 
-/// How far the orders of a robot allow it to go, as the others were when this was computed.
+/// How far the passing orders allow a robot to go, for the positions of the others at the time of the computation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wait {
-    /// So far.
+    /// The hold.
     pub hold: Hold<f64>,
-    /// The number of the robot that it waits for there, and where that one was \[m\]: when it has gone on there is more.
+    /// The robot that it waits for, by its index, and the length of that robot \[m\]: when that one has gone on, the hold may
+    /// be further.
     pub by: Option<(usize, f64)>,
 }
 
-/// What others have to remember of a robot, by what it is about.
+/// Notes that other modules have stored about a robot, by key.
 pub type Notes = BTreeMap<String, Value>;
 
-/// Adds to a list among them, which begins empty; false: what is there is no list.
+/// Appends to a note that is a list; a missing note is an empty list. `false` if the note is not a list.
 pub fn remember(notes: &mut Notes, key: &str, more: &[Value]) -> bool {
     let Value::Array(list) = notes.entry(key.into()).or_insert_with(|| Value::Array(Vec::new())) else {
         return false;
@@ -125,62 +127,63 @@ pub fn remember(notes: &mut Notes, key: &str, more: &[Value]) -> bool {
     true
 }
 
-/// A robot as the supervisor knows it.
+/// A robot in the supervisor.
 #[derive(Clone, Debug)]
 pub struct Robot {
-    /// What it is called.
+    /// Name of the robot.
     pub name: String,
-    /// What it can do.
+    /// Its abilities.
     pub abilities: Abilities,
-    /// The path that it has.
+    /// Its present path.
     pub course: Course,
-    /// Its number: 1 for that with which it was added, or more if others of any name were removed before; and one more each time.
+    /// Number of its path. The first one is 1 above the highest number of any removed robot; each new path has the next number.
     pub path: u64,
-    /// Where the path begins, as a length of the way since the robot was added \[m\]: what was left out of paths before.
+    /// Where the path begins, as a length of the way since the robot was added \[m\]: the sum of what was cut off from earlier
+    /// paths.
     pub origin: f64,
-    /// The mission that it has got last.
+    /// Id of the mission that it got last.
     pub mission: Option<String>,
-    /// How that was asked for; none: not known.
+    /// Request of that mission; `None` if it is not known.
     pub asked: Option<Asked>,
-    /// Missions that it had or waited for before, oldest first: who asks late for one of them again gets nothing twice.
+    /// Ids of earlier missions, oldest first: a late repetition of their requests has no effect.
     pub past: Vec<String>,
-    /// It is here or further on \[m\]; never less than before on the same path.
+    /// Length that it has certainly reached \[m\]; never decreases on the same path.
     pub at: f64,
-    /// It was here or before \[m\] at the time `heard`.
+    /// Length that it had certainly not passed at the time `heard` \[m\].
     pub up_to: f64,
-    /// Time to which `up_to` belongs \[s\]; none since the start.
+    /// Time to which `up_to` belongs \[s\]; `None` before the first position since the start.
     pub heard: Option<f64>,
-    /// When its last message came \[s\].
+    /// Time of its last message \[s\].
     pub alive: Option<f64>,
-    /// How far it may go \[m\]: what it may be told, again and again.
+    /// Hold that it may be told now \[m\].
     pub granted: f64,
-    /// How far it may have been allowed to go \[m\]: `granted`, but after a restart, when more may have been told than is known to be
-    /// right now. It may be there, and must not be told so.
+    /// Largest hold that it may have been told \[m\]. It equals `granted`, except after a restart: then it is the hold of the
+    /// journal, which the robot may have reached, but which must not be told again before it is computed anew.
     pub told: f64,
-    /// What is in the journal of that: `told` or more.
+    /// The hold in the journal \[m\], at least `told`.
     pub ceiling: f64,
-    /// It can stop there, and not before \[m\]: less is of no use to it. Not known after a restart.
+    /// Next length at which it can stop \[m\]: a hold before that is of no use to it. 0 after a restart.
     pub next: f64,
-    /// How far its orders allow it to go; none: not known.
+    /// How far its orders allow it to go; `None` if that has to be computed.
     pub hold: Option<Wait>,
-    /// Something is wrong with it.
+    /// Its alarm, if there is one.
     pub alarm: Option<Alarm>,
-    /// Who it must stop for, as that one may be anywhere near.
+    /// The robot because of which it must stop, as that one may be anywhere near.
     pub stopped: Option<String>,
-    /// A mission that waits.
+    /// Its waiting mission, if there is one.
     pub waiting: Option<Waiting>,
-    /// Whether it has been called silent.
+    /// Whether it has been reported as silent.
     pub silent: bool,
-    /// When it was seen to go on last, or got a path \[s\].
+    /// Time at which it was last seen to advance, or got a path \[s\].
     pub moved: Option<f64>,
-    /// Whether it has been said since then that nothing goes on because of it.
+    /// Whether a standstill because of it has been reported since then.
     pub stands: bool,
-    /// What others have to remember of it, by what it is about.
+    /// Notes that other modules have stored about it, by key.
     pub notes: Notes,
 }
 
 impl Robot {
-    /// A robot that stands at the start of its path, which it has to itself as soon as the others say so.
+    /// A robot that stands at the start of its path. Other robots may still have the right to go there.
     pub fn new(name: String, abilities: Abilities, course: Course) -> Self {
         Self {
             name,
@@ -210,49 +213,49 @@ impl Robot {
         }
     }
 
-    /// How its mission was asked for: from which length of the path before on, and along which shapes; none: not known.
+    /// Request of its mission: length of the path before, and shapes; `None` if it is not known.
     pub fn asked(&self) -> Option<(f64, &[Shape])> {
         let Asked { after, shapes } = self.asked?;
         let all = self.course.shapes();
         Some((after, all.get(all.len().checked_sub(shapes)?..)?))
     }
 
-    /// Remembers a mission that is over.
+    /// Stores the id of a mission that is over.
     pub fn outlives(past: &mut Vec<String>, mission: String) {
-        /// So many are remembered.
+        /// Number of ids that are kept.
         const MOST: usize = 32;
         past.push(mission);
         let first = past.len().saturating_sub(MOST);
         past.drain(..first);
     }
 
-    /// As a disc on its path.
+    /// The motion of its disc on its path.
     ///
     /// # Errors
-    /// [`Invalid`] for a radius; robots that were added have been checked.
+    /// [`Invalid`] for a radius; it was checked when the robot was added.
     pub fn motion(&self) -> Result<Motion<'_, f64>, Invalid> {
         self.course.motion(self.abilities.reach())
     }
 
-    /// Where it is, and where it can be at rest: it may go on to what it has been told without asking again.
+    /// Its position, and where it can come to rest: it may go up to `told` without asking again.
     pub fn progress(&self) -> Progress<f64> {
         Progress { at: Interval::new(self.at, self.told), stop: self.told }
     }
 
-    /// Where it can be at a time \[m\]: the upper end grows with its speed up to what it has been told.
+    /// Where it can be at a time \[m\]: the upper end grows with its speed, up to `told`.
     pub fn extent(&self, now: f64) -> Interval<f64> {
         let grown =
             self.heard.map_or(f64::INFINITY, |heard| self.up_to + self.abilities.speed * (now - heard).max(0.0));
         Interval::new(self.at, grown.min(self.told).max(self.at))
     }
 
-    /// How far it wants to be allowed to go \[m\]: so that it need not brake for what it will be told within a time \[s\].
+    /// Hold that it needs so that it does not have to brake within `lookahead` \[m\].
     pub fn wanted(&self, lookahead: f64) -> f64 {
         let way = self.abilities.braking() + self.abilities.speed * lookahead;
         (self.up_to + way).max(self.next).min(self.course.length())
     }
 
-    /// Whether it has come to the end of its path, within a width \[m\].
+    /// Whether it has reached the end of its path, within a width \[m\].
     pub fn has_arrived(&self, width: f64) -> bool {
         self.at >= self.course.length() - width
     }

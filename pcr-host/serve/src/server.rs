@@ -14,59 +14,59 @@ use std::collections::{HashMap, VecDeque};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::time::{Duration, Instant};
 
-/// Requests that may wait.
+/// Largest number of requests that wait.
 const QUEUE: usize = 4096;
 
-/// Requests that are decided together.
+/// Largest number of requests that are decided together.
 const BATCH: usize = 256;
 
-/// Even if nothing is asked, so often \[ms\].
+/// Time after which the supervisor settles, even without a request \[ms\].
 const TICK: u64 = 50;
 
-/// What is done once all that was decided before is in the journal.
+/// An action for when all earlier decisions are in the journal.
 pub type Then = Box<dyn FnOnce() + Send>;
 
-/// A call of something that is done with the supervisor, and of what tells others of that.
+/// A call with the supervisor; it returns the action that sends its results to others.
 pub type Call = Box<dyn FnOnce(&mut Supervisor, &Board, f64) -> Option<Then> + Send>;
 
-/// Something for the thread that owns the supervisor.
+/// Input of the thread that owns the supervisor.
 pub enum Input {
-    /// A client is there, and gets its lines here.
+    /// A client has connected; its lines go to this outbox.
     Opened(u64, Outbox),
     /// A line of a client.
     Line(u64, Vec<u8>),
     /// A line of a client was too long.
     TooLong(u64),
-    /// A client is gone.
+    /// A client has disconnected.
     Closed(u64),
-    /// Something else: a page that wants to know what is so, a bridge to robots.
+    /// A call with the supervisor, such as a query of the page or a message of a vehicle.
     Call(Call),
-    /// Everything that is told goes here, too. Who reads too slowly is let go, which it sees by the end of its queue.
+    /// A subscriber of all events. If its queue is full it is dropped, and sees the end of the queue.
     Tell(SyncSender<Event>),
-    /// More of the journal is on the disc.
+    /// The journal has written more to the disc.
     Kept,
-    /// No more is to come.
+    /// The server ends.
     Stop,
 }
 
-/// A way to the thread that owns the supervisor.
+/// A sender to the thread that owns the supervisor.
 #[derive(Clone, Debug)]
 pub struct Handle {
     sender: SyncSender<(Instant, Input)>,
 }
 
 impl Handle {
-    /// Sends something; waits while there is too much. False: it has ended.
+    /// Sends an input; waits while the queue is full. `false`: the server has ended.
     pub fn send(&self, input: Input) -> bool {
         self.sender.send((Instant::now(), input)).is_ok()
     }
 
-    /// More of the journal is on the disc. Where the queue is full it is seen anyway.
+    /// Notes that the journal has written more to the disc. If the queue is full, the server looks at it anyway.
     pub fn wake(&self) {
         let _ = self.sender.try_send((Instant::now(), Input::Kept));
     }
 
-    /// Asks something and waits for the answer; none: it has ended.
+    /// Makes a call and waits for its answer; `None`: the server has ended.
     pub fn ask<T: Send + 'static>(
         &self,
         question: impl FnOnce(&mut Supervisor, &Board, f64) -> T + Send + 'static,
@@ -74,7 +74,7 @@ impl Handle {
         self.ask_then(move |supervisor, board, now| (question(supervisor, board, now), None))
     }
 
-    /// The same, and what is done once all that was decided then is in the journal, which is not waited for.
+    /// The same, with an action for when all decisions of the call are in the journal. Does not wait for the action.
     pub fn ask_then<T: Send + 'static>(
         &self,
         question: impl FnOnce(&mut Supervisor, &Board, f64) -> (T, Option<Then>) + Send + 'static,
@@ -82,7 +82,7 @@ impl Handle {
         let (sender, receiver) = sync_channel(1);
         let call: Call = Box::new(move |supervisor, board, now| {
             let (answer, then) = question(supervisor, board, now);
-            // Whoever has asked may have gone.
+            // The caller may have ended.
             let _ = sender.send(answer);
             then
         });
@@ -90,7 +90,7 @@ impl Handle {
     }
 }
 
-/// The queue to a server that is not running yet.
+/// The queue of a server that has not been started yet.
 pub fn queue() -> (Handle, Receiver<(Instant, Input)>) {
     let (sender, receiver) = sync_channel(QUEUE);
     (Handle { sender }, receiver)
@@ -101,7 +101,7 @@ struct Client {
     watches: bool,
 }
 
-/// What may be told once so many batches of the journal are on the disc.
+/// Messages that may be sent once this number of batches is on the disc.
 #[derive(Default)]
 struct Told {
     batches: u64,
@@ -113,7 +113,7 @@ struct Told {
     times: Vec<Instant>,
 }
 
-/// The others, and what they are shown.
+/// The clients, the subscribers and the published data.
 struct Desk {
     clients: HashMap<u64, Client>,
     listeners: Vec<SyncSender<Event>>,
@@ -121,7 +121,7 @@ struct Desk {
     log: Log,
 }
 
-/// Serves until it is told to stop, or the journal cannot be written. `kept` is that of the supervisor's journal.
+/// Serves until `Stop`, or until the journal cannot be written. `kept` is the progress of the supervisor's journal.
 ///
 /// # Errors
 /// [`Fault::Broken`].
@@ -148,7 +148,7 @@ pub fn serve(
         }
         let now = begin.elapsed().as_secs_f64();
         let (mut told, stops) = desk.take(supervisor, batch, begin, now);
-        // What is said from here on is in the journal, or on its way there.
+        // All that is sent from here on is in the journal, or on its way there.
         let settled = supervisor.settle(now).map(|events| told.events = events);
         told.batches = kept.asked();
         waiting.push_back(told);
@@ -173,7 +173,7 @@ pub fn serve(
 }
 
 impl Desk {
-    /// Does what is asked; what is to be said of it, and whether it is the end.
+    /// Handles an input; returns what to send, and whether the server ends.
     fn take(
         &mut self,
         supervisor: &mut Supervisor,
@@ -186,7 +186,7 @@ impl Desk {
             let time = came.saturating_duration_since(begin).as_secs_f64().min(now);
             match input {
                 Input::Opened(client, out) => drop(self.clients.insert(client, Client { out, watches: false })),
-                // What it has asked before is answered.
+                // Its earlier requests are answered.
                 Input::Closed(client) => told.closed.push(client),
                 Input::TooLong(client) => told.answers.push((client, lines::too_long())),
                 Input::Line(client, line) => {
@@ -235,7 +235,7 @@ impl Desk {
         told.times.into_iter().for_each(|came| board.latency.add(came.elapsed()));
     }
 
-    /// The journal could not be written: nothing of it is so.
+    /// After a failed write of the journal: answers errors in place of the results.
     fn withdraw(&mut self, told: Told, fault: &Fault) {
         for (client, answer) in told.answers {
             send(&mut self.clients, client, &lines::withdrawn(&answer, fault), self.log);
@@ -249,7 +249,7 @@ fn send(clients: &mut HashMap<u64, Client>, number: u64, line: &Value, log: Log)
         Ok(()) => {}
         Err(Lost::Gone) => drop(clients.remove(&number)),
         Err(Lost::Slow) => {
-            // It would miss something without knowing.
+            // A client that misses lines would not notice it.
             log.write(Level::Warn, "a client reads too slowly and is let go", &[("client", &number)]);
             clients.remove(&number);
         }

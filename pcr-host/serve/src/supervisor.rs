@@ -26,24 +26,24 @@ use std::collections::HashMap;
 /// Orders on the heap.
 pub type Table = Orders<f64, Vec<Region>, Vec<Piece<f64>>, Vec<Order<f64>>>;
 
-/// What can be set.
+/// Settings of a supervisor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// How far the lower end of a place may be behind where a robot has to stop, when it stands \[m\]. Missions are admitted if
-    /// everybody can finish in spite of that.
+    /// Distance by which the reported lower end of a position may be behind the stop at which the robot stands \[m\]. Missions are
+    /// admitted if all robots can finish in spite of it.
     pub width: f64,
-    /// Robots are told how far they may go so long before they would have to brake \[s\]. What they have been told cannot be taken
-    /// back: the longer, the less can be decided otherwise.
+    /// How long before braking a robot is told its next hold \[s\]. A hold that was told cannot be withdrawn, so a longer time leaves
+    /// fewer decisions open.
     pub lookahead: f64,
-    /// So much more than what a robot is told is written into the journal, so that not every step is \[m\]. After a restart it counts
-    /// as told.
+    /// The journal gets a hold that is further than the one told by this \[m\], so that not every hold needs a write. After a restart the
+    /// hold of the journal counts as told.
     pub spare: f64,
-    /// A robot is silent when nothing was heard of it for so long \[s\].
+    /// A robot counts as silent if no message of it came for this long \[s\].
     pub silence: f64,
-    /// Less than this is not worth a message, but up to where it has to wait \[m\].
+    /// A hold that advances by less than this \[m\] is not sent, except if it is where the robot has to wait.
     pub step: f64,
-    /// When somebody has something to do and gets nowhere for so long, it is said why \[s\].
+    /// If a robot with a task has not advanced for this long, the reason is reported \[s\].
     pub patience: f64,
 }
 
@@ -53,28 +53,28 @@ impl Default for Settings {
     }
 }
 
-/// What has happened since the start.
+/// Numbers of events since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Counts {
-    /// Messages with a position.
+    /// Number of position messages.
     pub positions: u64,
-    /// Of these, about a path that the robot does not have any more.
+    /// Number of position messages about a path that the robot no longer has.
     pub outdated: u64,
-    /// Missions asked for.
+    /// Number of missions requested.
     pub missions: u64,
-    /// Missions admitted.
+    /// Number of missions admitted.
     pub admitted: u64,
-    /// Attempts to admit one that were refused.
+    /// Number of attempts to admit a mission that were refused.
     pub refused: u64,
-    /// Missions that were given up.
+    /// Number of missions given up.
     pub dropped: u64,
-    /// Holds that were told.
+    /// Number of holds told.
     pub holds: u64,
-    /// Holds that were computed.
+    /// Number of holds computed.
     pub evaluations: u64,
-    /// Alarms.
+    /// Number of alarms.
     pub alarms: u64,
-    /// Writes of the journal.
+    /// Number of writes of the journal.
     pub writes: u64,
 }
 
@@ -87,26 +87,26 @@ pub struct Supervisor {
     orders: Table,
     reaches: Vec<Reach<f64>>,
     keeper: Box<dyn Keep>,
-    /// What has changed, not yet in the journal.
+    /// Changes that are not in the journal yet.
     entries: Vec<Entry>,
-    /// What is to be told once it is.
+    /// Events to be sent once these changes are in the journal.
     events: Vec<Event>,
-    /// Whose places have changed since they were in the journal.
+    /// For each robot whether its position has changed since it was last written to the journal.
     unsaved: Vec<bool>,
-    /// The number of the next mission that has to wait.
+    /// Number of the next mission that has to wait.
     turn: u64,
-    /// When waiting missions are tried again \[s\], how often they were, and what kept them.
+    /// For each robot with a waiting mission: when it is tried again \[s\], the number of attempts, and what kept it.
     tries: HashMap<String, admission::Try>,
-    /// How often a robot was added or removed.
+    /// Number of times a robot was added or removed.
     census: u64,
-    /// The highest number of a path of a robot that was removed: one that comes has a higher one, or late messages of an earlier one of its
-    /// name would be taken for its own.
+    /// Highest path number of any removed robot. New robots get higher numbers, so late messages of a removed robot with the same name are
+    /// recognised.
     spent: u64,
-    /// The first time that it was told \[s\].
+    /// The first time that the supervisor was given \[s\].
     begun: Option<f64>,
-    /// When it was looked last who gets nowhere \[s\].
+    /// Time of the last search for robots that do not advance \[s\].
     looked: f64,
-    /// Whether somebody may be in the way of somebody who has been allowed to go there.
+    /// Whether a robot may be in the way of another one that was allowed to go there.
     hazards: bool,
     counts: Counts,
     broken: Option<String>,
@@ -119,7 +119,7 @@ impl std::fmt::Debug for Supervisor {
 }
 
 impl Supervisor {
-    /// Of nobody.
+    /// A supervisor without robots.
     pub fn new(settings: Settings, keeper: Box<dyn Keep>) -> Self {
         Self {
             settings,
@@ -144,17 +144,17 @@ impl Supervisor {
         }
     }
 
-    /// What was set.
+    /// The settings.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// What is drawn.
+    /// The lanes that the page draws.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
 
-    /// All robots, in the order in which they are numbered by the orders.
+    /// All robots, in the order of their indices in the table of orders.
     pub fn robots(&self) -> &[Robot] {
         &self.robots
     }
@@ -167,12 +167,12 @@ impl Supervisor {
         self.place(name).map(|place| &self.robots[place])
     }
 
-    /// Another number whenever a robot was added or removed.
+    /// A number that changes whenever a robot is added or removed.
     pub fn census(&self) -> u64 {
         self.census
     }
 
-    /// For whom a robot has to wait where it may go to, if it is not the end of its path.
+    /// The robot for which a robot has to wait at its hold; `None` if the hold is the end of its path.
     pub fn waits_for(&self, robot: &Robot) -> Option<&str> {
         let wait = robot.hold?;
         let end = robot.course.length();
@@ -181,22 +181,22 @@ impl Supervisor {
         self.robots.get(by).map(|by| by.name.as_str())
     }
 
-    /// The orders, of [`Supervisor::fleet`].
+    /// The passing orders of [`Supervisor::fleet`].
     pub fn orders(&self) -> &Table {
         &self.orders
     }
 
-    /// The robots as the orders take them.
+    /// The motions of the robots, as the table of orders has them.
     pub fn fleet(&self) -> Vec<Motion<'_, f64>> {
         fleet(&self.robots)
     }
 
-    /// What has happened.
+    /// Numbers of events since the start.
     pub fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// Takes another layout, for the page.
+    /// Takes a new layout for the page.
     ///
     /// # Errors
     /// [`Fault::Broken`].
@@ -207,10 +207,10 @@ impl Supervisor {
         Ok(())
     }
 
-    /// Adds a robot that stands. Whoever has not yet been allowed to pass there waits for it until it has a mission.
+    /// Adds a robot that stands. Robots that have not yet been allowed to pass there wait for it until it has a mission.
     ///
     /// # Errors
-    /// [`Fault::RobotExists`], [`Fault::Invalid`]. To add the same one twice is no error before it has a mission.
+    /// [`Fault::RobotExists`], [`Fault::Invalid`]. Adding the same robot twice is no error before it has a mission.
     pub fn add(&mut self, name: &str, abilities: Abilities, start: Start) -> Result<(), Fault> {
         self.works()?;
         if let Ok(robot) = self.robot(name) {
@@ -224,11 +224,11 @@ impl Supervisor {
         self.insert(standing(name, abilities, start)?)
     }
 
-    /// A robot stands somewhere else than on its path, without a mission, as somebody has seen: all that it had been allowed to is void. The
-    /// missions that it had are still known as such.
+    /// Moves a robot to a place off its path, without a mission, after it was seen there: all its rights are void. The ids of
+    /// its missions stay known.
     ///
     /// # Errors
-    /// [`Fault::NoSuchRobot`], [`Fault::Invalid`], and nothing has changed.
+    /// [`Fault::NoSuchRobot`], [`Fault::Invalid`]; nothing has changed then.
     pub fn reseat(&mut self, name: &str, start: Start) -> Result<(), Fault> {
         self.works()?;
         let robot = &self.robots[self.place(name)?];
@@ -272,7 +272,7 @@ impl Supervisor {
         }
     }
 
-    /// Removes a robot: somebody has seen that it is not there any more. To remove it twice is no error.
+    /// Removes a robot, which has to be physically gone. Returns `false` if there is no robot of this name.
     ///
     /// # Errors
     /// [`Fault::Broken`]; [`Fault::Invalid`] if the table of orders is not that of the robots.
@@ -292,7 +292,7 @@ impl Supervisor {
         Ok(true)
     }
 
-    /// Remembers something about a robot, with its journal and as long as the robot is there.
+    /// Stores a note about a robot, also in the journal, until the robot is removed.
     ///
     /// # Errors
     /// [`Fault::NoSuchRobot`], [`Fault::Broken`].
@@ -304,11 +304,10 @@ impl Supervisor {
         Ok(())
     }
 
-    /// Adds to a list that is remembered about a robot, and begins it if there is none. The journal grows by what is added, and not by
-    /// the whole list.
+    /// Appends to a note that is a list; a missing note is an empty list. The journal grows by the new elements only.
     ///
     /// # Errors
-    /// As [`Supervisor::note`], and [`Fault::Invalid`] if what is remembered under that name is no list.
+    /// As [`Supervisor::note`], and [`Fault::Invalid`] if the note is not a list.
     pub fn note_more(&mut self, name: &str, key: &str, more: Vec<serde_json::Value>) -> Result<(), Fault> {
         self.works()?;
         let place = self.place(name)?;
@@ -336,13 +335,13 @@ impl Supervisor {
     }
 
     fn tolerances(&self) -> Tolerances<f64> {
-        /// Less way than this is no progress \[m\].
+        /// Smallest advance that counts as progress \[m\].
         const GAIN: f64 = 1e-3;
         Tolerances { width: self.settings.width, gain: GAIN }
     }
 
-    /// Decides what follows from what was asked and heard: robots are allowed to go on, missions that waited are tried again.
-    /// Nobody may be told of it before [`Supervisor::settle`].
+    /// Decides what follows from requests and positions: raises holds, and tries waiting missions again. The results may not be
+    /// sent before [`Supervisor::settle`].
     pub fn decide(&mut self, now: f64) {
         if self.broken.is_some() {
             return;
@@ -355,10 +354,10 @@ impl Supervisor {
         self.note_standstill(now);
     }
 
-    /// [Decides](Supervisor::decide), and writes the journal. What is returned may be told: it is in there.
+    /// [Decides](Supervisor::decide), and writes the journal. The returned events may be sent, because they are in the journal.
     ///
     /// # Errors
-    /// [`Fault::Broken`]: the journal could not be written. Nothing is told then, now or later.
+    /// [`Fault::Broken`]: the journal could not be written. Nothing may be told then, now or later.
     pub fn settle(&mut self, now: f64) -> Result<Vec<Event>, Fault> {
         self.works()?;
         self.decide(now);
@@ -366,13 +365,13 @@ impl Supervisor {
         Ok(std::mem::take(&mut self.events))
     }
 
-    /// Everything that has changed goes into the journal.
+    /// Writes all changes to the journal.
     fn save(&mut self) -> Result<(), Fault> {
         if self.entries.is_empty() {
             return Ok(());
         }
         self.raise_ceilings();
-        // With what is allowed go the places that it follows from: later ones alone would seem to be too far.
+        // Positions are saved with the holds that depend on them. Without the positions, a restored hold would lie too far ahead.
         let unsaved = self.unsaved.iter_mut().zip(&self.robots).filter(|(unsaved, _)| **unsaved);
         let places = unsaved.map(|(unsaved, robot)| {
             *unsaved = false;
@@ -405,7 +404,8 @@ fn standing(name: &str, abilities: Abilities, start: Start) -> Result<Robot, Fau
     Ok(robot)
 }
 
-/// The robots as the orders take them. Each was built when it was added or admitted; if one were missing, the table would refuse the rest.
+/// The motions of the robots. Each was built when its path was added or admitted; if one were missing, the table would refuse
+/// the others.
 fn fleet(robots: &[Robot]) -> Vec<Motion<'_, f64>> {
     robots.iter().filter_map(|robot| robot.motion().ok()).collect()
 }

@@ -16,36 +16,36 @@ enum Job {
 
 #[derive(Debug, Default)]
 struct Shared {
-    /// Batches that were handed over.
+    /// Number of batches handed over.
     asked: AtomicU64,
-    /// Of these, on the disc; or why no more will be.
+    /// Number of batches on the disc; or the reason why no more will be written.
     done: Mutex<(u64, Option<String>)>,
     more: Condvar,
     is_long: AtomicBool,
 }
 
-/// How far a journal is written. That of a journal which is written at once, on the thread that asks for it, is always there.
+/// The progress of a journal. A journal without a thread of its own has always written everything.
 #[derive(Clone, Debug, Default)]
 pub struct Kept {
     shared: Arc<Shared>,
 }
 
 impl Kept {
-    /// Batches that were handed over.
+    /// Number of batches handed over.
     pub fn asked(&self) -> u64 {
         self.shared.asked.load(Ordering::Acquire)
     }
 
-    /// Batches that are on the disc.
+    /// Number of batches on the disc.
     ///
     /// # Errors
-    /// [`Fault::Broken`]: no more will ever be.
+    /// [`Fault::Broken`]: no more will be written.
     pub fn done(&self) -> Result<u64, Fault> {
         let done = self.shared.done.lock().unwrap_or_else(PoisonError::into_inner);
         done.1.clone().map_or(Ok(done.0), |why| Err(Fault::Broken { why }))
     }
 
-    /// Waits until all that was handed over is on the disc.
+    /// Waits until all batches that were handed over are on the disc.
     ///
     /// # Errors
     /// [`Fault::Broken`].
@@ -58,7 +58,7 @@ impl Kept {
     }
 }
 
-/// What hands entries over to the thread. Nothing of them may be told before [`Kept`] says that they are there.
+/// Hands entries over to the thread. Nothing in them may be told before [`Kept`] says that they are on the disc.
 #[derive(Debug)]
 pub struct Writer {
     sender: Option<Sender<Job>>,
@@ -70,7 +70,7 @@ impl Writer {
     /// Starts the thread; `wake` is called after each write.
     ///
     /// # Errors
-    /// There is no thread for it.
+    /// The thread cannot be started.
     pub fn start(mut keeper: Box<dyn Keep>, wake: impl Fn() + Send + 'static) -> io::Result<Self> {
         let (sender, jobs) = channel();
         let kept = Kept::default();
@@ -79,7 +79,7 @@ impl Writer {
             while go_on(&mut *keeper, &jobs, &own) {
                 wake();
             }
-            // Whoever waits for a write that has failed sees it.
+            // Threads that wait see the error of a failed write.
             wake();
         };
         let thread = std::thread::Builder::new().name("journal".into()).spawn(work);
@@ -88,7 +88,7 @@ impl Writer {
         Ok(Self { sender: Some(sender), thread: Some(thread), kept })
     }
 
-    /// How far it is.
+    /// The progress of the writer.
     pub fn kept(&self) -> Kept {
         self.kept.clone()
     }
@@ -121,13 +121,13 @@ impl Drop for Writer {
     fn drop(&mut self) {
         self.sender = None;
         if let Some(thread) = self.thread.take() {
-            // All that was handed over is written; one that has panicked says so itself.
+            // All batches are written. A thread that panics has printed its own message.
             let _ = thread.join();
         }
     }
 }
 
-/// Writes all that there is; false: nothing more will come, or nothing more can be written.
+/// Writes all that was handed over; `false`: nothing more will come, or nothing more can be written.
 fn go_on(keeper: &mut dyn Keep, jobs: &Receiver<Job>, kept: &Kept) -> bool {
     let Ok(first) = jobs.recv() else { return false };
     let (mut fresh, mut entries, mut count) = (None, Vec::new(), 0);
@@ -135,7 +135,7 @@ fn go_on(keeper: &mut dyn Keep, jobs: &Receiver<Job>, kept: &Kept) -> bool {
         count += 1;
         match job {
             Job::Keep(more) => entries.extend(more),
-            // All that was before is in it.
+            // The new journal has all entries from before.
             Job::Restart(all) => (fresh, entries) = (Some(all), Vec::new()),
         }
     }

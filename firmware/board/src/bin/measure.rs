@@ -127,7 +127,7 @@ fn functions<S: Scalar>(meter: &Meter, radius: S) -> [u32; 3] {
     mean([root, sine, tangent])
 }
 
-/// The same of libm.
+/// The same functions of libm.
 #[cfg(feature = "f32")]
 fn functions_of_libm(meter: &Meter, radius: f32) -> [u32; 3] {
     let [mut root, mut sine, mut tangent] = [0_u32; 3];

@@ -354,7 +354,7 @@ fn brakes<S: Scalar>() -> Result<(), Invalid> {
     Ok(())
 }
 
-/// What only the formats of pcr-fixed have.
+/// Functions that only the formats of pcr-fixed have.
 #[cfg(any(feature = "q12", feature = "q16", feature = "q20"))]
 #[inline(never)]
 fn fixed() {

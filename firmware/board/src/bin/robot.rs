@@ -85,7 +85,7 @@ fn work(link: &mut Link, told: &mut Told, keeper: &mut Keeper) -> Option<()> {
     Some(())
 }
 
-/// What is done ten times a second, with a stack of its own.
+/// The work that is done ten times a second, with a stack of its own.
 #[inline(never)]
 fn hold(keeper: &mut Keeper, fleet: &[Motion<'_, Number>]) -> Number {
     keeper.hold(fleet)

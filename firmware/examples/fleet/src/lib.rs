@@ -1,4 +1,4 @@
-//! What the examples share: how much a supervisor holds, where it lies, and what happens on a panic.
+//! Common code of the examples: capacities of a supervisor, its storage, and the panic handler.
 //!
 //! `docs/firmware.md` tells how to choose the capacities; these are for the paper's 12 agents, which the request `Load` takes.
 #![no_std]
@@ -17,7 +17,7 @@ pub use pcr_supervisor::Line;
 
 /// Table and orders.
 pub type Table = Traffic<Number, AGENTS, REGIONS, PIECES, ORDERS>;
-/// What answers on the line.
+/// The supervisor behind the line.
 pub type Supervisor = Session<Number, AGENTS, ROOM, REGIONS, PIECES, Table>;
 
 static SUPERVISOR: ConstStaticCell<Supervisor> =
@@ -32,7 +32,7 @@ pub fn supervisor() -> &'static mut Supervisor {
     SUPERVISOR.take()
 }
 
-/// Only crates of the board panic: nobody feeds the watchdog then, and it starts the board anew.
+/// Only crates of the board can panic. The watchdog is then no longer fed, and restarts the board.
 #[panic_handler]
 fn panic(info: &core::panic::PanicInfo<'_>) -> ! {
     defmt::error!("{}", defmt::Display2Format(info));

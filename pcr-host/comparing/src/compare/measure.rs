@@ -29,7 +29,7 @@ pub struct Comparison {
     pub rows: Vec<Row>,
     /// Methods that were asked for and have no row.
     pub absent: Vec<Absent>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 

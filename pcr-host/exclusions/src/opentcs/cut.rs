@@ -14,10 +14,11 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fmt::Write as _;
 use std::ops::Range;
 
-/// The least part \[m\]. Points are at whole millimetres: of two shorter parts one could turn off the other by more than 0.01 rad, for which vehicles stop.
+/// Shortest part \[m\]. Points are at whole millimetres; two shorter parts could differ in direction by more than 0.01 rad, at
+/// which vehicles stop.
 const LEAST: f64 = 0.3;
 
-/// Cuts straight paths into equal parts no longer than `most` \[m\]. Envelopes with the key are going to be written anew.
+/// Cuts straight paths into equal parts of at most `most` \[m\]. Envelopes with the key will be written again.
 pub(crate) fn split(
     text: &str,
     imported: &Imported,
@@ -53,19 +54,19 @@ pub(crate) fn split(
 
 struct Cutter<'a, 'i> {
     text: &'a str,
-    /// Where the document begins in the text.
+    /// Offset of the document in the text.
     offset: usize,
-    /// How its lines end.
+    /// Its line ending.
     end: &'static str,
     root: Node<'a, 'i>,
     points: HashMap<&'a str, Node<'a, 'i>>,
     edges: HashMap<String, &'a Edge>,
-    /// Members of blocks for vehicles that come in the same way.
+    /// Members of blocks for vehicles in the same direction.
     of_one_direction: BTreeSet<&'a str>,
-    /// Names in the file, and those that are new.
+    /// Names in the file, and new names.
     taken: BTreeSet<String>,
     added: String,
-    /// What each path that was cut has become, beside its first part.
+    /// For each path that was cut, its parts other than the first one.
     resources: HashMap<&'a str, Vec<String>>,
     edits: Edits,
 }
@@ -94,12 +95,12 @@ impl<'a, 'i> Cutter<'a, 'i> {
         range.start + self.offset..range.end + self.offset
     }
 
-    /// The blanks before an element at the start of its line.
+    /// The white space before an element at the start of its line.
     fn margin(&self, element: Node<'_, '_>) -> &'a str {
         indent(self.text, element.range().start + self.offset).unwrap_or("    ")
     }
 
-    /// A name that nothing has.
+    /// An unused name.
     fn fresh(&mut self, mut wanted: String) -> String {
         while !self.taken.insert(wanted.clone()) {
             wanted.push('+');
@@ -107,7 +108,7 @@ impl<'a, 'i> Cutter<'a, 'i> {
         wanted
     }
 
-    /// Why a path cannot be cut.
+    /// The reason why a path cannot be cut.
     fn belongs_to_all(&self, path: Node<'_, '_>, edge: &Edge, key: Option<&str>) -> Option<&'static str> {
         let straight = matches!(&edge.curve[..], [only] if matches!(only.shape, PathSegment::Line { .. }));
         let other_envelope = |envelope: Node<'_, '_>| key.is_none() || envelope.attribute("key") != key;
@@ -163,7 +164,7 @@ impl<'a, 'i> Cutter<'a, 'i> {
                 "{end}{margin}<point name=\"{}\" positionX=\"{x}\" positionY=\"{y}\" positionZ=\"{z}\" vehicleOrientationAngle=\"NaN\" type=\"HALT_POSITION\">",
                 escaped(point)
             );
-            // Whoever may go to the end of the path may go there.
+            // A vehicle that may go to the end of the path may go to its new points.
             if let Some(room) = elements(to, "maxVehicleBoundingBox").next() {
                 let _ = write!(self.added, "{end}{margin}    {}", &self.text[self.span(room.range())]);
             }
@@ -193,7 +194,7 @@ impl<'a, 'i> Cutter<'a, 'i> {
         edits.made(&self.text[self.span(path.range())])
     }
 
-    /// The model with what was cut. Blocks in which a path was have all that it has become.
+    /// The model with the cut paths. Blocks that contain a path contain all of its parts.
     fn made(mut self) -> String {
         if let Some(last) = elements(self.root, "point").last() {
             self.edits.insert(last.range().end + self.offset, std::mem::take(&mut self.added));

@@ -59,7 +59,7 @@ impl Fit {
 /// A part of a curve.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
-    /// Where it ends \[m\].
+    /// End \[m\].
     pub(super) end: [f64; 2],
     /// Its least and its largest length \[m\].
     pub(super) length: [f64; 2],
@@ -70,7 +70,7 @@ pub(super) struct Part {
 /// How far a curve is from its lines and arcs at the same length, followed piece by piece.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Along {
-    /// By how much the curve is longer up to here, at least and at most \[m\].
+    /// Difference between the length of the curve and that of its pieces up to here: least and largest \[m\].
     longer: [f64; 2],
     /// Largest distance so far \[m\].
     pub(super) deviation: f64,
@@ -82,11 +82,11 @@ impl Along {
         self.longer[0].abs().max(self.longer[1].abs())
     }
 
-    /// Goes on along lines and arcs, and along the parts of the curve that these stand for.
+    /// Follows lines and arcs, and the parts of the curve that these replace.
     ///
-    /// A part of length l, with a chord of length c, is aside of its chord by so much, and along the chord within l - c of
-    /// the same fraction of its length. So are lines and arcs; their chord is the shortest, and they are furthest aside, if
-    /// they are bent most all the way.
+    /// A part of length l and chord c deviates sideways from its chord by at most [`Part::aside`], and along its chord by at most
+    /// l − c from the point at the same fraction. The same holds for lines and arcs of the replacement. For a given length, a
+    /// chord is shortest, and the sideways deviation largest, if the curvature is largest everywhere.
     pub(super) fn follow(&mut self, begin: [f64; 2], pieces: &[Placed], parts: &[Part]) {
         let mut from = begin;
         let whole: f64 = pieces.iter().map(|piece| piece.shape.length()).sum();
@@ -145,7 +145,7 @@ fn parts(curve: &Bezier, most: f64, halvings: u32, into: &mut Vec<Part>) {
     let side =
         |[x, y]: [f64; 2]| ((x - from[0]) * (end[1] - from[1]) - (y - from[1]) * (end[0] - from[0])).abs() / chord;
     let aside = curve.points().map(side).fold(0.0, f64::max);
-    // Where both ends are one point there is no line through them.
+    // If both ends are one point, there is no line through them.
     let aside = if chord > 0.0 { aside } else { polygon };
     if halvings == 0 || aside + polygon - chord <= most {
         into.push(Part { end, length: [chord, polygon.max(chord)], aside });
@@ -203,7 +203,7 @@ fn best(curve: &Bezier, tolerance: f64) -> Option<(Vec<Placed>, f64)> {
     let [from, to] = curve.ends();
     let line = Placed::line(from, to);
     let within = |deviation: f64| deviation <= tolerance;
-    // What is straight, or too small to matter, is a line.
+    // A straight or negligibly small curve becomes a line.
     let spread = curve.points().map(|[x, y]| (x - from[0]).hypot(y - from[1])).fold(0.0, f64::max);
     let straight = if spread <= tolerance / 4.0 { spread } else { distance(curve, &line) };
     if straight <= tolerance / 1024.0 || spread <= tolerance / 4.0 {
@@ -257,7 +257,7 @@ pub(super) fn is_beyond([x, y]: [f64; 2], piece: &Placed) -> bool {
     (x - piece.at[0]) * cos + (y - piece.at[1]) * sin > 0.0
 }
 
-/// Where the curve passes the beginning of the second arc of its biarc.
+/// Parameter of the curve at the start of the second arc of its biarc.
 fn parameter(curve: &Bezier, second: &Placed) -> f64 {
     let (mut lo, mut hi) = (0.0, 1.0);
     for _ in 0..f64::MANTISSA_DIGITS {

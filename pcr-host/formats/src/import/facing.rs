@@ -14,7 +14,7 @@ pub(super) fn is_ahead(outline: &Footprint, angle: f64) -> bool {
     is_none(angle) || is_none(angle - PI) && outline.is_same_backward()
 }
 
-/// What is said of a way on which the vehicle drives backward, if that is not read.
+/// The message about a backward drive that was not read.
 pub(super) const BACKWARD: &str = "it is driven backward, and outlines face along their paths here";
 
 /// Whether it matters that the vehicle drives backward: neither to a disc nor to an outline that is the same then.
@@ -22,7 +22,7 @@ pub(super) fn is_other_backward(outline: Option<&Footprint>) -> bool {
     outline.is_some_and(|outline| !outline.is_same_backward())
 }
 
-/// What is said of an orientation that is not read.
+/// Adds the message about an orientation that was not read.
 pub(super) fn lose(of: &str, field: &str, value: f64, warnings: &mut Warnings) {
     warnings.lose(format_args!("{of}: its {field} {value}, as outlines face along their paths here"));
 }

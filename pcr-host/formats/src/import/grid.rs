@@ -114,7 +114,7 @@ fn steps(path: &str) -> Result<Vec<[i32; 2]>, String> {
     Ok(cells)
 }
 
-/// Where an agent changes its direction, sets off or stops, and when.
+/// The cells where an agent turns, sets off or stops, and the times.
 fn stops(cells: &[[i32; 2]]) -> Vec<Stop> {
     let step = |k: usize| cells.get(k + 1).map(|next| [next[0] - cells[k][0], next[1] - cells[k][1]]);
     let way = cells.iter().rposition(|cell| Some(cell) != cells.last()).map_or(0, |last| last + 1);

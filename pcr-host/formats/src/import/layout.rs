@@ -66,7 +66,7 @@ pub struct Edge {
     pub curve: Vec<Placed>,
     /// Whether it may be travelled from its first end to the other one, and back.
     pub ways: [bool; 2],
-    /// Whether nobody may travel on it as the file is. Routes avoid it; locks count it, as whoever has closed it may open it.
+    /// Whether the file closes it for all vehicles. Routes avoid it; locks include it, because it may be opened again.
     pub closed: bool,
     /// Largest speed in either direction \[m/s\], where it is limited.
     pub speed: [Option<f64>; 2],
@@ -119,7 +119,7 @@ pub struct Layout {
     pub vehicles: Vec<String>,
     /// Radius with which routes round corners between straight edges \[m\], where the format has such a rule.
     pub corner_radius: Option<f64>,
-    /// What its reader had to say about the file.
+    /// Warnings of the reader of the file.
     pub warnings: Vec<String>,
 }
 

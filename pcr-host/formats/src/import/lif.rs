@@ -98,7 +98,7 @@ struct Reader<'a> {
     edges: Names<Edge>,
     types: BTreeSet<String>,
     options: &'a Options,
-    /// Of the vehicle, if it matters which way that faces.
+    /// The outline of the vehicle, if its heading matters.
     outline: Option<&'a Footprint>,
     /// The first edge whose vehicle types have different speeds.
     of_speeds: Option<Id>,
@@ -171,7 +171,7 @@ impl Reader<'_> {
             self.types.insert(vehicle);
             if asked {
                 let edge = self.along(&id, ends, Some(&property))?;
-                // The same way at the speed of another type is the same edge, of which only one speed is kept.
+                // An equal edge at the speed of another type of vehicle is the same edge; only one of the speeds is kept.
                 match edges.iter().find(|known| known.curve == edge.curve) {
                     None => edges.push(edge),
                     Some(known) if (known.speed, known.rotation) != (edge.speed, edge.rotation) => {

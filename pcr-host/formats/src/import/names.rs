@@ -8,9 +8,9 @@ use super::layout::{Edge, Id, Node};
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 
-/// What has a name.
+/// Something with a name.
 pub(super) trait Named: PartialEq + Clone {
-    /// What messages call it.
+    /// The noun for it in messages.
     const WHAT: &'static str;
     fn id(&mut self) -> &mut Id;
 }
@@ -51,9 +51,9 @@ impl fmt::Display for Unclear {
 #[derive(Debug)]
 pub(super) struct Names<T> {
     list: Vec<T>,
-    /// By the name in the file.
+    /// Indices by the name in the file.
     places: HashMap<Id, Vec<usize>>,
-    /// By the name in the list.
+    /// Names that are taken in the list.
     taken: HashSet<Id>,
 }
 

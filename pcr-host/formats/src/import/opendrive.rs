@@ -60,7 +60,7 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
     }
     let header = child(root, "header").and_then(|header| header.attribute("name")).unwrap_or_default();
     let mut names = Names::new();
-    // Of each edge the first of its roads: a copy adds no links.
+    // The first road of each edge: a copy adds no links.
     let mut links = Vec::new();
     let (mut widest, mut open) = ([0.0_f64; 2], Vec::new());
     for (k, road) in children(root, "road").enumerate() {
@@ -128,7 +128,7 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<Curve, ImportError
         let name = format!("{name}, geometry {}", k + 1);
         let field = |attribute: &str| number(record, &name, attribute);
         let (at, heading, length) = ([field("x")?, field("y")?], field("hdg")?, field("length")?);
-        // Of what is missing between two records, or at the end, nothing would be known.
+        // A gap between two records, or at the end, would leave the geometry unknown.
         if let Some(s) = optional(record, &name, "s")?
             && (s - along).abs() > GAP.max(ROUNDED * along)
         {
@@ -323,7 +323,7 @@ fn join(layout: &mut Layout, group: &[usize]) {
     }
 }
 
-/// Where an end of a road is \[m\].
+/// Position of an end of a road \[m\].
 fn end_of(edges: &[Edge], end: usize) -> [f64; 2] {
     let curve = edges.get(end / 2).map_or(&[][..], |edge| &edge.curve);
     let at = if end.is_multiple_of(2) { curve.first().map(|first| first.at) } else { curve.last().map(Placed::end) };

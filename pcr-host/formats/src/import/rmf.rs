@@ -23,7 +23,7 @@ pub(super) fn yaml(text: &str) -> Result<Value, ImportError> {
     })
 }
 
-/// What the configuration of a fleet says about its vehicles: the footprint is the radius, and the vicinity beyond it the margin.
+/// Reads the vehicles from the configuration of a fleet: the footprint is the radius, and the vicinity beyond it is the margin.
 pub(super) fn fleet(value: &Value) -> Result<Given, ImportError> {
     let root = Object::new("fleet", value)?;
     let fleet = root.object("rmf_fleet")?.ok_or_else(|| root.missing("rmf_fleet"))?;
@@ -125,12 +125,12 @@ pub(super) fn read(
 
 struct Level<'a> {
     name: &'a str,
-    /// Of a navigation graph.
+    /// Whether the file is a navigation graph.
     graph: bool,
     /// From the coordinates of its vertices to metres.
     placing: Placing,
     vertices: Vec<Vertex>,
-    /// Of the vehicle, if it matters which way that faces.
+    /// The outline of the vehicle, if its heading matters.
     outline: Option<&'a Footprint>,
     /// Places of the nodes in the layout, by vertex.
     nodes: HashMap<usize, usize>,

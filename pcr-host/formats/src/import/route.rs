@@ -136,7 +136,7 @@ pub(super) fn trace(layout: &Layout, from: usize, steps: &[Step<'_>]) -> Result<
     let at = |node: usize| layout.nodes.get(node).map_or([0.0; 2], |node| node.at);
     let mut tracer = Tracer::default();
     let mut position = at(from);
-    // Where the lengths of curves are not those of their arcs, a vehicle is ahead of its path, or behind, from there on.
+    // If curves and their arcs differ in length, the vehicle is ahead of its path, or behind it, from there on.
     let (mut deviation, mut longer) = (0.0_f64, 0.0);
     for (k, step) in steps.iter().enumerate() {
         let (edge, target) = (step.edge, at(step.target()));
@@ -240,7 +240,7 @@ pub(super) fn scenario(
             node.map_or_else(String::new, |node| node.name.clone().unwrap_or_else(|| node.id.to_string()))
         };
         let way = format!("{} > {}", name(asked.ends[0]), name(asked.ends[1]));
-        // Where the file names its vehicles, the routes are theirs in the order of both.
+        // If the file names its vehicles, the routes belong to them, in the order of both.
         let label = label(&layout.vehicles.get(k).map_or(way.clone(), |vehicle| format!("{vehicle} {way}")));
         agents.push(Agent { label, t_start: asked.time, ..agent });
     }
@@ -291,7 +291,7 @@ pub fn turn(vehicle: &Vehicle, at: [f64; 2], heading: f64, angle: f64) -> Agent 
     agent(0, &tracer.finish(at), vehicle, 0.0)
 }
 
-/// The agent that travels a path. One that faces nobody knows where to is the disc around its outline.
+/// The agent that travels a path. If its heading is not known, it is the disc around its outline.
 pub(super) fn agent(id: u64, trace: &Trace, vehicle: &Vehicle, t_start: f64) -> Agent {
     let path = trace.stretches.iter().map(|stretch| stretch.shape).collect();
     let motion = speed::motion(&trace.stretches, vehicle);

@@ -7,7 +7,7 @@ use super::ImportError;
 use super::value::Object;
 use serde_json::Value;
 
-/// Who a message is about: manufacturer and serial number.
+/// The vehicle of a message: manufacturer and serial number.
 fn vehicle(message: &Value) -> Option<[&str; 2]> {
     let text = |field: &str| message.get(field).and_then(Value::as_str).unwrap_or_default();
     Some([text("manufacturer"), text("serialNumber")]).filter(|[_, serial]| !serial.is_empty())

@@ -2,7 +2,7 @@
 
 use super::{Format, Options, xml};
 
-/// What a file is, as far as options go.
+/// The kind of a file, with respect to options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A scenario file: agents with everything they need.
@@ -18,7 +18,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// What a text in this format is; a scenario without one.
+    /// The kind of a text in this format; without a format it is a scenario.
     pub fn of(format: Option<Format>, text: &str) -> Self {
         match format {
             None => Self::Scenario,

@@ -103,11 +103,11 @@ struct Reader<'a> {
     warnings: &'a mut Warnings,
     /// Names of the agents, and when each begins.
     begins: Vec<(String, Begin)>,
-    /// Of all agents.
+    /// The maps of all agents.
     maps: BTreeSet<String>,
 }
 
-/// When an agent begins.
+/// Begin of the motion of an agent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Begin {
     /// It stands, whenever.
@@ -196,7 +196,7 @@ impl Reader<'_> {
         let mut tracer = Tracer::default();
         let mut ways: Vec<Option<[f64; 2]>> = Vec::new();
         let (mut position, mut deviation) = (position(nodes.first(), "nodePosition")?, 0.0_f64);
-        // By which the vehicle may be ahead of its path, or behind.
+        // Difference of lengths: the vehicle may be ahead of its path by this, or behind it.
         let mut longer = 0.0;
         if position.is_none() && edges.is_empty() {
             return Err(nodes
@@ -264,7 +264,8 @@ impl Reader<'_> {
         Ok(route::agent(id, &trace, self.vehicle, 0.0))
     }
 
-    /// An outline at a node is as the path arrives there, or as it departs; `ways` are the headings of the edges at both ends.
+    /// Warns if the orientation at a node matches neither the arriving nor the departing edge. `ways` has the headings of each edge at its
+    /// two ends.
     fn thetas(
         &mut self,
         nodes: &[Part<'_>],
@@ -369,7 +370,7 @@ impl Reader<'_> {
         Ok((Agent { footprint, margin, ..stands }, Begin::Never))
     }
 
-    /// A path has to end at the last node that is released: the vehicle does not stand where it ends else.
+    /// The planned path must end at the last released node; otherwise the vehicle drives on beyond its end. Warns if it does not.
     fn goes_on(&mut self, state: &Object<'_>, end: [f64; 2], traversed: &[Value]) -> Result<(), ImportError> {
         let nodes = parts(state, "nodeStates", "node", "nodeId")?;
         let last = nodes.iter().take_while(|node| node.released).last();

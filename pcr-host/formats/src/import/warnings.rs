@@ -37,7 +37,7 @@ impl Warnings {
         self.list.extend(all.list.iter().filter(|(problem, _)| problem.starts_with(TOGETHER)).cloned());
     }
 
-    /// What is in the file and not in what was read.
+    /// Parts of the file that were not read.
     pub(super) fn lost(&self) -> &[String] {
         &self.lost
     }

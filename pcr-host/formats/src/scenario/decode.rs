@@ -11,7 +11,7 @@ use serde_json::Value;
 use std::collections::HashSet;
 use std::fmt;
 
-/// What a scenario file holds.
+/// Fields of a scenario file.
 const FIELDS: [&str; 5] = ["format", "version", "name", "agents", "warnings"];
 
 /// Relative difference between the travelled length and the length of the path that is still scaled away: what the library takes, 2⁻²⁰.
@@ -20,7 +20,7 @@ pub const LENGTH_TOLERANCE: f64 = 1.0 / (1_u64 << -pcr_core::LENGTH_TOLERANCE_LO
 /// Segments of a path that the core can number. An arc counts once for each turn begun.
 const MOST: usize = u16::MAX as usize;
 
-/// What a scenario file says that it is, and the version of its fields.
+/// Name of the format.
 pub(super) const FORMAT: &str = "pcr-scenario";
 pub(super) const VERSION: u64 = 1;
 
@@ -57,7 +57,7 @@ impl Scenario {
         Self::decode(&json, agents)
     }
 
-    /// What a file holds beside its agents, with them.
+    /// The content of a file beside its agents, with the agents.
     fn decode(json: &Json, agents: Agents) -> Result<Self, ScenarioError> {
         let name = match &json.data {
             Data::Object(members) => members.iter().find(|(key, _)| key == "name"),
@@ -120,7 +120,7 @@ struct Agents {
     texts: HashSet<String>,
     /// Whether ids are texts.
     all_texts: Option<bool>,
-    /// What is wrong with the first one that is refused; those after it are not looked at.
+    /// The error of the first agent that is refused; later agents are not read.
     fault: Option<ScenarioError>,
 }
 
@@ -355,7 +355,7 @@ impl MotionSpec {
             };
             return Err(agent.error(fields.line, "profile", problem));
         }
-        // What differs by rounding only stays as it is: what is written is then read as it was.
+        // A difference that is rounding is kept, so that a written profile is read unchanged.
         if travelled > 0.0 && (travelled - length).abs() > profile.rounding {
             let scale = length / travelled;
             let pieces = profile.pieces.iter().map(|&(duration, accel)| (duration, accel * scale)).collect();

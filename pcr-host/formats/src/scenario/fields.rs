@@ -14,7 +14,7 @@ pub const LIMIT: f64 = 1e10;
 pub struct ScenarioError {
     pub(super) scenario: String,
     line: usize,
-    /// Where, and which field; in a box, as an error is returned by value everywhere.
+    /// Place and field; boxed, because errors are returned by value everywhere.
     about: Box<(Place, Option<String>)>,
     message: String,
 }
@@ -54,7 +54,7 @@ impl fmt::Display for ScenarioError {
 
 impl std::error::Error for ScenarioError {}
 
-/// Where in the scenario we are.
+/// The present place in a scenario.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Place {
     /// Its number, or its place in the file where it has none.
@@ -111,7 +111,7 @@ impl Place {
 /// The members of an object whose keys are known.
 pub(super) struct Fields<'j> {
     pub(super) place: Place,
-    /// What precedes its fields in messages.
+    /// Text that precedes its fields in messages.
     inside: &'static str,
     pub(super) line: usize,
     members: &'j [(String, Json)],
@@ -196,7 +196,7 @@ pub(super) fn brief(json: &Json) -> String {
     }
 }
 
-/// What a number may be. NaN is in no range.
+/// The allowed range of a number. NaN is in no range.
 #[derive(Clone, Copy)]
 pub(super) enum Range {
     Any,

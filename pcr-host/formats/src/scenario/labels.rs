@@ -13,7 +13,7 @@ pub const LONGEST_LABEL: usize = 200;
 pub struct Labels(BTreeMap<u64, String>);
 
 impl Labels {
-    /// Those of a scenario.
+    /// The labels of a scenario.
     pub fn of(scenario: &Scenario) -> Self {
         let labelled = scenario.agents.iter().filter(|agent| !agent.label.is_empty());
         Self(labelled.map(|agent| (agent.id, agent.label.clone())).collect())
@@ -24,7 +24,7 @@ impl Labels {
         self.0.is_empty()
     }
 
-    /// That of an agent; empty if it has none.
+    /// The label of an agent; empty if it has none.
     pub fn get(&self, id: u64) -> &str {
         self.0.get(&id).map_or("", String::as_str)
     }
@@ -47,7 +47,7 @@ pub(super) fn called(id: u64, label: &str) -> String {
     if label.is_empty() { id.to_string() } else { format!("{id} {label}") }
 }
 
-/// What would end a line, or turn around what is printed beside it.
+/// Characters that would end a line, or change the direction of text beside them.
 fn controls(c: char) -> bool {
     let lines_and_directions = ['\u{2028}'..='\u{202e}', '\u{2066}'..='\u{2069}', '\u{feff}'..='\u{feff}'];
     c.is_control() || lines_and_directions.iter().any(|range| range.contains(&c))
@@ -59,7 +59,7 @@ pub fn printable(text: &str) -> String {
     text.chars().map(escaped).collect()
 }
 
-/// What a label may not be.
+/// The reason why a text cannot be a label.
 pub(super) fn fault(label: &str) -> Option<String> {
     if let Some(c) = label.chars().find(|&c| controls(c)) {
         return Some(format!("has the control character {}; allowed is printable text", c.escape_default()));

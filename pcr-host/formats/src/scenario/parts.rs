@@ -44,8 +44,8 @@ pub struct Stretch {
 impl Agent {
     /// The motion on each segment of the path. A wait where two segments meet belongs to the later one.
     ///
-    /// A stop that is off a border by rounding is at the border, to either side: near a stop, a rounding of the length is no
-    /// rounding of the time, and one of a nanometre is a turn in place.
+    /// A stop within rounding of a segment border, on either side, counts as at the border. Near a stop a tiny error of the length is a
+    /// large error of the time, and a segment of a nanometre is a turn in place.
     pub fn parts(&self) -> Vec<Vec<Part>> {
         let (v0, pieces) = self.motion.pieces(self.length());
         let mut parts = vec![Vec::new(); self.path.len()];
@@ -131,8 +131,8 @@ impl Agent {
     }
 }
 
-/// Which of these segments a stop after this way is at the end of: off by `near` at most. Nothing at the end of the last one, and
-/// of the first one there is so much `left`.
+/// The first of these segments whose end is within `near` of a stop after `way`. `left` is the remaining length of the first
+/// segment. `None` at the end of the last one.
 fn border_at(lengths: &[f64], left: f64, way: f64, near: f64) -> Option<usize> {
     let mut border = left;
     for (k, pair) in lengths.windows(2).enumerate() {

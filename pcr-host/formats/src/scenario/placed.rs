@@ -12,11 +12,11 @@ pub const KINK: f64 = 0.01;
 /// A line or an arc where the file has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// Where it begins \[m\].
+    /// Start \[m\].
     pub at: [f64; 2],
     /// Direction there \[rad\].
     pub heading: f64,
-    /// What it is.
+    /// Its shape.
     pub shape: PathSegment,
 }
 
@@ -35,7 +35,7 @@ impl Placed {
         }
     }
 
-    /// Where it ends \[m\].
+    /// End \[m\].
     pub fn end(&self) -> [f64; 2] {
         let (chord, direction) = match self.shape {
             PathSegment::Line { length } => (length, self.heading),

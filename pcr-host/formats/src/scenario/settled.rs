@@ -10,7 +10,7 @@ pub(super) struct Settled {
     pub(super) pieces: Vec<(f64, f64)>,
     pub(super) fastest: f64,
     pub(super) travelled: f64,
-    /// By how much that can differ from the length for which the numbers were written.
+    /// Bound on the difference to the length for which the numbers were written.
     pub(super) rounding: f64,
 }
 

@@ -9,44 +9,44 @@ use pcr_core::{Interval, Motion};
 use pcr_formats::scenario::Scenario;
 use serde::Serialize;
 
-/// What has been proved of motions.
+/// The result of the proof of motions.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Proof {
     /// `proved`: no contact at any time. `contact`: there is one. `undecided`: so near that rounding does not tell.
     pub verdict: &'static str,
-    /// Pairs of discs.
+    /// Number of pairs of discs.
     pub pairs: usize,
-    /// Intervals of time that were looked at.
+    /// Number of intervals of time that were examined.
     pub steps: usize,
-    /// A contact of each pair of discs that have one.
+    /// A contact of each pair of discs that has one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contacts: Vec<Contact>,
-    /// Where it is not decided.
+    /// Points at which it is not decided.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub undecided: Vec<Contact>,
-    /// Why there is no verdict.
+    /// Reason why there is no verdict.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
 }
 
-/// Two agents at one time.
+/// A contact of two agents.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Contact {
     /// Number of an agent.
     pub i: u64,
     /// Number of the other one.
     pub j: u64,
-    /// When \[s\].
+    /// Time \[s\].
     pub t: f64,
     /// Distance of the centres of two of their discs less the radii \[m\].
     pub clearance: f64,
 }
 
 impl Proof {
-    /// That of a scenario, as the format `S` holds it.
+    /// The proof for a scenario, as the format `S` represents it.
     ///
     /// # Errors
-    /// [`Refused`] where a value does not fit the format.
+    /// [`Refused`] if a value does not fit the format.
     pub fn of<S: Format>(scenario: &Scenario) -> Result<Self, Refused> {
         let (fleet, discs) = Bodies::<S>::moving(scenario)?;
         let motions = fleet.motions();

@@ -1,4 +1,4 @@
-//! What an answer of `pcr regions` tells beside its tables: it has to be what they hold.
+//! Compares the other contents of an answer of `pcr regions` with its tables.
 
 use pcr_certify::data::{Agent, Pair, Region, Table};
 use serde::Deserialize;
@@ -52,7 +52,7 @@ pub(super) fn bodies(table: &Table, covers: &[Cover]) -> Result<(), String> {
     Ok(())
 }
 
-/// Whoever was asked for is there: of nobody else would anything be compared.
+/// Checks that the requested agent is in the certificate; otherwise nothing would be compared.
 pub(super) fn asked(table: &Table, agent: Option<u64>) -> Result<(), String> {
     match agent {
         Some(asked) if !table.agents.iter().any(|agent| agent.id == asked) => {
@@ -78,17 +78,17 @@ pub(super) fn pairs(table: &Table) -> usize {
 /// Regions of two agents with their places in the list.
 type Regions<R> = BTreeMap<[u64; 2], Vec<(usize, R)>>;
 
-/// What an answer is about: the agent that was asked for, if one was, and the covers of outlines.
+/// The scope of an answer: the requested agent, if there is one, and the covers of outlines.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Asked<'a> {
     pub(super) agent: Option<u64>,
     pub(super) covers: &'a [Cover],
 }
 
-/// Compares what is told, in the list of this name, with a table.
+/// Compares the regions in the list of this name with a table.
 ///
 /// # Errors
-/// Where they differ first.
+/// The first difference, in words.
 pub(super) fn compare(list: &str, told: &[Told], table: &Table, asked: Asked<'_>) -> Result<(), String> {
     let mut held: Regions<Told> = BTreeMap::new();
     for pair in &table.pairs {
@@ -132,8 +132,9 @@ pub(super) fn compare(list: &str, told: &[Told], table: &Table, asked: Asked<'_>
     Ok(())
 }
 
-/// Where any agent has an outline, regions are unions of those of the discs: each of those has to lie in one, and the ends of a union are
-/// ends of some of them. Lengths of outlines are along another path than those of their discs, and are not compared.
+/// If any agent has an outline, regions are unions of those of its discs: the region of each disc has to lie in a union, and
+/// the ends of a union are ends of some of them. Lengths of outlines are on other paths than those of discs, and are not
+/// compared.
 fn unions(
     list: &str,
     [i, j]: [u64; 2],
@@ -164,7 +165,7 @@ fn unions(
     Ok(())
 }
 
-/// What is to be told of a region of a table, seen by one of its two agents.
+/// The expected content for a region of a table, seen from one of its two agents.
 fn tell(
     table: &Table,
     pair: &Pair,

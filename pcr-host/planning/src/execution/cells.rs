@@ -4,7 +4,7 @@
 use super::{Holds, NEAR};
 use std::collections::HashMap;
 
-/// Before this length a robot waits until another one has come to a length \[m\].
+/// A robot waits before a length until another one has reached a length \[m\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Wait {
     at: f64,
@@ -16,11 +16,11 @@ struct Wait {
 #[derive(Debug)]
 pub(super) struct Cells {
     waits: Vec<Vec<Wait>>,
-    /// Those that are fulfilled.
+    /// For each robot the number of its waits that are fulfilled.
     passed: Vec<usize>,
 }
 
-/// When a robot enters a cell, and as the how manieth of its way.
+/// The time at which a robot enters a cell, and the index of the cell on its way.
 #[derive(Clone, Copy, Debug)]
 struct Visit {
     time: usize,
@@ -29,7 +29,7 @@ struct Visit {
 }
 
 impl Cells {
-    /// Of the cells of each robot, one a step.
+    /// The dependencies of a plan with the cell of each robot at each step.
     pub(super) fn new(plan: &[Vec<[i32; 2]>]) -> Self {
         let mut visits: HashMap<[i32; 2], Vec<Visit>> = HashMap::new();
         for (robot, cells) in plan.iter().enumerate() {

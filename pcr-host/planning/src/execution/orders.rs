@@ -4,10 +4,10 @@ use super::{Holds, ROOM};
 use crate::fleet::{HostOrders, build_orders};
 use pcr_core::{Hold, Motion, Pass, Progress, Reach, RegionRef, Tolerances};
 
-/// So far ahead a robot looks at once: holds do not decrease \[m\].
+/// Distance ahead for which a robot computes its hold at a time: holds do not decrease \[m\].
 const AHEAD: f64 = 2.0;
 
-/// The orders in which motions pass their regions, with which everybody can finish.
+/// The orders in which the motions pass their regions; with these all robots can finish.
 pub(super) fn table(motions: &[Motion<'_, f64>]) -> Result<HostOrders<f64>, String> {
     let mut table = build_orders(motions).map_err(|full| full.to_string())?;
     table.as_planned(motions).map_err(|refused| refused.to_string())?;
@@ -20,18 +20,18 @@ pub(super) fn table(motions: &[Motion<'_, f64>]) -> Result<HostOrders<f64>, Stri
 
 /// A region that a robot passes second.
 struct Order<'a> {
-    /// Its place among all regions.
+    /// Index of the region.
     place: usize,
     region: RegionRef<'a, f64>,
     first: usize,
-    /// Least length of the robot in it, and its largest \[m\].
+    /// Least and largest length of the robot in the region \[m\].
     entry: f64,
     over: f64,
-    /// Where the first has left it \[m\].
+    /// Length at which the first robot has left the region \[m\].
     exit: f64,
 }
 
-/// A region of two robots, of which the ego is the first one, and which of them passes it second.
+/// A region of two robots, the first of which is the ego, and which of the two passes it second.
 pub(super) struct Pair<'a> {
     pub(super) region: RegionRef<'a, f64>,
     pub(super) robots: [usize; 2],
@@ -39,17 +39,17 @@ pub(super) struct Pair<'a> {
 }
 
 impl<'a> Pair<'a> {
-    /// The region as one of the two sees it.
+    /// The region seen from one of the two.
     pub(super) fn seen(&self, side: usize) -> RegionRef<'a, f64> {
         if side == 0 { self.region.clone() } else { self.region.clone().swapped() }
     }
 }
 
-/// The orders of each robot, by their entries.
+/// For each robot its orders, by their entries.
 pub(super) struct Kept<'a> {
     pub(super) pairs: Vec<Pair<'a>>,
     rows: Vec<Vec<Order<'a>>>,
-    /// Holds that were found.
+    /// Holds computed so far.
     known: Vec<f64>,
 }
 
@@ -71,7 +71,7 @@ impl<'a> Kept<'a> {
         Ok(Self { known: vec![f64::NEG_INFINITY; rows.len()], rows, pairs })
     }
 
-    /// The other robot passes a region second from now on.
+    /// Makes the other robot pass a region second.
     pub(super) fn switch(&mut self, place: usize) {
         let pair = &mut self.pairs[place];
         self.rows[pair.robots[pair.second]].retain(|order| order.place != place);

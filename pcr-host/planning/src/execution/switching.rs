@@ -8,47 +8,47 @@ use super::orders::Kept;
 use super::{Holds, LEAST, SPEED};
 use crate::lifelong::{Gate, gates};
 
-/// Holds follow the first robot in steps of \[m\], rounded down.
+/// Step of the first robot between two gates, rounded down \[m\].
 const PITCH: f64 = 0.5;
 
-/// Orders that are tried each time that it is looked for better ones, and those that may be turned round with one.
+/// Number of orders that are tried at each look, and number of further orders that may be reversed with one.
 const TRIES: usize = 12;
 const WITH: usize = 4;
 
-/// By so much all have to arrive sooner in sum \[s\].
+/// Least gain of all robots together \[s\].
 const GAIN: f64 = 0.5;
 
-/// A gate of a region that a robot waits at if it is second there.
+/// A gate of a region, at which a robot waits if it is second there.
 #[derive(Clone, Copy, Debug)]
 struct Wait {
     gate: Gate,
     first: usize,
     region: usize,
-    /// Which of the two of the region it is.
+    /// Which of the two robots of the region it is.
     side: usize,
 }
 
-/// Orders that may be switched.
+/// Orders that may be reversed.
 pub(super) struct Switching<'a> {
     kept: Kept<'a>,
-    /// Of each region the two robots, and the gates of each of them.
+    /// For each region its two robots, and the gates of each of them.
     regions: Vec<([usize; 2], [Vec<Gate>; 2])>,
-    /// Which of the two is second; none if it is over.
+    /// For each region which robot is second; neither if it is over.
     second: Vec<usize>,
-    /// What each robot may still have to wait at, the nearest first.
+    /// For each robot the gates ahead, the nearest first.
     rows: Vec<Vec<Wait>>,
     ends: Vec<f64>,
 }
 
-/// When all would arrive, and the regions at which they would wait, with for how long.
+/// Arrival times of all robots, and the regions at which they would wait, with the waits.
 struct Forecast {
     cost: f64,
     waits: Vec<(usize, f64)>,
 }
 
-/// A robot in a forecast: it is late by so much beyond these lengths.
+/// The timeline of a robot in a forecast, with its delays beyond certain lengths.
 struct Line {
-    /// When it would be at the length 0, without waits \[s\].
+    /// Time at which it would be at length 0 without waits \[s\].
     start: f64,
     delays: Vec<[f64; 2]>,
     next: usize,
@@ -78,7 +78,7 @@ impl<'a> Switching<'a> {
         Self { kept, regions, second, rows, ends }
     }
 
-    /// When all are where if they go on as they can and stops last as long as is expected; none if somebody waits for ever.
+    /// The forecast if all go on as they can and stops last as long as expected; an error if a robot waits for ever.
     fn forecast(&self, at: &[f64], stopped: &[f64]) -> Result<Forecast, Vec<usize>> {
         let count = at.len();
         let line = |robot: usize| Line { start: stopped[robot] - at[robot] / SPEED, delays: Vec::new(), next: 0 };
@@ -134,7 +134,7 @@ impl<'a> Switching<'a> {
         at[robots[first]] <= hold - super::ROOM
     }
 
-    /// Turns a region round, and those that keep somebody waiting for ever then; none if there is no such way.
+    /// Reverses the order at a region, and those that would keep a robot waiting for ever then; `None` if that is impossible.
     fn turned(&mut self, region: usize, at: &[f64], stopped: &[f64]) -> (Vec<usize>, Option<Forecast>) {
         let mut turned = vec![region];
         self.second[region] = 1 - self.second[region];
@@ -162,7 +162,7 @@ impl Holds for Switching<'_> {
 
     fn look(&mut self, at: &[f64], stopped: &[f64]) {
         for (robot, row) in self.rows.iter_mut().enumerate() {
-            // Whoever is beyond a gate has used its right there.
+            // A robot beyond a gate has used its right there.
             let counts = |wait: &Wait| wait.gate.at >= at[robot] || self.second[wait.region] == wait.side;
             row.retain(|wait| wait.gate.needs > at[wait.first] && counts(wait));
         }

@@ -2,7 +2,7 @@
 
 use pcr_formats::import::Vehicle;
 
-/// What a robot can do.
+/// The abilities of a robot.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Abilities {
     pub(super) speed: f64,
@@ -30,12 +30,12 @@ impl Abilities {
         }
     }
 
-    /// Time that is lost by a stop \[s\].
+    /// Time lost by a stop \[s\].
     pub(super) fn stop(&self) -> f64 {
         self.speed / self.acceleration
     }
 
-    /// Way to stop from a speed \[m\].
+    /// Stopping distance from a speed \[m\].
     pub(super) fn braking(&self, speed: f64) -> f64 {
         speed * speed / (2.0 * self.acceleration)
     }

@@ -1,4 +1,4 @@
-//! What robots would do if nobody was in anybody's way: the same missions, the same delays.
+//! Missions that the robots would do if no robot was in another one's way, with the same delays.
 
 use super::draws::{self, STEP, disturb};
 use super::robot::Robot;
@@ -6,16 +6,16 @@ use super::site::From;
 use super::state::Run;
 use super::way::Way;
 
-/// Goals that a way goes to: at a goal it is known already where to turn.
+/// Number of goals that a way leads to: at each goal the next turn is known already.
 const GOALS: u64 = 2;
 
 impl Run {
-    /// Missions that all robots would carry out, each as if it were alone, on its quickest ways, after `begin` \[s\], until the end.
+    /// Number of missions that all robots would carry out after `begin` \[s\], each alone, on its quickest ways.
     pub(super) fn alone(&self, begin: f64) -> usize {
         (0..self.robots.len()).map(|robot| self.alone_with(robot, begin)).sum()
     }
 
-    /// Those of one robot.
+    /// The missions of one robot.
     fn alone_with(&self, number: usize, begin: f64) -> usize {
         let Self { abilities, request, .. } = self;
         let mut robot = Robot::new(self.robots[number].way.clone());
@@ -37,7 +37,7 @@ impl Run {
         done
     }
 
-    /// The quickest way of a robot to its next goals, and what is cut off from the way before \[m\].
+    /// The quickest way of a robot to its next goals, and the length that is cut off from the way before \[m\].
     fn onward(&self, robot: &Robot, number: usize, given: u64) -> Option<(Way, f64)> {
         let Self { site, ends, abilities, network, request, .. } = self;
         let kept = robot.way.kept(site, robot.at, robot.stop(abilities), robot.turned);

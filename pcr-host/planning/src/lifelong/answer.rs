@@ -9,39 +9,39 @@ use serde::Serialize;
 pub struct Lifelong {
     /// Name of the layout.
     pub layout: String,
-    /// From which missions and delays follow.
+    /// Seed of missions and delays.
     pub seed: u64,
-    /// Robots asked for.
+    /// Number of robots requested.
     pub asked: usize,
-    /// For how long missions come \[h\].
+    /// Time for which missions come \[h\].
     pub hours: f64,
     /// Radius of the discs, without their margin \[m\].
     pub radius: f64,
-    /// What goes wrong with robots.
+    /// Random delays of the robots.
     pub delays: Delays,
-    /// Where robots may stand, and what is hard about the layout.
+    /// Where robots may stand, and what makes the layout difficult.
     pub well_formedness: WellFormedness,
-    /// Missions an hour, after the first tenth of the time, that the robots would do if nobody was in anybody's way.
+    /// Missions per hour, after the first tenth of the time, that the robots would do if no robot was in another one's way.
     pub alone: f64,
-    /// A run for each method.
+    /// One run for each method.
     pub runs: Vec<Driven>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 
-/// A run, and what it took on the machine.
+/// A run, with its computing times.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Driven {
-    /// How it went.
+    /// The results of the run.
     #[serde(flatten)]
     pub outcome: Outcome,
-    /// Decisions: ways and orders that were looked for.
+    /// Number of decisions: searches for a way and orders.
     pub decisions: usize,
     /// Time within which half of the decisions was made \[s\].
     pub decision_median: f64,
-    /// The same of 99 of 100 \[s\].
+    /// Time within which 99 of 100 decisions were made \[s\].
     pub decision_p99: f64,
-    /// Time of the simulation \[s\].
+    /// Computing time of the simulation \[s\].
     pub computed_in: f64,
 }
 
@@ -49,7 +49,7 @@ impl Lifelong {
     /// Runs the same missions with the same delays under some methods.
     ///
     /// # Errors
-    /// Those of [`run`].
+    /// Errors of [`run`].
     pub fn of(imported: &Imported, request: Request, methods: &[Method]) -> Result<Self, String> {
         let mut well_formedness = WellFormedness::default();
         let (mut runs, mut alone) = (Vec::new(), 0.0);
@@ -73,8 +73,8 @@ impl Lifelong {
         })
     }
 
-    /// Whether every run is certified free of contact, everybody kept to what it was allowed, nobody waits for ever, and somebody reached a
-    /// goal.
+    /// Whether every run is certified free of contact, no robot went beyond its hold, no robot waits for ever, and some goal
+    /// was reached.
     pub fn is_sound(&self) -> bool {
         self.runs.iter().all(|run| {
             let Outcome { certificate, breaches, stuck, idle_because, .. } = &run.outcome;

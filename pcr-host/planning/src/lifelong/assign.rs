@@ -1,18 +1,18 @@
-//! Which robot does which task. A task is done by the first robot that comes to its node, or stands there, after it has come; whoever
-//! was sent for it then gets another one.
+//! Assigns tasks to robots. A task is done by the first robot that is at its node after the task has come; the robot that was
+//! sent for it then gets another one.
 
 use super::scene::Scene;
 use super::site::From;
 use super::state::{Mission, Run};
 use std::time::Instant;
 
-/// A robot takes a task over from another one if it would be there sooner by so much \[s\].
+/// A robot takes a task over from another one if it would be there sooner by this time \[s\].
 const SOONER: f64 = 3.0;
 
-/// Between two looks at tasks that others are sent for \[s\].
+/// Time between two looks at tasks that other robots are sent for \[s\].
 const AGAIN: f64 = 1.0;
 
-/// A robot without a task, where it can leave its way, and when it is there \[s\].
+/// A robot without a task, the place where it can leave its way, and the time when it is there \[s\].
 #[derive(Clone, Copy)]
 struct Idle {
     robot: usize,
@@ -21,7 +21,7 @@ struct Idle {
 }
 
 impl Run {
-    /// Gives the tasks that have come to robots that have none.
+    /// Assigns tasks that have come to robots without a task.
     pub(super) fn assign(&mut self, now: f64) {
         self.come(now);
         let mut begin = Instant::now();
@@ -40,7 +40,7 @@ impl Run {
         }
     }
 
-    /// Opens tasks. Those where somebody stands are done.
+    /// Opens tasks that have come. Tasks at nodes where a robot stands are done.
     fn come(&mut self, now: f64) {
         let Some(tasks) = &mut self.tasks else { return };
         let known = tasks.open.len();
@@ -60,7 +60,7 @@ impl Run {
         idle.map(|robot| scene.idle(robot)).collect()
     }
 
-    /// Sends a robot for a task, and nobody else; since `begin` it was looked for.
+    /// Sends a robot, and no other, for a task. The search for it began at `begin`.
     fn send(&mut self, robot: usize, task: usize, now: f64, begin: Instant) {
         let Some(tasks) = &mut self.tasks else { return };
         let prepared = std::mem::take(&mut tasks.spent) + begin.elapsed();
@@ -71,7 +71,7 @@ impl Run {
             Some(Mission { goal, since, alone: 0.0, admitted: false, passed: 0, next_try: now, prepared });
     }
 
-    /// A robot has no task any more.
+    /// Takes its task from a robot.
     fn release(&mut self, robot: Option<usize>) {
         if let Some(robot) = robot {
             self.missions[robot] = None;
@@ -79,7 +79,8 @@ impl Run {
         }
     }
 
-    /// Of the tasks that nobody is sent for, and these robots, the pair that is next: a second of age counts as much as one on the way.
+    /// The next pair of a task that no robot is sent for and one of these robots: a second of age counts as much as a second of
+    /// travel.
     fn best(&self, idle: &[Idle], now: f64) -> Option<(usize, usize)> {
         let (scene, tasks) = (self.scene(now), self.tasks.as_ref()?);
         let free = tasks.open.iter().enumerate().filter(|(_, task)| task.robot.is_none());
@@ -90,7 +91,7 @@ impl Run {
         pairs.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|pair| pair.0 < f64::INFINITY).map(|pair| pair.1)
     }
 
-    /// Of the tasks that somebody is sent for, and these robots, the pair by which most is gained.
+    /// The pair of a task that another robot is sent for and one of these robots that gains the most time.
     fn sooner(&self, idle: &[Idle], now: f64) -> Option<(usize, usize)> {
         let (scene, tasks) = (self.scene(now), self.tasks.as_ref()?);
         let sent = tasks.open.iter().enumerate().filter_map(|(place, task)| Some((place, task.node, task.robot?)));
@@ -102,7 +103,7 @@ impl Run {
         pairs.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|pair| pair.0 < 0.0).map(|pair| pair.1)
     }
 
-    /// A robot is at a node: the tasks there are done.
+    /// Completes the tasks at a node where a robot is.
     fn visit(&mut self, node: usize, now: f64) {
         let Some(tasks) = &mut self.tasks else { return };
         for task in tasks.done(node) {
@@ -112,7 +113,7 @@ impl Run {
         }
     }
 
-    /// A robot has come from a length of its way to where it is.
+    /// Completes the tasks on the part of its way that a robot has passed since it was at length `from`.
     pub(super) fn passed(&mut self, robot: usize, from: f64, now: f64) {
         let it = &self.robots[robot];
         let nodes = it.way.nodes(&self.site, from, it.at);
@@ -128,7 +129,7 @@ impl Scene<'_> {
         Idle { robot, from: kept.on, there }
     }
 
-    /// The time that a robot takes to the task that it is sent for, if nobody is in its way; by the times to that \[s\].
+    /// Time that a robot takes to its task if no other robot is in its way \[s\]. `time` is the time from a place to the task.
     fn time_left(&self, robot: usize, time: impl Fn(From) -> f64) -> f64 {
         let it = &self.robots[robot];
         match it.way.goals.first() {

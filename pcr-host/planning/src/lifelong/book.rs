@@ -10,37 +10,37 @@ use super::way::Way;
 use pcr_core::Interval;
 use std::rc::Rc;
 
-/// A region of two ways, and who goes first.
+/// A region of two ways, and its passing order.
 #[derive(Clone, Debug)]
 pub(super) struct Region {
     pub(super) robots: [usize; 2],
-    /// Lengths of each of the two ways in it \[m\].
+    /// Range of lengths of the region on each of the two ways \[m\].
     pub(super) hull: [Interval<f64>; 2],
-    /// Of each of them as the second.
+    /// Gates of each of the two robots, if it is the second.
     gates: [Rc<[Timed]>; 2],
-    /// The nearest and the last of these, if there are any.
+    /// The nearest and the last of these gates, if there are any.
     ends: [Option<[Timed; 2]>; 2],
-    /// Which of the two goes first.
+    /// Which of the two goes first: 0 or 1.
     pub(super) first: usize,
 }
 
 impl Region {
-    /// The gates of whoever is second.
+    /// The gates of the second robot.
     pub(super) fn gates(&self) -> &[Timed] {
         &self.gates[1 - self.first]
     }
 
-    /// The gates of one of the two as the second.
+    /// The gates of one of the two robots, if it is the second.
     pub(super) fn gates_of(&self, second: usize) -> &[Timed] {
         &self.gates[second]
     }
 
-    /// The nearest and the last gate of whoever is second, if there are any.
+    /// The nearest and the last gate of the second robot, if there are any.
     pub(super) fn ends(&self) -> Option<[Timed; 2]> {
         self.ends[1 - self.first]
     }
 
-    /// With the two in the other order.
+    /// The same region with the two robots exchanged.
     fn swapped(&self) -> Self {
         let Self { robots: [a, b], hull: [own, other], gates: [first, second], ends: [head, tail], .. } = self;
         Self {
@@ -52,23 +52,23 @@ impl Region {
         }
     }
 
-    /// Who is second.
+    /// The robot that passes second.
     pub(super) fn second(&self) -> usize {
         self.robots[1 - self.first]
     }
 
-    /// Who is second, and from which length on.
+    /// The robot that passes second, and the length at which the region begins on its way \[m\].
     fn waits(&self) -> (usize, f64) {
         (self.second(), self.hull[1 - self.first].lo)
     }
 
-    /// Whether one of the two has left it behind.
+    /// Whether one of the two robots has left the region.
     pub(super) fn is_over(&self, at: [f64; 2]) -> bool {
         at[0] > self.hull[0].hi || at[1] > self.hull[1].hi
     }
 
-    /// Whether this one of the two can go first: the other one can stop before what it has still to pass, and either the first leaves, or
-    /// the other one need not go further.
+    /// Whether robot `first` of the two can go first: the other can stop at its hold, and `first` leaves the region on its way, or the way
+    /// of the other ends before the last gate.
     pub(super) fn can_be_first(&self, first: usize, at: [f64; 2], stop: [f64; 2], lengths: [f64; 2]) -> bool {
         let second = 1 - first;
         let gates = &self.gates[second];
@@ -80,9 +80,9 @@ impl Region {
 
 /// A pair of atoms of two ways that touch.
 struct Tie<'s> {
-    /// Whose the other way is.
+    /// The robot of the other way.
     other: usize,
-    /// Places on the ways.
+    /// Index of the atom on each of the two ways.
     places: [usize; 2],
     hull: [Interval<f64>; 2],
     contact: &'s Contact,
@@ -93,17 +93,19 @@ struct Tie<'s> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Book {
     regions: Vec<Option<Region>>,
-    /// Of each of them who is second, and from which length on that one may have to wait \[m\]: what is asked for in each step of a robot.
+    /// For each region the robot that passes second, and the length from which on it may have to wait \[m\]. It is kept apart from
+    /// `regions` because each step of a robot reads it.
     seconds: Vec<(usize, f64)>,
+    /// Unused indices of `regions`.
     free: Vec<usize>,
-    /// Those of each robot.
+    /// For each robot the indices of its regions.
     rows: Vec<Vec<usize>>,
-    /// Who has an atom on its way, and as which of it.
+    /// For each atom the robots that have it on their way, with its index on that way.
     on: Vec<Vec<(usize, usize)>>,
 }
 
 impl Book {
-    /// Of robots that stand at nodes apart.
+    /// The book of robots that stand at nodes without touching.
     pub(super) fn new(site: &Site, robots: &[Robot]) -> Self {
         let (rows, on) = (vec![Vec::new(); robots.len()], vec![Vec::new(); site.atoms.len()]);
         let mut book = Self { rows, on, ..Self::default() };
@@ -118,7 +120,7 @@ impl Book {
         self.rows[robot].iter().filter_map(|&place| self.regions[place].as_ref())
     }
 
-    /// The regions of a robot with their places, the robot as the first of the two.
+    /// The regions of a robot with their indices; the robot is the first of the two.
     pub(super) fn seen_by(&self, robot: usize) -> impl Iterator<Item = (usize, Region)> {
         self.rows[robot].iter().filter_map(move |&place| {
             let region = self.regions[place].as_ref()?;
@@ -126,7 +128,7 @@ impl Book {
         })
     }
 
-    /// Who goes first at some regions, by their places.
+    /// Sets which robot goes first at some regions, given by their indices.
     pub(super) fn settle(&mut self, firsts: &[(usize, usize)]) {
         for &(place, first) in firsts {
             if let Some(region) = &mut self.regions[place] {
@@ -136,7 +138,7 @@ impl Book {
         }
     }
 
-    /// How far a robot may go.
+    /// Length up to which a robot may go.
     pub(super) fn hold(&self, robot: usize, robots: &[Robot], far: f64) -> f64 {
         let mut least = far;
         for &place in &self.rows[robot] {
@@ -151,7 +153,7 @@ impl Book {
         least
     }
 
-    /// Drops the regions that a robot, or the other one, has left behind.
+    /// Removes the regions that a robot, or the other one, has left.
     pub(super) fn drop_over(&mut self, robot: usize, robots: &[Robot]) {
         let over = |place: &usize| {
             let region = self.regions[*place].as_ref();
@@ -170,7 +172,7 @@ impl Book {
         }
     }
 
-    /// Gives a robot another way, with these regions of it.
+    /// Gives a robot another way, with its regions.
     pub(super) fn exchange(&mut self, robot: usize, old: &Way, new: &Way, regions: Vec<Region>) {
         for place in std::mem::take(&mut self.rows[robot]) {
             self.remove(place);
@@ -198,7 +200,7 @@ impl Book {
         }
     }
 
-    /// Who else has an atom on the rest of its way.
+    /// The other robots that have an atom on the rest of their ways.
     pub(super) fn others_on<'s>(
         &'s self,
         atom: usize,
@@ -209,7 +211,7 @@ impl Book {
         there.filter(move |&(other, place)| other != robot && robots[other].way.offsets[place + 1] >= robots[other].at)
     }
 
-    /// The regions of a way of a robot that is at `at` on it; it is first in none.
+    /// The regions of a way of a robot that is at `at` on it; the robot goes second at all of them.
     pub(super) fn regions(&self, site: &Site, robots: &[Robot], robot: usize, way: &Way, at: f64) -> Vec<Region> {
         let mut ties: Vec<Tie<'_>> = Vec::new();
         for (place, &atom) in way.atoms.iter().enumerate() {
@@ -233,9 +235,9 @@ impl Book {
     }
 }
 
-/// A hold at the beginning of an atom is one before it; before the first there is nothing.
+/// A hold at the beginning of an atom is moved before it; there is nothing before the first atom.
 fn held(at: f64, offset: f64, place: usize) -> f64 {
-    /// So far before \[m\].
+    /// Distance by which it is moved \[m\].
     const BEFORE: f64 = 1e-6;
     match (at > f64::NEG_INFINITY, place) {
         (true, _) => at + offset,
@@ -244,7 +246,7 @@ fn held(at: f64, offset: f64, place: usize) -> f64 {
     }
 }
 
-/// Whoever never leaves on an atom has left at its end, if it goes on there.
+/// A robot that does not leave a contact on an atom has left it at the end of that atom, if its way goes on there.
 fn needed(needs: f64, way: &Way, place: usize) -> f64 {
     match needs < f64::INFINITY {
         true => needs + way.offsets[place],
@@ -258,9 +260,10 @@ fn timed(gate: Gate, first: &Way, second: &Way) -> Timed {
     Timed { gate, comes: second.time(gate.at.clamp(0.0, second.length())), opens }
 }
 
-/// The regions that ties of two robots make, sorted by places: those of atoms that follow one another belong together where they meet.
+/// The regions that are made of the ties of two robots, which are sorted by indices: ties of successive atoms belong together
+/// if they meet.
 fn joined(ties: &mut [Tie<'_>], robot: usize, ways: [&Way; 2]) -> Vec<Region> {
-    /// Lengths as near are the same \[m\].
+    /// Lengths that differ by at most this are equal \[m\].
     const NEAR: f64 = 1e-5;
     let mut parents: Vec<usize> = (0..ties.len()).collect();
     fn root(parents: &mut [usize], mut k: usize) -> usize {

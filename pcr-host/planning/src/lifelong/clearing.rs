@@ -5,7 +5,7 @@ use super::dispatch::Admitted;
 use super::scene::{Scene, TOLLS};
 
 impl Scene<'_> {
-    /// The route that a robot would take if those who stand on it went away.
+    /// The route that a robot would take if the robots that stand on it went away.
     pub(super) fn wanted(&self, robot: usize, goal: usize) -> Option<Vec<usize>> {
         let from = self.kept(robot);
         let mut route = self.routes(robot, &from, [20.0, 0.0], |node| node == goal, Some(goal), 1).pop()?;
@@ -13,7 +13,7 @@ impl Scene<'_> {
         Some(route)
     }
 
-    /// Who stands for good on a route of a robot, the first one first.
+    /// Robots that stand for good on a route of a robot, in the order of the route.
     pub(super) fn standing_on(&self, robot: usize, route: &[usize]) -> Vec<usize> {
         let mut found = Vec::new();
         for &atom in route.iter().filter(|&&atom| self.parked[atom] > 0) {
@@ -26,9 +26,9 @@ impl Scene<'_> {
         found
     }
 
-    /// Finds a way for a robot that stands where it cuts others off to where it cuts off fewer.
+    /// For a robot that cuts off nodes where it stands: a way to a place where it cuts off fewer.
     pub(super) fn tidied(&self, robot: usize) -> Option<Admitted> {
-        /// Nearest places that are tried.
+        /// Number of nearest places that are tried.
         const PLACES: usize = 3;
         let kept = self.kept(robot);
         let own = self.burden(self.robots[robot].way.end(), &[]);
@@ -42,12 +42,12 @@ impl Scene<'_> {
         self.is_reserved(robot, self.robots[robot].way.end())
     }
 
-    /// Finds a way for a robot to where it is on no route that is reserved.
+    /// Finds a way for a robot to a place that is on no reserved route.
     ///
     /// # Errors
-    /// The route that it would take if nobody stood on it, if there is any.
+    /// The route that it would take if no robot stood on it, if there is one.
     pub(super) fn make_way(&self, robot: usize) -> Result<Admitted, Option<Vec<usize>>> {
-        /// Nearest places that are tried.
+        /// Number of nearest places that are tried.
         const PLACES: usize = 6;
         let kept = self.kept(robot);
         let here = self.robots[robot].way.end();

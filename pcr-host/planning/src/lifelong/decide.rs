@@ -1,5 +1,5 @@
-//! Which robot looks for a way at what time: missions that have waited longest, next missions of robots that will soon
-//! reach their goals, and better ways for robots that wait.
+//! Chooses the robots that look for a way in a control step: missions that have waited longest, next missions of robots near
+//! their goals, and better ways for robots that wait.
 
 use super::Method;
 use super::draws;
@@ -8,23 +8,24 @@ use super::state::{Mission, Run};
 use super::waits::Waits;
 use std::time::Instant;
 
-/// Between two tries for the same mission \[s\].
+/// Time between two attempts for the same mission \[s\].
 pub(super) const AGAIN: f64 = 1.0;
 
-/// Whoever has been waiting for so long is looked for a better way \[s\], so often at most \[s\], and whoever does not wait so often.
+/// A better way is searched for a robot that has waited for the first time \[s\], at most once in the second; for other robots
+/// once in the third.
 const REVIEW: [f64; 3] = [0.3, 2.0, 5.0];
 
-/// Decisions between two controls.
+/// Largest number of decisions between two control steps.
 pub(super) const TRIES: usize = 4;
 
 impl Run {
-    /// Looks for ways for the missions that have waited longest, then for better ways for whoever waits on the way.
+    /// Searches ways for the missions that have waited longest, then better ways for robots that wait on the way.
     pub(super) fn decide(&mut self, now: f64) {
         let mut tries = self.try_missions(now);
         if self.request.method != Method::Orders {
             return;
         }
-        // Who does the next task is settled when somebody is idle.
+        // The next task of a robot is assigned when it has none.
         if self.tasks.is_none() && !self.is_urgent {
             self.look_ahead(now, &mut tries);
         }
@@ -32,14 +33,14 @@ impl Run {
         self.look_again(now, tries);
     }
 
-    /// Turns orders round for those who wait in a large fleet: that costs less than another way, and in a small one everybody is looked for
-    /// another way often enough.
+    /// Reverses orders for robots of a large fleet that wait: that costs less than another way. In a small fleet another way is
+    /// searched often enough.
     fn switch(&mut self, now: f64) {
-        /// Between two tries for the same robot \[s\].
+        /// Time between two attempts for the same robot \[s\].
         const AGAIN: f64 = 1.0;
-        /// So much sooner in all \[s\].
+        /// Time that has to be gained in all \[s\].
         const GAIN: f64 = 1.0;
-        /// Tries between two controls.
+        /// Largest number of attempts between two control steps.
         const MOST: usize = 16;
         if !self.is_large() {
             return;
@@ -53,7 +54,7 @@ impl Run {
         due.sort_by(|&a, &b| self.switched[a].total_cmp(&self.switched[b]));
         let mut due = due.into_iter().take(MOST).peekable();
         while due.peek().is_some() {
-            // The waits of the fleet are found once for all tries, and again after orders were turned round.
+            // The waits of the fleet are computed once for all attempts, and again after orders were reversed.
             let (mut tried, scene) = (Vec::new(), self.scene(now));
             let waits = &Waits::of(scene.robots, scene.book);
             let found = due.by_ref().find_map(|robot| {
@@ -74,9 +75,9 @@ impl Run {
         }
     }
 
-    /// After the last mission: better ways and orders for those who are still on their ways.
+    /// After the last mission: searches better ways and orders for robots that are still on their ways.
     pub(super) fn finish(&mut self, tick: usize, now: f64) {
-        /// Then all go on as they are, and come to their ends \[s\].
+        /// After this time all robots go on without changes, so that they come to their ends \[s\].
         const FINISH: f64 = 600.0;
         if self.request.method == Method::Orders && now < self.request.duration + FINISH {
             self.refresh(tick, now);
@@ -85,7 +86,7 @@ impl Run {
         }
     }
 
-    /// Looks for ways on to the next goals of those who soon are at their goals.
+    /// Searches ways to the next goals for robots that will soon be at their goals.
     fn look_ahead(&mut self, now: f64, tries: &mut usize) {
         let ahead = self.scene(now).ahead();
         for robot in 0..self.robots.len() {
@@ -113,7 +114,7 @@ impl Run {
         }
     }
 
-    /// Looks for better ways for those who wait, and now and then for the others.
+    /// Searches better ways for robots that wait, and from time to time for the others.
     fn look_again(&mut self, now: f64, mut tries: usize) {
         let held = |robot: usize| {
             let it = &self.robots[robot];
@@ -143,9 +144,10 @@ impl Run {
         }
     }
 
-    /// Brings the timetable of a large fleet up to date, some robots at a time: it holds without that, but would be later and later.
+    /// Updates the timetable of a large fleet, some robots at a time. It stays valid without that, but its times would be later
+    /// and later.
     pub(super) fn refresh(&mut self, tick: usize, now: f64) {
-        /// Controls in which everybody's turn comes.
+        /// Number of control steps in which all robots are updated.
         const ROUND: usize = 50;
         if !self.is_large() {
             return;
@@ -166,9 +168,9 @@ impl Run {
         }
     }
 
-    /// Another way and other orders for a robot that waits on its way, if all are expected to arrive sooner.
+    /// Searches another way and other orders for a robot that waits on its way, with which all are expected to arrive sooner.
     fn review(&mut self, robot: usize, now: f64) {
-        /// So much sooner in all \[s\].
+        /// Time that has to be gained in all \[s\].
         const GAIN: f64 = 1.0;
         let Some(goal) = self.missions[robot].map(|mission| mission.goal) else { return };
         let mut goals = vec![goal];

@@ -12,50 +12,51 @@ use super::waits::Waits;
 use super::way::{Kept, Way};
 use std::cell::Cell;
 
-/// Sides are also taken as if the robot came by so much later, or, if negative, earlier \[s\].
+/// Orders are also searched as if the robot came later by these times \[s\]; negative: earlier.
 const SHIFTS: [f64; 5] = [-8.0, -20.0, 10.0, -40.0, 25.0];
 
-/// On so many of the best ways.
+/// Number of the best ways for which this is done.
 const SHIFTED: usize = 2;
 
-/// Ends that are tried for each route.
+/// Number of ends that are tried for each route.
 const ENDS: usize = 3;
 
-/// Gates that a decision may go through in all its forecasts, about; and the least and the largest number of forecasts that it may make.
+/// Number of gates that all forecasts of a decision may visit, roughly; and the least and the largest number of forecasts.
 const WORK: usize = 30_000;
 const FORECASTS: [usize; 2] = [12, 96];
 
-/// The same where a forecast looks at some robots of many.
+/// Largest number of forecasts of a decision in a large fleet.
 const FEW: usize = 2;
 
 /// A way that was admitted.
 #[derive(Debug)]
 pub(super) struct Admitted {
     pub(super) way: Way,
-    /// Atoms of it that are kept from the way before.
+    /// Number of atoms that are kept from the way before.
     pub(super) kept: usize,
-    /// What is cut off from the way before \[m\].
+    /// Length that is cut off from the way before \[m\].
     pub(super) before: f64,
     pub(super) regions: Vec<Region>,
-    /// When it sets off \[s\].
+    /// Time at which the robot sets off \[s\].
     pub(super) departs: f64,
-    /// Forecast, for comparison.
+    /// Cost of the forecast, for comparison.
     pub(super) cost: f64,
-    /// Robots of a large fleet that go by another timetable then.
+    /// New timelines of robots of a large fleet whose times change.
     pub(super) lines: Vec<(usize, Timeline)>,
 }
 
-/// A route, and after how many of its atoms the goals are.
+/// Atoms of a route, and for each goal the number of atoms before it.
 type Route = (Vec<usize>, Vec<usize>);
 
 impl Scene<'_> {
-    /// Finds a way for a robot to its goals and on to an end; none if none is admitted now.
+    /// Finds a way for a robot to its goals and on to an end; `None` if none is admitted now.
     pub(super) fn dispatch(&self, robot: usize, goals: &[usize]) -> Option<Admitted> {
         let kept = self.kept(robot);
         self.admitted(robot, &kept, self.candidates(robot, &kept, goals))
     }
 
-    /// Another way and other orders for a robot that has a mission, with which all are expected to arrive sooner by `gain` \[s\].
+    /// Another way and other orders for a robot with a mission, if all robots together are expected to arrive sooner by `gain`
+    /// \[s\].
     pub(super) fn better(&self, robot: usize, goals: &[usize], gain: f64) -> Option<Admitted> {
         let it = &self.robots[robot];
         let cost = match self.timetable {
@@ -68,7 +69,7 @@ impl Scene<'_> {
     /// Routes to goals and on to an end.
     fn candidates(&self, robot: usize, kept: &Kept, goals: &[usize]) -> Vec<Route> {
         let mut found: Vec<Route> = Vec::new();
-        // In a large fleet the quickest way has to do, if there is any: decisions cost what they are about.
+        // In a large fleet only the quickest way is tried, if there is one, to save time.
         let is_large = self.timetable.is_some();
         let ends = if is_large { 1 } else { ENDS };
         for tolls in TOLLS {
@@ -93,7 +94,7 @@ impl Scene<'_> {
                 onward = self.onward(robot, from, tolls, safe, None, ends);
             }
             if onward.is_empty() {
-                // More robots than ends: wherever nobody stands.
+                // More robots than ends: any place where no robot stands.
                 onward = self.aside(robot, from, tolls, |_| true, ends);
             }
             for end in onward {
@@ -106,7 +107,7 @@ impl Scene<'_> {
         found
     }
 
-    /// The way and orders with which all are expected to arrive soonest, of those that are admitted.
+    /// The admitted way and orders with which all robots are expected to arrive soonest.
     pub(super) fn admitted(&self, robot: usize, kept: &Kept, candidates: Vec<Route>) -> Option<Admitted> {
         if self.method == Method::EdgeLocks {
             return self.locked(robot, kept, candidates);
@@ -114,7 +115,7 @@ impl Scene<'_> {
         let it = &self.robots[robot];
         let waits = &Waits::of(self.robots, self.book);
         let [at, stop] = [it.at, it.stop(self.abilities)].map(|length| length - kept.before);
-        // The orders of all are sound before, the more so without this robot.
+        // The orders of all robots were valid before, so they are without this robot.
         let Scene { robots, abilities, time, .. } = *self;
         let alone = || {
             let changed = Some((robot, &it.way, it.at, time, &[][..]));
@@ -155,7 +156,7 @@ impl Scene<'_> {
         }
         found.sort_by(|a, b| a.forecast.cost.total_cmp(&b.forecast.cost));
         if self.method == Method::Orders {
-            // Earlier or later among the others.
+            // Earlier or later in the sequence of the others.
             let mut places: Vec<usize> = found.iter().map(|found| found.place).collect();
             places.extend((0..tried.len()).filter(|place| found.iter().all(|found| found.place != *place)));
             places.truncate(SHIFTED);
@@ -186,7 +187,8 @@ impl Scene<'_> {
 }
 
 impl Scene<'_> {
-    /// A robot of a large fleet, and those who wait for it by the timetable: they may be earlier when it has another way.
+    /// The robot, and the robots that wait for it by the timetable of a large fleet: they may be earlier when it has another
+    /// way.
     pub(super) fn waiting_for(&self, robot: usize) -> Vec<usize> {
         let mut found = vec![robot];
         let firsts = self.book.row(robot).filter(|region| region.second() != robot);
@@ -198,8 +200,8 @@ impl Scene<'_> {
         found
     }
 
-    /// The first way of which all edges can be got one after the other: nobody stands on it for good, its end is on nobody's way, and
-    /// all can finish.
+    /// The first way whose edges can all be given one after the other: no robot stands on it for good, its end is on no other
+    /// way, and all robots can finish.
     fn locked(&self, robot: usize, kept: &Kept, candidates: Vec<Route>) -> Option<Admitted> {
         for (route, goals) in candidates {
             let atoms: Vec<usize> = kept.atoms.iter().chain(&route).copied().collect();
@@ -230,7 +232,7 @@ impl Scene<'_> {
     }
 }
 
-/// A way with orders, by its place among those that were tried.
+/// A way with orders, by its index among those that were tried.
 struct Found {
     place: usize,
     regions: Vec<Region>,

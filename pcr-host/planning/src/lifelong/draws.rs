@@ -6,13 +6,13 @@ use super::robot::Robot;
 use super::site::Site;
 use crate::random::Random;
 
-/// Time between two controls \[s\].
+/// Time between two control steps \[s\].
 pub(super) const STEP: f64 = 0.1;
 
 /// Steps between two values of the slip.
 const SLIPS: usize = 50;
 
-/// A robot is stopped, or slips, as it would be under any method.
+/// Draws the random stops and slip of a robot: the same under each method.
 pub(super) fn disturb(robot: &mut Robot, number: usize, tick: usize, now: f64, open: bool, request: &Request) {
     let delays = request.delays;
     let mut random = Random(request.seed ^ (number as u64).wrapping_mul(0x9e37_79b9) ^ ((tick as u64) << 24));
@@ -25,8 +25,8 @@ pub(super) fn disturb(robot: &mut Robot, number: usize, tick: usize, now: f64, o
     }
 }
 
-/// The goal of the mission of this number of a robot: another node than where it is, whatever anybody does, where it would not touch a
-/// robot that stands here, if there is such a node.
+/// The goal of a mission of a robot: a different node from its present one under any method, and if possible one where it would
+/// not touch a robot that stands at `place`.
 pub(super) fn goal(site: &Site, ends: &Ends, seed: u64, robot: usize, number: u64, place: usize) -> usize {
     let mut random = Random(seed.wrapping_mul(0x2545_f491).wrapping_add((robot as u64) << 32).wrapping_add(number));
     random.bits();
@@ -34,14 +34,14 @@ pub(super) fn goal(site: &Site, ends: &Ends, seed: u64, robot: usize, number: u6
     let is_any = ends.nodes.iter().any(is_apart);
     loop {
         let goal = ends.nodes[random.below(ends.nodes.len())];
-        // Robots only start where there are two nodes.
+        // Robots only start if there are two nodes.
         if if is_any { is_apart(&goal) } else { goal != place } {
             return goal;
         }
     }
 }
 
-/// Nodes apart from one another, safe ends first.
+/// Nodes at which robots do not touch one another, safe ends first.
 pub(super) fn starts(site: &Site, ends: &Ends, count: usize, seed: u64) -> Vec<usize> {
     let mut random = Random(seed ^ 0x5741_5254);
     let mut starts: Vec<usize> = Vec::new();

@@ -8,28 +8,28 @@ use serde::Serialize;
 use std::cell::OnceCell;
 use std::collections::VecDeque;
 
-/// How often safe ends are looked for, from another order of nodes, at most.
+/// Largest number of random orders of nodes from which safe ends are searched.
 const DRAWS: usize = 40;
 
-/// Pairs of nodes that are looked at for that, about: in a layout of more than 2,828 nodes only dead ends are looked at.
+/// Number of pairs of nodes to be examined for that, roughly. In a layout of more than 2,828 nodes only dead ends are examined.
 const PAIRS: usize = 8_000_000;
 
-/// Where missions can be carried out without end, and what stands against it.
+/// The nodes between which missions can be carried out without end, the safe ends, and obstacles to it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct WellFormedness {
-    /// Nodes of the level that has most.
+    /// Number of nodes of the level with the most nodes.
     pub nodes: usize,
     /// Nodes from which not all others can be reached, or that cannot be reached from all others: no missions go there.
     pub cut_off: Vec<Id>,
-    /// Safe ends: robots may stand at all of them for good, and all other nodes, and each of them, can be reached from one another.
-    /// With fewer robots no mission is refused for ever, and idle robots wait there.
+    /// Safe ends: while robots stand at all of them for good, all other nodes, and each safe end, can be reached from one another.
+    /// With fewer robots than safe ends no mission is refused for ever. Idle robots wait there.
     pub safe_ends: Vec<Id>,
-    /// Nodes where a single robot that stands for good already cuts others off.
+    /// Nodes where a single robot that stands for good cuts off other nodes.
     pub never_ends: Vec<Id>,
-    /// Edges for both directions without which the layout falls apart: robots that meet there wait for each other for ever unless one has
-    /// waited before.
+    /// Two-way edges without which not all nodes can be reached from one another. Robots that meet there wait for each other for ever
+    /// unless one of them has waited before.
     pub bridges: Vec<Id>,
-    /// Whether the safe ends are the most that were found of all nodes, or dead ends only, in a large layout.
+    /// Whether only dead ends were examined as safe ends, as in a large layout.
     pub dead_ends_only: bool,
 }
 
@@ -39,10 +39,11 @@ pub(super) struct Ends {
     /// Nodes that can all be reached from one another.
     pub(super) nodes: Vec<usize>,
     pub(super) safe: Vec<usize>,
-    /// Of each node whether it is one.
+    /// For each node whether it is a safe end.
     pub(super) is_safe: Vec<bool>,
-    /// Places on dead ends, the dead end first; of each node in which of these and as which of it.
+    /// Queues of places to stand on dead ends, each with its dead end first.
     lanes: Vec<Vec<usize>>,
+    /// `lane[node]` is (index in `lanes`, position in that queue) of a queue place.
     lane: Vec<Option<(usize, usize)>>,
     harm: OnceCell<Vec<usize>>,
 }
@@ -58,7 +59,7 @@ impl Ends {
         Self { lane: vec![None; is_safe.len()], lanes: Vec::new(), harm: OnceCell::new(), nodes, safe, is_safe }
     }
 
-    /// With places on dead ends, each with its dead end first.
+    /// With queues of places on dead ends, each with its dead end first.
     pub(super) fn queued(self, site: &Site, lanes: Vec<Vec<usize>>) -> Self {
         let (mut is_safe, mut lane) = (self.is_safe, vec![None; site.points.len()]);
         is_safe.resize(site.points.len(), false);
@@ -68,7 +69,7 @@ impl Ends {
         Self { lanes, lane, is_safe, ..self }
     }
 
-    /// Whether a robot that comes to a place on a dead end has no room that is left behind it, and nobody in front.
+    /// Whether a robot may take a queue place: the next place towards the dead end is taken, and all places in front are free.
     pub(super) fn is_next(&self, node: usize, is_free: impl Fn(usize) -> bool) -> bool {
         let Some((lane, place)) = self.lane[node] else { return true };
         let lane = &self.lanes[lane];
@@ -76,10 +77,10 @@ impl Ends {
             && lane[place + 1..].iter().all(|&front| is_free(front))
     }
 
-    /// Of each node how many others are cut off if a robot stands there and at all safe ends, places on dead ends among them; all of a
-    /// node where nobody should. Those behind a place are full already.
+    /// For each node: how many nodes become unreachable if a robot stands there in addition to all safe ends; `usize::MAX` for nodes
+    /// where no robot should stand. For a robot at a queue place other queue places do not count: those behind it are taken already.
     pub(super) fn harm(&self, site: &Site) -> &[usize] {
-        /// Up to about so many pairs of nodes around one it is quicker to look for ways between them than to count anew.
+        /// Up to about this many pairs of neighbours it is faster to search ways between them than to count all nodes again.
         const FEW: usize = 64;
         self.harm.get_or_init(|| {
             let places: Vec<usize> = self.lanes.iter().flat_map(|lane| &lane[1..]).copied().collect();
@@ -91,7 +92,7 @@ impl Ends {
                 let mut is_counted = vec![false; site.points.len()];
                 counted.iter().for_each(|&node| is_counted[node] = full.is_inside[node]);
                 for &node in nodes {
-                    // If it parts nothing, only the nodes that it covers are lost; else what is left is counted anew.
+                    // If the robot separates no nodes, only the nodes that its disc covers are lost. Otherwise the rest is counted again.
                     harm[node] = if parts(&mut search, &full.is_inside, |atom| full.is_open[atom], node, FEW) {
                         let ends: Vec<usize> = self.safe.iter().chain([&node]).copied().collect();
                         full.count.saturating_sub(Left::of(site, counted, &ends).count)
@@ -105,7 +106,7 @@ impl Ends {
         })
     }
 
-    /// What is told of them.
+    /// The report about the safe ends of a layout.
     pub(super) fn report(&self, site: &Site, layout: &Layout) -> WellFormedness {
         let ids = |nodes: Vec<usize>| nodes.into_iter().map(|node| layout.nodes[node].id.clone()).collect();
         let mut is_inside = vec![false; site.points.len()];
@@ -143,12 +144,12 @@ fn strongest(site: &Site) -> Vec<usize> {
     best
 }
 
-/// How often safe ends are looked for among so many nodes.
+/// Number of random orders from which safe ends are searched among these nodes.
 fn draws(nodes: &[usize]) -> usize {
     (PAIRS / nodes.len().pow(2).max(1)).min(DRAWS)
 }
 
-/// The largest set that is found from some orders of nodes, dead ends first.
+/// The largest set of safe ends found from some random orders of nodes, dead ends first.
 fn drawn(site: &Site, nodes: &[usize], seed: u64) -> Vec<usize> {
     let mut random = Random(seed);
     let mut best = Vec::new();
@@ -171,7 +172,7 @@ fn drawn(site: &Site, nodes: &[usize], seed: u64) -> Vec<usize> {
     best
 }
 
-/// Nodes with one neighbour where a robot touches nobody on any edge but those to that: nothing else leads past them.
+/// Nodes with one neighbour at which a robot touches no robot on other edges than those to that neighbour: no other way leads past them.
 fn dead_ends(site: &Site, nodes: &[usize]) -> Vec<usize> {
     let mut ends: Vec<usize> = Vec::new();
     let mut taken = vec![false; site.atoms.len()];
@@ -189,8 +190,8 @@ fn dead_ends(site: &Site, nodes: &[usize]) -> Vec<usize> {
     ends
 }
 
-/// Whether all nodes that robots at `ends` leave free can be reached from one another, and each of the ends with its own
-/// robot away. Nodes that they cover otherwise are lost: there must be none.
+/// Whether all nodes that robots at `ends` leave free can be reached from one another, and so can each end while its own robot is away.
+/// Robots at the ends may cover no other nodes.
 fn is_open(site: &Site, nodes: &[usize], ends: &[usize]) -> bool {
     let mut blocked = vec![0_u16; site.atoms.len()];
     ends.iter().for_each(|&end| site.covers(end).iter().for_each(|&atom| blocked[atom] += 1));
@@ -201,7 +202,7 @@ fn is_open(site: &Site, nodes: &[usize], ends: &[usize]) -> bool {
         && ends.iter().all(|&end| {
             let covers = site.covers(end);
             let open = |atom: usize| blocked[atom] == 0 || (blocked[atom] == 1 && covers.contains(&atom));
-            // Whoever leaves it comes to a node that can be reached anyway, and likewise the other way.
+            // It is enough that the robot can go to a node from which the hub can be reached, and can come from one that the hub reaches.
             let out = |atom: &usize| open(*atom) && both[1][site.atoms[*atom].ends[1]];
             let leaves = site.leaving[end].iter().any(out);
             let comes =
@@ -210,19 +211,19 @@ fn is_open(site: &Site, nodes: &[usize], ends: &[usize]) -> bool {
         })
 }
 
-/// What is left of a layout if robots stand at some nodes.
+/// The part of a layout that remains usable while robots stand at some nodes.
 struct Left {
-    /// Of each atom whether none of them is in its way.
+    /// For each atom whether no standing robot blocks it.
     is_open: Vec<bool>,
-    /// Of each node whether it is in the largest part, in which all can be reached from one another.
+    /// For each node whether it is in the largest set of nodes that can all be reached from one another.
     is_inside: Vec<bool>,
-    /// How many nodes, of those that are counted, are in there and free.
+    /// Number of counted nodes that are in this set and free.
     count: usize,
 }
 
 impl Left {
     fn of(site: &Site, counted: &[usize], ends: &[usize]) -> Self {
-        /// The largest part is found from one of so many nodes, but for odd layouts.
+        /// Number of nodes from which the largest set is searched. It may be missed if none of them is in it.
         const HUBS: usize = 4;
         let mut is_open = vec![true; site.atoms.len()];
         for &end in ends {
@@ -241,21 +242,20 @@ impl Left {
     }
 }
 
-/// The nodes at which a robot would touch one that stands at a node, itself among them.
+/// The nodes at which a robot would touch one that stands at `node`; `node` is one of them.
 fn covered(site: &Site, node: usize) -> Vec<usize> {
     site.covers(node).iter().filter_map(|&atom| atom.checked_sub(site.standing(0))).collect()
 }
 
-/// Whether a robot that stands at one of the nodes that can all be reached from one another cuts some of them off: other nodes within
-/// its disc, or those beyond it.
+/// Whether a robot that stands at `node` cuts off other inside nodes: nodes that it covers, or nodes behind it.
 fn cuts_off(search: &mut Search<'_>, is_inside: &[bool], node: usize) -> bool {
     covered(search.site, node).into_iter().any(|other| other != node && is_inside[other])
         || parts(search, is_inside, |_| true, node, usize::MAX)
 }
 
-/// Whether a robot that stands at a node parts others of those that can be reached from one another over open atoms. Ways that lead past it
-/// begin where an edge comes near it and end where one leaves; there have to be others between these, and then there are for all. If these
-/// are more than `most` pairs, no ways are looked for, and the answer is that it may part them.
+/// Whether a robot at `node` separates other inside nodes, which can reach one another over open atoms. Only ways that touch its disc
+/// are lost, so it is enough to find detours from the starts of the edges that touch it to their ends. With more than `most` pairs of
+/// starts and ends none are searched, and the answer is "maybe" (`true`).
 fn parts(
     search: &mut Search<'_>,
     is_inside: &[bool],
@@ -285,7 +285,7 @@ fn bridges(site: &Site, is_inside: &[bool]) -> Vec<usize> {
         site.atoms.iter().enumerate().filter(|(place, _)| site.back[*place].is_some_and(|back| back > *place));
     let inside = two_way.filter(|(_, atom)| atom.ends.iter().all(|&node| is_inside[node]));
     let mut cuts = |place: usize, [a, b]: [usize; 2]| {
-        // From a dead end the search is over at once.
+        // Begin at the node with fewer edges: from a dead end the search ends at once.
         let (a, b) = if site.leaving[a].len() < site.leaving[b].len() { (a, b) } else { (b, a) };
         let mut leads =
             |from: usize, to: usize| search.leads(from, to, |atom| atom != place && Some(atom) != site.back[place]);
@@ -294,10 +294,10 @@ fn bridges(site: &Site, is_inside: &[bool]) -> Vec<usize> {
     inside.filter(|(place, atom)| cuts(*place, atom.ends)).filter_map(|(_, atom)| atom.edge).collect()
 }
 
-/// Looks for ways between two nodes, those that are near first.
+/// Breadth-first search for ways between two nodes.
 struct Search<'s> {
     site: &'s Site,
-    /// The search in which a node was found last.
+    /// For each node the number of the search that found it last.
     found: Vec<u32>,
     count: u32,
 }

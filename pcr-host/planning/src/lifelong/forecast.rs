@@ -13,50 +13,50 @@ use super::waits::{Wait, Waits, sort};
 use super::way::Way;
 use std::borrow::Cow;
 
-/// What is looked at: the fleet, one of its robots on another way.
+/// The input of a forecast: the fleet, with one of its robots on another way.
 #[derive(Clone, Copy)]
 pub(super) struct Trial<'t, 'w> {
     pub(super) robots: &'t [Robot],
-    /// Those of the fleet; those of the robot that has another way are not looked at.
+    /// The waits of the fleet; those of the changed robot are ignored.
     pub(super) waits: &'t Waits<'w>,
     pub(super) abilities: &'t Abilities,
     pub(super) time: f64,
-    /// The robot, its way, where it is on it, when it sets off, and its regions.
+    /// The changed robot: index, new way, place on it \[m\], time at which it sets off, and its new regions.
     pub(super) changed: Option<(usize, &'t Way, f64, f64, &'t [Region])>,
-    /// What goals before the last one of a way count.
+    /// Weight of the goals of a way before the last one.
     pub(super) earlier: f64,
-    /// What the others keep to, and who is taken in any case; none: all are taken.
+    /// The timetable that the other robots keep, and the robots that are advanced in any case; `None`: all robots are advanced.
     pub(super) kept: Option<(&'t Timetable, &'t [usize])>,
 }
 
-/// When robots would be where.
+/// Expected times of the robots.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Forecast {
-    /// Those that were taken.
+    /// The robots that were advanced.
     pub(super) robots: Vec<usize>,
     pub(super) lines: Vec<Timeline>,
-    /// Sum of the times until goals are reached, and a little of those until all stand; by how much that is more than by the timetable,
-    /// where others keep to it \[s\].
+    /// Weighted sum of the times until robots reach their goals and ends; if the others keep a timetable, the increase over the
+    /// timetable \[s\].
     pub(super) cost: f64,
 }
 
 /// A robot that waits for ever.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stuck {
-    /// Place of the region at which it does, among those of the robot that has another way.
+    /// Index of the region at which it waits, among those of the changed robot.
     pub(super) region: Option<usize>,
 }
 
-/// Fleets of up to so many robots are taken whole.
+/// Largest fleet in which all robots are advanced.
 pub(super) const WHOLE: usize = 64;
 
-/// Robots of a larger one that are taken at most.
+/// Largest number of robots of a larger fleet that are advanced.
 pub(super) const MOST: usize = 16;
 
-/// How often others are added to them at most.
+/// Largest number of times that further robots are added to these.
 const ROUNDS: usize = 5;
 
-/// In no set of robots.
+/// Marks a robot that is not among them.
 const NONE: u32 = u32::MAX;
 
 impl<'t, 'w: 't> Trial<'t, 'w> {
@@ -71,7 +71,7 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
         self.changed.is_some_and(|changed| changed.0 == robot)
     }
 
-    /// What a robot passes second.
+    /// The regions that a robot passes second.
     fn row(&self, robot: usize) -> Cow<'t, [Wait<'t>]> {
         let known: &'t [Wait<'t>] = self.waits.row(robot);
         let Some((changed, .., regions)) = self.changed else { return known.into() };
@@ -88,7 +88,8 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
         row.into()
     }
 
-    /// When robots would be where, or those that would wait for ever; nobody in particular where too many would have to be taken.
+    /// Expected times of the robots, or the robots that would wait for ever; an empty list if too many robots would have to be
+    /// advanced.
     pub(super) fn forecast(&self) -> Result<Forecast, Vec<Stuck>> {
         let Some((timetable, some)) = self.kept else { return self.taken((0..self.robots.len()).collect()) };
         let mut taken = some.to_vec();
@@ -107,7 +108,7 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
         Err(Vec::new())
     }
 
-    /// Who keeps to the timetable, but would have to wait longer for somebody who does not.
+    /// Robots that keep the timetable but would have to wait longer for an advanced robot.
     fn delayed(&self, timetable: &Timetable, forecast: &Forecast) -> Vec<usize> {
         let mut is_known = vec![false; self.robots.len()];
         forecast.robots.iter().for_each(|&robot| is_known[robot] = true);
@@ -136,7 +137,7 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
         found
     }
 
-    /// Takes some robots from gate to gate.
+    /// Advances some robots from gate to gate.
     fn taken(&self, robots: Vec<usize>) -> Result<Forecast, Vec<Stuck>> {
         let mut places = vec![NONE; self.robots.len()];
         let mut taken: Vec<Taken<'t>> = Vec::with_capacity(robots.len());
@@ -194,18 +195,18 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
     }
 }
 
-/// A robot that is taken from gate to gate.
+/// A robot that is advanced from gate to gate.
 struct Taken<'r> {
     line: Timeline,
-    /// What it has to pass second, the nearest first, and how many of these it has come to.
+    /// The regions that it passes second, the nearest first, and the number of these that it has reached.
     regions: Cow<'r, [Wait<'r>]>,
     met: usize,
-    /// Those of them at which it may have to wait, with the gates that it has still to pass there.
+    /// Reached regions at which it may have to wait, with the gates that are still ahead.
     open: Vec<Wait<'r>>,
-    /// The nearest of these gates: its length, infinite if there is none, and whose it is.
+    /// Length of the nearest of these gates, infinite if there is none; and the index of its region.
     nearest: (f64, usize),
     length: f64,
-    /// Gates and regions that it has passed.
+    /// Number of gates and regions that it has passed.
     steps: usize,
 }
 
@@ -214,7 +215,7 @@ impl<'r> Taken<'r> {
         Self { line, regions, met: 0, open: Vec::new(), nearest: (f64::INFINITY, 0), length, steps: 0 }
     }
 
-    /// The nearest region that it has still to come to.
+    /// The nearest region that it has not reached.
     fn region(&self) -> Option<&Wait<'r>> {
         self.regions.get(self.met)
     }
@@ -224,13 +225,13 @@ impl<'r> Taken<'r> {
         self.region().is_some_and(|wait| wait.ends[0].gate.at < self.nearest.0)
     }
 
-    /// Who waits at the nearest gate, and the gate.
+    /// The nearest gate, and its region.
     fn gate(&self) -> Option<(&Wait<'r>, &'r Timed)> {
         let wait = self.open.get(self.nearest.1)?;
         Some((wait, wait.gates.first()?))
     }
 
-    /// Finds the nearest gate; among equals that of the region that was met last.
+    /// Finds the nearest gate; of several at the same length that of the region that was reached last.
     fn look(&mut self) {
         self.nearest = (f64::INFINITY, 0);
         for (place, wait) in self.open.iter().enumerate() {
@@ -241,7 +242,8 @@ impl<'r> Taken<'r> {
         }
     }
 
-    /// What comes next: who is first there, and the gate; of a region the last one, which tells whether it has been left.
+    /// What is nearest ahead: the first robot there, the gate, and whether it is a region; for a region the gate is its last
+    /// one, which tells when the first has left.
     fn ahead(&self) -> Option<(usize, Timed, bool)> {
         if self.next() >= self.length {
             return None;
@@ -253,19 +255,19 @@ impl<'r> Taken<'r> {
         }
     }
 
-    /// Length of what comes next.
+    /// Length of the nearest gate or region ahead.
     fn next(&self) -> f64 {
         let region = self.region().map_or(f64::INFINITY, |wait| wait.ends[0].gate.at);
         self.nearest.0.min(region)
     }
 
-    /// Up to which length it is known when it is there.
+    /// Length up to which its times are known.
     fn known(&self) -> f64 {
         let next = self.next();
         if next < self.length { next - 2.0 * SHORT } else { self.length }
     }
 
-    /// Comes to a region that the first leaves then, if that is known: its gates count unless it has been left by then.
+    /// Reaches a region. `left` is when the first leaves it, if known: its gates count unless the first has left by then.
     fn meet(&mut self, left: Option<f64>) {
         let Some(&wait) = self.region() else { return };
         self.met += 1;
@@ -277,7 +279,7 @@ impl<'r> Taken<'r> {
         self.look();
     }
 
-    /// Passes a gate, which opens then.
+    /// Passes a gate that opens at `opens`.
     fn wait(&mut self, opens: f64, lost: f64) {
         let Some((wait, timed)) = self.gate() else { return };
         let left = &wait.gates[1..];

@@ -12,31 +12,31 @@ pub(crate) struct Gate {
     pub(crate) needs: f64,
 }
 
-/// A gate of two ways, and when both would be there with nobody in their way, from the starts of their ways \[s\].
+/// A gate of two ways, with the times of both ways: if no robot was in the way, counted from the starts of the ways \[s\].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Timed {
     pub(super) gate: Gate,
-    /// The second at the gate.
+    /// Time at which the second robot comes to the gate.
     pub(super) comes: f64,
-    /// The first where it has to be; infinite if it never is.
+    /// Time at which the first robot opens the gate; infinite if it never does.
     pub(super) opens: f64,
 }
 
-/// Beyond the last touch a region is left \[m\].
+/// A robot has left a region when it is this far beyond the last contact \[m\].
 const LEFT: f64 = 1e-6;
 
-/// How two pieces of paths touch.
+/// How robots on two pieces of paths touch.
 #[derive(Clone, Debug)]
 pub(super) struct Contact {
-    /// Lengths of each of them at which they may touch \[m\].
+    /// Range of lengths on each of the two at which they may touch \[m\].
     pub(super) hull: [Interval<f64>; 2],
-    /// Gates of each of them as the second one. It is held at its beginning: minus infinity; the first one never leaves on
-    /// this piece: infinity.
+    /// Gates of each of the two as the second robot. `at` is minus infinity if it has to wait before this piece; `needs` is infinity if
+    /// the first robot does not leave the contact on this piece.
     pub(super) gates: [Vec<Gate>; 2],
 }
 
 impl Contact {
-    /// Of two motions at 1 m/s, with holds that follow the first one in steps of `pitch` \[m\]; none if they never touch.
+    /// The contact of two motions at 1 m/s, with gates for steps of the first robot of `pitch` \[m\]; `None` if they never touch.
     pub(super) fn of(motions: [Motion<'_, f64>; 2], pitch: f64) -> Option<Self> {
         // Two pieces of a layout have a few segments each.
         let ecm = build_ecm(&motions).expect("two short paths");
@@ -48,7 +48,7 @@ impl Contact {
     }
 }
 
-/// The gates of the ego of some regions with one other, as the second.
+/// The gates of the ego as the second robot, for its regions with one other robot.
 pub(crate) fn gates(regions: &[RegionRef<'_, f64>], pitch: f64) -> Vec<Gate> {
     let Some(extent) = regions.iter().map(|region| region.other_length()).reduce(Interval::hull) else {
         return Vec::new();
@@ -80,7 +80,7 @@ pub(crate) fn gates(regions: &[RegionRef<'_, f64>], pitch: f64) -> Vec<Gate> {
     gates
 }
 
-/// Those that matter: a gate counts if it needs more than all before it.
+/// The gates that matter: a gate counts if it needs more than all before it.
 pub(super) fn pruned(mut gates: Vec<Gate>) -> Vec<Gate> {
     gates.sort_unstable_by(|a, b| a.at.total_cmp(&b.at).then(b.needs.total_cmp(&a.needs)));
     let mut most = f64::NEG_INFINITY;
@@ -92,7 +92,7 @@ pub(super) fn pruned(mut gates: Vec<Gate>) -> Vec<Gate> {
     gates
 }
 
-/// How far the second may go when the first is at `first` \[m\].
+/// Length up to which the second robot may go when the first is at `first` \[m\].
 pub(super) fn hold(gates: &[Timed], first: f64) -> f64 {
     let next = gates.partition_point(|timed| timed.gate.needs <= first);
     gates.get(next).map_or(f64::INFINITY, |timed| timed.gate.at)

@@ -7,18 +7,18 @@ use super::robot::{Robot, SHORT};
 use super::site::Site;
 use super::way::Way;
 
-/// How many atoms of its way each robot has been given.
+/// For each robot the number of atoms of its way that it has been given.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Locks(Vec<usize>);
 
-/// What a robot has, and has still to get.
+/// The atoms that a robot holds, and those that it still needs.
 struct Claim<'w> {
     held: Vec<usize>,
     left: &'w [usize],
     end: usize,
 }
 
-/// How many of the atoms that robots have each atom touches.
+/// For each atom the number of held atoms that it touches.
 struct Held<'s> {
     site: &'s Site,
     counts: Vec<usize>,
@@ -31,24 +31,24 @@ impl Held<'_> {
         }
     }
 
-    /// Whether nobody but the one that has these touches an atom.
+    /// Whether no other robot holds an atom that touches this one; `own` are the atoms of the robot itself.
     fn is_free(&self, atom: usize, own: &[usize]) -> bool {
         self.counts[atom] == own.iter().filter(|&&held| self.site.touch(held, atom)).count()
     }
 }
 
 impl Locks {
-    /// Of robots that stand.
+    /// The locks of robots that stand.
     pub(super) fn new(robots: usize) -> Self {
         Self(vec![0; robots])
     }
 
-    /// A robot has got another way, of which it had so many atoms before.
+    /// Exchanges the way of a robot, which held this number of atoms of it before.
     pub(super) fn exchange(&mut self, robot: usize, atoms: usize) {
         self.0[robot] = atoms;
     }
 
-    /// Gives robots what they reach before they could stop, whoever has stood longest first.
+    /// Gives atoms to robots that would otherwise have to brake, the one that has stood longest first.
     pub(super) fn give(&mut self, site: &Site, robots: &[Robot], far: impl Fn(usize) -> f64) {
         let mut order: Vec<usize> = (0..robots.len()).collect();
         order.sort_by(|&a, &b| robots[a].still_since.total_cmp(&robots[b].still_since));
@@ -65,7 +65,7 @@ impl Locks {
         }
     }
 
-    /// How far a robot may go: to the end of what it has.
+    /// Length up to which a robot may go: the end of what it holds.
     pub(super) fn hold(&self, robot: usize, way: &Way) -> f64 {
         match self.0[robot] {
             given if given < way.atoms.len() => way.offsets[given] + SHORT,
@@ -73,8 +73,8 @@ impl Locks {
         }
     }
 
-    /// Whether nobody has what another one touches, and all can finish one after the other; with another way of a robot from a
-    /// length on, of which it has so many atoms.
+    /// Whether no robot holds an atom that touches an atom held by another one, and all can finish. `other` exchanges the way
+    /// of one robot: index, way, length, and number of atoms it holds of it.
     pub(super) fn is_safe(&self, site: &Site, robots: &[Robot], other: Option<(usize, &Way, f64, usize)>) -> bool {
         let claim = |robot: usize| {
             let it = &robots[robot];
@@ -110,7 +110,7 @@ impl Locks {
 impl<'w> Claim<'w> {
     fn of(site: &Site, way: &'w Way, at: f64, given: usize, arrived: bool) -> Self {
         let end = site.standing(way.end());
-        // At the end of what it has, rounding may have put it beyond.
+        // At the end of what it holds, rounding may have put it beyond.
         let first = way.atom(at - SHORT);
         let held = match (arrived, given) {
             (true, _) => vec![end],

@@ -6,65 +6,66 @@ use super::record::Certificate;
 use serde::Serialize;
 use std::time::Duration;
 
-/// How it went.
+/// The results of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Outcome {
-    /// How robots were kept apart.
+    /// Method that kept robots apart.
     pub method: Method,
-    /// Robots that found a place to start.
+    /// Number of robots that found a place to start.
     pub robots: usize,
-    /// Goals reached.
+    /// Number of goals reached.
     pub missions: usize,
-    /// The same an hour, after the first tenth of the time, without those that were under way at its end.
+    /// Goals reached per hour, after the first tenth of the time, without the missions under way at its end.
     pub missions_per_hour: f64,
-    /// Mean of the times from when missions were given until goals were reached, over those of a robot alone; none without any.
+    /// Mean time from a mission to its goal, divided by that of a robot alone; `None` without any.
     pub travel_over_unimpeded: Option<f64>,
-    /// What the independent checker has found.
+    /// Result of the independent checker.
     pub certificate: Certificate,
-    /// Controls at which a robot was beyond what its orders allow.
+    /// Number of control steps at which a robot was beyond its hold.
     pub breaches: usize,
-    /// Robots that do not come to the end of their way after the last mission, as nobody moves any more: deadlocks.
+    /// Number of robots that do not reach the end of their way after the last mission, because no robot moves any more:
+    /// deadlocks.
     pub stuck: usize,
-    /// Longest time for which nobody moved \[s\].
+    /// Longest time for which no robot moved \[s\].
     pub standstill: f64,
-    /// Tries for a mission that were refused; they are repeated.
+    /// Number of refused attempts for missions; they are repeated.
     pub refused: usize,
-    /// Robots that were asked to go elsewhere, as they stood in the way.
+    /// Number of times a robot was asked to go elsewhere, because it stood in the way.
     pub moved: usize,
-    /// Ways and orders that were exchanged for better ones.
+    /// Number of ways and orders that were replaced by better ones.
     pub revised: usize,
-    /// Longest time from when a mission was given until it was admitted \[s\].
+    /// Longest time between a mission and its admission \[s\].
     pub longest_wait: f64,
-    /// The same of those that still wait in the end \[s\].
+    /// Longest time that a mission has waited at the end of the run \[s\].
     pub waiting: f64,
-    /// How many do so for longer than ten minutes.
+    /// Number of missions that have waited for longer than ten minutes at the end.
     pub starved: usize,
-    /// Why nobody reached a goal, where nobody did, or nobody did any more in the last ten minutes although missions waited.
+    /// Reason why no goal was reached, in the run or in its last ten minutes, although missions waited.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub idle_because: Option<String>,
-    /// Where the time of the robots went, while missions came.
+    /// Shares of the time of the robots while missions came.
     pub time: Shares,
 }
 
-/// Parts of the time of all robots, which add up to 1.
+/// Shares of the time of all robots; their sum is 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Shares {
     /// On the way to a goal.
     pub driving: f64,
     /// Turning in place.
     pub turning: f64,
-    /// Stopped for no reason.
+    /// Stopped at random.
     pub stopped: f64,
-    /// Standing on the way, as others go first.
+    /// Standing on the way while others go first.
     pub held: f64,
-    /// On the way from a goal to an end, without a way for the next mission.
+    /// On the way from a goal to an end, because there is no way for the next mission.
     pub aside: f64,
     /// Standing without a way for the next mission.
     pub idle: f64,
 }
 
 impl Shares {
-    /// Makes parts of sums.
+    /// Divides sums by their total.
     pub(super) fn norm(&mut self) {
         let Self { driving, turning, stopped, held, aside, idle } = self;
         let parts = [driving, turning, stopped, held, aside, idle];
@@ -73,26 +74,26 @@ impl Shares {
     }
 }
 
-/// A run with what was measured on the machine.
+/// The results of a run, with times measured on the machine.
 #[derive(Clone, Debug)]
 pub struct Report {
-    /// What is the same on every machine.
+    /// The results that are the same on every machine.
     pub outcome: Outcome,
-    /// Of the layout.
+    /// Properties of the layout.
     pub layout: WellFormedness,
-    /// Missions an hour, after the first tenth of the time, if nobody was in anybody's way; 0 where robots
-    /// share their tasks.
+    /// Missions per hour, after the first tenth of the time, if no robot was in another one's way; 0 if robots share their
+    /// tasks.
     pub alone: f64,
-    /// Time of each decision.
+    /// Computing time of each decision.
     pub decisions: Vec<Duration>,
-    /// Time of all but the certificate.
+    /// Computing time without the certificate.
     pub time: Duration,
-    /// When the last goal was reached \[s\].
+    /// Time at which the last goal was reached \[s\].
     pub last_arrival: f64,
 }
 
 impl Report {
-    /// Time within which this part of the decisions was made \[s\].
+    /// Time within which this share of the decisions was made \[s\].
     pub fn decided_within(&self, part: f64) -> f64 {
         let mut times = self.decisions.clone();
         times.sort_unstable();

@@ -5,11 +5,11 @@ use super::site::Site;
 use pcr_formats::import::{Edge, Id, Imported, Layout, Node};
 use pcr_formats::scenario::{PathSegment, Placed};
 
-/// More room between two robots than they need, for rounding \[m\].
+/// Additional distance between two robots, for rounding \[m\].
 const ROOM: f64 = 1e-3;
 
-/// A layout with more nodes, which come last: as many as there is room for on each straight edge to a dead end. With the nodes of each of
-/// these, the dead end first.
+/// The layout with additional nodes on straight edges to dead ends, as many as there is room for; they come last. Also returns
+/// these queues, each with its dead end first.
 pub(super) fn queued(imported: &Imported, site: &Site) -> (Imported, Vec<Vec<usize>>) {
     let mut queued = imported.clone();
     let mut lanes = Vec::new();
@@ -26,8 +26,8 @@ pub(super) fn queued(imported: &Imported, site: &Site) -> (Imported, Vec<Vec<usi
     (queued, lanes)
 }
 
-/// Cuts straight edges between the same two nodes at places so far apart, the first so far from their dead end, the last at least so
-/// far from their other end; the dead end and the places, none where an edge is not straight.
+/// Adds nodes on straight edges between a dead end and its neighbour, at the distance `pitch` from each other and from the dead
+/// end, and at least as far from the neighbour. Returns the dead end and the new nodes; `None` if an edge is not straight.
 fn cut(layout: &mut Layout, edges: &[usize], dead: usize, pitch: f64) -> Option<Vec<usize>> {
     let line = |&edge: &usize| match layout.edges[edge].curve[..] {
         [Placed { at, heading, shape: PathSegment::Line { length } }] => Some((edge, at, heading, length)),

@@ -8,34 +8,34 @@ use pcr_certify::motion::{Mover, meetings};
 use pcr_formats::scenario::{PathSegment, Placed};
 use serde::Serialize;
 
-/// What the checker has found in all windows of a run.
+/// Result of the checker for all windows of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Certificate {
     /// `proved`: no contact at any time. `contact`: there is one. `undecided`: so near that rounding does not tell, or not checked.
     pub verdict: &'static str,
-    /// Windows of time, one after the other.
+    /// Number of windows of time.
     pub windows: usize,
-    /// Intervals of time that were looked at.
+    /// Number of intervals of time that were examined.
     pub steps: usize,
-    /// Pairs of robots with a contact, in all windows.
+    /// Number of pairs of robots with a contact, in all windows.
     pub contacts: usize,
-    /// Those for which it was not decided.
+    /// Number of pairs without a decision.
     pub undecided: usize,
-    /// Why there is no verdict.
+    /// Reason why there is no verdict.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
 }
 
-/// Places as near are the same \[m\].
+/// Places that differ by at most this are equal \[m\].
 const ROUNDING: f64 = 1e-6;
 
 impl Certificate {
-    /// Nothing is checked yet.
+    /// A certificate before anything is checked.
     pub(super) fn new() -> Self {
         Self { verdict: "undecided", ..Self::default() }
     }
 
-    /// Checks what robots of this radius \[m\] have done since the last window, which began at these places.
+    /// Checks the motions of robots of this radius \[m\] since the beginning of the window.
     pub(super) fn window(&mut self, site: &Site, robots: &mut [Robot], window: &mut Window, radius: f64, end: f64) {
         let begin = window.begin;
         let mut widened = false;
@@ -48,7 +48,8 @@ impl Certificate {
                 let (mut agent, ends, gaps) =
                     agent(site, id as u64, radius, [begin, end], &phases, (&trail, since), place.at)?;
                 *place = Place::of(site, robot);
-                // What is certified is what has been done, or nothing is certified. At a node one edge ends a little beside the next one.
+                // The recorded motion has to lead to where the robot is; otherwise nothing is certified. Two edges that meet at a node
+                // may end slightly beside each other.
                 let apart = (ends[0] - place.at[0]).hypot(ends[1] - place.at[1]);
                 if apart > ROUNDING + gaps + 2.0 * site.off {
                     return Err(format!("robot {id}: its record ends at {ends:?}, it is at {:?}", place.at));
@@ -65,7 +66,7 @@ impl Certificate {
             Ok(movers) => {
                 let found = meetings(&movers);
                 self.steps += found.steps;
-                // Of larger discs it says nothing that they touch.
+                // If the discs were enlarged for such gaps, a contact of the enlarged discs proves nothing.
                 let (contacts, undecided) = (found.contacts.len(), found.undecided.len());
                 self.contacts += if widened { 0 } else { contacts };
                 self.undecided += if widened { contacts + undecided } else { undecided };
@@ -82,7 +83,7 @@ impl Certificate {
     }
 }
 
-/// Where a window begins.
+/// Where and when a window of the check begins.
 #[derive(Clone, Debug)]
 pub(super) struct Window {
     begin: f64,
@@ -91,9 +92,9 @@ pub(super) struct Window {
 
 #[derive(Clone, Copy, Debug)]
 struct Place {
-    /// How far the robot is along the atom that it came on \[m\].
+    /// Length of the robot on its present atom \[m\].
     since: f64,
-    /// Where that is \[m\].
+    /// Position of the robot \[m\].
     at: [f64; 2],
 }
 
@@ -109,8 +110,8 @@ impl Window {
     }
 }
 
-/// A robot that did this in a window, on these atoms from a length of the first one on; where that ends; and the sum of the gaps where
-/// shapes of the layout do not meet: its path here has none, so that it is up to so far off \[m\].
+/// The motion of a robot in a window, on these atoms from a length of the first one on. Also returns its last position, and the
+/// sum of the gaps where shapes of the layout do not meet: the path here has no gaps, so it may be off by that sum \[m\].
 fn agent(
     site: &Site,
     id: u64,
@@ -120,12 +121,12 @@ fn agent(
     (trail, since): (&[usize], f64),
     at: [f64; 2],
 ) -> Result<(Agent, [f64; 2], f64), String> {
-    /// Rounding only \[m\].
+    /// Largest gap that is rounding \[m\].
     const NO_GAP: f64 = 1e-9;
     let mut travel = Travel { start: begin, phases: Vec::new(), lag: 0.0, time_excess: 0.0 };
     let (mut time, mut length) = (0.0, 0.0);
     for phase in phases {
-        // Each begins where the one before ends: times are summed up.
+        // Each phase begins where the one before ends, except for rounding of the summed times.
         if (phase.time - begin - time).abs() > 1e-6 {
             return Err(format!("robot {id}: a gap in what it did at {} s", phase.time));
         }
@@ -148,7 +149,7 @@ fn agent(
     Ok((Agent { id, radius, path: path(&parts, at, length), travel: Some(travel) }, ends, gaps))
 }
 
-/// The part of some shapes from a length on, so long.
+/// The part of some shapes from a length on, with this length.
 fn cut(shapes: &[Placed], from: f64, length: f64) -> Vec<Placed> {
     let (mut before, mut left) = (from, length);
     let mut parts = Vec::new();
@@ -174,7 +175,7 @@ fn part(placed: &Placed, skip: f64, keep: f64) -> Placed {
     Placed { at: before.end(), heading: before.heading_at_end(), shape: cut(keep) }
 }
 
-/// A path along the shapes, which is where the robot stands if there are none.
+/// A path along the shapes; without shapes the robot stands.
 fn path(shapes: &[Placed], at: [f64; 2], length: f64) -> data::Path {
     let first = shapes.first();
     let mut heading = first.map_or(0.0, |first| first.heading);

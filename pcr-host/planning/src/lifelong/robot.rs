@@ -3,16 +3,16 @@
 use super::abilities::Abilities;
 use super::way::Way;
 
-/// A robot stands so far before its hold at least, for rounding \[m\].
+/// Least distance at which a robot stands before its hold, for rounding \[m\].
 pub(super) const SHORT: f64 = 1e-6;
 
-/// Lengths that differ by less are the same, for rounding \[m\].
+/// Lengths that differ by less are equal, for rounding \[m\].
 const NEAR: f64 = 1e-9;
 
-/// So long at constant acceleration, between these speeds, on this atom from this length on.
+/// A part of a motion with constant acceleration, with the speeds at both its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Phase {
-    /// When it begins \[s\].
+    /// Time at which it begins \[s\].
     pub(super) time: f64,
     pub(super) duration: f64,
     pub(super) speed: [f64; 2],
@@ -25,22 +25,22 @@ pub(super) struct Robot {
     /// Travelled length \[m\] and speed \[m/s\].
     pub(super) at: f64,
     pub(super) speed: f64,
-    /// Corners that it has turned at.
+    /// Number of corners at which it has turned.
     pub(super) turned: usize,
-    /// Until when it turns \[s\].
+    /// Time until which it turns \[s\].
     pub(super) turning: f64,
-    /// Until when it stands for no reason \[s\].
+    /// Time until which it is stopped at random \[s\].
     pub(super) stopped_until: f64,
-    /// Share of its speed that it loses for now.
+    /// Share of its speed that it loses at present.
     pub(super) slip: f64,
-    /// Before this time it does not set off \[s\].
+    /// Earliest time at which it sets off \[s\].
     pub(super) departs: f64,
-    /// Since when it has not moved \[s\].
+    /// Time since which it has not moved \[s\].
     pub(super) still_since: f64,
-    /// What it has done, and on which atoms, since it was asked for that.
+    /// Its motion since the last report, and the atoms on which it was.
     pub(super) done: Vec<Phase>,
     pub(super) trail: Vec<usize>,
-    /// Atoms of its way that are in there.
+    /// Number of atoms of its way that are in this list.
     entered: usize,
 }
 
@@ -62,24 +62,24 @@ impl Robot {
         }
     }
 
-    /// Where it is at rest at the latest \[m\].
+    /// Length at which it can come to rest \[m\].
     pub(super) fn stop(&self, abilities: &Abilities) -> f64 {
         if self.speed > 0.0 { (self.at + abilities.braking(self.speed)).min(self.way.length()) } else { self.at }
     }
 
-    /// Where it stops next by itself: a corner, the goal, or the end \[m\].
+    /// Its next stop: a corner, the goal, or the end \[m\].
     fn next_stop(&self) -> f64 {
         let corner = self.way.corners.get(self.turned).map_or(f64::INFINITY, |corner| corner.at);
         corner.min(self.way.goals.first().copied().unwrap_or(f64::INFINITY)).min(self.way.length())
     }
 
-    /// Beyond what a hold does not matter for the next step \[m\].
+    /// Length beyond which a hold does not affect the next step \[m\].
     pub(super) fn horizon(&self, abilities: &Abilities, step: f64) -> f64 {
         let speed = (self.speed + abilities.acceleration * step).min(abilities.speed);
         self.at + speed * step + abilities.braking(speed) + 2.0 * SHORT
     }
 
-    /// Goes on for a step, so that it can stop before this length; returns whether it has come to its goal.
+    /// Advances by a step, so that it can still stop before `hold`. Returns whether it has reached its goal.
     pub(super) fn drive(&mut self, hold: f64, time: f64, step: f64, abilities: &Abilities) -> bool {
         let next = self.next_stop();
         let waits = self.turning > time || self.departs > time;
@@ -99,7 +99,7 @@ impl Robot {
             }
         }
         if self.speed == 0.0 && before < self.at {
-            // A stop is where it was to be, but for rounding.
+            // The planned stop, corrected for rounding.
             let aim = before + left;
             if (aim - self.at).abs() < NEAR {
                 self.at = aim;
@@ -117,7 +117,7 @@ impl Robot {
         if !comes {
             return false;
         }
-        // At its goal it may get another way before it turns for this one.
+        // At a goal it may get another way before it turns for this one.
         if self.way.goals.first().is_some_and(|&goal| goal <= next) {
             self.way.goals.remove(0);
             return true;
@@ -131,8 +131,8 @@ impl Robot {
         false
     }
 
-    /// Time of its way at which it is, if it goes on as soon as it can; or of another way, where it is on that, and when it sets off
-    /// \[s\].
+    /// Time of its way at its place, if it goes on as soon as it can; or the time on another way, with its place there and the
+    /// time at which it sets off \[s\].
     pub(super) fn progress(&self, other: Option<(&Way, f64, f64)>, time: f64, abilities: &Abilities) -> f64 {
         let corner = self.turned.checked_sub(1).and_then(|last| self.way.corners.get(last));
         let (there, departs) = match other {
@@ -144,11 +144,11 @@ impl Robot {
         there - (departs.max(self.stopped_until).max(self.turning) - time).max(0.0) - slow
     }
 
-    /// Notes the atoms that it has come to.
+    /// Adds the atoms that it has reached to the record.
     fn enter(&mut self) {
         while self.entered < self.way.atoms.len() && self.at > self.way.offsets[self.entered] {
             let atom = self.way.atoms[self.entered];
-            // Back at its beginning by rounding, with another way along it: no atom follows itself.
+            // By rounding it can be back at the beginning of an atom, with another way along it. No atom follows itself.
             if self.trail.last() != Some(&atom) {
                 self.trail.push(atom);
             }
@@ -156,24 +156,24 @@ impl Robot {
         }
     }
 
-    /// What it has done since it was asked last, and on which atoms, from which length of the first one on \[m\].
+    /// Takes its motion since the last report: phases, atoms, and the length on the first atom at which they begin \[m\].
     pub(super) fn report(&mut self, since: f64) -> (Vec<Phase>, Vec<usize>, f64) {
         let last = self.trail.last().copied();
         let told = (std::mem::take(&mut self.done), std::mem::take(&mut self.trail), since);
-        // At the start of a new way it is on no atom of that yet.
+        // At the start of a new way it is on no atom of that way yet.
         if self.entered > 0 {
             self.trail.extend(last);
         }
         told
     }
 
-    /// How far it is along the atom with which the next record begins \[m\]: at a node that is the end of the one that it came on.
+    /// Length on the atom with which the next record begins \[m\]; at a node, the end of the atom before.
     pub(super) fn along(&self) -> f64 {
         let begun = self.entered.checked_sub(1).and_then(|last| self.way.offsets.get(last));
         begun.map_or(0.0, |offset| self.at - offset)
     }
 
-    /// A phase from now on; one that goes on as the last one makes that longer.
+    /// Adds a phase to the record; a phase that continues the last one extends it.
     fn record(&mut self, time: f64, duration: f64, to: f64) {
         if let Some(last) = self.done.last_mut() {
             let alike = |a: f64, b: f64| (a - b).abs() < 1e-12;
@@ -185,7 +185,7 @@ impl Robot {
         self.done.push(Phase { time, duration, speed: [self.speed, to] });
     }
 
-    /// Where it has to be slower, and how fast it may be there.
+    /// Length of the next lower speed limit, and that speed.
     fn slower_ahead(&self, abilities: &Abilities) -> Option<(f64, f64)> {
         let k = self.way.atom(self.at.max(1e-12));
         let reach = self.at + 2.0 * abilities.braking(abilities.speed);
@@ -194,19 +194,19 @@ impl Robot {
         slower.map(|next| (self.way.offsets[next] - self.at, self.way.speeds[next])).next()
     }
 
-    /// Takes another way, the first `before` metres of the old one being cut off.
+    /// Takes another way; the first `before` metres of the old way are cut off.
     pub(super) fn take(&mut self, way: Way, before: f64) {
-        // What was entered by rounding alone was not gone along, and the new way may leave the node otherwise.
+        // An atom that was entered by rounding only was not driven, and the new way may leave the node differently.
         if self.entered > 0 && self.along() < NEAR {
             self.trail.pop();
         }
         self.at -= before;
-        // At a node it is exactly there on the new way, too: else it would be on the next atom already, or not yet.
+        // At a node its place is set to the node's length on the new way; otherwise rounding could put it on another atom.
         if let Some(&node) = way.offsets.iter().find(|&&offset| (offset - self.at).abs() < NEAR) {
             self.at = node;
         }
         self.entered = way.offsets.partition_point(|&offset| offset < self.at);
-        // Where it stands at a corner the turn is still to be done.
+        // At a corner where it stands, the turn is still to be done.
         self.turned = way.corners.iter().filter(|corner| corner.at < self.at).count();
         self.way = way;
     }
@@ -217,7 +217,7 @@ impl Robot {
     }
 }
 
-/// Durations and speeds after them of a step that leaves room to stop after `left` metres.
+/// Durations and final speeds of the parts of a step that leaves room to stop within `left` metres.
 fn pace(
     speed: f64,
     limit: f64,
@@ -231,7 +231,7 @@ fn pace(
     if left <= 0.0 && speed == 0.0 {
         return [(step, 0.0), (0.0, 0.0)];
     }
-    // It can stop within the step exactly there.
+    // It can stop exactly there within the step.
     if 0.5 * speed * step >= left {
         let duration = (2.0 * left / speed).max(speed / braking);
         if duration <= step {

@@ -10,10 +10,10 @@ use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap, HashSet, VecDeque};
 use std::rc::Rc;
 
-/// Bytes that the times to goals may take, about.
+/// Memory for the times to goals, roughly \[bytes\].
 const ROOM: usize = 256 << 20;
 
-/// An atom that can be left after this time \[s\], with what is left at least.
+/// An atom that can be left at this time, with a lower bound of the remaining time \[s\].
 #[derive(PartialEq)]
 struct Reached {
     bound: f64,
@@ -35,7 +35,7 @@ impl PartialOrd for Reached {
     }
 }
 
-/// What has been found of an atom in the search of this number.
+/// The result for an atom in the search with this number.
 #[derive(Clone, Copy, Default)]
 struct Found {
     search: u32,
@@ -44,18 +44,18 @@ struct Found {
     before: Option<usize>,
 }
 
-/// A layout as robots drive over it: how long each atom takes, and each corner.
+/// The times of a layout: for each atom, and for each corner.
 pub(super) struct Routes {
     abilities: Abilities,
-    /// Of each atom \[s\].
+    /// Time of each atom \[s\].
     times: Vec<f64>,
-    /// Atoms that can follow one, and what the corner between them costs \[s\].
+    /// For each atom the atoms that can follow it, with the cost of the corner between them \[s\].
     after: Vec<Vec<(usize, f64)>>,
-    /// Those that it can follow.
+    /// For each atom the atoms that it can follow, with the same costs.
     before: Vec<Vec<(usize, f64)>>,
-    /// The least times to goals from the ends of all atoms \[s\].
+    /// For each goal the least times from the ends of all atoms \[s\].
     left: RefCell<HashMap<usize, Rc<[f32]>>>,
-    /// These goals, the oldest first.
+    /// The goals with stored times, the oldest first.
     goals: RefCell<VecDeque<usize>>,
     found: RefCell<(u32, Vec<Found>)>,
 }
@@ -77,7 +77,7 @@ impl Routes {
         Self { abilities, times, after, before, left: RefCell::default(), goals: RefCell::default(), found }
     }
 
-    /// Finds the times to these goals now, if there is room for all of them.
+    /// Computes the times to these goals now, if there is room for all of them.
     pub(super) fn warm(&self, site: &Site, goals: &[usize]) {
         if goals.len() * self.times.len() * size_of::<f32>() <= ROOM {
             goals.iter().for_each(|&goal| drop(self.left(site, goal)));
@@ -130,10 +130,10 @@ impl Routes {
         }
     }
 
-    /// Whether few atoms lead to a goal and none of them from a node: found from the side of the goal, where a search from the other side would
-    /// go through all of the layout.
+    /// Whether only few atoms lead to a goal, and none of them comes from `from`. Searched backward from the goal, because a
+    /// forward search would visit the whole layout.
     fn is_shut(&self, site: &Site, goal: usize, from: usize, toll: impl Fn(usize) -> f64) -> bool {
-        /// Atoms that are looked at, at most.
+        /// Largest number of atoms that are visited.
         const FEW: usize = 64;
         let is_open = |&atom: &usize| toll(atom) < f64::INFINITY;
         let mut met: Vec<usize> = site.coming[goal].iter().copied().filter(is_open).collect();
@@ -152,8 +152,8 @@ impl Routes {
         true
     }
 
-    /// The quickest routes from a node to different nodes that are asked for, the quickest first, at most `count`. `toll` is what an atom
-    /// costs beside its time \[s\]; `towards` the only node that is asked for.
+    /// The quickest routes from a node to different requested nodes, the quickest first, at most `count`. `toll` is the
+    /// additional cost of an atom \[s\]; `towards` is the only requested node, if there is only one.
     pub(super) fn quickest(
         &self,
         site: &Site,
@@ -169,7 +169,7 @@ impl Routes {
             routes.push(Vec::new());
             met.insert(from);
         }
-        // A toll that nobody gets round.
+        // Toll that no route to the goal avoids.
         let last = |goal: usize| site.coming[goal].iter().map(|&atom| toll(atom)).fold(f64::INFINITY, f64::min);
         let last = towards.map_or(0.0, last);
         let is_shut = |goal: usize| self.is_shut(site, goal, from, &toll);
@@ -229,7 +229,7 @@ impl Routes {
     }
 }
 
-/// What a corner costs from one direction to the first one of an atom \[s\].
+/// Cost of the corner between a direction and the first direction of an atom \[s\].
 fn corner(abilities: &Abilities, last: Option<f64>, next: Option<[f64; 2]>) -> f64 {
     let turn = last.zip(next).map_or(0.0, |(last, [next, _])| wrapped(next - last));
     if turn.abs() > 1e-6 { abilities.turn(turn) + abilities.stop() } else { 0.0 }

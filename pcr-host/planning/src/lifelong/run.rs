@@ -10,35 +10,35 @@ use super::{Method, Request};
 use pcr_formats::import::Imported;
 use std::time::{Duration, Instant};
 
-/// Each so many controls what was done is certified.
+/// Number of control steps after which the motion is certified.
 const WINDOW: usize = 200;
 
-/// Where nobody has moved for so long after the last mission, nobody ever will \[s\].
+/// If no robot has moved for this long after the last mission, none ever will \[s\].
 const REST: f64 = 300.0;
 
-/// The first part of the time, in which robots start from their ends, is not steady.
+/// First share of the time, which is not counted, because the robots start from their ends.
 const START: f64 = 0.1;
 
-/// Who has waited for a way for longer than this has waited for long \[s\].
+/// A mission that has waited for longer than this counts as starved \[s\].
 const LONG: f64 = 600.0;
 
-/// Where all stand at their ends for longer than this, and missions wait, nothing changes any more \[s\].
+/// If all robots have stood at their ends for longer than this while missions wait, nothing will change \[s\].
 const QUIET: f64 = 60.0;
 
 /// Runs a fleet on a layout.
 ///
 /// # Errors
-/// Where an edge is no path, or there is no room for anybody.
+/// An edge that is no path, or a layout without room for any robot.
 pub fn run(imported: &Imported, request: Request) -> Result<Report, String> {
     driven(Run::new(imported, request, None)?, imported, request)
 }
 
-/// Runs a fleet on a layout that has tasks to do, the robots that the tasks say; until all are done, or for the duration of the request.
-/// A task is done by the first robot that comes to its node, or stands there, after it has come. Robots without a task are sent for those
-/// that are old and near, also in place of another one that would be there later.
+/// Runs a fleet on a layout with shared tasks and the starts that belong to them, until all tasks are done or the time of the
+/// request is over. A task is done by the first robot that is at its node after it has come. Robots without a task are sent for
+/// old and near tasks, also in place of a robot that would be there later.
 ///
 /// # Errors
-/// As [`run`], and where a place is none of the layout.
+/// As [`run`], and a node that is not in the layout.
 pub fn run_tasks(imported: &Imported, request: Request, tasks: &Tasks) -> Result<Report, String> {
     driven(Run::new(imported, request, Some(tasks))?, imported, request)
 }
@@ -90,7 +90,7 @@ fn driven(mut run: Run, imported: &Imported, request: Request) -> Result<Report,
 }
 
 impl Run {
-    /// Everybody goes on for a step.
+    /// Advances all robots by a step.
     fn step(&mut self, tick: usize, now: f64, open: bool) {
         let far = |robot: usize| self.robots[robot].horizon(&self.abilities, STEP);
         if self.request.method == Method::EdgeLocks {
@@ -158,7 +158,7 @@ impl Run {
         outcome
     }
 
-    /// Why nobody reached a goal.
+    /// The reason why no goal was reached.
     fn why_idle(&self, stuck: usize) -> String {
         if stuck > 0 {
             return format!("{stuck} robots on their ways wait for one another for ever");
@@ -187,9 +187,9 @@ impl Run {
     }
 }
 
-/// What a robot spends its time on now.
+/// The share to which the present activity of a robot belongs.
 fn share<'s>(shares: &'s mut Shares, robot: &Robot, hold: f64, now: f64) -> &'s mut f64 {
-    /// A robot so near its hold waits there \[m\].
+    /// A robot within this distance of its hold waits there \[m\].
     const NEAR: f64 = 0.01;
     if robot.stopped_until > now {
         &mut shares.stopped

@@ -10,32 +10,33 @@ use super::waits::Waits;
 use super::way::Way;
 use std::cell::Cell;
 
-/// Orders that are turned round in search of better ones, at most, and even if a decision has taken long already.
+/// Largest number of orders that are reversed in search of better ones; and the number that is reversed even if the decision has taken
+/// long already.
 const TURNS: usize = 16;
 const LEAST_TURNS: usize = 4;
 
-/// The same in a large fleet.
+/// The same number in a large fleet.
 const FEW_TURNS: usize = 1;
 
-/// Orders that are turned round where somebody would wait for ever.
+/// Largest number of orders that are reversed if a robot would wait for ever.
 const REPAIRS: usize = 12;
 
-/// A robot with a start delay sets off in steps of \[s\], not later than \[s\].
+/// Step of the start delay of a robot \[s\], and largest number of steps.
 const DELAYS: (f64, u32) = (2.0, 60);
 
-/// One way of one robot.
+/// A way of a robot for which orders are searched.
 pub(super) struct Case<'c, 'w> {
     pub(super) scene: &'c Scene<'c>,
-    /// When the others would be where without it.
+    /// Timelines of the other robots without this one.
     pub(super) base: &'c [Timeline],
     pub(super) waits: &'c Waits<'w>,
-    /// Robots that are taken in any case, where not all are.
+    /// Robots that are advanced in any case, if not all are.
     pub(super) taken: &'c [usize],
     pub(super) robot: usize,
     pub(super) way: &'c Way,
     pub(super) at: f64,
     pub(super) stop: f64,
-    /// Forecasts that are left.
+    /// Number of forecasts that may still be made.
     pub(super) budget: &'c Cell<usize>,
 }
 
@@ -48,7 +49,7 @@ impl Case<'_, '_> {
         Trial { robots, waits: self.waits, abilities, time, changed, earlier, kept }.forecast()
     }
 
-    /// Which of the two can go first at a region: the robot, the other one.
+    /// Whether the robot, and whether the other one, can go first at a region.
     pub(super) fn sides(&self, region: &Region) -> [bool; 2] {
         let other = &self.scene.robots[region.robots[1]];
         let at = [self.at, other.at];
@@ -57,7 +58,7 @@ impl Case<'_, '_> {
         [0, 1].map(|first| region.can_be_first(first, at, stop, lengths))
     }
 
-    /// Orders by what is forecast, mended, and turned round where that is better.
+    /// Orders by forecast; repaired, and improved by reversing.
     pub(super) fn ordered(&self, mut regions: Vec<Region>, shift: f64) -> Option<(Vec<Region>, Forecast)> {
         regions.sort_by(|a, b| a.hull[0].lo.total_cmp(&b.hull[0].lo));
         let mut open = Vec::with_capacity(regions.len());
@@ -80,7 +81,7 @@ impl Case<'_, '_> {
         Some((regions, forecast))
     }
 
-    /// Turns orders round where all are expected to arrive sooner by that.
+    /// Reverses orders if all robots are expected to arrive sooner.
     pub(super) fn improved(&self, mut regions: Vec<Region>, mut forecast: Forecast) -> (Vec<Region>, Forecast) {
         let least = if self.scene.timetable.is_some() { FEW_TURNS } else { LEAST_TURNS };
         let mut turns = 0;
@@ -104,7 +105,8 @@ impl Case<'_, '_> {
         (regions, forecast)
     }
 
-    /// How long the other one would wait if the robot went first, and the robot if the other one did, which is `late` already \[s\].
+    /// Time that the other robot would wait if this one went first, and that this one would wait otherwise; it is `late`
+    /// already \[s\].
     fn waits(&self, region: &Region, late: f64) -> (f64, f64) {
         let now = self.way.time(self.at) - late;
         let (other, time) = (&self.base[region.robots[1]], self.scene.time);
@@ -116,13 +118,13 @@ impl Case<'_, '_> {
         )
     }
 
-    /// Turns orders round until nobody waits for ever; last of all everybody else goes first.
+    /// Reverses orders until no robot waits for ever. The last attempt lets all others go first.
     pub(super) fn repaired(&self, regions: &mut [Region], open: &[bool]) -> Option<Forecast> {
         let mut tried = vec![false; regions.len()];
         for _ in 0..REPAIRS {
             match (self.budget.get(), self.scene.timetable) {
                 (0, None) => return None,
-                // That the others go first is tried in any case.
+                // The attempt that lets all others go first is made in any case.
                 (0, Some(_)) => break,
                 _ => {}
             }
@@ -147,7 +149,7 @@ impl Case<'_, '_> {
         self.forecast(regions, self.scene.time).ok()
     }
 
-    /// The least start delay with which the robot waits for nobody and nobody for it, as all are expected to be.
+    /// The least start delay with which the robot waits for no other robot and none for it, if all keep their expected times.
     pub(super) fn delayed(&self, mut regions: Vec<Region>) -> Option<(Vec<Region>, f64, Forecast)> {
         'delays: for k in 0..DELAYS.1 {
             let late = DELAYS.0 * f64::from(k);
@@ -169,9 +171,9 @@ impl Case<'_, '_> {
     }
 }
 
-/// The longest wait at some gates that open, and that the second comes to, then.
+/// The longest wait at some gates, by the times at which they open and at which the second robot comes.
 fn longest(gates: &[Timed], opens: impl Fn(&Timed) -> f64, comes: impl Fn(&Timed) -> f64) -> f64 {
-    // None where the last one is open before the second comes to the first one.
+    // No wait if the last gate is open before the second robot comes to the first one.
     let (Some(head), Some(last)) = (gates.first(), gates.last()) else { return 0.0 };
     if opens(last) <= comes(head) {
         return 0.0;

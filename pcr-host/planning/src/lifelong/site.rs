@@ -10,16 +10,16 @@ use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 use std::rc::Rc;
 
-/// More room than the discs need, for rounding \[m\].
+/// Additional radius of discs, for rounding \[m\].
 const ROOM: f64 = 1e-4;
 
-/// As many gaps between edges, as large as the largest one, are in what a certificate looks at at once, about.
+/// Number of gaps between edges, each as large as the largest one, that one window of a certificate is assumed to contain.
 const GAPS: f64 = 4.0;
 
-/// Holds follow the first robot in steps of so many radii.
+/// Step of the first robot between two gates, in radii.
 const PITCH: f64 = 2.0;
 
-/// An edge in one direction, or a node to stand at.
+/// An edge in one direction, or a node at which a robot can stand.
 #[derive(Clone, Debug)]
 pub(super) struct Atom {
     /// Nodes where it begins and ends.
@@ -27,14 +27,14 @@ pub(super) struct Atom {
     pub(super) length: f64,
     /// Largest speed on it \[m/s\].
     pub(super) speed: f64,
-    /// Directions at its ends \[rad\]; none of a node.
+    /// Directions at its ends \[rad\]; `None` for a node.
     pub(super) headings: Option<[f64; 2]>,
     pub(super) shapes: Vec<Placed>,
     segments: Vec<Segment<f64>>,
     phases: Vec<Phase<f64>>,
-    /// Least and largest abscissa and ordinate \[m\].
+    /// Least and largest x and y \[m\].
     bounds: [[f64; 2]; 2],
-    /// Place of its edge in the layout.
+    /// Index of its edge in the layout; `None` for a node.
     pub(super) edge: Option<usize>,
 }
 
@@ -42,40 +42,40 @@ pub(super) struct Atom {
 #[derive(Debug)]
 pub(super) struct Site {
     pub(super) points: Vec<[f64; 2]>,
-    /// Edges in their directions, then the nodes.
+    /// All atoms: edges in their directions, then the nodes.
     pub(super) atoms: Vec<Atom>,
-    /// Those that begin at a node.
+    /// For each node the atoms that begin there.
     pub(super) leaving: Vec<Vec<usize>>,
-    /// Those that end at a node.
+    /// For each node the atoms that end there.
     pub(super) coming: Vec<Vec<usize>>,
-    /// Of the nodes where missions may be, their places.
+    /// Indices of the nodes of the level; missions are among these.
     pub(super) nodes: Vec<usize>,
-    /// For each atom the same edge the other way.
+    /// For each atom the same edge in the other direction.
     pub(super) back: Vec<Option<usize>>,
-    /// For each atom those that may touch it.
+    /// For each atom the atoms on which a robot may touch one on it.
     near: Vec<Vec<usize>>,
-    /// What curves may be off, and their ends from nodes \[m\].
+    /// Bound on the error of curves, and on the distance of their ends from nodes \[m\].
     pub(super) off: f64,
-    /// With margins, and what the curves may be off \[m\].
+    /// Radius of the discs, with margins and the error of curves \[m\].
     radius: f64,
-    /// How they touch, in the same places, once that was asked for.
+    /// The contact of each pair of `near`, at the same indices, computed when it is first needed.
     contacts: Vec<Vec<OnceCell<Option<Contact>>>>,
     covers: RefCell<HashMap<usize, Rc<[usize]>>>,
 }
 
-/// A node, and how a robot stands there.
+/// A node, and the direction in which a robot stands there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct From {
     pub(super) node: usize,
-    /// Its direction, if that is known \[rad\].
+    /// Direction of the robot, if it is known \[rad\].
     pub(super) heading: Option<f64>,
 }
 
 impl Site {
-    /// The level of a layout that has most nodes.
+    /// The site of the level with the most nodes.
     ///
     /// # Errors
-    /// An edge that is no path.
+    /// An edge that is not a path.
     pub(super) fn new(imported: &Imported) -> Result<Self, String> {
         let Imported { layout, vehicle } = imported;
         let level = layout.largest_level();
@@ -111,7 +111,7 @@ impl Site {
                 |atom: &Atom| matches!(&atom.shapes[..], [one] if matches!(one.shape, PathSegment::Line { .. }));
             let back =
                 || leaving[b].iter().copied().filter(|&other: &usize| other != place && atoms[other].ends[1] == a);
-            // The same edge, or another straight one between the same nodes.
+            // The same edge, or another straight edge between the same nodes.
             let same = |&other: &usize| atoms[other].edge == atom.edge;
             let along = |&other: &usize| is_line(atom) && is_line(&atoms[other]);
             atom.edge.and_then(|_| back().find(same).or_else(|| back().find(along)))
@@ -135,12 +135,12 @@ impl Site {
         (a[0] - b[0]).hypot(a[1] - b[1]) < self.width()
     }
 
-    /// How far apart robots have to stand \[m\].
+    /// Distance at which two standing robots do not touch \[m\].
     pub(super) fn width(&self) -> f64 {
         2.0 * self.radius
     }
 
-    /// The atoms that touch one, and how.
+    /// The atoms that touch an atom, with their contacts.
     pub(super) fn contacts(&self, atom: usize) -> impl Iterator<Item = (usize, &Contact)> {
         let places = 0..self.near[atom].len();
         places.filter_map(move |place| Some((self.near[atom][place], self.contact_at(atom, place)?)))
@@ -219,7 +219,7 @@ impl Atom {
         })
     }
 
-    /// How far its curve is from its nodes \[m\].
+    /// Largest distance between the ends of its curve and its nodes \[m\].
     fn gap(&self, points: &[[f64; 2]]) -> f64 {
         let ends = self.shapes.first().zip(self.shapes.last()).map(|(first, last)| [first.at, last.end()]);
         let off = |ends: [[f64; 2]; 2]| {
@@ -230,12 +230,12 @@ impl Atom {
         ends.map_or(0.0, off)
     }
 
-    /// As a motion at 1 m/s.
+    /// The atom as a motion at 1 m/s.
     fn motion(&self, radius: f64) -> Result<Motion<'_, f64>, Invalid> {
         Motion::new(PathRef::new(&self.segments)?, ProfileRef::new(&self.phases)?, radius, 0.0)
     }
 
-    /// Where a robot is after so much \[m\].
+    /// Position of a robot at a length \[m\].
     pub(super) fn point(&self, length: f64) -> [f64; 2] {
         let point = PathRef::new(&self.segments).map(|path| path.point_at(length)).unwrap_or_default();
         [point.x, point.y]
@@ -277,11 +277,11 @@ fn path(shapes: &[Placed], at: [f64; 2]) -> Result<Vec<Segment<f64>>, Invalid> {
     Ok(segments)
 }
 
-/// A box that holds a curve.
+/// A box around a curve.
 fn bounds(shapes: &[Placed], at: [f64; 2]) -> [[f64; 2]; 2] {
     let mut bounds = [at, at];
     for placed in shapes {
-        // An arc is no further from its ends than its length.
+        // No point of an arc is farther from its ends than its length.
         let (ends, room) = match placed.shape {
             PathSegment::Line { .. } => ([placed.at, placed.end()], 0.0),
             PathSegment::Arc { .. } => ([placed.at, placed.end()], 0.5 * placed.shape.length()),
@@ -296,9 +296,9 @@ fn bounds(shapes: &[Placed], at: [f64; 2]) -> [[f64; 2]; 2] {
     bounds
 }
 
-/// For each atom those whose boxes are nearer than the reach, found by cells of a grid.
+/// For each atom the atoms whose boxes are nearer than `reach`, found with a grid.
 fn neighbours(atoms: &[Atom], reach: f64) -> Vec<Vec<usize>> {
-    /// No box lies in more cells than this, or the grid is made coarser.
+    /// Largest number of cells for a box; the grid is made coarser if necessary.
     const MOST: f64 = 64.0;
     let size = |atom: &Atom| (0..2).map(|axis| atom.bounds[1][axis] - atom.bounds[0][axis]).fold(0.0, f64::max);
     let largest = atoms.iter().map(size).fold(0.0, f64::max);

@@ -21,7 +21,7 @@ use super::{Method, Request};
 use pcr_formats::import::Imported;
 use std::time::{Duration, Instant};
 
-/// A mission that a robot has.
+/// The mission of a robot.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mission {
     pub(super) goal: usize,
@@ -30,10 +30,10 @@ pub(super) struct Mission {
     pub(super) alone: f64,
     /// Whether it has a way.
     pub(super) admitted: bool,
-    /// How many missions were admitted while it waited.
+    /// Number of missions that were admitted while it waited.
     pub(super) passed: usize,
     pub(super) next_try: f64,
-    /// What it took to find the quickest way before the first decision.
+    /// Computing time of the quickest way before the first decision.
     pub(super) prepared: Duration,
 }
 
@@ -41,37 +41,38 @@ pub(super) struct Run {
     pub(super) site: Site,
     pub(super) ends: Ends,
     pub(super) layout: WellFormedness,
-    /// Whether there are more robots than safe ends, or as many and further places where they can make way for one another.
+    /// Whether there are more robots than safe ends, or as many and additional queue places where robots can make way for one
+    /// another.
     pub(super) crowded: bool,
-    /// Whether only the mission that has waited longest is served.
+    /// Whether only the mission that has waited longest is admitted.
     pub(super) is_urgent: bool,
-    /// The route that the mission which has waited longest wants, and those of whoever stands in its way; whose they are: nobody else
-    /// comes to stand there.
+    /// Reserved routes as (robot, route), where no other robot may come to stand: first that of the mission that has waited
+    /// longest, then those of robots in its way.
     pub(super) reserved: Vec<(usize, Vec<usize>)>,
     pub(super) abilities: Abilities,
     pub(super) network: Routes,
     pub(super) request: Request,
     pub(super) robots: Vec<Robot>,
     pub(super) book: Book,
-    /// Of a large fleet.
+    /// The timetable, used for a large fleet.
     pub(super) timetable: Timetable,
     pub(super) locks: Locks,
-    /// How many robots stand for good in the way of an atom.
+    /// For each atom the number of robots that stand for good in its way.
     pub(super) parked: Vec<u16>,
     pub(super) missions: Vec<Option<Mission>>,
-    /// Missions given to each robot.
+    /// Number of missions given to each robot.
     pub(super) given: Vec<u64>,
     pub(super) reviewed: Vec<f64>,
-    /// When it was tried last to turn orders round for a robot.
+    /// For each robot the time of the last attempt to reverse its orders.
     pub(super) switched: Vec<f64>,
     pub(super) outcome: Outcome,
     pub(super) decisions: Vec<Duration>,
     pub(super) travel: (f64, f64),
     pub(super) steady: usize,
     pub(super) last_arrival: f64,
-    /// For how long all have stood at their ends while missions wait \[s\].
+    /// Time for which all robots have stood at their ends while missions wait \[s\].
     pub(super) quiet: f64,
-    /// Tasks that are not done yet, where not everybody has a mission of its own.
+    /// Tasks that are not done yet, if the robots share them.
     pub(super) tasks: Option<Queue>,
 }
 
@@ -84,7 +85,7 @@ impl Run {
             Some(tasks) => tasks.starts(&site)?,
             None => starts(&site, &ends, request.agents, request.seed),
         };
-        // With fewer robots than safe ends there is always an end to which one of them can make way.
+        // With fewer robots than safe ends a robot can always make way at a free end.
         let places = (starts.len() >= ends.safe.len()).then(|| queued(imported, &site));
         let is_full = |lanes: &[Vec<usize>]| starts.len() > ends.safe.len() || lanes.iter().any(|lane| lane.len() > 1);
         let places = places.filter(|(_, lanes)| is_full(lanes));
@@ -95,7 +96,7 @@ impl Run {
         }
         let abilities = Abilities::of(&imported.vehicle);
         let network = Routes::new(&site, abilities);
-        // Tests do without, as it takes a while where nothing is optimized.
+        // Not in unoptimized tests, because it takes long there.
         if !cfg!(debug_assertions) {
             site.warm();
             ends.harm(&site);
@@ -158,12 +159,12 @@ impl Run {
         })
     }
 
-    /// Whether there are missions yet.
+    /// Whether missions remain.
     pub(super) fn has_work(&self) -> bool {
         self.tasks.as_ref().is_none_or(|tasks| !tasks.is_empty())
     }
 
-    /// Gives a mission to everybody who has none.
+    /// Gives a mission to each robot without one.
     pub(super) fn give(&mut self, now: f64) {
         if self.tasks.is_some() {
             self.assign(now);
@@ -190,8 +191,8 @@ impl Run {
         }
     }
 
-    /// Whether decisions look at some of the robots only: in a large fleet, and where robots share their tasks, so that another one does
-    /// what one of them is late for.
+    /// Whether decisions look at some of the robots only: in a large fleet, and if robots share their tasks, because another
+    /// robot then takes over a late task.
     pub(super) fn is_large(&self) -> bool {
         self.request.method == Method::Orders && (self.robots.len() > WHOLE || self.tasks.is_some())
     }

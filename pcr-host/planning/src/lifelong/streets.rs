@@ -3,13 +3,13 @@
 use pcr_formats::import::{Edge, Id, Imported, Layout, Node, Vehicle};
 use pcr_formats::scenario::{PathSegment, Placed};
 
-/// Between two crossings \[m\].
+/// Distance between two crossings \[m\].
 const BLOCK: f64 = 6.0;
 
-/// From the street to the end of a bay \[m\].
+/// Distance from the street to the end of a bay \[m\].
 const BAY: f64 = 1.8;
 
-/// As robots of a warehouse.
+/// Vehicles as in a warehouse.
 const VEHICLE: Vehicle = Vehicle {
     name: None,
     radius: 0.4,
@@ -21,8 +21,8 @@ const VEHICLE: Vehicle = Vehicle {
     rotation_acceleration: 1.0,
 };
 
-/// So many streets each way, an even number of at least 2, which are one-way to and fro by turns; in the middle of each block a bay on
-/// either side. Each node can be reached from all others; robots stand in bays in nobody's way.
+/// `count` streets each way, an even number of at least 2, one-way in alternating directions; in the middle of each block a bay
+/// on either side. Each node can be reached from all others, and robots in bays are in no other robot's way.
 pub fn streets(count: usize) -> Imported {
     let count = count.next_multiple_of(2).max(2);
     let mut plan = Plan::default();
@@ -30,7 +30,7 @@ pub fn streets(count: usize) -> Imported {
         (0..count * count).map(|k| plan.node([(k % count) as f64 * BLOCK, (k / count) as f64 * BLOCK])).collect();
     for street in 0..count {
         for block in 1..count {
-            // The four at the border make a ring.
+            // The four streets at the border form a ring.
             let along = [crossings[street * count + block - 1], crossings[street * count + block]];
             let across = [crossings[(block - 1) * count + street], crossings[block * count + street]];
             for (mut ends, turned) in [(along, street % 2 == 1), (across, street % 2 == 0)] {
@@ -67,7 +67,7 @@ impl Plan {
         self.edges.push(Edge { ways: [true, two_way], ..Edge::new(id, ends, curve) });
     }
 
-    /// From crossing to crossing, with its bays.
+    /// The part of a street between two crossings, with its bays.
     fn block(&mut self, ends: [usize; 2]) {
         let [[x, y], [u, v]] = ends.map(|node| self.nodes[node].at);
         let (middle, side) = ([0.5 * (x + u), 0.5 * (y + v)], [(v - y) / BLOCK * BAY, (x - u) / BLOCK * BAY]);

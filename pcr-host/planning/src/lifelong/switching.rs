@@ -1,4 +1,4 @@
-//! Orders that are turned round while robots are on their ways: somebody waits for another one that is late.
+//! Orders that are reversed while robots are on their ways, because a robot waits for another one that is late.
 
 use super::book::Region;
 use super::forecast::Forecast;
@@ -9,15 +9,15 @@ use super::timetable::Timeline;
 use super::waits::Waits;
 use std::cell::Cell;
 
-/// Forecasts for one switch.
+/// Largest number of forecasts for one switch.
 const FORECASTS: usize = 6;
 
-/// Orders of a robot that are turned round.
+/// The orders of a robot that are reversed.
 #[derive(Debug)]
 pub(super) struct Switched {
-    /// Places of regions, and who goes first there now.
+    /// Indices of regions, and the robot that now goes first there.
     pub(super) firsts: Vec<(usize, usize)>,
-    /// Robots that go by another timetable then.
+    /// New timelines of the robots whose times change.
     pub(super) lines: Vec<(usize, Timeline)>,
 }
 

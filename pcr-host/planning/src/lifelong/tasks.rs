@@ -4,17 +4,17 @@ use super::site::Site;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Places of robots and tasks.
+/// Starts of robots, and tasks.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tasks {
-    /// The node of a layout where each robot stands at first.
+    /// Node of the layout at which each robot starts.
     pub starts: Vec<usize>,
-    /// The node of each task, and when it comes \[s\].
+    /// Node of each task, and the time at which it comes \[s\].
     pub tasks: Vec<(usize, f64)>,
 }
 
 impl Tasks {
-    /// Where robots stand at first.
+    /// The start nodes, after a check that nodes exist and that robots do not touch there.
     pub(super) fn starts(&self, site: &Site) -> Result<Vec<usize>, String> {
         let count = site.points.len();
         let all = self.starts.iter().chain(self.tasks.iter().map(|(node, _)| node));
@@ -30,24 +30,24 @@ impl Tasks {
     }
 }
 
-/// A task that nobody has done yet.
+/// A task that is not done.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Task {
     pub(super) node: usize,
-    /// When it came \[s\].
+    /// Time at which it came \[s\].
     pub(super) since: f64,
-    /// Who is to do it.
+    /// Robot that is sent for it.
     pub(super) robot: Option<usize>,
 }
 
-/// Tasks that are to come, by their times, and those that have come.
+/// Tasks that will come, by their times, and open tasks.
 #[derive(Clone, Debug)]
 pub(super) struct Queue {
     left: VecDeque<(usize, f64)>,
     pub(super) open: Vec<Task>,
-    /// Time spent on giving tasks since the last one was given.
+    /// Computing time for assigning tasks since the last assignment.
     pub(super) spent: Duration,
-    /// When those were looked at last for which a robot is sent \[s\].
+    /// Time of the last look at tasks for which a robot is sent \[s\].
     pub(super) looked: f64,
 }
 
@@ -62,7 +62,7 @@ impl Queue {
         self.left.is_empty() && self.open.is_empty()
     }
 
-    /// Opens those that have come.
+    /// Opens the tasks that have come.
     pub(super) fn come(&mut self, now: f64) {
         while let Some(&(node, since)) = self.left.front().filter(|(_, since)| *since <= now) {
             self.left.pop_front();
@@ -70,7 +70,7 @@ impl Queue {
         }
     }
 
-    /// A robot is at a node: takes the tasks there.
+    /// Takes the tasks at a node where a robot is.
     pub(super) fn done(&mut self, node: usize) -> Vec<Task> {
         self.open.extract_if(.., |task| task.node == node).collect()
     }

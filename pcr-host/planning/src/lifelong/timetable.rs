@@ -1,7 +1,9 @@
-//! Times at which robots would be at places. Forecasts use it, and a large fleet keeps to it between forecasts.
+//! Expected times of robots along their ways. Forecasts use them, and a large fleet keeps to them between forecasts.
 //!
 //! A timetable that keeps all orders shows that all robots can finish, however late they really are (`docs/theory.md`).
-//! Its times need not be right, only its order.
+//! Its times need not be right; only their order matters.
+//!
+//! Every way has times of its own, as if no other robot was in the way ([`Way::time`]). A [`Timeline`] adds the waits.
 
 use super::book::Region;
 use super::gates::Timed;
@@ -9,17 +11,17 @@ use super::robot::SHORT;
 use super::waits::Wait;
 use super::way::Way;
 
-/// What an end counts beside a goal.
+/// Weight of the arrival at the end of a way, relative to that at a goal.
 const TAIL: f64 = 0.1;
 
-/// When a robot would be where.
+/// The expected times of one robot along its way.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Timeline {
-    /// Time of its way at which it is when this is made \[s\].
+    /// Time of the way at the place of the robot when the timeline was made \[s\].
     start: f64,
-    /// When that is \[s\].
+    /// Time at which the timeline was made \[s\].
     made: f64,
-    /// Lengths beyond which it is later, and by how much in all \[m, s\].
+    /// Waits as (length, sum of the delays so far) \[m, s\], in increasing order: the sum applies beyond the length.
     delays: Vec<(f64, f64)>,
 }
 
@@ -29,24 +31,26 @@ impl Timeline {
         Self { start, made, delays: Vec::new() }
     }
 
-    /// When the robot is at a length of its way, which it would be at at this time of its way, from now \[s\].
+    /// Arrival at a length of the way, counted from now \[s\]. `time` is the time of the way there:
+    /// arrival = `made` + (`time` - `start`) + delays before `length`.
     pub(super) fn from(&self, time: f64, length: f64, now: f64) -> f64 {
         (time - self.start + self.made - now).max(0.0) + self.late(length)
     }
 
-    /// When it has opened a gate for another one, from now \[s\].
+    /// Time at which the robot, as the first one, opens a gate for the second, counted from now \[s\].
     pub(super) fn opens(&self, timed: &Timed, now: f64) -> f64 {
-        // Where it waits it stands that much before.
+        // A robot that waits stands up to this much before its gate.
         self.from(timed.opens, timed.gate.needs + 2.0 * SHORT, now)
     }
 
-    /// When it comes to where it would be at this time of its way, after all waits so far, from when this was made \[s\].
+    /// Arrival at the place with this time of the way, counted from when the timeline was made \[s\]:
+    /// (`time` - `start`) + all delays so far.
     pub(super) fn comes(&self, time: f64) -> f64 {
         (time - self.start).max(0.0) + self.delays.last().map_or(0.0, |delay| delay.1)
     }
 
-    /// It waits at a length, to which it comes at this time of its way, until so long after the line was made; it loses so much by a stop
-    /// \[m, s\].
+    /// Adds a wait at length `at` \[m\], where the time of the way is `comes`. The wait ends at `opens`, counted from when the timeline
+    /// was made; a full stop costs `lost` more \[s\].
     pub(super) fn wait(&mut self, at: f64, comes: f64, opens: f64, lost: f64) {
         let so_far = self.delays.last().map_or(0.0, |delay| delay.1);
         let wait = opens - self.comes(comes);
@@ -55,8 +59,8 @@ impl Timeline {
         }
     }
 
-    /// Sum of the times from now until goals are reached, of which those before the last one count so much, and a little of that until it
-    /// stands \[s\].
+    /// Weighted sum of the times until the robot reaches its goals \[s\]: weight 1 for the last goal, `earlier` for the goals before it,
+    /// and `TAIL` for the end of the way.
     pub(super) fn cost(&self, way: &Way, now: f64, earlier: f64) -> f64 {
         let time = |length: f64| self.from(way.time(length), length, now);
         let goals = way.goals.split_last();
@@ -65,60 +69,60 @@ impl Timeline {
         goals + TAIL * time(way.length())
     }
 
-    /// By how much it is later at a length \[s\].
+    /// Sum of the delays before a length \[s\].
     fn late(&self, length: f64) -> f64 {
         self.delays.partition_point(|delay| delay.0 < length).checked_sub(1).map_or(0.0, |last| self.delays[last].1)
     }
 
-    /// The same beyond a length, after the wait there if there is any.
+    /// Sum of the delays up to a length, with a wait at that length \[s\].
     fn late_beyond(&self, length: f64) -> f64 {
         self.delays.partition_point(|delay| delay.0 <= length).checked_sub(1).map_or(0.0, |last| self.delays[last].1)
     }
 
-    /// When it goes on beyond a length, to which it comes at this time of its way, from now, or before now \[s\].
+    /// Departure from a length, where the time of the way is `time`, counted from now; negative if it was before now \[s\].
     fn beyond(&self, time: f64, length: f64, now: f64) -> f64 {
         time - self.start + self.made - now + self.late_beyond(length)
     }
 
-    /// Whether it is later anywhere than another line of the same way.
+    /// Whether it is anywhere later than another timeline of the same way.
     pub(super) fn is_later(&self, other: &Self) -> bool {
         let later = other.start - self.start + self.made - other.made;
         later > 0.0 || self.delays.iter().any(|&(at, late)| late + later > other.late_beyond(at))
     }
 }
 
-/// A line for each robot of a fleet; they keep all orders.
+/// A timeline for each robot of a fleet. Together they keep all orders.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Timetable {
     pub(super) lines: Vec<Timeline>,
 }
 
 impl Timetable {
-    /// Of robots that stand.
+    /// The timetable of robots that stand.
     pub(super) fn new(robots: usize) -> Self {
         Self { lines: vec![Timeline::default(); robots] }
     }
 
-    /// Whether the second of a region, which has this way, sets off too early at one of its gates if the first has this line; they are at
-    /// these places.
+    /// Whether the second robot of a region would pass one of its gates too early if the first had the timeline `first`. `way` is the way
+    /// of the second; `at` has the places of both \[m\].
     pub(super) fn is_broken(&self, region: &Region, first: &Timeline, now: f64, at: [f64; 2], way: &Way) -> bool {
         let Some(ends) = region.ends() else { return false };
         let second = &self.lines[region.second()];
         let is_early = |[at, needs]: [Timed; 2]| {
             at.gate.at < way.length() && first.opens(&needs, now) > second.beyond(at.comes, at.gate.at, now)
         };
-        // Where the first has left before the second comes no gate matters.
+        // Only gates at which the second would still find the first matter.
         let is_met = |wait: Wait<'_>| is_early(wait.ends) && wait.gates.iter().any(|timed| is_early([*timed; 2]));
-        // If it is not too early at the nearest gate of all, it is not at one that is farther either.
+        // `ends` pairs the nearest gate with the last event, so if this is not too early no gate is.
         is_early(ends) && Wait::of(region, None, at).is_some_and(is_met)
     }
 
-    /// Other lines for some robots.
+    /// Replaces the timelines of some robots.
     pub(super) fn change(&mut self, lines: Vec<(usize, Timeline)>) {
         lines.into_iter().for_each(|(robot, line)| self.lines[robot] = line);
     }
 
-    /// Whether the second of a region waits there for the first.
+    /// Whether the second robot of a region waits at one of its gates.
     pub(super) fn waits_at(&self, region: &Region) -> bool {
         let second = &self.lines[region.second()];
         region.gates().iter().any(|timed| second.delays.iter().any(|delay| delay.0 == timed.gate.at))

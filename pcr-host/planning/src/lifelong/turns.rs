@@ -1,4 +1,4 @@
-//! Missions are tried in the order of their age, and others make way for the robot that has waited longest.
+//! Missions are tried in the order of their age, and robots in the way of the mission that has waited longest are sent elsewhere.
 
 use super::decide::{AGAIN, TRIES};
 use super::dispatch::Admitted;
@@ -6,17 +6,17 @@ use super::scene::Scene;
 use super::state::{Mission, Run};
 use std::time::{Duration, Instant};
 
-/// A robot that stands in the way of a mission that has been refused for so long is asked to go elsewhere \[s\].
+/// If a mission has been refused for this long, robots in its way are asked to go elsewhere \[s\].
 const PATIENCE: f64 = 2.0;
 
-/// A mission that was passed by so many for each robot is the only one that is admitted.
+/// A mission overtaken by this many missions per robot is admitted before all others.
 const ROUNDS: usize = 4;
 
-/// Robots that are asked to go elsewhere for one mission at a time.
+/// Largest number of robots that are asked to go elsewhere for one mission at a time.
 const MOVES: usize = 4;
 
 impl Run {
-    /// Tries the missions that have waited longest; how many decisions that were.
+    /// Tries the missions that have waited longest, and returns the number of missions tried.
     pub(super) fn try_missions(&mut self, now: f64) -> usize {
         let mut waiting: Vec<(f64, usize)> = Vec::new();
         for (robot, mission) in self.missions.iter().enumerate() {
@@ -48,19 +48,19 @@ impl Run {
         waiting.len()
     }
 
-    /// How many drive at a time where there are more robots than safe ends: as many as those. Where hardly any end is safe, they do
-    /// not tell, and it is a third of the nodes. At least one.
+    /// Largest number of robots that drive at a time if there are more robots than safe ends: the number of safe ends, or a third of the
+    /// nodes if there are less than an eighth as many safe ends as robots. At least one.
     fn most_active(&self) -> usize {
         let safe = self.ends.safe.len();
         let few = 8 * safe < self.robots.len();
         if few { (self.site.points.len() / 3).max(1) } else { safe }
     }
 
-    /// Sends those who stand where they cut others off elsewhere.
+    /// Sends idle robots elsewhere if they cut off nodes where they stand.
     fn tidy(&mut self, now: f64) {
-        /// Decisions between two controls.
+        /// Decisions between two control steps.
         const TRIES: usize = 2;
-        /// Between two tries for the same robot \[s\].
+        /// Time between two attempts for the same robot \[s\].
         const AGAIN: f64 = 2.0;
         let idle = |robot: &usize| {
             self.robots[*robot].has_arrived()
@@ -82,7 +82,7 @@ impl Run {
         }
     }
 
-    /// Tries the mission of a robot; where it is refused, those who stand in its way are asked to go elsewhere.
+    /// Tries the mission of a robot. If it is refused, the robots in its way are asked to go elsewhere.
     fn try_mission(&mut self, robot: usize, now: f64, is_oldest: bool) {
         let Some(mission) = self.missions[robot] else { return };
         if self.is_begun(robot, now) {
@@ -93,7 +93,7 @@ impl Run {
         if now - mission.since <= PATIENCE || (self.crowded && !is_oldest) || !self.robots[robot].has_arrived() {
             return;
         }
-        // What it wants is the same until it has it, so that whoever has made way stays away.
+        // The wanted route of the oldest mission stays reserved until it is admitted, so robots that have made way do not come back.
         if !is_oldest {
             self.reserved.clear();
         }
@@ -121,28 +121,28 @@ impl Run {
         true
     }
 
-    /// A mission is admitted that was given then: it passes the older ones that wait.
+    /// Counts a mission given at `since` as having overtaken all older missions that wait.
     pub(super) fn pass(&mut self, since: f64) {
         for other in self.missions.iter_mut().flatten() {
             other.passed += usize::from(!other.admitted && other.since < since);
         }
     }
 
-    /// Those who stand on reserved routes go on with their own missions, or elsewhere; where none can, the route of one of them is reserved
-    /// likewise.
+    /// Robots that stand on reserved routes go on with their own missions, or elsewhere. If none of them can, the route of one of them is
+    /// reserved as well.
     fn clear(&mut self, now: f64) {
-        /// Routes that are cleared for one another, at most.
+        /// Largest number of routes that are reserved at a time, each for a robot in the way of the one before.
         const DEEP: usize = 6;
         let (mut moved, mut blocked, mut level, mut is_new) = (0, None, self.reserved.len(), false);
         while level > 0 {
             level -= 1;
             let Some((robot, route)) = self.reserved.get(level) else { continue };
             let standing = self.scene(now).standing_on(*robot, route);
-            // Nobody in its way any more, but where it was to go others may have come.
+            // The route is clear, but its robot did not go: other robots may have come to where it was to stand.
             if standing.is_empty() && level > 0 {
                 self.reserved.truncate(level);
             }
-            // Whoever stands behind another one can go when that one does.
+            // Both orders, because a robot behind another one can only go after that one.
             for by in standing.iter().chain(standing.iter().rev()).copied() {
                 if moved >= MOVES {
                     return;

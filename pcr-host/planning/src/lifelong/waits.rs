@@ -9,18 +9,18 @@ use std::cell::OnceCell;
 #[derive(Clone, Copy)]
 pub(super) struct Wait<'r> {
     pub(super) first: usize,
-    /// The gates that it has still to pass there: at least one.
+    /// The gates of the region that are still ahead: at least one.
     pub(super) gates: &'r [Timed],
-    /// The nearest of them, and the one at which the first has left.
+    /// The nearest of these gates, and the last one, at which the first robot has left.
     pub(super) ends: [Timed; 2],
-    /// Its place among the regions of the robot that has another way.
+    /// Index of the region among those of the changed robot, if it is one of these.
     pub(super) place: Option<usize>,
-    /// Its place before they were sorted, which decides between equals.
+    /// Index before sorting, which decides between equal lengths.
     order: usize,
 }
 
 impl<'r> Wait<'r> {
-    /// With the robots of the region at these places; none if nobody has to wait there any more.
+    /// The wait at a region with its robots at these places; `None` if no wait is possible any more.
     pub(super) fn of(region: &'r Region, place: Option<usize>, at: [f64; 2]) -> Option<Self> {
         if region.is_over(at) {
             return None;
@@ -29,7 +29,7 @@ impl<'r> Wait<'r> {
         if last.gate.needs <= at {
             return None;
         }
-        // Most often none is passed, and the list need not be read.
+        // In most cases no gate is passed, and the list need not be read.
         let mut gates = region.gates();
         if nearest.gate.needs <= at {
             gates = &gates[gates.partition_point(|timed| timed.gate.needs <= at)..];
@@ -39,7 +39,7 @@ impl<'r> Wait<'r> {
     }
 }
 
-/// The regions that robots have still to pass second, the nearest first; found when they are asked for.
+/// For each robot the regions ahead that it passes second, the nearest first; computed when first needed.
 pub(super) struct Waits<'w> {
     robots: &'w [Robot],
     book: &'w Book,
@@ -47,7 +47,7 @@ pub(super) struct Waits<'w> {
 }
 
 impl<'w> Waits<'w> {
-    /// By the orders of the fleet.
+    /// The waits by the orders of the fleet.
     pub(super) fn of(robots: &'w [Robot], book: &'w Book) -> Self {
         Self { robots, book, rows: vec![OnceCell::new(); robots.len()] }
     }
@@ -57,7 +57,7 @@ impl<'w> Waits<'w> {
         self.book.row(robot)
     }
 
-    /// Those of a robot.
+    /// The waits of a robot.
     pub(super) fn row(&self, robot: usize) -> &[Wait<'w>] {
         self.rows[robot].get_or_init(|| {
             let second = self.regions(robot).filter(|region| region.second() == robot);
@@ -68,14 +68,14 @@ impl<'w> Waits<'w> {
         })
     }
 
-    /// Gates of all but one robot: what a forecast of all costs.
+    /// Number of gates of all robots but one: the cost of a forecast of all.
     pub(super) fn len_without(&self, robot: usize) -> usize {
         let others = (0..self.robots.len()).filter(|&other| other != robot).flat_map(|other| self.row(other));
         others.filter(|wait| wait.first != robot).map(|wait| wait.gates.len()).sum()
     }
 }
 
-/// The nearest first.
+/// Sorts by length, the nearest first.
 pub(super) fn sort(waits: &mut [Wait<'_>]) {
     waits.iter_mut().enumerate().for_each(|(place, wait)| wait.order = place);
     waits.sort_unstable_by(|a, b| a.ends[0].gate.at.total_cmp(&b.ends[0].gate.at).then(a.order.cmp(&b.order)));

@@ -3,7 +3,7 @@
 use super::abilities::Abilities;
 use super::site::{From, Site, wrapped};
 
-/// Angles below are no corner \[rad\].
+/// Largest change of direction that is not a corner \[rad\].
 const STRAIGHT: f64 = 1e-6;
 
 /// A place where a robot stops and turns.
@@ -15,31 +15,31 @@ pub(super) struct Corner {
     pub(super) turn: f64,
 }
 
-/// A path, and what a robot does on it.
+/// A path, with the stops and times of a robot on it.
 #[derive(Clone, Debug)]
 pub(super) struct Way {
     pub(super) atoms: Vec<usize>,
-    /// Length before each atom, and that of all \[m\].
+    /// Length before each atom, and the length of the whole way \[m\].
     pub(super) offsets: Vec<f64>,
     /// Largest speed on each atom \[m/s\].
     pub(super) speeds: Vec<f64>,
-    /// When each atom is left for, and the end reached \[s\].
+    /// Time at which each atom is entered, and time of arrival at the end \[s\].
     times: Vec<f64>,
     pub(super) corners: Vec<Corner>,
     /// Lengths of the goals that are still ahead \[m\].
     pub(super) goals: Vec<f64>,
     end: usize,
-    /// The direction in which a robot stands at its start, if that is known \[rad\].
+    /// Direction of a robot at its start, if it is known \[rad\].
     heading: Option<f64>,
 }
 
 impl Way {
-    /// A robot that stands at a node.
+    /// The way of a robot that stands at a node.
     pub(super) fn standing(site: &Site, node: usize) -> Self {
         Self::new(site, From { node, heading: None }, &[], &[], &Abilities::NONE)
     }
 
-    /// Along these atoms; the goals are after so many of them.
+    /// A way along these atoms; each goal is after its number of atoms.
     pub(super) fn new(site: &Site, from: From, atoms: &[usize], goals: &[usize], abilities: &Abilities) -> Self {
         let atoms = if atoms.is_empty() { vec![site.standing(from.node)] } else { atoms.to_vec() };
         let goals: Vec<usize> = if site.atoms[atoms[0]].edge.is_some() { goals.to_vec() } else { vec![0; goals.len()] };
@@ -100,7 +100,7 @@ impl Way {
             .windows(2)
             .map(|ends| (ends[1] - ends[0], self.speeds[self.atom(0.5 * (ends[0] + ends[1]))]))
             .collect();
-        // The largest speed at each border: where both pieces allow it and where it can be braked from, then where it can be reached.
+        // Largest speed at each border: the limits of both pieces, then braking, then acceleration.
         let stops = |border: usize| self.corners.iter().any(|corner| corner.at == borders[border]);
         let mut speeds = vec![0.0; borders.len()];
         for k in (1..pieces.len()).rev() {
@@ -120,9 +120,9 @@ impl Way {
         time
     }
 
-    /// When it would be at a length, from its start \[s\].
+    /// Time at which the robot would be at a length, counted from the start \[s\].
     pub(super) fn time(&self, length: f64) -> f64 {
-        // At its start a robot has still to turn.
+        // At its start the robot still has to turn.
         if length <= 0.0 {
             return 0.0;
         }
@@ -131,18 +131,18 @@ impl Way {
         if beyond > 0.0 { self.times[k] + beyond / self.speeds[k] } else { self.times[k] }
     }
 
-    /// When it goes on from a node at a length, from its start \[s\].
+    /// Time at which it would leave a node at a length, counted from the start \[s\].
     pub(super) fn left_for(&self, length: f64) -> f64 {
         let k = self.offsets.partition_point(|&offset| offset <= length).saturating_sub(1);
         self.times[k]
     }
 
-    /// The atom in which a length is, the earlier one at a node.
+    /// Index of the atom that contains a length; at a node the earlier one.
     pub(super) fn atom(&self, length: f64) -> usize {
         self.offsets.partition_point(|&offset| offset < length).saturating_sub(1).min(self.atoms.len() - 1)
     }
 
-    /// Where the robot is after so much \[m\].
+    /// Position of the robot at a length \[m\].
     pub(super) fn point(&self, site: &Site, length: f64) -> [f64; 2] {
         let k = self.atom(length);
         site.atoms[self.atoms[k]].point(length - self.offsets[k])
@@ -165,17 +165,17 @@ impl Way {
         self.end
     }
 
-    /// The direction in which a robot comes to the node before an atom \[rad\].
+    /// Direction in which a robot arrives at the node before an atom \[rad\].
     fn heading(&self, site: &Site, atom: usize) -> Option<f64> {
         let before = self.atoms[..atom].iter().rev().find_map(|&before| site.atoms[before].headings);
         before.map(|headings| headings[1]).or(self.heading)
     }
 
-    /// What is kept if another way is to begin at the first node from `stop` on, for a robot that is at `at` \[m\] and has turned at
-    /// so many corners.
+    /// The part that is kept if another way is to begin at the first node from `stop` on. The robot is at `at` \[m\] and has
+    /// done `turned` turns at corners.
     pub(super) fn kept(&self, site: &Site, at: f64, stop: f64, turned: usize) -> Kept {
         let count = self.atoms.len();
-        // At a node, and at rest there, it begins afresh.
+        // If it stands at a node, the new way begins there.
         if let Some(k) = self.offsets.iter().position(|&offset| offset == at && offset == stop) {
             let k = k.min(count);
             let node = if k == count { self.end } else { site.atoms[self.atoms[k]].ends[0] };

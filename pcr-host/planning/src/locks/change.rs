@@ -5,7 +5,7 @@ use super::rides::Rides;
 use super::sweep::{Plan, Sweep, bodies};
 use pcr_formats::import::{Edge, Id, ImportError, Layout};
 
-/// The names are then in no order.
+/// Changes leave the ids unsorted.
 impl Sweep {
     /// Adds an edge; returns its track.
     pub(super) fn insert(&mut self, layout: &Layout, rides: &Rides<'_>, edge: &Edge) -> Result<usize, ImportError> {
@@ -30,7 +30,7 @@ impl Sweep {
         }
     }
 
-    /// Takes an edge out of its track, which is nowhere when it was the last one.
+    /// Removes an edge from its track; a track without edges is removed from the grid.
     pub(super) fn take_out(&mut self, track: usize, id: &Id) {
         let Some(own) = self.tracks.get_mut(track) else { return };
         own.members.retain(|&(place, _)| self.ids.get(place).is_some_and(|there| there != id));
@@ -40,13 +40,13 @@ impl Sweep {
         }
     }
 
-    /// The members of a track by their names, and whether they lead the other way.
+    /// The members of a track by their ids, and whether they lead the other way.
     pub(super) fn members(&self, track: usize) -> impl Iterator<Item = (&Id, bool)> {
         let members = self.tracks.get(track).into_iter().flat_map(|track| &track.members);
         members.filter_map(|&(place, turned)| Some((self.ids.get(place)?, turned)))
     }
 
-    /// The tracks that can be touched from one, with the lengths of both, and how many pairs of discs that took.
+    /// The tracks that touch a track, with the lengths of both, and the number of pairs of discs that were examined.
     pub(super) fn row_of(&self, track: usize) -> Result<(Vec<(usize, Extents)>, usize), ImportError> {
         let own = &self.tracks[track];
         let meet = |a: &[f64; 4], b: &[f64; 4]| a[0] <= b[2] && b[0] <= a[2] && a[1] <= b[3] && b[1] <= a[3];

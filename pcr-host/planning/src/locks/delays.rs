@@ -1,6 +1,6 @@
-//! Unsafe delays: how much later a vehicle must not set off on one edge than another vehicle on another edge, and at
-//! what times it must not be at a node, because the two would touch. Planners of the CCBS and SIPP families compute
-//! such delays for each pair that they consider.
+//! Unsafe delays: differences of start times at which two vehicles on two edges touch, and times at which a vehicle at a
+//! node touches one on an edge. Planners of the CCBS and SIPP families compute such delays for each pair that they
+//! consider.
 //!
 //! Both vehicles are on their edges from their start until they arrive; before and after that they stand at a node. An
 //! edge that may be travelled in both directions counts as two *ways*. A way also has delays with itself, for two
@@ -21,55 +21,56 @@ use pcr_formats::scenario::{Agent, MotionSpec, Scenario, label};
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Agents that are made at once.
+/// Number of agents that are built at a time.
 const STRETCH: usize = 1 << 12;
 
 /// How edges are driven.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Driving {
-    /// Largest speed \[m/s\]; the limit of an edge, where it has one, is a lower one.
+    /// Largest speed \[m/s\]; the speed limit of an edge applies if it is lower.
     pub speed: f64,
-    /// Largest acceleration \[m/s²\]: edges are driven from rest to rest. Without it they are driven at constant speed from end to end.
+    /// Largest acceleration \[m/s²\]: edges are driven from rest to rest. `None`: at constant speed from end to end.
     pub acceleration: Option<f64>,
 }
 
 /// An edge in one direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Way {
-    /// As in the layout.
+    /// Id of the edge in the layout.
     pub edge: Id,
     /// Whether it leads from the end of the edge to its start.
     pub backward: bool,
 }
 
-/// What was found, by places in [`Delays::ways`] and [`Delays::nodes`].
+/// What is unsafe. Numbers are indices into [`Delays::ways`] and [`Delays::nodes`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Unsafe {
-    /// Two ways, the first one not after the second, and how much later than on the first a vehicle may not set off on the second \[s\].
+    /// Two ways, in the order of their indices, and the range of start times on the second minus start times on the first at which
+    /// two vehicles touch \[s\].
     Delays([usize; 2], [f64; 2]),
-    /// A node and a way, and when, from setting off on the way, no other vehicle may stand at the node \[s\].
+    /// A node and a way, and the times after the start on the way at which no other vehicle may stand at the node \[s\].
     Times(usize, usize, [f64; 2]),
     /// Two nodes at which vehicles touch.
     Nodes([usize; 2]),
 }
 
-/// The ways of a layout, its nodes if asked for, and which of them can touch.
+/// The ways of a layout, its nodes if requested, and which of them can touch.
 pub struct Delays {
     ways: Vec<Way>,
     nodes: Vec<Id>,
-    /// Of ways, then of nodes.
+    /// Indices of ways, then of nodes.
     levels: Vec<[usize; 2]>,
     straight: Vec<Option<Straight>>,
     points: Vec<[f64; 2]>,
     /// Sum of the radii of two vehicles on straight ways \[m\].
     reach: f64,
-    /// Of ways, then of nodes; empty where all ways are straight and driven at constant speed.
+    /// Ways, then nodes; empty if all ways are straight and driven at constant speed.
     fleet: Fleet<f64>,
     areas: Vec<[f64; 4]>,
 }
 
 impl Delays {
-    /// Those of the vehicle with its margin.
+    /// The unsafe delays of the vehicle with its margin.
     ///
     /// # Errors
     /// [`ImportError`] for a vehicle that is no disc, whose turns at the nodes take a time that no file tells, and for coordinates,
@@ -139,21 +140,21 @@ impl Delays {
         Ok(all)
     }
 
-    /// By their edges, forward before backward.
+    /// The ways, sorted by their edges, forward before backward.
     pub fn ways(&self) -> &[Way] {
         &self.ways
     }
 
-    /// By their names; none if they were not asked for.
+    /// The nodes, sorted by their ids; empty if they were not requested.
     pub fn nodes(&self) -> &[Id] {
         &self.nodes
     }
 
-    /// What `make` makes of all that was found, on all cores, to `take`: of each way those with itself and the ways after it, then
-    /// with nodes; at last pairs of nodes. Intervals of one pair are apart, in increasing order.
+    /// Calls `make` for each result, on all cores, and passes its values to `take`: for each way the results with itself and
+    /// with later ways, then with nodes; at last pairs of nodes. Intervals of one pair are disjoint, in increasing order.
     ///
     /// # Errors
-    /// What `take` refuses, and [`ImportError`] for a pair that no memory holds.
+    /// Errors of `take`, and [`ImportError`] for a pair that does not fit in memory.
     pub fn each<T: Send, E: From<ImportError>>(
         &self,
         told: Told<'_>,
@@ -175,7 +176,7 @@ impl Delays {
         in_stretches(self.levels.len(), |unit| 1 + counts[unit] as usize, told, row, take)
     }
 
-    /// Two units, the first one not after the second.
+    /// The results of two units, in the order of their indices.
     fn pair(
         &self,
         [a, b]: [usize; 2],
@@ -210,7 +211,7 @@ impl Delays {
         let mut all = Vec::new();
         self.regions(own, their, [a, b], |region| {
             all.push(if b < ways {
-                // Of the one on the first way, which is later by less than nothing.
+                // `passing_delays` delays the ego, which is on the first way; hence the changed sign.
                 let Interval { lo, hi } = region.passing_delays();
                 Interval::new(-hi, -lo)
             } else {
@@ -252,12 +253,12 @@ impl Delays {
     }
 }
 
-/// The agent of a way as it is driven.
+/// The agent of a way, as it is driven.
 fn driven(agent: Agent, edge: &Edge, driving: Driving, speed: f64) -> Agent {
     let (length, whole) = (agent.length(), edge.length());
     let motion = match driving.acceleration {
         None if length > 0.0 => MotionSpec::Profile { v0: speed, pieces: vec![(length / speed, 0.0)] },
-        // A line that is too short to have a direction is no path, but a radius that is larger by it. It takes time all the same.
+        // A line too short to have a direction is replaced by a larger radius, but takes time all the same.
         acceleration if length == 0.0 && whole > 0.0 => {
             let ramps =
                 acceleration.map_or(0.0, |acceleration| (speed / acceleration).min((whole / acceleration).sqrt()));
@@ -268,7 +269,7 @@ fn driven(agent: Agent, edge: &Edge, driving: Driving, speed: f64) -> Agent {
     Agent { label: label(&edge.id.to_string()), motion, ..agent }
 }
 
-/// The box of a segment, grown by a reach \[m\] and by what rounding does to that.
+/// The box around a segment, enlarged by a reach \[m\] and its rounding.
 fn around([[x, y], [u, v]]: [[f64; 2]; 2], reach: f64) -> [f64; 4] {
     let reach = reach + 64.0 * f64::EPSILON * (x.abs().max(u.abs()) + y.abs().max(v.abs()) + reach);
     [x.min(u) - reach, y.min(v) - reach, x.max(u) + reach, y.max(v) + reach]

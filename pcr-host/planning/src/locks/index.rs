@@ -14,13 +14,13 @@ use std::path::Path;
 /// The first bytes of a file.
 const MAGIC: [u8; 8] = *b"pcrlocks";
 
-/// Of the layout of the file; another one is not read.
+/// Version of the layout of the file; other versions are refused.
 const VERSION: u32 = 2;
 
-/// What a header takes, and so where the records begin \[bytes\].
+/// Size of the header, after which the records begin \[bytes\].
 const HEADER: u64 = 128;
 
-/// A record: the other track, and lengths of both \[bytes\].
+/// Size of a record: the other track, and lengths of both \[bytes\].
 const RECORD: usize = 20;
 
 /// Bits of a place.
@@ -28,14 +28,14 @@ const TURNED: u32 = 1;
 const NODE: u32 = 2;
 const NUMBER: u32 = 4;
 
-/// Why a file is not read or written.
+/// The reason why a file is not read or written.
 #[derive(Debug)]
 pub enum IndexError {
-    /// By the system.
+    /// An error of the system.
     Io(io::Error),
-    /// There are no locks to be written.
+    /// The locks cannot be computed.
     Import(ImportError),
-    /// It is not what it should be.
+    /// The file is damaged.
     Damaged(String),
 }
 
@@ -63,14 +63,14 @@ impl From<ImportError> for IndexError {
     }
 }
 
-/// The nearest number of half the digits that is not above, and the one that is not below.
+/// The interval in single precision, rounded outward.
 fn outward([lo, hi]: [f64; 2]) -> [f32; 2] {
     let (below, above) = (lo as f32, hi as f32);
     let below = if f64::from(below) > lo { below.next_down() } else { below };
     [below, if f64::from(above) < hi { above.next_up() } else { above }]
 }
 
-/// Writes all locks of a layout, with its [`origin`](super::origin); returns how many records that are.
+/// Writes all locks of a layout, with its [`origin`](super::origin); returns the number of records.
 ///
 /// # Errors
 /// [`IndexError`].
@@ -131,28 +131,28 @@ pub fn write_index(sweep: &Sweep, origin: u32, out: &mut File, told: Told<'_>) -
     Ok(records)
 }
 
-/// A table of locks in a file. Its names are in memory, its locks are not.
+/// A table of locks in a file. Its ids are in memory, its locks are not.
 #[derive(Debug)]
 pub struct Index {
     file: File,
     directory: Vec<u8>,
-    /// Edges and nodes, tracks, and records.
+    /// Numbers of edges and nodes, of tracks, and of records.
     counts: [u64; 3],
     origin: u32,
-    /// Bytes of records that were read.
+    /// Bytes of records read so far.
     read: u64,
 }
 
-/// What an edge or a node shares its time with.
+/// An edge or node with which an edge or node has a lock.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Partner {
-    /// The other edge or node.
+    /// Id of the other edge or node.
     pub name: Id,
     /// Whether it is a node.
     pub node: bool,
-    /// Lengths on the edge that was asked for, from its start \[m\].
+    /// Lengths on the requested edge, from its start \[m\].
     pub own: [f64; 2],
-    /// Lengths on the other one \[m\].
+    /// Lengths on the other edge \[m\].
     pub other: [f64; 2],
 }
 
@@ -168,7 +168,7 @@ impl Index {
     /// Opens a file and reads the names in it.
     ///
     /// # Errors
-    /// [`IndexError`] for what is no such file, of another version or damaged.
+    /// [`IndexError`] for a file that is no index, of another version, or damaged.
     pub fn open(file: &Path) -> Result<Self, IndexError> {
         let mut file = File::open(file)?;
         let size = file.metadata()?.len();
@@ -198,7 +198,7 @@ impl Index {
         Ok(Self { file, directory, counts: [places, tracks, records], origin: word(52), read: 0 })
     }
 
-    /// Whether a file begins like one.
+    /// Whether a file begins with the magic bytes of an index.
     pub fn is_one(file: &Path) -> bool {
         let mut begin = [0; MAGIC.len()];
         File::open(file).and_then(|mut file| file.read_exact(&mut begin)).is_ok() && begin == MAGIC
@@ -209,12 +209,12 @@ impl Index {
         self.origin
     }
 
-    /// Edges and nodes, and records, that it holds.
+    /// Number of edges and nodes, and number of records.
     pub fn counts(&self) -> [u64; 2] {
         [self.counts[0], self.counts[2]]
     }
 
-    /// Bytes of locks that have been read.
+    /// Number of bytes of locks that were read.
     pub fn bytes_read(&self) -> u64 {
         self.read
     }
@@ -230,7 +230,7 @@ impl Index {
         Place { track: le32(part(0, 4)), flags: le32(part(4, 4)), length: f64::from_bits(le64(part(8, 8))) }
     }
 
-    /// First record, records, checksum, first member, members.
+    /// Index of the first record, number of records, checksum, index of the first member, number of members.
     fn track(&self, track: u32) -> (u64, [u32; 4]) {
         let bytes = self.bytes(16 * self.counts[0] + 24 * u64::from(track), 24);
         let part = |at: usize, count: usize| bytes.get(at..at + count).unwrap_or_default();
@@ -249,7 +249,7 @@ impl Index {
         }
     }
 
-    /// The places of a name: an edge, a node, or one of each.
+    /// The indices of an id: an edge, a node, or one of each.
     fn places(&self, name: &str) -> Vec<u64> {
         let ids = [name.parse().ok().map(Id::Number), Some(Id::Text(name.to_owned()))];
         let nodes = partition(0, self.counts[0], |place| self.place(place).flags & NODE == 0);
@@ -261,11 +261,10 @@ impl Index {
         ids.iter().flatten().flat_map(|id| ranges.map(|range| found(id, range))).flatten().collect()
     }
 
-    /// All that an edge shares its time with, or a node where no edge has the name; nothing where neither has. It reads the locks
-    /// of this edge, and no others.
+    /// All locks of an edge, or of a node if no edge has this id; `None` if neither has it. Reads the locks of this edge only.
     ///
     /// # Errors
-    /// [`IndexError`] for a file that cannot be read or is damaged there.
+    /// [`IndexError`] if the file cannot be read, or is damaged there.
     pub fn of(&mut self, name: &str) -> Result<Option<Vec<Partner>>, IndexError> {
         let Some(&place) = self.places(name).first() else { return Ok(None) };
         let own = self.place(place);
@@ -303,16 +302,16 @@ impl Index {
     }
 }
 
-/// By edges, then nodes, by their names, then by the lengths.
+/// Sorts by kind (edges first), id, and lengths.
 fn sort(partners: &mut [Partner]) {
     partners.sort_by(|a, b| (a.node, &a.name).cmp(&(b.node, &b.name)).then(a.own[0].total_cmp(&b.own[0])));
 }
 
 impl Sweep {
-    /// All that an edge shares its time with, or a node where no edge has the name; nothing where neither has.
+    /// All locks of an edge, or of a node if no edge has this id; `None` if neither has it.
     ///
     /// # Errors
-    /// [`ImportError`] for a pair that no memory holds.
+    /// [`ImportError`] for a pair that does not fit in memory.
     pub fn partners(&self, name: &str) -> Result<Option<Vec<Partner>>, ImportError> {
         let named = |place: usize| self.ids()[place].to_string() == name;
         let found = (0..self.ids().len()).find(|&place| named(place));
@@ -345,7 +344,7 @@ fn le64(bytes: &[u8]) -> u64 {
     bytes.try_into().map_or(0, u64::from_le_bytes)
 }
 
-/// The first place for which it no longer holds.
+/// The first index for which `holds` is false.
 fn partition(mut from: u64, mut to: u64, holds: impl Fn(u64) -> bool) -> u64 {
     while from < to {
         let middle = from + (to - from) / 2;

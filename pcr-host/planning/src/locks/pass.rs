@@ -9,22 +9,23 @@ use pcr_core::{Full, Interval, Motion, Piece, overlaps};
 use pcr_formats::import::{Id, ImportError};
 use rayon::prelude::*;
 
-/// Locks that are held to be put in order: more are told in the order of the tracks.
+/// Largest number of locks that are kept to be sorted; more are passed on in the order of the tracks.
 const HELD: usize = 10_000_000;
 
-/// Two edges or nodes, by their places in [`Sweep::ids`], the lower first, and lengths of both at which vehicles may touch.
+/// Two edges or nodes, by their indices in [`Sweep::ids`], the lower one first, and the lengths of both at which vehicles may
+/// touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
     /// Edges come before nodes.
     pub places: [usize; 2],
-    /// From the start of each \[m\].
+    /// Lengths from the start of each \[m\].
     pub lengths: Extents,
 }
 
-/// Pieces of two discs, which have one a pair of segments.
+/// Largest number of pieces of two discs: one for each pair of segments.
 pub(super) const PIECES: usize = 16;
 
-/// How far a pass is: pairs of discs that were looked at, of so many.
+/// Reports progress: examined pairs of discs, and all pairs.
 pub type Told<'t> = &'t (dyn Fn(usize, usize) + Sync);
 
 /// A pass over all pairs.
@@ -32,7 +33,7 @@ pub(super) struct Pass<'a> {
     sweep: &'a Sweep,
     motions: Vec<Motion<'a, f64>>,
     grid: Grid,
-    /// How many discs come near each.
+    /// For each disc the number of discs near it.
     pub(super) counts: Vec<u32>,
 }
 
@@ -42,7 +43,7 @@ impl<'a> Pass<'a> {
         Self { sweep, motions: sweep.fleet.motions(), counts: grid.counts(), grid }
     }
 
-    /// Rows one after the other, computed on all cores.
+    /// Passes on rows one after the other; they are computed on all cores.
     pub(super) fn each<T: Send, E: From<ImportError>>(
         &self,
         told: Told<'_>,
@@ -56,8 +57,8 @@ impl<'a> Pass<'a> {
         in_stretches(self.sweep.tracks.len(), work, told, row, take)
     }
 
-    /// The tracks after one, or with `both` all, that can be touched from it, itself where it has several members, with the
-    /// lengths of both: by the other track, then in the order of the lengths.
+    /// The later tracks (with `both` all tracks) that touch a track, with the lengths of both; a track with several members
+    /// also touches itself. Sorted by track, then by lengths.
     pub(super) fn row(&self, track: usize, both: bool) -> Result<Vec<(usize, Extents)>, ImportError> {
         let sweep = self.sweep;
         let own = &sweep.tracks[track];
@@ -79,7 +80,7 @@ impl<'a> Pass<'a> {
     }
 }
 
-/// Rows one after the other, each of so much work, computed on all cores.
+/// Passes on rows in stretches of equal work; they are computed on all cores.
 pub(super) fn in_stretches<T: Send, E: From<ImportError>>(
     rows: usize,
     work: impl Fn(usize) -> usize,
@@ -104,8 +105,8 @@ pub(super) fn in_stretches<T: Send, E: From<ImportError>>(
 }
 
 impl Sweep {
-    /// What `make` makes of all that was found, on all cores, to `take`: pairs of edges, then edges with nodes, then pairs
-    /// of nodes, in the order of their names and lengths; or, where that is more than ten million, in that of the tracks.
+    /// Calls `make` for each result, on all cores, and passes its values to `take`: pairs of edges, then edges with nodes, then
+    /// pairs of nodes, sorted by ids and lengths; more than ten million results are in the order of the tracks.
     ///
     /// # Errors
     /// What `take` refuses, and [`ImportError`] for a pair that no memory holds.
@@ -138,14 +139,14 @@ impl Sweep {
         Ok(())
     }
 
-    /// What a row of tracks means for their members.
+    /// The locks of the members of tracks, from a row of tracks.
     fn found(&self, track: usize, row: &[(usize, Extents)]) -> Vec<Found> {
         let own = &self.tracks[track];
         let mut all = Vec::new();
         for &(other, [lengths, other_lengths]) in row {
             let their = &self.tracks[other];
             for (k, &(a, turned)) in own.members.iter().enumerate() {
-                // Of one track each pair of members once.
+                // Each pair of members of one track once.
                 for &(b, other_turned) in their.members.iter().skip(if other == track { k + 1 } else { 0 }) {
                     let (own, their) = (own.on_member(lengths, turned), their.on_member(other_lengths, other_turned));
                     all.push(if a < b {
@@ -211,7 +212,7 @@ impl Sweep {
         Ok(if extents.len() > 1 { joined(extents) } else { extents })
     }
 
-    /// What a disc belongs to, for messages.
+    /// Id of the edge or node of a disc, for messages.
     fn name(&self, disc: usize) -> String {
         let member = self.tracks.get(self.track_of(disc)).and_then(|track| track.members.first());
         member.and_then(|&(place, _)| self.ids.get(place)).map_or_else(String::new, Id::to_string)

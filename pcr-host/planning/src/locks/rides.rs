@@ -15,23 +15,23 @@ const ROUNDING: f64 = 1e-12;
 
 /// The vehicle somewhere on an edge.
 pub struct Ride {
-    /// Who travels it.
+    /// The agent that travels the edge.
     pub agent: Agent,
     pub(crate) lengths: Lengths,
 }
 
-/// What lengths on the path of an agent are on the edge.
+/// The meaning of lengths on the path of an agent, as lengths on the edge.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Lengths {
     Same,
-    /// Of an edge of this length \[m\], from its other end.
+    /// Lengths from the other end of an edge of this length \[m\].
     Reversed(f64),
-    /// It turns there \[m\].
+    /// The agent turns in place at this length \[m\].
     At(f64),
 }
 
 impl Lengths {
-    /// Lengths on the edge, outward, of lengths on the path of the agent.
+    /// Lengths on the edge for lengths on the path of the agent, rounded outward.
     pub(crate) fn on_edge(self, lengths: [f64; 2]) -> [f64; 2] {
         match self {
             Self::Same => lengths,
@@ -58,7 +58,7 @@ pub struct Rides<'a> {
 }
 
 impl<'a> Rides<'a> {
-    /// Those of the vehicle with its margin.
+    /// The rides of the vehicle with its margin.
     pub fn new(Imported { layout, vehicle }: &'a Imported) -> Self {
         let vehicle = Vehicle { margin: 0.0, ..grown(vehicle, vehicle.margin) };
         // A disc is the same in every heading.
@@ -161,7 +161,7 @@ fn grown(vehicle: &Vehicle, by: f64) -> Vehicle {
     Vehicle { radius: vehicle.radius + by, footprint, ..vehicle.clone() }
 }
 
-/// Where the vehicle is.
+/// A pose of the vehicle.
 struct End {
     at: [f64; 2],
     heading: f64,
@@ -176,7 +176,7 @@ fn ends(step: Step<'_>) -> Option<[End; 2]> {
     Some([End { at: first.at, heading: first.heading }, End { at: last.end(), heading: last.heading_at_end() }])
 }
 
-/// Where the discs of a vehicle run on an edge, and their radii \[m\]: for pictures.
+/// The paths of the discs of a vehicle on an edge, and their radii \[m\]: for pictures.
 pub fn corridor(rides: &[Ride]) -> Vec<(Vec<Placed>, f64)> {
     rides.iter().flat_map(|ride| tracks(&ride.agent)).collect()
 }

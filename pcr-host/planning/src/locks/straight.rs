@@ -11,7 +11,7 @@ const ROUNDINGS: f64 = 32.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Straight {
     start: [f64; 2],
-    /// Of length 1.
+    /// Unit vector.
     direction: [f64; 2],
     /// \[m\]
     length: f64,
@@ -38,7 +38,7 @@ fn moved(a: [f64; 2], b: [f64; 2], by: f64) -> [f64; 2] {
 fn covered(direction: [f64; 2], length: f64, point: [f64; 2], reach: f64) -> Option<[f64; 2]> {
     let (foot, aside) = (dot(point, direction), cross(direction, point).abs());
     let half = ((reach - aside) * (reach + aside)).sqrt();
-    // What is no number is not covered.
+    // NaN counts as not covered.
     let covered = [(foot - half).max(0.0), (foot + half).min(length)];
     (aside <= reach && covered[0] <= covered[1]).then_some(covered)
 }
@@ -61,7 +61,7 @@ impl Straight {
         })
     }
 
-    /// Where it begins and ends.
+    /// Its two ends.
     pub fn ends(&self) -> [[f64; 2]; 2] {
         [self.start, moved(self.start, self.direction, self.length)]
     }
@@ -88,7 +88,7 @@ impl Straight {
     /// ```
     pub fn delays(&self, other: &Self, reach: f64) -> Option<[f64; 2]> {
         if reach.is_nan() {
-            // Of what is no number nothing can be told.
+            // For NaN all delays count as unsafe.
             return Some([-other.duration, self.duration]);
         }
         // From the other's start to this one's.
@@ -154,12 +154,12 @@ impl Straight {
         [2.0 * self.slack(other, between, reach), 2.0 * self.time_rounding(other)]
     }
 
-    /// What rounding may do to a distance \[m\].
+    /// Bound on the rounding error of a distance \[m\].
     fn slack(&self, other: &Self, between: [f64; 2], reach: f64) -> f64 {
         ROUNDINGS * ULP * (between[0].abs() + between[1].abs() + self.length + other.length + reach)
     }
 
-    /// What rounding may do to a delay that is right in lengths \[s\].
+    /// Bound on the rounding error of a delay, if lengths are exact \[s\].
     fn time_rounding(&self, other: &Self) -> f64 {
         8.0 * ULP * (self.duration + other.duration)
     }

@@ -13,25 +13,25 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Tracks, pairs of discs or locks that are made on all cores before they are handed on.
+/// Number of tracks, pairs of discs or locks that are computed on all cores before they are passed on.
 pub(super) const STRETCH: usize = 1 << 16;
 
-/// What vehicles sweep on a layout.
+/// The swept areas of vehicles on a layout.
 pub struct Sweep {
-    /// Names of the edges in their order, then of the nodes.
+    /// Ids of the edges in their order, then of the nodes.
     pub(super) ids: Vec<Id>,
-    /// How many of them are edges.
+    /// Number of edges among them.
     pub(super) edges: usize,
     pub(super) tracks: Vec<Track>,
-    /// What lengths on the path of a ride are, and its track.
+    /// For each ride the meaning of lengths on its path, and its track.
     pub(super) rides: Vec<(Lengths, u32)>,
     pub(super) fleet: Fleet<f64>,
     pub(super) discs: Vec<Disced>,
-    /// Of each disc.
+    /// For each disc the box of its swept area.
     pub(super) areas: Vec<[f64; 4]>,
 }
 
-/// An edge or a node, or edges that are one.
+/// An edge or a node, or several edges with the same curve.
 pub(super) struct Track {
     /// By their places in the names, and whether it leads the other way.
     pub(super) members: Vec<(usize, bool)>,
@@ -153,7 +153,7 @@ pub(super) fn bodies(plan: &Plan, ids: &[Id]) -> Result<Bodies<f64>, ImportError
     Bodies::new(&scenario).map_err(|refused| ImportError::new(refused.to_string()))
 }
 
-/// Where an edge begins and ends that is the line between its nodes, and no other.
+/// The ends of an edge, if it is the straight line between its nodes.
 pub(super) fn straight_ends(layout: &Layout, edge: &Edge) -> Option<[[f64; 2]; 2]> {
     let [from, to] = edge.ends.map(|node| layout.nodes.get(node).map(|node| node.at));
     let ([x, y], [to_x, to_y]) = (from?, to?);

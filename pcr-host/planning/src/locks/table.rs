@@ -15,15 +15,15 @@ pub struct Table {
     tracks: HashMap<Id, usize>,
 }
 
-/// What a change does to the locks.
+/// The effect of a change on the locks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Change {
-    /// The edges all of whose locks are void: the one that changed, and for outlines those that it meets at a node, where the
+    /// The edges whose former locks are void: the changed edge, and for outlines the edges that it meets at a node, where the
     /// vehicle turns.
     pub edges: Vec<Id>,
-    /// The locks that these have now, each once.
+    /// The present locks of these edges, each once.
     pub locks: Vec<Lock>,
-    /// Pairs of discs that were near enough to be computed.
+    /// Number of pairs of discs that were near enough to be computed.
     pub looked: usize,
 }
 

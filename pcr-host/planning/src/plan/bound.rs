@@ -2,7 +2,7 @@
 
 use pcr_core::{Drive, Limits};
 
-/// What rounding may take off the time of a motion, relative.
+/// Bound on the relative rounding error by which the time of a motion may be too short.
 pub(super) const ROUNDING: f64 = 1e-9;
 
 /// The least time from one speed to another over a length \[s\]: full acceleration, the largest speed, full deceleration.

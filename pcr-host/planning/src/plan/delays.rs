@@ -35,46 +35,50 @@ use std::time::{Duration, Instant};
 /// How long to search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Effort {
-    /// Until it is proved that nothing is better; else for a number of nodes and rounds, which finds the same every time.
+    /// Whether to search until the delays are proved to be the best. Otherwise the numbers of nodes and rounds are fixed, so the
+    /// result is the same in every run.
     pub prove: bool,
-    /// At most this long. What is found then depends on the machine.
+    /// Time limit. With it the result depends on the machine.
     pub time: Option<Duration>,
 }
 
-/// Nodes of the first search, and rounds of the improvement after it. Each later one has more by a factor.
+/// Node limit of the first search; multiplied by `FACTOR` for each later one, so that easy fleets take little time.
 const NODES: u64 = 2_000;
+/// Rounds of the improvement after the first search; multiplied by `FACTOR` as well.
 const ROUNDS: usize = 200;
 const FACTOR: u32 = 5;
-/// Searches if nothing has to be proved, and pairs of agents from which on they have fewer nodes and rounds: each takes longer then.
+/// Number of searches if nothing has to be proved.
 const SEARCHES: u32 = 3;
+/// Number of pairs of agents from which on node limits and rounds shrink in proportion, because each node takes longer.
 const WIDE: usize = 1_200;
-/// Rounds where some delays are enough.
+/// Rounds of the improvement if any delays will do.
 const SOME: usize = 20;
-/// Nodes of a search in which it matters whether there are delays at all, for few agents and for many: less for more of them, as each
-/// node takes longer.
+/// Node limit of a search that decides whether delays exist, for up to `FEW` agents. With more agents the limit shrinks in
+/// proportion, because each node takes longer.
 const DECIDING: u64 = 200_000;
-/// Pairs of agents that forbid one another something up to which a part is searched, unless a search is asked for: of a larger one
-/// the best of the orders of priority that were tried stands, with a bound.
+/// Largest number of pairs with forbidden delays for which a part of the fleet is searched, unless a search was asked for. A larger
+/// part keeps the best delays known before, with a lower bound.
 const SEARCHED: usize = 20_000;
+/// Number of agents up to which `DECIDING` is not reduced.
 const FEW: u64 = 20;
 
-/// What was found.
+/// The result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Outcome {
-    /// The delays of all agents but those that are left out \[ticks\]; none if the search was stopped before it found any.
+    /// Delays of the agents that are not left out \[ticks\]; `None` if the search was stopped before it found any.
     pub(crate) delays: Option<Vec<Option<i64>>>,
-    /// Nothing costs less, for the agents that are not left out \[ticks\]; without rounding.
+    /// Lower bound of the cost of the agents that are not left out \[ticks\], with an allowance for rounding.
     pub(crate) bound: i128,
-    /// Whether the delays are the best but for rounding.
+    /// Whether the delays are proved to be the best, except for rounding.
     pub(crate) proved: bool,
-    /// Sets of agents that have no delays together. It is proved.
+    /// Sets of agents that are proved to have no delays together.
     pub(crate) conflicts: Vec<Vec<usize>>,
-    /// Whether nobody more can have delays; else some are left out because none were found for them before a search was stopped.
+    /// Whether it is proved that no larger set of agents has delays. Otherwise a search was stopped, and agents may be left out needlessly.
     pub(crate) fewest: bool,
 }
 
-/// The best delays, or who cannot have any together and, if agents may be left out, the best delays of all others. `known` delays are
-/// the worst that come out, in each part in which all have one.
+/// The best delays. If not all agents can have delays: the conflicts, and with `leave_out` the best delays of the agents that stay.
+/// Where `known` has delays for all agents of a part, the result is at least as good.
 pub(crate) fn best(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort, leave_out: bool) -> Outcome {
     let begin = Instant::now();
     let after = |time: Duration| effort.time.is_some() && begin.elapsed() >= time;
@@ -84,7 +88,7 @@ pub(crate) fn best(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort
         Some(delays) => Left::nobody(delays),
         None => {
             let nodes = DECIDING * FEW / FEW.max(problem.len() as u64);
-            // The other half is for the delays of those that stay.
+            // The other half of the time is for the delays of the agents that stay.
             let clock = || after(time / 2);
             leave::left(problem, &alone(problem), Stop { nodes, clock: &clock }, leave_out)
         }
@@ -108,8 +112,8 @@ pub(crate) fn best(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort
     }
 }
 
-/// Delays of all agents, or of as many as there are delays for, in milliseconds where a fleet has dozens of agents: not the best ones. `with`
-/// has for each agent all that have none if it has none, itself among them.
+/// Delays of all agents, or of as many as possible. They are not the best ones, but for dozens of agents they take only milliseconds.
+/// `with` has for each agent the agents that have to be left out with it, itself included.
 pub(crate) fn some(problem: &Problem, with: &[Vec<usize>]) -> Vec<Option<i64>> {
     let clock = || false;
     let found = insert::inserted(problem);
@@ -119,7 +123,7 @@ pub(crate) fn some(problem: &Problem, with: &[Vec<usize>]) -> Vec<Option<i64>> {
     }
 }
 
-/// Everybody is left out for itself.
+/// The value of `with` if each agent can be left out alone.
 fn alone(problem: &Problem) -> Vec<Vec<usize>> {
     (0..problem.len()).map(|agent| vec![agent]).collect()
 }
@@ -130,7 +134,7 @@ struct Solved {
     proved: bool,
 }
 
-/// The parts that forbid one another nothing, each for itself, from delays that are known.
+/// Solves the independent parts of the fleet, which forbid one another no delays, one by one, beginning with known delays.
 fn solved(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort, clock: &dyn Fn() -> bool) -> Solved {
     let mut delays = vec![0; problem.len()];
     // The last arrival may be before 0.
@@ -163,7 +167,7 @@ fn connected(
     let mut delays = known.min_by_key(|delays| problem.cost(delays)).expect("delays that were found before");
     let mut bound = problem.cost(&vec![0; problem.len()]);
     if problem.pairs.len() > SEARCHED && effort == Effort::default() {
-        // What all plans have in common.
+        // The bound of the root node, without a search.
         let root = Search::new(problem, Stop { nodes: 0, clock }).root();
         bound = root.map_or(bound, |root| bound.max(problem.cost(&root)));
         return Solved { proved: bound >= problem.cost(&delays), delays, bound };
@@ -176,7 +180,7 @@ fn connected(
     loop {
         let next = Search::new(problem, Stop { nodes: share(nodes), clock });
         let limit = problem.cost(&delays);
-        // At first for delays, then for a bound, until that takes too much memory.
+        // Depth first at first, to find delays; then the least bound first, to raise the bound, unless that takes too much memory.
         let found = if search == 1 || nodes > lowest::MOST { next.run([], limit) } else { next.lowest(limit) };
         bound = bound.max(found.bound);
         delays = found.delays.unwrap_or(delays);

@@ -22,29 +22,29 @@ use crate::rows;
 use pcr_core::{Interval, Motion, RegionRef, Scalar};
 use pcr_formats::scenario::Scenario;
 
-/// What an agent and another one forbid: differences of their delays, own less other, at which they meet \[ticks\], outward.
+/// Differences of two delays (own minus other) at which the two agents meet \[ticks\], rounded outward.
 #[derive(Clone, Copy, Debug)]
 struct Met {
     other: usize,
     ends: [i64; 2],
 }
 
-/// What a region takes until its delays are found \[bytes\].
+/// Memory for a region until its delays are found \[bytes\].
 const BYTES: u64 = 256;
 
-/// For each agent and each other one that it meets the differences of their delays at which they do.
+/// The forbidden differences of delays of all pairs of agents that can meet.
 #[derive(Clone, Debug)]
 pub struct Forbidden {
-    /// Sorted by the other agent.
+    /// For each agent, sorted by the other agent.
     met: Vec<Vec<Met>>,
     ticks: Ticks,
-    /// When each agent arrives without a delay \[s\].
+    /// Arrival of each agent without a delay \[s\].
     ends: Vec<f64>,
-    /// For each agent those that have to start before it.
+    /// For each agent the agents that have to start before it.
     first: Vec<Vec<usize>>,
 }
 
-/// Whose a disc is, and whether it is there before that agent sets off, and after it has arrived.
+/// The agent of a disc, and whether the disc is present before the start of that agent and after its arrival.
 #[derive(Clone, Copy, Debug)]
 struct Owner {
     agent: usize,
@@ -57,7 +57,7 @@ impl Owner {
     }
 }
 
-/// The delays with which two discs meet, each of which stands only where it is there then.
+/// The delays with which two discs meet. `own` and `other` tell whether a disc is there before its start and after its end.
 fn met_with(region: &RegionRef<'_, f64>, own: [bool; 2], other: [bool; 2]) -> Interval<f64> {
     let delays = region.forbidden_delays();
     let [after, before] = sides(region, own, other);
@@ -65,7 +65,8 @@ fn met_with(region: &RegionRef<'_, f64>, own: [bool; 2], other: [bool; 2]) -> In
     if (after || !early) && (before || !late) {
         return delays;
     }
-    // A side without an end is of a disc that would stand, but is not there.
+    // Forbidden delays are unbounded on a side where a disc stands before its start or after its end. If the disc is not there at that
+    // time, that side ends where the delays end with which the two meet under way.
     let passing = region.passing_delays();
     Interval {
         lo: if early && !after { passing.lo } else { delays.lo },
@@ -73,39 +74,39 @@ fn met_with(region: &RegionRef<'_, f64>, own: [bool; 2], other: [bool; 2]) -> In
     }
 }
 
-/// Why an agent cannot start: because of another one, with any delay of either or with late ones only.
+/// Why an agent has no delay: the other agent, and whether they meet with every delay of either.
 struct Blocked {
     by: usize,
     always: bool,
 }
 
-/// An agent without a delay, and because of whom.
+/// An agent without a delay, and the other agent that prevents one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Out {
-    /// Place of the agent.
+    /// Index of the agent.
     pub agent: usize,
-    /// Place of the other one.
+    /// Index of the other agent.
     pub by: usize,
-    /// Whether they meet whenever they start.
+    /// Whether the two meet with all delays.
     pub always: bool,
 }
 
 /// Delays of some agents, and why the others have none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Schedule {
-    /// By the place of the agent \[s\].
+    /// Delays by the index of the agent \[s\].
     pub delays: Vec<Option<f64>>,
-    /// Those without one.
+    /// The agents without a delay.
     pub out: Vec<Out>,
     /// The order of priority.
     pub order: Vec<usize>,
 }
 
 impl Forbidden {
-    /// What the agents of a scenario forbid one another.
+    /// The forbidden delays of the agents of a scenario.
     ///
     /// # Errors
-    /// [`Failure`] where a value does not fit, or the table cannot hold the fleet.
+    /// [`Failure`] if a value does not fit, or the table cannot hold the fleet.
     pub fn of(scenario: &Scenario) -> Result<Self, Failure> {
         let bodies = Bodies::<f64>::new(scenario)?;
         let motions = grown(&bodies.fleet);
@@ -113,18 +114,18 @@ impl Forbidden {
         Self::between(&motions, &owners, scenario.agents.len()).map_err(|failure| failure.named(&bodies.scenario))
     }
 
-    /// What some motions forbid one another, each with its own delay.
+    /// The forbidden delays of some motions, each with its own delay.
     ///
     /// # Errors
-    /// [`Failure`] where the table cannot hold them.
+    /// [`Failure`] if the table cannot hold them.
     pub fn of_motions(motions: &[Motion<'_, f64>]) -> Result<Self, Failure> {
         let owners: Vec<Owner> = (0..motions.len()).map(|agent| Owner { agent, stands: [true; 2] }).collect();
         Self::between(motions, &owners, motions.len())
     }
 
-    /// The discs of so many agents, and whose they are.
+    /// The forbidden delays of `count` agents with these discs and owners.
     fn between(motions: &[Motion<'_, f64>], owners: &[Owner], count: usize) -> Result<Self, Failure> {
-        // A row holds those after its disc: the other direction of a pair is the same, with the sign turned round.
+        // A row has the pairs of its disc with later ones; the other direction of a pair has the opposite sign.
         let found = rows::gathered(motions, "start delays that regions forbid", |row| {
             let discs = row.agents();
             let owner = |place: usize| discs.get(place).and_then(|&disc| owners.get(disc as usize)).copied();
@@ -148,7 +149,7 @@ impl Forbidden {
                 *end = end.max(motion.time().hi);
             }
         }
-        // No chain of waits is longer than all agents and the longest wait.
+        // A chain of waits is at most as long as the number of agents times the longest wait.
         let waits = found.iter().flat_map(|(_, delays)| delays).map(|end| end.abs()).filter(|end| *end < limit);
         let times = motions.iter().flat_map(|motion| [motion.time().lo, motion.time().hi]).map(f64::abs);
         let ticks = Ticks::up_to(times.fold(0.0, f64::max) + count as f64 * waits.fold(0.0, f64::max));
@@ -169,8 +170,8 @@ impl Forbidden {
         Ok(Self { met, ticks, ends, first })
     }
 
-    /// What the delay of an agent less that of another one must not be, by their places: open intervals in no order, which may overlap
-    /// \[s\]; without an end on a side where it is infinite. None for agents that are not there.
+    /// Forbidden values of the delay of an agent minus that of another one: open intervals in no order, which may overlap
+    /// \[s\]; infinite ends are unbounded. Empty for agents that do not exist.
     pub fn intervals(&self, agent: usize, other: usize) -> impl Iterator<Item = [f64; 2]> {
         let own = self.met.get(agent).map_or(&[][..], Vec::as_slice);
         let begin = own.partition_point(|met| met.other < other);
@@ -183,9 +184,9 @@ impl Forbidden {
         those.map(move |met| met.ends.map(seconds))
     }
 
-    /// The delays to be found for all agents.
+    /// The problem of finding delays for all agents.
     pub(crate) fn problem(&self, objective: Objective) -> Problem {
-        // Of each pair once, seen from the second agent.
+        // Each pair once, seen from the second agent.
         let pairs = self.met.iter().enumerate().flat_map(|(i, own)| {
             let those = own.chunk_by(|a, b| a.other == b.other).filter_map(move |same| same.first().zip(Some(same)));
             those.filter(move |(met, _)| met.other > i).map(move |(met, same)| {
@@ -199,7 +200,7 @@ impl Forbidden {
         Problem { objective, ends: self.ends.iter().map(|&end| self.ticks.nearest(end)).collect(), pairs }
     }
 
-    /// What its times are measured in.
+    /// Unit of its times.
     pub(crate) fn ticks(&self) -> Ticks {
         self.ticks
     }
@@ -214,12 +215,12 @@ impl Forbidden {
         self.met.is_empty()
     }
 
-    /// The order, but for agents that have to start before others.
+    /// The order, changed so that agents that have to start before others come before them.
     pub fn respecting(&self, order: &[usize]) -> Vec<usize> {
         delays::respecting(order, &self.first)
     }
 
-    /// One agent after the other, each as early as those before it allow; one that cannot start is left out.
+    /// Plans one agent after the other, each as early as those before it allow; an agent that cannot start is left out.
     pub fn in_order(&self, order: Vec<usize>) -> Schedule {
         let mut delays = vec![None; self.len()];
         let mut out = Vec::new();
@@ -235,7 +236,7 @@ impl Forbidden {
         Schedule { delays: delays.into_iter().map(seconds).collect(), out, order }
     }
 
-    /// The least delay of an agent that those allow that have one.
+    /// The least delay of an agent that the agents with delays allow.
     fn earliest(&self, delays: &[Option<i64>], ranks: &[usize], agent: usize) -> Result<i64, Blocked> {
         let before = || self.met[agent].iter().filter_map(|met| Some((met, delays[met.other]?)));
         let intervals: Vec<[i64; 2]> = before()
@@ -244,7 +245,7 @@ impl Forbidden {
         if let Some(delay) = earliest(intervals) {
             return Ok(delay);
         }
-        // The first in the order of priority of whom it holds.
+        // The first agent in the order of priority for which it holds.
         let first_of = |holds: &dyn Fn([i64; 2]) -> bool| {
             before().filter(|(met, _)| holds(met.ends)).map(|(met, _)| met.other).min_by_key(|&other| ranks[other])
         };

@@ -11,7 +11,7 @@ use pcr_core::{Drive, Motion, Unsolved as Never};
 use pcr_formats::scenario::{Labels, MotionSpec, Scenario};
 use rayon::prelude::*;
 
-/// Costs that are the same in print \[s\].
+/// Costs that differ by less are printed alike \[s\].
 const NEAR: f64 = 1e-4;
 
 impl<'m> Planner<'_, 'm> {
@@ -24,7 +24,7 @@ impl<'m> Planner<'_, 'm> {
         }
     }
 
-    /// What was read otherwise than it was written, and what is planned otherwise than it was asked for.
+    /// Warnings about input that was changed or left out, and about requests that were planned differently.
     fn warnings(&self) -> Vec<String> {
         let mut warnings = self.scenario.warnings.clone();
         if self.request.method == Method::Speed {
@@ -42,7 +42,7 @@ impl<'m> Planner<'_, 'm> {
         warnings
     }
 
-    /// A plan by the method, with delays that are known for all agents.
+    /// A plan by the method; `known` delays, if any, are for all agents.
     pub(super) fn plan(&self, known: Option<Known>) -> Result<Answer, Failure> {
         let later = known.as_ref().and_then(|known| {
             let delayed = self.motions.iter().zip(&known.delays).map(|(motion, &delay)| motion.delayed(delay).ok());
@@ -61,7 +61,7 @@ impl<'m> Planner<'_, 'm> {
                 match speeds::plan(self, later.clone(), &mut pool)? {
                     Ok(planned) => {
                         let answer = self.answer(&planned, None)?;
-                        // The delays are a plan by speeds as well, if other speeds are refused.
+                        // If no other speeds are found, the delays are the plan.
                         match later.filter(|_| answer.1.is_none()) {
                             Some(later) => self.answer(&later, None),
                             None => Ok(answer),
@@ -73,17 +73,17 @@ impl<'m> Planner<'_, 'm> {
         }
     }
 
-    /// What no plan by the method falls below \[s\].
+    /// Lower bound of all plans by the method \[s\].
     fn bound(&self, known: Option<&Known>) -> f64 {
         let least = |motion: &Motion<'_, f64>| match self.request.method {
             Method::Delay => motion.time().length(),
-            // An agent that is nowhere faster than its own motion takes as long as that.
+            // An agent that may not be faster than its own motion takes at least as long.
             Method::Speed => {
                 Drive::of(motion).map_or(motion.time().length(), |drive| bound::fastest(drive, motion.path().length()))
             }
         };
         let alone = match self.request.objective {
-            // A sum of nothing is -0.
+            // An empty sum is -0.
             Objective::Sum => self.motions.iter().map(least).sum::<f64>() + 0.0,
             Objective::Makespan => {
                 let begin = self.begin();
@@ -98,7 +98,7 @@ impl<'m> Planner<'_, 'm> {
         alone.max(together)
     }
 
-    /// Motions as a plan: nothing is returned that the check would refuse, or that has a contact.
+    /// Motions as a plan. A plan that the check refuses, or that has a contact, is not returned.
     fn answer(&self, planned: &[Motion<'_, f64>], known: Option<Known>) -> Result<Answer, Failure> {
         let mut plan = self.none();
         let solved = self.solved(planned);
@@ -108,7 +108,7 @@ impl<'m> Planner<'_, 'm> {
             plan.unsolved.push(Unsolved::nowhere(vec![conflict.i, conflict.j], why));
             return Ok((plan, None));
         }
-        // What only touches is as far away as it has to be.
+        // Agents with margins that only touch are far enough apart.
         if self.scenario.agents.iter().any(|agent| agent.margin > 0.0)
             && let Some(conflict) = Verdict::of_margins::<f64>(&solved)?.conflicts.iter().find(|found| !found.touching)
         {
@@ -144,7 +144,7 @@ impl<'m> Planner<'_, 'm> {
         plan.lower_bound = bound.min(cost);
         let gap = cost - plan.lower_bound;
         plan.gap = if cost > 0.0 { gap / cost } else { 0.0 };
-        // Of a long plan a small part may be seconds.
+        // For a long plan a small share may be seconds.
         plan.proved = known.is_some_and(|known| known.proved) || gap <= NEAR.min(2.0 * bound::ROUNDING * cost);
         Ok((plan, Some(solved)))
     }
@@ -158,7 +158,7 @@ impl<'m> Planner<'_, 'm> {
         }
         let never = match never {
             Never::Starts(agents) | Never::Ends(agents) | Never::Always(agents) => {
-                // The search stops at the first.
+                // The search stops at the first reason.
                 let mut all = self.never().unwrap_or_default();
                 if all.is_empty() {
                     all.push(agents);

@@ -9,16 +9,16 @@ use pcr_core::{Encounter, Interval, Motion, RegionRef};
 use pcr_formats::scenario::Scenario;
 use serde::Serialize;
 
-/// Where two agents are in one another's way.
+/// A place where two agents are in each other's way.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spot {
-    /// Lengths along the paths of the first and of the second \[m\].
+    /// Lengths on the paths of the first and the second agent \[m\].
     pub lengths: [[f64; 2]; 2],
-    /// In the middle of those of the first, abscissa and ordinate \[m\].
+    /// Position in the middle of the lengths of the first, x and y \[m\].
     pub at: [f64; 2],
 }
 
-/// What keeps a region from being passed before the other agent, or after it.
+/// The reason why a region cannot be passed before the other agent, or after it.
 #[derive(Clone, Copy, PartialEq)]
 enum Obstacle {
     /// The first stands at its start, in the way of the second.
@@ -42,8 +42,8 @@ impl Obstacle {
     }
 }
 
-/// Why two agents of a scenario meet whenever they start, or (not `always`) why the first does not find a start; and where.
-/// By their discs; without a place where they have no region.
+/// Reason why two agents of a scenario meet with all delays (`always`), or why the first finds no start; and the place.
+/// Computed from their discs; without a place if they have no region.
 pub(super) fn reason(scenario: &Scenario, ids: [u64; 2], always: bool) -> (String, Option<Spot>) {
     let general = match always {
         true => "they meet whenever they start",
@@ -100,7 +100,7 @@ fn found(scenario: &Scenario, ids: [u64; 2], always: bool, general: &str) -> Opt
     })
 }
 
-/// How near two agents stand that are too near.
+/// How near two agents are that stand too near.
 enum Contact {
     Overlap,
     Touch,
@@ -108,7 +108,7 @@ enum Contact {
 }
 
 impl Contact {
-    /// With this gap between them, margins, and what a gap may be off \[m\].
+    /// The contact for a gap between the discs, margins, and the error of the gap \[m\].
     fn of(gap: f64, margins: f64, tolerance: f64) -> Self {
         match () {
             () if gap < -tolerance => Self::Overlap,
@@ -134,12 +134,12 @@ struct Met<'a> {
 }
 
 impl Met<'_> {
-    /// Whether the first disc has to pass it after the second, and whether before.
+    /// Whether the first disc has to pass the region after the second, and whether before.
     fn sides(&self) -> [bool; 2] {
         sides_of(&self.region, self.own.stands(), self.other.stands())
     }
 
-    /// Where it is on the paths of the agents, of which the first has this motion.
+    /// The place of the region on the paths of the agents; the first one has this motion.
     fn spot(&self, first: &Motion<'_, f64>) -> Spot {
         let ends = |interval: Interval<f64>| [interval.lo, interval.hi];
         let lengths =
@@ -153,7 +153,7 @@ const HEAD_ON: &str = "head-on without a passing place";
 /// One of them starts and ends on the way of the other.
 const NO_ORDER: &str = "no order is possible";
 
-/// In words: a region that has to be passed second, and one that has to be passed first.
+/// The reason in words: a region that has to be passed second, and one that has to be passed first.
 fn contradiction(second: &Met<'_>, first: &Met<'_>) -> String {
     let other_start = second.other.is_at_start() && second.region.is_open_at_start();
     let other_end = first.other.is_at_end() && first.region.is_open_at_end();
@@ -170,13 +170,13 @@ fn contradiction(second: &Met<'_>, first: &Met<'_>) -> String {
 }
 
 impl Spot {
-    /// At these lengths of two paths.
+    /// The spot at these lengths of two paths.
     fn at(first: &Motion<'_, f64>, lengths: [[f64; 2]; 2]) -> Self {
         let point = first.path().point_at((lengths[0][0] + lengths[0][1]) / 2.0);
         Self { lengths, at: [point.x, point.y] }
     }
 
-    /// At the starts of two agents, or at their ends.
+    /// The spot of two agents at their starts or at their ends.
     pub(super) fn standing([a, b]: [&Motion<'_, f64>; 2], ends: bool) -> Self {
         let length = |motion: &Motion<'_, f64>| if ends { motion.path().length() } else { 0.0 };
         Self::at(a, [[length(a); 2], [length(b); 2]])

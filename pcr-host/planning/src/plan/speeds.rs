@@ -12,38 +12,38 @@ use pcr_core::{
     plan_speed_below, plan_speeds,
 };
 
-/// Phases of a speed profile, at most.
+/// Largest number of phases of a speed profile.
 const PHASES: usize = 128;
-/// Stations along a path: 256 cells.
+/// Number of stations on a path: 256 cells.
 const STATIONS: usize = 257;
-/// Profiles for each agent where fleets are small, for all, and for each agent at least.
+/// Largest number of profiles: for each agent in small fleets, for the whole fleet, and at least for each agent.
 const PROFILES: usize = 64;
 const MOST: usize = 8_192;
 const LEAST: usize = 16;
-/// Rounds in which the agent that loses most is moved to the front.
+/// Rounds in which the agent with the largest loss is moved to the front.
 const ROUNDS: usize = 8;
 /// Rounds in which each agent is planned again.
 const AGAIN: usize = 4;
-/// What is sooner by less than this is as good \[s\].
+/// Smallest gain that counts \[s\].
 const SOONER: f64 = 1e-6;
 
 type Speeds = Profile<f64, PHASES>;
 
-/// Room for the profiles of all attempts.
+/// Storage for the profiles of all attempts.
 pub(super) fn pool(agents: usize) -> Vec<Speeds> {
     vec![Profile::standing(); (PROFILES * agents).min(MOST).max(LEAST * agents)]
 }
 
 type Room<'m> = std::slice::IterMut<'m, Speeds>;
 
-/// The best motions that were found; beginning with some that are known.
+/// The best motions found, beginning with known ones.
 pub(super) fn plan<'m>(
     planner: &Planner<'_, 'm>,
     known: Option<Vec<Motion<'m, f64>>>,
     pool: &'m mut [Speeds],
 ) -> Result<Result<Vec<Motion<'m, f64>>, Never>, Failure> {
     let ecm = &planner.ecm()?;
-    // What is kept back is for the last step.
+    // A part of the storage is kept for the last step.
     let (kept_back, pool) = pool.split_at_mut(AGAIN * planner.motions.len());
     let (mut room, mut last) = (pool.iter_mut(), kept_back.iter_mut());
     let mut stations = vec![Station::EMPTY; STATIONS];
@@ -84,15 +84,15 @@ pub(super) fn plan<'m>(
     Ok(best)
 }
 
-/// The earliest arrival of one agent while others move as they do: by other speeds, or, where its own motion has reasons
-/// to be slower than its limits, also with that motion and a later start.
+/// The earliest arrival of one agent while the others keep their motions: with other speeds, or, if its own motion is slower
+/// than its limits for a reason, also with that motion and a later start.
 enum Found<'m> {
     Speeds(Box<SpeedPlan<f64, PHASES>>),
     Later(Motion<'m, f64>),
 }
 
 impl<'m> Found<'m> {
-    /// In the regions of the row of this very motion: a delay is one of that row's.
+    /// Uses the row of the agent in this motion: a delay counts from the motion of the row.
     fn of<'a>(
         motion: &Motion<'m, f64>,
         regions: impl Iterator<Item = RegionRef<'a, f64>> + Clone,
@@ -110,7 +110,7 @@ impl<'m> Found<'m> {
         plan_speed(motion, drive, regions, &[], stations).ok().map(|plan| Self::Speeds(Box::new(plan)))
     }
 
-    /// When it arrives \[s\].
+    /// Time of arrival \[s\].
     fn end(&self) -> f64 {
         match self {
             Self::Speeds(plan) => plan.end(),
@@ -118,7 +118,7 @@ impl<'m> Found<'m> {
         }
     }
 
-    /// The motion, with its profile in the room; `None` where there is no room.
+    /// The motion, with its profile in `room`; `None` if there is no room.
     fn motion(self, motion: Motion<'m, f64>, room: &mut Room<'m>) -> Option<Motion<'m, f64>> {
         match self {
             Self::Speeds(plan) => {
@@ -131,12 +131,12 @@ impl<'m> Found<'m> {
     }
 }
 
-/// By how much later an agent arrives than by itself \[s\].
+/// Time by which an agent arrives later than it would alone \[s\].
 fn late(planner: &Planner<'_, '_>, plan: &[Motion<'_, f64>], agent: usize) -> f64 {
     plan[agent].time().hi - planner.motions[agent].time().hi
 }
 
-/// One after the other; the order that it led to.
+/// Plans one agent after the other; returns the order to which this led.
 fn attempt<'m>(
     planner: &Planner<'_, 'm>,
     ecm: &HostEcm<f64>,
@@ -156,7 +156,7 @@ fn attempt<'m>(
     order
 }
 
-/// Plans each agent again, those first that lose most, while all others move as they do.
+/// Plans each agent again while the others keep their motions, the agent with the largest loss first.
 fn again<'m>(
     planner: &Planner<'_, 'm>,
     ecm: &HostEcm<f64>,
@@ -170,7 +170,7 @@ fn again<'m>(
         let mut sooner = false;
         for agent in order {
             let motion = planner.motions[agent];
-            // Delays count from the motion that the row is of: that of the file.
+            // Delays count from the motion of the row, which is that of the file.
             let before = std::mem::replace(&mut plan[agent], motion);
             let regions = ecm.row(plan, agent).expect("the table of the fleet");
             let found = Found::of(&motion, regions, stations);

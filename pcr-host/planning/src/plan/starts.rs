@@ -9,21 +9,21 @@ use pcr_core::Motion;
 use rayon::prelude::*;
 use std::collections::HashSet;
 
-/// Delays of some agents of a fleet, in its order.
+/// Delays of some agents of a fleet, in the order of the fleet.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Known {
     /// \[s\]
     pub(super) delays: Vec<f64>,
-    /// The agents by priority, or by their starts where none was asked for.
+    /// The agents by priority, or by their starts if no order was requested.
     pub(super) order: Vec<usize>,
-    /// No delays sum up to less, or none has an earlier last arrival \[s\]; no bound is infinitely less.
+    /// Lower bound of the cost \[s\]; minus infinity if there is none.
     pub(super) bound: f64,
-    /// Whether that is reached but for rounding.
+    /// Whether the cost equals the bound, except for rounding.
     pub(super) proved: bool,
 }
 
-/// Start delays of motions \[s\], none for as few as can be: those that have none because of others. `with` has for each motion all that
-/// have none if it has none, itself among them. All of them where they can be found in no time.
+/// Start delays of motions \[s\]; as few as possible are left out, with `None`. `with` has for each motion those that have to
+/// be left out with it, itself included. `None` if no delays are found quickly.
 pub(crate) fn some(motions: &[Motion<'_, f64>], with: &[Vec<usize>]) -> Option<Vec<Option<f64>>> {
     let forbidden = Forbidden::of_motions(motions).ok()?;
     let ticks = forbidden.ticks();
@@ -32,18 +32,18 @@ pub(crate) fn some(motions: &[Motion<'_, f64>], with: &[Vec<usize>]) -> Option<V
 }
 
 pub(super) struct Starts {
-    /// By the place of the agent \[s\]; none where the search was stopped before it found any.
+    /// Delays by the index of the agent \[s\]; `None` if the search was stopped before it found any.
     delays: Option<Vec<Option<f64>>>,
     order: Vec<usize>,
     bound: f64,
     proved: bool,
-    /// Agents that have no delays together.
+    /// Sets of agents that have no delays together.
     conflicts: Vec<Vec<usize>>,
-    /// Whether nobody more can have delays.
+    /// Whether it is proved that no larger set of agents has delays.
     fewest: bool,
-    /// Who cannot start in the order that was asked for.
+    /// Agents that cannot start in the requested order.
     out: Vec<Out>,
-    /// Whether discs of footprints or loads were planned with.
+    /// Whether discs of footprints or loads were planned.
     pub(super) outlined: bool,
 }
 
@@ -81,24 +81,24 @@ impl Starts {
         let whole = delays.iter().all(Option::is_some);
         let first: Option<Vec<i64>> = known.first().and_then(|known| known.iter().copied().collect());
         let reached = first.is_some_and(|known| problem.cost(&known) <= bound + delays::slack(&problem));
-        // A bound for other agents is none for these.
+        // A bound for a different set of agents does not apply.
         let bound = if whole { found.bound } else { f64::NEG_INFINITY };
         Ok(Self { delays: Some(delays), order, out, bound, proved: found.proved && whole && reached, ..found })
     }
 
-    /// For all agents, if all have delays.
+    /// The delays of all agents, if all have one.
     pub(super) fn of_all(&self) -> Option<Known> {
         let delays = self.delays.as_ref()?;
         delays.iter().all(Option::is_some).then(|| self.known(&(0..delays.len()).collect::<Vec<_>>()))
     }
 
-    /// Those that have delays.
+    /// The agents with a delay.
     pub(super) fn staying(&self) -> Vec<usize> {
         let delays = self.delays.as_deref().unwrap_or_default();
         (0..delays.len()).filter(|&agent| delays[agent].is_some()).collect()
     }
 
-    /// For those that have delays.
+    /// The delays of the agents that have one.
     pub(super) fn known(&self, staying: &[usize]) -> Known {
         let delays = self.delays.as_deref().unwrap_or_default();
         let mut places = vec![None; delays.len()];
@@ -111,8 +111,8 @@ impl Starts {
         }
     }
 
-    /// Why there is no plan by speeds, from why none was found: that is of the discs around outlines, and no reason where others than
-    /// these can do without; and with `leave_out` it is for all that are left out.
+    /// Adds reasons why no speed plan was found. A reason about the discs around outlines is dropped if the outlines themselves
+    /// do not have it; with `leave_out` the reasons are for all agents that are left out.
     pub(super) fn added(&self, planner: &Planner<'_, '_>, found: Vec<Unsolved>) -> Vec<Unsolved> {
         if self.of_all().is_some() || !(self.outlined || planner.request.leave_out) {
             return found;
@@ -128,11 +128,11 @@ impl Starts {
         all
     }
 
-    /// Why not all have delays.
+    /// The reasons why not all agents have delays.
     pub(super) fn unsolved(&self, planner: &Planner<'_, '_>) -> Vec<Unsolved> {
         let ids = |agents: &[usize]| agents.iter().map(|&agent| planner.id(agent)).collect::<Vec<_>>();
         let mut unsolved: Vec<Unsolved> = Vec::new();
-        // Of footprints it would be no proof: the discs around them may have to wait where they do not.
+        // For footprints it would not be a proof: the discs around them may have to wait where the footprints need not.
         let circle = if self.outlined { None } else { planner.circle() };
         if let Some(circle) = &circle {
             let why = "each has to let the next one pass first, the last one the first, however they move";
@@ -151,7 +151,7 @@ impl Starts {
                 )),
             }
         };
-        // Large fleets have thousands.
+        // Large fleets have thousands of conflicts.
         unsolved.par_extend(self.conflicts.par_iter().filter_map(of_conflict));
         if !self.fewest && planner.request.leave_out {
             let delays = self.delays.as_deref().unwrap_or_default();

@@ -9,14 +9,14 @@ use crate::rows;
 use pcr_core::Motion;
 use pcr_formats::scenario::Scenario;
 
-/// Agents of which the table of all pairs is asked for again and again, at most.
+/// Largest number of agents for which the table of all pairs is computed repeatedly.
 const MOST: usize = 2_000;
 
-/// What all attempts have in common.
+/// The data shared by all attempts.
 pub(super) struct Planner<'a, 'm> {
     pub(super) scenario: &'a Scenario,
     pub(super) request: &'a Request,
-    /// Grown.
+    /// Motions with their margins.
     pub(super) motions: &'a [Motion<'m, f64>],
 }
 
@@ -25,7 +25,7 @@ impl Planner<'_, '_> {
         self.scenario.agents.get(agent).map_or(0, |agent| agent.id)
     }
 
-    /// The table of all pairs, which speeds are planned with.
+    /// The table of all pairs, for speed plans.
     pub(super) fn ecm(&self) -> Result<HostEcm<f64>, Failure> {
         match self.motions.len() {
             ..=MOST => regions::table(self.scenario, self.motions),
@@ -33,12 +33,12 @@ impl Planner<'_, '_> {
         }
     }
 
-    /// Agents of which each has to let the next one pass first, all around; in large fleets they are not looked for.
+    /// A circle of agents in which each has to let the next one pass first; not searched in large fleets.
     pub(super) fn circle(&self) -> Option<Vec<usize>> {
         circle::circle(&self.ecm().ok()?, self.motions)
     }
 
-    /// How many regions each agent has.
+    /// The number of regions of each agent.
     fn counts(&self) -> Result<Vec<usize>, Failure> {
         let pairs = rows::gathered(self.motions, "regions", |row| {
             let regions = row.table().row(row.motions(), row.place()).expect("the table of the row");
@@ -49,7 +49,7 @@ impl Planner<'_, '_> {
         Ok(counts)
     }
 
-    /// The orders to be tried.
+    /// The orders of priority to try.
     pub(super) fn orders(&self) -> Result<Vec<Vec<usize>>, Failure> {
         let ids: Vec<u64> = self.scenario.agents.iter().map(|agent| agent.id).collect();
         let file: Vec<usize> = (0..ids.len()).collect();
@@ -75,7 +75,7 @@ impl Planner<'_, '_> {
         })
     }
 
-    /// What the objective is of these motions \[s\].
+    /// The objective for these motions \[s\].
     pub(super) fn cost(&self, planned: &[Motion<'_, f64>]) -> f64 {
         match self.request.objective {
             Objective::Sum => {
@@ -88,7 +88,7 @@ impl Planner<'_, '_> {
         }
     }
 
-    /// The earliest start in the file, without agents that are left out \[s\].
+    /// The earliest start in the file, of the agents that are not left out \[s\].
     pub(super) fn begin(&self) -> f64 {
         self.motions.iter().map(|motion| motion.time().lo).reduce(f64::min).unwrap_or(0.0)
     }

@@ -49,7 +49,7 @@ impl<S: Format> Part<'_, S> {
     fn meets(&self, other: &Self) -> bool {
         let [lo, hi] = common(self.time, other.time);
         let [from, to] = common(self.length, other.length);
-        // What is nearer than rounding may have parted is one.
+        // Parts whose gap may be due to rounding belong together.
         let (hi, to) = (if hi < lo { hi + NEAR } else { hi }, to + NEAR);
         let overlap = |time: f64| {
             let own = self.slice(time);
@@ -109,13 +109,13 @@ fn components<'p, 'a, S: Format>(parts: &'p [Part<'a, S>]) -> Vec<Vec<&'p Part<'
         }
         part
     }
-    // Those that are not over yet.
+    // Earlier parts that are not over yet.
     let mut lasting: Vec<usize> = Vec::new();
     for (place, part) in sorted.iter().enumerate() {
         lasting.retain(|&other| sorted[other].time[1] + NEAR >= part.time[0]);
         for &other in &lasting {
             let (a, b) = (find(&mut group, place), find(&mut group, other));
-            // What is connected already needs no look.
+            // Parts that are connected already need no test.
             if a != b && part.meets(sorted[other]) {
                 group[a.max(b)] = a.min(b);
             }

@@ -74,7 +74,7 @@ pub struct Descriptor {
     pub dir_j: Option<i8>,
 }
 
-/// What a region covers at one time.
+/// The lengths that a region covers at one time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Slice {
     /// \[s\]
@@ -84,9 +84,9 @@ pub struct Slice {
 }
 
 impl Region {
-    /// What it takes beside itself \[bytes\].
+    /// Memory that it takes outside of the struct \[bytes\].
     pub(super) fn bytes(&self) -> u64 {
-        /// Of an allocation, and of the two letters of a type.
+        /// Smallest size of an allocation; also enough for the two letters of a type.
         const SMALLEST: usize = 32;
         let crossings: usize = self.pieces.iter().map(|piece| piece.crossings.len()).sum();
         let covered: usize = self.slices.iter().flatten().map(|slice| slice.l.len()).sum();

@@ -15,7 +15,7 @@ use std::ops::Range;
 /// Pairs of discs whose regions are held at once: enough for all cores, and some megabytes.
 const STRETCH: u64 = 1 << 15;
 
-/// How far a pass is: pairs that were looked at, of so many.
+/// Reports progress: examined pairs, and all pairs.
 pub type Told<'t> = &'t dyn Fn(usize, usize);
 
 /// All that the regions of a scenario are computed from.
@@ -67,11 +67,11 @@ impl<'s, S: Format> Sheet<'s, S> {
         self.bodies.fleet.motions().iter().any(|motion| motion.margin() > S::ZERO)
     }
 
-    /// What `make` makes of the regions of each agent, on all cores, to `take`, in the order of the agents' numbers; those of
-    /// the discs with their margins, if asked for.
+    /// Calls `make` for the regions of each agent, on all cores, and passes its values to `take` in the order of the agents'
+    /// numbers. With `margin`, the regions are those of the discs with margins.
     ///
     /// # Errors
-    /// What `take` refuses, and [`Failure`] for a pair that no table holds.
+    /// Errors of `take`, and [`Failure`] for a pair that does not fit in a table.
     pub fn each<T: Send, E: From<Failure>>(
         &self,
         margin: bool,

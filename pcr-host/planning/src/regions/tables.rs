@@ -33,7 +33,8 @@ pub fn table_of<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
 /// # Errors
 /// As [`rows::Row::new`], and [`TooLarge`](memory::TooLarge) where memory does not hold the pairs.
 fn of_rows<S: Format>(agents: Vec<Agent>, motions: &[Motion<'_, S>]) -> Result<Table, Failure> {
-    // That of a pair is made of the extents, the lags and the rounding of arcs of both: at most once each of the largest with itself.
+    // The excess of a pair consists of extents, lags and roundings of arcs of both agents. It is at most the sum of the largest
+    // excesses of agents with themselves.
     let largest = motions.iter().map(|motion| excess(motion, motion).to_f64()).fold(0.0, f64::max);
     let apart = 3.0 * largest.max(f64::MIN_POSITIVE);
     let Ok(close) = Close::new(&agents, apart) else {
@@ -59,5 +60,5 @@ fn of_rows<S: Format>(agents: Vec<Agent>, motions: &[Motion<'_, S>]) -> Result<T
     Ok(Table { agents, pairs, apart: Some(apart) })
 }
 
-/// What a pair of discs takes in a certificate and in the checker \[bytes\].
+/// Memory for a pair of discs in a certificate and in the checker \[bytes\].
 const PAIR_BYTES: u64 = 128;

@@ -12,7 +12,7 @@ pub const CERTIFIED_CSV_HEADER: &str = "name,verdict,promise,i,j,l_i,l_j,clearan
 /// A line a place that is not proved, or one that says that all is.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn certified_csv(certified: &Certified, out: &mut impl Write) -> io::Result<()> {
     let name = quoted(&certified.name);
     for (verdict, points) in [("refuted", &certified.refuted), ("undecided", &certified.undecided)] {
@@ -32,7 +32,7 @@ pub fn certified_csv(certified: &Certified, out: &mut impl Write) -> io::Result<
 /// A verdict for reading.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn certified_table(certified: &Certified, out: &mut impl Write) -> io::Result<()> {
     let name = heading(&certified.name);
     if let Some(error) = &certified.error {

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use unicode_width::UnicodeWidthStr;
 
-/// What a row of a table takes while the widths of its columns are not known \[bytes\]: up to eleven cells, each a text.
+/// Memory for a row of a table until the widths of its columns are known \[bytes\]: up to eleven cells, each a text.
 pub const ROW_BYTES: u64 = 800;
 
 /// Rows of cells, each column as wide as its widest cell.
@@ -33,7 +33,7 @@ impl Columns {
     /// Writes them as text.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// Errors of the writer.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
         for row in &self.rows {
             let mut line = String::new();
@@ -51,7 +51,7 @@ impl Columns {
     /// The same as a table of Markdown.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// Errors of the writer.
     pub fn write_markdown(&self, out: &mut impl Write) -> io::Result<()> {
         for (k, row) in self.rows.iter().enumerate() {
             writeln!(out, "| {} |", row.join(" | "))?;

@@ -13,7 +13,7 @@ pub const CONFLICTS_CSV_HEADER: &str = "name,i,j,t_a,t_b,depth,l_i_a,l_i_b,l_j_a
 /// A line a conflict: numbers that read back exactly, flags as 0 and 1.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn conflicts_csv(verdict: &Verdict, out: &mut impl Write) -> io::Result<()> {
     let name = quoted(&verdict.name);
     for conflict in &verdict.conflicts {
@@ -28,7 +28,7 @@ pub fn conflicts_csv(verdict: &Verdict, out: &mut impl Write) -> io::Result<()> 
 /// The conflicts for reading, and how near the agents come if that was asked for.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn conflicts_table(verdict: &Verdict, out: &mut impl Write) -> io::Result<()> {
     let name = heading(&verdict.name);
     match verdict.conflicts.len() {

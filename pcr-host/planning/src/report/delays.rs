@@ -24,15 +24,15 @@ pub struct DelayTable {
     /// How edges are driven.
     #[serde(flatten)]
     pub driving: Driving,
-    /// By `a`, then `b`; those of a pair are apart.
+    /// Sorted by `a`, then `b`; intervals of a pair are disjoint.
     pub delays: Vec<Delay>,
-    /// When nobody may stand at a node, if asked for.
+    /// Times at which no vehicle may stand at a node, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nodes: Option<Vec<NodeTimes>>,
     /// Nodes at which vehicles cannot stand at the same time, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node_pairs: Option<Vec<[Id; 2]>>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 
@@ -53,10 +53,10 @@ pub struct Delay {
     pub delay: [f64; 2],
 }
 
-/// When nobody may stand at a node, from when a vehicle sets off on an edge.
+/// The times after a start on an edge at which no vehicle may stand at a node.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NodeTimes {
-    /// Node, as in the layout.
+    /// Id of the node in the layout.
     pub node: Id,
     /// Edge.
     pub edge: Id,
@@ -75,7 +75,7 @@ impl DelayTable {
     /// The whole table; `head` is the one of locks without its locks.
     ///
     /// # Errors
-    /// Those of [`Delays::each`], and a table that memory does not hold.
+    /// Errors of [`Delays::each`], and an error for a table that does not fit in memory.
     pub fn of(head: Locks, driving: Driving, delays: &Delays, told: Told<'_>) -> Result<Self, ImportError> {
         let Locks { layout, vehicle, nodes, node_pairs, warnings, .. } = head;
         let (nodes, node_pairs) = (nodes.map(|_| Vec::new()), node_pairs.map(|_| Vec::new()));
@@ -118,7 +118,7 @@ impl DelayTable {
 /// A line a delay. A node is `node` and its name, as `a`; two nodes have no times.
 ///
 /// # Errors
-/// Those of the writer, and of [`Delays::each`].
+/// Errors of the writer, and of [`Delays::each`].
 pub fn delays_csv(delays: &Delays, told: Told<'_>, out: &mut impl Write) -> Result<(), LocksUnprinted> {
     out.write_all(DELAYS_HEADER.as_bytes())?;
     let direction = |backward| if backward { "backward" } else { "forward" };
@@ -141,7 +141,7 @@ pub fn delays_csv(delays: &Delays, told: Told<'_>, out: &mut impl Write) -> Resu
     delays.each(told, lines, |text| Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?))
 }
 
-/// What [`delays_lines`] begins with.
+/// The first line of [`delays_lines`].
 #[derive(Serialize)]
 struct Head<'a> {
     layout: &'a str,
@@ -204,7 +204,7 @@ pub fn delays_lines(
 
 /// Times outward to the millisecond.
 fn range([from, to]: [f64; 2]) -> [String; 2] {
-    // What rounding adds is no millisecond.
+    // A rounding error does not add a millisecond.
     let (from, to) = ((from * 1e3 + 1e-6).floor() / 1e3, (to * 1e3 - 1e-6).ceil() / 1e3);
     [from, to].map(thousandths)
 }
@@ -212,7 +212,7 @@ fn range([from, to]: [f64; 2]) -> [String; 2] {
 /// The delays in columns.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn delays_table(table: &DelayTable, out: &mut impl Write) -> io::Result<()> {
     let name = if table.layout.is_empty() { "layout" } else { &table.layout };
     let (count, Driving { speed, acceleration }) = (table.delays.len(), table.driving);

@@ -10,10 +10,10 @@ use std::io::{self, Write};
 pub const LIFELONG_CSV_HEADER: &str = "method,robots,missions,missions_per_hour,travel_over_unimpeded,certificate,breaches,\
 stuck,standstill,refused,moved,revised,longest_wait,waiting,starved,driving,turning,stopped,held,aside,idle,decisions,decision_median,decision_p99,idle_because\n";
 
-/// A line a method; where nobody has reached a goal there is no ratio, but a reason.
+/// One line for each method; if no goal was reached, a reason takes the place of the ratio.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn lifelong_csv(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()> {
     out.write_all(LIFELONG_CSV_HEADER.as_bytes())?;
     for run in &lifelong.runs {
@@ -48,10 +48,10 @@ pub fn lifelong_csv(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()>
     Ok(())
 }
 
-/// What the layout allows, and a line a method.
+/// Properties of the layout, and one line for each method.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn lifelong_table(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()> {
     let Lifelong { layout, seed, asked, hours, delays, well_formedness, alone, runs, .. } = lifelong;
     let name = if layout.is_empty() { "layout" } else { layout };

@@ -37,7 +37,7 @@ impl From<io::Error> for LocksUnprinted {
 /// [`Sweep::each`].
 ///
 /// # Errors
-/// Those of the writer, and of [`Sweep::each`].
+/// Errors of the writer, and of [`Sweep::each`].
 pub fn locks_csv(sweep: &Sweep, told: Told<'_>, out: &mut impl Write) -> Result<(), LocksUnprinted> {
     out.write_all(LOCKS_HEADER.as_bytes())?;
     let name = |(place, id): (usize, &Id)| {
@@ -61,7 +61,7 @@ pub fn locks_csv(sweep: &Sweep, told: Told<'_>, out: &mut impl Write) -> Result<
     sweep.each(told, lines, |text| Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?))
 }
 
-/// What [`locks_lines`] begins with.
+/// The first line of [`locks_lines`].
 #[derive(Serialize)]
 struct Head<'a> {
     layout: &'a str,
@@ -107,14 +107,15 @@ pub fn locks_lines(head: &Locks, sweep: &Sweep, told: Told<'_>, out: &mut impl W
     Ok(writeln!(out, r#"{{"locks":{count}}}"#)?)
 }
 
-/// What an edge shares its time with.
+/// The locks of an edge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EdgeLocks {
     /// The edge, or the node.
     pub edge: String,
-    /// By edges, then nodes.
+    /// Sorted: edges, then nodes.
     pub partners: Vec<Partner>,
-    /// What was read otherwise than it was written; of a table of locks in a file, said when that was written.
+    /// Warnings about input that was changed or left out when it was read; for a table in a file they were given when that was
+    /// written.
     pub warnings: Vec<String>,
 }
 
@@ -128,7 +129,7 @@ pub const EDGE_HEADER: &str = "edge,other,from,to,other_from,other_to\n";
 /// A line a lock of an edge.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn edge_csv(locks: &EdgeLocks, out: &mut impl Write) -> io::Result<()> {
     out.write_all(EDGE_HEADER.as_bytes())?;
     let edge = quoted(&locks.edge);
@@ -142,7 +143,7 @@ pub fn edge_csv(locks: &EdgeLocks, out: &mut impl Write) -> io::Result<()> {
 /// The locks of an edge in columns, lengths outward to the millimetre.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn edge_table(locks: &EdgeLocks, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "{}: {}", printable(&locks.edge), counted(locks.partners.len(), "lock"))?;
     let mut columns = Columns::new(&["<other", "from [m]", "to", "other from [m]", "to"]);
@@ -155,7 +156,7 @@ pub fn edge_table(locks: &EdgeLocks, out: &mut impl Write) -> io::Result<()> {
 
 /// Lengths outward to the millimetre.
 fn range([from, to]: [f64; 2]) -> [String; 2] {
-    // What rounding adds is no millimetre.
+    // A rounding error does not add a millimetre.
     let (from, to) = ((from * 1e3 + 1e-6).floor() / 1e3, (to * 1e3 - 1e-6).ceil() / 1e3);
     [from, to].map(thousandths)
 }
@@ -163,7 +164,7 @@ fn range([from, to]: [f64; 2]) -> [String; 2] {
 /// The locks in columns, lengths outward to the millimetre.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn locks_table(locks: &Locks, out: &mut impl Write) -> io::Result<()> {
     let name = if locks.layout.is_empty() { "layout" } else { &locks.layout };
     let mut pairs: Vec<_> = locks.locks.iter().map(|lock| (&lock.a, &lock.b)).collect();

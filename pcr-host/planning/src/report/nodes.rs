@@ -9,7 +9,7 @@ use std::io::{self, Write};
 /// A line a node, then a line an edge: numbers that read back exactly.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn nodes_csv(listing: &Listing<'_>, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "kind,id,names,level,x,y,from,to,length,two_way,speed,speed_back,closed")?;
     let text = |text: &dyn ToString| quoted(&text.to_string()).into_owned();
@@ -30,7 +30,7 @@ pub fn nodes_csv(listing: &Listing<'_>, out: &mut impl Write) -> io::Result<()> 
 /// The same in columns.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn nodes_table(listing: &Listing<'_>, out: &mut impl Write) -> io::Result<()> {
     let (nodes, edges) = (counted(listing.nodes.len(), "node"), counted(listing.edges.len(), "edge"));
     writeln!(out, "{}: {nodes}, {edges}", heading(listing.layout))?;

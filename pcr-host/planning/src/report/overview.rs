@@ -11,7 +11,7 @@ use std::time::Duration;
 /// Tables V and VII of the paper with our numbers, and how long the regions took.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn overview(scenario: &Scenario, answer: &Answer, took: Duration, out: &mut impl Write) -> io::Result<()> {
     let crossings = numbered(&answer.regions);
     table_v(scenario, answer, &crossings, out)?;

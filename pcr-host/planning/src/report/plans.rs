@@ -14,7 +14,7 @@ pub const PLAN_CSV_HEADER: &str = "name,id,delay,t_end,label\n";
 /// A line an agent, in the order of the file: numbers that read back exactly.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn plan_csv(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
     let name = quoted(&plan.name);
     for agent in &plan.agents {
@@ -26,7 +26,7 @@ pub fn plan_csv(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
 /// The plan for reading: the agents by priority.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn plan_table(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
     let name = heading(&plan.name);
     let left_out = all_called(&plan.labels, &plan.left_out);
@@ -66,7 +66,7 @@ fn means(plan: &Plan) -> &'static str {
     if plan.method == "speed" { "speeds" } else { "start delays" }
 }
 
-/// What a plan costs, and how much less it could.
+/// The cost of a plan, and the gap to its lower bound.
 fn costs(plan: &Plan) -> String {
     let Plan { makespan, sum_of_costs, lower_bound, gap, .. } = plan;
     let what = if plan.objective == "makespan" { "makespan" } else { "sum of costs" };

@@ -30,7 +30,7 @@ impl From<io::Error> for Unprinted {
 /// A line a region, as [`csv`](super::csv).
 ///
 /// # Errors
-/// Those of the writer, and [`Failure`]: then some lines are printed already.
+/// Errors of the writer, and [`Failure`]: then some lines are printed already.
 pub fn sheet_csv<S: Format>(sheet: &Sheet<'_, S>, told: Told<'_>, out: &mut impl Write) -> Result<(), Unprinted> {
     let head = sheet.head()?;
     for margin in [false].into_iter().chain(head.margin_regions.is_some().then_some(true)) {

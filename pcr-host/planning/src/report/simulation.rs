@@ -10,7 +10,7 @@ use std::io::{self, Write};
 /// A line a mission: numbers that read back exactly; no end where it was not done.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn simulation_csv(simulation: &Simulation, out: &mut impl Write) -> io::Result<()> {
     let name = quoted(&simulation.name);
     writeln!(out, "name,controller,id,begin,end,unimpeded,waiting,label")?;
@@ -28,7 +28,7 @@ pub fn simulation_csv(simulation: &Simulation, out: &mut impl Write) -> io::Resu
 /// The runs for reading: a line a controller.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn simulation_table(simulation: &Simulation, out: &mut impl Write) -> io::Result<()> {
     let Simulation { seed, noise, drift, slip, delay, replan, .. } = simulation;
     let name = heading(&simulation.name);

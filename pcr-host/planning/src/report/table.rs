@@ -58,7 +58,7 @@ pub(super) fn arc(sigma: Option<f64>, dir: Option<i8>) -> String {
 /// The crossings in the form of the paper's Table VII, then the regions, then those of the discs with their margins.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
     let all = numbered(&answer.regions);
     let name = heading(&answer.name);

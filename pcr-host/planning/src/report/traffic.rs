@@ -14,7 +14,7 @@ pub const TRAFFIC_CSV_HEADER: &str = "id,from,to,length,delay,t_end\n";
 /// A line a mission: numbers that read back exactly; no delay and no end without a plan.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn traffic_csv(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> {
     out.write_all(TRAFFIC_CSV_HEADER.as_bytes())?;
     for mission in &traffic.missions {
@@ -28,7 +28,7 @@ pub fn traffic_csv(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> {
 /// The missions in columns, and what comes of them.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn traffic_table(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> {
     let Traffic { layout, seed, asked, placed, planned, passed_over, .. } = traffic;
     let name = if layout.is_empty() { "layout" } else { layout };

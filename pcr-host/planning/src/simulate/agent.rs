@@ -1,4 +1,4 @@
-//! One robot as the supervisor knows it.
+//! A robot, as the supervisor knows it.
 
 use super::FRAME;
 use super::body::AT_TURN;
@@ -9,32 +9,32 @@ use super::task::Robot;
 use crate::regions::Failure;
 use pcr_core::{Interval, Invalid, Limits, Point, Pose, Radians};
 
-/// What is known of the errors of camera and robots.
+/// Bounds on the errors of camera and robots.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Errors {
-    /// Of an observed position \[m\].
+    /// Error of an observed position \[m\].
     pub(super) noise: f64,
-    /// Of a robot from its path \[m\].
+    /// Distance of a robot from its path \[m\].
     pub(super) drift: f64,
 }
 
-/// One robot as the supervisor knows it.
+/// A robot, as the supervisor knows it.
 #[derive(Debug)]
 pub(super) struct Agent {
     pub(super) limits: Limits<f64>,
     /// Radius, with the margins for passing orders and for plans \[m\].
     pub(super) radius: f64,
     pub(super) margins: [f64; 2],
-    /// The path that it is on, and where on it.
+    /// The present path, and the interval of lengths in which the robot is.
     pub(super) course: Course,
     pub(super) at: Interval<f64>,
-    /// What it was told for the last frame \[m/s\].
+    /// Reported speed of the wheels \[m/s\].
     pub(super) speed: f64,
-    /// For how long it has turned in place, if it does \[s\].
+    /// Time for which it has turned in place; 0 if it does not turn \[s\].
     pub(super) turned: f64,
-    /// A mission that no plan takes up yet.
+    /// A mission that is in no plan yet.
     pub(super) next: Option<Course>,
-    /// Of a first mission that is known before it begins: when it begins \[s\]; else 0.
+    /// Begin of the first mission, if it is known in advance \[s\]; otherwise 0.
     pub(super) release: f64,
 }
 
@@ -42,7 +42,7 @@ impl Agent {
     /// A robot that stands where its first mission begins.
     ///
     /// # Errors
-    /// [`Failure::Robot`] where its path, or its disc with the margins, is out of range.
+    /// [`Failure::Robot`] if its path, or its disc with the margins, is out of range.
     pub(super) fn new(robot: &Robot, errors: Errors) -> Result<Self, Failure> {
         let course = match robot.missions.first() {
             Some(mission) => Ok(mission.course.beginning()),
@@ -82,7 +82,8 @@ impl Agent {
         self.speed <= 0.0 && self.at.lo >= self.course.length()
     }
 
-    /// The path that a plan is for, which takes up a new mission or does not, and where the robot is on it.
+    /// The path for a plan, with or without the new mission; the interval of lengths of the robot on it; and the time for which
+    /// it has turned in place.
     pub(super) fn to_plan(&self, takes_up: bool) -> (&Course, Interval<f64>, f64) {
         match &self.next {
             Some(next) if takes_up => (next, Interval::new(0.0, 0.0), 0.0),
@@ -90,13 +91,14 @@ impl Agent {
         }
     }
 
-    /// At its top speed it can stop before this in the next frame as well \[m\]: what holds it beyond does not matter yet.
+    /// Length before which it can stop even if it drives at top speed in the next frame \[m\]: holds beyond it do not matter
+    /// yet.
     pub(super) fn horizon(&self) -> f64 {
         let Limits { speed, acceleration } = self.limits;
         self.at.hi + 2.0 * speed * FRAME + stopping_length(speed, acceleration, FRAME)
     }
 
-    /// As a plan takes it, with one of its margins.
+    /// The robot as input of a plan, with one of its margins.
     pub(super) fn state(&self, margin: usize, taken: bool) -> Option<State> {
         let (course, at, speed) = self.to_plan(taken);
         let radius = self.radius + self.margins.get(margin)?;
@@ -110,7 +112,7 @@ impl Agent {
     }
 }
 
-/// A place to stand.
+/// A course to stand at a point.
 pub(super) fn standing([x, y]: [f64; 2]) -> Result<Course, Invalid> {
     Course::standing(Pose { position: Point::new(x, y), heading: Radians(0.0) })
 }

@@ -11,16 +11,16 @@ use super::task::Robot;
 use super::vector::{Vector, add, limited, norm, scale, sub};
 use pcr_core::Limits;
 
-/// How the world differs from the plan.
+/// Differences between the world and the plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disturbance {
     /// Largest error of an observed position \[m\].
     pub noise: f64,
-    /// Largest part of its way that a robot loses to slip, 0 to 1.
+    /// Largest share of its way that a robot loses to slip, 0 to 1.
     pub slip: f64,
     /// Longest time for which a robot is held up, on average every [`HELD_EVERY`] \[s\].
     pub delay: f64,
-    /// How far a robot may be off its path \[m\].
+    /// Largest distance of a robot from its path \[m\].
     pub drift: f64,
 }
 
@@ -30,13 +30,13 @@ pub const HELD_EVERY: f64 = 10.0;
 /// Time for which the slip of a robot stays the same \[s\].
 const SLIPPING: f64 = 1.0;
 
-/// Part of the largest drift by which it changes in a frame.
+/// Largest change of the drift in a frame, as a share of the largest drift.
 const DRIFTING: f64 = 0.1;
 
-/// A robot on a path stands at its end when it is nearer than this \[m\].
+/// A robot on a path has arrived if it is nearer to the end than this \[m\].
 const AT_END: f64 = 1e-3;
 
-/// And at a turn in place when it is nearer than this \[m\].
+/// A robot is at a turn in place if it is nearer than this \[m\].
 pub(super) const AT_TURN: f64 = 1e-6;
 
 /// A turn in place that a robot has begun.
@@ -44,18 +44,18 @@ pub(super) const AT_TURN: f64 = 1e-6;
 pub(super) struct Turning {
     /// Length along its course \[m\].
     pub(super) at: f64,
-    /// For how long it has turned \[s\].
+    /// Time for which it has turned \[s\].
     pub(super) time: f64,
 }
 
-/// What a robot is told for a frame.
+/// A command to a robot for a frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Command {
-    /// It stands, and does not begin its mission.
+    /// Stand, and do not begin the mission.
     Stay,
-    /// Along the path of its mission, at this speed where it does not turn in place \[m/s\].
+    /// Drive along the path of the mission at this speed, except in turns in place \[m/s\].
     Along(f64),
-    /// In any direction \[m/s\].
+    /// Drive with this velocity \[m/s\].
     Freely(Vector),
 }
 
@@ -66,13 +66,13 @@ pub(super) struct Body {
     disturbance: Disturbance,
     position: Vector,
     drift: Vector,
-    /// Along the course \[m\].
+    /// Length travelled on the course \[m\].
     travelled: f64,
-    /// Segments of the course up to the last turn in place.
+    /// Number of segments of the course up to the last turn in place.
     turned: usize,
-    /// The next one, if it has begun.
+    /// The next turn in place, if it has begun.
     turning: Option<Turning>,
-    /// Of the wheels \[m/s\].
+    /// Velocity of the wheels \[m/s\].
     velocity: Vector,
     speed: f64,
     slip: f64,
@@ -105,12 +105,12 @@ impl Body {
         }
     }
 
-    /// Where it is.
+    /// True position.
     pub(super) fn position(&self) -> Vector {
         self.position
     }
 
-    /// Along its course \[m\]; of a robot that goes freely, 0.
+    /// Length travelled on its course \[m\]; 0 for a robot that is not bound to a path.
     pub(super) fn travelled(&self) -> f64 {
         self.travelled
     }
@@ -120,22 +120,22 @@ impl Body {
         self.speed
     }
 
-    /// The turn in place that it has begun and not done.
+    /// The turn in place that it has begun and not finished.
     pub(super) fn turning(&self) -> Option<Turning> {
         self.turning
     }
 
-    /// What the camera sees.
+    /// The position that the camera sees.
     pub(super) fn observed(&mut self) -> Vector {
         add(self.position, self.camera.in_disc(self.disturbance.noise))
     }
 
-    /// At the beginning of a course.
+    /// Puts it at the beginning of a course.
     pub(super) fn begin(&mut self) {
         (self.travelled, self.turned, self.turning) = (0.0, 0, None);
     }
 
-    /// Whether it has come to the end of a course: on the path, or within `reach` of its end.
+    /// Whether it has reached the end of a course: along the path, or within `reach` of the end.
     pub(super) fn has_arrived(&mut self, course: &Course, reach: f64) -> bool {
         let end = course.length();
         if end - self.travelled <= AT_END && course.in_place(self.turned).is_none() {
@@ -143,18 +143,19 @@ impl Body {
             self.speed = 0.0;
             return true;
         }
-        // Whoever keeps to its path has a reach of 0: at the end of a circle it is only once it has gone round.
+        // A robot on a path has a reach of 0: on a circle, being near the end does not mean that it has driven round.
         norm(sub(self.position, course.point_at(end))) < reach
     }
 
-    /// One frame, from a time \[s\] on.
+    /// Moves it by a frame that begins at a time \[s\].
     pub(super) fn step(&mut self, time: f64, command: Command, course: Option<&Course>) {
         let part = self.part_that_counts(time);
         match command {
             Command::Stay => self.speed = 0.0,
             Command::Along(speed) => {
                 let Some(course) = course else { return };
-                // A robot knows the end of its path and where it turns, say from marks on the floor, and how fast it may be.
+                // A robot knows the end of its path, its turns in place and its speed limits, for example from marks on the
+                // floor.
                 let turn = course.in_place(self.turned);
                 let left = turn.map_or(course.length(), |turn| turn.at) - self.travelled;
                 if let Some(turn) = turn.filter(|_| left <= AT_TURN) {
@@ -193,7 +194,7 @@ impl Body {
         self.drift = limited(add(self.drift, step), self.disturbance.drift);
     }
 
-    /// The part of the way of its wheels that a robot really makes.
+    /// The share of the way of its wheels that it really travels.
     fn part_that_counts(&mut self, time: f64) -> f64 {
         if time >= self.slips_until {
             self.slip = self.disturbance.slip * self.wheels.unit();

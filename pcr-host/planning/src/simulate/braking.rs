@@ -1,7 +1,6 @@
 //! Braking in frames: a robot keeps its speed during a frame, and changes it by a bounded step between frames. And fastest motions.
 
-/// The way from now to a stop \[m\]: this speed \[m/s\] in the frame that begins, then as much less as is possible in
-/// every further one.
+/// The distance to a stop \[m\]: one frame at this speed \[m/s\], then braking as hard as possible in every further frame.
 pub(super) fn stopping_length(speed: f64, acceleration: f64, frame: f64) -> f64 {
     let step = acceleration * frame;
     let frames = (speed / step).floor();
@@ -16,9 +15,9 @@ pub(super) fn speed_within(length: f64, acceleration: f64, frame: f64) -> f64 {
     (length / frame + step * frames * (frames + 1.0) / 2.0) / (frames + 1.0)
 }
 
-/// The largest speed of which no more than `slow` \[m/s\] is left after `length` \[m\], with braking from the next frame on.
+/// The largest speed from which the robot can brake to `slow` \[m/s\] within `length` \[m\], starting with the next frame.
 pub(super) fn speed_before(length: f64, slow: f64, acceleration: f64, frame: f64) -> f64 {
-    // A frame at this speed, and then the way of steady braking, which is longer than that in frames.
+    // One frame at this speed, then the distance of steady braking, which is longer than that of braking in frames.
     let step = acceleration * frame;
     (step * step + slow * slow + 2.0 * acceleration * length.max(0.0)).sqrt() - step
 }
@@ -32,7 +31,8 @@ pub(super) struct Stretch {
     pub(super) top: f64,
 }
 
-/// Speeds \[m/s\] where stretches begin, and at the end, from which a robot can keep to all that follow and stop at the end.
+/// Largest speeds \[m/s\] at the start of each stretch, and at the end, with which a robot can keep the top speeds of all further
+/// stretches and stop at the end.
 pub(super) fn speeds_to_rest(stretches: &[Stretch], acceleration: f64) -> Vec<f64> {
     let mut speeds = vec![0.0_f64; stretches.len() + 1];
     let mut before = 0.0_f64;
@@ -47,7 +47,7 @@ pub(super) fn speeds_to_rest(stretches: &[Stretch], acceleration: f64) -> Vec<f6
 /// Pieces (duration \[s\], acceleration \[m/s²\]) of the fastest motion from a speed to rest at the end of some stretches; `None`
 /// where it cannot keep to them.
 pub(super) fn to_rest(speed: f64, stretches: &[Stretch], acceleration: f64) -> Option<Vec<(f64, f64)>> {
-    /// Of the square of a speed, what rounding may add to it.
+    /// Relative rounding error of the square of a speed.
     const ROUNDING: f64 = 1e-12;
     let most = speeds_to_rest(stretches, acceleration);
     if most[0] * most[0] < speed * speed * (1.0 - ROUNDING) {

@@ -15,7 +15,7 @@ pub(super) struct Contact {
     pub(super) depth: f64,
 }
 
-/// The contacts of two tracks, a position a frame, for a sum of radii \[m\]; those of neighbouring frames are one.
+/// The contacts of two tracks (one position per frame) for a sum of radii \[m\]; contacts in successive frames are one.
 pub(super) fn contacts(first: &[Vector], second: &[Vector], radius: f64) -> Vec<Contact> {
     let apart: Vec<Vector> = first.iter().zip(second).map(|(a, b)| sub(*b, *a)).collect();
     let mut contacts: Vec<Contact> = Vec::new();
@@ -40,7 +40,7 @@ pub(super) fn separation(first: &[Vector], second: &[Vector]) -> f64 {
     apart.windows(2).map(|pair| nearest(pair[0], pair[1])).fold(f64::INFINITY, f64::min)
 }
 
-/// The least distance from the origin of the way from one point straight to another.
+/// The least distance from the origin to a straight line between two points.
 fn nearest(from: Vector, to: Vector) -> f64 {
     let way = sub(to, from);
     let squared = dot(way, way);

@@ -6,18 +6,18 @@ use crate::fleet::speed;
 use pcr_core::{Curve, Invalid, Limits, Motion, PathRef, Phase, Pose, ProfileRef, Segment, Turn};
 use pcr_formats::scenario::{KINK, PathSegment, TURN};
 
-/// A path of lines and arcs, and how fast it may be travelled.
+/// A path of lines and arcs, with speed limits.
 #[derive(Clone, Debug)]
 pub struct Course {
     segments: Vec<Segment<f64>>,
-    /// Largest speed on each segment, if it has one of its own \[m/s\].
+    /// Speed limit of each segment; infinite if it has none \[m/s\].
     tops: Vec<f64>,
 }
 
 /// A turn in place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InPlace {
-    /// Place of its segment.
+    /// Index of its segment.
     pub(super) segment: usize,
     /// Length along the course \[m\].
     pub(super) at: f64,
@@ -26,10 +26,10 @@ pub(super) struct InPlace {
 }
 
 impl Course {
-    /// From a pose along these segments.
+    /// A course along these segments from a pose.
     ///
     /// # Errors
-    /// [`Invalid`] for lengths or coordinates that are out of range.
+    /// [`Invalid`] if a length or a coordinate is out of range.
     pub fn new(start: Pose<f64>, path: &[PathSegment]) -> Result<Self, Invalid> {
         let mut course = Self::standing(start)?;
         for segment in path {
@@ -45,7 +45,7 @@ impl Course {
         Ok(course)
     }
 
-    /// A place to stand.
+    /// A course to stand in a pose.
     ///
     /// # Errors
     /// As [`Course::new`].
@@ -53,9 +53,9 @@ impl Course {
         Ok(Self { segments: vec![Segment::standing(pose)?], tops: vec![f64::INFINITY] })
     }
 
-    /// To stand at its beginning.
+    /// A course to stand at its beginning.
     pub(super) fn beginning(&self) -> Self {
-        // What a segment begins with is a pose in range.
+        // The start of a segment is always a pose in range.
         let pose = self.path().map(|path| path.pose_at(0.0));
         Self { segments: pose.and_then(Segment::standing).into_iter().collect(), tops: vec![f64::INFINITY] }
     }
@@ -66,8 +66,8 @@ impl Course {
         Self { tops: vec![f64::INFINITY; segments.len()], segments }
     }
 
-    /// With a largest speed on each segment \[m/s\], by its place; infinite where it has none of its own. That of a turn in place is its length
-    /// by its duration.
+    /// Sets the speed limit of each segment \[m/s\], by its index; infinite for none. For a turn in place it is its length
+    /// divided by its duration.
     #[must_use]
     pub fn within(self, top: impl Fn(usize) -> f64) -> Self {
         Self { tops: (0..self.segments.len()).map(top).collect(), ..self }
@@ -95,7 +95,7 @@ impl Course {
     /// The lines and arcs.
     ///
     /// # Errors
-    /// [`Invalid`] where they do not make a path.
+    /// [`Invalid`] if they do not form a path.
     pub fn path(&self) -> Result<PathRef<'_, f64>, Invalid> {
         PathRef::new(&self.segments)
     }
@@ -111,7 +111,7 @@ impl Course {
         [point.x, point.y]
     }
 
-    /// The part behind a travelled length \[m\].
+    /// The rest after a travelled length \[m\].
     ///
     /// # Errors
     /// As [`Course::new`].
@@ -126,7 +126,7 @@ impl Course {
         Ok(rest)
     }
 
-    /// Its stretches up to a length \[m\] on which a robot with a largest speed \[m/s\] may be equally fast.
+    /// Its stretches with equal speed limits up to a length \[m\], for a robot with a largest speed \[m/s\].
     fn stretches(&self, until: f64, speed: f64) -> Vec<Stretch> {
         let mut stretches: Vec<Stretch> = Vec::new();
         for (segment, top) in self.segments.iter().zip(&self.tops) {
@@ -139,28 +139,29 @@ impl Course {
         stretches
     }
 
-    /// With so much less \[s\] of its first turn in place.
+    /// The course after a time \[s\] of its first turn in place.
     #[must_use]
     pub(super) fn turned(mut self, time: f64) -> Self {
         if let Some(InPlace { segment, duration, .. }) = self.in_place(0).filter(|_| time > 0.0) {
-            // A frame at least is left.
+            // At least a frame is left.
             self.tops[segment] *= duration / (duration - time).max(FRAME);
         }
         self
     }
 
-    /// The largest speed at its beginning from which a robot with these limits can keep to it, and stop at its end \[m/s\].
+    /// The largest speed at its beginning from which a robot with these limits can keep the speed limits and stop at its end
+    /// \[m/s\].
     pub(super) fn most(&self, limits: Limits<f64>) -> f64 {
         speeds_to_rest(&self.stretches(self.length(), limits.speed), limits.acceleration)[0]
     }
 
-    /// Pieces (duration \[s\], acceleration \[m/s²\]) of the fastest motion from a speed at its beginning to rest at a length \[m\] of it;
-    /// `None` where there is none.
+    /// Pieces (duration \[s\], acceleration \[m/s²\]) of the fastest motion from a speed at its beginning to rest at a length
+    /// \[m\]; `None` if there is none.
     pub(super) fn to_rest(&self, speed: f64, until: f64, limits: Limits<f64>) -> Option<Vec<(f64, f64)>> {
         to_rest(speed, &self.stretches(until, limits.speed), limits.acceleration)
     }
 
-    /// Time from rest to rest with nobody in the way \[s\].
+    /// Time from rest to rest if no robot is in the way \[s\].
     pub(super) fn unimpeded(&self, limits: Limits<f64>) -> f64 {
         self.to_rest(0.0, self.length(), limits).into_iter().flatten().map(|(duration, _)| duration).sum()
     }
@@ -200,7 +201,7 @@ fn is_turn(segment: &Segment<f64>) -> bool {
     matches!(segment.curve(), Curve::Arc { radius: TURN, .. }) && segment.length() > KINK * TURN
 }
 
-/// A course and when an agent is where on it.
+/// A course with the motion of an agent on it.
 #[derive(Clone, Debug)]
 pub struct Drive {
     course: Course,
@@ -215,8 +216,8 @@ impl Drive {
         Self { course: Course::of(motion), phases, start: motion.time().lo }
     }
 
-    /// What is left from a time on \[s\]: the rest of the path, at the speed that the agent has then. It is nowhere where it has been, so
-    /// that this is in nobody's way any more; before that time it is taken to stand there. `None` where rounding leaves no motion.
+    /// The motion from a time on \[s\]: the remaining path, at the speed reached by then. Before that time the agent counts as
+    /// standing where the rest begins, so the places that it has already left are free. `None` if rounding leaves no motion.
     ///
     /// ```
     /// use pcr_core::{Motion, Path, Point, Pose, Profile, Radians};

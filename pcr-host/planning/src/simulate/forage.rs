@@ -22,28 +22,28 @@ use super::vector::Vector;
 use pcr_core::Limits;
 use pcr_formats::scenario::Labels;
 
-/// Of a robot \[m\].
+/// Radius of a robot \[m\].
 const RADIUS: f64 = 0.035;
 
 /// \[m/s\], \[m/s²\]
 const LIMITS: Limits<f64> = Limits { speed: 0.13, acceleration: 0.4 };
 
-/// What a path keeps from an obstacle beyond the radius of the robot \[m\].
+/// Distance that a path keeps from an obstacle, beyond the radius of the robot \[m\].
 const CLEARANCE: f64 = 0.03;
 
 /// Radius of the obstacles \[m\].
 const OBSTACLE: f64 = 0.055;
 
-/// Where the robots begin and return to \[m\].
+/// Starts of the robots, to which they return \[m\].
 pub const NEST: [Vector; 4] = [[0.1, 0.2], [0.1, 0.4], [0.1, 0.6], [0.1, 0.8]];
 
-/// Where there is something to fetch \[m\].
+/// Positions of the resources \[m\].
 pub const RESOURCES: [Vector; 6] = [[1.0, 0.0], [1.0, 0.2], [1.0, 0.4], [1.0, 0.6], [1.0, 0.8], [1.0, 1.0]];
 
 /// \[m\]
 const OBSTACLES: [Vector; 5] = [[0.36, 0.34], [0.36, 0.66], [0.55, 0.5], [0.55, 0.18], [0.55, 0.82]];
 
-/// The task for a seed: each robot travels so many times from the nest to its resource and back.
+/// The task for a seed: each robot travels `trips` times from the nest to its resource and back.
 pub fn task(seed: u64, trips: u32) -> Task {
     let discs = OBSTACLES.map(|centre| Disc { centre, radius: OBSTACLE + RADIUS + CLEARANCE });
     let mut noise = Noise::new(seed, 0, Purpose::Missions);

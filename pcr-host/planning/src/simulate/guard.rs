@@ -36,10 +36,10 @@ pub(super) struct Guard {
 }
 
 impl Guard {
-    /// For discs of these radii \[m\] on these courses; nobody passes anybody yet.
+    /// For discs of these radii \[m\] on these courses, without orders yet.
     ///
     /// # Errors
-    /// Those of [`build_ecm`].
+    /// Errors of [`build_ecm`].
     pub(super) fn new(courses: &[Course], radii: &[f64]) -> Result<Self, Full> {
         let drives: Vec<Drive> = courses.iter().filter_map(|course| Drive::at_unit_speed(course.clone())).collect();
         // The supervisor has tried the courses and radii of all robots, and parts of courses are in range as well.
@@ -48,9 +48,9 @@ impl Guard {
         Ok(Self { drives, radii: radii.to_vec(), ecm, orders: Vec::new() })
     }
 
-    /// Takes the orders of a plan without collisions: `reached(agent, length)` is when an agent reaches a length of its
-    /// course \[s\], `lengths(time)(agent)` where an agent is at that time. Robots are now in these intervals. `None` where it cannot
-    /// be told who passes a region first.
+    /// Takes the orders of a plan without collisions. `reached(agent, length)` is the time at which the agent reaches a length of its
+    /// course \[s\]; `length_at(agent, time)` is the length at which the agent is at that time \[m\]. `now` has the interval of
+    /// lengths in which each robot is now. `None` if the plan does not tell which agent passes a region first.
     pub(super) fn take_orders(
         &mut self,
         now: &[Interval<f64>],
@@ -61,7 +61,7 @@ impl Guard {
         let mut orders = Vec::new();
         for (other, at) in now.iter().enumerate() {
             for ego in 0..other {
-                // Two that stand where they are go nowhere.
+                // Two courses without length have no passing order.
                 if [ego, other].iter().all(|&place| motions.get(place).is_some_and(|it| it.path().length() <= 0.0)) {
                     continue;
                 }

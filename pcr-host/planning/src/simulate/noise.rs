@@ -4,7 +4,7 @@
 use super::vector::{Vector, norm, scale};
 use crate::random::Random;
 
-/// What a stream of random numbers is for.
+/// The purpose of a stream of random numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Purpose {
     Missions,

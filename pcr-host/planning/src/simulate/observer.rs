@@ -7,17 +7,17 @@
 use super::course::{Course, Drive};
 use pcr_core::{Encounter, Interval, Pose, Radians};
 
-/// Distances below this \[m\] are not told apart: a disc has to have a radius.
+/// Distances below this count as this \[m\], because a disc needs a radius.
 const FINEST: f64 = 1e-6;
 
-/// The interval after an observation: the one before it \[m\], grown by the way that the wheels have gone since \[m\], less
-/// what is farther than `error` \[m\] from where the robot was seen.
+/// The interval after an observation: the interval before \[m\], extended by the way of the wheels since then \[m\], without
+/// the parts that are farther than `error` \[m\] from the observed position.
 pub(super) fn narrowed(before: Interval<f64>, way: f64, seen: [f64; 2], error: f64, course: &Course) -> Interval<f64> {
     let end = course.length();
     let possible = Interval::new(before.lo, (before.hi + way).min(end));
     let within = part_within(seen, error, course);
     let near = within.iter().filter(|part| part.meets(possible)).copied().reduce(Interval::hull);
-    // There is no path without a part that is near: the observation would be wrong, and is left aside.
+    // If no part of the path is near enough, the observation is wrong and is ignored.
     near.map_or(possible, |near| Interval::new(possible.lo.max(near.lo), possible.hi.min(near.hi)))
 }
 
@@ -51,7 +51,7 @@ mod tests {
         assert!(close(narrowed(start, 0.6, [0.9, 0.3], 0.5, &course), 0.5, 0.6));
         assert!(close(narrowed(Interval::new(0.2, 0.4), 0.1, [0.1, 0.0], 0.3, &course), 0.2, 0.4));
         assert!(close(narrowed(Interval::new(1.8, 1.9), 0.5, [1.9, 0.0], 0.3, &course), 1.8, 2.0));
-        // What cannot be is not believed.
+        // An impossible observation is ignored.
         assert!(close(narrowed(start, 0.5, [0.9, 7.0], 0.5, &course), 0.0, 0.5));
     }
 }

@@ -26,9 +26,9 @@ const CORNERS: u32 = 8;
 pub(super) struct Orca {
     robots: Vec<Steered>,
     obstacles: Vec<Polygon>,
-    /// What was commanded for the last frame \[m/s\].
+    /// Commanded velocities for the last frame \[m/s\].
     velocities: Vec<Vector>,
-    /// What the camera may be off \[m\].
+    /// Largest error of the camera \[m\].
     error: f64,
     reach: f64,
 }
@@ -45,7 +45,7 @@ fn vec2(vector: Vector) -> Vec2 {
     Vec2::new(vector[0] as f32, vector[1] as f32)
 }
 
-/// The octagon around a disc, counter-clockwise: what is inside is solid.
+/// The octagon around a disc, counter-clockwise: its inside is solid.
 fn polygon(obstacle: &Obstacle) -> Polygon {
     let reach = obstacle.radius / (TAU / f64::from(2 * CORNERS)).cos();
     let corner = |k: u32| {

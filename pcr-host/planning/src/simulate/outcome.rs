@@ -10,7 +10,7 @@ use super::{Controller, Disturbance, FRAME, Settings, Snapshot};
 use pcr_formats::scenario::Labels;
 use serde::Serialize;
 
-/// Below this part of its top speed a robot waits.
+/// A robot that is slower than this share of its top speed waits.
 const WAITS: f64 = 0.1;
 
 /// A run with its record.
@@ -18,7 +18,7 @@ const WAITS: f64 = 0.1;
 pub struct Outcome {
     /// The figures.
     pub run: Run,
-    /// What they follow from.
+    /// The record from which they are computed.
     pub trace: Trace,
     /// The plans of the supervisor.
     pub snapshots: Vec<Snapshot>,
@@ -26,7 +26,7 @@ pub struct Outcome {
     pub planned: Vec<f64>,
 }
 
-/// Where everything was.
+/// The record of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
     /// True positions \[m\] of each robot, at each frame; in between it moves uniformly.
@@ -37,18 +37,18 @@ pub struct Trace {
     pub journeys: Vec<Journey>,
 }
 
-/// A mission as it went.
+/// A mission as it was carried out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Journey {
-    /// Place of the robot in the task.
+    /// Index of the robot in the task.
     pub robot: usize,
     /// Frame in which the robot got its mission.
     pub begin: usize,
-    /// Frame in which it had arrived, if it ever did.
+    /// Frame in which the robot arrived, if it did.
     pub end: Option<usize>,
-    /// Where to \[m\].
+    /// Goal \[m\].
     pub goal: Vector,
-    /// How long it takes with nobody in the way \[s\].
+    /// Time that the mission takes if no robot is in the way \[s\].
     pub unimpeded: f64,
 }
 
@@ -57,7 +57,7 @@ pub struct Journey {
 pub struct Simulation {
     /// Name of the scenario.
     pub name: String,
-    /// What the agents are called, by their numbers.
+    /// Labels of the agents, by their numbers.
     #[serde(skip_serializing_if = "Labels::is_empty")]
     pub labels: Labels,
     /// Seed of the disturbances.
@@ -66,20 +66,20 @@ pub struct Simulation {
     pub replan: f64,
     /// Largest error of an observed position \[m\].
     pub noise: f64,
-    /// How far a robot may be off its path \[m\].
+    /// Largest distance of a robot from its path \[m\].
     pub drift: f64,
-    /// Largest part of its way that a robot loses to slip.
+    /// Largest share of its way that a robot loses to slip.
     pub slip: f64,
     /// Longest time for which a robot is held up \[s\].
     pub delay: f64,
-    /// One for each controller.
+    /// One run for each controller.
     pub runs: Vec<Run>,
-    /// What was read otherwise than it was written.
+    /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 
 impl Simulation {
-    /// Of these runs.
+    /// The results of these runs.
     pub fn of(task: &Task, settings: Settings, outcomes: &[Outcome]) -> Self {
         let Settings { seed, replan, disturbance: Disturbance { noise, slip, delay, drift } } = settings;
         let runs = outcomes.iter().map(|outcome| outcome.run.clone()).collect();
@@ -91,7 +91,7 @@ impl Simulation {
         Self { name, labels, seed, replan, noise, drift, slip, delay, runs, warnings }
     }
 
-    /// Whether under [`Controller::Pcr`], if it is there, all missions were done without a collision.
+    /// Whether all missions were done without a collision under [`Controller::Pcr`], if that is among the runs.
     pub fn is_as_promised(&self) -> bool {
         let failed = |run: &Run| run.not_done > 0 || !run.collisions.is_empty();
         !self.runs.iter().any(|run| run.controller == Controller::Pcr && failed(run))
@@ -101,17 +101,17 @@ impl Simulation {
 /// The figures of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Run {
-    /// How the robots were controlled.
+    /// Controller of the robots.
     pub controller: Controller,
-    /// Missions that were done.
+    /// Number of missions done.
     pub done: usize,
-    /// Missions that were not.
+    /// Number of missions not done.
     pub not_done: usize,
-    /// Until the end of the last mission, or until the run was given up \[s\].
+    /// Time until the end of the last mission, or until the run was given up \[s\].
     pub duration: f64,
     /// Mean time of a mission that was done \[s\].
     pub travel: f64,
-    /// Mean of what these missions would have taken with nobody in the way \[s\].
+    /// Mean time that these missions would have taken if no robot was in the way \[s\].
     pub unimpeded: f64,
     /// Mean time of such a mission in which the robot moved at less than a tenth of its top speed \[s\].
     pub waiting: f64,
@@ -121,10 +121,10 @@ pub struct Run {
     pub collisions: Vec<Collision>,
     /// Least distance between two discs \[m\]; negative where they overlap.
     pub clearance: Option<f64>,
-    /// Missions that no plan took up.
+    /// Missions that were in no plan.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub waiting_for: Vec<Waiting>,
-    /// What planning took; none without a supervisor.
+    /// Figures about planning; `None` without a supervisor.
     pub planning: Option<Planning>,
 }
 
@@ -133,11 +133,11 @@ pub struct Run {
 pub struct Arrival {
     /// Number of the robot.
     pub id: u64,
-    /// When it got the mission \[s\].
+    /// Time at which the robot got the mission \[s\].
     pub begin: f64,
-    /// When it arrived \[s\].
+    /// Time of arrival \[s\].
     pub end: Option<f64>,
-    /// How long it takes with nobody in the way \[s\].
+    /// Time that the mission takes if no robot is in the way \[s\].
     pub unimpeded: f64,
     /// Time in which the robot moved at less than a tenth of its top speed \[s\].
     pub waiting: f64,
@@ -148,8 +148,8 @@ pub struct Arrival {
 pub struct Waiting {
     /// Number of the robot.
     pub id: u64,
-    /// Number of a robot or obstacle that stands in its way, within their margins; none for an obstacle without a number, and where
-    /// no order of passing lets it through.
+    /// Number of the robot or obstacle that stands in its way, within their margins; `None` for an obstacle without a number,
+    /// and if no passing order lets it through.
     pub by: Option<u64>,
 }
 
@@ -158,22 +158,22 @@ pub struct Waiting {
 pub struct Collision {
     /// Number of a robot.
     pub i: u64,
-    /// Number of another robot or obstacle; none for an obstacle without a number.
+    /// Number of the other robot or obstacle; `None` for an obstacle without a number.
     pub j: Option<u64>,
-    /// From when to when, in whole frames \[s\].
+    /// Begin and end, in whole frames \[s\].
     pub t: [f64; 2],
     /// Largest overlap \[m\].
     pub depth: f64,
 }
 
-/// What planning took. The times are those of the machine and differ from run to run.
+/// Figures about planning. The times depend on the machine and differ from run to run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Planning {
-    /// How often it was done.
+    /// Number of attempts to plan.
     pub count: usize,
-    /// How often no plan was found, or none with which all arrive sooner, and the old passing orders stayed.
+    /// Number of attempts that found no plan, or none with earlier arrivals, so that the old passing orders stayed.
     pub kept: usize,
-    /// How often a robot could not brake in time for its passing order: 0, or the supervisor is wrong.
+    /// Number of times a robot could not brake in time for its passing order. This should be 0.
     pub breaches: usize,
     /// Mean time \[ms\].
     pub mean_ms: f64,

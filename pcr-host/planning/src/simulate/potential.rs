@@ -22,7 +22,7 @@ const INFLUENCE: f64 = 2.0;
 /// q₁, in radii of the robot.
 const BALANCE: f64 = 0.7;
 
-/// Gaps below this part of q₁ are taken for it: a field without poles.
+/// Gaps below this share of q₁ count as this share, so that the field has no poles.
 const LEAST: f64 = 0.1;
 
 #[derive(Debug)]
@@ -39,7 +39,7 @@ impl Potential {
     }
 }
 
-/// The speed away from a disc at this gap \[m\], as a part of the top speed.
+/// The speed away from a disc at this gap \[m\], as a share of the top speed.
 fn repulsion(gap: f64, radius: f64) -> f64 {
     let (influence, balance) = (INFLUENCE * radius, BALANCE * radius);
     let inverse = |gap: f64| 1.0 / gap - 1.0 / influence;

@@ -10,17 +10,17 @@ use crate::fleet::{HostEcm, build_ecm_of};
 use crate::plan::start_delays;
 use pcr_core::{Encounter, Limits, Motion, earliest_start};
 
-/// What a robot keeps from a region before which it waits, along its path \[m\].
+/// Distance along its path that a robot keeps from a region before which it waits \[m\].
 const BEFORE: f64 = 1e-4;
 
-/// Orders of priority in which everybody comes first once are tried for so many robots.
+/// Number of robots for which an order of priority is tried in which that robot comes first.
 const FIRST: usize = 8;
 
-/// If so many orders have no plan, others have none either, as a rule.
+/// If this many orders of priority have no plan, the others usually have none.
 const FAILED: usize = 2;
 
-/// More robots than this are not planned by orders of priority, and not anew on the way where nothing is new: it takes long, and passing
-/// orders are kept without.
+/// With more robots than this, orders of priority are not tried, and plans are not improved on the way: both take long, and the
+/// passing orders are kept without them.
 pub(super) const SEARCHED: usize = 15;
 
 /// A robot as it is now.
@@ -31,9 +31,9 @@ pub(super) struct State {
     /// \[m/s\]
     pub(super) speed: f64,
     pub(super) limits: Limits<f64>,
-    /// If it has not set off on its first mission, it does so no sooner than this \[s\]; else 0.
+    /// Earliest start of the first mission, if the robot has not begun it \[s\]; otherwise 0.
     pub(super) release: f64,
-    /// With its margin \[m\].
+    /// Radius of the disc with its margin \[m\].
     pub(super) radius: f64,
 }
 
@@ -47,27 +47,27 @@ pub(super) struct Plan {
     pub(super) cost: f64,
 }
 
-/// Who stands in somebody's way: a place in the list of robots or of obstacles.
+/// What stands in the way of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum InTheWay {
-    /// Of a robot.
+    /// Index in the list of robots.
     Robot(usize),
-    /// Of an obstacle.
+    /// Index in the list of obstacles.
     Obstacle(usize),
 }
 
-/// What a plan is for.
+/// The input of a plan.
 #[derive(Debug)]
 pub(super) struct Problem<'a> {
-    /// \[s\]
+    /// Present time \[s\].
     pub(super) now: f64,
     pub(super) robots: &'a [State],
-    /// What stands for good, with its radius \[m\].
+    /// Obstacles, which never move, with their radii \[m\].
     pub(super) obstacles: &'a [(Drive, f64)],
 }
 
 impl Problem<'_> {
-    /// Robots that all stand set off one after the other, and wait nowhere else.
+    /// A plan by start delays, without waits on the way. `None` unless all robots stand.
     pub(super) fn delayed(&self) -> Option<Plan> {
         if self.robots.iter().any(|robot| robot.speed > 0.0) {
             return None;
@@ -88,7 +88,7 @@ impl Problem<'_> {
         self.later(&motions, &delays)
     }
 
-    /// Robots that set off so much later than they could \[s\], or stay where they are.
+    /// Robots with these start delays \[s\]; those without one stay where they are.
     fn later(&self, motions: &[Motion<'_, f64>], delays: &[Option<f64>]) -> Option<Plan> {
         let drive = |(robot, delay): (&State, &Option<f64>)| match delay {
             Some(delay) => Problem { now: self.begin(robot) + delay, ..*self }.through(robot),
@@ -102,8 +102,8 @@ impl Problem<'_> {
         Some(Plan { drives, order, cost })
     }
 
-    /// A plan of robots that all stand, by start delays, in which as many as possible go of those that are `wanted`, while all others stay
-    /// where they are; and who goes. Who stays matters: all whose paths lead past there stay, too.
+    /// A plan by start delays for robots that all stand: as many as possible of the `wanted` robots go, the others stay where they are.
+    /// Also returns which robots go. A robot whose path leads past one that stays has to stay as well.
     pub(super) fn most(&self, wanted: &[bool]) -> Option<(Plan, Vec<bool>)> {
         let through = self.all_through()?;
         let motions = self.motions(&through)?;
@@ -114,7 +114,7 @@ impl Problem<'_> {
         let passes = |robot: usize, other: usize| {
             robot != other && wanted[robot] && !is_clear(&motions[robot], std::slice::from_ref(&stays[other]))
         };
-        // Whose path leads past the place of a robot.
+        // For each robot, the wanted robots whose path leads past it.
         let past: Vec<Vec<usize>> =
             robots.clone().map(|other| robots.clone().filter(|&robot| passes(robot, other)).collect()).collect();
         let with: Vec<Vec<usize>> = robots.clone().map(|robot| reached(robot, &past)).collect();
@@ -161,7 +161,7 @@ impl Problem<'_> {
         self.obstacles.iter().map(|(drive, radius)| drive.motion(*radius)).collect()
     }
 
-    /// Who stands in the way of a robot, one of those robots that `stay` where they are, or else an obstacle, whatever anybody does.
+    /// What stands in the way of a robot under all plans: a robot for which `stay` holds, or else an obstacle.
     pub(super) fn in_the_way(&self, robot: usize, stay: impl Fn(usize) -> bool) -> Option<InTheWay> {
         let through = self.through(self.robots.get(robot)?)?;
         let motion = through.motion(self.robots.get(robot)?.radius)?;

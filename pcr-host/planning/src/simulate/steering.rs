@@ -6,10 +6,10 @@ use super::task::Task;
 use super::vector::{Vector, norm, scale, sub};
 use pcr_core::Limits;
 
-/// How far ahead of a robot its target is, in radii.
+/// Distance of the target ahead of a robot, in radii.
 const AHEAD: f64 = 2.0;
 
-/// How near its goal a robot has arrived, in radii.
+/// Distance from its goal at which a robot has arrived, in radii.
 const ARRIVED: f64 = 0.5;
 
 /// A robot that steers by itself.
@@ -29,12 +29,12 @@ pub(super) fn steered(task: &Task) -> Vec<Steered> {
     task.robots.iter().map(robot).collect()
 }
 
-/// How near its goal a robot of this task has arrived \[m\].
+/// Distance from its goal at which a robot of this task has arrived \[m\].
 pub(super) fn reach(task: &Task) -> f64 {
     ARRIVED * task.robots.iter().map(|robot| robot.radius).fold(f64::INFINITY, f64::min)
 }
 
-/// Robots with a path that ends where it begins: who goes straight to the end has nothing to do.
+/// Robots whose path ends where it begins: a robot that heads straight for the end would have nothing to do.
 pub(super) fn closed(task: &Task) -> impl Iterator<Item = u64> {
     let reach = reach(task);
     let is_closed = move |course: &Course| {
@@ -73,7 +73,7 @@ impl Steered {
         }
         let way = sub(course.point_at(self.target), seen);
         let distance = norm(way);
-        // As fast as it can stop at the goal.
+        // The largest speed from which it can stop at the goal.
         let stops = (2.0 * self.limits.acceleration * distance).sqrt();
         let speed = if self.target < end { self.limits.speed } else { self.limits.speed.min(stops) };
         if distance > 0.0 { scale(way, speed / distance) } else { [0.0; 2] }

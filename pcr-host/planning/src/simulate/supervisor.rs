@@ -5,8 +5,8 @@
 //!                                                └──> replan: how it should go ──┴──> speed of each robot
 //! ```
 //!
-//! Plans keep a margin for the errors of the camera and of the robots ([`Errors`]). A late robot is no danger: the
-//! guard holds those that pass after it. If no new plan is found, the old orders stay.
+//! Plans keep a margin for the errors of the camera and of the robots ([`Errors`]). A late robot causes no collision: the
+//! guard holds the robots that pass after it. If no new plan is found, the old orders stay.
 
 use super::agent::{Agent, Errors, standing};
 use super::body::{AT_TURN, Turning};
@@ -21,10 +21,10 @@ use crate::regions::Failure;
 use pcr_core::{Interval, Limits};
 use std::time::Instant;
 
-/// Nobody stands for so long without a reason that stays, beside two periods of planning \[s\].
+/// If no robot has moved for this long plus two planning periods, the fleet is stuck \[s\].
 const RESTING: f64 = 1.0;
 
-/// A try that failed is repeated after one period of planning, after twice as long if that fails as well, and so on up to so many periods.
+/// A failed attempt is repeated after one planning period, then after twice the last pause, up to this many periods.
 const REST: f64 = 8.0;
 
 /// How fast a robot that is ahead of its plan falls back to it \[1/s\].
@@ -38,35 +38,34 @@ pub(super) struct Supervisor {
     errors: Errors,
     guard: Guard,
     plan: Option<Current>,
-    /// The last try, if it failed.
+    /// The last attempt to plan, if it failed.
     failed: Option<Failed>,
     period: f64,
     next_plan: f64,
-    /// For how long nobody has moved \[s\].
+    /// Time for which no robot has moved \[s\].
     still: f64,
     statistics: Statistics,
     snapshots: Vec<Snapshot>,
 }
 
-/// A plan, and how long each robot's course was before it began.
+/// A plan, and the length that each robot had travelled on its course when the plan began \[m\].
 #[derive(Debug)]
 struct Current {
     plan: Plan,
     offsets: Vec<f64>,
 }
 
-/// A try to plan that failed. Robots that drive on as they are planned make another one fail as well, as a rule; what lets it succeed is a new
-/// mission, or that somebody comes to its end and is out of the way, or all stand.
+/// A failed attempt to plan. It usually fails again until there is a new mission, a robot reaches its end, or all robots stand.
 #[derive(Debug)]
 struct Failed {
-    /// Of each robot: whether it has a mission that no plan takes up, and whether it stands at the end of its path.
+    /// For each robot: whether it has a mission that is in no plan yet, and whether it stands at the end of its path.
     robots: Vec<[bool; 2]>,
-    /// For how long it is not repeated where that is the same, and until when \[s\].
+    /// How long the attempt is not repeated while `robots` is the same, and until what time \[s\].
     pause: f64,
     until: f64,
 }
 
-/// A plan that can be taken up, who then has a new mission, and the radii that it is for \[m\].
+/// A plan that can be adopted, which robots then begin a new mission, and the radii for which the plan was made \[m\].
 struct Found {
     current: Current,
     guard: Guard,
@@ -74,14 +73,14 @@ struct Found {
     radii: Vec<f64>,
 }
 
-/// What planning took.
+/// Figures about planning.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Statistics {
-    /// Time of each planning \[s\].
+    /// Computing time of each attempt to plan \[s\].
     pub(super) times: Vec<f64>,
-    /// How often no plan was found, or none with which all arrive sooner.
+    /// Number of attempts that found no plan, or none with earlier arrivals.
     pub(super) kept: usize,
-    /// How often a robot could not brake in time; it never should.
+    /// Number of times a robot could not brake in time; this should be 0.
     pub(super) breaches: usize,
 }
 
@@ -138,13 +137,13 @@ impl Supervisor {
         &self.statistics
     }
 
-    /// Narrows down where the robots are.
+    /// Updates the interval of lengths in which each robot can be.
     fn observe(&mut self, frame: &Frame<'_>) {
         let error = self.errors.noise + self.errors.drift;
         let told = frame.seen.iter().zip(frame.speeds).zip(frame.arrived);
         for (agent, ((&seen, &speed), &arrived)) in self.agents.iter_mut().zip(told) {
-            // A robot tells what its wheels do: at its end less than it was told. And it knows its end: else others would wait for ever for
-            // it to leave regions that end just before.
+            // Robots report wheel speed and arrival; at the end of the path the wheel speed is below the commanded one. Without the
+            // report of arrival, others would wait for ever for a robot that stands just inside a region.
             agent.speed = speed;
             let end = agent.course.length();
             agent.at = match arrived {
@@ -162,8 +161,8 @@ impl Supervisor {
         self.still = if moves { 0.0 } else { self.still + FRAME };
     }
 
-    /// Looks for a plan with new missions, or where there are none for one with which all arrive sooner, and keeps the old one where there is
-    /// none. Where not all new missions can be taken up those are that can.
+    /// Looks for a plan that includes the new missions, or as many of them as possible. Without new missions, looks for a plan with
+    /// earlier arrivals. Keeps the old plan if there is none.
     fn replan(&mut self, now: f64) {
         let pending: Vec<bool> = self.agents.iter().map(|agent| agent.next.is_some()).collect();
         let again = self.plan.is_some() && !pending.contains(&true);
@@ -186,14 +185,14 @@ impl Supervisor {
                 self.statistics.kept += 1;
                 let same = before.filter(|failed| failed.robots == robots);
                 let pause = same.map_or(self.period, |failed| (2.0 * failed.pause).min(REST * self.period));
-                // Where all stand nothing changes but the time.
+                // If all robots stand, a later attempt would find the same as this one.
                 let until = if robots.iter().all(|robot| robot[1]) { f64::INFINITY } else { now + pause };
                 self.failed = Some(Failed { robots, pause, until });
             }
         }
     }
 
-    /// Whether all stand where they are planned to stand.
+    /// Whether all robots stand, each at or beyond the length at which the plan has it now.
     fn all_wait(&self, now: f64) -> bool {
         let Some(current) = &self.plan else { return false };
         self.agents
@@ -202,10 +201,10 @@ impl Supervisor {
             .all(|(place, agent)| agent.speed <= 0.0 && agent.at.hi >= current.length_at(place, now))
     }
 
-    /// A plan for all robots, of which these take up their new missions: with the margins of a plan, or if robots are too near each other
-    /// for that, with those of passing orders.
+    /// A plan for all robots, in which those in `taken` begin their new missions. It keeps the margins of a plan or, if robots are
+    /// too near one another for these, the margins of passing orders.
     fn for_all(&self, now: f64, taken: &[bool], again: bool) -> Option<Found> {
-        // Whoever stands at its end and has no new mission goes nowhere.
+        // Robots without a new mission that stand at their ends stay there.
         if self.barred(taken, |other| !taken[other]).contains(&true) {
             return None;
         }
@@ -226,7 +225,7 @@ impl Supervisor {
         if self.agents.len() > SEARCHED { found } else { found.or_else(|| with(&|problem| problem.by_priority(&last))) }
     }
 
-    /// Sum of the times until arrival by the plan that all have, from where they are, or from now for those that are ahead of it \[s\].
+    /// Remaining time until arrival under the current plan, summed over all robots \[s\]. For robots ahead of the plan it counts from now.
     fn left(&self, now: f64) -> f64 {
         let Some(current) = &self.plan else { return f64::INFINITY };
         let left = |(place, agent): (usize, &Agent)| {
@@ -236,8 +235,8 @@ impl Supervisor {
         self.agents.iter().enumerate().map(left).sum()
     }
 
-    /// A plan in which as many as possible take up their new missions, while the others stay where they are; if everybody stands. On the
-    /// way, those that can beside the plan that all others have.
+    /// If all robots stand: a plan in which as many robots as possible begin their new missions while the others stay where they are.
+    /// Otherwise the current plan with one new mission added.
     fn for_some(&self, now: f64, pending: &[bool]) -> Option<Found> {
         let stands = self.agents.iter().all(Agent::stands);
         let together = |margin: usize| {
@@ -251,14 +250,14 @@ impl Supervisor {
         let barred = self.barred(pending, |_| true);
         let most = (0..pending.len()).filter(|&robot| pending[robot] && !barred[robot]).count();
         let count = |found: &Found| found.taken.iter().filter(|taken| **taken).count();
-        // With the smaller margin more may go. Of those that have gone before, all others can go later.
+        // With the smaller margin more robots may be able to go. If there is a plan already, the robots left out can go later.
         match together(1) {
             Some(found) if self.plan.is_some() || count(&found) >= most => Some(found),
             found => together(0).into_iter().chain(found).max_by_key(count),
         }
     }
 
-    /// The plan that all have, and a motion of one robot more beside it.
+    /// The current plan with the motion of one more robot added.
     fn one_beside(&self, now: f64, pending: &[bool], margin: usize) -> Option<Found> {
         let current = self.plan.as_ref()?;
         let barred = self.barred(pending, |_| true);
@@ -274,8 +273,8 @@ impl Supervisor {
         })
     }
 
-    /// Of robots with a new mission, who cannot carry it out with any margin, because a robot that stands and `stays` or an obstacle is in
-    /// its way.
+    /// For each robot with a new mission whether it cannot carry it out with any margin, because an obstacle, or a standing
+    /// robot for which `stays` holds, is in its way.
     fn barred(&self, pending: &[bool], stays: impl Fn(usize) -> bool) -> Vec<bool> {
         let Some(robots) = self.states(0, pending) else { return vec![false; pending.len()] };
         let problem = Problem { now: 0.0, robots: &robots, obstacles: &self.obstacles };
@@ -287,7 +286,7 @@ impl Supervisor {
         self.agents.iter().zip(taken).map(|(agent, &taken)| agent.state(margin, taken)).collect()
     }
 
-    /// Lengths travelled before a plan that is made now \[m\].
+    /// Length that each robot has travelled before a plan that is made now \[m\].
     fn offsets(&self, taken: &[bool]) -> Vec<f64> {
         self.agents.iter().zip(taken).map(|(agent, &taken)| agent.to_plan(taken).1.middle()).collect()
     }
@@ -330,7 +329,7 @@ impl Supervisor {
         self.plan = Some(current);
     }
 
-    /// What a robot does in the next frame.
+    /// The command for a robot in the next frame.
     fn command(&mut self, place: usize, time: f64, hold: f64) -> Command {
         let (Some(agent), Some(current)) = (self.agents.get(place), &self.plan) else { return Command::Stay };
         if agent.next.is_some() {
@@ -366,7 +365,7 @@ impl Control for Supervisor {
 
     fn assign(&mut self, robot: usize, course: &Course) {
         if let Some(agent) = self.agents.get_mut(robot) {
-            // What was announced is planned already, or a plan for it is looked for.
+            // An announced mission is in the plan already, or a plan for it is being searched.
             if std::mem::take(&mut agent.release) <= 0.0 {
                 agent.at = Interval::new(agent.course.length(), agent.course.length());
                 agent.next = Some(course.clone());

@@ -17,7 +17,7 @@ pub(super) struct Disc {
     pub(super) radius: f64,
 }
 
-/// Lines may touch the discs they lead along: by so much they may seem to cross one \[m\].
+/// Lines may touch the discs that they lead along; rounding may make such a line seem to cross one by this \[m\].
 const TOUCHING: f64 = 1e-9;
 
 /// A disc and the side it is on.

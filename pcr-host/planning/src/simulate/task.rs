@@ -11,21 +11,21 @@ use pcr_formats::scenario::{Agent, Labels, MotionSpec, Part, PathSegment, Scenar
 /// When the last robot may set off \[s\]: every frame until then is simulated and kept.
 const LATEST: f64 = 1e4;
 
-/// By how much a motion is slower than it could be before that is told, relative.
+/// A motion that takes longer than necessary by more than this share is reported as a warning.
 const SLOWER: f64 = 1e-3;
 
-/// A run: robots, what stands in their way, and their missions.
+/// The task of a run: robots with their missions, and obstacles.
 #[derive(Clone, Debug)]
 pub struct Task {
     /// Name of the scenario.
     pub name: String,
-    /// What its agents are called.
+    /// Labels of its agents.
     pub labels: Labels,
     /// The robots.
     pub robots: Vec<Robot>,
-    /// What does not move.
+    /// Agents that never move.
     pub obstacles: Vec<Obstacle>,
-    /// What was read otherwise than it was written, or is left aside here.
+    /// What the simulation changes or leaves out of the scenario.
     pub warnings: Vec<String>,
 }
 
@@ -36,7 +36,7 @@ pub struct Robot {
     pub id: u64,
     /// Radius of the disc \[m\].
     pub radius: f64,
-    /// Margin to be kept around it \[m\].
+    /// Distance that others keep from the disc \[m\].
     pub margin: f64,
     /// Largest speed \[m/s\] and acceleration \[m/s²\].
     pub limits: Limits<f64>,
@@ -62,12 +62,12 @@ pub struct Obstacle {
     pub centre: Vector,
     /// \[m\]
     pub radius: f64,
-    /// Margin to be kept around it \[m\].
+    /// Distance that others keep from the disc \[m\].
     pub margin: f64,
 }
 
 impl Robot {
-    /// Where it stands at the beginning.
+    /// Position at the start.
     pub fn home(&self) -> Vector {
         self.missions.first().map_or([0.0; 2], |first| first.course.point_at(0.0))
     }
@@ -80,7 +80,7 @@ impl Task {
     /// counts them as a collision.
     ///
     /// # Errors
-    /// [`Failure::Refused`] where a value is out of range, [`Failure::Late`] where somebody sets off too late.
+    /// [`Failure::Refused`] if a value is out of range, [`Failure::Late`] if a robot sets off too late.
     pub fn of(scenario: &Scenario) -> Result<Self, Failure> {
         let fleet = Fleet::<f64>::new(scenario)?;
         let (mut robots, mut obstacles, mut standing) = (Vec::new(), Vec::new(), Vec::new());
@@ -115,9 +115,9 @@ impl Task {
     }
 }
 
-/// Those that overlap of some that stand, by their numbers, centres and radii.
+/// Warnings about standing agents that overlap, given by their numbers, centres and radii.
 fn overlapping(standing: &[(u64, Vector, f64)]) -> Vec<String> {
-    /// Pairs that are named.
+    /// Largest number of pairs that are named.
     const NAMED: usize = 16;
     let mut order: Vec<&(u64, Vector, f64)> = standing.iter().collect();
     order.sort_by(|a, b| (a.1[0] - a.2).total_cmp(&(b.1[0] - b.2)));
@@ -154,7 +154,8 @@ fn tops(agent: &Agent) -> Vec<f64> {
     agent.path.iter().zip(agent.parts()).map(top).collect()
 }
 
-/// Those of the scenario; of a profile, the most it makes use of, and where it never accelerates, a second to top speed.
+/// The limits of a motion. For a profile: its largest speed and acceleration; without any acceleration, one second to the top
+/// speed.
 fn limits(motion: &MotionSpec) -> Limits<f64> {
     match motion {
         MotionSpec::RestToRest { v_max, a_max } => Limits { speed: *v_max, acceleration: *a_max },

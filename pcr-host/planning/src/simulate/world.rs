@@ -11,9 +11,9 @@ use super::{Control, FRAME, Frame, Settings};
 struct Agent<'a> {
     robot: &'a Robot,
     body: Body,
-    /// The mission that it is on, or the last one.
+    /// The course of its present or last mission.
     course: Option<&'a Course>,
-    /// Missions begun.
+    /// Number of missions begun.
     begun: usize,
     travels: bool,
 }
@@ -35,7 +35,7 @@ impl<'a> World<'a> {
         Self { agents, trace: Trace { positions, travelled, journeys: Vec::new() } }
     }
 
-    /// Tells of the first mission of each robot before it begins.
+    /// Announces the first mission of each robot before it begins.
     pub(super) fn announce(&self, control: &mut dyn Control) {
         for (place, agent) in self.agents.iter().enumerate() {
             if let Some(first) = agent.robot.missions.first().filter(|first| first.release > 0.0) {
@@ -80,12 +80,12 @@ impl<'a> World<'a> {
         self.agents.iter().all(|agent| !agent.travels && agent.begun == agent.robot.missions.len())
     }
 
-    /// Whether everybody has been given all of its missions.
+    /// Whether all robots have been given all of their missions.
     pub(super) fn all_given(&self) -> bool {
         self.agents.iter().all(|agent| agent.begun == agent.robot.missions.len())
     }
 
-    /// From a frame to the next one.
+    /// Simulates from a frame to the next one.
     pub(super) fn step(&mut self, frame: usize, control: &mut dyn Control) {
         let time = frame as f64 * FRAME;
         let seen: Vec<Vector> = self.agents.iter_mut().map(|agent| agent.body.observed()).collect();

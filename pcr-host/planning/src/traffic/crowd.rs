@@ -34,10 +34,11 @@ impl Crowd {
         Ok(())
     }
 
-    /// Those that have to start before an agent and after it, by all discs or by one of each; none where there is no order.
+    /// The agents that have to start before an agent, and after it, by all discs or by one of each; `None` if there is no
+    /// order.
     ///
     /// # Errors
-    /// What does not fit the table.
+    /// The limit of the table that is exceeded, in words.
     fn order(&self, agent: &Bodies<f64>, one: bool) -> Result<Option<[Vec<usize>; 2]>, String> {
         let others: Vec<(usize, Motion<'_, f64>)> = self
             .agents
@@ -59,7 +60,7 @@ impl Crowd {
         }
         let places = |marks: &[bool]| -> Vec<usize> { (0..marks.len()).filter(|&agent| marks[agent]).collect() };
         let [before, after] = marks.map(|marks| places(&marks));
-        // Whom those after it lead to, and whom they again: nobody who has to come before it.
+        // An order exists if no agent that has to come before can be reached from those that come after.
         let mut reached = vec![false; self.agents.len()];
         let mut open = after.clone();
         while let Some(next) = open.pop() {

@@ -14,14 +14,14 @@ const CLEAR: f64 = 1.0 + 1e-6;
 /// A way from node to node.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Mission {
-    /// Places of its nodes in the layout.
+    /// Indices of its nodes in the layout.
     pub(super) ends: [usize; 2],
-    /// Who travels it, from the time 0.
+    /// The agent that travels it, from time 0 on.
     pub(super) agent: Agent,
 }
 
 impl Mission {
-    /// Where the agent stands before and after \[m\].
+    /// Positions of the agent before and after \[m\].
     fn stands(&self) -> [[f64; 2]; 2] {
         let Agent { start: [x, y, heading], ref path, .. } = self.agent;
         let end = path.iter().fold((([x, y]), heading), |(at, heading), &shape| {
@@ -54,9 +54,9 @@ pub(super) struct Drawn {
 /// Draws at most, where not all agents have a mission in the first one.
 const DRAWS: usize = 4;
 
-/// Missions for up to `count` agents on the level that has most nodes: each from a random node to another one, so that
-/// no two agents overlap at their starts or at their ends, and there is an order in which all can start. Of some draws the first that has a
-/// mission for everybody, else the one that has most.
+/// Missions for up to `count` agents on the level with the most nodes: each from a random node to another one, so that no two
+/// agents overlap at their starts or at their ends, and there is an order in which all can start. The first of some draws with
+/// a mission for every agent, or else the draw with the most missions.
 pub(super) fn draw(imported: &Imported, count: usize, seed: u64) -> Drawn {
     let mut seeds = Random(seed);
     let mut best = attempt(imported, count, Random(seed));

@@ -26,7 +26,7 @@ pub(super) fn best(forbidden: &Forbidden, longest_first: Vec<usize>, seed: u64) 
     tried.min_by(better).unwrap_or_default()
 }
 
-/// The schedule of the order in which those come first that had no delay, or the longest one.
+/// The schedule for the order in which agents without a delay, or the agent with the longest delay, come first.
 fn again(forbidden: &Forbidden, before: &Schedule) -> Option<Schedule> {
     let longest = before.delays.iter().flatten().fold(0.0_f64, |longest, delay| longest.max(*delay));
     let moves_up = |agent: usize| match before.delays.get(agent).copied().flatten() {
@@ -35,7 +35,7 @@ fn again(forbidden: &Forbidden, before: &Schedule) -> Option<Schedule> {
     };
     let (mut order, mut later): (Vec<usize>, Vec<usize>) = before.order.iter().partition(|&&agent| moves_up(agent));
     order.append(&mut later);
-    // Those that are out are tried before all others, even where that cannot be for all.
+    // Agents without a delay are tried before all others, even if that cannot succeed for all.
     let order = if before.out.is_empty() { forbidden.respecting(&order) } else { order };
     (order != before.order).then(|| forbidden.in_order(order))
 }

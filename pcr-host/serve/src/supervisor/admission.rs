@@ -10,53 +10,53 @@ use crate::robot::{Asked, Robot, Waiting};
 use pcr_core::{Interval, Mission, Pass, Progress, Refused, RegionRef};
 use serde::{Deserialize, Serialize};
 
-/// A path for a robot.
+/// A request for a path of a robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Proposal {
-    /// Whose.
+    /// Name of the robot.
     pub robot: String,
-    /// What it is called: who asks for it again is answered as before, and for another path under its name is refused.
+    /// Id of the mission. A repeated request gets the same answer; a request for another path under this id is refused.
     pub mission: String,
-    /// It begins at this length of the path that the robot has \[m\], if it is to leave it; else at its end.
+    /// Length of the present path at which the new one leaves it \[m\]; `None`: at its end.
     #[serde(default)]
     pub after: Option<f64>,
-    /// The number of that path, to be compared; none: not compared.
+    /// Expected number of the present path; `None`: not compared.
     #[serde(default)]
     pub of: Option<u64>,
-    /// Where that is, to be compared; none: not compared.
+    /// Expected start of the new path; `None`: not compared.
     #[serde(default)]
     pub start: Option<Start>,
-    /// The path from there on.
+    /// Shapes of the new path.
     pub path: Vec<Shape>,
 }
 
-/// What became of a mission.
+/// The result of a request for a mission.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "verdict", rename_all = "snake_case")]
 pub enum Verdict {
-    /// The robot has the path.
+    /// The mission was admitted.
     Admitted {
-        /// Its number.
+        /// Number of the new path.
         path: u64,
-        /// Its length \[m\].
+        /// Length of the new path \[m\].
         length: f64,
-        /// How far the robot had been allowed to go, on this path \[m\]. More is told by and by.
+        /// Length of the new path up to which the robot had already been allowed to go \[m\]. Further holds follow as events.
         hold: f64,
     },
-    /// The robot had it, or it waited, and another one has taken its place since: nothing is done.
+    /// The mission has been replaced by another one since; nothing is done.
     Past,
-    /// It is tried again by and by.
+    /// The mission is tried again later.
     Waiting {
-        /// Who is in the way, if one is.
+        /// Robot that is in the way, if one is.
         #[serde(skip_serializing_if = "Option::is_none")]
         by: Option<String>,
-        /// Why.
+        /// Reason, in words.
         why: String,
     },
 }
 
-/// When a mission that waits is tried again.
+/// The attempts to admit a waiting mission.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Try {
     next: f64,
@@ -64,24 +64,25 @@ pub(super) struct Try {
     pub(super) last: Option<Verdict>,
 }
 
-/// Between two attempts \[s\], at first and at most.
+/// Pause between two attempts \[s\]: the first one, and the largest.
 const PAUSE: [f64; 2] = [0.25, 2.0];
 
-/// A path begins where the one before it ends if it is nowhere further off than that \[m\], and not turned by more \[rad\].
+/// Largest distance \[m\] and angle \[rad\] between the end of a path and the start of the next one.
 const JOIN: f64 = 1e-3;
 
 impl Proposal {
-    /// Whether it is the one that begins at this length of the path before, along these shapes.
+    /// Whether it is a request for a path that begins at this length of the path before, along these shapes.
     fn asks_for(&self, after: f64, shapes: &[Shape]) -> bool {
         self.path == shapes && self.after.is_none_or(|own| (own - after).abs() <= JOINT)
     }
 }
 
 impl Supervisor {
-    /// Gives a robot a path, now or as soon as that is possible. A robot has one mission that waits at most: a new one takes its place.
+    /// Gives a robot a path, now or as soon as that is possible. A robot has at most one waiting mission: a new one replaces
+    /// it.
     ///
     /// # Errors
-    /// [`Fault`] for what will never be possible; nothing waits then.
+    /// [`Fault`] for a mission that can never be admitted; it does not wait then.
     pub fn mission(&mut self, proposal: &Proposal, now: f64) -> Result<Verdict, Fault> {
         self.works()?;
         let place = self.place(&proposal.robot)?;
@@ -113,7 +114,7 @@ impl Supervisor {
             shapes: proposal.path.clone(),
             turn: self.turn,
         };
-        // A length of another path is another place.
+        // A length of another path means another place.
         if proposal.of.is_some_and(|path| path != robot.path) {
             return Err(Fault::NoSuchPath { path: robot.path });
         }
@@ -122,7 +123,7 @@ impl Supervisor {
             is_there(robot, joint, start, extent(&proposal.path))?;
         }
         self.counts.missions += 1;
-        // Taken out now: a path that is admitted leaves nothing waiting.
+        // Removed now, because a robot with a newly admitted path has no waiting mission.
         let robot = &mut self.robots[place];
         let (before, past) = (robot.waiting.take(), robot.past.clone());
         if let Some(before) = &before {
@@ -151,7 +152,7 @@ impl Supervisor {
         Ok(verdict)
     }
 
-    /// The path that a robot has is that of another mission, which goes the same way: nothing else changes.
+    /// Renames the mission of a robot, if another one has the same path: nothing else changes.
     ///
     /// # Errors
     /// [`Fault::NoSuchRobot`], [`Fault::Broken`].
@@ -163,7 +164,7 @@ impl Supervisor {
         for before in robot.mission.replace(mission).into_iter().chain(waiting) {
             Robot::outlives(&mut robot.past, before);
         }
-        // Where that one would have begun is not known.
+        // The request of the new mission is not known.
         robot.asked = None;
         self.tries.remove(name);
         let known = self.known(place);
@@ -171,10 +172,11 @@ impl Supervisor {
         Ok(())
     }
 
-    /// Tries to admit a mission that begins at a length of the path before \[m\]: none if it was, else why not.
+    /// Tries to admit a mission that begins at a length of the path before \[m\]. Returns `None` if it was admitted, otherwise
+    /// why not.
     ///
     /// # Errors
-    /// [`Fault`] for what will never be possible.
+    /// [`Fault`] for a mission that can never be admitted.
     fn attempt(&mut self, place: usize, mission: &Waiting, joint: f64, now: f64) -> Result<Option<Verdict>, Fault> {
         let robot = &self.robots[place];
         if robot.alarm.is_some() {
@@ -224,7 +226,7 @@ impl Supervisor {
         Ok(Some(Verdict::Waiting { by: Some(by), why }))
     }
 
-    /// The path is that of the robot.
+    /// Makes the admitted path that of the robot.
     fn commit(&mut self, place: usize, mission: &Waiting, course: Course, dropped: f64) {
         let robot = &mut self.robots[place];
         let length = course.length();
@@ -233,7 +235,7 @@ impl Supervisor {
         robot.up_to = shifted(robot.up_to).max(robot.at);
         (robot.granted, robot.told) = (shifted(robot.granted), shifted(robot.told));
         robot.next = 0.0;
-        // No more than that has been told.
+        // No hold beyond `told` has been told.
         robot.ceiling = robot.told;
         (robot.moved, robot.stands) = (None, false);
         robot.path += 1;
@@ -258,11 +260,11 @@ impl Supervisor {
         self.forget_holds_with(place);
         let known = self.known(place);
         self.entries.push(Entry::Robot(Box::new(known)));
-        // Who was in the way of somebody may be so no longer.
+        // A robot that was in the way of a stopped one may no longer be.
         self.hazards |= self.robots.iter().any(|robot| robot.stopped.is_some());
     }
 
-    /// The holds of a robot, and of those that have a region with it or waited for it, are not known any more.
+    /// Marks the holds as unknown of a robot and of those that have a region with it or waited for it.
     fn forget_holds_with(&mut self, place: usize) {
         let pairs = self.orders.decisions().map(|decision| decision.agents).filter(|agents| agents.contains(&place));
         for agents in pairs {
@@ -280,7 +282,7 @@ impl Supervisor {
         let fleet = fleet(&self.robots);
         let robot = &self.robots[place];
         let decisions = self.orders.decisions().filter(|decision| decision.agents.contains(&place));
-        // The table is that of the robots; orders that are missing would be noticed when they are read.
+        // The table belongs to these robots; missing orders would be detected when the journal is read.
         let row = self.orders.row(&fleet, place).into_iter().flatten();
         let orders = row.zip(decisions).map(|((_, region, pass), decision)| Kept {
             with: self.robots[region.other()].name.clone(),
@@ -306,8 +308,8 @@ impl Supervisor {
         }
     }
 
-    /// Tries the mission that has been due for longest; of several, the oldest. (If the oldest of all that are due was tried, a young one
-    /// would never be tried while many wait, even if it was the only one that could be admitted.)
+    /// Tries the mission that has been due for the longest time; of several, the oldest. (Trying the oldest of all due missions
+    /// would starve a young one while many wait, even if it was the only one that could be admitted.)
     pub(super) fn retry(&mut self, now: f64) {
         let time = |robot: &Robot| self.tries.get(&robot.name).map_or(f64::NEG_INFINITY, |last| last.next);
         let waiting = self.robots.iter().enumerate().filter_map(|(place, robot)| {
@@ -348,10 +350,10 @@ impl Supervisor {
     }
 }
 
-/// At which length of the path of a robot another path begins that is to begin there, as far as rounding allows.
+/// Length of a robot's path at which a new path begins, corrected for rounding.
 ///
 /// # Errors
-/// [`Fault`] where none can begin.
+/// [`Fault`] if no path can begin there.
 fn joint(robot: &Robot, after: f64) -> Result<f64, Fault> {
     let length = robot.course.length();
     if !(-JOINT..=length + JOINT).contains(&after) {
@@ -363,13 +365,13 @@ fn joint(robot: &Robot, after: f64) -> Result<f64, Fault> {
     Ok(after.max(robot.told).min(length))
 }
 
-/// Whether a path that leaves that of a robot at a length begins where somebody says, and leads there as far as it goes: a heading that
-/// differs is a place that differs further on.
+/// Checks that a path that leaves that of a robot at a length begins at the stated pose. `extent` is the length of the path: a
+/// wrong heading at its start becomes a wrong place further on.
 fn is_there(robot: &Robot, after: f64, start: Start, extent: f64) -> Result<(), Fault> {
     let end = robot.course.arrival(after).map_err(Fault::invalid)?;
     let distance = (start.x - end.x).hypot(start.y - end.y);
     let angle = (start.heading - end.heading).sin().atan2((start.heading - end.heading).cos()).abs();
-    // What is no number is not near.
+    // Written so that NaN is not near.
     let is_near = angle <= JOIN && distance + angle * extent <= JOIN;
     if is_near { Ok(()) } else { Err(Fault::Apart { distance, angle }) }
 }
@@ -378,7 +380,7 @@ fn admitted(robot: &Robot) -> Verdict {
     Verdict::Admitted { path: robot.path, length: robot.course.length(), hold: robot.granted }
 }
 
-/// Who should go first: whoever makes the other one wait less, if nobody else were there.
+/// Preferred passing order: first goes the robot that makes the other one wait less, if there were no other robots.
 fn preferred(region: &RegionRef<'_, f64>, at: f64, known: &[Progress<f64>], speeds: &[f64]) -> Pass {
     let speed = |agent: usize| speeds.get(agent).copied().unwrap_or(1.0);
     let there = known.get(region.other()).map_or(0.0, |progress| progress.at.lo);

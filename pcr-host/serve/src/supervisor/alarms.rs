@@ -6,12 +6,12 @@ use crate::event::Event;
 use crate::robot::{Alarm, ROOM};
 use pcr_core::{Ecm, Hold, Pass, RegionRef};
 
-/// How far a robot may go at most, whatever its orders say, because of one that is not where it may be.
+/// A limit to how far a robot may go, whatever its orders say, because another one is not where it may be.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Limit {
-    /// \[m\]; none: as its orders say.
+    /// Length of the path \[m\]; `None`: no limit.
     pub(super) at: Option<f64>,
-    /// Who that is.
+    /// Index of the robot that is not where it may be.
     by: usize,
 }
 
@@ -24,7 +24,7 @@ impl Limit {
 }
 
 impl Supervisor {
-    /// What robots must not go beyond; those that have been allowed to already are stopped. Empty if nothing is wrong.
+    /// The limits of all robots; robots that have been allowed to go beyond are stopped. Empty if there is no alarm.
     pub(super) fn limits(&mut self, now: f64) -> Vec<Limit> {
         if !self.hazards {
             return Vec::new();
@@ -35,7 +35,7 @@ impl Supervisor {
         self.hazards = self.robots.iter().any(|robot| robot.alarm.is_some());
         for (place, limit) in limits.iter().enumerate() {
             let robot = &self.robots[place];
-            // Who stands has nothing to stop.
+            // A robot that stands needs no `stop`.
             let by = limit.at.filter(|at| *at < robot.told && robot.told > robot.at);
             let by = by.map(|_| self.robots[limit.by].name.clone());
             self.hazards |= by.is_some();
@@ -51,7 +51,7 @@ impl Supervisor {
         limits
     }
 
-    /// A robot with an alarm may be anywhere around where it was, as far as its speed takes it.
+    /// Limits because of robots with alarms: such a robot may be anywhere that its speed takes it from its last position.
     fn lost(&self, now: f64, limits: &mut [Limit]) {
         for (place, robot) in self.robots.iter().enumerate() {
             let (at, spread) = match &robot.alarm {
@@ -66,7 +66,7 @@ impl Supervisor {
                     ([pose.x, pose.y], hi - lo)
                 }
             };
-            // After a restart it may be anywhere until it is heard: no disc is as large, and everybody stops.
+            // After a restart it may be anywhere until it sends a message: no disc is that large, so all robots stop.
             let gone = robot.heard.map_or(f64::INFINITY, |heard| robot.abilities.speed * (now - heard).max(0.0));
             let radius = robot.abilities.reach() + spread + gone;
             for (other, limit) in limits.iter_mut().enumerate().filter(|(other, _)| *other != place) {
@@ -88,7 +88,7 @@ impl Supervisor {
             let ahead = regions.map(|region| region.length()).filter(|length| length.hi >= robot.at);
             Some(ahead.map(|length| length.lo.max(robot.at) - ROOM).reduce(f64::min))
         };
-        // What cannot be computed is near.
+        // If it cannot be computed, the robot counts as near.
         found().unwrap_or(Some(robot.at - ROOM))
     }
 

@@ -1,4 +1,4 @@
-//! Reports of robots about their places.
+//! Reports of robots about their positions.
 
 use super::Supervisor;
 use crate::entry::Entry;
@@ -7,29 +7,29 @@ use crate::fault::Fault;
 use crate::robot::{Alarm, BACK, ROOM, Robot};
 use serde::{Deserialize, Serialize};
 
-/// Who has not gone further than this has not moved \[m\].
+/// A robot that has advanced by at most this counts as not having moved \[m\].
 const STIR: f64 = 1e-3;
 
-/// A message of a robot.
+/// A position message of a robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Report {
-    /// Whose.
+    /// Name of the robot.
     pub robot: String,
-    /// Number of the path along which it counts. That of an older path says no more than that the robot is alive.
+    /// Number of the path to which `at` refers. A message about an older path only shows that the robot is alive.
     pub path: u64,
-    /// It was between these lengths of the path \[m\], surely.
+    /// Lengths of the path between which the robot certainly was \[m\].
     pub at: [f64; 2],
-    /// How long ago \[s\].
+    /// Age of the position \[s\].
     #[serde(default)]
     pub age: f64,
 }
 
 impl Supervisor {
-    /// Takes a message about a position. Messages may be lost, late and repeated: of the lower ends the largest counts.
+    /// Takes a position message. Messages may be lost, late and repeated: the largest of the lower ends counts.
     ///
     /// # Errors
-    /// [`Fault::NoSuchRobot`], [`Fault::NoSuchPath`] for a path that it does not have yet, [`Fault::Invalid`].
+    /// [`Fault::NoSuchRobot`], [`Fault::NoSuchPath`] for a path that the robot does not have yet, [`Fault::Invalid`].
     pub fn position(&mut self, report: &Report, now: f64) -> Result<(), Fault> {
         self.works()?;
         let place = self.place(&report.robot)?;
@@ -56,8 +56,8 @@ impl Supervisor {
             }
             return Ok(());
         }
-        // It has rolled or was pushed back, where others may have the right to go by now. (What is known of it after a restart is from
-        // before that.)
+        // The robot rolled or was pushed back into a part of its path that may already be free for others. Positions from before a
+        // restart do not count.
         let is_back = *hi < passed - 2.0 * robot.abilities.margin - BACK && time >= robot.heard.unwrap_or(begun);
         if is_new && is_back {
             self.alarm(place, Some(Alarm::Back { passed, between: [*lo, *hi] }), time);
@@ -67,9 +67,10 @@ impl Supervisor {
             self.alarm(place, None, time);
         }
         let robot = &mut self.robots[place];
-        // A newer one says that it is not so far: it has gone back since. (After a restart it is not known what that says.)
+        // An older message with a lower end above the upper end of a newer one: the robot has gone back since. (After a restart the
+        // newest upper end is not known.)
         let lo = if is_new || *lo <= robot.up_to { *lo } else { robot.at };
-        // Whoever stands at its end has not left what is there, whatever rounding says of where that ends.
+        // A robot at the end of its path has not left the regions there, whatever rounding makes of their ends.
         let lo = lo.min(robot.told).min(robot.course.length() - ROOM);
         if lo > robot.at {
             if lo > robot.at + STIR {
@@ -86,8 +87,8 @@ impl Supervisor {
         Ok(())
     }
 
-    /// Takes a message that a robot is not on its path, but here: the others keep away from wherever it can go, and stop where they
-    /// have been allowed to come near. It says how long ago that was \[s\]: what is older than what is known says nothing.
+    /// Takes a message that a robot is not on its path but at `at` \[m\]. The other robots keep away from all places that it can reach, and
+    /// stop if they have been allowed to go near these. `age` is the age of the message \[s\]; it is ignored if a newer one is known.
     ///
     /// # Errors
     /// [`Fault::NoSuchRobot`], [`Fault::Invalid`].

@@ -10,7 +10,7 @@ use crate::robot::Wait;
 use pcr_core::Hold;
 
 impl Supervisor {
-    /// A robot can stop at this length of its path, and not before \[m\]: it is told so far at once, if it may go there.
+    /// Tells the supervisor that a robot cannot stop before this length of its path \[m\]. If it may go there, it is told so at once.
     ///
     /// # Errors
     /// [`Fault::NoSuchRobot`].
@@ -20,7 +20,7 @@ impl Supervisor {
         Ok(())
     }
 
-    /// Lets everybody go on who wants to and may.
+    /// Sends holds to all robots that need to go on and may.
     pub(super) fn release(&mut self, limits: &[Limit]) {
         let wanting: Vec<usize> = (0..self.robots.len()).filter(|&place| self.wants(place)).collect();
         let stale: Vec<usize> = wanting.iter().copied().filter(|&place| self.is_stale(place)).collect();
@@ -37,7 +37,7 @@ impl Supervisor {
         robot.alarm.is_none() && robot.stopped.is_none() && robot.wanted(self.settings.lookahead) > robot.granted
     }
 
-    /// Whether the hold of a robot keeps it from where it wants to go, and may have changed.
+    /// Whether the hold of a robot is before the length that it needs next, and may have changed.
     fn is_stale(&self, place: usize) -> bool {
         let robot = &self.robots[place];
         let Some(Wait { hold, by }) = robot.hold else { return true };
@@ -51,18 +51,18 @@ impl Supervisor {
         let holds: Vec<_> = places.iter().map(|&place| self.orders.wait(&fleet, place, &progress)).collect();
         self.counts.evaluations += places.len() as u64;
         for (&place, hold) in places.iter().zip(holds) {
-            // The table is that of the robots; were it another, nobody would go on.
+            // The table belongs to these robots, so this never fails; if it did, the robots would stop.
             let (hold, by) = hold.unwrap_or((Hold::Inside, None));
             self.robots[place].hold = Some(Wait { hold, by: by.map(|by| (by, progress[by].at.lo)) });
         }
     }
 
-    /// With a write that is made anyway goes what others will need soon, so that all of them together need few.
+    /// When the journal is written anyway, raises ceilings that will be needed soon, which saves writes.
     pub(super) fn raise_ceilings(&mut self) {
         let spare = self.settings.spare;
         for robot in &mut self.robots {
             let ceiling = (robot.granted + spare).min(robot.course.length());
-            // After a restart it is not known to be right to go that far.
+            // Not after a restart, as long as `told` is the old ceiling, beyond what was granted since.
             if robot.told == robot.granted && robot.granted > robot.at && robot.ceiling + 0.5 * spare < ceiling {
                 robot.ceiling = ceiling;
                 let (name, path) = (robot.name.clone(), robot.path);

@@ -7,7 +7,7 @@ use pcr_core::{Full, Mismatch, Pass, Reach};
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 
-/// Why a journal cannot be gone on with.
+/// The reason why a journal cannot be continued.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Damaged(pub(crate) String);
 
@@ -31,7 +31,7 @@ impl From<Mismatch> for Damaged {
     }
 }
 
-/// What entries add up to.
+/// The state after a number of entries.
 #[derive(Default)]
 struct State {
     layout: Layout,
@@ -49,7 +49,7 @@ impl State {
         match entry {
             Entry::Layout(layout) => self.layout = layout,
             Entry::Robot(known) => {
-                // Its orders with all others are these: theirs with it are no more.
+                // These are its orders with all others, so earlier orders of others with it are removed.
                 for other in &mut self.robots {
                     other.orders.retain(|kept| kept.with != known.name);
                 }
@@ -74,7 +74,7 @@ impl State {
             }
             Entry::Places { places } => {
                 for (robot, path, at) in places {
-                    // A robot may have been removed in the same batch.
+                    // The robot may have been removed in the same batch.
                     if let Ok(known) = self.robot(&robot)
                         && known.path == path
                     {
@@ -103,10 +103,11 @@ impl State {
 }
 
 impl Supervisor {
-    /// The supervisor that these entries are of. What may have been told counts as told.
+    /// The supervisor with the state of these entries. Holds that may have been told count as told.
     ///
     /// # Errors
-    /// [`Damaged`] where the entries do not go together, or the regions of the paths are not those that the orders were made for.
+    /// [`Damaged`] if the entries contradict one another, or if the regions of the paths differ from those for which the orders
+    /// were made.
     pub fn restored(settings: Settings, entries: Vec<Entry>, keeper: Box<dyn Keep>) -> Result<Self, Damaged> {
         let mut state = State::default();
         entries.into_iter().try_for_each(|entry| state.take(entry))?;
@@ -131,7 +132,7 @@ impl Supervisor {
         Ok(own)
     }
 
-    /// Makes the orders again.
+    /// Restores the passing orders.
     fn order(&mut self, mut kept: HashMap<[String; 2], Vec<Kept>>) -> Result<(), Damaged> {
         let fleet = fleet(&self.robots);
         if fleet.len() != self.robots.len() {
@@ -151,7 +152,7 @@ impl Supervisor {
             for group in row.chunk_by(|a, b| a.1 == b.1) {
                 let other = &self.robots[group[0].1].name;
                 let Some(made) = kept.remove(&[name.clone(), other.clone()]) else {
-                    // The other one's row has them.
+                    // The row of the other robot has them.
                     missing.insert([ego, group[0].1]);
                     continue;
                 };
@@ -179,12 +180,12 @@ impl Supervisor {
         Ok(())
     }
 
-    /// Everything that is so now.
+    /// Entries for the whole present state.
     pub fn snapshot(&self) -> Vec<Entry> {
         let layout = std::iter::once(Entry::Layout(self.layout.clone()));
         let robots = (0..self.robots.len()).map(|place| {
             let mut known = self.known(place);
-            // Each order once: with those before it.
+            // Each order once: with robots of lower index.
             let before = |kept: &Kept| self.names.get(&kept.with).is_some_and(|&other| other < place);
             known.orders.retain(before);
             Entry::Robot(Box::new(known))
@@ -194,7 +195,7 @@ impl Supervisor {
     }
 }
 
-/// A number of a path or a turn is lower: it can be counted on.
+/// Largest number of a path or of a mission in the queue; larger ones would not be counted exactly.
 const MOST: u64 = 1 << 53;
 
 fn robot(known: Known) -> Result<Robot, Damaged> {
@@ -211,7 +212,7 @@ fn robot(known: Known) -> Result<Robot, Damaged> {
     robot.up_to = robot.at;
     robot.ceiling = known.ceiling.max(robot.at).min(end);
     (robot.granted, robot.told) = (robot.at, robot.ceiling);
-    // It was told no more since then.
+    // It has been told nothing further since then.
     if let Some(Alarm::Beyond { told, .. }) = known.alarm {
         robot.told = robot.told.min(told.max(robot.at));
     }

@@ -7,11 +7,11 @@ use super::admission::Verdict;
 use crate::event::Event;
 use crate::robot::Robot;
 
-/// Between two looks \[s\].
+/// Time between two searches \[s\].
 const PAUSE: f64 = 1.0;
 
 impl Supervisor {
-    /// Says why nothing goes on, once for each reason.
+    /// Reports why robots do not advance, once for each reason.
     pub(super) fn note_standstill(&mut self, now: f64) {
         if now < self.looked + PAUSE {
             return;
@@ -38,7 +38,7 @@ impl Supervisor {
             last = next;
         }
         let robot = &self.robots[last];
-        // That is said already.
+        // These have been reported already.
         let is_known = robot.alarm.is_some() || robot.stopped.is_some() || robot.silent;
         if is_known || self.since(last, now) <= self.settings.patience {
             return;
@@ -61,8 +61,8 @@ impl Supervisor {
         }
     }
 
-    /// Who has stood for long where it has to stop: perhaps those that come after it go before it, again and again. New missions are admitted
-    /// behind it then, so that those before it become fewer until it goes on; and each of these goes on, or has stood for long as well.
+    /// For each robot whether it has stood at its hold for longer than `patience`, perhaps because later missions pass it again and again.
+    /// New missions are then ordered behind it, so that the number of robots ahead of it falls until it goes on.
     pub(super) fn overtaken(&self, now: f64) -> Vec<bool> {
         let is_overtaken = |place| self.is_held(place) && self.since(place, now) > self.settings.patience;
         (0..self.robots.len()).map(is_overtaken).collect()
@@ -76,13 +76,13 @@ impl Supervisor {
         robot.waiting.is_some() || !robot.has_arrived(self.settings.width)
     }
 
-    /// Whether a robot is on its way, and where it has to stop.
+    /// Whether a robot is on its way and stands at its hold.
     fn is_held(&self, place: usize) -> bool {
         let (robot, width) = (&self.robots[place], self.settings.width);
         !robot.has_arrived(width) && robot.told <= robot.at + width
     }
 
-    /// For whom a robot waits, that has something to do and may not go on.
+    /// The robot for which another one waits that has a task and may not go on.
     fn kept_by(&self, place: usize) -> Option<usize> {
         let robot = &self.robots[place];
         if !robot.has_arrived(self.settings.width) {

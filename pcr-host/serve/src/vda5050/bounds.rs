@@ -8,20 +8,20 @@ use std::fmt;
 /// Largest magnitude of a number that is read \[m, s\].
 const LARGEST: f64 = 1e10;
 
-/// What is read of parameters of actions is passed on as it is.
+/// Parameters of actions are not checked, because they are passed on unread.
 pub(super) const VERBATIM: &str = "actionParameters";
 
-/// Texts in headers.
+/// Text fields of headers.
 const TEXTS: [&str; 4] = ["timestamp", "version", "manufacturer", "serialNumber"];
 
-/// How large messages may be.
+/// Limits of messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// \[bytes\]
+    /// Size of a message \[bytes\].
     pub bytes: usize,
-    /// Elements of one list.
+    /// Number of elements of a list.
     pub list: usize,
-    /// \[bytes\] of one text.
+    /// Size of a text \[bytes\].
     pub text: usize,
 }
 
@@ -31,10 +31,10 @@ impl Default for Limits {
     }
 }
 
-/// Checks all of a message.
+/// Checks a whole message.
 ///
 /// # Errors
-/// The field of the first value that is too large, and why; no field for what is no JSON.
+/// Field and reason for the first value beyond a limit; an empty field for invalid JSON.
 pub(super) fn check(bytes: &[u8], limits: Limits) -> Result<(), (String, String)> {
     let mut fault = Fault::default();
     let mut reader = serde_json::Deserializer::from_slice(bytes);
@@ -49,14 +49,14 @@ pub(super) fn check(bytes: &[u8], limits: Limits) -> Result<(), (String, String)
     })
 }
 
-/// What was refused, and where, from the inside outward.
+/// The reason for a refusal, and the path of the field, innermost name first.
 #[derive(Default)]
 struct Fault {
     why: Option<String>,
     path: Vec<String>,
 }
 
-/// What has to be there.
+/// The expected type of a value.
 #[derive(Clone, Copy, PartialEq)]
 enum Asked {
     Anything,
@@ -87,12 +87,12 @@ impl Check<'_> {
         E::custom("")
     }
 
-    /// Of what is in it.
+    /// The check of a value within this one.
     fn inner(&mut self, asked: Asked) -> Check<'_> {
         Check { limits: self.limits, fault: &mut *self.fault, depth: self.depth + 1, asked }
     }
 
-    /// What is in it, under this name, was refused.
+    /// Adds the name of a field to an error from within it.
     fn named<E>(&mut self, error: E, name: impl fmt::Display) -> E {
         if self.fault.why.is_some() {
             self.fault.path.push(name.to_string());
@@ -100,7 +100,7 @@ impl Check<'_> {
         error
     }
 
-    /// Something that is no text, and no count but where it is one.
+    /// Refuses a value where a text is expected, and a value that is no count where a count is expected.
     fn other<E: Error>(&mut self, is_count: bool) -> Result<(), E> {
         match self.asked {
             Asked::Text => Err(self.refused("not a text")),
@@ -132,7 +132,7 @@ impl<'de> Visitor<'de> for Check<'_> {
         f.write_str("JSON")
     }
 
-    // As good as nothing.
+    // `null` counts as a missing value.
     fn visit_unit<E: Error>(self) -> Result<(), E> {
         Ok(())
     }
@@ -192,6 +192,6 @@ impl<'de> Visitor<'de> for Check<'_> {
     }
 }
 
-/// A name, where it is if nothing in it is escaped.
+/// A field name, borrowed if nothing in it is escaped.
 #[derive(Deserialize)]
 struct Name<'a>(#[serde(borrow)] Cow<'a, str>);

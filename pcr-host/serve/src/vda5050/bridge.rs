@@ -10,53 +10,53 @@ use crate::supervisor::{Damaged, Supervisor};
 use serde::Serialize;
 use std::collections::{BTreeSet, HashMap};
 
-/// What can be set.
+/// Settings of a bridge.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// Topics of the fleet manager.
     pub manager: Interface,
     /// Topics of the vehicles.
     pub vehicles: Interface,
-    /// What is read.
+    /// Limits of the messages that are read.
     pub limits: Limits,
 }
 
-/// A message for the broker.
+/// A message to the broker.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Publish {
-    /// Where to.
+    /// Topic.
     pub topic: String,
-    /// JSON.
+    /// Content, as JSON.
     pub payload: Vec<u8>,
-    /// At least once.
+    /// Whether it is sent with quality of service 1.
     pub assured: bool,
-    /// The broker keeps it.
+    /// Whether the broker keeps it.
     pub retain: bool,
 }
 
-/// What has happened since the start.
+/// Numbers of messages since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Counts {
-    /// Messages read.
+    /// Number of messages read.
     pub read: u64,
-    /// Messages that were refused.
+    /// Number of messages refused.
     pub refused: u64,
-    /// Messages of vehicles that are not of this fleet, or in other topics.
+    /// Number of messages of vehicles that are not in the fleet, or on other topics.
     pub foreign: u64,
-    /// Messages sent.
+    /// Number of messages sent.
     pub sent: u64,
 }
 
-/// What of a robot decides what its vehicle may be told: its path, how far it may go, whether it is stopped.
+/// The state of a robot on which the messages to its vehicle depend: number of its path, hold, whether it is stopped.
 type Rights = (u64, f64, bool);
 
-/// What was seen of the supervisor last.
+/// The state of the supervisor when it was last compared.
 #[derive(Debug, Default)]
 struct Seen {
     census: Option<u64>,
-    /// Of each robot, with the place of its lane.
+    /// For each robot its lane and its rights.
     rights: Vec<(Option<usize>, Rights)>,
-    /// Places of vehicles that it does not know.
+    /// Lanes whose vehicles are not in the supervisor yet.
     unknown: Vec<usize>,
 }
 
@@ -66,29 +66,29 @@ pub struct Bridge {
     settings: Settings,
     lanes: Vec<Lane>,
     places: HashMap<Key, usize>,
-    /// Places of those for which something has come since they were looked at last.
+    /// Lanes for which something has come since they were last handled.
     touched: BTreeSet<usize>,
     seen: Seen,
     out: Vec<Publish>,
     counts: Counts,
     log: Vec<String>,
-    /// When it was said last for whom everybody waits \[s\].
+    /// Time of the last reminder of missing vehicles \[s\].
     said: f64,
-    /// When all lanes were looked at last \[s\].
+    /// Time at which all lanes were last handled \[s\].
     looked: f64,
 }
 
-/// Between two reminders of who is missing \[s\].
+/// Time between two reminders of missing vehicles \[s\].
 const REMINDER: f64 = 30.0;
 
-/// Between two looks at lanes for which nothing has come: what was lost is sent again \[s\].
+/// Time between two rounds over all lanes, in which lost messages are sent again \[s\].
 const LOOK: f64 = 0.1;
 
 impl Bridge {
-    /// Of these vehicles, with what the supervisor remembers of them.
+    /// The bridge of these vehicles, with the notes that the supervisor has stored about them.
     ///
     /// # Errors
-    /// [`Damaged`] where that cannot be read.
+    /// [`Damaged`] if a note cannot be read.
     pub fn new(settings: Settings, profiles: Vec<Profile>, supervisor: &Supervisor) -> Result<Self, Damaged> {
         let lanes = profiles.into_iter().map(|profile| Lane::new(profile, supervisor));
         let lanes: Vec<Lane> = lanes.collect::<Result<_, _>>()?;
@@ -107,7 +107,7 @@ impl Bridge {
         })
     }
 
-    /// What to subscribe to.
+    /// The topics to which to subscribe.
     pub fn filters(&self) -> Vec<String> {
         let Settings { manager, vehicles, .. } = &self.settings;
         let of = |interface: &Interface, kinds: &[Kind]| {
@@ -116,7 +116,7 @@ impl Bridge {
         [of(vehicles, &Kind::OF_VEHICLES), of(manager, &Kind::TO_VEHICLES)].concat()
     }
 
-    /// What has happened.
+    /// Numbers of messages since the start.
     pub fn counts(&self) -> Counts {
         self.counts
     }
@@ -126,7 +126,7 @@ impl Bridge {
         self.lanes.iter()
     }
 
-    /// Why messages were refused, since this was asked last.
+    /// Takes the reasons why messages were refused since the last call.
     pub fn log(&mut self) -> Vec<String> {
         std::mem::take(&mut self.log)
     }
@@ -140,7 +140,7 @@ impl Bridge {
         self.collect(&(0..self.lanes.len()).collect());
     }
 
-    /// Takes a message that the broker had kept, from any time before: of most kinds that is none.
+    /// Takes a message that the broker had kept. It may be old, so most kinds are ignored.
     pub fn receive_kept(&mut self, supervisor: &mut Supervisor, topic: &str, payload: &[u8], now: f64) {
         let Settings { manager, vehicles, .. } = &self.settings;
         let kind = vehicles.parse(topic).or_else(|| manager.parse(topic)).map(|(.., kind)| kind);
@@ -151,7 +151,7 @@ impl Bridge {
         self.log.push(format!("{topic}: kept by the broker, from another time"));
     }
 
-    /// Takes a message. What it asks for takes effect when the supervisor has settled.
+    /// Takes a message. Its requests take effect when the supervisor has settled.
     pub fn receive(&mut self, supervisor: &mut Supervisor, topic: &str, payload: &[u8], now: f64) {
         let settings = &self.settings;
         let from_vehicle = settings.vehicles.parse(topic).filter(|(.., kind)| Kind::OF_VEHICLES.contains(kind));
@@ -185,7 +185,7 @@ impl Bridge {
                 Ok(())
             }
             Kind::Responses => lane.responses(payload, limits, is_third),
-            // Zones are the manager's.
+            // Zones are up to the manager.
             Kind::ZoneSet => lane.untouched(kind, payload, limits, is_third),
         };
         if let Err(refusal) = result {
@@ -194,8 +194,8 @@ impl Bridge {
         }
     }
 
-    /// Takes what the supervisor has decided, and what it has told since this was called last; what follows for vehicles may be sent once
-    /// that is settled.
+    /// Handles what the supervisor has decided, and the events since the last call. The resulting messages to vehicles may be
+    /// sent once the supervisor has settled.
     pub fn settled(&mut self, supervisor: &mut Supervisor, events: &[Event], now: f64) {
         self.told(events);
         self.look(supervisor);
@@ -204,7 +204,7 @@ impl Bridge {
             self.touched.extend(0..self.lanes.len());
         }
         let touched = std::mem::take(&mut self.touched);
-        // A vehicle that has never said where it stands may stand anywhere, and one that is larger than its disc may be in anybody's way.
+        // A vehicle without a position may stand anywhere, and one that is larger than its disc may be in the way of any other.
         let is_known = self.seen.unknown.is_empty() && self.lanes.iter().all(|lane| lane.misfit().is_none());
         for &place in &touched {
             let lane = &mut self.lanes[place];
@@ -230,7 +230,7 @@ impl Bridge {
         }
     }
 
-    /// Whose rights have changed, and who is not known.
+    /// Compares the rights of all robots with those seen before, and finds the vehicles that are not in the supervisor.
     fn look(&mut self, supervisor: &Supervisor) {
         let Self { places, seen, touched, lanes, .. } = self;
         let robots = supervisor.robots();
@@ -248,7 +248,7 @@ impl Bridge {
         }
     }
 
-    /// Takes what the supervisor has settled, and sends nobody anything for it yet.
+    /// Takes events of the supervisor, without any messages to vehicles yet.
     pub fn told(&mut self, events: &[Event]) {
         for event in events {
             if let Some(&place) = key(event.robot()).and_then(|key| self.places.get(&key)) {
@@ -267,14 +267,14 @@ impl Bridge {
         }
     }
 
-    /// The messages to be sent: once what they follow from is in the journal.
+    /// Takes the messages to be sent: after the changes from which they follow are in the journal.
     pub fn out(&mut self) -> Vec<Publish> {
         self.counts.sent += self.out.len() as u64;
         std::mem::take(&mut self.out)
     }
 }
 
-/// The vehicle that is called so.
+/// The vehicle with this name in the supervisor.
 fn key(name: &str) -> Option<Key> {
     let (manufacturer, serial_number) = name.split_once('/')?;
     Some(Key { manufacturer: manufacturer.into(), serial_number: serial_number.into() })

@@ -12,14 +12,14 @@ pub use super::bounds::Limits;
 /// Why a message is refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
-    /// Where in the message, as `nodes[2].nodePosition.x`; empty if it is all of it.
+    /// Field of the message, such as `nodes[2].nodePosition.x`; empty for the whole message.
     pub field: String,
-    /// What is wrong there.
+    /// What is wrong there, in words.
     pub why: String,
 }
 
 impl Refusal {
-    /// Something wrong with a field.
+    /// A refusal because of a field.
     pub fn new(field: impl Into<String>, why: impl fmt::Display) -> Self {
         Self { field: field.into(), why: why.to_string() }
     }
@@ -36,17 +36,17 @@ impl fmt::Display for Refusal {
 
 impl std::error::Error for Refusal {}
 
-/// Reads a message. `null` is as good as nothing: some senders write it for what they do not know.
+/// Reads a message. `null` counts as a missing field, because some senders write it for unknown values.
 ///
 /// # Errors
-/// [`Refusal`] with the field.
+/// [`Refusal`] with the name of the field.
 pub fn read<T: DeserializeOwned>(bytes: &[u8], limits: Limits) -> Result<T, Refusal> {
     if bytes.len() > limits.bytes {
         return Err(Refusal::new("", format!("{} bytes; at most {} are read", bytes.len(), limits.bytes)));
     }
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     bounds::check(bytes, limits).map_err(|(field, why)| Refusal::new(field, why))?;
-    // Most messages are read at once; what is wrong with another one, or has to be left out, is seen in the tree of it.
+    // The fast path: only a message with an error or with `null` is parsed into a tree first.
     let has_null = bytes.windows(4).any(|part| part == b"null");
     if let Some(message) = (!has_null).then(|| serde_json::from_slice(bytes).ok()).flatten() {
         return Ok(message);

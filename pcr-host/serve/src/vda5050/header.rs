@@ -5,18 +5,18 @@ use super::topics::Key;
 use super::version::Version;
 use serde::{Deserialize, Serialize};
 
-/// A message: its header, then its fields, then all else.
+/// Defines a message: its header, its fields, and a map of all other fields.
 macro_rules! message {
     ($(#[$meta:meta])* $name:ident { $($(#[$field_meta:meta])* $field:ident : $type:ty,)* }) => {
         $(#[$meta])*
         #[derive(Clone, Debug, PartialEq, ::serde::Serialize, ::serde::Deserialize)]
         #[serde(rename_all = "camelCase")]
         pub struct $name {
-            /// What is in every message.
+            /// The header.
             #[serde(flatten)]
             pub header: $crate::vda5050::header::Header,
             $($(#[$field_meta])* pub $field: $type,)*
-            /// All else that was in the message.
+            /// All other fields of the message, kept unchanged.
             #[serde(flatten)]
             pub rest: ::serde_json::Map<String, ::serde_json::Value>,
         }
@@ -24,33 +24,33 @@ macro_rules! message {
 }
 pub(super) use message;
 
-/// What every message begins with.
+/// The header of a message.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
 pub struct Header {
-    /// Counts the messages of a topic.
+    /// Header id: counts the messages of a topic.
     pub header_id: u64,
-    /// When it was written, by the clock of the sender.
+    /// Time stamp, by the clock of the sender.
     pub timestamp: String,
     /// Edition of the standard.
     pub version: String,
-    /// Who has made the vehicle.
+    /// Manufacturer of the vehicle.
     pub manufacturer: String,
-    /// Which of theirs.
+    /// Serial number of the vehicle.
     pub serial_number: String,
 }
 
 impl Header {
-    /// That of a message of ours.
+    /// The header of a message of ours.
     pub fn new(key: &Key, version: Version, header_id: u64, timestamp: String) -> Self {
         let Key { manufacturer, serial_number } = key.clone();
         Self { header_id, timestamp, version: version.text().into(), manufacturer, serial_number }
     }
 
-    /// The edition, if the message is about the vehicle of its topic and of the major version of its topic.
+    /// The edition, if the message is about the vehicle of its topic and has the major version of its topic.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The field that does not fit.
     pub fn check(&self, key: &Key, is_third: bool) -> Result<Version, Refusal> {
         for (field, said, topic) in [
             ("manufacturer", &self.manufacturer, &key.manufacturer),

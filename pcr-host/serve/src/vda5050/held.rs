@@ -5,44 +5,44 @@ use super::order::{Edge, Node, Order};
 use super::version::Error;
 use serde::{Deserialize, Serialize};
 
-/// Nodes of one order that are kept at most.
+/// Largest number of nodes of an order.
 const MOST: usize = 10_000;
 
 /// An order with all of its updates so far.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Held {
-    /// Which.
+    /// Order id.
     pub order_id: String,
-    /// The update that was taken last.
+    /// Order update id of the last update that was taken.
     pub update_id: u64,
-    /// From where it is kept on, in the order of travel.
+    /// Nodes that are kept, in the order of travel.
     pub nodes: Vec<Node>,
-    /// One less.
+    /// Edges: one less than nodes.
     pub edges: Vec<Edge>,
-    /// Place of the last node of the base.
+    /// Index of the last node of the base.
     pub base: usize,
 }
 
-/// What has come of an update.
+/// The result of an update.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taken {
-    /// It was there already.
+    /// The update was known already.
     Repeated,
-    /// The nodes after this place are new.
+    /// The nodes after this index are new.
     After(usize),
 }
 
 /// Why an order or an update is not taken.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rejected {
-    /// As the standard calls it.
+    /// Error type of the standard.
     pub error: Error,
     /// What is wrong.
     pub refusal: Refusal,
 }
 
 impl Rejected {
-    /// For this reason.
+    /// A rejection with this error type and reason.
     pub fn new(error: Error, field: &str, why: impl std::fmt::Display) -> Self {
         Self { error, refusal: Refusal::new(field, why) }
     }
@@ -66,10 +66,10 @@ impl Held {
         Ok(Self { order_id, update_id, nodes, edges, base })
     }
 
-    /// An update of this order: it goes on at the last node of the base, all after that is replaced.
+    /// Applies an update, which has to go on at the last node of the base; it replaces the horizon.
     ///
     /// # Errors
-    /// [`Rejected`] where it does not; nothing has changed then.
+    /// [`Rejected`] if it does not go on there; nothing has changed then.
     pub fn update(&mut self, mut order: Order) -> Result<Taken, Rejected> {
         order.check()?;
         if order.order_update_id < self.update_id {
@@ -100,7 +100,7 @@ impl Held {
         Ok(Taken::After(after))
     }
 
-    /// Drops nodes that are passed: the first that is kept is at this place, at most the end of the base.
+    /// Drops passed nodes up to this index, but not the end of the base.
     pub fn forget(&mut self, place: usize) {
         let place = place.min(self.base);
         self.nodes.drain(..place);
@@ -108,7 +108,7 @@ impl Held {
         self.base -= place;
     }
 
-    /// Place of a node.
+    /// Index of the node with this sequence number.
     pub fn place_of(&self, sequence_id: u64) -> Option<usize> {
         self.nodes.binary_search_by_key(&sequence_id, |node| node.sequence_id).ok()
     }

@@ -34,18 +34,18 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What is known of a vehicle before it says anything.
+/// The configuration of a vehicle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
-    /// Which.
+    /// Manufacturer and serial number.
     pub key: Key,
-    /// Its margin has to cover how far it may be off its path, and how far it may be from where it says.
+    /// Its abilities. The margin has to cover how far it may be off its path, and the error of its reported position.
     pub abilities: Abilities,
-    /// Whether it can be sent to places in the middle of straight edges, so that it need not wait at nodes.
+    /// Whether it can stop in the middle of straight edges, and not at nodes only.
     pub split: bool,
 }
 
-/// To whom a message goes.
+/// The receiver of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum To {
     /// The vehicle.
@@ -57,15 +57,15 @@ pub enum To {
 /// A message to be sent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Post {
-    /// To whom.
+    /// Receiver.
     pub to: To,
-    /// Whose.
+    /// The vehicle that the message is about.
     pub key: Key,
-    /// Of which edition.
+    /// Edition of the standard.
     pub version: Version,
-    /// What.
+    /// Kind of message.
     pub kind: Kind,
-    /// JSON.
+    /// Content, as JSON.
     pub payload: Vec<u8>,
 }
 
@@ -77,32 +77,33 @@ pub struct Lane {
     version: Option<Version>,
     newest: BTreeMap<Kind, Newest>,
     state: Option<Arc<State>>,
-    /// When that came \[s\].
+    /// Time at which that came \[s\].
     heard_at: f64,
     job: Option<Job>,
-    /// The orders that it had, and the actions by which the manager has cancelled any.
+    /// Orders that it had, and actions by which the manager has cancelled orders.
     orders: Past,
     cancels: Past,
-    /// What the manager is told is wrong with its orders, until one is taken.
+    /// Errors of the manager's orders, reported in states until an order is taken.
     errors: Vec<StateError>,
-    /// Messages in a row after which it does not have the order that it had, or is not where it was, and when the first one came.
+    /// Number of successive states in which the vehicle does not have its order or is not where it was, and the time of the
+    /// first one.
     astray: Option<(u32, f64)>,
     pauses: Pauses,
     sent: BTreeMap<Kind, u64>,
     posts: Vec<Post>,
-    /// What the manager was told of what is ahead.
+    /// The nodes and edges ahead, as they were last sent to the manager.
     ahead: Option<mirror::Ahead>,
-    /// Why its disc is not that of the vehicle, by the vehicle's own words.
+    /// Why the vehicle does not fit into its configured disc, according to its own data.
     misfit: Option<String>,
-    /// Why it does not stand where it says: that is another map than that of the others.
+    /// Why its position is ignored: it is on another map than the other vehicles.
     elsewhere: Option<String>,
 }
 
 impl Lane {
-    /// Of a vehicle, with what the supervisor remembers of it.
+    /// The lane of a vehicle, with the notes that the supervisor has stored about it.
     ///
     /// # Errors
-    /// [`Damaged`] where that cannot be read.
+    /// [`Damaged`] if a note cannot be read.
     pub fn new(profile: Profile, supervisor: &Supervisor) -> Result<Self, Damaged> {
         let name = profile.key.to_string();
         let robot = supervisor.robot(&name).ok();
@@ -134,32 +135,32 @@ impl Lane {
         })
     }
 
-    /// What the supervisor calls it.
+    /// Name of the vehicle in the supervisor.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What is known of it before it says anything.
+    /// Its configuration.
     pub fn profile(&self) -> &Profile {
         &self.profile
     }
 
-    /// The order that it has, or had last.
+    /// Its present or last order.
     pub fn job(&self) -> Option<&Job> {
         self.job.as_ref()
     }
 
-    /// What it has said last.
+    /// Its last state.
     pub fn state_of(&self) -> Option<&State> {
         self.state.as_deref()
     }
 
-    /// Why its disc is not that of the vehicle, by what the vehicle says of itself.
+    /// Why the vehicle does not fit into its configured disc, according to its own data.
     pub fn misfit(&self) -> Option<&str> {
         self.misfit.as_deref()
     }
 
-    /// The messages to be sent.
+    /// Takes the messages to be sent.
     pub fn posts(&mut self) -> Vec<Post> {
         std::mem::take(&mut self.posts)
     }
@@ -172,29 +173,30 @@ impl Lane {
     }
 
     fn post(&mut self, to: To, kind: Kind, version: Version, message: &impl Serialize) {
-        /// Most messages are no longer \[bytes\].
+        /// Usual largest size of a message \[bytes\].
         const USUAL: usize = 8192;
         let mut payload = Vec::with_capacity(USUAL);
-        // Maps of texts and finite numbers: there is no message that cannot be written.
+        // Messages of texts and finite numbers can always be written.
         if serde_json::to_writer(&mut payload, message).is_err() {
             payload.clear();
         }
         self.posts.push(Post { to, key: self.profile.key.clone(), version, kind, payload });
     }
 
-    /// Remembers what it has to.
+    /// Stores a note about the vehicle in the supervisor.
     fn note(&self, supervisor: &mut Supervisor, key: &str, note: Value) {
-        // A robot that is not there needs no memory; a broken journal tells no more holds either.
+        // Errors can be ignored: a removed robot needs no note, and after a failed write of the journal no holds are told
+        // either.
         let _ = supervisor.note(&self.name, key, note);
     }
 
-    /// Adds to a list that it has to remember.
+    /// Appends to a note that is a list.
     fn note_more(&self, supervisor: &mut Supervisor, key: &str, more: Vec<Value>) {
-        // As above.
+        // Errors can be ignored, as above.
         let _ = supervisor.note_more(&self.name, key, more);
     }
 
-    /// Remembers a name that was used.
+    /// Stores an id that was used.
     fn note_past(&self, supervisor: &mut Supervisor, key: &str, noted: Noted) {
         match noted {
             Noted::More(more) => self.note_more(supervisor, key, more),
@@ -202,7 +204,7 @@ impl Lane {
         }
     }
 
-    /// Remembers for a robot that was added anew what outlives its order: its notes went with the one before.
+    /// Stores again the notes that outlive an order, for a robot that was removed and added: removal deletes its notes.
     fn note_anew(&self, supervisor: &mut Supervisor) {
         for past in [&self.orders, &self.cancels] {
             self.note(supervisor, past.key, past.all());

@@ -8,63 +8,63 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 message! {
-    /// Whether a vehicle is connected to its broker.
+    /// A connection message: whether a vehicle is connected to its broker.
     Connection {
-        /// `ONLINE`, `OFFLINE`, `CONNECTIONBROKEN` (3.0: `CONNECTION_BROKEN`, `HIBERNATING`).
+        /// Connection state: `ONLINE`, `OFFLINE`, `CONNECTIONBROKEN` (3.0: `CONNECTION_BROKEN`, `HIBERNATING`).
         connection_state: String,
     }
 }
 
 message! {
-    /// Where a vehicle is, often.
+    /// A visualization message: frequent positions of a vehicle.
     Visualization {
-        /// 2.x
+        /// Position, in 2.x.
         #[serde(skip_serializing_if = "Option::is_none")]
         agv_position: Option<Pose>,
-        /// 3.0
+        /// Position, in 3.0.
         #[serde(skip_serializing_if = "Option::is_none")]
         mobile_robot_position: Option<Pose>,
-        /// How fast it is.
+        /// Its velocity.
         #[serde(skip_serializing_if = "Option::is_none")]
         velocity: Option<Velocity>,
     }
 }
 
 impl Visualization {
-    /// Where it is.
+    /// Position of the vehicle, in any edition.
     pub fn position(&self) -> Option<&Pose> {
         self.agv_position.as_ref().or(self.mobile_robot_position.as_ref())
     }
 }
 
 message! {
-    /// What a vehicle is to do at once.
+    /// An instant actions message.
     InstantActions {
-        /// What.
+        /// The actions.
         #[serde(skip_serializing_if = "Option::is_none")]
         actions: Option<Vec<Action>>,
-        /// The same, as edition 1 and some clients of 2.0 call it.
+        /// The same list under the name of edition 1, which some clients of 2.0 use.
         #[serde(skip_serializing_if = "Option::is_none")]
         instant_actions: Option<Vec<Action>>,
     }
 }
 
-/// Something to be done.
+/// An action.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", try_from = "Named")]
 pub struct Action {
-    /// What; in schema 2.0 of instant actions `actionName`, in its text `actionType`: one is enough.
+    /// Action type. For instant actions the schema of 2.0 says `actionName`, its text `actionType`; one of them is enough.
     pub action_type: String,
-    /// Which.
+    /// Action id.
     pub action_id: String,
-    /// What else may be done meanwhile: `NONE`, `SOFT`, `HARD`, since 3.0 also `SINGLE`.
+    /// Blocking type: `NONE`, `SOFT`, `HARD`, since 3.0 also `SINGLE`.
     pub blocking_type: String,
-    /// All else.
+    /// All other fields, kept unchanged.
     #[serde(flatten)]
     pub rest: Map<String, Value>,
 }
 
-/// An action as it is read: under one name or both.
+/// An action as it is read: with one of the two names of its type, or both.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Named {
@@ -90,7 +90,7 @@ impl TryFrom<Named> for Action {
 }
 
 impl InstantActions {
-    /// These actions; in 2.0 with all names that its readers ask for.
+    /// A message with these actions; in 2.0 the list is written under both names.
     pub fn new(header: Header, mut actions: Vec<Action>) -> Self {
         let is_first = Version::of(&header.version) == Some(Version::V2_0);
         if is_first {
@@ -102,17 +102,17 @@ impl InstantActions {
         Self { header, actions: Some(actions), instant_actions, rest: Map::new() }
     }
 
-    /// One action, of no parameters.
+    /// A message with one action without parameters.
     pub fn one(header: Header, action_type: &str, action_id: String) -> Self {
         // In 3.0 instant actions block nothing.
         let (action_type, blocking_type) = (action_type.into(), "NONE".into());
         Self::new(header, vec![Action { action_type, action_id, blocking_type, rest: Map::new() }])
     }
 
-    /// What is to be done.
+    /// The actions of the message.
     ///
     /// # Errors
-    /// [`Refusal`] where nothing is said of that.
+    /// [`Refusal`] if there is no list of actions.
     pub fn list(&self) -> Result<&[Action], Refusal> {
         let list = self.actions.as_deref().or(self.instant_actions.as_deref());
         list.ok_or_else(|| Refusal::new("actions", "missing"))
@@ -120,7 +120,7 @@ impl InstantActions {
 }
 
 message! {
-    /// What a vehicle is. Read by `pcr_formats` where its numbers matter.
+    /// A factsheet message, which describes a vehicle. `pcr_formats` reads the numbers that matter.
     Factsheet {
         /// Speeds, accelerations and size.
         physical_parameters: Value,
@@ -128,9 +128,9 @@ message! {
 }
 
 message! {
-    /// What the manager says to what a vehicle has asked for, since 3.0.
+    /// A responses message: answers of the manager to requests of a vehicle, since 3.0.
     Responses {
-        /// One for each request.
+        /// One answer for each request.
         responses: Vec<Response>,
     }
 }
@@ -139,11 +139,11 @@ message! {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Response {
-    /// Which request.
+    /// Request id.
     pub request_id: String,
-    /// `GRANTED`, `QUEUED`, `REVOKED`, `REJECTED`.
+    /// Grant type: `GRANTED`, `QUEUED`, `REVOKED`, `REJECTED`.
     pub grant_type: String,
-    /// All else.
+    /// All other fields, kept unchanged.
     #[serde(flatten)]
     pub rest: Map<String, Value>,
 }
@@ -154,7 +154,7 @@ mod tests {
     use super::super::topics::Key;
     use super::*;
 
-    /// A client of 2.0 that others wrote refused every instant action of ours: it reads them under the other name only.
+    /// A foreign client of 2.0 refused every instant action of ours: it reads them under the other name only.
     #[test]
     fn instant_actions_of_2_0_have_both_names() {
         let header =

@@ -12,57 +12,57 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 use tokio::sync::Notify;
 
-/// Where the broker is.
+/// Address and login of a broker.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Broker {
-    /// Name or address.
+    /// Host name or address.
     pub host: String,
-    /// Usually 1883, with TLS 8883.
+    /// Port: usually 1883, with TLS 8883.
     pub port: u16,
     /// User and password.
     pub login: Option<(String, String)>,
-    /// TLS, with the certificate (PEM) of who has signed the broker's.
+    /// For TLS: a file with the certificate of the authority that signed the broker's certificate (PEM).
     pub authority: Option<PathBuf>,
 }
 
 impl Broker {
-    /// Without TLS and login.
+    /// A broker without TLS and login.
     pub fn new(host: &str, port: u16) -> Self {
         Self { host: host.into(), port, login: None, authority: None }
     }
 }
 
-/// What comes from a broker.
+/// News from a connection.
 #[derive(Clone, Debug, PartialEq)]
 pub enum News {
-    /// It is connected, and subscribed.
+    /// It is connected and subscribed.
     Up,
-    /// It is no longer, or not yet, and why.
+    /// It is not connected, for this reason.
     Down(String),
-    /// A message.
+    /// A message has come.
     Message {
-        /// Of this topic.
+        /// Topic.
         topic: String,
-        /// Bytes.
+        /// Content.
         payload: Vec<u8>,
-        /// The broker had kept it: it was said before we asked for it, at any time.
+        /// Whether it is a retained message, which may be old.
         kept: bool,
     },
 }
 
-/// Packets that are larger are not read at all \[bytes\]: the connection ends, and comes back.
+/// Largest packet \[bytes\]. A larger one ends the connection, which is then opened again.
 const LARGEST: usize = 1 << 20;
 
-/// Messages that wait to be sent.
+/// Largest number of messages that wait to be sent.
 const QUEUE: usize = 4_096;
 
-/// When nothing was sent for so long, the broker is asked whether it is there.
+/// If nothing was sent for this long, the connection is tested.
 const KEEP_ALIVE: Duration = Duration::from_secs(5);
 
-/// Between two attempts to connect.
+/// Time between two attempts to connect.
 const AGAIN: Duration = Duration::from_millis(200);
 
-/// A connection. Dropped, it breaks without a word, as when power is lost: its last will is done.
+/// A connection. If it is dropped, it breaks as if power was lost: the broker sends the last will.
 pub struct Link {
     client: AsyncClient,
     stop: Arc<Notify>,
@@ -77,10 +77,10 @@ impl std::fmt::Debug for Link {
 }
 
 impl Link {
-    /// Connects, again and again, and subscribes to these topics each time. What comes is given to `sink`, by a thread of its own.
+    /// Connects, again after every failure, and subscribes to these topics each time. A thread calls `sink` with the news.
     ///
     /// # Errors
-    /// What is wrong with the settings, or that there is no thread for it.
+    /// An invalid setting, or a thread that cannot be started.
     pub fn open(
         broker: &Broker,
         id: &str,
@@ -98,7 +98,7 @@ impl Link {
         }
         secure(&mut options, broker)?;
         let (client, mut events) = AsyncClient::new(options, QUEUE);
-        // Else a message waits for the acknowledgement of the one before it, 40 ms and more.
+        // Without this, a message waits for the acknowledgement of the one before it, 40 ms and more.
         let mut network = NetworkOptions::new();
         network.set_tcp_nodelay(true);
         events.set_network_options(network);
@@ -117,20 +117,21 @@ impl Link {
         self.up.load(Ordering::Relaxed)
     }
 
-    /// Sends a message, if it is connected and the queue is not full: what is sent later would be old.
+    /// Sends a message, if it is connected and the queue is not full. Otherwise the message is dropped, because it would be old
+    /// later.
     pub fn publish(&self, message: Publish) -> bool {
         self.mouth().publish(message)
     }
 
-    /// What sends messages over it, from wherever it is.
+    /// A sender for other threads.
     pub fn mouth(&self) -> Mouth {
         Mouth { client: self.client.clone(), up: self.up.clone() }
     }
 
-    /// Ends it in order: its last will is not done.
+    /// Ends properly: the broker does not send the last will.
     pub fn close(mut self) {
         let _ = self.client.try_disconnect();
-        // The thread sends it, and ends as the broker closes; not longer than that should take.
+        // The thread ends when the broker closes; this waits no longer than that should take.
         for _ in 0..20 {
             std::thread::sleep(Duration::from_millis(10));
             if !self.is_up() {
@@ -148,7 +149,7 @@ impl Link {
     }
 }
 
-/// What sends messages over a link.
+/// Sends messages over a link.
 #[derive(Clone, Debug)]
 pub struct Mouth {
     client: AsyncClient,
@@ -169,21 +170,21 @@ impl Drop for Link {
     }
 }
 
-/// What the thread of a link does.
+/// The state of the thread of a link.
 struct Work<F> {
     client: AsyncClient,
     filters: Vec<String>,
     sink: F,
     up: Arc<AtomicBool>,
-    /// It is connected, and has still to subscribe.
+    /// Whether it is connected, but not subscribed yet.
     asks: bool,
-    /// Why it is not connected, as was said last.
+    /// The last reported reason why it is not connected.
     why: String,
 }
 
 impl<F: Fn(News)> Work<F> {
-    /// Until it is stopped. Whatever is under way is finished before, however long it takes: a connection that is given up
-    /// after a while, and begun anew, is never there where the broker takes longer than that while to answer.
+    /// Runs until it is stopped. An attempt to connect is never given up after a time: a broker that takes longer than that
+    /// would never be reached.
     async fn go_on(mut self, mut events: EventLoop, stop: &Notify) {
         loop {
             let event = tokio::select! {
@@ -197,7 +198,7 @@ impl<F: Fn(News)> Work<F> {
                 Err(error) => {
                     self.asks = false;
                     self.is_down(error.to_string());
-                    // What has not been sent would be old when it can be, and somebody else may supervise by then.
+                    // Unsent messages would be old when they can be sent, and another supervisor may be active by then.
                     events.clean();
                     events.pending.clear();
                     tokio::select! {
@@ -207,7 +208,7 @@ impl<F: Fn(News)> Work<F> {
                     }
                 }
             }
-            // As long as the queue is full it is sent, with an event each time.
+            // Retried with each event as long as the queue is full.
             let wanted = || self.filters.iter().map(|filter| SubscribeFilter::new(filter.clone(), QoS::AtLeastOnce));
             if self.asks && self.client.try_subscribe_many(wanted()).is_ok() {
                 self.asks = false;
@@ -240,7 +241,7 @@ impl<F: Fn(News)> Work<F> {
         (self.sink)(News::Up);
     }
 
-    /// Said when it is news: it is tried again and again.
+    /// Reports a reason if it is new, because attempts are repeated.
     fn is_down(&mut self, why: String) {
         if self.up.swap(false, Ordering::Relaxed) || why != self.why {
             self.why.clone_from(&why);

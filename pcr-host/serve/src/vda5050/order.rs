@@ -9,39 +9,39 @@ use serde_json::{Map, Value};
 message! {
     /// An order, or an update of one.
     Order {
-        /// Which.
+        /// Order id.
         order_id: String,
-        /// Which update of it, from 0.
+        /// Order update id, from 0.
         order_update_id: u64,
-        /// In the order of travel once [`Order::check`] has looked at it.
+        /// The nodes, in the order of travel after [`Order::check`].
         nodes: Vec<Node>,
-        /// One less than nodes.
+        /// The edges: one less than nodes.
         edges: Vec<Edge>,
     }
 }
 
-/// A place to be passed.
+/// A node of an order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Node {
-    /// Name.
+    /// Node id.
     pub node_id: String,
-    /// Even; edges have the odd numbers in between.
+    /// Sequence number; even, because edges have the odd numbers in between.
     pub sequence_id: u64,
-    /// Part of the base.
+    /// Whether it belongs to the base.
     pub released: bool,
-    /// Where it is.
+    /// Position of the node.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node_position: Option<NodePosition>,
-    /// What is to be done there.
+    /// Actions at the node.
     #[serde(default)]
     pub actions: Vec<Action>,
-    /// All else.
+    /// All other fields of the message, kept unchanged.
     #[serde(flatten)]
     pub rest: Map<String, Value>,
 }
 
-/// Where a node is.
+/// Position of a node.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct NodePosition {
@@ -49,64 +49,64 @@ pub struct NodePosition {
     pub x: f64,
     /// \[m\]
     pub y: f64,
-    /// On which map.
+    /// Map id.
     pub map_id: String,
-    /// All else.
+    /// All other fields, kept unchanged.
     #[serde(flatten)]
     pub rest: Map<String, Value>,
 }
 
-/// The names that editions give to how far off a vehicle may pass a node.
+/// Field names of the allowed deviation at a node, in different editions.
 pub const DEVIATIONS: [&str; 2] = ["allowedDeviationXY", "allowedDeviationXy"];
 
 impl NodePosition {
-    /// How far off a vehicle may pass it \[m\], if that is said.
+    /// Allowed deviation of the vehicle at the node \[m\], if it is given.
     ///
     /// # Errors
-    /// What is no such value.
+    /// A value that is not such a deviation.
     pub fn deviation(&self) -> Result<Option<f64>, Refusal> {
         let Some((name, value)) = DEVIATIONS.iter().find_map(|name| self.rest.get_key_value(*name)) else {
             return Ok(None);
         };
         let number = |value: &Value| value.as_f64().filter(|number| *number >= 0.0);
-        // Since 3.0 it is an ellipse.
+        // Since 3.0 the deviation is an ellipse.
         let axes = || Some(number(value.get("a")?)?.max(number(value.get("b")?)?));
         number(value).or_else(axes).map(Some).ok_or_else(|| Refusal::new(name, "no distance from 0"))
     }
 }
 
-/// A way from node to node.
+/// An edge of an order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Edge {
-    /// Name.
+    /// Edge id.
     pub edge_id: String,
-    /// Odd.
+    /// Sequence number; odd.
     pub sequence_id: u64,
-    /// Part of the base.
+    /// Whether it belongs to the base.
     pub released: bool,
-    /// Where it begins; not in 3.0.
+    /// Id of the node where it begins; absent in 3.0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start_node_id: Option<String>,
-    /// Where it ends; not in 3.0.
+    /// Id of the node where it ends; absent in 3.0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub end_node_id: Option<String>,
-    /// What is to be done on it.
+    /// Actions on the edge.
     #[serde(default)]
     pub actions: Vec<Action>,
-    /// The curve, where it is not straight.
+    /// Trajectory, if the edge is not straight.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trajectory: Option<Value>,
-    /// All else.
+    /// All other fields, kept unchanged.
     #[serde(flatten)]
     pub rest: Map<String, Value>,
 }
 
 impl Order {
-    /// Brings nodes and edges into the order of travel, and checks that they are one way whose beginning is released.
+    /// Sorts nodes and edges into the order of travel, and checks that they form one way whose first part is released.
     ///
     /// # Errors
-    /// [`Refusal`] with the field.
+    /// [`Refusal`] with the name of the field.
     pub fn check(&mut self) -> Result<(), Refusal> {
         let Self { nodes, edges, .. } = self;
         nodes.sort_by_key(|node| node.sequence_id);
@@ -148,7 +148,7 @@ impl Order {
         Ok(())
     }
 
-    /// Place of the last node of the base.
+    /// Index of the last node of the base.
     pub fn base(&self) -> usize {
         self.nodes.iter().take_while(|node| node.released).count().saturating_sub(1)
     }

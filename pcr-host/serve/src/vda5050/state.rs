@@ -10,47 +10,48 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 message! {
-    /// What a vehicle says of itself.
+    /// A state message of a vehicle.
     State {
-        /// The order that it has, or had last.
+        /// Order id of its present or last order.
         order_id: String,
-        /// Which update of it.
+        /// Order update id.
         order_update_id: u64,
-        /// The node that it has reached last.
+        /// Node id of the node that it reached last.
         last_node_id: String,
-        /// Which of that name.
+        /// Sequence number of that node.
         last_node_sequence_id: u64,
-        /// Nodes that it has still to pass.
+        /// Nodes that are still to be passed.
         node_states: Listed<NodeState>,
-        /// Edges that it has still to travel.
+        /// Edges that are still to be travelled.
         edge_states: Listed<EdgeState>,
-        /// Whether it moves.
+        /// Whether it drives.
         driving: bool,
-        /// Whether it asks for more base.
+        /// Whether it requests more base.
         #[serde(skip_serializing_if = "Option::is_none")]
         new_base_request: Option<bool>,
-        /// 2.x
+        /// Position, in 2.x.
         #[serde(skip_serializing_if = "Option::is_none")]
         agv_position: Option<Pose>,
-        /// 3.0
+        /// Position, in 3.0.
         #[serde(skip_serializing_if = "Option::is_none")]
         mobile_robot_position: Option<Pose>,
-        /// How fast it is.
+        /// Its velocity.
         #[serde(skip_serializing_if = "Option::is_none")]
         velocity: Option<Velocity>,
-        /// What it does.
+        /// States of its actions.
         action_states: Vec<ActionState>,
-        /// What it does at once, since 3.0.
+        /// States of its instant actions, since 3.0.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         instant_action_states: Option<Vec<ActionState>>,
-        /// Who drives it.
+        /// Operating mode.
         operating_mode: String,
-        /// What is wrong with it.
+        /// Errors that it reports.
         errors: Vec<StateError>,
     }
 }
 
-/// A list of which a few fields are read, and all is kept as it was written: it is long, and most of it is passed on or left out.
+/// A list of which a few fields are read. The text is kept as it was written: it is long, and most of it is passed on or
+/// dropped.
 #[derive(Clone, Debug)]
 pub struct Listed<T> {
     text: Arc<RawValue>,
@@ -58,9 +59,9 @@ pub struct Listed<T> {
 }
 
 impl<T> Listed<T> {
-    /// One to be written; nothing of it counts.
+    /// A list to be written; its items are not read.
     pub fn written(all: &[impl Serialize]) -> Self {
-        // Lists of numbers and texts: there is none that cannot be written.
+        // Lists of numbers and texts can always be written.
         Self { text: to_raw_value(all).unwrap_or_default().into(), items: Vec::new() }
     }
 }
@@ -89,38 +90,38 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for Listed<T> {
     fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<Self, D::Error> {
         let text = Box::<RawValue>::deserialize(reader)?;
         let items = serde_json::from_str(text.get()).or_else(|_| {
-            // Where it is wrong.
+            // Deserialized again, to find the field that is wrong.
             serde_path_to_error::deserialize(&mut serde_json::Deserializer::from_str(text.get()))
         });
         Ok(Self { items: items.map_err(Error::custom)?, text: text.into() })
     }
 }
 
-/// What counts of a node still to be passed.
+/// The fields that are read of a node still to be passed.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct NodeState {
-    /// It has a name.
+    /// Node id, only checked to be a text.
     node_id: Text,
-    /// Which of that name.
+    /// Sequence number of the node.
     pub sequence_id: u64,
-    /// Part of the base.
+    /// Whether it belongs to the base.
     pub released: bool,
 }
 
-/// What counts of an edge still to be travelled.
+/// The fields that are read of an edge still to be travelled.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct EdgeState {
-    /// It has a name.
+    /// Edge id, only checked to be a text.
     edge_id: Text,
-    /// Which of that name.
+    /// Sequence number of the edge.
     pub sequence_id: u64,
-    /// Part of the base.
+    /// Whether it belongs to the base.
     pub released: bool,
 }
 
-/// A text that is not kept.
+/// A text that is not stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Text;
 
@@ -142,7 +143,7 @@ impl<'de> Deserialize<'de> for Text {
     }
 }
 
-/// Where a vehicle is.
+/// Position of a vehicle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Pose {
@@ -152,27 +153,27 @@ pub struct Pose {
     pub y: f64,
     /// \[rad\]
     pub theta: f64,
-    /// On which map.
+    /// Map id.
     pub map_id: String,
-    /// Whether it knows, 2.x.
+    /// Whether the vehicle is localized, in 2.x.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub position_initialized: Option<bool>,
-    /// Whether it knows, 3.0.
+    /// Whether the vehicle is localized, in 3.0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub localized: Option<bool>,
-    /// How far off it may be \[m\].
+    /// Largest deviation of the position \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deviation_range: Option<f64>,
-    /// How sure it is, 0 to 1.
+    /// Quality of the localization, 0 to 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub localization_score: Option<f64>,
-    /// All else.
+    /// All other fields, kept unchanged.
     #[serde(flatten)]
     pub rest: Map<String, Value>,
 }
 
 impl Pose {
-    /// Whether the vehicle says that it knows where it is.
+    /// Whether the vehicle says that it is localized.
     pub fn is_known(&self) -> bool {
         self.position_initialized.or(self.localized).unwrap_or(false)
             && self.localization_score.is_none_or(|it| it > 0.0)
@@ -180,10 +181,10 @@ impl Pose {
     }
 }
 
-/// How fast a vehicle is, in its own directions.
+/// Velocity of a vehicle in its own coordinates.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Velocity {
-    /// Ahead \[m/s\].
+    /// Forward \[m/s\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vx: Option<f64>,
     /// To the left \[m/s\].
@@ -194,58 +195,58 @@ pub struct Velocity {
     pub omega: Option<f64>,
 }
 
-/// How far an action is.
+/// State of an action.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct ActionState {
-    /// Which.
+    /// Action id.
     pub action_id: String,
     /// `WAITING`, `INITIALIZING`, `RUNNING`, `PAUSED`, `FINISHED`, `FAILED`, `RETRIABLE`.
     pub action_status: String,
-    /// All else.
+    /// All other fields, kept unchanged.
     #[serde(flatten)]
     pub rest: Map<String, Value>,
 }
 
-/// Something that is wrong.
+/// An error that a vehicle reports.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct StateError {
-    /// What.
+    /// Error type.
     pub error_type: String,
-    /// How bad.
+    /// Error level.
     pub error_level: String,
-    /// All else.
+    /// All other fields, kept unchanged.
     #[serde(flatten)]
     pub rest: Map<String, Value>,
 }
 
 impl State {
-    /// Where it is.
+    /// Position of the vehicle, in any edition.
     pub fn position(&self) -> Option<&Pose> {
         self.agv_position.as_ref().or(self.mobile_robot_position.as_ref())
     }
 
-    /// Number of the last node of the base that it has.
+    /// Sequence number of the last node of its base.
     pub fn base(&self) -> u64 {
         let released = self.node_states.iter().filter(|node| node.released).map(|node| node.sequence_id);
         released.max().unwrap_or(self.last_node_sequence_id)
     }
 
-    /// How far an action is, instant or not.
+    /// Status of an action, instant or not.
     pub fn action(&self, action_id: &str) -> Option<&str> {
         let mut all = self.action_states.iter().chain(self.instant_action_states.iter().flatten());
         all.find(|state| state.action_id == action_id).map(|state| state.action_status.as_str())
     }
 
-    /// Whether it says anything of an action: how far that is, or what is wrong with it.
+    /// Whether the state mentions an action, in its action states or its errors.
     pub fn names(&self, action_id: &str) -> bool {
         let mut references =
             self.errors.iter().filter_map(|error| error.rest.get("errorReferences")?.as_array()).flatten();
         self.action(action_id).is_some() || references.any(|reference| reference["referenceValue"] == action_id)
     }
 
-    /// Whether it has nothing more to do of its order.
+    /// Whether the vehicle has completed its order.
     pub fn is_idle(&self) -> bool {
         let is_done = |state: &ActionState| matches!(state.action_status.as_str(), "FINISHED" | "FAILED");
         self.node_states.is_empty() && !self.driving && self.action_states.iter().all(is_done)
@@ -253,7 +254,7 @@ impl State {
 }
 
 impl StateError {
-    /// A warning about one thing.
+    /// A warning with references.
     pub fn warning(kind: &str, why: String, references: &[(&str, &str)]) -> Self {
         let references: Vec<Value> = references
             .iter()

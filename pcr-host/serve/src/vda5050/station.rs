@@ -22,38 +22,38 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How long it is waited for the last will of one that may be gone: a little more than the broker does.
+/// Time to wait for the last will of a bridge that may be gone: a little longer than the broker waits.
 const PATIENCE: Duration = Duration::from_secs(9);
 
-/// How long it is waited for somebody who insists.
+/// Time to wait for objections of another bridge.
 const OBJECTIONS: Duration = Duration::from_secs(1);
 
-/// So many messages are answered together at most.
+/// Largest number of messages that are handled together.
 const MOST: usize = 1_000;
 
-/// Nothing happens for so long at most without a look at what waits.
+/// Longest time between two looks at waiting messages.
 const TICK: Duration = Duration::from_millis(100);
 
-/// Who supervises.
+/// The claim to be the active bridge.
 #[derive(Clone, Debug, PartialEq)]
 enum Claim {
     /// Not known yet; since when.
     Asking(Instant),
-    /// That of another one, of this session, which may be gone; since when.
+    /// Another bridge, of this session, has a claim but may be gone; since when.
     Theirs(Instant, String),
-    /// Ours was sent.
+    /// Our claim was sent.
     Sent,
-    /// Ours has come back from the broker; since when nobody has insisted.
+    /// The broker has returned our claim; since when no other bridge has objected.
     Seen(Instant),
-    /// Ours.
+    /// This bridge is active.
     Ours,
 }
 
-/// A message.
+/// A message from the broker.
 struct Heard {
     topic: String,
     payload: Vec<u8>,
-    /// Whether the broker had kept it.
+    /// Whether it is a retained message.
     kept: bool,
 }
 
@@ -67,20 +67,20 @@ pub struct Station {
     claim: Claim,
     begin: Instant,
     key: Key,
-    /// The vehicles are to be asked how things are.
+    /// Whether the vehicles have to be asked for their states and factsheets.
     greets: bool,
     log: Vec<String>,
 }
 
-/// Why a station stops.
+/// The reason why a station stops.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stopped(pub String);
 
 impl Station {
-    /// Connects to a broker; the session is a text that no other supervisor has.
+    /// Connects to a broker; `session` is a text that no other supervisor uses.
     ///
     /// # Errors
-    /// What is wrong with the settings.
+    /// The invalid setting.
     pub fn open(broker: &Broker, vehicles: &Interface, bridge: &Bridge, session: &str) -> Result<Self, String> {
         let key = Key::new("pcr", "supervisor")?;
         let topic = vehicles.topic(Version::V2_1, &key, Kind::Connection);
@@ -89,7 +89,7 @@ impl Station {
         let will = claim(&key, &topic, session, Version::V2_1.broken(), false);
         let (sender, news) = channel();
         let link = Link::open(broker, &format!("pcr-supervisor-{session}"), Some(will), filters, move |it| {
-            // A station that is gone needs no news.
+            // A station that has been dropped needs no news.
             let _ = sender.send(it);
         })?;
         let now = Instant::now();
@@ -102,34 +102,34 @@ impl Station {
         self.begin.elapsed().as_secs_f64()
     }
 
-    /// Whether it supervises.
+    /// Whether this bridge is active.
     pub fn is_ours(&self) -> bool {
         self.claim == Claim::Ours
     }
 
-    /// Waits for messages, and answers them. Returns what the supervisor says.
+    /// Waits for messages and handles them. Returns the events of the supervisor.
     ///
     /// # Errors
-    /// [`Stopped`]: another one supervises, or the journal is broken.
+    /// [`Stopped`]: another bridge is active, or the journal is broken.
     pub fn turn(&mut self, supervisor: &mut Supervisor, bridge: &mut Bridge) -> Result<Vec<Event>, Stopped> {
         let messages = self.messages()?;
         let (now, works) = (self.now(), self.works());
         let greets = std::mem::take(&mut self.greets);
         let out = answered(supervisor, bridge, &messages, [greets, works], &[], now);
         let events = supervisor.settle(now).map_err(|fault: Fault| Stopped(fault.to_string()))?;
-        // What lanes have to remember is in the journal before anybody is told.
+        // The notes of lanes are in the journal before messages are sent.
         for message in out {
-            // What is not sent now is sent again.
+            // An unsent message is sent again later.
             let _ = self.link.publish(message);
         }
         bridge.told(&events);
-        // Where nobody reads it.
+        // Here the log is not read.
         self.log.clear();
         Ok(events)
     }
 
-    /// The same for a supervisor that another thread owns, which tells its events here. Returns what somebody should look at: why messages
-    /// were refused, who is missing, why there is no broker.
+    /// The same for a supervisor that another thread owns, and whose events come by a queue. Returns messages for the log:
+    /// refused messages, missing vehicles, problems with the broker.
     ///
     /// # Errors
     /// [`Stopped`].
@@ -145,7 +145,7 @@ impl Station {
         let mouth = self.link.mouth();
         let answer = move |supervisor: &mut Supervisor, _: &Board, now: f64| {
             let out = answered(supervisor, &mut locked(&own), &messages, flags, &told, now);
-            // What is not sent then is sent again.
+            // An unsent message is sent again later.
             let send = move || out.into_iter().for_each(|message| _ = mouth.publish(message));
             ((), Some(Box::new(send) as Then))
         };
@@ -155,12 +155,13 @@ impl Station {
         Ok(log)
     }
 
-    /// Whether vehicles may be told something now.
+    /// Whether messages may be sent to vehicles now.
     fn works(&self) -> bool {
         self.is_ours() && self.link.is_up()
     }
 
-    /// What has come; waits for a little while if nothing has. While it is answered more comes, which is answered together then.
+    /// Messages that have come; waits a little if there are none. Messages that come while these are handled form the next
+    /// group.
     fn messages(&mut self) -> Result<Vec<Heard>, Stopped> {
         let (mut messages, mut patience) = (Vec::new(), TICK);
         while messages.len() < MOST {
@@ -178,7 +179,7 @@ impl Station {
         Ok(messages)
     }
 
-    /// Somebody supervises, or does no longer.
+    /// Handles the claim of a bridge, or its end.
     fn heard(&mut self, payload: &[u8]) -> Result<(), Stopped> {
         let said: Value = serde_json::from_slice(payload).unwrap_or_default();
         let text = |field: &str| said.get(field).and_then(Value::as_str).unwrap_or_default();
@@ -186,19 +187,19 @@ impl Station {
         let insists = said.get("insists") == Some(&Value::Bool(true));
         match (&self.claim, text("session") == self.session) {
             (Claim::Sent, true) if is_online => self.claim = Claim::Seen(Instant::now()),
-            // It may be gone: the broker will say so.
+            // That bridge may be gone: the broker will tell.
             (Claim::Asking(_), false) if is_online => {
                 self.claim = Claim::Theirs(Instant::now(), text("session").into())
             }
             (Claim::Theirs(..), _) if !is_online => self.claim = Claim::Asking(Instant::now()),
-            // Before ours; one that comes after ours sees that.
+            // It claimed before us; a bridge that claims after us sees our claim.
             (Claim::Sent, false) if is_online => {
                 return Err(Stopped(format!("another supervisor, {}, was first", text("session"))));
             }
             (Claim::Seen(_), false) if is_online && insists => {
                 return Err(Stopped(format!("another supervisor, {}, is at work", text("session"))));
             }
-            // Two that were both sure that it is theirs: one of them ends.
+            // Both bridges believed to be active: the one with the larger session ends.
             (Claim::Ours, false) if is_online && insists && text("session") < self.session.as_str() => {
                 return Err(Stopped(format!("another supervisor, {}, is at work", text("session"))));
             }
@@ -211,9 +212,9 @@ impl Station {
         Ok(())
     }
 
-    /// Says that it supervises, if nobody else does.
+    /// Sends our claim, if there is no other one.
     fn ask(&mut self) -> Result<(), Stopped> {
-        /// Retained messages come at once after subscribing.
+        /// Retained messages come immediately after subscribing.
         const RETAINED: Duration = Duration::from_millis(200);
         if let Claim::Theirs(since, session) = &self.claim
             && since.elapsed() > PATIENCE
@@ -236,7 +237,7 @@ impl Station {
         Ok(())
     }
 
-    /// Ends in order: another one may supervise at once.
+    /// Ends properly: another bridge may become active at once.
     pub fn close(self) {
         if self.is_ours() {
             let _ = self.link.publish(claim(&self.key, &self.topic, &self.session, "OFFLINE", false));
@@ -254,7 +255,8 @@ fn claim(key: &Key, topic: &str, session: &str, state: &str, insists: bool) -> P
     Publish { topic: topic.into(), payload, assured: true, retain: true }
 }
 
-/// What is to be sent, once all of it is in the journal: for these messages, and for what the supervisor has told since.
+/// Takes the messages to be sent once all of it is in the journal: those that follow from these messages and from the events
+/// since.
 fn answered(
     supervisor: &mut Supervisor,
     bridge: &mut Bridge,
@@ -281,7 +283,7 @@ fn answered(
     bridge.out()
 }
 
-/// The bridge; a thread that has panicked has left it as it was between two messages at worst.
+/// Locks the bridge. A thread that panicked leaves it at worst between two messages.
 fn locked(bridge: &Mutex<Bridge>) -> MutexGuard<'_, Bridge> {
     bridge.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -11,7 +11,7 @@ use tokio_rustls::rustls::{ClientConfig, RootCertStore};
 /// To brokers whose certificate is signed by one of those in a file (PEM), and by nobody else.
 ///
 /// # Errors
-/// What is wrong with the file.
+/// The problem with the file.
 pub(super) fn transport(authority: &Path) -> Result<Transport, String> {
     let wrong = |why: &dyn std::fmt::Display| format!("{}: {why}", authority.display());
     let bytes = std::fs::read(authority).map_err(|error| wrong(&error))?;

@@ -4,21 +4,21 @@ use super::version::Version;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Which vehicle.
+/// A vehicle, by manufacturer and serial number.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub struct Key {
-    /// Who has made it.
+    /// Manufacturer.
     pub manufacturer: String,
-    /// Which of theirs.
+    /// Serial number.
     pub serial_number: String,
 }
 
 impl Key {
-    /// One that topics can name.
+    /// A key whose parts can be levels of topics.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The part that cannot be a level of a topic, and why.
     pub fn new(manufacturer: &str, serial_number: &str) -> Result<Self, String> {
         for (field, part) in [("manufacturer", manufacturer), ("serialNumber", serial_number)] {
             level(part).map_err(|why| format!("{field} {part:?}: {why}"))?;
@@ -33,7 +33,7 @@ impl fmt::Display for Key {
     }
 }
 
-/// A level of a topic.
+/// Checks a level of a topic.
 fn level(text: &str) -> Result<(), &'static str> {
     match text {
         "" => Err("empty"),
@@ -44,20 +44,20 @@ fn level(text: &str) -> Result<(), &'static str> {
     }
 }
 
-/// What is in a message.
+/// Kinds of messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
     /// To a vehicle.
     Order,
     /// To a vehicle.
     InstantActions,
-    /// Of a vehicle.
+    /// From a vehicle.
     State,
-    /// Of a vehicle.
+    /// From a vehicle.
     Visualization,
-    /// Of a vehicle.
+    /// From a vehicle.
     Connection,
-    /// Of a vehicle.
+    /// From a vehicle.
     Factsheet,
     /// To a vehicle, since 3.0.
     Responses,
@@ -66,7 +66,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 8] = [
         Self::Order,
         Self::InstantActions,
@@ -78,13 +78,13 @@ impl Kind {
         Self::ZoneSet,
     ];
 
-    /// What vehicles publish.
+    /// Kinds of messages from vehicles.
     pub const OF_VEHICLES: [Self; 4] = [Self::State, Self::Visualization, Self::Connection, Self::Factsheet];
 
-    /// What vehicles read.
+    /// Kinds of messages to vehicles.
     pub const TO_VEHICLES: [Self; 4] = [Self::Order, Self::InstantActions, Self::Responses, Self::ZoneSet];
 
-    /// As topics write it.
+    /// Its name in topics.
     pub fn text(self) -> &'static str {
         match self {
             Self::Order => "order",
@@ -98,34 +98,34 @@ impl Kind {
         }
     }
 
-    /// At least once, for what must not be lost; else best effort, as the standard says.
+    /// Whether it is sent with quality of service 1, as the standard says for messages that must not be lost; otherwise 0.
     pub fn is_assured(self) -> bool {
         self == Self::Connection
     }
 
-    /// Whether one that was said at any time before is read: what a vehicle is, and what holds until it is taken back. A state or an order that
-    /// somebody let the broker keep is that of another time.
+    /// Whether a retained message of this kind is read. Factsheets and connection states hold until they are replaced; a
+    /// retained state or order may be old.
     pub fn is_lasting(self) -> bool {
         matches!(self, Self::Connection | Self::Factsheet | Self::ZoneSet)
     }
 
-    /// Whether the broker keeps the last one.
+    /// Whether the broker keeps the last message of this kind.
     pub fn is_retained(self) -> bool {
         matches!(self, Self::Connection | Self::Factsheet)
     }
 }
 
-/// The topics of one interface.
+/// The topics of one interface, which begin with its prefix.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Interface {
     prefix: String,
 }
 
 impl Interface {
-    /// That of a prefix, which may have several levels.
+    /// The interface with a prefix, which may have several levels.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// The level that cannot be part of a topic, and why.
     pub fn new(prefix: &str) -> Result<Self, String> {
         for part in prefix.split('/') {
             level(part).map_err(|why| format!("prefix {prefix:?}: {why}"))?;
@@ -143,12 +143,12 @@ impl Interface {
         format!("{}/{}/{}/{}/{}", self.prefix, version.major(), key.manufacturer, key.serial_number, kind.text())
     }
 
-    /// What to subscribe to for a kind of messages of all vehicles, 2.x and 3.x.
+    /// Topic filters for a kind of messages of all vehicles, 2.x and 3.x.
     pub fn filters(&self, kind: Kind) -> [String; 2] {
         ["v2", "v3"].map(|major| format!("{}/{major}/+/+/{}", self.prefix, kind.text()))
     }
 
-    /// Major version, vehicle and kind of a topic; none if it is not one of these.
+    /// Whether the major version is 3, the vehicle, and the kind of a topic; `None` if it is no topic of this interface.
     pub fn parse(&self, topic: &str) -> Option<(bool, Key, Kind)> {
         let rest = topic.strip_prefix(self.prefix.as_str())?.strip_prefix('/')?;
         let mut levels = rest.split('/');

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// An edition.
+/// An edition of VDA 5050.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Version {
     /// 2.0
@@ -14,10 +14,10 @@ pub enum Version {
 }
 
 impl Version {
-    /// All of them.
+    /// All editions.
     pub const ALL: [Self; 3] = [Self::V2_0, Self::V2_1, Self::V3_0];
 
-    /// That of a `version` in a message: major, minor, and whatever follows.
+    /// The edition of a `version` field: major, minor, and anything after that.
     pub fn of(text: &str) -> Option<Self> {
         let mut parts = text.trim().split('.');
         match (parts.next()?, parts.next()?) {
@@ -28,7 +28,7 @@ impl Version {
         }
     }
 
-    /// As messages write it.
+    /// Its name in messages.
     pub fn text(self) -> &'static str {
         match self {
             Self::V2_0 => "2.0.0",
@@ -37,17 +37,17 @@ impl Version {
         }
     }
 
-    /// As topics write it.
+    /// Its name in topics.
     pub fn major(self) -> &'static str {
         if self < Self::V3_0 { "v2" } else { "v3" }
     }
 
-    /// The state of a connection that has broken.
+    /// Connection state of a broken connection.
     pub fn broken(self) -> &'static str {
         if self < Self::V3_0 { "CONNECTIONBROKEN" } else { "CONNECTION_BROKEN" }
     }
 
-    /// An error of a state, as this edition calls it.
+    /// Error type of an error in this edition.
     pub fn error(self, error: Error) -> &'static str {
         match (error, self < Self::V3_0) {
             (Error::Malformed, true) => "validationError",
@@ -70,17 +70,17 @@ impl fmt::Display for Version {
     }
 }
 
-/// Why an order is not taken.
+/// The reason why an order is rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error {
-    /// It is no order.
+    /// It is not a valid order.
     Malformed,
     /// It cannot be carried out.
     Order,
-    /// It is older than what is held.
+    /// It is older than the present order.
     Outdated,
-    /// It does not go on where what is held ends.
+    /// It does not continue the present order.
     Update,
-    /// There is no order.
+    /// There is no order to cancel.
     NothingToCancel,
 }

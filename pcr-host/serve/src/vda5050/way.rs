@@ -9,25 +9,27 @@ use pcr_formats::scenario::{PathSegment, Placed, TURN};
 use serde_json::json;
 use std::f64::consts::{PI, TAU};
 
-/// Ways shorter than this are none: their direction may be rounding \[m\].
+/// Shortest line \[m\]: below this its direction may be rounding.
 const NEAR: f64 = 1e-6;
 
-/// Angle that is rounding and nothing else \[rad\].
+/// Largest angle that counts as rounding \[rad\].
 const STRAIGHT: f64 = 1e-9;
 
-/// How far lines and arcs may be off a trajectory, and that off its nodes \[m\]: margins have to cover it.
+/// Bound on the distance of lines and arcs from a trajectory, and of a trajectory from its nodes \[m\]: margins have to cover
+/// it.
 pub const TOLERANCE: f64 = 2e-3;
 
-/// How far they are aside of it at most \[m\]. At the same length they are further off, the longer it is.
+/// Bound on the sideways distance of lines and arcs from a trajectory \[m\]. At equal lengths the distance grows with the
+/// length of the trajectory.
 const FIT: f64 = 1e-4;
 
-/// A path, and where the nodes of its order are on it.
+/// The path of an order, with the lengths of its nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Way {
     start: Start,
     pieces: Vec<Piece>,
     shapes: Vec<Shape>,
-    /// Length up to each node \[m\], and how many shapes there are before it.
+    /// For each node the length up to it \[m\] and the number of shapes before it.
     nodes: Vec<(f64, usize)>,
     at: [f64; 2],
     heading: f64,
@@ -40,10 +42,10 @@ struct Piece {
 }
 
 impl Way {
-    /// The way of an order for a vehicle that stands there.
+    /// The way of an order for a vehicle that stands at `start`.
     ///
     /// # Errors
-    /// [`Refusal`] where nodes have no place, or a trajectory cannot be read.
+    /// [`Refusal`] if a node has no position, or a trajectory cannot be read.
     pub fn new(start: Start, held: &Held) -> Result<Self, Refusal> {
         let (at, heading) = ([start.x, start.y], start.heading);
         let mut way = Self { start, pieces: Vec::new(), shapes: Vec::new(), nodes: Vec::new(), at, heading };
@@ -55,10 +57,10 @@ impl Way {
         Ok(way)
     }
 
-    /// Replaces the way after a node by that of the order as it is now.
+    /// Replaces the way after a node by that of the updated order.
     ///
     /// # Errors
-    /// As [`Way::new`]; the way is of no use then.
+    /// As [`Way::new`]; the way must not be used then.
     pub fn extend(&mut self, held: &Held, after: usize) -> Result<(), Refusal> {
         self.nodes.truncate(after + 1);
         let (length, shapes) = self.nodes.last().copied().unwrap_or_default();
@@ -125,7 +127,7 @@ impl Way {
         }
     }
 
-    /// A line to a point from where the way ends.
+    /// Appends a line to a point.
     fn line(&mut self, to: [f64; 2]) {
         if distance(self.at, to) > NEAR {
             self.push(Placed::line(self.at, to));
@@ -154,7 +156,7 @@ impl Way {
         self.pieces.last().map_or(0.0, |last| last.from + last.placed.shape.length())
     }
 
-    /// Where it begins.
+    /// Its first pose.
     pub fn start(&self) -> Start {
         self.start
     }
@@ -164,13 +166,13 @@ impl Way {
         self.nodes.get(place).map(|(length, _)| *length)
     }
 
-    /// The shapes from a node on, from the start if there is none, up to another one.
+    /// The shapes from one node, or from the start, up to another node.
     pub fn shapes(&self, from: Option<usize>, to: usize) -> &[Shape] {
         let before = |node: usize| self.nodes.get(node).map_or(self.shapes.len(), |(_, shapes)| *shapes);
         self.shapes.get(from.map_or(0, before)..before(to)).unwrap_or_default()
     }
 
-    /// Where a vehicle is after so much, and in which direction \[m, rad\].
+    /// The pose at a length \[m, rad\].
     pub fn pose(&self, length: f64) -> Start {
         let after = self.pieces.partition_point(|piece| piece.from <= length);
         let Some(piece) = after.checked_sub(1).and_then(|place| self.pieces.get(place)) else { return self.start };
@@ -184,8 +186,8 @@ impl Way {
         Start { x, y, heading: part.heading_at_end() }
     }
 
-    /// The lengths, within a window, at which the way is nearest to a point piece by piece and no further than `reach` \[m\] from it: the
-    /// least and the largest. None: it is not there.
+    /// The least and the largest length within a window at which a piece of the way is nearest to a point, of the pieces that
+    /// come within `reach` of the point \[m\]. `None`: no piece does.
     pub fn near(&self, point: [f64; 2], window: [f64; 2], reach: f64) -> Option<[f64; 2]> {
         let mut found: Option<[f64; 2]> = None;
         let mut consider = |length: f64, off: f64| {
@@ -221,7 +223,7 @@ fn along(placed: &Placed, point: [f64; 2]) -> f64 {
             let towards = if sweep < 0.0 { -left } else { left };
             let angle = ahead.atan2(radius - towards).rem_euclid(TAU);
             let whole = sweep.abs();
-            // Beyond its end it is nearest to one of the two.
+            // Beyond its end, the nearest point is one of the two ends.
             let angle = if angle <= whole {
                 angle
             } else if angle - whole < TAU - angle {
@@ -238,7 +240,7 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// Where a node is.
+/// Position of a node.
 fn position(node: &Node, place: usize) -> Result<[f64; 2], Refusal> {
     let position = node.node_position.as_ref().map(|position| [position.x, position.y]);
     position.ok_or_else(|| Refusal::new(format!("nodes[{place}].nodePosition"), "missing"))

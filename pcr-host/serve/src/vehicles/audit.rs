@@ -5,28 +5,28 @@ use super::locks::distance;
 use super::vehicle::Vehicle;
 use serde::Serialize;
 
-/// What was found.
+/// The result of an audit.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Audit {
-    /// How often all of them were looked at.
+    /// Number of looks at all vehicles.
     pub looks: u64,
-    /// Pairs of vehicles whose released ways came too near at such a time.
+    /// Number of pairs of vehicles, at all looks, whose released ways came too near.
     pub twice: u64,
-    /// The first of them: when \[s\], and who.
+    /// Time \[s\] and names of the first such pair.
     pub first: Option<(f64, [String; 2])>,
-    /// When it was looked last \[s\].
+    /// Time of the last look \[s\].
     #[serde(skip)]
     last: Option<f64>,
 }
 
-/// Between two looks \[s\].
+/// Time between two looks \[s\].
 const PAUSE: f64 = 1.0;
 
-/// Of what is computed by rounding numbers \[m\].
+/// Allowance for rounding \[m\].
 const ROUNDING: f64 = 1e-6;
 
 impl Audit {
-    /// Looks at all vehicles, each second of theirs.
+    /// Looks at all vehicles, once a second of their time.
     pub fn look<'a>(&mut self, time: f64, vehicles: impl Iterator<Item = &'a Vehicle>) {
         if self.last.is_some_and(|last| time < last + PAUSE) {
             return;
@@ -45,7 +45,7 @@ impl Audit {
 struct Way<'a> {
     vehicle: &'a Vehicle,
     points: Vec<[f64; 2]>,
-    /// The least and the largest of both coordinates.
+    /// Least and largest value of each coordinate.
     span: [[f64; 2]; 2],
 }
 

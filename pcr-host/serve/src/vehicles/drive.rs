@@ -6,23 +6,23 @@ use crate::vda5050::held::Held;
 use crate::vda5050::way::Way;
 use serde::{Deserialize, Serialize};
 
-/// What a vehicle can do, and how badly.
+/// The abilities and errors of a vehicle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Abilities {
-    /// Of the disc that it fits in \[m\].
+    /// Radius of the disc that contains it \[m\].
     pub radius: f64,
     /// \[m/s\]
     pub speed: f64,
-    /// Speeding up and braking \[m/s²\].
+    /// Acceleration and deceleration \[m/s²\].
     pub acceleration: f64,
-    /// Turning in place \[rad/s\].
+    /// Speed of turns in place \[rad/s\].
     pub rotation: f64,
-    /// Largest part of its way that it loses.
+    /// Largest share of its way that it loses.
     pub slip: f64,
-    /// How far it is off its way at most \[m\].
+    /// Largest distance from its way \[m\].
     pub drift: f64,
-    /// How far off the position that it reports is at most \[m\].
+    /// Largest error of the position that it reports \[m\].
     pub noise: f64,
     /// Longest hold-up, about every 20 s \[s\].
     pub delay: f64,
@@ -43,26 +43,26 @@ impl Default for Abilities {
     }
 }
 
-/// How far and how fast a vehicle is.
+/// Position and speed of a vehicle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Drive {
-    /// Length of the way that it has done \[m\].
+    /// Length of the way that it has travelled \[m\].
     pub at: f64,
     /// \[m/s\]
     pub speed: f64,
-    /// How long it still turns in place \[s\].
+    /// Remaining time of a turn in place \[s\].
     pub turns: f64,
-    /// How long it is still held up \[s\].
+    /// Remaining time of a hold-up \[s\].
     pub held_up: f64,
-    /// Up to which length it has turned \[m\].
+    /// Length up to which all turns are done \[m\].
     turned: f64,
 }
 
-/// Lengths that are as near are the same \[m\].
+/// Lengths that differ by at most this are equal \[m\].
 const NEAR: f64 = 1e-6;
 
 impl Drive {
-    /// At the start of a way.
+    /// A vehicle at the start of a way.
     pub fn new() -> Self {
         Self { turned: -1.0, ..Self::default() }
     }
@@ -72,10 +72,10 @@ impl Drive {
         self.speed > 0.0 || self.turns > 0.0
     }
 
-    /// Goes on for a time \[s\], no further than an end \[m\].
+    /// Moves for a time \[s\], up to an end \[m\].
     pub fn advance(&mut self, way: &Way, held: &Held, end: f64, can: &Abilities, random: &mut Random, time: f64) {
         if self.held_up > 0.0 {
-            // Held up by something in its way: it has stopped at once.
+            // Held up by an obstacle: it stops immediately.
             (self.held_up, self.speed) = ((self.held_up - time).max(0.0), 0.0);
             return;
         }
@@ -107,7 +107,7 @@ impl Drive {
         }
     }
 
-    /// Comes to rest within a time \[s\], or as fast as it can.
+    /// Brakes within a time \[s\], as hard as necessary or possible.
     pub fn brake(&mut self, end: f64, can: &Abilities, time: f64) {
         let after = (self.speed - can.acceleration * time).max(0.0);
         self.at = (self.at + 0.5 * (self.speed + after) * time).min(end);
@@ -116,9 +116,9 @@ impl Drive {
     }
 }
 
-/// The next corner from a length on at which the vehicle has not yet turned, and by how much \[m, rad\].
+/// Length and angle of the next corner at which the vehicle has not turned yet \[m, rad\].
 fn corner(way: &Way, held: &Held, at: f64, turned: f64) -> Option<(f64, f64)> {
-    /// Turned while driving \[rad\].
+    /// Largest corner that is driven without a stop \[rad\].
     const SLIGHT: f64 = 0.01;
     let angle = |shapes: &[Shape]| match shapes.first() {
         Some(Shape::Turn { sweep }) if sweep.abs() > SLIGHT => Some(sweep.abs()),

@@ -12,31 +12,31 @@ use std::io::{self, Write};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Instant;
 
-/// What can be set. Times are those of the vehicles, which may be faster than ours.
+/// Settings. Times are those of the vehicles, which may be faster than real time.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Where the broker is.
+    /// The broker.
     pub broker: Broker,
     /// Topics of the vehicles.
     pub interface: Interface,
-    /// Their seconds in one of ours.
+    /// Seconds of the vehicles per second of real time.
     pub pace: f64,
-    /// Positions a second of ours.
+    /// Positions that each vehicle sends per second of real time.
     pub positions: f64,
-    /// States without any news, a second of ours.
+    /// States that each vehicle sends per second of real time without any news.
     pub states: f64,
-    /// Connections lost by each vehicle, a second of ours.
+    /// Number of times that each vehicle loses its connection per second of real time.
     pub drops: f64,
-    /// What becomes of messages.
+    /// Faults of the transport of messages.
     pub climate: Climate,
-    /// The same seed makes the same vehicles, though not the same run.
+    /// Seed. The same seed makes the same vehicles, but not the same run.
     pub seed: u64,
 }
 
 struct Member {
     vehicle: Vehicle,
     link: Option<Link>,
-    /// When it connects again \[s\].
+    /// Time at which it connects again \[s\].
     again: f64,
     incoming: Weather<(Kind, Vec<u8>)>,
     outgoing: Weather<Publish>,
@@ -52,29 +52,29 @@ pub struct Fleet<W: Write> {
     record: Record<W>,
     random: Random,
     begin: Instant,
-    /// When the last step was \[s\].
+    /// Time of the last step \[s\].
     last: f64,
     /// Time of the vehicles \[s\].
     time: f64,
-    /// Times that connections were lost.
+    /// Number of lost connections.
     drops: u64,
     audit: Audit,
 }
 
-/// Vehicles go on in steps of this at most \[s\].
+/// Largest step of the vehicles \[s\].
 const STEP: f64 = 0.05;
 
-/// No more of their time goes by between two looks at messages, on however busy a machine \[s\].
+/// Largest time of the vehicles between two looks at messages, also on a busy machine \[s\].
 const LEAP: f64 = 1.0;
 
-/// A connection that was lost is back within \[s\].
+/// Longest time without a connection \[s\].
 const AWAY: f64 = 3.0;
 
 impl<W: Write> Fleet<W> {
-    /// Connects them; where they are is recorded.
+    /// Connects the vehicles, and records their true positions.
     ///
     /// # Errors
-    /// As the writer of the record, or what is wrong with the broker's settings.
+    /// Those of the writer of the record, or invalid settings of the broker.
     pub fn new(settings: Settings, vehicles: Vec<Vehicle>, record: W) -> io::Result<Self> {
         let names = vehicles
             .iter()
@@ -109,12 +109,12 @@ impl<W: Write> Fleet<W> {
         self.time
     }
 
-    /// Times that connections were lost on purpose.
+    /// Number of connections that were broken on purpose.
     pub fn drops(&self) -> u64 {
         self.drops
     }
 
-    /// Whether two had the right to one place.
+    /// The audit whether two vehicles had the right to one place.
     pub fn audit(&self) -> &Audit {
         &self.audit
     }
@@ -124,7 +124,7 @@ impl<W: Write> Fleet<W> {
         self.members.iter_mut().map(|member| &mut member.vehicle)
     }
 
-    /// Another weather from now on.
+    /// Changes the faults of the transport.
     pub fn change(&mut self, climate: Climate) {
         for member in &mut self.members {
             member.incoming.change(climate);
@@ -132,10 +132,10 @@ impl<W: Write> Fleet<W> {
         }
     }
 
-    /// Up to now: messages, motions, messages.
+    /// Simulates up to the present time: messages, motions, messages.
     ///
     /// # Errors
-    /// As the writer of the record, or where there is no thread for a connection.
+    /// Those of the writer of the record, or a thread for a connection that cannot be started.
     pub fn step(&mut self) -> io::Result<()> {
         let now = self.begin.elapsed().as_secs_f64();
         while let Ok((k, news)) = self.news.try_recv() {
@@ -210,7 +210,7 @@ impl<W: Write> Fleet<W> {
         Ok(())
     }
 
-    /// Ends all connections in order; the record is whole then.
+    /// Ends all connections properly, and completes the record.
     ///
     /// # Errors
     /// As the writer of the record.
@@ -241,7 +241,7 @@ fn connected(
     let will = Publish { topic: topic(Kind::Connection), payload, assured: true, retain: true };
     let id = format!("pcr-vehicle-{}-{}", key.manufacturer, key.serial_number);
     Link::open(&settings.broker, &id, Some(will), filters, move |news| {
-        // A fleet that is gone needs no news.
+        // A fleet that has been dropped needs no news.
         let _ = sender.send((k, news));
     })
 }

@@ -13,17 +13,17 @@ pub enum Method {
     /// The manager releases all of an order, and a supervisor decides how far each vehicle may go.
     #[default]
     Supervisor,
-    /// The manager releases an order when nobody else has anything on its way.
+    /// The manager releases a whole order when no other vehicle has a lock on its way.
     RouteLocks,
-    /// It releases one edge after the other, if all can still finish then.
+    /// The manager releases one edge after the other, each only if all vehicles can still finish.
     EdgeLocks,
 }
 
 impl Method {
-    /// All of them.
+    /// All methods.
     pub const ALL: [Self; 3] = [Self::Supervisor, Self::RouteLocks, Self::EdgeLocks];
 
-    /// What it is called in tables.
+    /// Its name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Supervisor => "supervisor",
@@ -36,7 +36,7 @@ impl Method {
 /// An edge of a way.
 #[derive(Clone, Copy, Debug)]
 pub struct Leg {
-    /// Which.
+    /// Index of the edge.
     pub edge: usize,
     /// \[m\]
     pub length: f64,
@@ -44,39 +44,39 @@ pub struct Leg {
     pub to: usize,
 }
 
-/// What a vehicle has of its way.
+/// The edges that a vehicle wants and has.
 #[derive(Clone, Debug, Default)]
 struct Claim {
-    /// Its edges.
+    /// Edges of its way.
     edges: Vec<Leg>,
-    /// Where it stands before, and at the end.
+    /// Nodes at which it stands before and after.
     ends: [usize; 2],
-    /// Edges that it has behind it, and those that it was given.
+    /// Number of edges that it has passed, and number that it was given.
     passed: usize,
     given: usize,
-    /// Since when it has been at the end of what it has \[s\].
+    /// Time since which it has been at the end of what it was given \[s\].
     since: f64,
 }
 
-/// Who has what. Pieces of a layout are its nodes, to stand at, and then its edges.
+/// The locks of all vehicles. The pieces of a layout are its nodes, at which vehicles stand, and then its edges.
 #[derive(Debug)]
 pub struct Locks {
     is_whole: bool,
     nodes: usize,
-    /// Pieces on which discs touch, of each piece.
+    /// For each piece the pieces on which discs would touch.
     touch: Vec<Vec<usize>>,
     claims: Vec<Claim>,
-    /// How far ahead of the node that it has reached a vehicle gets edges \[m\].
+    /// How far ahead of the last node a vehicle gets edges \[m\].
     far: f64,
-    /// Since it was looked last who can get what.
+    /// Whether something has changed since edges were last given.
     changed: bool,
 }
 
-/// Places of two discs.
+/// Two end points.
 type Ends = [[f64; 2]; 2];
 
 impl Locks {
-    /// For vehicles that stand at these nodes, whose discs are so far apart \[m\] that they do not touch.
+    /// The locks of vehicles that stand at these nodes, with discs that do not touch at this distance \[m\].
     pub fn new(layout: &Layout, clearance: f64, far: f64, is_whole: bool, standing: &[usize]) -> Self {
         let place = |node: usize| layout.nodes.get(node).map_or([f64::NAN; 2], |node| node.at);
         let nodes = (0..layout.nodes.len()).map(|node| [place(node); 2]);
@@ -90,7 +90,7 @@ impl Locks {
         Self { is_whole, nodes: layout.nodes.len(), touch, claims, far, changed: true }
     }
 
-    /// A vehicle that stands wants to go over these edges.
+    /// Requests these edges for a vehicle that stands.
     pub fn want(&mut self, vehicle: usize, edges: Vec<Leg>, now: f64) {
         if let Some(claim) = self.claims.get_mut(vehicle) {
             let from = claim.ends[1];
@@ -100,7 +100,7 @@ impl Locks {
         }
     }
 
-    /// A vehicle has so many edges behind it.
+    /// Notes that a vehicle has passed this number of edges.
     pub fn passed(&mut self, vehicle: usize, edges: usize, now: f64) {
         if let Some(claim) = self.claims.get_mut(vehicle)
             && edges > claim.passed
@@ -110,12 +110,12 @@ impl Locks {
         }
     }
 
-    /// How many edges of its way a vehicle was given.
+    /// Number of edges that a vehicle was given.
     pub fn given(&self, vehicle: usize) -> usize {
         self.claims.get(vehicle).map_or(0, |claim| claim.given)
     }
 
-    /// Gives what can be given, whoever has waited longest first.
+    /// Gives edges to all vehicles that can get some, the one that has waited longest first.
     pub fn give(&mut self) {
         if !std::mem::take(&mut self.changed) {
             return;
@@ -147,14 +147,14 @@ impl Locks {
         }
     }
 
-    /// Adds to how many that have a piece touch each other one.
+    /// Adds to the count of holders on all pieces that touch a piece.
     fn count(&self, held: &mut [usize], piece: usize, by: isize) {
         for &near in self.touch.get(piece).into_iter().flatten() {
             held[near] = held[near].saturating_add_signed(by);
         }
     }
 
-    /// Whether all can finish one after the other, each of them alone.
+    /// Whether all vehicles can finish one after the other.
     fn can_finish(&self, mut held: Vec<usize>) -> bool {
         let mut left: Vec<&Claim> = self.claims.iter().collect();
         loop {
@@ -177,7 +177,7 @@ impl Locks {
 }
 
 impl Claim {
-    /// The pieces that it has: edges, or where it stands.
+    /// The pieces that the vehicle holds: edges, or the node where it stands.
     fn held(&self, nodes: usize) -> impl Iterator<Item = usize> {
         let edges = self.edges.iter().take(self.given).skip(self.passed).map(move |leg| nodes + leg.edge);
         let stands =
@@ -186,13 +186,13 @@ impl Claim {
     }
 
     fn wants(&self, is_whole: bool, far: f64) -> bool {
-        // What it has beyond the edge that it is on.
+        // Length given beyond the edge where it is.
         let has: f64 = self.edges.iter().take(self.given).skip(self.passed + 1).map(|leg| leg.length).sum();
         self.given < self.edges.len() && (is_whole || has < far)
     }
 }
 
-/// Between two straight ways.
+/// Distance between two straight lines.
 pub fn distance([a, b]: Ends, [c, d]: Ends) -> f64 {
     let cross = |o: [f64; 2], p: [f64; 2], q: [f64; 2]| (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]);
     let opposite = |o: [f64; 2], p: [f64; 2], q: [f64; 2], r: [f64; 2]| cross(o, p, q) * cross(o, p, r) < 0.0;
@@ -203,7 +203,7 @@ pub fn distance([a, b]: Ends, [c, d]: Ends) -> f64 {
     ends.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// From a point to the line between two others.
+/// Distance from a point to the line between two others.
 pub fn to_line(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
     let [x, y] = [point[0] - from[0], point[1] - from[1]];
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]];

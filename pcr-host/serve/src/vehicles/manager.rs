@@ -16,15 +16,15 @@ use pcr_formats::import::{self, Layout, Step, cheapest};
 use serde_json::Map;
 use std::collections::BTreeMap;
 
-/// What it knows of a vehicle.
+/// A vehicle, as the manager knows it.
 #[derive(Clone, Debug)]
 struct Client {
-    /// Which of them it is.
+    /// Index of the vehicle.
     place: usize,
     version: Version,
     /// The node where its last order ends.
     at: usize,
-    /// The order that it has or is to take.
+    /// Its present order, or the one that it is to take.
     order: Option<Given>,
     orders: u64,
     done: u64,
@@ -35,11 +35,11 @@ struct Client {
 #[derive(Clone, Debug)]
 struct Given {
     order: Order,
-    /// The vehicle has had it.
+    /// Whether the vehicle has confirmed it.
     had: bool,
-    /// States in a row in which it does not have it any more, and when the first one came \[s\].
+    /// Number of successive states without the order, and the time of the first one \[s\].
     lost: Option<(u32, f64)>,
-    /// The update that was sent last: its first node, the last one that it releases, and when that was \[s\].
+    /// The last update that was sent: its first node, its last released node, and its time \[s\].
     from: usize,
     released: usize,
     sent: f64,
@@ -48,11 +48,11 @@ struct Given {
 /// A message for a vehicle.
 #[derive(Clone, Debug)]
 pub struct Sent {
-    /// To whom.
+    /// The vehicle.
     pub key: Key,
-    /// Of which edition.
+    /// Edition of the standard.
     pub version: Version,
-    /// JSON.
+    /// Content, as JSON.
     pub payload: Vec<u8>,
 }
 
@@ -62,36 +62,36 @@ pub struct Manager {
     layout: Layout,
     map_id: String,
     goals: Vec<usize>,
-    /// Ways keep so far from goals that are not theirs \[m\].
+    /// Distance that ways keep from the goals of others \[m\].
     clearance: f64,
     clients: BTreeMap<Key, Client>,
     random: Random,
-    /// Tells its orders from those of another run.
+    /// Number of the run, part of the order ids.
     run: u64,
-    /// Where no supervisor keeps vehicles apart.
+    /// The locks, if there is no supervisor.
     locks: Option<Locks>,
-    /// No more missions.
+    /// Whether no more missions are given.
     ends: bool,
     again: u64,
 }
 
-/// An order that was not taken is sent again after so long \[s\].
+/// Time after which an order that was not taken is sent again \[s\].
 const AGAIN: f64 = 2.0;
 
-/// A vehicle that says so often in a row, for so long \[s\], that it has not got the order that it had has lost it.
+/// Number of successive states without its order, and time \[s\], after which a vehicle has lost it.
 const LOST: (u32, f64) = (3, 3.0);
 
-/// Whoever stands nearer to a node than this begins there \[m\].
+/// A vehicle within this distance of a node begins there \[m\].
 const NEAR: f64 = 0.3;
 
-/// With locks vehicles get edges so far ahead of the node that they have reached \[m\].
+/// With locks: how far ahead of the last node a vehicle gets edges \[m\].
 const FAR: f64 = 4.0;
 
 impl Manager {
-    /// Of vehicles that stand at nodes of a layout, for missions to some of its nodes.
+    /// The manager of vehicles that stand at nodes of a layout, with missions to some of its nodes.
     ///
     /// # Errors
-    /// A goal from which there is no way to another one that keeps so far from the rest \[m\].
+    /// A goal without a way to another goal that keeps this distance from the rest \[m\].
     pub fn new(
         layout: Layout,
         map_id: &str,
@@ -118,7 +118,7 @@ impl Manager {
         Ok(own)
     }
 
-    /// Keeps vehicles apart itself, by locks, or leaves that to a supervisor; before it has sent any order.
+    /// Chooses the method that keeps vehicles apart. To be called before any order is sent.
     pub fn by(mut self, method: Method) -> Self {
         let mut places: Vec<(usize, usize)> = self.clients.values().map(|client| (client.place, client.at)).collect();
         places.sort_unstable();
@@ -144,44 +144,44 @@ impl Manager {
         self.layout.edges.iter().filter_map(lane).collect()
     }
 
-    /// Ends at which no vehicle stands, and to which none is on its way.
+    /// Number of goals at which no vehicle stands and to which none drives.
     pub fn free(&self) -> usize {
         self.goals.len().saturating_sub(self.clients.len())
     }
 
-    /// Missions done by all vehicles.
+    /// Number of missions done by all vehicles.
     pub fn done(&self) -> u64 {
         self.clients.values().map(|client| client.done).sum()
     }
 
-    /// Missions done by each vehicle.
+    /// Number of missions done by each vehicle.
     pub fn done_by(&self) -> BTreeMap<String, u64> {
         self.clients.iter().map(|(key, client)| (key.to_string(), client.done)).collect()
     }
 
-    /// Orders that were planned anew, as vehicles had lost them.
+    /// Number of orders that were planned again because vehicles had lost them.
     pub fn planned_anew(&self) -> u64 {
         self.again
     }
 
-    /// No more missions than those that are under way.
+    /// Gives no more missions; those under way go on.
     pub fn end(&mut self) {
         self.ends = true;
     }
 
-    /// The vehicles that have something to do.
+    /// The vehicles with an order that is not done.
     pub fn busy(&self) -> impl Iterator<Item = &Key> {
         self.clients.iter().filter(|(_, client)| client.order.is_some()).map(|(key, _)| key)
     }
 
-    /// The order that each vehicle has or is to take, and the node where it ends.
+    /// For each vehicle its order, and the node where the order ends.
     pub fn orders(&self) -> impl Iterator<Item = (&Key, Option<&str>, usize)> {
         self.clients
             .iter()
             .map(|(key, client)| (key, client.order.as_ref().map(|given| given.order.order_id.as_str()), client.at))
     }
 
-    /// Takes a state; returns what vehicles are to get now.
+    /// Takes a state; returns the messages to be sent to vehicles.
     pub fn receive(&mut self, key: &Key, payload: &[u8], now: f64) -> Vec<Sent> {
         let Ok(state) = door::read::<State>(payload, Limits::default()) else { return Vec::new() };
         let Some(client) = self.clients.get_mut(key) else { return Vec::new() };
@@ -210,7 +210,7 @@ impl Manager {
                     due.extend(self.plan_anew(key, &state, now));
                 }
             }
-            // With locks it is sent for the first time when it has got some of its way.
+            // With locks, an order is first sent when it has got some edges.
             Some(given) if given.sent > f64::NEG_INFINITY && now - given.sent >= AGAIN => {
                 due.extend(client.send(key, now))
             }
@@ -221,7 +221,7 @@ impl Manager {
         due
     }
 
-    /// More of the ways for whoever can get it, where there are locks.
+    /// With locks: releases more edges to all vehicles that can get some.
     fn give(&mut self, from: &Key, state: &State, now: f64) -> Vec<Sent> {
         let Some(locks) = &mut self.locks else { return Vec::new() };
         locks.give();
@@ -230,7 +230,7 @@ impl Manager {
             let Some(given) = &mut client.order else { continue };
             let node = locks.given(client.place);
             let is_first = given.sent == f64::NEG_INFINITY;
-            // One update at a time; that the vehicle has the one before it is said by its own state.
+            // One update at a time; the vehicle's own state confirms the one before.
             let has_it = key == from
                 && state.order_id == given.order.order_id
                 && state.order_update_id == given.order.order_update_id;
@@ -271,7 +271,7 @@ impl Manager {
         self.begin(key, nodes, edges, now)
     }
 
-    /// An order over these nodes, all of it released at once where there are no locks.
+    /// Begins an order over these nodes; without locks all of it is released at once.
     fn begin(&mut self, key: &Key, nodes: Vec<Node>, edges: Vec<Edge>, now: f64) -> Option<Sent> {
         let client = self.clients.get_mut(key)?;
         let order_id = format!("{:08x}-{}-{}", self.run, key.serial_number, client.orders);
@@ -294,7 +294,7 @@ impl Manager {
         let legs = places.windows(2).enumerate();
         let nearest = legs.min_by(|a, b| off(a.1).total_cmp(&off(b.1))).map_or(0, |(leg, _)| leg);
         let near = |node: usize| places.get(node).is_some_and(|at| (at[0] - here[0]).hypot(at[1] - here[1]) <= NEAR);
-        // From the node where it is, or over one where it is to the next one.
+        // From the node where it stands, or across one where it stands to the next.
         let (first, is_between) = match [nearest, nearest + 1].into_iter().rfind(|&node| near(node)) {
             Some(node) => (node, false),
             None => (nearest, true),
@@ -359,7 +359,7 @@ impl Manager {
 }
 
 impl Client {
-    /// The update of its order as it is now.
+    /// Sends the present update of its order.
     fn send(&mut self, key: &Key, now: f64) -> Option<Sent> {
         let version = self.version;
         self.header += 1;

@@ -10,7 +10,7 @@ use std::time::Instant;
 /// A manager at a broker.
 #[derive(Debug)]
 pub struct Office {
-    /// Who decides.
+    /// The manager.
     pub manager: Manager,
     interface: Interface,
     link: Link,
@@ -22,18 +22,18 @@ impl Office {
     /// Connects it.
     ///
     /// # Errors
-    /// What is wrong with the settings.
+    /// The invalid setting.
     pub fn open(broker: &Broker, interface: Interface, manager: Manager) -> Result<Self, String> {
         let (sender, news) = channel();
         let filters = interface.filters(Kind::State).to_vec();
         let link = Link::open(broker, "pcr-manager", None, filters, move |it| {
-            // An office that is gone needs no news.
+            // An office that has been dropped needs no news.
             let _ = sender.send(it);
         })?;
         Ok(Self { manager, interface, link, news, begin: Instant::now() })
     }
 
-    /// Answers what has come.
+    /// Handles the messages that have come.
     pub fn step(&mut self) {
         let now = self.begin.elapsed().as_secs_f64();
         while let Ok(news) = self.news.try_recv() {
@@ -41,7 +41,7 @@ impl Office {
             let Some((_, key, Kind::State)) = self.interface.parse(&topic) else { continue };
             for Sent { key, version, payload } in self.manager.receive(&key, &payload, now) {
                 let topic = self.interface.topic(version, &key, Kind::Order);
-                // One that is lost is sent again.
+                // A lost message is sent again.
                 let _ = self.link.publish(Publish { topic, payload, assured: false, retain: false });
             }
         }

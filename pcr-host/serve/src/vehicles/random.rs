@@ -31,7 +31,7 @@ impl Random {
         2.0 * self.unit() - 1.0
     }
 
-    /// One of so many; 0 of none.
+    /// A number below `count`; 0 if that is 0.
     pub fn below(&mut self, count: usize) -> usize {
         (self.unit() * count as f64) as usize
     }

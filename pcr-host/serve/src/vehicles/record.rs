@@ -18,9 +18,9 @@ use std::io::{self, BufRead, Write};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Recorded {
-    /// What it is called.
+    /// Name of the vehicle.
     pub name: String,
-    /// Of its disc \[m\].
+    /// Radius of its disc \[m\].
     pub radius: f64,
 }
 
@@ -36,7 +36,7 @@ struct Head {
 #[serde(deny_unknown_fields)]
 struct End {
     lines: u64,
-    /// Those who write records of other vehicles may leave it out.
+    /// Optional, so that other programs can write records without it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     crc32: Option<u32>,
 }
@@ -46,14 +46,14 @@ struct End {
 pub struct Record<W: Write> {
     out: W,
     last: Vec<Option<[f64; 3]>>,
-    /// Whether the last one written is that before, and not what it stood at since.
+    /// For each vehicle whether its last position repeats an earlier one and is not written yet.
     waits: Vec<bool>,
     lines: u64,
     sum: Hasher,
 }
 
 impl<W: Write> Record<W> {
-    /// Of these vehicles.
+    /// A record of these vehicles.
     ///
     /// # Errors
     /// As the writer.
@@ -65,7 +65,7 @@ impl<W: Write> Record<W> {
         Ok(own)
     }
 
-    /// A vehicle is there at a time \[s, m\].
+    /// Adds the position of a vehicle at a time \[s, m\].
     ///
     /// # Errors
     /// As the writer.
@@ -95,7 +95,7 @@ impl<W: Write> Record<W> {
         self.out.write_all(text.as_bytes())
     }
 
-    /// The record is whole.
+    /// Writes what is left and the last line, which has a checksum.
     ///
     /// # Errors
     /// As the writer.
@@ -113,7 +113,7 @@ impl<W: Write> Record<W> {
     }
 }
 
-/// What the checker found.
+/// The result of the check of a record.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Certificate {
     /// `pcr-contacts`
@@ -122,33 +122,33 @@ pub struct Certificate {
     pub version: u32,
     /// `proved`: no contact at any time. `contact`: there is one. `undecided`: so near that rounding does not tell, or not checked.
     pub verdict: &'static str,
-    /// Vehicles.
+    /// Number of vehicles.
     pub vehicles: usize,
-    /// From the first to the last line \[s\].
+    /// Time from the first to the last line \[s\].
     pub time: f64,
-    /// What all of them have travelled \[m\].
+    /// Length travelled by all vehicles together \[m\].
     pub travelled: f64,
-    /// Pairs of vehicles with a contact, of each window of time the first one.
+    /// The first contact of each pair of vehicles in each window of time.
     pub contacts: Vec<Contact>,
-    /// Those for which it was not decided.
+    /// Number of pairs and windows without a decision.
     pub undecided: usize,
     /// Why there is no verdict.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
 }
 
-/// Two vehicles at one time.
+/// A contact of two vehicles.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Contact {
-    /// Who.
+    /// Names of the two vehicles.
     pub vehicles: [String; 2],
-    /// When \[s\].
+    /// Time of the contact \[s\].
     pub time: f64,
     /// Distance of the centres less the radii \[m\].
     pub clearance: f64,
 }
 
-/// Of the format of records. Those of version 1 had no last line.
+/// Version of the format of records. Records of version 1 had no last line.
 const VERSION: u32 = 2;
 
 /// Largest coordinate \[m\], speed \[m/s\] and time before or after 0 \[s\]: beyond them rounding hides contacts.
@@ -162,8 +162,8 @@ const WINDOW: f64 = 20.0;
 /// Proves that the vehicles of a record never touched, or shows where.
 ///
 /// # Errors
-/// Lines that are none of a record, and fewer than two vehicles: there would be nothing to be proved. A record that ends within a line after
-/// the first one was cut there, and is undecided.
+/// A line that is not part of a record, or fewer than two vehicles, of which nothing could be proved. A record that ends within a line
+/// after the first one was cut off there: this is no error, and the verdict is `undecided`.
 pub fn certify(mut text: impl BufRead) -> io::Result<Certificate> {
     let wrong = |line: usize, why: String| io::Error::new(io::ErrorKind::InvalidData, format!("line {line}: {why}"));
     let mut lines = std::iter::from_fn(|| next(&mut text).transpose()).enumerate();
@@ -240,7 +240,7 @@ pub fn certify(mut text: impl BufRead) -> io::Result<Certificate> {
         return Err(wrong(1, format!("nothing about {}", head.vehicles[none].name)));
     }
     let vehicles = head.vehicles.len();
-    // Of a record that was cut some may not be there yet.
+    // In a record that was cut, some vehicles may have no line yet.
     let there = head.vehicles.into_iter().zip(tracks).filter(|(_, track)| !track.is_empty());
     let (there, tracks): (Vec<_>, Vec<_>) = there.unzip();
     Ok(Certificate { vehicles, ..checked(&there, &tracks, cut) })
@@ -411,7 +411,7 @@ mod tests {
         let other = certify(whole.replacen("\"radius\":0.5", "\"radius\":0.4", 1).as_bytes()).unwrap();
         assert_eq!(other.error.unwrap(), "the record is not as it was written: its checksum is another one");
         assert_eq!(other.verdict, "undecided");
-        // Whoever writes one by hand need not have a checksum.
+        // Records written by hand need no checksum.
         let end = whole.rfind(",\"crc32\"").unwrap();
         assert_eq!(certify(format!("{}}}", &whole[..end]).as_bytes()).unwrap().verdict, "proved");
         let twice = certify(format!("{whole}{whole}").as_bytes()).unwrap_err();
@@ -435,16 +435,16 @@ mod tests {
             assert_eq!(cut.error.unwrap(), "the record is cut: its last line is missing");
         }
         assert_eq!(certify(&whole.as_bytes()[..whole.len() - 1]).unwrap().verdict, "proved");
-        // Who was there and touched somebody did.
+        // A contact that is in the record remains a contact.
         let touched = record(0.999);
         assert_eq!(certify(&touched.as_bytes()[..touched.len() - 50]).unwrap().verdict, "contact");
-        // Where something follows it was not cut, nor where nothing is known of whom.
+        // A record with further lines was not cut, nor one without the names of its vehicles.
         let broken = whole.replacen("]\n", "\n", 1);
         assert!(certify(broken.as_bytes()).unwrap_err().to_string().starts_with("line 2: "));
         assert!(certify(&whole.as_bytes()[..head - 5]).unwrap_err().to_string().starts_with("line 1: "));
     }
 
-    /// Of ways of 10 million kilometres rounding would hide contacts of a millionth of a metre.
+    /// With ways of 10 million kilometres, rounding would hide contacts of a millionth of a metre.
     #[test]
     fn what_rounding_would_hide_is_refused() {
         let record = |points: &str| {

@@ -23,7 +23,7 @@ impl Vehicle {
         self.out.push((kind, serde_json::to_vec(message).unwrap_or_default()));
     }
 
-    /// Where it believes to be.
+    /// The pose that it reports.
     fn pose(&mut self) -> Pose {
         let [x, y] = self.place();
         let (noise, angle) = (self.abilities.noise * self.random.unit(), self.random.unit() * TAU);
@@ -48,7 +48,7 @@ impl Vehicle {
         Velocity { vx: Some(speed), vy: Some(0.0), omega: Some(0.0) }
     }
 
-    /// Says where it is.
+    /// Sends its position.
     pub fn tell_position(&mut self) {
         let (header, pose, velocity) = (self.header(Kind::Visualization), self.pose(), Some(self.velocity()));
         let mut rest = Map::new();
@@ -63,7 +63,7 @@ impl Vehicle {
         self.say(Kind::Visualization, &message);
     }
 
-    /// Says everything.
+    /// Sends its state.
     pub fn tell_state(&mut self) {
         let (header, pose, velocity) = (self.header(Kind::State), self.pose(), Some(self.velocity()));
         let is_third = self.version == Version::V3_0;
@@ -119,7 +119,7 @@ impl Vehicle {
         self.out.push((Kind::Connection, payload));
     }
 
-    /// Says what it is.
+    /// Sends its factsheet.
     pub fn tell_factsheet(&mut self) {
         let header = self.header(Kind::Factsheet);
         let mut sheet = if self.version == Version::V3_0 { self.sheet_third() } else { self.sheet_second() };
@@ -130,7 +130,7 @@ impl Vehicle {
     }
 
     fn contour(&self) -> Vec<Value> {
-        // The square inside of its disc.
+        // The square inside its disc.
         let half = self.abilities.radius * 0.5_f64.sqrt();
         [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]
             .map(|[x, y]| json!({ "x": x * half, "y": y * half }))
@@ -156,7 +156,7 @@ impl Vehicle {
         let can = self.abilities;
         let side = can.radius * 2.0_f64.sqrt();
         json!({
-            // Both names: the schema of 3.0.0 asks for one and describes the other.
+            // Both names: the schema of 3.0.0 requires one and describes the other.
             "typeSpecification": { "seriesName": "pcr fleet", "mobileRobotKinematic": "DIFFERENTIAL", "mobileRobotKinematics": "DIFFERENTIAL",
                 "mobileRobotClass": "CARRIER", "maximumLoadMass": 100, "localizationTypes": ["NATURAL"],
                 "navigationTypes": ["VIRTUAL_LINE_GUIDED"] },

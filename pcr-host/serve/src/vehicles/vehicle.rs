@@ -17,13 +17,13 @@ use crate::vda5050::way::Way;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
-/// A new order has to begin so near \[m\].
+/// Largest distance between a vehicle and the first node of a new order \[m\].
 const BEGINS: f64 = 0.5;
 
-/// How long an action at a node takes \[s\].
+/// Duration of an action at a node \[s\].
 const ACTION: f64 = 2.0;
 
-/// An order and how far it is.
+/// An order and its progress.
 #[derive(Clone, Debug)]
 pub(super) struct Task {
     pub(super) held: Held,
@@ -44,30 +44,30 @@ pub struct Vehicle {
     pub(super) random: Random,
     pub(super) start: Start,
     pub(super) task: Option<Task>,
-    /// Orders before, oldest first: a message about one of them comes late.
+    /// Ids of earlier orders, oldest first: a message with one of them is late.
     past: Vec<String>,
-    /// What is off, sideways \[m\], and how fast that changes.
+    /// Sideways error of its path \[m\], and its rate of change.
     pub(super) off: f64,
     pub(super) actions: Vec<ActionState>,
     pub(super) instant: Vec<ActionState>,
-    /// How long the action at the node still takes \[s\].
+    /// Remaining time of the action at the node \[s\].
     acting: f64,
     cancel: Option<String>,
     pub(super) paused: bool,
     frozen: f64,
     pub(super) errors: Vec<StateError>,
     pub(super) headers: BTreeMap<Kind, u64>,
-    /// Time since 1970 \[s\], as it goes on; and what its clock is off.
+    /// Time since 1970 \[s\], and the error of its clock.
     pub(super) time: f64,
     pub(super) clock: f64,
     pub(super) out: Vec<(Kind, Vec<u8>)>,
     news: bool,
-    /// Orders and updates that it has taken.
+    /// Number of orders and updates that it has taken.
     taken: u64,
 }
 
 impl Vehicle {
-    /// One that stands there.
+    /// A vehicle that stands at `start`.
     pub fn new(key: Key, version: Version, map_id: &str, abilities: Abilities, start: Start, seed: u64) -> Self {
         Self {
             key,
@@ -95,7 +95,7 @@ impl Vehicle {
         }
     }
 
-    /// Which.
+    /// Manufacturer and serial number.
     pub fn key(&self) -> &Key {
         &self.key
     }
@@ -105,38 +105,38 @@ impl Vehicle {
         self.version
     }
 
-    /// What it can do.
+    /// Its abilities and errors.
     pub fn abilities(&self) -> &Abilities {
         &self.abilities
     }
 
-    /// Sets its clock off by so much \[s\].
+    /// Sets the error of its clock \[s\].
     pub fn set_clock(&mut self, off: f64) {
         self.clock = off;
     }
 
-    /// Switched off and on again: it stands where it was, and has lost its order.
+    /// Switches it off and on again: it stands where it was, and has lost its order.
     pub fn forget(&mut self) {
         let [x, y] = self.place();
         self.start = Start { x, y, heading: self.heading() };
         (self.task, self.off, self.acting, self.cancel, self.paused) = (None, 0.0, 0.0, None, false);
         (self.past, self.actions, self.instant, self.errors) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        // It counts anew.
+        // Its message numbers restart.
         self.headers.clear();
         self.news = true;
     }
 
-    /// Orders and updates that it has taken.
+    /// Number of orders and updates that it has taken.
     pub fn taken(&self) -> u64 {
         self.taken
     }
 
-    /// How far along its way it is, of the order that it has \[m\].
+    /// Length of the way of its order that it has travelled \[m\].
     pub fn way_done(&self) -> f64 {
         self.task.as_ref().map_or(0.0, |task| task.drive.at)
     }
 
-    /// From corner to corner, what it has been released and has not done yet: from where it is to the end of its base.
+    /// Corners of its released way ahead: from its place to the end of its base.
     pub fn released(&self) -> Vec<[f64; 2]> {
         let Some(task) = self.task.as_ref().filter(|task| !task.cancelled) else { return vec![self.place()] };
         let end = task.way.node(task.held.base).unwrap_or(task.drive.at).max(task.drive.at);
@@ -146,7 +146,7 @@ impl Vehicle {
         lengths.map(|length| task.way.pose(length)).map(|pose| [pose.x, pose.y]).collect()
     }
 
-    /// Does nothing, and says nothing, for a time \[s\].
+    /// Does and sends nothing for a time \[s\].
     pub fn freeze(&mut self, time: f64) {
         self.frozen = time;
         if let Some(task) = &mut self.task {
@@ -162,18 +162,18 @@ impl Vehicle {
         std::mem::take(&mut self.out)
     }
 
-    /// Where it really is.
+    /// Its true position.
     pub fn place(&self) -> [f64; 2] {
         let Some(task) = &self.task else { return [self.start.x, self.start.y] };
         let pose = task.way.pose(task.drive.at);
-        // Sideways, as far as it has gone: it does not jump when it sets off.
+        // The sideways error grows with the length travelled, so that there is no jump at the start.
         let off = self.off * (task.drive.at / self.abilities.drift.max(1e-9)).min(1.0);
         let end = task.way.length() - task.drive.at;
         let off = off * (end / self.abilities.drift.max(1e-9)).min(1.0);
         [pose.x - off * pose.heading.sin(), pose.y + off * pose.heading.cos()]
     }
 
-    /// Which way it looks \[rad\].
+    /// Its heading \[rad\].
     pub(super) fn heading(&self) -> f64 {
         self.task.as_ref().map_or(self.start.heading, |task| task.way.pose(task.drive.at).heading)
     }
@@ -262,7 +262,7 @@ impl Vehicle {
                     return Err(Rejected::new(Error::Order, "nodes[0].nodePosition", "too far off"));
                 }
                 self.start = start;
-                /// So many are remembered.
+                /// Number of ids that are kept.
                 const MOST: usize = 32;
                 self.past.extend(task.take().map(|task| task.held.order_id));
                 self.past.drain(..self.past.len().saturating_sub(MOST));
@@ -274,7 +274,7 @@ impl Vehicle {
     }
 
     fn act(&mut self, action: &Action) {
-        // One that comes again is the same one.
+        // A repeated action id means a repeated message.
         if self.instant.iter().any(|known| known.action_id == action.action_id) {
             return;
         }
@@ -302,7 +302,7 @@ impl Vehicle {
         };
         state.action_status = status.into();
         self.instant.push(state);
-        /// No more than the last ones.
+        /// Number of states of instant actions that are kept.
         const MOST: usize = 8;
         if self.instant.len() > MOST {
             self.instant.remove(0);
@@ -318,7 +318,7 @@ impl Vehicle {
             return;
         }
         let can = self.abilities;
-        // So slowly that it is never faster sideways than a tenth of its speed.
+        // Slow enough that its sideways speed is at most a tenth of its speed.
         self.off = (self.off + self.random.sign() * can.drift * time).clamp(-can.drift, can.drift);
         let Some(task) = &mut self.task else { return };
         let was = (task.drive.is_driving(), task.done);
@@ -354,7 +354,7 @@ impl Vehicle {
         self.work();
     }
 
-    /// The actions of the node where it stands, one after the other; those of edges are done when the edge is.
+    /// Carries out the actions of the node where it stands, one after the other. Actions of edges end with the edge.
     fn work(&mut self) {
         let Some(task) = self.task.as_ref().filter(|task| !task.cancelled && self.acting <= 0.0) else { return };
         let passed = task.held.edges.iter().take(task.done).flat_map(|edge| &edge.actions);
@@ -380,7 +380,7 @@ impl Vehicle {
     }
 }
 
-/// Where it has to stop for an action \[m\].
+/// Length at which it has to stop for an action \[m\].
 fn stop(task: &Task, actions: &[ActionState]) -> Option<f64> {
     let is_open = |action: &Action| {
         actions.iter().any(|state| state.action_id == action.action_id && state.action_status != "FINISHED")

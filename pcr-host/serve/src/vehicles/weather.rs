@@ -3,17 +3,17 @@
 use super::random::Random;
 use serde::{Deserialize, Serialize};
 
-/// How bad it is.
+/// The rates of faults of the transport.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Climate {
-    /// Part of the messages that are lost.
+    /// Share of messages that are lost.
     pub lost: f64,
-    /// Part of them that come twice.
+    /// Share of messages that come twice.
     pub twice: f64,
-    /// Part of them that come late, hence after later ones.
+    /// Share of messages that come late, after later ones.
     pub late: f64,
-    /// By how much at most \[s\].
+    /// Largest delay of a late message \[s\].
     pub delay: f64,
 }
 
@@ -27,12 +27,12 @@ pub struct Weather<T> {
 }
 
 impl<T: Clone> Weather<T> {
-    /// With nothing on its way.
+    /// A transport without messages.
     pub fn new(climate: Climate, seed: u64) -> Self {
         Self { climate, random: Random::new(seed), underway: Vec::new(), count: 0 }
     }
 
-    /// Another weather from now on; what is on its way comes as it would have.
+    /// Changes the rates; messages on their way are not affected.
     pub fn change(&mut self, climate: Climate) {
         self.climate = climate;
     }
@@ -51,7 +51,7 @@ impl<T: Clone> Weather<T> {
         }
     }
 
-    /// What has come by now.
+    /// Takes the messages that have arrived.
     pub fn come(&mut self, now: f64) -> Vec<T> {
         let (mut come, rest): (Vec<_>, Vec<_>) =
             std::mem::take(&mut self.underway).into_iter().partition(|it| it.0 <= now);

@@ -11,28 +11,28 @@ use crate::vda5050::version::Version;
 use crate::vda5050::way::TOLERANCE;
 use pcr_formats::import::Layout;
 
-/// What they call the map.
+/// Map id.
 const MAP: &str = "map";
 
-/// Who has made the vehicles.
+/// Manufacturer of the vehicles.
 const MANUFACTURER: &str = "sim";
 
-/// All of it.
+/// A layout with vehicles and a manager.
 #[derive(Debug)]
 pub struct World {
-    /// What the supervisor is told of the vehicles.
+    /// Configuration of the vehicles for the supervisor.
     pub profiles: Vec<Profile>,
-    /// They themselves.
+    /// The vehicles.
     pub vehicles: Vec<Vehicle>,
-    /// Who gives them missions.
+    /// The manager that gives them missions.
     pub manager: Manager,
 }
 
 impl World {
-    /// So many vehicles of these editions and abilities in turn, at the first of the goals.
+    /// This number of vehicles, with these editions and abilities in turn, at the first of the goals.
     ///
     /// # Errors
-    /// Too few goals, or some that are on the ways of others.
+    /// Too few goals, or goals on the ways to others.
     pub fn new(
         layout: Layout,
         goals: Vec<usize>,
@@ -61,9 +61,10 @@ impl World {
     }
 }
 
-/// What the supervisor has to know of a vehicle.
+/// The configuration of a vehicle for the supervisor.
 pub fn profile(key: Key, can: &Abilities) -> Profile {
-    // Off its way, off the place that it reports, and that as it reports it; and some for what it does between two steps.
+    // Distance from its way, error of its position counted twice (in what it reports and in its reported deviation), and an
+    // allowance for motion between two steps.
     let margin = TOLERANCE + can.drift + 2.0 * can.noise + 0.01;
     let abilities = robot::Abilities { radius: can.radius, margin, speed: can.speed, acceleration: can.acceleration };
     Profile { key, abilities, split: true }

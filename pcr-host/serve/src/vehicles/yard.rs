@@ -18,25 +18,25 @@ use crate::vda5050::lane::Profile;
 use crate::vda5050::topics::{Interface, Kind};
 use std::io::{self, Write};
 
-/// What can be set.
+/// Settings.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
-    /// Who keeps vehicles apart.
+    /// Method that keeps vehicles apart.
     pub method: Method,
-    /// What becomes of messages.
+    /// Faults of the transport of messages.
     pub climate: Climate,
-    /// Connections lost by each vehicle, a second; each is back within half a minute.
+    /// Number of times that each vehicle loses its connection per second; each is back within half a minute.
     pub drops: f64,
     /// A step of time \[s\].
     pub step: f64,
-    /// Another number is another run.
+    /// Seed: the same seed gives the same run.
     pub seed: u64,
 }
 
-/// Why a step could not be done.
+/// The reason why a step failed.
 #[derive(Debug)]
 pub enum Failed {
-    /// The journal could not be written. What followed from the step was told to nobody; [`Yard::revive`] goes on.
+    /// The journal could not be written. The results of the step were not sent; [`Yard::revive`] continues.
     Journal(Fault),
     /// The record could not be written.
     Record(io::Error),
@@ -52,21 +52,21 @@ struct Member {
     vehicle: Vehicle,
     incoming: Weather<(Kind, Vec<u8>)>,
     outgoing: Weather<Publish>,
-    /// When it says the next position and state \[s\].
+    /// Times of its next position and state \[s\].
     next: [f64; 2],
-    /// Until when it is not connected \[s\].
+    /// Time until which it is not connected \[s\].
     away: f64,
-    /// Where it was last, along its way \[m\], and since when \[s\].
+    /// Number of its orders taken, its length of the way \[m\], and the time since which these have not changed \[s\].
     still: (u64, f64, f64),
 }
 
-/// All of them.
+/// Vehicles, manager and supervisor.
 pub struct Yard<W: Write> {
     settings: Settings,
     interfaces: [Interface; 2],
     members: Vec<Member>,
     manager: Manager,
-    /// From the manager, and to it.
+    /// Messages from the manager, and to it.
     desks: [Weather<Publish>; 2],
     supervisor: Supervisor,
     bridge: Bridge,
@@ -75,23 +75,23 @@ pub struct Yard<W: Write> {
     random: Random,
     audit: Audit,
     time: f64,
-    /// Times that connections were lost, and the longest that a vehicle with an order stood \[s\].
+    /// Number of lost connections, and the longest time that a vehicle with an order stood \[s\].
     drops: u64,
     longest: f64,
     log: Vec<String>,
 }
 
-/// Longest that a vehicle is not connected \[s\].
+/// Longest time without a connection \[s\].
 const AWAY: f64 = 30.0;
 
-/// Between two positions and two states of a vehicle without any news \[s\].
+/// Pause between two positions, and between two states without news, of a vehicle \[s\].
 const PAUSES: [f64; 2] = [1.0, 5.0];
 
 impl<W: Write> Yard<W> {
-    /// With a supervisor that knows nothing yet; where vehicles are is recorded.
+    /// A yard with a new supervisor, and a record of the true positions.
     ///
     /// # Errors
-    /// As the writer of the record, and for topics that are none.
+    /// Those of the writer of the record, and invalid topics.
     pub fn new(
         world: World,
         interfaces: [Interface; 2],
@@ -133,7 +133,7 @@ impl<W: Write> Yard<W> {
         })
     }
 
-    /// Goes on for a step.
+    /// Simulates a step.
     ///
     /// # Errors
     /// [`Failed`].
@@ -182,7 +182,7 @@ impl<W: Write> Yard<W> {
         Ok(settled?)
     }
 
-    /// How long vehicles with something to do have stood.
+    /// Updates how long vehicles with an order have stood.
     fn stand(&mut self) {
         let busy: Vec<bool> = {
             let busy: Vec<_> = self.manager.busy().collect();
@@ -197,7 +197,7 @@ impl<W: Write> Yard<W> {
         }
     }
 
-    /// What vehicles say.
+    /// Takes the messages of the vehicles.
     fn said(&mut self) -> Vec<Publish> {
         let now = self.time;
         let come = self.members.iter_mut().flat_map(|member| {
@@ -207,7 +207,7 @@ impl<W: Write> Yard<W> {
         come.collect()
     }
 
-    /// What the supervisor makes of it, and of what the manager says.
+    /// Lets the supervisor handle messages of the vehicles and of the manager.
     fn supervised(&mut self, said: Vec<Publish>) -> Result<(), Fault> {
         let now = self.time;
         let orders = self.desks[0].come(now);
@@ -231,7 +231,7 @@ impl<W: Write> Yard<W> {
         self.log.extend(events.map(|event| format!("{now:.2} {event:?}")));
     }
 
-    /// What the manager makes of it.
+    /// Lets the manager handle its messages.
     fn managed(&mut self) {
         let now = self.time;
         let is_alone = self.settings.method != Method::Supervisor;
@@ -272,7 +272,7 @@ impl<W: Write> Yard<W> {
         Ok(())
     }
 
-    /// Goes on until everybody has done what it had to do, and no more; how many have not within a time \[s\].
+    /// Simulates without new missions until all are done; returns how many vehicles have not finished after a time \[s\].
     ///
     /// # Errors
     /// As [`Yard::step`].
@@ -290,27 +290,27 @@ impl<W: Write> Yard<W> {
         self.time
     }
 
-    /// Times that connections were lost.
+    /// Number of lost connections.
     pub fn drops(&self) -> u64 {
         self.drops
     }
 
-    /// The longest that a vehicle with something to do has stood \[s\].
+    /// Longest time that a vehicle with an order has stood \[s\].
     pub fn longest(&self) -> f64 {
         self.longest
     }
 
-    /// Whether two had the right to one place.
+    /// The audit whether two vehicles had the right to one place.
     pub fn audit(&self) -> &Audit {
         &self.audit
     }
 
-    /// Who gives missions.
+    /// The manager that gives missions.
     pub fn manager(&self) -> &Manager {
         &self.manager
     }
 
-    /// Who keeps vehicles apart, and how it talks to them.
+    /// The supervisor, and the bridge that connects it.
     pub fn supervised_by(&self) -> (&Supervisor, &Bridge) {
         (&self.supervisor, &self.bridge)
     }
@@ -320,12 +320,12 @@ impl<W: Write> Yard<W> {
         self.members.iter_mut().map(|member| &mut member.vehicle)
     }
 
-    /// What was said by the supervisor, and why messages were refused.
+    /// Events of the supervisor, and reasons why messages were refused.
     pub fn log(&self) -> &[String] {
         &self.log
     }
 
-    /// The record is whole.
+    /// Completes the record.
     ///
     /// # Errors
     /// As its writer.

@@ -1,34 +1,35 @@
-//! Whether agents have delays at all: a search over sides that knows what differences of delays are left between any two agents.
+//! Decides whether delays exist: a search over sides that maintains the remaining differences of delays between any two agents.
 //!
-//! What all constraints together ask of two agents is the longest path between them. An interval with one side that these paths
-//! exclude leaves the other one, which makes further paths longer, and so on: most fleets without delays are found out so, before
-//! anything is tried. Where something has to be tried it is the interval that led to most dead ends before (Boussemart et al. 2004).
+//! The constraint that all constraints together impose on two agents is the longest path between them. If these paths exclude
+//! one side of an interval, the other side is forced, which makes further paths longer, and so on. For most fleets without
+//! delays this alone leads to a contradiction. Otherwise the search branches on the interval that led to most dead ends before
+//! (Boussemart et al. 2004).
 
 use super::problem::{Constraint, NEVER, Problem};
 use super::search::{Search, Stop};
 
-/// No path between two agents.
+/// Marks two agents without a path between them.
 const UNKNOWN: i64 = -(1 << 60);
 
-/// Dead ends until a search begins anew with what it has learnt of where they are, and by how much more each time.
+/// Number of dead ends after which a search restarts with its weights, and the factor by which it grows each time.
 const FIRST: u64 = 50;
 const GROWTH: u64 = 2;
 
-/// What was found.
+/// The result of the search.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Feasible {
     /// Delays of all agents \[ticks\].
     Delays(Vec<i64>),
-    /// There are none: it is proved.
+    /// It is proved that there are none.
     Never,
     /// The search was stopped.
     Stopped,
 }
 
-/// Agents up to which the paths between any two are known: that takes their square.
+/// Largest number of agents for which the paths between any two are stored: the memory grows with its square.
 pub(super) const MOST: usize = 2_000;
 
-/// Delays of all agents, any; and how many nodes that took.
+/// Searches any delays of all agents; also returns the number of nodes.
 pub(super) fn feasible(problem: &Problem, stop: Stop<'_>) -> (Feasible, u64) {
     if problem.len() > MOST {
         let root = Search::new(problem, stop).root();
@@ -50,13 +51,13 @@ pub(super) fn feasible(problem: &Problem, stop: Stop<'_>) -> (Feasible, u64) {
 struct Paths<'a> {
     problem: &'a Problem,
     count: usize,
-    /// By how much the delay of the column is larger than that of the row, at least \[ticks\].
+    /// Least difference of two delays: that of the column minus that of the row \[ticks\].
     least: Vec<i64>,
-    /// What was there before.
+    /// Former values of the entries that were changed.
     changes: Vec<(usize, i64)>,
-    /// How often each pair was at a dead end.
+    /// For each pair the number of dead ends at it.
     weights: Vec<u64>,
-    /// Where a constraint makes the paths of its beginning longer, and how long they are then.
+    /// Scratch: rows whose paths to the start of a constraint got longer, with their lengths.
     row: Vec<(usize, i64)>,
 }
 
@@ -72,7 +73,7 @@ impl<'a> Paths<'a> {
         self.least[from * self.count + to]
     }
 
-    /// Adds a constraint; false if it makes a circle that adds up to more than 0.
+    /// Adds a constraint; `false` if it makes a cycle whose sum is above 0.
     fn impose(&mut self, Constraint { from, to, least }: Constraint) -> bool {
         if least >= NEVER || self.at(to, from) + least > 0 {
             return false;
@@ -83,7 +84,7 @@ impl<'a> Paths<'a> {
         let count = self.count;
         let mut row = std::mem::take(&mut self.row);
         row.clear();
-        // Paths that do not get longer as far as the end of the constraint do not get longer beyond it.
+        // A path that does not get longer up to the end of the constraint does not get longer beyond it.
         let beyond = (0..count).map(|place| (place, self.at(to, place))).filter(|(_, after)| *after > UNKNOWN);
         let beyond = beyond.map(|(place, after)| (place, least + after));
         row.extend(beyond.filter(|&(place, whole)| whole > self.at(from, place)));
@@ -112,7 +113,7 @@ impl<'a> Paths<'a> {
         }
     }
 
-    /// Takes all sides that are the only ones left, until there is no more time; false if an interval has none.
+    /// Adds all forced sides, until the time is over; `false` if an interval has no side left.
     fn settle(&mut self, stop: Stop<'_>) -> bool {
         loop {
             let mark = self.changes.len();
@@ -153,7 +154,7 @@ impl<'a> Paths<'a> {
         (0..self.count).map(of).collect()
     }
 
-    /// Depth first, until so many dead ends.
+    /// Depth-first search, until this number of dead ends.
     fn dive(&mut self, stop: Stop<'_>, nodes: &mut u64, mut dead_ends: u64) -> Feasible {
         let begin = self.changes.len();
         let mut later: Vec<(usize, Constraint)> = Vec::new();
@@ -179,7 +180,7 @@ impl<'a> Paths<'a> {
         }
     }
 
-    /// The sides of an interval that holds the difference of two delays, the cheaper one first.
+    /// The sides of an interval that contains the difference of two delays, the cheaper one first.
     fn chosen(&self, delays: &[i64]) -> Option<[Constraint; 2]> {
         let violated = self.problem.pairs.iter().zip(&self.weights).filter_map(|(pair, &weight)| {
             let ends = pair.violated(delays)?;

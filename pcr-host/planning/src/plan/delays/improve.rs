@@ -5,19 +5,19 @@ use super::problem::Problem;
 use super::search::{Search, Stop};
 use crate::random::Random;
 
-/// Nodes of one neighbourhood at most.
+/// Node limit of one neighbourhood.
 const NODES: u64 = 200;
-/// Agents that are freed at first.
+/// Number of agents that are freed at first.
 const FIRST: f64 = 6.0;
-/// At least.
+/// Smallest number of agents that are freed.
 const FEWEST: f64 = 3.0;
-/// The number grows by this where a neighbourhood was searched in vain, and shrinks where it was not searched out.
+/// Factor by which the number grows after a complete search without success, and shrinks after an incomplete one.
 const GROWTH: f64 = 1.02;
 const SHRINKAGE: f64 = 0.9;
-/// Neighbours that are drawn for each agent that is wanted.
+/// Neighbours that are drawn for each agent to be freed.
 const DRAWS: usize = 20;
 
-/// The delays, or better ones, after a number of rounds.
+/// Improves delays for a number of rounds.
 pub(super) fn improved(problem: &Problem, mut delays: Vec<i64>, rounds: usize, clock: &dyn Fn() -> bool) -> Vec<i64> {
     let mut near = vec![Vec::new(); problem.len()];
     for [i, j] in problem.pairs.iter().map(|pair| pair.agents) {
@@ -44,7 +44,7 @@ pub(super) fn improved(problem: &Problem, mut delays: Vec<i64>, rounds: usize, c
     delays
 }
 
-/// Whom to free: one of those that are delayed, and others that forbid one of the chosen something. None if nobody is delayed.
+/// The agents to free: a delayed one, and others that share forbidden delays with a chosen one. `None` if no agent is delayed.
 fn neighbourhood(near: &[Vec<usize>], delays: &[i64], size: usize, random: &mut Random) -> Option<Vec<bool>> {
     let delayed: Vec<usize> = (0..delays.len()).filter(|&agent| delays[agent] > 0).collect();
     let mut chosen = vec![*delayed.get(random.below(delayed.len()))?];

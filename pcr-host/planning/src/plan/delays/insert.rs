@@ -8,10 +8,10 @@ use super::precedence::respecting;
 use super::problem::{Constraint, Problem, earliest};
 use std::cmp::Reverse;
 
-/// Orders that are tried, each with what did not fit into the one before ahead of the others.
+/// Number of orders that are tried; in each, the agents that did not fit into the one before come first.
 const ROUNDS: usize = 12;
 
-/// The delays of the first order in which all agents have one, else of that in which the fewest have none.
+/// The delays of the first order in which all agents have one; otherwise of the order with the fewest agents left out.
 pub(super) fn inserted(problem: &Problem) -> Vec<Option<i64>> {
     let table = Table::of(problem);
     let natural: Vec<usize> = (0..problem.len()).collect();
@@ -25,7 +25,7 @@ pub(super) fn inserted(problem: &Problem) -> Vec<Option<i64>> {
         for _ in 0..ROUNDS {
             let delays = table.in_order(respecting(&order, &table.first));
             let out = delays.iter().filter(|delay| delay.is_none()).count();
-            // Whoever is out first, all in the order that they had.
+            // Agents without a delay come first; otherwise the order is kept.
             order.sort_by_key(|&agent| delays[agent].is_some());
             if best.as_ref().is_none_or(|(fewest, _)| out < *fewest) {
                 best = Some((out, delays));
@@ -41,12 +41,12 @@ pub(super) fn inserted(problem: &Problem) -> Vec<Option<i64>> {
     best.map_or_else(Vec::new, |(_, delays)| delays)
 }
 
-/// A problem by agents.
+/// A problem, indexed by agent.
 struct Table<'a> {
     problem: &'a Problem,
-    /// The other agent and the place of each pair of an agent.
+    /// For each agent its pairs: the other agent, and the index of the pair.
     near: Vec<Vec<(usize, usize)>>,
-    /// Those that have to start before an agent.
+    /// For each agent the agents that have to start before it.
     first: Vec<Vec<usize>>,
 }
 

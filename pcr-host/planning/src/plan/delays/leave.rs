@@ -13,20 +13,20 @@ use super::insert;
 use super::problem::Problem;
 use super::search::{Search, Stop};
 
-/// Conflicts, and whom to leave out because of them.
+/// Conflicts, and the delays of the agents that stay in spite of them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Left {
-    /// Sets of agents of which none has delays for all of its agents: all pairs, and what else was found. If `fewest`, each has if any of
-    /// them is left out.
+    /// Sets of agents that cannot all have delays: all pairs that always meet, and the sets found by search. With `fewest`, removing any
+    /// one agent makes the rest of its set feasible, as far as short searches tell.
     pub(super) conflicts: Vec<Vec<usize>>,
-    /// Delays of those that stay \[ticks\].
+    /// Delays of the agents that stay \[ticks\]; `None` for those left out.
     pub(super) delays: Vec<Option<i64>>,
-    /// Whether it is proved that nobody more can stay; else a search was stopped before that was known.
+    /// Whether it is proved that no larger set of agents can stay; `false` if a search was stopped before.
     pub(super) fewest: bool,
 }
 
 impl Left {
-    /// All have delays.
+    /// All agents have delays.
     pub(super) fn nobody(delays: Vec<i64>) -> Self {
         Self { conflicts: Vec::new(), delays: delays.into_iter().map(Some).collect(), fewest: true }
     }
@@ -36,24 +36,24 @@ impl Left {
     }
 }
 
-/// All searches together have as many nodes as so many that are not stopped.
+/// Node limit of all searches together, as a multiple of the limit of one search.
 const SEARCHES: u64 = 10;
-/// Nodes of a search whether a conflict is one without an agent.
+/// Node limit of a search that decides whether a conflict remains one without an agent.
 const SHORT: u64 = 200;
-/// Agents from which on no search begins once there is no time or no node left: it would take seconds before its first node. And those of a
-/// conflict from which on many are taken out at once.
+/// A fleet with more agents begins no search once time or nodes are used up, because a search takes seconds before its first node.
+/// From a conflict with more agents many are removed at once.
 const LARGE: usize = 200;
 
-/// The pairs that meet whatever their delays are.
+/// The pairs that meet with all delays.
 pub(super) fn impossible(problem: &Problem) -> Vec<Vec<usize>> {
     let pairs = problem.pairs.iter().filter(|pair| pair.is_impossible());
     pairs.map(|pair| pair.agents.to_vec()).collect()
 }
 
-/// Whom to leave out. Where a search is stopped the answer is the best one that was found until then: all that stay have delays. If
-/// the fewest are not asked for, the first one that is found, with the conflicts that led to it.
+/// The agents to leave out. If a search is stopped, the answer is the best one found until then: all agents that stay have delays.
+/// Without `ask_fewest` the answer is the first one found, with the conflicts that led to it.
 ///
-/// `with` has for each agent all that are left out if it is, itself among them.
+/// `with` has for each agent the agents that have to be left out with it, itself included.
 pub(super) fn left(problem: &Problem, with: &[Vec<usize>], stop: Stop<'_>, ask_fewest: bool) -> Left {
     let mut best = Left { conflicts: impossible(problem), delays: insert::inserted(problem), fewest: true };
     close(&mut best.delays, with);
@@ -64,7 +64,7 @@ pub(super) fn left(problem: &Problem, with: &[Vec<usize>], stop: Stop<'_>, ask_f
         let (least, before) = (hit.len(), best.conflicts.len());
         let mut out = vec![false; problem.len()];
         hit.into_iter().for_each(|agent| out[agent] = true);
-        // Until all that stay have delays, one more of each further conflict goes as well.
+        // One more agent of each new conflict is left out, until all agents that stay have delays.
         let found = loop {
             let staying: Vec<usize> = (0..problem.len()).filter(|&agent| !out[agent]).collect();
             let found = together(problem, &staying, &mut budget);
@@ -97,22 +97,22 @@ pub(super) fn left(problem: &Problem, with: &[Vec<usize>], stop: Stop<'_>, ask_f
     }
 }
 
-/// Leaves out all that have to be if those without delays are.
+/// Leaves out all agents that have to be left out with those that have no delays.
 fn close(delays: &mut [Option<i64>], with: &[Vec<usize>]) {
     let out: Vec<usize> = (0..delays.len()).filter(|&agent| delays[agent].is_none()).collect();
     out.iter().flat_map(|&agent| &with[agent]).for_each(|&agent| delays[agent] = None);
 }
 
-/// What is left of the nodes of all searches.
+/// The nodes that all further searches together may still take.
 struct Budget<'a> {
     stop: Stop<'a>,
     left: u64,
-    /// Whether the fleet is.
+    /// Whether the fleet has more than `LARGE` agents.
     large: bool,
 }
 
 impl Budget<'_> {
-    /// Whether no search shall begin any more.
+    /// Whether no further search may begin.
     fn is_over(&self) -> bool {
         self.large && (self.left == 0 || (self.stop.clock)())
     }
@@ -127,9 +127,9 @@ impl Budget<'_> {
     }
 }
 
-/// What becomes of agents that shall all stay.
+/// The result of a search for delays of all agents of a set.
 struct Together {
-    /// Of all, or of as many as can be inserted in a part in which a search was stopped.
+    /// Delays of all agents; in a part whose search was stopped, of as many as can be inserted.
     delays: Vec<Option<i64>>,
     /// A conflict of each part that has no delays.
     conflicts: Vec<Vec<usize>>,
@@ -138,7 +138,7 @@ struct Together {
 
 fn together(problem: &Problem, staying: &[usize], budget: &mut Budget<'_>) -> Together {
     let mut found = Together { delays: vec![None; problem.len()], conflicts: Vec::new(), stopped: false };
-    // Parts that forbid one another nothing have conflicts of their own.
+    // Independent parts have conflicts of their own.
     for (part, own) in problem.of(staying).apart() {
         let part: Vec<usize> = part.into_iter().map(|place| staying[place]).collect();
         let mut delays = insert::inserted(&own);
@@ -157,12 +157,12 @@ fn together(problem: &Problem, staying: &[usize], budget: &mut Budget<'_>) -> To
     found
 }
 
-/// Those of a conflict that are left if everybody is taken out without whom it is one, as far as short searches tell.
+/// A conflict without the agents that it does not need to be one, as far as short searches tell.
 fn least_conflict(problem: &Problem, mut conflict: Vec<usize>, budget: &mut Budget<'_>) -> Vec<usize> {
     let is_forced = |agents: &[usize], budget: &Budget<'_>| {
         Search::new(&problem.of(agents), Stop { nodes: 0, ..budget.stop }).root().is_none()
     };
-    // What is forced upon all plans is soon known.
+    // For a large conflict only the root node is tried, because that is fast.
     let forced = conflict.len() > LARGE && is_forced(&conflict, budget);
     let mut chunk = if conflict.len() > LARGE { conflict.len() / 2 } else { 1 };
     loop {
@@ -192,7 +192,7 @@ fn least_conflict(problem: &Problem, mut conflict: Vec<usize>, budget: &mut Budg
     }
 }
 
-/// Gives delays to those that have none where a short search finds some for them and all that have.
+/// Gives delays to agents without any, if a short search finds delays for them together with all agents that have some.
 fn take_in(problem: &Problem, delays: &mut [Option<i64>], budget: &mut Budget<'_>) {
     for agent in 0..delays.len() {
         if budget.is_over() {
@@ -206,7 +206,7 @@ fn take_in(problem: &Problem, delays: &mut [Option<i64>], budget: &mut Budget<'_
             continue;
         }
         let together: Vec<usize> = (0..delays.len()).filter(|&it| it == agent || delays[it].is_some()).collect();
-        // Of more no search finds delays.
+        // With more agents `feasible` does not search.
         if together.len() > MOST {
             return;
         }
@@ -216,7 +216,7 @@ fn take_in(problem: &Problem, delays: &mut [Option<i64>], budget: &mut Budget<'_
     }
 }
 
-/// The fewest agents of which each conflict has one. If the search for them is stopped `fewest` becomes false, and they are few.
+/// A smallest set that has an agent of each conflict. If the search is stopped, `fewest` becomes false, and a smaller set may exist.
 fn hitting(conflicts: &[Vec<usize>], with: &[Vec<usize>], stop: Stop<'_>, fewest: &mut bool) -> Vec<usize> {
     let agents = with.len();
     let mut hit = Vec::new();
@@ -233,15 +233,15 @@ fn hitting(conflicts: &[Vec<usize>], with: &[Vec<usize>], stop: Stop<'_>, fewest
         };
         search.node(0);
         *fewest &= !search.cut;
-        // The first dive ends with some, however many nodes it takes.
+        // The first descent is never stopped, so it ends with a set.
         hit.extend(search.best.unwrap_or_else(|| (0..agents).collect()));
     }
     hit
 }
 
-/// The conflicts in groups: nobody who is left out because of one is because of another one.
+/// The conflicts in independent groups: no agent that can be left out because of one group is affected by another one.
 fn apart<'a>(conflicts: &'a [Vec<usize>], with: &[Vec<usize>]) -> Vec<Vec<&'a Vec<usize>>> {
-    // The agents and the conflicts of each.
+    // Agents and conflicts of each group.
     let mut groups: Vec<(Vec<usize>, Vec<&Vec<usize>>)> = Vec::new();
     for conflict in conflicts {
         let mut agents: Vec<usize> = conflict.iter().flat_map(|&agent| with[agent].iter().copied()).collect();
@@ -259,7 +259,7 @@ fn apart<'a>(conflicts: &'a [Vec<usize>], with: &[Vec<usize>]) -> Vec<Vec<&'a Ve
     groups.into_iter().map(|(_, conflicts)| conflicts).collect()
 }
 
-/// Branch and bound over which agent of a conflict is left out.
+/// Branch and bound: for a conflict, which of its agents is left out.
 struct Hitting<'a> {
     conflicts: &'a [&'a Vec<usize>],
     with: &'a [Vec<usize>],
@@ -267,7 +267,7 @@ struct Hitting<'a> {
     kept: Vec<bool>,
     best: Option<Vec<usize>>,
     nodes: u64,
-    /// Whether it was stopped with some that are few.
+    /// Whether the search was stopped; the best set so far may not be smallest.
     cut: bool,
     stop: Stop<'a>,
 }
@@ -282,7 +282,7 @@ impl Hitting<'_> {
         }
         let is_open = |conflict: &&Vec<usize>| !conflict.iter().any(|&agent| self.out[agent]);
         let open: Vec<&Vec<usize>> = self.conflicts.iter().copied().filter(is_open).collect();
-        // Conflicts that have no agent in common need one each.
+        // Conflicts without a common agent need one agent each.
         let mut used = vec![false; self.out.len()];
         let mut needed = 0;
         for conflict in &open {
@@ -307,7 +307,7 @@ impl Hitting<'_> {
             more.iter().for_each(|&other| self.out[other] = true);
             self.node(count + more.len());
             more.iter().for_each(|&other| self.out[other] = false);
-            // With it the search has been done.
+            // The branch in which it is left out has been searched.
             self.kept[agent] = true;
         }
         choices.iter().for_each(|&agent| self.kept[agent] = false);

@@ -1,7 +1,8 @@
-//! The node that could cost least first: what is open costs more and more, and with it what all plans cost at least.
+//! Best-first search: the open node with the least bound is expanded first. Its bound is a lower bound of the cost of all plans, and
+//! rises as the search goes on.
 //!
-//! Depth first finds plans soon, but leaves nodes behind that were branched early and could cost little: as a bound it is worth nothing
-//! until it ends. Here a node is the list of sides that lead to it, and is made anew when it is its turn.
+//! Depth-first search finds plans early, but its lower bound rises only at the end, because nodes near the root stay open. Here a node is
+//! stored as the list of sides that lead to it, and is computed again when it is expanded.
 
 use super::problem::Constraint;
 use super::search::{Found, Search, Step};
@@ -11,18 +12,18 @@ use std::collections::BinaryHeap;
 /// A side, and the side that was chosen before it.
 type Chosen = (usize, Option<Constraint>);
 
-/// Most nodes of such a search: all that are open are remembered, in up to 200 MB.
+/// Node limit of such a search: all open nodes are kept in memory, up to 200 MB.
 pub(super) const MOST: u64 = 500_000;
 
 impl Search<'_> {
-    /// The delays that cost least, and less than a limit; in nodes that are looked at in the order of their bounds.
+    /// The delays with the least cost, if that is below `limit`. Nodes are expanded in increasing order of their bounds.
     pub(super) fn lowest(mut self, limit: i128) -> Found {
         self.limit = limit;
         let mut open = BinaryHeap::new();
-        // The way to each node, from its last side to the first.
+        // The sides that lead to each node, the last one first.
         let mut chosen: Vec<Chosen> = vec![(0, None)];
         if self.force() {
-            // Of those that cost the same the deepest one, and then the one that was found first.
+            // Among nodes with equal bounds the deepest is expanded first, then the one found first.
             open.push(Reverse((self.problem.cost(&self.net.least), Reverse(0_u32), 0_usize)));
         }
         let root = self.net.mark();
@@ -52,7 +53,7 @@ impl Search<'_> {
         self.found(limit)
     }
 
-    /// The sides to branch upon, after those that are the only ones left; and the node that these make.
+    /// Adds all forced sides to a node; returns the two sides to branch on, and the resulting node.
     fn branched(&mut self, chosen: &mut Vec<Chosen>, mut place: usize) -> (Option<[Constraint; 2]>, usize) {
         loop {
             match self.step() {

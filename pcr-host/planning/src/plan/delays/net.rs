@@ -10,16 +10,16 @@ use std::collections::VecDeque;
 pub(super) struct Net {
     /// The least delays \[ticks\].
     pub(super) least: Vec<i64>,
-    /// For each agent where its constraints lead to, and how much more that is.
+    /// For each agent its constraints: the other agent, and the least difference.
     out: Vec<Vec<(usize, i64)>>,
-    /// What was changed: an agent that got a constraint, or its delay before it was raised.
+    /// Changes: an agent that got a constraint, or an agent with its former delay.
     changes: Vec<(usize, Option<i64>)>,
     queue: VecDeque<usize>,
     queued: Vec<bool>,
 }
 
 impl Net {
-    /// Without constraints but that delays are at least these.
+    /// A net without constraints between agents; delays are at least these.
     pub(super) fn new(least: Vec<i64>) -> Self {
         let count = least.len();
         Self {
@@ -31,7 +31,7 @@ impl Net {
         }
     }
 
-    /// Adds a constraint; false if no delays are left: then it has to be taken back.
+    /// Adds a constraint; `false` if no delays are left. Then the constraint has to be taken back.
     pub(super) fn impose(&mut self, constraint: Constraint) -> bool {
         let Constraint { from, to, least } = constraint;
         if least >= NEVER || from == to {
@@ -44,7 +44,7 @@ impl Net {
         while let Some(agent) = self.queue.pop_front() {
             self.queued[agent] = false;
             possible &= agent != from;
-            // What is queued yet is taken out all the same.
+            // After a contradiction the queue is emptied without effect.
             let reached = if possible { self.out[agent].len() } else { 0 };
             for place in 0..reached {
                 let (next, least) = self.out[agent][place];
@@ -67,12 +67,12 @@ impl Net {
         }
     }
 
-    /// Where to come back to.
+    /// A mark for [`Self::take_back`].
     pub(super) fn mark(&self) -> usize {
         self.changes.len()
     }
 
-    /// Takes back all since a mark.
+    /// Takes back all changes since a mark.
     pub(super) fn take_back(&mut self, mark: usize) {
         while self.changes.len() > mark {
             match self.changes.pop() {

@@ -3,8 +3,8 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// The order, but for agents that have to start before others: `first` has for each agent those that do. In a circle any of them is as
-/// good: the first one that is left. O(n log n) for n agents and what `first` holds.
+/// The order, changed so that each agent comes after those that have to start before it (`first`). In a cycle the first
+/// remaining agent is taken. Takes O(n log n) for n agents, plus the size of `first`.
 pub(crate) fn respecting(order: &[usize], first: &[Vec<usize>]) -> Vec<usize> {
     let mut ranks = vec![0; first.len()];
     order.iter().enumerate().for_each(|(rank, &agent)| ranks[agent] = rank);

@@ -8,27 +8,27 @@
 /// An end of an interval that stands for infinity \[ticks\].
 pub(crate) const NEVER: i64 = i64::MAX / 4;
 
-/// Most binary digits of a tick behind the point.
+/// Largest number of binary digits of a tick after the point.
 const FINEST: i32 = 30;
-/// Binary digits that the largest time has beyond a tick at most: one less than a number of double precision holds.
+/// Largest number of binary digits of a time in ticks: one less than `f64` holds.
 const DIGITS: i32 = 52;
-/// By how much each end is rounded outward at most \[ticks\].
+/// Bound on the outward rounding of each end \[ticks\].
 const OUTWARD: i128 = 2;
 
-/// How long a tick is.
+/// The length of a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ticks {
     per_second: f64,
 }
 
 impl Ticks {
-    /// As fine as times up to a latest one allow \[s\].
+    /// The finest ticks for times up to a latest one \[s\].
     pub(crate) fn up_to(latest: f64) -> Self {
         let digits = latest.max(1.0).log2().ceil() as i32 + 1;
         Self { per_second: f64::exp2(f64::from(FINEST.min(DIGITS - digits))) }
     }
 
-    /// What a pair must not have, rounded outward; `limit` and more stands for infinity \[s\].
+    /// A forbidden interval in ticks, rounded outward; values of `limit` or more stand for infinity \[s\].
     pub(crate) fn outward(self, [lo, hi]: [f64; 2], limit: f64) -> [i64; 2] {
         let below = if lo <= -limit { -NEVER } else { (lo * self.per_second).floor() as i64 - 1 };
         [below, if hi >= limit { NEVER } else { (hi * self.per_second).ceil() as i64 + 1 }]
@@ -39,7 +39,7 @@ impl Ticks {
         (seconds * self.per_second).round() as i64
     }
 
-    /// A time, exactly where it has no more digits than a number.
+    /// A time in seconds; exact if it has no more digits than `f64` holds.
     pub(crate) fn seconds(self, ticks: i128) -> f64 {
         ticks as f64 / self.per_second
     }
@@ -56,7 +56,7 @@ pub(crate) fn slack(problem: &Problem) -> i128 {
     }
 }
 
-/// What the delays of two agents, the second's less the first's, must not be.
+/// Forbidden differences of the delays of two agents: the second delay minus the first.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Pair {
     pub(crate) agents: [usize; 2],
@@ -65,7 +65,7 @@ pub(crate) struct Pair {
 }
 
 impl Pair {
-    /// Of intervals that may overlap.
+    /// A pair with intervals that may overlap.
     pub(crate) fn new(agents: [usize; 2], mut forbidden: Vec<[i64; 2]>) -> Self {
         forbidden.sort_unstable();
         let mut disjoint: Vec<[i64; 2]> = Vec::with_capacity(forbidden.len());
@@ -78,7 +78,7 @@ impl Pair {
         Self { agents, forbidden: disjoint }
     }
 
-    /// What is forbidden: open, disjoint and in order \[ticks\].
+    /// The forbidden intervals: open, disjoint and in order \[ticks\].
     pub(super) fn intervals(&self) -> &[[i64; 2]] {
         &self.forbidden
     }
@@ -94,7 +94,7 @@ impl Pair {
         delays[second] - delays[first]
     }
 
-    /// What the delays of one of the two must not be while the other one has this delay \[ticks\].
+    /// Forbidden delays of one of the two while the other has this delay \[ticks\].
     pub(super) fn forbidden_to(&self, agent: usize, other: i64) -> impl Iterator<Item = [i64; 2]> {
         let shifted = move |end: i64| if end.abs() < NEVER { end + other } else { end };
         let second = self.agents[1] == agent;
@@ -106,7 +106,7 @@ impl Pair {
         self.forbidden.iter().any(|&[lo, hi]| lo <= -NEVER && hi >= NEVER)
     }
 
-    /// The constraints beside an interval: the difference below it, and above it.
+    /// The constraints on either side of an interval: the difference is below it, or above it.
     pub(super) fn beside(&self, [lo, hi]: [i64; 2]) -> [Constraint; 2] {
         let [first, second] = self.agents;
         [
@@ -115,7 +115,7 @@ impl Pair {
         ]
     }
 
-    /// What holds for all allowed differences: intervals without an end leave one side.
+    /// Constraints that hold for all allowed differences: an unbounded interval leaves one side.
     pub(super) fn forced(&self) -> impl Iterator<Item = Constraint> {
         let sided = |&ends: &[i64; 2]| {
             let [below, above] = self.beside(ends);
@@ -145,7 +145,7 @@ pub(crate) fn earliest(mut forbidden: Vec<[i64; 2]>) -> Option<i64> {
     (delay < NEVER).then_some(delay)
 }
 
-/// The delay of one agent is at least that of another and so much more \[ticks\].
+/// The delay of `to` is at least that of `from` plus `least` \[ticks\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Constraint {
     pub(super) from: usize,
@@ -153,7 +153,7 @@ pub(super) struct Constraint {
     pub(super) least: i64,
 }
 
-/// What shall be least.
+/// The objective to be minimized.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Objective {
     /// The sum over the agents from their start in the file to their arrival.

@@ -17,34 +17,34 @@ const MOST_WAITING: usize = 2_000;
 const TICK: u64 = 32;
 const LONG: usize = 2_000;
 
-/// When a search stops: what it found until then is what it answers.
+/// Limits of a search, which answers with the best result so far.
 #[derive(Clone, Copy)]
 pub(crate) struct Stop<'a> {
-    /// After so many nodes.
+    /// Largest number of nodes.
     pub(crate) nodes: u64,
-    /// As soon as this says so.
+    /// Stops the search when it returns true.
     pub(crate) clock: &'a dyn Fn() -> bool,
 }
 
-/// What a search found.
+/// The result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Found {
     /// The best delays that cost less than the limit.
     pub(super) delays: Option<Vec<i64>>,
-    /// No delays cost less than this or, if that is less, than the limit \[ticks\].
+    /// Lower bound of the cost of all delays, or the limit if that is less \[ticks\].
     pub(super) bound: i128,
-    /// Whether it was not stopped: there is nothing better.
+    /// Whether the search was not stopped: then there is nothing better.
     pub(super) complete: bool,
     /// Nodes of the tree.
     pub(super) nodes: u64,
 }
 
-/// A pair of which the difference is in a forbidden interval.
+/// A pair whose difference of delays is in a forbidden interval.
 struct Violated {
     agents: [usize; 2],
-    /// The delay of one of them is larger by so much, at least.
+    /// Least increase of the delay of either agent that ends the violation.
     raises: [i64; 2],
-    /// The two ways out.
+    /// The two constraints that end the violation.
     sides: [Constraint; 2],
 }
 
@@ -54,11 +54,11 @@ impl Violated {
     }
 }
 
-/// What a node does next.
+/// The next step at a node.
 pub(super) enum Step {
     /// Nothing is left.
     End,
-    /// One side is possible only.
+    /// Only one side is possible.
     Only(Constraint),
     /// Two sides, the cheaper first.
     Both([Constraint; 2]),
@@ -110,13 +110,13 @@ impl<'a> Search<'a> {
         self.found(open)
     }
 
-    /// What was found, where nothing that is open costs less than this.
+    /// The result, if all open nodes cost at least `open`.
     pub(super) fn found(self, open: i128) -> Found {
         let Self { best, limit, stopped, nodes, .. } = self;
         Found { delays: best, bound: open.min(limit), complete: !stopped, nodes }
     }
 
-    /// The least delays that keep to what is forced upon all plans, if there are any.
+    /// The least delays that satisfy all forced constraints, if there are any.
     pub(super) fn root(mut self) -> Option<Vec<i64>> {
         self.force().then_some(self.net.least)
     }
@@ -127,9 +127,9 @@ impl<'a> Search<'a> {
         forced.into_iter().all(|constraint| net.impose(constraint))
     }
 
-    /// Node after node, depth first; without recursion, which would take a stack as deep as the tree.
+    /// Visits nodes depth first; without recursion, because the stack would be as deep as the tree.
     fn tree(&mut self) {
-        // Where a node was branched, and the second of its sides.
+        // Marks of the nodes with a second side to try, and that side.
         let mut later: Vec<(usize, Constraint)> = Vec::new();
         loop {
             let mut next = self.node();
@@ -145,12 +145,12 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Adds a constraint; whether what is left is of interest.
+    /// Adds a constraint; returns whether the remaining problem can have a better result.
     pub(super) fn takes(&mut self, side: Constraint) -> bool {
         self.net.impose(side) && self.problem.cost(&self.net.least) < self.limit
     }
 
-    /// Whether the search ends here, at one node more.
+    /// Counts a node; returns whether the search ends here.
     pub(super) fn is_over(&mut self) -> bool {
         self.nodes += 1;
         let look = self.nodes.is_multiple_of(TICK) || self.pairs.len() > LONG;
@@ -158,12 +158,12 @@ impl<'a> Search<'a> {
         self.stopped
     }
 
-    /// What all plans cost at least that keep the constraints.
+    /// Lower bound of the cost of all plans that keep the constraints.
     pub(super) fn bound(&self) -> i128 {
         self.problem.cost(&self.net.least) + self.surplus(&self.violated())
     }
 
-    /// Looks at a node: the sides to branch upon, the more promising one first.
+    /// Visits a node; returns the sides to branch on, the more promising one first.
     fn node(&mut self) -> Option<[Constraint; 2]> {
         if self.is_over() {
             self.open = self.open.min(self.bound());
@@ -234,12 +234,12 @@ impl<'a> Search<'a> {
         violated
     }
 
-    /// What violated pairs add to the sum at least: cliques of them that have no agent in common.
+    /// Lower bound of the increase of the sum of costs due to violated pairs: from cliques of them without common agents.
     fn surplus(&self, violated: &[Violated]) -> i128 {
         if self.problem.objective != Objective::Sum {
             return 0;
         }
-        // Those of whom one has to wait, in order: others are in no clique.
+        // The agents in violated pairs, sorted; other agents are in no clique.
         let mut waiting: Vec<usize> = violated.iter().flat_map(|pair| pair.agents).collect();
         waiting.sort_unstable();
         waiting.dedup();
@@ -275,8 +275,9 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The least sum of delays of agents that go one after the other in any order, each later than the one before by at least the
-/// least that it has after any of them: the first has none, and shorter ones before longer ones make the sum least.
+/// Lower bound of the sum of delays of agents that go one after the other, in any order. Each starts later than the one before it by at
+/// least its least gap to any other agent. The sum is least if the gaps are in increasing order and the first agent, without a gap, has
+/// delay 0.
 fn in_sequence(clique: &[usize], raise: impl Fn(usize, usize) -> i64) -> i128 {
     let least = |&agent: &usize| {
         let others = clique.iter().filter(|&&other| other != agent);
@@ -284,7 +285,7 @@ fn in_sequence(clique: &[usize], raise: impl Fn(usize, usize) -> i64) -> i128 {
     };
     let mut least: Vec<i64> = clique.iter().map(least).collect();
     least.sort_unstable();
-    // The longest is that of the first, which does not count.
+    // The first agent has no gap before it. Which agent is first is not known, so the largest gap is left out.
     least.pop();
     (1..).zip(least.iter().rev()).map(|(later, &raise)| later * i128::from(raise)).sum()
 }

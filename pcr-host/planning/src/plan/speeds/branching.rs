@@ -79,7 +79,7 @@ fn put_in_order<'m>(
     }
     let mut node = node.clone();
     node.above[second].push(first);
-    // Whoever gives way to more is planned later.
+    // An agent that gives way to more others is planned later.
     let count = node.plan.len();
     let mut below: Vec<(usize, usize)> = (0..count)
         .map(|agent| (superiors(&node.above, agent), agent))

@@ -12,11 +12,11 @@ use crate::event::Event;
 use crate::supervisor::{Proposal, Supervisor};
 
 impl Lane {
-    /// Passes on what the manager wants at once. An order that it cancels gets no further update.
+    /// Passes on instant actions of the manager. An order that they cancel gets no further update.
     ///
     /// # Errors
-    /// [`Refusal`] for what is no such message, for a `cancelOrder` that was there before, which is passed on and cancels nothing, and for a
-    /// `stopPause` while the vehicle has to stand.
+    /// [`Refusal`] for an invalid message, for a `cancelOrder` with a used `actionId`, which is passed on but cancels nothing,
+    /// and for a `stopPause` while the vehicle has to stand.
     pub fn instant_actions(
         &mut self,
         supervisor: &mut Supervisor,
@@ -27,14 +27,14 @@ impl Lane {
     ) -> Result<(), Refusal> {
         let message: InstantActions = door::read(bytes, limits)?;
         let actions = message.list()?;
-        // The schema 2.0 does not ask for a header.
+        // Schema 2.0 does not require a header.
         let version = match (message.header.version.as_str(), self.version) {
             ("", Some(version)) => version,
             _ => message.header.check(&self.profile.key, is_third)?,
         };
         let (cancel, repeated) = self.cancels(supervisor, actions);
         if let Some((job, cancel)) = self.job.as_mut().zip(cancel) {
-            // What waits to be admitted is given up: the way ends where it ends now.
+            // The waiting mission is given up: the way ends at its present end.
             let mission = format!("cancel {cancel}");
             (job.cancel, job.cancelled_at) = (Some(cancel), now);
             let given = job.given();
@@ -55,8 +55,8 @@ impl Lane {
         repeated.or(held).map_or(Ok(()), Err)
     }
 
-    /// The action that cancels the order, if one does. One that was used before is a message that comes again: the vehicle does nothing for
-    /// it, and says that it is done since the order before.
+    /// The action that cancels the order, if there is one. A used `actionId` means a repeated message: the vehicle ignores it,
+    /// and reports it as finished since the order before.
     fn cancels(&mut self, supervisor: &mut Supervisor, actions: &[Action]) -> (Option<String>, Option<Refusal>) {
         let (mut cancel, mut repeated) = (None, None);
         for (k, action) in actions.iter().enumerate().filter(|(_, action)| action.action_type == "cancelOrder") {
@@ -74,7 +74,7 @@ impl Lane {
         (cancel, repeated)
     }
 
-    /// Asks the vehicle for something; by which action.
+    /// Sends an instant action of our own, and returns its id.
     pub fn ask_for(&mut self, action_type: &str) -> String {
         let version = self.version.unwrap_or(Version::V2_1);
         let header = self.header(Kind::InstantActions, version);
@@ -84,7 +84,7 @@ impl Lane {
         id
     }
 
-    /// Cancels the order of the vehicle once more, under another name.
+    /// Cancels the order of the vehicle again, with another action id.
     pub(super) fn cancel_again(&mut self, supervisor: &mut Supervisor, now: f64) {
         let Some(version) = self.version else { return };
         let header = self.header(Kind::InstantActions, version);
@@ -98,7 +98,7 @@ impl Lane {
         self.post(To::Vehicle, Kind::InstantActions, version, &message);
     }
 
-    /// What cancels the order may be lost, or be there before the order: the one or the other is sent again until the vehicle has both.
+    /// The cancellation may be lost, or arrive before the order. Both are sent again until the vehicle has both.
     pub(super) fn follow_cancel(&mut self, now: f64) {
         let (Some(version), Some(state), Some(job)) = (self.version, &self.state, &mut self.job) else { return };
         let Some(id) = job.cancel.clone() else { return };
@@ -118,12 +118,12 @@ impl Lane {
         }
     }
 
-    /// Takes what the supervisor says of the vehicle.
+    /// Handles an event of the supervisor about the vehicle.
     pub fn told(&mut self, event: &Event) {
         let Event::Dropped { mission, why, .. } = event else { return };
         let order = mission.rsplit_once('#').map_or(mission.as_str(), |(order, _)| order);
         let update = self.job.as_ref().map_or(0, |job| job.held.update_id);
-        // One that was replaced by a longer one of the same order is not lost.
+        // A mission that was replaced by a longer one of the same order is not lost.
         if !why.contains("takes its place") {
             self.reject(&Rejected::new(Error::Order, "nodes", why), order, update);
             self.mirror();

@@ -10,63 +10,63 @@ use crate::supervisor::Damaged;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-/// The first node of an order may be so far from where the vehicle stands \[m\]: it goes there straight.
+/// Largest distance between the vehicle and the first node of its order \[m\]; the vehicle goes there in a straight line.
 pub(super) const BEGINS: f64 = 1.0;
 
-/// Where the base of the vehicle's order may end.
+/// A place where the base of the vehicle's order may end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
-    /// The vehicle's number of it.
+    /// Sequence number of the node in the messages to the vehicle.
     pub sequence: u64,
-    /// Length of the way up to it \[m\].
+    /// Length of the way up to the stop \[m\].
     pub length: f64,
-    /// The manager's node there, or the last one before it.
+    /// Index of the manager's node at the stop, or of the last one before it.
     pub node: usize,
-    /// Whether it is in the middle of the edge after that node.
+    /// Whether the stop is in the middle of the edge after that node.
     pub between: bool,
 }
 
-/// An update that was sent.
+/// An order update that was sent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sent {
-    /// The vehicle's number of it.
+    /// Update id in the message to the vehicle.
     pub update: u64,
-    /// The manager's number of what it says.
+    /// Update id of the manager's order from which it was made.
     pub manager: u64,
-    /// Place of its first stop.
+    /// Index of its first stop.
     pub from: usize,
 }
 
 /// An order.
 #[derive(Clone, Debug)]
 pub struct Job {
-    /// As the manager has given it.
+    /// The order as the manager gave it.
     pub held: Held,
-    /// Its path, from where the vehicle stood.
+    /// Path of the order, from where the vehicle stood.
     pub way: Way,
-    /// Edition of the manager's order.
+    /// Edition of VDA 5050 of the manager's order.
     pub version: String,
-    /// Place of the node up to which the supervisor was asked for a way.
+    /// Index of the node up to which the supervisor was asked for a way.
     pub asked: usize,
-    /// What the vehicle has been released, or may have been.
+    /// Stops that the vehicle has been released, or may have been.
     pub stops: Vec<Stop>,
-    /// What was sent last, and when \[s\].
+    /// The last update that was sent.
     pub sent: Option<Sent>,
-    /// When \[s\].
+    /// Time at which it was sent \[s\].
     pub sent_at: f64,
-    /// The update that the vehicle has, and the manager's number of that.
+    /// Update ids of the update that the vehicle has: its own and the manager's.
     pub acknowledged: Option<(u64, u64)>,
-    /// The nodes ahead are not those that the vehicle knows.
+    /// Whether the nodes ahead differ from those that the vehicle knows.
     pub changed: bool,
-    /// The action that cancels it.
+    /// Id of the action that cancels the order.
     pub cancel: Option<String>,
-    /// When that was sent \[s\].
+    /// Time at which the cancellation was sent \[s\].
     pub cancelled_at: f64,
-    /// Since when the vehicle has lost it \[s\].
+    /// Time since which the vehicle has lost the order \[s\].
     pub lost: Option<f64>,
 }
 
-/// What is remembered of the manager's order.
+/// The part of the manager's order that is stored as a note.
 #[derive(Serialize, Deserialize)]
 struct Given {
     held: Held,
@@ -75,13 +75,13 @@ struct Given {
     cancel: Option<String>,
 }
 
-/// The mission to a node, as the supervisor knows it.
+/// Id of the mission that leads to a node, in the supervisor.
 pub(super) fn mission(held: &Held, node: usize) -> String {
     format!("{}#{}", held.order_id, held.nodes.get(node).map_or(0, |node| node.sequence_id))
 }
 
 impl Job {
-    /// A new order for a vehicle that stands there.
+    /// A new order for a vehicle that stands at the start of the way.
     pub(super) fn new(held: Held, way: Way, version: String) -> Self {
         let first = Stop { sequence: 0, length: way.node(0).unwrap_or(0.0), node: 0, between: false };
         Self {
@@ -100,10 +100,10 @@ impl Job {
         }
     }
 
-    /// What the journal has of it; `None` for a robot that has no order.
+    /// Restores an order from the notes of a robot; `None` for a robot that has no order.
     ///
     /// # Errors
-    /// [`Damaged`] where that cannot be read.
+    /// [`Damaged`] if a note cannot be read.
     pub(super) fn remembered(robot: Option<&Robot>) -> Result<Option<Self>, Damaged> {
         let Some(given) = noted::<Given>(robot, "order")? else { return Ok(None) };
         let Given { held, start, version, cancel } = given;
@@ -118,25 +118,25 @@ impl Job {
         Ok(Some(job))
     }
 
-    /// What is to be remembered of the manager's order.
+    /// The manager's order as a note.
     pub(super) fn given(&self) -> Value {
         let Self { held, way, version, cancel, .. } = self;
         let given = Given { held: held.clone(), start: way.start(), version: version.clone(), cancel: cancel.clone() };
         serde_json::to_value(given).unwrap_or_default()
     }
 
-    /// What is to be remembered of the update that was sent last.
+    /// The last update that was sent, as a note.
     pub(super) fn sent_note(&self) -> Value {
         serde_json::to_value(self.sent).unwrap_or_default()
     }
 
-    /// The node that a mission leads to.
+    /// Index of the node to which a mission leads.
     fn place(&self, mission: &str) -> Option<usize> {
         let (order, sequence) = mission.rsplit_once('#')?;
         if order == self.held.order_id { self.held.place_of(sequence.parse().ok()?) } else { None }
     }
 
-    /// Place of the node at which the path of the supervisor ends; the first one while nothing is admitted.
+    /// Index of the node at which the supervisor's path ends; 0 while nothing is admitted.
     pub(super) fn planned(&self, robot: &Robot) -> usize {
         robot.mission.as_deref().and_then(|mission| self.place(mission)).unwrap_or(0)
     }
@@ -146,26 +146,27 @@ impl Job {
         robot.mission.as_deref().and_then(|mission| self.place(mission)).is_some()
     }
 
-    /// Place of the node at which a mission ends that waits to be admitted.
+    /// Index of the node at which the mission ends that waits to be admitted.
     fn waiting(&self, robot: &Robot) -> Option<usize> {
         robot.waiting.as_ref().and_then(|waiting| self.place(&waiting.mission))
     }
 
-    /// What is to be added to a length of the supervisor's path for one of the way \[m\]: both end at the same node. It follows from the
-    /// path that the supervisor has now: a mission can be admitted at any time.
+    /// Offset from a length on the supervisor's path to a length on the order's way \[m\]; both end at the same node. It is computed from
+    /// the supervisor's present path, because a mission can be admitted at any time.
     pub(super) fn offset(&self, robot: &Robot) -> f64 {
-        // Until then the vehicle is where the path before ends.
+        // Before the admission the vehicle is at the end of its former path, which is the start of the way.
         let end = if self.is_admitted(robot) { self.way.node(self.planned(robot)).unwrap_or(0.0) } else { 0.0 };
         end - robot.course.length()
     }
 
-    /// Whether the vehicle has had it: an update is sent when the one before it was there, perhaps to another supervisor.
+    /// Whether the vehicle has received the order. An update is only sent after the one before it was received, perhaps while an earlier
+    /// supervisor ran.
     pub(super) fn was_there(&self) -> bool {
         self.acknowledged.is_some() || self.sent.is_some_and(|sent| sent.update > 0)
     }
 
-    /// The order of a vehicle that has lost this one where it is now, if it goes on with the rest of the way as far as that is admitted, and the
-    /// place of the node up to there; none: it goes elsewhere.
+    /// For a vehicle that has lost this order: the new order `held` from where the vehicle is now, if it follows the rest of the admitted
+    /// way, and the index of the node up to which it does. `None` if the new order leads elsewhere.
     pub(super) fn rejoined(
         &self,
         robot: &Robot,
@@ -173,7 +174,7 @@ impl Job {
         length: f64,
         version: String,
     ) -> Option<(Self, usize)> {
-        /// The same node.
+        /// Largest distance of equal nodes \[m\].
         const SAME: f64 = 1e-6;
         let place = |node: &Node| node.node_position.as_ref().map(|at| [at.x, at.y]);
         let end = self.planned(robot);
@@ -183,7 +184,8 @@ impl Job {
         let same = |(a, b): (&Node, &Node)| {
             place(a).zip(place(b)).is_some_and(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]) <= SAME)
         };
-        // It begins at the next node, or over a place where it is before that: on the way, not where the vehicle says that it is beside it.
+        // The new order begins at the next node of the way, or with a node before it that lies on the way; the reported
+        // position may be beside the way.
         let skip = usize::from(!same((held.nodes.first()?, rest.first()?)));
         let joins = rest.len() - 1 + skip;
         let follows = self.is_admitted(robot)
@@ -201,17 +203,17 @@ impl Job {
         Some((Self::new(held, way, version), joins))
     }
 
-    /// Where the base of the vehicle ends, or may end.
+    /// The last stop that the vehicle has, or may have.
     pub(super) fn last(&self) -> Stop {
         self.stops.last().copied().unwrap_or(Stop { sequence: 0, length: 0.0, node: 0, between: false })
     }
 
-    /// Place of a stop by the vehicle's number.
+    /// Index of the stop with this sequence number.
     pub(super) fn stop(&self, sequence: u64) -> Option<usize> {
         self.stops.binary_search_by_key(&sequence, |stop| stop.sequence).ok()
     }
 
-    /// Whether the vehicle has all that was sent.
+    /// Whether the vehicle has the last update that was sent.
     pub(super) fn is_acknowledged(&self) -> bool {
         match (self.sent, self.acknowledged) {
             (None, _) => true,
@@ -220,7 +222,7 @@ impl Job {
         }
     }
 
-    /// The node of a stop, as the vehicle gets it.
+    /// The node of a stop, as it is sent to the vehicle.
     pub(super) fn node(&self, stop: Stop, deviation: f64, released: bool) -> Option<Node> {
         let near = self.held.nodes.get(stop.node)?;
         let mut node = if stop.between { self.between(near, stop) } else { near.clone() };
@@ -247,7 +249,7 @@ impl Job {
         }
     }
 
-    /// The name of the node of a stop.
+    /// The node id of a stop.
     fn id(&self, stop: Stop) -> String {
         let node = self.held.nodes.get(stop.node).map_or("", |node| node.node_id.as_str());
         if stop.between {
@@ -257,7 +259,7 @@ impl Job {
         }
     }
 
-    /// The edge from stop to stop, or a part of it, as the vehicle gets it.
+    /// The edge, or part of an edge, between two stops, as it is sent to the vehicle.
     pub(super) fn edge(&self, [from, to]: [Stop; 2], released: bool) -> Option<Edge> {
         let mut edge = self.held.edges.get(from.node)?.clone();
         (edge.sequence_id, edge.released) = (from.sequence + 1, released);
@@ -278,7 +280,7 @@ impl Job {
     }
 }
 
-/// The vehicle may not pass a node further off than its margin covers.
+/// Limits the allowed deviation at a node to what the margin covers.
 fn limit(position: &mut NodePosition, deviation: f64, version: &str) {
     use super::super::version::Version;
     let allowed = position.deviation().ok().flatten().unwrap_or(deviation).min(deviation);

@@ -7,19 +7,19 @@ use super::Lane;
 use crate::robot::Robot;
 use crate::supervisor::Supervisor;
 
-/// The note of the map on which a vehicle is.
+/// Key of the note with the map of the vehicle.
 pub(super) const MAP: &str = "map";
 
-/// The map on which a vehicle is known to be.
+/// The map of a vehicle, if it is known.
 pub(super) fn map_of(robot: &Robot) -> Option<&str> {
     robot.notes.get(MAP)?.as_str()
 }
 
 impl Lane {
-    /// Whether the vehicle can stand on a map.
+    /// Checks that the vehicle is on the same map as the others.
     ///
     /// # Errors
-    /// [`Refusal`] if the others are on another one: vehicles that never meet would be in the way of one another. The manager is told.
+    /// [`Refusal`] if the others are on another map: vehicles that can never meet would block one another. The manager is told.
     pub(super) fn shares(&mut self, supervisor: &Supervisor, map: &str) -> Result<(), Refusal> {
         let others = supervisor.robots().iter().filter(|robot| robot.name != self.name);
         let Some(other) = others.filter_map(map_of).find(|other| *other != map) else {
@@ -32,12 +32,12 @@ impl Lane {
         Err(refusal)
     }
 
-    /// Why it does not stand where it says.
+    /// Why the reported position is ignored.
     pub fn elsewhere(&self) -> Option<&str> {
         self.elsewhere.as_deref()
     }
 
-    /// The same, for its manager.
+    /// The same as an error in states to the manager.
     pub(super) fn elsewhere_error(&self) -> Option<StateError> {
         Some(StateError::warning(self.version?.error(Error::Order), self.elsewhere.clone()?, &[]))
     }

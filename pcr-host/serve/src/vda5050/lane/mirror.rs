@@ -11,7 +11,7 @@ use super::{Job, Lane, Post, To};
 use pcr_formats::import::{self, Options, Warnings};
 use serde_json::Value;
 
-/// What is ahead of an order from a node on, written: most states of a vehicle are between the same two nodes.
+/// The nodes and edges ahead, as JSON. It is kept because most states of a vehicle are between the same two nodes.
 #[derive(Clone, Debug)]
 pub(super) struct Ahead {
     order: String,
@@ -37,14 +37,14 @@ impl Ahead {
 }
 
 impl Lane {
-    /// Tells the manager the newest state.
+    /// Sends the newest state to the manager.
     pub(super) fn mirror(&mut self) {
         let (Some(version), Some(state)) = (self.version, &self.state) else { return };
         let state = self.translated(State::clone(state));
         self.post(To::Manager, Kind::State, version, &state);
     }
 
-    /// Passes on to the manager what it reads as it is.
+    /// Passes a message on to the manager unchanged.
     pub fn pass_on(&mut self, kind: Kind, is_third: bool, payload: &[u8]) {
         self.forward(To::Manager, kind, is_third, payload);
     }
@@ -55,10 +55,10 @@ impl Lane {
         self.posts.push(Post { to, key, version, kind, payload: payload.to_vec() });
     }
 
-    /// Passes on to the vehicle what is between it and its manager.
+    /// Passes a message on to the vehicle unchanged.
     ///
     /// # Errors
-    /// [`Refusal`] for what is no message about it.
+    /// [`Refusal`] for an invalid message, or one about another vehicle.
     pub fn untouched(&mut self, kind: Kind, payload: &[u8], limits: Limits, is_third: bool) -> Result<(), Refusal> {
         let header: Header = door::read(payload, limits)?;
         header.check(&self.profile.key, is_third)?;
@@ -66,12 +66,12 @@ impl Lane {
         Ok(())
     }
 
-    /// Passes on what the manager says to requests of the vehicle. To enter a zone is granted as the manager wants: the vehicle goes no
-    /// further than its base there either. To leave its way, in a zone where it may plan for itself or in a corridor, is rejected instead:
-    /// nobody knows where it would be.
+    /// Passes on the manager's answers to requests of the vehicle. A request to enter a zone is answered as the manager says,
+    /// because the vehicle goes no further than its base there either. A request to leave the way, in a zone or a corridor, is
+    /// rejected, because the place of the vehicle would not be known.
     ///
     /// # Errors
-    /// [`Refusal`] for what is no such message, and for what was rejected.
+    /// [`Refusal`] for an invalid message, and for rejected requests.
     pub fn responses(&mut self, payload: &[u8], limits: Limits, is_third: bool) -> Result<(), Refusal> {
         let mut message: Responses = door::read(payload, limits)?;
         let version = message.header.check(&self.profile.key, is_third)?;
@@ -88,7 +88,7 @@ impl Lane {
         rejected.map_or(Ok(()), Err)
     }
 
-    /// Whether the vehicle has asked under this name to enter a zone, and for nothing else.
+    /// Whether the vehicle has made a request with this id to enter a zone, and no other request with it.
     fn asks_to_enter(&self, id: &str) -> bool {
         let requests = |list: &str| {
             let list = self.state.as_ref().and_then(|state| state.rest.get(list)?.as_array());
@@ -100,11 +100,11 @@ impl Lane {
             && requests("edgeRequests").next().is_none()
     }
 
-    /// Takes whether the vehicle is connected, which nothing depends on: it may go where it was allowed to. One that has just connected may
-    /// count anew, and is asked.
+    /// Takes a connection message. The rights of the vehicle do not depend on it. A vehicle that has just connected may restart
+    /// its count, so it is asked for its state.
     ///
     /// # Errors
-    /// [`Refusal`] for what is no such message.
+    /// [`Refusal`] for an invalid message.
     pub fn connection(&mut self, payload: &[u8], limits: Limits, is_third: bool, now: f64) -> Result<(), Refusal> {
         let message: Connection = door::read(payload, limits)?;
         let version = message.header.check(&self.profile.key, is_third)?;
@@ -115,10 +115,10 @@ impl Lane {
         Ok(())
     }
 
-    /// Takes what the vehicle is: one that is larger than it was said to be is refused.
+    /// Takes a factsheet. A vehicle that is larger than its configured disc gets no rights.
     ///
     /// # Errors
-    /// [`Refusal`] for what is no factsheet, or one of another vehicle.
+    /// [`Refusal`] for an invalid factsheet, or one of another vehicle.
     pub fn factsheet(&mut self, payload: &[u8], limits: Limits, is_third: bool) -> Result<(), Refusal> {
         let message: Factsheet = door::read(payload, limits)?;
         let version = message.header.check(&self.profile.key, is_third)?;
@@ -127,7 +127,7 @@ impl Lane {
         let vehicle = import::vehicle(&text, &Options::default(), &mut Warnings::default());
         let vehicle = vehicle.map_err(|error| Refusal::new("", error))?;
         let own = self.profile.abilities;
-        // The disc around the contour; how fast it is matters to nothing that is promised.
+        // The disc around the contour is compared. Speeds do not matter for safety.
         let needs = (vehicle.footprint.is_some() && vehicle.radius > own.radius + 1e-9).then_some(vehicle.radius);
         self.misfit = needs.map(|needs| format!("the vehicle needs a disc of {needs} m, not {}", own.radius));
         self.misfit.clone().map_or(Ok(()), |why| Err(Refusal::new("physicalParameters", why)))
@@ -151,7 +151,7 @@ impl Lane {
             let since = since + stop.length - job.way.node(stop.node).unwrap_or(stop.length);
             state.rest.insert("distanceSinceLastNode".into(), since.into());
         }
-        // A vehicle that has dropped its nodes has been cancelled.
+        // A vehicle without nodes has completed the cancellation.
         if state.node_states.is_empty() && job.cancel.is_some() {
             return state;
         }
@@ -161,7 +161,7 @@ impl Lane {
         }
         let Some(ahead) = &self.ahead else { return state };
         (state.node_states, state.edge_states) = (ahead.nodes.clone(), ahead.edges.clone());
-        // Whether more base is needed depends on what the manager has released, not on what the vehicle has of that.
+        // Whether more base is needed depends on the base of the manager, not on the part that the vehicle has.
         if let Some(request) = &mut state.new_base_request {
             *request &= waits || !ahead.has_base;
         }

@@ -1,28 +1,30 @@
-//! Which message of a kind is the newest one of a vehicle.
+//! Decides which message of a kind is the newest one of a vehicle.
 //!
-//! Messages come late, repeated and in any order. Time stamps tell which one was written later, or else numbers of messages, which count
-//! modulo 2³². A vehicle that was switched off and on may count anew, and so may its clock: what it says then looks as if it were late. So a
-//! message that is no continuation of the newest one counts as late until it is proved that the vehicle counts anew: by a message that
-//! names a request which was sent after the newest one had come, or by messages in a row that follow one another for longer than any
-//! message is late. For so long afterwards, what is nearer to the count before is of that.
+//! Messages come late, repeated and in any order. Time stamps tell which of two was written later, or else message numbers, which count
+//! modulo 2³².
+//!
+//! A vehicle that was switched off and on may restart its count and its clock, so its new messages look late. Therefore a message that
+//! does not continue the newest one counts as late until a restart is proved. The proof is a message that names a request which was
+//! sent after the newest message had come, or a row of messages that follow one another for longer than any message can be late
+//! ([`LATEST`]). For that long afterwards, messages closer to the old count belong to the old count.
 
 use super::super::header::Header;
 
-/// No message is later than that \[s\].
+/// No message is later than this \[s\].
 const LATEST: f64 = 60.0;
 
-/// After so many messages in a row that only follow one another the vehicle is asked.
+/// Number of late messages in a row, each newer than the one before, after which a request is sent to the vehicle.
 const ROW: u32 = 3;
 
-/// Between two requests \[s\].
+/// Time between two requests \[s\].
 const AGAIN: f64 = 1.0;
 
-/// When a message was written, as far as it says so.
+/// Number, time stamp and arrival of a message.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mark {
     number: u64,
     stamp: Option<f64>,
-    /// When it came \[s\].
+    /// Time at which the message came \[s\].
     came: f64,
 }
 
@@ -31,7 +33,7 @@ impl Mark {
         Self { number: header.header_id, stamp: pcr_formats::import::seconds(&header.timestamp), came }
     }
 
-    /// Whether it was written after another one, if both are of one count.
+    /// Whether the message was written after another one, if both belong to the same count.
     fn follows(&self, other: &Self) -> bool {
         match self.stamp.zip(other.stamp) {
             Some((own, before)) if own != before => own > before,
@@ -39,12 +41,12 @@ impl Mark {
         }
     }
 
-    /// By how much its number is higher. Numbers may have any width, and begin again after 2³² at the latest.
+    /// Difference of the numbers modulo 2³²: some vehicles count with 64 bits, others begin again after 2³².
     fn ahead(&self, other: &Self) -> u32 {
         (self.number as u32).wrapping_sub(other.number as u32)
     }
 
-    /// Whether it is nearer to one than to another.
+    /// Whether the message is nearer to `to` than to `than`, by time stamps or else by numbers.
     fn is_nearer(&self, to: &Self, than: &Self) -> bool {
         if let (Some(own), Some(to), Some(than)) = (self.stamp, to.stamp, than.stamp) {
             return (own - to).abs() < (own - than).abs();
@@ -54,23 +56,23 @@ impl Mark {
     }
 }
 
-/// Messages that follow one another, but not the newest one.
+/// A row of messages that follow one another, but not the newest one.
 #[derive(Clone, Copy, Debug)]
 struct Row {
     last: Mark,
     count: u32,
-    /// When the first one came \[s\].
+    /// Time at which the first one came \[s\].
     since: f64,
 }
 
-/// What a message is among those of its kind.
+/// The position of a message in the order of its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
-    /// The newest one.
+    /// The newest message.
     Newest,
-    /// The newest one; the vehicle counts anew, and all that it has said before is older.
+    /// The newest message, the first of a restarted count: all messages before it are older.
     Anew,
-    /// Older, or of nobody knows when.
+    /// An older message, or one of unknown age.
     Late,
 }
 
@@ -78,15 +80,15 @@ pub(super) enum Place {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Newest {
     known: Option<Mark>,
-    /// That of the count before, and when this one began \[s\].
+    /// The newest message of the old count, and the time at which the present count began \[s\].
     before: Option<(Mark, f64)>,
     row: Option<Row>,
-    /// A request that was sent after the newest one had come, and when \[s\].
+    /// Id and time of a request that was sent after the newest message had come \[s\].
     asked: Option<(String, f64)>,
 }
 
 impl Newest {
-    /// Takes a message; `names` tells whether it says something of an action.
+    /// Takes a message; `names` tells whether the message mentions the action with an id.
     pub(super) fn take(&mut self, header: &Header, now: f64, names: impl Fn(&str) -> bool) -> Place {
         let mark = Mark::of(header, now);
         let Some(known) = self.known.filter(|known| !(mark.follows(known) && self.is_of(known, &mark))) else {
@@ -106,24 +108,25 @@ impl Newest {
         Place::Late
     }
 
-    /// Whether it is time to ask the vehicle for a message that is surely newer.
+    /// Whether a request should be sent, whose answer is certainly newer.
     pub(super) fn is_in_doubt(&self, now: f64) -> bool {
         self.row.is_some_and(|row| row.count >= ROW) && self.asked.as_ref().is_none_or(|(_, at)| now - at >= AGAIN)
     }
 
-    /// The vehicle was asked for one; does not matter before it has said anything.
+    /// Notes that a request was sent. This has no effect before the first message.
     pub(super) fn asks(&mut self, id: String, now: f64) {
         self.asked = Some((id, now));
     }
 
-    /// Whether a message of another kind, that comes now, was written after this one or with it; its numbers are others.
+    /// Whether a message of another kind that comes now was not written before this one. Only time stamps tell, because each kind has
+    /// numbers of its own.
     pub(super) fn is_before(&self, header: &Header, now: f64) -> bool {
         let mark = Mark::of(header, now);
         let is_later = |known: &Mark| mark.stamp.zip(known.stamp).is_some_and(|(own, known)| own >= known);
         self.known.is_some_and(|known| is_later(&known) && self.is_of(&known, &mark))
     }
 
-    /// Whether a message is of the count of the newest one, and not of the one before.
+    /// Whether a message belongs to the present count and not to the old one.
     fn is_of(&self, known: &Mark, mark: &Mark) -> bool {
         let before = self.before.filter(|(_, since)| mark.came - since <= LATEST);
         before.is_none_or(|(before, _)| mark.is_nearer(known, &before))
@@ -188,14 +191,14 @@ mod tests {
                     newest.asks("r".into(), k as f64);
                     asked = true;
                 }
-                // Those from before, which are late or were on their way, are no newer ones.
+                // Late messages of the old count are not newer.
                 for late in [490, 510] {
                     let place = newest.clone().take(&header(late, &at(late as u32 + 100)), k as f64 + 0.5, |_| false);
                     assert!(k < after || k > after + 59 || place == Place::Late, "{k} {late}");
                 }
             }
         }
-        // What came in between was newer: the request is as old as that.
+        // A newer message came in between, so the answer to the request proves nothing.
         let mut newest = Newest::default();
         newest.take(&header(500, &at(600)), 0.0, |_| false);
         newest.asks("r".into(), 1.0);

@@ -12,7 +12,7 @@ use super::maps::map_of;
 use crate::supervisor::{Proposal, Supervisor, Verdict};
 
 impl Lane {
-    /// Takes an order or an update of the manager, or tells it why not.
+    /// Takes an order or an update of the manager; an error is reported to the manager.
     pub fn order(&mut self, supervisor: &mut Supervisor, bytes: &[u8], limits: Limits, is_third: bool, now: f64) {
         let (mut id, mut update) = (String::new(), 0);
         let taken = door::read::<Order>(bytes, limits).map_err(Rejected::from).and_then(|order| {
@@ -27,7 +27,7 @@ impl Lane {
         self.mirror();
     }
 
-    /// Tells the manager why an order is not taken.
+    /// Reports to the manager why an order is rejected.
     pub(super) fn reject(&mut self, rejected: &Rejected, order: &str, update: u64) {
         let Some(version) = self.version else { return };
         let kind = version.error(rejected.error);
@@ -35,7 +35,7 @@ impl Lane {
         let mut references = vec![("orderId", order), ("orderUpdateId", update.as_str())];
         references.retain(|_| !order.is_empty());
         let error = StateError::warning(kind, rejected.refusal.to_string(), &references);
-        /// Kept at most: a manager that errs for ever needs no more.
+        /// Largest number of errors that are kept.
         const MOST: usize = 10;
         if !self.errors.contains(&error) {
             self.errors.push(error);
@@ -45,7 +45,7 @@ impl Lane {
         }
     }
 
-    /// Whether it was new.
+    /// Takes an order; returns whether it was new.
     fn take(&mut self, supervisor: &mut Supervisor, order: Order, is_third: bool, now: f64) -> Result<bool, Rejected> {
         let version = order.header.check(&self.profile.key, is_third)?;
         if self.version.is_some_and(|own| own.major() != version.major()) {
@@ -69,7 +69,7 @@ impl Lane {
         }
     }
 
-    /// Whether the vehicle has done all of its order.
+    /// Whether the vehicle has completed its order.
     pub(super) fn is_free(&self, supervisor: &Supervisor) -> bool {
         let (Some(job), Some(state), Ok(robot)) = (&self.job, &self.state, supervisor.robot(&self.name)) else {
             return self.job.is_none();
@@ -85,7 +85,7 @@ impl Lane {
             && state.is_idle()
     }
 
-    /// Refuses what the vehicle's margin does not cover.
+    /// Rejects an order that the vehicle's margin does not cover.
     fn passable(&self, supervisor: &Supervisor, order: &Order) -> Result<(), Rejected> {
         for (k, edge) in order.edges.iter().enumerate() {
             if edge.rest.contains_key("corridor") {
@@ -101,7 +101,7 @@ impl Lane {
         }
         let maps = order.nodes.iter().filter_map(|node| node.node_position.as_ref()).map(|position| &position.map_id);
         let here = self.state.as_ref().and_then(|state| state.position()).map(|pose| pose.map_id.as_str());
-        // After a restart that is known before it says anything.
+        // After a restart it is known before the vehicle sends a message.
         let known = supervisor.robot(&self.name).ok().and_then(map_of);
         let mut all = maps.map(String::as_str).chain(here).chain(known);
         let first = all.next();
@@ -137,7 +137,7 @@ impl Lane {
         Ok(true)
     }
 
-    /// The vehicle has this order from now on.
+    /// Gives the vehicle this order.
     fn has(&mut self, supervisor: &mut Supervisor, job: Job) {
         let noted = self.orders.push(&job.held.order_id);
         self.note_past(supervisor, self.orders.key, noted);
@@ -147,7 +147,7 @@ impl Lane {
         (self.job, self.astray) = (Some(job), None);
     }
 
-    /// An order for a vehicle that has lost the one that it had: it keeps what it may do where it goes on as before.
+    /// Takes an order for a vehicle that has lost its order. It keeps its rights if the new order follows the same way.
     fn begin_anew(
         &mut self,
         supervisor: &mut Supervisor,
@@ -203,7 +203,7 @@ impl Lane {
         Ok(true)
     }
 
-    /// Asks the supervisor for the way from a node, or from where the vehicle stands, to the end of the base.
+    /// Requests a mission from a node, or from where the vehicle stands, to the end of the base.
     fn ask(&self, supervisor: &mut Supervisor, job: &mut Job, from: Option<usize>, now: f64) -> Result<(), Rejected> {
         let path = job.way.shapes(from, job.held.base).to_vec();
         let proposal = Proposal {
@@ -222,13 +222,13 @@ impl Lane {
         Ok(())
     }
 
-    /// How far the vehicle may be off its path, and from where it says \[m\].
+    /// Bound on how far the vehicle may be off its path, plus the error of its reported position \[m\].
     pub(super) fn deviation(&self) -> f64 {
         (self.profile.abilities.margin - TOLERANCE).max(0.0)
     }
 }
 
-/// An old message that comes late: nothing would ever come of it.
+/// Rejects an old message that came late; the order would never be carried out.
 fn was_there() -> Rejected {
     Rejected::new(Error::Order, "orderId", "the vehicle had an order of this name before")
 }

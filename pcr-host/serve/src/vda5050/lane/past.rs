@@ -1,26 +1,26 @@
-//! Names of orders and actions that were used before, remembered with the journal: a message under one of them comes late.
+//! Ids of orders and actions that were used before, also kept in the journal: a message with one of them is a late repetition.
 
 use super::notes::noted;
 use crate::robot::Robot;
 use crate::supervisor::Damaged;
 use serde_json::Value;
 
-/// So many are remembered at least, the last ones.
+/// Smallest number of ids that are kept.
 const MOST: usize = 64;
 
-/// The names of one kind.
+/// The used ids of one kind.
 #[derive(Debug)]
 pub(super) struct Past {
-    /// What the journal calls them.
+    /// Key of the note in the journal.
     pub(super) key: &'static str,
     names: Vec<String>,
 }
 
-/// What the journal is to have of another name.
+/// The change of the note for a new id.
 pub(super) enum Noted {
-    /// This, after what it has.
+    /// Elements to be appended.
     More(Vec<Value>),
-    /// This, in place of what it has.
+    /// A new value of the note.
     All(Value),
 }
 
@@ -37,7 +37,7 @@ impl Past {
         self.names.iter().any(|known| known == name)
     }
 
-    /// Another one. The list in the journal is cut at times only, so that it is not written with every name.
+    /// Adds an id. The list in the journal is shortened only sometimes, so that it is not written with every id.
     pub(super) fn push(&mut self, name: &str) -> Noted {
         self.names.push(name.to_owned());
         if self.names.len() <= 2 * MOST {
@@ -47,7 +47,7 @@ impl Past {
         Noted::All(self.all())
     }
 
-    /// All of them, for the journal.
+    /// All ids, for the journal.
     pub(super) fn all(&self) -> Value {
         self.names.clone().into()
     }

@@ -1,4 +1,4 @@
-//! Pauses: ours, where a vehicle must not go on, and those of others, which are theirs to end.
+//! Pauses: our own, while a vehicle must not go on, and those of others, which only they may end.
 
 use super::super::door::Refusal;
 use super::super::messages::{Action, InstantActions};
@@ -12,38 +12,38 @@ use crate::supervisor::{Damaged, Supervisor};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// The note of what is kept of pauses.
+/// Key of the note about pauses.
 const NOTE: &str = "pauses";
 
-/// How our own actions are called.
+/// Prefixes of the ids of our own actions.
 const OURS: [&str; 2] = ["pcr-startPause-", "pcr-stopPause-"];
 
-/// What we have asked the vehicle for, until it does so.
+/// Our last request to the vehicle, until it is done.
 #[derive(Debug)]
 struct Asked {
-    /// To pause, or to go on.
+    /// Whether it asks the vehicle to pause, or to go on.
     stops: bool,
-    /// When \[s\].
+    /// Time at which it was sent \[s\].
     at: f64,
-    /// By which action.
+    /// Action id.
     id: String,
 }
 
-/// Who has paused a vehicle.
+/// The pauses of a vehicle.
 #[derive(Debug, Default)]
 pub(super) struct Pauses {
     asked: Option<Asked>,
-    /// Whether the manager has asked it to pause last, or to go on, and when \[s\]: its states do not tell of that at once.
+    /// The last request of the manager, to pause or to go on, and its time \[s\]: states show it only later.
     wish: Option<(bool, f64)>,
     kept: Kept,
 }
 
-/// What is kept in the journal.
+/// The part that is kept in the journal.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Kept {
-    /// Others have paused it, too: who ends ours must not end theirs.
+    /// Whether the vehicle is also paused by others; then we must not end their pause.
     others: bool,
-    /// Actions of the manager that let it go, for when it may.
+    /// `stopPause` actions of the manager, held back until the vehicle may go.
     held: Vec<Action>,
 }
 
@@ -58,7 +58,8 @@ impl Pauses {
 }
 
 impl Lane {
-    /// Stops the vehicle where it must not go on, and lets it go again: said again until it says so, as either may be lost.
+    /// Pauses the vehicle when it must not go on, and lets it go on afterwards. Either is repeated until the vehicle confirms
+    /// it.
     pub fn pause(&mut self, supervisor: &mut Supervisor, now: f64) {
         let Ok(robot) = supervisor.robot(&self.name) else { return };
         let stops = robot.stopped.is_some();
@@ -76,10 +77,10 @@ impl Lane {
         }
         let others = self.pauses.kept.others;
         match &self.pauses.asked {
-            // Who has paused it otherwise lets it go.
+            // A pause of others is ended by them.
             None if !(stops || said && !others && self.has_paused()) => {}
             Some(asked) if asked.stops && !stops && others => self.pauses.asked = None,
-            // Paused though it was let go: by somebody else since then.
+            // It is paused although it was let go: by others, since then.
             Some(asked) if !asked.stops && !stops && (!said || self.has_done(&asked.id)) => self.pauses.asked = None,
             Some(asked) if asked.stops == stops && (said == stops || now - asked.at < AGAIN) => {}
             _ => {
@@ -89,7 +90,8 @@ impl Lane {
         }
     }
 
-    /// Takes from what the manager wants at once what would let a vehicle go that has to stand: that is passed on when it may go.
+    /// Removes from instant actions of the manager those that would let a vehicle go on that has to stand. They are passed on
+    /// when it may go.
     pub(super) fn hold_back(
         &mut self,
         supervisor: &mut Supervisor,
@@ -119,7 +121,7 @@ impl Lane {
                     }
                     held.clear();
                     (self.pauses.kept.others, self.pauses.wish) = (true, Some((true, now)));
-                    // What lets it go is not said again.
+                    // An older request to go on is not repeated.
                     self.pauses.asked.take_if(|asked| !asked.stops);
                 }
                 _ => {}
@@ -132,7 +134,7 @@ impl Lane {
         (due, refusal)
     }
 
-    /// Remembers who has paused it.
+    /// Stores the pauses in the journal.
     pub(super) fn note_pauses(&self, supervisor: &mut Supervisor) {
         self.note(supervisor, NOTE, serde_json::to_value(&self.pauses.kept).unwrap_or_default());
     }
@@ -141,24 +143,24 @@ impl Lane {
         self.state.as_ref().and_then(|state| state.rest.get("paused")?.as_bool()).unwrap_or(false)
     }
 
-    /// Whether somebody else has paused it, by what the manager has just said or else by what the vehicle says.
+    /// Whether others have paused it, by the last request of the manager or else by its state.
     fn is_paused_by_others(&self, now: f64) -> bool {
         let Pauses { asked, wish, kept } = &self.pauses;
         match wish {
             Some((wish, at)) if now - at < AGAIN => *wish,
-            // Since the start it has not said anything.
+            // It has sent no state since the start.
             _ if self.state.is_none() => kept.others,
             _ if !self.says_paused() => false,
             _ => kept.others || asked.is_none() && kept.held.is_empty() && !self.has_paused(),
         }
     }
 
-    /// Whether it was we who have paused it last: a message of ours that came late, or one from before a restart.
+    /// Whether the last pause was ours: a late message of ours, or one from before a restart.
     fn has_paused(&self) -> bool {
         let Some(state) = &self.state else { return false };
         let mut all = state.action_states.iter().chain(state.instant_action_states.iter().flatten());
         let is_pause = |action: &&ActionState| {
-            // Vehicles need not say what kind an action is of.
+            // Vehicles need not report the type of an action.
             let kind = action.rest.get("actionType").and_then(Value::as_str);
             matches!(kind, Some("startPause" | "stopPause")) || OURS.iter().any(|own| action.action_id.starts_with(own))
         };

@@ -8,32 +8,33 @@ use super::{Lane, order};
 use crate::robot::Robot;
 use crate::supervisor::Supervisor;
 
-/// Between two attempts to send the same \[s\].
+/// Time between two attempts to send the same \[s\].
 pub(super) const AGAIN: f64 = 1.0;
 
-/// Holds are computed with more room than this \[m\].
+/// Holds are computed with larger discs, so a hold that is lower than a node by at most this counts as at the node \[m\].
 const ROUNDING: f64 = 1e-4;
 
-/// A part of an edge that is released alone is no shorter \[m\].
+/// Shortest part of an edge that is released alone \[m\].
 const PART: f64 = 0.05;
 
-/// Nodes ahead that a vehicle is told at most: it need not know all of a long order.
+/// Largest number of nodes that are sent to a vehicle ahead: it does not need all of a long order.
 const AHEAD: usize = 60;
 
 impl Lane {
-    /// Sends the vehicle what it may do now. What the supervisor has decided counts, and nothing else.
+    /// Sends the vehicle its next update, according to what the supervisor has granted.
     pub fn release(&mut self, supervisor: &mut Supervisor, now: f64) {
         let Some(version) = self.version else { return };
         self.follow_cancel(now);
         let (Some(state), Ok(robot)) = (&self.state, supervisor.robot(&self.name)) else { return };
         let Some(job) = &mut self.job else { return };
-        // Not `told`: after a restart that is how far the vehicle may have been allowed to go, which is kept free for it but may not be granted.
+        // Not `told`: after a restart that is the hold that the vehicle may have been told, which is kept free for it but may
+        // not be granted.
         let allowed = robot.granted;
         if job.cancel.is_some() || job.lost.is_some() || robot.stopped.is_some() {
             return;
         }
         if !job.is_acknowledged() {
-            // An older update that the vehicle has meanwhile, or none: the same once more.
+            // The vehicle has an older update, or none: the same one is sent again.
             if now - job.sent_at >= AGAIN {
                 job.sent_at = now;
                 self.send(version);
@@ -41,7 +42,7 @@ impl Lane {
             return;
         }
         let is_first = job.sent.is_none();
-        // It goes to its first node with its first order.
+        // With its first order the vehicle goes to its first node.
         let may_begin = allowed + job.offset(robot) + ROUNDING >= job.last().length;
         if is_first && !(may_begin && state.node_states.is_empty()) {
             return;
@@ -78,7 +79,7 @@ impl Lane {
 }
 
 impl Job {
-    /// The stops up to where the robot has been allowed to go; none if there are no more.
+    /// The stops up to the granted length that have not been sent; empty if there are none.
     fn next(&self, robot: &Robot, allowed: f64, split: bool) -> Vec<Stop> {
         let (offset, planned) = (self.offset(robot), self.planned(robot));
         let hold = allowed + offset;
@@ -95,7 +96,7 @@ impl Job {
             push(&mut stops, length, node, false);
             reached = node;
         }
-        // In the middle of an edge only if the vehicle would have to brake for its end.
+        // A stop in the middle of an edge is used only if the vehicle would otherwise brake.
         let from = stops.last().map_or(last.length, |stop| stop.length);
         let is_short = from - (robot.up_to + offset) < 2.0 * robot.abilities.braking() + 2.0 * robot.abilities.speed;
         let next = self.way.node(reached + 1).filter(|_| reached < planned);
@@ -105,7 +106,7 @@ impl Job {
         stops
     }
 
-    /// Where on the supervisor's path the vehicle can stop next after a stop, if it can do so at a node only \[m\].
+    /// Length of the supervisor's path at which the vehicle can stop next after a stop, if it can stop at nodes only \[m\].
     fn stop_after(&self, robot: &Robot, stop: Option<Stop>, split: bool) -> Option<f64> {
         let node = stop.unwrap_or(self.last()).node;
         let is_free = split && self.can_split(node);
@@ -113,7 +114,7 @@ impl Job {
         Some(next - self.offset(robot))
     }
 
-    /// Writes nodes and edges from a stop on: released up to the last one, then the horizon.
+    /// Writes nodes and edges from a stop on: released up to the last stop, then the horizon.
     fn write(&self, message: &mut Order, from: usize, deviation: f64) {
         let mut stops: Vec<Stop> = self.stops.iter().skip(from).copied().collect();
         let base = stops.len();

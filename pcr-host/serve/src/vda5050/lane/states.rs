@@ -13,17 +13,17 @@ use crate::robot::{BACK, Robot};
 use crate::supervisor::{Report, Supervisor};
 use std::sync::Arc;
 
-/// A vehicle that says otherwise so often in a row, for so long \[s\], has lost its order or was moved.
+/// Number of successive states, and time \[s\], after which a vehicle that contradicts its order has lost it or was moved.
 const ASTRAY: (u32, f64) = (3, 2.0);
 
-/// A vehicle that has lost its order keeps its right of way for so long \[s\], in case that another order goes on with the same way.
+/// Time for which a vehicle that has lost its order keeps its right of way \[s\]: another order may follow the same way.
 const KEPT: f64 = 30.0;
 
-/// A late message is so much older than the newest one at least, and no older than that \[s\].
+/// A late message counts as older than the newest one by this \[s\]; its true age is larger.
 const LATE: f64 = 1e-3;
 const OLDEST: f64 = 1e6;
 
-/// What a position comes with.
+/// The kind of message with a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum With {
     /// The newest state.
@@ -38,7 +38,7 @@ impl Lane {
     /// Takes a state.
     ///
     /// # Errors
-    /// [`Refusal`] for what is none; it counts for nothing.
+    /// [`Refusal`] for an invalid state, which has no effect.
     pub fn state(
         &mut self,
         supervisor: &mut Supervisor,
@@ -55,7 +55,7 @@ impl Lane {
             self.ask_when(now);
         }
         if place == Place::Anew {
-            // By the clock of before.
+            // Its clock may have restarted.
             self.newest.remove(&Kind::Visualization);
         }
         let is_new = place != Place::Late;
@@ -76,13 +76,13 @@ impl Lane {
         located
     }
 
-    /// Asks the vehicle for a state that is surely newer than all that have come.
+    /// Requests a state that is certainly newer than all states so far, if that is in doubt.
     pub(super) fn ask_when(&mut self, now: f64) {
         let id = self.ask_for("stateRequest");
         self.newest.entry(Kind::State).or_default().asks(id, now);
     }
 
-    /// The vehicle has the updates up to the one that it names.
+    /// Takes the order update id of a state as a confirmation.
     fn acknowledge(&mut self, state: &State) {
         let Some(job) = self.job.as_mut().filter(|job| job.held.order_id == state.order_id) else { return };
         let Some(sent) = job.sent else { return };
@@ -92,10 +92,10 @@ impl Lane {
         }
     }
 
-    /// Takes where the vehicle is, as far as it is sure.
+    /// Takes the position of the vehicle, as far as it is certain.
     ///
     /// # Errors
-    /// [`Refusal`] for a place on another map: nobody knows where that is.
+    /// [`Refusal`] for a position on another map.
     fn locate(&mut self, supervisor: &mut Supervisor, state: &State, with: With, now: f64) -> Result<(), Refusal> {
         let Some(pose) = state.position().filter(|pose| pose.is_known()) else { return Ok(()) };
         let (at, is_new) = ([pose.x, pose.y], with == With::Newest);
@@ -103,7 +103,7 @@ impl Lane {
             if is_new && self.is_still(state) && self.reach(pose) >= 0.0 {
                 self.shares(supervisor, &pose.map_id)?;
                 let start = Start { x: pose.x, y: pose.y, heading: pose.theta };
-                // Where it cannot stand, it is asked again with its next state. An order that it had is void.
+                // If it cannot stand there, the next state is tried again. An order that it had is void.
                 if supervisor.add(&self.name, self.profile.abilities, start).is_ok() {
                     (self.job, self.astray) = (None, None);
                     self.note_anew(supervisor);
@@ -126,8 +126,8 @@ impl Lane {
             Some(job) if job.held.order_id == state.order_id => {
                 let place = job.stop(state.last_node_sequence_id);
                 let Some(place) = place else {
-                    // A node that it was not released yet, that of an order before at the beginning of this one, or none at all: it has to
-                    // be on its way all the same.
+                    // The vehicle names a node that was not released, a node of an earlier order, or none. If its position is on its path
+                    // anyway, this is not an alarm.
                     if is_new && self.on_its_way(job, robot, pose).is_none() {
                         let _ = supervisor.off(&self.name, at, 0.0, now);
                     }
@@ -136,7 +136,7 @@ impl Lane {
                 let from = job.stops[place].length;
                 let to = job.stops.get(place + 1).map_or(from, |next| next.length);
                 let offset = job.offset(robot);
-                // It counts as passed before the vehicle is all there.
+                // Vehicles report a node as passed when they are near it, so the search begins before the node.
                 let near = job.way.near(at, [from - reach.max(0.0), to], reach);
                 near.map(|lengths| lengths.map(|length| (length - offset).clamp(0.0, end)))
             }
@@ -156,14 +156,14 @@ impl Lane {
             }
         };
         match found {
-            // It has rolled or was pushed back, where others may have the right to go by now.
+            // The vehicle rolled or was pushed back into a part of its path that may already be free for others.
             Some([_, hi]) if is_new && hi < back => _ = supervisor.off(&self.name, at, 0.0, now),
-            // It may have passed the next node since, and be on its way back: no alarm, nor the end of one.
+            // It may have passed the next node since, and be on its way back: this neither begins nor ends an alarm.
             Some([_, hi]) if with == With::Between && hi < back => {}
             Some(at) => {
-                // Older than the newest one, by how much is not known.
+                // Older than the newest message, by an unknown time.
                 let age = if with == With::Late { (now - self.heard_at).max(0.0) + LATE } else { 0.0 };
-                // The path is that of the robot, and the place on it: there is nothing to refuse.
+                // Path and interval are valid, so this cannot be refused.
                 let _ = supervisor.position(&Report { robot: self.name.clone(), path, at, age: age.min(OLDEST) }, now);
             }
             None if is_new => _ = supervisor.off(&self.name, at, 0.0, now),
@@ -172,18 +172,18 @@ impl Lane {
         Ok(())
     }
 
-    /// Where a vehicle without its order is on the way of it: somewhere from where it was last to where it might go.
+    /// Lengths at which a vehicle that does not confirm its order is on its way, between its last position and its hold.
     pub(super) fn on_its_way(&self, job: &Job, robot: &Robot, pose: &Pose) -> Option<[f64; 2]> {
         let (offset, reach) = (job.offset(robot), self.reach(pose));
         job.way.near([pose.x, pose.y], [robot.at + offset - reach.max(0.0), robot.told + offset], reach)
     }
 
-    /// What is left of the margin for being off the path \[m\].
+    /// Part of the margin that is left for being off the path \[m\].
     fn reach(&self, pose: &Pose) -> f64 {
         self.deviation() - pose.deviation_range.unwrap_or(0.0)
     }
 
-    /// Whether it stands and has nothing to do.
+    /// Whether the vehicle stands and has nothing to do.
     fn is_still(&self, state: &State) -> bool {
         !state.driving && state.node_states.iter().all(|node| !node.released)
     }
@@ -194,7 +194,7 @@ impl Lane {
         let Ok(robot) = supervisor.robot(&self.name) else { return };
         let is_off = robot.alarm.is_some();
         let Some(job) = &self.job else {
-            // It was moved by hand, or to another map: it stands where it says.
+            // It was moved by hand, or to another map: its reported position counts.
             let map = state.position().map(|pose| pose.map_id.as_str());
             let is_elsewhere = map_of(robot).is_some_and(|known| map.is_some_and(|map| known != map));
             if self.stays_astray((is_off || is_elsewhere) && self.is_still(&state), now) {
@@ -206,16 +206,17 @@ impl Lane {
         if let Some(action) = job.cancel.clone() {
             let status = state.action(&action);
             let has_nothing = job.sent.is_none() || job.lost.is_some();
-            // It has all that was sent, or has said so since it was told to cancel: nothing that it may still drive is on its way to it.
+            // It has all updates that were sent, or has sent a state since it was told to cancel: no update that it may still
+            // drive is on its way.
             let is_told = job.is_acknowledged() || self.heard_at > job.sent_at.max(job.cancelled_at);
             let is_cancelled = has_it && status == Some("FINISHED") && is_told;
             if (is_cancelled || has_nothing) && self.is_still(&state) {
                 self.reseat(supervisor, &state);
             } else if has_it && status == Some("FAILED") && !state.node_states.is_empty() {
-                // It came before the order.
+                // The cancellation came before the order.
                 self.cancel_again(supervisor, now);
             } else if has_it && status == Some("FAILED") && job.is_acknowledged() && !self.is_free(supervisor) {
-                // It had come to the end of what it was given: nothing more will come.
+                // It had reached the end of its order: nothing more will come.
                 self.reseat(supervisor, &state);
             }
             return;
@@ -229,7 +230,7 @@ impl Lane {
         if !is_astray {
             return;
         }
-        // Its manager sends it on, or it stands there for longer, in nobody's order.
+        // Its manager sends it on, or it has stood there for some time without an order.
         let since = *job.lost.get_or_insert(now);
         if is_off || lost.is_some() && now - since > KEPT {
             self.reseat(supervisor, &state);
@@ -242,14 +243,14 @@ impl Lane {
         is_astray && count + 1 >= ASTRAY.0 && now - since >= ASTRAY.1
     }
 
-    /// The vehicle stands where it says, without an order: all that it had been allowed to is void.
+    /// Sets the vehicle to its reported position, without an order: all its rights are void.
     pub(super) fn reseat(&mut self, supervisor: &mut Supervisor, state: &State) {
         let Some(pose) = state.position().filter(|pose| pose.is_known() && self.reach(pose) >= 0.0) else { return };
         let (start, map) = (Start { x: pose.x, y: pose.y, heading: pose.theta }, pose.map_id.clone());
         if self.shares(supervisor, &map).is_err() {
             return;
         }
-        // Where it cannot stand it stays what it was: nobody may drive through one that is forgotten.
+        // If it cannot stand there, its former place is kept, so that no other vehicle drives through it.
         if supervisor.reseat(&self.name, start).is_ok() {
             (self.job, self.astray) = (None, None);
             self.note_anew(supervisor);
@@ -257,10 +258,10 @@ impl Lane {
         }
     }
 
-    /// Takes a position that comes between states. It says nothing of orders, hence counts only on the stretch that the newest state names.
+    /// Takes a visualization message. It does not name an order, so it counts only on the stretch of the newest state.
     ///
     /// # Errors
-    /// [`Refusal`] for what is none; it counts for nothing.
+    /// [`Refusal`] for an invalid message, which has no effect.
     pub fn visualization(
         &mut self,
         supervisor: &mut Supervisor,
@@ -270,7 +271,7 @@ impl Lane {
         now: f64,
     ) -> Result<(), Refusal> {
         let message: Visualization = door::read(bytes, limits)?;
-        // Schema 2.0 does not ask for a header.
+        // Schema 2.0 does not require a header.
         if message.header != Header::default() {
             message.header.check(&self.profile.key, is_third)?;
         }
