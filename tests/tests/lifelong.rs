@@ -34,6 +34,8 @@ fn driven(imported: &Imported, agents: usize, minutes: f64, stopped: f64, method
     assert!(outcome.standstill < 60.0 && outcome.certificate.steps > 0, "{outcome:?}");
     let Shares { driving, turning, stopped: stops, held, aside, idle } = outcome.time;
     assert!((driving + turning + stops + held + aside + idle - 1.0).abs() < 1e-9, "{outcome:?}");
+    // Nobody goes before a robot that is alone.
+    assert!(agents > 1 || held == 0.0, "{outcome:?}");
     outcome
 }
 
@@ -43,6 +45,7 @@ fn robots_of_a_warehouse_carry_out_missions_and_never_touch() {
     let outcome = warehouse(6, minutes, 0.0, Method::Orders);
     // One alone carries out 47 an hour.
     assert!(outcome.missions_per_hour > 150.0 && outcome.robots == 6, "{outcome:?}");
+    assert!(warehouse(1, 3.0, 0.02, Method::Orders).missions > 0);
 }
 
 #[test]

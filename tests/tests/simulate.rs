@@ -2,9 +2,11 @@
 //! its record; the same seed gives the same run.
 
 use pcr_formats::scenario::Scenario;
+use pcr_planning::plan::{Plan, Request};
 use pcr_planning::simulate::{
-    Controller, Disturbance, FRAME, Outcome, Run, Settings, Simulation, Task, Trace, forage, run,
+    Controller, Disturbance, Ended, FRAME, Outcome, Run, Settings, Simulation, Task, Trace, forage, run,
 };
+use pcr_tests::generators::Dice;
 use std::f64::consts::{PI, TAU};
 
 const SEEDS: u64 = if cfg!(optimized) { 100 } else { 3 };
@@ -13,6 +15,8 @@ const SEEDS: u64 = if cfg!(optimized) { 100 } else { 3 };
 const ROUNDING: f64 = 1e-9;
 
 const USUAL: Disturbance = Disturbance { noise: 0.015, slip: 0.05, delay: 1.0, drift: 0.005 };
+
+const NONE: Disturbance = Disturbance { noise: 0.0, slip: 0.0, delay: 0.0, drift: 0.0 };
 
 fn settings(seed: u64, disturbance: Disturbance) -> Settings {
     Settings { seed, replan: 2.0, disturbance }
@@ -107,7 +111,7 @@ fn robots_turn_in_place_and_are_slow_where_their_own_motion_is() {
         assert!(fastest > 0.2 && fastest <= 0.25 + 1e-9, "seed {seed}: {fastest}");
     }
     // Without disturbances, as fast as by their own motions.
-    let exact = settings(0, Disturbance { noise: 0.0, slip: 0.0, delay: 0.0, drift: 0.0 });
+    let exact = settings(0, NONE);
     let outcome = run(&task, Controller::Pcr, exact).expect("a run");
     for journey in &outcome.trace.journeys {
         let took = (journey.end.expect("an end") - journey.begin) as f64 * FRAME;
@@ -184,10 +188,9 @@ fn robots_that_all_want_to_the_middle_get_past_one_another() {
 
 #[test]
 fn nothing_is_lost_without_disturbances_and_without_others() {
-    let nothing = Disturbance { noise: 0.0, slip: 0.0, delay: 0.0, drift: 0.0 };
     let mut task = forage::task(5, 1);
     task.robots.truncate(1);
-    let outcome = run(&task, Controller::Pcr, settings(5, nothing)).expect("a run");
+    let outcome = run(&task, Controller::Pcr, settings(5, NONE)).expect("a run");
     assert_safe(&task, &outcome, "alone");
     // A few frames: commands are a frame late, and speeds change from frame to frame.
     assert!(outcome.run.travel - outcome.run.unimpeded < 10.0 * FRAME, "{:?}", outcome.run);
@@ -337,6 +340,80 @@ fn robots_with_turns_in_place_get_where_they_go() {
         let outcome = run(&task, Controller::Pcr, settings(seed, USUAL)).expect("a run");
         assert_safe(&task, &outcome, &format!("seed {seed}"));
     }
+}
+
+/// Robots from all around, each of which goes round a full circle in the middle: paths that cross one another several times, and
+/// themselves.
+fn loops(seed: u64) -> Scenario {
+    let dice = &mut Dice::seeded(seed);
+    let count = 2 + seed as usize % 5;
+    let agents = (0..count).map(|k| {
+        let around = TAU * (k as f64 + dice.range(-0.15, 0.15)) / count as f64;
+        let [from, towards] = [[4.5 * around.cos(), 4.5 * around.sin()], [dice.range(-0.7, 0.7), dice.range(-0.7, 0.7)]];
+        let (heading, length) = ((towards[1] - from[1]).atan2(towards[0] - from[0]), distance(from, towards));
+        let sweep = if dice.range(0.0, 1.0) < 0.5 { TAU } else { -TAU };
+        format!(
+            r#"{{ "id": {}, "radius": {}, "v_max": 1, "a_max": 1, "start": {{ "x": {}, "y": {}, "heading": {heading} }},
+                 "path": [ {{ "kind": "line", "length": {length} }}, {{ "kind": "arc", "radius": {}, "sweep": {sweep} }},
+                           {{ "kind": "line", "length": {} }} ] }}"#,
+            k + 1,
+            dice.range(0.1, 0.2),
+            from[0],
+            from[1],
+            dice.range(0.6, 1.5),
+            length * dice.range(0.8, 1.2)
+        )
+    });
+    let agents: Vec<String> = agents.collect();
+    Scenario::from_json(&format!(r#"{{ "agents": [{}] }}"#, agents.join(","))).expect("a scenario")
+}
+
+/// Regions of a pair whose extents overlap, passed in different orders: robots that were held by the extents stood for ever.
+#[test]
+fn robots_whose_paths_cross_several_times_get_past_one_another() {
+    let two = r#"{ "agents": [
+        { "id": 3, "radius": 0.176, "v_max": 1, "a_max": 1, "start": { "x": -4.3976, "y": -0.1458, "heading": 0.00135 },
+          "path": [ { "kind": "line", "length": 4.4837 }, { "kind": "arc", "radius": 0.80856, "sweep": 6.283185307179586 },
+                    { "kind": "line", "length": 3.9369 } ] },
+        { "id": 4, "radius": 0.124, "v_max": 1, "a_max": 1, "start": { "x": 0.6804, "y": -4.3471, "heading": 1.52537 },
+          "path": [ { "kind": "line", "length": 5.0787 }, { "kind": "arc", "radius": 0.87947, "sweep": 6.283185307179586 },
+                    { "kind": "line", "length": 5.3205 } ] } ] }"#;
+    let two = Scenario::from_json(two).expect("a scenario");
+    let mut solved = 0;
+    for seed in 0..if cfg!(optimized) { 30 } else { 3 } {
+        let scenario = if seed == 0 { two.clone() } else { loops(seed) };
+        if !Plan::of(&scenario, &Request::default()).is_ok_and(|(_, solved)| solved.is_some()) {
+            continue;
+        }
+        solved += 1;
+        let task = Task::of(&scenario).expect("a task");
+        for disturbance in [USUAL, NONE] {
+            let outcome = run(&task, Controller::Pcr, settings(seed, disturbance)).expect("a run");
+            assert_eq!(outcome.run.ended, Ended::Done, "{seed}: {:?}", outcome.run);
+            assert_safe(&task, &outcome, &format!("loops {seed}"));
+        }
+    }
+    assert!(solved > if cfg!(optimized) { 15 } else { 0 }, "{solved}");
+}
+
+/// The run was given up long before they could have arrived, and nobody said so.
+#[test]
+fn robots_that_are_held_up_for_long_arrive_all_the_same() {
+    let lane = |id: u64, y: f64| {
+        format!(
+            r#"{{ "id": {id}, "radius": 0.25, "v_max": 1, "a_max": 1, "start": {{ "x": 0, "y": {y}, "heading": 0 }},
+                 "path": [ {{ "kind": "line", "length": 10 }} ] }}"#
+        )
+    };
+    let text = format!(r#"{{ "agents": [{}, {}] }}"#, lane(1, 0.0), lane(2, 3.0));
+    let task = Task::of(&Scenario::from_json(&text).expect("a scenario")).expect("a task");
+    let outcome = run(&task, Controller::Pcr, settings(1, Disturbance { delay: 600.0, ..USUAL })).expect("a run");
+    assert_safe(&task, &outcome, "held up");
+    // Two head-on are in each other's way for good, and who does not know that is stopped at the limit.
+    let outcome = run(&head_on(), Controller::Pcr, settings(1, USUAL)).expect("a run");
+    assert_eq!(outcome.run.ended, Ended::Standstill);
+    let outcome = run(&head_on(), Controller::Potential, settings(1, NONE)).expect("a run");
+    assert_eq!(outcome.run.ended, Ended::TimeLimit);
 }
 
 /// More of them than are planned by priority: lanes that cross everybody else's.

@@ -47,7 +47,7 @@ mod world;
 
 pub use body::{Disturbance, HELD_EVERY};
 pub use course::{Course, Drive};
-pub use outcome::{Arrival, Collision, Journey, Outcome, Planning, Run, Simulation, Trace, Waiting};
+pub use outcome::{Arrival, Collision, Ended, Journey, Outcome, Planning, Run, Simulation, Trace, Waiting};
 pub use task::{Mission, Obstacle, Robot, Task};
 pub use vector::Vector;
 
@@ -55,8 +55,8 @@ use crate::regions::Failure;
 use agent::Errors;
 use body::{Command, Turning};
 use orca::Orca;
+use outcome::Waits;
 use potential::Potential;
-use replan::InTheWay;
 use serde::Serialize;
 use supervisor::{Statistics, Supervisor};
 use world::World;
@@ -145,8 +145,8 @@ trait Control {
     fn is_stuck(&self) -> bool {
         false
     }
-    /// Robots whose missions were not begun, and what stands in the way of each.
-    fn waiting(&self) -> Vec<(usize, Option<InTheWay>)> {
+    /// Robots that wait, and for which others.
+    fn waiting(&self) -> Vec<Waits> {
         Vec::new()
     }
     /// Takes the plans that were made.
@@ -172,10 +172,16 @@ pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Ou
     };
     let mut world = World::new(task, settings);
     world.announce(control.as_mut());
-    let frames = (time_limit(task) / FRAME).ceil() as usize;
+    let frames = (time_limit(task, settings.disturbance) / FRAME).ceil() as usize;
+    let mut ended = Ended::TimeLimit;
     for frame in 0..frames {
         world.missions(frame, control.as_mut());
-        if world.is_done() || (control.is_stuck() && world.all_given()) {
+        if world.is_done() {
+            ended = Ended::Done;
+            break;
+        }
+        if control.is_stuck() && world.all_given() {
+            ended = Ended::Standstill;
             break;
         }
         world.step(frame, control.as_mut());
@@ -184,18 +190,22 @@ pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Ou
     let waiting = control.waiting();
     Ok(Outcome {
         planned: control.planning().map_or_else(Vec::new, |planning| planning.times.clone()),
-        run: Run::of(task, controller, &world.trace, control.planning(), &waiting),
+        run: Run::of(task, (controller, ended), &world.trace, control.planning(), &waiting),
         trace: world.trace,
         snapshots,
     })
 }
 
-/// Time after which a run is given up \[s\]: eight times the time that a robot's missions take without other robots, for the
-/// robot with the longest ones, and a minute.
-pub fn time_limit(task: &Task) -> f64 {
+/// Time after which a run is given up \[s\]: eight times the time that a robot's missions take without other robots but with
+/// the slip and the times for which it is held up, for the robot with the longest ones, and a minute.
+pub fn time_limit(task: &Task, disturbance: Disturbance) -> f64 {
+    /// Slip and delays are taken to slow a robot down by at most this factor: with a slip of 1 it would never arrive.
+    const SLOWEST: f64 = 500.0;
     let robot = |robot: &Robot| {
         let missions = robot.missions.iter();
         missions.map(|mission| mission.release.max(0.0) + mission.course.unimpeded(robot.limits)).sum::<f64>()
     };
-    60.0 + 8.0 * task.robots.iter().map(robot).fold(0.0, f64::max)
+    let Disturbance { slip, delay, .. } = disturbance;
+    let slower = ((1.0 + delay / HELD_EVERY) / (1.0 - slip)).clamp(1.0, SLOWEST);
+    60.0 + 8.0 * slower * task.robots.iter().map(robot).fold(0.0, f64::max)
 }

@@ -92,13 +92,13 @@ fn driven(mut run: Run, imported: &Imported, request: Request) -> Result<Report,
 impl Run {
     /// Advances all robots by a step.
     fn step(&mut self, tick: usize, now: f64, open: bool) {
-        let far = |robot: usize| self.robots[robot].horizon(&self.abilities, STEP);
+        let fars: Vec<f64> = self.robots.iter().map(|it| it.horizon(&self.abilities, STEP)).collect();
         if self.request.method == Method::EdgeLocks {
-            self.locks.give(&self.site, &self.robots, far);
+            self.locks.give(&self.site, &self.robots, |robot| fars[robot]);
         }
         let hold = |robot: usize| match self.request.method {
             Method::EdgeLocks => self.locks.hold(robot, &self.robots[robot].way),
-            _ => self.book.hold(robot, &self.robots, far(robot)),
+            _ => self.book.hold(robot, &self.robots, fars[robot]),
         };
         let holds: Vec<f64> = (0..self.robots.len()).map(hold).collect();
         for (robot, hold) in holds.into_iter().enumerate() {
@@ -107,7 +107,9 @@ impl Run {
             self.outcome.breaches += usize::from(stop > hold + 1e-9 && stop > it.at);
             disturb(it, robot, tick, now, open, &self.request);
             if open {
-                *share(&mut self.outcome.time, it, hold, now) += 1.0;
+                // A hold that does not affect the next step is nobody's.
+                let held = hold < fars[robot];
+                *share(&mut self.outcome.time, it, held.then_some(hold), now) += 1.0;
             }
             let before = it.at;
             let has_come = it.drive(hold, now, STEP, &self.abilities);
@@ -188,7 +190,7 @@ impl Run {
 }
 
 /// The share to which the present activity of a robot belongs.
-fn share<'s>(shares: &'s mut Shares, robot: &Robot, hold: f64, now: f64) -> &'s mut f64 {
+fn share<'s>(shares: &'s mut Shares, robot: &Robot, hold: Option<f64>, now: f64) -> &'s mut f64 {
     /// A robot within this distance of its hold waits there \[m\].
     const NEAR: f64 = 0.01;
     if robot.stopped_until > now {
@@ -197,7 +199,7 @@ fn share<'s>(shares: &'s mut Shares, robot: &Robot, hold: f64, now: f64) -> &'s 
         &mut shares.idle
     } else if robot.turning > now {
         &mut shares.turning
-    } else if robot.speed == 0.0 && hold - robot.at < NEAR {
+    } else if robot.speed == 0.0 && hold.is_some_and(|hold| hold - robot.at < NEAR) {
         &mut shares.held
     } else if robot.way.goals.is_empty() {
         &mut shares.aside

@@ -1,5 +1,6 @@
 //! Missions are tried in the order of their age, and robots in the way of the mission that has waited longest are sent elsewhere.
 
+use super::Method;
 use super::decide::{AGAIN, TRIES};
 use super::dispatch::Admitted;
 use super::scene::Scene;
@@ -28,15 +29,16 @@ impl Run {
         if self.reserved.first().is_some_and(|route| Some(route.0) != oldest) {
             self.reserved.clear();
         }
-        self.is_urgent = false;
+        let passed = oldest.and_then(|oldest| self.missions[oldest]).map_or(0, |mission| mission.passed);
+        // Methods for comparison are not slowed down by it where they need not be.
+        let keeps_turns = self.crowded || self.request.method == Method::Orders;
+        self.is_urgent = keeps_turns && passed >= ROUNDS * self.robots.len();
+        if self.is_urgent {
+            waiting.truncate(1);
+        } else if self.crowded && active >= self.most_active() {
+            waiting.clear();
+        }
         if self.crowded {
-            let passed = oldest.and_then(|oldest| self.missions[oldest]).map_or(0, |mission| mission.passed);
-            self.is_urgent = passed >= ROUNDS * self.robots.len();
-            if self.is_urgent {
-                waiting.truncate(1);
-            } else if active >= self.most_active() {
-                waiting.clear();
-            }
             self.tidy(now);
         }
         let is_due = |robot: usize| self.missions[robot].is_some_and(|mission| mission.next_try <= now);

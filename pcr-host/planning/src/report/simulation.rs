@@ -3,7 +3,7 @@
 use super::columns::Columns;
 use super::figures::small;
 use super::{called, heading, quoted};
-use crate::simulate::{Run, Simulation};
+use crate::simulate::{Ended, Run, Simulation};
 use pcr_formats::scenario::Labels;
 use std::io::{self, Write};
 
@@ -69,7 +69,18 @@ pub fn simulation_table(simulation: &Simulation, out: &mut impl Write) -> io::Re
         ]);
     }
     columns.write(out)?;
-    simulation.runs.iter().try_for_each(|run| planning(run, &simulation.labels, out))
+    for run in &simulation.runs {
+        let (name, duration) = (run.controller.name(), run.duration);
+        match run.ended {
+            Ended::Done => {}
+            Ended::Standstill => writeln!(out, "{name}: after {duration:.0} s no robot would ever have moved again")?,
+            Ended::TimeLimit => {
+                writeln!(out, "{name}: given up after {duration:.0} s, with missions that were not done")?
+            }
+        }
+        planning(run, &simulation.labels, out)?;
+    }
+    Ok(())
 }
 
 fn planning(run: &Run, labels: &Labels, out: &mut impl Write) -> io::Result<()> {
@@ -81,11 +92,14 @@ fn planning(run: &Run, labels: &Labels, out: &mut impl Write) -> io::Result<()> 
         writeln!(out, "{name}: no plan was found in {count} tries, and nobody moved")?;
     }
     for waiting in &run.waiting_for {
-        let why = match waiting.by {
-            Some(by) => format!("{} stands in its way or too near it for their margins", called(labels, by)),
-            None => "no order of passing lets it through with its margin".to_owned(),
+        let by = waiting.by.map(|by| called(labels, by));
+        let why = match (waiting.begun, by) {
+            (false, Some(by)) => format!("never set off, as {by} stands in its way or too near it for their margins"),
+            (false, None) => "never set off, as no order of passing lets it through with its margin".to_owned(),
+            (true, Some(by)) => format!("stands on its way, as {by} passes first"),
+            (true, None) => "stands on its way, though no passing order holds it".to_owned(),
         };
-        writeln!(out, "{name}: {} never set off, as {why}", called(labels, waiting.id))?;
+        writeln!(out, "{name}: {} {why}", called(labels, waiting.id))?;
     }
     if count > 0 && kept == count {
         return Ok(());

@@ -1,56 +1,45 @@
 //! Keeps the passing orders of a plan in every frame, however late a robot is.
 //!
-//! In the coordination space (l, l') of two robots, a plan passes each collision region on one side: one robot passes
-//! first. Regions in coordination space depend on the paths alone. So robots that keep these orders do not collide,
-//! whatever the times: a robot that passes second stays before all lengths that the first one still blocks on the rest
-//! of its way through the region. (The same idea is called RMTRACK in: Čáp, Gregoire and Frazzoli, Provably safe and
-//! deadlock-free execution of multi-robot plans under delaying disturbances, IROS 2016.)
+//! A plan passes each collision region in coordination space on one side: one of the two robots passes first. Regions in
+//! coordination space depend on the paths alone, so robots that keep these orders do not collide, whatever the times. The
+//! orders are those of [`Orders`](pcr_core::Orders), with the proofs of `docs/theory.md`.
 //!
 //! The discs are enlarged by the distance that robots may be off their paths. The place of a robot along its path is an
 //! interval, of which the worse end is used. A robot drives only as fast as it can brake before the length at which it
 //! is held, so it can still do so in the next frame.
 
 use super::course::{Course, Drive};
-use crate::fleet::{HostEcm, build_ecm};
-use pcr_core::{Encounter, Full, Interval, Motion};
+use crate::fleet::{HostOrders, build_orders};
+use pcr_core::{Full, Hold, Interval, Motion, Pass, Progress, Reach, Tolerances};
 
-/// A region and who passes first.
-#[derive(Clone, Copy, Debug)]
-struct Order {
-    first: usize,
-    second: usize,
-    /// Extent along the path of the first \[m\].
-    first_part: Interval<f64>,
-    /// Extent along the path of the second \[m\].
-    second_part: Interval<f64>,
-}
+/// Gains below this are no progress when it is checked whether all robots can finish \[m\].
+const GAIN: f64 = 1e-6;
 
 /// The regions of all paths in coordination space, and the passing orders.
 #[derive(Debug)]
 pub(super) struct Guard {
-    /// At 1 m/s from time 0 on, so that times are lengths.
+    /// At 1 m/s from time 0 on: orders do not depend on times.
     drives: Vec<Drive>,
     radii: Vec<f64>,
-    ecm: HostEcm<f64>,
-    orders: Vec<Order>,
+    orders: HostOrders<f64>,
 }
 
 impl Guard {
-    /// For discs of these radii \[m\] on these courses, without orders yet.
+    /// For discs of these radii \[m\] on these courses; no order is decided.
     ///
     /// # Errors
-    /// Errors of [`build_ecm`].
+    /// Those of [`build_orders`].
     pub(super) fn new(courses: &[Course], radii: &[f64]) -> Result<Self, Full> {
         let drives: Vec<Drive> = courses.iter().filter_map(|course| Drive::at_unit_speed(course.clone())).collect();
         // The supervisor has tried the courses and radii of all robots, and parts of courses are in range as well.
         debug_assert_eq!((drives.len(), motions(&drives, radii).len()), (courses.len(), courses.len()));
-        let ecm = build_ecm(&motions(&drives, radii))?;
-        Ok(Self { drives, radii: radii.to_vec(), ecm, orders: Vec::new() })
+        let orders = build_orders(&motions(&drives, radii))?;
+        Ok(Self { drives, radii: radii.to_vec(), orders })
     }
 
-    /// Takes the orders of a plan without collisions. `reached(agent, length)` is the time at which the agent reaches a length of its
-    /// course \[s\]; `length_at(agent, time)` is the length at which the agent is at that time \[m\]. `now` has the interval of
-    /// lengths in which each robot is now. `None` if the plan does not tell which agent passes a region first.
+    /// Takes the orders of a plan without collisions: `reached(agent, length)` is when an agent reaches a length of its
+    /// course \[s\], `length_at(agent, time)` is the length at which it is at that time. Robots are now in these intervals. `None` where
+    /// it cannot be told who passes a region first, or where some robot could never finish.
     pub(super) fn take_orders(
         &mut self,
         now: &[Interval<f64>],
@@ -58,53 +47,62 @@ impl Guard {
         length_at: impl Fn(usize, f64) -> f64,
     ) -> Option<()> {
         let motions = motions(&self.drives, &self.radii);
-        let mut orders = Vec::new();
-        for (other, at) in now.iter().enumerate() {
-            for ego in 0..other {
-                // Two courses without length have no passing order.
-                if [ego, other].iter().all(|&place| motions.get(place).is_some_and(|it| it.path().length() <= 0.0)) {
+        let mut decisions = Vec::new();
+        for ego in 0..motions.len() {
+            for (place, region, _) in self.orders.row(&motions, ego).ok()? {
+                let other = region.other();
+                if other < ego {
                     continue;
                 }
-                for region in self.ecm.pair(&motions, ego, other).expect("the table of the fleet") {
-                    let (own, their) = (region.length(), region.other_length());
-                    if now.get(ego).is_some_and(|ego| ego.lo > own.hi) || at.lo > their.hi {
-                        continue;
-                    }
-                    // A point of the region that is still ahead of the other one; the whole region is on one side.
-                    let ahead = Interval::new(at.lo.clamp(their.lo, their.hi), their.hi).middle();
-                    let point = region.slice_at(ahead).next().map(Interval::middle)?;
-                    let ego_is_behind = length_at(ego, reached(other, ahead)) < point;
-                    let parts = if ego_is_behind { (other, their, ego, own) } else { (ego, own, other, their) };
-                    let (first, first_part, second, second_part) = parts;
-                    orders.push(Order { first, second, first_part, second_part });
+                let (own, their) = (region.length(), region.other_length());
+                let [at, other_at] = [*now.get(ego)?, *now.get(other)?];
+                let stand = [ego, other].iter().all(|&agent| motions[agent].path().length() <= 0.0);
+                if stand || at.lo > own.hi || other_at.lo > their.hi {
+                    decisions.push((place, ego, Pass::Over, 0.0));
+                    continue;
                 }
+                // A point of the region that is still ahead of the other one; the whole region is on one side.
+                let ahead = Interval::new(other_at.lo.clamp(their.lo, their.hi), their.hi).middle();
+                let point = region.slice_at(ahead).next().map(Interval::middle)?;
+                let is_behind = length_at(ego, reached(other, ahead)) < point;
+                let (pass, since) = if is_behind { (Pass::Second, at.lo) } else { (Pass::First, other_at.lo) };
+                decisions.push((place, ego, pass, since));
             }
         }
-        self.orders = orders;
-        Some(())
+        for (place, ego, pass, since) in decisions {
+            self.orders.decide_at(&motions, place, ego, pass, since).ok()?;
+        }
+        let mut reaches = vec![Reach::EMPTY; motions.len()];
+        let tolerances = Tolerances { width: 0.0, gain: GAIN };
+        self.orders.check(&motions, &progress(now), tolerances, &mut reaches).ok()
     }
 
     /// The length \[m\] at which each agent is held, infinite where it is not up to its `horizon`, with the agents in these
     /// intervals.
     pub(super) fn holds(&self, now: &[Interval<f64>], horizon: impl Fn(usize) -> f64) -> Vec<f64> {
-        let motions = motions(&self.drives, &self.radii);
-        let mut holds = vec![f64::INFINITY; motions.len()];
-        for order in &self.orders {
-            let (Some(first), Some(second)) = (motions.get(order.first), motions.get(order.second)) else { continue };
-            let Some(at) = now.get(order.first).map(|at| at.lo.max(order.first_part.lo)) else { continue };
-            if at > order.first_part.hi || order.second_part.lo > horizon(order.second) {
-                continue;
+        let (motions, progress) = (motions(&self.drives, &self.radii), progress(now));
+        let hold = |agent: usize| {
+            let horizon = horizon(agent);
+            let before = if horizon.is_finite() { Hold::At(horizon) } else { Hold::Free };
+            // The table is that of the motions; nobody moves if it were not.
+            match self.orders.hold_before(&motions, agent, &progress, before) {
+                Ok(Hold::Free) => f64::INFINITY,
+                Ok(Hold::At(hold)) if hold >= horizon => f64::INFINITY,
+                Ok(Hold::At(hold)) => hold,
+                Ok(Hold::Inside) | Err(_) => f64::NEG_INFINITY,
             }
-            let rest = Interval::new(at, order.first_part.hi);
-            let encounter = Encounter::new(second, first);
-            let blocked = encounter.blocked_lengths(rest).filter(|part| part.meets(order.second_part));
-            let lowest = blocked.map(|part| part.lo.max(order.second_part.lo)).fold(f64::INFINITY, f64::min);
-            if let Some(hold) = holds.get_mut(order.second) {
-                *hold = hold.min(lowest);
-            }
-        }
-        holds
+        };
+        (0..motions.len()).map(hold).collect()
     }
+
+    /// For which agent another one waits, if it does.
+    pub(super) fn waits_for(&self, agent: usize, now: &[Interval<f64>]) -> Option<usize> {
+        self.orders.wait(&motions(&self.drives, &self.radii), agent, &progress(now)).ok()?.1
+    }
+}
+
+fn progress(now: &[Interval<f64>]) -> Vec<Progress<f64>> {
+    now.iter().map(|&at| Progress { at, stop: at.hi }).collect()
 }
 
 fn motions<'a>(drives: &'a [Drive], radii: &[f64]) -> Vec<Motion<'a, f64>> {

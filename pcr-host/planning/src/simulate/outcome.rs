@@ -98,6 +98,18 @@ impl Simulation {
     }
 }
 
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Ended {
+    /// All missions are done.
+    Done,
+    /// No robot would ever have moved again.
+    Standstill,
+    /// It was given up at [`time_limit`](super::time_limit).
+    TimeLimit,
+}
+
 /// The figures of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Run {
@@ -109,6 +121,8 @@ pub struct Run {
     pub not_done: usize,
     /// Time until the end of the last mission, or until the run was given up \[s\].
     pub duration: f64,
+    /// How the run ended.
+    pub ended: Ended,
     /// Mean time of a mission that was done \[s\].
     pub travel: f64,
     /// Mean time that these missions would have taken if no robot was in the way \[s\].
@@ -121,7 +135,7 @@ pub struct Run {
     pub collisions: Vec<Collision>,
     /// Least distance between two discs \[m\]; negative where they overlap.
     pub clearance: Option<f64>,
-    /// Missions that were in no plan.
+    /// Robots that stand with a mission that is not done, and for which others they wait.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub waiting_for: Vec<Waiting>,
     /// Figures about planning; `None` without a supervisor.
@@ -143,14 +157,24 @@ pub struct Arrival {
     pub waiting: f64,
 }
 
-/// A mission that was never begun.
+/// A robot that stands with a mission that is not done.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Waiting {
     /// Number of the robot.
     pub id: u64,
-    /// Number of the robot or obstacle that stands in its way, within their margins; `None` for an obstacle without a number,
-    /// and if no passing order lets it through.
+    /// Whether it has begun the mission.
+    pub begun: bool,
+    /// Before the mission is begun: number of the robot or obstacle that stands in its way, within their margins; `None` for an
+    /// obstacle without a number, and if no passing order lets it through. Afterwards: number of the robot that passes first.
     pub by: Option<u64>,
+}
+
+/// The same with the places of the robots.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Waits {
+    pub(super) robot: usize,
+    pub(super) begun: bool,
+    pub(super) by: Option<InTheWay>,
 }
 
 /// Two discs in contact.
@@ -184,10 +208,10 @@ pub struct Planning {
 impl Run {
     pub(super) fn of(
         task: &Task,
-        controller: Controller,
+        (controller, ended): (Controller, Ended),
         trace: &Trace,
         planning: Option<&Statistics>,
-        waiting: &[(usize, Option<InTheWay>)],
+        waiting: &[Waits],
     ) -> Self {
         let missions: Vec<Arrival> =
             trace.journeys.iter().filter_map(|journey| arrival(task, trace, journey)).collect();
@@ -204,26 +228,27 @@ impl Run {
             done: done.len(),
             not_done: all - done.len(),
             duration: given_up,
+            ended,
             travel: mean(&|(_, travel)| *travel),
             unimpeded: mean(&|(mission, _)| mission.unimpeded),
             waiting: mean(&|(mission, _)| mission.waiting),
             collisions,
             clearance,
             planning: planning.map(Planning::of),
-            waiting_for: waiting.iter().map(|(robot, by)| Waiting::of(task, *robot, *by)).collect(),
+            waiting_for: waiting.iter().map(|waits| Waiting::of(task, *waits)).collect(),
             missions,
         }
     }
 }
 
 impl Waiting {
-    fn of(task: &Task, robot: usize, by: Option<InTheWay>) -> Self {
+    fn of(task: &Task, Waits { robot, begun, by }: Waits) -> Self {
         let by = match by {
             Some(InTheWay::Robot(other)) => task.robots.get(other).map(|robot| robot.id),
             Some(InTheWay::Obstacle(other)) => task.obstacles.get(other).and_then(|obstacle| obstacle.id),
             None => None,
         };
-        Self { id: task.robots.get(robot).map_or(0, |robot| robot.id), by }
+        Self { id: task.robots.get(robot).map_or(0, |robot| robot.id), begun, by }
     }
 }
 

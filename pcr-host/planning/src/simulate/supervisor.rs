@@ -14,6 +14,7 @@ use super::braking::{speed_within, stopping_length};
 use super::course::{Course, Drive};
 use super::guard::Guard;
 use super::observer::narrowed;
+use super::outcome::Waits;
 use super::replan::{InTheWay, Plan, Problem, SEARCHED, State};
 use super::task::{Obstacle, Task};
 use super::{Command, Control, FRAME, Frame, Snapshot};
@@ -391,12 +392,19 @@ impl Control for Supervisor {
         self.still > 2.0 * self.period + RESTING
     }
 
-    fn waiting(&self) -> Vec<(usize, Option<InTheWay>)> {
+    fn waiting(&self) -> Vec<Waits> {
+        let places: Vec<Interval<f64>> = self.agents.iter().map(|agent| agent.at).collect();
         let pending: Vec<bool> = self.agents.iter().map(|agent| agent.next.is_some()).collect();
         let robots = self.states(0, &pending).unwrap_or_default();
         let problem = Problem { now: 0.0, robots: &robots, obstacles: &self.obstacles };
-        let waits = (0..pending.len()).filter(|&robot| pending[robot]);
-        waits.map(|robot| (robot, problem.in_the_way(robot, |_| true))).collect()
+        let waits = |(robot, agent): (usize, &Agent)| {
+            if pending[robot] {
+                return Some(Waits { robot, begun: false, by: problem.in_the_way(robot, |_| true) });
+            }
+            let by = self.guard.waits_for(robot, &places).map(InTheWay::Robot);
+            (agent.speed <= 0.0 && !agent.stands()).then_some(Waits { robot, begun: true, by })
+        };
+        self.agents.iter().enumerate().filter_map(waits).collect()
     }
 
     fn take_snapshots(&mut self) -> Vec<Snapshot> {
