@@ -6,7 +6,7 @@
 
 use super::axis::Frame;
 use super::contour::{Outline, is_thin};
-use super::map::{THIN, places, spans};
+use super::map::{Names, THIN, spans};
 use super::scene::{Scene, Shape};
 use super::template::Page;
 use pcr_core::{Bounds, Crossing, Curve, Interval, Motion, Turn};
@@ -120,8 +120,8 @@ fn map(scene: &Scene<'_>, ego: usize) -> Value {
     let [time, length] = spans(scene, ego);
     let frame = Frame::new(time, length, [0.0, 0.0, PIXELS, PIXELS]);
     let shapes = scene.shapes(ego, [frame.x.units_per_pixel(), frame.y.units_per_pixel()]);
-    let places = places(scene, ego, &shapes, &frame, LABEL_SIZE);
-    let regions = shapes.iter().zip(places).map(|(shape, place)| region(shape, place, &frame));
+    let names = Names::new(scene, ego, &shapes, &frame, LABEL_SIZE);
+    let regions = shapes.iter().zip(&names.places).map(|(shape, place)| region(shape, *place, &frame));
     json!({
         "time": interval(frame.x.values()),
         "length": interval(frame.y.values()),
