@@ -80,6 +80,11 @@ impl Labels {
         Some(place)
     }
 
+    /// The weights of the points that a label of this width and height would cover.
+    pub(super) fn covers(&self, place: [f64; 2], size: [f64; 2]) -> f64 {
+        self.crossed(around(place, size))
+    }
+
     /// Frees the place of a label that is taken away again.
     pub(super) fn free(&mut self, place: [f64; 2], size: [f64; 2]) {
         let area = around(place, size);

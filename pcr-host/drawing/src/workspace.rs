@@ -23,6 +23,9 @@ const MOST_OBSTACLES: f64 = 2000.0;
 /// Weight of covering a path.
 const CROSSED: f64 = 2.0;
 
+/// What a label may cover: about three paths that it crosses. Instead of one that covers more there is the number.
+const MOST_CROSSED: f64 = 24.0;
+
 /// The frame of a workspace that is at most `side` pixels wide and high, at this left top corner; equal scales.
 pub(super) fn frame(scene: &Scene<'_>, side: f64, [left, top]: [f64; 2]) -> Frame {
     let Bounds { x, y } = scene.bounds();
@@ -212,7 +215,10 @@ impl Names {
             let Some(Some((at, text))) = self.texts.get_mut(place) else { continue };
             let (size, called) = (extent(text), scene.called(place));
             labels.free(*at, size);
-            match labels.place(extent(&called), candidates(&called, motion, frame), frame.edges) {
+            let longer = extent(&called);
+            let seen = |(_, at): &(f64, [f64; 2])| labels.covers(*at, longer) <= MOST_CROSSED;
+            let candidates: Vec<_> = candidates(&called, motion, frame).filter(seen).collect();
+            match labels.place(longer, candidates, frame.edges) {
                 Some(found) => (*at, *text) = (found, called),
                 None => {
                     labels.block(around(*at, size));

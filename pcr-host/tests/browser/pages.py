@@ -302,14 +302,22 @@ def check_live(browser):
 
 # All pairs of numbers that are seen and lie on one another, by what is written.
 PAIRS = """(boxes) => boxes.flatMap((a, i) => boxes.slice(0, i).filter((b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom).map((b) => `${b.text} and ${a.text}`))"""
-NUMBERS = """numbers.filter((number) => number.checkVisibility()).map((number) => { const { left, right, top, bottom } = number.getBoundingClientRect(), middle = (top + bottom) / 2;
+BOXES = """(numbers) => numbers.filter((number) => number.checkVisibility()).map((number) => { const { left, right, top, bottom } = number.getBoundingClientRect(), middle = (top + bottom) / 2;
   // Of a line of text a third is room above and below the digits.
   return { text: number.textContent, left, right, top: middle - (bottom - top) / 3, bottom: middle + (bottom - top) / 3 }; })"""
+NUMBERS = f"({BOXES})(numbers)"
+REGIONS = f"({BOXES})([...document.querySelectorAll('#map .region text')])"
 
 
 def check_many(browser, name):
     """Of 60 agents with long labels, numbers lie apart, and one is found by its label; there is no legend of 60 colours."""
     wrong = []
+    for width in WIDTHS:
+        browser.open(browser.page, width, "light")
+        for ego in range(0, 60, 7):
+            browser.value(f"selectEgo({ego})")
+            hidden = browser.value(f"({PAIRS})({REGIONS})")
+            wrong += [f"{width} px, in the map of {ego + 1}: {hidden[:5]} lie on one another"] if hidden else []
     for time in (0, 0.4, 0.8):
         browser.value(f"state.time = first + {time} * (last - first); showTime()")
         hidden = browser.value(f"({PAIRS})({NUMBERS})")

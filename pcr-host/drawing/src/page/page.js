@@ -112,6 +112,9 @@ function frame(svg, xs, ys, width, height, titles) {
 const discs = [], numbers = [], paths = [];
 let cursor = null;
 
+// Width of a number with a gap beside it, before it is drawn.
+const wide = (number) => 9 * number.length + 3;
+
 // The heading of a pose as the screen turns it.
 const degrees = ([, , heading]) => -heading * 180 / Math.PI;
 
@@ -193,6 +196,7 @@ function drawMap() {
   const { x, y, content } = view;
   const grid = `translate(${view.left} ${view.top}) scale(${width / data.grid} ${height / data.grid})`;
   const order = map.regions.map((_, k) => k).sort((a, b) => size(map.regions[b]) - size(map.regions[a]));
+  const crowd = new Crowd();
   for (const k of order) {
     const region = map.regions[k], other = agents[region.other];
     if (!state.shown[region.other]) continue;
@@ -205,7 +209,9 @@ function drawMap() {
     region.before.forEach(strip(view.left, x.at(other.time[0])));
     region.after.forEach(strip(x.at(other.time[1]), view.right));
     element(node, "path", { d: region.outline, transform: grid });
-    if (region.label) element(node, "text", { x: x.at(region.label[0]), y: y.at(region.label[1]) }, other.id);
+    // Their places are those of a large picture: in a small one there may be less room.
+    const label = region.label && crowd.place([x.at(region.label[0]), y.at(region.label[1]), Infinity], k, wide(other.id), 14);
+    if (label) element(node, "text", { x: label[0], y: label[1] }, other.id);
     node.addEventListener("pointerenter", () => describe(region));
     node.addEventListener("focus", () => describe(region));
     node.addEventListener("pointerleave", () => describe(map.regions[state.pinned]));
@@ -336,7 +342,7 @@ function showNumbers(poses, hit) {
   }
   numbers.forEach((number, k) => number.classList.toggle("hidden", !state.shown[k]));
   for (const k of order) {
-    const at = crowd.place(places[k], k, 9 * agents[k].id.length, 14, k === state.ego);
+    const at = crowd.place(places[k], k, wide(agents[k].id), 14, k === state.ego);
     numbers[k].classList.toggle("hidden", !at);
     if (!at) continue;
     numbers[k].setAttribute("x", at[0]);
