@@ -132,7 +132,7 @@ def files(tool, folder, browser):
     for text, reason in (("{", "Not loaded"), ("null", "no agents"), ('{"agents": [null]}', "not an object"), (changed(margin=0.1), '"margin" is not known here'),
                          (changed(start=dict(one["start"], z=1)), '"z" is not known here'), (changed(path=[{"kind": "line", "length": 1, "radius": 2}]), '"radius" is not known here'),
                          (changed(path=[None]), "only lines and arcs"), (changed(path=[{"kind": "turn", "sweep": 1}]), "only lines and arcs"),
-                         (changed(path=[{"kind": "arc", "radius": 1, "sweep": 0}]), "does not turn"), (changed(id=1), "given twice"), (changed(id="a"), "others names"),
+                         (changed(id=1), "given twice"), (changed(id="a"), "others names"),
                          (changed(id=2**60 + 1), "no whole number"), (changed(id=-1), "no whole number"), (changed(id=None), "no whole number"),
                          (changed(label=5), "not a text"), (changed(radius="0.2"), "not a number"), (json.dumps({"agents": [one], "version": 2}), "version 2"),
                          (json.dumps({"agents": [one] * 25}), "there is room for 24")):
@@ -154,12 +154,12 @@ def refusals(tool, folder, browser):
                (fleet(t_start=None), "t_start is not a number"), (fleet({"name": None}), "the name is not a text"), (fleet({"warnings": None}), "warnings"), (fleet({"warnings": [1]}), "warnings"),
                (fleet(id="12"), "could be taken for the number"), (fleet(id="+007"), "could be taken for the number"), (fleet(id="a\u0007"), "control character U+0007"), (fleet(id="x" * 201), "201 characters"),
                (fleet(id="a", label="b"), "its id is a text"), (fleet(label=None), "not a text"), (fleet(label="a\nb"), "control character U+000A"), (fleet(label="a\u202eb"), "U+202E"), (fleet(label="x" * 300), "300 characters"),
-               (arc(-1, 1), "agent 1, leg 2, radius: -1 is out of range; allowed is above 0"), (arc(0, 1), "agent 1, leg 2, radius"), (leg(kind="line", length=-1), "agent 1, leg 2, length"),
+               (arc(-1, 1), "agent 1, leg 2, radius: -1 is out of range; allowed is above 0"), (arc(0, 1), "agent 1, leg 2, radius"), (arc(0, 0), "agent 1, leg 2, radius"), (leg(kind="line", length=-1), "agent 1, leg 2, length"),
                (fleet(radius=0), "agent 1, radius"), (fleet(radius=-0.2), "agent 1, radius"), (fleet(v_max=0), "agent 1, v_max"), (fleet(a_max=-1), "agent 1, a_max"), (fleet(t_start=1e10), "the motion takes"),
                (fleet(v_max=1e-10), "the motion takes"), (arc(1e10, 2), "m long"), (fleet(start=None), "not an object"))
     # The highest number that an id may have as text is one less than 2^64.
     taken = (fleet(id="18446744073709551616"), fleet(id="é" * 200), fleet(label="x" * 200), fleet(label=""), fleet({"name": ""}), fleet({"warnings": []}), fleet(t_start=-5), fleet(path=[]),
-             leg(kind="line", length=0), arc(0.5, 10), arc(0.5, -20), arc(0.5, 6.283185307179587), arc(0.5, 6.2831853071796))
+             leg(kind="line", length=0), arc(0.5, 0), arc(0.5, -0.0), arc(0.5, 10), arc(0.5, -20), arc(0.5, 6.283185307179587), arc(0.5, 6.2831853071796))
     status = lambda: subprocess.run([tool, "check", file, "-q"], capture_output=True, check=False).returncode
     browser.value("open(START); 0")
     kept, drawn = browser.value("scenario"), browser.value("$('plane').toDataURL()")
@@ -177,12 +177,17 @@ def refusals(tool, folder, browser):
     file.write_text(json.dumps(arc(0.5, 200)))
     said = load(browser, file)
     wrong += [] if "each turn of an arc counted" in said else [f"an arc of 32 turns: {said}"]
-    # Two and four turns, of which one is hit by another agent.
-    for sweep in (10, -20):
+    # Two and four turns, of which one is hit by another agent, and no turn at all in the middle of a path that is.
+    for sweep in (10, -20, 0):
         other = dict(one, id=2, start={"x": 2, "y": -2, "heading": math.pi / 2}, path=[{"kind": "line", "length": 5}])
-        browser.value(f"open({json.dumps({'agents': [*arc(0.5, sweep)['agents'], other]})}); 0")
+        turning = arc(0.5, sweep)["agents"][0]
+        turning["path"] = turning["path"] if sweep else [turning["path"][1], turning["path"][0], turning["path"][1], turning["path"][0]]
+        browser.value(f"open({json.dumps({'agents': [turning, other]})}); 0")
         wrong += same(tool, folder, browser, f"an arc of {sweep} rad")
         wrong += [] if browser.value("answers.conflicts.length + answers.map.length") else [f"an arc of {sweep} rad has no region"]
+        ways = browser.value("""(() => { const ways = [], pen = { beginPath() {}, moveTo() {}, lineTo() { ways.push("line"); }, arc() { ways.push("arc"); } };
+          trace(pen, scenario.agents[0], ({ x, y }) => [x, y]); return ways; })()""")
+        wrong += [] if ways.count("arc") == math.ceil(abs(sweep) / math.tau) else [f"an arc of {sweep} rad is drawn as {ways}"]
     # Far from the origin, where steps of the grid are lost in rounding.
     lines = browser.value("""(() => { open(START); const pen = $('plane').getContext('2d'), seen = view; let lines = 0;
       pen.stroke = () => { if (++lines > 5000) throw new Error(); };
@@ -201,7 +206,7 @@ def fields(browser):
     browser.value("open(START); chosen = scenario.agents.findIndex((agent) => agent.path.some((leg) => leg.kind === 'arc')); edit(); update(); 0")
     leg = browser.value("scenario.agents[chosen].path.findIndex((leg) => leg.kind === 'arc')") + 1
     agent, kept, drawn = browser.value("chosen") + 1, browser.value("scenario"), browser.value("$('plane').toDataURL()")
-    for field, text, reason in ((f"Radius of leg {leg}", "-1", f"agent {agent}, leg {leg}, radius: -1"), (f"Radius of leg {leg}", "0", f"leg {leg}, radius"), (f"Turn of leg {leg}", "0", "does not turn"),
+    for field, text, reason in ((f"Radius of leg {leg}", "-1", f"agent {agent}, leg {leg}, radius: -1"), (f"Radius of leg {leg}", "0", f"leg {leg}, radius"),
                                 (f"Turn of leg {leg}", "", f"leg {leg}, sweep is not a number"), ("Radius [m]", "-0.1", f"agent {agent}, radius"), ("Speed [m/s]", "0", f"agent {agent}, v_max"),
                                 ("Start x [m]", "1000000000000000.25", f"agent {agent}, x")):
         said = typed(field, text)
@@ -212,6 +217,10 @@ def fields(browser):
     said = typed(f"Radius of leg {leg}", "-1"), typed(f"Radius of leg {leg}", "1.5")
     if said[1].startswith("Not") or browser.value(f"scenario.agents[chosen].path[{leg - 1}].radius") != 1.5:
         wrong.append(f"a radius that is mended: {said[1]}")
+    # As in a file, an arc may have a turn of 0: it has no length then.
+    said = typed(f"Turn of leg {leg}", "0")
+    if said.startswith("Not") or browser.value(f"scenario.agents[chosen].path[{leg - 1}].sweep") != 0:
+        wrong.append(f"an arc that does not turn: {said}")
     # Whatever else makes a scenario one that is refused: nothing of it is drawn.
     browser.value(f"open({json.dumps(ONE)}); scenario.agents[0].start.x = 1e13; update(); 0")
     blank = browser.value("!$('plane').getContext('2d').getImageData(0, 0, $('plane').width, $('plane').height).data.some((byte) => byte)")

@@ -39,7 +39,8 @@ function trace(pen, agent, at) {
   pen.beginPath();
   pen.moveTo(...at(poses[0]));
   path.forEach((leg, k) => {
-    if (leg.kind === "line") return pen.lineTo(...at(poses[k + 1]));
+    // An arc that does not turn has no centre to go about.
+    if (leg.kind === "line" || leg.sweep === 0) return pen.lineTo(...at(poses[k + 1]));
     const side = Math.sign(leg.sweep), { x, y, heading } = poses[k], r = leg.radius;
     const centre = { x: x - side * r * Math.sin(heading), y: y + side * r * Math.cos(heading) };
     const from = -(heading - side * Math.PI / 2);

@@ -20,7 +20,7 @@ function write(agents) {
   const stride = pcr.pcr_stride(), input = new Float64Array(pcr.memory.buffer, pcr.pcr_input(), AGENTS * stride);
   agents.forEach((a, k) => {
     // The tool leaves out what has no length.
-    const legs = parts(a.path).filter((leg) => leg.length !== 0);
+    const legs = parts(a.path).filter((leg) => whole(leg) !== 0);
     input.set([a.start.x, a.start.y, a.start.heading, a.radius, a.t_start, a.v_max, a.a_max, legs.length, ...legs.flatMap(pair)], k * stride);
   });
 }
@@ -84,7 +84,7 @@ function read(found) {
       if (!["line", "arc"].includes(leg?.kind)) refuse(`${where}: only lines and arcs can be edited here`);
       object(leg, KEYS[leg.kind], `${where}: `);
       for (const field of KEYS[leg.kind].slice(1)) number(leg[field], `${where}, ${field}`, RANGE_OF[field]);
-      return leg.sweep === 0 ? refuse(`${where}: an arc that does not turn`) : { ...leg };
+      return { ...leg };
     });
     const t_start = agent.t_start === undefined ? 0 : number(agent.t_start, `${name}, t_start`);
     if (path.reduce((sum, leg) => sum + turns(leg), 0) > LEGS) refuse(`${name}: 0 to ${LEGS} legs, each turn of an arc counted`);
@@ -119,7 +119,7 @@ function along(agent, length) {
   let rest = length, poses = joints(agent);
   for (let k = 0; k < agent.path.length; k++) {
     const leg = agent.path[k];
-    if (rest <= whole(leg)) {
+    if (whole(leg) > 0 && rest <= whole(leg)) {
       const part = leg.kind === "line" ? { ...leg, length: rest } : { ...leg, sweep: leg.sweep * rest / whole(leg) };
       return joints({ start: poses[k], path: [part] })[1];
     }

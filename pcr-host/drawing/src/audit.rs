@@ -93,7 +93,8 @@ pub(super) fn picture(ground: Ground<'_>, rules: &Rules, audit: &Audit) -> Strin
     let layout = &imported.layout;
     let on_level = |edge: usize| layout.edges.get(edge).is_some_and(|edge| layout.is_on(edge, ground.level));
     let level = layout.levels.get(ground.level).map_or("", String::as_str);
-    let title = format!("{}, audit of {}", ground.title(), audit.exclusions);
+    let [before, name, after] = ground.title();
+    let title = [before, name, format!("{after}, audit of {}", audit.exclusions)];
     ground.picture_with(&title, 18.0 + 2.0 * LINE, |svg, frame| {
         let metre = 1.0 / frame.x.units_per_pixel();
         let wide = Pixels((0.5 * audit.vehicle.radius * metre).max(2.0));

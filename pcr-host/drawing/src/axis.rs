@@ -1,6 +1,6 @@
 //! Axes: from metres and seconds to pixels, with ticks at round numbers.
 
-use super::svg::{PathData, Pixels, Svg, text_width};
+use super::svg::{PathData, Pixels, Svg, cut_name, text_width};
 use pcr_core::Interval;
 
 /// Smallest span of an axis relative to the magnitude of its values: below it, neighbouring pixels would be the
@@ -110,6 +110,9 @@ pub(super) const AXIS_SIZE: f64 = 11.0;
 /// Room above a plot for its title \[px\].
 pub(super) const ROOM_ABOVE: f64 = 26.0;
 
+/// How far a title may reach beyond either side of its plot \[px\]: as far as nothing else is.
+const BEYOND: f64 = 8.0;
+
 /// Room below a plot for its axis \[px\].
 pub(super) const ROOM_BELOW: f64 = 36.0;
 
@@ -131,6 +134,14 @@ impl Frame {
     /// Where a point lies \[px\].
     pub(super) fn at(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [self.x.at(x), self.y.at(y)]
+    }
+
+    /// What is written above the plot: a name with what stands before and after it. It stays within the plot's width.
+    pub(super) fn draw_title(&self, svg: &mut Svg, title: [&str; 3]) {
+        let [left, top, right, _] = self.edges;
+        let size = AXIS_SIZE + 0.5;
+        let title = cut_name(title, size, right - left + 2.0 * BEYOND);
+        svg.label([(left + right) / 2.0, top - 9.0], "middle", &[("font-size", &Pixels(size))], &title);
     }
 
     /// The frame with grid lines, ticks and titles.

@@ -1,12 +1,12 @@
-//! Positions of labels: each label gets the first of its candidate positions that is free, or the least crowded one.
+//! Positions of labels: each label gets the best of its candidate positions that are free, or none.
 
 use std::collections::HashMap;
 
 /// A box: left, top, right, bottom \[px\].
 type Area = [f64; 4];
 
-/// Weight of an overlap with another label, a square pixel.
-const OVERLAP: f64 = 4.0;
+/// What may lie on another label or outside of the picture, by rounding \[px²\].
+const SLACK: f64 = 1e-6;
 
 /// Distance of the points by which lines are to be given \[px\].
 pub(super) const SPACING: f64 = 3.0;
@@ -51,21 +51,23 @@ impl Labels {
     }
 
     /// Place of the middle of a label of this width and height: the best of the candidates, which is then taken. A
-    /// candidate comes with what speaks against it by itself; earlier ones are preferred. `None` without candidates.
+    /// candidate comes with what speaks against it by itself; earlier ones are preferred. `None` if each of them would
+    /// lie on what is taken, or reach out of the picture: a label there could not be read, nor what it lies on.
     pub(super) fn place(
         &mut self,
         size: [f64; 2],
         candidates: impl IntoIterator<Item = (f64, [f64; 2])>,
         within: Area,
     ) -> Option<[f64; 2]> {
-        let around = |[x, y]: [f64; 2]| [x - size[0] / 2.0, y - size[1] / 2.0, x + size[0] / 2.0, y + size[1] / 2.0];
         let mut best: Option<(f64, [f64; 2])> = None;
         for (rank, (weight, candidate)) in candidates.into_iter().enumerate() {
-            let area = around(candidate);
-            let outside = size[0] * size[1] - overlap(area, within);
-            let covered: f64 = self.taken.iter().map(|taken| overlap(*taken, area)).sum();
-            let cost = weight + RANK * rank as f64 + OVERLAP * (outside + covered);
+            let cost = weight + RANK * rank as f64;
             if best.is_some_and(|(least, _)| least <= cost) {
+                continue;
+            }
+            let area = around(candidate, size);
+            let outside = size[0] * size[1] - overlap(area, within);
+            if outside > SLACK || self.taken.iter().any(|taken| overlap(*taken, area) > SLACK) {
                 continue;
             }
             let cost = cost + self.crossed(area);
@@ -74,9 +76,27 @@ impl Labels {
             }
         }
         let (_, place) = best?;
-        self.taken.push(around(place));
+        self.taken.push(around(place, size));
         Some(place)
     }
+
+    /// The weights of the points that a label of this width and height would cover.
+    pub(super) fn covers(&self, place: [f64; 2], size: [f64; 2]) -> f64 {
+        self.crossed(around(place, size))
+    }
+
+    /// Frees the place of a label that is taken away again.
+    pub(super) fn free(&mut self, place: [f64; 2], size: [f64; 2]) {
+        let area = around(place, size);
+        if let Some(found) = self.taken.iter().rposition(|taken| *taken == area) {
+            self.taken.remove(found);
+        }
+    }
+}
+
+/// The box of a label about its middle.
+pub(super) fn around([x, y]: [f64; 2], [width, height]: [f64; 2]) -> Area {
+    [x - width / 2.0, y - height / 2.0, x + width / 2.0, y + height / 2.0]
 }
 
 fn overlap(a: Area, b: Area) -> f64 {
@@ -101,6 +121,10 @@ mod tests {
         let places = [(0.0, [50.0, 50.0]), (0.0, [98.0, 50.0]), (0.0, [50.0, 70.0])];
         assert_eq!(labels.place([20.0, 10.0], places, ALL), Some([50.0, 50.0]));
         assert_eq!(labels.place([20.0, 10.0], places, ALL), Some([50.0, 70.0]));
+        // The third one would lie on one of them, or reach out of the picture.
+        assert_eq!(labels.place([20.0, 10.0], places, ALL), None);
+        labels.free([50.0, 50.0], [20.0, 10.0]);
+        assert_eq!(labels.place([20.0, 10.0], places, ALL), Some([50.0, 50.0]));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 //! The corridor that a disc sweeps is the stroke of its path, as wide as the disc and with round ends; SVG draws this
 //! exactly. The corridor of a footprint is the union of the corridors of its discs.
 
-use super::axis::{AXIS_SIZE, Frame, ROOM_ABOVE, ROOM_BELOW, at_least_visible, room_at_left};
+use super::axis::{Frame, ROOM_ABOVE, ROOM_BELOW, at_least_visible, room_at_left};
 use super::svg::{PathData, Pixels, Svg};
 use pcr_core::Interval;
 use pcr_formats::import::{Edge, Imported, Layout, Node};
@@ -166,7 +166,7 @@ impl Ground<'_> {
     }
 
     /// The same under another title, with more on it and room below, in pixels.
-    pub(super) fn picture_with(&self, title: &str, room: f64, more: impl FnOnce(&mut Svg, &Frame)) -> String {
+    pub(super) fn picture_with(&self, title: &[String; 3], room: f64, more: impl FnOnce(&mut Svg, &Frame)) -> String {
         let [x, y] = self.bounds();
         let metre = SIDE / x.length().max(y.length());
         let fit = |values: Interval<f64>| {
@@ -178,9 +178,8 @@ impl Ground<'_> {
         let left = room_at_left(y, height);
         let frame = Frame::new(x, y, [left, ROOM_ABOVE, left + width, ROOM_ABOVE + height]);
         let [_, _, right, bottom] = frame.edges;
-        let mut svg = Svg::new(right + 12.0, bottom + ROOM_BELOW + room, title);
-        let size = Pixels(AXIS_SIZE + 0.5);
-        svg.label([(left + right) / 2.0, ROOM_ABOVE - 9.0], "middle", &[("font-size", &size)], title);
+        let mut svg = Svg::new(right + 12.0, bottom + ROOM_BELOW + room, &title.concat());
+        frame.draw_title(&mut svg, title.each_ref().map(String::as_str));
         frame.draw(&mut svg, ["x [m]", "y [m]"]);
         self.draw(&mut svg, &frame, true);
         more(&mut svg, &frame);
@@ -188,7 +187,8 @@ impl Ground<'_> {
         svg.finish()
     }
 
-    pub(super) fn title(&self) -> String {
+    /// The name, with what stands before and after it.
+    pub(super) fn title(&self) -> [String; 3] {
         let Imported { layout, vehicle } = self.imported;
         let name = if layout.name.is_empty() { "Layout" } else { &layout.name };
         let level = match layout.levels.get(self.level).filter(|_| layout.levels.len() > 1) {
@@ -199,6 +199,6 @@ impl Ground<'_> {
             Some(footprint) => format!("a footprint of {} corners", footprint.polygon().len()),
             None => format!("a disc of {} m", self.reach()),
         };
-        format!("{name}{level}: corridors of {of}")
+        [String::new(), format!("{name}{level}"), format!(": corridors of {of}")]
     }
 }

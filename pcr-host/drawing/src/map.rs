@@ -4,12 +4,12 @@
 mod legend;
 mod names;
 
-use super::axis::{AXIS_SIZE, Frame, ROOM_ABOVE, ROOM_BELOW, room_at_left};
+use super::axis::{Frame, ROOM_ABOVE, ROOM_BELOW, room_at_left};
 use super::contour::is_thin;
 use super::scene::{Scene, Shape};
 use super::svg::{PathData, Pixels, Svg};
 pub(super) use legend::Legend;
-pub(super) use names::places;
+pub(super) use names::Names;
 use pcr_core::Interval;
 
 /// Part of the time span that is shown before the first start and after the last arrival, for strips.
@@ -17,6 +17,9 @@ const MARGIN: f64 = 0.045;
 
 /// Outlines thinner than this would be lost \[px\].
 pub(super) const THIN: f64 = 1.0;
+
+/// Size of the labels of regions \[px\].
+pub(super) const LABEL_SIZE: f64 = 9.5;
 
 /// Distance of the lines of a hatching \[px\].
 const HATCHING: f64 = 5.0;
@@ -41,29 +44,27 @@ pub(super) fn picture(scene: &Scene<'_>, ego: usize) -> String {
     let edges = [left, ROOM_ABOVE, left + side, ROOM_ABOVE + 0.8 * side];
     let frame = Frame::new(time, length, edges);
     let shapes = scene.shapes(ego, [frame.x.units_per_pixel(), frame.y.units_per_pixel()]);
-    let legend = Legend::new(scene, ego, &shapes, [8.0, edges[2]]);
+    let names = Names::new(scene, ego, &shapes, &frame, LABEL_SIZE);
+    let legend = Legend::new(scene, ego, &shapes, names.left_out(), [8.0, edges[2]]);
     let (width, height) = (edges[2] + 12.0, edges[3] + ROOM_BELOW + legend.height() + 6.0);
-    let mut svg = Svg::new(width, height, &title(scene, ego, &shapes));
-    draw(&mut svg, scene, ego, &shapes, &frame);
+    let mut svg = Svg::new(width, height, &title(scene, ego, &shapes).concat());
+    draw(&mut svg, scene, ego, &shapes, &names, &frame);
     legend.draw(&mut svg, edges[3] + ROOM_BELOW);
     svg.finish()
 }
 
-fn title(scene: &Scene<'_>, ego: usize, shapes: &[Shape]) -> String {
+/// The name of the agent, with what stands before and after it.
+fn title(scene: &Scene<'_>, ego: usize, shapes: &[Shape]) -> [String; 3] {
     let regions = match shapes.len() {
-        1 => "1 region".to_owned(),
-        count => format!("{count} regions"),
+        1 => ": 1 region".to_owned(),
+        count => format!(": {count} regions"),
     };
-    let around = if scene.has_outlines() { " of the discs around all outlines" } else { "" };
-    format!("Extended collision map of agent {}: {regions}{around}", scene.called(ego))
+    ["Extended collision map of agent ".to_owned(), scene.called(ego), regions]
 }
 
 /// The map in a frame.
-pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, ego: usize, shapes: &[Shape], frame: &Frame) {
-    let [left, top, right, _] = frame.edges;
-    let middle = (left + right) / 2.0;
-    let size = Pixels(AXIS_SIZE + 0.5);
-    svg.label([middle, top - 9.0], "middle", &[("font-size", &size)], &title(scene, ego, shapes));
+pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, ego: usize, shapes: &[Shape], names: &Names, frame: &Frame) {
+    frame.draw_title(svg, title(scene, ego, shapes).each_ref().map(String::as_str));
     frame.draw(svg, ["time t [s]", "travelled length l [m]"]);
     hatchings(svg, scene, shapes.iter().filter(|shape| !shape.before.is_empty() || !shape.after.is_empty()));
     for shape in shapes {
@@ -74,7 +75,7 @@ pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, ego: usize, shapes: &[Shape
     }
     draw_trajectory(svg, scene, ego, frame);
     frame.draw_border(svg);
-    names::draw(svg, scene, ego, shapes, frame);
+    names.draw(svg, scene, shapes);
 }
 
 /// One hatching for each colour in use.

@@ -1,6 +1,6 @@
 //! The collision map of an agent over the sampled collision map (paper Fig. 13).
 
-use super::axis::{AXIS_SIZE, Frame, ROOM_ABOVE, ROOM_BELOW, room_at_left};
+use super::axis::{Frame, ROOM_ABOVE, ROOM_BELOW, room_at_left};
 use super::map::spans;
 use super::scene::Scene;
 use super::svg::{PathData, Pixels, Svg};
@@ -44,8 +44,7 @@ pub(super) fn picture(scene: &Scene<'_>, ego: usize, overlay: &Overlay<'_>) -> S
     let edges = [left, ROOM_ABOVE, left + SIZE[0], ROOM_ABOVE + SIZE[1]];
     let frame = Frame::new(time, length, edges);
     let mut svg = Svg::new(edges[2] + 12.0, edges[3] + ROOM_BELOW, title);
-    let size = Pixels(AXIS_SIZE + 0.5);
-    svg.label([left + SIZE[0] / 2.0, ROOM_ABOVE - 9.0], "middle", &[("font-size", &size)], title);
+    frame.draw_title(&mut svg, ["", title, ""]);
     frame.draw(&mut svg, ["time t [s]", "travelled length l [m]"]);
     clip(&mut svg, edges);
     let width = Pixels((WIDTH[0] * step / frame.x.units_per_pixel()).max(WIDTH[1]));

@@ -30,11 +30,14 @@ pub(super) fn picture(scene: &Scene<'_>) -> String {
     let left = between + 16.0 + room_at_left(length, bottom - ROOM_ABOVE);
     let frame = Frame::new(time, length, [left, ROOM_ABOVE, left + SIDE, bottom]);
     let shapes = scene.shapes(ego, [frame.x.units_per_pixel(), frame.y.units_per_pixel()]);
-    let legend = Legend::new(scene, ego, &shapes, [space.edges[0], frame.edges[2]]);
+    let (agents, regions) =
+        (workspace::Names::new(scene, &space), map::Names::new(scene, ego, &shapes, &frame, map::LABEL_SIZE));
+    let notes = agents.left_out().into_iter().chain(regions.left_out());
+    let legend = Legend::new(scene, ego, &shapes, notes, [space.edges[0], frame.edges[2]]);
     let title = format!("Workspace and extended collision map of agent {}", scene.called(ego));
     let mut svg = Svg::new(frame.edges[2] + 12.0, bottom + ROOM_BELOW + legend.height() + 6.0, &title);
-    workspace::draw(&mut svg, scene, &space);
-    map::draw(&mut svg, scene, ego, &shapes, &frame);
+    workspace::draw(&mut svg, scene, &space, &agents);
+    map::draw(&mut svg, scene, ego, &shapes, &regions, &frame);
     legend.draw(&mut svg, bottom + ROOM_BELOW);
     svg.finish()
 }

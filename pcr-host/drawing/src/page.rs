@@ -6,7 +6,7 @@
 
 use super::axis::Frame;
 use super::contour::{Outline, is_thin};
-use super::map::{THIN, places, spans};
+use super::map::{Names, THIN, spans};
 use super::scene::{Scene, Shape};
 use super::template::Page;
 use pcr_core::{Bounds, Crossing, Curve, Interval, Motion, Turn};
@@ -19,7 +19,7 @@ const PAGE: Page = Page {
     connect: "",
     body: include_str!("page/page.html"),
     style: include_str!("page/page.css"),
-    script: include_str!("page/page.js"),
+    script: concat!(include_str!("crowd.js"), include_str!("page/page.js")),
 };
 
 /// Steps of the coordinates of outlines along each axis of a map: a twentieth of a pixel on a large screen.
@@ -120,8 +120,8 @@ fn map(scene: &Scene<'_>, ego: usize) -> Value {
     let [time, length] = spans(scene, ego);
     let frame = Frame::new(time, length, [0.0, 0.0, PIXELS, PIXELS]);
     let shapes = scene.shapes(ego, [frame.x.units_per_pixel(), frame.y.units_per_pixel()]);
-    let places = places(scene, ego, &shapes, &frame, LABEL_SIZE);
-    let regions = shapes.iter().zip(places).map(|(shape, place)| region(shape, place, &frame));
+    let names = Names::new(scene, ego, &shapes, &frame, LABEL_SIZE);
+    let regions = shapes.iter().zip(&names.places).map(|(shape, place)| region(shape, *place, &frame));
     json!({
         "time": interval(frame.x.values()),
         "length": interval(frame.y.values()),

@@ -16,7 +16,7 @@ const PAGE: Page = Page {
     connect: "",
     body: include_str!("replay/replay.html"),
     style: include_str!("replay/replay.css"),
-    script: concat!(include_str!("replay/replay.js"), include_str!("scale.js")),
+    script: concat!(include_str!("crowd.js"), include_str!("replay/replay.js"), include_str!("scale.js")),
 };
 
 /// Positions are given in this unit \[m\].
@@ -52,7 +52,11 @@ fn data(task: &Task, outcomes: &[Outcome]) -> Value {
     let robots = task.robots.iter().enumerate().map(|(place, robot)| {
         // Beyond 2⁵³ a number would lose its last digits in the browser.
         let (id, name) = (robot.id.to_string(), task.labels.called(robot.id));
-        json!({ "id": id, "name": name, "radius": robot.radius, "colour": colour(place).to_string() })
+        let ways = robot.missions.iter().map(|mission| {
+            let course = &mission.course;
+            flat((0..=POINTS).map(|k| course.point_at(course.length() * k as f64 / POINTS as f64)))
+        });
+        json!({ "id": id, "name": name, "radius": robot.radius, "colour": colour(place).to_string(), "ways": ways.collect::<Vec<_>>() })
     });
     let obstacles =
         task.obstacles.iter().map(|obstacle| json!([obstacle.centre[0], obstacle.centre[1], obstacle.radius]));
@@ -86,16 +90,15 @@ fn run(task: &Task, outcome: &Outcome) -> Value {
     })
 }
 
-/// Each with its path; the missions of a robot follow one another.
+/// Each with the number of its way among those of its robot, whose missions follow one another.
 fn journeys(task: &Task, journeys: &[Journey]) -> Vec<Value> {
     let mut begun = vec![0_usize; task.robots.len()];
     let journey = |journey: &Journey| {
-        let robot = task.robots.get(journey.robot)?;
-        let number = begun.get_mut(journey.robot)?;
-        let course = &robot.missions.get(*number)?.course;
+        let (robot, number) = (task.robots.get(journey.robot)?, begun.get_mut(journey.robot)?);
+        let way = *number;
         *number += 1;
-        let path = (0..=POINTS).map(|k| course.point_at(course.length() * k as f64 / POINTS as f64));
-        Some(json!({ "robot": journey.robot, "begin": journey.begin, "end": journey.end, "path": flat(path) }))
+        robot.missions.get(way)?;
+        Some(json!({ "robot": journey.robot, "begin": journey.begin, "end": journey.end, "way": way }))
     };
     journeys.iter().filter_map(journey).collect()
 }

@@ -189,9 +189,44 @@ pub(super) fn text_width(text: &str, size: f64) -> f64 {
         '.' | ',' | ' ' | 'i' | 'j' | 'l' => 0.32,
         'a'..='z' => 0.6,
         '0'..='9' => 0.64,
+        // Capitals as wide as they are high, and signs of East Asia.
+        'M' | 'W' | '%' | '@' | '\u{1100}'..='\u{11ff}' | '\u{2e80}'.. => 1.0,
         _ => 0.72,
     };
     text.chars().map(wide).sum::<f64>() * size
+}
+
+/// The text, cut behind as many characters as there is width for \[px\].
+pub(super) fn cut(text: &str, size: f64, width: f64) -> String {
+    if text_width(text, size) <= width {
+        return text.to_owned();
+    }
+    let mut short = text.to_owned();
+    while short.pop().is_some() {
+        let whole = format!("{}…", short.trim_end());
+        if text_width(&whole, size) <= width {
+            return whole;
+        }
+    }
+    String::new()
+}
+
+/// A name with what stands before and after it, in this width \[px\]: the name is cut first, as it is known elsewhere.
+pub(super) fn cut_name([before, name, after]: [&str; 3], size: f64, width: f64) -> String {
+    let name = cut(name, size, width - text_width(before, size) - text_width(after, size));
+    cut(&format!("{before}{name}{after}"), size, width)
+}
+
+/// The text in lines of this width \[px\]; words are kept whole.
+pub(super) fn lines(text: &str, size: f64, width: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if text_width(&format!("{line} {word}"), size) <= width => line.extend([" ", word]),
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 #[cfg(test)]
@@ -215,6 +250,27 @@ mod tests {
         let mut svg = Svg::new(10.0, 10.0, "");
         svg.start("g", &[]);
         assert!(roxmltree::Document::parse(&svg.finish()).is_ok());
+    }
+
+    #[test]
+    fn names_are_cut_to_their_width() {
+        let whole = ["Map of agent ", "7 AGV-2024-0007", ": 3 regions"];
+        assert_eq!(cut_name(whole, 10.0, 400.0), whole.concat());
+        let short = cut_name(whole, 10.0, 200.0);
+        assert!(short.starts_with("Map of agent 7 A") && short.ends_with("…: 3 regions"), "{short}");
+        assert!(text_width(&short, 10.0) <= 200.0);
+        let shorter = cut_name(whole, 10.0, 60.0);
+        assert!(
+            shorter.starts_with("Map of") && shorter.ends_with('…') && text_width(&shorter, 10.0) <= 60.0,
+            "{shorter}"
+        );
+        assert_eq!((cut("é漢字", 10.0, 5.0), cut("", 10.0, 5.0)), (String::new(), String::new()));
+    }
+
+    #[test]
+    fn lines_keep_words_whole() {
+        assert_eq!(lines("one two  three", 10.0, 45.0), ["one two", "three"]);
+        assert_eq!(lines("", 10.0, 45.0), [""; 0]);
     }
 
     #[test]

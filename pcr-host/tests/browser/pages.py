@@ -7,6 +7,8 @@
 - the live page of a fleet that runs tells what every robot does, and shows the map of one that is chosen with the keyboard;
 - on the page of locks every edge can be chosen with the keyboard, by its list and by the search, and it is printed at scale;
 - at 1400 by 900 px both pictures of a page are inside the window while it plays, and time goes on;
+- in maps and replays of many agents no number lies on another one or on a disc, and agents are found by their labels;
+- what a replay says below its pictures is what its data say about that time;
 - nothing moves by itself for who asked for less motion.
 
 Screenshots of all of it stay in FOLDER. Chromium is spoken to through a pipe in its DevTools protocol: no driver is needed.
@@ -14,6 +16,7 @@ Screenshots of all of it stay in FOLDER. Chromium is spoken to through a pipe in
 
 import base64
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -200,6 +203,15 @@ def roadmap(nodes):
             f'<graph id="G" edgedefault="directed">{"".join(places)}{"".join(edges)}</graph></graphml>')
 
 
+def many(count):
+    """A fleet whose agents have long labels, in a spiral, so that some are near each other and others are not."""
+    def agent(k):
+        angle, far = 2.4 * k, 0.9 * k ** 0.5
+        return {"id": k + 1, "label": f"AGV-2024-{k:04} order 7f3a-{k:04}", "radius": 0.3, "v_max": 1, "a_max": 0.5, "path": [{"kind": "line", "length": 4 + k % 5}],
+                "start": {"x": far * math.cos(angle), "y": far * math.sin(angle), "heading": 0.7 * k}}
+    return {"name": "A name of a scenario that somebody made from the path of a file in some build system", "agents": [agent(k) for k in range(count)]}
+
+
 def check_large(browser):
     """A roadmap of 14,000 edges is seen, and an edge shows what it blocks. How long that takes is printed, not judged: machines differ."""
     edges, shown = browser.value("data.edges.length"), browser.value("document.querySelectorAll('.target').length")
@@ -288,6 +300,124 @@ def check_live(browser):
     return wrong
 
 
+# All pairs of numbers that are seen and lie on one another, by what is written.
+PAIRS = """(boxes) => boxes.flatMap((a, i) => boxes.slice(0, i).filter((b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom).map((b) => `${b.text} and ${a.text}`))"""
+BOXES = """(numbers) => numbers.filter((number) => number.checkVisibility()).map((number) => { const { left, right, top, bottom } = number.getBoundingClientRect(), middle = (top + bottom) / 2;
+  // Of a line of text a third is room above and below the digits.
+  return { text: number.textContent, left, right, top: middle - (bottom - top) / 3, bottom: middle + (bottom - top) / 3 }; })"""
+NUMBERS = f"({BOXES})(numbers)"
+REGIONS = f"({BOXES})([...document.querySelectorAll('#map .region text')])"
+
+
+def check_many(browser, name):
+    """Of 60 agents with long labels, numbers lie apart, and one is found by its label; there is no legend of 60 colours."""
+    wrong = []
+    for width in WIDTHS:
+        browser.open(browser.page, width, "light")
+        for ego in range(0, 60, 7):
+            browser.value(f"selectEgo({ego})")
+            hidden = browser.value(f"({PAIRS})({REGIONS})")
+            wrong += [f"{width} px, in the map of {ego + 1}: {hidden[:5]} lie on one another"] if hidden else []
+    for time in (0, 0.4, 0.8):
+        browser.value(f"state.time = first + {time} * (last - first); showTime()")
+        hidden = browser.value(f"({PAIRS})({NUMBERS})")
+        seen = browser.value(f"{NUMBERS}.length")
+        wrong += [f"at {time} of the time {hidden[:5]} lie on one another"] if hidden else []
+        wrong += [f"at {time} of the time {seen} numbers are seen"] if seen < 40 else []
+        wrong += [] if browser.value("!numbers[state.ego].classList.contains('hidden')") else ["the chosen agent has no number"]
+    if browser.value("getComputedStyle(numbers[0]).fill !== getComputedStyle(document.querySelector('#map text')).fill"):
+        wrong.append("numbers are not in the colour of the text")
+    if browser.value("[...document.querySelectorAll('.chip')].some((chip) => getComputedStyle(chip, '::before').display !== 'none')"):
+        wrong.append("there are dots of more colours than can be told apart")
+    browser.value("document.getElementById('find').focus()")
+    for letter in "agv-2024-0041":
+        browser.key(letter)
+    listed = browser.value("[...document.querySelectorAll('.chip')].filter((chip) => chip.checkVisibility()).map((chip) => chip.textContent)")
+    browser.key("Enter")
+    if listed != ["42 AGV-2024-0041 order 7f3a-0041"] or browser.value("agents[state.ego].id") != "42":
+        wrong.append(f"the search lists {listed} and shows {browser.value('agents[state.ego].id')}")
+    return wrong + check_time(browser, name)
+
+
+def check_crowd(browser, name):
+    """In a replay of 50 robots, discs are seen whole and numbers lie apart; there is no room for a map that does not exist."""
+    wrong = []
+    browser.value("play(false)")
+    # What is written, with the room it takes, but for the bar that tells the scale, which comes last.
+    written = """(() => { const texts = [], before = CanvasRenderingContext2D.prototype.fillText;
+      CanvasRenderingContext2D.prototype.fillText = function (text, x, y) { const half = this.measureText(text).width / 2;
+        texts.push({ text, left: x - half, right: x + half, top: y - 5, bottom: y + 5 }); return before.apply(this, arguments); };
+      drawWorld(); CanvasRenderingContext2D.prototype.fillText = before; return texts.slice(0, -1); })()"""
+    discs = """(() => { const { clientWidth: width, clientHeight: height } = $("world"), scale = Math.min(width / (bounds[1] - bounds[0]), height / (bounds[3] - bounds[2]));
+      return robots.map(({ id, radius }, k) => { const [x, y] = position(k, now), r = radius * scale, at = [width / 2 + (x - centre[0]) * scale, height / 2 - (y - centre[1]) * scale];
+        return { text: `disc ${id}`, chosen: k === Number($("ego").value), left: at[0] - 0.7 * r, right: at[0] + 0.7 * r, top: at[1] - 0.7 * r, bottom: at[1] + 0.7 * r }; }); })()"""
+    for width in WIDTHS:
+        browser.open(browser.page, width, "light")
+        browser.value("play(false)")
+        for part in (0, 0.3, 1):
+            browser.value(f"now = Math.round({part} * frames); draw()")
+            texts, places = browser.value(written), browser.value(discs)
+            hidden = browser.value(f"({PAIRS})({json.dumps(texts)})")
+            wrong += [f"{width} px, at {part} of the time {hidden[:5]} lie on one another"] if hidden else []
+            wrong += [f"{width} px, at {part} of the time {len(texts)} numbers are written"] if len(texts) < 25 else []
+            chosen = next(place["text"].removeprefix("disc ") for place in places if place["chosen"])
+            # The chosen robot has its number wherever it is.
+            covered = [(text["text"], place["text"]) for text in texts if text["text"] != chosen for place in places
+                       if text["left"] < place["right"] and place["left"] < text["right"] and text["top"] < place["bottom"] and place["top"] < text["bottom"]]
+            wrong += [f"{width} px, at {part} of the time numbers lie on discs: {covered[:5]}"] if covered else []
+            wrong += [] if any(text["text"] == chosen for text in texts) else [f"{width} px: the chosen robot has no number"]
+        if browser.value("document.getElementById('map').checkVisibility()"):
+            wrong.append("there is an empty map")
+        room = browser.value("document.getElementById('world').clientWidth / document.querySelector('main').clientWidth")
+        wrong += [f"{width} px: robots have {room:.2f} of the width"] if room < 0.95 else []
+    wrong += check_captions(browser)
+    browser.open(browser.page, 1400, "light")
+    return wrong + check_time(browser, "replay")
+
+
+def check_captions(browser):
+    """The words below the pictures of a replay, at several times and for each controller, against its data."""
+    wrong, data = [], browser.value("data")
+    browser.value("play(false)")
+    ends = lambda journey: float("inf") if journey["end"] is None else journey["end"]
+    said = set()
+    for place, run in enumerate(data["runs"]):
+        browser.value(f"$('run').value = {place}; $('run').onchange()")
+        frames = browser.value("frames")
+        begins = [journey["begin"] for journey in run["journeys"]]
+        for now in sorted({0, 1, frames // 3, frames // 2, frames, *begins[:4], *(int(ends(j)) for j in run["journeys"][:4] if j["end"] is not None)}):
+            time = now * data["frame"]
+            browser.value(f"$('time').value = {now}; $('time').oninput()")
+            done = sum(ends(journey) <= now for journey in run["journeys"])
+            hits = sum(span[0] <= time for _, _, span in run["collisions"])
+            expected = f"{done} of {len(run['journeys'])} missions done; collisions so far: {hits}. Mean time of a mission in this run: {run['travel']:.1f} s."
+            score = browser.value("$('score').textContent")
+            if not score.startswith(expected) or ("makes no plans" in score) != (not run["plans"]):
+                wrong.append(f"{run['controller']} at {time:.2f} s: {score}")
+            if browser.value("$('clock').textContent") != f"{time:.2f} s":
+                wrong.append(f"the clock says {browser.value('$(`clock`).textContent')} at {time:.2f} s")
+            for ego, robot in enumerate(data["robots"]) if run["plans"] else ():
+                browser.value(f"$('ego').value = {ego}; $('ego').onchange()")
+                plan = next((plan for plan in reversed(run["plans"]) if plan["time"] <= time + 1e-9), None)
+                has = any(j["robot"] == ego and j["begin"] <= now < ends(j) for j in run["journeys"])
+                moves = plan and ego < len(plan["maps"]) and plan["maps"][ego]["to"] > plan["maps"][ego]["from"]
+                words = (f"Collision map of robot {robot['name']}, as planned at {plan['time']:.2f} s." if moves else "There is no plan yet." if not plan
+                         else f"This robot has a mission, but no motion in the plan of {plan['time']:.2f} s: it stands where it is." if has
+                         else "This robot stands: it has no mission now.")
+                caption = browser.value("$('caption').textContent")
+                said.add(words.split(",")[0].split(" of ")[0])
+                if not caption.startswith(words):
+                    wrong.append(f"robot {robot['id']} at {time:.2f} s: {caption}")
+    print(f"pages: captions of {len(data['runs'])} runs, of {len(said)} kinds")
+    return wrong
+
+
+def check_replay(browser, name):
+    wrong = check_captions(browser)
+    browser.open(browser.page, 1400, "light")
+    return wrong + check_time(browser, name)
+
+
 def check_time(browser, name):
     """Both pictures are seen whole while time goes on."""
     wrong = []
@@ -297,7 +427,7 @@ def check_time(browser, name):
     browser.value(SLEEP.format(400))
     if browser.value("document.getElementById('clock').textContent") == before:
         wrong.append("time does not go on")
-    for box in browser.value("[...document.querySelectorAll('figure > svg, figure > canvas')].map((e) => e.getBoundingClientRect().toJSON())"):
+    for box in browser.value("[...document.querySelectorAll('figure > svg, figure > canvas')].filter((e) => e.checkVisibility()).map((e) => e.getBoundingClientRect().toJSON())"):
         if box["bottom"] > 900 or box["height"] < 300:
             wrong.append(f"a picture reaches from {box['top']:.0f} to {box['bottom']:.0f} px")
     return wrong
@@ -331,8 +461,10 @@ def check(browser, name, page, folder):
     if count < (3 if name == "live" else 4):
         wrong.append(f"{count} controls only")
     browser.open(page, 1400, "light")
+    browser.page = page
     kinds = {"locks": check_locks, "audit": check_audit, "large": check_large, "live": check_live}
-    wrong += kinds[name](browser) if name in kinds else check_time(browser, name)
+    timed = {"replay": check_replay, "orca": check_crowd, "many": check_many}
+    wrong += kinds[name](browser) if name in kinds else timed.get(name, check_time)(browser, name)
     wrong += browser.noise()
     return wrong, count
 
@@ -349,7 +481,12 @@ def main(tool, folder, *names):
     (folder / "large.xml").write_text(roadmap(43))
     run("locks", "large.xml", "--radius", 0.4, "-q", "-o", "large")
     run("simulate", "--foraging", "-o", "replay.html")
-    pages = {"map": "map/index.html", "traffic": "traffic/index.html", "locks": "locks/locks.html", "audit": "audit/audit.html", "large": "large/locks.html", "replay": "replay.html"}
+    (folder / "many.json").write_text(json.dumps(many(60)))
+    run("map", "many.json", "-q", "-o", "many")
+    run("traffic", GRAPH, "--agents", 50, "--radius", 0.4, "-q", "-o", "fifty")
+    # With collisions the exit status is 1.
+    subprocess.run([tool, "simulate", "fifty/missions.json", "--controller", "orca", "-q", "-o", "orca.html"], capture_output=True, cwd=folder, stdin=subprocess.DEVNULL)
+    pages = {"map": "map/index.html", "many": "many/index.html", "orca": "orca.html", "traffic": "traffic/index.html", "locks": "locks/locks.html", "audit": "audit/audit.html", "large": "large/locks.html", "replay": "replay.html"}
     pages = {name: folder / page for name, page in pages.items()}
     fleet = Fleet(tool)
     pages["live"] = fleet.address

@@ -3,7 +3,7 @@
 use super::super::axis::TICK_SIZE;
 use super::super::palette::{Colour, DISTINCT};
 use super::super::scene::{Scene, Shape};
-use super::super::svg::{Pixels, Svg, text_width};
+use super::super::svg::{Pixels, Svg, lines, text_width};
 
 /// Height of a row \[px\].
 const ROW: f64 = 15.0;
@@ -36,14 +36,27 @@ enum Sample {
     Region,
     Strip,
     Agent(Colour),
+    /// A sentence, without a sample.
+    Note,
 }
 
 impl Legend {
-    /// The legend of a map between two abscissas \[px\].
-    pub(in super::super) fn new(scene: &Scene<'_>, ego: usize, shapes: &[Shape], [from, to]: [f64; 2]) -> Self {
+    /// The legend of a map with some notes, between two abscissas \[px\].
+    pub(in super::super) fn new(
+        scene: &Scene<'_>,
+        ego: usize,
+        shapes: &[Shape],
+        notes: impl IntoIterator<Item = String>,
+        [from, to]: [f64; 2],
+    ) -> Self {
         let mut all = vec![(Sample::Trajectory, format!("motion of agent {}", scene.called(ego)))];
         if !shapes.is_empty() {
-            all.push((Sample::Region, "collision region, labelled by the other agent".into()));
+            let region = if scene.has_outlines() {
+                "region of the discs around all outlines, labelled by the other agent"
+            } else {
+                "collision region, labelled by the other agent"
+            };
+            all.push((Sample::Region, region.into()));
         }
         if shapes.iter().any(|shape| !shape.before.is_empty() || !shape.after.is_empty()) {
             all.push((Sample::Strip, "the other agent stands at its start or end".into()));
@@ -65,7 +78,24 @@ impl Legend {
             entries.push(Entry { row, x, sample, text });
             x += width + GAP;
         }
-        Self { entries, rows: row + 1 }
+        let mut legend = Self { entries, rows: row + 1 };
+        notes.into_iter().for_each(|note| legend.note(&note, [from, to]));
+        legend
+    }
+
+    /// Notes alone.
+    pub(in super::super) fn of_notes(notes: impl IntoIterator<Item = String>, within: [f64; 2]) -> Self {
+        let mut legend = Self { entries: Vec::new(), rows: 0 };
+        notes.into_iter().for_each(|note| legend.note(&note, within));
+        legend
+    }
+
+    /// One more, in rows of its own.
+    fn note(&mut self, note: &str, [x, to]: [f64; 2]) {
+        for text in lines(note, TICK_SIZE, to - x) {
+            self.entries.push(Entry { row: self.rows, x, sample: Sample::Note, text });
+            self.rows += 1;
+        }
     }
 
     /// \[px\]
@@ -106,8 +136,10 @@ impl Legend {
                     svg.empty("path", &[("d", &lines), ("stroke", &"#6b7178"), ("stroke-width", &"0.7")]);
                 }
                 Sample::Agent(colour) => rect(svg, &colour, 0.3, &colour),
+                Sample::Note => {}
             }
-            svg.label([entry.x + SAMPLE, y + 0.35 * TICK_SIZE], "start", &[], &entry.text);
+            let sample = if matches!(entry.sample, Sample::Note) { 0.0 } else { SAMPLE };
+            svg.label([entry.x + sample, y + 0.35 * TICK_SIZE], "start", &[], &entry.text);
         }
         svg.end();
     }

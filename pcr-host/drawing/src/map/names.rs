@@ -4,11 +4,9 @@ use super::super::axis::Frame;
 use super::super::labels::{Labels, SPACING};
 use super::super::scene::{Scene, Shape};
 use super::super::svg::{Pixels, Svg, text_width};
+use super::LABEL_SIZE;
 use pcr_core::Interval;
 use pcr_planning::rows::Grid;
-
-/// Size of the labels of regions \[px\].
-const LABEL_SIZE: f64 = 9.5;
 
 /// Weights of covering the trajectory, and the outline of a region.
 const WEIGHTS: [f64; 2] = [8.0, 1.0];
@@ -19,36 +17,57 @@ const MISLEADING: f64 = 12.0;
 /// Labels of a map at most, those of its largest regions: more would only hide one another.
 const MOST: usize = 400;
 
-/// Writes the labels.
-pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, ego: usize, shapes: &[Shape], frame: &Frame) {
-    svg.start(
-        "g",
-        &[
-            ("font-size", &Pixels(LABEL_SIZE)),
-            ("stroke", &"#fff"),
-            ("stroke-width", &"2.2"),
-            ("paint-order", &"stroke"),
-        ],
-    );
-    for (shape, place) in shapes.iter().zip(places(scene, ego, shapes, frame, LABEL_SIZE)) {
-        let Some([x, y]) = place else {
-            continue;
-        };
-        let (text, ink) = (scene.id(shape.other).to_string(), scene.colour(shape.other).ink());
-        svg.label([x, y + 0.36 * LABEL_SIZE], "middle", &[("fill", &ink), ("stroke-linejoin", &"round")], &text);
+/// The labels of the regions of a map.
+#[derive(Debug)]
+pub(in super::super) struct Names {
+    /// Where the middle of each belongs \[px\]; none where there is no room for it.
+    pub(in super::super) places: Vec<Option<[f64; 2]>>,
+}
+
+impl Names {
+    /// Labels of this size for the regions of an ego.
+    pub(in super::super) fn new(
+        scene: &Scene<'_>,
+        ego: usize,
+        shapes: &[Shape],
+        frame: &Frame,
+        label_size: f64,
+    ) -> Self {
+        Self { places: places(scene, ego, shapes, frame, label_size) }
     }
-    svg.end();
+
+    /// What is said about regions without a label.
+    pub(in super::super) fn left_out(&self) -> Option<String> {
+        let missing = self.places.iter().filter(|place| place.is_none()).count();
+        let have = if missing == 1 { "has" } else { "have" };
+        (missing > 0).then(|| format!("For want of room, {missing} of {} regions {have} no label.", self.places.len()))
+    }
+
+    /// Writes them.
+    pub(super) fn draw(&self, svg: &mut Svg, scene: &Scene<'_>, shapes: &[Shape]) {
+        svg.start(
+            "g",
+            &[
+                ("font-size", &Pixels(LABEL_SIZE)),
+                ("stroke", &"#fff"),
+                ("stroke-width", &"2.2"),
+                ("paint-order", &"stroke"),
+            ],
+        );
+        for (shape, place) in shapes.iter().zip(&self.places) {
+            let Some([x, y]) = *place else {
+                continue;
+            };
+            let (text, ink) = (scene.id(shape.other).to_string(), scene.colour(shape.other).ink());
+            svg.label([x, y + 0.36 * LABEL_SIZE], "middle", &[("fill", &ink), ("stroke-linejoin", &"round")], &text);
+        }
+        svg.end();
+    }
 }
 
 /// Where the middle of each label of this size belongs \[px\]: off the ego's trajectory, off one another and, where
 /// possible, off outlines.
-pub(in super::super) fn places(
-    scene: &Scene<'_>,
-    ego: usize,
-    shapes: &[Shape],
-    frame: &Frame,
-    label_size: f64,
-) -> Vec<Option<[f64; 2]>> {
+fn places(scene: &Scene<'_>, ego: usize, shapes: &[Shape], frame: &Frame, label_size: f64) -> Vec<Option<[f64; 2]>> {
     let mut labels = Labels::default();
     if let Some(motion) = scene.motions.get(ego) {
         let [left, _, right, _] = frame.edges;
@@ -168,6 +187,25 @@ mod tests {
         let square = |side: f64| vec![[-side, -side], [side, -side], [side, side], [-side, side]];
         let ring = [square(2.0), square(1.0)];
         assert!(encloses(&ring, [1.5, 0.0]) && !encloses(&ring, [0.0, 0.0]) && !encloses(&ring, [3.0, 0.0]));
+    }
+
+    #[test]
+    fn a_map_without_room_says_how_many_labels_it_has_not() {
+        let scenario = Scenario::from_json(pcr_formats::paper::SCENARIO).unwrap();
+        let fleet = Fleet::<f64>::new(&scenario).unwrap();
+        let motions = fleet.motions();
+        let ecm = build_ecm(&motions).unwrap();
+        let scene = Scene { scenario: &scenario, motions: &motions, ecm: &ecm, egos: None, ground: None };
+        let [time, length] = spans(&scene, 2);
+        let frame = Frame::new(time, length, [0.0, 0.0, 60.0, 40.0]);
+        let shapes = scene.shapes(2, [frame.x.units_per_pixel(), frame.y.units_per_pixel()]);
+        let names = Names::new(&scene, 2, &shapes, &frame, LABEL_SIZE);
+        let missing = names.places.iter().filter(|place| place.is_none()).count();
+        assert!((1..shapes.len()).contains(&missing), "{missing} of {}", shapes.len());
+        assert_eq!(names.left_out(), Some(format!("For want of room, {missing} of 18 regions have no label.")));
+        for [x, y] in names.places.into_iter().flatten() {
+            assert!((0.0..=60.0).contains(&x) && (0.0..=40.0).contains(&y), "{x} {y}");
+        }
     }
 
     #[test]

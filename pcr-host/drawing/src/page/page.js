@@ -109,8 +109,11 @@ function frame(svg, xs, ys, width, height, titles) {
   return { content, x, y, left, top: room.top, right, bottom };
 }
 
-const discs = [], paths = [];
+const discs = [], numbers = [], paths = [];
 let cursor = null;
+
+// Width of a number with a gap beside it, before it is drawn.
+const wide = (number) => 9 * number.length + 3;
 
 // The heading of a pose as the screen turns it.
 const degrees = ([, , heading]) => -heading * 180 / Math.PI;
@@ -165,15 +168,15 @@ function drawWorkspace() {
       class: "agent disc", style: `--colour:${agent.colour}`, tabindex: 0, role: "button", "aria-label": `Map of agent ${agent.name}`,
     });
     outline(disc, agent, { class: "outline" });
-    // A number that would hide its disc stands beside it.
-    const size = radius(agent), beside = size < 5 + 4 * agent.id.length;
-    disc.classList.toggle("small", beside);
-    element(disc, "text", beside ? { x: 0.7 * size + 2, y: -0.7 * size - 2 } : {}, agent.id);
-    element(disc, "title", {}, `Agent ${agent.id}`);
+    element(disc, "title", {}, `Agent ${agent.name}`);
     disc.addEventListener("click", () => selectEgo(k));
     disc.addEventListener("keydown", (event) => { if (onKey(event)) selectEgo(k); });
     discs.push(disc);
   });
+  // Above all discs, in which or beside which they stand.
+  const above = element(view.content, "g", { class: "disc" });
+  agents.forEach((agent) => numbers.push(element(above, "text", {}, agent.id)));
+  drawWorkspace.radius = radius;
   drawWorkspace.screen = screen;
   drawWorkspace.height = height;
 }
@@ -193,6 +196,7 @@ function drawMap() {
   const { x, y, content } = view;
   const grid = `translate(${view.left} ${view.top}) scale(${width / data.grid} ${height / data.grid})`;
   const order = map.regions.map((_, k) => k).sort((a, b) => size(map.regions[b]) - size(map.regions[a]));
+  const crowd = new Crowd();
   for (const k of order) {
     const region = map.regions[k], other = agents[region.other];
     if (!state.shown[region.other]) continue;
@@ -205,7 +209,9 @@ function drawMap() {
     region.before.forEach(strip(view.left, x.at(other.time[0])));
     region.after.forEach(strip(x.at(other.time[1]), view.right));
     element(node, "path", { d: region.outline, transform: grid });
-    if (region.label) element(node, "text", { x: x.at(region.label[0]), y: y.at(region.label[1]) }, other.id);
+    // Their places are those of a large picture: in a small one there may be less room.
+    const label = region.label && crowd.place([x.at(region.label[0]), y.at(region.label[1]), Infinity], k, wide(other.id), 14);
+    if (label) element(node, "text", { x: label[0], y: label[1] }, other.id);
     node.addEventListener("pointerenter", () => describe(region));
     node.addEventListener("focus", () => describe(region));
     node.addEventListener("pointerleave", () => describe(map.regions[state.pinned]));
@@ -324,20 +330,23 @@ function showTime() {
   $("time").value = state.time;
 }
 
-// Numbers that would lie on one another are left out: first come the chosen agent's and those in contact.
+// In the disc or beside it, where there is room: first come the chosen agent's number and those of agents in contact.
 function showNumbers(poses, hit) {
-  const high = 14, rows = new Map();
+  const crowd = new Crowd();
   const rank = (k) => (k === state.ego ? 0 : hit[k] ? 1 : 2);
   const order = agents.map((_, k) => k).filter((k) => state.shown[k]).sort((a, b) => rank(a) - rank(b));
+  const places = agents.map((agent, k) => [...drawWorkspace.screen(poses[k]), drawWorkspace.radius(agent)]);
   for (const k of order) {
-    const text = discs[k].querySelector("text"), width = 9 * agents[k].id.length;
-    const [x, y] = drawWorkspace.screen(poses[k]);
-    const left = x + (discs[k].classList.contains("small") ? Number(text.getAttribute("x")) : -width / 2);
-    const top = y + Number(text.getAttribute("y")), row = Math.floor(top / high);
-    const near = [row - 1, row, row + 1].flatMap((row) => rows.get(row) ?? []);
-    const free = near.every(([from, to, other]) => to < left || left + width < from || Math.abs(other - top) >= high);
-    text.classList.toggle("hidden", !free);
-    if (free) rows.set(row, [...(rows.get(row) ?? []), [left, left + width, top]]);
+    const [x, y, r] = places[k];
+    crowd.take([x - r, y - r, x + r, y + r], k);
+  }
+  numbers.forEach((number, k) => number.classList.toggle("hidden", !state.shown[k]));
+  for (const k of order) {
+    const at = crowd.place(places[k], k, wide(agents[k].id), 14, k === state.ego);
+    numbers[k].classList.toggle("hidden", !at);
+    if (!at) continue;
+    numbers[k].setAttribute("x", at[0]);
+    numbers[k].setAttribute("y", at[1]);
   }
 }
 
@@ -385,6 +394,17 @@ function show() {
   showTime();
 }
 
+/** The agents whose numbers or labels hold what is sought; only they are listed. One that is called so comes first. */
+function find() {
+  const text = $("find").value.trim().toLowerCase();
+  const found = agents.map((_, k) => k).filter((k) => agents[k].name.toLowerCase().includes(text));
+  agents.forEach((_, k) => { $("chips").children[k].hidden = true; });
+  found.forEach((k) => { $("chips").children[k].hidden = false; });
+  $("found").textContent = text === "" ? "" : found.length > 0 ? `${found.length} of ${agents.length}` : `no agent "${$("find").value.trim()}"`;
+  const called = (k) => [agents[k].id, agents[k].name.slice(agents[k].id.length + 1).toLowerCase()].includes(text);
+  return text === "" ? [] : found.sort((a, b) => called(b) - called(a));
+}
+
 function start() {
   const maps = data.maps.filter((map) => map);
   const regions = maps.reduce((sum, map) => sum + map.regions.length, 0);
@@ -403,7 +423,7 @@ function start() {
     chip.type = "button";
     chip.className = "agent chip";
     chip.style.setProperty("--colour", agent.colour);
-    chip.textContent = agent.id;
+    chip.textContent = agent.name;
     chip.title = `Show or hide agent ${agent.name}`;
     chip.addEventListener("click", () => { state.shown[k] = !state.shown[k]; show(); });
     $("chips").append(chip);
@@ -421,8 +441,20 @@ function start() {
     agents.forEach((_, k) => { state.shown[k] = k === state.ego || partners.has(k); });
     show();
   });
+  // More colours than a dozen cannot be told apart: agents are found by their names then.
+  if (agents.length > 12) {
+    $("ground").append(" Numbers for which there is no room are left out.");
+    $("agents").classList.add("many");
+    $("search").hidden = false;
+    $("find").addEventListener("input", find);
+    $("search").addEventListener("submit", (event) => {
+      event.preventDefault();
+      const first = find()[0];
+      if (first !== undefined) selectEgo(first);
+    });
+  }
   if (data.outlines) {
-    $("ground").textContent = "Workspace. Agents whose covering discs touch are red: a vehicle with an outline is computed as the discs that cover it, "
+    $("ground").firstChild.data = "Workspace. Agents whose covering discs touch are red: a vehicle with an outline is computed as the discs that cover it, "
       + "so contact begins a little before the outlines meet. One with loads is drawn as the disc around all its outlines; contacts are told by the discs of the outline that it has at its place. "
       + "A dashed outline is an agent's end. Select an agent to see its map.";
   }

@@ -8,7 +8,7 @@ let run, frames, now = 0, playing = false, before = 0;
 const theme = {}, dark = matchMedia("(prefers-color-scheme: dark)");
 function readTheme() {
   const style = getComputedStyle(document.documentElement);
-  for (const name of ["paper", "ink", "grid", "own", "hit", "accent", "stone"]) theme[name] = style.getPropertyValue("--" + name).trim();
+  for (const name of ["paper", "ink", "grid", "own", "hit", "accent", "stone", "edge"]) theme[name] = style.getPropertyValue("--" + name).trim();
   theme.robots = robots.map(({ colour }) => (dark.matches ? `color-mix(in oklab, ${colour} 68%, white)` : colour));
 }
 
@@ -28,6 +28,7 @@ const bounds = (() => {
     box[2] = Math.min(box[2], y - r); box[3] = Math.max(box[3], y + r);
   };
   obstacles.forEach(([x, y, r]) => grow(x, y, r));
+  robots.forEach(({ ways, radius }) => ways.forEach((way) => { for (let i = 0; i < way.length; i += 2) grow(way[i] * unit, way[i + 1] * unit, radius); }));
   data.runs.forEach((run) => run.tracks.forEach((track, k) => {
     for (let i = 0; i < track.length; i += 2) grow(track[i] * unit, track[i + 1] * unit, robots[k].radius);
   }));
@@ -36,18 +37,32 @@ const bounds = (() => {
   return [box[0] - pad, box[1] + pad, box[2] - pad, box[3] + pad];
 })();
 
+const centre = [(bounds[0] + bounds[1]) / 2, (bounds[2] + bounds[3]) / 2];
+
+/** All ways, seen from the centre: far from the origin a browser would round them. */
+const ground = new Path2D();
+for (const way of robots.flatMap((robot) => robot.ways)) {
+  way.forEach((_, i) => {
+    if (i % 2) return;
+    const point = [way[i] * unit - centre[0], way[i + 1] * unit - centre[1]];
+    if (i) ground.lineTo(...point); else ground.moveTo(...point);
+  });
+}
+
 function choose() {
   run = data.runs[$("run").value];
   frames = run ? Math.max(1, ...run.tracks.map((track) => track.length / 2)) - 1 : 0;
   $("time").max = frames;
   now = Math.min(now, frames);
+  // The room is for the robots where there is no map.
+  $("map").parentElement.hidden = !run?.plans.length;
 }
 
 /** A canvas in CSS pixels, sharp on any screen. */
 function surface(id) {
   const canvas = $(id), ratio = window.devicePixelRatio || 1;
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
-  if (canvas.width !== Math.round(width * ratio)) { canvas.width = Math.round(width * ratio); canvas.height = Math.round(height * ratio); }
+  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) { canvas.width = Math.round(width * ratio); canvas.height = Math.round(height * ratio); }
   const context = canvas.getContext("2d");
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, width, height);
@@ -68,45 +83,69 @@ function colliding(id, time) {
 function drawWorld() {
   const [c, width, height] = surface("world");
   const scale = Math.min(width / (bounds[1] - bounds[0]), height / (bounds[3] - bounds[2]));
-  const x = (value) => width / 2 + (value - (bounds[0] + bounds[1]) / 2) * scale;
-  const y = (value) => height / 2 - (value - (bounds[2] + bounds[3]) / 2) * scale;
+  const x = (value) => width / 2 + (value - centre[0]) * scale;
+  const y = (value) => height / 2 - (value - centre[1]) * scale;
   const disc = (px, py, r) => { c.beginPath(); c.arc(x(px), y(py), r * scale, 0, 7); };
+  const ego = Number($("ego").value);
   c.fillStyle = theme.stone;
   obstacles.forEach(([px, py, r]) => { disc(px, py, r); c.fill(); });
+  c.save();
+  c.translate(width / 2, height / 2);
+  c.scale(scale, -scale);
+  c.lineWidth = 1 / scale;
+  c.strokeStyle = theme.stone;
+  c.stroke(ground);
+  c.restore();
   for (const journey of run.journeys) {
     if (journey.begin > now || (journey.end ?? Infinity) < now) continue;
+    const way = robots[journey.robot].ways[journey.way];
     c.strokeStyle = theme.robots[journey.robot];
-    c.lineWidth = 1.3;
+    c.lineWidth = journey.robot === ego ? 2.5 : 1.3;
     c.beginPath();
-    for (let i = 0; i < journey.path.length; i += 2) c.lineTo(x(journey.path[i] * unit), y(journey.path[i + 1] * unit));
+    for (let i = 0; i < way.length; i += 2) c.lineTo(x(way[i] * unit), y(way[i + 1] * unit));
     c.stroke();
-    c.setLineDash([4, 3]);
-    disc(journey.path.at(-2) * unit, journey.path.at(-1) * unit, robots[journey.robot].radius);
+    // Dashes of a small circle would be dots.
+    c.setLineDash(robots[journey.robot].radius * scale < 6 ? [2, 2] : [4, 3]);
+    disc(way.at(-2) * unit, way.at(-1) * unit, robots[journey.robot].radius);
     c.stroke();
     c.setLineDash([]);
   }
-  c.textAlign = "center";
-  c.textBaseline = "middle";
-  c.font = "bold 14px sans-serif";
-  robots.forEach((robot, k) => {
-    const [px, py] = position(k, now), hit = colliding(robot.id, now * frame);
-    disc(px, py, robot.radius);
-    c.fillStyle = hit ? theme.hit : theme.robots[k];
-    c.globalAlpha = hit ? 0.8 : 0.5;
+  const crowd = new Crowd(), hits = robots.map(({ id }) => colliding(id, now * frame));
+  const discs = robots.map(({ radius }, k) => { const [px, py] = position(k, now); return [x(px), y(py), Math.max(3, radius * scale)]; });
+  // Whom somebody looks for, and who is in trouble, above the others, and with numbers before them.
+  const rank = (k) => (k === ego ? 2 : hits[k] ? 1 : 0);
+  const order = robots.map((_, k) => k).sort((a, b) => rank(a) - rank(b));
+  for (const k of order) {
+    const [px, py, r] = discs[k];
+    crowd.take([px - r, py - r, px + r, py + r], k);
+    c.beginPath();
+    c.arc(px, py, r, 0, 7);
+    c.fillStyle = c.strokeStyle = hits[k] ? theme.hit : theme.robots[k];
+    // Small ones would be pale on their lines.
+    c.globalAlpha = hits[k] || r < 8 ? 0.8 : 0.5;
     c.fill();
     c.globalAlpha = 1;
-    c.lineWidth = k === Number($("ego").value) ? 3 : 1.5;
-    c.strokeStyle = hit ? theme.hit : theme.robots[k];
+    c.lineWidth = k === ego ? 3 : 1.5;
+    if (k === ego) c.strokeStyle = hits[k] ? theme.hit : theme.own;
     c.stroke();
-    // Above lines of whatever colour.
-    c.strokeStyle = theme.paper;
-    c.lineWidth = 3;
-    c.lineJoin = "round";
-    c.strokeText(robot.id, x(px), y(py));
-    c.fillStyle = theme.ink;
-    c.fillText(robot.id, x(px), y(py));
-  });
+  }
+  for (const k of order.reverse()) write(c, crowd, robots[k].id, discs[k], k, k === ego);
   drawScale(c, width, height, scale);
+}
+
+/** The number of a robot in its disc or beside it, above lines of whatever colour; nothing if there is no room. */
+function write(c, crowd, text, disc, owner, over) {
+  c.font = "bold 13px sans-serif";
+  c.textAlign = "center";
+  c.textBaseline = "middle";
+  c.lineJoin = "round";
+  const at = crowd.place(disc, owner, c.measureText(text).width + 3, 13, over);
+  if (!at) return;
+  c.strokeStyle = theme.paper;
+  c.lineWidth = 3;
+  c.strokeText(text, ...at);
+  c.fillStyle = theme.ink;
+  c.fillText(text, ...at);
 }
 
 /** Lines at round values. */
@@ -118,14 +157,14 @@ function ticks(lo, hi) {
 }
 
 function drawMap() {
+  if (!run.plans.length) return;
   const ego = Number($("ego").value), time = now * frame;
   const plan = run.plans.findLast((plan) => plan.time <= time + 1e-9), map = plan && plan.maps[ego];
   const [c, width, height] = surface("map");
   if (!map || !(map.to > map.from)) {
     const begun = run.journeys.some((journey) => journey.robot === ego && journey.begin <= now && !((journey.end ?? Infinity) <= now));
-    $("caption").textContent = !run.plans.length ? "This controller makes no plans: there is no collision map."
-      : !plan ? "There is no plan yet." : !begun ? "This robot stands: it has no mission now."
-        : `This robot has a mission, but no motion in the plan of ${plan.time.toFixed(2)} s: it stands where it is.`;
+    $("caption").textContent = !plan ? "There is no plan yet." : !begun ? "This robot stands: it has no mission now."
+      : `This robot has a mission, but no motion in the plan of ${plan.time.toFixed(2)} s: it stands where it is.`;
     return;
   }
   const [left, top, right, bottom] = [52, 12, width - 12, height - 40];
@@ -164,16 +203,8 @@ function drawMap() {
     c.globalAlpha = 1;
     c.stroke();
   }
-  c.font = "bold 13px sans-serif";
-  c.textBaseline = "middle";
-  c.lineJoin = "round";
-  for (const [label, t, l] of labels) {
-    c.strokeStyle = theme.paper;
-    c.lineWidth = 3;
-    c.strokeText(label, x(t), y(l));
-    c.fillStyle = theme.ink;
-    c.fillText(label, x(t), y(l));
-  }
+  const crowd = new Crowd();
+  for (const [label, t, l] of labels) write(c, crowd, label, [x(t), y(l), Infinity]);
   c.strokeStyle = theme.own;
   c.lineWidth = 1.5;
   c.setLineDash([6, 4]);
@@ -209,7 +240,9 @@ function draw() {
   $("clock").textContent = `${(now * frame).toFixed(2)} s`;
   const done = run.journeys.filter((journey) => (journey.end ?? Infinity) <= now).length;
   const hits = run.collisions.filter(([, , t]) => t[0] <= now * frame).length;
-  $("score").textContent = `${done} of ${run.journeys.length} missions done; collisions so far: ${hits}. Mean time of a mission in this run: ${run.travel.toFixed(1)} s.`;
+  $("score").textContent = `${done} of ${run.journeys.length} missions done; collisions so far: ${hits}. Mean time of a mission in this run: ${run.travel.toFixed(1)} s.`
+    + (run.plans.length ? "" : " This controller makes no plans: there is no collision map.")
+    + (robots.length > 12 ? " Numbers for which there is no room are left out." : "");
   drawWorld();
   drawMap();
 }
