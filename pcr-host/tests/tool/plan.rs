@@ -117,7 +117,17 @@ fn what_cannot_work_is_named_and_nothing_is_written() {
     assert_eq!((status, &report["agents"], written), (1, &json!([]), None));
     let unsolved = &report["unsolved"][0];
     assert_eq!(unsolved["ids"], json!([9, 4]));
-    assert!(unsolved["why"].as_str().unwrap().contains("head-on without a passing place"), "{unsolved}");
+    let why = unsolved["why"].as_str().unwrap();
+    assert!(why.contains("head-on without a passing place") && !why.contains("margins"), "{unsolved}");
+    // Lanes on which the discs get past one another, and their margins do not.
+    let mut lanes = head_on;
+    lanes["agents"][1]["start"]["y"] = json!(lanes["agents"][0]["radius"].as_f64().unwrap() * 2.0 + 0.05);
+    for agent in lanes["agents"].as_array_mut().unwrap() {
+        agent["margin"] = json!(0.05);
+    }
+    let (status, report, _) = plan("lanes", &lanes, &[]);
+    let why = report["unsolved"][0]["why"].as_str().unwrap().to_owned();
+    assert!(status == 1 && why.contains("way of the second, within their margins, on lengths"), "{why}");
 }
 
 /// Two pairs that are head-on, one that crosses nobody, and one on its way that crosses the first pair.

@@ -93,9 +93,20 @@ fn found(scenario: &Scenario, ids: [u64; 2], always: bool, general: &str) -> Opt
         Some((format!("{} {place}", nearest.words()), Spot::standing(references, at_end)))
     };
     let stand = || always.then(|| standing(false).or_else(|| standing(true))).flatten();
+    // Whether the discs themselves meet in a region, or only their margins.
+    let has_contact = |met: &Met<'_>| {
+        let disc = |part: &Disced| discs.iter().position(|disc| std::ptr::eq(disc, part));
+        let [Some(a), Some(b)] = [met.own, met.other].map(disc) else { return true };
+        let Ok(row) = Row::new(&exact, a, &[b as u32]) else { return true };
+        let mut regions = row.table().row(row.motions(), row.place()).expect("the table of the row");
+        regions.any(|region| region.length().meets(met.region.length()))
+    };
+    let margins = |met: [&Met<'_>; 2]| if met.into_iter().all(has_contact) { "" } else { ", within their margins" };
     Some(match (stand(), always, first, last) {
         (Some(found), ..) => found,
-        (None, true, Some(first), Some(last)) => (contradiction(last, first), last.spot(references[0])),
+        (None, true, Some(first), Some(last)) => {
+            (contradiction(last, first) + margins([first, last]), last.spot(references[0]))
+        }
         _ => (general.to_owned(), last.or_else(longest)?.spot(references[0])),
     })
 }
