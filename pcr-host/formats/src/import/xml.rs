@@ -99,8 +99,11 @@ pub(super) fn astray<'a, 'i>(
         if element.parent() == Some(home) && *name == own {
             return None;
         }
-        let id =
-            ["name", "id", "number"].iter().find_map(|attribute| element.attribute(*attribute)).unwrap_or_default();
+        let id = ["name", "id", "number"]
+            .iter()
+            .filter_map(|attribute| element.attribute(*attribute))
+            .find(|id| !id.is_empty())
+            .unwrap_or_default();
         let parent = element.parent().map_or("", |parent| parent.tag_name().name());
         let home = home.tag_name().name();
         Some((element, format!("{own} {id}, in {parent}: what is read is {name} in {home}")))
