@@ -658,7 +658,7 @@ fn actions_of_edges_are_told_and_have_to_be_lists() {
 fn what_an_outline_may_do_is_told() {
     let mut order = square();
     order["nodes"][3]["nodePosition"]["allowedDeviationXy"] = json!(0.5);
-    order["nodes"][3]["nodePosition"]["allowedDeviationTheta"] = json!(3.14);
+    order["nodes"][3]["nodePosition"]["allowedDeviationTheta"] = json!(3.0);
     order["edges"][2]["rotationAllowed"] = json!(true);
     let told = |options: &Options| {
         let (_, warnings) = read(&order.to_string(), options).unwrap();
