@@ -119,7 +119,7 @@ fn needed(format: Format, text: &str, radius: f64, step: usize) {
     for (a, b, own) in pairs.iter().step_by(step) {
         left_out += 1;
         let rules = read(Target::Pcr, &without(&file, a, b, own), &imported).unwrap();
-        let audit = Audit::of(&imported, &locks, &rules, Target::Pcr);
+        let audit = Audit::of(&imported, &locks, &rules, Target::Pcr).unwrap();
         let ends = [Spot::Edge(id(a).min(id(b))), Spot::Edge(id(a).max(id(b)))];
         let gap = audit.gaps.iter().find(|gap| {
             let mut both = [gap.a.clone(), gap.b.clone()];
@@ -291,7 +291,7 @@ fn audits_name_what_is_left_out_and_what_is_in_vain() {
     let file = written(Format::Nav2, SAMPLE, radius, &settings(target));
     let imported = imported(Format::Nav2, SAMPLE, radius);
     let locks = Locks::of(&imported, true).unwrap();
-    let audit = |text: &str| Audit::of(&imported, &locks, &read(target, text, &imported).unwrap(), target);
+    let audit = |text: &str| Audit::of(&imported, &locks, &read(target, text, &imported).unwrap(), target).unwrap();
     let whole = audit(&file);
     assert!(whole.suffices() && whole.needless.is_empty(), "{whole:?}");
     // An edge more in one list only excludes nothing; in both it is in vain.

@@ -45,7 +45,7 @@ fn set(map: &str, zones: &[(&str, &str, &[[f64; 2]])]) -> Value {
 
 fn audit(imported: &Imported, target: Target, text: &str) -> Audit {
     let locks = Locks::of(imported, true).unwrap();
-    Audit::of(imported, &locks, &read(target, text, imported).unwrap(), target)
+    Audit::of(imported, &locks, &read(target, text, imported).unwrap(), target).unwrap()
 }
 
 fn refused(imported: &Imported, target: Target, text: &str) -> String {
@@ -256,4 +256,38 @@ fn that_routes_round_corners_is_said() {
     let said = |part: &str| audit.warnings.iter().position(|said| said.contains(part));
     assert!(said("corners: routes round them with 1 m") < said("SPEED_LIMIT"), "{:?}", audit.warnings);
     assert_eq!(said("SPEED_LIMIT"), Some(audit.of_layout));
+}
+
+/// A zone that is a line seemed to keep vehicles apart, and corners had any size.
+#[test]
+fn zones_have_an_area_and_corners_in_range() {
+    let lane = lane(&disc(0.5));
+    let of = |corners: &[[f64; 2]]| set("map", &[("z", "RELEASE", corners)]).to_string();
+    for corners in [[[-100.0, 0.0], [100.0, 0.0], [0.0, 0.0]], [[3.0, 3.0]; 3], [[0.1, 0.3], [0.2, 0.6], [0.3, 0.9]]] {
+        assert_eq!(refused(&lane, Target::Vda5050, &of(&corners)), "zone z, vertices: they are on one line");
+    }
+    let far = refused(&lane, Target::Vda5050, &of(&[[0.0, 0.0], [1.0, 0.0], [1e308, 1e308]]));
+    assert_eq!(far, "zone z, vertices: 1e308 is out of range; allowed is up to 1e10");
+    assert!(read(Target::Vda5050, &of(&[[1e6, 1e6], [1e6 + 0.1, 1e6], [1e6, 1e6 + 0.1]]), &lane).is_ok());
+}
+
+/// Without locks of nodes nothing was looked at there, and what the layout does not have was left aside: both sufficed.
+#[test]
+fn an_audit_takes_all_locks_and_exclusions_of_its_layout() {
+    let lane = lane(&disc(0.5));
+    let text = set("map", &[]).to_string();
+    let rules = read(Target::Vda5050, &text, &lane).unwrap();
+    let locks = Locks::of(&lane, true).unwrap();
+    let failed = |locks: &Locks| Audit::of(&lane, locks, &rules, Target::Vda5050).unwrap_err().to_string();
+    assert!(Audit::of(&lane, &locks, &rules, Target::Vda5050).is_ok());
+    assert_eq!(failed(&Locks::of(&lane, false).unwrap()), "an audit takes the locks of nodes as well");
+    let mut other = locks.clone();
+    other.nodes.as_mut().unwrap()[0].node = pcr_formats::import::Id::Text("x".into());
+    assert_eq!(failed(&other), "locks of node x, which the layout does not have");
+    let crossing = graph(&[[0.0, 0.0], [10.0, 0.0], [5.0, -5.0], [5.0, 5.0]], &[[1, 2], [3, 4]]).to_string();
+    let crossing = imported(Format::Nav2, &crossing, &disc(0.5));
+    let more = Locks::of(&crossing, true).unwrap();
+    assert!(failed(&more).starts_with("locks of "), "{}", failed(&more));
+    let error = Audit::of(&crossing, &more, &rules, Target::Vda5050).unwrap_err().to_string();
+    assert_eq!(error, "the exclusions are of another layout");
 }

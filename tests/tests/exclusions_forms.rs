@@ -21,7 +21,7 @@ fn written(format: Format, text: &str, radius: f64, target: Target, split: Optio
     if target.layout().is_some() {
         let again = imported(format, &written, radius);
         let rules = read(target, &written, &again).unwrap();
-        assert!(Audit::of(&again, &Locks::of(&again, true).unwrap(), &rules, target).suffices());
+        assert!(Audit::of(&again, &Locks::of(&again, true).unwrap(), &rules, target).unwrap().suffices());
         assert_eq!(
             write(format, &written, &options(radius), "site", &Settings { split: None, ..settings }).unwrap().0,
             written

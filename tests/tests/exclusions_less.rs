@@ -42,7 +42,7 @@ impl File {
     fn missed(&self, less: &[String], step: usize) -> usize {
         let found = |text: &&String| {
             assert_ne!(**text, self.text);
-            !Audit::of(&self.imported, &self.locks, &self.rules(text), self.target).suffices()
+            !Audit::of(&self.imported, &self.locks, &self.rules(text), self.target).unwrap().suffices()
         };
         let open: Vec<&String> = less.iter().filter(found).collect();
         let touch =

@@ -265,3 +265,68 @@ fn every_point_is_reached_when_it_has_to_be() {
         }
     }
 }
+
+/// What had been cut off was no fault: robots were missing, or stood where they had come to.
+#[test]
+fn a_plan_that_was_cut_is_refused() {
+    let failed = |text: &str| {
+        assert_ne!(text, GRID);
+        scenario(Format::Ccbs, text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string()
+    };
+    let section = |number: usize| {
+        let log = GRID.find("<log").unwrap();
+        let begin = log + GRID[log..].find(&format!("<section number=\"{number}\"")).unwrap();
+        begin..begin + GRID[begin..].find("/>").unwrap() + 2
+    };
+    let without = |range: std::ops::Range<usize>| [&GRID[..range.start], &GRID[range.end..]].concat();
+    assert_eq!(failed(&without(section(0))), "agent 0, section 0, number: 1, as if some were missing before it");
+    let last = (0..)
+        .take_while(|number| {
+            GRID[section(0).start..].split("</path>").next().unwrap().contains(&format!("number=\"{number}\""))
+        })
+        .last()
+        .unwrap();
+    let error = failed(&without(section(last)));
+    assert!(error.starts_with("agent 0, path, duration: ") && error.contains(", and its sections last "), "{error}");
+    let log = GRID.find("<log").unwrap();
+    let begin = log + GRID[log..].find("<agent").unwrap();
+    let end = begin + GRID[begin..].find("</agent>").unwrap() + "</agent>".len();
+    let error = failed(&without(begin..end));
+    assert_eq!(error, "log: it has the paths of 12 agents, and the task before it has 13");
+    let hidden = [&GRID[..begin], "<group>", &GRID[begin..end], "</group>", &GRID[end..]].concat();
+    let error = failed(&hidden);
+    assert!(error.contains("12 agents"), "{error}");
+    let log = "<root><log><agent><path><section start_i=\"0\" start_j=\"0\" goal_i=\"1\" goal_j=\"0\" duration=\"1\"/></path></agent>MORE</log></root>";
+    assert!(scenario(Format::Ccbs, &log.replace("MORE", ""), &Options::default(), &mut Warnings::default()).is_ok());
+    let nested = failed(&log.replace("MORE", "<group><agent number=\"4\"/></group>"));
+    assert_eq!(nested, "agent 4, in group: what is read is agent in log");
+    let again = failed(&log.replace("MORE", "<agent number=\"0\"><path><section start_i=\"0\" start_j=\"0\" goal_i=\"1\" goal_j=\"0\" duration=\"1\"/></path></agent>"));
+    assert_eq!(again, "agent 0: it is in the log twice");
+}
+
+/// They disappeared, or led one way only.
+#[test]
+fn edges_of_other_kinds_are_refused() {
+    let graph = |attributes: &str, more: &str| {
+        let nodes = "<node id=\"a\"><data>0,0</data></node><node id=\"b\"><data>4,0</data></node>";
+        format!(
+            "<graphml><graph {attributes}>{nodes}<edge id=\"e\" source=\"a\" target=\"b\"/>{more}</graph></graphml>"
+        )
+    };
+    let failed =
+        |text: &str| layout(Format::Ccbs, text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string();
+    let hyper = failed(&graph("", "<hyperedge id=\"h\"/>"));
+    assert!(hyper.starts_with("hyperedge h: it joins any number of nodes, and an edge joins two"), "{hyper}");
+    let nested = failed(&graph(
+        "",
+        "<node id=\"c\"><data>9,9</data><graph id=\"g\"><edge id=\"f\" source=\"a\" target=\"b\"/></graph></node>",
+    ));
+    for expected in
+        ["graph g, in node: what is read is graph in graph", "edge f, in graph: what is read is edge in graph"]
+    {
+        assert!(nested.contains(expected), "{nested}");
+    }
+    let odd = failed(&graph("", "<edge id=\"o\" source=\"a\" target=\"b\" directed=\"no\"/>"));
+    assert!(odd.starts_with("edge o, directed: no where true or false is expected"), "{odd}");
+    assert_eq!(failed(&graph("edgedefault=\"both\"", "")), "graph, edgedefault: both is not read");
+}

@@ -381,3 +381,98 @@ fn edges_that_name_no_type_are_for_all() {
         assert!(layout.edges.iter().any(|edge| edge.id.to_string() == id), "{vehicle}");
     }
 }
+
+/// Nodes a to d at the corners of a cross, and edges of this kind.
+fn cross(edges: Value, theta: Value) -> Value {
+    let node = |id: &str, x: f64, y: f64| {
+        let properties =
+            json!([{ "vehicleTypeId": "t", "theta": if id == "b" { theta.clone() } else { Value::Null } }]);
+        json!({ "nodeId": id, "nodePosition": { "x": x, "y": y }, "vehicleTypeNodeProperties": properties })
+    };
+    let nodes = [node("a", 0.0, 0.0), node("b", 10.0, 0.0), node("c", 5.0, -5.0), node("d", 5.0, 5.0)];
+    json!({ "layouts": [{ "layoutId": "l", "nodes": nodes, "edges": edges }] })
+}
+
+fn edge(id: &str, from: &str, to: &str, property: Value) -> Value {
+    json!({ "edgeId": id, "startNodeId": from, "endNodeId": to, "vehicleTypeEdgeProperties": [property] })
+}
+
+/// With a vehicle they disappeared where a property was there that named no type.
+#[test]
+fn properties_that_name_no_type_are_for_all() {
+    let options = Options { vehicle: Some("t".into()), ..options() };
+    for unnamed in [json!({}), json!({ "vehicleTypeId": "" }), json!({ "vehicleTypeId": null })] {
+        let edges = json!([edge("ab", "a", "b", json!({ "vehicleTypeId": "t" })), edge("cd", "c", "d", unnamed)]);
+        let mut warnings = Warnings::default();
+        let imported = layout(Format::Lif, &cross(edges, Value::Null).to_string(), &options, &mut warnings).unwrap();
+        let locks = pcr_planning::locks::Locks::of(&imported, false).unwrap().locks;
+        assert_eq!((locks.len(), &imported.layout.vehicle_types), (1, &vec!["t".to_owned()]));
+    }
+}
+
+/// It had no locks, and a lock file without it was certified, while routes went from node to node.
+#[test]
+fn a_trajectory_that_is_a_point_is_no_way_to_a_node_elsewhere() {
+    let edges = |[x, y]: [f64; 2]| {
+        let curve = json!({ "degree": 1, "controlPoints": [{ "x": x, "y": y }, { "x": x, "y": y }] });
+        let point = json!({ "vehicleTypeId": "t", "trajectory": curve });
+        cross(
+            json!([edge("ab", "a", "b", json!({})), edge("cd", "c", "d", point.clone()), edge("cc", "c", "c", point)]),
+            Value::Null,
+        )
+    };
+    let error = layout_error(&edges([5.0, -5.0]).to_string());
+    assert_eq!(error, "edge cd, trajectory: it has no length, and is 10.000 m from a node; --partial leaves that out");
+    let error = layout_error(&edges([5.0, -1.0]).to_string());
+    assert!(error.contains("edge cc, trajectory: it has no length, and is 4.000 m from a node"), "{error}");
+    let mut near = edges([5.0, -5.03]);
+    near["layouts"][0]["edges"].as_array_mut().unwrap().remove(1);
+    let (layout, warnings) = read(&near.to_string(), &options());
+    let edge = &layout.edges[1];
+    assert!(edge.curve.is_empty() && (edge.deviation - 0.03).abs() < 1e-12, "{edge:?}");
+    assert!(warnings.iter().any(|line| line.starts_with("edge cc: its length is 0")), "{warnings:?}");
+}
+
+/// They were not read, and nothing was said.
+#[test]
+fn thetas_and_turns_of_an_outline_are_told() {
+    let fleet = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
+    let outlined = Options { fleet: Some(fleet.into()), radius: None, ..options() };
+    let told = |theta: Value, options: &Options| {
+        let turns = json!({ "vehicleTypeId": "t", "rotationAllowed": true });
+        let edges = json!([edge("ab", "a", "b", json!({ "vehicleTypeId": "t" })), edge("cd", "c", "d", turns)]);
+        let (_, warnings) = read(&cross(edges, theta).to_string(), options);
+        let said = ["node b: its theta is that of none of its edges", "edge cd: its rotationAllowed is not read"];
+        said.map(|said| warnings.iter().any(|line| line.starts_with(said)))
+    };
+    assert_eq!(told(json!(0.0), &outlined), [false, true]);
+    assert_eq!(told(json!(1.57), &outlined), [true, true]);
+    let other = Options { vehicle: Some("other".into()), ..outlined.clone() };
+    let edges = json!([edge("ab", "a", "b", json!({ "vehicleTypeId": "other" }))]);
+    let (_, warnings) = read(&cross(edges, json!(1.57)).to_string(), &other);
+    assert!(!warnings.iter().any(|line| line.contains("theta")), "it is that of another type: {warnings:?}");
+    assert_eq!(told(json!(1.57), &options()), [false, false]);
+    let curve = json!({ "controlPoints": [{ "x": 0, "y": 0, "orientation": 1.57 }, { "x": 10, "y": 0 }] });
+    let sideways = json!([edge("ab", "a", "b", json!({ "vehicleTypeId": "t", "trajectory": curve }))]);
+    let text = cross(sideways, Value::Null).to_string();
+    let error = layout(Format::Lif, &text, &outlined, &mut Warnings::default()).unwrap_err().to_string();
+    assert!(error.starts_with("edge ab, trajectory, control point 1: its orientation 1.57, as outlines"), "{error}");
+}
+
+/// Of a layout whose edges had another name there were none.
+#[test]
+fn a_layout_has_nodes_and_edges() {
+    let edges = json!([edge("ab", "a", "b", json!({}))]);
+    for list in ["nodes", "edges"] {
+        let mut value = cross(edges.clone(), Value::Null);
+        let mut other = value["layouts"][0].clone();
+        let hidden = other.as_object_mut().unwrap().remove(list).unwrap();
+        other[format!("{list}s")] = hidden;
+        value["layouts"].as_array_mut().unwrap().push(other);
+        let error = layout_error(&value.to_string());
+        assert!(error.starts_with(&format!("layout 2, {list}: missing")), "{error}");
+        value["layouts"][1][list] = json!([]);
+        value["layouts"][1]["edges"] = json!([]);
+        assert_eq!(read(&value.to_string(), &options()).0.edges.len(), 1);
+    }
+}

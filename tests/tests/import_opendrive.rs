@@ -412,3 +412,43 @@ fn records_without_length_windings_and_open_joints() {
             && layout_error(&arc(-101.0)).contains("sweep is out")
     );
 }
+
+/// They disappeared.
+#[test]
+fn roads_that_are_elsewhere_are_refused() {
+    let road = |id: &str| {
+        format!(
+            "<road id=\"{id}\"><planView><geometry x=\"0\" y=\"0\" hdg=\"0\" length=\"5\"><line/></geometry></planView></road>"
+        )
+    };
+    let file = |more: &str| format!("<OpenDRIVE>{}{more}</OpenDRIVE>", road("1"));
+    for (parent, element) in
+        [("junction", road("2")), ("group", road("2")), ("OpenDRIVE", road("2").replace("road", "Road"))]
+    {
+        let text =
+            if parent == "OpenDRIVE" { file(&element) } else { file(&format!("<{parent}>{element}</{parent}>")) };
+        let name = if parent == "OpenDRIVE" { "Road" } else { "road" };
+        let error = layout_error(&text);
+        assert!(error.starts_with(&format!("{name} 2, in {parent}: what is read is road in OpenDRIVE")), "{error}");
+    }
+    let mut warnings = Warnings::default();
+    layout(Format::OpenDrive, &file("<junction id=\"9\"/><way/>"), &Options::default(), &mut warnings).unwrap();
+    let unknown: Vec<_> = warnings.lines().into_iter().filter(|line| line.contains("not known")).collect();
+    assert_eq!(unknown, ["way: not known in OpenDRIVE, and not read"]);
+}
+
+/// `01` and `1` were one name, and a speed below 0 was no limit.
+#[test]
+fn names_are_as_they_are_written_and_speeds_no_less_than_0() {
+    let road = |id: &str, x: f64, more: &str| {
+        format!(
+            "<road id=\"{id}\">{more}<planView><geometry x=\"{x}\" y=\"0\" hdg=\"0\" length=\"5\"><line/></geometry></planView></road>"
+        )
+    };
+    let file = |roads: &[String]| format!("<OpenDRIVE>{}</OpenDRIVE>", roads.concat());
+    let text = file(&[road("1", 0.0, ""), road("01", 9.0, ""), road("+2", 18.0, "")]);
+    let read = layout(Format::OpenDrive, &text, &Options::default(), &mut Warnings::default()).unwrap().layout;
+    assert_eq!(read.edges.iter().map(|edge| edge.id.to_string()).collect::<Vec<_>>(), ["1", "01", "+2"]);
+    let error = layout_error(&file(&[road("1", 0.0, "<type><speed max=\"-3\"/></type>")]));
+    assert!(error.starts_with("road 1, speed, max: -3 where a number from 0 is expected"), "{error}");
+}

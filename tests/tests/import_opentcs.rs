@@ -299,3 +299,132 @@ fn names_with_angles_and_models_before_version_7_are_read() {
     let error = layout(Format::OpenTcs, &nested, &options(&[]), &mut Warnings::default()).unwrap_err().to_string();
     assert!(error.contains("nested deeper than 200 elements"), "{error}");
 }
+
+fn failed(text: &str) -> String {
+    layout(Format::OpenTcs, text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string()
+}
+
+/// Vehicles without a box silently had that of the others.
+#[test]
+fn each_vehicle_has_a_box_if_any_has() {
+    let small = "<vehicle name=\"small\"><boundingBox length=\"300\" width=\"300\" height=\"9\"/></vehicle>";
+    for (other, expected) in [
+        ("", "vehicle B, boundingBox: missing, and others have one"),
+        ("<boundingBox length=\"3000\" height=\"9\"/>", "vehicle B, boundingBox, width: missing"),
+        (
+            "<boundingBox length=\"-3000\" width=\"-3000\"/>",
+            "vehicle B, boundingBox, length: -3000 where a number above 0 is",
+        ),
+        ("<boundingBox length=\"3000\" width=\"0\"/>", "vehicle B, boundingBox, width: 0 where a number above 0 is"),
+    ] {
+        let text = plant(&format!("{small}<vehicle name=\"B\">{other}</vehicle>"));
+        assert!(failed(&text).starts_with(expected), "{}", failed(&text));
+        // A radius that is given is that of all, and so is what can be read, if that is asked for.
+        let given = layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default()).unwrap();
+        assert_eq!(given.vehicle.radius, 0.6);
+        let (partial, mut warnings) = (Options { partial: true, ..Options::default() }, Warnings::default());
+        let read = layout(Format::OpenTcs, &text, &partial, &mut warnings).unwrap();
+        assert!(
+            read.vehicle.footprint.is_some() && warnings.lines()[0].starts_with(expected),
+            "{:?}",
+            warnings.lines()
+        );
+    }
+    // Models before version 6 have lengths only.
+    let told = |radius: Option<f64>| {
+        let text = plant("<vehicle name=\"A\" length=\"3000\"/><vehicle name=\"B\" length=\"900\"/>");
+        let mut warnings = Warnings::default();
+        layout(Format::OpenTcs, &text, &Options { radius, ..Options::default() }, &mut warnings).unwrap();
+        warnings.lines().into_iter().filter(|line| line.contains("m long")).collect::<Vec<_>>()
+    };
+    let [a, b] = [("A", 3.0), ("B", 0.9)].map(|(name, long)| {
+        format!("vehicle {name}: it is {long} m long, and the model says nothing more of its outline")
+    });
+    assert_eq!(told(None), [a.clone(), b]);
+    assert_eq!(told(Some(0.6)), [a]);
+    assert!(told(Some(1.5)).is_empty());
+}
+
+/// Their ends were where the points are, and their middle where the points are drawn.
+#[test]
+fn curves_are_where_the_layout_has_their_points() {
+    let curved = |drawn: &str, kind: &str| {
+        let layout = format!(
+            "<pathLayout connectionType=\"{kind}\"><controlPoint x=\"100\" y=\"-10\"/><controlPoint x=\"300\" y=\"-10\"/></pathLayout></path>"
+        );
+        let text = plant("").replacen(
+            "length=\"20000\" maxVelocity=\"1000\" maxReverseVelocity=\"0\"/>",
+            &format!("length=\"20000\" maxVelocity=\"1000\" maxReverseVelocity=\"0\">{layout}"),
+            1,
+        );
+        text.replacen(
+            "positionX=\"20000\" positionY=\"0\" positionZ=\"0\"/>",
+            &format!("positionX=\"20000\" positionY=\"0\" positionZ=\"0\"><pointLayout {drawn}/></point>"),
+            1,
+        )
+    };
+    let deviation = |drawn: &str| {
+        let text = curved(drawn, "BEZIER");
+        layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default())
+            .map(|read| read.layout.edges[0].deviation)
+    };
+    let there = deviation("labelOffsetX=\"-10\"").unwrap();
+    assert_eq!(deviation("positionX=\"20000\" positionY=\"0\""), Ok(there));
+    // The shift, and by how much four legs may be longer.
+    assert!((deviation("xPosition=\"20003\" yPosition=\"4\"").unwrap() - there - 0.005 * 7.0).abs() < 1e-9);
+    for (kind, drawn) in [("BEZIER", "positionX=\"120000\""), ("POLYPATH", "xPosition=\"120000\" yPosition=\"0\"")] {
+        let expected = "path A-B: its control points are where the visual layout has its points, which is 100.000 m off in pointLayout";
+        assert!(failed(&curved(drawn, kind)).starts_with(expected), "{}", failed(&curved(drawn, kind)));
+    }
+    // Straight paths go from point to point, wherever these are drawn.
+    let straight = plant("").replacen(
+        "positionZ=\"0\"/>",
+        "positionZ=\"0\"><pointLayout positionX=\"9000\" positionY=\"9\"/></point>",
+        1,
+    );
+    assert!(layout(Format::OpenTcs, &straight, &options(&[]), &mut Warnings::default()).is_ok());
+}
+
+/// Curves of models up to version 0.0.3 are elsewhere, and were straight.
+#[test]
+fn curves_of_the_first_models_are_refused() {
+    let visual = |kind: &str, points: &str| {
+        let property = |name: &str, value: &str| format!("<property name=\"{name}\" value=\"{value}\"/>");
+        let of = "modelLayoutElement visualizedObjectName=\"A-B\" layer=\"0\"";
+        let properties = [property("CONN_TYPE", kind), property("CONTROL_POINTS", points)].concat();
+        plant(&format!(
+            "<visualLayout name=\"v\" scaleX=\"50\" scaleY=\"50\"><{of}>{properties}</modelLayoutElement></visualLayout>"
+        ))
+    };
+    assert!(layout(Format::OpenTcs, &visual("DIRECT", ""), &options(&[]), &mut Warnings::default()).is_ok());
+    for (kind, points) in [("BEZIER", "1,2;3,4"), ("DIRECT", "1,2")] {
+        let error = failed(&visual(kind, points));
+        let expected = format!("path A-B: {kind} in a modelLayoutElement of the visual layout is not read");
+        assert!(error.starts_with(&expected), "{error}");
+    }
+}
+
+/// They disappeared.
+#[test]
+fn paths_that_are_elsewhere_in_a_model_are_refused() {
+    let path = "<path name=\"x\" sourcePoint=\"B\" destinationPoint=\"C\" length=\"1\" maxVelocity=\"1\" maxReverseVelocity=\"0\"/>";
+    let nested = failed(&plant(&format!("<group>{path}</group>")));
+    assert!(nested.starts_with("path x, in group: what is read is path in model; --partial"), "{nested}");
+    let upper = failed(&plant(&path.replace("<path", "<Path")));
+    assert!(upper.starts_with("Path x, in model: what is read is path in model; --partial"), "{upper}");
+    let vehicle = failed(&plant("<fleet><vehicle name=\"v\"/></fleet>"));
+    assert!(vehicle.starts_with("vehicle v, in fleet: "), "{vehicle}");
+    let mut warnings = Warnings::default();
+    let more =
+        format!("<block name=\"b\"/><group name=\"g\"/><lane name=\"l\"/>{}", path.replace("/>", "><curve/></path>"));
+    let text = plant(&more);
+    layout(Format::OpenTcs, &text, &options(&[]), &mut warnings).unwrap();
+    for expected in ["lane: not known in model, and not read", "curve: not known in path, and not read"] {
+        assert!(warnings.lines().contains(&expected.to_owned()), "{:?}", warnings.lines());
+    }
+    assert!(
+        !warnings.lines().iter().any(|line| line.contains("block") || line.contains("group")),
+        "{:?}",
+        warnings.lines()
+    );
+}

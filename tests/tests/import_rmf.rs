@@ -276,3 +276,19 @@ fn limits_of_a_fleet_are_two_numbers_above_zero() {
         assert!(read(wrong).unwrap_err().to_string().contains("speed and acceleration above 0"), "{wrong}");
     }
 }
+
+/// A lane led one way, or had no limit of speed, where its parameters could not be read.
+#[test]
+fn parameters_without_a_value_are_refused() {
+    for (parameters, expected) in [
+        ("{bidirectional: []}", "bidirectional: [] is not read"),
+        ("{bidirectional: [4]}", "bidirectional: [4] is not read"),
+        ("{speed_limit: [3, -1]}", "speed_limit: -1 is not read"),
+        ("{graph_idx: []}", "graph_idx: [] is not read"),
+        ("[bidirectional]", "its parameters [\"bidirectional\"] are not read"),
+    ] {
+        let text = building("[[0, 1, {distance: [3, 20.0]}]]", &[&format!("[0, 1, {parameters}]")], "");
+        let error = layout(Format::Rmf, &text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();
+        assert!(error.starts_with(&format!("lane L1/0: {expected}")), "{error}");
+    }
+}

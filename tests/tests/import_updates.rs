@@ -65,6 +65,10 @@ fn an_order_and_its_updates_are_one_way_of_one_vehicle() {
     let mut unnamed = first.clone();
     unnamed["serialNumber"] = Value::Null;
     assert_eq!(lengths(&[&unnamed, &unnamed]), Ok(vec![5.0; 2]));
+    // Without a manufacturer it could be either.
+    unnamed["serialNumber"] = json!("R");
+    unnamed["manufacturer"] = Value::Null;
+    assert_eq!(lengths(&[&unnamed, &first]), Err("vehicle R: its manufacturer is not in all messages".to_owned()));
 }
 
 /// It faced east.

@@ -54,11 +54,15 @@ fn published_orders() {
     let MotionSpec::Profile { pieces, .. } = &agent.motion else { panic!() };
     assert!((pieces[0].0 - 3.0).abs() < 1e-9 && pieces.len() == 3);
     assert!(warnings[0].contains("its actions take no time here"));
+    // All its numbers are 0.
     let error = read(NULLS, &options()).unwrap_err();
+    assert_eq!(error, "order some-order-id, node node-without-node-position, sequenceId: 0 is there twice");
+    let unnumbered = NULLS.replace("\"sequenceId\" : 0", "\"sequenceId\" : null");
+    let error = read(&unnumbered, &options()).unwrap_err();
     let expected = "order some-order-id, edge some-edge-id, startNodeId: source-node, \
         but by sequenceId it is node-with-node-position-and-action";
     assert_eq!(error, expected);
-    let joined = NULLS.replace("\"source-node\"", "null").replace("\"destination-node\"", "null");
+    let joined = unnumbered.replace("\"source-node\"", "null").replace("\"destination-node\"", "null");
     let expected = "order some-order-id, node node-without-node-position, nodePosition: missing";
     assert_eq!(read(&joined, &options()).unwrap_err(), expected);
 }
@@ -156,7 +160,8 @@ fn states_tell_paths_with_or_without_times() {
     assert_eq!(scenario.warnings, warnings);
     let (scenario, warnings) = read(&state(json!({ "nodeStates": [] })), &options()).unwrap();
     assert_eq!((scenario.agents[0].path.len(), warnings.len()), (0, 0));
-    let both = state(json!({ "plannedPath": {}, "intermediatePath": {} }));
+    let timed = json!({ "polyline": [{ "x": 6.0, "y": 2.0, "eta": "2026-11-21T08:00:04Z" }] });
+    let both = state(json!({ "plannedPath": {}, "intermediatePath": timed }));
     assert!(read(&both, &options()).unwrap_err().contains("its plannedPath, which goes on"));
     let elsewhere = json!({ "nodeStates": [], "plannedPath": { "trajectory": quarter() }, "mobileRobotPosition": { "x": 3.0, "y": 0.0 } });
     let error = read(&state(elsewhere), &options()).unwrap_err();
@@ -269,13 +274,7 @@ fn planned_paths_begin_at_the_time_stamps_of_their_states() {
 /// A vehicle that drives backward was read as if its outline faced along its path.
 #[test]
 fn outlines_face_along_their_paths_or_are_refused() {
-    let fleet = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
-    let outlined = Options {
-        fleet: Some(fleet.into()),
-        rotation: Some(1.0),
-        rotation_acceleration: Some(1.0),
-        ..Options::default()
-    };
+    let outlined = outlined();
     let order = |edge: Value, theta: [Value; 2]| {
         let node = |k: usize, y: f64| {
             json!({ "nodeId": format!("n{k}"), "sequenceId": 2 * k, "actions": [],
@@ -469,4 +468,203 @@ fn orders_stay_on_a_map_and_stand_where_they_have_no_edges() {
     let (scenario, warnings) = read(&order(json!([node("a", 0.0, "m"), beyond]), 1), &options()).unwrap();
     assert_eq!(scenario.agents[0].path.len(), 0);
     assert_eq!(warnings, ["order o: 1 of 1 edges are not released and left out (--horizon)"]);
+}
+
+/// Options of a vehicle of 1 m by 0.8 m, of which the back is nearer than the front.
+fn outlined() -> Options {
+    let fleet = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
+    Options { fleet: Some(fleet.into()), rotation: Some(1.0), rotation_acceleration: Some(1.0), ..Options::default() }
+}
+
+/// Its planned path was travelled ahead, however the vehicle faced where it was.
+#[test]
+fn an_outline_faces_along_its_planned_path_or_is_refused() {
+    let planned = |theta: Value, nodes: Value| {
+        let path = json!({ "trajectory": { "controlPoints": [{ "x": 0, "y": 0 }, { "x": 0, "y": 3 }, { "x": 4, "y": 3 }] },
+            "traversedNodes": [] });
+        let pose = json!({ "x": 0.0, "y": 0.0, "theta": theta, "mapId": "m" });
+        state(json!({ "plannedPath": path, "mobileRobotPosition": pose, "nodeStates": nodes }))
+    };
+    let north = std::f64::consts::FRAC_PI_2;
+    let (scenario, _) = read(&planned(json!(north), json!([])), &outlined()).unwrap();
+    assert!(scenario.agents[0].footprint.is_some());
+    for theta in [0.0, -north] {
+        let error = read(&planned(json!(theta), json!([])), &outlined()).unwrap_err();
+        assert!(error.starts_with(&format!("state of r7: its theta {theta}, as outlines face along")), "{error}");
+        assert!(read(&planned(json!(theta), json!([])), &options()).is_ok(), "it does not matter how a disc faces");
+    }
+    // Nobody knows which way it faces: the disc around it.
+    let (scenario, _) = read(&planned(Value::Null, json!([])), &outlined()).unwrap();
+    assert!(scenario.agents[0].footprint.is_none() && scenario.agents[0].radius > 0.5);
+    let node = |k: u64, x: f64, y: f64, theta: f64| {
+        json!({ "nodeId": format!("n{k}"), "sequenceId": k, "released": true,
+            "nodePosition": { "x": x, "y": y, "theta": theta, "mapId": "m" } })
+    };
+    let along = json!([node(2, 0.0, 1.0, north), node(4, 0.0, 3.0, 0.0), node(6, 4.0, 3.0, 0.0)]);
+    assert!(read(&planned(json!(north), along), &outlined()).is_ok());
+    let turned = json!([node(2, 0.0, 1.0, 0.0), node(6, 4.0, 3.0, north)]);
+    let error = read(&planned(json!(north), turned), &outlined()).unwrap_err();
+    for lost in ["state of r7, node n2: its theta 0, as", "state of r7, node n6: its theta 1.5"] {
+        assert!(error.contains(lost), "{error}");
+    }
+}
+
+/// What it did after the first node was left aside, and it stood as there.
+#[test]
+fn who_turns_in_place_is_the_disc_around_the_outline() {
+    let order = |thetas: [Value; 3]| {
+        let node = |k: usize| json!({ "nodeId": format!("n{k}"), "nodePosition": { "x": 1.0, "y": 2.0, "theta": thetas[k], "mapId": "m" } });
+        let edges = [json!({ "edgeId": "a" }), json!({ "edgeId": "b" })];
+        json!({ "orderId": "o", "nodes": [node(0), node(1), node(2)], "edges": edges }).to_string()
+    };
+    let read = |thetas| read(&order(thetas), &outlined()).unwrap().0.agents.remove(0);
+    for same in [[json!(0.5), json!(0.5), json!(0.5)], [json!(0.5), Value::Null, json!(0.5)]] {
+        let agent = read(same);
+        assert_eq!((agent.footprint.is_some(), agent.start), (true, [1.0, 2.0, 0.5]));
+    }
+    for turned in [[json!(0.5), Value::Null, json!(0.6)], [Value::Null, json!(0.5), json!(0.5)]] {
+        let agent = read(turned);
+        assert!(agent.footprint.is_none() && agent.path.is_empty(), "{agent:?}");
+    }
+}
+
+/// The last one counted.
+#[test]
+fn what_is_there_twice_is_refused() {
+    let text = square().to_string();
+    let twice = text.replacen("\"orderId\":", "\"nodes\":[],\"orderId\":", 1);
+    assert_eq!(twice.matches("\"nodes\"").count(), 2);
+    let error = read(&twice, &options()).unwrap_err();
+    assert!(error.starts_with("not JSON: \"nodes\" is there twice"), "{error}");
+    let error = read(&text.replacen("\"released\":", "\"released\":true,\"released\":", 1), &options()).unwrap_err();
+    assert!(error.starts_with("not JSON: \"released\" is there twice"), "{error}");
+}
+
+/// An empty path with times made it stand, although it said that it moves.
+#[test]
+fn a_path_without_points_is_no_path() {
+    let lost = "state of r7: its way, as it moves and does not say where to; --partial leaves that out";
+    let at = json!([{ "x": 4.0, "y": 0.0, "eta": "2026-11-21T08:00:09Z" }]);
+    for path in [json!({}), json!({ "polyline": [] }), json!({ "polyline": null }), json!({ "polyline": at })] {
+        let moves = state(json!({ "intermediatePath": path, "driving": true }));
+        assert_eq!(read(&moves, &options()).unwrap_err(), lost, "{path}");
+        assert!(read(&state(json!({ "intermediatePath": path })), &options()).is_ok(), "{path}");
+    }
+    let point = json!({ "trajectory": { "controlPoints": [{ "x": 4, "y": 0 }, { "x": 4, "y": 0 }] } });
+    assert_eq!(read(&state(json!({ "plannedPath": point, "driving": true })), &options()).unwrap_err(), lost);
+    // The other path counts then.
+    let both = state(json!({ "intermediatePath": { "polyline": [] }, "plannedPath": { "trajectory": quarter() } }));
+    assert_eq!(read(&both, &options()).unwrap().0.agents[0].structure(), "AA");
+}
+
+/// They were left aside with a contour.
+#[test]
+fn control_points_say_how_an_outline_faces() {
+    let order = |orientations: [Value; 3], middle: f64| {
+        let point = |k: usize, x: f64, y: f64| json!({ "x": x, "y": y, "orientation": orientations[k] });
+        let curve =
+            json!({ "degree": 2, "controlPoints": [point(0, 0.0, 0.0), point(1, 3.0, middle), point(2, 6.0, 0.0)] });
+        let node = |id: &str, x: f64| json!({ "nodeId": id, "nodePosition": { "x": x, "y": 0.0 } });
+        let edge = json!({ "edgeId": "e", "trajectory": curve });
+        json!({ "orderId": "o", "nodes": [node("a", 0.0), node("b", 6.0)], "edges": [edge] }).to_string()
+    };
+    let none = Value::Null;
+    // World coordinates: 0 is along the line, and aside of a curve.
+    assert!(read(&order([json!(0.0), json!(0.0), json!(0.0)], 0.0), &outlined()).is_ok());
+    let slope = 1.0_f64.atan2(1.0);
+    assert!(read(&order([json!(slope), none.clone(), json!(-slope)], 3.0), &outlined()).is_ok());
+    for (orientations, middle, place) in [
+        ([json!(1.57), none.clone(), none.clone()], 0.0, 1),
+        ([none.clone(), json!(1.57), none.clone()], 0.0, 2),
+        ([none.clone(), none.clone(), json!(-1.57)], 0.0, 3),
+        ([json!(0.0), none.clone(), none.clone()], 3.0, 1),
+        ([none.clone(), json!(0.0), none.clone()], 3.0, 2),
+    ] {
+        let text = order(orientations, middle);
+        let error = read(&text, &outlined()).unwrap_err();
+        assert!(error.contains(&format!("control point {place}: its orientation ")), "{error}");
+        assert!(read(&text, &options()).is_ok(), "it does not matter how a disc faces");
+    }
+}
+
+/// Gaps were added at the beginning of a path only.
+#[test]
+fn the_gap_behind_a_planned_path_counts() {
+    let radius = |x: f64, path: Value| {
+        let node = json!({ "nodeId": "n1", "sequenceId": 2, "released": true, "nodePosition": { "x": x, "y": 2.0 } });
+        let mut message = json!({ "nodeStates": [node] });
+        message.as_object_mut().unwrap().extend(path.as_object().unwrap().clone());
+        read(&state(message), &options()).unwrap().0.agents[0].radius
+    };
+    let points = json!([{ "x": 4.0, "y": 2.0, "eta": "2026-11-21T08:00:04Z" }, { "x": 6.0, "y": 2.0, "eta": "2026-11-21T08:00:09Z" }]);
+    for path in
+        [json!({ "plannedPath": { "trajectory": quarter() } }), json!({ "intermediatePath": { "polyline": points } })]
+    {
+        let whole = radius(6.0, path.clone());
+        assert!((radius(6.04, path.clone()) - whole - 0.04).abs() < 1e-6, "{path}");
+        assert!((radius(5.97, path.clone()) - whole - 0.03).abs() < 1e-6, "{path}");
+    }
+}
+
+/// One of another type made two vehicles of one, and parts that were missing were no fault.
+#[test]
+fn names_are_texts_and_numbers_go_on() {
+    for field in ["serialNumber", "orderId", "manufacturer"] {
+        let mut order = square();
+        order["serialNumber"] = json!("r");
+        order[field] = json!(5);
+        let error = read(&order.to_string(), &options()).unwrap_err();
+        assert!(error.ends_with(&format!("{field}: a number where a text is expected")), "{error}");
+    }
+    let numbered = |pointer: &str, number: Value| {
+        let mut order = square();
+        *order.pointer_mut(pointer).unwrap() = number;
+        read(&order.to_string(), &options()).map_err(|error| error.replace("order square, ", ""))
+    };
+    // The lists are reversed: n3 is the first one, and e2.
+    let expected = "node n3, sequenceId: 8 where 6 is expected, as they count from node to edge to node";
+    assert_eq!(numbered("/nodes/0/sequenceId", json!(8)).unwrap_err(), expected);
+    let expected = "edge e2, sequenceId: 7 where 5 is expected, as they count from node to edge to node";
+    assert_eq!(numbered("/edges/0/sequenceId", json!(7)).unwrap_err(), expected);
+    assert!(numbered("/nodes/0/sequenceId", json!(4)).unwrap_err().ends_with("sequenceId: 4 is there twice"));
+    assert_eq!(numbered("/nodes/0/sequenceId", Value::Null).unwrap_err(), "node n3, sequenceId: missing");
+    // What begins elsewhere than at 0 is an update, and what has no numbers at all is in the order of the lists.
+    let mut later = square();
+    for part in ["nodes", "edges"] {
+        for part in later[part].as_array_mut().unwrap() {
+            part["sequenceId"] = json!(part["sequenceId"].as_u64().unwrap() + 4);
+        }
+    }
+    assert_eq!(read(&later.to_string(), &options()).unwrap().0.agents[0].structure(), "SAS");
+}
+
+/// They were only looked for at nodes, and what was no list was none.
+#[test]
+fn actions_of_edges_are_told_and_have_to_be_lists() {
+    let mut order = square();
+    order["edges"][2]["actions"] = json!([{ "actionType": "beep", "blockingType": "NONE" }]);
+    let (_, warnings) = read(&order.to_string(), &options()).unwrap();
+    assert!(warnings.iter().any(|line| line.starts_with("order square: its actions take no time")), "{warnings:?}");
+    for (pointer, name) in [("/nodes/3/actions", "node n0"), ("/edges/2/actions", "edge e0")] {
+        let mut order = square();
+        *order.pointer_mut(pointer).unwrap() = json!(5);
+        let error = read(&order.to_string(), &options()).unwrap_err();
+        assert_eq!(error, format!("order square, {name}, actions: a number where a list is expected"));
+    }
+}
+
+/// Who may leave the way, or turn on it, was told of places only.
+#[test]
+fn what_an_outline_may_do_is_told() {
+    let mut order = square();
+    order["nodes"][3]["nodePosition"]["allowedDeviationXy"] = json!(0.5);
+    order["nodes"][3]["nodePosition"]["allowedDeviationTheta"] = json!(3.0);
+    order["edges"][2]["rotationAllowed"] = json!(true);
+    let told = |options: &Options| {
+        let (_, warnings) = read(&order.to_string(), options).unwrap();
+        let said = ["allowedDeviationXy is not", "allowedDeviationTheta is not", "rotationAllowed is not"];
+        said.map(|said| warnings.iter().any(|line| line.contains(said)))
+    };
+    assert_eq!(told(&outlined()), [true; 3]);
+    assert_eq!(told(&options()), [true, false, false]);
 }

@@ -409,10 +409,17 @@ fn robots_that_are_held_up_for_long_arrive_all_the_same() {
     let task = Task::of(&Scenario::from_json(&text).expect("a scenario")).expect("a task");
     let outcome = run(&task, Controller::Pcr, settings(1, Disturbance { delay: 600.0, ..USUAL })).expect("a run");
     assert_safe(&task, &outcome, "held up");
-    // Two head-on are in each other's way for good, and who does not know that is stopped at the limit.
+    // Two head-on are in each other's way for good.
     let outcome = run(&head_on(), Controller::Pcr, settings(1, USUAL)).expect("a run");
     assert_eq!(outcome.run.ended, Ended::Standstill);
-    let outcome = run(&head_on(), Controller::Potential, settings(1, NONE)).expect("a run");
+    // A controller that does not know that its goal is taken is stopped at the limit.
+    let text = format!(
+        r#"{{ "agents": [{}, {{ "id": 2, "radius": 0.25, "v_max": 1, "a_max": 1, "start": {{ "x": 10, "y": 0, "heading": 0 }},
+                               "path": [] }}] }}"#,
+        lane(1, 0.0)
+    );
+    let task = Task::of(&Scenario::from_json(&text).expect("a scenario")).expect("a task");
+    let outcome = run(&task, Controller::Orca, settings(1, NONE)).expect("a run");
     assert_eq!(outcome.run.ended, Ended::TimeLimit);
 }
 

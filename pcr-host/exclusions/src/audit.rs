@@ -7,9 +7,9 @@
 
 use crate::meetings::Meetings;
 use crate::{Group, Rules, Target, Way, nearest, stretch};
-use pcr_formats::import::{Edge, Id, Imported, Layout};
+use pcr_formats::import::{Edge, Id, ImportError, Imported, Layout};
 use pcr_formats::scenario::Placed;
-use pcr_planning::locks::{LockVehicle, Locks, Rides, corridor, rounded};
+use pcr_planning::locks::{Lock, LockVehicle, Locks, NodeLock, Rides, corridor, rounded};
 use serde::Serialize;
 use std::cell::LazyCell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -94,9 +94,15 @@ pub struct Needless {
 }
 
 impl Audit {
-    /// Compares rules with the table of locks, which has to include nodes: contacts that are not excluded, and needless
-    /// exclusions.
-    pub fn of(imported: &Imported, locks: &Locks, rules: &Rules, target: Target) -> Self {
+    /// What rules leave out, and what they exclude in vain.
+    ///
+    /// # Errors
+    /// [`ImportError`] for locks without those of nodes, and for locks and rules of another layout: they would seem to suffice.
+    pub fn of(imported: &Imported, locks: &Locks, rules: &Rules, target: Target) -> Result<Self, ImportError> {
+        let places = Places::of(&imported.layout);
+        let nodes = places.nodes(locks)?;
+        let edges = places.edges(locks)?;
+        fit(&imported.layout, rules)?;
         let auditor = Auditor::new(imported, rules);
         let mut audit = Self {
             layout: locks.layout.clone(),
@@ -113,13 +119,10 @@ impl Audit {
         };
         audit.of_layout = audit.warnings.len();
         audit.warnings.extend_from_slice(&rules.warnings);
-        let places: HashMap<&Id, usize> =
-            imported.layout.edges.iter().enumerate().map(|(k, edge)| (&edge.id, k)).collect();
         let mut pairs: BTreeMap<[usize; 2], Vec<[[f64; 2]; 2]>> = BTreeMap::new();
-        for lock in &locks.locks {
-            let (Some(&a), Some(&b)) = (places.get(&lock.a), places.get(&lock.b)) else { continue };
-            pairs.entry([a, b]).or_default().push([lock.a_length, lock.b_length]);
-            audit.needed += (lock.a_length[1] - lock.a_length[0]) * (lock.b_length[1] - lock.b_length[0]);
+        for (pair, lengths) in edges {
+            pairs.entry(pair).or_default().push(lengths);
+            audit.needed += lengths.map(|[from, to]| to - from).into_iter().product::<f64>();
         }
         for (k, edge) in imported.layout.edges.iter().enumerate() {
             pairs.entry([k, k]).or_default().push([[0.0, edge.length()]; 2]);
@@ -129,7 +132,7 @@ impl Audit {
             let gaps = locked.iter().filter_map(|&lengths| auditor.gap([a, b], lengths));
             audit.gaps.extend(gaps.max_by(|x, y| x.depth.total_cmp(&y.depth)));
         }
-        audit.add_nodes(&auditor, locks, &places);
+        audit.add_nodes(&auditor, nodes);
         for [a, b] in auditor.excluded_pairs() {
             audit.excluded += auditor.area([a, b]);
             if !pairs.contains_key(&[a, b]) && !pairs.contains_key(&[b, a]) {
@@ -138,16 +141,13 @@ impl Audit {
             }
         }
         audit.needless.sort_by(|x, y| (&x.a, &x.b).cmp(&(&y.a, &y.b)));
-        audit
+        Ok(audit)
     }
 
-    fn add_nodes(&mut self, auditor: &Auditor<'_>, locks: &Locks, places: &HashMap<&Id, usize>) {
-        let nodes: HashMap<&Id, usize> =
-            auditor.imported.layout.nodes.iter().enumerate().map(|(k, node)| (&node.id, k)).collect();
+    fn add_nodes(&mut self, auditor: &Auditor<'_>, locks: Vec<AtNode>) {
         let mut done: BTreeMap<[usize; 2], Option<Gap>> = BTreeMap::new();
-        for lock in locks.nodes.iter().flatten() {
-            let (Some(&node), Some(&edge)) = (nodes.get(&lock.node), places.get(&lock.edge)) else { continue };
-            let gap = auditor.gap_at(node, edge, lock.edge_length);
+        for ([node, edge], length) in locks {
+            let gap = auditor.gap_at(node, edge, length);
             let known = done.entry([node, edge]).or_default();
             if known.as_ref().map_or(f64::NEG_INFINITY, |gap| gap.depth)
                 < gap.as_ref().map_or(f64::NEG_INFINITY, |gap| gap.depth)
@@ -163,6 +163,54 @@ impl Audit {
     pub fn suffices(&self) -> bool {
         self.gaps.is_empty()
     }
+}
+
+/// Two edges and their lengths that lock each other, and a node with an edge and its lengths.
+type Pair = ([usize; 2], [[f64; 2]; 2]);
+type AtNode = ([usize; 2], [f64; 2]);
+
+/// Where edges and nodes are in a layout, by their names.
+struct Places<'a> {
+    edges: HashMap<&'a Id, usize>,
+    nodes: HashMap<&'a Id, usize>,
+}
+
+impl<'a> Places<'a> {
+    fn of(layout: &'a Layout) -> Self {
+        let edges = layout.edges.iter().enumerate().map(|(k, edge)| (&edge.id, k)).collect();
+        Self { edges, nodes: layout.nodes.iter().enumerate().map(|(k, node)| (&node.id, k)).collect() }
+    }
+
+    fn edge(&self, id: &Id) -> Result<usize, ImportError> {
+        let place = self.edges.get(id).copied();
+        place.ok_or_else(|| ImportError::new(format!("locks of edge {id}, which the layout does not have")))
+    }
+
+    fn node(&self, id: &Id) -> Result<usize, ImportError> {
+        let place = self.nodes.get(id).copied();
+        place.ok_or_else(|| ImportError::new(format!("locks of node {id}, which the layout does not have")))
+    }
+
+    /// The locks of edges by their places.
+    fn edges(&self, locks: &Locks) -> Result<Vec<Pair>, ImportError> {
+        let place = |lock: &Lock| Ok(([self.edge(&lock.a)?, self.edge(&lock.b)?], [lock.a_length, lock.b_length]));
+        locks.locks.iter().map(place).collect()
+    }
+
+    /// The locks of nodes by their places.
+    fn nodes(&self, locks: &Locks) -> Result<Vec<AtNode>, ImportError> {
+        let none = || ImportError::new("an audit takes the locks of nodes as well");
+        let place = |lock: &NodeLock| Ok(([self.node(&lock.node)?, self.edge(&lock.edge)?], lock.edge_length));
+        locks.nodes.as_ref().ok_or_else(none)?.iter().map(place).collect()
+    }
+}
+
+/// Checks that rules are of a layout: there is something about each edge and each node.
+fn fit(layout: &Layout, rules: &Rules) -> Result<(), ImportError> {
+    if (rules.edges.len(), rules.nodes.len()) == (layout.edges.len(), layout.nodes.len()) {
+        return Ok(());
+    }
+    Err(ImportError::new("the exclusions are of another layout"))
 }
 
 struct Auditor<'a> {

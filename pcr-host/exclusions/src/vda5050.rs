@@ -10,13 +10,13 @@
 //! is kept off by whoever can reach into the zone at all: where they touch, both are in it. By the second rule the
 //! zones that are written here suffice, whatever the deviations and the outlines.
 
-use crate::outline::{around, depth};
+use crate::outline::{self, around, depth};
 use crate::reach::within;
 use crate::settings::{Notes, Settings};
 use crate::{Claim, Group, Mark, Rules, Way, stretch};
 use pcr_formats::import::{ImportError, Imported, Layout, parse_json};
-use pcr_formats::scenario::PathSegment;
 use pcr_formats::scenario::Placed;
+use pcr_formats::scenario::{LIMIT, PathSegment};
 use pcr_planning::checksum::crc32;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -145,6 +145,32 @@ fn both(a: &[[f64; 2]], b: &[[f64; 2]]) -> Vec<[f64; 2]> {
     pairs.filter(|[from, to]| from <= to).collect()
 }
 
+/// The corners of a zone.
+fn polygon(vertices: &Value) -> Result<Vec<[f64; 2]>, String> {
+    let corner = |vertex: &Value| Some([vertex["x"].as_f64()?, vertex["y"].as_f64()?]);
+    let corners = vertices.as_array().into_iter().flatten().map(corner).collect::<Option<Vec<_>>>();
+    let polygon = corners.filter(|corners| corners.len() >= 3).ok_or("three or more are expected")?;
+    if let Some(far) = polygon.iter().flatten().find(|x| x.abs() > LIMIT) {
+        return Err(format!("{far:e} is out of range; allowed is up to {LIMIT:e}"));
+    }
+    // No vehicle is in a zone that is a line, and what only touches it need not ask for it.
+    if !is_area(&polygon) {
+        return Err("they are on one line".to_owned());
+    }
+    Ok(polygon)
+}
+
+/// Whether the hull of points is wider than the rounding of their coordinates.
+fn is_area(points: &[[f64; 2]]) -> bool {
+    let hull = outline::hull(points.to_vec());
+    let [lo, hi] = bounds(points);
+    let (long, far) =
+        ((hi[0] - lo[0]).hypot(hi[1] - lo[1]), points.iter().flatten().fold(0.0, |far: f64, x| far.max(x.abs())));
+    let corners = hull.iter().zip(hull.iter().skip(1).chain(hull.first()));
+    let twice: f64 = corners.map(|([x, y], [u, v])| (x - lo[0]) * (v - lo[1]) - (u - lo[0]) * (y - lo[1])).sum();
+    twice > 64.0 * f64::EPSILON * far * long
+}
+
 /// Reads the zones.
 pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
     let root = parse_json(text)?;
@@ -175,10 +201,7 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
                 warnings.push(format!("zone {name}: {kind} keeps no vehicles apart"));
                 continue;
             }
-            let corner = |vertex: &Value| Some([vertex["x"].as_f64()?, vertex["y"].as_f64()?]);
-            let corners = zone["vertices"].as_array().into_iter().flatten().map(corner).collect::<Option<Vec<_>>>();
-            let polygon = corners.filter(|corners| corners.len() >= 3);
-            let polygon = polygon.ok_or_else(|| problem("vertices: three or more are expected"))?;
+            let polygon = polygon(&zone["vertices"]).map_err(|wrong| problem(&format!("vertices: {wrong}")))?;
             let level = (0..layout.levels.len()).find(|&level| map(layout, level) == id).unwrap_or_default();
             groups.push(Group { name: name.to_owned(), outline: polygon.clone(), level, ..Group::default() });
             zones.push(Zone { map: id.to_owned(), blocked: kind == "BLOCKED", bounds: bounds(&polygon), polygon });

@@ -130,7 +130,7 @@ pub fn write(
     };
     let again = if target.layout().is_some() { read_layout(&written)? } else { imported };
     let rules = read(target, &written, &again)?;
-    let audit = Audit::of(&again, &locks, &rules, target);
+    let audit = Audit::of(&again, &locks, &rules, target)?;
     if let Some(gap) = audit.gaps.first() {
         let (a, b, depth) = (&gap.a, &gap.b, gap.depth);
         return refused(format!("{a} and {b} are not excluded by what would be written ({depth:.3} m deep)"));

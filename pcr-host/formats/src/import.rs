@@ -19,6 +19,7 @@
 //! biarc       curves to lines and arcs, with a certified distance
 //! samples     paths by their points (text)
 //! timed       plans of points and times
+//! stamp       time stamps
 //! layout      the common form: nodes, and edges of lines and arcs            Layout
 //! trace       lines and arcs anywhere in the plane to one path
 //! speed       the fastest motion under changing limits
@@ -51,6 +52,7 @@ mod rmf;
 mod route;
 mod samples;
 mod speed;
+mod stamp;
 mod timed;
 mod trace;
 mod trajectory;
@@ -66,7 +68,8 @@ pub use grid::GridPlan;
 pub use layout::{Edge, Id, Layout, Node};
 pub use rmf::is_navigation_graph;
 pub use route::{Step, cheapest, ride, turn};
-pub use timed::{seconds, sectioned};
+pub use stamp::seconds;
+pub use timed::sectioned;
 pub use useful::Kind;
 pub use value::parse as parse_json;
 pub use vehicle::{CORNER_RADIUS, HEADING, Options, TOLERANCE, Vehicle};
@@ -196,7 +199,7 @@ impl Format {
         if text.contains("\"agents\"") {
             return None;
         }
-        let root = serde_json::Deserializer::from_str(text).into_iter::<Value>().next()?.ok()?;
+        let root = serde_json::Deserializer::from_str(value::unmarked(text)).into_iter::<Value>().next()?.ok()?;
         match () {
             () if lif::is_layout(&root) => Some(Self::Lif),
             () if nav2::is_graph(&root) => Some(Self::Nav2),
@@ -207,7 +210,7 @@ impl Format {
 
 /// Whether there is nothing in a text but blanks.
 pub(crate) fn is_empty(text: &str) -> bool {
-    text.trim_start_matches('\u{feff}').trim().is_empty()
+    value::unmarked(text).trim().is_empty()
 }
 
 /// Reads a layout.
@@ -248,7 +251,7 @@ fn imported(
     }
     let mut given = given(options, warnings)?;
     if format == Format::OpenTcs {
-        opentcs::vehicles(text, options, &mut given, warnings)?;
+        whole(options, warnings, |warnings| opentcs::vehicles(text, options, &mut given, warnings))?;
     }
     let vehicle = options.vehicle(&given, moves, warnings);
     let outline = vehicle.footprint.as_ref();
@@ -313,10 +316,17 @@ fn report_agents(scenario: &Scenario, radii: &[f64], warnings: &mut Warnings) {
     report(&off.collect::<Vec<_>>(), warnings);
 }
 
+/// The same for routes that are further off than their edges, which are told already: gaps and differences of lengths are theirs.
+fn report_routes(layout: &Layout, scenario: &Scenario, radius: f64, warnings: &mut Warnings) {
+    let told = layout.edges.iter().map(|edge| edge.deviation).fold(0.0, f64::max);
+    let off = scenario.agents.iter().map(|agent| (format!("agent {}", agent.id), agent.radius - radius));
+    report(&off.filter(|(_, deviation)| *deviation > told + UNSAID).collect::<Vec<_>>(), warnings);
+}
+
 /// What the configuration of a fleet or a factsheet says.
 fn of_fleet(text: &str, warnings: &mut Warnings) -> Result<Given, ImportError> {
     // JSON is YAML, too, but says better what is wrong with it.
-    let json = text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
+    let json = value::unmarked(text).trim_start().starts_with('{');
     let value = if json { value::parse(text) } else { rmf::yaml(text) }?;
     if factsheet::is_factsheet(&value) { factsheet::read(&value, warnings) } else { rmf::fleet(&value) }
 }
@@ -369,7 +379,9 @@ pub fn scenario(
         }
         Format::Nav2 | Format::Lif | Format::Rmf | Format::OpenDrive | Format::OpenTcs | Format::Ccbs => {
             let Imported { layout, vehicle } = imported(format, text, options, true, warnings)?;
-            route::scenario(&layout, &vehicle, options, warnings)?
+            let scenario = route::scenario(&layout, &vehicle, options, warnings)?;
+            report_routes(&layout, &scenario, vehicle.radius, warnings);
+            scenario
         }
         Format::Path | Format::Vda5050 => {
             let vehicle = options.vehicle(&given(options, warnings)?, true, warnings);

@@ -146,7 +146,7 @@ fn audit(
     let wrong = |error| Stop::wrong(source, error);
     let rules = pcr_exclusions::read(target, &content, &imported).map_err(wrong)?;
     let locks = pcr_exclusions::table(&imported).map_err(wrong)?;
-    let audit = Audit::of(&imported, &locks, &rules, target);
+    let audit = Audit::of(&imported, &locks, &rules, target).map_err(wrong)?;
     if let Some(directory) = output {
         picture::write_audit(&imported, &locks, &rules, &audit, directory)
             .map_err(|error| Stop::not_written(directory, &error))?;

@@ -72,7 +72,7 @@ fn texts_may_be_ids() {
 
 fn order(serial: Option<&str>, id: &str, y: f64) -> Value {
     let node = |x: f64| {
-        json!({ "nodeId": format!("{id}{x}"), "sequenceId": x as u32, "released": true, "actions": [],
+        json!({ "nodeId": format!("{id}{x}"), "sequenceId": (x / 2.0) as u32, "released": true, "actions": [],
             "nodePosition": { "x": x, "y": y, "mapId": "m" } })
     };
     let edge = json!({ "edgeId": "e", "sequenceId": 1, "released": true, "actions": [] });

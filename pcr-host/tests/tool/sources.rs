@@ -128,7 +128,7 @@ fn plans_go_through_a_pipe() {
 fn orders_of_a_fleet_are_checked_against_one_another() {
     let order = |id: &str, y: f64| {
         let node = |x: f64| {
-            json!({ "nodeId": format!("{id}{x}"), "sequenceId": x as u32, "released": true, "actions": [],
+            json!({ "nodeId": format!("{id}{x}"), "sequenceId": (x / 2.0) as u32, "released": true, "actions": [],
             "nodePosition": { "x": x, "y": y, "mapId": "m" } })
         };
         let edge = json!({ "edgeId": "e", "sequenceId": 1, "released": true, "actions": [] });

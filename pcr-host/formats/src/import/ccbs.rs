@@ -6,16 +6,19 @@
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::timed;
-use super::xml::{child, children, number, only, parse};
+use super::xml::{astray, child, children, lose_astray, number, only, optional, parse, warn_of_unknown};
 use super::{ImportError, Options, Vehicle, Warnings};
-use crate::scenario::Placed;
-use crate::scenario::Scenario;
+use crate::scenario::{Agent, Placed, Scenario};
 
 /// Radius that the program takes where its configuration gives none \[m\].
 pub(super) const RADIUS: f64 = std::f64::consts::SQRT_2 / 4.0;
 
 /// Largest gap between two sections that counts as none \[m\].
 const GAP: f64 = 1e-6;
+
+/// By how much a path may last longer or shorter than its sections \[s\], and as a part of it: numbers are rounded in files.
+const LATE: f64 = 1e-3;
+const ROUNDED: f64 = 1e-4;
 
 /// Reads a roadmap: nodes with `x,y` as their first datum.
 pub(super) fn roadmap(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Layout, ImportError> {
@@ -30,7 +33,17 @@ pub(super) fn roadmap(text: &str, options: &Options, warnings: &mut Warnings) ->
         }
         ImportError::new(format!("{}: there is no graph in it, which a roadmap is", root.tag_name().name()))
     })?;
-    let undirected = graph.attribute("edgedefault") == Some("undirected");
+    lose_astray(graph, &["node", "edge", "graph", "hyperedge"], warnings);
+    warn_of_unknown(graph, &["node", "edge", "data", "desc", "hyperedge"], warnings);
+    for hyperedge in children(graph, "hyperedge") {
+        let id = hyperedge.attribute("id").unwrap_or_default();
+        warnings.lose(format_args!("hyperedge {id}: it joins any number of nodes, and an edge joins two"));
+    }
+    let undirected = match graph.attribute("edgedefault") {
+        Some("undirected") => true,
+        None | Some("directed") => false,
+        Some(other) => return Err(ImportError::new(format!("graph, edgedefault: {other} is not read"))),
+    };
     let mut nodes = Names::new();
     for (k, node) in children(graph, "node").enumerate() {
         let id = node.attribute("id").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
@@ -69,7 +82,15 @@ pub(super) fn roadmap(text: &str, options: &Options, warnings: &mut Warnings) ->
         if !straight {
             warnings.add(format_args!("edge {id}"), "its length is 0");
         }
-        let back = edge.attribute("directed").map_or(undirected, |directed| directed == "false");
+        let back = match edge.attribute("directed").map(str::trim) {
+            None => undirected,
+            Some("false" | "0") => true,
+            Some("true" | "1") => false,
+            Some(other) => {
+                warnings.lose(format_args!("edge {id}, directed: {other} where true or false is expected"));
+                continue;
+            }
+        };
         let edge = Edge::new(Id::Text(id), ends, if straight { vec![line] } else { Vec::new() });
         let edge = Edge { ways: [true, back], ..edge };
         edges.add(edge, warnings);
@@ -104,34 +125,68 @@ pub(super) fn log(text: &str, vehicle: &Vehicle) -> Result<Scenario, ImportError
         .ok_or_else(|| ImportError::new(format!("{}: there is no log in it, hence no plan", root.tag_name().name())))?;
     let mut agents = Vec::new();
     for (k, agent) in children(log, "agent").enumerate() {
-        let id = match agent.attribute("number") {
-            None => k as u64,
-            Some(number) => number.trim().parse().map_err(|_| {
-                ImportError::new(format!("agent at place {}, number: a whole number from 0 is expected", k + 1))
-            })?,
-        };
-        let name = format!("agent {id}");
-        let path = only(agent, "path")?.ok_or_else(|| ImportError::new(format!("{name}, path: missing")))?;
-        let mut stops: Vec<timed::Stop> = Vec::new();
-        for (k, section) in children(path, "section").enumerate() {
-            let name = format!("{name}, section {k}");
-            let field = |attribute: &str| number(section, &name, attribute);
-            let (from, to) = ([field("start_i")?, field("start_j")?], [field("goal_i")?, field("goal_j")?]);
-            match stops.last() {
-                None => stops.push((from, 0.0)),
-                Some((at, _)) if (at[0] - from[0]).hypot(at[1] - from[1]) > GAP => {
-                    return Err(ImportError::new(format!("{name}: it does not begin where the one before it ends")));
-                }
-                Some(_) => {}
-            }
-            let before = stops.last().map_or(0.0, |(_, time)| *time);
-            stops.push((to, before + field("duration")?));
-        }
-        let named = |error| ImportError::new(format!("{name}: {error}"));
-        agents.push(timed::agent(id, vehicle.radius, &stops).map_err(named)?);
+        agents.push(planned(k, agent, vehicle)?);
     }
     if agents.is_empty() {
         return Err(ImportError::new("log: there is no agent in it"));
     }
+    complete(root, log, &agents)?;
     Ok(Scenario::new("", agents))
+}
+
+/// Refuses a plan that lacks agents of its task, which the program writes before it, or has them where they are not read.
+fn complete(root: roxmltree::Node<'_, '_>, log: roxmltree::Node<'_, '_>, agents: &[Agent]) -> Result<(), ImportError> {
+    let of_task = children(root, "agent").count();
+    if of_task > 0 && of_task != agents.len() {
+        let problem = format!("it has the paths of {} agents, and the task before it has {of_task}", agents.len());
+        return Err(ImportError::new(format!("log: {problem}")));
+    }
+    for (k, agent) in agents.iter().enumerate() {
+        if agents.iter().take(k).any(|other| other.id == agent.id) {
+            return Err(ImportError::new(format!("agent {}: it is in the log twice", agent.id)));
+        }
+    }
+    match astray(log, &["agent"]).find(|(agent, _)| agent.parent() != Some(root)) {
+        Some((_, problem)) => Err(ImportError::new(problem)),
+        None => Ok(()),
+    }
+}
+
+/// The agent on its path.
+fn planned(k: usize, agent: roxmltree::Node<'_, '_>, vehicle: &Vehicle) -> Result<Agent, ImportError> {
+    let id = match agent.attribute("number") {
+        None => k as u64,
+        Some(number) => number.trim().parse().map_err(|_| {
+            ImportError::new(format!("agent at place {}, number: a whole number from 0 is expected", k + 1))
+        })?,
+    };
+    let name = format!("agent {id}");
+    let path = only(agent, "path")?.ok_or_else(|| ImportError::new(format!("{name}, path: missing")))?;
+    let mut stops: Vec<timed::Stop> = Vec::new();
+    for (k, section) in children(path, "section").enumerate() {
+        let name = format!("{name}, section {k}");
+        let field = |attribute: &str| number(section, &name, attribute);
+        if let Some(own) = optional(section, &name, "number")?.filter(|own| *own != k as f64) {
+            return Err(ImportError::new(format!("{name}, number: {own}, as if some were missing before it")));
+        }
+        let (from, to) = ([field("start_i")?, field("start_j")?], [field("goal_i")?, field("goal_j")?]);
+        match stops.last() {
+            None => stops.push((from, 0.0)),
+            Some((at, _)) if (at[0] - from[0]).hypot(at[1] - from[1]) > GAP => {
+                return Err(ImportError::new(format!("{name}: it does not begin where the one before it ends")));
+            }
+            Some(_) => {}
+        }
+        let before = stops.last().map_or(0.0, |(_, time)| *time);
+        stops.push((to, before + field("duration")?));
+    }
+    let travels = timed::agent(id, vehicle.radius, &stops);
+    let travels = travels.map_err(|error| ImportError::new(format!("{name}: {error}")))?;
+    let lasts = stops.last().map_or(0.0, |(_, time)| *time);
+    if let Some(whole) = optional(path, &format!("{name}, path"), "duration")?
+        && (whole - lasts).abs() > LATE.max(ROUNDED * whole.abs())
+    {
+        return Err(ImportError::new(format!("{name}, path, duration: {whole}, and its sections last {lasts}")));
+    }
+    Ok(travels)
 }

@@ -1,8 +1,11 @@
 //! Which way a vehicle faces as it travels: an outline is read as if it faced along its path.
 
+use super::biarc::Fit;
+use super::trace::distance;
 use super::value::Object;
 use super::{ImportError, Warnings};
 use crate::footprint::Footprint;
+use crate::scenario::{PathSegment, Placed};
 use std::f64::consts::{PI, TAU};
 
 /// Angle that is rounding in a file and nothing else \[rad\].
@@ -16,6 +19,9 @@ pub(super) fn is_ahead(outline: &Footprint, angle: f64) -> bool {
 
 /// The message about a backward drive that was not read.
 pub(super) const BACKWARD: &str = "it is driven backward, and outlines face along their paths here";
+
+/// What is said of an edge on which a vehicle may rotate.
+pub(super) const ROTATION: &str = "its rotationAllowed is not read; the vehicle is taken to face along its path";
 
 /// Whether it matters that the vehicle drives backward: neither to a disc nor to an outline that is the same then.
 pub(super) fn is_other_backward(outline: Option<&Footprint>) -> bool {
@@ -44,4 +50,81 @@ pub(super) fn along(
         lose(&edge.name, field, orientation, warnings);
     }
     Ok(())
+}
+
+/// Loses orientations of control points, which are in world coordinates (VDA 5050 1.x), unless they are along the curve. Where on the
+/// curve the inner ones are is not known: there it has to be straight.
+pub(super) fn along_trajectory(
+    trajectory: &Object<'_>,
+    fit: &Fit,
+    outline: &Footprint,
+    warnings: &mut Warnings,
+) -> Result<(), ImportError> {
+    let points = trajectory.list("controlPoints")?;
+    for (k, value) in points.iter().enumerate() {
+        let point = Object::new(format!("{}, control point {}", trajectory.name, k + 1), value)?;
+        let Some(orientation) = point.number("orientation")? else { continue };
+        let is_along = |heading: f64| is_ahead(outline, orientation - heading);
+        let mut pieces = fit.pieces.iter();
+        let fits = match k {
+            0 => pieces.next().is_some_and(|first| is_along(first.heading)),
+            k if k + 1 == points.len() => pieces.next_back().is_some_and(|last| is_along(last.heading_at_end())),
+            _ => pieces.all(|piece| piece.radius().is_none() && is_along(piece.heading)),
+        };
+        if !fits {
+            lose(&point.name, "orientation", orientation, warnings);
+        }
+    }
+    Ok(())
+}
+
+/// The heading of a line or an arc beside a point, if it passes no further than that from it.
+pub(super) fn heading_beside(piece: &Placed, point: [f64; 2], within: f64) -> Option<f64> {
+    let [x, y] = [point[0] - piece.at[0], point[1] - piece.at[1]];
+    let (sin, cos) = piece.heading.sin_cos();
+    let (ahead, left) = (x * cos + y * sin, y * cos - x * sin);
+    let whole = piece.shape.length();
+    let along = match piece.shape {
+        PathSegment::Line { .. } => ahead,
+        PathSegment::Arc { radius, sweep } => {
+            // The centre is to the left of an arc that turns left. Half of what is missing to a full turn is before its begin.
+            let angle = ahead.atan2(radius - left * sweep.signum());
+            let spare = 0.5 * (TAU - sweep.abs()).max(0.0);
+            radius * ((angle + spare).rem_euclid(TAU) - spare)
+        }
+    };
+    let along = along.clamp(0.0, whole);
+    let shape = match piece.shape {
+        PathSegment::Line { .. } => PathSegment::Line { length: along },
+        PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: (along / radius).copysign(sweep) },
+    };
+    let part = Placed { shape, ..*piece };
+    (distance(part.end(), point) <= within).then(|| part.heading_at_end())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn a_heading_is_that_beside_the_point() {
+        let close = |heading: Option<f64>, expected: f64| heading.is_some_and(|it| (it - expected).abs() < 1e-12);
+        let line = Placed::line([1.0, 1.0], [1.0, 5.0]);
+        assert!(close(heading_beside(&line, [1.04, 3.0], 0.05), FRAC_PI_2));
+        for apart in [[1.06, 3.0], [1.0, 5.06], [1.0, 0.94]] {
+            assert_eq!(heading_beside(&line, apart, 0.05), None, "{apart:?}");
+        }
+        // From (2, 0) around the origin, to the left and to the right.
+        for side in [1.0, -1.0] {
+            let shape = PathSegment::Arc { radius: 2.0, sweep: side * 3.0 * FRAC_PI_2 };
+            let arc = Placed { at: [2.0, 0.0], heading: side * FRAC_PI_2, shape };
+            for turn in [0.0, 0.3, FRAC_PI_2, 3.0, 3.0 * FRAC_PI_2] {
+                let at = [2.02 * f64::cos(turn), side * 2.02 * f64::sin(turn)];
+                assert!(close(heading_beside(&arc, at, 0.05), side * (FRAC_PI_2 + turn)), "{side} {turn}");
+            }
+            assert_eq!(heading_beside(&arc, [1.5, side * -1.5], 0.05), None);
+            assert!(close(heading_beside(&arc, [2.0, side * -0.01], 0.05), side * FRAC_PI_2));
+        }
+    }
 }

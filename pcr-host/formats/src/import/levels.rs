@@ -181,12 +181,10 @@ fn vertex(value: &Value, graph: bool) -> Vertex {
     Some(([number(0)?, number(1)?], name.map(str::to_owned)))
 }
 
-/// The value of a parameter, which is a list of its type and itself.
+/// The value of a parameter, which is a list of its type and itself; a list without it is no value, and given as it is.
 pub(super) fn parameter<'j>(parameters: Option<&'j Value>, name: &str) -> Option<&'j Value> {
-    match parameters?.get(name)? {
-        Value::Array(typed) => typed.get(1),
-        plain => Some(plain),
-    }
+    let given = parameters?.get(name)?;
+    Some(given.as_array().and_then(|typed| typed.get(1)).unwrap_or(given))
 }
 
 /// Ends of a lane, a wall or a measurement.

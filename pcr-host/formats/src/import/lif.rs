@@ -6,6 +6,7 @@
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::trace::distance;
+use super::trajectory::Trajectory;
 use super::value::Object;
 use super::{ImportError, Options, Warnings, facing, route, trajectory, value};
 use crate::footprint::Footprint;
@@ -42,6 +43,7 @@ pub(super) fn read(
         levels: Vec::new(),
         nodes: Names::new(),
         edges: Names::new(),
+        thetas: Vec::new(),
         types: BTreeSet::new(),
         options,
         outline,
@@ -54,6 +56,12 @@ pub(super) fn read(
     for (k, value) in layouts.iter().enumerate() {
         let layout = Object::new(format!("layout {}", k + 1), value)?;
         let unnamed = reader.unnamed(&layout, layouts, &maps)?;
+        for list in ["nodes", "edges"] {
+            // Under a wrong name they would be none.
+            if layout.get(list).is_none() {
+                reader.warnings.lose(layout.missing(list));
+            }
+        }
         for (k, value) in layout.list("nodes")?.iter().enumerate() {
             reader.node(k, value, unnamed.as_deref());
         }
@@ -64,8 +72,10 @@ pub(super) fn read(
             reader.warnings.lose(error);
         }
     }
-    let Reader { levels, nodes, edges, types, of_speeds, .. } = reader;
-    let vehicle_types = types.iter().filter(|name| !name.is_empty()).cloned().collect();
+    reader.warn_of_thetas();
+    let Reader { levels, nodes, edges, mut types, of_speeds, .. } = reader;
+    types.remove("");
+    let vehicle_types = types.iter().cloned().collect();
     if nodes.list().is_empty() {
         return Err(ImportError::new("LIF, layouts: there is no node in them"));
     }
@@ -96,6 +106,8 @@ struct Reader<'a> {
     levels: Vec<String>,
     nodes: Names<Node>,
     edges: Names<Edge>,
+    /// At which nodes vehicles face which way \[rad\].
+    thetas: Vec<(usize, f64)>,
     types: BTreeSet<String>,
     options: &'a Options,
     /// The outline of the vehicle, if its heading matters.
@@ -141,15 +153,58 @@ impl Reader<'_> {
     fn node(&mut self, k: usize, value: &Value, unnamed: Option<&str>) {
         match read_node(k, value, unnamed) {
             Err(error) => self.warnings.lose(error),
-            Ok((id, name, level, at)) => {
+            Ok(ReadNode { object, id, name, level, at }) => {
                 let known = self.levels.iter().position(|other| *other == level);
                 let level = known.unwrap_or_else(|| {
                     self.levels.push(level);
                     self.levels.len() - 1
                 });
-                self.nodes.add(Node { id: Id::Text(id), name, level, at }, self.warnings);
+                let place = self.nodes.add(Node { id: Id::Text(id), name, level, at }, self.warnings);
+                if let Err(error) = self.node_thetas(&object, place) {
+                    self.warnings.lose(error);
+                }
             }
         }
+    }
+
+    /// Which way an outline faces at a node.
+    fn node_thetas(&mut self, node: &Object<'_>, place: usize) -> Result<(), ImportError> {
+        if self.outline.is_none() {
+            return Ok(());
+        }
+        for (k, value) in node.list("vehicleTypeNodeProperties")?.iter().enumerate() {
+            let property = Object::new(format!("{}, properties {}", node.name, k + 1), value)?;
+            if self.is_asked(property.text("vehicleTypeId")?.unwrap_or_default())
+                && let Some(theta) = property.number("theta")?
+            {
+                self.thetas.push((place, theta));
+            }
+        }
+        Ok(())
+    }
+
+    /// Says at which nodes an outline faces as on none of their edges: how it turns there is not in any path or lock.
+    fn warn_of_thetas(&mut self) {
+        let Some(outline) = self.outline.filter(|_| !self.thetas.is_empty()) else { return };
+        let mut headings = vec![Vec::new(); self.nodes.list().len()];
+        for edge in self.edges.list() {
+            let Some((first, last)) = edge.curve.first().zip(edge.curve.last()) else { continue };
+            headings[edge.ends[0]].push(first.heading);
+            headings[edge.ends[1]].push(last.heading_at_end());
+        }
+        for &(node, theta) in &self.thetas {
+            if !headings[node].iter().any(|heading| facing::is_ahead(outline, theta - heading)) {
+                let name = format!("node {}", self.nodes.list()[node].id);
+                let problem =
+                    "its theta is that of none of its edges, and not read: outlines face along their paths here";
+                self.warnings.add(name, problem);
+            }
+        }
+    }
+
+    /// Whether something is for the vehicle type that was asked for. What names no type is for all.
+    fn is_asked(&self, vehicle: &str) -> bool {
+        self.options.vehicle.as_ref().is_none_or(|asked| vehicle.is_empty() || asked == vehicle)
     }
 
     fn edge(&mut self, k: usize, value: &Value) -> Result<(), ImportError> {
@@ -167,7 +222,7 @@ impl Reader<'_> {
         for (k, value) in properties.iter().enumerate() {
             let property = Object::new(format!("edge {id}, properties {}", k + 1), value)?;
             let vehicle = property.text("vehicleTypeId")?.unwrap_or_default().to_owned();
-            let asked = self.options.vehicle.as_ref().is_none_or(|asked| *asked == vehicle);
+            let asked = self.is_asked(&vehicle);
             self.types.insert(vehicle);
             if asked {
                 let edge = self.along(&id, ends, Some(&property))?;
@@ -200,22 +255,28 @@ impl Reader<'_> {
             edge.speed = [property.positive("maxSpeed")?; 2];
             edge.rotation = property.positive("maxRotationSpeed")?;
             for field in ["rotationAtStartNodeAllowed", "rotationAtEndNodeAllowed"] {
-                if property.text(field).ok().flatten().is_some_and(|allowed| allowed != "BOTH") {
+                if property.get(field).is_some_and(|allowed| allowed.as_str() != Some("BOTH")) {
                     let problem =
                         format!("its {field} is not read; a vehicle turns in place where its path has a corner");
                     self.warnings.add(format_args!("edge {id}"), problem);
                 }
             }
             if let Some(outline) = self.outline {
-                let ahead = straight.heading;
-                let ahead = Some(ahead).filter(|_| property.get("trajectory").is_none());
+                let is_line = straight.shape.length() > 0.0 && property.get("trajectory").is_none();
+                let ahead = Some(straight.heading).filter(|_| is_line);
                 let edge = property.clone().called(format!("edge {id}"));
                 facing::along(&edge, "vehicleOrientation", 1_f64.to_radians(), ahead, outline, self.warnings)?;
+                if property.flag("rotationAllowed")? == Some(true) {
+                    self.warnings.add(format_args!("edge {id}"), facing::ROTATION);
+                }
             }
             if let Some(trajectory) = property.object("trajectory")? {
                 let trajectory = trajectory.called(format!("edge {id}, trajectory"));
-                let fit = trajectory::read(&trajectory, self.options.tolerance(), self.warnings)?;
-                let gap = self.gap(id, &fit.pieces, at);
+                let Trajectory { fit, ends } = trajectory::read(&trajectory, self.options.tolerance(), self.warnings)?;
+                if let Some(outline) = self.outline {
+                    facing::along_trajectory(&trajectory, &fit, outline, self.warnings)?;
+                }
+                let gap = if fit.pieces.is_empty() { point_gap(id, ends, at)? } else { self.gap(id, ends, at) };
                 (edge.curve, edge.deviation, edge.longer) = (fit.pieces, fit.deviation + gap, fit.longer);
             }
         }
@@ -226,10 +287,9 @@ impl Reader<'_> {
     }
 
     /// The largest gap between the ends of a trajectory and their nodes that a route passes \[m\], with warnings.
-    fn gap(&mut self, id: &str, pieces: &[Placed], at: [[f64; 2]; 2]) -> f64 {
+    fn gap(&mut self, id: &str, ends: [[f64; 2]; 2], at: [[f64; 2]; 2]) -> f64 {
         let mut passed = 0.0_f64;
-        let ends = pieces.first().zip(pieces.last()).map(|(first, last)| [first.at, last.end()]);
-        for ((end, node), place) in ends.into_iter().flatten().zip(at).zip(["begins", "ends"]) {
+        for ((end, node), place) in ends.into_iter().zip(at).zip(["begins", "ends"]) {
             let gap = distance(end, node);
             let is_passed = gap <= route::GAP;
             if is_passed && gap > CLOSED {
@@ -251,17 +311,33 @@ fn maps<'v>(nodes: impl Iterator<Item = &'v Value>) -> BTreeSet<&'v str> {
     nodes.filter_map(Value::as_array).flatten().filter_map(|node| node.get("mapId")?.as_str()).collect()
 }
 
-/// Number, name, level and position of a node; `unnamed` is the level if it names no map.
-fn read_node(
-    k: usize,
-    value: &Value,
-    unnamed: Option<&str>,
-) -> Result<(String, Option<String>, String, [f64; 2]), ImportError> {
+/// The largest gap between a trajectory that is a point and its nodes \[m\]: a way from node to node it is only for near ones.
+fn point_gap(id: &str, ends: [[f64; 2]; 2], at: [[f64; 2]; 2]) -> Result<f64, ImportError> {
+    let gap = ends.into_iter().zip(at).map(|(end, node)| distance(end, node)).fold(0.0, f64::max);
+    if gap > route::GAP {
+        return Err(ImportError::new(format!(
+            "edge {id}, trajectory: it has no length, and is {gap:.3} m from a node"
+        )));
+    }
+    Ok(gap)
+}
+
+/// A node of a file.
+struct ReadNode<'j> {
+    object: Object<'j>,
+    id: String,
+    name: Option<String>,
+    level: String,
+    at: [f64; 2],
+}
+
+/// Reads a node; `unnamed` is the level if it names no map.
+fn read_node<'j>(k: usize, value: &'j Value, unnamed: Option<&str>) -> Result<ReadNode<'j>, ImportError> {
     let object = Object::new(format!("node at place {}", k + 1), value)?;
     let id = object.text("nodeId")?.ok_or_else(|| object.missing("nodeId"))?.to_owned();
-    let object = Object::new(format!("node {id}"), value)?;
+    let object = object.called(format!("node {id}"));
     let position = object.object("nodePosition")?.ok_or_else(|| object.missing("nodePosition"))?;
     let level = object.text("mapId")?.or(unnamed).ok_or_else(|| object.missing("mapId"))?.to_owned();
     let name = object.text("nodeName").ok().flatten().map(str::to_owned);
-    Ok((id, name, level, position.point()?))
+    Ok(ReadNode { object, id, name, level, at: position.point()? })
 }

@@ -12,6 +12,9 @@ pub(super) const MOST_DEGREE: usize = 16;
 /// Most control points of a curve that are read.
 pub(super) const MOST_POINTS: usize = 10_000;
 
+/// Gap between two curves that is rounding and nothing else, as a part of the largest coordinate.
+const CLOSED: f64 = 1e-9;
+
 /// A rational Bézier curve by its homogeneous control points: one more than its degree, with positive weights.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Bezier(pub(super) Vec<[f64; 3]>);
@@ -113,8 +116,24 @@ impl Nurbs {
         if beziers.is_empty() {
             return refused("all its knots are the same".into());
         }
-        Ok(beziers)
+        match widest_jump(&beziers) {
+            jump if jump > 0.0 => refused(format!("it jumps by {jump:.3e} m, at a knot that is there too often")),
+            _ => Ok(beziers),
+        }
     }
+}
+
+/// How far the curves are apart where one ends and the next one begins \[m\]: more than rounding only where a knot between them is
+/// there more often than the degree.
+fn widest_jump(beziers: &[Bezier]) -> f64 {
+    let extent = beziers.iter().flat_map(Bezier::points).flatten().fold(1.0, |most: f64, x| most.max(x.abs()));
+    let apart = |pair: &[Bezier]| {
+        let [before, after] = pair else { return 0.0 };
+        let (end, begin) = (before.ends()[1], after.ends()[0]);
+        (end[0] - begin[0]).hypot(end[1] - begin[1])
+    };
+    let widest = beziers.windows(2).map(apart).fold(0.0, f64::max);
+    if widest > CLOSED * extent { widest } else { 0.0 }
 }
 
 /// Knots from 0 to 1 that are clamped at both ends and evenly spaced between.
@@ -210,6 +229,12 @@ mod tests {
         assert_eq!(message(2, &[0.0; 5], &points), "5 knots; 3 points of degree 2 take 6");
         assert_eq!(message(2, &[0.0; 6], &points), "all its knots are the same");
         assert_eq!(message(2, &[0.0, 0.0, 1.0, 0.5, 1.0, 1.0], &points), "the knots do not increase");
+        // A knot in the middle as often as the ends: two lines.
+        let torn: Vec<_> = [[0.0, 0.0], [1.0, 0.0], [1.0, 8.0], [2.0, 8.0]].map(|point| (point, 1.0)).into();
+        let knots = [0.0, 0.0, 0.5, 0.5, 1.0, 1.0];
+        assert_eq!(message(1, &knots, &torn), "it jumps by 8.000e0 m, at a knot that is there too often");
+        let closed: Vec<_> = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [2.0, 8.0]].map(|point| (point, 1.0)).into();
+        assert_eq!(Nurbs { degree: 1, knots: knots.into(), points: closed }.beziers().unwrap().len(), 2);
         assert_eq!(message(2, &[], &[([0.0; 2], 0.0); 3]), "a control point of weight 0; allowed is 1e-6 to 1e6");
     }
 }

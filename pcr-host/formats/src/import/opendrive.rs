@@ -9,7 +9,7 @@
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::trace::distance;
-use super::xml::{child, children, number, only, optional, parse};
+use super::xml::{child, children, lose_astray, number, only, optional, parse, warn_of_unknown};
 use super::{ImportError, Options, Warnings};
 use crate::scenario::PathSegment;
 use crate::scenario::Placed;
@@ -26,6 +26,10 @@ const ROUNDED: f64 = 1e-4;
 
 /// Elements that may be in any other one, and say nothing of its shape.
 const ADDED: [&str; 3] = ["userData", "include", "dataQuality"];
+
+/// What is read of a file, or known to have no reference line.
+const KNOWN: [&str; 9] =
+    ["header", "road", "controller", "junction", "junctionGroup", "station", ADDED[0], ADDED[1], ADDED[2]];
 
 /// Largest radius of an arc \[m\]; beyond it a line stands for it, and how far it leaves that counts as deviation.
 const STRAIGHT: f64 = 1e9;
@@ -59,6 +63,8 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         return Err(ImportError::new(format!("{}: not an OpenDRIVE file", root.tag_name().name())));
     }
     let header = child(root, "header").and_then(|header| header.attribute("name")).unwrap_or_default();
+    lose_astray(root, &["road"], warnings);
+    warn_of_unknown(root, &KNOWN, warnings);
     let mut names = Names::new();
     // The first road of each edge: a copy adds no links.
     let mut links = Vec::new();
@@ -113,9 +119,10 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
     Ok(layout)
 }
 
-/// The name of a road, a number where it is one.
+/// The name of a road, a number where it is one as numbers are written: `01` is another road than `1`.
 fn named(id: &str) -> Id {
-    id.parse().map_or_else(|_| Id::Text(id.to_owned()), Id::Number)
+    let number = id.parse().ok().filter(|number: &u64| number.to_string() == id);
+    number.map_or_else(|| Id::Text(id.to_owned()), Id::Number)
 }
 
 /// The lines and arcs of a road, and its widest joint.
@@ -226,7 +233,11 @@ fn speed(road: roxmltree::Node<'_, '_>, name: &str, warnings: &mut Warnings) -> 
             Some(other) => return Err(ImportError::new(format!("{name}, speed, unit: {other} is not known"))),
         };
         if !matches!(limit.attribute("max"), Some("no limit" | "undefined")) {
-            limits.push(number(limit, &format!("{name}, speed"), "max")? * unit);
+            let most = number(limit, &format!("{name}, speed"), "max")?;
+            if most < 0.0 {
+                return Err(ImportError::new(format!("{name}, speed, max: {most} where a number from 0 is expected")));
+            }
+            limits.push(most * unit);
         }
     }
     let least = limits.iter().copied().reduce(f64::min);

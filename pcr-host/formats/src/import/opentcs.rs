@@ -3,15 +3,27 @@
 //! Control points are in units of the visual layout, y down. The `length` of a path was typed by its author; if it
 //! differs from the geometry, the geometry is used and there is a warning.
 
+mod vehicles;
+
 use super::biarc::{Fit, fit};
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::nurbs::Bezier;
-use super::vehicle::Given;
-use super::xml::{children, number, only, optional, parse};
+use super::trace::distance;
+use super::xml::{children, lose_astray, number, only, optional, parse, warn_of_unknown};
 use super::{ImportError, Options, Warnings, facing};
 use crate::footprint::Footprint;
 use crate::scenario::Placed;
+use std::collections::HashMap;
+
+pub(super) use vehicles::vehicles;
+
+/// What is read of a model, or known not to matter to ways. Groups, of versions up to 0.0.3, only list members.
+const KNOWN: [&str; 9] =
+    ["point", "path", "vehicle", "locationType", "location", "block", "group", "visualLayout", "property"];
+
+/// How far the place of a point in the visual layout may be from its own \[m\].
+const SHIFT: f64 = 0.05;
 
 /// Metres of a millimetre.
 const MILLI: f64 = 1e-3;
@@ -21,50 +33,6 @@ const UNIT: f64 = 50.0;
 
 /// Relative difference of a length from the geometry that goes without a warning.
 const DIFFERENCE: f64 = 0.01;
-
-/// What a model says about its vehicles, where nothing else does: the rectangle that covers the bounding boxes of all, and
-/// the least of their speeds.
-///
-/// The reference point of a box may be off its middle; the rectangle is as large to the other side.
-pub(super) fn vehicles(
-    text: &str,
-    options: &Options,
-    given: &mut Given,
-    warnings: &mut Warnings,
-) -> Result<(), ImportError> {
-    let document = parse(text)?;
-    let (mut half, mut speeds) = ([0.0_f64; 2], Vec::new());
-    for vehicle in children(document.root_element(), "vehicle") {
-        let name = format!("vehicle {}", vehicle.attribute("name").unwrap_or_default());
-        let metres = |node, attribute: &str| Ok(optional(node, &name, attribute)?.map(|value| value * MILLI));
-        speeds.extend(metres(vehicle, "maxVelocity")?.filter(|speed| *speed > 0.0));
-        let Some(outline) = only(vehicle, "boundingBox")? else { continue };
-        for (half, [size, offset]) in
-            half.iter_mut().zip([["length", "referenceOffsetX"], ["width", "referenceOffsetY"]])
-        {
-            let size = metres(outline, size)?.unwrap_or(0.0);
-            *half = half.max(0.5 * size + metres(outline, offset)?.unwrap_or(0.0).abs());
-        }
-    }
-    if let Some(least) = speeds.iter().copied().reduce(f64::min).filter(|_| given.speed.is_none()) {
-        if options.speed.is_none() && speeds.iter().any(|speed| *speed != least) {
-            warnings.add("vehicles", format!("their maxVelocity differs; the least of {least} m/s is taken"));
-        }
-        given.speed = Some(least);
-    }
-    let [ahead, left] = half;
-    if ahead > 0.0 && left > 0.0 && given.radius.is_none() && given.footprint.is_none() {
-        let corners = vec![[ahead, left], [-ahead, left], [-ahead, -left], [ahead, -left]];
-        let outline = Footprint::new(corners, None);
-        let outline = outline.map_err(|problem| ImportError::new(format!("vehicle, boundingBox: {problem}")))?;
-        if let Some(radius) = options.radius.filter(|radius| *radius < ahead.hypot(left)) {
-            let reach = ahead.hypot(left);
-            warnings.add("radius", format!("{radius} m; the bounding boxes of the vehicles reach {reach:.3} m"));
-        }
-        given.footprint = Some(outline);
-    }
-    Ok(())
-}
 
 /// Reads a model.
 pub(super) fn read(
@@ -78,19 +46,19 @@ pub(super) fn read(
     if !root.has_tag_name("model") {
         return Err(ImportError::new(format!("{}: not a plant model of openTCS", root.tag_name().name())));
     }
+    lose_astray(root, &["point", "path", "vehicle"], warnings);
+    warn_of_unknown(root, &KNOWN, warnings);
     let mut nodes = Names::new();
+    // How far each point is from its place in the visual layout.
+    let mut shifts: Vec<f64> = Vec::new();
     for (k, point) in children(root, "point").enumerate() {
         let id = point.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
-        let name = format!("point {id}");
-        // Models before version 7 have other names.
-        let at = |[attribute, old]: [&str; 2]| {
-            let attribute = if point.has_attribute(attribute) || !point.has_attribute(old) { attribute } else { old };
-            number(point, &name, attribute).map(|x| x * MILLI)
-        };
-        match (at(["positionX", "xPosition"]), at(["positionY", "yPosition"])) {
-            (Err(error), _) | (_, Err(error)) => warnings.lose(error),
-            (Ok(x), Ok(y)) => {
-                nodes.add(Node { id: Id::Text(id), name: None, level: 0, at: [x, y] }, warnings);
+        match place(point, &format!("point {id}")) {
+            Err(error) => warnings.lose(error),
+            Ok([at, drawn]) => {
+                let place = nodes.add(Node { id: Id::Text(id), name: None, level: 0, at }, warnings);
+                shifts.resize(shifts.len().max(place + 1), 0.0);
+                shifts[place] = shifts[place].max(distance(at, drawn));
             }
         }
     }
@@ -106,10 +74,19 @@ pub(super) fn read(
         }
     };
     let units = [unit("scaleX")?, -unit("scaleY")?];
+    let bent = visual.map(bent).unwrap_or_default();
     let mut edges = Names::new();
     for (k, path) in children(root, "path").enumerate() {
+        // A layout of another name would be none, and the path straight.
+        warn_of_unknown(path, &["peripheralOperation", "vehicleEnvelope", "property", "pathLayout"], warnings);
         let id = path.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
-        match edge(path, id, &nodes, units, options.tolerance(), warnings) {
+        match edge(
+            path,
+            id,
+            &Frame { nodes: &nodes, shifts: &shifts, units, bent: &bent },
+            options.tolerance(),
+            warnings,
+        ) {
             Ok(mut edge) => {
                 // In the other direction a vehicle drives backward: it does not turn round.
                 if edge.ways[1] && facing::is_other_backward(outline) {
@@ -142,23 +119,72 @@ pub(super) fn read(
     })
 }
 
+/// Where points and control points are.
+struct Frame<'a> {
+    nodes: &'a Names<Node>,
+    /// How far each node is from its place in the visual layout, where control points are \[m\].
+    shifts: &'a [f64],
+    /// Metres of a unit of the visual layout.
+    units: [f64; 2],
+    /// Paths that the visual layout bends in the way of models up to version 0.0.3, by how.
+    bent: &'a HashMap<&'a str, &'a str>,
+}
+
+/// Where a point is, and where it is drawn, if that is said \[m\].
+fn place(point: roxmltree::Node<'_, '_>, name: &str) -> Result<[[f64; 2]; 2], ImportError> {
+    // Models before version 6 have other names.
+    let at = |node: roxmltree::Node<'_, '_>, [attribute, old]: [&str; 2]| {
+        let attribute = if node.has_attribute(attribute) || !node.has_attribute(old) { attribute } else { old };
+        number(node, name, attribute).map(|x| x * MILLI)
+    };
+    let [x, y] = [["positionX", "xPosition"], ["positionY", "yPosition"]];
+    let own = [at(point, x)?, at(point, y)?];
+    let layout = only(point, "pointLayout")?;
+    let drawn = |names: [&str; 2], own: f64| {
+        layout
+            .filter(|layout| names.iter().any(|name| layout.has_attribute(*name)))
+            .map_or(Ok(own), |layout| at(layout, names))
+    };
+    Ok([own, [drawn(x, own[0])?, drawn(y, own[1])?]])
+}
+
+/// Paths that are not straight in the visual layout of models up to version 0.0.3.
+fn bent<'a>(visual: roxmltree::Node<'a, '_>) -> HashMap<&'a str, &'a str> {
+    let mut bent = HashMap::new();
+    for element in children(visual, "modelLayoutElement") {
+        let value = |name: &str| {
+            let mut properties = children(element, "property");
+            properties.find(|property| property.attribute("name") == Some(name))?.attribute("value").map(str::trim)
+        };
+        let kind = value("CONN_TYPE").filter(|kind| *kind != "DIRECT");
+        let kind = kind.or(value("CONTROL_POINTS").filter(|points| !points.is_empty()).and(Some("DIRECT")));
+        bent.extend(element.attribute("visualizedObjectName").zip(kind));
+    }
+    bent
+}
+
 /// The edge that a path is.
 fn edge(
     path: roxmltree::Node<'_, '_>,
     id: String,
-    nodes: &Names<Node>,
-    units: [f64; 2],
+    frame: &Frame<'_>,
     tolerance: f64,
     warnings: &mut Warnings,
 ) -> Result<Edge, ImportError> {
     let name = format!("path {id}");
+    let nodes = frame.nodes;
     let end = |attribute: &str| {
         let problem = |problem: &dyn std::fmt::Display| ImportError::new(format!("{name}, {attribute}: {problem}"));
         let point = path.attribute(attribute).ok_or_else(|| problem(&"missing"))?;
         nodes.place(&Id::Text(point.to_owned())).map_err(|unclear| problem(&unclear))
     };
     let ends = [end("sourcePoint")?, end("destinationPoint")?];
-    let fit = curve(path, &name, ends.map(|node| nodes.list()[node].at), units, tolerance)?;
+    if let Some(kind) = frame.bent.get(id.as_str()) {
+        return Err(ImportError::new(format!(
+            "{name}: {kind} in a modelLayoutElement of the visual layout is not read"
+        )));
+    }
+    let fit = curve(path, &name, ends, frame, tolerance)?;
     let limit = |attribute: &str| Ok(optional(path, &name, attribute)?.map(|speed| speed * MILLI));
     // openTCS takes a speed of 0 for "not in this direction", and uses no path that is locked.
     let speed = [limit("maxVelocity")?, limit("maxReverseVelocity")?];
@@ -188,15 +214,46 @@ fn edge(
 fn curve(
     path: roxmltree::Node<'_, '_>,
     name: &str,
-    [from, to]: [[f64; 2]; 2],
-    units: [f64; 2],
+    ends: [usize; 2],
+    frame: &Frame<'_>,
     tolerance: f64,
 ) -> Result<Fit, ImportError> {
     let layout = only(path, "pathLayout")?;
+    let mut inner = layout.into_iter().flat_map(|layout| layout.children()).filter(roxmltree::Node::is_element);
+    if let Some(other) = inner.find(|inner| !inner.has_tag_name("controlPoint")) {
+        return Err(ImportError::new(format!("{name}, pathLayout: {} is not read", other.tag_name().name())));
+    }
+    let [from, to] = ends.map(|node| frame.nodes.list()[node].at);
     let mut points = vec![from];
     for point in layout.into_iter().flat_map(|layout| children(layout, "controlPoint")) {
-        points.push([number(point, name, "x")? * units[0], number(point, name, "y")? * units[1]]);
+        let [x, y] = frame.units;
+        points.push([number(point, name, "x")? * x, number(point, name, "y")? * y]);
     }
+    let shift = if points.len() > 1 { shift(name, ends, frame)? } else { 0.0 };
+    // A point of the curve is between its control points, and its length is off by no more than the legs between them are.
+    let legs = 2.0 * shift * points.len() as f64;
+    let fit = shape(layout, name, points, to, tolerance)?;
+    Ok(Fit { deviation: fit.deviation + shift + legs, longer: fit.longer + legs, ..fit })
+}
+
+/// How far the control points of a path may be from where they are meant to be \[m\].
+fn shift(name: &str, ends: [usize; 2], frame: &Frame<'_>) -> Result<f64, ImportError> {
+    let shift = ends.iter().filter_map(|node| frame.shifts.get(*node)).fold(0.0, |most: f64, shift| most.max(*shift));
+    if shift > SHIFT {
+        let problem = "its control points are where the visual layout has its points";
+        return Err(ImportError::new(format!("{name}: {problem}, which is {shift:.3} m off in pointLayout")));
+    }
+    Ok(shift)
+}
+
+/// The lines and arcs through points, or for their curve.
+fn shape(
+    layout: Option<roxmltree::Node<'_, '_>>,
+    name: &str,
+    mut points: Vec<[f64; 2]>,
+    to: [f64; 2],
+    tolerance: f64,
+) -> Result<Fit, ImportError> {
     points.push(to);
     let named = |error: ImportError| ImportError::new(format!("{name}: {error}"));
     match layout.and_then(|layout| layout.attribute("connectionType")).unwrap_or("DIRECT") {

@@ -157,7 +157,10 @@ impl Level<'_> {
         options: &Options,
         graphs: &mut BTreeSet<u64>,
     ) -> Result<Option<String>, String> {
-        let parameters = value.get(2);
+        let parameters = value.get(2).filter(|parameters| !parameters.is_null());
+        if let Some(odd) = parameters.filter(|parameters| !parameters.is_object()) {
+            return Err(format!("its parameters {odd} are not read"));
+        }
         // A parameter that is there and has the wrong type is not left aside.
         fn typed<T>(
             value: Option<&Value>,
@@ -189,7 +192,9 @@ impl Level<'_> {
                 Some(other) => return Err(format!("{field}: {other} is not read")),
             }
         }
-        let speed = typed(parameters, "speed_limit", Value::as_f64)?.filter(|speed| *speed > 0.0);
+        // 0 is what the editor writes where there is no limit.
+        let not_negative = |value: &Value| value.as_f64().filter(|speed| *speed >= 0.0);
+        let speed = typed(parameters, "speed_limit", not_negative)?.filter(|speed| *speed > 0.0);
         let curve = if straight { vec![line] } else { Vec::new() };
         self.layout.edges.push(Edge {
             ways: [true, both_ways && !self.graph],

@@ -7,6 +7,7 @@
 use super::biarc::{Along, Fit, Part, ROUNDINGS, biarc, distance, is_beyond};
 use super::nurbs::Bezier;
 use super::trace::Tracer;
+use super::value::unmarked;
 use super::{ImportError, Options, Vehicle, route};
 use crate::scenario::Placed;
 use crate::scenario::{LIMIT, Scenario};
@@ -37,7 +38,7 @@ pub(super) fn read(text: &str, options: &Options, vehicle: &Vehicle) -> Result<S
 
 /// The points of each path.
 fn paths(text: &str) -> Result<Vec<Vec<[f64; 2]>>, ImportError> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let text = unmarked(text);
     let (mut paths, mut points, mut count) = (Vec::new(), Vec::new(), 0);
     for (k, line) in text.lines().chain([""]).enumerate() {
         let content = line.split('#').next().unwrap_or_default().trim();
@@ -53,8 +54,7 @@ fn paths(text: &str) -> Result<Vec<Vec<[f64; 2]>>, ImportError> {
                 "commas beside other separators: decimal commas, or several points; one point x y is expected";
             return Err(ImportError::new(format!("line {}: {problem}", k + 1)));
         }
-        let fields = content.split([' ', '\t', ',', ';']).filter(|field| !field.is_empty());
-        let mut numbers = fields.map(|field| field.parse::<f64>().ok().filter(|x| x.abs() <= LIMIT));
+        let mut numbers = fields(content).map(|field| field.parse::<f64>().ok().filter(|x| x.abs() <= LIMIT));
         let (Some(Some(x)), Some(Some(y))) = (numbers.next(), numbers.next()) else {
             return Err(ImportError::new(format!("line {}: two numbers x y up to {LIMIT:e} are expected", k + 1)));
         };
@@ -65,6 +65,14 @@ fn paths(text: &str) -> Result<Vec<Vec<[f64; 2]>>, ImportError> {
         points.push([x, y]);
     }
     Ok(paths)
+}
+
+/// The columns of a line. Blanks may be any number; a column between commas or semicolons may be empty, and is one all the same.
+fn fields(content: &str) -> Box<dyn Iterator<Item = &str> + '_> {
+    match [',', ';'].into_iter().find(|mark| content.contains(*mark)) {
+        Some(mark) => Box::new(content.split(mark).map(str::trim)),
+        None => Box::new(content.split_whitespace()),
+    }
 }
 
 /// Whether commas separate something within what blanks or semicolons separate, as in `1,5 2,5` and `0,0 4,0 4,4`: the
@@ -258,7 +266,14 @@ mod tests {
                 "line 2: commas beside other separators: decimal commas, or several points; one point x y is expected";
             assert_eq!(paths(&format!("0 0\n{mixed}\n")).unwrap_err().to_string(), expected, "{mixed}");
         }
-        for one in ["1,2, 3", "1 , 2", " 1\t2 3", "1; 2", "1,2 # a, b c"] {
+        // A column that is empty is one: the others are not shifted.
+        for empty in ["10,,5", ",10,0", ";1;2", "1; ;2", "1,"] {
+            assert!(
+                paths(&format!("0,0\n{empty}\n")).unwrap_err().to_string().starts_with("line 2: two numbers"),
+                "{empty}"
+            );
+        }
+        for one in ["1,2, 3", "1 , 2", " 1\t2 3", "1  2", "1; 2", "1,2,,", "1,2 # a, b c"] {
             assert_eq!(paths(one).unwrap(), [[[1.0, 2.0]]], "{one}");
         }
         assert!(fit(&[[1.0, 1.0]], 1e-3).unwrap().pieces.is_empty());

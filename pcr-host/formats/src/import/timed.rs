@@ -63,47 +63,9 @@ pub fn sectioned(sections: &[(f64, f64)]) -> MotionSpec {
     MotionSpec::Profile { v0: 0.0, pieces }
 }
 
-/// Seconds since 1970 of a time stamp of ISO 8601: `2017-04-15T11:40:03.123Z`, also with an offset instead of `Z`.
-pub fn seconds(stamp: &str) -> Option<f64> {
-    let (date, time) = stamp.trim().split_once(['T', 't', ' '])?;
-    let mut date = date.splitn(3, '-').map(|part| part.parse::<i64>().ok());
-    let (year, month, day) = (date.next()??, date.next()??, date.next()??);
-    if !(1600..=9999).contains(&year) || !(1..=12).contains(&month) || !(1..=31).contains(&day) {
-        return None;
-    }
-    let zone = time.find(['Z', 'z', '+', '-']).unwrap_or(time.len());
-    let (clock, zone) = time.split_at(zone);
-    let hours = |text: &str| -> Option<f64> {
-        let mut parts = text.splitn(3, ':').map(|part| part.parse::<f64>().ok().filter(|x| (0.0..100.0).contains(x)));
-        let (hour, minute) = (parts.next()??, parts.next().unwrap_or(Some(0.0))?);
-        Some(hour * 3600.0 + minute * 60.0 + parts.next().unwrap_or(Some(0.0))?)
-    };
-    let offset = match zone.chars().next() {
-        Some('+') => hours(zone.get(1..)?)?,
-        Some('-') => -hours(zone.get(1..)?)?,
-        _ => 0.0,
-    };
-    // Days since 1 March of the year 0, by years that begin in March.
-    let (year, month) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
-    let days = 365 * year + year / 4 - year / 100 + year / 400 + (153 * month + 2) / 5 + day - 1 - 719_468;
-    Some(days as f64 * 86_400.0 + hours(clock)? - offset)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn stamps() {
-        assert_eq!(seconds("1970-01-01T00:00:00Z"), Some(0.0));
-        assert_eq!(seconds("2000-02-29T12:00:00.500Z"), Some(951_825_600.5));
-        assert_eq!(seconds("2026-11-21T08:30:00+01:00"), seconds("2026-11-21T07:30:00Z"));
-        assert_eq!(seconds("2026-11-21T08:45:10-00:30"), Some(1_795_252_510.0));
-        assert_eq!(seconds("2101-03-01T00:00:00Z"), Some(4_139_078_400.0));
-        for wrong in ["", "T", "2026-13-01T00:00:00Z", "2026-01-01", "x-1-1T1", "2026-01-01T-:00"] {
-            assert_eq!(seconds(wrong), None, "{wrong}");
-        }
-    }
 
     #[test]
     fn impossible_plans_are_refused() {

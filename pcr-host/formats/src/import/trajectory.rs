@@ -5,11 +5,19 @@ use super::nurbs::Nurbs;
 use super::value::Object;
 use super::{ImportError, Warnings};
 
+/// A trajectory as lines and arcs.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Trajectory {
+    pub(super) fit: Fit,
+    /// Where it begins and ends, which no line and no arc tells where it has no length \[m\].
+    pub(super) ends: [[f64; 2]; 2],
+}
+
 /// Reads a trajectory and fits lines and arcs to it.
 ///
 /// Degree 1 and even knots where they are missing, weight 1 likewise. Some senders give the order, which is the degree plus 1, as
 /// `degree`: where the number of knots says so, it is taken as that, with a warning.
-pub(super) fn read(object: &Object<'_>, tolerance: f64, warnings: &mut Warnings) -> Result<Fit, ImportError> {
+pub(super) fn read(object: &Object<'_>, tolerance: f64, warnings: &mut Warnings) -> Result<Trajectory, ImportError> {
     let named = |error: ImportError| ImportError::new(format!("{}: {error}", object.name));
     let mut points = Vec::new();
     for (k, value) in object.list("controlPoints")?.iter().enumerate() {
@@ -30,5 +38,8 @@ pub(super) fn read(object: &Object<'_>, tolerance: f64, warnings: &mut Warnings)
         warnings.add(&object.name, "its degree is one more than its knots say; it is taken as the order of the curve");
         degree -= 1;
     }
-    fit(&Nurbs { degree, knots, points }.beziers().map_err(named)?, tolerance).map_err(named)
+    let curves = Nurbs { degree, knots, points }.beziers().map_err(named)?;
+    let ends = curves.first().zip(curves.last()).map(|(first, last)| [first.ends()[0], last.ends()[1]]);
+    let fit = fit(&curves, tolerance).map_err(named)?;
+    Ok(Trajectory { fit, ends: ends.unwrap_or_default() })
 }

@@ -6,24 +6,32 @@
 use super::ImportError;
 use super::value::Object;
 use serde_json::Value;
+use std::collections::HashMap;
 
-/// The vehicle of a message: manufacturer and serial number.
-fn vehicle(message: &Value) -> Option<[&str; 2]> {
-    let text = |field: &str| message.get(field).and_then(Value::as_str).unwrap_or_default();
-    Some([text("manufacturer"), text("serialNumber")]).filter(|[_, serial]| !serial.is_empty())
+/// Who a message is about: manufacturer and serial number. Nobody is told apart from others by anything else than texts.
+fn vehicle(message: &Value) -> Result<Option<[&str; 2]>, ImportError> {
+    let message = Object::new("message", message)?;
+    let text = |field: &str| message.text(field).map(Option::unwrap_or_default);
+    Ok(Some([text("manufacturer")?, text("serialNumber")?]).filter(|[_, serial]| !serial.is_empty()))
 }
 
 /// The messages, of which no two are about one vehicle; in the order of the first ones.
 pub(super) fn joined(messages: Vec<Value>) -> Result<Vec<Value>, ImportError> {
     let mut vehicles: Vec<Vec<Value>> = Vec::new();
-    let mut places = std::collections::HashMap::new();
+    let mut places = HashMap::new();
     for message in messages {
-        let place = vehicle(&message).map(|names| names.map(str::to_owned));
+        let place = vehicle(&message)?.map(|names| names.map(str::to_owned));
         let place = place.map(|names| *places.entry(names).or_insert(vehicles.len()));
         match place.and_then(|place| vehicles.get_mut(place)) {
             Some(known) => known.push(message),
             None => vehicles.push(vec![message]),
         }
+    }
+    // Whether these are two vehicles or one is not known.
+    if let Some([_, serial]) = places.keys().find(|[maker, serial]| {
+        maker.is_empty() && places.keys().any(|[other, own]| own == serial && !other.is_empty())
+    }) {
+        return Err(ImportError::new(format!("vehicle {serial}: its manufacturer is not in all messages")));
     }
     vehicles.into_iter().map(of_one).collect()
 }
@@ -33,7 +41,7 @@ fn of_one(messages: Vec<Value>) -> Result<Value, ImportError> {
     let order = |message: &Value| message.get("nodes").and(message.get("orderId")).cloned();
     let all: Vec<_> = messages.iter().map(order).collect();
     if all.len() > 1 && all.iter().any(|order| order.is_none() || *order != all[0]) {
-        let serial = messages.first().and_then(vehicle).unwrap_or_default()[1];
+        let serial = messages.first().map_or(Ok(None), vehicle)?.unwrap_or_default()[1];
         let problem = "several messages are about it; one order with its updates, or one state is expected";
         return Err(ImportError::new(format!("vehicle {serial}: {problem}")));
     }

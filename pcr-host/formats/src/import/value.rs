@@ -5,14 +5,28 @@ use crate::once::Once;
 use crate::scenario::LIMIT;
 use serde_json::{Map, Value};
 
+/// A text without the mark of its byte order, which some editors put before it.
+pub(crate) fn unmarked(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
+}
+
+/// The values in a text of several, one after the other. An object with a key twice is refused.
+pub(super) fn several(text: &str) -> impl Iterator<Item = Result<Value, ImportError>> {
+    let values = serde_json::Deserializer::from_str(unmarked(text)).into_iter::<Once>();
+    values.map(|value| value.map(|once| once.0).map_err(|error| not_json(&error)))
+}
+
+fn not_json(error: &serde_json::Error) -> ImportError {
+    ImportError::new(format!("not JSON: {error}"))
+}
+
 /// The value in a JSON text; a byte order mark at its start is skipped. An object with a key twice is refused.
 ///
 /// # Errors
 /// Why it cannot be read.
 pub fn parse(text: &str) -> Result<Value, ImportError> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let value: Result<Once, _> = serde_json::from_str(text);
-    value.map(|once| once.0).map_err(|error| ImportError::new(format!("not JSON: {error}")))
+    let value: Result<Once, _> = serde_json::from_str(unmarked(text));
+    value.map(|once| once.0).map_err(|error| not_json(&error))
 }
 
 /// An object and how messages name it.

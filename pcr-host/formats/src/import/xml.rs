@@ -1,6 +1,7 @@
 //! Lenient reading of XML: attributes as numbers, and messages that name the element.
 
-use super::ImportError;
+use super::value::unmarked;
+use super::{ImportError, Warnings};
 use crate::scenario::LIMIT;
 use roxmltree::{Document, Node};
 
@@ -9,7 +10,7 @@ const DEPTH: usize = 200;
 
 /// The document in a text; a byte order mark at its start is skipped.
 pub(super) fn parse(text: &str) -> Result<Document<'_>, ImportError> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let text = unmarked(text);
     let mut depth = 0_usize;
     for tag in tags(text) {
         let closes = tag.starts_with("</");
@@ -54,7 +55,7 @@ fn tags(text: &str) -> impl Iterator<Item = &str> {
 
 /// The name of the first element of a text, where it begins like XML.
 pub(super) fn root_of(text: &str) -> Option<&str> {
-    let mut rest = text.strip_prefix('\u{feff}').unwrap_or(text).trim_start();
+    let mut rest = unmarked(text).trim_start();
     loop {
         let (skipped, end) = match rest {
             _ if rest.starts_with("<?") => (2, "?>"),
@@ -81,6 +82,45 @@ pub(super) fn number(node: Node<'_, '_>, name: &str, attribute: &str) -> Result<
         _ => {
             let text: String = text.chars().take(40).collect();
             Err(ImportError::new(format!("{name}, {attribute}: {text:?} where a number up to {LIMIT:e} is expected")))
+        }
+    }
+}
+
+/// Elements that are called like what is read below `home`, in any case of the letters, and are not there: below something else, or
+/// in another case. With what says so.
+pub(super) fn astray<'a, 'i>(
+    home: Node<'a, 'i>,
+    names: &'static [&'static str],
+) -> impl Iterator<Item = (Node<'a, 'i>, String)> {
+    let elements = home.document().root_element().descendants();
+    elements.filter(move |element| *element != home && element.is_element()).filter_map(move |element| {
+        let own = element.tag_name().name();
+        let name = names.iter().find(|name| name.eq_ignore_ascii_case(own))?;
+        if element.parent() == Some(home) && *name == own {
+            return None;
+        }
+        let id = ["name", "id", "number"]
+            .iter()
+            .filter_map(|attribute| element.attribute(*attribute))
+            .find(|id| !id.is_empty())
+            .unwrap_or_default();
+        let parent = element.parent().map_or("", |parent| parent.tag_name().name());
+        let home = home.tag_name().name();
+        Some((element, format!("{own} {id}, in {parent}: what is read is {name} in {home}")))
+    })
+}
+
+/// Loses such elements.
+pub(super) fn lose_astray(home: Node<'_, '_>, names: &'static [&'static str], warnings: &mut Warnings) {
+    astray(home, names).for_each(|(_, problem)| warnings.lose(problem));
+}
+
+/// Says which elements are not known, and hence not read.
+pub(super) fn warn_of_unknown(home: Node<'_, '_>, known: &[&str], warnings: &mut Warnings) {
+    for element in home.children().filter(Node::is_element) {
+        let own = element.tag_name().name();
+        if !known.contains(&own) {
+            warnings.add(own, format!("not known in {}, and not read", home.tag_name().name()));
         }
     }
 }

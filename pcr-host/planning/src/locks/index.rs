@@ -139,8 +139,6 @@ pub struct Index {
     /// Numbers of edges and nodes, of tracks, and of records.
     counts: [u64; 3],
     origin: u32,
-    /// Bytes of records read so far.
-    read: u64,
 }
 
 /// An edge or node with which an edge or node has a lock.
@@ -195,7 +193,61 @@ impl Index {
         if crc32(&directory) != word(48) {
             return damaged("the checksum of its names is wrong");
         }
-        Ok(Self { file, directory, counts: [places, tracks, records], origin: word(52), read: 0 })
+        let index = Self { file, directory, counts: [places, tracks, records], origin: word(52) };
+        index.check().map_err(|problem| IndexError::Damaged(problem.to_owned()))?;
+        Ok(index)
+    }
+
+    /// Checks that the directory is as long as its numbers say, and that these fit one another: tracks have all records and all places
+    /// between them, one after the other.
+    fn check(&self) -> Result<(), &'static str> {
+        let [places, tracks, records] = self.counts;
+        let length = self.directory.len() as u64;
+        if places.max(tracks) > length || self.names_at() > length {
+            return Err("its names are shorter than its numbers say");
+        }
+        let (mut record, mut member) = (0, 0);
+        let mut seen = vec![false; usize::try_from(places).unwrap_or_default()];
+        for track in 0..tracks {
+            let (first, [count, _, begin, members]) = self.track(track as u32);
+            if first != record || u64::from(begin) != member || member + u64::from(members) > places {
+                return Err("its tracks do not follow one another");
+            }
+            record += u64::from(count);
+            for _ in 0..members {
+                let place = self.member(member);
+                let own = self.place(place);
+                let is_new = usize::try_from(place).ok().and_then(|place| seen.get_mut(place));
+                if u64::from(own.track) != track || is_new.is_none_or(|seen| std::mem::replace(seen, true)) {
+                    return Err("an edge is not on its track");
+                }
+                if !(own.length >= 0.0 && own.length.is_finite()) {
+                    return Err("the length of an edge is no length");
+                }
+                member += 1;
+            }
+        }
+        if (record, member) != (records, places) {
+            return Err("its tracks have not all of its locks and edges");
+        }
+        self.check_names()
+    }
+
+    /// Checks that names follow one another up to the end.
+    fn check_names(&self) -> Result<(), &'static str> {
+        let places = self.counts[0];
+        let mut before = 0;
+        for place in 0..=places {
+            let end = self.name_end(place);
+            if end < before || place == 0 && end != 0 {
+                return Err("its names do not follow one another");
+            }
+            before = end;
+        }
+        if self.names_at() + before != self.directory.len() as u64 {
+            return Err("its names are longer or shorter than they say");
+        }
+        Ok(())
     }
 
     /// Whether a file begins with the magic bytes of an index.
@@ -212,11 +264,6 @@ impl Index {
     /// Number of edges and nodes, and number of records.
     pub fn counts(&self) -> [u64; 2] {
         [self.counts[0], self.counts[2]]
-    }
-
-    /// Number of bytes of locks that were read.
-    pub fn bytes_read(&self) -> u64 {
-        self.read
     }
 
     fn bytes(&self, at: u64, count: usize) -> &[u8] {
@@ -237,12 +284,29 @@ impl Index {
         (le64(part(0, 8)), [8, 12, 16, 20].map(|at| le32(part(at, 4))))
     }
 
-    fn name(&self, place: u64) -> Id {
+    /// The place that is a member of a track.
+    fn member(&self, member: u64) -> u64 {
+        u64::from(le32(self.bytes(16 * self.counts[0] + 24 * self.counts[1] + 4 * member, 4)))
+    }
+
+    /// Where the ends of the names begin, and the names themselves, in the directory.
+    fn ends_at(&self) -> u64 {
         let [places, tracks, _] = self.counts;
-        let ends = 16 * places + 24 * tracks + 4 * places;
-        let [from, to] = [place, place + 1].map(|at| le64(self.bytes(ends + 8 * at, 8)));
-        let names = ends + 8 * (places + 1);
-        let text = String::from_utf8_lossy(self.bytes(names + from, to.saturating_sub(from) as usize)).into_owned();
+        20 * places + 24 * tracks
+    }
+
+    fn names_at(&self) -> u64 {
+        self.ends_at() + 8 * (self.counts[0] + 1)
+    }
+
+    fn name_end(&self, at: u64) -> u64 {
+        le64(self.bytes(self.ends_at() + 8 * at, 8))
+    }
+
+    fn name(&self, place: u64) -> Id {
+        let [from, to] = [place, place + 1].map(|at| self.name_end(at));
+        let text = String::from_utf8_lossy(self.bytes(self.names_at() + from, to.saturating_sub(from) as usize));
+        let text = text.into_owned();
         match text.parse() {
             Ok(number) if self.place(place).flags & NUMBER != 0 => Id::Number(number),
             _ => Id::Text(text),
@@ -275,7 +339,6 @@ impl Index {
         let mut bytes = vec![0; count as usize * RECORD];
         self.file.seek(SeekFrom::Start(HEADER + first * RECORD as u64))?;
         self.file.read_exact(&mut bytes)?;
-        self.read += bytes.len() as u64;
         if crc32(&bytes) != sum {
             return Err(IndexError::Damaged(format!("the checksum of the locks of {name} is wrong")));
         }
@@ -283,10 +346,14 @@ impl Index {
         for record in bytes.chunks_exact(RECORD) {
             let number = |k: usize| f64::from(f32::from_bits(le32(&record[4 + 4 * k..8 + 4 * k])));
             let lengths = [[number(0), number(1)], [number(2), number(3)]];
-            let (_, [_, _, begin, members]) = self.track(le32(&record[..4]));
-            for k in 0..u64::from(members).min(self.counts[0]) {
-                let at = 16 * self.counts[0] + 24 * self.counts[1] + 4 * (u64::from(begin) + k);
-                let other = u64::from(le32(self.bytes(at, 4)));
+            let track = le32(&record[..4]);
+            let is_range = |[from, to]: [f64; 2]| from.is_finite() && to.is_finite() && from <= to;
+            if u64::from(track) >= self.counts[1] || !lengths.into_iter().all(is_range) {
+                return Err(IndexError::Damaged(format!("a lock of {name} is none")));
+            }
+            let (_, [_, _, begin, members]) = self.track(track);
+            for k in 0..u64::from(members) {
+                let other = self.member(u64::from(begin) + k);
                 if other != place {
                     let their = self.place(other);
                     let on = |place: Place, lengths| {
@@ -351,4 +418,96 @@ fn partition(mut from: u64, mut to: u64, holds: impl Fn(u64) -> bool) -> u64 {
         if holds(middle) { from = middle + 1 } else { to = middle }
     }
     from
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pcr_formats::import::{Format, Options, Warnings, layout};
+
+    /// The table of a cross of two edges and its four nodes.
+    fn table() -> Vec<u8> {
+        let point = |id: usize, x: i32, y: i32| {
+            format!(
+                r#"{{"type":"Feature","properties":{{"id":{id}}},"geometry":{{"type":"Point","coordinates":[{x},{y}]}}}}"#
+            )
+        };
+        let edge = |id: usize, from: usize, to: usize| {
+            let ends = format!(r#""startid":{from},"endid":{to}"#);
+            format!(
+                r#"{{"type":"Feature","properties":{{"id":{id},{ends}}},"geometry":{{"type":"LineString","coordinates":[]}}}}"#
+            )
+        };
+        let parts = [point(1, 0, 0), point(2, 10, 0), point(3, 5, -5), point(4, 5, 5), edge(10, 1, 2), edge(11, 3, 4)];
+        let text = format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, parts.join(","));
+        let options = Options { radius: Some(1.0), ..Options::default() };
+        let imported = layout(Format::Nav2, &text, &options, &mut Warnings::default()).expect("a layout");
+        let file = scratch("whole");
+        let mut out = File::options().read(true).write(true).create(true).truncate(true).open(&file).expect("a file");
+        let sweep = Sweep::new(&imported, true).expect("a table");
+        write_index(&sweep, 7, &mut out, &|_, _| {}).expect("written");
+        let bytes = std::fs::read(&file).expect("a table");
+        std::fs::remove_file(file).expect("removed");
+        bytes
+    }
+
+    fn scratch(name: &str) -> std::path::PathBuf {
+        std::env::temp_dir().join(format!("pcr-index-{}-{name}.locks", std::process::id()))
+    }
+
+    /// What is answered about an edge after a change, with all checksums as they should be.
+    fn answered(name: &str, change: impl Fn(&mut [u8], [usize; 3])) -> Result<usize, String> {
+        let mut bytes = table();
+        let number = |bytes: &[u8], at: usize| le64(&bytes[at..at + 8]) as usize;
+        let [places, tracks, records] = [16, 24, 32].map(|at| number(&bytes, at));
+        let directory = HEADER as usize + RECORD * records;
+        change(&mut bytes, [directory, directory + 16 * places, places]);
+        for track in 0..tracks {
+            let at = directory + 16 * places + 24 * track;
+            let (first, count) = (number(&bytes, at), le32(&bytes[at + 8..at + 12]) as usize);
+            let begin = HEADER as usize + RECORD * first;
+            let sum = crc32(bytes.get(begin..begin + RECORD * count).unwrap_or_default());
+            bytes[at + 12..at + 16].copy_from_slice(&sum.to_le_bytes());
+        }
+        for (sum, at) in [(crc32(&bytes[directory..]), 48), (0, 12)] {
+            let sum = if at == 12 { crc32(&bytes[16..HEADER as usize]) } else { sum };
+            bytes[at..at + 4].copy_from_slice(&sum.to_le_bytes());
+        }
+        let file = scratch(name);
+        std::fs::write(&file, &bytes).expect("written");
+        let mut partners = Index::open(&file).map_err(|error| error.to_string());
+        let found = partners
+            .as_mut()
+            .map_err(|error| error.clone())
+            .and_then(|index| index.of("10").map_err(|error| error.to_string()));
+        std::fs::remove_file(file).expect("removed");
+        found.map(|partners| partners.map_or(0, |partners| partners.len()))
+    }
+
+    /// Their checksums are right, and they answered "0 locks", or nonsense.
+    #[test]
+    fn numbers_that_do_not_fit_are_no_table() {
+        // The other edge, and the nodes at both ends.
+        assert_eq!(answered("right", |_, _| {}), Ok(3));
+        type Change = fn(&mut [u8], [usize; 3]);
+        let changes: [(&str, Change); 9] = [
+            ("places", |bytes, _| bytes[16] += 1),
+            ("many places", |bytes, _| bytes[23] = 0x40),
+            ("tracks", |bytes, _| bytes[24] -= 1),
+            ("many tracks", |bytes, _| bytes[31] = 0x20),
+            ("track of a place", |bytes, [places, ..]| {
+                bytes[places..places + 4].copy_from_slice(&[0xf0, 255, 255, 255])
+            }),
+            ("records of a track", |bytes, [_, tracks, _]| bytes[tracks + 8..tracks + 12].fill(0)),
+            ("members of a track", |bytes, [_, tracks, _]| bytes[tracks + 20..tracks + 24].fill(255)),
+            ("other track", |bytes, _| bytes[HEADER as usize..HEADER as usize + 4].fill(255)),
+            ("length", |bytes, _| {
+                bytes[HEADER as usize + 4..HEADER as usize + 8].copy_from_slice(&f32::NAN.to_le_bytes())
+            }),
+        ];
+        for (name, change) in changes {
+            let problem = answered(name, change).expect_err(name);
+            assert!(problem.starts_with("not a table of locks that can be read: "), "{name}: {problem}");
+        }
+    }
 }

@@ -1,0 +1,115 @@
+//! What a model of openTCS says about its vehicles, where nothing else does: the rectangle that covers the bounding boxes of all,
+//! and the least of their speeds.
+//!
+//! The reference point of a box may be off its middle; the rectangle is as large to the other side. Each vehicle has to have a box, if
+//! any has: that of the others says nothing about it. Models before version 6 have no boxes, and lengths of vehicles.
+
+use super::super::vehicle::Given;
+use super::super::xml::{children, only, optional, parse};
+use super::super::{ImportError, Options, Warnings};
+use super::MILLI;
+use crate::footprint::Footprint;
+
+/// How far a vehicle reaches ahead and aside of its reference point \[m\].
+type Half = [f64; 2];
+
+/// Adds what the model says to what is given.
+pub(in super::super) fn vehicles(
+    text: &str,
+    options: &Options,
+    given: &mut Given,
+    warnings: &mut Warnings,
+) -> Result<(), ImportError> {
+    let document = parse(text)?;
+    let all = children(document.root_element(), "vehicle").map(Vehicle::new).collect::<Result<Vec<_>, _>>()?;
+    slowest(&all, options, given, warnings);
+    if given.radius.is_some() || given.footprint.is_some() {
+        return Ok(());
+    }
+    warn_of_lengths(&all, options, warnings);
+    let Some([ahead, left]) = largest(&all, options, warnings) else { return Ok(()) };
+    if let Some(radius) = options.radius.filter(|radius| *radius < ahead.hypot(left)) {
+        let reach = ahead.hypot(left);
+        warnings.add("radius", format!("{radius} m; the bounding boxes of the vehicles reach {reach:.3} m"));
+    }
+    let corners = vec![[ahead, left], [-ahead, left], [-ahead, -left], [ahead, -left]];
+    let outline = Footprint::new(corners, None);
+    let outline = outline.map_err(|problem| ImportError::new(format!("vehicle, boundingBox: {problem}")))?;
+    given.footprint = Some(outline);
+    Ok(())
+}
+
+/// A vehicle of the model.
+struct Vehicle {
+    name: String,
+    speed: Option<f64>,
+    /// Before version 6 \[m\].
+    length: Option<f64>,
+    /// Its box, or what is wrong with it; `None` where it has none.
+    half: Option<Result<Half, String>>,
+}
+
+impl Vehicle {
+    fn new(vehicle: roxmltree::Node<'_, '_>) -> Result<Self, ImportError> {
+        let name = format!("vehicle {}", vehicle.attribute("name").unwrap_or_default());
+        let metres = |node, attribute: &str| Ok(optional(node, &name, attribute)?.map(|value| value * MILLI));
+        let speed = metres(vehicle, "maxVelocity")?.filter(|speed| *speed > 0.0);
+        let half = only(vehicle, "boundingBox")?.map(|outline| half(outline, &name)).transpose()?;
+        Ok(Self { speed, length: metres(vehicle, "length")?, half, name })
+    }
+}
+
+/// Half of the rectangle around a box, or what is wrong with that.
+fn half(outline: roxmltree::Node<'_, '_>, name: &str) -> Result<Result<Half, String>, ImportError> {
+    let name = format!("{name}, boundingBox");
+    let mut half = [0.0; 2];
+    for (half, [size, offset]) in half.iter_mut().zip([["length", "referenceOffsetX"], ["width", "referenceOffsetY"]]) {
+        match optional(outline, &name, size)? {
+            None => return Ok(Err(format!("{name}, {size}: missing"))),
+            Some(own) if own <= 0.0 => {
+                return Ok(Err(format!("{name}, {size}: {own} where a number above 0 is expected")));
+            }
+            Some(own) => *half = MILLI * (0.5 * own + optional(outline, &name, offset)?.unwrap_or(0.0).abs()),
+        }
+    }
+    Ok(Ok(half))
+}
+
+/// The least of the speeds.
+fn slowest(all: &[Vehicle], options: &Options, given: &mut Given, warnings: &mut Warnings) {
+    let speeds = || all.iter().filter_map(|vehicle| vehicle.speed);
+    let Some(least) = speeds().reduce(f64::min).filter(|_| given.speed.is_none()) else { return };
+    if options.speed.is_none() && speeds().any(|speed| speed != least) {
+        warnings.add("vehicles", format!("their maxVelocity differs; the least of {least} m/s is taken"));
+    }
+    given.speed = Some(least);
+}
+
+/// Says which vehicles are longer than the disc that stands for them, if nothing but their length is known.
+fn warn_of_lengths(all: &[Vehicle], options: &Options, warnings: &mut Warnings) {
+    for vehicle in all.iter().filter(|vehicle| vehicle.half.is_none()) {
+        if let Some(length) = vehicle.length.filter(|length| options.radius.is_none_or(|radius| 2.0 * radius < *length))
+        {
+            let problem = format!("it is {length} m long, and the model says nothing more of its outline");
+            warnings.add(&vehicle.name, problem);
+        }
+    }
+}
+
+/// The half that covers those of all vehicles, if there is any. A radius that is asked for is that of all, whatever their boxes are.
+fn largest(all: &[Vehicle], options: &Options, warnings: &mut Warnings) -> Option<Half> {
+    let has_box = all.iter().any(|vehicle| vehicle.half.is_some());
+    let mut largest: Option<Half> = None;
+    for vehicle in all.iter().filter(|_| has_box) {
+        match &vehicle.half {
+            Some(Ok(half)) => {
+                let before = largest.unwrap_or_default();
+                largest = Some([0, 1].map(|k| half[k].max(before[k])));
+            }
+            _ if options.radius.is_some() => {}
+            Some(Err(problem)) => warnings.lose(problem),
+            None => warnings.lose(format_args!("{}, boundingBox: missing, and others have one", vehicle.name)),
+        }
+    }
+    largest
+}

@@ -1,0 +1,241 @@
+//! The agent of an order: from node to node, along its trajectories or straight.
+
+use super::super::trace::Tracer;
+use super::super::trajectory::Trajectory;
+use super::super::value::Object;
+use super::super::{ImportError, facing, route};
+use super::part::{Part, go_on, parts};
+use super::{GAP, Reader, gap};
+use crate::footprint::Footprint;
+use crate::scenario::Agent;
+use serde_json::Value;
+
+/// How an order is travelled up to some node.
+#[derive(Default)]
+struct Way {
+    tracer: Tracer,
+    /// Headings of each edge at both ends; none where it has no length.
+    headings: Vec<Option<[f64; 2]>>,
+    position: Option<[f64; 2]>,
+    deviation: f64,
+    /// By which the vehicle may be ahead of its path, or behind.
+    longer: f64,
+}
+
+impl Reader<'_> {
+    /// The agent of an order.
+    pub(super) fn order(&mut self, id: u64, order: &Object<'_>) -> Result<Agent, ImportError> {
+        let [nodes, edges] = self.base(order)?;
+        self.maps(order, nodes.iter().map(|node| node.object.object("nodePosition")))?;
+        self.warn_of_freedom(&nodes, &edges)?;
+        let mut way = Way { position: position(nodes.first())?, ..Way::default() };
+        if way.position.is_none() && edges.is_empty() {
+            return Err(nodes.first().map_or_else(|| order.missing("nodes"), unplaced));
+        }
+        for (edge, ends) in edges.iter().zip(nodes.windows(2)) {
+            if let [before, after] = ends {
+                self.edge(&mut way, &edge.object, [before, after])?;
+            }
+        }
+        let stands = way.headings.iter().all(Option::is_none);
+        let outline = self.vehicle.footprint.as_ref();
+        if let Some(outline) = outline.filter(|_| !stands) {
+            self.thetas(&nodes, &way.headings, outline)?;
+        }
+        self.warn_of_actions(order, nodes.iter().chain(&edges))?;
+        let mut trace = way.tracer.finish(way.position.unwrap_or_default());
+        trace.deviation += way.deviation.max(way.longer);
+        if stands && let Some(theta) = rests(&nodes, outline)? {
+            (trace.start[2], trace.faces) = (theta, true);
+        }
+        Ok(route::agent(id, &trace, self.vehicle, 0.0))
+    }
+
+    /// Nodes and edges up to the first one that is not released, or all of them if that is asked for.
+    fn base<'j>(&mut self, order: &Object<'j>) -> Result<[Vec<Part<'j>>; 2], ImportError> {
+        let mut nodes = parts(order, "nodes", "node", "nodeId")?;
+        let mut edges = parts(order, "edges", "edge", "edgeId")?;
+        if nodes.len() != edges.len() + 1 {
+            let problem = format!("{}: {} nodes and {} edges, which is no path", order.name, nodes.len(), edges.len());
+            return Err(ImportError::new(problem));
+        }
+        go_on(&nodes, &edges)?;
+        if !self.options.horizon {
+            let base =
+                nodes.iter().skip(1).zip(&edges).take_while(|(node, edge)| node.released && edge.released).count();
+            if base < edges.len() {
+                let ahead = format!(
+                    "{} of {} edges are not released and left out (--horizon)",
+                    edges.len() - base,
+                    edges.len()
+                );
+                self.warnings.add(&order.name, ahead);
+            }
+            nodes.truncate(base + 1);
+            edges.truncate(base);
+        }
+        Ok([nodes, edges])
+    }
+
+    /// Says where the vehicle may leave its way, which is not read.
+    fn warn_of_freedom(&mut self, nodes: &[Part<'_>], edges: &[Part<'_>]) -> Result<(), ImportError> {
+        let outline = self.vehicle.footprint.is_some();
+        for node in nodes {
+            let Some(position) = node.object.object("nodePosition")? else { continue };
+            let allowed = |field: &str| position.get(field).is_some_and(allows);
+            // Of both spellings the second one is that of the schema of 2.0.
+            if let Some(field) = ["allowedDeviationXY", "allowedDeviationXy"].into_iter().find(|field| allowed(field)) {
+                let problem = format!("its {field} is not read; the vehicle is taken to pass the node itself");
+                self.warnings.add(&node.object.name, problem);
+            }
+            if outline && allowed("allowedDeviationTheta") {
+                let problem = "its allowedDeviationTheta is not read; the vehicle is taken to face along its path";
+                self.warnings.add(&node.object.name, problem);
+            }
+        }
+        for edge in edges {
+            if edge.object.get("corridor").is_some() {
+                self.warnings
+                    .add(&edge.object.name, "its corridor is not read; the vehicle keeps to the middle of its way");
+            }
+            if outline && edge.object.flag("rotationAllowed")? == Some(true) {
+                self.warnings.add(&edge.object.name, facing::ROTATION);
+            }
+        }
+        Ok(())
+    }
+
+    /// Says that actions are not read, of nodes or of edges.
+    fn warn_of_actions<'p, 'j: 'p>(
+        &mut self,
+        order: &Object<'_>,
+        parts: impl Iterator<Item = &'p Part<'j>>,
+    ) -> Result<(), ImportError> {
+        let mut acts = false;
+        for part in parts {
+            acts |= !part.object.list("actions")?.is_empty();
+        }
+        if acts {
+            self.warnings.add(&order.name, "its actions take no time here: the file does not say how long they last");
+        }
+        Ok(())
+    }
+
+    /// Goes on along an edge.
+    fn edge(&mut self, way: &mut Way, edge: &Object<'_>, ends: [&Part<'_>; 2]) -> Result<(), ImportError> {
+        joins(edge, ends)?;
+        let speed = either(edge, ["maxSpeed", "maximumSpeed"])?;
+        way.tracer.limit(speed, either(edge, ["maxRotationSpeed", "maximumRotationSpeed"])?);
+        let target = ends[1].position()?;
+        let Some(trajectory) = edge.object("trajectory")? else {
+            let from = way.position.ok_or_else(|| unplaced(ends[0]))?;
+            let to = target.ok_or_else(|| unplaced(ends[1]))?;
+            let ahead = Some((to[1] - from[1]).atan2(to[0] - from[0])).filter(|_| from != to);
+            self.faces_along(edge, ahead)?;
+            way.line(from, to, ahead);
+            return Ok(());
+        };
+        self.faces_along(edge, None)?;
+        let trajectory = trajectory.called(format!("{}, trajectory", edge.name));
+        let vehicle = self.vehicle;
+        let read = self.trajectory(&trajectory, vehicle)?;
+        way.follow(edge, &read, target)
+    }
+
+    /// An outline faces along an edge, which has this heading where it is straight.
+    fn faces_along(&mut self, edge: &Object<'_>, heading: Option<f64>) -> Result<(), ImportError> {
+        let Some(outline) = &self.vehicle.footprint else { return Ok(()) };
+        facing::along(edge, "orientation", 1.0, heading, outline, self.warnings)
+    }
+
+    /// An outline at a node is as the path arrives there, or as it departs; `headings` are those of the edges at both ends.
+    fn thetas(
+        &mut self,
+        nodes: &[Part<'_>],
+        headings: &[Option<[f64; 2]>],
+        outline: &Footprint,
+    ) -> Result<(), ImportError> {
+        for (k, node) in nodes.iter().enumerate() {
+            let Some(theta) = node.theta()? else { continue };
+            let arrives = k.checked_sub(1).and_then(|before| headings.get(before).copied().flatten()).map(|way| way[1]);
+            let departs = headings.get(k).copied().flatten().map(|way| way[0]);
+            if !arrives.into_iter().chain(departs).any(|heading| facing::is_ahead(outline, theta - heading)) {
+                facing::lose(&node.object.name, "theta", theta, self.warnings);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Way {
+    fn line(&mut self, from: [f64; 2], to: [f64; 2], ahead: Option<f64>) {
+        self.tracer.line(from, to);
+        self.headings.push(ahead.map(|heading| [heading; 2]));
+        self.position = Some(to);
+    }
+
+    /// Follows a trajectory from where the way is to the node at its end, if these have places.
+    fn follow(&mut self, edge: &Object<'_>, read: &Trajectory, target: Option<[f64; 2]>) -> Result<(), ImportError> {
+        let Trajectory { fit, ends: [begin, end] } = read;
+        let mut widest = 0.0_f64;
+        for (point, node, place) in [(*begin, self.position, "begins"), (*end, target, "ends")] {
+            let gap = node.map_or(0.0, |node| gap(point, node));
+            if gap > GAP {
+                return Err(ImportError::new(format!(
+                    "{}: its trajectory {place} {gap:.3} m from its node",
+                    edge.name
+                )));
+            }
+            widest = widest.max(gap);
+        }
+        fit.pieces.iter().for_each(|piece| self.tracer.follow(piece));
+        let ends = fit.pieces.first().zip(fit.pieces.last());
+        self.headings.push(ends.map(|(first, last)| [first.heading, last.heading_at_end()]));
+        self.position = Some(*end);
+        self.deviation = self.deviation.max(fit.deviation + self.longer + widest);
+        self.longer += fit.longer;
+        Ok(())
+    }
+}
+
+/// Which way a vehicle faces that stays where it is, if that is one way: one that turns there covers the disc around its outline.
+fn rests(nodes: &[Part<'_>], outline: Option<&Footprint>) -> Result<Option<f64>, ImportError> {
+    let thetas = nodes.iter().map(Part::theta).collect::<Result<Vec<_>, _>>()?;
+    let Some(first) = thetas.first().copied().flatten() else { return Ok(None) };
+    let turns = |outline: &Footprint| thetas.iter().flatten().any(|theta| !facing::is_ahead(outline, theta - first));
+    Ok(Some(first).filter(|_| !outline.is_some_and(turns)))
+}
+
+/// Position of a node, where it has one.
+fn position(node: Option<&Part<'_>>) -> Result<Option<[f64; 2]>, ImportError> {
+    node.map_or(Ok(None), Part::position)
+}
+
+fn unplaced(node: &Part<'_>) -> ImportError {
+    node.object.missing("nodePosition")
+}
+
+/// A limit under its name in version 2, or that in version 3.
+fn either(edge: &Object<'_>, names: [&str; 2]) -> Result<Option<f64>, ImportError> {
+    let [second, third] = names.map(|name| edge.positive(name));
+    Ok(second?.or(third?))
+}
+
+/// Whether an allowed deviation, a number or the half axes of an ellipse, allows any.
+fn allows(deviation: &Value) -> bool {
+    let above = |value: &Value| value.as_f64().is_some_and(|allowed| allowed > 0.0);
+    above(deviation) || ["a", "b"].iter().any(|axis| deviation.get(axis).is_some_and(above))
+}
+
+/// Checks that an edge joins the nodes before and after it, where it names its nodes.
+fn joins(edge: &Object<'_>, ends: [&Part<'_>; 2]) -> Result<(), ImportError> {
+    for (field, node) in ["startNodeId", "endNodeId"].into_iter().zip(ends) {
+        let there = node.object.text("nodeId")?;
+        let named = edge.text(field)?;
+        if named.is_some() && named != there {
+            let (named, there) = (named.unwrap_or_default(), there.unwrap_or_default());
+            return Err(ImportError::new(format!("{}, {field}: {named}, but by sequenceId it is {there}", edge.name)));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,237 @@
+//! The agent of a state: on its path with times, on its planned path from rest, or where it stands.
+
+use super::super::trace::{Trace, Tracer};
+use super::super::value::Object;
+use super::super::{ImportError, Vehicle, facing, route, timed};
+use super::begin::{Begin, stamp};
+use super::part::{Part, parts};
+use super::{GAP, Reader, gap};
+use crate::footprint::Footprint;
+use crate::scenario::{Agent, MotionSpec, Placed};
+use serde_json::Value;
+
+/// Where a vehicle says that it is.
+struct Pose {
+    at: Option<[f64; 2]>,
+    heading: Option<f64>,
+}
+
+impl Reader<'_> {
+    /// The agent of a state, and when it begins.
+    pub(super) fn state(
+        &mut self,
+        id: u64,
+        state: &Object<'_>,
+        vehicle: &Vehicle,
+    ) -> Result<(Agent, Begin), ImportError> {
+        let pose = self.pose(state)?;
+        let planned = state.object("plannedPath")?;
+        if let Some(path) = timed_path(state)? {
+            if planned.is_some() {
+                let problem = "its plannedPath, which goes on where the times of its intermediatePath end";
+                self.warnings.lose(format_args!("{}: {problem}", state.name));
+            }
+            return self.timed(id, state, &path, &pose, vehicle);
+        }
+        match planned {
+            Some(path) => self.planned(id, state, &path, &pose, vehicle),
+            None => Ok((self.stands(id, state, &pose, vehicle)?, Begin::Never)),
+        }
+    }
+
+    /// Where the vehicle is; it has to know that.
+    fn pose(&mut self, state: &Object<'_>) -> Result<Pose, ImportError> {
+        let pose = match state.object("mobileRobotPosition")? {
+            None => state.object("agvPosition")?,
+            pose => pose,
+        };
+        self.maps(state, std::iter::once(Ok(pose.clone())))?;
+        let Some(pose) = pose else { return Ok(Pose { at: None, heading: None }) };
+        let unknown =
+            |field: &str| Err(ImportError::new(format!("{}, {field}: it does not know where it is", pose.name)));
+        for field in ["localized", "positionInitialized"] {
+            if pose.flag(field)? == Some(false) {
+                return unknown(field);
+            }
+        }
+        if pose.number("localizationScore")?.is_some_and(|score| score <= 0.0) {
+            return unknown("localizationScore");
+        }
+        Ok(Pose { at: Some(pose.point()?), heading: pose.number("theta")? })
+    }
+
+    /// The agent on a path with times. It is a disc: how long turns take is not in the file.
+    fn timed(
+        &mut self,
+        id: u64,
+        state: &Object<'_>,
+        path: &Object<'_>,
+        pose: &Pose,
+        vehicle: &Vehicle,
+    ) -> Result<(Agent, Begin), ImportError> {
+        let mut stops = Vec::new();
+        if let Some(at) = pose.at {
+            stops.push((at, stamp(state, "timestamp")?));
+        }
+        for (k, value) in path.list("polyline")?.iter().enumerate() {
+            let point = Object::new(format!("{}, point {}", path.name, k + 1), value)?;
+            stops.push((point.point()?, stamp(&point, "eta")?));
+        }
+        let begin = stops.first().map_or(0.0, |(_, time)| *time);
+        stops.iter_mut().for_each(|(_, time)| *time -= begin);
+        let end = stops.last().map_or([0.0; 2], |(end, _)| *end);
+        let named = |error| ImportError::new(format!("{}: {error}", path.name));
+        let agent = timed::agent(id, vehicle.radius, &stops).map_err(named)?;
+        self.leads_somewhere(state, agent.path.is_empty())?;
+        let radius = agent.radius + self.goes_on(state, end, &[])?;
+        Ok((Agent { radius, margin: vehicle.margin, ..agent }, Begin::At(begin)))
+    }
+
+    /// The agent on its planned path, from rest.
+    fn planned(
+        &mut self,
+        id: u64,
+        state: &Object<'_>,
+        path: &Object<'_>,
+        pose: &Pose,
+        vehicle: &Vehicle,
+    ) -> Result<(Agent, Begin), ImportError> {
+        let trajectory = path.object("trajectory")?.ok_or_else(|| path.missing("trajectory"))?;
+        let read = self.trajectory(&trajectory, vehicle)?;
+        let [begin, end] = read.ends;
+        let before = pose.at.map_or(0.0, |at| gap(at, begin));
+        if before > GAP {
+            return Err(ImportError::new(format!("{}: it begins {before:.3} m from where the vehicle is", path.name)));
+        }
+        let pieces = &read.fit.pieces;
+        self.leads_somewhere(state, pieces.is_empty())?;
+        let behind = self.goes_on(state, end, path.list("traversedNodes")?)?;
+        if moves(state)? {
+            self.warnings.add(&state.name, "it moves already; its plannedPath is travelled from rest");
+        }
+        let mut tracer = Tracer::default();
+        pieces.iter().for_each(|piece| tracer.follow(piece));
+        let mut trace = tracer.finish(pose.at.unwrap_or(begin));
+        trace.deviation += read.fit.deviation + before.max(behind);
+        if let Some(outline) = &vehicle.footprint {
+            self.faces(state, pose, pieces, outline)?;
+            set_heading(&mut trace, pose, pieces);
+        }
+        let begin = match state.get("timestamp") {
+            None => Begin::Unsaid,
+            Some(_) => Begin::At(stamp(state, "timestamp")?),
+        };
+        Ok((route::agent(id, &trace, vehicle, 0.0), begin))
+    }
+
+    /// The agent that stands where it is, unless it says that it goes on.
+    fn stands(&mut self, id: u64, state: &Object<'_>, pose: &Pose, vehicle: &Vehicle) -> Result<Agent, ImportError> {
+        let [x, y] = pose.at.ok_or_else(|| state.missing("mobileRobotPosition"))?;
+        if !state.list("nodeStates")?.is_empty() {
+            self.warnings
+                .lose(format_args!("{}: its way is told by nodeStates only, give its order instead", state.name));
+        } else if moves(state)? || !state.list("edgeStates")?.is_empty() {
+            self.lose_way(state);
+        }
+        let motion = MotionSpec::RestToRest { v_max: vehicle.speed, a_max: vehicle.acceleration };
+        let Vehicle { radius, margin, .. } = *vehicle;
+        let stands = Agent::disc(id, radius, [x, y, pose.heading.unwrap_or(0.0)], Vec::new(), motion);
+        // Without a heading it is the disc around its outline.
+        let footprint = vehicle.footprint.clone().filter(|_| pose.heading.is_some());
+        Ok(Agent { footprint, margin, ..stands })
+    }
+
+    /// What moves does not stay where its path has no length.
+    fn leads_somewhere(&mut self, state: &Object<'_>, is_point: bool) -> Result<(), ImportError> {
+        if is_point && moves(state)? {
+            self.lose_way(state);
+        }
+        Ok(())
+    }
+
+    fn lose_way(&mut self, state: &Object<'_>) {
+        self.warnings.lose(format_args!("{}: its way, as it moves and does not say where to", state.name));
+    }
+
+    /// Where the vehicle is and at nodes an outline faces along its planned path.
+    fn faces(
+        &mut self,
+        state: &Object<'_>,
+        pose: &Pose,
+        pieces: &[Placed],
+        outline: &Footprint,
+    ) -> Result<(), ImportError> {
+        let first = pieces.first().map(|first| first.heading);
+        if let Some((theta, heading)) = pose.heading.zip(first)
+            && !facing::is_ahead(outline, theta - heading)
+        {
+            facing::lose(&state.name, "theta", theta, self.warnings);
+        }
+        for node in parts(state, "nodeStates", "node", "nodeId")?.iter().filter(|node| node.released) {
+            let Some((at, theta)) = node.position()?.zip(node.theta()?) else { continue };
+            // Which of several passes is meant is not known: any of them may be.
+            let passes = pieces.iter().filter_map(|piece| facing::heading_beside(piece, at, GAP));
+            if !passes.into_iter().any(|heading| facing::is_ahead(outline, theta - heading)) {
+                facing::lose(&node.object.name, "theta", theta, self.warnings);
+            }
+        }
+        Ok(())
+    }
+
+    /// How far the last node that is released is from the end of a path \[m\], which has to be there: the vehicle does not stand where it
+    /// ends else.
+    fn goes_on(&mut self, state: &Object<'_>, end: [f64; 2], traversed: &[Value]) -> Result<f64, ImportError> {
+        let nodes = parts(state, "nodeStates", "node", "nodeId")?;
+        let Some(last) = nodes.iter().take_while(|node| node.released).last() else {
+            self.no_edge(state, &nodes)?;
+            return Ok(0.0);
+        };
+        let behind = match last.position()? {
+            Some(node) => Some(gap(node, end)).filter(|gap| *gap <= GAP),
+            None => {
+                let name = last.object.text("nodeId")?;
+                traversed.iter().any(|node| node.as_str() == name).then_some(0.0)
+            }
+        };
+        if behind.is_none() {
+            let problem = "its way on to there, as its path ends before or elsewhere; give its order instead";
+            self.warnings.lose(format_args!("{}: {problem}", last.object.name));
+        }
+        Ok(behind.unwrap_or(0.0))
+    }
+
+    /// Without nodes no edge is ahead of which anything is known.
+    fn no_edge(&mut self, state: &Object<'_>, nodes: &[Part<'_>]) -> Result<(), ImportError> {
+        let edges = parts(state, "edgeStates", "edge", "edgeId")?;
+        if let Some(edge) = edges.iter().find(|edge| edge.released && nodes.is_empty()) {
+            self.warnings.lose(format_args!("{}: where it leads, as there is no node in nodeStates", edge.object.name));
+        }
+        Ok(())
+    }
+}
+
+/// The path with times, if it has a point: without any it says nothing.
+fn timed_path<'j>(state: &Object<'j>) -> Result<Option<Object<'j>>, ImportError> {
+    let Some(path) = state.object("intermediatePath")? else { return Ok(None) };
+    Ok(if path.list("polyline")?.is_empty() { None } else { Some(path) })
+}
+
+/// An outline of which nobody knows which way it faces is the disc around it; one that does not move faces as it says.
+fn set_heading(trace: &mut Trace, pose: &Pose, pieces: &[Placed]) {
+    match pose.heading {
+        None => trace.faces = false,
+        Some(theta) if pieces.is_empty() => (trace.start[2], trace.faces) = (theta, true),
+        Some(_) => {}
+    }
+}
+
+/// Whether a vehicle says that it moves.
+fn moves(state: &Object<'_>) -> Result<bool, ImportError> {
+    let mut moves = state.flag("driving")?.unwrap_or(false);
+    if let Some(velocity) = state.object("velocity")? {
+        for field in ["vx", "vy", "omega"] {
+            moves |= velocity.number(field)?.is_some_and(|speed| speed != 0.0);
+        }
+    }
+    Ok(moves)
+}
