@@ -51,7 +51,7 @@ const NOT_WRITTEN: u8 = 3;
 const STATUSES: &str = "\
 Exit status:
   0  done
-  2  wrong arguments, or a scenario that cannot be read or was refused (one of several is enough)
+  2  wrong arguments, or one of the scenarios cannot be read or was refused
   3  the output could not be written";
 
 const EXAMPLES: &str = "\
@@ -71,7 +71,7 @@ Examples:
 #[derive(Parser)]
 #[command(name = "pcr", version, after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(crate) struct Arguments {
-    /// No tables, warnings or progress; only errors, JSON and CSV
+    /// Only errors, JSON and CSV; no tables or warnings
     #[arg(short, long, global = true)]
     quiet: bool,
     #[command(subcommand)]
@@ -259,6 +259,23 @@ fn say(file: &Path, lines: impl IntoIterator<Item = String>) {
     }
 }
 
+/// Tells which letters are boxes in the pictures of a folder.
+fn warn_of_boxes(folder: &Path) {
+    /// Letters that are named; who writes in a script knows the others.
+    const NAMED: usize = 8;
+    let letters: Vec<char> = pcr_drawing::lacking().chars().collect();
+    if letters.is_empty() {
+        return;
+    }
+    let named: Vec<String> = letters.iter().take(NAMED).map(char::to_string).collect();
+    let more = if letters.len() > NAMED { format!(" and {} more", letters.len() - NAMED) } else { String::new() };
+    let text = format!(
+        "PNG has boxes for letters that the font of the program lacks: {}{more}; SVG has them",
+        named.join(" ")
+    );
+    say(folder, [text]);
+}
+
 /// A whole number from 0, such as a seed.
 fn whole<T: FromStr>(text: &str) -> Result<T, String> {
     text.parse().map_err(|_| "a whole number from 0 is expected".to_owned())
@@ -281,9 +298,14 @@ const NO_FOLDER: &str = "a folder is written, which standard output is not; one 
 /// Why `-` is refused where a file is written that is not for standard output.
 const NO_STREAM: &str = "this is written to a file, not to standard output; one of this name is ./-";
 
-/// The same where what is written may replace a file that was read, if that is of the same kind.
-fn write_over(output: &Path, content: &str, is_alike: impl FnOnce() -> Result<bool, Stop>) -> Result<(), Stop> {
-    if output != Path::new("-") && output::is_kept(output) && is_alike()? {
+/// The same where what is written may replace the file that it is made of, if that is of the same kind; no other that was read.
+fn write_over(
+    output: &Path,
+    content: &str,
+    input: &Path,
+    is_alike: impl FnOnce() -> Result<bool, Stop>,
+) -> Result<(), Stop> {
+    if output != Path::new("-") && output::is_same(output, input) && is_alike()? {
         return output::write_over(output, content).map_err(|error| Stop::not_written(output, &error));
     }
     write_to(output, content)

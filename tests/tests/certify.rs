@@ -291,7 +291,7 @@ fn a_dump_reads_back_exactly() {
 #[test]
 fn a_table_that_a_microcontroller_printed_is_that_of_the_tool() {
     fn is_the_same<S: Format>(file: &str) {
-        let dump = Dump::read(&data(file)).unwrap();
+        let dump = Dump::of(&std::fs::read_to_string(data(file)).unwrap(), file).unwrap();
         let mut table = table_of::<S>(&fleet("paper12.json")).unwrap().remove(0);
         // The firmware numbers them from 0.
         (0..).zip(&mut table.agents).for_each(|(place, agent)| agent.id = place);
@@ -419,7 +419,7 @@ fn plans_are_proved_to_be_without_contact() {
 fn motions_are_proved_or_refuted_as_conflicts_say() {
     // All set off as the file says: some collide.
     let scenario = fleet("paper12.json");
-    let verdict = Verdict::certified::<f64>(&scenario, true).unwrap();
+    let verdict = Verdict::certified::<f64>(&scenario, true, &|_, _| {}).unwrap();
     let proof = verdict.certificate.unwrap();
     let pairs = |those: Vec<[u64; 2]>| those.into_iter().collect::<std::collections::BTreeSet<_>>();
     let deep = verdict.conflicts.iter().filter(|conflict| !conflict.touching).map(|conflict| [conflict.i, conflict.j]);
@@ -433,7 +433,7 @@ fn motions_are_proved_or_refuted_as_conflicts_say() {
     let mut few = scenario;
     for left in [1, 0] {
         few.agents.truncate(left);
-        let refused = Verdict::certified::<f64>(&few, false).unwrap_err();
+        let refused = Verdict::certified::<f64>(&few, false, &|_, _| {}).unwrap_err();
         assert!(refused.to_string().contains("no two discs of different agents"), "{refused}");
     }
 }

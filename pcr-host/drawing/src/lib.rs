@@ -200,6 +200,15 @@ impl Picture {
 }
 
 /// The files of a picture.
+/// Letters of the pictures since the last question that are boxes as PNG, for want of a font of all languages; as SVG they are
+/// what they are.
+pub fn lacking() -> String {
+    #[cfg(feature = "png")]
+    return raster::lacking();
+    #[cfg(not(feature = "png"))]
+    String::new()
+}
+
 fn files(name: &str, svg: String) -> io::Result<Files> {
     #[cfg(feature = "png")]
     let png = raster::png(&svg)?;

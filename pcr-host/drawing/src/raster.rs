@@ -2,6 +2,8 @@
 
 mod font;
 
+pub(super) use font::lacking;
+
 use resvg::{tiny_skia, usvg};
 use std::io;
 

@@ -69,9 +69,17 @@ impl fmt::Display for InputError {
 
 impl std::error::Error for InputError {}
 
-/// The text of a file, or of standard input for `-`.
+/// The text of a file, or of standard input for `-`, for whoever reads another format.
+///
+/// # Errors
+/// [`InputError`], naming the file.
+pub fn read_text(file: &Path) -> Result<String, InputError> {
+    text(file).map(|(_, text)| text)
+}
+
+/// The text of a file, or of standard input for `-`, and the name of the file for messages.
 fn text(file: &Path) -> Result<(Option<PathBuf>, String), InputError> {
-    let name = (file != Path::new("-")).then(|| file.to_owned());
+    let name = named(file);
     let bytes = match &name {
         Some(file) => fs::read(file),
         None => {
@@ -84,6 +92,11 @@ fn text(file: &Path) -> Result<(Option<PathBuf>, String), InputError> {
         Ok(text) => Ok((name, text)),
         Err(_) => Err(InputError::NotText(name)),
     }
+}
+
+/// A file for messages; nothing for standard input.
+fn named(file: &Path) -> Option<PathBuf> {
+    (file != Path::new("-")).then(|| file.to_owned())
 }
 
 /// The name of a file as far as answers carry it that have no other: without its folder and its extensions. Empty for `-`.
@@ -107,7 +120,15 @@ fn or_stem(name: &mut String, file: &Path) {
 /// # Errors
 /// [`InputError`], naming the file and, for a refused scenario, the line.
 pub fn read(file: &Path, options: &Options) -> Result<(Scenario, Warnings), InputError> {
-    let (name, text) = text(file)?;
+    read_from(file, text(file)?.1, options)
+}
+
+/// The same in a text that is read already.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_from(file: &Path, text: String, options: &Options) -> Result<(Scenario, Warnings), InputError> {
+    let name = named(file);
     let mut warnings = Warnings::default();
     match options.from.or_else(|| Format::of(file, &text)) {
         Some(format) => {
@@ -136,6 +157,14 @@ pub fn read(file: &Path, options: &Options) -> Result<(Scenario, Warnings), Inpu
 /// Whether a text begins as JSON with something in it does.
 fn is_json(text: &str) -> bool {
     text.trim_start_matches('\u{feff}').trim_start().starts_with(['{', '['])
+}
+
+/// Refuses options that do nothing with scenarios on standard input.
+///
+/// # Errors
+/// [`InputError::Useless`].
+pub fn useful_with_lines(options: &Options) -> Result<(), InputError> {
+    useful(&None, "", None, options)
 }
 
 /// Refuses options that do nothing with a file.

@@ -38,42 +38,67 @@ impl Kept {
 
 /// From now on this file, or standard input for `-`, is not written to, whatever its name: it is read.
 pub fn keep(file: &Path) {
-    // If this is not a file of the system, it cannot be overwritten either.
-    let file = if file == Path::new("-") { Path::new("/dev/stdin") } else { file };
+    // Where that is no file of the system, it cannot be written over either.
+    let file = of_system(file);
     let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
     if !kept.iter().any(|other| other == file) {
         kept.push(file.to_owned());
     }
 }
 
-/// Whether a file is one of those that are kept: the same one on the disk, behind all links.
-pub fn is_kept(file: &Path) -> bool {
+/// Whether a file is one of those that are kept.
+fn is_kept(file: &Path) -> bool {
     let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-    kept.iter().any(|other| is_same(file, other))
+    kept.iter().any(|other| is_same_file(file, other))
+}
+
+/// Whether an output is what is read from a file, or from standard input for `-`: the same one on the disk, behind all links.
+pub fn is_same(output: &Path, input: &Path) -> bool {
+    is_same_file(output, of_system(input))
+}
+
+/// Whether two outputs cannot both be written: they are one, or one is in the other. Devices and pipes take any number.
+pub fn are_at_odds(a: &Path, b: &Path) -> bool {
+    let is_file = |file: &Path| fs::metadata(file).map_or(true, |there| there.is_file() || there.is_dir());
+    let (one, other) = (placed(a), placed(b));
+    is_file(a) && is_file(b) && (one.starts_with(&other) || other.starts_with(&one) || is_same_file(a, b))
+}
+
+/// Where a file is or will be, as far as folders are there yet.
+fn placed(file: &Path) -> PathBuf {
+    let file = followed(file).unwrap_or_else(|_| file.to_owned());
+    let file = std::path::absolute(&file).unwrap_or(file);
+    let there = file.ancestors().find_map(|folder| Some((folder, fs::canonicalize(folder).ok()?)));
+    match there {
+        Some((folder, place)) => file.strip_prefix(folder).map_or(place.clone(), |rest| place.join(rest)),
+        None => file,
+    }
+}
+
+/// The file that a name stands for, which is `-` for standard input.
+fn of_system(file: &Path) -> &Path {
+    if file == Path::new("-") { Path::new("/dev/stdin") } else { file }
 }
 
 /// Refuses a file that is kept.
-///
-/// # Errors
-/// One that [`Kept::of`] knows.
-pub fn refuse_kept(file: &Path) -> io::Result<()> {
+fn refuse_kept(file: &Path) -> io::Result<()> {
     if is_kept(file) { Err(io::Error::other(Kept(file.to_owned()))) } else { Ok(()) }
 }
 
 /// Devices and pipes may be read and written.
 #[cfg(unix)]
-fn is_same(a: &Path, b: &Path) -> bool {
+fn is_same_file(a: &Path, b: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
     let identity = |file: &Path| fs::metadata(file).ok().filter(Metadata::is_file).map(|file| (file.dev(), file.ino()));
     identity(a).is_some_and(|one| identity(b) == Some(one))
 }
 
 #[cfg(not(unix))]
-fn is_same(a: &Path, b: &Path) -> bool {
+fn is_same_file(a: &Path, b: &Path) -> bool {
     matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
 }
 
-/// Writes a file. One that is there is replaced and keeps its mode; a link is followed. What is no regular file (a terminal, a
+/// Writes a file. One that is there is replaced and keeps its mode and owner; a link is followed. What is no regular file (a terminal, a
 /// pipe, a device) is written to as it is.
 ///
 /// # Errors
@@ -181,12 +206,26 @@ fn filled<T, E: From<io::Error>>(
     fill: impl FnOnce(&mut File) -> Result<T, E>,
 ) -> Result<T, E> {
     if let Some(old) = old {
+        give_to_owner(&file, old);
         file.set_permissions(old.permissions())?;
     }
     let done = fill(&mut file)?;
     file.sync_all()?;
     Ok(done)
 }
+
+/// Gives a file to the owner of another one. Only the superuser may; for others it is theirs, as it was before.
+#[cfg(unix)]
+fn give_to_owner(file: &File, old: &Metadata) {
+    use std::os::unix::fs::{MetadataExt, fchown};
+    let is_theirs = |new: &Metadata| (new.uid(), new.gid()) == (old.uid(), old.gid());
+    if !file.metadata().is_ok_and(|new| is_theirs(&new)) {
+        let _ = fchown(file, Some(old.uid()), Some(old.gid()));
+    }
+}
+
+#[cfg(not(unix))]
+fn give_to_owner(_: &File, _: &Metadata) {}
 
 /// A new file in a folder, which stays there only if the program is killed.
 fn temporary(folder: &Path) -> io::Result<(PathBuf, File)> {
@@ -269,6 +308,31 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
+    fn outputs_that_cannot_both_be_written_are_known() {
+        let folder = scratch("odds");
+        let [file, link, other] = ["file", "link", "other"].map(|name| folder.join(name));
+        std::os::unix::fs::symlink("file", &link).unwrap();
+        for (a, b, at_odds) in [
+            // Neither is there yet.
+            (&file, &folder.join("./file"), true),
+            (&file, &link, true),
+            (&file, &other, false),
+            (&file, &folder.join("file2"), false),
+            (&folder.join("maps/before"), &folder.join("maps/before/index.html"), true),
+            (&folder.join("maps/before"), &folder.join("maps"), true),
+            (&folder.join("maps/before"), &folder.join("maps/plan.json"), false),
+            (&PathBuf::from("/dev/null"), &PathBuf::from("/dev/null"), false),
+        ] {
+            assert_eq!(are_at_odds(a, b), at_odds, "{} {}", a.display(), b.display());
+        }
+        fs::write(&file, "").unwrap();
+        fs::hard_link(&file, &other).unwrap();
+        assert!(are_at_odds(&file, &other));
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
     fn mode_and_links_are_kept() {
         use std::os::unix::fs::{PermissionsExt, symlink};
         let folder = scratch("links");
@@ -280,6 +344,13 @@ mod tests {
         write(&link, "new").unwrap();
         assert_eq!(fs::read_to_string(&file).unwrap(), "new");
         assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o640);
+        // Only the superuser can see to it, and find out.
+        if std::os::unix::fs::chown(&file, Some(1), Some(1)).is_ok() {
+            use std::os::unix::fs::MetadataExt;
+            write(&file, "newer").unwrap();
+            let there = fs::metadata(&file).unwrap();
+            assert_eq!((there.uid(), there.gid(), there.permissions().mode() & 0o777), (1, 1, 0o640));
+        }
         write(&dangling, "there").unwrap();
         assert_eq!(fs::read_to_string(folder.join("new")).unwrap(), "there");
         assert!([&link, &dangling].iter().all(|link| fs::symlink_metadata(link).unwrap().is_symlink()));

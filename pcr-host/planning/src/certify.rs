@@ -14,7 +14,6 @@ use pcr_certify::table::{Checker, Margin};
 use pcr_formats::scenario::Labels;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::path::Path;
 use told::{Asked, Cover, Told};
 
 /// The result of the proof of a table.
@@ -110,17 +109,15 @@ struct Said {
 }
 
 impl Dump {
-    /// Reads the tables from a file: JSON, or the text that a microcontroller prints.
+    /// Reads one from the text of a file: JSON, or what a microcontroller prints, which has the name of the file.
     ///
     /// # Errors
-    /// The problem with the file, in words.
-    pub fn read(file: &Path) -> Result<Self, String> {
-        let text = std::fs::read_to_string(file).map_err(|error| error.to_string())?;
+    /// What is wrong with the text.
+    pub fn of(text: &str, name: &str) -> Result<Self, String> {
         if text.trim_start().starts_with('{') {
-            return Self::of_json(&text);
+            return Self::of_json(text);
         }
-        let name = file.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        Ok(Self { name, certificate: vec![dump::decode(&text)?], ..Self::default() })
+        Ok(Self { name: name.to_owned(), certificate: vec![dump::decode(text)?], ..Self::default() })
     }
 
     /// Reads the tables from a JSON text.

@@ -92,6 +92,25 @@ impl Verdict {
         Self::between(scenario, &discs, &fleet.motions(), closest, told)
     }
 
+    /// Whether there is any conflict: the work ends with the first, and nothing is held.
+    ///
+    /// # Errors
+    /// [`Failure`] where a value does not fit the format.
+    pub fn any<S: Format>(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure> {
+        let (fleet, discs) = Bodies::<S>::moving(scenario)?;
+        let motions = fleet.motions();
+        let pairs = Pairs::new(scenario, &discs, &motions);
+        let count = pairs.ids.len();
+        for first in (0..count).step_by(STRETCH) {
+            let stretch = first..count.min(first + STRETCH);
+            if stretch.clone().into_par_iter().any(|agent| pairs.any(agent)) {
+                return Ok(true);
+            }
+            told(stretch.end, count);
+        }
+        Ok(false)
+    }
+
     /// Overlaps of margins: the conflicts of discs enlarged by their margins.
     ///
     /// # Errors
@@ -114,9 +133,18 @@ impl Verdict {
         if closest {
             let all = count as u64 * count.saturating_sub(1) as u64 / 2;
             let what = || format!("how near all {all} pairs come");
-            memory::ask(all.saturating_mul(size_of::<Closest>() as u64), what)?;
+            // And those of one stretch, before they are with the others.
+            let of_stretch = count.min(STRETCH) as u64 * count as u64;
+            memory::ask(all.saturating_add(of_stretch).saturating_mul(size_of::<Closest>() as u64), what)?;
         }
         let (mut conflicts, mut nearest, mut held) = (Vec::new(), Vec::new(), Held::default());
+        if closest {
+            // As a whole: a list that grows is there twice.
+            let all = count * count.saturating_sub(1) / 2;
+            nearest
+                .try_reserve_exact(all)
+                .map_err(|_| memory::TooLarge::of(format!("how near all {all} pairs come")))?;
+        }
         for first in (0..count).step_by(STRETCH) {
             let stretch = first..count.min(first + STRETCH);
             let found: Vec<_> = stretch.clone().into_par_iter().map(|k| pairs.of(k, closest)).collect();
@@ -144,9 +172,12 @@ impl Verdict {
     ///
     /// # Errors
     /// As [`Verdict::of`], and [`Failure::NoPair`].
-    pub fn certified<S: Format>(scenario: &Scenario, closest: bool) -> Result<Self, Failure> {
-        let certificate = Some(Proof::of_pairs::<S>(scenario)?);
-        Ok(Self { certificate, ..Self::of::<S>(scenario, closest)? })
+    pub fn certified<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
+        let verdict = Self::watched::<S>(scenario, closest, told)?;
+        // The checker has a list of its own.
+        let count = verdict.conflicts.len();
+        memory::ask(count as u64 * PROOF_BYTES, || format!("the proof of {count} conflicts"))?;
+        Ok(Self { certificate: Some(Proof::of_pairs::<S>(scenario)?), ..verdict })
     }
 
     /// An answer that says why there are no conflicts.
@@ -166,6 +197,9 @@ impl Verdict {
 
 /// A disc of an agent, and its motion.
 type Body<'a, S> = (&'a Disced, &'a Motion<'a, S>);
+
+/// Memory of a contact in the checker, while its list grows, and in the answer \[bytes\].
+const PROOF_BYTES: u64 = 128;
 
 /// Number of agents between two reports of progress.
 const STRETCH: usize = 1024;
@@ -220,6 +254,15 @@ impl<'a, S: Format> Pairs<'a, S> {
         after.sort_unstable();
         after.dedup();
         after
+    }
+
+    /// Whether an agent has a conflict with an agent of higher rank.
+    fn any(&self, agent: usize) -> bool {
+        let is_in_conflict = |other: usize| {
+            let (found, _) = encounters(self.agent(agent), self.agent(other), self.time, false);
+            !found.is_empty()
+        };
+        self.after(agent).into_iter().any(is_in_conflict)
     }
 
     /// The conflicts of an agent with agents of higher rank; with `closest` also the closest approaches.

@@ -41,11 +41,34 @@ impl TooLarge {
     }
 }
 
-/// Checks that some bytes can be allocated.
+/// Asks for some bytes, before they are allocated; what is small need not ask.
 ///
 /// # Errors
 /// [`TooLarge`], with the number of bytes, if the system reports less free memory.
 pub fn ask(bytes: u64, what: impl FnOnce() -> String) -> Result<(), TooLarge> {
+    if bytes < STEP { Ok(()) } else { ask_at_all(bytes, what) }
+}
+
+/// What is made of a text, as a part of its size: its numbers, and what they are read to.
+const OF_TEXT: u64 = 8;
+
+/// Asks for what is made of a text of so many bytes while it is read, by this thread alone.
+///
+/// # Errors
+/// As [`ask`].
+pub fn ask_for_text(bytes: u64) -> Result<(), TooLarge> {
+    let needed = OF_TEXT * bytes;
+    // No other thread takes addresses yet.
+    let limits = [address_space(), group(), machine()];
+    match limits.into_iter().flatten().min() {
+        Some(left) if needed > STEP && needed > left => {
+            Err(TooLarge { what: "what is read".into(), needed: Some(needed), left })
+        }
+        _ => Ok(()),
+    }
+}
+
+fn ask_at_all(bytes: u64, what: impl FnOnce() -> String) -> Result<(), TooLarge> {
     match left() {
         Some(left) if bytes > left => Err(TooLarge { what: what(), needed: Some(bytes), left }),
         _ => Ok(()),
@@ -54,8 +77,7 @@ pub fn ask(bytes: u64, what: impl FnOnce() -> String) -> Result<(), TooLarge> {
 
 /// Checks that a list of `count` items of a size \[bytes\] can be allocated. Only for long lists, because the check takes time.
 pub(crate) fn for_list(count: usize, size: u64) -> Result<(), TooLarge> {
-    let bytes = count as u64 * size;
-    if bytes < STEP { Ok(()) } else { ask(bytes, || format!("a list of {count}")) }
+    ask(count as u64 * size, || format!("a list of {count}"))
 }
 
 /// Counts the memory of a growing list, and checks from time to time.
@@ -87,7 +109,7 @@ impl Held {
         let so_far = self.all + more;
         if self.since >= STEP {
             self.since = 0;
-            ask(more, what).map_err(|large| TooLarge { needed: Some(so_far), ..large })?;
+            ask_at_all(more, what).map_err(|large| TooLarge { needed: Some(so_far), ..large })?;
         }
         list.try_reserve(items.len()).map_err(|_| TooLarge { needed: Some(so_far), ..TooLarge::of(what()) })?;
         list.extend(items);
@@ -135,6 +157,6 @@ mod tests {
             let refused = ask(1 << 60, || "a table".into()).unwrap_err().to_string();
             assert!(refused.starts_with("a table would take 1152921504607 MB of memory; "), "{refused}");
         }
-        assert_eq!(ask(0, String::new), Ok(()));
+        assert_eq!(ask(STEP - 1, String::new), Ok(()));
     }
 }

@@ -20,6 +20,7 @@ mod tests;
 
 use crate::certify::Proof;
 use crate::fleet::Fleet;
+use crate::memory;
 use crate::regions::Failure;
 pub(crate) use circle::{sides, sides_of};
 pub use delays::{Effort, Objective};
@@ -177,6 +178,9 @@ impl Unsolved {
     }
 }
 
+/// What an agent alone takes in a plan and its proof \[bytes\]; those that come near one another ask for more.
+const AGENT_BYTES: u64 = 3800;
+
 /// A plan, and the scenario that it makes, where there is one.
 type Answer = (Plan, Option<Scenario>);
 
@@ -213,6 +217,8 @@ impl Plan {
     /// # Errors
     /// [`Failure`] where a value does not fit, the table cannot hold the fleet, or an agent of the order is not there.
     pub fn of(scenario: &Scenario, request: &Request) -> Result<Answer, Failure> {
+        let agents = scenario.agents.len();
+        memory::ask(agents as u64 * AGENT_BYTES, || format!("the plan of {agents} agents"))?;
         let fleet = Fleet::<f64>::new(scenario)?;
         let motions = grown(&fleet);
         let planner = Planner { scenario, request, motions: &motions };

@@ -24,17 +24,18 @@ Exit status:
   1  refuted, with a place where the table is wrong
   2  wrong arguments, or a file that cannot be read or was refused
   3  the output could not be written
-  4  undecided: too near to the bound for the checker's own rounding, as discs that just touch are";
+  4  undecided: too near to the bound for the rounding of the checker, as discs
+     that just touch are";
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr certify fleet.json                       the table of collision regions of a fleet
-  pcr certify fleet.json --scalar q16          the same in 16.16 fixed point
-  pcr certify fleet.json --limit               and how far from contact it reaches
-  pcr certify site.lif.json --radius 0.6       the table of locks of a layout
+  pcr certify fleet.json                   the collision regions of a fleet
+  pcr certify fleet.json --scalar q16      the same in 16.16 fixed point
+  pcr certify fleet.json --limit           and how far from contact they reach
+  pcr certify site.lif.json --radius 0.6   the table of locks of a layout
   pcr regions fleet.json --json --certificate > table.json
-  pcr certify --table table.json               this table, whatever program wrote it
-  pcr certify --table console.txt              a table that a microcontroller printed";
+  pcr certify --table table.json           this table, whoever wrote it
+  pcr certify --table console.txt          what a microcontroller printed";
 
 /// Prove that a table of regions or locks is right, or show where it is wrong
 ///
@@ -46,16 +47,16 @@ pub(super) struct Arguments {
     /// Scenario, or layout, whose locks of edges and nodes are certified; standard input if left out or `-`
     #[arg(conflicts_with = "table")]
     file: Option<PathBuf>,
-    /// A table, as `pcr regions --certificate` or the firmware prints it
+    /// A table, as `pcr regions --certificate` or the firmware prints it; `-` for standard input
     #[arg(long, value_name = "FILE", conflicts_with = "scalar")]
     table: Option<PathBuf>,
     #[command(flatten)]
     printed: Printed,
-    /// Add how far from contact the table reaches, as a part of the bound (takes about 12 times as long)
+    /// Add how far from contact it reaches (takes 12 times as long)
     #[arg(long)]
     limit: bool,
-    /// Number format of the computation: floating point (micro: f32 with roots and angles for microcontrollers), or fixed point (q20: up to ±256 m and s, q16: ±4096, q12: ±65,536)
-    #[arg(long, value_enum, default_value_t = Number::F64)]
+    /// Numbers: f64, f32, micro (f32 of microcontrollers), or fixed point: q20 (up to ±256 m and s), q16 (±4096), q12 (±65,536)
+    #[arg(long, value_enum, value_name = "NUMBER", default_value_t = Number::F64, hide_possible_values = true)]
     scalar: Number,
     #[command(flatten)]
     import: Options,
@@ -103,7 +104,8 @@ impl Arguments {
             if let Some(option) = self.import.given().first() {
                 return Err(Stop::arguments(format!("{option} is of no use: a table has all numbers in it")));
             }
-            let dump = Dump::read(file).map_err(|problem| Stop::wrong(file, problem))?;
+            let text = input::read_text(file)?;
+            let dump = Dump::of(&text, &input::stem(file)).map_err(|problem| Stop::wrong(file, problem))?;
             let tables = dump.certificate.iter();
             let certified = tables.map(|table| Certified::of(&dump.name, table, self.limit));
             return Ok(certified.map(|one| one.with(&dump.labels, &dump.warnings)).collect());

@@ -7,7 +7,6 @@ use super::{CONFLICTS, Form, Printed, Stop};
 use clap::Args;
 use pcr_formats::import::Options;
 use pcr_formats::scenario::Scenario;
-use pcr_planning::certify::Proof;
 use pcr_planning::check::Verdict;
 use pcr_planning::fleet::Format;
 use pcr_planning::memory;
@@ -21,17 +20,17 @@ const STATUSES: &str = "\
 Exit status:
   0  no conflicts; with --certify proved, too
   1  conflicts; with --certify also what is not proved
-  2  wrong arguments, or a scenario that cannot be read or was refused (one of several is enough); with --certify also one
-     without two agents, of which nothing would be proved
+  2  wrong arguments, or one of the scenarios cannot be read or was refused;
+     with --certify also one without two agents, of which nothing is proved
   3  the output could not be written";
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr check plan.json                                who collides when, where and how deep
-  pcr check plan.json --closest                      and how near every two agents come
-  pcr check plan.json --certify                      and a proof by an independent checker
-  pcr check -q plan.json && echo free                for scripts: the exit status says it
-  pcr check - --format json < plans.jsonl            JSON Lines: one scenario on each line";
+  pcr check plan.json                       who collides when, where, how deep
+  pcr check plan.json --closest             and how near every two agents come
+  pcr check plan.json --certify             and a proof by another program
+  pcr check -q plan.json && echo free       for scripts: by the exit status
+  pcr check - --format json < plans.jsonl   JSON Lines: a scenario on each line";
 
 /// Tell whether the agents collide, moving as the scenario says
 #[derive(Args)]
@@ -48,8 +47,8 @@ pub(super) struct Arguments {
     /// Prove the answer by an independent checker (not in CSV)
     #[arg(long)]
     certify: bool,
-    /// Number format of the computation: floating point (micro: f32 with roots and angles for microcontrollers), or fixed point (q20: up to ±256 m and s, q16: ±4096, q12: ±65,536)
-    #[arg(long, value_enum, default_value_t = Number::F64)]
+    /// Numbers: f64, f32, micro (f32 of microcontrollers), or fixed point: q20 (up to ±256 m and s), q16 (±4096), q12 (±65,536)
+    #[arg(long, value_enum, value_name = "NUMBER", default_value_t = Number::F64, hide_possible_values = true)]
     scalar: Number,
     #[command(flatten)]
     import: Options,
@@ -64,8 +63,9 @@ impl Arguments {
             return Err(Stop::arguments("--certify is for --format json and table"));
         }
         without_margin(&self.import)?;
-        let work =
-            Check { form: self.printed.form(), scalar: self.scalar, closest: self.closest, certify: self.certify };
+        let (form, silent) = (self.printed.form(), self.printed.is_silent());
+        let closest = self.closest && !silent;
+        let work = Check { form, scalar: self.scalar, closest, certify: self.certify, silent };
         let found = run(&work, self.files, &self.import, &self.printed)?;
         Ok(if found { ExitCode::from(CONFLICTS) } else { ExitCode::SUCCESS })
     }
@@ -77,12 +77,16 @@ struct Check {
     scalar: Number,
     closest: bool,
     certify: bool,
+    /// Only the exit status tells the answer.
+    silent: bool,
 }
 
 impl Check {
     fn verdict<S: Format>(&self, scenario: &Scenario, told: Told<'_>) -> Result<Verdict, Failure> {
-        let certificate = self.certify.then(|| Proof::of_pairs::<S>(scenario)).transpose()?;
-        Ok(Verdict { certificate, ..Verdict::watched::<S>(scenario, self.closest, told)? })
+        match self.certify {
+            true => Verdict::certified::<S>(scenario, self.closest, told),
+            false => Verdict::watched::<S>(scenario, self.closest, told),
+        }
     }
 }
 
@@ -90,6 +94,12 @@ impl Work for Check {
     const CSV_HEADER: &'static str = report::CONFLICTS_CSV_HEADER;
 
     fn print(&self, scenario: &Scenario, told: Told<'_>, out: &mut impl Write) -> Result<bool, Unprinted> {
+        if self.silent && with_scalar!(self.scalar, S => Verdict::any::<S>(scenario, told))? {
+            return Ok(true);
+        }
+        if self.silent && !self.certify {
+            return Ok(false);
+        }
         let verdict = with_scalar!(self.scalar, S => self.verdict::<S>(scenario, told))?;
         match self.form {
             Form::Table => {

@@ -8,6 +8,7 @@ use pcr_comparing::compare::{self, Comparison, Effort, Question};
 use pcr_comparing::report;
 use pcr_formats::import::Options;
 use pcr_formats::output;
+use pcr_planning::memory;
 use pcr_planning::regions::Failure;
 use pcr_planning::report::json;
 use std::io::{self, BufWriter, Write};
@@ -16,10 +17,10 @@ use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr compare fleet.json                             every method
-  pcr compare fleet.json --method polyline           pcr, and methods whose names hold a word
-  pcr compare small.json large.json --format csv     a line a method and a scenario
-  pcr compare fleet.json -o charts                   and time against error as pictures";
+  pcr compare fleet.json                           every method
+  pcr compare fleet.json --method polyline         pcr, and some by a word
+  pcr compare small.json large.json --format csv   a line a method and scenario
+  pcr compare fleet.json -o charts                 and time against error drawn";
 
 /// Run this and other methods side by side: time, memory, errors
 #[derive(Args)]
@@ -31,16 +32,16 @@ pub(super) struct Arguments {
     /// Only methods whose names hold this
     #[arg(long = "method", value_name = "WORD")]
     methods: Vec<String>,
-    /// Rounds in which all methods are run, 1 to 1000; slow methods take part in fewer
+    /// Rounds, 1 to 1000; slow methods have fewer
     #[arg(long, value_name = "N", default_value_t = 51, value_parser = clap::value_parser!(u16).range(1..=1000))]
     rounds: u16,
-    /// Form of the output: for reading, the same in Markdown, an object a scenario, or a line a method
-    #[arg(long, value_enum, default_value_t = Output::Table)]
+    /// table, markdown, json or csv
+    #[arg(long, value_enum, default_value_t = Output::Table, hide_possible_values = true)]
     format: Output,
     /// The same as --format json
     #[arg(long, conflicts_with = "format")]
     json: bool,
-    /// Draw time against error to regions-1.svg and conflicts-1.svg in this directory, with the number of the scenario
+    /// Draw time against error: DIR/regions-1.svg, conflicts-1.svg
     #[arg(short, long, value_name = "DIR", value_parser = folder())]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -57,6 +58,9 @@ enum Output {
 
 /// Time that a method gets in all rounds \[s\].
 const BUDGET: f64 = 0.5;
+
+/// What an agent takes in the forms of all methods \[bytes\].
+const AGENT_BYTES: u64 = 2000;
 
 /// Slices of regions that are compared with the reference.
 const SLICES: usize = 20_000;
@@ -81,6 +85,9 @@ impl Arguments {
         let effort = Effort { rounds: self.rounds.into(), budget: BUDGET, slices: SLICES };
         for (place, source) in sources.iter().enumerate() {
             let scenario = source.scenario(&self.import)?;
+            let agents = scenario.agents.len();
+            memory::ask(agents as u64 * AGENT_BYTES, || format!("the comparison of {agents} agents"))
+                .map_err(|large| Stop::wrong(source.file(), large))?;
             let progress = Progress::new("methods");
             let refused = |refused| Stop::wrong(source.file(), Failure::Refused(refused));
             let comparison =

@@ -1,8 +1,10 @@
 //! `pcr completions` and `pcr man`.
 
 use super::{Stop, help};
-use clap::Args;
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, Args, Command, CommandFactory};
 use clap_complete::Shell;
+use clap_mangen::Man;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -31,8 +33,12 @@ pub(super) struct Manual {
 
 impl Shells {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        let mut text = Vec::new();
-        clap_complete::generate(self.shell, &mut help::command(true), "pcr", &mut text);
+        let (mut text, command) = (Vec::new(), help::command(true));
+        let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
+        // Only here: what is no command is refused by a reason of its own.
+        let of_man = move |argument: Arg| argument.value_parser(PossibleValuesParser::new(names.clone()));
+        let mut command = command.mut_subcommand("man", |man| man.mut_arg("command", of_man));
+        clap_complete::generate(self.shell, &mut command, "pcr", &mut text);
         print(&text)
     }
 }
@@ -42,7 +48,8 @@ impl Manual {
         let mut all = help::command(true);
         all.build();
         let command = match &self.command {
-            None => all,
+            // What it is in one line; the rest is the description.
+            None => all.about(super::Arguments::command().get_about().cloned().unwrap_or_default()),
             Some(name) => {
                 let found = all
                     .find_subcommand(name)
@@ -50,10 +57,35 @@ impl Manual {
                 found.clone().name(format!("pcr-{name}"))
             }
         };
-        let mut text = Vec::new();
-        clap_mangen::Man::new(command).render(&mut text)?;
-        print(&text)
+        print(&page(command)?)
     }
+}
+
+/// The manual page of a command, with examples and exit statuses as they are, line by line.
+fn page(command: Command) -> io::Result<Vec<u8>> {
+    let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+    let is_versioned = command.get_version().is_some();
+    let (page, mut text) = (Man::new(command), Vec::new());
+    page.render_title(&mut text)?;
+    page.render_name_section(&mut text)?;
+    page.render_synopsis_section(&mut text)?;
+    page.render_description_section(&mut text)?;
+    page.render_options_section(&mut text)?;
+    page.render_subcommands_section(&mut text)?;
+    for part in after.split("\n\n") {
+        let (title, lines) = match part.split_once(":\n") {
+            Some((title, lines)) if !title.contains('\n') => (title.to_uppercase(), lines),
+            _ => ("NOTES".to_owned(), part),
+        };
+        writeln!(text, ".SH \"{title}\"\n.nf")?;
+        // No line is a request, whatever it begins with.
+        lines.lines().try_for_each(|line| writeln!(text, "\\&{}", line.replace('\\', "\\e").replace('-', "\\-")))?;
+        writeln!(text, ".fi")?;
+    }
+    if is_versioned {
+        page.render_version_section(&mut text)?;
+    }
+    Ok(text)
 }
 
 fn print(text: &[u8]) -> Result<ExitCode, Stop> {

@@ -2,31 +2,30 @@
 
 use super::help::STANDING;
 use super::sources::layout;
-use super::{CONFLICTS, Form, Printed, Stop, is_standard, say, write_over};
+use super::{CONFLICTS, Form, Printed, Stop, is_standard, say, warn_of_boxes, write_over};
 use clap::Args;
 use pcr_drawing as picture;
 use pcr_exclusions::{Audit, Settings, Target, report};
 use pcr_formats::import::{Format, Imported, Options};
 use pcr_formats::{input, output};
 use pcr_planning::report::json;
-use std::fs;
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Exclusions, as they stand in files of fleets.
 #[derive(Args)]
 pub(super) struct Asked {
-    /// Write the layout, with exclusions that keep vehicles apart, to the file of --output
-    #[arg(long, value_enum, value_name = "FORMAT", requires = "output", conflicts_with_all = ["lines", "edge", "index", "nodes", "delays"])]
+    /// Write the layout with exclusions to --output: nav2, rmf, opentcs, vda5050 or pcr
+    #[arg(long, value_enum, value_name = "FORMAT", hide_possible_values = true, requires = "output", conflicts_with_all = ["lines", "edge", "index", "nodes", "delays"])]
     write: Option<Target>,
-    /// Before that, cut edges (lanes, straight paths, zones) into equal parts no longer than this
+    /// Before that, cut edges into equal parts no longer than this
     #[arg(long, value_name = "LENGTH", hide_short_help = true, value_parser = length, requires = "write")]
     split: Option<f64>,
-    /// Write envelopes with this key instead of blocks (openTCS)
+    /// Envelopes with this key instead of blocks (openTCS)
     #[arg(long, value_name = "KEY", hide_short_help = true, requires = "write")]
     envelopes: Option<String>,
-    /// List where vehicles can touch although they obey the exclusions in the layout, or in FILE; exit status 1 if there is such a place
+    /// List where vehicles can touch although they obey the exclusions in the layout, or in FILE
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, conflicts_with_all = ["write", "lines", "edge", "index", "nodes", "delays"])]
     audit: Option<Option<PathBuf>>,
 }
@@ -40,13 +39,7 @@ fn length(text: &str) -> Result<f64, String> {
 
 fn text(file: &Path) -> Result<String, Stop> {
     output::keep(file);
-    let mut text = String::new();
-    let read = if file == Path::new("-") {
-        std::io::stdin().read_to_string(&mut text).map(|_| text)
-    } else {
-        fs::read_to_string(file)
-    };
-    read.map_err(|error| Stop::wrong(file, format_args!("cannot be read: {error}")))
+    Ok(input::read_text(file)?)
 }
 
 impl Asked {
@@ -97,7 +90,7 @@ impl Asked {
             say(file, report.warnings.iter().take(report.of_layout).cloned());
         }
         // A layout may get what keeps its vehicles apart; a table of that is no layout.
-        write_over(output, &written, || Ok(target.layout() == Some(format)))?;
+        write_over(output, &written, file, || Ok(target.layout() == Some(format)))?;
         let mut out = printed.out(standard);
         match printed.form() {
             Form::Json => json(&report, &mut out)?,
@@ -150,6 +143,7 @@ fn audit(
     if let Some(directory) = output {
         picture::write_audit(&imported, &locks, &rules, &audit, directory)
             .map_err(|error| Stop::not_written(directory, &error))?;
+        warn_of_boxes(directory);
     }
     let mut out = printed.out(false);
     match printed.form() {

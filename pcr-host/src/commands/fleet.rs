@@ -14,21 +14,22 @@ use std::process::ExitCode;
 const STATUSES: &str = "\
 Exit status:
   0  done; of a record: nobody touched anybody, proved
-  1  two vehicles had the right to one place, or some did not come to their ends; of a record: there was a contact
+  1  two vehicles had the right to one place, or some did not come to their
+     ends; of a record: there was a contact
   2  wrong arguments, or a file that cannot be read or was refused
   3  the record could not be written
-  4  of a record: undecided, two vehicles came too near for the rounding of the record";
+  4  of a record: undecided, two came too near for its rounding, or it is cut";
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr fleet warehouse_graph.geojson --broker localhost:1883                     8 vehicles, until Ctrl-C
-  pcr fleet warehouse_graph.geojson --broker localhost:1883 --manager           and a manager that gives them missions
-  pcr fleet warehouse_graph.geojson --broker localhost:1883 --manager --record run.txt --time 600 --pace 10
-  pcr fleet --certify run.txt                                                   prove that nobody touched anybody
-  pcr fleet warehouse_graph.geojson --alone supervisor --time 3600 --finish     without a broker, as fast as possible
-  pcr fleet warehouse_graph.geojson --alone edge-locks --time 3600 --finish     the same with locks on edges
+  pcr fleet site.geojson --broker localhost:1883             8 vehicles
+  pcr fleet site.geojson --broker localhost:1883 --manager   with missions
+  pcr fleet site.geojson --manager --record run.txt --time 600 --pace 10
+  pcr fleet --certify run.txt                                nobody touched
+  pcr fleet site.geojson --alone supervisor --time 3600      without a broker
+  pcr fleet site.geojson --alone edge-locks --time 3600      and with locks
 
-User and password of the broker are read from PCR_BROKER_USER and PCR_BROKER_PASSWORD.";
+User and password of the broker: PCR_BROKER_USER and PCR_BROKER_PASSWORD.";
 
 /// What is of no use to a record that is there already.
 const SIMULATED: [&str; 14] = [
@@ -41,10 +42,9 @@ const SIMULATED: [&str; 14] = [
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 #[cfg_attr(not(feature = "serve"), allow(dead_code))]
 pub(super) struct Arguments {
-    /// Layout; vehicles drive from one of its safe ends to another
-    #[arg(required_unless_present_any = ["certify", "streets"])]
+    /// Layout, from safe end to safe end; standard input if left out or `-`
     layout: Option<PathBuf>,
-    /// A generated site with N streets each way, instead of a layout
+    /// A site of N streets each way, instead of a layout
     #[arg(long, value_name = "N", conflicts_with = "layout")]
     streets: Option<usize>,
     /// Address of the broker
@@ -56,8 +56,8 @@ pub(super) struct Arguments {
     /// Simulate their fleet manager, too
     #[arg(long, conflicts_with = "alone")]
     manager: bool,
-    /// First levels of their topics
-    #[arg(long, value_names = ["MANAGER", "VEHICLES"], num_args = 2, default_values = ["fleet", "uagv"])]
+    /// First levels of topics, of manager and vehicles
+    #[arg(long, value_names = ["M", "V"], num_args = 2, default_values = ["fleet", "uagv"])]
     #[arg(conflicts_with = "alone")]
     topics: Vec<String>,
     /// Simulated seconds per second, 0.1 to 100
@@ -66,7 +66,7 @@ pub(super) struct Arguments {
     /// End after this simulated time
     #[arg(long, value_name = "S")]
     time: Option<f64>,
-    /// Then go on until all missions under way are done, or none was done for an hour
+    /// Then go on until all are done, or none for an hour
     #[arg(long, requires = "time")]
     finish: bool,
     /// Without a broker: supervisor, route-locks or edge-locks
@@ -75,19 +75,19 @@ pub(super) struct Arguments {
     /// Connections that each vehicle loses per hour
     #[arg(long, value_name = "N", default_value_t = 0.0)]
     drops: f64,
-    /// Part of the messages that is lost, part that is repeated, part that is late
+    /// Part of the messages lost, and repeated, and late
     #[arg(long, value_name = "PART", default_value_t = 0.0)]
     weather: f64,
     /// The same seed makes the same vehicles
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
-    /// Write the true positions of the vehicles
+    /// Write the true positions of the vehicles at the end
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// Prove that the vehicles of a record never touched
+    /// Prove of a record, or `-`, that they never touched
     #[arg(long, value_name = "FILE", conflicts_with_all = SIMULATED)]
     certify: Option<PathBuf>,
-    /// Write the vehicles for `pcr serve --fleet`
+    /// Write the vehicles for `pcr serve --fleet`, or to `-`
     #[arg(long, value_name = "FILE", conflicts_with = "certify")]
     profiles: Option<PathBuf>,
 }

@@ -9,11 +9,11 @@ use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr import nav2 warehouse.geojson --route 0:50 --route 90:7@5 -o fleet.json   two routes on a nav2 route graph
-  pcr import vda5050 robot1.json robot2.json --radius 0.4 -o fleet.json         an agent for each order or state
-  pcr regions warehouse.geojson --route 0:50 --route 90:7@5 --radius 0.4        other commands read the format as well";
+  pcr import nav2 warehouse.geojson --route 0:50 --route 90:7@5 -o fleet.json
+  pcr import vda5050 robot1.json robot2.json --radius 0.4 -o fleet.json
+  pcr regions warehouse.geojson --route 0:50 --radius 0.4   they read it as well";
 
-/// Write a layout with routes, an order or a plan in another format as a scenario file
+/// Write routes, an order or a plan in another format as a scenario file
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {

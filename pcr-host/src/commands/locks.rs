@@ -4,7 +4,7 @@ use super::exclusions::Asked;
 use super::help::{DRIVING, STANDING};
 use super::printed::notes;
 use super::sources::{layout, layout_source};
-use super::{Form, NO_FOLDER, NO_STREAM, Printed, Stop, is_standard};
+use super::{Form, NO_FOLDER, NO_STREAM, Printed, Stop, is_standard, warn_of_boxes};
 use crate::progress::Progress;
 use clap::Args;
 use pcr_drawing as picture;
@@ -26,38 +26,38 @@ Exit status:
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr locks depot.geojson --radius 0.4                  the table of locks of a nav2 route graph
-  pcr locks depot.geojson --radius 0.4 -o locks         and a page that shows what an edge blocks
-  pcr locks map.xml --radius 0.5 --index map.locks      a table of any size in a file
-  pcr locks map.locks --edge e17                        the locks of an edge, from that file
-  pcr locks site.lif.json --vehicle AMR --radius 0.6 --margin 0.1 --format csv > locks.csv
-  pcr locks depot.geojson --radius 0.4 --write nav2 -o guarded.geojson   with its exclusions
-  pcr locks plant.xml --radius 0.5 --audit -o audit     contacts that the file does not exclude";
+  pcr locks depot.geojson --radius 0.4               of a nav2 route graph
+  pcr locks depot.geojson --radius 0.4 -o locks      and a page that shows them
+  pcr locks map.xml --radius 0.5 --index map.locks   of any size, in a file
+  pcr locks map.locks --edge e17                     of an edge, from that file
+  pcr locks site.lif.json --vehicle AMR --radius 0.6 --margin 0.1 --format csv
+  pcr locks depot.geojson --radius 0.4 --write nav2 -o guarded.geojson
+  pcr locks plant.xml --radius 0.5 --audit -o audit  what it does not exclude";
 
 /// Print which edges of a layout may not be used at the same time, and on which lengths
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
-    /// The layout; standard input if left out or `-`. With --edge also a file that --index has written
+    /// The layout; standard input if left out or `-`. With --edge also a file of --index
     layout: Option<PathBuf>,
     #[command(flatten)]
     printed: Printed,
-    /// Add the lengths that a vehicle blocks while it stands at a node
+    /// Add the lengths that a vehicle at a node blocks
     #[arg(long)]
     nodes: bool,
-    /// Print times instead: the delays with which two vehicles must not set off on two edges. They drive at --speed, with --acceleration from rest to rest
+    /// Print times instead: delays with which two must not set off on two edges at --speed, with --acceleration from rest to rest
     #[arg(long, conflicts_with_all = ["edge", "index", "output"])]
     delays: bool,
-    /// Print JSON Lines, one lock on each line, for tables of any size
+    /// Print JSON Lines, a lock on each, for tables of any size
     #[arg(long, hide_short_help = true, conflicts_with_all = ["format", "json", "output"])]
     lines: bool,
     /// Only the locks of this edge or node
     #[arg(long, value_name = "NAME", conflicts_with_all = ["lines", "output"])]
     edge: Option<String>,
-    /// Write the locks to this file, from which --edge reads one edge without the others; with --edge, read that file
+    /// Write the locks to this file; with --edge, read it from there
     #[arg(long, value_name = "FILE", hide_short_help = true, conflicts_with_all = ["lines", "output"])]
     index: Option<PathBuf>,
-    /// Directory for pictures and a page of the layout with its locks; with --write the file to be written
+    /// Directory for pictures and a page; with --write the file
     #[arg(short, long, value_name = "PATH")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -78,6 +78,10 @@ impl Arguments {
         }
         if is_standard(self.index.as_ref()) {
             return Err(Stop::arguments(format!("--index -: {NO_STREAM}")));
+        }
+        if let Some(index) = self.index.as_deref().filter(|index| is_stream(index)) {
+            let why = "this is written and read at many places, which a pipe or a device is not";
+            return Err(Stop::wrong(index, why));
         }
         let file = &layout_source(self.layout.clone())?;
         if let Some(done) = self.asked.run(file, &self.import, &self.printed, self.output.as_ref()) {
@@ -130,6 +134,7 @@ impl Arguments {
         drop(progress);
         if let Some(directory) = &self.output {
             picture::write_locks(&imported, &locks, directory).map_err(|error| Stop::not_written(directory, &error))?;
+            warn_of_boxes(directory);
         }
         match form {
             Form::Table => {
@@ -237,6 +242,11 @@ impl Arguments {
         out.flush()?;
         Ok(ExitCode::SUCCESS)
     }
+}
+
+/// Whether there is something of this name that is neither a file nor a folder.
+fn is_stream(file: &Path) -> bool {
+    std::fs::metadata(file).is_ok_and(|there| !there.is_file() && !there.is_dir())
 }
 
 /// Asks for what a table for reading takes.

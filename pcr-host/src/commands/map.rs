@@ -1,7 +1,7 @@
 //! `pcr map`.
 
 use super::sources::{source, without_margin};
-use super::{STATUSES, Stop, folder, quiet, scenario};
+use super::{STATUSES, Stop, folder, quiet, scenario, warn_of_boxes};
 use crate::progress::Progress;
 use clap::Args;
 use pcr_core::Motion;
@@ -102,6 +102,7 @@ pub(super) fn draw(
     let files = picture::write(scenario, egos, ground, directory, &mut |done, total| progress.set(done, total));
     drop(progress);
     let files = files.map_err(|error| Stop::not_written(directory, &error))?;
+    warn_of_boxes(directory);
     let page = files.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
     if let Some(first) = page.or(files.first()) {
         writeln!(out, "Pictures: {} files in {}; begin with {}", files.len(), directory.display(), first.display())?;

@@ -7,6 +7,7 @@ use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, complain, folder, is_st
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_formats::import::Options;
+use pcr_formats::output;
 use pcr_formats::scenario::{Agent, Scenario};
 use pcr_planning::plan::{Effort, Method, Objective, Plan, Priority, Request};
 use pcr_planning::regions::{Failure, find};
@@ -20,18 +21,18 @@ const STATUSES: &str = "\
 Exit status:
   0  a plan, checked as by pcr check
   1  no plan for all agents, also where --leave-out has one for some
-  2  wrong arguments, or a scenario that cannot be read or was refused (one of several is enough)
+  2  wrong arguments, or one of the scenarios cannot be read or was refused
   3  the output could not be written";
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr plan fleet.json -o plan.json                    the scenario with start delays
-  pcr plan fleet.json -o - | pcr check                the table goes to standard error
-  pcr plan fleet.json --pictures maps                 every agent's map before and after
-  pcr plan fleet.json --method speed -o plan.json     with waits and other speeds on the way
-  pcr plan fleet.json --priority 7,3 --json           agents 7 and 3 first
-  pcr plan fleet.json --leave-out -o plan.json        without agents that no plan can include
-  pcr plan fleet.json --prove --time-limit 60         until it is proved the best, at most 60 s";
+  pcr plan fleet.json -o plan.json                  the file with start delays
+  pcr plan fleet.json -o - | pcr check              the table: standard error
+  pcr plan fleet.json --pictures maps               maps before and after
+  pcr plan fleet.json --method speed -o plan.json   also waits and other speeds
+  pcr plan fleet.json --priority 7,3 --json         agents 7 and 3 first
+  pcr plan fleet.json --leave-out -o plan.json      without those in the way
+  pcr plan fleet.json --prove --time-limit 60       the best, if found in 60 s";
 
 /// Plan later starts or other speeds, so that nobody collides
 #[derive(Args)]
@@ -40,35 +41,38 @@ pub(super) struct Arguments {
     /// Scenarios (JSON); standard input if left out or `-`
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Write the scenario with the plan to it; `-` for standard output
+    /// The scenario with the plan; `-` for standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Draw the collision maps without and with it to DIR/before, DIR/after
+    /// Draw the maps without and with it: DIR/before, DIR/after
     #[arg(long, value_name = "DIR", value_parser = folder())]
     pictures: Option<PathBuf>,
-    /// Later starts, or also waits and other speeds on the way
-    #[arg(long, value_enum, default_value_t = Means::Delay)]
+    /// delay: later starts; speed: also on the way
+    #[arg(long, value_enum, default_value_t = Means::Delay, hide_possible_values = true)]
     method: Means,
-    /// Who goes first: agents by number or label with commas between them, `longest`, `crowded` or `best` [default: best]
+    /// Who goes first: agents by number or label with commas between them (`\\,` for one in a label), or `longest`, `crowded`, `best` [default: best]
     #[arg(long, value_name = "ORDER", value_parser = asked)]
     priority: Option<Asked>,
-    /// What is to be least: the sum of times to arrival, or the last arrival
-    #[arg(long, value_enum, default_value_t = Least::Sum)]
+    /// sum of times to arrival, or makespan, the last arrival
+    #[arg(long, value_enum, value_name = "WHAT", default_value_t = Least::Sum, hide_possible_values = true)]
     objective: Least,
-    /// If there is no plan for all, leave out as few as possible
+    /// If there is none for all, leave out as few as possible
     #[arg(long)]
     leave_out: bool,
-    /// Search until it is proved that no start delays are better
+    /// Search until it is proved that none is better
     #[arg(long)]
     prove: bool,
-    /// End the search after this time; the plan may differ from run to run
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    /// End the search then; the plan may differ from run to run
+    #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<Duration>,
     #[command(flatten)]
     printed: Printed,
     #[command(flatten)]
     import: Options,
 }
+
+/// Folders of the maps without and with the plan.
+const PICTURES: [&str; 2] = ["before", "after"];
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Means {
@@ -120,7 +124,10 @@ fn asked(text: &str) -> Result<Asked, String> {
         "best" => return Ok(Asked::Known("best", Priority::Best)),
         _ => {}
     }
-    let agents: Vec<String> = text.split(',').map(|agent| agent.trim().to_owned()).collect();
+    // A comma of a label is written with a backslash before it.
+    const COMMA: &str = "\u{0}";
+    let unescaped = |agent: &str| agent.trim().replace(COMMA, ",");
+    let agents: Vec<String> = text.replace("\\,", COMMA).split(',').map(unescaped).collect();
     for (place, agent) in agents.iter().enumerate() {
         if agent.is_empty() {
             return Err("an agent without a name".into());
@@ -180,6 +187,12 @@ impl Arguments {
                 return Err(Stop::arguments("--pictures: one folder for the plans of several"));
             }
         }
+        if let (Some(output), Some(directory)) = (&self.output, &self.pictures)
+            && !is_standard(Some(output))
+            && PICTURES.iter().any(|folder| output::are_at_odds(output, &directory.join(folder)))
+        {
+            return Err(Stop::arguments("--output: pictures are written there; give another name"));
+        }
         let mut out = self.printed.out(is_standard(self.output.as_ref()));
         if self.printed.form() == Form::Csv {
             out.write_all(report::PLAN_CSV_HEADER.as_bytes())?;
@@ -230,8 +243,12 @@ impl Arguments {
         let planned = Plan::of(&scenario, &request);
         drop(progress);
         let (plan, solved) = planned.map_err(wrong)?;
+        if let Some(directory) = &self.pictures {
+            // Where there can be none, there is no file of the plan, either.
+            output::folder(directory).map_err(|error| Stop::not_written(directory, &error))?;
+        }
         if let (Some(output), Some(solved)) = (&self.output, &solved) {
-            write_over(output, &solved.to_json(), || source.is_scenario(&self.import))?;
+            write_over(output, &solved.to_json(), source.file(), || source.is_scenario(&self.import))?;
         }
         match self.printed.form() {
             Form::Table => report::plan_table(&plan, out)?,
@@ -241,10 +258,10 @@ impl Arguments {
         out.flush()?;
         if let Some(directory) = &self.pictures {
             // Beside the report, which may be for a machine.
-            let told = &mut notes();
-            draw(&scenario, None, None, &directory.join("before"), told)?;
+            let ([before, after], told) = (PICTURES.map(|folder| directory.join(folder)), &mut notes());
+            draw(&scenario, None, None, &before, told)?;
             if let Some(solved) = &solved {
-                draw(solved, None, None, &directory.join("after"), told)?;
+                draw(solved, None, None, &after, told)?;
             }
         }
         Ok(solved.is_some() && plan.left_out.is_empty())

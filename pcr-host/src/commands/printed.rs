@@ -97,8 +97,8 @@ pub(super) enum Form {
 
 #[derive(Args)]
 pub(super) struct Printed {
-    /// Table for people, or JSON or CSV for programs
-    #[arg(long, value_enum, default_value_t = Form::Table)]
+    /// table, json or csv
+    #[arg(long, value_enum, default_value_t = Form::Table, hide_possible_values = true)]
     format: Form,
     /// The same as --format json
     #[arg(long, conflicts_with = "format")]
@@ -110,20 +110,29 @@ impl Printed {
         if self.json { Form::Json } else { self.format }
     }
 
+    /// Whether nothing is printed: what is for people only, where they asked for nothing.
+    pub(super) fn is_silent(&self) -> bool {
+        quiet() && self.form() == Form::Table
+    }
+
     /// Where the answer goes: standard output, or standard error if that is `taken` by the scenario itself.
     pub(super) fn out(&self, taken: bool) -> Box<dyn Write> {
         match () {
-            () if quiet() && self.form() == Form::Table => Box::new(io::sink()),
+            () if self.is_silent() => Box::new(io::sink()),
             () if taken => Box::new(BufWriter::new(stderr())),
             () => Box::new(BufWriter::new(stdout())),
         }
     }
 }
 
-/// Where tables go that have no other form: those of `pcr fleet`.
+/// Where tables go that have no other form: those of `pcr fleet`. Standard output may be `taken` by what is asked for.
 #[cfg(feature = "serve")]
-pub(super) fn tables() -> Box<dyn Write> {
-    if quiet() { Box::new(io::sink()) } else { Box::new(stdout()) }
+pub(super) fn tables(taken: bool) -> Box<dyn Write> {
+    match () {
+        () if quiet() => Box::new(io::sink()),
+        () if taken => Box::new(stderr()),
+        () => Box::new(stdout()),
+    }
 }
 
 /// Where notes go that are for people only.

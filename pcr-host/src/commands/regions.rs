@@ -16,12 +16,12 @@ use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr regions fleet.json                            where and when every agent must not be
-  pcr regions fleet.json --agent 3                  the regions of agent 3
-  pcr regions fleet.json --margin 0.05              a second table, for discs 5 cm larger
-  pcr regions fleet.json --format csv > fleet.csv   one line for each region
-  pcr regions fleet.json --json --slices 9          with the lengths inside at 9 times
-  pcr regions - --format json < fleets.jsonl        JSON Lines: one scenario on each line";
+  pcr regions fleet.json                       where and when each must not be
+  pcr regions fleet.json --agent 3             the regions of agent 3
+  pcr regions fleet.json --margin 0.05         also for discs 5 cm larger
+  pcr regions fleet.json --format csv          one line for each region
+  pcr regions fleet.json --json --slices 9     the lengths inside at 9 times
+  pcr regions - --format json < fleets.jsonl   JSON Lines: a scenario a line";
 
 /// Slices that are given for a region: more than any picture or table can use, and not more than memory holds.
 const MOST_SLICES: i64 = 10_000;
@@ -35,17 +35,17 @@ pub(super) struct Arguments {
     files: Vec<PathBuf>,
     #[command(flatten)]
     printed: Printed,
-    /// Only the regions that the agent of this number or label has to keep out of
+    /// Only what the agent of this number or label keeps out of
     #[arg(long, value_name = "ID")]
     agent: Option<String>,
-    /// Add the lengths inside each region at N evenly spaced times (JSON only)
+    /// Add the lengths inside each region at N times (JSON only)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=MOST_SLICES))]
     slices: Option<u32>,
-    /// Add the table itself, with all paths and pieces, for `pcr certify --table` (JSON only)
+    /// Add the table itself for `pcr certify --table` (JSON only)
     #[arg(long)]
     certificate: bool,
-    /// Number format of the computation: floating point (micro: f32 with roots and angles for microcontrollers), or fixed point (q20: up to ±256 m and s, q16: ±4096, q12: ±65,536)
-    #[arg(long, value_enum, default_value_t = Number::F64)]
+    /// Numbers: f64, f32, micro (f32 of microcontrollers), or fixed point: q20 (up to ±256 m and s), q16 (±4096), q12 (±65,536)
+    #[arg(long, value_enum, value_name = "NUMBER", default_value_t = Number::F64, hide_possible_values = true)]
     scalar: Number,
     #[command(flatten)]
     import: Options,

@@ -23,15 +23,15 @@ const STATUSES: &str = "\
 Exit status:
   0  ended by the end of standard input (without --stay), or by Ctrl-C
   2  wrong arguments, or a journal that is damaged or in use
-  3  the journal could not be opened or written: no right was given, or none after that";
+  3  the journal could not be opened or written: no right was given after that";
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr serve --journal state                    lines of JSON on standard input and output (docs/serve.md)
-  pcr serve --journal state --listen 7070      the same for clients over TCP on this machine
-  pcr serve --journal state --page 8080        and a page on http://localhost:8080 to watch it
-  pcr serve --journal state --stay --broker localhost:1883 --fleet vehicles.json     VDA 5050
-  pcr serve --demo warehouse_graph.geojson     broker, vehicles, their manager and the page";
+  pcr serve --journal state                  lines of JSON (docs/serve.md)
+  pcr serve --journal state --listen 7070    the same for clients over TCP
+  pcr serve --journal state --page 8080      and a page: http://localhost:8080
+  pcr serve --journal state --stay --broker localhost:1883 --fleet vehicles.json
+  pcr serve --demo warehouse_graph.geojson   broker, vehicles, manager and page";
 
 /// Supervise a fleet: decide how far each robot may go now
 #[derive(Args)]
@@ -54,13 +54,13 @@ pub(super) struct Arguments {
     /// How far before a stop robots may stand, in m [0.1; VDA: 0.3]
     #[arg(long, value_name = "M")]
     width: Option<f64>,
-    /// How long before it would have to brake a robot is told that it may go on, in s [2; VDA 5050: 8, the least]
+    /// How long before braking a robot is told to go on, in s [2; VDA 5050: 8, the least]
     #[arg(long, value_name = "S")]
     lookahead: Option<f64>,
-    /// A robot is silent after this time without a message, in s
+    /// A robot is silent after this time, in s
     #[arg(long, value_name = "S", default_value_t = 5.0)]
     silence: f64,
-    /// Broker of a fleet of VDA 5050, HOST:PORT; user and password from PCR_BROKER_USER and PCR_BROKER_PASSWORD
+    /// Broker of a fleet of VDA 5050; user and password from PCR_BROKER_USER, PCR_BROKER_PASSWORD
     #[arg(long, value_name = "HOST:PORT", requires = "fleet")]
     broker: Option<String>,
     /// Use TLS; certificate (PEM) that has signed the broker's
@@ -69,8 +69,8 @@ pub(super) struct Arguments {
     /// The file of vehicles (docs/serve.md)
     #[arg(long, value_name = "FILE", requires = "broker")]
     fleet: Option<PathBuf>,
-    /// First levels of the topics of the fleet manager and of the vehicles
-    #[arg(long, value_names = ["MANAGER", "VEHICLES"], num_args = 2, default_values = ["fleet", "uagv"])]
+    /// First levels of topics, of manager and vehicles
+    #[arg(long, value_names = ["M", "V"], num_args = 2, default_values = ["fleet", "uagv"])]
     #[arg(requires = "vda5050")]
     topics: Vec<String>,
     /// Also start a broker, vehicles on this layout and a manager
@@ -79,7 +79,7 @@ pub(super) struct Arguments {
     /// Vehicles of the demo
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = whole::<usize>, requires = "demo")]
     vehicles: usize,
-    /// Logs on standard error: debug, info, warn or error
+    /// debug, info, warn or error
     #[arg(long, value_name = "LEVEL", default_value = "info")]
     log: String,
 }

@@ -15,18 +15,18 @@ use std::process::ExitCode;
 
 const STATUSES: &str = "\
 Exit status:
-  0  done; under pcr, if it was asked for, all missions were done without a collision
+  0  done; under pcr, if it was asked for, without a collision and all of it
   1  under pcr there was a collision, or a mission was not done
   2  wrong arguments, or a scenario that cannot be read or was refused
   3  the output could not be written";
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr simulate --foraging                      four robots foraging, under each controller
-  pcr simulate --foraging -o replay.html       and a page on which to watch them
-  pcr simulate fleet.json --controller pcr     a scenario: each agent with a path is a robot
-  pcr simulate fleet.json --seed 7             the same with other disturbances
-  pcr simulate fleet.json --noise 0.005        with a better camera";
+  pcr simulate --foraging                    four robots, under each controller
+  pcr simulate --foraging -o replay.html     and a page on which to watch them
+  pcr simulate fleet.json --controller pcr   each agent with a path is a robot
+  pcr simulate fleet.json --seed 7           the same with other disturbances
+  pcr simulate fleet.json --noise 0.005      with a better camera";
 
 /// From one plan to the next \[s\].
 const REPLAN: f64 = 2.0;
@@ -44,25 +44,25 @@ pub(super) struct Arguments {
     /// Four robots that forage, instead of a scenario
     #[arg(long)]
     foraging: bool,
-    /// Only this controller
-    #[arg(long, value_enum)]
+    /// Only this controller: pcr, potential or orca
+    #[arg(long, value_enum, value_name = "NAME", hide_possible_values = true)]
     controller: Option<Choice>,
     /// The same seed gives the same run
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
-    /// Seconds from plan to plan under pcr, 0.05 to 3600 [default: 2]
+    /// From plan to plan under pcr, 0.05 to 3600 s [default: 2]
     #[arg(long, value_name = "S", value_parser = |text: &str| within(text, 0.05, 3600.0))]
     replan: Option<f64>,
-    /// Largest error of observed positions in m, 0 to 10
+    /// Largest error of observed places, to 10 m
     #[arg(long, value_name = "M", default_value_t = 0.015, value_parser = |text: &str| within(text, 0.0, 10.0))]
     noise: f64,
-    /// How far robots may be off their paths in m, 0 to 10
+    /// How far robots are off their paths, to 10 m
     #[arg(long, value_name = "M", default_value_t = 0.005, value_parser = |text: &str| within(text, 0.0, 10.0))]
     drift: f64,
-    /// Largest part of its way that a robot loses to slip, 0 to 0.9
+    /// Largest part lost to slip, to 0.9
     #[arg(long, value_name = "PART", default_value_t = 0.05, value_parser = |text: &str| within(text, 0.0, 0.9))]
     slip: f64,
-    /// Longest stop of a robot, about every 10 s, 0 to 3600 s
+    /// Longest stop, about every 10 s, to 3600 s
     #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = |text: &str| within(text, 0.0, 3600.0))]
     delay: f64,
     /// Trips of each foraging robot (3 if left out)

@@ -2,10 +2,12 @@
 
 use super::help::{DRIVING, STANDING, useless};
 use super::{Stop, say, warn};
-use pcr_formats::import::{Imported, Kind, Options, shortened};
-use pcr_formats::scenario::Scenario;
+use pcr_formats::import::{Imported, Kind, Options, Warnings, shortened};
+use pcr_formats::input::InputError;
+use pcr_formats::scenario::{Agent, Scenario};
 use pcr_formats::{input, output};
 use pcr_planning::locks::rounded;
+use pcr_planning::memory;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
@@ -58,14 +60,45 @@ fn keep(import: &Options) {
 /// The scenario in a file, in whatever format; warnings about it are told.
 pub(super) fn scenario(file: &Path, import: &Options) -> Result<Scenario, Stop> {
     keep(import);
-    let (mut scenario, warnings) = input::read(file, import)?;
+    ask_for(file)?;
+    told(file, input::read(file, import)?, import)
+}
+
+/// Asks for the memory that it takes to read a file.
+fn ask_for(file: &Path) -> Result<(), Stop> {
+    // What has no size, such as standard input, is not known before.
+    let bytes = std::fs::metadata(file).map_or(0, |there| there.len());
+    memory::ask_for_text(bytes).map_err(|large| Stop::wrong(file, large))
+}
+
+/// The scenario in the text of standard input, which is of another format.
+pub(super) fn foreign_scenario(text: String, import: &Options) -> Result<Scenario, Stop> {
+    keep(import);
+    let file = Path::new("-");
+    told(file, input::read_from(file, text, import)?, import)
+}
+
+/// A scenario that was read, with the margin that is asked for; warnings about it are told.
+fn told(file: &Path, (mut scenario, warnings): (Scenario, Warnings), import: &Options) -> Result<Scenario, Stop> {
     warn(file, &warnings);
     if warnings.is_empty() {
         // Those of whoever has written it: what is left out of a file is left out of all that is made of it.
         say(file, scenario.warnings.iter().map(|line| shortened(line)));
     }
-    scenario.give_margin(import.margin.unwrap_or(0.0));
+    give_margin(&mut scenario, import).map_err(|why| Stop::wrong(file, why))?;
     Ok(scenario)
+}
+
+/// Gives the margin that is asked for to all agents that have none.
+pub(super) fn give_margin(scenario: &mut Scenario, import: &Options) -> Result<(), String> {
+    let Some(margin) = import.margin else { return Ok(()) };
+    // What was read from another format has it already.
+    let own = |agent: &Agent| agent.margin != 0.0 && agent.margin != margin;
+    if !scenario.agents.is_empty() && scenario.agents.iter().all(own) {
+        return Err("--margin is of no use: every agent has a margin of its own".into());
+    }
+    scenario.give_margin(margin);
+    Ok(())
 }
 
 /// Refuses a margin for a command that looks at the discs themselves.
@@ -153,11 +186,16 @@ impl Source {
 /// The scenario in several files of orders, states or paths.
 pub(super) fn together(files: &[PathBuf], import: &Options) -> Result<Scenario, Stop> {
     keep(import);
+    files.iter().try_for_each(|file| ask_for(file))?;
     let (mut scenario, warnings) = input::read_all(files, import)?;
     warnings.iter().for_each(|(file, warnings)| warn(file, warnings));
-    scenario.give_margin(import.margin.unwrap_or(0.0));
+    let first = files.first().map_or(Path::new("-"), |first| first);
+    give_margin(&mut scenario, import).map_err(|why| Stop::wrong(first, why))?;
     Ok(scenario)
 }
+
+/// The vehicles of `pcr fleet` and of `pcr serve --demo`, which are as they are.
+pub(super) const FLEET: &str = "fleet";
 
 /// The layout in a file for a command, whose vehicles move or do not.
 pub(super) fn layout(file: &Path, import: &Options, command: &str, moves: bool) -> Result<Imported, Stop> {
@@ -176,7 +214,14 @@ pub(super) fn layout(file: &Path, import: &Options, command: &str, moves: bool) 
         _ => import.clone(),
     };
     keep(import);
-    let (imported, warnings) = input::read_layout(file, import, moves)?;
+    ask_for(file)?;
+    let (imported, warnings) = input::read_layout(file, import, moves).map_err(|error| match error {
+        // There is no --from to say it with.
+        InputError::NoLayout(_) if command == FLEET => {
+            Stop::wrong(file, "not known as a layout by its name or content")
+        }
+        error => error.into(),
+    })?;
     warn(file, &warnings);
     if matches!(command, "locks" | DRIVING | STANDING) {
         say(file, rounded(&imported.layout));

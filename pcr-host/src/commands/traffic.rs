@@ -15,15 +15,16 @@ use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr traffic map.geojson --agents 50 --radius 0.4               waits and throughput
-  pcr traffic map.geojson --agents 50 --radius 0.4 -o traffic    and files and pictures in traffic/
-  pcr traffic map.geojson --hours 1 --radius 0.4                 robots that get one mission after the other
-  pcr traffic map.geojson --hours 1 --radius 0.4 --compare       and with locks and start delays";
+  pcr traffic map.geojson --agents 50 --radius 0.4   waits and throughput
+  pcr traffic map.geojson --radius 0.4 -o traffic    and files and pictures
+  pcr traffic map.geojson --hours 1 --radius 0.4     mission after mission
+  pcr traffic map.geojson --hours 1 --radius 0.4 --compare   also with locks";
 
 const STATUSES: &str = "\
 Exit status:
   0  done; no contact, proved
-  1  a contact, or one that could not be ruled out, or nobody has a plan; with --hours: a robot that waits for ever, or nobody reached a goal
+  1  a contact, or one that could not be ruled out, or nobody has a plan;
+     with --hours: a robot that waits for ever, or nobody reached a goal
   2  wrong arguments, or a layout that cannot be read or was refused
   3  the output could not be written";
 
@@ -33,27 +34,27 @@ Exit status:
 pub(super) struct Arguments {
     /// The layout; standard input if left out or `-`
     layout: Option<PathBuf>,
-    /// Agents; each has one mission, with --hours one after the other
+    /// Agents; a mission each, or many with --hours
     #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u16).range(1..))]
     agents: u16,
     /// The same seed gives the same missions
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
-    /// Run the fleet for so many hours, with delays: throughput, waits, proof that nobody touches
+    /// Run the fleet for so many hours, with delays, and prove it
     #[arg(long, value_name = "H", value_parser = hours, conflicts_with = "output")]
     hours: Option<f64>,
-    /// Also run the same missions and delays with locks, and with start delays
+    /// Also with locks, and with start delays
     #[arg(long, requires = "hours")]
     compare: bool,
-    /// Part of the time for which robots are stopped at random [default: 0.02]
+    /// Part of the time that robots stand [default: 0.02]
     #[arg(long, value_name = "PART", value_parser = part, requires = "hours")]
     stopped: Option<f64>,
-    /// Part of their speed that robots lose at most [default: 0.05]
+    /// Part of their speed lost at most [default: 0.05]
     #[arg(long, value_name = "PART", value_parser = part, requires = "hours")]
     slip: Option<f64>,
     #[command(flatten)]
     printed: Printed,
-    /// Write the missions (missions.json), the plan (plan.json) and pictures of it to this directory as well
+    /// Directory for missions.json, plan.json and pictures
     #[arg(short, long, value_name = "DIR", value_parser = folder())]
     output: Option<PathBuf>,
     #[command(flatten)]

@@ -1,15 +1,15 @@
 //! Shared code of commands that process one scenario after the other.
 
 use super::printed::is_alone;
-use super::sources::{Source, gathered};
+use super::sources::{Source, foreign_scenario, gathered, give_margin};
 use super::{Form, NOT_WRITTEN, Printed, Stop, WRONG_INPUT, complain, say};
 use crate::progress::Progress;
 use pcr_formats::import::{Options, shortened};
-use pcr_formats::input::Lines;
+use pcr_formats::input::{self, InputError, Lines};
 use pcr_formats::scenario::Scenario;
 use pcr_planning::regions::Told;
 use pcr_planning::report::Unprinted;
-use std::io::{self, BufReader, IsTerminal, Write};
+use std::io::{self, BufRead, BufReader, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// What a command makes of each scenario that comes in.
@@ -39,17 +39,21 @@ pub(super) fn run<W: Work>(work: &W, files: Vec<PathBuf>, import: &Options, prin
     if form == Form::Csv {
         out.write_all(W::CSV_HEADER.as_bytes())?;
     }
-    let mut tally = Tally::default();
+    let (mut tally, mut foreign) = (Tally::default(), None);
     for (place, source) in sources.iter().enumerate() {
         if form == Form::Table && place > 0 {
             writeln!(out)?;
         }
         if source.is_lines(import) {
-            lines(work, form, import.margin, &mut out, &mut tally)?;
-            continue;
+            let mut lines = Lines::new(BufReader::new(io::stdin().lock()));
+            let Some(text) = lines.foreign()? else {
+                answer_lines(work, lines, form, import, &mut out, &mut tally)?;
+                continue;
+            };
+            foreign = Some(text);
         }
         tally.read += 1;
-        match one(work, source, import, &mut out) {
+        match one(work, source, foreign.take(), import, &mut out) {
             Ok(found) => tally.found |= found,
             Err(Stop::Error(message, WRONG_INPUT)) if sources.len() > 1 => {
                 tally.refused += 1;
@@ -70,8 +74,18 @@ pub(super) fn run<W: Work>(work: &W, files: Vec<PathBuf>, import: &Options, prin
     }
 }
 
-fn one<W: Work>(work: &W, source: &Source, import: &Options, out: &mut impl Write) -> Result<bool, Stop> {
-    let scenario = source.scenario(import)?;
+/// Answers one source; of standard input the text may be there already.
+fn one<W: Work>(
+    work: &W,
+    source: &Source,
+    text: Option<String>,
+    import: &Options,
+    out: &mut impl Write,
+) -> Result<bool, Stop> {
+    let scenario = match text {
+        Some(text) => foreign_scenario(text, import)?,
+        None => source.scenario(import)?,
+    };
     let progress = Progress::new(format!("{}: {} agents", source.file().display(), scenario.agents.len()));
     work.print(&scenario, &|done, total| progress.set(done, total), out).map_err(|unprinted| match unprinted {
         Unprinted::Failure(failure) => Stop::wrong(source.file(), failure),
@@ -79,18 +93,24 @@ fn one<W: Work>(work: &W, source: &Source, import: &Options, out: &mut impl Writ
     })
 }
 
-/// Scenarios from standard input, each answered before the next one is read.
-fn lines<W: Work>(
+/// Lines after which there is no scenario in a text of which none begins as one.
+const STRANGE: usize = 8;
+
+/// Answers scenarios from standard input, each before the next one is read.
+fn answer_lines<W: Work>(
     work: &W,
+    lines: Lines<impl BufRead>,
     form: Form,
-    margin: Option<f64>,
+    import: &Options,
     out: &mut impl Write,
     tally: &mut Tally,
 ) -> Result<(), Stop> {
     // On a terminal the answers themselves show how far it is.
     let progress = (!io::stdout().is_terminal()).then(|| Progress::new("scenarios"));
     let before = tally.read;
-    for line in Lines::new(BufReader::new(io::stdin().lock())) {
+    input::useful_with_lines(import)?;
+    let mut strange = 0;
+    for line in lines {
         let line = line?;
         if is_alone() {
             // Nobody waits for the answers, and whoever writes the scenarios may never end. What is not looked at is not free.
@@ -105,13 +125,17 @@ fn lines<W: Work>(
                 let number = line.number;
                 let warnings = scenario.warnings.iter().map(|warning| format!("line {number}: {}", shortened(warning)));
                 say(Path::new("-"), warnings);
-                scenario.give_margin(margin.unwrap_or(0.0));
-                match work.print(&scenario, &|_, _| {}, out) {
+                let answered = match give_margin(&mut scenario, import) {
+                    Ok(()) => work.print(&scenario, &|_, _| {}, out).map_err(|unprinted| match unprinted {
+                        Unprinted::Failure(failure) => Ok(failure.to_string()),
+                        Unprinted::Output(error) => Err(error),
+                    }),
+                    Err(why) => Err(Ok(why)),
+                };
+                match answered {
                     Ok(found) => Ok(found),
-                    Err(Unprinted::Failure(failure)) => {
-                        Err((scenario.name, format!("line {}: {failure}", line.number)))
-                    }
-                    Err(Unprinted::Output(error)) => return Err(error.into()),
+                    Err(Ok(why)) => Err((scenario.name, format!("line {number}: {why}"))),
+                    Err(Err(error)) => return Err(error.into()),
                 }
             }
             Err(refused) => Err(refused),
@@ -128,6 +152,10 @@ fn lines<W: Work>(
         }
         out.flush()?;
         tally.read += 1;
+        strange += usize::from(!line.is_json);
+        if strange == STRANGE && tally.read - before == STRANGE {
+            return Err(InputError::Unknown(None).into());
+        }
         if let Some(progress) = &progress {
             progress.set(tally.read, 0);
         }

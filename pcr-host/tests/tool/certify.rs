@@ -155,3 +155,12 @@ fn regions_of_outlines_that_are_none_of_the_table_are_refused() {
     other["regions"] = json!([]);
     assert!(refused("outlines.json", &other).starts_with("regions: none of agents "));
 }
+
+#[test]
+fn a_table_comes_in_by_a_pipe() {
+    let table = run(&["regions", crate::fixture::PAPER, "--json", "--certificate"]).ok();
+    let proved = crate::fixture::run_with(&["certify", "--table", "-", "--json"], table.as_bytes()).json();
+    assert_eq!(proved["verdict"], "proved");
+    let message = run(&["certify", "--table", "nowhere.json"]).failed(2);
+    assert!(message.starts_with("pcr: nowhere.json: cannot be read: "), "{message}");
+}

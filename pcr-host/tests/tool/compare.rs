@@ -34,6 +34,7 @@ fn charts_show_every_method() {
     {
         let svg = std::fs::read_to_string(output.join(chart)).unwrap();
         assert!(roxmltree::Document::parse(&svg).is_ok() && !svg.contains("NaN"), "{chart}");
+        assert!(svg.contains(">crossing, 2 agents: "), "{svg}");
         assert!(methods.iter().all(|method| svg.contains(&format!(">{method}<"))), "{chart}");
     }
 }

@@ -166,7 +166,7 @@ fn what_is_read_is_not_lost_to_something_of_another_kind() {
     let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/warehouse_graph.geojson");
     let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
     let [scenario, graph, link] = ["s.json", "g.geojson", "link"].map(path);
-    let [page, chart, plan] = ["index.html", "regions-1.svg", "plan.json"].map(path);
+    let [page, chart, plan, sheet] = ["index.html", "regions-1.svg", "plan.json", "sheet.json"].map(path);
     let out = folder.to_str().unwrap();
     for name in [&scenario, &page, &chart] {
         fs::write(name, crossing().to_string()).unwrap();
@@ -174,6 +174,7 @@ fn what_is_read_is_not_lost_to_something_of_another_kind() {
     for name in [&graph, &plan] {
         fs::copy(layout, name).unwrap();
     }
+    fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/small/factsheet.json"), &sheet).unwrap();
     symlink("s.json", &link).unwrap();
     let vehicle = ["--radius", "0.4", "-q"];
     for (arguments, file) in [
@@ -182,6 +183,8 @@ fn what_is_read_is_not_lost_to_something_of_another_kind() {
         (vec!["simulate", &link, "--controller", "pcr", "-o", &scenario], &scenario),
         ([&["locks", &graph, "--index", &graph], &vehicle[..]].concat(), &graph),
         ([&["locks", &graph, "--write", "pcr", "-o", &graph], &vehicle[..]].concat(), &graph),
+        // What is written is made of the layout, and of no other file that was read.
+        (vec!["locks", &graph, "--fleet", &sheet, "--write", "nav2", "-o", &sheet, "-q"], &sheet),
         (vec!["import", "nav2", &graph, "--route", "0:50", "-o", &graph], &graph),
         (vec!["plan", &graph, "--route", "0:50", "-o", &graph], &graph),
         (vec!["map", &page, "-o", out], &page),

@@ -34,6 +34,14 @@ fn help_is_short() {
         assert!(short.lines().count() < 30, "{command:?}\n{short}");
         assert!(long.lines().count() < 60, "{command:?}\n{long}");
         assert!(long.lines().all(|line| line.chars().count() <= 100), "{command:?}\n{long}");
+        // On a terminal of the usual width, lines are broken.
+        let [narrow_short, narrow] = ["-h", "--help"].map(|option| {
+            let output = pcr().args(command).arg(option).env("COLUMNS", "80").output().unwrap();
+            String::from_utf8(output.stdout).unwrap()
+        });
+        assert!(narrow_short.lines().count() < 35, "{command:?}\n{narrow_short}");
+        assert!(narrow.lines().count() < 60, "{command:?}\n{narrow}");
+        assert!(narrow.lines().all(|line| line.chars().count() <= 80), "{command:?}\n{narrow}");
         assert!(!long.contains("see more"), "{command:?}\n{long}");
         assert!(short.contains("--help") && long.contains("Usage: pcr"), "{command:?}");
         assert_eq!(run(&[&["help"], command].concat()).ok(), long, "{command:?}");
@@ -80,6 +88,9 @@ fn options_are_listed_where_they_do_something() {
 #[test]
 fn options_that_do_nothing_are_refused() {
     let scenario = file("habits", "scenario.json", crossing().to_string());
+    let mut wide = crossing();
+    (0..2).for_each(|agent| wide["agents"][agent]["margin"] = serde_json::json!(0.05));
+    let wide = file("habits", "wide.json", wide.to_string());
     let (nav2, plan) = (real("nav2/aws_graph.geojson"), real("ccbs/example_grid_task_log.xml"));
     let index = file("habits", "aws.locks", "");
     run(&["locks", &nav2, "--radius", "0.3", "--index", &index, "-q"]).ok();
@@ -103,6 +114,8 @@ fn options_that_do_nothing_are_refused() {
             &["simulate", &scenario, "--controller", "potential", "--margin", "1"],
             "--margin is of no use: only pcr plans",
         ),
+        (&["plan", &wide, "--margin", "0.1"], "--margin is of no use: every agent has a margin of its own"),
+        (&["regions", &wide, "--margin", "0.1"], "--margin is of no use: every agent has a margin of its own"),
         (&["check", &scenario, "--margin", "0.1"], discs),
         (&["compare", &scenario, "--margin", "0.1"], discs),
         (&["map", &scenario, "--margin", "0.1", "-o", maps], discs),
@@ -229,8 +242,18 @@ fn completions_and_manual_pages_name_every_command() {
     let page = run(&["man"]).ok();
     assert!(page.contains(".TH pcr 1") && COMMANDS.iter().all(|command| page.contains(command)), "{page}");
     let page = run(&["man", "plan"]).ok();
-    assert!(page.contains("\\-\\-priority") && page.contains("Exit status"), "{page}");
-    assert_eq!(run(&["man", "areas"]).failed(2), "pcr: there is no command areas; pcr --help lists them\n");
+    assert!(page.contains("\\-\\-priority") && page.contains("\n.SH \"EXIT STATUS\"\n.nf\n\\&  0  a plan"), "{page}");
+    // What it is, in one line, and not again in the description.
+    let page = run(&["man"]).ok();
+    let (name, rest) = page.split_once(".SH NAME\n").unwrap().1.split_once(".SH SYNOPSIS").unwrap();
+    assert!(name.starts_with("pcr \\- Exact collision regions of discs on paths of lines and arcs\n"), "{name}");
+    assert!(!name.contains(".PP"), "{name}");
+    assert!(rest.contains(".SH \"EXAMPLES\"\n.nf\n\\&  pcr   ") && !rest.contains("EXTRA"), "{rest}");
+    let fleet = run(&["man", "fleet"]).ok();
+    assert!(fleet.contains(".SH \"NOTES\"\n.nf\n\\&User and password"), "{fleet}");
+    // Commands are offered for what they are expected for.
+    let bash = run(&["completions", "bash"]).ok();
+    assert!(bash.contains("opts=\"-h -q --help --quiet regions certify check plan map"), "{bash}");
 }
 
 #[test]

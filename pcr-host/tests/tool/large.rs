@@ -91,6 +91,21 @@ fn what_memory_does_not_hold_is_refused_with_a_number() {
         let number = message.contains(" MB ") && message.starts_with("pcr: ");
         assert!(number, "{arguments:?}: {message}");
     }
+    // By the status alone, nothing is held.
+    assert_eq!(limited(200_000, &["check", &heap, "-q"]), (Some(1), String::new()));
+    let (many, large) =
+        (file("large", "many.json", discs(40_000, 3.0)), file("large", "pile.json", discs(2_000, 0.001)));
+    for (limit, arguments) in [
+        (60_000, &["check", &many][..]),
+        (150_000, &["plan", &many]),
+        (200_000, &["compare", &many, "--rounds", "1", "--method", "polyline"]),
+        (300_000, &["check", &large, "--closest", "--json"]),
+        (460_000, &["check", &large, "--certify", "--json"]),
+    ] {
+        let (status, message) = limited(limit, arguments);
+        let number = message.contains(" MB ") && message.starts_with("pcr: ");
+        assert!(status == Some(2) && number, "{arguments:?}: {status:?} {message}");
+    }
     // Row by row it fits.
     let (status, message) = limited(400_000, &["regions", &heap, "--format", "csv"]);
     assert_eq!((status, message.as_str()), (Some(0), ""));

@@ -113,3 +113,41 @@ fn tables_and_csv_of_lines_have_their_errors_on_standard_error() {
     assert_eq!((table.status, table.err.as_str()), (2, message));
     assert!(table.out.contains("first: 2 collision regions") && table.out.contains("last: 2 collision regions"));
 }
+
+/// As for a file, a format that is known by its content need not be named.
+#[test]
+fn another_format_is_read_as_one_file() {
+    let data = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
+    let plan = std::fs::read(format!("{data}/real/ccbs/example_grid_task_log.xml")).unwrap();
+    for command in ["check", "plan"] {
+        let run = run_with(&[command, "--radius", "0.353553", "--json", "-q"], &plan);
+        assert_eq!(run.status, 0, "{command}: {}", run.err);
+    }
+    // JSON over several lines, with warnings.
+    let state = std::fs::read_to_string(format!("{data}/small/state.json")).unwrap();
+    let pretty = serde_json::to_string_pretty(&serde_json::from_str::<Value>(&state).unwrap()).unwrap();
+    let vehicle = ["--speed", "1", "--acceleration", "1", "--rotation", "1", "--rotation-acceleration", "1"];
+    let regions = ["regions", "--json", "--radius", "0.4"];
+    let run = run_with(&[&regions[..], &vehicle].concat(), pretty.as_bytes());
+    assert_eq!((run.status, answers(&run.out).len()), (0, 1), "{}", run.err);
+    let unknown = run_with(&["check"], b"<html>\n<body>\n").failed(2);
+    assert!(unknown.starts_with("pcr: standard input: no scenario, which is a JSON object, nor another"), "{unknown}");
+    // An option that does nothing with scenarios is refused as with a file.
+    let vain = run_with(&["check", "--radius", "1"], named("a").as_bytes()).failed(2);
+    assert!(vain.contains("standard input: --radius is of no use: a scenario has its own vehicles"), "{vain}");
+    let mut wide = crossing();
+    (0..2).for_each(|agent| wide["agents"][agent]["margin"] = json!(0.05));
+    let run = run_with(&["regions", "--margin", "0.1", "-q"], wide.to_string().as_bytes());
+    assert!(run.err.contains("line 1: --margin is of no use: every agent has a margin of its own"), "{}", run.err);
+}
+
+#[test]
+fn a_text_without_any_scenario_ends_soon() {
+    let run = run_with(&["check"], "nonsense\n".repeat(1000).as_bytes());
+    assert_eq!((run.status, run.err.lines().count()), (2, 9), "{}", run.err);
+    assert!(run.err.lines().last().unwrap().contains("say what it is with --from"), "{}", run.err);
+    // Whatever comes between scenarios is refused line by line.
+    let input = format!("{}\n{}{}\n", named("first"), "nonsense\n".repeat(20), named("last"));
+    let run = run_with(&["regions", "--json"], input.as_bytes());
+    assert_eq!((run.status, answers(&run.out).len()), (2, 22), "{}", run.err);
+}

@@ -348,3 +348,12 @@ fn delays_of_the_shortest_edges_are_as_long_as_they_take() {
         }
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn a_table_of_its_own_form_is_not_written_to_a_device() {
+    let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/aws_graph.geojson");
+    let message = run(&["locks", layout, "--radius", "0.3", "-q", "--index", "/dev/null"]).failed(2);
+    let why = "this is written and read at many places, which a pipe or a device is not";
+    assert_eq!(message, format!("pcr: /dev/null: {why}\n"));
+}

@@ -366,3 +366,15 @@ fn the_tables_of_the_paper_are_printed_beside_ours() {
     assert!(!out.contains('!'), "{out}");
     assert!(out.lines().count() <= 60 && out.lines().all(|line| line.chars().count() <= 120), "{out}");
 }
+
+#[cfg(feature = "png")]
+#[test]
+fn letters_that_are_boxes_in_a_picture_are_named() {
+    let mut labelled = crossing();
+    (labelled["agents"][0]["label"], labelled["agents"][1]["label"]) = (json!("机器人"), json!("\u{e9}"));
+    let name = file("boxes", "labelled.json", labelled.to_string());
+    let pictures = directory("boxes").join("maps").to_str().unwrap().to_owned();
+    let run = run(&["map", &name, "-o", &pictures]);
+    let text = "PNG has boxes for letters that the font of the program lacks: 人 器 机; SVG has them";
+    assert_eq!((run.status, run.err), (0, format!("pcr: warning: {pictures}: {text}\n")));
+}

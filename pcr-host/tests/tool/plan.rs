@@ -272,3 +272,29 @@ fn traffic_in_which_nobody_has_a_plan_is_no_success() {
         assert_eq!(answer["planned"], json!(planned));
     }
 }
+
+#[test]
+fn a_plan_is_not_written_among_its_pictures() {
+    let input = file("plan", "odds.json", crossing().to_string());
+    let folder = directory("plan-odds");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    let name = |part: &str| folder.join(part).to_str().unwrap().to_owned();
+    for output in ["maps", "maps/before", "maps/after/index.html"] {
+        let message = run(&["plan", &input, "-q", "--pictures", &name("maps"), "-o", &name(output)]).failed(2);
+        assert_eq!(message, "pcr: --output: pictures are written there; give another name\n");
+    }
+    // Where the pictures cannot be, there is no plan either.
+    fs::write(folder.join("maps"), "").unwrap();
+    let message = run(&["plan", &input, "-q", "--pictures", &name("maps"), "-o", &name("plan.json")]).failed(3);
+    assert!(message.contains("maps: cannot be written: it is there and not a folder"), "{message}");
+    assert!(!folder.join("plan.json").exists());
+}
+
+#[test]
+fn labels_with_commas_can_be_given_a_priority() {
+    let mut labelled = crossing();
+    (labelled["agents"][0]["label"], labelled["agents"][1]["label"]) = (json!("dock, left"), json!("b"));
+    let (status, report, _) = plan("commas", &labelled, &["--priority", "b,dock\\, left"]);
+    assert_eq!((status, &report["order"]), (0, &json!([2, 1])), "{report}");
+}

@@ -116,7 +116,9 @@ fn every_output_fits_its_schema() {
     // Lines of `pcr serve`: pcr-host/serve/tests/lines.rs.
     there.retain(|name| name != "pcr-serve.schema.json");
     if cfg!(not(feature = "serve")) {
-        there.retain(|name| !["pcr-contacts.schema.json", "pcr-vehicles.schema.json"].contains(&name.as_str()));
+        there.retain(|name| {
+            !["pcr-contacts.schema.json", "pcr-record.schema.json", "pcr-vehicles.schema.json"].contains(&name.as_str())
+        });
     }
     there.sort();
     formats.sort();
@@ -130,8 +132,18 @@ fn simulated() -> Vec<String> {
     let layout = real("nav2/aws_graph.geojson");
     let (vehicles, record) = (file("schema", "vehicles.json", ""), file("schema", "record.txt", ""));
     let fleet = ["fleet", &layout, "--vehicles", "3", "--alone", "supervisor", "--time", "20"];
-    run(&[&fleet[..], &["--profiles", &vehicles, "--record", &record]].concat()).ok();
-    vec![fits(&fs::read_to_string(vehicles).unwrap()), fits(&run(&["fleet", "--certify", &record]).ok())]
+    run(&[&fleet[..], &["--profiles", &vehicles, "--record", &record, "-q"]].concat()).ok();
+    let lines = fs::read_to_string(&record).unwrap();
+    let [first, .., last] = lines.lines().collect::<Vec<_>>()[..] else { panic!("{lines}") };
+    // The other lines are described beside the first one.
+    let described = &schema("pcr-record")["$defs"];
+    let line = lines.lines().nth(1).unwrap();
+    for (name, line) in [("position", line), ("end", last)] {
+        let line: Value = serde_json::from_str(line).unwrap();
+        assert_eq!(faults(&closed(described[name].clone()), &line), Vec::<String>::new(), "{name}");
+    }
+    let certified = run(&["fleet", "--certify", &record]).ok();
+    vec![fits(&fs::read_to_string(vehicles).unwrap()), fits(first), fits(&certified)]
 }
 
 fn json_files(folder: &Path, files: &mut Vec<PathBuf>) {
@@ -172,6 +184,7 @@ fn schema_and_tool_refuse_the_same_scenarios() {
         ("/format", json!("pcr-scenario")),
         ("/format", json!("pcr-plan")),
         ("/version", json!(1)),
+        ("/version", json!(1.0)),
         ("/version", json!(2)),
         ("/units", json!("m")),
         ("/agents", json!([])),
@@ -179,6 +192,7 @@ fn schema_and_tool_refuse_the_same_scenarios() {
         ("/agents", Value::Null),
         ("/agents/0/id", json!(-1)),
         ("/agents/0/id", json!(1.5)),
+        ("/agents/0/id", json!(1.0)),
         ("/agents/0/id", json!("7")),
         ("/agents/0/id", Value::Null),
         ("/agents/0/label", json!("AGV-7")),
@@ -212,6 +226,7 @@ fn schema_and_tool_refuse_the_same_scenarios() {
         ("/agents/0/profile", json!({ "v0": -1, "pieces": [] })),
         ("/agents/0/profile", json!({ "pieces": [] })),
         ("/agents/0/loads", json!([{ "segments": [1, 1], "radius": 0.6 }])),
+        ("/agents/0/loads", json!([{ "segments": [1.0, 1], "radius": 0.6 }])),
         ("/agents/0/loads", json!([{ "segments": [0, 1], "radius": 0.6 }])),
         ("/agents/0/loads", json!([{ "segments": [1, 1] }])),
         ("/agents/0/colour", json!("red")),

@@ -2,6 +2,7 @@
 
 use super::{Comparison, Errors, Question};
 use pcr_drawing::plot::{Chart, Series};
+use pcr_formats::scenario::printable;
 
 /// Errors below this are drawn as large as this.
 const LEAST: f64 = 1e-10;
@@ -33,7 +34,8 @@ impl Comparison {
             Question::Regions => "area off, as a part of all",
             Question::Conflicts => "largest error of a begin or end [s]",
         };
-        let title = format!("{} agents: {}", self.agents, question.title());
+        let of = if self.name.is_empty() { String::new() } else { format!("{}, ", printable(&self.name)) };
+        let title = format!("{of}{} agents: {}", self.agents, question.title());
         Chart { title: &title, axes: ["time [ms]", error], series: series.collect() }.draw()
     }
 }

@@ -3,11 +3,21 @@
 
 use crate::svg::{Escaped, Pixels};
 use roxmltree::{Document, Node};
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::io;
+use std::sync::{Mutex, PoisonError};
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
 static FONT: &[u8] = include_bytes!("../font/DejaVuSans-subset.ttf");
+
+/// Letters that were asked for and are not in the font.
+static LACKING: Mutex<BTreeSet<char>> = Mutex::new(BTreeSet::new());
+
+/// Letters of all pictures up to now, in order, that are boxes as PNG; the next ones begin anew.
+pub(crate) fn lacking() -> String {
+    std::mem::take(&mut *LACKING.lock().unwrap_or_else(PoisonError::into_inner)).into_iter().collect()
+}
 
 /// Size of texts for which nothing says it \[px\].
 const SIZE: f64 = 12.0;
@@ -44,8 +54,14 @@ fn outline(face: &Face<'_>, text: Node<'_, '_>) -> String {
     let size = text.ancestors().find_map(|node| node.attribute("font-size")?.parse().ok()).unwrap_or(SIZE);
     let scale = size / f64::from(face.units_per_em());
     let letters = text.text().unwrap_or_default().chars();
-    // A letter that the font does not have is a box.
-    let glyphs: Vec<GlyphId> = letters.map(|letter| face.glyph_index(letter).unwrap_or_default()).collect();
+    let glyph = |letter| {
+        face.glyph_index(letter).unwrap_or_else(|| {
+            LACKING.lock().unwrap_or_else(PoisonError::into_inner).insert(letter);
+            // A box.
+            GlyphId::default()
+        })
+    };
+    let glyphs: Vec<GlyphId> = letters.map(glyph).collect();
     let advance = |&glyph: &GlyphId| scale * f64::from(face.glyph_hor_advance(glyph).unwrap_or(0));
     let width: f64 = glyphs.iter().map(advance).sum();
     let before = match text.attribute("text-anchor") {

@@ -54,16 +54,16 @@ pub const HEADING: &str = "Layouts and other formats";
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "clap", derive(clap::Args), command(next_help_heading = HEADING))]
 pub struct Options {
-    /// Format; by name and content if left out
-    #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "FORMAT"))]
+    /// Format; pcr import --help lists them
+    #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "FORMAT", hide_possible_values = true))]
     pub from: Option<Format>,
-    /// Way of an agent; as often as there are agents
+    /// Way of an agent; may be given again
     #[cfg_attr(feature = "clap", arg(long = "route", value_name = "FROM:TO[@TIME]"))]
     pub routes: Vec<String>,
     /// Radius of the vehicle
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = positive))]
     pub radius: Option<f64>,
-    /// Margin to keep around discs that have none of their own
+    /// Margin around discs that have none of their own
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = not_negative))]
     pub margin: Option<f64>,
     /// Largest speed of the vehicle
@@ -75,28 +75,28 @@ pub struct Options {
     /// Largest speed of rotation of the vehicle
     #[cfg_attr(feature = "clap", arg(long, value_name = "RAD/S", value_parser = positive))]
     pub rotation: Option<f64>,
-    /// Largest angular acceleration of the vehicle
-    #[cfg_attr(feature = "clap", arg(long, value_name = "RAD/S2", value_parser = positive))]
+    /// Largest angular acceleration [rad/s²]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N", value_parser = positive))]
     pub rotation_acceleration: Option<f64>,
-    /// Type of the vehicle, where a layout has several (LIF)
+    /// Type of vehicle, of several (LIF)
     #[cfg_attr(feature = "clap", arg(long, value_name = "TYPE"))]
     pub vehicle: Option<String>,
-    /// Fleet configuration (Open-RMF) or factsheet (VDA 5050)
+    /// Fleet (Open-RMF) or factsheet (VDA 5050)
     #[cfg_attr(feature = "clap", arg(long, value_name = "FILE"))]
     pub fleet: Option<PathBuf>,
     /// Radius of corners (nav2: 1 if left out)
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = not_negative))]
     pub corner_radius: Option<f64>,
-    /// Largest distance of arcs from curves (0.001 if left out)
+    /// Arcs to curves, at most [default: 0.001]
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = positive))]
     pub tolerance: Option<f64>,
-    /// Navigation graph, where there are several (Open-RMF)
+    /// Navigation graph, of several (Open-RMF)
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub graph: Option<u64>,
-    /// Travel the horizon of an order, not only its base (VDA 5050)
+    /// Travel the horizon of orders (VDA 5050)
     #[cfg_attr(feature = "clap", arg(long))]
     pub horizon: bool,
-    /// Read what can be read of a layout; without it, a file is refused for anything that would be left out
+    /// Read what can be read, and leave the rest
     #[cfg_attr(feature = "clap", arg(long))]
     pub partial: bool,
 }

@@ -3,6 +3,7 @@
 use super::InputError;
 use crate::import::Format;
 use crate::scenario::Scenario;
+use std::collections::VecDeque;
 use std::io::BufRead;
 use std::path::Path;
 
@@ -11,6 +12,8 @@ use std::path::Path;
 pub struct Line {
     /// Where it begins, counted from 1, blank lines included.
     pub number: usize,
+    /// Whether it begins as a scenario does, whatever comes then.
+    pub is_json: bool,
     /// The scenario, or the name as far as it could be read and what is wrong.
     pub scenario: Result<Scenario, (String, String)>,
 }
@@ -25,12 +28,39 @@ pub struct Lines<R> {
     number: usize,
     /// A line that is read already.
     ahead: Option<Vec<u8>>,
+    /// Values that were looked at already, with the numbers of their first lines.
+    seen: VecDeque<(usize, Vec<u8>)>,
 }
 
 impl<R: BufRead> Lines<R> {
     /// The scenarios that `reader` gives.
     pub fn new(reader: R) -> Self {
-        Self { reader, number: 0, ahead: None }
+        Self { reader, number: 0, ahead: None, seen: VecDeque::new() }
+    }
+
+    /// The whole text, if what comes first is of another format, or of none that has lines: then all of it is one file.
+    ///
+    /// # Errors
+    /// [`InputError`] where it cannot be read.
+    pub fn foreign(&mut self) -> Result<Option<String>, InputError> {
+        let Some(first) = self.value()? else { return Ok(None) };
+        let mut begin = String::from_utf8_lossy(&first.1).into_owned();
+        self.seen.push_back(first);
+        // Plans on grids may begin with how many agents there are.
+        if begin.trim().parse::<u32>().is_ok()
+            && let Some(second) = self.value()?
+        {
+            begin += &String::from_utf8_lossy(&second.1);
+            self.seen.push_back(second);
+        }
+        let is_markup = begin.trim_start_matches('\u{feff}').trim_start().starts_with('<');
+        if !is_markup && Format::of(Path::new("-"), &begin).is_none() {
+            return Ok(None);
+        }
+        let mut text: Vec<u8> = self.seen.drain(..).flat_map(|(_, value)| value).collect();
+        text.extend(self.ahead.take().unwrap_or_default());
+        self.reader.read_to_end(&mut text).map_err(|error| InputError::Unreadable(None, error))?;
+        String::from_utf8(text).map(Some).map_err(|_| InputError::NotText(None))
     }
 
     /// The next line; nothing at the end.
@@ -48,7 +78,7 @@ impl<R: BufRead> Lines<R> {
 
     /// The text of the next value with the number of its first line.
     fn value(&mut self) -> Result<Option<(usize, Vec<u8>)>, InputError> {
-        let blank = |line: &[u8]| line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line).trim_ascii().is_empty();
+        let blank = |line: &[u8]| without_mark(line).trim_ascii().is_empty();
         let mut text = loop {
             let Some(line) = self.line()? else { return Ok(None) };
             self.number += 1;
@@ -71,6 +101,11 @@ impl<R: BufRead> Lines<R> {
         }
         Ok(Some((number, text)))
     }
+}
+
+/// Without the mark of the order of bytes, with which a text may begin.
+fn without_mark(text: &[u8]) -> &[u8] {
+    text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
 }
 
 /// How deep in arrays and objects a text is.
@@ -134,9 +169,13 @@ impl<R: BufRead> Iterator for Lines<R> {
     type Item = Result<Line, InputError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        match self.value() {
+        let value = self.seen.pop_front().map_or_else(|| self.value(), |seen| Ok(Some(seen)));
+        match value {
             Ok(None) => None,
-            Ok(Some((number, text))) => Some(Ok(Line { number, scenario: scenario(number, text) })),
+            Ok(Some((number, text))) => {
+                let is_json = without_mark(&text).trim_ascii_start().starts_with(b"{");
+                Some(Ok(Line { number, is_json, scenario: scenario(number, text) }))
+            }
             Err(error) => Some(Err(error)),
         }
     }
@@ -185,6 +224,29 @@ mod tests {
             Err("line 2: units: unknown key; known are format, version, name, agents, warnings".to_owned())
         );
         assert_eq!(lines[1], (3, Err("line 3: agents: 1 where an array is expected".to_owned())));
+    }
+
+    #[test]
+    fn a_text_of_another_format_is_one_file() {
+        for text in [
+            "{\"orderId\": \"x\",\n \"nodes\": [],\n \"edges\": []}\n{\"orderId\": \"y\"}\n",
+            "\n<?xml version=\"1.0\"?>\n<root>\n</root>\n",
+            "<html>\n",
+            "2\nAgent 0: (1,2)->(1,3)->\nAgent 1: (2,2)->\n",
+        ] {
+            let mut lines = Lines::new(text.as_bytes());
+            let foreign = lines.foreign().unwrap();
+            assert_eq!(foreign.as_deref(), Some(text.trim_start_matches('\n')), "{text}");
+            assert!(lines.next().is_none());
+        }
+        // What is looked at is read all the same, and nothing more of it.
+        for text in ["{\"agents\": [\n]}\n{\"agents\": []}", "7\n8\n", "nonsense\n{\"agents\": []}\n", "\n"] {
+            let mut lines = Lines::new(text.as_bytes());
+            assert_eq!(lines.foreign().unwrap(), None, "{text}");
+            let read: Vec<Line> = lines.map(|line| line.unwrap()).collect();
+            let plain: Vec<Line> = Lines::new(text.as_bytes()).map(|line| line.unwrap()).collect();
+            assert_eq!(read, plain, "{text}");
+        }
     }
 
     #[test]

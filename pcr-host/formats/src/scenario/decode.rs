@@ -1,6 +1,6 @@
 //! Decodes a scenario from JSON: the meaning of each field, and conditions between fields.
 
-use super::fields::{Fields, LIMIT, Place, Range, ScenarioError, brief, figure};
+use super::fields::{Fields, LIMIT, Place, Range, ScenarioError, brief, figure, whole};
 use super::labels::{self, called};
 use super::outline::{loads, outline};
 use super::settled::Settled;
@@ -96,7 +96,7 @@ impl Scenario {
             Some((format, _)) => return Err(fields.unexpected("format", format, &format!("\"{FORMAT}\""))),
         }
         match fields.get("version").map(|version| (version, &version.data)) {
-            Some((_, Data::Number(version))) if version.parse() == Ok(VERSION) => {}
+            Some((_, Data::Number(version))) if whole(version) == Some(VERSION) => {}
             None => {}
             Some((version, _)) => {
                 return Err(fields.unexpected("version", version, &format!("{VERSION}, all that this pcr knows,")));
@@ -183,7 +183,7 @@ impl Agent {
         // A text of digits could be meant for a number.
         let named = Some(text(given("id"))).filter(|id| !id.is_empty() && id.parse::<u64>().is_err());
         let id = match (given("id"), &named) {
-            (Some(Json { data: Data::Number(text), .. }), _) => text.parse::<u64>().ok(),
+            (Some(Json { data: Data::Number(text), .. }), _) => whole(text),
             (_, Some(_)) => Some(index as u64 + 1),
             _ => None,
         };

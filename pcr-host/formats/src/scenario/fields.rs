@@ -224,3 +224,13 @@ impl fmt::Display for Range {
         }
     }
 }
+
+/// A whole number from 0, which many programs write as a fraction (`1.0`), as far as fractions tell whole numbers apart.
+pub(super) fn whole(text: &str) -> Option<u64> {
+    const MOST: f64 = (1_u64 << 53) as f64;
+    let of_fraction = || {
+        let number: f64 = text.parse().ok()?;
+        (number.fract() == 0.0 && (0.0..=MOST).contains(&number)).then_some(number as u64)
+    };
+    text.parse().ok().or_else(of_fraction)
+}

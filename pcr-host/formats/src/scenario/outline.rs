@@ -1,7 +1,7 @@
 //! Outlines in scenario files: radius or footprint, and loads.
 
 use super::Load;
-use super::fields::{Fields, Place, Range, ScenarioError, brief, figure};
+use super::fields::{Fields, Place, Range, ScenarioError, brief, figure, whole};
 use crate::footprint::Footprint;
 use crate::json::{Data, Json};
 
@@ -59,7 +59,7 @@ pub(super) fn loads(agent: &Fields<'_>, segments: usize) -> Result<Vec<Load>, Sc
 /// The place of a segment by its number, which counts from 1.
 fn segment(fields: &Fields<'_>, json: &Json, segments: usize) -> Result<usize, ScenarioError> {
     let number = match &json.data {
-        Data::Number(text) => text.parse::<usize>().ok(),
+        Data::Number(text) => whole(text).and_then(|number| usize::try_from(number).ok()),
         _ => None,
     };
     number.and_then(|number| number.checked_sub(1)).filter(|place| *place < segments).ok_or_else(|| {

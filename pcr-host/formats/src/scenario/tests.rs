@@ -129,13 +129,15 @@ fn long_values_are_quoted_in_part() {
 
 #[test]
 fn ids_are_whole_numbers_and_unique() {
-    for id in [json!(-1), json!(1.5), json!(1.0), json!(""), json!([7])] {
+    for id in [json!(-1), json!(1.5), json!(1e17), json!(""), json!([7])] {
         let message = Scenario::from_value(&with("/id", &id)).unwrap_err().to_string();
         assert!(message.starts_with("agent at place 2, id: "), "{message}");
         assert!(message.ends_with(" where a whole number from 0 or a name is expected"), "{message}");
     }
     refused(&with("/id", &json!(3)), "agent 3, id: 3 is given to two agents");
     assert_eq!(Scenario::from_value(&with("/id", &json!(u64::MAX))).unwrap().agents[1].id, u64::MAX);
+    // As Python and JavaScript write what was computed.
+    assert_eq!(Scenario::from_value(&with("/id", &json!(8.0))).unwrap().agents[1].id, 8);
 }
 
 #[test]

@@ -158,12 +158,14 @@ impl<'m> Planner<'_, 'm> {
         }
         let never = match never {
             Never::Starts(agents) | Never::Ends(agents) | Never::Always(agents) => {
-                // The search stops at the first reason.
-                let mut all = self.never().unwrap_or_default();
-                if all.is_empty() {
-                    all.push(agents);
-                }
+                // The search stops at the first. Where there is no table of all, that one is no less true.
+                let (all, unknown) = match self.never() {
+                    Ok(all) if !all.is_empty() => (all, None),
+                    Ok(_) => (vec![agents], None),
+                    Err(failure) => (vec![agents], Some(format!("other pairs were not looked for: {failure}"))),
+                };
                 unsolved.par_extend(all.into_par_iter().map(|agents| Unsolved::of(self.scenario, ids(agents), true)));
+                unsolved.extend(unknown.map(|why| Unsolved::nowhere(Vec::new(), why)));
                 return unsolved;
             }
             other => other,

@@ -2,9 +2,10 @@
 
 use super::super::printed::{notes, stdout, tables};
 use super::super::serve::{AT_BROKERS, VEHICLES, broker, interfaces};
-use super::super::{CONFLICTS, NO_STREAM, Stop, is_standard};
+use super::super::sources::{FLEET, layout, layout_source};
+use super::super::{CONFLICTS, NO_STREAM, NOT_WRITTEN, Stop, is_standard};
 use super::Arguments;
-use pcr_formats::import::{self, Format, Imported, Options, Warnings};
+use pcr_formats::import::{self, Imported, Options};
 use pcr_formats::output;
 use pcr_planning::lifelong::{streets, well_formedness};
 use pcr_serve::entry::Nowhere;
@@ -23,7 +24,7 @@ use pcr_serve::vehicles::weather::Climate;
 use pcr_serve::vehicles::world::{World, profile};
 use pcr_serve::vehicles::yard::{self, Failed, Yard};
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, Write};
+use std::io::{self, BufRead, BufReader, BufWriter, Write};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -52,13 +53,8 @@ impl Default for Crew {
 
 /// Vehicles at the safe ends of a layout, of all editions, and two kinds.
 pub(in super::super) fn world(file: &Path, crew: &Crew) -> Result<World, Stop> {
-    output::keep(file);
-    let text = std::fs::read_to_string(file).map_err(|error| Stop::wrong(file, error))?;
-    let format = Format::of(file, &text).ok_or_else(|| Stop::wrong(file, "not a layout"))?;
     let options = Options { radius: Some(profile_radius(&Abilities::default())), ..Options::default() };
-    let imported = import::layout(format, &text, &options, &mut Warnings::default());
-    let imported = imported.map_err(|error| Stop::wrong(file, error))?;
-    placed(imported, crew).map_err(|why| Stop::wrong(file, why))
+    placed(layout(file, &options, FLEET, false)?, crew).map_err(|why| Stop::wrong(file, why))
 }
 
 /// The same on a generated site.
@@ -161,11 +157,17 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     }
     let Arguments { vehicles, manager, pace, drops, weather, seed, .. } = arguments;
     let crew = Crew { vehicles, manager, pace, drops, weather, seed };
-    let world = match (&arguments.layout, arguments.streets) {
-        (Some(layout), _) => world(layout, &crew)?,
-        (None, Some(count @ 2..=100)) => generated(count, &crew)?,
-        _ => return Err(Stop::arguments("a layout, or --streets 2 to 100 is needed")),
+    let world = match arguments.streets {
+        None => world(&layout_source(arguments.layout.clone())?, &crew)?,
+        Some(count @ 2..=100) => generated(count, &crew)?,
+        Some(_) => return Err(Stop::arguments("--streets: allowed is 2 to 100")),
     };
+    if let (Some(profiles), Some(record)) = (&arguments.profiles, &arguments.record)
+        && !is_standard(Some(profiles))
+        && output::are_at_odds(profiles, record)
+    {
+        return Err(Stop::arguments("--profiles and --record: two files are written, and these are one"));
+    }
     let free = world.manager.free();
     if free < vehicles {
         writeln!(
@@ -179,17 +181,60 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         let text = profiles(&world);
         super::super::write_to(file, &text)?;
     }
-    let record: Box<dyn Write> = match &arguments.record {
-        Some(file) => {
-            let created = output::refuse_kept(file).and_then(|()| File::create(file));
-            Box::new(BufWriter::new(created.map_err(|error| Stop::not_written(file, &error))?))
-        }
-        None => Box::new(io::sink()),
+    let outcome = match &arguments.record {
+        // As a whole, or not at all: what vehicles did up to an error is no record of their time.
+        Some(file) => output::stream(file, |out| driven(world, &arguments, &crew, Box::new(BufWriter::new(out))))
+            .map_err(|unrecorded| match unrecorded {
+                Unrecorded::Output(error) => Stop::not_written(file, &error),
+                Unrecorded::Stop(stop) => stop,
+            })?,
+        None => driven(world, &arguments, &crew, Box::new(io::sink())).map_err(|unrecorded| match unrecorded {
+            Unrecorded::Output(error) => Stop::arguments(error.to_string()),
+            Unrecorded::Stop(stop) => stop,
+        })?,
     };
-    if let (Some(method), Some(time)) = (&arguments.alone, arguments.time) {
-        return alone(world, &arguments, &crew, method, time, record);
+    // The vehicles themselves may be on standard output.
+    outcome.tell(&mut tables(is_standard(arguments.profiles.as_ref())))
+}
+
+/// Why the vehicles have not come to the end of their time.
+enum Unrecorded {
+    /// The record could not be written.
+    Output(io::Error),
+    Stop(Stop),
+}
+
+impl From<Stop> for Unrecorded {
+    fn from(stop: Stop) -> Self {
+        Self::Stop(stop)
     }
-    let mut run = Run::open(world, &broker(&arguments.broker)?, &interfaces(&arguments.topics)?, &crew, record)?;
+}
+
+impl From<io::Error> for Unrecorded {
+    fn from(error: io::Error) -> Self {
+        Self::Output(error)
+    }
+}
+
+/// An error on the way: one of the system is of the record, all others are not.
+fn unwritten(error: io::Error) -> Unrecorded {
+    match error.raw_os_error() {
+        Some(_) => Unrecorded::Output(error),
+        None => Unrecorded::Stop(Stop::arguments(error.to_string())),
+    }
+}
+
+/// What the vehicles do in their time, at a broker or alone.
+fn driven(
+    world: World,
+    arguments: &Arguments,
+    crew: &Crew,
+    record: Box<dyn Write + '_>,
+) -> Result<Outcome, Unrecorded> {
+    if let (Some(method), Some(time)) = (&arguments.alone, arguments.time) {
+        return alone(world, arguments, crew, method, time, record);
+    }
+    let mut run = Run::open(world, &broker(&arguments.broker)?, &interfaces(&arguments.topics)?, crew, record)?;
     let flag = Arc::new(AtomicBool::new(false));
     #[cfg(unix)]
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
@@ -204,7 +249,6 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         }
         Ok(())
     };
-    let unwritten = |error: io::Error| unwritten(&arguments, error);
     go_on(&mut run, end, |_| true).map_err(unwritten)?;
     let (time, done, drops) = (run.fleet.time(), run.done(), run.fleet.drops());
     let mut left = None;
@@ -220,15 +264,7 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     }
     let audit = run.fleet.audit().clone();
     run.close().map_err(unwritten)?;
-    told(vehicles, time, done, drops, &audit, left)
-}
-
-/// An error of the record, if the file could not be written: all others that are met on the way are no errors of the system.
-fn unwritten(arguments: &Arguments, error: io::Error) -> Stop {
-    match arguments.record.as_ref().filter(|_| error.raw_os_error().is_some()) {
-        Some(file) => Stop::not_written(file, &error),
-        None => Stop::arguments(error.to_string()),
-    }
+    Ok(Outcome { vehicles: crew.vehicles, time, done, drops, audit, left, longest: None })
 }
 
 /// Where nobody has come to its end for so long, nobody ever will \[s\].
@@ -241,8 +277,8 @@ fn alone(
     crew: &Crew,
     method: &str,
     time: f64,
-    record: Box<dyn Write>,
-) -> Result<ExitCode, Stop> {
+    record: Box<dyn Write + '_>,
+) -> Result<Outcome, Unrecorded> {
     let method = Method::ALL
         .into_iter()
         .find(|known| known.name() == method)
@@ -253,11 +289,10 @@ fn alone(
     let own = pcr_serve::supervisor::Settings { width, lookahead, ..Default::default() };
     let supervisor = Supervisor::new(own, Box::new(Nowhere));
     let interfaces = interfaces(&arguments.topics)?;
-    let yard = Yard::new(world, interfaces, settings, supervisor, record);
-    let mut yard = yard.map_err(|error| unwritten(arguments, error))?;
+    let mut yard = Yard::new(world, interfaces, settings, supervisor, record).map_err(unwritten)?;
     let broken = |failed: Failed| match failed {
-        Failed::Journal(fault) => Stop::Error(fault.to_string(), super::super::NOT_WRITTEN),
-        Failed::Record(error) => unwritten(arguments, error),
+        Failed::Journal(fault) => Stop::Error(fault.to_string(), NOT_WRITTEN).into(),
+        Failed::Record(error) => unwritten(error),
     };
     while yard.time() < time {
         yard.step().map_err(broken)?;
@@ -273,32 +308,43 @@ fn alone(
         }
         false => None,
     };
-    let (audit, longest) = (yard.audit().clone(), yard.longest());
-    yard.close().map_err(|error| unwritten(arguments, error))?;
-    let done = told(crew.vehicles, time, done, drops, &audit, left)?;
-    writeln!(tables(), "{}: nobody with an order stood longer than {longest:.0} s", method.name())?;
-    Ok(done)
+    let (audit, longest) = (yard.audit().clone(), Some((method, yard.longest())));
+    yard.close().map_err(unwritten)?;
+    Ok(Outcome { vehicles: crew.vehicles, time, done, drops, audit, left, longest })
 }
 
-fn told(
+/// What came of it.
+struct Outcome {
     vehicles: usize,
+    /// \[s\]
     time: f64,
     done: u64,
     drops: u64,
-    audit: &Audit,
+    audit: Audit,
+    /// Who has not come to its end, and how long after the time \[s\].
     left: Option<(usize, f64)>,
-) -> Result<ExitCode, Stop> {
-    let mut out = tables();
-    writeln!(out, "{vehicles} vehicles, {time:.0} s of theirs: {done} missions done, {drops} connections lost")?;
-    writeln!(out, "two with the right to one place: {} times in {} looks", audit.twice, audit.looks)?;
-    if let Some((time, [a, b])) = &audit.first {
-        writeln!(out, "first at {time:.1} s: {a} and {b}")?;
+    /// Without a broker, how long somebody with an order has stood \[s\].
+    longest: Option<(Method, f64)>,
+}
+
+impl Outcome {
+    /// Tells it to people, and by the exit status.
+    fn tell(&self, out: &mut impl Write) -> Result<ExitCode, Stop> {
+        let Self { vehicles, time, done, drops, audit, left, longest } = self;
+        writeln!(out, "{vehicles} vehicles, {time:.0} s of theirs: {done} missions done, {drops} connections lost")?;
+        writeln!(out, "two with the right to one place: {} times in {} looks", audit.twice, audit.looks)?;
+        if let Some((time, [a, b])) = &audit.first {
+            writeln!(out, "first at {time:.1} s: {a} and {b}")?;
+        }
+        if let Some((left, time)) = left {
+            writeln!(out, "{left} have not come to their ends {time:.0} s later")?;
+        }
+        if let Some((method, longest)) = longest {
+            writeln!(out, "{}: nobody with an order stood longer than {longest:.0} s", method.name())?;
+        }
+        let is_sound = audit.twice == 0 && left.is_none_or(|(left, _)| left == 0);
+        Ok(if is_sound { ExitCode::SUCCESS } else { ExitCode::from(CONFLICTS) })
     }
-    if let Some((left, time)) = left {
-        writeln!(out, "{left} have not come to their ends {time:.0} s later")?;
-    }
-    let is_sound = audit.twice == 0 && left.is_none_or(|(left, _)| left == 0);
-    Ok(if is_sound { ExitCode::SUCCESS } else { ExitCode::from(CONFLICTS) })
 }
 
 fn profiles(world: &World) -> String {
@@ -314,8 +360,15 @@ fn profiles(world: &World) -> String {
 }
 
 fn certified(file: &Path) -> Result<ExitCode, Stop> {
-    let text = File::open(file).map_err(|error| Stop::wrong(file, error))?;
-    let found = certify(BufReader::new(text)).map_err(|error| Stop::wrong(file, error))?;
+    // Bit by bit: it may be of days.
+    let text: Box<dyn BufRead> = match file == Path::new("-") {
+        true => Box::new(io::stdin().lock()),
+        false => {
+            let text = File::open(file).map_err(|error| Stop::wrong(file, format!("cannot be read: {error}")))?;
+            Box::new(BufReader::new(text))
+        }
+    };
+    let found = certify(text).map_err(|error| Stop::wrong(file, error))?;
     let mut out = stdout();
     writeln!(out, "{}", serde_json::to_string(&found).unwrap_or_default())?;
     Ok(match found.verdict {
