@@ -31,7 +31,7 @@ fn driven(imported: &Imported, agents: usize, minutes: f64, stopped: f64, method
     assert!(steady <= alone * 0.9 * minutes / 60.0 + agents as f64, "{alone} an hour alone, {outcome:?}");
     assert!(report.decisions.len() >= outcome.missions);
     assert_eq!((outcome.certificate.verdict, outcome.breaches, outcome.stuck), ("proved", 0, 0), "{outcome:?}");
-    assert!(outcome.standstill < 60.0 && outcome.certificate.steps > 0, "{outcome:?}");
+    assert!(outcome.standstill < 60.0 && (agents == 1 || outcome.certificate.steps > 0), "{outcome:?}");
     let Shares { driving, turning, stopped: stops, held, aside, idle } = outcome.time;
     assert!((driving + turning + stops + held + aside + idle - 1.0).abs() < 1e-9, "{outcome:?}");
     // Nobody goes before a robot that is alone.

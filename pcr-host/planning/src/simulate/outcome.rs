@@ -1,7 +1,7 @@
 //! Results of a run: a record of the true positions, and the figures that follow from it.
 
 use super::contact::{contacts, separation};
-use super::replan::InTheWay;
+use super::replan::{InTheWay, Waits};
 use super::steering::closed;
 use super::supervisor::Statistics;
 use super::task::Task;
@@ -167,14 +167,6 @@ pub struct Waiting {
     /// Before the mission is begun: number of the robot or obstacle that stands in its way, within their margins; `None` for an
     /// obstacle without a number, and if no passing order lets it through. Afterwards: number of the robot that passes first.
     pub by: Option<u64>,
-}
-
-/// The same with the places of the robots.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Waits {
-    pub(super) robot: usize,
-    pub(super) begun: bool,
-    pub(super) by: Option<InTheWay>,
 }
 
 /// Two discs in contact.

@@ -56,6 +56,16 @@ pub(super) enum InTheWay {
     Obstacle(usize),
 }
 
+/// A robot that stands with a mission that is not done.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Waits {
+    pub(super) robot: usize,
+    /// Whether it has begun the mission.
+    pub(super) begun: bool,
+    /// The robot or obstacle for which it waits.
+    pub(super) by: Option<InTheWay>,
+}
+
 /// The input of a plan.
 #[derive(Debug)]
 pub(super) struct Problem<'a> {
