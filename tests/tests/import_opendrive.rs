@@ -433,6 +433,14 @@ fn roads_that_are_elsewhere_are_refused() {
     }
     let mut warnings = Warnings::default();
     layout(Format::OpenDrive, &file("<junction id=\"9\"/><way/>"), &Options::default(), &mut warnings).unwrap();
+    // What others add is called as they like.
+    layout(
+        Format::OpenDrive,
+        &file("<userData><Road a=\"1\"/></userData>"),
+        &Options::default(),
+        &mut Warnings::default(),
+    )
+    .unwrap();
     let unknown: Vec<_> = warnings.lines().into_iter().filter(|line| line.contains("not known")).collect();
     assert_eq!(unknown, ["way: not known in OpenDRIVE, and not read"]);
 }

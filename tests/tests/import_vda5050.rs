@@ -488,7 +488,14 @@ fn an_outline_faces_along_its_planned_path_or_is_refused() {
     let north = std::f64::consts::FRAC_PI_2;
     let (scenario, _) = read(&planned(json!(north), json!([])), &outlined()).unwrap();
     assert!(scenario.agents[0].footprint.is_some());
-    for theta in [0.0, -north] {
+    // What a localization is off makes the outline larger.
+    let growth = |theta: f64| {
+        let (scenario, _) = read(&planned(json!(theta), json!([])), &outlined()).unwrap();
+        scenario.agents[0].footprint.as_ref().unwrap().growth()
+    };
+    let more = growth(north + 0.1) - growth(north);
+    assert!((0.05..0.2).contains(&more), "{more}");
+    for theta in [0.0, -north, north + 0.2] {
         let error = read(&planned(json!(theta), json!([])), &outlined()).unwrap_err();
         assert!(error.starts_with(&format!("state of r7: its theta {theta}, as outlines face along")), "{error}");
         assert!(read(&planned(json!(theta), json!([])), &options()).is_ok(), "it does not matter how a disc faces");
@@ -571,6 +578,8 @@ fn control_points_say_how_an_outline_faces() {
     let none = Value::Null;
     // World coordinates: 0 is along the line, and aside of a curve.
     assert!(read(&order([json!(0.0), json!(0.0), json!(0.0)], 0.0), &outlined()).is_ok());
+    // Somewhere in the middle of the curve it is along it.
+    assert!(read(&order([none.clone(), json!(0.0), none.clone()], 3.0), &outlined()).is_ok());
     let slope = 1.0_f64.atan2(1.0);
     assert!(read(&order([json!(slope), none.clone(), json!(-slope)], 3.0), &outlined()).is_ok());
     for (orientations, middle, place) in [
@@ -578,7 +587,7 @@ fn control_points_say_how_an_outline_faces() {
         ([none.clone(), json!(1.57), none.clone()], 0.0, 2),
         ([none.clone(), none.clone(), json!(-1.57)], 0.0, 3),
         ([json!(0.0), none.clone(), none.clone()], 3.0, 1),
-        ([none.clone(), json!(0.0), none.clone()], 3.0, 2),
+        ([none.clone(), json!(1.57), none.clone()], 3.0, 2),
     ] {
         let text = order(orientations, middle);
         let error = read(&text, &outlined()).unwrap_err();

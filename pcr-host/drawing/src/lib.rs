@@ -199,7 +199,6 @@ impl Picture {
     }
 }
 
-/// The files of a picture.
 /// Letters of the pictures since the last question that are boxes as PNG, for want of a font of all languages; as SVG they are
 /// what they are.
 pub fn lacking() -> String {
@@ -209,6 +208,7 @@ pub fn lacking() -> String {
     String::new()
 }
 
+/// The files of a picture.
 fn files(name: &str, svg: String) -> io::Result<Files> {
     #[cfg(feature = "png")]
     let png = raster::png(&svg)?;

@@ -51,6 +51,7 @@ pub use outcome::{Arrival, Collision, Ended, Journey, Outcome, Planning, Run, Si
 pub use task::{Mission, Obstacle, Robot, Task};
 pub use vector::Vector;
 
+use crate::memory;
 use crate::regions::Failure;
 use agent::Errors;
 use body::{Command, Turning};
@@ -63,6 +64,9 @@ use world::World;
 
 /// Time of a frame \[s\]: the camera of the paper sees 30 a second.
 pub const FRAME: f64 = 1.0 / 30.0;
+
+/// Number of frames between two checks whether memory holds the record.
+const CHECKED: usize = 4096;
 
 /// Controller of the robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -174,7 +178,12 @@ pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Ou
     world.announce(control.as_mut());
     let frames = (time_limit(task, settings.disturbance) / FRAME).ceil() as usize;
     let mut ended = Ended::TimeLimit;
+    let room = (size_of::<Vector>() + size_of::<f64>()) * task.robots.len();
     for frame in 0..frames {
+        if frame % CHECKED == 0 {
+            // The record is kept in lists, which double as they grow.
+            memory::ask((2 * (frame + CHECKED) * room) as u64, || format!("a record of {frame} frames"))?;
+        }
         world.missions(frame, control.as_mut());
         if world.is_done() {
             ended = Ended::Done;
@@ -200,7 +209,7 @@ pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Ou
 /// the slip and the times for which it is held up, for the robot with the longest ones, and a minute.
 pub fn time_limit(task: &Task, disturbance: Disturbance) -> f64 {
     /// Slip and delays are taken to slow a robot down by at most this factor: with a slip of 1 it would never arrive.
-    const SLOWEST: f64 = 500.0;
+    const SLOWEST: f64 = 64.0;
     let robot = |robot: &Robot| {
         let missions = robot.missions.iter();
         missions.map(|mission| mission.release.max(0.0) + mission.course.unimpeded(robot.limits)).sum::<f64>()

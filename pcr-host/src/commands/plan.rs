@@ -50,7 +50,7 @@ pub(super) struct Arguments {
     /// delay: later starts; speed: also on the way
     #[arg(long, value_enum, default_value_t = Means::Delay, hide_possible_values = true)]
     method: Means,
-    /// Who goes first: agents by number or label with commas between them (`\\,` for one in a label), or `longest`, `crowded`, `best` [default: best]
+    /// Who goes first: agents by number or label with commas between them (`\,` for one in a label), or `longest`, `crowded`, `best` [default: best]
     #[arg(long, value_name = "ORDER", value_parser = asked)]
     priority: Option<Asked>,
     /// sum of times to arrival, or makespan, the last arrival

@@ -76,8 +76,13 @@ fn of_large_fleets_the_maps_are_drawn_that_are_asked_for() {
 #[cfg(target_os = "linux")]
 fn limited(kilobytes: u32, arguments: &[&str]) -> (Option<i32>, String) {
     let script = format!("ulimit -v {kilobytes}; exec \"$0\" \"$@\" > /dev/null");
-    let output =
-        Command::new("bash").args(["-c", &script, env!("CARGO_BIN_EXE_pcr")]).args(arguments).output().unwrap();
+    let output = Command::new("bash")
+        .args(["-c", &script, env!("CARGO_BIN_EXE_pcr")])
+        .args(arguments)
+        // Each thread takes addresses.
+        .env("RAYON_NUM_THREADS", "2")
+        .output()
+        .unwrap();
     (output.status.code(), String::from_utf8(output.stderr).unwrap())
 }
 

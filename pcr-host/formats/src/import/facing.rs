@@ -11,10 +11,15 @@ use std::f64::consts::{PI, TAU};
 /// Angle that is rounding in a file and nothing else \[rad\].
 const ROUNDING: f64 = 1e-3;
 
+/// By how much an outline at this angle from its path is turned from where it covers what it covers along it \[rad\].
+pub(super) fn askew(outline: &Footprint, angle: f64) -> f64 {
+    let off = |angle: f64| ((angle + PI).rem_euclid(TAU) - PI).abs();
+    if outline.is_same_backward() { off(angle).min(off(angle - PI)) } else { off(angle) }
+}
+
 /// Whether an outline at this angle from its path covers what it covers when it faces along it.
 pub(super) fn is_ahead(outline: &Footprint, angle: f64) -> bool {
-    let is_none = |angle: f64| ((angle + PI).rem_euclid(TAU) - PI).abs() <= ROUNDING;
-    is_none(angle) || is_none(angle - PI) && outline.is_same_backward()
+    askew(outline, angle) <= ROUNDING
 }
 
 /// The message about a backward drive that was not read.
@@ -53,7 +58,7 @@ pub(super) fn along(
 }
 
 /// Loses orientations of control points, which are in world coordinates (VDA 5050 1.x), unless they are along the curve. Where on the
-/// curve the inner ones are is not known: there it has to be straight.
+/// curve the inner ones are is not known: they have to be along it anywhere.
 pub(super) fn along_trajectory(
     trajectory: &Object<'_>,
     fit: &Fit,
@@ -69,13 +74,27 @@ pub(super) fn along_trajectory(
         let fits = match k {
             0 => pieces.next().is_some_and(|first| is_along(first.heading)),
             k if k + 1 == points.len() => pieces.next_back().is_some_and(|last| is_along(last.heading_at_end())),
-            _ => pieces.all(|piece| piece.radius().is_none() && is_along(piece.heading)),
+            _ => pieces.any(|piece| turns_through(piece, outline, orientation)),
         };
         if !fits {
             lose(&point.name, "orientation", orientation, warnings);
+            break;
         }
     }
     Ok(())
+}
+
+/// Whether an outline faces so somewhere on a line or an arc.
+fn turns_through(piece: &Placed, outline: &Footprint, orientation: f64) -> bool {
+    let sweep = match piece.shape {
+        PathSegment::Line { .. } => 0.0,
+        PathSegment::Arc { sweep, .. } => sweep,
+    };
+    let passes = |orientation: f64| {
+        let ahead = (orientation - piece.heading) * if sweep < 0.0 { -1.0 } else { 1.0 };
+        (ahead + ROUNDING).rem_euclid(TAU) <= sweep.abs() + 2.0 * ROUNDING
+    };
+    passes(orientation) || passes(orientation - PI) && outline.is_same_backward()
 }
 
 /// The heading of a line or an arc beside a point, if it passes no further than that from it.

@@ -230,8 +230,8 @@ fn curve(
         points.push([number(point, name, "x")? * x, number(point, name, "y")? * y]);
     }
     let shift = if points.len() > 1 { shift(name, ends, frame)? } else { 0.0 };
-    // A point of the curve is between its control points, and its length is off by no more than the legs between them are.
-    let legs = 2.0 * shift * points.len() as f64;
+    // The control points are off together: only the legs from the first point and to the last one have other lengths.
+    let legs = 2.0 * shift;
     let fit = shape(layout, name, points, to, tolerance)?;
     Ok(Fit { deviation: fit.deviation + shift + legs, longer: fit.longer + legs, ..fit })
 }

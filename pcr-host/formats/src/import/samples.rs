@@ -49,12 +49,14 @@ fn paths(text: &str) -> Result<Vec<Vec<[f64; 2]>>, ImportError> {
             }
             continue;
         }
-        if mixes_separators(content) {
+        if mixes_separators(content.trim_end_matches([';', ' ', '\t'])) {
             let problem =
                 "commas beside other separators: decimal commas, or several points; one point x y is expected";
             return Err(ImportError::new(format!("line {}: {problem}", k + 1)));
         }
-        let mut numbers = fields(content).map(|field| field.parse::<f64>().ok().filter(|x| x.abs() <= LIMIT));
+        // Some end each row with the mark between rows.
+        let mut numbers = fields(content.trim_end_matches([',', ';', ' ', '\t']))
+            .map(|field| field.parse::<f64>().ok().filter(|x| x.abs() <= LIMIT));
         let (Some(Some(x)), Some(Some(y))) = (numbers.next(), numbers.next()) else {
             return Err(ImportError::new(format!("line {}: two numbers x y up to {LIMIT:e} are expected", k + 1)));
         };
@@ -273,7 +275,7 @@ mod tests {
                 "{empty}"
             );
         }
-        for one in ["1,2, 3", "1 , 2", " 1\t2 3", "1  2", "1; 2", "1,2,,", "1,2 # a, b c"] {
+        for one in ["1.0 2.0;", "1 2 ;", "1,2, 3", "1 , 2", " 1\t2 3", "1  2", "1; 2", "1,2,,", "1,2 # a, b c"] {
             assert_eq!(paths(one).unwrap(), [[[1.0, 2.0]]], "{one}");
         }
         assert!(fit(&[[1.0, 1.0]], 1e-3).unwrap().pieces.is_empty());

@@ -6,7 +6,7 @@
 use super::ImportError;
 use super::value::Object;
 use serde_json::Value;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Who a message is about: manufacturer and serial number. Nobody is told apart from others by anything else than texts.
 fn vehicle(message: &Value) -> Result<Option<[&str; 2]>, ImportError> {
@@ -28,9 +28,9 @@ pub(super) fn joined(messages: Vec<Value>) -> Result<Vec<Value>, ImportError> {
         }
     }
     // Whether these are two vehicles or one is not known.
-    if let Some([_, serial]) = places.keys().find(|[maker, serial]| {
-        maker.is_empty() && places.keys().any(|[other, own]| own == serial && !other.is_empty())
-    }) {
+    let made: HashSet<&String> =
+        places.keys().filter(|[maker, _]| !maker.is_empty()).map(|[_, serial]| serial).collect();
+    if let Some([_, serial]) = places.keys().find(|[maker, serial]| maker.is_empty() && made.contains(serial)) {
         return Err(ImportError::new(format!("vehicle {serial}: its manufacturer is not in all messages")));
     }
     vehicles.into_iter().map(of_one).collect()

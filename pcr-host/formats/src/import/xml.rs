@@ -86,6 +86,9 @@ pub(super) fn number(node: Node<'_, '_>, name: &str, attribute: &str) -> Result<
     }
 }
 
+/// Elements for what others add, whatever that is called: of OpenDRIVE and of GraphML.
+const FOREIGN: [&str; 4] = ["userData", "include", "dataQuality", "data"];
+
 /// Elements that are called like what is read below `home`, in any case of the letters, and are not there: below something else, or
 /// in another case. With what says so.
 pub(super) fn astray<'a, 'i>(
@@ -93,7 +96,15 @@ pub(super) fn astray<'a, 'i>(
     names: &'static [&'static str],
 ) -> impl Iterator<Item = (Node<'a, 'i>, String)> {
     let elements = home.document().root_element().descendants();
+    let namespace = home.tag_name().namespace();
+    let is_foreign = move |element: Node<'_, '_>| {
+        let (name, own) = (element.tag_name().name(), element.tag_name().namespace());
+        own != namespace || FOREIGN.contains(&name)
+    };
     elements.filter(move |element| *element != home && element.is_element()).filter_map(move |element| {
+        if element.ancestors().filter(Node::is_element).any(is_foreign) {
+            return None;
+        }
         let own = element.tag_name().name();
         let name = names.iter().find(|name| name.eq_ignore_ascii_case(own))?;
         if element.parent() == Some(home) && *name == own {
@@ -103,10 +114,10 @@ pub(super) fn astray<'a, 'i>(
             .iter()
             .filter_map(|attribute| element.attribute(*attribute))
             .find(|id| !id.is_empty())
-            .unwrap_or_default();
+            .map_or_else(String::new, |id| format!(" {id}"));
         let parent = element.parent().map_or("", |parent| parent.tag_name().name());
         let home = home.tag_name().name();
-        Some((element, format!("{own} {id}, in {parent}: what is read is {name} in {home}")))
+        Some((element, format!("{own}{id}, in {parent}: what is read is {name} in {home}")))
     })
 }
 

@@ -55,6 +55,10 @@ pub fn traffic_table(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> 
     }
     columns.write(out)?;
     for unsolved in &traffic.unsolved {
+        if unsolved.ids.is_empty() {
+            writeln!(out, "{}", unsolved.why)?;
+            continue;
+        }
         let agents = all_called(&Labels::default(), &unsolved.ids);
         writeln!(out, "agents {agents}: {}; the first is left out", unsolved.why)?;
     }

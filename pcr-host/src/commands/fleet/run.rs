@@ -224,6 +224,17 @@ fn unwritten(error: io::Error) -> Unrecorded {
     }
 }
 
+/// A flag that is set when the program is told to end: what was recorded until then is kept.
+fn stopped_by_signal() -> Arc<AtomicBool> {
+    let flag = Arc::new(AtomicBool::new(false));
+    #[cfg(unix)]
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        // Where it cannot be caught, it ends the program as it does others.
+        let _ = signal_hook::flag::register(signal, flag.clone());
+    }
+    flag
+}
+
 /// What the vehicles do in their time, at a broker or alone.
 fn driven(
     world: World,
@@ -235,12 +246,7 @@ fn driven(
         return alone(world, arguments, crew, method, time, record);
     }
     let mut run = Run::open(world, &broker(&arguments.broker)?, &interfaces(&arguments.topics)?, crew, record)?;
-    let flag = Arc::new(AtomicBool::new(false));
-    #[cfg(unix)]
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        // Where it cannot be caught, it ends the program as it does others.
-        let _ = signal_hook::flag::register(signal, flag.clone());
-    }
+    let flag = stopped_by_signal();
     let end = arguments.time.unwrap_or(f64::INFINITY);
     let go_on = |run: &mut Run<_>, until: f64, is_busy: fn(&Run<_>) -> bool| -> io::Result<()> {
         while !flag.load(Ordering::Relaxed) && run.fleet.time() < until && is_busy(run) {
@@ -294,11 +300,13 @@ fn alone(
         Failed::Journal(fault) => Stop::Error(fault.to_string(), NOT_WRITTEN).into(),
         Failed::Record(error) => unwritten(error),
     };
-    while yard.time() < time {
+    let stopped = stopped_by_signal();
+    while yard.time() < time && !stopped.load(Ordering::Relaxed) {
         yard.step().map_err(broken)?;
     }
+    let time = yard.time().min(time);
     let (done, drops) = (yard.manager().done(), yard.drops());
-    let left = match arguments.finish {
+    let left = match arguments.finish && !stopped.load(Ordering::Relaxed) {
         true => {
             let (mut before, mut left) = (usize::MAX, yard.drain(LONGEST).map_err(broken)?);
             while left > 0 && left < before {

@@ -10,6 +10,9 @@ use crate::footprint::Footprint;
 use crate::scenario::{Agent, MotionSpec, Placed};
 use serde_json::Value;
 
+/// Angle between a vehicle and its path that is taken for the error of its localization \[rad\].
+const SEEN: f64 = 0.15;
+
 /// Where a vehicle says that it is.
 struct Pose {
     at: Option<[f64; 2]>,
@@ -114,7 +117,8 @@ impl Reader<'_> {
         let mut trace = tracer.finish(pose.at.unwrap_or(begin));
         trace.deviation += read.fit.deviation + before.max(behind);
         if let Some(outline) = &vehicle.footprint {
-            self.faces(state, pose, pieces, outline)?;
+            // Where it is turned, no point of it is further off than that.
+            trace.deviation += vehicle.radius * self.faces(state, pose, pieces, outline)?;
             set_heading(&mut trace, pose, pieces);
         }
         let begin = match state.get("timestamp") {
@@ -153,29 +157,34 @@ impl Reader<'_> {
         self.warnings.lose(format_args!("{}: its way, as it moves and does not say where to", state.name));
     }
 
-    /// Where the vehicle is and at nodes an outline faces along its planned path.
+    /// Where the vehicle is and at nodes an outline faces along its planned path. Returns by how much the vehicle is turned from it, as
+    /// far as that is the error of a measurement \[rad\].
     fn faces(
         &mut self,
         state: &Object<'_>,
         pose: &Pose,
         pieces: &[Placed],
         outline: &Footprint,
-    ) -> Result<(), ImportError> {
+    ) -> Result<f64, ImportError> {
         let first = pieces.first().map(|first| first.heading);
-        if let Some((theta, heading)) = pose.heading.zip(first)
-            && !facing::is_ahead(outline, theta - heading)
-        {
-            facing::lose(&state.name, "theta", theta, self.warnings);
+        let seen = pose.heading.zip(first);
+        let mut askew = seen.map_or(0.0, |(theta, heading)| facing::askew(outline, theta - heading));
+        if askew > SEEN {
+            facing::lose(&state.name, "theta", pose.heading.unwrap_or_default(), self.warnings);
+            askew = 0.0;
         }
         for node in parts(state, "nodeStates", "node", "nodeId")?.iter().filter(|node| node.released) {
             let Some((at, theta)) = node.position()?.zip(node.theta()?) else { continue };
             // Which of several passes is meant is not known: any of them may be.
-            let passes = pieces.iter().filter_map(|piece| facing::heading_beside(piece, at, GAP));
-            if !passes.into_iter().any(|heading| facing::is_ahead(outline, theta - heading)) {
+            let mut passes = pieces.iter().filter_map(|piece| facing::heading_beside(piece, at, GAP)).peekable();
+            if passes.peek().is_none() && !pieces.is_empty() {
+                let name = &node.object.name;
+                self.warnings.lose(format_args!("{name}: its theta {theta}, as the planned path does not pass it"));
+            } else if !passes.any(|heading| facing::is_ahead(outline, theta - heading)) {
                 facing::lose(&node.object.name, "theta", theta, self.warnings);
             }
         }
-        Ok(())
+        Ok(askew)
     }
 
     /// How far the last node that is released is from the end of a path \[m\], which has to be there: the vehicle does not stand where it
