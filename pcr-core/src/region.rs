@@ -13,9 +13,9 @@ use crate::segment::{Curve, Segment};
 /// One collision region of an ordered pair of agents: the connected set of (time, length along the path of
 /// the *ego*) in which the ego's disc overlaps that of the *other* agent.
 ///
-/// It contains the exact region for the sum of the radii R, and lies within the exact region for R +
-/// [`RegionRef::excess`]. So rounding never hides a collision, in any number format. `docs/errors.md` derives the bound
-/// and names the tests.
+/// It contains the exact region for the sum of the radii R. Its slice at any length lies within the exact region for R +
+/// [`RegionRef::excess`]; its first and last length may reach those of the exact region for R + 5/2 of it. So rounding never
+/// hides a collision, in any number format. `docs/errors.md` derives the bounds and names the tests.
 #[derive(Clone, Debug)]
 pub struct RegionRef<'a, S: Scalar> {
     pair: Pair<'a, S>,

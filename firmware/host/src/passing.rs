@@ -573,7 +573,7 @@ pub(crate) fn motions<S: Number, const A: usize, const N: usize, const R: usize>
     Ok(fleet)
 }
 
-/// Moves all robots up to the next control step. Two discs that touch are an error.
+/// Moves all robots up to the next control step. Two discs that overlap by more than [`TOUCH`] are an error.
 fn advance<S: Rounded>(drivers: &mut [Driver<S>], tally: &mut Tally) -> Result<(), Box<dyn Error>> {
     const PARTS: u32 = 5;
     for _ in 0..PARTS {
@@ -594,7 +594,7 @@ fn advance<S: Rounded>(drivers: &mut [Driver<S>], tally: &mut Tally) -> Result<(
     Ok(())
 }
 
-/// Overlap above which two discs count as touching \[m\]: at a hold they may touch exactly, and the positions here are rounded.
+/// Overlap above which two discs are in contact \[m\]: at a hold they may just touch, and the positions here are rounded.
 const TOUCH: f64 = 1e-3;
 
 impl<S: Rounded> Driver<S> {

@@ -9,7 +9,7 @@ use crate::scalar::{Scalar, Wide};
 
 /// Largest number of values that are tried; formats with fewer digits need fewer.
 const TRIALS: u32 = 96;
-/// Number of trials after which the bracket is bisected, whatever the guesses say.
+/// The bracket is bisected once in this number of trials, whatever the guesses say.
 const PATIENCE: u32 = 12;
 
 /// A bracket: a value inside the forbidden interval, and one outside.

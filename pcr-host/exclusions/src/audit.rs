@@ -32,7 +32,7 @@ pub struct Audit {
     pub gaps: Vec<Gap>,
     /// Pairs of edges that cannot touch but are excluded.
     pub needless: Vec<Needless>,
-    /// Area of the lengths at which two vehicles can be on two edges and the rules exclude it, over all pairs \[m²\].
+    /// Area of the pairs of lengths, over all pairs of edges, at which the rules do not let two vehicles be at the same time \[m²\].
     pub excluded: f64,
     /// The same area, excluded by the table of locks \[m²\].
     pub needed: f64,

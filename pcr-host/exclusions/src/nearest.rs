@@ -6,7 +6,7 @@ use pcr_formats::scenario::Placed;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Bound on the error of the least distance \[m\].
+/// Bound on how far the distance that is found may be above the true one \[m\].
 const CLOSE: f64 = 1e-5;
 
 /// Largest number of cells for a pair of pieces; for the remaining cells their lower bound counts as the distance.

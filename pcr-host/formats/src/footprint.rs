@@ -24,9 +24,9 @@ const ROUNDING: f64 = 1e-12;
 /// A disc of a cover, in the frame of the vehicle: the reference point travels the path, its heading is ahead.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Disc {
-    /// Position of the centre ahead of the reference point \[m\].
+    /// Distance of the centre ahead of the reference point, in its heading \[m\].
     pub ahead: f64,
-    /// And to its left \[m\].
+    /// Distance to its left \[m\].
     pub left: f64,
     /// \[m\]
     pub radius: f64,

@@ -30,7 +30,7 @@ impl fmt::Display for Kept {
 impl std::error::Error for Kept {}
 
 impl Kept {
-    /// The kind of error of an output, if it is one.
+    /// The [`Kept`] in an error of an output, if it is one.
     pub fn of(error: &io::Error) -> Option<&Self> {
         error.get_ref()?.downcast_ref()
     }
@@ -98,8 +98,8 @@ fn is_same_file(a: &Path, b: &Path) -> bool {
     matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
 }
 
-/// Writes a file. One that is there is replaced and keeps its mode and owner; a link is followed. What is no regular file (a terminal, a
-/// pipe, a device) is written to as it is.
+/// Writes a file. One that is there is replaced and keeps its mode, and for the superuser its owner; a link is followed. What is no
+/// regular file (a terminal, a pipe, a device) is written to as it is.
 ///
 /// # Errors
 /// Those of the file system; then the file is as it was before. One that is there and must not be written to stays, too, and so does

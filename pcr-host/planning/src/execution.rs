@@ -33,7 +33,7 @@ const STEP: f64 = 1.0 / 16.0;
 /// Control steps between two looks at the whole fleet.
 const LOOK: u32 = 16;
 
-/// Mean duration of a stop, known from earlier stops; also the expected further duration of a stop that lasts longer \[s\].
+/// Mean duration of a stop, known from earlier stops; and the further duration that is expected of a stop that lasts longer \[s\].
 const STOP: f64 = 15.0;
 const LOOK_AGAIN: f64 = 1.0;
 

@@ -46,7 +46,7 @@ fn write(lines: &Lines, mut output: impl Write) {
     }
 }
 
-/// Writes all bytes. Waits for a slow client, but if the client is being disconnected only for [`PATIENCE`].
+/// Writes all bytes. Waits for a slow client; if the client is being disconnected, only for [`PATIENCE`].
 fn put(lines: &Lines, output: &mut impl Write, mut bytes: &[u8]) -> io::Result<()> {
     while !bytes.is_empty() {
         match output.write(bytes) {

@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 /// First bytes of a journal: its kind, and the version of its frames and entries.
 pub const HEADER: &[u8; 16] = b"pcr-journal\0\x03\0\0\0";
 
-/// Size of a frame's head: length, checksum of the frame before, checksum of these two, and checksum of the whole frame.
+/// Size of a frame's head: length, checksum of the frame before, checksum of these two, and checksum of all the rest of the frame.
 const FRAME: usize = 16;
 
 /// Size of the part of the head that is checked before the length is used.
@@ -29,7 +29,7 @@ const BEGIN: usize = 12;
 const LONGEST: usize = 1 << 28;
 
 /// A new journal is begun when the file is larger than the first number \[bytes\], and larger than the second number times its
-/// size at the start.
+/// size when it was opened or last begun anew.
 const LONG: (u64, u64) = (16 << 20, 8);
 
 /// Zeros by which the file is extended at a time \[bytes\].
@@ -51,7 +51,7 @@ pub struct Journal {
     file: File,
     /// Locks the folder as long as the journal is open.
     _lock: File,
-    /// End of its frames, now and at the last start \[bytes\].
+    /// End of its frames, now and when it was opened or last begun anew \[bytes\].
     len: u64,
     first: u64,
     /// Checksum of the last frame.
@@ -185,7 +185,7 @@ pub fn frame(entries: &[Entry], before: u32) -> io::Result<(Vec<u8>, u32)> {
     Ok((frame, sum))
 }
 
-/// The checksum of a frame, from its head and its entries.
+/// The checksum of a frame, from the first [`BEGIN`] bytes of its head and from its entries.
 fn sum(begin: &[u8], text: &[u8]) -> u32 {
     let mut sum = crc32fast::Hasher::new();
     sum.update(begin);

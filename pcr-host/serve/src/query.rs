@@ -54,7 +54,7 @@ pub struct View<'a> {
     radius: f64,
     at: [f64; 2],
     hold: f64,
-    /// Length up to which it would need to go without braking \[m\].
+    /// Hold that it needs so that it does not have to brake \[m\].
     wanted: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     waits_for: Option<&'a str>,

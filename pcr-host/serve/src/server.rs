@@ -173,7 +173,7 @@ pub fn serve(
 }
 
 impl Desk {
-    /// Handles an input; returns what to send, and whether the server ends.
+    /// Handles a batch of inputs; returns what to send, and whether the server ends.
     fn take(
         &mut self,
         supervisor: &mut Supervisor,

@@ -66,7 +66,7 @@ pub(super) struct Arguments {
     /// End after this simulated time
     #[arg(long, value_name = "S")]
     time: Option<f64>,
-    /// Then go on until all are done, or none for an hour
+    /// Then go on until missions under way are done, or none is for an hour
     #[arg(long, requires = "time")]
     finish: bool,
     /// Without a broker: supervisor, route-locks or edge-locks
@@ -81,7 +81,7 @@ pub(super) struct Arguments {
     /// The same seed makes the same vehicles
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
-    /// Write the true positions of the vehicles at the end
+    /// Record where they really were; written at the end
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Prove of a record, or `-`, that they never touched

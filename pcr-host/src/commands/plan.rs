@@ -31,7 +31,7 @@ Examples:
   pcr plan fleet.json --pictures maps               maps before and after
   pcr plan fleet.json --method speed -o plan.json   also waits and other speeds
   pcr plan fleet.json --priority 7,3 --json         agents 7 and 3 first
-  pcr plan fleet.json --leave-out -o plan.json      without those in the way
+  pcr plan fleet.json --leave-out -o plan.json      all but as few as possible
   pcr plan fleet.json --prove --time-limit 60       the best, if found in 60 s";
 
 /// Plan later starts or other speeds, so that nobody collides

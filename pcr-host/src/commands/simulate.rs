@@ -56,10 +56,10 @@ pub(super) struct Arguments {
     /// Largest error of observed places, to 10 m
     #[arg(long, value_name = "M", default_value_t = 0.015, value_parser = |text: &str| within(text, 0.0, 10.0))]
     noise: f64,
-    /// How far robots are off their paths, to 10 m
+    /// Largest distance of a robot from its path, to 10 m
     #[arg(long, value_name = "M", default_value_t = 0.005, value_parser = |text: &str| within(text, 0.0, 10.0))]
     drift: f64,
-    /// Largest part lost to slip, to 0.9
+    /// Largest part of its way lost to slip, to 0.9
     #[arg(long, value_name = "PART", default_value_t = 0.05, value_parser = |text: &str| within(text, 0.0, 0.9))]
     slip: f64,
     /// Longest stop, about every 10 s, to 3600 s

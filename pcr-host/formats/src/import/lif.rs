@@ -311,7 +311,8 @@ fn maps<'v>(nodes: impl Iterator<Item = &'v Value>) -> BTreeSet<&'v str> {
     nodes.filter_map(Value::as_array).flatten().filter_map(|node| node.get("mapId")?.as_str()).collect()
 }
 
-/// The largest gap between a trajectory that is a point and its nodes \[m\]: a way from node to node it is only for near ones.
+/// The largest gap between a trajectory that is a point and its nodes \[m\]: it counts as a way from node to node only if both nodes are
+/// near.
 fn point_gap(id: &str, ends: [[f64; 2]; 2], at: [[f64; 2]; 2]) -> Result<f64, ImportError> {
     let gap = ends.into_iter().zip(at).map(|(end, node)| distance(end, node)).fold(0.0, f64::max);
     if gap > route::GAP {

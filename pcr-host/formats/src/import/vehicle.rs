@@ -87,7 +87,7 @@ pub struct Options {
     /// Radius of corners (nav2: 1 if left out)
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = not_negative))]
     pub corner_radius: Option<f64>,
-    /// Arcs to curves, at most [default: 0.001]
+    /// Arcs off curves by at most [default: 0.001]
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = positive))]
     pub tolerance: Option<f64>,
     /// Navigation graph, of several (Open-RMF)
@@ -96,7 +96,7 @@ pub struct Options {
     /// Travel the horizon of orders (VDA 5050)
     #[cfg_attr(feature = "clap", arg(long))]
     pub horizon: bool,
-    /// Read what can be read, and leave the rest
+    /// Read the rest where a file would be refused
     #[cfg_attr(feature = "clap", arg(long))]
     pub partial: bool,
 }

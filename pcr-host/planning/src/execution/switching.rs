@@ -8,7 +8,8 @@ use super::orders::Kept;
 use super::{Holds, LEAST, SPEED};
 use crate::lifelong::{Gate, gates};
 
-/// Step of the first robot between two gates, rounded down \[m\].
+/// Largest step of the first robot between two gates \[m\]. Holds are those of the last gate that it has opened, so they are rounded
+/// down.
 const PITCH: f64 = 0.5;
 
 /// Number of orders that are tried at each look, and number of further orders that may be reversed with one.
@@ -40,7 +41,7 @@ pub(super) struct Switching<'a> {
     ends: Vec<f64>,
 }
 
-/// Arrival times of all robots, and the regions at which they would wait, with the waits.
+/// Sum of the times until arrival, and the regions at which robots would wait, with the waits.
 struct Forecast {
     cost: f64,
     waits: Vec<(usize, f64)>,

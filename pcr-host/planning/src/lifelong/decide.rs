@@ -11,8 +11,8 @@ use std::time::Instant;
 /// Time between two attempts for the same mission \[s\].
 pub(super) const AGAIN: f64 = 1.0;
 
-/// A better way is searched for a robot that has waited for the first time \[s\], at most once in the second; for other robots
-/// once in the third.
+/// A better way is searched for a robot that has waited for longer than the first value, at most once in the time of the second; for
+/// other robots once in that of the third \[s\].
 const REVIEW: [f64; 3] = [0.3, 2.0, 5.0];
 
 /// Largest number of decisions between two control steps.
@@ -168,7 +168,7 @@ impl Run {
         }
     }
 
-    /// Searches another way and other orders for a robot that waits on its way, with which all are expected to arrive sooner.
+    /// Searches another way and other orders for a robot that waits on its way, with which all together are expected to arrive sooner.
     fn review(&mut self, robot: usize, now: f64) {
         /// Time that has to be gained in all \[s\].
         const GAIN: f64 = 1.0;

@@ -107,7 +107,7 @@ impl Scene<'_> {
         found
     }
 
-    /// The admitted way and orders with which all robots are expected to arrive soonest.
+    /// The admitted way and orders with which all robots together are expected to arrive soonest.
     pub(super) fn admitted(&self, robot: usize, kept: &Kept, candidates: Vec<Route>) -> Option<Admitted> {
         if self.method == Method::EdgeLocks {
             return self.locked(robot, kept, candidates);

@@ -32,7 +32,8 @@ pub(super) struct Scene<'s> {
     pub(super) network: &'s Routes,
     /// Nodes where robots may stand for good.
     pub(super) ends: &'s Ends,
-    /// Whether there are more robots than safe ends.
+    /// Whether there are more robots than safe ends, or as many and additional queue places where robots can make way for one
+    /// another.
     pub(super) crowded: bool,
     /// Whether only the mission that has waited longest is served.
     pub(super) is_urgent: bool,

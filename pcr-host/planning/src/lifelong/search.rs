@@ -15,7 +15,7 @@ use std::cell::Cell;
 const TURNS: usize = 16;
 const LEAST_TURNS: usize = 4;
 
-/// The same number in a large fleet.
+/// The second of these numbers, in a large fleet.
 const FEW_TURNS: usize = 1;
 
 /// Largest number of orders that are reversed if a robot would wait for ever.
@@ -81,7 +81,7 @@ impl Case<'_, '_> {
         Some((regions, forecast))
     }
 
-    /// Reverses orders if all robots are expected to arrive sooner.
+    /// Reverses orders if the robots together are expected to arrive sooner.
     pub(super) fn improved(&self, mut regions: Vec<Region>, mut forecast: Forecast) -> (Vec<Region>, Forecast) {
         let least = if self.scene.timetable.is_some() { FEW_TURNS } else { LEAST_TURNS };
         let mut turns = 0;

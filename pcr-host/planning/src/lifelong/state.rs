@@ -30,7 +30,7 @@ pub(super) struct Mission {
     pub(super) alone: f64,
     /// Whether it has a way.
     pub(super) admitted: bool,
-    /// Number of missions that were admitted while it waited.
+    /// Number of newer missions that were admitted while it waited.
     pub(super) passed: usize,
     pub(super) next_try: f64,
     /// Computing time of the quickest way before the first decision.

@@ -22,7 +22,7 @@ pub(super) struct Switched {
 }
 
 impl Scene<'_> {
-    /// Lets a robot of a large fleet go first where it waits, if it can and all are expected to arrive sooner by `gain` \[s\].
+    /// Lets a robot of a large fleet go first where it waits, if it can and all together are expected to arrive sooner by `gain` \[s\].
     pub(super) fn switched(&self, robot: usize, waits: &Waits<'_>, gain: f64) -> Option<Switched> {
         let timetable = self.timetable?;
         let it = &self.robots[robot];

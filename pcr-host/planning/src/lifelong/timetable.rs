@@ -32,7 +32,7 @@ impl Timeline {
     }
 
     /// Arrival at a length of the way, counted from now \[s\]. `time` is the time of the way there:
-    /// arrival = `made` + (`time` - `start`) + delays before `length`.
+    /// max(`made` + (`time` - `start`) - `now`, 0) + delays before `length`.
     pub(super) fn from(&self, time: f64, length: f64, now: f64) -> f64 {
         (time - self.start + self.made - now).max(0.0) + self.late(length)
     }
@@ -44,13 +44,13 @@ impl Timeline {
     }
 
     /// Arrival at the place with this time of the way, counted from when the timeline was made \[s\]:
-    /// (`time` - `start`) + all delays so far.
+    /// max(`time` - `start`, 0) + all delays so far.
     pub(super) fn comes(&self, time: f64) -> f64 {
         (time - self.start).max(0.0) + self.delays.last().map_or(0.0, |delay| delay.1)
     }
 
     /// Adds a wait at length `at` \[m\], where the time of the way is `comes`. The wait ends at `opens`, counted from when the timeline
-    /// was made; a full stop costs `lost` more \[s\].
+    /// was made; half of `lost`, the time that a full stop costs, is added, or half of the wait if that is shorter \[s\].
     pub(super) fn wait(&mut self, at: f64, comes: f64, opens: f64, lost: f64) {
         let so_far = self.delays.last().map_or(0.0, |delay| delay.1);
         let wait = opens - self.comes(comes);

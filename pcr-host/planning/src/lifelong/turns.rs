@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 /// If a mission has been refused for this long, robots in its way are asked to go elsewhere \[s\].
 const PATIENCE: f64 = 2.0;
 
-/// A mission overtaken by this many missions per robot is admitted before all others.
+/// A mission overtaken by this many missions per robot is the only one that is admitted, apart from those of robots in its way.
 const ROUNDS: usize = 4;
 
 /// Largest number of robots that are asked to go elsewhere for one mission at a time.

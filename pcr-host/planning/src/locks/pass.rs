@@ -22,7 +22,7 @@ pub struct Found {
     pub lengths: Extents,
 }
 
-/// Largest number of pieces of two discs: one for each pair of segments.
+/// Number of pieces of two discs for which there is room at first; it grows.
 pub(super) const PIECES: usize = 16;
 
 /// Reports progress: examined pairs of discs, and all pairs.

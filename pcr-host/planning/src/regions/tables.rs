@@ -33,8 +33,8 @@ pub fn table_of<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
 /// # Errors
 /// As [`rows::Row::new`], and [`TooLarge`](memory::TooLarge) where memory does not hold the pairs.
 fn of_rows<S: Format>(agents: Vec<Agent>, motions: &[Motion<'_, S>]) -> Result<Table, Failure> {
-    // The excess of a pair consists of extents, lags and roundings of arcs of both agents. It is at most the sum of the largest
-    // excesses of agents with themselves.
+    // The excess of a pair has three parts, of the extents, of the lags and of the rounding of arcs of both agents. Each is at most
+    // the largest excess of an agent with itself, hence their sum at most three times that.
     let largest = motions.iter().map(|motion| excess(motion, motion).to_f64()).fold(0.0, f64::max);
     let apart = 3.0 * largest.max(f64::MIN_POSITIVE);
     let Ok(close) = Close::new(&agents, apart) else {

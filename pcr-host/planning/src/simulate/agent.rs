@@ -82,8 +82,7 @@ impl Agent {
         self.speed <= 0.0 && self.at.lo >= self.course.length()
     }
 
-    /// The path for a plan, with or without the new mission; the interval of lengths of the robot on it; and the time for which
-    /// it has turned in place.
+    /// The path for a plan, with or without the new mission; the interval of lengths of the robot on it; and its speed \[m/s\].
     pub(super) fn to_plan(&self, takes_up: bool) -> (&Course, Interval<f64>, f64) {
         match &self.next {
             Some(next) if takes_up => (next, Interval::new(0.0, 0.0), 0.0),

@@ -67,7 +67,7 @@ pub(super) struct Try {
 /// Pause between two attempts \[s\]: the first one, and the largest.
 const PAUSE: [f64; 2] = [0.25, 2.0];
 
-/// Largest distance \[m\] and angle \[rad\] between the end of a path and the start of the next one.
+/// A path begins where the one before it ends if it is nowhere on its way farther off than this \[m\], and not turned by more \[rad\].
 const JOIN: f64 = 1e-3;
 
 impl Proposal {
@@ -264,7 +264,7 @@ impl Supervisor {
         self.hazards |= self.robots.iter().any(|robot| robot.stopped.is_some());
     }
 
-    /// Marks the holds as unknown of a robot and of those that have a region with it or waited for it.
+    /// Marks as unknown the holds of a robot, and of those that have a region with it or waited for it.
     fn forget_holds_with(&mut self, place: usize) {
         let pairs = self.orders.decisions().map(|decision| decision.agents).filter(|agents| agents.contains(&place));
         for agents in pairs {
@@ -365,8 +365,8 @@ fn joint(robot: &Robot, after: f64) -> Result<f64, Fault> {
     Ok(after.max(robot.told).min(length))
 }
 
-/// Checks that a path that leaves that of a robot at a length begins at the stated pose. `extent` is the length of the path: a
-/// wrong heading at its start becomes a wrong place further on.
+/// Checks that a path that leaves that of a robot at a length begins at the stated pose. `extent` bounds the distance of the points
+/// of the path from its start: a wrong heading there becomes a wrong place further on.
 fn is_there(robot: &Robot, after: f64, start: Start, extent: f64) -> Result<(), Fault> {
     let end = robot.course.arrival(after).map_err(Fault::invalid)?;
     let distance = (start.x - end.x).hypot(start.y - end.y);

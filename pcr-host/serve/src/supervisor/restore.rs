@@ -195,7 +195,7 @@ impl Supervisor {
     }
 }
 
-/// Largest number of a path or of a mission in the queue; larger ones would not be counted exactly.
+/// Numbers of paths and of missions in the queue are below this, so that they can go on counting.
 const MOST: u64 = 1 << 53;
 
 fn robot(known: Known) -> Result<Robot, Damaged> {

@@ -103,8 +103,8 @@ impl Kind {
         self == Self::Connection
     }
 
-    /// Whether a retained message of this kind is read. Factsheets and connection states hold until they are replaced; a
-    /// retained state or order may be old.
+    /// Whether a retained message of this kind is read. Factsheets, connection states and zone sets hold until they are replaced;
+    /// a retained state or order may be old.
     pub fn is_lasting(self) -> bool {
         matches!(self, Self::Connection | Self::Factsheet | Self::ZoneSet)
     }

@@ -66,7 +66,7 @@ pub struct Locks {
     /// For each piece the pieces on which discs would touch.
     touch: Vec<Vec<usize>>,
     claims: Vec<Claim>,
-    /// How far ahead of the last node a vehicle gets edges \[m\].
+    /// How far ahead of the node that it has reached last a vehicle gets edges \[m\].
     far: f64,
     /// Whether something has changed since edges were last given.
     changed: bool,
@@ -192,7 +192,7 @@ impl Claim {
     }
 }
 
-/// Distance between two straight lines.
+/// Distance between two line segments.
 pub fn distance([a, b]: Ends, [c, d]: Ends) -> f64 {
     let cross = |o: [f64; 2], p: [f64; 2], q: [f64; 2]| (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]);
     let opposite = |o: [f64; 2], p: [f64; 2], q: [f64; 2], r: [f64; 2]| cross(o, p, q) * cross(o, p, r) < 0.0;
@@ -203,7 +203,7 @@ pub fn distance([a, b]: Ends, [c, d]: Ends) -> f64 {
     ends.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// Distance from a point to the line between two others.
+/// Distance from a point to the segment between two others.
 pub fn to_line(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
     let [x, y] = [point[0] - from[0], point[1] - from[1]];
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]];

@@ -84,7 +84,7 @@ const LOST: (u32, f64) = (3, 3.0);
 /// A vehicle within this distance of a node begins there \[m\].
 const NEAR: f64 = 0.3;
 
-/// With locks: how far ahead of the last node a vehicle gets edges \[m\].
+/// With locks: how far ahead of the node that it has reached last a vehicle gets edges \[m\].
 const FAR: f64 = 4.0;
 
 impl Manager {

@@ -115,7 +115,7 @@ impl Lane {
         Ok(())
     }
 
-    /// Takes a factsheet. A vehicle that is larger than its configured disc gets no rights.
+    /// Takes a factsheet. As long as a vehicle is larger than its configured disc, no vehicle is released anything.
     ///
     /// # Errors
     /// [`Refusal`] for an invalid factsheet, or one of another vehicle.

@@ -5,7 +5,7 @@ use crate::robot::Robot;
 use crate::supervisor::Damaged;
 use serde_json::Value;
 
-/// Smallest number of ids that are kept.
+/// Number of ids that are kept at least: the last ones.
 const MOST: usize = 64;
 
 /// The used ids of one kind.

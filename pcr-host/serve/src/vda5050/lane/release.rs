@@ -11,7 +11,8 @@ use crate::supervisor::Supervisor;
 /// Time between two attempts to send the same \[s\].
 pub(super) const AGAIN: f64 = 1.0;
 
-/// Holds are computed with larger discs, so a hold that is lower than a node by at most this counts as at the node \[m\].
+/// A hold that is lower than a node by at most this counts as at the node \[m\]. Discs are larger by more than this: by the part of the
+/// margin (`TOLERANCE`) that no vehicle may use.
 const ROUNDING: f64 = 1e-4;
 
 /// Shortest part of an edge that is released alone \[m\].

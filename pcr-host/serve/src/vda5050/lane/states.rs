@@ -19,7 +19,8 @@ const ASTRAY: (u32, f64) = (3, 2.0);
 /// Time for which a vehicle that has lost its order keeps its right of way \[s\]: another order may follow the same way.
 const KEPT: f64 = 30.0;
 
-/// A late message counts as older than the newest one by this \[s\]; its true age is larger.
+/// Least time by which a late message counts as older than the newest one, and largest age that is passed on \[s\]: the supervisor
+/// refuses larger ages.
 const LATE: f64 = 1e-3;
 const OLDEST: f64 = 1e6;
 
