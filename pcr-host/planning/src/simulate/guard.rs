@@ -84,7 +84,7 @@ impl Guard {
         let hold = |agent: usize| {
             let horizon = horizon(agent);
             let before = if horizon.is_finite() { Hold::At(horizon) } else { Hold::Free };
-            // The table is that of the motions; nobody moves if it were not.
+            // The table is that of these motions; if it were not, no robot would move.
             match self.orders.hold_before(&motions, agent, &progress, before) {
                 Ok(Hold::Free) => f64::INFINITY,
                 Ok(Hold::At(hold)) if hold >= horizon => f64::INFINITY,
