@@ -13,7 +13,7 @@ use crate::fleet::{HostOrders, build_orders};
 use pcr_core::{Full, Hold, Interval, Motion, Pass, Progress, Reach, Tolerances};
 
 /// Gains below this are no progress when it is checked whether all robots can finish \[m\].
-const GAIN: f64 = 1e-6;
+const GAIN: f64 = 1e-3;
 
 /// The regions of all paths in coordination space, and the passing orders.
 #[derive(Debug)]
