@@ -260,10 +260,10 @@ fn say(file: &Path, lines: impl IntoIterator<Item = String>) {
 }
 
 /// Tells which letters are boxes in the pictures of a folder.
-fn warn_of_boxes(folder: &Path) {
+fn warn_of_boxes(folder: &Path, written: &pcr_drawing::Written) {
     /// Letters that are named; who writes in a script knows the others.
     const NAMED: usize = 8;
-    let letters: Vec<char> = pcr_drawing::lacking().chars().collect();
+    let letters = &written.boxes;
     if letters.is_empty() {
         return;
     }

@@ -50,10 +50,35 @@ use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::{Fleet, build_ecm};
 use pcr_planning::locks::Locks;
 use scene::Scene;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::{io, thread};
+
+/// What was written into a directory.
+#[derive(Clone, Debug, Default)]
+pub struct Written {
+    /// The files.
+    pub files: Vec<PathBuf>,
+    /// Letters that are boxes as PNG, for want of a font of all languages; as SVG they are what they are.
+    pub boxes: BTreeSet<char>,
+}
+
+impl Written {
+    fn add(&mut self, directory: &Path, files: Files) -> io::Result<()> {
+        for (name, content) in files {
+            let file = directory.join(name);
+            #[cfg(feature = "png")]
+            if file.extension().is_some_and(|extension| extension == "svg") {
+                self.boxes.extend(raster::boxes(&content));
+            }
+            output::write(&file, content)?;
+            self.files.push(file);
+        }
+        Ok(())
+    }
+}
 
 /// Writes all pictures of a scenario into a directory, which is created where it does not exist:
 ///
@@ -64,7 +89,7 @@ use std::{io, thread};
 ///
 /// all but the first as `.svg`, with the feature `png` also as `.png`. The workspace is drawn on the `ground`, if there is one.
 ///
-/// `progress` is called with the number of pictures that are done and of all there are, first with 0. Returns the files
+/// `progress` is called with the number of pictures that are done and of all there are, first with 0. The files are
 /// in a fixed order. The same scenario gives the same bytes in every run.
 ///
 /// # Errors
@@ -76,25 +101,26 @@ pub fn write(
     ground: Option<Ground<'_>>,
     directory: &Path,
     progress: &mut dyn FnMut(usize, usize),
-) -> io::Result<Vec<PathBuf>> {
+) -> io::Result<Written> {
     with_scene(scenario, egos, ground, |scene| {
         output::folder(directory)?;
         let mut pictures = vec![Picture::Page, Picture::Overview, Picture::Workspace];
         pictures.extend(scene.egos().map(Picture::Map));
-        let mut files = vec![Vec::new(); pictures.len()];
+        let mut written = vec![Written::default(); pictures.len()];
         let mut done = 0;
         progress(done, pictures.len());
         draw_all(scene, &pictures, &mut |place, drawn| {
-            for (name, content) in drawn? {
-                let file = directory.join(name);
-                output::write(&file, content)?;
-                files[place].push(file);
-            }
+            written[place].add(directory, drawn?)?;
             done += 1;
             progress(done, pictures.len());
             Ok(())
         })?;
-        Ok(files.concat())
+        let mut all = Written::default();
+        for Written { files, boxes } in written {
+            all.files.extend(files);
+            all.boxes.extend(boxes);
+        }
+        Ok(all)
     })
 }
 
@@ -104,7 +130,7 @@ pub fn write(
 ///
 /// # Errors
 /// Those of writing files.
-pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::Result<Vec<PathBuf>> {
+pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::Result<Written> {
     let mut files = vec![("locks.html".to_owned(), locks::page(imported, locks).into_bytes())];
     for level in 0..imported.layout.levels.len() {
         let svg = Ground { imported, level }.picture();
@@ -112,11 +138,9 @@ pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::
         files.extend(self::files(&name, svg)?);
     }
     output::folder(directory)?;
-    let write = |(name, content): (String, Vec<u8>)| {
-        let file = directory.join(name);
-        output::write(&file, content).map(|()| file)
-    };
-    files.into_iter().map(write).collect()
+    let mut written = Written::default();
+    written.add(directory, files)?;
+    Ok(written)
 }
 
 /// Writes the audit of a layout: a page with groups and gaps as layers, and a picture of each level. Returns the files.
@@ -129,7 +153,7 @@ pub fn write_audit(
     rules: &Rules,
     audit: &Audit,
     directory: &Path,
-) -> io::Result<Vec<PathBuf>> {
+) -> io::Result<Written> {
     let page = locks::page_of_audit(imported, locks, rules, audit);
     let mut files = vec![("audit.html".to_owned(), page.into_bytes())];
     for level in 0..imported.layout.levels.len() {
@@ -138,11 +162,9 @@ pub fn write_audit(
         files.extend(self::files(&name, svg)?);
     }
     output::folder(directory)?;
-    let write = |(name, content): (String, Vec<u8>)| {
-        let file = directory.join(name);
-        output::write(&file, content).map(|()| file)
-    };
-    files.into_iter().map(write).collect()
+    let mut written = Written::default();
+    written.add(directory, files)?;
+    Ok(written)
 }
 
 /// The collision map of an agent over what a sampled map says, as SVG.
@@ -197,15 +219,6 @@ impl Picture {
         };
         self::files(&name, svg)
     }
-}
-
-/// Letters of the pictures since the last question that are boxes as PNG, for want of a font of all languages; as SVG they are
-/// what they are.
-pub fn lacking() -> String {
-    #[cfg(feature = "png")]
-    return raster::lacking();
-    #[cfg(not(feature = "png"))]
-    String::new()
 }
 
 /// The files of a picture.
@@ -265,7 +278,8 @@ mod tests {
         let scenario = Scenario::from_json(&scenario.to_string()).unwrap();
         let directory = std::env::temp_dir().join(format!("pcr-pictures-{test}-{}", std::process::id()));
         let mut calls = Vec::new();
-        let files = write(&scenario, None, None, &directory, &mut |done, total| calls.push((done, total))).unwrap();
+        let written = write(&scenario, None, None, &directory, &mut |done, total| calls.push((done, total)));
+        let files = written.unwrap().files;
         let total = scenario.agents.len() + 3;
         assert_eq!(calls, (0..=total).map(|done| (done, total)).collect::<Vec<_>>());
         assert_eq!(files.len(), 2 * total - 1);

@@ -135,7 +135,7 @@ mod tests {
         let imported = imported(Format::Lif, &real("lif/example_05.lif.json"));
         let locks = Locks::of(&imported, false).unwrap();
         let directory = std::env::temp_dir().join(format!("pcr-locks-{}", std::process::id()));
-        let files = write_locks(&imported, &locks, &directory).unwrap();
+        let files = write_locks(&imported, &locks, &directory).unwrap().files;
         let names: Vec<_> = files.iter().map(|file| file.file_name().unwrap().to_str().unwrap()).collect();
         assert_eq!(names, ["locks.html", "layout.svg", "layout.png", "layout-2.svg", "layout-2.png"]);
         std::fs::remove_dir_all(directory).unwrap();

@@ -2,7 +2,7 @@
 
 mod font;
 
-pub(super) use font::lacking;
+pub(super) use font::boxes;
 
 use resvg::{tiny_skia, usvg};
 use std::io;

@@ -141,9 +141,8 @@ fn audit(
     let locks = pcr_exclusions::table(&imported).map_err(wrong)?;
     let audit = Audit::of(&imported, &locks, &rules, target).map_err(wrong)?;
     if let Some(directory) = output {
-        picture::write_audit(&imported, &locks, &rules, &audit, directory)
-            .map_err(|error| Stop::not_written(directory, &error))?;
-        warn_of_boxes(directory);
+        let written = picture::write_audit(&imported, &locks, &rules, &audit, directory);
+        warn_of_boxes(directory, &written.map_err(|error| Stop::not_written(directory, &error))?);
     }
     let mut out = printed.out(false);
     match printed.form() {

@@ -34,7 +34,7 @@ Examples:
   pcr locks depot.geojson --radius 0.4 --write nav2 -o guarded.geojson
   pcr locks plant.xml --radius 0.5 --audit -o audit  what it does not exclude";
 
-/// Print which edges of a layout may not be used at the same time, and on which lengths
+/// Print which edges exclude one another, and on which lengths
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
@@ -133,8 +133,8 @@ impl Arguments {
         let locks = Locks::watched(&imported, self.nodes, told).map_err(wrong)?;
         drop(progress);
         if let Some(directory) = &self.output {
-            picture::write_locks(&imported, &locks, directory).map_err(|error| Stop::not_written(directory, &error))?;
-            warn_of_boxes(directory);
+            let written = picture::write_locks(&imported, &locks, directory);
+            warn_of_boxes(directory, &written.map_err(|error| Stop::not_written(directory, &error))?);
         }
         match form {
             Form::Table => {

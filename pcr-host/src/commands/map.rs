@@ -99,10 +99,11 @@ pub(super) fn draw(
     out: &mut impl Write,
 ) -> Result<(), Stop> {
     let progress = Progress::new("pictures");
-    let files = picture::write(scenario, egos, ground, directory, &mut |done, total| progress.set(done, total));
+    let written = picture::write(scenario, egos, ground, directory, &mut |done, total| progress.set(done, total));
     drop(progress);
-    let files = files.map_err(|error| Stop::not_written(directory, &error))?;
-    warn_of_boxes(directory);
+    let written = written.map_err(|error| Stop::not_written(directory, &error))?;
+    warn_of_boxes(directory, &written);
+    let files = written.files;
     let page = files.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
     if let Some(first) = page.or(files.first()) {
         writeln!(out, "Pictures: {} files in {}; begin with {}", files.len(), directory.display(), first.display())?;

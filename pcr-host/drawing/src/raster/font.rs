@@ -6,17 +6,15 @@ use roxmltree::{Document, Node};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::io;
-use std::sync::{Mutex, PoisonError};
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
 static FONT: &[u8] = include_bytes!("../font/DejaVuSans-subset.ttf");
 
-/// Letters that were asked for and are not in the font.
-static LACKING: Mutex<BTreeSet<char>> = Mutex::new(BTreeSet::new());
-
-/// Letters of all pictures up to now, in order, that are boxes as PNG; the next ones begin anew.
-pub(crate) fn lacking() -> String {
-    std::mem::take(&mut *LACKING.lock().unwrap_or_else(PoisonError::into_inner)).into_iter().collect()
+/// The letters of a picture that the font does not have: they are boxes as PNG.
+pub(crate) fn boxes(svg: &[u8]) -> BTreeSet<char> {
+    let (Ok(text), Ok(face)) = (std::str::from_utf8(svg), Face::parse(FONT, 0)) else { return BTreeSet::new() };
+    // All that is printed of ASCII is in the font.
+    text.chars().filter(|letter| !letter.is_ascii() && face.glyph_index(*letter).is_none()).collect()
 }
 
 /// Size of texts for which nothing says it \[px\].
@@ -54,14 +52,8 @@ fn outline(face: &Face<'_>, text: Node<'_, '_>) -> String {
     let size = text.ancestors().find_map(|node| node.attribute("font-size")?.parse().ok()).unwrap_or(SIZE);
     let scale = size / f64::from(face.units_per_em());
     let letters = text.text().unwrap_or_default().chars();
-    let glyph = |letter| {
-        face.glyph_index(letter).unwrap_or_else(|| {
-            LACKING.lock().unwrap_or_else(PoisonError::into_inner).insert(letter);
-            // A box.
-            GlyphId::default()
-        })
-    };
-    let glyphs: Vec<GlyphId> = letters.map(glyph).collect();
+    // The first glyph is a box.
+    let glyphs: Vec<GlyphId> = letters.map(|letter| face.glyph_index(letter).unwrap_or_default()).collect();
     let advance = |&glyph: &GlyphId| scale * f64::from(face.glyph_hor_advance(glyph).unwrap_or(0));
     let width: f64 = glyphs.iter().map(advance).sum();
     let before = match text.attribute("text-anchor") {
