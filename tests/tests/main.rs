@@ -41,6 +41,7 @@ mod import_paths;
 mod import_rmf;
 mod import_updates;
 mod import_vda5050;
+mod import_vda5050_states;
 mod large;
 mod lateness;
 mod laws;
