@@ -130,20 +130,16 @@ impl Verdict {
     ) -> Result<Self, Failure> {
         let pairs = Pairs::new(scenario, discs, motions);
         let count = pairs.ids.len();
-        if closest {
-            let all = count as u64 * count.saturating_sub(1) as u64 / 2;
-            let what = || format!("how near all {all} pairs come");
-            // And those of one stretch, before they are with the others.
-            let of_stretch = count.min(STRETCH) as u64 * count as u64;
-            memory::ask(all.saturating_add(of_stretch).saturating_mul(size_of::<Closest>() as u64), what)?;
-        }
         let (mut conflicts, mut nearest, mut held) = (Vec::new(), Vec::new(), Held::default());
         if closest {
+            let all = count.saturating_mul(count.saturating_sub(1)) / 2;
+            let what = || format!("how near all {all} pairs come");
+            // And those of one stretch, before they are with the others.
+            let of_stretch = count.min(STRETCH).saturating_mul(count);
+            let bytes = all.saturating_add(of_stretch).saturating_mul(size_of::<Closest>());
+            memory::ask(bytes as u64, what)?;
             // As a whole: a list that grows is there twice.
-            let all = count * count.saturating_sub(1) / 2;
-            nearest
-                .try_reserve_exact(all)
-                .map_err(|_| memory::TooLarge::of(format!("how near all {all} pairs come")))?;
+            nearest.try_reserve_exact(all).map_err(|_| memory::TooLarge::of(what()))?;
         }
         for first in (0..count).step_by(STRETCH) {
             let stretch = first..count.min(first + STRETCH);

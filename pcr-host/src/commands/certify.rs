@@ -37,7 +37,7 @@ Examples:
   pcr certify --table table.json           this table, whoever wrote it
   pcr certify --table console.txt          what a microcontroller printed";
 
-/// Prove that a table of regions or locks is right, or show where it is wrong
+/// Prove that a table of regions or locks is right or show where not
 ///
 /// The checker shares no geometry with the code that has computed the table, and does not sample. It proves that every contact of the discs
 /// lies in a piece of a region, and that nothing in the table is farther from a contact than the stated bound.

@@ -23,7 +23,7 @@ Examples:
   pcr demo --scenario > paper12.json      the scenario, to try the other commands on
   pcr demo --scenario | pcr check         who of them collides, moving as the paper says";
 
-/// Show the paper's simulation of 12 agents: its tables beside ours, and pictures
+/// Show the paper's simulation of 12 agents, with its tables
 #[derive(Args, Default)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {

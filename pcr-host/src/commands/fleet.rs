@@ -56,26 +56,26 @@ pub(super) struct Arguments {
     /// Simulate their fleet manager, too
     #[arg(long, conflicts_with = "alone")]
     manager: bool,
-    /// First levels of topics, of manager and vehicles
+    /// First levels of topics
     #[arg(long, value_names = ["M", "V"], num_args = 2, default_values = ["fleet", "uagv"])]
     #[arg(conflicts_with = "alone")]
     topics: Vec<String>,
-    /// Simulated seconds per second, 0.1 to 100
+    /// Times faster than time, 0.1 to 100
     #[arg(long, value_name = "N", default_value_t = 1.0, conflicts_with = "alone")]
     pace: f64,
     /// End after this simulated time
     #[arg(long, value_name = "S")]
     time: Option<f64>,
-    /// Then go on until missions under way are done, or none is for an hour
+    /// Then until missions are done, or none is for 1 h
     #[arg(long, requires = "time")]
     finish: bool,
     /// Without a broker: supervisor, route-locks or edge-locks
     #[arg(long, value_name = "METHOD", requires = "time")]
     alone: Option<String>,
-    /// Connections that each vehicle loses per hour
+    /// Lost connections of a vehicle per hour
     #[arg(long, value_name = "N", default_value_t = 0.0)]
     drops: f64,
-    /// Part of the messages lost, and repeated, and late
+    /// Part of messages lost, repeated, late
     #[arg(long, value_name = "PART", default_value_t = 0.0)]
     weather: f64,
     /// The same seed makes the same vehicles
@@ -87,7 +87,7 @@ pub(super) struct Arguments {
     /// Prove of a record, or `-`, that they never touched
     #[arg(long, value_name = "FILE", conflicts_with_all = SIMULATED)]
     certify: Option<PathBuf>,
-    /// Write the vehicles for `pcr serve --fleet`, or to `-`
+    /// Write the vehicles for `pcr serve --fleet`, or `-`
     #[arg(long, value_name = "FILE", conflicts_with = "certify")]
     profiles: Option<PathBuf>,
 }

@@ -13,7 +13,7 @@ Examples:
   pcr import vda5050 robot1.json robot2.json --radius 0.4 -o fleet.json
   pcr regions warehouse.geojson --route 0:50 --radius 0.4   they read it as well";
 
-/// Write routes, an order or a plan in another format as a scenario file
+/// Write routes, an order or a plan of other formats as a scenario
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {

@@ -69,11 +69,11 @@ pub(super) struct Arguments {
     /// The file of vehicles (docs/serve.md)
     #[arg(long, value_name = "FILE", requires = "broker")]
     fleet: Option<PathBuf>,
-    /// First levels of topics, of manager and vehicles
+    /// First levels of topics
     #[arg(long, value_names = ["M", "V"], num_args = 2, default_values = ["fleet", "uagv"])]
     #[arg(requires = "vda5050")]
     topics: Vec<String>,
-    /// Also start a broker, vehicles on this layout and a manager
+    /// With a broker, vehicles on this layout, a manager
     #[arg(long, value_name = "LAYOUT", conflicts_with_all = ["broker", "fleet"])]
     demo: Option<PathBuf>,
     /// Vehicles of the demo

@@ -50,25 +50,25 @@ pub(super) struct Arguments {
     /// The same seed gives the same run
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
-    /// From plan to plan under pcr, 0.05 to 3600 s [default: 2]
+    /// Between plans under pcr, 0.05 to 3600 s [default: 2]
     #[arg(long, value_name = "S", value_parser = |text: &str| within(text, 0.05, 3600.0))]
     replan: Option<f64>,
-    /// Largest error of observed places, to 10 m
+    /// Largest error of places, to 10 m
     #[arg(long, value_name = "M", default_value_t = 0.015, value_parser = |text: &str| within(text, 0.0, 10.0))]
     noise: f64,
-    /// Largest distance of a robot from its path, to 10 m
+    /// Largest distance from paths, to 10 m
     #[arg(long, value_name = "M", default_value_t = 0.005, value_parser = |text: &str| within(text, 0.0, 10.0))]
     drift: f64,
-    /// Largest part of its way lost to slip, to 0.9
+    /// Largest loss to slip, of 1, to 0.9
     #[arg(long, value_name = "PART", default_value_t = 0.05, value_parser = |text: &str| within(text, 0.0, 0.9))]
     slip: f64,
-    /// Longest stop, about every 10 s, to 3600 s
+    /// Longest stop, each 10 s or so, to 3600 s
     #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = |text: &str| within(text, 0.0, 3600.0))]
     delay: f64,
     /// Trips of each foraging robot (3 if left out)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     trips: Option<u32>,
-    /// A page on which to watch the runs; `-` for standard output
+    /// A page to watch the runs; `-` for standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]

@@ -28,7 +28,7 @@ Exit status:
   2  wrong arguments, or a layout that cannot be read or was refused
   3  the output could not be written";
 
-/// Plan random missions on a layout: who waits, how many missions an hour
+/// Plan random missions on a layout: waits, and missions an hour
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {

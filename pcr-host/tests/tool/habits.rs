@@ -39,7 +39,7 @@ fn help_is_short() {
             let output = pcr().args(command).arg(option).env("COLUMNS", "80").output().unwrap();
             String::from_utf8(output.stdout).unwrap()
         });
-        assert!(narrow_short.lines().count() < 35, "{command:?}\n{narrow_short}");
+        assert!(narrow_short.lines().count() < 30, "{command:?}\n{narrow_short}");
         assert!(narrow.lines().count() < 60, "{command:?}\n{narrow}");
         assert!(narrow.lines().all(|line| line.chars().count() <= 80), "{command:?}\n{narrow}");
         assert!(!long.contains("see more"), "{command:?}\n{long}");

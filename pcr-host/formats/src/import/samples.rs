@@ -49,14 +49,14 @@ fn paths(text: &str) -> Result<Vec<Vec<[f64; 2]>>, ImportError> {
             }
             continue;
         }
-        if mixes_separators(content.trim_end_matches([';', ' ', '\t'])) {
+        // Some end each row with the mark between rows.
+        let content = content.trim_end_matches([',', ';', ' ', '\t']);
+        if mixes_separators(content) {
             let problem =
                 "commas beside other separators: decimal commas, or several points; one point x y is expected";
             return Err(ImportError::new(format!("line {}: {problem}", k + 1)));
         }
-        // Some end each row with the mark between rows.
-        let mut numbers = fields(content.trim_end_matches([',', ';', ' ', '\t']))
-            .map(|field| field.parse::<f64>().ok().filter(|x| x.abs() <= LIMIT));
+        let mut numbers = fields(content).map(|field| field.parse::<f64>().ok().filter(|x| x.abs() <= LIMIT));
         let (Some(Some(x)), Some(Some(y))) = (numbers.next(), numbers.next()) else {
             return Err(ImportError::new(format!("line {}: two numbers x y up to {LIMIT:e} are expected", k + 1)));
         };

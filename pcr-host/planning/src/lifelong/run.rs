@@ -107,7 +107,7 @@ impl Run {
             self.outcome.breaches += usize::from(stop > hold + 1e-9 && stop > it.at);
             disturb(it, robot, tick, now, open, &self.request);
             if open {
-                // A hold that does not affect the next step is nobody's.
+                // A hold that lies beyond the next step and its stopping way holds the robot back from nothing.
                 let held = hold < fars[robot];
                 *share(&mut self.outcome.time, it, held.then_some(hold), now) += 1.0;
             }

@@ -57,58 +57,86 @@ pub(super) fn reason(scenario: &Scenario, ids: [u64; 2], always: bool) -> (Strin
 
 fn found(scenario: &Scenario, ids: [u64; 2], always: bool, general: &str) -> Option<(String, Spot)> {
     let agent = |id: u64| scenario.agents.iter().find(|agent| agent.id == id).cloned();
-    let pair = Scenario { agents: ids.into_iter().map(agent).collect::<Option<_>>()?, ..Scenario::default() };
-    let fleet = Fleet::<f64>::new(&pair).ok()?;
+    let scenario = Scenario { agents: ids.into_iter().map(agent).collect::<Option<_>>()?, ..Scenario::default() };
+    let fleet = Fleet::<f64>::new(&scenario).ok()?;
     let references = fleet.motions();
     let references = [references.first()?, references.get(1)?];
-    let bodies = Bodies::<f64>::new(&pair).ok()?;
-    let (motions, discs) = (grown(&bodies.fleet), &bodies.discs);
-    let of = |agent: usize| (0..discs.len()).filter(move |&disc| discs[disc].agent == agent);
-    let others: Vec<u32> = of(1).map(|disc| disc as u32).collect();
-    let rows: Vec<Row<'_, f64>> = of(0).map(|disc| Row::new(&motions, disc, &others)).collect::<Result<_, _>>().ok()?;
-    let met = |row| {
-        let row: &Row<'_, f64> = row;
-        let disc = |place: usize| &discs[row.agents()[place] as usize];
-        let regions = row.table().row(row.motions(), row.place()).expect("the table of the row");
-        regions.map(move |region| Met { own: disc(region.ego()), other: disc(region.other()), region })
-    };
-    let all: Vec<Met<'_>> = rows.iter().flat_map(met).collect();
+    let bodies = Bodies::<f64>::new(&scenario).ok()?;
+    let (grown, exact) = (grown(&bodies.fleet), bodies.fleet.motions());
+    let pair = Pair { references, discs: &bodies.discs, grown: &grown, exact: &exact };
+    let others: Vec<u32> = pair.of(1).map(|disc| disc as u32).collect();
+    let rows = pair.of(0).map(|disc| Row::new(&grown, disc, &others)).collect::<Result<Vec<_>, _>>().ok()?;
+    let all: Vec<Met<'_>> = rows.iter().flat_map(|row| pair.met(row)).collect();
     let last = all.iter().find(|met| met.sides()[0]);
     let first = all.iter().find(|met| met.sides()[1]);
     let longest = || all.iter().max_by(|a, b| a.region.length().length().total_cmp(&b.region.length().length()));
-    let exact = bodies.fleet.motions();
-    let standing = |at_end: bool| {
+    let stand = || always.then(|| pair.standing(false).or_else(|| pair.standing(true))).flatten();
+    Some(match (stand(), always, first, last) {
+        (Some(found), ..) => found,
+        (None, true, Some(first), Some(last)) => {
+            let is_contact = pair.has_contact(first) && pair.has_contact(last);
+            let margins = if is_contact { "" } else { ", within their margins" };
+            (contradiction(last, first) + margins, last.spot(references[0]))
+        }
+        _ => (general.to_owned(), last.or_else(longest)?.spot(references[0])),
+    })
+}
+
+/// Two agents and their discs.
+struct Pair<'a> {
+    /// Motions of the agents.
+    references: [&'a Motion<'a, f64>; 2],
+    discs: &'a [Disced],
+    /// Motions of the discs, enlarged by margins and rounding.
+    grown: &'a [Motion<'a, f64>],
+    /// The same as they are.
+    exact: &'a [Motion<'a, f64>],
+}
+
+impl<'a> Pair<'a> {
+    /// The discs of an agent.
+    fn of(&self, agent: usize) -> impl Iterator<Item = usize> + 'a {
+        let discs = self.discs;
+        (0..discs.len()).filter(move |&disc| discs[disc].agent == agent)
+    }
+
+    /// The regions of a disc.
+    fn met(&self, row: &'a Row<'a, f64>) -> impl Iterator<Item = Met<'a>> {
+        let discs = self.discs;
+        let disc = move |place: usize| row.agents()[place] as usize;
+        let regions = row.table().row(row.motions(), row.place()).expect("the table of the row");
+        regions.map(move |region| {
+            let places = [region.ego(), region.other()].map(disc);
+            let [own, other] = places.map(|place| &discs[place]);
+            Met { region, places, own, other }
+        })
+    }
+
+    /// How near the agents are at their starts or at their ends, if they are too near.
+    fn standing(&self, at_end: bool) -> Option<(String, Spot)> {
+        let Self { references, discs, grown, exact } = *self;
         let there = |&disc: &usize| discs[disc].stands()[usize::from(at_end)];
-        let at = |disc: usize| motions[disc].path().point_at(if at_end { motions[disc].path().length() } else { 0.0 });
-        let pairs = of(0).filter(there).flat_map(|a| of(1).filter(there).map(move |b| [a, b]));
+        let at = |disc: usize| grown[disc].path().point_at(if at_end { grown[disc].path().length() } else { 0.0 });
+        let pairs = self.of(0).filter(there).flat_map(|a| self.of(1).filter(there).map(move |b| [a, b]));
         let near = pairs.filter_map(|[a, b]| {
             let apart = (at(a).x - at(b).x).hypot(at(a).y - at(b).y);
             let gap = apart - exact[a].radius() - exact[b].radius();
-            let [margin, tolerance] =
-                [exact[a].margin() + exact[b].margin(), Encounter::new(&exact[a], &exact[b]).tolerance()];
-            (apart < motions[a].radius() + motions[b].radius()).then_some((gap, Contact::of(gap, margin, tolerance)))
+            let margin = exact[a].margin() + exact[b].margin();
+            let tolerance = Encounter::new(&exact[a], &exact[b]).tolerance();
+            (apart < grown[a].radius() + grown[b].radius()).then_some((gap, Contact::of(gap, margin, tolerance)))
         });
         let (_, nearest) = near.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let place = if at_end { "at the ends of their paths" } else { "at their starts" };
         Some((format!("{} {place}", nearest.words()), Spot::standing(references, at_end)))
-    };
-    let stand = || always.then(|| standing(false).or_else(|| standing(true))).flatten();
-    // Whether the discs themselves meet in a region, or only their margins.
-    let has_contact = |met: &Met<'_>| {
-        let disc = |part: &Disced| discs.iter().position(|disc| std::ptr::eq(disc, part));
-        let [Some(a), Some(b)] = [met.own, met.other].map(disc) else { return true };
-        let Ok(row) = Row::new(&exact, a, &[b as u32]) else { return true };
+    }
+
+    /// Whether the discs themselves meet in a region, and not only their margins.
+    fn has_contact(&self, met: &Met<'_>) -> bool {
+        let [own, other] = met.places;
+        let Ok(row) = Row::new(self.exact, own, &[other as u32]) else { return true };
         let mut regions = row.table().row(row.motions(), row.place()).expect("the table of the row");
         regions.any(|region| region.length().meets(met.region.length()))
-    };
-    let margins = |met: [&Met<'_>; 2]| if met.into_iter().all(has_contact) { "" } else { ", within their margins" };
-    Some(match (stand(), always, first, last) {
-        (Some(found), ..) => found,
-        (None, true, Some(first), Some(last)) => {
-            (contradiction(last, first) + margins([first, last]), last.spot(references[0]))
-        }
-        _ => (general.to_owned(), last.or_else(longest)?.spot(references[0])),
-    })
+    }
 }
 
 /// How near two agents are that stand too near.
@@ -140,6 +168,8 @@ impl Contact {
 /// A region of two discs.
 struct Met<'a> {
     region: RegionRef<'a, f64>,
+    /// Places of the two discs.
+    places: [usize; 2],
     own: &'a Disced,
     other: &'a Disced,
 }

@@ -400,8 +400,8 @@ impl Control for Supervisor {
             if pending[robot] {
                 return Some(Waits { robot, begun: false, by: problem.in_the_way(robot, |_| true) });
             }
-            let by = self.guard.waits_for(robot, &places).map(InTheWay::Robot);
-            (agent.speed <= 0.0 && !agent.stands()).then_some(Waits { robot, begun: true, by })
+            let by = || self.guard.waits_for(robot, &places).map(InTheWay::Robot);
+            (agent.speed <= 0.0 && !agent.stands()).then(|| Waits { robot, begun: true, by: by() })
         };
         self.agents.iter().enumerate().filter_map(waits).collect()
     }
