@@ -5,14 +5,21 @@
 //! at random, get new paths when they have arrived, and in half of the runs lose their memory on the way (*restarts*). They move
 //! freely up to their holds; the true positions are checked five times per control step.
 
-use pcr_core::scalar::Angle;
-use pcr_core::{Brakes, Curve, Interval, Limits, Pass, Point, Pose, Turn};
-use pcr_supervisor::message::{Edition, Refusal, Terms};
-use pcr_supervisor::robot::Unclear;
-use pcr_supervisor::{
-    Agent, Answer, Briefing, Client, Event, Motions, Number, Request, Robot, Service, Session, Step, Traffic,
-};
+mod drawn;
+mod driver;
+mod line;
+mod rounded;
+mod tally;
+
+use drawn::{Random, agent, heading, limits, path};
+use driver::Driver;
+pub(crate) use driver::motions;
+use line::Way;
+use pcr_supervisor::message::{Refusal, Terms};
+use pcr_supervisor::{Agent, Answer, Client, Event, Number, Request, Service, Session, Traffic};
+pub(crate) use rounded::Rounded;
 use std::error::Error;
+use tally::Tally;
 
 /// Largest number of robots. The capacities of the supervisor below follow from it.
 pub(crate) const ROBOTS: usize = 5;
@@ -28,110 +35,13 @@ pub(crate) const ORDERS: usize = 2 * REGIONS;
 
 /// Time between two control steps \[s\].
 const STEP: f64 = 0.1;
-/// Control steps after which no frame from before a restart can still be on the line: 9 s.
-const SILENCE: usize = 90;
 /// Control steps after which a run is given up: 600 s.
 const CONTROLS: usize = 6000;
-
-/// A number of the format, rounded.
-pub(crate) trait Rounded: Number {
-    /// From a decimal.
-    fn from_f64(value: f64) -> Self;
-    /// The exact value.
-    fn to_f64(self) -> f64;
-}
-
-impl Rounded for f32 {
-    fn from_f64(value: f64) -> Self {
-        value as f32
-    }
-    fn to_f64(self) -> f64 {
-        f64::from(self)
-    }
-}
-
-impl Rounded for pcr_core::scalar::Micro {
-    fn from_f64(value: f64) -> Self {
-        Self(value as f32)
-    }
-    fn to_f64(self) -> f64 {
-        f64::from(self.0)
-    }
-}
-
-impl Rounded for pcr_fixed::Q16 {
-    fn from_f64(value: f64) -> Self {
-        Self::from_f64(value).expect("a small number")
-    }
-    fn to_f64(self) -> f64 {
-        Self::to_f64(self)
-    }
-}
-
-/// Weyl sequence with the finalizer of SplitMix64.
-#[derive(Clone, Debug)]
-pub(crate) struct Random(pub(crate) u64);
-
-impl Random {
-    fn below(&mut self, bound: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) % bound as u64) as usize
-    }
-
-    fn unit(&mut self) -> f64 {
-        self.below(1 << 20) as f64 / f64::from(1 << 20)
-    }
-
-    fn chance(&mut self, of_1000: usize) -> bool {
-        self.below(1000) < of_1000
-    }
-}
 
 /// The other end: bytes go there, and what it has said since comes back.
 pub(crate) trait Supervisor {
     /// Sends bytes; what it answers to them and to nothing else.
     fn exchange(&mut self, bytes: &[u8]) -> Result<Vec<u8>, Box<dyn Error>>;
-}
-
-/// Counts over all runs.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Tally {
-    pub(crate) runs: usize,
-    pub(crate) robots: usize,
-    /// Orders by which one waits.
-    pub(crate) orders: usize,
-    /// Paths that were admitted, and refused.
-    pub(crate) admitted: usize,
-    pub(crate) refused: usize,
-    /// Frames on the line, and how many of them suffered a fault.
-    pub(crate) frames: usize,
-    pub(crate) faults: usize,
-    /// Robots that came to the ends of their paths.
-    pub(crate) arrived: usize,
-    /// Controllers that forgot everything, and those of them that had to find their places.
-    pub(crate) restarts: usize,
-    pub(crate) resumed: usize,
-    /// Least distance between two discs \[m\].
-    pub(crate) gap: f64,
-}
-
-impl std::fmt::Display for Tally {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { runs, robots, orders, admitted, refused, frames, faults, arrived, restarts, resumed, gap } = self;
-        writeln!(
-            f,
-            "{runs} runs, {robots} robots, {arrived} at the ends of their paths; {orders} times to wait for one"
-        )?;
-        writeln!(
-            f,
-            "{admitted} paths admitted on the way, {refused} refused; {frames} frames, {faults} of them damaged, lost or late"
-        )?;
-        writeln!(f, "{restarts} controllers restarted, {resumed} of them on the way")?;
-        write!(f, "no two discs touch; the least distance is {:.1} mm", gap * 1e3)
-    }
 }
 
 /// A supervisor in this process.
@@ -147,78 +57,6 @@ impl<S: Rounded> Supervisor for Here<S> {
         bytes.iter().for_each(|&byte| self.take(byte, &mut |frame: &[u8]| said.extend_from_slice(frame)));
         Ok(said)
     }
-}
-
-/// One direction of the line.
-#[derive(Default)]
-struct Way {
-    arriving: Vec<Vec<u8>>,
-    /// Frames that come late: so many steps.
-    late: Vec<(usize, Vec<u8>)>,
-}
-
-impl Way {
-    /// Sends a frame; `bad` of 1000 suffer each kind of fault.
-    fn send(&mut self, frame: &[u8], random: &mut Random, bad: usize, tally: &mut Tally) {
-        tally.frames += 1;
-        let mut frame = frame.to_vec();
-        let before = (frame.clone(), self.late.len());
-        if random.chance(bad) {
-            tally.faults += 1;
-            return;
-        }
-        if random.chance(bad) {
-            self.late.push((1 + random.below(40), frame.clone()));
-        }
-        if random.chance(bad) {
-            frame.truncate(random.below(frame.len()));
-        }
-        if random.chance(bad) && !frame.is_empty() {
-            let at = random.below(frame.len());
-            frame[at] ^= 1 << random.below(8);
-        }
-        tally.faults += usize::from((&frame, self.late.len()) != (&before.0, before.1));
-        if random.chance(bad) {
-            tally.faults += 1;
-            self.late.push((1 + random.below(8), frame));
-        } else {
-            // Before one of those that are under way, or behind all.
-            let place = if random.chance(bad) { random.below(self.arriving.len() + 1) } else { self.arriving.len() };
-            self.arriving.insert(place, frame);
-        }
-    }
-
-    /// Takes the frames that arrive now.
-    fn arrive(&mut self) -> Vec<u8> {
-        self.late.iter_mut().for_each(|(steps, _)| *steps -= 1);
-        let (due, late) = std::mem::take(&mut self.late).into_iter().partition(|(steps, _)| *steps == 0);
-        self.late = late;
-        let due: Vec<(usize, Vec<u8>)> = due;
-        let arriving = std::mem::take(&mut self.arriving);
-        arriving.into_iter().chain(due.into_iter().map(|(_, frame)| frame)).flatten().collect()
-    }
-}
-
-/// A robot with its controller.
-struct Driver<S: Number> {
-    index: u16,
-    client: Client,
-    briefing: Briefing<S, ROBOTS, SEGMENTS, REGIONS>,
-    robot: Robot<S, ROBOTS, REGIONS, PIECES>,
-    /// Whether it is asking for orders, and has to begin anew.
-    asks: bool,
-    /// Its path as it was told, and where it is on it.
-    told: Option<Agent<S>>,
-    path: Option<Agent<S>>,
-    length: S,
-    at: f64,
-    speed: f64,
-    stops: usize,
-    hold: f64,
-    /// Controls since it asked.
-    waits: usize,
-    /// Controls for which it says nothing.
-    silent: usize,
 }
 
 /// Runs of a number format, from this seed on. With `reckless`, robots do not look at their holds.
@@ -250,40 +88,6 @@ fn ask<S: Number>(
     match last {
         Some(Event::Last(answer)) => Ok(answer),
         other => Err(format!("no answer to {request:?} but {other:?}").into()),
-    }
-}
-
-/// A path through the middle of the arena.
-fn path<S: Rounded>(random: &mut Random) -> heapless::Vec<Step<S>, { pcr_supervisor::agent::MAX_STEPS }> {
-    (0..1 + random.below(STEPS))
-        .map(|_| {
-            let length = S::from_f64(0.5 + 2.5 * random.unit());
-            let turn = if random.chance(500) { Turn::Left } else { Turn::Right };
-            let radius = S::from_f64(0.6 + 2.0 * random.unit());
-            let curve = if random.chance(500) { Curve::Line } else { Curve::Arc { radius, turn } };
-            Step { curve, length }
-        })
-        .collect()
-}
-
-fn heading<S: Rounded>(random: &mut Random) -> S::Angle {
-    let (sin, cos) = (std::f64::consts::TAU * random.unit()).sin_cos();
-    <S::Angle as Angle<S>>::atan2(S::from_f64(sin), S::from_f64(cos))
-}
-
-fn limits<S: Rounded>() -> Limits<S> {
-    Limits { speed: S::from_f64(1.0), acceleration: S::from_f64(1.0) }
-}
-
-fn agent<S: Rounded>(random: &mut Random) -> Agent<S> {
-    let number = |value: f64| S::from_f64(value);
-    let position = Point::new(number(5.0 * random.unit()), number(5.0 * random.unit()));
-    Agent {
-        radius: number(0.15 + 0.15 * random.unit()),
-        start_time: number(0.0),
-        limits: limits(),
-        start: Pose { position, heading: heading::<S>(random) },
-        path: path(random),
     }
 }
 
@@ -330,27 +134,7 @@ fn run<S: Rounded>(
         Answer::Refused(Refusal::Meeting(_) | Refusal::Stuck(_)) => return Ok(()),
         other => return Err(format!("no orders but {other:?}").into()),
     }
-    let mut drivers: Vec<Driver<S>> = fleet
-        .into_iter()
-        .zip(0..)
-        .map(|(agent, index)| Driver {
-            index,
-            client: Client::robot(index),
-            briefing: Briefing::new(index),
-            robot: Robot::new(),
-            asks: false,
-            told: None,
-            path: Some(agent),
-            // No robot is at the end of its path before it was told the length.
-            length: S::LIMIT,
-            at: 0.0,
-            speed: 0.0,
-            stops: 0,
-            hold: 0.0,
-            waits: 0,
-            silent: 0,
-        })
-        .collect();
+    let mut drivers: Vec<Driver<S>> = (0..).zip(fleet).map(|(index, agent)| Driver::new(index, agent)).collect();
     tally.robots += drivers.len();
     let (mut there, mut back) = (Way::default(), Way::default());
     let mut missions = random.below(4);
@@ -428,151 +212,6 @@ fn mission<S: Rounded>(
     Ok(())
 }
 
-impl<S: Rounded> Driver<S> {
-    fn end(&self) -> f64 {
-        self.length.to_f64()
-    }
-
-    /// Sends its question, or the last one again.
-    fn send(&mut self, line: &mut Way, random: &mut Random, bad: usize, tally: &mut Tally) {
-        self.waits += 1;
-        if self.silent > 0 {
-            self.silent -= 1;
-            return;
-        }
-        let none = self.robot.edition() == Edition::default();
-        if none && !self.asks {
-            self.inquire();
-        }
-        // The same question again: answers that have already come are kept.
-        if self.asks && !(self.waits == 1 || self.waits > 5) {
-            return;
-        }
-        if self.asks {
-            self.waits = 1;
-        } else {
-            let at = self.reported();
-            let (agent, edition) = (self.index, self.robot.edition());
-            let report = Request::Report { agent, edition, at: Interval::new(at, at) };
-            assert!(self.client.ask(&report), "a report fits a frame");
-        }
-        line.send(self.client.frame(), random, bad, tally);
-    }
-
-    /// The length that it reports as passed, rounded down.
-    fn reported(&self) -> S {
-        if self.at >= self.end() { self.length } else { S::from_f64((self.at - 1e-4).max(0.0)) }
-    }
-
-    /// Its controller is switched off and on: the robot stands where it is, and knows nothing any more.
-    fn restart(&mut self) {
-        (self.client, self.robot) = (Client::robot(self.index), Robot::new());
-        self.briefing.clear();
-        (self.asks, self.told, self.speed, self.hold) = (false, None, 0.0, 0.0);
-        self.silent = SILENCE;
-    }
-
-    fn inquire(&mut self) {
-        (self.asks, self.waits) = (true, 0);
-        self.briefing.clear();
-        assert!(self.client.ask(&Request::<S>::Orders { agent: self.index }), "a question fits a frame");
-    }
-
-    fn hear(&mut self, bytes: &[u8], tally: &mut Tally) -> Result<(), Box<dyn Error>> {
-        for &byte in bytes {
-            let answer = match self.client.take::<S>(byte) {
-                Some(Event::Answer(answer) | Event::Last(answer)) => answer,
-                Some(Event::Changed) => {
-                    self.inquire();
-                    continue;
-                }
-                _ => continue,
-            };
-            match answer {
-                Answer::Refused(Refusal::Edition(_)) => self.inquire(),
-                Answer::Refused(refusal) if self.asks => return Err(format!("no orders but {refusal:?}").into()),
-                answer if self.asks => {
-                    match self.briefing.take(&answer) {
-                        // They have changed meanwhile.
-                        Err(Unclear::Disagreement) => self.inquire(),
-                        other => other.map_err(|unclear| format!("{unclear:?}"))?,
-                    }
-                    match answer {
-                        Answer::Member { agent, with, .. } if agent == self.index => self.told = Some(with),
-                        Answer::Passing { pass: Pass::Second, .. } => tally.orders += 1,
-                        Answer::Orders { .. } if self.asks => self.brief(tally)?,
-                        _ => {}
-                    }
-                }
-                answer => self.robot.hear(&self.briefing, &answer),
-            }
-        }
-        Ok(())
-    }
-
-    fn brief(&mut self, tally: &mut Tally) -> Result<(), Box<dyn Error>> {
-        self.asks = false;
-        let at = self.reported();
-        let fleet = motions(&self.briefing)?;
-        let mut changed = self.robot.brief(&self.briefing, &fleet, at);
-        if changed == Err(Unclear::Begun) {
-            // It looks around; what it is told is the path that it is on.
-            if self.told != self.path {
-                return Err("another path was begun".into());
-            }
-            tally.resumed += 1;
-            let resumed = self.robot.resume(&self.briefing);
-            changed = resumed.and_then(|()| self.robot.brief(&self.briefing, &fleet, at));
-        }
-        if changed == Err(Unclear::Disagreement) {
-            // They have changed meanwhile.
-            drop(fleet);
-            self.inquire();
-            return Ok(());
-        }
-        if changed.map_err(|unclear| format!("{unclear:?}"))? {
-            (self.at, self.speed, self.hold) = (0.0, 0.0, 0.0);
-            self.path = self.told.take();
-        }
-        self.length = fleet.get(self.robot.own()).ok_or("its own path is not there")?.path().length();
-        Ok(())
-    }
-
-    /// A control: how fast it goes until the next one.
-    fn control(&mut self, random: &mut Random, reckless: bool) -> Result<(), Box<dyn Error>> {
-        if !self.asks {
-            let fleet = motions(&self.briefing)?;
-            let hold = self.robot.hold(&fleet).to_f64();
-            if hold < self.hold {
-                return Err("a hold went back".into());
-            }
-            self.hold = hold;
-        }
-        if self.stops == 0 && random.chance(20) {
-            self.stops = random.below(60);
-        }
-        self.stops = self.stops.saturating_sub(1);
-        let way = if reckless { f64::INFINITY } else { self.hold - self.at };
-        if way <= 1e-3 {
-            (self.at, self.speed) = (self.at.max(self.hold), 0.0);
-            return Ok(());
-        }
-        let safe = Brakes::new(1.0, STEP)?.speed(way.clamp(0.0, 1e3));
-        let wanted = if self.stops > 0 { 0.0 } else { random.unit().max(0.5) };
-        self.speed = safe.min(wanted).min(self.speed + STEP);
-        Ok(())
-    }
-}
-
-/// The paths that a robot knows.
-pub(crate) fn motions<S: Number, const A: usize, const N: usize, const R: usize>(
-    told: &Briefing<S, A, N, R>,
-) -> Result<Motions<'_, S, A>, Box<dyn Error>> {
-    let mut fleet = Motions::new();
-    told.put_motions(&mut fleet).map_err(|invalid| format!("{invalid:?}"))?;
-    Ok(fleet)
-}
-
 /// Moves all robots up to the next control step. Two discs that overlap by more than [`TOUCH`] are an error.
 fn advance<S: Rounded>(drivers: &mut [Driver<S>], tally: &mut Tally) -> Result<(), Box<dyn Error>> {
     const PARTS: u32 = 5;
@@ -596,33 +235,3 @@ fn advance<S: Rounded>(drivers: &mut [Driver<S>], tally: &mut Tally) -> Result<(
 
 /// Overlap above which two discs are in contact \[m\]: at a hold they may just touch, and the positions here are rounded.
 const TOUCH: f64 = 1e-3;
-
-impl<S: Rounded> Driver<S> {
-    /// Its true position, computed here from its path in `f64`, and its radius.
-    fn disc(&self) -> Option<([f64; 2], f64)> {
-        let path = self.path.as_ref()?;
-        let start = &path.start;
-        let (sin, cos) = <S::Angle as Angle<S>>::sin_cos(start.heading);
-        let (mut x, mut y) = (start.position.x.to_f64(), start.position.y.to_f64());
-        let one = S::from_f64(1.0);
-        let mut heading = one.scale(sin).to_f64().atan2(one.scale(cos).to_f64());
-        let mut rest = self.at;
-        for step in &path.path {
-            let length = rest.min(step.length.to_f64());
-            rest -= length;
-            match step.curve {
-                Curve::Line => (x, y) = (x + length * heading.cos(), y + length * heading.sin()),
-                Curve::Arc { radius, turn } => {
-                    let sign = if turn == Turn::Left { 1.0 } else { -1.0 };
-                    let (radius, turned) = (sign * radius.to_f64(), sign * length / radius.to_f64());
-                    (x, y) = (
-                        x + radius * ((heading + turned).sin() - heading.sin()),
-                        y - radius * ((heading + turned).cos() - heading.cos()),
-                    );
-                    heading += turned;
-                }
-            }
-        }
-        Some(([x, y], path.radius.to_f64()))
-    }
-}

@@ -9,7 +9,7 @@ use pcr_supervisor::message::{Edition, Terms};
 use pcr_supervisor::scenario::crowd::{OWN, PIECES, REGIONS, ROBOTS, SEGMENTS};
 use pcr_supervisor::{Agent, Answer, Briefing, Client, Event, Request, Robot, Service, Session, Step, Traffic};
 use std::error::Error;
-use std::io::{Read, Write};
+use std::io::{BufReader, Read, Write};
 use std::process::{Command, Stdio};
 
 type Supervisor<S> = Session<S, ROBOTS, SEGMENTS, 512, 1024, Traffic<S, ROBOTS, 512, 1024, 512>>;
@@ -26,7 +26,7 @@ fn agent<S: Rounded>(index: usize) -> Agent<S> {
     let x = index as f64 + 1.0;
     let (start, step, start_time) = match index {
         _ if index == usize::from(OWN) => (at(0.0, 0.0, heading(1.0, 0.0)), line(31.0), 600.0),
-        _ if index % 3 == 0 => (at(x, -2.0, heading(0.25, 1.0)), bend, 20.0 * x),
+        _ if index.is_multiple_of(3) => (at(x, -2.0, heading(0.25, 1.0)), bend, 20.0 * x),
         _ => (at(x, -2.0, heading(0.0, 1.0)), line(4.0), 20.0 * x),
     };
     Agent {
@@ -79,7 +79,7 @@ pub(crate) fn check<S: Rounded>(command: &[&str]) -> Result<(), Box<dyn Error>> 
     let mut requests = Receiver::new(Reads::Requests);
     let (mut reports, mut places) = (0_usize, [0.0; ROBOTS]);
     let mut frame = Vec::new();
-    for byte in from.bytes() {
+    for byte in BufReader::new(from).bytes() {
         let byte = byte?;
         frame.push(byte);
         let Some(request) = requests.take::<Request<S>>(byte) else { continue };

@@ -23,6 +23,7 @@
 use crate::fleet::{Motions, Store};
 use crate::message::{Answer, Edition};
 use crate::number::Number;
+use crate::table::Ordered;
 use heapless::Vec;
 use pcr_core::{
     Full, Hold, Interval, Invalid, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region, Scalar, Unchanged,
@@ -158,7 +159,7 @@ impl From<Mismatch> for Unclear {
 /// pieces.
 #[derive(Debug)]
 pub struct Robot<S: Number, const A: usize, const R: usize, const P: usize> {
-    orders: Orders<S, [Region; R], [Piece<S>; P], [Order<S>; R]>,
+    orders: Ordered<S, R, P, R>,
     progress: [Progress<S>; A],
     /// Its own index among them.
     own: usize,

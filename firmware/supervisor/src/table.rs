@@ -3,10 +3,14 @@
 use crate::agent::Agent;
 use crate::message::{Answer, Edition, Refusal, Terms};
 use crate::number::Number;
-use pcr_core::{Ecm, Interval, Mismatch, Motion, Piece, Region, Unchanged};
+use pcr_core::{Ecm, Interval, Mismatch, Motion, Order, Orders, Piece, Region, Unchanged};
 
 /// A table of at most `R` regions in `P` pieces.
 pub type Regions<S, const R: usize, const P: usize> = Ecm<S, [Region; R], [Piece<S>; P]>;
+
+/// A table of at most `R` regions in `P` pieces, and `O` orders.
+pub type Ordered<S, const R: usize, const P: usize, const O: usize> =
+    Orders<S, [Region; R], [Piece<S>; P], [Order<S>; O]>;
 
 /// A table that a [`Service`](crate::Service) keeps. A table without orders refuses requests about orders.
 pub trait Table<S: Number, const R: usize, const P: usize> {

@@ -14,7 +14,7 @@
 use crate::agent::Agent;
 use crate::message::{Answer, Edition, Refusal, Terms, short};
 use crate::number::Number;
-use crate::table::{Regions, Table};
+use crate::table::{Ordered, Regions, Table};
 use pcr_core::{
     Interval, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Region, Scalar, Tolerances,
     Unchanged,
@@ -24,7 +24,7 @@ use pcr_core::{
 /// regions, and as many more as a robot has that gets a new path.
 #[derive(Debug)]
 pub struct Traffic<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> {
-    orders: Orders<S, [Region; R], [Piece<S>; P], [Order<S>; O]>,
+    orders: Ordered<S, R, P, O>,
     robots: [Robot<S>; A],
     edition: Edition,
     terms: Terms<S>,
