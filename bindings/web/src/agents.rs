@@ -103,6 +103,6 @@ impl Agents {
         if !self.known {
             return Err(Fault::NotBuilt);
         }
-        Ok(self.all.iter().filter_map(|agent| agent.motion().ok()).collect())
+        self.all.iter().zip(0..).map(|(agent, number)| agent.motion().map_err(Fault::of_agent(number))).collect()
     }
 }

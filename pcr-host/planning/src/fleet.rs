@@ -163,10 +163,7 @@ impl<S: Format> Fleet<S> {
 
     /// The motions, in the order of the scenario.
     pub fn motions(&self) -> Vec<Motion<'_, S>> {
-        // `Parts::new` has built each motion once, so none is missing.
-        let motions: Vec<Motion<'_, S>> = self.agents.iter().filter_map(|parts| parts.motion().ok()).collect();
-        debug_assert_eq!(motions.len(), self.agents.len());
-        motions
+        self.agents.iter().map(|parts| parts.motion().expect("built before by `Parts::new`")).collect()
     }
 
     /// The motion of one agent.

@@ -1,5 +1,6 @@
 //! Choices from a list of numbers in [0, 1).
 
+use pcr_planning::random::Random;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Numbers that a pair uses at most; what is asked beyond is 0.
@@ -20,15 +21,8 @@ impl Dice {
 
     /// Choices from a seed (splitmix64).
     pub fn seeded(seed: u64) -> Self {
-        let mut state = seed;
-        let face = |_| {
-            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut z = state;
-            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-        };
-        Self::new((0..FACES).map(face).collect())
+        let mut random = Random(seed);
+        Self::new((0..FACES).map(|_| random.unit()).collect())
     }
 
     /// In [0, 1).

@@ -4,6 +4,7 @@
 use super::arc_arc::centre_distance;
 use super::{Arc, Pcr};
 use pcr_core::PieceType;
+use pcr_planning::random::Random;
 use std::f64::consts::FRAC_PI_2;
 
 /// How far, in radii, a case stays away from contacts that touch without crossing \[1\]. There the ends of a range
@@ -12,20 +13,6 @@ const CLEAR: f64 = 1e-3;
 
 /// Least angle between the two directions at the crossing \[rad\].
 const LEAST_ANGLE: f64 = 0.1;
-
-/// Deterministic random numbers (SplitMix64, Steele et al. 2014).
-struct Random(u64);
-
-impl Random {
-    fn within(&mut self, lo: f64, hi: f64) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        let unit = ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64;
-        lo + (hi - lo) * unit
-    }
-}
 
 /// `each` random cases of every class (quadrant, turns, size of the combined radius) of a type.
 pub fn of_type(piece_type: PieceType, each: usize) -> Vec<Pcr> {
