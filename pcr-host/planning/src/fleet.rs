@@ -17,6 +17,7 @@ use pcr_core::{
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
 pub(crate) use rounding::Rounding;
+pub use rounding::rounded;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 

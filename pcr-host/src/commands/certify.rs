@@ -2,6 +2,7 @@
 
 use super::number::{Number, with_scalar};
 use super::sources::{layout, scenario, source};
+use super::work::tell_rounding;
 use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT};
 use clap::Args;
 use pcr_formats::import::{Kind, Options};
@@ -120,7 +121,10 @@ impl Arguments {
             }
             _ => vec![scenario(file, &self.import)?],
         };
-        let certified = scenarios.iter().map(|scenario| {
+        let certified = scenarios.into_iter().map(|mut scenario| {
+            let lost = tell_rounding(self.scalar, &mut scenario).map_err(|refused| Stop::wrong(file, refused))?;
+            say(file, lost);
+            let scenario = &scenario;
             let tables = with_scalar!(self.scalar, S => table_of::<S>(scenario));
             let tables = tables.map_err(|failure| Stop::wrong(file, failure))?;
             let (labels, warnings) = (Labels::of(scenario), [&warnings[..], &scenario.warnings].concat());

@@ -93,6 +93,10 @@ impl Check {
 impl Work for Check {
     const CSV_HEADER: &'static str = report::CONFLICTS_CSV_HEADER;
 
+    fn scalar(&self) -> Number {
+        self.scalar
+    }
+
     fn print(&self, scenario: &Scenario, told: Told<'_>, out: &mut impl Write) -> Result<bool, Unprinted> {
         if self.silent && with_scalar!(self.scalar, S => Verdict::any::<S>(scenario, told))? {
             return Ok(true);

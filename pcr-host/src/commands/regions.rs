@@ -102,6 +102,10 @@ impl Regions {
 impl Work for Regions {
     const CSV_HEADER: &'static str = report::CSV_HEADER;
 
+    fn scalar(&self) -> Number {
+        self.scalar
+    }
+
     fn print(&self, scenario: &Scenario, told: Told<'_>, out: &mut impl Write) -> Result<bool, Unprinted> {
         with_scalar!(self.scalar, S => self.print_in::<S>(scenario, told, out))?;
         Ok(false)

@@ -1,5 +1,6 @@
 //! Shared code of commands that process one scenario after the other.
 
+use super::number::{Number, with_scalar};
 use super::printed::is_alone;
 use super::sources::{Source, foreign_scenario, gathered, give_margin};
 use super::{Form, NOT_WRITTEN, Printed, Stop, WRONG_INPUT, complain, say};
@@ -7,6 +8,7 @@ use crate::progress::Progress;
 use pcr_formats::import::{Options, shortened};
 use pcr_formats::input::{self, InputError, Lines};
 use pcr_formats::scenario::Scenario;
+use pcr_planning::fleet::{Refused, rounded};
 use pcr_planning::regions::Told;
 use pcr_planning::report::Unprinted;
 use std::io::{self, BufRead, BufReader, IsTerminal, Write};
@@ -16,6 +18,8 @@ use std::path::{Path, PathBuf};
 pub(super) trait Work {
     /// The first line of the output as CSV.
     const CSV_HEADER: &'static str;
+    /// The number format that it computes in.
+    fn scalar(&self) -> Number;
     /// Prints the answer, and tells whether it is what the exit status tells.
     fn print(&self, scenario: &Scenario, told: Told<'_>, out: &mut impl Write) -> Result<bool, Unprinted>;
     /// Prints the answer to what is no scenario, as JSON.
@@ -74,6 +78,13 @@ pub(super) fn run<W: Work>(work: &W, files: Vec<PathBuf>, import: &Options, prin
     }
 }
 
+/// A warning about what the number format makes of the motions, which the scenario has from now on.
+pub(super) fn tell_rounding(scalar: Number, scenario: &mut Scenario) -> Result<Option<String>, Refused> {
+    let warning = with_scalar!(scalar, S => rounded::<S>(scenario))?;
+    scenario.warnings.extend(warning.clone());
+    Ok(warning)
+}
+
 /// Answers one source; of standard input the text may be there already.
 fn one<W: Work>(
     work: &W,
@@ -82,10 +93,12 @@ fn one<W: Work>(
     import: &Options,
     out: &mut impl Write,
 ) -> Result<bool, Stop> {
-    let scenario = match text {
+    let mut scenario = match text {
         Some(text) => foreign_scenario(text, import)?,
         None => source.scenario(import)?,
     };
+    let lost = tell_rounding(work.scalar(), &mut scenario).map_err(|refused| Stop::wrong(source.file(), refused))?;
+    say(source.file(), lost);
     let progress = Progress::new(format!("{}: {} agents", source.file().display(), scenario.agents.len()));
     work.print(&scenario, &|done, total| progress.set(done, total), out).map_err(|unprinted| match unprinted {
         Unprinted::Failure(failure) => Stop::wrong(source.file(), failure),
@@ -125,11 +138,16 @@ fn answer_lines<W: Work>(
                 let number = line.number;
                 let warnings = scenario.warnings.iter().map(|warning| format!("line {number}: {}", shortened(warning)));
                 say(Path::new("-"), warnings);
-                let answered = match give_margin(&mut scenario, import) {
-                    Ok(()) => work.print(&scenario, &|_, _| {}, out).map_err(|unprinted| match unprinted {
-                        Unprinted::Failure(failure) => Ok(failure.to_string()),
-                        Unprinted::Output(error) => Err(error),
-                    }),
+                let lost = give_margin(&mut scenario, import)
+                    .and_then(|()| tell_rounding(work.scalar(), &mut scenario).map_err(|refused| refused.to_string()));
+                let answered = match lost {
+                    Ok(lost) => {
+                        say(Path::new("-"), lost.map(|warning| format!("line {number}: {warning}")));
+                        work.print(&scenario, &|_, _| {}, out).map_err(|unprinted| match unprinted {
+                            Unprinted::Failure(failure) => Ok(failure.to_string()),
+                            Unprinted::Output(error) => Err(error),
+                        })
+                    }
                     Err(why) => Err(Ok(why)),
                 };
                 match answered {

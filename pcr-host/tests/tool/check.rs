@@ -82,6 +82,27 @@ fn tables_and_csv_say_the_same() {
     assert!(lines[1].starts_with("crossing,1,2,2.14") && lines[1].ends_with(",0,,"), "{}", lines[1]);
 }
 
+/// The sweep of an arc is its length over its radius, which in `q12` has one digit here.
+#[test]
+fn motions_that_a_format_makes_others_of_are_told() {
+    let path = json!([{ "kind": "arc", "radius": 0.0002, "sweep": 4.34 }, { "kind": "line", "length": 6 }]);
+    let heading = 4.34_f64;
+    let moving = json!({ "id": 1, "radius": 0.1, "v_max": 1, "a_max": 1, "start": { "x": 0, "y": 0, "heading": 0 }, "path": path });
+    let [x, y] = [6.0 * heading.cos(), 6.0 * heading.sin()];
+    let standing = json!({ "id": 2, "radius": 0.1, "v_max": 1, "a_max": 1, "start": { "x": x, "y": y, "heading": 0 }, "path": [] });
+    let scenario = json!({ "agents": [moving, standing] });
+    let exact = check(&scenario, &["--format", "json"]).json_of(1);
+    assert_eq!(exact["warnings"], json!([]));
+    let rounded = check(&scenario, &["--format", "json", "--scalar", "q12"]);
+    assert_eq!(rounded.status, 0);
+    let warning = "1 of 2 agents: their motions in q12 are not those in the file, which it rounds; agent 1 is up to ";
+    assert!(rounded.err.contains(warning), "{}", rounded.err);
+    let answer: Value = serde_json::from_str(&rounded.out).unwrap();
+    let told =
+        answer["warnings"][0].as_str().and_then(|told| told.strip_prefix(warning)).unwrap().split(' ').next().unwrap();
+    assert!((2.0..4.0).contains(&told.parse::<f64>().unwrap()), "{told}");
+}
+
 #[test]
 fn the_papers_agents_collide_without_a_plan() {
     let run = run(&["check", PAPER, "--format", "json"]);

@@ -1,9 +1,8 @@
 //! How far a motion in a number format is from that in the scenario: the conversion loses digits.
 
-use super::{Format, turn_in_place};
+use super::{Fleet, Format, Refused, turn_in_place};
 use pcr_core::Motion;
-use pcr_formats::scenario::Placed;
-use pcr_formats::scenario::{Agent, PathSegment};
+use pcr_formats::scenario::{Agent, PathSegment, Placed, Scenario};
 use std::f64::consts::{PI, TAU};
 
 /// What a format makes of a motion, at most.
@@ -26,6 +25,33 @@ impl Rounding {
         let digits = S::slack(motion.extent()).to_f64();
         Self { distance: distance + 2.0 * length + of_times(agent, motion) + 2.0 * digits, length: length + digits }
     }
+}
+
+/// Distances from the motions in the file up to this are not told \[m\].
+const UNTOLD: f64 = 1e-3;
+
+/// A warning if some agents are elsewhere in the format than in the scenario, by more than 1 mm at some time. `None` for `f64`, the
+/// format of the scenario.
+///
+/// # Errors
+/// [`Refused`] if a value does not fit the number format.
+pub fn rounded<S: Format>(scenario: &Scenario) -> Result<Option<String>, Refused> {
+    if S::EPSILON == f64::EPSILON {
+        return Ok(None);
+    }
+    let fleet = Fleet::<S>::new(scenario)?;
+    let motions = fleet.motions();
+    let distances =
+        scenario.agents.iter().zip(&motions).map(|(agent, motion)| (Rounding::of(agent, motion).distance, agent));
+    let told: Vec<(f64, &Agent)> = distances.filter(|(distance, _)| *distance > UNTOLD).collect();
+    let worst = told.iter().max_by(|(a, _), (b, _)| a.total_cmp(b));
+    Ok(worst.map(|(distance, agent)| {
+        let (format, count, all, called) = (S::NAME, told.len(), motions.len(), agent.called());
+        format!(
+            "{count} of {all} agents: their motions in {format} are not those in the file, which it rounds; agent {called} is up to \
+             {distance:.3} m elsewhere"
+        )
+    }))
 }
 
 /// The number that the format holds.
