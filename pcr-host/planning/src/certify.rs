@@ -142,21 +142,34 @@ impl Dump {
             told::bodies(table, &dump.footprints)?;
             told::asked(table, dump.agent)?;
         }
-        if let Some(regions) = &dump.regions {
-            let asked = Asked { agent: dump.agent, covers: &dump.footprints };
-            let lists = [("regions", Some(regions)), ("margin_regions", dump.margin_regions.as_ref())];
-            for (place, (name, list)) in lists.into_iter().enumerate() {
-                match (list, dump.certificate.get(place)) {
-                    (Some(list), Some(table)) => told::compare(name, list, table, asked)?,
-                    (Some(_), None) if place > 0 => {
-                        return Err(format!("{name}: the certificate has no table of them"));
-                    }
-                    (None, Some(_)) => return Err(format!("{name}: missing, and the certificate has a table of them")),
-                    _ => {}
-                }
+        dump.compare()?;
+        Ok(dump)
+    }
+
+    /// Compares the tables of the discs and of the discs with their margins with one another, and with the regions that are told.
+    fn compare(&self) -> Result<(), String> {
+        match &self.certificate[..] {
+            [] | [_] => {}
+            [discs, margins] => told::enlarged(discs, margins)?,
+            more => {
+                let count = more.len();
+                return Err(format!("certificate: {count} tables; there are at most two, the second with margins"));
             }
         }
-        Ok(dump)
+        let lists = [("regions", &self.regions), ("margin_regions", &self.margin_regions)];
+        let is_told = lists.iter().any(|(_, list)| list.is_some());
+        let asked = Asked { agent: self.agent, covers: &self.footprints };
+        for (place, (name, list)) in lists.into_iter().enumerate() {
+            match (list, self.certificate.get(place)) {
+                (Some(list), Some(table)) => told::compare(name, list, table, asked)?,
+                (Some(_), None) if place > 0 => return Err(format!("{name}: the certificate has no table of them")),
+                (None, Some(_)) if is_told => {
+                    return Err(format!("{name}: missing, and the certificate has a table of them"));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
     }
 }
 

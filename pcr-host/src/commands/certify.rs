@@ -3,7 +3,7 @@
 use super::number::{Number, with_scalar};
 use super::sources::{layout, scenario, source};
 use super::work::tell_rounding;
-use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT};
+use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, say};
 use clap::Args;
 use pcr_formats::import::{Kind, Options};
 use pcr_formats::input;

@@ -134,6 +134,42 @@ fn regions_that_are_none_of_the_table_are_refused() {
     assert_eq!(refused("one.json", &one), "regions: 0 of agents 1 and 2, and 1 in the certificate");
 }
 
+/// The table with margins is of the same discs, enlarged; its regions are compared even if those of the discs are left out.
+#[test]
+fn tables_of_margins_are_those_of_the_discs() {
+    let told = table("margins.json", &crossing(), &["--margin", "0.1"]);
+    let changed = |change: &dyn Fn(&mut Value)| {
+        let mut other = told.clone();
+        change(&mut other);
+        refused("other-margins.json", &other)
+    };
+    let alone = changed(&|it| {
+        drop(it.as_object_mut().unwrap().remove("regions"));
+        it["margin_regions"] = json!([]);
+    });
+    assert_eq!(alone, "margin_regions: 0 of agents 1 and 2, and 1 in the certificate");
+    let missing = changed(&|it| drop(it.as_object_mut().unwrap().remove("regions")));
+    assert_eq!(missing, "regions: missing, and the certificate has a table of them");
+    let elsewhere = changed(&|it| {
+        it["certificate"][1]["agents"][1]["path"]["start"] = json!([100, 100]);
+        (it["certificate"][1]["pairs"], it["margin_regions"]) = (json!([]), json!([]));
+    });
+    assert_eq!(elsewhere, "certificate: agents[1] of the two tables differ: path");
+    let smaller = changed(&|it| it["certificate"][1]["agents"][0]["radius"] = json!(0.01));
+    assert_eq!(smaller, "certificate: agents[0] of the two tables differ: radius, which is smaller with the margin");
+    let later = changed(&|it| it["certificate"][1]["agents"][0]["travel"]["start"] = json!(7));
+    assert_eq!(later, "certificate: agents[0] of the two tables differ: travel");
+    let fewer = changed(&|it| drop(it["certificate"][0]["agents"].as_array_mut().unwrap().pop()));
+    assert_eq!(fewer, "certificate: 1 discs in the first table, and 2 in the second");
+    let more = changed(&|it| {
+        let table = it["certificate"][0].clone();
+        it["certificate"].as_array_mut().unwrap().push(table);
+    });
+    assert_eq!(more, "certificate: 3 tables; there are at most two, the second with margins");
+    let covers = changed(&|it| it["footprints"] = json!([{ "id": 77, "discs": [1] }]));
+    assert_eq!(covers, "footprints: the certificate has no agent 77");
+}
+
 /// Of outlines the times are compared.
 #[test]
 fn regions_of_outlines_that_are_none_of_the_table_are_refused() {

@@ -49,6 +49,31 @@ pub(super) fn bodies(table: &Table, covers: &[Cover]) -> Result<(), String> {
             _ => {}
         }
     }
+    // A number of nobody would still make regions unions, of which less is compared.
+    match told.keys().find(|id| !table.agents.iter().any(|agent| agent.id == **id)) {
+        Some(id) => Err(format!("footprints: the certificate has no agent {id}")),
+        None => Ok(()),
+    }
+}
+
+/// Checks that two tables are about the same discs on the same paths at the same times, in the second one with margins.
+pub(super) fn enlarged(discs: &Table, margins: &Table) -> Result<(), String> {
+    let (count, other) = (discs.agents.len(), margins.agents.len());
+    if count != other {
+        return Err(format!("certificate: {count} discs in the first table, and {other} in the second"));
+    }
+    for (place, (disc, margin)) in discs.agents.iter().zip(&margins.agents).enumerate() {
+        let path = |agent: &Agent| (agent.path.start, agent.path.heading, agent.path.segments.clone(), agent.path.step);
+        let travel = |agent: &Agent| agent.travel.as_ref().map(|travel| (travel.start, travel.phases.clone()));
+        let differs = match () {
+            () if disc.id != margin.id => "id",
+            () if path(disc) != path(margin) => "path",
+            () if travel(disc) != travel(margin) => "travel",
+            () if margin.radius < disc.radius => "radius, which is smaller with the margin",
+            () => continue,
+        };
+        return Err(format!("certificate: agents[{place}] of the two tables differ: {differs}"));
+    }
     Ok(())
 }
 
