@@ -131,3 +131,18 @@ fn who_goes_straight_to_the_end_has_nothing_to_do_on_a_circle_and_that_is_told()
         assert!(run["done"] == 1 && run["travel"].as_f64().unwrap() >= least, "{controller}: {run}");
     }
 }
+
+#[test]
+fn a_turn_in_place_at_the_end_is_over_when_the_mission_is_done() {
+    let turn = json!({ "kind": "turn", "sweep": 3 });
+    // Alone, a turn of 3 rad takes 3 s and a second of ramps; a line of 3 m takes as long.
+    for (path, unimpeded) in [(json!([turn]), 4.0), (json!([{ "kind": "line", "length": 3 }, turn]), 8.0)] {
+        let agent = json!({ "id": 1, "radius": 0.3, "v_max": 1, "a_max": 1, "turn_v_max": 1, "turn_a_max": 1, "path": path,
+            "start": { "x": 0, "y": 0, "heading": 0 } });
+        let name = file("simulate", "turn.json", json!({ "agents": [agent] }).to_string());
+        let run = &run(&["simulate", &name, "--controller", "pcr", "--json"]).json()["runs"][0];
+        assert_eq!((&run["done"], &run["ended"], run.get("waiting_for")), (&json!(1), &json!("done"), None), "{run}");
+        let told = run["unimpeded"].as_f64().unwrap();
+        assert!((told - unimpeded).abs() < 1e-6, "{told}");
+    }
+}

@@ -26,7 +26,7 @@ pub struct Outcome {
     /// Number of robots that do not reach the end of their way after the last mission, because no robot moves any more:
     /// deadlocks.
     pub stuck: usize,
-    /// Longest time for which no robot moved \[s\].
+    /// Longest time for which no robot moved although one was on its way \[s\].
     pub standstill: f64,
     /// Number of refused attempts for missions; they are repeated.
     pub refused: usize,

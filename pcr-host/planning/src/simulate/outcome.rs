@@ -213,6 +213,11 @@ impl Run {
         let mean = |value: &dyn Fn(&(&Arrival, f64)) -> f64| {
             if done.is_empty() { 0.0 } else { done.iter().map(value).sum::<f64>() / done.len() as f64 }
         };
+        // A place does not tell whether a turn in place at the end is over.
+        let is_done = |robot: usize| {
+            let done = trace.journeys.iter().filter(|journey| journey.robot == robot && journey.end.is_some());
+            done.count() == task.robots[robot].missions.len()
+        };
         let given_up = trace.positions.first().map_or(0.0, |track| (track.len() - 1) as f64 * FRAME);
         let (collisions, clearance) = collisions(task, trace);
         Self {
@@ -227,7 +232,11 @@ impl Run {
             collisions,
             clearance,
             planning: planning.map(Planning::of),
-            waiting_for: waiting.iter().map(|waits| Waiting::of(task, *waits)).collect(),
+            waiting_for: waiting
+                .iter()
+                .filter(|waits| !is_done(waits.robot))
+                .map(|waits| Waiting::of(task, *waits))
+                .collect(),
             missions,
         }
     }

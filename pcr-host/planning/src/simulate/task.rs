@@ -93,7 +93,7 @@ impl Task {
                 if agent.t_start > LATEST {
                     return Err(Failure::Late(agent.id, LATEST));
                 }
-                let limits = limits(&agent.motion);
+                let limits = limits(agent);
                 let (own, least) = (agent.duration(), course.unimpeded(limits));
                 if own > least * (1.0 + SLOWER) {
                     let by = "by its largest speed on each segment and its largest acceleration";
@@ -154,10 +154,11 @@ fn tops(agent: &Agent) -> Vec<f64> {
     agent.path.iter().zip(agent.parts()).map(top).collect()
 }
 
-/// The limits of a motion. For a profile: its largest speed and acceleration; without any acceleration, one second to the top
-/// speed.
-fn limits(motion: &MotionSpec) -> Limits<f64> {
-    match motion {
+/// The limits of an agent. For a profile: its largest speed and acceleration; without any acceleration, one second to the top
+/// speed. If it only turns in place, the durations of its turns contain all ramps, and 1 m/s² adds none.
+fn limits(agent: &Agent) -> Limits<f64> {
+    let turns = |segment: &PathSegment| matches!(segment, PathSegment::Arc { radius: TURN, .. });
+    match &agent.motion {
         MotionSpec::RestToRest { v_max, a_max } => Limits { speed: *v_max, acceleration: *a_max },
         MotionSpec::Profile { v0, pieces } => {
             let (mut now, mut speed, mut acceleration) = (*v0, *v0, 0.0_f64);
@@ -166,7 +167,12 @@ fn limits(motion: &MotionSpec) -> Limits<f64> {
                 speed = speed.max(now);
                 acceleration = acceleration.max(accel.abs());
             }
-            Limits { speed, acceleration: if acceleration > 0.0 { acceleration } else { speed } }
+            let acceleration = match acceleration {
+                _ if agent.path.iter().all(turns) => 1.0,
+                some if some > 0.0 => some,
+                _ => speed,
+            };
+            Limits { speed, acceleration }
         }
     }
 }
