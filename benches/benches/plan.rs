@@ -5,9 +5,7 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pcr_benches::{Storage, fleet, lanes};
-use pcr_core::{
-    Drive, Interval, Motion, Profile, Station, earliest_start, first_conflict, plan_delays, plan_speed, plan_speeds,
-};
+use pcr_core::{Drive, Motion, Profile, Station, earliest_start, first_conflict, plan_delays, plan_speed, plan_speeds};
 use pcr_planning::fleet::Fleet;
 use std::hint::black_box;
 
@@ -18,7 +16,7 @@ const STATIONS: usize = 257;
 fn agents(c: &mut Criterion) {
     for (name, fleet) in [("12", fleet::<f64>("paper12")), ("100", fleet::<f64>("table6-100"))] {
         let motions = fleet.motions();
-        let time = motions.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
+        let time = Motion::span(&motions);
         let mut storage = Storage::of(&motions);
         let ecm = storage.table(&motions);
         let mut group = c.benchmark_group(format!("every agent of {name}"));

@@ -4,14 +4,9 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pcr_benches::{boxes, fleet, scattered};
-use pcr_core::{BroadPhase, Encounter, Interval, Motion};
+use pcr_core::{BroadPhase, Encounter, Motion};
 use pcr_planning::fleet::{Fleet, Format};
 use std::hint::black_box;
-
-/// From the first start to the last arrival.
-fn span<S: Format>(motions: &[Motion<'_, S>]) -> Interval<S> {
-    motions.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default()
-}
 
 fn pairs<'a, S: Format>(motions: &'a [Motion<'a, S>]) -> impl Iterator<Item = Encounter<'a, S>> {
     let pairs = (0..motions.len()).flat_map(|i| (i + 1..motions.len()).map(move |j| [i, j]));
@@ -20,7 +15,7 @@ fn pairs<'a, S: Format>(motions: &'a [Motion<'a, S>]) -> impl Iterator<Item = En
 
 fn bench<S: Format>(c: &mut Criterion, name: &str, fleet: &Fleet<S>) {
     let motions = fleet.motions();
-    let time = span(&motions);
+    let time = Motion::span(&motions);
     let mut group = c.benchmark_group("conflicts");
     group.throughput(Throughput::Elements((motions.len() * (motions.len() - 1) / 2) as u64));
     let mut boxes = boxes(&motions);

@@ -89,7 +89,7 @@ pub fn table<S: Format>(pair: &(Disc, Disc), drives: &[(Drive, f64); 2]) -> Opti
     let motions = courses.each_ref().map(|(course, _)| course.motion());
     let ecm = build_ecm(&motions).ok()?;
     let agents = courses.iter().zip(&motions).enumerate().map(|(place, ((_, (disc, ..)), motion))| {
-        certificate::agent(place as u64, motion, S::angle(disc.start[2]), &[])
+        certificate::agent(place as u64, motion, S::angle(disc.start[2]).expect("an angle"), &[])
     });
     Some(certificate::table(agents.collect(), &motions, &ecm))
 }

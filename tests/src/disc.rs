@@ -120,7 +120,7 @@ impl Disc {
             Leg::Right { radius, length } => Leg::Right { radius: round(radius), length: round(length) },
         });
         let [x, y, heading] = self.start;
-        let start = [round(x), round(y), S::radians(S::angle(heading))];
+        let start = [round(x), round(y), S::radians(S::angle(heading).expect("an angle"))];
         let mut rounded = Self { radius: round(self.radius), start, legs: legs.collect() };
         rounded.legs.retain(|leg| leg.length() > 0.0);
         // The library takes a full turn that rounding made too long back to the circumference.
@@ -216,7 +216,7 @@ impl<S: Format> Course<S> {
     pub fn driven(disc: &Disc, drive: &Drive, start: f64) -> Result<Self, Invalid> {
         let [x, y, heading] = disc.start;
         let position = Point::new(S::from_f64(x), S::from_f64(y));
-        let origin = Segment::standing(Pose { position, heading: S::angle(heading) })?;
+        let origin = Segment::standing(Pose { position, heading: S::angle(heading).expect("an angle") })?;
         let mut segments = Vec::<Segment<S>>::new();
         for leg in &disc.legs {
             let last = segments.last().unwrap_or(&origin);

@@ -57,7 +57,7 @@ struct Parts<S: Format> {
 impl<S: Format> Parts<S> {
     fn new(mut number: impl FnMut() -> S) -> Option<Self> {
         let (x, y, heading) = (number(), number(), number().to_f64());
-        let mut last = Segment::standing(Pose { position: Point::new(x, y), heading: S::angle(heading) }).ok()?;
+        let mut last = Segment::standing(Pose { position: Point::new(x, y), heading: S::angle(heading)? }).ok()?;
         let mut segments = vec![];
         for _ in 0..3 {
             let arc = last.then_arc(number(), if number() > S::ZERO { Turn::Left } else { Turn::Right }, number());

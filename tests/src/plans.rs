@@ -96,7 +96,7 @@ pub fn audit(seed: u64, method: Method, tally: &mut Tally) {
             }
         }
         Err(Unsolved::Priorities(_)) => tally.not_found += 1,
-        Err(Unsolved::Full(_)) => tally.full += 1,
+        Err(Unsolved::Full(_) | Unsolved::Invalid { .. }) => tally.full += 1,
         Err(other) => panic!("seed {seed}: {other}"),
     }
 }

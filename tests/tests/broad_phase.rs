@@ -11,11 +11,6 @@ use pcr_tests::generators::Dice;
 use pcr_tests::oracle::contact::Meeting;
 use pcr_tests::plans::fleet;
 
-/// From the first start to the last arrival.
-fn span<S: Format>(fleet: &[Motion<'_, S>]) -> Interval<S> {
-    fleet.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default()
-}
-
 fn boxes<S: Format>(fleet: &[Motion<'_, S>], parts: usize) -> Vec<Bounds<S>> {
     vec![Bounds::default(); fleet.len() * (1 + parts)]
 }
@@ -28,7 +23,7 @@ fn leaves_out_no_contact<S: Format>(seeds: u64) {
         let Some(courses) = fleet(dice).iter().map(Course::<S>::rounded).collect::<Option<Vec<_>>>() else { continue };
         let motions: Vec<Motion<'_, S>> = courses.iter().map(|(course, _)| course.motion()).collect();
         let one = S::from_f64(1.0);
-        let Interval { lo, hi } = span(&motions);
+        let Interval { lo, hi } = Motion::span(&motions);
         let during = Interval::new(lo - one, hi + one);
         let broad_phase = BroadPhase::new(boxes(&motions, 1 << dice.below(6)), &motions, during).unwrap();
         let candidates: Vec<_> = broad_phase.candidates().collect();
@@ -87,7 +82,7 @@ fn a_fleet_has_the_contacts_of_its_pairs_however_many_the_parts() {
     {
         let fleet = Fleet::<f64>::new(&Scenario::from_json(json).unwrap()).unwrap();
         let motions = fleet.motions();
-        let time = span(&motions);
+        let time = Motion::span(&motions);
         let known = one_by_one(&motions, time);
         assert_eq!(known.len(), contacts);
         let mut candidates = most + 1;
@@ -135,7 +130,7 @@ fn pairs_of<B: AsRef<[Bounds<f64>]>>(broad_phase: &BroadPhase<'_, f64, B>) -> us
 fn a_moment_has_the_contacts_of_that_moment() {
     let fleet = Fleet::<f64>::new(&Scenario::from_json(include_str!("../data/paper12.json")).unwrap()).unwrap();
     let motions = fleet.motions();
-    let (agents, contact) = one_by_one(&motions, span(&motions))[0];
+    let (agents, contact) = one_by_one(&motions, Motion::span(&motions))[0];
     for (moment, there) in [(contact.middle(), true), (contact.hi + 1e-3, false)] {
         let during = Interval::new(moment, moment);
         let broad_phase = BroadPhase::new(boxes(&motions, 4), &motions, during).unwrap();
@@ -147,11 +142,11 @@ fn a_moment_has_the_contacts_of_that_moment() {
 fn room_for_less_than_two_boxes_an_agent_is_refused() {
     let fleet = Fleet::<f64>::new(&Scenario::from_json(include_str!("../data/paper12.json")).unwrap()).unwrap();
     let motions = fleet.motions();
-    let refused = BroadPhase::new(vec![Bounds::default(); 23], &motions, span(&motions));
+    let refused = BroadPhase::new(vec![Bounds::default(); 23], &motions, Motion::span(&motions));
     assert_eq!(refused.err(), Some(Full::Boxes));
-    assert_eq!(BroadPhase::new(vec![Bounds::default(); 24], &motions, span(&motions)).unwrap().parts(), 1);
+    assert_eq!(BroadPhase::new(vec![Bounds::default(); 24], &motions, Motion::span(&motions)).unwrap().parts(), 1);
     let nobody = BroadPhase::<f64, _>::new([], &[], Interval::default()).unwrap();
     assert_eq!((nobody.candidates().count(), nobody.contacts().count()), (0, 0));
-    let alone = BroadPhase::new(vec![Bounds::default(); 2], &motions[..1], span(&motions)).unwrap();
+    let alone = BroadPhase::new(vec![Bounds::default(); 2], &motions[..1], Motion::span(&motions)).unwrap();
     assert_eq!(alone.candidates().count(), 0);
 }

@@ -114,12 +114,12 @@ fn motions_pass<S: Format>() {
     for _ in 0..PAIRS {
         let (length, limits) = (number(dice.magnitude(0.01, 100.0)), [0.05, 0.05].map(|lo| dice.magnitude(lo, 5.0)));
         let limits = Limits { speed: number(limits[0]), acceleration: number(limits[1]) };
-        let start = Pose { position: Point::new(S::ZERO, S::ZERO), heading: S::angle(0.0) };
+        let start = Pose { position: Point::new(S::ZERO, S::ZERO), heading: S::angle(0.0).expect("an angle") };
         let path = CorePath::<S, 1>::starting_at(start).and_then(|path| path.line(length)).unwrap();
         let Ok(mut profile) = Profile::<S, 3>::rest_to_rest(length, limits) else { continue };
         for _ in 0..3 {
             let motion = Motion::new(path.as_path(), profile.as_profile(), number(0.5), S::ZERO).unwrap();
-            let agent = certificate::agent(1, &motion, S::angle(0.0), &[]);
+            let agent = certificate::agent(1, &motion, S::angle(0.0).expect("an angle"), &[]);
             assert_eq!(
                 travel::checked(&agent).and_then(|()| travel::arrives(&agent)),
                 Ok(()),

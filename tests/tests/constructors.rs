@@ -7,7 +7,7 @@ use pcr_formats::scenario::{LENGTH_TOLERANCE, Scenario};
 use pcr_planning::fleet::{Fleet, Format};
 
 fn at<S: Format>(x: f64, y: f64, heading: f64) -> Pose<S> {
-    Pose { position: Point::new(S::from_f64(x), S::from_f64(y)), heading: S::angle(heading) }
+    Pose { position: Point::new(S::from_f64(x), S::from_f64(y)), heading: S::angle(heading).expect("an angle") }
 }
 
 fn origin<S: Format>() -> Segment<S> {

@@ -11,7 +11,7 @@ use pcr_tests::generators::Dice;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 fn at<S: Format>(x: f64, y: f64, heading: f64) -> Pose<S> {
-    Pose { position: Point::new(S::from_f64(x), S::from_f64(y)), heading: S::angle(heading) }
+    Pose { position: Point::new(S::from_f64(x), S::from_f64(y)), heading: S::angle(heading).expect("an angle") }
 }
 
 fn unit_speed<S: Format>(length: S) -> Profile<S, 1> {

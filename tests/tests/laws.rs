@@ -81,7 +81,7 @@ fn products_and_roots<S: Format>() {
 
 fn angles<S: Format>() {
     for (quarters, sin, cos) in [(0.0, 0.0, 1.0), (1.0, 1.0, 0.0), (-1.0, -1.0, 0.0), (2.0, 0.0, -1.0)] {
-        let found = S::angle(quarters * PI / 2.0).sin_cos();
+        let found = S::angle(quarters * PI / 2.0).expect("an angle").sin_cos();
         near::<S>(unit::<S>(found.0), sin, 1.0);
         near::<S>(unit::<S>(found.1), cos, 1.0);
     }
@@ -105,7 +105,7 @@ fn angles<S: Format>() {
         near::<S>(half.arc_length(radius.double()).to_f64(), length.to_f64(), TAU * x.abs());
         near::<S>(S::Angle::circumference(radius).to_f64(), TAU * x.abs(), TAU * x.abs());
         // The chord is what the arc spans.
-        let heading = S::angle(dice.range(-3.0, 3.0));
+        let heading = S::angle(dice.range(-3.0, 3.0)).expect("an angle");
         let (sin, cos) = heading.sin_cos();
         let right = dice.chance(0.5);
         let chord = S::chord(radius, half, right, [cos, sin]).map(S::to_f64);

@@ -48,7 +48,7 @@ fn harmless<S: Format>() {
 
 /// A line of this length from x = `x` to the east, at one speed.
 fn driven<S: Format>(x: S, length: S, speed: S) -> Option<(Path<S, 1>, Profile<S, 1>)> {
-    let start = Pose { position: Point::new(x, S::ZERO), heading: S::angle(0.0) };
+    let start = Pose { position: Point::new(x, S::ZERO), heading: S::angle(0.0).expect("an angle") };
     let path = Path::starting_at(start).and_then(|path| path.line(length)).ok()?;
     let profile = Profile::from_pieces(speed, [(length.quotient(speed), S::ZERO)]).ok()?;
     Some((path, profile))

@@ -13,7 +13,7 @@ const SLACK: f64 = 1.0 / 32.0;
 /// A line, or an arc of this radius to the left, from a place.
 fn segment<S: Format>([x, y, heading]: [f64; 3], length: f64, bend: Option<f64>) -> Segment<S> {
     let position = Point::new(S::from_f64(x), S::from_f64(y));
-    let start = Segment::standing(Pose { position, heading: S::angle(heading) }).expect("small");
+    let start = Segment::standing(Pose { position, heading: S::angle(heading).expect("an angle") }).expect("small");
     let length = S::from_f64(length);
     let next = match bend {
         None => start.then_line(length),
@@ -28,7 +28,8 @@ fn upper<S: Format>(bend: f64, turn: Turn) -> Segment<S> {
     let side = if turn == Turn::Left { 1.0 } else { -1.0 };
     let from = FRAC_PI_2 - side;
     let position = Point::new(S::from_f64(bend * from.cos()), S::from_f64(bend * from.sin()));
-    let start = Segment::standing(Pose { position, heading: S::angle(from + side * FRAC_PI_2) }).expect("small");
+    let start = Segment::standing(Pose { position, heading: S::angle(from + side * FRAC_PI_2).expect("an angle") })
+        .expect("small");
     start.then_arc(S::from_f64(bend), turn, S::from_f64(2.0 * bend)).expect("small")
 }
 
@@ -151,7 +152,7 @@ fn gaps<S: Format>() {
         // From left to right over the top of a circle about (4, above - 2).
         let (sin, cos) = half.sin_cos();
         let position = Point::new(S::from_f64(4.0 - radius * sin), S::from_f64(above - radius + radius * cos));
-        let start = Segment::standing(Pose { position, heading: S::angle(half) }).expect("small");
+        let start = Segment::standing(Pose { position, heading: S::angle(half).expect("an angle") }).expect("small");
         let arc = start.then_arc(S::from_f64(radius), Turn::Right, S::from_f64(2.0 * half * radius)).expect("small");
         let mut found = Vec::new();
         let sizes = [S::from_f64(RADIUS), S::from_f64(SLACK)];

@@ -13,7 +13,7 @@ use std::f64::consts::FRAC_PI_2;
 fn crossing<S: Format>() -> ([Path<S, 1>; 2], Profile<S, 1>) {
     let number = S::from_f64;
     let path = |x: f64, y: f64, heading: f64| {
-        let pose = Pose { position: Point::new(number(x), number(y)), heading: S::angle(heading) };
+        let pose = Pose { position: Point::new(number(x), number(y)), heading: S::angle(heading).expect("an angle") };
         Path::starting_at(pose).and_then(|path| path.line(number(4.0))).expect("small")
     };
     let profile = Profile::from_pieces(number(1.0), [(number(4.0), S::ZERO)]).expect("small");
@@ -123,7 +123,10 @@ fn parked<S: Format>() {
     let number = S::from_f64;
     let limits = Limits { speed: number(1.0), acceleration: number(1.0) };
     let profiles = [2.0, 4.0].map(|length| Profile::rest_to_rest(number(length), limits).expect("small"));
-    let short = Path::<S, 1>::starting_at(Pose { position: Point::new(number(-2.0), S::ZERO), heading: S::angle(0.0) });
+    let short = Path::<S, 1>::starting_at(Pose {
+        position: Point::new(number(-2.0), S::ZERO),
+        heading: S::angle(0.0).expect("an angle"),
+    });
     let short = short.and_then(|path| path.line(number(2.0))).expect("small");
     let fleet = [(&short, &profiles[0]), (&paths[1], &profiles[1])].map(|(path, profile)| {
         Motion::new(path.as_path(), profile.as_profile(), number(0.25), S::ZERO).expect("small")

@@ -1,12 +1,13 @@
 //! Fleet plans: no two discs come nearer than their radii, by the oracle; and nobody waits longer than for all others.
 
-use pcr_core::{Motion, Profile, Station, Unsolved, plan_delays, plan_speeds};
+use pcr_core::{Invalid, Motion, Profile, Scalar, Station, Unsolved, plan_delays, plan_speeds};
 use pcr_fixed::Q16;
 use pcr_planning::fleet::{Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::Dice;
 use pcr_tests::oracle::contact::Meeting;
 use pcr_tests::plans::{Method, Tally, audit, drive_of, fleet};
+use std::error::Error;
 use std::f64::consts::PI;
 
 /// `cargo run --release -p pcr-tests --example fleets` takes any number.
@@ -173,6 +174,37 @@ fn speeds_go_where_delays_cannot() {
     plan_speeds(&ecm, &fleet, &mut plan, &mut order, &mut profiles, &mut vec![Station::EMPTY; 100]).expect("a plan");
     assert_eq!(order, [1, 2, 0]);
     assert!(plan[0].profile().phases().len() > 3, "it slows down on the way: {:?}", plan[0].profile());
+}
+
+/// A start that the format cannot hold is neither a question of room nor of priorities.
+#[test]
+fn a_plan_that_would_be_too_late_is_out_of_range() {
+    let late = f64::LIMIT - 4.5;
+    for drive in [Drive::Unit, Drive::Limits(1.0, 10.0)] {
+        let crossing = [[-2.0, 0.0, 0.0], [0.0, -2.0, PI / 2.0]].map(|start| {
+            let disc = Disc { radius: 0.5, start, legs: vec![Leg::Line(4.0)] };
+            Course::driven(&disc, &drive, late).expect("a valid disc")
+        });
+        let is_too_late = |found: Result<(), Unsolved>| {
+            let Err(unsolved @ Unsolved::Invalid { agent: 1, reason: Invalid::OutOfRange(_) }) = found else {
+                panic!("{drive:?}: {found:?}")
+            };
+            assert!(
+                unsolved.source().is_some_and(|why| unsolved.to_string().ends_with(&why.to_string())),
+                "{unsolved}"
+            );
+        };
+        is_too_late(delays(&crossing, &mut [0, 1]).map(drop));
+        let fleet: Vec<_> = crossing.iter().map(Course::motion).collect();
+        let ecm = build_ecm(&fleet).expect("a small table");
+        let mut profiles = vec![Profile::<f64, 32>::standing(); 4];
+        let (mut plan, mut stations) = (fleet.clone(), vec![Station::EMPTY; 100]);
+        is_too_late(plan_speeds(&ecm, &fleet, &mut plan, &mut [0, 1], &mut profiles, &mut stations));
+        // There is room for what is possible, and it is said where there is none.
+        let mut order = [0, 1];
+        let none = plan_speeds(&ecm, &fleet, &mut fleet.clone(), &mut order, &mut profiles, &mut stations[..2]);
+        println!("{none:?}");
+    }
 }
 
 #[test]

@@ -123,7 +123,7 @@ fn travelled<S: Format>(digit: f64) {
             speed: S::from_f64(dice.magnitude(0.05, 20.0)),
             acceleration: S::from_f64(dice.magnitude(0.02, 4.0)),
         };
-        let origin = Pose { position: Point::new(S::ZERO, S::ZERO), heading: S::angle(0.0) };
+        let origin = Pose { position: Point::new(S::ZERO, S::ZERO), heading: S::angle(0.0).expect("an angle") };
         let line = [Segment::standing(origin).unwrap().then_line(length).unwrap()];
         let start = S::from_f64(dice.range(-20.0, 20.0));
         let Ok(profile) = Profile::rest_to_rest(length, limits) else { continue };

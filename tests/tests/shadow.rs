@@ -38,7 +38,8 @@ impl<X: Shadowed<S = X> + Format> Placed<X> {
     fn new(disc: &Disc) -> Option<Self> {
         let number = |value: f64| Number::<X>::exact(X::from_f64(value));
         let [x, y, heading] = disc.start;
-        let (x, y, heading) = (number(x), number(y), Turned::<X>::exact(<X as Format>::angle(heading)));
+        let (x, y, heading) =
+            (number(x), number(y), Turned::<X>::exact(<X as Format>::angle(heading).expect("an angle")));
         let standing = Segment::standing(Pose { position: Point::new(x, y), heading }).ok()?;
         // A full turn has the length of the circle as the format holds it.
         let round = |radius: f64, length: f64| {

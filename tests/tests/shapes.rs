@@ -53,7 +53,8 @@ fn gaps_and_unions_of_intervals_that_touch_are_none_and_one() {
 }
 
 fn start<S: Format>() -> Path<S, 2> {
-    Path::starting_at(Pose { position: Point::new(S::ZERO, S::ZERO), heading: S::angle(0.0) }).expect("a pose")
+    Path::starting_at(Pose { position: Point::new(S::ZERO, S::ZERO), heading: S::angle(0.0).expect("an angle") })
+        .expect("a pose")
 }
 
 fn sweeps<S: Format>() {
@@ -73,7 +74,10 @@ fn sweeps<S: Format>() {
     assert!(matches!(beyond, Err(Invalid::OutOfRange("sweep"))));
     // A turn in place between two lines, and one before the first.
     for first in [0.0, 1.0] {
-        let path = start::<S>().line(number(first)).and_then(|path| path.turn(S::angle(FRAC_PI_2))).expect("a turn");
+        let path = start::<S>()
+            .line(number(first))
+            .and_then(|path| path.turn(S::angle(FRAC_PI_2).expect("an angle")))
+            .expect("a turn");
         let path = path.line(number(3.0)).expect("a line");
         let end = path.as_path().pose_at(number(4.0)).position;
         assert!((end.x.to_f64() - first).abs() < 1e-4 && (end.y.to_f64() - 3.0).abs() < 1e-4, "{end:?}");

@@ -214,7 +214,10 @@ fn exchanged<S: Format>() {
     }
     // A whole circle begins and ends at the same point whatever its heading.
     let circle = |heading: f64| {
-        let start = Pose { position: Point::new(S::from_f64(5.0), S::from_f64(5.0)), heading: S::angle(heading) };
+        let start = Pose {
+            position: Point::new(S::from_f64(5.0), S::from_f64(5.0)),
+            heading: S::angle(heading).expect("an angle"),
+        };
         let radius = S::from_f64(2.0);
         let path = Path::<S, 1>::starting_at(start)
             .and_then(|path| path.arc(radius, Turn::Left, S::Angle::circumference(radius)))

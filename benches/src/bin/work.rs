@@ -8,7 +8,7 @@
 use pcr_benches::{Storage, boxes, fleet, scattered, serpentine};
 use pcr_certify::motion::{Mover, meetings};
 use pcr_certify::table::{Checker, Margin};
-use pcr_core::{BroadPhase, Encounter, Interval, Motion};
+use pcr_core::{BroadPhase, Encounter, Motion};
 use pcr_planning::certificate;
 use pcr_planning::fleet::build_ecm;
 use std::hint::black_box;
@@ -31,7 +31,7 @@ fn main() -> ExitCode {
         _ => fleet::<f64>(name),
     };
     let mut motions = fleet.motions();
-    let time = motions.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
+    let time = Motion::span(&motions);
     let mut storage = Storage::of(&motions);
     println!("{} {}", motions.len() * (motions.len() - 1) / 2, 2 * storage.pieces.len());
     let first = motions[0];

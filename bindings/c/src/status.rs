@@ -189,7 +189,7 @@ impl From<Unsolved> for PcrUnsolved {
             Unsolved::Always(agents) => (PcrReason::Always, agents),
             Unsolved::Priorities(agents) => (PcrReason::Order, agents),
             Unsolved::Overlap(agents) => (PcrReason::Overlap, agents),
-            Unsolved::Full(agent) => (PcrReason::Times, [agent; 2]),
+            Unsolved::Invalid { agent, .. } => (PcrReason::Times, [agent; 2]),
             _ => (PcrReason::Times, [usize::MAX; 2]),
         };
         Self { reason, agents }

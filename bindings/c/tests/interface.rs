@@ -388,6 +388,11 @@ fn a_plan_delays_the_fleet_and_none_leaves_it() {
     assert_eq!(plan(&mut blocked, &mut [0, 1], 2, &mut why), PcrStatus::NoPlan);
     assert_eq!(why, PcrUnsolved { reason: PcrReason::Always, agents: [1, 0] });
     assert_eq!(table(&blocked), before);
+    // The second would have to end later than the format can tell.
+    let mut late = star(&[agent(0.0), agent(0.7)]);
+    assert_eq!([0, 1].map(|place| pcr_fleet_delay(Some(&mut late), place, 999_994.5)), [PcrStatus::Ok; 2]);
+    assert_eq!(plan(&mut late, &mut [0, 1], 2, &mut why), PcrStatus::NoPlan);
+    assert_eq!(why, PcrUnsolved { reason: PcrReason::Times, agents: [1; 2] });
     let mut unbuilt = star(&[agent(0.0)]);
     assert_eq!(pcr_fleet_add(Some(&mut unbuilt), Some(&agent(0.7))), PcrStatus::Ok);
     assert_eq!(plan(&mut unbuilt, &mut [0, 1], 2, &mut why), PcrStatus::NotBuilt);

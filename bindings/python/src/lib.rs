@@ -7,15 +7,13 @@
 mod layout;
 
 use layout::{Choices, Layout};
-use pcr_core::{
-    Encounter, Hold, Interval, Motion, Order, Orders, Pass, Piece, Progress, Refused, Region, Unchanged, safe_intervals,
-};
+use pcr_core::{Encounter, Hold, Interval, Motion, Pass, Progress, Refused, safe_intervals};
 use pcr_formats::input::{self, InputError};
 use pcr_formats::scenario::{Scenario, ScenarioError};
 use pcr_planning::check::Verdict;
-use pcr_planning::fleet::{Fleet as Parts, HostEcm};
+use pcr_planning::fleet::{Fleet as Parts, HostOrders, build_ecm_of};
 use pcr_planning::plan::{self, Method, Plan};
-use pcr_planning::regions::{Answer, Request, table};
+use pcr_planning::regions::{Answer, Request, orders, table};
 use pcr_planning::report::{self, Document};
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
@@ -56,8 +54,6 @@ fn row<const WHOLE: usize, const REAL: usize, const TRUTHS: usize>(
     let rest = [0; 7].iter().take(TRUTHS.next_multiple_of(8) - TRUTHS);
     into.extend(truths.map(u8::from).iter().chain(rest));
 }
-
-type HostOrders = Orders<f64, Vec<Region>, Vec<Piece<f64>>, Vec<Order<f64>>>;
 
 /// A scenario, with the paths and motions that follow from it.
 #[pyclass(frozen, module = "pcr._pcr")]
@@ -127,11 +123,8 @@ impl Fleet {
     }
 
     /// Who passes first, as the motions do.
-    fn orders(&self, motions: &[Motion<'_, f64>]) -> PyResult<HostOrders> {
-        let ecm = table(&self.scenario, motions).map_err(refused)?;
-        let (regions, pieces) = (ecm.len(), ecm.pieces());
-        let storage = (vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces], vec![Order::EMPTY; regions]);
-        let mut orders = Orders::build(storage.0, storage.1, storage.2, motions).map_err(refused)?;
+    fn orders(&self, motions: &[Motion<'_, f64>]) -> PyResult<HostOrders<f64>> {
+        let mut orders = orders(&self.scenario, motions).map_err(refused)?;
         orders.as_planned(motions).map_err(|refusal| match refusal {
             // The library counts places.
             Refused::Meeting([i, j]) => match (self.id(i), self.id(j)) {
@@ -219,13 +212,7 @@ impl Fleet {
         let ego = self.place(agent)?;
         let rows = py.detach(|| -> PyResult<Vec<u8>> {
             let motions = self.parts.motions();
-            let mut ecm: HostEcm<f64> = pcr_core::Ecm::new(Vec::new(), Vec::new());
-            while let Err(unchanged) = ecm.fill_row(&motions, ego) {
-                match unchanged {
-                    Unchanged::Full(full) => ecm.grow(full).map_err(refused)?,
-                    Unchanged::Mismatch(mismatch) => return Err(refused(mismatch)),
-                }
-            }
+            let ecm = build_ecm_of(&motions, ego).map_err(refused)?;
             let mut rows = Vec::new();
             for region in ecm.row(&motions, ego).map_err(refused)? {
                 let other = self.id(region.other())?;

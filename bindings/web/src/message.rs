@@ -89,6 +89,9 @@ impl fmt::Display for Fault {
             Self::Unsolved(Unsolved::Priorities([a, b])) => {
                 write!(f, "no plan found: agent {} cannot go because of agent {}", number(a), number(b))
             }
+            Self::Unsolved(Unsolved::Invalid { agent, reason }) => {
+                write!(f, "no plan of agent {}: {reason}", number(agent))
+            }
             Self::Unsolved(unsolved) => write!(f, "no plan: {unsolved}"),
             Self::Refused(Refused::Meeting([a, b])) => {
                 write!(f, "agents {} and {} meet: there is no order in which they pass", number(a), number(b))

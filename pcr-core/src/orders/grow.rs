@@ -2,8 +2,9 @@
 
 extern crate std;
 
-use crate::ecm::Region;
+use crate::ecm::{Ecm, Region};
 use crate::error::Full;
+use crate::motion::Motion;
 use crate::orders::order::Order;
 use crate::orders::table::Orders;
 use crate::pieces::Piece;
@@ -11,6 +12,29 @@ use crate::scalar::Scalar;
 use std::vec::Vec;
 
 impl<S: Scalar> Orders<S, Vec<Region>, Vec<Piece<S>>, Vec<Order<S>>> {
+    /// Computes the table of a whole fleet, with no order decided, like [`Orders::build`], in vectors that grow until all
+    /// regions fit (feature `std`).
+    ///
+    /// Cost: that of [`Ecm::grown`], and one [`Order`] for each region.
+    ///
+    /// # Errors
+    /// As [`Ecm::grown`]; [`Full::Orders`] if the allocation of memory fails.
+    ///
+    /// ```
+    /// use pcr_core::{Motion, Orders, Path, Point, Pose, Profile, Radians};
+    /// let stands = Path::<f64, 1>::starting_at(Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) })?;
+    /// let profile = Profile::<f64, 1>::standing();
+    /// let fleet = [Motion::new(stands.as_path(), profile.as_profile(), 0.25, 0.0)?; 3];
+    /// assert_eq!(Orders::grown(&fleet)?.decisions().count(), 3);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn grown(fleet: &[Motion<'_, S>]) -> Result<Self, Full> {
+        let (ecm, mut orders) = (Ecm::grown(fleet)?, Vec::new());
+        orders.try_reserve_exact(ecm.len()).map_err(|_| Full::Orders)?;
+        orders.resize(ecm.len(), Order::EMPTY);
+        Ok(Self { ecm, orders })
+    }
+
     /// Doubles the storage that was full, like [`Ecm::grow`](crate::Ecm::grow). The regions and orders stay. Afterwards
     /// repeat the call that failed (feature `std`).
     ///

@@ -1,6 +1,7 @@
 //! Fleet plans by start delays: each agent starts as early as the agents before it in the order allow.
 
 use crate::ecm::{Ecm, Region};
+use crate::error::Invalid;
 use crate::motion::Motion;
 use crate::pieces::Piece;
 use crate::plan::order::{Blocked, Unsolved, complete, in_order, separated, verified};
@@ -41,7 +42,10 @@ where
         };
         *planned = motion;
         let regions = ecm.row(plan, agent)?.filter(|region| before.contains(&region.other()));
-        let delayed = earliest(motion, regions.clone()).ok_or_else(|| blocking(agent, regions, before))?;
+        let delayed = match earliest(motion, regions.clone()) {
+            Ok(delayed) => delayed.ok_or_else(|| blocking(agent, regions, before))?,
+            Err(reason) => return Err(Blocked::Never(Unsolved::Invalid { agent, reason })),
+        };
         if let Some(planned) = plan.get_mut(agent) {
             *planned = delayed;
         }
@@ -50,12 +54,15 @@ where
     verified(ecm, plan, order)
 }
 
-/// The motion with the earliest start that the regions allow.
+/// The motion with the earliest start that the regions allow, if they allow any.
+///
+/// # Errors
+/// The start, or the end of the motion, is out of range.
 pub(super) fn earliest<'a, 'm, S: Scalar>(
     motion: Motion<'m, S>,
     regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
-) -> Option<Motion<'m, S>> {
-    earliest_start(regions, S::ZERO).and_then(|delay| motion.delayed(delay).ok())
+) -> Result<Option<Motion<'m, S>>, Invalid> {
+    earliest_start(regions, S::ZERO).map(|delay| motion.delayed(delay)).transpose()
 }
 
 /// The agent that forbids all late starts.
@@ -72,5 +79,7 @@ pub(super) fn blocking<'a, S: Scalar>(
     if let Some(unsolved) = blocking.clone().filter(always).find_map(|region| separated(&region)) {
         return Blocked::Never(unsolved);
     }
-    Blocked::By(blocking.min_by_key(place).map_or(agent, |region| region.other()))
+    // None is forbidden for good, so that what is free is out of range.
+    let invalid = Blocked::Never(Unsolved::Invalid { agent, reason: Invalid::OutOfRange("delay") });
+    blocking.min_by_key(place).map_or(invalid, |region| Blocked::By(region.other()))
 }

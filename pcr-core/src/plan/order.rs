@@ -4,7 +4,7 @@
 //! moved up before that one, and planning continues from there. The number of such moves is limited.
 
 use crate::ecm::{Ecm, Region};
-use crate::error::Mismatch;
+use crate::error::{Invalid, Mismatch};
 use crate::geometry::Interval;
 use crate::motion::Motion;
 use crate::pieces::Piece;
@@ -27,9 +27,15 @@ pub enum Unsolved {
     Priorities([usize; 2]),
     /// The check of the finished plan found that these two overlap.
     Overlap([usize; 2]),
-    /// There is not enough room for the plan of this agent (profiles, phases or stations), or its times are out of
-    /// range.
+    /// There is not enough room for the plan of this agent (profiles, phases or stations).
     Full(usize),
+    /// The plan of this agent cannot be a motion: its times are out of range, for example.
+    Invalid {
+        /// Index of the agent in the fleet.
+        agent: usize,
+        /// What is wrong with it.
+        reason: Invalid,
+    },
     /// The fleet has no such agent, or the numbers of plans and motions differ.
     NoSuchAgent(usize),
     /// The order does not list this agent exactly once. An agent that is left out would be ignored by all others.
@@ -53,6 +59,7 @@ impl core::fmt::Display for Unsolved {
             Self::Priorities([a, b]) => write!(f, "agent {a} of the fleet cannot go because of agent {b}"),
             Self::Overlap([a, b]) => write!(f, "agents {a} and {b} of the fleet overlap by the plan"),
             Self::Full(agent) => write!(f, "there is no room for a plan of agent {agent} of the fleet"),
+            Self::Invalid { agent, reason } => write!(f, "there is no plan of agent {agent} of the fleet: {reason}"),
             Self::NoSuchAgent(agent) => write!(f, "the fleet has no agent {agent}"),
             Self::NotOnce(agent) => write!(f, "the order of priorities does not list agent {agent} of the fleet once"),
             Self::Table(mismatch) => mismatch.fmt(f),
@@ -60,7 +67,15 @@ impl core::fmt::Display for Unsolved {
     }
 }
 
-impl core::error::Error for Unsolved {}
+impl core::error::Error for Unsolved {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Invalid { reason, .. } => Some(reason),
+            Self::Table(mismatch) => Some(mismatch),
+            _ => None,
+        }
+    }
+}
 
 /// Why an agent cannot be planned.
 pub(super) enum Blocked {

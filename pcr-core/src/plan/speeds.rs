@@ -1,6 +1,7 @@
 //! Fleet plans by speeds: each agent arrives as early as the agents before it in the order allow.
 
 use crate::ecm::{Ecm, Region};
+use crate::error::Invalid;
 use crate::motion::Motion;
 use crate::pieces::Piece;
 use crate::plan::delays::{self, earliest};
@@ -52,7 +53,11 @@ where
         *planned = motion;
         let chosen = {
             let regions = ecm.row(plan, agent)?.filter(|region| before.contains(&region.other()));
-            let later = earliest(motion, regions.clone());
+            let invalid = |reason| Blocked::Never(Unsolved::Invalid { agent, reason });
+            let (later, late) = match earliest(motion, regions.clone()) {
+                Ok(later) => (later, None),
+                Err(reason) => (None, Some(reason)),
+            };
             // An arrival that is earlier only by a rounding does not justify another profile.
             let earlier = |end: S| later.is_none_or(|later| end < later.time().hi - S::tolerance(end.abs()));
             let drive = Drive::of(&motion);
@@ -62,14 +67,13 @@ where
             };
             match speeds {
                 Ok(speeds) if earlier(speeds.end()) => {
-                    let full = || Blocked::Never(Unsolved::Full(agent));
-                    let profile = profiles.next().ok_or_else(full)?;
+                    let profile = profiles.next().ok_or(Blocked::Never(Unsolved::Full(agent)))?;
                     *profile = speeds.profile;
-                    motion.with_profile(profile.as_profile(), speeds.start).map_err(|_| full())
+                    motion.with_profile(profile.as_profile(), speeds.start).map_err(invalid)
                 }
                 // There is no room for other speeds: what is left are start delays.
                 Err(NoSpeedPlan::Invalid(_)) if drive.is_none() => {
-                    later.ok_or_else(|| delays::blocking(agent, regions, before))
+                    later.ok_or_else(|| late.map_or_else(|| delays::blocking(agent, regions, before), invalid))
                 }
                 speeds => later.ok_or_else(|| blocking(agent, regions, speeds.err())),
             }
@@ -93,6 +97,9 @@ fn blocking<'a, S: Scalar>(
             // Another region than the first that was found may have no remedy.
             let never = regions.find_map(|region| separated(&region));
             never.map_or(Blocked::By(other), Blocked::Never)
+        }
+        Some(NoSpeedPlan::Invalid(reason)) if !matches!(reason, Invalid::Full(_)) => {
+            Blocked::Never(Unsolved::Invalid { agent, reason })
         }
         _ => Blocked::Never(Unsolved::Full(agent)),
     }

@@ -48,7 +48,7 @@ pub use errors::Errors;
 pub use measure::{Absent, Comparison, Effort, Row};
 pub use track::Track;
 
-use pcr_core::{Interval, Motion};
+use pcr_core::Motion;
 use pcr_fixed::Q16;
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::{Fleet, Format, Refused};
@@ -95,7 +95,7 @@ impl Input {
     /// Ready to use.
     pub fn field(&self) -> Field<'_> {
         let double = self.double.motions();
-        let time = double.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
+        let time = Motion::span(&double);
         Field {
             tracks: &self.tracks,
             double,

@@ -8,6 +8,7 @@ use crate::palette::colour;
 use crate::template::Page;
 use pcr_core::{Motion, RegionRef};
 use pcr_planning::fleet::build_ecm;
+use pcr_planning::regions::Failure;
 use pcr_planning::simulate::{Controller, FRAME, Journey, Outcome, Snapshot, Task, Vector};
 use serde_json::{Value, json};
 
@@ -29,9 +30,12 @@ const POINTS: usize = 80;
 const PIXELS: f64 = 500.0;
 
 /// The page for some runs of a task.
-pub fn page(task: &Task, outcomes: &[Outcome]) -> String {
+///
+/// # Errors
+/// [`Failure::Robot`] and [`Failure::Full`] where there is no map of a plan.
+pub fn page(task: &Task, outcomes: &[Outcome]) -> Result<String, Failure> {
     let name = if task.name.is_empty() { "Simulation" } else { &task.name };
-    PAGE.fill(name, &data(task, outcomes))
+    Ok(PAGE.fill(name, &data(task, outcomes)?))
 }
 
 fn rounded(length: f64) -> i64 {
@@ -48,7 +52,7 @@ fn short(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }
 
-fn data(task: &Task, outcomes: &[Outcome]) -> Value {
+fn data(task: &Task, outcomes: &[Outcome]) -> Result<Value, Failure> {
     let robots = task.robots.iter().enumerate().map(|(place, robot)| {
         // Beyond 2⁵³ a number would lose its last digits in the browser.
         let (id, name) = (robot.id.to_string(), task.labels.called(robot.id));
@@ -60,17 +64,19 @@ fn data(task: &Task, outcomes: &[Outcome]) -> Value {
     });
     let obstacles =
         task.obstacles.iter().map(|obstacle| json!([obstacle.centre[0], obstacle.centre[1], obstacle.radius]));
-    json!({
+    let runs = outcomes.iter().map(|outcome| run(task, outcome)).collect::<Result<Vec<_>, _>>()?;
+    Ok(json!({
         "name": task.name,
         "frame": FRAME,
         "unit": UNIT,
         "robots": robots.collect::<Vec<_>>(),
         "obstacles": obstacles.collect::<Vec<_>>(),
-        "runs": outcomes.iter().map(|outcome| run(task, outcome)).collect::<Vec<_>>(),
-    })
+        "runs": runs,
+    }))
 }
 
-fn run(task: &Task, outcome: &Outcome) -> Value {
+fn run(task: &Task, outcome: &Outcome) -> Result<Value, Failure> {
+    let plans = outcome.snapshots.iter().map(|snapshot| plan(task, snapshot)).collect::<Result<Vec<_>, _>>()?;
     let tracks = outcome.trace.positions.iter().map(|track| flat(track.iter().copied()));
     let travelled = outcome.trace.travelled.iter().map(|track| track.iter().map(|l| rounded(*l)).collect::<Vec<_>>());
     let bound = outcome.run.controller == Controller::Pcr;
@@ -79,15 +85,15 @@ fn run(task: &Task, outcome: &Outcome) -> Value {
         .collisions
         .iter()
         .map(|collision| json!([collision.i.to_string(), collision.j.map(|j| j.to_string()), collision.t]));
-    json!({
+    Ok(json!({
         "controller": outcome.run.controller.name(),
         "travel": outcome.run.travel,
         "tracks": tracks.collect::<Vec<_>>(),
         "travelled": if bound { travelled.collect::<Vec<_>>() } else { Vec::new() },
         "journeys": journeys(task, &outcome.trace.journeys),
         "collisions": collisions.collect::<Vec<_>>(),
-        "plans": outcome.snapshots.iter().map(plan).collect::<Vec<_>>(),
-    })
+        "plans": plans,
+    }))
 }
 
 /// Each with the number of its way among those of its robot, whose missions follow one another.
@@ -104,17 +110,17 @@ fn journeys(task: &Task, journeys: &[Journey]) -> Vec<Value> {
 }
 
 /// The map of every robot that moves.
-fn plan(snapshot: &Snapshot) -> Value {
-    let motions: Option<Vec<Motion<'_, f64>>> =
-        snapshot.drives.iter().zip(&snapshot.radii).map(|(drive, &radius)| drive.motion(radius)).collect();
-    let motions = motions.unwrap_or_default();
-    let ecm = build_ecm(&motions).ok();
+fn plan(task: &Task, snapshot: &Snapshot) -> Result<Value, Failure> {
+    let robots = task.robots.iter().zip(snapshot.drives.iter().zip(&snapshot.radii));
+    let motions = robots.map(|(robot, (drive, &radius))| drive.motion(radius).ok_or(Failure::Robot(robot.id)));
+    let motions = motions.collect::<Result<Vec<Motion<'_, f64>>, _>>()?;
+    let ecm = build_ecm(&motions)?;
     let end = motions.iter().map(|motion| motion.time().hi).fold(snapshot.time, f64::max);
     let maps = motions.iter().enumerate().map(|(ego, motion)| {
-        let offset = snapshot.offsets.get(ego).copied().unwrap_or(0.0);
+        let offset = snapshot.offsets[ego];
         let length = motion.path().length();
         let pixel = [(end - snapshot.time).max(FRAME) / PIXELS, length.max(UNIT) / PIXELS];
-        let regions = ecm.iter().flat_map(|ecm| ecm.row(&motions, ego).expect("the table of the fleet"));
+        let regions = ecm.row(&motions, ego).expect("the table of the fleet");
         let regions = regions.map(|region| self::region(&region, motion, pixel, offset, end));
         let times = (0..=POINTS).map(|k| snapshot.time + (end - snapshot.time) * k as f64 / POINTS as f64);
         let curve = times.map(|time| [short(time), short(offset + motion.length_at(time))]);
@@ -125,7 +131,7 @@ fn plan(snapshot: &Snapshot) -> Value {
             "regions": if length > 0.0 { regions.collect::<Vec<_>>() } else { Vec::new() },
         })
     });
-    json!({ "time": snapshot.time, "end": short(end), "maps": maps.collect::<Vec<_>>() })
+    Ok(json!({ "time": snapshot.time, "end": short(end), "maps": maps.collect::<Vec<_>>() }))
 }
 
 /// Its outlines, and the strips of an agent that stands at its start or end, as \[from time, to time, from length, to length\].
@@ -138,4 +144,25 @@ fn region(region: &RegionRef<'_, f64>, ego: &Motion<'_, f64>, pixel: [f64; 2], o
     let strips = region.slice_at(end).filter(|_| region.is_open_at_end() && arrival < end);
     let strips = strips.map(|slice| [arrival, end, slice.lo + offset, slice.hi + offset].map(short));
     json!({ "other": region.other(), "outline": outline.collect::<Vec<_>>(), "strips": strips.collect::<Vec<_>>() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pcr_formats::scenario::Scenario;
+    use pcr_planning::simulate::{Disturbance, Settings, run};
+
+    #[test]
+    fn a_plan_without_a_map_is_no_empty_map() {
+        let agents = r#"{"agents":[
+            {"id":3,"radius":0.3,"v_max":1,"a_max":1,"start":{"x":-2,"y":0,"heading":0},"path":[{"kind":"line","length":4}]},
+            {"id":8,"radius":0.3,"v_max":1,"a_max":1,"start":{"x":0,"y":-2,"heading":1.57},"path":[{"kind":"line","length":4}]}]}"#;
+        let task = Task::of(&Scenario::from_json(agents).expect("a scenario")).expect("a task");
+        let disturbance = Disturbance { noise: 0.0, slip: 0.0, delay: 0.0, drift: 0.0 };
+        let settings = Settings { seed: 1, replan: 2.0, disturbance };
+        let mut outcome = run(&task, Controller::Pcr, settings).expect("a run");
+        assert!(page(&task, std::slice::from_ref(&outcome)).is_ok_and(|page| page.contains("outline")));
+        outcome.snapshots[0].radii[1] = f64::NAN;
+        assert_eq!(page(&task, &[outcome]), Err(Failure::Robot(8)));
+    }
 }

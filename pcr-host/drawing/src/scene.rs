@@ -53,7 +53,7 @@ const LABEL_SLICES: usize = 15;
 impl Scene<'_> {
     /// Number of the agent at this place of the scenario.
     pub(super) fn id(&self, place: usize) -> u64 {
-        self.scenario.agents.get(place).map_or(0, |agent| agent.id)
+        self.scenario.agents[place].id
     }
 
     /// The number of the agent at this place of the scenario and what it is called, shortened.

@@ -7,6 +7,8 @@ use crate::fleet::{Fleet, Format, Refused, Rounding};
 use offset::{Offset, Precision};
 use pcr_core::{Interval, Motion};
 use pcr_formats::scenario::{Agent, PathSegment, Placed, Scenario, Stretch};
+use std::borrow::Cow;
+use std::convert::Infallible;
 
 /// Rounding of lengths along a path, relative.
 const ROUNDING: f64 = 1e-12;
@@ -103,6 +105,9 @@ impl Disced {
     }
 }
 
+/// The fleet of the discs, the discs, and their scenario.
+pub type Moving<'a, S> = (Fleet<S>, Vec<Disced>, Cow<'a, Scenario>);
+
 impl<S: Format> Bodies<S> {
     /// The discs of a scenario.
     ///
@@ -111,32 +116,32 @@ impl<S: Format> Bodies<S> {
     pub fn new(scenario: &Scenario) -> Result<Self, Refused> {
         let mut bodies = (Vec::new(), Vec::new());
         for (place, agent) in scenario.agents.iter().enumerate() {
-            discs::<S>(agent, place, &mut bodies)?;
+            discs::<S, _>(agent, place, &mut bodies, rounded::<S>)?;
         }
         let (agents, discs) = bodies;
         let scenario = Scenario::new(scenario.name.clone(), agents);
         Ok(Self { fleet: Fleet::new(&scenario)?, scenario, discs })
     }
 
-    /// The same without the scenario of the discs: of a large fleet without outlines, it would be a copy of the whole.
+    /// The same with the scenario itself where all agents are discs: of a large fleet, a copy of it would be large.
     ///
     /// # Errors
     /// As [`Bodies::new`].
-    pub fn moving(scenario: &Scenario) -> Result<(Fleet<S>, Vec<Disced>), Refused> {
+    pub fn moving(scenario: &Scenario) -> Result<Moving<'_, S>, Refused> {
         if scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty()) {
-            let Self { fleet, discs, .. } = Self::new(scenario)?;
-            return Ok((fleet, discs));
+            let Self { fleet, discs, scenario } = Self::new(scenario)?;
+            return Ok((fleet, discs, Cow::Owned(scenario)));
         }
         let discs = scenario.agents.iter().enumerate().map(|(place, agent)| Disced::whole(agent, place)).collect();
-        Ok((Fleet::new(scenario)?, discs))
+        Ok((Fleet::new(scenario)?, discs, Cow::Borrowed(scenario)))
     }
 }
 
 /// The paths of the discs of an agent, and their radii \[m\].
 pub fn tracks(agent: &Agent) -> Vec<(Vec<Placed>, f64)> {
     let mut bodies = (Vec::new(), Vec::new());
-    // In `f64` no disc is refused.
-    let _ = discs::<f64>(agent, 0, &mut bodies);
+    // Discs in `f64` lose no digits, for which one could be refused.
+    let Ok(()) = discs::<f64, Infallible>(agent, 0, &mut bodies, Ok);
     let track = |disc: &Agent| {
         let [x, y, heading] = disc.start;
         let mut last = Placed { at: [x, y], heading, shape: PathSegment::Line { length: 0.0 } };
@@ -150,12 +155,13 @@ pub fn tracks(agent: &Agent) -> Vec<(Vec<Placed>, f64)> {
     bodies.0.iter().map(track).collect()
 }
 
-/// Adds the discs of an agent.
-fn discs<S: Format>(
+/// Adds the discs of an agent, each as it is `rounded`.
+fn discs<S: Format, E>(
     agent: &Agent,
     place: usize,
     (agents, discs): &mut (Vec<Agent>, Vec<Disced>),
-) -> Result<(), Refused> {
+    rounded: impl Fn(Offset) -> Result<Offset, E>,
+) -> Result<(), E> {
     let outlines = agent.outlines();
     for outline in &outlines {
         let [first, last] = outline.segments;
@@ -175,7 +181,7 @@ fn discs<S: Format>(
         let precision = Precision::of::<S>(&part);
         for disc in footprint.discs() {
             // Their number is that of the agent, by which errors name them.
-            let offset = rounded::<S>(Offset::of(&part, &parts, disc, agent.id, precision))?;
+            let offset = rounded(Offset::of(&part, &parts, disc, agent.id, precision))?;
             let growth = offset.agent.radius - disc.radius;
             agents.push(offset.agent.clone());
             discs.push(Disced { agent: place, offset: Some(Box::new(offset)), stretch, growth });

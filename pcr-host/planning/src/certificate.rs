@@ -2,9 +2,15 @@
 //!
 //! All numbers are those that the library holds; this module neither rounds nor computes.
 
-use crate::fleet::{Fleet, Format, HostEcm};
-use pcr_certify::data::{Agent, Pair, Path, Phase, Piece, Region, Segment, Share, Table, Travel};
+use crate::fleet::{Fleet, Format, HostEcm, turn_in_place};
+use pcr_certify::data::{Agent, Angle, Pair, Path, Phase, Piece, Region, Segment, Share, Table, Travel};
 use pcr_core::{Curve, Interval, Motion, RegionRef, Turn, excess};
+use pcr_formats::scenario::{PathSegment, Scenario, figure};
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+
+/// A bound on the last digit of an angle in fixed point, as a part of half a turn: 2⁻³¹.
+const FINEST: f64 = 1.0 / (1_u64 << 31) as f64;
 
 /// A motion: `heading` is the heading at the start of its path, `turns` are its turns in place, each before the segment with
 /// this index.
@@ -55,11 +61,77 @@ fn ends_of<S: Format>(interval: Interval<S>) -> [f64; 2] {
 /// The discs of a fleet; the numbers tell which ones are of one body.
 pub fn agents<S: Format>(fleet: &Fleet<S>, motions: &[Motion<'_, S>], ids: &[u64]) -> Vec<Agent> {
     let all = motions.iter().zip(ids).enumerate();
-    all.filter_map(|(place, (motion, &id))| {
-        let (heading, turns) = fleet.headings(place)?;
-        Some(agent(id, motion, heading, turns))
+    all.map(|(place, (motion, &id))| {
+        let (heading, turns) = fleet.headings(place);
+        agent(id, motion, heading, turns)
     })
     .collect()
+}
+
+/// What is no number is not within anything.
+fn is_within(off: f64, most: f64) -> bool {
+    off <= most
+}
+
+/// What is to be proved is not what the scenario says: a number was read as another one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Misread {
+    agent: String,
+    field: &'static str,
+    held: f64,
+    given: f64,
+}
+
+impl fmt::Display for Misread {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { agent, field, held, given } = self;
+        write!(f, "agent {agent}, {field}: {} was read as {}; please report this", figure(*given), figure(*held))
+    }
+}
+
+impl std::error::Error for Misread {}
+
+/// Compares what the checker is given, before margins, with the discs of a scenario: a proof about other numbers is none about
+/// the scenario. Radius, start and length of the path have to be those of the file but for the last digits of the format.
+///
+/// # Errors
+/// [`Misread`], with the first difference.
+pub fn as_given<S: Format>(discs: &Scenario, agents: &[Agent]) -> Result<(), Misread> {
+    for (given, held) in discs.agents.iter().zip(agents) {
+        let start = held.travel.as_ref().map_or(given.t_start, |travel| travel.start);
+        let travelled = given.path.iter().filter(|segment| turn_in_place::<S>(segment).is_none());
+        let travelled = travelled.map(PathSegment::length).sum();
+        let length = held.path.segments.last().map_or(0.0, |last| last.to);
+        // A length is rounded for each segment, and for each turn of an arc.
+        let parts = (held.path.segments.len() + given.path.len() + 1) as f64;
+        let numbers = [
+            ("radius", held.radius, given.reach(), 1.0),
+            ("start.x", held.path.start[0], given.start[0], 1.0),
+            ("start.y", held.path.start[1], given.start[1], 1.0),
+            ("t_start", start, given.t_start, 1.0),
+            ("length of the path", length, travelled, parts),
+        ];
+        let misread = |field, held, given_| Err(Misread { agent: given.called(), field, held, given: given_ });
+        for (field, held, given, parts) in numbers {
+            // Lengths below the square of the least radius are taken as 0.
+            let least = S::LEAST.to_f64() * S::LEAST.to_f64();
+            let digit = S::STEP.max(S::EPSILON * given.abs()).max(least);
+            if !is_within((held - given).abs(), parts * digit) {
+                return misread(field, held, given);
+            }
+        }
+        let heading = match held.path.heading {
+            Angle::Radians(radians) => radians,
+            Angle::Turns(turns) => turns * TAU,
+        };
+        // Whole turns are subtracted in `f64`, here and when it was read.
+        let digit = PI * S::EPSILON.max(FINEST) + 4.0 * f64::EPSILON * given.start[2].abs();
+        let turned = (heading - given.start[2]).rem_euclid(TAU);
+        if !is_within(turned.min(TAU - turned), digit) {
+            return misread("start.heading", heading, given.start[2]);
+        }
+    }
+    Ok(())
 }
 
 /// A whole table of these discs, pair by pair.
@@ -100,4 +172,52 @@ pub fn pair<'a, S: Format + 'a>(
         }));
     }
     Pair { agents, excess: excess(first, second).to_f64(), regions, pieces }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pcr_fixed::{Q12, Q16, Q20};
+    use serde_json::json;
+
+    /// Whatever else is read from the file.
+    fn compared<S: Format>() {
+        let path = json!([
+            { "kind": "line", "length": 2.3 },
+            { "kind": "turn", "sweep": 41.7 },
+            { "kind": "arc", "radius": 0.7, "sweep": -13.1 },
+        ]);
+        let start = json!({ "x": 1.3, "y": -2.1, "heading": 1e5 });
+        let agent = json!({ "id": 7, "radius": 0.31, "v_max": 1.0, "a_max": 0.5, "t_start": 3.3, "start": start, "path": path });
+        let scenario = Scenario::from_value(&json!({ "agents": [agent] })).expect("a scenario");
+        let fleet = Fleet::<S>::new(&scenario).expect("it fits");
+        let told = |scenario: &Scenario| {
+            as_given::<S>(scenario, &agents(&fleet, &fleet.motions(), &[7])).map_err(|misread| misread.to_string())
+        };
+        assert_eq!(told(&scenario), Ok(()), "{}", S::NAME);
+        type Change = fn(&mut pcr_formats::scenario::Agent);
+        let changes: [(&str, Change); 6] = [
+            ("start.heading", |agent| agent.start[2] = 0.0),
+            ("start.heading", |agent| agent.start[2] = f64::NAN),
+            ("start.x", |agent| agent.start[0] += 0.01),
+            ("radius", |agent| agent.radius += 0.01),
+            ("t_start", |agent| agent.t_start = 0.0),
+            ("length of the path", |agent| agent.path.truncate(2)),
+        ];
+        for (field, change) in changes {
+            let mut other = scenario.clone();
+            change(&mut other.agents[0]);
+            let refused = told(&other).expect_err(field);
+            assert!(refused.starts_with(&format!("agent 7, {field}: ")), "{}: {refused}", S::NAME);
+        }
+    }
+
+    #[test]
+    fn nothing_is_proved_of_other_numbers_than_those_of_the_scenario() {
+        compared::<f64>();
+        compared::<f32>();
+        compared::<Q12>();
+        compared::<Q16>();
+        compared::<Q20>();
+    }
 }

@@ -195,7 +195,7 @@ impl Certified {
 
     fn found(name: &str, table: &Table, findings: &Findings, margin: Option<f64>) -> Self {
         let points = |those: &[pcr_certify::pair::Witness]| {
-            let id = |place: usize| table.agents.get(place).map_or(0, |agent| agent.id);
+            let id = |place: usize| table.agents[place].id;
             let point = those.iter().map(|witness| Point {
                 promise: match witness.promise {
                     Promise::Covered => "contact outside of all pieces",

@@ -88,7 +88,7 @@ impl Verdict {
     /// # Errors
     /// As [`Verdict::of`].
     pub fn watched<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
-        let (fleet, discs) = Bodies::<S>::moving(scenario)?;
+        let (fleet, discs, _) = Bodies::<S>::moving(scenario)?;
         Self::between(scenario, &discs, &fleet.motions(), closest, told)
     }
 
@@ -97,7 +97,7 @@ impl Verdict {
     /// # Errors
     /// [`Failure`] where a value does not fit the format.
     pub fn any<S: Format>(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure> {
-        let (fleet, discs) = Bodies::<S>::moving(scenario)?;
+        let (fleet, discs, _) = Bodies::<S>::moving(scenario)?;
         let motions = fleet.motions();
         let pairs = Pairs::new(scenario, &discs, &motions);
         let count = pairs.ids.len();
@@ -116,7 +116,7 @@ impl Verdict {
     /// # Errors
     /// As [`Verdict::of`].
     pub(crate) fn of_margins<S: Format>(scenario: &Scenario) -> Result<Self, Failure> {
-        let (fleet, discs) = Bodies::<S>::moving(scenario)?;
+        let (fleet, discs, _) = Bodies::<S>::moving(scenario)?;
         let motions: Vec<Motion<'_, S>> = fleet.motions().into_iter().map(Motion::inflated).collect();
         Self::between(scenario, &discs, &motions, false, &|_, _| {})
     }
@@ -217,7 +217,7 @@ struct Pairs<'a, S: Format> {
 
 impl<'a, S: Format> Pairs<'a, S> {
     fn new(scenario: &Scenario, discs: &'a [Disced], motions: &'a [Motion<'a, S>]) -> Self {
-        let time = motions.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
+        let time = Motion::span(motions);
         let mut order: Vec<usize> = (0..scenario.agents.len()).collect();
         order.sort_by_key(|&agent| scenario.agents[agent].id);
         let ids = order.iter().map(|&agent| scenario.agents[agent].id).collect();

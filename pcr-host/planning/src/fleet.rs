@@ -21,6 +21,16 @@ pub use rounding::rounded;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
+/// Largest magnitude of a heading or a turn in a scenario \[rad\]: the same in every format, so that a scenario that one of
+/// them takes is no other one, and none at all, in the others. It is what the core takes in `f64`; up to there whole turns can
+/// be subtracted in `f64` without an error that matters in a smaller format.
+pub const ANGLE_LIMIT: f64 = 16_777_216.0;
+
+/// The angle, if it is in the range that every format has.
+fn in_angles(radians: f64) -> Option<f64> {
+    (radians.abs() <= ANGLE_LIMIT).then_some(radians)
+}
+
 /// A number format that scenario files can be read into.
 pub trait Format: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
     /// Name on the command line and in the output.
@@ -29,14 +39,17 @@ pub trait Format: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
     fn from_f64(value: f64) -> Self;
     /// The exact value.
     fn to_f64(self) -> f64;
-    /// The nearest angle of the format.
-    fn angle(radians: f64) -> Self::Angle;
+    /// The nearest angle of the format; `None` above [`ANGLE_LIMIT`], and for NaN.
+    fn angle(radians: f64) -> Option<Self::Angle>;
     /// The exact angle \[rad\].
     fn radians(angle: Self::Angle) -> f64;
     /// The angle as the format holds it.
     fn held_angle(angle: Self::Angle) -> Angle {
         Angle::Radians(Self::radians(angle))
     }
+    /// Largest magnitude of a heading, accumulated along a path, that the core takes \[rad\]; infinite where whole turns do
+    /// not count.
+    const HEADING_LIMIT: f64;
     /// Twice the unit roundoff of sums; 0 if the format adds exactly.
     const EPSILON: f64;
     /// The last digit of a fixed-point format, of which all numbers are multiples; 0 in floating point.
@@ -45,6 +58,7 @@ pub trait Format: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
 
 impl Format for f64 {
     const NAME: &'static str = "f64";
+    const HEADING_LIMIT: f64 = ANGLE_LIMIT;
     const EPSILON: f64 = f64::EPSILON;
     fn from_f64(value: f64) -> Self {
         value
@@ -52,8 +66,8 @@ impl Format for f64 {
     fn to_f64(self) -> f64 {
         self
     }
-    fn angle(radians: f64) -> Radians<f64> {
-        Radians(radians)
+    fn angle(radians: f64) -> Option<Radians<f64>> {
+        in_angles(radians).map(Radians)
     }
     fn radians(angle: Radians<f64>) -> f64 {
         angle.0
@@ -62,6 +76,7 @@ impl Format for f64 {
 
 impl Format for f32 {
     const NAME: &'static str = "f32";
+    const HEADING_LIMIT: f64 = 1_024.0;
     const EPSILON: f64 = f32::EPSILON as f64;
     fn from_f64(value: f64) -> Self {
         value as f32
@@ -70,8 +85,9 @@ impl Format for f32 {
         f64::from(self)
     }
     /// Whole turns are subtracted first: they would cost digits of the rest.
-    fn angle(radians: f64) -> Radians<f32> {
-        Radians((if radians.abs() > PI { radians - TAU * (radians / TAU).round() } else { radians }) as f32)
+    fn angle(radians: f64) -> Option<Radians<f32>> {
+        let radians = in_angles(radians)?;
+        Some(Radians((if radians.abs() > PI { radians - TAU * (radians / TAU).round() } else { radians }) as f32))
     }
     fn radians(angle: Radians<f32>) -> f64 {
         f64::from(angle.0)
@@ -113,10 +129,22 @@ fn number<S: Format>(field: &str, value: f64) -> Result<S, String> {
     }
 }
 
+/// A field as an angle of the format.
+fn angle<S: Format>(field: &str, radians: f64) -> Result<S::Angle, String> {
+    S::angle(radians).ok_or_else(|| {
+        let [radians, limit] = [radians, ANGLE_LIMIT].map(figure);
+        format!("{field}: {radians} is out of range; allowed is up to {limit} in magnitude")
+    })
+}
+
 /// The message for a value refused by the core, which follows from several fields.
 fn derived<S: Format>(reason: Invalid) -> String {
     let limit = S::LIMIT.to_f64();
     match reason {
+        Invalid::OutOfRange(what @ "heading") => {
+            let limit = figure(S::HEADING_LIMIT);
+            format!("{what} is out of range; allowed is up to {limit} in magnitude, with all turns of the path")
+        }
         Invalid::OutOfRange(what) => format!("{what} is out of range; allowed is up to {limit:e} in magnitude"),
         Invalid::TooSmall(what) => {
             let least = S::LEAST.to_f64();
@@ -178,8 +206,9 @@ impl<S: Format> Fleet<S> {
     }
 
     /// Heading at the start of an agent's path, and its turns in place, each before the segment with this index.
-    pub(crate) fn headings(&self, agent: usize) -> Option<(S::Angle, &[Turned<S>])> {
-        self.agents.get(agent).map(|parts| (parts.heading, &parts.turns[..]))
+    pub(crate) fn headings(&self, agent: usize) -> (S::Angle, &[Turned<S>]) {
+        let parts = &self.agents[agent];
+        (parts.heading, &parts.turns)
     }
 
     /// Index in the scenario of a segment of an agent's motion; `None` for the point of an agent that stands.
@@ -207,7 +236,7 @@ impl<S: Format> Parts<S> {
         let radius = number("radius", agent.reach()).map_err(of_agent)?;
         let start = number("t_start", agent.t_start).map_err(of_agent)?;
         let margin = number("margin", agent.margin).map_err(of_agent)?;
-        let heading = S::angle(agent.start[2]);
+        let heading = angle::<S>("start.heading", agent.start[2]).map_err(of_agent)?;
         let parts = Self { segments, sources, heading, turns, phases, radius, margin, start };
         match parts.motion() {
             Ok(_) => Ok(parts),
@@ -231,7 +260,7 @@ struct Route<S: Scalar> {
 fn place<S: Format>(agent: &Agent) -> Result<Route<S>, Fault> {
     let [x, y, heading] = agent.start;
     let position = Point::new(number("start.x", x).map_err(of_agent)?, number("start.y", y).map_err(of_agent)?);
-    let pose = Pose { position, heading: S::angle(heading) };
+    let pose = Pose { position, heading: angle::<S>("start.heading", heading).map_err(of_agent)? };
     let mut origin = Segment::standing(pose).map_err(|reason| of_agent(derived::<S>(reason)))?;
     // Fleets are large, and paths are short: a list that grows would have room for four.
     let count = agent.path.len();
@@ -240,9 +269,10 @@ fn place<S: Format>(agent: &Agent) -> Result<Route<S>, Fault> {
     for (source, segment) in agent.path.iter().enumerate().filter(|(_, segment)| segment.length() > 0.0) {
         let at = |problem| (Some(("segment", source)), problem);
         if let Some(sweep) = turn_in_place::<S>(segment) {
+            let by = angle::<S>("sweep", sweep).map_err(at)?;
             let last = segments.last_mut().unwrap_or(&mut origin);
-            *last = last.turned(S::angle(sweep)).map_err(|reason| at(derived::<S>(reason)))?;
-            turns.push((segments.len(), S::angle(sweep)));
+            *last = last.turned(by).map_err(|reason| at(derived::<S>(reason)))?;
+            turns.push((segments.len(), by));
             continue;
         }
         let whole = segment.turns();
@@ -273,7 +303,7 @@ fn place<S: Format>(agent: &Agent) -> Result<Route<S>, Fault> {
 }
 
 /// The angle of a turn in place \[rad\], for a format without lengths as small as its radius.
-fn turn_in_place<S: Format>(segment: &PathSegment) -> Option<f64> {
+pub(crate) fn turn_in_place<S: Format>(segment: &PathSegment) -> Option<f64> {
     match *segment {
         PathSegment::Arc { radius: TURN, sweep } if S::from_f64(TURN) == S::ZERO => Some(sweep),
         _ => None,
@@ -352,25 +382,17 @@ pub type HostOrders<S> = Orders<S, Vec<Region>, Vec<Piece<S>>, Vec<Order<S>>>;
 /// # Errors
 /// As [`build_ecm`].
 pub fn build_orders<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostOrders<S>, Full> {
-    let [mut regions, mut pieces] = [16, 32].map(|each| each * (motions.len() + 1));
-    loop {
-        let room = |full| move |_: memory::TooLarge| full;
-        memory::for_list(regions, (size_of::<Region>() + size_of::<Order<S>>()) as u64).map_err(room(Full::Regions))?;
-        memory::for_list(pieces, size_of::<Piece<S>>() as u64).map_err(room(Full::Pieces))?;
-        let storage = (vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces], vec![Order::EMPTY; regions]);
-        match Orders::build(storage.0, storage.1, storage.2, motions) {
-            Err(Full::Regions | Full::Orders) => regions *= 2,
-            Err(Full::Pieces) => pieces *= 2,
-            answer => return answer,
-        }
-    }
+    Orders::grown(motions)
 }
 
 /// The table of the regions of one agent with all others.
 ///
 /// # Errors
 /// As [`build_ecm`].
-pub(crate) fn build_ecm_of<S: Scalar>(motions: &[Motion<'_, S>], agent: usize) -> Result<HostEcm<S>, Full> {
+///
+/// # Panics
+/// Where there is no such agent.
+pub fn build_ecm_of<S: Scalar>(motions: &[Motion<'_, S>], agent: usize) -> Result<HostEcm<S>, Full> {
     table_of(motions, agent, [16 * motions.len(), 32 * motions.len()])
 }
 

@@ -17,17 +17,19 @@ pub struct TooLarge {
     what: String,
     /// \[bytes\], where it is known.
     needed: Option<u64>,
-    /// \[bytes\]
-    left: u64,
+    /// \[bytes\], where the system tells.
+    left: Option<u64>,
 }
 
 impl fmt::Display for TooLarge {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let megabytes = |bytes: u64| bytes.div_ceil(1_000_000);
-        let left = megabytes(self.left);
-        match self.needed.map(megabytes) {
-            Some(needed) => write!(f, "{} would take {needed} MB of memory; {left} MB are left", self.what),
-            None => write!(f, "{} takes more memory than the {left} MB that are left", self.what),
+        let what = &self.what;
+        match (self.needed.map(megabytes), self.left.map(megabytes)) {
+            (Some(needed), Some(left)) => write!(f, "{what} would take {needed} MB of memory; {left} MB are left"),
+            (Some(needed), None) => write!(f, "{what} would take {needed} MB of memory, which are not left"),
+            (None, Some(left)) => write!(f, "{what} takes more memory than the {left} MB that are left"),
+            (None, None) => write!(f, "{what} takes more memory than is left"),
         }
     }
 }
@@ -37,7 +39,7 @@ impl std::error::Error for TooLarge {}
 impl TooLarge {
     /// The error for a refused allocation.
     pub(crate) fn of(what: String) -> Self {
-        Self { what, needed: None, left: left().unwrap_or(0) }
+        Self { what, needed: None, left: left() }
     }
 }
 
@@ -62,7 +64,7 @@ pub fn ask_for_text(bytes: u64) -> Result<(), TooLarge> {
     let limits = [address_space(), group(), machine()];
     match limits.into_iter().flatten().min() {
         Some(left) if needed > STEP && needed > left => {
-            Err(TooLarge { what: "what is read".into(), needed: Some(needed), left })
+            Err(TooLarge { what: "what is read".into(), needed: Some(needed), left: Some(left) })
         }
         _ => Ok(()),
     }
@@ -70,7 +72,7 @@ pub fn ask_for_text(bytes: u64) -> Result<(), TooLarge> {
 
 fn ask_at_all(bytes: u64, what: impl FnOnce() -> String) -> Result<(), TooLarge> {
     match left() {
-        Some(left) if bytes > left => Err(TooLarge { what: what(), needed: Some(bytes), left }),
+        Some(left) if bytes > left => Err(TooLarge { what: what(), needed: Some(bytes), left: Some(left) }),
         _ => Ok(()),
     }
 }
@@ -158,5 +160,13 @@ mod tests {
             assert!(refused.starts_with("a table would take 1152921504607 MB of memory; "), "{refused}");
         }
         assert_eq!(ask(STEP - 1, String::new), Ok(()));
+    }
+
+    #[test]
+    fn what_is_left_is_told_only_where_it_is_known() {
+        let told = |needed, left| TooLarge { what: "a table".into(), needed, left }.to_string();
+        assert_eq!(told(None, None), "a table takes more memory than is left");
+        assert_eq!(told(Some(2_000_000), None), "a table would take 2 MB of memory, which are not left");
+        assert_eq!(told(None, Some(3_000_000)), "a table takes more memory than the 3 MB that are left");
     }
 }

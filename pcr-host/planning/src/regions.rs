@@ -9,7 +9,8 @@ mod sheet;
 mod tables;
 
 use crate::bodies::Disced;
-use crate::fleet::{Format, HostEcm, Refused, build_ecm};
+use crate::certificate::Misread;
+use crate::fleet::{Format, HostEcm, HostOrders, Refused, build_ecm, build_orders};
 use crate::memory::TooLarge;
 use pcr_certify::data::Table;
 use pcr_core::{Full, Motion};
@@ -85,6 +86,8 @@ pub struct Request {
 pub enum Failure {
     /// A value does not fit the number format.
     Refused(Refused),
+    /// The numbers to be certified are not those of the scenario.
+    Misread(Misread),
     /// The fleet is beyond a limit of the table.
     Full(Full),
     /// These two agents have more pieces of regions than the table can number.
@@ -124,6 +127,7 @@ impl fmt::Display for Failure {
         const LISTED: usize = 16;
         match self {
             Self::Refused(refused) => refused.fmt(f),
+            Self::Misread(misread) => misread.fmt(f),
             Self::Full(full) => full.fmt(f),
             Self::TooLarge(too_large) => too_large.fmt(f),
             Self::NoPair => {
@@ -207,12 +211,24 @@ impl From<Full> for Failure {
 /// # Errors
 /// [`Failure::Overfull`] with the pair that the table cannot hold, [`Failure::Full`] for too many agents.
 pub fn table<S: Format>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Failure> {
-    build_ecm(motions).map_err(|full| match full {
-        Full::Regions | Full::Pieces => {
-            TooLarge::of(format!("the table of all pairs of {} discs", motions.len())).into()
+    build_ecm(motions).map_err(|full| unfit(full, scenario, motions.len()))
+}
+
+/// The passing orders of a scenario, of which none is decided.
+///
+/// # Errors
+/// As [`table`].
+pub fn orders<S: Format>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Result<HostOrders<S>, Failure> {
+    build_orders(motions).map_err(|full| unfit(full, scenario, motions.len()))
+}
+
+fn unfit(full: Full, scenario: &Scenario, discs: usize) -> Failure {
+    match full {
+        Full::Regions | Full::Pieces | Full::Orders => {
+            TooLarge::of(format!("the table of all pairs of {discs} discs")).into()
         }
         full => Failure::Full(full).named(scenario),
-    })
+    }
 }
 
 /// The number of the agent that is asked for by its number or, where there is no such number, by its label.

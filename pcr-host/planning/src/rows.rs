@@ -67,7 +67,7 @@ impl<'a, S: Format> Row<'a, S> {
             Ok(()) => Ok(()),
         };
         filled.map_err(|full| match full {
-            Full::Pair(places) => Full::Pair(places.map(|place| self.agents.get(place).map_or(0, |&it| it as usize))),
+            Full::Pair(places) => Full::Pair(places.map(|place| self.agents[place] as usize)),
             full => full,
         })
     }

@@ -112,7 +112,7 @@ impl Traffic {
         }
         let regions = Answer::of::<f64>(&missions, regions::Request::default())?.regions.len();
         let Schedule { delays, out, .. } = schedule(&missions, request.seed)?;
-        let id = |agent: usize| missions.agents.get(agent).map_or(0, |agent| agent.id);
+        let id = |agent: usize| missions.agents[agent].id;
         let kept = missions.agents.iter().zip(&delays).filter_map(|(agent, delay)| Some((agent, (*delay)?)));
         let at_once = Scenario { agents: kept.clone().map(|(agent, _)| agent.clone()).collect(), ..missions.clone() };
         let later = kept.map(|(agent, delay)| Agent { t_start: delay, ..agent.clone() });

@@ -139,7 +139,7 @@ impl Arguments {
         }
         drop(progress);
         if let Some(output) = &self.output {
-            write_to(output, &replay::page(&task, &outcomes))?;
+            write_to(output, &replay::page(&task, &outcomes).map_err(named)?)?;
         }
         let simulation = Simulation::of(&task, settings, &outcomes);
         say(&file, simulation.warnings.iter().skip(task.warnings.len()).cloned());

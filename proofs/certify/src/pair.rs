@@ -90,9 +90,14 @@ pub struct Segments<'a> {
     pub pieces: Vec<([[Twofold; 2]; 2], Share)>,
 }
 
-/// Lengths of the first segment in `within` that are in none of the ranges, closed.
+/// Lengths of the first segment in `within` that are in none of the ranges, closed. A range with an end that is no number
+/// holds nothing, and of what is within no numbers all is left: neither may pass as held.
 pub fn gaps(mut ranges: Vec<[Twofold; 2]>, within: [Twofold; 2]) -> Vec<[Twofold; 2]> {
-    ranges.sort_by(|a, b| a[0].partial_cmp(&b[0]).unwrap_or(std::cmp::Ordering::Equal));
+    if within.iter().any(|end| end.is_nan()) {
+        return vec![within];
+    }
+    ranges.retain(|ends| !ends.iter().any(|end| end.is_nan()));
+    ranges.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let ([mut from, end], mut gaps) = (within, Vec::new());
     let mut begun = false;
     for [lo, hi] in ranges {
@@ -119,7 +124,7 @@ impl Segments<'_> {
         let end = self.stretches[1].placed.length;
         let mut cuts: Vec<Twofold> = self.pieces.iter().flat_map(|(lengths, _)| lengths[1]).collect();
         cuts.extend([Twofold::ZERO, end]);
-        cuts.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        cuts.sort_by(Twofold::total_cmp);
         cuts.dedup();
         if cuts.len() == 1 {
             return vec![[Twofold::ZERO, end]];
@@ -254,4 +259,25 @@ pub fn pieces_of(pieces: &[Piece], stretches: [&[Stretch]; 2]) -> Result<Vec<Pla
     }
     placed.sort_by_key(|piece| piece.segments);
     Ok(placed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ranges<const N: usize>(ends: [[f64; 2]; N]) -> Vec<[Twofold; 2]> {
+        ends.map(|range| range.map(Twofold::from)).to_vec()
+    }
+
+    #[test]
+    fn what_is_no_number_holds_nothing() {
+        let left = |held: Vec<[Twofold; 2]>| gaps(held, [0.0, 9.0].map(Twofold::from));
+        assert_eq!(left(ranges([[6.0, 9.0], [0.0, 2.0], [1.0, 4.0]])), ranges([[4.0, 6.0]]));
+        let none = f64::NAN;
+        assert_eq!(left(ranges([[none, 9.0], [3.0, none], [2.0, 9.0], [none, none]])), ranges([[0.0, 2.0]]));
+        assert_eq!(left(ranges([[8.0, 9.0], [none, 1.0], [0.0, 7.0]])), ranges([[7.0, 8.0]]));
+        for within in [[none, 9.0], [0.0, none]] {
+            assert_eq!(gaps(ranges([[0.0, 9.0]]), within.map(Twofold::from)).len(), 1, "{within:?}");
+        }
+    }
 }

@@ -60,6 +60,11 @@ pub fn check(segments: &Segments<'_>, pair: &Pair, radii: &Radii, findings: &mut
             for [lo, hi] in &ranges {
                 let (to, from) = if certain { (below(*lo), above(*hi)) } else { (above(*hi), below(*lo)) };
                 let length = first.placed.length;
+                if to.is_nan() || from.is_nan() {
+                    // The comparisons below would all say no, and nothing would be left to show.
+                    sides.extend((!certain).then_some([Twofold::ZERO, length]));
+                    continue;
+                }
                 let ends =
                     [[Twofold::ZERO, to.clamp(Twofold::ZERO, length)], [from.clamp(Twofold::ZERO, length), length]];
                 let there = [to >= Twofold::ZERO, from <= length];

@@ -67,7 +67,7 @@ impl Route {
     pub fn new<S: Format>(disc: &Disc) -> Self {
         let [x, y, heading] = disc.start;
         let start = [x, y].map(Twofold::from);
-        let mut angle = Twofold::from(S::radians(S::angle(heading)));
+        let mut angle = Twofold::from(S::radians(S::angle(heading).expect("an angle")));
         let (mut at, mut from, mut pieces) = (start, Twofold::ZERO, Vec::with_capacity(disc.legs.len()));
         for leg in disc.legs.iter().filter(|leg| leg.length() > 0.0) {
             let length = Twofold::from(leg.length());

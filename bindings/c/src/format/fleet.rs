@@ -134,8 +134,7 @@ impl Fleet {
 
     /// The interval from the first start to the last arrival.
     pub(super) fn duration(&self) -> Interval<S> {
-        let times = self.motions().iter().map(Motion::time);
-        times.reduce(Interval::hull).unwrap_or_default()
+        Motion::span(self.motions())
     }
 
     pub(super) fn add(&mut self, agent: &PcrAgent) -> Result<(), PcrStatus> {
@@ -265,6 +264,7 @@ impl Fleet {
         plan_delays(self.table(), self.motions.values(), room.values_mut(), order).map_err(
             |unsolved| match unsolved {
                 Unsolved::Table(mismatch) => (mismatch.into(), None),
+                Unsolved::Full(_) => (PcrStatus::NoRoom, None),
                 Unsolved::NotOnce(_) | Unsolved::NoSuchAgent(_) => (PcrStatus::BadOrder, None),
                 unsolved => (PcrStatus::NoPlan, Some(unsolved)),
             },

@@ -5,7 +5,7 @@ use crate::certificate;
 use crate::fleet::{Format, Refused};
 use crate::regions::Failure;
 use pcr_certify::motion::{Meeting, Mover, meetings};
-use pcr_core::{Interval, Motion};
+use pcr_core::Motion;
 use pcr_formats::scenario::Scenario;
 use serde::Serialize;
 
@@ -48,12 +48,14 @@ impl Proof {
     /// # Errors
     /// [`Refused`] if a value does not fit the format.
     pub fn of<S: Format>(scenario: &Scenario) -> Result<Self, Refused> {
-        let (fleet, discs) = Bodies::<S>::moving(scenario)?;
+        let (fleet, discs, given) = Bodies::<S>::moving(scenario)?;
         let motions = fleet.motions();
-        let all = motions.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
-        let ids: Vec<u64> =
-            discs.iter().map(|disc| scenario.agents.get(disc.agent).map_or(0, |agent| agent.id)).collect();
+        let all = Motion::span(&motions);
+        let ids: Vec<u64> = discs.iter().map(|disc| scenario.agents[disc.agent].id).collect();
         let agents = certificate::agents(&fleet, &motions, &ids);
+        if let Err(misread) = certificate::as_given::<S>(&given, &agents) {
+            return Ok(Self { error: Some(misread.to_string()), ..Self::found(&[]) }.undecided());
+        }
         let movers = agents.iter().zip(&motions).zip(&discs).map(|((agent, motion), disc)| {
             let time = disc.time(motion, all);
             Mover::new(agent, [time.lo.to_f64(), time.hi.to_f64()])

@@ -1,6 +1,6 @@
 //! Fixed point as a format of the tool.
 
-use super::Format;
+use super::{Format, in_angles};
 use pcr_certify::data::Angle;
 use pcr_fixed::{Q12, Q16, Q20, Turns};
 
@@ -8,6 +8,7 @@ macro_rules! impl_format {
     ($t:ident, $name:literal) => {
         impl Format for $t {
             const NAME: &'static str = $name;
+            const HEADING_LIMIT: f64 = f64::INFINITY;
             const EPSILON: f64 = 0.0;
             const STEP: f64 = 1.0 / Self::ONE.to_bits() as f64;
             /// Saturates: what is beyond the format is above its limit, too, and refused by name.
@@ -18,8 +19,8 @@ macro_rules! impl_format {
             fn to_f64(self) -> f64 {
                 $t::to_f64(self)
             }
-            fn angle(radians: f64) -> Turns {
-                Turns::from_radians(radians).unwrap_or_default()
+            fn angle(radians: f64) -> Option<Turns> {
+                in_angles(radians).and_then(|radians| Turns::from_radians(radians).ok())
             }
             fn radians(angle: Turns) -> f64 {
                 angle.to_radians()

@@ -59,11 +59,16 @@ fn held<S: Format>(value: f64) -> f64 {
     S::from_f64(value).to_f64()
 }
 
+/// The angle that the format holds.
+fn held_angle<S: Format>(radians: f64) -> f64 {
+    S::radians(S::angle(radians).expect("an agent that has a motion"))
+}
+
 fn of_path<S: Format>(agent: &Agent) -> Rounding {
     let [x, y, heading] = agent.start;
     let stands = |[x, y]: [f64; 2], heading| Placed { at: [x, y], heading, shape: PathSegment::Line { length: 0.0 } };
     let mut exact = stands([x, y], heading);
-    let mut rounded = stands([held::<S>(x), held::<S>(y)], S::radians(S::angle(heading)));
+    let mut rounded = stands([held::<S>(x), held::<S>(y)], held_angle::<S>(heading));
     let (mut rounding, mut longer) = (Rounding { distance: 0.0, length: 0.0 }, 0.0_f64);
     for &segment in &agent.path {
         let (from, to) = (exact.end(), rounded.end());
@@ -73,7 +78,7 @@ fn of_path<S: Format>(agent: &Agent) -> Rounding {
         let mut next = Placed { at: to, heading: rounded.heading_at_end(), shape: segment };
         let (length, mut bent) = (segment.length(), 0.0);
         if let Some(sweep) = turn_in_place::<S>(&segment) {
-            next.heading += S::radians(S::angle(sweep));
+            next.heading += held_angle::<S>(sweep);
             next.shape = PathSegment::Line { length: 0.0 };
         } else {
             let turns = segment.turns();

@@ -156,3 +156,81 @@ fn what_is_far_below_a_fixed_point_format_is_refused() {
         assert!(number::<pcr_fixed::Q16>("start.x", value).is_err(), "{value}");
     }
 }
+
+/// Two lines of 4 m that cross in their middles, the second in this heading.
+fn crossing(heading: f64) -> Scenario {
+    let agent = |id: u64, x: f64, y: f64, heading: f64| {
+        json!({
+            "id": id, "radius": 0.3, "v_max": 1.0, "a_max": 0.5,
+            "start": { "x": x, "y": y, "heading": heading },
+            "path": [{ "kind": "line", "length": 4.0 }],
+        })
+    };
+    Scenario::from_value(&json!({ "agents": [agent(1, -2.0, 0.0, 0.0), agent(2, 0.0, -2.0, heading)] })).unwrap()
+}
+
+/// The number of conflicts and the verdict of the checker, or why there is neither.
+type Answers = Result<(usize, &'static str), String>;
+
+fn answers<S: Format>(scenario: &Scenario) -> Answers {
+    let found = crate::check::Verdict::of::<S>(scenario, false).map_err(|failure| failure.to_string())?;
+    let proof = crate::certify::Proof::of::<S>(scenario).map_err(|refused| refused.to_string())?;
+    // The checker takes fewer turns than that, and says so.
+    assert_eq!(proof.error.is_some(), S::NAME == "f64" && scenario.agents[1].start[2].abs() > 6e3, "{:?}", proof.error);
+    assert_eq!(proof.error.is_some(), proof.verdict == "undecided");
+    Ok((found.conflicts.len(), proof.verdict))
+}
+
+#[test]
+fn a_heading_of_too_many_turns_is_refused_in_every_format_alike() {
+    use pcr_fixed::{Q12, Q16, Q20};
+    fn everywhere(heading: f64) -> Vec<Answers> {
+        let scenario = crossing(heading);
+        let all: [fn(&Scenario) -> Answers; 5] =
+            [answers::<f64>, answers::<f32>, answers::<Q12>, answers::<Q16>, answers::<Q20>];
+        all.map(|answers| answers(&scenario)).to_vec()
+    }
+    // π/2 and turns, up to the largest.
+    for turns in [0.0, 1.0, -900.0, 2_670_176.0, -2_670_176.0] {
+        let mut expected = vec![Ok((1, "contact")); 5];
+        expected[0] = Ok((1, if turns.abs() > 900.0 { "undecided" } else { "contact" }));
+        assert_eq!(everywhere(0.5 * PI + TAU * turns), expected, "{turns}");
+    }
+    // π/2 as well, which fixed point once took for 0, and found free.
+    for heading in [6_999_999_997.529_028, -1e10, ANGLE_LIMIT.next_up()] {
+        for (refused, format) in everywhere(heading).into_iter().zip(["f64", "f32", "q12", "q16", "q20"]) {
+            let range = "is out of range; allowed is up to 1.6777216e7 in magnitude";
+            assert_eq!(refused, Err(format!("agent 2, start.heading: {} {range} ({format})", figure(heading))));
+        }
+    }
+    let mut turned = agent();
+    turned["path"] = json!([{ "kind": "line", "length": 2.0 }, { "kind": "turn", "sweep": 2e7 }]);
+    turned["turn_v_max"] = json!(1e7);
+    turned["turn_a_max"] = json!(1e7);
+    let refused = Fleet::<pcr_fixed::Q16>::new(&scenario(turned)).unwrap_err().to_string();
+    assert!(refused.starts_with("agent 7, segment 2, sweep: 2e7 is out of range"), "{refused}");
+}
+
+#[test]
+fn headings_along_a_path_are_refused_with_their_own_limit() {
+    let spin = |turns: f64| {
+        let mut agent = agent();
+        agent["path"] = json!([{ "kind": "arc", "radius": 0.1, "sweep": turns * TAU }]);
+        scenario(agent)
+    };
+    assert!(Fleet::<f32>::new(&spin(160.0)).is_ok() && Fleet::<pcr_fixed::Q16>::new(&spin(170.0)).is_ok());
+    let refused = Fleet::<f32>::new(&spin(170.0)).unwrap_err().to_string();
+    let limit = "heading is out of range; allowed is up to 1024 in magnitude, with all turns of the path (f32)";
+    assert_eq!(refused, format!("agent 7, segment 1, at its end: {limit}"));
+}
+
+#[test]
+fn the_limits_of_headings_are_those_of_the_core() {
+    fn of_core<S: Format>(heading: impl Fn(f64) -> S::Angle) {
+        let stands = |heading| Segment::standing(Pose { position: Point::new(S::ZERO, S::ZERO), heading }).map(|_| ());
+        assert_eq!(stands(heading(S::HEADING_LIMIT)), Ok(()), "{}", S::NAME);
+        assert_eq!(stands(heading(1.001 * S::HEADING_LIMIT)), Err(Invalid::OutOfRange("heading")), "{}", S::NAME);
+    }
+    of_core::<f64>(Radians);
+    of_core::<f32>(|heading| Radians(heading as f32));
+}

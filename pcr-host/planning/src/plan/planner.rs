@@ -172,10 +172,8 @@ impl<'m> Planner<'_, 'm> {
         };
         unsolved.push(match never {
             Never::Priorities(agents) => Unsolved::of(self.scenario, ids(agents), false),
-            Never::Full(agent) => {
-                let why = "its plan takes too many profiles or phases, or too long";
-                Unsolved::nowhere(vec![self.id(agent)], why)
-            }
+            Never::Full(agent) => Unsolved::nowhere(vec![self.id(agent)], "its plan takes too many profiles or phases"),
+            Never::Invalid { agent, reason } => Unsolved::nowhere(vec![self.id(agent)], reason.to_string()),
             other => Unsolved::nowhere(Vec::new(), other.to_string()),
         });
         unsolved

@@ -34,6 +34,9 @@ pub(super) fn pool(agents: usize) -> Vec<Speeds> {
     vec![Profile::standing(); (PROFILES * agents).min(MOST).max(LEAST * agents)]
 }
 
+/// The best motions so far, or why the orders that were tried gave none.
+type Best<'m> = Result<Vec<Motion<'m, f64>>, Option<Never>>;
+
 type Room<'m> = std::slice::IterMut<'m, Speeds>;
 
 /// The best motions found, beginning with known ones.
@@ -56,7 +59,8 @@ pub(super) fn plan<'m>(
     if planner.request.priority == Priority::Best {
         orders.extend(known.as_deref().map(by_start));
     }
-    let mut best: Result<Vec<Motion<'m, f64>>, Never> = known.ok_or(Never::Full(0));
+    // No reason as long as nothing has been tried.
+    let mut best: Best<'m> = known.ok_or(None);
     let mut kept = Vec::new();
     for order in orders {
         kept = attempt(planner, ecm, order, &mut best, &mut room, &mut stations);
@@ -81,7 +85,7 @@ pub(super) fn plan<'m>(
             again(planner, ecm, plan, &mut last, &mut stations);
         }
     }
-    Ok(best)
+    Ok(best.map_err(|never| never.expect("there is an order at least, which was tried")))
 }
 
 /// The earliest arrival of one agent while the others keep their motions: with other speeds, or, if its own motion is slower
@@ -141,7 +145,7 @@ fn attempt<'m>(
     planner: &Planner<'_, 'm>,
     ecm: &HostEcm<f64>,
     mut order: Vec<usize>,
-    best: &mut Result<Vec<Motion<'m, f64>>, Never>,
+    best: &mut Best<'m>,
     room: &mut Room<'m>,
     stations: &mut [Station<f64>],
 ) -> Vec<usize> {
@@ -150,10 +154,18 @@ fn attempt<'m>(
     match (done, &best) {
         (Ok(()), Ok(before)) if planner.cost(&plan) >= planner.cost(before) => {}
         (Ok(()), _) => *best = Ok(plan),
-        (Err(never), Err(Never::Full(_))) => *best = Err(never),
-        (Err(_), _) => {}
+        (Err(never), Err(before)) => *best = Err(Some(told(*before, never))),
+        (Err(_), Ok(_)) => {}
     }
     order
+}
+
+/// The reason to tell after one more order without a plan: what holds for any order tells more than why the first one failed.
+fn told(before: Option<Never>, now: Never) -> Never {
+    match (before, now) {
+        (_, Never::Starts(_) | Never::Ends(_) | Never::Always(_)) | (None, _) => now,
+        (Some(before), _) => before,
+    }
 }
 
 /// Plans each agent again while the others keep their motions, the agent with the largest loss first.
@@ -182,5 +194,19 @@ fn again<'m>(
         if !sooner {
             return;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_reason_stays_unless_another_one_holds_for_any_order() {
+        let (full, later) = (Never::Full(0), Never::Priorities([1, 2]));
+        assert_eq!(told(None, full), full);
+        assert_eq!(told(Some(full), later), full, "that there was no room is not forgotten");
+        assert_eq!(told(Some(later), full), later);
+        assert_eq!(told(Some(full), Never::Always([1, 2])), Never::Always([1, 2]));
     }
 }

@@ -22,7 +22,7 @@ pub(super) struct Planner<'a, 'm> {
 
 impl Planner<'_, '_> {
     pub(super) fn id(&self, agent: usize) -> u64 {
-        self.scenario.agents.get(agent).map_or(0, |agent| agent.id)
+        self.scenario.agents[agent].id
     }
 
     /// The table of all pairs, for speed plans.

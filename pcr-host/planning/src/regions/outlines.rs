@@ -70,7 +70,6 @@ fn hull(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 /// The regions of an agent, from the rows of its discs, by the other agent.
 pub(super) fn regions<S: Format>(rows: &[(Work<'_, S>, usize)], discs: &[Disced], ids: &[u64]) -> Vec<Region> {
     let mut pairs: BTreeMap<[usize; 2], Vec<Part<'_, S>>> = BTreeMap::new();
-    let id = |agent: usize| ids.get(agent).copied().unwrap_or_default();
     for (work, place) in rows {
         let Some(own) = discs.get(work.in_fleet(*place)) else { continue };
         for region in work.ecm.row(work.motions, *place).expect("the table of the row") {
@@ -92,7 +91,7 @@ pub(super) fn regions<S: Format>(rows: &[(Work<'_, S>, usize)], discs: &[Disced]
     }
     let unions = pairs.into_iter().flat_map(|([ego, other], parts)| {
         let components = components(&parts).into_iter();
-        components.map(|parts| union([id(ego), id(other)], &parts)).collect::<Vec<_>>()
+        components.map(|parts| union([ids[ego], ids[other]], &parts)).collect::<Vec<_>>()
     });
     unions.collect()
 }
@@ -167,7 +166,7 @@ fn pieces<S: Format>(parts: &[&Part<'_, S>]) -> Vec<Piece> {
     let mut pieces: BTreeMap<[Option<usize>; 2], Piece> = BTreeMap::new();
     for part in parts {
         let [own, other] = part.discs;
-        for piece in part.work.region(part.places[0], part.places[1], &part.region).pieces {
+        for piece in part.work.pieces(part.places[0], part.places[1], &part.region) {
             let segment =
                 |disc: &Disced, number: Option<usize>| disc.segment(number?.checked_sub(1)?).map(|segment| segment + 1);
             let segments = [segment(own, piece.i_segment), segment(other, piece.j_segment)];

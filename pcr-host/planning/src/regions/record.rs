@@ -172,9 +172,8 @@ impl<S: Format> Work<'_, S> {
         candidates.first().copied()
     }
 
-    pub(super) fn region(&self, ego: usize, other: usize, region: &RegionRef<'_, S>) -> Region {
-        let (time, length) = (region.time(), region.length());
-        let t = [time.lo.to_f64(), time.hi.to_f64()];
+    /// The pieces of a region, without crossings.
+    pub(super) fn pieces(&self, ego: usize, other: usize, region: &RegionRef<'_, S>) -> Vec<Piece> {
         let pieces = region.pieces().map(|piece| {
             let [i_segment, j_segment] = self.segments(ego, other, piece.segments);
             Piece {
@@ -191,11 +190,17 @@ impl<S: Format> Work<'_, S> {
             let starts = a.i_length[0].total_cmp(&b.i_length[0]).then(a.j_length[0].total_cmp(&b.j_length[0]));
             (a.i_segment, a.j_segment).cmp(&(b.i_segment, b.j_segment)).then(starts)
         });
+        pieces
+    }
+
+    fn region(&self, ego: usize, other: usize, region: &RegionRef<'_, S>) -> Region {
+        let (time, length) = (region.time(), region.length());
+        let t = [time.lo.to_f64(), time.hi.to_f64()];
         let slices = self.slices.map(|slices| {
             let times = (1..=slices).map(|k| t[0] + (t[1] - t[0]) * (k as f64 / (slices + 1) as f64));
             times.map(|time| slice(region, S::from_f64(time))).collect()
         });
-        let id = |agent: usize| self.ids.get(self.in_fleet(agent)).copied().unwrap_or_default();
+        let id = |agent: usize| self.ids[self.in_fleet(agent)];
         Region {
             i: id(ego),
             j: id(other),
@@ -203,7 +208,7 @@ impl<S: Format> Work<'_, S> {
             l: [length.lo.to_f64(), length.hi.to_f64()],
             open_start: region.is_open_at_start(),
             open_end: region.is_open_at_end(),
-            pieces,
+            pieces: self.pieces(ego, other, region),
             slices,
         }
     }
@@ -214,9 +219,9 @@ impl<S: Format> Work<'_, S> {
         [source(ego, i), source(other, j)]
     }
 
-    /// Place in the fleet of an agent of the row; one that the row does not have is none of the fleet either.
+    /// Place in the fleet of an agent of the row.
     pub(super) fn in_fleet(&self, agent: usize) -> usize {
-        self.agents.get(agent).map_or(usize::MAX, |&agent| agent as usize)
+        self.agents[agent] as usize
     }
 }
 

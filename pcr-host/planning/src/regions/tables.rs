@@ -16,7 +16,8 @@ use pcr_formats::scenario::Scenario;
 pub fn table_of<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
     let Bodies { scenario: discs, fleet, discs: owners } = Bodies::<S>::new(scenario)?;
     let motions = fleet.motions();
-    let ids: Vec<u64> = owners.iter().map(|disc| scenario.agents.get(disc.agent).map_or(0, |agent| agent.id)).collect();
+    let ids: Vec<u64> = owners.iter().map(|disc| scenario.agents[disc.agent].id).collect();
+    certificate::as_given::<S>(&discs, &certificate::agents(&fleet, &motions, &ids)).map_err(Failure::Misread)?;
     let mut tables = vec![motions.clone()];
     if motions.iter().any(|motion| motion.margin() > S::ZERO) {
         tables.push(motions.iter().map(|motion| motion.inflated()).collect());

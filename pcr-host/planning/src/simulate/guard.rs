@@ -15,6 +15,15 @@ use pcr_core::{Full, Hold, Interval, Motion, Pass, Progress, Reach, Tolerances};
 /// Gains below this are no progress when it is checked whether all robots can finish \[m\].
 const GAIN: f64 = 1e-3;
 
+/// Why there are no passing orders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Unguarded {
+    /// The disc of the agent at this place cannot move on its course.
+    Agent(usize),
+    /// As [`build_orders`].
+    Full(Full),
+}
+
 /// The regions of all paths in coordination space, and the passing orders.
 #[derive(Debug)]
 pub(super) struct Guard {
@@ -28,13 +37,17 @@ impl Guard {
     /// For discs of these radii \[m\] on these courses; no order is decided.
     ///
     /// # Errors
-    /// Those of [`build_orders`].
-    pub(super) fn new(courses: &[Course], radii: &[f64]) -> Result<Self, Full> {
-        let drives: Vec<Drive> = courses.iter().filter_map(|course| Drive::at_unit_speed(course.clone())).collect();
-        // The supervisor has tried the courses and radii of all robots, and parts of courses are in range as well.
-        debug_assert_eq!((drives.len(), motions(&drives, radii).len()), (courses.len(), courses.len()));
-        let orders = build_orders(&motions(&drives, radii))?;
+    /// [`Unguarded`].
+    pub(super) fn new(courses: &[Course], radii: &[f64]) -> Result<Self, Unguarded> {
+        let drive =
+            |(place, course): (usize, &Course)| Drive::at_unit_speed(course.clone()).ok_or(Unguarded::Agent(place));
+        let drives = courses.iter().enumerate().map(drive).collect::<Result<Vec<Drive>, _>>()?;
+        let orders = build_orders(&motions(&drives, radii)?).map_err(Unguarded::Full)?;
         Ok(Self { drives, radii: radii.to_vec(), orders })
+    }
+
+    fn motions(&self) -> Option<Vec<Motion<'_, f64>>> {
+        motions(&self.drives, &self.radii).ok()
     }
 
     /// Takes the orders of a plan without collisions: `reached(agent, length)` is when an agent reaches a length of its
@@ -46,7 +59,7 @@ impl Guard {
         reached: impl Fn(usize, f64) -> f64,
         length_at: impl Fn(usize, f64) -> f64,
     ) -> Option<()> {
-        let motions = motions(&self.drives, &self.radii);
+        let motions = motions(&self.drives, &self.radii).ok()?;
         let mut decisions = Vec::new();
         for ego in 0..motions.len() {
             for (place, region, _) in self.orders.row(&motions, ego).ok()? {
@@ -80,7 +93,9 @@ impl Guard {
     /// The length \[m\] at which each agent is held, infinite where it is not up to its `horizon`, with the agents in these
     /// intervals.
     pub(super) fn holds(&self, now: &[Interval<f64>], horizon: impl Fn(usize) -> f64) -> Vec<f64> {
-        let (motions, progress) = (motions(&self.drives, &self.radii), progress(now));
+        // There were motions when the table was built; if there were none, no robot would move.
+        let Some(motions) = self.motions() else { return vec![f64::NEG_INFINITY; self.drives.len()] };
+        let progress = progress(now);
         let hold = |agent: usize| {
             let horizon = horizon(agent);
             let before = if horizon.is_finite() { Hold::At(horizon) } else { Hold::Free };
@@ -97,7 +112,7 @@ impl Guard {
 
     /// For which agent another one waits, if it does.
     pub(super) fn waits_for(&self, agent: usize, now: &[Interval<f64>]) -> Option<usize> {
-        self.orders.wait(&motions(&self.drives, &self.radii), agent, &progress(now)).ok()?.1
+        self.orders.wait(&self.motions()?, agent, &progress(now)).ok()?.1
     }
 }
 
@@ -105,6 +120,31 @@ fn progress(now: &[Interval<f64>]) -> Vec<Progress<f64>> {
     now.iter().map(|&at| Progress { at, stop: at.hi }).collect()
 }
 
-fn motions<'a>(drives: &'a [Drive], radii: &[f64]) -> Vec<Motion<'a, f64>> {
-    drives.iter().zip(radii).filter_map(|(drive, &radius)| drive.motion(radius)).collect()
+/// A motion for each agent: one that was left out would shift the places of those after it.
+fn motions<'a>(drives: &'a [Drive], radii: &[f64]) -> Result<Vec<Motion<'a, f64>>, Unguarded> {
+    let motion = |(place, drive): (usize, &'a Drive)| {
+        radii.get(place).and_then(|&radius| drive.motion(radius)).ok_or(Unguarded::Agent(place))
+    };
+    drives.iter().enumerate().map(motion).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pcr_core::{Point, Pose, Radians};
+    use pcr_formats::scenario::PathSegment;
+
+    #[test]
+    fn an_agent_without_a_motion_is_named_and_not_left_out() {
+        let course = |y| {
+            let pose = Pose { position: Point::new(0.0, y), heading: Radians(0.0) };
+            Course::new(pose, &[PathSegment::Line { length: 4.0 }]).expect("a course")
+        };
+        let courses = [course(0.0), course(0.5), course(1.0)];
+        assert_eq!(Guard::new(&courses, &[0.3; 3]).map(|guard| guard.drives.len()), Ok(3));
+        for (radii, missing) in [([0.3, f64::NAN, 0.3], 1), ([-1.0, 0.3, 0.3], 0)] {
+            assert_eq!(Guard::new(&courses, &radii).map(|_| ()), Err(Unguarded::Agent(missing)));
+        }
+        assert_eq!(Guard::new(&courses, &[0.3; 2]).map(|_| ()), Err(Unguarded::Agent(2)));
+    }
 }

@@ -249,7 +249,7 @@ impl Waiting {
             Some(InTheWay::Obstacle(other)) => task.obstacles.get(other).and_then(|obstacle| obstacle.id),
             None => None,
         };
-        Self { id: task.robots.get(robot).map_or(0, |robot| robot.id), begun, by }
+        Self { id: task.robots[robot].id, begun, by }
     }
 }
 

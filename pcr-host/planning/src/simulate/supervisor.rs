@@ -12,10 +12,10 @@ use super::agent::{Agent, Errors, standing};
 use super::body::{AT_TURN, Turning};
 use super::braking::{speed_within, stopping_length};
 use super::course::{Course, Drive};
-use super::guard::Guard;
+use super::guard::{Guard, Unguarded};
 use super::observer::narrowed;
 use super::replan::{InTheWay, Plan, Problem, SEARCHED, State, Waits};
-use super::task::{Obstacle, Task};
+use super::task::{Obstacle, Robot, Task};
 use super::{Command, Control, FRAME, Frame, Snapshot};
 use crate::regions::Failure;
 use pcr_core::{Interval, Limits};
@@ -116,7 +116,7 @@ impl Supervisor {
             drive.map(|drive| (drive, radius)).ok_or(Failure::Obstacle(obstacle.centre))
         };
         let obstacles = task.obstacles.iter().map(obstacle).collect::<Result<_, _>>()?;
-        let guard = guard(&agents)?;
+        let guard = guard(&task.robots, &agents)?;
         let (statistics, snapshots) = (Statistics::default(), Vec::new());
         Ok(Self {
             agents,
@@ -350,10 +350,13 @@ impl Supervisor {
     }
 }
 
-fn guard(agents: &[Agent]) -> Result<Guard, Failure> {
+fn guard(robots: &[Robot], agents: &[Agent]) -> Result<Guard, Failure> {
     let courses: Vec<Course> = agents.iter().map(|agent| agent.course.clone()).collect();
     let radii: Vec<f64> = agents.iter().map(|agent| agent.radius + agent.margins[0]).collect();
-    Guard::new(&courses, &radii).map_err(Failure::Full)
+    Guard::new(&courses, &radii).map_err(|why| match why {
+        Unguarded::Agent(place) => Failure::Robot(robots[place].id),
+        Unguarded::Full(full) => Failure::Full(full),
+    })
 }
 
 impl Control for Supervisor {

@@ -377,8 +377,8 @@ fn certified(file: &Path) -> Result<ExitCode, Stop> {
         }
     };
     let found = certify(text).map_err(|error| Stop::wrong(file, error))?;
-    let mut out = stdout();
-    writeln!(out, "{}", serde_json::to_string(&found).unwrap_or_default())?;
+    let told = serde_json::to_string(&found).map_err(|error| Stop::wrong(file, error))?;
+    writeln!(stdout(), "{told}")?;
     Ok(match found.verdict {
         "proved" => ExitCode::SUCCESS,
         "contact" => ExitCode::from(CONFLICTS),

@@ -5,7 +5,7 @@
 use super::{Found, Room};
 use crate::fleet::HostEcm;
 use crate::plan::task::Planner;
-use pcr_core::{Interval, Motion, Station, first_overlap};
+use pcr_core::{Motion, Station, first_overlap};
 
 /// Nodes at most.
 const NODES: usize = 400;
@@ -57,7 +57,7 @@ pub(super) fn searched<'m>(
 
 /// Two agents that collide.
 fn collision(ecm: &HostEcm<f64>, plan: &[Motion<'_, f64>]) -> Option<[usize; 2]> {
-    let all = plan.iter().map(Motion::time).reduce(Interval::hull).unwrap_or_default();
+    let all = Motion::span(plan);
     (0..plan.len()).find_map(|agent| {
         let regions = ecm.row(plan, agent).expect("the table of the fleet");
         let after = regions.filter(|region| region.other() > agent);
