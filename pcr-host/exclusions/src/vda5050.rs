@@ -10,11 +10,12 @@
 //! is kept off by whoever can reach into the zone at all: where they touch, both are in it. By the second rule the
 //! zones that are written here suffice, whatever the deviations and the outlines.
 
-use crate::outline::{self, around, depth};
+use crate::outline::{around, depth};
 use crate::reach::within;
 use crate::settings::{Notes, Settings};
 use crate::{Claim, Group, Mark, Rules, Way, stretch};
 use pcr_formats::import::{ImportError, Imported, Layout, parse_json};
+use pcr_formats::plane::hull;
 use pcr_formats::scenario::Placed;
 use pcr_formats::scenario::{LIMIT, PathSegment};
 use pcr_planning::checksum::crc32;
@@ -162,7 +163,7 @@ fn polygon(vertices: &Value) -> Result<Vec<[f64; 2]>, String> {
 
 /// Whether the hull of points is wider than the rounding of their coordinates.
 fn is_area(points: &[[f64; 2]]) -> bool {
-    let hull = outline::hull(points.to_vec());
+    let hull = hull(points.to_vec());
     let [lo, hi] = bounds(points);
     let (long, far) =
         ((hi[0] - lo[0]).hypot(hi[1] - lo[1]), points.iter().flatten().fold(0.0, |far: f64, x| far.max(x.abs())));

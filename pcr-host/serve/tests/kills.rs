@@ -229,7 +229,7 @@ fn fleets_whose_supervisor_is_killed_in_the_middle_of_writes() {
         let mut world = World::new(seed, 3 + seed as usize, Trouble { lost: 0.1, late: 2.0, stops: 0.002 });
         while world.now < 60.0 {
             if world.disc.fails_at.load(Relaxed) == usize::MAX {
-                let further = world.dice().range(0.0, 6000.0) as usize;
+                let further = world.dice().within(0.0, 6000.0) as usize;
                 let written = world.disc.bytes.lock().unwrap().len();
                 world.disc.fails_at.store(written + further, Relaxed);
             }

@@ -9,10 +9,10 @@ use super::biarc::{Fit, fit};
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::nurbs::Bezier;
-use super::trace::distance;
 use super::xml::{children, lose_astray, number, only, optional, parse, warn_of_unknown};
 use super::{ImportError, Options, Warnings, facing};
 use crate::footprint::Footprint;
+use crate::plane::distance;
 use crate::scenario::Placed;
 use std::collections::HashMap;
 

@@ -6,9 +6,10 @@
 //! part), or than the edge after. Without an arc the vehicle stops and turns.
 
 use super::layout::{Edge, Layout};
-use super::trace::{Trace, Tracer, distance};
+use super::trace::{Trace, Tracer};
 use super::vehicle::Asked;
 use super::{ImportError, Options, Vehicle, Warnings, speed};
+use crate::plane::distance;
 use crate::scenario::Placed;
 use crate::scenario::{Agent, PathSegment, Scenario, label};
 use std::cmp::Ordering;

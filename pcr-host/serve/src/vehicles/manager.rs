@@ -3,7 +3,6 @@
 //! the others do. A vehicle that has lost its order gets another one, for the rest of the way from where it stands.
 
 use super::locks::{Leg, Locks, Method, to_line};
-use super::random::Random;
 use crate::course::{Course, Shape, Start};
 use crate::vda5050::door::{self, Limits};
 use crate::vda5050::header::Header;
@@ -13,6 +12,7 @@ use crate::vda5050::state::{Pose, State};
 use crate::vda5050::topics::Key;
 use crate::vda5050::version::Version;
 use pcr_formats::import::{self, Layout, Step, cheapest};
+use pcr_formats::random::Random;
 use serde_json::Map;
 use std::collections::BTreeMap;
 
@@ -103,7 +103,7 @@ impl Manager {
         let clients = vehicles.into_iter().enumerate().map(|(place, (key, version, at))| {
             (key, Client { place, version, at, order: None, orders: 0, done: 0, header: 0 })
         });
-        let mut random = Random::new(seed);
+        let mut random = Random(seed);
         let run = random.bits() & 0xffff_ffff;
         let clients = clients.collect();
         let (map_id, locks) = (map_id.into(), None);
