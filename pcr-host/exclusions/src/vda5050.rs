@@ -222,10 +222,10 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
     };
     let there = |zone: &Zone, level: usize| map(layout, level) == zone.map;
     let edges = layout.edges.iter().map(|edge| {
-        let ends = edge.ends.map(|end| layout.nodes.get(end).map_or(0, |node| node.level));
+        let ends = edge.ends.map(|end| layout.level_of(end));
         let curve = match &edge.curve[..] {
             // Without a length an edge is a point.
-            [] => &[layout.nodes.get(edge.ends[0]).map_or([0.0; 2], |node| node.at)].map(|at| Placed::line(at, at)),
+            [] => &[layout.position(edge.ends[0])].map(|at| Placed::line(at, at)),
             curve => curve,
         };
         let mut marks = Vec::new();
