@@ -180,7 +180,8 @@ pub(crate) fn split(text: &str, most: f64) -> Result<(String, Vec<String>), Impo
             copy(own, id, [&pair[0], &pair[1]])
         });
         let copies = copies.collect::<Option<Vec<_>>>();
-        let copies = copies.ok_or_else(|| ImportError::new(format!("edge {id}: it has not all that an edge has")))?;
+        let copies =
+            copies.ok_or_else(|| ImportError::new(format!("edge {id}: a field that an edge needs is missing")))?;
         edits.replace(span.span.clone(), copies.join(&format!(",{end}")));
     }
     if let Some(list) = spans.get("features")

@@ -160,7 +160,7 @@ pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<
                 || !(0.0..=1e6).contains(&until)
             {
                 return Err(Fault::invalid(format!(
-                    "length: what is ahead are {at} to {end} m; until: 0 to 1000000 s"
+                    "length: allowed is {at} to {end} m, the part still ahead; until: allowed is 0 to 1000000 s"
                 )));
             }
             let fleet = motions(&ways)?;
