@@ -21,6 +21,7 @@ use crate::fault::Fault;
 use crate::robot::{Abilities, Robot, remember};
 use pcr_core::{Motion, Order, Orders, Piece, Progress, Reach, Region, Tolerances, Unchanged};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::HashMap;
 
 /// Orders on the heap.
@@ -295,10 +296,12 @@ impl Supervisor {
     /// Stores a note about a robot, also in the journal, until the robot is removed.
     ///
     /// # Errors
-    /// [`Fault::NoSuchRobot`], [`Fault::Broken`].
-    pub fn note(&mut self, name: &str, key: &str, note: serde_json::Value) -> Result<(), Fault> {
+    /// [`Fault::NoSuchRobot`]; [`Fault::Broken`], also for a note that is no JSON: it would be forgotten, so nothing may be
+    /// told any more.
+    pub fn note(&mut self, name: &str, key: &str, note: impl Serialize) -> Result<(), Fault> {
         self.works()?;
         let place = self.place(name)?;
+        let note = self.json(key, note)?;
         self.robots[place].notes.insert(key.into(), note.clone());
         self.entries.push(Entry::Note { robot: name.into(), key: key.into(), note });
         Ok(())
@@ -308,14 +311,19 @@ impl Supervisor {
     ///
     /// # Errors
     /// As [`Supervisor::note`], and [`Fault::Invalid`] if the note is not a list.
-    pub fn note_more(&mut self, name: &str, key: &str, more: Vec<serde_json::Value>) -> Result<(), Fault> {
+    pub fn note_more(&mut self, name: &str, key: &str, more: &[impl Serialize]) -> Result<(), Fault> {
         self.works()?;
         let place = self.place(name)?;
+        let more = more.iter().map(|it| self.json(key, it)).collect::<Result<Vec<_>, _>>()?;
         if !remember(&mut self.robots[place].notes, key, &more) {
             return Err(Fault::invalid(format!("{key}: what is remembered is no list")));
         }
         self.entries.push(Entry::More { robot: name.into(), key: key.into(), more });
         Ok(())
+    }
+
+    fn json(&mut self, key: &str, note: impl Serialize) -> Result<Value, Fault> {
+        serde_json::to_value(note).map_err(|error| self.breaks(format!("{key}: {error}")))
     }
 
     fn place(&self, name: &str) -> Result<usize, Fault> {
@@ -324,6 +332,13 @@ impl Supervisor {
 
     fn works(&self) -> Result<(), Fault> {
         self.broken.clone().map_or(Ok(()), |why| Err(Fault::Broken { why }))
+    }
+
+    /// From now on nothing is told.
+    fn breaks(&mut self, why: String) -> Fault {
+        self.events.clear();
+        self.broken = Some(why.clone());
+        Fault::Broken { why }
     }
 
     fn forget_holds(&mut self) {
@@ -359,7 +374,6 @@ impl Supervisor {
     /// # Errors
     /// [`Fault::Broken`]: the journal could not be written. Nothing may be told then, now or later.
     pub fn settle(&mut self, now: f64) -> Result<Vec<Event>, Fault> {
-        self.works()?;
         self.decide(now);
         self.save()?;
         Ok(std::mem::take(&mut self.events))
@@ -367,6 +381,7 @@ impl Supervisor {
 
     /// Writes all changes to the journal.
     fn save(&mut self) -> Result<(), Fault> {
+        self.works()?;
         if self.entries.is_empty() {
             return Ok(());
         }
@@ -387,12 +402,7 @@ impl Supervisor {
             false => self.keeper.keep(&self.entries),
         };
         self.entries.clear();
-        kept.map_err(|error| {
-            self.events.clear();
-            let why = error.to_string();
-            self.broken = Some(why.clone());
-            Fault::Broken { why }
-        })
+        kept.map_err(|error| self.breaks(error.to_string()))
     }
 }
 

@@ -4,6 +4,7 @@ use crate::world::{Disc, STEP, Trouble, World};
 use pcr_serve::course::Start;
 use pcr_serve::entry::{Entry, Kept, Nowhere};
 use pcr_serve::event::Event;
+use pcr_serve::fault::Fault;
 use pcr_serve::journal::{self, Frames, Journal};
 use pcr_serve::robot::Abilities;
 use pcr_serve::supervisor::{Settings, Supervisor};
@@ -165,7 +166,7 @@ fn a_list_that_grows_is_written_once_and_is_there_after_a_restart() {
     own.settle(0.0).unwrap();
     let mut sizes = Vec::new();
     for k in 1..=1000 {
-        own.note_more("a", "list", vec![json!(k)]).unwrap();
+        own.note_more("a", "list", &[k]).unwrap();
         own.settle(f64::from(k)).unwrap();
         sizes.push(disc.bytes.lock().unwrap().len());
     }
@@ -178,12 +179,23 @@ fn a_list_that_grows_is_written_once_and_is_there_after_a_restart() {
     assert_eq!(restored(own.snapshot()).unwrap().robot("a").unwrap().notes["list"], all);
     // More of what is no list, or of a robot that is not there, is damage.
     own.note("a", "text", json!("no list")).unwrap();
-    assert!(own.note_more("a", "text", vec![json!(1)]).is_err() && own.note_more("b", "list", vec![]).is_err());
+    assert!(own.note_more("a", "text", &[1]).is_err() && own.note_more("b", "list", &[1]).is_err());
     for (robot, key) in [("a", "text"), ("b", "list")] {
         let more = Entry::More { robot: robot.into(), key: key.into(), more: vec![json!(1)] };
         let entries: Vec<Entry> = own.snapshot().into_iter().chain([more]).collect();
         assert!(restored(entries).is_err(), "{robot} {key}");
     }
+}
+
+/// An order that could not be written was noted as none.
+#[test]
+fn after_a_note_that_is_no_json_nothing_is_told() {
+    let mut own = Supervisor::new(Settings::default(), Box::new(Nowhere));
+    let start = Start { x: 0.0, y: 0.0, heading: 0.0 };
+    own.add("a", Abilities { radius: 0.4, margin: 0.0, speed: 1.0, acceleration: 0.5 }, start).unwrap();
+    let note = HashMap::from([([1, 2], 3)]);
+    assert!(matches!(own.note("a", "order", note), Err(Fault::Broken { .. })));
+    assert!(matches!(own.settle(0.0), Err(Fault::Broken { .. })));
 }
 
 /// Where the last frame begins.
