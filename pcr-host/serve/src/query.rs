@@ -125,7 +125,7 @@ pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<
             Ok(json!({ "holds": robots.iter().map(hold).collect::<Vec<_>>() }))
         }
         Question::Regions { robot } => {
-            let fleet = supervisor.fleet();
+            let fleet = supervisor.fleet()?;
             let row = supervisor.orders().row(&fleet, place(robot)?).map_err(Fault::invalid)?;
             let regions = row.map(|(_, region, pass)| {
                 let [length, other_length] =

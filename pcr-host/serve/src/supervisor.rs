@@ -19,7 +19,7 @@ use crate::entry::{Entry, Keep, Layout};
 use crate::event::Event;
 use crate::fault::Fault;
 use crate::robot::{Abilities, Robot, remember};
-use pcr_core::{Motion, Order, Orders, Piece, Progress, Reach, Region, Tolerances, Unchanged};
+use pcr_core::{Invalid, Motion, Order, Orders, Piece, Progress, Reach, Refused, Region, Tolerances};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::HashMap;
@@ -188,7 +188,10 @@ impl Supervisor {
     }
 
     /// The motions of the robots, as the table of orders has them.
-    pub fn fleet(&self) -> Vec<Motion<'_, f64>> {
+    ///
+    /// # Errors
+    /// [`Fault::Invalid`] if a robot has none.
+    pub fn fleet(&self) -> Result<Vec<Motion<'_, f64>>, Fault> {
         fleet(&self.robots)
     }
 
@@ -255,22 +258,21 @@ impl Supervisor {
         self.names.insert(name, place);
         self.unsaved.push(false);
         self.reaches.push(Reach::EMPTY);
-        let known = self.known(place);
-        self.entries.push(Entry::Robot(Box::new(known)));
         self.forget_holds();
         self.hazards = true;
-        Ok(())
+        self.keep_robot(place)
     }
 
     fn inserted(&mut self, place: usize) -> Result<(), Fault> {
-        let fleet = fleet(&self.robots);
-        loop {
-            match self.orders.insert(&fleet, place) {
-                Ok(()) => return Ok(()),
-                Err(Unchanged::Full(full)) => self.orders.grow(full).map_err(Fault::invalid)?,
-                Err(Unchanged::Mismatch(mismatch)) => return Err(Fault::invalid(mismatch)),
-            }
-        }
+        let fleet = fleet(&self.robots)?;
+        grown(&mut self.orders, |orders| Ok(orders.insert(&fleet, place)?)).map_err(Fault::invalid)
+    }
+
+    /// Writes a robot with its orders to the journal. Where that is impossible a restart would forget what was decided.
+    fn keep_robot(&mut self, place: usize) -> Result<(), Fault> {
+        let known = self.known(place).map_err(|fault| self.breaks(fault.to_string()))?;
+        self.entries.push(Entry::Robot(Box::new(known)));
+        Ok(())
     }
 
     /// Removes a robot, which has to be physically gone. Returns `false` if there is no robot of this name.
@@ -280,7 +282,7 @@ impl Supervisor {
     pub fn remove(&mut self, name: &str) -> Result<bool, Fault> {
         self.works()?;
         let Ok(place) = self.place(name) else { return Ok(false) };
-        self.orders.erase(&fleet(&self.robots), place).map_err(Fault::invalid)?;
+        self.orders.erase(&fleet(&self.robots)?, place).map_err(Fault::invalid)?;
         self.census += 1;
         self.spent = self.spent.max(self.robots.remove(place).path);
         self.unsaved.remove(place);
@@ -398,7 +400,10 @@ impl Supervisor {
         }
         self.counts.writes += 1;
         let kept = match self.keeper.is_long() {
-            true => self.keeper.restart(&self.snapshot()),
+            true => {
+                let all = self.snapshot().map_err(|fault| self.breaks(fault.to_string()))?;
+                self.keeper.restart(&all)
+            }
             false => self.keeper.keep(&self.entries),
         };
         self.entries.clear();
@@ -414,8 +419,18 @@ fn standing(name: &str, abilities: Abilities, start: Start) -> Result<Robot, Fau
     Ok(robot)
 }
 
-/// The motions of the robots. Each was built when its path was added or admitted; if one were missing, the table would refuse
-/// the others.
-fn fleet(robots: &[Robot]) -> Vec<Motion<'_, f64>> {
-    robots.iter().filter_map(|robot| robot.motion().ok()).collect()
+/// The motions of the robots, each at the index of its robot.
+fn fleet(robots: &[Robot]) -> Result<Vec<Motion<'_, f64>>, Fault> {
+    let named = |robot: &Robot, why: Invalid| Fault::invalid(format!("{}: {why}", robot.name));
+    robots.iter().map(|robot| robot.motion().map_err(|why| named(robot, why))).collect()
+}
+
+/// Changes a table, which grows as long as it is full.
+fn grown(table: &mut Table, mut change: impl FnMut(&mut Table) -> Result<(), Refused>) -> Result<(), Refused> {
+    loop {
+        match change(table) {
+            Err(Refused::Full(full)) => table.grow(full)?,
+            done => return done,
+        }
+    }
 }

@@ -394,7 +394,7 @@ fn late_messages_of_a_robot_that_was_removed_are_about_another_path() {
         own.remove("east").unwrap();
         own.settle(2.0).unwrap();
         if restarted {
-            let entries = own.snapshot();
+            let entries = own.snapshot().unwrap();
             own = Supervisor::restored(Settings::default(), entries, Box::new(disc.clone())).unwrap();
         }
         own.add("east", ABILITIES, place(-3.0, 0.0, 0.0)).unwrap();

@@ -314,8 +314,8 @@ impl World {
     /// From now on what matters goes to another journal, all of it.
     pub(crate) fn persist(&mut self, mut keeper: Box<dyn Keep>) {
         self.supervisor.settle(self.now).unwrap();
-        keeper.keep(&self.supervisor.snapshot()).unwrap();
-        self.supervisor = Supervisor::restored(self.settings, self.supervisor.snapshot(), keeper).unwrap();
+        keeper.keep(&self.supervisor.snapshot().unwrap()).unwrap();
+        self.supervisor = Supervisor::restored(self.settings, self.supervisor.snapshot().unwrap(), keeper).unwrap();
     }
 
     fn post(&mut self, mail: Mail) {
