@@ -232,18 +232,29 @@ impl Supervisor {
     /// its missions stay known.
     ///
     /// # Errors
-    /// [`Fault::NoSuchRobot`], [`Fault::Invalid`]; nothing has changed then.
+    /// [`Fault::NoSuchRobot`], [`Fault::Invalid`]; nothing has changed then. [`Fault::Broken`].
     pub fn reseat(&mut self, name: &str, start: Start) -> Result<(), Fault> {
         self.works()?;
-        let robot = &self.robots[self.place(name)?];
+        let place = self.place(name)?;
+        let robot = &self.robots[place];
         let mut new = standing(name, robot.abilities, start)?;
+        new.path = robot.path + 1;
         new.past.clone_from(&robot.past);
         let waiting = robot.waiting.as_ref().map(|waiting| &waiting.mission);
         for mission in robot.mission.iter().chain(waiting) {
             Robot::outlives(&mut new.past, mission.clone());
         }
-        self.remove(name)?;
-        self.insert(new)
+        let motion = new.motion().map_err(Fault::invalid)?;
+        let mut fleet = fleet(&self.robots)?;
+        let replaced = grown(&mut self.orders, |orders| Ok(orders.replace(&mut fleet, place, motion)?));
+        drop(fleet);
+        replaced.map_err(Fault::invalid)?;
+        self.robots[place] = new;
+        self.unsaved[place] = false;
+        self.tries.remove(name);
+        self.forget_holds();
+        self.hazards = true;
+        self.keep_robot(place)
     }
 
     fn insert(&mut self, robot: Robot) -> Result<(), Fault> {
