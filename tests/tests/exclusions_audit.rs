@@ -169,6 +169,21 @@ fn what_is_there_twice_is_refused() {
     assert!(refused(&imported, Target::Vda5050, &same).contains("zone s, zoneId: there is another one"));
     let keys = half.to_string().replacen("\"zones\":", "\"zones\":[],\"zones\":", 1);
     assert!(refused(&imported, Target::Vda5050, &keys).contains("\"zones\" is there twice"));
+    // What is left out is no set without zones, and a zone without a name is no second one of another's.
+    let without = |pointer: &str, field: &str, value: Value| {
+        let mut two = json!([set("map", &[("s", "RELEASE", &beside(0.0)), ("t", "RELEASE", &beside(-1.0))])]);
+        two.pointer_mut(pointer).unwrap()[field] = value;
+        refused(&imported, Target::Vda5050, &two.to_string())
+    };
+    let set_of = "/0/zoneSet";
+    assert_eq!(without(set_of, "zones", Value::Null), "message 1, zoneSet, zones: missing");
+    assert_eq!(without(set_of, "zones", json!({})), "message 1, zoneSet, zones: a list is expected");
+    assert_eq!(without("/0", "zoneSet", Value::Null), "message 1, zoneSet, mapId: missing");
+    assert_eq!(without("/0/zoneSet/zones/1", "zoneId", Value::Null), "message 1, zoneSet, zone 2, zoneId: missing");
+    assert_eq!(
+        without("/0/zoneSet/zones/1", "zoneId", json!(2)),
+        "message 1, zoneSet, zone 2, zoneId: a text is expected"
+    );
     // The same in the files of others.
     let mut root = graph(&[[0.0, 0.0], [10.0, 0.0]], &[[1, 2]]);
     for feature in root["features"].as_array_mut().unwrap() {
@@ -227,6 +242,9 @@ fn edges_that_the_service_cannot_close_are_refused() {
     let text = root.to_string();
     let imported = imported(Format::Nav2, &text, &disc(0.4));
     assert!(refused(&imported, Target::Nav2, &text).contains("edge 70000: the service"), "ids of 16 bits");
+    let text = text.replace("[70000]", "[1e300]");
+    let expected = "edge 70000, metadata, closed_edges: ids of edges are expected";
+    assert_eq!(refused(&imported, Target::Nav2, &text), expected);
 }
 
 #[test]

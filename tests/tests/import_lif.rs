@@ -243,7 +243,7 @@ fn one_name_for_several_things_loses_none_of_them() {
     assert_eq!((layout.nodes.len(), layout.edges.len()), (4, count.max(ways) + 1));
     let name = edges[0]["edgeId"].as_str().unwrap();
     assert!(layout.edges.iter().any(|edge| edge.id.to_string() == format!("{name}#2")), "{:?}", layout.edges);
-    assert!(warnings.iter().any(|line| line.contains("the name of several")), "{warnings:?}");
+    assert!(warnings.iter().any(|line| line.contains("several have this name")), "{warnings:?}");
     assert!(warnings.iter().any(|line| line.contains("given twice, the same each time")), "{warnings:?}");
     // Another place for a node that edges join: which one they mean cannot be told.
     let last = nodes.len() - 1;

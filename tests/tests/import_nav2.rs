@@ -222,7 +222,9 @@ fn two_edges_of_one_id_are_both_there() {
     let imported = layout(Format::Nav2, ONE_ID, &options(&[], 1.0), &mut warnings).unwrap();
     let ids: Vec<String> = imported.layout.edges.iter().map(|edge| edge.id.to_string()).collect();
     assert_eq!(ids, ["101", "100", "101#2"]);
-    assert!(warnings.lines().contains(&"edge 101: the name of several; one of them is called 101#2 here".to_owned()));
+    assert!(
+        warnings.lines().contains(&"edge 101: several have this name; one of them is called 101#2 here".to_owned())
+    );
     let table = Locks::of(&imported, false).unwrap();
     let [lock] = &table.locks[..] else { panic!("{:?}", table.locks) };
     assert_eq!((lock.a.to_string(), lock.b.to_string()), ("100".into(), "101#2".into()));

@@ -373,7 +373,7 @@ fn curves_are_where_the_layout_has_their_points() {
     // The shift, and by how much the first and the last leg may be longer.
     assert!((deviation("xPosition=\"20003\" yPosition=\"4\"").unwrap() - there - 0.005 * 3.0).abs() < 1e-9);
     for (kind, drawn) in [("BEZIER", "positionX=\"120000\""), ("POLYPATH", "xPosition=\"120000\" yPosition=\"0\"")] {
-        let expected = "path A-B: its control points are where the visual layout has its points, which is 100.000 m off in pointLayout";
+        let expected = "path A-B: its control points are in the frame of the visual layout, where its end points are 100.000 m away from their places in the model (pointLayout)";
         assert!(failed(&curved(drawn, kind)).starts_with(expected), "{}", failed(&curved(drawn, kind)));
     }
     // Straight paths go from point to point, wherever these are drawn.

@@ -256,7 +256,7 @@ impl<'a> Auditor<'a> {
         let all: Vec<usize> = self.meetings.tokens(pair).collect();
         let levels = pair.map(|edge| {
             let ends = self.layout().edges[edge].ends.iter();
-            ends.filter_map(|&end| self.layout().nodes.get(end)).map(|node| node.level).collect::<BTreeSet<usize>>()
+            ends.map(|&end| self.layout().level_of(end)).collect::<BTreeSet<usize>>()
         });
         let common: Vec<usize> = levels[0].intersection(&levels[1]).copied().collect();
         if self.rules.levels.is_empty() || common.len() < 2 {
@@ -341,7 +341,7 @@ impl<'a> Auditor<'a> {
 
     /// The start of an edge.
     fn place(&self, edge: &Edge) -> [f64; 2] {
-        self.layout().nodes.get(edge.ends[0]).map_or([0.0; 2], |node| node.at)
+        self.layout().position(edge.ends[0])
     }
 
     /// A part of an edge; an edge without length is a point.
@@ -356,7 +356,7 @@ impl<'a> Auditor<'a> {
 
     /// The place where a vehicle on an edge can touch one that stands at a node and does not keep it off.
     fn gap_at(&self, node: usize, edge: usize, length: [f64; 2]) -> Option<Gap> {
-        let (claim, there) = (self.rules.nodes.get(node)?, self.layout().nodes.get(node)?);
+        let (claim, there) = (&self.rules.nodes[node], &self.layout().nodes[node]);
         let (own, stands) = (&self.layout().edges[edge], [Placed::line(there.at, there.at)]);
         let sections = self.ways(edge).flat_map(|way| way.beside(claim));
         let open = sections.filter(|section| !claim.keeps_out(&section.claim));

@@ -9,7 +9,7 @@
 use crate::edit::{Edits, ending};
 use crate::json::{Spanned, Value as Kind};
 use crate::{Claim, Group, Rules};
-use pcr_formats::import::{Id, ImportError, Imported, parse_json};
+use pcr_formats::import::{Id, ImportError, Imported, graph_id, parse_json};
 use pcr_planning::locks::Locks;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -26,14 +26,6 @@ fn id_in_file(id: &Id) -> Option<u64> {
         Id::Number(number) => Some(*number),
         Id::Text(text) => text.split('#').next()?.parse().ok(),
     }
-}
-
-fn whole(value: &Value) -> Option<u64> {
-    let parsed = || value.as_str().and_then(|text| text.parse().ok());
-    value
-        .as_u64()
-        .or_else(parsed)
-        .or_else(|| value.as_f64().filter(|x| x.fract() == 0.0 && *x >= 0.0).map(|x| x as u64))
 }
 
 /// Nobody can ask the service to close this edge.
@@ -56,12 +48,12 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
     let mut lists: [BTreeMap<u64, BTreeSet<u64>>; 2] = Default::default();
     let mut groups = Vec::new();
     for feature in root["features"].as_array().into_iter().flatten() {
-        let (Some(node), Some(id)) = (is_node(feature), whole(&feature["properties"]["id"])) else { continue };
+        let (Some(node), Some(id)) = (is_node(feature), graph_id(&feature["properties"]["id"])) else { continue };
         let what = if node { "node" } else { "edge" };
         let problem = || ImportError::new(format!("{what} {id}, metadata, {KEY}: ids of edges are expected"));
         let list: BTreeSet<u64> = match &feature["properties"]["metadata"][KEY] {
             Value::Null => BTreeSet::new(),
-            Value::Array(ids) => ids.iter().map(whole).collect::<Option<_>>().ok_or_else(problem)?,
+            Value::Array(ids) => ids.iter().map(graph_id).collect::<Option<_>>().ok_or_else(problem)?,
             _ => return Err(problem()),
         };
         if let Some(large) = list.last().filter(|id| **id > LARGEST) {
@@ -116,7 +108,7 @@ pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks) -> Result<St
     let (root, spans) = both(text)?;
     let mut edits = Edits::default();
     for (feature, span) in features(&root, &spans) {
-        let (Some(node), Some(id)) = (is_node(feature), whole(&feature["properties"]["id"])) else { continue };
+        let (Some(node), Some(id)) = (is_node(feature), graph_id(&feature["properties"]["id"])) else { continue };
         let ids: Vec<u64> = closed[usize::from(node)].get(&id).into_iter().flatten().copied().collect();
         if let Some(properties) = span.get("properties") {
             set(&mut edits, properties, &Value::from(ids).to_string());
@@ -184,11 +176,12 @@ pub(crate) fn split(text: &str, most: f64) -> Result<(String, Vec<String>), Impo
         let chain = cutter.chain(ends, at, parts as usize, &mut nodes);
         let own = &text[span.span.clone()];
         let copies = chain.windows(2).enumerate().map(|(k, pair)| {
-            let id = if k == 0 { whole(id)? } else { cutter.new_edge() };
+            let id = if k == 0 { graph_id(id)? } else { cutter.new_edge() };
             copy(own, id, [&pair[0], &pair[1]])
         });
         let copies = copies.collect::<Option<Vec<_>>>();
-        let copies = copies.ok_or_else(|| ImportError::new(format!("edge {id}: it has not all that an edge has")))?;
+        let copies =
+            copies.ok_or_else(|| ImportError::new(format!("edge {id}: a field that an edge needs is missing")))?;
         edits.replace(span.span.clone(), copies.join(&format!(",{end}")));
     }
     if let Some(list) = spans.get("features")
@@ -214,7 +207,7 @@ impl Cutter {
     fn new(root: &Value) -> Self {
         let (mut at, mut frames, mut next) = (BTreeMap::new(), BTreeMap::new(), [0, 0]);
         for feature in root["features"].as_array().into_iter().flatten() {
-            let (Some(node), Some(id)) = (is_node(feature), whole(&feature["properties"]["id"])) else { continue };
+            let (Some(node), Some(id)) = (is_node(feature), graph_id(&feature["properties"]["id"])) else { continue };
             next[usize::from(node)] = next[usize::from(node)].max(id + 1);
             if node {
                 let coordinate = |k: usize| feature["geometry"]["coordinates"][k].as_f64().unwrap_or_default();
@@ -231,7 +224,7 @@ impl Cutter {
     }
 
     fn ends(&self, properties: &Value) -> Option<([u64; 2], [[f64; 2]; 2])> {
-        let ends = [whole(&properties["startid"])?, whole(&properties["endid"])?];
+        let ends = [graph_id(&properties["startid"])?, graph_id(&properties["endid"])?];
         Some((ends, [*self.at.get(&ends[0])?, *self.at.get(&ends[1])?]))
     }
 

@@ -1,5 +1,6 @@
 //! Convex polygons that contain corridors.
 
+use pcr_formats::plane::{hull, turn};
 use pcr_formats::scenario::PathSegment;
 use pcr_formats::scenario::Placed;
 use std::f64::consts::{PI, TAU};
@@ -38,33 +39,6 @@ fn corners(piece: &Placed) -> Vec<[f64; 2]> {
         corners.push(to((k + 1) as f64 / parts).end());
     }
     corners
-}
-
-/// The convex hull, counter-clockwise.
-pub(crate) fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    points.dedup();
-    let half = |points: &mut dyn Iterator<Item = [f64; 2]>| {
-        let mut chain: Vec<[f64; 2]> = Vec::new();
-        for point in points {
-            while let [.., a, b] = chain[..]
-                && turn(a, b, point) <= 0.0
-            {
-                chain.pop();
-            }
-            chain.push(point);
-        }
-        chain.pop();
-        chain
-    };
-    let mut whole = half(&mut points.iter().copied());
-    whole.extend(half(&mut points.iter().rev().copied()));
-    whole
-}
-
-/// Above 0 where the way from `a` over `b` to `c` turns left.
-fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
-    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
 /// Distance of a point from a polygon, of any shape; 0 inside \[m\].

@@ -10,11 +10,12 @@
 //! is kept off by whoever can reach into the zone at all: where they touch, both are in it. By the second rule the
 //! zones that are written here suffice, whatever the deviations and the outlines.
 
-use crate::outline::{self, around, depth};
+use crate::outline::{around, depth};
 use crate::reach::within;
 use crate::settings::{Notes, Settings};
 use crate::{Claim, Group, Mark, Rules, Way, stretch};
 use pcr_formats::import::{ImportError, Imported, Layout, parse_json};
+use pcr_formats::plane::hull;
 use pcr_formats::scenario::Placed;
 use pcr_formats::scenario::{LIMIT, PathSegment};
 use pcr_planning::checksum::crc32;
@@ -162,13 +163,22 @@ fn polygon(vertices: &Value) -> Result<Vec<[f64; 2]>, String> {
 
 /// Whether the hull of points is wider than the rounding of their coordinates.
 fn is_area(points: &[[f64; 2]]) -> bool {
-    let hull = outline::hull(points.to_vec());
+    let hull = hull(points.to_vec());
     let [lo, hi] = bounds(points);
     let (long, far) =
         ((hi[0] - lo[0]).hypot(hi[1] - lo[1]), points.iter().flatten().fold(0.0, |far: f64, x| far.max(x.abs())));
     let corners = hull.iter().zip(hull.iter().skip(1).chain(hull.first()));
     let twice: f64 = corners.map(|([x, y], [u, v])| (x - lo[0]) * (v - lo[1]) - (u - lo[0]) * (y - lo[1])).sum();
     twice > 64.0 * f64::EPSILON * far * long
+}
+
+/// A field that has to be there, as a text.
+fn text_of<'j>(object: &'j Value, field: &str) -> Result<&'j str, String> {
+    match &object[field] {
+        Value::String(text) => Ok(text),
+        Value::Null => Err(format!("{field}: missing")),
+        _ => Err(format!("{field}: a text is expected")),
+    }
 }
 
 /// Reads the zones.
@@ -178,25 +188,32 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
     let maps: BTreeSet<&str> = (0..layout.levels.len()).map(|level| map(layout, level)).collect();
     let (mut zones, mut groups, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
     let mut sets: BTreeSet<&str> = BTreeSet::new();
-    for message in messages(&root) {
+    for (k, message) in messages(&root).into_iter().enumerate() {
         let set = &message["zoneSet"];
-        let id = set["mapId"].as_str().ok_or_else(|| ImportError::new("zoneSet, mapId: missing"))?;
+        let place = if root.is_array() { format!("message {}, zoneSet", k + 1) } else { "zoneSet".to_owned() };
+        let refused = |problem: &str| ImportError::new(format!("{place}, {problem}"));
+        let id = text_of(set, "mapId").map_err(|problem| refused(&problem))?;
         if !maps.contains(id) {
-            return Err(ImportError::new(format!("zoneSet, mapId: the layout has no map {id}")));
+            return Err(refused(&format!("mapId: the layout has no map {id}")));
         }
         if !sets.insert(id) {
             let problem =
                 "a second one of this map; vehicles have one set of a map enabled at most, audit each by itself";
-            return Err(ImportError::new(format!("zoneSet, mapId {id}: {problem}")));
+            return Err(refused(&format!("mapId {id}: {problem}")));
         }
+        let list = match &set["zones"] {
+            Value::Array(list) => list,
+            Value::Null => return Err(refused("zones: missing")),
+            _ => return Err(refused("zones: a list is expected")),
+        };
         let mut names: BTreeSet<&str> = BTreeSet::new();
-        for zone in set["zones"].as_array().into_iter().flatten() {
-            let name = zone["zoneId"].as_str().unwrap_or_default();
+        for (k, zone) in list.iter().enumerate() {
+            let name = text_of(zone, "zoneId").map_err(|problem| refused(&format!("zone {}, {problem}", k + 1)))?;
             let problem = |what: &str| ImportError::new(format!("zone {name}, {what}"));
             if !names.insert(name) {
                 return Err(problem("zoneId: there is another one of this name in the set"));
             }
-            let kind = zone["zoneType"].as_str().ok_or_else(|| problem("zoneType: missing"))?;
+            let kind = text_of(zone, "zoneType").map_err(|wrong| problem(&wrong))?;
             if kind != "RELEASE" && kind != "BLOCKED" {
                 warnings.push(format!("zone {name}: {kind} keeps no vehicles apart"));
                 continue;
@@ -221,10 +238,10 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
     };
     let there = |zone: &Zone, level: usize| map(layout, level) == zone.map;
     let edges = layout.edges.iter().map(|edge| {
-        let ends = edge.ends.map(|end| layout.nodes.get(end).map_or(0, |node| node.level));
+        let ends = edge.ends.map(|end| layout.level_of(end));
         let curve = match &edge.curve[..] {
             // Without a length an edge is a point.
-            [] => &[layout.nodes.get(edge.ends[0]).map_or([0.0; 2], |node| node.at)].map(|at| Placed::line(at, at)),
+            [] => &[layout.position(edge.ends[0])].map(|at| Placed::line(at, at)),
             curve => curve,
         };
         let mut marks = Vec::new();

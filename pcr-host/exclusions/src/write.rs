@@ -6,7 +6,7 @@
 use crate::settings::{Notes, Settings};
 use crate::{Audit, Target, nav2, opentcs, own, read, rmf, table, vda5050};
 use pcr_formats::import::{self, Format, ImportError, Imported, Options, Warnings};
-use pcr_planning::locks::LockVehicle;
+use pcr_planning::locks::{LockVehicle, Locks};
 use pcr_planning::memory;
 use serde::Serialize;
 
@@ -60,6 +60,21 @@ pub fn write(
     name: &str,
     settings: &Settings,
 ) -> Result<(String, Written, Audit), ImportError> {
+    refuse(format, options, settings)?;
+    let source = Source { format, options, name };
+    let done = source.write(text, settings)?;
+    // What cutting is worth.
+    let uncut = match settings.split {
+        Some(_) => Some(source.write(text, &Settings { split: None, ..settings.clone() })?.excluded_of(&done)),
+        None => None,
+    };
+    let report = done.report(settings, uncut);
+    Ok((done.text, report, done.audit))
+}
+
+/// # Errors
+/// The first option that has no place in what is to be written.
+fn refuse(format: Format, options: &Options, settings: &Settings) -> Result<(), ImportError> {
     let refused = |problem: String| Err(ImportError::new(problem));
     let target = settings.target;
     if let Some(needed) = target.layout().filter(|needed| *needed != format) {
@@ -76,92 +91,116 @@ pub fn write(
     if settings.envelopes.is_some() && target != Target::OpenTcs {
         return refused(format!("--envelopes: {target} has none"));
     }
-    let mut notes = Notes::default();
-    let read_layout = |text: &str| -> Result<Imported, ImportError> {
-        let mut imported = import::layout(format, text, options, &mut Warnings::default())?;
+    Ok(())
+}
+
+/// A layout file, and how it is read.
+struct Source<'a> {
+    format: Format,
+    options: &'a Options,
+    name: &'a str,
+}
+
+/// What was written, read again.
+struct Done {
+    text: String,
+    again: Imported,
+    locks: Locks,
+    audit: Audit,
+    notes: Notes,
+}
+
+impl Source<'_> {
+    fn layout(&self, text: &str) -> Result<Imported, ImportError> {
+        let mut imported = import::layout(self.format, text, self.options, &mut Warnings::default())?;
         if imported.layout.name.is_empty() {
-            name.clone_into(&mut imported.layout.name);
+            self.name.clone_into(&mut imported.layout.name);
         }
         Ok(imported)
-    };
-    let imported = read_layout(text)?;
-    if imported.vehicle.footprint.is_some() && target == Target::Vda5050 {
-        notes.said.push("zones: they are for the disc around the outline".into());
     }
-    if let Some(most) = settings.split {
-        let parts = imported.layout.edges.iter().map(|edge| (edge.length() / most).ceil()).sum::<f64>() as u64;
-        let asked = memory::ask(parts.saturating_mul(PART_BYTES), || format!("--split {most}: {parts} parts"));
-        asked.map_err(|large| ImportError::new(large.to_string()))?;
+
+    fn write(&self, text: &str, settings: &Settings) -> Result<Done, ImportError> {
+        let target = settings.target;
+        let (text, imported, mut notes) = self.prepared(text, settings)?;
+        let locks = table(&imported)?;
+        let text = match target {
+            Target::Nav2 => nav2::write(&text, &imported, &locks)?,
+            Target::Rmf => rmf::write(&text, &imported, &locks, &mut notes)?,
+            Target::OpenTcs => opentcs::write(&text, &imported, &locks, settings, &mut notes)?,
+            Target::Vda5050 => vda5050::write(&imported, settings, &mut notes),
+            Target::Pcr => own::write(&imported, &locks),
+        };
+        let again = if target.layout().is_some() { self.layout(&text)? } else { imported };
+        let rules = read(target, &text, &again)?;
+        let audit = Audit::of(&again, &locks, &rules, target)?;
+        if let Some(gap) = audit.gaps.first() {
+            let (a, b, depth) = (&gap.a, &gap.b, gap.depth);
+            let problem = format!("{a} and {b} are not excluded by what would be written ({depth:.3} m deep)");
+            return Err(ImportError::new(problem));
+        }
+        Ok(Done { text, again, locks, audit, notes })
     }
-    // What cutting is worth.
-    let uncut = Settings { split: None, ..settings.clone() };
-    let uncut = settings.split.map(|_| write(format, text, options, name, &uncut)).transpose()?;
-    if let (Target::Rmf, Some(graph)) = (target, options.graph) {
-        notes
-            .said
-            .push(format!("lanes of other graphs than {graph} are left as they are, and nothing is said of them"));
+
+    /// The file into which is written, with its edges cut, and its layout.
+    fn prepared(&self, text: &str, settings: &Settings) -> Result<(String, Imported, Notes), ImportError> {
+        let mut notes = Notes::default();
+        let imported = self.layout(text)?;
+        if imported.vehicle.footprint.is_some() && settings.target == Target::Vda5050 {
+            notes.said.push("zones: they are for the disc around the outline".into());
+        }
+        if let Some(most) = settings.split {
+            let parts = imported.layout.edges.iter().map(|edge| (edge.length() / most).ceil()).sum::<f64>() as u64;
+            let asked = memory::ask(parts.saturating_mul(PART_BYTES), || format!("--split {most}: {parts} parts"));
+            asked.map_err(|large| ImportError::new(large.to_string()))?;
+        }
+        if let (Target::Rmf, Some(graph)) = (settings.target, self.options.graph) {
+            notes
+                .said
+                .push(format!("lanes of other graphs than {graph} are left as they are, and nothing is said of them"));
+        }
+        let cut = match (settings.target, settings.split) {
+            (Target::Nav2, Some(most)) => {
+                let (text, whole) = nav2::split(text, most)?;
+                notes.said.extend(whole);
+                text
+            }
+            (Target::OpenTcs, Some(most)) => {
+                opentcs::split(text, &imported, most, settings.envelopes.as_deref(), &mut notes)?
+            }
+            (Target::Rmf, most) => rmf::prepare(text, &imported, most, &mut notes)?,
+            _ => return Ok((text.to_owned(), imported, notes)),
+        };
+        let imported = self.layout(&cut)?;
+        Ok((cut, imported, notes))
     }
-    let prepared = match (target, settings.split) {
-        (Target::Nav2, Some(most)) => {
-            let (text, whole) = nav2::split(text, most)?;
-            notes.said.extend(whole);
-            Some(text)
-        }
-        (Target::OpenTcs, Some(most)) => {
-            Some(opentcs::split(text, &imported, most, settings.envelopes.as_deref(), &mut notes)?)
-        }
-        (Target::Rmf, most) => Some(rmf::prepare(text, &imported, most, &mut notes)?),
-        _ => None,
-    };
-    let (text, imported) = match prepared {
-        Some(prepared) => {
-            let imported = read_layout(&prepared)?;
-            (prepared, imported)
-        }
-        None => (text.to_owned(), imported),
-    };
-    let locks = table(&imported)?;
-    let written = match target {
-        Target::Nav2 => nav2::write(&text, &imported, &locks)?,
-        Target::Rmf => rmf::write(&text, &imported, &locks, &mut notes)?,
-        Target::OpenTcs => opentcs::write(&text, &imported, &locks, settings, &mut notes)?,
-        Target::Vda5050 => vda5050::write(&imported, settings, &mut notes),
-        Target::Pcr => own::write(&imported, &locks),
-    };
-    let again = if target.layout().is_some() { read_layout(&written)? } else { imported };
-    let rules = read(target, &written, &again)?;
-    let audit = Audit::of(&again, &locks, &rules, target)?;
-    if let Some(gap) = audit.gaps.first() {
-        let (a, b, depth) = (&gap.a, &gap.b, gap.depth);
-        return refused(format!("{a} and {b} are not excluded by what would be written ({depth:.3} m deep)"));
+}
+
+impl Done {
+    /// What this one, which is not cut, excludes of the lengths of another one, which is \[m²\].
+    fn excluded_of(&self, cut: &Self) -> f64 {
+        // An edge excludes itself: two parts of one are lengths that it excludes without cutting, too.
+        let squares = |done: &Self| done.again.layout.edges.iter().map(|edge| edge.length().powi(2)).sum::<f64>();
+        self.audit.excluded + (squares(self) - squares(cut)) / 2.0
     }
-    // An edge excludes itself: two parts of one are lengths that it excludes without cutting, too.
-    let squares = |layout: &Imported| layout.layout.edges.iter().map(|edge| edge.length().powi(2)).sum::<f64>();
-    let uncut = match uncut {
-        Some((uncut, report, _)) if target.layout().is_some() => {
-            Some(report.excluded + (squares(&read_layout(&uncut)?) - squares(&again)) / 2.0)
+
+    fn report(&self, settings: &Settings, uncut: Option<f64>) -> Written {
+        let Self { again, locks, audit, notes, .. } = self;
+        let counts = settings.envelopes.is_some() || notes.groups > 0 || notes.at_least.is_some();
+        Written {
+            layout: locks.layout.clone(),
+            vehicle: locks.vehicle.clone(),
+            exclusions: settings.target.to_string(),
+            edges: again.layout.edges.len(),
+            nodes: again.layout.nodes.len(),
+            groups: if counts { notes.groups } else { audit.groups },
+            at_least: notes.at_least,
+            can_touch: audit.can_touch,
+            needless: audit.needless.len(),
+            excluded: audit.excluded,
+            needed: audit.needed,
+            uncut,
+            warnings: audit.warnings.iter().chain(&notes.said).cloned().collect(),
+            of_layout: audit.of_layout,
         }
-        uncut => uncut.map(|(_, report, _)| report.excluded),
-    };
-    let report = Written {
-        layout: locks.layout.clone(),
-        vehicle: locks.vehicle.clone(),
-        exclusions: target.to_string(),
-        edges: again.layout.edges.len(),
-        nodes: again.layout.nodes.len(),
-        groups: if settings.envelopes.is_some() || notes.groups > 0 || notes.at_least.is_some() {
-            notes.groups
-        } else {
-            audit.groups
-        },
-        at_least: notes.at_least,
-        can_touch: audit.can_touch,
-        needless: audit.needless.len(),
-        excluded: audit.excluded,
-        needed: audit.needed,
-        uncut,
-        warnings: audit.warnings.iter().chain(&notes.said).cloned().collect(),
-        of_layout: audit.of_layout,
-    };
-    Ok((written, report, audit))
+    }
 }

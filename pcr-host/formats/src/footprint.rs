@@ -4,6 +4,7 @@
 //! around its box. The cells become smaller until no disc reaches further out of the polygon than allowed, the
 //! *overhang*: a disc of radius r whose centre is at the depth d inside the polygon reaches at most r - d out of it.
 
+use crate::plane::distance;
 use serde::Serialize;
 
 /// Discs of a cover at most.
@@ -178,10 +179,6 @@ fn around(points: &[[f64; 2]]) -> Option<Disc> {
     let radius = radius + ROUNDING * (radius + centre[0].abs() + centre[1].abs());
     // A cell that the outline only touches is covered by its neighbour.
     (lo[0] < hi[0] && lo[1] < hi[1]).then_some(Disc { ahead: centre[0], left: centre[1], radius })
-}
-
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// Distance of a point from the sides of a polygon, negative outside.

@@ -66,6 +66,7 @@ mod xml;
 
 pub use grid::GridPlan;
 pub use layout::{Edge, Id, Layout, Node};
+pub use nav2::graph_id;
 pub use rmf::is_navigation_graph;
 pub use route::{Step, cheapest, ride, turn};
 pub use stamp::seconds;

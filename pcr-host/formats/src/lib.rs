@@ -8,6 +8,8 @@
 //! once       JSON without repeated names                        Once
 //! output     files that are written completely or not at all
 //! paper      the embedded scenario and the paper's numbers
+//! plane      points of the plane
+//! random     random numbers that are the same on every machine
 //! ```
 
 pub mod footprint;
@@ -17,4 +19,6 @@ mod json;
 pub mod once;
 pub mod output;
 pub mod paper;
+pub mod plane;
+pub mod random;
 pub mod scenario;

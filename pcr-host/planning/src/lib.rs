@@ -20,7 +20,6 @@
 //! lifelong     robots that get a new mission after each one        run, Outcome
 //! simulate     plans in closed loop, with noise and delays         run, Task
 //! report       JSON, CSV and tables
-//! random       random numbers that are the same on every machine
 //! ```
 
 pub mod bodies;
@@ -36,9 +35,10 @@ pub mod memory;
 pub mod nodes;
 pub mod plan;
 pub mod queue;
-pub mod random;
 pub mod regions;
 pub mod report;
 pub mod rows;
 pub mod simulate;
 pub mod traffic;
+
+pub use pcr_formats::random;

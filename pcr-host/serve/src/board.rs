@@ -27,7 +27,7 @@ impl Board {
             Event::Dropped { mission, why, .. } => format!("{mission} of {robot} is given up: {why}"),
             Event::Silent { since, .. } => format!("{robot} is not heard for {since:.0} s"),
             Event::Heard { .. } => format!("{robot} is heard again"),
-            Event::Standstill { since, why, .. } => format!("nothing goes on for {since:.0} s: {why}"),
+            Event::Standstill { since, why, .. } => format!("no progress for {since:.0} s: {why}"),
             Event::Alarm { .. } => format!("{robot} is not where it may be"),
             Event::Clear { .. } => format!("{robot} is where it may be again"),
             Event::Stop { by, .. } => format!("{robot} has to stop for {by}"),

@@ -125,7 +125,7 @@ pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<
             Ok(json!({ "holds": robots.iter().map(hold).collect::<Vec<_>>() }))
         }
         Question::Regions { robot } => {
-            let fleet = supervisor.fleet();
+            let fleet = supervisor.fleet()?;
             let row = supervisor.orders().row(&fleet, place(robot)?).map_err(Fault::invalid)?;
             let regions = row.map(|(_, region, pass)| {
                 let [length, other_length] =
@@ -160,7 +160,7 @@ pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<
                 || !(0.0..=1e6).contains(&until)
             {
                 return Err(Fault::invalid(format!(
-                    "length: what is ahead are {at} to {end} m; until: 0 to 1000000 s"
+                    "length: allowed is {at} to {end} m, the part still ahead; until: allowed is 0 to 1000000 s"
                 )));
             }
             let fleet = motions(&ways)?;

@@ -19,8 +19,9 @@ use crate::entry::{Entry, Keep, Layout};
 use crate::event::Event;
 use crate::fault::Fault;
 use crate::robot::{Abilities, Robot, remember};
-use pcr_core::{Motion, Order, Orders, Piece, Progress, Reach, Region, Tolerances, Unchanged};
+use pcr_core::{Invalid, Motion, Order, Orders, Piece, Progress, Reach, Refused, Region, Tolerances};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::HashMap;
 
 /// Orders on the heap.
@@ -187,7 +188,10 @@ impl Supervisor {
     }
 
     /// The motions of the robots, as the table of orders has them.
-    pub fn fleet(&self) -> Vec<Motion<'_, f64>> {
+    ///
+    /// # Errors
+    /// [`Fault::Invalid`] if a robot has none.
+    pub fn fleet(&self) -> Result<Vec<Motion<'_, f64>>, Fault> {
         fleet(&self.robots)
     }
 
@@ -228,18 +232,29 @@ impl Supervisor {
     /// its missions stay known.
     ///
     /// # Errors
-    /// [`Fault::NoSuchRobot`], [`Fault::Invalid`]; nothing has changed then.
+    /// [`Fault::NoSuchRobot`], [`Fault::Invalid`]; nothing has changed then. [`Fault::Broken`].
     pub fn reseat(&mut self, name: &str, start: Start) -> Result<(), Fault> {
         self.works()?;
-        let robot = &self.robots[self.place(name)?];
+        let place = self.place(name)?;
+        let robot = &self.robots[place];
         let mut new = standing(name, robot.abilities, start)?;
+        new.path = robot.path + 1;
         new.past.clone_from(&robot.past);
         let waiting = robot.waiting.as_ref().map(|waiting| &waiting.mission);
         for mission in robot.mission.iter().chain(waiting) {
             Robot::outlives(&mut new.past, mission.clone());
         }
-        self.remove(name)?;
-        self.insert(new)
+        let motion = new.motion().map_err(Fault::invalid)?;
+        let mut fleet = fleet(&self.robots)?;
+        let replaced = grown(&mut self.orders, |orders| Ok(orders.replace(&mut fleet, place, motion)?));
+        drop(fleet);
+        replaced.map_err(Fault::invalid)?;
+        self.robots[place] = new;
+        self.unsaved[place] = false;
+        self.tries.remove(name);
+        self.forget_holds();
+        self.hazards = true;
+        self.keep_robot(place)
     }
 
     fn insert(&mut self, robot: Robot) -> Result<(), Fault> {
@@ -254,22 +269,21 @@ impl Supervisor {
         self.names.insert(name, place);
         self.unsaved.push(false);
         self.reaches.push(Reach::EMPTY);
-        let known = self.known(place);
-        self.entries.push(Entry::Robot(Box::new(known)));
         self.forget_holds();
         self.hazards = true;
-        Ok(())
+        self.keep_robot(place)
     }
 
     fn inserted(&mut self, place: usize) -> Result<(), Fault> {
-        let fleet = fleet(&self.robots);
-        loop {
-            match self.orders.insert(&fleet, place) {
-                Ok(()) => return Ok(()),
-                Err(Unchanged::Full(full)) => self.orders.grow(full).map_err(Fault::invalid)?,
-                Err(Unchanged::Mismatch(mismatch)) => return Err(Fault::invalid(mismatch)),
-            }
-        }
+        let fleet = fleet(&self.robots)?;
+        grown(&mut self.orders, |orders| Ok(orders.insert(&fleet, place)?)).map_err(Fault::invalid)
+    }
+
+    /// Writes a robot with its orders to the journal. Where that is impossible a restart would forget what was decided.
+    fn keep_robot(&mut self, place: usize) -> Result<(), Fault> {
+        let known = self.known(place).map_err(|fault| self.breaks(fault.to_string()))?;
+        self.entries.push(Entry::Robot(Box::new(known)));
+        Ok(())
     }
 
     /// Removes a robot, which has to be physically gone. Returns `false` if there is no robot of this name.
@@ -279,7 +293,7 @@ impl Supervisor {
     pub fn remove(&mut self, name: &str) -> Result<bool, Fault> {
         self.works()?;
         let Ok(place) = self.place(name) else { return Ok(false) };
-        self.orders.erase(&fleet(&self.robots), place).map_err(Fault::invalid)?;
+        self.orders.erase(&fleet(&self.robots)?, place).map_err(Fault::invalid)?;
         self.census += 1;
         self.spent = self.spent.max(self.robots.remove(place).path);
         self.unsaved.remove(place);
@@ -295,10 +309,12 @@ impl Supervisor {
     /// Stores a note about a robot, also in the journal, until the robot is removed.
     ///
     /// # Errors
-    /// [`Fault::NoSuchRobot`], [`Fault::Broken`].
-    pub fn note(&mut self, name: &str, key: &str, note: serde_json::Value) -> Result<(), Fault> {
+    /// [`Fault::NoSuchRobot`]; [`Fault::Broken`], also for a note that is no JSON: it would be forgotten, so nothing may be
+    /// told any more.
+    pub fn note(&mut self, name: &str, key: &str, note: impl Serialize) -> Result<(), Fault> {
         self.works()?;
         let place = self.place(name)?;
+        let note = self.json(key, note)?;
         self.robots[place].notes.insert(key.into(), note.clone());
         self.entries.push(Entry::Note { robot: name.into(), key: key.into(), note });
         Ok(())
@@ -308,14 +324,19 @@ impl Supervisor {
     ///
     /// # Errors
     /// As [`Supervisor::note`], and [`Fault::Invalid`] if the note is not a list.
-    pub fn note_more(&mut self, name: &str, key: &str, more: Vec<serde_json::Value>) -> Result<(), Fault> {
+    pub fn note_more(&mut self, name: &str, key: &str, more: &[impl Serialize]) -> Result<(), Fault> {
         self.works()?;
         let place = self.place(name)?;
+        let more = more.iter().map(|it| self.json(key, it)).collect::<Result<Vec<_>, _>>()?;
         if !remember(&mut self.robots[place].notes, key, &more) {
             return Err(Fault::invalid(format!("{key}: what is remembered is no list")));
         }
         self.entries.push(Entry::More { robot: name.into(), key: key.into(), more });
         Ok(())
+    }
+
+    fn json(&mut self, key: &str, note: impl Serialize) -> Result<Value, Fault> {
+        serde_json::to_value(note).map_err(|error| self.breaks(format!("{key}: {error}")))
     }
 
     fn place(&self, name: &str) -> Result<usize, Fault> {
@@ -324,6 +345,13 @@ impl Supervisor {
 
     fn works(&self) -> Result<(), Fault> {
         self.broken.clone().map_or(Ok(()), |why| Err(Fault::Broken { why }))
+    }
+
+    /// From now on nothing is told.
+    fn breaks(&mut self, why: String) -> Fault {
+        self.events.clear();
+        self.broken = Some(why.clone());
+        Fault::Broken { why }
     }
 
     fn forget_holds(&mut self) {
@@ -359,7 +387,6 @@ impl Supervisor {
     /// # Errors
     /// [`Fault::Broken`]: the journal could not be written. Nothing may be told then, now or later.
     pub fn settle(&mut self, now: f64) -> Result<Vec<Event>, Fault> {
-        self.works()?;
         self.decide(now);
         self.save()?;
         Ok(std::mem::take(&mut self.events))
@@ -367,6 +394,7 @@ impl Supervisor {
 
     /// Writes all changes to the journal.
     fn save(&mut self) -> Result<(), Fault> {
+        self.works()?;
         if self.entries.is_empty() {
             return Ok(());
         }
@@ -383,16 +411,14 @@ impl Supervisor {
         }
         self.counts.writes += 1;
         let kept = match self.keeper.is_long() {
-            true => self.keeper.restart(&self.snapshot()),
+            true => {
+                let all = self.snapshot().map_err(|fault| self.breaks(fault.to_string()))?;
+                self.keeper.restart(&all)
+            }
             false => self.keeper.keep(&self.entries),
         };
         self.entries.clear();
-        kept.map_err(|error| {
-            self.events.clear();
-            let why = error.to_string();
-            self.broken = Some(why.clone());
-            Fault::Broken { why }
-        })
+        kept.map_err(|error| self.breaks(error.to_string()))
     }
 }
 
@@ -404,8 +430,18 @@ fn standing(name: &str, abilities: Abilities, start: Start) -> Result<Robot, Fau
     Ok(robot)
 }
 
-/// The motions of the robots. Each was built when its path was added or admitted; if one were missing, the table would refuse
-/// the others.
-fn fleet(robots: &[Robot]) -> Vec<Motion<'_, f64>> {
-    robots.iter().filter_map(|robot| robot.motion().ok()).collect()
+/// The motions of the robots, each at the index of its robot.
+fn fleet(robots: &[Robot]) -> Result<Vec<Motion<'_, f64>>, Fault> {
+    let named = |robot: &Robot, why: Invalid| Fault::invalid(format!("{}: {why}", robot.name));
+    robots.iter().map(|robot| robot.motion().map_err(|why| named(robot, why))).collect()
+}
+
+/// Changes a table, which grows as long as it is full.
+fn grown(table: &mut Table, mut change: impl FnMut(&mut Table) -> Result<(), Refused>) -> Result<(), Refused> {
+    loop {
+        match change(table) {
+            Err(Refused::Full(full)) => table.grow(full)?,
+            done => return done,
+        }
+    }
 }

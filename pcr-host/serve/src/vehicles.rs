@@ -1,7 +1,6 @@
 //! Simulated VDA 5050 vehicles and a simulated fleet manager, to try and test a supervisor.
 //!
 //! ```text
-//! random     numbers from a seed
 //! drive      along a way, from stop to stop                      Drive
 //! vehicle    one vehicle: messages in, messages out              Vehicle
 //! tell       messages of a vehicle
@@ -24,7 +23,6 @@ pub mod locks;
 pub mod manager;
 #[cfg(feature = "mqtt")]
 pub mod office;
-pub mod random;
 pub mod record;
 mod tell;
 pub mod vehicle;

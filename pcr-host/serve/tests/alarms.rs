@@ -394,7 +394,7 @@ fn late_messages_of_a_robot_that_was_removed_are_about_another_path() {
         own.remove("east").unwrap();
         own.settle(2.0).unwrap();
         if restarted {
-            let entries = own.snapshot();
+            let entries = own.snapshot().unwrap();
             own = Supervisor::restored(Settings::default(), entries, Box::new(disc.clone())).unwrap();
         }
         own.add("east", ABILITIES, place(-3.0, 0.0, 0.0)).unwrap();
@@ -435,4 +435,40 @@ fn far_off_and_many_laps() {
         assert!(robot.at > 11.9 && robot.course.start().heading.abs() < 3.2, "{lap}: {robot:?}");
     }
     assert!(own.mission(&mission("east", "long", 3e7), 9e9).is_err());
+}
+
+/// A robot that could not stand where it was seen was gone, also from the journal, and others drove through its place.
+#[test]
+fn a_robot_that_cannot_be_moved_keeps_its_place() {
+    let disc = Disc::new();
+    let mut own = crossing(&disc);
+    own.position(&report("east", 2, 1.0, 1.0), 1.0).unwrap();
+    own.settle(1.0).unwrap();
+    // So often past one place that no table has the regions of who stands there.
+    let shuttle = Shape::Turn { sweep: std::f64::consts::PI };
+    own.add("shuttle", ABILITIES, place(99.0, 99.0, 0.0)).unwrap();
+    let path = (0..40_000).flat_map(|_| [Shape::Line { length: 0.25 }, shuttle]).collect();
+    let verdict = own.mission(&Proposal { path, ..mission("shuttle", "1", 0.0) }, 1.0).unwrap();
+    assert!(matches!(verdict, Verdict::Admitted { .. }), "{verdict:?}");
+    own.settle(1.0).unwrap();
+    let known = |own: &Supervisor| {
+        let robots = own.robots().iter().map(|robot| (robot.name.clone(), robot.path, robot.at, robot.told));
+        (robots.collect::<Vec<_>>(), own.orders().decisions().count())
+    };
+    let before = known(&own);
+    let refused = own.reseat("east", place(99.1, 99.0, 0.0)).unwrap_err();
+    assert!(refused.to_string().contains("32767 pieces"), "{refused}");
+    assert_eq!(known(&own), before);
+    own.settle(1.0).unwrap();
+    let restored = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+    assert!(restored.robot("east").is_ok_and(|robot| robot.path == 2 && robot.course.length() == 6.0));
+    // Where it can stand its rights are void, now and after a restart.
+    own.reseat("east", place(9.0, 0.0, 0.0)).unwrap();
+    own.settle(2.0).unwrap();
+    let restored = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc)).unwrap();
+    for own in [&own, &restored] {
+        let robot = own.robot("east").unwrap();
+        assert_eq!((robot.path, robot.course.length(), robot.told, robot.mission.as_deref()), (3, 0.0, 0.0, None));
+        assert_eq!(robot.past, ["1"]);
+    }
 }

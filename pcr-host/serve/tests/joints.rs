@@ -1,6 +1,6 @@
 //! Lengths at which a shape of a path ends, but for rounding, and turns in place there.
 
-use crate::world::Dice;
+use pcr_formats::random::Random;
 use pcr_serve::course::{Course, Shape, Start};
 use pcr_serve::entry::Nowhere;
 use pcr_serve::event::Event;
@@ -19,7 +19,7 @@ fn line(length: f64) -> Shape {
 }
 
 /// Hundredths of a metre, whose sums are rounded.
-fn hundredths(dice: &mut Dice, from: u32, to: u32) -> f64 {
+fn hundredths(dice: &mut Random, from: u32, to: u32) -> f64 {
     f64::from(from + dice.below((to - from) as usize) as u32) / 100.0
 }
 
@@ -46,7 +46,7 @@ fn is_same(a: Start, b: Start) -> bool {
 
 #[test]
 fn the_turn_at_the_end_of_a_path_is_done() {
-    let mut dice = Dice(1);
+    let mut dice = Random(1);
     for k in 0..2_000 {
         let mut path: Vec<Shape> = (0..1 + dice.below(4)).map(|_| line(hundredths(&mut dice, 10, 500))).collect();
         if k == 0 {
@@ -71,13 +71,13 @@ fn the_turn_at_the_end_of_a_path_is_done() {
 /// What is left of a path leads where the path leads, and what is joined to it where it would from there.
 #[test]
 fn courses_that_are_cut_at_a_joint_lead_where_they_did() {
-    let mut dice = Dice(2);
+    let mut dice = Random(2);
     let mut cuts = 0;
     for _ in 0..3_000 {
         let shapes: Vec<Shape> = (0..2 + dice.below(6))
             .map(|_| match dice.below(3) {
-                0 => Shape::Turn { sweep: dice.range(-PI, PI) },
-                1 => Shape::Arc { radius: hundredths(&mut dice, 30, 100), sweep: dice.range(-PI, PI) },
+                0 => Shape::Turn { sweep: dice.within(-PI, PI) },
+                1 => Shape::Arc { radius: hundredths(&mut dice, 30, 100), sweep: dice.within(-PI, PI) },
                 _ => line(hundredths(&mut dice, 1, 200)),
             })
             .collect();
@@ -137,7 +137,7 @@ fn who_is_at_a_turn_goes_on_after_it() {
 /// l + old origin − new origin is the length on the new path.
 #[test]
 fn lengths_are_converted_from_path_to_path() {
-    let mut dice = Dice(3);
+    let mut dice = Random(3);
     let mut moved = 0;
     for k in 0..1_500 {
         let mut lengths = [0; 3].map(|_| hundredths(&mut dice, 10, 200));

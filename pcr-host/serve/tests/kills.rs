@@ -4,6 +4,7 @@ use crate::world::{Disc, STEP, Trouble, World};
 use pcr_serve::course::Start;
 use pcr_serve::entry::{Entry, Kept, Nowhere};
 use pcr_serve::event::Event;
+use pcr_serve::fault::Fault;
 use pcr_serve::journal::{self, Frames, Journal};
 use pcr_serve::robot::Abilities;
 use pcr_serve::supervisor::{Settings, Supervisor};
@@ -26,7 +27,7 @@ fn folder(name: &str) -> PathBuf {
 fn rights(supervisor: &Supervisor) -> HashMap<String, (u64, f64, Vec<Kept>)> {
     let robots = supervisor.robots().iter();
     let mut orders: HashMap<String, Vec<Kept>> = HashMap::new();
-    let fleet = supervisor.fleet();
+    let fleet = supervisor.fleet().unwrap();
     for (place, robot) in robots.clone().enumerate() {
         let row = supervisor.orders().row(&fleet, place).unwrap();
         let row = row.map(|(_, region, pass)| Kept {
@@ -165,7 +166,7 @@ fn a_list_that_grows_is_written_once_and_is_there_after_a_restart() {
     own.settle(0.0).unwrap();
     let mut sizes = Vec::new();
     for k in 1..=1000 {
-        own.note_more("a", "list", vec![json!(k)]).unwrap();
+        own.note_more("a", "list", &[k]).unwrap();
         own.settle(f64::from(k)).unwrap();
         sizes.push(disc.bytes.lock().unwrap().len());
     }
@@ -175,15 +176,26 @@ fn a_list_that_grows_is_written_once_and_is_there_after_a_restart() {
     let all = json!((0..=1000).collect::<Vec<_>>());
     let restored = |entries| Supervisor::restored(Settings::default(), entries, Box::new(Nowhere));
     assert_eq!(restored(disc.entries()).unwrap().robot("a").unwrap().notes["list"], all);
-    assert_eq!(restored(own.snapshot()).unwrap().robot("a").unwrap().notes["list"], all);
+    assert_eq!(restored(own.snapshot().unwrap()).unwrap().robot("a").unwrap().notes["list"], all);
     // More of what is no list, or of a robot that is not there, is damage.
     own.note("a", "text", json!("no list")).unwrap();
-    assert!(own.note_more("a", "text", vec![json!(1)]).is_err() && own.note_more("b", "list", vec![]).is_err());
+    assert!(own.note_more("a", "text", &[1]).is_err() && own.note_more("b", "list", &[1]).is_err());
     for (robot, key) in [("a", "text"), ("b", "list")] {
         let more = Entry::More { robot: robot.into(), key: key.into(), more: vec![json!(1)] };
-        let entries: Vec<Entry> = own.snapshot().into_iter().chain([more]).collect();
+        let entries: Vec<Entry> = own.snapshot().unwrap().into_iter().chain([more]).collect();
         assert!(restored(entries).is_err(), "{robot} {key}");
     }
+}
+
+/// An order that could not be written was noted as none.
+#[test]
+fn after_a_note_that_is_no_json_nothing_is_told() {
+    let mut own = Supervisor::new(Settings::default(), Box::new(Nowhere));
+    let start = Start { x: 0.0, y: 0.0, heading: 0.0 };
+    own.add("a", Abilities { radius: 0.4, margin: 0.0, speed: 1.0, acceleration: 0.5 }, start).unwrap();
+    let note = HashMap::from([([1, 2], 3)]);
+    assert!(matches!(own.note("a", "order", note), Err(Fault::Broken { .. })));
+    assert!(matches!(own.settle(0.0), Err(Fault::Broken { .. })));
 }
 
 /// Where the last frame begins.
@@ -200,7 +212,7 @@ fn a_last_frame_of_which_any_sectors_are_missing_is_left_out() {
         world.step();
     }
     let mut bytes = world.disc.bytes.lock().unwrap().clone();
-    pcr_serve::entry::Keep::keep(&mut world.disc.clone(), &world.supervisor.snapshot()).unwrap();
+    pcr_serve::entry::Keep::keep(&mut world.disc.clone(), &world.supervisor.snapshot().unwrap()).unwrap();
     let whole = world.disc.bytes.lock().unwrap().clone();
     let (before, last) = (journal::read(&bytes).unwrap().entries.len(), bytes.len());
     assert!(whole.len() - last > 4 * SECTOR && last_frame(&whole) == last);
@@ -229,7 +241,7 @@ fn fleets_whose_supervisor_is_killed_in_the_middle_of_writes() {
         let mut world = World::new(seed, 3 + seed as usize, Trouble { lost: 0.1, late: 2.0, stops: 0.002 });
         while world.now < 60.0 {
             if world.disc.fails_at.load(Relaxed) == usize::MAX {
-                let further = world.dice().range(0.0, 6000.0) as usize;
+                let further = world.dice().within(0.0, 6000.0) as usize;
                 let written = world.disc.bytes.lock().unwrap().len();
                 world.disc.fails_at.store(written + further, Relaxed);
             }
@@ -253,7 +265,7 @@ fn a_second_supervisor_is_refused_and_a_torn_end_is_told() {
     while world.now < 3.0 {
         world.step();
     }
-    pcr_serve::entry::Keep::keep(&mut journal, &world.supervisor.snapshot()).unwrap();
+    pcr_serve::entry::Keep::keep(&mut journal, &world.supervisor.snapshot().unwrap()).unwrap();
     drop(journal);
     let path = folder.join("journal");
     let end = journal::read(&std::fs::read(&path).unwrap()).unwrap().end;
@@ -265,8 +277,8 @@ fn a_second_supervisor_is_refused_and_a_torn_end_is_told() {
     assert!(found.torn == 3 && !found.entries.is_empty());
     // Begun anew it holds the same.
     let before = Supervisor::restored(Settings::default(), found.entries, Box::new(Nowhere)).unwrap();
-    pcr_serve::entry::Keep::restart(&mut journal, &before.snapshot()).unwrap();
-    pcr_serve::entry::Keep::keep(&mut journal, &before.snapshot()).unwrap();
+    pcr_serve::entry::Keep::restart(&mut journal, &before.snapshot().unwrap()).unwrap();
+    pcr_serve::entry::Keep::keep(&mut journal, &before.snapshot().unwrap()).unwrap();
     drop(journal);
     let (_journal, found) = Journal::open(&folder).unwrap();
     let after = Supervisor::restored(Settings::default(), found.entries, Box::new(Nowhere)).unwrap();

@@ -1,6 +1,6 @@
 //! The line protocol: the example of the document, the schema, and bytes that are no requests.
 
-use crate::world::Dice;
+use pcr_formats::random::Random;
 use pcr_serve::entry::Nowhere;
 use pcr_serve::lines::{LONGEST, handle, news};
 use pcr_serve::log::{Level, Log};
@@ -147,7 +147,7 @@ fn requests() -> Vec<String> {
 fn every_answer_fits_the_schema_and_nothing_panics() {
     let schema: Value = serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap();
     let validator = jsonschema::draft202012::new(&schema).unwrap();
-    let (mut dice, mut kinds) = (Dice(7), std::collections::BTreeSet::new());
+    let (mut dice, mut kinds) = (Random(7), std::collections::BTreeSet::new());
     let all = requests();
     let mut supervisor = supervisor();
     for round in 0..4000 {
@@ -157,7 +157,7 @@ fn every_answer_fits_the_schema_and_nothing_panics() {
             for _ in 0..dice.below(4) {
                 let place = dice.below(line.len());
                 match dice.below(3) {
-                    0 => line[place] = (dice.face() * 256.0) as u8,
+                    0 => line[place] = (dice.unit() * 256.0) as u8,
                     1 => drop(line.remove(place)),
                     _ => line.insert(place, b"0\"{}[],:e-"[dice.below(10)]),
                 }

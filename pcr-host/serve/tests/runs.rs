@@ -8,7 +8,7 @@ fn run(seed: u64, trouble: Trouble, restarts: f64) -> World {
     let mut world = World::new(seed, 2 + (seed % 9) as usize, trouble);
     while world.now < 120.0 {
         world.step();
-        if world.dice().chance(restarts) {
+        if world.dice().unit() < restarts {
             world.restart();
         }
     }

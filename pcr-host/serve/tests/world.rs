@@ -4,6 +4,7 @@
 use pcr_certify::data::{self, Agent, Angle, Segment, Travel};
 use pcr_certify::motion::{Mover, meetings};
 use pcr_core::Brakes;
+use pcr_formats::random::Random;
 use pcr_serve::course::{Course, Shape, Start};
 use pcr_serve::entry::{Entry, Keep};
 use pcr_serve::event::Event;
@@ -22,31 +23,6 @@ pub(crate) const STEP: f64 = 0.1;
 const THERE: f64 = 1e-3;
 /// Controls between two certificates.
 const WINDOW: u32 = 200;
-
-/// The same numbers on every machine.
-pub(crate) struct Dice(pub u64);
-
-impl Dice {
-    pub(crate) fn face(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut bits = self.0;
-        bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((bits ^ (bits >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    pub(crate) fn range(&mut self, lo: f64, hi: f64) -> f64 {
-        lo + (hi - lo) * self.face()
-    }
-
-    pub(crate) fn chance(&mut self, part: f64) -> bool {
-        self.face() < part
-    }
-
-    pub(crate) fn below(&mut self, count: usize) -> usize {
-        ((self.face() * count as f64) as usize).min(count - 1)
-    }
-}
 
 /// A journal in memory, which outlives the supervisor; it may stop working after so many bytes.
 #[derive(Clone)]
@@ -251,7 +227,7 @@ pub(crate) struct World {
     pub(crate) now: f64,
     tick: u32,
     certified: u32,
-    dice: Dice,
+    dice: Random,
     mail: Vec<(f64, Mail)>,
     trouble: Trouble,
     half: f64,
@@ -267,20 +243,20 @@ impl World {
     pub(crate) fn new(seed: u64, count: usize, trouble: Trouble) -> Self {
         let (disc, settings) = (Disc::new(), Settings::default());
         let mut supervisor = Supervisor::new(settings, Box::new(disc.clone()));
-        let mut dice = Dice(seed);
+        let mut dice = Random(seed);
         let side = (count as f64).sqrt().ceil() as usize;
         let half = 1.4 * side as f64;
         let mut vehicles = Vec::new();
         for k in 0..count {
             let cell = |n: usize| -half + 2.8 * (n as f64 + 0.5);
-            let start = Start { x: cell(k % side), y: cell(k / side), heading: dice.range(-PI, PI) };
-            let radius = dice.range(0.15, 0.35);
+            let start = Start { x: cell(k % side), y: cell(k / side), heading: dice.within(-PI, PI) };
+            let radius = dice.within(0.15, 0.35);
             let abilities =
-                Abilities { radius, margin: 0.0, speed: dice.range(0.5, 1.5), acceleration: dice.range(0.4, 1.0) };
+                Abilities { radius, margin: 0.0, speed: dice.within(0.5, 1.5), acceleration: dice.within(0.4, 1.0) };
             let name = format!("robot {k}");
             supervisor.add(&name, abilities, start).unwrap();
             let course = Course::new(start, Vec::new()).unwrap();
-            let doubt = [dice.range(0.0, 0.03), dice.range(0.0, 0.03)];
+            let doubt = [dice.within(0.0, 0.03), dice.within(0.0, 0.03)];
             vehicles.push(Vehicle {
                 name,
                 abilities,
@@ -318,7 +294,7 @@ impl World {
         }
     }
 
-    pub(crate) fn dice(&mut self) -> &mut Dice {
+    pub(crate) fn dice(&mut self) -> &mut Random {
         &mut self.dice
     }
 
@@ -338,12 +314,12 @@ impl World {
     /// From now on what matters goes to another journal, all of it.
     pub(crate) fn persist(&mut self, mut keeper: Box<dyn Keep>) {
         self.supervisor.settle(self.now).unwrap();
-        keeper.keep(&self.supervisor.snapshot()).unwrap();
-        self.supervisor = Supervisor::restored(self.settings, self.supervisor.snapshot(), keeper).unwrap();
+        keeper.keep(&self.supervisor.snapshot().unwrap()).unwrap();
+        self.supervisor = Supervisor::restored(self.settings, self.supervisor.snapshot().unwrap(), keeper).unwrap();
     }
 
     fn post(&mut self, mail: Mail) {
-        let late = if self.dice.chance(0.3) { self.dice.range(0.0, self.trouble.late) } else { 0.0 };
+        let late = if self.dice.unit() < 0.3 { self.dice.within(0.0, self.trouble.late) } else { 0.0 };
         self.mail.push((self.now + late, mail));
     }
 
@@ -351,9 +327,9 @@ impl World {
     fn shapes(&mut self, start: Start) -> Option<Vec<Shape>> {
         let dice = &mut self.dice;
         let shapes = (0..1 + dice.below(4)).map(|_| match dice.below(3) {
-            0 => Shape::Turn { sweep: dice.range(-PI, PI) },
-            1 => Shape::Arc { radius: dice.range(0.3, 1.0), sweep: dice.range(-PI, PI) },
-            _ => Shape::Line { length: dice.range(0.3, 4.0) },
+            0 => Shape::Turn { sweep: dice.within(-PI, PI) },
+            1 => Shape::Arc { radius: dice.within(0.3, 1.0), sweep: dice.within(-PI, PI) },
+            _ => Shape::Line { length: dice.within(0.3, 4.0) },
         });
         let course = Course::new(start, shapes.collect()).unwrap();
         let length = course.length();
@@ -369,10 +345,10 @@ impl World {
         let robot = self.supervisor.robot(&self.vehicles[k].name).unwrap();
         let (told, length) = (robot.told, robot.course.length());
         let arrives = robot.at >= length - self.settings.width;
-        if !arrives && self.dice.chance(0.7) {
+        if !arrives && self.dice.unit() < 0.7 {
             return;
         }
-        let after = if arrives { length } else { self.dice.range(told, length) };
+        let after = if arrives { length } else { self.dice.within(told, length) };
         let robot = self.supervisor.robot(&self.vehicles[k].name).unwrap();
         let start = robot.course.arrival(after).unwrap();
         let Some(path) = self.shapes(start) else { return };
@@ -395,17 +371,17 @@ impl World {
     /// A step of the fleet; returns what was told.
     pub(crate) fn step(&mut self) -> Vec<Event> {
         for k in 0..self.vehicles.len() {
-            if self.dice.chance(0.5) {
+            if self.dice.unit() < 0.5 {
                 let report = self.vehicles[k].report();
-                if !self.dice.chance(self.trouble.lost) {
-                    if self.dice.chance(0.1) {
+                if self.dice.unit() >= self.trouble.lost {
+                    if self.dice.unit() < 0.1 {
                         self.post(Mail::Report(report.clone(), self.now));
                     }
                     self.post(Mail::Report(report, self.now));
                 }
             }
         }
-        if self.open && self.dice.chance(0.6) {
+        if self.open && self.dice.unit() < 0.6 {
             self.propose();
         }
         let due = |(time, _): &(f64, Mail)| *time <= self.now;
@@ -435,7 +411,7 @@ impl World {
         let told = events.clone();
         for event in events {
             let is_hold = matches!(event, Event::Hold { .. });
-            if is_hold && self.dice.chance(self.trouble.lost) {
+            if is_hold && self.dice.unit() < self.trouble.lost {
                 continue;
             }
             let admitted = matches!(event, Event::Admitted { .. });
@@ -450,9 +426,9 @@ impl World {
             self.hear(&event, course);
         }
         let count = self.vehicles.len();
-        let unlucky = self.dice.chance(self.trouble.stops * count as f64).then(|| self.dice.below(count));
+        let unlucky = (self.dice.unit() < self.trouble.stops * count as f64).then(|| self.dice.below(count));
         if let Some(unlucky) = unlucky.filter(|_| self.open) {
-            self.vehicles[unlucky].stops_until = self.now + self.dice.range(0.0, 20.0);
+            self.vehicles[unlucky].stops_until = self.now + self.dice.within(0.0, 20.0);
         }
         for vehicle in &mut self.vehicles {
             vehicle.drive(self.now);

@@ -95,14 +95,14 @@ fn warnings_are_in_every_answer() {
         // Locks do not depend on speeds.
         let vehicle = if command == ["locks"] { &VEHICLE[..2] } else { &VEHICLE[..] };
         let run = run(&[command, &[ONE_ID, "--format", "json"], routes, vehicle].concat());
-        assert!(run.err.lines().any(|line| line.contains("edge 101: the name of several")), "{}", run.err);
+        assert!(run.err.lines().any(|line| line.contains("edge 101: several have this name")), "{}", run.err);
         serde_json::from_str::<Value>(&run.out).unwrap()
     };
     let warned = |answer: &Value| {
         let warnings = answer["warnings"].as_array().unwrap();
         warnings
             .iter()
-            .any(|line| line.as_str().unwrap() == "edge 101: the name of several; one of them is called 101#2 here")
+            .any(|line| line.as_str().unwrap() == "edge 101: several have this name; one of them is called 101#2 here")
     };
     for command in
         [&["regions"][..], &["check"], &["plan"], &["simulate", "--controller", "pcr"], &["compare", "--rounds", "1"]]

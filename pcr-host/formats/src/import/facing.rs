@@ -1,10 +1,10 @@
 //! Which way a vehicle faces as it travels: an outline is read as if it faced along its path.
 
 use super::biarc::Fit;
-use super::trace::distance;
 use super::value::Object;
 use super::{ImportError, Warnings};
 use crate::footprint::Footprint;
+use crate::plane::distance;
 use crate::scenario::{PathSegment, Placed};
 use std::f64::consts::{PI, TAU};
 

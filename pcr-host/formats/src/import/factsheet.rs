@@ -1,10 +1,10 @@
 //! Factsheets of VDA 5050 (2.x and 3.0): the contour of a vehicle and its limits.
 
-use super::loads::hull;
 use super::value::Object;
 use super::vehicle::Given;
 use super::{ImportError, Warnings};
 use crate::footprint::Footprint;
+use crate::plane::hull;
 use serde_json::Value;
 
 /// Names of a member in versions 3 and 2.

@@ -158,13 +158,35 @@ impl Layout {
         (0..self.levels.len()).rev().max_by_key(|&level| count(level)).unwrap_or(0)
     }
 
+    /// Where a node is \[m\].
+    ///
+    /// # Panics
+    /// If there is no such node: readers give edges only such ends as are places of nodes.
+    pub fn position(&self, node: usize) -> [f64; 2] {
+        self.nodes[node].at
+    }
+
+    /// Level of a node.
+    ///
+    /// # Panics
+    /// As [`Layout::position`].
+    pub fn level_of(&self, node: usize) -> usize {
+        self.nodes[node].level
+    }
+
     /// Level of an edge: that of the node where it begins.
+    ///
+    /// # Panics
+    /// As [`Layout::position`].
     pub fn level(&self, edge: &Edge) -> usize {
-        self.nodes.get(edge.ends[0]).map_or(0, |node| node.level)
+        self.level_of(edge.ends[0])
     }
 
     /// Whether an edge begins or ends on a level.
+    ///
+    /// # Panics
+    /// As [`Layout::position`].
     pub fn is_on(&self, edge: &Edge, level: usize) -> bool {
-        edge.ends.iter().any(|&node| self.nodes.get(node).is_some_and(|node| node.level == level))
+        edge.ends.iter().any(|&node| self.level_of(node) == level)
     }
 }

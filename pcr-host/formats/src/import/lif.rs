@@ -5,11 +5,11 @@
 
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
-use super::trace::distance;
 use super::trajectory::Trajectory;
 use super::value::Object;
 use super::{ImportError, Options, Warnings, facing, route, trajectory, value};
 use crate::footprint::Footprint;
+use crate::plane::distance;
 use crate::scenario::Placed;
 use serde_json::Value;
 use std::collections::BTreeSet;

@@ -6,6 +6,7 @@
 use super::value::Object;
 use super::{ImportError, Vehicle, Warnings};
 use crate::footprint::Footprint;
+use crate::plane::hull;
 
 /// The vehicle with what the state says that it carries.
 pub(super) fn loaded(state: &Object<'_>, vehicle: &Vehicle, warnings: &mut Warnings) -> Result<Vehicle, ImportError> {
@@ -45,37 +46,4 @@ pub(super) fn loaded(state: &Object<'_>, vehicle: &Vehicle, warnings: &mut Warni
     let outline = outline.map_err(|problem| ImportError::new(format!("{}, loads: {problem}", state.name)))?;
     let outline = outline.grown(footprint.growth());
     Ok(Vehicle { radius: outline.reach(), footprint: Some(outline), ..vehicle.clone() })
-}
-
-/// The corners of the convex hull, to the left about (Andrew's monotone chain).
-pub(super) fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    points.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    points.dedup();
-    let chain = |points: &mut dyn Iterator<Item = [f64; 2]>| {
-        let mut chain: Vec<[f64; 2]> = Vec::new();
-        for next in points {
-            while let [.., a, b] = chain.as_slice()
-                && (b[0] - a[0]) * (next[1] - b[1]) - (b[1] - a[1]) * (next[0] - b[0]) <= 0.0
-            {
-                chain.pop();
-            }
-            chain.push(next);
-        }
-        // The last one is the first of the other chain.
-        chain.pop();
-        chain
-    };
-    let lower = chain(&mut points.iter().copied());
-    [lower, chain(&mut points.iter().rev().copied())].concat()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_hull_has_the_outer_corners_to_the_left_about() {
-        let points = vec![[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 0.5], [2.0, 2.0], [0.0, 2.0], [0.0, 0.0]];
-        assert_eq!(hull(points), [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]);
-    }
 }

@@ -81,7 +81,7 @@ impl<T: Named> Names<T> {
             count += 1;
         }
         if *thing.id() != id {
-            warnings.add(called, format!("the name of several; one of them is called {} here", thing.id()));
+            warnings.add(called, format!("several have this name; one of them is called {} here", thing.id()));
         }
         self.taken.insert(thing.id().clone());
         let place = self.list.len();

@@ -97,14 +97,17 @@ struct Feature<'j> {
     geometry: Geometry,
 }
 
-fn whole(object: &Object<'_>, field: &str) -> Result<u64, ImportError> {
-    let value = object.get(field).ok_or_else(|| object.missing(field))?;
+/// The id of a node or an edge in a graph: a whole number from 0, also as a text.
+pub fn graph_id(value: &Value) -> Option<u64> {
     let number = value.as_u64().or_else(|| value.as_str().and_then(|text| text.parse().ok()));
     // Some tools write every number with a decimal point.
     let whole = || value.as_f64().filter(|x| x.fract() == 0.0 && (0.0..9e15).contains(x)).map(|x| x as u64);
-    number
-        .or_else(whole)
-        .ok_or_else(|| ImportError::new(format!("{}, {field}: not a whole number from 0", object.name)))
+    number.or_else(whole)
+}
+
+fn id(object: &Object<'_>, field: &str) -> Result<u64, ImportError> {
+    let value = object.get(field).ok_or_else(|| object.missing(field))?;
+    graph_id(value).ok_or_else(|| ImportError::new(format!("{}, {field}: not a whole number from 0", object.name)))
 }
 
 fn point(value: &Value) -> Option<[f64; 2]> {
@@ -133,7 +136,7 @@ impl<'j> Feature<'j> {
             return Ok(None);
         }
         let properties = feature.object("properties")?.ok_or_else(|| feature.missing("properties"))?;
-        let id = whole(&properties, "id")?;
+        let id = id(&properties, "id")?;
         let coordinates = geometry.get("coordinates").ok_or_else(|| geometry.missing("coordinates"))?;
         let geometry = match kind {
             "Point" => Geometry::Point(point(coordinates).ok_or_else(|| {
@@ -159,7 +162,7 @@ impl Graph<'_> {
     fn edge(&mut self, id: u64, properties: &Object<'_>, drawn: &Geometry, speed: f64) -> Result<(), ImportError> {
         let named = format!("edge {id}");
         let place = |field: &str| {
-            let node = Id::Number(whole(properties, field)?);
+            let node = Id::Number(self::id(properties, field)?);
             self.nodes.last_place(&node).map_err(|unclear| ImportError::new(format!("{named}, {field}: {unclear}")))
         };
         let ends = [place("startid")?, place("endid")?];

@@ -8,9 +8,9 @@
 
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
-use super::trace::distance;
 use super::xml::{child, children, lose_astray, number, only, optional, parse, warn_of_unknown};
 use super::{ImportError, Options, Warnings};
+use crate::plane::distance;
 use crate::scenario::PathSegment;
 use crate::scenario::Placed;
 use std::collections::HashMap;

@@ -9,10 +9,10 @@ use super::biarc::{Fit, fit};
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::nurbs::Bezier;
-use super::trace::distance;
 use super::xml::{children, lose_astray, number, only, optional, parse, warn_of_unknown};
 use super::{ImportError, Options, Warnings, facing};
 use crate::footprint::Footprint;
+use crate::plane::distance;
 use crate::scenario::Placed;
 use std::collections::HashMap;
 
@@ -240,8 +240,10 @@ fn curve(
 fn shift(name: &str, ends: [usize; 2], frame: &Frame<'_>) -> Result<f64, ImportError> {
     let shift = ends.iter().filter_map(|node| frame.shifts.get(*node)).fold(0.0, |most: f64, shift| most.max(*shift));
     if shift > SHIFT {
-        let problem = "its control points are where the visual layout has its points";
-        return Err(ImportError::new(format!("{name}: {problem}, which is {shift:.3} m off in pointLayout")));
+        let problem = "its control points are in the frame of the visual layout, where its end points are";
+        return Err(ImportError::new(format!(
+            "{name}: {problem} {shift:.3} m away from their places in the model (pointLayout)"
+        )));
     }
     Ok(shift)
 }

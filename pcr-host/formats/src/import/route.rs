@@ -6,9 +6,10 @@
 //! part), or than the edge after. Without an arc the vehicle stops and turns.
 
 use super::layout::{Edge, Layout};
-use super::trace::{Trace, Tracer, distance};
+use super::trace::{Trace, Tracer};
 use super::vehicle::Asked;
 use super::{ImportError, Options, Vehicle, Warnings, speed};
+use crate::plane::distance;
 use crate::scenario::Placed;
 use crate::scenario::{Agent, PathSegment, Scenario, label};
 use std::cmp::Ordering;
@@ -133,7 +134,7 @@ pub fn cheapest<'a>(
 
 /// The path along some edges, from the node where it begins.
 pub(super) fn trace(layout: &Layout, from: usize, steps: &[Step<'_>]) -> Result<Trace, ImportError> {
-    let at = |node: usize| layout.nodes.get(node).map_or([0.0; 2], |node| node.at);
+    let at = |node: usize| layout.position(node);
     let mut tracer = Tracer::default();
     let mut position = at(from);
     // If curves and their arcs differ in length, the vehicle is ahead of its path, or behind it, from there on.
@@ -234,10 +235,10 @@ pub(super) fn scenario(
         let refused = |problem: &dyn fmt::Display| ImportError::new(format!("route {route}: {problem}"));
         let agent = mission(layout, vehicle, k as u64 + 1, asked.ends).map_err(|error| refused(&error))?;
         let agent = agent.ok_or_else(|| refused(&"there is no way from node to node"))?;
-        levels.push(layout.nodes.get(asked.ends[0]).map_or(0, |node| node.level));
+        levels.push(layout.level_of(asked.ends[0]));
         let name = |place: usize| {
-            let node = layout.nodes.get(place);
-            node.map_or_else(String::new, |node| node.name.clone().unwrap_or_else(|| node.id.to_string()))
+            let node = &layout.nodes[place];
+            node.name.clone().unwrap_or_else(|| node.id.to_string())
         };
         let way = format!("{} > {}", name(asked.ends[0]), name(asked.ends[1]));
         // If the file names its vehicles, the routes belong to them, in the order of both.

@@ -4,6 +4,7 @@
 //! if the angle is more than [`KINK`]. A line is aimed at its end from the point that the path has really reached, so
 //! that displacements by turns and gaps do not add up. The largest distance from the requested geometry is recorded.
 
+use crate::plane::distance;
 use crate::scenario::{KINK, PathSegment, Placed, TURN};
 use std::f64::consts::{PI, TAU};
 
@@ -56,10 +57,6 @@ pub(super) struct Trace {
 fn within_half_turn(angle: f64) -> f64 {
     let rest = angle.rem_euclid(TAU);
     if rest > PI { rest - TAU } else { rest }
-}
-
-pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 impl Tracer {

@@ -150,6 +150,6 @@ impl Reader<'_> {
 
 /// How far apart two points are \[m\]: nothing where that is rounding.
 fn gap(a: [f64; 2], b: [f64; 2]) -> f64 {
-    let apart = super::trace::distance(a, b);
+    let apart = crate::plane::distance(a, b);
     if apart > CLOSED { apart } else { 0.0 }
 }

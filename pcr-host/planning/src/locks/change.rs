@@ -13,7 +13,7 @@ impl Sweep {
         let plan = Plan {
             members: vec![(place, false)],
             length: edge.length(),
-            levels: edge.ends.map(|node| layout.nodes.get(node).map_or(0, |node| node.level)),
+            levels: edge.ends.map(|node| layout.level_of(node)),
             rides: rides.on(edge),
         };
         self.ids.push(edge.id.clone());

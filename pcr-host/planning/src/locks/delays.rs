@@ -88,7 +88,7 @@ impl Delays {
         let steps: Vec<Step<'_>> = order.into_iter().flat_map(Edge::steps).collect();
         let mut places: Vec<usize> = (0..if nodes { layout.nodes.len() } else { 0 }).collect();
         places.sort_by(|&a, &b| layout.nodes[a].id.cmp(&layout.nodes[b].id));
-        let level = |node: usize| layout.nodes.get(node).map_or(0, |node| node.level);
+        let level = |node: usize| layout.level_of(node);
         let on_edges = steps.iter().map(|step| step.edge.ends.map(level));
         let mut all = Self {
             ways: steps.iter().map(|step| Way { edge: step.edge.id.clone(), backward: step.backward }).collect(),

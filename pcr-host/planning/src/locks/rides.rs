@@ -138,7 +138,7 @@ impl<'a> Rides<'a> {
     }
 
     fn place(&self, node: usize) -> [f64; 2] {
-        self.layout.nodes.get(node).map_or([0.0; 2], |node| node.at)
+        self.layout.position(node)
     }
 
     /// The farthest turns to the right and to the left between an edge and those on one side of a node.

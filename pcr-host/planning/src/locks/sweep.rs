@@ -77,7 +77,7 @@ impl Sweep {
             plans.push(Box::new(move || Plan {
                 members: members.clone(),
                 length: edge.length(),
-                levels: edge.ends.map(|node| layout.nodes.get(node).map_or(0, |node| node.level)),
+                levels: edge.ends.map(|node| layout.level_of(node)),
                 rides: rides.on(edge),
             }));
         }
@@ -155,8 +155,7 @@ pub(super) fn bodies(plan: &Plan, ids: &[Id]) -> Result<Bodies<f64>, ImportError
 
 /// The ends of an edge, if it is the straight line between its nodes.
 pub(super) fn straight_ends(layout: &Layout, edge: &Edge) -> Option<[[f64; 2]; 2]> {
-    let [from, to] = edge.ends.map(|node| layout.nodes.get(node).map(|node| node.at));
-    let ([x, y], [to_x, to_y]) = (from?, to?);
+    let [[x, y], [to_x, to_y]] = edge.ends.map(|node| layout.position(node));
     let [line] = &edge.curve[..] else { return None };
     let length = (to_x - x).hypot(to_y - y);
     let same = line.at == [x, y] && line.shape == PathSegment::Line { length } && edge.deviation == 0.0;

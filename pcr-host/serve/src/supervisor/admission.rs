@@ -1,7 +1,7 @@
 //! Admission of missions: another path for a robot, with orders with which all robots can finish, or the reason why
 //! there are none.
 
-use super::{Supervisor, fleet};
+use super::{Supervisor, fleet, grown};
 use crate::course::{Course, JOINT, Shape, Start, extent};
 use crate::entry::{Entry, Kept, Known};
 use crate::event::Event;
@@ -167,9 +167,7 @@ impl Supervisor {
         // The request of the new mission is not known.
         robot.asked = None;
         self.tries.remove(name);
-        let known = self.known(place);
-        self.entries.push(Entry::Robot(Box::new(known)));
-        Ok(())
+        self.keep_robot(place)
     }
 
     /// Tries to admit a mission that begins at a length of the path before \[m\]. Returns `None` if it was admitted, otherwise
@@ -191,25 +189,20 @@ impl Supervisor {
         let motion = course.motion(robot.abilities.reach()).map_err(Fault::invalid)?;
         let (mut progress, tolerances) = (self.progress(), self.tolerances());
         self.orders.passed(&progress);
-        let mut fleet = fleet(&self.robots);
+        let mut fleet = fleet(&self.robots)?;
         let speeds: Vec<f64> = self.robots.iter().map(|robot| robot.abilities.speed).collect();
         let (known, overtaken) = (progress.clone(), self.overtaken(now));
         let prefer = |region: &RegionRef<'_, f64>| match overtaken.get(region.other()) {
             Some(true) => Pass::Second,
             _ => preferred(region, own.at.lo, &known, &speeds),
         };
-        let admission = loop {
-            let mission = Mission { agent: place, motion, progress: own };
-            let found = self.orders.admit(&mut fleet, &mut progress, mission, tolerances, &mut self.reaches, prefer);
-            match found {
-                Err(Refused::Full(full)) => self.orders.grow(full).map_err(Fault::invalid)?,
-                found => break found,
-            }
-        };
+        let asked = Mission { agent: place, motion, progress: own };
+        let admission = grown(&mut self.orders, |orders| {
+            orders.admit(&mut fleet, &mut progress, asked, tolerances, &mut self.reaches, prefer)
+        });
         drop(fleet);
         let Err(refused) = admission else {
-            self.commit(place, mission, course.clone(), dropped);
-            return Ok(None);
+            return self.commit(place, mission, course.clone(), dropped).map(|()| None);
         };
         self.counts.refused += 1;
         let name = |agent: usize| self.robots.get(agent).map_or_else(String::new, |robot| robot.name.clone());
@@ -227,7 +220,7 @@ impl Supervisor {
     }
 
     /// Makes the admitted path that of the robot.
-    fn commit(&mut self, place: usize, mission: &Waiting, course: Course, dropped: f64) {
+    fn commit(&mut self, place: usize, mission: &Waiting, course: Course, dropped: f64) -> Result<(), Fault> {
         let robot = &mut self.robots[place];
         let length = course.length();
         let shifted = |value: f64| (value - dropped).max(0.0).min(length);
@@ -258,10 +251,9 @@ impl Supervisor {
         self.counts.admitted += 1;
         self.events.push(event);
         self.forget_holds_with(place);
-        let known = self.known(place);
-        self.entries.push(Entry::Robot(Box::new(known)));
         // A robot that was in the way of a stopped one may no longer be.
         self.hazards |= self.robots.iter().any(|robot| robot.stopped.is_some());
+        self.keep_robot(place)
     }
 
     /// Marks as unknown the holds of a robot, and of those that have a region with it or waited for it.
@@ -278,19 +270,18 @@ impl Supervisor {
     }
 
     /// A robot with its orders, as the journal has it.
-    pub(super) fn known(&self, place: usize) -> Known {
-        let fleet = fleet(&self.robots);
+    pub(super) fn known(&self, place: usize) -> Result<Known, Fault> {
+        let fleet = fleet(&self.robots)?;
         let robot = &self.robots[place];
         let decisions = self.orders.decisions().filter(|decision| decision.agents.contains(&place));
-        // The table belongs to these robots; missing orders would be detected when the journal is read.
-        let row = self.orders.row(&fleet, place).into_iter().flatten();
+        let row = self.orders.row(&fleet, place).map_err(Fault::invalid)?;
         let orders = row.zip(decisions).map(|((_, region, pass), decision)| Kept {
             with: self.robots[region.other()].name.clone(),
             pass: pass.into(),
             since: decision.since,
             lengths: [region.length(), region.other_length()].map(|length| [length.lo, length.hi]),
         });
-        Known {
+        Ok(Known {
             name: robot.name.clone(),
             abilities: robot.abilities,
             course: robot.course.clone(),
@@ -305,7 +296,7 @@ impl Supervisor {
             waiting: robot.waiting.clone(),
             orders: orders.collect(),
             notes: robot.notes.clone(),
-        }
+        })
     }
 
     /// Tries the mission that has been due for the longest time; of several, the oldest. (Trying the oldest of all due missions

@@ -95,12 +95,17 @@ impl Supervisor {
     /// A robot that was added where others may come: nothing is decided with it. Where one of them has been already,
     /// nothing is left to decide.
     fn unordered(&self, limits: &mut [Limit]) {
-        let fleet = fleet(&self.robots);
         if !self.orders.decisions().any(|decision| decision.pass == Pass::Undecided) {
             return;
         }
+        let fleet = fleet(&self.robots);
         for (place, limit) in limits.iter_mut().enumerate() {
-            let Ok(row) = self.orders.row(&fleet, place) else { continue };
+            let row = fleet.as_ref().ok().and_then(|fleet| self.orders.row(fleet, place).ok());
+            let Some(row) = row else {
+                // If it cannot be told with whom nothing is decided, it may be with anybody near.
+                limit.lower(self.robots[place].at - ROOM, place);
+                continue;
+            };
             let undecided = row.filter(|(_, _, pass)| *pass == Pass::Undecided).map(|(_, region, _)| region);
             let left = |region: &RegionRef<'_, f64>| {
                 let [own, their] = [place, region.other()].map(|robot| self.robots[robot].at);
@@ -114,5 +119,34 @@ impl Supervisor {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::course::Shape;
+    use crate::entry::Nowhere;
+    use crate::robot::Abilities;
+    use crate::supervisor::{Proposal, Settings};
+
+    #[test]
+    fn where_the_table_is_not_that_of_the_robots_nobody_goes_on() {
+        let mut own = Supervisor::new(Settings::default(), Box::new(Nowhere));
+        let can = Abilities { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+        own.add("east", can, Start { x: -3.0, y: 0.0, heading: 0.0 }).unwrap();
+        let path = vec![Shape::Line { length: 6.0 }];
+        let (robot, mission) = ("east".into(), "1".into());
+        own.mission(&Proposal { robot, mission, after: None, of: None, start: None, path }, 0.0).unwrap();
+        own.settle(0.0).unwrap();
+        assert!(own.robots[0].granted > 0.0);
+        own.add("new", can, Start { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
+        own.robots[1].abilities.radius = 0.3;
+        let limits = own.limits(1.0);
+        assert!(
+            limits.iter().zip(&own.robots).all(|(limit, robot)| limit.at.is_some_and(|at| at < robot.at)),
+            "{limits:?}"
+        );
+        assert!(own.robots[0].stopped.is_some());
     }
 }

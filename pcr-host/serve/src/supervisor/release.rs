@@ -48,7 +48,8 @@ impl Supervisor {
     fn evaluate(&mut self, places: &[usize]) {
         let progress = self.progress();
         let fleet = fleet(&self.robots);
-        let holds: Vec<_> = places.iter().map(|&place| self.orders.wait(&fleet, place, &progress)).collect();
+        let wait = |place| self.orders.wait(fleet.as_ref().ok()?, place, &progress).ok();
+        let holds: Vec<_> = places.iter().map(|&place| wait(place)).collect();
         self.counts.evaluations += places.len() as u64;
         for (&place, hold) in places.iter().zip(holds) {
             // The table belongs to these robots, so this never fails; if it did, the robots would stop.

@@ -1,9 +1,10 @@
 //! Restores a supervisor from its journal.
 
-use super::{Settings, Supervisor, Table, fleet};
+use super::{Settings, Supervisor, Table, fleet, grown};
 use crate::entry::{Entry, Keep, Kept, Known, Layout};
+use crate::fault::Fault;
 use crate::robot::{Alarm, Robot, remember};
-use pcr_core::{Full, Mismatch, Pass, Reach};
+use pcr_core::{Mismatch, Pass, Reach};
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 
@@ -18,12 +19,6 @@ impl fmt::Display for Damaged {
 }
 
 impl std::error::Error for Damaged {}
-
-impl From<Full> for Damaged {
-    fn from(full: Full) -> Self {
-        Self(full.to_string())
-    }
-}
 
 impl From<Mismatch> for Damaged {
     fn from(mismatch: Mismatch) -> Self {
@@ -134,14 +129,9 @@ impl Supervisor {
 
     /// Restores the passing orders.
     fn order(&mut self, mut kept: HashMap<[String; 2], Vec<Kept>>) -> Result<(), Damaged> {
-        let fleet = fleet(&self.robots);
-        if fleet.len() != self.robots.len() {
-            return Err(Damaged("a robot has no path".into()));
-        }
+        let fleet = fleet(&self.robots).map_err(|fault| Damaged(fault.to_string()))?;
         let mut orders = Table::new(Vec::new(), Vec::new(), Vec::new());
-        while let Err(full) = orders.fill(&fleet) {
-            orders.grow(full)?;
-        }
+        grown(&mut orders, |orders| Ok(orders.fill(&fleet)?)).map_err(|refused| Damaged(refused.to_string()))?;
         let mut missing = HashSet::new();
         for ego in 0..fleet.len() {
             let name = &self.robots[ego].name;
@@ -181,16 +171,19 @@ impl Supervisor {
     }
 
     /// Entries for the whole present state.
-    pub fn snapshot(&self) -> Vec<Entry> {
-        let layout = std::iter::once(Entry::Layout(self.layout.clone()));
+    ///
+    /// # Errors
+    /// [`Fault::Invalid`] if the table of orders is not that of the robots.
+    pub fn snapshot(&self) -> Result<Vec<Entry>, Fault> {
+        let layout = std::iter::once(Ok(Entry::Layout(self.layout.clone())));
         let robots = (0..self.robots.len()).map(|place| {
-            let mut known = self.known(place);
+            let mut known = self.known(place)?;
             // Each order once: with robots of lower index.
             let before = |kept: &Kept| self.names.get(&kept.with).is_some_and(|&other| other < place);
             known.orders.retain(before);
-            Entry::Robot(Box::new(known))
+            Ok(Entry::Robot(Box::new(known)))
         });
-        let spent = (self.spent > 0).then_some(Entry::Spent { path: self.spent });
+        let spent = (self.spent > 0).then_some(Ok(Entry::Spent { path: self.spent }));
         layout.chain(spent).chain(robots).collect()
     }
 }

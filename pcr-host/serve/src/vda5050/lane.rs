@@ -30,7 +30,6 @@ use newest::Newest;
 use past::{Noted, Past};
 use pause::Pauses;
 use serde::Serialize;
-use serde_json::Value;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -184,14 +183,14 @@ impl Lane {
     }
 
     /// Stores a note about the vehicle in the supervisor.
-    fn note(&self, supervisor: &mut Supervisor, key: &str, note: Value) {
-        // Errors can be ignored: a removed robot needs no note, and after a failed write of the journal no holds are told
+    fn note(&self, supervisor: &mut Supervisor, key: &str, note: impl Serialize) {
+        // Errors can be ignored: a removed robot needs no note, and after one that could not be written no holds are told
         // either.
         let _ = supervisor.note(&self.name, key, note);
     }
 
     /// Appends to a note that is a list.
-    fn note_more(&self, supervisor: &mut Supervisor, key: &str, more: Vec<Value>) {
+    fn note_more(&self, supervisor: &mut Supervisor, key: &str, more: &[impl Serialize]) {
         // Errors can be ignored, as above.
         let _ = supervisor.note_more(&self.name, key, more);
     }
@@ -199,7 +198,7 @@ impl Lane {
     /// Stores an id that was used.
     fn note_past(&self, supervisor: &mut Supervisor, key: &str, noted: Noted) {
         match noted {
-            Noted::More(more) => self.note_more(supervisor, key, more),
+            Noted::More(more) => self.note_more(supervisor, key, &more),
             Noted::All(all) => self.note(supervisor, key, all),
         }
     }

@@ -49,6 +49,84 @@ enum Claim {
     Ours,
 }
 
+/// What a message says about the claim of a bridge.
+#[derive(Clone, Debug, PartialEq)]
+enum Said {
+    /// The retained message was removed.
+    Nothing,
+    /// A bridge has a claim.
+    Online {
+        session: String,
+        /// It objects to other claims.
+        insists: bool,
+    },
+    /// A bridge has ended.
+    Offline { session: String },
+}
+
+impl Said {
+    /// # Errors
+    /// Why the message cannot be read. It says nothing then about whether another bridge is active.
+    fn read(payload: &[u8]) -> Result<Self, String> {
+        if payload.is_empty() {
+            return Ok(Self::Nothing);
+        }
+        let message: Connection = serde_json::from_slice(payload).map_err(|error| error.to_string())?;
+        let session = message.rest.get("session").and_then(Value::as_str).ok_or("session: missing")?.to_owned();
+        let insists = message.rest.get("insists") == Some(&Value::Bool(true));
+        match message.connection_state.as_str() {
+            "ONLINE" => Ok(Self::Online { session, insists }),
+            "OFFLINE" => Ok(Self::Offline { session }),
+            broken if Version::ALL.iter().any(|version| version.broken() == broken) => Ok(Self::Offline { session }),
+            other => Err(format!("connectionState: {other:?}")),
+        }
+    }
+}
+
+impl Claim {
+    /// Takes what the broker says of claims. Returns a line for the log if our claim has to be sent again.
+    ///
+    /// # Errors
+    /// [`Stopped`] if another bridge is active, or may be.
+    fn heard(&mut self, said: Result<Said, String>, own: &str) -> Result<Option<String>, Stopped> {
+        let said = match (said, &self) {
+            (Ok(said), _) => said,
+            (Err(why), Self::Ours) => return Ok(Some(format!("a claim that cannot be read: {why}"))),
+            (Err(why), _) => {
+                let why = format!("a claim cannot be read ({why}), so another supervisor may be at work");
+                return Err(Stopped(why));
+            }
+        };
+        let is_own = match &said {
+            Said::Nothing => false,
+            Said::Online { session, .. } | Said::Offline { session } => session == own,
+        };
+        match (&self, said) {
+            (Self::Sent, Said::Online { .. }) if is_own => *self = Self::Seen(Instant::now()),
+            // That bridge may be gone: the broker will tell.
+            (Self::Asking(_), Said::Online { session, .. }) if !is_own => *self = Self::Theirs(Instant::now(), session),
+            (Self::Theirs(..), Said::Nothing | Said::Offline { .. }) => *self = Self::Asking(Instant::now()),
+            _ if is_own => {}
+            // It claimed before us; a bridge that claims after us sees our claim.
+            (Self::Sent, Said::Online { session, .. }) => {
+                return Err(Stopped(format!("another supervisor, {session}, was first")));
+            }
+            // If both believed to be active, the one with the larger session ends.
+            (Self::Seen(_) | Self::Ours, Said::Online { session, insists: true })
+                if *self != Self::Ours || session.as_str() < own =>
+            {
+                return Err(Stopped(format!("another supervisor, {session}, is at work")));
+            }
+            (Self::Seen(_) | Self::Ours, Said::Online { session, .. } | Said::Offline { session }) => {
+                return Ok(Some(format!("another supervisor, {session}, comes or goes")));
+            }
+            (Self::Seen(_) | Self::Ours, Said::Nothing) => return Ok(Some("our claim was removed".into())),
+            _ => {}
+        }
+        Ok(None)
+    }
+}
+
 /// A message from the broker.
 struct Heard {
     topic: String,
@@ -181,33 +259,9 @@ impl Station {
 
     /// Handles the claim of a bridge, or its end.
     fn heard(&mut self, payload: &[u8]) -> Result<(), Stopped> {
-        let said: Value = serde_json::from_slice(payload).unwrap_or_default();
-        let text = |field: &str| said.get(field).and_then(Value::as_str).unwrap_or_default();
-        let is_online = text("connectionState") == "ONLINE";
-        let insists = said.get("insists") == Some(&Value::Bool(true));
-        match (&self.claim, text("session") == self.session) {
-            (Claim::Sent, true) if is_online => self.claim = Claim::Seen(Instant::now()),
-            // That bridge may be gone: the broker will tell.
-            (Claim::Asking(_), false) if is_online => {
-                self.claim = Claim::Theirs(Instant::now(), text("session").into())
-            }
-            (Claim::Theirs(..), _) if !is_online => self.claim = Claim::Asking(Instant::now()),
-            // It claimed before us; a bridge that claims after us sees our claim.
-            (Claim::Sent, false) if is_online => {
-                return Err(Stopped(format!("another supervisor, {}, was first", text("session"))));
-            }
-            (Claim::Seen(_), false) if is_online && insists => {
-                return Err(Stopped(format!("another supervisor, {}, is at work", text("session"))));
-            }
-            // Both bridges believed to be active: the one with the larger session ends.
-            (Claim::Ours, false) if is_online && insists && text("session") < self.session.as_str() => {
-                return Err(Stopped(format!("another supervisor, {}, is at work", text("session"))));
-            }
-            (Claim::Seen(_) | Claim::Ours, false) => {
-                self.log.push(format!("another supervisor, {}, comes or goes", text("session")));
-                let _ = self.link.publish(claim(&self.key, &self.topic, &self.session, "ONLINE", true));
-            }
-            _ => {}
+        if let Some(line) = self.claim.heard(Said::read(payload), &self.session)? {
+            self.log.push(line);
+            let _ = self.link.publish(claim(&self.key, &self.topic, &self.session, "ONLINE", true));
         }
         Ok(())
     }
@@ -286,4 +340,57 @@ fn answered(
 /// Locks the bridge. A thread that panicked leaves it at worst between two messages.
 fn locked(bridge: &Mutex<Bridge>) -> MutexGuard<'_, Bridge> {
     bridge.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn message(session: &str, state: &str, insists: bool) -> Vec<u8> {
+        claim(&Key::new("pcr", "supervisor").unwrap(), "t", session, state, insists).payload
+    }
+
+    /// What could not be read counted as the word of a supervisor that had ended.
+    #[test]
+    fn a_claim_that_cannot_be_read_is_no_permission() {
+        let now = Instant::now();
+        let damaged = [&b"{"[..], b"null", b"{}", br#"{"connectionState":"ONLINE"}"#, &message("a", "online", false)];
+        for payload in damaged {
+            for mut claim in [Claim::Asking(now), Claim::Theirs(now, "a".into()), Claim::Sent, Claim::Seen(now)] {
+                let before = claim.clone();
+                let stopped = claim.heard(Said::read(payload), "b").unwrap_err();
+                assert!(stopped.0.contains("cannot be read"), "{stopped:?}");
+                assert_eq!(claim, before);
+            }
+            let mut ours = Claim::Ours;
+            assert!(ours.heard(Said::read(payload), "b").unwrap().is_some_and(|line| line.contains("cannot be read")));
+            assert_eq!(ours, Claim::Ours);
+        }
+    }
+
+    #[test]
+    fn who_has_the_claim() {
+        let now = Instant::now();
+        let heard = |claim: &Claim, payload: &[u8]| {
+            let mut claim = claim.clone();
+            claim.heard(Said::read(payload), "b").map(|line| (claim, line.is_some()))
+        };
+        let stays = |claim: &Claim, again: bool| Ok((claim.clone(), again));
+        let theirs = Claim::Theirs(now, "a".into());
+        for over in [vec![], message("a", "OFFLINE", false), message("a", "CONNECTIONBROKEN", false)] {
+            assert!(matches!(heard(&theirs, &over), Ok((Claim::Asking(_), false))));
+            assert_eq!(heard(&Claim::Asking(now), &over), stays(&Claim::Asking(now), false));
+            assert_eq!(heard(&Claim::Sent, &over), stays(&Claim::Sent, false));
+            assert_eq!(heard(&Claim::Ours, &over), stays(&Claim::Ours, true));
+        }
+        let online = |session, insists| message(session, "ONLINE", insists);
+        assert!(matches!(heard(&Claim::Asking(now), &online("a", false)), Ok((Claim::Theirs(..), false))));
+        assert!(matches!(heard(&Claim::Sent, &online("b", false)), Ok((Claim::Seen(_), false))));
+        assert!(heard(&Claim::Sent, &online("a", false)).is_err());
+        assert!(heard(&Claim::Seen(now), &online("c", true)).is_err());
+        assert_eq!(heard(&Claim::Seen(now), &online("c", false)), stays(&Claim::Seen(now), true));
+        assert!(heard(&Claim::Ours, &online("a", true)).is_err());
+        assert_eq!(heard(&Claim::Ours, &online("c", true)), stays(&Claim::Ours, true));
+        assert_eq!(heard(&Claim::Ours, &online("b", true)), stays(&Claim::Ours, false));
+    }
 }

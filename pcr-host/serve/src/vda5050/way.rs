@@ -5,6 +5,7 @@ use super::held::Held;
 use super::order::{Edge, Node};
 use crate::course::{Shape, Start};
 use pcr_formats::import::{self, Format, Options, Warnings};
+use pcr_formats::plane::distance;
 use pcr_formats::scenario::{PathSegment, Placed, TURN};
 use serde_json::json;
 use std::f64::consts::{PI, TAU};
@@ -234,10 +235,6 @@ fn along(placed: &Placed, point: [f64; 2]) -> f64 {
             radius * angle
         }
     }
-}
-
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// Position of a node.

@@ -1,9 +1,9 @@
 //! The motion of a vehicle along a way: it stops where it has to, and turns in place at corners.
 
-use super::random::Random;
 use crate::course::Shape;
 use crate::vda5050::held::Held;
 use crate::vda5050::way::Way;
+use pcr_formats::random::Random;
 use serde::{Deserialize, Serialize};
 
 /// The abilities and errors of a vehicle.

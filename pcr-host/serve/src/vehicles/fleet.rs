@@ -1,13 +1,13 @@
 //! Simulated vehicles at a broker, each with a connection of its own.
 
 use super::audit::Audit;
-use super::random::Random;
 use super::record::{Record, Recorded};
 use super::vehicle::Vehicle;
 use super::weather::{Climate, Weather};
 use crate::vda5050::bridge::Publish;
 use crate::vda5050::mqtt::{Broker, Link, News};
 use crate::vda5050::topics::{Interface, Kind};
+use pcr_formats::random::Random;
 use std::io::{self, Write};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Instant;
@@ -81,7 +81,7 @@ impl<W: Write> Fleet<W> {
             .map(|vehicle| Recorded { name: vehicle.key().to_string(), radius: vehicle.abilities().radius });
         let record = Record::new(record, &names.collect::<Vec<_>>())?;
         let (sender, news) = channel();
-        let random = Random::new(settings.seed);
+        let random = Random(settings.seed);
         let members = vehicles.into_iter().enumerate().map(|(k, vehicle)| {
             let seed = settings.seed.wrapping_add(k as u64);
             let (incoming, outgoing) = (Weather::new(settings.climate, seed), Weather::new(settings.climate, !seed));

@@ -78,9 +78,9 @@ type Ends = [[f64; 2]; 2];
 impl Locks {
     /// The locks of vehicles that stand at these nodes, with discs that do not touch at this distance \[m\].
     pub fn new(layout: &Layout, clearance: f64, far: f64, is_whole: bool, standing: &[usize]) -> Self {
-        let place = |node: usize| layout.nodes.get(node).map_or([f64::NAN; 2], |node| node.at);
-        let nodes = (0..layout.nodes.len()).map(|node| [place(node); 2]);
-        let pieces: Vec<Ends> = nodes.chain(layout.edges.iter().map(|edge| edge.ends.map(place))).collect();
+        let nodes = layout.nodes.iter().map(|node| [node.at; 2]);
+        let edges = layout.edges.iter().map(|edge| edge.ends.map(|node| layout.position(node)));
+        let pieces: Vec<Ends> = nodes.chain(edges).collect();
         let near = |a: &Ends| -> Vec<usize> {
             let touches = |b: &Ends| distance(*a, *b) < clearance;
             pieces.iter().enumerate().filter(|(_, b)| touches(b)).map(|(place, _)| place).collect()
@@ -215,6 +215,17 @@ pub fn to_line(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pcr_formats::import::{Edge, Id, Node};
+
+    /// An edge to a node that is not there was locked with none.
+    #[test]
+    #[should_panic(expected = "index out of bounds")]
+    fn an_edge_without_an_end_has_no_locks() {
+        let node = |id: u64| Node { id: Id::Number(id), name: None, level: 0, at: [id as f64, 0.0] };
+        let edges = vec![Edge::new(Id::Number(0), [0, 2], Vec::new())];
+        let layout = Layout { nodes: vec![node(0), node(1)], edges, ..Layout::default() };
+        Locks::new(&layout, 0.5, 1.0, true, &[0]);
+    }
 
     #[test]
     fn distances_of_straight_ways() {

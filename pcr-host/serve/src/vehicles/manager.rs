@@ -3,7 +3,6 @@
 //! the others do. A vehicle that has lost its order gets another one, for the rest of the way from where it stands.
 
 use super::locks::{Leg, Locks, Method, to_line};
-use super::random::Random;
 use crate::course::{Course, Shape, Start};
 use crate::vda5050::door::{self, Limits};
 use crate::vda5050::header::Header;
@@ -13,6 +12,7 @@ use crate::vda5050::state::{Pose, State};
 use crate::vda5050::topics::Key;
 use crate::vda5050::version::Version;
 use pcr_formats::import::{self, Layout, Step, cheapest};
+use pcr_formats::random::Random;
 use serde_json::Map;
 use std::collections::BTreeMap;
 
@@ -91,7 +91,7 @@ impl Manager {
     /// The manager of vehicles that stand at nodes of a layout, with missions to some of its nodes.
     ///
     /// # Errors
-    /// A goal without a way to another goal that keeps this distance from the rest \[m\].
+    /// A goal that is no node, or without a way to another goal that keeps this distance from the rest \[m\].
     pub fn new(
         layout: Layout,
         map_id: &str,
@@ -100,18 +100,20 @@ impl Manager {
         vehicles: Vec<(Key, Version, usize)>,
         seed: u64,
     ) -> Result<Self, String> {
+        if let Some(goal) = goals.iter().find(|&&goal| goal >= layout.nodes.len()) {
+            return Err(format!("a goal that is no node: {goal}"));
+        }
         let clients = vehicles.into_iter().enumerate().map(|(place, (key, version, at))| {
             (key, Client { place, version, at, order: None, orders: 0, done: 0, header: 0 })
         });
-        let mut random = Random::new(seed);
+        let mut random = Random(seed);
         let run = random.bits() & 0xffff_ffff;
         let clients = clients.collect();
         let (map_id, locks) = (map_id.into(), None);
         let own = Self { layout, map_id, goals, clearance, clients, random, run, locks, ends: false, again: 0 };
         for (&from, &to) in own.goals.iter().zip(own.goals.iter().cycle().skip(1)) {
             if own.way([from, to]).is_none() {
-                let [from, to] = [from, to].map(|node| own.layout.nodes.get(node).map(|node| node.id.to_string()));
-                let (from, to) = (from.unwrap_or_default(), to.unwrap_or_default());
+                let [from, to] = [from, to].map(|node| &own.layout.nodes[node].id);
                 return Err(format!("no way from {from} to {to} keeps {clearance:.3} m from all other goals"));
             }
         }
@@ -135,8 +137,7 @@ impl Manager {
     /// The ways that it sends vehicles on.
     pub fn lanes(&self) -> Vec<Course> {
         let lane = |edge: &import::Edge| {
-            let [[x, y], to] =
-                [0, 1].map(|end| self.layout.nodes.get(edge.ends[end]).map(|node| node.at).unwrap_or_default());
+            let [[x, y], to] = edge.ends.map(|node| self.layout.position(node));
             let [dx, dy] = [to[0] - x, to[1] - y];
             let start = Start { x, y, heading: dy.atan2(dx) };
             Course::new(start, vec![Shape::Line { length: dx.hypot(dy) }]).ok()
@@ -319,11 +320,11 @@ impl Manager {
 
     /// The shortest way that keeps clear of all other goals.
     fn way(&self, ends: [usize; 2]) -> Option<Vec<Step<'_>>> {
-        let place = |node: usize| self.layout.nodes.get(node).map(|node| node.at);
+        let place = |node: usize| self.layout.position(node);
         let others = self.goals.iter().filter(|goal| !ends.contains(goal));
-        let others: Vec<[f64; 2]> = others.filter_map(|&goal| place(goal)).collect();
+        let others: Vec<[f64; 2]> = others.map(|&goal| place(goal)).collect();
         let cost = |step: Step<'_>| {
-            let Some((from, to)) = place(step.origin()).zip(place(step.target())) else { return f64::INFINITY };
+            let (from, to) = (place(step.origin()), place(step.target()));
             let is_clear = others.iter().all(|&goal| to_line(goal, from, to) >= self.clearance);
             if is_clear { step.edge.length() } else { f64::INFINITY }
         };

@@ -2,7 +2,6 @@
 //! its state.
 
 use super::drive::{Abilities, Drive};
-use super::random::Random;
 use crate::course::Start;
 use crate::vda5050::door::{self, Limits};
 use crate::vda5050::header::Header;
@@ -14,6 +13,7 @@ use crate::vda5050::state::{ActionState, StateError};
 use crate::vda5050::topics::{Key, Kind};
 use crate::vda5050::version::{Error, Version};
 use crate::vda5050::way::Way;
+use pcr_formats::random::Random;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
@@ -74,7 +74,7 @@ impl Vehicle {
             version,
             map_id: map_id.into(),
             abilities,
-            random: Random::new(seed),
+            random: Random(seed),
             start,
             task: None,
             past: Vec::new(),
@@ -319,7 +319,7 @@ impl Vehicle {
         }
         let can = self.abilities;
         // Slow enough that its sideways speed is at most a tenth of its speed.
-        self.off = (self.off + self.random.sign() * can.drift * time).clamp(-can.drift, can.drift);
+        self.off = (self.off + self.random.within(-1.0, 1.0) * can.drift * time).clamp(-can.drift, can.drift);
         let Some(task) = &mut self.task else { return };
         let was = (task.drive.is_driving(), task.done);
         let base = task.way.node(task.held.base).unwrap_or(0.0);

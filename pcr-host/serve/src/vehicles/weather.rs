@@ -1,6 +1,6 @@
 //! Messages that are lost, late, repeated or out of order.
 
-use super::random::Random;
+use pcr_formats::random::Random;
 use serde::{Deserialize, Serialize};
 
 /// The rates of faults of the transport.
@@ -29,7 +29,7 @@ pub struct Weather<T> {
 impl<T: Clone> Weather<T> {
     /// A transport without messages.
     pub fn new(climate: Climate, seed: u64) -> Self {
-        Self { climate, random: Random::new(seed), underway: Vec::new(), count: 0 }
+        Self { climate, random: Random(seed), underway: Vec::new(), count: 0 }
     }
 
     /// Changes the rates; messages on their way are not affected.

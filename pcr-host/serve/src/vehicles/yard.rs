@@ -4,7 +4,6 @@
 use super::audit::Audit;
 use super::locks::Method;
 use super::manager::{Manager, Sent};
-use super::random::Random;
 use super::record::{Record, Recorded};
 use super::vehicle::Vehicle;
 use super::weather::{Climate, Weather};
@@ -16,6 +15,7 @@ use crate::vda5050::bridge::{self, Bridge, Publish};
 use crate::vda5050::door::Limits;
 use crate::vda5050::lane::Profile;
 use crate::vda5050::topics::{Interface, Kind};
+use pcr_formats::random::Random;
 use std::io::{self, Write};
 
 /// Settings.
@@ -110,7 +110,7 @@ impl<W: Write> Yard<W> {
             let (next, still) = ([0.1 * k as f64; 2], (0, 0.0, 0.0));
             Member { vehicle, incoming, outgoing, next, away: 0.0, still }
         });
-        let (members, random) = (members.collect(), Random::new(seed));
+        let (members, random) = (members.collect(), Random(seed));
         let desks = [500, 501].map(|k| Weather::new(climate, 1_000 * seed + k));
         let (manager, audit, log) = (manager.by(method), Audit::default(), Vec::new());
         let (time, drops, longest) = (0.0, 0, 0.0);

@@ -3,13 +3,13 @@
 use crate::broker::{Mosquitto, folder};
 use crate::runs::FAIR;
 use crate::site::{Desk, SAFE, Scene, Site, at_broker, nodes, warehouse};
+use pcr_formats::random::Random;
 use pcr_serve::entry::Nowhere;
 use pcr_serve::journal::Journal;
 use pcr_serve::supervisor::Supervisor;
 use pcr_serve::vda5050::bridge::Publish;
 use pcr_serve::vda5050::mqtt::{Broker, Link};
 use pcr_serve::vda5050::version::Version;
-use pcr_serve::vehicles::random::Random;
 use pcr_serve::vehicles::weather::Climate;
 use pcr_serve::vehicles::world::World;
 use std::path::Path;
@@ -149,7 +149,7 @@ fn faults_one_after_the_other() {
     let mut broker = Mosquitto::start("faults");
     let (mut site, profiles) = Site::open(&broker, SCENE);
     let mut desks = Desks::open(&broker.address(), &folder("faults-journal"));
-    let (mut tally, mut random) = (Tally::default(), Random::new(rounds));
+    let (mut tally, mut random) = (Tally::default(), Random(rounds));
     site.until(3);
     for round in 0..rounds {
         broker.restart();

@@ -64,7 +64,7 @@ impl Pair {
 
     /// Killed, and another one in its place.
     fn restart(&mut self) {
-        let entries = self.supervisor.snapshot();
+        let entries = self.supervisor.snapshot().unwrap();
         self.supervisor = Supervisor::restored(settings(), entries, Box::new(Nowhere)).unwrap();
         self.bridge = Self::bridge(&self.supervisor);
     }
@@ -169,7 +169,7 @@ fn notes_of_the_journal_that_cannot_be_read_are_an_error() {
     let bridge = |own: &Pair| Bridge::new(settings.clone(), vec![profile(key(), &CAN)], &own.supervisor);
     assert!(bridge(&own).is_ok());
     for key in ["order", "stops", "sent", "orders", "cancels", "pauses"] {
-        let entries = own.supervisor.snapshot();
+        let entries = own.supervisor.snapshot().unwrap();
         let mut damaged = Supervisor::restored(self::settings(), entries, Box::new(Nowhere)).unwrap();
         damaged.note("sim/001", key, json!({ "held": 5 })).unwrap();
         let own = Pair { supervisor: damaged, ..Pair::new() };

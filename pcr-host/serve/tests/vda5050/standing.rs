@@ -88,9 +88,9 @@ fn after(mut end: Start, shapes: &[Shape]) -> Start {
 /// Paths were cut before a turn where rounding put their beginning there: robots were believed to be elsewhere.
 #[test]
 fn missions_begin_where_the_one_before_ends_wherever_the_robot_is() {
-    use pcr_serve::vehicles::random::Random;
+    use pcr_formats::random::Random;
     use std::f64::consts::{FRAC_PI_2, PI};
-    let mut random = Random::new(5);
+    let mut random = Random(5);
     for run in 0..100 {
         let mut supervisor = Supervisor::new(settings(), Box::new(Nowhere));
         let abilities = Abilities { radius: 0.3, margin: 0.1, speed: 1.0, acceleration: 0.5 };

@@ -50,7 +50,7 @@ fn until(yard: &mut Yard<Vec<u8>>, missions: u64, mut fails: impl FnMut(&mut Yar
 
 /// The supervisor is killed, and another one goes on with what is in the journal.
 fn restart(yard: &mut Yard<Vec<u8>>) {
-    let entries = yard.supervised_by().0.snapshot();
+    let entries = yard.supervised_by().0.snapshot().unwrap();
     yard.revive(Supervisor::restored(at_broker(), entries, Box::new(Nowhere)).unwrap()).unwrap();
 }
 

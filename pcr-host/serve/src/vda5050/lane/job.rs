@@ -68,7 +68,7 @@ pub struct Job {
 
 /// The part of the manager's order that is stored as a note.
 #[derive(Serialize, Deserialize)]
-struct Given {
+pub(super) struct Given {
     held: Held,
     start: Start,
     version: String,
@@ -119,15 +119,9 @@ impl Job {
     }
 
     /// The manager's order as a note.
-    pub(super) fn given(&self) -> Value {
+    pub(super) fn given(&self) -> Given {
         let Self { held, way, version, cancel, .. } = self;
-        let given = Given { held: held.clone(), start: way.start(), version: version.clone(), cancel: cancel.clone() };
-        serde_json::to_value(given).unwrap_or_default()
-    }
-
-    /// The last update that was sent, as a note.
-    pub(super) fn sent_note(&self) -> Value {
-        serde_json::to_value(self.sent).unwrap_or_default()
+        Given { held: held.clone(), start: way.start(), version: version.clone(), cancel: cancel.clone() }
     }
 
     /// Index of the node to which a mission leads.

@@ -142,8 +142,8 @@ impl Lane {
         let noted = self.orders.push(&job.held.order_id);
         self.note_past(supervisor, self.orders.key, noted);
         self.note(supervisor, "order", job.given());
-        self.note(supervisor, "stops", serde_json::to_value(&job.stops).unwrap_or_default());
-        self.note(supervisor, "sent", job.sent_note());
+        self.note(supervisor, "stops", &job.stops);
+        self.note(supervisor, "sent", job.sent);
         (self.job, self.astray) = (Some(job), None);
     }
 

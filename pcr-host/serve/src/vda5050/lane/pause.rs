@@ -136,7 +136,7 @@ impl Lane {
 
     /// Stores the pauses in the journal.
     pub(super) fn note_pauses(&self, supervisor: &mut Supervisor) {
-        self.note(supervisor, NOTE, serde_json::to_value(&self.pauses.kept).unwrap_or_default());
+        self.note(supervisor, NOTE, &self.pauses.kept);
     }
 
     fn says_paused(&self) -> bool {

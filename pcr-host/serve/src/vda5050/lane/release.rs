@@ -58,12 +58,11 @@ impl Lane {
         }
         let update = job.sent.map_or(0, |sent| sent.update + 1);
         let from = job.stops.len().saturating_sub(1);
-        let more = next.iter().map(|stop| serde_json::to_value(stop).unwrap_or_default()).collect();
-        job.stops.extend(next);
+        job.stops.extend_from_slice(&next);
         job.sent = Some(Sent { update, manager: job.held.update_id, from });
         (job.sent_at, job.changed) = (now, false);
-        let sent = job.sent_note();
-        self.note_more(supervisor, "stops", more);
+        let sent = job.sent;
+        self.note_more(supervisor, "stops", &next);
         self.note(supervisor, "sent", sent);
         self.send(version);
     }

@@ -108,7 +108,7 @@ impl Lane {
                 if supervisor.add(&self.name, self.profile.abilities, start).is_ok() {
                     (self.job, self.astray) = (None, None);
                     self.note_anew(supervisor);
-                    self.note(supervisor, MAP, pose.map_id.clone().into());
+                    self.note(supervisor, MAP, &pose.map_id);
                 }
             }
             return Ok(());
@@ -255,7 +255,7 @@ impl Lane {
         if supervisor.reseat(&self.name, start).is_ok() {
             (self.job, self.astray) = (None, None);
             self.note_anew(supervisor);
-            self.note(supervisor, MAP, map.into());
+            self.note(supervisor, MAP, map);
         }
     }
 

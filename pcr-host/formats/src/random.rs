@@ -24,6 +24,11 @@ impl Random {
         lo + (hi - lo) * self.unit()
     }
 
+    /// Whether something comes to pass that does so `rate` times a second, within a time \[s\].
+    pub fn happens(&mut self, rate: f64, time: f64) -> bool {
+        self.unit() < 1.0 - (-rate * time).exp()
+    }
+
     /// From 0 to `count - 1`.
     pub fn below(&mut self, count: usize) -> usize {
         // The upper half of a product: below `count`, and as even as 64 bits allow.
