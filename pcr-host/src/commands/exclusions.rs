@@ -25,7 +25,7 @@ pub(super) struct Asked {
     /// Envelopes with this key instead of blocks (openTCS)
     #[arg(long, value_name = "KEY", hide_short_help = true, requires = "write")]
     envelopes: Option<String>,
-    /// List where vehicles can touch although they obey the exclusions in the layout, or in FILE (then status 1)
+    /// List where vehicles that obey the exclusions in the layout, or FILE, can still touch (status 1 if any)
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, conflicts_with_all = ["write", "lines", "edge", "index", "nodes", "delays"])]
     audit: Option<Option<PathBuf>>,
 }

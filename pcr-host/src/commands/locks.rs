@@ -103,7 +103,7 @@ impl Arguments {
         if let Some(index) = &self.index {
             if self.printed.form() != Form::Table {
                 return Err(Stop::arguments(
-                    "--format and --json are of no use with --index: the locks go to a file of its own form",
+                    "--format and --json have no effect with --index: the locks go to a file of its own form",
                 ));
             }
             let sweep = Sweep::new(&imported, self.nodes).map_err(wrong)?;
@@ -215,7 +215,7 @@ impl Arguments {
             let given = self.import.given().first().copied().or(self.nodes.then_some("--nodes"));
             if let Some(option) = given {
                 return Err(Stop::arguments(format!(
-                    "{option} is of no use: {} has its locks already",
+                    "{option} has no effect: {} has its locks already",
                     file.display()
                 )));
             }

@@ -167,7 +167,7 @@ impl Arguments {
         if matches!(self.method, Means::Speed) && (self.prove || self.time_limit.is_some()) {
             let option = if self.prove { "--prove" } else { "--time-limit" };
             return Err(Stop::arguments(format!(
-                "{option} is of no use: only start delays are searched for that long"
+                "{option} has no effect: only start delays are searched for that long"
             )));
         }
         if !matches!(self.priority, None | Some(Asked::Known(_, Priority::Best)))
@@ -175,7 +175,7 @@ impl Arguments {
         {
             let option = if self.prove { "--prove" } else { "--time-limit" };
             return Err(Stop::arguments(format!(
-                "{option} is of no use: --priority gives the order, and no better one is searched for"
+                "{option} has no effect: --priority gives the order, and no better one is searched for"
             )));
         }
         let sources = gathered(self.files.clone(), &self.import)?;

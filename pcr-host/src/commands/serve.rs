@@ -51,10 +51,10 @@ pub(super) struct Arguments {
     /// Do not end when standard input ends
     #[arg(long)]
     stay: bool,
-    /// How far before a stop robots may stand, in m [0.1; VDA: 0.3]
+    /// How near to its hold a waiting robot's reported position has to come, in m [0.1; VDA 5050: 0.3]
     #[arg(long, value_name = "M")]
     width: Option<f64>,
-    /// How long before braking a robot is told to go on, in s [2; VDA 5050: 8, the least]
+    /// Tell a robot to go on this long before it must brake, in s [2; VDA 5050: 8, also the least]
     #[arg(long, value_name = "S")]
     lookahead: Option<f64>,
     /// A robot is silent after this time, in s
@@ -63,7 +63,7 @@ pub(super) struct Arguments {
     /// Broker of a fleet of VDA 5050; user and password from PCR_BROKER_USER, PCR_BROKER_PASSWORD
     #[arg(long, value_name = "HOST:PORT", requires = "fleet")]
     broker: Option<String>,
-    /// Use TLS; certificate (PEM) that has signed the broker's
+    /// Use TLS; the broker's certificate must be signed by one in FILE (PEM)
     #[arg(long, value_name = "FILE", requires = "broker")]
     authority: Option<PathBuf>,
     /// The file of vehicles (docs/serve.md)

@@ -64,7 +64,7 @@ pub(super) struct Arguments {
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
         if self.hours.is_some() && self.import.corner_radius.is_some() {
-            return Err(Stop::arguments("--corner-radius is of no use: with --hours robots turn in place at corners"));
+            return Err(Stop::arguments("--corner-radius has no effect: with --hours robots turn in place at corners"));
         }
         let file = &layout_source(self.layout)?;
         let imported = layout(file, &self.import, "traffic", true)?;
