@@ -18,7 +18,8 @@ Exit status:
      ends; of a record: there was a contact
   2  wrong arguments, or a file that cannot be read or was refused
   3  the record could not be written
-  4  of a record: undecided, two came too near for its rounding, or it is cut";
+  4  of a record: undecided, because two came too near for its rounding, or
+     because the record is incomplete";
 
 const EXAMPLES: &str = "\
 Examples:

@@ -23,7 +23,8 @@ const STATUSES: &str = "\
 Exit status:
   0  ended by the end of standard input (without --stay), or by Ctrl-C
   2  wrong arguments, or a journal that is damaged or in use
-  3  the journal could not be opened or written: no right was given after that";
+  3  the journal could not be opened or written; after that, no robot was
+     allowed to go further";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -73,7 +74,7 @@ pub(super) struct Arguments {
     #[arg(long, value_names = ["M", "V"], num_args = 2, default_values = ["fleet", "uagv"])]
     #[arg(requires = "vda5050")]
     topics: Vec<String>,
-    /// With a broker, vehicles on this layout, a manager
+    /// Start a broker, vehicles on LAYOUT and a manager
     #[arg(long, value_name = "LAYOUT", conflicts_with_all = ["broker", "fleet"])]
     demo: Option<PathBuf>,
     /// Vehicles of the demo

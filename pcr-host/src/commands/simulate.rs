@@ -15,8 +15,8 @@ use std::process::ExitCode;
 
 const STATUSES: &str = "\
 Exit status:
-  0  done; under pcr, if it was asked for, without a collision and all of it
-  1  under pcr there was a collision, or a mission was not done
+  0  done; with the controller pcr: without a collision, and all missions done
+  1  with the controller pcr there was a collision, or a mission was not done
   2  wrong arguments, or a scenario that cannot be read or was refused
   3  the output could not be written";
 
