@@ -62,7 +62,7 @@ impl fmt::Display for InputError {
             Self::IsScenario(file) => {
                 write!(f, "{}: this is a scenario, with paths of its own; a layout is expected", name(file))
             }
-            Self::Useless(file, option, why) => write!(f, "{}: {option} is of no use: {why}", name(file)),
+            Self::Useless(file, option, why) => write!(f, "{}: {option} has no effect: {why}", name(file)),
         }
     }
 }

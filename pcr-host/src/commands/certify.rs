@@ -32,7 +32,7 @@ const EXAMPLES: &str = "\
 Examples:
   pcr certify fleet.json                   the collision regions of a fleet
   pcr certify fleet.json --scalar q16      the same in 16.16 fixed point
-  pcr certify fleet.json --limit           and how far from contact they reach
+  pcr certify fleet.json --limit           and their margin, as a fraction of ε
   pcr certify site.lif.json --radius 0.6   the table of locks of a layout
   pcr regions fleet.json --json --certificate > table.json
   pcr certify --table table.json           this table, whoever wrote it
@@ -53,7 +53,7 @@ pub(super) struct Arguments {
     table: Option<PathBuf>,
     #[command(flatten)]
     printed: Printed,
-    /// Add how far from contact it reaches (takes 12 times as long)
+    /// Add the margin: up to which δ, as a fraction of ε, contacts are proved to be covered (takes 12 times as long)
     #[arg(long)]
     limit: bool,
     /// Numbers: f64, f32, micro (f32 of microcontrollers), or fixed point: q20 (up to ±256 m and s), q16 (±4096), q12 (±65,536)
@@ -103,7 +103,7 @@ impl Arguments {
     fn certified(&self) -> Result<Vec<Certified>, Stop> {
         if let Some(file) = &self.table {
             if let Some(option) = self.import.given().first() {
-                return Err(Stop::arguments(format!("{option} is of no use: a table has all numbers in it")));
+                return Err(Stop::arguments(format!("{option} has no effect: the table already contains all values")));
             }
             let text = input::read_text(file)?;
             let dump = Dump::of(&text, &input::stem(file)).map_err(|problem| Stop::wrong(file, problem))?;

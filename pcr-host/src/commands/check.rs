@@ -18,10 +18,10 @@ use std::process::ExitCode;
 
 const STATUSES: &str = "\
 Exit status:
-  0  no conflicts; with --certify proved, too
-  1  conflicts; with --certify also what is not proved
+  0  no conflicts; with --certify this is also proved
+  1  conflicts; with --certify also if it is not proved that there are none
   2  wrong arguments, or one of the scenarios cannot be read or was refused;
-     with --certify also one without two agents, of which nothing is proved
+     with --certify also if it has fewer than two agents: nothing to prove
   3  the output could not be written";
 
 const EXAMPLES: &str = "\

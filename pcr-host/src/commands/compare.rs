@@ -18,7 +18,7 @@ use std::process::ExitCode;
 const EXAMPLES: &str = "\
 Examples:
   pcr compare fleet.json                           every method
-  pcr compare fleet.json --method polyline         pcr, and some by a word
+  pcr compare fleet.json --method polyline         only pcr and polyline
   pcr compare small.json large.json --format csv   a line a method and scenario
   pcr compare fleet.json -o charts                 and time against error drawn";
 
@@ -29,7 +29,7 @@ pub(super) struct Arguments {
     /// Scenarios (JSON); standard input if left out
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Only methods whose names hold this
+    /// Only pcr f64 and methods whose names contain WORD
     #[arg(long = "method", value_name = "WORD")]
     methods: Vec<String>,
     /// Rounds, 1 to 1000; slow methods have fewer

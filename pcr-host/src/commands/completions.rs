@@ -27,7 +27,7 @@ pub(super) struct Shells {
 #[derive(Args)]
 #[command(after_help = "Examples:\n  pcr man > pcr.1 && man ./pcr.1\n  pcr man plan > pcr-plan.1")]
 pub(super) struct Manual {
-    /// Of this command
+    /// Command to describe; pcr itself if left out
     command: Option<String>,
 }
 

@@ -19,13 +19,13 @@ pub(super) struct Asked {
     /// Write the layout with exclusions to --output: nav2, rmf, opentcs, vda5050 or pcr
     #[arg(long, value_enum, value_name = "FORMAT", hide_possible_values = true, requires = "output", conflicts_with_all = ["lines", "edge", "index", "nodes", "delays"])]
     write: Option<Target>,
-    /// Before that, cut edges into equal parts no longer than this
+    /// Before writing, cut edges into equal parts of at most this length
     #[arg(long, value_name = "LENGTH", hide_short_help = true, value_parser = length, requires = "write")]
     split: Option<f64>,
-    /// Envelopes with this key instead of blocks (openTCS)
+    /// Write envelopes with this key, not blocks (openTCS)
     #[arg(long, value_name = "KEY", hide_short_help = true, requires = "write")]
     envelopes: Option<String>,
-    /// List where vehicles can touch although they obey the exclusions in the layout, or in FILE (then status 1)
+    /// List where vehicles that obey the exclusions in the layout, or FILE, can still touch (status 1 if any)
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, conflicts_with_all = ["write", "lines", "edge", "index", "nodes", "delays"])]
     audit: Option<Option<PathBuf>>,
 }

@@ -18,7 +18,8 @@ Exit status:
      ends; of a record: there was a contact
   2  wrong arguments, or a file that cannot be read or was refused
   3  the record could not be written
-  4  of a record: undecided, two came too near for its rounding, or it is cut";
+  4  of a record: undecided, because two came too near for its rounding, or
+     because the record is incomplete";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -31,18 +32,18 @@ Examples:
 
 User and password of the broker: PCR_BROKER_USER and PCR_BROKER_PASSWORD.";
 
-/// What is of no use to a record that is there already.
+/// What has no effect on a record that is there already.
 const SIMULATED: [&str; 14] = [
     "layout", "streets", "broker", "vehicles", "manager", "topics", "pace", "time", "finish", "alone", "drops",
     "weather", "seed", "record",
 ];
 
-/// Simulate VDA 5050 vehicles at a broker, and their fleet manager
+/// Simulate VDA 5050 vehicles and their fleet manager
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 #[cfg_attr(not(feature = "serve"), allow(dead_code))]
 pub(super) struct Arguments {
-    /// Layout, from safe end to safe end; standard input if left out or `-`
+    /// Layout (goals: its safe ends); standard input if left out or `-`
     layout: Option<PathBuf>,
     /// A site of N streets each way, instead of a layout
     #[arg(long, value_name = "N", conflicts_with = "layout")]
@@ -53,38 +54,38 @@ pub(super) struct Arguments {
     /// Number of vehicles
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = whole::<usize>)]
     vehicles: usize,
-    /// Simulate their fleet manager, too
+    /// Also simulate the manager that gives them missions
     #[arg(long, conflicts_with = "alone")]
     manager: bool,
     /// First levels of topics
     #[arg(long, value_names = ["M", "V"], num_args = 2, default_values = ["fleet", "uagv"])]
     #[arg(conflicts_with = "alone")]
     topics: Vec<String>,
-    /// Times faster than time, 0.1 to 100
+    /// Speed relative to real time, 0.1 to 100
     #[arg(long, value_name = "N", default_value_t = 1.0, conflicts_with = "alone")]
     pace: f64,
     /// End after this simulated time
     #[arg(long, value_name = "S")]
     time: Option<f64>,
-    /// Then until missions are done, or none is for 1 h
+    /// After --time, continue until all missions are done or none is completed for 1 h
     #[arg(long, requires = "time")]
     finish: bool,
-    /// Without a broker: supervisor, route-locks or edge-locks
+    /// No broker; supervisor, route-locks or edge-locks
     #[arg(long, value_name = "METHOD", requires = "time")]
     alone: Option<String>,
     /// Lost connections of a vehicle per hour
     #[arg(long, value_name = "N", default_value_t = 0.0)]
     drops: f64,
-    /// Part of messages lost, repeated, late
+    /// Fraction of messages lost; the same fraction is repeated, and the same is late
     #[arg(long, value_name = "PART", default_value_t = 0.0)]
     weather: f64,
     /// The same seed makes the same vehicles
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
-    /// Record where they really were; written at the end
+    /// Write the true positions to this file, at the end
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
-    /// Prove of a record, or `-`, that they never touched
+    /// Prove from a record, or `-`, that no two touched
     #[arg(long, value_name = "FILE", conflicts_with_all = SIMULATED)]
     certify: Option<PathBuf>,
     /// Write the vehicles for `pcr serve --fleet`, or `-`

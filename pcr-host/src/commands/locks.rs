@@ -19,8 +19,8 @@ use std::process::ExitCode;
 
 const STATUSES: &str = "\
 Exit status:
-  0  done; with --audit nothing can touch
-  1  with --audit: something can touch
+  0  done; with --audit: no two vehicles can touch
+  1  with --audit: two vehicles can touch
   2  wrong arguments, or a layout that cannot be read or was refused
   3  the output could not be written";
 
@@ -45,16 +45,16 @@ pub(super) struct Arguments {
     /// Add the lengths that a vehicle at a node blocks
     #[arg(long)]
     nodes: bool,
-    /// Print times instead: delays with which two must not set off on two edges at --speed, with --acceleration from rest to rest
+    /// Print instead the start delays with which vehicles on two edges touch; at --speed, with --acceleration from rest to rest
     #[arg(long, conflicts_with_all = ["edge", "index", "output"])]
     delays: bool,
-    /// Print JSON Lines, a lock on each, for tables of any size
+    /// Print JSON Lines, one lock per line, for tables of any size
     #[arg(long, hide_short_help = true, conflicts_with_all = ["format", "json", "output"])]
     lines: bool,
     /// Only the locks of this edge or node
     #[arg(long, value_name = "NAME", conflicts_with_all = ["lines", "output"])]
     edge: Option<String>,
-    /// Write the locks to this file; with --edge, read it from there
+    /// Write the locks to FILE; with --edge, read them from it
     #[arg(long, value_name = "FILE", hide_short_help = true, conflicts_with_all = ["lines", "output"])]
     index: Option<PathBuf>,
     /// Directory for pictures and a page; with --write the file
@@ -103,7 +103,7 @@ impl Arguments {
         if let Some(index) = &self.index {
             if self.printed.form() != Form::Table {
                 return Err(Stop::arguments(
-                    "--format and --json are of no use with --index: the locks go to a file of its own form",
+                    "--format and --json have no effect with --index: the locks go to a file of its own form",
                 ));
             }
             let sweep = Sweep::new(&imported, self.nodes).map_err(wrong)?;
@@ -215,7 +215,7 @@ impl Arguments {
             let given = self.import.given().first().copied().or(self.nodes.then_some("--nodes"));
             if let Some(option) = given {
                 return Err(Stop::arguments(format!(
-                    "{option} is of no use: {} has its locks already",
+                    "{option} has no effect: {} has its locks already",
                     file.display()
                 )));
             }

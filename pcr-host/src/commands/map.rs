@@ -34,7 +34,7 @@ const SHAPE_BYTES: u64 = 4096;
 pub(super) struct Arguments {
     /// Scenario (JSON); standard input if left out or `-`
     file: Option<PathBuf>,
-    /// Directory for the pictures; created where it does not exist, files in it are overwritten
+    /// Directory for the pictures; created if it does not exist; its files are overwritten
     #[arg(short, long, value_name = "DIR", value_parser = folder())]
     output: PathBuf,
     /// Only the map of this agent, by number or label, with all agents that come near it; may be given several times

@@ -20,7 +20,7 @@ use std::time::Duration;
 const STATUSES: &str = "\
 Exit status:
   0  a plan, checked as by pcr check
-  1  no plan for all agents, also where --leave-out has one for some
+  1  no plan for all agents, even if --leave-out found a plan for some
   2  wrong arguments, or one of the scenarios cannot be read or was refused
   3  the output could not be written";
 
@@ -31,8 +31,8 @@ Examples:
   pcr plan fleet.json --pictures maps               maps before and after
   pcr plan fleet.json --method speed -o plan.json   also waits and other speeds
   pcr plan fleet.json --priority 7,3 --json         agents 7 and 3 first
-  pcr plan fleet.json --leave-out -o plan.json      all but as few as possible
-  pcr plan fleet.json --prove --time-limit 60       the best, if found in 60 s";
+  pcr plan fleet.json --leave-out -o plan.json      leave out the fewest
+  pcr plan fleet.json --prove --time-limit 60       search for at most 60 s";
 
 /// Plan later starts or other speeds, so that nobody collides
 #[derive(Args)]
@@ -44,25 +44,25 @@ pub(super) struct Arguments {
     /// The scenario with the plan; `-` for standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Draw the maps without and with it: DIR/before, DIR/after
+    /// Draw the maps without and with the plan: DIR/before, DIR/after
     #[arg(long, value_name = "DIR", value_parser = folder())]
     pictures: Option<PathBuf>,
-    /// delay: later starts; speed: also on the way
+    /// delay: later starts; speed: also waits on the way and other speeds
     #[arg(long, value_enum, default_value_t = Means::Delay, hide_possible_values = true)]
     method: Means,
     /// Who goes first: agents by number or label with commas between them (`\,` for one in a label), or `longest`, `crowded`, `best` [default: best]
     #[arg(long, value_name = "ORDER", value_parser = asked)]
     priority: Option<Asked>,
-    /// sum of times to arrival, or makespan, the last arrival
+    /// Minimize the sum of times to arrival, or makespan, the last arrival
     #[arg(long, value_enum, value_name = "WHAT", default_value_t = Least::Sum, hide_possible_values = true)]
     objective: Least,
-    /// If there is none for all, leave out as few as possible
+    /// If there is no plan for all, leave out the fewest
     #[arg(long)]
     leave_out: bool,
-    /// Search until it is proved that none is better
+    /// Search until it is proved that no plan is better
     #[arg(long)]
     prove: bool,
-    /// End the search then; the plan may differ from run to run
+    /// End the search after S seconds; plans may vary by run
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<Duration>,
     #[command(flatten)]
@@ -167,7 +167,7 @@ impl Arguments {
         if matches!(self.method, Means::Speed) && (self.prove || self.time_limit.is_some()) {
             let option = if self.prove { "--prove" } else { "--time-limit" };
             return Err(Stop::arguments(format!(
-                "{option} is of no use: only start delays are searched for that long"
+                "{option} has no effect: only start delays are searched for that long"
             )));
         }
         if !matches!(self.priority, None | Some(Asked::Known(_, Priority::Best)))
@@ -175,7 +175,7 @@ impl Arguments {
         {
             let option = if self.prove { "--prove" } else { "--time-limit" };
             return Err(Stop::arguments(format!(
-                "{option} is of no use: --priority gives the order, and no better one is searched for"
+                "{option} has no effect: --priority gives the order, and no better one is searched for"
             )));
         }
         let sources = gathered(self.files.clone(), &self.import)?;

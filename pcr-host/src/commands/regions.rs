@@ -35,7 +35,7 @@ pub(super) struct Arguments {
     files: Vec<PathBuf>,
     #[command(flatten)]
     printed: Printed,
-    /// Only what the agent of this number or label keeps out of
+    /// Only the regions of this agent, by number or label
     #[arg(long, value_name = "ID")]
     agent: Option<String>,
     /// Add the lengths inside each region at N times (JSON only)

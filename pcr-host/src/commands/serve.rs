@@ -23,7 +23,8 @@ const STATUSES: &str = "\
 Exit status:
   0  ended by the end of standard input (without --stay), or by Ctrl-C
   2  wrong arguments, or a journal that is damaged or in use
-  3  the journal could not be opened or written: no right was given after that";
+  3  the journal could not be opened or written; after that, no robot was
+     allowed to go further";
 
 const EXAMPLES: &str = "\
 Examples:
@@ -51,10 +52,10 @@ pub(super) struct Arguments {
     /// Do not end when standard input ends
     #[arg(long)]
     stay: bool,
-    /// How far before a stop robots may stand, in m [0.1; VDA: 0.3]
+    /// How near to its hold a waiting robot's reported position has to come, in m [0.1; VDA 5050: 0.3]
     #[arg(long, value_name = "M")]
     width: Option<f64>,
-    /// How long before braking a robot is told to go on, in s [2; VDA 5050: 8, the least]
+    /// Tell a robot to go on this long before it must brake, in s [2; VDA 5050: 8, also the least]
     #[arg(long, value_name = "S")]
     lookahead: Option<f64>,
     /// A robot is silent after this time, in s
@@ -63,7 +64,7 @@ pub(super) struct Arguments {
     /// Broker of a fleet of VDA 5050; user and password from PCR_BROKER_USER, PCR_BROKER_PASSWORD
     #[arg(long, value_name = "HOST:PORT", requires = "fleet")]
     broker: Option<String>,
-    /// Use TLS; certificate (PEM) that has signed the broker's
+    /// Use TLS; the broker's certificate must be signed by one in FILE (PEM)
     #[arg(long, value_name = "FILE", requires = "broker")]
     authority: Option<PathBuf>,
     /// The file of vehicles (docs/serve.md)
@@ -73,7 +74,7 @@ pub(super) struct Arguments {
     #[arg(long, value_names = ["M", "V"], num_args = 2, default_values = ["fleet", "uagv"])]
     #[arg(requires = "vda5050")]
     topics: Vec<String>,
-    /// With a broker, vehicles on this layout, a manager
+    /// Start a broker, vehicles on LAYOUT and a manager
     #[arg(long, value_name = "LAYOUT", conflicts_with_all = ["broker", "fleet"])]
     demo: Option<PathBuf>,
     /// Vehicles of the demo

@@ -15,8 +15,8 @@ use std::process::ExitCode;
 
 const STATUSES: &str = "\
 Exit status:
-  0  done; under pcr, if it was asked for, without a collision and all of it
-  1  under pcr there was a collision, or a mission was not done
+  0  done; with the controller pcr: without a collision, and all missions done
+  1  with the controller pcr there was a collision, or a mission was not done
   2  wrong arguments, or a scenario that cannot be read or was refused
   3  the output could not be written";
 
@@ -50,19 +50,19 @@ pub(super) struct Arguments {
     /// The same seed gives the same run
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
-    /// Between plans under pcr, 0.05 to 3600 s [default: 2]
+    /// Time between plans under pcr, 0.05 to 3600 s [default: 2]
     #[arg(long, value_name = "S", value_parser = |text: &str| within(text, 0.05, 3600.0))]
     replan: Option<f64>,
-    /// Largest error of places, to 10 m
+    /// Largest camera error, to 10 m
     #[arg(long, value_name = "M", default_value_t = 0.015, value_parser = |text: &str| within(text, 0.0, 10.0))]
     noise: f64,
     /// Largest distance from paths, to 10 m
     #[arg(long, value_name = "M", default_value_t = 0.005, value_parser = |text: &str| within(text, 0.0, 10.0))]
     drift: f64,
-    /// Largest loss to slip, of 1, to 0.9
+    /// Largest fraction of its way that a robot loses to slip, 0 to 0.9
     #[arg(long, value_name = "PART", default_value_t = 0.05, value_parser = |text: &str| within(text, 0.0, 0.9))]
     slip: f64,
-    /// Longest stop, each 10 s or so, to 3600 s
+    /// Longest stop, to 3600 s; each robot stops about every 10 s
     #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = |text: &str| within(text, 0.0, 3600.0))]
     delay: f64,
     /// Trips of each foraging robot (3 if left out)
@@ -104,15 +104,15 @@ impl Arguments {
         if self.foraging
             && let Some(option) = self.import.given().first()
         {
-            return Err(Stop::arguments(format!("{option} is of no use: the foraging robots are as they are")));
+            return Err(Stop::arguments(format!("{option} has no effect: the foraging robots are as they are")));
         }
         if !self.foraging && self.trips.is_some() {
-            return Err(Stop::arguments("--trips is of no use: only foraging robots go to and fro"));
+            return Err(Stop::arguments("--trips has no effect: only foraging robots go to and fro"));
         }
         if matches!(self.controller, Some(Choice::Potential | Choice::Orca)) {
             let margin = self.import.margin.map(|_| "--margin");
             if let Some(option) = self.replan.map(|_| "--replan").or(margin) {
-                return Err(Stop::arguments(format!("{option} is of no use: only pcr plans, and keeps margins")));
+                return Err(Stop::arguments(format!("{option} has no effect: only pcr plans, and keeps margins")));
             }
         }
         let file = if self.foraging { PathBuf::from("--foraging") } else { source(self.file)? };

@@ -95,7 +95,7 @@ pub(super) fn give_margin(scenario: &mut Scenario, import: &Options) -> Result<(
     // What was read from another format has it already.
     let own = |agent: &Agent| agent.margin != 0.0 && agent.margin != margin;
     if !scenario.agents.is_empty() && scenario.agents.iter().all(own) {
-        return Err("--margin is of no use: every agent has a margin of its own".into());
+        return Err("--margin has no effect: every agent has a margin of its own".into());
     }
     scenario.give_margin(margin);
     Ok(())
@@ -105,7 +105,7 @@ pub(super) fn give_margin(scenario: &mut Scenario, import: &Options) -> Result<(
 pub(super) fn without_margin(import: &Options) -> Result<(), Stop> {
     match import.margin {
         Some(_) => Err(Stop::arguments(
-            "--margin is of no use: this is about contacts of the discs themselves; pcr regions and pcr plan keep margins",
+            "--margin has no effect: this is about contacts of the discs themselves; pcr regions and pcr plan keep margins",
         )),
         None => Ok(()),
     }
@@ -206,7 +206,7 @@ pub(super) fn layout(file: &Path, import: &Options, command: &str, moves: bool) 
         _ => "this command lists what is in the file",
     };
     if let Some(option) = import.one_of(useless(command)) {
-        return Err(Stop::arguments(format!("{option} is of no use: {why}")));
+        return Err(Stop::arguments(format!("{option} has no effect: {why}")));
     }
     // Where nothing depends on the size of the vehicle, none is assumed and warned about.
     let import = &match command {

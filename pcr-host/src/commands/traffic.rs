@@ -24,11 +24,12 @@ const STATUSES: &str = "\
 Exit status:
   0  done; no contact, proved
   1  a contact, or one that could not be ruled out, or nobody has a plan;
-     with --hours: a robot that waits for ever, or nobody reached a goal
+     with --hours also: a robot waits for ever or went beyond its hold, or
+     missions waited while nobody reached a goal or moved for too long
   2  wrong arguments, or a layout that cannot be read or was refused
   3  the output could not be written";
 
-/// Plan random missions on a layout: waits, and missions an hour
+/// Plan random missions on a layout: waits and missions per hour
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
@@ -40,16 +41,16 @@ pub(super) struct Arguments {
     /// The same seed gives the same missions
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
-    /// Run the fleet for so many hours, with delays, and prove it
+    /// Run the fleet for H hours with delays; prove no contact
     #[arg(long, value_name = "H", value_parser = hours, conflicts_with = "output")]
     hours: Option<f64>,
-    /// Also with locks, and with start delays
+    /// Run it again with locks, and with start delays
     #[arg(long, requires = "hours")]
     compare: bool,
-    /// Part of the time that robots stand [default: 0.02]
+    /// Fraction of time that robots are stopped [default: 0.02]
     #[arg(long, value_name = "PART", value_parser = part, requires = "hours")]
     stopped: Option<f64>,
-    /// Part of their speed lost at most [default: 0.05]
+    /// Largest fraction of their speed that robots lose [default: 0.05]
     #[arg(long, value_name = "PART", value_parser = part, requires = "hours")]
     slip: Option<f64>,
     #[command(flatten)]
@@ -64,7 +65,7 @@ pub(super) struct Arguments {
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
         if self.hours.is_some() && self.import.corner_radius.is_some() {
-            return Err(Stop::arguments("--corner-radius is of no use: with --hours robots turn in place at corners"));
+            return Err(Stop::arguments("--corner-radius has no effect: with --hours robots turn in place at corners"));
         }
         let file = &layout_source(self.layout)?;
         let imported = layout(file, &self.import, "traffic", true)?;

@@ -96,34 +96,34 @@ fn options_that_do_nothing_are_refused() {
     run(&["locks", &nav2, "--radius", "0.3", "--index", &index, "-q"]).ok();
     let maps = directory("habits").join("no-maps");
     let (maps, discs) =
-        (maps.to_str().unwrap(), "--margin is of no use: this is about contacts of the discs themselves");
-    let (delays, held) = ("is of no use: only start delays are searched for that long", "is of no use: ");
+        (maps.to_str().unwrap(), "--margin has no effect: this is about contacts of the discs themselves");
+    let (delays, held) = ("has no effect: only start delays are searched for that long", "has no effect: ");
     for (arguments, reason) in [
-        (&["check", &scenario, "--horizon"][..], "--horizon is of no use: only orders of VDA 5050 have a horizon"),
-        (&["check", &scenario, "--route", "1:2"], "--route is of no use: a scenario has its own vehicles and paths"),
+        (&["check", &scenario, "--horizon"][..], "--horizon has no effect: only orders of VDA 5050 have a horizon"),
+        (&["check", &scenario, "--route", "1:2"], "--route has no effect: a scenario has its own vehicles and paths"),
         (&["import", "nav2", &nav2, "--from", "lif"], "--from: the format is named already, as the first argument"),
-        (&["check", &plan, "--speed", "1"], "--speed is of no use: a plan has its own times"),
-        (&["regions", &nav2, "--route", "0:1", "--graph", "1"], "--graph is of no use: only buildings of Open-RMF"),
-        (&["locks", &nav2, "--route", "0:1"], "--route is of no use: locks are of all ways of a vehicle"),
-        (&["traffic", &nav2, "--route", "0:1"], "--route is of no use: traffic has random routes"),
-        (&["nodes", &nav2, "--radius", "1"], "--radius is of no use: this command lists what is in the file"),
-        (&["simulate", &scenario, "--trips", "2"], "--trips is of no use: only foraging robots go to and fro"),
-        (&["simulate", "--foraging", "--radius", "1"], "--radius is of no use: the foraging robots are as they are"),
-        (&["simulate", &scenario, "--controller", "orca", "--replan", "1"], "--replan is of no use: only pcr plans"),
+        (&["check", &plan, "--speed", "1"], "--speed has no effect: a plan has its own times"),
+        (&["regions", &nav2, "--route", "0:1", "--graph", "1"], "--graph has no effect: only buildings of Open-RMF"),
+        (&["locks", &nav2, "--route", "0:1"], "--route has no effect: locks are of all ways of a vehicle"),
+        (&["traffic", &nav2, "--route", "0:1"], "--route has no effect: traffic has random routes"),
+        (&["nodes", &nav2, "--radius", "1"], "--radius has no effect: this command lists what is in the file"),
+        (&["simulate", &scenario, "--trips", "2"], "--trips has no effect: only foraging robots go to and fro"),
+        (&["simulate", "--foraging", "--radius", "1"], "--radius has no effect: the foraging robots are as they are"),
+        (&["simulate", &scenario, "--controller", "orca", "--replan", "1"], "--replan has no effect: only pcr plans"),
         (
             &["simulate", &scenario, "--controller", "potential", "--margin", "1"],
-            "--margin is of no use: only pcr plans",
+            "--margin has no effect: only pcr plans",
         ),
-        (&["plan", &wide, "--margin", "0.1"], "--margin is of no use: every agent has a margin of its own"),
-        (&["regions", &wide, "--margin", "0.1"], "--margin is of no use: every agent has a margin of its own"),
+        (&["plan", &wide, "--margin", "0.1"], "--margin has no effect: every agent has a margin of its own"),
+        (&["regions", &wide, "--margin", "0.1"], "--margin has no effect: every agent has a margin of its own"),
         (&["check", &scenario, "--margin", "0.1"], discs),
         (&["compare", &scenario, "--margin", "0.1"], discs),
         (&["map", &scenario, "--margin", "0.1", "-o", maps], discs),
-        (&["check", &plan, "--partial"], "--partial is of no use: it is read whole or refused"),
+        (&["check", &plan, "--partial"], "--partial has no effect: it is read whole or refused"),
         (&["plan", &scenario, "--method", "speed", "--prove"], delays),
         (&["plan", &scenario, "--method", "speed", "--time-limit", "5"], delays),
-        (&["plan", &scenario, "--priority", "longest", "--prove"], "--prove is of no use: --priority gives the order"),
-        (&["plan", &scenario, "--priority", "2", "--time-limit", "5"], "--time-limit is of no use: --priority gives"),
+        (&["plan", &scenario, "--priority", "longest", "--prove"], "--prove has no effect: --priority gives the order"),
+        (&["plan", &scenario, "--priority", "2", "--time-limit", "5"], "--time-limit has no effect: --priority gives"),
         (&["certify", &scenario, "--format", "csv", "--limit"], "--limit is for --format json and table"),
         (
             &["compare", &scenario, "--method", "nonsense"],

@@ -50,7 +50,7 @@ fn what_is_wrong_is_named() {
     assert!(failed.ends_with("route 0:1000: there is no node 1000 (read as nav2)\n"), "{failed}");
     let scenario = file("import", "plain.json", crate::fixture::crossing().to_string());
     let failed = run(&["regions", &scenario, "--radius", "1"]).failed(2);
-    assert!(failed.ends_with(": --radius is of no use: a scenario has its own vehicles and paths\n"), "{failed}");
+    assert!(failed.ends_with(": --radius has no effect: a scenario has its own vehicles and paths\n"), "{failed}");
     let failed = run(&["regions", &scenario, "--from", "nav2"]).failed(2);
     assert!(failed.ends_with("graph, features: missing (read as nav2)\n"), "{failed}");
     let refused = run(&["regions", WAREHOUSE, "--radius=-1"]);
@@ -135,7 +135,7 @@ fn what_would_be_left_out_is_refused_unless_it_is_asked_for() {
     assert!(answer["warnings"].to_string().contains("edge 100, endid: there is no node 44: left out"), "{answer}");
     // A scenario has nothing to leave out.
     let scenario = file("import", "plain.json", crate::fixture::crossing().to_string());
-    assert!(run(&["check", &scenario, "--partial"]).failed(2).contains("--partial is of no use"));
+    assert!(run(&["check", &scenario, "--partial"]).failed(2).contains("--partial has no effect"));
 }
 
 #[test]

@@ -134,11 +134,11 @@ fn another_format_is_read_as_one_file() {
     assert!(unknown.starts_with("pcr: standard input: no scenario, which is a JSON object, nor another"), "{unknown}");
     // An option that does nothing with scenarios is refused as with a file.
     let vain = run_with(&["check", "--radius", "1"], named("a").as_bytes()).failed(2);
-    assert!(vain.contains("standard input: --radius is of no use: a scenario has its own vehicles"), "{vain}");
+    assert!(vain.contains("standard input: --radius has no effect: a scenario has its own vehicles"), "{vain}");
     let mut wide = crossing();
     (0..2).for_each(|agent| wide["agents"][agent]["margin"] = json!(0.05));
     let run = run_with(&["regions", "--margin", "0.1", "-q"], wide.to_string().as_bytes());
-    assert!(run.err.contains("line 1: --margin is of no use: every agent has a margin of its own"), "{}", run.err);
+    assert!(run.err.contains("line 1: --margin has no effect: every agent has a margin of its own"), "{}", run.err);
 }
 
 #[test]

@@ -310,7 +310,7 @@ fn delays_need_a_speed_and_locks_none() {
     let none = run(&["locks", &name, "--radius", "0.25", "--delays"]).failed(2);
     assert!(none.contains("--delays are of one speed: say which, --speed"), "{none}");
     let vain = run(&["locks", &name, "--radius", "0.25", "--speed", "1"]).failed(2);
-    assert!(vain.contains("--speed is of no use: locks are of all ways of a vehicle, at any speed"), "{vain}");
+    assert!(vain.contains("--speed has no effect: locks are of all ways of a vehicle, at any speed"), "{vain}");
     let outline = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/small/factsheet.json");
     let refused = run(&["locks", &name, "--fleet", outline, "--delays", "--speed", "1", "-q"]).failed(2);
     assert!(refused.contains("delays are of discs"), "{refused}");

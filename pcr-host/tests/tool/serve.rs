@@ -188,7 +188,7 @@ fn a_record_is_written_as_a_whole_or_not_at_all() {
     assert_eq!(std::fs::read_to_string(&name).unwrap(), "before");
     assert_eq!(std::fs::read_dir(directory("whole")).unwrap().count(), 1);
     let message = run(&[&fleet[..], &["--profiles", &name]].concat()).failed(2);
-    assert_eq!(message, "pcr: --profiles and --record: two files are written, and these are one\n");
+    assert_eq!(message, "pcr: --profiles and --record name the same file; two files are written\n");
     assert_eq!(std::fs::read_to_string(&name).unwrap(), "before");
 }
 

@@ -153,7 +153,8 @@ impl<'m> Planner<'_, 'm> {
         let ids = |agents: [usize; 2]| agents.map(|agent| self.id(agent));
         let mut unsolved = Vec::new();
         if let Some(circle) = self.circle() {
-            let why = "each has to let the next one pass first, the last one the first, however they move";
+            let why = "circular wait: however they move, each has to let the next one pass first, and the last one \
+                has to let the first one pass first";
             unsolved.push(Unsolved::nowhere(circle.into_iter().map(|agent| self.id(agent)).collect(), why));
         }
         let never = match never {

@@ -135,7 +135,8 @@ impl Starts {
         // For footprints it would not be a proof: the discs around them may have to wait where the footprints need not.
         let circle = if self.outlined { None } else { planner.circle() };
         if let Some(circle) = &circle {
-            let why = "each has to let the next one pass first, the last one the first, however they move";
+            let why = "circular wait: however they move, each has to let the next one pass first, and the last one \
+                has to let the first one pass first";
             unsolved.push(Unsolved::nowhere(ids(circle), why));
         }
         let of_conflict = |conflict: &Vec<usize>| {

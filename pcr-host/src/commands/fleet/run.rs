@@ -166,7 +166,7 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         && !is_standard(Some(profiles))
         && output::are_at_odds(profiles, record)
     {
-        return Err(Stop::arguments("--profiles and --record: two files are written, and these are one"));
+        return Err(Stop::arguments("--profiles and --record name the same file; two files are written"));
     }
     let free = world.manager.free();
     if free < vehicles {
