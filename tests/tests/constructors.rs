@@ -1,7 +1,8 @@
 //! What the constructors refuse. That nothing gets past them that could do harm later is in `limits.rs`.
 
 use pcr_core::{
-    Brakes, Encounter, Invalid, Limits, Motion, Path, PathRef, Phase, Point, Pose, Profile, ProfileRef, Segment, Turn,
+    Brakes, Encounter, Invalid, Limits, Motion, Path, PathRef, Phase, Point, Pose, Profile, ProfileRef, Radians,
+    Segment, Turn,
 };
 use pcr_formats::scenario::{LENGTH_TOLERANCE, Scenario};
 use pcr_planning::fleet::{Fleet, Format};
@@ -52,7 +53,7 @@ fn each<S: Format, T>(values: Vec<Refusal>, what: &'static str, make: impl Fn(S)
     }
 }
 
-fn poses<S: Format>() {
+fn poses<S: Format<Angle = Radians<S>>>() {
     each::<S, _>(refused_anywhere::<S>(), "x", |x| {
         Segment::standing(Pose { position: Point::new(x, S::ZERO), ..at(0.0, 0.0, 0.0) })
     });
@@ -60,7 +61,8 @@ fn poses<S: Format>() {
         Segment::standing(Pose { position: Point::new(S::ZERO, y), ..at(0.0, 0.0, 0.0) })
     });
     for heading in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        assert_eq!(Path::<S, 1>::starting_at(at(0.0, 0.0, heading)).err(), Some(Invalid::NonFinite("heading")));
+        let pose = Pose { heading: Radians(S::from_f64(heading)), ..at(0.0, 0.0, 0.0) };
+        assert_eq!(Path::<S, 1>::starting_at(pose).err(), Some(Invalid::NonFinite("heading")));
     }
 }
 

@@ -71,8 +71,8 @@ where
                     *profile = speeds.profile;
                     motion.with_profile(profile.as_profile(), speeds.start).map_err(invalid)
                 }
-                // There is no room for other speeds: what is left are start delays.
-                Err(NoSpeedPlan::Invalid(_)) if drive.is_none() => {
+                // There is no room for other speeds, or there are none, as without acceleration: what is left are start delays.
+                Err(NoSpeedPlan::Invalid(reason)) if drive.is_none() || !matches!(reason, Invalid::Full(_)) => {
                     later.ok_or_else(|| late.map_or_else(|| delays::blocking(agent, regions, before), invalid))
                 }
                 speeds => later.ok_or_else(|| blocking(agent, regions, speeds.err())),
@@ -97,9 +97,6 @@ fn blocking<'a, S: Scalar>(
             // Another region than the first that was found may have no remedy.
             let never = regions.find_map(|region| separated(&region));
             never.map_or(Blocked::By(other), Blocked::Never)
-        }
-        Some(NoSpeedPlan::Invalid(reason)) if !matches!(reason, Invalid::Full(_)) => {
-            Blocked::Never(Unsolved::Invalid { agent, reason })
         }
         _ => Blocked::Never(Unsolved::Full(agent)),
     }

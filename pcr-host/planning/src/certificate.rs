@@ -188,7 +188,10 @@ mod tests {
             { "kind": "arc", "radius": 0.7, "sweep": -13.1 },
         ]);
         let start = json!({ "x": 1.3, "y": -2.1, "heading": 1e5 });
-        let agent = json!({ "id": 7, "radius": 0.31, "v_max": 1.0, "a_max": 0.5, "t_start": 3.3, "start": start, "path": path });
+        let agent = json!({
+            "id": 7, "radius": 0.31, "v_max": 1.0, "a_max": 0.5, "turn_v_max": 1.0, "turn_a_max": 1.0, "t_start": 3.3,
+            "start": start, "path": path,
+        });
         let scenario = Scenario::from_value(&json!({ "agents": [agent] })).expect("a scenario");
         let fleet = Fleet::<S>::new(&scenario).expect("it fits");
         let told = |scenario: &Scenario| {

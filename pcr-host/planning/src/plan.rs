@@ -30,8 +30,8 @@ use pcr_formats::scenario::{Labels, Scenario};
 
 pub use reason::Spot;
 use serde::Serialize;
-use starts::Starts;
 pub(crate) use starts::some as start_delays;
+use starts::{Known, Starts};
 use task::Planner;
 
 /// How conflicts are avoided.
@@ -178,6 +178,9 @@ impl Unsolved {
     }
 }
 
+/// Largest number of agents that are tried to be put back into a plan by speeds; each takes a plan of all others.
+const PUT_BACK: usize = 16;
+
 /// What an agent alone takes in a plan and its proof \[bytes\]; those that come near one another ask for more.
 const AGENT_BYTES: u64 = 3800;
 
@@ -233,25 +236,43 @@ impl Plan {
         if request.method == Method::Speed && solved.is_none() {
             plan.unsolved = starts.added(&planner, plan.unsolved);
         }
-        let staying = if request.leave_out && solved.is_none() { starts.staying() } else { Vec::new() };
+        let mut staying = if request.leave_out && solved.is_none() { starts.staying() } else { Vec::new() };
         if staying.is_empty() {
             return Ok((plan, solved));
         }
-        let rest = Scenario {
-            agents: staying.iter().map(|&agent| scenario.agents[agent].clone()).collect(),
-            ..scenario.clone()
+        let of_rest = |staying: &[usize], known: Option<Known>| {
+            let agents = staying.iter().map(|&agent| scenario.agents[agent].clone()).collect();
+            let rest = Scenario { agents, ..scenario.clone() };
+            let fleet = Fleet::<f64>::new(&rest)?;
+            let motions = grown(&fleet);
+            // An order may name those that are left out.
+            let request = &request.among(&rest);
+            Planner { scenario: &rest, request, motions: &motions }.plan(known)
         };
-        let fleet = Fleet::<f64>::new(&rest)?;
-        let motions = grown(&fleet);
-        // An order may name those that are left out.
-        let request = &request.among(&rest);
-        let of_rest = Planner { scenario: &rest, request, motions: &motions };
-        let (mut partial, solved) = of_rest.plan(Some(starts.known(&staying)))?;
+        let (mut partial, mut solved) = of_rest(&staying, Some(starts.known(&staying)))?;
+        // Whom no start delay keeps, other speeds may.
+        let out = |staying: &[usize]| -> Vec<usize> {
+            (0..scenario.agents.len()).filter(|agent| staying.binary_search(agent).is_err()).collect()
+        };
+        let more = if request.method == Method::Speed { PUT_BACK } else { 0 };
+        for agent in out(&staying).into_iter().take(more) {
+            let mut with = staying.clone();
+            with.insert(with.partition_point(|&other| other < agent), agent);
+            if let (plan, Some(found)) = of_rest(&with, None)? {
+                (staying, partial, solved) = (with, plan, Some(found));
+            }
+        }
         partial.labels = plan.labels;
-        // The remaining agents are in order.
-        let leaves = |agent: &usize| staying.binary_search(agent).is_err();
-        partial.left_out = (0..planner.motions.len()).filter(leaves).map(|agent| planner.id(agent)).collect();
+        partial.left_out = out(&staying).into_iter().map(|agent| planner.id(agent)).collect();
         partial.unsolved.splice(0..0, plan.unsolved);
+        // Of those that have a plan together nobody has to be left out.
+        let is_told = |ids: &[u64]| ids.is_empty() || ids.iter().any(|id| partial.left_out.contains(id));
+        partial.unsolved.retain(|unsolved| !partial.left_out.is_empty() && is_told(&unsolved.ids));
+        if let (Some(solved), false) = (&mut solved, partial.left_out.is_empty()) {
+            let (count, all) = (partial.left_out.len(), scenario.agents.len());
+            let called: Vec<String> = out(&staying).into_iter().map(|agent| scenario.agents[agent].called()).collect();
+            solved.warnings.push(format!("left out of the plan: {count} of {all} agents: {}", called.join(", ")));
+        }
         Ok((partial, solved))
     }
 }

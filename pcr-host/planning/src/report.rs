@@ -26,7 +26,7 @@ pub use locks::{
 };
 pub use nodes::{nodes_csv, nodes_table};
 pub use overview::overview;
-pub use plans::{PLAN_CSV_HEADER, plan_csv, plan_table};
+pub use plans::{PLAN_CSV_HEADER, left_open, plan_csv, plan_table, reasons};
 pub use rows::{Unprinted, sheet_csv, sheet_json};
 pub use simulation::{simulation_csv, simulation_table};
 pub use table::table;

@@ -247,13 +247,27 @@ impl Arguments {
             // Where there can be none, there is no file of the plan, either.
             output::folder(directory).map_err(|error| Stop::not_written(directory, &error))?;
         }
-        if let (Some(output), Some(solved)) = (&self.output, &solved) {
-            write_over(output, &solved.to_json(), source.file(), || source.is_scenario(&self.import))?;
+        match (&self.output, &solved) {
+            (Some(output), Some(solved)) => {
+                write_over(output, &solved.to_json(), source.file(), || source.is_scenario(&self.import))?;
+            }
+            // Nobody would miss it in a stream of plans: what reads them refuses this.
+            (Some(output), None) if is_standard(Some(output)) => {
+                let why = report::reasons(&plan).next().unwrap_or_default();
+                let missing = serde_json::json!({ "name": scenario.name, "error": format!("no plan: {why}") });
+                write_over(output, &format!("{missing}\n"), source.file(), || Ok(false))?;
+            }
+            _ => {}
         }
         match self.printed.form() {
             Form::Table => report::plan_table(&plan, out)?,
             Form::Json => report::json(&plan, out)?,
-            Form::Csv => report::plan_csv(&plan, out)?,
+            Form::Csv => {
+                report::plan_csv(&plan, out)?;
+                // Its lines are agents.
+                let (file, open) = (source.file().display(), report::left_open(&plan));
+                open.into_iter().chain(report::reasons(&plan)).for_each(|line| complain(&format!("{file}: {line}")));
+            }
         }
         out.flush()?;
         if let Some(directory) = &self.pictures {

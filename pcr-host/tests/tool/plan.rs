@@ -214,7 +214,7 @@ fn what_is_refused() {
     assert!(
         run(&["plan", "--help"])
             .ok()
-            .contains("  1  no plan for all agents, also where --leave-out has one for some\n")
+            .contains("  1  no plan for all agents, even if --leave-out found a plan for some\n")
     );
 }
 
@@ -297,4 +297,99 @@ fn labels_with_commas_can_be_given_a_priority() {
     (labelled["agents"][0]["label"], labelled["agents"][1]["label"]) = (json!("dock, left"), json!("b"));
     let (status, report, _) = plan("commas", &labelled, &["--priority", "b,dock\\, left"]);
     assert_eq!((status, &report["order"]), (0, &json!([2, 1])), "{report}");
+}
+
+/// A robot on a line, and one on an arc across it: it stands at its start in the way of the line, and at its end, but not in one region.
+fn twice_across() -> Vec<Value> {
+    vec![
+        json!({ "id": 3, "radius": 0.31, "v_max": 1, "a_max": 1, "start": { "x": 2.03, "y": -1.73, "heading": 2.1 },
+            "path": [{ "kind": "line", "length": 1.74 }] }),
+        json!({ "id": 4, "radius": 0.27, "v_max": 1, "a_max": 1, "start": { "x": 1.95, "y": -2.35, "heading": 2.61 },
+            "path": [{ "kind": "arc", "radius": 2.39, "sweep": -1.33 }] }),
+    ]
+}
+
+#[test]
+fn two_regions_that_start_delays_cannot_pass_have_orders_by_other_speeds() {
+    let name = file("plan", "twice.json", json!({ "agents": twice_across() }).to_string());
+    let delays = run(&["plan", &name]);
+    let told = "no start delays are possible, other speeds may be: the second stands at its start in the way of the first, on lengths ";
+    assert!(delays.status == 1 && delays.out.contains(told), "{}", delays.out);
+    assert_eq!(delays.out.matches(" on lengths ").count(), 2, "{}", delays.out);
+    assert_eq!(run(&["plan", &name, "--method", "speed"]).status, 0);
+}
+
+/// For start delays two of these four are left out; other speeds bring one of them back.
+#[test]
+fn whom_other_speeds_keep_is_not_left_out() {
+    let stands = |id: u64, x: f64| {
+        json!({ "id": id, "radius": 1, "v_max": 1, "a_max": 1, "start": { "x": x, "y": 0, "heading": 0 }, "path": [] })
+    };
+    let mut agents = twice_across();
+    agents.extend([stands(91, 100.0), stands(92, 101.0)]);
+    let name = file("plan", "fewest.json", json!({ "agents": agents }).to_string());
+    let said = run(&["plan", &name, "--method", "speed", "--leave-out", "--json"]).json_of(1);
+    assert_eq!(said["left_out"].as_array().map(Vec::len), Some(1), "{said}");
+    let out = &said["left_out"][0];
+    assert!(*out == 91 || *out == 92, "{said}");
+    let unsolved = said["unsolved"].as_array().unwrap();
+    assert!(unsolved.len() == 1 && unsolved[0]["ids"].as_array().unwrap().contains(out), "{said}");
+    // The file of the plan says so, too.
+    let plan = run(&["plan", &name, "--method", "speed", "--leave-out", "-q", "-o", "-"]).out;
+    let plan: Value = serde_json::from_str(&plan).unwrap();
+    assert_eq!(plan["warnings"][0], format!("left out of the plan: 1 of 4 agents: {out}"));
+}
+
+#[test]
+fn pairs_that_never_have_a_plan_are_named_by_speeds_as_well() {
+    // Without acceleration there are no other speeds; the pair overlaps at its starts.
+    let agents = json!([
+        { "id": 7, "radius": 0.2, "v_max": 1, "a_max": 1, "start": { "x": 0, "y": 0, "heading": 3.14159 }, "path": [{ "kind": "line", "length": 4 }] },
+        { "id": 9, "radius": 0.2, "profile": { "v0": 1, "pieces": [{ "duration": 4, "accel": 0 }] }, "start": { "x": 0.3, "y": 0, "heading": 0 },
+          "path": [{ "kind": "line", "length": 4 }] }]);
+    let steady = file("plan", "steady.json", json!({ "agents": agents }).to_string());
+    // Nearer than its margins at its start, in motion.
+    let agents = json!([
+        { "id": 7, "radius": 0.2, "margin": 0.1, "v_max": 1, "a_max": 1, "start": { "x": 0, "y": 0, "heading": 3.14159 },
+          "path": [{ "kind": "line", "length": 4 }] },
+        { "id": 9, "radius": 0.2, "margin": 0.1, "t_start": 2, "start": { "x": 0.5, "y": 0, "heading": 0 },
+          "profile": { "v0": 1, "pieces": [{ "duration": 2, "accel": 0.5 }, { "duration": 0.5, "accel": 0 }] },
+          "path": [{ "kind": "line", "length": 4 }] }]);
+    let margins = file("plan", "moving.json", json!({ "agents": agents }).to_string());
+    for (name, told) in [(&steady, "they overlap at their starts"), (&margins, "they are nearer than their margins at their starts")] {
+        let said = run(&["plan", name, "--method", "speed", "--json"]).json_of(1);
+        let unsolved = said["unsolved"].as_array().unwrap();
+        assert!(unsolved.len() == 1 && unsolved[0]["ids"] == json!([9, 7]), "{said}");
+        assert!(unsolved[0]["why"].as_str().unwrap().starts_with(told), "{said}");
+    }
+}
+
+#[test]
+fn speeds_are_told_in_the_order_that_is_asked_for() {
+    let asked: Vec<u64> = (1..=12).rev().collect();
+    let names: Vec<String> = asked.iter().map(u64::to_string).collect();
+    let said = run(&["plan", PAPER, "--method", "speed", "--priority", &names.join(","), "--json"]).json();
+    let order: Vec<u64> = serde_json::from_value(said["order"].clone()).unwrap();
+    // Agents that have no plan otherwise are moved up.
+    assert_eq!(&order[..2], &asked[..2], "{order:?}");
+    let starts = |id: u64| said["agents"].as_array().unwrap().iter().find(|agent| agent["id"] == id).unwrap()["delay"].clone();
+    assert!(order.iter().any(|&id| starts(id) != json!(0.0)));
+}
+
+#[test]
+fn a_scenario_without_a_plan_is_missed_in_no_stream() {
+    let head_on = |id: u64, x: f64, heading: f64| {
+        json!({ "id": id, "radius": 0.3, "v_max": 1, "a_max": 1, "start": { "x": x, "y": 0, "heading": heading },
+            "path": [{ "kind": "line", "length": 6 }] })
+    };
+    let agents = json!([head_on(1, -3.0, 0.0), head_on(2, 3.0, std::f64::consts::PI)]);
+    let name = file("plan", "head-on.json", json!({ "name": "head-on", "agents": agents }).to_string());
+    let csv = run(&["plan", &name, "--format", "csv"]);
+    assert_eq!((csv.status, csv.out.lines().count()), (1, 1));
+    assert!(csv.err.starts_with(&format!("pcr: {name}: no plan\npcr: {name}: agents ")), "{}", csv.err);
+    let stream = run(&["plan", &name, PAPER, "-q", "-o", "-"]);
+    assert_eq!((stream.status, stream.out.lines().count()), (1, 2), "{}", stream.out);
+    let checked = run_with(&["check", "-"], stream.out.as_bytes());
+    assert_eq!(checked.status, 2);
+    assert!(checked.err.contains("1 of 2 scenarios refused"), "{}", checked.err);
 }

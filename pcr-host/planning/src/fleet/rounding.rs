@@ -21,9 +21,15 @@ impl Rounding {
     /// of the headings times its length, and by that of the lengths. Where times differ: a difference of two motions is a
     /// parabola between two times at which one of them changes its acceleration.
     pub(crate) fn of<S: Format>(agent: &Agent, motion: &Motion<'_, S>) -> Self {
-        let Self { distance, length } = of_path::<S>(agent);
+        let Self { distance, length } = Self::of_numbers(agent, motion);
         let digits = S::slack(motion.extent()).to_f64();
-        Self { distance: distance + 2.0 * length + of_times(agent, motion) + 2.0 * digits, length: length + digits }
+        Self { distance: distance + 2.0 * digits, length: length + digits }
+    }
+
+    /// The same of the numbers alone, without what sums of them lose.
+    fn of_numbers<S: Format>(agent: &Agent, motion: &Motion<'_, S>) -> Self {
+        let Self { distance, length } = of_path::<S>(agent);
+        Self { distance: distance + 2.0 * length + of_times(agent, motion), length }
     }
 }
 
@@ -41,8 +47,11 @@ pub fn rounded<S: Format>(scenario: &Scenario) -> Result<Option<String>, Refused
     }
     let fleet = Fleet::<S>::new(scenario)?;
     let motions = fleet.motions();
-    let distances =
-        scenario.agents.iter().zip(&motions).map(|(agent, motion)| (Rounding::of(agent, motion).distance, agent));
+    let distances = scenario
+        .agents
+        .iter()
+        .zip(&motions)
+        .map(|(agent, motion)| (Rounding::of_numbers(agent, motion).distance, agent));
     let told: Vec<(f64, &Agent)> = distances.filter(|(distance, _)| *distance > UNTOLD).collect();
     let worst = told.iter().max_by(|(a, _), (b, _)| a.total_cmp(b));
     Ok(worst.map(|(distance, agent)| {

@@ -3,7 +3,7 @@
 use super::delays::Objective;
 use super::starts::Known;
 use super::task::Planner;
-use super::{Answer, Method, Plan, Planned, Unsolved, bound, sides, speeds};
+use super::{Answer, Method, Plan, Planned, Priority, Unsolved, bound, sides, speeds};
 use crate::certify::Proof;
 use crate::check::Verdict;
 use crate::regions::Failure;
@@ -13,6 +13,9 @@ use rayon::prelude::*;
 
 /// Costs that differ by less are printed alike \[s\].
 const NEAR: f64 = 1e-4;
+
+/// Times of this size are what a rounding leaves of none \[s\]. Other number formats could not hold them.
+const ROUNDED: f64 = 1e-12;
 
 impl<'m> Planner<'_, 'm> {
     /// A plan without agents.
@@ -59,13 +62,16 @@ impl<'m> Planner<'_, 'm> {
             Method::Speed => {
                 let mut pool = speeds::pool(self.motions.len());
                 match speeds::plan(self, later.clone(), &mut pool)? {
-                    Ok(planned) => {
-                        let answer = self.answer(&planned, None)?;
+                    Ok((planned, order)) => {
+                        let (mut plan, mut solved) = self.answer(&planned, None)?;
                         // If no other speeds are found, the delays are the plan.
-                        match later.filter(|_| answer.1.is_none()) {
-                            Some(later) => self.answer(&later, None),
-                            None => Ok(answer),
+                        if let Some(later) = later.filter(|_| solved.is_none()) {
+                            (plan, solved) = self.answer(&later, None)?;
                         }
+                        if self.request.priority != Priority::Best && solved.is_some() {
+                            plan.order = order.into_iter().map(|agent| self.id(agent)).collect();
+                        }
+                        Ok((plan, solved))
                     }
                     Err(never) => Ok((Plan { unsolved: self.unsolved(never), ..self.none() }, None)),
                 }
@@ -157,26 +163,32 @@ impl<'m> Planner<'_, 'm> {
                 has to let the first one pass first";
             unsolved.push(Unsolved::nowhere(circle.into_iter().map(|agent| self.id(agent)).collect(), why));
         }
-        let never = match never {
-            Never::Starts(agents) | Never::Ends(agents) | Never::Always(agents) => {
-                // The search stops at the first. Where there is no table of all, that one is no less true.
-                let (all, unknown) = match self.never() {
-                    Ok(all) if !all.is_empty() => (all, None),
-                    Ok(_) => (vec![agents], None),
-                    Err(failure) => (vec![agents], Some(format!("other pairs were not looked for: {failure}"))),
-                };
-                unsolved.par_extend(all.into_par_iter().map(|agents| Unsolved::of(self.scenario, ids(agents), true)));
-                unsolved.extend(unknown.map(|why| Unsolved::nowhere(Vec::new(), why)));
-                return unsolved;
-            }
-            other => other,
+        let certain = match never {
+            Never::Starts(agents) | Never::Ends(agents) | Never::Always(agents) => Some(agents),
+            _ => None,
         };
-        unsolved.push(match never {
-            Never::Priorities(agents) => Unsolved::of(self.scenario, ids(agents), false),
-            Never::Full(agent) => Unsolved::nowhere(vec![self.id(agent)], "its plan takes too many profiles or phases"),
-            Never::Invalid { agent, reason } => Unsolved::nowhere(vec![self.id(agent)], reason.to_string()),
-            other => Unsolved::nowhere(Vec::new(), other.to_string()),
-        });
+        // The search stops at the first reason. Where there is no table of all, that one is no less true.
+        let (pairs, unknown) = match self.never() {
+            Ok(all) if !all.is_empty() => (all, None),
+            Ok(_) => (Vec::from_iter(certain), None),
+            Err(failure) => (Vec::from_iter(certain), Some(format!("other pairs were not looked for: {failure}"))),
+        };
+        let is_certain = !pairs.is_empty();
+        unsolved.par_extend(pairs.into_par_iter().map(|agents| Unsolved::of(self.scenario, ids(agents), true)));
+        if !is_certain {
+            unsolved.push(match never {
+                Never::Priorities(agents) => Unsolved::of(self.scenario, ids(agents), false),
+                Never::Overlap(agents) => {
+                    Unsolved::nowhere(ids(agents).to_vec(), "they overlap by the plan that was found")
+                }
+                Never::Full(agent) => {
+                    Unsolved::nowhere(vec![self.id(agent)], "its plan takes too many profiles or phases")
+                }
+                Never::Invalid { agent, reason } => Unsolved::nowhere(vec![self.id(agent)], reason.to_string()),
+                other => Unsolved::nowhere(Vec::new(), other.to_string()),
+            });
+        }
+        unsolved.extend(unknown.map(|why| Unsolved::nowhere(Vec::new(), why)));
         unsolved
     }
 
@@ -195,11 +207,16 @@ impl<'m> Planner<'_, 'm> {
     fn solved(&self, planned: &[Motion<'_, f64>]) -> Scenario {
         let mut solved = self.scenario.clone();
         for ((agent, given), motion) in solved.agents.iter_mut().zip(self.motions).zip(planned) {
-            agent.t_start = motion.time().lo;
+            let start = motion.time().lo;
+            // A start that a rounding has moved is that of the file.
+            if (start - given.time().lo).abs() > ROUNDED {
+                agent.t_start = start;
+            }
             let phases = motion.profile().phases();
             if phases != given.profile().phases() {
                 let v0 = phases.first().map_or(0.0, |first| first.speed()[0]);
                 let pieces = phases.iter().map(|phase| (phase.time().length(), phase.acceleration()));
+                let pieces = pieces.filter(|(duration, _)| *duration > ROUNDED);
                 agent.motion = MotionSpec::Profile { v0, pieces: pieces.collect() };
             }
         }

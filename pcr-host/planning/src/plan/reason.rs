@@ -67,8 +67,9 @@ fn found(scenario: &Scenario, ids: [u64; 2], always: bool, general: &str) -> Opt
     let others: Vec<u32> = pair.of(1).map(|disc| disc as u32).collect();
     let rows = pair.of(0).map(|disc| Row::new(&grown, disc, &others)).collect::<Result<Vec<_>, _>>().ok()?;
     let all: Vec<Met<'_>> = rows.iter().flat_map(|row| pair.met(row)).collect();
-    let last = all.iter().find(|met| met.sides()[0]);
-    let first = all.iter().find(|met| met.sides()[1]);
+    let never = all.iter().find(|met| met.sides() == [true; 2]);
+    let last = never.or_else(|| all.iter().find(|met| met.sides()[0]));
+    let first = never.or_else(|| all.iter().find(|met| met.sides()[1]));
     let longest = || all.iter().max_by(|a, b| a.region.length().length().total_cmp(&b.region.length().length()));
     let stand = || always.then(|| pair.standing(false).or_else(|| pair.standing(true))).flatten();
     Some(match (stand(), always, first, last) {
@@ -76,7 +77,11 @@ fn found(scenario: &Scenario, ids: [u64; 2], always: bool, general: &str) -> Opt
         (None, true, Some(first), Some(last)) => {
             let is_contact = pair.has_contact(first) && pair.has_contact(last);
             let margins = if is_contact { "" } else { ", within their margins" };
-            (contradiction(last, first) + margins, last.spot(references[0]))
+            // Two regions, of which each has an order, are passed by other speeds, maybe.
+            match never {
+                Some(_) => (contradiction(last, first) + margins, last.spot(references[0])),
+                None => (apart(last, first, references[0]) + margins, first.spot(references[0])),
+            }
         }
         _ => (general.to_owned(), last.or_else(longest)?.spot(references[0])),
     })
@@ -194,20 +199,32 @@ const HEAD_ON: &str = "head-on without a passing place";
 /// One of them starts and ends on the way of the other.
 const NO_ORDER: &str = "no order is possible";
 
-/// The reason in words: a region that has to be passed second, and one that has to be passed first.
+/// The reason in words: a region that has to be passed second, and one that has to be passed first, if it is the same one.
 fn contradiction(second: &Met<'_>, first: &Met<'_>) -> String {
+    let (kind, not_first, not_second) = obstacles(second, first);
+    format!("{kind}: {}, and {}", not_first.words(), not_second.words())
+}
+
+/// The reason in words if they are two; the place of the one to be passed first follows.
+fn apart(second: &Met<'_>, first: &Met<'_>, reference: &Motion<'_, f64>) -> String {
+    let (_, not_first, not_second) = obstacles(second, first);
+    let (second, not_first, not_second) = (second.spot(reference).words(), not_first.words(), not_second.words());
+    format!("no start delays are possible, other speeds may be: {not_first}, {second}; and {not_second}")
+}
+
+/// What is in the way, in short, of passing one region first and the other one second.
+fn obstacles(second: &Met<'_>, first: &Met<'_>) -> (&'static str, Obstacle, Obstacle) {
     let other_start = second.other.is_at_start() && second.region.is_open_at_start();
     let other_end = first.other.is_at_end() && first.region.is_open_at_end();
     let own_start = first.own.is_at_start() && first.region.length().lo <= 0.0;
     let path = second.region.ego_motion().path();
     let own_end = second.own.is_at_end() && second.region.length().hi >= path.length();
-    let (kind, not_first, not_second) = match () {
+    match () {
         () if other_start && own_start => (HEAD_ON, Obstacle::OtherStart, Obstacle::OwnStart),
         () if own_end && other_end => (HEAD_ON, Obstacle::OwnEnd, Obstacle::OtherEnd),
         () if other_start => (NO_ORDER, Obstacle::OtherStart, Obstacle::OtherEnd),
         () => (NO_ORDER, Obstacle::OwnEnd, Obstacle::OwnStart),
-    };
-    format!("{kind}: {}, and {}", not_first.words(), not_second.words())
+    }
 }
 
 impl Spot {

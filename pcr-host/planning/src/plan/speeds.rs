@@ -37,14 +37,17 @@ pub(super) fn pool(agents: usize) -> Vec<Speeds> {
 /// The best motions so far, or why the orders that were tried gave none.
 type Best<'m> = Result<Vec<Motion<'m, f64>>, Option<Never>>;
 
+/// Motions, and the order to which their search led.
+type Ordered<'m> = (Vec<Motion<'m, f64>>, Vec<usize>);
+
 type Room<'m> = std::slice::IterMut<'m, Speeds>;
 
-/// The best motions found, beginning with known ones.
+/// The best motions found, beginning with known ones, and the last order that was tried.
 pub(super) fn plan<'m>(
     planner: &Planner<'_, 'm>,
     known: Option<Vec<Motion<'m, f64>>>,
     pool: &'m mut [Speeds],
-) -> Result<Result<Vec<Motion<'m, f64>>, Never>, Failure> {
+) -> Result<Result<Ordered<'m>, Never>, Failure> {
     let ecm = &planner.ecm()?;
     // A part of the storage is kept for the last step.
     let (kept_back, pool) = pool.split_at_mut(AGAIN * planner.motions.len());
@@ -85,7 +88,7 @@ pub(super) fn plan<'m>(
             again(planner, ecm, plan, &mut last, &mut stations);
         }
     }
-    Ok(best.map_err(|never| never.expect("there is an order at least, which was tried")))
+    Ok(best.map(|plan| (plan, kept)).map_err(|never| never.expect("there is an order at least, which was tried")))
 }
 
 /// The earliest arrival of one agent while the others keep their motions: with other speeds, or, if its own motion is slower

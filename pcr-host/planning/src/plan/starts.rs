@@ -124,7 +124,8 @@ impl Starts {
             ids
         };
         let known: HashSet<Vec<u64>> = all.iter().map(sorted).collect();
-        all.extend(self.unsolved(planner).into_iter().filter(|unsolved| !known.contains(&sorted(unsolved))));
+        let more = self.unsolved(planner).into_iter().filter(|unsolved| !known.contains(&sorted(unsolved)));
+        all.extend(more.map(|unsolved| Unsolved { why: format!("by start delays: {}", unsolved.why), ..unsolved }));
         all
     }
 

@@ -37,13 +37,7 @@ pub fn plan_table(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
             writeln!(out, "{name}: a plan without conflicts for some, by {}; left out: {left_out}", means(plan))?;
         }
     }
-    for unsolved in &plan.unsolved {
-        match unsolved.ids.as_slice() {
-            [] => writeln!(out, "  {}", unsolved.why)?,
-            [id] => writeln!(out, "  agent {}: {}", called(&plan.labels, *id), unsolved.why)?,
-            ids => writeln!(out, "  agents {}: {}", all_called(&plan.labels, ids), unsolved.why)?,
-        }
-    }
+    reasons(plan).try_for_each(|reason| writeln!(out, "  {reason}"))?;
     if plan.agents.is_empty() && !plan.unsolved.is_empty() {
         return Ok(());
     }
@@ -59,6 +53,24 @@ pub fn plan_table(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
     match &plan.certificate {
         Some(proof) => writeln!(out, "{}", proof_line(proof, &plan.labels)),
         None => Ok(()),
+    }
+}
+
+/// Why there is no plan for all, a line a reason.
+pub fn reasons(plan: &Plan) -> impl Iterator<Item = String> {
+    plan.unsolved.iter().map(|unsolved| match unsolved.ids.as_slice() {
+        [] => unsolved.why.clone(),
+        [id] => format!("agent {}: {}", called(&plan.labels, *id), unsolved.why),
+        ids => format!("agents {}: {}", all_called(&plan.labels, ids), unsolved.why),
+    })
+}
+
+/// What a plan leaves open, in a line: all agents, or those that it leaves out; `None` if it is for all.
+pub fn left_open(plan: &Plan) -> Option<String> {
+    match (plan.agents.is_empty() && !plan.unsolved.is_empty(), plan.left_out.as_slice()) {
+        (true, _) => Some("no plan".into()),
+        (false, []) => None,
+        (false, ids) => Some(format!("left out: {}", all_called(&plan.labels, ids))),
     }
 }
 
