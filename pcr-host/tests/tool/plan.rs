@@ -1,6 +1,6 @@
 //! `pcr plan`: a plan is a scenario that the check finds free.
 
-use crate::fixture::{PAPER, crossing, directory, file, run, straight};
+use crate::fixture::{PAPER, crossing, directory, file, run, run_with, straight};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
@@ -322,9 +322,7 @@ fn two_regions_that_start_delays_cannot_pass_have_orders_by_other_speeds() {
 /// For start delays two of these four are left out; other speeds bring one of them back.
 #[test]
 fn whom_other_speeds_keep_is_not_left_out() {
-    let stands = |id: u64, x: f64| {
-        json!({ "id": id, "radius": 1, "v_max": 1, "a_max": 1, "start": { "x": x, "y": 0, "heading": 0 }, "path": [] })
-    };
+    let stands = |id: u64, x: f64| json!({ "id": id, "radius": 1, "v_max": 1, "a_max": 1, "start": { "x": x, "y": 0, "heading": 0 }, "path": [] });
     let mut agents = twice_across();
     agents.extend([stands(91, 100.0), stands(92, 101.0)]);
     let name = file("plan", "fewest.json", json!({ "agents": agents }).to_string());
@@ -356,7 +354,9 @@ fn pairs_that_never_have_a_plan_are_named_by_speeds_as_well() {
           "profile": { "v0": 1, "pieces": [{ "duration": 2, "accel": 0.5 }, { "duration": 0.5, "accel": 0 }] },
           "path": [{ "kind": "line", "length": 4 }] }]);
     let margins = file("plan", "moving.json", json!({ "agents": agents }).to_string());
-    for (name, told) in [(&steady, "they overlap at their starts"), (&margins, "they are nearer than their margins at their starts")] {
+    for (name, told) in
+        [(&steady, "they overlap at their starts"), (&margins, "they are nearer than their margins at their starts")]
+    {
         let said = run(&["plan", name, "--method", "speed", "--json"]).json_of(1);
         let unsolved = said["unsolved"].as_array().unwrap();
         assert!(unsolved.len() == 1 && unsolved[0]["ids"] == json!([9, 7]), "{said}");
@@ -372,7 +372,8 @@ fn speeds_are_told_in_the_order_that_is_asked_for() {
     let order: Vec<u64> = serde_json::from_value(said["order"].clone()).unwrap();
     // Agents that have no plan otherwise are moved up.
     assert_eq!(&order[..2], &asked[..2], "{order:?}");
-    let starts = |id: u64| said["agents"].as_array().unwrap().iter().find(|agent| agent["id"] == id).unwrap()["delay"].clone();
+    let starts =
+        |id: u64| said["agents"].as_array().unwrap().iter().find(|agent| agent["id"] == id).unwrap()["delay"].clone();
     assert!(order.iter().any(|&id| starts(id) != json!(0.0)));
 }
 
