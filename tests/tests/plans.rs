@@ -7,7 +7,6 @@ use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::Dice;
 use pcr_tests::oracle::contact::Meeting;
 use pcr_tests::plans::{Method, Tally, audit, drive_of, fleet};
-use std::error::Error;
 use std::f64::consts::PI;
 
 /// `cargo run --release -p pcr-tests --example fleets` takes any number.
@@ -186,12 +185,9 @@ fn a_plan_that_would_be_too_late_is_out_of_range() {
             Course::driven(&disc, &drive, late).expect("a valid disc")
         });
         let is_too_late = |found: Result<(), Unsolved>| {
-            let Err(unsolved @ Unsolved::Invalid { agent: 1, reason: Invalid::OutOfRange(_) }) = found else {
-                panic!("{drive:?}: {found:?}")
-            };
             assert!(
-                unsolved.source().is_some_and(|why| unsolved.to_string().ends_with(&why.to_string())),
-                "{unsolved}"
+                matches!(found, Err(Unsolved::Invalid { agent: 1, reason: Invalid::OutOfRange(_) })),
+                "{drive:?}: {found:?}"
             );
         };
         is_too_late(delays(&crossing, &mut [0, 1]).map(drop));

@@ -67,15 +67,7 @@ impl core::fmt::Display for Unsolved {
     }
 }
 
-impl core::error::Error for Unsolved {
-    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        match self {
-            Self::Invalid { reason, .. } => Some(reason),
-            Self::Table(mismatch) => Some(mismatch),
-            _ => None,
-        }
-    }
-}
+impl core::error::Error for Unsolved {}
 
 /// Why an agent cannot be planned.
 pub(super) enum Blocked {
