@@ -202,7 +202,7 @@ impl Arguments {
             if self.printed.form() == Form::Table && place > 0 {
                 writeln!(out)?;
             }
-            match self.plan(source, &mut out) {
+            match self.plan(source, sources.len() > 1, &mut out) {
                 Ok(solved) => unsolved |= !solved,
                 Err(Stop::Error(message, WRONG_INPUT)) if sources.len() > 1 => {
                     refused += 1;
@@ -222,8 +222,8 @@ impl Arguments {
         }
     }
 
-    /// Whether there is a plan for all.
-    fn plan(&self, source: &Source, out: &mut impl Write) -> Result<bool, Stop> {
+    /// Whether there is a plan for all; `several` if this one is not the only one.
+    fn plan(&self, source: &Source, several: bool, out: &mut impl Write) -> Result<bool, Stop> {
         let scenario = source.scenario(&self.import)?;
         let wrong = |failure: Failure| Stop::wrong(source.file(), failure);
         let priority = match &self.priority {
@@ -251,8 +251,8 @@ impl Arguments {
             (Some(output), Some(solved)) => {
                 write_over(output, &solved.to_json(), source.file(), || source.is_scenario(&self.import))?;
             }
-            // Nobody would miss it in a stream of plans: what reads them refuses this.
-            (Some(output), None) if is_standard(Some(output)) => {
+            // Nobody would miss it in a stream of plans: what reads them refuses this, as it refuses a stream of none.
+            (Some(output), None) if several && is_standard(Some(output)) => {
                 let why = report::reasons(&plan).next().unwrap_or_default();
                 let missing = serde_json::json!({ "name": scenario.name, "error": format!("no plan: {why}") });
                 write_over(output, &format!("{missing}\n"), source.file(), || Ok(false))?;
