@@ -75,7 +75,7 @@ where
                 Err(NoSpeedPlan::Invalid(reason)) if drive.is_none() || !matches!(reason, Invalid::Full(_)) => {
                     later.ok_or_else(|| late.map_or_else(|| delays::blocking(agent, regions, before), invalid))
                 }
-                speeds => later.ok_or_else(|| blocking(agent, regions, speeds.err())),
+                speeds => later.ok_or_else(|| late.map_or_else(|| blocking(agent, regions, speeds.err()), invalid)),
             }
         }?;
         if let Some(planned) = plan.get_mut(agent) {

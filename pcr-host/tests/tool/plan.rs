@@ -345,13 +345,13 @@ fn whom_other_speeds_keep_is_not_left_out() {
 fn pairs_that_never_have_a_plan_are_named_by_speeds_as_well() {
     // Without acceleration there are no other speeds; the pair overlaps at its starts.
     let agents = json!([
-        { "id": 7, "radius": 0.2, "v_max": 1, "a_max": 1, "start": { "x": 0, "y": 0, "heading": 3.1415 }, "path": [{ "kind": "line", "length": 4 }] },
+        { "id": 7, "radius": 0.2, "v_max": 1, "a_max": 1, "start": { "x": 0, "y": 0, "heading": std::f64::consts::PI }, "path": [{ "kind": "line", "length": 4 }] },
         { "id": 9, "radius": 0.2, "profile": { "v0": 1, "pieces": [{ "duration": 4, "accel": 0 }] }, "start": { "x": 0.3, "y": 0, "heading": 0 },
           "path": [{ "kind": "line", "length": 4 }] }]);
     let steady = file("plan", "steady.json", json!({ "agents": agents }).to_string());
     // Nearer than its margins at its start, in motion.
     let agents = json!([
-        { "id": 7, "radius": 0.2, "margin": 0.1, "v_max": 1, "a_max": 1, "start": { "x": 0, "y": 0, "heading": 3.1415 },
+        { "id": 7, "radius": 0.2, "margin": 0.1, "v_max": 1, "a_max": 1, "start": { "x": 0, "y": 0, "heading": std::f64::consts::PI },
           "path": [{ "kind": "line", "length": 4 }] },
         { "id": 9, "radius": 0.2, "margin": 0.1, "t_start": 2, "start": { "x": 0.5, "y": 0, "heading": 0 },
           "profile": { "v0": 1, "pieces": [{ "duration": 2, "accel": 0.5 }, { "duration": 0.5, "accel": 0 }] },
