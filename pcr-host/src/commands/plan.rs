@@ -56,7 +56,7 @@ pub(super) struct Arguments {
     /// Minimize the sum of times to arrival, or makespan, the last arrival
     #[arg(long, value_enum, value_name = "WHAT", default_value_t = Least::Sum, hide_possible_values = true)]
     objective: Least,
-    /// If there is no plan for all, leave out the fewest
+    /// Leave agents out if need be; with delays, the fewest
     #[arg(long)]
     leave_out: bool,
     /// Search until it is proved that no plan is better

@@ -380,6 +380,21 @@ fn speeds_are_told_in_the_order_that_is_asked_for() {
     assert!(order.iter().any(|&id| starts(id) != json!(0.0)));
 }
 
+/// Whoever is first in the order waits for nobody. Start delays cost less here than speeds in the order that is asked for.
+#[test]
+fn a_plan_by_delays_has_their_order() {
+    let line = |length: f64| json!({ "kind": "line", "length": length });
+    let around = json!([line(6.0), { "kind": "arc", "radius": 3, "sweep": -std::f64::consts::PI }, line(4.0)]);
+    let agents = json!([
+        { "id": 1, "radius": 0.3, "start": { "x": 0, "y": 0, "heading": 0 }, "path": [line(8.0)], "v_max": 0.5, "a_max": 1 },
+        { "id": 2, "radius": 0.3, "start": { "x": 2, "y": -5, "heading": std::f64::consts::FRAC_PI_2 }, "path": around,
+            "v_max": 2, "a_max": 1 },
+    ]);
+    let (status, said, _) = plan("around", &json!({ "agents": agents }), &["--method", "speed", "--priority", "1,2"]);
+    assert_eq!((status, &said["order"]), (0, &json!([2, 1])), "{said}");
+    assert!(said["agents"][0]["delay"].as_f64().unwrap() > 0.4 && said["agents"][1]["delay"] == json!(0.0), "{said}");
+}
+
 #[test]
 fn a_scenario_without_a_plan_is_missed_in_no_stream() {
     let head_on = |id: u64, x: f64, heading: f64| {

@@ -61,17 +61,22 @@ impl<'m> Planner<'_, 'm> {
             }
             Method::Speed => {
                 let mut pool = speeds::pool(self.motions.len());
-                match speeds::plan(self, later.clone(), &mut pool)? {
-                    Ok((planned, order)) => {
-                        let (mut plan, mut solved) = self.answer(&planned, None)?;
+                let known = later.zip(known.map(|known| known.order));
+                let told = |(planned, order): speeds::Ordered<'_>| {
+                    let (mut plan, solved) = self.answer(&planned, None)?;
+                    if self.request.priority != Priority::Best && solved.is_some() {
+                        plan.order = order.into_iter().map(|agent| self.id(agent)).collect();
+                    }
+                    Ok((plan, solved))
+                };
+                match speeds::plan(self, known.clone(), &mut pool)? {
+                    Ok(found) => {
+                        let answer = told(found)?;
                         // If no other speeds are found, the delays are the plan.
-                        if let Some(later) = later.filter(|_| solved.is_none()) {
-                            (plan, solved) = self.answer(&later, None)?;
+                        match known.filter(|_| answer.1.is_none()) {
+                            Some(known) => told(known),
+                            None => Ok(answer),
                         }
-                        if self.request.priority != Priority::Best && solved.is_some() {
-                            plan.order = order.into_iter().map(|agent| self.id(agent)).collect();
-                        }
-                        Ok((plan, solved))
                     }
                     Err(never) => Ok((Plan { unsolved: self.unsolved(never), ..self.none() }, None)),
                 }

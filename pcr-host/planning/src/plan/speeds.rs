@@ -34,18 +34,18 @@ pub(super) fn pool(agents: usize) -> Vec<Speeds> {
     vec![Profile::standing(); (PROFILES * agents).min(MOST).max(LEAST * agents)]
 }
 
-/// The best motions so far, or why the orders that were tried gave none.
-type Best<'m> = Result<Vec<Motion<'m, f64>>, Option<Never>>;
+/// Motions, and the agents by the priority with which they were planned; it counts only if an order was asked for.
+pub(super) type Ordered<'m> = (Vec<Motion<'m, f64>>, Vec<usize>);
 
-/// Motions, and the order to which their search led.
-type Ordered<'m> = (Vec<Motion<'m, f64>>, Vec<usize>);
+/// The best motions so far, or why the orders that were tried gave none.
+type Best<'m> = Result<Ordered<'m>, Option<Never>>;
 
 type Room<'m> = std::slice::IterMut<'m, Speeds>;
 
-/// The best motions found, beginning with known ones, and the last order that was tried.
+/// The best motions found, beginning with known ones, and their order.
 pub(super) fn plan<'m>(
     planner: &Planner<'_, 'm>,
-    known: Option<Vec<Motion<'m, f64>>>,
+    known: Option<Ordered<'m>>,
     pool: &'m mut [Speeds],
 ) -> Result<Result<Ordered<'m>, Never>, Failure> {
     let ecm = &planner.ecm()?;
@@ -60,7 +60,7 @@ pub(super) fn plan<'m>(
     };
     let mut orders = planner.orders()?;
     if planner.request.priority == Priority::Best {
-        orders.extend(known.as_deref().map(by_start));
+        orders.extend(known.as_ref().map(|(plan, _)| by_start(plan)));
     }
     // No reason as long as nothing has been tried.
     let mut best: Best<'m> = known.ok_or(None);
@@ -70,25 +70,25 @@ pub(super) fn plan<'m>(
     }
     if planner.request.priority == Priority::Best {
         for _ in 0..ROUNDS {
-            let Ok(plan) = &best else { break };
+            let Ok((plan, _)) = &best else { break };
             let cost = planner.cost(plan);
             let latest = (0..plan.len()).max_by(|&a, &b| late(planner, plan, a).total_cmp(&late(planner, plan, b)));
             let Some(latest) = latest.filter(|latest| kept.first() != Some(latest)) else { break };
             let order = std::iter::once(latest).chain(kept.into_iter().filter(|&agent| agent != latest)).collect();
             kept = attempt(planner, ecm, order, &mut best, &mut room, &mut stations);
-            if best.as_ref().is_ok_and(|plan| planner.cost(plan) >= cost) {
+            if best.as_ref().is_ok_and(|(plan, _)| planner.cost(plan) >= cost) {
                 break;
             }
         }
-        let limit = best.as_ref().map_or(f64::INFINITY, |plan| planner.cost(plan));
+        let limit = best.as_ref().map_or(f64::INFINITY, |(plan, _)| planner.cost(plan));
         if let Some(plan) = branching::searched(planner, ecm, limit, &mut room, &mut stations) {
-            best = Ok(plan);
+            best = Ok((plan, Vec::new()));
         }
-        if let Ok(plan) = &mut best {
+        if let Ok((plan, _)) = &mut best {
             again(planner, ecm, plan, &mut last, &mut stations);
         }
     }
-    Ok(best.map(|plan| (plan, kept)).map_err(|never| never.expect("there is an order at least, which was tried")))
+    Ok(best.map_err(|never| never.expect("there is an order at least, which was tried")))
 }
 
 /// The earliest arrival of one agent while the others keep their motions: with other speeds, or, if its own motion is slower
@@ -155,8 +155,8 @@ fn attempt<'m>(
     let mut plan = planner.motions.to_vec();
     let done = plan_speeds(ecm, planner.motions, &mut plan, &mut order, room, stations);
     match (done, &best) {
-        (Ok(()), Ok(before)) if planner.cost(&plan) >= planner.cost(before) => {}
-        (Ok(()), _) => *best = Ok(plan),
+        (Ok(()), Ok((before, _))) if planner.cost(&plan) >= planner.cost(before) => {}
+        (Ok(()), _) => *best = Ok((plan, order.clone())),
         (Err(never), Err(before)) => *best = Err(Some(told(*before, never))),
         (Err(_), Ok(_)) => {}
     }
