@@ -8,8 +8,8 @@ use pcr_certify::data::{Agent, Angle, Path, Phase, Segment, Travel};
 use pcr_certify::motion::{Meeting, Mover, meetings};
 use pcr_exclusions::{Claim, Rules, Section};
 use pcr_formats::import::Imported;
+use pcr_formats::random::Random;
 use pcr_formats::scenario::{PathSegment, Placed};
-use pcr_planning::random::Random;
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 

@@ -91,7 +91,7 @@ fn independent(needed: &BTreeSet<[usize; 2]>, beside: &[BTreeSet<usize>]) -> usi
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pcr_planning::random::Random;
+    use pcr_formats::random::Random;
 
     #[test]
     fn every_pair_is_in_a_clique_and_the_bound_holds() {

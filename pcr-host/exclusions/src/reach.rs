@@ -145,7 +145,7 @@ fn on_arc(piece: &Placed, directions: [f64; 2]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pcr_planning::random::Random;
+    use pcr_formats::random::Random;
 
     /// A star, mostly not convex, around a point.
     fn star(random: &mut Random, corners: usize) -> Vec<[f64; 2]> {

@@ -17,11 +17,11 @@ mod switching;
 
 use crate::certify::Proof;
 use crate::fleet::Fleet;
-use crate::random::Random;
 use cells::Cells;
 use orders::Kept;
 use pcr_core::Motion;
 use pcr_formats::import::{GridPlan, sectioned};
+use pcr_formats::random::Random;
 use pcr_formats::scenario::Scenario;
 use serde::Deserialize;
 use std::time::{Duration, Instant};

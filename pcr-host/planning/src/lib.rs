@@ -40,5 +40,3 @@ pub mod report;
 pub mod rows;
 pub mod simulate;
 pub mod traffic;
-
-pub use pcr_formats::random;

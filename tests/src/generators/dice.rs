@@ -1,6 +1,6 @@
 //! Choices from a list of numbers in [0, 1).
 
-use pcr_planning::random::Random;
+use pcr_formats::random::Random;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Numbers that a pair uses at most; what is asked beyond is 0.

@@ -4,7 +4,7 @@
 use super::arc_arc::centre_distance;
 use super::{Arc, Pcr};
 use pcr_core::PieceType;
-use pcr_planning::random::Random;
+use pcr_formats::random::Random;
 use std::f64::consts::FRAC_PI_2;
 
 /// How far, in radii, a case stays away from contacts that touch without crossing \[1\]. There the ends of a range

@@ -1,8 +1,8 @@
 //! Fleets of any number of agents, as dense as the paper's: 12 agents on 7 m by 7 m.
 
+use pcr_formats::random::Random;
 use pcr_formats::scenario::Placed;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario};
-use pcr_planning::random::Random;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Floor for each agent \[m²\].

@@ -4,7 +4,7 @@ use super::Request;
 use super::ends::Ends;
 use super::robot::Robot;
 use super::site::Site;
-use crate::random::Random;
+use pcr_formats::random::Random;
 
 /// Time between two control steps \[s\].
 pub(super) const STEP: f64 = 0.1;

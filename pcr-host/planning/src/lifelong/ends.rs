@@ -2,8 +2,8 @@
 //! difficult.
 
 use super::site::Site;
-use crate::random::Random;
 use pcr_formats::import::{Id, Layout};
+use pcr_formats::random::Random;
 use serde::Serialize;
 use std::cell::OnceCell;
 use std::collections::VecDeque;

@@ -2,7 +2,7 @@
 //! every controller.
 
 use super::vector::{Vector, norm, scale};
-use crate::random::Random;
+use pcr_formats::random::Random;
 
 /// The purpose of a stream of random numbers.
 #[derive(Clone, Copy, Debug)]

@@ -1,8 +1,9 @@
 //! Random missions: pairs of nodes with a way between them, which some order of starts allows.
 
 use super::crowd::Crowd;
-use crate::random::Random;
 use pcr_formats::import::{Imported, mission};
+use pcr_formats::plane::distance;
+use pcr_formats::random::Random;
 use pcr_formats::scenario::Agent;
 use pcr_formats::scenario::Placed;
 use std::collections::BTreeMap;
@@ -37,10 +38,6 @@ impl Mission {
         let pairs = self.stands().into_iter().zip(other.stands());
         pairs.into_iter().all(|(own, other)| distance(own, other) > reach * CLEAR)
     }
-}
-
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// Missions that were drawn.

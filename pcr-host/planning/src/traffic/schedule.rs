@@ -4,7 +4,7 @@
 //! waits longest goes first.
 
 use crate::plan::{Forbidden, Schedule};
-use crate::random::Random;
+use pcr_formats::random::Random;
 
 /// Orders from which the search sets out at random, beside that of the fleet and the longest motion first.
 const RANDOM: usize = 8;

@@ -1,8 +1,8 @@
 //! Copies of a layout side by side, with random routes: a warehouse of any size with the same density as one copy.
 
 use pcr_formats::import::{self, ImportError, Imported};
+use pcr_formats::random::Random;
 use pcr_formats::scenario::{Agent, Scenario};
-use pcr_planning::random::Random;
 
 /// Radius of the vehicles \[m\].
 pub(super) const RADIUS: f64 = 0.4;

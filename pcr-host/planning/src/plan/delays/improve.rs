@@ -3,7 +3,7 @@
 
 use super::problem::Problem;
 use super::search::{Search, Stop};
-use crate::random::Random;
+use pcr_formats::random::Random;
 
 /// Node limit of one neighbourhood.
 const NODES: u64 = 200;

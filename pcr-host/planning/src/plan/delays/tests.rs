@@ -4,7 +4,7 @@ use super::feasible::{Feasible, feasible};
 use super::problem::Constraint;
 use super::search::Found;
 use super::*;
-use crate::random::Random;
+use pcr_formats::random::Random;
 
 const FLEETS: u64 = 500;
 
