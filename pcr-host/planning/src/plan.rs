@@ -250,7 +250,7 @@ impl Plan {
             Planner { scenario: &rest, request, motions: &motions }.plan(known)
         };
         let (mut partial, mut solved) = of_rest(&staying, Some(starts.known(&staying)))?;
-        // Whom no start delay keeps, other speeds may.
+        // Other speeds may have a plan for agents that start delays leave out.
         let out = |staying: &[usize]| -> Vec<usize> {
             (0..scenario.agents.len()).filter(|agent| staying.binary_search(agent).is_err()).collect()
         };
@@ -263,15 +263,18 @@ impl Plan {
             }
         }
         partial.labels = plan.labels;
-        partial.left_out = out(&staying).into_iter().map(|agent| planner.id(agent)).collect();
+        let out = out(&staying);
+        partial.left_out = out.iter().map(|&agent| planner.id(agent)).collect();
         partial.unsolved.splice(0..0, plan.unsolved);
-        // Of those that have a plan together nobody has to be left out.
-        let is_told = |ids: &[u64]| ids.is_empty() || ids.iter().any(|id| partial.left_out.contains(id));
-        partial.unsolved.retain(|unsolved| !partial.left_out.is_empty() && is_told(&unsolved.ids));
-        if let (Some(solved), false) = (&mut solved, partial.left_out.is_empty()) {
-            let (count, all) = (partial.left_out.len(), scenario.agents.len());
-            let called: Vec<String> = out(&staying).into_iter().map(|agent| scenario.agents[agent].called()).collect();
-            solved.warnings.push(format!("left out of the plan: {count} of {all} agents: {}", called.join(", ")));
+        if let Some(solved) = &mut solved {
+            // Agents that are in the plan have one together, whatever was said of them before.
+            let is_open = |ids: &[u64]| ids.is_empty() || ids.iter().any(|id| partial.left_out.contains(id));
+            partial.unsolved.retain(|unsolved| !out.is_empty() && is_open(&unsolved.ids));
+            let called: Vec<String> = out.iter().map(|&agent| scenario.agents[agent].called()).collect();
+            if !called.is_empty() {
+                let (count, all) = (called.len(), scenario.agents.len());
+                solved.warnings.push(format!("left out of the plan: {count} of {all} agents: {}", called.join(", ")));
+            }
         }
         Ok((partial, solved))
     }

@@ -375,9 +375,6 @@ fn speeds_are_told_in_the_order_that_is_asked_for() {
     let order: Vec<u64> = serde_json::from_value(said["order"].clone()).unwrap();
     // Agents that have no plan otherwise are moved up.
     assert_eq!(&order[..2], &asked[..2], "{order:?}");
-    let starts =
-        |id: u64| said["agents"].as_array().unwrap().iter().find(|agent| agent["id"] == id).unwrap()["delay"].clone();
-    assert!(order.iter().any(|&id| starts(id) != json!(0.0)));
 }
 
 /// Whoever is first in the order waits for nobody. Start delays cost less here than speeds in the order that is asked for.

@@ -9,6 +9,10 @@
 use crate::fleet::HostEcm;
 use pcr_core::{Interval, Motion, RegionRef};
 
+/// Why the agents of a circle have no plan.
+pub(super) const CIRCULAR_WAIT: &str = "circular wait: however they move, each has to let the next one pass first, and the last one \
+    has to let the first one pass first";
+
 /// Parts of a region, at whose borders its gates are.
 const PARTS: u32 = 32;
 

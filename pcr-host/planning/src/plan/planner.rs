@@ -1,5 +1,6 @@
 //! One plan of a fleet, from delays or speeds to the printed answer; it is checked and proved.
 
+use super::circle::CIRCULAR_WAIT;
 use super::delays::Objective;
 use super::starts::Known;
 use super::task::Planner;
@@ -14,7 +15,8 @@ use rayon::prelude::*;
 /// Costs that differ by less are printed alike \[s\].
 const NEAR: f64 = 1e-4;
 
-/// Times of this size are what a rounding leaves of none \[s\]. Other number formats could not hold them.
+/// Differences of starts, and durations of pieces, up to this come from rounding \[s\]. They are not written: smaller number formats
+/// could not hold them.
 const ROUNDED: f64 = 1e-12;
 
 impl<'m> Planner<'_, 'm> {
@@ -164,9 +166,7 @@ impl<'m> Planner<'_, 'm> {
         let ids = |agents: [usize; 2]| agents.map(|agent| self.id(agent));
         let mut unsolved = Vec::new();
         if let Some(circle) = self.circle() {
-            let why = "circular wait: however they move, each has to let the next one pass first, and the last one \
-                has to let the first one pass first";
-            unsolved.push(Unsolved::nowhere(circle.into_iter().map(|agent| self.id(agent)).collect(), why));
+            unsolved.push(Unsolved::nowhere(circle.into_iter().map(|agent| self.id(agent)).collect(), CIRCULAR_WAIT));
         }
         let certain = match never {
             Never::Starts(agents) | Never::Ends(agents) | Never::Always(agents) => Some(agents),

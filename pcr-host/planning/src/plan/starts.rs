@@ -1,5 +1,6 @@
 //! Start delays of a scenario, for all of its agents or for as many as possible, with their quality.
 
+use super::circle::CIRCULAR_WAIT;
 use super::delays::{self, Objective, Outcome};
 use super::forbidden::{Forbidden, Out, Schedule};
 use super::task::Planner;
@@ -136,9 +137,7 @@ impl Starts {
         // For footprints it would not be a proof: the discs around them may have to wait where the footprints need not.
         let circle = if self.outlined { None } else { planner.circle() };
         if let Some(circle) = &circle {
-            let why = "circular wait: however they move, each has to let the next one pass first, and the last one \
-                has to let the first one pass first";
-            unsolved.push(Unsolved::nowhere(ids(circle), why));
+            unsolved.push(Unsolved::nowhere(ids(circle), CIRCULAR_WAIT));
         }
         let of_conflict = |conflict: &Vec<usize>| {
             let is_circle = circle.as_ref().is_some_and(|circle| {
