@@ -21,9 +21,9 @@ pub use rounding::rounded;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
-/// Largest magnitude of a heading or a turn in a scenario \[rad\]: the same in every format, so that a scenario that one of
-/// them takes is no other one, and none at all, in the others. It is what the core takes in `f64`; up to there whole turns can
-/// be subtracted in `f64` without an error that matters in a smaller format.
+/// Largest magnitude of a heading at the start of a path, or of a turn in place, in a scenario \[rad\]: 2²⁴, the limit of the core
+/// in `f64`. It is the same in every format. Up to this limit, the error of subtracting whole turns in `f64` is below the last
+/// digit of an angle in all smaller formats.
 pub const ANGLE_LIMIT: f64 = 16_777_216.0;
 
 /// The angle, if it is in the range that every format has.

@@ -82,9 +82,9 @@ fn tables_and_csv_say_the_same() {
     assert!(lines[1].starts_with("crossing,1,2,2.14") && lines[1].ends_with(",0,,"), "{}", lines[1]);
 }
 
-/// The sweep of an arc is its length over its radius, which in `q12` has one digit here.
+/// A format holds the radius and the length of an arc, not its sweep: a radius of one last digit of `q12` gives another sweep.
 #[test]
-fn motions_that_a_format_makes_others_of_are_told() {
+fn how_far_rounding_to_a_format_moves_agents_is_told() {
     let path = json!([{ "kind": "arc", "radius": 0.0002, "sweep": 4.34 }, { "kind": "line", "length": 6 }]);
     let heading = 4.34_f64;
     let moving = json!({ "id": 1, "radius": 0.1, "v_max": 1, "a_max": 1, "start": { "x": 0, "y": 0, "heading": 0 }, "path": path });
@@ -95,7 +95,7 @@ fn motions_that_a_format_makes_others_of_are_told() {
     assert_eq!(exact["warnings"], json!([]));
     let rounded = check(&scenario, &["--format", "json", "--scalar", "q12"]);
     assert_eq!(rounded.status, 0);
-    let warning = "1 of 2 agents: their motions in q12 are not those in the file, which it rounds; agent 1 is up to ";
+    let warning = "rounding to q12 moves 1 of 2 agents by more than 1 mm; agent 1 is up to ";
     assert!(rounded.err.contains(warning), "{}", rounded.err);
     let answer: Value = serde_json::from_str(&rounded.out).unwrap();
     let told =

@@ -33,16 +33,16 @@ impl Rounding {
     }
 }
 
-/// Distances from the motions in the file up to this are not told \[m\].
+/// The largest distance from the motion in the file without a warning \[m\].
 const UNTOLD: f64 = 1e-3;
 
-/// A warning if some agents are elsewhere in the format than in the scenario, by more than 1 mm at some time. `None` for `f64`, the
-/// format of the scenario.
+/// A warning if rounding to the format moves some agents by more than 1 mm at some time. `None` for `f64`, the format of the
+/// scenario.
 ///
 /// # Errors
 /// [`Refused`] if a value does not fit the number format.
 pub fn rounded<S: Format>(scenario: &Scenario) -> Result<Option<String>, Refused> {
-    if S::EPSILON == f64::EPSILON {
+    if S::NAME == f64::NAME {
         return Ok(None);
     }
     let fleet = Fleet::<S>::new(scenario)?;
@@ -57,8 +57,8 @@ pub fn rounded<S: Format>(scenario: &Scenario) -> Result<Option<String>, Refused
     Ok(worst.map(|(distance, agent)| {
         let (format, count, all, called) = (S::NAME, told.len(), motions.len(), agent.called());
         format!(
-            "{count} of {all} agents: their motions in {format} are not those in the file, which it rounds; agent {called} is up to \
-             {distance:.3} m elsewhere"
+            "rounding to {format} moves {count} of {all} agents by more than 1 mm; agent {called} is up to {distance:.3} m from where \
+             the file has it"
         )
     }))
 }
