@@ -97,6 +97,7 @@ impl std::error::Error for Misread {}
 /// # Errors
 /// [`Misread`], with the first difference.
 pub fn as_given<S: Format>(discs: &Scenario, agents: &[Agent]) -> Result<(), Misread> {
+    assert_eq!(discs.agents.len(), agents.len(), "the discs of the scenario");
     for (given, held) in discs.agents.iter().zip(agents) {
         let start = held.travel.as_ref().map_or(given.t_start, |travel| travel.start);
         let travelled = given.path.iter().filter(|segment| turn_in_place::<S>(segment).is_none());
@@ -111,13 +112,13 @@ pub fn as_given<S: Format>(discs: &Scenario, agents: &[Agent]) -> Result<(), Mis
             ("t_start", start, given.t_start, 1.0),
             ("length of the path", length, travelled, parts),
         ];
-        let misread = |field, held, given_| Err(Misread { agent: given.called(), field, held, given: given_ });
-        for (field, held, given, parts) in numbers {
-            // Lengths below the square of the least radius are taken as 0.
-            let least = S::LEAST.to_f64() * S::LEAST.to_f64();
-            let digit = S::STEP.max(S::EPSILON * given.abs()).max(least);
-            if !is_within((held - given).abs(), parts * digit) {
-                return misread(field, held, given);
+        let misread = |field, held, number| Misread { agent: given.called(), field, held, given: number };
+        // Lengths below the square of the least radius are taken as 0.
+        let least = S::LEAST.to_f64() * S::LEAST.to_f64();
+        for (field, held, number, parts) in numbers {
+            let digit = S::STEP.max(S::EPSILON * number.abs()).max(least);
+            if !is_within((held - number).abs(), parts * digit) {
+                return Err(misread(field, held, number));
             }
         }
         let heading = match held.path.heading {
@@ -128,7 +129,7 @@ pub fn as_given<S: Format>(discs: &Scenario, agents: &[Agent]) -> Result<(), Mis
         let digit = PI * S::EPSILON.max(FINEST) + 4.0 * f64::EPSILON * given.start[2].abs();
         let turned = (heading - given.start[2]).rem_euclid(TAU);
         if !is_within(turned.min(TAU - turned), digit) {
-            return misread("start.heading", heading, given.start[2]);
+            return Err(misread("start.heading", heading, given.start[2]));
         }
     }
     Ok(())

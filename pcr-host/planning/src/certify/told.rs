@@ -36,7 +36,8 @@ struct Part {
 pub(super) fn bodies(table: &Table, covers: &[Cover]) -> Result<(), String> {
     let mut told: HashMap<u64, usize> = HashMap::new();
     covers.iter().for_each(|cover| *told.entry(cover.id).or_default() += cover.discs.len());
-    for (id, discs) in counts(table) {
+    let counts = counts(table);
+    for (&id, &discs) in &counts {
         match told.get(&id) {
             None if discs > 1 => {
                 return Err(format!(
@@ -49,8 +50,8 @@ pub(super) fn bodies(table: &Table, covers: &[Cover]) -> Result<(), String> {
             _ => {}
         }
     }
-    // A number of nobody would still make regions unions, of which less is compared.
-    match told.keys().find(|id| !table.agents.iter().any(|agent| agent.id == **id)) {
+    // Wherever an agent has an outline, less of the regions is compared: the agent has to be there.
+    match told.keys().find(|id| !counts.contains_key(id)) {
         Some(id) => Err(format!("footprints: the certificate has no agent {id}")),
         None => Ok(()),
     }
@@ -63,12 +64,10 @@ pub(super) fn enlarged(discs: &Table, margins: &Table) -> Result<(), String> {
         return Err(format!("certificate: {count} discs in the first table, and {other} in the second"));
     }
     for (place, (disc, margin)) in discs.agents.iter().zip(&margins.agents).enumerate() {
-        let path = |agent: &Agent| (agent.path.start, agent.path.heading, agent.path.segments.clone(), agent.path.step);
-        let travel = |agent: &Agent| agent.travel.as_ref().map(|travel| (travel.start, travel.phases.clone()));
         let differs = match () {
             () if disc.id != margin.id => "id",
-            () if path(disc) != path(margin) => "path",
-            () if travel(disc) != travel(margin) => "travel",
+            () if disc.path != margin.path => "path",
+            () if disc.travel != margin.travel => "travel",
             () if margin.radius < disc.radius => "radius, which is smaller with the margin",
             () => continue,
         };
