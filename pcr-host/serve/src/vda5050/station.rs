@@ -305,7 +305,8 @@ fn claim(key: &Key, topic: &str, session: &str, state: &str, insists: bool) -> P
     let rest = [("session".to_owned(), Value::from(session)), ("insists".to_owned(), insists.into())];
     let rest = Map::from_iter(rest);
     let message = Connection { header, connection_state: state.into(), rest };
-    let payload = serde_json::to_vec(&message).unwrap_or_default();
+    // An empty message would withdraw the claim.
+    let payload = serde_json::to_vec(&message).expect("texts and numbers can always be written");
     Publish { topic: topic.into(), payload, assured: true, retain: true }
 }
 
