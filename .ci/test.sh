@@ -56,7 +56,7 @@ style() {
   fi
   .ci/dependencies.py
   deny
-  .ci/circles.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,planning,exclusions,drawing,comparing,serve}/src
+  .ci/circles.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,planning,execution,exclusions,drawing,comparing,serve}/src
   # A file that main.rs does not name would not be run.
   diff <(sed -n 's/^mod \(.*\);/\1/p' tests/tests/main.rs) <(LC_ALL=C ls tests/tests | sed -n 's/\.rs$//p' | grep -vx main)
 }
@@ -65,7 +65,7 @@ quick() {
   profile=dev
   style
   step "unit tests"
-  cargo test -p pcr-core -p pcr-fixed -p pcr-certify -p pcr-formats -p pcr-planning -p pcr-exclusions -p pcr-drawing -p pcr-comparing -p pcr-serve --lib --features pcr-drawing/png --locked
+  cargo test -p pcr-core -p pcr-fixed -p pcr-certify -p pcr-formats -p pcr-planning -p pcr-execution -p pcr-exclusions -p pcr-drawing -p pcr-comparing -p pcr-serve --lib --features pcr-drawing/png --locked
 }
 
 docs() {
@@ -245,7 +245,7 @@ features() {
     cargo clippy -q -p $crate --profile "$profile" --locked --all-features --all-targets -- -D warnings
   done
   step "each part of the host alone, with the features that it names itself"
-  for crate in pcr-formats pcr-planning pcr-exclusions pcr-drawing pcr-comparing pcr-host; do
+  for crate in pcr-formats pcr-planning pcr-execution pcr-exclusions pcr-drawing pcr-comparing pcr-host; do
     echo "$crate"
     cargo clippy -q -p $crate --profile "$profile" --locked --no-default-features -- -D warnings
   done

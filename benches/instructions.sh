@@ -9,7 +9,7 @@ cd "$(dirname "$0")"
 command -v valgrind >/dev/null || ../.ci/install.sh valgrind
 # What reads the fleets need not be optimized. The planner has to be: functions that are never inlined are taken from it.
 config=()
-for crate in pcr-formats serde-saphyr serde_json encoding_rs annotate-snippets roxmltree glam; do
+for crate in pcr-formats serde-saphyr serde_json encoding_rs annotate-snippets roxmltree; do
   config+=("--config=profile.bench.package.$crate.opt-level=0")
 done
 cargo build --quiet --locked --profile bench "${config[@]}" -p pcr-benches --bin work

@@ -3,9 +3,9 @@
 use crate::generators::Dice;
 use pcr_comparing::compare::crowd;
 use pcr_core::{Point, Pose, Radians};
+use pcr_execution::simulate::{Controller, Course, Disturbance, FRAME, Mission, Run, Settings, Task, run};
 use pcr_formats::scenario::{Agent, PathSegment, Placed};
 use pcr_planning::plan::{Plan, Request};
-use pcr_planning::simulate::{Controller, Course, Disturbance, FRAME, Mission, Run, Settings, Task, run};
 use std::f64::consts::PI;
 use std::fmt;
 use std::time::Instant;

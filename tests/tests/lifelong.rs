@@ -1,7 +1,7 @@
 //! Fleets that run for a while on a real layout: no contact, nobody beyond its hold, everybody arrives in the end.
 
+use pcr_execution::lifelong::{Delays, Lifelong, Method, Outcome, Request, Shares, run, streets, well_formedness};
 use pcr_formats::import::{self, Format, Imported, Options, Warnings};
-use pcr_planning::lifelong::{Delays, Lifelong, Method, Outcome, Request, Shares, run, streets, well_formedness};
 
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
 

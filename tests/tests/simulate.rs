@@ -1,11 +1,11 @@
 //! Simulated runs: no collision under the supervisor, by an oracle on the true positions; the figures of a run follow from
 //! its record; the same seed gives the same run.
 
-use pcr_formats::scenario::Scenario;
-use pcr_planning::plan::{Plan, Request};
-use pcr_planning::simulate::{
+use pcr_execution::simulate::{
     Controller, Disturbance, Ended, FRAME, Outcome, Run, Settings, Simulation, Task, Trace, forage, run,
 };
+use pcr_formats::scenario::Scenario;
+use pcr_planning::plan::{Plan, Request};
 use pcr_tests::generators::Dice;
 use std::f64::consts::{PI, TAU};
 

@@ -1,11 +1,11 @@
 //! Random traffic: missions are what they say, and no two agents of a plan come nearer than their radii, by positions
 //! at many times.
 
+use pcr_execution::traffic::{Request, Traffic};
 use pcr_formats::footprint::Footprint;
 use pcr_formats::import::{Format, Imported, Options, Warnings, roads};
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::Fleet;
-use pcr_planning::traffic::{Request, Traffic};
 use pcr_tests::polygons::{apart, placed};
 use std::collections::HashSet;
 
@@ -157,7 +157,7 @@ fn missions_that_are_passed_over_are_told_with_their_reasons() {
     let mut reasons = traffic.passed_over_because.iter();
     assert!(reasons.all(|reason| reason.why.starts_with("the way is no path: edge N") && reason.missions == 4));
     let mut text = Vec::new();
-    pcr_planning::report::traffic_table(&traffic, &mut text).unwrap();
+    pcr_execution::report::traffic_table(&traffic, &mut text).unwrap();
     let text = String::from_utf8(text).unwrap();
     assert!(
         text.contains("4 missions rejected and drawn again: the way is no path: edge N1-N2: its curve begins 5.000 m"),

@@ -1,9 +1,9 @@
 //! Roadmaps with tasks that come over time, as Adcombrink/CPLP-LifelongMAPFR (Combrink, Roselli, Fabian, arXiv 2503.13175) writes them
 //! (JSON of networkx).
 
+use pcr_execution::lifelong::Tasks;
 use pcr_formats::import::{Edge, Id, Imported, Layout, Node, Vehicle};
 use pcr_formats::scenario::Placed;
-use pcr_planning::lifelong::Tasks;
 use serde_json::Value;
 use std::collections::HashMap;
 

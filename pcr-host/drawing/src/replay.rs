@@ -7,9 +7,9 @@ use crate::contour::trace;
 use crate::palette::colour;
 use crate::template::Page;
 use pcr_core::{Motion, RegionRef};
+use pcr_execution::simulate::{Controller, FRAME, Journey, Outcome, Snapshot, Task, Vector};
 use pcr_planning::fleet::build_ecm;
 use pcr_planning::regions::Failure;
-use pcr_planning::simulate::{Controller, FRAME, Journey, Outcome, Snapshot, Task, Vector};
 use serde_json::{Value, json};
 
 const PAGE: Page = Page {
@@ -149,8 +149,8 @@ fn region(region: &RegionRef<'_, f64>, ego: &Motion<'_, f64>, pixel: [f64; 2], o
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pcr_execution::simulate::{Disturbance, Settings, run};
     use pcr_formats::scenario::Scenario;
-    use pcr_planning::simulate::{Disturbance, Settings, run};
 
     #[test]
     fn a_plan_without_a_map_is_no_empty_map() {

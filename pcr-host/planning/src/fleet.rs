@@ -4,7 +4,7 @@ mod fixed;
 #[cfg(feature = "micromath")]
 mod micro;
 mod rounding;
-pub(crate) mod speed;
+pub mod speed;
 #[cfg(test)]
 mod tests;
 

@@ -1,5 +1,4 @@
-//! Everything that the tool computes for a scenario: regions, conflicts, plans, locks, traffic, simulations, and their
-//! output as text.
+//! Everything that the tool computes for a scenario: regions, conflicts, plans, locks, and their output as text.
 //!
 //! ```text
 //! fleet        paths and motions in a number format                Fleet, build_ecm
@@ -15,10 +14,6 @@
 //! nodes        nodes and edges of a layout                         Listing
 //! plan         delays without conflicts                            Plan
 //! queue        the conflicts of a fleet while its motions change   Queue
-//! traffic      random missions on a layout, and their plan         Traffic
-//! execution    execution of plans while robots are late            Execution
-//! lifelong     robots that get a new mission after each one        run, Outcome
-//! simulate     plans in closed loop, with noise and delays         run, Task
 //! report       JSON, CSV and tables
 //! ```
 
@@ -27,9 +22,7 @@ pub mod certificate;
 pub mod certify;
 pub mod check;
 pub mod checksum;
-pub mod execution;
 pub mod fleet;
-pub mod lifelong;
 pub mod locks;
 pub mod memory;
 pub mod nodes;
@@ -38,5 +31,3 @@ pub mod queue;
 pub mod regions;
 pub mod report;
 pub mod rows;
-pub mod simulate;
-pub mod traffic;

@@ -22,7 +22,8 @@ use crate::certify::Proof;
 use crate::fleet::Fleet;
 use crate::memory;
 use crate::regions::Failure;
-pub(crate) use circle::{sides, sides_of};
+pub use circle::sides;
+pub(crate) use circle::sides_of;
 pub use delays::{Effort, Objective};
 pub use forbidden::{Forbidden, Out, Schedule};
 use pcr_core::{Encounter, Motion};
@@ -30,7 +31,7 @@ use pcr_formats::scenario::{Labels, Scenario};
 
 pub use reason::Spot;
 use serde::Serialize;
-pub(crate) use starts::some as start_delays;
+pub use starts::some as start_delays;
 use starts::{Known, Starts};
 use task::Planner;
 
@@ -167,7 +168,7 @@ pub struct Unsolved {
 
 impl Unsolved {
     /// The reason why the first agent cannot start because of the second; `always`: with all delays.
-    pub(crate) fn of(scenario: &Scenario, ids: [u64; 2], always: bool) -> Self {
+    pub fn of(scenario: &Scenario, ids: [u64; 2], always: bool) -> Self {
         let (why, spot) = reason::reason(scenario, ids, always);
         Self { ids: ids.to_vec(), why, spot }
     }

@@ -5,42 +5,34 @@ pub mod columns;
 mod conflicts;
 mod delays;
 pub mod figures;
-mod lifelong;
 mod locks;
 mod nodes;
 mod overview;
 mod plans;
 mod proofs;
 mod rows;
-mod simulation;
 mod table;
-mod traffic;
 
 pub use certified::{CERTIFIED_CSV_HEADER, certified_csv, certified_table};
 pub use columns::ROW_BYTES;
 pub use conflicts::{CONFLICTS_CSV_HEADER, conflicts_csv, conflicts_table};
 pub use delays::{DELAYS_HEADER, Delay, DelayTable, NodeTimes, delays_csv, delays_lines, delays_table};
-pub use lifelong::{LIFELONG_CSV_HEADER, lifelong_csv, lifelong_table};
 pub use locks::{
     EDGE_HEADER, EdgeLocks, LOCKS_HEADER, LocksUnprinted, edge_csv, edge_table, locks_csv, locks_lines, locks_table,
 };
 pub use nodes::{nodes_csv, nodes_table};
 pub use overview::overview;
 pub use plans::{PLAN_CSV_HEADER, left_open, plan_csv, plan_table, reasons};
+pub use proofs::proof_line;
 pub use rows::{Unprinted, sheet_csv, sheet_json};
-pub use simulation::{simulation_csv, simulation_table};
 pub use table::table;
-pub use traffic::{TRAFFIC_CSV_HEADER, traffic_csv, traffic_table};
 
 use crate::certify::{self, Certified};
 use crate::check::Verdict;
-use crate::lifelong::Lifelong;
 use crate::locks::Locks;
 use crate::nodes::Listing;
 use crate::plan::Plan;
 use crate::regions::{Answer, Region};
-use crate::simulate::Simulation;
-use crate::traffic::Traffic;
 use pcr_formats::scenario::Labels;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -68,17 +60,8 @@ impl Document for Certified {
 impl Document for Plan {
     const FORMAT: &'static str = "pcr-plan";
 }
-impl Document for Simulation {
-    const FORMAT: &'static str = "pcr-simulation";
-}
 impl Document for Locks {
     const FORMAT: &'static str = "pcr-locks";
-}
-impl Document for Traffic {
-    const FORMAT: &'static str = "pcr-traffic";
-}
-impl Document for Lifelong {
-    const FORMAT: &'static str = "pcr-lifelong";
 }
 impl Document for Listing<'_> {
     const FORMAT: &'static str = "pcr-nodes";
@@ -167,12 +150,12 @@ fn agents(labels: &Labels) -> [&'static str; 2] {
 }
 
 /// An agent in a table.
-fn called(labels: &Labels, id: u64) -> String {
+pub fn called(labels: &Labels, id: u64) -> String {
     printable(&labels.called(id))
 }
 
 /// Some agents in a sentence.
-fn all_called(labels: &Labels, ids: &[u64]) -> String {
+pub fn all_called(labels: &Labels, ids: &[u64]) -> String {
     ids.iter().map(|id| called(labels, *id)).collect::<Vec<_>>().join(" and ")
 }
 

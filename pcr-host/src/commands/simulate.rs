@@ -5,10 +5,11 @@ use super::{CONFLICTS, Form, Printed, Stop, is_standard, say, scenario, whole, w
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_drawing::replay;
+use pcr_execution::report;
+use pcr_execution::simulate::{self, Controller, Disturbance, Settings, Simulation, Task, forage};
 use pcr_formats::import::Options;
 use pcr_planning::regions::Failure;
-use pcr_planning::report;
-use pcr_planning::simulate::{self, Controller, Disturbance, Settings, Simulation, Task, forage};
+use pcr_planning::report::json;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -146,7 +147,7 @@ impl Arguments {
         let mut out = self.printed.out(is_standard(self.output.as_ref()));
         match self.printed.form() {
             Form::Table => report::simulation_table(&simulation, &mut out)?,
-            Form::Json => report::json(&simulation, &mut out)?,
+            Form::Json => json(&simulation, &mut out)?,
             Form::Csv => report::simulation_csv(&simulation, &mut out)?,
         }
         out.flush()?;

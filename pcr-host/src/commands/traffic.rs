@@ -5,10 +5,11 @@ use super::sources::{layout, layout_source};
 use super::{CONFLICTS, Form, Printed, Stop, folder, map, whole, write_to};
 use clap::Args;
 use pcr_drawing::Ground;
+use pcr_execution::lifelong::{self, Delays, Lifelong, Method};
+use pcr_execution::report;
+use pcr_execution::traffic::{Request, Traffic};
 use pcr_formats::import::Options;
-use pcr_planning::lifelong::{self, Delays, Lifelong, Method};
-use pcr_planning::report;
-use pcr_planning::traffic::{Request, Traffic};
+use pcr_planning::report::json;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -92,7 +93,7 @@ impl Arguments {
         let mut out = self.printed.out(false);
         match self.printed.form() {
             Form::Table => report::traffic_table(&traffic, &mut out)?,
-            Form::Json => report::json(&traffic, &mut out)?,
+            Form::Json => json(&traffic, &mut out)?,
             Form::Csv => report::traffic_csv(&traffic, &mut out)?,
         }
         out.flush()?;
@@ -114,7 +115,7 @@ fn print(printed: &Printed, answer: &Lifelong) -> Result<ExitCode, Stop> {
     let mut out = printed.out(false);
     match printed.form() {
         Form::Table => report::lifelong_table(answer, &mut out)?,
-        Form::Json => report::json(answer, &mut out)?,
+        Form::Json => json(answer, &mut out)?,
         Form::Csv => report::lifelong_csv(answer, &mut out)?,
     }
     out.flush()?;

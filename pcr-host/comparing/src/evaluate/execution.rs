@@ -2,8 +2,8 @@
 //! by cells.
 
 use super::{Extent, Fleets, Problem, Section};
+use pcr_execution::grid_plans::{By, Outcome, Stops, carried_out, random_stops, situation};
 use pcr_formats::import::GridPlan;
-use pcr_planning::execution::{By, Outcome, Stops, carried_out, random_stops, situation};
 use pcr_planning::report::figures::digits;
 use std::fmt::Write as _;
 use std::fs;

@@ -1,8 +1,8 @@
 //! Fleets that run for a quarter of an hour on all layouts of others in the repository: orders beside locks.
 
 use super::{Extent, Fleets, Problem, Section};
+use pcr_execution::lifelong::{Delays, Driven, Lifelong, Method, Request};
 use pcr_formats::import::{self, Format, Imported, Options, Warnings};
-use pcr_planning::lifelong::{Delays, Driven, Lifelong, Method, Request};
 use pcr_planning::report::figures::digits;
 use std::fmt::Write as _;
 use std::fs;

@@ -2,8 +2,8 @@
 //! the same random delays.
 
 use super::{Extent, Fleets, Problem, Section};
+use pcr_execution::lifelong::{Delays, Driven, Lifelong, Method, Request, streets};
 use pcr_formats::import::Imported;
-use pcr_planning::lifelong::{Delays, Driven, Lifelong, Method, Request, streets};
 use pcr_planning::report::figures::digits;
 use std::fmt::Write as _;
 
@@ -56,7 +56,7 @@ fn large(extent: Extent) -> Result<String, Problem> {
     };
     let mut text = format!(
         "\nLarge fleets, with orders: streets that cross every 6 m, one-way with alternating directions and two bays for each block; the same robots \
-        and delays, {hours} h (`cargo run --release -p pcr-planning --example streets -- ROBOTS {hours} STREETS`). *Faster*: how many times faster \
+        and delays, {hours} h (`cargo run --release -p pcr-execution --example streets -- ROBOTS {hours} STREETS`). *Faster*: how many times faster \
         than real time, on one core, with all decisions and the simulation of the robots, without the certificate.\n\n\
         | nodes | robots | missions | an hour | travel | stuck | decision | faster | contact |\n|---:|---:|---:|---:|---:|---:|---:|---:|---|\n"
     );

@@ -2,10 +2,10 @@
 
 use super::{Extent, Fleets, Problem, Section};
 use crate::compare::crowd;
+use pcr_execution::traffic;
 use pcr_formats::scenario::Scenario;
 use pcr_planning::plan::{Plan, Request};
 use pcr_planning::report::figures::{digits, time};
-use pcr_planning::traffic;
 use std::fmt::Write as _;
 use std::time::Instant;
 

@@ -2,7 +2,7 @@
 
 use super::{Extent, Fleets, Problem, Section};
 use crate::roadmap;
-use pcr_planning::lifelong::{Delays, Method, Report, Request, run_tasks};
+use pcr_execution::lifelong::{Delays, Method, Report, Request, run_tasks};
 use pcr_planning::report::figures::digits;
 use serde_json::Value;
 use std::fs;

@@ -3,12 +3,12 @@
 use super::{Extent, Fleets, Problem, Section, picture};
 use crate::compare::stopwatch::{Stopwatch, steady};
 use pcr_drawing::{Ground, overview};
+use pcr_execution::traffic::{Request, Traffic, schedule};
 use pcr_formats::footprint::Footprint;
 use pcr_formats::import::Imported;
 use pcr_planning::check::Verdict;
 use pcr_planning::fleet::build_ecm;
 use pcr_planning::report::figures::{digits, time};
-use pcr_planning::traffic::{Request, Traffic, schedule};
 use std::fmt::Write as _;
 
 /// Radius of the discs \[m\].

@@ -20,7 +20,7 @@ type Fault = (Option<usize>, String);
 /// Each phase aims at the speed that the piece reaches exactly, so that speeds do not drift and a stop is a stop. What
 /// rounding leaves of the difference to `length` \[m\] goes into the duration of the fastest piece that is not short, where it
 /// costs the least time.
-pub(crate) fn phases<S: Format>(v0: f64, pieces: &[(f64, f64)], length: S) -> Result<Vec<Phase<S>>, Fault> {
+pub fn phases<S: Format>(v0: f64, pieces: &[(f64, f64)], length: S) -> Result<Vec<Phase<S>>, Fault> {
     let targets = targets(v0, pieces);
     let mean = |k: usize| 0.5 * (targets.get(k).copied().unwrap_or(v0) + targets.get(k + 1).copied().unwrap_or(0.0));
     let way = |k: usize| pieces.get(k).map_or(0.0, |(duration, _)| duration * mean(k));

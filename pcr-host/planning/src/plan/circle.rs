@@ -61,7 +61,7 @@ fn is_second(region: &RegionRef<'_, f64>) -> bool {
 
 /// Whether the ego has to pass a region after the other agent, and whether before it, whenever they start and however they move:
 /// the region holds the end of its path or the start of the other's, or the start of its own or the end of the other's.
-pub(crate) fn sides(region: &RegionRef<'_, f64>) -> [bool; 2] {
+pub fn sides(region: &RegionRef<'_, f64>) -> [bool; 2] {
     sides_of(region, [true; 2], [true; 2])
 }
 

@@ -25,7 +25,7 @@ pub(super) struct Known {
 
 /// Start delays of motions \[s\]; as few as possible are left out, with `None`. `with` has for each motion those that have to
 /// be left out with it, itself included. `None` if no delays are found quickly.
-pub(crate) fn some(motions: &[Motion<'_, f64>], with: &[Vec<usize>]) -> Option<Vec<Option<f64>>> {
+pub fn some(motions: &[Motion<'_, f64>], with: &[Vec<usize>]) -> Option<Vec<Option<f64>>> {
     let forbidden = Forbidden::of_motions(motions).ok()?;
     let ticks = forbidden.ticks();
     let found = delays::some(&forbidden.problem(Objective::Sum), with);

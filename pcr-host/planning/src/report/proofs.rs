@@ -6,7 +6,7 @@ use crate::certify::{Contact, Proof};
 use pcr_formats::scenario::Labels;
 
 /// A line about it, in which agents are called what they are in the table above.
-pub(super) fn proof_line(proof: &Proof, labels: &Labels) -> String {
+pub fn proof_line(proof: &Proof, labels: &Labels) -> String {
     let place = |those: &[Contact]| {
         those.first().map_or(String::new(), |&Contact { i, j, t, clearance }| {
             let (agents, t, clearance) = (all_called(labels, &[i, j]), thousandths(t), small(clearance));

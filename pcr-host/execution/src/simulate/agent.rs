@@ -6,8 +6,8 @@ use super::braking::stopping_length;
 use super::course::{Course, Drive};
 use super::replan::State;
 use super::task::Robot;
-use crate::regions::Failure;
 use pcr_core::{Interval, Invalid, Limits, Point, Pose, Radians};
+use pcr_planning::regions::Failure;
 
 /// Bounds on the errors of camera and robots.
 #[derive(Clone, Copy, Debug)]

@@ -1,11 +1,10 @@
 //! Traffic for reading.
 
-use super::columns::Columns;
-use super::figures::thousandths;
-use super::proofs::proof_line;
-use super::{all_called, counted, heading, printable};
 use crate::traffic::{PassedOver, Traffic};
 use pcr_formats::scenario::Labels;
+use pcr_planning::report::columns::Columns;
+use pcr_planning::report::figures::thousandths;
+use pcr_planning::report::{all_called, counted, heading, printable, proof_line, quoted};
 use std::io::{self, Write};
 
 /// The header line of [`traffic_csv`].
@@ -18,7 +17,7 @@ pub const TRAFFIC_CSV_HEADER: &str = "id,from,to,length,delay,t_end\n";
 pub fn traffic_csv(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> {
     out.write_all(TRAFFIC_CSV_HEADER.as_bytes())?;
     for mission in &traffic.missions {
-        let [from, to] = [&mission.from, &mission.to].map(|id| super::quoted(&id.to_string()).into_owned());
+        let [from, to] = [&mission.from, &mission.to].map(|id| quoted(&id.to_string()).into_owned());
         let [delay, end] = [mission.delay, mission.t_end].map(|time| time.map_or_else(String::new, |t| t.to_string()));
         writeln!(out, "{},{from},{to},{},{delay},{end}", mission.id, mission.length)?;
     }

@@ -51,11 +51,11 @@ pub use outcome::{Arrival, Collision, Ended, Journey, Outcome, Planning, Run, Si
 pub use task::{Mission, Obstacle, Robot, Task};
 pub use vector::Vector;
 
-use crate::memory;
-use crate::regions::Failure;
 use agent::Errors;
 use body::{Command, Turning};
 use orca::Orca;
+use pcr_planning::memory;
+use pcr_planning::regions::Failure;
 use potential::Potential;
 use replan::Waits;
 use serde::Serialize;

@@ -1,10 +1,10 @@
 //! Simulated runs as text.
 
-use super::columns::Columns;
-use super::figures::small;
-use super::{called, heading, quoted};
 use crate::simulate::{Ended, Run, Simulation};
 use pcr_formats::scenario::Labels;
+use pcr_planning::report::columns::Columns;
+use pcr_planning::report::figures::small;
+use pcr_planning::report::{called, heading, quoted};
 use std::io::{self, Write};
 
 /// A line a mission: numbers that read back exactly; no end where it was not done.

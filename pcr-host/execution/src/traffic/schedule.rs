@@ -3,8 +3,8 @@
 //! Agents that cannot start because of others go first in the next order that is tried; if all can start, the one that
 //! waits longest goes first.
 
-use crate::plan::{Forbidden, Schedule};
 use pcr_formats::random::Random;
+use pcr_planning::plan::{Forbidden, Schedule};
 
 /// Orders from which the search sets out at random, beside that of the fleet and the longest motion first.
 const RANDOM: usize = 8;

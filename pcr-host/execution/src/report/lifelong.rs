@@ -1,9 +1,9 @@
 //! Fleets that run for hours, for reading.
 
-use super::columns::Columns;
-use super::{counted, heading, printable};
 use crate::lifelong::{Driven, Lifelong, Shares, WellFormedness};
 use pcr_formats::import::Id;
+use pcr_planning::report::columns::Columns;
+use pcr_planning::report::{counted, heading, printable};
 use std::io::{self, Write};
 
 /// The header line of [`lifelong_csv`].

@@ -1,8 +1,8 @@
 //! Keeps the passing orders of a plan: each robot looks at the regions ahead that it passes second.
 
 use super::{Holds, ROOM};
-use crate::fleet::{HostOrders, build_orders};
 use pcr_core::{Hold, Motion, Pass, Progress, Reach, RegionRef, Tolerances};
+use pcr_planning::fleet::{HostOrders, build_orders};
 
 /// Distance ahead for which a robot computes its hold at a time: holds do not decrease \[m\].
 const AHEAD: f64 = 2.0;

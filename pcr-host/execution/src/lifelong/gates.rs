@@ -2,8 +2,8 @@
 //! computed at some lengths of the first robot and rounded down in between, so they are never too high. The checker
 //! checks the stored list.
 
-use crate::fleet::build_ecm;
 use pcr_core::{Hold, Interval, Motion, RegionRef};
+use pcr_planning::fleet::build_ecm;
 
 /// The second waits at `at` \[m\] until the first is at `needs` \[m\] of its path or beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]

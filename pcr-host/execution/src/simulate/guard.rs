@@ -9,8 +9,8 @@
 //! is held, so it can still do so in the next frame.
 
 use super::course::{Course, Drive};
-use crate::fleet::{HostOrders, build_orders};
 use pcr_core::{Full, Hold, Interval, Motion, Pass, Progress, Reach, Tolerances};
+use pcr_planning::fleet::{HostOrders, build_orders};
 
 /// Gains below this are no progress when it is checked whether all robots can finish \[m\].
 const GAIN: f64 = 1e-3;

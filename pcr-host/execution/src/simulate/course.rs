@@ -2,9 +2,9 @@
 
 use super::FRAME;
 use super::braking::{Stretch, speed_before, speeds_to_rest, to_rest};
-use crate::fleet::speed;
 use pcr_core::{Curve, Invalid, Limits, Motion, PathRef, Phase, Pose, ProfileRef, Segment, Turn};
 use pcr_formats::scenario::{KINK, PathSegment, TURN};
+use pcr_planning::fleet::speed;
 
 /// A path of lines and arcs, with speed limits.
 #[derive(Clone, Debug)]
@@ -221,7 +221,7 @@ impl Drive {
     ///
     /// ```
     /// use pcr_core::{Motion, Path, Point, Pose, Profile, Radians};
-    /// use pcr_planning::simulate::Drive;
+    /// use pcr_execution::simulate::Drive;
     /// let pose = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
     /// let path = Path::<f64, 1>::starting_at(pose)?.line(4.0)?;
     /// let profile = Profile::<f64, 1>::from_pieces(1.0, [(4.0, 0.0)])?;

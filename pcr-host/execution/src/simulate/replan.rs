@@ -6,9 +6,9 @@
 //! it has to wait there. The place with the earliest arrival is used.
 
 use super::course::{Course, Drive};
-use crate::fleet::{HostEcm, build_ecm_of};
-use crate::plan::start_delays;
 use pcr_core::{Encounter, Limits, Motion, earliest_start};
+use pcr_planning::fleet::{HostEcm, build_ecm_of};
+use pcr_planning::plan::start_delays;
 
 /// Distance along its path that a robot keeps from a region before which it waits \[m\].
 const BEFORE: f64 = 1e-4;

@@ -1,6 +1,6 @@
 //! A fleet on a generated site: `streets [ROBOTS [HOURS [STREETS]]]`, 1000 robots for 0.1 h on 40 streets each way if left out.
 
-use pcr_planning::lifelong::{Delays, Method, Request, run, streets};
+use pcr_execution::lifelong::{Delays, Method, Request, run, streets};
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {

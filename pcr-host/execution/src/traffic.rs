@@ -8,13 +8,13 @@ mod crowd;
 mod missions;
 mod schedule;
 
-use crate::certify::Proof;
-use crate::check::Verdict;
-use crate::plan::{Forbidden, Schedule, Unsolved};
-use crate::regions::{self, Answer, Failure};
 use missions::{Drawn, Mission};
 use pcr_formats::import::{Id, Imported};
 use pcr_formats::scenario::{Agent, Scenario};
+use pcr_planning::certify::Proof;
+use pcr_planning::check::Verdict;
+use pcr_planning::plan::{Forbidden, Schedule, Unsolved};
+use pcr_planning::regions::{self, Answer, Failure};
 use serde::Serialize;
 
 /// The options of a request for missions.

@@ -17,8 +17,8 @@ use super::observer::narrowed;
 use super::replan::{InTheWay, Plan, Problem, SEARCHED, State, Waits};
 use super::task::{Obstacle, Robot, Task};
 use super::{Command, Control, FRAME, Frame, Snapshot};
-use crate::regions::Failure;
 use pcr_core::{Interval, Limits};
+use pcr_planning::regions::Failure;
 use std::time::Instant;
 
 /// If no robot has moved for this long plus two planning periods, the fleet is stuck \[s\].

@@ -15,14 +15,14 @@ mod cells;
 mod orders;
 mod switching;
 
-use crate::certify::Proof;
-use crate::fleet::Fleet;
 use cells::Cells;
 use orders::Kept;
 use pcr_core::Motion;
 use pcr_formats::import::{GridPlan, sectioned};
 use pcr_formats::random::Random;
 use pcr_formats::scenario::Scenario;
+use pcr_planning::certify::Proof;
+use pcr_planning::fleet::Fleet;
 use serde::Deserialize;
 use std::time::{Duration, Instant};
 use switching::Switching;

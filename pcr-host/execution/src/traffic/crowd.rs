@@ -3,11 +3,11 @@
 //! If a region of two agents contains the start of the first, or the end of the second, the first passes it before the
 //! second, whenever they start. If two agents have to go before one another, or several in a cycle, there is no order.
 
-use crate::bodies::Bodies;
-use crate::fleet::build_ecm_of;
-use crate::plan::sides;
 use pcr_core::Motion;
 use pcr_formats::scenario::{Agent, Scenario};
+use pcr_planning::bodies::Bodies;
+use pcr_planning::fleet::build_ecm_of;
+use pcr_planning::plan::sides;
 
 /// More room than agents have in plans and checks \[m\]: what is decided here holds there.
 const ROOM: f64 = 1e-6;
