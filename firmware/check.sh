@@ -292,7 +292,7 @@ examples() {
     step "example for a board: $board"
     [ "$(wc -l <examples/"$board"/src/main.rs)" -lt 120 ] || fail "the example for $board is no longer short"
     (cd examples && ../cross.sh "$target" build --locked --release --quiet -p "example-$board" </dev/null)
-    readelf -SW "${CARGO_TARGET_DIR:-examples/target}/$target/release/example-$board" | grep -q "[.]defmt" || fail "$board logs nothing"
+    readelf -SW "$out/$target/release/example-$board" | grep -q "[.]defmt" || fail "$board logs nothing"
   done <<'BOARDS'
 thumbv7em-none-eabihf stm32f4
 thumbv7em-none-eabihf nrf52840
