@@ -38,7 +38,7 @@ class Options(TypedDict, total=False):
     tolerance: Optional[SupportsFloat]
     #: Navigation graph, where there are several (Open-RMF).
     graph: Optional[SupportsIndex]
-    #: Travel the horizon of an order, not only its base (VDA 5050).
+    #: Include the horizon of an order, not only its base (VDA 5050).
     horizon: bool
     #: Read what can be read of a layout; without it, a file is refused for anything that would be left out.
     partial: bool

@@ -57,7 +57,7 @@ pub struct Options {
     /// Format; pcr import --help lists them
     #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "FORMAT", hide_possible_values = true))]
     pub from: Option<Format>,
-    /// Way of an agent; may be given again
+    /// Route of an agent; repeat it for more agents
     #[cfg_attr(feature = "clap", arg(long = "route", value_name = "FROM:TO[@TIME]"))]
     pub routes: Vec<String>,
     /// Radius of the vehicle
@@ -78,7 +78,7 @@ pub struct Options {
     /// Largest angular acceleration [rad/s²]
     #[cfg_attr(feature = "clap", arg(long, value_name = "N", value_parser = positive))]
     pub rotation_acceleration: Option<f64>,
-    /// Type of vehicle, of several (LIF)
+    /// Vehicle type, if there are several (LIF)
     #[cfg_attr(feature = "clap", arg(long, value_name = "TYPE"))]
     pub vehicle: Option<String>,
     /// Fleet (Open-RMF) or factsheet (VDA 5050)
@@ -87,16 +87,16 @@ pub struct Options {
     /// Radius of corners (nav2: 1 if left out)
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = not_negative))]
     pub corner_radius: Option<f64>,
-    /// Arcs off curves by at most [default: 0.001]
+    /// Largest deviation from curves [default: 0.001]
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = positive))]
     pub tolerance: Option<f64>,
-    /// Navigation graph, of several (Open-RMF)
+    /// Graph, if there are several (Open-RMF)
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub graph: Option<u64>,
-    /// Travel the horizon of orders (VDA 5050)
+    /// Include the horizon of orders (VDA 5050)
     #[cfg_attr(feature = "clap", arg(long))]
     pub horizon: bool,
-    /// Read the rest where a file would be refused
+    /// Read the rest of a file that is refused otherwise
     #[cfg_attr(feature = "clap", arg(long))]
     pub partial: bool,
 }
