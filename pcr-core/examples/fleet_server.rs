@@ -5,7 +5,7 @@
 //! cargo run -p pcr-core --features std --example fleet_server
 //! ```
 
-use pcr_core::{Ecm, Full, Invalid, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, Unchanged};
+use pcr_core::{Ecm, Full, Invalid, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, TableError};
 use pcr_core::{earliest_start, first_overlap};
 use std::error::Error;
 
@@ -46,11 +46,11 @@ fn motions(robots: &[Robot]) -> Result<Vec<Motion<'_, f64>>, Invalid> {
 /// Repeats a call, with more room each time, until the result fits.
 fn with_room<T>(
     table: &mut Ecm<f64, Vec<Region>, Vec<Piece<f64>>>,
-    mut act: impl FnMut(&mut Ecm<f64, Vec<Region>, Vec<Piece<f64>>>) -> Result<T, Unchanged>,
+    mut act: impl FnMut(&mut Ecm<f64, Vec<Region>, Vec<Piece<f64>>>) -> Result<T, TableError>,
 ) -> Result<T, Box<dyn Error>> {
     loop {
         match act(table) {
-            Err(Unchanged::Full(full @ (Full::Regions | Full::Pieces))) => table.grow(full)?,
+            Err(TableError::Full(full @ (Full::Regions | Full::Pieces))) => table.grow(full)?,
             done => return Ok(done?),
         }
     }

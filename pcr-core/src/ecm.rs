@@ -5,7 +5,7 @@ mod fill;
 mod grow;
 mod known;
 
-use crate::error::{Full, Mismatch, Unchanged};
+use crate::error::{Full, Mismatch, TableError};
 use crate::motion::Motion;
 use crate::pair::Pair;
 use crate::pieces::{List, NONE, Piece, Pieces};
@@ -264,7 +264,7 @@ where
     /// # Errors
     /// [`Full`] if the storage is too small; the table is then empty, as after [`Ecm::clear`].
     /// [`Mismatch::NoSuchAgent`]; the table is then unchanged.
-    pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged> {
+    pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), TableError> {
         if agent >= fleet.len() {
             return Err(Mismatch::NoSuchAgent(agent).into());
         }
@@ -279,7 +279,7 @@ where
     /// # Errors
     /// [`Full`] if the storage is too small, and [`Mismatch`], also if the table has the agent already; the table is
     /// then unchanged.
-    pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged> {
+    pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), TableError> {
         let own = fleet.get(agent).ok_or(Mismatch::NoSuchAgent(agent))?;
         let known = Known::all(fleet);
         if self.only.is_some() || self.fleet != known.without(agent, own) {
@@ -328,7 +328,7 @@ where
         fleet: &mut [Motion<'m, S>],
         agent: usize,
         motion: Motion<'m, S>,
-    ) -> Result<(), Unchanged> {
+    ) -> Result<(), TableError> {
         self.holds(fleet, [agent, agent])?;
         let Some(place) = fleet.get_mut(agent) else {
             return Err(Mismatch::NoSuchAgent(agent).into());

@@ -127,30 +127,30 @@ impl fmt::Display for Mismatch {
 
 impl core::error::Error for Mismatch {}
 
-/// Why a table could not be changed.
+/// Why a table was not filled or changed. Every method that returns it says what is then in the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Unchanged {
+pub enum TableError {
     /// There is not enough room.
     Full(Full),
-    /// The table is not that of the fleet without the agent.
+    /// The fleet or the agent is not that of the table.
     Mismatch(Mismatch),
 }
 
-impl From<Full> for Unchanged {
+impl From<Full> for TableError {
     fn from(full: Full) -> Self {
         Self::Full(full)
     }
 }
 
-impl From<Mismatch> for Unchanged {
+impl From<Mismatch> for TableError {
     fn from(mismatch: Mismatch) -> Self {
         Self::Mismatch(mismatch)
     }
 }
 
-impl fmt::Display for Unchanged {
+impl fmt::Display for TableError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Full(full) => full.fmt(f),
@@ -159,7 +159,7 @@ impl fmt::Display for Unchanged {
     }
 }
 
-impl core::error::Error for Unchanged {}
+impl core::error::Error for TableError {}
 
 /// Returns `value` if it is finite and within the limits of its format.
 pub(crate) fn in_range<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, Invalid> {
@@ -203,7 +203,7 @@ pub(crate) fn positive<S: crate::Scalar>(value: S, what: &'static str) -> Result
 
 #[cfg(test)]
 mod tests {
-    use super::{Full, Invalid, Mismatch, Unchanged};
+    use super::{Full, Invalid, Mismatch, TableError};
     use core::fmt::Write;
     use heapless::String;
 
@@ -218,9 +218,9 @@ mod tests {
         let lengths = |path, profile| text(&Invalid::LengthMismatch { path, profile }).unwrap();
         assert_eq!(lengths(10_004, 7_500), "the profile travels 7.500 m, the path has 10.004 m");
         assert_eq!(lengths(1_050, 1_050), "the profile misses the end of the path, 1.050 m, by less than 1 mm");
-        assert_eq!(text(&Unchanged::from(Mismatch::NoSuchAgent(5))).unwrap(), "the fleet has no agent 5");
+        assert_eq!(text(&TableError::from(Mismatch::NoSuchAgent(5))).unwrap(), "the fleet has no agent 5");
         assert_eq!(
-            text(&Unchanged::from(Mismatch::OnlyRow(4))).unwrap(),
+            text(&TableError::from(Mismatch::OnlyRow(4))).unwrap(),
             "the table holds the regions of agent 4 only"
         );
     }

@@ -64,7 +64,7 @@ mod segment;
 
 pub use crossing::{Crossing, crossings};
 pub use ecm::{Ecm, Region};
-pub use error::{Full, Invalid, Mismatch, Unchanged};
+pub use error::{Full, Invalid, Mismatch, TableError};
 pub use geometry::{Bounds, Direction, Interval, Point, Pose, Vector};
 pub use intervals::{Gaps, Union, gaps, union};
 pub use motion::{LENGTH_TOLERANCE_LOG2, Motion};

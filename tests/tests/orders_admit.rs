@@ -3,7 +3,7 @@
 
 use pcr_core::{
     Ecm, Full, Hold, Interval, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region,
-    Tolerances, Unchanged,
+    TableError, Tolerances,
 };
 use pcr_fixed::Q16;
 use pcr_tests::disc::{Course, Disc, Leg};
@@ -375,7 +375,7 @@ fn a_path_for_which_there_is_no_room_changes_nothing() {
         let before = [1, 2].map(|agent| passes(&table, &fleet, agent));
         assert_eq!(before.each_ref().map(Vec::len), [2, 2]);
         let found = table.replace(&mut fleet, 1, path.motion());
-        assert_eq!(found, expected.map(drop).map_err(Unchanged::Full));
+        assert_eq!(found, expected.map(drop).map_err(TableError::Full));
         let after = [1, 2].map(|agent| passes(&table, &fleet, agent));
         match expected {
             Err(_) => assert_eq!(after, before),

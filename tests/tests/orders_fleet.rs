@@ -1,8 +1,8 @@
 //! A table of orders answers for its own fleet only, a row for its own agent only; what it refuses changes nothing.
 
 use pcr_core::{
-    Full, Hold, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region, Tolerances,
-    Unchanged,
+    Full, Hold, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region, TableError,
+    Tolerances,
 };
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::execution::Table;
@@ -83,7 +83,7 @@ fn another_fleet_is_refused_and_changes_nothing() {
         let refused = refusals(&mut orders, &mut stranger, first, [0, 1]);
         assert_eq!(refused, [Some(Mismatch::OtherFleet); 8]);
         assert_eq!(orders.decide_at(&stranger, 0, 0, Pass::First, 0.0), Err(Mismatch::OtherFleet));
-        assert_eq!(orders.insert(&stranger, 0), Err(Unchanged::Mismatch(Mismatch::OtherFleet)));
+        assert_eq!(orders.insert(&stranger, 0), Err(TableError::Mismatch(Mismatch::OtherFleet)));
         assert_eq!(trace(&orders, &fleet), before);
     }
     let nobody = refusals(&mut orders, &mut fleet.clone(), first, [4, 1]);
@@ -147,7 +147,7 @@ fn who_comes_and_goes_leaves_the_orders_of_the_others() {
     orders.decide(&fleet[..3], 0, 1, Pass::Second, 0.0).expect("the table of the fleet");
     orders.decide(&fleet[..3], 1, 2, Pass::First, 0.0).expect("the table of the fleet");
     let before = trace(&orders, &fleet[..3]);
-    assert_eq!(orders.insert(&fleet, 3), Err(Unchanged::Full(Full::Orders)));
+    assert_eq!(orders.insert(&fleet, 3), Err(TableError::Full(Full::Orders)));
     assert_eq!(trace(&orders, &fleet[..3]), before);
     let mut roomy = table(&fleet[..3], 4);
     roomy.decide(&fleet[..3], 0, 1, Pass::Second, 0.0).expect("the table of the fleet");
@@ -210,7 +210,7 @@ fn a_path_that_is_exchanged_is_decided_anew_and_those_of_the_others_are_not() {
     for [agent, other] in [[0, 1], [1, 2], [2, 3]] {
         narrow.decide(&fleet, agent, other, Pass::First, 0.0).expect("the table of the fleet");
     }
-    assert_eq!(narrow.replace(&mut fleet, 1, other), Err(Unchanged::Full(Full::Orders)));
+    assert_eq!(narrow.replace(&mut fleet, 1, other), Err(TableError::Full(Full::Orders)));
     assert_eq!(trace(&narrow, &fleet), before);
     assert_eq!(narrow.replace(&mut fleet, 9, other), Err(Mismatch::NoSuchAgent(9).into()));
 }

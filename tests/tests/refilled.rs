@@ -1,6 +1,6 @@
 //! Tables that are filled again, exchanged, or full: nothing of before stays, and nothing of what does not fit.
 
-use pcr_core::{Ecm, Full, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region, Unchanged};
+use pcr_core::{Ecm, Full, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region, TableError};
 use pcr_tests::disc::{Course, Disc, Leg};
 use pcr_tests::execution::Table;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -77,7 +77,7 @@ fn an_agent_that_does_not_fit_leaves_no_pieces() {
     let mut ecm = Ecm::new(vec![Region::EMPTY; 3], vec![Piece::EMPTY; 8]);
     ecm.fill(&without).expect("no regions");
     for _ in 0..5 {
-        assert_eq!(ecm.insert(&fleet, 4), Err(Unchanged::Full(Full::Regions)));
+        assert_eq!(ecm.insert(&fleet, 4), Err(TableError::Full(Full::Regions)));
         assert_eq!((ecm.len(), ecm.pieces()), (0, 0));
     }
     let mut ecm = Ecm::new(vec![Region::EMPTY; 4], vec![Piece::EMPTY; 4]);

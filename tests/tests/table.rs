@@ -2,8 +2,8 @@
 
 use pcr_core::scalar::Angle;
 use pcr_core::{
-    Ecm, Full, Interval, Limits, Mismatch, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, RegionRef, Turn,
-    Unchanged, Unsolved, first_conflict, plan_delays,
+    Ecm, Full, Interval, Limits, Mismatch, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, RegionRef,
+    TableError, Turn, Unsolved, first_conflict, plan_delays,
 };
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::Scenario;
@@ -116,9 +116,9 @@ fn agents_that_are_not_there_are_refused() {
     assert_eq!(ecm.pair(&motions, usize::MAX, 0).err(), Some(Mismatch::NoSuchAgent(usize::MAX)));
     assert_eq!(ecm.pair(&motions, 3, 3).map(Iterator::count), Ok(0), "nobody meets itself");
     assert_eq!(ecm.remove(&motions, 12), Err(Mismatch::NoSuchAgent(12)));
-    assert_eq!(ecm.insert(&motions, 99), Err(Unchanged::Mismatch(Mismatch::NoSuchAgent(99))));
+    assert_eq!(ecm.insert(&motions, 99), Err(TableError::Mismatch(Mismatch::NoSuchAgent(99))));
     let motion = motions[0];
-    assert_eq!(ecm.replace(&mut motions, 12, motion), Err(Unchanged::Mismatch(Mismatch::NoSuchAgent(12))));
+    assert_eq!(ecm.replace(&mut motions, 12, motion), Err(TableError::Mismatch(Mismatch::NoSuchAgent(12))));
     assert_eq!(entries(&ecm, &motions), before);
     let nobody: [Motion<'_, f64>; 0] = [];
     let empty = Ecm::<f64, _, _>::build([], [], &nobody).expect("nothing to store");
@@ -288,7 +288,7 @@ fn an_agent_is_removed_and_inserted_once() {
     for agent in 0..motions.len() {
         let mut ecm = build_ecm(&motions).expect("a small fleet");
         let all = (ecm.len(), ecm.pieces());
-        let twice = Err(Unchanged::Mismatch(Mismatch::OtherFleet));
+        let twice = Err(TableError::Mismatch(Mismatch::OtherFleet));
         assert_eq!(ecm.insert(&motions, agent), twice, "it is there");
         ecm.remove(&motions, agent).expect("it is there");
         // A fleet of which it does not know an agent.
@@ -379,7 +379,7 @@ fn an_agent_that_does_not_fit_leaves_the_table_as_it_was() {
             assert_eq!(outcome, Ok(()));
             continue;
         }
-        assert_eq!(outcome, Err(Unchanged::Full(if room < regions { Full::Regions } else { Full::Pieces })));
+        assert_eq!(outcome, Err(TableError::Full(if room < regions { Full::Regions } else { Full::Pieces })));
         assert_eq!(entries(&ecm, others), before, "{room} regions, {space} pieces");
         // And it still works: what was given back is free again.
         ecm.remove(others, 4).expect("it is there");
@@ -452,8 +452,8 @@ fn a_table_that_grows_agent_by_agent_is_that_of_the_fleet() {
     let mut table: HostEcm<f64> = Ecm::new(Vec::new(), Vec::new());
     for agent in 0..motions.len() {
         let known = &motions[..=agent];
-        while let Err(unchanged) = table.insert(known, agent) {
-            let Unchanged::Full(full) = unchanged else { panic!("{unchanged}") };
+        while let Err(error) = table.insert(known, agent) {
+            let TableError::Full(full) = error else { panic!("{error}") };
             table.grow(full).expect("more room helps");
         }
     }

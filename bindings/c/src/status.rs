@@ -1,6 +1,6 @@
 //! The C types that are the same in all number formats.
 
-use pcr_core::{Full, Invalid, Mismatch, Pass, Refused, Unchanged, Unsolved};
+use pcr_core::{Full, Invalid, Mismatch, Pass, Refused, TableError, Unsolved};
 
 /// Result of a call. A call that fails leaves the fleet unchanged, except that a table which became full is empty.
 #[repr(C)]
@@ -86,11 +86,11 @@ impl From<Mismatch> for PcrStatus {
     }
 }
 
-impl From<Unchanged> for PcrStatus {
-    fn from(unchanged: Unchanged) -> Self {
-        match unchanged {
-            Unchanged::Full(full) => full.into(),
-            Unchanged::Mismatch(mismatch) => mismatch.into(),
+impl From<TableError> for PcrStatus {
+    fn from(error: TableError) -> Self {
+        match error {
+            TableError::Full(full) => full.into(),
+            TableError::Mismatch(mismatch) => mismatch.into(),
         }
     }
 }

@@ -26,7 +26,7 @@ use crate::number::Number;
 use crate::table::Ordered;
 use heapless::Vec;
 use pcr_core::{
-    Full, Hold, Interval, Invalid, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region, Scalar, Unchanged,
+    Full, Hold, Interval, Invalid, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region, Scalar, TableError,
 };
 
 /// The orders of one robot as they are received: the paths of at most `A` robots, including its own, with `N` segments
@@ -140,11 +140,11 @@ impl From<Invalid> for Unclear {
     }
 }
 
-impl From<Unchanged> for Unclear {
-    fn from(unchanged: Unchanged) -> Self {
-        match unchanged {
-            Unchanged::Full(full) => Self::Full(full),
-            Unchanged::Mismatch(mismatch) => Self::Mismatch(mismatch),
+impl From<TableError> for Unclear {
+    fn from(error: TableError) -> Self {
+        match error {
+            TableError::Full(full) => Self::Full(full),
+            TableError::Mismatch(mismatch) => Self::Mismatch(mismatch),
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::number::Number;
 use crate::table::Table;
 use core::cell::RefCell;
 use heapless::Vec;
-use pcr_core::{Ecm, Interval, Limits, Motion, Piece, Pose, Region, Unchanged, earliest_start};
+use pcr_core::{Ecm, Interval, Limits, Motion, Piece, Pose, Region, TableError, earliest_start};
 
 pub use crate::table::Regions;
 
@@ -146,7 +146,7 @@ where
         put(&self.fleet, &mut motions)?;
         let motion = self.fleet.staged(&staged).map_err(|invalid| Refusal::agent(index, invalid))?;
         // An error means that the new fleet has no table: there was none before, or the regions do not fit.
-        let _: Result<(), Unchanged> = self.table.replace(&mut motions, index, motion);
+        let _: Result<(), TableError> = self.table.replace(&mut motions, index, motion);
         drop(motions);
         self.fleet.settle(index, staged).map_err(|rejected| Refusal::change(index, rejected))?;
         Ok(self.agents())
@@ -170,7 +170,7 @@ where
         put(&self.fleet, &mut motions)?;
         if self.table.regions().regions(&motions).is_err() {
             build(&mut self.table, &motions, replies)
-                .map_err(|unchanged| needed(&mut self.table, &motions, unchanged, replies))?;
+                .map_err(|error| needed(&mut self.table, &motions, error, replies))?;
         }
         let table = self.table.regions();
         Ok(Answer::Computed { regions: short(table.len()), pieces: short(table.pieces()) })
@@ -309,7 +309,7 @@ fn build<S: Number, const R: usize, const P: usize>(
     table: &mut impl Table<S, R, P>,
     fleet: &[Motion<'_, S>],
     replies: &mut impl Replies<S>,
-) -> Result<(), Unchanged> {
+) -> Result<(), TableError> {
     table.clear();
     for agent in 0..fleet.len() {
         let inserted = table.insert(fleet.get(..=agent).unwrap_or_default(), agent);
@@ -328,7 +328,7 @@ fn build<S: Number, const R: usize, const P: usize>(
 fn needed<S: Number, const R: usize, const P: usize>(
     table: &mut impl Table<S, R, P>,
     fleet: &[Motion<'_, S>],
-    unchanged: Unchanged,
+    error: TableError,
     replies: &mut impl Replies<S>,
 ) -> Refusal {
     let [mut regions, mut pieces] = [0_usize; 2];
@@ -336,7 +336,7 @@ fn needed<S: Number, const R: usize, const P: usize>(
         for second in fleet.iter().skip(agent.saturating_add(1)) {
             // The table is too small for two agents, or no table is large enough.
             if build(table, &[*first, *second], replies).is_err() {
-                return unchanged.into();
+                return error.into();
             }
             regions = regions.saturating_add(table.regions().len());
             pieces = pieces.saturating_add(table.regions().pieces());

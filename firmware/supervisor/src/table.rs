@@ -3,7 +3,7 @@
 use crate::agent::Agent;
 use crate::message::{Answer, Edition, Refusal, Terms};
 use crate::number::Number;
-use pcr_core::{Ecm, Interval, Mismatch, Motion, Order, Orders, Piece, Region, Unchanged};
+use pcr_core::{Ecm, Interval, Mismatch, Motion, Order, Orders, Piece, Region, TableError};
 
 /// A table of at most `R` regions in `P` pieces.
 pub type Regions<S, const R: usize, const P: usize> = Ecm<S, [Region; R], [Piece<S>; P]>;
@@ -20,19 +20,19 @@ pub trait Table<S: Number, const R: usize, const P: usize> {
     /// Adds the last agent of a fleet. The table must be that of the fleet without this agent.
     ///
     /// # Errors
-    /// [`Unchanged`].
-    fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged>;
+    /// [`TableError`].
+    fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), TableError>;
 
     /// Replaces an agent, and computes only its regions.
     ///
     /// # Errors
-    /// [`Unchanged`]; the new fleet then has no table.
+    /// [`TableError`]; the new fleet then has no table.
     fn replace<'m>(
         &mut self,
         fleet: &mut [Motion<'m, S>],
         agent: usize,
         motion: Motion<'m, S>,
-    ) -> Result<(), Unchanged>;
+    ) -> Result<(), TableError>;
 
     /// Removes an agent; the index of every agent behind it decreases by one.
     ///
@@ -114,7 +114,7 @@ impl<S: Number, const R: usize, const P: usize> Table<S, R, P> for Regions<S, R,
 
     // Separate functions, with stacks of their own; so are those below.
     #[inline(never)]
-    fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged> {
+    fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), TableError> {
         Ecm::insert(self, fleet, agent)
     }
 
@@ -124,7 +124,7 @@ impl<S: Number, const R: usize, const P: usize> Table<S, R, P> for Regions<S, R,
         fleet: &mut [Motion<'m, S>],
         agent: usize,
         motion: Motion<'m, S>,
-    ) -> Result<(), Unchanged> {
+    ) -> Result<(), TableError> {
         Ecm::replace(self, fleet, agent, motion)
     }
 

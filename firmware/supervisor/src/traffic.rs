@@ -16,8 +16,8 @@ use crate::message::{Answer, Edition, Refusal, Terms, short};
 use crate::number::Number;
 use crate::table::{Ordered, Regions, Table};
 use pcr_core::{
-    Interval, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Region, Scalar, Tolerances,
-    Unchanged,
+    Interval, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Region, Scalar, TableError,
+    Tolerances,
 };
 
 /// A table for at most `A` robots, with at most `R` regions in `P` pieces and `O` orders. It needs as many orders as
@@ -84,7 +84,7 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
     }
 
     #[inline(never)]
-    fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged> {
+    fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), TableError> {
         self.orders.insert(fleet, agent)
     }
 
@@ -94,7 +94,7 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
         fleet: &mut [Motion<'m, S>],
         agent: usize,
         motion: Motion<'m, S>,
-    ) -> Result<(), Unchanged> {
+    ) -> Result<(), TableError> {
         // Robots are not under way: there are no orders to be kept, and so no room for them is needed.
         self.orders.remove(fleet, agent)?;
         if let Some(place) = fleet.get_mut(agent) {

@@ -35,7 +35,7 @@ impl<S: Scalar> Ecm<S, Vec<Region>, Vec<Piece<S>>> {
     /// Doubles the storage that was full. The regions stay. Afterwards repeat the call that failed (feature `std`):
     ///
     /// ```
-    /// # use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, Unchanged};
+    /// # use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, TableError};
     /// # let pose = |y, heading| Pose { position: Point::new(-2.0, y), heading: Radians(heading) };
     /// # let paths = [Path::<f64, 1>::starting_at(pose(0.0, 0.0))?.line(4.0)?, Path::starting_at(pose(0.1, 0.0))?.line(4.0)?];
     /// # let profile = Profile::rest_to_rest(4.0, Limits { speed: 1.0, acceleration: 1.0 })?;
@@ -43,10 +43,10 @@ impl<S: Scalar> Ecm<S, Vec<Region>, Vec<Piece<S>>> {
     /// # let fleet = [motion(paths[0].as_path())?, motion(paths[1].as_path())?];
     /// let mut ecm = Ecm::new(vec![], vec![]);
     /// ecm.insert(&fleet[..1], 0)?;
-    /// while let Err(unchanged) = ecm.insert(&fleet, 1) {
-    ///     match unchanged {
-    ///         Unchanged::Full(full) => ecm.grow(full)?,
-    ///         Unchanged::Mismatch(mismatch) => return Err(mismatch.into()),
+    /// while let Err(error) = ecm.insert(&fleet, 1) {
+    ///     match error {
+    ///         TableError::Full(full) => ecm.grow(full)?,
+    ///         TableError::Mismatch(mismatch) => return Err(mismatch.into()),
     ///     }
     /// }
     /// assert_eq!(ecm.len(), 1);

@@ -8,7 +8,7 @@
 //! of deadlock.
 
 use crate::ecm::Region;
-use crate::error::{Full, Mismatch, Unchanged};
+use crate::error::{Full, Mismatch, TableError};
 use crate::motion::Motion;
 use crate::orders::check::{Reach, Tolerances};
 use crate::orders::order::{Order, Pass, Progress};
@@ -129,7 +129,7 @@ where
         fleet: &mut [Motion<'m, S>],
         agent: usize,
         motion: Motion<'m, S>,
-    ) -> Result<(), Unchanged> {
+    ) -> Result<(), TableError> {
         self.ecm.holds_all(fleet)?;
         self.exchange(fleet, agent, motion).map(drop)
     }
@@ -141,7 +141,7 @@ where
         fleet: &mut [Motion<'m, S>],
         agent: usize,
         motion: Motion<'m, S>,
-    ) -> Result<usize, Unchanged> {
+    ) -> Result<usize, TableError> {
         let saved = self.places(agent).fold(0_usize, |count, _| count.saturating_add(1));
         let room = self.orders.as_ref().len().saturating_sub(saved);
         let Some(&before) = fleet.get(agent) else { return Err(Mismatch::NoSuchAgent(agent).into()) };

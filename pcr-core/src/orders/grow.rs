@@ -42,16 +42,16 @@ impl<S: Scalar> Orders<S, Vec<Region>, Vec<Piece<S>>, Vec<Order<S>>> {
     /// Returns `full` itself if more storage does not help, or if the allocation of memory fails.
     ///
     /// ```
-    /// use pcr_core::{Motion, Orders, Path, Point, Pose, Profile, Radians, Unchanged};
+    /// use pcr_core::{Motion, Orders, Path, Point, Pose, Profile, Radians, TableError};
     /// let stands = Path::<f64, 1>::starting_at(Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) })?;
     /// let profile = Profile::<f64, 1>::standing();
     /// let fleet = [Motion::new(stands.as_path(), profile.as_profile(), 0.25, 0.0)?; 2];
     /// let mut orders = Orders::new(vec![], vec![], vec![]);
     /// orders.insert(&fleet[..1], 0)?;
-    /// while let Err(unchanged) = orders.insert(&fleet, 1) {
-    ///     match unchanged {
-    ///         Unchanged::Full(full) => orders.grow(full)?,
-    ///         Unchanged::Mismatch(mismatch) => return Err(mismatch.into()),
+    /// while let Err(error) = orders.insert(&fleet, 1) {
+    ///     match error {
+    ///         TableError::Full(full) => orders.grow(full)?,
+    ///         TableError::Mismatch(mismatch) => return Err(mismatch.into()),
     ///     }
     /// }
     /// assert_eq!(orders.decisions().count(), 1);

@@ -1,6 +1,6 @@
 //! Why orders are refused.
 
-use crate::error::{Full, Mismatch, Unchanged};
+use crate::error::{Full, Mismatch, TableError};
 
 /// Why orders are refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,11 +69,11 @@ impl From<Mismatch> for Refused {
     }
 }
 
-impl From<Unchanged> for Refused {
-    fn from(unchanged: Unchanged) -> Self {
-        match unchanged {
-            Unchanged::Full(full) => Self::Full(full),
-            Unchanged::Mismatch(mismatch) => Self::Mismatch(mismatch),
+impl From<TableError> for Refused {
+    fn from(error: TableError) -> Self {
+        match error {
+            TableError::Full(full) => Self::Full(full),
+            TableError::Mismatch(mismatch) => Self::Mismatch(mismatch),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The table of orders: one order for each region, at the same indices.
 
 use crate::ecm::{Ecm, Region};
-use crate::error::{Full, Mismatch, Unchanged};
+use crate::error::{Full, Mismatch, TableError};
 use crate::geometry::Interval;
 use crate::motion::Motion;
 use crate::orders::hold::Hold;
@@ -200,7 +200,7 @@ where
     /// # Errors
     /// [`Full`] if the storage is too small; the table is then empty, as after [`Orders::clear`].
     /// [`Mismatch::NoSuchAgent`]; the table is then unchanged.
-    pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged> {
+    pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), TableError> {
         self.ecm.fill_row(fleet, agent)?;
         Ok(self.undecide()?)
     }
@@ -224,7 +224,7 @@ where
     ///
     /// # Errors
     /// [`Full`] if the storage is too small, and [`Mismatch`]; the table is then unchanged.
-    pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Unchanged> {
+    pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), TableError> {
         let kept = self.ecm.len();
         self.ecm.insert(fleet, agent)?;
         if self.ecm.len() > self.orders.as_ref().len() {

@@ -12,7 +12,7 @@ use crate::memory;
 use pcr_certify::data::Angle;
 use pcr_core::{
     Ecm, Full, Invalid, Limits, Motion, Order, Orders, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef,
-    Radians, Region, Scalar, Segment, Turn, Unchanged,
+    Radians, Region, Scalar, Segment, TableError, Turn,
 };
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
@@ -412,7 +412,7 @@ pub(crate) fn table_of<S: Scalar>(
     let mut ecm = Ecm::new(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]);
     loop {
         match ecm.fill_row(motions, agent) {
-            Err(Unchanged::Full(full)) => ecm.grow(full)?,
+            Err(TableError::Full(full)) => ecm.grow(full)?,
             done => return Ok(done.map(|()| ecm).expect("an agent of the fleet")),
         }
     }

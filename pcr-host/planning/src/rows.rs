@@ -12,7 +12,7 @@ pub use grid::Grid;
 use crate::fleet::{Format, HostEcm, table_of};
 use crate::memory::Held;
 use crate::regions::Failure;
-use pcr_core::{Full, Mismatch, Motion, RegionRef, Unchanged, excess};
+use pcr_core::{Full, Mismatch, Motion, RegionRef, TableError, excess};
 use rayon::prelude::*;
 
 /// The regions of an agent with others, those after it or all.
@@ -58,12 +58,12 @@ impl<'a, S: Format> Row<'a, S> {
         self.motions.clear();
         self.motions.extend(self.agents.iter().map(|&agent| &motions[agent as usize]));
         let filled = match self.table.fill_row(&self.motions, self.place) {
-            Err(Unchanged::Full(Full::Regions | Full::Pieces)) => {
+            Err(TableError::Full(Full::Regions | Full::Pieces)) => {
                 let agents = self.agents.len();
                 table_of(&self.motions, self.place, [2 * agents, 3 * agents]).map(|table| self.table = table)
             }
-            Err(Unchanged::Full(full)) => Err(full),
-            Err(Unchanged::Mismatch(mismatch)) => unreachable!("{mismatch}: it was added above"),
+            Err(TableError::Full(full)) => Err(full),
+            Err(TableError::Mismatch(mismatch)) => unreachable!("{mismatch}: it was added above"),
             Ok(()) => Ok(()),
         };
         filled.map_err(|full| match full {

@@ -7,7 +7,7 @@ use crate::memory::{Arena, Stack, both, values};
 use crate::status::{PCR_LEFT, PCR_LINE, PCR_RIGHT, PcrStatus};
 use pcr_core::{
     Ecm, Full, Interval, Limits, Mismatch, Mission, Motion, Order, Orders, Pass, PathRef, Phase, Piece, Point, Pose,
-    Profile, ProfileRef, Progress, Reach, Refused, Region, RegionRef, Scalar, Segment, Tolerances, Turn, Unchanged,
+    Profile, ProfileRef, Progress, Reach, Refused, Region, RegionRef, Scalar, Segment, TableError, Tolerances, Turn,
     Unsolved, plan_delays,
 };
 
@@ -30,7 +30,7 @@ impl Table {
         }
     }
 
-    fn fill_row(&mut self, fleet: &[Motion<'static, S>], agent: usize) -> Result<(), Unchanged> {
+    fn fill_row(&mut self, fleet: &[Motion<'static, S>], agent: usize) -> Result<(), TableError> {
         match self {
             Self::Regions(table) => table.fill_row(fleet, agent),
             Self::Ordered(table) => table.fill_row(fleet, agent),
@@ -42,7 +42,7 @@ impl Table {
         fleet: &mut [Motion<'static, S>],
         agent: usize,
         motion: Motion<'static, S>,
-    ) -> Result<(), Unchanged> {
+    ) -> Result<(), TableError> {
         match self {
             Self::Regions(table) => table.replace(fleet, agent, motion),
             Self::Ordered(table) => table.replace(fleet, agent, motion),
@@ -166,7 +166,7 @@ impl Fleet {
         let before = *self.motion(index)?;
         let motion = self.placed(agent)?;
         match self.table.replace(self.motions.values_mut(), index, motion) {
-            Err(Unchanged::Full(full)) => return Err(full.into()),
+            Err(TableError::Full(full)) => return Err(full.into()),
             Ok(()) => {}
             // The table was not built before, or has one row only, which does not belong to the new fleet.
             Err(_) => *self.motions.get_mut(index).ok_or(PcrStatus::NoSuchAgent)? = motion,

@@ -15,7 +15,7 @@ use pcr_core::{
     Bounds, Brakes, BroadPhase, Conflict, Conflicts, Constraint, Contacts, Crossing, Curve, Decision, Direction, Drive,
     Ecm, Encounter, Full, Gaps, Hold, Interval, Invalid, Limits, Mismatch, Mission, Motion, NoSpeedPlan, Order, Orders,
     Pass, Path, PathRef, Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Progress, Reach, Refused,
-    Region, RegionRef, Scalar, Segment, SpeedPlan, Station, Tolerances, Turn, Unchanged, Union, Unsolved, Vector,
+    Region, RegionRef, Scalar, Segment, SpeedPlan, Station, TableError, Tolerances, Turn, Union, Unsolved, Vector,
     crossings, earliest_departure, earliest_start, excess, first_conflict, first_overlap, gaps, least_duration,
     overlaps, plan_delays, plan_speed, plan_speed_below, plan_speeds, safe_intervals, safe_lengths, union,
 };
@@ -382,10 +382,10 @@ fn messages<S: Scalar>() {
     shown::<Invalid>(any(Invalid::Full("")));
     shown::<Full>(any(Full::Pair([0, 0])));
     shown::<Mismatch>(any(Mismatch::OtherFleet));
-    shown::<Unchanged>(any(<Unchanged as From<Full>>::from(any(Full::Agents))));
+    shown::<TableError>(any(<TableError as From<Full>>::from(any(Full::Agents))));
     shown::<Unsolved>(any(<Unsolved as From<Mismatch>>::from(any(Mismatch::NoSuchAgent(0)))));
     shown::<NoSpeedPlan<S>>(any(<NoSpeedPlan<S> as From<Invalid>>::from(any(Invalid::SweepOverOneTurn))));
-    shown::<Refused>(any(<Refused as From<Unchanged>>::from(any(Unchanged::Full(Full::Orders)))));
+    shown::<Refused>(any(<Refused as From<TableError>>::from(any(TableError::Full(Full::Orders)))));
     shown::<PieceType>(any(PieceType::SS));
 }
 

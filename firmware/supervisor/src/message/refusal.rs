@@ -4,7 +4,7 @@ use super::{Edition, short};
 use crate::fleet::Rejected;
 use crate::frame::Damage;
 use heapless::Vec;
-use pcr_core::{Full, Invalid, Mismatch, Refused, Unchanged};
+use pcr_core::{Full, Invalid, Mismatch, Refused, TableError};
 use serde::{Deserialize, Serialize};
 
 /// Why a request was not executed.
@@ -163,11 +163,11 @@ impl From<Full> for Refusal {
     }
 }
 
-impl From<Unchanged> for Refusal {
-    fn from(unchanged: Unchanged) -> Self {
-        match unchanged {
-            Unchanged::Full(full) => full.into(),
-            Unchanged::Mismatch(mismatch) => mismatch.into(),
+impl From<TableError> for Refusal {
+    fn from(error: TableError) -> Self {
+        match error {
+            TableError::Full(full) => full.into(),
+            TableError::Mismatch(mismatch) => mismatch.into(),
         }
     }
 }
