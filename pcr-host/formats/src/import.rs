@@ -76,6 +76,7 @@ pub use value::parse as parse_json;
 pub use vehicle::{CORNER_RADIUS, HEADING, Options, TOLERANCE, Vehicle};
 pub use warnings::{Warnings, shortened};
 
+use crate::own;
 use crate::scenario::{Agent, Scenario};
 use serde_json::Value;
 use std::path::Path;
@@ -201,6 +202,9 @@ impl Format {
             return None;
         }
         let root = serde_json::Deserializer::from_str(value::unmarked(text)).into_iter::<Value>().next()?.ok()?;
+        if root.get("format").and_then(Value::as_str).and_then(own::described).is_some() {
+            return None;
+        }
         match () {
             () if lif::is_layout(&root) => Some(Self::Lif),
             () if nav2::is_graph(&root) => Some(Self::Nav2),

@@ -3,7 +3,8 @@
 mod lines;
 
 use crate::import::{self, Format, ImportError, Imported, Kind, Options, Warnings};
-use crate::scenario::{Scenario, ScenarioError};
+use crate::own;
+use crate::scenario::{self, Scenario, ScenarioError};
 pub use lines::{Line, Lines};
 use std::fmt;
 use std::fs;
@@ -30,6 +31,8 @@ pub enum InputError {
     NoLayout(Option<PathBuf>),
     /// It has to be a layout, and is a scenario.
     IsScenario(Option<PathBuf>),
+    /// It has to be a layout, and is an answer of this tool, of which it is said what it is.
+    IsAnswer(Option<PathBuf>, String),
     /// It cannot be read together with others.
     Single(Option<PathBuf>),
     /// An option does nothing with such a file, and why.
@@ -62,6 +65,7 @@ impl fmt::Display for InputError {
             Self::IsScenario(file) => {
                 write!(f, "{}: this is a scenario, with paths of its own; a layout is expected", name(file))
             }
+            Self::IsAnswer(file, answer) => write!(f, "{}: {answer}; a layout is expected", name(file)),
             Self::Useless(file, option, why) => write!(f, "{}: {option} has no effect: {why}", name(file)),
         }
     }
@@ -107,10 +111,11 @@ pub fn stem(file: &Path) -> String {
     if stem == "-" { String::new() } else { stem.to_owned() }
 }
 
-/// A name, else the stem of the file.
+/// A name, else the stem of the file; as far as it may be printed, which other formats do not ask for.
 fn or_stem(name: &mut String, file: &Path) {
+    *name = scenario::label(name);
     if name.is_empty() {
-        *name = stem(file);
+        *name = scenario::label(&stem(file));
     }
 }
 
@@ -190,7 +195,9 @@ pub fn kind(file: &Path, options: &Options) -> Result<Kind, InputError> {
 /// Whether all files hold orders or states of VDA 5050, or all paths by their points: an agent each, of one fleet.
 pub fn are_of_one_fleet(files: &[PathBuf], options: &Options) -> bool {
     let format = |file: &PathBuf| {
-        let text = if file == Path::new("-") { String::new() } else { fs::read_to_string(file).unwrap_or_default() };
+        // A pipe would have nothing left for who reads it.
+        let is_file = fs::metadata(file).is_ok_and(|file| file.is_file());
+        let text = if is_file { fs::read_to_string(file).unwrap_or_default() } else { String::new() };
         options.from.or_else(|| Format::of(file, &text))
     };
     let mut formats = files.iter().map(format);
@@ -253,10 +260,11 @@ pub fn read_layout(file: &Path, options: &Options, moves: bool) -> Result<(Impor
     let (name, text) = text(file)?;
     let mut warnings = Warnings::default();
     let Some(format) = options.from.or_else(|| Format::of(file, &text)) else {
-        return Err(match import::is_empty(&text) {
-            false if text.contains("\"agents\"") => InputError::IsScenario(name),
-            false => InputError::NoLayout(name),
-            true => InputError::Empty(name, "a layout"),
+        return Err(match own::answer(&text) {
+            _ if import::is_empty(&text) => InputError::Empty(name, "a layout"),
+            Some(answer) => InputError::IsAnswer(name, answer),
+            None if text.contains("\"agents\"") => InputError::IsScenario(name),
+            None => InputError::NoLayout(name),
         });
     };
     useful(&name, &text, Some(format), options)?;

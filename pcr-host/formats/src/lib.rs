@@ -18,6 +18,7 @@ pub mod input;
 mod json;
 pub mod once;
 pub mod output;
+mod own;
 pub mod paper;
 pub mod plane;
 pub mod random;

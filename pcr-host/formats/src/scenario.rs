@@ -52,7 +52,7 @@ pub use decode::LENGTH_TOLERANCE;
 pub use fields::figure;
 pub use fields::{LIMIT, ScenarioError};
 pub use labels::{LONGEST_LABEL, Labels};
-pub use labels::{label, printable};
+pub use labels::{controls, label, printable};
 pub use load::Load;
 pub use parts::{Part, Stretch};
 pub use placed::{KINK, Placed, TURN};

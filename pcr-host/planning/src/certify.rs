@@ -12,6 +12,7 @@ use pcr_certify::dump;
 use pcr_certify::pair::{Findings, Promise};
 use pcr_certify::table::{Checker, Margin};
 use pcr_formats::scenario::Labels;
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use told::{Asked, Cover, Told};
@@ -88,9 +89,6 @@ pub struct Dump {
     pub warnings: Vec<String>,
     /// The table of contacts, and that of overlaps of margins, if there are any.
     pub certificate: Vec<Table>,
-    /// Reason why there are no regions.
-    #[serde(default)]
-    error: Option<String>,
     #[serde(default)]
     agent: Option<u64>,
     #[serde(default)]
@@ -101,11 +99,14 @@ pub struct Dump {
     footprints: Vec<Cover>,
 }
 
-/// Format and version of a text.
+/// What a text is, as far as that is to be known before it is read.
 #[derive(Deserialize)]
 struct Said {
     format: Option<Value>,
     version: Option<Value>,
+    error: Option<String>,
+    agents: Option<IgnoredAny>,
+    certificate: Option<IgnoredAny>,
 }
 
 impl Dump {
@@ -128,16 +129,22 @@ impl Dump {
     pub fn of_json(text: &str) -> Result<Self, String> {
         let said: Said = serde_json::from_str(text).map_err(|error| error.to_string())?;
         let (format, version) = (ANSWERS, VERSION);
+        if said.format.as_ref().is_none_or(|said| said == "pcr-scenario") && said.agents.is_some() {
+            return Err("this is a scenario; without --table, the table that is computed for it is proved".into());
+        }
         if let Some(other) = said.format.filter(|said| said != format) {
             return Err(format!("format: {other} where \"{format}\" is expected"));
         }
         if let Some(other) = said.version.filter(|said| said != version) {
             return Err(format!("version: {other} where {version}, all that this pcr knows, is expected"));
         }
-        let dump: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
-        if let Some(error) = dump.error {
+        if let Some(error) = said.error {
             return Err(format!("its regions were not computed: {error}"));
         }
+        if said.certificate.is_none() {
+            return Err("there is no certificate in it; pcr regions --json --certificate prints one".into());
+        }
+        let dump: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
         for table in &dump.certificate {
             told::bodies(table, &dump.footprints)?;
             told::asked(table, dump.agent)?;

@@ -7,6 +7,7 @@ use super::settled::Settled;
 use super::turns;
 use super::{Agent, MotionSpec, PathSegment, Scenario, TURN};
 use crate::json::{self, Data, Json};
+use crate::own;
 use serde_json::Value;
 use std::collections::HashSet;
 use std::fmt;
@@ -89,12 +90,8 @@ impl Scenario {
     }
 
     fn agents(json: &Json, agents: Agents) -> Result<Vec<Agent>, ScenarioError> {
+        is_scenario(json)?;
         let fields = Place::default().fields(json, &FIELDS)?;
-        match fields.get("format").map(|format| (format, &format.data)) {
-            Some((_, Data::Text(format))) if format == FORMAT => {}
-            None => {}
-            Some((format, _)) => return Err(fields.unexpected("format", format, &format!("\"{FORMAT}\""))),
-        }
         match fields.get("version").map(|version| (version, &version.data)) {
             Some((_, Data::Number(version))) if whole(version) == Some(VERSION) => {}
             None => {}
@@ -102,13 +99,43 @@ impl Scenario {
                 return Err(fields.unexpected("version", version, &format!("{VERSION}, all that this pcr knows,")));
             }
         }
-        if let Some(name) = fields.get("name")
-            && !matches!(name.data, Data::Text(_))
-        {
-            return Err(fields.unexpected("name", name, "a string"));
+        match fields.get("name").map(|name| (name, &name.data)) {
+            None => {}
+            Some((given, Data::Text(name))) => {
+                if let Some(fault) = labels::fault(name) {
+                    return Err(fields.error(given.line, "name", fault));
+                }
+            }
+            Some((name, _)) => return Err(fields.unexpected("name", name, "a string")),
         }
         fields.array("agents")?;
         agents.fault.map_or(Ok(agents.all), Err)
+    }
+}
+
+/// Refuses what says of itself that it is something else, before its keys are unknown; and what stands for a scenario that there is not.
+fn is_scenario(json: &Json) -> Result<(), ScenarioError> {
+    let Data::Object(members) = &json.data else { return Ok(()) };
+    let member = |key: &str| members.iter().find(|(name, _)| name == key).map(|(_, value)| (value, &value.data));
+    match member("format") {
+        None => {}
+        Some((_, Data::Text(format))) if format == FORMAT => {}
+        Some((given, format)) => {
+            let answer = if let Data::Text(format) = format { own::described(format) } else { None };
+            return Err(match answer {
+                Some(answer) => Place::default().error(given.line, "", format!("{answer}; a scenario is expected")),
+                None => {
+                    let problem = format!("{} where \"{FORMAT}\" is expected", brief(given));
+                    Place::default().error(given.line, "format", problem)
+                }
+            });
+        }
+    }
+    match (member("agents"), member("error"), member("name")) {
+        (None, Some((given, Data::Text(why))), Some((_, Data::Text(name)))) => {
+            Err(Place::default().error(given.line, "", format!("{name}: {why}")))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -21,6 +21,12 @@ impl Scenario {
             "{{ \"format\": \"{FORMAT}\", \"version\": {VERSION}, \"name\": {name},\n{warnings}  \"agents\": {agents} }}\n"
         )
     }
+
+    /// A line in place of a scenario in a stream of them: there is none of this name, and why. Whatever reads scenarios refuses it.
+    pub fn missing(name: &str, why: &str) -> String {
+        let [name, why] = [name, why].map(Value::from);
+        format!("{{\"format\":\"{FORMAT}\",\"version\":{VERSION},\"name\":{name},\"error\":{why}}}\n")
+    }
 }
 
 /// Something as JSON writes it.
@@ -125,7 +131,7 @@ mod tests {
         let outlined = Agent { id: 2, radius: outline.reach(), footprint: Some(outline), ..stands.clone() };
         let scenario = Scenario {
             warnings: vec!["edge \"5\": left out".into()],
-            ..Scenario::new("a \"name\"\n\\", vec![agent, stands, moves, outlined])
+            ..Scenario::new("a \"name\" \\", vec![agent, stands, moves, outlined])
         };
         assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));
         let empty = Scenario::default();

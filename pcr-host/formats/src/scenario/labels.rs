@@ -47,8 +47,8 @@ pub(super) fn called(id: u64, label: &str) -> String {
     if label.is_empty() { id.to_string() } else { format!("{id} {label}") }
 }
 
-/// Characters that would end a line, or change the direction of text beside them.
-fn controls(c: char) -> bool {
+/// Whether a character would end a line, or change the direction of text beside it.
+pub fn controls(c: char) -> bool {
     let lines_and_directions = ['\u{2028}'..='\u{202e}', '\u{2066}'..='\u{2069}', '\u{feff}'..='\u{feff}'];
     c.is_control() || lines_and_directions.iter().any(|range| range.contains(&c))
 }

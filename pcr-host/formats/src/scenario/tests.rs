@@ -316,8 +316,10 @@ fn files_may_say_what_they_are() {
         Scenario::from_value(&json!({ "format": format, "version": version, "agents": [] }))
     };
     assert!(file("pcr-scenario", 1).is_ok());
-    let message = file("pcr-plan", 1).unwrap_err().to_string();
-    assert_eq!(message, "format: \"pcr-plan\" where \"pcr-scenario\" is expected");
+    let message = file("other", 1).unwrap_err().to_string();
+    assert_eq!(message, "format: \"other\" where \"pcr-scenario\" is expected");
+    let message = file("pcr-locks", 1).unwrap_err().to_string();
+    assert_eq!(message, "this is pcr-locks, an answer of pcr; a scenario is expected");
     let message = file("pcr-scenario", 2).unwrap_err().to_string();
     assert_eq!(message, "version: 2 where 1, all that this pcr knows, is expected");
 }

@@ -253,10 +253,11 @@ impl Index {
         Ok(())
     }
 
-    /// Whether a file begins with the magic bytes of an index.
+    /// Whether a file begins with the magic bytes of an index. What is no file, of which these bytes would be gone, is none.
     pub fn is_one(file: &Path) -> bool {
         let mut begin = [0; MAGIC.len()];
-        File::open(file).and_then(|mut file| file.read_exact(&mut begin)).is_ok() && begin == MAGIC
+        let is_file = std::fs::metadata(file).is_ok_and(|there| there.is_file());
+        is_file && File::open(file).and_then(|mut file| file.read_exact(&mut begin)).is_ok() && begin == MAGIC
     }
 
     /// The [`origin`](super::origin) of the layout and the vehicle whose locks it holds.
