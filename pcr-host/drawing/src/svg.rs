@@ -1,5 +1,6 @@
 //! A small writer of SVG. It closes elements, escapes texts, and writes finite and short numbers.
 
+use pcr_formats::scenario::controls;
 use std::fmt::{self, Display, Write as _};
 
 /// Decimals of a coordinate \[px\]: a hundredth of a pixel is below what any screen or printer resolves.
@@ -8,7 +9,7 @@ const DECIMALS: usize = 2;
 /// Font of all texts. The PNG pictures hold the first one; the second has the same widths.
 pub(super) const FONT: &str = "DejaVu Sans, Verdana, sans-serif";
 
-/// A text as XML writes it. Characters that XML 1.0 does not know become U+FFFD.
+/// A text as XML writes it. Characters that XML 1.0 does not know, or that would change the direction of text, become U+FFFD.
 pub(crate) struct Escaped<'a>(pub(crate) &'a str);
 
 impl Display for Escaped<'_> {
@@ -21,7 +22,8 @@ impl Display for Escaped<'_> {
                 '"' => f.write_str("&quot;")?,
                 '\'' => f.write_str("&#39;")?,
                 '\t' | '\n' | '\r' => f.write_char(' ')?,
-                '\0'..='\u{1f}' | '\u{fffe}' | '\u{ffff}' => f.write_char(char::REPLACEMENT_CHARACTER)?,
+                '\u{fffe}' | '\u{ffff}' => f.write_char(char::REPLACEMENT_CHARACTER)?,
+                control if controls(control) => f.write_char(char::REPLACEMENT_CHARACTER)?,
                 other => f.write_char(other)?,
             }
         }

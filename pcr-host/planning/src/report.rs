@@ -22,6 +22,7 @@ pub use locks::{
 };
 pub use nodes::{nodes_csv, nodes_table};
 pub use overview::overview;
+pub use pcr_formats::scenario::printable;
 pub use plans::{PLAN_CSV_HEADER, left_open, plan_csv, plan_table, reasons};
 pub use proofs::proof_line;
 pub use rows::{Unprinted, sheet_csv, sheet_json};
@@ -167,16 +168,4 @@ pub fn counted(count: usize, what: &str) -> String {
 /// The name of a scenario in a heading.
 pub fn heading(name: &str) -> String {
     if name.is_empty() { "scenario".into() } else { printable(name) }
-}
-
-/// A name for a terminal: control characters are escaped.
-pub fn printable(name: &str) -> String {
-    name.chars().fold(String::new(), |mut text, c| {
-        if c.is_control() {
-            text.extend(c.escape_default());
-        } else {
-            text.push(c);
-        }
-        text
-    })
 }

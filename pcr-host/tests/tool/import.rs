@@ -153,3 +153,17 @@ fn agents_on_different_maps_are_told_also_if_they_are_from_different_files() {
     let one = run(&[&["import", "vda5050", &files[0]], &VEHICLE[..]].concat());
     assert!(!one.err.contains("maps"), "{}", one.err);
 }
+
+#[test]
+fn names_that_are_no_labels_are_read_with_a_warning() {
+    let node = |k: u32| {
+        json!({ "nodeId": format!("n{k}"), "sequenceId": 2 * k, "released": true, "actions": [],
+        "nodePosition": { "x": 4 * k, "y": 0, "mapId": "m" } })
+    };
+    let edge = json!({ "edgeId": "e", "sequenceId": 1, "released": true, "actions": [] });
+    let order = json!({ "serialNumber": "S\n\u{202e}X", "orderId": "o", "nodes": [node(0), node(1)], "edges": [edge] });
+    let order = file("import-names", "order.json", order.to_string());
+    let read = run(&["import", "vda5050", &order, "--radius", "0.3", "-o", "-"]);
+    assert!(read.status == 0 && read.out.contains("\"label\": \"SX o\""), "{}{}", read.out, read.err);
+    assert!(read.err.contains("agent 1: its label is SX o: printable text of up to 200 characters\n"), "{}", read.err);
+}

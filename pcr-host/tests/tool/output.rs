@@ -208,12 +208,32 @@ fn csv_reads_back_as_the_same_numbers() {
 #[test]
 fn names_are_harmless_in_csv_and_tables() {
     let mut scenario = crossing();
-    scenario["name"] = json!("a,\"b\"\u{1b}[2J\nc");
-    let scenario = file("names", "names.json", scenario.to_string());
-    let csv = run(&["regions", &scenario, "--format", "csv"]).ok();
-    assert!(csv.contains("\n\"a,\"\"b\"\"\u{1b}[2J\nc\",1,2,"), "{csv}");
-    let table = run(&["regions", &scenario]).ok();
-    assert!(table.starts_with("a,\"b\"\\u{1b}[2J\\nc: 2 collision regions"), "{table}");
+    scenario["name"] = json!("a,\"b\"");
+    let named = file("names", "names.json", scenario.to_string());
+    let csv = run(&["regions", &named, "--format", "csv"]).ok();
+    assert!(csv.contains("\n\"a,\"\"b\"\"\",1,2,"), "{csv}");
+    for control in ['\u{1b}', '\n', '\u{202e}'] {
+        scenario["name"] = json!(format!("a{control}b"));
+        let named = file("names", "controls.json", scenario.to_string());
+        let expected = format!(
+            "pcr: {named}:1: name: has the control character {}; allowed is printable text\n",
+            control.escape_default()
+        );
+        assert_eq!(run(&["regions", &named]).failed(2), expected);
+    }
+    // Layouts may have any names: they are shown without what moves the text beside them.
+    let lif = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/lif/example_07.lif.json");
+    let lif = std::fs::read_to_string(lif).unwrap();
+    let lif = lif.replace("\"LIF Example 07\"", "\"g\\u202e\\n\"").replace("\"N1\"", "\"N1\\u202e\"");
+    let graph = file("names", "graph.lif.json", lif);
+    let table = run(&["nodes", &graph]).out;
+    assert!(table.starts_with("g: ") && table.contains("N1\\u{202e}") && !table.contains('\u{202e}'), "{table}");
+    let pictures = directory("names").join("locks");
+    run(&["locks", &graph, "--radius", "0.3", "-q", "-o", pictures.to_str().unwrap()]).ok();
+    let svg = std::fs::read_to_string(pictures.join("layout.svg")).unwrap();
+    assert!(svg.contains("N1\u{fffd}") && !svg.contains('\u{202e}'), "{svg}");
+    let page = std::fs::read_to_string(pictures.join("locks.html")).unwrap();
+    assert!(page.contains("<title>g – locks<"));
 }
 
 /// The cells of the line of a table that begins with these.

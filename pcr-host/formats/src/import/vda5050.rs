@@ -20,7 +20,7 @@ use super::trajectory::Trajectory;
 use super::value::{self, Object};
 use super::warnings::TOGETHER;
 use super::{ImportError, Options, Vehicle, Warnings, facing, loads, trajectory, updates};
-use crate::scenario::{Agent, Scenario, label};
+use crate::scenario::{Agent, LONGEST_LABEL, Scenario, label};
 use begin::Begin;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -100,7 +100,12 @@ impl Reader<'_> {
     fn message(&mut self, id: u64, message: &Object<'_>) -> Result<(Agent, f64), ImportError> {
         let name = message.text("orderId")?.unwrap_or_default();
         let robot = message.text("serialNumber")?.unwrap_or_default();
-        let called = label(&[robot, name].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" "));
+        let own = [robot, name].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ");
+        let called = label(&own);
+        if called != own {
+            let problem = format!("its label is {called}: printable text of up to {LONGEST_LABEL} characters");
+            self.warnings.add(format!("agent {id}"), problem);
+        }
         let state = ["nodeStates", "mobileRobotPosition", "plannedPath", "intermediatePath"];
         let message = message.clone();
         if message.get("nodes").is_some() {
