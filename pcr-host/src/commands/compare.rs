@@ -73,7 +73,11 @@ impl Arguments {
             let names = names.join(", ");
             return Err(Stop::arguments(format!("--method {word}: no method has a name with that; there are {names}")));
         }
-        let sources = apart(sources(self.files)?);
+        let sources = apart(sources(self.files)?, &self.import);
+        if let Some(directory) = &self.output {
+            // Before minutes of measurements.
+            output::folder(directory).map_err(|error| Stop::not_written(directory, &error))?;
+        }
         let format = if self.json { Output::Json } else { self.format };
         let mut out: Box<dyn Write> = match format {
             Output::Table if quiet() => Box::new(io::sink()),
@@ -84,7 +88,8 @@ impl Arguments {
         }
         let effort = Effort { rounds: self.rounds.into(), budget: BUDGET, slices: SLICES };
         for (place, source) in sources.iter().enumerate() {
-            let scenario = source.scenario(&self.import)?;
+            let mut scenario = source.scenario(&self.import)?;
+            scenario.name = source.called(&scenario.name);
             let agents = scenario.agents.len();
             memory::ask(agents as u64 * AGENT_BYTES, || format!("the comparison of {agents} agents"))
                 .map_err(|large| Stop::wrong(source.file(), large))?;
@@ -114,7 +119,6 @@ impl Arguments {
 }
 
 fn draw(comparison: &Comparison, directory: &Path, number: usize) -> Result<(), Stop> {
-    output::folder(directory).map_err(|error| Stop::not_written(directory, &error))?;
     for (question, name) in [(Question::Regions, "regions"), (Question::Conflicts, "conflicts")] {
         let file = directory.join(format!("{name}-{number}.svg"));
         output::write(&file, comparison.chart(question)).map_err(|error| Stop::not_written(&file, &error))?;

@@ -4,8 +4,8 @@ use super::map::draw;
 use super::printed::quiet;
 use super::{STATUSES, Stop, WRONG_INPUT, folder};
 use clap::Args;
-use pcr_formats::paper;
 use pcr_formats::scenario::Scenario;
+use pcr_formats::{output, paper};
 use pcr_planning::fleet::Fleet;
 use pcr_planning::regions::{self, Answer, Failure, Request};
 use pcr_planning::report;
@@ -45,6 +45,9 @@ impl Arguments {
         }
         if quiet() {
             out = Box::new(io::sink());
+        }
+        if let Some(output) = &self.output {
+            output::folder(output).map_err(|error| Stop::not_written(output, &error))?;
         }
         let scenario =
             Scenario::from_json(paper::SCENARIO).map_err(|error| Stop::Error(error.to_string(), WRONG_INPUT))?;

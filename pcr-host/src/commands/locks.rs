@@ -90,9 +90,6 @@ impl Arguments {
         if let Some(edge) = &self.edge {
             return self.of_edge(file, edge);
         }
-        if Index::is_one(file) {
-            return Err(Stop::wrong(file, "this is a table of locks already; say which --edge it is asked for"));
-        }
         if self.delays {
             return self.unsafe_delays(file);
         }

@@ -242,7 +242,8 @@ impl Arguments {
         let progress = Progress::new(format!("{}: planning {agents} agents", source.file().display()));
         let planned = Plan::of(&scenario, &request);
         drop(progress);
-        let (plan, solved) = planned.map_err(wrong)?;
+        let (mut plan, solved) = planned.map_err(wrong)?;
+        plan.name = source.called(&plan.name);
         if let Some(directory) = &self.pictures {
             // Where there can be none, there is no file of the plan, either.
             output::folder(directory).map_err(|error| Stop::not_written(directory, &error))?;
@@ -254,8 +255,8 @@ impl Arguments {
             // Nobody would miss it in a stream of plans: what reads them refuses this, as it refuses a stream of none.
             (Some(output), None) if several && is_standard(Some(output)) => {
                 let why = report::reasons(&plan).next().unwrap_or_default();
-                let missing = serde_json::json!({ "name": scenario.name, "error": format!("no plan: {why}") });
-                write_over(output, &format!("{missing}\n"), source.file(), || Ok(false))?;
+                let missing = Scenario::missing(&scenario.name, &format!("no plan: {why}"));
+                write_over(output, &missing, source.file(), || Ok(false))?;
             }
             _ => {}
         }

@@ -4,9 +4,9 @@ use super::help::{DRIVING, STANDING, useless};
 use super::{Stop, say, warn};
 use pcr_formats::import::{Imported, Kind, Options, Warnings, shortened};
 use pcr_formats::input::InputError;
-use pcr_formats::scenario::{Agent, Scenario};
+use pcr_formats::scenario::{Agent, Scenario, label, printable};
 use pcr_formats::{input, output};
-use pcr_planning::locks::rounded;
+use pcr_planning::locks::{Index, rounded};
 use pcr_planning::memory;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
@@ -64,8 +64,11 @@ pub(super) fn scenario(file: &Path, import: &Options) -> Result<Scenario, Stop> 
     told(file, input::read(file, import)?, import)
 }
 
-/// Asks for the memory that it takes to read a file.
+/// Asks for the memory that it takes to read a file; the one that is no text is refused by its name.
 fn ask_for(file: &Path) -> Result<(), Stop> {
+    if Index::is_one(file) {
+        return Err(Stop::wrong(file, "this is a table of locks already; pcr locks reads it, with --edge"));
+    }
     // What has no size, such as standard input, is not known before.
     let bytes = std::fs::metadata(file).map_or(0, |there| there.len());
     memory::ask_for_text(bytes).map_err(|large| Stop::wrong(file, large))
@@ -114,7 +117,7 @@ pub(super) fn without_margin(import: &Options) -> Result<(), Stop> {
 /// What one answer is about.
 pub(super) enum Source {
     File(PathBuf),
-    /// One of several files of the same name in other folders; answers are named by the path.
+    /// One of several whose answers would have the same name; they are named by the path.
     Twin(PathBuf),
     /// Orders and states, or paths, of one fleet.
     Together(Vec<PathBuf>),
@@ -126,14 +129,21 @@ pub(super) fn gathered(files: Vec<PathBuf>, import: &Options) -> Result<Vec<Sour
     if files.len() > 1 && input::are_of_one_fleet(&files, import) {
         return Ok(vec![Source::Together(files)]);
     }
-    Ok(apart(files))
+    Ok(apart(files, import))
 }
 
 /// Files that are answered one after the other, so that their answers can be told apart.
-pub(super) fn apart(files: Vec<PathBuf>) -> Vec<Source> {
-    let stems: Vec<String> = files.iter().map(|file| input::stem(file)).collect();
-    let is_twin = |stem: &String| !stem.is_empty() && stems.iter().filter(|other| *other == stem).count() > 1;
-    let twins: Vec<bool> = stems.iter().map(is_twin).collect();
+pub(super) fn apart(files: Vec<PathBuf>, import: &Options) -> Vec<Source> {
+    let name = |file: &PathBuf| match std::fs::metadata(file) {
+        // What is no file can be read once only.
+        Ok(there) if there.is_file() && files.len() > 1 => {
+            input::read(file, import).map_or_else(|_| input::stem(file), |(scenario, _)| scenario.name)
+        }
+        _ => input::stem(file),
+    };
+    let names: Vec<String> = files.iter().map(name).collect();
+    let is_twin = |name: &String| !name.is_empty() && names.iter().filter(|other| *other == name).count() > 1;
+    let twins: Vec<bool> = names.iter().map(is_twin).collect();
     let source = |(file, twin): (PathBuf, bool)| if twin { Source::Twin(file) } else { Source::File(file) };
     files.into_iter().zip(twins).map(source).collect()
 }
@@ -147,11 +157,16 @@ impl Source {
         }
     }
 
-    /// What an answer is called where the scenario has no name.
+    /// What an answer is called where there is no scenario.
     pub(super) fn name(&self) -> String {
+        self.called(&label(&input::stem(self.file())))
+    }
+
+    /// What the answer about a scenario of this name is called.
+    pub(super) fn called(&self, name: &str) -> String {
         match self {
-            Self::Twin(file) => file.to_string_lossy().into_owned(),
-            Self::File(_) | Self::Together(_) => input::stem(self.file()),
+            Self::Twin(file) => printable(&file.to_string_lossy()),
+            Self::File(_) | Self::Together(_) => name.to_owned(),
         }
     }
 
@@ -170,14 +185,7 @@ impl Source {
 
     pub(super) fn scenario(&self, import: &Options) -> Result<Scenario, Stop> {
         match self {
-            Self::File(file) => scenario(file, import),
-            Self::Twin(file) => {
-                let mut scenario = scenario(file, import)?;
-                if scenario.name == input::stem(file) {
-                    scenario.name = self.name();
-                }
-                Ok(scenario)
-            }
+            Self::File(file) | Self::Twin(file) => scenario(file, import),
             Self::Together(files) => together(files, import),
         }
     }

@@ -97,6 +97,7 @@ fn one<W: Work>(
         Some(text) => foreign_scenario(text, import)?,
         None => source.scenario(import)?,
     };
+    scenario.name = source.called(&scenario.name);
     let lost = tell_rounding(work.scalar(), &mut scenario).map_err(|refused| Stop::wrong(source.file(), refused))?;
     say(source.file(), lost);
     let progress = Progress::new(format!("{}: {} agents", source.file().display(), scenario.agents.len()));

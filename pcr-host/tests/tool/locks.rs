@@ -149,7 +149,7 @@ fn an_edge_is_found_in_an_index_without_the_others() {
     let unknown = run(&["locks", index, "--edge", "nowhere"]).failed(2);
     assert!(unknown.ends_with("there is no edge nowhere; pcr nodes lists them\n"), "{unknown}");
     let again = run(&["locks", index]).failed(2);
-    assert!(again.ends_with("this is a table of locks already; say which --edge it is asked for\n"), "{again}");
+    assert!(again.ends_with("this is a table of locks already; pcr locks reads it, with --edge\n"), "{again}");
 }
 
 #[test]

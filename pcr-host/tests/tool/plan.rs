@@ -404,8 +404,10 @@ fn a_scenario_without_a_plan_is_missed_in_no_stream() {
     assert_eq!((csv.status, csv.out.lines().count()), (1, 1));
     assert!(csv.err.starts_with(&format!("pcr: {name}: no plan\npcr: {name}: agents ")), "{}", csv.err);
     let stream = run(&["plan", &name, PAPER, "-q", "-o", "-"]);
-    assert!(stream.status == 1 && stream.out.starts_with("{\"error\":\"no plan: agents "), "{}", stream.out);
+    let first = "{\"format\":\"pcr-scenario\",\"version\":1,\"name\":\"head-on\",\"error\":\"no plan: agents ";
+    assert!(stream.status == 1 && stream.out.starts_with(first), "{}", stream.out);
     let checked = run_with(&["check", "-"], stream.out.as_bytes());
     assert_eq!(checked.status, 2);
-    assert!(checked.err.contains("1 of 2 scenarios refused"), "{}", checked.err);
+    let why = "pcr: standard input: line 1: head-on: no plan: agents ";
+    assert!(checked.err.starts_with(why) && checked.err.contains("1 of 2 scenarios refused"), "{}", checked.err);
 }

@@ -103,6 +103,38 @@ fn several_files_are_answered_one_after_the_other() {
 }
 
 #[test]
+fn answers_of_one_name_are_told_apart_by_their_files() {
+    let [a, b] = ["a", "b"].map(|folder| file(&format!("same-name/{folder}"), "f.json", crossing().to_string()));
+    let other = file("same-name", "other.json", free().to_string().replace("crossing", "other"));
+    let names = |command: &str| -> Vec<Value> {
+        let answers = run(&[command, &a, &other, &b, "--json"]).out;
+        answers.lines().map(|line| serde_json::from_str::<Value>(line).unwrap()["name"].clone()).collect()
+    };
+    for command in ["check", "regions", "plan"] {
+        assert_eq!(names(command), [json!(a), json!("other"), json!(b)], "{command}");
+    }
+    let written = run(&["plan", &a, &b, "-q", "-o", "-"]).ok();
+    assert_eq!(written.matches("\"name\": \"crossing\"").count(), 2, "{written}");
+}
+
+/// What is looked at before it is read would be gone.
+#[cfg(target_os = "linux")]
+#[test]
+fn pipes_are_read_once() {
+    let scenario = file("pipes", "crossing.json", crossing().to_string());
+    let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/warehouse_graph.geojson");
+    for command in [
+        format!("check -q <(cat {scenario}) {scenario}"),
+        format!("locks --json -q --radius 0.4 <(cat {layout}) | grep -q pcr-locks; exit $((1 - $?))"),
+    ] {
+        let line = format!("{} {command}", env!("CARGO_BIN_EXE_pcr"));
+        let output = std::process::Command::new("bash").args(["-c", &line]).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!((output.status.code(), &*said), (Some(1), ""), "{command}");
+    }
+}
+
+#[test]
 fn plans_go_through_a_pipe() {
     let input = file("pipe", "crossing.json", crossing().to_string());
     let plan = run(&["plan", &input, "-o", "-"]);
