@@ -5,6 +5,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, Args, Command, CommandFactory};
 use clap_complete::Shell;
 use clap_mangen::Man;
+use std::collections::BTreeSet;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -39,6 +40,9 @@ impl Shells {
         let of_man = move |argument: Arg| argument.value_parser(PossibleValuesParser::new(names.clone()));
         let mut command = command.mut_subcommand("man", |man| man.mut_arg("command", of_man));
         clap_complete::generate(self.shell, &mut command, "pcr", &mut text);
+        if self.shell == Shell::Zsh {
+            text = for_zsh(String::from_utf8_lossy(&text).into_owned(), &command).into_bytes();
+        }
         print(&text)
     }
 }
@@ -59,6 +63,15 @@ impl Manual {
         };
         print(&page(command)?)
     }
+}
+
+/// A script for zsh, in which a colon ends what a value is called, so that one in it is escaped; the generator does not.
+fn for_zsh(text: String, command: &Command) -> String {
+    let arguments = command.get_subcommands().chain([command]).flat_map(Command::get_arguments);
+    let names: BTreeSet<&str> =
+        arguments.flat_map(|argument| argument.get_value_names().unwrap_or_default()).map(|name| &**name).collect();
+    let names = names.into_iter().filter(|name| name.contains(':'));
+    names.fold(text, |text, name| text.replace(&format!(":{name}:"), &format!(":{}:", name.replace(':', "\\:"))))
 }
 
 /// The manual page of a command, with examples and exit statuses as they are, line by line.
