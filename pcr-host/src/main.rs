@@ -16,6 +16,7 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
         Err(Stop::Error(message, status)) => {
+            pcr_formats::output::remove_empty_folders();
             complain(&message);
             ExitCode::from(status)
         }

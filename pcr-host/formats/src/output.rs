@@ -16,6 +16,9 @@ use std::sync::{Mutex, PoisonError};
 /// Files that are read.
 static KEPT: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
+/// Folders that were made, each after those that it is in.
+static MADE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
 /// Why a file that is read is not written to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Kept(PathBuf);
@@ -130,6 +133,9 @@ fn stream_over<T, E: From<io::Error>>(file: &Path, fill: impl FnOnce(&mut File) 
     if fs::metadata(file).is_ok_and(|there| !there.is_file() && !there.is_dir()) {
         return fill(&mut OpenOptions::new().write(true).open(file)?);
     }
+    if file.to_string_lossy().ends_with(std::path::is_separator) && !file.is_dir() {
+        return Err(io::Error::new(io::ErrorKind::IsADirectory, "the name of a folder, and a file is written").into());
+    }
     let target = followed(file)?;
     match fs::metadata(&target) {
         Ok(old) if old.is_dir() => Err(io::Error::new(io::ErrorKind::IsADirectory, "a folder").into()),
@@ -148,12 +154,25 @@ fn stream_over<T, E: From<io::Error>>(file: &Path, fill: impl FnOnce(&mut File) 
 /// # Errors
 /// Errors of the file system; [`io::ErrorKind::NotADirectory`] if there is a file of this name.
 pub fn folder(directory: &Path) -> io::Result<()> {
+    let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+    let missing: Vec<PathBuf> = directory.ancestors().take_while(is_missing).map(Path::to_owned).collect();
     match fs::create_dir_all(directory) {
+        Ok(()) => {
+            MADE.lock().unwrap_or_else(PoisonError::into_inner).extend(missing.into_iter().rev());
+            Ok(())
+        }
         Err(_) if fs::metadata(directory).is_ok_and(|there| !there.is_dir()) => {
             Err(io::Error::new(io::ErrorKind::NotADirectory, "it is there and not a folder"))
         }
-        made => made,
+        Err(error) => Err(error),
     }
+}
+
+/// Removes the folders that [`folder()`] has made and that are empty: those of a run that failed before it wrote anything.
+pub fn remove_empty_folders() {
+    let made = std::mem::take(&mut *MADE.lock().unwrap_or_else(PoisonError::into_inner));
+    // One with something in it is not removed by this.
+    made.iter().rev().for_each(|folder| drop(fs::remove_dir(folder)));
 }
 
 /// The path of a file behind all links, whether it exists or not.
@@ -182,7 +201,9 @@ fn replace<T, E: From<io::Error>>(
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     };
-    let (temporary, file) = temporary(folder)?;
+    let (temporary, file) = temporary(folder).map_err(|error| {
+        io::Error::new(error.kind(), format!("its folder {} takes no file: {error}", folder.display()))
+    })?;
     let done = filled(file, old, fill).and_then(|done| {
         fs::rename(&temporary, target)?;
         Ok(done)

@@ -151,13 +151,37 @@ fn files_where_folders_have_to_be_are_named() {
     let file = folder.join("file");
     fs::write(&file, "keep").unwrap();
     let name = file.to_str().unwrap();
-    for arguments in [&["map", PAPER, "-o", name][..], &["demo", "-o", name, "-q"]] {
+    for arguments in [
+        &["map", PAPER, "-o", name][..],
+        &["demo", "-o", name],
+        &["compare", PAPER, "-o", name, "--rounds", "1", "--method", "polyline"],
+    ] {
         let message = run(arguments).failed(3);
         assert_eq!(message, format!("pcr: {name}: cannot be written: it is there and not a folder\n"));
     }
     let message = run(&["plan", PAPER, "-q", "-o", folder.to_str().unwrap()]).failed(3);
     assert!(message.ends_with(": cannot be written: a folder\n"), "{message}");
     assert_eq!(fs::read_to_string(&file).unwrap(), "keep");
+    let slash = format!("{}/new/", folder.display());
+    let message = run(&["plan", PAPER, "-q", "-o", &slash]).failed(3);
+    assert_eq!(message, format!("pcr: {slash}: cannot be written: the name of a folder, and a file is written\n"));
+    let nowhere = format!("{}/nowhere", folder.display());
+    let message = run(&["plan", PAPER, "-q", "-o", &format!("{nowhere}/plan.json")]).failed(3);
+    assert!(
+        message.contains(&format!("plan.json: cannot be written: its folder {nowhere} takes no file: ")),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_run_that_fails_leaves_no_empty_folder() {
+    let folder = folder("left");
+    let out = folder.join("deep/maps");
+    let out = out.to_str().unwrap();
+    let run = run(&["evaluate", "--data", "nowhere", "--only", "fleets", "-o", out]);
+    assert_eq!((run.status, names(&folder)), (2, Vec::new()), "{}", run.err);
+    let (status, message) = limited(1, &["map", PAPER, "-o", out]);
+    assert_eq!((status, names(&folder)), (3, Vec::new()), "{message}");
 }
 
 #[test]
