@@ -4,6 +4,7 @@ use super::sources::{source, without_margin};
 use super::{STATUSES, Stop, folder, quiet, scenario, warn_of_boxes};
 use crate::progress::Progress;
 use clap::Args;
+use clap::builder::NonEmptyStringValueParser;
 use pcr_core::Motion;
 use pcr_drawing::{self as picture, Ground};
 use pcr_formats::import::Options;
@@ -38,7 +39,7 @@ pub(super) struct Arguments {
     #[arg(short, long, value_name = "DIR", value_parser = folder())]
     output: PathBuf,
     /// Only the map of this agent, by number or label, with all agents that come near it; may be given several times
-    #[arg(long = "agent", value_name = "AGENT")]
+    #[arg(long = "agent", value_name = "AGENT", value_parser = NonEmptyStringValueParser::new())]
     agents: Vec<String>,
     #[command(flatten)]
     import: Options,

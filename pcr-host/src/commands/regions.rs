@@ -4,6 +4,7 @@ use super::number::{Number, with_scalar};
 use super::work::{Work, run};
 use super::{Form, Printed, STATUSES, Stop};
 use clap::Args;
+use clap::builder::NonEmptyStringValueParser;
 use pcr_formats::import::Options;
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::Format;
@@ -36,7 +37,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     printed: Printed,
     /// Only the regions of this agent, by number or label
-    #[arg(long, value_name = "ID")]
+    #[arg(long, value_name = "ID", value_parser = NonEmptyStringValueParser::new())]
     agent: Option<String>,
     /// Add the lengths inside each region at N times (JSON only)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=MOST_SLICES))]

@@ -3,6 +3,7 @@
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 use std::ffi::OsString;
+use std::path::Path;
 
 /// The error with a tip, where there is a better one than that of the parser.
 pub(super) fn with_tip(mut error: Error, words: &[OsString]) -> Error {
@@ -14,7 +15,15 @@ pub(super) fn with_tip(mut error: Error, words: &[OsString]) -> Error {
         _ => "",
     };
     let is_output = matches!(wrong, "-o" | "--output");
+    let is_version = matches!(wrong, "--version" | "-V");
+    let check = format!("pcr check {wrong}");
+    let begins = |word: &str| word.len() > 2 && !wrong.is_empty() && word.starts_with(wrong);
+    let value = words.windows(2).find(|pair| matches!(&*pair[0], "-o" | "--output") && begins(&pair[1]));
+    let value = value.map(|pair| format!("what begins with - is given with an equals sign: {}={}", pair[0], pair[1]));
     let tip = match (error.kind(), command) {
+        (ErrorKind::InvalidSubcommand, _) if Path::new(wrong).is_file() => &*check,
+        (ErrorKind::UnknownArgument, _) if is_version => "pcr --version",
+        (ErrorKind::UnknownArgument, _) if value.is_some() => value.as_deref().unwrap_or_default(),
         (ErrorKind::InvalidSubcommand, "version") => "pcr --version",
         (ErrorKind::UnknownArgument, "locks")
             if !wrong.starts_with('-') && words.iter().any(|word| word == "--audit") =>
@@ -38,6 +47,6 @@ pub(super) fn with_tip(mut error: Error, words: &[OsString]) -> Error {
     for other in [ContextKind::SuggestedSubcommand, ContextKind::SuggestedArg] {
         error.remove(other);
     }
-    error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(tip)]));
+    error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(tip.to_owned())]));
     error
 }

@@ -144,6 +144,9 @@ fn refused_words_come_with_a_tip() {
     let layout = real("nav2/aws_graph.geojson");
     for (arguments, tip) in [
         (&["version"][..], "tip: pcr --version\n"),
+        (&["plan", "--version"], "tip: pcr --version\n"),
+        (&[PAPER], "tip: pcr check /"),
+        (&["plan", PAPER, "-o", "-x.json"], "tip: what begins with - is given with an equals sign: -o=-x.json\n"),
         (&["check", "-o", "x"], "tip: this command writes no file; its answer goes to standard output: > FILE\n"),
         (&["regions", PAPER, "--output=x"], "tip: this command writes no file"),
         (&["locks", &layout, "--audit", "zones.json"], "with an equals sign: --audit=FILE\n"),
@@ -183,6 +186,43 @@ fn wrong_kinds_of_files_are_named() {
         message.ends_with("kind.json: this is a scenario, with paths of its own; a layout is expected\n"),
         "{message}"
     );
+    // What the tool itself writes is known by its format, whatever its keys are.
+    let answer = |name: &str, arguments: &[&str]| file("habits", name, run(arguments).out);
+    let graph = real("nav2/warehouse_graph.geojson");
+    let regions = answer("regions.json", &["regions", &scenario, "--json"]);
+    let plan = answer("plan.json", &["plan", &scenario, "--json"]);
+    let locks = answer("locks.json", &["locks", &graph, "--radius", "0.4", "--json", "-q"]);
+    let nodes = answer("nodes.json", &["nodes", &graph, "--json"]);
+    let index = directory("habits").join("graph.locks");
+    let index = index.to_str().unwrap();
+    run(&["locks", &graph, "--radius", "0.4", "-q", "--index", index]).ok();
+    let [table, binary] = ["certify --table reads; a scenario is expected\n", "with --edge\n"];
+    for (arguments, expected) in [
+        (
+            &["check", &*regions][..],
+            "1: this is pcr-regions, an answer of pcr, which pcr certify --table reads; a scenario",
+        ),
+        (&["certify", &regions], table),
+        (
+            &["check", &plan],
+            "1: this is pcr-plan, an answer of pcr (pcr plan -o writes the scenario with the plan); a sc",
+        ),
+        (
+            &["locks", &plan, "--radius", "0.4"],
+            "this is pcr-plan, an answer of pcr (pcr plan -o writes the scenario with the",
+        ),
+        (&["locks", &locks, "--radius", "0.4"], "json: this is pcr-locks, an answer of pcr; a layout is expected\n"),
+        (&["check", &nodes], "1: this is pcr-nodes, an answer of pcr; a scenario is expected\n"),
+        (&["traffic", &nodes], "this is pcr-nodes, an answer of pcr; a layout is expected\n"),
+        (&["certify", "--table", &regions], "no certificate in it; pcr regions --json --certificate prints one\n"),
+        (&["certify", "--table", &scenario], "this is a scenario; without --table, the table that is computed for it"),
+        (&["nodes", index], binary),
+        (&["check", index], binary),
+        (&["locks", index], binary),
+    ] {
+        let message = run(arguments).failed(2);
+        assert!(message.contains(expected), "{arguments:?}: {message}");
+    }
     let task = "<?xml version=\"1.0\" ?><root><agent start_id=\"1\" goal_id=\"2\"/></root>";
     let task = file("habits", "task.xml", task);
     for command in ["check", "plan", "locks"] {
@@ -200,6 +240,7 @@ fn quiet_is_quiet() {
         assert_eq!((run.status, run.out.as_str(), run.err.as_str()), (status, "", ""), "{arguments:?}");
     };
     silent(&["check", "-q", &scenario], 1);
+    silent(&["-q", "check", "-q", "--quiet", &scenario], 1);
     silent(&["regions", "--quiet", &layout, "--route", "0:50"], 0);
     let pictures = directory("habits").join("quiet");
     silent(&["-q", "plan", &scenario, "--pictures", pictures.to_str().unwrap()], 0);
@@ -251,6 +292,10 @@ fn completions_and_manual_pages_name_every_command() {
     assert!(rest.contains(".SH \"EXAMPLES\"\n.nf\n\\&  pcr   ") && !rest.contains("EXTRA"), "{rest}");
     let fleet = run(&["man", "fleet"]).ok();
     assert!(fleet.contains(".SH \"NOTES\"\n.nf\n\\&User and password"), "{fleet}");
+    // A colon would end the name of a value.
+    let zsh = run(&["completions", "zsh"]).ok();
+    assert!(zsh.contains(":FROM\\:TO[@TIME]:") && !zsh.contains(":FROM:"), "{zsh}");
+    assert!(!zsh.contains(":HOST:PORT"), "{zsh}");
     // Commands are offered for what they are expected for.
     let bash = run(&["completions", "bash"]).ok();
     assert!(bash.contains("opts=\"-h -q --help --quiet regions certify check plan map"), "{bash}");

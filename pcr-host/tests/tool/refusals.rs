@@ -175,6 +175,10 @@ fn wrong_arguments() {
     let negative = run(&["check", PAPER, "--radius", "-1"]).err;
     let range = "invalid value '-1' for '--radius <M>': a number from 1e-6 to 1e6 is expected";
     assert!(negative.contains(range), "{negative}");
+    for arguments in [&["regions", PAPER, "--agent", ""][..], &["map", PAPER, "--agent", "", "-o", "nowhere"]] {
+        let empty = run(arguments);
+        assert!(empty.status == 2 && empty.err.contains("a value is required for '--agent <"), "{}", empty.err);
+    }
     let message = run(&["regions", PAPER, "--slices", "3"]).failed(2);
     assert_eq!(message, "pcr: --slices is for --format json\n");
 }
