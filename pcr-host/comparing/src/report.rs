@@ -3,7 +3,7 @@
 use crate::compare::{Absent, Comparison, Errors, Question, Row};
 use pcr_planning::report::columns::Columns;
 use pcr_planning::report::figures::{bytes, seconds, share, time, times};
-use pcr_planning::report::{Document, heading, quoted};
+use pcr_planning::report::{Document, counted, heading, quoted};
 use std::io::{self, Write};
 
 impl Document for Comparison {
@@ -45,9 +45,9 @@ pub fn comparison_csv(comparison: &Comparison, out: &mut impl Write) -> io::Resu
 pub fn comparison_table(comparison: &Comparison, markdown: bool, out: &mut impl Write) -> io::Result<()> {
     let Comparison { agents, rows, absent, .. } = comparison;
     if !markdown {
-        writeln!(out, "{}: {agents} agents", heading(&comparison.name))?;
+        writeln!(out, "{}: {}\n", heading(&comparison.name), counted(*agents, "agent"))?;
     }
-    for question in [Question::Regions, Question::Conflicts] {
+    for (place, question) in [Question::Regions, Question::Conflicts].into_iter().enumerate() {
         let titles = match question {
             Question::Regions => ["pairs or regions", "kept", "area off"].as_slice(),
             Question::Conflicts => &["found", "missed", "invented", "time off"],
@@ -58,7 +58,9 @@ pub fn comparison_table(comparison: &Comparison, markdown: bool, out: &mut impl 
         for row in rows.iter().filter(|row| row.question == question) {
             columns.row(cells(row));
         }
-        writeln!(out)?;
+        if place > 0 {
+            writeln!(out)?;
+        }
         if markdown { columns.write_markdown(out)? } else { columns.write(out)? }
     }
     if !absent.is_empty() {

@@ -182,7 +182,7 @@ pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Ou
     for frame in 0..frames {
         if frame % CHECKED == 0 {
             // The record is kept in lists, which double as they grow.
-            memory::ask((2 * (frame + CHECKED) * room) as u64, || format!("a record of {frame} frames"))?;
+            memory::ask((2 * (frame + CHECKED) * room) as u64, || format!("a record of {} frames", frame + CHECKED))?;
         }
         world.missions(frame, control.as_mut());
         if world.is_done() {

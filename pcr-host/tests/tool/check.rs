@@ -45,6 +45,12 @@ fn a_crossing_at_the_same_time_is_a_conflict() {
 }
 
 #[test]
+fn nobody_is_near_an_agent_alone() {
+    let alone = json!({ "name": "alone", "agents": [crossing()["agents"][0]] });
+    assert_eq!(check(&alone, &["--closest"]).out, "alone: no conflicts, 1 agent\n");
+}
+
+#[test]
 fn a_plan_without_conflicts_is_free() {
     let run = check(&free(), &["--format", "json"]);
     assert_eq!(

@@ -4,7 +4,7 @@ use crate::simulate::{Ended, Run, Simulation};
 use pcr_formats::scenario::Labels;
 use pcr_planning::report::columns::Columns;
 use pcr_planning::report::figures::small;
-use pcr_planning::report::{called, heading, quoted};
+use pcr_planning::report::{called, counted, heading, quoted};
 use std::io::{self, Write};
 
 /// A line a mission: numbers that read back exactly; no end where it was not done.
@@ -89,7 +89,8 @@ fn planning(run: &Run, labels: &Labels, out: &mut impl Write) -> io::Result<()> 
     let (mean, longest) = (planning.mean_ms, planning.longest_ms);
     let name = run.controller.name();
     if count > 0 && kept == count {
-        writeln!(out, "{name}: no plan was found in {count} tries, and nobody moved")?;
+        let tries = if count == 1 { "1 try".to_owned() } else { format!("{count} tries") };
+        writeln!(out, "{name}: no plan was found in {tries}, and nobody moved")?;
     }
     for waiting in &run.waiting_for {
         let by = waiting.by.map(|by| called(labels, by));
@@ -106,6 +107,8 @@ fn planning(run: &Run, labels: &Labels, out: &mut impl Write) -> io::Result<()> 
     }
     writeln!(
         out,
-        "{name}: planned {count} times ({kept} times the old orders stayed), {mean:.2} ms each, at most {longest:.2} ms"
+        "{name}: planned {} ({} the old orders stayed), {mean:.2} ms each, at most {longest:.2} ms",
+        counted(count, "time"),
+        counted(kept, "time")
     )
 }

@@ -31,12 +31,13 @@ pub fn traffic_csv(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> {
 pub fn traffic_table(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> {
     let Traffic { layout, seed, asked, placed, planned, passed_over, .. } = traffic;
     let name = if layout.is_empty() { "layout" } else { layout };
-    writeln!(out, "{}: {asked} agents asked for, {placed} placed, {planned} planned, seed {seed}", heading(name))?;
+    let (name, asked_for) = (heading(name), counted(*asked, "agent"));
+    writeln!(out, "{name}: {asked_for} asked for, {placed} placed, {planned} planned, seed {seed}")?;
     if *passed_over == 0 {
         writeln!(out, "no mission rejected")?;
     }
     for PassedOver { why, missions } in &traffic.passed_over_because {
-        writeln!(out, "{missions} missions rejected and drawn again: {}", printable(why))?;
+        writeln!(out, "{} rejected and drawn again: {}", counted(*missions, "mission"), printable(why))?;
     }
     if placed < asked {
         let without = asked - placed;

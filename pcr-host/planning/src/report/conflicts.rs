@@ -61,7 +61,7 @@ pub fn conflicts_table(verdict: &Verdict, out: &mut impl Write) -> io::Result<()
             )?;
         }
     }
-    if let Some(closest) = &verdict.closest {
+    if let Some(closest) = verdict.closest.as_ref().filter(|closest| !closest.is_empty()) {
         writeln!(out, "\nNearest to one another:")?;
         let [i, j] = agents(&verdict.labels);
         let mut columns = Columns::new(&[i, j, "t [s]", "separation [m]", "clearance [m]"]);
