@@ -30,6 +30,7 @@ use clap::{Parser, Subcommand};
 use pcr_formats::import::Warnings;
 use pcr_formats::input::InputError;
 use pcr_formats::output::{self, Kept};
+use pcr_planning::memory;
 use pcr_planning::regions::Failure;
 pub(crate) use printed::complain;
 use printed::{Form, Printed, quiet};
@@ -72,7 +73,7 @@ Examples:
 #[command(name = "pcr", version, after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(crate) struct Arguments {
     /// Only errors, JSON and CSV; no tables or warnings
-    #[arg(short, long, global = true)]
+    #[arg(short, long, global = true, overrides_with = "quiet")]
     quiet: bool,
     #[command(subcommand)]
     command: Option<Command>,
@@ -115,11 +116,16 @@ impl Command {
 pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, Stop> {
     survive_limits();
     let Some(arguments) = help::parse(words)? else { return Ok(ExitCode::SUCCESS) };
-    spread();
     if arguments.quiet {
         printed::be_quiet();
         progress::silence();
+    } else if memory::left() == Some(0) {
+        complain(
+            "warning: hardly any memory is left to this process; if it runs out, the last line is \"memory allocation of N bytes \
+             failed\", and the exit status is 2",
+        );
     }
+    spread();
     if arguments.command.as_ref().is_some_and(Command::is_answered_by_status) {
         printed::go_to_the_end();
     }

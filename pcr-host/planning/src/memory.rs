@@ -26,10 +26,13 @@ impl fmt::Display for TooLarge {
         let megabytes = |bytes: u64| bytes.div_ceil(1_000_000);
         let what = &self.what;
         match (self.needed.map(megabytes), self.left.map(megabytes)) {
+            (Some(needed), Some(0)) => {
+                write!(f, "{what} would take {needed} MB of memory; nothing is left beside a small reserve")
+            }
             (Some(needed), Some(left)) => write!(f, "{what} would take {needed} MB of memory; {left} MB are left"),
             (Some(needed), None) => write!(f, "{what} would take {needed} MB of memory, which are not left"),
-            (None, Some(left)) => write!(f, "{what} takes more memory than the {left} MB that are left"),
-            (None, None) => write!(f, "{what} takes more memory than is left"),
+            (None, Some(left @ 1..)) => write!(f, "{what} takes more memory than the {left} MB that are left"),
+            (None, _) => write!(f, "{what} takes more memory than is left"),
         }
     }
 }
@@ -167,6 +170,9 @@ mod tests {
         let told = |needed, left| TooLarge { what: "a table".into(), needed, left }.to_string();
         assert_eq!(told(None, None), "a table takes more memory than is left");
         assert_eq!(told(Some(2_000_000), None), "a table would take 2 MB of memory, which are not left");
+        assert_eq!(told(None, Some(0)), "a table takes more memory than is left");
+        let reserve = "a table would take 2 MB of memory; nothing is left beside a small reserve";
+        assert_eq!(told(Some(2_000_000), Some(0)), reserve);
         assert_eq!(told(None, Some(3_000_000)), "a table takes more memory than the 3 MB that are left");
     }
 }

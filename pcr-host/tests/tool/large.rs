@@ -111,6 +111,9 @@ fn what_memory_does_not_hold_is_refused_with_a_number() {
         let number = message.contains(" MB ") && message.starts_with("pcr: ");
         assert!(status == Some(2) && number, "{arguments:?}: {status:?} {message}");
     }
+    // Who has none is told before an allocation fails, whose message is not ours.
+    let (status, message) = limited(60_000, &["demo", "--scenario"]);
+    assert!(status == Some(0) && message.starts_with("pcr: warning: hardly any memory is left"), "{message}");
     // Row by row it fits.
     let (status, message) = limited(400_000, &["regions", &heap, "--format", "csv"]);
     assert_eq!((status, message.as_str()), (Some(0), ""));
