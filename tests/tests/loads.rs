@@ -5,7 +5,7 @@ use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::{Agent, Scenario};
 use pcr_planning::check::Verdict;
 use pcr_planning::fleet::{Fleet, Format};
-use pcr_planning::regions::{Answer, Request};
+use pcr_planning::regions::{Answer, Region, Request};
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -169,6 +169,40 @@ fn a_load_that_is_taken_up_while_standing() {
     let second = agent(2, 0.2, [-1.0, 0.6, 0.0], &json!([line(4.0)]));
     let scenario = read(&[with_loads(first, json!([{ "segments": [2, 2], "radius": 0.45 }])), second]);
     assert!(compare(&scenario) > 10);
+}
+
+/// Behind a segment without length the vehicle stands where its outline changes, before its start or after its arrival.
+#[test]
+fn loads_at_the_ends_of_a_path_stay() {
+    let load = |segment: usize| json!([{ "segments": [segment, segment], "radius": 0.5 }]);
+    let late = |mut agent: Value| {
+        agent["t_start"] = json!(5.0);
+        agent
+    };
+    for nothing in [line(0.0), arc(1.0, 0.0), turn(0.0)] {
+        for way in [line(1.0), turn(1.0)] {
+            let end = if way == turn(1.0) { 0.0 } else { 1.0 };
+            // Set down at the end: in the way of one that comes after the arrival.
+            let ended = with_loads(agent(1, 0.1, [0.0; 3], &json!([way, nothing])), load(1));
+            let passing = late(agent(2, 0.1, [end - 3.0, 0.4, 0.0], &json!([line(6.0)])));
+            // Taken up at the start: in the way of one that passes before.
+            let starts = late(with_loads(agent(1, 0.1, [0.0; 3], &json!([nothing, nothing, way])), load(3)));
+            let before = agent(2, 0.1, [-1.0, 0.4, 0.0], &json!([line(6.0)]));
+            for (agents, end) in [([ended, passing], 1), ([starts, before], 0)] {
+                let scenario = read(&agents);
+                let verdict = Verdict::of::<f64>(&scenario, false).unwrap();
+                assert!(verdict.conflicts.iter().any(|conflict| conflict.depth > 0.199), "{verdict:?}");
+                let answer = Answer::of::<f64>(&scenario, Request::default()).unwrap();
+                let open = |region: &Region| region.i == 2 && [region.open_start, region.open_end][end];
+                assert!(answer.regions.iter().any(open), "{:?}", answer.regions);
+                assert_eq!(Verdict::of::<Q16>(&scenario, false).unwrap().conflicts.len(), verdict.conflicts.len());
+            }
+        }
+        // The load is set down before a way, however short: then it is not there.
+        let gone = with_loads(agent(1, 0.1, [0.0; 3], &json!([line(1.0), nothing, line(0.001)])), load(1));
+        let passing = late(agent(2, 0.1, [-2.0, 0.4, 0.0], &json!([line(6.0)])));
+        assert!(Verdict::of::<f64>(&read(&[gone, passing]), false).unwrap().conflicts.is_empty());
+    }
 }
 
 #[test]

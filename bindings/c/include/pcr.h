@@ -278,7 +278,7 @@ typedef struct PcrConflict {
    */
   float depth;
   /*
-   Whether the discs only touch.
+   Whether the depth is at most the tolerance: it may then be no contact.
    */
   bool touching;
 } PcrConflict;

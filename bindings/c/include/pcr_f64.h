@@ -278,7 +278,7 @@ typedef struct PcrF64Conflict {
    */
   double depth;
   /*
-   Whether the discs only touch.
+   Whether the depth is at most the tolerance: it may then be no contact.
    */
   bool touching;
 } PcrF64Conflict;

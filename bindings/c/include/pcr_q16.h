@@ -281,7 +281,7 @@ typedef struct PcrQ16Conflict {
    */
   int32_t depth;
   /*
-   Whether the discs only touch.
+   Whether the depth is at most the tolerance: it may then be no contact.
    */
   bool touching;
 } PcrQ16Conflict;

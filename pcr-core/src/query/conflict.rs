@@ -24,7 +24,7 @@ pub struct Conflict<S> {
     pub deepest: Approach<S>,
     /// Largest overlap \[m\]: sum of the radii minus the least separation; 0 if the discs only touch.
     pub depth: S,
-    /// Whether the depth is 0 within [`Encounter::tolerance`].
+    /// Whether the depth is at most [`Encounter::tolerance`]: it may then be no contact.
     pub touching: bool,
 }
 

@@ -63,7 +63,7 @@ impl Disced {
     pub fn on_agent(&self, lengths: [f64; 2]) -> [f64; 2] {
         let [lo, hi] = self.offset.as_ref().map_or(lengths, |offset| offset.on_reference(lengths));
         let Range { from, length, ends, .. } = self.stretch;
-        if ends == [true, true] {
+        if from == 0.0 && ends == [true, true] {
             return [lo, hi];
         }
         // The rounding of the sums.
@@ -172,7 +172,12 @@ fn discs<S: Format, E>(
             (agent.clone(), agent.parts(), 0.0)
         };
         let part = Agent { radius: outline.radius, footprint: None, loads: Vec::new(), ..part };
-        let stretch = Range { from, length: agent.length(), first, ends: [first == 0, last + 1 >= agent.path.len()] };
+        // Behind segments without length, the agent stands at the border itself before it sets off or after it has arrived.
+        let length = agent.length();
+        let is_point = |segments: &[PathSegment]| total(segments) <= ROUNDING * (1.0 + length);
+        let (before, after) = (agent.path.get(..first), agent.path.get(last + 1..));
+        let ends = [before, after].map(|segments| segments.is_none_or(is_point));
+        let stretch = Range { from, length, first, ends };
         let Some(footprint) = outline.footprint else {
             discs.push(Disced { agent: place, offset: None, stretch, growth: 0.0 });
             agents.push(if outlines.len() > 1 { settled::<S>(part) } else { part });
@@ -188,6 +193,11 @@ fn discs<S: Format, E>(
         }
     }
     Ok(())
+}
+
+/// Length of some segments \[m\].
+fn total(segments: &[PathSegment]) -> f64 {
+    segments.iter().map(PathSegment::length).sum()
 }
 
 /// The agent with a start of which no coordinate is less than the last digit of the format, which rounding may leave of 0.

@@ -55,7 +55,7 @@ pub struct Conflict {
     pub l_i: [f64; 2],
     /// Lengths along the path of `j` meanwhile \[m\].
     pub l_j: [f64; 2],
-    /// Whether the depth is within the tolerance of 0.
+    /// Whether the depth is at most the tolerance of the search (`Encounter::tolerance`).
     pub touching: bool,
 }
 

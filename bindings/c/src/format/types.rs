@@ -96,7 +96,7 @@ pub struct PcrConflict {
     pub other_length: PcrInterval,
     /// Largest overlap of the discs (m).
     pub depth: Real,
-    /// Whether the discs only touch.
+    /// Whether the depth is at most the tolerance: it may then be no contact.
     pub touching: bool,
 }
 

@@ -87,7 +87,7 @@ pub struct Options {
     /// Radius of corners (nav2: 1 if left out)
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = not_negative))]
     pub corner_radius: Option<f64>,
-    /// Largest deviation from curves [default: 0.001]
+    /// Most that arcs leave curves [default: 0.001]
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = positive))]
     pub tolerance: Option<f64>,
     /// Graph, if there are several (Open-RMF)
@@ -96,7 +96,7 @@ pub struct Options {
     /// Include the horizon of orders (VDA 5050)
     #[cfg_attr(feature = "clap", arg(long))]
     pub horizon: bool,
-    /// Read the rest of a file that is refused otherwise
+    /// Read the rest of a file refused otherwise
     #[cfg_attr(feature = "clap", arg(long))]
     pub partial: bool,
 }

@@ -57,7 +57,7 @@ pub fn conflicts_table(verdict: &Verdict, out: &mut impl Write) -> io::Result<()
         if touching > 0 {
             writeln!(
                 out,
-                "* touching ({touching}): the depth is 0 within what the arithmetic can tell, so it may be no contact"
+                "* touching ({touching}): not deeper than the tolerance of the search, 2e-10 of the coordinates in f64, so it may be no contact"
             )?;
         }
     }
