@@ -90,7 +90,8 @@ impl Written {
 /// all but the first as `.svg`, with the feature `png` also as `.png`. The workspace is drawn on the `ground`, if there is one.
 ///
 /// `progress` is called with the number of pictures that are done and of all there are, first with 0. The files are
-/// in a fixed order. The same scenario gives the same bytes in every run.
+/// in a fixed order; the page is written last, so that none stands beside pictures of before. The same scenario gives the same
+/// bytes in every run.
 ///
 /// # Errors
 /// [`io::ErrorKind::InvalidInput`] for a scenario without motion (see [`Fleet::new`]) or of more than 65535 agents, and
@@ -107,14 +108,18 @@ pub fn write(
         let mut pictures = vec![Picture::Page, Picture::Overview, Picture::Workspace];
         pictures.extend(scene.egos().map(Picture::Map));
         let mut written = vec![Written::default(); pictures.len()];
-        let mut done = 0;
+        let (mut done, mut page) = (0, Files::new());
         progress(done, pictures.len());
         draw_all(scene, &pictures, &mut |place, drawn| {
-            written[place].add(directory, drawn?)?;
+            match pictures[place] {
+                Picture::Page => page = drawn?,
+                _ => written[place].add(directory, drawn?)?,
+            }
             done += 1;
             progress(done, pictures.len());
             Ok(())
         })?;
+        written[0].add(directory, page)?;
         let mut all = Written::default();
         for Written { files, boxes } in written {
             all.files.extend(files);
@@ -131,12 +136,14 @@ pub fn write(
 /// # Errors
 /// Those of writing files.
 pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::Result<Written> {
-    let mut files = vec![("locks.html".to_owned(), locks::page(imported, locks).into_bytes())];
+    let mut files = Files::new();
     for level in 0..imported.layout.levels.len() {
         let svg = Ground { imported, level }.picture();
         let name = if level > 0 { format!("layout-{}", level + 1) } else { "layout".to_owned() };
         files.extend(self::files(&name, svg)?);
     }
+    // The page is last: before it is there, nobody looks at the pictures.
+    files.push(("locks.html".to_owned(), locks::page(imported, locks).into_bytes()));
     output::folder(directory)?;
     let mut written = Written::default();
     written.add(directory, files)?;
@@ -154,13 +161,14 @@ pub fn write_audit(
     audit: &Audit,
     directory: &Path,
 ) -> io::Result<Written> {
-    let page = locks::page_of_audit(imported, locks, rules, audit);
-    let mut files = vec![("audit.html".to_owned(), page.into_bytes())];
+    let mut files = Files::new();
     for level in 0..imported.layout.levels.len() {
         let svg = audit::picture(Ground { imported, level }, rules, audit);
         let name = if level > 0 { format!("audit-{}", level + 1) } else { "audit".to_owned() };
         files.extend(self::files(&name, svg)?);
     }
+    let page = locks::page_of_audit(imported, locks, rules, audit);
+    files.push(("audit.html".to_owned(), page.into_bytes()));
     output::folder(directory)?;
     let mut written = Written::default();
     written.add(directory, files)?;

@@ -137,7 +137,7 @@ mod tests {
         let directory = std::env::temp_dir().join(format!("pcr-locks-{}", std::process::id()));
         let files = write_locks(&imported, &locks, &directory).unwrap().files;
         let names: Vec<_> = files.iter().map(|file| file.file_name().unwrap().to_str().unwrap()).collect();
-        assert_eq!(names, ["locks.html", "layout.svg", "layout.png", "layout-2.svg", "layout-2.png"]);
+        assert_eq!(names, ["layout.svg", "layout.png", "layout-2.svg", "layout-2.png", "locks.html"]);
         std::fs::remove_dir_all(directory).unwrap();
     }
 }

@@ -50,7 +50,7 @@ fn messages(value: &Value) -> Vec<&Value> {
     }
 }
 
-/// The map of a level.
+/// The map of a level, which is called like the layout where the level has no name.
 fn map(layout: &Layout, level: usize) -> &str {
     match layout.levels.get(level).map_or("", String::as_str) {
         "" if layout.name.is_empty() => "map",
@@ -194,7 +194,8 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         let refused = |problem: &str| ImportError::new(format!("{place}, {problem}"));
         let id = text_of(set, "mapId").map_err(|problem| refused(&problem))?;
         if !maps.contains(id) {
-            return Err(refused(&format!("mapId: the layout has no map {id}")));
+            let there = maps.into_iter().collect::<Vec<_>>().join(", ");
+            return Err(refused(&format!("mapId: the layout has no map {id}; it has {there}")));
         }
         if !sets.insert(id) {
             let problem =

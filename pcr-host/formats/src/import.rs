@@ -243,6 +243,9 @@ pub fn mission(imported: &Imported, id: u64, ends: [usize; 2]) -> Result<Option<
     route::mission(&imported.layout, &imported.vehicle, id, ends)
 }
 
+/// Names that are in every file of a program: of editors of nav2 and Open-RMF, and of networkx. They say nothing about the site.
+const NO_NAMES: [&str; 3] = ["graph", "building", "G"];
+
 /// The layout for a vehicle that stands or `moves`.
 fn imported(
     format: Format,
@@ -281,6 +284,9 @@ fn imported(
     let off: Vec<_> = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.deviation)).collect();
     report(&off, warnings);
     layout.warnings = warnings.all();
+    if NO_NAMES.contains(&layout.name.as_str()) {
+        layout.name.clear();
+    }
     Ok(Imported { layout, vehicle })
 }
 

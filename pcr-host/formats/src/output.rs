@@ -1,8 +1,9 @@
 //! Writes files so that they are complete or unchanged, and never partial.
 //!
-//! The contents are written to a temporary file in the same folder and flushed to the disk; only then it takes the name
+//! The contents are written to another file in the same folder and flushed to the disk; only then it takes the name
 //! of the file that it replaces. If a full disk, a limit or a signal stops the program, the old file is still
-//! untouched.
+//! untouched. The other file has no name, so that nothing is left of it, whatever stops the program. Systems without such
+//! files give it one that is hidden, and keep it if the program is killed.
 //!
 //! A program that names the files that it reads with [`keep()`] cannot lose them to a picture or a table.
 
@@ -201,11 +202,22 @@ fn replace<T, E: From<io::Error>>(
         Some(folder) if folder != Path::new("") => folder,
         _ => Path::new("."),
     };
-    let (temporary, file) = temporary(folder).map_err(|error| {
-        io::Error::new(error.kind(), format!("its folder {} takes no file: {error}", folder.display()))
-    })?;
-    let done = filled(file, old, fill).and_then(|done| {
-        fs::rename(&temporary, target)?;
+    let (mut file, mut named) = match unnamed(folder) {
+        Some(file) => (file, None),
+        None => {
+            let make = |path: &Path| OpenOptions::new().write(true).create_new(true).open(path);
+            let takes_none = |error: io::Error| {
+                io::Error::new(error.kind(), format!("its folder {} takes no file: {error}", folder.display()))
+            };
+            temporary(folder, make).map(|(path, file)| (file, Some(path))).map_err(takes_none)?
+        }
+    };
+    let done = filled(&mut file, old, fill).and_then(|done| {
+        let path = match named.take() {
+            Some(path) => path,
+            None => temporary(folder, |path| link(&file, path))?.0,
+        };
+        fs::rename(named.insert(path), target)?;
         Ok(done)
     });
     match done {
@@ -215,22 +227,24 @@ fn replace<T, E: From<io::Error>>(
             Ok(done)
         }
         Err(error) => {
-            let _ = fs::remove_file(&temporary);
+            if let Some(path) = named {
+                let _ = fs::remove_file(path);
+            }
             Err(error)
         }
     }
 }
 
 fn filled<T, E: From<io::Error>>(
-    mut file: File,
+    file: &mut File,
     old: Option<&Metadata>,
     fill: impl FnOnce(&mut File) -> Result<T, E>,
 ) -> Result<T, E> {
     if let Some(old) = old {
-        give_to_owner(&file, old);
+        give_to_owner(file, old);
         file.set_permissions(old.permissions())?;
     }
-    let done = fill(&mut file)?;
+    let done = fill(file)?;
     file.sync_all()?;
     Ok(done)
 }
@@ -248,16 +262,49 @@ fn give_to_owner(file: &File, old: &Metadata) {
 #[cfg(not(unix))]
 fn give_to_owner(_: &File, _: &Metadata) {}
 
-/// A new file in a folder, which stays there only if the program is killed.
-fn temporary(folder: &Path) -> io::Result<(PathBuf, File)> {
+/// A file in a folder that vanishes with the program; `None` where the system has none.
+#[cfg(target_os = "linux")]
+fn unnamed(folder: &Path) -> Option<File> {
+    use std::os::unix::fs::OpenOptionsExt;
+    let flag = rustix::fs::OFlags::TMPFILE.bits();
+    let file = OpenOptions::new().write(true).custom_flags(flag.cast_signed()).open(folder).ok()?;
+    fs::metadata(of_process(&file)).is_ok().then_some(file)
+}
+
+/// Gives a name to a file that has none.
+#[cfg(target_os = "linux")]
+fn link(file: &File, path: &Path) -> io::Result<()> {
+    use rustix::fs::{AtFlags, CWD, linkat};
+    Ok(linkat(CWD, of_process(file), CWD, path, AtFlags::SYMLINK_FOLLOW)?)
+}
+
+/// Where the system shows an open file.
+#[cfg(target_os = "linux")]
+fn of_process(file: &File) -> PathBuf {
+    use std::os::fd::AsRawFd;
+    format!("/proc/self/fd/{}", file.as_raw_fd()).into()
+}
+
+#[cfg(not(target_os = "linux"))]
+fn unnamed(_: &Path) -> Option<File> {
+    None
+}
+
+#[cfg(not(target_os = "linux"))]
+fn link(_: &File, _: &Path) -> io::Result<()> {
+    Err(io::ErrorKind::Unsupported.into())
+}
+
+/// What is made in a folder under a hidden name that is free.
+fn temporary<T>(folder: &Path, make: impl Fn(&Path) -> io::Result<T>) -> io::Result<(PathBuf, T)> {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     loop {
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let path = folder.join(format!(".pcr-{}-{number}.tmp", std::process::id()));
-        match OpenOptions::new().write(true).create_new(true).open(&path) {
+        match make(&path) {
             // Left by a program of the same number that was killed.
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-            file => return file.map(|file| (path, file)),
+            made => return made.map(|made| (path, made)),
         }
     }
 }
@@ -290,6 +337,24 @@ mod tests {
         assert_eq!((fs::read_to_string(&file).unwrap().as_str(), names(&folder)), ("two", vec!["a.json".to_owned()]));
         write(&folder.join("x".repeat(255)), "the longest name").unwrap();
         assert_eq!(names(&folder).len(), 2);
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn nothing_has_a_name_before_it_is_complete() {
+        let folder = scratch("unnamed");
+        let file = folder.join("a.json");
+        for before in [vec![], vec!["a.json".to_owned()]] {
+            let fill = |out: &mut File| {
+                // Some file systems have no files without names.
+                assert!(names(&folder) == before || unnamed(&folder).is_none());
+                out.write_all(b"some").and(Err::<(), _>(io::Error::other("stopped")))
+            };
+            assert!(stream(&file, fill).is_err());
+            assert_eq!(names(&folder), before);
+            write(&file, "all").unwrap();
+        }
         fs::remove_dir_all(folder).unwrap();
     }
 

@@ -192,7 +192,8 @@ pub fn scenarios(imported: &Imported) -> Result<Vec<Scenario>, ImportError> {
             nodes.sort_by(|&a, &b| layout.nodes[a].id.cmp(&layout.nodes[b].id));
             let there = edges.into_iter().flat_map(|edge| rides.on(edge)).chain(nodes.into_iter().map(|k| rides.at(k)));
             let rides: Vec<Ride> = there.collect();
-            Ok(Scenario { name: format!("{} {name}", layout.name).trim().to_owned(), ..scenario(&rides)? })
+            let name = if layout.levels.len() > 1 { format!("{} {name}", layout.name) } else { layout.name.clone() };
+            Ok(Scenario { name: name.trim().to_owned(), ..scenario(&rides)? })
         })
         .collect()
 }

@@ -1,7 +1,7 @@
 //! `pcr compare`.
 
 use super::sources::{apart, sources, without_margin};
-use super::{STATUSES, Stop, folder, quiet};
+use super::{SCENARIOS, Stop, folder, quiet, statuses};
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_comparing::compare::{self, Comparison, Effort, Question};
@@ -24,7 +24,7 @@ Examples:
 
 /// Run this and other methods side by side: time, memory, errors
 #[derive(Args)]
-#[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+#[command(after_help = format!("{EXAMPLES}\n\n{}", statuses(SCENARIOS)))]
 pub(super) struct Arguments {
     /// Scenarios (JSON); standard input if left out
     #[arg(value_name = "FILE")]

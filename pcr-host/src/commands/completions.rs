@@ -1,6 +1,6 @@
 //! `pcr completions` and `pcr man`.
 
-use super::{Stop, help};
+use super::{Stop, help, statuses};
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, Args, Command, CommandFactory};
 use clap_complete::Shell;
@@ -16,9 +16,14 @@ Examples:
   pcr completions fish > ~/.config/fish/completions/pcr.fish
   pcr completions powershell >> $PROFILE";
 
+const PAGES: &str = "\
+Examples:
+  pcr man > pcr.1 && man ./pcr.1
+  pcr man plan > pcr-plan.1";
+
 /// Print a completion script for a shell
 #[derive(Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = format!("{EXAMPLES}\n\n{}", statuses("wrong arguments")))]
 pub(super) struct Shells {
     /// The shell
     shell: Shell,
@@ -26,7 +31,7 @@ pub(super) struct Shells {
 
 /// Print the manual page, of pcr or of one command
 #[derive(Args)]
-#[command(after_help = "Examples:\n  pcr man > pcr.1 && man ./pcr.1\n  pcr man plan > pcr-plan.1")]
+#[command(after_help = format!("{PAGES}\n\n{}", statuses("wrong arguments")))]
 pub(super) struct Manual {
     /// Command to describe; pcr itself if left out
     command: Option<String>,
@@ -75,16 +80,21 @@ fn for_zsh(text: String, command: &Command) -> String {
 }
 
 /// The manual page of a command, with examples and exit statuses as they are, line by line.
-fn page(command: Command) -> io::Result<Vec<u8>> {
+fn page(mut command: Command) -> io::Result<Vec<u8>> {
     let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
-    let is_versioned = command.get_version().is_some();
+    let has_commands = command.has_subcommands();
+    // As in the help: the options have their values, and stand below.
+    let usage = command.render_usage().to_string().replacen("Usage: ", "", 1);
+    let command = command.override_usage(usage).version(env!("CARGO_PKG_VERSION"));
     let (page, mut text) = (Man::new(command), Vec::new());
     page.render_title(&mut text)?;
     page.render_name_section(&mut text)?;
     page.render_synopsis_section(&mut text)?;
     page.render_description_section(&mut text)?;
     page.render_options_section(&mut text)?;
-    page.render_subcommands_section(&mut text)?;
+    if has_commands {
+        page.render_subcommands_section(&mut text)?;
+    }
     for part in after.split("\n\n") {
         let (title, lines) = match part.split_once(":\n") {
             Some((title, lines)) if !title.contains('\n') => (title.to_uppercase(), lines),
@@ -95,9 +105,7 @@ fn page(command: Command) -> io::Result<Vec<u8>> {
         lines.lines().try_for_each(|line| writeln!(text, "\\&{}", line.replace('\\', "\\e").replace('-', "\\-")))?;
         writeln!(text, ".fi")?;
     }
-    if is_versioned {
-        page.render_version_section(&mut text)?;
-    }
+    page.render_version_section(&mut text)?;
     Ok(text)
 }
 

@@ -2,7 +2,7 @@
 
 use super::map::draw;
 use super::printed::quiet;
-use super::{STATUSES, Stop, WRONG_INPUT, folder};
+use super::{Stop, WRONG_INPUT, folder, statuses};
 use clap::Args;
 use pcr_formats::scenario::Scenario;
 use pcr_formats::{output, paper};
@@ -25,7 +25,7 @@ Examples:
 
 /// Show the paper's simulation of 12 agents, with its tables
 #[derive(Args, Default)]
-#[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+#[command(after_help = format!("{EXAMPLES}\n\n{}", statuses("wrong arguments")))]
 pub(super) struct Arguments {
     /// Directory for the pictures (pcr-out if left out, with --quiet none)
     #[arg(short, long, value_name = "DIR", value_parser = folder(), conflicts_with = "scenario")]

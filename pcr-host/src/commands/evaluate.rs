@@ -1,7 +1,7 @@
 //! `pcr evaluate`.
 
 use super::printed::notes;
-use super::{NOT_WRITTEN, STATUSES, Stop, WRONG_INPUT, folder, quiet};
+use super::{NOT_WRITTEN, Stop, WRONG_INPUT, folder, quiet, statuses};
 use clap::Args;
 use pcr_comparing::evaluate::{self, Extent, Problem};
 use pcr_formats::output;
@@ -12,7 +12,7 @@ use std::time::Instant;
 
 /// Measure docs/evaluation.md anew on this machine (takes minutes)
 #[derive(Args)]
-#[command(after_help = STATUSES)]
+#[command(after_help = statuses("wrong arguments, or fleets or a document that cannot be read"))]
 pub(super) struct Arguments {
     /// Directory for the document and its pictures
     #[arg(short, long, value_name = "DIR", value_parser = folder(), default_value = "docs")]

@@ -1,7 +1,7 @@
 //! `pcr import`.
 
 use super::sources::{foreign_sources, together};
-use super::{STATUSES, Stop, scenario, write_to};
+use super::{Stop, scenario, statuses, write_to};
 use clap::Args;
 use pcr_formats::import::{Format, Options};
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ Examples:
 
 /// Write routes, an order or a plan of other formats as a scenario
 #[derive(Args)]
-#[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+#[command(after_help = format!("{EXAMPLES}\n\n{}", statuses("wrong arguments, or a file that cannot be read or was refused")))]
 pub(super) struct Arguments {
     /// Format of the file
     #[arg(value_enum)]

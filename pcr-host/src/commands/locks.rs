@@ -205,7 +205,7 @@ impl Arguments {
             }
             held.of(edge).map_err(wrong)
         };
-        let (partners, warnings) = if Index::is_one(file) {
+        let (partners, head) = if Index::is_one(file) {
             if self.index.is_some() {
                 return Err(Stop::arguments("--index beside a table of locks: the layout is expected there"));
             }
@@ -216,20 +216,26 @@ impl Arguments {
                     file.display()
                 )));
             }
-            (found(file, None)?, Vec::new())
+            (found(file, None)?, None)
         } else if let Some(index) = &self.index {
             let imported = layout(file, &self.import, STANDING, false)?;
-            (found(index, Some(origin(&imported)))?, Locks::head(&imported, self.nodes).warnings)
+            (found(index, Some(origin(&imported)))?, Some(Locks::head(&imported, self.nodes)))
         } else {
             let imported = layout(file, &self.import, STANDING, false)?;
             let sweep = Sweep::new(&imported, self.nodes).map_err(|error| Stop::wrong(file, error))?;
             let partners = sweep.partners(edge).map_err(|error| Stop::wrong(file, error))?;
-            (partners, Locks::head(&imported, self.nodes).warnings)
+            (partners, Some(Locks::head(&imported, self.nodes)))
         };
         let Some(partners) = partners else {
             return Err(Stop::wrong(file, format!("there is no edge {edge}; pcr nodes lists them")));
         };
-        let locks = EdgeLocks { edge: edge.to_owned(), partners, warnings };
+        let (edge, partners) = (edge.to_owned(), partners);
+        let locks = match head {
+            Some(Locks { layout, vehicle, warnings, .. }) => {
+                EdgeLocks { layout: Some(layout), vehicle: Some(vehicle), edge, partners, warnings }
+            }
+            None => EdgeLocks { layout: None, vehicle: None, edge, partners, warnings: Vec::new() },
+        };
         let mut out = self.printed.out(false);
         match self.printed.form() {
             Form::Table => report::edge_table(&locks, &mut out)?,

@@ -1,7 +1,7 @@
 //! `pcr map`.
 
 use super::sources::{source, without_margin};
-use super::{STATUSES, Stop, folder, quiet, scenario, warn_of_boxes};
+use super::{SCENARIOS, Stop, folder, quiet, say, scenario, statuses, warn_of_boxes};
 use crate::progress::Progress;
 use clap::Args;
 use clap::builder::NonEmptyStringValueParser;
@@ -11,8 +11,11 @@ use pcr_formats::import::Options;
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::Fleet;
 use pcr_planning::regions::{self, Failure};
+use pcr_planning::report::counted;
 use pcr_planning::{memory, rows};
 use std::collections::HashSet;
+use std::ffi::OsStr;
+use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -31,7 +34,7 @@ const SHAPE_BYTES: u64 = 4096;
 
 /// Draw a scenario: its paths, and the collision map of each agent
 #[derive(Args)]
-#[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+#[command(after_help = format!("{EXAMPLES}\n\n{}", statuses(SCENARIOS)))]
 pub(super) struct Arguments {
     /// Scenario (JSON); standard input if left out or `-`
     file: Option<PathBuf>,
@@ -105,9 +108,23 @@ pub(super) fn draw(
     let written = written.map_err(|error| Stop::not_written(directory, &error))?;
     warn_of_boxes(directory, &written);
     let files = written.files;
+    warn_of_earlier(directory, &files);
     let page = files.iter().find(|file| file.extension().is_some_and(|extension| extension == "html"));
     if let Some(first) = page.or(files.first()) {
         writeln!(out, "Pictures: {} files in {}; begin with {}", files.len(), directory.display(), first.display())?;
     }
     Ok(())
+}
+
+/// Tells of maps in a folder that are of an earlier run: the page does not have their agents.
+fn warn_of_earlier(directory: &Path, written: &[PathBuf]) {
+    let written: HashSet<Option<&OsStr>> = written.iter().map(|file| file.file_name()).collect();
+    let there = fs::read_dir(directory).into_iter().flatten().flatten().map(|entry| entry.file_name());
+    let is_map = |name: &str| name.starts_with("ecm-") && (name.ends_with(".svg") || name.ends_with(".png"));
+    let earlier: Vec<_> =
+        there.filter(|name| is_map(&name.to_string_lossy()) && !written.contains(&Some(name.as_os_str()))).collect();
+    if let Some(first) = earlier.iter().min() {
+        let (count, first) = (counted(earlier.len(), "picture"), first.display());
+        say(directory, [format!("of an earlier run, with other agents: {count}, such as {first}")]);
+    }
 }

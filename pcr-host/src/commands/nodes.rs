@@ -1,7 +1,7 @@
 //! `pcr nodes`.
 
 use super::sources::{layout, layout_source};
-use super::{Form, Printed, STATUSES, Stop};
+use super::{Form, Printed, Stop, statuses};
 use clap::Args;
 use pcr_formats::import::Options;
 use pcr_planning::nodes::Listing;
@@ -18,7 +18,7 @@ Examples:
 
 /// List the nodes, edges, levels and vehicle types of a layout
 #[derive(Args)]
-#[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+#[command(after_help = format!("{EXAMPLES}\n\n{}", statuses("wrong arguments, or a layout that cannot be read or was refused")))]
 pub(super) struct Arguments {
     /// The layout; standard input if left out or `-`
     layout: Option<PathBuf>,

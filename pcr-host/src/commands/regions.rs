@@ -2,7 +2,7 @@
 
 use super::number::{Number, with_scalar};
 use super::work::{Work, run};
-use super::{Form, Printed, STATUSES, Stop};
+use super::{Form, Printed, SCENARIOS, Stop, statuses};
 use clap::Args;
 use clap::builder::NonEmptyStringValueParser;
 use pcr_formats::import::Options;
@@ -29,7 +29,7 @@ const MOST_SLICES: i64 = 10_000;
 
 /// Print the collision regions of a scenario
 #[derive(Args)]
-#[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+#[command(after_help = format!("{EXAMPLES}\n\n{}", statuses(SCENARIOS)))]
 pub(super) struct Arguments {
     /// Scenarios (JSON); standard input if left out or `-`, also one after the other
     #[arg(value_name = "FILE")]

@@ -1,7 +1,7 @@
 //! `pcr locks --write` and `--audit`: files for fleets, what is told about them, and exit status.
 
-use crate::fixture::{directory, run, run_with};
-use serde_json::Value;
+use crate::fixture::{directory, file, run, run_with};
+use serde_json::{Value, json};
 use std::fs;
 
 fn real(name: &str) -> String {
@@ -49,7 +49,7 @@ fn an_audit_names_places_and_depths_and_draws_them() {
     let audit = run(&["locks", &layout, "--radius", "0.4", "--audit", "-o", pictures.to_str().unwrap()]);
     assert_eq!(audit.status, 1);
     let expected = "\
-building: audit of 0 groups of rmf, radius 0.4 m
+office: audit of 0 groups of rmf, radius 0.4 m
   pairs that can touch: 139, not excluded: 139 (30 of one edge, 104 with a common node, 5 apart)
 ";
     assert!(audit.out.starts_with(expected), "{}", audit.out);
@@ -62,6 +62,31 @@ building: audit of 0 groups of rmf, radius 0.4 m
     let lines: Vec<&str> = csv.out.lines().collect();
     assert_eq!((lines[0], lines.len()), ("finding,a,b,relation,a_from,a_to,b_from,b_to,x,y,depth", 140));
     assert!(lines[1..].iter().all(|line| line.starts_with("open,") && line.matches(',').count() == 10));
+}
+
+/// As for the route server, the map of nodes is their frame; of nodes without one it is `map`.
+#[test]
+fn zone_sets_are_of_the_frame_of_the_nodes() {
+    for (frame, map) in [(json!("floor7"), "floor7"), (Value::Null, "map"), (json!(""), "map")] {
+        let mut graph: Value =
+            serde_json::from_str(&fs::read_to_string(real("nav2/sample_graph.geojson")).unwrap()).unwrap();
+        for feature in graph["features"].as_array_mut().unwrap() {
+            feature["properties"]["frame"] = frame.clone();
+        }
+        let (layout, written) = (file("exclusions", "framed.geojson", graph.to_string()), output("framed-zones.json"));
+        let options = ["locks", &layout, "--radius", "0.3", "-q"];
+        run(&[&options[..], &["--write", "vda5050", "-o", &written]].concat()).ok();
+        let zones: Value = serde_json::from_str(&fs::read_to_string(&written).unwrap()).unwrap();
+        assert_eq!(zones["zoneSet"]["mapId"], map);
+        run(&[&options[..], &[&format!("--audit={written}")]].concat()).ok();
+        let other =
+            file("exclusions", "other-zones.json", zones.to_string().replace(&format!("\"{map}\""), "\"hall\""));
+        let message = run(&[&options[..], &[&format!("--audit={other}")]].concat()).failed(2);
+        assert!(message.ends_with(&format!("mapId: the layout has no map hall; it has {map}\n")), "{message}");
+        let nodes = run(&["nodes", &layout, "--json", "-q"]).json();
+        assert_eq!((&nodes["levels"], &nodes["nodes"][0]["level"]), (&json!([map]), &json!(map)));
+        assert!(run(&["certify", &layout, "--radius", "0.3", "-q", "--json"]).json()["name"] == "framed");
+    }
 }
 
 #[test]

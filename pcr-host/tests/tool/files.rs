@@ -86,6 +86,43 @@ fn every_output_is_whole_or_not_there() {
     assert_eq!((status, fs::read_to_string(&document).unwrap() == before), (3, true), "{message}");
 }
 
+/// A run that stops on its way leaves no new page over old pictures.
+#[test]
+fn pages_are_written_after_their_pictures() {
+    let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/aws_graph.geojson");
+    let options = ["locks", layout, "--radius", "0.3", "-q", "-o"];
+    for (picture, page, arguments) in [
+        ("ecm-12.svg", "index.html", &["map", PAPER, "-q", "-o"][..]),
+        ("layout.svg", "locks.html", &options),
+        ("audit.svg", "audit.html", &[&options[..], &["--audit"]].concat()),
+    ] {
+        let folder = folder("page");
+        fs::create_dir(folder.join(picture)).unwrap();
+        let mut words = arguments.to_vec();
+        words.insert(words.iter().position(|word| *word == "-o").unwrap() + 1, folder.to_str().unwrap());
+        assert_eq!(run(&words).status, 3, "{words:?}");
+        assert!(!folder.join(page).exists(), "{:?}", names(&folder));
+    }
+}
+
+#[test]
+fn pictures_of_an_earlier_run_are_told() {
+    let folder = folder("earlier");
+    let (scenario, maps) = (folder.join("two.json"), folder.join("maps"));
+    fs::write(&scenario, crossing().to_string()).unwrap();
+    let draw = |scenario: &str| run(&["map", scenario, "-o", maps.to_str().unwrap()]);
+    draw(PAPER).ok();
+    draw(PAPER).ok();
+    let told = draw(scenario.to_str().unwrap());
+    let each = if cfg!(feature = "png") { 2 } else { 1 };
+    let (count, first) = (10 * each, if each == 2 { "png" } else { "svg" });
+    let expected = format!(
+        "pcr: warning: {}: of an earlier run, with other agents: {count} pictures, such as ecm-10.{first}\n",
+        maps.display()
+    );
+    assert_eq!((told.status, told.err), (0, expected));
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn full_devices_and_folders_that_take_no_file_are_errors() {

@@ -282,7 +282,11 @@ fn completions_and_manual_pages_name_every_command() {
     }
     let page = run(&["man"]).ok();
     assert!(page.contains(".TH pcr 1") && COMMANDS.iter().all(|command| page.contains(command)), "{page}");
+    assert!(page.contains(".SH SUBCOMMANDS"), "{page}");
     let page = run(&["man", "plan"]).ok();
+    assert!(!page.contains("SUBCOMMANDS") && page.contains(".SH \"LAYOUTS AND OTHER FORMATS\"\n"), "{page}");
+    assert!(page.contains(".SH SYNOPSIS\n\\fBpcr plan\\fR [OPTIONS] [FILE]...\n"), "{page}");
+    assert!(page.contains(&format!(".TH pcr-plan 1  \"pcr-plan {}\"", env!("CARGO_PKG_VERSION"))), "{page}");
     assert!(page.contains("\\-\\-priority") && page.contains("\n.SH \"EXIT STATUS\"\n.nf\n\\&  0  a plan"), "{page}");
     // What it is, in one line, and not again in the description.
     let page = run(&["man"]).ok();
@@ -299,6 +303,19 @@ fn completions_and_manual_pages_name_every_command() {
     // Commands are offered for what they are expected for.
     let bash = run(&["completions", "bash"]).ok();
     assert!(bash.contains("opts=\"-h -q --help --quiet regions certify check plan map"), "{bash}");
+}
+
+#[test]
+fn names_that_editors_give_to_every_layout_are_none() {
+    for (layout, name) in [
+        ("ccbs/sparse_map.xml", "sparse_map"),
+        ("rmf/office.building.yaml", "office"),
+        ("rmf/hotel.building.yaml", "hotel"),
+        ("nav2/aws_graph.geojson", "aws_graph"),
+        ("lif/example_07.lif.json", "LIF Example 07"),
+    ] {
+        assert_eq!(run(&["nodes", &real(layout), "--json", "-q"]).json()["layout"], name);
+    }
 }
 
 #[test]

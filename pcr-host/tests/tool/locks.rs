@@ -190,6 +190,9 @@ fn an_index_that_is_out_of_date_gives_no_answer() {
     // What there is to be said of the layout is not in the file.
     let (asked, held) = (of(&name, "0.25").json(), run(&["locks", path, "--edge", "7", "--json"]).json());
     assert_eq!((&asked["partners"], &held["warnings"]), (&held["partners"], &json!([])));
+    // Nor are its name and the vehicle.
+    assert_eq!((&asked["layout"], &asked["vehicle"]["radius"]), (&json!("cross"), &json!(0.25)));
+    assert!(held.get("layout").is_none() && held.get("vehicle").is_none(), "{held}");
     let stale = "it has the locks of another layout or vehicle; without --edge it is written anew";
     assert!(of(&name, "0.26").failed(2).contains(stale));
     // One node by a tenth of a micrometre.

@@ -213,13 +213,26 @@ fn standard_output_is_no_folder() {
 #[test]
 fn help_has_examples_and_exit_statuses() {
     for (arguments, example) in [
-        (&["--help"][..], "pcr regions fleet.json --json"),
-        (&["regions", "--help"], "pcr regions - --format json < fleets.jsonl"),
+        (&["regions", "--help"][..], "pcr regions - --format json < fleets.jsonl"),
         (&["map", "--help"], "pcr map fleet.json -o pictures"),
     ] {
         let help = run(arguments).ok();
         assert!(help.contains("Examples:\n") && help.contains(example), "{help}");
         assert!(help.contains("Exit status:\n  0  done\n  2  ") && help.contains("\n  3  "), "{help}");
+    }
+    let all = run(&["--help"]).ok();
+    let statuses = all.split_once("Exit status:\n").unwrap().1;
+    assert!((0..5).all(|status| statuses.contains(&format!("  {status}  "))), "{all}");
+    for (command, wrong) in [
+        ("nodes", "wrong arguments, or a layout that"),
+        ("import", "wrong arguments, or a file that"),
+        ("evaluate", "wrong arguments, or fleets"),
+        ("demo", "wrong arguments\n"),
+        ("completions", "wrong arguments\n"),
+        ("man", "wrong arguments\n"),
+    ] {
+        let help = run(&[command, "--help"]).ok();
+        assert!(help.contains(&format!("Exit status:\n  0  done\n  2  {wrong}")), "{help}");
     }
     assert_eq!(run(&["--version"]).ok(), format!("pcr {}\n", env!("CARGO_PKG_VERSION")));
 }

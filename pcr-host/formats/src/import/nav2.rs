@@ -69,7 +69,7 @@ pub(super) fn read(
     }
     Ok(Layout {
         name: root.text("name").ok().flatten().unwrap_or_default().to_owned(),
-        levels: vec![String::new()],
+        levels: frames.into_iter().collect(),
         nodes: nodes.into_list(),
         edges: edges.into_list(),
         corner_radius: Some(options.corner_radius.unwrap_or(CORNER_RADIUS)),
@@ -153,7 +153,7 @@ impl Graph<'_> {
     fn node(&mut self, id: u64, properties: &Object<'_>, at: [f64; 2]) -> Result<(), ImportError> {
         let name = properties.text("name").ok().flatten().map(str::to_owned);
         let properties = properties.clone().called(format!("node {id}"));
-        self.frames.insert(properties.text("frame")?.unwrap_or(FRAME).to_owned());
+        self.frames.insert(properties.text("frame")?.filter(|frame| !frame.is_empty()).unwrap_or(FRAME).to_owned());
         self.nodes.add(Node { id: Id::Number(id), name, level: 0, at }, self.warnings);
         Ok(())
     }

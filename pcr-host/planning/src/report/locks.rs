@@ -110,6 +110,12 @@ pub fn locks_lines(head: &Locks, sweep: &Sweep, told: Told<'_>, out: &mut impl W
 /// The locks of an edge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EdgeLocks {
+    /// Name of the layout; a table in a file does not have it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layout: Option<String>,
+    /// The vehicle; a table in a file does not have it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vehicle: Option<LockVehicle>,
     /// The edge, or the node.
     pub edge: String,
     /// Sorted: edges, then nodes.
