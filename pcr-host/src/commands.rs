@@ -51,19 +51,19 @@ const NOT_WRITTEN: u8 = 3;
 
 const STATUSES: &str = "\
 Exit status:
-  0  done; where something is asked, the answer is yes
-  1  the answer is no: a contact, no plan, or a table that is wrong
+  0  done; no contact, a plan for all, or a correct table
+  1  a contact, no plan for all, or a wrong table
   2  wrong arguments, or a file that cannot be read or was refused
   3  the output could not be written
-  4  no answer, because the rounding of the checker does not tell
-pcr COMMAND --help says what they mean there.";
+  4  undecided: the rounding of the checker is too large
+For those of one command: pcr COMMAND --help";
 
 /// The exit statuses of a command that answers no question, with the reasons for [`WRONG_INPUT`].
 fn statuses(wrong: &str) -> String {
     format!("Exit status:\n  0  done\n  2  {wrong}\n  3  the output could not be written")
 }
 
-/// Why commands refuse that read scenarios.
+/// The reasons for [`WRONG_INPUT`] of commands that read scenarios.
 const SCENARIOS: &str = "wrong arguments, or one of the scenarios cannot be read or was refused";
 
 const EXAMPLES: &str = "\

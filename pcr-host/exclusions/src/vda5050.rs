@@ -50,7 +50,7 @@ fn messages(value: &Value) -> Vec<&Value> {
     }
 }
 
-/// The map of a level, which is called like the layout where the level has no name.
+/// The map of a level: the name of the level, else that of the layout.
 fn map(layout: &Layout, level: usize) -> &str {
     match layout.levels.get(level).map_or("", String::as_str) {
         "" if layout.name.is_empty() => "map",

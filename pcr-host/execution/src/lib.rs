@@ -1,7 +1,7 @@
 //! Fleets that run: plans that robots carry out, and missions that never end.
 //!
 //! ```text
-//! traffic     random missions on a layout, and their plan         Traffic
+//! traffic     random missions on a layout, and their plan          Traffic
 //! grid_plans  plans on grids, carried out by robots that are late  Outcome
 //! lifelong    robots that get a new mission after each one         run, Outcome
 //! simulate    plans in closed loop, with noise and delays          run, Task

@@ -243,7 +243,7 @@ pub fn mission(imported: &Imported, id: u64, ends: [usize; 2]) -> Result<Option<
     route::mission(&imported.layout, &imported.vehicle, id, ends)
 }
 
-/// Names that are in every file of a program: of editors of nav2 and Open-RMF, and of networkx. They say nothing about the site.
+/// Names that a program writes into every file: the editors of nav2 and Open-RMF, and networkx. Such a layout has the name of its file.
 const NO_NAMES: [&str; 3] = ["graph", "building", "G"];
 
 /// The layout for a vehicle that stands or `moves`.

@@ -31,7 +31,7 @@ pub enum InputError {
     NoLayout(Option<PathBuf>),
     /// It has to be a layout, and is a scenario.
     IsScenario(Option<PathBuf>),
-    /// It has to be a layout, and is an answer of this tool, of which it is said what it is.
+    /// It has to be a layout, and is an answer of this tool; the text says which.
     IsAnswer(Option<PathBuf>, String),
     /// It cannot be read together with others.
     Single(Option<PathBuf>),
@@ -111,7 +111,7 @@ pub fn stem(file: &Path) -> String {
     if stem == "-" { String::new() } else { stem.to_owned() }
 }
 
-/// A name, else the stem of the file; as far as it may be printed, which other formats do not ask for.
+/// A name, else the stem of the file, without characters that may not be printed.
 fn or_stem(name: &mut String, file: &Path) {
     *name = scenario::label(name);
     if name.is_empty() {

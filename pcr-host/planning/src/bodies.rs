@@ -172,11 +172,11 @@ fn discs<S: Format, E>(
             (agent.clone(), agent.parts(), 0.0)
         };
         let part = Agent { radius: outline.radius, footprint: None, loads: Vec::new(), ..part };
-        // Behind segments without length, the agent stands at the border itself before it sets off or after it has arrived.
+        // An agent that stands where the outline changes has both outlines. At its start or end that is so if the segments in between
+        // have no length.
         let length = agent.length();
-        let is_point = |segments: &[PathSegment]| total(segments) <= ROUNDING * (1.0 + length);
-        let (before, after) = (agent.path.get(..first), agent.path.get(last + 1..));
-        let ends = [before, after].map(|segments| segments.is_none_or(is_point));
+        let rest: f64 = agent.path.iter().skip(last + 1).map(PathSegment::length).sum();
+        let ends = [from, rest].map(|way| way <= ROUNDING * (1.0 + length));
         let stretch = Range { from, length, first, ends };
         let Some(footprint) = outline.footprint else {
             discs.push(Disced { agent: place, offset: None, stretch, growth: 0.0 });
@@ -193,11 +193,6 @@ fn discs<S: Format, E>(
         }
     }
     Ok(())
-}
-
-/// Length of some segments \[m\].
-fn total(segments: &[PathSegment]) -> f64 {
-    segments.iter().map(PathSegment::length).sum()
 }
 
 /// The agent with a start of which no coordinate is less than the last digit of the format, which rounding may leave of 0.

@@ -96,6 +96,9 @@ impl std::error::Error for Misread {}
 ///
 /// # Errors
 /// [`Misread`], with the first difference.
+///
+/// # Panics
+/// If `agents` are not as many as the agents of the scenario.
 pub fn as_given<S: Format>(discs: &Scenario, agents: &[Agent]) -> Result<(), Misread> {
     assert_eq!(discs.agents.len(), agents.len(), "the discs of the scenario");
     for (given, held) in discs.agents.iter().zip(agents) {

@@ -229,7 +229,7 @@ impl Arguments {
         let Some(partners) = partners else {
             return Err(Stop::wrong(file, format!("there is no edge {edge}; pcr nodes lists them")));
         };
-        let (edge, partners) = (edge.to_owned(), partners);
+        let edge = edge.to_owned();
         let locks = match head {
             Some(Locks { layout, vehicle, warnings, .. }) => {
                 EdgeLocks { layout: Some(layout), vehicle: Some(vehicle), edge, partners, warnings }

@@ -64,7 +64,7 @@ pub(super) fn scenario(file: &Path, import: &Options) -> Result<Scenario, Stop> 
     told(file, input::read(file, import)?, import)
 }
 
-/// Asks for the memory that it takes to read a file; the one that is no text is refused by its name.
+/// Asks for the memory that it takes to read a file. Refuses a table of locks, which is no text.
 fn ask_for(file: &Path) -> Result<(), Stop> {
     if Index::is_one(file) {
         return Err(Stop::wrong(file, "this is a table of locks already; pcr locks reads it, with --edge"));
@@ -132,7 +132,8 @@ pub(super) fn gathered(files: Vec<PathBuf>, import: &Options) -> Result<Vec<Sour
     Ok(apart(files, import))
 }
 
-/// Files that are answered one after the other, so that their answers can be told apart.
+/// Files that are answered one after the other, so that their answers can be told apart. Several files are read once more for that: the
+/// first answer is printed before the last file is read.
 pub(super) fn apart(files: Vec<PathBuf>, import: &Options) -> Vec<Source> {
     let name = |file: &PathBuf| match std::fs::metadata(file) {
         // What is no file can be read once only.

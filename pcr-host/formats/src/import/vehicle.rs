@@ -87,7 +87,7 @@ pub struct Options {
     /// Radius of corners (nav2: 1 if left out)
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = not_negative))]
     pub corner_radius: Option<f64>,
-    /// Most that arcs leave curves [default: 0.001]
+    /// Deviation from curves [default: 0.001]
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = positive))]
     pub tolerance: Option<f64>,
     /// Graph, if there are several (Open-RMF)

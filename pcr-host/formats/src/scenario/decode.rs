@@ -113,7 +113,7 @@ impl Scenario {
     }
 }
 
-/// Refuses what says of itself that it is something else, before its keys are unknown; and what stands for a scenario that there is not.
+/// Refuses files of another format, before one of their keys is refused as unknown, and the line in place of a plan that there is not.
 fn is_scenario(json: &Json) -> Result<(), ScenarioError> {
     let Data::Object(members) = &json.data else { return Ok(()) };
     let member = |key: &str| members.iter().find(|(name, _)| name == key).map(|(_, value)| (value, &value.data));

@@ -22,7 +22,7 @@ impl Scenario {
         )
     }
 
-    /// A line in place of a scenario in a stream of them: there is none of this name, and why. Whatever reads scenarios refuses it.
+    /// A line of a stream of scenarios in place of one that there is not, and why not. Whatever reads scenarios refuses it.
     pub fn missing(name: &str, why: &str) -> String {
         let [name, why] = [name, why].map(Value::from);
         format!("{{\"format\":\"{FORMAT}\",\"version\":{VERSION},\"name\":{name},\"error\":{why}}}\n")

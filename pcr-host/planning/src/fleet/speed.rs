@@ -20,6 +20,9 @@ type Fault = (Option<usize>, String);
 /// Each phase aims at the speed that the piece reaches exactly, so that speeds do not drift and a stop is a stop. What
 /// rounding leaves of the difference to `length` \[m\] goes into the duration of the fastest piece that is not short, where it
 /// costs the least time.
+///
+/// # Errors
+/// The piece (from 0), if it is one, and what is wrong: a number that does not fit the format.
 pub fn phases<S: Format>(v0: f64, pieces: &[(f64, f64)], length: S) -> Result<Vec<Phase<S>>, Fault> {
     let targets = targets(v0, pieces);
     let mean = |k: usize| 0.5 * (targets.get(k).copied().unwrap_or(v0) + targets.get(k + 1).copied().unwrap_or(0.0));

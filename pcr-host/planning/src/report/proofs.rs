@@ -5,7 +5,7 @@ use super::{all_called, counted};
 use crate::certify::{Contact, Proof};
 use pcr_formats::scenario::Labels;
 
-/// A line about it, in which agents are called what they are in the table above.
+/// A line about a proof, in which agents have their labels.
 pub fn proof_line(proof: &Proof, labels: &Labels) -> String {
     let place = |those: &[Contact]| {
         those.first().map_or(String::new(), |&Contact { i, j, t, clearance }| {
