@@ -51,8 +51,8 @@ fn row<const WHOLE: usize, const REAL: usize, const TRUTHS: usize>(
 ) {
     into.extend_from_slice(whole.map(u64::to_le_bytes).as_flattened());
     into.extend_from_slice(real.map(f64::to_le_bytes).as_flattened());
-    let rest = [0; 7].iter().take(TRUTHS.next_multiple_of(8) - TRUTHS);
-    into.extend(truths.map(u8::from).iter().chain(rest));
+    into.extend_from_slice(&truths.map(u8::from));
+    into.extend_from_slice(&[0; 7][..TRUTHS.next_multiple_of(8) - TRUTHS]);
 }
 
 /// A scenario, with the paths and motions that follow from it.
