@@ -1,8 +1,8 @@
 //! Unsafe delays of arcs and of accelerations against sampled motions.
 
 use pcr_core::{Interval, Motion};
-use pcr_formats::import::{Format, ImportError, Imported, Options, Warnings, layout, ride};
-use pcr_formats::scenario::{Agent, MotionSpec, Scenario};
+use pcr_formats::import::{Edge, Format, Id, ImportError, Imported, Options, Warnings, layout, ride};
+use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Placed, Scenario};
 use pcr_planning::fleet::Fleet;
 use pcr_planning::locks::{Delays, Driving, Unsafe};
 use std::collections::HashMap;
@@ -61,8 +61,13 @@ fn fleet(imported: &Imported, driving: Driving) -> Fleet<f64> {
         for step in edge.steps() {
             let agent = ride(&vehicle, step);
             let speed = step.speed().map_or(driving.speed, |limit| limit.min(driving.speed));
-            let even = MotionSpec::Profile { v0: speed, pieces: vec![(agent.length() / speed, 0.0)] };
-            let motion = if driving.acceleration.is_some() { agent.motion.clone() } else { even };
+            let motion = match driving.acceleration {
+                None => MotionSpec::Profile { v0: speed, pieces: vec![(agent.length() / speed, 0.0)] },
+                Some(a_max) if matches!(agent.path[..], [PathSegment::Line { .. }]) => {
+                    MotionSpec::RestToRest { v_max: speed, a_max }
+                }
+                Some(_) => agent.motion.clone(),
+            };
             agents.push(Agent { id: agents.len() as u64, motion, ..agent });
         }
     }
@@ -122,6 +127,30 @@ fn arcs_from_rest_to_rest() {
 #[test]
 fn lines_from_rest_to_rest() {
     audited(&read(Format::Nav2, WAREHOUSE, 0.4), Driving { speed: 1.0, acceleration: Some(0.5) });
+}
+
+#[test]
+fn limits_of_edges_hold_from_rest_to_rest() {
+    let mut imported = read(Format::Nav2, WAREHOUSE, 0.4);
+    let limits = [None, Some(0.25), Some(2.0), Some(0.6)];
+    for (edge, limit) in imported.layout.edges.iter_mut().zip(limits.into_iter().cycle()) {
+        edge.speed = [limit; 2];
+    }
+    for acceleration in [None, Some(0.5)] {
+        audited(&imported, Driving { speed: 1.0, acceleration });
+    }
+}
+
+#[test]
+fn limits_of_rotation_hold_from_rest_to_rest() {
+    let vehicle = read(Format::Lif, CURVES, 0.3).vehicle;
+    let shape = PathSegment::Arc { radius: 2.0, sweep: 1.5 };
+    let mut edge = Edge::new(Id::Number(1), [0, 1], vec![Placed { at: [0.0; 2], heading: 0.0, shape }]);
+    edge.rotation = Some(0.1);
+    // 1.5 rad at 0.1 rad/s, and what it takes to speed up to 0.2 m/s, and to stop.
+    let least = 15.0 + 0.2 / vehicle.acceleration;
+    let agent = ride(&vehicle, edge.steps().next().expect("a way"));
+    assert!((agent.duration() - least).abs() < 1e-9, "{} {least}", agent.duration());
 }
 
 /// Straight edges by the closed form and, with no more than the rounding of a deviation, by the library.

@@ -275,9 +275,10 @@ pub(super) fn mission(
     Ok(Some(agent(id, &trace, vehicle, 0.0)))
 }
 
-/// The vehicle on a single edge, in one direction.
+/// The vehicle on a single edge, in one direction, with the limits of the edge.
 pub fn ride(vehicle: &Vehicle, step: Step<'_>) -> Agent {
     let mut tracer = Tracer::default();
+    tracer.limit(step.speed(), step.edge.rotation);
     let curve = step.curve();
     curve.iter().for_each(|piece| tracer.follow(piece));
     let mut trace = tracer.finish(curve.first().map_or([0.0; 2], |first| first.at));
