@@ -125,7 +125,12 @@ impl<'p, S: Scalar> Lattice<S> for Below<'p, S> {
         from: usize,
         to: usize,
     ) -> Option<impl Borrow<Edge<S>>> {
-        let times = [length.lo, length.hi].map(|length| phase.time_at(length));
+        // At its ends the times of the phase itself: far along a path, the length of a turn in place has few digits.
+        let times = [length.lo, length.hi].map(|length| match length {
+            _ if length == phase.length().lo => phase.time().lo,
+            _ if length == phase.length().hi => phase.time().hi,
+            _ => phase.time_at(length),
+        });
         let [before, after] = times.map(|time| phase.speed_at(time));
         let is_rest = |speed: S, index: usize| speed <= S::ZERO && index > 0;
         if is_rest(before, from) || is_rest(after, to) {
