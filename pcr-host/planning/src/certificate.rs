@@ -106,8 +106,12 @@ pub fn as_given<S: Format>(discs: &Scenario, agents: &[Agent]) -> Result<(), Mis
         let travelled = given.path.iter().filter(|segment| turn_in_place::<S>(segment).is_none());
         let travelled = travelled.map(PathSegment::length).sum();
         let length = held.path.segments.last().map_or(0.0, |last| last.to);
-        // A length is rounded for each segment, and for each turn of an arc.
-        let parts = (held.path.segments.len() + given.path.len() + 1) as f64;
+        // A length is rounded for each segment, and for each turn of an arc; a rounded radius counts as often as its angle says.
+        let bends = given.path.iter().map(|segment| match segment {
+            PathSegment::Arc { sweep, .. } => sweep.abs(),
+            PathSegment::Line { .. } => 0.0,
+        });
+        let parts = (held.path.segments.len() + given.path.len() + 1) as f64 + bends.sum::<f64>();
         let numbers = [
             ("radius", held.radius, given.reach(), 1.0),
             ("start.x", held.path.start[0], given.start[0], 1.0),
@@ -226,5 +230,21 @@ mod tests {
         compared::<Q12>();
         compared::<Q16>();
         compared::<Q20>();
+    }
+
+    /// The radius of a full circle is rounded once, and its length is off by that 2 π times.
+    #[test]
+    fn circles_whose_radius_is_rounded_are_as_given() {
+        let circle = |radius: f64, sweep: f64| json!({ "kind": "arc", "radius": radius, "sweep": sweep });
+        for k in 0..200 {
+            let off = f64::from(k) * 1.7e-7;
+            let path = json!([circle(0.118_018_95 + off, TAU), circle(1.813_987_58 + off, -3.0 * TAU)]);
+            let start = json!({ "x": 0.0, "y": 0.0, "heading": 0.0 });
+            let agent = json!({ "id": 1, "radius": 0.3, "v_max": 1.0, "a_max": 1.0, "start": start, "path": path });
+            let scenario = Scenario::from_value(&json!({ "agents": [agent] })).expect("a scenario");
+            let fleet = Fleet::<Q16>::new(&scenario).expect("it fits");
+            let agents = agents(&fleet, &fleet.motions(), &[1]);
+            assert_eq!(as_given::<Q16>(&scenario, &agents).map_err(|misread| misread.to_string()), Ok(()), "{k}");
+        }
     }
 }
