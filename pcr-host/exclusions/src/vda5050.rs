@@ -181,14 +181,14 @@ fn text_of<'j>(object: &'j Value, field: &str) -> Result<&'j str, String> {
     }
 }
 
-/// Reads the zones.
-pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
-    let root = parse_json(text)?;
-    let layout = &imported.layout;
+/// The zones of all messages with their groups, and warnings of zones that are none of these.
+type Zones = (Vec<Zone>, Vec<Group>, Vec<String>);
+
+fn zones_of(root: &Value, layout: &Layout) -> Result<Zones, ImportError> {
     let maps: BTreeSet<&str> = (0..layout.levels.len()).map(|level| map(layout, level)).collect();
     let (mut zones, mut groups, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
     let mut sets: BTreeSet<&str> = BTreeSet::new();
-    for (k, message) in messages(&root).into_iter().enumerate() {
+    for (k, message) in messages(root).into_iter().enumerate() {
         let set = &message["zoneSet"];
         let place = if root.is_array() { format!("message {}, zoneSet", k + 1) } else { "zoneSet".to_owned() };
         let refused = |problem: &str| ImportError::new(format!("{place}, {problem}"));
@@ -225,18 +225,25 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
             zones.push(Zone { map: id.to_owned(), blocked: kind == "BLOCKED", bounds: bounds(&polygon), polygon });
         }
     }
-    let reach = Reach::of(imported);
-    // Three tokens for each zone: 0 for certain presence, 1 and 2 for the others. A vehicle that is entirely inside takes token 2 and bars
-    // token 1; one that is possibly inside takes token 1 and bars token 2.
-    let count = zones.len();
-    let tokens = |zone: usize, Entered { sure, whole, possible }: Entered| {
-        let of = |ranges: Vec<[f64; 2]>, takes: usize, bars: usize| {
-            ranges.into_iter().flat_map(move |range| {
-                [(takes, false), (bars, true)].map(|(kind, bars)| Mark { token: kind * count + zone, bars, range })
-            })
-        };
-        of(sure, 0, 0).chain(of(whole, 2, 1)).chain(of(possible, 1, 2)).collect::<Vec<_>>()
+    Ok((zones, groups, warnings))
+}
+
+/// What a vehicle takes and bars in one of so many zones: three tokens for each zone, 0 for certain presence, 1 and 2 for the others. A
+/// vehicle that is entirely inside takes token 2 and bars token 1; one that is possibly inside takes token 1 and bars token 2.
+fn tokens(zone: usize, count: usize, Entered { sure, whole, possible }: Entered) -> impl Iterator<Item = Mark> {
+    let of = move |ranges: Vec<[f64; 2]>, takes: usize, bars: usize| {
+        ranges.into_iter().flat_map(move |range| {
+            [(takes, false), (bars, true)].map(|(kind, bars)| Mark { token: kind * count + zone, bars, range })
+        })
     };
+    of(sure, 0, 0).chain(of(whole, 2, 1)).chain(of(possible, 1, 2))
+}
+
+/// Reads the zones.
+pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
+    let layout = &imported.layout;
+    let (zones, mut groups, warnings) = zones_of(&parse_json(text)?, layout)?;
+    let (reach, count) = (Reach::of(imported), zones.len());
     let there = |zone: &Zone, level: usize| map(layout, level) == zone.map;
     let edges = layout.edges.iter().map(|edge| {
         let ends = edge.ends.map(|end| layout.level_of(end));
@@ -254,7 +261,7 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
                 let on = (0..2).filter(|&end| there(zone, ends[end]));
                 on.for_each(|end| closed[end].extend_from_slice(&entered.sure));
             } else {
-                marks.extend(tokens(k, entered));
+                marks.extend(tokens(k, count, entered));
             }
         }
         Way::both(edge.length(), marks, both(&closed[0], &closed[1]))
@@ -268,7 +275,7 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
                 claim.closed |= !entered.sure.is_empty();
                 continue;
             }
-            for mark in tokens(k, entered) {
+            for mark in tokens(k, count, entered) {
                 if mark.bars { claim.bars.push(mark.token) } else { claim.takes.push(mark.token) }
             }
         }

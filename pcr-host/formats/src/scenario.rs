@@ -41,6 +41,7 @@ mod encode;
 mod fields;
 mod labels;
 mod load;
+mod name;
 mod outline;
 mod parts;
 mod placed;

@@ -1,7 +1,8 @@
 //! Decodes a scenario from JSON: the meaning of each field, and conditions between fields.
 
 use super::fields::{Fields, LIMIT, Place, Range, ScenarioError, brief, figure, whole};
-use super::labels::{self, called};
+use super::labels;
+use super::name::Name;
 use super::outline::{loads, outline};
 use super::settled::Settled;
 use super::turns;
@@ -199,119 +200,81 @@ impl Agent {
             "path",
             "profile",
         ];
-        let given = |name: &str| match &json.data {
-            Data::Object(members) => members.iter().find(|(key, _)| key == name).map(|(_, value)| value),
-            _ => None,
-        };
-        let text = |value: Option<&Json>| match value {
-            Some(Json { data: Data::Text(text), .. }) if labels::fault(text).is_none() => text.clone(),
-            _ => String::new(),
-        };
-        // A text of digits could be meant for a number.
-        let named = Some(text(given("id"))).filter(|id| !id.is_empty() && id.parse::<u64>().is_err());
-        let id = match (given("id"), &named) {
-            (Some(Json { data: Data::Number(text), .. }), _) => whole(text),
-            (_, Some(_)) => Some(index as u64 + 1),
-            _ => None,
-        };
-        let is_text = named.is_some();
-        let label = named.unwrap_or_else(|| text(given("label")));
-        let agent = match id {
-            Some(id) => format!("agent {}", called(id, &label)),
-            None => format!("agent at place {}", index + 1),
-        };
-        let place = Place { agent: Some(agent), part: None };
+        let name = Name::of(json, index);
+        let place = Place { agent: Some(name.called(index)), part: None };
         let fields = place.fields(json, &KNOWN)?;
-        let id = match (id, fields.required("id")?) {
-            (Some(id), _) => id,
-            (None, given) => {
-                return Err(match &given.data {
-                    Data::Text(text) => fields.error(given.line, "id", no_name(text)),
-                    _ => fields.unexpected("id", given, "a whole number from 0 or a name"),
-                });
-            }
-        };
-        match fields.get("label").map(|label| (label, &label.data)) {
-            None => {}
-            Some((label, _)) if is_text => {
-                return Err(fields.error(label.line, "label", "given, and the id is a text"));
-            }
-            Some((given, Data::Text(text))) => {
-                if let Some(fault) = labels::fault(text) {
-                    return Err(fields.error(given.line, "label", fault));
-                }
-            }
-            Some((given, _)) => return Err(fields.unexpected("label", given, "a string")),
-        }
+        let id = name.checked(&fields)?;
         let (radius, footprint) = outline(&fields, &place)?;
         let margin = fields.get("margin").map_or(Ok(0.0), |_| fields.number("margin", Range::NotNegative))?;
         let t_start = fields.get("t_start").map_or(Ok(0.0), |_| fields.number("t_start", Range::Any))?;
         let start = fields.object("start", "start.", &["x", "y", "heading"])?;
         let start =
             [start.number("x", Range::Any)?, start.number("y", Range::Any)?, start.number("heading", Range::Any)?];
-        let segments = fields.array("path")?;
-        let mut path = Vec::with_capacity(segments.len());
-        for (index, json) in segments.iter().enumerate() {
-            path.push(PathSegment::decode(json, &place.part("segment", index))?);
-        }
-        let refused = |field, problem| {
-            let line = fields.get(field).map_or(fields.line, |json| json.line);
-            Err(fields.error(line, field, problem))
-        };
-        let length: f64 = path.iter().map(PathSegment::length).sum();
-        if length > LIMIT {
-            return refused("path", format!("{} m long; allowed is up to {LIMIT:e}", figure(length)));
-        }
-        let segments: f64 = path.iter().map(PathSegment::turns).sum();
-        if segments > MOST as f64 {
-            let problem = format!("{segments} segments, each turn of an arc counted; allowed are up to {MOST}");
-            return refused("path", problem);
-        }
-        let moves = fields.get("profile").is_none();
-        let limit = |field| match fields.get(field) {
-            None if !moves => Ok(None),
-            _ => fields.number(field, Range::Positive).map(Some),
-        };
-        let turns = moves && fields.array("path")?.iter().any(turns::is_given);
-        let of_turns = |field| match fields.get(field) {
-            None if !turns => Ok(0.0),
-            _ => fields.number(field, Range::Positive),
-        };
-        let of_turns = [of_turns("turn_v_max")?, of_turns("turn_a_max")?];
-        let motion = match (limit("v_max")?, limit("a_max")?) {
-            (Some(v_max), Some(a_max)) if turns => turns::motion(&path, [v_max, a_max], of_turns),
-            (Some(v_max), Some(a_max)) if moves => MotionSpec::RestToRest { v_max, a_max },
-            _ => MotionSpec::decode(&fields, length)?,
-        };
+        let path = path(&fields, &place)?;
+        let motion = motion(&fields, &path)?;
         let loads = loads(&fields, path.len())?;
+        let Name { label, is_text, .. } = name;
         let agent = Self { id, label, radius, footprint, loads, margin, t_start, start, path, motion };
-        let duration = agent.duration();
-        if duration > LIMIT || (t_start + duration).abs() > LIMIT {
-            let field = if !moves {
-                "profile"
-            } else if duration > LIMIT {
-                "v_max, a_max"
-            } else {
-                "t_start"
-            };
-            let problem = format!(
-                "the motion takes {} s from {} s; allowed is up to {LIMIT:e} s",
-                figure(duration),
-                figure(t_start)
-            );
-            return refused(field, problem);
-        }
+        agent.ends_in_time(&fields)?;
         Ok((agent, is_text))
+    }
+
+    /// Refuses motions that end too late.
+    fn ends_in_time(&self, fields: &Fields<'_>) -> Result<(), ScenarioError> {
+        let (duration, t_start) = (self.duration(), self.t_start);
+        if duration <= LIMIT && (t_start + duration).abs() <= LIMIT {
+            return Ok(());
+        }
+        let field = if fields.get("profile").is_some() {
+            "profile"
+        } else if duration > LIMIT {
+            "v_max, a_max"
+        } else {
+            "t_start"
+        };
+        let [takes, from] = [duration, t_start].map(figure);
+        let problem = format!("the motion takes {takes} s from {from} s; allowed is up to {LIMIT:e} s");
+        Err(fields.refused(field, problem))
     }
 }
 
-/// Why a text is no id.
-fn no_name(text: &str) -> String {
-    match labels::fault(text) {
-        Some(fault) => fault,
-        None if text.is_empty() => "\"\" where a whole number from 0 or a name is expected".into(),
-        None => format!("\"{text}\" could be taken for the number; write it without quotation marks, or give a name"),
+/// The path of an agent, if it is neither too long nor of too many segments.
+fn path(fields: &Fields<'_>, place: &Place) -> Result<Vec<PathSegment>, ScenarioError> {
+    let given = fields.array("path")?;
+    let mut path = Vec::with_capacity(given.len());
+    for (index, json) in given.iter().enumerate() {
+        path.push(PathSegment::decode(json, &place.part("segment", index))?);
     }
+    let length: f64 = path.iter().map(PathSegment::length).sum();
+    let segments: f64 = path.iter().map(PathSegment::turns).sum();
+    let problem = if length > LIMIT {
+        format!("{} m long; allowed is up to {LIMIT:e}", figure(length))
+    } else if segments > MOST as f64 {
+        format!("{segments} segments, each turn of an arc counted; allowed are up to {MOST}")
+    } else {
+        return Ok(path);
+    };
+    Err(fields.refused("path", problem))
+}
+
+/// The profile that is given, or from rest to rest, or with turns in place.
+fn motion(fields: &Fields<'_>, path: &[PathSegment]) -> Result<MotionSpec, ScenarioError> {
+    let moves = fields.get("profile").is_none();
+    let limit = |field| match fields.get(field) {
+        None if !moves => Ok(None),
+        _ => fields.number(field, Range::Positive).map(Some),
+    };
+    let turns = moves && fields.array("path")?.iter().any(turns::is_given);
+    let of_turns = |field| match fields.get(field) {
+        None if !turns => Ok(0.0),
+        _ => fields.number(field, Range::Positive),
+    };
+    let of_turns = [of_turns("turn_v_max")?, of_turns("turn_a_max")?];
+    Ok(match (limit("v_max")?, limit("a_max")?) {
+        (Some(v_max), Some(a_max)) if turns => turns::motion(path, [v_max, a_max], of_turns),
+        (Some(v_max), Some(a_max)) if moves => MotionSpec::RestToRest { v_max, a_max },
+        _ => MotionSpec::decode(fields, path.iter().map(PathSegment::length).sum())?,
+    })
 }
 
 impl PathSegment {

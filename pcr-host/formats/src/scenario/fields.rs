@@ -122,6 +122,11 @@ impl<'j> Fields<'j> {
         self.place.error(line, &format!("{}{field}", self.inside), problem)
     }
 
+    /// The error about a field, at its line if it is given.
+    pub(super) fn refused(&self, field: &str, problem: impl fmt::Display) -> ScenarioError {
+        self.error(self.get(field).map_or(self.line, |json| json.line), field, problem)
+    }
+
     pub(super) fn get(&self, field: &str) -> Option<&'j Json> {
         self.members.iter().find(|(key, _)| key == field).map(|(_, value)| value)
     }
