@@ -45,8 +45,10 @@ fn answered(name: &str, scenario: &Scenario, effort: Effort) -> Value {
         let taken = begin.elapsed().as_secs_f64();
         let delays: Vec<Value> = plan.agents.iter().map(|planned| json!([planned.id, planned.delay])).collect();
         json!({
-            "objective": plan.objective, "sum_of_costs": plan.sum_of_costs, "makespan": plan.makespan,
-            "lower_bound": plan.lower_bound, "gap": plan.gap, "proved": plan.proved, "left_out": plan.left_out,
+            "objective": plan.objective, "sum_of_costs": plan.costs.map(|costs| costs.sum_of_costs),
+            "makespan": plan.costs.map(|costs| costs.makespan), "lower_bound": plan.costs.map(|costs| costs.lower_bound),
+            "gap": plan.costs.map(|costs| costs.gap), "proved": plan.costs.is_some_and(|costs| costs.proved),
+            "left_out": plan.left_out,
             "unsolved": plan.unsolved.iter().map(|unsolved| &unsolved.ids).collect::<Vec<_>>(), "delays": delays, "seconds": taken
         })
     });
@@ -59,7 +61,7 @@ fn forbidden_end(scenario: &Scenario, id: u64) -> f64 {
         agents: scenario.agents.iter().filter(|agent| agent.id == id).cloned().collect(),
         ..scenario.clone()
     };
-    Plan::of(&alone, &Request::default()).expect("one agent").0.makespan
+    Plan::of(&alone, &Request::default()).expect("one agent").0.costs.expect("a plan").makespan
 }
 
 /// An end of an interval, none where it is infinite.

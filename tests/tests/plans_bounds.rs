@@ -12,7 +12,8 @@ const FLEETS: u64 = if cfg!(optimized) { 250 } else { 60 };
 #[track_caller]
 fn planned(scenario: &Scenario, method: Method) -> Option<[f64; 2]> {
     let (plan, solved) = Plan::of(scenario, &Request::of(method)).unwrap();
-    solved.is_some().then_some([plan.sum_of_costs, plan.lower_bound])
+    assert_eq!(solved.is_some(), plan.costs.is_some());
+    plan.costs.map(|costs| [costs.sum_of_costs, costs.lower_bound])
 }
 
 #[test]

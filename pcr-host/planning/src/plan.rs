@@ -30,7 +30,8 @@ use pcr_core::{Encounter, Motion};
 use pcr_formats::scenario::{Labels, Scenario};
 
 pub use reason::Spot;
-use serde::Serialize;
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
 pub use starts::some as start_delays;
 use starts::{Known, Starts};
 use task::Planner;
@@ -119,18 +120,11 @@ pub struct Plan {
     /// Agents that were left out; the plan is made as if they were not there.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<u64>,
-    /// Time from the earliest start in the file to the last arrival, of the agents of the plan \[s\].
-    pub makespan: f64,
-    /// Sum over the agents from their start in the file to their arrival \[s\].
-    pub sum_of_costs: f64,
     /// Objective: `sum_of_costs` or `makespan`.
     pub objective: &'static str,
-    /// Lower bound of the objective of all plans by this method for the same agents \[s\].
-    pub lower_bound: f64,
-    /// Difference between objective and lower bound, relative to the objective.
-    pub gap: f64,
-    /// Whether the plan is proved to be the best, except for rounding.
-    pub proved: bool,
+    /// What the plan costs; in JSON its fields are those of the plan, and `null` (`proved`: false) if there is no plan.
+    #[serde(flatten, serialize_with = "costs")]
+    pub costs: Option<Costs>,
     /// Sets of agents that cannot be planned; at least one agent of each set has to be left out.
     pub unsolved: Vec<Unsolved>,
     /// Why the scenario was refused.
@@ -141,6 +135,31 @@ pub struct Plan {
     /// Result of the independent checker for the plan.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Proof>,
+}
+
+/// The costs of a plan, for its agents.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Costs {
+    /// Time from the earliest start in the file to the last arrival \[s\].
+    pub makespan: f64,
+    /// Sum over the agents from their start in the file to their arrival \[s\].
+    pub sum_of_costs: f64,
+    /// Lower bound of the objective of all plans by this method for the same agents \[s\].
+    pub lower_bound: f64,
+    /// Difference between objective and lower bound, relative to the objective.
+    pub gap: f64,
+    /// Whether the plan is proved to be the best, except for rounding.
+    pub proved: bool,
+}
+
+fn costs<W: Serializer>(costs: &Option<Costs>, to: W) -> Result<W::Ok, W::Error> {
+    let mut fields = to.serialize_struct("Costs", 5)?;
+    fields.serialize_field("makespan", &costs.map(|costs| costs.makespan))?;
+    fields.serialize_field("sum_of_costs", &costs.map(|costs| costs.sum_of_costs))?;
+    fields.serialize_field("lower_bound", &costs.map(|costs| costs.lower_bound))?;
+    fields.serialize_field("gap", &costs.map(|costs| costs.gap))?;
+    fields.serialize_field("proved", &costs.is_some_and(|costs| costs.proved))?;
+    fields.end()
 }
 
 /// An agent of a plan.
@@ -198,12 +217,8 @@ impl Plan {
             order: Vec::new(),
             agents: Vec::new(),
             left_out: Vec::new(),
-            makespan: 0.0,
-            sum_of_costs: 0.0,
             objective: objective.name(),
-            lower_bound: 0.0,
-            gap: 0.0,
-            proved: false,
+            costs: None,
             unsolved: Vec::new(),
             error: None,
             warnings: Vec::new(),

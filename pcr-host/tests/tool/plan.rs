@@ -115,6 +115,11 @@ fn what_cannot_work_is_named_and_nothing_is_written() {
         json!({ "agents": [straight(4, [0.0, 0.0, 0.0], 4.0), straight(9, [4.0, 0.0, std::f64::consts::PI], 4.0)] });
     let (status, report, written) = plan("head-on", &head_on, &[]);
     assert_eq!((status, &report["agents"], written), (1, &json!([]), None));
+    // Nothing costs 0 that does not exist.
+    for cost in ["makespan", "sum_of_costs", "lower_bound", "gap"] {
+        assert_eq!(report.get(cost), Some(&Value::Null), "{cost}: {report}");
+    }
+    assert_eq!(report["proved"], json!(false));
     let unsolved = &report["unsolved"][0];
     assert_eq!(unsolved["ids"], json!([9, 4]));
     let why = unsolved["why"].as_str().unwrap();

@@ -42,10 +42,12 @@ impl Row {
         self.fleets += 1;
         self.planned += plan.agents.len();
         self.left_out += scenario.agents.len() - plan.agents.len();
-        self.proved += usize::from(plan.proved);
-        self.costs += plan.sum_of_costs;
-        self.bounds += plan.lower_bound;
-        self.widest = self.widest.max(plan.gap);
+        if let Some(costs) = plan.costs {
+            self.proved += usize::from(costs.proved);
+            self.costs += costs.sum_of_costs;
+            self.bounds += costs.lower_bound;
+            self.widest = self.widest.max(costs.gap);
+        }
         Ok(())
     }
 

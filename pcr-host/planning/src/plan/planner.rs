@@ -4,7 +4,7 @@ use super::circle::CIRCULAR_WAIT;
 use super::delays::Objective;
 use super::starts::Known;
 use super::task::Planner;
-use super::{Answer, Method, Plan, Planned, Priority, Unsolved, bound, sides, speeds};
+use super::{Answer, Costs, Method, Plan, Planned, Priority, Unsolved, bound, sides, speeds};
 use crate::certify::Proof;
 use crate::check::Verdict;
 use crate::regions::Failure;
@@ -138,11 +138,12 @@ impl<'m> Planner<'_, 'm> {
         }
         plan.certificate = Some(proof);
         let begin = self.begin();
+        let [mut makespan, mut sum_of_costs] = [0.0f64; 2];
         for (agent, (motion, planned)) in self.motions.iter().zip(planned).enumerate() {
             let [start, end] = [planned.time().lo, planned.time().hi];
             plan.agents.push(Planned { id: self.id(agent), delay: start - motion.time().lo, t_end: end });
-            plan.makespan = plan.makespan.max(end - begin);
-            plan.sum_of_costs += end - motion.time().lo;
+            makespan = makespan.max(end - begin);
+            sum_of_costs += end - motion.time().lo;
         }
         let mut order: Vec<usize> = (0..planned.len()).collect();
         match &known {
@@ -154,11 +155,12 @@ impl<'m> Planner<'_, 'm> {
         let bound = self.bound(known.as_ref());
         debug_assert!(bound <= cost + NEAR + bound::ROUNDING * cost, "a bound of {bound} for a plan of {cost}");
         // Sums are rounded.
-        plan.lower_bound = bound.min(cost);
-        let gap = cost - plan.lower_bound;
-        plan.gap = if cost > 0.0 { gap / cost } else { 0.0 };
+        let lower_bound = bound.min(cost);
+        let difference = cost - lower_bound;
+        let gap = if cost > 0.0 { difference / cost } else { 0.0 };
         // For a long plan a small share may be seconds.
-        plan.proved = known.is_some_and(|known| known.proved) || gap <= NEAR.min(2.0 * bound::ROUNDING * cost);
+        let proved = known.is_some_and(|known| known.proved) || difference <= NEAR.min(2.0 * bound::ROUNDING * cost);
+        plan.costs = Some(Costs { makespan, sum_of_costs, lower_bound, gap, proved });
         Ok((plan, Some(solved)))
     }
 

@@ -4,7 +4,7 @@ use super::columns::Columns;
 use super::figures::thousandths;
 use super::proofs::proof_line;
 use super::{all_called, called, heading, quoted};
-use crate::plan::{Plan, Planned};
+use crate::plan::{Costs, Plan, Planned};
 use std::collections::HashMap;
 use std::io::{self, Write};
 
@@ -30,17 +30,15 @@ pub fn plan_csv(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
 pub fn plan_table(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
     let name = heading(&plan.name);
     let left_out = all_called(&plan.labels, &plan.left_out);
-    match (plan.agents.is_empty() && !plan.unsolved.is_empty(), plan.left_out.is_empty()) {
-        (true, _) => writeln!(out, "{name}: no plan")?,
-        (false, true) => writeln!(out, "{name}: a plan without conflicts, by {}", means(plan))?,
-        (false, false) => {
+    match (plan.costs, plan.left_out.is_empty()) {
+        (None, _) => writeln!(out, "{name}: no plan")?,
+        (Some(_), true) => writeln!(out, "{name}: a plan without conflicts, by {}", means(plan))?,
+        (Some(_), false) => {
             writeln!(out, "{name}: a plan without conflicts for some, by {}; left out: {left_out}", means(plan))?;
         }
     }
     reasons(plan).try_for_each(|reason| writeln!(out, "  {reason}"))?;
-    if plan.agents.is_empty() && !plan.unsolved.is_empty() {
-        return Ok(());
-    }
+    let Some(costs) = plan.costs else { return Ok(()) };
     let title = if plan.labels.is_empty() { "agent" } else { "<agent" };
     let mut columns = Columns::new(&[title, "delay [s]", "t_end [s]"]);
     let agents: HashMap<u64, &Planned> = plan.agents.iter().map(|agent| (agent.id, agent)).collect();
@@ -49,7 +47,7 @@ pub fn plan_table(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
         columns.row(vec![called(&plan.labels, agent.id), thousandths(agent.delay), thousandths(agent.t_end)]);
     }
     columns.write(out)?;
-    writeln!(out, "{}", costs(plan))?;
+    writeln!(out, "{}", costs_line(costs, plan.objective))?;
     match &plan.certificate {
         Some(proof) => writeln!(out, "{}", proof_line(proof, &plan.labels)),
         None => Ok(()),
@@ -67,10 +65,10 @@ pub fn reasons(plan: &Plan) -> impl Iterator<Item = String> {
 
 /// What a plan leaves open, in a line: all agents, or those that it leaves out; `None` if it is for all.
 pub fn left_open(plan: &Plan) -> Option<String> {
-    match (plan.agents.is_empty() && !plan.unsolved.is_empty(), plan.left_out.as_slice()) {
-        (true, _) => Some("no plan".into()),
-        (false, []) => None,
-        (false, ids) => Some(format!("left out: {}", all_called(&plan.labels, ids))),
+    match (plan.costs, plan.left_out.as_slice()) {
+        (None, _) => Some("no plan".into()),
+        (Some(_), []) => None,
+        (Some(_), ids) => Some(format!("left out: {}", all_called(&plan.labels, ids))),
     }
 }
 
@@ -78,11 +76,10 @@ fn means(plan: &Plan) -> &'static str {
     if plan.method == "speed" { "speeds" } else { "start delays" }
 }
 
-/// The cost of a plan, and the gap to its lower bound.
-fn costs(plan: &Plan) -> String {
-    let Plan { makespan, sum_of_costs, lower_bound, gap, .. } = plan;
-    let what = if plan.objective == "makespan" { "makespan" } else { "sum of costs" };
-    let good = match plan.proved {
+/// The costs of a plan, and the gap to its lower bound.
+fn costs_line(Costs { makespan, sum_of_costs, lower_bound, gap, proved }: Costs, objective: &str) -> String {
+    let what = if objective == "makespan" { "makespan" } else { "sum of costs" };
+    let good = match proved {
         true => format!("the {what} is proved to be the least"),
         false => format!("the {what} is at least {lower_bound:.3} s, gap {:.2} %", 100.0 * gap),
     };
