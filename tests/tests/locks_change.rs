@@ -21,7 +21,8 @@ fn changed(mut locks: Vec<Lock>, change: &Change) -> Vec<Lock> {
     let void: HashSet<&Id> = change.edges.iter().collect();
     locks.retain(|lock| !void.contains(&lock.a) && !void.contains(&lock.b));
     locks.extend(change.locks.iter().cloned());
-    locks.sort_by(|a, b| (&a.a, &a.b).cmp(&(&b.a, &b.b)).then(a.a_length[0].total_cmp(&b.a_length[0])));
+    let lengths = |lock: &Lock| [lock.a_length, lock.b_length].map(|[from, _]| from);
+    locks.sort_by(|a, b| (&a.a, &a.b, lengths(a)).partial_cmp(&(&b.a, &b.b, lengths(b))).expect("no NaN"));
     locks
 }
 

@@ -1,11 +1,12 @@
 //! Locks of vehicles with outlines, against their polygons in many poses on the edges and in the turns at their ends.
 
 use pcr_formats::footprint::Footprint;
-use pcr_formats::import::{Edge, Format, Imported, Layout, Options, Warnings, layout};
+use pcr_formats::import::{Edge, Format, Id, Imported, Layout, Options, Warnings, layout};
 use pcr_formats::scenario::KINK;
 use pcr_formats::scenario::PathSegment;
 use pcr_planning::locks::{Lock, Locks};
 use pcr_tests::polygons::{Point, Polygon, apart, placed};
+use serde_json::json;
 use std::f64::consts::PI;
 
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
@@ -80,23 +81,33 @@ fn poses(layout: &Layout, edge: &Edge) -> Vec<Pose> {
             let Pose(at, point, heading) = on(edge, share * length);
             poses.push(Pose(at, point, if backward { heading + PI } else { heading }));
         }
-        let mut turn = |node: usize, from: &[f64], to: &[f64]| {
-            let pairs = || from.iter().flat_map(|a| to.iter().map(move |b| (*a, within_half_turn(b - a))));
+        // Headings, and the nodes at the other ends of the ways.
+        let mut turn = |node: usize, from: &[(f64, usize)], to: &[(f64, usize)]| {
+            let pairs =
+                || from.iter().flat_map(|a| to.iter().map(move |b| (a.0, within_half_turn(b.0 - a.0), a.1 == b.1)));
             let at = if node == edge.ends[0] { 0.0 } else { length };
+            let is_half = |turn: f64| turn.abs() > PI - KINK;
             // It goes back only where there is no other way.
-            let on_ways: Vec<_> = pairs().filter(|(_, turn)| turn.abs() <= PI - KINK).collect();
-            let turns: Vec<_> =
-                if on_ways.is_empty() { pairs().map(|(a, _)| (a, 2.0 * PI)).collect() } else { on_ways };
+            let on_ways: Vec<_> = pairs().filter(|(_, turn, same)| !(is_half(*turn) && *same)).collect();
+            let turns: Vec<(f64, f64)> = if on_ways.is_empty() {
+                pairs().map(|(a, ..)| (a, 2.0 * PI)).collect()
+            } else {
+                // Half a turn may go to either side.
+                let other = on_ways.iter().filter(|(_, turn, _)| is_half(*turn));
+                let other = other.map(|(a, turn, _)| (*a, turn - (2.0 * PI).copysign(*turn)));
+                on_ways.iter().map(|(a, turn, _)| (*a, *turn)).chain(other).collect()
+            };
             for (from, turn) in turns {
                 poses.extend(steps().map(|share| Pose(at, on(edge, at).1, from + turn * share)));
             }
         };
         let others = || layout.edges.iter().flat_map(ways);
-        let arriving: Vec<f64> =
-            others().filter(|(ends, _)| ends[1] == from).map(|(_, headings)| headings[1]).collect();
-        let leaving: Vec<f64> = others().filter(|(ends, _)| ends[0] == to).map(|(_, headings)| headings[0]).collect();
-        turn(from, &arriving, &[start]);
-        turn(to, &[end], &leaving);
+        let arriving: Vec<_> =
+            others().filter(|(ends, _)| ends[1] == from).map(|(ends, headings)| (headings[1], ends[0])).collect();
+        let leaving: Vec<_> =
+            others().filter(|(ends, _)| ends[0] == to).map(|(ends, headings)| (headings[0], ends[1])).collect();
+        turn(from, &arriving, &[(start, to)]);
+        turn(to, &[(end, from)], &leaving);
     }
     poses
 }
@@ -167,6 +178,30 @@ fn no_overlap_of_polygons_is_without_a_lock() {
 }
 
 /// Locks of an outline are within those of the disc around it, and block less.
+/// Past a node, and back onto another line: exactly half a turn, and almost.
+#[test]
+fn half_a_turn_onto_another_line_is_no_way_back() {
+    for off in [0.0, 0.02] {
+        let places = [[0.0, 0.0], [5.0, 0.0], [2.0, off], [8.0, 0.0], [5.0, 0.85], [7.0, 0.85]];
+        let node = |(id, at): (usize, [f64; 2])| {
+            json!({ "type": "Feature", "properties": { "id": id, "frame": "map" },
+                "geometry": { "type": "Point", "coordinates": at } })
+        };
+        let edge = |(id, [from, to]): (usize, [usize; 2])| {
+            json!({ "type": "Feature", "properties": { "id": id, "startid": from, "endid": to },
+                "geometry": { "type": "MultiLineString", "coordinates": [[places[from], places[to]]] } })
+        };
+        let edges = [[0, 1], [1, 2], [1, 3], [3, 1], [4, 5]];
+        let features: Vec<_> = places.into_iter().enumerate().map(node).chain((10..).zip(edges).map(edge)).collect();
+        let text = json!({ "type": "FeatureCollection", "features": features }).to_string();
+        let imported = read(Format::Nav2, &text, Some(fork()));
+        compare(&imported);
+        let locks = Locks::of(&imported, false).unwrap().locks;
+        let is_locked = |pair: [u64; 2]| locks.iter().any(|lock| [&lock.a, &lock.b] == pair.map(Id::Number).each_ref());
+        assert!(is_locked([10, 14]) && is_locked([11, 14]), "{off}: {locks:?}");
+    }
+}
+
 #[test]
 fn an_outline_blocks_less_than_the_disc_around_it() {
     let locks = |footprint: Option<Footprint>| {

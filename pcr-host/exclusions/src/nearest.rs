@@ -1,16 +1,16 @@
-//! The least distance of two stretches of lines and arcs: exact for lines; for arcs by subdivision until a bound
-//! decides.
+//! The least distance of two stretches of lines and arcs, in closed form.
+//!
+//! Where two pieces come nearest, one of the points is an end, or their connection is perpendicular to both, or they
+//! cross. For these places there are few candidates.
 
-use pcr_formats::scenario::PathSegment;
-use pcr_formats::scenario::Placed;
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use pcr_formats::scenario::{PathSegment, Placed};
+use std::f64::consts::TAU;
 
-/// Bound on how far the distance that is found may be above the true one \[m\].
-const CLOSE: f64 = 1e-5;
+/// Bound on the rounding error of a distance, of the largest number in it.
+const ROUNDING: f64 = 1e-12;
 
-/// Largest number of cells for a pair of pieces; for the remaining cells their lower bound counts as the distance.
-const MOST: usize = 20_000;
+/// Headings that differ by less are parallel \[rad\]; then the nearest points are ends.
+const PARALLEL: f64 = 1e-9;
 
 /// The points at which two stretches come nearest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,28 +34,15 @@ pub fn stretch(curve: &[Placed], [from, to]: [f64; 2]) -> Vec<Placed> {
         let (lo, hi) = ((from - before).clamp(0.0, length), (to - before).clamp(0.0, length));
         let last = parts.is_empty() && before + length >= from;
         if hi > lo || last {
-            parts.push(part(piece, lo, hi));
+            parts.push(piece.part(lo, hi));
         }
         before += length;
     }
     parts
 }
 
-fn part(piece: &Placed, from: f64, to: f64) -> Placed {
-    let share = |length: f64| if piece.shape.length() > 0.0 { length / piece.shape.length() } else { 0.0 };
-    let begin = Placed { shape: scaled(piece.shape, share(from)), ..*piece };
-    Placed { at: begin.end(), heading: begin.heading_at_end(), shape: scaled(piece.shape, share(to - from)) }
-}
-
-fn scaled(shape: PathSegment, share: f64) -> PathSegment {
-    match shape {
-        PathSegment::Line { length } => PathSegment::Line { length: length * share },
-        PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: sweep * share },
-    }
-}
-
 pub(crate) fn point(piece: &Placed, length: f64) -> [f64; 2] {
-    part(piece, 0.0, length).end()
+    piece.part(0.0, length).end()
 }
 
 /// The points at which two curves come nearest; `None` if one of them has no piece.
@@ -65,7 +52,7 @@ pub fn nearest(a: &[Placed], b: &[Placed]) -> Option<Approach> {
     for own in a {
         let mut before_b = 0.0;
         for other in b {
-            let mut found = pieces(own, other, best.map_or(f64::INFINITY, |best| best.distance));
+            let mut found = pieces(own, other);
             found.lengths = [found.lengths[0] + before_a, found.lengths[1] + before_b];
             best = Some(match best {
                 Some(best) if best.distance <= found.distance => {
@@ -81,100 +68,111 @@ pub fn nearest(a: &[Placed], b: &[Placed]) -> Option<Approach> {
     best
 }
 
-/// A rectangle of lengths; the one with the least bound is examined first.
-struct Cell {
-    bound: f64,
-    middle: [f64; 2],
-    half: [f64; 2],
-}
-
-impl PartialEq for Cell {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Cell {}
-
-impl Ord for Cell {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.bound.total_cmp(&self.bound)
-    }
-}
-
-impl PartialOrd for Cell {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
 fn approach(a: &Placed, b: &Placed, lengths: [f64; 2]) -> Approach {
     let points = [point(a, lengths[0]), point(b, lengths[1])];
     let distance = (points[0][0] - points[1][0]).hypot(points[0][1] - points[1][1]);
     Approach { distance, least: distance, lengths, points }
 }
 
-/// The points at which two pieces come nearest. They may be others if the distance is not below `beat`.
-fn pieces(a: &Placed, b: &Placed, beat: f64) -> Approach {
-    if let (PathSegment::Line { .. }, PathSegment::Line { .. }) = (a.shape, b.shape) {
-        return lines(a, b);
-    }
-    let cell = |middle: [f64; 2], half: [f64; 2]| {
-        let at = approach(a, b, middle);
-        // The distance of two points is at most the length of the curve between them.
-        (at, Cell { bound: at.distance - half[0] - half[1], middle, half })
+/// The points at which two pieces come nearest.
+fn pieces(a: &Placed, b: &Placed) -> Approach {
+    let mut places = vec![a.at, a.end(), b.at, b.end()];
+    places.extend(between(&Carrier::of(a), &Carrier::of(b)));
+    let all = places.into_iter().map(|at| approach(a, b, [a, b].map(|piece| length_near(piece, at))));
+    let best = all.min_by(|x, y| x.distance.total_cmp(&y.distance)).expect("four candidates at least");
+    let reach = |piece: &Placed| match piece.shape {
+        PathSegment::Line { length } => length,
+        PathSegment::Arc { radius, .. } => radius,
     };
-    let halves = [a, b].map(|piece| piece.shape.length() / 2.0);
-    let (mut best, first) = cell(halves, halves);
-    let mut heap = BinaryHeap::from([first]);
-    for _ in 0..MOST {
-        let Some(next) = heap.pop() else { break };
-        best.least = next.bound.max(0.0);
-        if next.bound >= best.distance.min(beat) - CLOSE {
-            return best;
-        }
-        let cut = usize::from(next.half[1] > next.half[0]);
-        let mut half = next.half;
-        half[cut] /= 2.0;
-        for side in [-1.0, 1.0] {
-            let mut middle = next.middle;
-            middle[cut] += side * half[cut];
-            let (at, cell) = cell(middle, half);
-            if at.distance < best.distance {
-                best = Approach { least: best.least, ..at };
-            }
-            heap.push(cell);
-        }
-    }
-    best
+    let far = [a, b].iter().map(|piece| piece.at[0].abs() + piece.at[1].abs() + reach(piece)).sum::<f64>();
+    Approach { least: (best.distance - ROUNDING * (1.0 + far)).max(0.0), ..best }
 }
 
-/// Two segments cross, or are nearest at an end of one of them.
-fn lines(a: &Placed, b: &Placed) -> Approach {
-    let [la, lb] = [a, b].map(|piece| piece.shape.length());
-    let [ua, ub] = [a, b].map(|piece| [piece.heading.cos(), piece.heading.sin()]);
-    let gap = [b.at[0] - a.at[0], b.at[1] - a.at[1]];
-    let cross = |u: [f64; 2], v: [f64; 2]| u[0] * v[1] - u[1] * v[0];
-    let dot = |u: [f64; 2], v: [f64; 2]| u[0] * v[0] + u[1] * v[1];
-    let mut candidates = Vec::new();
-    let turn = cross(ua, ub);
-    if turn.abs() > 1e-9 {
-        let [s, t] = [cross(gap, ub) / turn, cross(gap, ua) / turn];
-        if (0.0..=la).contains(&s) && (0.0..=lb).contains(&t) {
-            candidates.push([s, t]);
+/// The line or the circle on which a piece lies.
+enum Carrier {
+    /// A point, and the direction.
+    Line([f64; 2], [f64; 2]),
+    /// Centre and radius \[m\].
+    Circle([f64; 2], f64),
+}
+
+impl Carrier {
+    fn of(piece: &Placed) -> Self {
+        let (sin, cos) = piece.heading.sin_cos();
+        match piece.shape {
+            PathSegment::Line { .. } => Self::Line(piece.at, [cos, sin]),
+            PathSegment::Arc { radius, sweep } => Self::Circle(centre(piece, radius, sweep), radius),
         }
     }
-    for s in [0.0, la] {
-        let from = [a.at[0] + ua[0] * s - b.at[0], a.at[1] + ua[1] * s - b.at[1]];
-        candidates.push([s, dot(from, ub).clamp(0.0, lb)]);
+}
+
+fn centre(piece: &Placed, radius: f64, sweep: f64) -> [f64; 2] {
+    let (sin, cos) = piece.heading.sin_cos();
+    let left = radius.copysign(sweep);
+    [piece.at[0] - left * sin, piece.at[1] + left * cos]
+}
+
+/// Points of one of two carriers from which the way to the other is perpendicular to both, and those in which they cross.
+fn between(a: &Carrier, b: &Carrier) -> Vec<[f64; 2]> {
+    match (a, b) {
+        (Carrier::Line(p, u), Carrier::Line(q, v)) => {
+            let turn = u[0] * v[1] - u[1] * v[0];
+            let along = ((q[0] - p[0]) * v[1] - (q[1] - p[1]) * v[0]) / turn;
+            if turn.abs() > PARALLEL { vec![on(*p, *u, along)] } else { Vec::new() }
+        }
+        (Carrier::Line(p, u), Carrier::Circle(c, r)) | (Carrier::Circle(c, r), Carrier::Line(p, u)) => {
+            let foot = on(*p, *u, (c[0] - p[0]) * u[0] + (c[1] - p[1]) * u[1]);
+            across(foot, *u, r * r - (foot[0] - c[0]).powi(2) - (foot[1] - c[1]).powi(2))
+        }
+        (Carrier::Circle(c, r), Carrier::Circle(d, s)) => {
+            let [x, y] = [d[0] - c[0], d[1] - c[1]];
+            let apart = x.hypot(y);
+            if apart <= 0.0 {
+                return Vec::new();
+            }
+            let u = [x / apart, y / apart];
+            // Of the chord in which they cross, if they do.
+            let foot = (apart + (r - s) * (r + s) / apart) / 2.0;
+            let mut places = across(on(*c, u, foot), [-u[1], u[0]], (r - foot) * (r + foot));
+            places.extend([on(*c, u, *r), on(*c, u, -*r)]);
+            places
+        }
     }
-    for t in [0.0, lb] {
-        let from = [gap[0] + ub[0] * t, gap[1] + ub[1] * t];
-        candidates.push([dot(from, ua).clamp(0.0, la), t]);
+}
+
+fn on(at: [f64; 2], u: [f64; 2], length: f64) -> [f64; 2] {
+    [at[0] + length * u[0], at[1] + length * u[1]]
+}
+
+/// A point, and those at this squared distance along a direction, if it is not negative.
+fn across(at: [f64; 2], u: [f64; 2], squared: f64) -> Vec<[f64; 2]> {
+    let half = squared.max(0.0).sqrt();
+    vec![at, on(at, u, half), on(at, u, -half)]
+}
+
+/// The length along a piece at which it is nearest to a point \[m\].
+fn length_near(piece: &Placed, at: [f64; 2]) -> f64 {
+    match piece.shape {
+        PathSegment::Line { length } => {
+            let (sin, cos) = piece.heading.sin_cos();
+            ((at[0] - piece.at[0]) * cos + (at[1] - piece.at[1]) * sin).clamp(0.0, length)
+        }
+        PathSegment::Arc { radius, sweep } => {
+            let centre = centre(piece, radius, sweep);
+            let angle = |[x, y]: [f64; 2]| (y - centre[1]).atan2(x - centre[0]);
+            let turned = ((angle(at) - angle(piece.at)) * sweep.signum()).rem_euclid(TAU);
+            let beyond = turned - sweep.abs();
+            // Beyond its end the nearer of both ends.
+            let turned = if beyond <= 0.0 {
+                turned
+            } else if beyond < TAU - turned {
+                sweep.abs()
+            } else {
+                0.0
+            };
+            radius * turned
+        }
     }
-    let all = candidates.into_iter().map(|lengths| approach(a, b, lengths));
-    let best = all.min_by(|x, y| x.distance.total_cmp(&y.distance)).expect("four candidates at least");
-    Approach { least: (best.distance - 1e-9).max(0.0), ..best }
 }
 
 #[cfg(test)]
@@ -195,10 +193,51 @@ mod tests {
                     least = least.min((p[0] - q[0]).hypot(p[1] - q[1]));
                 }
             }
-            assert!(found.distance <= least + 2e-5 && found.least <= least, "{found:?} {least}");
-            assert!(found.distance - found.least <= 2e-5, "{found:?}");
+            assert!(found.distance <= least + 1e-9 && found.least <= least, "{found:?} {least}");
+            assert!(found.distance - found.least <= 1e-9, "{found:?}");
             let [p, q] = found.points;
             assert!(((p[0] - q[0]).hypot(p[1] - q[1]) - found.distance).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn lines_and_arcs_anywhere_are_nearest_where_samples_are() {
+        let arc = |at: [f64; 2], heading: f64, radius: f64, sweep: f64| Placed {
+            at,
+            heading,
+            shape: PathSegment::Arc { radius, sweep },
+        };
+        let mut seed = 1_u64;
+        let mut any = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let mut piece = |k: usize| match k % 4 {
+            0 => Placed::line([8.0 * any(), 8.0 * any()], [8.0 * any(), 8.0 * any()]),
+            1 => arc([8.0 * any(), 8.0 * any()], 7.0 * any(), 0.2 + 3.0 * any(), 7.0 * any() - 3.5),
+            // More than a turn; and on circles around one centre, which also touch.
+            2 => arc([8.0 * any(), 8.0 * any()], 7.0 * any(), 0.2 + any(), 12.0 * any() - 6.0),
+            _ => {
+                let radius = (1.0 + 3.0 * any()).round();
+                let (sin, cos) = (7.0 * any()).sin_cos();
+                let turn = sin.atan2(cos) + std::f64::consts::FRAC_PI_2;
+                arc([4.0 + radius * cos, 4.0 + radius * sin], turn, radius, 4.0 * any())
+            }
+        };
+        const SAMPLES: usize = 200;
+        for k in 0..160 {
+            let [a, b] = [piece(k), piece(k / 4)];
+            let found = nearest(&[a], &[b]).unwrap();
+            let [own, other] = [a, b].map(|piece| {
+                (0..=SAMPLES)
+                    .map(|n| point(&piece, piece.shape.length() * n as f64 / SAMPLES as f64))
+                    .collect::<Vec<_>>()
+            });
+            let apart = own.iter().flat_map(|p| other.iter().map(move |q| (p[0] - q[0]).hypot(p[1] - q[1])));
+            let sampled = apart.fold(f64::INFINITY, f64::min);
+            let step = (a.shape.length() + b.shape.length()) / SAMPLES as f64 / 2.0;
+            assert!((sampled - step..=sampled + 1e-9).contains(&found.distance), "{a:?} {b:?}: {found:?}, {sampled}");
+            assert!(found.least <= found.distance && found.distance - found.least < 1e-9, "{found:?}");
         }
     }
 

@@ -159,20 +159,11 @@ fn cut(shapes: &[Placed], from: f64, length: f64) -> Vec<Placed> {
         before -= skip;
         let keep = (whole - skip).min(left);
         if keep > 0.0 {
-            parts.push(part(placed, skip, keep));
+            parts.push(placed.part(skip, skip + keep));
             left -= keep;
         }
     }
     parts
-}
-
-fn part(placed: &Placed, skip: f64, keep: f64) -> Placed {
-    let cut = |length: f64| match placed.shape {
-        PathSegment::Line { .. } => PathSegment::Line { length },
-        PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: (length / radius).copysign(sweep) },
-    };
-    let before = Placed { shape: cut(skip), ..*placed };
-    Placed { at: before.end(), heading: before.heading_at_end(), shape: cut(keep) }
 }
 
 /// A path along the shapes; without shapes the robot stands.

@@ -46,6 +46,21 @@ impl Placed {
         [self.at[0] + chord * direction.cos(), self.at[1] + chord * direction.sin()]
     }
 
+    /// The part between two lengths along it \[m\].
+    #[must_use]
+    pub fn part(&self, from: f64, to: f64) -> Self {
+        let whole = self.shape.length();
+        let cut = |length: f64| {
+            let share = if whole > 0.0 { length / whole } else { 0.0 };
+            match self.shape {
+                PathSegment::Line { length } => PathSegment::Line { length: length * share },
+                PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: sweep * share },
+            }
+        };
+        let before = Self { shape: cut(from), ..*self };
+        Self { at: before.end(), heading: before.heading_at_end(), shape: cut(to - from) }
+    }
+
     /// Radius \[m\], if it is an arc.
     pub(crate) fn radius(&self) -> Option<f64> {
         match self.shape {

@@ -2,7 +2,8 @@
 //!
 //! A disc is the same in every heading. Any other outline differs on the way back along a two-way edge, and sweeps more
 //! where the vehicle turns. At each end of an edge it turns in place from the edges that lead there, and to those that
-//! continue from it. It turns back along the same line only if no other way continues.
+//! continue from it. It turns back along the same line only if no other way continues. Half a turn onto another line may
+//! go to either side.
 
 use crate::bodies::tracks;
 use pcr_formats::import::{Edge, Imported, Layout, Step, Vehicle, ride, turn};
@@ -12,6 +13,9 @@ use std::f64::consts::{PI, TAU};
 
 /// Rounding of lengths, relative.
 const ROUNDING: f64 = 1e-12;
+
+/// Two edges between the same nodes are the same line if they are nowhere farther apart, beside their deviations \[m\].
+const ALIKE: f64 = 0.01;
 
 /// The vehicle somewhere on an edge.
 pub struct Ride {
@@ -51,8 +55,8 @@ pub(crate) fn reversed(length: f64, [lo, hi]: [f64; 2]) -> [f64; 2] {
 pub struct Rides<'a> {
     layout: &'a Layout,
     vehicle: Vehicle,
-    /// For each node the headings in which the vehicle comes to it, and leaves it \[rad\].
-    headings: Vec<[Vec<f64>; 2]>,
+    /// For each node the ways on which the vehicle comes to it, and leaves it.
+    sides: Vec<[Vec<Side<'a>>; 2]>,
     /// How far from each node a vehicle may be that has come to the end of an edge there \[m\].
     beside: Vec<f64>,
 }
@@ -63,12 +67,12 @@ impl<'a> Rides<'a> {
         let vehicle = Vehicle { margin: 0.0, ..grown(vehicle, vehicle.margin) };
         // A disc is the same in every heading.
         let turning = if vehicle.footprint.is_some() { &layout.edges[..] } else { &[] };
-        let mut headings = vec![<[Vec<f64>; 2]>::default(); if turning.is_empty() { 0 } else { layout.nodes.len() }];
+        let mut all = vec![<[Vec<Side<'_>>; 2]>::default(); if turning.is_empty() { 0 } else { layout.nodes.len() }];
         for step in turning.iter().flat_map(|edge| edge.steps()) {
             let Some([start, end]) = ends(step) else { continue };
             for (node, side, end) in [(step.target(), 0, end), (step.origin(), 1, start)] {
-                if let Some(sides) = headings.get_mut(node) {
-                    sides[side].push(end.heading);
+                if let Some(sides) = all.get_mut(node) {
+                    sides[side].push(Side { step, heading: end.heading });
                 }
             }
         }
@@ -80,7 +84,7 @@ impl<'a> Rides<'a> {
                 }
             }
         }
-        Self { layout, vehicle, headings, beside }
+        Self { layout, vehicle, sides: all, beside }
     }
 
     /// The vehicle, larger by its margin.
@@ -104,8 +108,8 @@ impl<'a> Rides<'a> {
         };
         let (length, vehicle) = (step.edge.length(), grown(&self.vehicle, step.edge.deviation));
         let [from, to] = if step.backward { [length, 0.0] } else { [0.0, length] };
-        let before = self.turns(step.origin(), 0, |arrives| start.heading - arrives);
-        let after = self.turns(step.target(), 1, |leaves| leaves - end.heading);
+        let before = self.turns(step, step.origin(), 0, |arrives| start.heading - arrives);
+        let after = self.turns(step, step.target(), 1, |leaves| leaves - end.heading);
         // Before a turn to the left the vehicle looks further to the right.
         let turns =
             [(from, start, before.map(|turn| -turn)), (to, end, after)].into_iter().filter_map(|(at, end, turns)| {
@@ -142,13 +146,17 @@ impl<'a> Rides<'a> {
     }
 
     /// The farthest turns to the right and to the left between an edge and those on one side of a node.
-    fn turns(&self, node: usize, side: usize, turn: impl Fn(f64) -> f64) -> [f64; 2] {
-        let there = self.headings.get(node).map_or(&[][..], |sides| &sides[side]);
-        let turns = there.iter().map(|&heading| (turn(heading) + PI).rem_euclid(TAU) - PI);
-        let on = turns.filter(|turn| turn.abs() <= PI - KINK);
-        let range = on.fold(None, |range: Option<[f64; 2]>, turn| {
+    fn turns(&self, step: Step<'_>, node: usize, side: usize, turn: impl Fn(f64) -> f64) -> [f64; 2] {
+        let there = self.sides.get(node).map_or(&[][..], |sides| &sides[side]);
+        let range = there.iter().fold(None, |range: Option<[f64; 2]>, other| {
+            let turn = (turn(other.heading) + PI).rem_euclid(TAU) - PI;
+            let is_half = turn.abs() > PI - KINK;
+            if is_half && leads_back(step, other.step) {
+                return range;
+            }
             let [right, left] = range.unwrap_or_default();
-            Some([right.min(turn), left.max(turn)])
+            let [lo, hi] = if is_half { [-PI, PI] } else { [turn; 2] };
+            Some([right.min(lo), left.max(hi)])
         });
         let back = if there.is_empty() { 0.0 } else { PI };
         range.unwrap_or([-back, back])
@@ -159,6 +167,39 @@ impl<'a> Rides<'a> {
 fn grown(vehicle: &Vehicle, by: f64) -> Vehicle {
     let footprint = vehicle.footprint.as_ref().map(|footprint| footprint.grown(by));
     Vehicle { radius: vehicle.radius + by, footprint, ..vehicle.clone() }
+}
+
+/// A way that ends or begins at a node, and the heading there \[rad\].
+#[derive(Clone)]
+struct Side<'a> {
+    step: Step<'a>,
+    heading: f64,
+}
+
+/// Whether a way leads back along the line of another one.
+fn leads_back(step: Step<'_>, other: Step<'_>) -> bool {
+    if std::ptr::eq(step.edge, other.edge) {
+        return step.backward != other.backward;
+    }
+    let back = Step { backward: !other.backward, ..other };
+    let apart = ALIKE + step.edge.deviation + other.edge.deviation;
+    [step.origin(), step.target()] == [back.origin(), back.target()]
+        && (0..=8)
+            .map(|eighths| [step, back].map(|step| point(step, f64::from(eighths) / 8.0)))
+            .all(|[[x, y], [u, v]]| (x - u).hypot(y - v) <= apart)
+}
+
+/// The point of a way after this part of its length \[m\].
+fn point(step: Step<'_>, part: f64) -> [f64; 2] {
+    let (mut left, curve) = (part * step.edge.length(), step.curve());
+    for piece in &curve {
+        let length = piece.shape.length();
+        if left < length {
+            return piece.part(0.0, left).end();
+        }
+        left -= length;
+    }
+    curve.last().map_or([0.0; 2], Placed::end)
 }
 
 /// A pose of the vehicle.
