@@ -284,6 +284,31 @@ fn vehicles_have_the_boxes_and_speeds_of_the_file() {
 }
 
 #[test]
+fn directions_at_points_that_an_outline_does_not_have_are_told() {
+    let large = "<vehicle name=\"large\" maxVelocity=\"2000\"><boundingBox length=\"3000\" width=\"1600\"/></vehicle>";
+    let told = |angle: &str, options: &Options| {
+        let text = plant(large).replacen("<point ", &format!("<point vehicleOrientationAngle=\"{angle}\" "), 1);
+        let mut warnings = Warnings::default();
+        layout(Format::OpenTcs, &text, options, &mut warnings).map(|_| {
+            warnings
+                .lines()
+                .iter()
+                .any(|line| line.starts_with("point A->: its vehicleOrientationAngle is that of none"))
+        })
+    };
+    let told_of_box = |angle: &str| told(angle, &Options::default());
+    // Along its path, turned by half a turn, which is the same for a box, or any.
+    for angle in ["0.0", "360", "-180.0", "NaN"] {
+        assert_eq!(told_of_box(angle), Ok(false), "{angle}");
+    }
+    assert_eq!([told_of_box("90.0"), told_of_box("-45")], [Ok(true), Ok(true)]);
+    // To a disc it does not matter.
+    assert_eq!(told("90", &options(&[])), Ok(false));
+    let refused = told_of_box("north").expect_err("no number").to_string();
+    assert!(refused.contains("point A->, vehicleOrientationAngle: \"north\" where a number"), "{refused}");
+}
+
+#[test]
 fn names_with_angles_and_models_before_version_7_are_read() {
     let names: String = (0..300).map(|k| format!("<location name=\"{k}->\"/><!-- <a> -->")).collect();
     let deep =

@@ -261,8 +261,16 @@ fn lanes_have_the_parameters_of_the_file() {
     let (_, warnings) =
         read(&building("[[0, 1, {distance: [3, 20]}], [0, 2, {distance: [3, 11]}]]", &lanes[..1], ""), &tiny(&[]));
     assert_eq!(warnings, ["level L1: its measurements differ from their mean by up to 4.8 %"]);
-    let (_, warnings) = read(&building("[[0, 1, {distance: [3, 20]}], [0, 9, {}]]", &lanes[..1], ""), &tiny(&[]));
-    assert_eq!(warnings, ["level L1, measurement 1: left out: it gives no scale"]);
+    // Without one of them the scale would be another one.
+    for other in ["[0, 9, {}]", "[0, 2, {distance: [3, 0]}]", "[0, 2, {}]"] {
+        let text = building(&format!("[[0, 1, {{distance: [3, 20]}}], {other}]"), &lanes[..1], "");
+        let problem = "level L1, measurement 1: it gives no scale";
+        let (options, mut warnings) = (tiny(&[]), Warnings::default());
+        let refused = layout(Format::Rmf, &text, &options, &mut warnings).expect_err(other).to_string();
+        assert!(refused.contains(problem), "{refused}");
+        let (_, warnings) = read(&text, &Options { partial: true, ..options });
+        assert_eq!(warnings, [format!("{problem}: left out")]);
+    }
 }
 
 #[test]

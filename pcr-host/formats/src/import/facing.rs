@@ -2,7 +2,7 @@
 
 use super::biarc::Fit;
 use super::value::Object;
-use super::{ImportError, Warnings};
+use super::{Edge, ImportError, Node, Warnings};
 use crate::footprint::Footprint;
 use crate::plane::distance;
 use crate::scenario::{PathSegment, Placed};
@@ -31,6 +31,34 @@ pub(super) const ROTATION: &str = "its rotationAllowed is not read; the vehicle 
 /// Whether it matters that the vehicle drives backward: neither to a disc nor to an outline that is the same then.
 pub(super) fn is_other_backward(outline: Option<&Footprint>) -> bool {
     outline.is_some_and(|outline| !outline.is_same_backward())
+}
+
+/// Says at which nodes (called so) an outline faces as on none of their edges, where a field has its direction \[rad\]: how it turns
+/// there is not in any path or lock.
+pub(super) fn warn_of_nodes(
+    called: &str,
+    field: &str,
+    given: &[(usize, f64)],
+    nodes: &[Node],
+    edges: &[Edge],
+    outline: Option<&Footprint>,
+    warnings: &mut Warnings,
+) {
+    let Some(outline) = outline.filter(|_| !given.is_empty()) else { return };
+    let mut headings = vec![Vec::new(); nodes.len()];
+    for edge in edges {
+        let Some((first, last)) = edge.curve.first().zip(edge.curve.last()) else { continue };
+        headings[edge.ends[0]].push(first.heading);
+        headings[edge.ends[1]].push(last.heading_at_end());
+    }
+    for &(node, angle) in given {
+        if !headings[node].iter().any(|heading| is_ahead(outline, angle - heading)) {
+            let name = format!("{called} {}", nodes[node].id);
+            let problem =
+                format!("its {field} is that of none of its edges, and not read: outlines face along their paths here");
+            warnings.add(name, problem);
+        }
+    }
 }
 
 /// Adds the message about an orientation that was not read.

@@ -211,7 +211,8 @@ fn scale(level: &Object<'_>, vertices: &[Vertex], warnings: &mut Warnings) -> Re
             .map(|([(_, a), (_, b)], metres)| metres / (a[0] - b[0]).hypot(a[1] - b[1]));
         match scale.filter(|scale| (1e-9..1e9).contains(scale)) {
             Some(scale) => scales.push(scale),
-            None => warnings.add(format_args!("{}, measurement {k}", level.name), "left out: it gives no scale"),
+            // The building tools count a distance of 0 as well, and stop at all others.
+            None => warnings.lose(format_args!("{}, measurement {k}: it gives no scale", level.name)),
         }
     }
     if scales.is_empty() {

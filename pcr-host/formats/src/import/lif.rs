@@ -72,7 +72,8 @@ pub(super) fn read(
             reader.warnings.lose(error);
         }
     }
-    reader.warn_of_thetas();
+    let (nodes, edges) = (reader.nodes.list(), reader.edges.list());
+    facing::warn_of_nodes("node", "theta", &reader.thetas, nodes, edges, outline, reader.warnings);
     let Reader { levels, nodes, edges, mut types, of_speeds, .. } = reader;
     types.remove("");
     let vehicle_types = types.iter().cloned().collect();
@@ -181,25 +182,6 @@ impl Reader<'_> {
             }
         }
         Ok(())
-    }
-
-    /// Says at which nodes an outline faces as on none of their edges: how it turns there is not in any path or lock.
-    fn warn_of_thetas(&mut self) {
-        let Some(outline) = self.outline.filter(|_| !self.thetas.is_empty()) else { return };
-        let mut headings = vec![Vec::new(); self.nodes.list().len()];
-        for edge in self.edges.list() {
-            let Some((first, last)) = edge.curve.first().zip(edge.curve.last()) else { continue };
-            headings[edge.ends[0]].push(first.heading);
-            headings[edge.ends[1]].push(last.heading_at_end());
-        }
-        for &(node, theta) in &self.thetas {
-            if !headings[node].iter().any(|heading| facing::is_ahead(outline, theta - heading)) {
-                let name = format!("node {}", self.nodes.list()[node].id);
-                let problem =
-                    "its theta is that of none of its edges, and not read: outlines face along their paths here";
-                self.warnings.add(name, problem);
-            }
-        }
     }
 
     /// Whether something is for the vehicle type that was asked for. What names no type is for all.

@@ -28,6 +28,9 @@ const SHIFT: f64 = 0.05;
 /// Metres of a millimetre.
 const MILLI: f64 = 1e-3;
 
+/// The attribute of points for the direction of vehicles there \[°\].
+const ANGLE: &str = "vehicleOrientationAngle";
+
 /// Unit of the visual layout of a model that names none \[mm\].
 const UNIT: f64 = 50.0;
 
@@ -51,14 +54,20 @@ pub(super) fn read(
     let mut nodes = Names::new();
     // How far each point is from its place in the visual layout.
     let mut shifts: Vec<f64> = Vec::new();
+    // Which way vehicles face at which nodes, where that is said [rad].
+    let mut angles: Vec<(usize, f64)> = Vec::new();
     for (k, point) in children(root, "point").enumerate() {
         let id = point.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
         match place(point, &format!("point {id}")) {
             Err(error) => warnings.lose(error),
             Ok([at, drawn]) => {
-                let place = nodes.add(Node { id: Id::Text(id), name: None, level: 0, at }, warnings);
+                let place = nodes.add(Node { id: Id::Text(id.clone()), name: None, level: 0, at }, warnings);
                 shifts.resize(shifts.len().max(place + 1), 0.0);
                 shifts[place] = shifts[place].max(distance(at, drawn));
+                match angle(point, &format!("point {id}")) {
+                    Ok(angle) => angles.extend(angle.map(|angle| (place, angle))),
+                    Err(error) => warnings.lose(error),
+                }
             }
         }
     }
@@ -99,6 +108,7 @@ pub(super) fn read(
             Err(error) => warnings.lose(error),
         }
     }
+    facing::warn_of_nodes("point", ANGLE, &angles, nodes.list(), edges.list(), outline, warnings);
     let is_outline = |node: roxmltree::Node<'_, '_>| {
         node.has_tag_name("vehicleEnvelope") && node.children().any(|vertex| vertex.is_element())
     };
@@ -146,6 +156,14 @@ fn place(point: roxmltree::Node<'_, '_>, name: &str) -> Result<[[f64; 2]; 2], Im
             .map_or(Ok(own), |layout| at(layout, names))
     };
     Ok([own, [drawn(x, own[0])?, drawn(y, own[1])?]])
+}
+
+/// Which way a vehicle faces at a point \[rad\]: any way where it is not a number, as for a point without it.
+fn angle(point: roxmltree::Node<'_, '_>, name: &str) -> Result<Option<f64>, ImportError> {
+    match point.attribute(ANGLE).map(str::trim) {
+        None | Some("NaN") => Ok(None),
+        Some(_) => number(point, name, ANGLE).map(|degrees| Some(degrees.to_radians())),
+    }
 }
 
 /// Paths that are not straight in the visual layout of models up to version 0.0.3.
