@@ -45,7 +45,7 @@ pub struct Footprint {
 
 impl Footprint {
     /// The footprint with these corners (ahead and left of the reference point \[m\]), with an overhang of the cover up to
-    /// `allowed` \[m\]; an eighth of the shorter side of its box if there is none.
+    /// `allowed` \[m\]; if there is none, an eighth of the shorter side of its box, or as little as 64 discs can have.
     ///
     /// # Errors
     /// What is wrong: fewer than three corners or more than 256, no area, or more than 64 discs would be needed.
@@ -60,15 +60,22 @@ impl Footprint {
         }
         let limit = allowed.unwrap_or(OVERHANG * side);
         let mut cell = side;
+        let mut best: Option<(Vec<Disc>, f64)> = None;
         loop {
             let discs = cover(&polygon, cell);
             if discs.len() > MOST {
-                return Err(format!("an overhang of {limit} m needs more than {MOST} discs; allow more"));
+                return match best.filter(|_| allowed.is_none()) {
+                    Some((discs, overhang)) => Ok(Self { polygon, allowed, growth: 0.0, discs, overhang }),
+                    None => Err(format!("an overhang of {limit} m needs more than {MOST} discs; allow more")),
+                };
             }
             let out = |disc: &Disc| disc.radius - depth(&polygon, [disc.ahead, disc.left]);
             let overhang = discs.iter().map(out).fold(0.0, f64::max);
             if overhang <= limit {
                 return Ok(Self { polygon, allowed, growth: 0.0, discs, overhang });
+            }
+            if best.as_ref().is_none_or(|(_, least)| overhang < *least) {
+                best = Some((discs, overhang));
             }
             cell *= SMALLER;
         }
@@ -253,6 +260,15 @@ mod tests {
                 check(&footprint);
             }
         }
+    }
+
+    #[test]
+    fn a_thin_outline_overhangs_as_little_as_it_can() {
+        let thin = vec![[-1.0, -0.05], [1.0, -0.05], [1.0, 0.05], [-1.0, 0.05]];
+        assert!(Footprint::new(thin.clone(), Some(0.012_5)).unwrap_err().contains("allow more"));
+        let footprint = Footprint::new(thin, None).unwrap();
+        assert!((0.012_5..0.03).contains(&footprint.overhang()), "{}", footprint.overhang());
+        check(&footprint);
     }
 
     #[test]
