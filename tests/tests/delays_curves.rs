@@ -60,7 +60,12 @@ fn fleet(imported: &Imported, driving: Driving) -> Fleet<f64> {
     for edge in order {
         for step in edge.steps() {
             let agent = ride(&vehicle, step);
-            let speed = step.speed().map_or(driving.speed, |limit| limit.min(driving.speed));
+            let mut speed = step.speed().map_or(driving.speed, |limit| limit.min(driving.speed));
+            for piece in &agent.path {
+                if let (PathSegment::Arc { radius, .. }, Some(rotation)) = (piece, edge.rotation) {
+                    speed = speed.min(radius * rotation);
+                }
+            }
             let motion = match driving.acceleration {
                 None => MotionSpec::Profile { v0: speed, pieces: vec![(agent.length() / speed, 0.0)] },
                 Some(a_max) if matches!(agent.path[..], [PathSegment::Line { .. }]) => {
@@ -139,6 +144,15 @@ fn limits_of_edges_hold_from_rest_to_rest() {
     for acceleration in [None, Some(0.5)] {
         audited(&imported, Driving { speed: 1.0, acceleration });
     }
+}
+
+#[test]
+fn limits_of_rotation_hold_at_constant_speed() {
+    let mut imported = read(Format::Lif, CURVES, 0.3);
+    for (edge, limit) in imported.layout.edges.iter_mut().zip([None, Some(0.1), Some(0.4)].into_iter().cycle()) {
+        edge.rotation = limit;
+    }
+    audited(&imported, Driving { speed: 0.8, acceleration: None });
 }
 
 #[test]

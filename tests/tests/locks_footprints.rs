@@ -2,8 +2,7 @@
 
 use pcr_formats::footprint::Footprint;
 use pcr_formats::import::{Edge, Format, Id, Imported, Layout, Options, Warnings, layout};
-use pcr_formats::scenario::KINK;
-use pcr_formats::scenario::PathSegment;
+use pcr_formats::scenario::{KINK, PathSegment, Placed};
 use pcr_planning::locks::{Lock, Locks};
 use pcr_tests::polygons::{Point, Polygon, apart, placed};
 use serde_json::json;
@@ -177,31 +176,70 @@ fn no_overlap_of_polygons_is_without_a_lock() {
     }
 }
 
-/// Locks of an outline are within those of the disc around it, and block less.
+/// A graph of these nodes and edges, numbered from 0 and from 10.
+fn graph(places: &[Point], edges: &[[usize; 2]]) -> Imported {
+    let node = |(id, at): (usize, &Point)| {
+        json!({ "type": "Feature", "properties": { "id": id, "frame": "map" },
+            "geometry": { "type": "Point", "coordinates": at } })
+    };
+    let edge = |(id, [from, to]): (usize, &[usize; 2])| {
+        json!({ "type": "Feature", "properties": { "id": id, "startid": from, "endid": to },
+            "geometry": { "type": "MultiLineString", "coordinates": [[places[*from], places[*to]]] } })
+    };
+    let features: Vec<_> = places.iter().enumerate().map(node).chain((10..).zip(edges).map(edge)).collect();
+    read(Format::Nav2, &json!({ "type": "FeatureCollection", "features": features }).to_string(), Some(fork()))
+}
+
+#[track_caller]
+fn locked(imported: &Imported, pairs: &[[u64; 2]]) {
+    let locks = Locks::of(imported, false).unwrap().locks;
+    for pair in pairs {
+        let is_locked = locks.iter().any(|lock| [&lock.a, &lock.b] == pair.map(Id::Number).each_ref());
+        assert!(is_locked, "{pair:?}: {locks:?}");
+    }
+}
+
 /// Past a node, and back onto another line: exactly half a turn, and almost.
 #[test]
 fn half_a_turn_onto_another_line_is_no_way_back() {
     for off in [0.0, 0.02] {
         let places = [[0.0, 0.0], [5.0, 0.0], [2.0, off], [8.0, 0.0], [5.0, 0.85], [7.0, 0.85]];
-        let node = |(id, at): (usize, [f64; 2])| {
-            json!({ "type": "Feature", "properties": { "id": id, "frame": "map" },
-                "geometry": { "type": "Point", "coordinates": at } })
-        };
-        let edge = |(id, [from, to]): (usize, [usize; 2])| {
-            json!({ "type": "Feature", "properties": { "id": id, "startid": from, "endid": to },
-                "geometry": { "type": "MultiLineString", "coordinates": [[places[from], places[to]]] } })
-        };
-        let edges = [[0, 1], [1, 2], [1, 3], [3, 1], [4, 5]];
-        let features: Vec<_> = places.into_iter().enumerate().map(node).chain((10..).zip(edges).map(edge)).collect();
-        let text = json!({ "type": "FeatureCollection", "features": features }).to_string();
-        let imported = read(Format::Nav2, &text, Some(fork()));
+        let imported = graph(&places, &[[0, 1], [1, 2], [1, 3], [3, 1], [4, 5]]);
         compare(&imported);
-        let locks = Locks::of(&imported, false).unwrap().locks;
-        let is_locked = |pair: [u64; 2]| locks.iter().any(|lock| [&lock.a, &lock.b] == pair.map(Id::Number).each_ref());
-        assert!(is_locked([10, 14]) && is_locked([11, 14]), "{off}: {locks:?}");
+        locked(&imported, &[[10, 14], [11, 14]]);
     }
 }
 
+#[test]
+fn half_a_turn_within_an_edge_goes_to_either_side() {
+    let places = [[0.0, 0.0], [2.0, 0.0], [5.0, 0.85], [7.0, 0.85], [5.0, -0.85], [7.0, -0.85]];
+    let mut imported = graph(&places, &[[0, 1], [2, 3], [4, 5]]);
+    for off in [0.0, 1e-6, -1e-6] {
+        let tip = [5.0, off];
+        imported.layout.edges[0].curve = vec![Placed::line([0.0, 0.0], tip), Placed::line(tip, [2.0, 0.0])];
+        locked(&imported, &[[10, 11], [10, 12]]);
+    }
+}
+
+#[test]
+fn where_only_closed_edges_lead_on_it_turns_back() {
+    let places = [[0.0, 0.0], [5.0, 0.0], [8.0, 0.0], [5.0, 0.85], [7.0, 0.85]];
+    let mut imported = graph(&places, &[[0, 1], [1, 0], [1, 2], [3, 4]]);
+    imported.layout.edges[2].closed = true;
+    locked(&imported, &[[10, 13], [11, 13]]);
+}
+
+/// Another way back, that is beside the line between two places where both are the same.
+#[test]
+fn a_way_that_bends_off_is_no_way_back() {
+    let places = [[0.0, 0.0], [5.0, 0.0], [8.0, 0.0], [5.0, 0.85], [7.0, 0.85]];
+    let mut imported = graph(&places, &[[0, 1], [1, 0], [1, 2], [2, 1], [3, 4]]);
+    let corners = [[5.0, 0.0], [4.375, 0.0], [4.0, 0.3], [3.75, 0.0], [0.0, 0.0]];
+    imported.layout.edges[1].curve = corners.windows(2).map(|ends| Placed::line(ends[0], ends[1])).collect();
+    locked(&imported, &[[10, 14], [11, 14]]);
+}
+
+/// Locks of an outline are within those of the disc around it, and block less.
 #[test]
 fn an_outline_blocks_less_than_the_disc_around_it() {
     let locks = |footprint: Option<Footprint>| {

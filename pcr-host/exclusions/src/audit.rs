@@ -410,7 +410,7 @@ fn near(a: &[Placed], b: &[Placed], reach: f64) -> Option<(f64, [f64; 2])> {
     let found = nearest(a, b)?;
     let [p, q] = found.points;
     let depth = reach - found.distance;
-    // An undecided search counts as contact.
+    // What could be rounding counts as contact.
     let depth = if depth < 0.0 && found.least <= reach { 0.0 } else { depth };
     Some((depth, [0, 1].map(|k| (p[k] + q[k]) / 2.0)))
 }

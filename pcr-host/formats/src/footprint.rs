@@ -45,7 +45,7 @@ pub struct Footprint {
 
 impl Footprint {
     /// The footprint with these corners (ahead and left of the reference point \[m\]), with an overhang of the cover up to
-    /// `allowed` \[m\]; if there is none, an eighth of the shorter side of its box, or as little as 64 discs can have.
+    /// `allowed` \[m\]; if there is none, an eighth of the shorter side of its box, or more if that needs more than 64 discs.
     ///
     /// # Errors
     /// What is wrong: fewer than three corners or more than 256, no area, or more than 64 discs would be needed.
@@ -64,13 +64,19 @@ impl Footprint {
         loop {
             let discs = cover(&polygon, cell);
             if discs.len() > MOST {
-                return match best.filter(|_| allowed.is_none()) {
+                // A very long one may have larger cells.
+                let found = best.or_else(|| {
+                    let sizes = std::iter::successors(Some(side / SMALLER), |cell| Some(cell / SMALLER));
+                    let discs = sizes.map(|cell| cover(&polygon, cell)).find(|discs| discs.len() <= MOST)?;
+                    let overhang = overhang(&polygon, &discs);
+                    Some((discs, overhang))
+                });
+                return match found.filter(|(_, overhang)| allowed.is_none() || *overhang <= limit) {
                     Some((discs, overhang)) => Ok(Self { polygon, allowed, growth: 0.0, discs, overhang }),
                     None => Err(format!("an overhang of {limit} m needs more than {MOST} discs; allow more")),
                 };
             }
-            let out = |disc: &Disc| disc.radius - depth(&polygon, [disc.ahead, disc.left]);
-            let overhang = discs.iter().map(out).fold(0.0, f64::max);
+            let overhang = overhang(&polygon, &discs);
             if overhang <= limit {
                 return Ok(Self { polygon, allowed, growth: 0.0, discs, overhang });
             }
@@ -133,6 +139,11 @@ fn bounds(points: &[[f64; 2]]) -> [[f64; 2]; 2] {
         [0, 1].map(|axis| points.iter().map(|point| point[axis]).fold(start, pick))
     };
     [corner(f64::min, f64::INFINITY), corner(f64::max, f64::NEG_INFINITY)]
+}
+
+/// How far discs reach out of the polygon \[m\].
+fn overhang(polygon: &[[f64; 2]], discs: &[Disc]) -> f64 {
+    discs.iter().map(|disc| disc.radius - depth(polygon, [disc.ahead, disc.left])).fold(0.0, f64::max)
 }
 
 /// Discs around the parts of the polygon in cells of at most this size.
@@ -263,12 +274,16 @@ mod tests {
     }
 
     #[test]
-    fn a_thin_outline_overhangs_as_little_as_it_can() {
+    fn a_thin_outline_overhangs_by_more() {
         let thin = vec![[-1.0, -0.05], [1.0, -0.05], [1.0, 0.05], [-1.0, 0.05]];
         assert!(Footprint::new(thin.clone(), Some(0.012_5)).unwrap_err().contains("allow more"));
         let footprint = Footprint::new(thin, None).unwrap();
         assert!((0.012_5..0.03).contains(&footprint.overhang()), "{}", footprint.overhang());
         check(&footprint);
+        let longer = vec![[-3.5, -0.05], [3.5, -0.05], [3.5, 0.05], [-3.5, 0.05]];
+        for allowed in [None, Some(10.0)] {
+            check(&Footprint::new(longer.clone(), allowed).unwrap());
+        }
     }
 
     #[test]

@@ -93,7 +93,11 @@ impl<'j> Reference<'j> {
             .collect();
         let measured = scale(level, vertices, warnings)?;
         match (self.laid_upon(&pairs), measured) {
-            (Some((scale, placing)), measured) => {
+            (Some((scale, placing, spread)), measured) => {
+                if spread > SPREAD {
+                    let problem = "its fiducials give scales that differ from their mean by up to";
+                    warnings.add(&level.name, format!("{problem} {:.1} %", 100.0 * spread));
+                }
                 if let Some(measured) = measured
                     && (measured / scale - 1.0).abs() > SPREAD
                 {
@@ -115,21 +119,23 @@ impl<'j> Reference<'j> {
         }
     }
 
-    /// The scale \[m\] and place of a level by pairs of fiducials, that of the reference level first.
-    fn laid_upon(&self, pairs: &[[[f64; 2]; 2]]) -> Option<(f64, Placing)> {
+    /// The scale \[m\] and place of a level by pairs of fiducials, that of the reference level first, and by how much of their mean
+    /// the scales of the pairs differ.
+    fn laid_upon(&self, pairs: &[[[f64; 2]; 2]]) -> Option<(f64, Placing, f64)> {
         // Bearings of plans with y down are mirrored.
         let between = |a: [f64; 2], b: [f64; 2]| [b[0] - a[0], a[1] - b[1]];
-        let (mut ratio, mut turn, mut count) = (0.0, [0.0; 2], 0.0);
+        let (mut ratios, mut turn) = (Vec::new(), [0.0; 2]);
         for (k, a) in pairs.iter().enumerate() {
             for b in &pairs[k + 1..] {
                 let [reference, own] = [between(a[0], b[0]), between(a[1], b[1])];
-                ratio += own[0].hypot(own[1]) / reference[0].hypot(reference[1]);
+                ratios.push(own[0].hypot(own[1]) / reference[0].hypot(reference[1]));
                 let angle = reference[1].atan2(reference[0]) - own[1].atan2(own[0]);
                 turn = [turn[0] + angle.cos(), turn[1] + angle.sin()];
-                count += 1.0;
             }
         }
-        let ratio = Some(ratio / count).filter(|ratio| ratio.is_finite() && *ratio > 0.0)?;
+        let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+        let ratio = Some(mean).filter(|ratio| ratio.is_finite() && *ratio > 0.0)?;
+        let spread = ratios.iter().map(|one| (one / ratio - 1.0).abs()).fold(0.0, f64::max);
         let of_reference = self.scale?;
         let scale = of_reference / ratio;
         let angle = turn[1].atan2(turn[0]);
@@ -140,7 +146,7 @@ impl<'j> Reference<'j> {
             let [there, here] = [reference.apply(pair[0]), turned.apply(pair[1])];
             shift = [0, 1].map(|k| shift[k] + (there[k] - here[k]) / pairs.len() as f64);
         }
-        Some((scale, Placing { shift, ..turned }))
+        Some((scale, Placing { shift, ..turned }, spread))
     }
 }
 
@@ -157,9 +163,9 @@ fn fiducials<'j>(level: &Object<'j>, warnings: &mut Warnings) -> Result<Vec<(&'j
         match (number(0), number(1), name) {
             (Some(x), Some(y), Some(name)) if all.iter().all(|known| known.0 != name) => all.push((name, [x, y])),
             (Some(_), Some(_), Some(name)) => {
-                warnings.add(format_args!("{}, fiducial {k}", level.name), format!("left out: another one is {name}"));
+                warnings.lose(format_args!("{}, fiducial {k}: another one is {name}", level.name));
             }
-            _ => warnings.add(format_args!("{}, fiducial {k}", level.name), "left out: no place and name"),
+            _ => warnings.lose(format_args!("{}, fiducial {k}: no place and name", level.name)),
         }
     }
     Ok(all)
@@ -211,7 +217,7 @@ fn scale(level: &Object<'_>, vertices: &[Vertex], warnings: &mut Warnings) -> Re
             .map(|([(_, a), (_, b)], metres)| metres / (a[0] - b[0]).hypot(a[1] - b[1]));
         match scale.filter(|scale| (1e-9..1e9).contains(scale)) {
             Some(scale) => scales.push(scale),
-            // The building tools count a distance of 0 as well, and stop at all others.
+            // The building tools do not leave it out: they count a distance of 0, and stop if there is none.
             None => warnings.lose(format_args!("{}, measurement {k}: it gives no scale", level.name)),
         }
     }

@@ -17,7 +17,7 @@ use crate::memory;
 use crate::rows::{Grid, area};
 use pcr_core::{Full, Interval, Motion, Piece, RegionRef, overlaps, union};
 use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Step, Vehicle};
-use pcr_formats::scenario::{Agent, MotionSpec, Scenario, label};
+use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, label};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -27,7 +27,7 @@ const STRETCH: usize = 1 << 12;
 /// How edges are driven.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Driving {
-    /// Largest speed \[m/s\]; the speed limit of an edge applies if it is lower.
+    /// Largest speed \[m/s\]; the limits of an edge, of speed and of rotation in its arcs, apply if they are lower.
     pub speed: f64,
     /// Largest acceleration \[m/s²\]: edges are driven from rest to rest. `None`: at constant speed from end to end.
     pub acceleration: Option<f64>,
@@ -100,7 +100,14 @@ impl Delays {
             fleet: Fleet::new(&Scenario::default()).map_err(|refused| ImportError::new(refused.to_string()))?,
             areas: Vec::new(),
         };
-        let speed = |step: Step<'_>| step.speed().map_or(driving.speed, |limit| limit.min(driving.speed));
+        let speed = |step: Step<'_>| {
+            let turning = step.edge.rotation.unwrap_or(f64::INFINITY);
+            let limits = step.edge.curve.iter().map(|piece| match piece.shape {
+                PathSegment::Arc { radius, .. } => radius * turning,
+                PathSegment::Line { .. } => f64::INFINITY,
+            });
+            limits.chain(step.speed()).fold(driving.speed, f64::min)
+        };
         all.straight = steps
             .iter()
             .map(|step| {

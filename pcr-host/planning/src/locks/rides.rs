@@ -2,8 +2,8 @@
 //!
 //! A disc is the same in every heading. Any other outline differs on the way back along a two-way edge, and sweeps more
 //! where the vehicle turns. At each end of an edge it turns in place from the edges that lead there, and to those that
-//! continue from it. It turns back along the same line only if no other way continues. Half a turn onto another line may
-//! go to either side.
+//! continue from it. It turns back along the same line only if no other open way continues. Half a turn onto another line,
+//! or within an edge, may go to either side.
 
 use crate::bodies::tracks;
 use pcr_formats::import::{Edge, Imported, Layout, Step, Vehicle, ride, turn};
@@ -14,8 +14,11 @@ use std::f64::consts::{PI, TAU};
 /// Rounding of lengths, relative.
 const ROUNDING: f64 = 1e-12;
 
-/// Two edges between the same nodes are the same line if they are nowhere farther apart, beside their deviations \[m\].
-const ALIKE: f64 = 0.01;
+/// Two edges between the same nodes are the same line if they are not farther apart than this, where they are compared \[m\].
+const ALIKE: f64 = 0.05;
+
+/// They are compared at lengths that differ by no more than this \[m\].
+const APART: f64 = 0.1;
 
 /// The vehicle somewhere on an edge.
 pub struct Ride {
@@ -117,7 +120,16 @@ impl<'a> Rides<'a> {
                 let agent = (right < left).then(|| turn(&vehicle, end.at, end.heading + right, left - right));
                 Some(Ride { agent: agent?, lengths: Lengths::At(at) })
             });
-        std::iter::once(self.along(step)).chain(turns).collect()
+        // Half a turn within the edge.
+        let mut before: Option<Placed> = None;
+        let mut travelled = 0.0;
+        let halves = step.curve().into_iter().filter(|piece| piece.shape.length() > 0.0).filter_map(|piece| {
+            let is_half = before.is_some_and(|before| is_half(wrapped(piece.heading - before.heading_at_end())));
+            let at = if step.backward { length - travelled } else { travelled };
+            (before, travelled) = (Some(piece), travelled + piece.shape.length());
+            is_half.then(|| Ride { agent: turn(&vehicle, piece.at, 0.0, TAU), lengths: Lengths::At(at) })
+        });
+        std::iter::once(self.along(step)).chain(turns).chain(halves).collect()
     }
 
     fn along(&self, step: Step<'_>) -> Ride {
@@ -148,18 +160,18 @@ impl<'a> Rides<'a> {
     /// The farthest turns to the right and to the left between an edge and those on one side of a node.
     fn turns(&self, step: Step<'_>, node: usize, side: usize, turn: impl Fn(f64) -> f64) -> [f64; 2] {
         let there = self.sides.get(node).map_or(&[][..], |sides| &sides[side]);
-        let range = there.iter().fold(None, |range: Option<[f64; 2]>, other| {
-            let turn = (turn(other.heading) + PI).rem_euclid(TAU) - PI;
-            let is_half = turn.abs() > PI - KINK;
-            if is_half && leads_back(step, other.step) {
-                return range;
+        let (mut range, mut is_open, mut is_back) = ([0.0_f64; 2], false, false);
+        for other in there {
+            let turn = wrapped(turn(other.heading));
+            if is_half(turn) && leads_back(step, other.step) {
+                is_back = true;
+                continue;
             }
-            let [right, left] = range.unwrap_or_default();
-            let [lo, hi] = if is_half { [-PI, PI] } else { [turn; 2] };
-            Some([right.min(lo), left.max(hi)])
-        });
-        let back = if there.is_empty() { 0.0 } else { PI };
-        range.unwrap_or([-back, back])
+            is_open |= !other.step.edge.closed;
+            let [lo, hi] = if is_half(turn) { [-PI, PI] } else { [turn; 2] };
+            range = [range[0].min(lo), range[1].max(hi)];
+        }
+        if is_back && !is_open { [-PI, PI] } else { range }
     }
 }
 
@@ -176,17 +188,29 @@ struct Side<'a> {
     heading: f64,
 }
 
+/// An angle within half a turn \[rad\].
+fn wrapped(angle: f64) -> f64 {
+    (angle + PI).rem_euclid(TAU) - PI
+}
+
+/// Whether it is half a turn, but for what joints of maps are off by.
+fn is_half(turn: f64) -> bool {
+    turn.abs() > PI - KINK
+}
+
 /// Whether a way leads back along the line of another one.
 fn leads_back(step: Step<'_>, other: Step<'_>) -> bool {
     if std::ptr::eq(step.edge, other.edge) {
         return step.backward != other.backward;
     }
     let back = Step { backward: !other.backward, ..other };
-    let apart = ALIKE + step.edge.deviation + other.edge.deviation;
-    [step.origin(), step.target()] == [back.origin(), back.target()]
-        && (0..=8)
-            .map(|eighths| [step, back].map(|step| point(step, f64::from(eighths) / 8.0)))
-            .all(|[[x, y], [u, v]]| (x - u).hypot(y - v) <= apart)
+    if [step.origin(), step.target()] != [back.origin(), back.target()] {
+        return false;
+    }
+    let count = (step.edge.length().max(back.edge.length()) / APART).ceil().max(8.0);
+    (0..=count as usize)
+        .map(|k| [step, back].map(|step| point(step, k as f64 / count)))
+        .all(|[[x, y], [u, v]]| (x - u).hypot(y - v) <= ALIKE)
 }
 
 /// The point of a way after this part of its length \[m\].
