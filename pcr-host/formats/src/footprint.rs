@@ -60,30 +60,28 @@ impl Footprint {
         }
         let limit = allowed.unwrap_or(OVERHANG * side);
         let mut cell = side;
+        // One that is much longer than wide has larger cells.
+        while cover(&polygon, cell).len() > MOST {
+            cell /= SMALLER;
+        }
         let mut best: Option<(Vec<Disc>, f64)> = None;
         loop {
             let discs = cover(&polygon, cell);
             if discs.len() > MOST {
-                // A very long one may have larger cells.
-                let found = best.or_else(|| {
-                    let sizes = std::iter::successors(Some(side / SMALLER), |cell| Some(cell / SMALLER));
-                    let discs = sizes.map(|cell| cover(&polygon, cell)).find(|discs| discs.len() <= MOST)?;
-                    let overhang = overhang(&polygon, &discs);
-                    Some((discs, overhang))
-                });
-                return match found.filter(|(_, overhang)| allowed.is_none() || *overhang <= limit) {
-                    Some((discs, overhang)) => Ok(Self { polygon, allowed, growth: 0.0, discs, overhang }),
-                    None => Err(format!("an overhang of {limit} m needs more than {MOST} discs; allow more")),
-                };
+                break;
             }
             let overhang = overhang(&polygon, &discs);
-            if overhang <= limit {
-                return Ok(Self { polygon, allowed, growth: 0.0, discs, overhang });
-            }
             if best.as_ref().is_none_or(|(_, least)| overhang < *least) {
                 best = Some((discs, overhang));
             }
+            if overhang <= limit {
+                break;
+            }
             cell *= SMALLER;
+        }
+        match best.filter(|(_, overhang)| allowed.is_none() || *overhang <= limit) {
+            Some((discs, overhang)) => Ok(Self { polygon, allowed, growth: 0.0, discs, overhang }),
+            None => Err(format!("an overhang of {limit} m needs more than {MOST} discs; allow more")),
         }
     }
 

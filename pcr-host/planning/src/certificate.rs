@@ -106,7 +106,7 @@ pub fn as_given<S: Format>(discs: &Scenario, agents: &[Agent]) -> Result<(), Mis
         let travelled = given.path.iter().filter(|segment| turn_in_place::<S>(segment).is_none());
         let travelled = travelled.map(PathSegment::length).sum();
         let length = held.path.segments.last().map_or(0.0, |last| last.to);
-        // A length is rounded for each segment, and for each turn of an arc; a rounded radius counts as often as its angle says.
+        // A length is rounded for each segment, and for each turn of an arc; the rounding of a radius is in it once for each radian.
         let bends = given.path.iter().map(|segment| match segment {
             PathSegment::Arc { sweep, .. } => sweep.abs(),
             PathSegment::Line { .. } => 0.0,

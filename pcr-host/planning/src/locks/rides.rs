@@ -207,16 +207,18 @@ fn leads_back(step: Step<'_>, other: Step<'_>) -> bool {
     if [step.origin(), step.target()] != [back.origin(), back.target()] {
         return false;
     }
-    let count = (step.edge.length().max(back.edge.length()) / APART).ceil().max(8.0);
+    let lengths = [step, back].map(|step| step.edge.length());
+    let curves = [step, back].map(Step::curve);
+    let count = (lengths[0].max(lengths[1]) / APART).ceil().max(8.0);
     (0..=count as usize)
-        .map(|k| [step, back].map(|step| point(step, k as f64 / count)))
+        .map(|k| [0, 1].map(|way| point(&curves[way], lengths[way] * k as f64 / count)))
         .all(|[[x, y], [u, v]]| (x - u).hypot(y - v) <= ALIKE)
 }
 
-/// The point of a way after this part of its length \[m\].
-fn point(step: Step<'_>, part: f64) -> [f64; 2] {
-    let (mut left, curve) = (part * step.edge.length(), step.curve());
-    for piece in &curve {
+/// The point of a curve after a length \[m\].
+fn point(curve: &[Placed], length: f64) -> [f64; 2] {
+    let mut left = length;
+    for piece in curve {
         let length = piece.shape.length();
         if left < length {
             return piece.part(0.0, left).end();
