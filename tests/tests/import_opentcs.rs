@@ -303,7 +303,7 @@ fn directions_at_points_that_an_outline_does_not_have_are_told() {
     }
     assert_eq!([told_of_box("90.0"), told_of_box("-45")], [Ok(true), Ok(true)]);
     // To a disc it does not matter.
-    assert_eq!(told("90", &options(&[])), Ok(false));
+    assert_eq!([told("90", &options(&[])), told("north", &options(&[]))], [Ok(false), Ok(false)]);
     let refused = told_of_box("north").expect_err("no number").to_string();
     assert!(refused.contains("point A->, vehicleOrientationAngle: \"north\" where a number"), "{refused}");
 }

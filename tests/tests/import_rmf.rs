@@ -189,6 +189,20 @@ fn levels_are_laid_upon_the_reference_level_by_their_fiducials() {
         failed(&two_levels("reference_level_name: L9\n", fiducials, [own, own])),
         "building, reference_level_name: there is no level L9"
     );
+    // A fiducial in a wrong place: the pairs do not give one scale.
+    let [right, wrong] = [fiducials[1], "[[10, 30, p], [10, 30, q], [70, 30, r]]"];
+    let spread = |places: &str| {
+        let (_, warnings) = read(&two_levels("", [fiducials[0], places], [own, none]), &tiny(&[]));
+        warnings.iter().any(|line| line.starts_with("level lower: its fiducials give scales that differ"))
+    };
+    assert_eq!([spread(right), spread(wrong)], [false, true]);
+    for (wrong, problem) in [
+        ("[[10, 30, p], [10, -50, q], [70, 30, p]]", "level lower, fiducial 2: another one is p"),
+        ("[[10, 30, p], [10, -50, q], [70, up, r]]", "level lower, fiducial 2: no place and name"),
+    ] {
+        let refused = failed(&two_levels("", [fiducials[0], wrong], [own, none]));
+        assert!(refused.starts_with(problem), "{refused}");
+    }
     // A real one: by its fiducials L2 has 0.056199 m a pixel, by its own measurements 0.055452 m.
     let upper = |text: &str| {
         let (Imported { layout, .. }, _) = read(text, &tiny(&[]));

@@ -64,7 +64,8 @@ pub(super) fn read(
                 let place = nodes.add(Node { id: Id::Text(id.clone()), name: None, level: 0, at }, warnings);
                 shifts.resize(shifts.len().max(place + 1), 0.0);
                 shifts[place] = shifts[place].max(distance(at, drawn));
-                match angle(point, &format!("point {id}")) {
+                // To a disc it does not matter.
+                match outline.map_or(Ok(None), |_| angle(point, &format!("point {id}"))) {
                     Ok(angle) => angles.extend(angle.map(|angle| (place, angle))),
                     Err(error) => warnings.lose(error),
                 }
@@ -158,7 +159,7 @@ fn place(point: roxmltree::Node<'_, '_>, name: &str) -> Result<[[f64; 2]; 2], Im
     Ok([own, [drawn(x, own[0])?, drawn(y, own[1])?]])
 }
 
-/// Which way a vehicle faces at a point \[rad\]: any way where it is not a number, as for a point without it.
+/// Which way a vehicle faces at a point \[rad\]; `None` where it may face any way, which is `NaN` in the file, or no attribute.
 fn angle(point: roxmltree::Node<'_, '_>, name: &str) -> Result<Option<f64>, ImportError> {
     match point.attribute(ANGLE).map(str::trim) {
         None | Some("NaN") => Ok(None),
