@@ -7,13 +7,9 @@ set -euo pipefail
 cd "$(dirname "$0")"
 
 command -v valgrind >/dev/null || ../.ci/install.sh valgrind
-# What reads the fleets need not be optimized. The planner has to be: functions that are never inlined are taken from it.
-config=()
-for crate in pcr-formats serde-saphyr serde_json encoding_rs annotate-snippets roxmltree; do
-  config+=("--config=profile.bench.package.$crate.opt-level=0")
-done
-cargo build --quiet --locked --profile bench "${config[@]}" -p pcr-benches --bin work
-work=$(cargo metadata --format-version 1 --no-deps --locked | sed 's/.*"target_directory":"\([^"]*\)".*/\1/')/release/work
+# With the profile and the features of the Python package, whose build has the libraries then.
+cargo build --quiet --locked --profile wheel -p pcr-py -p pcr-benches --bin work
+work=$(cargo metadata --format-version 1 --no-deps --locked | sed 's/.*"target_directory":"\([^"]*\)".*/\1/')/wheel/work
 
 counted() { valgrind --tool=callgrind --callgrind-out-file=/dev/null "$work" "$@" 2>&1 >/dev/null | sed -n 's/.*Collected : //p'; }
 
