@@ -1,7 +1,8 @@
 //! Vehicles with outlines that are driven backward: layouts were read as if they turned round. One whose outline is the same backward
 //! may do so.
 
-use pcr_formats::import::{Format, Options, Warnings, layout};
+use pcr_formats::import::{Format, Options, Warnings, layout, scenario};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// A vehicle whose outline is a rectangle around its reference point.
@@ -109,4 +110,50 @@ fn edges_of_lif_say_at_which_angle_vehicles_are() {
     assert_eq!(read(Format::Lif, &lif(0.0), &centred), Ok(()));
     let error = read(Format::Lif, &lif(180.0), &centred).unwrap_err();
     assert!(error.starts_with("edge e: its vehicleOrientation 180, as outlines"), "{error}");
+}
+
+/// The file had a turn to one side, which rounding had chosen, and a vehicle may turn to the other one.
+#[test]
+fn half_turns_of_outlines_are_told() {
+    let centred = Centred::new("half");
+    let aside = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json"));
+    let node = |k: usize, x: f64, y: f64| json!({ "nodeId": k.to_string(), "sequenceId": 2 * k, "released": true, "nodePosition": { "x": x, "y": y, "mapId": "m" }, "actions": [] });
+    let edge = |k: usize, edges: bool| match edges {
+        true => json!({ "edgeId": format!("e{k}"), "startNodeId": (k - 1).to_string(), "endNodeId": k.to_string() }),
+        false => json!({ "edgeId": format!("e{k}"), "sequenceId": 2 * k - 1, "released": true, "actions": [] }),
+    };
+    // To the last point, at which an edge of 5 m leads back on the same line, or off it by 0.05 rad.
+    for (y, half) in [(0.0, true), (0.25, false)] {
+        let nodes = [node(0, 0.0, 0.0), node(1, 5.0, 0.0), node(2, 0.0, y)];
+        let order = json!({ "orderId": "o", "nodes": nodes, "edges": [edge(1, false), edge(2, false)] });
+        let places = nodes.clone().map(|node| {
+            let position = &node["nodePosition"];
+            json!({ "nodeId": node["nodeId"], "nodePosition": { "x": position["x"], "y": position["y"] } })
+        });
+        let layout = json!({ "layoutId": "l", "nodes": places, "edges": [edge(1, true), edge(2, true)] });
+        for (format, text, name) in [
+            (Format::Path, format!("0 0\n5 0\n0 {y}\n"), "path 1"),
+            (Format::Vda5050, order.to_string(), "order o"),
+            (Format::Lif, json!({ "layouts": [layout] }).to_string(), "route 0:2"),
+        ] {
+            for (fleet, radius) in [(Some(aside), None), (Some(&centred.0), None), (None, Some(0.5))] {
+                let one = Some(1.0);
+                let options = Options {
+                    radius,
+                    fleet: fleet.map(Path::to_path_buf),
+                    speed: one,
+                    acceleration: one,
+                    rotation: one,
+                    rotation_acceleration: one,
+                    routes: if format == Format::Lif { vec!["0:2".to_owned()] } else { Vec::new() },
+                    ..Options::default()
+                };
+                let mut warnings = Warnings::default();
+                scenario(format, &text, &options, &mut warnings).unwrap();
+                let told =
+                    warnings.lines().iter().any(|line| line.starts_with(&format!("{name}: turns by half a turn")));
+                assert_eq!(told, half && fleet == Some(aside), "{name} {y} {:?}", warnings.lines());
+            }
+        }
+    }
 }

@@ -398,6 +398,8 @@ pub fn scenario(
             let vehicle = options.vehicle(&given(options, warnings)?, true, warnings);
             let (scenario, radii) = if format == Format::Path {
                 let scenario = samples::read(text, options, &vehicle)?;
+                let names = scenario.agents.iter().map(|agent| format!("path {}", agent.id)).collect::<Vec<_>>();
+                facing::warn_of_half_turns(names.iter().map(String::as_str).zip(&scenario.agents), warnings);
                 let radii = vec![vehicle.radius; scenario.agents.len()];
                 (scenario, radii)
             } else {

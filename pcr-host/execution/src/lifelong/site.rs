@@ -193,7 +193,7 @@ impl Atom {
         Ok(Self {
             ends: [step.origin(), step.target()],
             length,
-            speed: step.speed().map_or(fastest, |speed| speed.min(fastest)),
+            speed: step.steady(fastest),
             headings,
             phases: if length > 0.0 { vec![Phase::starting_at(1.0, length, 0.0)?] } else { Vec::new() },
             bounds: bounds(&shapes, from),

@@ -5,7 +5,7 @@ use super::value::Object;
 use super::{Edge, ImportError, Node, Warnings};
 use crate::footprint::Footprint;
 use crate::plane::distance;
-use crate::scenario::{PathSegment, Placed};
+use crate::scenario::{Agent, KINK, PathSegment, Placed, TURN};
 use std::f64::consts::{PI, TAU};
 
 /// Angle that is rounding in a file and nothing else \[rad\].
@@ -57,6 +57,19 @@ pub(super) fn warn_of_nodes(
             let problem =
                 format!("its {field} is that of none of its edges, and not read: outlines face along their paths here");
             warnings.add(name, problem);
+        }
+    }
+}
+
+/// Says of which agents (each with a name) the outline turns in place by half a turn: a vehicle may do so to either side, and a path
+/// has one of them.
+pub(super) fn warn_of_half_turns<'a>(agents: impl Iterator<Item = (&'a str, &'a Agent)>, warnings: &mut Warnings) {
+    for (name, agent) in agents {
+        let half =
+            |shape: &PathSegment| matches!(*shape, PathSegment::Arc { radius: TURN, sweep } if sweep.abs() > PI - KINK);
+        if is_other_backward(agent.footprint.as_ref()) && agent.path.iter().any(half) {
+            warnings
+                .add(name, "turns by half a turn in place: to one side here, although it may turn to the other one");
         }
     }
 }

@@ -8,7 +8,7 @@
 use super::layout::{Edge, Layout};
 use super::trace::{Trace, Tracer};
 use super::vehicle::Asked;
-use super::{ImportError, Options, Vehicle, Warnings, speed};
+use super::{ImportError, Options, Vehicle, Warnings, facing, speed};
 use crate::plane::distance;
 use crate::scenario::Placed;
 use crate::scenario::{Agent, PathSegment, Scenario, label};
@@ -53,6 +53,16 @@ impl Step<'_> {
     /// Largest speed \[m/s\], where it is limited.
     pub fn speed(self) -> Option<f64> {
         self.edge.speed[usize::from(self.backward)]
+    }
+
+    /// The largest speed \[m/s\], up to this one, at which it can be travelled as a whole.
+    pub fn steady(self, fastest: f64) -> f64 {
+        let rotation = self.edge.rotation.unwrap_or(f64::INFINITY);
+        let bends = self.edge.curve.iter().filter_map(|piece| match piece.shape {
+            PathSegment::Arc { radius, .. } => Some(radius * rotation),
+            PathSegment::Line { .. } => None,
+        });
+        bends.chain(self.speed()).fold(fastest, f64::min)
     }
 
     /// Its lines and arcs in the direction of travel.
@@ -245,6 +255,8 @@ pub(super) fn scenario(
         let label = label(&layout.vehicles.get(k).map_or(way.clone(), |vehicle| format!("{vehicle} {way}")));
         agents.push(Agent { label, t_start: asked.time, ..agent });
     }
+    let names = options.routes.iter().map(|route| format!("route {route}")).collect::<Vec<_>>();
+    facing::warn_of_half_turns(names.iter().map(String::as_str).zip(&agents), warnings);
     let is_rounded = |agent: &Agent| agent.path.iter().any(|shape| is_corner(layout, shape));
     if options.corner_radius.is_none() && agents.iter().any(is_rounded) {
         let radius = layout.corner_radius.unwrap_or_default();

@@ -77,6 +77,8 @@ pub(super) fn read(
         }
     }
     begin::set(&mut scenario.agents, &reader.begins)?;
+    let names = reader.begins.iter().map(|(name, _)| name.as_str());
+    facing::warn_of_half_turns(names.zip(&scenario.agents), reader.warnings);
     if reader.maps.len() > 1 {
         let maps = reader.maps.into_iter().collect::<Vec<_>>().join(", ");
         warnings

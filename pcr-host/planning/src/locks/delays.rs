@@ -100,14 +100,7 @@ impl Delays {
             fleet: Fleet::new(&Scenario::default()).map_err(|refused| ImportError::new(refused.to_string()))?,
             areas: Vec::new(),
         };
-        let speed = |step: Step<'_>| {
-            let turning = step.edge.rotation.unwrap_or(f64::INFINITY);
-            let limits = step.edge.curve.iter().map(|piece| match piece.shape {
-                PathSegment::Arc { radius, .. } => radius * turning,
-                PathSegment::Line { .. } => f64::INFINITY,
-            });
-            limits.chain(step.speed()).fold(driving.speed, f64::min)
-        };
+        let speed = |step: Step<'_>| step.steady(driving.speed);
         all.straight = steps
             .iter()
             .map(|step| {
