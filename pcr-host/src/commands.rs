@@ -132,7 +132,7 @@ pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, Stop> {
         progress::silence();
     } else if memory::left() == Some(0) {
         complain(
-            "warning: hardly any memory is left to this process; if it runs out, the last line is \"memory allocation of N bytes \
+            "warning: hardly any memory is left to this process; if it runs out, the answer is \"memory allocation of N bytes \
              failed\", and the exit status is 2",
         );
     }
@@ -300,7 +300,12 @@ fn whole<T: FromStr>(text: &str) -> Result<T, String> {
 
 /// Whether an output is standard output.
 fn is_standard(output: Option<&PathBuf>) -> bool {
-    output.is_some_and(|output| output == Path::new("-"))
+    output.is_some_and(|output| is_stdout(output))
+}
+
+/// Whether a name is that of standard output.
+fn is_stdout(output: &Path) -> bool {
+    output == Path::new("-") || output::descriptor(output) == Some(1)
 }
 
 /// The name of a folder to be written.
@@ -322,7 +327,7 @@ fn write_over(
     input: &Path,
     is_alike: impl FnOnce() -> Result<bool, Stop>,
 ) -> Result<(), Stop> {
-    if output != Path::new("-") && output::is_same(output, input) && is_alike()? {
+    if !is_stdout(output) && output::is_same(output, input) && is_alike()? {
         return output::write_over(output, content).map_err(|error| Stop::not_written(output, &error));
     }
     write_to(output, content)
@@ -330,7 +335,7 @@ fn write_over(
 
 /// Writes a file, or standard output for `-`; none that was read.
 fn write_to(output: &Path, content: &str) -> Result<(), Stop> {
-    if output == Path::new("-") {
+    if is_stdout(output) {
         let mut out = printed::stdout();
         out.write_all(content.as_bytes())?;
         return Ok(out.flush()?);

@@ -167,6 +167,9 @@ fn roads_have_the_least_of_their_speed_limits() {
     assert!((speed(&limit("36", "km/h")).unwrap() - 10.0).abs() < 1e-12);
     assert_eq!((speed(&limit("7", "m/s")), speed(&limit("no limit", "mph")), speed("")), (Some(7.0), None, None));
     assert_eq!((speed(&limit("0", "m/s")), speed(&limit("2e6", "m/s"))), (None, None), "no limits");
+    // It took away the other one, and said that the least one is taken.
+    let (layout, warnings) = read(&road(&[limit("7", "m/s"), limit("0", "m/s")].concat()));
+    assert_eq!((layout.edges[0].speed[0], warnings.len()), (Some(7.0), 0), "{warnings:?}");
     let (layout, warnings) = read(&road(&[limit("7", "m/s"), limit("5", "m/s"), limit("6", "m/s")].concat()));
     assert_eq!(layout.edges[0].speed[0], Some(5.0));
     assert_eq!(warnings, ["road 1: its speed limit changes on the way; the least one is taken for all of it"]);

@@ -149,6 +149,12 @@ pub fn write(
     begins: &mut dyn FnMut(&str, usize, usize),
 ) -> Result<Vec<PathBuf>, Problem> {
     let document = directory.join("evaluation.md");
+    if let Ok(there) = fs::read_to_string(&document)
+        && !there.contains(machine::OWN)
+    {
+        let why = "is there and not of this command: give another folder, or another name to it";
+        return Err(Problem::Document(document, why.to_owned()));
+    }
     let mut text = match only {
         [] => machine::preamble(extent),
         _ => fs::read_to_string(&document)

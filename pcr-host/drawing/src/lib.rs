@@ -45,7 +45,7 @@ pub use layout::Ground;
 pub use overlay::{Bar, Overlay};
 use pcr_exclusions::{Audit, Rules};
 use pcr_formats::import::Imported;
-use pcr_formats::output;
+use pcr_formats::output::{self, Kept};
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::{Fleet, build_ecm};
 use pcr_planning::locks::Locks;
@@ -68,12 +68,16 @@ pub struct Written {
 impl Written {
     fn add(&mut self, directory: &Path, files: Files) -> io::Result<()> {
         for (name, content) in files {
-            let file = directory.join(name);
+            let file = directory.join(&name);
             #[cfg(feature = "png")]
             if file.extension().is_some_and(|extension| extension == "svg") {
                 self.boxes.extend(raster::boxes(&content));
             }
-            output::write(&file, content)?;
+            // The folder is named by who writes into it.
+            output::write(&file, content).map_err(|error| match Kept::of(&error) {
+                Some(_) => error,
+                None => io::Error::new(error.kind(), format!("{name}: {error}")),
+            })?;
             self.files.push(file);
         }
         Ok(())

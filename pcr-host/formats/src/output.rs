@@ -103,7 +103,7 @@ fn is_same_file(a: &Path, b: &Path) -> bool {
 }
 
 /// Writes a file. One that is there is replaced and keeps its mode, and for the superuser its owner; a link is followed. What is no
-/// regular file (a terminal, a pipe, a device) is written to as it is.
+/// regular file (a terminal, a pipe, a device), and what is open already (`/dev/stdout`), is written to as it is.
 ///
 /// # Errors
 /// Those of the file system; then the file is as it was before. One that is there and must not be written to stays, too, and so does
@@ -130,6 +130,10 @@ pub fn stream<T, E: From<io::Error>>(file: &Path, fill: impl FnOnce(&mut File) -
 }
 
 fn stream_over<T, E: From<io::Error>>(file: &Path, fill: impl FnOnce(&mut File) -> Result<T, E>) -> Result<T, E> {
+    // Where it leads to a file, that is open for others, too, and may not be replaced.
+    if let Some(mut own) = descriptor(file).map(|number| opened(number, file)).transpose()? {
+        return fill(&mut own);
+    }
     // Before links are followed: what a shell calls /dev/fd/63 is a link to no name.
     if fs::metadata(file).is_ok_and(|there| !there.is_file() && !there.is_dir()) {
         return fill(&mut OpenOptions::new().write(true).open(file)?);
@@ -178,16 +182,51 @@ pub fn remove_empty_folders() {
 
 /// The path of a file behind all links, whether it exists or not.
 fn followed(file: &Path) -> io::Result<PathBuf> {
-    /// As many as Linux follows.
-    const LINKS: usize = 40;
-    let mut target = file.to_owned();
-    for _ in 0..LINKS {
-        match fs::read_link(&target) {
-            Ok(link) => target = target.parent().unwrap_or(Path::new("")).join(link),
-            Err(_) => return Ok(target),
-        }
+    links(file)
+        .take(LINKS + 1)
+        .last()
+        .filter(|last| fs::read_link(last).is_err())
+        .ok_or_else(|| io::Error::other("too many links"))
+}
+
+/// As many links as Linux follows.
+const LINKS: usize = 40;
+
+/// A file, and what each link leads to.
+fn links(file: &Path) -> impl Iterator<Item = PathBuf> {
+    std::iter::successors(Some(file.to_owned()), |target| {
+        Some(target.parent().unwrap_or(Path::new("")).join(fs::read_link(target).ok()?))
+    })
+}
+
+/// The number of the descriptor of this program that a name stands for, as `/dev/stdout` does.
+#[cfg(unix)]
+pub fn descriptor(file: &Path) -> Option<u32> {
+    let own = fs::canonicalize("/dev/fd").ok()?;
+    let is_own = |file: &PathBuf| file.parent().and_then(|folder| fs::canonicalize(folder).ok()).as_ref() == Some(&own);
+    let found = links(file).take(LINKS).find(is_own)?;
+    found.file_name()?.to_str()?.parse().ok()
+}
+
+#[cfg(not(unix))]
+pub fn descriptor(_: &Path) -> Option<u32> {
+    None
+}
+
+/// A descriptor of this program, for writing; others that have it go on behind what is written.
+#[cfg(unix)]
+fn opened(number: u32, file: &Path) -> io::Result<File> {
+    use std::os::fd::AsFd;
+    match number {
+        1 => io::stdout().as_fd().try_clone_to_owned().map(File::from),
+        2 => io::stderr().as_fd().try_clone_to_owned().map(File::from),
+        _ => OpenOptions::new().append(true).open(file),
     }
-    Err(io::Error::other("too many links"))
+}
+
+#[cfg(not(unix))]
+fn opened(_: u32, file: &Path) -> io::Result<File> {
+    OpenOptions::new().append(true).open(file)
 }
 
 fn replace<T, E: From<io::Error>>(

@@ -49,7 +49,10 @@ pub struct Way<'a> {
     pub length: f64,
     /// Whether it may be travelled backward as well.
     pub two_way: bool,
-    /// Speed limit \[m/s\], if there is one.
+    /// Whether it may be travelled backward only: from the node where it ends.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub backward: bool,
+    /// Speed limit \[m/s\], if there is one: backward, if it may be travelled so only.
     pub speed: Option<f64>,
     /// Speed limit backward, if it is another one \[m/s\].
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -90,11 +93,11 @@ impl<'a> Place<'a> {
 impl<'a> Way<'a> {
     fn of(edge: &'a Edge, layout: &'a Layout) -> Option<Self> {
         let id = |place: usize| layout.nodes.get(place).map(|node| &node.id);
-        let there = Step { edge, backward: !edge.ways[0] && edge.ways[1] };
-        let back = Step { edge, backward: true };
-        let [from, to] = [id(there.origin())?, id(there.target())?];
+        let [from, to] = [id(edge.ends[0])?, id(edge.ends[1])?];
+        let backward = edge.ways == [false, true];
+        let [there, back] = [backward, true].map(|backward| Step { edge, backward });
         let (two_way, speed, closed) = (edge.is_two_way(), there.speed(), edge.closed);
         let speed_back = back.speed().filter(|_| two_way && back.speed() != speed);
-        Some(Self { id: &edge.id, from, to, length: edge.length(), two_way, speed, speed_back, closed })
+        Some(Self { id: &edge.id, from, to, length: edge.length(), two_way, backward, speed, speed_back, closed })
     }
 }

@@ -34,6 +34,7 @@ use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 pub use starts::some as start_delays;
 use starts::{Known, Starts};
+use std::time::Instant;
 use task::Planner;
 
 /// How conflicts are avoided.
@@ -238,9 +239,10 @@ impl Plan {
     pub fn of(scenario: &Scenario, request: &Request) -> Result<Answer, Failure> {
         let agents = scenario.agents.len();
         memory::ask(agents as u64 * AGENT_BYTES, || format!("the plan of {agents} agents"))?;
+        let begin = Instant::now();
         let fleet = Fleet::<f64>::new(scenario)?;
         let motions = grown(&fleet);
-        let planner = Planner { scenario, request, motions: &motions };
+        let planner = Planner { scenario, request, motions: &motions, begin };
         let starts = Starts::of(&planner)?;
         let everybody = starts.of_all();
         let (mut plan, solved) = match request.method {
@@ -263,7 +265,7 @@ impl Plan {
             let motions = grown(&fleet);
             // An order may name those that are left out.
             let request = &request.among(&rest);
-            Planner { scenario: &rest, request, motions: &motions }.plan(known)
+            Planner { scenario: &rest, request, motions: &motions, begin }.plan(known)
         };
         let (mut partial, mut solved) = of_rest(&staying, Some(starts.known(&staying)))?;
         // Other speeds may have a plan for agents that start delays leave out.

@@ -1,5 +1,6 @@
 //! `pcr certify`.
 
+use super::help::STANDING;
 use super::number::{Number, with_scalar};
 use super::sources::{layout, scenario, source};
 use super::work::tell_rounding;
@@ -115,7 +116,7 @@ impl Arguments {
         let mut warnings = Vec::new();
         let scenarios = match input::kind(file, &self.import)? {
             Kind::Layout(_) if self.import.one_of(&["routes"]).is_none() => {
-                let imported = layout(file, &self.import, "locks", false)?;
+                let imported = layout(file, &self.import, STANDING, false)?;
                 warnings.extend(imported.layout.warnings.iter().cloned().chain(rounded(&imported.layout)));
                 locks::scenarios(&imported).map_err(|error| Stop::wrong(file, error))?
             }

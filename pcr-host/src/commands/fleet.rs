@@ -88,7 +88,7 @@ pub(super) struct Arguments {
     /// Prove from a record, or `-`, that no two touched
     #[arg(long, value_name = "FILE", conflicts_with_all = SIMULATED)]
     certify: Option<PathBuf>,
-    /// Write the vehicles for `pcr serve --fleet`, or `-`
+    /// Also write them for `pcr serve --fleet`, or `-`
     #[arg(long, value_name = "FILE", conflicts_with = "certify")]
     profiles: Option<PathBuf>,
 }

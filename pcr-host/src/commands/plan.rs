@@ -3,7 +3,7 @@
 use super::map::draw;
 use super::printed::notes;
 use super::sources::{Source, gathered};
-use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, complain, folder, is_standard, write_over};
+use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, complain, folder, is_standard, say, write_over};
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_formats::import::Options;
@@ -275,8 +275,12 @@ impl Arguments {
             // Beside the report, which may be for a machine.
             let ([before, after], told) = (PICTURES.map(|folder| directory.join(folder)), &mut notes());
             draw(&scenario, None, None, &before, told)?;
-            if let Some(solved) = &solved {
-                draw(solved, None, None, &after, told)?;
+            match &solved {
+                Some(solved) => draw(solved, None, None, &after, told)?,
+                None if after.join("index.html").exists() => {
+                    say(&after, ["of an earlier plan, and there is none now".to_owned()]);
+                }
+                None => {}
             }
         }
         Ok(solved.is_some() && plan.left_out.is_empty())

@@ -232,7 +232,7 @@ pub(super) fn layout(file: &Path, import: &Options, command: &str, moves: bool) 
         error => error.into(),
     })?;
     warn(file, &warnings);
-    if matches!(command, "locks" | DRIVING | STANDING) {
+    if matches!(command, DRIVING | STANDING) {
         say(file, rounded(&imported.layout));
     }
     Ok(imported)

@@ -8,6 +8,8 @@ use std::path::Path;
 fn the_document_and_all_its_pictures_are_written() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data");
     let output = directory("evaluate");
+    // Of a run that has failed.
+    let _ = fs::remove_file(output.join("evaluation.md"));
     let result = run(&["evaluate", "--quick", "--data", data.to_str().unwrap(), "-o", output.to_str().unwrap()]);
     // A line a part on standard error, as it begins: the whole takes minutes.
     let parts: Vec<&str> = result.err.lines().collect();
@@ -48,6 +50,10 @@ fn the_document_and_all_its_pictures_are_written() {
     let message = run(&[&only[..], &["-q"]].concat()).failed(2);
     assert!(message.contains("has no section \"## Memory, and bytes on the wire\""), "{message}");
     assert_eq!(fs::read_to_string(output.join("evaluation.md")).unwrap(), without);
+    // Somebody else's is not lost.
+    fs::write(output.join("evaluation.md"), "# Evaluation\n\nmine\n").unwrap();
+    let message = run(&only[..6]).failed(2);
+    assert!(message.contains("is there and not of this command"), "{message}");
     // Rows of the grazing table: double precision is never wrong, lines at 10 mm are wrong about all near misses.
     let row = |name: &str| text.lines().find(|line| line.starts_with(name) && line.contains('·')).unwrap();
     assert!(row("| pcr f64 ").ends_with("| 4 · 0 | 0 | – |"));

@@ -79,7 +79,10 @@ fn every_output_is_whole_or_not_there() {
     let document = out.join("evaluation.md");
     fs::create_dir(&out).unwrap();
     let quick = "Written with `--quick`: small fleets, without the slowest methods.";
-    let before = format!(" {quick}\n\n## Memory, and bytes on the wire\n\n{}", "## Scale\n\n".repeat(500));
+    let before = format!(
+        "`pcr evaluate` writes this document with all numbers and pictures. {quick}\n\n## Memory, and bytes on the wire\n\n{}",
+        "## Scale\n\n".repeat(500)
+    );
     fs::write(&document, &before).unwrap();
     let only = ["evaluate", "--quick", "--only", "memory", "--data", data, "-o", target, "-q"];
     let (status, message) = limited(1, &only);
@@ -290,4 +293,35 @@ fn folders_have_names() {
         assert_eq!((run.status, run.out.as_str()), (2, ""), "{arguments:?}");
         assert!(run.err.starts_with("error: a value is required for '"), "{arguments:?}: {}", run.err);
     }
+}
+
+/// The file behind it was replaced: what was in it was lost, and what others wrote to it later, too.
+#[test]
+fn a_descriptor_that_a_shell_has_opened_is_written_to_as_it_is() {
+    let folder = folder("descriptors");
+    let scenario = folder.join("scenario.json");
+    fs::write(&scenario, crossing().to_string()).unwrap();
+    let log = folder.join("log");
+    for (output, redirected) in
+        [("/dev/stdout", ">>"), ("/dev/stdout", ">"), ("/dev/stderr", "2>>"), ("/dev/fd/3", "3>>")]
+    {
+        let script = format!(
+            "{{ echo before >&9; \"$0\" plan \"$1\" -o {output} -q; echo after >&9; }} {redirected}\"$2\" 9>>\"$2\""
+        );
+        fs::write(&log, if redirected == ">" { "" } else { "precious\n" }).unwrap();
+        let shell = Command::new("bash")
+            .args(["-c", &script, env!("CARGO_BIN_EXE_pcr")])
+            .args([&scenario, &log])
+            .output()
+            .unwrap();
+        let text = fs::read_to_string(&log).unwrap();
+        let message = String::from_utf8(shell.stderr).unwrap();
+        assert!(shell.status.success(), "{output}: {message}");
+        assert!(text.contains("\"pcr-scenario\"") && text.ends_with("after\n"), "{output} {redirected}: {text}");
+        assert!(redirected == ">" || text.starts_with("precious\nbefore\n"), "{output}: {text}");
+    }
+    // As `-`: what is for people goes to standard error.
+    let script = "\"$0\" plan \"$1\" -o /dev/stdout | \"$0\" check";
+    let shell = Command::new("bash").args(["-c", script, env!("CARGO_BIN_EXE_pcr")]).arg(&scenario).output().unwrap();
+    assert_eq!(String::from_utf8(shell.stdout).unwrap(), "crossing: no conflicts, 2 agents\n");
 }

@@ -328,5 +328,5 @@ fn layouts_are_listed() {
     assert!(nodes.iter().any(|node| node["id"] == edges[0]["from"]), "{listing}");
     let csv = run(&["nodes", &real("nav2/aws_graph.geojson"), "--format", "csv", "-q"]).ok();
     assert_eq!(csv.lines().count(), 1 + nodes.len() + edges.len());
-    assert!(csv.lines().all(|line| line.split(',').count() == 13), "{csv}");
+    assert!(csv.lines().all(|line| line.split(',').count() == 14), "{csv}");
 }

@@ -165,5 +165,9 @@ fn names_that_are_no_labels_are_read_with_a_warning() {
     let order = file("import-names", "order.json", order.to_string());
     let read = run(&["import", "vda5050", &order, "--radius", "0.3", "-o", "-"]);
     assert!(read.status == 0 && read.out.contains("\"label\": \"SX o\""), "{}{}", read.out, read.err);
-    assert!(read.err.contains("agent 1: its label is SX o: printable text of up to 200 characters\n"), "{}", read.err);
+    assert!(
+        read.err.contains("agent 1: its label becomes SX o: labels are printable text of up to 200 characters\n"),
+        "{}",
+        read.err
+    );
 }

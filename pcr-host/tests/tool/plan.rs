@@ -416,3 +416,36 @@ fn a_scenario_without_a_plan_is_missed_in_no_stream() {
     let why = "pcr: standard input: line 1: head-on: no plan: agents ";
     assert!(checked.err.starts_with(why) && checked.err.contains("1 of 2 scenarios refused"), "{}", checked.err);
 }
+
+/// The table named every pair, and a limit of the time did not hold for the reasons.
+#[test]
+fn a_heap_that_has_no_plan_is_told_in_a_few_lines_and_in_its_time() {
+    let heap: Vec<Value> = (0..60).map(|k| straight(k + 1, [0.001 * k as f64, 0.0, 0.1 * k as f64], 4.0)).collect();
+    let scenario = file("plan", "heap.json", json!({ "name": "heap", "agents": heap }).to_string());
+    let table = run(&["plan", &scenario]);
+    let lines: Vec<&str> = table.out.lines().collect();
+    assert_eq!((table.status, lines.len()), (1, 42), "{}", table.out);
+    assert!(lines[1].contains("they overlap at their starts"), "{}", lines[1]);
+    assert_eq!(lines[41], "  and 1730 more (--json)");
+    for (limit, why) in
+        [(&[][..], "they overlap at their starts"), (&["--time-limit", "0"], "they meet whenever they start")]
+    {
+        let report = run(&[&["plan", &scenario, "--json"], limit].concat()).json_of(1);
+        let unsolved = report["unsolved"].as_array().unwrap();
+        assert_eq!(unsolved.len(), 60 * 59 / 2);
+        assert!(unsolved.iter().all(|pair| pair["why"].as_str().unwrap().starts_with(why)), "{}", unsolved[0]);
+    }
+}
+
+#[test]
+fn pictures_of_an_earlier_plan_are_told() {
+    let pictures = directory("plan").join("earlier").to_str().unwrap().to_owned();
+    let _ = fs::remove_dir_all(&pictures);
+    let free = file("plan", "earlier-free.json", crossing().to_string());
+    let stuck = json!({ "agents": [straight(1, [0.0, 0.0, 0.0], 4.0), straight(2, [0.1, 0.0, 0.0], 4.0)] });
+    let stuck = file("plan", "earlier-stuck.json", stuck.to_string());
+    let said = |scenario: &str| run(&["plan", scenario, "--pictures", &pictures, "--json"]).err;
+    let told = format!("pcr: warning: {pictures}/after: of an earlier plan, and there is none now\n");
+    assert!(!said(&stuck).contains("earlier plan") && !said(&free).contains("earlier plan"));
+    assert!(said(&stuck).ends_with(&told));
+}

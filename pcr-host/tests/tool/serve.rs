@@ -208,3 +208,31 @@ fn warnings_about_a_layout_are_told_as_everywhere() {
     let expected = run(&["locks", track, "--radius", "0.4", "--format", "csv"]).err;
     assert!(!expected.is_empty() && told.contains(expected.lines().next().unwrap()), "{told}\n{expected}");
 }
+
+/// It ended as if all had been well, and nobody was ever connected.
+#[test]
+fn vehicles_without_a_broker_say_so() {
+    let record = directory("broker").join("record.txt");
+    let record = record.to_str().unwrap();
+    let fleet = [
+        "fleet",
+        "--streets",
+        "4",
+        "--vehicles",
+        "2",
+        "--broker",
+        "localhost:1",
+        "--pace",
+        "10",
+        "--time",
+        "4",
+        "--record",
+        record,
+    ];
+    let run = run(&fleet);
+    let lines: Vec<&str> = run.err.lines().collect();
+    assert_eq!((run.status, run.out.as_str(), lines.len()), (2, "", 2), "{}", run.err);
+    assert!(lines[0].starts_with("pcr: no broker: ") && lines[0].ends_with("; it is tried again"), "{}", lines[0]);
+    assert!(lines[1].starts_with("pcr: no vehicle has reached a broker: "), "{}", lines[1]);
+    assert!(!std::path::Path::new(record).exists());
+}

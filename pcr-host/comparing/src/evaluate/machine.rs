@@ -8,6 +8,9 @@ use std::thread::available_parallelism;
 /// What a document of small fleets says of itself.
 pub(super) const QUICK: &str = " Written with `--quick`: small fleets, without the slowest methods.";
 
+/// What only such a document says.
+pub(super) const OWN: &str = "evaluate` writes this document with all numbers and pictures";
+
 /// Title, command, machine and how to read the numbers.
 pub(super) fn preamble(extent: Extent) -> String {
     let cores = available_parallelism().map_or(1, usize::from);
@@ -25,7 +28,7 @@ pub(super) fn preamble(extent: Extent) -> String {
     let (os, architecture) = (std::env::consts::OS, std::env::consts::ARCH);
     format!(
         "# Evaluation\n\n\
-        `cargo run --release --features peers -- evaluate` writes this document with all numbers and pictures, and with \
+        `cargo run --release --features peers -- {OWN}, and with \
         `--only PART` one part of it anew; nothing is edited by hand.{quick}\n\n\
         **Machine**: {cpu}, {cores} cores, {memory} of memory, {os} on {architecture}; load at the beginning {load} ({cores} would keep all cores \
         busy). **Libraries in C++**: {libraries}. Times are medians. The results are the *ratios*: in each round all methods run one after the \

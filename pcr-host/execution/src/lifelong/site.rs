@@ -89,7 +89,7 @@ impl Site {
                 if there {
                     let atom = Atom::along(layout, step, place, vehicle.speed);
                     let atom = atom.map_err(|invalid| format!("edge {}: {invalid}", edge.id))?;
-                    off = off.max(edge.deviation + atom.gap(&points));
+                    off = off.max(step.deviation() + atom.gap(&points));
                     atoms.push(atom);
                 }
             }

@@ -25,11 +25,10 @@ const GAP: f64 = 0.05;
 const ROUNDED: f64 = 1e-4;
 
 /// Elements that may be in any other one, and say nothing of its shape.
-const ADDED: [&str; 3] = ["userData", "include", "dataQuality"];
+const ADDED: [&str; 2] = ["userData", "dataQuality"];
 
 /// What is read of a file, or known to have no reference line.
-const KNOWN: [&str; 9] =
-    ["header", "road", "controller", "junction", "junctionGroup", "station", ADDED[0], ADDED[1], ADDED[2]];
+const KNOWN: [&str; 8] = ["header", "road", "controller", "junction", "junctionGroup", "station", ADDED[0], ADDED[1]];
 
 /// Largest radius of an arc \[m\]; beyond it a line stands for it, and how far it leaves that counts as deviation.
 const STRAIGHT: f64 = 1e9;
@@ -65,6 +64,11 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
     let header = child(root, "header").and_then(|header| header.attribute("name")).unwrap_or_default();
     lose_astray(root, &["road"], warnings);
     warn_of_unknown(root, &KNOWN, warnings);
+    // What another file has instead may be anything.
+    for include in root.descendants().filter(|element| element.has_tag_name("include")) {
+        let parent = include.parent().map_or("", |parent| parent.tag_name().name());
+        warnings.lose(format_args!("include of {}, in {parent}", include.attribute("file").unwrap_or("a file")));
+    }
     let mut names = Names::new();
     // The first road of each edge: a copy adds no links.
     let mut links = Vec::new();
@@ -72,12 +76,15 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
     for (k, road) in children(root, "road").enumerate() {
         let id = road.attribute("id").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
         let name = format!("road {id}");
-        match curve(road, &name).and_then(|found| Ok((found, speed(road, &name, warnings)?))) {
+        let read = |warnings: &mut Warnings| -> Result<_, ImportError> {
+            Ok((curve(road, &name)?, speed(road, &name, warnings)?, only(road, "link")?))
+        };
+        match read(warnings) {
             Err(error) => warnings.lose(error),
-            Ok((Curve { pieces, .. }, _)) if pieces.is_empty() => {
+            Ok((Curve { pieces, .. }, ..)) if pieces.is_empty() => {
                 warnings.lose(format_args!("{name}: it has no geometry"))
             }
-            Ok((Curve { pieces, deviation, longer, joint }, speed)) => {
+            Ok((Curve { pieces, deviation, longer, joint }, speed, link)) => {
                 if joint.iter().any(|gap| *gap > CLOSED) {
                     widest = [widest[0].max(joint[0]), widest[1].max(joint[1])];
                     open.push(name);
@@ -86,7 +93,7 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
                 let edge = Edge::new(named(&id), [0; 2], pieces);
                 let edge = Edge { ways: [true; 2], speed: [speed; 2], deviation, longer, ..edge };
                 if names.add(edge, warnings) == links.len() {
-                    links.push(child(road, "link"));
+                    links.push(link);
                 }
             }
         }
@@ -131,7 +138,11 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<Curve, ImportError
     let (mut joint, mut deviation) = ([0.0_f64; 2], 0.0_f64);
     let mut along = 0.0_f64;
     let view = only(road, "planView")?.ok_or_else(|| ImportError::new(format!("{name}, planView: missing")))?;
-    for (k, record) in children(view, "geometry").enumerate() {
+    let records = view.children().filter(|child| child.is_element() && !ADDED.contains(&child.tag_name().name()));
+    for (k, record) in records.enumerate() {
+        if !record.has_tag_name("geometry") {
+            return Err(ImportError::new(format!("{name}, planView: {} is not read", record.tag_name().name())));
+        }
         let name = format!("{name}, geometry {}", k + 1);
         let field = |attribute: &str| number(record, &name, attribute);
         let (at, heading, length) = ([field("x")?, field("y")?], field("hdg")?, field("length")?);
@@ -237,15 +248,15 @@ fn speed(road: roxmltree::Node<'_, '_>, name: &str, warnings: &mut Warnings) -> 
             if most < 0.0 {
                 return Err(ImportError::new(format!("{name}, speed, max: {most} where a number from 0 is expected")));
             }
-            limits.push(most * unit);
+            // 0 is what maps say that have no limits.
+            limits.extend(Some(most * unit).filter(|limit| *limit > 0.0 && *limit < 1e6));
         }
     }
     let least = limits.iter().copied().reduce(f64::min);
     if limits.iter().any(|limit| Some(*limit) != least) {
         warnings.add(name, "its speed limit changes on the way; the least one is taken for all of it");
     }
-    // 0 is what maps say that have no limits.
-    Ok(least.filter(|speed| *speed > 0.0 && *speed < 1e6))
+    Ok(least)
 }
 
 /// Links between the ends of roads.
@@ -275,11 +286,16 @@ fn groups(
     for (place, link) in links.iter().enumerate() {
         let Some(link) = link else { continue };
         for (side, name) in ["predecessor", "successor"].into_iter().enumerate() {
-            // Junctions are roads that are linked to the roads that they join.
-            let Some(linked) = child(*link, name).filter(|link| link.attribute("elementType") == Some("road")) else {
-                continue;
+            let Some(linked) = child(*link, name) else { continue };
+            let other = match linked.attribute("elementType") {
+                // Junctions are roads that are linked to the roads that they join.
+                Some("junction") => continue,
+                Some("road") => {
+                    let other = roads.place(&named(linked.attribute("elementId").unwrap_or_default()));
+                    other.map_err(|unclear| unclear.to_string())
+                }
+                _ => Err("its elementType is not road and not junction".to_owned()),
             };
-            let other = roads.place(&named(linked.attribute("elementId").unwrap_or_default()));
             match (other, linked.attribute("contactPoint")) {
                 (Ok(road), Some(point @ ("start" | "end"))) => {
                     let (end, other) = (2 * place + side, 2 * road + usize::from(point == "end"));
@@ -293,7 +309,7 @@ fn groups(
                     }
                 }
                 (other, _) => {
-                    let problem = other.map_or_else(|unclear| unclear.to_string(), |_| "it has no contactPoint".into());
+                    let problem = other.err().unwrap_or_else(|| "it has no contactPoint".to_owned());
                     let road = roads.list()[place].id.clone();
                     warnings.add(format_args!("road {road}, {name}"), format!("{problem}; no route leads over it"));
                 }

@@ -22,6 +22,15 @@ pub(super) use vehicles::vehicles;
 const KNOWN: [&str; 9] =
     ["point", "path", "vehicle", "locationType", "location", "block", "group", "visualLayout", "property"];
 
+/// The same of a point: the box is that of vehicles that fit there.
+const OF_POINT: [&str; 5] = ["outgoingPath", "maxVehicleBoundingBox", "vehicleEnvelope", "property", "pointLayout"];
+
+/// The same of a path. A layout of another name would be none, and the path straight.
+const OF_PATH: [&str; 4] = ["peripheralOperation", "vehicleEnvelope", "property", "pathLayout"];
+
+/// The same of a vehicle.
+const OF_VEHICLE: [&str; 3] = ["boundingBox", "property", "vehicleLayout"];
+
 /// How far the place of a point in the visual layout may be from its own \[m\].
 const SHIFT: f64 = 0.05;
 
@@ -57,6 +66,7 @@ pub(super) fn read(
     // Which way vehicles face at which nodes, where that is said [rad].
     let mut angles: Vec<(usize, f64)> = Vec::new();
     for (k, point) in children(root, "point").enumerate() {
+        warn_of_unknown(point, &OF_POINT, warnings);
         let id = point.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
         match place(point, &format!("point {id}")) {
             Err(error) => warnings.lose(error),
@@ -87,8 +97,7 @@ pub(super) fn read(
     let bent = visual.map(bent).unwrap_or_default();
     let mut edges = Names::new();
     for (k, path) in children(root, "path").enumerate() {
-        // A layout of another name would be none, and the path straight.
-        warn_of_unknown(path, &["peripheralOperation", "vehicleEnvelope", "property", "pathLayout"], warnings);
+        warn_of_unknown(path, &OF_PATH, warnings);
         let id = path.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
         match edge(
             path,
@@ -118,13 +127,19 @@ pub(super) fn read(
         let name = format!("{} {name}", element.tag_name().name());
         warnings.add(name, "its vehicleEnvelope is not read; the vehicle has its own outline everywhere");
     }
+    children(root, "vehicle").for_each(|vehicle| warn_of_unknown(vehicle, &OF_VEHICLE, warnings));
+    let mut edges = edges.into_list();
+    // With options or a fleet it is another vehicle that drives.
+    if options.speed.is_none() && options.fleet.is_none() {
+        vehicles::limit_backward(root, &mut edges, warnings)?;
+    }
     let vehicles = children(root, "vehicle").filter_map(|vehicle| vehicle.attribute("name"));
     Ok(Layout {
         vehicles: vehicles.map(crate::scenario::label).filter(|name| !name.is_empty()).collect(),
         name: root.attribute("name").unwrap_or_default().to_owned(),
         levels: vec![String::new()],
         nodes: nodes.into_list(),
-        edges: edges.into_list(),
+        edges,
         corner_radius: options.corner_radius,
         ..Layout::default()
     })
@@ -204,11 +219,22 @@ fn edge(
         )));
     }
     let fit = curve(path, &name, ends, frame, tolerance)?;
-    let limit = |attribute: &str| Ok(optional(path, &name, attribute)?.map(|speed| speed * MILLI));
+    let limit = |attribute: &str| match optional(path, &name, attribute)? {
+        Some(below) if below < 0.0 => {
+            Err(ImportError::new(format!("{name}, {attribute}: {below} where a number from 0 is expected")))
+        }
+        limit => Ok(limit.map(|limit| limit * MILLI)),
+    };
     // openTCS takes a speed of 0 for "not in this direction", and uses no path that is locked.
     let speed = [limit("maxVelocity")?, limit("maxReverseVelocity")?];
     let ways = [speed[0].is_none_or(|speed| speed > 0.0), speed[1].is_some_and(|speed| speed > 0.0)];
-    let locked = path.attribute("locked").is_some_and(|locked| matches!(locked.trim(), "true" | "1"));
+    let locked = match path.attribute("locked").map(str::trim) {
+        Some("true" | "1") => true,
+        None | Some("false" | "0") => false,
+        Some(other) => {
+            return Err(ImportError::new(format!("{name}, locked: {other} where true or false is expected")));
+        }
+    };
     let closed = locked || ways == [false; 2];
     if closed {
         let why = if locked { "it is locked" } else { "its speeds are 0 in both directions" };

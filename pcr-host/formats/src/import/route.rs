@@ -65,6 +65,11 @@ impl Step<'_> {
         bends.chain(self.speed()).fold(fastest, f64::min)
     }
 
+    /// Largest distance from the curve in the file after the same length of travel \[m\]: backward, lengths count from the other end.
+    pub fn deviation(self) -> f64 {
+        self.edge.deviation + if self.backward { self.edge.longer } else { 0.0 }
+    }
+
     /// Its lines and arcs in the direction of travel.
     pub fn curve(self) -> Vec<Placed> {
         match self.backward {
@@ -152,7 +157,7 @@ pub(super) fn trace(layout: &Layout, from: usize, steps: &[Step<'_>]) -> Result<
     for (k, step) in steps.iter().enumerate() {
         let (edge, target) = (step.edge, at(step.target()));
         tracer.limit(step.speed(), edge.rotation);
-        deviation = deviation.max(edge.deviation + longer);
+        deviation = deviation.max(step.deviation() + longer);
         longer += edge.longer;
         let curve = step.curve();
         if !edge.is_straight() {
@@ -294,7 +299,7 @@ pub fn ride(vehicle: &Vehicle, step: Step<'_>) -> Agent {
     let curve = step.curve();
     curve.iter().for_each(|piece| tracer.follow(piece));
     let mut trace = tracer.finish(curve.first().map_or([0.0; 2], |first| first.at));
-    trace.deviation += step.edge.deviation;
+    trace.deviation += step.deviation();
     agent(0, &trace, vehicle, 0.0)
 }
 

@@ -105,7 +105,8 @@ impl Reader<'_> {
         let own = [robot, name].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ");
         let called = label(&own);
         if called != own {
-            let problem = format!("its label is {called}: printable text of up to {LONGEST_LABEL} characters");
+            let problem =
+                format!("its label becomes {called}: labels are printable text of up to {LONGEST_LABEL} characters");
             self.warnings.add(format!("agent {id}"), problem);
         }
         let state = ["nodeStates", "mobileRobotPosition", "plannedPath", "intermediatePath"];

@@ -17,7 +17,7 @@ use crate::memory;
 use crate::rows::{Grid, area};
 use pcr_core::{Full, Interval, Motion, Piece, RegionRef, overlaps, union};
 use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Step, Vehicle};
-use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, label};
+use pcr_formats::scenario::{Agent, MotionSpec, Scenario, label};
 use rayon::prelude::*;
 use serde::Serialize;
 

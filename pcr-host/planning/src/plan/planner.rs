@@ -114,7 +114,15 @@ impl<'m> Planner<'_, 'm> {
     /// Motions as a plan. A plan that the check refuses, or that has a contact, is not returned.
     fn answer(&self, planned: &[Motion<'_, f64>], known: Option<Known>) -> Result<Answer, Failure> {
         let mut plan = self.none();
-        let solved = self.solved(planned);
+        // As it is read again: ramps shorter than a digit of the time are lost in phases.
+        let solved = match Scenario::from_json(&self.solved(planned).to_json()) {
+            Ok(solved) => solved,
+            Err(why) => {
+                let why = format!("the plan cannot be written as phases: {why}");
+                plan.unsolved.push(Unsolved::nowhere(Vec::new(), why));
+                return Ok((plan, None));
+            }
+        };
         let verdict = Verdict::of::<f64>(&solved, false)?;
         if let Some(conflict) = verdict.conflicts.first() {
             let why = format!("the plan has a conflict at {} s", conflict.t[0]);

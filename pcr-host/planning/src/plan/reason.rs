@@ -42,11 +42,14 @@ impl Obstacle {
     }
 }
 
+/// What is said of two agents that meet with all delays, if it is not known where.
+pub(super) const ALWAYS: &str = "they meet whenever they start";
+
 /// Reason why two agents of a scenario meet with all delays (`always`), or why the first finds no start; and the place.
 /// Computed from their discs; without a place if they have no region.
 pub(super) fn reason(scenario: &Scenario, ids: [u64; 2], always: bool) -> (String, Option<Spot>) {
     let general = match always {
-        true => "they meet whenever they start",
+        true => ALWAYS,
         false => "the first cannot start because of the second in any order that was tried",
     };
     match found(scenario, ids, always, general) {

@@ -4,7 +4,7 @@ use super::circle::CIRCULAR_WAIT;
 use super::delays::{self, Objective, Outcome};
 use super::forbidden::{Forbidden, Out, Schedule};
 use super::task::Planner;
-use super::{Priority, Unsolved};
+use super::{Priority, Unsolved, reason};
 use crate::regions::Failure;
 use pcr_core::Motion;
 use rayon::prelude::*;
@@ -145,6 +145,9 @@ impl Starts {
             });
             match conflict.as_slice() {
                 _ if is_circle => None,
+                &[i, j] if planner.is_late() => {
+                    Some(Unsolved::nowhere(vec![planner.id(j), planner.id(i)], reason::ALWAYS))
+                }
                 &[i, j] => Some(Unsolved::of(planner.scenario, [planner.id(j), planner.id(i)], true)),
                 agents => Some(Unsolved::nowhere(
                     ids(agents),

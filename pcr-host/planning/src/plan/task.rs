@@ -8,6 +8,7 @@ use crate::regions::{self, Failure};
 use crate::rows;
 use pcr_core::Motion;
 use pcr_formats::scenario::Scenario;
+use std::time::Instant;
 
 /// Largest number of agents for which the table of all pairs is computed repeatedly.
 const MOST: usize = 2_000;
@@ -18,9 +19,16 @@ pub(super) struct Planner<'a, 'm> {
     pub(super) request: &'a Request,
     /// Motions with their margins.
     pub(super) motions: &'a [Motion<'m, f64>],
+    /// When planning began.
+    pub(super) begin: Instant,
 }
 
 impl Planner<'_, '_> {
+    /// Whether the time that planning may take is over.
+    pub(super) fn is_late(&self) -> bool {
+        self.request.effort.time.is_some_and(|time| self.begin.elapsed() >= time)
+    }
+
     pub(super) fn id(&self, agent: usize) -> u64 {
         self.scenario.agents[agent].id
     }

@@ -3,7 +3,7 @@
 use super::columns::Columns;
 use super::figures::thousandths;
 use super::{counted, heading, printable, quoted};
-use crate::nodes::Listing;
+use crate::nodes::{Listing, Way};
 use std::io::{self, Write};
 
 /// A line a node, then a line an edge: numbers that read back exactly.
@@ -11,18 +11,18 @@ use std::io::{self, Write};
 /// # Errors
 /// Errors of the writer.
 pub fn nodes_csv(listing: &Listing<'_>, out: &mut impl Write) -> io::Result<()> {
-    writeln!(out, "kind,id,names,level,x,y,from,to,length,two_way,speed,speed_back,closed")?;
+    writeln!(out, "kind,id,names,level,x,y,from,to,length,two_way,speed,speed_back,closed,backward")?;
     let text = |text: &dyn ToString| quoted(&text.to_string()).into_owned();
     for node in &listing.nodes {
         let ([x, y], names) = (node.at, text(&node.names.join(" ")));
-        writeln!(out, "node,{},{names},{},{x},{y},,,,,,,", text(node.id), text(&node.level))?;
+        writeln!(out, "node,{},{names},{},{x},{y},,,,,,,,", text(node.id), text(&node.level))?;
     }
     for edge in &listing.edges {
         let [speed, back] =
             [edge.speed, edge.speed_back].map(|speed| speed.map_or_else(String::new, |it| it.to_string()));
         let ([id, from, to], length) = ([edge.id, edge.from, edge.to].map(|id| text(id)), edge.length);
-        let [two_way, closed] = [edge.two_way, edge.closed].map(u8::from);
-        writeln!(out, "edge,{id},,,,,{from},{to},{length},{two_way},{speed},{back},{closed}")?;
+        let [two_way, closed, backward] = [edge.two_way, edge.closed, edge.backward].map(u8::from);
+        writeln!(out, "edge,{id},,,,,{from},{to},{length},{two_way},{speed},{back},{closed},{backward}")?;
     }
     Ok(())
 }
@@ -56,9 +56,10 @@ pub fn nodes_table(listing: &Listing<'_>, out: &mut impl Write) -> io::Result<()
         if let Some(back) = edge.speed_back {
             speed = format!("{speed}, back {}", thousandths(back));
         }
-        let ways = match (edge.closed, edge.two_way) {
-            (true, _) => "none",
-            (_, true) => "both",
+        let ways = match edge {
+            Way { closed: true, .. } => "none",
+            Way { two_way: true, .. } => "both",
+            Way { backward: true, .. } => "back",
             _ => "one",
         };
         columns.row(vec![id, from, to, thousandths(edge.length), ways.to_owned(), speed]);

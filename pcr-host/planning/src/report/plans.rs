@@ -8,6 +8,9 @@ use crate::plan::{Costs, Plan, Planned};
 use std::collections::HashMap;
 use std::io::{self, Write};
 
+/// Largest number of reasons that are told to people.
+const REASONS: usize = 40;
+
 /// The header line of [`plan_csv`].
 pub const PLAN_CSV_HEADER: &str = "name,id,delay,t_end,label\n";
 
@@ -54,13 +57,15 @@ pub fn plan_table(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
     }
 }
 
-/// Why there is no plan for all, a line a reason.
+/// Why there is no plan for all, a line a reason; of many the first ones.
 pub fn reasons(plan: &Plan) -> impl Iterator<Item = String> {
-    plan.unsolved.iter().map(|unsolved| match unsolved.ids.as_slice() {
+    let more = plan.unsolved.len().checked_sub(REASONS).filter(|more| *more > 0);
+    let reasons = plan.unsolved.iter().take(REASONS).map(|unsolved| match unsolved.ids.as_slice() {
         [] => unsolved.why.clone(),
         [id] => format!("agent {}: {}", called(&plan.labels, *id), unsolved.why),
         ids => format!("agents {}: {}", all_called(&plan.labels, ids), unsolved.why),
-    })
+    });
+    reasons.chain(more.map(|more| format!("and {more} more (--json)")))
 }
 
 /// What a plan leaves open, in a line: all agents, or those that it leaves out; `None` if it is for all.

@@ -58,6 +58,9 @@ pub struct Fleet<W: Write> {
     time: f64,
     /// Number of lost connections.
     drops: u64,
+    /// Whether the broker has ever been reached, and why not the last time.
+    met: bool,
+    why: Option<String>,
     audit: Audit,
 }
 
@@ -100,6 +103,8 @@ impl<W: Write> Fleet<W> {
             last: 0.0,
             time: 0.0,
             drops: 0,
+            met: false,
+            why: None,
             audit: Audit::default(),
         })
     }
@@ -112,6 +117,11 @@ impl<W: Write> Fleet<W> {
     /// Number of connections that were broken on purpose.
     pub fn drops(&self) -> u64 {
         self.drops
+    }
+
+    /// Why the broker was not reached the last time, if no vehicle has ever reached it.
+    pub fn unreached(&self) -> Option<&str> {
+        self.why.as_deref().filter(|_| !self.met)
     }
 
     /// The audit whether two vehicles had the right to one place.
@@ -142,11 +152,12 @@ impl<W: Write> Fleet<W> {
             let Some(member) = self.members.get_mut(k) else { continue };
             match news {
                 News::Up => {
+                    self.met = true;
                     member.vehicle.tell_online();
                     member.vehicle.tell_factsheet();
                     member.vehicle.tell_state();
                 }
-                News::Down(_) => {}
+                News::Down(why) => self.why = Some(why),
                 News::Message { topic, payload, .. } => {
                     if let Some((_, key, kind)) = self.settings.interface.parse(&topic)
                         && key == *member.vehicle.key()

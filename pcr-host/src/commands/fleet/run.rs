@@ -3,7 +3,7 @@
 use super::super::printed::{notes, stdout, tables};
 use super::super::serve::{AT_BROKERS, VEHICLES, broker, interfaces};
 use super::super::sources::{FLEET, layout, layout_source};
-use super::super::{CONFLICTS, NO_STREAM, NOT_WRITTEN, Stop, is_standard};
+use super::super::{CONFLICTS, NO_STREAM, NOT_WRITTEN, Stop, WRONG_INPUT, complain, is_standard};
 use super::Arguments;
 use pcr_execution::lifelong::{streets, well_formedness};
 use pcr_formats::import::{self, Imported, Options};
@@ -248,14 +248,22 @@ fn driven(
     let mut run = Run::open(world, &broker(&arguments.broker)?, &interfaces(&arguments.topics)?, crew, record)?;
     let flag = stopped_by_signal();
     let end = arguments.time.unwrap_or(f64::INFINITY);
-    let go_on = |run: &mut Run<_>, until: f64, is_busy: fn(&Run<_>) -> bool| -> io::Result<()> {
+    let mut is_told = false;
+    let mut go_on = |run: &mut Run<_>, until: f64, is_busy: fn(&Run<_>) -> bool| -> io::Result<()> {
         while !flag.load(Ordering::Relaxed) && run.fleet.time() < until && is_busy(run) {
             run.step()?;
+            if let Some(why) = run.fleet.unreached().filter(|_| !is_told) {
+                complain(&format!("no broker: {why}; it is tried again"));
+                is_told = true;
+            }
             std::thread::sleep(Duration::from_millis(5));
         }
         Ok(())
     };
     go_on(&mut run, end, |_| true).map_err(unwritten)?;
+    if let Some(why) = run.fleet.unreached() {
+        return Err(Stop::Error(format!("no vehicle has reached a broker: {why}"), WRONG_INPUT).into());
+    }
     let (time, done, drops) = (run.fleet.time(), run.done(), run.fleet.drops());
     let mut left = None;
     if let Some(office) = run.office.as_mut().filter(|_| arguments.finish) {

@@ -6,7 +6,7 @@
 
 use super::super::vehicle::Given;
 use super::super::xml::{children, only, optional, parse};
-use super::super::{ImportError, Options, Warnings};
+use super::super::{Edge, ImportError, Options, Warnings};
 use super::MILLI;
 use crate::footprint::Footprint;
 
@@ -39,6 +39,43 @@ pub(in super::super) fn vehicles(
     Ok(())
 }
 
+/// Limits the speeds backward to the least of the vehicles.
+pub(super) fn limit_backward(
+    root: roxmltree::Node<'_, '_>,
+    edges: &mut [Edge],
+    warnings: &mut Warnings,
+) -> Result<(), ImportError> {
+    let mut ways: Vec<&mut Edge> = edges.iter_mut().filter(|edge| edge.ways[1]).collect();
+    for vehicle in children(root, "vehicle") {
+        let name = named(vehicle);
+        match speed(vehicle, &name, "maxReverseVelocity")? {
+            Some(0.0) if !ways.is_empty() => {
+                warnings.add(name, "its maxReverseVelocity is 0; it is taken to drive backward all the same");
+            }
+            Some(own) if own > 0.0 => {
+                ways.iter_mut()
+                    .for_each(|edge| edge.speed[1] = edge.speed[1].map_or(Some(own), |speed| Some(speed.min(own))));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+fn named(vehicle: roxmltree::Node<'_, '_>) -> String {
+    format!("vehicle {}", vehicle.attribute("name").unwrap_or_default())
+}
+
+/// A speed of a vehicle \[m/s\].
+fn speed(vehicle: roxmltree::Node<'_, '_>, name: &str, attribute: &str) -> Result<Option<f64>, ImportError> {
+    match optional(vehicle, name, attribute)? {
+        Some(below) if below < 0.0 => {
+            Err(ImportError::new(format!("{name}, {attribute}: {below} where a number from 0 is expected")))
+        }
+        speed => Ok(speed.map(|speed| speed * MILLI)),
+    }
+}
+
 /// A vehicle of the model.
 struct Vehicle {
     name: String,
@@ -51,11 +88,11 @@ struct Vehicle {
 
 impl Vehicle {
     fn new(vehicle: roxmltree::Node<'_, '_>) -> Result<Self, ImportError> {
-        let name = format!("vehicle {}", vehicle.attribute("name").unwrap_or_default());
-        let metres = |node, attribute: &str| Ok(optional(node, &name, attribute)?.map(|value| value * MILLI));
-        let speed = metres(vehicle, "maxVelocity")?.filter(|speed| *speed > 0.0);
+        let name = named(vehicle);
+        let speed = speed(vehicle, &name, "maxVelocity")?.filter(|speed| *speed > 0.0);
         let half = only(vehicle, "boundingBox")?.map(|outline| half(outline, &name)).transpose()?;
-        Ok(Self { speed, length: metres(vehicle, "length")?, half, name })
+        let length = optional(vehicle, &name, "length")?.map(|length| length * MILLI);
+        Ok(Self { speed, length, half, name })
     }
 }
 

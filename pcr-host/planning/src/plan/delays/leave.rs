@@ -10,8 +10,9 @@
 
 use super::feasible::{Feasible, MOST, feasible};
 use super::insert;
-use super::problem::Problem;
+use super::problem::{Problem, first};
 use super::search::{Search, Stop};
+use std::collections::BTreeMap;
 
 /// Conflicts, and the delays of the agents that stay in spite of them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -59,6 +60,10 @@ pub(super) fn left(problem: &Problem, with: &[Vec<usize>], stop: Stop<'_>, ask_f
     close(&mut best.delays, with);
     let large = problem.len() > LARGE;
     let mut budget = Budget { stop, left: stop.nodes.saturating_mul(SEARCHES), large };
+    // Whoever asks for all agents has the answer, and more reasons take longer.
+    if !ask_fewest && !best.conflicts.is_empty() && (stop.clock)() {
+        return Left { fewest: false, ..best };
+    }
     loop {
         let hit = hitting(&best.conflicts, with, stop, &mut best.fewest);
         let (least, before) = (hit.len(), best.conflicts.len());
@@ -241,22 +246,22 @@ fn hitting(conflicts: &[Vec<usize>], with: &[Vec<usize>], stop: Stop<'_>, fewest
 
 /// The conflicts in independent groups: no agent that can be left out because of one group is affected by another one.
 fn apart<'a>(conflicts: &'a [Vec<usize>], with: &[Vec<usize>]) -> Vec<Vec<&'a Vec<usize>>> {
-    // Agents and conflicts of each group.
-    let mut groups: Vec<(Vec<usize>, Vec<&Vec<usize>>)> = Vec::new();
+    let mut above: Vec<usize> = (0..with.len()).collect();
     for conflict in conflicts {
-        let mut agents: Vec<usize> = conflict.iter().flat_map(|&agent| with[agent].iter().copied()).collect();
-        let mut all = vec![conflict];
-        groups.retain_mut(|(theirs, others)| {
-            let is_apart = !theirs.iter().any(|agent| agents.contains(agent));
-            if !is_apart {
-                agents.append(theirs);
-                all.append(others);
-            }
-            is_apart
-        });
-        groups.push((agents, all));
+        let mut agents = conflict.iter().flat_map(|&agent| &with[agent]);
+        let Some(&one) = agents.next() else { continue };
+        for &other in agents {
+            let [a, b] = [one, other].map(|agent| first(&mut above, agent));
+            above[a] = b;
+        }
     }
-    groups.into_iter().map(|(_, conflicts)| conflicts).collect()
+    let mut groups: BTreeMap<usize, Vec<&Vec<usize>>> = BTreeMap::new();
+    for conflict in conflicts {
+        let group =
+            conflict.first().map_or(0, |&agent| first(&mut above, with[agent].first().copied().unwrap_or(agent)));
+        groups.entry(group).or_default().push(conflict);
+    }
+    groups.into_values().collect()
 }
 
 /// Branch and bound: for a conflict, which of its agents is left out.

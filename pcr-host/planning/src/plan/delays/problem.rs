@@ -219,13 +219,6 @@ impl Problem {
     /// The agents in groups that forbid one another nothing, each group in order. O(agents + pairs), nearly.
     pub(crate) fn parts(&self) -> Vec<Vec<usize>> {
         let mut above: Vec<usize> = (0..self.len()).collect();
-        fn first(above: &mut [usize], mut agent: usize) -> usize {
-            while above[agent] != agent {
-                above[agent] = above[above[agent]];
-                agent = above[agent];
-            }
-            agent
-        }
         for pair in &self.pairs {
             let [a, b] = pair.agents.map(|agent| first(&mut above, agent));
             above[a.max(b)] = a.min(b);
@@ -254,4 +247,13 @@ impl Problem {
         }
         apart
     }
+}
+
+/// The first of a group of agents, each of which is below another one of its group or itself.
+pub(super) fn first(above: &mut [usize], mut agent: usize) -> usize {
+    while above[agent] != agent {
+        above[agent] = above[above[agent]];
+        agent = above[agent];
+    }
+    agent
 }
