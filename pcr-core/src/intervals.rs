@@ -4,7 +4,7 @@ use crate::geometry::Interval;
 use crate::scalar::Scalar;
 
 /// The union of intervals, which may be in any order, as disjoint intervals in increasing order. Cost of each interval
-/// of the union: one pass over the intervals to find it, and one more each time that it grows.
+/// of the union: one pass over the intervals, and one more each time that it has grown to one that came too early.
 ///
 /// ```
 /// use pcr_core::{Interval, gaps, union};
@@ -44,23 +44,61 @@ impl<S: Scalar, I: Iterator<Item = Interval<S>> + Clone> Iterator for Union<S, I
         // Reversed ends are swapped and a NaN end counts as unbounded, so nothing is reported as free by mistake and
         // the iteration ends.
         let whole = |interval: Interval<S>| if interval.lo <= interval.hi { interval } else { interval.limited() };
-        let mut lowest: Option<Interval<S>> = None;
-        for interval in self.intervals.clone().map(whole) {
-            let beyond = self.after.is_none_or(|after| interval.lo > after);
-            if beyond && lowest.is_none_or(|lowest| interval.lo < lowest.lo) {
-                lowest = Some(interval);
-            }
-        }
-        let mut next = lowest?;
+        Lowest::next(&mut self.after, |lowest| {
+            self.intervals.clone().map(whole).for_each(|interval| lowest.add(interval));
+        })
+    }
+}
+
+/// The lowest interval of a union, while its intervals come one by one in any order.
+pub(crate) struct Lowest<S> {
+    /// End of the part of the union that is known already.
+    pub(crate) after: Option<S>,
+    pub(crate) found: Option<Interval<S>>,
+    /// The lowest begin of the intervals that were above what had been found.
+    above: Option<S>,
+}
+
+impl<S: Scalar> Lowest<S> {
+    /// The next interval of a union, of which all is known up to `after`. Each call of `pass` adds all intervals,
+    /// or at least those from `after` to the end of what has been found.
+    pub(crate) fn next(after: &mut Option<S>, mut pass: impl FnMut(&mut Self)) -> Option<Interval<S>> {
+        let mut lowest = Self { after: *after, found: None, above: None };
         loop {
-            let grown = self.intervals.clone().map(whole).filter(|other| other.meets(next)).fold(next, Interval::hull);
-            if grown == next {
-                break;
+            pass(&mut lowest);
+            let (found, above) = (lowest.found?, lowest.above.take());
+            // What was above it when it came may belong to it now.
+            if above.is_none_or(|above| found.hi < above) {
+                *after = Some(found.hi);
+                return Some(found);
             }
-            next = grown;
         }
-        self.after = Some(next.hi);
-        Some(next)
+    }
+
+    pub(crate) fn add(&mut self, interval: Interval<S>) {
+        if self.after.is_some_and(|after| interval.lo <= after) {
+            return;
+        }
+        let Some(found) = self.found else {
+            self.found = Some(interval);
+            return;
+        };
+        if found.meets(interval) {
+            self.found = Some(found.hull(interval));
+            return;
+        }
+        let (lower, upper) = if interval.lo < found.lo { (interval, found) } else { (found, interval) };
+        self.found = Some(lower);
+        self.is_below(upper.lo);
+    }
+
+    /// Whether intervals from `lo` on neither meet what has been found nor are lower; if so, they need not be added.
+    pub(crate) fn is_below(&mut self, lo: S) -> bool {
+        let below = self.found.is_some_and(|found| found.hi < lo);
+        if below {
+            self.above = Some(self.above.map_or(lo, |above| above.min(lo)));
+        }
+        below
     }
 }
 
@@ -93,5 +131,31 @@ impl<S: Scalar, I: Iterator<Item = Interval<S>>> Iterator for Gaps<S, I> {
                 return Some(Interval::new(rest.lo, interval.lo));
             }
         }
+    }
+}
+
+#[cfg(all(test, feature = "libm"))]
+mod tests {
+    use super::*;
+    use core::cell::Cell;
+
+    /// The number of parts of a union, their length, and how often an interval was looked at.
+    fn looked_at(intervals: impl Iterator<Item = i32> + Clone) -> (usize, f64, usize) {
+        let looks = Cell::new(0);
+        let counted = intervals.map(|lo| {
+            looks.set(looks.get() + 1);
+            Interval::new(f64::from(lo), f64::from(lo + 1))
+        });
+        let (parts, length) = union(counted).fold((0, 0.0), |(parts, sum), part| (parts + 1, sum + part.length()));
+        (parts, length, looks.get())
+    }
+
+    #[test]
+    fn a_part_of_a_union_takes_one_pass_and_one_more_for_those_that_came_too_early() {
+        // Each interval begins where the one before it ends. The last pass finds nothing.
+        assert_eq!(looked_at(0..100), (1, 100.0, 200));
+        assert_eq!(looked_at((0..100).rev()), (1, 100.0, 200));
+        assert_eq!(looked_at((0..100).chain(200..300)), (2, 200.0, 600));
+        assert_eq!(looked_at((50..100).chain(0..50)), (1, 100.0, 300));
     }
 }

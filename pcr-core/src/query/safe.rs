@@ -7,7 +7,7 @@
 
 use crate::error::Mismatch;
 use crate::geometry::{Interval, Pose};
-use crate::intervals::{gaps, union};
+use crate::intervals::{Lowest, gaps};
 use crate::motion::Motion;
 use crate::pair::Pair;
 use crate::pair::events::add_events;
@@ -27,49 +27,125 @@ impl<'a, S: Scalar> Encounter<'a, S> {
     /// disc then reaches the ego's disc at some of these lengths. Disjoint windows in increasing order, rounded
     /// outward. The part may also be a single length or a whole segment; it is clamped to the path.
     ///
-    /// Cost for each window: a comparison of boxes for each pair of segments, and a few hundred operations for each
-    /// pair that comes near.
+    /// Cost for each window: on those segments of the other path that the other agent passes from the end of the window
+    /// before to the end of this one, a comparison of boxes with each segment of the part, and a few hundred operations
+    /// for each pair that comes near.
     pub fn blocked(
         &self,
         length: Interval<S>,
         during: Interval<S>,
     ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
-        let (ego, other, during) = (self.ego, self.other, in_order(during));
-        union(self.covered(ego, length, other).filter_map(move |covered| kept_from(ego, other, covered, during)))
+        Blocked { reaches: core::iter::once(self.reach(length, during)), after: None }
     }
 
     /// The lengths of the ego's path \[m\] that the other agent blocks at some time of an interval \[s\]: disjoint
     /// intervals in increasing order, rounded outward. Cost as for [`Encounter::blocked`].
     pub fn blocked_lengths(&self, during: Interval<S>) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
+        Blocked { reaches: core::iter::once(self.reach_during(during)), after: None }
+    }
+
+    /// The windows in which the other agent blocks a part of the ego's path.
+    fn reach(&self, length: Interval<S>, during: Interval<S>) -> Reach<'a, S> {
+        self.reach_of(self.ego, length, self.other, Some(in_order(during)))
+    }
+
+    /// The lengths of the ego's path that the other agent blocks during an interval of time.
+    fn reach_during(&self, during: Interval<S>) -> Reach<'a, S> {
         let during = during.limited();
         let times = [during.lo - self.other.lateness(), during.hi + self.ego.lateness()];
         let lengths = times.map(|time| self.other.length_at(time));
         // The length that belongs to a time is right within the rounding error of a distance.
         let all = Interval::new(S::ZERO, self.other.path().length());
         let part = Interval::new(lengths[0], lengths[1]).widen(self.pad(), all);
-        union(self.covered(self.other, part, self.ego))
+        self.reach_of(self.other, part, self.ego, None)
     }
 
-    /// The lengths of the path of `on` that are within reach of this part of the path of `by`, in no order.
-    fn covered(
+    fn reach_of(
         &self,
         by: &'a Motion<'a, S>,
         part: Interval<S>,
         on: &'a Motion<'a, S>,
-    ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
+        during: Option<Interval<S>>,
+    ) -> Reach<'a, S> {
         let slack = Pair::new(by, on).slack;
-        let part = on_path(by, part);
         // Cutting a segment adds rounding errors of its own.
         let radius = self.radius() + slack.double();
-        let length = Interval::new(S::ZERO, on.path().length());
-        let theirs = on.path().segments().iter();
-        theirs.flat_map(move |second| {
-            let own = by.path().segments().iter().filter_map(move |first| cut(first, part));
-            let near = own.filter(move |first| first.bounds().expanded(radius).meets(second.bounds()));
-            near.flat_map(move |first| covered(&first, second, radius, slack)).flatten().map(move |covered| {
-                Interval::new(covered.lo + second.from, covered.hi + second.from).widen(slack, length)
-            })
+        Reach { by, part: on_path(by, part), on, during, radius, slack, pad: self.pad() }
+    }
+}
+
+/// The lengths of one path that are within reach of a part of another one, or the times that belong to them.
+#[derive(Clone)]
+struct Reach<'a, S: Scalar> {
+    by: &'a Motion<'a, S>,
+    part: Interval<S>,
+    on: &'a Motion<'a, S>,
+    /// The window of time \[s\]; `None` if lengths are asked for.
+    during: Option<Interval<S>>,
+    radius: S,
+    slack: S,
+    /// Bound on the rounding error of the length that belongs to a time.
+    pad: S,
+}
+
+impl<S: Scalar> Reach<'_, S> {
+    /// What is blocked on a segment, in no order.
+    fn on_segment(&self, second: &Segment<S>) -> impl Iterator<Item = Interval<S>> {
+        let (part, all) = (self.part, Interval::new(S::ZERO, self.on.path().length()));
+        let segments = self.by.path().segments();
+        let first = segments.partition_point(|segment| segment.to < part.lo);
+        let own = segments.get(first..).unwrap_or_default().iter().map_while(move |first| cut(first, part));
+        let near = own.filter(|first| first.bounds().expanded(self.radius).meets(second.bounds()));
+        let covered = near.flat_map(|first| covered(&first, second, self.radius, self.slack)).flatten();
+        covered.filter_map(move |covered| {
+            let lengths = Interval::new(covered.lo + second.from, covered.hi + second.from).widen(self.slack, all);
+            match self.during {
+                None => Some(lengths),
+                Some(during) => kept_from(self.by, self.on, lengths, during),
+            }
         })
+    }
+
+    /// An interval that contains all that is blocked on a segment. It is wider by more than rounding errors, so what is
+    /// blocked on segments before this one does not end after it, and on those that follow does not begin before it.
+    fn bounds(&self, segment: &Segment<S>) -> Option<Interval<S>> {
+        let all = Interval::new(S::ZERO, self.on.path().length());
+        let lengths = Interval::new(segment.from, segment.to).widen(self.slack + self.pad, all);
+        match self.during {
+            None => Some(lengths),
+            Some(_) => kept_from(self.by, self.on, lengths, Interval::new(-S::LIMIT, S::LIMIT)),
+        }
+    }
+
+    /// Adds what is blocked, except for what can neither be nor belong to the lowest interval.
+    fn add_to(&self, lowest: &mut Lowest<S>) {
+        let segments = self.on.path().segments();
+        let known = |segment: &Segment<S>, after: S| self.bounds(segment).is_some_and(|bounds| bounds.hi < after);
+        let first = lowest.after.map_or(0, |after| segments.partition_point(|segment| known(segment, after)));
+        let near = self.by.bounds().expanded(self.radius + self.slack);
+        let rest = segments.get(first..).unwrap_or_default().iter();
+        for segment in rest.filter(|segment| near.meets(segment.bounds())) {
+            if self.bounds(segment).is_some_and(|bounds| lowest.is_below(bounds.lo)) {
+                break;
+            }
+            self.on_segment(segment).for_each(|blocked| lowest.add(blocked));
+        }
+    }
+}
+
+/// The union of what is blocked, as disjoint intervals in increasing order. Each one is looked for from the end of the
+/// one before it on.
+#[derive(Clone)]
+struct Blocked<S, R> {
+    reaches: R,
+    after: Option<S>,
+}
+
+impl<'a, S: Scalar, R: Iterator<Item = Reach<'a, S>> + Clone> Iterator for Blocked<S, R> {
+    type Item = Interval<S>;
+
+    fn next(&mut self) -> Option<Interval<S>> {
+        Lowest::next(&mut self.after, |lowest| self.reaches.clone().for_each(|reach| reach.add_to(lowest)))
     }
 }
 
@@ -108,7 +184,8 @@ fn in_order<S: Scalar>(during: Interval<S>) -> Interval<S> {
 /// blocks any of these lengths \[m\], in increasing order. The lengths are clamped to the path. The other agents move as
 /// their motions say, and stand before and after them.
 ///
-/// Cost for each interval: that of [`Encounter::blocked`] for every other agent.
+/// Cost for each interval: that of [`Encounter::blocked`] for every other agent, up to the end of the blocked window that
+/// follows it.
 ///
 /// # Errors
 /// [`Mismatch::NoSuchAgent`].
@@ -135,7 +212,8 @@ pub fn safe_intervals<'a, S: Scalar>(
     during: Interval<S>,
 ) -> Result<impl Iterator<Item = Interval<S>> + Clone, Mismatch> {
     let pairs = encounters(fleet, ego)?;
-    Ok(gaps(union(pairs.flat_map(move |pair| pair.blocked(length, during))), during))
+    let reaches = pairs.map(move |pair| pair.reach(length, during));
+    Ok(gaps(Blocked { reaches, after: None }, during))
 }
 
 /// The lengths of an agent's path \[m\] that no other agent of the fleet blocks at any time of an interval \[s\]: the
@@ -147,8 +225,8 @@ pub fn safe_lengths<'a, S: Scalar>(
 ) -> Result<impl Iterator<Item = Interval<S>> + Clone, Mismatch> {
     let pairs = encounters(fleet, ego)?;
     let length = fleet.get(ego).map_or(S::ZERO, |ego| ego.path().length());
-    let blocked = union(pairs.flat_map(move |pair| pair.blocked_lengths(during)));
-    Ok(gaps(blocked, Interval::new(S::ZERO, length)))
+    let reaches = pairs.map(move |pair| pair.reach_during(during));
+    Ok(gaps(Blocked { reaches, after: None }, Interval::new(S::ZERO, length)))
 }
 
 /// The encounters of the ego with every other agent.
@@ -262,4 +340,121 @@ pub(crate) fn times<S: Scalar>(
     let hi = if lengths.hi >= motion.path().length() { during.hi } else { time.hi };
     let window = Interval::new(lo.max(during.lo), hi.min(during.hi));
     (window.lo <= window.hi).then_some(window)
+}
+
+#[cfg(all(test, feature = "libm"))]
+mod tests {
+    use super::*;
+    use crate::{Limits, Path, Point, Profile, Radians, Turn, union};
+    use heapless::Vec;
+
+    /// Rounds on a track of two lines and two half circles.
+    fn rounds<const N: usize>(start: [f64; 3], rounds: usize) -> Path<f64, N> {
+        let pose = Pose { position: Point::new(start[0], start[1]), heading: Radians(start[2]) };
+        let half = |path: Path<f64, N>| {
+            path.line(2.0).and_then(|path| path.arc(0.5, Turn::Left, 0.5 * core::f64::consts::PI)).expect("a path")
+        };
+        (0..2 * rounds).fold(Path::starting_at(pose).expect("a pose"), |path, _| half(path))
+    }
+
+    /// From rest to rest at 1 m/s twice, with a wait between.
+    fn with_a_wait(length: f64, wait: f64) -> Profile<f64, 8> {
+        let ends = |part: f64| [(1.0, 1.0), (part * length - 1.0, 0.0), (1.0, -1.0)];
+        let pieces = ends(0.3).into_iter().chain([(wait, 0.0)]).chain(ends(0.7));
+        Profile::from_pieces(0.0, pieces).expect("a profile")
+    }
+
+    /// The union of all that is blocked on any segment.
+    fn all<'a>(reaches: impl Iterator<Item = Reach<'a, f64>>) -> Vec<Interval<f64>, 64> {
+        let mut found: Vec<_, 2048> = Vec::new();
+        for reach in reaches {
+            let segments = reach.on.path().segments().iter();
+            segments.for_each(|segment| found.extend(reach.on_segment(segment)));
+        }
+        union(found.iter().copied()).collect()
+    }
+
+    #[test]
+    fn what_is_blocked_is_the_union_over_all_segments() {
+        let paths: [Path<f64, 32>; 4] = [
+            rounds([0.0, 0.0, 0.0], 3),
+            rounds([0.2, 1.3, 1.0], 5),
+            rounds([1.0, -0.5, 2.0], 1),
+            rounds([0.7, 0.1, 0.5], 0),
+        ];
+        let profiles = [0, 1, 2, 3].map(|k| match paths[k].as_path().length() {
+            0.0 => Profile::standing(),
+            length => with_a_wait(length, 2.0 * k as f64),
+        });
+        let motion = |k: usize| {
+            let profile = profiles[k].as_profile();
+            let motion = Motion::new(paths[k].as_path(), profile, 0.3, 7.0 * k as f64).expect("a motion");
+            motion.with_lateness(0.25 * (k % 2) as f64).expect("a lateness")
+        };
+        let fleet = [0, 1, 2, 3].map(motion);
+        let mut windows = 0;
+        for ego in 0..4 {
+            let end = fleet[ego].path().length();
+            for (lo, hi) in [(0.0, 1.0), (0.0, 0.0), (0.31, 0.31), (0.2, 0.3), (0.5, 1.0)] {
+                for during in [Interval::new(-9.0, 90.0), Interval::new(8.0, 15.5), Interval::new(12.0, 12.0)] {
+                    let part = Interval::new(lo * end, hi * end);
+                    let pairs = encounters(&fleet, ego).expect("an agent of the fleet");
+                    for pair in pairs.clone() {
+                        assert!(pair.blocked(part, during).eq(all(core::iter::once(pair.reach(part, during)))));
+                        assert!(pair.blocked_lengths(during).eq(all(core::iter::once(pair.reach_during(during)))));
+                    }
+                    let blocked = all(pairs.clone().map(|pair| pair.reach(part, during)));
+                    windows += blocked.len();
+                    let safe = safe_intervals(&fleet, ego, part, during).expect("an agent of the fleet");
+                    assert!(safe.eq(gaps(blocked.into_iter(), during)), "{ego} {part:?} {during:?}");
+                    let blocked = all(pairs.map(|pair| pair.reach_during(during)));
+                    let safe = safe_lengths(&fleet, ego, during).expect("an agent of the fleet");
+                    assert!(safe.eq(gaps(blocked.into_iter(), Interval::new(0.0, end))), "{ego} {during:?}");
+                }
+            }
+        }
+        assert!(windows > 90, "{windows}");
+    }
+
+    #[test]
+    fn windows_of_one_agent_count_where_those_of_another_reach_them() {
+        // An agent stands. Another one comes past at 0.5 s to 1.5 s, and again a round later, which is not looked at before
+        // the window of the third, slow one joins both.
+        let paths: [Path<f64, 8>; 3] = [
+            rounds([0.0, 0.0, 0.0], 0),
+            rounds([-1.0, 0.0, 0.0], 2),
+            rounds([0.0, -1.0, core::f64::consts::FRAC_PI_2], 0).line(2.0).expect("a path"),
+        ];
+        let speeds = [1.0, 1.0, 0.125];
+        let profiles = [0, 1, 2].map(|k| {
+            let piece = (paths[k].as_path().length() / speeds[k], 0.0);
+            Profile::<f64, 1>::from_pieces(speeds[k], [piece]).expect("a profile")
+        });
+        let fleet = [(0, 0.0), (1, 0.0), (2, -4.0)].map(|(k, start)| {
+            Motion::new(paths[k].as_path(), profiles[k].as_profile(), 0.25, start).expect("a motion")
+        });
+        let (here, during) = (Interval::new(0.0, 0.0), Interval::new(-1.0, 10.0));
+        let mut safe = safe_intervals(&fleet, 0, here, during).expect("an agent of the fleet");
+        let (before, after) = (safe.next().expect("before"), safe.next().expect("after"));
+        let again = 2.0 * 2.0 + core::f64::consts::PI + 1.5;
+        assert!(before.lo == -1.0 && before.hi.abs() < 1e-9, "{before:?}");
+        assert!((after.lo - again).abs() < 1e-9 && after.hi == 10.0, "{after:?}");
+        assert_eq!(safe.next(), None);
+    }
+
+    #[test]
+    fn paths_of_many_rounds_are_answered_in_a_moment() {
+        // Where each interval was found in several passes over all pairs of segments, this took days.
+        let paths: [Path<f64, 512>; 2] = [rounds([0.0, 0.0, 0.0], 128), rounds([0.2, 1.3, 1.0], 128)];
+        let length = paths[0].as_path().length();
+        let profile = Profile::rest_to_rest(length, Limits { speed: 1.0, acceleration: 1.0 }).expect("a profile");
+        let fleet =
+            paths.each_ref().map(|path| Motion::new(path.as_path(), profile.as_profile(), 0.3, 0.0).expect("a motion"));
+        let during = fleet[0].time();
+        let safe = |part| safe_intervals(&fleet, 0, part, during).expect("an agent of the fleet").count();
+        // Each round crosses the other track twice.
+        assert_eq!(safe(Interval::new(0.0, length)), 128);
+        assert_eq!(safe(Interval::new(5.2, 5.2)), 128);
+        assert_eq!(safe_lengths(&fleet, 0, during).expect("an agent of the fleet").count(), 129);
+    }
 }
