@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional, SupportsFloat, Supp
 
 from . import _pcr
 from ._errors import Error, scenario
-from ._numbers import Ranged, Span, finite, plain, span, whole
+from ._numbers import Ranged, Span, finite, ordered, plain, span, whole
 from ._options import Options, Path, checked
 from ._regions import Regions
 
@@ -67,7 +67,7 @@ class Fleet:
 
     def __init__(self, agents: Iterable[Mapping[str, Any]], name: str = "") -> None:
         # What is not finite is refused as in a file, with the agent and the field.
-        text = json.dumps({"name": name, "agents": list(agents)}, default=plain)
+        text = json.dumps({"name": name, "agents": ordered("agents", agents)}, default=plain)
         self._fleet: _pcr.Fleet = scenario(_pcr.Fleet.from_json, text)
         #: What was read otherwise than it is written in the file.
         self.warnings: list[str] = []
@@ -175,7 +175,7 @@ class Fleet:
         ``places`` are the travelled lengths, exact or from-to, in the order of :attr:`agents`. Infinite where nobody is in the
         way; minus infinity for an agent that is where it should have waited. Places off the path are an error. Motions that meet have no order: that is an error.
         """
-        spans = [span("place", place) for place in places]
+        spans = [span("place", place) for place in ordered("places", places)]
         for (lo, hi), agent in zip(spans, self.agents):
             if hi < 0 or lo > agent["length"]:
                 raise Error(f"place: agent {agent['id']}: {lo} to {hi} is not on the path, 0 to {agent['length']}")

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence, Set
 from numbers import Real
-from typing import Any, SupportsFloat, SupportsIndex, Union
+from typing import Any, SupportsFloat, SupportsIndex, TypeVar, Union
 
 from ._pcr import Error
 
 Span = tuple[float, float]
 #: A number, or from and to.
 Ranged = Union[SupportsFloat, Sequence[SupportsFloat]]
+Item = TypeVar("Item")
 TEXTS = (str, bytes, bytearray)
 
 
@@ -44,6 +45,13 @@ def span(name: str, value: Ranged) -> Span:
     if isinstance(lo, TEXTS) or isinstance(hi, TEXTS):
         raise TypeError(f"{name}: from {lo!r} to {hi!r} are no numbers")
     return float(lo), float(hi)
+
+
+def ordered(name: str, values: Iterable[Item]) -> list[Item]:
+    """A list of what has an order: keys of a mapping are not its values, and a set has any order."""
+    if isinstance(values, (*TEXTS, Set, Mapping)):
+        raise TypeError(f"{name}: {values!r} is no list")
+    return list(values)
 
 
 def plain(value: object) -> Any:

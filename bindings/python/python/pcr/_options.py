@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from os import PathLike
 from typing import Any, Optional, SupportsFloat, SupportsIndex, TypedDict, Union
 
-from ._numbers import whole
+from ._numbers import ordered, whole
 from ._pcr import Error
 
 Path = Union[str, PathLike[str]]
@@ -64,7 +64,5 @@ def checked(given: Options) -> dict[str, Any]:
             found[name] = number
     if found["graph"] is not None:
         found["graph"] = whole("graph", found["graph"])
-    if isinstance(found["routes"], str):
-        raise TypeError("routes: a list of FROM:TO is expected, not one text")
-    found.update(routes=list(found["routes"] or ()), horizon=bool(found["horizon"]), partial=bool(found["partial"]))
+    found.update(routes=ordered("routes", [] if found["routes"] is None else found["routes"]), horizon=bool(found["horizon"]), partial=bool(found["partial"]))
     return found
