@@ -127,6 +127,17 @@ class Tool(unittest.TestCase):
         self.assertEqual(layout.warnings, told["warnings"])
         self.assertEqual(len(layout.locks()), len(told["locks"]))
 
+    def test_layouts_are_read_again_in_any_folder(self) -> None:
+        office = TOP / "tests/data/real/rmf"
+        here = os.getcwd()
+        self.addCleanup(os.chdir, here)
+        os.chdir(office)
+        layout = pcr.Layout.read("office.building.yaml", fleet="config/office_tinyRobot_config.yaml")
+        locks, delays = layout.locks(0.3), layout.delays(0.3, 1.0)
+        os.chdir(here)
+        self.assertEqual((layout.locks(0.3), layout.delays(0.3, 1.0)), (locks, delays))
+        self.assertGreater(len(locks), 0)
+
     def test_files_go_both_ways(self) -> None:
         twelve, data = pcr.Fleet.read(TWELVE), TOP / "tests/data"
         self.assertEqual(len(twelve), 12)

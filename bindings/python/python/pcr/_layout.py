@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional, SupportsFloat
 
 from . import _pcr
 from ._numbers import Span
-from ._options import Options, Path, checked
+from ._options import Options, Path, absolute, checked
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -42,7 +42,7 @@ class Layout:
 
     def __init__(self, path: Path, options: Options) -> None:
         # Another folder may be the current one when it is read again.
-        self._path, self._options = os.path.abspath(path), options
+        self._path, self._options = os.path.abspath(path), absolute(options)
         self._layout: _pcr.Layout
         #: What was read otherwise than it is written in the file.
         self.warnings: list[str]

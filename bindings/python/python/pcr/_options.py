@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from os import PathLike
 from typing import Any, Optional, SupportsFloat, SupportsIndex, TypedDict, Union
@@ -66,3 +67,9 @@ def checked(given: Options) -> dict[str, Any]:
         found["graph"] = whole("graph", found["graph"])
     found.update(routes=ordered("routes", [] if found["routes"] is None else found["routes"]), horizon=bool(found["horizon"]), partial=bool(found["partial"]))
     return found
+
+
+def absolute(given: Options) -> Options:
+    """The same options, whatever the current folder is."""
+    fleet = given.get("fleet")
+    return given if fleet is None else {**given, "fleet": os.path.abspath(fleet)}
