@@ -43,6 +43,14 @@ class Tool(unittest.TestCase):
         self.assertEqual(found, told)
         self.assertGreater(len(found), 100)
 
+    def test_regions_are_open_where_the_other_agent_stands(self) -> None:
+        across: dict[str, Any] = {**AGENT, "start": {"x": 0, "y": 0, "heading": math.pi / 2}}
+        fleet = pcr.Fleet([CROSSING[0], {"id": 2, **across}])
+        self.assertEqual([(r.i, r.j, r.open_start, r.open_end) for r in fleet.regions()], [(1, 2, True, False), (2, 1, False, False)])
+        across["start"]["y"] = -4
+        fleet = pcr.Fleet([CROSSING[0], {"id": 2, **across}])
+        self.assertEqual([(r.i, r.j, r.open_start, r.open_end) for r in fleet.regions()], [(1, 2, False, True), (2, 1, False, False)])
+
     def test_conflicts_and_plans_are_those_of_the_tool(self) -> None:
         fleet = pcr.Fleet.read(TWELVE)
         found = [[c.i, c.j, list(c.t), c.depth, list(c.l_i), list(c.l_j), c.touching] for c in fleet.conflicts()]

@@ -19,8 +19,9 @@ class _Ranges(NamedTuple):
     t: Span
     l: Span
     l_j: Span
-    #: Whether it reaches the start of the path, where ``i`` stands before it sets off, or the end.
+    #: Whether ``j`` is in the way already while it stands at its start: what is blocked at ``t[0]`` is so at all earlier times, too.
     open_start: bool
+    #: The same for ``j`` at its end, after ``t[1]``.
     open_end: bool
 
 
