@@ -1,13 +1,15 @@
 //! Safe intervals against the definition: a window is blocked where some point of the part is within reach of the other
 //! agent, wherever that stands.
 
-use pcr_core::{Encounter, Interval, gaps, safe_intervals, safe_lengths, union};
+use pcr_core::{Encounter, Interval, Mismatch, gaps, safe_intervals, safe_lengths, union};
 use pcr_fixed::Q16;
 use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::safe;
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
-use pcr_tests::generators::driven_pairs;
+use pcr_tests::generators::{Dice, driven_pairs};
 use pcr_tests::oracle::line::{below, reaches};
 use pcr_tests::oracle::{Pair, Travel};
+use pcr_tests::plans;
 use pcr_tests::settings::settings;
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
@@ -116,6 +118,45 @@ proptest! {
     ) {
         audited::<Q16>([pair.0, pair.1], drives, [from, to])?;
     }
+}
+
+/// Whether the library finds the same without storage, where it looks for each interval in the windows of all agents, as
+/// where all windows are stored, sorted and merged.
+fn same<S: Format>() {
+    let (mut several, mut whole) = (0, 0);
+    for seed in 0..400 {
+        let dice = &mut Dice::seeded(seed);
+        let courses: Vec<_> =
+            plans::fleet(dice).iter().filter_map(Course::<S>::rounded).map(|(_, course)| course).collect();
+        let late =
+            |course: &Course<S>, late: f64| course.motion().with_lateness(S::from_f64(late)).expect("a lateness");
+        let fleet: Vec<_> = courses.iter().map(|course| late(course, (dice.range(-2.0, 2.0)).max(0.0))).collect();
+        for (ego, own) in fleet.iter().enumerate() {
+            let [a, b] = [0, 1].map(|_| S::from_f64(dice.range(0.0, own.path().length().to_f64())));
+            let [from, to] = [0, 1].map(|_| S::from_f64(dice.range(-5.0, 30.0)));
+            let parts = [(a, a), (a.min(b), a.max(b)), (S::ZERO, own.path().length())];
+            for (lo, hi) in parts {
+                for (from, to) in [(from.min(to), from.max(to)), (S::from_f64(-100.0), S::from_f64(500.0))] {
+                    let [part, during] = [Interval::new(lo, hi), Interval::new(from, to)];
+                    let one_by_one = safe_intervals(&fleet, ego, part, during).expect("an agent of the fleet");
+                    let stored = safe::safe_intervals(&fleet, ego, part, during).expect("an agent of the fleet");
+                    several += u32::from(stored.len() > 1);
+                    whole += u32::from(stored == [during]);
+                    assert!(one_by_one.eq(stored), "fleet {seed}, agent {ego}: {part:?} {during:?}");
+                }
+            }
+        }
+    }
+    assert!(several > 500 && whole > 500, "{several} {whole}");
+}
+
+#[test]
+fn fleets_are_safe_at_the_same_times_with_and_without_storage() {
+    same::<f64>();
+    same::<f32>();
+    same::<Q16>();
+    let found = safe::safe_intervals::<f64>(&[], 0, Interval::new(0.0, 0.0), Interval::new(0.0, 1.0));
+    assert_eq!(found, Err(Mismatch::NoSuchAgent(0)));
 }
 
 fn line(start: [f64; 3], length: f64, at: f64) -> Course<f64> {

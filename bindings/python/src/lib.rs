@@ -7,7 +7,7 @@
 mod layout;
 
 use layout::{Choices, Layout};
-use pcr_core::{Encounter, Hold, Interval, Motion, Pass, Progress, Refused, safe_intervals};
+use pcr_core::{Encounter, Hold, Interval, Motion, Pass, Progress, Refused};
 use pcr_formats::input::{self, InputError};
 use pcr_formats::scenario::{Scenario, ScenarioError};
 use pcr_planning::check::Verdict;
@@ -15,6 +15,7 @@ use pcr_planning::fleet::{Fleet as Parts, HostOrders, build_ecm_of};
 use pcr_planning::plan::{self, Method, Plan};
 use pcr_planning::regions::{Answer, Request, orders, table};
 use pcr_planning::report::{self, Document};
+use pcr_planning::safe::safe_intervals;
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -266,7 +267,7 @@ impl Fleet {
             }
             let (length, during) = (Interval::new(length.0, length.1), Interval::new(during.0, during.1));
             let free = safe_intervals(&motions, ego, length, during).map_err(refused)?;
-            Ok(free.map(|free| (free.lo, free.hi)).collect())
+            Ok(free.into_iter().map(|free| (free.lo, free.hi)).collect())
         })
     }
 

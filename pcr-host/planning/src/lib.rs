@@ -14,6 +14,7 @@
 //! nodes        nodes and edges of a layout                         Listing
 //! plan         delays without conflicts                            Plan
 //! queue        the conflicts of a fleet while its motions change   Queue
+//! safe         when a part of a path is free, in large fleets  safe_intervals
 //! report       JSON, CSV and tables
 //! ```
 
@@ -31,3 +32,4 @@ pub mod queue;
 pub mod regions;
 pub mod report;
 pub mod rows;
+pub mod safe;

@@ -5,7 +5,8 @@ use crate::entry::Side;
 use crate::fault::Fault;
 use crate::robot::{Alarm, ROOM, Robot};
 use crate::supervisor::Supervisor;
-use pcr_core::{Encounter, Interval, Limits, Motion, Profile, safe_intervals};
+use pcr_core::{Encounter, Interval, Limits, Motion, Profile};
+use pcr_planning::safe::safe_intervals;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
@@ -170,8 +171,8 @@ pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<
                 Interval::new((lo - at).max(0.0), (hi - at).max(0.0)),
                 Interval::new(0.0, until),
             );
-            let safe: Vec<[f64; 2]> = safe.map_err(Fault::invalid)?.map(|safe| [safe.lo, safe.hi]).collect();
-            Ok(json!({ "safe": safe }))
+            let safe = safe.map_err(Fault::invalid)?.into_iter().map(|safe| [safe.lo, safe.hi]);
+            Ok(json!({ "safe": safe.collect::<Vec<_>>() }))
         }
         Question::Counts {} => Ok(json!(supervisor.counts())),
     }
