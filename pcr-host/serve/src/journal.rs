@@ -10,14 +10,23 @@
 //! Zeros follow the last frame, because overwriting them reaches the disk sooner than extending a file. So the missing
 //! part of an incomplete frame is zeros, and a complete frame has zeros only in its first bytes. A last frame that is
 //! wrong in any other way was complete once, and its contents have been sent.
+//!
+//! A journal that was begun anew has the whole state in its first frame, and was on the disk before it replaced the
+//! journal before it. Its last byte of the header says so: if its first frame is incomplete, that is damage.
 
 use crate::entry::{Entry, Keep};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// First bytes of a journal: its kind, and the version of its frames and entries.
+/// First bytes of a journal: its kind, the version of its frames and entries, and in the last byte whether it was begun anew.
 pub const HEADER: &[u8; 16] = b"pcr-journal\0\x03\0\0\0";
+
+/// First bytes of a journal that was begun anew. (No single bit makes one of the two headers of the other one.)
+pub const ANEW: &[u8; 16] = b"pcr-journal\0\x03\0\0\xff";
+
+/// Where the version is in a header.
+const VERSION: usize = 12;
 
 /// Size of a frame's head: length, checksum of the frame before, checksum of these two, and checksum of all the rest of the frame.
 const FRAME: usize = 16;
@@ -134,7 +143,7 @@ impl Keep for Journal {
         }
         let (frame, sum) = frame(entries, FIRST)?;
         self.failed = true;
-        let bytes = [HEADER.as_slice(), &frame].concat();
+        let bytes = [ANEW.as_slice(), &frame].concat();
         written(&self.folder, &bytes)?;
         (self.len, self.sum) = (bytes.len() as u64, sum);
         (self.first, self.end) = (self.len, self.len);
@@ -209,17 +218,19 @@ pub struct Frames {
 /// # Errors
 /// The damage, in words.
 pub fn read(bytes: &[u8]) -> Result<Frames, String> {
-    let (header, version) = HEADER.split_at(12);
-    match bytes.get(..HEADER.len()).map(|begin| begin.split_at(12)) {
-        Some((begin, own)) if begin == header && own == version => {}
-        Some((begin, own)) if begin == header => {
-            let [own, version] = [own, version].map(|version| word(version, 0).unwrap_or(0));
+    let is_anew = match bytes.get(..HEADER.len()) {
+        Some(header) if header == HEADER => false,
+        Some(header) if header == ANEW => true,
+        Some(header) if header[..VERSION] == HEADER[..VERSION] => {
+            // Without the last byte where it is that of a journal begun anew.
+            let of = |word: u32| if word.to_le_bytes()[3] == ANEW[15] { word & 0xff_ffff } else { word };
+            let [own, version] = [header, HEADER].map(|header| word(header, VERSION).map_or(0, of));
             return Err(format!(
                 "it is of version {own}, and {version} is read: begin another journal while all robots stand"
             ));
         }
         _ => return Err("it is no journal".into()),
-    }
+    };
     let mut read = Frames { entries: Vec::new(), end: HEADER.len(), sum: FIRST };
     while let Some(rest) = bytes.get(read.end..).filter(|rest| !rest.is_empty()) {
         let damage = |why: &str| format!("at byte {}: {why}", read.end);
@@ -239,6 +250,12 @@ pub fn read(bytes: &[u8]) -> Result<Frames, String> {
             Err(why) if !is_torn(rest, read.end) => return Err(damage(why)),
             Err(_) => break,
         }
+    }
+    if is_anew && read.end == HEADER.len() {
+        return Err(format!(
+            "at byte {}: no whole frame, though it was whole when the journal was begun anew",
+            read.end
+        ));
     }
     Ok(read)
 }

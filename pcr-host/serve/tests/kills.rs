@@ -286,6 +286,49 @@ fn a_second_supervisor_is_refused_and_a_torn_end_is_told() {
     let _ = std::fs::remove_dir_all(&folder);
 }
 
+/// One whose first frame was cut was read as that of a fleet without robots, and cut to its header.
+#[test]
+fn a_journal_begun_anew_that_was_cut_is_damaged() {
+    let folder = folder("anew");
+    let mut world = World::new(1, 2, GOOD);
+    while world.now < 3.0 {
+        world.step();
+    }
+    let (mut journal, _) = Journal::open(&folder).unwrap();
+    pcr_serve::entry::Keep::restart(&mut journal, &world.supervisor.snapshot().unwrap()).unwrap();
+    drop(journal);
+    let path = folder.join("journal");
+    let whole = std::fs::read(&path).unwrap();
+    assert!(!journal::read(&whole).unwrap().entries.is_empty());
+    // Also where what is missing is zeros.
+    for (end, room) in [16, 17, 40, whole.len() - 1].into_iter().flat_map(|end| [(end, end), (end, whole.len() + 99)]) {
+        let mut cut = whole[..end].to_vec();
+        cut.resize(room, 0);
+        std::fs::write(&path, &cut).unwrap();
+        assert_eq!(Journal::open(&folder).unwrap_err().kind(), ErrorKind::InvalidData, "{end} {room}");
+        assert_eq!(std::fs::read(&path).unwrap(), cut, "left as it is");
+    }
+    // A later frame was never whole.
+    std::fs::write(&path, &whole).unwrap();
+    let (mut journal, _) = Journal::open(&folder).unwrap();
+    pcr_serve::entry::Keep::keep(&mut journal, &world.supervisor.snapshot().unwrap()).unwrap();
+    drop(journal);
+    let more = journal::read(&std::fs::read(&path).unwrap()).unwrap().end;
+    std::fs::OpenOptions::new().write(true).open(&path).unwrap().set_len(more as u64 - 1).unwrap();
+    let (_journal, found) = Journal::open(&folder).unwrap();
+    assert!(found.torn > 0 && found.entries.len() == world.supervisor.snapshot().unwrap().len());
+    // No bit of the header is one that does not count.
+    for bit in 0..128 {
+        let mut other = whole.clone();
+        other[bit / 8] ^= 1 << (bit % 8);
+        assert!(journal::read(&other).is_err(), "bit {bit}");
+    }
+    let mut later = whole;
+    later[12] = 4;
+    assert!(journal::read(&later).unwrap_err().starts_with("it is of version 4, and 3 is read"));
+    let _ = std::fs::remove_dir_all(&folder);
+}
+
 /// The child of the test below: a fleet whose journal is a file, and that tells on standard output what it tells.
 #[test]
 #[ignore = "started by the test that kills it"]
