@@ -19,15 +19,22 @@ const PATIENCE: Duration = Duration::from_secs(30);
 /// Largest number of TCP clients at a time.
 const MOST: usize = 256;
 
-/// Reads lines from `input` and writes answers to `output`, until one of them ends. Returns when all lines that were read are
-/// answered.
+/// Reads lines from `input` and writes answers to `output`. Returns when the input has ended and all lines that were read are
+/// answered. If the output cannot be written, `lost` is called at once, with the reason; what is read after that is carried out,
+/// but not answered.
 ///
 /// # Errors
 /// The thread for the answers cannot be started; nothing is read then.
-pub fn serve(handle: &Handle, input: impl Read, output: impl Write + Send + 'static) -> io::Result<()> {
+pub fn serve(
+    handle: &Handle,
+    input: impl Read,
+    output: impl Write + Send + 'static,
+    lost: impl FnOnce(io::Error) + Send + 'static,
+) -> io::Result<()> {
     let number = NEXT.fetch_add(1, Ordering::Relaxed);
     let (sender, lines) = outbox();
-    let writer = thread::Builder::new().name("answers".into()).spawn(move || write(&lines, output))?;
+    let work = move || write(&lines, output).unwrap_or_else(lost);
+    let writer = thread::Builder::new().name("answers".into()).spawn(work)?;
     if !handle.send(Input::Opened(number, sender)) {
         return Ok(());
     }
@@ -38,12 +45,11 @@ pub fn serve(handle: &Handle, input: impl Read, output: impl Write + Send + 'sta
     Ok(())
 }
 
-fn write(lines: &Lines, mut output: impl Write) {
+fn write(lines: &Lines, mut output: impl Write) -> io::Result<()> {
     while let Some(text) = lines.batch() {
-        if put(lines, &mut output, text.as_bytes()).and_then(|()| output.flush()).is_err() {
-            return;
-        }
+        put(lines, &mut output, text.as_bytes()).and_then(|()| output.flush())?;
     }
+    Ok(())
 }
 
 /// Writes all bytes. Waits for a slow client; if the client is being disconnected, only for [`PATIENCE`].
@@ -113,7 +119,8 @@ pub fn listen(handle: &Handle, listener: &TcpListener) {
             if stream.set_nodelay(true).and_then(|()| stream.set_write_timeout(Some(PATIENCE))).is_ok()
                 && let (Ok(input), Ok(output)) = (stream.try_clone(), stream.try_clone())
             {
-                let _ = serve(&handle, input, Closing(output));
+                // A connection that cannot be written to has ended: then its input ends, too.
+                let _ = serve(&handle, input, Closing(output), drop);
             }
         });
     }

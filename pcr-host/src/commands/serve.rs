@@ -23,8 +23,8 @@ const STATUSES: &str = "\
 Exit status:
   0  ended by the end of standard input (without --stay), or by Ctrl-C
   2  wrong arguments, or a journal that is damaged or in use
-  3  the journal could not be opened or written; after that, no robot was
-     allowed to go further";
+  3  the journal could not be opened or written, after which no robot was
+     allowed to go further; or (without --stay) standard output is full";
 
 const EXAMPLES: &str = "\
 Examples:

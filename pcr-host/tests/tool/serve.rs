@@ -118,6 +118,68 @@ fn a_full_disc_gives_no_right() {
     assert_eq!(first, json!({ "pcr": 1, "id": 1, "ok": { "path": 1 } }));
 }
 
+/// It ended with status 0, and said nothing.
+#[cfg(target_os = "linux")]
+#[test]
+fn answers_that_cannot_be_written_end_it() {
+    let full = || std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let start = |arguments: &[&str], out: Stdio| {
+        let mut command = pcr();
+        command.arg("serve").args(arguments).stdin(Stdio::piped()).stdout(out).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        let mut stdin = child.stdin.take().unwrap();
+        std::io::Write::write_all(&mut stdin, ADD.as_bytes()).unwrap();
+        (child, stdin)
+    };
+    let why = "msg=\"standard output cannot be written: answers to standard input are lost\"";
+    let said = |child: std::process::Child, status: i32| {
+        let output = child.wait_with_output().unwrap();
+        let err = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(status), "{err}");
+        assert!(err.contains(why), "{err}");
+        err
+    };
+    // Where the input goes on, and where it has ended.
+    for ends in [false, true] {
+        let (child, stdin) = start(&["--log", "error"], full().into());
+        let stdin = Some(stdin).filter(|_| !ends);
+        let err = said(child, 3);
+        assert!(err.contains("level=error") && err.contains("pcr: standard output: cannot be written: "), "{err}");
+        drop(stdin);
+    }
+    // A reader who goes is an end like that of the input.
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let (child, stdin) = start(&["--log", "warn"], writer.into());
+    let err = said(child, 0);
+    assert!(err.contains("level=warn") && !err.contains("pcr: "), "{err}");
+    drop(stdin);
+}
+
+/// Robots and other clients still need a supervisor whose own output is full.
+#[cfg(target_os = "linux")]
+#[test]
+fn it_stays_where_answers_cannot_be_written() {
+    use std::io::{BufRead, BufReader, Write};
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let mut command = pcr();
+    command.args(["serve", "--stay", "--listen", "0"]).stdin(Stdio::piped()).stdout(full).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let mut log = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
+    let listens = log.by_ref().find(|line| line.contains("msg=\"listening\"")).unwrap();
+    let address = listens.rsplit('=').next().unwrap().trim_matches('"').to_owned();
+    child.stdin.take().unwrap().write_all(ADD.as_bytes()).unwrap();
+    assert!(log.any(|line| line.contains("level=error") && line.contains("standard output cannot be written")));
+    let client = std::net::TcpStream::connect(address).unwrap();
+    (&client).write_all(b"{\"verb\":\"query\",\"what\":\"robots\"}\n").unwrap();
+    let mut line = String::new();
+    BufReader::new(&client).read_line(&mut line).unwrap();
+    let answer: Value = serde_json::from_str(&line).unwrap();
+    assert_eq!(answer["ok"]["robots"][0]["mission"], "1", "{line}");
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
 /// It was the journal of which was said that it cannot be written.
 #[cfg(target_os = "linux")]
 #[test]

@@ -53,9 +53,11 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     }
     let stays = arguments.stay || demo.is_some();
     let (failed, failures) = channel();
-    let last = Last { handle: handle.clone(), stays, failed };
+    let last = Last { handle: handle.clone(), stays, failed: failed.clone() };
+    let unheard = Unheard { handle: handle.clone(), stays, failed, log };
     thread("lines", move || {
-        if let Err(error) = clients::serve(&last.handle, std::io::stdin(), std::io::stdout()) {
+        let lost = move |error| unheard.tell(error);
+        if let Err(error) = clients::serve(&last.handle, std::io::stdin(), std::io::stdout(), lost) {
             last.fails(error.to_string());
         }
     })?;
@@ -68,7 +70,7 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     served.map_err(|fault| Stop::Error(fault.to_string(), NOT_WRITTEN))?;
     ended.and(done)?;
     match failures.try_recv() {
-        Ok(why) => Err(Stop::Error(format!("standard input: not read: {why}"), WRONG_INPUT)),
+        Ok(stop) => Err(stop),
         Err(_) => Ok(ExitCode::SUCCESS),
     }
 }
@@ -77,12 +79,12 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
 struct Last {
     handle: Handle,
     stays: bool,
-    failed: Sender<String>,
+    failed: Sender<Stop>,
 }
 
 impl Last {
     fn fails(&self, why: String) {
-        let _ = self.failed.send(why);
+        let _ = self.failed.send(Stop::Error(format!("standard input: not read: {why}"), WRONG_INPUT));
         self.handle.send(Input::Stop);
     }
 }
@@ -92,6 +94,30 @@ impl Drop for Last {
         if thread::panicking() {
             self.fails("there is no memory for its thread".into());
         } else if !self.stays {
+            self.handle.send(Input::Stop);
+        }
+    }
+}
+
+/// Ends the supervisor when standard output cannot be written, unless it is to stay: robots and other clients still need it then.
+struct Unheard {
+    handle: Handle,
+    stays: bool,
+    failed: Sender<Stop>,
+    log: Log,
+}
+
+impl Unheard {
+    fn tell(self, error: std::io::Error) {
+        // A reader who goes is no error, as for other commands.
+        let level = if error.kind() == ErrorKind::BrokenPipe { Level::Warn } else { Level::Error };
+        self.log.write(
+            level,
+            "standard output cannot be written: answers to standard input are lost",
+            &[("why", &error)],
+        );
+        if !self.stays {
+            let _ = self.failed.send(error.into());
             self.handle.send(Input::Stop);
         }
     }
