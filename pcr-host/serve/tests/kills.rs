@@ -1,13 +1,13 @@
 //! The process ends at any instant: after the restart no right is lost, and none is given to another robot.
 
 use crate::world::{Disc, STEP, Trouble, World};
-use pcr_serve::course::Start;
+use pcr_serve::course::{Shape, Start};
 use pcr_serve::entry::{Entry, Kept, Nowhere};
 use pcr_serve::event::Event;
 use pcr_serve::fault::Fault;
 use pcr_serve::journal::{self, Frames, Journal};
 use pcr_serve::robot::Abilities;
-use pcr_serve::supervisor::{Settings, Supervisor};
+use pcr_serve::supervisor::{Proposal, Report, Settings, Supervisor, Verdict};
 use serde_json::json;
 use std::collections::HashMap;
 use std::io::{BufRead, BufReader, ErrorKind, Seek, SeekFrom, Write};
@@ -327,6 +327,47 @@ fn a_journal_begun_anew_that_was_cut_is_damaged() {
     later[12] = 4;
     assert!(journal::read(&later).unwrap_err().starts_with("it is of version 4, and 3 is read"));
     let _ = std::fs::remove_dir_all(&folder);
+}
+
+const CAN: Abilities = Abilities { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+
+fn mission(own: &mut Supervisor, robot: &str, mission: &str, length: f64, now: f64) -> Verdict {
+    let (robot, mission, path) = (robot.into(), mission.into(), vec![Shape::Line { length }]);
+    own.mission(&Proposal { robot, mission, after: None, of: None, start: None, path }, now).unwrap()
+}
+
+/// The robot `a` has been allowed to go 3 m of 12 m, and the journal had 5 m.
+fn ahead(disc: &Disc) -> Supervisor {
+    let mut own = Supervisor::new(Settings::default(), Box::new(disc.clone()));
+    own.add("a", CAN, Start { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
+    assert!(matches!(mission(&mut own, "a", "A", 12.0, 0.0), Verdict::Admitted { .. }));
+    own.settle(0.0).unwrap();
+    let a = own.robot("a").unwrap();
+    assert!(a.told == 3.0 && a.ceiling == 5.0, "{a:?}");
+    own
+}
+
+fn restarted(disc: &Disc) -> Supervisor {
+    Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap()
+}
+
+/// The first late message from before a restart set the time from which on a place behind the known one was an alarm.
+#[test]
+fn late_messages_from_before_a_restart_are_no_alarm() {
+    let disc = Disc::new();
+    let mut own = ahead(&disc);
+    let at = |at: f64, age: f64| Report { robot: "a".into(), path: 2, at: [at, at], age };
+    own.position(&at(2.5, 0.0), 1.0).unwrap();
+    own.settle(1.0).unwrap();
+    let mut own = restarted(&disc);
+    assert_eq!(own.robot("a").unwrap().at, 2.5);
+    own.settle(100.0).unwrap();
+    for late in [at(1.5, 3.0), at(1.7, 2.5), at(1.9, 2.0)] {
+        own.position(&late, 101.0).unwrap();
+        assert_eq!(own.robot("a").unwrap().alarm, None, "{late:?}");
+    }
+    own.position(&at(1.9, 0.5), 101.0).unwrap();
+    assert!(own.robot("a").unwrap().alarm.is_some());
 }
 
 /// The child of the test below: a fleet whose journal is a file, and that tells on standard output what it tells.

@@ -58,7 +58,8 @@ impl Supervisor {
         }
         // The robot rolled or was pushed back into a part of its path that may already be free for others. Positions from before a
         // restart do not count.
-        let is_back = *hi < passed - 2.0 * robot.abilities.margin - BACK && time >= robot.heard.unwrap_or(begun);
+        let since = robot.heard.map_or(begun, |heard| heard.max(begun));
+        let is_back = *hi < passed - 2.0 * robot.abilities.margin - BACK && time >= since;
         if is_new && is_back {
             self.alarm(place, Some(Alarm::Back { passed, between: [*lo, *hi] }), time);
             return Ok(());
