@@ -119,7 +119,7 @@ pub enum Entry {
         /// The highest such number.
         path: u64,
     },
-    /// A robot may be allowed to go up to this length.
+    /// A robot may be allowed to go up to this length, and has not been allowed to go further: the last such entry counts.
     Ceiling {
         /// Name of the robot.
         robot: String,

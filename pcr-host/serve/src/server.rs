@@ -149,7 +149,8 @@ pub fn serve(
         let now = begin.elapsed().as_secs_f64();
         let (mut told, stops) = desk.take(supervisor, batch, begin, now);
         // All that is sent from here on is in the journal, or on its way there.
-        let settled = supervisor.settle(now).map(|events| told.events = events);
+        let settled = if stops { supervisor.finish(now) } else { supervisor.settle(now) };
+        let settled = settled.map(|events| told.events = events);
         told.batches = kept.asked();
         waiting.push_back(told);
         let done = settled.and_then(|()| if stops { kept.wait() } else { Ok(()) }).and_then(|()| kept.done());

@@ -37,8 +37,8 @@ pub struct Settings {
     /// How long before braking a robot is told its next hold \[s\]. A hold that was told cannot be withdrawn, so a longer time leaves
     /// fewer decisions open.
     pub lookahead: f64,
-    /// The journal gets a hold that is further than the one told by this \[m\], so that not every hold needs a write. After a restart the
-    /// hold of the journal counts as told.
+    /// The journal gets a hold that is further than the one told by up to this \[m\], so that not every hold needs a write. After a restart
+    /// the hold of the journal counts as told.
     pub spare: f64,
     /// A robot counts as silent if no message of it came for this long \[s\].
     pub silence: f64,
@@ -392,13 +392,30 @@ impl Supervisor {
         Ok(std::mem::take(&mut self.events))
     }
 
-    /// Writes all changes to the journal.
+    /// [Settles](Supervisor::settle) for the last time: the journal then has what robots were told, and not more.
+    ///
+    /// # Errors
+    /// As [`Supervisor::settle`].
+    pub fn finish(&mut self, now: f64) -> Result<Vec<Event>, Fault> {
+        let events = self.settle(now)?;
+        self.lower_ceilings();
+        self.write()?;
+        Ok(events)
+    }
+
+    /// Writes all changes to the journal, with the ceilings that belong to them.
     fn save(&mut self) -> Result<(), Fault> {
+        if !self.entries.is_empty() {
+            self.set_ceilings();
+        }
+        self.write()
+    }
+
+    fn write(&mut self) -> Result<(), Fault> {
         self.works()?;
         if self.entries.is_empty() {
             return Ok(());
         }
-        self.raise_ceilings();
         // Positions are saved with the holds that depend on them. Without the positions, a restored hold would lie too far ahead.
         let unsaved = self.unsaved.iter_mut().zip(&self.robots).filter(|(unsaved, _)| **unsaved);
         let places = unsaved.map(|(unsaved, robot)| {

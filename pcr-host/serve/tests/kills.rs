@@ -6,7 +6,7 @@ use pcr_serve::entry::{Entry, Kept, Nowhere};
 use pcr_serve::event::Event;
 use pcr_serve::fault::Fault;
 use pcr_serve::journal::{self, Frames, Journal};
-use pcr_serve::robot::Abilities;
+use pcr_serve::robot::{Abilities, Robot};
 use pcr_serve::supervisor::{Proposal, Report, Settings, Supervisor, Verdict};
 use serde_json::json;
 use std::collections::HashMap;
@@ -55,6 +55,12 @@ fn keeps(after: &Supervisor, before: &HashMap<String, (u64, f64, Vec<Kept>)>, co
             let over = [a.pass, b.pass].contains(&pcr_serve::entry::Side::Over);
             a.with == b.with && a.lengths == b.lengths && (a.pass == b.pass || over)
         };
+        // Nobody counts as allowed to go where the orders do not let it go.
+        let place = after.robots().iter().position(|other| other.name == *name).unwrap();
+        let progress: Vec<_> = after.robots().iter().map(Robot::progress).collect();
+        let (hold, _) = after.orders().wait(&after.fleet().unwrap(), place, &progress).unwrap();
+        let bound = hold.length(robot.course.length());
+        assert!(bound.is_some_and(|bound| robot.told <= bound), "{context}: {name}: {} {hold:?}", robot.told);
         let (own, count) = (&now[name].2, orders.len());
         assert!(own.len() == count && own.iter().zip(orders).all(same), "{context}: {name}: {own:?} {orders:?}");
     }
@@ -336,6 +342,19 @@ fn mission(own: &mut Supervisor, robot: &str, mission: &str, length: f64, now: f
     own.mission(&Proposal { robot, mission, after: None, of: None, start: None, path }, now).unwrap()
 }
 
+/// Robots go as far as they may, and nobody is stopped.
+fn go(own: &mut Supervisor, now: &mut f64) {
+    for _ in 0..60 {
+        *now += 0.5;
+        for robot in own.robots().to_vec() {
+            let at = [robot.granted; 2];
+            own.position(&Report { robot: robot.name, path: robot.path, at, age: 0.0 }, *now).unwrap();
+        }
+        let events = own.settle(*now).unwrap();
+        assert!(!events.iter().any(|event| matches!(event, Event::Stop { .. })), "{events:?}");
+    }
+}
+
 /// The robot `a` has been allowed to go 3 m of 12 m, and the journal had 5 m.
 fn ahead(disc: &Disc) -> Supervisor {
     let mut own = Supervisor::new(Settings::default(), Box::new(disc.clone()));
@@ -349,6 +368,59 @@ fn ahead(disc: &Disc) -> Supervisor {
 
 fn restarted(disc: &Disc) -> Supervisor {
     Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap()
+}
+
+/// What the journal had beyond the hold was where another robot had been added since: after a restart both stood for ever.
+#[test]
+fn a_robot_that_is_added_beyond_a_hold_can_leave_after_a_restart() {
+    for drives in [false, true] {
+        let (disc, mut now) = (Disc::new(), 1.0);
+        let mut own = ahead(&disc);
+        own.add("b", CAN, Start { x: 5.0, y: 0.0, heading: std::f64::consts::FRAC_PI_2 }).unwrap();
+        own.settle(now).unwrap();
+        if drives {
+            go(&mut own, &mut now);
+            let a = own.robot("a").unwrap();
+            assert!((a.granted - 4.5).abs() < 1e-3 && own.waits_for(a) == Some("b"), "{a:?}");
+        }
+        let mut own = restarted(&disc);
+        assert!(own.robot("a").unwrap().told < 4.5);
+        go(&mut own, &mut now);
+        assert!(matches!(mission(&mut own, "b", "B", 6.0, now), Verdict::Admitted { .. }));
+        go(&mut own, &mut now);
+        assert!(own.robots().iter().all(|robot| robot.has_arrived(1e-3)), "{:?}", own.robots());
+    }
+}
+
+/// What the journal had beyond the hold was where another robot was to go first since.
+#[test]
+fn no_ceiling_is_where_another_robot_goes_first() {
+    let disc = Disc::new();
+    let mut own = ahead(&disc);
+    // So near to where the paths cross that it goes first, and it is told so before anybody drives.
+    own.add("b", CAN, Start { x: 4.2, y: -0.7, heading: std::f64::consts::FRAC_PI_2 }).unwrap();
+    assert!(matches!(mission(&mut own, "b", "B", 9.0, 0.0), Verdict::Admitted { .. }));
+    own.settle(0.0).unwrap();
+    let bound = own.robot("a").unwrap().hold.unwrap().hold.length(12.0).unwrap();
+    assert!(bound > 3.0 && bound < 4.2, "{bound}");
+    let after = restarted(&disc);
+    assert!((3.0..=bound).contains(&after.robot("a").unwrap().told), "{:?}", after.robot("a"));
+    keeps(&after, &rights(&own), "second");
+}
+
+#[test]
+fn after_an_end_in_order_only_what_was_told_counts_as_told() {
+    let disc = Disc::new();
+    let mut own = ahead(&disc);
+    own.finish(1.0).unwrap();
+    let mut own = restarted(&disc);
+    assert_eq!(own.robot("a").unwrap().told, 3.0);
+    own.add("b", CAN, Start { x: 5.0, y: 0.0, heading: std::f64::consts::FRAC_PI_2 }).unwrap();
+    let mut now = 2.0;
+    go(&mut own, &mut now);
+    assert!(matches!(mission(&mut own, "b", "B", 6.0, now), Verdict::Admitted { .. }));
+    go(&mut own, &mut now);
+    assert!(own.robots().iter().all(|robot| robot.has_arrived(1e-3)), "{:?}", own.robots());
 }
 
 /// The first late message from before a restart set the time from which on a place behind the known one was an alarm.

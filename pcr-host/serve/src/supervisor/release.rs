@@ -6,7 +6,7 @@ use super::{Supervisor, fleet};
 use crate::entry::Entry;
 use crate::event::Event;
 use crate::fault::Fault;
-use crate::robot::Wait;
+use crate::robot::{Robot, Wait};
 use pcr_core::Hold;
 
 impl Supervisor {
@@ -58,18 +58,54 @@ impl Supervisor {
         }
     }
 
-    /// When the journal is written anyway, raises ceilings that will be needed soon, which saves writes.
-    pub(super) fn raise_ceilings(&mut self) {
-        let spare = self.settings.spare;
-        for robot in &mut self.robots {
-            let ceiling = (robot.granted + spare).min(robot.course.length());
-            // Not after a restart, as long as `told` is the old ceiling, beyond what was granted since.
-            if robot.told == robot.granted && robot.granted > robot.at && robot.ceiling + 0.5 * spare < ceiling {
-                robot.ceiling = ceiling;
-                let (name, path) = (robot.name.clone(), robot.path);
-                self.entries.push(Entry::Ceiling { robot: name, path, ceiling });
+    /// When the journal is written anyway, raises ceilings that will be needed soon, which saves writes, and lowers those that
+    /// lie where a robot may no longer come.
+    ///
+    /// After a restart the ceiling counts as told. So it has to be at or above every hold that was told, and this has to be
+    /// on the disc before the hold is told: `tell` raises the ceiling with the hold, in the frame after which the hold is told.
+    /// And it must not be further than the robot could be told by the present orders: a robot that was added beyond the hold, or
+    /// a mission that goes first there, would find the way taken after a restart, by a robot that stands before it, and wait for
+    /// ever. `highest` bounds both: it is at least `told`, in which every hold is that was decided, also those that are still on
+    /// their way to the disc. So a ceiling may be lowered to it. Frames are read in the order in which they were decided, each of
+    /// them as a whole, and the last ceiling counts. So whatever frame is the last one on the disc, its ceilings are at or above
+    /// the holds that were told by then, and match its orders, because they are lowered in the frame with the new orders.
+    pub(super) fn set_ceilings(&mut self) {
+        let is_ahead = |robot: &Robot| robot.ceiling > robot.told && robot.hold.is_none();
+        let stale: Vec<usize> = (0..self.robots.len()).filter(|&place| is_ahead(&self.robots[place])).collect();
+        if !stale.is_empty() {
+            self.evaluate(&stale);
+        }
+        for place in 0..self.robots.len() {
+            let (robot, highest) = (&self.robots[place], self.highest(place));
+            // Not raised after a restart, as long as `told` is the old ceiling, beyond what was granted since.
+            let goes = robot.told == robot.granted && robot.granted > robot.at;
+            if robot.ceiling > highest || (goes && robot.ceiling + 0.5 * self.settings.spare < highest) {
+                self.set_ceiling(place, highest);
             }
         }
+    }
+
+    /// Lowers all ceilings to what was told, because nothing more will be told.
+    pub(super) fn lower_ceilings(&mut self) {
+        for place in 0..self.robots.len() {
+            if self.robots[place].ceiling > self.robots[place].told {
+                self.set_ceiling(place, self.robots[place].told);
+            }
+        }
+    }
+
+    /// The furthest ceiling of a robot: `spare` beyond its hold, but not further than it may be told now, and at least what it
+    /// was told. As long as a robot is not where it may be, there is nothing to spare.
+    fn highest(&self, place: usize) -> f64 {
+        let robot = &self.robots[place];
+        let bound = robot.hold.filter(|_| !self.hazards).and_then(|wait| wait.hold.length(robot.course.length()));
+        bound.map_or(robot.told, |bound| bound.min(robot.granted + self.settings.spare).max(robot.told))
+    }
+
+    fn set_ceiling(&mut self, place: usize, ceiling: f64) {
+        let robot = &mut self.robots[place];
+        robot.ceiling = ceiling;
+        self.entries.push(Entry::Ceiling { robot: robot.name.clone(), path: robot.path, ceiling });
     }
 
     fn tell(&mut self, place: usize, limit: Option<&Limit>) {
@@ -92,12 +128,11 @@ impl Supervisor {
         let robot = &mut robots[place];
         robot.granted = granted;
         robot.told = robot.told.max(granted);
+        let event = Event::Hold { robot: robot.name.clone(), path: robot.path, hold: granted, waits_for };
         if granted > robot.ceiling {
-            robot.ceiling = (granted + settings.spare).min(end);
-            let (name, path, ceiling) = (robot.name.clone(), robot.path, robot.ceiling);
-            self.entries.push(Entry::Ceiling { robot: name, path, ceiling });
+            self.set_ceiling(place, self.highest(place));
         }
         self.counts.holds += 1;
-        self.events.push(Event::Hold { robot: robot.name.clone(), path: robot.path, hold: granted, waits_for });
+        self.events.push(event);
     }
 }

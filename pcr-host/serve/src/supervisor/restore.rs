@@ -64,7 +64,7 @@ impl State {
             Entry::Ceiling { robot, path, ceiling } => {
                 let known = self.robot(&robot)?;
                 if known.path == path {
-                    known.ceiling = known.ceiling.max(ceiling);
+                    known.ceiling = ceiling;
                 }
             }
             Entry::Places { places } => {
