@@ -127,7 +127,7 @@ fn same<S: Format>() {
     for seed in 0..400 {
         let dice = &mut Dice::seeded(seed);
         let courses: Vec<_> =
-            plans::fleet(dice).iter().filter_map(Course::<S>::rounded).map(|(_, course)| course).collect();
+            plans::fleet(dice).iter().filter_map(Course::<S>::rounded).map(|(course, _)| course).collect();
         let late =
             |course: &Course<S>, late: f64| course.motion().with_lateness(S::from_f64(late)).expect("a lateness");
         let fleet: Vec<_> = courses.iter().map(|course| late(course, (dice.range(-2.0, 2.0)).max(0.0))).collect();

@@ -53,7 +53,7 @@ pub fn written_table(written: &Written, out: &mut impl Write) -> io::Result<()> 
         counted(written.nodes, "node"),
         vehicle(&written.vehicle)
     )?;
-    let cliques = |least| format!("; of places that all touch one another no fewer than {least} do");
+    let cliques = |least| format!("; if all places of a group have to touch one another, at least {least} are needed");
     let bound = written.at_least.map_or(String::new(), cliques);
     writeln!(out, "  groups: {}{bound}", written.groups)?;
     writeln!(out, "  pairs that can touch: {}, all excluded by what stands in the file", written.can_touch)?;

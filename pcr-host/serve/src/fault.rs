@@ -77,7 +77,9 @@ impl fmt::Display for Fault {
             Self::Slow { bytes } => {
                 write!(f, "{bytes} bytes wait for this client, which does not read them: this is the last line")
             }
-            Self::Broken { why } => write!(f, "the journal cannot be written, so no right is given any more: {why}"),
+            Self::Broken { why } => {
+                write!(f, "the journal cannot be written, so no robot gets the right of way any more: {why}")
+            }
         }
     }
 }

@@ -25,7 +25,7 @@ trap 'kill "${children[@]}" 2>/dev/null || true' EXIT
 found() {
   local text=$1 record=$2 missions twice left verdict wrong=""
   missions=$(sed -n 's/.*: \([0-9]*\) missions done.*/\1/p' "$text")
-  twice=$(sed -n 's/two with the right to one place: \([0-9]*\) times.*/\1/p' "$text")
+  twice=$(sed -n 's/two vehicles with the right of way at one place: \([0-9]*\) of.*/\1/p' "$text")
   left=$(sed -n 's/^\([0-9]*\) have not come to their ends.*/\1/p' "$text")
   verdict=$("$pcr" fleet --certify "$record" | sed 's/.*"verdict":"\([a-z]*\)".*/\1/') || true
   [ "$verdict" = proved ] || wrong+=" **$verdict**"

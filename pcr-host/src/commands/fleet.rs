@@ -14,8 +14,8 @@ use std::process::ExitCode;
 const STATUSES: &str = "\
 Exit status:
   0  done; of a record: nobody touched anybody, proved
-  1  two vehicles had the right to one place, or some did not come to their
-     ends; of a record: there was a contact
+  1  two vehicles had the right of way at one place, or some did not come to
+     their ends; of a record: there was a contact
   2  wrong arguments, or a file that cannot be read or was refused
   3  the record could not be written
   4  of a record: undecided, because two came too near for its rounding, or

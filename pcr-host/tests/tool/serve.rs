@@ -103,7 +103,7 @@ fn a_full_disc_gives_no_right() {
     let (out, err) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
     let journal = folder.join("journal").to_string_lossy().into_owned();
     assert_eq!(output.status.code(), Some(3), "{out}{err}");
-    assert!(err.contains("pcr: the journal cannot be written, so no right is given any more: "), "{err}");
+    assert!(err.contains("pcr: the journal cannot be written, so no robot gets the right of way any more: "), "{err}");
     assert!(err.contains(&format!("{journal}: File too large")), "{err}");
     // Whatever was answered, nothing was admitted.
     for line in out.lines() {
@@ -213,7 +213,7 @@ fn a_record_that_was_cut_is_undecided() {
 fn a_folder_that_cannot_be_written_is_named() {
     for folder in ["/sys/pcr-journal".into(), format!("{}/state", file("unwritable", "a-file", ""))] {
         let failed = run_with(&["serve", "--log", "error", "--journal", &folder], ADD.as_bytes()).failed(3);
-        let begins = format!("pcr: the journal cannot be opened, so no right is given: {folder}: ");
+        let begins = format!("pcr: the journal cannot be opened, so no robot gets the right of way: {folder}: ");
         assert!(failed.starts_with(&begins), "{failed}");
     }
 }

@@ -113,7 +113,7 @@ impl<'a, 'i> Cutter<'a, 'i> {
         let straight = matches!(&edge.curve[..], [only] if matches!(only.shape, PathSegment::Line { .. }));
         let other_envelope = |envelope: Node<'_, '_>| key.is_none() || envelope.attribute("key") != key;
         if !straight || edge.deviation > 0.0 {
-            Some("as control points are in units of the visual layout, and parts of a curve would be others")
+            Some("as a part of their curves, written in the units of the visual layout, would be another curve")
         } else if elements(path, "peripheralOperation").next().is_some() {
             Some("as their operations belong to all of them")
         } else if elements(path, "property").next().is_some() {

@@ -107,7 +107,7 @@ fn planning(run: &Run, labels: &Labels, out: &mut impl Write) -> io::Result<()> 
     }
     writeln!(
         out,
-        "{name}: planned {} ({} the old orders stayed), {mean:.2} ms each, at most {longest:.2} ms",
+        "{name}: planned {} (the old orders were kept {}), {mean:.2} ms each, at most {longest:.2} ms",
         counted(count, "time"),
         counted(kept, "time")
     )

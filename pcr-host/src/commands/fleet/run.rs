@@ -348,7 +348,7 @@ impl Outcome {
     fn tell(&self, out: &mut impl Write) -> Result<ExitCode, Stop> {
         let Self { vehicles, time, done, drops, audit, left, longest } = self;
         writeln!(out, "{vehicles} vehicles, {time:.0} s of theirs: {done} missions done, {drops} connections lost")?;
-        writeln!(out, "two with the right to one place: {} times in {} looks", audit.twice, audit.looks)?;
+        writeln!(out, "two vehicles with the right of way at one place: {} of {} checks", audit.twice, audit.looks)?;
         if let Some((time, [a, b])) = &audit.first {
             writeln!(out, "first at {time:.1} s: {a} and {b}")?;
         }

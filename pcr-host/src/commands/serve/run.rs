@@ -193,7 +193,10 @@ fn open(arguments: &Arguments, settings: Settings, handle: &Handle, log: Log) ->
     let (journal, found) = Journal::open(folder).map_err(|error| match error.kind() {
         // Whoever has it open, or has damaged it, is not the disc.
         ErrorKind::WouldBlock | ErrorKind::InvalidData => Stop::wrong(folder, error),
-        _ => Stop::Error(format!("the journal cannot be opened, so no right is given: {error}"), NOT_WRITTEN),
+        _ => Stop::Error(
+            format!("the journal cannot be opened, so no robot gets the right of way: {error}"),
+            NOT_WRITTEN,
+        ),
     })?;
     if found.torn > 0 {
         log.write(
