@@ -18,7 +18,8 @@ pub fn union<S: Scalar, I: Iterator<Item = Interval<S>> + Clone>(intervals: I) -
 }
 
 /// The gaps between disjoint intervals, which are in increasing order, within the interval `within`. The ends of a gap
-/// are equal to ends of its neighbours; gaps of length 0 are left out.
+/// are equal to ends of its neighbours; gaps of length 0 are left out. A `within` of length 0 is a gap if no interval
+/// contains it.
 pub fn gaps<S: Scalar, I: Iterator<Item = Interval<S>>>(intervals: I, within: Interval<S>) -> Gaps<S, I> {
     Gaps { intervals, rest: Some(within) }
 }
@@ -123,10 +124,11 @@ impl<S: Scalar, I: Iterator<Item = Interval<S>>> Iterator for Gaps<S, I> {
     fn next(&mut self) -> Option<Interval<S>> {
         loop {
             let rest = self.rest.take()?;
-            let Some(interval) = self.intervals.next().filter(|interval| interval.lo < rest.hi) else {
-                return (rest.lo < rest.hi).then_some(rest);
+            let Some(interval) = self.intervals.next().filter(|interval| interval.lo <= rest.hi) else {
+                return (rest.lo <= rest.hi).then_some(rest);
             };
-            self.rest = Some(Interval::new(rest.lo.max(interval.hi), rest.hi)).filter(|rest| rest.lo < rest.hi);
+            let after = Interval::new(rest.lo.max(interval.hi), rest.hi);
+            self.rest = Some(after).filter(|after| after.lo < after.hi || interval.hi < rest.lo);
             if rest.lo < interval.lo {
                 return Some(Interval::new(rest.lo, interval.lo));
             }
@@ -157,5 +159,28 @@ mod tests {
         assert_eq!(looked_at((0..100).rev()), (1, 100.0, 200));
         assert_eq!(looked_at((0..100).chain(200..300)), (2, 200.0, 600));
         assert_eq!(looked_at((50..100).chain(0..50)), (1, 100.0, 300));
+    }
+
+    #[test]
+    fn a_point_is_a_gap_unless_an_interval_contains_it() {
+        let intervals = [(0.0, 1.0), (2.0, 2.0), (3.0, 4.0)].map(|(lo, hi)| Interval::new(lo, hi));
+        for (at, free) in [
+            (-1.0, true),
+            (0.0, false),
+            (0.5, false),
+            (1.0, false),
+            (1.5, true),
+            (2.0, false),
+            (2.5, true),
+            (4.0, false),
+            (5.0, true),
+        ] {
+            let point = Interval::new(at, at);
+            assert!(gaps(intervals.into_iter(), point).eq(free.then_some(point)), "{at}");
+        }
+        // Within more than a point, gaps without a length are none.
+        let between = |lo, hi| gaps(intervals.into_iter(), Interval::new(lo, hi));
+        assert!(between(0.0, 1.0).eq([]) && between(0.25, 0.5).eq([]) && between(1.5, 1.0).eq([]));
+        assert!(between(2.0, 3.0).eq([Interval::new(2.0, 3.0)]) && between(1.0, 2.0).eq([Interval::new(1.0, 2.0)]));
     }
 }

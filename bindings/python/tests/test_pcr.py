@@ -189,6 +189,15 @@ class Answers(unittest.TestCase):
         distance, _, radii = fleet.closest(conflict.i, conflict.j)
         self.assertLess(distance, radii)
 
+    def test_instants_are_safe_unless_they_are_blocked(self) -> None:
+        fleet = pcr.Fleet([CROSSING[0], {"id": 2, "start": {"x": 2, "y": 0, "heading": 0}, **AGENT, "path": []}])
+        for time in (0.5, 2.0, 4.5):
+            self.assertEqual(fleet.safe_intervals(1, 2.0, time), [(time, time)])
+            self.assertEqual(fleet.safe_intervals(1, (0.0, 4.0), time), [])
+        # The second one has no path: it is in the way of the first one's end.
+        self.assertEqual(fleet.safe_intervals(2, 0.0, 0.0), [(0.0, 0.0)])
+        self.assertEqual(fleet.safe_intervals(2, 0.0, 9.0), [])
+
     def test_holds_keep_the_order_of_the_plan(self) -> None:
         plan = pcr.Fleet.read(TWELVE).plan().fleet
         assert plan is not None

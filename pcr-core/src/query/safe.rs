@@ -182,7 +182,8 @@ fn in_order<S: Scalar>(during: Interval<S>) -> Interval<S> {
 
 /// The safe intervals of a part of an agent's path: the times in an interval \[s\] at which no other agent of the fleet
 /// blocks any of these lengths \[m\], in increasing order. The lengths are clamped to the path. The other agents move as
-/// their motions say, and stand before and after them.
+/// their motions say, and stand before and after them. An instant, an interval of length 0, is its own safe interval if
+/// the lengths are free then.
 ///
 /// Cost for each interval: that of [`Encounter::blocked`] for every other agent, up to the end of the blocked window that
 /// follows it.
@@ -213,11 +214,12 @@ pub fn safe_intervals<'a, S: Scalar>(
 ) -> Result<impl Iterator<Item = Interval<S>> + Clone, Mismatch> {
     let pairs = encounters(fleet, ego)?;
     let reaches = pairs.map(move |pair| pair.reach(length, during));
-    Ok(gaps(Blocked { reaches, after: None }, during))
+    Ok(gaps(Blocked { reaches, after: None }, in_order(during)))
 }
 
 /// The lengths of an agent's path \[m\] that no other agent of the fleet blocks at any time of an interval \[s\]: the
-/// dual of [`safe_intervals`], with the same cost and the same error.
+/// dual of [`safe_intervals`], with the same cost and the same error. Of an agent without a path, its place is the
+/// length 0.
 pub fn safe_lengths<'a, S: Scalar>(
     fleet: &'a [Motion<'a, S>],
     ego: usize,
@@ -414,6 +416,28 @@ mod tests {
             }
         }
         assert!(windows > 90, "{windows}");
+    }
+
+    #[test]
+    fn instants_and_places_without_a_path_are_free_unless_they_are_blocked() {
+        // The second agent is within reach of the first one, which stands, from 0.5 s to 1.5 s.
+        let paths: [Path<f64, 1>; 2] =
+            [rounds([0.0, 0.0, 0.0], 0), rounds([-1.0, 0.0, 0.0], 0).line(2.0).expect("a path")];
+        let profiles = [Profile::standing(), Profile::<f64, 1>::from_pieces(1.0, [(2.0, 0.0)]).expect("a profile")];
+        let fleet =
+            [0, 1].map(|k| Motion::new(paths[k].as_path(), profiles[k].as_profile(), 0.25, 0.0).expect("a motion"));
+        let here = Interval::new(0.0, 0.0);
+        for (at, free) in [(-1.0, true), (0.25, true), (0.75, false), (1.0, false), (1.75, true), (9.0, true)] {
+            let instant = Interval::new(at, at);
+            let safe = safe_intervals(&fleet, 0, here, instant).expect("an agent of the fleet");
+            assert!(safe.eq(free.then_some(instant)), "at {at}");
+            let safe = safe_lengths(&fleet, 0, instant).expect("an agent of the fleet");
+            assert!(safe.eq(free.then_some(here)), "at {at}");
+        }
+        let safe = |lo, hi| safe_intervals(&fleet, 0, here, Interval::new(lo, hi)).expect("an agent of the fleet");
+        assert_eq!(safe(-1.0, 3.0).count(), 2);
+        assert!(safe(3.0, -1.0).eq(safe(-1.0, 3.0)), "the ends are the other way round");
+        assert!(safe_lengths(&fleet, 0, Interval::new(0.0, 2.0)).expect("an agent of the fleet").eq([]));
     }
 
     #[test]

@@ -14,7 +14,7 @@
 //! nodes        nodes and edges of a layout                         Listing
 //! plan         delays without conflicts                            Plan
 //! queue        the conflicts of a fleet while its motions change   Queue
-//! safe         when a part of a path is free, in large fleets  safe_intervals
+//! safe         when a part of a path is free, in large fleets     safe_intervals
 //! report       JSON, CSV and tables
 //! ```
 

@@ -13,6 +13,8 @@ pub fn safe_intervals<S: Scalar>(
     length: Interval<S>,
     during: Interval<S>,
 ) -> Result<Vec<Interval<S>>, Mismatch> {
+    // As there, ends that are the wrong way round are swapped.
+    let during = if during.hi < during.lo { Interval::new(during.hi, during.lo) } else { during };
     let own = fleet.get(ego).ok_or(Mismatch::NoSuchAgent(ego))?;
     let others = fleet.iter().enumerate().filter(|&(other, _)| other != ego);
     let mut blocked: Vec<_> =

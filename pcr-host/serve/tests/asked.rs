@@ -102,3 +102,20 @@ fn a_question_has_no_other_fields_than_its_own() {
         }
     }
 }
+
+#[test]
+fn a_place_is_free_at_an_instant_or_blocked() {
+    let mut asks = Asks::new();
+    asks.events(&add("a", 0.0, 0.0));
+    asks.events(&add("b", 2.0, 0.0));
+    asks.events(&mission("a", 1.0));
+    let mut safe = |robot: &str, length: [f64; 2], until: f64| {
+        let answer =
+            asks.ask(&json!({ "verb": "query", "what": "safe", "robot": robot, "length": length, "until": until }));
+        answer["ok"]["safe"].clone()
+    };
+    assert_eq!(safe("a", [0.0, 1.0], 0.0), json!([[0.0, 0.0]]));
+    // A robot without a path.
+    assert_eq!(safe("b", [0.0, 0.0], 0.0), json!([[0.0, 0.0]]));
+    assert_eq!(safe("b", [0.0, 0.0], 9.0), json!([[0.0, 9.0]]));
+}
