@@ -47,10 +47,18 @@ pub(super) fn called(id: u64, label: &str) -> String {
     if label.is_empty() { id.to_string() } else { format!("{id} {label}") }
 }
 
-/// Whether a character would end a line, or change the direction of text beside it.
+/// Whether a character would end a line, change the direction of text beside it, or not be seen: two labels would look the same.
+/// (Joiners are letters of some scripts.)
 pub fn controls(c: char) -> bool {
-    let lines_and_directions = ['\u{2028}'..='\u{202e}', '\u{2066}'..='\u{2069}', '\u{feff}'..='\u{feff}'];
-    c.is_control() || lines_and_directions.iter().any(|range| range.contains(&c))
+    let ranges = [
+        '\u{200b}'..='\u{200b}',
+        '\u{200e}'..='\u{200f}',
+        '\u{2028}'..='\u{202e}',
+        '\u{2060}'..='\u{2069}',
+        '\u{feff}'..='\u{feff}',
+        '\u{e0000}'..='\u{e007f}',
+    ];
+    c.is_control() || ranges.iter().any(|range| range.contains(&c))
 }
 
 /// Text from elsewhere, such as the name of a file, as it may be printed: what ends a line or moves the cursor is escaped.

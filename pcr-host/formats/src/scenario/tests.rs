@@ -277,6 +277,10 @@ fn labels_are_printable_text() {
     let turns = "agent 7, label: has the control character \\u{202e}; allowed is printable text";
     refused(&with("/label", &json!("AGV \u{202e}7")), turns);
     assert_eq!(crate::scenario::label("A\u{2028}G\u{202e}V\n"), "AGV");
+    // What nobody sees.
+    let unseen = "agent 7, label: has the control character \\u{200b}; allowed is printable text";
+    refused(&with("/label", &json!("AGV\u{200b}7")), unseen);
+    assert_eq!(crate::scenario::label("\u{e0041}A\u{200f}G\u{2060}V\u{200d}"), "AGV\u{200d}");
     let long = with("/label", &json!("x".repeat(LONGEST_LABEL + 1)));
     refused(&long, "agent 7, label: has 201 characters; allowed are up to 200");
     // Messages about the agent name it.
