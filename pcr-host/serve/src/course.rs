@@ -2,7 +2,7 @@
 
 use pcr_core::{Invalid, Motion, PathRef, Phase, Point, Pose, ProfileRef, Radians, Segment, Turn};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Largest coordinate of a start, and largest length of a path \[m\]. It includes maps in coordinates of the earth, and the
 /// rounding of such numbers is less than the additional radius of the discs.
@@ -11,6 +11,10 @@ pub const FAR: f64 = 2e7;
 /// A length within this of the end of a shape counts as that end \[m\], because sums and messages round lengths. A path that
 /// turns off there is off by at most twice this, half the additional radius of the discs.
 pub const JOINT: f64 = 2.5e-7;
+
+/// Largest distance by which rounding may have put a robot from where its missions lead \[m\]: a quarter of the additional radius
+/// of the discs. Half is for [`JOINT`], and the rest for the numbers of the present path.
+pub const WORN: f64 = 2.5e-7;
 
 /// The pose at which a path begins.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,6 +26,84 @@ pub struct Start {
     pub y: f64,
     /// \[rad\], counterclockwise from the x axis.
     pub heading: f64,
+}
+
+/// What is missing from the start of a path to where the missions before have led, so that rounding does not add up from path
+/// to path; and bounds on the rounding that has added up nevertheless.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rest {
+    /// \[m\]
+    pub x: f64,
+    /// \[m\]
+    pub y: f64,
+    /// \[rad\]
+    pub heading: f64,
+    /// Bound on the error of the start \[m\].
+    pub off: f64,
+    /// Bound on the error of its heading \[rad\].
+    pub turned: f64,
+}
+
+impl Rest {
+    /// Whether it can be that of a robot.
+    pub fn is_valid(&self) -> bool {
+        let Self { x, y, heading, off, turned } = *self;
+        [x, y, heading].iter().all(|value| value.abs() <= JOINT) && (0.0..=WORN).contains(&off) && turned >= 0.0
+    }
+
+    /// Whether nothing is missing.
+    pub fn is_nothing(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Bound on the distance of any point of a path of this length \[m\] from where the missions lead \[m\].
+    pub fn worn(&self, length: f64) -> f64 {
+        self.off + self.turned * length
+    }
+}
+
+/// A sum of numbers with what is missing from it by rounding.
+#[derive(Clone, Copy)]
+struct Sum(f64, f64);
+
+impl Sum {
+    fn and(self, more: f64) -> Self {
+        let Self(sum, rest) = two_sum(self.0, more);
+        two_sum(sum, rest + self.1)
+    }
+}
+
+/// Knuth's sum of two numbers, and exactly what is missing from it.
+fn two_sum(a: f64, b: f64) -> Sum {
+    let sum = a + b;
+    let added = sum - a;
+    Sum(sum, (a - (sum - added)) + (b - added))
+}
+
+/// The pose to which shapes lead.
+fn led(start: Start, rest: Rest, shapes: impl Iterator<Item = Shape>) -> (Start, Rest) {
+    /// What is missing from [`TAU`] to a full turn.
+    const TURN: f64 = 2.449_293_598_294_706_4e-16;
+    let (mut x, mut y) = (Sum(start.x, rest.x), Sum(start.y, rest.y));
+    let mut heading = Sum(start.heading, rest.heading);
+    for shape in shapes {
+        let (chord, sweep) = match shape {
+            Shape::Line { length } => (length, 0.0),
+            Shape::Arc { radius, sweep } => (2.0 * radius * (0.5 * sweep.abs()).sin(), sweep),
+            Shape::Turn { sweep } => (0.0, sweep),
+        };
+        let Sum(along, small) = heading.and(0.5 * sweep);
+        let (sin, cos) = along.sin_cos();
+        // The small rest of the angle turns the chord by so much.
+        (x, y) = (x.and(chord * cos).and(-chord * small * sin), y.and(chord * sin).and(chord * small * cos));
+        heading = heading.and(sweep);
+    }
+    // Wrapped, so that headings do not grow with the turns of all missions.
+    let turns = (heading.0 / TAU).round();
+    let full = turns * TAU;
+    let heading = heading.and(-full).and(-(turns.mul_add(TAU, -full) + turns * TURN));
+    (Start { x: x.0, y: y.0, heading: heading.0 }, Rest { x: x.1, y: y.1, heading: heading.1, ..rest })
 }
 
 /// A part of a path; it begins in the pose in which the part before ends.
@@ -219,7 +301,7 @@ impl Course {
         let Some(first) = self.ahead(from, to) else { return Self::new(self.arrival(from)?, Vec::new()) };
         let mut kept: Vec<Shape> = self.up_to(first, to).collect();
         if from <= self.offsets[first] {
-            return Self::new(self.departure(first), kept);
+            return Self::new(self.departure(first, Rest::default()).0, kept);
         }
         if let Some(shape) = kept.first_mut() {
             *shape = shape.of_length(self.offsets[first + 1].min(to) - from);
@@ -227,24 +309,39 @@ impl Course {
         Self::new(self.pose(from), kept)
     }
 
-    /// The part from the shape on that contains `from`, up to `to`, followed by other shapes; and the length that is left out
-    /// before it \[m\].
+    /// The part from the shape on that contains `from`, up to `to`, followed by other shapes; the length that is left out
+    /// before it \[m\], and what is missing from its start. `rest` is what is missing from the start of this path.
     ///
     /// # Errors
     /// [`Invalid`] if the result is no path.
-    pub fn rejoined(&self, from: f64, to: f64, shapes: &[Shape]) -> Result<(Self, f64), Invalid> {
+    pub fn rejoined(&self, from: f64, to: f64, shapes: &[Shape], rest: Rest) -> Result<(Self, f64, Rest), Invalid> {
         let to = self.joint(to);
         let first = self.ahead(from, to);
-        let (start, dropped) = match first {
+        let ((start, mut rest), dropped) = match first {
             // The robot stands: nothing of the old path is ahead.
-            None => (self.arrival(to)?, to),
-            Some(first) => (self.departure(first), self.offsets[first]),
+            None => (led(self.start, rest, self.up_to(0, to)), to),
+            Some(first) => (self.departure(first, rest), self.offsets[first]),
         };
         let kept = self.up_to(first.unwrap_or(self.shapes.len()), to);
         let kept = kept.chain(shapes.iter().copied()).collect();
-        // Wrapped, so that headings do not grow with the turns of all missions.
-        let heading = (start.heading + PI).rem_euclid(TAU) - PI;
-        Ok((Self::new(Start { heading, ..start }, kept)?, dropped))
+        // The error of a heading counts along all that is left out. Beside that, the chord, its direction and their product are
+        // rounded: together by less than 8 times the last digit of the length. What is added up is exact.
+        rest.off += rest.turned * dropped + 8.0 * f64::EPSILON * dropped;
+        // A shape that is cut ends where the length before it, and its own, are rounded; an arc is turned by that, too.
+        if let Some(cut) = self.cut(to) {
+            let rounding = 2.0 * f64::EPSILON * to;
+            rest.off += rounding;
+            if let Shape::Arc { radius, sweep } = cut {
+                rest.turned += rounding / radius + f64::EPSILON * sweep.abs();
+            }
+        }
+        Ok((Self::new(start, kept)?, dropped, rest))
+    }
+
+    /// The shape that is cut if the path ends at a length.
+    fn cut(&self, to: f64) -> Option<Shape> {
+        let is_cut = |ends: &[f64]| ends[0] < to && to < ends[1];
+        self.offsets.windows(2).zip(&self.shapes).find(|(ends, _)| is_cut(ends)).map(|(_, shape)| *shape)
     }
 
     /// The first shape, other than a turn in place, that goes beyond `from`, if it begins before `to`.
@@ -254,16 +351,8 @@ impl Course {
     }
 
     /// The pose in which a shape begins, after the turns before it.
-    fn departure(&self, shape: usize) -> Start {
-        self.shapes.iter().take(shape).fold(self.start, |Start { x, y, heading }, shape| {
-            let (chord, sweep) = match *shape {
-                Shape::Line { length } => (length, 0.0),
-                Shape::Arc { radius, sweep } => (2.0 * radius * (0.5 * sweep.abs()).sin(), sweep),
-                Shape::Turn { sweep } => (0.0, sweep),
-            };
-            let (sin, cos) = (heading + 0.5 * sweep).sin_cos();
-            Start { x: x + chord * cos, y: y + chord * sin, heading: heading + sweep }
-        })
+    fn departure(&self, shape: usize, rest: Rest) -> (Start, Rest) {
+        led(self.start, rest, self.shapes.iter().take(shape).copied())
     }
 
     /// The pose of arrival at a length \[m\]: before a turn in place there, except at the end of the course.

@@ -1,6 +1,6 @@
 //! The entries of the journal: everything that must be the same after a restart.
 
-use crate::course::Course;
+use crate::course::{Course, Rest};
 use crate::robot::{Abilities, Alarm, Asked, Notes, Waiting};
 use pcr_core::Pass;
 use serde::{Deserialize, Serialize};
@@ -75,6 +75,9 @@ pub struct Known {
     pub abilities: Abilities,
     /// Its present path.
     pub course: Course,
+    /// What is missing from the start of the path.
+    #[serde(default, skip_serializing_if = "Rest::is_nothing")]
+    pub rest: Rest,
     /// Number of the path.
     pub path: u64,
     /// Where the path begins, as a length of the way since the robot was added \[m\].

@@ -1,6 +1,6 @@
 //! The state of a robot: its abilities, its path, its place on the path, and how far it has been allowed to go.
 
-use crate::course::{Course, Shape};
+use crate::course::{Course, Rest, Shape};
 use pcr_core::{Hold, Interval, Invalid, Motion, Progress};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -136,6 +136,8 @@ pub struct Robot {
     pub abilities: Abilities,
     /// Its present path.
     pub course: Course,
+    /// What is missing from the start of the path.
+    pub rest: Rest,
     /// Number of its path. The first one is 1 above the highest number of any removed robot; each new path has the next number.
     pub path: u64,
     /// Where the path begins, as a length of the way since the robot was added \[m\]: the sum of what was cut off from earlier
@@ -189,6 +191,7 @@ impl Robot {
             name,
             abilities,
             course,
+            rest: Rest::default(),
             path: 1,
             origin: 0.0,
             mission: None,

@@ -1,8 +1,8 @@
 //! Lengths at which a shape of a path ends, but for rounding, and turns in place there.
 
 use pcr_formats::random::Random;
-use pcr_serve::course::{Course, Shape, Start};
-use pcr_serve::entry::Nowhere;
+use pcr_serve::course::{Course, Rest, Shape, Start, WORN};
+use pcr_serve::entry::{Entry, Nowhere};
 use pcr_serve::event::Event;
 use pcr_serve::fault::Fault;
 use pcr_serve::query::{Question, answer};
@@ -91,7 +91,7 @@ fn courses_that_are_cut_at_a_joint_lead_where_they_did() {
             let rest = course.part(at, course.length()).unwrap();
             assert!(is_same(rest.pose(rest.length()), end), "{shapes:?} from {at}");
             assert!((rest.length() + at - course.length()).abs() < 1e-6, "{shapes:?} from {at}");
-            let (whole, dropped) = course.rejoined(at, course.length() - 1e-9, &[CORNER]).unwrap();
+            let (whole, dropped, _) = course.rejoined(at, course.length() - 1e-9, &[CORNER], Rest::default()).unwrap();
             assert!(is_same(whole.pose(whole.length()), Start { heading: end.heading + FRAC_PI_2, ..end }));
             assert!((whole.length() + dropped - course.length()).abs() < 1e-6, "{shapes:?} from {at}");
             // Where it is left, the turns there are not done, but at its end.
@@ -106,7 +106,7 @@ fn courses_that_are_cut_at_a_joint_lead_where_they_did() {
             let left = left.pose(left.length());
             assert!(is_same(course.arrival(at).unwrap(), left), "{shapes:?} to {at}");
             for from in [0.0, 0.5 * at, at, joints[2]] {
-                let (joined, _) = course.rejoined(from, at, &[]).unwrap();
+                let (joined, ..) = course.rejoined(from, at, &[], Rest::default()).unwrap();
                 assert!(is_same(joined.pose(joined.length()), left), "{shapes:?} from {from} to {at}");
             }
         }
@@ -131,6 +131,95 @@ fn who_is_at_a_turn_goes_on_after_it() {
     // The whole way, in lengths that a sum has rounded.
     for length in [[1.07, 6.07_f64.next_up()], [1.07_f64.next_down(), 6.07]] {
         answer(&own, &Question::Safe { robot: "a".into(), length, until: 60.0 }, 0.0).unwrap();
+    }
+}
+
+/// The missions of a robot, each of which it drives to its end.
+fn done(own: &mut Supervisor, from: usize, missions: usize, path: &[Shape]) {
+    for k in from..from + missions {
+        assert!(is_admitted(own, &proposal(&k.to_string(), path)));
+        own.settle(0.0).unwrap();
+        let robot = own.robot("a").unwrap();
+        let (path, end) = (robot.path, robot.course.length());
+        for _ in 0..9 {
+            let hold = own.robot("a").unwrap().granted;
+            own.position(&Report { robot: "a".into(), path, at: [hold; 2], age: 0.0 }, 0.0).unwrap();
+            own.settle(0.0).unwrap();
+        }
+        assert!(own.robot("a").unwrap().granted == end, "{k}");
+    }
+}
+
+/// The rounding of each mission was there in the next one: 6 µm after these.
+#[test]
+fn rounding_does_not_add_up_from_mission_to_mission() {
+    // Numbers of 2^-56 m.
+    let exact = |value: f64| (value * 2_f64.powi(56)) as i128;
+    for (x, missions) in [(1.9e7, 4000_usize), (5.4e6, 2000)] {
+        let mut own = supervisor(Start { x, ..ORIGIN });
+        done(&mut own, 0, missions / 2, &[line(0.1)]);
+        // A restart changes nothing.
+        let entries = own.snapshot().unwrap();
+        let mut own = Supervisor::restored(Settings::default(), entries, Box::new(Nowhere)).unwrap();
+        done(&mut own, missions / 2, missions / 2, &[line(0.1)]);
+        let robot = own.robot("a").unwrap();
+        let there = exact(robot.course.start().x) + exact(robot.course.length());
+        let off = (there - exact(x) - missions as i128 * exact(0.1)) as f64 / 2_f64.powi(56);
+        assert!(off.abs() < 4e-9, "{x}: {off}");
+        let bound = robot.rest.worn(robot.course.length());
+        assert!(bound > 0.0 && bound < 1e-11, "{bound}");
+    }
+}
+
+/// Turns that are sums of many have no more rounding than one, and neither have the places to which they lead.
+#[test]
+fn headings_do_not_add_up_rounding() {
+    let mut own = supervisor(ORIGIN);
+    let turns = 3000;
+    done(&mut own, 0, turns, &[line(0.5), Shape::Turn { sweep: PI }]);
+    // So much is missing from `PI` to half a turn.
+    let missing = 1.224_646_799_147_353_2e-16;
+    let robot = own.robot("a").unwrap();
+    let end = robot.course.length();
+    let (course, _, rest) = robot.course.rejoined(end, end, &[], robot.rest).unwrap();
+    let heading = course.start().heading + (rest.heading + turns as f64 * missing);
+    assert!(heading.abs() < 1e-25, "{heading}");
+    // It goes half a metre forth and back, turned by a little more each time.
+    let y: f64 = (0..turns).map(|k| -0.5 * (k as f64 * missing) * if k % 2 == 0 { 1.0 } else { -1.0 }).sum();
+    let off = course.start().y + rest.y - y;
+    assert!(off.abs() < 1e-18 && rest.off < 1e-11, "{off} {}", rest.off);
+}
+
+/// Who has driven so far that the rounding may be more than the discs have room for is to be added anew.
+#[test]
+fn a_robot_whose_rounding_has_added_up_gets_no_mission() {
+    let mut own = supervisor(ORIGIN);
+    done(&mut own, 0, 2, &[line(1.0)]);
+    let restored = |rest: Rest| {
+        let mut entries = own.snapshot().unwrap();
+        for entry in &mut entries {
+            if let Entry::Robot(known) = entry {
+                known.rest = rest;
+            }
+        }
+        Supervisor::restored(Settings::default(), entries, Box::new(Nowhere))
+    };
+    let most = Rest { off: WORN, ..Rest::default() };
+    // All that was driven counts, and along the path also how far it may be turned.
+    for (rest, is_taken) in [
+        (Rest { off: 0.99 * WORN, ..most }, true),
+        (most, false),
+        (Rest { off: 0.0, turned: 0.02 * WORN, ..most }, true),
+        (Rest { off: 0.0, turned: 0.2 * WORN, ..most }, false),
+    ] {
+        let mut own = restored(rest).unwrap();
+        match own.mission(&proposal("next", &[line(10.0)]), 0.0) {
+            Ok(verdict) => assert!(is_taken && matches!(verdict, Verdict::Admitted { .. }), "{rest:?} {verdict:?}"),
+            Err(fault) => assert!(!is_taken && fault.to_string().contains("add it anew"), "{rest:?} {fault}"),
+        }
+    }
+    for rest in [Rest { x: 1.0, ..most }, Rest { off: -1.0, ..most }, Rest { turned: -1.0, ..most }] {
+        assert!(restored(rest).is_err(), "{rest:?}");
     }
 }
 

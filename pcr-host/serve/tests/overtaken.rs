@@ -19,11 +19,13 @@ fn a_slow_robot_gets_its_turn() {
     let abilities = |speed| Abilities { radius: 0.4, margin: 0.0, speed, acceleration: 5.0 };
     own.add("fast", abilities(FAST), Start { x: 0.0, y: 4.0, heading: FRAC_PI_2 }).unwrap();
     own.add("slow", abilities(SLOW), Start { x: -4.0, y: 0.0, heading: 0.0 }).unwrap();
-    // Turns round, 4 m to the passage, 12 m through it and 4 m out of it.
+    // Turns round, 4 m to the passage, 12 m through it and 4 m out of it. It turns by a little more than half a turn, because the lines of
+    // both lie on one another: the side on which one is off by rounding would decide who goes first.
+    const HALF: f64 = PI + 1e-12;
     let trip = |trips: u32| {
         let sweep = if trips.is_multiple_of(2) { FRAC_PI_2 } else { -FRAC_PI_2 };
         let (bend, line) = (Shape::Turn { sweep }, |length| Shape::Line { length });
-        vec![Shape::Turn { sweep: PI }, line(4.0), bend, line(12.0), bend, line(4.0)]
+        vec![Shape::Turn { sweep: HALF }, line(4.0), bend, line(12.0), bend, line(4.0)]
     };
     let ask = |own: &mut Supervisor, robot: &str, mission: String, path: Vec<Shape>, now: f64| {
         own.mission(&Proposal { robot: robot.into(), mission, after: None, of: None, start: None, path }, now).unwrap();

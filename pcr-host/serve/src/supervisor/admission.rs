@@ -2,7 +2,7 @@
 //! there are none.
 
 use super::{Supervisor, fleet, grown};
-use crate::course::{Course, JOINT, Shape, Start, extent};
+use crate::course::{Course, JOINT, Rest, Shape, Start, WORN, extent};
 use crate::entry::{Entry, Kept, Known};
 use crate::event::Event;
 use crate::fault::Fault;
@@ -181,8 +181,12 @@ impl Supervisor {
             let why = "it is not where it may be".into();
             return Ok(Some(Verdict::Waiting { by: Some(robot.name.clone()), why }));
         }
-        let rejoined = robot.course.rejoined(robot.at, joint, &mission.shapes);
-        let (course, dropped) = rejoined.map_err(Fault::invalid)?;
+        let rejoined = robot.course.rejoined(robot.at, joint, &mission.shapes, robot.rest);
+        let (course, dropped, rest) = rejoined.map_err(Fault::invalid)?;
+        if rest.worn(course.length()) > WORN {
+            let why = "the rounding of all its missions is more than the discs have room for: remove the robot, and add it anew";
+            return Err(Fault::invalid(why));
+        }
         let shifted = |length: f64| (length - dropped).max(0.0).min(course.length());
         let (at, told) = (shifted(robot.at), shifted(robot.told));
         let own = Progress { at: Interval::new(at, told), stop: told };
@@ -202,7 +206,7 @@ impl Supervisor {
         });
         drop(fleet);
         let Err(refused) = admission else {
-            return self.commit(place, mission, course.clone(), dropped).map(|()| None);
+            return self.commit(place, mission, (course.clone(), rest), dropped).map(|()| None);
         };
         self.counts.refused += 1;
         let name = |agent: usize| self.robots.get(agent).map_or_else(String::new, |robot| robot.name.clone());
@@ -220,7 +224,13 @@ impl Supervisor {
     }
 
     /// Makes the admitted path that of the robot.
-    fn commit(&mut self, place: usize, mission: &Waiting, course: Course, dropped: f64) -> Result<(), Fault> {
+    fn commit(
+        &mut self,
+        place: usize,
+        mission: &Waiting,
+        (course, rest): (Course, Rest),
+        dropped: f64,
+    ) -> Result<(), Fault> {
         let robot = &mut self.robots[place];
         let length = course.length();
         let shifted = |value: f64| (value - dropped).max(0.0).min(length);
@@ -233,7 +243,7 @@ impl Supervisor {
         (robot.moved, robot.stands) = (None, false);
         robot.path += 1;
         robot.origin += dropped;
-        robot.course = course;
+        (robot.course, robot.rest) = (course, rest);
         if let Some(before) = robot.mission.replace(mission.mission.clone()) {
             Robot::outlives(&mut robot.past, before);
         }
@@ -285,6 +295,7 @@ impl Supervisor {
             name: robot.name.clone(),
             abilities: robot.abilities,
             course: robot.course.clone(),
+            rest: robot.rest,
             path: robot.path,
             origin: robot.origin,
             mission: robot.mission.clone(),

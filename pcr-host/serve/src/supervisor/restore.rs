@@ -196,10 +196,10 @@ fn robot(known: Known) -> Result<Robot, Damaged> {
     let mut robot = Robot::new(known.name, abilities, known.course);
     let end = robot.course.length();
     let counts = known.path < MOST && known.waiting.as_ref().is_none_or(|waiting| waiting.turn < MOST);
-    if !counts || ![known.at, known.ceiling, known.origin].iter().all(|value| *value >= 0.0) {
+    if !counts || !known.rest.is_valid() || ![known.at, known.ceiling, known.origin].iter().all(|value| *value >= 0.0) {
         return Err(Damaged(format!("{}: a number that cannot be", robot.name)));
     }
-    (robot.path, robot.origin) = (known.path, known.origin);
+    (robot.path, robot.origin, robot.rest) = (known.path, known.origin, known.rest);
     (robot.mission, robot.asked, robot.past) = (known.mission, known.asked, known.past);
     robot.at = known.at.min(end);
     robot.up_to = robot.at;
