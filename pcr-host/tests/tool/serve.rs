@@ -139,8 +139,8 @@ fn answers_that_cannot_be_written_end_it() {
         assert!(err.contains(why), "{err}");
         err
     };
-    // Where the input goes on, and where it has ended.
-    for ends in [false, true] {
+    // Where the input has ended, and where it goes on.
+    for ends in [true, false] {
         let (child, stdin) = start(&["--log", "error"], full().into());
         let stdin = Some(stdin).filter(|_| !ends);
         let err = said(child, 3);
