@@ -413,6 +413,7 @@ class Refusals(unittest.TestCase):
                 later.holds([0.0, value])  # type: ignore[list-item]
         # Keys of a mapping, even of none, are not its values; a set has no order.
         places: Any
+        none: Any
         for places in ({1: 0.0, 2: 0.0}, {1: 0.0, 2: 0.0}.keys(), {0.0, 1.0}, frozenset((0.0, 1.0)), b"12", bytearray(b"12"), "12"):
             with self.assertRaisesRegex(TypeError, "places: .* is no list"):
                 later.holds(places)
@@ -421,7 +422,7 @@ class Refusals(unittest.TestCase):
             with self.assertRaisesRegex(TypeError, "agents: .* is no list"):
                 pcr.Fleet(none)
             with self.assertRaisesRegex(TypeError, "routes: .* is no list"):
-                pcr.Fleet.read(GRAPH, routes=none)  # type: ignore[arg-type]
+                pcr.Fleet.read(GRAPH, routes=none)
         with self.assertRaises(IndexError):
             fleet.regions()[10_000]
         for mistaken in (lambda: pcr.Fleet(None), lambda: pcr.Fleet([{1, 2}]), lambda: fleet.map("1", 0.0, 1.0, 5), lambda: fleet.places("1"),  # type: ignore[arg-type, list-item]
