@@ -2,7 +2,7 @@
 #![no_main]
 
 use pcr_serve::entry::{Entry, Nowhere};
-use pcr_serve::journal::{FIRST, HEADER, frame, read};
+use pcr_serve::journal::{ANEW, FIRST, HEADER, frame, read};
 use pcr_serve::supervisor::{Settings, Supervisor};
 
 fn restored(entries: Vec<Entry>) {
@@ -15,8 +15,8 @@ fn restored(entries: Vec<Entry>) {
 }
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    let journal = [&HEADER[..], bytes].concat();
-    for bytes in [bytes, &journal] {
+    let [journal, anew] = [HEADER, ANEW].map(|header| [&header[..], bytes].concat());
+    for bytes in [bytes, &journal, &anew] {
         match read(bytes) {
             Ok(found) => {
                 assert!(found.end <= bytes.len());

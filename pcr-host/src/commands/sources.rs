@@ -88,9 +88,6 @@ fn told(file: &Path, (mut scenario, warnings): (Scenario, Warnings), import: &Op
         // Those of whoever has written it: what is left out of a file is left out of all that is made of it.
         say(file, scenario.warnings.iter().map(|line| shortened(line)));
     }
-    if scenario.agents.is_empty() {
-        say(file, ["there is no agent in it, so that nobody can meet".to_owned()]);
-    }
     give_margin(&mut scenario, import).map_err(|why| Stop::wrong(file, why))?;
     Ok(scenario)
 }
