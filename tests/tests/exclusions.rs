@@ -235,7 +235,7 @@ fn paths_of_a_plant_are_cut_where_nothing_belongs_to_all_of_them() {
         (
             r#"<pathLayout connectionType="POLYPATH" layerId="0"><controlPoint x="50" y="85"/></pathLayout>"#,
             "",
-            "control points",
+            "of their curves",
         ),
         (
             "",
