@@ -10,7 +10,7 @@ rust=$(sed -n 's/^ *\([0-9]*\)  table6-100: all regions, both directions$/\1/p' 
 # counted TIMES: all instructions of a program that asks so often.
 counted() {
   # Threads that wait would be counted, too.
-  OPENBLAS_NUM_THREADS=1 valgrind --tool=callgrind --callgrind-out-file=/dev/null "$python" -I -c '
+  OPENBLAS_NUM_THREADS=1 RAYON_NUM_THREADS=1 valgrind --tool=callgrind --callgrind-out-file=/dev/null "$python" -I -c '
 import sys, pcr
 fleet = pcr.Fleet.read("tests/data/table6-100.json")
 for _ in range(int(sys.argv[1])):
