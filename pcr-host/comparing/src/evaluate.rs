@@ -149,8 +149,9 @@ pub fn write(
     begins: &mut dyn FnMut(&str, usize, usize),
 ) -> Result<Vec<PathBuf>, Problem> {
     let document = directory.join("evaluation.md");
-    if let Ok(there) = fs::read_to_string(&document)
-        && !there.contains(machine::OWN)
+    // Also one that is no text.
+    if let Ok(there) = fs::read(&document)
+        && !String::from_utf8_lossy(&there).contains(machine::OWN)
     {
         let why = "is there and not of this command: give another folder, or another name to it";
         return Err(Problem::Document(document, why.to_owned()));

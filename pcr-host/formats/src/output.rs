@@ -208,6 +208,7 @@ pub fn descriptor(file: &Path) -> Option<u32> {
     found.file_name()?.to_str()?.parse().ok()
 }
 
+/// No name is that of a descriptor.
 #[cfg(not(unix))]
 pub fn descriptor(_: &Path) -> Option<u32> {
     None

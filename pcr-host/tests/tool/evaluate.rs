@@ -50,8 +50,8 @@ fn the_document_and_all_its_pictures_are_written() {
     let message = run(&[&only[..], &["-q"]].concat()).failed(2);
     assert!(message.contains("has no section \"## Memory, and bytes on the wire\""), "{message}");
     assert_eq!(fs::read_to_string(output.join("evaluation.md")).unwrap(), without);
-    // Somebody else's is not lost.
-    fs::write(output.join("evaluation.md"), "# Evaluation\n\nmine\n").unwrap();
+    // Somebody else's is not lost, also if it is no text.
+    fs::write(output.join("evaluation.md"), b"# Evaluation\n\nmine \xff\n").unwrap();
     let message = run(&only[..6]).failed(2);
     assert!(message.contains("is there and not of this command"), "{message}");
     // Rows of the grazing table: double precision is never wrong, lines at 10 mm are wrong about all near misses.

@@ -246,6 +246,7 @@ fn hitting(conflicts: &[Vec<usize>], with: &[Vec<usize>], stop: Stop<'_>, fewest
 
 /// The conflicts in independent groups: no agent that can be left out because of one group is affected by another one.
 fn apart<'a>(conflicts: &'a [Vec<usize>], with: &[Vec<usize>]) -> Vec<Vec<&'a Vec<usize>>> {
+    // Each agent leads to another one of its group, and one to itself, which stands for all.
     let mut above: Vec<usize> = (0..with.len()).collect();
     for conflict in conflicts {
         let mut agents = conflict.iter().flat_map(|&agent| &with[agent]);
