@@ -174,6 +174,16 @@ fn place(point: roxmltree::Node<'_, '_>, name: &str) -> Result<[[f64; 2]; 2], Im
     Ok([own, [drawn(x, own[0])?, drawn(y, own[1])?]])
 }
 
+/// A length \[m\] or a speed \[m/s\], which is not below 0.
+fn metres(node: roxmltree::Node<'_, '_>, name: &str, attribute: &str) -> Result<Option<f64>, ImportError> {
+    match optional(node, name, attribute)? {
+        Some(below) if below < 0.0 => {
+            Err(ImportError::new(format!("{name}, {attribute}: {below} where a number from 0 is expected")))
+        }
+        given => Ok(given.map(|given| given * MILLI)),
+    }
+}
+
 /// Which way a vehicle faces at a point \[rad\]; `None` where it may face any way, which is `NaN` in the file, or no attribute.
 fn angle(point: roxmltree::Node<'_, '_>, name: &str) -> Result<Option<f64>, ImportError> {
     match point.attribute(ANGLE).map(str::trim) {
@@ -219,12 +229,7 @@ fn edge(
         )));
     }
     let fit = curve(path, &name, ends, frame, tolerance)?;
-    let limit = |attribute: &str| match optional(path, &name, attribute)? {
-        Some(below) if below < 0.0 => {
-            Err(ImportError::new(format!("{name}, {attribute}: {below} where a number from 0 is expected")))
-        }
-        limit => Ok(limit.map(|limit| limit * MILLI)),
-    };
+    let limit = |attribute: &str| metres(path, &name, attribute);
     // openTCS takes a speed of 0 for "not in this direction", and uses no path that is locked.
     let speed = [limit("maxVelocity")?, limit("maxReverseVelocity")?];
     let ways = [speed[0].is_none_or(|speed| speed > 0.0), speed[1].is_some_and(|speed| speed > 0.0)];

@@ -7,7 +7,7 @@
 use super::super::vehicle::Given;
 use super::super::xml::{children, only, optional, parse};
 use super::super::{Edge, ImportError, Options, Warnings};
-use super::MILLI;
+use super::{MILLI, metres};
 use crate::footprint::Footprint;
 
 /// How far a vehicle reaches ahead and aside of its reference point \[m\].
@@ -48,7 +48,7 @@ pub(super) fn limit_backward(
     let mut ways: Vec<&mut Edge> = edges.iter_mut().filter(|edge| edge.ways[1]).collect();
     for vehicle in children(root, "vehicle") {
         let name = named(vehicle);
-        match speed(vehicle, &name, "maxReverseVelocity")? {
+        match metres(vehicle, &name, "maxReverseVelocity")? {
             Some(0.0) if !ways.is_empty() => {
                 warnings.add(name, "its maxReverseVelocity is 0; it is taken to drive backward all the same");
             }
@@ -66,16 +66,6 @@ fn named(vehicle: roxmltree::Node<'_, '_>) -> String {
     format!("vehicle {}", vehicle.attribute("name").unwrap_or_default())
 }
 
-/// A speed of a vehicle \[m/s\].
-fn speed(vehicle: roxmltree::Node<'_, '_>, name: &str, attribute: &str) -> Result<Option<f64>, ImportError> {
-    match optional(vehicle, name, attribute)? {
-        Some(below) if below < 0.0 => {
-            Err(ImportError::new(format!("{name}, {attribute}: {below} where a number from 0 is expected")))
-        }
-        speed => Ok(speed.map(|speed| speed * MILLI)),
-    }
-}
-
 /// A vehicle of the model.
 struct Vehicle {
     name: String,
@@ -89,7 +79,7 @@ struct Vehicle {
 impl Vehicle {
     fn new(vehicle: roxmltree::Node<'_, '_>) -> Result<Self, ImportError> {
         let name = named(vehicle);
-        let speed = speed(vehicle, &name, "maxVelocity")?.filter(|speed| *speed > 0.0);
+        let speed = metres(vehicle, &name, "maxVelocity")?.filter(|speed| *speed > 0.0);
         let half = only(vehicle, "boundingBox")?.map(|outline| half(outline, &name)).transpose()?;
         let length = optional(vehicle, &name, "length")?.map(|length| length * MILLI);
         Ok(Self { speed, length, half, name })
