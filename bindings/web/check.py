@@ -273,7 +273,7 @@ def of_tool(tool, folder, browser):
 
 
 def same(tool, folder, browser, when):
-    page = (sorted(row[:6] for row in browser.value(ROWS.format("pcr.pcr_regions(), 8"))),
+    page = (sorted(row[:6] for row in browser.value(ROWS.format("pcr.pcr_regions(), 10"))),
             sorted(row[:5] for row in browser.value(ROWS.format("pcr.pcr_conflicts(), 10"))))
     tools = of_tool(tool, folder, browser)
     if page == tools:

@@ -20,8 +20,9 @@ function rows(count, width) {
 }
 
 rows(pcr.pcr_build(agents.length), 0);
-for (const [ego, other, from, to, near, far] of rows(pcr.pcr_regions(), 8))
-  console.log(`agent ${ego + 1} keeps out of ${near.toFixed(3)}..${far.toFixed(3)} m from ${from.toFixed(3)} to ${to.toFixed(3)} s because of agent ${other + 1}`);
+// The last two numbers: whether the other stands there before, and after.
+for (const [ego, other, from, to, near, far, , , before, after] of rows(pcr.pcr_regions(), 10))
+  console.log(`agent ${ego + 1} keeps out of ${near.toFixed(3)}..${far.toFixed(3)} m from ${(before ? -Infinity : from).toFixed(3)} to ${(after ? Infinity : to).toFixed(3)} s because of agent ${other + 1}`);
 for (const [i, j, from, to, depth] of rows(pcr.pcr_conflicts(), 10))
   console.log(`conflict of ${i + 1} and ${j + 1} from ${from.toFixed(3)} to ${to.toFixed(3)} s, ${depth.toFixed(3)} m deep`);
 console.log("delays", rows(pcr.pcr_plan(), 1).map(([delay]) => delay.toFixed(3)).join(", "));

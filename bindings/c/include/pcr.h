@@ -1,5 +1,6 @@
-/* Collision regions of discs on line/arc paths, in single precision: numbers up to a million in magnitude.
-   Units: m, s, m/s, m/s^2, rad. Every function but pcr_fleet_agents returns a PcrStatus; a call that fails changes nothing.
+/* Collision regions of discs on line/arc paths, in single precision: numbers up to a million in magnitude. Units: m, s, m/s, m/s^2, rad.
+   Every function but pcr_fleet_agents returns a PcrStatus; a call that fails leaves the fleet unchanged, except that a table
+   which became full when it was built is empty.
    A pointer is null, which is reported, or points to as many values as the function says. The memory given to
    fleet_init belongs to the fleet as long as the fleet is used; all other pointers are used during the call only. The library does
    not allocate. A fleet is used by one thread at a time, and is not moved or copied.
@@ -174,7 +175,7 @@ typedef struct PcrAgent {
    */
   float y;
   /*
-   Direction of travel at the start (rad).
+   Direction of travel at the start (rad, or in the unit of headings that is given above).
    */
   float heading;
   /*
@@ -507,8 +508,8 @@ PcrStatus pcr_fleet_safe_intervals(const struct PcrFleet *place,
 /*
  Delays the starts of all agents so that none overlap; each delay is as small as the agents before it in the order
  allow. `order` lists each agent once, the highest priority first, and returns the order that was used. `room` needs
- one motion for each agent and can be reused afterwards. If there is no plan, no agent is delayed and `why` names the
- agent in the way. `why` may be null.
+ one motion for each agent and can be reused afterwards. If there is no plan, no agent is delayed, `order` is the one
+ that was tried last, and `why` names the agent in the way. `why` may be null.
  */
 PcrStatus pcr_fleet_plan_delays(struct PcrFleet *place,
                                 size_t *order,
@@ -555,7 +556,8 @@ PcrStatus pcr_fleet_decide_at(struct PcrFleet *place,
 
 /*
  Updates the progress of an agent. Reports may come late, twice and in any order; an older report does not undo a
- newer one. The report must be about the present path of the agent.
+ newer one. The report must be about the present path of the agent; PCR_STATUS_OUT_OF_RANGE if none of its lengths is
+ on it.
  */
 PcrStatus pcr_fleet_report(struct PcrFleet *place,
                            size_t agent,
@@ -580,10 +582,11 @@ PcrStatus pcr_fleet_check(struct PcrFleet *place,
 
 /*
  Gives an agent a new path and orders for all its regions, with which it can finish, and so can every agent that could
- if this one were not there. The orders between the other agents stay as they are. `report` is the place of the agent on the new path, which follows the old one at
- least up to where the agent can stop. `prefer` says for every other agent whether the admitted one should pass it
- first (PCR_FIRST) or second, where both are possible; if it is null, second. The table must be built, and the memory
- needs room as for `pcr_fleet_replace`.
+ if this one were not there. The orders between the other agents stay as they are. `report` is
+ the place of the agent on the new path, which follows the old one at least up to where the agent can stop. `prefer`
+ has a value for every agent: whether the admitted one should pass it first (PCR_FIRST) or second, where both are
+ possible; that of the admitted one is not read. If it is null, second. The table must be built, and the memory needs
+ room as for `pcr_fleet_replace`.
 
  PCR_STATUS_REFUSED leaves everything unchanged; `why` then names the agent in the way. `why` may be null.
  */
@@ -601,9 +604,12 @@ PcrStatus pcr_fleet_admit(struct PcrFleet *place,
 PcrStatus pcr_fleet_passed(struct PcrFleet *place);
 
 /*
- The stopping distance from a speed (m/s), rounded up (m).
+ The stopping distance from a speed (m/s), rounded up (m). PCR_STATUS_OUT_OF_RANGE if it is beyond the range of the
+ format.
  */
-PcrStatus pcr_stopping_way(const struct PcrBrakes *how, float speed, float *way);
+PcrStatus pcr_stopping_way(const struct PcrBrakes *how,
+                           float speed,
+                           float *way);
 
 /*
  The largest speed from which this distance (m) is enough to stop, rounded down (m/s); 0 if the distance is not above

@@ -87,11 +87,12 @@ PCR_FORMAT(Double, PcrF64, pcr_f64_fleet_, double);
 PCR_FORMAT(Fixed, PcrQ16, pcr_q16_fleet_, std::int32_t);
 #undef PCR_FORMAT
 
-// A fleet with its memory; it may be moved. Every method throws an Error if the C function of the same name fails.
+// A fleet with its memory; it may be moved. Every method throws an Error if the C function of the same name fails, and if
+// the fleet was moved away (PCR_STATUS_NULL); `size` is 0 then.
 template <class F> class BasicFleet {
   std::unique_ptr<typename F::Storage> own;
-  typename F::Handle *at() { return &own->handle; }
-  const typename F::Handle *at() const { return &own->handle; }
+  typename F::Handle *at() { return own ? &own->handle : nullptr; }
+  const typename F::Handle *at() const { return own ? &own->handle : nullptr; }
 
   // Asks for the count first, then for all results.
   template <class T, class Ask> static std::vector<T> list(const char *call, Ask ask) {
@@ -154,6 +155,7 @@ public:
   }
   // Returns the order in which the agents were planned.
   std::vector<std::size_t> plan_delays(std::vector<std::size_t> order) {
+    if (!own) throw Error("plan_delays", PCR_STATUS_NULL);
     PcrUnsolved why{};
     const auto status = F::plan_delays(at(), order.data(), order.size(), own->room.data(), own->room.size(), &why);
     if (status == PCR_STATUS_NO_PLAN) throw Unsolved("plan_delays", why);
@@ -180,7 +182,7 @@ public:
     PcrRefused why{};
     settle("check", F::check(at(), &accepted, &why), why);
   }
-  // `prefer` is empty, or has PCR_FIRST or PCR_SECOND for every agent.
+  // `prefer` is empty, or has a value for every agent: PCR_FIRST or PCR_SECOND, but for `agent` itself.
   void admit(std::size_t agent, const Agent &by, const Progress &where, const Tolerances &accepted,
              const std::vector<std::uint8_t> &prefer = {}) {
     if (!prefer.empty() && prefer.size() != size()) throw Error("admit", PCR_STATUS_BAD_ORDER);

@@ -44,7 +44,8 @@
 #define PCR_OVER 3
 
 /*
- Result of a call. A call that fails leaves the fleet unchanged, except that a table which became full is empty.
+ Result of a call. A call that fails leaves the fleet unchanged, except that a table which became full when it was
+ built is empty.
  */
 typedef enum PcrStatus {
   /*
@@ -93,11 +94,11 @@ typedef enum PcrStatus {
    */
   PCR_STATUS_NO_ROOM,
   /*
-   The table has no room for the entries, the pieces or the orders of all regions.
+   The table has no room for the entries, the pieces or the orders of all regions: it needs more memory.
    */
   PCR_STATUS_TABLE_FULL,
   /*
-   The buffer is too small. The required count was written.
+   The buffer is too small. It was filled, and the required count was written.
    */
   PCR_STATUS_BUFFER_TOO_SMALL,
   /*
@@ -137,6 +138,11 @@ typedef enum PcrStatus {
    Orders are refused; `why` names the agent in the way.
    */
   PCR_STATUS_REFUSED,
+  /*
+   Two agents have more than 32767 pieces with each other, or the fleet has more than 65535 agents. More memory does
+   not help.
+   */
+  PCR_STATUS_TOO_LARGE,
 } PcrStatus;
 
 /*

@@ -1,5 +1,6 @@
 /* Collision regions of discs on line/arc paths, in fixed point: numbers are 1/65536 m, s, m/s and m/s^2, up to 4096 in magnitude. Headings are 1/2^32 of a turn.
-   Units: m, s, m/s, m/s^2, rad. Every function but pcr_fleet_agents returns a PcrStatus; a call that fails changes nothing.
+   Every function but pcr_fleet_agents returns a PcrStatus; a call that fails leaves the fleet unchanged, except that a table
+   which became full when it was built is empty.
    A pointer is null, which is reported, or points to as many values as the function says. The memory given to
    fleet_init belongs to the fleet as long as the fleet is used; all other pointers are used during the call only. The library does
    not allocate. A fleet is used by one thread at a time, and is not moved or copied.
@@ -177,7 +178,7 @@ typedef struct PcrQ16Agent {
    */
   int32_t y;
   /*
-   Direction of travel at the start (rad).
+   Direction of travel at the start (rad, or in the unit of headings that is given above).
    */
   int32_t heading;
   /*
@@ -511,8 +512,8 @@ PcrStatus pcr_q16_fleet_safe_intervals(const struct PcrQ16Fleet *place,
 /*
  Delays the starts of all agents so that none overlap; each delay is as small as the agents before it in the order
  allow. `order` lists each agent once, the highest priority first, and returns the order that was used. `room` needs
- one motion for each agent and can be reused afterwards. If there is no plan, no agent is delayed and `why` names the
- agent in the way. `why` may be null.
+ one motion for each agent and can be reused afterwards. If there is no plan, no agent is delayed, `order` is the one
+ that was tried last, and `why` names the agent in the way. `why` may be null.
  */
 PcrStatus pcr_q16_fleet_plan_delays(struct PcrQ16Fleet *place,
                                     size_t *order,
@@ -559,7 +560,8 @@ PcrStatus pcr_q16_fleet_decide_at(struct PcrQ16Fleet *place,
 
 /*
  Updates the progress of an agent. Reports may come late, twice and in any order; an older report does not undo a
- newer one. The report must be about the present path of the agent.
+ newer one. The report must be about the present path of the agent; PCR_STATUS_OUT_OF_RANGE if none of its lengths is
+ on it.
  */
 PcrStatus pcr_q16_fleet_report(struct PcrQ16Fleet *place,
                                size_t agent,
@@ -584,10 +586,11 @@ PcrStatus pcr_q16_fleet_check(struct PcrQ16Fleet *place,
 
 /*
  Gives an agent a new path and orders for all its regions, with which it can finish, and so can every agent that could
- if this one were not there. The orders between the other agents stay as they are. `report` is the place of the agent on the new path, which follows the old one at
- least up to where the agent can stop. `prefer` says for every other agent whether the admitted one should pass it
- first (PCR_FIRST) or second, where both are possible; if it is null, second. The table must be built, and the memory
- needs room as for `pcr_q16_fleet_replace`.
+ if this one were not there. The orders between the other agents stay as they are. `report` is
+ the place of the agent on the new path, which follows the old one at least up to where the agent can stop. `prefer`
+ has a value for every agent: whether the admitted one should pass it first (PCR_FIRST) or second, where both are
+ possible; that of the admitted one is not read. If it is null, second. The table must be built, and the memory needs
+ room as for `pcr_q16_fleet_replace`.
 
  PCR_STATUS_REFUSED leaves everything unchanged; `why` then names the agent in the way. `why` may be null.
  */
@@ -605,9 +608,12 @@ PcrStatus pcr_q16_fleet_admit(struct PcrQ16Fleet *place,
 PcrStatus pcr_q16_fleet_passed(struct PcrQ16Fleet *place);
 
 /*
- The stopping distance from a speed (m/s), rounded up (m).
+ The stopping distance from a speed (m/s), rounded up (m). PCR_STATUS_OUT_OF_RANGE if it is beyond the range of the
+ format.
  */
-PcrStatus pcr_q16_stopping_way(const struct PcrQ16Brakes *how, int32_t speed, int32_t *way);
+PcrStatus pcr_q16_stopping_way(const struct PcrQ16Brakes *how,
+                               int32_t speed,
+                               int32_t *way);
 
 /*
  The largest speed from which this distance (m) is enough to stop, rounded down (m/s); 0 if the distance is not above

@@ -27,7 +27,7 @@
 //! return `PCR_STATUS_NOT_BUILT` until `pcr_fleet_build` is called.
 //!
 //! The library does not allocate and does not panic (on a microcontroller a program fails to link if it could). A call
-//! that fails leaves the fleet unchanged.
+//! that fails leaves the fleet unchanged, except that a table which became full when it was built is empty.
 //!
 //! # What the caller promises
 //! A pointer is null, which is reported as an error, or points to as many values as the function says. The memory in

@@ -2,7 +2,8 @@
 
 use pcr_core::{Full, Invalid, Mismatch, Pass, Refused, TableError, Unsolved};
 
-/// Result of a call. A call that fails leaves the fleet unchanged, except that a table which became full is empty.
+/// Result of a call. A call that fails leaves the fleet unchanged, except that a table which became full when it was
+/// built is empty.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PcrStatus {
@@ -29,9 +30,9 @@ pub enum PcrStatus {
     NoSuchAgent,
     /// The memory has no room for another agent, or for its segments or phases.
     NoRoom,
-    /// The table has no room for the entries, the pieces or the orders of all regions.
+    /// The table has no room for the entries, the pieces or the orders of all regions: it needs more memory.
     TableFull,
-    /// The buffer is too small. The required count was written.
+    /// The buffer is too small. It was filled, and the required count was written.
     BufferTooSmall,
     /// The table does not belong to the agents: it was not built since the last agent was added, or an agent was
     /// replaced or removed after `pcr_fleet_build_row`.
@@ -52,6 +53,9 @@ pub enum PcrStatus {
     NoSuchPass,
     /// Orders are refused; `why` names the agent in the way.
     Refused,
+    /// Two agents have more than 32767 pieces with each other, or the fleet has more than 65535 agents. More memory does
+    /// not help.
+    TooLarge,
 }
 
 impl From<Invalid> for PcrStatus {
@@ -70,8 +74,11 @@ impl From<Invalid> for PcrStatus {
 }
 
 impl From<Full> for PcrStatus {
-    fn from(_: Full) -> Self {
-        Self::TableFull
+    fn from(full: Full) -> Self {
+        match full {
+            Full::Pair(_) | Full::Agents => Self::TooLarge,
+            _ => Self::TableFull,
+        }
     }
 }
 

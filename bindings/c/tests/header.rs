@@ -24,7 +24,7 @@ const FORMATS: [Format; 3] = [
         real: "f32",
         heading: "f32",
         piece: "7",
-        title: "in single precision: numbers up to a million in magnitude",
+        title: "in single precision: numbers up to a million in magnitude. Units: m, s, m/s, m/s^2, rad",
         after: "",
     },
     Format {
@@ -34,7 +34,7 @@ const FORMATS: [Format; 3] = [
         real: "f64",
         heading: "f64",
         piece: "6",
-        title: "in double precision: numbers up to a trillion in magnitude",
+        title: "in double precision: numbers up to a trillion in magnitude. Units: m, s, m/s, m/s^2, rad",
         after: "",
     },
     Format {
@@ -54,7 +54,8 @@ const FORMATS: [Format; 3] = [
 /// The header of everything that all formats share.
 const COMMON: &str = "pcr_common.h";
 
-const PROMISES: &str = "   Units: m, s, m/s, m/s^2, rad. Every function but pcr_fleet_agents returns a PcrStatus; a call that fails changes nothing.
+const PROMISES: &str = "   Every function but pcr_fleet_agents returns a PcrStatus; a call that fails leaves the fleet unchanged, except that a table
+   which became full when it was built is empty.
    A pointer is null, which is reported, or points to as many values as the function says. The memory given to
    fleet_init belongs to the fleet as long as the fleet is used; all other pointers are used during the call only. The library does
    not allocate. A fleet is used by one thread at a time, and is not moved or copied.";

@@ -3,9 +3,9 @@
 use pcr_ffi::*;
 use std::ptr::{null, null_mut};
 
-/// The tests of a number format: its module, how a number becomes one of it, and back; a quarter of a turn.
+/// The tests of a number format: its module and numbers; a quarter of a turn; its largest number; how a number becomes one of it, and back.
 macro_rules! formats {
-    ($($format:ident: $real:ty, $heading:expr, |$v:ident| $to:expr, |$r:ident| $from:expr;)*) => {
+    ($($format:ident: $real:ty, $heading:expr, $most:expr, |$v:ident| $to:expr, |$r:ident| $from:expr;)*) => {
         $(mod $format {
             use super::*;
             use pcr_ffi::$format::*;
@@ -112,6 +112,109 @@ macro_rules! formats {
 
             const WHY: PcrRefused = PcrRefused { reason: PcrRefusal::Late, agents: [7; 2] };
 
+            /// What replaces an agent may have the path of the one before: its table belongs to it, its orders do not.
+            #[test]
+            fn orders_do_not_outlive_an_agent_although_the_next_one_has_the_same_path() {
+                let (east, north, far) = (agent(false, 0.0, 0.0), agent(true, 0.0, 0.0), agent(true, 0.0, 40.0));
+                let through = |fleet: &mut PcrFleet| {
+                    assert_eq!(pcr_fleet_decide(Some(fleet), 1, 0, PCR_SECOND), PcrStatus::Ok);
+                    assert_eq!(report(fleet, 0, 2.6), PcrStatus::Ok);
+                    assert_eq!(pcr_fleet_passed(Some(fleet)), PcrStatus::Ok);
+                    assert_eq!(hold(fleet, 1), (PcrHoldKind::Free, 4.0));
+                };
+                let not_built = |fleet: &PcrFleet| {
+                    let held = pcr_fleet_hold(Some(fleet), 1, Some(&mut PcrHold::default()));
+                    assert_eq!(held, PcrStatus::NotBuilt);
+                };
+                // A row, and the other agent begins anew.
+                let mut row = fleet(4, &[east, north]);
+                assert_eq!(pcr_fleet_build_row(Some(&mut row), 1), PcrStatus::Ok);
+                through(&mut row);
+                assert_eq!(pcr_fleet_replace(Some(&mut row), 0, Some(&east)), PcrStatus::Ok);
+                not_built(&row);
+                // A row, and its own agent begins anew, behind the region when it was decided.
+                assert_eq!(pcr_fleet_build_row(Some(&mut row), 1), PcrStatus::Ok);
+                assert_eq!(report(&mut row, 1, 2.6), PcrStatus::Ok);
+                assert_eq!(pcr_fleet_decide(Some(&mut row), 1, 0, PCR_SECOND), PcrStatus::Ok);
+                assert_eq!(pcr_fleet_replace(Some(&mut row), 1, Some(&north)), PcrStatus::Ok);
+                not_built(&row);
+                // A row, and an agent is removed and added again.
+                assert_eq!(pcr_fleet_build_row(Some(&mut row), 1), PcrStatus::Ok);
+                through(&mut row);
+                assert_eq!(pcr_fleet_remove(Some(&mut row), 0), PcrStatus::Ok);
+                assert_eq!(pcr_fleet_add(Some(&mut row), Some(&east)), PcrStatus::Ok);
+                not_built(&row);
+                // A whole table, of a fleet with an agent more for a while.
+                let mut whole = fleet(4, &[east, north]);
+                through(&mut whole);
+                assert_eq!(pcr_fleet_add(Some(&mut whole), Some(&far)), PcrStatus::Ok);
+                assert_eq!(pcr_fleet_replace(Some(&mut whole), 0, Some(&east)), PcrStatus::Ok);
+                assert_eq!(pcr_fleet_remove(Some(&mut whole), 2), PcrStatus::Ok);
+                not_built(&whole);
+                // Replaced in a table that is built, it is undecided.
+                let mut whole = fleet(4, &[east, north]);
+                through(&mut whole);
+                assert_eq!(pcr_fleet_replace(Some(&mut whole), 0, Some(&east)), PcrStatus::Ok);
+                assert_eq!(passes(&whole, 1), [(0, PCR_UNDECIDED)]);
+                assert!(near(hold(&whole, 1), 1.5));
+            }
+
+            #[test]
+            fn reports_beyond_the_path_are_refused_and_give_way_to_nobody() {
+                let (east, north) = (agent(false, 0.0, 0.0), agent(true, 0.0, 0.0));
+                let mut fleet = fleet(4, &[east, north]);
+                assert_eq!(pcr_fleet_decide(Some(&mut fleet), 1, 0, PCR_SECOND), PcrStatus::Ok);
+                for beyond in [4.1, 260.0] {
+                    assert_eq!(report(&mut fleet, 0, beyond), PcrStatus::OutOfRange);
+                    assert!(near(hold(&fleet, 1), 1.5));
+                    let lengths = PcrInterval { lo: real(beyond), hi: real(beyond) };
+                    let (place, mut why) = (PcrProgress { at: lengths, stop: lengths.hi }, WHY);
+                    let (fleet, tolerances) = (Some(&mut fleet), tolerances());
+                    let status =
+                        pcr_fleet_admit(fleet, 0, Some(&east), Some(&place), Some(&tolerances), null(), Some(&mut why));
+                    assert_eq!((status, why), (PcrStatus::OutOfRange, WHY));
+                }
+                assert_eq!(report(&mut fleet, 0, 4.0), PcrStatus::Ok);
+                assert_eq!(hold(&fleet, 1), (PcrHoldKind::Free, 4.0));
+            }
+
+            #[test]
+            fn memory_without_a_part_of_it_is_refused_before_a_fleet_loses_any() {
+                let given = memory(4, 4);
+                let mut fleet = PcrFleet::EMPTY;
+                assert_eq!(pcr_fleet_init(Some(&mut fleet), Some(&given)), PcrStatus::Ok);
+                for agent in [agent(false, 0.0, 0.0), agent(true, 0.0, 0.0)] {
+                    assert_eq!(pcr_fleet_add(Some(&mut fleet), Some(&agent)), PcrStatus::Ok);
+                }
+                assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
+                let before = passes(&fleet, 1);
+                let without = [
+                    PcrMemory { robots: null_mut(), ..given },
+                    PcrMemory { orders: null_mut(), ..given },
+                    PcrMemory { pieces: null_mut(), ..given },
+                ];
+                for without in &without {
+                    assert_eq!(pcr_fleet_init(Some(&mut fleet), Some(without)), PcrStatus::Null);
+                    assert_eq!(passes(&fleet, 1), before);
+                }
+            }
+
+            #[test]
+            fn a_stopping_distance_beyond_the_format_is_no_answer() {
+                let way = |deceleration: f64, reaction: f64, speed: f64| {
+                    let brakes = PcrBrakes { deceleration: real(deceleration), reaction: real(reaction) };
+                    let mut way = real(7.0);
+                    (pcr_stopping_way(Some(&brakes), real(speed), Some(&mut way)), value(way))
+                };
+                let (status, far) = way(0.5, 0.0, 1.0);
+                assert!(status == PcrStatus::Ok && (1.0..1.001).contains(&far), "{far}");
+                assert_eq!(way(0.5, 0.0, -1.0), (PcrStatus::Negative, 7.0));
+                let most: f64 = $most;
+                // So much from a speed with a long reaction, and with brakes that hardly brake.
+                assert_eq!(way(1.0, most.sqrt(), 2.0 * most.sqrt()), (PcrStatus::OutOfRange, 7.0));
+                assert_eq!(way(0.01, 0.0, most.sqrt()), (PcrStatus::OutOfRange, 7.0));
+            }
+
             #[test]
             fn a_plan_becomes_orders_and_the_second_waits_until_the_first_is_through() {
                 let mut fleet = fleet(4, &[agent(false, 0.0, 0.0), agent(true, 3.0, 0.0)]);
@@ -194,7 +297,8 @@ macro_rules! formats {
                 assert_eq!(asked, PcrStatus::NotBuilt);
                 assert_eq!(pcr_fleet_remove(Some(&mut fleet), 3), PcrStatus::Ok);
                 assert_eq!(pcr_fleet_remove(Some(&mut fleet), 2), PcrStatus::Ok);
-                assert_eq!(hold(&fleet, 1), (PcrHoldKind::Free, 4.0), "the table is again that of the fleet");
+                let mut held = PcrHold::default();
+                assert_eq!(pcr_fleet_hold(Some(&fleet), 1, Some(&mut held)), PcrStatus::NotBuilt, "nor is it then");
             }
 
             #[test]
@@ -241,7 +345,7 @@ macro_rules! formats {
 }
 
 formats! {
-    single: f32, std::f32::consts::FRAC_PI_2, |v| v as f32, |r| f64::from(r);
-    double: f64, std::f64::consts::FRAC_PI_2, |v| v, |r| r;
-    fixed: i32, 1 << 30, |v| (v * 65536.0).round() as i32, |r| f64::from(r) / 65536.0;
+    single: f32, std::f32::consts::FRAC_PI_2, 1e6, |v| v as f32, |r| f64::from(r);
+    double: f64, std::f64::consts::FRAC_PI_2, 1e12, |v| v, |r| r;
+    fixed: i32, 1 << 30, 4096.0, |v| (v * 65536.0).round() as i32, |r| f64::from(r) / 65536.0;
 }

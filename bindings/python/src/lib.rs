@@ -145,16 +145,13 @@ impl Fleet {
         py.detach(|| Self::new(Scenario::from_json(text).map_err(|error| misread(&error))?))
     }
 
-    /// Reads a file of any format; also returns the warnings of the reader.
+    /// Reads a file of any format.
     #[staticmethod]
     #[pyo3(signature = (path, options))]
-    fn read(py: Python<'_>, path: PathBuf, options: Choices) -> PyResult<(Self, Vec<String>)> {
+    fn read(py: Python<'_>, path: PathBuf, options: Choices) -> PyResult<Self> {
         let options = options.options()?;
         py.detach(|| match input::read(&path, &options) {
-            Ok((scenario, _)) => {
-                let warnings = scenario.warnings.clone();
-                Ok((Self::new(scenario)?, warnings))
-            }
+            Ok((scenario, _)) => Self::new(scenario),
             Err(InputError::Refused(_, error)) => Err(misread(&error)),
             Err(error) => Err(refused(error)),
         })
@@ -166,6 +163,10 @@ impl Fleet {
 
     fn name(&self) -> &str {
         &self.scenario.name
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.scenario.warnings.clone()
     }
 
     fn agents(&self) -> Vec<(u64, String, f64, f64, f64, f64)> {

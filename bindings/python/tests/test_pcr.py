@@ -11,6 +11,7 @@ import tempfile
 import threading
 import types
 import unittest
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -135,6 +136,23 @@ class Tool(unittest.TestCase):
         self.assertEqual(layout.warnings, told["warnings"])
         self.assertEqual(len(layout.locks()), len(told["locks"]))
 
+    def test_warnings_are_those_of_the_file_of_a_fleet(self) -> None:
+        fleet = pcr.Fleet.read(GRAPH, routes=["0:5"], radius=0.3)
+        self.assertGreater(len(fleet.warnings), 0)
+        planned = fleet.plan().fleet
+        assert planned is not None
+        for same in (pcr.Fleet.from_json(fleet.to_json()), planned, copy.copy(fleet), pickle.loads(pickle.dumps(fleet))):
+            self.assertEqual(same.warnings, fleet.warnings)
+        # What is read otherwise for another vehicle than the layout was read for.
+        file = TOP / "tests/data/real/lif/example_02.lif.json"
+        layout, told = pcr.Layout.read(file, radius=0.3), tool("locks", file, "--radius", 0.3, "--delays", "--speed", 1.0, "--acceleration", 0.5)
+        more = [text for text in told["warnings"] if text not in layout.warnings]
+        self.assertGreater(len(more), 0)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            layout.delays(0.3, 1.0, acceleration=0.5)
+        self.assertEqual([str(warning.message) for warning in caught], more)
+
     def test_layouts_are_read_again_in_any_folder(self) -> None:
         office = TOP / "tests/data/real/rmf"
         here = os.getcwd()
@@ -232,6 +250,8 @@ class Answers(unittest.TestCase):
             array["t"][0] = 0
         regions = pcr.Fleet.read(TWELVE).regions()
         self.assertTrue(numpy.array_equal(numpy.asarray(regions), array))
+        with self.assertRaises(ValueError):
+            numpy.asarray(regions, dtype=[("i", "<u4")], copy=False)
         writable = numpy.array(regions)
         writable["t"] = 0
         self.assertEqual([region.t for region in regions], told)
@@ -315,6 +335,10 @@ class Answers(unittest.TestCase):
         self.assertEqual((ax.lines[0].get_xdata()[0], ax.lines[0].get_ydata()[0]), (-8.0, 0.0))
         ax = early.regions()[0].plot(ax)
         self.assertIs(pcr.Fleet([]).plot(ax), ax)
+        # One that stands is in the way at all times.
+        standing = pcr.Fleet([CROSSING[0], dict(CROSSING[1], start={"x": 0, "y": 0, "heading": 0}, path=[])])
+        ax = standing.regions()[0].plot(pcr.Fleet([]).plot())
+        self.assertEqual([round(bar.get_window_extent().width / ax.bbox.width, 6) for bar in ax.patches], [1.0])
 
     def test_other_threads_run_meanwhile(self) -> None:
         agents = json.loads(TWELVE.read_text())["agents"]
@@ -380,6 +404,8 @@ class Refusals(unittest.TestCase):
             self.assertEqual((caught.exception.agent, caught.exception.field), ("agent 1", field))
 
     def test_what_cannot_be_answered_is_an_error(self) -> None:
+        import numpy
+
         fleet = pcr.Fleet.read(TWELVE)
         for ask in (lambda: fleet.map(99, 0.0, 1.0, 5), lambda: fleet.map(1, math.nan, 1.0, 5), lambda: fleet.places(math.inf),
                     lambda: fleet.safe_intervals(1, math.nan, (0.0, 1.0)), lambda: fleet.safe_intervals(1, 1.0, (2.0, 1.0)),
@@ -425,6 +451,22 @@ class Refusals(unittest.TestCase):
                 pcr.Fleet.read(GRAPH, routes=none)
         with self.assertRaises(IndexError):
             fleet.regions()[10_000]
+        order, sheet = TOP / "tests/data/real/vda5050/order_v2_flywei.json", TOP / "tests/data/small/factsheet.json"
+        for text in ("no", "false", 0, 1, [], numpy.float64(1)):
+            for option in ("horizon", "partial"):
+                with self.assertRaisesRegex(TypeError, option):
+                    pcr.Fleet.read(order, fleet=sheet, **{"horizon": True, "partial": True, option: text})
+        whole = pcr.Fleet.read(order, fleet=sheet, horizon=True, partial=True)
+        self.assertEqual(pcr.Fleet.read(order, fleet=sheet, horizon=numpy.bool_(True), partial=numpy.bool_(True)), whole)
+        for large in (lambda: fleet.places(10**400), lambda: fleet.map(1, 10**400, 1, 1), lambda: later.holds([0, 10**400]),
+                      lambda: fleet.safe_intervals(1, 10**400, 0), lambda: pcr.Fleet.read(GRAPH, radius=10**400)):
+            with self.assertRaises(pcr.Error):
+                large()
+        for none in ("0.4", True, numpy.bool_(True), 1 + 2j, numpy.complex128(1 + 2j), numpy.complex64(1)):
+            for asked in (lambda none=none: fleet.places(none), lambda none=none: fleet.map(1, none, 1, 1), lambda none=none: later.holds([0, none]),
+                          lambda none=none: pcr.Layout.read(GRAPH, radius=none), lambda none=none: pcr.Layout.read(GRAPH).delays(0.4, none)):
+                with self.assertRaises(TypeError):
+                    asked()
         for mistaken in (lambda: pcr.Fleet(None), lambda: pcr.Fleet([{1, 2}]), lambda: fleet.map("1", 0.0, 1.0, 5), lambda: fleet.places("1"),  # type: ignore[arg-type, list-item]
                          lambda: pcr.Layout.read(GRAPH, raduis=0.4), lambda: pcr.Layout.read(GRAPH, routes="1:2")):  # type: ignore[call-arg]
             with self.assertRaises(TypeError):

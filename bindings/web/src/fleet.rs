@@ -59,6 +59,17 @@ fn filled<T: Clone, const N: usize>(room: &mut Vec<T, N>, empty: T) -> &mut [T] 
     room
 }
 
+/// `times` times, from `from` on in steps of `step`, by their places.
+fn steps(from: f64, step: f64, times: usize) -> Result<impl Fn(usize) -> f64, Fault> {
+    let time = move |place: usize| from + step * place as f64;
+    // The last one is the largest in magnitude, or else the first one is.
+    if step.is_finite() && [0, times.saturating_sub(1)].into_iter().all(|place| time(place).is_finite()) {
+        Ok(time)
+    } else {
+        Err(Fault::Question("the time"))
+    }
+}
+
 /// Passing orders, with memory of their own.
 type Passing<'s> = Orders<f64, &'s mut [Region], &'s mut [Piece<f64>], &'s mut [Order<f64>]>;
 
@@ -87,14 +98,20 @@ impl<'s> Fleet<'s> {
         self.agents.read(input, count)?;
         let built = self.table.fill(&self.agents.motions()?);
         if built.is_err() {
-            self.agents.clear();
+            self.clear();
         }
         built?;
         Ok(self.table.len())
     }
 
+    /// Removes all agents: queries are errors until another fleet is built.
+    pub fn clear(&mut self) {
+        self.agents.clear();
+    }
+
     /// All regions, in both directions of each pair: ego, other, range of times, range of lengths of the ego, range of
-    /// lengths of the other.
+    /// lengths of the other; 1 if the region begins while the other stands at its start, 1 if it ends while the other
+    /// stands at its end.
     ///
     /// # Errors
     /// [`Fault::Rows`].
@@ -104,7 +121,10 @@ impl<'s> Fleet<'s> {
         let mut count = 0_usize;
         for region in self.table.regions(&motions)? {
             let (t, l, s) = (region.time(), region.length(), region.other_length());
-            rows.push([region.ego() as f64, region.other() as f64, t.lo, t.hi, l.lo, l.hi, s.lo, s.hi])?;
+            let (ego, other) = (region.ego() as f64, region.other() as f64);
+            let [start, end] =
+                [region.is_open_at_start(), region.is_open_at_end()].map(|open| f64::from(u8::from(open)));
+            rows.push([ego, other, t.lo, t.hi, l.lo, l.hi, s.lo, s.hi, start, end])?;
             count = count.saturating_add(1);
         }
         Ok(count)
@@ -116,20 +136,14 @@ impl<'s> Fleet<'s> {
     /// # Errors
     /// [`Fault::Mismatch`] if there is no such agent, [`Fault::Question`], [`Fault::Rows`].
     pub fn map(&mut self, rows: &mut Rows, ego: usize, from: f64, step: f64, times: usize) -> Result<usize, Fault> {
-        if !(from.is_finite() && step.is_finite()) {
-            return Err(Fault::Question("the time"));
-        }
+        let time_of = steps(from, step, times)?;
         let motions = self.agents.motions()?;
         rows.used = 0;
         let mut count = 0_usize;
         for region in self.table.row(&motions, ego)? {
-            let seen = region.time();
+            // Not only at the times of the region: the other forbids the same lengths while it stands before and after.
             for place in 0..times {
-                let time = from + step * place as f64;
-                if !seen.contains(time) {
-                    continue;
-                }
-                for slice in region.slice_at(time) {
+                for slice in region.slice_at(time_of(place)) {
                     rows.push([place as f64, region.other() as f64, slice.lo, slice.hi])?;
                     count = count.saturating_add(1);
                 }
@@ -196,14 +210,12 @@ impl<'s> Fleet<'s> {
     /// # Errors
     /// [`Fault::Mismatch`] if there is no such agent, [`Fault::Question`], [`Fault::Rows`].
     pub fn track(&mut self, rows: &mut Rows, ego: usize, from: f64, step: f64, times: usize) -> Result<usize, Fault> {
-        if !(from.is_finite() && step.is_finite()) {
-            return Err(Fault::Question("the time"));
-        }
+        let time_of = steps(from, step, times)?;
         let motions = self.agents.motions()?;
         let motion = motions.get(ego).ok_or(Fault::Mismatch(Mismatch::NoSuchAgent(ego)))?;
         rows.used = 0;
         for place in 0..times {
-            rows.push([motion.length_at(from + step * place as f64)])?;
+            rows.push([motion.length_at(time_of(place))])?;
         }
         Ok(times)
     }
@@ -219,13 +231,13 @@ impl<'s> Fleet<'s> {
         for (place, agent) in larger.iter_mut().zip(0_usize..) {
             *place = place.for_plan().map_err(Fault::of_agent(agent))?;
         }
-        self.table.fill(&larger)?;
         let mut order: Vec<usize, AGENTS> = (0..larger.len()).collect();
         let mut planned = larger.clone();
-        let found = plan_delays(&self.table, &larger, &mut planned, &mut order);
+        let filled = self.table.fill(&larger);
+        let found = filled.map(|()| plan_delays(&self.table, &larger, &mut planned, &mut order));
         // The table is computed again for discs of the true radii; it fitted before.
         self.table.fill(&motions)?;
-        found?;
+        found??;
         rows.used = 0;
         for (later, motion) in planned.iter().zip(&motions) {
             rows.push([later.time().lo - motion.time().lo])?;

@@ -4,14 +4,15 @@
 //! The caller writes numbers to [`pcr_input`], calls [`pcr_build`], then the queries. Answers are rows of `f64` at
 //! [`pcr_output`]; a call returns the number of rows. A negative result means that there is no answer; [`pcr_message`]
 //! says why. An answer with 0 rows always means that there is nothing. Agents are counted from 0 in numbers, from 1 in
-//! messages.
+//! messages. All arguments are `f64`, so that `undefined`, or a number that is not whole, is not taken for another one.
 //!
 //! ```text
 //! pcr_input()                          -> address of 24 rows of pcr_stride() numbers, one for each agent:
 //!                                         x, y, heading, radius, start, v_max, a_max, number of legs, then two for each leg:
 //!                                         length, 0 for a line; radius, sweep (left is positive) for an arc
 //! pcr_build(agents)                    -> regions      reads them and computes the table
-//! pcr_regions()                        -> rows of 8    ego, other, times, lengths of the ego, lengths of the other (from, to)
+//! pcr_regions()                        -> rows of 10   ego, other, times, lengths of the ego, lengths of the other (from, to);
+//!                                                      1 if the other forbids the same while it stands before, after
 //! pcr_map(ego, from, step, times)      -> rows of 4    index of the time, other, lengths that are forbidden then (from, to)
 //! pcr_conflicts()                      -> rows of 10   both agents, times, depth, 1 if they only touch, lengths of both
 //! pcr_places(time)                     -> rows of 6    x, y, heading, travelled length, length of the path, arrival
@@ -86,6 +87,12 @@ fn answer(ask: impl FnOnce(&mut Fleet<'static>, &Input, &mut Rows) -> Result<usi
     })
 }
 
+/// An index or a number of something, which JavaScript has as an `f64`.
+fn whole(number: f64, what: &'static str) -> Result<usize, Fault> {
+    let cut = number as u32;
+    if f64::from(cut) == number { Ok(cut as usize) } else { Err(Fault::Question(what)) }
+}
+
 /// Pointer to the input, where the caller writes agents.
 #[unsafe(no_mangle)]
 pub extern "C" fn pcr_input() -> *mut f64 {
@@ -118,8 +125,14 @@ pub extern "C" fn pcr_message_length() -> u32 {
 
 /// Reads the agents and computes their regions.
 #[unsafe(no_mangle)]
-pub extern "C" fn pcr_build(agents: u32) -> i32 {
-    answer(|fleet, input, _| fleet.build(input, agents as usize))
+pub extern "C" fn pcr_build(agents: f64) -> i32 {
+    answer(|fleet, input, _| match whole(agents, "the number of agents") {
+        Ok(agents) => fleet.build(input, agents),
+        Err(fault) => {
+            fleet.clear();
+            Err(fault)
+        }
+    })
 }
 
 /// All regions.
@@ -130,8 +143,8 @@ pub extern "C" fn pcr_regions() -> i32 {
 
 /// The collision map of an agent.
 #[unsafe(no_mangle)]
-pub extern "C" fn pcr_map(ego: u32, from: f64, step: f64, times: u32) -> i32 {
-    answer(|fleet, _, rows| fleet.map(rows, ego as usize, from, step, times as usize))
+pub extern "C" fn pcr_map(ego: f64, from: f64, step: f64, times: f64) -> i32 {
+    answer(|fleet, _, rows| fleet.map(rows, whole(ego, "the agent")?, from, step, whole(times, "the number of times")?))
 }
 
 /// The conflicts of all pairs.
@@ -148,8 +161,10 @@ pub extern "C" fn pcr_places(time: f64) -> i32 {
 
 /// The travelled length of an agent at these times.
 #[unsafe(no_mangle)]
-pub extern "C" fn pcr_track(agent: u32, from: f64, step: f64, times: u32) -> i32 {
-    answer(|fleet, _, rows| fleet.track(rows, agent as usize, from, step, times as usize))
+pub extern "C" fn pcr_track(agent: f64, from: f64, step: f64, times: f64) -> i32 {
+    answer(|fleet, _, rows| {
+        fleet.track(rows, whole(agent, "the agent")?, from, step, whole(times, "the number of times")?)
+    })
 }
 
 /// Start delays without conflicts.

@@ -24,7 +24,7 @@ pub enum Fault {
     Refused(Refused),
     /// The answer has more rows than the output can hold.
     Rows,
-    /// An argument of the query is not finite, or not positive.
+    /// An argument is not a time, or not a whole number.
     Question(&'static str),
 }
 
@@ -98,7 +98,7 @@ impl fmt::Display for Fault {
             }
             Self::Refused(refused) => refused.fmt(f),
             Self::Rows => f.write_str("the answer is too long"),
-            Self::Question(what) => write!(f, "{what} is not a finite number in range"),
+            Self::Question(what) => write!(f, "{what} is not a number in range"),
         }
     }
 }

@@ -83,8 +83,71 @@ fn what_is_no_fleet_is_refused_and_leaves_nobody() {
         assert_eq!(fleet.track(rows, 2, 0.0, 1.0, 10), Err(Fault::Mismatch(pcr_core::Mismatch::NoSuchAgent(2))));
         assert_eq!(fleet.track(rows, 0, 0.0, f64::INFINITY, 10), Err(Fault::Question("the time")));
         assert_eq!(fleet.track(rows, 0, 0.0, 1.0, usize::MAX >> 40), Err(Fault::Rows));
+        // The last time is not finite although both numbers are.
+        assert_eq!(fleet.map(rows, 0, 0.0, 1e308, 10), Err(Fault::Question("the time")));
+        assert_eq!(fleet.track(rows, 0, 0.0, 1e308, 10), Err(Fault::Question("the time")));
         // Half the way of 8 m from rest to rest at half the time, and nowhere else before and after.
         assert_eq!(fleet.track(rows, 0, -5.0, 10.0, 3), Ok(3));
         assert_eq!(rows.numbers(), [0.0, 4.0, 8.0]);
     });
+}
+
+#[test]
+fn one_that_stands_forbids_its_place_before_and_after() {
+    asked(|fleet, rows| {
+        let map = |fleet: &mut Fleet<'static>, rows: &mut Rows, other: [f64; 10]| {
+            let mut input = crossing();
+            input[STRIDE..STRIDE + 10].copy_from_slice(&other);
+            assert_eq!(fleet.build(&input, 2), Ok(1));
+            assert_eq!(fleet.regions(rows), Ok(2));
+            let open = rows.numbers()[8..10].to_vec();
+            let count = fleet.map(rows, 0, 0.0, 1.0, 11).expect("a map");
+            let times: Vec<f64> = rows.numbers().chunks_exact(4).map(|row| row[0]).collect();
+            assert_eq!(count, times.len());
+            assert!(rows.numbers().chunks_exact(4).all(|row| row[1] == 1.0 && row[2] < 4.0 && row[3] > 4.0));
+            (open, times)
+        };
+        let north = std::f64::consts::FRAC_PI_2;
+        let all: Vec<f64> = (0..11).map(f64::from).collect();
+        let stands = [0.0, 0.0, north, 0.4, 0.0, 1.0, 0.5, 0.0, 0.0, 0.0];
+        assert_eq!(map(fleet, rows, stands), (vec![1.0, 1.0], all.clone()));
+        // It arrives at 1.8 s, and stays in the way.
+        let arrives = [0.0, -0.4, north, 0.4, 0.0, 1.0, 0.5, 1.0, 0.4, 0.0];
+        let (open, times) = map(fleet, rows, arrives);
+        assert_eq!((open[1], &times[2..]), (1.0, &all[2..]));
+        // It stands in the way up to its start at 8 s.
+        let leaves = [0.0, 0.0, north, 0.4, 8.0, 1.0, 0.5, 1.0, 4.0, 0.0];
+        let (open, times) = map(fleet, rows, leaves);
+        assert_eq!((open, &times[..9]), (vec![1.0, 0.0], &all[..9]));
+    });
+}
+
+#[test]
+fn a_plan_of_which_there_is_none_leaves_the_table() {
+    asked(|fleet, rows| {
+        let mut input = crossing();
+        // Nobody passes one that stands on the way.
+        input[STRIDE..STRIDE + 10].copy_from_slice(&[0.0, 0.0, 0.0, 0.4, 0.0, 1.0, 0.5, 0.0, 0.0, 0.0]);
+        assert_eq!(fleet.build(&input, 2), Ok(1));
+        assert!(matches!(fleet.plan(rows), Err(Fault::Unsolved(_))));
+        assert_eq!(fleet.regions(rows), Ok(2));
+    });
+}
+
+/// Numbers as JavaScript has them. Nothing else here calls the exports, which have one state.
+#[test]
+fn what_is_no_whole_number_is_none() {
+    let call = || {
+        for agents in [f64::NAN, -1.0, 1.9, 4_294_967_296.0, f64::INFINITY] {
+            assert_eq!(pcr_web::pcr_build(0.0), 0);
+            assert_eq!(pcr_web::pcr_conflicts(), 0, "nobody");
+            assert_eq!((pcr_web::pcr_build(agents), pcr_web::pcr_conflicts()), (-1, -1), "{agents}");
+        }
+        assert_eq!(pcr_web::pcr_build(0.0), 0);
+        for number in [f64::NAN, 0.9, 4_294_967_296.0] {
+            assert_eq!((pcr_web::pcr_map(number, 0.0, 1.0, 1.0), pcr_web::pcr_track(number, 0.0, 1.0, 1.0)), (-1, -1));
+            assert_eq!(pcr_web::pcr_map(0.0, 0.0, 1.0, number), -1);
+        }
+    };
+    std::thread::Builder::new().stack_size(64 << 20).spawn(call).expect("a thread").join().expect("no panic");
 }

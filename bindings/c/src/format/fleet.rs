@@ -8,7 +8,7 @@ use crate::status::{PCR_LEFT, PCR_LINE, PCR_RIGHT, PcrStatus};
 use pcr_core::{
     Ecm, Full, Interval, Limits, Mismatch, Mission, Motion, Order, Orders, Pass, PathRef, Phase, Piece, Point, Pose,
     Profile, ProfileRef, Progress, Reach, Refused, Region, RegionRef, Scalar, Segment, TableError, Tolerances, Turn,
-    Unsolved, plan_delays,
+    Unsolved, excess, plan_delays,
 };
 
 /// The table of regions of a fleet, in the memory of the caller.
@@ -55,6 +55,15 @@ impl Table {
             Self::Ordered(table) => table.erase(fleet, agent),
         }
     }
+
+    /// Empties a table that does not belong to the fleet any more. A later fleet may have the same paths again, but its
+    /// agents are not where those were whose orders it has.
+    fn clear(&mut self) {
+        match self {
+            Self::Regions(table) => table.clear(),
+            Self::Ordered(table) => table.clear(),
+        }
+    }
 }
 
 /// Agents, and the table of their regions.
@@ -77,14 +86,17 @@ impl Fleet {
         let segments = given(Stack::new(memory.segments, memory.segment_count))?;
         let phases = given(Stack::new(memory.phases, memory.phase_count))?;
         let motions = given(Stack::new(memory.motions, memory.motion_count))?;
-        let entries = given(Stack::new(memory.entries, memory.entry_count))?.filled(Region::EMPTY);
-        let pieces = given(Stack::new(memory.pieces, memory.piece_count))?.filled(Piece::EMPTY);
-        let (table, progress, reaches) = if memory.order_count == 0 {
-            (Table::Regions(Ecm::new(entries, pieces)), Stack::none(), Stack::none())
+        let entries = given(Stack::new(memory.entries, memory.entry_count))?;
+        let pieces = given(Stack::new(memory.pieces, memory.piece_count))?;
+        let orders = given(Stack::new(memory.orders, memory.order_count))?;
+        let robots = if memory.order_count == 0 { 0 } else { memory.motion_count };
+        let (progress, reaches) = given(both(memory.robots, robots))?;
+        // Nothing is refused from here on: a fleet that has this memory already is overwritten only now.
+        let (entries, pieces) = (entries.filled(Region::EMPTY), pieces.filled(Piece::EMPTY));
+        let table = if memory.order_count == 0 {
+            Table::Regions(Ecm::new(entries, pieces))
         } else {
-            let orders = given(Stack::new(memory.orders, memory.order_count))?.filled(Order::EMPTY);
-            let (progress, reaches) = given(both(memory.robots, memory.motion_count))?;
-            (Table::Ordered(Orders::new(entries, pieces, orders)), progress, reaches)
+            Table::Ordered(Orders::new(entries, pieces, orders.filled(Order::EMPTY)))
         };
         let reaches = reaches.filled(Reach::EMPTY);
         let (segments, phases) = (Arena::new(segments, origin), Arena::new(phases, rest));
@@ -169,7 +181,10 @@ impl Fleet {
             Err(TableError::Full(full)) => return Err(full.into()),
             Ok(()) => {}
             // The table was not built before, or has one row only, which does not belong to the new fleet.
-            Err(_) => *self.motions.get_mut(index).ok_or(PcrStatus::NoSuchAgent)? = motion,
+            Err(_) => {
+                *self.motions.get_mut(index).ok_or(PcrStatus::NoSuchAgent)? = motion;
+                self.table.clear();
+            }
         }
         if let Some(progress) = self.progress.get_mut(index) {
             *progress = Progress::default();
@@ -190,6 +205,7 @@ impl Fleet {
         let silent = |status| (status, None);
         let before = *self.motion(agent).map_err(silent)?;
         let motion = self.placed(by).map_err(silent)?;
+        let progress = on_path(progress, &motion).map_err(silent)?;
         let OrderedMut { orders, motions, progress: all, reaches } = self.ordered_mut().map_err(silent)?;
         let mission = Mission { agent, motion, progress };
         orders
@@ -203,8 +219,10 @@ impl Fleet {
     /// so afterwards.
     pub(super) fn remove(&mut self, index: usize) -> Result<(), PcrStatus> {
         let gone = *self.motion(index)?;
-        // A table that did not belong to the fleet before, or has one row only, does not belong to it now.
-        let _ = self.table.erase(self.motions.values(), index);
+        if self.table.erase(self.motions.values(), index).is_err() {
+            // It did not belong to the fleet before, or has one row only.
+            self.table.clear();
+        }
         self.motions.remove(index);
         self.progress.remove(index);
         self.close(&gone)
@@ -280,6 +298,13 @@ pub(super) struct OrderedMut<'a> {
     pub(super) motions: &'a mut [Motion<'static, S>],
     pub(super) progress: &'a mut [Progress<S>],
     pub(super) reaches: &'a mut [Reach<S>],
+}
+
+/// Refuses progress beyond the end of the path, which would give way to all others. A length that is off by a rounding
+/// means that end.
+pub(super) fn on_path(progress: Progress<S>, own: &Motion<'_, S>) -> Result<Progress<S>, PcrStatus> {
+    let end = own.path().length() + excess(own, own);
+    if progress.at.lo <= end { Ok(progress) } else { Err(PcrStatus::OutOfRange) }
 }
 
 /// Builds the path of an agent in the first slots; returns the number of slots.

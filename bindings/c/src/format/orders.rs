@@ -1,7 +1,7 @@
 //! Passing orders: which agent passes a region first. Agents that keep their holds do not touch one another, whatever
 //! their delays.
 
-use super::fleet::OrderedMut;
+use super::fleet::{OrderedMut, on_path};
 use super::number::{Real, S, inner, plain};
 use super::points::{Room, ask, change, given, interval, number, range, short, status};
 use super::types::{PcrAgent, PcrBrakes, PcrFleet, PcrHold, PcrPassing, PcrProgress, PcrTolerances};
@@ -103,7 +103,8 @@ pub extern "C" fn pcr_fleet_decide_at(place: Option<&mut PcrFleet>, region: usiz
 }
 
 /// Updates the progress of an agent. Reports may come late, twice and in any order; an older report does not undo a
-/// newer one. The report must be about the present path of the agent.
+/// newer one. The report must be about the present path of the agent; PCR_STATUS_OUT_OF_RANGE if none of its lengths is
+/// on it.
 #[unsafe(export_name = name!("fleet_report"))]
 pub extern "C" fn pcr_fleet_report(
     place: Option<&mut PcrFleet>,
@@ -111,7 +112,7 @@ pub extern "C" fn pcr_fleet_report(
     report: Option<&PcrProgress>,
 ) -> PcrStatus {
     change(place, |fleet| {
-        let new = progress(*given(report)?)?;
+        let new = on_path(progress(*given(report)?)?, fleet.motion(agent)?)?;
         let known = fleet.ordered_mut()?.progress.get_mut(agent).ok_or(PcrStatus::NoSuchAgent)?;
         let later = |known, new| Scalar::max(known, new);
         let at = Interval::new(later(known.at.lo, new.at.lo), later(known.at.hi, new.at.hi));
@@ -155,10 +156,11 @@ pub extern "C" fn pcr_fleet_check(
 }
 
 /// Gives an agent a new path and orders for all its regions, with which it can finish, and so can every agent that could
-/// if this one were not there. The orders between the other agents stay as they are. `report` is the place of the agent on the new path, which follows the old one at
-/// least up to where the agent can stop. `prefer` says for every other agent whether the admitted one should pass it
-/// first (PCR_FIRST) or second, where both are possible; if it is null, second. The table must be built, and the memory
-/// needs room as for `pcr_fleet_replace`.
+/// if this one were not there. The orders between the other agents stay as they are. `report` is
+/// the place of the agent on the new path, which follows the old one at least up to where the agent can stop. `prefer`
+/// has a value for every agent: whether the admitted one should pass it first (PCR_FIRST) or second, where both are
+/// possible; that of the admitted one is not read. If it is null, second. The table must be built, and the memory needs
+/// room as for `pcr_fleet_replace`.
 ///
 /// PCR_STATUS_REFUSED leaves everything unchanged; `why` then names the agent in the way. `why` may be null.
 #[unsafe(export_name = name!("fleet_admit"))]
@@ -175,7 +177,8 @@ pub extern "C" fn pcr_fleet_admit(
         let (by, progress, tolerances) = (given(by)?, progress(*given(report)?)?, tolerances(accepted)?);
         let count = if prefer.is_null() { 0 } else { fleet.motions().len() };
         let prefer = given(values(prefer, count))?;
-        prefer.iter().try_for_each(|&pass| decision(pass).map(drop))?;
+        let others = prefer.iter().enumerate().filter(|(other, _)| *other != agent);
+        others.map(|(_, &pass)| decision(pass)).try_for_each(|pass| pass.map(drop))?;
         let wanted = |other: usize| prefer.get(other).and_then(|&pass| decision(pass).ok());
         let admitted =
             fleet.admit(agent, by, progress, tolerances, |region| wanted(region.other()).unwrap_or(Pass::Second));
@@ -198,11 +201,21 @@ fn brakes(brakes: Option<&PcrBrakes>) -> Result<Brakes<S>, PcrStatus> {
     Ok(Brakes::new(inner(brakes.deceleration), inner(brakes.reaction))?)
 }
 
-/// The stopping distance from a speed (m/s), rounded up (m).
+/// The stopping distance from a speed (m/s), rounded up (m). PCR_STATUS_OUT_OF_RANGE if it is beyond the range of the
+/// format.
 #[unsafe(export_name = name!("stopping_way"))]
 pub extern "C" fn pcr_stopping_way(how: Option<&PcrBrakes>, speed: Real, way: Option<&mut Real>) -> PcrStatus {
     status(brakes(how).and_then(|brakes| {
-        *given(way)? = plain(brakes.distance(number(speed)?));
+        let (way, speed) = (given(way)?, number(speed)?);
+        if speed < S::ZERO {
+            return Err(PcrStatus::Negative);
+        }
+        let distance = brakes.distance(speed);
+        // Neither is what is not finite.
+        if !(distance <= S::LIMIT) {
+            return Err(PcrStatus::OutOfRange);
+        }
+        *way = plain(distance);
         Ok(())
     }))
 }

@@ -104,8 +104,8 @@ pub extern "C" fn pcr_fleet_safe_intervals(
 
 /// Delays the starts of all agents so that none overlap; each delay is as small as the agents before it in the order
 /// allow. `order` lists each agent once, the highest priority first, and returns the order that was used. `room` needs
-/// one motion for each agent and can be reused afterwards. If there is no plan, no agent is delayed and `why` names the
-/// agent in the way. `why` may be null.
+/// one motion for each agent and can be reused afterwards. If there is no plan, no agent is delayed, `order` is the one
+/// that was tried last, and `why` names the agent in the way. `why` may be null.
 #[unsafe(export_name = name!("fleet_plan_delays"))]
 pub extern "C" fn pcr_fleet_plan_delays(
     place: Option<&mut PcrFleet>,

@@ -34,7 +34,7 @@ pub struct PcrAgent {
     pub x: Real,
     /// y-coordinate of the start of the path (m).
     pub y: Real,
-    /// Direction of travel at the start (rad).
+    /// Direction of travel at the start (rad, or in the unit of headings that is given above).
     pub heading: Heading,
     /// Radius of the disc (m), above 0.
     pub radius: Real,

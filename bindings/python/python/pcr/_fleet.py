@@ -63,23 +63,21 @@ class Fleet:
     []
     """
 
-    __slots__ = ("_fleet", "warnings")
+    __slots__ = ("_fleet",)
 
     def __init__(self, agents: Iterable[Mapping[str, Any]], name: str = "") -> None:
         # What is not finite is refused as in a file, with the agent and the field.
         text = json.dumps({"name": name, "agents": ordered("agents", agents)}, default=plain)
         self._fleet: _pcr.Fleet = scenario(_pcr.Fleet.from_json, text)
-        #: What was read otherwise than it is written in the file.
-        self.warnings: list[str] = []
 
     @classmethod
-    def _of(cls, fleet: _pcr.Fleet, warnings: Optional[list[str]] = None) -> Fleet:
+    def _of(cls, fleet: _pcr.Fleet) -> Fleet:
         made = cls.__new__(cls)
-        made._fleet, made.warnings = fleet, warnings or []
+        made._fleet = fleet
         return made
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _remade, (self.to_json(), self.warnings)
+        return Fleet.from_json, (self.to_json(),)
 
     @classmethod
     def from_json(cls, text: str) -> Fleet:
@@ -94,8 +92,7 @@ class Fleet:
         Traceback (most recent call last):
         pcr.Error: speed: -1.0 is out of range; allowed is above 0, up to 1000000
         """
-        fleet, warnings = scenario(_pcr.Fleet.read, path, checked(options))
-        return cls._of(fleet, warnings)
+        return cls._of(scenario(_pcr.Fleet.read, path, checked(options)))
 
     def to_json(self) -> str:
         """The text of a scenario file, which :meth:`from_json` and the tool read."""
@@ -105,6 +102,11 @@ class Fleet:
     def name(self) -> str:
         """Name of the scenario."""
         return self._fleet.name()
+
+    @property
+    def warnings(self) -> list[str]:
+        """What was read otherwise than it is written in the file; scenario files that are made of it hold that, too."""
+        return self._fleet.warnings()
 
     @property
     def agents(self) -> list[dict[str, Any]]:
@@ -129,8 +131,7 @@ class Fleet:
 
     def map(self, agent: SupportsIndex, start: SupportsFloat, step: SupportsFloat, times: SupportsIndex) -> list[tuple[int, int, float, float]]:
         """The collision map of an agent at ``times`` times: number of the time, other agent, and the lengths forbidden then, from, to."""
-        finite(start=start, step=step)
-        begin, by, count = float(start), float(step), whole("times", times, TIMES)
+        begin, by, count = finite("start", start), finite("step", step), whole("times", times, TIMES)
         if count and not math.isfinite(begin + by * (count - 1)):
             raise Error(f"times: the last one, {begin} + {count - 1} * {by}, is too large")
         rows = self._fleet.map(whole("agent", agent), begin, by, count)
@@ -138,8 +139,7 @@ class Fleet:
 
     def places(self, time: SupportsFloat) -> list[tuple[float, float, float, float]]:
         """Where every agent is at a time: x, y, heading, travelled length."""
-        finite(time=time)
-        return list(struct.iter_unpack("<4d", self._fleet.places(float(time))))
+        return list(struct.iter_unpack("<4d", self._fleet.places(finite("time", time))))
 
     def safe_intervals(self, agent: SupportsIndex, length: Ranged, during: Ranged) -> list[Span]:
         """When no other agent blocks a length, or a stretch of lengths, of an agent's path, within ``during``."""
@@ -225,8 +225,3 @@ class Fleet:
 
     def __repr__(self) -> str:
         return f"<fleet {self.name!r} of {len(self)}>"
-
-
-def _remade(text: str, warnings: list[str]) -> Fleet:
-    """What a pickle of a fleet is."""
-    return Fleet._of(_pcr.Fleet.from_json(text), warnings)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, SupportsFloat
 
 from . import _pcr
-from ._numbers import Span
+from ._numbers import Span, real
 from ._options import Options, Path, absolute, checked
 
 if TYPE_CHECKING:
@@ -55,9 +56,13 @@ class Layout:
         return cls(path, options)
 
     def _for(self, **vehicle: Unpack[Options]) -> _pcr.Layout:
-        """The layout for another vehicle: the file is read again."""
+        """The layout for another vehicle: the file is read again. Whatever is read otherwise because of that is warned of."""
         other: Options = {**self._options, **vehicle}
-        return _pcr.Layout.read(self._path, checked(other))[0]
+        layout, told = _pcr.Layout.read(self._path, checked(other))
+        for text in told:
+            if text not in self.warnings:
+                warnings.warn(text, stacklevel=3)
+        return layout
 
     def locks(self, radius: Optional[SupportsFloat] = None) -> list[Lock]:
         """Which edges exclude one another, and on which lengths: two vehicles on other lengths cannot touch.
@@ -87,7 +92,7 @@ class Layout:
         """
         radius = self._options.get("radius") if radius is None else radius
         layout = self._for(radius=radius, speed=speed, acceleration=acceleration)
-        found = json.loads(layout.delays_json(float(speed), None if acceleration is None else float(acceleration)))["delays"]
+        found = json.loads(layout.delays_json(real("speed", speed), None if acceleration is None else real("acceleration", acceleration)))["delays"]
         return [Delay(d["a"], d["b"], tuple(d["delay"]), d.get("a_backward", False), d.get("b_backward", False)) for d in found]
 
     def __repr__(self) -> str:

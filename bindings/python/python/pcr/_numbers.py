@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Iterable, Mapping, Sequence, Set
-from numbers import Real
-from typing import Any, SupportsFloat, SupportsIndex, TypeVar, Union
+from numbers import Complex, Real
+from typing import Any, Optional, SupportsFloat, SupportsIndex, TypeVar, Union
 
 from ._pcr import Error
 
@@ -17,10 +17,33 @@ Item = TypeVar("Item")
 TEXTS = (str, bytes, bytearray)
 
 
-def finite(**numbers: SupportsFloat) -> None:
-    for name, number in numbers.items():
-        if not math.isfinite(number):
-            raise Error(f"{name}: {number} is not a finite number")
+def real(name: str, number: SupportsFloat) -> float:
+    """A number of any kind that has one part; truths and digits of a text are none."""
+    if isinstance(number, TEXTS) or is_truth(number) or (isinstance(number, Complex) and not isinstance(number, Real)):
+        raise TypeError(f"{name}: {number!r} is no number")
+    try:
+        return float(number)
+    except OverflowError:
+        raise Error(f"{name}: the number is too large") from None
+
+
+def finite(name: str, number: SupportsFloat) -> float:
+    found = real(name, number)
+    if not math.isfinite(found):
+        raise Error(f"{name}: {found} is not a finite number")
+    return found
+
+
+def is_truth(value: object) -> bool:
+    """Of Python or of NumPy."""
+    return isinstance(value, bool) or (getattr(getattr(value, "dtype", None), "kind", "") == "b" and getattr(value, "shape", None) == ())
+
+
+def truth(name: str, value: Optional[bool]) -> bool:
+    """``None`` is as if it was not there; any other text would be true."""
+    if value is not None and not is_truth(value):
+        raise TypeError(f"{name}: {value!r} is neither True nor False")
+    return bool(value)
 
 
 def whole(name: str, number: SupportsIndex, most: int = 2**64 - 1) -> int:
@@ -42,9 +65,7 @@ def span(name: str, value: Ranged) -> Span:
         lo = hi = value
     except ValueError:
         raise Error(f"{name}: {value} is neither a number nor from and to") from None
-    if isinstance(lo, TEXTS) or isinstance(hi, TEXTS):
-        raise TypeError(f"{name}: from {lo!r} to {hi!r} are no numbers")
-    return float(lo), float(hi)
+    return real(name, lo), real(name, hi)
 
 
 def ordered(name: str, values: Iterable[Item]) -> list[Item]:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from os import PathLike
 from typing import Any, Optional, SupportsFloat, SupportsIndex, TypedDict, Union
 
-from ._numbers import ordered, whole
+from ._numbers import ordered, real, truth, whole
 from ._pcr import Error
 
 Path = Union[str, PathLike[str]]
@@ -59,13 +59,14 @@ def checked(given: Options) -> dict[str, Any]:
     found.update(given)
     for name in (*ABOVE_0, *FROM_0):
         if found[name] is not None:
-            number = float(found[name])
+            number = real(name, found[name])
             if not (0 <= number <= MOST) or (number == 0 and name in ABOVE_0):
                 raise Error(f"{name}: {number} is out of range; allowed is {'above' if name in ABOVE_0 else 'from'} 0, up to {MOST:.0f}")
             found[name] = number
     if found["graph"] is not None:
         found["graph"] = whole("graph", found["graph"])
-    found.update(routes=ordered("routes", [] if found["routes"] is None else found["routes"]), horizon=bool(found["horizon"]), partial=bool(found["partial"]))
+    found.update({name: truth(name, found[name]) for name in ("horizon", "partial")})
+    found["routes"] = ordered("routes", [] if found["routes"] is None else found["routes"])
     return found
 
 

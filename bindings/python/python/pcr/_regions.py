@@ -56,6 +56,11 @@ class Region(_Ranges):
     def plot(self, ax: Any, *, columns: SupportsIndex = 60, **style: Any) -> Any:
         """Draws it on matplotlib's ``ax``, which it returns: time to the right, length upwards. ``style`` goes to ``ax.bar``."""
         rows = self.outline(columns)
+        if self.t[0] == self.t[1]:
+            # The other stands all the time.
+            for lo, hi in sorted({(lo, hi) for _, lo, hi in rows}):
+                ax.axhspan(lo, hi, **style)
+            return ax
         width = (self.t[1] - self.t[0]) / (whole("columns", columns) + 1)
         ax.bar([t for t, _, _ in rows], [hi - lo for _, lo, hi in rows], bottom=[lo for _, lo, _ in rows], width=width, **style)
         return ax
@@ -113,7 +118,9 @@ class Regions(Sequence[Region]):
         return numpy.frombuffer(self._rows, dtype=numpy.dtype(REGION, align=True))
 
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> Any:
-        array = self.array if dtype is None else self.array.astype(dtype)
+        array = self.array if dtype is None else self.array.astype(dtype, copy=False)
+        if copy is False and array.dtype != self.array.dtype:
+            raise ValueError("regions have another type: they have to be copied")
         return array.copy() if copy else array
 
     def __repr__(self) -> str:
