@@ -145,10 +145,14 @@ where
         let mut motions = Motions::new();
         put(&self.fleet, &mut motions)?;
         let motion = self.fleet.staged(&staged).map_err(|invalid| Refusal::agent(index, invalid))?;
-        // An error means that the new fleet has no table: there was none before, or the regions do not fit.
-        let _: Result<(), TableError> = self.table.replace(&mut motions, index, motion);
+        let replaced = self.table.replace(&mut motions, index, motion);
         drop(motions);
         self.fleet.settle(index, staged).map_err(|rejected| Refusal::change(index, rejected))?;
+        // The new fleet has no table: there was none before, or the regions do not fit. The old one goes, so that it is not taken for
+        // that of a fleet whose paths are those again.
+        if replaced.is_err() {
+            self.table.clear();
+        }
         Ok(self.agents())
     }
 
@@ -156,10 +160,13 @@ where
     fn remove(&mut self, index: usize) -> Result<Answer<S>, Refusal> {
         let mut motions = Motions::new();
         put(&self.fleet, &mut motions)?;
-        // A table that did not belong to the fleet before does not belong to it now.
-        let _ = self.table.erase(&motions, index);
+        let erased = self.table.erase(&motions, index);
         drop(motions);
         self.fleet.remove(index).map_err(|rejected| Refusal::change(index, rejected))?;
+        // It did not belong to the fleet before.
+        if erased.is_err() {
+            self.table.clear();
+        }
         Ok(self.agents())
     }
 

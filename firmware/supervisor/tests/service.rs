@@ -146,11 +146,17 @@ fn a_table_goes_on_when_an_agent_is_replaced_or_removed() {
     for request in [
         Request::Add(agent(0.0)),
         Request::Add(agent(FRAC_PI_2)),
-        Request::Add(aside),
+        Request::Add(aside.clone()),
         Request::Compute,
         Request::Replace { agent: 2, with: agent(1.0) },
         Request::Row { ego: 0 },
         Request::Compute,
+        Request::Replace { agent: 2, with: aside.clone() },
+        Request::Compute,
+        Request::Replace { agent: 2, with: agent(1.0) },
+        // The paths are those of the last table again.
+        Request::Replace { agent: 2, with: aside },
+        Request::Row { ego: 0 },
     ] {
         service.answer(request, 1, |answer| said.push(answer));
     }
@@ -159,6 +165,11 @@ fn a_table_goes_on_when_an_agent_is_replaced_or_removed() {
         Answer::Fleet { agents: 3 },
         refused(Refusal::NotComputed),
         refused(Refusal::Needs { regions: 3, pieces: 3 }),
+        Answer::Fleet { agents: 3 },
+        Answer::Computed { regions: 1, pieces: 1 },
+        Answer::Fleet { agents: 3 },
+        Answer::Fleet { agents: 3 },
+        refused(Refusal::NotComputed),
     ];
     assert_eq!(said[3..], expected);
 }
