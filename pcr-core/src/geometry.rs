@@ -180,6 +180,13 @@ impl<S: Scalar> Interval<S> {
         self.lo + (self.hi - self.lo).half()
     }
 
+    /// Differences of times in this interval are not told apart below this \[s\]: the [`Scalar::tolerance`] of its length, which is
+    /// that of the motions in it, however late they are; but not less than what rounding moves times as late as that.
+    pub(crate) fn resolution(self) -> S {
+        let latest = self.lo.abs().max(self.hi.abs());
+        S::tolerance(self.length()).max(S::rounding(latest).double().double())
+    }
+
     /// Both ends clamped to the range that constructors accept, in which all motions are; an end that is NaN becomes
     /// unlimited.
     pub(crate) fn limited(self) -> Self {

@@ -49,6 +49,49 @@ fn who_keeps_its_own_motion_keeps_its_margin() {
     }
 }
 
+/// Starts at times since 1970, and at the latest of all: delays were known to some tenths of a second, so that optima were too high, and
+/// there were said to be none where there are.
+#[test]
+fn late_starts_have_the_plans_of_early_ones() {
+    let arc = |radius: f64, sweep: f64| json!({ "kind": "arc", "radius": radius, "sweep": sweep });
+    let crossing = |t: f64| {
+        let starts = json!({ "t_start": t });
+        let [east, north] = [([-4.0, 0.0, 0.0], 1), ([0.0, -4.0, FRAC_PI_2], 2)];
+        [east, north].map(|(start, id)| agent(id, start, &json!([line(8.0)]), &starts))
+    };
+    // The second one has to wait for the first for as long as there is room beside its turn.
+    let rounds = |t: f64| {
+        let path = json!([
+            arc(0.25, 2.0 * PI),
+            arc(0.5, -FRAC_PI_2),
+            arc(1.6321931586055558, 5.613353710987893),
+            line(2.2705455533011063)
+        ]);
+        let own = json!({ "radius": 0.45, "v_max": 0.47494745010994044, "a_max": 1.7990277950347808, "t_start": t });
+        let other = json!({ "radius": 0.35, "a_max": 1.5613073850739487, "t_start": t - 3.0 });
+        let start = [1.1858181408123376, -2.0, -FRAC_PI_2];
+        [agent(1, [0.0, 0.170572161272029, 0.0], &path, &own), agent(2, start, &json!([arc(0.5, -2.0 * PI)]), &other)]
+    };
+    let both: [&dyn Fn(f64) -> [Value; 2]; 2] = [&crossing, &rounds];
+    for agents in both {
+        for method in [Method::Delay, Method::Speed] {
+            let costs = |t: f64| {
+                let (plan, solved) = Plan::of(&read(&agents(t)), &Request::of(method)).unwrap();
+                let costs = plan.costs.unwrap_or_else(|| panic!("{t}: {:?}", plan.unsolved));
+                assert!(solved.is_some() && (costs.proved || method == Method::Speed));
+                [costs.sum_of_costs, costs.lower_bound, costs.makespan]
+            };
+            let early = costs(3.0);
+            for t in [1.7e9, 9.9e9] {
+                let late = costs(t);
+                let apart = early.iter().zip(late).map(|(early, late)| (early - late).abs()).fold(0.0, f64::max);
+                // Contacts have a tolerance of 1e-13 times what a vehicle of its top speed goes since the time 0 (`Encounter::tolerance`).
+                assert!(apart < 5e-13 * t, "{t}: {early:?} {late:?}");
+            }
+        }
+    }
+}
+
 /// Times before 0 are times as all others.
 #[test]
 fn a_last_arrival_before_0_has_its_bound() {

@@ -48,9 +48,9 @@ impl<S: Scalar> Constraint<S> {
     }
 
     /// Whether an agent that stands at its start from the time `from` \[s\] and then moves by `motion` is on these
-    /// lengths at these times, by more than two [`Scalar::tolerance`] of time.
+    /// lengths at these times, by more than two [`Interval::resolution`] of its times.
     pub(super) fn is_broken_by(&self, motion: &Motion<'_, S>, from: S) -> bool {
-        let rounding = S::tolerance(from.abs().max(motion.time().hi.abs())).double();
+        let rounding = Interval::new(from.min(motion.time().lo), motion.time().hi).resolution().double();
         let time = self.during();
         let during = Interval::new(time.lo.max(from) + rounding, time.hi - rounding);
         during.lo <= during.hi && times(motion, self.length, during).is_some()

@@ -2,6 +2,7 @@
 
 use crate::ecm::{Ecm, Region};
 use crate::error::Invalid;
+use crate::geometry::Interval;
 use crate::motion::Motion;
 use crate::pieces::Piece;
 use crate::plan::delays::{self, earliest};
@@ -59,7 +60,9 @@ where
                 Err(reason) => (None, Some(reason)),
             };
             // An arrival that is earlier only by a rounding does not justify another profile.
-            let earlier = |end: S| later.is_none_or(|later| end < later.time().hi - S::tolerance(end.abs()));
+            let earlier = |end: S| {
+                later.is_none_or(|later| end < later.time().hi - Interval::new(motion.time().lo, end).resolution())
+            };
             let drive = Drive::of(&motion);
             let speeds: Result<SpeedPlan<S, N>, _> = match drive {
                 Some(drive) => plan_speed(&motion, drive, regions.clone(), &[], stations),

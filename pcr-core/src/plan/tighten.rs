@@ -89,7 +89,7 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
     ) -> Result<(), NoSpeedPlan<S>> {
         let end = place.and_then(|place| plan.profile.as_profile().phases().get(place)).map(|phase| phase.time().hi);
         let leaves = plan.start + end.unwrap_or_default();
-        let resolution = S::tolerance(leaves.abs().max(ego.time().hi.abs()));
+        let resolution = Interval::new(ego.time().lo, ego.time().hi.max(leaves)).resolution();
         let (mut free, mut doubtful) = (S::ZERO, wait);
         let mut tried = wait;
         for _ in 0..HALVINGS {

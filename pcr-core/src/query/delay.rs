@@ -22,8 +22,9 @@ impl<S: Scalar> RegionRef<'_, S> {
     /// earlier starts. An end of magnitude [`Scalar::LIMIT`] stands for infinity. If agents may be late
     /// ([`Motion::with_lateness`]), these are the delays with which they may meet.
     ///
-    /// The error of an end is [`Scalar::tolerance`] of the latest time, plus the delay that corresponds to a distance
-    /// of [`Encounter::tolerance`]. For a region in which the discs only touch, the result may be all delays that its
+    /// The error of an end is [`Scalar::tolerance`] of the time from the first start to the last arrival, or four
+    /// [`Scalar::rounding`] of the latest time if that is more, plus the delay that corresponds to a distance of
+    /// [`Encounter::tolerance`]. For a region in which the discs only touch, the result may be all delays that its
     /// bounding box allows. Cost: 10 to 30 searches for contacts for each finite end.
     pub fn forbidden_delays(&self) -> Interval<S> {
         let possible = self.possible_delays();
@@ -88,8 +89,7 @@ impl<S: Scalar> RegionRef<'_, S> {
 
     /// Brackets are not made narrower than this \[s\].
     pub(super) fn resolution(&self) -> S {
-        let latest = |interval: Interval<S>| interval.lo.abs().max(interval.hi.abs());
-        S::tolerance(latest(self.ego_motion().time()).max(latest(self.other_motion().time())))
+        self.ego_motion().time().hull(self.other_motion().time()).resolution()
     }
 
     /// The end of the forbidden delays, between a forbidden delay and one beyond the end.
