@@ -24,6 +24,19 @@ fn lines(sheet: &Value) -> (Result<pcr_formats::import::Vehicle, String>, String
     (read.map_err(|error| error.to_string()), warnings.lines().join("\n"))
 }
 
+/// Of two names for one limit the first one counted, whatever the other one said.
+#[test]
+fn limits_under_the_names_of_two_versions_have_to_be_the_same() {
+    let mut sheet: Value = serde_json::from_str(SHEET).unwrap();
+    let speed = |sheet: &Value| lines(sheet).0.map(|vehicle| vehicle.speed);
+    (sheet["physicalParameters"]["maximumSpeed"], sheet["physicalParameters"]["speedMax"]) = (json!(1.5), json!(1.5));
+    assert_eq!(speed(&sheet), Ok(1.5));
+    sheet["physicalParameters"]["maximumSpeed"] = json!(0.0);
+    assert_eq!(speed(&sheet), Ok(1.5));
+    sheet["physicalParameters"]["maximumSpeed"] = json!(0.5);
+    assert_eq!(speed(&sheet), Err("factsheet, physicalParameters: its maximumSpeed is not its speedMax".to_owned()));
+}
+
 #[test]
 fn a_factsheet_gives_contour_and_limits() {
     let sheet: Value = serde_json::from_str(SHEET).unwrap();

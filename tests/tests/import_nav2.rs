@@ -259,6 +259,12 @@ fn copies_are_there_once_and_edges_join_the_last_node_of_an_id() {
     let edge = whole.edges.iter().find(|edge| edge.id.to_string() == "100").unwrap();
     assert_eq!(whole.nodes[edge.ends[0]].at, [0.0, 1.0]);
     assert!((edge.length() - 101.0_f64.sqrt()).abs() < 1e-12);
+    // Which is a copy of the first one here.
+    let first = graph["features"][0].clone();
+    graph["features"].as_array_mut().unwrap().push(first);
+    let (whole, _) = read(&graph.to_string());
+    let edge = whole.edges.iter().find(|edge| edge.id.to_string() == "100").unwrap();
+    assert_eq!((whole.nodes[edge.ends[0]].at, edge.length()), ([0.0, 0.0], 10.0));
 }
 
 #[test]
@@ -388,4 +394,36 @@ fn rounded_corners_are_told_unless_they_were_asked_for() {
     };
     assert!(told(None, "0:50") && !told(Some(1.0), "0:50") && !told(Some(0.0), "0:50"));
     assert!(!told(None, "3:3"));
+}
+
+/// The arc was as fast as the edge before it allows.
+#[test]
+fn a_rounded_corner_has_the_limits_of_both_edges() {
+    let node = |id: u64, at: [f64; 2]| json!({ "type": "Feature", "properties": { "id": id, "frame": "map" }, "geometry": { "type": "Point", "coordinates": at } });
+    let edge = |id: u64, [from, to]: [u64; 2], percent: u64| {
+        json!({ "type": "Feature", "properties": { "id": id, "startid": from, "endid": to,
+            "metadata": { "speed_limit": percent } }, "geometry": { "type": "MultiLineString", "coordinates": [] } })
+    };
+    let graph = |percents: [u64; 2]| {
+        let nodes = [node(0, [-5.0, 0.0]), node(1, [0.0, 0.0]), node(2, [0.0, 5.0])];
+        let edges = [edge(10, [0, 1], percents[0]), edge(11, [1, 2], percents[1])];
+        json!({ "type": "FeatureCollection", "features": ([&nodes[..], &edges].concat()) }).to_string()
+    };
+    for (percents, arcs) in [([50, 50], 1), ([100, 5], 2), ([5, 100], 2)] {
+        let scenario = route(&graph(percents), &["0:2"], 1.0);
+        assert_eq!(scenario.agents[0].path.len(), 2 + arcs);
+        with_motion(&scenario, 0, |motion| {
+            // Half of the arc from either edge: the node, as it were.
+            let corner = 4.0 + std::f64::consts::FRAC_PI_4;
+            let phases = motion.profile().phases();
+            for (k, percent) in percents.iter().enumerate() {
+                let own = phases.iter().filter(|phase| {
+                    let middle = phase.length().middle();
+                    if k == 0 { middle < corner } else { middle > corner }
+                });
+                let fastest = own.flat_map(|phase| phase.speed()).fold(0.0, f64::max);
+                assert!(fastest <= *percent as f64 / 100.0 + 1e-6, "{percents:?}: {fastest}");
+            }
+        });
+    }
 }

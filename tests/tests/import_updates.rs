@@ -127,6 +127,48 @@ fn allowed_deviations_are_told() {
     }
 }
 
+/// Nothing was said, and of two limits the first one counted.
+#[test]
+fn lengths_are_compared_and_the_lower_of_two_limits_counts() {
+    for (length, told) in [(Value::Null, 0), (json!(0), 0), (json!(5.0), 0), (json!(5.09), 0), (json!(9.5), 1)] {
+        let mut straight = order(0, 0, 1, 1);
+        straight["edges"][0]["length"] = length;
+        let mut curved = straight.clone();
+        let points = json!([{ "x": 0, "y": 0 }, { "x": 5, "y": 0 }]);
+        curved["edges"][0]["trajectory"] = json!({ "degree": 1, "controlPoints": points });
+        for order in [straight, curved] {
+            let (_, warnings) = read(&order.to_string(), &options()).unwrap();
+            assert_eq!(warnings.iter().filter(|line| line.contains("its length is not that")).count(), told, "{order}");
+        }
+    }
+    let lasts = |limits: [f64; 2]| {
+        let mut order = order(0, 0, 1, 1);
+        (order["edges"][0]["maxSpeed"], order["edges"][0]["maximumSpeed"]) = (json!(limits[0]), json!(limits[1]));
+        let (scenario, _) = read(&order.to_string(), &options()).unwrap();
+        pcr_planning::fleet::Fleet::<f64>::new(&scenario).unwrap().motions()[0].time().hi
+    };
+    // 5 m at 0.1 m/s, with 0.1 s to speed up and as much to brake.
+    assert!((lasts([1.0, 0.1]) - 50.2).abs() < 1e-6 && (lasts([0.1, 1.0]) - 50.2).abs() < 1e-6);
+}
+
+/// Differences of knots were infinite, and the curve was nowhere: nothing met anything.
+#[test]
+fn knots_out_of_range_are_refused() {
+    let curve = |most: f64, middle: f64| {
+        let mut order = order(0, 0, 1, 1);
+        let points = [[0.0, 0.0], [1.0, 2.0], [4.0, 2.0], [5.0, 0.0]].map(|[x, y]| json!({ "x": x, "y": y }));
+        let knots = [-most, -most, -most, middle, most, most, most];
+        order["edges"][0]["trajectory"] = json!({ "degree": 2, "controlPoints": points, "knotVector": knots });
+        read(&order.to_string(), &options())
+    };
+    let [small, large] = [1.0, 1e10].map(|most| curve(most, 0.0).unwrap().0.agents[0].length());
+    assert!((small - large).abs() < 1e-6 && small > 6.0, "{small} {large}");
+    for (most, middle) in [(1e308, 1e-300), (1e11, 0.0)] {
+        let error = curve(most, middle).unwrap_err();
+        assert!(error.contains("is out of range; allowed is up to 1e10"), "{error}");
+    }
+}
+
 /// The place of a vehicle on curves was that of the arcs, whose lengths differ.
 #[test]
 fn vehicles_that_meet_on_long_curves_are_told() {

@@ -80,27 +80,27 @@ fn poses(layout: &Layout, edge: &Edge) -> Vec<Pose> {
             let Pose(at, point, heading) = on(edge, share * length);
             poses.push(Pose(at, point, if backward { heading + PI } else { heading }));
         }
+        let others = || layout.edges.iter().flat_map(ways);
         // Headings, and the nodes at the other ends of the ways.
         let mut turn = |node: usize, from: &[(f64, usize)], to: &[(f64, usize)]| {
-            let pairs =
-                || from.iter().flat_map(|a| to.iter().map(move |b| (a.0, within_half_turn(b.0 - a.0), a.1 == b.1)));
             let at = if node == edge.ends[0] { 0.0 } else { length };
+            let open = layout.edges.iter().filter(|edge| !edge.closed).flat_map(ways);
+            let onward: Vec<_> = open.filter(|(ends, _)| ends[0] == node).collect();
             let is_half = |turn: f64| turn.abs() > PI - KINK;
-            // It goes back only where there is no other way.
-            let on_ways: Vec<_> = pairs().filter(|(_, turn, same)| !(is_half(*turn) && *same)).collect();
-            let turns: Vec<(f64, f64)> = if on_ways.is_empty() {
-                pairs().map(|(a, ..)| (a, 2.0 * PI)).collect()
-            } else {
+            let is_back = |a: (f64, usize), b: (f64, usize)| is_half(within_half_turn(b.0 - a.0)) && a.1 == b.1;
+            for (a, b) in from.iter().flat_map(|a| to.iter().map(move |b| (*a, *b))) {
+                // It goes back only where no other way leads on from there.
+                if is_back(a, b) && onward.iter().any(|(ends, headings)| !is_back(a, (headings[0], ends[1]))) {
+                    continue;
+                }
+                let turn = within_half_turn(b.0 - a.0);
                 // Half a turn may go to either side.
-                let other = on_ways.iter().filter(|(_, turn, _)| is_half(*turn));
-                let other = other.map(|(a, turn, _)| (*a, turn - (2.0 * PI).copysign(*turn)));
-                on_ways.iter().map(|(a, turn, _)| (*a, *turn)).chain(other).collect()
-            };
-            for (from, turn) in turns {
-                poses.extend(steps().map(|share| Pose(at, on(edge, at).1, from + turn * share)));
+                let other = is_half(turn).then(|| turn - (2.0 * PI).copysign(turn));
+                for turn in std::iter::once(turn).chain(other) {
+                    poses.extend(steps().map(|share| Pose(at, on(edge, at).1, a.0 + turn * share)));
+                }
             }
         };
-        let others = || layout.edges.iter().flat_map(ways);
         let arriving: Vec<_> =
             others().filter(|(ends, _)| ends[1] == from).map(|(ends, headings)| (headings[1], ends[0])).collect();
         let leaving: Vec<_> =
@@ -227,6 +227,20 @@ fn where_only_closed_edges_lead_on_it_turns_back() {
     let mut imported = graph(&places, &[[0, 1], [1, 0], [1, 2], [3, 4]]);
     imported.layout.edges[2].closed = true;
     locked(&imported, &[[10, 13], [11, 13]]);
+}
+
+/// An edge that only comes to the node was taken for a way on, and one that leads on for none.
+#[test]
+fn whether_it_turns_back_is_decided_by_the_edges_that_leave() {
+    let places = [[0.0, 0.0], [4.0, 0.0], [0.0, -3.0], [-0.9, -1.5], [-0.9, 1.5]];
+    let to = |third: [usize; 2]| graph(&places, &[[1, 0], [0, 1], third, [3, 4]]);
+    let comes = to([2, 0]);
+    compare(&comes);
+    locked(&comes, &[[11, 13]]);
+    let leads_on = to([0, 2]);
+    compare(&leads_on);
+    let locks = Locks::of(&leads_on, false).unwrap().locks;
+    assert!(!locks.iter().any(|lock| [&lock.a, &lock.b] == [11, 13].map(Id::Number).each_ref()), "{locks:?}");
 }
 
 /// Another way back, that is beside the line between two places where both are the same.

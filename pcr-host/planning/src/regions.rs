@@ -98,6 +98,8 @@ pub enum Failure {
     Robot(u64),
     /// This robot of a simulation sets off later than at this time \[s\].
     Late(u64, f64),
+    /// This robot of a simulation takes longer than this alone \[s\].
+    Long(u64, f64),
     /// An obstacle of a simulation, by its centre \[m\], is out of range.
     Obstacle([f64; 2]),
     /// There is no agent of the label asked for; these are there.
@@ -142,6 +144,12 @@ impl fmt::Display for Failure {
             Self::Robot(id) => write!(f, "agent {id}: its path or its disc with all margins is out of range"),
             Self::Late(id, latest) => {
                 write!(f, "agent {id}, t_start: a simulation begins at 0 s, and everybody sets off by {latest} s")
+            }
+            Self::Long(id, longest) => {
+                write!(
+                    f,
+                    "agent {id}: alone and from rest to rest it takes longer than {longest} s, the most for a simulation"
+                )
             }
             Self::Obstacle([x, y]) => write!(f, "obstacle at {x}, {y}: it is out of range"),
             Self::NoSuchAgent(asked, there) => {

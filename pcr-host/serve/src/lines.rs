@@ -166,6 +166,10 @@ fn read(line: &[u8]) -> (Value, Result<Verb, Fault>) {
     if !(id.is_null() || id.is_string() || id.is_number()) {
         return (Value::Null, Err(malformed("id: it has to be a text or a number".into())));
     }
+    // It would come back as another one.
+    if id.as_f64().is_some_and(|number| !(id.is_i64() || id.is_u64()) && number.abs() >= (1_u64 << 53) as f64) {
+        return (Value::Null, Err(malformed("id: a number with so many digits has to be a text".into())));
+    }
     match object.remove("pcr") {
         None => {}
         Some(version) if version == VERSION => {}

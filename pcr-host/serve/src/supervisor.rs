@@ -20,6 +20,7 @@ use crate::event::Event;
 use crate::fault::Fault;
 use crate::robot::{Abilities, Robot, remember};
 use pcr_core::{Invalid, Motion, Order, Orders, Piece, Progress, Reach, Refused, Region, Tolerances};
+use pcr_formats::scenario::label;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::HashMap;
@@ -221,7 +222,7 @@ impl Supervisor {
             let same = robot.abilities == abilities && robot.mission.is_none() && robot.course.start() == start;
             return if same { Ok(()) } else { Err(Fault::RobotExists) };
         }
-        if name.is_empty() || name.len() > 200 || name.chars().any(char::is_control) {
+        if name.is_empty() || label(name) != name {
             return Err(Fault::invalid("the name of a robot is 1 to 200 printable characters"));
         }
         let abilities = abilities.checked().map_err(Fault::invalid)?;

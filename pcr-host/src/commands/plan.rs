@@ -244,6 +244,8 @@ impl Arguments {
         drop(progress);
         let (mut plan, solved) = planned.map_err(wrong)?;
         plan.name = source.called(&plan.name);
+        // Those of the scenario are said already.
+        say(source.file(), plan.warnings.iter().skip(scenario.warnings.len()).cloned());
         if let Some(directory) = &self.pictures {
             // Where there can be none, there is no file of the plan, either.
             output::folder(directory).map_err(|error| Stop::not_written(directory, &error))?;

@@ -77,6 +77,36 @@ fn what_is_wrong_with_a_scenario_is_said_as_elsewhere() {
     assert_eq!(run(&["simulate", &name]).failed(2), expected);
 }
 
+/// It was driven from rest with the least of accelerations, for hours or without end.
+#[test]
+fn a_profile_that_is_under_way_is_sped_up_within_its_duration() {
+    let rolls = |accel: f64| {
+        let piece = |accel: f64| json!({ "duration": 2.0, "accel": accel });
+        let profile = json!({ "v0": 0.5, "pieces": [piece(accel), piece(-accel)] });
+        let agents = json!([{ "id": 1, "radius": 0.3, "start": { "x": 0, "y": 0, "heading": 0 }, "profile": profile,
+            "path": [{ "kind": "line", "length": 2.0 }] }]);
+        let name = file("simulate", "rolls.json", json!({ "agents": agents }).to_string());
+        let simulated = run(&["simulate", &name, "--controller", "pcr", "--json", "-q"]).json();
+        let warning = simulated["warnings"][0].as_str().unwrap_or_default().to_owned();
+        assert!(
+            warning.starts_with("agent 1: its own motion takes 4.000 s; it is simulated from rest to rest"),
+            "{warning}"
+        );
+        warning
+    };
+    for accel in [1e-7, 1e-17, 1e-300] {
+        assert!(rolls(accel).ends_with("by which it takes 8.000 s"), "{accel}");
+    }
+    assert!(rolls(0.0).ends_with("by which it takes 5.000 s"));
+    let mut far = crossing();
+    far["agents"][0]["a_max"] = json!(1e-12);
+    let name = file("simulate", "far.json", far.to_string());
+    let expected = format!(
+        "pcr: {name}: agent 1: alone and from rest to rest it takes longer than 100000 s, the most for a simulation\n"
+    );
+    assert_eq!(run(&["simulate", &name]).failed(2), expected);
+}
+
 /// Agents that never move are no robots, so that no run counts their contacts.
 #[test]
 fn agents_that_stand_in_contact_are_warned_about() {

@@ -11,7 +11,10 @@ use pcr_planning::regions::Failure;
 /// When the last robot may set off \[s\]: every frame until then is simulated and kept.
 const LATEST: f64 = 1e4;
 
-/// A motion that takes longer than necessary by more than this share is reported as a warning.
+/// How long a robot may take alone \[s\], for the same reason.
+const LONGEST: f64 = 1e5;
+
+/// A motion that takes longer than necessary by more than this share, or the other way round, is reported as a warning.
 const SLOWER: f64 = 1e-3;
 
 /// The task of a run: robots with their missions, and obstacles.
@@ -76,11 +79,12 @@ impl Robot {
 impl Task {
     /// The agents of a scenario: those with a path have one mission, the others are in the way. Footprints and loads are the disc
     /// around all of them. Of a profile, the largest speed on each segment, the durations of turns in place and the largest acceleration
-    /// count; where it takes longer than these allow, that is among the warnings. So are agents in the way that overlap one another: no run
+    /// count; where it takes longer than these allow from rest to rest, or shorter, that is among the warnings. So are agents in the way that overlap one another: no run
     /// counts them as a collision.
     ///
     /// # Errors
-    /// [`Failure::Refused`] if a value is out of range, [`Failure::Late`] if a robot sets off too late.
+    /// [`Failure::Refused`] if a value is out of range, [`Failure::Late`] if a robot sets off too late, [`Failure::Long`] if it takes too
+    /// long.
     pub fn of(scenario: &Scenario) -> Result<Self, Failure> {
         let fleet = Fleet::<f64>::new(scenario)?;
         let (mut robots, mut obstacles, mut standing) = (Vec::new(), Vec::new(), Vec::new());
@@ -95,8 +99,11 @@ impl Task {
                 }
                 let limits = limits(agent);
                 let (own, least) = (agent.duration(), course.unimpeded(limits));
-                if own > least * (1.0 + SLOWER) {
-                    let by = "by its largest speed on each segment and its largest acceleration";
+                if least > LONGEST {
+                    return Err(Failure::Long(agent.id, LONGEST));
+                }
+                if own > least * (1.0 + SLOWER) || least > own * (1.0 + SLOWER) {
+                    let by = "from rest to rest by its largest speed on each segment and its largest acceleration";
                     warnings.push(format!(
                         "agent {}: its own motion takes {own:.3} s; it is simulated {by}, by which it takes {least:.3} s",
                         agent.id
@@ -155,7 +162,9 @@ fn tops(agent: &Agent) -> Vec<f64> {
 }
 
 /// The limits of an agent. For a profile: its largest speed and acceleration; without any acceleration, one second to the top
-/// speed. If it only turns in place, the durations of its turns contain all ramps, and 1 m/s² adds none.
+/// speed. A profile that begins or ends under way may have any acceleration: it is at most taken to speed up for as long as the
+/// profile lasts, as one from rest to rest does at least. If it only turns in place, the durations of its turns contain all ramps, and
+/// 1 m/s² adds none.
 fn limits(agent: &Agent) -> Limits<f64> {
     let turns = |segment: &PathSegment| matches!(segment, PathSegment::Arc { radius: TURN, .. });
     match &agent.motion {
@@ -169,7 +178,7 @@ fn limits(agent: &Agent) -> Limits<f64> {
             }
             let acceleration = match acceleration {
                 _ if agent.path.iter().all(turns) => 1.0,
-                some if some > 0.0 => some,
+                some if some > 0.0 => some.max(speed / agent.duration()),
                 _ => speed,
             };
             Limits { speed, acceleration }

@@ -158,6 +158,10 @@ fn parts(curve: &Bezier, most: f64, halvings: u32, into: &mut Vec<Part>) {
 
 /// The lines and arcs for a chain of curves, within `tolerance` \[m\] of it.
 pub(super) fn fit(curves: &[Bezier], tolerance: f64) -> Result<Fit, ImportError> {
+    // Whatever is no number is overlooked by every bound below.
+    if curves.iter().flat_map(Bezier::points).flatten().any(|x| !x.is_finite()) {
+        return Err(ImportError::new("its points are out of range"));
+    }
     let extent = curves.iter().flat_map(Bezier::points).flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
     let rounding = ROUNDINGS * extent;
     if tolerance <= 2.0 * rounding {

@@ -8,6 +8,7 @@ use super::names::Names;
 use super::timed;
 use super::xml::{astray, child, children, lose_astray, number, only, optional, parse, warn_of_unknown};
 use super::{ImportError, Options, Vehicle, Warnings};
+use crate::plane::distance;
 use crate::scenario::{Agent, Placed, Scenario};
 
 /// Radius that the program takes where its configuration gives none \[m\].
@@ -162,7 +163,7 @@ fn planned(k: usize, agent: roxmltree::Node<'_, '_>, vehicle: &Vehicle) -> Resul
     };
     let name = format!("agent {id}");
     let path = only(agent, "path")?.ok_or_else(|| ImportError::new(format!("{name}, path: missing")))?;
-    let mut stops: Vec<timed::Stop> = Vec::new();
+    let (mut stops, mut widest): (Vec<timed::Stop>, f64) = (Vec::new(), 0.0);
     for (k, section) in children(path, "section").enumerate() {
         let name = format!("{name}, section {k}");
         let field = |attribute: &str| number(section, &name, attribute);
@@ -172,15 +173,15 @@ fn planned(k: usize, agent: roxmltree::Node<'_, '_>, vehicle: &Vehicle) -> Resul
         let (from, to) = ([field("start_i")?, field("start_j")?], [field("goal_i")?, field("goal_j")?]);
         match stops.last() {
             None => stops.push((from, 0.0)),
-            Some((at, _)) if (at[0] - from[0]).hypot(at[1] - from[1]) > GAP => {
-                return Err(ImportError::new(format!("{name}: it does not begin where the one before it ends")));
-            }
-            Some(_) => {}
+            Some((at, _)) => widest = widest.max(distance(*at, from)),
+        }
+        if widest > GAP {
+            return Err(ImportError::new(format!("{name}: it does not begin where the one before it ends")));
         }
         let before = stops.last().map_or(0.0, |(_, time)| *time);
         stops.push((to, before + field("duration")?));
     }
-    let travels = timed::agent(id, vehicle.radius, &stops);
+    let travels = timed::agent(id, vehicle.radius + widest, &stops);
     let travels = travels.map_err(|error| ImportError::new(format!("{name}: {error}")))?;
     let lasts = stops.last().map_or(0.0, |(_, time)| *time);
     if let Some(whole) = optional(path, &format!("{name}, path"), "duration")?

@@ -53,15 +53,19 @@ pub(super) fn read(value: &Value, warnings: &mut Warnings) -> Result<Given, Impo
     Ok(given)
 }
 
-/// A number above zero by either of its names; 0 is what senders write that do not know it.
+/// A number above zero by either of its names, or by both; 0 is what senders write that do not know it.
 fn either(object: &Object<'_>, names: Names) -> Result<Option<f64>, ImportError> {
+    let [mut found, mut other] = [None; 2];
     for name in names {
-        match object.number(name)? {
-            Some(0.0) | None => {}
-            Some(_) => return object.positive(name),
+        if object.number(name)?.is_some_and(|number| number != 0.0) {
+            other = std::mem::replace(&mut found, object.positive(name)?);
         }
     }
-    Ok(None)
+    if other.is_some_and(|other| found != Some(other)) {
+        let [third, second] = names;
+        return Err(ImportError::new(format!("{}: its {third} is not its {second}", object.name)));
+    }
+    Ok(found)
 }
 
 fn polygon(envelope: &Value) -> Result<Vec<[f64; 2]>, ImportError> {

@@ -67,13 +67,16 @@ impl<T: Named> Names<T> {
         let id = thing.id().clone();
         let called = format!("{} {id}", T::WHAT);
         let places = self.places.entry(id.clone()).or_default();
-        for &place in places.iter() {
-            let mut known = self.list[place].clone();
+        let is_copy = |place: &usize| {
+            let mut known = self.list[*place].clone();
             *known.id() = id.clone();
-            if known == thing {
-                warnings.add(called, "given twice, the same each time");
-                return place;
-            }
+            known == thing
+        };
+        if let Some(copied) = places.iter().position(is_copy) {
+            warnings.add(called, "given twice, the same each time");
+            // It is the last one of its name again.
+            places[copied..].rotate_left(1);
+            return places[places.len() - 1];
         }
         let mut count = places.len() + 1;
         while self.taken.contains(thing.id()) {
@@ -142,7 +145,7 @@ mod tests {
         let ids: Vec<String> = names.list().iter().map(|node| node.id.to_string()).collect();
         assert_eq!(ids, ["a", "a#2", "a#2#1", "a#3", "b"]);
         let [a, b, c] = ["a", "b", "c"].map(|id| Id::Text(id.into()));
-        assert_eq!((names.place(&b), names.last_place(&a)), (Ok(4), Ok(3)));
+        assert_eq!((names.place(&b), names.last_place(&a)), (Ok(4), Ok(1)), "the last one is the copy");
         assert_eq!(names.place(&a).unwrap_err().to_string(), "there are several different nodes a");
         assert_eq!(names.place(&c).unwrap_err().to_string(), "there is no node c");
         assert_eq!(warnings.lines().len(), 4, "{:?}", warnings.lines());

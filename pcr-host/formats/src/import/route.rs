@@ -179,7 +179,17 @@ pub(super) fn trace(layout: &Layout, from: usize, steps: &[Step<'_>]) -> Result<
         match arc {
             Some(arc) => {
                 tracer.line(position, arc.at);
-                tracer.follow(&arc);
+                // It stands for the end of this edge and for the begin of the next one, whose limits may be others.
+                let next = steps.get(k + 1).map(|next| (next.speed(), next.edge.rotation));
+                match next.filter(|next| *next != (step.speed(), edge.rotation)) {
+                    None => tracer.follow(&arc),
+                    Some((speed, rotation)) => {
+                        let half = arc.shape.length() / 2.0;
+                        tracer.follow(&arc.part(0.0, half));
+                        tracer.limit(speed, rotation);
+                        tracer.follow(&arc.part(half, arc.shape.length()));
+                    }
+                }
                 position = arc.end();
             }
             None => {

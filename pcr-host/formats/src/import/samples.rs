@@ -1,5 +1,5 @@
 //! Paths given by points: a line `x y` for each point (further columns, such as a heading, are ignored), separated by
-//! blanks, commas or semicolons. The path of an agent ends at an empty line. `#` begins a comment.
+//! blanks, tabs, commas or semicolons. The path of an agent ends at an empty line. `#` begins a comment.
 //!
 //! The path is the polyline through the points. Biarcs replace a stretch of it if they are within the tolerance; their
 //! distance is bounded as for curves. At the remaining corners the vehicle turns in place.
@@ -51,6 +51,11 @@ fn paths(text: &str) -> Result<Vec<Vec<[f64; 2]>>, ImportError> {
         }
         // Some end each row with the mark between rows.
         let content = content.trim_end_matches([',', ';', ' ', '\t']);
+        if has_empty_column(line) {
+            let problem =
+                "nothing before or between tabs, where a column may be missing; one tab or blanks are expected";
+            return Err(ImportError::new(format!("line {}: {problem}", k + 1)));
+        }
         if mixes_separators(content) {
             let problem =
                 "commas beside other separators: decimal commas, or several points; one point x y is expected";
@@ -75,6 +80,12 @@ fn fields(content: &str) -> Box<dyn Iterator<Item = &str> + '_> {
         Some(mark) => Box::new(content.split(mark).map(str::trim)),
         None => Box::new(content.split_whitespace()),
     }
+}
+
+/// Whether tabs have nothing before or between them: an empty column, which would shift the others.
+fn has_empty_column(line: &str) -> bool {
+    let columns = line.split('#').next().unwrap_or_default().trim_end().split('\t');
+    columns.clone().count() > 1 && columns.into_iter().any(|column| column.trim().is_empty())
 }
 
 /// Whether commas separate something within what blanks or semicolons separate, as in `1,5 2,5` and `0,0 4,0 4,4`: the
@@ -278,6 +289,11 @@ mod tests {
         for one in ["1.0 2.0;", "1 2 ;", "1,2, 3", "1 , 2", " 1\t2 3", "1  2", "1; 2", "1,2,,", "1,2 # a, b c"] {
             assert_eq!(paths(one).unwrap(), [[[1.0, 2.0]]], "{one}");
         }
+        for empty in ["10\t\t1.57", "\t5\t6", "10\t \t1.57"] {
+            let error = paths(&format!("0\t0\n{empty}\n")).unwrap_err().to_string();
+            assert!(error.starts_with("line 2: nothing before or between tabs"), "{error}");
+        }
+        assert_eq!(paths("1\t2\t\t\n").unwrap(), [[[1.0, 2.0]]]);
         assert!(fit(&[[1.0, 1.0]], 1e-3).unwrap().pieces.is_empty());
     }
 }

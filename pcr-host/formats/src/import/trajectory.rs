@@ -4,6 +4,7 @@ use super::biarc::{Fit, fit};
 use super::nurbs::Nurbs;
 use super::value::Object;
 use super::{ImportError, Warnings};
+use crate::scenario::LIMIT;
 
 /// A trajectory as lines and arcs.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,8 +27,13 @@ pub(super) fn read(object: &Object<'_>, tolerance: f64, warnings: &mut Warnings)
     }
     let mut knots = Vec::new();
     for value in object.list("knotVector")? {
-        let knot = value.as_f64().ok_or_else(|| ImportError::new("a knot that is not a number"));
-        knots.push(knot.map_err(named)?);
+        let knot = value.as_f64().ok_or_else(|| named(ImportError::new("a knot that is not a number")))?;
+        // Differences of larger ones are no numbers.
+        if knot.abs() > LIMIT {
+            let problem = format!("a knot of {knot:e} is out of range; allowed is up to {LIMIT:e}");
+            return Err(named(ImportError::new(problem)));
+        }
+        knots.push(knot);
     }
     let mut degree = match object.number("degree")? {
         None => 1,

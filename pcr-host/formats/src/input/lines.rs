@@ -47,7 +47,7 @@ impl<R: BufRead> Lines<R> {
         let mut begin = String::from_utf8_lossy(&first.1).into_owned();
         self.seen.push_back(first);
         // Plans on grids may begin with how many agents there are.
-        if begin.trim().parse::<u32>().is_ok()
+        if begin.trim_start_matches('\u{feff}').trim().parse::<u32>().is_ok()
             && let Some(second) = self.value()?
         {
             begin += &String::from_utf8_lossy(&second.1);
@@ -233,6 +233,7 @@ mod tests {
             "\n<?xml version=\"1.0\"?>\n<root>\n</root>\n",
             "<html>\n",
             "2\nAgent 0: (1,2)->(1,3)->\nAgent 1: (2,2)->\n",
+            "\u{feff}2\nAgent 0: (1,2)->(1,3)->\nAgent 1: (2,2)->\n",
         ] {
             let mut lines = Lines::new(text.as_bytes());
             let foreign = lines.foreign().unwrap();

@@ -235,7 +235,11 @@ pub(super) fn whole(text: &str) -> Option<u64> {
     const MOST: f64 = (1_u64 << 53) as f64;
     let of_fraction = || {
         let number: f64 = text.parse().ok()?;
-        (number.fract() == 0.0 && (0.0..=MOST).contains(&number)).then_some(number as u64)
+        // What is too small for a fraction is none.
+        let is_zero =
+            || !text.split(['e', 'E']).next().unwrap_or_default().contains(|digit| ('1'..='9').contains(&digit));
+        let is_whole = number.fract() == 0.0 && (0.0..MOST).contains(&number) && (number != 0.0 || is_zero());
+        is_whole.then_some(number as u64)
     };
     text.parse().ok().or_else(of_fraction)
 }

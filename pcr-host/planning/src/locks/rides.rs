@@ -2,7 +2,7 @@
 //!
 //! A disc is the same in every heading. Any other outline differs on the way back along a two-way edge, and sweeps more
 //! where the vehicle turns. At each end of an edge it turns in place from the edges that lead there, and to those that
-//! continue from it. It turns back along the same line only if no other open way continues. Half a turn onto another line,
+//! continue from it. It turns back along the same line only if no other open way leads on. Half a turn onto another line,
 //! or within an edge, may go to either side.
 
 use crate::bodies::tracks;
@@ -111,8 +111,8 @@ impl<'a> Rides<'a> {
         };
         let (length, vehicle) = (step.edge.length(), grown(&self.vehicle, step.edge.deviation));
         let [from, to] = if step.backward { [length, 0.0] } else { [0.0, length] };
-        let before = self.turns(step, step.origin(), 0, |arrives| start.heading - arrives);
-        let after = self.turns(step, step.target(), 1, |leaves| leaves - end.heading);
+        let before = self.turns(Side { step, heading: start.heading }, 0);
+        let after = self.turns(Side { step, heading: end.heading }, 1);
         // Before a turn to the left the vehicle looks further to the right.
         let turns =
             [(from, start, before.map(|turn| -turn)), (to, end, after)].into_iter().filter_map(|(at, end, turns)| {
@@ -157,21 +157,23 @@ impl<'a> Rides<'a> {
         self.layout.position(node)
     }
 
-    /// The farthest turns to the right and to the left between an edge and those on one side of a node.
-    fn turns(&self, step: Step<'_>, node: usize, side: usize, turn: impl Fn(f64) -> f64) -> [f64; 2] {
-        let there = self.sides.get(node).map_or(&[][..], |sides| &sides[side]);
-        let (mut range, mut is_open, mut is_back) = ([0.0_f64; 2], false, false);
-        for other in there {
-            let turn = wrapped(turn(other.heading));
-            if is_half(turn) && leads_back(step, other.step) {
-                is_back = true;
+    /// The farthest turns to the right and to the left from ways that come to the origin of a way onto this one (side 0), or
+    /// from this one onto those that leave its target (side 1).
+    fn turns(&self, own: Side<'_>, side: usize) -> [f64; 2] {
+        let node = if side == 0 { own.step.origin() } else { own.step.target() };
+        let Some(sides) = self.sides.get(node) else { return [0.0; 2] };
+        let mut range = [0.0_f64; 2];
+        for other in &sides[side] {
+            let [arrives, leaves] = if side == 0 { [other, &own] } else { [&own, other] };
+            let turn = arrives.turn(leaves);
+            let leads_on = |way: &Side<'_>| !way.step.edge.closed && !arrives.turns_back(way);
+            if arrives.turns_back(leaves) && sides[1].iter().any(leads_on) {
                 continue;
             }
-            is_open |= !other.step.edge.closed;
             let [lo, hi] = if is_half(turn) { [-PI, PI] } else { [turn; 2] };
             range = [range[0].min(lo), range[1].max(hi)];
         }
-        if is_back && !is_open { [-PI, PI] } else { range }
+        range
     }
 }
 
@@ -186,6 +188,18 @@ fn grown(vehicle: &Vehicle, by: f64) -> Vehicle {
 struct Side<'a> {
     step: Step<'a>,
     heading: f64,
+}
+
+impl Side<'_> {
+    /// The turn from this way, which comes to a node, onto one that leaves it \[rad\].
+    fn turn(&self, leaves: &Self) -> f64 {
+        wrapped(leaves.heading - self.heading)
+    }
+
+    /// Whether that is half a turn, back along the same line.
+    fn turns_back(&self, leaves: &Self) -> bool {
+        is_half(self.turn(leaves)) && leads_back(self.step, leaves.step)
+    }
 }
 
 /// An angle within half a turn \[rad\].

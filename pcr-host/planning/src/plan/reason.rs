@@ -79,7 +79,12 @@ fn found(scenario: &Scenario, ids: [u64; 2], always: bool, general: &str) -> Opt
         (Some(found), ..) => found,
         (None, true, Some(first), Some(last)) => {
             let is_contact = pair.has_contact(first) && pair.has_contact(last);
-            let margins = if is_contact { "" } else { ", within their margins" };
+            let margins = match is_contact {
+                true => "",
+                false if scenario.agents.iter().any(|agent| agent.margin > 0.0) => ", within their margins",
+                // What plans keep for the rounding of numbers.
+                false => ", within rounding",
+            };
             // Two regions, of which each has an order, are passed by other speeds, maybe.
             match never {
                 Some(_) => (contradiction(last, first) + margins, last.spot(references[0])),

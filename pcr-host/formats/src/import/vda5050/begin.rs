@@ -1,7 +1,7 @@
 //! When the agents of several messages begin.
 
 use super::super::ImportError;
-use super::super::stamp::seconds;
+use super::super::stamp::Stamp;
 use super::super::value::Object;
 use crate::scenario::Agent;
 
@@ -12,8 +12,8 @@ pub(super) enum Begin {
     Never,
     /// It moves, and it is not said from when on.
     Unsaid,
-    /// \[s\] since 1970.
-    At(f64),
+    /// It says when.
+    At(Stamp),
 }
 
 /// Gives agents their times since that of the first one that has one.
@@ -24,7 +24,7 @@ pub(super) fn set(agents: &mut [Agent], begins: &[(String, Begin)]) -> Result<()
     for (agent, (name, begin)) in agents.iter_mut().zip(begins) {
         match begin {
             Begin::Never => {}
-            Begin::At(time) => agent.t_start = time - origin,
+            Begin::At(time) => agent.t_start = time.since(origin),
             Begin::Unsaid => {
                 let problem = "it does not say when it begins, and cannot be read together with what does";
                 return Err(ImportError::new(format!("{name}: {problem}: {stamped}")));
@@ -34,11 +34,11 @@ pub(super) fn set(agents: &mut [Agent], begins: &[(String, Begin)]) -> Result<()
     Ok(())
 }
 
-/// A time stamp \[s\].
-pub(super) fn stamp(object: &Object<'_>, field: &str) -> Result<f64, ImportError> {
+/// A time stamp.
+pub(super) fn stamp(object: &Object<'_>, field: &str) -> Result<Stamp, ImportError> {
     match object.text(field)? {
         None => Err(object.missing(field)),
-        Some(text) => seconds(text)
+        Some(text) => Stamp::read(text)
             .ok_or_else(|| ImportError::new(format!("{}, {field}: {text:?} is not a time stamp", object.name))),
     }
 }

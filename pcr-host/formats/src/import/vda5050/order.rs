@@ -5,7 +5,7 @@ use super::super::trajectory::Trajectory;
 use super::super::value::Object;
 use super::super::{ImportError, facing, route};
 use super::part::{Part, go_on, parts};
-use super::{GAP, Reader, gap};
+use super::{ACTIONS, DIFFERENCE, GAP, Reader, gap};
 use crate::footprint::Footprint;
 use crate::scenario::Agent;
 use serde_json::Value;
@@ -116,7 +116,7 @@ impl Reader<'_> {
             acts |= !part.object.list("actions")?.is_empty();
         }
         if acts {
-            self.warnings.add(&order.name, "its actions take no time here: the file does not say how long they last");
+            self.warnings.add(&order.name, ACTIONS);
         }
         Ok(())
     }
@@ -133,13 +133,24 @@ impl Reader<'_> {
             let ahead = Some((to[1] - from[1]).atan2(to[0] - from[0])).filter(|_| from != to);
             self.faces_along(edge, ahead)?;
             way.line(from, to, ahead);
-            return Ok(());
+            return self.has_length(edge, gap(from, to));
         };
         self.faces_along(edge, None)?;
         let trajectory = trajectory.called(format!("{}, trajectory", edge.name));
         let vehicle = self.vehicle;
         let read = self.trajectory(&trajectory, vehicle)?;
-        way.follow(edge, &read, target)
+        way.follow(edge, &read, target)?;
+        self.has_length(edge, read.fit.pieces.iter().map(|piece| piece.shape.length()).sum())
+    }
+
+    /// Says where an edge is longer or shorter than its geometry.
+    fn has_length(&mut self, edge: &Object<'_>, drawn: f64) -> Result<(), ImportError> {
+        // 0 is what senders write that do not know it.
+        let typed = edge.number("length")?.filter(|typed| *typed != 0.0);
+        if typed.is_some_and(|typed| (typed - drawn).abs() > DIFFERENCE * drawn + GAP) {
+            self.warnings.add(&edge.name, "its length is not that of its geometry, which counts");
+        }
+        Ok(())
     }
 
     /// An outline faces along an edge, which has this heading where it is straight.
@@ -215,10 +226,10 @@ fn unplaced(node: &Part<'_>) -> ImportError {
     node.object.missing("nodePosition")
 }
 
-/// A limit under its name in version 2, or that in version 3.
+/// A limit under its name in version 2 or that in version 3; the lower one of both.
 fn either(edge: &Object<'_>, names: [&str; 2]) -> Result<Option<f64>, ImportError> {
     let [second, third] = names.map(|name| edge.positive(name));
-    Ok(second?.or(third?))
+    Ok(second?.into_iter().chain(third?).reduce(f64::min))
 }
 
 /// Whether an allowed deviation, a number or the half axes of an ellipse, allows any.

@@ -5,7 +5,7 @@ use super::super::value::Object;
 use super::super::{ImportError, Vehicle, facing, route, timed};
 use super::begin::{Begin, stamp};
 use super::part::{Part, parts};
-use super::{GAP, Reader, gap};
+use super::{ACTIONS, GAP, Reader, gap};
 use crate::footprint::Footprint;
 use crate::scenario::{Agent, MotionSpec, Placed};
 use serde_json::Value;
@@ -28,6 +28,9 @@ impl Reader<'_> {
         vehicle: &Vehicle,
     ) -> Result<(Agent, Begin), ImportError> {
         let pose = self.pose(state)?;
+        let nodes = parts(state, "nodeStates", "node", "nodeId")?;
+        let positions = nodes.iter().filter(|node| node.released).map(|node| node.object.object("nodePosition"));
+        self.maps(state, std::iter::once(position(state)).chain(positions))?;
         let planned = state.object("plannedPath")?;
         if let Some(path) = timed_path(state)? {
             if planned.is_some() {
@@ -43,13 +46,8 @@ impl Reader<'_> {
     }
 
     /// Where the vehicle is; it has to know that.
-    fn pose(&mut self, state: &Object<'_>) -> Result<Pose, ImportError> {
-        let pose = match state.object("mobileRobotPosition")? {
-            None => state.object("agvPosition")?,
-            pose => pose,
-        };
-        self.maps(state, std::iter::once(Ok(pose.clone())))?;
-        let Some(pose) = pose else { return Ok(Pose { at: None, heading: None }) };
+    fn pose(&self, state: &Object<'_>) -> Result<Pose, ImportError> {
+        let Some(pose) = position(state)? else { return Ok(Pose { at: None, heading: None }) };
         let unknown =
             |field: &str| Err(ImportError::new(format!("{}, {field}: it does not know where it is", pose.name)));
         for field in ["localized", "positionInitialized"] {
@@ -80,12 +78,13 @@ impl Reader<'_> {
             let point = Object::new(format!("{}, point {}", path.name, k + 1), value)?;
             stops.push((point.point()?, stamp(&point, "eta")?));
         }
-        let begin = stops.first().map_or(0.0, |(_, time)| *time);
-        stops.iter_mut().for_each(|(_, time)| *time -= begin);
+        let begin = stops.first().map(|(_, time)| *time).unwrap_or_default();
+        let stops: Vec<timed::Stop> = stops.into_iter().map(|(at, time)| (at, time.since(begin))).collect();
         let end = stops.last().map_or([0.0; 2], |(end, _)| *end);
         let named = |error| ImportError::new(format!("{}: {error}", path.name));
         let agent = timed::agent(id, vehicle.radius, &stops).map_err(named)?;
         self.leads_somewhere(state, agent.path.is_empty())?;
+        self.goes(state)?;
         let radius = agent.radius + self.goes_on(state, end, &[])?;
         Ok((Agent { radius, margin: vehicle.margin, ..agent }, Begin::At(begin)))
     }
@@ -108,6 +107,7 @@ impl Reader<'_> {
         }
         let pieces = &read.fit.pieces;
         self.leads_somewhere(state, pieces.is_empty())?;
+        self.goes(state)?;
         let behind = self.goes_on(state, end, path.list("traversedNodes")?)?;
         if moves(state)? {
             self.warnings.add(&state.name, "it moves already; its plannedPath is travelled from rest");
@@ -149,6 +149,22 @@ impl Reader<'_> {
     fn leads_somewhere(&mut self, state: &Object<'_>, is_point: bool) -> Result<(), ImportError> {
         if is_point && moves(state)? {
             self.lose_way(state);
+        }
+        Ok(())
+    }
+
+    /// What is halted does not say when it goes on along its path; actions may halt it.
+    fn goes(&mut self, state: &Object<'_>) -> Result<(), ImportError> {
+        if let Some(halt) = halt(state)? {
+            self.warnings.lose(format_args!("{}: when it goes on along its path, as {halt}", state.name));
+        }
+        let mut acts = false;
+        for (k, action) in state.list("actionStates")?.iter().enumerate() {
+            let action = Object::new(format!("{}, actionState {}", state.name, k + 1), action)?;
+            acts |= action.text("actionStatus")?.is_some_and(|status| !["FINISHED", "FAILED"].contains(&status));
+        }
+        if acts {
+            self.warnings.add(&state.name, ACTIONS);
         }
         Ok(())
     }
@@ -217,6 +233,32 @@ impl Reader<'_> {
         }
         Ok(())
     }
+}
+
+/// Where the vehicle is, in version 3 or 2.
+fn position<'j>(state: &Object<'j>) -> Result<Option<Object<'j>>, ImportError> {
+    match state.object("mobileRobotPosition")? {
+        None => state.object("agvPosition"),
+        pose => Ok(pose),
+    }
+}
+
+/// Why the vehicle does not go along its path now, if it says so.
+fn halt(state: &Object<'_>) -> Result<Option<String>, ImportError> {
+    if state.flag("paused")? == Some(true) {
+        return Ok(Some("it is paused".into()));
+    }
+    if let Some(mode) = state.text("operatingMode")?.filter(|mode| !["AUTOMATIC", "SEMIAUTOMATIC"].contains(mode)) {
+        return Ok(Some(format!("its operatingMode is {mode}")));
+    }
+    let Some(safety) = state.object("safetyState")? else { return Ok(None) };
+    // Names in versions 3 and 2.
+    for field in ["activeEmergencyStop", "eStop"] {
+        if let Some(stop) = safety.text(field)?.filter(|stop| *stop != "NONE") {
+            return Ok(Some(format!("its {field} is {stop}")));
+        }
+    }
+    Ok((safety.flag("fieldViolation")? == Some(true)).then(|| "there is something in its protective field".into()))
 }
 
 /// The path with times, if it has a point: without any it says nothing.
