@@ -251,7 +251,8 @@ class Answers(unittest.TestCase):
         regions = pcr.Fleet.read(TWELVE).regions()
         self.assertTrue(numpy.array_equal(numpy.asarray(regions), array))
         with self.assertRaises(ValueError):
-            numpy.asarray(regions, dtype=[("i", "<u4")], copy=False)
+            numpy.asarray(regions, dtype=numpy.dtype(array.dtype.descr), copy=False)
+        self.assertTrue(numpy.shares_memory(numpy.asarray(regions, dtype=array.dtype, copy=False), regions.array))
         writable = numpy.array(regions)
         writable["t"] = 0
         self.assertEqual([region.t for region in regions], told)
@@ -452,12 +453,15 @@ class Refusals(unittest.TestCase):
         with self.assertRaises(IndexError):
             fleet.regions()[10_000]
         order, sheet = TOP / "tests/data/real/vda5050/order_v2_flywei.json", TOP / "tests/data/small/factsheet.json"
+        text: Any
         for text in ("no", "false", 0, 1, [], numpy.float64(1)):
             for option in ("horizon", "partial"):
+                options: dict[str, Any] = {"horizon": True, "partial": True, option: text}
                 with self.assertRaisesRegex(TypeError, option):
-                    pcr.Fleet.read(order, fleet=sheet, **{"horizon": True, "partial": True, option: text})
+                    pcr.Fleet.read(order, fleet=sheet, **options)
         whole = pcr.Fleet.read(order, fleet=sheet, horizon=True, partial=True)
-        self.assertEqual(pcr.Fleet.read(order, fleet=sheet, horizon=numpy.bool_(True), partial=numpy.bool_(True)), whole)
+        true: Any = numpy.bool_(True)
+        self.assertEqual(pcr.Fleet.read(order, fleet=sheet, horizon=true, partial=true), whole)
         for large in (lambda: fleet.places(10**400), lambda: fleet.map(1, 10**400, 1, 1), lambda: later.holds([0, 10**400]),
                       lambda: fleet.safe_intervals(1, 10**400, 0), lambda: pcr.Fleet.read(GRAPH, radius=10**400)):
             with self.assertRaises(pcr.Error):

@@ -118,9 +118,10 @@ class Regions(Sequence[Region]):
         return numpy.frombuffer(self._rows, dtype=numpy.dtype(REGION, align=True))
 
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> Any:
-        array = self.array if dtype is None else self.array.astype(dtype, copy=False)
-        if copy is False and array.dtype != self.array.dtype:
+        array = self.array
+        if copy is False and dtype not in (None, array.dtype):
             raise ValueError("regions have another type: they have to be copied")
+        array = array if dtype is None else array.astype(dtype, copy=False)
         return array.copy() if copy else array
 
     def __repr__(self) -> str:
