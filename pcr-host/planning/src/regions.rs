@@ -143,7 +143,7 @@ impl fmt::Display for Failure {
             ),
             Self::Robot(id) => write!(f, "agent {id}: its path or its disc with all margins is out of range"),
             Self::Late(id, latest) => {
-                write!(f, "agent {id}, t_start: a simulation begins at 0 s, and everybody sets off by {latest} s")
+                write!(f, "agent {id}, t_start: a simulation is of {latest} s at most until the last one sets off")
             }
             Self::Long(id, longest) => {
                 write!(

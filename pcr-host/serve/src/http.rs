@@ -97,7 +97,7 @@ pub fn answer(handle: &Handle, site: &Site, request: &[u8]) -> (&'static str, &'
     let (method, target) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
     let plain = |status, text: &str| (status, "text/plain", format!("{text}\n"));
     let host = lines.find_map(|line| line.split_once(':').filter(|(key, _)| key.eq_ignore_ascii_case("host")));
-    if !host.is_some_and(|(_, host)| site.hosts.iter().any(|known| known == host.trim())) {
+    if !host.is_some_and(|(_, host)| site.hosts.iter().any(|known| known.eq_ignore_ascii_case(host.trim()))) {
         return plain("403 Forbidden", "not under this name");
     }
     if method != "GET" {

@@ -284,9 +284,14 @@ fn text(bytes: &[u8]) -> Result<(&[u8], u32, u32), &'static str> {
 fn is_torn(bytes: &[u8], at: usize) -> bool {
     /// Size that a disc writes atomically \[bytes\].
     const SECTOR: usize = 512;
+    /// Fewer zeros than any part has that a disc writes at once \[bytes\].
+    const PART: usize = 32;
     let is_missing = |part: &[u8]| part.iter().all(|byte| *byte == 0);
     match length(bytes) {
-        Some(length) => bytes.get(FRAME..FRAME + length).is_none_or(|text| text.contains(&0)),
+        Some(length) => bytes.get(FRAME..FRAME + length).is_none_or(|text| {
+            // Its end was not written, or a part is missing, whatever its disc writes at once. A few bytes that are 0 were others once.
+            text.last() == Some(&0) || text.split(|byte| *byte != 0).any(|zeros| zeros.len() >= PART)
+        }),
         // Only its beginning was written, or a sector is missing.
         None => {
             let (_, after) = bytes.split_at(FRAME.min(bytes.len()));

@@ -73,7 +73,7 @@ fn what_is_wrong_with_a_scenario_is_said_as_elsewhere() {
     scenario["agents"][1]["t_start"] = json!(1e6);
     let name = file("simulate", "late.json", scenario.to_string());
     let expected =
-        format!("pcr: {name}: agent 2, t_start: a simulation begins at 0 s, and everybody sets off by 10000 s\n");
+        format!("pcr: {name}: agent 2, t_start: a simulation is of 10000 s at most until the last one sets off\n");
     assert_eq!(run(&["simulate", &name]).failed(2), expected);
 }
 

@@ -241,7 +241,7 @@ function draw() {
   const done = run.journeys.filter((journey) => (journey.end ?? Infinity) <= now).length;
   const hits = run.collisions.filter(([, , t]) => t[0] <= now * frame).length;
   $("score").textContent = `${done} of ${run.journeys.length} missions done; collisions so far: ${hits}. Mean time of a mission in this run: ${run.travel.toFixed(1)} s.`
-    + (run.plans.length ? "" : " This controller makes no plans: there is no collision map.")
+    + (run.plans.length ? "" : ` ${run.controller === "pcr" ? "No plan was found" : "This controller makes no plans"}: there is no collision map.`)
     + (robots.length > 12 ? " Numbers for which there is no room are left out." : "");
   drawWorld();
   drawMap();

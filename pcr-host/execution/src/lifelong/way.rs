@@ -58,15 +58,11 @@ impl Way {
             if k > 0 && (f64::abs(turn) > STRAIGHT || stops) {
                 time += abilities.stop();
             }
+            let mut within = 0.0;
             for pair in atom.shapes.windows(2) {
+                within += pair[0].shape.length();
                 let turn = wrapped(pair[1].heading - pair[0].heading_at_end());
                 if turn.abs() > STRAIGHT {
-                    let within: f64 = atom
-                        .shapes
-                        .iter()
-                        .take_while(|shape| **shape != pair[1])
-                        .map(|shape| shape.shape.length())
-                        .sum();
                     corners.push(Corner { at: length + within, turn: abilities.turn(turn) });
                 }
             }

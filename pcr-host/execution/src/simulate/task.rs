@@ -89,12 +89,17 @@ impl Task {
         let fleet = Fleet::<f64>::new(scenario)?;
         let (mut robots, mut obstacles, mut standing) = (Vec::new(), Vec::new(), Vec::new());
         let mut warnings = scenario.warnings.clone();
+        // A run begins at 0 s, or with the first one before that.
+        let begin = scenario.agents.iter().map(|agent| agent.t_start).fold(0.0, f64::min);
+        if begin < 0.0 {
+            warnings.push(format!("the first agent sets off at {begin} s; times of the simulation count from there"));
+        }
         for (place, (agent, motion)) in scenario.agents.iter().zip(fleet.motions()).enumerate() {
             let tops = tops(agent);
             let top = |segment| fleet.source(place, segment).and_then(|source| tops.get(source).copied());
             let course = Course::of(&motion).within(|segment| top(segment).unwrap_or(f64::INFINITY));
             if course.length() > 0.0 {
-                if agent.t_start > LATEST {
+                if agent.t_start - begin > LATEST {
                     return Err(Failure::Late(agent.id, LATEST));
                 }
                 let limits = limits(agent);
@@ -109,7 +114,7 @@ impl Task {
                         agent.id
                     ));
                 }
-                let missions = vec![Mission { release: agent.t_start, course }];
+                let missions = vec![Mission { release: agent.t_start - begin, course }];
                 robots.push(Robot { id: agent.id, radius: agent.reach(), margin: agent.margin, limits, missions });
             } else {
                 let centre = course.point_at(0.0);

@@ -6,7 +6,7 @@ use pcr_formats::plane::distance;
 use pcr_formats::random::Random;
 use pcr_formats::scenario::Agent;
 use pcr_formats::scenario::Placed;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// How many times the sum of their radii and margins agents keep that wait at their starts or stand at their ends: more than
 /// 1 by what plans and checks may take for a contact.
@@ -78,6 +78,8 @@ fn attempt(imported: &Imported, count: usize, mut random: Random) -> Drawn {
     let reach = 2.0 * (vehicle.radius + vehicle.margin) * CLEAR;
     let mut drawn = Drawn::default();
     let mut crowd = Crowd::default();
+    // Pairs that were no mission, and why if that is told: with more agents they are none, either.
+    let mut none: HashMap<[usize; 2], Option<String>> = HashMap::new();
     for id in (1..).take(count) {
         let missions = &drawn.missions;
         let free = &|end: usize, node: usize| {
@@ -91,20 +93,27 @@ fn attempt(imported: &Imported, count: usize, mut random: Random) -> Drawn {
         });
         let clear =
             |drawn: &Mission| drawn.agent.length() > 0.0 && missions.iter().all(|other| drawn.is_clear_of(other));
-        let mut passed_over = Vec::new();
-        let found = pairs.into_iter().find_map(|ends| match mission(imported, id, ends) {
-            // Nodes without a way between them, or too near others, are no mission that could be passed over.
-            Ok(agent) => {
-                let mission = Mission { ends, agent: agent? };
-                let added = if clear(&mission) { crowd.add(&mission.agent) } else { return None };
-                added.map(|()| mission).map_err(|why| passed_over.push(why)).ok()
+        // Nodes without a way between them, or too near others, are no mission that could be passed over: nothing is told.
+        let mut take = |ends| match mission(imported, id, ends) {
+            Ok(None) => Err(None),
+            Ok(Some(agent)) => {
+                let mission = Mission { ends, agent };
+                let added = if clear(&mission) { crowd.add(&mission.agent) } else { return Err(None) };
+                added.map(|()| mission).map_err(Some)
             }
-            Err(error) => {
-                passed_over.push(format!("the way is no path: {error}"));
-                None
-            }
+            Err(error) => Err(Some(format!("the way is no path: {error}"))),
+        };
+        let found = pairs.into_iter().find_map(|ends| {
+            let why = match none.get(&ends) {
+                Some(why) => why.clone(),
+                None => match take(ends) {
+                    Ok(mission) => return Some(mission),
+                    Err(why) => none.entry(ends).or_insert(why).clone(),
+                },
+            };
+            why.into_iter().for_each(|why| *drawn.passed_over.entry(why).or_default() += 1);
+            None
         });
-        passed_over.into_iter().for_each(|why| *drawn.passed_over.entry(why).or_default() += 1);
         let Some(mission) = found else { break };
         drawn.missions.push(mission);
     }

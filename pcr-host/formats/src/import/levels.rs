@@ -183,8 +183,13 @@ fn vertex(value: &Value, graph: bool) -> Vertex {
     let list = value.as_array()?;
     let number = |k: usize| list.get(k)?.as_f64().filter(|x| x.abs() <= crate::scenario::LIMIT);
     let name = if graph { list.get(2).and_then(|parameters| parameters.get("name")) } else { list.get(3) };
-    let name = name.and_then(Value::as_str).filter(|name| !name.is_empty());
-    Some(([number(0)?, number(1)?], name.map(str::to_owned)))
+    // Adapters take any scalar for a name, whole numbers among them.
+    let name = name.and_then(|name| match name {
+        Value::String(text) => Some(text.clone()),
+        Value::Number(number) if number.is_i64() || number.is_u64() => Some(number.to_string()),
+        _ => None,
+    });
+    Some(([number(0)?, number(1)?], name.filter(|name| !name.is_empty())))
 }
 
 /// The value of a parameter, which is a list of its type and itself; a list without it is no value, and given as it is.

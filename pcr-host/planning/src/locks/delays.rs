@@ -62,6 +62,8 @@ pub struct Delays {
     levels: Vec<[usize; 2]>,
     straight: Vec<Option<Straight>>,
     points: Vec<[f64; 2]>,
+    /// How far from each of these a vehicle may stand \[m\].
+    beside: Vec<f64>,
     /// Sum of the radii of two vehicles on straight ways \[m\].
     reach: f64,
     /// Ways, then nodes; empty if all ways are straight and driven at constant speed.
@@ -96,6 +98,7 @@ impl Delays {
             levels: on_edges.chain(places.iter().map(|&node| [level(node); 2])).collect(),
             straight: Vec::new(),
             points: places.iter().map(|&node| layout.nodes[node].at).collect(),
+            beside: places.iter().map(|&node| rides.beside(node)).collect(),
             reach: 2.0 * rides.vehicle().radius,
             fleet: Fleet::new(&Scenario::default()).map_err(|refused| ImportError::new(refused.to_string()))?,
             areas: Vec::new(),
@@ -187,8 +190,9 @@ impl Delays {
         let point = |unit: usize| self.points[unit - ways];
         if a >= ways {
             let [[x, y], [u, v]] = [point(a), point(b)];
-            let slack = 8.0 * f64::EPSILON * (x.abs() + y.abs() + self.reach);
-            if (x - u).hypot(y - v) <= self.reach + slack {
+            let reach = self.reach + self.beside[a - ways] + self.beside[b - ways];
+            let slack = 8.0 * f64::EPSILON * (x.abs() + y.abs() + reach);
+            if (x - u).hypot(y - v) <= reach + slack {
                 found.push(Unsafe::Nodes([a - ways, b - ways]));
             }
             return Ok(());
@@ -200,7 +204,8 @@ impl Delays {
                 return Ok(());
             }
             (Some(own), None) if b >= ways => {
-                found.extend(own.times_at(point(b), self.reach).map(|times| Unsafe::Times(b - ways, a, times)));
+                let reach = self.reach + self.beside[b - ways];
+                found.extend(own.times_at(point(b), reach).map(|times| Unsafe::Times(b - ways, a, times)));
                 return Ok(());
             }
             _ => {}

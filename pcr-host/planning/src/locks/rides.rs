@@ -149,8 +149,13 @@ impl<'a> Rides<'a> {
     /// The vehicle that stands at a node, or where an edge ends beside it, in any heading.
     pub fn at(&self, node: usize) -> Ride {
         let angle = if self.vehicle.footprint.is_some() { TAU } else { 0.0 };
-        let vehicle = grown(&self.vehicle, self.beside.get(node).copied().unwrap_or_default());
+        let vehicle = grown(&self.vehicle, self.beside(node));
         Ride { agent: turn(&vehicle, self.place(node), 0.0, angle), lengths: Lengths::At(0.0) }
+    }
+
+    /// How far from a node a vehicle may be that stands there \[m\].
+    pub(super) fn beside(&self, node: usize) -> f64 {
+        self.beside.get(node).copied().unwrap_or_default()
     }
 
     fn place(&self, node: usize) -> [f64; 2] {

@@ -152,6 +152,23 @@ impl Supervisor {
         Ok(verdict)
     }
 
+    /// Gives up the waiting mission of a robot, if there is one: its way ends where its present path ends.
+    ///
+    /// # Errors
+    /// [`Fault::NoSuchRobot`], [`Fault::Broken`].
+    pub fn give_up(&mut self, name: &str) -> Result<(), Fault> {
+        self.works()?;
+        let place = self.place(name)?;
+        let robot = &mut self.robots[place];
+        let Some(Waiting { mission, .. }) = robot.waiting.take() else { return Ok(()) };
+        Robot::outlives(&mut robot.past, mission.clone());
+        self.tries.remove(name);
+        self.counts.dropped += 1;
+        self.entries.push(Entry::Waiting { robot: name.into(), waiting: None });
+        self.events.push(Event::Dropped { robot: name.into(), mission, why: "it was cancelled".into() });
+        Ok(())
+    }
+
     /// Renames the mission of a robot, if another one has the same path: nothing else changes.
     ///
     /// # Errors

@@ -64,6 +64,14 @@ pub struct Action {
     pub rest: Map<String, Value>,
 }
 
+impl Action {
+    /// The value of a parameter, if it has this one.
+    pub fn parameter(&self, key: &str) -> Option<&Value> {
+        let all = self.rest.get("actionParameters")?.as_array()?;
+        all.iter().find(|parameter| parameter["key"] == key)?.get("value")
+    }
+}
+
 /// An action as it is read: with one of the two names of its type, or both.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]

@@ -4,7 +4,7 @@ use crate::site::{interfaces, settings};
 use pcr_serve::course::Start;
 use pcr_serve::entry::Nowhere;
 use pcr_serve::event::Event;
-use pcr_serve::supervisor::{Report, Supervisor};
+use pcr_serve::supervisor::{Proposal, Report, Supervisor};
 use pcr_serve::vda5050::bridge::{self, Bridge};
 use pcr_serve::vda5050::door::Limits;
 use pcr_serve::vda5050::state::State;
@@ -503,4 +503,65 @@ fn who_gets_nowhere_is_said_and_why() {
     own.remove("b").unwrap();
     own.add("b", abilities, Start { x: 0.0, y: 50.0, heading: 0.0 }).unwrap();
     assert_eq!(all(&mut own, 500..700), ["a is at 0.00 m, and may go to 10.00 m"]);
+}
+
+/// What waited was given up for a mission without a way, and the vehicle, which was still on its order, counted as at the end of it.
+#[test]
+fn the_way_of_a_cancelled_order_is_its_own_until_it_stands() {
+    let mut own = Pair::new();
+    own.says(Kind::Order, order("a", 0, 0, &[[0.0, 0.0], [4.0, 0.0]], 2));
+    // Somebody stands where its order is to go on to.
+    let start = Start { x: 8.0, y: 0.0, heading: 0.0 };
+    let name = own.bridge.lanes().next().unwrap().name().to_owned();
+    own.lasts(1.5);
+    let abilities = own.supervisor.robot(&name).unwrap().abilities;
+    own.supervisor.add("other", abilities, start).unwrap();
+    own.says(Kind::Order, order("a", 1, 2, &[[4.0, 0.0], [8.0, 0.0]], 2));
+    own.lasts(0.1);
+    assert!(own.supervisor.robot(&name).unwrap().waiting.is_some());
+    own.loses = Some(|kind, _| kind == Kind::InstantActions);
+    own.cancels("stop");
+    for _ in 0..20 {
+        own.lasts(0.1);
+        let robot = own.supervisor.robot(&name).unwrap();
+        let [x, _] = own.vehicle.place();
+        assert!(robot.waiting.is_none() && robot.at <= x + 0.5, "{} at {x}", robot.at);
+    }
+    own.lasts(30.0);
+    assert!(own.bridge.lanes().all(|lane| lane.job().is_none()), "{:?}", own.state);
+    // Neither did a way that somebody else gave it.
+    own.supervisor.remove("other").unwrap();
+    let [x, y] = own.vehicle.place();
+    own.order("b", &[[x, y], [x + 4.0, y]]);
+    own.lasts(2.0);
+    let path = vec![pcr_serve::course::Shape::Line { length: 0.5 }];
+    let proposal = Proposal { robot: name.clone(), mission: "mine".into(), after: None, of: None, start: None, path };
+    own.supervisor.mission(&proposal, own.time).unwrap();
+    let before = own.supervisor.robot(&name).unwrap().at;
+    own.lasts(0.5);
+    assert_eq!(own.supervisor.robot(&name).unwrap().at, before);
+}
+
+/// By the number alone it had passed the whole of its order where it had all of it ahead.
+#[test]
+fn a_last_node_of_another_order_is_none() {
+    let mut own = Pair::new();
+    let name = own.bridge.lanes().next().unwrap().name().to_owned();
+    // Out and back: the end is where it begins.
+    own.order("a", &[[0.0, 0.0], [2.0, 0.0], [0.0, 0.0]]);
+    own.lasts(0.4);
+    let state = own.bridge.lanes().next().unwrap().state_of().unwrap().clone();
+    assert_eq!(state.order_id, "a");
+    let [_, vehicles] = interfaces();
+    let topic = vehicles.topic(Version::V2_1, &key(), Kind::State);
+    for (id, sequence) in [("", 4), ("old", 4), ("n4", 4)] {
+        let mut state = state.clone();
+        (state.last_node_id, state.last_node_sequence_id) = (id.into(), sequence);
+        state.header.header_id += 1_000 + sequence;
+        state.header.timestamp = "2031-01-01T00:00:00.000Z".into();
+        let text = serde_json::to_vec(&state).unwrap();
+        own.bridge.receive(&mut own.supervisor, &topic, &text, own.time);
+        let robot = own.supervisor.robot(&name).unwrap();
+        assert!(robot.at < 1.0, "{id:?}: {}", robot.at);
+    }
 }

@@ -235,6 +235,9 @@ fn site(listener: &TcpListener) -> Site {
     let port = address.map_or(0, |address| address.port());
     let mut hosts: Vec<String> = ["localhost", "127.0.0.1", "[::1]"].map(|host| format!("{host}:{port}")).into();
     hosts.extend(address.map(|address| address.to_string()));
+    // Browsers leave out the usual port.
+    let short = |host: &String| host.strip_suffix(":80").map(str::to_owned);
+    hosts.extend(hosts.iter().filter_map(short).collect::<Vec<_>>());
     Site { page: live::page(), draw: Some(draw), hosts }
 }
 

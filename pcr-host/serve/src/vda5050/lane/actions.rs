@@ -9,7 +9,7 @@ use super::super::version::{Error, Version};
 use super::release::AGAIN;
 use super::{Lane, To};
 use crate::event::Event;
-use crate::supervisor::{Proposal, Supervisor};
+use crate::supervisor::Supervisor;
 
 impl Lane {
     /// Passes on instant actions of the manager. An order that they cancel gets no further update.
@@ -34,17 +34,11 @@ impl Lane {
         };
         let (cancel, repeated) = self.cancels(supervisor, actions);
         if let Some((job, cancel)) = self.job.as_mut().zip(cancel) {
-            // The waiting mission is given up: the way ends at its present end.
-            let mission = format!("cancel {cancel}");
             (job.cancel, job.cancelled_at) = (Some(cancel), now);
             let given = job.given();
             self.note(supervisor, "order", given);
-            let nothing =
-                Proposal { robot: self.name.clone(), mission, after: None, of: None, start: None, path: Vec::new() };
-            let waits = supervisor.robot(&self.name).is_ok_and(|robot| robot.waiting.is_some());
-            if waits {
-                let _ = supervisor.mission(&nothing, now);
-            }
+            // Without another mission in its place: lengths that the vehicle reports are those of its order.
+            let _ = supervisor.give_up(&self.name);
         }
         let (due, held) = self.hold_back(supervisor, actions.to_vec(), now);
         if held.is_none() || !due.is_empty() {
@@ -59,8 +53,13 @@ impl Lane {
     /// and reports it as finished since the order before.
     fn cancels(&mut self, supervisor: &mut Supervisor, actions: &[Action]) -> (Option<String>, Option<Refusal>) {
         let (mut cancel, mut repeated) = (None, None);
+        let order = self.job.as_ref().map_or("", |job| job.held.order_id.as_str());
         for (k, action) in actions.iter().enumerate().filter(|(_, action)| action.action_type == "cancelOrder") {
             let id = &action.action_id;
+            // It names another order: the vehicle reports it as failed.
+            if action.parameter("orderId").is_some_and(|asked| asked != order) {
+                continue;
+            }
             let is_over = |state: &State| matches!(state.action(id), Some("FINISHED" | "FAILED"));
             if self.cancels.contains(id) || self.state.as_deref().is_some_and(is_over) {
                 let why = format!("{id:?} was there before: it cancels nothing");
@@ -123,8 +122,8 @@ impl Lane {
         let Event::Dropped { mission, why, .. } = event else { return };
         let order = mission.rsplit_once('#').map_or(mission.as_str(), |(order, _)| order);
         let update = self.job.as_ref().map_or(0, |job| job.held.update_id);
-        // A mission that was replaced by a longer one of the same order is not lost.
-        if !why.contains("takes its place") {
+        // A mission that was replaced by a longer one of the same order is not lost, and one that was cancelled is no error.
+        if !why.contains("takes its place") && self.job.as_ref().is_none_or(|job| job.cancel.is_none()) {
             self.reject(&Rejected::new(Error::Order, "nodes", why), order, update);
             self.mirror();
         }

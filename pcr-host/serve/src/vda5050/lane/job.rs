@@ -2,6 +2,7 @@
 
 use super::super::held::Held;
 use super::super::order::{Edge, Node, NodePosition};
+use super::super::state::State;
 use super::super::way::Way;
 use super::notes::noted;
 use crate::course::Start;
@@ -146,11 +147,30 @@ impl Job {
     }
 
     /// Offset from a length on the supervisor's path to a length on the order's way \[m\]; both end at the same node. It is computed from
-    /// the supervisor's present path, because a mission can be admitted at any time.
-    pub(super) fn offset(&self, robot: &Robot) -> f64 {
+    /// the supervisor's present path, because a mission can be admitted at any time. `None` if that path is no part of this way:
+    /// somebody has given the vehicle another mission, and nothing is known of how far it is on that.
+    pub(super) fn offset(&self, robot: &Robot) -> Option<f64> {
+        /// Differences of places that are rounding \[m\].
+        const SAME: f64 = 1e-3;
+        let length = robot.course.length();
+        if self.is_admitted(robot) {
+            return Some(self.way.node(self.planned(robot)).unwrap_or(0.0) - length);
+        }
         // Before the admission the vehicle is at the end of its former path, which is the start of the way.
-        let end = if self.is_admitted(robot) { self.way.node(self.planned(robot)).unwrap_or(0.0) } else { 0.0 };
-        end - robot.course.length()
+        let (end, start) = (robot.course.pose(length), self.way.start());
+        let is_before = self.stops.len() == 1 && (end.x - start.x).hypot(end.y - start.y) <= SAME;
+        is_before.then_some(-length)
+    }
+
+    /// The stop that a vehicle has passed last, as it says. Before its first node it may name any. What is neither that, nor a node of
+    /// this order that it does not list as ahead any more, is none.
+    pub(super) fn passed(&self, state: &State) -> Option<usize> {
+        let sequence = state.last_node_sequence_id;
+        let place = self.stop(sequence)?;
+        let is_so = place == 0
+            || self.stops.get(place).is_some_and(|stop| self.id(*stop) == state.last_node_id)
+                && state.node_states.iter().all(|node| node.sequence_id >= sequence);
+        is_so.then_some(place)
     }
 
     /// Whether the vehicle has received the order. An update is only sent after the one before it was received, perhaps while an earlier

@@ -136,7 +136,7 @@ impl Lane {
     fn translated(&mut self, mut state: State) -> State {
         state.errors.extend(self.errors.iter().cloned().chain(self.elsewhere_error()));
         let Some(job) = self.job.as_ref().filter(|job| job.held.order_id == state.order_id) else { return state };
-        let Some(stop) = job.stop(state.last_node_sequence_id).and_then(|place| job.stops.get(place)) else {
+        let Some(stop) = job.passed(&state).and_then(|place| job.stops.get(place)) else {
             return state;
         };
         if let Some((_, manager)) = job.acknowledged {

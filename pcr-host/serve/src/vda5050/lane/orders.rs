@@ -81,7 +81,7 @@ impl Lane {
             && job.last().node == job.held.base
             && !job.last().between
             && state.order_id == job.held.order_id
-            && state.last_node_sequence_id == job.last().sequence
+            && job.passed(state) == job.stops.len().checked_sub(1)
             && state.is_idle()
     }
 

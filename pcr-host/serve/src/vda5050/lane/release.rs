@@ -44,7 +44,8 @@ impl Lane {
         }
         let is_first = job.sent.is_none();
         // With its first order the vehicle goes to its first node.
-        let may_begin = allowed + job.offset(robot) + ROUNDING >= job.last().length;
+        let Some(offset) = job.offset(robot) else { return };
+        let may_begin = allowed + offset + ROUNDING >= job.last().length;
         if is_first && !(may_begin && state.node_states.is_empty()) {
             return;
         }
@@ -81,7 +82,8 @@ impl Lane {
 impl Job {
     /// The stops up to the granted length that have not been sent; empty if there are none.
     fn next(&self, robot: &Robot, allowed: f64, split: bool) -> Vec<Stop> {
-        let (offset, planned) = (self.offset(robot), self.planned(robot));
+        let Some(offset) = self.offset(robot) else { return Vec::new() };
+        let planned = self.planned(robot);
         let hold = allowed + offset;
         let last = self.last();
         let mut stops = Vec::new();
@@ -111,7 +113,7 @@ impl Job {
         let node = stop.unwrap_or(self.last()).node;
         let is_free = split && self.can_split(node);
         let next = self.way.node(node + 1).filter(|_| !is_free && node < self.planned(robot))?;
-        Some(next - self.offset(robot))
+        Some(next - self.offset(robot)?)
     }
 
     /// Writes nodes and edges from a stop on: released up to the last stop, then the horizon.

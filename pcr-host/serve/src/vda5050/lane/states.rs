@@ -120,15 +120,19 @@ impl Lane {
         if is_new {
             self.elsewhere = None;
         }
+        // On a mission that is none of its order, nobody knows what its lengths mean.
+        if self.job.as_ref().is_some_and(|job| job.offset(robot).is_none()) {
+            return Ok(());
+        }
+        let offset = self.job.as_ref().and_then(|job| job.offset(robot)).unwrap_or_default();
         let reach = self.reach(pose);
         let (path, end) = (robot.path, robot.course.length());
         let back = robot.at - 2.0 * self.deviation() - BACK;
         let found = match &self.job {
             Some(job) if job.held.order_id == state.order_id => {
-                let place = job.stop(state.last_node_sequence_id);
-                let Some(place) = place else {
-                    // The vehicle names a node that was not released, a node of an earlier order, or none. If its position is on its path
-                    // anyway, this is not an alarm.
+                let Some(place) = job.passed(state) else {
+                    // The vehicle names a node that was not released, a node of an earlier order, or none, or one that it has ahead. If its
+                    // position is on its path anyway, this is not an alarm.
                     if is_new && self.on_its_way(job, robot, pose).is_none() {
                         let _ = supervisor.off(&self.name, at, 0.0, now);
                     }
@@ -136,18 +140,15 @@ impl Lane {
                 };
                 let from = job.stops[place].length;
                 let to = job.stops.get(place + 1).map_or(from, |next| next.length);
-                let offset = job.offset(robot);
                 // Vehicles report a node as passed when they are near it, so the search begins before the node.
                 let near = job.way.near(at, [from - reach.max(0.0), to], reach);
                 near.map(|lengths| lengths.map(|length| (length - offset).clamp(0.0, end)))
             }
             _ if !is_new => return Ok(()),
-            Some(job) if job.was_there() => self.on_its_way(job, robot, pose).map(|lengths| {
-                let offset = job.offset(robot);
-                lengths.map(|length| (length - offset).clamp(0.0, end))
-            }),
+            Some(job) if job.was_there() => {
+                self.on_its_way(job, robot, pose).map(|lengths| lengths.map(|length| (length - offset).clamp(0.0, end)))
+            }
             Some(job) => {
-                let offset = job.offset(robot);
                 let start = (0.0 - offset).clamp(0.0, end);
                 job.way.near(at, [0.0, 0.0], reach).map(|_| [start; 2])
             }
@@ -175,7 +176,7 @@ impl Lane {
 
     /// Lengths at which a vehicle that does not confirm its order is on its way, between its last position and its hold.
     pub(super) fn on_its_way(&self, job: &Job, robot: &Robot, pose: &Pose) -> Option<[f64; 2]> {
-        let (offset, reach) = (job.offset(robot), self.reach(pose));
+        let (offset, reach) = (job.offset(robot)?, self.reach(pose));
         job.way.near([pose.x, pose.y], [robot.at + offset - reach.max(0.0), robot.told + offset], reach)
     }
 
@@ -213,6 +214,11 @@ impl Lane {
             let is_cancelled = has_it && status == Some("FINISHED") && is_told;
             if (is_cancelled || has_nothing) && self.is_still(&state) {
                 self.reseat(supervisor, &state);
+            } else if job.was_there() && !has_it {
+                // It has lost the order before it was cancelled, and does not get it again.
+                if self.stays_astray(self.is_still(&state), now) {
+                    self.reseat(supervisor, &state);
+                }
             } else if has_it && status == Some("FAILED") && !state.node_states.is_empty() {
                 // The cancellation came before the order.
                 self.cancel_again(supervisor, now);
@@ -247,7 +253,13 @@ impl Lane {
     /// Sets the vehicle to its reported position, without an order: all its rights are void.
     pub(super) fn reseat(&mut self, supervisor: &mut Supervisor, state: &State) {
         let Some(pose) = state.position().filter(|pose| pose.is_known() && self.reach(pose) >= 0.0) else { return };
-        let (start, map) = (Start { x: pose.x, y: pose.y, heading: pose.theta }, pose.map_id.clone());
+        let map = pose.map_id.clone();
+        // On its way it is as far off as before, and not farther by the error of this position.
+        let on_way = self.job.as_ref().zip(supervisor.robot(&self.name).ok()).and_then(|(job, robot)| {
+            let within = self.on_its_way(job, robot, pose).filter(|_| robot.alarm.is_none())?;
+            Some(nearest(job, within, [pose.x, pose.y]))
+        });
+        let start = on_way.unwrap_or(Start { x: pose.x, y: pose.y, heading: pose.theta });
         if self.shares(supervisor, &map).is_err() {
             return;
         }
@@ -291,4 +303,13 @@ impl Lane {
         }
         Ok(())
     }
+}
+
+/// The place of the way nearest to a point, between two lengths.
+fn nearest(job: &Job, [lo, hi]: [f64; 2], [x, y]: [f64; 2]) -> Start {
+    /// Places that are compared.
+    const PLACES: u32 = 256;
+    let places = (0..=PLACES).map(|k| job.way.pose(lo + (hi - lo) * f64::from(k) / f64::from(PLACES)));
+    let off = |place: &Start| (place.x - x).hypot(place.y - y);
+    places.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or_else(|| job.way.pose(lo))
 }
