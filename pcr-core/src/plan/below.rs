@@ -69,8 +69,10 @@ impl<'p, S: Scalar> Below<'p, S> {
         let acceleration = self.acceleration(phase);
         let [before, after] = phase.speed();
         let fast = before.max(after);
-        // From one speed to the next: v² / 8 a.
-        let ramp = fast.times(fast.quotient(acceleration)).half().half().half().narrow();
+        // From one speed to the next: v² / 8 a. Without acceleration there is one speed only, and cells may be short.
+        let changes = acceleration > S::ZERO;
+        let ramp =
+            if changes { fast.times(fast.quotient(acceleration)).half().half().half().narrow() } else { S::ZERO };
         let least = ramp.max(self.shortest);
         let (mut part, mut count) = (phase.length().length(), 1_usize);
         while part.half() >= least && part.half() > S::ZERO {

@@ -17,6 +17,8 @@ pub(super) struct Search<'c, S: Scalar, L, I> {
     pub(super) lattice: L,
     pub(super) regions: I,
     pub(super) constraints: &'c [Constraint<S>],
+    /// The agent sets off from this time on \[s\].
+    pub(super) from: S,
     /// Length of the path \[m\].
     pub(super) length: S,
 }
@@ -60,11 +62,12 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
         Ok(())
     }
 
-    /// Adds the times at which a part of the path is blocked.
+    /// Adds the times at which a part of the path is blocked. What ended before the agent sets off would only take room.
     fn cover(&self, times: &mut Times<S>, part: Interval<S>) {
         let always = Interval::new(-S::LIMIT, S::LIMIT);
-        self.near(part).flat_map(|region| region.blocked(part, always)).for_each(|window| times.cover(window));
-        self.constrained(part).for_each(|window| times.cover(window));
+        let blocked = self.near(part).flat_map(|region| region.blocked(part, always));
+        let windows = blocked.chain(self.constrained(part));
+        windows.filter(|window| window.hi > self.from).for_each(|window| times.cover(window));
     }
 
     /// The times at which constraints forbid a part of the path.

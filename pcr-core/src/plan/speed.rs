@@ -140,7 +140,7 @@ fn plan<'a, S: Scalar, L: Lattice<S>, const N: usize>(
         return Ok(SpeedPlan { start: from, profile: Profile::standing() });
     }
     let lattice = lattice(stations.len().saturating_sub(1))?;
-    let search = Search { lattice, regions, constraints, length };
+    let search = Search { lattice, regions, constraints, from, length };
     let used = search.lattice.cells().fold(1_usize, |count, _| count.saturating_add(1));
     let stations = stations.get_mut(..used).ok_or(Invalid::Full("station"))?;
     search.begin(from, stations)?;

@@ -54,8 +54,8 @@ impl<S: Scalar> Times<S> {
         }
     }
 
-    /// Adds an interval to a set that may become too large, but not too small: if the set is full, two neighbours are
-    /// merged.
+    /// Adds an interval to a set that may become too large, but not too small: if the set is full, the two neighbours with the least
+    /// gap are merged.
     pub(super) fn cover(&mut self, interval: Interval<S>) {
         let interval = self.absorb(interval);
         let at = self.intervals.partition_point(|before| before.lo < interval.lo);
@@ -63,9 +63,16 @@ impl<S: Scalar> Times<S> {
             self.carry(at, interval);
             return;
         }
-        let neighbour = if at < MOST { self.intervals.get_mut(at) } else { self.intervals.last_mut() };
-        if let Some(neighbour) = neighbour {
-            *neighbour = neighbour.hull(interval);
+        let before = core::mem::replace(&mut self.intervals, Vec::new());
+        let all = || before.iter().take(at).chain([&interval]).chain(before.iter().skip(at));
+        let gaps = all().zip(all().skip(1)).map(|(first, second)| second.lo - first.hi);
+        let narrowest = (1_usize..).zip(gaps).reduce(|least, next| if next.1 < least.1 { next } else { least });
+        for (place, &next) in (0_usize..).zip(all()) {
+            match self.intervals.last_mut().filter(|_| narrowest.is_some_and(|(second, _)| second == place)) {
+                Some(last) => *last = last.hull(next),
+                // Two became one, so there is room.
+                None => _ = self.intervals.push(next),
+            }
         }
     }
 

@@ -64,7 +64,7 @@ impl<S: Scalar> Encounter<'_, S> {
             let mut done = distance - error >= best.separation.min(bound);
             if !done {
                 let elapsed = if x < chord.length { duration.portion(x, chord.length) } else { duration };
-                let time = now.time + elapsed;
+                let time = (now.time + elapsed).min(to);
                 let separation = window.at(time).separation();
                 if separation < best.separation {
                     *best = Approach { time, separation };
