@@ -66,8 +66,11 @@ impl<S: Scalar> Times<S> {
         let before = core::mem::replace(&mut self.intervals, Vec::new());
         let all = || before.iter().take(at).chain([&interval]).chain(before.iter().skip(at));
         let gaps = all().zip(all().skip(1)).map(|(first, second)| second.lo - first.hi);
-        let narrowest = (1_usize..).zip(gaps).reduce(|least, next| if next.1 < least.1 { next } else { least });
-        for (place, &next) in (0_usize..).zip(all()) {
+        // One more than there is room for.
+        let places = 0..MOST.saturating_add(1);
+        let narrowest =
+            places.clone().skip(1).zip(gaps).reduce(|least, next| if next.1 < least.1 { next } else { least });
+        for (place, &next) in places.zip(all()) {
             match self.intervals.last_mut().filter(|_| narrowest.is_some_and(|(second, _)| second == place)) {
                 Some(last) => *last = last.hull(next),
                 // Two became one, so there is room.
