@@ -248,3 +248,27 @@ fn robots_turn_before_they_go_back() {
     let missions = 1000.0 / alone;
     assert!((outcome.missions as f64 - missions).abs() < 3.0, "{outcome:?}, expected {missions}");
 }
+
+/// At a corner within an edge a robot turned for ever, as the same way again looked sooner; and with a piece that an edge has twice the
+/// corner was at another length.
+#[test]
+fn robots_turn_once_at_corners_within_edges() {
+    let node = |id: &str, [x, y]: [f64; 2]| serde_json::json!({ "nodeId": id, "mapId": "m", "nodePosition": { "x": x, "y": y }, "vehicleTypeNodeProperties": [] });
+    let edge = |id: &str, [from, to]: [&str; 2], points: &[[f64; 2]]| {
+        let points: Vec<_> = points.iter().map(|[x, y]| serde_json::json!({ "x": x, "y": y })).collect();
+        serde_json::json!({ "edgeId": id, "startNodeId": from, "endNodeId": to, "vehicleTypeEdgeProperties":
+            [{ "vehicleTypeId": "V", "trajectory": { "degree": 1, "controlPoints": points } }] })
+    };
+    let (a, b) = ([0.0, 0.0], [5.0, 5.0]);
+    for bends in [vec![[5.0, 0.0]], vec![[5.0, 0.0], [0.0, 0.0], [5.0, 0.0]]] {
+        let points = [&[a], &bends[..], &[b]].concat();
+        let file = serde_json::json!({ "metaInformation": { "projectIdentification": "bends", "lifVersion": "1.0.0" },
+            "layouts": [{ "layoutId": "L", "nodes": [node("A", a), node("B", b)], "stations": [],
+                "edges": [edge("there", ["A", "B"], &points), edge("back", ["B", "A"], &[b, a])] }] });
+        let imported = layout(Format::Lif, &file.to_string(), 0.2);
+        for method in Method::ALL {
+            let outcome = driven(&imported, 1, 10.0, 0.0, method);
+            assert!(outcome.missions > 10 && outcome.time.turning < 0.6, "{method:?}: {outcome:?}");
+        }
+    }
+}

@@ -200,14 +200,18 @@ impl Robot {
         if self.entered > 0 && self.along() < NEAR {
             self.trail.pop();
         }
+        let turns = self.turned.checked_sub(1).and_then(|last| self.way.corners.get(last));
+        let turns = turns.is_some_and(|corner| corner.at == self.at);
         self.at -= before;
         // At a node its place is set to the node's length on the new way; otherwise rounding could put it on another atom.
         if let Some(&node) = way.offsets.iter().find(|&&offset| (offset - self.at).abs() < NEAR) {
             self.at = node;
         }
         self.entered = way.offsets.partition_point(|&offset| offset < self.at);
-        // At a corner where it stands, the turn is still to be done.
-        self.turned = way.corners.iter().filter(|corner| corner.at < self.at).count();
+        // At a corner where it stands, the turn is still to be done; but within an edge it is the one that it has begun.
+        let goes_on = turns && way.offsets.iter().all(|&offset| (offset - self.at).abs() >= NEAR);
+        let passed = |at: f64| if goes_on { at < self.at + NEAR } else { at < self.at };
+        self.turned = way.corners.iter().filter(|corner| passed(corner.at)).count();
         self.way = way;
     }
 

@@ -127,10 +127,11 @@ impl Way {
         if beyond > 0.0 { self.times[k] + beyond / self.speeds[k] } else { self.times[k] }
     }
 
-    /// Time at which it would leave a node at a length, counted from the start \[s\].
+    /// Time at which it would leave a corner at a length, which may be within an atom, counted from the start \[s\].
     pub(super) fn left_for(&self, length: f64) -> f64 {
         let k = self.offsets.partition_point(|&offset| offset <= length).saturating_sub(1);
-        self.times[k]
+        let beyond = length - self.offsets[k];
+        if beyond > 0.0 && k < self.atoms.len() { self.times[k] + beyond / self.speeds[k] } else { self.times[k] }
     }
 
     /// Index of the atom that contains a length; at a node the earlier one.
