@@ -65,7 +65,7 @@ fn late_starts_have_the_plans_of_early_ones() {
             arc(0.25, 2.0 * PI),
             arc(0.5, -FRAC_PI_2),
             arc(1.6321931586055558, 5.613353710987893),
-            line(2.2705455533011063)
+            line(2.270545553301106)
         ]);
         let own = json!({ "radius": 0.45, "v_max": 0.47494745010994044, "a_max": 1.7990277950347808, "t_start": t });
         let other = json!({ "radius": 0.35, "a_max": 1.5613073850739487, "t_start": t - 3.0 });

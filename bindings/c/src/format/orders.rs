@@ -211,8 +211,7 @@ pub extern "C" fn pcr_stopping_way(how: Option<&PcrBrakes>, speed: Real, way: Op
             return Err(PcrStatus::Negative);
         }
         let distance = brakes.distance(speed);
-        // Neither is what is not finite.
-        if !(distance <= S::LIMIT) {
+        if !Scalar::is_finite(distance) || distance > S::LIMIT {
             return Err(PcrStatus::OutOfRange);
         }
         *way = plain(distance);
