@@ -87,8 +87,7 @@ PCR_FORMAT(Double, PcrF64, pcr_f64_fleet_, double);
 PCR_FORMAT(Fixed, PcrQ16, pcr_q16_fleet_, std::int32_t);
 #undef PCR_FORMAT
 
-// A fleet with its memory; it may be moved. Every method throws an Error if the C function of the same name fails, and if
-// the fleet was moved away (PCR_STATUS_NULL); `size` is 0 then.
+// A fleet with its memory. Methods throw an Error if the C function fails, or if the fleet was moved away; `size` is 0 then.
 template <class F> class BasicFleet {
   std::unique_ptr<typename F::Storage> own;
   typename F::Handle *at() { return own ? &own->handle : nullptr; }
@@ -194,8 +193,7 @@ public:
 };
 
 using Fleet = BasicFleet<Double>;
-using FleetF32 = BasicFleet<Single>;
-using FleetQ16 = BasicFleet<Fixed>;
+using FleetF32 = BasicFleet<Single>; using FleetQ16 = BasicFleet<Fixed>;
 
 } // namespace pcr
 #endif // PCR_HPP
