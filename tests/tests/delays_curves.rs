@@ -188,3 +188,41 @@ fn both_ways_agree() {
         assert!(all.iter().all(|interval| interval.hi - interval.lo < 1e-4), "{ways:?} {all:?}");
     }
 }
+
+/// It was left out, as if the vehicle stood at the node itself.
+#[test]
+fn a_vehicle_that_stands_beside_its_node_is_in_the_way_there() {
+    let node = |id: &str, [x, y]: [f64; 2]| serde_json::json!({ "nodeId": id, "mapId": "m", "nodePosition": { "x": x, "y": y }, "vehicleTypeNodeProperties": [] });
+    let edge = |id: &str, [from, to]: [&str; 2], trajectory: serde_json::Value| {
+        serde_json::json!({ "edgeId": id, "startNodeId": from, "endNodeId": to,
+            "vehicleTypeEdgeProperties": [{ "vehicleTypeId": "V", "trajectory": trajectory }] })
+    };
+    let table = |aside: f64| {
+        let points = serde_json::json!([{ "x": 0, "y": 0 }, { "x": 2, "y": 0.5 }, { "x": 5, "y": aside }]);
+        let curve = serde_json::json!({ "degree": 2, "controlPoints": points });
+        let nodes = [
+            node("A", [0.0; 2]),
+            node("N", [5.0, 0.0]),
+            node("P", [3.0, 0.82]),
+            node("Q", [8.0, 0.82]),
+            node("S", [5.0, 0.82]),
+        ];
+        let edges = [edge("curve", ["A", "N"], curve), edge("line", ["P", "Q"], serde_json::Value::Null)];
+        let file = serde_json::json!({ "metaInformation": { "projectIdentification": "beside", "lifVersion": "1.0.0" },
+            "layouts": [{ "layoutId": "L", "nodes": nodes, "stations": [], "edges": edges }] });
+        let imported = read(Format::Lif, &file.to_string(), 0.4);
+        let (mut times, mut pairs) = (0, 0);
+        let take = |row: Vec<Unsafe>| {
+            for found in row {
+                // N is the second of the nodes, the line the second of the ways.
+                times += usize::from(matches!(found, Unsafe::Times(1, 1, _)));
+                pairs += usize::from(matches!(found, Unsafe::Nodes([1, 4])));
+            }
+            Ok::<(), ImportError>(())
+        };
+        let delays = Delays::new(&imported, Driving { speed: 1.0, acceleration: None }, true).unwrap();
+        delays.each(&|_, _| {}, <[Unsafe]>::to_vec, take).unwrap();
+        [times, pairs]
+    };
+    assert_eq!([table(0.0), table(0.049)], [[0, 0], [1, 1]]);
+}

@@ -314,3 +314,11 @@ fn parameters_without_a_value_are_refused() {
         assert!(error.starts_with(&format!("lane L1/0: {expected}")), "{error}");
     }
 }
+
+/// They had no name, and nothing was said.
+#[test]
+fn whole_numbers_are_names() {
+    let building = "name: site\nlevels:\n  L1:\n    vertices: [[0, 0, 0, 101], [10, 0, 0, \"102\"]]\n    measurements: [[0, 1, {distance: [3, 10]}]]\n    lanes: [[0, 1, {}]]\n";
+    let (imported, _) = read(building, &Options { radius: Some(0.4), ..Options::default() });
+    assert_eq!([node(&imported.layout, "101")[0], node(&imported.layout, "102")[0]], [0.0, 10.0]);
+}

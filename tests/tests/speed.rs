@@ -427,3 +427,15 @@ fn an_order_of_passing_is_kept() {
     }
     assert!(both > 10, "{both}");
 }
+
+/// What had passed before the start took all room for blocked windows, and what was behind was blocked as a whole.
+#[test]
+fn many_that_pass_before_and_after_leave_the_time_between() {
+    let passes = |at: f64| line([0.0, -2.5, PI / 2.0], 5.0, Drive::Pieces(1.0, vec![(5.0, 0.0)]), at - 2.5);
+    let ego = || line([-2.0, 0.0, 0.0], 4.0, Drive::Limits(1.0, 1.0), 94.5);
+    let parks = line([0.0, -2.5, PI / 2.0], 2.5, Drive::Limits(1.0, 1.0), 300.0);
+    let all: Vec<Course<f64>> = std::iter::once(ego()).chain((1..=12).map(|k| passes(10.0 * f64::from(k)))).collect();
+    let with: Vec<Course<f64>> = all.into_iter().chain([parks]).collect();
+    // It crosses at 97 s: nobody is there from 91 s to 99 s.
+    assert!((arrival(&with).unwrap() - 99.5).abs() < 1e-9);
+}

@@ -203,3 +203,15 @@ fn a_last_phase_beyond_the_path_is_refused() {
     let ego = line([-2.0, 0.0, 0.0], 4.0 - 1e-6, Drive::Pieces(0.0, pieces), 0.0);
     assert_eq!(planned_below(&[ego]).err(), Some(NoSpeedPlan::Invalid(Invalid::OutOfRange("length of a phase"))));
 }
+
+/// It had one cell, a quarter of which is the least that can be blocked.
+#[test]
+fn a_steady_motion_passes_behind_one_that_is_gone() {
+    let ego = || line([0.0, 0.0, 0.0], 20.0, Drive::Pieces(1.0, vec![(20.0, 0.0)]), 0.0);
+    for start in [2.0, 4.0] {
+        // Through (10, 0), 2 s after its start.
+        let other = line([10.0, -2.0, PI / 2.0], 4.0, Drive::Pieces(1.0, vec![(4.0, 0.0)]), start);
+        let plan = planned_below(&[ego(), other]).expect("its own motion");
+        assert!(plan.start == 0.0 && (plan.end() - 20.0).abs() < 1e-9, "{plan:?}");
+    }
+}

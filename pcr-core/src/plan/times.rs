@@ -181,4 +181,21 @@ mod tests {
         (0..12).for_each(|k| assert!(times.iter().any(|i| i.lo <= f64::from(k) && f64::from(k) + 0.5 <= i.hi)));
         assert_eq!(times.iter().count(), MOST);
     }
+
+    #[test]
+    fn a_cover_without_room_closes_the_least_gap() {
+        let whole: Vec<(f64, f64), 9> = (0..9).map(|k| (10.0 * f64::from(k), 10.0 * f64::from(k) + 1.0)).collect();
+        for near in 1..9_usize {
+            let mut all = whole.clone();
+            all[near].0 -= 2.0;
+            let mut expected = all.clone();
+            expected[near - 1].1 = expected.remove(near).1;
+            for last in 0..9 {
+                let mut times = Times::NONE;
+                let order = all.iter().enumerate().filter(|(k, _)| *k != last).chain([(last, &all[last])]);
+                order.for_each(|(_, &(lo, hi))| times.cover(Interval::new(lo, hi)));
+                assert!(is(&times, &expected), "{near} {last}");
+            }
+        }
+    }
 }

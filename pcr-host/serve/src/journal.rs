@@ -289,7 +289,7 @@ fn is_torn(bytes: &[u8], at: usize) -> bool {
     let is_missing = |part: &[u8]| part.iter().all(|byte| *byte == 0);
     match length(bytes) {
         Some(length) => bytes.get(FRAME..FRAME + length).is_none_or(|text| {
-            // Its end was not written, or a part is missing, whatever its disc writes at once. A few bytes that are 0 were others once.
+            // Its end was not written, or a part of it. JSON has no byte that is 0: a few of them were other bytes once.
             text.last() == Some(&0) || text.split(|byte| *byte != 0).any(|zeros| zeros.len() >= PART)
         }),
         // Only its beginning was written, or a sector is missing.

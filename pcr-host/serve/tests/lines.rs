@@ -471,3 +471,26 @@ fn a_client_that_never_reads_is_let_go_and_told_why() {
     handle.send(Input::Stop);
     server.join().unwrap().unwrap();
 }
+
+/// Names were limited in bytes, and large ids came back as other numbers.
+#[test]
+fn names_are_limited_in_characters_and_ids_come_back_as_they_were() {
+    let add = |id: &str, name: &str| {
+        format!(
+            r#"{{"id": {id}, "verb": "add", "robot": "{name}", "start": {{"x": 0, "y": 0, "heading": 0}}, "abilities": {ABILITIES}}}"#
+        )
+    };
+    let says = |line: String| handle(&mut supervisor(), line.as_bytes(), 0.0, 0.0).answer;
+    let refused = |name: &str| says(add("1", name)).get("error").is_some();
+    assert!(!refused(&"é".repeat(200)) && refused(&"é".repeat(201)) && refused("a\u{202e}b"));
+    for id in ["7", "-7", "18446744073709551615", "0.5", "\"12345678901234567890123\""] {
+        assert_eq!(says(add(id, "a"))["id"].to_string(), id);
+    }
+    for id in ["12345678901234567890123", "1e300"] {
+        let answer = says(add(id, "a"));
+        assert!(
+            answer["id"].is_null() && answer["error"]["message"].to_string().contains("has to be a text"),
+            "{answer}"
+        );
+    }
+}

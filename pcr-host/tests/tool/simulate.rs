@@ -107,6 +107,26 @@ fn a_profile_that_is_under_way_is_sped_up_within_its_duration() {
     assert_eq!(run(&["simulate", &name]).failed(2), expected);
 }
 
+/// They were taken for 0, so that the robots set off at once.
+#[test]
+fn negative_starts_keep_their_distance_in_time() {
+    let runs = |by: f64| {
+        let mut scenario = crossing();
+        for (agent, start) in [(0, 0.0), (1, 2.5)] {
+            scenario["agents"][agent]["t_start"] = json!(start + by);
+        }
+        let name = file("simulate", "early.json", scenario.to_string());
+        let mut report = run(&["simulate", &name, "--controller", "orca", "--json", "-q"]).json();
+        (report["runs"].take(), report["warnings"].take())
+    };
+    let ((early, warned), (late, silent)) = (runs(-100.0), runs(0.0));
+    assert_eq!(early, late);
+    assert_eq!(
+        (warned, silent),
+        (json!(["the first agent sets off at -100 s; times of the simulation count from there"]), json!([]))
+    );
+}
+
 /// Agents that never move are no robots, so that no run counts their contacts.
 #[test]
 fn agents_that_stand_in_contact_are_warned_about() {

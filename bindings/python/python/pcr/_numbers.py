@@ -18,7 +18,7 @@ TEXTS = (str, bytes, bytearray)
 
 
 def real(name: str, number: SupportsFloat) -> float:
-    """A number of any kind that has one part; truths and digits of a text are none."""
+    """A number as a float. Complex numbers, ``True`` and ``False``, and texts are refused."""
     if isinstance(number, TEXTS) or is_truth(number) or (isinstance(number, Complex) and not isinstance(number, Real)):
         raise TypeError(f"{name}: {number!r} is no number")
     try:
@@ -35,12 +35,12 @@ def finite(name: str, number: SupportsFloat) -> float:
 
 
 def is_truth(value: object) -> bool:
-    """Of Python or of NumPy."""
+    """Whether it is ``True`` or ``False``, of Python or of NumPy."""
     return isinstance(value, bool) or (getattr(getattr(value, "dtype", None), "kind", "") == "b" and getattr(value, "shape", None) == ())
 
 
 def truth(name: str, value: Optional[bool]) -> bool:
-    """``None`` is as if it was not there; any other text would be true."""
+    """``None`` is ``False``. Other values are refused, because Python takes most of them for true, ``"no"`` among them."""
     if value is not None and not is_truth(value):
         raise TypeError(f"{name}: {value!r} is neither True nor False")
     return bool(value)

@@ -122,16 +122,19 @@ impl Way {
         if length <= 0.0 {
             return 0.0;
         }
-        let k = self.atom(length);
-        let beyond = length - self.offsets[k];
-        if beyond > 0.0 { self.times[k] + beyond / self.speeds[k] } else { self.times[k] }
+        self.time_on(self.atom(length), length)
+    }
+
+    /// The same, on an atom that contains this length or ends there.
+    fn time_on(&self, atom: usize, length: f64) -> f64 {
+        let beyond = length - self.offsets[atom];
+        if beyond > 0.0 { self.times[atom] + beyond / self.speeds[atom] } else { self.times[atom] }
     }
 
     /// Time at which it would leave a corner at a length, which may be within an atom, counted from the start \[s\].
     pub(super) fn left_for(&self, length: f64) -> f64 {
-        let k = self.offsets.partition_point(|&offset| offset <= length).saturating_sub(1);
-        let beyond = length - self.offsets[k];
-        if beyond > 0.0 && k < self.atoms.len() { self.times[k] + beyond / self.speeds[k] } else { self.times[k] }
+        let next = self.offsets.partition_point(|&offset| offset <= length).saturating_sub(1);
+        if next < self.atoms.len() { self.time_on(next, length) } else { self.times[next] }
     }
 
     /// Index of the atom that contains a length; at a node the earlier one.

@@ -79,8 +79,8 @@ impl Robot {
 impl Task {
     /// The agents of a scenario: those with a path have one mission, the others are in the way. Footprints and loads are the disc
     /// around all of them. Of a profile, the largest speed on each segment, the durations of turns in place and the largest acceleration
-    /// count; where it takes longer than these allow from rest to rest, or shorter, that is among the warnings. So are agents in the way that overlap one another: no run
-    /// counts them as a collision.
+    /// count; if it takes longer than these allow from rest to rest, or less, that is among the warnings. So are agents in the way that
+    /// overlap one another: no run counts them as a collision.
     ///
     /// # Errors
     /// [`Failure::Refused`] if a value is out of range, [`Failure::Late`] if a robot sets off too late, [`Failure::Long`] if it takes too
@@ -167,9 +167,9 @@ fn tops(agent: &Agent) -> Vec<f64> {
 }
 
 /// The limits of an agent. For a profile: its largest speed and acceleration; without any acceleration, one second to the top
-/// speed. A profile that begins or ends under way may have any acceleration: it is at most taken to speed up for as long as the
-/// profile lasts, as one from rest to rest does at least. If it only turns in place, the durations of its turns contain all ramps, and
-/// 1 m/s² adds none.
+/// speed. A profile that begins or ends under way may have hardly any acceleration; the simulated robot then gets to the top speed within
+/// the duration of the profile. (Every profile from rest to rest does so by itself.) If it only turns in place, the durations of its
+/// turns contain all ramps, and 1 m/s² adds none.
 fn limits(agent: &Agent) -> Limits<f64> {
     let turns = |segment: &PathSegment| matches!(segment, PathSegment::Arc { radius: TURN, .. });
     match &agent.motion {

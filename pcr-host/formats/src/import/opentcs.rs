@@ -9,6 +9,7 @@ use super::biarc::{Fit, fit};
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::nurbs::Bezier;
+use super::warnings::{DIFFERENCE, LENGTH};
 use super::xml::{children, lose_astray, number, only, optional, parse, warn_of_unknown};
 use super::{ImportError, Options, Warnings, facing};
 use crate::footprint::Footprint;
@@ -42,9 +43,6 @@ const ANGLE: &str = "vehicleOrientationAngle";
 
 /// Unit of the visual layout of a model that names none \[mm\].
 const UNIT: f64 = 50.0;
-
-/// Relative difference of a length from the geometry that goes without a warning.
-const DIFFERENCE: f64 = 0.01;
 
 /// Reads a model.
 pub(super) fn read(
@@ -255,7 +253,7 @@ fn edge(
     };
     let (typed, drawn) = (limit("length")?, edge.length());
     if typed.is_none_or(|typed| (typed - drawn).abs() > DIFFERENCE * drawn) {
-        warnings.add(name, "its length is not that of its geometry, which counts");
+        warnings.add(name, LENGTH);
     }
     Ok(edge)
 }

@@ -31,9 +31,6 @@ const GAP: f64 = 0.05;
 /// That actions are not read.
 const ACTIONS: &str = "its actions take no time here: the file does not say how long they last";
 
-/// By how much the length of an edge may differ from that of its geometry, relative.
-const DIFFERENCE: f64 = 0.01;
-
 /// Gap that is rounding and nothing else \[m\].
 const CLOSED: f64 = 1e-9;
 

@@ -5,6 +5,12 @@ use std::fmt;
 /// How warnings begin that are about agents together, who may be from several files.
 pub(super) const TOGETHER: &str = "the agents are ";
 
+/// The length of an edge that is written differs from that of its geometry by more than [`DIFFERENCE`].
+pub(super) const LENGTH: &str = "its length is not that of its geometry, which counts";
+
+/// Difference of a written length that goes without a warning, relative.
+pub(super) const DIFFERENCE: f64 = 0.01;
+
 /// Names of one warning that are listed; the others are counted.
 const LISTED: usize = 8;
 

@@ -129,6 +129,11 @@ fn long_values_are_quoted_in_part() {
 
 #[test]
 fn ids_are_whole_numbers_and_unique() {
+    for wrong in ["9007199254740993.0", "1e-400", "0.5"] {
+        let text = format!("{{\"agents\": [{{\"id\": {wrong}}}]}}");
+        let message = Scenario::from_json(&text).unwrap_err().to_string();
+        assert!(message.contains(&format!("id: {wrong} where a whole number")), "{message}");
+    }
     for id in [json!(-1), json!(1.5), json!(1e17), json!(""), json!([7])] {
         let message = Scenario::from_value(&with("/id", &id)).unwrap_err().to_string();
         assert!(message.starts_with("agent at place 2, id: "), "{message}");

@@ -537,9 +537,43 @@ fn the_way_of_a_cancelled_order_is_its_own_until_it_stands() {
     let path = vec![pcr_serve::course::Shape::Line { length: 0.5 }];
     let proposal = Proposal { robot: name.clone(), mission: "mine".into(), after: None, of: None, start: None, path };
     own.supervisor.mission(&proposal, own.time).unwrap();
-    let before = own.supervisor.robot(&name).unwrap().at;
+    let (before, [from, _]) = (own.supervisor.robot(&name).unwrap().at, own.vehicle.place());
     own.lasts(0.5);
+    assert!(own.vehicle.place()[0] > from + 0.2, "it drives");
     assert_eq!(own.supervisor.robot(&name).unwrap().at, before);
+}
+
+/// The order that it had lost was sent again, for ever.
+#[test]
+fn a_vehicle_that_loses_its_order_while_that_is_cancelled_does_not_get_it_again() {
+    let mut own = Pair::new();
+    own.order("a", &TO);
+    own.lasts(2.0);
+    let [x, y] = own.vehicle.place();
+    own.vehicle = Vehicle::new(key(), Version::V2_1, "map", CAN, Start { x, y, heading: 0.0 }, 2);
+    own.vehicle.set_clock(100.0);
+    own.cancels("stop");
+    own.lasts(20.0);
+    assert!(own.bridge.lanes().all(|lane| lane.job().is_none()), "{:?}", own.state);
+    let place = own.vehicle.place();
+    assert!((place[0] - x).hypot(place[1] - y) < 0.1, "it stands: {place:?}");
+}
+
+/// The error of its position counted twice: where it stands, and in its margin.
+#[test]
+fn a_cancelled_vehicle_stands_on_its_way() {
+    let mut own = Pair::new();
+    own.order("a", &[[0.0, 0.0], [8.0, 0.0]]);
+    own.lasts(4.0);
+    own.cancels("stop");
+    own.lasts(20.0);
+    assert!(own.bridge.lanes().all(|lane| lane.job().is_none()));
+    let said = own.state.as_ref().unwrap().position().unwrap().y;
+    let stands = own.supervisor.robots()[0].course.start();
+    assert!(
+        said.abs() > 1e-6 && stands.y.abs() < 1e-9 && (stands.x - own.vehicle.place()[0]).abs() < 0.1,
+        "{said} {stands:?}"
+    );
 }
 
 /// By the number alone it had passed the whole of its order where it had all of it ahead.
@@ -551,7 +585,7 @@ fn a_last_node_of_another_order_is_none() {
     own.order("a", &[[0.0, 0.0], [2.0, 0.0], [0.0, 0.0]]);
     own.lasts(0.4);
     let state = own.bridge.lanes().next().unwrap().state_of().unwrap().clone();
-    assert_eq!(state.order_id, "a");
+    assert_eq!((state.order_id.as_str(), own.bridge.lanes().next().unwrap().job().unwrap().stops.len()), ("a", 3));
     let [_, vehicles] = interfaces();
     let topic = vehicles.topic(Version::V2_1, &key(), Kind::State);
     for (id, sequence) in [("", 4), ("old", 4), ("n4", 4)] {

@@ -3,9 +3,10 @@
 use super::super::trace::Tracer;
 use super::super::trajectory::Trajectory;
 use super::super::value::Object;
+use super::super::warnings::{DIFFERENCE, LENGTH};
 use super::super::{ImportError, facing, route};
 use super::part::{Part, go_on, parts};
-use super::{ACTIONS, DIFFERENCE, GAP, Reader, gap};
+use super::{ACTIONS, GAP, Reader, gap};
 use crate::footprint::Footprint;
 use crate::scenario::Agent;
 use serde_json::Value;
@@ -148,7 +149,7 @@ impl Reader<'_> {
         // 0 is what senders write that do not know it.
         let typed = edge.number("length")?.filter(|typed| *typed != 0.0);
         if typed.is_some_and(|typed| (typed - drawn).abs() > DIFFERENCE * drawn + GAP) {
-            self.warnings.add(&edge.name, "its length is not that of its geometry, which counts");
+            self.warnings.add(&edge.name, LENGTH);
         }
         Ok(())
     }

@@ -56,8 +56,9 @@ impl Lane {
         let order = self.job.as_ref().map_or("", |job| job.held.order_id.as_str());
         for (k, action) in actions.iter().enumerate().filter(|(_, action)| action.action_type == "cancelOrder") {
             let id = &action.action_id;
-            // It names another order: the vehicle reports it as failed.
-            if action.parameter("orderId").is_some_and(|asked| asked != order) {
+            // Since 3.0 it may name an order, and if that is another one the vehicle reports it as failed. Older vehicles do not know that.
+            let is_third = self.version.is_some_and(|version| version.major() == Version::V3_0.major());
+            if is_third && action.parameter("orderId").is_some_and(|asked| asked != order) {
                 continue;
             }
             let is_over = |state: &State| matches!(state.action(id), Some("FINISHED" | "FAILED"));
