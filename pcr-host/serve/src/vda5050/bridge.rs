@@ -176,9 +176,9 @@ impl Bridge {
             Kind::Connection => {
                 lane.connection(payload, limits, is_third, now).inspect(|()| lane.pass_on(kind, is_third, payload))
             }
-            Kind::Factsheet => {
-                lane.factsheet(payload, limits, is_third).inspect(|()| lane.pass_on(kind, is_third, payload))
-            }
+            Kind::Factsheet => lane
+                .factsheet(supervisor, payload, limits, is_third)
+                .inspect(|()| lane.pass_on(kind, is_third, payload)),
             Kind::InstantActions => lane.instant_actions(supervisor, payload, limits, is_third, now),
             Kind::Order => {
                 lane.order(supervisor, payload, limits, is_third, now);
@@ -222,7 +222,7 @@ impl Bridge {
                 self.log.push(format!("nobody is released anything until these have said where they stand: {names}"));
             }
             let unknown = self.seen.unknown.iter().map(|&place| &self.lanes[place]);
-            let elsewhere = unknown.filter_map(|lane| Some((lane.name(), lane.elsewhere()?)));
+            let elsewhere = unknown.filter_map(|lane| Some((lane.name(), lane.elsewhere()?.to_owned())));
             let misfits = self.lanes.iter().filter_map(|lane| Some((lane.name(), lane.misfit()?)));
             for (name, why) in elsewhere.chain(misfits) {
                 self.log.push(format!("nobody is released anything: {name}: {why}"));

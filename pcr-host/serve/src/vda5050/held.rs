@@ -4,6 +4,7 @@ use super::door::Refusal;
 use super::order::{Edge, Node, Order};
 use super::version::Error;
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 /// Largest number of nodes of an order.
 const MOST: usize = 10_000;
@@ -21,6 +22,9 @@ pub struct Held {
     pub edges: Vec<Edge>,
     /// Index of the last node of the base.
     pub base: usize,
+    /// All other fields of the last update that was taken, as `zoneSetId`, kept unchanged.
+    #[serde(default)]
+    pub rest: Map<String, Value>,
 }
 
 /// The result of an update.
@@ -62,8 +66,8 @@ impl Held {
     pub fn new(mut order: Order) -> Result<Self, Rejected> {
         order.check()?;
         let base = order.base();
-        let Order { order_id, order_update_id: update_id, nodes, edges, .. } = order;
-        Ok(Self { order_id, update_id, nodes, edges, base })
+        let Order { order_id, order_update_id: update_id, nodes, edges, rest, .. } = order;
+        Ok(Self { order_id, update_id, nodes, edges, base, rest })
     }
 
     /// Applies an update, which has to go on at the last node of the base; it replaces the horizon.
@@ -97,6 +101,7 @@ impl Held {
         self.edges.truncate(after);
         self.nodes.extend(order.nodes.into_iter().skip(1));
         self.edges.extend(order.edges);
+        self.rest = order.rest;
         Ok(Taken::After(after))
     }
 

@@ -13,13 +13,13 @@ mod notes;
 mod orders;
 mod past;
 mod pause;
+mod refused;
 mod release;
 mod states;
 
 pub use job::{Job, Sent, Stop};
 
 use super::header::Header;
-use super::order::Order;
 use super::stamp;
 use super::state::{State, StateError};
 use super::topics::{Key, Kind};
@@ -27,6 +27,7 @@ use super::version::Version;
 use crate::robot::Abilities;
 use crate::supervisor::{Damaged, Supervisor};
 use newest::Newest;
+use notes::noted;
 use past::{Noted, Past};
 use pause::Pauses;
 use serde::Serialize;
@@ -68,6 +69,9 @@ pub struct Post {
     pub payload: Vec<u8>,
 }
 
+/// Key of the note with the radius of the disc that a vehicle needs.
+const NEEDS: &str = "needs";
+
 /// One vehicle.
 #[derive(Debug)]
 pub struct Lane {
@@ -92,8 +96,8 @@ pub struct Lane {
     posts: Vec<Post>,
     /// The nodes and edges ahead, as they were last sent to the manager.
     ahead: Option<mirror::Ahead>,
-    /// Why the vehicle does not fit into its configured disc, according to its own data.
-    misfit: Option<String>,
+    /// Radius of the disc that the vehicle needs, according to its own data \[m\].
+    needs: Option<f64>,
     /// Why its position is ignored: it is on another map than the other vehicles.
     elsewhere: Option<String>,
 }
@@ -113,6 +117,7 @@ impl Lane {
         let version = job.as_ref().and_then(|job| Version::of(&job.version));
         let pauses = Pauses::remembered(robot)?;
         let (state, heard_at, astray) = (None, 0.0, None);
+        let needs = noted(robot, NEEDS)?;
         Ok(Self {
             profile,
             name,
@@ -129,7 +134,7 @@ impl Lane {
             sent,
             posts,
             ahead: None,
-            misfit: None,
+            needs,
             elsewhere: None,
         })
     }
@@ -155,8 +160,10 @@ impl Lane {
     }
 
     /// Why the vehicle does not fit into its configured disc, according to its own data.
-    pub fn misfit(&self) -> Option<&str> {
-        self.misfit.as_deref()
+    pub fn misfit(&self) -> Option<String> {
+        let own = self.profile.abilities.radius;
+        let needs = self.needs.filter(|needs| *needs > own + 1e-9)?;
+        Some(format!("the vehicle needs a disc of {needs} m, not {own}"))
     }
 
     /// Takes the messages to be sent.
@@ -209,10 +216,8 @@ impl Lane {
             self.note(supervisor, past.key, past.all());
         }
         self.note_pauses(supervisor);
+        if self.needs.is_some() {
+            self.note(supervisor, NEEDS, self.needs);
+        }
     }
-}
-
-/// An order of ours.
-fn order(header: Header, order_id: String, order_update_id: u64) -> Order {
-    Order { header, order_id, order_update_id, nodes: Vec::new(), edges: Vec::new(), rest: serde_json::Map::new() }
 }

@@ -97,15 +97,20 @@ impl Pair {
         }
     }
 
-    /// What the manager says.
-    fn says(&mut self, kind: Kind, mut message: Value) {
+    /// A message with a header.
+    fn signed(&mut self, mut message: Value) -> String {
         self.header += 1;
         let header = json!({ "headerId": self.header, "timestamp": "2030-01-01T00:00:00.000Z", "version": "2.1.0",
             "manufacturer": "sim", "serialNumber": "001" });
         message.as_object_mut().unwrap().extend(header.as_object().unwrap().clone());
-        let [manager, _] = interfaces();
+        message.to_string()
+    }
+
+    /// What the manager says.
+    fn says(&mut self, kind: Kind, message: Value) {
+        let (message, [manager, _]) = (self.signed(message), interfaces());
         let topic = manager.topic(Version::V2_1, &key(), kind);
-        self.bridge.receive(&mut self.supervisor, &topic, message.to_string().as_bytes(), self.time);
+        self.bridge.receive(&mut self.supervisor, &topic, message.as_bytes(), self.time);
     }
 
     /// An order over these places.
@@ -168,7 +173,7 @@ fn notes_of_the_journal_that_cannot_be_read_are_an_error() {
     let settings = bridge::Settings { manager, vehicles, limits: Limits::default() };
     let bridge = |own: &Pair| Bridge::new(settings.clone(), vec![profile(key(), &CAN)], &own.supervisor);
     assert!(bridge(&own).is_ok());
-    for key in ["order", "stops", "sent", "orders", "cancels", "pauses"] {
+    for key in ["order", "stops", "sent", "orders", "cancels", "pauses", "needs"] {
         let entries = own.supervisor.snapshot().unwrap();
         let mut damaged = Supervisor::restored(self::settings(), entries, Box::new(Nowhere)).unwrap();
         damaged.note("sim/001", key, json!({ "held": 5 })).unwrap();
@@ -598,5 +603,104 @@ fn a_last_node_of_another_order_is_none() {
         own.bridge.receive(&mut own.supervisor, &topic, &text, own.time);
         let robot = own.supervisor.robot(&name).unwrap();
         assert!(robot.at < 1.0, "{id:?}: {}", robot.at);
+    }
+}
+
+impl Pair {
+    /// Somebody else tells the vehicle something.
+    fn whispers(&mut self, kind: Kind, message: Value) {
+        let message = self.signed(message);
+        self.vehicle.receive(kind, message.as_bytes());
+    }
+
+    fn has_job(&self) -> bool {
+        self.bridge.lanes().any(|lane| lane.job().is_some())
+    }
+}
+
+/// It was sent every second for ever, and nothing ended it.
+#[test]
+fn a_first_order_that_the_vehicle_refuses_is_over() {
+    for is_cancelled in [false, true] {
+        let mut own = Pair::new();
+        // It was there before, as only the vehicle knows.
+        for id in ["a", "own"] {
+            own.whispers(Kind::Order, order(id, 0, 0, &TO[..1], 1));
+        }
+        own.lasts(1.0);
+        own.says(Kind::Order, order("a", 7, 0, &TO, 3));
+        own.lasts(3.0);
+        let errors = own.errors().concat();
+        assert!(errors.contains(r#""orderUpdateId","referenceValue":"7""#), "by the manager's number: {errors}");
+        assert!(own.has_job());
+        if is_cancelled {
+            own.cancels("stop");
+            own.lasts(5.0);
+        } else {
+            own.lasts(30.0);
+        }
+        assert!(!own.has_job(), "{is_cancelled}: {:?}", own.state);
+        own.order("b", &TO);
+        own.lasts(60.0);
+        assert!(own.is_done("b"), "{is_cancelled}: {:?}", own.state);
+    }
+}
+
+/// Somebody at the vehicle had ended its order: the rest of it was sent for ever, and `cancelOrder` did not end that.
+#[test]
+fn an_update_that_the_vehicle_refuses_is_over_when_it_is_cancelled() {
+    for is_restarted in [false, true] {
+        let mut own = Pair::new();
+        own.says(Kind::Order, order("a", 0, 0, &TO, 2));
+        own.lasts(20.0);
+        let by_hand = json!({ "actionType": "cancelOrder", "actionId": "by hand", "blockingType": "NONE" });
+        own.whispers(Kind::InstantActions, json!({ "actions": [by_hand] }));
+        own.lasts(2.0);
+        own.says(Kind::Order, order("a", 1, 2, &TO[1..], 2));
+        own.lasts(30.0);
+        assert!(own.has_job() && own.errors().concat().contains("it was cancelled"), "{:?}", own.errors());
+        if is_restarted {
+            own.restart();
+            own.lasts(5.0);
+        }
+        own.cancels("stop");
+        own.lasts(20.0);
+        assert!(!own.has_job(), "{is_restarted}: {:?}", own.state);
+        let [x, y] = own.vehicle.place();
+        own.order("b", &[[x, y], [x, y + 3.0]]);
+        own.lasts(60.0);
+        assert!(own.is_done("b"), "{is_restarted}: {:?}", own.state);
+    }
+}
+
+/// They were dropped: the vehicle did not know of which zones the manager spoke.
+#[test]
+fn other_fields_of_an_order_are_passed_on() {
+    let mut own = Pair::new();
+    own.loses =
+        Some(|kind, said| kind == Kind::Order && said["zoneSetId"] == "z" && said["orderDescription"] == "to the dock");
+    let mut message = order("a", 0, 0, &TO, 3);
+    message["zoneSetId"] = "z".into();
+    message["orderDescription"] = "to the dock".into();
+    own.says(Kind::Order, message);
+    own.lasts(1.0);
+    assert!(own.loses.is_none(), "as it came");
+}
+
+/// After a restart it was forgotten until the vehicle said it again.
+#[test]
+fn a_vehicle_that_is_too_large_is_remembered() {
+    let mut own = Pair::new();
+    let start = Start { x: 0.0, y: 0.0, heading: 0.0 };
+    own.vehicle = Vehicle::new(key(), Version::V2_1, "map", Abilities { radius: 0.6, ..CAN }, start, 1);
+    own.vehicle.set_clock(100.0);
+    own.acts("factsheetRequest", "how large");
+    own.lasts(2.0);
+    own.order("a", &TO);
+    for _ in 0..2 {
+        own.lasts(5.0);
+        assert!(own.bridge.lanes().all(|lane| lane.misfit().is_some()));
+        assert_eq!(own.vehicle.taken(), 0, "nothing is released");
+        own.restart();
     }
 }

@@ -110,7 +110,7 @@ impl Lane {
                 let message = InstantActions::one(header, "cancelOrder", id);
                 self.post(To::Vehicle, Kind::InstantActions, version, &message);
             }
-            Some("FAILED") if !has_it && job.sent.is_some() && now - job.sent_at >= AGAIN => {
+            Some("FAILED") if !has_it && job.sent.is_some() && job.refused.is_none() && now - job.sent_at >= AGAIN => {
                 job.sent_at = now;
                 self.send(version);
             }

@@ -65,6 +65,8 @@ pub struct Job {
     pub cancelled_at: f64,
     /// Time since which the vehicle has lost the order \[s\].
     pub lost: Option<f64>,
+    /// Time since which the vehicle refuses what was sent last \[s\].
+    pub refused: Option<f64>,
 }
 
 /// The part of the manager's order that is stored as a note.
@@ -98,6 +100,7 @@ impl Job {
             cancel: None,
             cancelled_at: f64::NEG_INFINITY,
             lost: None,
+            refused: None,
         }
     }
 

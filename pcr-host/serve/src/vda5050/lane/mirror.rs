@@ -7,7 +7,8 @@ use super::super::messages::{Connection, Factsheet, Responses};
 use super::super::state::{EdgeState, Listed, NodeState, State};
 use super::super::topics::Kind;
 use super::super::version::Version;
-use super::{Job, Lane, Post, To};
+use super::{Job, Lane, NEEDS, Post, To};
+use crate::supervisor::Supervisor;
 use pcr_formats::import::{self, Options, Warnings};
 use serde_json::Value;
 
@@ -119,21 +120,30 @@ impl Lane {
     ///
     /// # Errors
     /// [`Refusal`] for an invalid factsheet, or one of another vehicle.
-    pub fn factsheet(&mut self, payload: &[u8], limits: Limits, is_third: bool) -> Result<(), Refusal> {
+    pub fn factsheet(
+        &mut self,
+        supervisor: &mut Supervisor,
+        payload: &[u8],
+        limits: Limits,
+        is_third: bool,
+    ) -> Result<(), Refusal> {
         let message: Factsheet = door::read(payload, limits)?;
         let version = message.header.check(&self.profile.key, is_third)?;
         self.version.get_or_insert(version);
         let text = String::from_utf8_lossy(payload);
         let vehicle = import::vehicle(&text, &Options::default(), &mut Warnings::default());
         let vehicle = vehicle.map_err(|error| Refusal::new("", error))?;
-        let own = self.profile.abilities;
         // The disc around the contour is compared. Speeds do not matter for safety.
-        let needs = (vehicle.footprint.is_some() && vehicle.radius > own.radius + 1e-9).then_some(vehicle.radius);
-        self.misfit = needs.map(|needs| format!("the vehicle needs a disc of {needs} m, not {}", own.radius));
-        self.misfit.clone().map_or(Ok(()), |why| Err(Refusal::new("physicalParameters", why)))
+        let needs = vehicle.footprint.is_some().then_some(vehicle.radius);
+        if needs != self.needs {
+            self.needs = needs;
+            self.note(supervisor, NEEDS, needs);
+        }
+        self.misfit().map_or(Ok(()), |why| Err(Refusal::new("physicalParameters", why)))
     }
 
     fn translated(&mut self, mut state: State) -> State {
+        self.job.iter().for_each(|job| job.name_updates(&mut state.errors));
         state.errors.extend(self.errors.iter().cloned().chain(self.elsewhere_error()));
         let Some(job) = self.job.as_ref().filter(|job| job.held.order_id == state.order_id) else { return state };
         let Some(stop) = job.passed(&state).and_then(|place| job.stops.get(place)) else {

@@ -1,15 +1,19 @@
 //! Updates for the vehicle: its base ends where the supervisor allows.
 
+use super::super::header::Header;
 use super::super::order::Order;
 use super::super::topics::Kind;
 use super::super::version::Version;
+use super::Lane;
 use super::job::{Job, Sent, Stop};
-use super::{Lane, order};
 use crate::robot::Robot;
 use crate::supervisor::Supervisor;
 
 /// Time between two attempts to send the same \[s\].
 pub(super) const AGAIN: f64 = 1.0;
+
+/// The same for what the vehicle refuses.
+const REFUSED: f64 = 5.0;
 
 /// A hold that is lower than a node by at most this counts as at the node \[m\]. Discs are larger by more than this: by the part of the
 /// margin (`TOLERANCE`) that no vehicle may use.
@@ -36,7 +40,8 @@ impl Lane {
         }
         if !job.is_acknowledged() {
             // The vehicle has an older update, or none: the same one is sent again.
-            if now - job.sent_at >= AGAIN {
+            let pause = if job.refused.is_some() { REFUSED } else { AGAIN };
+            if now - job.sent_at >= pause {
                 job.sent_at = now;
                 self.send(version);
             }
@@ -73,8 +78,7 @@ impl Lane {
         let header = self.header(Kind::Order, version);
         let Some(job) = &self.job else { return };
         let Some(sent) = job.sent else { return };
-        let mut message = order(header, job.held.order_id.clone(), sent.update);
-        job.write(&mut message, sent.from, deviation);
+        let message = job.written(header, sent, deviation);
         self.post(super::To::Vehicle, Kind::Order, version, &message);
     }
 }
@@ -116,11 +120,10 @@ impl Job {
         Some(next - self.offset(robot)?)
     }
 
-    /// Writes nodes and edges from a stop on: released up to the last stop, then the horizon.
-    fn write(&self, message: &mut Order, from: usize, deviation: f64) {
-        let mut stops: Vec<Stop> = self.stops.iter().skip(from).copied().collect();
-        let base = stops.len();
-        let Some(mut last) = stops.last().copied() else { return };
+    /// An update from its first stop on: released up to the last stop, then the horizon.
+    fn written(&self, header: Header, sent: Sent, deviation: f64) -> Order {
+        let mut stops: Vec<Stop> = self.stops.iter().skip(sent.from).copied().collect();
+        let (base, mut last) = (stops.len(), self.last());
         for node in (last.node + 1..self.held.nodes.len()).take(AHEAD) {
             last = Stop {
                 sequence: last.sequence + 2,
@@ -131,8 +134,9 @@ impl Job {
             stops.push(last);
         }
         let nodes = stops.iter().enumerate().filter_map(|(k, stop)| self.node(*stop, deviation, k < base));
-        message.nodes = nodes.collect();
         let pairs = stops.windows(2).enumerate();
-        message.edges = pairs.filter_map(|(k, pair)| self.edge([pair[0], pair[1]], k + 1 < base)).collect();
+        let edges = pairs.filter_map(|(k, pair)| self.edge([pair[0], pair[1]], k + 1 < base));
+        let (order_id, rest) = (self.held.order_id.clone(), self.held.rest.clone());
+        Order { header, order_id, order_update_id: sent.update, nodes: nodes.collect(), edges: edges.collect(), rest }
     }
 }

@@ -7,6 +7,7 @@ use super::super::state::{Pose, State};
 use super::super::topics::Kind;
 use super::maps::{MAP, map_of};
 use super::newest::Place;
+use super::refused::TRIED;
 use super::{Job, Lane};
 use crate::course::Start;
 use crate::robot::{BACK, Robot};
@@ -64,6 +65,9 @@ impl Lane {
             self.version = Some(version);
         }
         self.acknowledge(&state);
+        if let Some(job) = self.job.as_mut().filter(|_| is_new) {
+            job.refused = job.is_refused(&state).then(|| job.refused.unwrap_or(now));
+        }
         let located = match is_new {
             true => self.locate(supervisor, &state, With::Newest, now),
             false => self.locate(supervisor, &state, With::Late, now),
@@ -205,6 +209,7 @@ impl Lane {
             return;
         };
         let has_it = job.held.order_id == state.order_id;
+        let is_refused = job.refused.is_some();
         if let Some(action) = job.cancel.clone() {
             let status = state.action(&action);
             let has_nothing = job.sent.is_none() || job.lost.is_some();
@@ -214,6 +219,12 @@ impl Lane {
             let is_cancelled = has_it && status == Some("FINISHED") && is_told;
             if (is_cancelled || has_nothing) && self.is_still(&state) {
                 self.reseat(supervisor, &state);
+            } else if is_refused && status == Some("FAILED") && self.is_still(&state) {
+                // It has no part of what it refuses: what was sent before the cancellation has come before it.
+                match job.cancelled_at >= job.sent_at {
+                    true => self.reseat(supervisor, &state),
+                    false => self.cancel_again(supervisor, now),
+                }
             } else if job.was_there() && !has_it {
                 // It has lost the order before it was cancelled, and does not get it again.
                 if self.stays_astray(self.is_still(&state), now) {
@@ -227,6 +238,9 @@ impl Lane {
                 self.reseat(supervisor, &state);
             }
             return;
+        }
+        if !job.was_there() && job.refused.is_some_and(|since| now - since >= TRIED) {
+            return self.cancel_again(supervisor, now);
         }
         let (is_gone, lost) = (job.was_there() && !has_it && self.is_still(&state), job.lost);
         let is_astray = self.stays_astray(is_gone, now);

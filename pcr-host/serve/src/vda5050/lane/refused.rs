@@ -1,0 +1,65 @@
+//! Orders and updates that the vehicle refuses.
+//!
+//! A vehicle names them in its errors, for as long as it likes. It may take them later, as when it is switched to automatic operation, so
+//! they are sent again for some time. A first order that it still refuses then is over, as the standard says; an update is over when
+//! the manager cancels the order.
+
+use super::super::state::{State, StateError};
+use super::Job;
+use serde_json::Value;
+
+/// Time for which a first order is sent to a vehicle that refuses it \[s\].
+pub(super) const TRIED: f64 = 20.0;
+
+impl Job {
+    /// Whether the vehicle refuses the last update that was sent.
+    pub(super) fn is_refused(&self, state: &State) -> bool {
+        let Some(sent) = self.sent.filter(|_| !self.is_acknowledged()) else { return false };
+        state.errors.iter().any(|error| {
+            let update = reference(error, UPDATE);
+            is_of_orders(&error.error_type)
+                && reference(error, ORDER).as_deref() == Some(&self.held.order_id)
+                && update.is_none_or(|update| update == sent.update.to_string())
+        })
+    }
+
+    /// Gives errors about our last update the manager's number of it.
+    pub(super) fn name_updates(&self, errors: &mut [StateError]) {
+        let Some(sent) = self.sent else { return };
+        for error in errors {
+            if reference(error, ORDER).as_deref() != Some(&self.held.order_id) {
+                continue;
+            }
+            for said in references_mut(error).filter(|said| said["referenceKey"] == UPDATE) {
+                if text(&said["referenceValue"]).as_deref() == Some(&sent.update.to_string()) {
+                    said["referenceValue"] = sent.manager.to_string().into();
+                }
+            }
+        }
+    }
+}
+
+const ORDER: &str = "orderId";
+const UPDATE: &str = "orderUpdateId";
+
+/// Whether an error of this type says that an order is not taken: `orderError`, `orderUpdateError`, `validationError`, `noRouteError`
+/// in 2.x, `INVALID_ORDER`, `OUTDATED_ORDER_UPDATE`, `VALIDATION_FAILURE`, `NO_ROUTE_TO_TARGET` and others in 3.0.
+fn is_of_orders(error_type: &str) -> bool {
+    let name = error_type.to_ascii_lowercase();
+    ["order", "validation", "route"].iter().any(|word| name.contains(word))
+}
+
+/// What an error refers to under this key.
+fn reference(error: &StateError, key: &str) -> Option<String> {
+    let all = error.rest.get("errorReferences")?.as_array()?;
+    all.iter().find(|said| said["referenceKey"] == key).and_then(|said| text(&said["referenceValue"]))
+}
+
+fn references_mut(error: &mut StateError) -> impl Iterator<Item = &mut Value> {
+    error.rest.get_mut("errorReferences").and_then(Value::as_array_mut).into_iter().flatten()
+}
+
+/// A text, or a number that should be one.
+fn text(value: &Value) -> Option<String> {
+    value.as_str().map(str::to_owned).or_else(|| value.as_u64().map(|number| number.to_string()))
+}
