@@ -53,9 +53,11 @@ impl Default for Region {
 /// Every method takes the fleet as an argument and refuses a fleet other than that of the table. It compares a checksum
 /// of the number of agents, their paths and their radii, which has 32 bits: it guards against mistakes, and overlooks
 /// about one in two billion. Start times, profiles, margins and lateness may change.
+///
 /// A motion whose [`Motion::lag`] has grown since (by a longer wait in floating point, or a profile that misses the end
-/// of its path by more) has to be given to [`Ecm::replace`]: the regions are those of the lag with which they were
-/// computed, and too small by what was added to it.
+/// of its path by more) has to be given to [`Ecm::replace`]. The regions are those of the lag with which they were computed: with a larger
+/// one they are too small, or are missing where the agents only came near.
+///
 /// [`Ecm::replace`] replaces one agent. [`Ecm::insert`] and [`Ecm::remove`] are for fleets to which agents are added,
 /// or from which they are removed, at the end. On a host, with the feature `std`, a table that stores vectors can grow:
 /// see `Ecm::grown`.
@@ -237,7 +239,7 @@ where
     R: AsRef<[Region]> + AsMut<[Region]>,
     P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
 {
-    /// Computes the table of a whole fleet of at most 65535 agents.
+    /// Computes the table of a whole fleet of at most 65536 agents.
     ///
     /// Cost: a box test for each pair of agents, and a few hundred operations for each pair of segments that meet.
     ///
@@ -322,7 +324,8 @@ where
     /// touched.
     ///
     /// # Errors
-    /// [`Full`] if the storage is too small, and [`Mismatch`]; the fleet and the table are then unchanged.
+    /// [`Full`] if the storage is too small, and [`Mismatch`]; the fleet and the table are then unchanged. Only if the regions from before
+    /// do not fit any more, because the lag of a motion has grown since, the table is empty, as after [`Ecm::clear`].
     pub fn replace<'m>(
         &mut self,
         fleet: &mut [Motion<'m, S>],
@@ -339,9 +342,12 @@ where
         if outcome.is_err()
             && let Some(place) = fleet.get_mut(agent)
         {
-            // The old regions fit: they are computed again from the same motions.
+            // The old regions fit: they are computed again from the same motions. With a larger lag they may not.
             *place = before;
-            self.add_row(fleet, agent)?;
+            if self.add_row(fleet, agent).is_err() {
+                self.clear();
+                return Ok(outcome?);
+            }
         }
         self.fleet = Known::all(&*fleet);
         Ok(outcome?)

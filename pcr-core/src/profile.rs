@@ -51,14 +51,22 @@ impl<S: Scalar> Phase<S> {
         }
     }
 
-    /// Merges both phases if they follow one another at the same acceleration.
+    /// Merges both phases if they follow one another at the same acceleration, which is not known to be that where it was rounded.
     pub(crate) fn joined(&self, next: &Self) -> Option<Self> {
-        (self.acceleration == next.acceleration).then(|| Self {
+        let is_same = self.acceleration == next.acceleration && self.is_exact() && next.is_exact();
+        is_same.then(|| Self {
             time: Interval::new(self.time.lo, next.time.hi),
             length: Interval::new(self.length.lo, next.length.hi),
             speed: [self.speed[0], next.speed[1]],
             acceleration: self.acceleration,
         })
+    }
+
+    /// Whether the acceleration leads from one speed to the other. Rounded to a fixed-point format it may not, over a long time.
+    fn is_exact(&self) -> bool {
+        let [before, after] = self.speed;
+        let gain = self.acceleration.times(self.time.length()).narrow();
+        (before + gain - after).abs() <= S::rounding(before.max(after) + self.acceleration.abs()).double()
     }
 
     /// The phase that follows `self`: `duration` \[s\] at `acceleration` \[m/s²\].
@@ -84,6 +92,30 @@ impl<S: Scalar> Phase<S> {
         Ok(Self { time, length, speed: [before, after], acceleration })
     }
 
+    /// The phase that follows `self`: `duration` \[s\] at the acceleration that leads to the speed `after` \[m/s\]. In fixed point this is more
+    /// accurate than [`Phase::then`], where the rounding error of the acceleration counts multiplied by the duration.
+    ///
+    /// # Errors
+    /// As [`Phase::starting_at`], and [`Invalid::NonPositive`] for the duration.
+    ///
+    /// ```
+    /// # use pcr_core::Phase;
+    /// let begin = Phase::starting_at(0.0, 0.0, 0.0)?;
+    /// let phase = begin.then_to(4.0, 2.0)?;
+    /// assert_eq!((phase.speed(), phase.acceleration(), phase.length().hi), ([0.0, 2.0], 0.5, 4.0));
+    /// # Ok::<(), pcr_core::Invalid>(())
+    /// ```
+    pub fn then_to(&self, duration: S, after: S) -> Result<Self, Invalid> {
+        positive(duration, "duration")?;
+        not_negative(after, "speed")?;
+        let [_, before] = self.speed;
+        let acceleration = in_range((after - before).quotient(duration), "acceleration")?;
+        let travelled = (before + after).times(duration).half().narrow();
+        in_range(self.time.hi + duration, "duration of the profile")?;
+        let to = in_range(self.length.hi + travelled, "length of the profile")?;
+        Ok(self.until(duration, to, after, acceleration))
+    }
+
     /// Time since the start of the motion \[s\].
     pub fn time(&self) -> Interval<S> {
         self.time
@@ -107,13 +139,25 @@ impl<S: Scalar> Phase<S> {
     /// Speed at a time since the start of the motion \[m/s\].
     pub fn speed_at(&self, time: S) -> S {
         let [before, after] = self.speed;
-        let elapsed = time.clamp(self.time.lo, self.time.hi) - self.time.lo;
-        let gain = self.acceleration.times(elapsed).narrow();
+        let (elapsed, whole) = (time.clamp(self.time.lo, self.time.hi) - self.time.lo, self.time.length());
+        let gain = if whole > S::ZERO { (after - before).portion(elapsed, whole) } else { S::ZERO };
         (before + gain).clamp(before.min(after), before.max(after))
     }
 
+    /// Also where the acceleration was rounded to 0.
     fn slows(&self) -> bool {
-        self.acceleration < S::ZERO
+        self.acceleration < S::ZERO || self.acceleration == S::ZERO && self.speed[1] < self.speed[0]
+    }
+
+    /// Largest distance of the travelled length from a linear function of the time, over a part of the phase of this
+    /// duration \[m\].
+    pub(crate) fn bulge(&self, duration: S) -> S {
+        S::ramp_bulge(self.ramp(), duration)
+    }
+
+    /// Whether the travelled lengths differ by a linear function of the time.
+    pub(crate) fn goes_like(&self, other: &Self) -> bool {
+        self.slows() == other.slows() && S::ramps_alike(self.ramp(), other.ramp())
     }
 
     /// The ramp that begins at the start of a phase that speeds up, or at the end of one that slows down.
@@ -366,7 +410,8 @@ impl<'a, S: Scalar> ProfileRef<'a, S> {
     pub fn first_time_at(self, length: S) -> S {
         let index = self.phases.partition_point(|phase| phase.length.hi < length);
         match self.phases.get(index) {
-            Some(phase) => phase.time_at(length.max(phase.length.lo)),
+            Some(phase) if length <= phase.length.lo => phase.time.lo,
+            Some(phase) => phase.time_at(length),
             None => self.duration(),
         }
     }

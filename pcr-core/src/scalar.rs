@@ -165,6 +165,16 @@ pub trait Scalar:
     fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self;
     /// Time since the slow end of a ramp after which `length` is travelled: the inverse of [`Scalar::ramp_length`].
     fn ramp_time(ramp: Ramp<Self>, length: Self) -> Self;
+    /// Largest distance \[m\] of the map from time to length on a ramp from a line, over a part of the ramp that takes `duration`: h²/8 times
+    /// its second derivative. It is that of the map as it is computed; fixed point rounds it to nearest.
+    fn ramp_bulge(ramp: Ramp<Self>, duration: Self) -> Self {
+        let gain = ramp.acceleration.times(duration).narrow();
+        gain.times(duration).narrow().half().half().half()
+    }
+    /// Whether two ramps have the same second derivative, so that lengths on them differ by a linear function of the time.
+    fn ramps_alike(one: Ramp<Self>, other: Ramp<Self>) -> bool {
+        one.acceleration == other.acceleration
+    }
     /// Bound on the rounding error of every distance that the kernels compare with a radius, in a configuration of the
     /// given extent ([`Motion::extent`](crate::Motion::extent)). `docs/errors.md` derives it for each format.
     fn slack(extent: Self) -> Self;
@@ -192,7 +202,7 @@ pub trait Scalar:
 
 /// Motion at constant acceleration, described from its slow end, where neither map between time and length cancels.
 ///
-/// The acceleration follows from the other fields. Floating point computes with it. In fixed point its rounding error
+/// The acceleration follows from the other fields, up to its rounding. Floating point computes with it. In fixed point its rounding error
 /// would count multiplied by half the square of the elapsed time, so the maps interpolate between both ends of the ramp
 /// instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -299,7 +309,7 @@ pub trait Angle<S: Scalar>:
     }
     /// Sine and cosine.
     fn sin_cos(self) -> (S::Unit, S::Unit);
-    /// Angle of the vector `(x, y)` in `[-π, π]`; 0 for the zero vector.
+    /// Angle of the vector `(x, y)` in `[-π, π]`; 0 for the zero vector, or ±π where `x` is a negative zero.
     fn atan2(y: S, x: S) -> Self;
     /// The angles of two vectors.
     fn atan2_each([y, v]: [S; 2], [x, u]: [S; 2]) -> [Self; 2] {

@@ -22,6 +22,33 @@ fn gain<const F: u32>(ramp: Ramp<Q<F>>) -> Scaled {
     scaled(ramp.length).over(scaled(ramp.duration)).plus(scaled(ramp.slow).minus())
 }
 
+/// L - v T, exact, in squares of the last digit: how far the ramp is from a uniform motion at its slow end.
+fn rest<const F: u32>(ramp: Ramp<Q<F>>) -> i64 {
+    let [length, slow, duration] = [ramp.length, ramp.slow, ramp.duration].map(|number| i64::from(number.to_bits()));
+    (length << F) - slow * duration
+}
+
+/// Whether the map is off a line by half a last digit at most: a uniform motion, but for rounding.
+fn is_uniform<const F: u32>(ramp: Ramp<Q<F>>) -> bool {
+    rest(ramp).abs() <= 2 << F
+}
+
+/// `|L - v T| (h/T)² / 4`, to nearest. Cost: a division.
+pub(crate) fn bulge<const F: u32>(ramp: Ramp<Q<F>>, duration: Q<F>) -> Q<F> {
+    if is_uniform(ramp) {
+        return Q::from_bits(0);
+    }
+    let part = scaled(duration).over(scaled(ramp.duration));
+    let rest = Scaled::new(rest(ramp), -2 * F as i32 - 2).magnitude();
+    rounded(rest.times(part).times(part))
+}
+
+/// Whether lengths on both differ by a linear function of the time: on the same ramp, or on two that are uniform.
+pub(crate) fn alike<const F: u32>(one: Ramp<Q<F>>, other: Ramp<Q<F>>) -> bool {
+    let ends = |ramp: Ramp<Q<F>>| (ramp.slow, ramp.duration, ramp.length);
+    ends(one) == ends(other) || is_uniform(one) && is_uniform(other)
+}
+
 /// `(v + (L/T - v) t/T) t`. Cost: two divisions.
 pub(crate) fn length<const F: u32>(ramp: Ramp<Q<F>>, elapsed: Q<F>) -> Q<F> {
     if elapsed.to_bits() <= 0 {
@@ -75,6 +102,24 @@ mod tests {
                 assert!(off(time(ramp, way), exact) < 0.52, "{way} of {ramp:?}");
             }
         }
+    }
+
+    /// By the acceleration, rounded to the format, it was too small, and contacts were missed.
+    #[test]
+    fn a_bulge_is_that_of_the_map() {
+        for (slow, fast, duration) in [(0.0, 1.5, 3.0), (0.25, 2.0, 7.0), (0.0, 0.004, 800.0), (0.1, 5.0, 40.0)] {
+            let ramp = ramp(slow, fast, duration);
+            for parts in [1.0, 2.0, 7.0] {
+                let part = q(duration / parts);
+                let [a, b] = [0.0, part.to_f64()].map(|time| super::length(ramp, q(time)).to_f64());
+                let middle = super::length(ramp, q(0.5 * part.to_f64())).to_f64();
+                let off = (0.5 * (a + b) - middle).abs();
+                assert!((bulge(ramp, part).to_f64() - off).abs() * 65_536.0 < 1.6, "{ramp:?} {parts}");
+            }
+            assert!(alike(ramp, ramp));
+        }
+        let [even, fast] = [ramp(1.0, 1.0, 5.0), ramp(3.0, 3.0, 7.0)];
+        assert!(bulge(even, even.duration) == q(0.0) && alike(even, fast) && !alike(even, ramp(1.0, 1.001, 5.0)));
     }
 
     #[test]

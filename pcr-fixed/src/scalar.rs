@@ -116,6 +116,12 @@ impl<const F: u32> Scalar for Q<F> {
     fn ramp_time(ramp: Ramp<Self>, length: Self) -> Self {
         ramp::time(ramp, length)
     }
+    fn ramp_bulge(ramp: Ramp<Self>, duration: Self) -> Self {
+        ramp::bulge(ramp, duration)
+    }
+    fn ramps_alike(one: Ramp<Self>, other: Ramp<Self>) -> bool {
+        ramp::alike(one, other)
+    }
     fn slack(extent: Self) -> Self {
         Self(SLACK + (extent.0 >> SLACK_SHIFT))
     }

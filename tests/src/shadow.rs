@@ -202,6 +202,12 @@ impl<X: Shadowed> Scalar for Number<X> {
     fn ramp_time(ramp: Ramp<Self>, length: Self) -> Self {
         Self::exact(X::S::ramp_time(plain(ramp), length.value))
     }
+    fn ramp_bulge(ramp: Ramp<Self>, duration: Self) -> Self {
+        Self::exact(X::S::ramp_bulge(plain(ramp), duration.value))
+    }
+    fn ramps_alike(one: Ramp<Self>, other: Ramp<Self>) -> bool {
+        X::S::ramps_alike(plain(one), plain(other))
+    }
     fn slack(extent: Self) -> Self {
         Self::exact(X::S::slack(extent.value))
     }

@@ -249,3 +249,81 @@ fn searches_from_beyond_the_format_find_nothing() {
     assert!(earliest_departure(row(), 4.0, 0.0).is_some());
     assert_eq!([f64::NAN, f64::INFINITY].map(|length| earliest_departure(row(), length, 0.0)), [None; 2]);
 }
+
+/// A ramp of 15,000 s at one last digit of acceleration, and somebody who goes beside it at its mean speed: where the ramp is slowest they
+/// overlap by 0.4 m. By the acceleration, rounded to the format, the ramp was straighter, and nobody met.
+#[test]
+fn a_slow_ramp_in_fixed_point_is_no_line() {
+    let n = <Q12 as Format>::from_f64;
+    let path = |x: f64, length: f64| {
+        let pose = Pose {
+            position: Point::new(n(x), <Q12 as Scalar>::ZERO),
+            heading: <Q12 as Format>::angle(0.0).expect("an angle"),
+        };
+        Path::<Q12, 1>::starting_at(pose).and_then(|path| path.line(n(length))).expect("within the format")
+    };
+    let lead = [(13732.92041015625, 0.0), (15001.5, 0.000244140625), (2000.0, 0.0)].map(|(t, a)| (n(t), n(a)));
+    let lead = Profile::<Q12, 3>::from_pieces(n(0.5), lead).expect("within the format");
+    let beside = [(15000.490234375, 0.0), (3200.0, 0.0)].map(|(t, a)| (n(t), n(a)));
+    let beside = Profile::<Q12, 2>::from_pieces(n(2.331298828125), beside).expect("within the format");
+    for closer in [0.0, 0.05] {
+        let paths = [
+            path(10.0, lead.as_profile().length().to_f64()),
+            path(8.980011224746704 + closer, beside.as_profile().length().to_f64()),
+        ];
+        let one = Motion::new(paths[0].as_path(), lead.as_profile(), n(0.5), <Q12 as Scalar>::ZERO).expect("a motion");
+        let other =
+            Motion::new(paths[1].as_path(), beside.as_profile(), n(0.5), n(13733.42529296875)).expect("a motion");
+        let pair = Encounter::new(&one, &other);
+        let deepest =
+            pair.conflicts(pair.time()).map(|conflict| conflict.deepest.separation.to_f64()).fold(9.0, f64::min);
+        assert!((deepest - (0.6 - closer)).abs() < 0.04, "{deepest}");
+        assert!((pair.closest(pair.time()).separation.to_f64() - (0.6 - closer)).abs() < 0.04);
+    }
+}
+
+/// Stretched to 2,400 s, a ramp has less than half a last digit of acceleration. It was a line then.
+#[test]
+fn a_motion_that_is_stretched_is_not_straightened() {
+    fn meets<S: Format>() {
+        let n = S::from_f64;
+        let limits = Limits { speed: n(1.0), acceleration: n(0.5) };
+        let quick = Profile::<S, 3>::rest_to_rest(n(4.0), limits).expect("small");
+        let slow = Profile::<S, 3>::stretched(quick.as_profile(), n(2400.0)).expect("small");
+        let along = Path::<S, 1>::starting_at(at(0.0, 0.0, 0.0)).and_then(|path| path.line(n(4.0))).expect("small");
+        let ego = Motion::new(along.as_path(), slow.as_profile(), n(0.2), S::ZERO).expect("small");
+        // Half of the ramp, after which a quarter of its way is behind.
+        for time in [200.0, 400.0, 600.0] {
+            let exact = (time / 800.0_f64).powi(2);
+            assert!((ego.length_at(n(time)).to_f64() - exact).abs() < 1e-3, "{time}");
+            assert!((slow.as_profile().speed_at(n(time)).to_f64() - time / 320_000.0).abs() < 1e-3, "{time}");
+        }
+        let (speed, radius) = (0.002, 0.4);
+        for tenth in -6..=6 {
+            let x = 0.25 + 0.1 * f64::from(tenth);
+            let across =
+                Path::<S, 1>::starting_at(at(x, -1.0, FRAC_PI_2)).and_then(|path| path.line(n(2.0))).expect("small");
+            let profile = Profile::<S, 1>::from_pieces(n(speed), [(n(1000.0), S::ZERO)]).expect("small");
+            let length = profile.as_profile().length().to_f64();
+            let across = if (length - 2.0).abs() < 1e-9 {
+                across
+            } else {
+                Path::<S, 1>::starting_at(at(x, -1.0, FRAC_PI_2)).and_then(|path| path.line(n(length))).expect("small")
+            };
+            let other = Motion::new(across.as_path(), profile.as_profile(), n(0.2), n(-100.0)).expect("small");
+            let least = (0..8000).map(|k| n(0.1 * f64::from(k))).map(|time| {
+                let [a, b] = [ego.position_at(time), other.position_at(time)];
+                (a.x.to_f64() - b.x.to_f64()).hypot(a.y.to_f64() - b.y.to_f64())
+            });
+            let (least, pair) = (least.fold(9.0, f64::min), Encounter::new(&ego, &other));
+            let (margin, found) = (0.002, pair.contacts(pair.time()).next().is_some());
+            if (least - radius).abs() > margin + pair.tolerance().to_f64() {
+                assert_eq!(found, least < radius, "{}, {x}: {least}", S::NAME);
+            }
+        }
+    }
+    meets::<f64>();
+    meets::<f32>();
+    meets::<Q16>();
+    meets::<Q12>();
+}

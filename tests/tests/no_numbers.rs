@@ -148,6 +148,7 @@ fn parked<S: Format>() {
     let brakes = Brakes::new(number(0.5), number(0.125)).expect("brakes");
     if S::NAME == f64::NAME {
         assert_eq!(brakes.speed(number(f64::NAN)), S::ZERO);
+        assert_eq!(brakes.distance(number(f64::NAN)), brakes.distance(S::LIMIT));
     }
     assert!(brakes.speed(number(f64::INFINITY)).is_finite());
 }
@@ -181,6 +182,27 @@ fn what_is_no_number_is_not_free() {
 }
 
 /// An agent of 17 turns and a third, and one of more than the format knows the direction of.
+/// A window of which one end was no number was dropped where the other agent stands.
+fn who_stands_blocks<S: Format>() {
+    let (paths, profile) = crossing::<S>();
+    let motion = |k: usize| Motion::new(paths[k].as_path(), profile.as_profile(), S::from_f64(0.25), S::ZERO);
+    let fleet = [motion(0).expect("small"), motion(1).expect("small")];
+    let (ego, other) = (&fleet[0], &fleet[0]);
+    let (nan, number) = (S::from_f64(f64::NAN), S::from_f64);
+    for (place, lo, hi) in [(4.0, number(9.0), nan), (4.0, nan, nan), (0.0, nan, number(-1.0)), (0.0, nan, nan)] {
+        let part = Interval::new(number(place), number(place));
+        let blocked = Encounter::new(ego, other).blocked(part, Interval::new(lo, hi)).next();
+        assert!(blocked.is_some(), "{place} {lo:?} {hi:?}");
+    }
+}
+
+#[test]
+fn who_stands_blocks_in_floating_point() {
+    who_stands_blocks::<f64>();
+    who_stands_blocks::<f32>();
+    who_stands_blocks::<Micro>();
+}
+
 #[test]
 fn headings_of_many_turns_are_right_or_refused() {
     let pose = |heading: f32| Pose { position: Point::new(0.0_f32, 0.0), heading: pcr_core::Radians(heading) };

@@ -131,3 +131,38 @@ fn a_circle_to_the_other_side_is_another_path() {
     assert_eq!(table.row(&[left.motion(), courses[0].motion()], 0).map(drop), Ok(()));
     assert_eq!(table.row(&[right.motion(), courses[0].motion()], 0).map(drop), Err(Mismatch::OtherFleet));
 }
+
+/// The lag of one motion grew, and a region that was none of the table's is one now. It did not fit: the table had lost all regions of
+/// another agent and answered that its way is free.
+#[test]
+fn a_table_that_cannot_be_put_back_answers_nothing() {
+    let line = |start, length| Disc { radius: 0.3, start, legs: vec![Leg::Line(length)] };
+    let discs = [
+        line([0.0, 0.0, 0.0], 1000.0),
+        // Beside it, farther than both radii by half a millimetre.
+        line([0.0, 0.6005, 0.0], 1000.0),
+        line([500.0, -3.0, FRAC_PI_2], 2.9),
+        // Across the ways of two.
+        line([500.2, 8.0, -FRAC_PI_2], 8.0),
+    ];
+    let courses = discs.map(|disc| Course::<f64>::new(&disc).expect("a valid disc"));
+    let mut fleet = [0, 1, 2].map(|k| courses[k].motion());
+    let longer = pcr_core::Profile::<f64, 1>::from_pieces(1.0, [(1000.0009, 0.0)]).expect("small");
+    let across = courses[3].motion();
+    let mut orders = Orders::new([Region::EMPTY; 1], [Piece::EMPTY; 1], [Order::EMPTY; 4]);
+    orders.fill(&fleet).expect("room for the one region");
+    let mut ecm = Ecm::new([Region::EMPTY; 1], [Piece::EMPTY; 1]);
+    ecm.fill(&fleet).expect("room for the one region");
+    let drifts = Motion::new(fleet[1].path(), longer.as_profile(), 0.3, 0.0).expect("a millimetre is allowed");
+    assert!(drifts.lag() > 0.8e-3);
+    fleet[1] = drifts;
+    let before = fleet;
+    for is_table in [true, false] {
+        let mut fleet = before;
+        let refused = if is_table { ecm.replace(&mut fleet, 0, across) } else { orders.replace(&mut fleet, 0, across) };
+        assert!(matches!(refused, Err(TableError::Full(_))), "{refused:?}");
+        assert_eq!(fleet[0].path().length(), before[0].path().length(), "the fleet is as it was");
+        let rows = if is_table { ecm.row(&fleet, 0).map(drop) } else { orders.row(&fleet, 0).map(drop) };
+        assert!(rows.is_err(), "no row of an agent whose regions are lost");
+    }
+}

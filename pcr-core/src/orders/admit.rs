@@ -161,7 +161,7 @@ where
             return Ok(saved);
         }
         if replaced.is_ok() {
-            self.ecm.replace(fleet, agent, before)?;
+            self.put_back(fleet, agent, before)?;
         }
         self.spread_saved(agent, kept, saved);
         replaced?;
@@ -177,10 +177,27 @@ where
         saved: usize,
     ) -> Result<(), Refused> {
         let kept = self.gather(agent, |_, _| {});
-        // The old regions fit, as they did before.
-        self.ecm.replace(fleet, agent, before)?;
+        self.put_back(fleet, agent, before)?;
         self.spread_saved(agent, kept, saved);
         Ok(())
+    }
+
+    /// Gives an agent the motion from before. Its regions fit, as they did before. If they do not, because the lag of a motion has grown
+    /// since, the table is empty: it must not answer with what it does not have.
+    fn put_back<'m>(
+        &mut self,
+        fleet: &mut [Motion<'m, S>],
+        agent: usize,
+        before: Motion<'m, S>,
+    ) -> Result<(), TableError> {
+        let outcome = self.ecm.replace(fleet, agent, before);
+        if outcome.is_err() {
+            self.ecm.clear();
+            if let Some(place) = fleet.get_mut(agent) {
+                *place = before;
+            }
+        }
+        outcome
     }
 
     fn spread_saved(&mut self, agent: usize, kept: usize, saved: usize) {

@@ -36,10 +36,10 @@ impl<S: Scalar> Brakes<S> {
     }
 
     /// Stopping distance from a speed \[m/s\], rounded up \[m\]: `v τ + v² / 2a`. A speed beyond [`Scalar::LIMIT`] is
-    /// taken as that, and a distance beyond it may be too short, but is beyond it as well. 0 if the speed is not above
-    /// 0, as NaN is not.
+    /// taken as that, and so is a speed that is no number; a distance beyond it may be too short, but is beyond it as well. 0 if the
+    /// speed is not above 0.
     pub fn distance(&self, speed: S) -> S {
-        let speed = S::ZERO.max(speed).min(S::LIMIT);
+        let speed = if speed <= S::LIMIT { S::ZERO.max(speed) } else { S::LIMIT };
         let ramp = speed.portion(speed, self.deceleration.double());
         let way = speed.times(self.reaction).narrow() + ramp;
         // The slack is added to every speed above 0, because the distance itself rounds to 0 for the lowest speeds.

@@ -24,15 +24,16 @@ pub struct Constraint<S> {
 
 impl<S: Scalar> Constraint<S> {
     /// The ego passes the region before the other agent: it is not at these lengths from the time at which the other
-    /// agent arrives there.
+    /// agent arrives there, or at all if the other agent starts there. The lateness of both counts.
     pub fn before(region: &RegionRef<'_, S>) -> Self {
-        Self { length: region.length(), time: Interval::new(region.time().lo, S::LIMIT) }
+        let arrives = if region.is_open_at_start() { -S::LIMIT } else { region.with_lateness(region.time()).lo };
+        Self { length: region.length(), time: Interval::new(arrives, S::LIMIT) }
     }
 
     /// The ego passes the region after the other agent: it is not at these lengths until the other agent has left them,
-    /// or at all if the other agent ends its path there.
+    /// or at all if the other agent ends its path there. The lateness of both counts.
     pub fn after(region: &RegionRef<'_, S>) -> Self {
-        let left = if region.is_open_at_end() { S::LIMIT } else { region.time().hi };
+        let left = if region.is_open_at_end() { S::LIMIT } else { region.with_lateness(region.time()).hi };
         Self { length: region.length(), time: Interval::new(-S::LIMIT, left) }
     }
 

@@ -76,7 +76,7 @@ impl<S: Scalar> RegionRef<'_, S> {
     }
 
     /// Extends an interval of delays by the lateness of both agents.
-    pub(super) fn with_lateness(&self, delays: Interval<S>) -> Interval<S> {
+    pub(crate) fn with_lateness(&self, delays: Interval<S>) -> Interval<S> {
         let (own, their) = (self.ego_motion().lateness(), self.other_motion().lateness());
         let lo = if delays.lo > -S::LIMIT { delays.lo - own } else { delays.lo };
         Interval::new(lo, if delays.hi < S::LIMIT { delays.hi + their } else { delays.hi })

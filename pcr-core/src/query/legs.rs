@@ -6,7 +6,7 @@
 use crate::geometry::{Bounds, Interval, Point};
 use crate::motion::Motion;
 use crate::profile::Phase;
-use crate::scalar::{Scalar, Wide};
+use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
 
 /// A part of a motion at constant acceleration on one segment, or a stand.
@@ -41,13 +41,9 @@ impl<S: Scalar> Leg<'_, S> {
     /// The error of linear interpolation is at most h²/8 times the largest second derivative: over time this is the
     /// acceleration, over length the curvature.
     pub(crate) fn deviation(&self, way: S, duration: S) -> S {
-        let eighth = |length: S| length.half().half().half();
         let bend = self.segment.bulge(way);
-        let Some(phase) = self.phase else {
-            return bend;
-        };
-        let gain = phase.acceleration().abs().times(duration).narrow();
-        if gain <= S::ZERO { bend } else { bend.double() + eighth(gain.times(duration).narrow()) }
+        let bulge = self.phase.map_or(S::ZERO, |phase| phase.bulge(duration));
+        if bulge <= S::ZERO { bend } else { bend.double() + bulge }
     }
 
     /// Whether both have the same acceleration along segments of the same shape and direction, on which they are at the same place at
@@ -55,7 +51,7 @@ impl<S: Scalar> Leg<'_, S> {
     pub(crate) fn goes_like(&self, other: &Self, [at, there]: [S; 2]) -> bool {
         let (Some(own), Some(their)) = (self.phase, other.phase) else { return false };
         let [here, yonder] = [self.segment, other.segment];
-        own.acceleration() == their.acceleration()
+        own.goes_like(their)
             && here.direction == yonder.direction
             && here.curve == yonder.curve
             && (here.curve == Curve::Line || at - here.from == there - yonder.from)

@@ -324,9 +324,11 @@ fn kept_from<S: Scalar>(
     let inner = during.limited();
     let window = times(other, lengths, Interval::new(inner.lo - late, inner.hi + early))?;
     let (lo, hi) = (window.lo - early, window.hi + late);
-    // No motion has times beyond the limits.
-    let lo = if lo <= inner.lo { during.lo } else { lo };
-    let hi = if hi >= inner.hi { during.hi } else { hi };
+    // No motion has times beyond the limits. What is no number is no end.
+    let before = if during.lo < inner.lo { during.lo } else { inner.lo };
+    let after = if during.hi > inner.hi { during.hi } else { inner.hi };
+    let lo = if lo <= inner.lo { before } else { lo };
+    let hi = if hi >= inner.hi { after } else { hi };
     (lo <= hi).then_some(Interval::new(lo, hi))
 }
 

@@ -166,6 +166,7 @@ fn constructors<S: Scalar>() -> Result<(), Invalid> {
     any((Segment::point_at(&segment, number()), Segment::heading_at(&segment, number())));
     let phase = Phase::<S>::starting_at(number(), number(), number())?;
     let phase = any(Phase::then(&phase, number(), number())?);
+    let phase = any(Phase::then_to(&phase, number(), number())?);
     any((Phase::time(&phase), Phase::length(&phase), Phase::speed(&phase), Phase::speed_at(&phase, number())));
     any(Phase::acceleration(&phase));
     let limits = Limits { speed: number(), acceleration: number() };

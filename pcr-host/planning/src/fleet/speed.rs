@@ -2,7 +2,6 @@
 
 use super::{Format, derived, number};
 use pcr_core::Phase;
-use pcr_core::scalar::Wide;
 use pcr_formats::scenario::speed_after;
 
 /// Rounds in which the last digits of the travelled length are settled. One does it; a second one mends
@@ -65,32 +64,16 @@ fn targets(v0: f64, pieces: &[(f64, f64)]) -> Vec<f64> {
     speeds
 }
 
-/// The phase that follows `last` from the speed `before` to the speed `after`, and the speed that it reaches: `after`
-/// but for rounding, and 0 exactly.
+/// The phase that follows `last` from the speed `before` to the speed `after`, and the speed that it reaches. A phase that the format
+/// takes as one of no duration reaches none.
 fn phase<S: Format>(last: Option<&Phase<S>>, before: S, after: f64, duration: f64) -> Result<(Phase<S>, S), String> {
-    let duration = number::<S>("duration", duration)?;
-    let mut acceleration = S::ZERO;
-    if duration > S::ZERO {
-        let gain = number::<S>("speed", after)? - before;
-        let exact = gain.to_f64() / duration.to_f64();
-        // What rounding left of a change of speed may be too little for the format.
-        if gain.abs() > S::slack(before) || S::from_f64(exact) != S::ZERO {
-            acceleration = number("accel", exact)?;
-        }
-    }
-    // The core's own sum, so that both know the same speed.
-    let reached = |acceleration: S| before + acceleration.times(duration).narrow();
-    if after == 0.0 {
-        // Down to 0 and not to a rounding above it: the core takes as 0 what is below it by rounding.
-        for _ in 0..ROUNDS {
-            if reached(acceleration) > S::ZERO {
-                acceleration = acceleration - S::slack(acceleration.abs()).half().half();
-            }
-        }
-    }
-    let phase = match last {
-        None => Phase::starting_at(before, duration, acceleration),
-        Some(last) => last.then(duration, acceleration),
+    let (duration, after) = (number::<S>("duration", duration)?, S::from_f64(after));
+    let begin = |duration| Phase::starting_at(before, duration, S::ZERO);
+    let phase = match (last, duration > S::ZERO) {
+        (None, false) => begin(duration),
+        (Some(last), false) => last.then(duration, S::ZERO),
+        (None, true) => begin(S::ZERO).and_then(|begin| begin.then_to(duration, after)),
+        (Some(last), true) => last.then_to(duration, after),
     };
-    Ok((phase.map_err(derived::<S>)?, reached(acceleration).max(S::ZERO)))
+    Ok((phase.map_err(derived::<S>)?, if duration > S::ZERO { after } else { before }))
 }
