@@ -1,6 +1,7 @@
 //! The agents of a scenario as discs: the discs of a footprint, or a single one. With loads there is one set of discs
 //! for each stretch of the path on which the outline does not change.
 
+mod joints;
 mod offset;
 
 use crate::fleet::{Fleet, Format, Refused, Rounding};

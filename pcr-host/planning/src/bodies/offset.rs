@@ -4,9 +4,10 @@
 //! scaled by g = √((κ a)² + (1 - κ b)²) and a heading that differs by atan2(κ a, 1 - κ b), where the disc is a ahead
 //! and b to the left of the reference point. Where the curvature changes, its path has corners; these become turns in
 //! place of [`TURN`] radius, as in imported paths. Its speed jumps there from g v to g′ v; the profile changes it
-//! within a nanosecond, in formats other than `f64` within a millisecond. The largest displacement by this is added to
-//! the radius of the disc.
+//! within a nanosecond, in formats other than `f64` within a millisecond, or longer at high speeds (`joints.rs`). The largest displacement
+//! by this is added to the radius of the disc.
 
+use super::joints::{Joined, Piece, Times, joined, largest_jump};
 use crate::fleet::{Format, Rounding};
 use pcr_formats::footprint::Disc;
 use pcr_formats::scenario::{Agent, MotionSpec, Part, PathSegment};
@@ -26,23 +27,25 @@ pub(super) struct Precision {
     least: f64,
     /// Largest acceleration \[m/s²\].
     largest: f64,
+    /// The least time \[s\].
+    tick: f64,
 }
 
 impl Precision {
     /// That of the format for a vehicle.
     pub(super) fn of<S: Format>(vehicle: &Agent) -> Self {
         if S::NAME == f64::NAME {
-            return Self { nothing: NOTHING, least: 1e-9, largest: 1e9 };
+            return Self { nothing: NOTHING, least: 1e-9, largest: 1e9, tick: f64::MIN_POSITIVE };
         }
         let [x, y, _] = vehicle.start;
         let extent = S::from_f64(x.abs().max(y.abs()) + vehicle.length() + vehicle.reach());
         let nothing = S::slack(extent.min(S::LIMIT)).to_f64();
-        Self { nothing, least: 1.0 / 1024.0, largest: 0.5 * S::LIMIT.to_f64() }
+        Self { nothing, least: 1.0 / 1024.0, largest: 0.5 * S::LIMIT.to_f64(), tick: S::LEAST.to_f64() }
     }
 
-    /// How long a change of speed takes.
+    /// How long changes of speed take, up to this one.
     fn jump(&self, change: f64) -> f64 {
-        self.least.max(change.abs() / self.largest)
+        self.least.max(change / self.largest)
     }
 }
 
@@ -139,13 +142,9 @@ struct Tracer {
     heading: f64,
     path: Vec<PathSegment>,
     sources: Vec<usize>,
-    pieces: Vec<(f64, f64)>,
-    first: Option<f64>,
-    speed: f64,
-    fastest: f64,
+    pieces: Vec<Piece>,
     marks: Vec<[f64; 2]>,
     growth: f64,
-    lag: f64,
 }
 
 impl Tracer {
@@ -157,12 +156,8 @@ impl Tracer {
             path: Vec::new(),
             sources: Vec::new(),
             pieces: Vec::new(),
-            first: None,
-            speed: 0.0,
-            fastest: 0.0,
             marks: vec![[0.0; 2]],
             growth,
-            lag: 0.0,
         }
     }
 
@@ -177,8 +172,7 @@ impl Tracer {
             self.growth += 2.0 * own;
             self.marks.push([at, reference + length]);
             if !quick {
-                self.reach(0.0);
-                self.pieces.push((duration, 0.0));
+                self.pieces.push(Piece { duration, speed: [0.0; 2], detour: 0.0 });
             }
             return;
         }
@@ -189,8 +183,8 @@ impl Tracer {
             self.sources.push(source);
             at += TURN * turn.abs();
             self.marks.push([at, reference]);
-            // Its chord, and its length before and after the motion makes up for it.
-            self.growth += (2.0 + TAU) * TURN;
+            // Its chord.
+            self.growth += 2.0 * TURN;
         }
         self.path.push(shape);
         self.sources.push(source);
@@ -199,34 +193,27 @@ impl Tracer {
             PathSegment::Line { .. } => heading,
             PathSegment::Arc { sweep, .. } => heading + sweep,
         };
-        for &Part { duration, before, after } in parts.iter().filter(|part| part.duration > 0.0) {
-            self.reach(scale * before);
-            self.pieces.push((duration, (scale * after - self.speed) / duration));
-            self.speed = scale * after;
-            self.fastest = self.fastest.max(self.speed);
-        }
-    }
-
-    /// Changes the speed.
-    fn reach(&mut self, speed: f64) {
-        if self.first.is_none() {
-            (self.first, self.speed) = (Some(speed), speed);
-        }
-        let change = speed - self.speed;
-        if change.abs() > self.precision.nothing || (speed == 0.0 && change != 0.0) {
-            let duration = self.precision.jump(change);
-            self.pieces.push((duration, change / duration));
-            self.lag += duration;
-            self.speed = speed;
-        }
-        self.fastest = self.fastest.max(speed);
+        let mut detour = TURN * turn.abs();
+        self.pieces.extend(parts.iter().filter(|part| part.duration > 0.0).map(|part| Piece {
+            duration: part.duration,
+            speed: [scale * part.before, scale * part.after],
+            detour: std::mem::take(&mut detour),
+        }));
     }
 
     fn finish(self, vehicle: &Agent, [x, y]: [f64; 2], id: u64) -> Offset {
-        // The lag and the way that is made up for it.
-        let radius = self.growth + 2.0 * self.lag * self.fastest;
+        let jump = self.precision.jump(largest_jump(&self.pieces));
+        let Precision { nothing, tick, .. } = self.precision;
+        let Joined { pieces, off } = joined(&self.pieces, Times { change: jump, nothing, tick });
+        let radius = self.growth + off;
+        let v0 = pieces.first().map_or(0.0, |first| first.speed[0]);
+        let mut speed = v0;
+        let pieces = pieces.iter().filter(|piece| piece.duration > 0.0).map(|piece| {
+            let change = piece.speed[1] - std::mem::replace(&mut speed, piece.speed[1]);
+            (piece.duration, change / piece.duration)
+        });
+        let motion = MotionSpec::Profile { v0, pieces: pieces.collect() };
         let heading = self.start.unwrap_or(vehicle.start[2]);
-        let motion = MotionSpec::Profile { v0: self.first.unwrap_or(0.0), pieces: self.pieces };
         let start = [x, y, heading];
         let agent = Agent { id, radius, start, path: self.path, motion, ..vehicle.clone() };
         Offset { agent, marks: self.marks, sources: self.sources, slack: 0.0 }
