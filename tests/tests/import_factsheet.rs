@@ -115,7 +115,9 @@ fn contours_grow_by_what_curves_are_off() {
     let coarse = Options { tolerance: Some(0.02), partial: true, ..options(&["A:B"]) };
     let fleet = scenario(Format::OpenTcs, CURVES, &coarse, &mut warnings).unwrap();
     let footprint = fleet.agents[0].footprint.as_ref().unwrap();
-    assert!(footprint.growth() > 1e-3 && footprint.growth() <= 0.02 + 1e-6, "{}", footprint.growth());
+    // And what headings are off, by 0.05 rad at most.
+    let most = 0.02 + 0.05 * footprint.reach();
+    assert!(footprint.growth() > 1e-3 && footprint.growth() <= most, "{}", footprint.growth());
     let bare = footprint.grown(-footprint.growth());
     assert!(footprint.discs().iter().zip(bare.discs()).all(|(own, bare)| own.radius > bare.radius));
 }

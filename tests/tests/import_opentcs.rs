@@ -274,7 +274,9 @@ fn vehicles_have_the_boxes_and_speeds_of_the_file() {
     let (vehicle, locks, warnings) = read(&large, &asked);
     assert_eq!((vehicle.radius, vehicle.speed, vehicle.footprint.is_none(), locks), (0.5, 1.0, true, 0));
     assert!(
-        warnings.contains(&"radius: 0.5 m; the bounding boxes of the vehicles reach 1.700 m".to_owned()),
+        warnings.contains(
+            &"radius: 0.5 m, a disc; the outline of the vehicle, which is not used then, reaches 1.700 m".to_owned()
+        ),
         "{warnings:?}"
     );
     let (_, _, warnings) = read(&large, &Options { radius: Some(1.8), ..asked });

@@ -188,5 +188,5 @@ fn vehicles_that_meet_on_long_curves_are_told() {
         let (off, length) = radius(tolerance);
         assert!(off >= (whole - length).abs() - fine, "{off} {length} {whole}");
     }
-    assert!(radius(0.5).0 > 0.1 && fine < 1e-4, "{fine}");
+    assert!(radius(0.5).0 > 0.01 && fine < 1e-4, "{fine}");
 }

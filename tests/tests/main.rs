@@ -54,6 +54,7 @@ mod loads;
 mod loads_turns;
 mod locks;
 mod locks_change;
+mod locks_curves;
 mod locks_footprints;
 mod micro;
 mod motions;

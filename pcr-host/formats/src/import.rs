@@ -39,6 +39,7 @@ mod ccbs;
 mod facing;
 mod factsheet;
 mod grid;
+mod heading;
 mod layout;
 mod levels;
 mod lif;
@@ -281,7 +282,8 @@ fn imported(
     if moves {
         layout.one_speed()?;
     }
-    let off: Vec<_> = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.deviation)).collect();
+    let radius = if vehicle.footprint.is_some() { vehicle.radius } else { 0.0 };
+    let off: Vec<_> = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.off(radius))).collect();
     report(&off, warnings);
     layout.warnings = warnings.all();
     if NO_NAMES.contains(&layout.name.as_str()) {

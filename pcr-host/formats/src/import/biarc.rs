@@ -16,6 +16,7 @@
 //! polygons.
 
 use super::ImportError;
+use super::heading::{self, binomials, framed};
 use super::nurbs::Bezier;
 use crate::scenario::PathSegment;
 use crate::scenario::Placed;
@@ -47,12 +48,14 @@ pub(super) struct Fit {
     pub(super) deviation: f64,
     /// Bound of the difference of both lengths \[m\].
     pub(super) longer: f64,
+    /// Bound of the difference of both headings at the same length \[rad\].
+    pub(super) turned: f64,
 }
 
 impl Fit {
     /// Lines and arcs that are the curve itself.
     pub(super) fn exact(pieces: Vec<Placed>) -> Self {
-        Self { pieces, deviation: 0.0, longer: 0.0 }
+        Self { pieces, ..Self::default() }
     }
 }
 
@@ -172,12 +175,12 @@ pub(super) fn fit(curves: &[Bezier], tolerance: f64) -> Result<Fit, ImportError>
     let (mut fit, mut fitted) = (Fit::default(), Vec::new());
     let mut rest: Vec<(Bezier, u32)> = curves.iter().rev().map(|curve| (curve.clone(), HALVINGS)).collect();
     while let Some((curve, halvings)) = rest.pop() {
-        match best(&curve, tolerance - rounding) {
-            Some((pieces, deviation)) => {
+        match best(&curve, tolerance - rounding, rounding) {
+            Some(Best { pieces, deviation, turned }) => {
                 fit.deviation = fit.deviation.max(deviation + rounding);
                 let before = fit.pieces.len();
                 fit.pieces.extend(pieces.into_iter().filter(|piece| piece.shape.length() > 0.0));
-                fitted.push((curve, before..fit.pieces.len()));
+                fitted.push((curve, before..fit.pieces.len(), [deviation, turned]));
             }
             None if halvings == 0 || fit.pieces.len() + rest.len() > MOST => {
                 return Err(ImportError::new(format!(
@@ -192,32 +195,86 @@ pub(super) fn fit(curves: &[Bezier], tolerance: f64) -> Result<Fit, ImportError>
     }
     let (mut along, mut short) = (Along::default(), Vec::new());
     let halvings = (PARTS - fitted.len().max(1).ilog2()).min(FINEST);
-    for (curve, pieces) in fitted {
+    for (curve, pieces, [deviation, turned]) in fitted {
         short.clear();
         parts(&curve, tolerance / 4096.0, halvings, &mut short);
-        along.follow(curve.ends()[0], &fit.pieces[pieces], &short);
+        let before = along.longer();
+        along.follow(curve.ends()[0], &fit.pieces[pieces.clone()], &short);
+        let ahead = before.max(along.longer()) + ahead(&fit.pieces[pieces.clone()], deviation, turned) + rounding;
+        fit.turned = fit.turned.max(turned + turn_within(&fit.pieces, pieces, ahead));
     }
     fit.deviation = fit.deviation.max(along.deviation + rounding);
     fit.longer = along.longer() + rounding;
     Ok(fit)
 }
 
-/// A line or a biarc for one piece, with a bound of its distance, where it is within the tolerance.
-fn best(curve: &Bezier, tolerance: f64) -> Option<(Vec<Placed>, f64)> {
+/// What stands for one piece of a curve.
+struct Best {
+    pieces: Vec<Placed>,
+    /// Bound of its distance \[m\].
+    deviation: f64,
+    /// Bound of the difference of the headings at points beside one another \[rad\].
+    turned: f64,
+}
+
+/// Largest difference of headings at a tolerance \[rad\]. It falls as the angle does between a curve and biarcs within that tolerance; an
+/// outline of some metres is larger by some times the tolerance of usual curves.
+fn most_turned(tolerance: f64) -> f64 {
+    (0.5 * tolerance.cbrt().powi(2)).min(0.05)
+}
+
+/// A line or a biarc for one piece, if it is within the tolerance.
+fn best(curve: &Bezier, tolerance: f64, rounding: f64) -> Option<Best> {
     let [from, to] = curve.ends();
     let line = Placed::line(from, to);
-    let within = |deviation: f64| deviation <= tolerance;
     // A straight or negligibly small curve becomes a line.
     let spread = curve.points().map(|[x, y]| (x - from[0]).hypot(y - from[1])).fold(0.0, f64::max);
     let straight = if spread <= tolerance / 4.0 { spread } else { distance(curve, &line) };
     if straight <= tolerance / 1024.0 || spread <= tolerance / 4.0 {
-        return Some((vec![line], straight));
+        // On a curve that is nothing but a point, as at a cusp, the vehicle turns in place.
+        let is_point = spread <= 64.0 * rounding;
+        let turned = if is_point { 0.0 } else { heading::between(curve, &line) };
+        if turned <= most_turned(tolerance) {
+            return Some(Best { pieces: vec![line], deviation: straight, turned });
+        }
     }
     let [leaving, arriving] = curve.headings()?;
     let arcs = biarc([from, to], [leaving, arriving])?;
     let [before, after] = curve.split(parameter(curve, &arcs[1]));
     let deviation = distance(&before, &arcs[0]).max(distance(&after, &arcs[1]));
-    within(deviation).then(|| (arcs.to_vec(), deviation))
+    if deviation > tolerance {
+        return None;
+    }
+    let turned = heading::between(&before, &arcs[0]).max(heading::between(&after, &arcs[1]));
+    (turned <= most_turned(tolerance)).then(|| Best { pieces: arcs.to_vec(), deviation, turned })
+}
+
+/// Bound of the way between two points of lines and arcs \[m\]: the one beside a point of the curve, and the one at the same length. On a
+/// curve at a distance d and an angle δ from an arc of curvature k, the point beside moves by cos δ / (1 - k d) times the way on it.
+fn ahead(pieces: &[Placed], deviation: f64, turned: f64) -> f64 {
+    let whole: f64 = pieces.iter().map(|piece| piece.shape.length()).sum();
+    let bend =
+        deviation * pieces.iter().filter_map(Placed::radius).fold(0.0, |most: f64, radius| most.max(radius.recip()));
+    whole * (bend + 0.5 * turned * turned) / (1.0 - bend).max(0.5)
+}
+
+/// Bound of the turn over a way that begins or ends on these pieces and is not longer than `way` \[rad\].
+fn turn_within(all: &[Placed], on: std::ops::Range<usize>, way: f64) -> f64 {
+    let reached = |pieces: &mut dyn Iterator<Item = &Placed>| {
+        let mut left = way;
+        let mut most = 0.0_f64;
+        for piece in pieces {
+            most = most.max(piece.radius().map_or(0.0, f64::recip));
+            left -= piece.shape.length();
+            if left <= 0.0 {
+                break;
+            }
+        }
+        most
+    };
+    let own = all[on.clone()].iter().filter_map(Placed::radius).fold(0.0, |most: f64, radius| most.max(radius.recip()));
+    let [before, after] = [reached(&mut all[..on.start].iter().rev()), reached(&mut all[on.end..].iter())];
+    (own.max(before).max(after) * way).min(PI)
 }
 
 /// The arcs from a point to another in given directions, with equally long tangents.
@@ -293,16 +350,6 @@ pub(super) fn distance(curve: &Bezier, piece: &Placed) -> f64 {
     aside + 2.0 * over
 }
 
-/// Homogeneous control points in the frame of a pose.
-fn framed(curve: &Bezier, at: [f64; 2], heading: f64) -> Vec<[f64; 3]> {
-    let (sin, cos) = heading.sin_cos();
-    let point = |[x, y, w]: &[f64; 3]| {
-        let (x, y) = (x - at[0] * w, y - at[1] * w);
-        [x * cos + y * sin, y * cos - x * sin, *w]
-    };
-    curve.0.iter().map(point).collect()
-}
-
 /// Bound of |k (x² + y²) / 2 - y| on a curve, by the Bernstein coefficients of its numerator and its denominator.
 fn offset(points: &[[f64; 3]], curvature: f64) -> f64 {
     let degree = points.len().saturating_sub(1);
@@ -320,15 +367,6 @@ fn offset(points: &[[f64; 3]], curvature: f64) -> f64 {
         bound = bound.max((numerator / denominator).abs());
     }
     bound
-}
-
-/// The row of Pascal's triangle.
-fn binomials(degree: usize) -> Vec<f64> {
-    let mut row = vec![1.0];
-    for k in 0..degree {
-        row.push(row[k] * (degree - k) as f64 / (k + 1) as f64);
-    }
-    row
 }
 
 #[cfg(test)]
@@ -365,6 +403,17 @@ mod tests {
         pieces.iter().map(distance).fold(f64::INFINITY, f64::min)
     }
 
+    /// The heading at a length.
+    fn heading_at(pieces: &[Placed], length: f64) -> f64 {
+        let mut rest = length;
+        let piece = pieces.iter().find(|piece| {
+            let is_there = rest < piece.shape.length();
+            rest -= if is_there { 0.0 } else { piece.shape.length() };
+            is_there
+        });
+        piece.map_or_else(|| pieces.last().unwrap().heading_at_end(), |piece| piece.part(0.0, rest).heading_at_end())
+    }
+
     #[test]
     fn the_bound_holds_and_is_not_far_from_the_truth() {
         let curves = [
@@ -385,11 +434,21 @@ mod tests {
                 // At the same length, which a fine polygon measures.
                 let fine: Vec<_> =
                     curve.iter().flat_map(|bezier| (0..=2000).map(|k| bezier.at(f64::from(k) / 2e3))).collect();
-                let (mut length, mut worst) = (0.0, 0.0_f64);
+                let (mut length, mut worst, mut turned) = (0.0, 0.0_f64, 0.0_f64);
                 for pair in fine.windows(2) {
-                    length += apart_by(pair[0], pair[1]);
+                    let chord = apart_by(pair[0], pair[1]);
+                    // At a cusp a vehicle turns in place.
+                    if chord > 1e-4 {
+                        let way = (pair[1][1] - pair[0][1]).atan2(pair[1][0] - pair[0][0]);
+                        let off = heading::wrapped(way - heading_at(&fit.pieces, length + 0.5 * chord)).abs();
+                        turned = turned.max(off);
+                    }
+                    length += chord;
                     worst = worst.max(apart_by(point_at(pair[0], &fit.pieces, length), pair[1]));
                 }
+                // Of the chord of a fine polygon.
+                assert!(turned <= fit.turned + 2e-3, "{turned} {}", fit.turned);
+                assert!(fit.turned <= 0.1 + 3.0 * turned, "{turned} {}", fit.turned);
                 let whole: f64 = fit.pieces.iter().map(|piece| piece.shape.length()).sum();
                 // The polygon is off by less than this itself.
                 let slack = 1e-5;

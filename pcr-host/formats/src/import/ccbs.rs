@@ -6,7 +6,7 @@
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::timed;
-use super::xml::{astray, child, children, lose_astray, number, only, optional, parse, warn_of_unknown};
+use super::xml::{astray, child, children, content, lose_astray, number, only, optional, parse, warn_of_unknown};
 use super::{ImportError, Options, Vehicle, Warnings};
 use crate::plane::distance;
 use crate::scenario::{Agent, Placed, Scenario};
@@ -48,7 +48,7 @@ pub(super) fn roadmap(text: &str, options: &Options, warnings: &mut Warnings) ->
     let mut nodes = Names::new();
     for (k, node) in children(graph, "node").enumerate() {
         let id = node.attribute("id").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
-        let datum = child(node, "data").and_then(|data| data.text()).unwrap_or_default();
+        let datum = child(node, "data").map(content).unwrap_or_default();
         let at = datum.split_once(',').and_then(|(x, y)| {
             let number = |text: &str| text.trim().parse::<f64>().ok().filter(|x| x.abs() <= crate::scenario::LIMIT);
             Some([number(x)?, number(y)?])

@@ -77,13 +77,22 @@ pub struct Edge {
     pub deviation: f64,
     /// Largest difference of both lengths \[m\].
     pub longer: f64,
+    /// Largest difference of both headings at the same length \[rad\].
+    pub turned: f64,
 }
 
 impl Edge {
     /// One way along these lines and arcs, open and without limits.
     pub fn new(id: Id, ends: [usize; 2], curve: Vec<Placed>) -> Self {
         let ways = [true, false];
-        Self { id, ends, curve, ways, closed: false, speed: [None; 2], rotation: None, deviation: 0.0, longer: 0.0 }
+        let (deviation, longer, turned) = (0.0, 0.0, 0.0);
+        Self { id, ends, curve, ways, closed: false, speed: [None; 2], rotation: None, deviation, longer, turned }
+    }
+
+    /// How far the outline of a vehicle may be from where it is on the curve in the file \[m\]; `radius` is that of the disc around it, or
+    /// 0 for a disc, whose heading does not matter \[m\].
+    pub fn off(&self, radius: f64) -> f64 {
+        self.deviation + radius * self.turned
     }
 
     /// Whether it may be travelled in both directions.

@@ -209,12 +209,17 @@ impl Reader<'_> {
             if asked {
                 let edge = self.along(&id, ends, Some(&property))?;
                 // An equal edge at the speed of another type of vehicle is the same edge; only one of the speeds is kept.
-                match edges.iter().find(|known| known.curve == edge.curve) {
+                match edges.iter_mut().find(|known| known.curve == edge.curve) {
                     None => edges.push(edge),
-                    Some(known) if (known.speed, known.rotation) != (edge.speed, edge.rotation) => {
-                        self.of_speeds.get_or_insert(edge.id);
+                    Some(known) => {
+                        // What stands for different curves is as far off as from the farthest of them.
+                        known.deviation = known.deviation.max(edge.deviation);
+                        known.longer = known.longer.max(edge.longer);
+                        known.turned = known.turned.max(edge.turned);
+                        if (known.speed, known.rotation) != (edge.speed, edge.rotation) {
+                            self.of_speeds.get_or_insert(edge.id);
+                        }
                     }
-                    Some(_) => {}
                 }
             }
         }
@@ -259,7 +264,8 @@ impl Reader<'_> {
                     facing::along_trajectory(&trajectory, &fit, outline, self.warnings)?;
                 }
                 let gap = if fit.pieces.is_empty() { point_gap(id, ends, at)? } else { self.gap(id, ends, at) };
-                (edge.curve, edge.deviation, edge.longer) = (fit.pieces, fit.deviation + gap, fit.longer);
+                (edge.deviation, edge.longer, edge.turned) = (fit.deviation + gap, fit.longer, fit.turned);
+                edge.curve = fit.pieces;
             }
         }
         if edge.curve.is_empty() {
@@ -293,8 +299,8 @@ fn maps<'v>(nodes: impl Iterator<Item = &'v Value>) -> BTreeSet<&'v str> {
     nodes.filter_map(Value::as_array).flatten().filter_map(|node| node.get("mapId")?.as_str()).collect()
 }
 
-/// The largest gap between a trajectory that is a point and its nodes \[m\]: it counts as a way from node to node only if both nodes are
-/// near.
+/// How far a vehicle may be from either node of a trajectory that is a point \[m\]: it counts as a way from node to node only if both nodes
+/// are near.
 fn point_gap(id: &str, ends: [[f64; 2]; 2], at: [[f64; 2]; 2]) -> Result<f64, ImportError> {
     let gap = ends.into_iter().zip(at).map(|(end, node)| distance(end, node)).fold(0.0, f64::max);
     if gap > route::GAP {
@@ -302,7 +308,8 @@ fn point_gap(id: &str, ends: [[f64; 2]; 2], at: [[f64; 2]; 2]) -> Result<f64, Im
             "edge {id}, trajectory: it has no length, and is {gap:.3} m from a node"
         )));
     }
-    Ok(gap)
+    // From one node over the point to the other.
+    Ok(gap.max(distance(at[0], at[1])))
 }
 
 /// A node of a file.

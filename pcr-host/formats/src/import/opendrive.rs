@@ -6,8 +6,10 @@
 //! joints within a road, of the size of errors in maps, are closed: the rest of the road keeps its place, and the gap
 //! counts as deviation of its path. So do those between the ends of roads that share a node. Lanes are not read.
 
+use super::heading::wrapped;
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
+use super::route::turn_over;
 use super::xml::{child, children, lose_astray, number, only, optional, parse, warn_of_unknown};
 use super::{ImportError, Options, Warnings};
 use crate::plane::distance;
@@ -48,6 +50,8 @@ struct Curve {
     pieces: Vec<Placed>,
     /// Distance of `pieces` from it at the same length \[m\].
     deviation: f64,
+    /// Difference of the headings \[rad\].
+    turned: f64,
     /// Difference of both lengths \[m\].
     longer: f64,
     /// Gap \[m\] and angle \[rad\] of its widest joint.
@@ -84,14 +88,14 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
             Ok((Curve { pieces, .. }, ..)) if pieces.is_empty() => {
                 warnings.lose(format_args!("{name}: it has no geometry"))
             }
-            Ok((Curve { pieces, deviation, longer, joint }, speed, link)) => {
+            Ok((Curve { pieces, deviation, longer, turned, joint }, speed, link)) => {
                 if joint.iter().any(|gap| *gap > CLOSED) {
                     widest = [widest[0].max(joint[0]), widest[1].max(joint[1])];
                     open.push(name);
                 }
                 // The nodes follow when all roads are known.
                 let edge = Edge::new(named(&id), [0; 2], pieces);
-                let edge = Edge { ways: [true; 2], speed: [speed; 2], deviation, longer, ..edge };
+                let edge = Edge { ways: [true; 2], speed: [speed; 2], deviation, longer, turned, ..edge };
                 if names.add(edge, warnings) == links.len() {
                     links.push(link);
                 }
@@ -135,7 +139,7 @@ fn named(id: &str) -> Id {
 /// The lines and arcs of a road, and its widest joint.
 fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<Curve, ImportError> {
     let mut curve: Vec<Placed> = Vec::new();
-    let (mut joint, mut deviation) = ([0.0_f64; 2], 0.0_f64);
+    let (mut joint, mut deviation, mut turned) = ([0.0_f64; 2], 0.0_f64, 0.0_f64);
     let mut along = 0.0_f64;
     let view = only(road, "planView")?.ok_or_else(|| ImportError::new(format!("{name}, planView: missing")))?;
     let records = view.children().filter(|child| child.is_element() && !ADDED.contains(&child.tag_name().name()));
@@ -169,6 +173,7 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<Curve, ImportError
                     _ => {
                         // How far the arc leaves its tangent.
                         deviation = deviation.max(0.5 * length * sweep.abs());
+                        turned = turned.max(sweep.abs());
                         PathSegment::Line { length }
                     }
                 }
@@ -204,15 +209,17 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<Curve, ImportError
     {
         return Err(ImportError::new(format!("{name}: its length is {length}, and its records have {along:.3} m")));
     }
-    let [closed, longer] = close(&mut curve);
-    Ok(Curve { pieces: curve, deviation: deviation + closed, longer, joint })
+    let [closed, longer, askew] = close(&mut curve);
+    let turned = turned + askew + turn_over(&curve, longer);
+    Ok(Curve { pieces: curve, deviation: deviation + closed, longer, turned, joint })
 }
 
 /// Closes the joints that are open: a line goes from where the piece before ends to its own end, an arc is displaced as a whole.
-/// Returns how far a place may then be from that at the same length of the records, and by how much the lengths differ \[m\].
-fn close(curve: &mut Vec<Placed>) -> [f64; 2] {
-    let Some(mut at) = curve.first().map(|first| first.at) else { return [0.0; 2] };
-    let (mut longer, mut deviation) = (0.0_f64, 0.0_f64);
+/// Returns how far a place may then be from that at the same length of the records, by how much the lengths differ \[m\], and by how much
+/// a line is turned \[rad\].
+fn close(curve: &mut Vec<Placed>) -> [f64; 3] {
+    let Some(mut at) = curve.first().map(|first| first.at) else { return [0.0; 3] };
+    let (mut longer, mut deviation, mut turned) = (0.0_f64, 0.0_f64, 0.0_f64);
     for piece in curve.iter_mut() {
         let asked = *piece;
         if distance(at, asked.at) > CLOSED {
@@ -221,6 +228,7 @@ fn close(curve: &mut Vec<Placed>) -> [f64; 2] {
                 PathSegment::Arc { .. } => Placed { at, ..asked },
             };
         }
+        turned = turned.max(wrapped(piece.heading - asked.heading).abs());
         let before = longer;
         longer += piece.shape.length() - asked.shape.length();
         let apart = distance(at, asked.at).max(distance(piece.end(), asked.end()));
@@ -230,7 +238,7 @@ fn close(curve: &mut Vec<Placed>) -> [f64; 2] {
         at = piece.end();
     }
     curve.retain(|piece| piece.shape.length() > 0.0);
-    [deviation, if longer.abs() > CLOSED { longer.abs() } else { 0.0 }]
+    [deviation, if longer.abs() > CLOSED { longer.abs() } else { 0.0 }, turned]
 }
 
 /// The speed limit of a road, the least one where it changes on the way \[m/s\].

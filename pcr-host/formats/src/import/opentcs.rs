@@ -16,6 +16,7 @@ use crate::footprint::Footprint;
 use crate::plane::distance;
 use crate::scenario::Placed;
 use std::collections::HashMap;
+use std::f64::consts::FRAC_PI_2;
 
 pub(super) use vehicles::vehicles;
 
@@ -249,6 +250,7 @@ fn edge(
         speed: speed.map(|speed| speed.filter(|speed| *speed > 0.0)),
         deviation: fit.deviation,
         longer: fit.longer,
+        turned: fit.turned,
         ..Edge::new(Id::Text(id), ends, fit.pieces)
     };
     let (typed, drawn) = (limit("length")?, edge.length());
@@ -280,8 +282,11 @@ fn curve(
     let shift = if points.len() > 1 { shift(name, ends, frame)? } else { 0.0 };
     // The control points are off together: only the legs from the first point and to the last one have other lengths.
     let legs = 2.0 * shift;
+    let first = points.first().zip(points.get(1)).map_or(f64::INFINITY, |(from, to)| distance(*from, *to));
+    let last = points.last().map_or(f64::INFINITY, |from| distance(*from, to));
+    let askew = if shift > 0.0 { (shift / first.min(last)).min(1.0) * FRAC_PI_2 } else { 0.0 };
     let fit = shape(layout, name, points, to, tolerance)?;
-    Ok(Fit { deviation: fit.deviation + shift + legs, longer: fit.longer + legs, ..fit })
+    Ok(Fit { deviation: fit.deviation + shift + legs, longer: fit.longer + legs, turned: fit.turned + askew, ..fit })
 }
 
 /// How far the control points of a path may be from where they are meant to be \[m\].

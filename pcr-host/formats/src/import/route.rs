@@ -70,6 +70,11 @@ impl Step<'_> {
         self.edge.deviation + if self.backward { self.edge.longer } else { 0.0 }
     }
 
+    /// Largest difference of the headings at the same length of travel \[rad\].
+    pub(super) fn turned(self) -> f64 {
+        self.edge.turned + if self.backward { turn_over(&self.edge.curve, self.edge.longer) } else { 0.0 }
+    }
+
     /// Its lines and arcs in the direction of travel.
     pub fn curve(self) -> Vec<Placed> {
         match self.backward {
@@ -153,11 +158,12 @@ pub(super) fn trace(layout: &Layout, from: usize, steps: &[Step<'_>]) -> Result<
     let mut tracer = Tracer::default();
     let mut position = at(from);
     // If curves and their arcs differ in length, the vehicle is ahead of its path, or behind it, from there on.
-    let (mut deviation, mut longer) = (0.0_f64, 0.0);
+    let (mut deviation, mut turned, mut longer) = (0.0_f64, 0.0_f64, 0.0);
     for (k, step) in steps.iter().enumerate() {
         let (edge, target) = (step.edge, at(step.target()));
         tracer.limit(step.speed(), edge.rotation);
         deviation = deviation.max(step.deviation() + longer);
+        turned = turned.max(step.turned() + turn_over(&edge.curve, longer));
         longer += edge.longer;
         let curve = step.curve();
         if !edge.is_straight() {
@@ -200,7 +206,13 @@ pub(super) fn trace(layout: &Layout, from: usize, steps: &[Step<'_>]) -> Result<
     }
     let mut trace = tracer.finish(position);
     trace.deviation += deviation;
+    trace.turned += turned;
     Ok(trace)
+}
+
+/// Largest turn of lines and arcs over a length \[rad\].
+pub(super) fn turn_over(pieces: &[Placed], length: f64) -> f64 {
+    length * pieces.iter().filter_map(Placed::radius).fold(0.0, |most: f64, radius| most.max(radius.recip()))
 }
 
 impl Edge {
@@ -310,6 +322,7 @@ pub fn ride(vehicle: &Vehicle, step: Step<'_>) -> Agent {
     curve.iter().for_each(|piece| tracer.follow(piece));
     let mut trace = tracer.finish(curve.first().map_or([0.0; 2], |first| first.at));
     trace.deviation += step.deviation();
+    trace.turned += step.turned();
     agent(0, &trace, vehicle, 0.0)
 }
 
@@ -325,8 +338,10 @@ pub(super) fn agent(id: u64, trace: &Trace, vehicle: &Vehicle, t_start: f64) -> 
     let path = trace.stretches.iter().map(|stretch| stretch.shape).collect();
     let motion = speed::motion(&trace.stretches, vehicle);
     let footprint = vehicle.footprint.as_ref().filter(|_| trace.faces);
-    let footprint = footprint.map(|footprint| footprint.grown(trace.deviation));
-    let disc = Agent::disc(id, vehicle.radius + trace.deviation, trace.start, path, motion);
+    // Where an outline is turned, no point of it is further off than that.
+    let off = trace.deviation + if footprint.is_some() { vehicle.radius * trace.turned } else { 0.0 };
+    let footprint = footprint.map(|footprint| footprint.grown(off));
+    let disc = Agent::disc(id, vehicle.radius + off, trace.start, path, motion);
     Agent { footprint, margin: vehicle.margin, t_start, ..disc }
 }
 

@@ -38,6 +38,7 @@ pub(super) struct Tracer {
     at: [f64; 2],
     heading: f64,
     deviation: f64,
+    turned: f64,
     speed: Option<f64>,
     rotation: Option<f64>,
 }
@@ -49,6 +50,8 @@ pub(super) struct Trace {
     pub(super) stretches: Vec<Stretch>,
     /// Largest distance from what was asked for \[m\].
     pub(super) deviation: f64,
+    /// Largest angle between a heading and the one that was asked for \[rad\].
+    pub(super) turned: f64,
     /// Whether it is known which way the vehicle faces where it begins: not if it stands there and nothing more is said.
     pub(super) faces: bool,
 }
@@ -75,6 +78,9 @@ impl Tracer {
             return;
         }
         let aim = Placed::line(at, to);
+        if distance(from, to) > 0.0 {
+            self.turned = self.turned.max(within_half_turn(aim.heading - Placed::line(from, to).heading).abs());
+        }
         self.face(at, aim.heading);
         self.deviation = self.deviation.max(distance(self.at, from));
         self.push(Placed::line(self.at, to).shape, false);
@@ -139,7 +145,7 @@ impl Tracer {
     pub(super) fn finish(self, at: [f64; 2]) -> Trace {
         let start = self.start.unwrap_or([at[0], at[1], 0.0]);
         let deviation = if self.deviation > ROUNDING { self.deviation } else { 0.0 };
-        Trace { start, stretches: self.stretches, deviation, faces: self.start.is_some() }
+        Trace { start, stretches: self.stretches, deviation, turned: self.turned, faces: self.start.is_some() }
     }
 }
 

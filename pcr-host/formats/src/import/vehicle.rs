@@ -138,6 +138,15 @@ impl Options {
         // A radius that is asked for is that of a disc.
         let footprint = given.footprint.clone().filter(|_| self.radius.is_none());
         let reach = footprint.as_ref().map(Footprint::reach);
+        let outline = given
+            .footprint
+            .as_ref()
+            .map(|footprint| footprint.polygon().iter().map(|[ahead, left]| ahead.hypot(*left)).fold(0.0, f64::max));
+        if let Some((radius, reach)) = self.radius.zip(outline).filter(|(radius, reach)| radius < reach) {
+            let problem =
+                format!("{radius} m, a disc; the outline of the vehicle, which is not used then, reaches {reach:.3} m");
+            warnings.add("radius", problem);
+        }
         let radius = choose(self.radius, reach.or(given.radius), 0.5, "radius [m]");
         let vehicle = Vehicle {
             name: given.name.clone(),

@@ -60,6 +60,7 @@ pub(super) fn root_of(text: &str) -> Option<&str> {
         let (skipped, end) = match rest {
             _ if rest.starts_with("<?") => (2, "?>"),
             _ if rest.starts_with("<!--") => (4, "-->"),
+            _ if rest.starts_with("<!DOCTYPE") => (9, if is_short(rest) { ">" } else { "]>" }),
             _ => break,
         };
         let end = rest.get(skipped..)?.find(end)? + skipped + end.len();
@@ -67,6 +68,16 @@ pub(super) fn root_of(text: &str) -> Option<&str> {
     }
     let name = rest.strip_prefix('<')?;
     name.split(|c: char| c.is_whitespace() || c == '>' || c == '/').next()
+}
+
+/// Whether a document type declaration has no declarations of its own, in brackets.
+fn is_short(declaration: &str) -> bool {
+    declaration.find('>').is_none_or(|end| !declaration[..end].contains('['))
+}
+
+/// All text within an element: comments and other elements may cut it into pieces.
+pub(super) fn content(node: Node<'_, '_>) -> String {
+    node.descendants().filter(Node::is_text).filter_map(|piece| piece.text()).collect()
 }
 
 /// An attribute as a number, where it is there.

@@ -8,7 +8,7 @@
 use crate::bodies::tracks;
 use pcr_formats::import::{Edge, Imported, Layout, Step, Vehicle, ride, turn};
 use pcr_formats::scenario::Agent;
-use pcr_formats::scenario::{KINK, Placed};
+use pcr_formats::scenario::{KINK, PathSegment, Placed, TURN};
 use std::f64::consts::{PI, TAU};
 
 /// Rounding of lengths, relative.
@@ -30,9 +30,10 @@ pub struct Ride {
 /// The meaning of lengths on the path of an agent, as lengths on the edge.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Lengths {
-    Same,
-    /// Lengths from the other end of an edge of this length \[m\].
-    Reversed(f64),
+    /// Those on the edge, and of the turns within it, which add so much \[m\].
+    Along(f64),
+    /// The same from the other end of an edge; the length of the path, and what turns add to it \[m\].
+    Reversed(f64, f64),
     /// The agent turns in place at this length \[m\].
     At(f64),
 }
@@ -41,8 +42,11 @@ impl Lengths {
     /// Lengths on the edge for lengths on the path of the agent, rounded outward.
     pub(crate) fn on_edge(self, lengths: [f64; 2]) -> [f64; 2] {
         match self {
-            Self::Same => lengths,
-            Self::Reversed(length) => reversed(length, lengths),
+            Self::Along(turns) => [(lengths[0] - turns).max(0.0), lengths[1]],
+            Self::Reversed(length, turns) => {
+                let [lo, hi] = reversed(length, lengths);
+                [(lo - turns).max(0.0), hi]
+            }
             Self::At(length) => [length; 2],
         }
     }
@@ -109,7 +113,7 @@ impl<'a> Rides<'a> {
             // Without a length it has no direction.
             return vec![self.at(step.origin())];
         };
-        let (length, vehicle) = (step.edge.length(), grown(&self.vehicle, step.edge.deviation));
+        let (length, vehicle) = (step.edge.length(), grown(&self.vehicle, step.edge.off(self.vehicle.radius)));
         let [from, to] = if step.backward { [length, 0.0] } else { [0.0, length] };
         let before = self.turns(Side { step, heading: start.heading }, 0);
         let after = self.turns(Side { step, heading: end.heading }, 1);
@@ -134,7 +138,9 @@ impl<'a> Rides<'a> {
 
     fn along(&self, step: Step<'_>) -> Ride {
         let agent = self.along_with(&self.vehicle, step);
-        let lengths = if step.backward { Lengths::Reversed(agent.length()) } else { Lengths::Same };
+        let turns = agent.path.iter().filter(|shape| matches!(shape, PathSegment::Arc { radius: TURN, .. }));
+        let turns = turns.map(PathSegment::length).sum::<f64>() + 0.0;
+        let lengths = if step.backward { Lengths::Reversed(agent.length(), turns) } else { Lengths::Along(turns) };
         Ride { agent, lengths }
     }
 

@@ -28,10 +28,6 @@ pub(in super::super) fn vehicles(
     }
     warn_of_lengths(&all, options, warnings);
     let Some([ahead, left]) = largest(&all, options, warnings) else { return Ok(()) };
-    if let Some(radius) = options.radius.filter(|radius| *radius < ahead.hypot(left)) {
-        let reach = ahead.hypot(left);
-        warnings.add("radius", format!("{radius} m; the bounding boxes of the vehicles reach {reach:.3} m"));
-    }
     let corners = vec![[ahead, left], [-ahead, left], [-ahead, -left], [ahead, -left]];
     let outline = Footprint::new(corners, None);
     let outline = outline.map_err(|problem| ImportError::new(format!("vehicle, boundingBox: {problem}")))?;

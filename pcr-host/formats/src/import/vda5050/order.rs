@@ -19,6 +19,8 @@ struct Way {
     headings: Vec<Option<[f64; 2]>>,
     position: Option<[f64; 2]>,
     deviation: f64,
+    /// Largest difference of the headings at the same length \[rad\].
+    turned: f64,
     /// By which the vehicle may be ahead of its path, or behind.
     longer: f64,
 }
@@ -46,6 +48,7 @@ impl Reader<'_> {
         self.warn_of_actions(order, nodes.iter().chain(&edges))?;
         let mut trace = way.tracer.finish(way.position.unwrap_or_default());
         trace.deviation += way.deviation.max(way.longer);
+        trace.turned += way.turned;
         if stands && let Some(theta) = rests(&nodes, outline)? {
             (trace.start[2], trace.faces) = (theta, true);
         }
@@ -205,6 +208,7 @@ impl Way {
         self.headings.push(ends.map(|(first, last)| [first.heading, last.heading_at_end()]));
         self.position = Some(*end);
         self.deviation = self.deviation.max(fit.deviation + self.longer + widest);
+        self.turned = self.turned.max(fit.turned + route::turn_over(&fit.pieces, self.longer));
         self.longer += fit.longer;
         Ok(())
     }

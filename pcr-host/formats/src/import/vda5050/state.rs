@@ -116,9 +116,9 @@ impl Reader<'_> {
         pieces.iter().for_each(|piece| tracer.follow(piece));
         let mut trace = tracer.finish(pose.at.unwrap_or(begin));
         trace.deviation += read.fit.deviation + before.max(behind);
+        trace.turned += read.fit.turned;
         if let Some(outline) = &vehicle.footprint {
-            // Where it is turned, no point of it is further off than that.
-            trace.deviation += vehicle.radius * self.faces(state, pose, pieces, outline)?;
+            trace.turned += self.faces(state, pose, pieces, outline)?;
             set_heading(&mut trace, pose, pieces);
         }
         let begin = match state.get("timestamp") {
