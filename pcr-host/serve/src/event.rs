@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum Event {
-    /// A robot may go this far. The hold never decreases while the robot keeps its path.
+    /// A robot may go this far. The hold never decreases while the robot keeps its path and the supervisor runs. After a restart it may
+    /// at first be lower than before: the robot keeps the higher one.
     Hold {
         /// Name of the robot.
         robot: String,

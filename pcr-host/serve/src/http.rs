@@ -158,6 +158,7 @@ fn decoded(text: &str) -> String {
     while let [first, after @ ..] = rest {
         let code = after
             .get(..2)
+            .filter(|code| code.iter().all(u8::is_ascii_hexdigit))
             .and_then(|code| std::str::from_utf8(code).ok())
             .and_then(|code| u8::from_str_radix(code, 16).ok());
         match (first, code) {

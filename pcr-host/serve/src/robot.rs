@@ -1,6 +1,7 @@
 //! The state of a robot: its abilities, its path, its place on the path, and how far it has been allowed to go.
 
 use crate::course::{Course, Rest, Shape};
+use crate::supervisor::Settings;
 use pcr_core::{Hold, Interval, Invalid, Motion, Progress};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -113,6 +114,8 @@ pub struct Wait {
     /// The robot that it waits for, by its index, and the length of that robot \[m\]: when that one has gone on, the hold may
     /// be further.
     pub by: Option<(usize, f64)>,
+    /// Its own length \[m\]: when it has gone on, it may have passed what kept it.
+    pub at: f64,
 }
 
 /// Notes that other modules have stored about a robot, by key.
@@ -252,10 +255,11 @@ impl Robot {
         Interval::new(self.at, grown.min(self.told).max(self.at))
     }
 
-    /// Hold that it needs so that it does not have to brake within `lookahead` \[m\].
-    pub fn wanted(&self, lookahead: f64) -> f64 {
-        let way = self.abilities.braking() + self.abilities.speed * lookahead;
-        (self.up_to + way).max(self.next).min(self.course.length())
+    /// Hold that it needs so that it does not have to brake within the lookahead \[m\]. It is further on than the width, so that a robot that
+    /// has come to its hold but for that is told the next one.
+    pub fn wanted(&self, settings: &Settings) -> f64 {
+        let way = self.abilities.braking() + self.abilities.speed * settings.lookahead;
+        (self.up_to + way.max(2.0 * settings.width)).max(self.next).min(self.course.length())
     }
 
     /// Whether it has reached the end of its path, within a width \[m\].

@@ -2,6 +2,7 @@
 
 mod alarms;
 mod asked;
+mod holds;
 mod joints;
 mod kills;
 mod lines;

@@ -10,6 +10,9 @@ use crate::robot::{Asked, Robot, Waiting};
 use pcr_core::{Interval, Mission, Pass, Progress, Refused, RegionRef};
 use serde::{Deserialize, Serialize};
 
+/// Length of the longest id of a mission \[bytes\].
+const LONGEST: usize = 1000;
+
 /// A request for a path of a robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -86,6 +89,10 @@ impl Supervisor {
     pub fn mission(&mut self, proposal: &Proposal, now: f64) -> Result<Verdict, Fault> {
         self.works()?;
         let place = self.place(&proposal.robot)?;
+        // The last ones of each robot are kept, and the journal has them all in one frame.
+        if proposal.mission.len() > LONGEST {
+            return Err(Fault::invalid(format!("mission: longer than {LONGEST} bytes")));
+        }
         let robot = &self.robots[place];
         let waiting = robot.waiting.as_ref().filter(|waiting| waiting.mission == proposal.mission);
         if let Some(waiting) = waiting {

@@ -1,5 +1,5 @@
-//! How far robots may go on. A hold is computed again only if the robot that is waited for has moved, and only for
-//! robots that would go further; other robots are not affected.
+//! How far robots may go on. A hold is computed again only if the robot that is waited for has moved, or the robot itself, which may have
+//! passed what kept it, and only for robots that would go further; other robots are not affected.
 
 use super::alarms::Limit;
 use super::{Supervisor, fleet};
@@ -34,15 +34,16 @@ impl Supervisor {
 
     fn wants(&self, place: usize) -> bool {
         let robot = &self.robots[place];
-        robot.alarm.is_none() && robot.stopped.is_none() && robot.wanted(self.settings.lookahead) > robot.granted
+        robot.alarm.is_none() && robot.stopped.is_none() && robot.wanted(&self.settings) > robot.granted
     }
 
     /// Whether the hold of a robot is before the length that it needs next, and may have changed.
     fn is_stale(&self, place: usize) -> bool {
         let robot = &self.robots[place];
-        let Some(Wait { hold, by }) = robot.hold else { return true };
+        let Some(Wait { hold, by, at }) = robot.hold else { return true };
         let bound = hold.length(robot.course.length()).unwrap_or(robot.granted);
-        bound < robot.wanted(self.settings.lookahead) && by.is_some_and(|(by, at)| self.robots[by].at > at)
+        let have_moved = robot.at > at || by.is_some_and(|(by, at)| self.robots[by].at > at);
+        have_moved && bound < robot.wanted(&self.settings)
     }
 
     fn evaluate(&mut self, places: &[usize]) {
@@ -54,7 +55,8 @@ impl Supervisor {
         for (&place, hold) in places.iter().zip(holds) {
             // The table belongs to these robots, so this never fails; if it did, the robots would stop.
             let (hold, by) = hold.unwrap_or((Hold::Inside, None));
-            self.robots[place].hold = Some(Wait { hold, by: by.map(|by| (by, progress[by].at.lo)) });
+            let by = by.map(|by| (by, progress[by].at.lo));
+            self.robots[place].hold = Some(Wait { hold, by, at: progress[place].at.lo });
         }
     }
 
@@ -111,16 +113,18 @@ impl Supervisor {
     fn tell(&mut self, place: usize, limit: Option<&Limit>) {
         let Self { robots, settings, .. } = self;
         let robot = &robots[place];
-        let Some(Wait { hold, by }) = robot.hold else { return };
+        let Some(Wait { hold, by, .. }) = robot.hold else { return };
         let end = robot.course.length();
         let mut bound = hold.length(end).unwrap_or(robot.granted);
         if let Some(Limit { at: Some(at), .. }) = limit {
             bound = bound.min(*at);
         }
-        let wanted = robot.wanted(settings.lookahead);
+        let wanted = robot.wanted(settings);
         let granted = bound.min(wanted);
         let before = robot.granted;
-        let is_worth = granted >= before + settings.step || (granted > before && granted >= bound.min(end));
+        // A slow robot never needs much more than it has.
+        let step = settings.step.min(0.25 * (wanted - robot.up_to));
+        let is_worth = granted >= before + step && granted > before || (granted > before && granted >= bound.min(end));
         if !is_worth {
             return;
         }

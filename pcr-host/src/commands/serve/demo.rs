@@ -31,6 +31,9 @@ pub(super) struct Demo {
 
 impl Demo {
     pub(super) fn start(layout: &Path, arguments: &Arguments, log: Log) -> Result<Self, Stop> {
+        if arguments.vehicles == 0 {
+            return Err(Stop::arguments("--vehicles: allowed is 1 or more"));
+        }
         let crew = Crew { vehicles: arguments.vehicles, ..Crew::default() };
         let world = fleet::world(layout, &crew)?;
         let interfaces = interfaces(&arguments.topics)?;

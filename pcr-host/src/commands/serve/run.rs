@@ -53,7 +53,7 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     }
     let stays = arguments.stay || demo.is_some();
     let (failed, failures) = channel();
-    let last = Last { handle: handle.clone(), stays, failed: failed.clone() };
+    let last = Last { handle: handle.clone(), stays, failed: failed.clone(), log };
     let unheard = Unheard { handle: handle.clone(), stays, failed, log };
     thread("lines", move || {
         let lost = move |error| unheard.tell(error);
@@ -80,6 +80,7 @@ struct Last {
     handle: Handle,
     stays: bool,
     failed: Sender<Stop>,
+    log: Log,
 }
 
 impl Last {
@@ -94,6 +95,7 @@ impl Drop for Last {
         if thread::panicking() {
             self.fails("there is no memory for its thread".into());
         } else if !self.stays {
+            self.log.write(Level::Info, "standard input has ended; --stay goes on without it", &[]);
             self.handle.send(Input::Stop);
         }
     }
