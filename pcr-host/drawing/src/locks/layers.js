@@ -7,6 +7,7 @@ function list_gaps() {
   const most = 200;
   const gaps = [...data.audit.gaps].sort((a, b) => (b.relation === "apart") - (a.relation === "apart") || b.depth - a.depth);
   text(about, "h2", gaps.length === 1 ? "1 pair that can touch" : gaps.length + " pairs that can touch");
+  if (gaps.length === 0) return;
   text(about, "p", "Two vehicles at these places can touch although they obey the file. Red circles show where, large ones where the two places share no node.");
   const table = text(about, "table", "");
   table.className = "pairs";

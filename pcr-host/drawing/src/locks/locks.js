@@ -203,9 +203,9 @@ let seen = whole;
 function look(part) {
   seen = part;
   svg.setAttribute("viewBox", seen.join(" "));
-  // The largest round length that is no longer than a sixth of the picture.
+  // The largest round length that is no longer than a sixth of the picture, and longer than its label.
   const pixel = 1 / Math.min(svg.clientWidth / seen[2], svg.clientHeight / seen[3]) / STEPS;
-  const most = pixel * svg.clientWidth / 6, power = 10 ** Math.floor(Math.log10(most));
+  const most = pixel * Math.max(svg.clientWidth / 6, 125), power = 10 ** Math.floor(Math.log10(most));
   const length = [5, 2, 1].map((m) => m * power).find((length) => length <= most) ?? power;
   const bar = document.getElementById("scale");
   bar.textContent = length >= 1000 ? length / 1000 + " km" : length >= 1 ? length + " m" : Number((length * 1000).toPrecision(3)) + " mm";

@@ -102,7 +102,7 @@ fn planning(run: &Run, labels: &Labels, out: &mut impl Write) -> io::Result<()> 
         };
         writeln!(out, "{name}: {} {why}", called(labels, waiting.id))?;
     }
-    if count > 0 && kept == count {
+    if kept == count {
         return Ok(());
     }
     writeln!(

@@ -89,9 +89,12 @@ impl Task {
         let fleet = Fleet::<f64>::new(scenario)?;
         let (mut robots, mut obstacles, mut standing) = (Vec::new(), Vec::new(), Vec::new());
         let mut warnings = scenario.warnings.clone();
-        // A run begins at 0 s, or with the first one before that.
-        let begin = scenario.agents.iter().map(|agent| agent.t_start).fold(0.0, f64::min);
-        if begin < 0.0 {
+        // A run begins at 0 s, or with the first one before that; with the first one, too, if they set off long after 0 s, as at times
+        // since 1970.
+        let starts = || scenario.agents.iter().filter(|agent| !agent.path.is_empty()).map(|agent| agent.t_start);
+        let first = starts().fold(f64::INFINITY, f64::min);
+        let begin = if starts().any(|start| start > LATEST) { first } else { first.min(0.0) };
+        if begin != 0.0 {
             warnings.push(format!("the first agent sets off at {begin} s; times of the simulation count from there"));
         }
         for (place, (agent, motion)) in scenario.agents.iter().zip(fleet.motions()).enumerate() {

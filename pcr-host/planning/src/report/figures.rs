@@ -53,17 +53,32 @@ pub fn bytes(count: usize) -> String {
 
 /// An error in seconds.
 pub fn seconds(time: f64) -> String {
-    if time < 1e-3 { format!("{time:.0e} s") } else { format!("{} ms", digits(1e3 * time)) }
+    match time {
+        0.0 => "0 s".into(),
+        ..1e-3 => format!("{time:.0e} s"),
+        _ => format!("{} ms", digits(1e3 * time)),
+    }
 }
 
-/// A share in per cent.
+/// A share in per cent; a dash for a share of nothing.
 pub fn share(part: f64) -> String {
-    if part < 1e-4 { format!("{part:.0e}") } else { format!("{} %", digits(100.0 * part)) }
+    match part {
+        _ if part.is_nan() => "–".into(),
+        0.0 => "0 %".into(),
+        ..1e-4 => format!("{part:.0e}"),
+        _ => format!("{} %", digits(100.0 * part)),
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{small, thousandths};
+    use super::{seconds, share, small, thousandths};
+
+    #[test]
+    fn nothing_and_shares_of_nothing_are_told() {
+        assert_eq!([0.0, 2e-5, 0.25, f64::NAN].map(share), ["0 %", "2e-5", "25.0 %", "–"]);
+        assert_eq!([0.0, 2e-5, 0.25].map(seconds), ["0 s", "2e-5 s", "250 ms"]);
+    }
 
     #[test]
     fn there_is_no_minus_before_zero() {
