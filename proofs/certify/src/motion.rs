@@ -160,7 +160,7 @@ impl Both<'_> {
                 let (bend, speed) = (number(leg.curvature), number(leg.speed));
                 let gain = number({
                     let acceleration = leg.exact.ramp.acceleration.abs();
-                    (acceleration.to_f64() + acceleration.err) * (1.0 + f64::EPSILON)
+                    (acceleration.to_f64() + acceleration.err) * (1.0 + 4.0 * f64::EPSILON)
                 });
                 sum + bend * bend * speed * speed * speed + number(3.0) * bend * speed * gain
             });
@@ -195,6 +195,7 @@ fn least<R: Real>(a: Ball<R>, b: Ball<R>, c: Ball<R>, k: Ball<R>) -> Ball<R> {
 mod tests {
     use super::*;
     use crate::data::{Agent, Angle, Path, Phase, Segment, Travel};
+    use std::f64::consts::PI;
 
     /// An agent that goes from rest to rest in two ramps.
     fn agent(id: u64, start: [f64; 2], heading: f64, parts: &[(f64, Option<f64>)], at: f64, top: f64) -> Agent {
@@ -217,7 +218,7 @@ mod tests {
     }
 
     fn movers(agents: &[Agent]) -> Vec<Mover> {
-        agents.iter().map(|agent| Mover::new(agent, [-1e9, 1e9]).unwrap()).collect()
+        agents.iter().map(|agent| Mover::new(agent, [-1e12, 1e12]).unwrap()).collect()
     }
 
     #[test]
@@ -239,6 +240,89 @@ mod tests {
             (a - c).hypot(b - d)
         };
         (0..=20_000).map(|k| distance(from + (to - from) * f64::from(k) / 20_000.0)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// 2^33 s, where two times are 2^-19 s apart.
+    const LATE: f64 = 8_589_934_592.0;
+    const DIGIT: f64 = 1.0 / 524_288.0;
+
+    /// A disc of 10 µm on a line, with phases of times, lengths and speeds.
+    fn driven(id: u64, start: [f64; 2], heading: f64, at: f64, phases: &[[[f64; 2]; 3]]) -> Agent {
+        let length = phases.last().map_or(0.0, |phase| phase[1][1]);
+        let mut agent = Agent { radius: 1e-5, ..agent(id, start, heading, &[(length, None)], at, 1.0) };
+        let phases = phases.iter().map(|&[time, length, speed]| Phase { time, length, speed }).collect();
+        agent.travel = Some(Travel { start: at, phases, lag: 0.0, time_excess: 0.0 });
+        agent
+    }
+
+    /// At this speed until a time since the start.
+    fn steady(speed: f64, until: f64) -> [[f64; 2]; 3] {
+        [[0.0, until], [0.0, speed * until], [speed; 2]]
+    }
+
+    fn is_proved(agents: &[Agent]) -> bool {
+        let found = meetings(&movers(agents));
+        found.contacts.is_empty() && found.undecided.is_empty()
+    }
+
+    /// Half a metre to the side there is nobody, whatever is rounded.
+    fn is_proved_beside(agents: [Agent; 2]) -> bool {
+        let [one, mut other] = agents;
+        other.path.start[0] += 0.5;
+        is_proved(&[one, other])
+    }
+
+    #[test]
+    fn an_agent_moves_until_its_exact_arrival() {
+        // It arrives 1/4 digit after the rounded time, 0.5 mm on.
+        let arrives = driven(1, [0.0, 0.0], 0.0, LATE, &[steady(1024.0, 1.0 + 0.25 * DIGIT)]);
+        let end = 1024.0 * (1.0 + 0.25 * DIGIT);
+        // Who stands 0.2 mm too near to its end is met from then on.
+        let stands = driven(2, [end + 2e-5 - 2e-4, 0.0], 0.0, LATE, &[]);
+        // Who crosses its last way before the end is met in that quarter only.
+        let crosses = driven(3, [end - 2.5e-4, -2.5e-4], 0.5 * PI, LATE + 1.0, &[steady(1024.0, 0.5)]);
+        for other in [stands, crosses] {
+            assert!(!is_proved(&[arrives.clone(), other.clone()]), "{other:?}");
+            assert!(is_proved_beside([arrives.clone(), other]));
+        }
+    }
+
+    #[test]
+    fn the_speed_of_the_next_phase_counts_before_its_rounded_beginning() {
+        // It waits until 1/4 digit before the rounded time: until that one it has gone 0.5 mm.
+        let until = 1.0 + 0.75 * DIGIT;
+        let wait = [[0.0, until], [0.0, 0.0], [0.0, 0.0]];
+        let waits = driven(1, [0.0, 0.0], 0.0, LATE, &[wait, [[until, until + 1.0], [0.0, 1024.0], [1024.0, 1024.0]]]);
+        // Half of the way later another one is there, which has passed by then.
+        let (x, y) = (1024.0 * 0.125 * DIGIT, 1024.0 * 0.875 * DIGIT);
+        let crosses = driven(2, [x, y], -0.5 * PI, LATE + 1.0, &[steady(1024.0, 0.5)]);
+        assert!(!is_proved(&[waits.clone(), crosses.clone()]));
+        assert!(is_proved_beside([waits, crosses]));
+    }
+
+    #[test]
+    fn a_way_that_rounding_leaves_no_time_for_is_gone_all_the_same() {
+        // One metre through a disc, within a digit of the time; alone, and between two phases that last.
+        let hop = 0.25 * DIGIT;
+        let alone = driven(1, [0.0, 0.0], 0.0, LATE, &[steady(1.0 / hop, hop)]);
+        let phases =
+            [steady(1.0, 1.0), [[1.0, 1.0 + hop], [1.0, 2.0], [0.0, 0.0]], [[1.0 + hop, 3.0], [2.0, 4.0], [1.0, 1.0]]];
+        let between = driven(1, [-1.0, 0.0], 0.0, LATE, &phases);
+        for hops in [alone, between] {
+            let stands = driven(2, [0.5, 0.0], 0.0, LATE, &[]);
+            assert!(!is_proved(&[hops.clone(), stands.clone()]));
+            let beside = driven(2, [0.5, 4.0], 0.0, LATE, &[]);
+            assert!(is_proved(&[hops, beside]));
+        }
+    }
+
+    #[test]
+    fn a_speed_that_is_no_number_is_any() {
+        // Its acceleration is beyond all numbers: nothing is known of it but for its ends.
+        let shot = driven(1, [0.0, 0.0], 0.0, 0.0, &[[[0.0, 1e-300], [0.0, 4.0], [0.0, 0.0]]]);
+        let slow = |y: f64| driven(2, [2.0, y], 0.5 * PI, 0.0, &[steady(1e-9, 10.0)]);
+        assert!(!is_proved(&[shot.clone(), slow(0.0)]));
+        assert!(is_proved(&[shot, slow(1.0)]));
     }
 
     fn crossing_pair(later: f64) -> [Agent; 2] {

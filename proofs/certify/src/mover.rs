@@ -3,6 +3,18 @@
 //!
 //! Where one phase or segment gives way to the next is rounded to an `f64`; how far an agent may have gone on by then along the wrong
 //! one is part of the bound.
+//!
+//! *Phases.* Rounding keeps the order of times, so that of the phases to which it leaves any time (standing is one) only neighbours meet
+//! at a rounded end e. One ends at E, and between E and e its speed is V at most; the next one begins at E' >= E, and has V' at most between
+//! E' and e. The phases between them, of a way h, are hidden at e. Let g be the larger one of `|E - e|` and `|E' - e|`. The former says the
+//! length at E exactly, and the latter that at E'. Where the latter is asked too early, from e on, it says no more than V' g less, and the
+//! agent lags behind the length at E' by h + V g at most; where the former is asked too late, likewise the other way round. So
+//!
+//! ```text
+//! |what either says at a time of its own - where the agent is| <= (V + V') g + h,
+//! ```
+//!
+//! which also is no less than what is left of the way after e. (`docs/certificates.md`, motions.)
 
 use crate::ball::{Ball, Real};
 use crate::data::{Agent, Phase};
@@ -86,34 +98,41 @@ impl Mover {
         let travel = agent.travel.as_ref().ok_or("no motion")?;
         let start = Twofold::from(travel.start);
         travel::checked(agent)?;
-        let mut legs: Vec<(f64, Leg)> = Vec::new();
         let stands = |stretch: &Stretch, at: Twofold| {
             let course = Course { carrier: stretch.placed.exact, ramp: Ramp::standing(at) };
             Leg { exact: course, near: Course::of(&course), speed: 0.0, curvature: 0.0, off: 0.0 }
         };
         let (Some(first), Some(last)) = (stretches.first(), stretches.last()) else { return Err("no segments".into()) };
-        legs.push((f64::NEG_INFINITY, stands(first, Twofold::ZERO)));
-        let (mut arrival, mut reached, mut jumps) = (travel.start, 0.0, 0.0);
+        let mut legs = vec![(f64::NEG_INFINITY, stands(first, Twofold::ZERO))];
+        let mut span = Span { begin: 0, speeds: [0.0; 2], times: [start; 2], lost: 0.0 };
+        let (mut arrival, mut reached, mut hidden, mut all_hidden) = (start, 0.0, 0.0, 0.0);
         for phase in &travel.phases {
-            let time = phase.time;
-            reached = phase.length[1];
-            let ends = time.map(|time| (start + Twofold::from(time)).to_f64());
-            if time[0] < time[1] {
-                add_legs(&mut legs, &stretches, phase, start, ends);
+            let exact = phase.time.map(|time| start + Twofold::from(time));
+            if exact[0].to_f64() < exact[1].to_f64() {
+                let begin = legs.len();
+                let speeds = add_legs(&mut legs, &stretches, phase, start, exact);
+                span = span.then(Span { begin, speeds, times: exact, lost: 0.0 }, hidden, &mut legs);
+                hidden = 0.0;
             } else {
-                jumps += phase.length[1] - phase.length[0];
+                let way = phase.length[1] - phase.length[0];
+                (hidden, all_hidden) = (up(hidden + way), up(all_hidden + way));
             }
-            arrival = ends[1];
+            (arrival, reached) = (exact[1], phase.length[1]);
         }
         let end = last.before + last.placed.length;
         let gap = (end - Twofold::from(reached)).abs().to_f64();
-        legs.push((arrival, stands(last, last.placed.length)));
-        // A length beyond the end of the path is none: the agent is at its end. What takes no time is rounded off.
-        let gone = (gap + jumps) * (1.0 + 4.0 * f64::EPSILON);
-        legs.iter_mut().for_each(|(_, leg)| leg.off += gone);
+        let rest = Span { begin: legs.len(), speeds: [0.0; 2], times: [arrival; 2], lost: 0.0 };
+        legs.push((arrival.to_f64(), stands(last, last.placed.length)));
+        span.then(rest, hidden, &mut legs).close(legs.len(), 0.0, &mut legs);
+        // A length beyond the end of the path is none: the agent is at its end.
+        legs.iter_mut().for_each(|(_, leg)| leg.off = up(leg.off + gap));
         let speed = legs.iter().map(|(_, leg)| leg.speed).fold(0.0, f64::max);
-        let off = legs.iter().map(|(_, leg)| leg.off).fold(0.0, f64::max);
-        let area = area(&stretches, (agent.radius + off).next_up());
+        // What its speed does not explain: what a leg is off where it is looked at, on the way to another time all that is hidden,
+        // and after the last rounded end the rest of the way, which is no more than what the last leg is off.
+        let off = up(2.0 * legs.iter().map(|(_, leg)| leg.off).fold(0.0, f64::max) + all_hidden);
+        let arrival = arrival.to_f64();
+        // Along its path it may be anywhere: how far off that is does not count.
+        let area = area(&stretches, (agent.radius + gap).next_up());
         Ok(Self { id: agent.id, radius: agent.radius, legs, speed, off, area, time, moves: [travel.start, arrival] })
     }
 
@@ -126,17 +145,64 @@ fn exact(value: Twofold) -> Ball<Twofold> {
     Ball { mid: value, err: 0.0 }
 }
 
-/// The legs of a phase: one on each segment.
-fn add_legs(legs: &mut Vec<(f64, Leg)>, stretches: &[Stretch], phase: &Phase, start: Twofold, ends: [f64; 2]) {
+/// A bound on a number that is not negative, whatever a few operations have rounded or lost to underflow: what is no number is not
+/// bounded.
+fn up(value: f64) -> f64 {
+    if value.is_nan() { f64::INFINITY } else { value * (1.0 + 16.0 * f64::EPSILON) + f64::MIN_POSITIVE }
+}
+
+/// The legs of a phase to which rounding leaves time, or of standing.
+struct Span {
+    /// The first one.
+    begin: usize,
+    /// Largest speeds between the exact times and the rounded ones \[m/s\].
+    speeds: [f64; 2],
+    /// From when to when, exactly \[s\].
+    times: [Twofold; 2],
+    /// How far they are off at most where they begin \[m\].
+    lost: f64,
+}
+
+impl Span {
+    /// The next one, after phases that rounding hides.
+    fn then(self, next: Self, hidden: f64, legs: &mut [(f64, Leg)]) -> Self {
+        let rounded = Twofold::from(next.times[0].to_f64());
+        let apart = [self.times[1], next.times[0]].map(|exact| (exact - rounded).abs().to_f64());
+        let lost = up((self.speeds[1] + next.speeds[0]) * apart[0].max(apart[1]) + hidden);
+        self.close(next.begin, lost, legs);
+        Self { lost, ..next }
+    }
+
+    /// Its legs are off by so much about its end, or by what is lost about its beginning: no time is beyond both.
+    fn close(self, until: usize, lost: f64, legs: &mut [(f64, Leg)]) {
+        let lost = self.lost.max(lost);
+        legs[self.begin..until].iter_mut().for_each(|(_, leg)| leg.off = up(leg.off + lost));
+    }
+}
+
+/// The legs of a phase between exact times: one on each segment. Returns the largest speeds between these and the rounded ones.
+///
+/// A leg goes on along its own carrier where the length is not on its segment, by x at most: then it is off by 2x, as the agent goes
+/// as far along another one. The length does not decrease within the phase, so that x is found at both ends of the leg, and at those
+/// of the phase where the leg goes on beyond them.
+fn add_legs(
+    legs: &mut Vec<(f64, Leg)>,
+    stretches: &[Stretch],
+    phase: &Phase,
+    start: Twofold,
+    times: [Twofold; 2],
+) -> [f64; 2] {
     let ramp = Ramp::of_phase(phase, start);
+    let ends = times.map(Twofold::to_f64);
     let [lo, hi] = phase.length;
     let at = |t: f64| ramp.length_at(Ball::from(t));
     // The speed at the other end follows from the rest; it may differ from the one told by rounding.
     let told = phase.time.map(|t| exact(start) + Ball::from(t));
-    let [a, b, c, d] =
-        [told[0], told[1], Ball::from(ends[0]), Ball::from(ends[1])].map(|t: Ball<Twofold>| ramp.speed_at(t).abs());
-    let top = a.max(b).max(c.max(d));
-    let top = (top.to_f64() + top.err) * (1.0 + f64::EPSILON);
+    let speeds = [0, 1].map(|end| {
+        let [a, b] = [told[end], Ball::from(ends[end])].map(|t| ramp.speed_at(t).abs());
+        up(a.max(b).to_f64() + a.max(b).err)
+    });
+    let top = speeds[0].max(speeds[1]);
     let mut from = ends[0];
     // Those before it are passed already.
     let begin = stretches.partition_point(|stretch| stretch.before + stretch.placed.length <= Twofold::from(lo));
@@ -148,23 +214,27 @@ fn add_legs(legs: &mut Vec<(f64, Leg)>, stretches: &[Stretch], phase: &Phase, st
         }
         // When it leaves the segment, about: where the length passes its end.
         let to = if last || after >= Twofold::from(hi) { ends[1] } else { crossing(&at, after, [from, ends[1]]) };
-        let beyond = |past: Ball<Twofold>| (past.to_f64() + past.err).max(0.0);
-        let over = beyond(exact(before) - at(from)).max(beyond(at(to) - exact(after)));
-        let early = beyond(Ball::from(phase.time[0]) + exact(start) - Ball::from(from));
-        let late = beyond(Ball::from(to) - exact(start) - Ball::from(phase.time[1]));
+        let begins = if Twofold::from(from) <= times[0] { Ball::from(lo) } else { at(from) };
+        let leaves = if Twofold::from(to) >= times[1] { Ball::from(hi) } else { at(to) };
+        let beyond = |past: Ball<Twofold>| {
+            let most = past.to_f64() + past.err;
+            if most <= 0.0 { 0.0 } else { up(most) }
+        };
+        let over = beyond(exact(before) - begins).max(beyond(leaves - exact(after)));
         let own = Ramp { length: ramp.length - exact(before), ..ramp };
         let course = Course { carrier: stretch.placed.exact, ramp: own };
         let curvature = match course.carrier {
             Carrier::Line { .. } => 0.0,
-            Carrier::Circle { radius, .. } => (1.0 / radius.to_f64()) * (1.0 + f64::EPSILON),
+            Carrier::Circle { radius, .. } => up(1.0 / radius.to_f64()),
         };
-        let off = 2.0 * over + 2.0 * top * (early.max(late));
-        legs.push((from, Leg { exact: course, near: Course::of(&course), speed: top, curvature, off }));
+        let leg = Leg { exact: course, near: Course::of(&course), speed: top, curvature, off: 2.0 * over };
+        legs.push((from, leg));
         from = to;
         if from >= ends[1] {
             break;
         }
     }
+    speeds
 }
 
 /// A time at which a length that does not decrease passes a value, about.
@@ -177,4 +247,77 @@ fn crossing(at: &impl Fn(f64) -> Ball<Twofold>, value: Twofold, [mut lo, mut hi]
         if at(middle).mid < value { lo = middle } else { hi = middle }
     }
     hi
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::{Angle, Path, Segment, Travel};
+
+    fn dice(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*state >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// An agent that sets off after 2^33 s, where two times are 2^-19 s apart, on lines and arcs, with phases of all speeds, of which
+    /// some are shorter than that.
+    fn late(state: &mut u64) -> Agent {
+        let (mut time, mut length, mut phases) = (0.0, 0.0, Vec::new());
+        for _ in 0..8 {
+            let speed = if dice(state) < 0.3 { 0.0 } else { (10.0 * dice(state)).exp2() };
+            let lasts = if dice(state) < 0.5 { dice(state) } else { dice(state) * (-19.0 - 3.0 * dice(state)).exp2() };
+            let next = [time + lasts, length + speed * lasts * (1.0 + dice(state))];
+            phases.push(Phase { time: [time, next[0]], length: [length, next[1]], speed: [speed; 2] });
+            [time, length] = next;
+        }
+        let (mut from, mut segments) = (0.0, Vec::new());
+        let cuts = [dice(state), dice(state), dice(state)].map(|part| part * length);
+        let ends = phases.iter().map(|phase| phase.length[1]).filter(|_| dice(state) < 0.5);
+        let mut ends: Vec<f64> = ends.chain(cuts).filter(|&end| end < length).collect();
+        ends.sort_by(f64::total_cmp);
+        for to in ends.into_iter().chain([length]) {
+            let radius = if dice(state) < 0.5 { None } else { Some((to - from).max(1e-3) * (dice(state) - 0.5)) };
+            let radius = radius.map(|radius: f64| (0.2 * (to - from) + radius.abs()).copysign(radius));
+            let turns = vec![Angle::Radians(7.0 * dice(state))];
+            segments.push(Segment { length: to - from, radius: radius.filter(|_| to > from), turns, from, to });
+            from = to;
+        }
+        let path = Path { start: [0.0; 2], heading: Angle::Turns(0.0), segments, rounding: 1e-9, step: 0.0 };
+        let travel = Travel { start: 8_589_934_592.0 + dice(state), phases, lag: 1e-9, time_excess: 0.0 };
+        Agent { id: 1, radius: 0.5, path, travel: Some(travel) }
+    }
+
+    #[test]
+    fn every_leg_is_off_by_no_more_than_it_says() {
+        let (mut state, mut worst) = (1, 0.0_f64);
+        for _ in 0..1000 {
+            let agent = late(&mut state);
+            let mover = Mover::new(&agent, [0.0, 1e12]).unwrap();
+            let (stretches, travel) = (stretches(&agent.path).unwrap(), agent.travel.as_ref().unwrap());
+            let end = stretches.last().map(|last| last.before + last.placed.length).unwrap();
+            let there = |time: Twofold| {
+                let length = travel::length_at(travel, time, end.to_f64())[0].clamp(Twofold::ZERO, end);
+                let place = stretches.iter().position(|one| length <= one.before + one.placed.length);
+                let stretch = &stretches[place.unwrap_or(stretches.len() - 1)];
+                stretch.placed.exact.point(exact(length - stretch.before))
+            };
+            for (place, (from, leg)) in mover.legs.iter().enumerate() {
+                let from = from.max(travel.start - 1.0);
+                let to = mover.legs.get(place + 1).map_or(from + 1.0, |next| next.0);
+                let digit = from * f64::EPSILON;
+                let inside = [0.0, 0.1, 0.2, 0.3, 0.4, 0.5].map(|part| part * digit);
+                let times =
+                    inside.iter().flat_map(|&by| [(from, by), (to, -by), (from, dice(&mut state) * (to - from))]);
+                for time in times.map(|(end, by)| Twofold::from(end) + Twofold::from(by)) {
+                    if time < Twofold::from(from) || Twofold::from(to) < time {
+                        continue;
+                    }
+                    let off = (leg.exact.at(exact(time))[0] - there(time)).norm();
+                    assert!(off.to_f64() <= leg.off + 1e-12, "{agent:?} {place} {time:?}: {off:?} {}", leg.off);
+                    worst = worst.max(off.to_f64() / (leg.off + 1e-12));
+                }
+            }
+        }
+        assert!(worst > 0.5, "{worst}: too good to be measured");
+    }
 }
