@@ -13,7 +13,9 @@
 //!
 //! The radius itself is computed in `f64`. All its terms are non-negative and there are fewer than ten, so that it is
 //! too small by a factor of 1 - 16 * 2^-53 at most; `UP` makes up for that, and for taking the leading part of a `Twofold`
-//! as its magnitude. `TINY` is more than what underflow can take from a product or quotient, its error term included.
+//! as its magnitude. `TINY` is more than what underflow can take from a product or quotient, its error term included. Where the result is
+//! divided by a number that may be as small, `LOST` is added before: it is more than underflow takes from any product (2^-1070,
+//! `twofold.rs`), that of the radius, too.
 
 use crate::twofold::Twofold;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -24,6 +26,9 @@ const UP: f64 = 1.0 + 32.0 * f64::EPSILON;
 
 /// 2^-900.
 const TINY: f64 = 1.183e-271;
+
+/// 2^-1000.
+const LOST: f64 = 9.333e-302;
 
 /// What a ball has in its middle.
 pub trait Real:
@@ -210,7 +215,7 @@ impl<R: Real> Div for Ball<R> {
         }
         let mid = self.mid / rhs.mid;
         let size = mid.to_f64().abs();
-        let carried = (self.err + size * rhs.err) / (divisor - rhs.err);
+        let carried = (self.err + size * rhs.err + LOST) / (divisor - rhs.err);
         Self { mid, err: (carried + size * R::ROUND) * UP * UP + TINY }
     }
 }
@@ -284,7 +289,7 @@ impl<R: Real> Ball<R> {
         }
         let mid = self.mid.sqrt();
         let root = mid.to_f64();
-        Self { mid, err: (self.err / root + root * R::ROUND) * UP * UP + TINY }
+        Self { mid, err: ((self.err + LOST) / root + root * R::ROUND) * UP * UP + TINY }
     }
 
     /// Sine and cosine of an angle up to 16 rad in magnitude: neither moves by more than the angle does.
@@ -384,6 +389,32 @@ mod tests {
         }
         assert!(worst < f64::TRIG, "{worst:e}");
         assert!(worst > 0.01 * f64::TRIG, "{worst:e}: too good to be measured");
+    }
+
+    #[test]
+    fn quotients_and_roots_of_what_is_all_but_nothing_are_right() {
+        fn hold<R: Real>(least: i32) {
+            let mut state = 3;
+            let within = |ball: Ball<R>, exact: Twofold| {
+                let mid = Ball::of(Ball { mid: exact, err: 0.0 });
+                let off = (ball - mid).mid.to_f64().abs();
+                // The exact one is of 106 bits.
+                assert!(off <= ball.err + mid.err + exact.to_f64().abs() * 1e-30, "{off:e}, {:e}", ball.err);
+                ball.err
+            };
+            for _ in 0..20_000 {
+                let [a, b] = [(); 2].map(|()| (1.0 + (dice(&mut state) * 30.0).exp2()).floor());
+                let exponent = least + (2.0 * dice(&mut state) * 100.0) as i32 / 2 * 2;
+                let tiny =
+                    |number: f64| Ball::<R>::from(number * 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent / 2));
+                within(tiny(a) / tiny(b), Twofold::from(a) / Twofold::from(b));
+                within(tiny(a).sqrt(), Twofold::from(a).sqrt() * 2.0_f64.powi(exponent / 2));
+            }
+            let (third, root) = (Ball::<R>::from(1e-200) / Ball::from(3e-200), Ball::<R>::from(2e-200).sqrt());
+            assert!(third.err < 1e-15 && root.err < 1e-115, "{:e} {:e}", third.err, root.err);
+        }
+        hold::<f64>(-1074);
+        hold::<Twofold>(-1074);
     }
 
     #[test]

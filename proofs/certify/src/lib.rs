@@ -18,7 +18,7 @@
 //! travel     the travelled length over time, as the phases say
 //! regions    what is told of all pieces together: lengths and times         lemma 7
 //! table      all pairs; the margin
-//! mover      an agent in the plane over time
+//! mover      an agent in the plane over time                                lemma 8
 //! motion     discs that never touch
 //! ```
 //!

@@ -136,7 +136,8 @@ impl Both<'_> {
     fn look<R: Real>(&self, course: impl Fn(&Leg) -> &Course<R>) -> Seen {
         let middle = self.middle();
         // No less than the way to either end, whatever was rounded.
-        let half = 0.5 * (self.hi - self.lo) * (1.0 + 4.0 * f64::EPSILON) + f64::EPSILON * middle.abs();
+        let half =
+            0.5 * (self.hi - self.lo) * (1.0 + 4.0 * f64::EPSILON) + f64::EPSILON * middle.abs() + f64::MIN_POSITIVE;
         let places = [self.own.leg(middle), self.other.leg(middle)];
         let legs = [&self.own.legs[places[0]].1, &self.other.legs[places[1]].1];
         let [a, b] = legs.map(|leg| course(leg).at(Ball::from(middle)));

@@ -12,6 +12,9 @@ type Number = Ball<Twofold>;
 const BELOW: f64 = 1.0 / (1_u128 << 80) as f64;
 /// No number of a path is larger.
 const MOST: f64 = 1e15;
+/// No length but 0, and no radius, is smaller \[m\]: so that the parts of a length that are told apart, as [`BELOW`], are numbers.
+/// The library takes lengths below 1e-150 m as 0, and no radii below 1e-75 m.
+pub(crate) const LEAST: f64 = 1e-200;
 
 /// A segment in the plane, and its lengths along the path.
 #[derive(Clone, Debug)]
@@ -195,6 +198,11 @@ fn checked(segment: &Segment, sum: f64) -> Result<(), String> {
     if segment.length < 0.0 || segment.radius == Some(0.0) {
         return Err("a length below 0 or a radius of 0".into());
     }
+    for (name, value) in [("length", Some(segment.length)), ("radius", segment.radius)] {
+        if let Some(tiny) = value.filter(|&value| value != 0.0 && value.abs() < LEAST) {
+            return Err(format!("{name} {tiny:e} is out of range; the least one is {LEAST:e}"));
+        }
+    }
     // A full turn rounded to the last digit of a format may be more: 13 digits for a radius of 2.
     if segment.radius.is_some_and(|radius| segment.length > 7.0 * radius.abs()) {
         return Err("more than one turn".into());
@@ -249,6 +257,25 @@ mod tests {
         }
         assert!(wrong(&|path| path.rounding = f64::NAN));
         assert!(wrong(&|path| path.step = f64::NAN));
+    }
+
+    #[test]
+    fn what_is_all_but_nothing_is_no_length_and_no_radius() {
+        let path = |length: f64, radius| Path {
+            start: [0.0; 2],
+            heading: Angle::Turns(0.0),
+            segments: vec![Segment { length, radius, turns: vec![], from: 0.0, to: length }],
+            rounding: 0.0,
+            step: 0.0,
+        };
+        for (length, radius) in [(0.0, None), (1e-150, None), (0.0, Some(1e-75)), (1e-75, Some(-1e-75))] {
+            assert!(stretches(&path(length, radius)).is_ok(), "{length} {radius:?}");
+        }
+        // The quotient of the first two is right within 2^-13 only.
+        for (length, radius) in [(8.7e-316, Some(3.3e-316)), (1e-250, None), (0.0, Some(-1e-201))] {
+            let refused = stretches(&path(length, radius)).unwrap_err();
+            assert!(refused.contains("is out of range; the least one is 1e-200"), "{refused}");
+        }
     }
 
     #[test]

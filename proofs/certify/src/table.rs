@@ -5,7 +5,7 @@ use crate::cell::Both;
 use crate::data::{Agent, Pair, Table};
 use crate::near::{Area, Near, area};
 use crate::pair::{Findings, Radii, Segments, pieces_of};
-use crate::path::{Stretch, stretches};
+use crate::path::{LEAST, Stretch, stretches};
 use crate::regions;
 use crate::travel;
 use crate::twofold::Twofold;
@@ -102,7 +102,7 @@ impl<'a> Checker<'a> {
             if a == b || a >= count || b >= count || id(a) == id(b) || !there.insert([a.min(b), a.max(b)]) {
                 return Err(format!("the pair of places {a} and {b} is none, or there twice"));
             }
-            if !(pair.excess > 0.0 && pair.excess < 1e15) {
+            if !(LEAST..1e15).contains(&pair.excess) {
                 return Err(format!("the excess of places {a} and {b} is out of range"));
             }
             // The rounding of a full turn, to a whole digit of sixteen; of what is more there would be a third lap.
@@ -126,7 +126,7 @@ impl<'a> Checker<'a> {
     }
 
     fn all_near_are_among(&self, there: &HashSet<[usize; 2]>, excess: f64) -> Result<(), String> {
-        if !(excess > 0.0 && excess < 1e15) {
+        if !(LEAST..1e15).contains(&excess) {
             return Err("the excess of those that are left out is out of range".into());
         }
         let area = |placed: &Placed<'_>| reach(placed.agent, &placed.stretches, excess);

@@ -2,7 +2,7 @@
 //! sums, products, quotients, square roots, sines and cosines.
 //!
 //! With u = 2^-53, each operation is right within 16 u² = 2^-102 of its result, the sine and cosine within 64 u² = 2^-100 of 1,
-//! as long as nothing overflows and no product is below 2^-900:
+//! as long as nothing overflows, no product that is part of it is below 2^-900, and for quotients and roots the number itself is not:
 //!
 //! - *Sum*: 3u² (Joldes, Muller, Popescu, Tight and rigorous error bounds for basic building blocks of double-word arithmetic, ACM
 //!   TOMS 44, 2017, algorithm 6; the proofs have been checked by Coq: Muller, Rideau, ACM TOMS 48, 2022).
@@ -17,6 +17,11 @@
 //!   3u² and 0.0017 of the steps before, so that sine and versine are right within 11u² of themselves. A doubling costs the
 //!   sine 7u², and what the cosine is off, 4u² at most; the versine twice what the sine is off and 7u². After three the sine is
 //!   off by 44u² of itself, the versine by 73u² of itself, at most 0.2929: 31u² and 22u². With the angle, less than 40u².
+//!
+//! *What is smaller.* Sums lose nothing: all numbers are multiples of 2^-1074, and so is what is rounded. A product is off by 2^-1070 more at
+//! most: the parts of its error term are rounded to such a multiple, each by 2^-1075, a few of them. A quotient and a root are found by what
+//! their first digits leave, so that they are off by that much over the divisor, or over twice the root, and that may be anything.
+//! `Ball` adds it.
 
 use std::cmp::Ordering;
 use std::f64::consts::FRAC_PI_2;
