@@ -12,6 +12,8 @@ type Number = Ball<Twofold>;
 const BELOW: f64 = 1.0 / (1_u128 << 80) as f64;
 /// No number of a path is larger.
 const MOST: f64 = 1e15;
+/// No direction at a start is farther from 0 \[rad, or turns\]: 2^24, as in the library.
+const MOST_HEADING: f64 = 16_777_216.0;
 /// No length but 0, and no radius, is smaller \[m\]: so that the parts of a length that are told apart, as [`BELOW`], are numbers.
 /// The library takes lengths below 1e-150 m as 0, and no radii below 1e-75 m.
 pub(crate) const LEAST: f64 = 1e-200;
@@ -116,14 +118,22 @@ fn radians(angle: Angle) -> Number {
     }
 }
 
-/// The unit vector in a direction: up to a thousand turns it is as right as that of smaller angles.
+/// The unit vector in a direction: up to 2^25 rad the sine and cosine are as right as those of smaller angles (`twofold.rs`).
 ///
 /// Always from the sum of all angles: a vector that is turned again and again has a bound that grows by up to √2 each time.
-fn unit(heading: Number) -> Vector<Twofold> {
+fn unit(heading: Number) -> Result<Vector<Twofold>, String> {
+    let allowed = 2.0 * MOST_HEADING;
+    // What is no number is not within it either.
+    if heading.to_f64().abs().partial_cmp(&allowed).is_none_or(std::cmp::Ordering::is_gt) {
+        let heading = heading.to_f64();
+        return Err(format!(
+            "its direction of {heading} rad is out of range; allowed is up to {allowed:e} in magnitude"
+        ));
+    }
     let (sin, cos) = heading.mid.sin_cos();
-    let err = if heading.to_f64().abs() < 6000.0 { heading.err + 8e-31 } else { f64::INFINITY };
+    let err = heading.err + 8e-31;
     let [y, x] = [sin, cos].map(|mid| Ball { mid, err });
-    Vector { x, y }
+    Ok(Vector { x, y })
 }
 
 fn fits(value: f64, name: &str) -> Result<(), String> {
@@ -144,8 +154,8 @@ pub fn stretches(path: &Path) -> Result<Vec<Stretch>, String> {
         return Err(format!("the step {} is none of a fixed-point format", path.step));
     }
     let (Angle::Radians(heading) | Angle::Turns(heading)) = path.heading;
-    if heading.abs() > 6000.0 || heading.is_nan() {
-        return Err(format!("heading {heading} is out of range"));
+    if heading.abs() > MOST_HEADING || heading.is_nan() {
+        return Err(format!("heading {heading} is out of range; allowed is up to {MOST_HEADING:e} in magnitude"));
     }
     let mut heading = radians(path.heading);
     let mut at = Vector { x: Ball::from(x), y: Ball::from(y) };
@@ -155,7 +165,7 @@ pub fn stretches(path: &Path) -> Result<Vec<Stretch>, String> {
         let wrong = |problem: String| format!("segment {place}: {problem}");
         checked(segment, sum).map_err(wrong)?;
         heading = segment.turns.iter().fold(heading, |heading, &by| heading + radians(by));
-        let direction = unit(heading);
+        let direction = unit(heading).map_err(wrong)?;
         let carrier = match segment.radius {
             None => Carrier::Line { start: at, along: direction },
             Some(bend) => {
@@ -257,6 +267,41 @@ mod tests {
         }
         assert!(wrong(&|path| path.rounding = f64::NAN));
         assert!(wrong(&|path| path.step = f64::NAN));
+    }
+
+    #[test]
+    fn paths_of_many_turns_are_where_they_are() {
+        let line = |heading, turns: &[f64]| {
+            let turns = turns.iter().map(|&by| Angle::Radians(by)).collect();
+            let segments = vec![Segment { length: 1.0, radius: None, turns, from: 0.0, to: 1.0 }];
+            let path = Path { start: [0.0; 2], heading, segments, rounding: 0.0, step: 0.0 };
+            let stretch = stretches(&path)?.remove(0);
+            Ok::<_, String>(stretch.placed.exact.point(Ball::from(1.0)))
+        };
+        // The sine to 32 digits, also of about the largest one and of the nearest to a quarter turn.
+        let sines = [
+            (6001.0, 0.529_517_469_867_720_9, -8.054_555_421_145_84e-18),
+            (1e7, 0.420_547_793_190_782_5, -1.269_293_621_916_956e-17),
+            (33_554_431.5, -0.753_687_567_558_517_7, 1.600_564_761_271_486e-17),
+            (5_419_351.0, -3.820_047_507_089_660_5e-8, 3.304_751_899_610_767_4e-24),
+        ];
+        for (heading, sine, rest) in sines {
+            let there = match line(Angle::Radians(heading), &[]) {
+                Ok(there) => there,
+                Err(refused) => {
+                    let allowed = "heading 33554431.5 is out of range; allowed is up to 1.6777216e7 in magnitude";
+                    assert_eq!(refused, allowed);
+                    line(Angle::Radians(0.5 * heading), &[0.5 * heading]).unwrap()
+                }
+            };
+            let off = there.y - Ball::from(sine) - Ball::from(rest);
+            assert!(off.to_f64().abs() <= there.y.err && there.y.err < 1e-23, "{heading}: {there:?}");
+        }
+        // Nothing is told of what is beyond, and it is named.
+        let refused = line(Angle::Radians(0.0), &[2e7, 2e7]).unwrap_err();
+        let allowed = "its direction of 40000000 rad is out of range; allowed is up to 3.3554432e7 in magnitude";
+        assert_eq!(refused, format!("segment 0: {allowed}"));
+        assert!(line(Angle::Radians(0.0), &[f64::NAN]).is_err());
     }
 
     #[test]

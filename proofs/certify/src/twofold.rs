@@ -12,8 +12,9 @@
 //!   27u³. The first two are added exactly, the third with 3u². Together less than 7u².
 //! - *Root*: what the `f64` root leaves of the number is found with 3u² of itself; it is 3u at most. Twice the root for the sum
 //!   of both roots costs 1.5u of the correction of 1.5u, its leading part and the division u each: 5.3u².
-//! - *Sine and cosine*: the parts of π/2 times the quarter turns are exact, but for the third, of 2^-109; three differences, 3u²
-//!   each of what they leave: 8u² of 1. Of the eighth, below 0.0982, the square is right within 7u², the series within
+//! - *Sine and cosine*, up to 2^25: the number of quarter turns is below 2^25, too, and off by 2^-27 more than rounded, that is by what the
+//!   `f64` of the angle leaves out and the quotient is rounded. Times each of three parts of π/2 it is exact; what follows them is below
+//!   2^-162, and 2^-137 as often; three differences, 3u² each of what they leave: 8u² of 1. Of the eighth, below 0.0982, the square is right within 7u², the series within
 //!   3u² and 0.0017 of the steps before, so that sine and versine are right within 11u² of themselves. A doubling costs the
 //!   sine 7u², and what the cosine is off, 4u² at most; the versine twice what the sine is off and 7u². After three the sine is
 //!   off by 44u² of itself, the versine by 73u² of itself, at most 0.2929: 31u² and 22u². With the angle, less than 40u².
@@ -192,7 +193,7 @@ impl Twofold {
         sum_of_larger(root, rest.hi / (2.0 * root))
     }
 
-    /// Sine and cosine, of angles up to some thousand turns.
+    /// Sine and cosine, of angles up to 2^25.
     pub fn sin_cos(self) -> (Self, Self) {
         let quarters = (self.hi / FRAC_PI_2).round();
         let [a, b, c] = Self::HALF_PI;
