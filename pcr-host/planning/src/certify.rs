@@ -65,7 +65,7 @@ pub struct Point {
     pub l_i: f64,
     /// Length along the path of `j` \[m\].
     pub l_j: f64,
-    /// Distance of the centres minus the radii \[m\].
+    /// Distance of the centres minus the radii \[m\]; NaN where it is not known, in JSON `null`.
     pub clearance: f64,
     /// That distance in ε of the pair; between 0 and 1 a table may count it as contact or not.
     pub in_excess: f64,

@@ -337,6 +337,13 @@ impl<R: Real> Ball<R> {
     pub fn to_f64(self) -> f64 {
         self.mid.to_f64()
     }
+
+    /// The same of a length in metres that is told: no number, where neither its sign is certain nor a micrometre of it. The middle of what
+    /// may be any number says nothing.
+    pub fn told(self) -> f64 {
+        let mid = self.mid.to_f64();
+        if self.err <= mid.abs().max(1e-6) { mid } else { f64::NAN }
+    }
 }
 
 #[cfg(test)]
@@ -424,6 +431,15 @@ mod tests {
             assert!((angle.mid - PI).abs() <= angle.err && angle.err < 1e-14, "{angle:?}");
             let angle = Ball::<Twofold>::angle(Ball::from(-1.0), Ball::from(zero));
             assert!((angle.to_f64() - PI).abs() < 1e-14, "{angle:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_known_is_not_told() {
+        let told = |mid, err| Ball::<f64> { mid, err }.told();
+        assert_eq!((told(-0.5, 0.4), told(1e-9, 1e-7)), (-0.5, 1e-9));
+        for unknown in [told(-0.5, 0.6), told(-0.5, f64::INFINITY), told(0.0, f64::NAN), told(f64::NAN, 0.0)] {
+            assert!(unknown.is_nan());
         }
     }
 

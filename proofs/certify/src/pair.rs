@@ -32,7 +32,7 @@ pub struct Witness {
     pub agents: [usize; 2],
     /// Lengths along their paths \[m\].
     pub lengths: [f64; 2],
-    /// Distance of the discs' centres there less R \[m\].
+    /// Distance of the discs' centres there less R \[m\]; NaN where it is not known.
     pub clearance: f64,
     /// ε \[m\].
     pub excess: f64,
@@ -156,7 +156,7 @@ impl Segments<'_> {
         let mut lengths = [0.0; 2];
         lengths[of] = self.stretches[of].on_path(at);
         lengths[other] = self.stretches[other].on_path(foot);
-        let clearance = (distance - radii.radius).to_f64();
+        let clearance = (distance - radii.radius).told();
         Witness { promise, agents: pair.agents, lengths, clearance, excess: pair.excess }
     }
 

@@ -38,7 +38,7 @@ pub struct Contact {
     pub j: u64,
     /// Time \[s\].
     pub t: f64,
-    /// Distance of the centres of two of their discs less the radii \[m\].
+    /// Distance of the centres of two of their discs less the radii \[m\]; NaN where it is not known, in JSON `null`.
     pub clearance: f64,
 }
 
@@ -58,7 +58,8 @@ impl Proof {
         }
         let movers = agents.iter().zip(&motions).zip(&discs).map(|((agent, motion), disc)| {
             let time = disc.time(motion, all);
-            Mover::new(agent, [time.lo.to_f64(), time.hi.to_f64()])
+            let mover = Mover::new(agent, [time.lo.to_f64(), time.hi.to_f64()]);
+            mover.map_err(|problem| format!("agent {}: {problem}", agent.id))
         });
         Ok(match movers.collect::<Result<Vec<_>, _>>() {
             Ok(movers) => Self::found(&movers),

@@ -18,7 +18,8 @@ pub fn certified_csv(certified: &Certified, out: &mut impl Write) -> io::Result<
     for (verdict, points) in [("refuted", &certified.refuted), ("undecided", &certified.undecided)] {
         for point in points {
             let (promise, numbers) = (point.promise, [point.l_i, point.l_j, point.clearance, point.in_excess]);
-            let numbers = numbers.map(|number| number.to_string()).join(",");
+            let number = |number: f64| if number.is_nan() { String::new() } else { number.to_string() };
+            let numbers = numbers.map(number).join(",");
             let [a, b] = [point.i, point.j].map(|id| quoted(certified.labels.get(id)));
             writeln!(out, "{name},{verdict},{promise},{},{},{numbers},{a},{b}", point.i, point.j)?;
         }
@@ -61,7 +62,9 @@ pub fn certified_table(certified: &Certified, out: &mut impl Write) -> io::Resul
         for point in points {
             let mut row = [point.i, point.j].map(|id| called(&certified.labels, id)).to_vec();
             row.extend([point.l_i, point.l_j].map(|length| format!("{length:.6}")));
-            row.extend([small(point.clearance), thousandths(point.in_excess), point.promise.into()]);
+            let known = |text: String| if point.clearance.is_nan() { "unknown".into() } else { text };
+            row.extend([small(point.clearance), thousandths(point.in_excess)].map(known));
+            row.push(point.promise.into());
             columns.row(row);
         }
         columns.write(out)?;

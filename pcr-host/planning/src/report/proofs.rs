@@ -9,8 +9,9 @@ use pcr_formats::scenario::Labels;
 pub fn proof_line(proof: &Proof, labels: &Labels) -> String {
     let place = |those: &[Contact]| {
         those.first().map_or(String::new(), |&Contact { i, j, t, clearance }| {
-            let (agents, t, clearance) = (all_called(labels, &[i, j]), thousandths(t), small(clearance));
-            format!("agents {agents} at {t} s, clearance {clearance} m")
+            let (agents, t) = (all_called(labels, &[i, j]), thousandths(t));
+            let clearance = if clearance.is_nan() { "unknown".into() } else { format!("{} m", small(clearance)) };
+            format!("agents {agents} at {t} s, clearance {clearance}")
         })
     };
     let found = match (proof.verdict, &proof.error) {
