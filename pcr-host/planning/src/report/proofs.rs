@@ -22,3 +22,25 @@ pub fn proof_line(proof: &Proof, labels: &Labels) -> String {
     };
     format!("certificate: {found}")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_distance_that_is_not_known_is_no_clearance() {
+        let told = |clearance| {
+            let undecided = vec![Contact { i: 1, j: 2, t: 5.0, clearance }];
+            let proof =
+                Proof { verdict: "undecided", pairs: 1, steps: 1, contacts: Vec::new(), undecided, error: None };
+            (
+                proof_line(&proof, &Labels::default()),
+                serde_json::to_value(&proof.undecided[0]).unwrap()["clearance"].clone(),
+            )
+        };
+        let (text, number) = told(f64::NAN);
+        assert_eq!(text, "certificate: not decided, agents 1 and 2 at 5.000 s, clearance unknown");
+        assert!(number.is_null());
+        assert_eq!(told(-0.5).0, "certificate: not decided, agents 1 and 2 at 5.000 s, clearance -0.500 m");
+    }
+}
