@@ -36,6 +36,7 @@ static int holds(void) {
   return 0;
 }
 
+/* A robot that stands. One that moves reports as `stop` the hold that it was told. */
 static PcrProgress at(float length) { return (PcrProgress){{length, length}, length}; }
 
 int main(void) {

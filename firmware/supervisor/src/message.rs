@@ -67,7 +67,8 @@ pub enum Request<S: Number> {
         agent: u16,
         /// Edition of the orders that the robot has.
         edition: Edition,
-        /// Place of the robot on its path \[m\]: it is not further back than `lo`, nor further on than `hi`.
+        /// Place of the robot on its path \[m\]: it is not further back than `lo`, nor further on than `hi`. Neither is more than the robot
+        /// was told, 0 at first: one that obeys limits what it measures to that. It has arrived when `lo` is the length of its path.
         at: Interval<S>,
     },
     /// Asks for the orders of a robot. Answers: an [`Answer::Member`] for itself and each robot with which it has

@@ -126,7 +126,8 @@ impl<'a> Checker<'a> {
     }
 
     fn all_near_are_among(&self, there: &HashSet<[usize; 2]>, excess: f64) -> Result<(), String> {
-        if !(LEAST..1e15).contains(&excess) {
+        // It is 0 where there are no pairs.
+        if !(0.0..1e15).contains(&excess) {
             return Err("the excess of those that are left out is out of range".into());
         }
         let area = |placed: &Placed<'_>| reach(placed.agent, &placed.stretches, excess);

@@ -44,7 +44,8 @@ pub enum Refusal {
     Running,
     /// No robots are under way.
     NotRunning,
-    /// A term is out of range, or the number of the run is 0 or that of the last run.
+    /// A term is out of range, or the number of the run is 0 or that of the last run. Or all 65,535 numbers of editions of this run are
+    /// used: another run begins with `Order`.
     Terms,
     /// Orders have changed; ask for them with [`Request::Orders`].
     Edition(Edition),

@@ -75,6 +75,10 @@ pub(super) fn read(
     }
     let levels = root.object("levels")?.ok_or_else(|| root.missing("levels"))?;
     let graph = is_navigation_graph(&value);
+    // YAML does not tell where it ends.
+    if !graph && root.get("name").is_none() {
+        warnings.add("building", "it has no name, which a building has behind its levels: the file may be cut");
+    }
     let reference = match root.text("coordinate_system")? {
         None if graph => None,
         None | Some("reference_image") => Some(Reference::of(text, &root, &levels, warnings)?),
