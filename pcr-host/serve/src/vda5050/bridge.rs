@@ -132,9 +132,9 @@ impl Bridge {
     }
 
     /// Asks all vehicles for their states and factsheets: the supervisor was away.
-    pub fn greet(&mut self) {
+    pub fn greet(&mut self, now: f64) {
         for lane in &mut self.lanes {
-            lane.ask_for("stateRequest");
+            lane.ask_when(now);
             lane.ask_for("factsheetRequest");
         }
         self.collect(&(0..self.lanes.len()).collect());
@@ -177,7 +177,7 @@ impl Bridge {
                 lane.connection(payload, limits, is_third, now).inspect(|()| lane.pass_on(kind, is_third, payload))
             }
             Kind::Factsheet => lane
-                .factsheet(supervisor, payload, limits, is_third)
+                .factsheet(supervisor, payload, limits, is_third, now)
                 .inspect(|()| lane.pass_on(kind, is_third, payload)),
             Kind::InstantActions => lane.instant_actions(supervisor, payload, limits, is_third, now),
             Kind::Order => {
@@ -205,7 +205,8 @@ impl Bridge {
         }
         let touched = std::mem::take(&mut self.touched);
         // A vehicle without a position may stand anywhere, and one that is larger than its disc may be in the way of any other.
-        let is_known = self.seen.unknown.is_empty() && self.lanes.iter().all(|lane| lane.misfit().is_none());
+        let is_sure = |lane: &Lane| lane.misfit().is_none() && !lane.is_doubtful();
+        let is_known = self.seen.unknown.is_empty() && self.lanes.iter().all(is_sure);
         for &place in &touched {
             let lane = &mut self.lanes[place];
             lane.pause(supervisor, now);
@@ -216,7 +217,9 @@ impl Bridge {
         self.collect(&touched);
         if !is_known && now >= self.said + REMINDER {
             self.said = now;
-            let names: Vec<&str> = self.seen.unknown.iter().map(|&place| self.lanes[place].name()).collect();
+            let doubtful = self.lanes.iter().filter(|lane| lane.is_doubtful());
+            let unknown = self.seen.unknown.iter().map(|&place| &self.lanes[place]);
+            let names: Vec<&str> = unknown.chain(doubtful).map(Lane::name).collect();
             if !names.is_empty() {
                 let names = names.join(", ");
                 self.log.push(format!("nobody is released anything until these have said where they stand: {names}"));

@@ -5,6 +5,7 @@
 //! base may end in the middle of an edge. Reports of the vehicle are sent to the manager with the manager's numbers.
 
 mod actions;
+mod ends;
 mod job;
 mod maps;
 mod mirror;
@@ -17,9 +18,10 @@ mod refused;
 mod release;
 mod states;
 
-pub use job::{Job, Sent, Stop};
+pub use job::{Job, Received, Sent, Stop};
 
 use super::header::Header;
+use super::order::Order;
 use super::stamp;
 use super::state::{State, StateError};
 use super::topics::{Key, Kind};
@@ -72,6 +74,9 @@ pub struct Post {
 /// Key of the note with the radius of the disc that a vehicle needs.
 const NEEDS: &str = "needs";
 
+/// Key of the note that a vehicle was seated by a state that may be from before the start.
+const DOUBTFUL: &str = "doubtful";
+
 /// One vehicle.
 #[derive(Debug)]
 pub struct Lane {
@@ -83,6 +88,8 @@ pub struct Lane {
     /// Time at which that came \[s\].
     heard_at: f64,
     job: Option<Job>,
+    /// Orders and updates that have come after a restart before its first state.
+    early: Vec<(Order, bool)>,
     /// Orders that it had, and actions by which the manager has cancelled orders.
     orders: Past,
     cancels: Past,
@@ -100,6 +107,8 @@ pub struct Lane {
     needs: Option<f64>,
     /// Why its position is ignored: it is on another map than the other vehicles.
     elsewhere: Option<String>,
+    /// Whether it was seated by a state that may be from before the start.
+    is_doubtful: bool,
 }
 
 impl Lane {
@@ -112,12 +121,13 @@ impl Lane {
         let robot = supervisor.robot(&name).ok();
         let job = Job::remembered(robot)?;
         let (orders, cancels) = (Past::remembered("orders", robot)?, Past::remembered("cancels", robot)?);
-        let (newest, sent) = (BTreeMap::new(), BTreeMap::new());
-        let (errors, posts) = (Vec::new(), Vec::new());
+        let (newest, sent) = (BTreeMap::from([(Kind::State, Newest::begun())]), BTreeMap::new());
+        let (errors, posts, early) = (Vec::new(), Vec::new(), Vec::new());
         let version = job.as_ref().and_then(|job| Version::of(&job.version));
         let pauses = Pauses::remembered(robot)?;
         let (state, heard_at, astray) = (None, 0.0, None);
         let needs = noted(robot, NEEDS)?;
+        let is_doubtful = noted(robot, DOUBTFUL)?.unwrap_or(false);
         Ok(Self {
             profile,
             name,
@@ -126,6 +136,7 @@ impl Lane {
             state,
             heard_at,
             job,
+            early,
             orders,
             cancels,
             errors,
@@ -136,6 +147,7 @@ impl Lane {
             ahead: None,
             needs,
             elsewhere: None,
+            is_doubtful,
         })
     }
 
@@ -164,6 +176,11 @@ impl Lane {
         let own = self.profile.abilities.radius;
         let needs = self.needs.filter(|needs| *needs > own + 1e-9)?;
         Some(format!("the vehicle needs a disc of {needs} m, not {own}"))
+    }
+
+    /// Whether its place may be one from before the start of the supervisor.
+    pub fn is_doubtful(&self) -> bool {
+        self.is_doubtful
     }
 
     /// Takes the messages to be sent.

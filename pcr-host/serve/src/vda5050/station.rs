@@ -321,7 +321,7 @@ fn answered(
     now: f64,
 ) -> Vec<Publish> {
     if greets {
-        bridge.greet();
+        bridge.greet(now);
     }
     for Heard { topic, payload, kept } in messages {
         match kept {

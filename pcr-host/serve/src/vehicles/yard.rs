@@ -268,7 +268,7 @@ impl<W: Write> Yard<W> {
     pub fn revive(&mut self, supervisor: Supervisor) -> Result<(), Damaged> {
         self.bridge = bridge(&self.interfaces, &self.profiles, &supervisor)?;
         self.supervisor = supervisor;
-        self.bridge.greet();
+        self.bridge.greet(self.time);
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! What vehicles, managers and brokers say that cannot be relied on: nobody is let go on for it.
 
-use crate::lanes::{CAN, key};
+use crate::pair::{CAN, key};
 use crate::site::{interfaces, settings};
 use pcr_serve::course::Start;
 use pcr_serve::entry::Nowhere;
@@ -363,7 +363,14 @@ fn a_vehicle_that_is_larger_than_its_disc_is_released_nothing_nor_is_anybody_els
     own.turn();
     let log = own.bridge.log().join("\n");
     assert!(log.contains("nobody is released anything: sim/001: the vehicle needs a disc of 0.9"), "{log}");
-    own.hears(Kind::Factsheet, &sheet);
+    // What was written before is older.
+    let mut older = sheet.clone();
+    older["timestamp"] = json!("2020-01-01T00:00:00.000Z");
+    own.hears(Kind::Factsheet, &older);
+    assert_eq!(own.lasts(5.0), 0);
+    let mut newer = sheet.clone();
+    newer["headerId"] = json!(1 << 20);
+    own.hears(Kind::Factsheet, &newer);
     assert!(own.lasts(5.0) > 0);
 }
 

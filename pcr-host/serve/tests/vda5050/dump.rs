@@ -21,7 +21,7 @@ pub(crate) fn supervised(supervisor: &Supervisor, bridge: &Bridge) -> Vec<String
             format!(
                 "job {} update {} base {} of {}, asked {}, stops {:?}, sent {:?}, acknowledged {:?}, changed {}, cancel {:?}",
                 job.held.order_id, job.held.update_id, job.held.base, job.held.nodes.len(), job.asked, job.stops.last(), job.sent,
-                job.acknowledged, job.changed, job.cancel
+                job.received.acknowledged, job.changed, job.cancel
             )
         });
         format!("{own}\n    {job:?}\n    heard {:?}", lane.state_of().map(brief))

@@ -1,6 +1,6 @@
 //! One vehicle behind another: what the one in front says lets the other one go on in the same turn.
 
-use crate::lanes::CAN;
+use crate::pair::CAN;
 use crate::site::{interfaces, settings};
 use pcr_serve::course::Start;
 use pcr_serve::entry::Nowhere;

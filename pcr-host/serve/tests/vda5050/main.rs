@@ -1,12 +1,16 @@
 //! VDA 5050 over a real broker, and what does not need one. The runs with a broker: `.ci/test.sh serve`.
 
 mod broker;
+mod cancels;
 mod doubt;
 mod dump;
 mod faults;
 mod following;
 mod lanes;
 mod maps;
+mod pair;
+mod puppet;
+mod restarts;
 mod runs;
 mod samples;
 mod schemas;

@@ -1,6 +1,6 @@
 //! Vehicles on several maps: their coordinates have nothing to do with one another.
 
-use crate::lanes::CAN;
+use crate::pair::CAN;
 use crate::site::{interfaces, settings};
 use pcr_serve::course::Start;
 use pcr_serve::entry::Nowhere;
@@ -69,6 +69,8 @@ impl Pair {
                     self.states[is_of(&key)] = serde_json::from_slice(&message.payload).unwrap();
                 } else if let Some((_, key, Kind::Order)) = to_vehicles.parse(&message.topic) {
                     self.orders[is_of(&key)] += 1;
+                } else if let Some((_, key, kind)) = to_vehicles.parse(&message.topic) {
+                    self.vehicles[is_of(&key)].receive(kind, &message.payload);
                 }
             }
             self.log.extend(self.bridge.log());

@@ -1,6 +1,6 @@
 //! Requests of vehicles of 3.0, and what the manager says to them.
 
-use crate::lanes::{CAN, key};
+use crate::pair::{CAN, key};
 use crate::schemas::schema;
 use crate::site::{interfaces, settings};
 use pcr_serve::course::Start;

@@ -10,6 +10,7 @@ use super::release::AGAIN;
 use super::{Lane, To};
 use crate::event::Event;
 use crate::supervisor::Supervisor;
+use serde_json::Value;
 
 impl Lane {
     /// Passes on instant actions of the manager. An order that they cancel gets no further update.
@@ -32,9 +33,12 @@ impl Lane {
             ("", Some(version)) => version,
             _ => message.header.check(&self.profile.key, is_third)?,
         };
+        if actions.iter().any(|action| action.action_type == "cancelOrder") {
+            self.early.clear();
+        }
         let (cancel, repeated) = self.cancels(supervisor, actions);
         if let Some((job, cancel)) = self.job.as_mut().zip(cancel) {
-            (job.cancel, job.cancelled_at) = (Some(cancel), now);
+            job.is_cancelled(cancel, now);
             let given = job.given();
             self.note(supervisor, "order", given);
             // Without another mission in its place: lengths that the vehicle reports are those of its order.
@@ -90,7 +94,7 @@ impl Lane {
         let header = self.header(Kind::InstantActions, version);
         let id = format!("pcr-cancelOrder-{}-{}", header.timestamp, header.header_id);
         if let Some(job) = &mut self.job {
-            (job.cancel, job.cancelled_at) = (Some(id.clone()), now);
+            job.is_cancelled(id.clone(), now);
             let given = job.given();
             self.note(supervisor, "order", given);
         }
@@ -98,24 +102,30 @@ impl Lane {
         self.post(To::Vehicle, Kind::InstantActions, version, &message);
     }
 
-    /// The cancellation may be lost, or arrive before the order. Both are sent again until the vehicle has both.
+    /// The cancellation may be lost: it is sent again until the vehicle says what became of it.
     pub(super) fn follow_cancel(&mut self, now: f64) {
         let (Some(version), Some(state), Some(job)) = (self.version, &self.state, &mut self.job) else { return };
         let Some(id) = job.cancel.clone() else { return };
-        let has_it = job.held.order_id == state.order_id;
-        match state.action(&id) {
-            None if now - job.cancelled_at >= AGAIN => {
-                job.cancelled_at = now;
-                let header = self.header(Kind::InstantActions, version);
-                let message = InstantActions::one(header, "cancelOrder", id);
-                self.post(To::Vehicle, Kind::InstantActions, version, &message);
-            }
-            Some("FAILED") if !has_it && job.sent.is_some() && job.refused.is_none() && now - job.sent_at >= AGAIN => {
-                job.sent_at = now;
-                self.send(version);
-            }
-            _ => {}
+        let [_, last] = &mut job.cancelled;
+        if state.action(&id).is_none() && now - *last >= AGAIN {
+            *last = now;
+            let header = self.header(Kind::InstantActions, version);
+            let message = InstantActions::one(header, "cancelOrder", id);
+            self.post(To::Vehicle, Kind::InstantActions, version, &message);
         }
+    }
+
+    /// Whether the vehicle carries out a `cancelOrder`.
+    pub(super) fn is_cancelling(&self, state: &State) -> bool {
+        let mut all = state.action_states.iter().chain(state.instant_action_states.iter().flatten());
+        all.any(|action| {
+            let kind = action.rest.get("actionType").and_then(Value::as_str);
+            // Vehicles need not report the type of an action.
+            let cancels = kind == Some("cancelOrder")
+                || self.cancels.contains(&action.action_id)
+                || action.action_id.starts_with("pcr-cancelOrder-");
+            cancels && matches!(action.action_status.as_str(), "WAITING" | "INITIALIZING" | "RUNNING" | "PAUSED")
+        })
     }
 
     /// Handles an event of the supervisor about the vehicle.

@@ -38,6 +38,18 @@ pub struct Sent {
     pub from: usize,
 }
 
+/// What a vehicle has said of its order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Received {
+    /// Whether it has named the order: it has it, or had it, and must not get it again as a new one.
+    pub named: bool,
+    /// Update ids of the update that the vehicle has: its own and the manager's.
+    pub acknowledged: Option<(u64, u64)>,
+}
+
+/// Key of the note about that.
+pub(super) const RECEIVED: &str = "received";
+
 /// An order.
 #[derive(Clone, Debug)]
 pub struct Job {
@@ -55,14 +67,16 @@ pub struct Job {
     pub sent: Option<Sent>,
     /// Time at which it was sent \[s\].
     pub sent_at: f64,
-    /// Update ids of the update that the vehicle has: its own and the manager's.
-    pub acknowledged: Option<(u64, u64)>,
+    /// What the vehicle has said of it.
+    pub received: Received,
+    /// Time since which the vehicle says, as the first thing about this order, that it has completed it \[s\].
+    pub skipped: Option<f64>,
     /// Whether the nodes ahead differ from those that the vehicle knows.
     pub changed: bool,
     /// Id of the action that cancels the order.
     pub cancel: Option<String>,
-    /// Time at which the cancellation was sent \[s\].
-    pub cancelled_at: f64,
+    /// Times at which the cancellation was sent, for the first and for the last time \[s\].
+    pub cancelled: [f64; 2],
     /// Time since which the vehicle has lost the order \[s\].
     pub lost: Option<f64>,
     /// Time since which the vehicle refuses what was sent last \[s\].
@@ -95,10 +109,11 @@ impl Job {
             stops: vec![first],
             sent: None,
             sent_at: f64::NEG_INFINITY,
-            acknowledged: None,
+            received: Received::default(),
+            skipped: None,
             changed: true,
             cancel: None,
-            cancelled_at: f64::NEG_INFINITY,
+            cancelled: [f64::NEG_INFINITY; 2],
             lost: None,
             refused: None,
         }
@@ -116,8 +131,12 @@ impl Job {
         if let Some(stops) = noted(robot, "stops")? {
             (job.stops, job.sent) = (stops, noted(robot, "sent")?);
         }
+        job.received = noted(robot, RECEIVED)?.unwrap_or_default();
         if let Some(robot) = robot {
             job.asked = job.planned(robot).max(job.waiting(robot).unwrap_or(0));
+            // Older journals do not say whether the vehicle has named it. It is on its way only if it has.
+            let begins = job.way.node(0).unwrap_or(0.0) + BEGINS;
+            job.received.named |= job.offset(robot).is_some_and(|offset| robot.at + offset > begins);
         }
         Ok(Some(job))
     }
@@ -166,20 +185,46 @@ impl Job {
     }
 
     /// The stop that a vehicle has passed last, as it says. Before its first node it may name any. What is neither that, nor a node of
-    /// this order that it does not list as ahead any more, is none.
+    /// this order that it does not list as ahead any more, is none. Nor is any before the order is confirmed: the node may be that of the
+    /// order before, with the same name and number.
     pub(super) fn passed(&self, state: &State) -> Option<usize> {
         let sequence = state.last_node_sequence_id;
         let place = self.stop(sequence)?;
         let is_so = place == 0
-            || self.stops.get(place).is_some_and(|stop| self.id(*stop) == state.last_node_id)
-                && state.node_states.iter().all(|node| node.sequence_id >= sequence);
+            || self.is_confirmed()
+                && self.stops.get(place).is_some_and(|stop| self.id(*stop) == state.last_node_id)
+                && state.node_states.iter().all(|node| node.sequence_id > sequence);
         is_so.then_some(place)
     }
 
-    /// Whether the vehicle has received the order. An update is only sent after the one before it was received, perhaps while an earlier
-    /// supervisor ran.
+    /// Whether the vehicle has received the order.
     pub(super) fn was_there(&self) -> bool {
-        self.acknowledged.is_some() || self.sent.is_some_and(|sent| sent.update > 0)
+        self.received.named || self.is_confirmed()
+    }
+
+    /// Whether the vehicle has confirmed the order, or an update of it. An update is only sent after the one before it was confirmed,
+    /// perhaps while an earlier supervisor ran.
+    pub(super) fn is_confirmed(&self) -> bool {
+        self.received.acknowledged.is_some() || self.sent.is_some_and(|sent| sent.update > 0)
+    }
+
+    /// Whether the vehicle may still take what was sent last: it has not shown that it has it.
+    pub(super) fn is_due(&self, state: &State) -> bool {
+        let has = |sent: Sent| state.order_id == self.held.order_id && state.order_update_id >= sent.update;
+        !self.is_acknowledged() && !self.sent.is_some_and(has)
+    }
+
+    /// Whether the vehicle has dropped the order although it names it: it has nothing ahead, and has not reached the end of the last
+    /// update that it has confirmed.
+    pub(super) fn is_dropped(&self, state: &State) -> bool {
+        let last = self.stops.len().saturating_sub(1);
+        let end = if self.is_acknowledged() { last } else { self.sent.map_or(0, |sent| sent.from) };
+        self.is_confirmed() && state.node_states.is_empty() && self.passed(state).is_none_or(|place| place < end)
+    }
+
+    /// The order is being cancelled by this action, sent now.
+    pub(super) fn is_cancelled(&mut self, action: String, now: f64) {
+        (self.cancel, self.cancelled) = (Some(action), [now; 2]);
     }
 
     /// For a vehicle that has lost this order: the new order `held` from where the vehicle is now, if it follows the rest of the admitted
@@ -232,7 +277,7 @@ impl Job {
 
     /// Whether the vehicle has the last update that was sent.
     pub(super) fn is_acknowledged(&self) -> bool {
-        match (self.sent, self.acknowledged) {
+        match (self.sent, self.received.acknowledged) {
             (None, _) => true,
             (Some(sent), Some((update, _))) => update >= sent.update,
             _ => false,

@@ -7,6 +7,7 @@ use super::super::messages::{Connection, Factsheet, Responses};
 use super::super::state::{EdgeState, Listed, NodeState, State};
 use super::super::topics::Kind;
 use super::super::version::Version;
+use super::newest::Place;
 use super::{Job, Lane, NEEDS, Post, To};
 use crate::supervisor::Supervisor;
 use pcr_formats::import::{self, Options, Warnings};
@@ -126,10 +127,14 @@ impl Lane {
         payload: &[u8],
         limits: Limits,
         is_third: bool,
+        now: f64,
     ) -> Result<(), Refusal> {
         let message: Factsheet = door::read(payload, limits)?;
         let version = message.header.check(&self.profile.key, is_third)?;
         self.version.get_or_insert(version);
+        if self.newest.entry(Kind::Factsheet).or_default().take(&message.header, now, |_| false) == Place::Late {
+            return Ok(());
+        }
         let text = String::from_utf8_lossy(payload);
         let vehicle = import::vehicle(&text, &Options::default(), &mut Warnings::default());
         let vehicle = vehicle.map_err(|error| Refusal::new("", error))?;
@@ -146,12 +151,15 @@ impl Lane {
         self.job.iter().for_each(|job| job.name_updates(&mut state.errors));
         state.errors.extend(self.errors.iter().cloned().chain(self.elsewhere_error()));
         let Some(job) = self.job.as_ref().filter(|job| job.held.order_id == state.order_id) else { return state };
-        let Some(stop) = job.passed(&state).and_then(|place| job.stops.get(place)) else {
-            return state;
-        };
-        if let Some((_, manager)) = job.acknowledged {
+        let sent = job.sent.filter(|sent| sent.update == state.order_update_id).map(|sent| sent.manager);
+        if let Some(manager) = job.received.acknowledged.map(|(_, manager)| manager).or(sent) {
             state.order_update_id = manager;
         }
+        // A vehicle that has just taken the order may still be at the end of the one before.
+        let place = if job.is_confirmed() { job.passed(&state) } else { Some(0) };
+        let Some(stop) = place.and_then(|place| job.stops.get(place)) else {
+            return state;
+        };
         let Some(last) = job.held.nodes.get(stop.node) else { return state };
         state.last_node_id.clone_from(&last.node_id);
         state.last_node_sequence_id = last.sequence_id;
@@ -161,8 +169,8 @@ impl Lane {
             let since = since + stop.length - job.way.node(stop.node).unwrap_or(stop.length);
             state.rest.insert("distanceSinceLastNode".into(), since.into());
         }
-        // A vehicle without nodes has completed the cancellation.
-        if state.node_states.is_empty() && job.cancel.is_some() {
+        // A vehicle without nodes has completed the cancellation, or has dropped the order.
+        if state.node_states.is_empty() && (job.cancel.is_some() || job.lost.is_some()) {
             return state;
         }
         let waits = state.node_states.iter().any(|node| node.released);

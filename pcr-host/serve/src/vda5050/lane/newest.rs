@@ -7,11 +7,13 @@
 //! does not continue the newest one counts as late until a restart is proved. The proof is a message that names a request which was
 //! sent after the newest message had come, or a row of messages that follow one another for longer than any message can be late
 //! ([`LATEST`]). For that long afterwards, messages closer to the old count belong to the old count.
+//!
+//! The first messages after a start of the supervisor may have been written before it. The same two proofs show that they were not.
 
 use super::super::header::Header;
 
 /// No message is later than this \[s\].
-const LATEST: f64 = 60.0;
+pub(super) const LATEST: f64 = 60.0;
 
 /// Number of late messages in a row, each newer than the one before, after which a request is sent to the vehicle.
 const ROW: u32 = 3;
@@ -76,6 +78,17 @@ pub(super) enum Place {
     Late,
 }
 
+/// What is known after a start of the supervisor, until a message is certainly not older than it.
+#[derive(Clone, Debug)]
+struct Begun {
+    /// Ids of the last requests, and the time of the last one \[s\].
+    asked: Vec<String>,
+    asked_at: f64,
+    /// Number of messages, and the time at which the first one came \[s\].
+    count: u32,
+    since: f64,
+}
+
 /// The newest message of a kind.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Newest {
@@ -85,14 +98,40 @@ pub(super) struct Newest {
     row: Option<Row>,
     /// Id and time of a request that was sent after the newest message had come \[s\].
     asked: Option<(String, f64)>,
+    /// `None`: the newest message is certainly not from before the start.
+    begun: Option<Begun>,
 }
 
 impl Newest {
+    /// At the start of the supervisor.
+    pub(super) fn begun() -> Self {
+        let (asked, asked_at) = (Vec::new(), f64::NEG_INFINITY);
+        Self { begun: Some(Begun { asked, asked_at, count: 0, since: 0.0 }), ..Self::default() }
+    }
+
+    /// Whether the newest message is certainly not from before the start.
+    pub(super) fn is_proven(&self) -> bool {
+        self.begun.is_none()
+    }
+
     /// Takes a message; `names` tells whether the message mentions the action with an id.
     pub(super) fn take(&mut self, header: &Header, now: f64, names: impl Fn(&str) -> bool) -> Place {
+        let place = self.place(header, now, &names);
+        let begun = self.begun.take_if(|begun| begun.asked.iter().any(|id| names(id)));
+        if let Some(begun) = self.begun.as_mut().filter(|_| begun.is_none() && place != Place::Late) {
+            let since = if begun.count == 0 { now } else { begun.since };
+            (begun.count, begun.since) = (begun.count.saturating_add(1), since);
+            if begun.count >= ROW && now - since > LATEST {
+                self.begun = None;
+            }
+        }
+        place
+    }
+
+    fn place(&mut self, header: &Header, now: f64, names: impl Fn(&str) -> bool) -> Place {
         let mark = Mark::of(header, now);
         let Some(known) = self.known.filter(|known| !(mark.follows(known) && self.is_of(known, &mark))) else {
-            *self = Self { known: Some(mark), before: self.before, ..Self::default() };
+            *self = Self { known: Some(mark), before: self.before, begun: self.begun.take(), ..Self::default() };
             return Place::Newest;
         };
         let row = match self.row {
@@ -101,7 +140,8 @@ impl Newest {
         };
         let is_answer = self.asked.as_ref().is_some_and(|(id, _)| names(id));
         if is_answer || row.count >= ROW && now - row.since > LATEST {
-            *self = Self { known: Some(mark), before: Some((known, now)), ..Self::default() };
+            let begun = self.begun.take();
+            *self = Self { known: Some(mark), before: Some((known, now)), begun, ..Self::default() };
             return Place::Anew;
         }
         self.row = Some(row);
@@ -110,11 +150,20 @@ impl Newest {
 
     /// Whether a request should be sent, whose answer is certainly newer.
     pub(super) fn is_in_doubt(&self, now: f64) -> bool {
-        self.row.is_some_and(|row| row.count >= ROW) && self.asked.as_ref().is_none_or(|(_, at)| now - at >= AGAIN)
+        let has_row = self.row.is_some_and(|row| row.count >= ROW);
+        has_row && self.asked.as_ref().is_none_or(|(_, at)| now - at >= AGAIN)
+            || self.begun.as_ref().is_some_and(|begun| now - begun.asked_at >= AGAIN)
     }
 
-    /// Notes that a request was sent. This has no effect before the first message.
+    /// Notes that a request was sent.
     pub(super) fn asks(&mut self, id: String, now: f64) {
+        /// Number of requests that are kept: an answer may come after the next ones were sent.
+        const KEPT: usize = 8;
+        if let Some(begun) = &mut self.begun {
+            begun.asked.drain(..(begun.asked.len() + 1).saturating_sub(KEPT));
+            begun.asked.push(id.clone());
+            begun.asked_at = now;
+        }
         self.asked = Some((id, now));
     }
 

@@ -7,9 +7,13 @@ use super::super::state::StateError;
 use super::super::version::{Error, Version};
 use super::super::way::{TOLERANCE, Way};
 use super::Lane;
-use super::job::{BEGINS, Job, mission};
+use super::job::{BEGINS, Job, RECEIVED, mission};
 use super::maps::map_of;
+use super::newest::LATEST;
 use crate::supervisor::{Proposal, Supervisor, Verdict};
+
+/// Largest number of orders and updates that wait for the first state of a vehicle after a restart.
+const EARLY: usize = 8;
 
 impl Lane {
     /// Takes an order or an update of the manager; an error is reported to the manager.
@@ -61,11 +65,26 @@ impl Lane {
         }
         match &self.job {
             Some(_) if is_its => self.extend(supervisor, order, now),
+            Some(_) if self.state.is_none() && self.early.len() < EARLY => {
+                self.early.push((order, is_third));
+                Ok(false)
+            }
             Some(job) if job.lost.is_some() => self.begin_anew(supervisor, order, version, now),
             Some(_) if !self.is_free(supervisor) => {
                 Err(Rejected::new(Error::Order, "orderId", "the vehicle has another order that is not finished"))
             }
             _ => self.begin(supervisor, order, version, now),
+        }
+    }
+
+    /// Takes the orders that came before the first state of the vehicle.
+    pub(super) fn take_early(&mut self, supervisor: &mut Supervisor, now: f64) {
+        for (order, is_third) in std::mem::take(&mut self.early) {
+            let (id, update) = (order.order_id.clone(), order.order_update_id);
+            match self.take(supervisor, order, is_third, now) {
+                Ok(_) => self.errors.clear(),
+                Err(rejected) => self.reject(&rejected, &id, update),
+            }
         }
     }
 
@@ -144,6 +163,7 @@ impl Lane {
         self.note(supervisor, "order", job.given());
         self.note(supervisor, "stops", &job.stops);
         self.note(supervisor, "sent", job.sent);
+        self.note(supervisor, RECEIVED, job.received);
         (self.job, self.astray) = (Some(job), None);
     }
 
@@ -163,12 +183,17 @@ impl Lane {
         });
         let Some((mut job, joins)) = rejoined else {
             let state = self.state.clone();
-            state.iter().for_each(|state| self.reseat(supervisor, state));
+            let may_follow = self.job.as_ref().zip(state.as_ref()).is_some_and(|(job, state)| {
+                job.held.order_id == state.order_id && job.is_due(state) && now - job.sent_at < LATEST
+            });
+            state.iter().filter(|_| !may_follow).for_each(|state| self.reseat(supervisor, state));
             return match self.job {
                 None => self.begin(supervisor, order, version, now),
-                Some(_) => {
-                    Err(Rejected::new(Error::Order, "", "the vehicle has lost its order, and does not say where it is"))
-                }
+                Some(_) => Err(Rejected::new(
+                    Error::Order,
+                    "",
+                    "the vehicle has lost its order, and does not say where it stands, or may still get an update of it",
+                )),
             };
         };
         let known = mission(&job.held, joins);

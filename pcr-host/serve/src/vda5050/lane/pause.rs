@@ -4,6 +4,7 @@ use super::super::door::Refusal;
 use super::super::messages::{Action, InstantActions};
 use super::super::state::ActionState;
 use super::super::topics::Kind;
+use super::newest::LATEST;
 use super::notes::noted;
 use super::release::AGAIN;
 use super::{Lane, To};
@@ -27,6 +28,9 @@ struct Asked {
     at: f64,
     /// Action id.
     id: String,
+    /// Our request to pause that this one ends, and the time at which this was first asked for \[s\], as long as the vehicle may still
+    /// be carrying it out: it then pauses after it was told to go on.
+    ends: Option<(String, f64)>,
 }
 
 /// The pauses of a vehicle.
@@ -76,18 +80,36 @@ impl Lane {
             self.note_pauses(supervisor);
         }
         let others = self.pauses.kept.others;
+        let ends = self.pauses.asked.as_ref().filter(|_| !stops).and_then(|asked| self.still_ends(asked, now));
         match &self.pauses.asked {
             // A pause of others is ended by them.
             None if !(stops || said && !others && self.has_paused()) => {}
             Some(asked) if asked.stops && !stops && others => self.pauses.asked = None,
-            // It is paused although it was let go: by others, since then.
-            Some(asked) if !asked.stops && !stops && (!said || self.has_done(&asked.id)) => self.pauses.asked = None,
-            Some(asked) if asked.stops == stops && (said == stops || now - asked.at < AGAIN) => {}
-            _ => {
-                let id = self.ask_for(if stops { "startPause" } else { "stopPause" });
-                self.pauses.asked = Some(Asked { stops, at: now, id });
+            Some(asked) if !asked.stops && !stops && ends.is_none() && asked.ends.is_some() && said => {
+                // It has paused only now: what let it go before had no effect.
+                self.ask_pause(stops, None, now);
             }
+            // It is paused although it was let go: by others, since then.
+            Some(asked) if !asked.stops && !stops && ends.is_none() && (!said || self.has_done(&asked.id)) => {
+                self.pauses.asked = None;
+            }
+            Some(asked) if asked.stops == stops && (said == stops || now - asked.at < AGAIN) => {}
+            _ => self.ask_pause(stops, ends, now),
         }
+    }
+
+    fn ask_pause(&mut self, stops: bool, ends: Option<(String, f64)>, now: f64) {
+        let id = self.ask_for(if stops { "startPause" } else { "stopPause" });
+        self.pauses.asked = Some(Asked { stops, at: now, id, ends });
+    }
+
+    /// Our request to pause that the vehicle may still be carrying out, as it is let go. Vehicles that do not report their actions
+    /// have done so after [`LATEST`].
+    fn still_ends(&self, asked: &Asked, now: f64) -> Option<(String, f64)> {
+        let ends = if asked.stops { Some((asked.id.clone(), now)) } else { asked.ends.clone() };
+        let is_over =
+            |id: &str| self.state.as_ref().is_some_and(|state| matches!(state.action(id), Some("FINISHED" | "FAILED")));
+        ends.filter(|(id, since)| !is_over(id) && now - since < LATEST)
     }
 
     /// Removes from instant actions of the manager those that would let a vehicle go on that has to stand. They are passed on

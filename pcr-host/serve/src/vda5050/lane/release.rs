@@ -38,7 +38,14 @@ impl Lane {
         if job.cancel.is_some() || job.lost.is_some() || robot.stopped.is_some() {
             return;
         }
+        // To a vehicle without the order an update would be a new order.
+        if job.was_there() && state.order_id != job.held.order_id {
+            return;
+        }
         if !job.is_acknowledged() {
+            if robot.alarm.is_some() {
+                return;
+            }
             // The vehicle has an older update, or none: the same one is sent again.
             let pause = if job.refused.is_some() { REFUSED } else { AGAIN };
             if now - job.sent_at >= pause {

@@ -5,20 +5,15 @@ use super::super::header::Header;
 use super::super::messages::Visualization;
 use super::super::state::{Pose, State};
 use super::super::topics::Kind;
+use super::ends::KEPT;
+use super::job::RECEIVED;
 use super::maps::{MAP, map_of};
-use super::newest::Place;
-use super::refused::TRIED;
-use super::{Job, Lane};
+use super::newest::{Newest, Place};
+use super::{DOUBTFUL, Job, Lane};
 use crate::course::Start;
 use crate::robot::{BACK, Robot};
 use crate::supervisor::{Report, Supervisor};
 use std::sync::Arc;
-
-/// Number of successive states, and time \[s\], after which a vehicle that contradicts its order has lost it or was moved.
-const ASTRAY: (u32, f64) = (3, 2.0);
-
-/// Time for which a vehicle that has lost its order keeps its right of way \[s\]: another order may follow the same way.
-const KEPT: f64 = 30.0;
 
 /// Least time by which a late message counts as older than the newest one, and largest age that is passed on \[s\]: the supervisor
 /// refuses larger ages.
@@ -34,6 +29,8 @@ enum With {
     Between,
     /// A state that was written before the newest one.
     Late,
+    /// The newest state, perhaps written before the supervisor was started: it ends no alarm, and a vehicle seated by it is in doubt.
+    Doubtful,
 }
 
 impl Lane {
@@ -59,41 +56,73 @@ impl Lane {
         if place == Place::Anew {
             // Its clock may have restarted.
             self.newest.remove(&Kind::Visualization);
+            self.newest.remove(&Kind::Factsheet);
+            self.ask_for("factsheetRequest");
         }
         let is_new = place != Place::Late;
         if is_new {
             self.version = Some(version);
         }
-        self.acknowledge(&state);
+        self.acknowledge(supervisor, &state, now);
         if let Some(job) = self.job.as_mut().filter(|_| is_new) {
             job.refused = job.is_refused(&state).then(|| job.refused.unwrap_or(now));
         }
-        let located = match is_new {
-            true => self.locate(supervisor, &state, With::Newest, now),
-            false => self.locate(supervisor, &state, With::Late, now),
+        let is_proven = self.is_proven();
+        let with = match (is_new, is_proven) {
+            (true, true) => With::Newest,
+            (true, false) => With::Doubtful,
+            (false, _) => With::Late,
         };
+        let located = self.locate(supervisor, &state, with, now);
+        if is_new && is_proven && self.is_doubtful {
+            self.doubts(supervisor, false);
+        }
         if is_new {
-            self.heard_at = now;
             self.state = Some(Arc::new(state));
-            self.finish(supervisor, now);
+            if is_proven {
+                self.heard_at = now;
+                self.finish(supervisor, now);
+            }
+            self.take_early(supervisor, now);
             self.mirror();
         }
         located
     }
 
+    /// Whether the place of the vehicle may be one from before the start; nobody is released anything then.
+    fn doubts(&mut self, supervisor: &mut Supervisor, is_doubtful: bool) {
+        self.is_doubtful = is_doubtful;
+        self.note(supervisor, DOUBTFUL, is_doubtful);
+    }
+
+    /// Whether the newest state was certainly written after the supervisor was started.
+    fn is_proven(&self) -> bool {
+        self.newest.get(&Kind::State).is_some_and(Newest::is_proven)
+    }
+
     /// Requests a state that is certainly newer than all states so far, if that is in doubt.
-    pub(super) fn ask_when(&mut self, now: f64) {
+    pub fn ask_when(&mut self, now: f64) {
         let id = self.ask_for("stateRequest");
         self.newest.entry(Kind::State).or_default().asks(id, now);
     }
 
-    /// Takes the order update id of a state as a confirmation.
-    fn acknowledge(&mut self, state: &State) {
+    /// Takes the order update id of a state as a confirmation. The first state of an order may still have the last node of the order
+    /// before, and no nodes ahead, as if all of it were done. So the first confirmation has nodes ahead, or nothing that could have been
+    /// passed, or the vehicle has said the same for [`KEPT`]: then its states on the way were lost.
+    fn acknowledge(&mut self, supervisor: &mut Supervisor, state: &State, now: f64) {
         let Some(job) = self.job.as_mut().filter(|job| job.held.order_id == state.order_id) else { return };
         let Some(sent) = job.sent else { return };
-        let update = state.order_update_id;
-        if update == sent.update && state.base() == job.last().sequence {
-            job.acknowledged = Some((update, sent.manager));
+        let (update, before) = (state.order_update_id, job.received);
+        job.received.named = true;
+        let has_it = update == sent.update && state.base() == job.last().sequence;
+        let is_certain = job.is_confirmed() || !state.node_states.is_empty() || job.stops.len() == 1;
+        job.skipped = (has_it && !is_certain && !state.driving).then(|| job.skipped.unwrap_or(now));
+        if has_it && (is_certain || job.skipped.is_some_and(|since| now - since > KEPT)) {
+            job.received.acknowledged = Some((update, sent.manager));
+        }
+        let received = job.received;
+        if received != before {
+            self.note(supervisor, RECEIVED, received);
         }
     }
 
@@ -104,8 +133,11 @@ impl Lane {
     fn locate(&mut self, supervisor: &mut Supervisor, state: &State, with: With, now: f64) -> Result<(), Refusal> {
         let Some(pose) = state.position().filter(|pose| pose.is_known()) else { return Ok(()) };
         let (at, is_new) = ([pose.x, pose.y], with == With::Newest);
+        // What is doubtful may begin an alarm, but changes none.
+        let has_alarm = supervisor.robot(&self.name).is_ok_and(|robot| robot.alarm.is_some());
+        let alarms = is_new || with == With::Doubtful && !has_alarm;
         let Ok(robot) = supervisor.robot(&self.name) else {
-            if is_new && self.is_still(state) && self.reach(pose) >= 0.0 {
+            if alarms && self.is_still(state) && self.reach(pose) >= 0.0 {
                 self.shares(supervisor, &pose.map_id)?;
                 let start = Start { x: pose.x, y: pose.y, heading: pose.theta };
                 // If it cannot stand there, the next state is tried again. An order that it had is void.
@@ -113,6 +145,7 @@ impl Lane {
                     (self.job, self.astray) = (None, None);
                     self.note_anew(supervisor);
                     self.note(supervisor, MAP, &pose.map_id);
+                    self.doubts(supervisor, !is_new);
                 }
             }
             return Ok(());
@@ -132,12 +165,13 @@ impl Lane {
         let reach = self.reach(pose);
         let (path, end) = (robot.path, robot.course.length());
         let back = robot.at - 2.0 * self.deviation() - BACK;
+        let is_of_order = self.job.as_ref().is_some_and(|job| job.held.order_id == state.order_id);
         let found = match &self.job {
             Some(job) if job.held.order_id == state.order_id => {
                 let Some(place) = job.passed(state) else {
                     // The vehicle names a node that was not released, a node of an earlier order, or none, or one that it has ahead. If its
                     // position is on its path anyway, this is not an alarm.
-                    if is_new && self.on_its_way(job, robot, pose).is_none() {
+                    if alarms && self.on_its_way(job, robot, pose).is_none() {
                         let _ = supervisor.off(&self.name, at, 0.0, now);
                     }
                     return Ok(());
@@ -148,7 +182,7 @@ impl Lane {
                 let near = job.way.near(at, [from - reach.max(0.0), to], reach);
                 near.map(|lengths| lengths.map(|length| (length - offset).clamp(0.0, end)))
             }
-            _ if !is_new => return Ok(()),
+            _ if !alarms => return Ok(()),
             Some(job) if job.was_there() => {
                 self.on_its_way(job, robot, pose).map(|lengths| lengths.map(|length| (length - offset).clamp(0.0, end)))
             }
@@ -163,16 +197,19 @@ impl Lane {
         };
         match found {
             // The vehicle rolled or was pushed back into a part of its path that may already be free for others.
-            Some([_, hi]) if is_new && hi < back => _ = supervisor.off(&self.name, at, 0.0, now),
+            Some([_, hi]) if alarms && hi < back => _ = supervisor.off(&self.name, at, 0.0, now),
             // It may have passed the next node since, and be on its way back: this neither begins nor ends an alarm.
             Some([_, hi]) if with == With::Between && hi < back => {}
+            // It may be a place from before the order.
+            Some(_) if with == With::Doubtful && !is_of_order => {}
             Some(at) => {
-                // Older than the newest message, by an unknown time.
-                let age = if with == With::Late { (now - self.heard_at).max(0.0) + LATE } else { 0.0 };
+                // Older than the newest message that is certain, by an unknown time.
+                let is_older = matches!(with, With::Late | With::Doubtful);
+                let age = if is_older { (now - self.heard_at).max(0.0) + LATE } else { 0.0 };
                 // Path and interval are valid, so this cannot be refused.
                 let _ = supervisor.position(&Report { robot: self.name.clone(), path, at, age: age.min(OLDEST) }, now);
             }
-            None if is_new => _ = supervisor.off(&self.name, at, 0.0, now),
+            None if alarms => _ = supervisor.off(&self.name, at, 0.0, now),
             None => {}
         }
         Ok(())
@@ -185,104 +222,8 @@ impl Lane {
     }
 
     /// Part of the margin that is left for being off the path \[m\].
-    fn reach(&self, pose: &Pose) -> f64 {
+    pub(super) fn reach(&self, pose: &Pose) -> f64 {
         self.deviation() - pose.deviation_range.unwrap_or(0.0)
-    }
-
-    /// Whether the vehicle stands and has nothing to do.
-    fn is_still(&self, state: &State) -> bool {
-        !state.driving && state.node_states.iter().all(|node| !node.released)
-    }
-
-    /// Ends an order that was cancelled, or that the vehicle has lost.
-    fn finish(&mut self, supervisor: &mut Supervisor, now: f64) {
-        let Some(state) = self.state.clone() else { return };
-        let Ok(robot) = supervisor.robot(&self.name) else { return };
-        let is_off = robot.alarm.is_some();
-        let Some(job) = &self.job else {
-            // It was moved by hand, or to another map: its reported position counts.
-            let map = state.position().map(|pose| pose.map_id.as_str());
-            let is_elsewhere = map_of(robot).is_some_and(|known| map.is_some_and(|map| known != map));
-            if self.stays_astray((is_off || is_elsewhere) && self.is_still(&state), now) {
-                self.reseat(supervisor, &state);
-            }
-            return;
-        };
-        let has_it = job.held.order_id == state.order_id;
-        let is_refused = job.refused.is_some();
-        if let Some(action) = job.cancel.clone() {
-            let status = state.action(&action);
-            let has_nothing = job.sent.is_none() || job.lost.is_some();
-            // It has all updates that were sent, or has sent a state since it was told to cancel: no update that it may still
-            // drive is on its way.
-            let is_told = job.is_acknowledged() || self.heard_at > job.sent_at.max(job.cancelled_at);
-            let is_cancelled = has_it && status == Some("FINISHED") && is_told;
-            if (is_cancelled || has_nothing) && self.is_still(&state) {
-                self.reseat(supervisor, &state);
-            } else if is_refused && status == Some("FAILED") && self.is_still(&state) {
-                // It has no part of what it refuses: what was sent before the cancellation has come before it.
-                match job.cancelled_at >= job.sent_at {
-                    true => self.reseat(supervisor, &state),
-                    false => self.cancel_again(supervisor, now),
-                }
-            } else if job.was_there() && !has_it {
-                // It has lost the order before it was cancelled, and does not get it again.
-                if self.stays_astray(self.is_still(&state), now) {
-                    self.reseat(supervisor, &state);
-                }
-            } else if has_it && status == Some("FAILED") && !state.node_states.is_empty() {
-                // The cancellation came before the order.
-                self.cancel_again(supervisor, now);
-            } else if has_it && status == Some("FAILED") && job.is_acknowledged() && !self.is_free(supervisor) {
-                // It had reached the end of its order: nothing more will come.
-                self.reseat(supervisor, &state);
-            }
-            return;
-        }
-        if !job.was_there() && job.refused.is_some_and(|since| now - since >= TRIED) {
-            return self.cancel_again(supervisor, now);
-        }
-        let (is_gone, lost) = (job.was_there() && !has_it && self.is_still(&state), job.lost);
-        let is_astray = self.stays_astray(is_gone, now);
-        let Some(job) = &mut self.job else { return };
-        if has_it {
-            job.lost = None;
-        }
-        if !is_astray {
-            return;
-        }
-        // Its manager sends it on, or it has stood there for some time without an order.
-        let since = *job.lost.get_or_insert(now);
-        if is_off || lost.is_some() && now - since > KEPT {
-            self.reseat(supervisor, &state);
-        }
-    }
-
-    fn stays_astray(&mut self, is_astray: bool, now: f64) -> bool {
-        let (count, since) = self.astray.unwrap_or((0, now));
-        self.astray = is_astray.then_some((count + 1, since));
-        is_astray && count + 1 >= ASTRAY.0 && now - since >= ASTRAY.1
-    }
-
-    /// Sets the vehicle to its reported position, without an order: all its rights are void.
-    pub(super) fn reseat(&mut self, supervisor: &mut Supervisor, state: &State) {
-        let Some(pose) = state.position().filter(|pose| pose.is_known() && self.reach(pose) >= 0.0) else { return };
-        let map = pose.map_id.clone();
-        // On its way it is as far off as before, and not farther by the error of this position.
-        let on_way = self.job.as_ref().zip(supervisor.robot(&self.name).ok()).and_then(|(job, robot)| {
-            let within = self.on_its_way(job, robot, pose).filter(|_| robot.alarm.is_none())?;
-            Some(nearest(job, within, [pose.x, pose.y]))
-        });
-        let start = on_way.unwrap_or(Start { x: pose.x, y: pose.y, heading: pose.theta });
-        if self.shares(supervisor, &map).is_err() {
-            return;
-        }
-        // If it cannot stand there, its former place is kept, so that no other vehicle drives through it.
-        if supervisor.reseat(&self.name, start).is_ok() {
-            (self.job, self.astray) = (None, None);
-            self.note_anew(supervisor);
-            self.note(supervisor, MAP, map);
-        }
     }
 
     /// Takes a visualization message. It does not name an order, so it counts only on the stretch of the newest state.
@@ -303,8 +244,9 @@ impl Lane {
             message.header.check(&self.profile.key, is_third)?;
         }
         let is_after = self.newest.get(&Kind::State).is_some_and(|state| state.is_before(&message.header, now));
+        let is_proven = self.is_proven();
         let newest = self.newest.entry(Kind::Visualization).or_default();
-        if !is_after || newest.take(&message.header, now, |_| false) == Place::Late {
+        if !is_after || !is_proven || newest.take(&message.header, now, |_| false) == Place::Late {
             return Ok(());
         }
         if let Some(mut state) = self.state.as_deref().cloned() {
@@ -317,13 +259,4 @@ impl Lane {
         }
         Ok(())
     }
-}
-
-/// The place of the way nearest to a point, between two lengths.
-fn nearest(job: &Job, [lo, hi]: [f64; 2], [x, y]: [f64; 2]) -> Start {
-    /// Places that are compared.
-    const PLACES: u32 = 256;
-    let places = (0..=PLACES).map(|k| job.way.pose(lo + (hi - lo) * f64::from(k) / f64::from(PLACES)));
-    let off = |place: &Start| (place.x - x).hypot(place.y - y);
-    places.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or_else(|| job.way.pose(lo))
 }
