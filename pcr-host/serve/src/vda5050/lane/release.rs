@@ -38,12 +38,10 @@ impl Lane {
         if job.cancel.is_some() || job.lost.is_some() || robot.stopped.is_some() {
             return;
         }
-        // To a vehicle without the order an update would be a new order.
-        if job.was_there() && state.order_id != job.held.order_id {
-            return;
-        }
+        // What the vehicle has had must not reach it again as a new order.
+        let is_gone = job.was_there() && state.order_id != job.held.order_id;
         if !job.is_acknowledged() {
-            if robot.alarm.is_some() {
+            if robot.alarm.is_some() || is_gone && job.sent.is_some_and(|sent| sent.update == 0) {
                 return;
             }
             // The vehicle has an older update, or none: the same one is sent again.
@@ -66,7 +64,7 @@ impl Lane {
         if let Some(stop) = stop.filter(|stop| *stop != robot.next) {
             let _ = supervisor.stops_at(&self.name, stop);
         }
-        if next.is_empty() && !job.changed {
+        if next.is_empty() && (is_gone || !job.changed) {
             return;
         }
         let update = job.sent.map_or(0, |sent| sent.update + 1);
