@@ -266,4 +266,26 @@ impl StateError {
         ]);
         Self { error_type: kind.into(), error_level: "WARNING".into(), rest }
     }
+
+    /// What the error refers to under this key.
+    pub fn reference(&self, key: &str) -> Option<String> {
+        let all = self.rest.get("errorReferences")?.as_array()?;
+        all.iter().find(|said| said["referenceKey"] == key).and_then(|said| text(&said["referenceValue"]))
+    }
+
+    /// Whether the error says that this order, or an update of it, is not taken: `orderError`, `orderUpdateError`, `validationError`,
+    /// `noRouteError` in 2.x, `INVALID_ORDER`, `OUTDATED_ORDER_UPDATE`, `VALIDATION_FAILURE`, `NO_ROUTE_TO_TARGET` and others in 3.0.
+    pub fn refuses(&self, order_id: &str) -> bool {
+        let name = self.error_type.to_ascii_lowercase();
+        ["order", "validation", "route"].iter().any(|word| name.contains(word))
+            && self.reference(ORDER).as_deref() == Some(order_id)
+    }
+}
+
+/// Key of references to orders.
+pub(super) const ORDER: &str = "orderId";
+
+/// A text, or a number that should be one.
+pub(super) fn text(value: &Value) -> Option<String> {
+    value.as_str().map(str::to_owned).or_else(|| value.as_u64().map(|number| number.to_string()))
 }

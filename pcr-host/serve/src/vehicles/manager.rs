@@ -1,6 +1,9 @@
 //! A fleet manager that gives every vehicle one mission after the other. No two vehicles have the same goal, and ways
 //! keep clear of all other goals, so a vehicle at a goal is in no one's way, and every mission can be finished whatever
-//! the others do. A vehicle that has lost its order gets another one, for the rest of the way from where it stands.
+//! the others do. A vehicle that has lost its order, or whose order is refused, gets another one, for the rest of the way from where it
+//! stands.
+
+mod again;
 
 use super::locks::{Leg, Locks, Method, to_line};
 use crate::course::{Course, Shape, Start};
@@ -26,6 +29,8 @@ struct Client {
     at: usize,
     /// Its present order, or the one that it is to take.
     order: Option<Given>,
+    /// Orders of the same mission that were refused. A late copy of one may be taken.
+    refused: Vec<Order>,
     orders: u64,
     done: u64,
     header: u64,
@@ -37,7 +42,7 @@ struct Given {
     order: Order,
     /// Whether the vehicle has confirmed it.
     had: bool,
-    /// Number of successive states without the order, and the time of the first one \[s\].
+    /// Number of successive states without the order, or in which it is refused, and the time of the first one \[s\].
     lost: Option<(u32, f64)>,
     /// The last update that was sent: its first node, its last released node, and its time \[s\].
     from: usize,
@@ -78,7 +83,7 @@ pub struct Manager {
 /// Time after which an order that was not taken is sent again \[s\].
 const AGAIN: f64 = 2.0;
 
-/// Number of successive states without its order, and time \[s\], after which a vehicle has lost it.
+/// Number of successive states without its order, or in which it is refused, and time \[s\], after which the vehicle gets another one.
 const LOST: (u32, f64) = (3, 3.0);
 
 /// A vehicle within this distance of a node begins there \[m\].
@@ -104,7 +109,7 @@ impl Manager {
             return Err(format!("a goal that is no node: {goal}"));
         }
         let clients = vehicles.into_iter().enumerate().map(|(place, (key, version, at))| {
-            (key, Client { place, version, at, order: None, orders: 0, done: 0, header: 0 })
+            (key, Client { place, version, at, order: None, refused: Vec::new(), orders: 0, done: 0, header: 0 })
         });
         let mut random = Random(seed);
         let run = random.bits() & 0xffff_ffff;
@@ -187,6 +192,7 @@ impl Manager {
         let Ok(state) = door::read::<State>(payload, Limits::default()) else { return Vec::new() };
         let Some(client) = self.clients.get_mut(key) else { return Vec::new() };
         let mut due = Vec::new();
+        client.takes_back(&state, now);
         match &mut client.order {
             Some(given) if state.order_id == given.order.order_id => {
                 (given.had, given.lost) = (true, None);
@@ -195,6 +201,7 @@ impl Manager {
                     let edges = given.order.edges.len();
                     let place = client.place;
                     (client.order, client.done) = (None, client.done + 1);
+                    client.refused.clear();
                     self.locks.iter_mut().for_each(|locks| locks.passed(place, edges, now));
                     due.extend(self.order(key, now));
                 } else if let Some(locks) = &mut self.locks {
@@ -204,18 +211,24 @@ impl Manager {
                     }
                 }
             }
-            Some(given) if given.had => {
+            Some(given) if given.had || given.is_refused(&state) => {
                 let (count, since) = given.lost.unwrap_or((0, now));
                 given.lost = Some((count + 1, since));
-                if count + 1 >= LOST.0 && now - since >= LOST.1 && state.is_idle() && self.locks.is_none() {
-                    due.extend(self.plan_anew(key, &state, now));
+                let is_due = !given.had && now - given.sent >= AGAIN;
+                let is_lost = count + 1 >= LOST.0 && now - since >= LOST.1 && state.is_idle() && self.locks.is_none();
+                let anew = if is_lost { self.plan_anew(key, &state, now) } else { None };
+                if anew.is_none() && is_due {
+                    due.extend(self.clients.get_mut(key).and_then(|client| client.send(key, now)));
                 }
+                due.extend(anew);
             }
             // With locks, an order is first sent when it has got some edges.
-            Some(given) if given.sent > f64::NEG_INFINITY && now - given.sent >= AGAIN => {
-                due.extend(client.send(key, now))
+            Some(given) => {
+                given.lost = None;
+                if given.sent > f64::NEG_INFINITY && now - given.sent >= AGAIN {
+                    due.extend(client.send(key, now));
+                }
             }
-            Some(_) => {}
             None => due.extend(self.order(key, now)),
         }
         due.extend(self.give(key, &state, now));
@@ -282,40 +295,6 @@ impl Manager {
         let sent = f64::NEG_INFINITY;
         client.order = Some(Given { order, had: false, lost: None, from: 0, released, sent });
         if self.locks.is_some() { None } else { client.send(key, now) }
-    }
-
-    /// The rest of the way for a vehicle that has lost its order, from where it stands.
-    fn plan_anew(&mut self, key: &Key, state: &State, now: f64) -> Option<Sent> {
-        let pose = state.position().filter(|pose| pose.is_known())?;
-        let lost = &self.clients.get(key)?.order.as_ref()?.order;
-        let place = |node: &Node| node.node_position.as_ref().map(|position| [position.x, position.y]);
-        let places: Vec<[f64; 2]> = lost.nodes.iter().filter_map(place).collect();
-        let here = [pose.x, pose.y];
-        let off = |leg: &[[f64; 2]]| to_line(here, leg[0], leg[1]);
-        let legs = places.windows(2).enumerate();
-        let nearest = legs.min_by(|a, b| off(a.1).total_cmp(&off(b.1))).map_or(0, |(leg, _)| leg);
-        let near = |node: usize| places.get(node).is_some_and(|at| (at[0] - here[0]).hypot(at[1] - here[1]) <= NEAR);
-        // From the node where it stands, or across one where it stands to the next.
-        let (first, is_between) = match [nearest, nearest + 1].into_iter().rfind(|&node| near(node)) {
-            Some(node) => (node, false),
-            None => (nearest, true),
-        };
-        let mut nodes: Vec<Node> = lost.nodes.iter().skip(first).cloned().collect();
-        let mut edges: Vec<Edge> = lost.edges.iter().skip(first).cloned().collect();
-        if is_between {
-            let begin = nodes.first_mut()?;
-            begin.node_id = format!("{}+", begin.node_id);
-            begin.node_position = Some(self.position(pose));
-            edges.first_mut()?.start_node_id = Some(begin.node_id.clone());
-        }
-        for (k, node) in nodes.iter_mut().enumerate() {
-            node.sequence_id = 2 * k as u64;
-        }
-        for (k, edge) in edges.iter_mut().enumerate() {
-            edge.sequence_id = 2 * k as u64 + 1;
-        }
-        self.again += 1;
-        self.begin(key, nodes, edges, now)
     }
 
     /// The shortest way that keeps clear of all other goals.

@@ -10,6 +10,7 @@ mod lanes;
 mod maps;
 mod pair;
 mod puppet;
+mod refusals;
 mod restarts;
 mod runs;
 mod samples;

@@ -4,7 +4,7 @@
 //! they are sent again for some time. A first order that it still refuses then is over, as the standard says; an update is over when
 //! the manager cancels the order.
 
-use super::super::state::{State, StateError};
+use super::super::state::{ORDER, State, StateError, text};
 use super::Job;
 use serde_json::Value;
 
@@ -16,10 +16,8 @@ impl Job {
     pub(super) fn is_refused(&self, state: &State) -> bool {
         let Some(sent) = self.sent.filter(|_| !self.is_acknowledged()) else { return false };
         state.errors.iter().any(|error| {
-            let update = reference(error, UPDATE);
-            is_of_orders(&error.error_type)
-                && reference(error, ORDER).as_deref() == Some(&self.held.order_id)
-                && update.is_none_or(|update| update == sent.update.to_string())
+            let update = error.reference(UPDATE);
+            error.refuses(&self.held.order_id) && update.is_none_or(|update| update == sent.update.to_string())
         })
     }
 
@@ -27,7 +25,7 @@ impl Job {
     pub(super) fn name_updates(&self, errors: &mut [StateError]) {
         let Some(sent) = self.sent else { return };
         for error in errors {
-            if reference(error, ORDER).as_deref() != Some(&self.held.order_id) {
+            if error.reference(ORDER).as_deref() != Some(&self.held.order_id) {
                 continue;
             }
             for said in references_mut(error).filter(|said| said["referenceKey"] == UPDATE) {
@@ -39,27 +37,8 @@ impl Job {
     }
 }
 
-const ORDER: &str = "orderId";
 const UPDATE: &str = "orderUpdateId";
-
-/// Whether an error of this type says that an order is not taken: `orderError`, `orderUpdateError`, `validationError`, `noRouteError`
-/// in 2.x, `INVALID_ORDER`, `OUTDATED_ORDER_UPDATE`, `VALIDATION_FAILURE`, `NO_ROUTE_TO_TARGET` and others in 3.0.
-fn is_of_orders(error_type: &str) -> bool {
-    let name = error_type.to_ascii_lowercase();
-    ["order", "validation", "route"].iter().any(|word| name.contains(word))
-}
-
-/// What an error refers to under this key.
-fn reference(error: &StateError, key: &str) -> Option<String> {
-    let all = error.rest.get("errorReferences")?.as_array()?;
-    all.iter().find(|said| said["referenceKey"] == key).and_then(|said| text(&said["referenceValue"]))
-}
 
 fn references_mut(error: &mut StateError) -> impl Iterator<Item = &mut Value> {
     error.rest.get_mut("errorReferences").and_then(Value::as_array_mut).into_iter().flatten()
-}
-
-/// A text, or a number that should be one.
-fn text(value: &Value) -> Option<String> {
-    value.as_str().map(str::to_owned).or_else(|| value.as_u64().map(|number| number.to_string()))
 }
