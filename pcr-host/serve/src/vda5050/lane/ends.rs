@@ -4,7 +4,8 @@
 //! cancel them have different topics, so either may come first: an update that the vehicle has not shown may come after it has
 //! reported the order as cancelled. No message is later than [`LATEST`]. So while the vehicle has not shown the last update, the order is
 //! over only after another `cancelOrder`, sent that long after the update, is answered and the vehicle stands. If it takes the update
-//! meanwhile, it shows that, and is cancelled again.
+//! meanwhile, it shows that, and is cancelled again. A first order that the vehicle refuses has reached it: only another copy of what it
+//! refuses may still come, and [`REFUSED`] is enough for that.
 
 use super::super::state::State;
 use super::maps::{MAP, map_of};
@@ -20,6 +21,9 @@ const ASTRAY: (u32, f64) = (3, 2.0);
 
 /// Time for which a vehicle that has lost its order keeps its right of way \[s\]: another order may follow the same way.
 pub(super) const KEPT: f64 = 30.0;
+
+/// Time for which the way of a first order that the vehicle refuses is kept after its last copy was sent \[s\].
+const REFUSED: f64 = 20.0;
 
 impl Lane {
     /// Whether the vehicle stands and has nothing to do.
@@ -94,14 +98,15 @@ impl Lane {
         if !is_failed && status != Some("FINISHED") || now - since < LATEST && self.is_cancelling(state) {
             return;
         }
+        let latest = if job.refused.is_some() && !job.was_there() { REFUSED } else { LATEST };
         let waits = state.node_states.iter().any(|node| node.released) || is_failed && !state.node_states.is_empty();
         if has_it && waits {
             // The cancellation came before the order, or before the update.
             if now - last >= AGAIN {
                 self.cancel_again(supervisor, now);
             }
-        } else if is_still && job.is_due(state) && since - job.sent_at < LATEST {
-            if now - job.sent_at >= LATEST {
+        } else if is_still && job.is_due(state) && since - job.sent_at < latest {
+            if now - job.sent_at >= latest {
                 self.cancel_again(supervisor, now);
             }
         } else if !(is_failed && self.is_free(supervisor)) {
