@@ -11,6 +11,7 @@ use super::{Lane, To};
 use crate::event::Event;
 use crate::supervisor::Supervisor;
 use serde_json::Value;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 impl Lane {
     /// Passes on instant actions of the manager. An order that they cancel gets no further update.
@@ -80,9 +81,11 @@ impl Lane {
 
     /// Sends an instant action of our own, and returns its id.
     pub fn ask_for(&mut self, action_type: &str) -> String {
+        /// An earlier supervisor of this program may have sent an action within the same millisecond.
+        static COUNT: AtomicU64 = AtomicU64::new(0);
         let version = self.version.unwrap_or(Version::V2_1);
         let header = self.header(Kind::InstantActions, version);
-        let id = format!("pcr-{action_type}-{}-{}", header.timestamp, header.header_id);
+        let id = format!("pcr-{action_type}-{}-{}", header.timestamp, COUNT.fetch_add(1, Relaxed));
         let message = InstantActions::one(header, action_type, id.clone());
         self.post(To::Vehicle, Kind::InstantActions, version, &message);
         id
@@ -90,16 +93,15 @@ impl Lane {
 
     /// Cancels the order of the vehicle again, with another action id.
     pub(super) fn cancel_again(&mut self, supervisor: &mut Supervisor, now: f64) {
-        let Some(version) = self.version else { return };
-        let header = self.header(Kind::InstantActions, version);
-        let id = format!("pcr-cancelOrder-{}-{}", header.timestamp, header.header_id);
+        if self.version.is_none() {
+            return;
+        }
+        let id = self.ask_for("cancelOrder");
         if let Some(job) = &mut self.job {
-            job.is_cancelled(id.clone(), now);
+            job.is_cancelled(id, now);
             let given = job.given();
             self.note(supervisor, "order", given);
         }
-        let message = InstantActions::one(header, "cancelOrder", id);
-        self.post(To::Vehicle, Kind::InstantActions, version, &message);
     }
 
     /// The cancellation may be lost: it is sent again until the vehicle says what became of it.
