@@ -592,6 +592,9 @@ PcrStatus pcr_q16_fleet_check(struct PcrQ16Fleet *place,
  possible; that of the admitted one is not read. If it is null, second. The table must be built, and the memory needs
  room as for `pcr_q16_fleet_replace`.
 
+ The `stop` that each of the others has reported last must be as far as it can still come: at least the hold that it was told. One that
+ has been told a hold since, and is beyond its report, counts as able to wait where it no longer is.
+
  PCR_STATUS_REFUSED leaves everything unchanged; `why` then names the agent in the way. `why` may be null.
  */
 PcrStatus pcr_q16_fleet_admit(struct PcrQ16Fleet *place,
