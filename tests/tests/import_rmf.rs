@@ -140,7 +140,7 @@ fn two_levels(more: &str, fiducials: [&str; 2], measurements: [&str; 2]) -> Stri
     };
     let [below, above] = ["[[0, 0, 0, a], [100, 0, 0, b]]", "[[10, 30, 0, a], [10, -170, 0, b]]"];
     format!(
-        "levels:\n{}{}{more}",
+        "name: b\nlevels:\n{}{}{more}",
         level("upper", below, fiducials[0], measurements[0]),
         level("lower", above, fiducials[1], measurements[1])
     )
@@ -244,7 +244,7 @@ fn what_is_wrong_is_named() {
 fn building(measurements: &str, lanes: &[&str], more: &str) -> String {
     let lanes: String = lanes.iter().map(|lane| format!("      - {lane}\n")).collect();
     format!(
-        "levels:\n  L1:\n    vertices: [[0, 0, 0, a], [200, 0, 0, b], [0, 100, 0, c], [200, 0, 0, d]]\n    measurements: {measurements}\n    \
+        "name: b\nlevels:\n  L1:\n    vertices: [[0, 0, 0, a], [200, 0, 0, b], [0, 100, 0, c], [200, 0, 0, d]]\n    measurements: {measurements}\n    \
         lanes:\n{lanes}{more}"
     )
 }
@@ -321,4 +321,15 @@ fn whole_numbers_are_names() {
     let building = "name: site\nlevels:\n  L1:\n    vertices: [[0, 0, 0, 101], [10, 0, 0, \"102\"]]\n    measurements: [[0, 1, {distance: [3, 10]}]]\n    lanes: [[0, 1, {}]]\n";
     let (imported, _) = read(building, &Options { radius: Some(0.4), ..Options::default() });
     assert_eq!([node(&imported.layout, "101")[0], node(&imported.layout, "102")[0]], [0.0, 10.0]);
+}
+
+/// YAML does not tell where it ends: the rest of a building could be missing without a word.
+#[test]
+fn a_building_that_may_be_cut_is_told() {
+    let end = HOTEL.find("\nname:").expect("its name is behind its levels");
+    for (text, is_told) in [(HOTEL, false), (&HOTEL[..end], true)] {
+        let mut warnings = Warnings::default();
+        layout(Format::Rmf, text, &Options::default(), &mut warnings).unwrap();
+        assert_eq!(warnings.lines().iter().any(|line| line.contains("may be cut")), is_told);
+    }
 }

@@ -126,8 +126,7 @@ impl<'a> Checker<'a> {
     }
 
     fn all_near_are_among(&self, there: &HashSet<[usize; 2]>, excess: f64) -> Result<(), String> {
-        // It is 0 where there are no pairs.
-        if !(0.0..1e15).contains(&excess) {
+        if !(LEAST..1e15).contains(&excess) {
             return Err("the excess of those that are left out is out of range".into());
         }
         let area = |placed: &Placed<'_>| reach(placed.agent, &placed.stretches, excess);

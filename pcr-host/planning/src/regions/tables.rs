@@ -37,7 +37,7 @@ fn of_rows<S: Format>(agents: Vec<Agent>, motions: &[Motion<'_, S>]) -> Result<T
     // The excess of a pair has three parts, of the extents, of the lags and of the rounding of arcs of both agents. Each is at most
     // the largest excess of an agent with itself, hence their sum at most three times that.
     let largest = motions.iter().map(|motion| excess(motion, motion).to_f64()).fold(0.0, f64::max);
-    let apart = 3.0 * largest.max(f64::MIN_POSITIVE);
+    let apart = 3.0 * largest.max(1e-100);
     let Ok(close) = Close::new(&agents, apart) else {
         // The checker says what is wrong.
         return Ok(Table { agents, pairs: Vec::new(), apart: None });
