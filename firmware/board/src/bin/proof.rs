@@ -86,6 +86,7 @@ fn arithmetic<S: Scalar>() {
     any((Scalar::slack(a), Scalar::millimetres(a), S::quadratic_roots(a, wide::<S>(), wide::<S>())));
     let ramp = Ramp { slow: a, fast: number(), acceleration: number(), duration: number(), length: number() };
     any((S::ramp_length(any(ramp), a), S::ramp_time(any(ramp), a)));
+    any((S::ramp_bulge(any(ramp), a), S::ramps_alike(any(ramp), any(ramp))));
     let [from, middle] = [[unit::<S>(), unit::<S>()], [unit::<S>(), unit::<S>()]];
     let equations = [[wide::<S>(); 4], [wide::<S>(); 4]];
     S::half_tangent_roots(equations.into_iter(), any(Sector { from, middle, least: unit::<S>() }), |angle| {

@@ -35,7 +35,7 @@ mod tests {
                 Proof { verdict: "undecided", pairs: 1, steps: 1, contacts: Vec::new(), undecided, error: None };
             (
                 proof_line(&proof, &Labels::default()),
-                serde_json::to_value(&proof.undecided[0]).unwrap()["clearance"].clone(),
+                serde_json::to_value(proof.undecided[0]).unwrap()["clearance"].clone(),
             )
         };
         let (text, number) = told(f64::NAN);

@@ -124,7 +124,7 @@ impl Supervisor {
         let before = robot.granted;
         // A slow robot never needs much more than it has.
         let step = settings.step.min(0.25 * (wanted - robot.up_to));
-        let is_worth = granted >= before + step && granted > before || (granted > before && granted >= bound.min(end));
+        let is_worth = granted > before && (granted >= before + step || granted >= bound.min(end));
         if !is_worth {
             return;
         }
