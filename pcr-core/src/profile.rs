@@ -109,7 +109,7 @@ impl<S: Scalar> Phase<S> {
         positive(duration, "duration")?;
         not_negative(after, "speed")?;
         let [_, before] = self.speed;
-        let acceleration = in_range((after - before).quotient(duration), "acceleration")?;
+        let acceleration = acceleration(after - before, duration)?;
         let travelled = (before + after).times(duration).half().narrow();
         in_range(self.time.hi + duration, "duration of the profile")?;
         let to = in_range(self.length.hi + travelled, "length of the profile")?;
@@ -144,9 +144,8 @@ impl<S: Scalar> Phase<S> {
         (before + gain).clamp(before.min(after), before.max(after))
     }
 
-    /// Also where the acceleration was rounded to 0.
     fn slows(&self) -> bool {
-        self.acceleration < S::ZERO || self.acceleration == S::ZERO && self.speed[1] < self.speed[0]
+        self.acceleration < S::ZERO
     }
 
     /// Largest distance of the travelled length from a linear function of the time, over a part of the phase of this
@@ -181,6 +180,16 @@ impl<S: Scalar> Phase<S> {
         let time = if self.slows() { self.time.hi - elapsed } else { self.time.lo + elapsed };
         time.clamp(self.time.lo, self.time.hi)
     }
+}
+
+/// The acceleration of a change of speed. Its sign tells which end is the slow one, so none is rounded to 0.
+fn acceleration<S: Scalar>(change: S, duration: S) -> Result<S, Invalid> {
+    let rounded = in_range(change.quotient(duration), "acceleration")?;
+    Ok(match rounded == S::ZERO {
+        true if change > S::ZERO => S::LEAST,
+        true if change < S::ZERO => -S::LEAST,
+        _ => rounded,
+    })
 }
 
 /// Speed and acceleration that an agent may not exceed (Eq. 3).
@@ -293,7 +302,7 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
             let (time, [_, before], after) = (to - last.time.hi, last.speed, speed(phase.speed[1])?);
             // The length of a phase without duration is added to a neighbour, so that the agent does not jump.
             if time > S::ZERO {
-                let acceleration = in_range((after - before).quotient(time), "acceleration")?;
+                let acceleration = acceleration(after - before, time)?;
                 last = Phase {
                     time: Interval::new(last.time.hi, to),
                     ..last.until(time, phase.length.hi, after, acceleration)

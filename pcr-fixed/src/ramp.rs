@@ -22,15 +22,16 @@ fn gain<const F: u32>(ramp: Ramp<Q<F>>) -> Scaled {
     scaled(ramp.length).over(scaled(ramp.duration)).plus(scaled(ramp.slow).minus())
 }
 
-/// L - v T, exact, in squares of the last digit: how far the ramp is from a uniform motion at its slow end.
+/// L - v T, exact, in squares of the last digit: how far the ramp is from a uniform motion at its slow end. It has 63 bits, as both
+/// products have 62 at most; no check of that is left in the code.
 fn rest<const F: u32>(ramp: Ramp<Q<F>>) -> i64 {
     let [length, slow, duration] = [ramp.length, ramp.slow, ramp.duration].map(|number| i64::from(number.to_bits()));
-    (length << F) - slow * duration
+    (length << F).wrapping_sub(slow.wrapping_mul(duration))
 }
 
 /// Whether the map is off a line by half a last digit at most: a uniform motion, but for rounding.
 fn is_uniform<const F: u32>(ramp: Ramp<Q<F>>) -> bool {
-    rest(ramp).abs() <= 2 << F
+    rest(ramp).unsigned_abs() <= 2 << F
 }
 
 /// `|L - v T| (h/T)² / 4`, to nearest. Cost: a division.
