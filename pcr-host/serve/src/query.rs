@@ -84,7 +84,7 @@ impl<'a> View<'a> {
             radius: robot.abilities.radius,
             at: [extent.lo, extent.hi],
             hold: robot.granted,
-            wanted: robot.wanted(supervisor.settings()),
+            wanted: robot.wanted(supervisor.settings().lookahead, supervisor.settings().width),
             waits_for: supervisor.waits_for(robot),
             mission: robot.mission.as_deref(),
             waiting: robot.waiting.as_ref().map(|waiting| waiting.mission.as_str()),

@@ -1,7 +1,6 @@
 //! The state of a robot: its abilities, its path, its place on the path, and how far it has been allowed to go.
 
 use crate::course::{Course, Rest, Shape};
-use crate::supervisor::Settings;
 use pcr_core::{Hold, Interval, Invalid, Motion, Progress};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -257,9 +256,9 @@ impl Robot {
 
     /// Hold that it needs so that it does not have to brake within the lookahead \[m\]. It is further on than the width, so that a robot that
     /// has come to its hold but for that is told the next one.
-    pub fn wanted(&self, settings: &Settings) -> f64 {
-        let way = self.abilities.braking() + self.abilities.speed * settings.lookahead;
-        (self.up_to + way.max(2.0 * settings.width)).max(self.next).min(self.course.length())
+    pub fn wanted(&self, lookahead: f64, width: f64) -> f64 {
+        let way = self.abilities.braking() + self.abilities.speed * lookahead;
+        (self.up_to + way.max(2.0 * width)).max(self.next).min(self.course.length())
     }
 
     /// Whether it has reached the end of its path, within a width \[m\].

@@ -34,7 +34,9 @@ impl Supervisor {
 
     fn wants(&self, place: usize) -> bool {
         let robot = &self.robots[place];
-        robot.alarm.is_none() && robot.stopped.is_none() && robot.wanted(&self.settings) > robot.granted
+        robot.alarm.is_none()
+            && robot.stopped.is_none()
+            && robot.wanted(self.settings.lookahead, self.settings.width) > robot.granted
     }
 
     /// Whether the hold of a robot is before the length that it needs next, and may have changed.
@@ -43,7 +45,7 @@ impl Supervisor {
         let Some(Wait { hold, by, at }) = robot.hold else { return true };
         let bound = hold.length(robot.course.length()).unwrap_or(robot.granted);
         let have_moved = robot.at > at || by.is_some_and(|(by, at)| self.robots[by].at > at);
-        have_moved && bound < robot.wanted(&self.settings)
+        have_moved && bound < robot.wanted(self.settings.lookahead, self.settings.width)
     }
 
     fn evaluate(&mut self, places: &[usize]) {
@@ -119,7 +121,7 @@ impl Supervisor {
         if let Some(Limit { at: Some(at), .. }) = limit {
             bound = bound.min(*at);
         }
-        let wanted = robot.wanted(settings);
+        let wanted = robot.wanted(settings.lookahead, settings.width);
         let granted = bound.min(wanted);
         let before = robot.granted;
         // A slow robot never needs much more than it has.
