@@ -100,7 +100,7 @@ fn a_route_keeps_the_deviation_of_its_curves_as_margin() {
     let mut warnings = Warnings::default();
     let scenario = scenario(Format::Lif, &value.to_string(), &options, &mut warnings).unwrap();
     let [said] = &warnings.lines()[..] else { panic!("one warning") };
-    assert!(said.contains("its lines and arcs are up to") && said.contains("by which its radius is larger"), "{said}");
+    assert!(said.contains("its lines and arcs are up to") && said.contains("by which the vehicle is larger"), "{said}");
     let (layout, _) = read(&value.to_string(), &options);
     let agent = &scenario.agents[0];
     assert!((agent.radius - 0.4 - layout.edges[0].deviation).abs() < 1e-9 && agent.radius > 0.4);

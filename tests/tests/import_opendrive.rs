@@ -38,7 +38,7 @@ fn every_record_is_a_line_or_an_arc() {
         }
         assert_eq!(warnings.len(), 2, "{warnings:?}");
         assert!(warnings[0].contains("joints are open, by "), "{warnings:?}");
-        assert!(warnings[1].contains("from its curve, by which its radius is larger"), "{warnings:?}");
+        assert!(warnings[1].contains("from its curve, by which the vehicle is larger"), "{warnings:?}");
     }
 }
 

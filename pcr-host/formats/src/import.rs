@@ -34,6 +34,7 @@
 //! left out; with [`Options::partial`] these are left out. Parts that are not read exactly as written cause warnings,
 //! which are also in the answers. No input causes a panic.
 
+mod bernstein;
 mod biarc;
 mod ccbs;
 mod facing;
@@ -282,8 +283,7 @@ fn imported(
     if moves {
         layout.one_speed()?;
     }
-    let radius = if vehicle.footprint.is_some() { vehicle.radius } else { 0.0 };
-    let off: Vec<_> = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.off(radius))).collect();
+    let off: Vec<_> = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.off(&vehicle))).collect();
     report(&off, warnings);
     layout.warnings = warnings.all();
     if NO_NAMES.contains(&layout.name.as_str()) {
@@ -312,12 +312,12 @@ fn whole<T>(
 /// Deviation that goes without saying \[m\].
 const UNSAID: f64 = 1e-6;
 
-/// Says how far lines and arcs are from what they stand for.
+/// Says how far lines and arcs are from what they stand for; for an outline, with what their headings differ.
 fn report(deviations: &[(String, f64)], warnings: &mut Warnings) {
     let most = deviations.iter().map(|(_, deviation)| *deviation).fold(0.0, f64::max);
     for (name, _) in deviations.iter().filter(|(_, deviation)| *deviation > UNSAID) {
         let problem =
-            format!("its lines and arcs are up to {most:.1e} m from its curve, by which its radius is larger");
+            format!("its lines and arcs are up to {most:.1e} m from its curve, by which the vehicle is larger there");
         warnings.add(name, problem);
     }
 }

@@ -13,6 +13,7 @@
 //! coefficients bounds them. Where that fails, as where the speed is 0, the directions of the control polygon do: those of the curve
 //! lie between them.
 
+use super::bernstein::{circle, derivative, framed, product, sum};
 use super::nurbs::Bezier;
 use crate::scenario::{PathSegment, Placed};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -42,19 +43,9 @@ fn halved(curve: &Bezier, piece: &Placed, halvings: u32) -> f64 {
     curve.split(0.5).iter().map(|half| halved(half, piece, halvings - 1)).fold(0.0, f64::max)
 }
 
-/// Homogeneous control points in the frame of a pose.
-pub(super) fn framed(curve: &Bezier, at: [f64; 2], heading: f64) -> Vec<[f64; 3]> {
-    let (sin, cos) = heading.sin_cos();
-    let point = |[x, y, w]: &[f64; 3]| {
-        let (x, y) = (x - at[0] * w, y - at[1] * w);
-        [x * cos + y * sin, y * cos - x * sin, *w]
-    };
-    curve.0.iter().map(point).collect()
-}
-
 /// The same bound by the directions of the control polygon, and of the circles through its points.
-fn by_polygon(points: &[[f64; 3]], curvature: f64) -> f64 {
-    let places: Vec<[f64; 2]> = points.iter().map(|[x, y, w]| [x / w, y / w]).collect();
+fn by_polygon([x, y, w]: &[Vec<f64>; 3], curvature: f64) -> f64 {
+    let places: Vec<[f64; 2]> = x.iter().zip(y).zip(w).map(|((x, y), w)| [x / w, y / w]).collect();
     let legs = places.windows(2).map(|leg| [leg[1][0] - leg[0][0], leg[1][1] - leg[0][1]]);
     let ways: Vec<f64> = legs.filter(|leg| *leg != [0.0; 2]).map(|[x, y]| y.atan2(x)).collect();
     let circles: Vec<f64> = places.iter().map(|[x, y]| (curvature * x).atan2(1.0 - curvature * y)).collect();
@@ -72,19 +63,18 @@ fn by_polygon(points: &[[f64; 3]], curvature: f64) -> f64 {
 }
 
 /// The same bound by the derivatives; `None` where the curve may stop or turn back.
-fn by_speed(points: &[[f64; 3]], curvature: f64) -> Option<f64> {
-    let [x, y, w] = [0, 1, 2].map(|k| points.iter().map(|point| point[k]).collect::<Vec<f64>>());
-    let circle = sum(&product(&x, &x), &product(&y, &y), 1.0);
-    let g = sum(&product(&y, &w), &circle, -0.5 * curvature);
-    // w² g = -`g` and its derivative, over w³.
-    let rise = sum(&product(&derivative(&g), &w), &product(&g, &derivative(&w)), -2.0);
+fn by_speed(points: &[Vec<f64>; 3], curvature: f64) -> Option<f64> {
+    let [g, squares] = circle(points, curvature);
+    let [x, y, w] = points;
+    // The derivative of g, times w³.
+    let rise = sum(&product(&derivative(&g), w), &product(&g, &derivative(w)), -2.0);
     // Along the chord.
-    let (first, last) = (points.first()?, points.last()?);
-    let chord = [last[0] / last[2] - first[0] / first[2], last[1] / last[2] - first[1] / first[2]];
+    let [from, to] = [0, x.len().checked_sub(1)?].map(|k| [x[k] / w[k], y[k] / w[k]]);
+    let chord = [to[0] - from[0], to[1] - from[1]];
     let length = chord[0].hypot(chord[1]);
-    let along = x.iter().zip(&y).map(|(x, y)| (x * chord[0] + y * chord[1]) / length).collect::<Vec<f64>>();
-    let speed = sum(&product(&derivative(&along), &w), &product(&along, &derivative(&w)), -1.0);
-    let speed = product(&speed, &w);
+    let along: Vec<f64> = x.iter().zip(y).map(|(x, y)| (x * chord[0] + y * chord[1]) / length).collect();
+    let speed = sum(&product(&derivative(&along), w), &product(&along, &derivative(w)), -1.0);
+    let speed = product(&speed, w);
     let mut ratio = 0.0_f64;
     for (rise, speed) in rise.iter().zip(&speed) {
         match *speed {
@@ -93,40 +83,10 @@ fn by_speed(points: &[[f64; 3]], curvature: f64) -> Option<f64> {
             _ => return None,
         }
     }
-    let outside = g.iter().zip(product(&w, &w)).map(|(g, w)| 1.0 - 2.0 * (curvature * g / w).abs()).fold(1.0, f64::min);
+    // (1 - k d)² = 1 + 2 k g.
+    let outside = g.iter().zip(squares).map(|(g, w)| 1.0 - 2.0 * (curvature * g / w).abs()).fold(1.0, f64::min);
     let sine = ratio / outside.max(0.0).sqrt();
     (sine <= 1.0).then(|| sine.asin())
-}
-
-/// The Bernstein coefficients of `a + factor · b`.
-fn sum(a: &[f64], b: &[f64], factor: f64) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a + factor * b).collect()
-}
-
-/// Those of the product.
-fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
-    let (n, m) = (a.len().saturating_sub(1), b.len().saturating_sub(1));
-    let [of_a, of_b, of_both] = [n, m, n + m].map(binomials);
-    let coefficient = |sum: usize| {
-        let terms = (sum.saturating_sub(m)..=sum.min(n)).map(|i| of_a[i] * a[i] * of_b[sum - i] * b[sum - i]);
-        terms.sum::<f64>() / of_both[sum]
-    };
-    (0..=n + m).map(coefficient).collect()
-}
-
-/// Those of the derivative.
-fn derivative(a: &[f64]) -> Vec<f64> {
-    let degree = a.len().saturating_sub(1) as f64;
-    a.windows(2).map(|pair| degree * (pair[1] - pair[0])).collect()
-}
-
-/// The row of Pascal's triangle.
-pub(super) fn binomials(degree: usize) -> Vec<f64> {
-    let mut row = vec![1.0];
-    for k in 0..degree {
-        row.push(row[k] * (degree - k) as f64 / (k + 1) as f64);
-    }
-    row
 }
 
 /// An angle within half a turn.

@@ -1,6 +1,6 @@
 //! A layout: nodes, and edges between them with their exact geometry; the common form of all layout files.
 
-use super::ImportError;
+use super::{ImportError, Vehicle};
 use crate::scenario::Placed;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
@@ -89,10 +89,9 @@ impl Edge {
         Self { id, ends, curve, ways, closed: false, speed: [None; 2], rotation: None, deviation, longer, turned }
     }
 
-    /// How far the outline of a vehicle may be from where it is on the curve in the file \[m\]; `radius` is that of the disc around it, or
-    /// 0 for a disc, whose heading does not matter \[m\].
-    pub fn off(&self, radius: f64) -> f64 {
-        self.deviation + radius * self.turned
+    /// How far any point of a vehicle may be from where it is on the curve in the file \[m\].
+    pub fn off(&self, vehicle: &Vehicle) -> f64 {
+        self.deviation + vehicle.moved_by(self.turned)
     }
 
     /// Whether it may be travelled in both directions.

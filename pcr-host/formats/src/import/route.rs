@@ -338,8 +338,7 @@ pub(super) fn agent(id: u64, trace: &Trace, vehicle: &Vehicle, t_start: f64) -> 
     let path = trace.stretches.iter().map(|stretch| stretch.shape).collect();
     let motion = speed::motion(&trace.stretches, vehicle);
     let footprint = vehicle.footprint.as_ref().filter(|_| trace.faces);
-    // Where an outline is turned, no point of it is further off than that.
-    let off = trace.deviation + if footprint.is_some() { vehicle.radius * trace.turned } else { 0.0 };
+    let off = trace.deviation + vehicle.moved_by(trace.turned);
     let footprint = footprint.map(|footprint| footprint.grown(off));
     let disc = Agent::disc(id, vehicle.radius + off, trace.start, path, motion);
     Agent { footprint, margin: vehicle.margin, t_start, ..disc }

@@ -25,6 +25,13 @@ pub struct Vehicle {
     pub rotation_acceleration: f64,
 }
 
+impl Vehicle {
+    /// How far a turn by an angle \[rad\] moves any point of it at most \[m\]: 0 for a disc.
+    pub fn moved_by(&self, angle: f64) -> f64 {
+        if self.footprint.is_some() { self.radius * angle } else { 0.0 }
+    }
+}
+
 /// What a file says about the vehicle.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Given {

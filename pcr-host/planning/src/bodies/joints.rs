@@ -1,4 +1,4 @@
-//! Joins the pieces of a motion where its speed jumps.
+//! Joins the pieces of a motion at the places where its speed jumps.
 //!
 //! A profile has no jumps: the speed changes within a short time, half of which either neighbour gives. Pieces that are too short to give
 //! any are replaced as well, together with the jumps at both their ends. What replaces them takes the same time and goes the same way, so
@@ -71,7 +71,7 @@ pub(super) fn joined(given: &[Piece], times: Times) -> Joined {
     let mut open: Vec<Piece> = Vec::new();
     for (k, piece) in given.iter().enumerate() {
         let [begins, ends] = [k > 0 && jumps(k - 1), k + 1 < given.len() && jumps(k)];
-        if (begins || ends) && piece.duration < 2.0 * least {
+        if (begins || ends || !open.is_empty()) && piece.duration < 2.0 * least {
             open.push(*piece);
             continue;
         }
@@ -147,6 +147,14 @@ mod tests {
             vec![piece(1.0, 1.0, 1.0), piece(1.5e-3, 0.01, 0.01), piece(1e-4, 4.0, 3.0), piece(2.0, 1.0, 0.0)],
             vec![piece(1e-4, 5.0, 5.0), piece(1.0, 1.0, 1.0), piece(5.0, 0.0, 0.0), piece(1e-4, 7.0, 7.0)],
             vec![piece(1e-4, 5.0, 5.0), piece(1e-5, 1.0, 1.0)],
+            // Short ones behind a jump, without another one between them.
+            vec![
+                piece(1.0, 1.0, 1.0),
+                piece(1e-4, 3.0, 2.0),
+                piece(1e-4, 2.0, 2.0),
+                piece(1e-4, 2.0, 1.0),
+                piece(1.0, 1.0, 0.0),
+            ],
             vec![piece(1.0, 0.0, 1.0), piece(1.0, 1.0, 0.0)],
         ];
         for given in cases {

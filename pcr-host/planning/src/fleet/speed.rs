@@ -67,7 +67,10 @@ fn targets(v0: f64, pieces: &[(f64, f64)]) -> Vec<f64> {
 /// The phase that follows `last` from the speed `before` to the speed `after`, and the speed that it reaches. A phase that the format
 /// takes as one of no duration reaches none.
 fn phase<S: Format>(last: Option<&Phase<S>>, before: S, after: f64, duration: f64) -> Result<(Phase<S>, S), String> {
-    let (duration, after) = (number::<S>("duration", duration)?, S::from_f64(after));
+    // A speed that the format takes as 0 is none, unless a last digit of a length is travelled with it.
+    let stands = S::from_f64(after) == S::ZERO && after * duration <= S::slack(S::ZERO).to_f64();
+    let after = if stands { S::ZERO } else { number("speed", after)? };
+    let duration = number::<S>("duration", duration)?;
     let begin = |duration| Phase::starting_at(before, duration, S::ZERO);
     let phase = match (last, duration > S::ZERO) {
         (None, false) => begin(duration),

@@ -12,8 +12,7 @@ pub fn origin(imported: &Imported) -> u32 {
     let mut add = |part: &dyn Debug| sum = crc32(format!("{sum} {part:?}").as_bytes());
     add(&(vehicle.radius, vehicle.margin, &vehicle.footprint, layout.nodes.len(), layout.edges.len()));
     layout.nodes.iter().for_each(|node| add(&(&node.id, node.level, node.at)));
-    let radius = if vehicle.footprint.is_some() { vehicle.radius } else { 0.0 };
     let edges = layout.edges.iter();
-    edges.for_each(|edge| add(&(&edge.id, edge.ends, &edge.curve, edge.is_two_way(), edge.off(radius))));
+    edges.for_each(|edge| add(&(&edge.id, edge.ends, &edge.curve, edge.is_two_way(), edge.off(vehicle))));
     sum
 }

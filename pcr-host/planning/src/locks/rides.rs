@@ -32,8 +32,13 @@ pub struct Ride {
 pub(crate) enum Lengths {
     /// Those on the edge, and of the turns within it, which add so much \[m\].
     Along(f64),
-    /// The same from the other end of an edge; the length of the path, and what turns add to it \[m\].
-    Reversed(f64, f64),
+    /// The same from the other end of the edge.
+    Reversed {
+        /// Length of the path \[m\].
+        length: f64,
+        /// What the turns add to it \[m\].
+        turns: f64,
+    },
     /// The agent turns in place at this length \[m\].
     At(f64),
 }
@@ -43,7 +48,7 @@ impl Lengths {
     pub(crate) fn on_edge(self, lengths: [f64; 2]) -> [f64; 2] {
         match self {
             Self::Along(turns) => [(lengths[0] - turns).max(0.0), lengths[1]],
-            Self::Reversed(length, turns) => {
+            Self::Reversed { length, turns } => {
                 let [lo, hi] = reversed(length, lengths);
                 [(lo - turns).max(0.0), hi]
             }
@@ -113,7 +118,7 @@ impl<'a> Rides<'a> {
             // Without a length it has no direction.
             return vec![self.at(step.origin())];
         };
-        let (length, vehicle) = (step.edge.length(), grown(&self.vehicle, step.edge.off(self.vehicle.radius)));
+        let (length, vehicle) = (step.edge.length(), grown(&self.vehicle, step.edge.off(&self.vehicle)));
         let [from, to] = if step.backward { [length, 0.0] } else { [0.0, length] };
         let before = self.turns(Side { step, heading: start.heading }, 0);
         let after = self.turns(Side { step, heading: end.heading }, 1);
@@ -140,7 +145,10 @@ impl<'a> Rides<'a> {
         let agent = self.along_with(&self.vehicle, step);
         let turns = agent.path.iter().filter(|shape| matches!(shape, PathSegment::Arc { radius: TURN, .. }));
         let turns = turns.map(PathSegment::length).sum::<f64>() + 0.0;
-        let lengths = if step.backward { Lengths::Reversed(agent.length(), turns) } else { Lengths::Along(turns) };
+        let lengths = match step.backward {
+            true => Lengths::Reversed { length: agent.length(), turns },
+            false => Lengths::Along(turns),
+        };
         Ride { agent, lengths }
     }
 
