@@ -343,3 +343,27 @@ fn gaps_between_sections_make_the_agent_larger() {
     };
     assert!(radius(0.0) == 0.5 && (radius(8e-7) - 0.5 - 8e-7).abs() < 1e-15);
 }
+
+/// The number was read up to the comment: the node was elsewhere, and its lock missing.
+#[test]
+fn coordinates_are_read_past_comments() {
+    let graph = |place: &str| {
+        format!(
+            r#"<!DOCTYPE graphml><graphml><graph id="g" edgedefault="directed"><node id="a"><data key="coords">{place}</data></node>
+            <node id="b"><data key="coords">9,9</data></node><edge id="e" source="a" target="b"/></graph></graphml>"#
+        )
+    };
+    let at = |place: &str| {
+        let text = graph(place).replace("<!DOCTYPE graphml>", "");
+        let read = layout(Format::Ccbs, &text, &Options::default(), &mut Warnings::default()).unwrap();
+        read.layout.nodes[0].at
+    };
+    for place in ["0,15", "0,1<!-- c -->5", "0,1<?p i?>5", "0,1<![CDATA[5]]>"] {
+        assert_eq!(at(place), [0.0, 15.0], "{place}");
+    }
+    // What it is, is known also where it is refused.
+    let text = graph("0,15");
+    assert_eq!(Format::of(std::path::Path::new("g"), &text), Some(Format::Ccbs));
+    let refused = layout(Format::Ccbs, &text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string();
+    assert!(refused.contains("DTD"), "{refused}");
+}

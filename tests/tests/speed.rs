@@ -10,7 +10,7 @@ use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::{Dice, leg};
 use pcr_tests::oracle::contact::Meeting;
 use pcr_tests::velocity::Grid;
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 pub(crate) const CASES: u64 = if cfg!(optimized) { 400 } else { 40 };
 pub(crate) const GRID: Grid = Grid { step: 0.05, acceleration: 1.0, speeds: 20, lengths: 3200 };
@@ -438,4 +438,22 @@ fn many_that_pass_before_and_after_leave_the_time_between() {
     let with: Vec<Course<f64>> = all.into_iter().chain([parks]).collect();
     // It crosses at 97 s: nobody is there from 91 s to 99 s.
     assert!((arrival(&with).unwrap() - 99.5).abs() < 1e-9);
+}
+
+/// Who starts within the region is there already: nobody passes before him. The order let the ego through him.
+#[test]
+fn nobody_passes_before_who_starts_there() {
+    let disc = |start, length| Disc { radius: 0.3, start, legs: vec![Leg::Line(length)] };
+    let discs = [disc([-3.0, 0.0, 0.0], 6.0), disc([0.0, 0.0, FRAC_PI_2], 4.0)];
+    let courses = discs.map(|disc| Course::<f64>::new(&disc).expect("a valid disc"));
+    let fleet = [courses[0].motion(), courses[1].motion().delayed(100.0).expect("small")];
+    let ecm = build_ecm(&fleet).expect("a small table");
+    let region = ecm.row(&fleet, 0).expect("the table of the fleet").next().expect("they meet");
+    let (before, after) = (Constraint::before(&region), Constraint::after(&region));
+    assert_eq!(before.time, Interval::new(-<f64 as pcr_core::Scalar>::LIMIT, <f64 as pcr_core::Scalar>::LIMIT));
+    assert!(after.time.hi > 100.0 && after.time.hi < 110.0, "{after:?}");
+    // Both may be late.
+    let late = [fleet[0].with_lateness(2.0).expect("small"), fleet[1].with_lateness(3.0).expect("small")];
+    let region = ecm.row(&late, 0).expect("the table of the fleet").next().expect("they meet");
+    assert_eq!(Constraint::after(&region).time.hi, after.time.hi + 3.0);
 }

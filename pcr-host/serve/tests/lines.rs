@@ -232,6 +232,20 @@ fn robots_off_their_paths_and_back() {
 }
 
 /// A mission that was admitted meanwhile made another place of the length at which a robot was to turn off.
+/// The last ids of each robot are kept: with ids of a megabyte, the journal came to its end.
+#[test]
+fn ids_of_missions_have_a_limit() {
+    let mut supervisor = supervisor();
+    handle(&mut supervisor, requests()[0].as_bytes(), 0.0, 0.0);
+    for (length, is_taken) in [(1000, true), (1001, false)] {
+        let mission = json!({ "verb": "mission", "robot": "a", "mission": "m".repeat(length),
+            "path": [{ "kind": "line", "length": 1 }] });
+        let answer = handle(&mut supervisor, mission.to_string().as_bytes(), 0.0, 0.0).answer;
+        assert_eq!(answer["error"].is_null(), is_taken, "{length}: {answer}");
+        supervisor.settle(0.0).unwrap();
+    }
+}
+
 #[test]
 fn a_replacement_is_of_the_path_that_it_names() {
     let schema: Value = serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap();

@@ -125,6 +125,10 @@ fn negative_starts_keep_their_distance_in_time() {
         (warned, silent),
         (json!(["the first agent sets off at -100 s; times of the simulation count from there"]), json!([]))
     );
+    // Times since 1970 were refused.
+    let (since_1970, warned) = runs(1.7e9);
+    assert_eq!(since_1970, late);
+    assert_eq!(warned[0], "the first agent sets off at 1700000000 s; times of the simulation count from there");
 }
 
 /// Agents that never move are no robots, so that no run counts their contacts.

@@ -1,6 +1,6 @@
 //! One vehicle, its supervisor, and a manager that sends what the test says: any single message may be lost, and work goes on.
 
-use crate::pair::{CAN, FRO, Pair, TO, key, order};
+use crate::pair::{CAN, FRO, Pair, TO, bridge_of, key, order};
 use crate::site::{interfaces, settings};
 use pcr_serve::course::Start;
 use pcr_serve::entry::Nowhere;
@@ -314,7 +314,7 @@ fn who_is_missing_is_said() {
     let supervisor = Supervisor::new(settings(), Box::new(Nowhere));
     let mut own = Pair::new();
     own.supervisor = supervisor;
-    own.bridge = Pair::bridge(&own.supervisor);
+    own.bridge = bridge_of(&own.supervisor);
     own.bridge.settled(&mut own.supervisor, &[], 31.0);
     assert_eq!(own.bridge.log(), ["nobody is released anything until these have said where they stand: sim/001"]);
 }

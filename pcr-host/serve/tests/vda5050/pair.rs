@@ -43,29 +43,35 @@ pub(crate) fn key() -> Key {
     Key::new("sim", "001").unwrap()
 }
 
+/// The bridge of the one vehicle.
+pub(crate) fn bridge_of(supervisor: &Supervisor) -> Bridge {
+    let [manager, vehicles] = interfaces();
+    let settings = bridge::Settings { manager, vehicles, limits: Limits::default() };
+    Bridge::new(settings, vec![profile(key(), &CAN)], supervisor).unwrap()
+}
+
+/// A supervisor that goes on with the journal of a killed one, and its bridge.
+pub(crate) fn restarted(killed: &mut Supervisor) -> (Supervisor, Bridge) {
+    let supervisor = Supervisor::restored(settings(), killed.snapshot().unwrap(), Box::new(Nowhere)).unwrap();
+    let bridge = bridge_of(&supervisor);
+    (supervisor, bridge)
+}
+
 impl Pair {
     pub(crate) fn new() -> Self {
         let start = Start { x: 0.0, y: 0.0, heading: 0.0 };
         let vehicle = Vehicle::new(key(), Version::V2_1, "map", CAN, start, 1);
         let supervisor = Supervisor::new(settings(), Box::new(Nowhere));
-        let bridge = Self::bridge(&supervisor);
+        let bridge = bridge_of(&supervisor);
         let mut own = Self { vehicle, supervisor, bridge, time: 0.0, state: None, loses: None, header: 0 };
         own.lasts(1.0);
         assert!(own.supervisor.robot("sim/001").is_ok());
         own
     }
 
-    pub(crate) fn bridge(supervisor: &Supervisor) -> Bridge {
-        let [manager, vehicles] = interfaces();
-        let settings = bridge::Settings { manager, vehicles, limits: Limits::default() };
-        Bridge::new(settings, vec![profile(key(), &CAN)], supervisor).unwrap()
-    }
-
     /// Killed, and another one in its place.
     pub(crate) fn restart(&mut self) {
-        let entries = self.supervisor.snapshot().unwrap();
-        self.supervisor = Supervisor::restored(settings(), entries, Box::new(Nowhere)).unwrap();
-        self.bridge = Self::bridge(&self.supervisor);
+        (self.supervisor, self.bridge) = restarted(&mut self.supervisor);
     }
 
     pub(crate) fn lasts(&mut self, time: f64) {

@@ -1,16 +1,14 @@
 //! A vehicle that says what the test says, and its supervisor.
 
-use crate::pair::{CAN, key};
+use crate::pair::{bridge_of, key, restarted};
 use crate::site::{interfaces, settings};
 use pcr_serve::entry::Nowhere;
 use pcr_serve::robot::Robot;
 use pcr_serve::supervisor::Supervisor;
-use pcr_serve::vda5050::bridge::{self, Bridge};
-use pcr_serve::vda5050::door::Limits;
+use pcr_serve::vda5050::bridge::Bridge;
 use pcr_serve::vda5050::stamp;
 use pcr_serve::vda5050::topics::Kind;
 use pcr_serve::vda5050::version::Version;
-use pcr_serve::vehicles::world::profile;
 use serde_json::{Value, json};
 
 pub(crate) struct Puppet {
@@ -32,7 +30,7 @@ impl Puppet {
     /// At (0, 0), without an order.
     pub(crate) fn new() -> Self {
         let supervisor = Supervisor::new(settings(), Box::new(Nowhere));
-        let bridge = Self::bridge(&supervisor);
+        let bridge = bridge_of(&supervisor);
         let pose = json!({ "x": 0.0, "y": 0.0, "theta": 0.0, "mapId": "map", "positionInitialized": true });
         let state = json!({ "version": "2.1.0", "manufacturer": "sim", "serialNumber": "001", "orderId": "",
             "orderUpdateId": 0, "lastNodeId": "", "lastNodeSequenceId": 0, "nodeStates": [], "edgeStates": [],
@@ -44,17 +42,9 @@ impl Puppet {
         own
     }
 
-    fn bridge(supervisor: &Supervisor) -> Bridge {
-        let [manager, vehicles] = interfaces();
-        let settings = bridge::Settings { manager, vehicles, limits: Limits::default() };
-        Bridge::new(settings, vec![profile(key(), &CAN)], supervisor).unwrap()
-    }
-
     /// The supervisor is killed, and another one goes on with its journal.
     pub(crate) fn restart(&mut self) {
-        let entries = self.supervisor.snapshot().unwrap();
-        self.supervisor = Supervisor::restored(settings(), entries, Box::new(Nowhere)).unwrap();
-        self.bridge = Self::bridge(&self.supervisor);
+        (self.supervisor, self.bridge) = restarted(&mut self.supervisor);
         self.time = 0.0;
         self.bridge.greet(self.time);
     }
