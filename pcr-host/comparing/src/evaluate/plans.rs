@@ -86,7 +86,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     for fleet in &fleets.all {
         let mut row = Row::default();
         row.add(&fleet.scenario)?;
-        row.write(&format!("Table VI, {} agents, {} regions", fleet.size[0], fleet.size[1]), &mut text);
+        row.write(&format!("Table VI, {} agents, {} crossings", fleet.size[0], fleet.size[1]), &mut text);
     }
     for &agents in sizes {
         let mut row = Row::default();

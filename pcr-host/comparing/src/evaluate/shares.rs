@@ -33,7 +33,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         "## Fig. 12: finding pairs, making regions\n\nTo compute the table of regions, the library first compares the boxes of all pairs of agents; \
         this time grows with the square of the number of agents. The rest grows with the number of regions. Both directions of a pair count as \
         regions. The table is computed by the same function as in Table VI; the two are measured at different times, so they differ somewhat.\n\n\
-        | agents | regions | finding pairs | regions | share of finding |\n|---:|---:|---:|---:|---:|\n",
+        | agents | regions | finding pairs | making regions | share of finding |\n|---:|---:|---:|---:|---:|\n",
     );
     for point in &points {
         let Point { agents, regions, finding, all } = *point;
