@@ -284,7 +284,10 @@ where
     pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), TableError> {
         let own = fleet.get(agent).ok_or(Mismatch::NoSuchAgent(agent))?;
         let known = Known::all(fleet);
-        if self.only.is_some() || self.fleet != known.without(agent, own) {
+        if let Some(only) = self.only {
+            return Err(Mismatch::OnlyRow(only).into());
+        }
+        if self.fleet != known.without(agent, own) {
             return Err(Mismatch::OtherFleet.into());
         }
         self.add_row(fleet, agent)?;
@@ -324,8 +327,9 @@ where
     /// touched.
     ///
     /// # Errors
-    /// [`Full`] if the storage is too small, and [`Mismatch`]; the fleet and the table are then unchanged. Only if the regions from before
-    /// do not fit any more, because the lag of a motion has grown since, the table is empty, as after [`Ecm::clear`].
+    /// [`Full`] if the storage is too small, and [`Mismatch`]; the fleet and the table are then unchanged. Only if the
+    /// regions from before do not fit any more, because the lag of a motion has grown since, the table is empty, as
+    /// after [`Ecm::clear`].
     pub fn replace<'m>(
         &mut self,
         fleet: &mut [Motion<'m, S>],

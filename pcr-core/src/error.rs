@@ -70,7 +70,7 @@ pub enum Full {
     Regions,
     /// These two agents have more than 32767 pieces with each other; more storage does not help.
     Pair([usize; 2]),
-    /// The fleet has more than 65535 agents.
+    /// An agent whose index is above 65535 has a region.
     Agents,
     /// A [`BroadPhase`](crate::BroadPhase) needs at least two boxes for each agent.
     Boxes,
@@ -87,7 +87,7 @@ impl fmt::Display for Full {
             Self::Pieces => f.write_str("there is no room for another piece"),
             Self::Regions => f.write_str("there is no room for another region"),
             Self::Pair([a, b]) => write!(f, "agents {a} and {b} of the fleet have more than 32767 pieces"),
-            Self::Agents => f.write_str("the fleet has more than 65535 agents"),
+            Self::Agents => f.write_str("an agent whose index is above 65535 has a region"),
             Self::Boxes => f.write_str("there is room for less than two boxes an agent"),
             Self::Orders => f.write_str("there is no room for another order"),
             Self::Reaches => f.write_str("there is room to check the orders of fewer agents"),

@@ -42,13 +42,16 @@ impl<S: Scalar, I: Iterator<Item = Interval<S>> + Clone> Iterator for Union<S, I
     type Item = Interval<S>;
 
     fn next(&mut self) -> Option<Interval<S>> {
-        // Reversed ends are swapped and a NaN end counts as unbounded, so nothing is reported as free by mistake and
-        // the iteration ends.
-        let whole = |interval: Interval<S>| if interval.lo <= interval.hi { interval } else { interval.limited() };
         Lowest::next(&mut self.after, |lowest| {
             self.intervals.clone().map(whole).for_each(|interval| lowest.add(interval));
         })
     }
+}
+
+/// Reversed ends are swapped, and an end that is NaN counts as unbounded: nothing is reported as free by mistake, and the
+/// iteration ends.
+fn whole<S: Scalar>(interval: Interval<S>) -> Interval<S> {
+    if interval.lo <= interval.hi { interval } else { interval.limited() }
 }
 
 /// The lowest interval of a union, while its intervals come one by one in any order.
@@ -124,7 +127,7 @@ impl<S: Scalar, I: Iterator<Item = Interval<S>>> Iterator for Gaps<S, I> {
     fn next(&mut self) -> Option<Interval<S>> {
         loop {
             let rest = self.rest.take()?;
-            let Some(interval) = self.intervals.next().filter(|interval| interval.lo <= rest.hi) else {
+            let Some(interval) = self.intervals.next().map(whole).filter(|interval| interval.lo <= rest.hi) else {
                 return (rest.lo <= rest.hi).then_some(rest);
             };
             let after = Interval::new(rest.lo.max(interval.hi), rest.hi);
@@ -182,5 +185,17 @@ mod tests {
         let between = |lo, hi| gaps(intervals.into_iter(), Interval::new(lo, hi));
         assert!(between(0.0, 1.0).eq([]) && between(0.25, 0.5).eq([]) && between(1.5, 1.0).eq([]));
         assert!(between(2.0, 3.0).eq([Interval::new(2.0, 3.0)]) && between(1.0, 2.0).eq([Interval::new(1.0, 2.0)]));
+    }
+
+    #[test]
+    fn what_is_no_number_or_reversed_is_not_free() {
+        let within = Interval::new(0.0, 10.0);
+        for (interval, free) in [
+            (Interval { lo: f64::NAN, hi: 5.0 }, &[Interval { lo: 5.0, hi: 10.0 }][..]),
+            (Interval { lo: 2.0, hi: f64::NAN }, &[Interval { lo: 0.0, hi: 2.0 }]),
+            (Interval { lo: 6.0, hi: 4.0 }, &[Interval { lo: 0.0, hi: 4.0 }, Interval { lo: 6.0, hi: 10.0 }]),
+        ] {
+            assert!(gaps([interval].into_iter(), within).eq(free.iter().copied()), "{interval:?}");
+        }
     }
 }

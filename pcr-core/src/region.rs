@@ -155,6 +155,14 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         self.other_length().hi >= self.other_motion().path().length()
     }
 
+    /// Whether the ego can pass the region before the other agent, and after it. It cannot pass before if the region
+    /// contains the end of its path or the start of the other's, and not after if the start of its path or the other's end.
+    pub(crate) fn lets_pass(&self) -> [bool; 2] {
+        let length = self.length();
+        let before = length.hi < self.ego_motion().path().length() && !self.is_open_at_start();
+        [before, length.lo > S::ZERO && !self.is_open_at_end()]
+    }
+
     /// The lengths of the ego's path \[m\] that are inside the region at a time \[s\]: disjoint intervals in increasing
     /// order, rounded outward. Before the other agent sets off, they are those that it covers at its start; after its
     /// arrival, those that it covers at its end. If the time is NaN, the result is the whole length range of the
@@ -167,7 +175,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
     }
 
     /// Whether, in this region, the ego at this length of its path \[m\] overlaps the other agent at this time \[s\].
-    /// `true` if either is NaN.
+    /// `true` if the length is NaN; if the time is, whether the length is in the range of the region.
     pub fn contains(&self, time: S, length: S) -> bool {
         is_no_number(length) || self.covers(length, self.other_motion().length_at(time))
     }

@@ -117,7 +117,7 @@ pub trait Scalar:
     fn advance(self, rest: Self, length: Self, by: Self::Unit) -> (Self, Self) {
         self.sum(length.scale(by) + rest)
     }
-    /// `self + rhs`, rounded up.
+    /// `self + rhs`, rounded up. A format that does not add exactly has to override it, like [`Scalar::sum`].
     fn sum_up(self, rhs: Self) -> Self {
         self + rhs
     }

@@ -128,10 +128,7 @@ impl<S: Scalar> Segment<S> {
     pub fn then_line(&self, length: S) -> Result<Self, Invalid> {
         let length = error::length(length)?;
         let mut line = self.then(Curve::Line, S::ZERO, length);
-        line.advance();
-        line.bounds = Bounds::around(line.start, line.end);
-        line.middle = line.start + line.axis.vector(length.half(), S::ZERO);
-        line.half = [length.half(), S::ZERO];
+        line.lay();
         line.checked()
     }
 
@@ -160,8 +157,7 @@ impl<S: Scalar> Segment<S> {
         };
         let (heading, rounding) = arc.heading.sum(sweep);
         (arc.heading_at_end, arc.rest.heading) = heading.sum(rounding + (rest + arc.rest.heading));
-        arc.advance();
-        arc.enclose(radius, turn);
+        arc.lay();
         arc.checked()
     }
 
@@ -202,6 +198,44 @@ impl<S: Scalar> Segment<S> {
             axis: direction,
             middle: self.end,
             half: [S::ZERO; 2],
+        }
+    }
+
+    /// The part between these lengths of the segment \[m\], `from <= to`, as a segment that begins its path. It is in
+    /// range because the whole segment is, except for rounding.
+    pub(crate) fn part(&self, from: S, to: S) -> Self {
+        let (start, length) = (self.point_at(from), to - from);
+        let mut part = Self {
+            start,
+            end: start,
+            heading: self.heading_at(from),
+            heading_at_end: self.heading_at(to),
+            length,
+            from: S::ZERO,
+            to: length,
+            rest: Rest::NOTHING,
+            ..*self
+        };
+        if let Curve::Arc { radius, .. } = self.curve {
+            // Not the direction of the heading, which is rounded: by more than a direction, after many turns.
+            let (sin, cos) = S::Angle::half_subtended(from, radius).sin_cos();
+            let half = Direction { cos, sin: if self.mirrored() { -sin } else { sin } };
+            part.direction = self.direction.plus(half).plus(half);
+        }
+        part.lay();
+        part
+    }
+
+    /// Computes what follows from start, direction, curve and length: the end and the boxes.
+    fn lay(&mut self) {
+        self.advance();
+        match self.curve {
+            Curve::Line => {
+                self.bounds = Bounds::around(self.start, self.end);
+                self.middle = self.start + self.axis.vector(self.length.half(), S::ZERO);
+                self.half = [self.length.half(), S::ZERO];
+            }
+            Curve::Arc { radius, turn } => self.enclose(radius, turn),
         }
     }
 
@@ -287,6 +321,11 @@ impl<S: Scalar> Segment<S> {
     /// Centre of an arc with this radius.
     pub(crate) fn centre(&self, radius: S) -> Point<S> {
         self.start + self.direction.vector(S::ZERO, radius.negate_if(self.mirrored()))
+    }
+
+    /// Direction of travel at the middle of an arc: that of its chord.
+    pub(crate) fn direction_at_middle(&self) -> Direction<S> {
+        self.axis
     }
 
     /// Whether the segment bends to the right. Coordinates along it are then mirrored, so that all arcs turn left.

@@ -7,18 +7,22 @@ use core::fmt;
 /// Largest number of decimals of a binary fraction of 24 bits.
 const MOST: usize = 24;
 
+/// Largest number of digits before the point: of a magnitude of 32 bits.
+const WHOLE: usize = 10;
+
 /// Writes `magnitude / 2^places` with a sign: all decimals, or as many as the requested precision; the last one is
-/// rounded, halves up.
+/// rounded, halves up. Width, fill and alignment are those of numbers.
 fn decimal(f: &mut fmt::Formatter<'_>, negative: bool, magnitude: u32, places: u32) -> fmt::Result {
     let mask = (1_u64 << places) - 1;
     let mut whole = u64::from(magnitude) >> places;
     let mut rest = u64::from(magnitude) & mask;
-    // The decimal point and the decimals.
-    let mut text = [b'0'; MOST + 1];
-    text[0] = b'.';
+    // The whole part, the decimal point and the decimals.
+    let mut text = [b'0'; WHOLE + 1 + MOST];
+    let (integer, fraction) = text.split_at_mut(WHOLE);
+    fraction[0] = b'.';
     let asked = f.precision();
     let mut count = 0;
-    for digit in text.iter_mut().skip(1).take(asked.unwrap_or(MOST)) {
+    for digit in fraction.iter_mut().skip(1).take(asked.unwrap_or(MOST)) {
         if rest == 0 && asked.is_none() {
             break;
         }
@@ -27,7 +31,7 @@ fn decimal(f: &mut fmt::Formatter<'_>, negative: bool, magnitude: u32, places: u
         count += 1;
     }
     let mut carry = 2 * rest > mask;
-    for digit in text.iter_mut().skip(1).take(count).rev() {
+    for digit in fraction.iter_mut().skip(1).take(count).rev() {
         if carry && *digit == b'9' {
             *digit = b'0';
         } else {
@@ -36,16 +40,17 @@ fn decimal(f: &mut fmt::Formatter<'_>, negative: bool, magnitude: u32, places: u
         }
     }
     whole += u64::from(carry);
-    f.write_str(if negative {
-        "-"
-    } else if f.sign_plus() {
-        "+"
-    } else {
-        ""
-    })?;
-    write!(f, "{whole}")?;
-    let shown = if count > 0 { text.get(..=count).unwrap_or_default() } else { &[] };
-    f.write_str(core::str::from_utf8(shown).unwrap_or_default())
+    let mut first = WHOLE;
+    for digit in integer.iter_mut().rev() {
+        *digit = b'0' + (whole % 10) as u8;
+        whole /= 10;
+        first -= 1;
+        if whole == 0 {
+            break;
+        }
+    }
+    let end = if count > 0 { WHOLE + 1 + count } else { WHOLE };
+    f.pad_integral(!negative, "", core::str::from_utf8(text.get(first..end).unwrap_or_default()).unwrap_or_default())
 }
 
 /// Writes all decimals, or as many as requested.
@@ -103,6 +108,10 @@ mod tests {
         let two = [0.125, 0.994, 0.996, 1.5, 0.495_1].map(|x| format!("{:.2}", number(x)));
         assert_eq!(two, ["0.13", "0.99", "1.00", "1.50", "0.50"]);
         assert_eq!([0.5, 1.5, 0.49].map(|x| format!("{:.0}", number(x))), ["1", "2", "0"]);
+        assert_eq!(
+            format!("{:>8.2}|{:<7}|{:+08.1}", number(-1.5), number(0.5), number(2.0)),
+            "   -1.50|0.5    |+00002.0"
+        );
         assert_eq!(format!("{:.30}", number(0.5)), format!("0.5{}", "0".repeat(23)));
     }
 

@@ -39,8 +39,8 @@ impl<const F: u32> Scalar for Q<F> {
         self.0 as u32
     }
     fn millimetres(self) -> u32 {
-        // At most 2³¹ for 12 or more fraction bits.
-        (i64::from(self.0.max(0)).wrapping_mul(1000) >> F) as u32
+        // With 8 to 11 fraction bits, numbers far beyond the limit have more millimetres than 32 bits.
+        (i64::from(self.0.max(0)).wrapping_mul(1000) >> F).min(u32::MAX.into()) as u32
     }
     fn times(self, rhs: Self) -> Product<F> {
         Product::from_bits(i64::from(self.0) * i64::from(rhs.0))
@@ -221,6 +221,7 @@ mod tests {
         assert_eq!([q(65), q(66), q(65_536), q(-65_536), q(L)].map(Scalar::millimetres), [0, 1, 1000, 0, 4_096_000]);
         assert_eq!(Q12::LIMIT.millimetres(), 65_536_000);
         assert_eq!(Q20::LIMIT.millimetres(), 256_000);
+        assert_eq!(Q::<8>::from_bits(i32::MAX).millimetres(), u32::MAX);
         assert_eq!(
             [q(5).half(), q(-5).half(), q(-5).abs(), q(5).negate_if(true), q(5).negate_if(false)],
             [q(2), q(-3), q(5), q(-5), q(5)]

@@ -1,5 +1,5 @@
-//! A floating-point number of 31 significant bits and an exponent, for the three formulas whose intermediate results
-//! have no common scale. All operations round to nearest: their relative error is 2⁻³⁰.
+//! A floating-point number of 31 significant bits and an exponent, for the formulas whose intermediate results have no
+//! common scale. The relative error of an operation is 2⁻³⁰.
 
 use crate::integer::{divide, sqrt};
 

@@ -81,7 +81,7 @@ impl Neg for Sine {
 impl Unit for Sine {
     const ZERO: Self = Self(0);
     const ONE: Self = Self(1 << Self::FRACTION_BITS);
-    /// Sectors are compared with at least 12 bits.
+    /// Sectors are compared with 14 bits (`roots.rs`).
     const COARSE: Self = Self(1 << (Self::FRACTION_BITS - 9));
 
     fn times(self, rhs: Self) -> Self {

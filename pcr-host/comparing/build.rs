@@ -11,8 +11,8 @@ fn main() {
     println!("cargo:rerun-if-changed=peers");
     let directory = env::var_os("OUT_DIR").map(PathBuf::from);
     let Some(directory) = directory.filter(|_| env::var_os("CARGO_FEATURE_PEERS").is_some()) else { return };
-    watch();
     println!("cargo:rerun-if-env-changed=CI");
+    println!("cargo:rerun-if-env-changed=PKG_CONFIG_PATH");
     let in_ci = env::var("CI").is_ok_and(|ci| ci == "true");
     let mut failed = false;
     for (name, packages) in [("fcl", ["fcl", "eigen3"].as_slice()), ("box2d", &["box2d"])] {
@@ -20,8 +20,10 @@ fn main() {
         if let Err(problem) = run(Command::new("pkg-config").arg("--exists").arg("--print-errors").args(packages)) {
             println!("cargo:warning=not installed, left out of comparisons: {name}: {problem}");
             failed |= in_ci;
+            watch_folders();
             continue;
         }
+        watch_files(packages);
         match compile(name, packages, &program) {
             Ok(version) => {
                 let variable = format!("PCR_PEER_{}", name.to_uppercase());
@@ -40,10 +42,18 @@ fn main() {
     }
 }
 
-/// Where pkg-config looks: when something changes there, libraries may have come or gone. Not all that is installed is watched, or this and
-/// what uses it would be built again after each package that has nothing to do with it. Without pkg-config it is built again each time.
-fn watch() {
-    println!("cargo:rerun-if-env-changed=PKG_CONFIG_PATH");
+/// What pkg-config says about libraries that are installed: it changes when they do. Not the folders, or this and all that uses it would be
+/// built again after each package that has nothing to do with it.
+fn watch_files(packages: &[&str]) {
+    for package in packages {
+        if let Ok(folder) = run(Command::new("pkg-config").args(["--variable=pcfiledir", package])) {
+            println!("cargo:rerun-if-changed={}/{package}.pc", folder.trim());
+        }
+    }
+}
+
+/// Where pkg-config looks for libraries that are not installed: they may come. Without pkg-config it is built again each time.
+fn watch_folders() {
     let folders = run(Command::new("pkg-config").args(["--variable", "pc_path", "pkg-config"]));
     let Ok(folders) = folders else { return println!("cargo:rerun-if-changed=no pkg-config") };
     let more = env::var("PKG_CONFIG_PATH").unwrap_or_default();

@@ -2,8 +2,8 @@
 
 use pcr_core::scalar::Micro;
 use pcr_core::{
-    Encounter, Interval, Invalid, Limits, Motion, Path, Point, Pose, Profile, Scalar, earliest_departure,
-    earliest_start, least_duration, safe_intervals,
+    Encounter, Interval, Invalid, Limits, Motion, Path, Point, Pose, Profile, Radians, Scalar, Turn,
+    earliest_departure, earliest_start, least_duration, safe_intervals,
 };
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_planning::fleet::{Format, build_ecm};
@@ -178,6 +178,66 @@ fn the_corner_of_a_region_is_forbidden() {
     let exact = 1.0 / (0.5 * angle).sin();
     assert!(exact < forbidden.hi + 1e-5 && -exact > forbidden.lo - 1e-5, "{exact}: {forbidden:?}");
     assert!(forbidden.hi < exact + 1e-3 && forbidden.lo > -exact - 1e-3, "{exact}: {forbidden:?}");
+}
+
+/// After many turns a heading is rounded by more than a direction: what is missing is passed on along the path, and has to
+/// reach the parts of a segment as well.
+fn after_many_turns<S: Format<Angle = Radians<S>>>(heading: f64, missing: f64, bends: bool) {
+    let (length, bend) = (S::from_f64(90.0), S::from_f64(100.0));
+    let start = Pose { position: Point::new(S::ZERO, S::ZERO), heading: Radians(S::from_f64(heading)) };
+    let path = Path::<S, 1>::starting_at(start).and_then(|path| path.turn(Radians(S::from_f64(missing))));
+    let path = path.and_then(|path| if bends { path.arc(bend, Turn::Left, length) } else { path.line(length) });
+    let path = path.expect("in range");
+    let end = path.as_path().point_at(length);
+    let (sin, cos) = (heading + missing + if bends { 0.9 } else { 0.0 }).sin_cos();
+    // Aside by less than R, and by more if the heading were the rounded one.
+    let aside = 1.0 - 30.0 * missing;
+    let stands = Path::<S, 1>::starting_at(at(end.x.to_f64() - aside * sin, end.y.to_f64() + aside * cos, 0.0));
+    let (stands, speed, still) = (stands.expect("in range"), unit_speed(length), Profile::<S, 1>::standing());
+    let radius = S::from_f64(0.5);
+    let fleet = [
+        Motion::new(path.as_path(), speed.as_profile(), radius, S::ZERO).expect("in range"),
+        Motion::new(stands.as_path(), still.as_profile(), radius, S::ZERO).expect("in range"),
+    ];
+    let ecm = build_ecm(&fleet).expect("two agents");
+    let during = Interval::new(S::ZERO, length);
+    for from in [0.0, 10.0, 45.0] {
+        let part = Interval::new(S::from_f64(from), length);
+        assert_eq!(Encounter::new(&fleet[0], &fleet[1]).blocked(part, during).collect::<Vec<_>>(), [during], "{from}");
+        assert_eq!(safe_intervals(&fleet, 0, part, during).expect("agent 0").collect::<Vec<_>>(), [], "{from}");
+        let mut regions = ecm.row(&fleet, 0).expect("the table of the fleet");
+        assert!(regions.any(|region| region.blocked(part, during).eq([during])), "{from}");
+    }
+}
+
+#[test]
+fn parts_of_a_path_are_blocked_as_the_whole_after_many_turns() {
+    for bends in [false, true] {
+        after_many_turns::<f64>(f64::from(1 << 23), 0.9e-9, bends);
+        after_many_turns::<f32>(1000.0, 3e-5, bends);
+    }
+}
+
+/// A crossing that the ego passes so early that only durations beyond the format lead into the other's way.
+#[test]
+fn no_duration_is_forbidden_if_all_of_them_are_beyond_the_format() {
+    fn forbidden<S: Format>() -> Option<Interval<S>> {
+        let paths = [(at(0.0, 0.0, 0.0), 100.0), (at(2.0, -2.0, FRAC_PI_2), 4.0)].map(|(start, length)| {
+            Path::<S, 1>::starting_at(start).and_then(|path| path.line(S::from_f64(length))).expect("in range")
+        });
+        let profiles = [100.0, 4.0].map(|length| unit_speed(S::from_f64(length)));
+        let starts = [0.0, 120.0].map(S::from_f64);
+        let motion = |k: usize| {
+            Motion::new(paths[k].as_path(), profiles[k].as_profile(), S::from_f64(0.25), starts[k]).expect("in range")
+        };
+        let fleet = [motion(0), motion(1)];
+        let ecm = build_ecm(&fleet).expect("two agents");
+        let region = ecm.row(&fleet, 0).expect("the table of the fleet").next().expect("a crossing");
+        region.forbidden_durations::<1>().expect("room")
+    }
+    assert_eq!(forbidden::<Q16>(), None);
+    let exact = forbidden::<f64>().expect("durations");
+    assert!((exact.lo - 4876.0).abs() < 40.0 && exact.lo < exact.hi, "{exact:?}");
 }
 
 /// Another one that passes at a distance of R, or a last digit less, blocks the place.

@@ -230,4 +230,14 @@ fn motions_that_meet_are_not_a_plan() {
             None => assert_eq!((found, passes), (Err(Refused::Meeting([0, 1])), vec![Pass::Undecided]), "{delay}"),
         }
     }
+    // Earlier decisions stay, also those of regions that come before the one in which they meet.
+    let fleet = [lanes[0].motion(), lanes[1].motion(), lanes[3].motion(), lanes[3].motion()];
+    let mut orders = table(&fleet, 12);
+    let all: Vec<_> = orders.decisions().map(|decision| (decision.place, decision.agents[0])).collect();
+    assert!(all.len() > 2);
+    for (place, lower) in all {
+        orders.decide_at(&fleet, place, lower, Pass::Second, 0.0).expect("a region");
+    }
+    assert!(matches!(orders.as_planned(&fleet), Err(Refused::Meeting(_))));
+    assert!(orders.decisions().all(|decision| decision.pass == Pass::Second));
 }

@@ -1,7 +1,7 @@
 //! Speed plans: against a fine dynamic program and the definition, in every format, and known answers.
 
 use pcr_core::{
-    Constraint, Drive as Speeds, Interval, Invalid, Limits, Motion, NoSpeedPlan, Profile, SpeedPlan, Station,
+    Constraint, Drive as Speeds, Interval, Invalid, Limits, Mismatch, Motion, NoSpeedPlan, Profile, SpeedPlan, Station,
     plan_speed, plan_speeds, scalar::Micro,
 };
 use pcr_fixed::{Q12, Q16, Q20};
@@ -49,6 +49,32 @@ pub(crate) fn scene(dice: &mut Dice) -> (Disc, Vec<Driven>) {
     };
     let others = (0..2 + dice.below(4)).map(|_| other(dice)).collect();
     (ego, others)
+}
+
+#[test]
+fn regions_of_another_agent_or_of_a_smaller_disc_are_refused() {
+    let dice = &mut Dice::seeded(1);
+    let (ego, others) = scene(dice);
+    let larger = Disc { radius: ego.radius + 0.1, ..ego.clone() };
+    let courses: Vec<Course<f64>> = core::iter::once((ego, Drive::Limits(1.0, 1.0), 0.0))
+        .chain(others)
+        .map(|(disc, drive, start)| Course::driven(&disc, &drive, start).expect("small"))
+        .collect();
+    let fleet: Vec<_> = courses.iter().map(Course::motion).collect();
+    let ecm = build_ecm(&fleet).expect("a small table");
+    let larger = Course::driven(&larger, &Drive::Limits(1.0, 1.0), 0.0).expect("small");
+    let mut stations = vec![Station::EMPTY; 40];
+    let mut plan = |ego: &Motion<'_, f64>, agent| {
+        let drive = Speeds::rest_to_rest(limits());
+        let regions = ecm.row(&fleet, agent).expect("the table of the fleet");
+        plan_speed::<_, 48>(ego, drive, regions, &[], &mut stations).err()
+    };
+    let agent = (1..fleet.len()).find(|&agent| ecm.row(&fleet, agent).expect("the table").next().is_some());
+    let refused = Some(NoSpeedPlan::Mismatch(Mismatch::OtherFleet));
+    assert_eq!(plan(&fleet[0], agent.expect("regions")), refused);
+    assert!(ecm.row(&fleet, 0).expect("the table").next().is_some());
+    assert_eq!(plan(&larger.motion(), 0), refused);
+    assert_ne!(plan(&fleet[0], 0), refused);
 }
 
 /// The motion of a plan as the oracle takes it.

@@ -274,7 +274,8 @@ fn the_row_of_one_agent_answers_for_that_one_only() {
         }
         assert_eq!(row.regions(&motions).err(), Some(Mismatch::OnlyRow(agent)));
         assert_eq!(row.regions_once(&motions).err(), Some(Mismatch::OnlyRow(agent)));
-        assert!(row.insert(&motions, agent).is_err() && row.remove(&motions, agent).is_err());
+        assert_eq!(row.insert(&motions, agent), Err(Mismatch::OnlyRow(agent).into()));
+        assert!(row.remove(&motions, agent).is_err());
     }
     row.fill(&motions).expect("enough room");
     assert_eq!(entries(&row, &motions), entries(&full, &motions));

@@ -11,7 +11,7 @@ use crate::ecm::Region;
 use crate::error::{Full, Mismatch, TableError};
 use crate::motion::Motion;
 use crate::orders::check::{Reach, Tolerances};
-use crate::orders::order::{Order, Pass, Progress};
+use crate::orders::order::{Order, Pass, Progress, other};
 use crate::orders::refused::Refused;
 use crate::orders::table::Orders;
 use crate::pieces::Piece;
@@ -53,8 +53,9 @@ where
     /// one check more than the row has regions.
     ///
     /// # Errors
-    /// [`Refused`], which names the agent in the way; everything is then unchanged. Another path, or the same path
-    /// later, may be admitted.
+    /// [`Refused`], which names the agent in the way; everything is then unchanged, except in the rare case of
+    /// [`Ecm::replace`](crate::Ecm::replace) in which the table is empty. Another path, or the same path later, may be
+    /// admitted.
     ///
     /// ```
     /// use pcr_core::{
@@ -123,7 +124,8 @@ where
     /// they are. Like [`Orders::admit`], it needs room for as many additional orders as the agent has regions.
     ///
     /// # Errors
-    /// [`Full`] and [`Mismatch`]; everything is then unchanged.
+    /// [`Full`] and [`Mismatch`]; everything is then unchanged, except in the rare case of
+    /// [`Ecm::replace`](crate::Ecm::replace) in which the table is empty.
     pub fn replace<'m>(
         &mut self,
         fleet: &mut [Motion<'m, S>],
@@ -182,8 +184,8 @@ where
         Ok(())
     }
 
-    /// Gives an agent the motion from before. Its regions fit, as they did before. If they do not, because the lag of a motion has grown
-    /// since, the table is empty: it must not answer with what it does not have.
+    /// Gives an agent the motion from before. Its regions fit, as they did before. If they do not, because the lag of a
+    /// motion has grown since, the table is empty: it must not answer with what it does not have.
     fn put_back<'m>(
         &mut self,
         fleet: &mut [Motion<'m, S>],
@@ -224,7 +226,7 @@ where
             }
             let Some(region) = self.ecm.at(fleet, place, agent) else { continue };
             let by = region.other();
-            let [own, their] = [agent, by].map(|agent| progress.get(agent).copied().unwrap_or_default());
+            let [own, their] = [agent, by].map(|agent| Progress::of(progress, agent));
             if region.is_over(progress) {
                 *order = Order::new(&region, Pass::Over, S::ZERO);
                 continue;
@@ -274,8 +276,7 @@ where
     fn culprit(&self, agent: usize, gain: S, reaches: &[Reach<S>]) -> Option<usize> {
         let holds = |pass: Pass| {
             self.places(agent).find_map(|(place, agents, order)| {
-                let other = if agents[0] == agent { agents[1] } else { agents[0] };
-                let held = if pass == Pass::First { other } else { agent };
+                let held = if pass == Pass::First { other(agents, agent) } else { agent };
                 let held = reaches.get(held).filter(|reach| reach.is_stuck())?;
                 let counts = order.open && order.pass_of(agent, agents) == pass && order.hold <= held.at + gain;
                 counts.then_some(place)
@@ -286,7 +287,7 @@ where
 
     fn turn(&mut self, fleet: &[Motion<'_, S>], progress: &[Progress<S>], agent: usize, place: usize) {
         let Some(region) = self.ecm.at(fleet, place, agent) else { return };
-        let [own, their] = [agent, region.other()].map(|agent| progress.get(agent).copied().unwrap_or_default());
+        let [own, their] = [agent, region.other()].map(|agent| Progress::of(progress, agent));
         if let (Some(order), Some(agents)) = (self.orders.as_mut().get_mut(place), self.ecm.agents_at(place)) {
             *order = with_room(&region, order.pass_of(agent, agents).swapped(), false, &own, &their);
         }

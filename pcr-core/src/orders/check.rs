@@ -9,7 +9,7 @@ use crate::ecm::Region;
 use crate::error::Full;
 use crate::motion::Motion;
 use crate::orders::hold::Hold;
-use crate::orders::order::{Order, Pass, Progress};
+use crate::orders::order::{Order, Pass, Progress, other};
 use crate::orders::refused::Refused;
 use crate::orders::table::Orders;
 use crate::pieces::Piece;
@@ -100,9 +100,10 @@ where
         for ((reach, motion), agent) in reaches.iter_mut().zip(fleet).zip(0..) {
             let end = motion.path().length();
             // A place that is NaN is taken as the start.
-            let at = S::ZERO.max(progress.get(agent).copied().unwrap_or_default().known()).min(end);
+            let at = S::ZERO.max(Progress::of(progress, agent).known()).min(end);
             *reach = Reach { at, next: end, end, moved: true };
         }
+        self.orders.as_mut().iter_mut().take(self.ecm.len()).for_each(|order| order.hold = -S::LIMIT);
         while self.sweep(fleet, progress, tolerances, reaches)? {
             let mut gained = false;
             for reach in reaches.iter_mut() {
@@ -149,10 +150,11 @@ where
             };
             let Some(reach) = reaches.get(first).copied() else { continue };
             if reach.moved {
-                let known = progress.get(first).copied().unwrap_or_default().known();
-                let left = (reach.at - tolerances.width).max(known);
+                let left = (reach.at - tolerances.width).max(Progress::of(progress, first).known());
                 let region = if left > order.exit { None } else { self.ecm.at(fleet, place, second) };
-                order.hold = length(region.map_or(Hold::Free, |region| region.hold(order.since, left)));
+                let hold = length(region.map_or(Hold::Free, |region| region.hold(order.since, left)));
+                // Holds do not decrease, whatever rounding does.
+                order.hold = order.hold.max(hold);
             }
             let Some(reach) = reaches.get_mut(second) else { continue };
             if reach.at > order.hold + tolerances.gain {
@@ -173,8 +175,7 @@ where
                 Pass::First | Pass::Over => continue,
             };
             if nearest.is_none_or(|(least, ..)| hold < least) {
-                let by = if agents[0] == agent { agents[1] } else { agents[0] };
-                nearest = Some((hold, by, place));
+                nearest = Some((hold, other(agents, agent), place));
             }
         }
         let (_, by, place) = nearest.unwrap_or((reach.at, agent, self.ecm.len()));

@@ -69,6 +69,11 @@ impl<S: Scalar> Progress<S> {
         self.at.lo.min(S::LIMIT)
     }
 
+    /// That of an agent: without an entry, the agent is at the start of its path.
+    pub(super) fn of(progress: &[Self], agent: usize) -> Self {
+        progress.get(agent).copied().unwrap_or_default()
+    }
+
     /// Whether the agent has certainly left a region with these lengths of its path.
     pub(super) fn is_beyond(&self, lengths: Interval<S>, motion: &Motion<'_, S>) -> bool {
         self.known() > exit(lengths, motion)
@@ -78,7 +83,7 @@ impl<S: Scalar> Progress<S> {
 impl<S: Scalar> RegionRef<'_, S> {
     /// Whether one of the two agents has certainly left the region.
     pub(super) fn is_over(&self, progress: &[Progress<S>]) -> bool {
-        let [own, their] = [self.ego(), self.other()].map(|agent| progress.get(agent).copied().unwrap_or_default());
+        let [own, their] = [self.ego(), self.other()].map(|agent| Progress::of(progress, agent));
         own.is_beyond(self.length(), self.ego_motion()) || their.is_beyond(self.other_length(), self.other_motion())
     }
 
@@ -136,6 +141,11 @@ impl<S: Scalar> Order<S> {
     pub(super) fn pass_of(&self, agent: usize, [_, higher]: [usize; 2]) -> Pass {
         self.pass.swapped_if(agent == higher)
     }
+}
+
+/// The other agent of a pair.
+pub(super) fn other(agents: [usize; 2], agent: usize) -> usize {
+    if agents[0] == agent { agents[1] } else { agents[0] }
 }
 
 /// The length at which an agent has left a region with these lengths: never, if the region contains the end of its

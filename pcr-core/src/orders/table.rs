@@ -5,7 +5,7 @@ use crate::error::{Full, Mismatch, TableError};
 use crate::geometry::Interval;
 use crate::motion::Motion;
 use crate::orders::hold::Hold;
-use crate::orders::order::{Order, Pass, Progress};
+use crate::orders::order::{Order, Pass, Progress, other};
 use crate::orders::refused::Refused;
 use crate::pieces::Piece;
 use crate::query::{first_overlap, times};
@@ -139,19 +139,18 @@ where
         self.nearest(fleet, agent, progress, other).map(|(hold, _)| hold)
     }
 
-    /// The hold, and the index of the region that limits it; `None` if it is `other`.
+    /// The hold, and the index of the region that limits it; `None` if it is `elsewhere`.
     pub(super) fn nearest(
         &self,
         fleet: &[Motion<'_, S>],
         agent: usize,
         progress: &[Progress<S>],
-        other: Hold<S>,
+        elsewhere: Hold<S>,
     ) -> Result<(Hold<S>, Option<usize>), Mismatch> {
         self.ecm.holds(fleet, [agent, agent])?;
-        let (mut hold, mut nearest) = (other, None);
+        let (mut hold, mut nearest) = (elsewhere, None);
         for (place, agents, order) in self.places(agent) {
-            let other = if agents[0] == agent { agents[1] } else { agents[0] };
-            let first = progress.get(other).copied().unwrap_or_default().known();
+            let first = Progress::of(progress, other(agents, agent)).known();
             let held = match order.pass_of(agent, agents) {
                 Pass::First | Pass::Over => continue,
                 Pass::Second if first > order.exit => continue,
@@ -176,7 +175,7 @@ where
     P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
     O: AsRef<[Order<S>]> + AsMut<[Order<S>]>,
 {
-    /// Computes the table of a fleet of at most 65535 agents, with no order decided. Cost: that of [`Ecm::build`].
+    /// Computes the table of a fleet of at most 65536 agents, with no order decided. Cost: that of [`Ecm::build`].
     ///
     /// # Errors
     /// [`Full`] if the storage is too small.
@@ -311,21 +310,29 @@ where
     }
 
     /// Takes the orders from the motions of the fleet, which must be those of a plan without collisions. Earlier
-    /// decisions are overwritten. Cost: that of [`first_overlap`] for each region.
+    /// decisions are overwritten. Cost: that of [`first_overlap`] for each region. On an error nothing is decided or overwritten.
     ///
     /// # Errors
     /// [`Refused::Meeting`] for two agents that do more than touch, or pass so close that it cannot be decided which
     /// one is first; [`Refused::Mismatch`].
     pub fn as_planned(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), Refused> {
         self.ecm.holds_all(fleet)?;
-        for place in 0..self.ecm.len() {
-            let Some([lower, higher]) = self.ecm.agents_at(place) else { continue };
+        let places = 0..self.ecm.len();
+        let all = || places.clone().filter_map(|place| Some((place, self.ecm.agents_at(place)?)));
+        for (place, [lower, higher]) in all() {
             let Some(region) = self.ecm.at(fleet, place, lower) else { continue };
             let always = Interval::new(-S::LIMIT, S::LIMIT);
             let met = first_overlap(region.ego_motion(), core::iter::once(region.clone()), always)?.is_some();
-            let pass = planned(&region).filter(|_| !met).ok_or(Refused::Meeting([lower, higher]))?;
-            let order = Order::new(&region, pass, S::ZERO);
-            if let Some(room) = self.orders.as_mut().get_mut(place) {
+            if met || planned(&region).is_none() {
+                return Err(Refused::Meeting([lower, higher]));
+            }
+        }
+        for place in places {
+            let order = self.ecm.agents_at(place).and_then(|[lower, _]| {
+                let region = self.ecm.at(fleet, place, lower)?;
+                Some(Order::new(&region, planned(&region)?, S::ZERO))
+            });
+            if let (Some(order), Some(room)) = (order, self.orders.as_mut().get_mut(place)) {
                 *room = order;
             }
         }

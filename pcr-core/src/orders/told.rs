@@ -5,7 +5,7 @@ use crate::ecm::Region;
 use crate::error::Mismatch;
 use crate::motion::Motion;
 use crate::orders::hold::Hold;
-use crate::orders::order::{Order, Pass, Progress};
+use crate::orders::order::{Order, Pass, Progress, other};
 use crate::orders::table::Orders;
 use crate::pieces::Piece;
 use crate::scalar::Scalar;
@@ -57,7 +57,7 @@ where
     ) -> Result<(Hold<S>, Option<usize>), Mismatch> {
         let (hold, place) = self.nearest(fleet, agent, progress, Hold::Free)?;
         let agents = place.and_then(|place| self.ecm.agents_at(place));
-        Ok((hold, agents.map(|agents| if agents[0] == agent { agents[1] } else { agents[0] })))
+        Ok((hold, agents.map(|agents| other(agents, agent))))
     }
 
     /// All orders, sorted by pair; those of one pair are in the order of the table. O(regions).

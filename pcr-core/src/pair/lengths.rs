@@ -4,9 +4,8 @@ use crate::few::Few;
 use crate::scalar::Scalar;
 use core::cell::Cell;
 
-/// Largest number of events of a pair of segments: 2 ends, 4 contacts with ends, 4 normal contacts, 4 for the whole
-/// circle and 2 changes of lap.
-const MOST: usize = 16;
+/// Largest number of events of a pair of segments: 2 ends, 4 contacts with ends, 4 normal contacts and 2 changes of lap.
+const MOST: usize = 12;
 
 /// At most [`MOST`] lengths \[m\].
 pub(crate) type Lengths<S> = Few<S, MOST>;
@@ -34,7 +33,7 @@ mod tests {
     #[test]
     fn lengths_are_put_in_order() {
         let mut lengths = Lengths::new(0.0);
-        (0..16_u8).for_each(|k| lengths.add(f64::from(7 * k % 16), true));
+        (0..12_u8).for_each(|k| lengths.add(f64::from(7 * k % 12), true));
         lengths.sort();
         assert_eq!(lengths.as_slice().len(), MOST);
         assert!(lengths.as_slice().is_sorted());

@@ -155,10 +155,7 @@ where
 pub(super) fn separated<S: Scalar>(region: &RegionRef<'_, S>) -> Option<Unsolved> {
     let agents = [region.ego(), region.other()];
     let (ego, other) = (region.ego_motion().path().length(), region.other_motion().path().length());
-    let length = region.length();
-    let before = length.hi >= ego || region.is_open_at_start();
-    let after = length.lo <= S::ZERO || region.is_open_at_end();
-    (before && after).then(|| {
+    (region.lets_pass() == [false; 2]).then(|| {
         if region.covers(S::ZERO, S::ZERO) {
             Unsolved::Starts(agents)
         } else if region.covers(ego, other) {

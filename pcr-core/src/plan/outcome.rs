@@ -1,6 +1,6 @@
 //! Results of speed planning.
 
-use crate::error::Invalid;
+use crate::error::{Invalid, Mismatch};
 use crate::profile::Profile;
 use crate::scalar::Scalar;
 
@@ -47,6 +47,14 @@ pub enum NoSpeedPlan<S> {
     /// The drive or a constraint is invalid, the speeds at the ends are too far apart for the path, there are too few
     /// stations, the profile has too few phases, or the plan takes longer than the format can represent.
     Invalid(Invalid),
+    /// A region is not one of the ego, or of a smaller disc on its path.
+    Mismatch(Mismatch),
+}
+
+impl<S> From<Mismatch> for NoSpeedPlan<S> {
+    fn from(mismatch: Mismatch) -> Self {
+        Self::Mismatch(mismatch)
+    }
 }
 
 impl<S> From<Invalid> for NoSpeedPlan<S> {
@@ -64,6 +72,7 @@ impl<S> core::fmt::Display for NoSpeedPlan<S> {
             Self::Beyond { other, .. } => write!(f, "agent {other} of the fleet blocks the way on"),
             Self::Constrained { .. } => f.write_str("a constraint blocks the way on"),
             Self::Invalid(invalid) => write!(f, "{invalid}"),
+            Self::Mismatch(mismatch) => write!(f, "{mismatch}"),
         }
     }
 }

@@ -285,7 +285,7 @@ fn stand<S: Scalar>(times: &mut Times<S>, least: S, blocked: &Times<S>) {
         }
     }
     for arrival in arrivals.iter().filter_map(|arrival| later(arrival, least)) {
-        let until = blocked.iter().map(|window| window.lo).find(|&lo| lo >= arrival.lo).unwrap_or(S::LIMIT);
+        let until = blocked.iter().find(|window| window.hi > arrival.lo).map_or(S::LIMIT, |window| window.lo);
         times.add(Interval::new(arrival.lo, arrival.hi.max(until)));
     }
 }

@@ -11,7 +11,7 @@
 //! cells, and because a slab is blocked as a whole. The last step regains some of the latter: it shifts everything
 //! after a wait to an earlier time, until there is a contact.
 
-use crate::error::Invalid;
+use crate::error::{Invalid, Mismatch};
 use crate::geometry::Interval;
 use crate::motion::Motion;
 use crate::plan::below::Below;
@@ -132,6 +132,9 @@ fn plan<'a, S: Scalar, L: Lattice<S>, const N: usize>(
 ) -> Result<SpeedPlan<S, N>, NoSpeedPlan<S>> {
     let (from, length) = (ego.time().lo, ego.path().length());
     constraints.iter().try_for_each(Constraint::checked)?;
+    if regions.clone().any(|region| !ego.is_within(region.ego_motion())) {
+        return Err(Mismatch::OtherFleet.into());
+    }
     if length <= S::ZERO {
         stands(&regions, S::ZERO, Interval::new(-S::LIMIT, S::LIMIT))?;
         if constraints.iter().any(|constraint| constraint.is_broken_by(ego, from)) {

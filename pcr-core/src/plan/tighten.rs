@@ -17,10 +17,15 @@ const HALVINGS: u32 = 32;
 
 impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, L, I> {
     /// Whether the plan has no conflict from a time on and breaks no constraint.
-    fn is_free<const N: usize>(&self, ego: &Motion<'_, S>, plan: &SpeedPlan<S, N>, from: S) -> Result<bool, Invalid> {
+    fn is_free<const N: usize>(
+        &self,
+        ego: &Motion<'_, S>,
+        plan: &SpeedPlan<S, N>,
+        from: S,
+    ) -> Result<bool, NoSpeedPlan<S>> {
         let motion = ego.with_profile(plan.profile.as_profile(), plan.start)?;
         Ok(self.broken(&motion, ego.time().lo).is_none()
-            && matches!(first_conflict(&motion, self.regions.clone(), self.during(&motion, from)), Ok(None)))
+            && first_conflict(&motion, self.regions.clone(), self.during(&motion, from))?.is_none())
     }
 
     /// A constraint that a motion breaks if the agent stands at its start from a time on \[s\].

@@ -60,11 +60,9 @@ impl<S: Scalar> RegionRef<'_, S> {
 
     /// The delays that the bounding box of the region allows.
     fn possible_delays(&self) -> Interval<S> {
-        let length = self.length();
-        let Interval { lo, hi } = self.delays_of(self.ego_motion().time_in(length));
-        let never = length.hi >= self.ego_motion().path().length() || self.is_open_at_start();
-        let ever = length.lo <= S::ZERO || self.is_open_at_end();
-        Interval::new(if never { -S::LIMIT } else { lo }, if ever { S::LIMIT } else { hi })
+        let Interval { lo, hi } = self.delays_of(self.ego_motion().time_in(self.length()));
+        let [before, after] = self.lets_pass();
+        Interval::new(if before { lo } else { -S::LIMIT }, if after { hi } else { S::LIMIT })
     }
 
     /// The delays that move the ego's times `own` \[s\] onto times at which the other agent is in the region.

@@ -6,7 +6,7 @@
 //! into times; an agent that stands before its start or after its arrival blocks all of that time.
 
 use crate::error::Mismatch;
-use crate::geometry::{Interval, Pose};
+use crate::geometry::Interval;
 use crate::intervals::{Lowest, gaps};
 use crate::motion::Motion;
 use crate::pair::Pair;
@@ -16,11 +16,11 @@ use crate::pair::lengths::Lengths;
 use crate::query::contact::Encounter;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
-use crate::segment::{Curve, Segment};
+use crate::segment::Segment;
 
-/// Largest number of parts of one segment that another one blocks: of the slabs between 16 events ([`Lengths`]), no two
+/// Largest number of parts of one segment that another one blocks: of the slabs between 12 events ([`Lengths`]), no two
 /// parts are neighbours.
-const PARTS: usize = 8;
+const PARTS: usize = 6;
 
 impl<'a, S: Scalar> Encounter<'a, S> {
     /// The windows in an interval of time \[s\] in which the other agent blocks a part of the ego's path \[m\]: its
@@ -218,8 +218,10 @@ pub fn safe_intervals<'a, S: Scalar>(
 }
 
 /// The lengths of an agent's path \[m\] that no other agent of the fleet blocks at any time of an interval \[s\]: the
-/// dual of [`safe_intervals`], with the same cost and the same error. Of an agent without a path, its place is the
-/// length 0.
+/// dual of [`safe_intervals`], with the same cost. Of an agent without a path, its place is the length 0.
+///
+/// # Errors
+/// [`Mismatch::NoSuchAgent`].
 pub fn safe_lengths<'a, S: Scalar>(
     fleet: &'a [Motion<'a, S>],
     ego: usize,
@@ -263,15 +265,7 @@ pub(crate) fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<
     let along = |length: S| (length - own.lo).min(segment.length);
     let from = along(part.lo.max(own.lo));
     let to = if part.hi < own.hi { along(part.hi) } else { segment.length };
-    let pose = Pose { position: segment.point_at(from), heading: segment.heading_at(from) };
-    let length = to - from;
-    let cut = Segment::standing(pose).and_then(|start| match segment.curve {
-        Curve::Line => start.then_line(length),
-        Curve::Arc { radius, turn } => start.then_arc(radius, turn, length),
-    });
-    // The cut segment is valid because the whole one is, except for rounding at the limits of the format. The whole
-    // segment blocks no less.
-    Some(cut.unwrap_or(*segment))
+    Some(segment.part(from, to))
 }
 
 /// The lengths of the second segment that are within the radius of the first one. Distances are right within `slack`.
@@ -349,7 +343,7 @@ pub(crate) fn times<S: Scalar>(
 #[cfg(all(test, feature = "libm"))]
 mod tests {
     use super::*;
-    use crate::{Limits, Path, Point, Profile, Radians, Turn, union};
+    use crate::{Limits, Path, Point, Pose, Profile, Radians, Turn, union};
     use heapless::Vec;
 
     /// Rounds on a track of two lines and two half circles.

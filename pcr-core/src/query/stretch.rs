@@ -28,7 +28,7 @@ impl<S: Scalar> RegionRef<'_, S> {
     /// Cost: 10 to 40 searches for contacts for each finite end.
     ///
     /// # Errors
-    /// [`Invalid::Full`] if the motion has more than `N` phases.
+    /// [`Invalid::Full`] if the motion has more than `N` phases and a duration has to be tried.
     pub fn forbidden_durations<const N: usize>(&self) -> Result<Option<Interval<S>>, Invalid> {
         let Some(possible) = self.possible_durations() else {
             return Ok(None);
@@ -80,14 +80,15 @@ impl<S: Scalar> RegionRef<'_, S> {
         let then = self.with_lateness(Interval::new(their.lo - start - slack, their.hi - start + slack));
         let scaled = |then: S, since: S| then.portion(duration, since);
         let (soonest, latest) = (own.lo - start - slack, own.hi - start + slack);
-        let never = length.hi >= ego.path().length() || self.is_open_at_start() || then.lo <= S::ZERO;
-        let ever = length.lo <= S::ZERO || self.is_open_at_end() || soonest <= S::ZERO;
+        let [before, after] = self.lets_pass();
+        let (never, ever) = (!before || then.lo <= S::ZERO, !after || soonest <= S::ZERO);
         if !ever && then.hi <= S::ZERO {
             return None;
         }
         let lo = if never { S::ZERO } else { scaled(then.lo, latest) - slack };
         let hi = if ever { S::LIMIT } else { scaled(then.hi, soonest) + slack };
-        Some(Interval::new(lo.max(S::ZERO), hi.min(S::LIMIT)))
+        // None, if all of them are longer than any that the format has.
+        (lo <= S::LIMIT).then(|| Interval::new(lo.max(S::ZERO), hi.min(S::LIMIT)))
     }
 
     /// The end of the forbidden durations, between a forbidden duration and one beyond the end.
