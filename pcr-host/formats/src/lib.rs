@@ -8,7 +8,7 @@
 //! once       JSON without repeated names                        Once
 //! output     files that are written completely or not at all
 //! paper      the embedded scenario and the paper's numbers
-//! plane      points of the plane
+//! plane      points and angles of the plane
 //! random     random numbers that are the same on every machine
 //! ```
 
@@ -16,6 +16,7 @@ pub mod footprint;
 pub mod import;
 pub mod input;
 mod json;
+mod mark;
 pub mod once;
 pub mod output;
 mod own;

@@ -1,8 +1,29 @@
-//! Points of the plane.
+//! Points and angles of the plane.
+
+use std::f64::consts::{PI, TAU};
 
 /// Distance of two points.
 pub fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Distance of a point from the segment between two points.
+pub fn from_segment(point: [f64; 2], [a, b]: [[f64; 2]; 2]) -> f64 {
+    let [side, away] = [b, point].map(|end| [end[0] - a[0], end[1] - a[1]]);
+    let square = side[0] * side[0] + side[1] * side[1];
+    let share = if square > 0.0 { ((away[0] * side[0] + away[1] * side[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
+    distance(away, side.map(|x| x * share))
+}
+
+/// The same angle from -π to less than π.
+pub fn wrapped(angle: f64) -> f64 {
+    (angle + PI).rem_euclid(TAU) - PI
+}
+
+/// The same angle from more than -π to π: half a turn is to the left. Small angles above 0 keep their digits.
+pub fn within_half_turn(angle: f64) -> f64 {
+    let rest = angle.rem_euclid(TAU);
+    if rest > PI { rest - TAU } else { rest }
 }
 
 /// Above 0 where the way from `a` over `b` to `c` turns left.

@@ -19,6 +19,7 @@ use super::ImportError;
 use super::bernstein::{circle, framed};
 use super::heading;
 use super::nurbs::Bezier;
+use crate::plane::{distance as apart_by, wrapped};
 use crate::scenario::PathSegment;
 use crate::scenario::Placed;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -119,10 +120,6 @@ fn bend(length: f64, radius: f64) -> f64 {
     let quarter = (0.25 * length / radius).min(0.5 * FRAC_PI_2);
     let sagitta = 2.0 * radius * quarter.sin().powi(2);
     sagitta + (length - 2.0 * radius * (2.0 * quarter).sin()).max(0.0)
-}
-
-fn apart_by(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// The point of lines and arcs at a length, the end of them beyond that; where they begin if there are none.
@@ -301,7 +298,7 @@ pub(super) fn biarc([from, to]: [[f64; 2]; 2], [leaving, arriving]: [f64; 2]) ->
 fn arc(at: [f64; 2], heading: f64, to: [f64; 2]) -> Option<Placed> {
     let chord = Placed::line(at, to);
     let PathSegment::Line { length } = chord.shape else { return None };
-    let half = (chord.heading - heading + PI).rem_euclid(2.0 * PI) - PI;
+    let half = wrapped(chord.heading - heading);
     // Sagitta of the arc over its chord.
     if length * half.abs() < ROUNDINGS * (at[0].abs() + at[1].abs() + length) {
         return Some(Placed { heading, ..chord });
@@ -431,7 +428,7 @@ mod tests {
                     // At a cusp a vehicle turns in place.
                     if chord > 1e-4 {
                         let way = (pair[1][1] - pair[0][1]).atan2(pair[1][0] - pair[0][0]);
-                        let off = heading::wrapped(way - heading_at(&fit.pieces, length + 0.5 * chord)).abs();
+                        let off = wrapped(way - heading_at(&fit.pieces, length + 0.5 * chord)).abs();
                         turned = turned.max(off);
                     }
                     length += chord;

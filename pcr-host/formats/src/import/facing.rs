@@ -4,7 +4,7 @@ use super::biarc::Fit;
 use super::value::Object;
 use super::{Edge, ImportError, Node, Warnings};
 use crate::footprint::Footprint;
-use crate::plane::distance;
+use crate::plane::{distance, wrapped};
 use crate::scenario::{Agent, KINK, PathSegment, Placed, TURN};
 use std::f64::consts::{PI, TAU};
 
@@ -13,7 +13,7 @@ const ROUNDING: f64 = 1e-3;
 
 /// By how much an outline at this angle from its path is turned from where it covers what it covers along it \[rad\].
 pub(super) fn askew(outline: &Footprint, angle: f64) -> f64 {
-    let off = |angle: f64| ((angle + PI).rem_euclid(TAU) - PI).abs();
+    let off = |angle: f64| wrapped(angle).abs();
     if outline.is_same_backward() { off(angle).min(off(angle - PI)) } else { off(angle) }
 }
 

@@ -15,8 +15,9 @@
 
 use super::bernstein::{circle, derivative, framed, product, sum};
 use super::nurbs::Bezier;
+use crate::plane::wrapped;
 use crate::scenario::{PathSegment, Placed};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// How often a curve is halved for the bound.
 const HALVINGS: u32 = 4;
@@ -87,11 +88,6 @@ fn by_speed(points: &[Vec<f64>; 3], curvature: f64) -> Option<f64> {
     let outside = g.iter().zip(squares).map(|(g, w)| 1.0 - 2.0 * (curvature * g / w).abs()).fold(1.0, f64::min);
     let sine = ratio / outside.max(0.0).sqrt();
     (sine <= 1.0).then(|| sine.asin())
-}
-
-/// An angle within half a turn.
-pub(super) fn wrapped(angle: f64) -> f64 {
-    (angle + PI).rem_euclid(TAU) - PI
 }
 
 #[cfg(test)]

@@ -6,13 +6,12 @@
 //! joints within a road, of the size of errors in maps, are closed: the rest of the road keeps its place, and the gap
 //! counts as deviation of its path. So do those between the ends of roads that share a node. Lanes are not read.
 
-use super::heading::wrapped;
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::route::turn_over;
 use super::xml::{child, children, lose_astray, number, only, optional, parse, warn_of_unknown};
 use super::{ImportError, Options, Warnings};
-use crate::plane::distance;
+use crate::plane::{distance, wrapped};
 use crate::scenario::PathSegment;
 use crate::scenario::Placed;
 use std::collections::HashMap;

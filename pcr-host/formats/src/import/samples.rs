@@ -7,8 +7,9 @@
 use super::biarc::{Along, Fit, Part, ROUNDINGS, biarc, distance, is_beyond};
 use super::nurbs::Bezier;
 use super::trace::Tracer;
-use super::value::unmarked;
 use super::{ImportError, Options, Vehicle, route};
+use crate::mark::unmarked;
+use crate::plane::wrapped;
 use crate::scenario::Placed;
 use crate::scenario::{LIMIT, Scenario};
 
@@ -107,10 +108,7 @@ fn fit(points: &[[f64; 2]], tolerance: f64) -> Result<Fit, ImportError> {
         )));
     }
     let steps: Vec<Placed> = points.windows(2).map(|pair| Placed::line(pair[0], pair[1])).collect();
-    let turn = |k: usize| {
-        let angle = steps[k].heading - steps[k - 1].heading;
-        (angle + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI
-    };
+    let turn = |k: usize| wrapped(steps[k].heading - steps[k - 1].heading);
     let (mut fit, mut along) = (Fit::default(), Along::default());
     let mut from = 0;
     while from < steps.len() {

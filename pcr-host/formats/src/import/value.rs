@@ -1,13 +1,14 @@
 //! Lenient reading of JSON: `null` counts as missing, and errors name a value of the wrong type.
 
 use super::ImportError;
+use crate::mark::unmarked;
 use crate::once::Once;
 use crate::scenario::LIMIT;
 use serde_json::{Map, Value};
 
-/// A text without the mark of its byte order, which some editors put before it.
-pub(crate) fn unmarked(text: &str) -> &str {
-    text.strip_prefix('\u{feff}').unwrap_or(text)
+/// Whether the last line of a text does not end, as where the text was cut within it.
+pub(super) fn is_open(text: &str) -> bool {
+    !text.is_empty() && !text.ends_with('\n')
 }
 
 /// The values in a text of several, one after the other. An object with a key twice is refused.

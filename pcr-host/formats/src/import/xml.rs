@@ -1,7 +1,7 @@
 //! Lenient reading of XML: attributes as numbers, and messages that name the element.
 
-use super::value::unmarked;
 use super::{ImportError, Warnings};
+use crate::mark::unmarked;
 use crate::scenario::LIMIT;
 use roxmltree::{Document, Node};
 

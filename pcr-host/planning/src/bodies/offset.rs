@@ -10,9 +10,9 @@
 use super::joints::{Joined, Piece, Times, joined, largest_jump};
 use crate::fleet::{Format, Rounding};
 use pcr_formats::footprint::Disc;
+use pcr_formats::plane::within_half_turn;
 use pcr_formats::scenario::{Agent, MotionSpec, Part, PathSegment};
 use pcr_formats::scenario::{Placed, TURN};
-use std::f64::consts::{PI, TAU};
 
 /// Speed above which a segment is taken as a jump from its start to its end \[m/s\]: what is left of an angle between two
 /// segments that is passed without stopping.
@@ -218,10 +218,4 @@ impl Tracer {
         let agent = Agent { id, radius, start, path: self.path, motion, ..vehicle.clone() };
         Offset { agent, marks: self.marks, sources: self.sources, slack: 0.0 }
     }
-}
-
-/// The same angle within half a turn to either side.
-fn within_half_turn(angle: f64) -> f64 {
-    let rest = angle.rem_euclid(TAU);
-    if rest > PI { rest - TAU } else { rest }
 }

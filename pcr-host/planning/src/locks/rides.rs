@@ -7,6 +7,7 @@
 
 use crate::bodies::tracks;
 use pcr_formats::import::{Edge, Imported, Layout, Step, Vehicle, ride, turn};
+use pcr_formats::plane::wrapped;
 use pcr_formats::scenario::Agent;
 use pcr_formats::scenario::{KINK, PathSegment, Placed, TURN};
 use std::f64::consts::{PI, TAU};
@@ -219,11 +220,6 @@ impl Side<'_> {
     fn turns_back(&self, leaves: &Self) -> bool {
         is_half(self.turn(leaves)) && leads_back(self.step, leaves.step)
     }
-}
-
-/// An angle within half a turn \[rad\].
-fn wrapped(angle: f64) -> f64 {
-    (angle + PI).rem_euclid(TAU) - PI
 }
 
 /// Whether it is half a turn, but for what joints of maps are off by.
