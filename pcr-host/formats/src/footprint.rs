@@ -4,7 +4,9 @@
 //! around its box. The cells become smaller until no disc reaches further out of the polygon than allowed, the
 //! *overhang*: a disc of radius r whose centre is at the depth d inside the polygon reaches at most r - d out of it.
 
-use crate::plane::distance;
+mod simple;
+
+use crate::plane::{distance, from_segment};
 use serde::Serialize;
 
 /// Discs of a cover at most.
@@ -15,6 +17,9 @@ const CORNERS: usize = 256;
 
 /// Overhang that is allowed if nothing is said: this share of the shorter side of the box around the polygon.
 const OVERHANG: f64 = 0.125;
+
+/// Cells in each direction that are looked at, at most: more than can be used.
+const CELLS: f64 = 1e3;
 
 /// From one size of cells to the next.
 const SMALLER: f64 = 0.9;
@@ -48,16 +53,17 @@ impl Footprint {
     /// `allowed` \[m\]; if there is none, an eighth of the shorter side of its box, or more if that needs more than 64 discs.
     ///
     /// # Errors
-    /// What is wrong: fewer than three corners or more than 256, no area, or more than 64 discs would be needed.
+    /// What is wrong: fewer than three corners or more than 256, sides that touch or cross, no area, or more than 64 discs would be
+    /// needed.
     pub fn new(polygon: Vec<[f64; 2]>, allowed: Option<f64>) -> Result<Self, String> {
         if !(3..=CORNERS).contains(&polygon.len()) {
             return Err(format!("{} corners; allowed are 3 to {CORNERS}", polygon.len()));
         }
+        if let Some(fault) = simple::fault(&polygon) {
+            return Err(fault);
+        }
         let [lo, hi] = bounds(&polygon);
         let side = (hi[0] - lo[0]).min(hi[1] - lo[1]);
-        if side.is_nan() || side <= 0.0 {
-            return Err("the corners lie on a line along an axis; allowed is a polygon with an area".into());
-        }
         let limit = allowed.unwrap_or(OVERHANG * side);
         let mut cell = side;
         // One that is much longer than wide has larger cells.
@@ -67,7 +73,7 @@ impl Footprint {
         let mut best: Option<(Vec<Disc>, f64)> = None;
         loop {
             let discs = cover(&polygon, cell);
-            if discs.len() > MOST {
+            if discs.len() > MOST || cell < side / CELLS {
                 break;
             }
             let overhang = overhang(&polygon, &discs);
@@ -148,8 +154,7 @@ fn overhang(polygon: &[[f64; 2]], discs: &[Disc]) -> f64 {
 fn cover(polygon: &[[f64; 2]], cell: f64) -> Vec<Disc> {
     let [lo, hi] = bounds(polygon);
     let size = [0, 1].map(|axis| hi[axis] - lo[axis]);
-    // More than can be used are not looked at.
-    let cells = size.map(|size| (size / cell).ceil().clamp(1.0, 1e3) as usize);
+    let cells = size.map(|size| (size / cell).ceil().clamp(1.0, CELLS) as usize);
     let mut discs = Vec::new();
     for column in 0..cells[0] {
         for row in 0..cells[1] {
@@ -201,11 +206,8 @@ fn around(points: &[[f64; 2]]) -> Option<Disc> {
 fn depth(polygon: &[[f64; 2]], point: [f64; 2]) -> f64 {
     let (mut nearest, mut inside) = (f64::INFINITY, false);
     for (a, b) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
-        let side = [b[0] - a[0], b[1] - a[1]];
-        let away = [point[0] - a[0], point[1] - a[1]];
-        let square = side[0] * side[0] + side[1] * side[1];
-        let share = if square > 0.0 { ((away[0] * side[0] + away[1] * side[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
-        nearest = nearest.min(distance(away, side.map(|x| x * share)));
+        nearest = nearest.min(from_segment(point, [*a, *b]));
+        let [side, away] = [b, &point].map(|end| [end[0] - a[0], end[1] - a[1]]);
         // Whether a ray to the right crosses the side.
         inside ^= (a[1] > point[1]) != (b[1] > point[1]) && away[0] < side[0] * away[1] / side[1];
     }
@@ -287,7 +289,15 @@ mod tests {
     #[test]
     fn what_is_refused() {
         assert!(Footprint::new(vec![[0.0, 0.0], [1.0, 0.0]], None).unwrap_err().contains("corners"));
-        assert!(Footprint::new(vec![[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]], None).unwrap_err().contains("line"));
+        assert!(Footprint::new(vec![[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]], None).unwrap_err().contains("touches"));
+        // A fork that is a line there and back would be left out of the discs.
+        let fork = [[-0.5, -0.3], [0.5, -0.3], [0.5, 0.2], [1.5, 0.2], [0.5, 0.2], [0.5, 0.3], [-0.5, 0.3]];
+        assert!(Footprint::new(fork.to_vec(), None).unwrap_err().contains("from corner 2 to 3"));
+        // Cells cannot become smaller than the rounding of the corners.
+        let [a, b] = [9e9, 9_000_000_000.000_004];
+        assert!(Footprint::new(vec![[a, a], [b, a], [b, b], [a, b]], Some(1e-9)).unwrap_err().contains("no area"));
+        let [a, b] = [1e9, 1e9 + 8.0];
+        assert!(Footprint::new(vec![[a, a], [b, a], [b, b], [a, b]], Some(1e-9)).unwrap_err().contains("64 discs"));
         let square = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         assert!(Footprint::new(square, Some(1e-6)).unwrap_err().contains("64 discs"));
     }
