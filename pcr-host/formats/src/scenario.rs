@@ -50,6 +50,7 @@ mod turns;
 
 use crate::footprint::Footprint;
 pub use decode::LENGTH_TOLERANCE;
+pub(crate) use decode::MOST_SEGMENTS;
 pub use fields::figure;
 pub use fields::{LIMIT, ScenarioError};
 pub use labels::{LONGEST_LABEL, Labels};

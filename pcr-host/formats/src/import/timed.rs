@@ -6,7 +6,7 @@
 
 use super::ImportError;
 use super::trace::Tracer;
-use crate::scenario::{Agent, LIMIT, MotionSpec};
+use crate::scenario::{Agent, LIMIT, MOST_SEGMENTS, MotionSpec};
 
 /// Time in which a speed changes that a plan changes at once \[s\], if that does not take more than half of the acceleration
 /// that is allowed or a quarter of the section.
@@ -29,6 +29,10 @@ pub(super) fn agent(id: u64, radius: f64, stops: &[Stop]) -> Result<Agent, Impor
             return Err(ImportError::new(problem));
         }
         tracer.line(from, to);
+        // No scenario may have more, and reading on would take long.
+        if tracer.count() > MOST_SEGMENTS {
+            return Err(ImportError::new(format!("point {}: more than {MOST_SEGMENTS} segments up to here", k + 2)));
+        }
         let length = tracer.length() - travelled;
         travelled = tracer.length();
         if duration > 0.0 {
@@ -78,6 +82,14 @@ mod tests {
         );
         assert!(message(&[([0.0, 0.0], 0.0), ([1.0, 0.0], f64::NAN)]).contains("NaN"));
         assert!(message(&[([0.0, 0.0], 0.0), ([1.0, 0.0], 1e-300)]).contains("reached in"));
+    }
+
+    #[test]
+    fn a_plan_of_too_many_corners_is_refused_before_it_is_read_to_its_end() {
+        let corner = |k: u32| ([f64::from(k.div_ceil(2)), f64::from(k / 2)], f64::from(k));
+        let stops: Vec<Stop> = (0..2_000_000).map(corner).collect();
+        let refused = agent(1, 0.5, &stops).unwrap_err().to_string();
+        assert_eq!(refused, "point 32770: more than 65535 segments up to here");
     }
 
     #[test]

@@ -4,9 +4,9 @@
 //! if the angle is more than [`KINK`]. A line is aimed at its end from the point that the path has really reached, so
 //! that displacements by turns and gaps do not add up. The largest distance from the requested geometry is recorded.
 
-use crate::plane::distance;
+use crate::plane::{distance, within_half_turn};
 use crate::scenario::{KINK, PathSegment, Placed, TURN};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// Length of a line that is left out \[m\]: its direction may be rounding and nothing else.
 const NEAR: f64 = 1e-6;
@@ -35,6 +35,8 @@ pub(super) struct Stretch {
 pub(super) struct Tracer {
     start: Option<[f64; 3]>,
     stretches: Vec<Stretch>,
+    /// Of all stretches \[m\].
+    length: f64,
     at: [f64; 2],
     heading: f64,
     deviation: f64,
@@ -54,12 +56,6 @@ pub(super) struct Trace {
     pub(super) turned: f64,
     /// Whether it is known which way the vehicle faces where it begins: not if it stands there and nothing more is said.
     pub(super) faces: bool,
-}
-
-/// The same angle within half a turn to either side.
-fn within_half_turn(angle: f64) -> f64 {
-    let rest = angle.rem_euclid(TAU);
-    if rest > PI { rest - TAU } else { rest }
 }
 
 impl Tracer {
@@ -127,6 +123,7 @@ impl Tracer {
     fn push(&mut self, shape: PathSegment, in_place: bool) {
         let placed = Placed { at: self.at, heading: self.heading, shape };
         (self.at, self.heading) = (placed.end(), placed.heading_at_end());
+        self.length += shape.length();
         let next = Stretch { shape, speed: self.speed, rotation: self.rotation, in_place };
         let last = self.stretches.last_mut().filter(|last| (last.speed, last.rotation) == (next.speed, next.rotation));
         match (last.map(|last| &mut last.shape), shape) {
@@ -138,7 +135,12 @@ impl Tracer {
 
     /// Length of what was added \[m\].
     pub(super) fn length(&self) -> f64 {
-        self.stretches.iter().map(|stretch| stretch.shape.length()).sum()
+        self.length
+    }
+
+    /// Number of segments that were added.
+    pub(super) fn count(&self) -> usize {
+        self.stretches.len()
     }
 
     /// The path, which stands at `at` if nothing was added.

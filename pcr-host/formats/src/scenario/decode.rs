@@ -8,6 +8,7 @@ use super::settled::Settled;
 use super::turns;
 use super::{Agent, MotionSpec, PathSegment, Scenario, TURN};
 use crate::json::{self, Data, Json};
+use crate::mark::unmarked;
 use crate::own;
 use serde_json::Value;
 use std::collections::HashSet;
@@ -20,7 +21,7 @@ const FIELDS: [&str; 5] = ["format", "version", "name", "agents", "warnings"];
 pub const LENGTH_TOLERANCE: f64 = 1.0 / (1_u64 << -pcr_core::LENGTH_TOLERANCE_LOG2) as f64;
 
 /// Segments of a path that the core can number. An arc counts once for each turn begun.
-const MOST: usize = u16::MAX as usize;
+pub(crate) const MOST_SEGMENTS: usize = u16::MAX as usize;
 
 /// Name of the format.
 pub(super) const FORMAT: &str = "pcr-scenario";
@@ -32,7 +33,7 @@ impl Scenario {
     /// # Errors
     /// [`ScenarioError`], naming agent, segment, field, value and what is allowed there; the column where the text is not JSON.
     pub fn from_json(text: &str) -> Result<Self, ScenarioError> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let text = unmarked(text);
         if text.trim().is_empty() {
             return Err(Place::default().error(1, "", "empty; a scenario is an object with a list of agents"));
         }
@@ -249,8 +250,8 @@ fn path(fields: &Fields<'_>, place: &Place) -> Result<Vec<PathSegment>, Scenario
     let segments: f64 = path.iter().map(PathSegment::turns).sum();
     let problem = if length > LIMIT {
         format!("{} m long; allowed is up to {LIMIT:e}", figure(length))
-    } else if segments > MOST as f64 {
-        format!("{segments} segments, each turn of an arc counted; allowed are up to {MOST}")
+    } else if segments > MOST_SEGMENTS as f64 {
+        format!("{segments} segments, each turn of an arc counted; allowed are up to {MOST_SEGMENTS}")
     } else {
         return Ok(path);
     };
