@@ -78,8 +78,10 @@ pub use value::parse as parse_json;
 pub use vehicle::{CORNER_RADIUS, HEADING, Options, TOLERANCE, Vehicle};
 pub use warnings::{Warnings, shortened};
 
+use crate::mark::unmarked;
 use crate::own;
 use crate::scenario::{Agent, Scenario};
+use names::name_printably;
 use serde_json::Value;
 use std::path::Path;
 use std::{fmt, fs};
@@ -200,10 +202,10 @@ impl Format {
             _ => {}
         }
         // What has agents is a scenario, and said to be wrong as one.
-        if text.contains("\"agents\"") {
+        if own::has_agents(text) {
             return None;
         }
-        let root = serde_json::Deserializer::from_str(value::unmarked(text)).into_iter::<Value>().next()?.ok()?;
+        let root = serde_json::Deserializer::from_str(unmarked(text)).into_iter::<Value>().next()?.ok()?;
         if root.get("format").and_then(Value::as_str).and_then(own::described).is_some() {
             return None;
         }
@@ -217,7 +219,7 @@ impl Format {
 
 /// Whether there is nothing in a text but blanks.
 pub(crate) fn is_empty(text: &str) -> bool {
-    value::unmarked(text).trim().is_empty()
+    unmarked(text).trim().is_empty()
 }
 
 /// Reads a layout.
@@ -285,10 +287,11 @@ fn imported(
     }
     let off: Vec<_> = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.off(&vehicle))).collect();
     report(&off, warnings);
-    layout.warnings = warnings.all();
     if NO_NAMES.contains(&layout.name.as_str()) {
         layout.name.clear();
     }
+    name_printably(&mut layout.name, warnings);
+    layout.warnings = warnings.all();
     Ok(Imported { layout, vehicle })
 }
 
@@ -339,7 +342,7 @@ fn report_routes(layout: &Layout, scenario: &Scenario, radius: f64, warnings: &m
 /// What the configuration of a fleet or a factsheet says.
 fn of_fleet(text: &str, warnings: &mut Warnings) -> Result<Given, ImportError> {
     // JSON is YAML, too, but says better what is wrong with it.
-    let json = value::unmarked(text).trim_start().starts_with('{');
+    let json = unmarked(text).trim_start().starts_with('{');
     let value = if json { value::parse(text) } else { rmf::yaml(text) }?;
     if factsheet::is_factsheet(&value) { factsheet::read(&value, warnings) } else { rmf::fleet(&value) }
 }
@@ -388,6 +391,9 @@ pub fn scenario(
         Format::Grid => {
             let largest = "the largest with which no plan on a grid has a contact";
             let vehicle = of_plan(options, largest, warnings)?;
+            if value::is_open(text) {
+                warnings.add("last line", "it does not end; if the file was cut there, cells may be missing");
+            }
             with_margin(GridPlan::read(text)?.scenario(vehicle.radius)?, &vehicle)
         }
         Format::Nav2 | Format::Lif | Format::Rmf | Format::OpenDrive | Format::OpenTcs | Format::Ccbs => {
@@ -399,6 +405,9 @@ pub fn scenario(
         Format::Path | Format::Vda5050 => {
             let vehicle = options.vehicle(&given(options, warnings)?, true, warnings);
             let (scenario, radii) = if format == Format::Path {
+                if value::is_open(text) {
+                    warnings.add("last line", "it does not end; if the file was cut there, digits may be missing");
+                }
                 let scenario = samples::read(text, options, &vehicle)?;
                 let names = scenario.agents.iter().map(|agent| format!("path {}", agent.id)).collect::<Vec<_>>();
                 facing::warn_of_half_turns(names.iter().map(String::as_str).zip(&scenario.agents), warnings);
@@ -411,6 +420,7 @@ pub fn scenario(
             scenario
         }
     };
+    name_printably(&mut scenario.name, warnings);
     scenario.warnings = warnings.all();
     checked(&scenario)
 }

@@ -3,6 +3,7 @@
 mod lines;
 
 use crate::import::{self, Format, ImportError, Imported, Kind, Options, Warnings};
+use crate::mark::unmarked;
 use crate::own;
 use crate::scenario::{self, Scenario, ScenarioError};
 pub use lines::{Line, Lines};
@@ -161,7 +162,7 @@ pub fn read_from(file: &Path, text: String, options: &Options) -> Result<(Scenar
 
 /// Whether a text begins as JSON with something in it does.
 fn is_json(text: &str) -> bool {
-    text.trim_start_matches('\u{feff}').trim_start().starts_with(['{', '['])
+    unmarked(text).trim_start().starts_with(['{', '['])
 }
 
 /// Refuses options that do nothing with scenarios on standard input.
@@ -188,8 +189,12 @@ pub fn kind(file: &Path, options: &Options) -> Result<Kind, InputError> {
     if file == Path::new("-") {
         return Ok(Kind::of(options.from, ""));
     }
-    let (_, text) = text(file)?;
-    Ok(Kind::of(options.from.or_else(|| Format::of(file, &text)), &text))
+    Ok(kind_of(file, &text(file)?.1, options))
+}
+
+/// The same of a text that is read already.
+pub fn kind_of(file: &Path, text: &str, options: &Options) -> Kind {
+    Kind::of(options.from.or_else(|| Format::of(file, text)), text)
 }
 
 /// Whether all files hold orders or states of VDA 5050, or all paths by their points: an agent each, of one fleet.
@@ -227,7 +232,7 @@ pub fn read_all(files: &[PathBuf], options: &Options) -> Result<(Scenario, Vec<(
             return Err(InputError::Single(name));
         }
         read_as = Some(format);
-        texts.push(text.trim_start_matches('\u{feff}').to_owned());
+        texts.push(unmarked(&text).to_owned());
         warnings.push((file.clone(), own));
     }
     let name = files.first().cloned();
@@ -236,10 +241,7 @@ pub fn read_all(files: &[PathBuf], options: &Options) -> Result<(Scenario, Vec<(
     let mut all = Warnings::default();
     match import::scenario(format, &texts.join("\n\n"), options, &mut all) {
         Ok(mut scenario) => {
-            // Messages about all of them together are added to the last one.
-            if let Some((_, last)) = warnings.last_mut() {
-                last.add_of_all(&all);
-            }
+            Warnings::settle(&mut warnings.iter_mut().map(|(_, own)| own).collect::<Vec<_>>(), &all);
             scenario.warnings = warnings
                 .iter()
                 .flat_map(|(file, own)| own.all().into_iter().map(move |line| format!("{}: {line}", file.display())))
@@ -257,19 +259,32 @@ pub fn read_all(files: &[PathBuf], options: &Options) -> Result<(Scenario, Vec<(
 /// # Errors
 /// [`InputError`], naming the file.
 pub fn read_layout(file: &Path, options: &Options, moves: bool) -> Result<(Imported, Warnings), InputError> {
-    let (name, text) = text(file)?;
+    read_layout_from(file, &text(file)?.1, options, moves)
+}
+
+/// The same in a text that is read already.
+///
+/// # Errors
+/// As [`read_layout`].
+pub fn read_layout_from(
+    file: &Path,
+    text: &str,
+    options: &Options,
+    moves: bool,
+) -> Result<(Imported, Warnings), InputError> {
+    let name = named(file);
     let mut warnings = Warnings::default();
-    let Some(format) = options.from.or_else(|| Format::of(file, &text)) else {
-        return Err(match own::answer(&text) {
-            _ if import::is_empty(&text) => InputError::Empty(name, "a layout"),
+    let Some(format) = options.from.or_else(|| Format::of(file, text)) else {
+        return Err(match own::answer(text) {
+            _ if import::is_empty(text) => InputError::Empty(name, "a layout"),
             Some(answer) => InputError::IsAnswer(name, answer),
-            None if text.contains("\"agents\"") => InputError::IsScenario(name),
+            None if own::has_agents(text) => InputError::IsScenario(name),
             None => InputError::NoLayout(name),
         });
     };
-    useful(&name, &text, Some(format), options)?;
+    useful(&name, text, Some(format), options)?;
     let read = if moves { import::roads } else { import::layout };
-    match read(format, &text, options, &mut warnings) {
+    match read(format, text, options, &mut warnings) {
         Ok(mut imported) => {
             or_stem(&mut imported.layout.name, file);
             Ok((imported, warnings))

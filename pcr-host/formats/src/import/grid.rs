@@ -12,6 +12,8 @@
 
 use super::ImportError;
 use super::timed::{self, Stop};
+use super::value::is_open;
+use crate::mark::unmarked;
 use crate::scenario::Scenario;
 
 /// Most cells of a file, waits counted.
@@ -29,7 +31,7 @@ pub struct GridPlan {
 
 /// Whether a text begins like one.
 pub(super) fn is_plan(text: &str) -> bool {
-    let mut lines = text.trim_start_matches('\u{feff}').lines().map(str::trim).filter(|line| !line.is_empty());
+    let mut lines = unmarked(text).lines().map(str::trim).filter(|line| !line.is_empty());
     let first = lines.next().unwrap_or_default();
     let line = if first.parse::<u32>().is_ok() { lines.next().unwrap_or_default() } else { first };
     line.strip_prefix("Agent ").is_some_and(|rest| rest.contains(':') && rest.contains('('))
@@ -41,7 +43,7 @@ impl GridPlan {
     /// # Errors
     /// [`ImportError`] with the line, also for a step to a cell that shares no side with the one before.
     pub fn read(text: &str) -> Result<Self, ImportError> {
-        let lines = text.trim_start_matches('\u{feff}').lines().map(str::trim).enumerate();
+        let lines = unmarked(text).lines().map(str::trim).enumerate();
         let (mut cells, mut told, mut count) = (Vec::new(), None, 0);
         let mut arrow = None;
         for (number, line) in lines.filter(|(_, line)| !line.is_empty()) {
@@ -65,6 +67,11 @@ impl GridPlan {
                 return Err(wrong(format!("more than {MOST} cells up to here")));
             }
             cells.push(path);
+        }
+        // Planners end the last line as well. What was cut after an arrow is only to be told by that.
+        if arrow == Some(true) && is_open(text) {
+            let problem = "the last line does not end: the file may have been cut there, after an arrow";
+            return Err(ImportError::new(problem));
         }
         match told {
             Some(told) if told != cells.len() => {
@@ -164,6 +171,9 @@ mod tests {
                 "line 3: it ends with an arrow and the lines before do not, or the other way round: it was cut";
             assert_eq!(message(&format!("2\nAgent 0: {first}\nAgent 1: {last}\n")), expected);
         }
+        let cut = "the last line does not end: the file may have been cut there, after an arrow";
+        assert_eq!(message("2\nAgent 0: (0,0)->(1,0)->(2,0)->\nAgent 1: (2,2)->(2,1)->"), cut);
+        assert!(GridPlan::read("Agent 0: (0,0)->(1,0)").is_ok() && GridPlan::read("Agent 0: (0,0)->\n").is_ok());
         assert_eq!(message("0"), "there is no agent in it");
         assert_eq!(message("2\n3\nAgent 0: (0,0)->"), "line 2: `Agent 0:` and its cells are expected");
         assert!(!is_plan("Agent Smith: here") && !is_plan("Agent (1,2)"));

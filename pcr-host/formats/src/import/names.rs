@@ -1,24 +1,40 @@
-//! Makes the names of nodes and edges unique.
+//! Makes the names of nodes and edges unique, and that of a file printable.
 //!
 //! Files may give the same name to two different nodes or edges, and the programs that load them accept that. This
 //! reader does, too: the second one is called `name#2`. An exact copy, which differs in nothing, is read once.
 
 use super::Warnings;
 use super::layout::{Edge, Id, Node};
+use crate::scenario::{LONGEST_LABEL, label};
 use std::collections::{HashMap, HashSet};
 use std::fmt;
+
+/// Makes a label of the name that a file gives itself, and says so if that is another one.
+pub(super) fn name_printably(name: &mut String, warnings: &mut Warnings) {
+    let called = label(name);
+    if called != *name {
+        let problem = format!("it becomes {called}: names are printable text of up to {LONGEST_LABEL} characters");
+        warnings.add("name", problem);
+        *name = called;
+    }
+}
 
 /// Something with a name.
 pub(super) trait Named: PartialEq + Clone {
     /// The noun for it in messages.
     const WHAT: &'static str;
     fn id(&mut self) -> &mut Id;
+    /// Numbers that are the same of things that are the same.
+    fn numbers(&self) -> Vec<f64>;
 }
 
 impl Named for Node {
     const WHAT: &'static str = "node";
     fn id(&mut self) -> &mut Id {
         &mut self.id
+    }
+    fn numbers(&self) -> Vec<f64> {
+        self.at.to_vec()
     }
 }
 
@@ -27,6 +43,15 @@ impl Named for Edge {
     fn id(&mut self) -> &mut Id {
         &mut self.id
     }
+    fn numbers(&self) -> Vec<f64> {
+        let ends = self.ends.iter().map(|&end| end as f64);
+        ends.chain(self.curve.iter().flat_map(|piece| [piece.at[0], piece.at[1], piece.heading])).collect()
+    }
+}
+
+/// The bits of numbers, those of -0 as of 0, which are equal.
+fn bits(numbers: Vec<f64>) -> Vec<u64> {
+    numbers.into_iter().map(|number| (number + 0.0).to_bits()).collect()
 }
 
 /// Why a name stands for nothing, or not for one thing.
@@ -51,60 +76,80 @@ impl fmt::Display for Unclear {
 #[derive(Debug)]
 pub(super) struct Names<T> {
     list: Vec<T>,
-    /// Indices by the name in the file.
-    places: HashMap<Id, Vec<usize>>,
+    /// What has a name in the file.
+    called: HashMap<Id, Called>,
     /// Names that are taken in the list.
     taken: HashSet<Id>,
 }
 
+/// What has the same name in the file.
+#[derive(Debug, Default)]
+struct Called {
+    count: usize,
+    /// Indices of the first one and of the last one.
+    first: usize,
+    last: usize,
+    /// Indices by the bits of numbers, if there are several: files of thousands of one name are read in reasonable time.
+    alike: HashMap<Vec<u64>, Vec<usize>>,
+}
+
 impl<T: Named> Names<T> {
     pub(super) fn new() -> Self {
-        Self { list: Vec::new(), places: HashMap::new(), taken: HashSet::new() }
+        Self { list: Vec::new(), called: HashMap::new(), taken: HashSet::new() }
     }
 
     /// Adds a thing, under another name where its own is taken; a copy is not added. Returns its place.
     pub(super) fn add(&mut self, mut thing: T, warnings: &mut Warnings) -> usize {
         let id = thing.id().clone();
-        let called = format!("{} {id}", T::WHAT);
-        let places = self.places.entry(id.clone()).or_default();
-        let is_copy = |place: &usize| {
-            let mut known = self.list[*place].clone();
+        let name = format!("{} {id}", T::WHAT);
+        let called = self.called.entry(id.clone()).or_default();
+        let is_copy = |place: &&usize| {
+            let mut known = self.list[**place].clone();
             *known.id() = id.clone();
             known == thing
         };
-        if let Some(copied) = places.iter().position(is_copy) {
-            warnings.add(called, "given twice, the same each time");
-            // It is the last one of its name again.
-            places[copied..].rotate_left(1);
-            return places[places.len() - 1];
+        if called.count == 1 {
+            called.alike.insert(bits(self.list[called.first].numbers()), vec![called.first]);
         }
-        let mut count = places.len() + 1;
+        let alike = if called.count > 0 { Some(called.alike.entry(bits(thing.numbers())).or_default()) } else { None };
+        if let Some(&copied) = alike.as_deref().and_then(|alike| alike.iter().find(is_copy)) {
+            warnings.add(name, "given twice, the same each time");
+            // It is the last one of its name again.
+            called.last = copied;
+            return copied;
+        }
+        let place = self.list.len();
+        alike.into_iter().for_each(|alike| alike.push(place));
+        called.count += 1;
+        called.last = place;
+        if called.count == 1 {
+            called.first = place;
+        }
+        let mut count = called.count;
         while self.taken.contains(thing.id()) {
             *thing.id() = Id::Text(format!("{id}#{count}"));
             count += 1;
         }
         if *thing.id() != id {
-            warnings.add(called, format!("several have this name; one of them is called {} here", thing.id()));
+            warnings.add(name, format!("several have this name; one of them is called {} here", thing.id()));
         }
         self.taken.insert(thing.id().clone());
-        let place = self.list.len();
-        places.push(place);
         self.list.push(thing);
         place
     }
 
     /// The place of the only thing of this name in the file.
     pub(super) fn place(&self, id: &Id) -> Result<usize, Unclear> {
-        match self.places.get(id).map(Vec::as_slice) {
-            None | Some([]) => Err(Unclear::None(T::WHAT, id.clone())),
-            Some([place]) => Ok(*place),
+        match self.called.get(id) {
+            None => Err(Unclear::None(T::WHAT, id.clone())),
+            Some(Called { count: 1, first, .. }) => Ok(*first),
             Some(_) => Err(Unclear::Several(T::WHAT, id.clone())),
         }
     }
 
     /// The place of the last thing of this name in the file.
     pub(super) fn last_place(&self, id: &Id) -> Result<usize, Unclear> {
-        let last = self.places.get(id).and_then(|places| places.last().copied());
+        let last = self.called.get(id).map(|called| called.last);
         last.ok_or_else(|| Unclear::None(T::WHAT, id.clone()))
     }
 
@@ -133,6 +178,20 @@ mod tests {
         }
         let ids: Vec<String> = names.list().iter().map(|node| node.id.to_string()).collect();
         assert_eq!(ids, ["a", "a#2", "a#3", "a#4"]);
+    }
+
+    #[test]
+    fn many_of_one_name_are_read_in_reasonable_time() {
+        let (mut names, mut warnings) = (Names::new(), Warnings::default());
+        let count = 30_000;
+        for k in (0..count).chain(0..count) {
+            assert_eq!(names.add(node("a", f64::from(k)), &mut warnings), k as usize);
+        }
+        assert_eq!(names.list().len(), count as usize);
+        let copies = warnings.iter().find(|(problem, _)| problem.starts_with("given twice")).unwrap();
+        assert_eq!(copies.1.len(), count as usize);
+        // 0 and -0 are one place.
+        assert_eq!(names.add(node("a", -0.0), &mut warnings), 0);
     }
 
     #[test]

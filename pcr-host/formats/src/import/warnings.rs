@@ -1,9 +1,13 @@
 //! Warnings about a file: parts that were not read exactly as written, and parts that could not be read.
 
+use std::collections::{HashMap, HashSet};
 use std::fmt;
 
 /// How warnings begin that are about agents together, who may be from several files.
 pub(super) const TOGETHER: &str = "the agents are ";
+
+/// How a warning ends that is about a part of an order which an update may release.
+pub(super) const NOT_RELEASED: &str = "edges are not released and left out (--horizon)";
 
 /// The length of an edge that is written differs from that of its geometry by more than [`DIFFERENCE`].
 pub(super) const LENGTH: &str = "its length is not that of its geometry, which counts";
@@ -18,6 +22,8 @@ const LISTED: usize = 8;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Warnings {
     list: Vec<(String, Vec<String>)>,
+    /// Places in the list by the words.
+    places: HashMap<String, usize>,
     lost: Vec<String>,
 }
 
@@ -25,9 +31,12 @@ impl Warnings {
     /// Adds a warning about the thing of this name. Warnings of the same words are told once, with all their names.
     pub(crate) fn add(&mut self, name: impl fmt::Display, problem: impl Into<String>) {
         let (name, problem) = (name.to_string(), problem.into());
-        match self.list.iter_mut().find(|(other, _)| *other == problem) {
+        match self.places.get(&problem).and_then(|place| self.list.get_mut(*place)) {
             Some((_, names)) => names.push(name),
-            None => self.list.push((problem, vec![name])),
+            None => {
+                self.places.insert(problem.clone(), self.list.len());
+                self.list.push((problem, vec![name]));
+            }
         }
     }
 
@@ -38,9 +47,32 @@ impl Warnings {
         self.add(problem, "left out");
     }
 
-    /// Adds what is said of several files together, which is about agents of more than one.
-    pub(crate) fn add_of_all(&mut self, all: &Self) {
-        self.list.extend(all.list.iter().filter(|(problem, _)| problem.starts_with(TOGETHER)).cloned());
+    /// Settles the warnings of files that were read each by itself, and then together, with the warnings `all`: what an update releases
+    /// is released, and what is said of all together, and of none by itself, is added to the last one.
+    pub(crate) fn settle(files: &mut [&mut Self], all: &Self) {
+        let names = |of: &Self, problem: &str| {
+            let place = of.places.get(problem).and_then(|place| of.list.get(*place));
+            place.map_or_else(HashSet::new, |(_, names)| names.iter().cloned().collect())
+        };
+        for file in files.iter_mut() {
+            for (problem, own) in file.list.iter_mut().filter(|(problem, _)| problem.ends_with(NOT_RELEASED)) {
+                let left_out = names(all, problem);
+                own.retain(|name| left_out.contains(name));
+            }
+            file.list.retain(|(_, names)| !names.is_empty());
+            file.places = file.list.iter().enumerate().map(|(place, (problem, _))| (problem.clone(), place)).collect();
+        }
+        let mut new = Vec::new();
+        for (problem, of_all) in &all.list {
+            let said: HashSet<String> = files.iter().flat_map(|file| names(file, problem)).collect();
+            // Of other warnings the names may be others: messages are numbered in each file.
+            let is_named = problem.ends_with(NOT_RELEASED) || problem.starts_with(TOGETHER);
+            let is_new = |name: &&String| said.is_empty() || is_named && !said.contains(*name);
+            new.extend(of_all.iter().filter(is_new).map(|name| (name, problem)));
+        }
+        if let Some(last) = files.last_mut() {
+            new.into_iter().for_each(|(name, problem)| last.add(name, problem));
+        }
     }
 
     /// Parts of the file that were not read.

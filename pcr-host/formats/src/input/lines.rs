@@ -2,6 +2,8 @@
 
 use super::InputError;
 use crate::import::Format;
+use crate::mark::{unmarked, without_mark};
+use crate::own;
 use crate::scenario::Scenario;
 use std::collections::VecDeque;
 use std::io::BufRead;
@@ -47,13 +49,13 @@ impl<R: BufRead> Lines<R> {
         let mut begin = String::from_utf8_lossy(&first.1).into_owned();
         self.seen.push_back(first);
         // Plans on grids may begin with how many agents there are.
-        if begin.trim_start_matches('\u{feff}').trim().parse::<u32>().is_ok()
+        if unmarked(&begin).trim().parse::<u32>().is_ok()
             && let Some(second) = self.value()?
         {
             begin += &String::from_utf8_lossy(&second.1);
             self.seen.push_back(second);
         }
-        let is_markup = begin.trim_start_matches('\u{feff}').trim_start().starts_with('<');
+        let is_markup = unmarked(&begin).trim_start().starts_with('<');
         if !is_markup && Format::of(Path::new("-"), &begin).is_none() {
             return Ok(None);
         }
@@ -103,11 +105,6 @@ impl<R: BufRead> Lines<R> {
     }
 }
 
-/// Without the mark of the order of bytes, with which a text may begin.
-fn without_mark(text: &[u8]) -> &[u8] {
-    text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text)
-}
-
 /// How deep in arrays and objects a text is.
 #[derive(Debug, Default)]
 struct Nesting {
@@ -144,7 +141,7 @@ impl Nesting {
 fn is_scenario(line: &[u8]) -> bool {
     let text = line.trim_ascii();
     let mut nesting = Nesting::default();
-    let names_agents = || text.windows(8).any(|part| part == b"\"agents\"");
+    let names_agents = || str::from_utf8(text).is_ok_and(own::has_agents);
     text.starts_with(b"{") && text.ends_with(b"}") && names_agents() && {
         nesting.read(text);
         !nesting.is_open()

@@ -3,7 +3,7 @@
 use super::super::trace::Tracer;
 use super::super::trajectory::Trajectory;
 use super::super::value::Object;
-use super::super::warnings::{DIFFERENCE, LENGTH};
+use super::super::warnings::{DIFFERENCE, LENGTH, NOT_RELEASED};
 use super::super::{ImportError, facing, route};
 use super::part::{Part, go_on, parts};
 use super::{ACTIONS, GAP, Reader, gap};
@@ -68,11 +68,7 @@ impl Reader<'_> {
             let base =
                 nodes.iter().skip(1).zip(&edges).take_while(|(node, edge)| node.released && edge.released).count();
             if base < edges.len() {
-                let ahead = format!(
-                    "{} of {} edges are not released and left out (--horizon)",
-                    edges.len() - base,
-                    edges.len()
-                );
+                let ahead = format!("{} of {} {NOT_RELEASED}", edges.len() - base, edges.len());
                 self.warnings.add(&order.name, ahead);
             }
             nodes.truncate(base + 1);
