@@ -85,6 +85,6 @@ fn elements_of_opentcs_that_are_not_known_are_told() {
         let warnings = read(Format::OpenTcs, &text).unwrap();
         assert!(warnings.contains(&expected.to_owned()), "{warnings:?}");
     }
-    let known = model("", "<maxVehicleBoundingBox/><property/>", &vehicle("vehicleLayout"));
+    let known = model("maxVelocity=\"1000\"", "<maxVehicleBoundingBox/><property/>", &vehicle("vehicleLayout"));
     assert_eq!(read(Format::OpenTcs, &known), Ok(Vec::new()));
 }

@@ -128,7 +128,7 @@ impl Reader<'_> {
         maps: &BTreeSet<&str>,
     ) -> Result<Option<String>, ImportError> {
         let nodes = layout.list("nodes")?;
-        if nodes.iter().all(|node| node.get("mapId").is_some()) {
+        if nodes.iter().all(|node| node.get("mapId").is_some_and(|map| !map.is_null())) {
             return Ok(None);
         }
         let own = self::maps(layout.get("nodes").into_iter());

@@ -253,9 +253,14 @@ fn edge(
         turned: fit.turned,
         ..Edge::new(Id::Text(id), ends, fit.pieces)
     };
-    let (typed, drawn) = (limit("length")?, edge.length());
-    if typed.is_none_or(|typed| (typed - drawn).abs() > DIFFERENCE * drawn) {
-        warnings.add(name, LENGTH);
+    if speed[0].is_none() {
+        warnings.add(&name, "it has no maxVelocity; it is taken to be open, without a limit of its own");
+    }
+    let drawn = edge.length();
+    match limit("length")? {
+        None => warnings.add(name, "it has no length; that of its geometry counts"),
+        Some(typed) if (typed - drawn).abs() > DIFFERENCE * drawn => warnings.add(name, LENGTH),
+        Some(_) => {}
     }
     Ok(edge)
 }
