@@ -265,6 +265,11 @@ impl Index {
         self.origin
     }
 
+    /// Whether it holds nodes, too. Edges come before nodes.
+    pub fn has_nodes(&self) -> bool {
+        self.counts[0].checked_sub(1).is_some_and(|last| self.place(last).flags & NODE != 0)
+    }
+
     /// Number of edges and nodes, and number of records.
     pub fn counts(&self) -> [u64; 2] {
         [self.counts[0], self.counts[2]]

@@ -4,7 +4,8 @@ use crate::checksum::crc32;
 use pcr_formats::import::Imported;
 use std::fmt::Debug;
 
-/// The checksum of all that locks depend on: names, places and levels of nodes, curves and ends of edges, and the vehicle. Speeds
+/// The checksum of all that locks depend on: names, places and levels of nodes; curves, ends and directions of edges, and whether they are closed;
+/// and the vehicle. Speeds
 /// do not count.
 pub fn origin(imported: &Imported) -> u32 {
     let (layout, vehicle) = (&imported.layout, &imported.vehicle);
@@ -13,6 +14,6 @@ pub fn origin(imported: &Imported) -> u32 {
     add(&(vehicle.radius, vehicle.margin, &vehicle.footprint, layout.nodes.len(), layout.edges.len()));
     layout.nodes.iter().for_each(|node| add(&(&node.id, node.level, node.at)));
     let edges = layout.edges.iter();
-    edges.for_each(|edge| add(&(&edge.id, edge.ends, &edge.curve, edge.is_two_way(), edge.off(vehicle))));
+    edges.for_each(|edge| add(&(&edge.id, edge.ends, &edge.curve, edge.ways, edge.closed, edge.off(vehicle))));
     sum
 }
