@@ -138,7 +138,7 @@ impl fmt::Display for Failure {
             Self::TooMany { what, agents, most } => write!(f, "{what} for {most} agents at most; there are {agents}"),
             Self::Overfull([i, j]) => write!(
                 f,
-                "agents {i} and {j}: more than 65535 pairs of segments within reach of one another, each turn of an arc counted; \
+                "agents {i} and {j}: more than 32767 pieces (pairs of segments within reach of one another), each turn of an arc counted; \
                  join short segments, or leave out turns"
             ),
             Self::Robot(id) => write!(f, "agent {id}: its path or its disc with all margins is out of range"),

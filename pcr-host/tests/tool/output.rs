@@ -342,7 +342,7 @@ fn a_pair_that_the_table_cannot_hold_is_named() {
     let scenario = json!({ "agents": [agent(8, 50.0), agent(5, 0.0), agent(6, 0.1)] });
     let scenario = file("overfull", "convoy.json", scenario.to_string());
     let message = run(&["regions", &scenario]).failed(2);
-    let problem = "agents 5 and 6: more than 65535 pairs of segments within reach of one another, each turn of an arc counted; \
+    let problem = "agents 5 and 6: more than 32767 pieces (pairs of segments within reach of one another), each turn of an arc counted; \
                    join short segments, or leave out turns";
     assert_eq!(message, format!("pcr: {scenario}: {problem}\n"));
 }

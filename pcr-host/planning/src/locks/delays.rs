@@ -242,7 +242,7 @@ impl Delays {
         while let Err(full) = overlaps(own, their, &mut pieces, &mut found) {
             let names = units.map(|unit| self.name(unit));
             if full != Full::Pieces {
-                let problem = "more than 32767 pairs of segments within reach of one another";
+                let problem = "more than 32767 pieces (pairs of segments within reach of one another)";
                 return Err(ImportError::new(format!("{} and {}: {problem}", names[0], names[1])));
             }
             let bytes = 2 * (pieces.len() * size_of::<Piece<f64>>()) as u64;

@@ -203,7 +203,7 @@ impl Sweep {
                 memory::ask(bytes, || "a pair of edges".into()).map_err(|large| ImportError::new(large.to_string()))?;
                 if full != Full::Pieces {
                     let names = [own, other].map(|disc| self.name(disc));
-                    let problem = "more than 32767 pairs of segments within reach of one another";
+                    let problem = "more than 32767 pieces (pairs of segments within reach of one another)";
                     return Err(ImportError::new(format!("{} and {}: {problem}", names[0], names[1])));
                 }
                 pieces.resize(2 * pieces.len(), Piece::EMPTY);
