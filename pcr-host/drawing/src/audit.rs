@@ -5,7 +5,7 @@ use super::axis::Frame;
 use super::layout::{Ground, STEPS, path};
 use super::svg::{Pixels, Svg};
 use pcr_exclusions::{Audit, Gap, Rules, Spot, stretch};
-use pcr_formats::import::Imported;
+use pcr_formats::import::{Imported, Node};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::fmt::Display;
@@ -91,6 +91,7 @@ fn zone(svg: &mut Svg, frame: &Frame, outline: &[[f64; 2]], colour: &str) {
 pub(super) fn picture(ground: Ground<'_>, rules: &Rules, audit: &Audit) -> String {
     let (imported, places) = (ground.imported, places(ground.imported));
     let layout = &imported.layout;
+    let nodes: HashMap<String, &Node> = layout.nodes.iter().rev().map(|node| (node.id.to_string(), node)).collect();
     let on_level = |edge: usize| layout.edges.get(edge).is_some_and(|edge| layout.is_on(edge, ground.level));
     let level = layout.levels.get(ground.level).map_or("", String::as_str);
     let [before, name, after] = ground.title();
@@ -115,8 +116,8 @@ pub(super) fn picture(ground: Ground<'_>, rules: &Rules, audit: &Audit) -> Strin
                     svg.empty("path", &[("d", &data)]);
                 }
             }
-            let node = |name: &String| layout.nodes.iter().find(|node| node.id.to_string() == *name);
-            for node in group.nodes.iter().filter_map(node).filter(|node| node.level == ground.level) {
+            for node in group.nodes.iter().filter_map(|name| nodes.get(name)).filter(|node| node.level == ground.level)
+            {
                 let [x, y] = frame.at(node.at);
                 svg.empty("circle", &[("cx", &Pixels(x)), ("cy", &Pixels(y)), ("r", &Pixels(3.0))]);
             }

@@ -140,18 +140,8 @@ pub fn write(
 /// # Errors
 /// Those of writing files.
 pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::Result<Written> {
-    let mut files = Files::new();
-    for level in 0..imported.layout.levels.len() {
-        let svg = Ground { imported, level }.picture();
-        let name = if level > 0 { format!("layout-{}", level + 1) } else { "layout".to_owned() };
-        files.extend(self::files(&name, svg)?);
-    }
-    // The page is last: before it is there, nobody looks at the pictures.
-    files.push(("locks.html".to_owned(), locks::page(imported, locks).into_bytes()));
-    output::folder(directory)?;
-    let mut written = Written::default();
-    written.add(directory, files)?;
-    Ok(written)
+    let picture = |level: usize| Ground { imported, level }.picture();
+    write_levels(imported, directory, "layout", picture, ("locks.html", locks::page(imported, locks)))
 }
 
 /// Writes the audit of a layout: a page with groups and gaps as layers, and a picture of each level. Returns the files.
@@ -165,14 +155,31 @@ pub fn write_audit(
     audit: &Audit,
     directory: &Path,
 ) -> io::Result<Written> {
+    let picture = |level: usize| audit::picture(Ground { imported, level }, rules, audit);
+    write_levels(
+        imported,
+        directory,
+        "audit",
+        picture,
+        ("audit.html", locks::page_of_audit(imported, locks, rules, audit)),
+    )
+}
+
+/// Writes a picture of each level, from the second level on with its number, and a page with its name.
+fn write_levels(
+    imported: &Imported,
+    directory: &Path,
+    name: &str,
+    picture: impl Fn(usize) -> String,
+    (page, content): (&str, String),
+) -> io::Result<Written> {
     let mut files = Files::new();
     for level in 0..imported.layout.levels.len() {
-        let svg = audit::picture(Ground { imported, level }, rules, audit);
-        let name = if level > 0 { format!("audit-{}", level + 1) } else { "audit".to_owned() };
-        files.extend(self::files(&name, svg)?);
+        let name = if level > 0 { format!("{name}-{}", level + 1) } else { name.to_owned() };
+        files.extend(self::files(&name, picture(level))?);
     }
-    let page = locks::page_of_audit(imported, locks, rules, audit);
-    files.push(("audit.html".to_owned(), page.into_bytes()));
+    // The page is last: before it is there, nobody looks at the pictures.
+    files.push((page.to_owned(), content.into_bytes()));
     output::folder(directory)?;
     let mut written = Written::default();
     written.add(directory, files)?;

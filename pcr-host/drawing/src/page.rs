@@ -101,8 +101,13 @@ fn agent(scene: &Scene<'_>, place: usize, motion: &Motion<'_, f64>) -> Value {
 /// begins or ends, both outlines count.
 fn covering(agent: &Agent) -> Vec<[f64; 5]> {
     let outlines = agent.outlines();
-    let begin = |[first, last]: [usize; 2]| if first == 0 { 0.0 } else { agent.stretch(first, last).from };
-    let begins: Vec<f64> = outlines.iter().map(|outline| begin(outline.segments)).collect();
+    let mut before = vec![0.0];
+    before.extend(agent.path.iter().scan(0.0, |length, segment| {
+        *length += segment.length();
+        Some(*length)
+    }));
+    let begin = |first: usize| before.get(first).copied().unwrap_or_default();
+    let begins: Vec<f64> = outlines.iter().map(|outline| begin(outline.segments[0])).collect();
     let ends = begins.iter().skip(1).copied().chain([f64::MAX]);
     let mut all = Vec::new();
     for ((outline, &from), to) in outlines.iter().zip(&begins).zip(ends) {
