@@ -1,6 +1,6 @@
 //! `pcr compare`.
 
-use super::sources::{apart, sources, without_margin};
+use super::sources::{gathered, without_margin};
 use super::{SCENARIOS, Stop, folder, quiet, statuses};
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
@@ -10,7 +10,7 @@ use pcr_formats::import::Options;
 use pcr_formats::output;
 use pcr_planning::memory;
 use pcr_planning::regions::Failure;
-use pcr_planning::report::json;
+use pcr_planning::report::{counted, heading, json};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -73,7 +73,7 @@ impl Arguments {
             let names = names.join(", ");
             return Err(Stop::arguments(format!("--method {word}: no method has a name with that; there are {names}")));
         }
-        let sources = apart(sources(self.files)?, &self.import);
+        let sources = gathered(self.files, &self.import)?;
         if let Some(directory) = &self.output {
             // Before minutes of measurements.
             output::folder(directory).map_err(|error| Stop::not_written(directory, &error))?;
@@ -102,6 +102,10 @@ impl Arguments {
             match format {
                 Output::Table | Output::Markdown if place > 0 => writeln!(out)?,
                 _ => {}
+            }
+            if format == Output::Markdown && sources.len() > 1 {
+                // A table of Markdown has no title of its own.
+                writeln!(out, "{}: {}\n", heading(&comparison.name), counted(agents, "agent"))?;
             }
             match format {
                 Output::Table => report::comparison_table(&comparison, false, &mut out)?,

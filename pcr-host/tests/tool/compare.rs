@@ -17,7 +17,8 @@ fn two_scenarios_in_every_form() {
     assert_eq!(lines.len(), 1 + 2 * 4, "{csv}");
     assert!(lines.iter().all(|line| line.split(',').count() == 15), "{csv}");
     let markdown = of("markdown");
-    assert!(markdown.starts_with('|') && markdown.contains("\n| polyline 1 mm | intervals, conservative | "));
+    assert!(names.iter().all(|name| markdown.contains(&format!("{name}: 2 agents\n\n| "))), "{markdown}");
+    assert!(markdown.contains("\n| polyline 1 mm | intervals, conservative | "));
     for line in of("json").lines() {
         let value: serde_json::Value = serde_json::from_str(line).unwrap();
         let rows = value["rows"].as_array().unwrap();
@@ -39,6 +40,23 @@ fn charts_show_every_method() {
         assert!(svg.contains(">crossing, 2 agents: "), "{svg}");
         assert!(methods.iter().all(|method| svg.contains(&format!(">{method}<"))), "{chart}");
     }
+}
+
+#[test]
+fn several_orders_are_compared_as_one_scenario() {
+    let order = |id: &str, y: f64| {
+        let node = |k: u32| {
+            serde_json::json!({ "nodeId": format!("{id}{k}"), "sequenceId": 2 * k, "released": true, "actions": [],
+                "nodePosition": { "x": 4 * k, "y": y, "mapId": "m" } })
+        };
+        let edge = serde_json::json!({ "edgeId": "e", "sequenceId": 1, "released": true, "actions": [] });
+        let order = serde_json::json!({ "orderId": id, "nodes": [node(0), node(1)], "edges": [edge] });
+        file("compare-orders", &format!("{id}.json"), order.to_string())
+    };
+    let (a, b) = (order("a", 0.0), order("b", 0.1));
+    let compared =
+        run(&["compare", &a, &b, "--radius", "0.3", "--method", "polyline", "--rounds", "1", "--json", "-q"]).json();
+    assert_eq!(compared["agents"], 2);
 }
 
 #[test]

@@ -94,7 +94,7 @@ impl Phase {
 }
 
 impl Track {
-    /// The motion of an agent of a scenario; a footprint counts as the disc around it.
+    /// The motion of an agent of a scenario; footprint and loads count as the disc around all of them.
     pub fn new(agent: &Agent) -> Self {
         let [x, y, mut heading] = agent.start;
         let (mut start, mut from) = ([x, y], 0.0);
@@ -115,7 +115,7 @@ impl Track {
         }
         let phases = phases(agent, from);
         let end = phases.last().map_or(agent.t_start, Phase::end);
-        Self { radius: agent.radius, ways, phases, time: [agent.t_start, end], length: from }
+        Self { radius: agent.reach(), ways, phases, time: [agent.t_start, end], length: from }
     }
 
     pub(crate) fn ways(&self) -> &[Way] {
@@ -212,4 +212,19 @@ fn phases(agent: &Agent, length: f64) -> Vec<Phase> {
         }
     }
     phases
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pcr_formats::scenario::Scenario;
+
+    #[test]
+    fn a_load_makes_the_disc_larger() {
+        let text = r#"{ "agents": [ { "id": 1, "radius": 0.2, "v_max": 1, "a_max": 1, "start": { "x": 0, "y": 0, "heading": 0 },
+            "path": [ { "kind": "line", "length": 2 }, { "kind": "line", "length": 2 } ],
+            "loads": [ { "segments": [2, 2], "radius": 0.6 } ] } ] }"#;
+        let scenario = Scenario::from_json(text).unwrap();
+        assert_eq!(Track::new(&scenario.agents[0]).radius, 0.6);
+    }
 }
