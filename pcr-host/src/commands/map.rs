@@ -57,13 +57,7 @@ impl Arguments {
         let named = |failure: Failure| Stop::wrong(file, failure);
         let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| named(refused.into()))?;
         let (scenario, egos) = self.asked(scenario, fleet.motions()).map_err(named)?;
-        let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| named(refused.into()))?;
-        let table = regions::table(&scenario, &fleet.motions()).map_err(named)?;
-        // Each region is drawn for both of its agents, in the page and in a picture.
-        let shapes = 2 * table.len() as u64;
-        let what = || format!("pictures of {shapes} regions");
-        memory::ask(shapes * SHAPE_BYTES, what).map_err(|large| named(large.into()))?;
-        drop(table);
+        ask_for_regions(&scenario).map_err(named)?;
         let mut out: Box<dyn Write> = if quiet() { Box::new(io::sink()) } else { Box::new(io::stdout().lock()) };
         draw(&scenario, egos.as_deref(), None, &self.output, &mut out)?;
         Ok(ExitCode::SUCCESS)
@@ -76,9 +70,7 @@ impl Arguments {
         motions: Vec<Motion<'_, f64>>,
     ) -> Result<(Scenario, Option<Vec<usize>>), Failure> {
         if self.agents.is_empty() {
-            let (what, agents) = ("without --agent, maps are drawn", motions.len());
-            let few = agents <= MOST;
-            return if few { Ok((scenario, None)) } else { Err(Failure::TooMany { what, agents, most: MOST }) };
+            return are_few(motions.len(), "without --agent, maps are drawn").map(|()| (scenario, None));
         }
         let ids = self.agents.iter().map(|asked| regions::find(&scenario, asked)).collect::<Result<HashSet<_>, _>>()?;
         let (grid, mut near, mut some) = (rows::grid(&motions), Vec::new(), HashSet::new());
@@ -92,6 +84,19 @@ impl Arguments {
         let egos = egos.map(|(place, _)| place).collect();
         Ok((scenario, Some(egos)))
     }
+}
+
+/// Refuses more agents than maps are drawn of.
+pub(super) fn are_few(agents: usize, what: &'static str) -> Result<(), Failure> {
+    if agents <= MOST { Ok(()) } else { Err(Failure::TooMany { what, agents, most: MOST }) }
+}
+
+/// Asks for what the pictures of all regions take.
+pub(super) fn ask_for_regions(scenario: &Scenario) -> Result<(), Failure> {
+    let fleet = Fleet::<f64>::new(scenario)?;
+    // Each region is drawn for both of its agents, in the page and in a picture.
+    let shapes = 2 * regions::table(scenario, &fleet.motions())?.len() as u64;
+    Ok(memory::ask(shapes * SHAPE_BYTES, || format!("pictures of {shapes} regions"))?)
 }
 
 /// Draws a scenario, on a layout if there is one, to a directory; with the maps of the agents at the places `egos`, or of all.

@@ -1,9 +1,9 @@
 //! `pcr plan`.
 
-use super::map::draw;
+use super::map::{are_few, ask_for_regions, draw};
 use super::printed::notes;
 use super::sources::{Source, gathered};
-use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, complain, folder, is_standard, say, write_over};
+use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, complain, folder, is_standard, say, write_over, write_to};
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_formats::import::Options;
@@ -13,7 +13,7 @@ use pcr_planning::plan::{Effort, Method, Objective, Plan, Priority, Request};
 use pcr_planning::regions::{Failure, find};
 use pcr_planning::report;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -206,6 +206,10 @@ impl Arguments {
                 Ok(solved) => unsolved |= !solved,
                 Err(Stop::Error(message, WRONG_INPUT)) if sources.len() > 1 => {
                     refused += 1;
+                    // Nobody would miss it in a stream of plans.
+                    if is_standard(self.output.as_ref()) {
+                        write_to(Path::new("-"), &Scenario::missing(&source.name(), &message))?;
+                    }
                     if self.printed.form() == Form::Json {
                         let (method, objective) = (self.method.into(), self.objective.into());
                         report::json(&Plan::refused(&source.name(), method, objective, message.clone()), &mut out)?;
@@ -237,8 +241,11 @@ impl Arguments {
             leave_out: self.leave_out,
             effort: Effort { prove: self.prove, time: self.time_limit },
         };
-        // How long it takes nobody knows before.
         let agents = scenario.agents.len();
+        if self.pictures.is_some() {
+            are_few(agents, "maps are drawn").and_then(|()| ask_for_regions(&scenario)).map_err(wrong)?;
+        }
+        // How long it takes nobody knows before.
         let progress = Progress::new(format!("{}: planning {agents} agents", source.file().display()));
         let planned = Plan::of(&scenario, &request);
         drop(progress);

@@ -87,9 +87,15 @@ impl Arguments {
             let answer = Lifelong::of(&imported, request, methods).map_err(|problem| Stop::wrong(file, problem))?;
             return print(&self.printed, &answer);
         }
+        let wrong = |failure| Stop::wrong(file, failure);
+        if self.output.is_some() {
+            map::are_few(self.agents.into(), "maps are drawn").map_err(wrong)?;
+        }
         let request = Request { agents: self.agents.into(), seed: self.seed };
-        let (traffic, [missions, plan]) =
-            Traffic::of(&imported, request).map_err(|failure| Stop::wrong(file, failure))?;
+        let (traffic, [missions, plan]) = Traffic::of(&imported, request).map_err(wrong)?;
+        if self.output.is_some() {
+            map::ask_for_regions(&plan).map_err(wrong)?;
+        }
         let mut out = self.printed.out(false);
         match self.printed.form() {
             Form::Table => report::traffic_table(&traffic, &mut out)?,

@@ -55,6 +55,12 @@ fn of_large_fleets_the_maps_are_drawn_that_are_asked_for() {
     let message = run(&["map", &name, "-o", folder]).failed(2);
     assert!(message.contains("without --agent, maps are drawn for 2000 agents at most; there are 2002"), "{message}");
     assert!(!maps.exists());
+    let plan = run(&["plan", &name, "--pictures", folder]).failed(2);
+    assert!(plan.contains("maps are drawn for 2000 agents at most; there are 2002"), "{plan}");
+    let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/warehouse_graph.geojson");
+    let traffic = run(&["traffic", layout, "--radius", "0.4", "-q", "--agents", "2001", "-o", folder]).failed(2);
+    assert!(traffic.contains("maps are drawn for 2000 agents at most; there are 2001"), "{traffic}");
+    assert!(!maps.exists());
     let said = run(&["map", &name, "--agent", "401", "--agent", "7", "-o", folder]).ok();
     let mut drawn: Vec<String> = std::fs::read_dir(&maps)
         .unwrap()
