@@ -2,7 +2,7 @@
 
 use super::help::STANDING;
 use super::number::{Number, with_scalar};
-use super::sources::{layout, scenario, source};
+use super::sources::{layout_from, scenario_from, source, text};
 use super::work::tell_rounding;
 use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, say};
 use clap::Args;
@@ -114,13 +114,14 @@ impl Arguments {
         }
         let file = &source(self.file.clone())?;
         let mut warnings = Vec::new();
-        let scenarios = match input::kind(file, &self.import)? {
+        let text = text(file)?;
+        let scenarios = match input::kind_of(file, &text, &self.import) {
             Kind::Layout(_) if self.import.one_of(&["routes"]).is_none() => {
-                let imported = layout(file, &self.import, STANDING, false)?;
+                let imported = layout_from(file, &text, &self.import, STANDING, false)?;
                 warnings.extend(imported.layout.warnings.iter().cloned().chain(rounded(&imported.layout)));
                 locks::scenarios(&imported).map_err(|error| Stop::wrong(file, error))?
             }
-            _ => vec![scenario(file, &self.import)?],
+            _ => vec![scenario_from(file, text, &self.import)?],
         };
         let certified = scenarios.into_iter().map(|mut scenario| {
             let lost = tell_rounding(self.scalar, &mut scenario).map_err(|refused| Stop::wrong(file, refused))?;

@@ -1,13 +1,13 @@
 //! The part of `pcr locks` that writes exclusions into layout files, and audits such files.
 
 use super::help::STANDING;
-use super::sources::layout;
-use super::{CONFLICTS, Form, Printed, Stop, is_standard, say, warn_of_boxes, write_over};
+use super::sources::{layout_from, text};
+use super::{CONFLICTS, Form, Printed, Stop, is_standard, warn_of_boxes, write_over};
 use clap::Args;
 use pcr_drawing as picture;
 use pcr_exclusions::{Audit, Settings, Target, report};
 use pcr_formats::import::{Format, Imported, Options};
-use pcr_formats::{input, output};
+use pcr_formats::input;
 use pcr_planning::report::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -35,11 +35,6 @@ fn length(text: &str) -> Result<f64, String> {
         Ok(length) if length > 0.0 && length <= 1e6 => Ok(length),
         _ => Err("a number above 0, up to 1e6, is expected".into()),
     }
-}
-
-fn text(file: &Path) -> Result<String, Stop> {
-    output::keep(file);
-    Ok(input::read_text(file)?)
 }
 
 impl Asked {
@@ -83,12 +78,9 @@ impl Asked {
         let (format, content) = read(file, import)?;
         let settings = Settings { target, split: self.split, envelopes: self.envelopes.clone() };
         let name = input::stem(file);
+        // What is to be said of the layout has been said when it was read.
         let (written, report, _) = pcr_exclusions::write(format, &content, import, &name, &settings)
             .map_err(|error| Stop::wrong(file, error))?;
-        if file == Path::new("-") {
-            // Otherwise they have been said when the layout was read.
-            say(file, report.warnings.iter().take(report.of_layout).cloned());
-        }
         // A layout may get what keeps its vehicles apart; a table of that is no layout.
         write_over(output, &written, file, || Ok(target.layout() == Some(format)))?;
         let mut out = printed.out(standard);
@@ -107,9 +99,7 @@ fn read(file: &Path, import: &Options) -> Result<(Format, String), Stop> {
     let Some(format) = import.from.or_else(|| Format::of(file, &content)) else {
         return Err(Stop::wrong(file, "not a layout in a format that is read"));
     };
-    if file != Path::new("-") {
-        layout(file, import, STANDING, false)?;
-    }
+    layout_from(file, &content, import, STANDING, false)?;
     Ok((format, content))
 }
 
@@ -120,13 +110,14 @@ fn audit(
     printed: &Printed,
     output: Option<&PathBuf>,
 ) -> Result<ExitCode, Stop> {
-    if file == Path::new("-") {
-        return Err(Stop::arguments("--audit reads a file twice; name it"));
+    if beside.is_some_and(|beside| beside == file && beside == Path::new("-")) {
+        return Err(Stop::arguments("--audit=-: standard input is the layout already"));
     }
-    let imported: Imported = layout(file, import, STANDING, false)?;
+    let content = text(file)?;
+    let imported: Imported = layout_from(file, &content, import, STANDING, false)?;
     let (source, content) = match beside {
         Some(beside) => (beside, text(beside)?),
-        None => (file, text(file)?),
+        None => (file, content),
     };
     let target = match beside {
         Some(_) => Target::of_text(&content),

@@ -59,9 +59,20 @@ fn keep(import: &Options) {
 
 /// The scenario in a file, in whatever format; warnings about it are told.
 pub(super) fn scenario(file: &Path, import: &Options) -> Result<Scenario, Stop> {
+    scenario_from(file, text(file)?, import)
+}
+
+/// The same in a text that is read already, such as that of standard input.
+pub(super) fn scenario_from(file: &Path, text: String, import: &Options) -> Result<Scenario, Stop> {
     keep(import);
+    told(file, input::read_from(file, text, import)?, import)
+}
+
+/// The text of a file, which is not to be replaced by something else.
+pub(super) fn text(file: &Path) -> Result<String, Stop> {
     ask_for(file)?;
-    told(file, input::read(file, import)?, import)
+    output::keep(file);
+    Ok(input::read_text(file)?)
 }
 
 /// Asks for the memory that it takes to read a file. Refuses a table of locks, which is no text.
@@ -72,13 +83,6 @@ fn ask_for(file: &Path) -> Result<(), Stop> {
     // What has no size, such as standard input, is not known before.
     let bytes = std::fs::metadata(file).map_or(0, |there| there.len());
     memory::ask_for_text(bytes).map_err(|large| Stop::wrong(file, large))
-}
-
-/// The scenario in the text of standard input, which is of another format.
-pub(super) fn foreign_scenario(text: String, import: &Options) -> Result<Scenario, Stop> {
-    keep(import);
-    let file = Path::new("-");
-    told(file, input::read_from(file, text, import)?, import)
 }
 
 /// A scenario that was read, with the margin that is asked for; warnings about it are told.
@@ -208,23 +212,40 @@ pub(super) const FLEET: &str = "fleet";
 
 /// The layout in a file for a command, whose vehicles move or do not.
 pub(super) fn layout(file: &Path, import: &Options, command: &str, moves: bool) -> Result<Imported, Stop> {
+    refuse_useless(import, command)?;
+    layout_from(file, &text(file)?, import, command, moves)
+}
+
+/// Refuses options that do nothing in a command that reads layouts.
+fn refuse_useless(import: &Options, command: &str) -> Result<(), Stop> {
     let why = match command {
         "traffic" => "traffic has random routes; pcr plan takes given ones",
         DRIVING => "delays are of all edges as they are",
         STANDING => "locks are of all ways of a vehicle, at any speed",
         _ => "this command lists what is in the file",
     };
-    if let Some(option) = import.one_of(useless(command)) {
-        return Err(Stop::arguments(format!("{option} has no effect: {why}")));
+    match import.one_of(useless(command)) {
+        Some(option) => Err(Stop::arguments(format!("{option} has no effect: {why}"))),
+        None => Ok(()),
     }
-    // Where nothing depends on the size of the vehicle, none is assumed and warned about.
+}
+
+/// The layout in a text that is read already, for a command.
+pub(super) fn layout_from(
+    file: &Path,
+    text: &str,
+    import: &Options,
+    command: &str,
+    moves: bool,
+) -> Result<Imported, Stop> {
+    refuse_useless(import, command)?;
+    // Where nothing depends on the size of the vehicle, none is assumed and warned about, nor is one smaller than an outline.
     let import = &match command {
-        "nodes" => Options { radius: Some(1.0), ..import.clone() },
+        "nodes" => Options { radius: Some(f64::INFINITY), ..import.clone() },
         _ => import.clone(),
     };
     keep(import);
-    ask_for(file)?;
-    let (imported, warnings) = input::read_layout(file, import, moves).map_err(|error| match error {
+    let (imported, warnings) = input::read_layout_from(file, text, import, moves).map_err(|error| match error {
         // There is no --from to say it with.
         InputError::NoLayout(_) if command == FLEET => {
             Stop::wrong(file, "not known as a layout by its name or content")

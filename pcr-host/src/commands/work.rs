@@ -2,7 +2,7 @@
 
 use super::number::{Number, with_scalar};
 use super::printed::is_alone;
-use super::sources::{Source, foreign_scenario, gathered, give_margin};
+use super::sources::{Source, gathered, give_margin, scenario_from};
 use super::{Form, NOT_WRITTEN, Printed, Stop, WRONG_INPUT, complain, say};
 use crate::progress::Progress;
 use pcr_formats::import::{Options, shortened};
@@ -94,7 +94,7 @@ fn one<W: Work>(
     out: &mut impl Write,
 ) -> Result<bool, Stop> {
     let mut scenario = match text {
-        Some(text) => foreign_scenario(text, import)?,
+        Some(text) => scenario_from(source.file(), text, import)?,
         None => source.scenario(import)?,
     };
     scenario.name = source.called(&scenario.name);

@@ -109,6 +109,16 @@ fn what_cannot_be_done_is_refused() {
         assert!(message.contains(reason), "{message}");
     }
     assert_eq!(run(&["locks", &nav2, "--radius", "0.4", "--write", "nav2"]).status, 2, "without a file");
+    // The same of a layout that comes in by a pipe.
+    let piped = |more: &[&str]| {
+        let write = ["locks", "-", "--from", "nav2", "--write", "nav2", "-q"];
+        run_with(&[&write[..], more].concat(), &fs::read(&nav2).unwrap()).failed(2)
+    };
+    let message = piped(&["--radius", "0.4", "--speed", "1", "-o", &written]);
+    assert!(message.contains("--speed has no effect"), "{message}");
+    let fleet = file("exclusions", "fleet.json", "{ \"physicalParameters\": { \"length\": 1, \"width\": 0.5 } }");
+    let message = piped(&["--fleet", &fleet, "-o", &fleet]);
+    assert!(message.contains(&fleet) && fs::read_to_string(&fleet).unwrap().contains("physical"), "{message}");
     assert!(!std::path::Path::new(&written).exists());
 }
 

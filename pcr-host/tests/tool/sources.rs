@@ -126,6 +126,12 @@ fn pipes_are_read_once() {
     for command in [
         format!("check -q <(cat {scenario}) {scenario}"),
         format!("locks --json -q --radius 0.4 <(cat {layout}) | grep -q pcr-locks; exit $((1 - $?))"),
+        format!("certify --json -q --radius 0.4 <(cat {layout}) | grep -q proved; exit $((1 - $?))"),
+        format!("certify --json -q --radius 0.4 < {layout} | grep -q proved; exit $((1 - $?))"),
+        format!("certify --json -q <(cat {scenario}) | grep -q proved; exit $((1 - $?))"),
+        format!("locks -q --radius 0.4 --write nav2 <(cat {layout}) -o - | grep -q Feature; exit $((1 - $?))"),
+        format!("locks -q --radius 0.4 --audit <(cat {layout})"),
+        format!("locks -q --radius 0.4 --audit - < {layout}"),
     ] {
         let line = format!("{} {command}", env!("CARGO_BIN_EXE_pcr"));
         let output = std::process::Command::new("bash").args(["-c", &line]).output().unwrap();
@@ -181,6 +187,23 @@ fn plans_of_several_files_have_an_answer_each() {
     assert_eq!((&answers[0]["format"], &answers[0]["name"]), (&json!("pcr-plan"), &json!("nowhere")));
     assert!(answers[0]["error"].as_str().unwrap().contains("nowhere.json: cannot be read"), "{}", run.out);
     assert_eq!((&answers[1]["name"], &answers[1]["error"]), (&json!("crossing"), &Value::Null));
+}
+
+/// A file without a plan was not in the stream, and the others were free.
+#[test]
+fn a_file_that_is_refused_is_not_missing_in_a_stream_of_plans() {
+    let good = file("refused-plans", "good.json", crossing().to_string());
+    let broken = file("refused-plans", "broken.json", "{");
+    let plans = run(&["plan", &good, &broken, "nowhere.json", "-q", "-o", "-"]);
+    assert_eq!(plans.status, 2);
+    let checked = run_with(&["check", "--json", "-q"], plans.out.as_bytes());
+    assert_eq!(checked.status, 2);
+    let answers: Vec<Value> = checked.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let said: Vec<_> =
+        answers.iter().map(|answer| (answer["name"].as_str().unwrap(), answer["error"].as_str())).collect();
+    assert_eq!((said.len(), said[0]), (3, ("crossing", None)));
+    assert!(said[1].0 == "broken" && said[1].1.unwrap().contains("broken.json:1: "), "{said:?}");
+    assert!(said[2].0 == "nowhere" && said[2].1.unwrap().contains("nowhere.json: cannot be read"), "{said:?}");
 }
 
 #[test]
