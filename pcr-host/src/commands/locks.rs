@@ -139,12 +139,7 @@ impl Arguments {
                 report::locks_table(&locks, &mut out)?;
             }
             Form::Json => report::json(&locks, &mut out)?,
-            Form::Csv => {
-                let sweep = Sweep::new(&imported, self.nodes).map_err(wrong)?;
-                if let Err(LocksUnprinted::Output(error)) = report::locks_csv(&sweep, &|_, _| {}, &mut out) {
-                    return Err(error.into());
-                }
-            }
+            Form::Csv => report::kept_locks_csv(&locks, &mut out)?,
         }
         out.flush()?;
         Ok(ExitCode::SUCCESS)
@@ -155,6 +150,13 @@ impl Arguments {
         let Some(speed) = self.import.speed else {
             return Err(Stop::arguments("--delays are of one speed: say which, --speed"));
         };
+        if self.import.acceleration.is_none()
+            && let Some(option) = self.import.one_of(&["rotation", "rotation_acceleration"])
+        {
+            return Err(Stop::arguments(format!(
+                "{option} has no effect without --acceleration: the speed is constant then, and lower only where the file says so"
+            )));
+        }
         let driving = Driving { speed, acceleration: self.import.acceleration };
         let imported = layout(file, &self.import, DRIVING, driving.acceleration.is_some())?;
         let wrong = |error: ImportError| Stop::wrong(file, error);
@@ -202,6 +204,10 @@ impl Arguments {
             if of.is_some_and(|of| of != held.origin()) {
                 let stale = "it has the locks of another layout or vehicle; without --edge it is written anew";
                 return Err(Stop::wrong(index, stale));
+            }
+            if self.nodes && !held.has_nodes() {
+                let problem = "it has no nodes, as it was written without --nodes; without --edge it is written anew";
+                return Err(Stop::wrong(index, problem));
             }
             held.of(edge).map_err(wrong)
         };

@@ -213,6 +213,70 @@ fn an_index_that_is_out_of_date_gives_no_answer() {
     assert_eq!(run(&["locks", &name, "--radius", "0.25", "--index", path, "--json"]).status, 2);
 }
 
+#[test]
+fn an_index_without_nodes_tells_nothing_about_them() {
+    let name = file("locks", "no-nodes.geojson", cross());
+    let index = directory("locks").join("no-nodes.locks");
+    let of = |more: &[&str]| {
+        run(&[&["locks", &name, "--radius", "0.25", "-q", "--index", index.to_str().unwrap()], more].concat())
+    };
+    assert_eq!(of(&[]).status, 0);
+    let refused = of(&["--nodes", "--edge", "7"]).failed(2);
+    assert!(
+        refused.ends_with("it has no nodes, as it was written without --nodes; without --edge it is written anew\n"),
+        "{refused}"
+    );
+    assert_eq!(of(&["--nodes"]).status, 0);
+    let partners = of(&["--nodes", "--edge", "7", "--json"]).json()["partners"].clone();
+    assert_eq!(partners.as_array().unwrap().iter().filter(|partner| partner["node"] == true).count(), 2);
+}
+
+/// Whether an edge is closed, or leads the other way, decides where an outline turns.
+#[test]
+fn an_index_of_an_edge_that_is_closed_or_turned_since_is_out_of_date() {
+    let plant = |path: &str| {
+        let text = format!(
+            "<model name=\"p\"><point name=\"A\" positionX=\"0\" positionY=\"0\"/>\
+             <point name=\"B\" positionX=\"4000\" positionY=\"0\"/><path name=\"7\" sourcePoint=\"A\" \
+             destinationPoint=\"B\" length=\"4000\" {path}/></model>"
+        );
+        file("locks", "ways.xml", text)
+    };
+    let index = directory("locks").join("ways.locks");
+    let of = |path: &str, more: &[&str]| {
+        let layout = plant(path);
+        run(&[&["locks", &layout, "--radius", "0.25", "-q", "--index", index.to_str().unwrap()], more].concat())
+    };
+    let forward = "maxVelocity=\"1000\" maxReverseVelocity=\"0\"";
+    assert_eq!(of(forward, &[]).status, 0);
+    assert_eq!(of(forward, &["--edge", "7"]).status, 0);
+    for other in [&format!("{forward} locked=\"true\""), "maxVelocity=\"0\" maxReverseVelocity=\"1000\""] {
+        let refused = of(other, &["--edge", "7"]).failed(2);
+        assert!(refused.contains("it has the locks of another layout or vehicle"), "{refused}");
+    }
+}
+
+#[test]
+fn csv_beside_pictures_is_the_same_as_without() {
+    let name = file("locks", "csv.geojson", cross());
+    let of = |more: &[&str]| {
+        run(&[&["locks", &name, "--radius", "0.25", "--nodes", "--format", "csv", "-q"], more].concat()).ok()
+    };
+    let folder = directory("locks").join("csv");
+    assert_eq!(of(&["-o", folder.to_str().unwrap()]), of(&[]));
+}
+
+#[test]
+fn rotation_without_acceleration_is_refused_of_delays() {
+    let name = file("locks", "rotation.geojson", cross());
+    for option in ["--rotation", "--rotation-acceleration"] {
+        let delays = ["locks", &name, "--radius", "0.25", "-q", "--delays", "--speed", "1", option, "0.5"];
+        let refused = run(&delays).failed(2);
+        assert!(refused.contains(&format!("{option} has no effect without --acceleration")), "{refused}");
+        assert_eq!(run(&[&delays[..], &["--acceleration", "1"]].concat()).status, 0);
+    }
+}
+
 /// A roadmap as Continuous-CBS has them, each way in both directions: a lattice with diagonals, not all of it even.
 fn roadmap(side: usize) -> String {
     let mut text = String::from("<graphml><graph edgedefault=\"directed\">");

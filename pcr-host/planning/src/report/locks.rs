@@ -3,7 +3,7 @@
 use super::columns::Columns;
 use super::figures::thousandths;
 use super::{Document, counted, json, printable, quoted};
-use crate::locks::{Found, LockVehicle, Locks, Partner, Sweep, Told};
+use crate::locks::{Found, Lock, LockVehicle, Locks, Partner, Sweep, Told};
 use pcr_formats::import::{Id, ImportError};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -59,6 +59,24 @@ pub fn locks_csv(sweep: &Sweep, told: Told<'_>, out: &mut impl Write) -> Result<
         text
     };
     sweep.each(told, lines, |text| Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?))
+}
+
+/// The same of a table that is in memory, in its order.
+///
+/// # Errors
+/// Errors of the writer.
+pub fn kept_locks_csv(locks: &Locks, out: &mut impl Write) -> io::Result<()> {
+    out.write_all(LOCKS_HEADER.as_bytes())?;
+    let name = |id: &Id| quoted(&id.to_string()).into_owned();
+    let node = |id: &Id| quoted(&format!("node {id}")).into_owned();
+    for Lock { a, b, a_length: [a_from, a_to], b_length: [b_from, b_to] } in &locks.locks {
+        writeln!(out, "{},{},{a_from},{a_to},{b_from},{b_to}", name(a), name(b))?;
+    }
+    for lock in locks.nodes.iter().flatten() {
+        let [from, to] = lock.edge_length;
+        writeln!(out, "{},{},,,{from},{to}", node(&lock.node), name(&lock.edge))?;
+    }
+    locks.node_pairs.iter().flatten().try_for_each(|[a, b]| writeln!(out, "{},{},,,,", node(a), node(b)))
 }
 
 /// The first line of [`locks_lines`].
