@@ -21,6 +21,7 @@ mod margins;
 mod output;
 mod plan;
 mod progress;
+mod readers;
 mod refusals;
 mod schema;
 #[cfg(feature = "serve")]
