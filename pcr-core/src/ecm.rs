@@ -55,8 +55,8 @@ impl Default for Region {
 /// about one in two billion. Start times, profiles, margins and lateness may change.
 ///
 /// A motion whose [`Motion::lag`] has grown since (by a longer wait in floating point, or a profile that misses the end
-/// of its path by more) has to be given to [`Ecm::replace`]. The regions are those of the lag with which they were computed: with a larger
-/// one they are too small, or are missing where the agents only came near.
+/// of its path by more) has to be given to [`Ecm::replace`]. The regions are those of the lag with which they were
+/// computed: with a larger one they are too small, or are missing where the agents only came near.
 ///
 /// [`Ecm::replace`] replaces one agent. [`Ecm::insert`] and [`Ecm::remove`] are for fleets to which agents are added,
 /// or from which they are removed, at the end. On a host, with the feature `std`, a table that stores vectors can grow:
