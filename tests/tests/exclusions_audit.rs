@@ -81,6 +81,22 @@ fn a_zone_beside_a_lane_counts_if_contours_reach_into_it() {
     assert!(suffices(&outline, "RELEASE", -1.5), "all of the contour");
 }
 
+/// A vehicle that stands at a node was reported although none may be there.
+#[test]
+fn nobody_stands_at_a_node_in_a_blocked_zone() {
+    let text = graph(&[[0.0, 0.0], [10.0, 0.0], [10.7, -5.0], [10.7, 5.0]], &[[1, 2], [3, 4]]).to_string();
+    let imported = imported(Format::Nav2, &text, &disc(0.4));
+    let zone = |x: [f64; 2], y: [f64; 2]| [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]];
+    let (along, across, end) =
+        (zone([-1.0, 10.0], [-0.3, 0.3]), zone([10.5, 10.9], [-6.0, 6.0]), zone([9.0, 10.0], [-0.3, 0.3]));
+    let mut zones: Vec<(&str, &str, &[[f64; 2]])> = vec![("a", "RELEASE", &along), ("b", "RELEASE", &across)];
+    let of = |zones: &[(&str, &str, &[[f64; 2]])]| audit(&imported, Target::Vda5050, &set("map", zones).to_string());
+    assert!(!of(&zones).suffices(), "without it one can stand there");
+    zones.push(("c", "BLOCKED", &end));
+    let blocked = of(&zones);
+    assert!(blocked.suffices(), "{:?}", blocked.gaps);
+}
+
 #[test]
 fn where_a_zone_ends_beside_the_lane_two_may_stand_there() {
     let notch = |depth: f64| -> Vec<[f64; 2]> {

@@ -354,9 +354,12 @@ impl<'a> Auditor<'a> {
         self.layout().levels.get(level).cloned().unwrap_or_default()
     }
 
-    /// The place where a vehicle on an edge can touch one that stands at a node and does not keep it off.
+    /// The place where a vehicle on an edge can touch one that stands at a node and does not keep it off. Nobody stands where nobody may be.
     fn gap_at(&self, node: usize, edge: usize, length: [f64; 2]) -> Option<Gap> {
         let (claim, there) = (&self.rules.nodes[node], &self.layout().nodes[node]);
+        if claim.closed {
+            return None;
+        }
         let (own, stands) = (&self.layout().edges[edge], [Placed::line(there.at, there.at)]);
         let sections = self.ways(edge).flat_map(|way| way.beside(claim));
         let open = sections.filter(|section| !claim.keeps_out(&section.claim));
