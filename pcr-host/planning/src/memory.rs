@@ -144,8 +144,31 @@ fn address_space() -> Option<u64> {
 }
 
 fn group() -> Option<u64> {
-    let number = |file: &str| fs::read_to_string(file).ok()?.trim().parse::<u64>().ok();
-    Some(number("/sys/fs/cgroup/memory.max")?.saturating_sub(number("/sys/fs/cgroup/memory.current")?))
+    in_groups(|file| fs::read_to_string(file).ok())
+}
+
+/// What the group of this process and the groups around it leave, by the files that the system shows.
+fn in_groups(read: impl Fn(&str) -> Option<String>) -> Option<u64> {
+    let groups = read("/proc/self/cgroup").unwrap_or_default();
+    let mut path = groups.lines().find_map(|line| line.strip_prefix("0::")).unwrap_or("").trim_end_matches('/');
+    let mut least: Option<u64> = None;
+    loop {
+        let file = |name: &str| read(&format!("/sys/fs/cgroup{path}/{name}"));
+        let number = |name: &str| file(name)?.trim().parse::<u64>().ok();
+        if let (Some(most), Some(used)) = (number("memory.max"), number("memory.current")) {
+            let used = used.saturating_sub(cached(&file("memory.stat").unwrap_or_default()));
+            let left = most.saturating_sub(used);
+            least = Some(least.map_or(left, |least| least.min(left)));
+        }
+        let Some((around, _)) = path.rsplit_once('/') else { return least };
+        path = around;
+    }
+}
+
+/// Pages of files in memory, which the system frees before it refuses an allocation \[bytes\].
+fn cached(stat: &str) -> u64 {
+    let of = |name: &str| stat.lines().find_map(|line| line.strip_prefix(name)?.trim().parse::<u64>().ok());
+    ["inactive_file ", "active_file "].into_iter().filter_map(of).fold(0, u64::saturating_add)
 }
 
 fn machine() -> Option<u64> {
@@ -163,6 +186,38 @@ mod tests {
             assert!(refused.starts_with("a table would take 1152921504607 MB of memory; "), "{refused}");
         }
         assert_eq!(ask(STEP - 1, String::new), Ok(()));
+    }
+
+    /// Files that had been read counted as memory in use, and groups within others as if there were none.
+    #[test]
+    fn a_group_leaves_what_is_not_in_use() {
+        let left = |files: &[(&str, &str)]| {
+            in_groups(|file| files.iter().find(|(name, _)| *name == file).map(|(_, text)| (*text).to_owned()))
+        };
+        let stat = "anon 100\nfile 850\nkernel 50\ninactive_file 600\nactive_file 250\nworkingset_refault_file 7\n";
+        let container = [
+            ("/proc/self/cgroup", "0::/\n"),
+            ("/sys/fs/cgroup/memory.max", "1000\n"),
+            ("/sys/fs/cgroup/memory.current", "990\n"),
+            ("/sys/fs/cgroup/memory.stat", stat),
+        ];
+        assert_eq!(left(&container), Some(1000 - (990 - 850)));
+        assert_eq!(left(&container[..3]), Some(10), "no more is known");
+        let within = |inner: &'static str, outer: &'static str| {
+            left(&[
+                ("/proc/self/cgroup", "12:cpu:/x\n0::/a.slice/b.service\n"),
+                ("/sys/fs/cgroup/a.slice/b.service/memory.max", inner),
+                ("/sys/fs/cgroup/a.slice/b.service/memory.current", "300"),
+                ("/sys/fs/cgroup/a.slice/memory.max", outer),
+                ("/sys/fs/cgroup/a.slice/memory.current", "400"),
+                ("/sys/fs/cgroup/a.slice/memory.stat", "inactive_file 900\n"),
+            ])
+        };
+        assert_eq!(within("1000", "max"), Some(700));
+        assert_eq!(within("max", "500"), Some(500), "more files than memory");
+        assert_eq!(within("1000", "500"), Some(500));
+        assert_eq!(within("max", "max"), None);
+        assert_eq!(left(&[]), None);
     }
 
     #[test]
