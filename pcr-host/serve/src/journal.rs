@@ -37,8 +37,8 @@ const BEGIN: usize = 12;
 /// Largest size of a frame \[bytes\].
 const LONGEST: usize = 1 << 28;
 
-/// A new journal is begun when the file is larger than the first number \[bytes\], and larger than the second number times its
-/// size when it was opened or last begun anew.
+/// A new journal is begun when the file is larger than the first number \[bytes\], and larger than the second number times the state with
+/// which it was begun anew.
 const LONG: (u64, u64) = (16 << 20, 8);
 
 /// Zeros by which the file is extended at a time \[bytes\].
@@ -60,8 +60,9 @@ pub struct Journal {
     file: File,
     /// Locks the folder as long as the journal is open.
     _lock: File,
-    /// End of its frames, now and when it was opened or last begun anew \[bytes\].
+    /// End of its frames \[bytes\].
     len: u64,
+    /// End of the state with which it was begun \[bytes\].
     first: u64,
     /// Checksum of the last frame.
     sum: u32,
@@ -92,14 +93,14 @@ impl Journal {
         let mut file = OpenOptions::new().read(true).write(true).open(&path).map_err(of(&path))?;
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(of(&path))?;
-        let Frames { entries, end: len, sum } =
+        let Frames { entries, first, end: len, sum } =
             read(&bytes).map_err(|why| io::Error::new(ErrorKind::InvalidData, why))?;
         let torn = bytes[len..].iter().rposition(|byte| *byte != 0).map_or(0, |last| last as u64 + 1);
-        let len = len as u64;
+        let (first, len) = (first as u64, len as u64);
         // The bytes of an incomplete frame are removed, because the next frame begins there.
         file.set_len(len).and_then(|()| file.sync_all()).map_err(of(&path))?;
         file.seek(SeekFrom::Start(len))?;
-        let own = Self { folder: folder.into(), file, _lock: lock, len, first: len, sum, end: len, failed: false };
+        let own = Self { folder: folder.into(), file, _lock: lock, len, first, sum, end: len, failed: false };
         Ok((own, Found { entries, torn }))
     }
 
@@ -207,6 +208,8 @@ fn sum(begin: &[u8], text: &[u8]) -> u32 {
 pub struct Frames {
     /// The entries, oldest first.
     pub entries: Vec<Entry>,
+    /// End of the state with which it was begun: of the first frame, if it was begun anew.
+    pub first: usize,
     /// End of the last complete frame.
     pub end: usize,
     /// Its checksum.
@@ -231,7 +234,7 @@ pub fn read(bytes: &[u8]) -> Result<Frames, String> {
         }
         _ => return Err("it is no journal".into()),
     };
-    let mut read = Frames { entries: Vec::new(), end: HEADER.len(), sum: FIRST };
+    let mut read = Frames { entries: Vec::new(), first: HEADER.len(), end: HEADER.len(), sum: FIRST };
     while let Some(rest) = bytes.get(read.end..).filter(|rest| !rest.is_empty()) {
         let damage = |why: &str| format!("at byte {}: {why}", read.end);
         match text(rest) {
@@ -241,7 +244,11 @@ pub fn read(bytes: &[u8]) -> Result<Frames, String> {
                 }
                 let batch: Vec<Entry> = serde_json::from_slice(text).map_err(|error| damage(&error.to_string()))?;
                 read.entries.extend(batch);
+                let is_state = is_anew && read.end == HEADER.len();
                 read.end += FRAME + text.len();
+                if is_state {
+                    read.first = read.end;
+                }
                 read.sum = sum;
             }
             // A frame is begun only after the one before it is on the disc, so a frame after an incomplete one is damage. (No

@@ -2,13 +2,13 @@
 
 use crate::world::{Disc, STEP, Trouble, World};
 use pcr_serve::course::{Shape, Start};
-use pcr_serve::entry::{Entry, Kept, Nowhere};
+use pcr_serve::entry::{Entry, Keep, Kept, Nowhere};
 use pcr_serve::event::Event;
 use pcr_serve::fault::Fault;
 use pcr_serve::journal::{self, Frames, Journal};
 use pcr_serve::robot::{Abilities, Robot};
 use pcr_serve::supervisor::{Proposal, Report, Settings, Supervisor, Verdict};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::io::{BufRead, BufReader, ErrorKind, Seek, SeekFrom, Write};
 use std::path::PathBuf;
@@ -298,6 +298,42 @@ fn a_second_supervisor_is_refused_and_a_torn_end_is_told() {
     let _ = std::fs::remove_dir_all(&folder);
 }
 
+/// What was long when it was opened had to become eight times as long each time.
+#[test]
+fn a_long_journal_is_long_after_each_restart() {
+    let folder = folder("long");
+    let (mut journal, _) = Journal::open(&folder).unwrap();
+    let note = Entry::Note { robot: "a".into(), key: "k".into(), note: "x".repeat(1 << 20).into() };
+    let mut frames = 0;
+    while !journal.is_long() {
+        journal.keep(std::slice::from_ref(&note)).unwrap();
+        frames += 1;
+    }
+    assert_eq!(frames, 16);
+    drop(journal);
+    for _ in 0..2 {
+        let (journal, found) = Journal::open(&folder).unwrap();
+        assert!(found.entries.len() == frames && journal.is_long());
+    }
+    // One whose state is large is long when it has grown to eight times that.
+    let (mut journal, _) = Journal::open(&folder).unwrap();
+    journal.restart(&vec![note.clone(); 3]).unwrap();
+    drop(journal);
+    let (mut journal, _) = Journal::open(&folder).unwrap();
+    for _ in 0..20 {
+        journal.keep(std::slice::from_ref(&note)).unwrap();
+    }
+    assert!(!journal.is_long());
+    drop(journal);
+    let (mut journal, _) = Journal::open(&folder).unwrap();
+    assert!(!journal.is_long());
+    for _ in 0..2 {
+        journal.keep(std::slice::from_ref(&note)).unwrap();
+    }
+    assert!(journal.is_long());
+    let _ = std::fs::remove_dir_all(&folder);
+}
+
 /// One whose first frame was cut was read as that of a fleet without robots, and cut to its header.
 #[test]
 fn a_journal_begun_anew_that_was_cut_is_damaged() {
@@ -481,14 +517,12 @@ fn a_process_that_is_killed_has_told_nothing_that_is_not_in_its_journal() {
         let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
         let (mut told, mut count) = (HashMap::new(), 0);
         let mut take = |line: String| {
-            let Some(event) = line.strip_prefix("told ").and_then(|text| serde_json::from_str(text).ok()) else {
+            let event = line.strip_prefix("told ").and_then(|text| serde_json::from_str::<Value>(text).ok());
+            let Some(event) = event.filter(|event| event["event"] == "hold" || event["event"] == "admitted") else {
                 return;
             };
-            match event {
-                Event::Hold { robot, path, hold, .. } => told.insert(robot, (path, hold)),
-                Event::Admitted { robot, path, hold, .. } => told.insert(robot, (path, hold)),
-                _ => None,
-            };
+            let of = (event["path"].as_u64().unwrap(), event["hold"].as_f64().unwrap());
+            told.insert(event["robot"].as_str().unwrap().to_owned(), of);
         };
         while count < 40 + 60 * round {
             let Some(Ok(line)) = lines.next() else { break };

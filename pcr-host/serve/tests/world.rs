@@ -41,7 +41,7 @@ impl Disc {
 
     pub(crate) fn entries(&self) -> Vec<Entry> {
         let mut bytes = self.bytes.lock().unwrap();
-        let Frames { entries, end, sum } = journal::read(&bytes).unwrap();
+        let Frames { entries, end, sum, .. } = journal::read(&bytes).unwrap();
         bytes.truncate(end);
         self.sum.store(sum, Relaxed);
         entries
