@@ -1,12 +1,14 @@
 //! Clients of the line protocol: standard input and output, and TCP.
 
+use crate::accept;
 use crate::lines::LONGEST;
+use crate::log::Log;
 use crate::outbox::{Lines, outbox};
 use crate::server::{Handle, Input};
+use socket2::{SockRef, TcpKeepalive};
 use std::io::{self, BufRead, BufReader, ErrorKind, Read, Write};
-use std::net::{Shutdown, TcpListener};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::net::{Shutdown, TcpListener, TcpStream};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 use std::time::Duration;
 
@@ -15,6 +17,9 @@ static NEXT: AtomicU64 = AtomicU64::new(1);
 
 /// Time that a disconnected TCP client has to read some of its lines, before the connection ends.
 const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Time without any message after which the system asks whether a client is still there, and time between two such questions.
+const PROBE: Duration = Duration::from_secs(15);
 
 /// Largest number of TCP clients at a time.
 const MOST: usize = 256;
@@ -104,46 +109,29 @@ fn skip(input: &mut impl BufRead) -> io::Result<()> {
 }
 
 /// Takes clients over TCP, for ever.
-pub fn listen(handle: &Handle, listener: &TcpListener) {
-    let open = Arc::new(AtomicUsize::new(0));
-    for stream in listener.incoming().flatten() {
-        if open.load(Ordering::Relaxed) >= MOST {
-            continue;
+pub fn listen(handle: &Handle, listener: &TcpListener, log: Log) {
+    let handle = handle.clone();
+    accept::each(listener, "client", MOST, log, move |stream| {
+        // Answers are short, and wanted at once.
+        if stream.set_nodelay(true).and_then(|()| stream.set_write_timeout(Some(PATIENCE))).is_ok()
+            && probed(&stream).is_ok()
+            && let (Ok(input), Ok(output)) = (stream.try_clone(), stream.try_clone())
+        {
+            // A connection that cannot be written to has ended: then its input ends, too.
+            let _ = serve(&handle, input, Closing(output), drop);
         }
-        let handle = handle.clone();
-        let place = Place::taken(&open);
-        // A client that no thread is left for is let go.
-        let _ = thread::Builder::new().name("client".into()).spawn(move || {
-            let _place = place;
-            // Answers are short, and wanted at once.
-            if stream.set_nodelay(true).and_then(|()| stream.set_write_timeout(Some(PATIENCE))).is_ok()
-                && let (Ok(input), Ok(output)) = (stream.try_clone(), stream.try_clone())
-            {
-                // A connection that cannot be written to has ended: then its input ends, too.
-                let _ = serve(&handle, input, Closing(output), drop);
-            }
-        });
-    }
+    });
 }
 
-/// One of the places for clients at a time; free again when it is dropped.
-pub(crate) struct Place(Arc<AtomicUsize>);
-
-impl Place {
-    pub(crate) fn taken(of: &Arc<AtomicUsize>) -> Self {
-        of.fetch_add(1, Ordering::Relaxed);
-        Self(of.clone())
-    }
-}
-
-impl Drop for Place {
-    fn drop(&mut self) {
-        self.0.fetch_sub(1, Ordering::Relaxed);
-    }
+/// Has the system ask from time to time whether the other end is still there. Without this, a client whose machine has gone keeps its
+/// place for ever, as it sends no end.
+fn probed(stream: &TcpStream) -> io::Result<()> {
+    let probes = TcpKeepalive::new().with_time(PROBE).with_interval(PROBE);
+    SockRef::from(stream).set_tcp_keepalive(&probes)
 }
 
 /// Ends both ways of a connection when nothing more is written to it: a client that is let go.
-struct Closing(std::net::TcpStream);
+struct Closing(TcpStream);
 
 impl Write for Closing {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
@@ -159,5 +147,21 @@ impl Drop for Closing {
     fn drop(&mut self) {
         // It may be closed already.
         let _ = self.0.shutdown(Shutdown::Both);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A client whose machine had gone kept its place until the program ended.
+    #[test]
+    fn clients_are_asked_whether_they_are_still_there() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let _client = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+        let (stream, _) = listener.accept().unwrap();
+        assert!(!SockRef::from(&stream).keepalive().unwrap());
+        probed(&stream).unwrap();
+        assert!(SockRef::from(&stream).keepalive().unwrap());
     }
 }

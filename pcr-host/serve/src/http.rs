@@ -1,16 +1,14 @@
 //! A small HTTP/1.1 server for the live page and the metrics. It only answers GET, so that nothing can be changed
 //! through it.
 
-use crate::clients::Place;
+use crate::accept;
+use crate::log::Log;
 use crate::metrics;
 use crate::query::View;
 use crate::server::Handle;
 use serde_json::json;
 use std::io::{self, Read, Write};
-use std::net::{TcpListener, TcpStream};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
+use std::net::{Ipv4Addr, Ipv6Addr, TcpListener, TcpStream};
 use std::time::Duration;
 
 /// Largest length of a request \[bytes\].
@@ -42,24 +40,36 @@ pub struct Site {
     pub draw: Option<Draw>,
     /// Accepted host names: a foreign page whose host name points here gets no answer.
     pub hosts: Vec<String>,
+    /// The port at which every address is accepted as a host, because the page is at all addresses of the machine. A foreign page needs a
+    /// name that it can point here.
+    pub addresses: Option<u16>,
+}
+
+impl Site {
+    fn is_here(&self, host: &str) -> bool {
+        let is_address = |port: u16| {
+            let (address, given) = match host.rsplit_once(':').filter(|(_, port)| !port.ends_with(']')) {
+                Some((address, given)) => (address, given.parse().ok()),
+                None => (host, Some(80)),
+            };
+            let inner = address.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
+            let is_ip = match inner {
+                Some(inner) => inner.parse::<Ipv6Addr>().is_ok(),
+                None => address.parse::<Ipv4Addr>().is_ok(),
+            };
+            is_ip && given == Some(port)
+        };
+        self.hosts.iter().any(|known| known.eq_ignore_ascii_case(host)) || self.addresses.is_some_and(is_address)
+    }
 }
 
 /// Serves for ever.
-pub fn listen(handle: &Handle, listener: &TcpListener, site: Site) {
-    let (site, open) = (Arc::new(site), Arc::new(AtomicUsize::new(0)));
-    for stream in listener.incoming().flatten() {
-        if open.load(Ordering::Relaxed) >= MOST {
-            continue;
-        }
-        let (handle, site) = (handle.clone(), site.clone());
-        let place = Place::taken(&open);
-        // If no thread can be started, the client gets no answer.
-        let _ = thread::Builder::new().name("request".into()).spawn(move || {
-            let _place = place;
-            // An error means that the client has gone.
-            let _ = converse(&handle, &site, stream);
-        });
-    }
+pub fn listen(handle: &Handle, listener: &TcpListener, site: Site, log: Log) {
+    let handle = handle.clone();
+    accept::each(listener, "request", MOST, log, move |stream| {
+        // An error means that the client has gone.
+        let _ = converse(&handle, &site, stream);
+    });
 }
 
 fn converse(handle: &Handle, site: &Site, mut stream: TcpStream) -> io::Result<()> {
@@ -97,14 +107,13 @@ pub fn answer(handle: &Handle, site: &Site, request: &[u8]) -> (&'static str, &'
     let (method, target) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
     let plain = |status, text: &str| (status, "text/plain", format!("{text}\n"));
     let host = lines.find_map(|line| line.split_once(':').filter(|(key, _)| key.eq_ignore_ascii_case("host")));
-    if !host.is_some_and(|(_, host)| site.hosts.iter().any(|known| known.eq_ignore_ascii_case(host.trim()))) {
+    if !host.is_some_and(|(_, host)| site.is_here(host.trim())) {
         return plain("403 Forbidden", "not under this name");
     }
     if method != "GET" {
         return plain("405 Method Not Allowed", "only GET");
     }
     let (path, query) = target.split_once('?').unwrap_or((target, ""));
-    let ended = || plain("503 Service Unavailable", "the supervisor has ended");
     match path {
         "/" => ("200 OK", "text/html", site.page.clone()),
         // Browsers request it with every page.
@@ -130,6 +139,10 @@ pub fn answer(handle: &Handle, site: &Site, request: &[u8]) -> (&'static str, &'
     }
 }
 
+fn ended() -> (&'static str, &'static str, String) {
+    ("503 Service Unavailable", "text/plain", "the supervisor has ended\n".into())
+}
+
 fn map(handle: &Handle, site: &Site, query: &str) -> (&'static str, &'static str, String) {
     let plain = |status, text: &str| (status, "text/plain", format!("{text}\n"));
     let Some(draw) = site.draw else { return plain("404 Not Found", "there are no pictures") };
@@ -139,13 +152,18 @@ fn map(handle: &Handle, site: &Site, query: &str) -> (&'static str, &'static str
     let fleet = handle.ask(move |supervisor, _, _| {
         let place = supervisor.robots().iter().position(|robot| robot.name == name)?;
         let drawn = supervisor.robots().iter().map(|robot| {
-            let course = robot.course.part(robot.at, robot.course.length()).ok()?;
-            Some(Drawn { name: robot.name.clone(), abilities: robot.abilities, course })
+            let course = robot.course.part(robot.at, robot.course.length());
+            let course = course.map_err(|why| format!("{}: {why}", robot.name))?;
+            Ok(Drawn { name: robot.name.clone(), abilities: robot.abilities, course })
         });
-        Some((drawn.collect::<Option<Vec<_>>>()?, place))
+        Some(drawn.collect::<Result<Vec<_>, String>>().map(|fleet| (fleet, place)))
     });
-    let Some(Some((fleet, place))) = fleet else { return plain("404 Not Found", "there is no such robot") };
-    match draw(&fleet, place) {
+    let drawn = match fleet {
+        None => return ended(),
+        Some(None) => return plain("404 Not Found", "there is no such robot"),
+        Some(Some(fleet)) => fleet.and_then(|(fleet, place)| draw(&fleet, place)),
+    };
+    match drawn {
         Ok(picture) => ("200 OK", "image/svg+xml", picture),
         Err(why) => plain("500 Internal Server Error", &why),
     }

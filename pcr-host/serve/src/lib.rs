@@ -17,6 +17,7 @@
 //! board        data that the supervisor's thread publishes            Board
 //! outbox       lines that wait for a client                           Outbox
 //! server       the thread that owns the supervisor                    serve, Handle
+//! accept       connections, up to a number at a time
 //! clients      standard input and output, and TCP
 //! http         the live page
 //! vda5050      VDA 5050 between a fleet manager and vehicles          Bridge, Station
@@ -28,6 +29,7 @@
 //! sent. If the journal has a thread of its own, they are sent as soon as it is on the disk, and messages that arrive
 //! meanwhile are processed.
 
+mod accept;
 pub mod board;
 pub mod clients;
 pub mod course;

@@ -372,11 +372,12 @@ fn clients_over_tcp_and_the_page() {
     let (lines, page) = (TcpListener::bind("127.0.0.1:0").unwrap(), TcpListener::bind("127.0.0.1:0").unwrap());
     let (at, shown) = (lines.local_addr().unwrap(), page.local_addr().unwrap());
     let draw: http::Draw = |fleet, place| Ok(format!("<svg>{}</svg>", fleet[place].name));
-    let site = http::Site { page: "<p>here</p>".into(), draw: Some(draw), hosts: vec![shown.to_string()] };
+    let site =
+        http::Site { page: "<p>here</p>".into(), draw: Some(draw), hosts: vec![shown.to_string()], addresses: None };
     let own = handle.clone();
-    thread::spawn(move || clients::listen(&own, &lines));
+    thread::spawn(move || clients::listen(&own, &lines, Log::new(Level::Error)));
     let own = handle.clone();
-    thread::spawn(move || http::listen(&own, &page, site));
+    thread::spawn(move || http::listen(&own, &page, site, Log::new(Level::Error)));
     let server = thread::spawn(move || serve(&mut supervisor, &inputs, &Kept::default(), Log::new(Level::Error)));
 
     let (mut out, mut other) = (TcpStream::connect(at).unwrap(), TcpStream::connect(at).unwrap());
@@ -424,6 +425,42 @@ fn clients_over_tcp_and_the_page() {
     assert!(get("GET /state HTTP/1.1\r\n\r\n").starts_with("HTTP/1.1 403"));
     handle.send(Input::Stop);
     server.join().unwrap().unwrap();
+    // The picture of a robot said that there was no such robot.
+    for path in ["/state", "/metrics", "/layout", "/map?robot=b"] {
+        assert!(ask(path).starts_with("HTTP/1.1 503"), "{path}");
+    }
+}
+
+/// At 0.0.0.0 it answered 403 to all who asked from elsewhere.
+#[test]
+fn a_page_at_all_addresses_is_shown_under_any_address_and_no_other_name() {
+    let (handle, inputs) = queue();
+    drop(inputs);
+    let site =
+        |addresses| http::Site { page: "here".into(), draw: None, hosts: vec!["localhost:8080".into()], addresses };
+    let status = |addresses, host: &str| {
+        let request = format!("GET / HTTP/1.1\r\nHost: {host}\r\n\r\n");
+        http::answer(&handle, &site(addresses), request.as_bytes()).0[..3].parse::<u16>().unwrap()
+    };
+    for host in ["192.168.1.5:8080", "[fe80::1]:8080", "10.0.0.1:8080"] {
+        assert_eq!([None, Some(8080)].map(|port| status(port, host)), [403, 200], "{host}");
+    }
+    for host in ["192.168.1.5", "[fe80::1]"] {
+        assert_eq!([Some(8080), Some(80)].map(|port| status(port, host)), [403, 200], "{host}");
+    }
+    for host in [
+        "example.org:8080",
+        "1.2.3.4.example.org:8080",
+        "192.168.1.5:81",
+        "fe80::1:8080",
+        "[10.0.0.1]:8080",
+        "[::1",
+        ":8080",
+        "",
+    ] {
+        assert_eq!(status(Some(8080), host), 403, "{host}");
+    }
+    assert_eq!(status(Some(8080), "LOCALHOST:8080"), 200);
 }
 
 #[test]
@@ -459,7 +496,7 @@ fn a_client_that_never_reads_is_let_go_and_told_why() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let at = listener.local_addr().unwrap();
     let own = handle.clone();
-    thread::spawn(move || clients::listen(&own, &listener));
+    thread::spawn(move || clients::listen(&own, &listener, Log::new(Level::Error)));
     let server = thread::spawn(move || serve(&mut supervisor, &inputs, &Kept::default(), Log::new(Level::Error)));
     let (mut slow, mut other) = (TcpStream::connect(at).unwrap(), TcpStream::connect(at).unwrap());
     slow.write_all(format!("{}\n", requests()[0]).as_bytes()).unwrap();

@@ -39,7 +39,7 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     };
     if let Some(listener) = arguments.listen.as_deref().map(|place| bound("--listen", place, log)).transpose()? {
         let handle = handle.clone();
-        thread("clients", move || clients::listen(&handle, &listener))?;
+        thread("clients", move || clients::listen(&handle, &listener, log))?;
     }
     if let Some(listener) = page(&arguments).map(|place| bound("--page", place, log)).transpose()? {
         let url = listener.local_addr().map_or_else(|_| String::new(), |address| format!("http://{address}/"));
@@ -49,7 +49,7 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         }
         let site = site(&listener);
         let handle = handle.clone();
-        thread("page", move || http::listen(&handle, &listener, site))?;
+        thread("page", move || http::listen(&handle, &listener, site, log))?;
     }
     let stays = arguments.stay || demo.is_some();
     let (failed, failures) = channel();
@@ -240,7 +240,9 @@ fn site(listener: &TcpListener) -> Site {
     // Browsers leave out the usual port.
     let short = |host: &String| host.strip_suffix(":80").map(str::to_owned);
     hosts.extend(hosts.iter().filter_map(short).collect::<Vec<_>>());
-    Site { page: live::page(), draw: Some(draw), hosts }
+    // At 0.0.0.0 it is reached by any address of the machine.
+    let addresses = address.filter(|address| address.ip().is_unspecified()).map(|address| address.port());
+    Site { page: live::page(), draw: Some(draw), hosts, addresses }
 }
 
 /// The collision map of a robot, if all set off now.

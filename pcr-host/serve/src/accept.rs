@@ -1,0 +1,68 @@
+//! Takes connections, up to a number at a time.
+
+use crate::log::{Level, Log};
+use std::net::{TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::Duration;
+
+/// Pause after a connection that could not be taken: without a free file descriptor the next one fails at once, too.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// Takes connections for ever. Each goes to `serve` in a thread of this name, and has one of `most` places until that returns.
+pub(crate) fn each(
+    listener: &TcpListener,
+    name: &'static str,
+    most: usize,
+    log: Log,
+    serve: impl Fn(TcpStream) + Clone + Send + 'static,
+) {
+    let (open, mut fails) = (Arc::new(AtomicUsize::new(0)), false);
+    for stream in listener.incoming() {
+        let stream = match stream {
+            Ok(stream) => stream,
+            Err(error) => {
+                if !std::mem::replace(&mut fails, true) {
+                    log.write(Level::Error, "connections cannot be taken", &[("for", &name), ("why", &error)]);
+                }
+                thread::sleep(PAUSE);
+                continue;
+            }
+        };
+        fails = false;
+        if open.load(Ordering::Relaxed) >= most {
+            let who = stream.peer_addr().map_or_else(|_| String::new(), |address| address.to_string());
+            log.write(
+                Level::Warn,
+                "a connection is refused: all places are taken",
+                &[("for", &name), ("from", &who), ("places", &most)],
+            );
+            continue;
+        }
+        let (serve, place) = (serve.clone(), Place::taken(&open));
+        let work = move || {
+            let _place = place;
+            serve(stream);
+        };
+        if let Err(error) = thread::Builder::new().name(name.into()).spawn(work) {
+            log.write(Level::Error, "no thread for a connection", &[("for", &name), ("why", &error)]);
+        }
+    }
+}
+
+/// One of the places; free again when it is dropped.
+struct Place(Arc<AtomicUsize>);
+
+impl Place {
+    fn taken(of: &Arc<AtomicUsize>) -> Self {
+        of.fetch_add(1, Ordering::Relaxed);
+        Self(of.clone())
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
+    }
+}
