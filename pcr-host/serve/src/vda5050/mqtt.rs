@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tokio::sync::Notify;
 
 /// Address and login of a broker.
@@ -47,11 +47,14 @@ pub enum News {
         payload: Vec<u8>,
         /// Whether it is a retained message, which may be old.
         kept: bool,
+        /// When it came.
+        came: Instant,
     },
 }
 
-/// Largest packet \[bytes\]. A larger one ends the connection, which is then opened again.
-const LARGEST: usize = 1 << 20;
+/// Largest packet \[bytes\]: what MQTT allows. A smaller limit ends the connection at a larger packet; if the broker has retained that
+/// packet, it comes again after each attempt. What is too large is refused by its reader instead.
+const LARGEST: usize = 268_435_455 + 5;
 
 /// Largest number of messages that wait to be sent.
 const QUEUE: usize = 4_096;
@@ -229,7 +232,7 @@ impl<F: Fn(News)> Work<F> {
             }
             Event::Incoming(Packet::Publish(message)) => {
                 let (payload, kept) = (message.payload.to_vec(), message.retain);
-                (self.sink)(News::Message { topic: message.topic, payload, kept });
+                (self.sink)(News::Message { topic: message.topic, payload, kept, came: Instant::now() });
             }
             _ => {}
         }
@@ -285,6 +288,24 @@ mod tests {
         Ok(head[0])
     }
 
+    /// Reads a packet of any length: its kind, and what follows its length.
+    fn long_packet(stream: &mut TcpStream) -> (u8, Vec<u8>) {
+        let (mut byte, mut length, mut shift) = ([0], 0, 0);
+        stream.read_exact(&mut byte).unwrap();
+        let kind = byte[0];
+        loop {
+            stream.read_exact(&mut byte).unwrap();
+            length |= usize::from(byte[0] & 0x7f) << shift;
+            shift += 7;
+            if byte[0] & 0x80 == 0 {
+                break;
+            }
+        }
+        let mut rest = vec![0; length];
+        stream.read_exact(&mut rest).unwrap();
+        (kind, rest)
+    }
+
     /// A link with two topics, and a broker that says this; its first connection is the one that it keeps.
     fn linked(says: fn(&mut TcpStream)) -> (Link, JoinHandle<TcpStream>, Receiver<News>) {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -314,6 +335,34 @@ mod tests {
         let stream = broker.join().unwrap();
         assert_eq!(news.recv().unwrap(), News::Up);
         assert!(link.is_up());
+        drop((link, stream));
+    }
+
+    /// A retained message of more than 1 MiB ended the connection, and came again after each attempt.
+    #[test]
+    fn large_messages_go_both_ways() {
+        const SIZE: usize = 3 << 20;
+        let (link, broker, news) = linked(|stream| {
+            packet(stream).unwrap();
+            stream.write_all(&[0x20, 2, 0, 0]).unwrap();
+            packet(stream).unwrap();
+            stream.write_all(&[0x90, 4, 0, 1, 1, 1]).unwrap();
+            // Retained, for the topic a/b.
+            let length = SIZE + 5;
+            let digits = [0, 7, 14].map(|shift| (length >> shift & 0x7f) as u8 | 0x80);
+            stream.write_all(&[0x31]).unwrap();
+            stream.write_all(&[digits[0], digits[1], digits[2], (length >> 21) as u8]).unwrap();
+            stream.write_all(&[0, 3, b'a', b'/', b'b']).unwrap();
+            stream.write_all(&vec![b' '; SIZE]).unwrap();
+            let (kind, rest) = long_packet(stream);
+            assert_eq!((kind, rest.len()), (0x30, SIZE + 5));
+        });
+        assert_eq!(news.recv().unwrap(), News::Up);
+        let News::Message { topic, payload, kept, .. } = news.recv().unwrap() else { panic!("no message") };
+        assert_eq!((topic.as_str(), payload.len(), kept), ("a/b", SIZE, true));
+        let payload = vec![b' '; SIZE];
+        assert!(link.publish(Publish { topic: "a/b".into(), payload, assured: false, retain: false }));
+        let stream = broker.join().unwrap();
         drop((link, stream));
     }
 
