@@ -4,19 +4,31 @@ use crate::event::Event;
 use crate::metrics::Latency;
 use serde_json::{Value, json};
 use std::collections::VecDeque;
+use std::time::Instant;
 
 /// Number of events that are kept.
 const EVENTS: usize = 100;
 
 /// The published data.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Board {
+    begin: Instant,
     /// Latency of requests.
     pub latency: Latency,
     events: VecDeque<(f64, String)>,
 }
 
 impl Board {
+    /// An empty board of a supervisor whose time began then.
+    pub fn new(begin: Instant) -> Self {
+        Self { begin, latency: Latency::default(), events: VecDeque::new() }
+    }
+
+    /// The supervisor's time at a moment \[s\]; 0 for one before it began.
+    pub fn time(&self, moment: Instant) -> f64 {
+        moment.saturating_duration_since(self.begin).as_secs_f64()
+    }
+
     /// Stores an event, unless it is a hold.
     pub fn note(&mut self, now: f64, event: &Event) {
         let robot = event.robot();

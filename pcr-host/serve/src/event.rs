@@ -1,10 +1,41 @@
 //! Events: messages that the supervisor sends without a request.
 
 use crate::robot::Alarm;
-use serde::{Deserialize, Serialize};
+use serde::{Serialize, Serializer};
+use std::fmt;
+
+/// Why a waiting mission was given up.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// The robot has got another mission.
+    Replaced,
+    /// Its manager has cancelled it.
+    Cancelled,
+    /// The robot stands elsewhere, where a person or its own report has put it.
+    Moved,
+    /// It can no longer be admitted, for this reason.
+    Impossible(String),
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Replaced => "another mission takes its place",
+            Self::Cancelled => "it was cancelled",
+            Self::Moved => "the robot stands elsewhere",
+            Self::Impossible(why) => why,
+        })
+    }
+}
+
+impl Serialize for Cause {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
 
 /// A message to the programs that control robots, and to people. Its content is in the journal already.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
 pub enum Event {
     /// A robot may go this far. The hold never decreases while the robot keeps its path and the supervisor runs. After a restart it may
@@ -55,8 +86,8 @@ pub enum Event {
         robot: String,
         /// Id of the mission.
         mission: String,
-        /// Reason, in words.
-        why: String,
+        /// Reason; in words where it is written.
+        why: Cause,
     },
     /// No message of a robot has come for a long time: it may be anywhere up to its hold.
     Silent {
@@ -107,6 +138,14 @@ pub enum Event {
 }
 
 impl Event {
+    /// Whether another event, which was decided before this one, must not be told after it: it would let go a robot that has to stop.
+    pub fn overtakes(&self, before: &Self) -> bool {
+        match (self, before) {
+            (Self::Stop { robot, .. }, Self::Go { robot: other }) => robot == other,
+            _ => false,
+        }
+    }
+
     /// Name of the robot that the event is about.
     pub fn robot(&self) -> &str {
         match self {

@@ -10,7 +10,7 @@ use crate::outbox::{Lost, Outbox};
 use crate::supervisor::Supervisor;
 use crate::writer::Kept;
 use serde_json::Value;
-use std::collections::{HashMap, VecDeque};
+use std::collections::{BTreeSet, HashMap, VecDeque};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::time::{Duration, Instant};
 
@@ -23,8 +23,24 @@ const BATCH: usize = 256;
 /// Time after which the supervisor settles, even without a request \[ms\].
 const TICK: u64 = 50;
 
+/// Largest size of what waits for the journal \[bytes\]. While a disc hangs for longer, no requests are taken.
+const HEAVY: usize = 64 << 20;
+
+/// Usual size of an answer or an event, with what holds it \[bytes\].
+const USUAL: usize = 512;
+
 /// An action for when all earlier decisions are in the journal.
-pub type Then = Box<dyn FnOnce() + Send>;
+pub struct Then {
+    bytes: usize,
+    act: Box<dyn FnOnce() + Send>,
+}
+
+impl Then {
+    /// An action that holds so many bytes until then.
+    pub fn new(bytes: usize, act: impl FnOnce() + Send + 'static) -> Self {
+        Self { bytes, act: Box::new(act) }
+    }
+}
 
 /// A call with the supervisor; it returns the action that sends its results to others.
 pub type Call = Box<dyn FnOnce(&mut Supervisor, &Board, f64) -> Option<Then> + Send>;
@@ -105,6 +121,8 @@ struct Client {
 #[derive(Default)]
 struct Told {
     batches: u64,
+    /// Size of all of it \[bytes\].
+    bytes: usize,
     now: f64,
     answers: Vec<(u64, Value)>,
     events: Vec<Event>,
@@ -113,11 +131,21 @@ struct Told {
     times: Vec<Instant>,
 }
 
+impl Told {
+    fn size(&self) -> usize {
+        let acts: usize = self.thens.iter().map(|then| then.bytes).sum();
+        acts + USUAL * (1 + self.answers.len() + self.events.len() + self.thens.len())
+    }
+}
+
 /// The clients, the subscribers and the published data.
 struct Desk {
     clients: HashMap<u64, Client>,
     listeners: Vec<SyncSender<Event>>,
     board: Board,
+    /// Number and names of the robots, as they were last logged.
+    census: u64,
+    names: BTreeSet<String>,
     log: Log,
 }
 
@@ -132,9 +160,25 @@ pub fn serve(
     log: Log,
 ) -> Result<(), Fault> {
     let begin = Instant::now();
-    let mut desk = Desk { clients: HashMap::new(), listeners: Vec::new(), board: Board::default(), log };
-    let mut waiting: VecDeque<Told> = VecDeque::new();
+    let mut desk = Desk {
+        clients: HashMap::new(),
+        listeners: Vec::new(),
+        board: Board::new(begin),
+        census: supervisor.census(),
+        names: names(supervisor),
+        log,
+    };
+    let (mut waiting, mut heavy, mut is_full): (VecDeque<Told>, usize, bool) = Default::default();
     loop {
+        if heavy > HEAVY {
+            if !std::mem::replace(&mut is_full, true) {
+                log.write(Level::Error, "the journal is too slow: nothing is read until it has written", &[]);
+            }
+            kept.wait_for(Duration::from_millis(TICK));
+            heavy -= desk.tell_kept(&mut waiting, kept)?;
+            continue;
+        }
+        is_full = false;
         let mut batch = Vec::new();
         match inputs.recv_timeout(Duration::from_millis(TICK)) {
             Ok(input) => batch.push(input),
@@ -147,44 +191,37 @@ pub fn serve(
             batch.push(input);
         }
         let now = begin.elapsed().as_secs_f64();
-        let (mut told, stops) = desk.take(supervisor, batch, begin, now);
-        // All that is sent from here on is in the journal, or on its way there.
-        let settled = if stops { supervisor.finish(now) } else { supervisor.settle(now) };
+        let (mut told, ends) = desk.take(supervisor, batch, now);
+        supervisor.decide(now);
+        // They do not wait for the journal, which may be slow, or fail now.
+        desk.stop(supervisor.stops(), &mut waiting, now);
+        // All else that is sent from here on is in the journal, or on its way there.
+        let settled = if ends { supervisor.finish(now) } else { supervisor.keep() };
         let settled = settled.map(|events| told.events = events);
         told.batches = kept.asked();
+        told.bytes = told.size();
+        heavy += told.bytes;
         waiting.push_back(told);
-        let done = settled.and_then(|()| if stops { kept.wait() } else { Ok(()) }).and_then(|()| kept.done());
-        let done = match done {
-            Ok(done) => done,
-            Err(fault) => {
-                waiting.into_iter().for_each(|told| desk.withdraw(told, &fault));
-                log.write(Level::Error, "stopped", &[("why", &fault)]);
-                return Err(fault);
-            }
-        };
-        while waiting.front().is_some_and(|told| told.batches <= done)
-            && let Some(told) = waiting.pop_front()
-        {
-            desk.tell(told);
+        if let Err(fault) = settled.and_then(|()| if ends { kept.wait() } else { Ok(()) }) {
+            return Err(desk.withdraw(waiting, fault));
         }
-        if stops {
+        heavy -= desk.tell_kept(&mut waiting, kept)?;
+        if ends {
             return Ok(());
         }
     }
 }
 
+fn names(supervisor: &Supervisor) -> BTreeSet<String> {
+    supervisor.robots().iter().map(|robot| robot.name.clone()).collect()
+}
+
 impl Desk {
     /// Handles a batch of inputs; returns what to send, and whether the server ends.
-    fn take(
-        &mut self,
-        supervisor: &mut Supervisor,
-        batch: Vec<(Instant, Input)>,
-        begin: Instant,
-        now: f64,
-    ) -> (Told, bool) {
-        let (mut told, mut stops) = (Told { now, ..Told::default() }, false);
+    fn take(&mut self, supervisor: &mut Supervisor, batch: Vec<(Instant, Input)>, now: f64) -> (Told, bool) {
+        let (mut told, mut ends) = (Told { now, ..Told::default() }, false);
         for (came, input) in batch {
-            let time = came.saturating_duration_since(begin).as_secs_f64().min(now);
+            let time = self.board.time(came).min(now);
             match input {
                 Input::Opened(client, out) => drop(self.clients.insert(client, Client { out, watches: false })),
                 // Its earlier requests are answered.
@@ -201,46 +238,87 @@ impl Desk {
                 Input::Call(call) => told.thens.extend(call(supervisor, &self.board, now)),
                 Input::Tell(listener) => self.listeners.push(listener),
                 Input::Kept => {}
-                Input::Stop => stops = true,
+                Input::Stop => ends = true,
             }
+            self.count(supervisor);
         }
-        (told, stops)
+        (told, ends)
+    }
+
+    /// Logs robots that were added or removed.
+    fn count(&mut self, supervisor: &Supervisor) {
+        if self.census == supervisor.census() {
+            return;
+        }
+        let before = std::mem::replace(&mut self.names, names(supervisor));
+        self.census = supervisor.census();
+        let log = |what: &str, robot: &String| self.log.write(Level::Info, what, &[("robot", robot)]);
+        before.difference(&self.names).for_each(|robot| log("a robot was removed", robot));
+        self.names.difference(&before).for_each(|robot| log("a robot was added", robot));
+    }
+
+    /// Tells robots to stop, at once. What waits and would let them go on is not told any more.
+    fn stop(&mut self, stops: Vec<Event>, waiting: &mut VecDeque<Told>, now: f64) {
+        for stop in stops {
+            waiting.iter_mut().for_each(|told| told.events.retain(|event| !stop.overtakes(event)));
+            self.announce(now, &stop);
+        }
+    }
+
+    /// Tells what is in the journal by now; returns its size \[bytes\].
+    ///
+    /// # Errors
+    /// [`Fault::Broken`]: what waits is withdrawn.
+    fn tell_kept(&mut self, waiting: &mut VecDeque<Told>, kept: &Kept) -> Result<usize, Fault> {
+        let done = kept.done().map_err(|fault| self.withdraw(std::mem::take(waiting), fault))?;
+        let mut bytes = 0;
+        while waiting.front().is_some_and(|told| told.batches <= done)
+            && let Some(told) = waiting.pop_front()
+        {
+            bytes += told.bytes;
+            self.tell(told);
+        }
+        Ok(bytes)
     }
 
     fn tell(&mut self, told: Told) {
-        let Self { clients, listeners, board, log } = self;
         for (client, answer) in told.answers {
-            send(clients, client, &answer, *log);
+            send(&mut self.clients, client, &answer, self.log);
         }
-        for event in &told.events {
-            log.event(event);
-            board.note(told.now, event);
-            let watching: Vec<u64> =
-                clients.iter().filter(|(_, client)| client.watches).map(|(number, _)| *number).collect();
-            let news = if watching.is_empty() { Value::Null } else { lines::news(event) };
-            for client in watching {
-                send(clients, client, &news, *log);
-            }
-            listeners.retain(|listener| {
-                let sent = listener.try_send(event.clone());
-                if let Err(TrySendError::Full(_)) = sent {
-                    log.write(Level::Error, "a listener reads too slowly and is let go", &[]);
-                }
-                sent.is_ok()
-            });
-        }
-        told.thens.into_iter().for_each(|then| then());
+        told.events.iter().for_each(|event| self.announce(told.now, event));
+        told.thens.into_iter().for_each(|then| (then.act)());
         for client in told.closed {
-            clients.remove(&client);
+            self.clients.remove(&client);
         }
-        told.times.into_iter().for_each(|came| board.latency.add(came.elapsed()));
+        told.times.into_iter().for_each(|came| self.board.latency.add(came.elapsed()));
+    }
+
+    fn announce(&mut self, now: f64, event: &Event) {
+        let Self { clients, listeners, board, log, .. } = self;
+        log.event(event);
+        board.note(now, event);
+        let watching: Vec<u64> =
+            clients.iter().filter(|(_, client)| client.watches).map(|(number, _)| *number).collect();
+        let news = if watching.is_empty() { Value::Null } else { lines::news(event) };
+        for client in watching {
+            send(clients, client, &news, *log);
+        }
+        listeners.retain(|listener| {
+            let sent = listener.try_send(event.clone());
+            if let Err(TrySendError::Full(_)) = sent {
+                log.write(Level::Error, "a listener reads too slowly and is let go", &[]);
+            }
+            sent.is_ok()
+        });
     }
 
     /// After a failed write of the journal: answers errors in place of the results.
-    fn withdraw(&mut self, told: Told, fault: &Fault) {
-        for (client, answer) in told.answers {
-            send(&mut self.clients, client, &lines::withdrawn(&answer, fault), self.log);
+    fn withdraw(&mut self, waiting: VecDeque<Told>, fault: Fault) -> Fault {
+        for (client, answer) in waiting.into_iter().flat_map(|told| told.answers) {
+            send(&mut self.clients, client, &lines::withdrawn(&answer, &fault), self.log);
         }
+        self.log.write(Level::Error, "stopped", &[("why", &fault)]);
+        fault
     }
 }
 

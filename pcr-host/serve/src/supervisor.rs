@@ -5,6 +5,7 @@
 
 mod admission;
 mod alarms;
+mod notes;
 mod places;
 mod release;
 mod restore;
@@ -16,21 +17,19 @@ pub use restore::Damaged;
 
 use crate::course::{Course, Start};
 use crate::entry::{Entry, Keep, Layout};
-use crate::event::Event;
+use crate::event::{Cause, Event};
 use crate::fault::Fault;
-use crate::robot::{Abilities, Robot, remember};
+use crate::robot::{Abilities, Robot};
 use pcr_core::{Invalid, Motion, Order, Orders, Piece, Progress, Reach, Refused, Region, Tolerances};
 use pcr_formats::scenario::label;
-use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde::Serialize;
 use std::collections::HashMap;
 
 /// Orders on the heap.
 pub type Table = Orders<f64, Vec<Region>, Vec<Piece<f64>>, Vec<Order<f64>>>;
 
 /// Settings of a supervisor.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Distance by which the reported lower end of a position may be behind the stop at which the robot stands \[m\]. Missions are
     /// admitted if all robots can finish in spite of it.
@@ -250,7 +249,16 @@ impl Supervisor {
         let replaced = grown(&mut self.orders, |orders| Ok(orders.replace(&mut fleet, place, motion)?));
         drop(fleet);
         replaced.map_err(Fault::invalid)?;
-        self.robots[place] = new;
+        let before = std::mem::replace(&mut self.robots[place], new);
+        if let Some(waiting) = before.waiting {
+            self.drops(name, waiting.mission, Cause::Moved);
+        }
+        if before.alarm.is_some() {
+            self.events.push(Event::Clear { robot: name.into() });
+        }
+        if before.stopped.is_some() {
+            self.events.push(Event::Go { robot: name.into() });
+        }
         self.unsaved[place] = false;
         self.tries.remove(name);
         self.forget_holds();
@@ -307,39 +315,6 @@ impl Supervisor {
         Ok(true)
     }
 
-    /// Stores a note about a robot, also in the journal, until the robot is removed.
-    ///
-    /// # Errors
-    /// [`Fault::NoSuchRobot`]; [`Fault::Broken`], also for a note that is no JSON: it would be forgotten, so nothing may be
-    /// told any more.
-    pub fn note(&mut self, name: &str, key: &str, note: impl Serialize) -> Result<(), Fault> {
-        self.works()?;
-        let place = self.place(name)?;
-        let note = self.json(key, note)?;
-        self.robots[place].notes.insert(key.into(), note.clone());
-        self.entries.push(Entry::Note { robot: name.into(), key: key.into(), note });
-        Ok(())
-    }
-
-    /// Appends to a note that is a list; a missing note is an empty list. The journal grows by the new elements only.
-    ///
-    /// # Errors
-    /// As [`Supervisor::note`], and [`Fault::Invalid`] if the note is not a list.
-    pub fn note_more(&mut self, name: &str, key: &str, more: &[impl Serialize]) -> Result<(), Fault> {
-        self.works()?;
-        let place = self.place(name)?;
-        let more = more.iter().map(|it| self.json(key, it)).collect::<Result<Vec<_>, _>>()?;
-        if !remember(&mut self.robots[place].notes, key, &more) {
-            return Err(Fault::invalid(format!("{key}: what is remembered is no list")));
-        }
-        self.entries.push(Entry::More { robot: name.into(), key: key.into(), more });
-        Ok(())
-    }
-
-    fn json(&mut self, key: &str, note: impl Serialize) -> Result<Value, Fault> {
-        serde_json::to_value(note).map_err(|error| self.breaks(format!("{key}: {error}")))
-    }
-
     fn place(&self, name: &str) -> Result<usize, Fault> {
         self.names.get(name).copied().ok_or(Fault::NoSuchRobot)
     }
@@ -348,9 +323,9 @@ impl Supervisor {
         self.broken.clone().map_or(Ok(()), |why| Err(Fault::Broken { why }))
     }
 
-    /// From now on nothing is told.
+    /// From now on nothing is told but stops.
     fn breaks(&mut self, why: String) -> Fault {
-        self.events.clear();
+        self.events.retain(|event| matches!(event, Event::Stop { .. }));
         self.broken = Some(why.clone());
         Fault::Broken { why }
     }
@@ -383,12 +358,37 @@ impl Supervisor {
         self.note_standstill(now);
     }
 
+    /// Takes the events that tell robots to stop. They may be sent at once: a stop is not in the journal, because it is decided anew after a
+    /// restart. What was decided earlier and would let these robots go on is taken back.
+    pub fn stops(&mut self) -> Vec<Event> {
+        let (mut stops, mut others): (Vec<Event>, Vec<Event>) = Default::default();
+        for event in std::mem::take(&mut self.events) {
+            match event {
+                Event::Stop { .. } => {
+                    others.retain(|other| !event.overtakes(other));
+                    stops.push(event);
+                }
+                event => others.push(event),
+            }
+        }
+        self.events = others;
+        stops
+    }
+
     /// [Decides](Supervisor::decide), and writes the journal. The returned events may be sent, because they are in the journal.
     ///
     /// # Errors
-    /// [`Fault::Broken`]: the journal could not be written. Nothing may be told then, now or later.
+    /// [`Fault::Broken`]: the journal could not be written. Nothing may be told then, now or later, but stops.
     pub fn settle(&mut self, now: f64) -> Result<Vec<Event>, Fault> {
         self.decide(now);
+        self.keep()
+    }
+
+    /// Writes what was decided to the journal. The returned events may be sent, because they are in the journal.
+    ///
+    /// # Errors
+    /// As [`Supervisor::settle`].
+    pub fn keep(&mut self) -> Result<Vec<Event>, Fault> {
         self.save()?;
         Ok(std::mem::take(&mut self.events))
     }

@@ -17,15 +17,21 @@
 //! bridge     the lanes of a fleet, no input or output of its own    Bridge
 //! tls        certificates of brokers
 //! mqtt       a connection to a broker                               Link
+//! claim      which of several bridges is active
+//! inbox      what has come and waits
 //! station    the bridge at its broker; only one is active           Station
 //! ```
 
 pub mod ahead;
 mod bounds;
 pub mod bridge;
+#[cfg(feature = "mqtt")]
+mod claim;
 pub mod door;
 pub mod header;
 pub mod held;
+#[cfg(feature = "mqtt")]
+mod inbox;
 pub mod lane;
 pub mod messages;
 #[cfg(feature = "mqtt")]

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 enum Job {
     Keep(Vec<Entry>),
@@ -55,6 +56,14 @@ impl Kept {
         let done = self.shared.more.wait_while(done, |(done, why)| *done < asked && why.is_none());
         let done = done.unwrap_or_else(PoisonError::into_inner);
         done.1.clone().map_or(Ok(()), |why| Err(Fault::Broken { why }))
+    }
+
+    /// Waits until more is on the disc, or no more will be written, but no longer than a time.
+    pub fn wait_for(&self, time: Duration) {
+        let done = self.shared.done.lock().unwrap_or_else(PoisonError::into_inner);
+        let before = done.0;
+        let more = self.shared.more.wait_timeout_while(done, time, |(done, why)| *done == before && why.is_none());
+        drop(more);
     }
 }
 

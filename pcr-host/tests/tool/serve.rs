@@ -59,6 +59,32 @@ fn what_a_broker_needs_is_the_least_lookahead() {
     assert_eq!(refused("7.9"), "pcr: --lookahead: allowed is 8 to 600 for vehicles of VDA 5050\n");
 }
 
+/// Each of its positions would have been off its way.
+#[test]
+fn a_margin_that_leaves_a_vehicle_no_room_is_refused() {
+    for (margin, is_refused) in [("0", true), ("0.002", true), ("0.0021", false)] {
+        let vehicle = format!(
+            r#"{{"vehicles":[{{"manufacturer":"m","serialNumber":"1","radius":0.4,"margin":{margin},"speed":1,"acceleration":1}}]}}"#
+        );
+        let vehicles = file("margin", "vehicles.json", &vehicle);
+        let run = run(&["serve", "--broker", "localhost:1", "--fleet", &vehicles]);
+        let reason = "vehicles[0]: margin: has to be more than 0.002 m";
+        assert_eq!((run.status == 2, run.err.contains(reason)), (is_refused, is_refused), "{margin}: {}", run.err);
+    }
+}
+
+/// The log did not say which robots there are.
+#[test]
+fn robots_that_come_and_go_are_logged() {
+    let remove = r#"{"id":3,"verb":"remove","robot":"a"}"#;
+    let run = run_with(&["serve"], format!("{ADD}{remove}\n").as_bytes());
+    assert_eq!(run.status, 0, "{}", run.err);
+    let lines: Vec<&str> = run.err.lines().filter(|line| line.contains("msg=\"a robot was ")).collect();
+    let expected =
+        ["level=info msg=\"a robot was added\" robot=\"a\"", "level=info msg=\"a robot was removed\" robot=\"a\""];
+    assert!(lines.len() == 2 && lines.iter().zip(expected).all(|(line, said)| line.ends_with(said)), "{lines:?}");
+}
+
 #[test]
 fn vehicles_are_written_as_they_are_read() {
     let folder = directory("profiles");

@@ -4,7 +4,7 @@
 use super::{Supervisor, fleet, grown};
 use crate::course::{Course, JOINT, Rest, Shape, Start, WORN, extent};
 use crate::entry::{Entry, Kept, Known};
-use crate::event::Event;
+use crate::event::{Cause, Event};
 use crate::fault::Fault;
 use crate::robot::{Asked, Robot, Waiting};
 use pcr_core::{Interval, Mission, Pass, Progress, Refused, RegionRef};
@@ -145,9 +145,7 @@ impl Supervisor {
             }
         };
         if let Some(before) = before {
-            let why = "another mission takes its place".into();
-            self.counts.dropped += 1;
-            self.events.push(Event::Dropped { robot: proposal.robot.clone(), mission: before.mission, why });
+            self.drops(&proposal.robot, before.mission, Cause::Replaced);
             self.entries.push(Entry::Waiting { robot: proposal.robot.clone(), waiting: None });
         }
         let Some(verdict) = refused else { return Ok(admitted(&self.robots[place])) };
@@ -170,10 +168,15 @@ impl Supervisor {
         let Some(Waiting { mission, .. }) = robot.waiting.take() else { return Ok(()) };
         Robot::outlives(&mut robot.past, mission.clone());
         self.tries.remove(name);
-        self.counts.dropped += 1;
         self.entries.push(Entry::Waiting { robot: name.into(), waiting: None });
-        self.events.push(Event::Dropped { robot: name.into(), mission, why: "it was cancelled".into() });
+        self.drops(name, mission, Cause::Cancelled);
         Ok(())
+    }
+
+    /// Tells that a waiting mission was given up.
+    pub(super) fn drops(&mut self, robot: &str, mission: String, why: Cause) {
+        self.counts.dropped += 1;
+        self.events.push(Event::Dropped { robot: robot.into(), mission, why });
     }
 
     /// Renames the mission of a robot, if another one has the same path: nothing else changes.
@@ -185,12 +188,15 @@ impl Supervisor {
         let place = self.place(name)?;
         let robot = &mut self.robots[place];
         let waiting = robot.waiting.take().map(|waiting| waiting.mission);
-        for before in robot.mission.replace(mission).into_iter().chain(waiting) {
+        for before in robot.mission.replace(mission).into_iter().chain(waiting.clone()) {
             Robot::outlives(&mut robot.past, before);
         }
         // The request of the new mission is not known.
         robot.asked = None;
         self.tries.remove(name);
+        if let Some(waiting) = waiting {
+            self.drops(name, waiting, Cause::Replaced);
+        }
         self.keep_robot(place)
     }
 
@@ -368,9 +374,8 @@ impl Supervisor {
                 self.robots[place].waiting = None;
                 Robot::outlives(&mut self.robots[place].past, waiting.mission.clone());
                 self.tries.remove(&name);
-                self.counts.dropped += 1;
                 self.entries.push(Entry::Waiting { robot: name.clone(), waiting: None });
-                self.events.push(Event::Dropped { robot: name, mission: waiting.mission, why: fault.to_string() });
+                self.drops(&name, waiting.mission, Cause::Impossible(fault.to_string()));
             }
         }
     }

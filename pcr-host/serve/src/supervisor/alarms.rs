@@ -35,8 +35,8 @@ impl Supervisor {
         self.hazards = self.robots.iter().any(|robot| robot.alarm.is_some());
         for (place, limit) in limits.iter().enumerate() {
             let robot = &self.robots[place];
-            // A robot that stands needs no `stop`.
-            let by = limit.at.filter(|at| *at < robot.told && robot.told > robot.at);
+            // A robot that stands needs no `stop`. At the end of its path its length stays a little before that.
+            let by = limit.at.filter(|at| *at < robot.told && robot.told > robot.at + 2.0 * ROOM);
             let by = by.map(|_| self.robots[limit.by].name.clone());
             self.hazards |= by.is_some();
             let robot = &mut self.robots[place];

@@ -23,11 +23,13 @@ pub struct Limits {
     pub list: usize,
     /// Size of a text \[bytes\].
     pub text: usize,
+    /// Size of a message that is sent \[bytes\]: brokers end the connection at one that is too large for them.
+    pub sent: usize,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { bytes: 256 * 1024, list: 2_000, text: 4_096 }
+        Self { bytes: 256 * 1024, list: 2_000, text: 4_096, sent: 16 << 20 }
     }
 }
 

@@ -2,7 +2,7 @@
 //! or output itself.
 
 use super::door::Limits;
-use super::lane::{Lane, Post, Profile, To};
+use super::lane::{Due, Lane, Post, Profile, To};
 use super::topics::{Interface, Key, Kind};
 use crate::event::Event;
 use crate::robot::Robot;
@@ -32,6 +32,17 @@ pub struct Publish {
     pub assured: bool,
     /// Whether the broker keeps it.
     pub retain: bool,
+}
+
+/// A message to the broker, and when it may be sent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Out {
+    /// The message.
+    pub message: Publish,
+    /// When it may be sent.
+    pub due: Due,
+    /// Index of its lane.
+    place: usize,
 }
 
 /// Numbers of messages since the start.
@@ -69,7 +80,9 @@ pub struct Bridge {
     /// Lanes for which something has come since they were last handled.
     touched: BTreeSet<usize>,
     seen: Seen,
-    out: Vec<Publish>,
+    out: Vec<Out>,
+    /// Lanes whose last message to the manager was too large.
+    large: BTreeSet<usize>,
     counts: Counts,
     log: Vec<String>,
     /// Time of the last reminder of missing vehicles \[s\].
@@ -100,6 +113,7 @@ impl Bridge {
             places,
             seen: Seen::default(),
             out: Vec::new(),
+            large: BTreeSet::new(),
             counts: Counts::default(),
             log: Vec::new(),
             said: 0.0,
@@ -262,18 +276,41 @@ impl Bridge {
     }
 
     fn collect(&mut self, places: &BTreeSet<usize>) {
-        let Self { settings, lanes, out, .. } = self;
-        for Post { to, key, version, kind, payload } in places.iter().flat_map(|&place| lanes[place].posts()) {
+        let Self { settings, lanes, out, large, log, .. } = self;
+        let posts = places.iter().flat_map(|&place| lanes[place].posts().into_iter().map(move |post| (place, post)));
+        for (place, Post { to, key, version, kind, payload, due }) in posts {
             let interface = if to == To::Vehicle { &settings.vehicles } else { &settings.manager };
+            let topic = interface.topic(version, &key, kind);
+            let (size, most) = (payload.len(), settings.limits.sent);
+            if size > most {
+                // States come many times a second.
+                if large.insert(place) {
+                    log.push(format!("{topic}: not sent: {size} bytes; at most {most} are sent"));
+                }
+                continue;
+            }
+            if kind == Kind::State {
+                large.remove(&place);
+            }
             let (assured, retain) = (kind.is_assured(), kind.is_retained());
-            out.push(Publish { topic: interface.topic(version, &key, kind), payload, assured, retain });
+            out.push(Out { message: Publish { topic, payload, assured, retain }, due, place });
         }
     }
 
     /// Takes the messages to be sent: after the changes from which they follow are in the journal.
     pub fn out(&mut self) -> Vec<Publish> {
+        self.due().into_iter().map(|out| out.message).collect()
+    }
+
+    /// Takes the messages to be sent, each with the time at which it may be.
+    pub fn due(&mut self) -> Vec<Out> {
         self.counts.sent += self.out.len() as u64;
         std::mem::take(&mut self.out)
+    }
+
+    /// Whether a message may still be sent: those that let a vehicle go on may not if it was told to stop since.
+    pub fn lets(&self, out: &Out) -> bool {
+        out.due != Due::Free || !self.lanes[out.place].has_to_stop()
     }
 }
 

@@ -56,6 +56,17 @@ pub enum To {
     Manager,
 }
 
+/// When a message may be sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Due {
+    /// When all that was decided before is in the journal.
+    Kept,
+    /// At once: it tells the vehicle to stop, and a stop needs no journal.
+    AtOnce,
+    /// As `Kept`, but not if the vehicle was told to stop since, because it would let the vehicle go.
+    Free,
+}
+
 /// A message to be sent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Post {
@@ -69,6 +80,8 @@ pub struct Post {
     pub kind: Kind,
     /// Content, as JSON.
     pub payload: Vec<u8>,
+    /// When it may be sent.
+    pub due: Due,
 }
 
 /// Key of the note with the radius of the disc that a vehicle needs.
@@ -196,6 +209,10 @@ impl Lane {
     }
 
     fn post(&mut self, to: To, kind: Kind, version: Version, message: &impl Serialize) {
+        self.post_when(Due::Kept, to, kind, version, message);
+    }
+
+    fn post_when(&mut self, due: Due, to: To, kind: Kind, version: Version, message: &impl Serialize) {
         /// Usual largest size of a message \[bytes\].
         const USUAL: usize = 8192;
         let mut payload = Vec::with_capacity(USUAL);
@@ -203,7 +220,7 @@ impl Lane {
         if serde_json::to_writer(&mut payload, message).is_err() {
             payload.clear();
         }
-        self.posts.push(Post { to, key: self.profile.key.clone(), version, kind, payload });
+        self.posts.push(Post { to, key: self.profile.key.clone(), version, kind, payload, due });
     }
 
     /// Stores a note about the vehicle in the supervisor.

@@ -5,20 +5,19 @@
 //! retained message may be missing, or be that of another bridge, although a bridge is active. Therefore the active
 //! bridge then repeats its message, and a claim counts only if no other bridge has objected for a while.
 
-use super::bridge::{Bridge, Publish};
-use super::header::Header;
-use super::messages::Connection;
-use super::mqtt::{Broker, Link, News};
-use super::stamp;
+use super::bridge::{Bridge, Out};
+use super::claim::{Claim, claim};
+use super::inbox::{Inbox, Lost, inbox};
+use super::lane::Due;
+use super::mqtt::{Broker, Link, Mouth, News};
 use super::topics::{Interface, Key, Kind};
 use super::version::Version;
 use crate::board::Board;
 use crate::event::Event;
-use crate::fault::Fault;
 use crate::server::{Handle, Then};
 use crate::supervisor::Supervisor;
-use serde_json::{Map, Value};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::fmt;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -34,116 +33,24 @@ const MOST: usize = 1_000;
 /// Longest time between two looks at waiting messages.
 const TICK: Duration = Duration::from_millis(100);
 
-/// The claim to be the active bridge.
-#[derive(Clone, Debug, PartialEq)]
-enum Claim {
-    /// Not known yet; since when.
-    Asking(Instant),
-    /// Another bridge, of this session, has a claim but may be gone; since when.
-    Theirs(Instant, String),
-    /// Our claim was sent.
-    Sent,
-    /// The broker has returned our claim; since when no other bridge has objected.
-    Seen(Instant),
-    /// This bridge is active.
-    Ours,
-}
-
-/// What a message says about the claim of a bridge.
-#[derive(Clone, Debug, PartialEq)]
-enum Said {
-    /// The retained message was removed.
-    Nothing,
-    /// A bridge has a claim.
-    Online {
-        session: String,
-        /// It objects to other claims.
-        insists: bool,
-    },
-    /// A bridge has ended.
-    Offline { session: String },
-}
-
-impl Said {
-    /// # Errors
-    /// Why the message cannot be read. It says nothing then about whether another bridge is active.
-    fn read(payload: &[u8]) -> Result<Self, String> {
-        if payload.is_empty() {
-            return Ok(Self::Nothing);
-        }
-        let message: Connection = serde_json::from_slice(payload).map_err(|error| error.to_string())?;
-        let session = message.rest.get("session").and_then(Value::as_str).ok_or("session: missing")?.to_owned();
-        let insists = message.rest.get("insists") == Some(&Value::Bool(true));
-        match message.connection_state.as_str() {
-            "ONLINE" => Ok(Self::Online { session, insists }),
-            "OFFLINE" => Ok(Self::Offline { session }),
-            broken if Version::ALL.iter().any(|version| version.broken() == broken) => Ok(Self::Offline { session }),
-            other => Err(format!("connectionState: {other:?}")),
-        }
-    }
-}
-
-impl Claim {
-    /// Takes what the broker says of claims. Returns a line for the log if our claim has to be sent again.
-    ///
-    /// # Errors
-    /// [`Stopped`] if another bridge is active, or may be.
-    fn heard(&mut self, said: Result<Said, String>, own: &str) -> Result<Option<String>, Stopped> {
-        let said = match (said, &self) {
-            (Ok(said), _) => said,
-            (Err(why), Self::Ours) => return Ok(Some(format!("a claim that cannot be read: {why}"))),
-            (Err(why), _) => {
-                let why = format!("a claim cannot be read ({why}), so another supervisor may be at work");
-                return Err(Stopped(why));
-            }
-        };
-        let is_own = match &said {
-            Said::Nothing => false,
-            Said::Online { session, .. } | Said::Offline { session } => session == own,
-        };
-        match (&self, said) {
-            (Self::Sent, Said::Online { .. }) if is_own => *self = Self::Seen(Instant::now()),
-            // That bridge may be gone: the broker will tell.
-            (Self::Asking(_), Said::Online { session, .. }) if !is_own => *self = Self::Theirs(Instant::now(), session),
-            (Self::Theirs(..), Said::Nothing | Said::Offline { .. }) => *self = Self::Asking(Instant::now()),
-            _ if is_own => {}
-            // It claimed before us; a bridge that claims after us sees our claim.
-            (Self::Sent, Said::Online { session, .. }) => {
-                return Err(Stopped(format!("another supervisor, {session}, was first")));
-            }
-            // If both believed to be active, the one with the larger session ends.
-            (Self::Seen(_) | Self::Ours, Said::Online { session, insists: true })
-                if *self != Self::Ours || session.as_str() < own =>
-            {
-                return Err(Stopped(format!("another supervisor, {session}, is at work")));
-            }
-            (Self::Seen(_) | Self::Ours, Said::Online { session, .. } | Said::Offline { session }) => {
-                return Ok(Some(format!("another supervisor, {session}, comes or goes")));
-            }
-            (Self::Seen(_) | Self::Ours, Said::Nothing) => return Ok(Some("our claim was removed".into())),
-            _ => {}
-        }
-        Ok(None)
-    }
-}
-
 /// A message from the broker.
 struct Heard {
     topic: String,
     payload: Vec<u8>,
     /// Whether it is a retained message.
     kept: bool,
+    /// When it came.
+    came: Instant,
 }
 
 /// A bridge at its broker.
 #[derive(Debug)]
 pub struct Station {
     link: Link,
-    news: Receiver<News>,
+    news: Inbox,
     session: String,
     topic: String,
     claim: Claim,
-    begin: Instant,
     key: Key,
     /// Whether the vehicles have to be asked for their states and factsheets.
     greets: bool,
@@ -152,7 +59,29 @@ pub struct Station {
 
 /// The reason why a station stops.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Stopped(pub String);
+pub enum Stopped {
+    /// Another supervisor is at work, or may be.
+    Rival(String),
+    /// The supervisor that it works for has ended.
+    Ended,
+    /// Events of the supervisor were lost: too many waited.
+    Deaf,
+    /// The thread of the connection has ended.
+    Cut,
+}
+
+impl fmt::Display for Stopped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Rival(why) => f.write_str(why),
+            Self::Ended => f.write_str("the supervisor has ended"),
+            Self::Deaf => f.write_str("events of the supervisor were lost, because too many waited"),
+            Self::Cut => f.write_str("the connection to the broker has ended"),
+        }
+    }
+}
+
+impl std::error::Error for Stopped {}
 
 impl Station {
     /// Connects to a broker; `session` is a text that no other supervisor uses.
@@ -165,19 +94,12 @@ impl Station {
         let mut filters = bridge.filters();
         filters.push(topic.clone());
         let will = claim(&key, &topic, session, Version::V2_1.broken(), false);
-        let (sender, news) = channel();
-        let link = Link::open(broker, &format!("pcr-supervisor-{session}"), Some(will), filters, move |it| {
-            // A station that has been dropped needs no news.
-            let _ = sender.send(it);
-        })?;
+        let (feeder, news) = inbox();
+        let name = format!("pcr-supervisor-{session}");
+        let link = Link::open(broker, &name, Some(will), filters, move |it| feeder.put(it))?;
         let now = Instant::now();
         let (session, claim) = (session.into(), Claim::Asking(now));
-        Ok(Self { link, news, session, topic, claim, begin: now, key, greets: false, log: Vec::new() })
-    }
-
-    /// Seconds since it was opened.
-    pub fn now(&self) -> f64 {
-        self.begin.elapsed().as_secs_f64()
+        Ok(Self { link, news, session, topic, claim, key, greets: false, log: Vec::new() })
     }
 
     /// Whether this bridge is active.
@@ -185,33 +107,12 @@ impl Station {
         self.claim == Claim::Ours
     }
 
-    /// Waits for messages and handles them. Returns the events of the supervisor.
-    ///
-    /// # Errors
-    /// [`Stopped`]: another bridge is active, or the journal is broken.
-    pub fn turn(&mut self, supervisor: &mut Supervisor, bridge: &mut Bridge) -> Result<Vec<Event>, Stopped> {
-        let messages = self.messages()?;
-        let (now, works) = (self.now(), self.works());
-        let greets = std::mem::take(&mut self.greets);
-        let out = answered(supervisor, bridge, &messages, [greets, works], &[], now);
-        let events = supervisor.settle(now).map_err(|fault: Fault| Stopped(fault.to_string()))?;
-        // The notes of lanes are in the journal before messages are sent.
-        for message in out {
-            // An unsent message is sent again later.
-            let _ = self.link.publish(message);
-        }
-        bridge.told(&events);
-        // Here the log is not read.
-        self.log.clear();
-        Ok(events)
-    }
-
-    /// The same for a supervisor that another thread owns, and whose events come by a queue. Returns messages for the log:
+    /// Waits for messages and handles them. Another thread owns the supervisor, whose events come by a queue. Returns messages for the log:
     /// refused messages, missing vehicles, problems with the broker.
     ///
     /// # Errors
     /// [`Stopped`].
-    pub fn turn_at(
+    pub fn turn(
         &mut self,
         handle: &Handle,
         bridge: &Arc<Mutex<Bridge>>,
@@ -219,15 +120,17 @@ impl Station {
     ) -> Result<Vec<String>, Stopped> {
         let messages = self.messages()?;
         let (own, flags) = (bridge.clone(), [std::mem::take(&mut self.greets), self.works()]);
-        let told: Vec<Event> = events.try_iter().collect();
+        let (told, is_deaf) = drained(events);
         let mouth = self.link.mouth();
-        let answer = move |supervisor: &mut Supervisor, _: &Board, now: f64| {
+        let answer = move |supervisor: &mut Supervisor, board: &Board, now: f64| {
+            let messages = timed(&messages, board, now);
             let out = answered(supervisor, &mut locked(&own), &messages, flags, &told, now);
-            // An unsent message is sent again later.
-            let send = move || out.into_iter().for_each(|message| _ = mouth.publish(message));
-            ((), Some(Box::new(send) as Then))
+            ((), sent(out, own, mouth))
         };
-        handle.ask_then(answer).ok_or_else(|| Stopped("the supervisor has ended".into()))?;
+        handle.ask_then(answer).ok_or(Stopped::Ended)?;
+        if is_deaf {
+            return Err(Stopped::Deaf);
+        }
         let mut log = std::mem::take(&mut self.log);
         log.extend(locked(bridge).log());
         Ok(log)
@@ -243,15 +146,24 @@ impl Station {
     fn messages(&mut self) -> Result<Vec<Heard>, Stopped> {
         let (mut messages, mut patience) = (Vec::new(), TICK);
         while messages.len() < MOST {
-            match self.news.recv_timeout(patience) {
+            match self.news.next(patience) {
                 Ok(News::Up) => self.claim = Claim::Asking(Instant::now()),
                 Ok(News::Down(why)) => self.log.push(format!("no broker: {why}")),
                 Ok(News::Message { topic, payload, .. }) if topic == self.topic => self.heard(&payload)?,
-                Ok(News::Message { topic, payload, kept }) => messages.push(Heard { topic, payload, kept }),
+                Ok(News::Message { topic, payload, kept, came }) => {
+                    messages.push(Heard { topic, payload, kept, came });
+                }
                 Err(RecvTimeoutError::Timeout) => break,
-                Err(RecvTimeoutError::Disconnected) => return Err(Stopped("the connection has ended".into())),
+                Err(RecvTimeoutError::Disconnected) => return Err(Stopped::Cut),
             }
             patience = Duration::ZERO;
+        }
+        let Lost { old, dropped } = self.news.lost();
+        if old > 0 {
+            self.log.push(format!("messages come faster than they are read: {old} positions gave way to newer ones"));
+        }
+        if dropped > 0 {
+            self.log.push(format!("messages come faster than they are read: {dropped} were dropped"));
         }
         self.ask()?;
         Ok(messages)
@@ -259,7 +171,7 @@ impl Station {
 
     /// Handles the claim of a bridge, or its end.
     fn heard(&mut self, payload: &[u8]) -> Result<(), Stopped> {
-        if let Some(line) = self.claim.heard(Said::read(payload), &self.session)? {
+        if let Some(line) = self.claim.heard(payload, &self.session).map_err(Stopped::Rival)? {
             self.log.push(line);
             let _ = self.link.publish(claim(&self.key, &self.topic, &self.session, "ONLINE", true));
         }
@@ -273,7 +185,7 @@ impl Station {
         if let Claim::Theirs(since, session) = &self.claim
             && since.elapsed() > PATIENCE
         {
-            return Err(Stopped(format!("another supervisor, {session}, is at work")));
+            return Err(Stopped::Rival(format!("another supervisor, {session}, is at work")));
         }
         if let Claim::Seen(since) = self.claim
             && since.elapsed() > OBJECTIONS
@@ -300,33 +212,28 @@ impl Station {
     }
 }
 
-fn claim(key: &Key, topic: &str, session: &str, state: &str, insists: bool) -> Publish {
-    let header = Header::new(key, Version::V2_1, 1, stamp::now());
-    let rest = [("session".to_owned(), Value::from(session)), ("insists".to_owned(), insists.into())];
-    let rest = Map::from_iter(rest);
-    let message = Connection { header, connection_state: state.into(), rest };
-    // An empty message would withdraw the claim.
-    let payload = serde_json::to_vec(&message).expect("texts and numbers can always be written");
-    Publish { topic: topic.into(), payload, assured: true, retain: true }
+/// Messages with the times at which they came \[s\].
+fn timed<'a>(messages: &'a [Heard], board: &Board, now: f64) -> Vec<(&'a Heard, f64)> {
+    messages.iter().map(|heard| (heard, board.time(heard.came).min(now))).collect()
 }
 
-/// Takes the messages to be sent once all of it is in the journal: those that follow from these messages and from the events
-/// since.
+/// Takes the messages to be sent: those that follow from these messages, each with the time at which it came, and from the events since. (A
+/// message that has waited is about where a vehicle was then; by now it may be elsewhere.)
 fn answered(
     supervisor: &mut Supervisor,
     bridge: &mut Bridge,
-    messages: &[Heard],
+    messages: &[(&Heard, f64)],
     [greets, works]: [bool; 2],
     told: &[Event],
     now: f64,
-) -> Vec<Publish> {
+) -> Vec<Out> {
     if greets {
         bridge.greet(now);
     }
-    for Heard { topic, payload, kept } in messages {
+    for &(Heard { topic, payload, kept, .. }, came) in messages {
         match kept {
-            true => bridge.receive_kept(supervisor, topic, payload, now),
-            false => bridge.receive(supervisor, topic, payload, now),
+            true => bridge.receive_kept(supervisor, topic, payload, came),
+            false => bridge.receive(supervisor, topic, payload, came),
         }
     }
     if !works {
@@ -335,7 +242,32 @@ fn answered(
     }
     supervisor.decide(now);
     bridge.settled(supervisor, told, now);
-    bridge.out()
+    bridge.due()
+}
+
+/// The events that have come, and whether none will come any more.
+fn drained(events: &Receiver<Event>) -> (Vec<Event>, bool) {
+    let mut told = Vec::new();
+    loop {
+        match events.try_recv() {
+            Ok(event) => told.push(event),
+            Err(TryRecvError::Empty) => return (told, false),
+            Err(TryRecvError::Disconnected) => return (told, true),
+        }
+    }
+}
+
+/// Sends what may be sent at once; the rest is sent by the action for when all of it is in the journal. An unsent message is sent again
+/// later.
+fn sent(out: Vec<Out>, bridge: Arc<Mutex<Bridge>>, mouth: Mouth) -> Option<Then> {
+    let (now, later): (Vec<Out>, Vec<Out>) = out.into_iter().partition(|out| out.due == Due::AtOnce);
+    now.into_iter().for_each(|out| _ = mouth.publish(out.message));
+    let bytes = later.iter().map(|out| out.message.payload.len()).sum();
+    let send = move || {
+        let bridge = locked(&bridge);
+        later.into_iter().filter(|out| bridge.lets(out)).for_each(|out| _ = mouth.publish(out.message));
+    };
+    Some(Then::new(bytes, send))
 }
 
 /// Locks the bridge. A thread that panicked leaves it at worst between two messages.
@@ -346,52 +278,54 @@ fn locked(bridge: &Mutex<Bridge>) -> MutexGuard<'_, Bridge> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::Value;
 
-    fn message(session: &str, state: &str, insists: bool) -> Vec<u8> {
-        claim(&Key::new("pcr", "supervisor").unwrap(), "t", session, state, insists).payload
-    }
-
-    /// What could not be read counted as the word of a supervisor that had ended.
+    /// Messages that had waited counted as of the time at which they were read: where a vehicle could be by then was too small, and silence
+    /// was told late.
     #[test]
-    fn a_claim_that_cannot_be_read_is_no_permission() {
-        let now = Instant::now();
-        let damaged = [&b"{"[..], b"null", b"{}", br#"{"connectionState":"ONLINE"}"#, &message("a", "online", false)];
-        for payload in damaged {
-            for mut claim in [Claim::Asking(now), Claim::Theirs(now, "a".into()), Claim::Sent, Claim::Seen(now)] {
-                let before = claim.clone();
-                let stopped = claim.heard(Said::read(payload), "b").unwrap_err();
-                assert!(stopped.0.contains("cannot be read"), "{stopped:?}");
-                assert_eq!(claim, before);
-            }
-            let mut ours = Claim::Ours;
-            assert!(ours.heard(Said::read(payload), "b").unwrap().is_some_and(|line| line.contains("cannot be read")));
-            assert_eq!(ours, Claim::Ours);
-        }
-    }
-
-    #[test]
-    fn who_has_the_claim() {
-        let now = Instant::now();
-        let heard = |claim: &Claim, payload: &[u8]| {
-            let mut claim = claim.clone();
-            claim.heard(Said::read(payload), "b").map(|line| (claim, line.is_some()))
+    fn a_message_is_as_old_as_it_has_waited() {
+        let [manager, vehicles] = ["fleet", "uagv"].map(|prefix| Interface::new(prefix).unwrap());
+        let key = Key::new("m", "1").unwrap();
+        let topic = vehicles.topic(Version::V2_1, &key, Kind::State);
+        let mut supervisor = Supervisor::new(Default::default(), Box::new(crate::entry::Nowhere));
+        let abilities = crate::robot::Abilities { radius: 0.4, margin: 0.1, speed: 1.0, acceleration: 0.5 };
+        let settings = super::super::bridge::Settings { manager, vehicles, limits: Default::default() };
+        let profile = super::super::lane::Profile { key, abilities, split: true };
+        let mut bridge = Bridge::new(settings, vec![profile], &supervisor).unwrap();
+        let begin = Instant::now();
+        let board = Board::new(begin);
+        let heard = |number: u64, actions: &Value| {
+            let state = serde_json::json!({ "headerId": number, "timestamp": format!("2030-01-01T00:00:0{number}Z"),
+                "version": "2.1.0", "manufacturer": "m", "serialNumber": "1", "orderId": "", "orderUpdateId": 0,
+                "lastNodeId": "", "lastNodeSequenceId": 0, "nodeStates": [], "edgeStates": [], "driving": false,
+                "actionStates": actions, "errors": [], "operatingMode": "AUTOMATIC",
+                "agvPosition": { "x": 0.0, "y": 0.0, "theta": 0.0, "mapId": "map", "positionInitialized": true } });
+            let came = begin + Duration::from_secs(number);
+            Heard { topic: topic.clone(), payload: state.to_string().into_bytes(), kept: false, came }
         };
-        let stays = |claim: &Claim, again: bool| Ok((claim.clone(), again));
-        let theirs = Claim::Theirs(now, "a".into());
-        for over in [vec![], message("a", "OFFLINE", false), message("a", "CONNECTIONBROKEN", false)] {
-            assert!(matches!(heard(&theirs, &over), Ok((Claim::Asking(_), false))));
-            assert_eq!(heard(&Claim::Asking(now), &over), stays(&Claim::Asking(now), false));
-            assert_eq!(heard(&Claim::Sent, &over), stays(&Claim::Sent, false));
-            assert_eq!(heard(&Claim::Ours, &over), stays(&Claim::Ours, true));
-        }
-        let online = |session, insists| message(session, "ONLINE", insists);
-        assert!(matches!(heard(&Claim::Asking(now), &online("a", false)), Ok((Claim::Theirs(..), false))));
-        assert!(matches!(heard(&Claim::Sent, &online("b", false)), Ok((Claim::Seen(_), false))));
-        assert!(heard(&Claim::Sent, &online("a", false)).is_err());
-        assert!(heard(&Claim::Seen(now), &online("c", true)).is_err());
-        assert_eq!(heard(&Claim::Seen(now), &online("c", false)), stays(&Claim::Seen(now), true));
-        assert!(heard(&Claim::Ours, &online("a", true)).is_err());
-        assert_eq!(heard(&Claim::Ours, &online("c", true)), stays(&Claim::Ours, true));
-        assert_eq!(heard(&Claim::Ours, &online("b", true)), stays(&Claim::Ours, false));
+        let first = [heard(1, &serde_json::json!([]))];
+        let out = answered(&mut supervisor, &mut bridge, &timed(&first, &board, 1.5), [true, true], &[], 1.5);
+        // It answers the request for a state, so its states are certainly new.
+        let said = |out: &Out| serde_json::from_slice::<Value>(&out.message.payload).unwrap()["actions"][0].clone();
+        let asked = out.iter().map(said).find(|action| action["actionType"] == "stateRequest").unwrap();
+        let actions = serde_json::json!([{ "actionId": asked["actionId"], "actionStatus": "FINISHED" }]);
+        let later = [2, 3].map(|number| heard(number, &actions));
+        assert_eq!(board.time(begin - Duration::from_secs(1)), 0.0);
+        answered(&mut supervisor, &mut bridge, &timed(&later, &board, 9.0), [false, true], &[], 9.0);
+        let robot = supervisor.robot("m/1").unwrap();
+        assert_eq!((robot.alive, robot.heard), (Some(3.0), Some(3.0)));
+        let events = supervisor.settle(9.0).unwrap();
+        assert!(matches!(events[..], [Event::Silent { since: 6.0, .. }]), "{events:?}");
+    }
+
+    #[test]
+    fn lost_events_are_noticed() {
+        let (sender, events) = std::sync::mpsc::sync_channel(9);
+        let go = || Event::Go { robot: "a".into() };
+        sender.send(go()).unwrap();
+        assert_eq!(drained(&events), (vec![go()], false));
+        sender.send(go()).unwrap();
+        drop(sender);
+        assert_eq!(drained(&events), (vec![go()], true));
     }
 }

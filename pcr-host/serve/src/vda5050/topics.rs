@@ -133,11 +133,6 @@ impl Interface {
         Ok(Self { prefix: prefix.into() })
     }
 
-    /// Its prefix.
-    pub fn prefix(&self) -> &str {
-        &self.prefix
-    }
-
     /// The topic of a message.
     pub fn topic(&self, version: Version, key: &Key, kind: Kind) -> String {
         format!("{}/{}/{}/{}/{}", self.prefix, version.major(), key.manufacturer, key.serial_number, kind.text())

@@ -180,7 +180,7 @@ fn faults_one_after_the_other() {
             while !second.is_over() {
                 site.step();
             }
-            let why = second.close().unwrap_err().0;
+            let why = second.close().unwrap_err().to_string();
             assert!(why.contains("another supervisor"), "{why}");
             tally.over(&mut site, "a second supervisor was refused");
         }
@@ -221,7 +221,7 @@ fn of_supervisors_that_begin_at_once_one_goes_on() {
         }
         let (ended, mut on): (Vec<Desk>, Vec<Desk>) = all.drain(..).partition(Desk::is_over);
         for desk in ended {
-            let why = desk.close().unwrap_err().0;
+            let why = desk.close().unwrap_err().to_string();
             assert!(why.contains("another supervisor"), "{why}");
         }
         let on = on.pop().expect("one of them");
@@ -233,7 +233,7 @@ fn of_supervisors_that_begin_at_once_one_goes_on() {
         while !late.is_over() {
             std::thread::sleep(Duration::from_millis(20));
         }
-        assert!(late.close().unwrap_err().0.contains("another supervisor") && !on.is_over());
+        assert!(late.close().unwrap_err().to_string().contains("another supervisor") && !on.is_over());
         on.close().unwrap();
     }
 }

@@ -17,6 +17,7 @@ mod samples;
 mod schemas;
 mod site;
 mod standing;
+mod stops;
 #[cfg(feature = "tls")]
 mod tls;
 mod yard;

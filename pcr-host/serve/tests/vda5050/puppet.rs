@@ -127,13 +127,19 @@ impl Puppet {
     }
 
     /// What the manager says.
-    pub(crate) fn manager(&mut self, kind: Kind, mut message: Value) {
-        let header = json!({ "headerId": 1, "timestamp": "2030-01-01T00:00:00.000Z", "version": "2.1.0",
-            "manufacturer": "sim", "serialNumber": "001" });
-        message.as_object_mut().unwrap().extend(header.as_object().unwrap().clone());
+    pub(crate) fn manager(&mut self, kind: Kind, message: Value) {
+        let message = self.signed(message);
         let topic = interfaces()[0].topic(Version::V2_1, &key(), kind);
         self.bridge.receive(&mut self.supervisor, &topic, message.to_string().as_bytes(), self.time);
         self.turn();
+    }
+
+    /// A message of the manager with its header.
+    pub(crate) fn signed(&self, mut message: Value) -> Value {
+        let header = json!({ "headerId": 1, "timestamp": "2030-01-01T00:00:00.000Z", "version": "2.1.0",
+            "manufacturer": "sim", "serialNumber": "001" });
+        message.as_object_mut().unwrap().extend(header.as_object().unwrap().clone());
+        message
     }
 
     pub(crate) fn cancels(&mut self, id: &str) {

@@ -4,6 +4,8 @@ use crate::broker::Mosquitto;
 use crate::dump;
 use pcr_formats::import::{Format, Imported, Layout, Options, Warnings, layout};
 use pcr_serve::entry::Keep;
+use pcr_serve::log::{Level, Log};
+use pcr_serve::server::{Input, queue, serve};
 use pcr_serve::supervisor::{Settings, Supervisor};
 use pcr_serve::vda5050::bridge::{self, Bridge};
 use pcr_serve::vda5050::door::Limits;
@@ -18,7 +20,9 @@ use pcr_serve::vehicles::office::Office;
 use pcr_serve::vehicles::record::{Certificate, certify};
 use pcr_serve::vehicles::weather::Climate;
 use pcr_serve::vehicles::world::World;
+use pcr_serve::writer::Kept;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::sync_channel;
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -71,23 +75,43 @@ impl Desk {
         let [manager, vehicles] = interfaces();
         let stop = Arc::new(AtomicBool::new(false));
         let settings = bridge::Settings { manager, vehicles: vehicles.clone(), limits: Limits::default() };
-        let mut bridge = Bridge::new(settings, profiles, &supervisor).unwrap();
+        let bridge = Bridge::new(settings, profiles, &supervisor).unwrap();
         let mut station = Station::open(broker, &vehicles, &bridge, session).unwrap();
+        let bridge = Arc::new(Mutex::new(bridge));
+        let (handle, inputs) = queue();
+        let [(sender, events), (copies, news)] = [(); 2].map(|()| sync_channel(1 << 16));
+        let server = std::thread::spawn(move || {
+            let _ = serve(&mut supervisor, &inputs, &Kept::default(), Log::new(Level::Error));
+        });
+        for listener in [sender, copies] {
+            assert!(handle.send(Input::Tell(listener)));
+        }
         let (log, asked) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicBool::new(false)));
         let (ended, lines, tells) = (stop.clone(), log.clone(), asked.clone());
+        let begin = Instant::now();
         let thread = std::thread::spawn(move || {
-            while !ended.load(Ordering::Relaxed) {
-                let events = station.turn(&mut supervisor, &mut bridge)?;
+            let done = loop {
+                if ended.load(Ordering::Relaxed) {
+                    station.close();
+                    break Ok(());
+                }
+                let log = match station.turn(&handle, &bridge, &events) {
+                    Ok(log) => log,
+                    Err(stopped) => break Err(stopped),
+                };
                 let mut lines = lines.lock().unwrap();
-                lines.extend(events.iter().map(|event| format!("{:.2} {event:?}", station.now())));
-                lines.extend(bridge.log());
+                lines.extend(news.try_iter().map(|event| format!("{:.2} {event:?}", begin.elapsed().as_secs_f64())));
+                lines.extend(log);
                 if tells.swap(false, Ordering::Relaxed) {
                     lines.push(format!("ours: {}", station.is_ours()));
-                    lines.extend(dump::supervised(&supervisor, &bridge));
+                    let own = bridge.clone();
+                    let dumped = handle.ask(move |supervisor, _, _| dump::supervised(supervisor, &own.lock().unwrap()));
+                    lines.extend(dumped.into_iter().flatten());
                 }
-            }
-            station.close();
-            Ok(())
+            };
+            handle.send(Input::Stop);
+            server.join().unwrap();
+            done
         });
         Self { stop, asked, thread, log }
     }

@@ -1,6 +1,6 @@
 //! Runs the VDA 5050 bridge beside the thread that owns the supervisor.
 
-use super::super::Stop;
+use super::super::{NOT_WRITTEN, Stop, WRONG_INPUT};
 use super::Arguments;
 use pcr_formats::once::Once;
 use pcr_serve::log::{Level, Log};
@@ -13,6 +13,7 @@ use pcr_serve::vda5050::lane::Profile;
 use pcr_serve::vda5050::mqtt::Broker;
 use pcr_serve::vda5050::station::{Station, Stopped};
 use pcr_serve::vda5050::topics::{Interface, Key};
+use pcr_serve::vda5050::way::TOLERANCE;
 use serde_json::Value;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -113,11 +114,19 @@ fn profile(value: &Value) -> Result<Profile, String> {
         speed: number("speed")?,
         acceleration: number("acceleration")?,
     };
+    let abilities = abilities.checked()?;
+    // As much of the margin is for curves, so nothing would be left for the vehicle: each of its positions would be off its way.
+    if abilities.margin <= TOLERANCE {
+        return Err(format!(
+            "margin: has to be more than {TOLERANCE} m: {} leaves a vehicle no room beside its way",
+            abilities.margin
+        ));
+    }
     let split = match value.get("split") {
         None => true,
         Some(split) => split.as_bool().ok_or("split: true or false is expected")?,
     };
-    Ok(Profile { key: Key::new(text("manufacturer")?, text("serialNumber")?)?, abilities: abilities.checked()?, split })
+    Ok(Profile { key: Key::new(text("manufacturer")?, text("serialNumber")?)?, abilities, split })
 }
 
 /// Whether the journal knows the vehicles as the file does: orders were made for discs as they were.
@@ -164,16 +173,15 @@ pub(super) fn start(handle: &Handle, supervisor: &Supervisor, fleet: Fleet, log:
     handle.send(Input::Tell(sender));
     let thread = super::threads::thread("bridge", move || {
         let bridge = Arc::new(Mutex::new(bridge));
+        // Without the bridge the vehicles are not supervised, also when its thread panics.
+        let end = Ends(handle);
         while !ended.load(Ordering::Relaxed) {
-            match station.turn_at(&handle, &bridge, &events) {
+            match station.turn(&end.0, &bridge, &events) {
                 Ok(lines) => {
                     lines.iter().for_each(|line| log.write(Level::Warn, "bridge", &[("why", line)]));
                 }
                 Err(_) if ended.load(Ordering::Relaxed) => break,
-                Err(why) => {
-                    handle.send(Input::Stop);
-                    return Err(why);
-                }
+                Err(why) => return Err(why),
             }
         }
         station.close();
@@ -187,8 +195,20 @@ impl Work {
     pub(super) fn end(self) -> Result<(), Stop> {
         self.stop.store(true, Ordering::Relaxed);
         match self.thread.join() {
-            Ok(Err(Stopped(why))) if why != "the supervisor has ended" => Err(Stop::arguments(why)),
-            _ => Ok(()),
+            Ok(Ok(()) | Err(Stopped::Ended)) => Ok(()),
+            Ok(Err(why @ Stopped::Rival(_))) => Err(Stop::Error(why.to_string(), WRONG_INPUT)),
+            Ok(Err(why)) => Err(Stop::Error(why.to_string(), NOT_WRITTEN)),
+            // Why is on standard error already.
+            Err(_) => Err(Stop::Error("the bridge to the broker has failed".into(), NOT_WRITTEN)),
         }
+    }
+}
+
+/// Ends the supervisor when it is dropped.
+struct Ends(Handle);
+
+impl Drop for Ends {
+    fn drop(&mut self) {
+        self.0.send(Input::Stop);
     }
 }

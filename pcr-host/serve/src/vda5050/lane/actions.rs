@@ -7,8 +7,8 @@ use super::super::state::State;
 use super::super::topics::Kind;
 use super::super::version::{Error, Version};
 use super::release::AGAIN;
-use super::{Lane, To};
-use crate::event::Event;
+use super::{Due, Lane, To};
+use crate::event::{Cause, Event};
 use crate::supervisor::Supervisor;
 use serde_json::Value;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -49,7 +49,7 @@ impl Lane {
         if held.is_none() || !due.is_empty() {
             let header = self.header(Kind::InstantActions, version);
             let message = InstantActions { rest: message.rest, ..InstantActions::new(header, due) };
-            self.post(To::Vehicle, Kind::InstantActions, version, &message);
+            self.act(version, &message);
         }
         repeated.or(held).map_or(Ok(()), Err)
     }
@@ -87,8 +87,19 @@ impl Lane {
         let header = self.header(Kind::InstantActions, version);
         let id = format!("pcr-{action_type}-{}-{}", header.timestamp, COUNT.fetch_add(1, Relaxed));
         let message = InstantActions::one(header, action_type, id.clone());
-        self.post(To::Vehicle, Kind::InstantActions, version, &message);
+        if action_type == "startPause" {
+            self.post_when(Due::AtOnce, To::Vehicle, Kind::InstantActions, version, &message);
+        } else {
+            self.act(version, &message);
+        }
         id
+    }
+
+    /// Sends instant actions. Those that let the vehicle go on are not sent if it was told to stop since.
+    pub(super) fn act(&mut self, version: Version, message: &InstantActions) {
+        let lets_go = message.actions.iter().flatten().any(|action| action.action_type == "stopPause");
+        let due = if lets_go { Due::Free } else { Due::Kept };
+        self.post_when(due, To::Vehicle, Kind::InstantActions, version, message);
     }
 
     /// Cancels the order of the vehicle again, with another action id.
@@ -112,8 +123,7 @@ impl Lane {
         if state.action(&id).is_none() && now - *last >= AGAIN {
             *last = now;
             let header = self.header(Kind::InstantActions, version);
-            let message = InstantActions::one(header, "cancelOrder", id);
-            self.post(To::Vehicle, Kind::InstantActions, version, &message);
+            self.act(version, &InstantActions::one(header, "cancelOrder", id));
         }
     }
 
@@ -132,11 +142,12 @@ impl Lane {
 
     /// Handles an event of the supervisor about the vehicle.
     pub fn told(&mut self, event: &Event) {
-        let Event::Dropped { mission, why, .. } = event else { return };
+        // A mission that was replaced by a longer one of the same order is not lost, and one that was cancelled, or whose vehicle was moved,
+        // is no error.
+        let Event::Dropped { mission, why: Cause::Impossible(why), .. } = event else { return };
         let order = mission.rsplit_once('#').map_or(mission.as_str(), |(order, _)| order);
         let update = self.job.as_ref().map_or(0, |job| job.held.update_id);
-        // A mission that was replaced by a longer one of the same order is not lost, and one that was cancelled is no error.
-        if !why.contains("takes its place") && self.job.as_ref().is_none_or(|job| job.cancel.is_none()) {
+        if self.job.as_ref().is_none_or(|job| job.cancel.is_none()) {
             self.reject(&Rejected::new(Error::Order, "nodes", why), order, update);
             self.mirror();
         }

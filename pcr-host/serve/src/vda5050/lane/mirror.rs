@@ -8,7 +8,7 @@ use super::super::state::{EdgeState, Listed, NodeState, State};
 use super::super::topics::Kind;
 use super::super::version::Version;
 use super::newest::Place;
-use super::{Job, Lane, NEEDS, Post, To};
+use super::{Due, Job, Lane, NEEDS, Post, To};
 use crate::supervisor::Supervisor;
 use pcr_formats::import::{self, Options, Warnings};
 use serde_json::Value;
@@ -54,7 +54,7 @@ impl Lane {
     fn forward(&mut self, to: To, kind: Kind, is_third: bool, payload: &[u8]) {
         let version = if is_third { Version::V3_0 } else { Version::V2_1 };
         let key = self.profile.key.clone();
-        self.posts.push(Post { to, key, version, kind, payload: payload.to_vec() });
+        self.posts.push(Post { to, key, version, kind, payload: payload.to_vec(), due: Due::Kept });
     }
 
     /// Passes a message on to the vehicle unchanged.

@@ -4,10 +4,10 @@ use super::super::door::Refusal;
 use super::super::messages::{Action, InstantActions};
 use super::super::state::ActionState;
 use super::super::topics::Kind;
+use super::Lane;
 use super::newest::LATEST;
 use super::notes::noted;
 use super::release::AGAIN;
-use super::{Lane, To};
 use crate::robot::Robot;
 use crate::supervisor::{Damaged, Supervisor};
 use serde::{Deserialize, Serialize};
@@ -15,6 +15,9 @@ use serde_json::Value;
 
 /// Key of the note about pauses.
 const NOTE: &str = "pauses";
+
+/// Largest number of `stopPause` actions that are held back: a manager may repeat them for hours.
+const MOST: usize = 16;
 
 /// Prefixes of the ids of our own actions.
 const OURS: [&str; 2] = ["pcr-startPause-", "pcr-stopPause-"];
@@ -74,7 +77,7 @@ impl Lane {
             let held = std::mem::take(&mut self.pauses.kept.held);
             (self.pauses.kept.others, self.pauses.wish) = (false, Some((false, now)));
             let header = self.header(Kind::InstantActions, version);
-            self.post(To::Vehicle, Kind::InstantActions, version, &InstantActions::new(header, held));
+            self.act(version, &InstantActions::new(header, held));
         }
         if self.pauses.kept != before {
             self.note_pauses(supervisor);
@@ -127,9 +130,15 @@ impl Lane {
             let held = &mut self.pauses.kept.held;
             match (action.action_type.as_str(), &by) {
                 ("stopPause", Some(by)) => {
-                    let why = format!("it stands for {by}; {:?} is passed on when it may go", action.action_id);
+                    let is_held = held.iter().any(|other| other.action_id == action.action_id);
+                    let what = if is_held || held.len() < MOST {
+                        "is passed on when it may go".to_owned()
+                    } else {
+                        format!("is not passed on: {MOST} of them wait already")
+                    };
+                    let why = format!("it stands for {by}; {:?} {what}", action.action_id);
                     refusal.get_or_insert(Refusal::new(format!("actions[{k}]"), why));
-                    if held.iter().all(|other| other.action_id != action.action_id) {
+                    if !is_held && held.len() < MOST {
                         held.push(action);
                     }
                     self.pauses.kept.others = false;
@@ -154,6 +163,11 @@ impl Lane {
             self.note_pauses(supervisor);
         }
         (due, refusal)
+    }
+
+    /// Whether it was told to stop, and not yet to go on.
+    pub fn has_to_stop(&self) -> bool {
+        self.pauses.asked.as_ref().is_some_and(|asked| asked.stops)
     }
 
     /// Stores the pauses in the journal.

@@ -35,13 +35,15 @@ impl Lane {
         // Not `told`: after a restart that is the hold that the vehicle may have been told, which is kept free for it but may
         // not be granted.
         let allowed = robot.granted;
-        if job.cancel.is_some() || job.lost.is_some() || robot.stopped.is_some() {
+        // A vehicle that is not where it may be is not sent further, nor does it get again what it has not confirmed.
+        let is_held = robot.stopped.is_some() || robot.alarm.is_some();
+        if job.cancel.is_some() || job.lost.is_some() || is_held {
             return;
         }
         // What the vehicle has had must not reach it again as a new order.
         let is_gone = job.was_there() && state.order_id != job.held.order_id;
         if !job.is_acknowledged() {
-            if robot.alarm.is_some() || is_gone && job.sent.is_some_and(|sent| sent.update == 0) {
+            if is_gone && job.sent.is_some_and(|sent| sent.update == 0) {
                 return;
             }
             // The vehicle has an older update, or none: the same one is sent again.

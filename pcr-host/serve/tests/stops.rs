@@ -1,0 +1,146 @@
+//! Stops: they wait for no journal, and robots that stand anyway get none.
+
+use crate::office::{Door, Office};
+use crate::world::Disc;
+use pcr_serve::course::{Shape, Start};
+use pcr_serve::event::{Cause, Event};
+use pcr_serve::robot::Abilities;
+use pcr_serve::server::{Input, Then};
+use pcr_serve::supervisor::{Proposal, Report, Settings, Supervisor, Verdict};
+use serde_json::{Value, json};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+const CAN: Abilities = Abilities { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+
+/// A robot under way, and a disc that no longer writes.
+fn driving() -> Office {
+    let own = Office::open();
+    own.mission(1, "a");
+    (0..3).for_each(|_| drop(own.next()));
+    own.slow.set(Door::Shut);
+    own
+}
+
+fn beside(own: &Office, id: u64, x: f64) {
+    own.ask(&json!({ "id": id, "verb": "off", "robot": "b", "x": x, "y": 0.0 }));
+}
+
+/// A stop was told when the journal had written what was decided before it, or not at all.
+#[test]
+fn a_stop_is_told_at_once_also_as_the_disc_fails() {
+    for door in [Door::Open, Door::Broken] {
+        let own = driving();
+        beside(&own, 2, 2.0);
+        let stop = own.next();
+        assert_eq!([&stop["event"], &stop["robot"], &stop["by"]], ["stop", "a", "b"], "{stop}");
+        own.at("a");
+        assert!(own.lines.try_recv().is_err(), "all else waits");
+        own.slow.set(door);
+        let next = own.next();
+        assert_eq!((next["id"].as_u64(), next["error"]["code"] == "broken"), (Some(2), door == Door::Broken), "{next}");
+        if door == Door::Open {
+            assert_eq!(own.next()["event"], "alarm");
+            own.handle.send(Input::Stop);
+        }
+        assert_eq!(own.server.join().unwrap().is_ok(), door == Door::Open);
+    }
+}
+
+/// What lets a robot go on was decided before it has to stop again: it comes never, and not after the stop.
+#[test]
+fn nothing_that_was_decided_before_a_stop_lets_go_after_it() {
+    let own = driving();
+    for (id, x) in [(2, 2.0), (3, 200.0), (4, 2.0), (5, 200.0)] {
+        beside(&own, id, x);
+        // Each is a batch of its own.
+        own.at("a");
+    }
+    own.slow.set(Door::Open);
+    own.handle.send(Input::Stop);
+    let told: Vec<Value> = own.rest();
+    let of_a = told.iter().filter(|line| line["robot"] == "a").map(|line| line["event"].as_str().unwrap());
+    let of_a: Vec<&str> = of_a.filter(|event| ["stop", "go"].contains(event)).collect();
+    assert_eq!(of_a, ["stop", "stop", "go"], "{told:?}");
+}
+
+/// What waited for a disc that hangs grew until there was no memory.
+#[test]
+fn while_too_much_waits_for_the_journal_nothing_is_read() {
+    let own = driving();
+    own.mission(2, "b");
+    own.handle.ask_then(|_, _, _| ((), Some(Then::new(65 << 20, || ())))).unwrap();
+    let is_read = Arc::new(AtomicBool::new(false));
+    let flag = is_read.clone();
+    own.handle.send(Input::Call(Box::new(move |_, _, _| {
+        flag.store(true, Ordering::Relaxed);
+        None
+    })));
+    std::thread::sleep(Duration::from_millis(200));
+    assert!(!is_read.load(Ordering::Relaxed));
+    own.slow.set(Door::Open);
+    own.at("a");
+    assert!(is_read.load(Ordering::Relaxed));
+    own.handle.send(Input::Stop);
+    assert_eq!(own.server.join().unwrap(), Ok(()));
+}
+
+fn supervisor() -> Supervisor {
+    let mut own = Supervisor::new(Settings::default(), Box::new(Disc::new()));
+    own.add("a", CAN, Start { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
+    own.add("b", CAN, Start { x: 0.0, y: 9.0, heading: 0.0 }).unwrap();
+    own
+}
+
+fn mission(robot: &str, name: &str, length: f64) -> Proposal {
+    let path = vec![Shape::Line { length }];
+    Proposal { robot: robot.into(), mission: name.into(), after: None, of: None, start: None, path }
+}
+
+/// Its length stays a little before the end of its path, so it counted as one that drives.
+#[test]
+fn a_robot_at_the_end_of_its_path_stands() {
+    let mut own = supervisor();
+    own.mission(&mission("a", "1", 2.0), 0.0).unwrap();
+    own.settle(0.0).unwrap();
+    own.position(&Report { robot: "a".into(), path: 2, at: [2.0, 2.0], age: 0.0 }, 1.0).unwrap();
+    own.settle(1.0).unwrap();
+    own.off("b", [2.0, 0.1], 0.0, 2.0).unwrap();
+    let events = own.settle(2.0).unwrap();
+    assert!(matches!(events[..], [Event::Alarm { .. }]), "{events:?}");
+    assert!(own.robot("a").unwrap().stopped.is_none());
+}
+
+/// Who watched believed for ever that it had an alarm, had to stand and had a mission that waited.
+#[test]
+fn a_robot_that_is_moved_tells_what_ends_by_it() {
+    let mut own = supervisor();
+    own.mission(&mission("a", "1", 5.0), 0.0).unwrap();
+    own.settle(0.0).unwrap();
+    for (robot, at) in [("b", [1.0, 0.1]), ("a", [0.5, 0.9])] {
+        own.off(robot, at, 0.0, 1.0).unwrap();
+    }
+    let waits = own.mission(&mission("a", "2", 5.0), 1.0).unwrap();
+    assert!(matches!(waits, Verdict::Waiting { .. }), "{waits:?}");
+    own.settle(1.0).unwrap();
+    assert!(own.robot("a").unwrap().stopped.is_some());
+    own.reseat("a", Start { x: 50.0, y: 50.0, heading: 0.0 }).unwrap();
+    let robot = || String::from("a");
+    let dropped = Event::Dropped { robot: robot(), mission: "2".into(), why: Cause::Moved };
+    let events = own.settle(2.0).unwrap();
+    assert_eq!(events, [dropped, Event::Clear { robot: robot() }, Event::Go { robot: robot() }]);
+}
+
+/// So did a mission that another one of the same path took the place of.
+#[test]
+fn a_mission_that_waits_is_given_up_for_one_that_is_adopted() {
+    let mut own = supervisor();
+    own.add("c", CAN, Start { x: 5.0, y: 0.0, heading: 0.0 }).unwrap();
+    let waits = own.mission(&mission("a", "1", 9.0), 0.0).unwrap();
+    assert!(matches!(waits, Verdict::Waiting { .. }), "{waits:?}");
+    own.settle(0.0).unwrap();
+    own.adopt("a", "2".into()).unwrap();
+    let dropped = Event::Dropped { robot: "a".into(), mission: "1".into(), why: Cause::Replaced };
+    assert_eq!(own.settle(1.0).unwrap(), [dropped]);
+}
