@@ -6,7 +6,7 @@ use super::version::Error;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-/// Largest number of nodes of an order.
+/// Largest number of nodes of an order that are kept.
 const MOST: usize = 10_000;
 
 /// An order with all of its updates so far.

@@ -17,6 +17,7 @@ mod pause;
 mod refused;
 mod release;
 mod states;
+mod trim;
 
 pub use job::{Job, Received, Sent, Stop};
 

@@ -42,6 +42,13 @@ struct Piece {
     placed: Placed,
 }
 
+impl Piece {
+    fn end(&self) -> Start {
+        let [x, y] = self.placed.end();
+        Start { x, y, heading: self.placed.heading_at_end() }
+    }
+}
+
 impl Way {
     /// The way of an order for a vehicle that stands at `start`.
     ///
@@ -67,10 +74,8 @@ impl Way {
         let (length, shapes) = self.nodes.last().copied().unwrap_or_default();
         self.shapes.truncate(shapes);
         self.pieces.retain(|piece| piece.from < length);
-        (self.at, self.heading) = match self.pieces.last() {
-            None => ([self.start.x, self.start.y], self.start.heading),
-            Some(last) => (last.placed.end(), last.placed.heading_at_end()),
-        };
+        let Start { x, y, heading } = self.end();
+        (self.at, self.heading) = ([x, y], heading);
         for (k, (edge, ends)) in held.edges.iter().zip(held.nodes.windows(2)).enumerate().skip(after) {
             let [from, to] = ends else { continue };
             self.edge(edge, from, to, k)?;
@@ -165,6 +170,18 @@ impl Way {
     /// Length up to a node \[m\].
     pub fn node(&self, place: usize) -> Option<f64> {
         self.nodes.get(place).map(|(length, _)| *length)
+    }
+
+    /// The pose with which a node is reached.
+    pub fn arrival(&self, place: usize) -> Option<Start> {
+        let length = self.node(place)?;
+        let before = self.pieces.partition_point(|piece| piece.from < length);
+        Some(before.checked_sub(1).and_then(|last| self.pieces.get(last)).map_or(self.start, Piece::end))
+    }
+
+    /// The pose at its end.
+    fn end(&self) -> Start {
+        self.pieces.last().map_or(self.start, Piece::end)
     }
 
     /// The shapes from one node, or from the start, up to another node.

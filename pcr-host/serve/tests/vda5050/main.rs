@@ -7,6 +7,7 @@ mod dump;
 mod faults;
 mod following;
 mod lanes;
+mod long;
 mod maps;
 mod pair;
 mod puppet;

@@ -312,7 +312,7 @@ impl Job {
     }
 
     /// The node id of a stop.
-    fn id(&self, stop: Stop) -> String {
+    pub(super) fn id(&self, stop: Stop) -> String {
         let node = self.held.nodes.get(stop.node).map_or("", |node| node.node_id.as_str());
         if stop.between {
             format!("{node}+{:.3}", stop.length - self.way.node(stop.node).unwrap_or(0.0))

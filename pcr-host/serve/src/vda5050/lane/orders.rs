@@ -214,7 +214,9 @@ impl Lane {
         if job.lost.is_some() {
             return Err(Rejected::new(Error::Order, "orderId", "the vehicle has lost it"));
         }
-        let mut job = job.clone();
+        let trimmed = self.state.as_deref().and_then(|state| job.trimmed(state));
+        let is_trimmed = trimmed.is_some();
+        let mut job = trimmed.unwrap_or_else(|| job.clone());
         let Taken::After(after) = job.held.update(order)? else { return Ok(false) };
         job.way.extend(&job.held, after).map_err(|refusal| Rejected { error: Error::Order, refusal })?;
         let robot = supervisor.robot(&self.name).map_err(|fault| Rejected::new(Error::Order, "", fault))?;
@@ -224,6 +226,11 @@ impl Lane {
         }
         job.changed = true;
         self.note(supervisor, "order", job.given());
+        if is_trimmed {
+            // Their lengths and numbers count from where the order begins now.
+            self.note(supervisor, "stops", &job.stops);
+            self.note(supervisor, "sent", job.sent);
+        }
         self.job = Some(job);
         Ok(true)
     }

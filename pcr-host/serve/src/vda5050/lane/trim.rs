@@ -1,0 +1,35 @@
+//! The part of an order that the vehicle has passed is left out, so that an order that is extended for hours stays short: each update
+//! writes all of it to the journal.
+
+use super::super::state::State;
+use super::super::way::Way;
+use super::job::{Job, Sent, Stop};
+
+/// Number of passed stops that are kept: late states name them.
+const KEPT: usize = 50;
+
+impl Job {
+    /// The order from a node on that the vehicle has passed long ago; `None` if that is not worth it.
+    pub(super) fn trimmed(&self, state: &State) -> Option<Self> {
+        let sent = self.sent.filter(|_| self.is_confirmed() && state.order_id == self.held.order_id)?;
+        let first = self.passed(state)?.checked_sub(KEPT)?.min(sent.from);
+        let first = (0..=first).rev().find(|&place| self.stops.get(place).is_some_and(|stop| !stop.between))?;
+        let node = self.stops.get(first)?.node.min(self.held.base);
+        if node < KEPT {
+            return None;
+        }
+        let (from, start) = (self.way.node(node)?, self.way.arrival(node)?);
+        let mut job = self.clone();
+        job.held.forget(node);
+        job.way = Way::new(start, &job.held).ok()?;
+        job.asked = job.asked.checked_sub(node)?;
+        job.sent = Some(Sent { from: sent.from.checked_sub(first)?, ..sent });
+        let moved =
+            |stop: &Stop| Some(Stop { length: stop.length - from, node: stop.node.checked_sub(node)?, ..*stop });
+        job.stops = self.stops.iter().skip(first).map(moved).collect::<Option<_>>()?;
+        // The vehicle knows stops by their names, which contain lengths: by rounding another one may have come out.
+        let names = |job: &Self| job.stops.iter().rev().map(|stop| job.id(*stop)).collect::<Vec<_>>();
+        let (own, before) = (names(&job), names(self));
+        before.starts_with(&own).then_some(job)
+    }
+}
