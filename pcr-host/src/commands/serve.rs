@@ -22,9 +22,11 @@ use std::process::ExitCode;
 const STATUSES: &str = "\
 Exit status:
   0  ended by the end of standard input (without --stay), or by Ctrl-C
-  2  wrong arguments, or a journal that is damaged or in use
+  2  wrong arguments, a journal that is damaged or in use, or another
+     supervisor at work at the broker
   3  the journal could not be opened or written, after which no robot was
-     allowed to go further; or (without --stay) standard output is full";
+     allowed to go further; or the connection to the broker failed for good;
+     or (without --stay) standard output is full";
 
 const EXAMPLES: &str = "\
 Examples:
