@@ -66,3 +66,32 @@ impl Drop for Place {
         self.0.fetch_sub(1, Ordering::Relaxed);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::{Read, Write};
+
+    #[test]
+    fn one_beyond_all_places_is_refused_until_a_place_is_free() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let at = listener.local_addr().unwrap();
+        let serve = |mut stream: TcpStream| {
+            stream.write_all(b"here").unwrap();
+            // Until the client ends.
+            let _ = stream.read_to_end(&mut Vec::new());
+        };
+        thread::spawn(move || each(&listener, "test", 1, Log::new(Level::Error), serve));
+        let connected = || {
+            let (mut client, mut said) = (TcpStream::connect(at).unwrap(), [0; 4]);
+            client.read_exact(&mut said).map(|()| client)
+        };
+        let first = connected().unwrap();
+        assert!(connected().is_err());
+        drop(first);
+        // Its thread ends some time after that.
+        while connected().is_err() {
+            thread::yield_now();
+        }
+    }
+}
