@@ -323,11 +323,6 @@ impl<S: Scalar> Segment<S> {
         self.start + self.direction.vector(S::ZERO, radius.negate_if(self.mirrored()))
     }
 
-    /// Direction of travel at the middle of an arc: that of its chord.
-    pub(crate) fn direction_at_middle(&self) -> Direction<S> {
-        self.axis
-    }
-
     /// Whether the segment bends to the right. Coordinates along it are then mirrored, so that all arcs turn left.
     pub(crate) fn mirrored(&self) -> bool {
         matches!(self.curve, Curve::Arc { turn: Turn::Right, .. })

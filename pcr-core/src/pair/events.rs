@@ -121,6 +121,9 @@ pub(crate) fn wraps<S: Scalar>(segment: &Segment<S>, radius: S, slack: S) -> boo
 
 /// The diameter through the middle of an arc, from the centre. On its far half the foot passes to the next lap.
 fn middle_diameter<S: Scalar>(arc: &Segment<S>, radius: S) -> Carrier<S> {
-    let Direction { cos, sin } = arc.direction_at_middle();
-    Carrier { start: arc.centre(radius), direction: Direction { cos: -sin, sin: cos }, curve: Curve::Line }
+    let middle = arc.point_at(arc.length.half());
+    let heading = Direction::<S>::at(arc.heading_at(arc.length.half()));
+    let start = middle + heading.vector(S::ZERO, radius.negate_if(arc.mirrored()));
+    let direction = Direction { cos: -heading.sin, sin: heading.cos };
+    Carrier { start, direction, curve: Curve::Line }
 }
