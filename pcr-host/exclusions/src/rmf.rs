@@ -19,7 +19,7 @@ use crate::edit::{Edits, column, ending};
 use crate::settings::Notes;
 use crate::yaml::{Spanned, Style, Value as Kind};
 use crate::{Claim, Rules};
-use pcr_formats::import::{Id, ImportError, Imported, is_navigation_graph};
+use pcr_formats::import::{Id, ImportError, Imported, is_navigation_graph, yaml};
 use pcr_planning::locks::Locks;
 use serde_json::{Value, json};
 use std::collections::{BTreeSet, HashMap};
@@ -43,7 +43,7 @@ impl Form {
     const LANE: usize = 2;
 
     fn of(text: &str) -> Result<(Self, Value), ImportError> {
-        let root = serde_saphyr::from_str(text).map_err(|error| ImportError::new(format!("not YAML: {error}")))?;
+        let root = yaml(text)?;
         let quoted = serde_json::from_str::<serde::de::IgnoredAny>(text).is_ok();
         let graph = is_navigation_graph(&root);
         Ok((Self { vertex: if graph { 2 } else { 4 }, typed: !graph, quoted }, root))

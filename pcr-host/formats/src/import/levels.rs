@@ -5,8 +5,8 @@
 //! other levels are laid upon it by the fiducials that both have: their bearings and distances to one another give the
 //! rotation and the scale, and their places the translation, each as a mean.
 
-use super::rmf::yaml_as;
 use super::value::Object;
+use super::yaml::yaml;
 use super::{ImportError, Warnings};
 use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, Visitor};
 use serde_json::Value;
@@ -245,7 +245,7 @@ fn first(text: &str) -> Option<String> {
     struct Building {
         levels: First,
     }
-    let building: Building = yaml_as(text).ok()?;
+    let building: Building = yaml(text).ok()?;
     building.levels.0
 }
 

@@ -10,38 +10,12 @@ use super::layout::{Edge, Id, Layout, Node};
 use super::levels::{Placing, Reference, Vertex, ends, parameter, vertices};
 use super::value::Object;
 use super::vehicle::Given;
+use super::yaml::yaml;
 use super::{ImportError, Options, Warnings, facing};
 use crate::footprint::Footprint;
 use crate::scenario::Placed;
-use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::collections::{BTreeSet, HashMap};
-
-pub(super) fn yaml(text: &str) -> Result<Value, ImportError> {
-    yaml_as(text)
-}
-
-/// What a YAML text says.
-pub(super) fn yaml_as<T: DeserializeOwned>(text: &str) -> Result<T, ImportError> {
-    // A text has no more nodes than bytes, unless it repeats some by their names, of which the parser has limits of its own.
-    let most = text.len().saturating_add(1024);
-    let options = serde_saphyr::options! {
-        budget: serde_saphyr::budget! {
-            max_nodes: most,
-            max_events: most.saturating_mul(2),
-            max_total_scalar_bytes: most,
-        },
-    };
-    serde_saphyr::from_str_with_options(text, options).map_err(|error| {
-        let what = if matches!(error.without_snippet(), serde_saphyr::Error::Budget { .. }) {
-            "too large or too deep"
-        } else {
-            "not YAML"
-        };
-        let error = error.to_string();
-        ImportError::new(format!("{what}: {}", error.lines().next().unwrap_or_default()))
-    })
-}
 
 /// Reads the vehicles from the configuration of a fleet: the footprint is the radius, and the vicinity beyond it is the margin.
 pub(super) fn fleet(value: &Value) -> Result<Given, ImportError> {
@@ -88,7 +62,7 @@ pub(super) fn read(
     outline: Option<&Footprint>,
     warnings: &mut Warnings,
 ) -> Result<Layout, ImportError> {
-    let value = yaml(text)?;
+    let value: Value = yaml(text)?;
     let root = Object::new("building", &value)?;
     if root.get("rmf_fleet").is_some() {
         return Err(ImportError::new("it is the configuration of a fleet; give it beside a building, with --fleet"));
