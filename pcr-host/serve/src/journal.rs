@@ -68,7 +68,7 @@ pub struct Journal {
     sum: u32,
     /// End of its zeros \[bytes\].
     end: u64,
-    /// Whether a write failed: the content of the disc is then unknown.
+    /// Whether a write failed: the content of the disk is then unknown.
     failed: bool,
 }
 
@@ -104,7 +104,7 @@ impl Journal {
         Ok((own, Found { entries, torn }))
     }
 
-    /// Adds a frame, and returns when it is on the disc. After an error any part of it may be there.
+    /// Adds a frame, and returns when it is on the disk. After an error any part of it may be there.
     fn add(&mut self, frame: &[u8]) -> io::Result<()> {
         let len = self.len + frame.len() as u64;
         if len > self.end {
@@ -170,7 +170,7 @@ fn written(folder: &Path, bytes: &[u8]) -> io::Result<()> {
     };
     create().map_err(of(&new))?;
     fs::rename(&new, &path).map_err(of(&path))?;
-    // The new name is on the disc when the folder is.
+    // The new name is on the disk when the folder is.
     File::open(folder).and_then(|folder| folder.sync_all()).map_err(of(folder))
 }
 
@@ -251,7 +251,7 @@ pub fn read(bytes: &[u8]) -> Result<Frames, String> {
                 }
                 read.sum = sum;
             }
-            // A frame is begun only after the one before it is on the disc, so a frame after an incomplete one is damage. (No
+            // A frame is begun only after the one before it is on the disk, so a frame after an incomplete one is damage. (No
             // frame begins inside another one: the fourth byte of a length is no character of JSON.)
             Err(why) if (1..rest.len()).any(|later| text(&rest[later..]).is_ok()) => return Err(damage(why)),
             Err(why) if !is_torn(rest, read.end) => return Err(damage(why)),
@@ -289,9 +289,9 @@ fn text(bytes: &[u8]) -> Result<(&[u8], u32, u32), &'static str> {
 
 /// Whether this frame, at this byte of the file, was never written completely.
 fn is_torn(bytes: &[u8], at: usize) -> bool {
-    /// Size that a disc writes atomically \[bytes\].
+    /// Size that a disk writes atomically \[bytes\].
     const SECTOR: usize = 512;
-    /// Fewer zeros than any part has that a disc writes at once \[bytes\].
+    /// Fewer zeros than any part has that a disk writes at once \[bytes\].
     const PART: usize = 32;
     let is_missing = |part: &[u8]| part.iter().all(|byte| *byte == 0);
     match length(bytes) {

@@ -23,7 +23,7 @@ const BATCH: usize = 256;
 /// Time after which the supervisor settles, even without a request \[ms\].
 const TICK: u64 = 50;
 
-/// Largest size of what waits for the journal \[bytes\]. While a disc hangs for longer, no requests are taken.
+/// Largest size of what waits for the journal \[bytes\]. While a disk hangs for longer, no requests are taken.
 const HEAVY: usize = 64 << 20;
 
 /// Usual size of an answer or an event, with what holds it \[bytes\].
@@ -59,7 +59,7 @@ pub enum Input {
     Call(Call),
     /// A subscriber of all events. If its queue is full it is dropped, and sees the end of the queue.
     Tell(SyncSender<Event>),
-    /// The journal has written more to the disc.
+    /// The journal has written more to the disk.
     Kept,
     /// The server ends.
     Stop,
@@ -77,7 +77,7 @@ impl Handle {
         self.sender.send((Instant::now(), input)).is_ok()
     }
 
-    /// Notes that the journal has written more to the disc. If the queue is full, the server looks at it anyway.
+    /// Notes that the journal has written more to the disk. If the queue is full, the server looks at it anyway.
     pub fn wake(&self) {
         let _ = self.sender.try_send((Instant::now(), Input::Kept));
     }
@@ -117,7 +117,7 @@ struct Client {
     watches: bool,
 }
 
-/// Messages that may be sent once this number of batches is on the disc.
+/// Messages that may be sent once this number of batches is on the disk.
 #[derive(Default)]
 struct Told {
     batches: u64,

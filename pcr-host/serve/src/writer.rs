@@ -19,7 +19,7 @@ enum Job {
 struct Shared {
     /// Number of batches handed over.
     asked: AtomicU64,
-    /// Number of batches on the disc; or the reason why no more will be written.
+    /// Number of batches on the disk; or the reason why no more will be written.
     done: Mutex<(u64, Option<String>)>,
     more: Condvar,
     is_long: AtomicBool,
@@ -37,7 +37,7 @@ impl Kept {
         self.shared.asked.load(Ordering::Acquire)
     }
 
-    /// Number of batches on the disc.
+    /// Number of batches on the disk.
     ///
     /// # Errors
     /// [`Fault::Broken`]: no more will be written.
@@ -46,7 +46,7 @@ impl Kept {
         done.1.clone().map_or(Ok(done.0), |why| Err(Fault::Broken { why }))
     }
 
-    /// Waits until all batches that were handed over are on the disc.
+    /// Waits until all batches that were handed over are on the disk.
     ///
     /// # Errors
     /// [`Fault::Broken`].
@@ -58,7 +58,7 @@ impl Kept {
         done.1.clone().map_or(Ok(()), |why| Err(Fault::Broken { why }))
     }
 
-    /// Waits until more is on the disc, or no more will be written, but no longer than a time.
+    /// Waits until more is on the disk, or no more will be written, but no longer than a time.
     pub fn wait_for(&self, time: Duration) {
         let done = self.shared.done.lock().unwrap_or_else(PoisonError::into_inner);
         let before = done.0;
@@ -67,7 +67,7 @@ impl Kept {
     }
 }
 
-/// Hands entries over to the thread. Nothing in them may be told before [`Kept`] says that they are on the disc.
+/// Hands entries over to the thread. Nothing in them may be told before [`Kept`] says that they are on the disk.
 #[derive(Debug)]
 pub struct Writer {
     sender: Option<Sender<Job>>,

@@ -209,7 +209,7 @@ fn last_frame(bytes: &[u8]) -> usize {
     journal::read(&bytes[..bytes.len() - 1]).unwrap().end
 }
 
-/// The sectors of a frame may reach the disc in any order, and there are zeros where they are to be.
+/// The sectors of a frame may reach the disk in any order, and there are zeros where they are to be.
 #[test]
 fn a_last_frame_of_which_any_sectors_are_missing_is_left_out() {
     const SECTOR: usize = 64;

@@ -1,4 +1,4 @@
-//! A server whose disc takes as long as the test says.
+//! A server whose disk takes as long as the test says.
 
 use crate::world::Disc;
 use pcr_serve::entry::{Entry, Keep};
@@ -20,7 +20,7 @@ pub(crate) enum Door {
     Broken,
 }
 
-/// A disc that takes as long as the test says.
+/// A disk that takes as long as the test says.
 #[derive(Clone)]
 pub(crate) struct Slow {
     pub(crate) disc: Disc,

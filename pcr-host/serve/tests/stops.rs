@@ -14,7 +14,7 @@ use std::time::Duration;
 
 const CAN: Abilities = Abilities { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
 
-/// A robot under way, and a disc that no longer writes.
+/// A robot under way, and a disk that no longer writes.
 fn driving() -> Office {
     let own = Office::open();
     own.mission(1, "a");
@@ -65,7 +65,7 @@ fn nothing_that_was_decided_before_a_stop_lets_go_after_it() {
     assert_eq!(of_a, ["stop", "stop", "go"], "{told:?}");
 }
 
-/// What waited for a disc that hangs grew until there was no memory.
+/// What waited for a disk that hangs grew until there was no memory.
 #[test]
 fn while_too_much_waits_for_the_journal_nothing_is_read() {
     let own = driving();

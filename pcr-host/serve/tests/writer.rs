@@ -1,4 +1,4 @@
-//! A journal on a thread of its own: nothing is told before it is on the disc, and what comes meanwhile is decided.
+//! A journal on a thread of its own: nothing is told before it is on the disk, and what comes meanwhile is decided.
 
 use crate::office::{Door, Office};
 use pcr_serve::entry::Entry;

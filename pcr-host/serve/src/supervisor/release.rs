@@ -66,12 +66,12 @@ impl Supervisor {
     /// lie where a robot may no longer come.
     ///
     /// After a restart the ceiling counts as told. So it has to be at or above every hold that was told, and this has to be
-    /// on the disc before the hold is told: `tell` raises the ceiling with the hold, in the frame after which the hold is told.
+    /// on the disk before the hold is told: `tell` raises the ceiling with the hold, in the frame after which the hold is told.
     /// And it must not be further than the robot could be told by the present orders: a robot that was added beyond the hold, or
     /// a mission that goes first there, would find the way taken after a restart, by a robot that stands before it, and wait for
     /// ever. `highest` bounds both: it is at least `told`, in which every hold is that was decided, also those that are still on
-    /// their way to the disc. So a ceiling may be lowered to it. Frames are read in the order in which they were decided, each of
-    /// them as a whole, and the last ceiling counts. So whatever frame is the last one on the disc, its ceilings are at or above
+    /// their way to the disk. So a ceiling may be lowered to it. Frames are read in the order in which they were decided, each of
+    /// them as a whole, and the last ceiling counts. So whatever frame is the last one on the disk, its ceilings are at or above
     /// the holds that were told by then, and match its orders, because they are lowered in the frame with the new orders.
     pub(super) fn set_ceilings(&mut self) {
         let is_ahead = |robot: &Robot| robot.ceiling > robot.told && robot.hold.is_none();
