@@ -208,8 +208,8 @@ impl<S: Scalar> Segment<S> {
         let mut part = Self {
             start,
             end: start,
-            heading: self.heading_at(from),
-            heading_at_end: self.heading_at(to),
+            heading: self.heading_before_turn(from),
+            heading_at_end: self.heading_before_turn(to),
             length,
             from: S::ZERO,
             to: length,
@@ -299,12 +299,14 @@ impl<S: Scalar> Segment<S> {
     /// Angle of the direction of travel after `u` metres; `u` is clamped to `[0, length]`. At the end it is the heading
     /// after the turn there.
     pub fn heading_at(&self, u: S) -> S::Angle {
-        if u >= self.length {
-            return self.heading_at_end;
-        }
+        if u >= self.length { self.heading_at_end } else { self.heading_before_turn(u.max(S::ZERO)) }
+    }
+
+    /// The same without the turn at the end.
+    fn heading_before_turn(&self, u: S) -> S::Angle {
         match self.curve {
-            Curve::Arc { radius, turn: Turn::Left } => self.heading + S::Angle::subtended(u.max(S::ZERO), radius),
-            Curve::Arc { radius, turn: Turn::Right } => self.heading - S::Angle::subtended(u.max(S::ZERO), radius),
+            Curve::Arc { radius, turn: Turn::Left } => self.heading + S::Angle::subtended(u, radius),
+            Curve::Arc { radius, turn: Turn::Right } => self.heading - S::Angle::subtended(u, radius),
             Curve::Line => self.heading,
         }
     }

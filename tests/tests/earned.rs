@@ -218,6 +218,38 @@ fn parts_of_a_path_are_blocked_as_the_whole_after_many_turns() {
     }
 }
 
+/// The box of a part of an arc is that of the arc, and not of the turn in place that follows.
+fn part_before_a_turn<S: Format>(left: bool) {
+    let (side, turn) = if left { (1.0, Turn::Left) } else { (-1.0, Turn::Right) };
+    let length = S::from_f64(0.75 * PI);
+    let path = Path::<S, 1>::starting_at(at(0.0, 0.0, 0.0)).and_then(|path| path.arc(S::from_f64(1.0), turn, length));
+    let path = path.and_then(|path| path.turn(S::angle(-side * FRAC_PI_2).expect("an angle"))).expect("small");
+    let stands = Path::<S, 1>::starting_at(at(1.3, side, 0.0)).expect("small");
+    let (speed, still) = (unit_speed(path.as_path().length()), Profile::<S, 1>::standing());
+    let radius = S::from_f64(0.25);
+    let ego = Motion::new(path.as_path(), speed.as_profile(), radius, S::ZERO).expect("small");
+    let other = Motion::new(stands.as_path(), still.as_profile(), radius, S::ZERO).expect("small");
+    let during = Interval::new(S::ZERO, S::from_f64(5.0));
+    let fleet = [ego, other];
+    for from in [0.0, 0.1, 0.5] {
+        let part = Interval::new(S::from_f64(from), path.as_path().length());
+        let blocked: Vec<_> = Encounter::new(&fleet[0], &fleet[1]).blocked(part, during).collect();
+        assert_eq!(blocked, [during], "{from} in {}", S::NAME);
+    }
+}
+
+#[test]
+fn parts_of_arcs_before_a_turn_in_place_are_blocked_as_the_whole() {
+    for left in [false, true] {
+        part_before_a_turn::<f64>(left);
+        part_before_a_turn::<f32>(left);
+        part_before_a_turn::<Micro>(left);
+        part_before_a_turn::<Q12>(left);
+        part_before_a_turn::<Q16>(left);
+        part_before_a_turn::<Q20>(left);
+    }
+}
+
 /// A crossing that the ego passes so early that only durations beyond the format lead into the other's way.
 #[test]
 fn no_duration_is_forbidden_if_all_of_them_are_beyond_the_format() {
