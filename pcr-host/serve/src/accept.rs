@@ -18,7 +18,7 @@ pub(crate) fn each(
     log: Log,
     serve: impl Fn(TcpStream) + Clone + Send + 'static,
 ) {
-    let (open, mut fails) = (Arc::new(AtomicUsize::new(0)), false);
+    let (open, mut fails, mut refuses) = (Arc::new(AtomicUsize::new(0)), false, false);
     for stream in listener.incoming() {
         let stream = match stream {
             Ok(stream) => stream,
@@ -33,13 +33,16 @@ pub(crate) fn each(
         fails = false;
         if open.load(Ordering::Relaxed) >= most {
             let who = stream.peer_addr().map_or_else(|_| String::new(), |address| address.to_string());
-            log.write(
-                Level::Warn,
-                "a connection is refused: all places are taken",
-                &[("for", &name), ("from", &who), ("places", &most)],
-            );
+            if !std::mem::replace(&mut refuses, true) {
+                log.write(
+                    Level::Warn,
+                    "connections are refused: all places are taken",
+                    &[("for", &name), ("first", &who), ("places", &most)],
+                );
+            }
             continue;
         }
+        refuses = false;
         let (serve, place) = (serve.clone(), Place::taken(&open));
         let work = move || {
             let _place = place;

@@ -40,26 +40,18 @@ pub struct Site {
     pub draw: Option<Draw>,
     /// Accepted host names: a foreign page whose host name points here gets no answer.
     pub hosts: Vec<String>,
-    /// The port at which every address is accepted as a host, because the page is at all addresses of the machine. A foreign page needs a
-    /// name that it can point here.
-    pub addresses: Option<u16>,
+    /// Whether every address is accepted as a host, because the page is at all addresses of the machine. A foreign page needs a name that it
+    /// can point here.
+    pub addresses: bool,
 }
 
 impl Site {
     fn is_here(&self, host: &str) -> bool {
-        let is_address = |port: u16| {
-            let (address, given) = match host.rsplit_once(':').filter(|(_, port)| !port.ends_with(']')) {
-                Some((address, given)) => (address, given.parse().ok()),
-                None => (host, Some(80)),
-            };
-            let inner = address.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
-            let is_ip = match inner {
-                Some(inner) => inner.parse::<Ipv6Addr>().is_ok(),
-                None => address.parse::<Ipv4Addr>().is_ok(),
-            };
-            is_ip && given == Some(port)
-        };
-        self.hosts.iter().any(|known| known.eq_ignore_ascii_case(host)) || self.addresses.is_some_and(is_address)
+        let address =
+            host.rsplit_once(':').filter(|(_, port)| !port.ends_with(']')).map_or(host, |(address, _)| address);
+        let inner = address.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
+        let is_address = inner.map_or(address.parse::<Ipv4Addr>().is_ok(), |inner| inner.parse::<Ipv6Addr>().is_ok());
+        self.hosts.iter().any(|known| known.eq_ignore_ascii_case(host)) || self.addresses && is_address
     }
 }
 

@@ -175,6 +175,10 @@ pub fn serve(
                 log.write(Level::Error, "the journal is too slow: nothing is read until it has written", &[]);
             }
             kept.wait_for(Duration::from_millis(TICK));
+            // Who has to stop, because a robot may have come nearer meanwhile, is told all the same.
+            let now = begin.elapsed().as_secs_f64();
+            supervisor.decide(now);
+            desk.stop(supervisor.stops(), &mut waiting, now);
             heavy -= desk.tell_kept(&mut waiting, kept)?;
             continue;
         }
@@ -285,7 +289,13 @@ impl Desk {
         for (client, answer) in told.answers {
             send(&mut self.clients, client, &answer, self.log);
         }
-        told.events.iter().for_each(|event| self.announce(told.now, event));
+        for event in &told.events {
+            match event {
+                // It was told at once, but clients may have ignored it for what they had not been told before.
+                Event::Stop { .. } => self.send_news(event),
+                event => self.announce(told.now, event),
+            }
+        }
         told.thens.into_iter().for_each(|then| (then.act)());
         for client in told.closed {
             self.clients.remove(&client);
@@ -294,15 +304,10 @@ impl Desk {
     }
 
     fn announce(&mut self, now: f64, event: &Event) {
-        let Self { clients, listeners, board, log, .. } = self;
-        log.event(event);
-        board.note(now, event);
-        let watching: Vec<u64> =
-            clients.iter().filter(|(_, client)| client.watches).map(|(number, _)| *number).collect();
-        let news = if watching.is_empty() { Value::Null } else { lines::news(event) };
-        for client in watching {
-            send(clients, client, &news, *log);
-        }
+        self.log.event(event);
+        self.board.note(now, event);
+        self.send_news(event);
+        let Self { listeners, log, .. } = self;
         listeners.retain(|listener| {
             let sent = listener.try_send(event.clone());
             if let Err(TrySendError::Full(_)) = sent {
@@ -310,6 +315,17 @@ impl Desk {
             }
             sent.is_ok()
         });
+    }
+
+    /// Sends an event to the clients that watch.
+    fn send_news(&mut self, event: &Event) {
+        let Self { clients, log, .. } = self;
+        let watching: Vec<u64> =
+            clients.iter().filter(|(_, client)| client.watches).map(|(number, _)| *number).collect();
+        let news = if watching.is_empty() { Value::Null } else { lines::news(event) };
+        for client in watching {
+            send(clients, client, &news, *log);
+        }
     }
 
     /// After a failed write of the journal: answers errors in place of the results.

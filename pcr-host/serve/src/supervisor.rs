@@ -92,6 +92,8 @@ pub struct Supervisor {
     entries: Vec<Entry>,
     /// Events to be sent once these changes are in the journal.
     events: Vec<Event>,
+    /// Number of those that tell robots to stop and were taken by [`Supervisor::stops`].
+    hurried: usize,
     /// For each robot whether its position has changed since it was last written to the journal.
     unsaved: Vec<bool>,
     /// Number of the next mission that has to wait.
@@ -132,6 +134,7 @@ impl Supervisor {
             keeper,
             entries: Vec::new(),
             events: Vec::new(),
+            hurried: 0,
             unsaved: Vec::new(),
             turn: 0,
             tries: HashMap::new(),
@@ -358,21 +361,20 @@ impl Supervisor {
         self.note_standstill(now);
     }
 
-    /// Takes the events that tell robots to stop. They may be sent at once: a stop is not in the journal, because it is decided anew after a
-    /// restart. What was decided earlier and would let these robots go on is taken back.
+    /// The events since the last call that tell robots to stop. They may be sent at once: a stop is not in the journal, because it is decided
+    /// again after a restart. They are also among those that [`Supervisor::keep`] returns, in their places; what was decided before them and
+    /// would let these robots go on is taken back.
     pub fn stops(&mut self) -> Vec<Event> {
-        let (mut stops, mut others): (Vec<Event>, Vec<Event>) = Default::default();
+        let (mut stops, mut events): (Vec<Event>, Vec<Event>) = Default::default();
         for event in std::mem::take(&mut self.events) {
-            match event {
-                Event::Stop { .. } => {
-                    others.retain(|other| !event.overtakes(other));
-                    stops.push(event);
-                }
-                event => others.push(event),
+            if let Event::Stop { .. } = event {
+                events.retain(|before| !event.overtakes(before));
+                stops.push(event.clone());
             }
+            events.push(event);
         }
-        self.events = others;
-        stops
+        self.events = events;
+        stops.split_off(std::mem::replace(&mut self.hurried, stops.len()))
     }
 
     /// [Decides](Supervisor::decide), and writes the journal. The returned events may be sent, because they are in the journal.
@@ -390,6 +392,7 @@ impl Supervisor {
     /// As [`Supervisor::settle`].
     pub fn keep(&mut self) -> Result<Vec<Event>, Fault> {
         self.save()?;
+        self.hurried = 0;
         Ok(std::mem::take(&mut self.events))
     }
 

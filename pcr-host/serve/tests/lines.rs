@@ -373,7 +373,7 @@ fn clients_over_tcp_and_the_page() {
     let (at, shown) = (lines.local_addr().unwrap(), page.local_addr().unwrap());
     let draw: http::Draw = |fleet, place| Ok(format!("<svg>{}</svg>", fleet[place].name));
     let site =
-        http::Site { page: "<p>here</p>".into(), draw: Some(draw), hosts: vec![shown.to_string()], addresses: None };
+        http::Site { page: "<p>here</p>".into(), draw: Some(draw), hosts: vec![shown.to_string()], addresses: false };
     let own = handle.clone();
     thread::spawn(move || clients::listen(&own, &lines, Log::new(Level::Error)));
     let own = handle.clone();
@@ -442,25 +442,15 @@ fn a_page_at_all_addresses_is_shown_under_any_address_and_no_other_name() {
         let request = format!("GET / HTTP/1.1\r\nHost: {host}\r\n\r\n");
         http::answer(&handle, &site(addresses), request.as_bytes()).0[..3].parse::<u16>().unwrap()
     };
-    for host in ["192.168.1.5:8080", "[fe80::1]:8080", "10.0.0.1:8080"] {
-        assert_eq!([None, Some(8080)].map(|port| status(port, host)), [403, 200], "{host}");
+    // The port may be another one: that of a machine around this one, which passes on what comes there.
+    for host in ["192.168.1.5:8080", "[fe80::1]:8080", "10.0.0.1:80", "192.168.1.5", "[fe80::1]"] {
+        assert_eq!([false, true].map(|addresses| status(addresses, host)), [403, 200], "{host}");
     }
-    for host in ["192.168.1.5", "[fe80::1]"] {
-        assert_eq!([Some(8080), Some(80)].map(|port| status(port, host)), [403, 200], "{host}");
+    for host in ["example.org:8080", "1.2.3.4.example.org:8080", "fe80::1:8080", "[10.0.0.1]:8080", "[::1", ":8080", ""]
+    {
+        assert_eq!(status(true, host), 403, "{host}");
     }
-    for host in [
-        "example.org:8080",
-        "1.2.3.4.example.org:8080",
-        "192.168.1.5:81",
-        "fe80::1:8080",
-        "[10.0.0.1]:8080",
-        "[::1",
-        ":8080",
-        "",
-    ] {
-        assert_eq!(status(Some(8080), host), 403, "{host}");
-    }
-    assert_eq!(status(Some(8080), "LOCALHOST:8080"), 200);
+    assert_eq!(status(true, "LOCALHOST:8080"), 200);
 }
 
 #[test]

@@ -41,7 +41,10 @@ fn a_stop_is_told_at_once_also_as_the_disc_fails() {
         let next = own.next();
         assert_eq!((next["id"].as_u64(), next["error"]["code"] == "broken"), (Some(2), door == Door::Broken), "{next}");
         if door == Door::Open {
-            assert_eq!(own.next()["event"], "alarm");
+            // Once more in its place, for clients that did not know the robot yet or had asked for its state before.
+            let mut told = [own.next(), own.next()].map(|next| next["event"].as_str().unwrap_or_default().to_owned());
+            told.sort();
+            assert_eq!(told, ["alarm", "stop"]);
             own.handle.send(Input::Stop);
         }
         assert_eq!(own.server.join().unwrap().is_ok(), door == Door::Open);
@@ -62,7 +65,8 @@ fn nothing_that_was_decided_before_a_stop_lets_go_after_it() {
     let told: Vec<Value> = own.rest();
     let of_a = told.iter().filter(|line| line["robot"] == "a").map(|line| line["event"].as_str().unwrap());
     let of_a: Vec<&str> = of_a.filter(|event| ["stop", "go"].contains(event)).collect();
-    assert_eq!(of_a, ["stop", "stop", "go"], "{told:?}");
+    // Both stops at once, and again in their places.
+    assert_eq!(of_a, ["stop", "stop", "stop", "stop", "go"], "{told:?}");
 }
 
 /// What waited for a disk that hangs grew until there was no memory.

@@ -155,11 +155,11 @@ impl Bridge {
     }
 
     /// Takes a message that the broker had kept. It may be old, so most kinds are ignored.
-    pub fn receive_kept(&mut self, supervisor: &mut Supervisor, topic: &str, payload: &[u8], now: f64) {
+    pub fn receive_kept(&mut self, supervisor: &mut Supervisor, topic: &str, payload: &[u8], came: f64) {
         let Settings { manager, vehicles, .. } = &self.settings;
         let kind = vehicles.parse(topic).or_else(|| manager.parse(topic)).map(|(.., kind)| kind);
         if kind.is_none_or(Kind::is_lasting) {
-            return self.receive(supervisor, topic, payload, now);
+            return self.receive(supervisor, topic, payload, came);
         }
         self.counts.refused += 1;
         self.log.push(format!("{topic}: kept by the broker, from another time"));
@@ -167,6 +167,12 @@ impl Bridge {
 
     /// Takes a message. Its requests take effect when the supervisor has settled.
     pub fn receive(&mut self, supervisor: &mut Supervisor, topic: &str, payload: &[u8], now: f64) {
+        self.receive_late(supervisor, topic, payload, [now; 2]);
+    }
+
+    /// The same of a message that came at the first of two times and is read at the second. What a vehicle says is about the first one; what
+    /// follows from requests begins now.
+    pub fn receive_late(&mut self, supervisor: &mut Supervisor, topic: &str, payload: &[u8], [came, now]: [f64; 2]) {
         let settings = &self.settings;
         let from_vehicle = settings.vehicles.parse(topic).filter(|(.., kind)| Kind::OF_VEHICLES.contains(kind));
         let from_manager = settings.manager.parse(topic).filter(|(.., kind)| Kind::TO_VEHICLES.contains(kind));
@@ -183,15 +189,15 @@ impl Bridge {
         self.touched.insert(place);
         let lane = &mut self.lanes[place];
         let result = match kind {
-            Kind::State => lane.state(supervisor, payload, limits, is_third, now),
+            Kind::State => lane.state(supervisor, payload, limits, is_third, came),
             Kind::Visualization => lane
-                .visualization(supervisor, payload, limits, is_third, now)
+                .visualization(supervisor, payload, limits, is_third, came)
                 .inspect(|()| lane.pass_on(kind, is_third, payload)),
             Kind::Connection => {
-                lane.connection(payload, limits, is_third, now).inspect(|()| lane.pass_on(kind, is_third, payload))
+                lane.connection(payload, limits, is_third, came).inspect(|()| lane.pass_on(kind, is_third, payload))
             }
             Kind::Factsheet => lane
-                .factsheet(supervisor, payload, limits, is_third, now)
+                .factsheet(supervisor, payload, limits, is_third, came)
                 .inspect(|()| lane.pass_on(kind, is_third, payload)),
             Kind::InstantActions => lane.instant_actions(supervisor, payload, limits, is_third, now),
             Kind::Order => {
@@ -308,9 +314,15 @@ impl Bridge {
         std::mem::take(&mut self.out)
     }
 
-    /// Whether a message may still be sent: those that let a vehicle go on may not if it was told to stop since.
-    pub fn lets(&self, out: &Out) -> bool {
-        out.due != Due::Free || !self.lanes[out.place].has_to_stop()
+    /// Whether a message may still be sent: those that let a vehicle go on may not if it was told to stop since. Those of the manager are then
+    /// held back until it may go.
+    pub fn lets(&mut self, out: &Out) -> bool {
+        let lane = &mut self.lanes[out.place];
+        let lets = out.due != Due::Free || !lane.has_to_stop();
+        if !lets {
+            lane.take_back(&out.message.payload);
+        }
+        lets
     }
 }
 

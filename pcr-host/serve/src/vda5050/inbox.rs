@@ -102,9 +102,13 @@ impl Waiting {
             // So that it is looked through again only when that is worth it.
             self.next = 2 * self.queue.len();
         }
-        // Whether it is connected is always told.
-        let is_message = matches!(news, News::Message { .. });
-        if is_message && (self.queue.len() >= MOST.0 || self.bytes + bytes > MOST.1) {
+        // Whether it is connected is always told, and there is more room for what must not be missed.
+        let is_dropped = match &news {
+            News::Message { topic, .. } if is_urgent(topic) => self.queue.len() >= 2 * MOST.0,
+            News::Message { .. } => self.queue.len() >= MOST.0 || self.bytes + bytes > MOST.1,
+            News::Up | News::Down(_) => false,
+        };
+        if is_dropped {
             self.lost.dropped += 1;
             return;
         }
@@ -121,6 +125,12 @@ impl Waiting {
         self.lost.old += (before - self.queue.len()) as u64;
         self.bytes = self.queue.iter().map(size).sum();
     }
+}
+
+/// Whether messages on a topic tell vehicles to stop, or who is there: other supervisors, too.
+fn is_urgent(topic: &str) -> bool {
+    let kind = topic.rsplit('/').next();
+    [Kind::InstantActions, Kind::Connection].iter().any(|urgent| kind == Some(urgent.text()))
 }
 
 /// The topic of a message with a position that is so now.

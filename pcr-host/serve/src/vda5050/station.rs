@@ -233,7 +233,7 @@ fn answered(
     for &(Heard { topic, payload, kept, .. }, came) in messages {
         match kept {
             true => bridge.receive_kept(supervisor, topic, payload, came),
-            false => bridge.receive(supervisor, topic, payload, came),
+            false => bridge.receive_late(supervisor, topic, payload, [came, now]),
         }
     }
     if !works {
@@ -264,7 +264,7 @@ fn sent(out: Vec<Out>, bridge: Arc<Mutex<Bridge>>, mouth: Mouth) -> Option<Then>
     now.into_iter().for_each(|out| _ = mouth.publish(out.message));
     let bytes = later.iter().map(|out| out.message.payload.len()).sum();
     let send = move || {
-        let bridge = locked(&bridge);
+        let mut bridge = locked(&bridge);
         later.into_iter().filter(|out| bridge.lets(out)).for_each(|out| _ = mouth.publish(out.message));
     };
     Some(Then::new(bytes, send))

@@ -67,6 +67,12 @@ fn a_stop_waits_for_no_journal_and_nothing_lets_go_after_it() {
     assert!(stops.len() == 1 && stops[0].due == Due::AtOnce, "{stops:?}");
     assert!(!goes.iter().any(|out| own.bridge.lets(out)));
     assert!(own.bridge.lets(&stops[0]));
+    // That of the manager is passed on when it may go; it was lost, and the vehicle stood for ever.
+    own.lasts(0.5);
+    assert_eq!(own.robot().notes["pauses"]["held"][0]["actionId"], "m");
+    own.supervisor.remove("new").unwrap();
+    own.lasts(0.5);
+    assert!(own.asked("stopPause").iter().any(|id| id == "m"), "{:?}", own.got);
 }
 
 /// All of them were kept, and the journal got all of them with each one that came.

@@ -241,7 +241,7 @@ fn site(listener: &TcpListener) -> Site {
     let short = |host: &String| host.strip_suffix(":80").map(str::to_owned);
     hosts.extend(hosts.iter().filter_map(short).collect::<Vec<_>>());
     // At 0.0.0.0 it is reached by any address of the machine.
-    let addresses = address.filter(|address| address.ip().is_unspecified()).map(|address| address.port());
+    let addresses = address.is_some_and(|address| address.ip().is_unspecified());
     Site { page: live::page(), draw: Some(draw), hosts, addresses }
 }
 

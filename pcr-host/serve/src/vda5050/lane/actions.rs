@@ -10,7 +10,7 @@ use super::release::AGAIN;
 use super::{Due, Lane, To};
 use crate::event::{Cause, Event};
 use crate::supervisor::Supervisor;
-use serde_json::Value;
+use serde_json::{Map, Value};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 impl Lane {
@@ -47,9 +47,7 @@ impl Lane {
         }
         let (due, held) = self.hold_back(supervisor, actions.to_vec(), now);
         if held.is_none() || !due.is_empty() {
-            let header = self.header(Kind::InstantActions, version);
-            let message = InstantActions { rest: message.rest, ..InstantActions::new(header, due) };
-            self.act(version, &message);
+            self.act(version, due, message.rest);
         }
         repeated.or(held).map_or(Ok(()), Err)
     }
@@ -87,19 +85,31 @@ impl Lane {
         let header = self.header(Kind::InstantActions, version);
         let id = format!("pcr-{action_type}-{}-{}", header.timestamp, COUNT.fetch_add(1, Relaxed));
         let message = InstantActions::one(header, action_type, id.clone());
-        if action_type == "startPause" {
-            self.post_when(Due::AtOnce, To::Vehicle, Kind::InstantActions, version, &message);
-        } else {
-            self.act(version, &message);
-        }
+        let due = match action_type {
+            "startPause" => Due::AtOnce,
+            "stopPause" => Due::Free,
+            _ => Due::Kept,
+        };
+        self.post_when(due, To::Vehicle, Kind::InstantActions, version, &message);
         id
     }
 
-    /// Sends instant actions. Those that let the vehicle go on are not sent if it was told to stop since.
-    pub(super) fn act(&mut self, version: Version, message: &InstantActions) {
-        let lets_go = message.actions.iter().flatten().any(|action| action.action_type == "stopPause");
-        let due = if lets_go { Due::Free } else { Due::Kept };
-        self.post_when(due, To::Vehicle, Kind::InstantActions, version, message);
+    /// Sends instant actions of the manager. Those that let the vehicle go on are not sent if it was told to stop since; so they are in a
+    /// message of their own.
+    pub(super) fn act(&mut self, version: Version, actions: Vec<Action>, rest: Map<String, Value>) {
+        let (free, others): (Vec<_>, Vec<_>) =
+            actions.into_iter().partition(|action| action.action_type == "stopPause");
+        let is_free = !free.is_empty();
+        if is_free {
+            let header = self.header(Kind::InstantActions, version);
+            let message = InstantActions { rest: rest.clone(), ..InstantActions::new(header, free) };
+            self.post_when(Due::Free, To::Vehicle, Kind::InstantActions, version, &message);
+        }
+        if !is_free || !others.is_empty() {
+            let header = self.header(Kind::InstantActions, version);
+            let message = InstantActions { rest, ..InstantActions::new(header, others) };
+            self.post_when(Due::Kept, To::Vehicle, Kind::InstantActions, version, &message);
+        }
     }
 
     /// Cancels the order of the vehicle again, with another action id.
@@ -123,7 +133,7 @@ impl Lane {
         if state.action(&id).is_none() && now - *last >= AGAIN {
             *last = now;
             let header = self.header(Kind::InstantActions, version);
-            self.act(version, &InstantActions::one(header, "cancelOrder", id));
+            self.post(To::Vehicle, Kind::InstantActions, version, &InstantActions::one(header, "cancelOrder", id));
         }
     }
 

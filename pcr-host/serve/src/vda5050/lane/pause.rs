@@ -3,7 +3,6 @@
 use super::super::door::Refusal;
 use super::super::messages::{Action, InstantActions};
 use super::super::state::ActionState;
-use super::super::topics::Kind;
 use super::Lane;
 use super::newest::LATEST;
 use super::notes::noted;
@@ -11,7 +10,7 @@ use super::release::AGAIN;
 use crate::robot::Robot;
 use crate::supervisor::{Damaged, Supervisor};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 /// Key of the note about pauses.
 const NOTE: &str = "pauses";
@@ -43,6 +42,8 @@ pub(super) struct Pauses {
     /// The last request of the manager, to pause or to go on, and its time \[s\]: states show it only later.
     wish: Option<(bool, f64)>,
     kept: Kept,
+    /// Whether an action was taken back since the journal was last told.
+    is_unnoted: bool,
 }
 
 /// The part that is kept in the journal.
@@ -76,10 +77,9 @@ impl Lane {
         if let Some(version) = self.version.filter(|_| !stops && !self.pauses.kept.held.is_empty()) {
             let held = std::mem::take(&mut self.pauses.kept.held);
             (self.pauses.kept.others, self.pauses.wish) = (false, Some((false, now)));
-            let header = self.header(Kind::InstantActions, version);
-            self.act(version, &InstantActions::new(header, held));
+            self.act(version, held, Map::new());
         }
-        if self.pauses.kept != before {
+        if std::mem::take(&mut self.pauses.is_unnoted) || self.pauses.kept != before {
             self.note_pauses(supervisor);
         }
         let others = self.pauses.kept.others;
@@ -165,6 +165,21 @@ impl Lane {
         (due, refusal)
     }
 
+    /// Holds back the `stopPause` actions of the manager in a message that is not sent, because the vehicle was told to stop since.
+    pub fn take_back(&mut self, payload: &[u8]) {
+        let Ok(message) = serde_json::from_slice::<InstantActions>(payload) else { return };
+        // One that the manager has overtaken by a pause is void.
+        let is_void = matches!(self.pauses.wish, Some((true, _)));
+        let is_ours = |action: &Action| OURS.iter().any(|own| action.action_id.starts_with(own));
+        let held = &mut self.pauses.kept.held;
+        for action in message.list().unwrap_or_default().iter().filter(|action| !is_void && !is_ours(action)) {
+            if held.len() < MOST && held.iter().all(|other| other.action_id != action.action_id) {
+                held.push(action.clone());
+                self.pauses.is_unnoted = true;
+            }
+        }
+    }
+
     /// Whether it was told to stop, and not yet to go on.
     pub fn has_to_stop(&self) -> bool {
         self.pauses.asked.as_ref().is_some_and(|asked| asked.stops)
@@ -181,7 +196,7 @@ impl Lane {
 
     /// Whether others have paused it, by the last request of the manager or else by its state.
     fn is_paused_by_others(&self, now: f64) -> bool {
-        let Pauses { asked, wish, kept } = &self.pauses;
+        let Pauses { asked, wish, kept, .. } = &self.pauses;
         match wish {
             Some((wish, at)) if now - at < AGAIN => *wish,
             // It has sent no state since the start.

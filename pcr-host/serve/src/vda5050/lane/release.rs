@@ -35,8 +35,9 @@ impl Lane {
         // Not `told`: after a restart that is the hold that the vehicle may have been told, which is kept free for it but may
         // not be granted.
         let allowed = robot.granted;
-        // A vehicle that is not where it may be is not sent further, nor does it get again what it has not confirmed.
-        let is_held = robot.stopped.is_some() || robot.alarm.is_some();
+        // A vehicle that is not where it may be is not sent further, nor does it get again what it has not confirmed. Its first order leads it
+        // to its way; it judges itself whether it can come there.
+        let is_held = robot.stopped.is_some() || robot.alarm.is_some() && job.sent.is_some();
         if job.cancel.is_some() || job.lost.is_some() || is_held {
             return;
         }
