@@ -3,7 +3,7 @@
 use crate::{Audit, Gap, Spot, Written};
 use pcr_planning::locks::LockVehicle;
 use pcr_planning::report::columns::Columns;
-use pcr_planning::report::figures::thousandths;
+use pcr_planning::report::figures::{given, thousandths};
 use pcr_planning::report::{Document, counted, printable, quoted};
 use std::io::{self, Write};
 
@@ -23,7 +23,7 @@ fn named(layout: &str) -> String {
 
 fn vehicle(vehicle: &LockVehicle) -> String {
     match vehicle.discs.len() {
-        0 => format!("radius {} m", vehicle.radius),
+        0 => format!("radius {} m", given(vehicle.radius)),
         discs => format!("an outline of {discs} discs within {:.3} m", vehicle.radius),
     }
 }

@@ -104,11 +104,16 @@ impl Work for Check {
         if self.silent && !self.certify {
             return Ok(false);
         }
+        let rows = |count: usize| memory::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} rows"));
+        if self.closest && self.form == Form::Table {
+            // All pairs, which is known before they are computed.
+            let count = scenario.agents.len();
+            rows(count.saturating_mul(count.saturating_sub(1)) / 2)?;
+        }
         let verdict = with_scalar!(self.scalar, S => self.verdict::<S>(scenario, told))?;
         match self.form {
             Form::Table => {
-                let count = verdict.conflicts.len() + verdict.closest.as_ref().map_or(0, Vec::len);
-                memory::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} rows"))?;
+                rows(verdict.conflicts.len() + verdict.closest.as_ref().map_or(0, Vec::len))?;
                 report::conflicts_table(&verdict, out)?;
             }
             Form::Json => report::json(&verdict, out)?,

@@ -124,6 +124,10 @@ fn audit(
         None => import.from.or_else(|| Format::of(file, &content)).and_then(Target::of_layout),
     };
     let target = target.ok_or_else(|| match beside {
+        Some(_) if Format::of(source, &content).and_then(Target::of_layout).is_some() => Stop::wrong(
+            source,
+            "neither a zone set of VDA 5050 nor a lock file; a layout that holds exclusions itself is audited without another file: --audit",
+        ),
         Some(_) => Stop::wrong(source, "neither a zone set of VDA 5050 nor a lock file"),
         None => Stop::wrong(source, "files of this format hold no exclusions; name the file that does: --audit=FILE"),
     })?;

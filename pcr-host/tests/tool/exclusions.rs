@@ -98,6 +98,10 @@ fn what_cannot_be_done_is_refused() {
             &["locks", &nav2, "--radius", "0.4", &format!("--audit={lif}"), "-q"],
             "neither a zone set of VDA 5050 nor a lock file",
         ),
+        (
+            &["locks", &nav2, "--radius", "0.4", &format!("--audit={nav2}"), "-q"],
+            "is audited without another file: --audit",
+        ),
         (&["locks", &nav2, "--radius", "0.4", "--write", "rmf", "-o", &written, "-q"], "written into files of rmf"),
         (&["locks", &nav2, "--radius", "0.4", "--write", "pcr", "--split", "1", "-o", &written, "-q"], "--split"),
         (

@@ -1,7 +1,7 @@
 //! Tables of unsafe delays, for programs and for reading.
 
 use super::columns::Columns;
-use super::figures::thousandths;
+use super::figures::{given, thousandths};
 use super::locks::LocksUnprinted;
 use super::{Document, counted, json, printable, quoted};
 use crate::locks::{Delays, Driving, LockVehicle, Locks, Told, Unsafe};
@@ -220,7 +220,7 @@ pub fn delays_table(table: &DelayTable, out: &mut impl Write) -> io::Result<()> 
         Some(acceleration) => format!("from rest to rest with {speed} m/s and {acceleration} m/s²"),
         None => format!("at {speed} m/s"),
     };
-    let (name, radius) = (printable(name), table.vehicle.radius);
+    let (name, radius) = (printable(name), given(table.vehicle.radius));
     writeln!(out, "{name}: {} of unsafe delays, radius {radius} m, {how}", counted(count, "interval"))?;
     let text = |id: &Id, backward: bool| printable(&format!("{id}{}", if backward { " backward" } else { "" }));
     if count > 0 {

@@ -26,6 +26,12 @@ pub fn small(length: f64) -> String {
     format!("{}e{exponent}", mantissa.trim_end_matches('0').trim_end_matches('.'))
 }
 
+/// A length in metres as it was given, without what sums and differences of such lengths have beyond the nanometre.
+pub fn given(length: f64) -> String {
+    let rounded = (1e9 * length).round() / 1e9;
+    if rounded > 0.0 { rounded.to_string() } else { length.to_string() }
+}
+
 /// A time that is given in milliseconds.
 pub fn time(ms: f64) -> String {
     match ms {
@@ -72,7 +78,12 @@ pub fn share(part: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{seconds, share, small, thousandths};
+    use super::{given, seconds, share, small, thousandths};
+
+    #[test]
+    fn sums_are_told_as_they_were_given() {
+        assert_eq!([0.4 + 0.2, 0.3, 1.75, 1e-11].map(given), ["0.6", "0.3", "1.75", "0.00000000001"]);
+    }
 
     #[test]
     fn nothing_and_shares_of_nothing_are_told() {

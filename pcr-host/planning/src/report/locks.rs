@@ -1,7 +1,7 @@
 //! Tables of locks, for programs and for reading.
 
 use super::columns::Columns;
-use super::figures::thousandths;
+use super::figures::{given, thousandths};
 use super::{Document, counted, json, printable, quoted};
 use crate::locks::{Found, Lock, LockVehicle, Locks, Partner, Sweep, Told};
 use pcr_formats::import::{Id, ImportError};
@@ -195,7 +195,7 @@ pub fn locks_table(locks: &Locks, out: &mut impl Write) -> io::Result<()> {
     pairs.dedup();
     let (count, pairs) = (counted(locks.locks.len(), "lock"), counted(pairs.len(), "pair"));
     let vehicle = match (locks.vehicle.discs.len(), locks.vehicle.radius) {
-        (0, radius) => format!("radius {radius} m"),
+        (0, radius) => format!("radius {} m", given(radius)),
         (discs, radius) => format!("an outline of {discs} discs within {radius:.3} m"),
     };
     writeln!(out, "{}: {count} of {pairs} of edges, {vehicle}", printable(name))?;
