@@ -98,7 +98,7 @@ impl<S: Scalar> Storage<S> {
     /// As large as the table of this fleet.
     ///
     /// # Panics
-    /// If the fleet has more than 65535 agents.
+    /// If the fleet has more than 65536 agents.
     pub fn of(fleet: &[Motion<'_, S>]) -> Self {
         let ecm = build_ecm(fleet).unwrap_or_else(|full| panic!("{full}"));
         Self { regions: vec![Region::EMPTY; ecm.len()], pieces: vec![Piece::EMPTY; ecm.pieces()] }

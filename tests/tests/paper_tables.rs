@@ -38,7 +38,7 @@ fn crossing_counts(motions: &[Motion<'_, f64>]) -> Vec<Vec<usize>> {
 
 /// Connected regions of every ordered pair of agents: `[ego][other]`.
 fn region_counts(motions: &[Motion<'_, f64>]) -> Vec<Vec<usize>> {
-    let ecm = build_ecm(motions).expect("a fleet of fewer than 65535 agents");
+    let ecm = build_ecm(motions).expect("a fleet of less than 65536 agents");
     let mut counts = vec![vec![0; motions.len()]; motions.len()];
     for region in ecm.regions(motions).expect("the table of the fleet") {
         counts[region.ego()][region.other()] += 1;

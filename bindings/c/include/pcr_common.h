@@ -139,7 +139,7 @@ typedef enum PcrStatus {
    */
   PCR_STATUS_REFUSED,
   /*
-   Two agents have more than 32767 pieces with each other, or the fleet has more than 65535 agents. More memory does
+   Two agents have more than 32767 pieces with each other, or the fleet has more than 65536 agents. More memory does
    not help.
    */
   PCR_STATUS_TOO_LARGE,

@@ -53,7 +53,7 @@ pub enum PcrStatus {
     NoSuchPass,
     /// Orders are refused; `why` names the agent in the way.
     Refused,
-    /// Two agents have more than 32767 pieces with each other, or the fleet has more than 65535 agents. More memory does
+    /// Two agents have more than 32767 pieces with each other, or the fleet has more than 65536 agents. More memory does
     /// not help.
     TooLarge,
 }

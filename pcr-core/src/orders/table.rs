@@ -310,7 +310,8 @@ where
     }
 
     /// Takes the orders from the motions of the fleet, which must be those of a plan without collisions. Earlier
-    /// decisions are overwritten. Cost: that of [`first_overlap`] for each region. On an error nothing is decided or overwritten.
+    /// decisions are overwritten, but not on an error: then they are as before. Cost: that of [`first_overlap`] for each
+    /// region.
     ///
     /// # Errors
     /// [`Refused::Meeting`] for two agents that do more than touch, or pass so close that it cannot be decided which

@@ -12,8 +12,8 @@
 //! `Chord::dives`), also if the step begins at a distance of R. Otherwise the step is shortened to the part in doubt: e
 //! falls with the square of the step, and the part in doubt with e. On lines at constant speeds e is 0 and one step is
 //! exact; elsewhere an end of a contact takes about four. The worst case is discs that stay at a distance of R within
-//! the tolerance for a time T. Since e <= ε / 4 always decides, every step there is longer than h / 2, h = √(2 ε / c), with
-//! c = Σ |a| + v²/ϱ; hence a leg takes at most a few T / h + 1 steps. `Contacts::steps` counts them. Agents that go alike
+//! the tolerance for a time T. Since e <= ε / 4 always decides, every step there is longer than h / 2 for
+//! h = √(2 ε / c), c = Σ |a| + v²/ϱ; hence a leg takes at most a few T / h + 1 steps. `Contacts::steps` counts them. Agents that go alike
 //! (`Leg::goes_like`) move uniformly as seen from each other, and e is 0.
 
 use crate::error::Invalid;

@@ -98,7 +98,7 @@ impl Written {
 /// bytes in every run.
 ///
 /// # Errors
-/// [`io::ErrorKind::InvalidInput`] for a scenario without motion (see [`Fleet::new`]) or of more than 65535 agents, and
+/// [`io::ErrorKind::InvalidInput`] for a scenario without motion (see [`Fleet::new`]) or of more than 65536 agents, and
 /// those of writing files.
 pub fn write(
     scenario: &Scenario,

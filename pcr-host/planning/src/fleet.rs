@@ -368,7 +368,7 @@ pub type HostEcm<S> = Ecm<S, Vec<Region>, Vec<Piece<S>>>;
 /// The extended collision map of a fleet of any size: the storage grows until it is large enough.
 ///
 /// # Errors
-/// [`Full::Agents`] for more than 65535 agents, [`Full::Pair`] where two of them have more than 32767 pieces.
+/// [`Full::Agents`] for more than 65536 agents, [`Full::Pair`] where two of them have more than 32767 pieces.
 pub fn build_ecm<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Full> {
     Ecm::grown(motions)
 }

@@ -93,7 +93,7 @@ pub struct Supervisor {
     /// Events to be sent once these changes are in the journal.
     events: Vec<Event>,
     /// Number of those that tell robots to stop and were taken by [`Supervisor::stops`].
-    hurried: usize,
+    stops_taken: usize,
     /// For each robot whether its position has changed since it was last written to the journal.
     unsaved: Vec<bool>,
     /// Number of the next mission that has to wait.
@@ -134,7 +134,7 @@ impl Supervisor {
             keeper,
             entries: Vec::new(),
             events: Vec::new(),
-            hurried: 0,
+            stops_taken: 0,
             unsaved: Vec::new(),
             turn: 0,
             tries: HashMap::new(),
@@ -374,7 +374,7 @@ impl Supervisor {
             events.push(event);
         }
         self.events = events;
-        stops.split_off(std::mem::replace(&mut self.hurried, stops.len()))
+        stops.split_off(std::mem::replace(&mut self.stops_taken, stops.len()))
     }
 
     /// [Decides](Supervisor::decide), and writes the journal. The returned events may be sent, because they are in the journal.
@@ -392,7 +392,7 @@ impl Supervisor {
     /// As [`Supervisor::settle`].
     pub fn keep(&mut self) -> Result<Vec<Event>, Fault> {
         self.save()?;
-        self.hurried = 0;
+        self.stops_taken = 0;
         Ok(std::mem::take(&mut self.events))
     }
 

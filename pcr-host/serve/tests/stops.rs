@@ -90,6 +90,21 @@ fn while_too_much_waits_for_the_journal_nothing_is_read() {
     assert_eq!(own.server.join().unwrap(), Ok(()));
 }
 
+/// The disc around a robot off its path grows with time, also while nothing is read.
+#[test]
+fn robots_are_stopped_while_nothing_is_read() {
+    let own = driving();
+    beside(&own, 2, 6.0);
+    own.handle.ask_then(|_, _, _| ((), Some(Then::new(65 << 20, || ())))).unwrap();
+    assert!(own.lines.try_recv().is_err(), "it is too far away yet");
+    let stop = own.next();
+    assert_eq!([&stop["event"], &stop["robot"], &stop["by"]], ["stop", "a", "b"], "{stop}");
+    own.slow.set(Door::Open);
+    own.at("a");
+    own.handle.send(Input::Stop);
+    assert_eq!(own.server.join().unwrap(), Ok(()));
+}
+
 fn supervisor() -> Supervisor {
     let mut own = Supervisor::new(Settings::default(), Box::new(Disc::new()));
     own.add("a", CAN, Start { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();

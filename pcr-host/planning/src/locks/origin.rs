@@ -4,9 +4,8 @@ use crate::checksum::crc32;
 use pcr_formats::import::Imported;
 use std::fmt::Debug;
 
-/// The checksum of all that locks depend on: names, places and levels of nodes; curves, ends and directions of edges, and whether they are closed;
-/// and the vehicle. Speeds
-/// do not count.
+/// The checksum of all that locks depend on: names, places and levels of nodes; curves, ends and directions of edges, and whether they are
+/// closed; and the vehicle. Speeds do not count.
 pub fn origin(imported: &Imported) -> u32 {
     let (layout, vehicle) = (&imported.layout, &imported.vehicle);
     let mut sum = 0;

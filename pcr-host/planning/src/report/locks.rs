@@ -3,7 +3,7 @@
 use super::columns::Columns;
 use super::figures::{given, thousandths};
 use super::{Document, counted, json, printable, quoted};
-use crate::locks::{Found, Lock, LockVehicle, Locks, Partner, Sweep, Told};
+use crate::locks::{Found, LockVehicle, Locks, Partner, Sweep, Told};
 use pcr_formats::import::{Id, ImportError};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -48,13 +48,11 @@ pub fn locks_csv(sweep: &Sweep, told: Told<'_>, out: &mut impl Write) -> Result<
     let lines = |found: &[Found]| {
         let mut text = String::with_capacity(100 * found.len());
         for Found { places: [a, b], lengths: [own, other] } in found {
-            let ([a_from, a_to], [b_from, b_to]) = (own, other);
-            // Writing to a `String` does not fail.
-            let _ = match (sweep.is_edge(*a), sweep.is_edge(*b)) {
-                (true, true) => writeln!(text, "{},{},{a_from},{a_to},{b_from},{b_to}", names[*a], names[*b]),
-                (true, false) => writeln!(text, "{},{},,,{a_from},{a_to}", names[*b], names[*a]),
-                (false, _) => writeln!(text, "{},{},,,,", names[*a], names[*b]),
-            };
+            match (sweep.is_edge(*a), sweep.is_edge(*b)) {
+                (true, true) => csv_row(&mut text, [&names[*a], &names[*b]], Some(*own), Some(*other)),
+                (true, false) => csv_row(&mut text, [&names[*b], &names[*a]], None, Some(*own)),
+                (false, _) => csv_row(&mut text, [&names[*a], &names[*b]], None, None),
+            }
         }
         text
     };
@@ -69,14 +67,31 @@ pub fn kept_locks_csv(locks: &Locks, out: &mut impl Write) -> io::Result<()> {
     out.write_all(LOCKS_HEADER.as_bytes())?;
     let name = |id: &Id| quoted(&id.to_string()).into_owned();
     let node = |id: &Id| quoted(&format!("node {id}")).into_owned();
-    for Lock { a, b, a_length: [a_from, a_to], b_length: [b_from, b_to] } in &locks.locks {
-        writeln!(out, "{},{},{a_from},{a_to},{b_from},{b_to}", name(a), name(b))?;
+    let edges = locks.locks.iter();
+    let edges = edges.map(|it| ([name(&it.a), name(&it.b)], Some(it.a_length), Some(it.b_length)));
+    let nodes = locks.nodes.iter().flatten();
+    let nodes = nodes.map(|it| ([node(&it.node), name(&it.edge)], None, Some(it.edge_length)));
+    let pairs = locks.node_pairs.iter().flatten().map(|[a, b]| ([node(a), node(b)], None, None));
+    let mut text = String::new();
+    for ([a, b], own, other) in edges.chain(nodes).chain(pairs) {
+        text.clear();
+        csv_row(&mut text, [&a, &b], own, other);
+        out.write_all(text.as_bytes())?;
     }
-    for lock in locks.nodes.iter().flatten() {
-        let [from, to] = lock.edge_length;
-        writeln!(out, "{},{},,,{from},{to}", node(&lock.node), name(&lock.edge))?;
+    Ok(())
+}
+
+/// A line of the names of two places, and the lengths from and to on both \[m\]; nodes have none.
+fn csv_row(text: &mut String, [a, b]: [&str; 2], own: Option<[f64; 2]>, other: Option<[f64; 2]>) {
+    text.extend([a, ",", b]);
+    for part in [own, other] {
+        // Writing to a `String` does not fail.
+        let _ = match part {
+            Some([from, to]) => write!(text, ",{from},{to}"),
+            None => write!(text, ",,"),
+        };
     }
-    locks.node_pairs.iter().flatten().try_for_each(|[a, b]| writeln!(out, "{},{},,,,", node(a), node(b)))
+    text.push('\n');
 }
 
 /// The first line of [`locks_lines`].

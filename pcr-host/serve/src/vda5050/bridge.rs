@@ -314,15 +314,15 @@ impl Bridge {
         std::mem::take(&mut self.out)
     }
 
-    /// Whether a message may still be sent: those that let a vehicle go on may not if it was told to stop since. Those of the manager are then
-    /// held back until it may go.
-    pub fn lets(&mut self, out: &Out) -> bool {
+    /// Withholds a message that would let a vehicle go on that was told to stop since, and returns whether it does. What the manager has
+    /// asked for in it is sent when the vehicle may go.
+    pub fn withholds(&mut self, out: &Out) -> bool {
         let lane = &mut self.lanes[out.place];
-        let lets = out.due != Due::Free || !lane.has_to_stop();
-        if !lets {
+        let withheld = out.due == Due::Free && lane.has_to_stop();
+        if withheld {
             lane.take_back(&out.message.payload);
         }
-        lets
+        withheld
     }
 }
 

@@ -265,7 +265,7 @@ fn sent(out: Vec<Out>, bridge: Arc<Mutex<Bridge>>, mouth: Mouth) -> Option<Then>
     let bytes = later.iter().map(|out| out.message.payload.len()).sum();
     let send = move || {
         let mut bridge = locked(&bridge);
-        later.into_iter().filter(|out| bridge.lets(out)).for_each(|out| _ = mouth.publish(out.message));
+        later.into_iter().filter(|out| !bridge.withholds(out)).for_each(|out| _ = mouth.publish(out.message));
     };
     Some(Then::new(bytes, send))
 }

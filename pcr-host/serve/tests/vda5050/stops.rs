@@ -60,13 +60,13 @@ fn a_stop_waits_for_no_journal_and_nothing_lets_go_after_it() {
     let topic = interfaces()[0].topic(pcr_serve::vda5050::version::Version::V2_1, &key(), Kind::InstantActions);
     own.bridge.receive(&mut own.supervisor, &topic, message.to_string().as_bytes(), own.time);
     goes.extend(own.due("stopPause"));
-    assert!(goes.len() == 2 && goes.iter().all(|out| out.due == Due::Free && own.bridge.lets(out)), "{goes:?}");
+    assert!(goes.len() == 2 && goes.iter().all(|out| out.due == Due::Free && !own.bridge.withholds(out)), "{goes:?}");
     // They wait for the journal as it has to stop again.
     own.stops();
     let stops = own.due("startPause");
     assert!(stops.len() == 1 && stops[0].due == Due::AtOnce, "{stops:?}");
-    assert!(!goes.iter().any(|out| own.bridge.lets(out)));
-    assert!(own.bridge.lets(&stops[0]));
+    assert!(goes.iter().all(|out| own.bridge.withholds(out)));
+    assert!(!own.bridge.withholds(&stops[0]));
     // That of the manager is passed on when it may go; it was lost, and the vehicle stood for ever.
     own.lasts(0.5);
     assert_eq!(own.robot().notes["pauses"]["held"][0]["actionId"], "m");
@@ -126,6 +126,20 @@ fn a_vehicle_with_an_alarm_is_not_sent_further() {
             assert!(own.robot().alarm.is_none() && own.orders() > 1);
         }
     }
+}
+
+/// It was never sent, so that the vehicle could not come to its way.
+#[test]
+fn the_first_order_is_sent_to_a_vehicle_with_an_alarm() {
+    let mut own = Puppet::new();
+    own.lasts(0.5);
+    // It is pushed aside before its order comes.
+    own.state["agvPosition"]["y"] = 3.0.into();
+    own.lasts(0.5);
+    assert!(own.robot().alarm.is_some() && own.orders() == 0, "{:?}", own.got);
+    own.manager(Kind::Order, order("a", 0, 0, &WAY, 3));
+    own.lasts(1.0);
+    assert!(own.robot().alarm.is_some() && own.orders() > 0, "{:?}", own.got);
 }
 
 /// Its connection, and so that of the whole fleet, ended at a state that was too large.
