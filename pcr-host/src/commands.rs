@@ -17,6 +17,7 @@ mod number;
 mod plan;
 mod printed;
 mod regions;
+mod rules;
 mod serve;
 mod simulate;
 mod sources;

@@ -47,10 +47,9 @@ Examples:
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
     /// Scenario, or layout, whose locks of edges and nodes are certified; standard input if left out or `-`
-    #[arg(conflicts_with = "table")]
     file: Option<PathBuf>,
     /// A table, as `pcr regions --certificate` or the firmware prints it; `-` for standard input
-    #[arg(long, value_name = "FILE", conflicts_with = "scalar")]
+    #[arg(long, value_name = "FILE")]
     table: Option<PathBuf>,
     #[command(flatten)]
     printed: Printed,

@@ -39,7 +39,7 @@ pub(super) struct Arguments {
     #[arg(long, value_enum, default_value_t = Output::Table, hide_possible_values = true)]
     format: Output,
     /// The same as --format json
-    #[arg(long, conflicts_with = "format")]
+    #[arg(long)]
     json: bool,
     /// Draw time against error: DIR/regions-1.svg, conflicts-1.svg
     #[arg(short, long, value_name = "DIR", value_parser = folder())]

@@ -28,7 +28,7 @@ Examples:
 #[command(after_help = format!("{EXAMPLES}\n\n{}", statuses("wrong arguments")))]
 pub(super) struct Arguments {
     /// Directory for the pictures (pcr-out if left out, with --quiet none)
-    #[arg(short, long, value_name = "DIR", value_parser = folder(), conflicts_with = "scenario")]
+    #[arg(short, long, value_name = "DIR", value_parser = folder())]
     output: Option<PathBuf>,
     /// Print the scenario instead, as a file
     #[arg(long)]

@@ -17,16 +17,16 @@ use std::process::ExitCode;
 #[derive(Args)]
 pub(super) struct Asked {
     /// Write the layout with exclusions to --output: nav2, rmf, opentcs, vda5050 or pcr
-    #[arg(long, value_enum, value_name = "FORMAT", hide_possible_values = true, requires = "output", conflicts_with_all = ["lines", "edge", "index", "nodes", "delays"])]
+    #[arg(long, value_enum, value_name = "FORMAT", hide_possible_values = true)]
     write: Option<Target>,
     /// Before writing, cut edges into equal parts of at most this length
-    #[arg(long, value_name = "LENGTH", hide_short_help = true, value_parser = length, requires = "write")]
+    #[arg(long, value_name = "LENGTH", hide_short_help = true, value_parser = length)]
     split: Option<f64>,
     /// Write envelopes with this key, not blocks (openTCS)
-    #[arg(long, value_name = "KEY", hide_short_help = true, requires = "write")]
+    #[arg(long, value_name = "KEY", hide_short_help = true)]
     envelopes: Option<String>,
     /// List where vehicles that obey the exclusions in the layout, or FILE, can still touch (status 1 if any)
-    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true, conflicts_with_all = ["write", "lines", "edge", "index", "nodes", "delays"])]
+    #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     audit: Option<Option<PathBuf>>,
 }
 

@@ -32,12 +32,6 @@ Examples:
 
 User and password of the broker: PCR_BROKER_USER and PCR_BROKER_PASSWORD.";
 
-/// What has no effect on a record that is there already.
-const SIMULATED: [&str; 14] = [
-    "layout", "streets", "broker", "vehicles", "manager", "topics", "pace", "time", "finish", "alone", "drops",
-    "weather", "seed", "record",
-];
-
 /// Simulate VDA 5050 vehicles and their fleet manager
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
@@ -46,32 +40,31 @@ pub(super) struct Arguments {
     /// Layout (goals: its safe ends); standard input if left out or `-`
     layout: Option<PathBuf>,
     /// A site of N streets each way, instead of a layout
-    #[arg(long, value_name = "N", conflicts_with = "layout")]
+    #[arg(long, value_name = "N")]
     streets: Option<usize>,
     /// Address of the broker
-    #[arg(long, value_name = "HOST:PORT", default_value = "localhost:1883", conflicts_with = "alone")]
+    #[arg(long, value_name = "HOST:PORT", default_value = "localhost:1883")]
     broker: String,
     /// Number of vehicles
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = whole::<usize>)]
     vehicles: usize,
     /// Also simulate the manager that gives them missions
-    #[arg(long, conflicts_with = "alone")]
+    #[arg(long)]
     manager: bool,
     /// First levels of topics
     #[arg(long, value_names = ["M", "V"], num_args = 2, default_values = ["fleet", "uagv"])]
-    #[arg(conflicts_with = "alone")]
     topics: Vec<String>,
     /// Speed relative to real time, 0.1 to 100
-    #[arg(long, value_name = "N", default_value_t = 1.0, conflicts_with = "alone")]
+    #[arg(long, value_name = "N", default_value_t = 1.0)]
     pace: f64,
     /// End after this simulated time
     #[arg(long, value_name = "S")]
     time: Option<f64>,
     /// After --time, continue until all missions are done or none is completed for 1 h
-    #[arg(long, requires = "time")]
+    #[arg(long)]
     finish: bool,
     /// No broker; supervisor, route-locks or edge-locks
-    #[arg(long, value_name = "METHOD", requires = "time")]
+    #[arg(long, value_name = "METHOD")]
     alone: Option<String>,
     /// Lost connections of a vehicle per hour
     #[arg(long, value_name = "N", default_value_t = 0.0)]
@@ -86,10 +79,10 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Prove from a record, or `-`, that no two touched
-    #[arg(long, value_name = "FILE", conflicts_with_all = SIMULATED)]
+    #[arg(long, value_name = "FILE")]
     certify: Option<PathBuf>,
     /// Also write them for `pcr serve --fleet`, or `-`
-    #[arg(long, value_name = "FILE", conflicts_with = "certify")]
+    #[arg(long, value_name = "FILE")]
     profiles: Option<PathBuf>,
 }
 

@@ -3,6 +3,7 @@
 //! `-h` shows the common options of a command, one line each; `--help` adds those about layouts and other formats,
 //! examples and exit statuses. Options without effect in a command are not shown.
 
+use super::rules::ruled;
 use super::tips::with_tip;
 use super::{Arguments, Stop};
 use clap::{Arg, ArgAction, Command, CommandFactory, FromArgMatches};
@@ -67,6 +68,7 @@ pub(super) fn command(long: bool) -> Command {
 fn tailored(command: Command, long: bool) -> Command {
     let name = command.get_name().to_owned();
     let command = if is_missing(&name) { without(command) } else { command };
+    let command = ruled(command);
     let useless = useless(&name);
     let layouts = command.get_arguments().any(|argument| argument.get_help_heading() == Some(LAYOUTS));
     let command = command.mut_args(|argument| {

@@ -46,16 +46,16 @@ pub(super) struct Arguments {
     #[arg(long)]
     nodes: bool,
     /// Print instead the start delays with which vehicles on two edges touch; at --speed, with --acceleration from rest to rest
-    #[arg(long, conflicts_with_all = ["edge", "index", "output"])]
+    #[arg(long)]
     delays: bool,
     /// Print JSON Lines, one lock per line, for tables of any size
-    #[arg(long, hide_short_help = true, conflicts_with_all = ["format", "json", "output"])]
+    #[arg(long, hide_short_help = true)]
     lines: bool,
     /// Only the locks of this edge or node
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["lines", "output"])]
+    #[arg(long, value_name = "NAME")]
     edge: Option<String>,
     /// Write the locks to FILE; with --edge, read them from it
-    #[arg(long, value_name = "FILE", hide_short_help = true, conflicts_with_all = ["lines", "output"])]
+    #[arg(long, value_name = "FILE", hide_short_help = true)]
     index: Option<PathBuf>,
     /// Directory for pictures and a page; with --write the file
     #[arg(short, long, value_name = "PATH")]

@@ -101,7 +101,7 @@ pub(super) struct Printed {
     #[arg(long, value_enum, default_value_t = Form::Table, hide_possible_values = true)]
     format: Form,
     /// The same as --format json
-    #[arg(long, conflicts_with = "format")]
+    #[arg(long)]
     json: bool,
 }
 

@@ -15,7 +15,7 @@ pub(super) use bridge::{VEHICLES, broker, interfaces};
 pub(super) use run::AT_BROKERS;
 
 use super::{Stop, whole};
-use clap::{ArgGroup, Args};
+use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -39,7 +39,6 @@ Examples:
 /// Supervise a fleet: decide how far each robot may go now
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
-#[command(group = ArgGroup::new("vda5050").args(["broker", "demo"]))]
 #[cfg_attr(not(feature = "serve"), allow(dead_code))]
 pub(super) struct Arguments {
     /// Directory of the journal; the next start goes on from it
@@ -64,23 +63,22 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "S", default_value_t = 5.0)]
     silence: f64,
     /// Broker of a fleet of VDA 5050; user and password from PCR_BROKER_USER, PCR_BROKER_PASSWORD
-    #[arg(long, value_name = "HOST:PORT", requires = "fleet")]
+    #[arg(long, value_name = "HOST:PORT")]
     broker: Option<String>,
     /// Use TLS; the broker's certificate must be signed by one in FILE (PEM)
-    #[arg(long, value_name = "FILE", requires = "broker")]
+    #[arg(long, value_name = "FILE")]
     authority: Option<PathBuf>,
     /// The file of vehicles (docs/serve.md)
-    #[arg(long, value_name = "FILE", requires = "broker")]
+    #[arg(long, value_name = "FILE")]
     fleet: Option<PathBuf>,
     /// First levels of topics
     #[arg(long, value_names = ["M", "V"], num_args = 2, default_values = ["fleet", "uagv"])]
-    #[arg(requires = "vda5050")]
     topics: Vec<String>,
     /// Start a broker, vehicles on LAYOUT and a manager
-    #[arg(long, value_name = "LAYOUT", conflicts_with_all = ["broker", "fleet"])]
+    #[arg(long, value_name = "LAYOUT")]
     demo: Option<PathBuf>,
     /// Vehicles of the demo
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = whole::<usize>, requires = "demo")]
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = whole::<usize>)]
     vehicles: usize,
     /// debug, info, warn or error
     #[arg(long, value_name = "LEVEL", default_value = "info")]

@@ -40,7 +40,6 @@ const TRIPS: u32 = 3;
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct Arguments {
     /// Scenario (JSON); standard input if left out or `-`
-    #[arg(conflicts_with = "foraging")]
     file: Option<PathBuf>,
     /// Four robots that forage, instead of a scenario
     #[arg(long)]

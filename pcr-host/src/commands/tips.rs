@@ -1,5 +1,6 @@
 //! What to do instead, after a word of the command line that was refused.
 
+use super::rules;
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 use std::ffi::OsString;
@@ -36,13 +37,10 @@ pub(super) fn with_tip(mut error: Error, words: &[OsString]) -> Error {
         (ErrorKind::UnknownArgument, "fleet") if wrong == "--json" || wrong == "--format" => {
             "--certify prints JSON, and nothing else does"
         }
-        (ErrorKind::MissingRequiredArgument, "locks") if has("--write") => {
-            "the output is the file to be written, such as -o guarded.geojson; - is standard output"
-        }
-        (ErrorKind::ArgumentConflict, "traffic") if has("--hours") => {
-            "files and pictures are of missions that all set off at once; of hours there is a table, JSON or CSV on standard output"
-        }
-        _ => return error,
+        _ => match rules::why(&error, command, has) {
+            Some(why) => why,
+            None => return error,
+        },
     };
     for other in [ContextKind::SuggestedSubcommand, ContextKind::SuggestedArg] {
         error.remove(other);

@@ -43,16 +43,16 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
     /// Run the fleet for H hours with delays; prove no contact
-    #[arg(long, value_name = "H", value_parser = hours, conflicts_with = "output")]
+    #[arg(long, value_name = "H", value_parser = hours)]
     hours: Option<f64>,
     /// Run it again with locks, and with start delays
-    #[arg(long, requires = "hours")]
+    #[arg(long)]
     compare: bool,
     /// Fraction of time that robots are stopped [default: 0.02]
-    #[arg(long, value_name = "PART", value_parser = part, requires = "hours")]
+    #[arg(long, value_name = "PART", value_parser = part)]
     stopped: Option<f64>,
     /// Largest fraction of their speed that robots lose [default: 0.05]
-    #[arg(long, value_name = "PART", value_parser = part, requires = "hours")]
+    #[arg(long, value_name = "PART", value_parser = part)]
     slip: Option<f64>,
     #[command(flatten)]
     printed: Printed,

@@ -23,6 +23,7 @@ mod plan;
 mod progress;
 mod readers;
 mod refusals;
+mod rules;
 mod schema;
 #[cfg(feature = "serve")]
 mod serve;

@@ -1,0 +1,203 @@
+//! Which arguments exclude one another and which need one another, each with the reason. They are declared here and nowhere else, so that
+//! nothing is refused without it.
+
+use Rule::{Excludes, Needs};
+use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
+use clap::{Arg, ArgGroup, Command};
+
+/// What arguments are to others.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Rule {
+    /// Neither stands beside any of the others.
+    Excludes,
+    /// Each stands beside one of the others.
+    Needs,
+}
+
+/// A command, arguments of it by their names, what they are to others, and why. Without a name it is of all commands that have both.
+pub(crate) type Ruled = (&'static str, &'static [&'static str], Rule, &'static [&'static str], &'static str);
+
+/// All of them.
+pub(crate) const RULES: [Ruled; 27] = [
+    ("", &["json"], Excludes, &["format"], "--json is --format json; give one of them"),
+    ("demo", &["scenario"], Excludes, &["output"], "--scenario prints the scenario and draws no pictures"),
+    (
+        "certify",
+        &["table"],
+        Excludes,
+        &["file"],
+        "a table already contains all values; it is certified without a scenario",
+    ),
+    ("certify", &["table"], Excludes, &["scalar"], "a table says itself in which numbers it was computed"),
+    (
+        "simulate",
+        &["foraging"],
+        Excludes,
+        &["file"],
+        "--foraging has robots and paths of its own and reads no scenario",
+    ),
+    (
+        "traffic",
+        &["hours"],
+        Excludes,
+        &["output"],
+        "files and pictures are of missions that all set off at once; of hours there is a table, JSON or CSV on standard output",
+    ),
+    (
+        "traffic",
+        &["compare", "stopped", "slip"],
+        Needs,
+        &["hours"],
+        "without --hours each robot has one mission, which is planned and not run; add --hours H",
+    ),
+    (
+        "locks",
+        &["write"],
+        Needs,
+        &["output"],
+        "the output is the file to be written, such as -o guarded.geojson; - is standard output",
+    ),
+    (
+        "locks",
+        &["split", "envelopes"],
+        Needs,
+        &["write"],
+        "edges are cut and envelopes are written only in a file that is written; add --write FORMAT -o FILE",
+    ),
+    (
+        "locks",
+        &["write"],
+        Excludes,
+        &["lines", "edge", "index", "nodes", "delays"],
+        "--write writes exclusions into the layout and lists no locks; list them in a second run",
+    ),
+    (
+        "locks",
+        &["audit"],
+        Excludes,
+        &["write", "lines", "edge", "index", "nodes", "delays"],
+        "--audit looks at the exclusions in a file and does nothing else; give it in a run of its own",
+    ),
+    (
+        "locks",
+        &["delays"],
+        Excludes,
+        &["edge", "index", "output"],
+        "--delays prints start delays instead of locks; --edge, --index and --output are for locks",
+    ),
+    ("locks", &["lines"], Excludes, &["format", "json"], "--lines is a format of its own, JSON Lines"),
+    (
+        "locks",
+        &["lines"],
+        Excludes,
+        &["output"],
+        "--lines keeps no lock after it is printed; pictures need all of them",
+    ),
+    (
+        "locks",
+        &["edge"],
+        Excludes,
+        &["lines", "output"],
+        "--edge prints the locks of one edge; --lines and pictures are of all edges",
+    ),
+    (
+        "locks",
+        &["index"],
+        Excludes,
+        &["lines", "output"],
+        "--index writes the locks to a file; print or draw them in a second run",
+    ),
+    ("serve", &["broker"], Needs, &["fleet"], "the vehicles are described in a file; add --fleet FILE (docs/serve.md)"),
+    ("serve", &["authority", "fleet"], Needs, &["broker"], "it is of use at a broker only; add --broker HOST:PORT"),
+    (
+        "serve",
+        &["topics"],
+        Needs,
+        &["broker", "demo"],
+        "topics are of use at a broker only; add --broker HOST:PORT, or --demo LAYOUT",
+    ),
+    (
+        "serve",
+        &["vehicles"],
+        Needs,
+        &["demo"],
+        "only --demo simulates vehicles; those at a broker are described in --fleet FILE",
+    ),
+    ("serve", &["demo"], Excludes, &["broker", "fleet"], "--demo starts a broker and vehicles of its own"),
+    ("fleet", &["streets"], Excludes, &["layout"], "--streets makes a layout; give one of them"),
+    ("fleet", &["alone"], Excludes, &["broker", "topics"], "--alone has no broker"),
+    ("fleet", &["alone"], Excludes, &["manager"], "--alone always simulates the manager"),
+    ("fleet", &["alone"], Excludes, &["pace"], "--alone is not tied to real time; it runs as fast as it can"),
+    ("fleet", &["finish", "alone"], Needs, &["time"], "say how long it runs; add --time S"),
+    (
+        "fleet",
+        &["certify"],
+        Excludes,
+        &[
+            "layout", "streets", "broker", "vehicles", "manager", "topics", "pace", "time", "finish", "alone", "drops",
+            "weather", "seed", "record", "profiles",
+        ],
+        "--certify looks at a record that is there and simulates nothing",
+    ),
+];
+
+/// Those of a command.
+fn of(command: &str) -> impl Iterator<Item = &'static Ruled> {
+    RULES.iter().filter(move |(name, ..)| name.is_empty() || *name == command)
+}
+
+/// The group of several of which one is needed.
+fn group(others: &[&str]) -> String {
+    others.join("-or-")
+}
+
+/// A command whose arguments exclude and need one another.
+pub(super) fn ruled(command: Command) -> Command {
+    let name = command.get_name().to_owned();
+    let ids: Vec<String> = command.get_arguments().map(|argument| argument.get_id().to_string()).collect();
+    let groups = of(&name).filter(|(.., rule, others, _)| *rule == Needs && others.len() > 1);
+    let command = groups.fold(command, |command, (.., others, _)| {
+        command.group(ArgGroup::new(group(others)).args(*others).multiple(true))
+    });
+    command.mut_args(|argument| {
+        let id = argument.get_id().to_string();
+        let own = of(&name).filter(|(_, arguments, ..)| arguments.contains(&id.as_str()));
+        own.fold(argument, |argument: Arg, (.., rule, others, _)| match (rule, others) {
+            (Excludes, others) => {
+                argument.conflicts_with_all(others.iter().filter(|other| ids.iter().any(|id| id == *other)))
+            }
+            (Needs, [only]) => argument.requires(*only),
+            (Needs, several) => argument.requires(group(several)),
+        })
+    })
+}
+
+/// Why arguments are refused beside one another, or without another.
+pub(super) fn why(error: &Error, command: &str, given: impl Fn(&str) -> bool) -> Option<&'static str> {
+    let ids = |kind| match error.get(kind) {
+        Some(ContextValue::String(one)) => vec![id(one)],
+        Some(ContextValue::Strings(several)) => several.iter().map(|one| id(one)).collect(),
+        _ => Vec::new(),
+    };
+    let (wrong, prior) = (ids(ContextKind::InvalidArg), ids(ContextKind::PriorArg));
+    let is = |of: &[String], one: &str| of.iter().any(|id| id == one);
+    let breaks = |(_, arguments, rule, others, _): &&Ruled| {
+        arguments.iter().any(|one| match (error.kind(), rule) {
+            (ErrorKind::ArgumentConflict, Excludes) => {
+                others.iter().any(|other| is(&wrong, one) && is(&prior, other) || is(&wrong, other) && is(&prior, one))
+            }
+            (ErrorKind::MissingRequiredArgument, Needs) => {
+                given(&format!("--{one}")) && others.iter().any(|other| is(&wrong, other))
+            }
+            _ => false,
+        })
+    };
+    of(command).find(breaks).map(|(.., why)| *why)
+}
+
+/// The name of an argument, which the parser shows as `--name <VALUE>`, `[NAME]`, or `<--name <VALUE>|--other <VALUE>>`.
+fn id(shown: &str) -> String {
+    let shown = shown.trim_start_matches(['<', '[']).trim_start_matches("--");
+    let end = shown.find(|letter: char| !letter.is_alphanumeric() && letter != '-').unwrap_or(shown.len());
+    shown[..end].to_lowercase().replace('-', "_")
+}

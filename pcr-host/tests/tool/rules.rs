@@ -1,0 +1,86 @@
+//! Arguments that exclude or need one another are refused with a reason.
+
+use crate::fixture::run;
+use std::fs;
+use std::path::Path;
+
+#[allow(dead_code)]
+#[path = "../../src/commands/rules.rs"]
+mod declared;
+use declared::{RULES, Rule};
+
+/// An argument with some value that it takes.
+fn given(name: &str) -> Vec<String> {
+    let value = match name {
+        "file" | "layout" => return vec!["some-file".to_owned()],
+        "audit" | "compare" | "delays" | "finish" | "foraging" | "json" | "lines" | "manager" | "nodes"
+        | "scenario" => {
+            return vec![format!("--{name}")];
+        }
+        "topics" => return ["--topics", "a", "b"].map(str::to_owned).to_vec(),
+        "format" => "csv",
+        "scalar" => "q16",
+        "write" => "nav2",
+        "stopped" | "slip" => "0.5",
+        _ => "1",
+    };
+    vec![format!("--{name}={value}")]
+}
+
+#[test]
+fn arguments_that_exclude_or_need_one_another_are_refused_with_a_reason() {
+    let refused = |command: &str, arguments: &[&str], reason: &str| {
+        let words = arguments.iter().flat_map(|argument| given(argument)).collect::<Vec<_>>();
+        let words = [command].into_iter().chain(words.iter().map(String::as_str)).collect::<Vec<_>>();
+        let run = run(&words);
+        assert_eq!((run.status, run.out.as_str()), (2, ""), "{words:?}: {}", run.err);
+        assert!(
+            run.err.starts_with("error: the ") && run.err.contains(&format!("\n  tip: {reason}\n")),
+            "{words:?}: {}",
+            run.err
+        );
+    };
+    for (command, arguments, rule, others, reason) in RULES {
+        assert!(!reason.contains('\n') && reason.len() < 130, "{reason}");
+        let commands = if command.is_empty() { &["regions", "compare", "traffic"][..] } else { &[command][..] };
+        for (command, argument) in commands.iter().flat_map(|command| arguments.iter().map(move |one| (command, one))) {
+            match rule {
+                Rule::Needs => refused(command, &[argument], reason),
+                Rule::Excludes => others.iter().for_each(|other| {
+                    refused(command, &[argument, other], reason);
+                    refused(command, &[other, argument], reason);
+                }),
+            }
+        }
+    }
+}
+
+/// What is declared elsewhere would be refused without a reason.
+#[test]
+fn no_other_arguments_exclude_or_need_one_another() {
+    fn sources(folder: &Path, into: &mut Vec<(String, String)>) {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            match path.is_dir() {
+                true => sources(&path, into),
+                false => into.push((path.display().to_string(), fs::read_to_string(&path).unwrap())),
+            }
+        }
+    }
+    let (host, mut files) = (Path::new(env!("CARGO_MANIFEST_DIR")), Vec::new());
+    sources(&host.join("src"), &mut files);
+    sources(&host.join("formats/src/import"), &mut files);
+    files.retain(|(name, _)| !name.ends_with("rules.rs"));
+    assert!(files.len() > 40);
+    for (name, text) in files {
+        for word in ["conflicts_with", "requires", "exclusive", "required_unless", "required_if", "ArgGroup"] {
+            let declares = |line: &&str| {
+                line.contains(&format!("{word} ="))
+                    || line.contains(&format!("{word}_all ="))
+                    || line.contains(&format!("{word}("))
+                    || word == "ArgGroup" && line.contains(word)
+            };
+            assert_eq!(text.lines().find(declares), None, "{name}");
+        }
+    }
+}
