@@ -116,7 +116,7 @@ class Tool(unittest.TestCase):
             ("ccbs", real / "ccbs/solved/sparse_01_n15_log.xml", [], {}),
             ("grid", small / "grid.path", [], {}),
             ("path", small / "points.path", ["--radius", "0.3", "--tolerance", "0.01", "--margin", "0.1"], {"radius": 0.3, "tolerance": 0.01, "margin": 0.1}),
-            ("vda5050", real / "vda5050/order_v2_flywei.json", ["--fleet", str(small / "factsheet.json"), "--horizon", "--partial"],
+            ("vda5050", small / "horizon.json", ["--fleet", str(small / "factsheet.json"), "--horizon", "--partial"],
              {"fleet": small / "factsheet.json", "horizon": True, "partial": True}),
         ]
         for form, file, options, named in files:
@@ -456,7 +456,7 @@ class Refusals(unittest.TestCase):
                 pcr.Fleet.read(GRAPH, routes=none)
         with self.assertRaises(IndexError):
             fleet.regions()[10_000]
-        order, sheet = TOP / "tests/data/real/vda5050/order_v2_flywei.json", TOP / "tests/data/small/factsheet.json"
+        order, sheet = TOP / "tests/data/small/horizon.json", TOP / "tests/data/small/factsheet.json"
         text: Any
         for text in ("no", "false", 0, 1, [], numpy.float64(1)):
             for option in ("horizon", "partial"):

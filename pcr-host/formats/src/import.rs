@@ -71,10 +71,10 @@ pub use grid::GridPlan;
 pub use layout::{Edge, Id, Layout, Node};
 pub use nav2::graph_id;
 pub use rmf::is_navigation_graph;
-pub use route::{Step, cheapest, ride, turn};
+pub use route::{Step, cheapest, has_corner, ride, turn};
 pub use stamp::seconds;
 pub use timed::sectioned;
-pub use useful::Kind;
+pub use useful::{Kind, NO_CORNER};
 pub use value::parse as parse_json;
 pub use vehicle::{CORNER_RADIUS, HEADING, Options, TOLERANCE, Vehicle};
 pub use warnings::{Warnings, shortened};
@@ -410,7 +410,7 @@ pub fn scenario(
                 if value::is_open(text) {
                     warnings.add("last line", "it does not end; if the file was cut there, digits may be missing");
                 }
-                let scenario = samples::read(text, options, &vehicle)?;
+                let scenario = samples::read(text, options, &vehicle, warnings)?;
                 let names = scenario.agents.iter().map(|agent| format!("path {}", agent.id)).collect::<Vec<_>>();
                 facing::warn_of_half_turns(names.iter().map(String::as_str).zip(&scenario.agents), warnings);
                 let radii = vec![vehicle.radius; scenario.agents.len()];

@@ -141,6 +141,7 @@ pub fn read_from(file: &Path, text: String, options: &Options) -> Result<(Scenar
             useful(&name, &text, Some(format), options)?;
             match import::scenario(format, &text, options, &mut warnings) {
                 Ok(mut scenario) => {
+                    used(&name, options, &warnings)?;
                     or_stem(&mut scenario.name, file);
                     Ok((scenario, warnings))
                 }
@@ -176,6 +177,14 @@ pub fn useful_with_lines(options: &Options) -> Result<(), InputError> {
 /// Refuses options that do nothing with a file.
 fn useful(file: &Option<PathBuf>, text: &str, format: Option<Format>, options: &Options) -> Result<(), InputError> {
     match options.useless(Kind::of(format, text)) {
+        Some((option, why)) => Err(InputError::Useless(file.clone(), option, why)),
+        None => Ok(()),
+    }
+}
+
+/// Refuses options that had no effect on what was read.
+fn used(file: &Option<PathBuf>, options: &Options, warnings: &Warnings) -> Result<(), InputError> {
+    match options.unused(warnings) {
         Some((option, why)) => Err(InputError::Useless(file.clone(), option, why)),
         None => Ok(()),
     }
@@ -241,6 +250,7 @@ pub fn read_all(files: &[PathBuf], options: &Options) -> Result<(Scenario, Vec<(
     let mut all = Warnings::default();
     match import::scenario(format, &texts.join("\n\n"), options, &mut all) {
         Ok(mut scenario) => {
+            used(&name, options, &all)?;
             Warnings::settle(&mut warnings.iter_mut().map(|(_, own)| own).collect::<Vec<_>>(), &all);
             scenario.warnings = warnings
                 .iter()
@@ -286,6 +296,9 @@ pub fn read_layout_from(
     let read = if moves { import::roads } else { import::layout };
     match read(format, text, options, &mut warnings) {
         Ok(mut imported) => {
+            // Corners are of ways, which are not asked for here.
+            let of_edges = Options { corner_radius: None, ..options.clone() };
+            used(&name, &of_edges, &warnings)?;
             or_stem(&mut imported.layout.name, file);
             Ok((imported, warnings))
         }

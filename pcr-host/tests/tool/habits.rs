@@ -98,7 +98,30 @@ fn options_that_do_nothing_are_refused() {
     let (maps, discs) =
         (maps.to_str().unwrap(), "--margin has no effect: this is about contacts of the discs themselves");
     let (delays, held) = ("has no effect: only start delays are searched for that long", "has no effect: ");
+    let [straight, curved] = ["02", "17"].map(|number| real(&format!("lif/example_{number}.lif.json")));
+    let order = real("vda5050/order_v2_flywei.json");
+    let [square, bend] = [("square", "0 0\n4 0\n4 3\n"), ("bend", "0 0\n4 0\n8 1\n")]
+        .map(|(name, points)| file("habits", &format!("{name}.path"), points));
+    let (curve, corner) =
+        ("--tolerance has no effect: there is no curve in", "--corner-radius has no effect: no way has a corner");
+    // Where they do something, they are taken; permission to leave parts out is one whatever the file is.
+    run(&["nodes", &curved, "--tolerance", "0.01", "-q"]).ok();
+    run(&["check", &bend, "--radius", "0.3", "--tolerance", "0.01", "-q"]).ok();
+    run(&["nodes", &straight, "--partial", "-q"]).ok();
+    for radius in ["0", "0.5"] {
+        run(&["check", &nav2, "--route", "11:14", "--corner-radius", radius, "-q"]).ok();
+    }
     for (arguments, reason) in [
+        (&["nodes", &straight, "--tolerance", "0.01"][..], curve),
+        (&["locks", &straight, "--radius", "0.3", "--tolerance", "0.01"], curve),
+        (&["regions", &straight, "--route", "N1:N2", "--tolerance", "0.01"], curve),
+        (&["check", &order, "--tolerance", "0.01"], curve),
+        (&["check", &square, "--tolerance", "0.01"], curve),
+        (&["check", &order, "--horizon"], "--horizon has no effect: no order has a horizon: all edges are released"),
+        (&["check", &nav2, "--route", "0:1", "--corner-radius", "1"], corner),
+        (&["check", &nav2, "--route", "0:1", "--corner-radius", "0"], corner),
+        (&["check", &nav2, "--route", "11:14", "--corner-radius", "100"], corner),
+        (&["traffic", &straight, "--radius", "0.3", "--agents", "1", "--corner-radius", "1", "-q"], corner),
         (&["check", &scenario, "--horizon"][..], "--horizon has no effect: only orders of VDA 5050 have a horizon"),
         (&["check", &scenario, "--route", "1:2"], "--route has no effect: a scenario has its own vehicles and paths"),
         (&["import", "nav2", &nav2, "--from", "lif"], "--from: the format is named already, as the first argument"),

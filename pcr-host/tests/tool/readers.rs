@@ -148,6 +148,13 @@ fn what_an_update_in_another_file_releases_is_not_said_to_be_left_out() {
     assert_eq!(warnings(&[&first, &some]), (json!(15.0), vec![told]));
     let told = format!("pcr: warning: {first}: order o: 2 of 4 edges are not released and left out (--horizon)");
     assert_eq!(warnings(&[&first]), (json!(10.0), vec![told]));
+    // What counts is what they amount to together.
+    run(&[&["import", "vda5050", &first, &some, "--horizon"], &VEHICLE[..]].concat()).ok();
+    let vain = run(&[&["import", "vda5050", &first, &all, "--horizon"], &VEHICLE[..]].concat()).failed(2);
+    assert_eq!(
+        vain,
+        format!("pcr: {first}: --horizon has no effect: no order has a horizon: all edges are released\n")
+    );
 }
 
 #[test]

@@ -15,10 +15,10 @@
 //! places are apart: the curve is cut into parts whose lengths are between those of their chords and their control
 //! polygons.
 
-use super::ImportError;
 use super::bernstein::{circle, framed};
 use super::heading;
 use super::nurbs::Bezier;
+use super::{ImportError, UNSAID};
 use crate::plane::{distance as apart_by, wrapped};
 use crate::scenario::PathSegment;
 use crate::scenario::Placed;
@@ -52,6 +52,8 @@ pub(super) struct Fit {
     pub(super) longer: f64,
     /// Bound of the difference of both headings at the same length \[rad\].
     pub(super) turned: f64,
+    /// Whether another tolerance could have given other lines and arcs.
+    pub(super) bends: bool,
 }
 
 impl Fit {
@@ -203,6 +205,8 @@ pub(super) fn fit(curves: &[Bezier], tolerance: f64) -> Result<Fit, ImportError>
     }
     fit.deviation = fit.deviation.max(along.deviation + rounding);
     fit.longer = along.longer() + rounding;
+    // A straight curve is a line within any tolerance.
+    fit.bends = fit.deviation > UNSAID || fit.pieces.iter().any(|piece| piece.radius().is_some());
     Ok(fit)
 }
 

@@ -228,6 +228,9 @@ fn edge(
         )));
     }
     let fit = curve(path, &name, ends, frame, tolerance)?;
+    if fit.bends {
+        warnings.use_option("tolerance");
+    }
     let limit = |attribute: &str| metres(path, &name, attribute);
     // openTCS takes a speed of 0 for "not in this direction", and uses no path that is locked.
     let speed = [limit("maxVelocity")?, limit("maxReverseVelocity")?];

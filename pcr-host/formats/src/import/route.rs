@@ -10,8 +10,8 @@ use super::trace::{Trace, Tracer};
 use super::vehicle::Asked;
 use super::{ImportError, Options, Vehicle, Warnings, facing, speed};
 use crate::plane::distance;
-use crate::scenario::Placed;
 use crate::scenario::{Agent, PathSegment, Scenario, label};
+use crate::scenario::{KINK, Placed, TURN};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::fmt;
@@ -284,8 +284,11 @@ pub(super) fn scenario(
     }
     let names = options.routes.iter().map(|route| format!("route {route}")).collect::<Vec<_>>();
     facing::warn_of_half_turns(names.iter().map(String::as_str).zip(&agents), warnings);
-    let is_rounded = |agent: &Agent| agent.path.iter().any(|shape| is_corner(layout, shape));
-    if options.corner_radius.is_none() && agents.iter().any(is_rounded) {
+    if options.corner_radius.is_some() {
+        if has_corner(layout, &agents) {
+            warnings.use_option("corner_radius");
+        }
+    } else if has_corner(layout, &agents) {
         let radius = layout.corner_radius.unwrap_or_default();
         let problem =
             format!("rounded with {radius} m, as by nav2 with smooth_corners; --corner-radius 0 if it does not");
@@ -297,9 +300,11 @@ pub(super) fn scenario(
     Ok(Scenario::new(layout.name.clone(), agents))
 }
 
-/// Whether an arc rounds a corner of the routes on a layout.
-fn is_corner(layout: &Layout, shape: &PathSegment) -> bool {
-    matches!(shape, PathSegment::Arc { radius, .. } if Some(*radius) == layout.corner_radius)
+/// Whether ways on a layout have a corner of the radius with which it rounds corners: an arc, or for the radius 0 a turn in place.
+pub fn has_corner(layout: &Layout, agents: &[Agent]) -> bool {
+    let wanted = layout.corner_radius.map(|radius| radius.max(TURN));
+    let is_corner = |shape: &PathSegment| matches!(shape, PathSegment::Arc { radius, sweep } if Some(*radius) == wanted && sweep.abs() > KINK);
+    agents.iter().flat_map(|agent| &agent.path).any(is_corner)
 }
 
 /// The agent that travels the shortest way between two nodes from the time 0, if there is one.

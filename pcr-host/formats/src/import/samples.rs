@@ -7,7 +7,7 @@
 use super::biarc::{Along, Fit, Part, ROUNDINGS, biarc, distance, is_beyond};
 use super::nurbs::Bezier;
 use super::trace::Tracer;
-use super::{ImportError, Options, Vehicle, route};
+use super::{ImportError, Options, Vehicle, Warnings, route};
 use crate::mark::unmarked;
 use crate::plane::wrapped;
 use crate::scenario::Placed;
@@ -16,15 +16,26 @@ use crate::scenario::{LIMIT, Scenario};
 /// Angle between two steps from which on a point is a corner, not a sample of something smooth \[rad\].
 const CORNER: f64 = 0.35;
 
+/// Angle between two steps up to which they are one line within any tolerance \[rad\].
+const STRAIGHT: f64 = 1e-9;
+
 /// Most points of a file.
 const MOST: usize = 200_000;
 
 /// Reads the paths, an agent each.
-pub(super) fn read(text: &str, options: &Options, vehicle: &Vehicle) -> Result<Scenario, ImportError> {
+pub(super) fn read(
+    text: &str,
+    options: &Options,
+    vehicle: &Vehicle,
+    warnings: &mut Warnings,
+) -> Result<Scenario, ImportError> {
     let mut agents = Vec::new();
     for points in paths(text)? {
         let id = agents.len() as u64 + 1;
         let fit = fit(&points, options.tolerance()).map_err(|error| ImportError::new(format!("path {id}: {error}")))?;
+        if fit.bends {
+            warnings.use_option("tolerance");
+        }
         let mut tracer = Tracer::default();
         fit.pieces.iter().for_each(|piece| tracer.follow(piece));
         let mut trace = tracer.finish(points.first().copied().unwrap_or_default());
@@ -110,6 +121,7 @@ fn fit(points: &[[f64; 2]], tolerance: f64) -> Result<Fit, ImportError> {
     let steps: Vec<Placed> = points.windows(2).map(|pair| Placed::line(pair[0], pair[1])).collect();
     let turn = |k: usize| wrapped(steps[k].heading - steps[k - 1].heading);
     let (mut fit, mut along) = (Fit::default(), Along::default());
+    fit.bends = (1..steps.len()).any(|k| (STRAIGHT..=CORNER).contains(&turn(k).abs()));
     let mut from = 0;
     while from < steps.len() {
         let to = (from + 1..steps.len()).find(|&k| turn(k).abs() > CORNER).unwrap_or(steps.len());

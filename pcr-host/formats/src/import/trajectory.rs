@@ -47,5 +47,8 @@ pub(super) fn read(object: &Object<'_>, tolerance: f64, warnings: &mut Warnings)
     let curves = Nurbs { degree, knots, points }.beziers().map_err(named)?;
     let ends = curves.first().zip(curves.last()).map(|(first, last)| [first.ends()[0], last.ends()[1]]);
     let fit = fit(&curves, tolerance).map_err(named)?;
+    if fit.bends {
+        warnings.use_option("tolerance");
+    }
     Ok(Trajectory { fit, ends: ends.unwrap_or_default() })
 }

@@ -1,6 +1,6 @@
 //! Which options have an effect on which files. An option without effect is refused, because its user expects one.
 
-use super::{Format, Options, xml};
+use super::{Format, Options, Warnings, xml};
 
 /// The kind of a file, with respect to options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,7 +69,27 @@ impl Options {
         let given = self.all().into_iter().filter(|(.., given)| *given);
         given.into_iter().find_map(|(field, option, _)| Some((option, useless(field, kind)?)))
     }
+
+    /// An option that is given and had no effect on what was read with these warnings, and why.
+    pub fn unused(&self, warnings: &Warnings) -> Option<(&'static str, &'static str)> {
+        let mut given = self.all().into_iter().filter(|(field, _, given)| *given && !warnings.has_used(field));
+        given.find_map(|(field, option, _)| Some((option, unused(field)?)))
+    }
 }
+
+/// Why an option had no effect on a file on which it may have one; nothing for those that always have one, and for `--partial`, which is
+/// a permission: whoever gives it for many files does not know which of them need it.
+fn unused(field: &str) -> Option<&'static str> {
+    match field {
+        "tolerance" => Some("there is no curve in what is read but lines and arcs"),
+        "horizon" => Some("no order has a horizon: all edges are released"),
+        "corner_radius" => Some(NO_CORNER),
+        _ => None,
+    }
+}
+
+/// Why no corner has the radius that is asked for.
+pub const NO_CORNER: &str = "no way has a corner between straight edges with room for such an arc";
 
 /// Why an option does nothing with such a file; nothing where it does something.
 fn useless(field: &str, kind: Kind) -> Option<&'static str> {

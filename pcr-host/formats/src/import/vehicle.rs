@@ -103,7 +103,7 @@ pub struct Options {
     /// Include the horizon of orders (VDA 5050)
     #[cfg_attr(feature = "clap", arg(long))]
     pub horizon: bool,
-    /// Read the rest of a file refused otherwise
+    /// Leave out parts that cannot be read, if any
     #[cfg_attr(feature = "clap", arg(long))]
     pub partial: bool,
 }

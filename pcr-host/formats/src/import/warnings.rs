@@ -1,4 +1,5 @@
-//! Warnings about a file: parts that were not read exactly as written, and parts that could not be read.
+//! What there is to say about a file that is read: warnings about parts that were not read exactly as written, parts that could not be
+//! read, and the options that had an effect on it.
 
 use std::collections::{HashMap, HashSet};
 use std::fmt;
@@ -25,6 +26,8 @@ pub struct Warnings {
     /// Places in the list by the words.
     places: HashMap<String, usize>,
     lost: Vec<String>,
+    /// Fields of options that had an effect.
+    used: HashSet<&'static str>,
 }
 
 impl Warnings {
@@ -45,6 +48,16 @@ impl Warnings {
     pub(crate) fn lose(&mut self, problem: impl fmt::Display) {
         self.lost.push(problem.to_string());
         self.add(problem, "left out");
+    }
+
+    /// Notes that the option of this field had an effect.
+    pub(super) fn use_option(&mut self, field: &'static str) {
+        self.used.insert(field);
+    }
+
+    /// Whether the option of this field had an effect.
+    pub(super) fn has_used(&self, field: &str) -> bool {
+        self.used.contains(field)
     }
 
     /// Settles the warnings of files that were read each by itself, and then together, with the warnings `all`: what an update releases

@@ -64,15 +64,16 @@ impl Reader<'_> {
             return Err(ImportError::new(problem));
         }
         go_on(&nodes, &edges)?;
-        if !self.options.horizon {
-            let base =
-                nodes.iter().skip(1).zip(&edges).take_while(|(node, edge)| node.released && edge.released).count();
-            if base < edges.len() {
+        let base = nodes.iter().skip(1).zip(&edges).take_while(|(node, edge)| node.released && edge.released).count();
+        if base < edges.len() {
+            if self.options.horizon {
+                self.warnings.use_option("horizon");
+            } else {
                 let ahead = format!("{} of {} {NOT_RELEASED}", edges.len() - base, edges.len());
                 self.warnings.add(&order.name, ahead);
+                nodes.truncate(base + 1);
+                edges.truncate(base);
             }
-            nodes.truncate(base + 1);
-            edges.truncate(base);
         }
         Ok([nodes, edges])
     }
