@@ -18,7 +18,7 @@ pub(crate) enum Rule {
 pub(crate) type Ruled = (&'static str, &'static [&'static str], Rule, &'static [&'static str], &'static str);
 
 /// All of them.
-pub(crate) const RULES: [Ruled; 27] = [
+pub(crate) const RULES: [Ruled; 28] = [
     ("", &["json"], Excludes, &["format"], "--json is --format json; give one of them"),
     ("demo", &["scenario"], Excludes, &["output"], "--scenario prints the scenario and draws no pictures"),
     (
@@ -123,6 +123,7 @@ pub(crate) const RULES: [Ruled; 27] = [
         &["demo"],
         "only --demo simulates vehicles; those at a broker are described in --fleet FILE",
     ),
+    ("serve", &["demo"], Excludes, &["stay"], "--demo always goes on when standard input ends"),
     ("serve", &["demo"], Excludes, &["broker", "fleet"], "--demo starts a broker and vehicles of its own"),
     ("fleet", &["streets"], Excludes, &["layout"], "--streets makes a layout; give one of them"),
     ("fleet", &["alone"], Excludes, &["broker", "topics"], "--alone has no broker"),
@@ -154,7 +155,6 @@ fn group(others: &[&str]) -> String {
 /// A command whose arguments exclude and need one another.
 pub(super) fn ruled(command: Command) -> Command {
     let name = command.get_name().to_owned();
-    let ids: Vec<String> = command.get_arguments().map(|argument| argument.get_id().to_string()).collect();
     let groups = of(&name).filter(|(.., rule, others, _)| *rule == Needs && others.len() > 1);
     let command = groups.fold(command, |command, (.., others, _)| {
         command.group(ArgGroup::new(group(others)).args(*others).multiple(true))
@@ -163,9 +163,7 @@ pub(super) fn ruled(command: Command) -> Command {
         let id = argument.get_id().to_string();
         let own = of(&name).filter(|(_, arguments, ..)| arguments.contains(&id.as_str()));
         own.fold(argument, |argument: Arg, (.., rule, others, _)| match (rule, others) {
-            (Excludes, others) => {
-                argument.conflicts_with_all(others.iter().filter(|other| ids.iter().any(|id| id == *other)))
-            }
+            (Excludes, others) => argument.conflicts_with_all(*others),
             (Needs, [only]) => argument.requires(*only),
             (Needs, several) => argument.requires(group(several)),
         })

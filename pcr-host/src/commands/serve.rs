@@ -80,9 +80,9 @@ pub(super) struct Arguments {
     /// Vehicles of the demo
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = whole::<usize>)]
     vehicles: usize,
-    /// debug, info, warn or error
-    #[arg(long, value_name = "LEVEL", default_value = "info")]
-    log: String,
+    /// debug, info, warn or error [default: info]
+    #[arg(long, value_name = "LEVEL")]
+    log: Option<String>,
 }
 
 /// Where to listen, as it is written.

@@ -14,7 +14,7 @@ fn given(name: &str) -> Vec<String> {
     let value = match name {
         "file" | "layout" => return vec!["some-file".to_owned()],
         "audit" | "compare" | "delays" | "finish" | "foraging" | "json" | "lines" | "manager" | "nodes"
-        | "scenario" => {
+        | "scenario" | "stay" => {
             return vec![format!("--{name}")];
         }
         "topics" => return ["--topics", "a", "b"].map(str::to_owned).to_vec(),

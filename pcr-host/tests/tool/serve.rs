@@ -86,6 +86,14 @@ fn robots_that_come_and_go_are_logged() {
 }
 
 #[test]
+fn a_log_level_beside_quiet_is_refused() {
+    for words in [["-q", "serve", "--log", "debug"], ["serve", "--log", "debug", "-q"]] {
+        let refused = run(&words).failed(2);
+        assert_eq!(refused, "pcr: --log has no effect: with --quiet only errors are told\n", "{words:?}");
+    }
+}
+
+#[test]
 fn vehicles_are_written_as_they_are_read() {
     let folder = directory("profiles");
     let name = folder.join("vehicles.json").to_string_lossy().into_owned();

@@ -77,8 +77,9 @@ impl Options {
     }
 }
 
-/// Why an option had no effect on a file on which it may have one; nothing for those that always have one, and for `--partial`, which is
-/// a permission: whoever gives it for many files does not know which of them need it.
+/// Why an option had no effect on a file on which it may have one; nothing for those that say what the vehicle is, which holds whether
+/// or not it drives in this file, and for `--partial`, which is a permission: whoever gives it for many files does not know which of them
+/// need it.
 fn unused(field: &str) -> Option<&'static str> {
     match field {
         "tolerance" => Some("there is no curve in what is read but lines and arcs"),

@@ -151,8 +151,13 @@ fn settings(arguments: &Arguments) -> Result<Settings, Stop> {
 }
 
 fn log_of(arguments: &Arguments) -> Result<Log, Stop> {
-    let level = arguments.log.parse().map_err(|why| Stop::arguments(format!("--log: {why}")))?;
-    Ok(Log::new(if quiet() { Level::Error } else { level }))
+    let level = match &arguments.log {
+        Some(_) if quiet() => return Err(Stop::arguments("--log has no effect: with --quiet only errors are told")),
+        Some(level) => level.parse().map_err(|why| Stop::arguments(format!("--log: {why}")))?,
+        None if quiet() => Level::Error,
+        None => Level::Info,
+    };
+    Ok(Log::new(level))
 }
 
 /// Where the page is, if it is wanted.
