@@ -18,7 +18,7 @@ pub const COMPARISON_CSV_HEADER: &str =
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn comparison_csv(comparison: &Comparison, out: &mut impl Write) -> io::Result<()> {
+pub fn comparison_csv(comparison: &Comparison, out: &mut dyn Write) -> io::Result<()> {
     let (name, agents) = (quoted(&comparison.name), comparison.agents);
     for row in &comparison.rows {
         let Row { method, ms, ratio, rounds, count, bytes, .. } = row;
@@ -42,7 +42,7 @@ pub fn comparison_csv(comparison: &Comparison, out: &mut impl Write) -> io::Resu
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn comparison_table(comparison: &Comparison, markdown: bool, out: &mut impl Write) -> io::Result<()> {
+pub fn comparison_table(comparison: &Comparison, markdown: bool, out: &mut dyn Write) -> io::Result<()> {
     let Comparison { agents, rows, absent, .. } = comparison;
     if !markdown {
         writeln!(out, "{}: {}\n", heading(&comparison.name), counted(*agents, "agent"))?;

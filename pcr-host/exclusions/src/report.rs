@@ -33,7 +33,7 @@ fn times(excluded: f64, needed: f64) -> String {
 }
 
 /// Prints how much is excluded, and how much is needed.
-fn extent(out: &mut impl Write, excluded: f64, needed: f64, needless: usize) -> io::Result<()> {
+fn extent(out: &mut dyn Write, excluded: f64, needed: f64, needless: usize) -> io::Result<()> {
     let times = times(excluded, needed);
     writeln!(out, "  lengths of two edges: {needed:.1} m² touch, {excluded:.1} m² are excluded{times}")?;
     writeln!(out, "  pairs of edges that cannot touch and are excluded: {needless}")
@@ -43,7 +43,7 @@ fn extent(out: &mut impl Write, excluded: f64, needed: f64, needless: usize) -> 
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn written_table(written: &Written, out: &mut impl Write) -> io::Result<()> {
+pub fn written_table(written: &Written, out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,
         "{}: exclusions for {} on {} and {}, {}",
@@ -69,7 +69,7 @@ pub fn written_table(written: &Written, out: &mut impl Write) -> io::Result<()> 
 }
 
 /// Prints warnings about the exclusions; those about the layout were printed when it was read.
-fn said(out: &mut impl Write, warnings: &[String]) -> io::Result<()> {
+fn said(out: &mut dyn Write, warnings: &[String]) -> io::Result<()> {
     warnings.iter().try_for_each(|warning| writeln!(out, "  {}", printable(warning)))
 }
 
@@ -84,7 +84,7 @@ fn spot(spot: &Spot) -> String {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn audit_table(audit: &Audit, out: &mut impl Write) -> io::Result<()> {
+pub fn audit_table(audit: &Audit, out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,
         "{}: audit of {} of {}, {}",
@@ -137,7 +137,7 @@ pub fn audit_table(audit: &Audit, out: &mut impl Write) -> io::Result<()> {
     said(out, &audit.warnings[audit.of_layout..])
 }
 
-fn more(out: &mut impl Write, count: usize) -> io::Result<()> {
+fn more(out: &mut dyn Write, count: usize) -> io::Result<()> {
     if count > ROWS { writeln!(out, "  and {} more (--json, --format csv)", count - ROWS) } else { Ok(()) }
 }
 
@@ -149,7 +149,7 @@ pub const AUDIT_HEADER: &str = "finding,a,b,relation,a_from,a_to,b_from,b_to,x,y
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn audit_csv(audit: &Audit, out: &mut impl Write) -> io::Result<()> {
+pub fn audit_csv(audit: &Audit, out: &mut dyn Write) -> io::Result<()> {
     out.write_all(AUDIT_HEADER.as_bytes())?;
     for gap in &audit.gaps {
         let [a, b] = [&gap.a, &gap.b].map(|at| quoted(&spot(at)).into_owned());

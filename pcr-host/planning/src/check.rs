@@ -5,14 +5,15 @@
 
 use crate::bodies::{Bodies, Disced};
 use crate::certify::Proof;
+use crate::cores;
 use crate::fleet::Format;
 use crate::memory::{self, Held};
 use crate::regions::{Failure, Told};
 use crate::rows::{Grid, grown};
 use pcr_core::{Encounter, Interval, Motion};
 use pcr_formats::scenario::{Labels, Scenario};
-use rayon::prelude::*;
 use serde::Serialize;
+use std::cmp::Ordering;
 
 /// Conflicts of one scenario, or why there is no answer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -59,6 +60,13 @@ pub struct Conflict {
     pub touching: bool,
 }
 
+impl Conflict {
+    /// By its begin, then by its agents.
+    fn by_begin(&self, other: &Self) -> Ordering {
+        self.t[0].total_cmp(&other.t[0]).then((self.i, self.j).cmp(&(other.i, other.j)))
+    }
+}
+
 /// The closest approach of two agents.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Closest {
@@ -88,6 +96,10 @@ impl Verdict {
     /// # Errors
     /// As [`Verdict::of`].
     pub fn watched<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
+        S::verdict(scenario, closest, told)
+    }
+
+    pub(crate) fn found<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
         let (fleet, discs, _) = Bodies::<S>::moving(scenario)?;
         Self::between(scenario, &discs, &fleet.motions(), closest, told)
     }
@@ -97,13 +109,17 @@ impl Verdict {
     /// # Errors
     /// [`Failure`] where a value does not fit the format.
     pub fn any<S: Format>(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure> {
+        S::has_conflict(scenario, told)
+    }
+
+    pub(crate) fn has_any<S: Format>(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure> {
         let (fleet, discs, _) = Bodies::<S>::moving(scenario)?;
         let motions = fleet.motions();
         let pairs = Pairs::new(scenario, &discs, &motions);
         let count = pairs.ids.len();
         for first in (0..count).step_by(STRETCH) {
             let stretch = first..count.min(first + STRETCH);
-            if stretch.clone().into_par_iter().any(|agent| pairs.any(agent)) {
+            if cores::any(stretch.clone(), &|agent| pairs.any(agent)) {
                 return Ok(true);
             }
             told(stretch.end, count);
@@ -143,15 +159,14 @@ impl Verdict {
         }
         for first in (0..count).step_by(STRETCH) {
             let stretch = first..count.min(first + STRETCH);
-            let found: Vec<_> = stretch.clone().into_par_iter().map(|k| pairs.of(k, closest)).collect();
-            for (found, near) in found {
+            for (found, near) in cores::made(stretch.clone(), &|agent| pairs.of(agent, closest)) {
                 held.extend(&mut conflicts, found, 0, "conflicts")?;
                 nearest.extend(near);
             }
             told(stretch.end, count);
         }
         // No two conflicts of the same agents begin at the same time.
-        conflicts.sort_unstable_by(|a, b| a.t[0].total_cmp(&b.t[0]).then((a.i, a.j).cmp(&(b.i, b.j))));
+        conflicts.sort_unstable_by(Conflict::by_begin);
         Ok(Self {
             name: scenario.name.clone(),
             labels: Labels::of(scenario),
@@ -218,14 +233,12 @@ struct Pairs<'a, S: Format> {
 impl<'a, S: Format> Pairs<'a, S> {
     fn new(scenario: &Scenario, discs: &'a [Disced], motions: &'a [Motion<'a, S>]) -> Self {
         let time = Motion::span(motions);
-        let mut order: Vec<usize> = (0..scenario.agents.len()).collect();
-        order.sort_by_key(|&agent| scenario.agents[agent].id);
+        let order = by_number(scenario);
         let ids = order.iter().map(|&agent| scenario.agents[agent].id).collect();
         let mut rank_of = vec![0; order.len()];
         order.iter().enumerate().for_each(|(rank, &agent)| rank_of[agent] = rank);
         let ranks: Vec<usize> = discs.iter().map(|disc| rank_of[disc.agent]).collect();
-        let mut places: Vec<usize> = (0..discs.len()).collect();
-        places.sort_by_key(|&disc| ranks[disc]);
+        let places = by_rank(&ranks);
         let mut begins = vec![0; order.len() + 1];
         ranks.iter().for_each(|rank| begins[rank + 1] += 1);
         (1..begins.len()).for_each(|rank| begins[rank] += begins[rank - 1]);
@@ -272,6 +285,20 @@ impl<'a, S: Format> Pairs<'a, S> {
         }
         (conflicts, nearest)
     }
+}
+
+/// The agents in the order of their numbers.
+fn by_number(scenario: &Scenario) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..scenario.agents.len()).collect();
+    order.sort_by_key(|&agent| scenario.agents[agent].id);
+    order
+}
+
+/// The discs in the order of the ranks of their agents.
+fn by_rank(ranks: &[usize]) -> Vec<usize> {
+    let mut places: Vec<usize> = (0..ranks.len()).collect();
+    places.sort_by_key(|&disc| ranks[disc]);
+    places
 }
 
 /// The area outside of which a disc is in no contact.

@@ -8,8 +8,14 @@ pub mod speed;
 #[cfg(test)]
 mod tests;
 
+use crate::bodies::Bodies;
+use crate::certify::Proof;
+use crate::check::Verdict;
+use crate::compiled::compiled;
 use crate::memory;
-use pcr_certify::data::Angle;
+use crate::regions::{self, Failure, Sheet, Told};
+use crate::rows::Grid;
+use pcr_certify::data::{Angle, Table};
 use pcr_core::{
     Ecm, Full, Invalid, Limits, Motion, Order, Orders, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef,
     Radians, Region, Scalar, Segment, TableError, Turn,
@@ -17,7 +23,6 @@ use pcr_core::{
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
 pub(crate) use rounding::Rounding;
-pub use rounding::rounded;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
@@ -54,6 +59,45 @@ pub trait Format: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
     const EPSILON: f64;
     /// The last digit of a fixed-point format, of which all numbers are multiples; 0 in floating point.
     const STEP: f64 = 0.0;
+
+    /// [`Fleet::new`].
+    #[doc(hidden)]
+    fn fleet(scenario: &Scenario) -> Result<Fleet<Self>, Refused>;
+    /// [`Bodies::new`].
+    #[doc(hidden)]
+    fn bodies(scenario: &Scenario) -> Result<Bodies<Self>, Refused>;
+    /// [`rounded`].
+    #[doc(hidden)]
+    fn rounded(scenario: &Scenario) -> Result<Option<String>, Refused>;
+    /// [`build_ecm`].
+    #[doc(hidden)]
+    fn table(motions: &[Motion<'_, Self>]) -> Result<HostEcm<Self>, Full>;
+    /// [`build_orders`].
+    #[doc(hidden)]
+    fn orders(motions: &[Motion<'_, Self>]) -> Result<HostOrders<Self>, Full>;
+    /// [`Ecm::fill_row`].
+    #[doc(hidden)]
+    fn row(table: &mut HostEcm<Self>, motions: &[Motion<'_, Self>], ego: usize) -> Result<(), TableError>;
+    /// The regions of one agent of a [`Sheet`].
+    #[doc(hidden)]
+    fn regions(
+        sheet: &Sheet<'_, Self>,
+        motions: &[Motion<'_, Self>],
+        grid: &Grid,
+        ego: usize,
+    ) -> Result<Vec<regions::Region>, Failure>;
+    /// [`Verdict::watched`].
+    #[doc(hidden)]
+    fn verdict(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Verdict, Failure>;
+    /// [`Verdict::any`].
+    #[doc(hidden)]
+    fn has_conflict(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure>;
+    /// [`Proof::of`].
+    #[doc(hidden)]
+    fn proof(scenario: &Scenario) -> Result<Proof, Refused>;
+    /// [`regions::table_of`].
+    #[doc(hidden)]
+    fn certificate(scenario: &Scenario) -> Result<Vec<Table>, Failure>;
 }
 
 impl Format for f64 {
@@ -72,6 +116,7 @@ impl Format for f64 {
     fn radians(angle: Radians<f64>) -> f64 {
         angle.0
     }
+    compiled!();
 }
 
 impl Format for f32 {
@@ -92,6 +137,7 @@ impl Format for f32 {
     fn radians(angle: Radians<f32>) -> f64 {
         f64::from(angle.0)
     }
+    compiled!();
 }
 
 /// The reason why an agent of a scenario does not fit a number format: agent, segment, field, value, and the allowed range.
@@ -156,6 +202,15 @@ fn derived<S: Format>(reason: Invalid) -> String {
     }
 }
 
+/// A warning if rounding to the format moves some agents by more than 1 mm at some time. `None` for `f64`, the format of the
+/// scenario.
+///
+/// # Errors
+/// [`Refused`] if a value does not fit the number format.
+pub fn rounded<S: Format>(scenario: &Scenario) -> Result<Option<String>, Refused> {
+    S::rounded(scenario)
+}
+
 /// The paths and profiles of a scenario in one number format.
 #[derive(Clone, Debug)]
 pub struct Fleet<S: Scalar> {
@@ -183,6 +238,10 @@ impl<S: Format> Fleet<S> {
     /// # Errors
     /// [`Refused`] if a value does not fit the number format.
     pub fn new(scenario: &Scenario) -> Result<Self, Refused> {
+        S::fleet(scenario)
+    }
+
+    fn converted(scenario: &Scenario) -> Result<Self, Refused> {
         let agents = scenario.agents.iter().map(|agent| {
             let refused = |(part, problem)| Refused { agent: agent.called(), part, format: S::NAME, problem };
             Parts::new(agent).map_err(refused)
@@ -369,8 +428,8 @@ pub type HostEcm<S> = Ecm<S, Vec<Region>, Vec<Piece<S>>>;
 ///
 /// # Errors
 /// [`Full::Agents`] for more than 65536 agents, [`Full::Pair`] where two of them have more than 32767 pieces.
-pub fn build_ecm<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Full> {
-    Ecm::grown(motions)
+pub fn build_ecm<S: Format>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Full> {
+    S::table(motions)
 }
 
 /// A table of passing orders on the heap.
@@ -381,8 +440,8 @@ pub type HostOrders<S> = Orders<S, Vec<Region>, Vec<Piece<S>>, Vec<Order<S>>>;
 ///
 /// # Errors
 /// As [`build_ecm`].
-pub fn build_orders<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostOrders<S>, Full> {
-    Orders::grown(motions)
+pub fn build_orders<S: Format>(motions: &[Motion<'_, S>]) -> Result<HostOrders<S>, Full> {
+    S::orders(motions)
 }
 
 /// The table of the regions of one agent with all others.
@@ -392,7 +451,7 @@ pub fn build_orders<S: Scalar>(motions: &[Motion<'_, S>]) -> Result<HostOrders<S
 ///
 /// # Panics
 /// Where there is no such agent.
-pub fn build_ecm_of<S: Scalar>(motions: &[Motion<'_, S>], agent: usize) -> Result<HostEcm<S>, Full> {
+pub fn build_ecm_of<S: Format>(motions: &[Motion<'_, S>], agent: usize) -> Result<HostEcm<S>, Full> {
     table_of(motions, agent, [16 * motions.len(), 32 * motions.len()])
 }
 
@@ -400,7 +459,7 @@ pub fn build_ecm_of<S: Scalar>(motions: &[Motion<'_, S>], agent: usize) -> Resul
 ///
 /// # Errors
 /// As [`build_ecm`].
-pub(crate) fn table_of<S: Scalar>(
+pub(crate) fn table_of<S: Format>(
     motions: &[Motion<'_, S>],
     agent: usize,
     [regions, pieces]: [usize; 2],
@@ -411,7 +470,7 @@ pub(crate) fn table_of<S: Scalar>(
     memory::for_list(pieces, piece).map_err(room(Full::Pieces))?;
     let mut ecm = Ecm::new(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]);
     loop {
-        match ecm.fill_row(motions, agent) {
+        match S::row(&mut ecm, motions, agent) {
             Err(TableError::Full(full)) => ecm.grow(full)?,
             done => return Ok(done.map(|()| ecm).expect("an agent of the fleet")),
         }

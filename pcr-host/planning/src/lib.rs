@@ -11,6 +11,8 @@
 //! locks        which edges of a layout exclude one another         Locks
 //! memory       refuses what does not fit into memory               TooLarge
 //! checksum     checksums of files that are read in parts
+//! compiled     what is compiled once for each number format
+//! cores        work on all cores
 //! nodes        nodes and edges of a layout                         Listing
 //! plan         delays without conflicts                            Plan
 //! queue        the conflicts of a fleet while its motions change   Queue
@@ -23,6 +25,8 @@ pub mod certificate;
 pub mod certify;
 pub mod check;
 pub mod checksum;
+mod compiled;
+mod cores;
 pub mod fleet;
 pub mod locks;
 pub mod memory;

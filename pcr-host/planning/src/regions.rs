@@ -20,6 +20,7 @@ pub use record::{Descriptor, Piece, Region, Slice};
 use serde::Serialize;
 pub use sheet::{Sheet, Told};
 use std::fmt;
+pub(crate) use tables::certified;
 pub use tables::table_of;
 
 /// Regions of one scenario, or why there are none.

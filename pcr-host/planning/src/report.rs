@@ -73,7 +73,7 @@ impl Document for Listing<'_> {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn json<D: Document>(answer: &D, out: &mut impl Write) -> io::Result<()> {
+pub fn json<D: Document>(answer: &D, out: &mut dyn Write) -> io::Result<()> {
     #[derive(Serialize)]
     struct Versioned<'a, D> {
         format: &'static str,
@@ -93,13 +93,13 @@ pub const CSV_HEADER: &str = "name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn csv(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
+pub fn csv(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     csv_rows(&answer.name, &answer.labels, &answer.regions, false, out)?;
     csv_rows(&answer.name, &answer.labels, answer.margin_regions.as_deref().unwrap_or_default(), true, out)
 }
 
 /// Some of these lines.
-fn csv_rows(name: &str, labels: &Labels, regions: &[Region], margin: bool, out: &mut impl Write) -> io::Result<()> {
+fn csv_rows(name: &str, labels: &Labels, regions: &[Region], margin: bool, out: &mut dyn Write) -> io::Result<()> {
     let (name, margin) = (quoted(name), u8::from(margin));
     for region in regions {
         let Region { i, j, t: [t_a, t_b], l: [l_a, l_b], .. } = region;

@@ -9,6 +9,7 @@ mod grid;
 
 pub use grid::Grid;
 
+use crate::cores;
 use crate::fleet::{Format, HostEcm, table_of};
 use crate::memory::Held;
 use crate::regions::Failure;
@@ -57,7 +58,7 @@ impl<'a, S: Format> Row<'a, S> {
         self.agents.extend_from_slice(after);
         self.motions.clear();
         self.motions.extend(self.agents.iter().map(|&agent| &motions[agent as usize]));
-        let filled = match self.table.fill_row(&self.motions, self.place) {
+        let filled = match S::row(&mut self.table, &self.motions, self.place) {
             Err(TableError::Full(Full::Regions | Full::Pieces)) => {
                 let agents = self.agents.len();
                 table_of(&self.motions, self.place, [2 * agents, 3 * agents]).map(|table| self.table = table)
@@ -189,13 +190,16 @@ pub(crate) fn gathered<'a, S: Format, T: Send>(
     let grid = grid(motions);
     let (mut all, mut held) = (Vec::new(), Held::default());
     for first in (0..motions.len()).step_by(GATHERED) {
-        let stretch = first..motions.len().min(first + GATHERED);
-        let made = stretch
-            .into_par_iter()
-            .with_min_len(STRETCH)
-            .map_init(|| Walk::new(motions, &grid), |walk, ego| Ok(make(walk.row(ego)?)));
-        for made in made.collect::<Result<Vec<_>, Full>>()? {
-            held.extend(&mut all, made, 0, what)?;
+        let end = motions.len().min(first + GATHERED);
+        let of_stretch = |stretch: usize| {
+            let (mut walk, first) = (Walk::new(motions, &grid), first + stretch * STRETCH);
+            let rows = (first..end.min(first + STRETCH)).map(|ego| Ok(make(walk.row(ego)?)));
+            rows.collect::<Result<Vec<Vec<T>>, Full>>()
+        };
+        for made in cores::made(0..(end - first).div_ceil(STRETCH), &of_stretch) {
+            for made in made? {
+                held.extend(&mut all, made, 0, what)?;
+            }
         }
     }
     Ok(all)

@@ -14,7 +14,7 @@ stuck,standstill,refused,moved,revised,longest_wait,waiting,starved,driving,turn
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn lifelong_csv(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()> {
+pub fn lifelong_csv(lifelong: &Lifelong, out: &mut dyn Write) -> io::Result<()> {
     out.write_all(LIFELONG_CSV_HEADER.as_bytes())?;
     for run in &lifelong.runs {
         let Driven { outcome: it, decisions, decision_median, decision_p99, .. } = run;
@@ -52,7 +52,7 @@ pub fn lifelong_csv(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()>
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn lifelong_table(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<()> {
+pub fn lifelong_table(lifelong: &Lifelong, out: &mut dyn Write) -> io::Result<()> {
     let Lifelong { layout, seed, asked, hours, delays, well_formedness, alone, runs, .. } = lifelong;
     let name = if layout.is_empty() { "layout" } else { layout };
     writeln!(out, "{}: {} for {hours} h, seed {seed}", heading(name), counted(*asked, "robot"))?;
@@ -137,7 +137,7 @@ pub fn lifelong_table(lifelong: &Lifelong, out: &mut impl Write) -> io::Result<(
     Ok(())
 }
 
-fn well_formed(it: &WellFormedness, out: &mut impl Write) -> io::Result<()> {
+fn well_formed(it: &WellFormedness, out: &mut dyn Write) -> io::Result<()> {
     let list = |ids: &[Id]| {
         /// More are counted only.
         const MOST: usize = 20;

@@ -11,7 +11,7 @@ use std::io::{self, Write};
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn simulation_csv(simulation: &Simulation, out: &mut impl Write) -> io::Result<()> {
+pub fn simulation_csv(simulation: &Simulation, out: &mut dyn Write) -> io::Result<()> {
     let name = quoted(&simulation.name);
     writeln!(out, "name,controller,id,begin,end,unimpeded,waiting,label")?;
     for run in &simulation.runs {
@@ -29,7 +29,7 @@ pub fn simulation_csv(simulation: &Simulation, out: &mut impl Write) -> io::Resu
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn simulation_table(simulation: &Simulation, out: &mut impl Write) -> io::Result<()> {
+pub fn simulation_table(simulation: &Simulation, out: &mut dyn Write) -> io::Result<()> {
     let Simulation { seed, noise, drift, slip, delay, replan, .. } = simulation;
     let name = heading(&simulation.name);
     writeln!(
@@ -83,7 +83,7 @@ pub fn simulation_table(simulation: &Simulation, out: &mut impl Write) -> io::Re
     Ok(())
 }
 
-fn planning(run: &Run, labels: &Labels, out: &mut impl Write) -> io::Result<()> {
+fn planning(run: &Run, labels: &Labels, out: &mut dyn Write) -> io::Result<()> {
     let Some(planning) = run.planning else { return Ok(()) };
     let (count, kept) = (planning.count, planning.kept);
     let (mean, longest) = (planning.mean_ms, planning.longest_ms);

@@ -14,7 +14,7 @@ pub const TRAFFIC_CSV_HEADER: &str = "id,from,to,length,delay,t_end\n";
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn traffic_csv(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> {
+pub fn traffic_csv(traffic: &Traffic, out: &mut dyn Write) -> io::Result<()> {
     out.write_all(TRAFFIC_CSV_HEADER.as_bytes())?;
     for mission in &traffic.missions {
         let [from, to] = [&mission.from, &mission.to].map(|id| quoted(&id.to_string()).into_owned());
@@ -28,7 +28,7 @@ pub fn traffic_csv(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn traffic_table(traffic: &Traffic, out: &mut impl Write) -> io::Result<()> {
+pub fn traffic_table(traffic: &Traffic, out: &mut dyn Write) -> io::Result<()> {
     let Traffic { layout, seed, asked, placed, planned, passed_over, .. } = traffic;
     let name = if layout.is_empty() { "layout" } else { layout };
     let (name, asked_for) = (heading(name), counted(*asked, "agent"));

@@ -48,6 +48,10 @@ impl Proof {
     /// # Errors
     /// [`Refused`] if a value does not fit the format.
     pub fn of<S: Format>(scenario: &Scenario) -> Result<Self, Refused> {
+        S::proof(scenario)
+    }
+
+    pub(crate) fn checked<S: Format>(scenario: &Scenario) -> Result<Self, Refused> {
         let (fleet, discs, given) = Bodies::<S>::moving(scenario)?;
         let motions = fleet.motions();
         let all = Motion::span(&motions);

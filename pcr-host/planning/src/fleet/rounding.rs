@@ -36,12 +36,8 @@ impl Rounding {
 /// The largest distance from the motion in the file without a warning \[m\].
 const UNTOLD: f64 = 1e-3;
 
-/// A warning if rounding to the format moves some agents by more than 1 mm at some time. `None` for `f64`, the format of the
-/// scenario.
-///
-/// # Errors
-/// [`Refused`] if a value does not fit the number format.
-pub fn rounded<S: Format>(scenario: &Scenario) -> Result<Option<String>, Refused> {
+/// What [`super::rounded`] says.
+pub(super) fn warning<S: Format>(scenario: &Scenario) -> Result<Option<String>, Refused> {
     if S::NAME == f64::NAME {
         return Ok(None);
     }

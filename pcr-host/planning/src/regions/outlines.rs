@@ -17,32 +17,49 @@ const LOOKS: u32 = 64;
 /// Times and lengths that are one but for rounding \[s\], \[m\]: where one outline gives way to another.
 const NEAR: f64 = 1e-9;
 
-/// A region of two discs.
-struct Part<'a, S: Format> {
+/// A region of two discs in some number format.
+trait Computed {
+    /// The lengths inside, along the path of the disc; outside of the region's time those at its begin or end.
+    fn slice(&self, time: f64) -> Vec<[f64; 2]>;
+    fn pieces(&self) -> Vec<Piece>;
+}
+
+/// A region in a row of a table.
+struct InRow<'a, S: Format> {
     work: &'a Work<'a, S>,
     region: RegionRef<'a, S>,
     /// Places of the discs in the row.
     places: [usize; 2],
+}
+
+impl<S: Format> Computed for InRow<'_, S> {
+    fn slice(&self, time: f64) -> Vec<[f64; 2]> {
+        let within = self.region.time();
+        slice(&self.region, S::from_f64(time).clamp(within.lo, within.hi)).l
+    }
+
+    fn pieces(&self) -> Vec<Piece> {
+        self.work.pieces(self.places[0], self.places[1], &self.region)
+    }
+}
+
+/// A region of two discs.
+struct Part<'a> {
+    region: Box<dyn Computed + 'a>,
     /// The discs.
     discs: [&'a Disced; 2],
     /// Whether it goes on before and after the motion of the other agent.
     open: [bool; 2],
     time: [f64; 2],
     length: [f64; 2],
-    own: &'a Disced,
 }
 
-impl<S: Format> Part<'_, S> {
+impl Part<'_> {
     fn slice(&self, time: f64) -> Vec<[f64; 2]> {
         if time < self.time[0] - NEAR || time > self.time[1] + NEAR {
             return Vec::new();
         }
-        let within = self.region.time();
-        slice(&self.region, S::from_f64(time).clamp(within.lo, within.hi))
-            .l
-            .into_iter()
-            .map(|lengths| self.own.on_agent(lengths))
-            .collect()
+        self.region.slice(time).into_iter().map(|lengths| self.discs[0].on_agent(lengths)).collect()
     }
 
     /// Whether a point of both was found.
@@ -69,7 +86,7 @@ fn hull(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 
 /// The regions of an agent, from the rows of its discs, by the other agent.
 pub(super) fn regions<S: Format>(rows: &[(Work<'_, S>, usize)], discs: &[Disced], ids: &[u64]) -> Vec<Region> {
-    let mut pairs: BTreeMap<[usize; 2], Vec<Part<'_, S>>> = BTreeMap::new();
+    let mut pairs: Pairs<'_> = BTreeMap::new();
     for (work, place) in rows {
         let Some(own) = discs.get(work.in_fleet(*place)) else { continue };
         for region in work.ecm.row(work.motions, *place).expect("the table of the row") {
@@ -77,28 +94,30 @@ pub(super) fn regions<S: Format>(rows: &[(Work<'_, S>, usize)], discs: &[Disced]
             let Some(other) = other.filter(|other| other.agent != own.agent) else { continue };
             let (time, length) = (region.time(), region.length());
             let part = Part {
-                work,
-                places: [*place, region.other()],
                 discs: [own, other],
                 open: [region.is_open_at_start() && other.is_at_start(), region.is_open_at_end() && other.is_at_end()],
                 time: [time.lo.to_f64(), time.hi.to_f64()],
                 length: own.on_agent([length.lo.to_f64(), length.hi.to_f64()]),
-                own,
-                region,
+                region: Box::new(InRow { work, places: [*place, region.other()], region }),
             };
             pairs.entry([own.agent, other.agent]).or_default().push(part);
         }
     }
-    let unions = pairs.into_iter().flat_map(|([ego, other], parts)| {
-        let components = components(&parts).into_iter();
-        components.map(|parts| union([ids[ego], ids[other]], &parts)).collect::<Vec<_>>()
-    });
-    unions.collect()
+    let slices = rows.first().and_then(|(work, _)| work.slices);
+    pairs.iter().flat_map(|(&[ego, other], parts)| unions([ids[ego], ids[other]], parts, slices)).collect()
+}
+
+/// The regions of the discs, by the two agents.
+type Pairs<'a> = BTreeMap<[usize; 2], Vec<Part<'a>>>;
+
+/// The regions of two agents, in order of time, with this number of slices.
+fn unions(agents: [u64; 2], parts: &[Part<'_>], slices: Option<usize>) -> Vec<Region> {
+    components(parts).iter().map(|parts| union(agents, parts, slices)).collect()
 }
 
 /// The parts, those together that are connected.
-fn components<'p, 'a, S: Format>(parts: &'p [Part<'a, S>]) -> Vec<Vec<&'p Part<'a, S>>> {
-    let mut sorted: Vec<&Part<'a, S>> = parts.iter().collect();
+fn components<'p, 'a>(parts: &'p [Part<'a>]) -> Vec<Vec<&'p Part<'a>>> {
+    let mut sorted: Vec<&Part<'a>> = parts.iter().collect();
     sorted.sort_by(|a, b| a.time[0].total_cmp(&b.time[0]));
     let mut group: Vec<usize> = (0..sorted.len()).collect();
     fn find(group: &mut [usize], mut part: usize) -> usize {
@@ -121,18 +140,18 @@ fn components<'p, 'a, S: Format>(parts: &'p [Part<'a, S>]) -> Vec<Vec<&'p Part<'
         }
         lasting.push(place);
     }
-    let mut components: BTreeMap<usize, Vec<&Part<'a, S>>> = BTreeMap::new();
+    let mut components: BTreeMap<usize, Vec<&Part<'a>>> = BTreeMap::new();
     for (place, part) in sorted.iter().enumerate() {
         components.entry(find(&mut group, place)).or_default().push(part);
     }
     components.into_values().collect()
 }
 
-fn union<S: Format>([i, j]: [u64; 2], parts: &[&Part<'_, S>]) -> Region {
+fn union([i, j]: [u64; 2], parts: &[&Part<'_>], slices: Option<usize>) -> Region {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let t = parts.iter().fold(none, |range, part| hull(range, part.time));
     let l = parts.iter().fold(none, |range, part| hull(range, part.length));
-    let slices = parts.first().and_then(|part| part.work.slices).map(|slices| {
+    let slices = slices.map(|slices| {
         let times = (1..=slices).map(|k| t[0] + (t[1] - t[0]) * (k as f64 / (slices + 1) as f64));
         times.map(|t| Slice { t, l: merged(parts.iter().flat_map(|part| part.slice(t)).collect()) }).collect()
     });
@@ -162,11 +181,11 @@ fn merged(mut intervals: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 }
 
 /// One for each pair of segments of the agents; the crossings of their discs are none of theirs.
-fn pieces<S: Format>(parts: &[&Part<'_, S>]) -> Vec<Piece> {
+fn pieces(parts: &[&Part<'_>]) -> Vec<Piece> {
     let mut pieces: BTreeMap<[Option<usize>; 2], Piece> = BTreeMap::new();
     for part in parts {
         let [own, other] = part.discs;
-        for piece in part.work.pieces(part.places[0], part.places[1], &part.region) {
+        for piece in part.region.pieces() {
             let segment =
                 |disc: &Disced, number: Option<usize>| disc.segment(number?.checked_sub(1)?).map(|segment| segment + 1);
             let segments = [segment(own, piece.i_segment), segment(other, piece.j_segment)];

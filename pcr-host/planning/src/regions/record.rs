@@ -3,6 +3,7 @@
 use crate::fleet::{Fleet, Format, HostEcm};
 use pcr_core::{Crossing, Curve, Motion, RegionRef, Turn, crossings};
 use serde::Serialize;
+use std::cmp::Ordering;
 
 /// A collision region: what agent `i` has to keep out of because of agent `j`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -83,7 +84,30 @@ pub struct Slice {
     pub l: Vec<[f64; 2]>,
 }
 
+// Orders that are no closures of generic functions: what sorts is compiled once, not for each number format.
+
+impl Descriptor {
+    fn by_length(&self, other: &Self) -> Ordering {
+        self.length.total_cmp(&other.length)
+    }
+}
+
+impl Piece {
+    /// By the segments, then by where it begins on both paths.
+    fn by_segments(&self, other: &Self) -> Ordering {
+        let starts = |[a, b]: [[f64; 2]; 2]| a[0].total_cmp(&b[0]);
+        let segments = (self.i_segment, self.j_segment).cmp(&(other.i_segment, other.j_segment));
+        segments.then(starts([self.i_length, other.i_length])).then(starts([self.j_length, other.j_length]))
+    }
+}
+
 impl Region {
+    /// By the other agent, then by where it begins.
+    pub(super) fn by_other(&self, other: &Self) -> Ordering {
+        let starts = self.t[0].total_cmp(&other.t[0]).then(self.l[0].total_cmp(&other.l[0]));
+        self.j.cmp(&other.j).then(starts)
+    }
+
     /// Memory that it takes outside of the struct \[bytes\].
     pub(super) fn bytes(&self) -> u64 {
         /// Smallest size of an allocation; also enough for the two letters of a type.
@@ -139,7 +163,7 @@ impl<S: Format> Work<'_, S> {
             }
         }
         for piece in records.iter_mut().flat_map(|record| &mut record.pieces) {
-            piece.crossings.sort_by(|a, b| a.length.total_cmp(&b.length));
+            piece.crossings.sort_by(Descriptor::by_length);
         }
         records
     }
@@ -165,11 +189,11 @@ impl<S: Format> Work<'_, S> {
         let places = held[first..].iter().take_while(|(of, _)| *of == segments).map(|(_, place)| *place).filter(holds);
         // Regions may interlock, then the ranges of several hold the crossing, but only one contains it.
         let contains = |k: usize| pair.get(k).is_some_and(|region| region.contains(crossing.time, crossing.length));
-        let mut candidates: Vec<[usize; 2]> = places.collect();
-        if candidates.len() > 1 {
-            candidates.sort_by_key(|&[k, _]| !contains(k));
+        let candidates: Vec<[usize; 2]> = places.collect();
+        match candidates[..] {
+            [only] => Some(only),
+            _ => candidates.iter().find(|&&[k, _]| contains(k)).or(candidates.first()).copied(),
         }
-        candidates.first().copied()
     }
 
     /// The pieces of a region, without crossings.
@@ -186,10 +210,7 @@ impl<S: Format> Work<'_, S> {
             }
         });
         let mut pieces: Vec<Piece> = pieces.collect();
-        pieces.sort_by(|a, b| {
-            let starts = a.i_length[0].total_cmp(&b.i_length[0]).then(a.j_length[0].total_cmp(&b.j_length[0]));
-            (a.i_segment, a.j_segment).cmp(&(b.i_segment, b.j_segment)).then(starts)
-        });
+        pieces.sort_by(Piece::by_segments);
         pieces
     }
 

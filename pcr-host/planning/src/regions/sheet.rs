@@ -4,16 +4,23 @@
 use super::record::Work;
 use super::{Answer, Cover, Failure, Region, Request, outlines};
 use crate::bodies::Bodies;
+use crate::cores;
 use crate::fleet::Format;
 use crate::memory::Held;
 use crate::rows::{self, Grid, Row};
 use pcr_core::Motion;
 use pcr_formats::scenario::{Labels, Scenario};
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Pairs of discs whose regions are held at once: enough for all cores, and some megabytes.
 const STRETCH: u64 = 1 << 15;
+
+/// The agents that are asked for, one or all, by their numbers.
+fn asked_for(ids: &[u64], agent: Option<u64>) -> Vec<usize> {
+    let mut egos: Vec<usize> = (0..ids.len()).filter(|&ego| agent.is_none_or(|it| ids[ego] == it)).collect();
+    egos.sort_by_key(|&ego| ids[ego]);
+    egos
+}
 
 /// Reports progress: examined pairs, and all pairs.
 pub type Told<'t> = &'t dyn Fn(usize, usize);
@@ -50,9 +57,7 @@ impl<'s, S: Format> Sheet<'s, S> {
                 *own = if own.start < own.end { own.start..place + 1 } else { place..place + 1 };
             }
         }
-        let mut egos: Vec<usize> =
-            (0..ids.len()).filter(|&ego| request.agent.is_none_or(|it| ids[ego] == it)).collect();
-        egos.sort_by_key(|&ego| ids[ego]);
+        let egos = asked_for(&ids, request.agent);
         let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty());
         Ok(Self { scenario, request, labels: Labels::of(scenario), bodies, ids, discs, egos, outlined })
     }
@@ -96,9 +101,8 @@ impl<'s, S: Format> Sheet<'s, S> {
                 before < STRETCH
             };
             let (stretch, after) = rest.split_at(rest.iter().take_while(more).count());
-            let rows = stretch.par_iter().map(|&ego| self.row(&motions, &grid, ego).map(&make));
-            for row in rows.collect::<Result<Vec<T>, Failure>>()? {
-                take(row)?;
+            for row in cores::made(0..stretch.len(), &|k| S::regions(self, &motions, &grid, stretch[k]).map(&make)) {
+                take(row?)?;
             }
             done += stretch.iter().map(|&ego| work(ego) as usize).sum::<usize>();
             told(done, total);
@@ -108,7 +112,7 @@ impl<'s, S: Format> Sheet<'s, S> {
     }
 
     /// The regions of one agent.
-    fn row(&self, motions: &[Motion<'_, S>], grid: &Grid, ego: usize) -> Result<Vec<Region>, Failure> {
+    pub(crate) fn regions(&self, motions: &[Motion<'_, S>], grid: &Grid, ego: usize) -> Result<Vec<Region>, Failure> {
         let mut near = Vec::new();
         let rows = self.discs[ego].clone().map(|disc| {
             grid.around(disc, &mut near);
@@ -126,10 +130,7 @@ impl<'s, S: Format> Sheet<'s, S> {
             [(work, place)] if !self.outlined => work.row(*place),
             works => outlines::regions(works, &self.bodies.discs, &self.ids),
         };
-        regions.sort_by(|a, b| {
-            let starts = a.t[0].total_cmp(&b.t[0]).then(a.l[0].total_cmp(&b.l[0]));
-            a.j.cmp(&b.j).then(starts)
-        });
+        regions.sort_by(Region::by_other);
         Ok(regions)
     }
 
@@ -138,7 +139,7 @@ impl<'s, S: Format> Sheet<'s, S> {
     /// # Errors
     /// [`Failure`] where a value does not fit the format.
     pub fn head(&self) -> Result<Answer, Failure> {
-        let certificate = || super::table_of::<S>(self.scenario);
+        let certificate = || S::certificate(self.scenario);
         let agents = self.scenario.agents.iter().zip(&self.discs);
         Ok(Answer {
             name: self.scenario.name.clone(),

@@ -14,6 +14,10 @@ use pcr_formats::scenario::Scenario;
 /// # Errors
 /// [`Failure`] where a value does not fit the format.
 pub fn table_of<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
+    S::certificate(scenario)
+}
+
+pub(crate) fn certified<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
     let Bodies { scenario: discs, fleet, discs: owners } = Bodies::<S>::new(scenario)?;
     let motions = fleet.motions();
     let ids: Vec<u64> = owners.iter().map(|disc| scenario.agents[disc.agent].id).collect();

@@ -13,7 +13,7 @@ pub const CERTIFIED_CSV_HEADER: &str = "name,verdict,promise,i,j,l_i,l_j,clearan
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn certified_csv(certified: &Certified, out: &mut impl Write) -> io::Result<()> {
+pub fn certified_csv(certified: &Certified, out: &mut dyn Write) -> io::Result<()> {
     let name = quoted(&certified.name);
     for (verdict, points) in [("refuted", &certified.refuted), ("undecided", &certified.undecided)] {
         for point in points {
@@ -34,7 +34,7 @@ pub fn certified_csv(certified: &Certified, out: &mut impl Write) -> io::Result<
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn certified_table(certified: &Certified, out: &mut impl Write) -> io::Result<()> {
+pub fn certified_table(certified: &Certified, out: &mut dyn Write) -> io::Result<()> {
     let name = heading(&certified.name);
     if let Some(error) = &certified.error {
         return writeln!(out, "{name}: {error}");

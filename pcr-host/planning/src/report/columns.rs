@@ -34,7 +34,7 @@ impl Columns {
     ///
     /// # Errors
     /// Errors of the writer.
-    pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
+    pub fn write(&self, out: &mut dyn Write) -> io::Result<()> {
         for row in &self.rows {
             let mut line = String::new();
             for ((cell, &width), &left) in row.iter().zip(&self.widths).zip(&self.left) {
@@ -52,7 +52,7 @@ impl Columns {
     ///
     /// # Errors
     /// Errors of the writer.
-    pub fn write_markdown(&self, out: &mut impl Write) -> io::Result<()> {
+    pub fn write_markdown(&self, out: &mut dyn Write) -> io::Result<()> {
         for (k, row) in self.rows.iter().enumerate() {
             writeln!(out, "| {} |", row.join(" | "))?;
             if k == 0 {

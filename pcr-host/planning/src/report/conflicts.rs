@@ -14,7 +14,7 @@ pub const CONFLICTS_CSV_HEADER: &str = "name,i,j,t_a,t_b,depth,l_i_a,l_i_b,l_j_a
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn conflicts_csv(verdict: &Verdict, out: &mut impl Write) -> io::Result<()> {
+pub fn conflicts_csv(verdict: &Verdict, out: &mut dyn Write) -> io::Result<()> {
     let name = quoted(&verdict.name);
     for conflict in &verdict.conflicts {
         let Conflict { i, j, t: [t_a, t_b], depth, l_i: [l_i_a, l_i_b], l_j: [l_j_a, l_j_b], .. } = conflict;
@@ -29,7 +29,7 @@ pub fn conflicts_csv(verdict: &Verdict, out: &mut impl Write) -> io::Result<()> 
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn conflicts_table(verdict: &Verdict, out: &mut impl Write) -> io::Result<()> {
+pub fn conflicts_table(verdict: &Verdict, out: &mut dyn Write) -> io::Result<()> {
     let name = heading(&verdict.name);
     match verdict.conflicts.len() {
         0 => match verdict.agents {

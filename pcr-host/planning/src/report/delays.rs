@@ -119,7 +119,7 @@ impl DelayTable {
 ///
 /// # Errors
 /// Errors of the writer, and of [`Delays::each`].
-pub fn delays_csv(delays: &Delays, told: Told<'_>, out: &mut impl Write) -> Result<(), LocksUnprinted> {
+pub fn delays_csv(delays: &Delays, told: Told<'_>, out: &mut dyn Write) -> Result<(), LocksUnprinted> {
     out.write_all(DELAYS_HEADER.as_bytes())?;
     let direction = |backward| if backward { "backward" } else { "forward" };
     let way = |way: &crate::locks::Way| format!("{},{}", quoted(&way.edge.to_string()), direction(way.backward));
@@ -165,7 +165,7 @@ pub fn delays_lines(
     driving: Driving,
     delays: &Delays,
     told: Told<'_>,
-    out: &mut impl Write,
+    out: &mut dyn Write,
 ) -> Result<(), LocksUnprinted> {
     json(&Head { layout: &head.layout, vehicle: &head.vehicle, driving, warnings: &head.warnings }, out)?;
     let names = |ids: &mut dyn Iterator<Item = &Id>| {
@@ -213,7 +213,7 @@ fn range([from, to]: [f64; 2]) -> [String; 2] {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn delays_table(table: &DelayTable, out: &mut impl Write) -> io::Result<()> {
+pub fn delays_table(table: &DelayTable, out: &mut dyn Write) -> io::Result<()> {
     let name = if table.layout.is_empty() { "layout" } else { &table.layout };
     let (count, Driving { speed, acceleration }) = (table.delays.len(), table.driving);
     let how = match acceleration {

@@ -38,7 +38,7 @@ impl From<io::Error> for LocksUnprinted {
 ///
 /// # Errors
 /// Errors of the writer, and of [`Sweep::each`].
-pub fn locks_csv(sweep: &Sweep, told: Told<'_>, out: &mut impl Write) -> Result<(), LocksUnprinted> {
+pub fn locks_csv(sweep: &Sweep, told: Told<'_>, out: &mut dyn Write) -> Result<(), LocksUnprinted> {
     out.write_all(LOCKS_HEADER.as_bytes())?;
     let name = |(place, id): (usize, &Id)| {
         let kind = if sweep.is_edge(place) { "" } else { "node " };
@@ -63,7 +63,7 @@ pub fn locks_csv(sweep: &Sweep, told: Told<'_>, out: &mut impl Write) -> Result<
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn kept_locks_csv(locks: &Locks, out: &mut impl Write) -> io::Result<()> {
+pub fn kept_locks_csv(locks: &Locks, out: &mut dyn Write) -> io::Result<()> {
     out.write_all(LOCKS_HEADER.as_bytes())?;
     let name = |id: &Id| quoted(&id.to_string()).into_owned();
     let node = |id: &Id| quoted(&format!("node {id}")).into_owned();
@@ -111,7 +111,7 @@ impl Document for Head<'_> {
 ///
 /// # Errors
 /// As [`locks_csv`].
-pub fn locks_lines(head: &Locks, sweep: &Sweep, told: Told<'_>, out: &mut impl Write) -> Result<(), LocksUnprinted> {
+pub fn locks_lines(head: &Locks, sweep: &Sweep, told: Told<'_>, out: &mut dyn Write) -> Result<(), LocksUnprinted> {
     json(&Head { layout: &head.layout, vehicle: &head.vehicle, warnings: &head.warnings }, out)?;
     let names: Vec<String> =
         sweep.ids().iter().map(serde_json::to_string).collect::<Result<_, _>>().map_err(io::Error::from)?;
@@ -169,7 +169,7 @@ pub const EDGE_HEADER: &str = "edge,other,from,to,other_from,other_to\n";
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn edge_csv(locks: &EdgeLocks, out: &mut impl Write) -> io::Result<()> {
+pub fn edge_csv(locks: &EdgeLocks, out: &mut dyn Write) -> io::Result<()> {
     out.write_all(EDGE_HEADER.as_bytes())?;
     let edge = quoted(&locks.edge);
     for Partner { name, node, own: [from, to], other: [other_from, other_to] } in &locks.partners {
@@ -183,7 +183,7 @@ pub fn edge_csv(locks: &EdgeLocks, out: &mut impl Write) -> io::Result<()> {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn edge_table(locks: &EdgeLocks, out: &mut impl Write) -> io::Result<()> {
+pub fn edge_table(locks: &EdgeLocks, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "{}: {}", printable(&locks.edge), counted(locks.partners.len(), "lock"))?;
     let mut columns = Columns::new(&["<other", "from [m]", "to", "other from [m]", "to"]);
     for Partner { name, node, own, other } in &locks.partners {
@@ -204,7 +204,7 @@ fn range([from, to]: [f64; 2]) -> [String; 2] {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn locks_table(locks: &Locks, out: &mut impl Write) -> io::Result<()> {
+pub fn locks_table(locks: &Locks, out: &mut dyn Write) -> io::Result<()> {
     let name = if locks.layout.is_empty() { "layout" } else { &locks.layout };
     let mut pairs: Vec<_> = locks.locks.iter().map(|lock| (&lock.a, &lock.b)).collect();
     pairs.dedup();

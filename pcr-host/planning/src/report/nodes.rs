@@ -10,7 +10,7 @@ use std::io::{self, Write};
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn nodes_csv(listing: &Listing<'_>, out: &mut impl Write) -> io::Result<()> {
+pub fn nodes_csv(listing: &Listing<'_>, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "kind,id,names,level,x,y,from,to,length,two_way,speed,speed_back,closed,backward")?;
     let text = |text: &dyn ToString| quoted(&text.to_string()).into_owned();
     for node in &listing.nodes {
@@ -31,7 +31,7 @@ pub fn nodes_csv(listing: &Listing<'_>, out: &mut impl Write) -> io::Result<()> 
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn nodes_table(listing: &Listing<'_>, out: &mut impl Write) -> io::Result<()> {
+pub fn nodes_table(listing: &Listing<'_>, out: &mut dyn Write) -> io::Result<()> {
     let (nodes, edges) = (counted(listing.nodes.len(), "node"), counted(listing.edges.len(), "edge"));
     writeln!(out, "{}: {nodes}, {edges}", heading(listing.layout))?;
     let lists = [("levels", listing.levels), ("vehicle types", listing.vehicle_types), ("vehicles", listing.vehicles)];

@@ -12,7 +12,7 @@ use std::time::Duration;
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn overview(scenario: &Scenario, answer: &Answer, took: Duration, out: &mut impl Write) -> io::Result<()> {
+pub fn overview(scenario: &Scenario, answer: &Answer, took: Duration, out: &mut dyn Write) -> io::Result<()> {
     let crossings = numbered(&answer.regions);
     table_v(scenario, answer, &crossings, out)?;
     writeln!(out)?;
@@ -22,7 +22,7 @@ pub fn overview(scenario: &Scenario, answer: &Answer, took: Duration, out: &mut 
     writeln!(out, "\nAll {regions} regions computed in {milliseconds:.3} ms (one run, one core, {}).", answer.scalar)
 }
 
-fn table_v(scenario: &Scenario, answer: &Answer, crossings: &[Numbered<'_>], out: &mut impl Write) -> io::Result<()> {
+fn table_v(scenario: &Scenario, answer: &Answer, crossings: &[Numbered<'_>], out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "Table V: the paper counts crossings of the paths; discs also collide where paths only come near,")?;
     writeln!(out, "and crossings that are close share a region, so the connected regions are counted apart.")?;
     let mut columns =
@@ -49,7 +49,7 @@ fn table_v(scenario: &Scenario, answer: &Answer, crossings: &[Numbered<'_>], out
     columns.write(out)
 }
 
-fn table_vii(crossings: &[Numbered<'_>], out: &mut impl Write) -> io::Result<()> {
+fn table_vii(crossings: &[Numbered<'_>], out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,
         "Table VII: the crossings of agent {TABLE_VII_AGENT}; under each title ours, then as the paper prints it"

@@ -18,7 +18,7 @@ pub const PLAN_CSV_HEADER: &str = "name,id,delay,t_end,label\n";
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn plan_csv(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
+pub fn plan_csv(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
     let name = quoted(&plan.name);
     for agent in &plan.agents {
         writeln!(out, "{name},{},{},{},{}", agent.id, agent.delay, agent.t_end, quoted(plan.labels.get(agent.id)))?;
@@ -30,7 +30,7 @@ pub fn plan_csv(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn plan_table(plan: &Plan, out: &mut impl Write) -> io::Result<()> {
+pub fn plan_table(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
     let name = heading(&plan.name);
     let left_out = all_called(&plan.labels, &plan.left_out);
     match (plan.costs, plan.left_out.is_empty()) {

@@ -31,7 +31,7 @@ impl From<io::Error> for Unprinted {
 ///
 /// # Errors
 /// Errors of the writer, and [`Failure`]: then some lines are printed already.
-pub fn sheet_csv<S: Format>(sheet: &Sheet<'_, S>, told: Told<'_>, out: &mut impl Write) -> Result<(), Unprinted> {
+pub fn sheet_csv<S: Format>(sheet: &Sheet<'_, S>, told: Told<'_>, out: &mut dyn Write) -> Result<(), Unprinted> {
     let head = sheet.head()?;
     for margin in [false].into_iter().chain(head.margin_regions.is_some().then_some(true)) {
         let lines = |row: Vec<Region>| {
@@ -47,7 +47,7 @@ pub fn sheet_csv<S: Format>(sheet: &Sheet<'_, S>, told: Told<'_>, out: &mut impl
 ///
 /// # Errors
 /// As [`sheet_csv`]; the line then has no end.
-pub fn sheet_json<S: Format>(sheet: &Sheet<'_, S>, told: Told<'_>, out: &mut impl Write) -> Result<(), Unprinted> {
+pub fn sheet_json<S: Format>(sheet: &Sheet<'_, S>, told: Told<'_>, out: &mut dyn Write) -> Result<(), Unprinted> {
     let mut text = Vec::new();
     json(&sheet.head()?, &mut text)?;
     let mut rest = String::from_utf8(text).map_err(io::Error::other)?;

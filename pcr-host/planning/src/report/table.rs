@@ -59,7 +59,7 @@ pub(super) fn arc(sigma: Option<f64>, dir: Option<i8>) -> String {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn table(answer: &Answer, out: &mut impl Write) -> io::Result<()> {
+pub fn table(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     let all = numbered(&answer.regions);
     let name = heading(&answer.name);
     let (regions, crossings) = (counted(answer.regions.len(), "collision region"), counted(all.len(), "crossing"));
@@ -113,7 +113,7 @@ fn extents(
     regions: &[Region],
     all: &[Numbered<'_>],
     title: &str,
-    out: &mut impl Write,
+    out: &mut dyn Write,
 ) -> io::Result<()> {
     if regions.is_empty() {
         return Ok(());
