@@ -2,6 +2,7 @@
 
 mod commands;
 mod progress;
+mod stderr;
 
 use commands::{Stop, complain};
 use std::process::ExitCode;

@@ -1,5 +1,6 @@
 //! The format of printed answers, and where they are printed.
 
+use crate::stderr::Stderr;
 use clap::{Args, ValueEnum};
 use pcr_formats::scenario::printable;
 use std::io::{self, BufWriter, Write};
@@ -79,13 +80,13 @@ pub(super) fn stdout() -> impl Write {
     Read::of(io::stdout().lock())
 }
 
-fn stderr() -> impl Write {
-    Read::of(io::stderr().lock())
+fn stderr() -> Read<Stderr> {
+    Read::of(Stderr)
 }
 
 /// A message on standard error, a line whatever is in it. Where that is closed, the exit status has to do.
 pub(crate) fn complain(message: &str) {
-    let _ = writeln!(io::stderr(), "pcr: {}", printable(message));
+    let _ = writeln!(Stderr, "pcr: {}", printable(message));
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
