@@ -118,7 +118,7 @@ impl<S: Format> Bodies<S> {
         S::bodies(scenario)
     }
 
-    pub(crate) fn covered(scenario: &Scenario) -> Result<Self, Refused> {
+    pub(crate) fn generic(scenario: &Scenario) -> Result<Self, Refused> {
         let mut bodies = (Vec::new(), Vec::new());
         for (place, agent) in scenario.agents.iter().enumerate() {
             discs::<S, _>(agent, place, &mut bodies, rounded::<S>)?;

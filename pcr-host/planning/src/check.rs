@@ -99,7 +99,7 @@ impl Verdict {
         S::verdict(scenario, closest, told)
     }
 
-    pub(crate) fn found<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
+    pub(crate) fn generic<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
         let (fleet, discs, _) = Bodies::<S>::moving(scenario)?;
         Self::between(scenario, &discs, &fleet.motions(), closest, told)
     }
@@ -109,10 +109,10 @@ impl Verdict {
     /// # Errors
     /// [`Failure`] where a value does not fit the format.
     pub fn any<S: Format>(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure> {
-        S::has_conflict(scenario, told)
+        S::any(scenario, told)
     }
 
-    pub(crate) fn has_any<S: Format>(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure> {
+    pub(crate) fn any_generic<S: Format>(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure> {
         let (fleet, discs, _) = Bodies::<S>::moving(scenario)?;
         let motions = fleet.motions();
         let pairs = Pairs::new(scenario, &discs, &motions);

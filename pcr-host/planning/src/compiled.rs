@@ -1,66 +1,106 @@
-//! What takes long to compile, once for each number format.
+//! What is large, compiled once for each number format.
 //!
-//! A generic function is compiled again in every crate that calls it. So the largest ones are methods of [`Format`](crate::fleet::Format)
-//! that are not generic, because each format has its own; this macro writes them. The public functions call these methods.
+//! A generic function is compiled again in every crate that calls it. The functions here are not generic: every format has its own,
+//! which calls the generic one. The public functions of the same names call these.
+
+use crate::bodies::Bodies;
+use crate::certify::Proof;
+use crate::check::Verdict;
+use crate::fleet::{Fleet, Format, HostEcm, HostOrders, Refused, rounding};
+use crate::regions::{Failure, Region, Sheet, Told, tables};
+use crate::rows::Grid;
+use pcr_certify::data::Table;
+#[cfg(feature = "micromath")]
+use pcr_core::scalar::Micro;
+use pcr_core::{Ecm, Full, Motion, Orders, TableError};
+use pcr_fixed::{Q12, Q16, Q20};
+use pcr_formats::scenario::Scenario;
+
+/// The functions of a number format.
+pub trait Compiled: Sized {
+    fn fleet(scenario: &Scenario) -> Result<Fleet<Self>, Refused>
+    where
+        Self: Format;
+    fn bodies(scenario: &Scenario) -> Result<Bodies<Self>, Refused>
+    where
+        Self: Format;
+    fn rounded(scenario: &Scenario) -> Result<Option<String>, Refused>;
+    fn table(motions: &[Motion<'_, Self>]) -> Result<HostEcm<Self>, Full>
+    where
+        Self: Format;
+    fn orders(motions: &[Motion<'_, Self>]) -> Result<HostOrders<Self>, Full>
+    where
+        Self: Format;
+    fn row(table: &mut HostEcm<Self>, motions: &[Motion<'_, Self>], ego: usize) -> Result<(), TableError>
+    where
+        Self: Format;
+    /// The regions of one agent of a sheet.
+    fn regions(
+        sheet: &Sheet<'_, Self>,
+        motions: &[Motion<'_, Self>],
+        grid: &Grid,
+        ego: usize,
+    ) -> Result<Vec<Region>, Failure>
+    where
+        Self: Format;
+    fn verdict(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Verdict, Failure>;
+    fn any(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure>;
+    fn proof(scenario: &Scenario) -> Result<Proof, Refused>;
+    fn certificate(scenario: &Scenario) -> Result<Vec<Table>, Failure>;
+}
 
 macro_rules! compiled {
-    () => {
-        fn fleet(
-            scenario: &pcr_formats::scenario::Scenario,
-        ) -> Result<$crate::fleet::Fleet<Self>, $crate::fleet::Refused> {
-            $crate::fleet::Fleet::converted(scenario)
-        }
-        fn bodies(
-            scenario: &pcr_formats::scenario::Scenario,
-        ) -> Result<$crate::bodies::Bodies<Self>, $crate::fleet::Refused> {
-            $crate::bodies::Bodies::covered(scenario)
-        }
-        fn rounded(scenario: &pcr_formats::scenario::Scenario) -> Result<Option<String>, $crate::fleet::Refused> {
-            $crate::fleet::rounding::warning::<Self>(scenario)
-        }
-        fn table(motions: &[pcr_core::Motion<'_, Self>]) -> Result<$crate::fleet::HostEcm<Self>, pcr_core::Full> {
-            pcr_core::Ecm::grown(motions)
-        }
-        fn orders(motions: &[pcr_core::Motion<'_, Self>]) -> Result<$crate::fleet::HostOrders<Self>, pcr_core::Full> {
-            pcr_core::Orders::grown(motions)
-        }
-        fn row(
-            table: &mut $crate::fleet::HostEcm<Self>,
-            motions: &[pcr_core::Motion<'_, Self>],
-            ego: usize,
-        ) -> Result<(), pcr_core::TableError> {
-            table.fill_row(motions, ego)
-        }
-        fn regions(
-            sheet: &$crate::regions::Sheet<'_, Self>,
-            motions: &[pcr_core::Motion<'_, Self>],
-            grid: &$crate::rows::Grid,
-            ego: usize,
-        ) -> Result<Vec<$crate::regions::Region>, $crate::regions::Failure> {
-            sheet.regions(motions, grid, ego)
-        }
-        fn verdict(
-            scenario: &pcr_formats::scenario::Scenario,
-            closest: bool,
-            told: $crate::regions::Told<'_>,
-        ) -> Result<$crate::check::Verdict, $crate::regions::Failure> {
-            $crate::check::Verdict::found::<Self>(scenario, closest, told)
-        }
-        fn has_conflict(
-            scenario: &pcr_formats::scenario::Scenario,
-            told: $crate::regions::Told<'_>,
-        ) -> Result<bool, $crate::regions::Failure> {
-            $crate::check::Verdict::has_any::<Self>(scenario, told)
-        }
-        fn proof(scenario: &pcr_formats::scenario::Scenario) -> Result<$crate::certify::Proof, $crate::fleet::Refused> {
-            $crate::certify::Proof::checked::<Self>(scenario)
-        }
-        fn certificate(
-            scenario: &pcr_formats::scenario::Scenario,
-        ) -> Result<Vec<pcr_certify::data::Table>, $crate::regions::Failure> {
-            $crate::regions::certified::<Self>(scenario)
-        }
+    ($($(#[$attribute:meta])* $format:ty),+) => {
+        $($(#[$attribute])*
+        impl Compiled for $format {
+            fn fleet(scenario: &Scenario) -> Result<Fleet<Self>, Refused> {
+                Fleet::generic(scenario)
+            }
+            fn bodies(scenario: &Scenario) -> Result<Bodies<Self>, Refused> {
+                Bodies::generic(scenario)
+            }
+            fn rounded(scenario: &Scenario) -> Result<Option<String>, Refused> {
+                rounding::generic::<Self>(scenario)
+            }
+            fn table(motions: &[Motion<'_, Self>]) -> Result<HostEcm<Self>, Full> {
+                Ecm::grown(motions)
+            }
+            fn orders(motions: &[Motion<'_, Self>]) -> Result<HostOrders<Self>, Full> {
+                Orders::grown(motions)
+            }
+            fn row(table: &mut HostEcm<Self>, motions: &[Motion<'_, Self>], ego: usize) -> Result<(), TableError> {
+                table.fill_row(motions, ego)
+            }
+            fn regions(
+                sheet: &Sheet<'_, Self>,
+                motions: &[Motion<'_, Self>],
+                grid: &Grid,
+                ego: usize,
+            ) -> Result<Vec<Region>, Failure> {
+                sheet.regions(motions, grid, ego)
+            }
+            fn verdict(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Verdict, Failure> {
+                Verdict::generic::<Self>(scenario, closest, told)
+            }
+            fn any(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure> {
+                Verdict::any_generic::<Self>(scenario, told)
+            }
+            fn proof(scenario: &Scenario) -> Result<Proof, Refused> {
+                Proof::generic::<Self>(scenario)
+            }
+            fn certificate(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
+                tables::generic::<Self>(scenario)
+            }
+        })+
     };
 }
 
-pub(crate) use compiled;
+compiled!(
+    f64,
+    f32,
+    #[cfg(feature = "micromath")]
+    Micro,
+    Q12,
+    Q16,
+    Q20
+);

@@ -1,7 +1,4 @@
-//! Work on all cores.
-//!
-//! What is made is told by a reference, so that this is compiled once for each type of a result, and not for each caller and number
-//! format.
+//! Work on all cores. The work is given as `dyn Fn`, so that this is compiled once for each type of result, not for each caller.
 
 use rayon::prelude::*;
 use std::ops::Range;

@@ -3,19 +3,14 @@
 mod fixed;
 #[cfg(feature = "micromath")]
 mod micro;
-mod rounding;
+pub(crate) mod rounding;
 pub mod speed;
 #[cfg(test)]
 mod tests;
 
-use crate::bodies::Bodies;
-use crate::certify::Proof;
-use crate::check::Verdict;
-use crate::compiled::compiled;
+use crate::compiled::Compiled;
 use crate::memory;
-use crate::regions::{self, Failure, Sheet, Told};
-use crate::rows::Grid;
-use pcr_certify::data::{Angle, Table};
+use pcr_certify::data::Angle;
 use pcr_core::{
     Ecm, Full, Invalid, Limits, Motion, Order, Orders, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef,
     Radians, Region, Scalar, Segment, TableError, Turn,
@@ -37,7 +32,7 @@ fn in_angles(radians: f64) -> Option<f64> {
 }
 
 /// A number format that scenario files can be read into.
-pub trait Format: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
+pub trait Format: Compiled + Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
     /// Name on the command line and in the output.
     const NAME: &'static str;
     /// The nearest number of the format.
@@ -59,45 +54,6 @@ pub trait Format: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
     const EPSILON: f64;
     /// The last digit of a fixed-point format, of which all numbers are multiples; 0 in floating point.
     const STEP: f64 = 0.0;
-
-    /// [`Fleet::new`].
-    #[doc(hidden)]
-    fn fleet(scenario: &Scenario) -> Result<Fleet<Self>, Refused>;
-    /// [`Bodies::new`].
-    #[doc(hidden)]
-    fn bodies(scenario: &Scenario) -> Result<Bodies<Self>, Refused>;
-    /// [`rounded`].
-    #[doc(hidden)]
-    fn rounded(scenario: &Scenario) -> Result<Option<String>, Refused>;
-    /// [`build_ecm`].
-    #[doc(hidden)]
-    fn table(motions: &[Motion<'_, Self>]) -> Result<HostEcm<Self>, Full>;
-    /// [`build_orders`].
-    #[doc(hidden)]
-    fn orders(motions: &[Motion<'_, Self>]) -> Result<HostOrders<Self>, Full>;
-    /// [`Ecm::fill_row`].
-    #[doc(hidden)]
-    fn row(table: &mut HostEcm<Self>, motions: &[Motion<'_, Self>], ego: usize) -> Result<(), TableError>;
-    /// The regions of one agent of a [`Sheet`].
-    #[doc(hidden)]
-    fn regions(
-        sheet: &Sheet<'_, Self>,
-        motions: &[Motion<'_, Self>],
-        grid: &Grid,
-        ego: usize,
-    ) -> Result<Vec<regions::Region>, Failure>;
-    /// [`Verdict::watched`].
-    #[doc(hidden)]
-    fn verdict(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Verdict, Failure>;
-    /// [`Verdict::any`].
-    #[doc(hidden)]
-    fn has_conflict(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure>;
-    /// [`Proof::of`].
-    #[doc(hidden)]
-    fn proof(scenario: &Scenario) -> Result<Proof, Refused>;
-    /// [`regions::table_of`].
-    #[doc(hidden)]
-    fn certificate(scenario: &Scenario) -> Result<Vec<Table>, Failure>;
 }
 
 impl Format for f64 {
@@ -116,7 +72,6 @@ impl Format for f64 {
     fn radians(angle: Radians<f64>) -> f64 {
         angle.0
     }
-    compiled!();
 }
 
 impl Format for f32 {
@@ -137,7 +92,6 @@ impl Format for f32 {
     fn radians(angle: Radians<f32>) -> f64 {
         f64::from(angle.0)
     }
-    compiled!();
 }
 
 /// The reason why an agent of a scenario does not fit a number format: agent, segment, field, value, and the allowed range.
@@ -241,7 +195,7 @@ impl<S: Format> Fleet<S> {
         S::fleet(scenario)
     }
 
-    fn converted(scenario: &Scenario) -> Result<Self, Refused> {
+    pub(crate) fn generic(scenario: &Scenario) -> Result<Self, Refused> {
         let agents = scenario.agents.iter().map(|agent| {
             let refused = |(part, problem)| Refused { agent: agent.called(), part, format: S::NAME, problem };
             Parts::new(agent).map_err(refused)

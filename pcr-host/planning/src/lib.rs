@@ -11,8 +11,8 @@
 //! locks        which edges of a layout exclude one another         Locks
 //! memory       refuses what does not fit into memory               TooLarge
 //! checksum     checksums of files that are read in parts
-//! compiled     what is compiled once for each number format
 //! cores        work on all cores
+//! compiled     what is large, compiled once for each number format
 //! nodes        nodes and edges of a layout                         Listing
 //! plan         delays without conflicts                            Plan
 //! queue        the conflicts of a fleet while its motions change   Queue

@@ -6,7 +6,7 @@
 mod outlines;
 mod record;
 mod sheet;
-mod tables;
+pub(crate) mod tables;
 
 use crate::bodies::Disced;
 use crate::certificate::Misread;
@@ -20,7 +20,6 @@ pub use record::{Descriptor, Piece, Region, Slice};
 use serde::Serialize;
 pub use sheet::{Sheet, Told};
 use std::fmt;
-pub(crate) use tables::certified;
 pub use tables::table_of;
 
 /// Regions of one scenario, or why there are none.

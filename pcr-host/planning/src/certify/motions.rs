@@ -51,7 +51,7 @@ impl Proof {
         S::proof(scenario)
     }
 
-    pub(crate) fn checked<S: Format>(scenario: &Scenario) -> Result<Self, Refused> {
+    pub(crate) fn generic<S: Format>(scenario: &Scenario) -> Result<Self, Refused> {
         let (fleet, discs, given) = Bodies::<S>::moving(scenario)?;
         let motions = fleet.motions();
         let all = Motion::span(&motions);

@@ -1,7 +1,6 @@
 //! Fixed point as a format of the tool.
 
 use super::{Format, in_angles};
-use crate::compiled::compiled;
 use pcr_certify::data::Angle;
 use pcr_fixed::{Q12, Q16, Q20, Turns};
 
@@ -29,7 +28,6 @@ macro_rules! impl_format {
             fn held_angle(angle: Turns) -> Angle {
                 Angle::Turns(f64::from(angle.to_bits()) / 4_294_967_296.0)
             }
-            compiled!();
         }
     };
 }

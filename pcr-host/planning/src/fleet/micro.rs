@@ -1,7 +1,6 @@
 //! Scenarios in [`Micro`], for the tests of that number type.
 
 use super::Format;
-use crate::compiled::compiled;
 use pcr_core::Radians;
 use pcr_core::scalar::Micro;
 
@@ -21,5 +20,4 @@ impl Format for Micro {
     fn radians(angle: Radians<Self>) -> f64 {
         angle.0.to_f64()
     }
-    compiled!();
 }

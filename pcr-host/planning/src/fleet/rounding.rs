@@ -37,7 +37,7 @@ impl Rounding {
 const UNTOLD: f64 = 1e-3;
 
 /// What [`super::rounded`] says.
-pub(super) fn warning<S: Format>(scenario: &Scenario) -> Result<Option<String>, Refused> {
+pub(crate) fn generic<S: Format>(scenario: &Scenario) -> Result<Option<String>, Refused> {
     if S::NAME == f64::NAME {
         return Ok(None);
     }

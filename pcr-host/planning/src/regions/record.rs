@@ -84,7 +84,7 @@ pub struct Slice {
     pub l: Vec<[f64; 2]>,
 }
 
-// Orders that are no closures of generic functions: what sorts is compiled once, not for each number format.
+// Comparisons are methods and not closures, so that sorting is compiled once and not for each number format.
 
 impl Descriptor {
     fn by_length(&self, other: &Self) -> Ordering {

@@ -17,7 +17,7 @@ pub fn table_of<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
     S::certificate(scenario)
 }
 
-pub(crate) fn certified<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
+pub(crate) fn generic<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
     let Bodies { scenario: discs, fleet, discs: owners } = Bodies::<S>::new(scenario)?;
     let motions = fleet.motions();
     let ids: Vec<u64> = owners.iter().map(|disc| scenario.agents[disc.agent].id).collect();
