@@ -94,7 +94,7 @@ pub struct Storage<S: Scalar> {
     pub pieces: Vec<Piece<S>>,
 }
 
-impl<S: Scalar> Storage<S> {
+impl<S: Format> Storage<S> {
     /// As large as the table of this fleet.
     ///
     /// # Panics
