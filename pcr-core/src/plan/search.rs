@@ -289,3 +289,33 @@ fn stand<S: Scalar>(times: &mut Times<S>, least: S, blocked: &Times<S>) {
         times.add(Interval::new(arrival.lo, arrival.hi.max(until)));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn set(intervals: &[[f64; 2]]) -> Times<f64> {
+        let mut times = Times::NONE;
+        intervals.iter().for_each(|&[lo, hi]| times.add(Interval::new(lo, hi)));
+        times
+    }
+
+    fn stood(arrivals: [f64; 2], least: f64, blocked: &[[f64; 2]]) -> heapless::Vec<[f64; 2], 8> {
+        let mut times = set(&[arrivals]);
+        stand(&mut times, least, &set(blocked));
+        times.iter().map(|interval| [interval.lo, interval.hi]).collect()
+    }
+
+    #[test]
+    fn nobody_stands_where_it_is_hit_meanwhile() {
+        const END: f64 = f64::LIMIT;
+        // It stands for 2 s before the block, or after it.
+        assert_eq!(stood([0.0, 10.0], 2.0, &[[5.0, 6.0]])[..], [[2.0, 5.0], [8.0, END]]);
+        // There is too little time between two blocks.
+        assert_eq!(stood([0.0, 10.0], 2.0, &[[5.0, 6.0], [7.5, 9.0]])[..], [[2.0, 5.0], [11.0, END]]);
+        // It may go on at once, or wait until the block begins.
+        assert_eq!(stood([0.0, 3.0], 0.0, &[[5.0, 6.0]])[..], [[0.0, 5.0]]);
+        // There is no time at all.
+        assert_eq!(stood([0.0, 3.0], 2.0, &[[0.0, 20.0]])[..], [[0.0; 2]; 0]);
+    }
+}
