@@ -52,7 +52,7 @@ pub(super) struct Fit {
     pub(super) longer: f64,
     /// Bound of the difference of both headings at the same length \[rad\].
     pub(super) turned: f64,
-    /// Whether another tolerance could have given other lines and arcs.
+    /// Whether it is more than a line, or than lines with corners between them.
     pub(super) bends: bool,
 }
 

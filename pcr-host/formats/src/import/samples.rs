@@ -6,7 +6,7 @@
 
 use super::biarc::{Along, Fit, Part, ROUNDINGS, biarc, distance, is_beyond};
 use super::nurbs::Bezier;
-use super::trace::Tracer;
+use super::trace::{STRAIGHT, Tracer};
 use super::{ImportError, Options, Vehicle, Warnings, route};
 use crate::mark::unmarked;
 use crate::plane::wrapped;
@@ -15,9 +15,6 @@ use crate::scenario::{LIMIT, Scenario};
 
 /// Angle between two steps from which on a point is a corner, not a sample of something smooth \[rad\].
 const CORNER: f64 = 0.35;
-
-/// Angle between two steps up to which they are one line within any tolerance \[rad\].
-const STRAIGHT: f64 = 1e-9;
 
 /// Most points of a file.
 const MOST: usize = 200_000;

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 const NEAR: f64 = 1e-6;
 
 /// Angle that is rounding and nothing else \[rad\].
-const STRAIGHT: f64 = 1e-9;
+pub(super) const STRAIGHT: f64 = 1e-9;
 
 /// Deviation that is rounding and nothing else \[m\].
 const ROUNDING: f64 = 1e-12;
