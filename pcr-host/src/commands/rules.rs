@@ -14,7 +14,8 @@ pub(crate) enum Rule {
     Needs,
 }
 
-/// A command, arguments of it by their names, what they are to others, and why. Without a name it is of all commands that have both.
+/// A command, arguments of it by their names, what they are to others, and why. Without a name it is of all commands that have all of
+/// these arguments.
 pub(crate) type Ruled = (&'static str, &'static [&'static str], Rule, &'static [&'static str], &'static str);
 
 /// All of them.
@@ -108,7 +109,13 @@ pub(crate) const RULES: [Ruled; 28] = [
         "--index writes the locks to a file; print or draw them in a second run",
     ),
     ("serve", &["broker"], Needs, &["fleet"], "the vehicles are described in a file; add --fleet FILE (docs/serve.md)"),
-    ("serve", &["authority", "fleet"], Needs, &["broker"], "it is of use at a broker only; add --broker HOST:PORT"),
+    (
+        "serve",
+        &["authority", "fleet"],
+        Needs,
+        &["broker"],
+        "--authority and --fleet are of use at a broker only; add --broker HOST:PORT",
+    ),
     (
         "serve",
         &["topics"],
@@ -155,13 +162,16 @@ fn group(others: &[&str]) -> String {
 /// A command whose arguments exclude and need one another.
 pub(super) fn ruled(command: Command) -> Command {
     let name = command.get_name().to_owned();
-    let groups = of(&name).filter(|(.., rule, others, _)| *rule == Needs && others.len() > 1);
+    let has = |id: &&str| command.get_arguments().any(|argument| argument.get_id() == *id);
+    let applies = |(of, .., others, _): &&Ruled| !of.is_empty() || others.iter().all(&has);
+    let rules: Vec<&Ruled> = of(&name).filter(applies).collect();
+    let groups = rules.iter().filter(|(.., rule, others, _)| *rule == Needs && others.len() > 1);
     let command = groups.fold(command, |command, (.., others, _)| {
         command.group(ArgGroup::new(group(others)).args(*others).multiple(true))
     });
     command.mut_args(|argument| {
         let id = argument.get_id().to_string();
-        let own = of(&name).filter(|(_, arguments, ..)| arguments.contains(&id.as_str()));
+        let own = rules.iter().filter(|(_, arguments, ..)| arguments.contains(&id.as_str()));
         own.fold(argument, |argument: Arg, (.., rule, others, _)| match (rule, others) {
             (Excludes, others) => argument.conflicts_with_all(*others),
             (Needs, [only]) => argument.requires(*only),
@@ -185,7 +195,7 @@ pub(super) fn why(error: &Error, command: &str, given: impl Fn(&str) -> bool) ->
                 others.iter().any(|other| is(&wrong, one) && is(&prior, other) || is(&wrong, other) && is(&prior, one))
             }
             (ErrorKind::MissingRequiredArgument, Needs) => {
-                given(&format!("--{one}")) && others.iter().any(|other| is(&wrong, other))
+                given(&format!("--{}", one.replace('_', "-"))) && others.iter().any(|other| is(&wrong, other))
             }
             _ => false,
         })

@@ -1,6 +1,7 @@
 //! Arguments that exclude or need one another are refused with a reason.
 
 use crate::fixture::run;
+use clap::{Arg, ArgAction, Command};
 use std::fs;
 use std::path::Path;
 
@@ -53,6 +54,13 @@ fn arguments_that_exclude_or_need_one_another_are_refused_with_a_reason() {
             }
         }
     }
+}
+
+/// A rule of all commands would be one about an argument that is not there.
+#[test]
+fn a_rule_of_all_commands_is_of_those_that_have_its_arguments() {
+    let command = Command::new("other").arg(Arg::new("json").long("json").action(ArgAction::SetTrue));
+    declared::ruled(command).debug_assert();
 }
 
 /// What is declared elsewhere would be refused without a reason.
