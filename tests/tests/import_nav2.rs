@@ -396,21 +396,60 @@ fn rounded_corners_are_told_unless_they_were_asked_for() {
     assert!(!told(None, "3:3"));
 }
 
-/// The arc was as fast as the edge before it allows.
+/// A radius has an effect if it rounds a corner, and also if it rounds none of those that are rounded without it.
 #[test]
-fn a_rounded_corner_has_the_limits_of_both_edges() {
+fn a_corner_radius_is_of_use_where_a_corner_is_rounded_with_it_or_without_it() {
+    // A corner with room for the usual arc (1.52 m and 3 m); one of 5 mrad; none.
+    let slight = two_edges([[0.0, 0.0], [10.0, 0.0], [20.0, 0.05]], [100, 100]);
+    // Continuous-CBS rounds no corner unless that is asked for.
+    let other = include_str!("../data/small/roadmap.xml");
+    for (format, text, route, radius, is_used) in [
+        (Format::Nav2, AWS, "11:13", 0.0, true),
+        (Format::Nav2, AWS, "11:13", 0.5, true),
+        (Format::Nav2, AWS, "11:13", 1.0, true),
+        (Format::Nav2, AWS, "11:13", 2.0, true),
+        (Format::Nav2, AWS, "11:12", 0.0, false),
+        (Format::Nav2, AWS, "11:12", 2.0, false),
+        (Format::Nav2, &slight, "0:2", 0.0, true),
+        (Format::Nav2, &slight, "0:2", 1000.0, true),
+        (Format::Ccbs, other, "n0:n2", 0.0, false),
+        (Format::Ccbs, other, "n0:n2", 0.5, true),
+        (Format::Ccbs, other, "n0:n2", 1000.0, false),
+    ] {
+        let mut warnings = Warnings::default();
+        let options = options(&[route], radius);
+        scenario(format, text, &options, &mut warnings).unwrap();
+        let unused = options.unused(&warnings).map(|(option, _)| option);
+        assert_eq!(unused, (!is_used).then_some("--corner-radius"), "{format} {route} {radius}");
+    }
+    // The arc of 5 mrad is told as well.
+    let mut warnings = Warnings::default();
+    let usual = Options { corner_radius: None, ..options(&["0:2"], 0.0) };
+    scenario(Format::Nav2, &slight, &usual, &mut warnings).unwrap();
+    assert!(
+        warnings.lines().iter().any(|line| line.starts_with("corners: rounded with 1 m")),
+        "{:?}",
+        warnings.lines()
+    );
+}
+
+/// A graph of two edges one after the other, with speed limits in percent.
+fn two_edges(nodes: [[f64; 2]; 3], percents: [u64; 2]) -> String {
     let node = |id: u64, at: [f64; 2]| json!({ "type": "Feature", "properties": { "id": id, "frame": "map" }, "geometry": { "type": "Point", "coordinates": at } });
     let edge = |id: u64, [from, to]: [u64; 2], percent: u64| {
         json!({ "type": "Feature", "properties": { "id": id, "startid": from, "endid": to,
             "metadata": { "speed_limit": percent } }, "geometry": { "type": "MultiLineString", "coordinates": [] } })
     };
-    let graph = |percents: [u64; 2]| {
-        let nodes = [node(0, [-5.0, 0.0]), node(1, [0.0, 0.0]), node(2, [0.0, 5.0])];
-        let edges = [edge(10, [0, 1], percents[0]), edge(11, [1, 2], percents[1])];
-        json!({ "type": "FeatureCollection", "features": ([&nodes[..], &edges].concat()) }).to_string()
-    };
+    let nodes = [0, 1, 2].map(|k| node(k as u64, nodes[k]));
+    let edges = [edge(10, [0, 1], percents[0]), edge(11, [1, 2], percents[1])];
+    json!({ "type": "FeatureCollection", "features": ([&nodes[..], &edges].concat()) }).to_string()
+}
+
+/// The arc was as fast as the edge before it allows.
+#[test]
+fn a_rounded_corner_has_the_limits_of_both_edges() {
     for (percents, arcs) in [([50, 50], 1), ([100, 5], 2), ([5, 100], 2)] {
-        let scenario = route(&graph(percents), &["0:2"], 1.0);
+        let scenario = route(&two_edges([[-5.0, 0.0], [0.0, 0.0], [0.0, 5.0]], percents), &["0:2"], 1.0);
         assert_eq!(scenario.agents[0].path.len(), 2 + arcs);
         with_motion(&scenario, 0, |motion| {
             // Half of the arc from either edge: the node, as it were.

@@ -71,10 +71,10 @@ pub use grid::GridPlan;
 pub use layout::{Edge, Id, Layout, Node};
 pub use nav2::graph_id;
 pub use rmf::is_navigation_graph;
-pub use route::{Step, cheapest, has_corner, ride, turn};
+pub use route::{Step, cheapest, ride, turn};
 pub use stamp::seconds;
 pub use timed::sectioned;
-pub use useful::{Kind, NO_CORNER};
+pub use useful::Kind;
 pub use value::parse as parse_json;
 pub use vehicle::{CORNER_RADIUS, HEADING, Options, TOLERANCE, Vehicle};
 pub use warnings::{Warnings, shortened};
@@ -129,6 +129,13 @@ impl Format {
         Self::Path,
         Self::Vda5050,
     ];
+}
+
+impl Format {
+    /// The radius with which routes round corners if no other is asked for \[m\].
+    fn corner_radius(self) -> Option<f64> {
+        (self == Self::Nav2).then_some(CORNER_RADIUS)
+    }
 }
 
 impl fmt::Display for Format {
@@ -270,12 +277,12 @@ fn imported(
     let vehicle = options.vehicle(&given, moves, warnings);
     let outline = vehicle.footprint.as_ref();
     let mut layout = whole(options, warnings, |warnings| match format {
-        Format::Nav2 => nav2::read(text, options, vehicle.speed, warnings),
+        Format::Nav2 => nav2::read(text, vehicle.speed, warnings),
         Format::Lif => lif::read(text, options, outline, warnings),
         Format::Rmf => rmf::read(text, options, outline, warnings),
-        Format::OpenDrive => opendrive::read(text, options, warnings),
+        Format::OpenDrive => opendrive::read(text, warnings),
         Format::OpenTcs => opentcs::read(text, options, outline, warnings),
-        Format::Ccbs => ccbs::roadmap(text, options, warnings),
+        Format::Ccbs => ccbs::roadmap(text, warnings),
         Format::Grid => Err(ImportError::new("a plan on a grid is not a layout")),
         Format::Path => Err(ImportError::new("paths of agents are not a layout")),
         Format::Vda5050 => Err(ImportError::new("an order or a state is not a layout")),
@@ -287,6 +294,7 @@ fn imported(
     if moves {
         layout.one_speed()?;
     }
+    layout.corner_radius = options.corner_radius.or(format.corner_radius());
     let off: Vec<_> = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.off(&vehicle))).collect();
     report(&off, warnings);
     if NO_NAMES.contains(&layout.name.as_str()) {
@@ -400,7 +408,7 @@ pub fn scenario(
         }
         Format::Nav2 | Format::Lif | Format::Rmf | Format::OpenDrive | Format::OpenTcs | Format::Ccbs => {
             let Imported { layout, vehicle } = imported(format, text, options, true, warnings)?;
-            let scenario = route::scenario(&layout, &vehicle, options, warnings)?;
+            let scenario = route::scenario(&layout, &vehicle, options, format.corner_radius(), warnings)?;
             report_routes(&layout, &scenario, vehicle.radius, warnings);
             scenario
         }

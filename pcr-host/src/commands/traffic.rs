@@ -8,7 +8,7 @@ use pcr_drawing::Ground;
 use pcr_execution::lifelong::{self, Delays, Lifelong, Method};
 use pcr_execution::report;
 use pcr_execution::traffic::{Request, Traffic};
-use pcr_formats::import::{NO_CORNER, Options, has_corner};
+use pcr_formats::import::Options;
 use pcr_planning::report::json;
 use std::io::Write;
 use std::path::PathBuf;
@@ -93,9 +93,6 @@ impl Arguments {
         }
         let request = Request { agents: self.agents.into(), seed: self.seed };
         let (traffic, [missions, plan]) = Traffic::of(&imported, request).map_err(wrong)?;
-        if self.import.corner_radius.is_some() && !has_corner(&imported.layout, &missions.agents) {
-            return Err(Stop::wrong(file, format!("--corner-radius has no effect: {NO_CORNER}")));
-        }
         if self.output.is_some() {
             map::ask_for_regions(&plan).map_err(wrong)?;
         }

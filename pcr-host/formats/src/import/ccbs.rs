@@ -7,7 +7,7 @@ use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::timed;
 use super::xml::{astray, child, children, content, lose_astray, number, only, optional, parse, warn_of_unknown};
-use super::{ImportError, Options, Vehicle, Warnings};
+use super::{ImportError, Vehicle, Warnings};
 use crate::plane::distance;
 use crate::scenario::{Agent, Placed, Scenario};
 
@@ -22,7 +22,7 @@ const LATE: f64 = 1e-3;
 const ROUNDED: f64 = 1e-4;
 
 /// Reads a roadmap: nodes with `x,y` as their first datum.
-pub(super) fn roadmap(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Layout, ImportError> {
+pub(super) fn roadmap(text: &str, warnings: &mut Warnings) -> Result<Layout, ImportError> {
     let document = parse(text)?;
     let root = document.root_element();
     let graph = only(root, "graph")?.ok_or_else(|| {
@@ -101,7 +101,6 @@ pub(super) fn roadmap(text: &str, options: &Options, warnings: &mut Warnings) ->
         levels: vec![String::new()],
         nodes: nodes.into_list(),
         edges: edges.into_list(),
-        corner_radius: options.corner_radius,
         ..Layout::default()
     })
 }

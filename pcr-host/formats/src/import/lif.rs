@@ -98,7 +98,6 @@ pub(super) fn read(
         levels,
         nodes: nodes.into_list(),
         edges: edges.into_list(),
-        corner_radius: options.corner_radius,
         ..Layout::default()
     })
 }

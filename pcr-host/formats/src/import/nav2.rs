@@ -7,8 +7,7 @@
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::value::Object;
-use super::vehicle::CORNER_RADIUS;
-use super::{ImportError, Options, Warnings, value};
+use super::{ImportError, Warnings, value};
 use crate::scenario::Placed;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -25,12 +24,7 @@ pub(super) fn is_graph(root: &Value) -> bool {
 }
 
 /// Reads a graph. `full_speed` is what fractions in `speed_limit` refer to \[m/s\].
-pub(super) fn read(
-    text: &str,
-    options: &Options,
-    full_speed: f64,
-    warnings: &mut Warnings,
-) -> Result<Layout, ImportError> {
+pub(super) fn read(text: &str, full_speed: f64, warnings: &mut Warnings) -> Result<Layout, ImportError> {
     let value = value::parse(text)?;
     let root = Object::new("graph", &value)?;
     if root.get("features").is_none() {
@@ -72,7 +66,6 @@ pub(super) fn read(
         levels: frames.into_iter().collect(),
         nodes: nodes.into_list(),
         edges: edges.into_list(),
-        corner_radius: Some(options.corner_radius.unwrap_or(CORNER_RADIUS)),
         ..Layout::default()
     })
 }

@@ -10,7 +10,7 @@ use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::route::turn_over;
 use super::xml::{child, children, lose_astray, number, only, optional, parse, warn_of_unknown};
-use super::{ImportError, Options, Warnings};
+use super::{ImportError, Warnings};
 use crate::plane::{distance, wrapped};
 use crate::scenario::PathSegment;
 use crate::scenario::Placed;
@@ -58,7 +58,7 @@ struct Curve {
 }
 
 /// Reads the roads.
-pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Layout, ImportError> {
+pub(super) fn read(text: &str, warnings: &mut Warnings) -> Result<Layout, ImportError> {
     let document = parse(text)?;
     let root = document.root_element();
     if !root.has_tag_name("OpenDRIVE") {
@@ -118,13 +118,8 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         );
         warnings.add("links of roads", problem);
     }
-    let mut layout = Layout {
-        name: header.to_owned(),
-        levels: vec![String::new()],
-        edges: names.into_list(),
-        corner_radius: options.corner_radius,
-        ..Layout::default()
-    };
+    let mut layout =
+        Layout { name: header.to_owned(), levels: vec![String::new()], edges: names.into_list(), ..Layout::default() };
     join(&mut layout, &group);
     Ok(layout)
 }

@@ -139,7 +139,6 @@ pub(super) fn read(
         levels: vec![String::new()],
         nodes: nodes.into_list(),
         edges,
-        corner_radius: options.corner_radius,
         ..Layout::default()
     })
 }

@@ -81,7 +81,6 @@ pub(super) fn read(
     };
     let mut layout = Layout {
         name: root.text(if graph { "building_name" } else { "name" }).ok().flatten().unwrap_or_default().to_owned(),
-        corner_radius: options.corner_radius,
         ..Layout::default()
     };
     let mut graphs = BTreeSet::new();

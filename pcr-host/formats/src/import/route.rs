@@ -10,8 +10,8 @@ use super::trace::{Trace, Tracer};
 use super::vehicle::Asked;
 use super::{ImportError, Options, Vehicle, Warnings, facing, speed};
 use crate::plane::distance;
+use crate::scenario::Placed;
 use crate::scenario::{Agent, PathSegment, Scenario, label};
-use crate::scenario::{KINK, Placed, TURN};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::fmt;
@@ -152,14 +152,32 @@ pub fn cheapest<'a>(
     Some(steps)
 }
 
+/// The arcs that round the corners at the ends of some edges, where there is one.
+fn corner_arcs(layout: &Layout, from: usize, steps: &[Step<'_>], radius: Option<f64>) -> Vec<Option<Placed>> {
+    let mut position = layout.position(from);
+    let arc = |(k, step): (usize, &Step<'_>)| {
+        let target = layout.position(step.target());
+        let next = steps.get(k + 1).filter(|next| step.edge.is_straight() && next.edge.is_straight());
+        let arc = next
+            .zip(radius)
+            .and_then(|(next, radius)| corner_arc(position, target, layout.position(next.target()), radius));
+        // A curve may end beside its node.
+        let bent = if step.edge.is_straight() { None } else { step.curve().pop() };
+        position = arc.or(bent).map_or(target, |last| last.end());
+        arc
+    };
+    steps.iter().enumerate().map(arc).collect()
+}
+
 /// The path along some edges, from the node where it begins.
 pub(super) fn trace(layout: &Layout, from: usize, steps: &[Step<'_>]) -> Result<Trace, ImportError> {
     let at = |node: usize| layout.position(node);
+    let arcs = corner_arcs(layout, from, steps, layout.corner_radius);
     let mut tracer = Tracer::default();
     let mut position = at(from);
     // If curves and their arcs differ in length, the vehicle is ahead of its path, or behind it, from there on.
     let (mut deviation, mut turned, mut longer) = (0.0_f64, 0.0_f64, 0.0);
-    for (k, step) in steps.iter().enumerate() {
+    for (k, (step, arc)) in steps.iter().zip(arcs).enumerate() {
         let (edge, target) = (step.edge, at(step.target()));
         tracer.limit(step.speed(), edge.rotation);
         deviation = deviation.max(step.deviation() + longer);
@@ -180,8 +198,6 @@ pub(super) fn trace(layout: &Layout, from: usize, steps: &[Step<'_>]) -> Result<
             position = end;
             continue;
         }
-        let corner = layout.corner_radius.zip(steps.get(k + 1).filter(|next| next.edge.is_straight()));
-        let arc = corner.and_then(|(radius, next)| corner_arc(position, target, at(next.target()), radius));
         match arc {
             Some(arc) => {
                 tracer.line(position, arc.at);
@@ -251,11 +267,12 @@ pub(super) fn corner_arc(start: [f64; 2], corner: [f64; 2], end: [f64; 2], radiu
     Some(Placed { at, heading, shape: PathSegment::Arc { radius, sweep } })
 }
 
-/// The routes that the options ask for as a scenario, an agent a route.
+/// The routes that the options ask for as a scenario, an agent a route; corners have the usual radius if no other is asked for.
 pub(super) fn scenario(
     layout: &Layout,
     vehicle: &Vehicle,
     options: &Options,
+    usual_radius: Option<f64>,
     warnings: &mut Warnings,
 ) -> Result<Scenario, ImportError> {
     if options.routes.is_empty() {
@@ -267,11 +284,16 @@ pub(super) fn scenario(
     }
     let mut agents = Vec::new();
     let mut levels = Vec::new();
+    let mut rounded = false;
     for (k, route) in options.routes.iter().enumerate() {
         let asked = Asked::parse(route, |name| layout.nodes_called(name))?;
         let refused = |problem: &dyn fmt::Display| ImportError::new(format!("route {route}: {problem}"));
-        let agent = mission(layout, vehicle, k as u64 + 1, asked.ends).map_err(|error| refused(&error))?;
-        let agent = agent.ok_or_else(|| refused(&"there is no way from node to node"))?;
+        let steps = shortest(layout, asked.ends).ok_or_else(|| refused(&"there is no way from node to node"))?;
+        let trace = trace(layout, asked.ends[0], &steps).map_err(|error| refused(&error))?;
+        // An option that rounds no corner has an effect where one would be rounded without it.
+        rounded |= [layout.corner_radius, usual_radius]
+            .into_iter()
+            .any(|radius| corner_arcs(layout, asked.ends[0], &steps, radius).iter().any(Option::is_some));
         levels.push(layout.level_of(asked.ends[0]));
         let name = |place: usize| {
             let node = &layout.nodes[place];
@@ -280,16 +302,14 @@ pub(super) fn scenario(
         let way = format!("{} > {}", name(asked.ends[0]), name(asked.ends[1]));
         // If the file names its vehicles, the routes belong to them, in the order of both.
         let label = label(&layout.vehicles.get(k).map_or(way.clone(), |vehicle| format!("{vehicle} {way}")));
-        agents.push(Agent { label, t_start: asked.time, ..agent });
+        agents.push(Agent { label, ..agent(k as u64 + 1, &trace, vehicle, asked.time) });
     }
     let names = options.routes.iter().map(|route| format!("route {route}")).collect::<Vec<_>>();
     facing::warn_of_half_turns(names.iter().map(String::as_str).zip(&agents), warnings);
-    if options.corner_radius.is_some() {
-        if has_corner(layout, &agents) {
-            warnings.use_option("corner_radius");
-        }
-    } else if has_corner(layout, &agents) {
-        let radius = layout.corner_radius.unwrap_or_default();
+    if rounded {
+        warnings.use_option("corner_radius");
+    }
+    if let Some(radius) = usual_radius.filter(|_| rounded && options.corner_radius.is_none()) {
         let problem =
             format!("rounded with {radius} m, as by nav2 with smooth_corners; --corner-radius 0 if it does not");
         warnings.add("corners", problem);
@@ -298,13 +318,6 @@ pub(super) fn scenario(
         warnings.add("routes", "they are on different levels, which a scenario does not tell apart");
     }
     Ok(Scenario::new(layout.name.clone(), agents))
-}
-
-/// Whether ways on a layout have a corner of the radius with which it rounds corners: an arc, or for the radius 0 a turn in place.
-pub fn has_corner(layout: &Layout, agents: &[Agent]) -> bool {
-    let wanted = layout.corner_radius.map(|radius| radius.max(TURN));
-    let is_corner = |shape: &PathSegment| matches!(shape, PathSegment::Arc { radius, sweep } if Some(*radius) == wanted && sweep.abs() > KINK);
-    agents.iter().flat_map(|agent| &agent.path).any(is_corner)
 }
 
 /// The agent that travels the shortest way between two nodes from the time 0, if there is one.
@@ -440,7 +453,8 @@ mod tests {
             let routes = vec!["0:2".to_owned(), "3:4".to_owned()];
             let (options, mut warnings) = (Options { routes, ..Options::default() }, Warnings::default());
             let vehicle = layout(Format::Nav2, &graphs()[0], &Options::default(), &mut Warnings::default());
-            scenario(&bend(level), &vehicle.expect("a graph").vehicle, &options, &mut warnings).expect("two routes");
+            scenario(&bend(level), &vehicle.expect("a graph").vehicle, &options, None, &mut warnings)
+                .expect("two routes");
             warnings.lines().iter().any(|line| line.contains("they are on different levels"))
         };
         assert_eq!([told(0), told(1)], [false, true]);

@@ -77,20 +77,17 @@ impl Options {
     }
 }
 
-/// Why an option had no effect on a file on which it may have one; nothing for those that say what the vehicle is, which holds whether
-/// or not it drives in this file, and for `--partial`, which is a permission: whoever gives it for many files does not know which of them
-/// need it.
+/// Why an option had no effect on a file on which it may have one. Nothing for those that say what the vehicle is, which holds whether or
+/// not it drives in this file. Nothing for `--partial`, either, which is a permission: whoever gives it for many files does not know which
+/// of them need it.
 fn unused(field: &str) -> Option<&'static str> {
     match field {
         "tolerance" => Some("there is no curve in what is read but lines and arcs"),
         "horizon" => Some("no order has a horizon: all edges are released"),
-        "corner_radius" => Some(NO_CORNER),
+        "corner_radius" => Some("with it or without it, no corner of a route is rounded"),
         _ => None,
     }
 }
-
-/// Why no corner has the radius that is asked for.
-pub const NO_CORNER: &str = "no way has a corner between straight edges with room for such an arc";
 
 /// Why an option does nothing with such a file; nothing where it does something.
 fn useless(field: &str, kind: Kind) -> Option<&'static str> {
