@@ -419,7 +419,7 @@ fn a_corner_radius_is_of_use_where_a_corner_is_rounded_with_it_or_without_it() {
         let mut warnings = Warnings::default();
         let options = options(&[route], radius);
         scenario(format, text, &options, &mut warnings).unwrap();
-        let unused = options.unused(&warnings).map(|(option, _)| option);
+        let unused = options.unused(&[&warnings]).map(|(option, _)| option);
         assert_eq!(unused, (!is_used).then_some("--corner-radius"), "{format} {route} {radius}");
     }
     // The arc of 5 mrad is told as well.

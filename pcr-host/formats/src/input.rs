@@ -134,6 +134,16 @@ pub fn read(file: &Path, options: &Options) -> Result<(Scenario, Warnings), Inpu
 /// # Errors
 /// As [`read`].
 pub fn read_from(file: &Path, text: String, options: &Options) -> Result<(Scenario, Warnings), InputError> {
+    let read = read_one_of(file, text, options)?;
+    used(&named(file), options, &read.1)?;
+    Ok(read)
+}
+
+/// The same for one of several files: an option may have had its effect on another one.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_one_of(file: &Path, text: String, options: &Options) -> Result<(Scenario, Warnings), InputError> {
     let name = named(file);
     let mut warnings = Warnings::default();
     match options.from.or_else(|| Format::of(file, &text)) {
@@ -141,7 +151,6 @@ pub fn read_from(file: &Path, text: String, options: &Options) -> Result<(Scenar
             useful(&name, &text, Some(format), options)?;
             match import::scenario(format, &text, options, &mut warnings) {
                 Ok(mut scenario) => {
-                    used(&name, options, &warnings)?;
                     or_stem(&mut scenario.name, file);
                     Ok((scenario, warnings))
                 }
@@ -184,7 +193,7 @@ fn useful(file: &Option<PathBuf>, text: &str, format: Option<Format>, options: &
 
 /// Refuses options that had no effect on what was read.
 fn used(file: &Option<PathBuf>, options: &Options, warnings: &Warnings) -> Result<(), InputError> {
-    match options.unused(warnings) {
+    match options.unused(&[warnings]) {
         Some((option, why)) => Err(InputError::Useless(file.clone(), option, why)),
         None => Ok(()),
     }

@@ -62,7 +62,7 @@ pub(super) fn scenario(file: &Path, import: &Options) -> Result<Scenario, Stop> 
     scenario_from(file, text(file)?, import)
 }
 
-/// The same in a text that is read already, such as that of standard input.
+/// The same in a text that is read already.
 pub(super) fn scenario_from(file: &Path, text: String, import: &Options) -> Result<Scenario, Stop> {
     keep(import);
     told(file, input::read_from(file, text, import)?, import)
@@ -120,7 +120,10 @@ pub(super) fn without_margin(import: &Options) -> Result<(), Stop> {
 
 /// What one answer is about.
 pub(super) enum Source {
+    /// The only file.
     File(PathBuf),
+    /// One of several.
+    OneOf(PathBuf),
     /// One of several whose answers would have the same name; they are named by the path.
     Twin(PathBuf),
     /// Orders and states, or paths, of one fleet.
@@ -133,31 +136,42 @@ pub(super) fn gathered(files: Vec<PathBuf>, import: &Options) -> Result<Vec<Sour
     if files.len() > 1 && input::are_of_one_fleet(&files, import) {
         return Ok(vec![Source::Together(files)]);
     }
-    Ok(apart(files, import))
+    match <[PathBuf; 1]>::try_from(files) {
+        Ok([only]) => Ok(vec![Source::File(only)]),
+        Err(several) => apart(several, import),
+    }
 }
 
-/// Files that are answered one after the other, so that their answers can be told apart. Several files are read once more for that: the
-/// first answer is printed before the last file is read.
-pub(super) fn apart(files: Vec<PathBuf>, import: &Options) -> Vec<Source> {
-    let name = |file: &PathBuf| match std::fs::metadata(file) {
+/// Several files that are answered one after the other, so that their answers can be told apart. They are read once more for that: the
+/// first answer is printed before the last file is read. Refuses options that have no effect on any of them.
+fn apart(files: Vec<PathBuf>, import: &Options) -> Result<Vec<Source>, Stop> {
+    let read = |file: &PathBuf| {
         // What is no file can be read once only.
-        Ok(there) if there.is_file() && files.len() > 1 => {
-            input::read(file, import).map_or_else(|_| input::stem(file), |(scenario, _)| scenario.name)
-        }
-        _ => input::stem(file),
+        std::fs::metadata(file).ok().filter(|there| there.is_file())?;
+        let (scenario, warnings) = input::read_one_of(file, input::read_text(file).ok()?, import).ok()?;
+        Some((scenario.name, warnings))
     };
-    let names: Vec<String> = files.iter().map(name).collect();
+    let read: Vec<Option<(String, Warnings)>> = files.iter().map(read).collect();
+    let warnings: Vec<&Warnings> = read.iter().flatten().map(|(_, warnings)| warnings).collect();
+    if warnings.len() == files.len()
+        && let Some((option, why)) = import.unused(&warnings)
+    {
+        return Err(Stop::arguments(format!("{option} has no effect on any of these files: {why}")));
+    }
+    let named = files.iter().zip(read);
+    let names: Vec<String> =
+        named.map(|(file, read)| read.map_or_else(|| input::stem(file), |(name, _)| name)).collect();
     let is_twin = |name: &String| !name.is_empty() && names.iter().filter(|other| *other == name).count() > 1;
     let twins: Vec<bool> = names.iter().map(is_twin).collect();
-    let source = |(file, twin): (PathBuf, bool)| if twin { Source::Twin(file) } else { Source::File(file) };
-    files.into_iter().zip(twins).map(source).collect()
+    let source = |(file, twin): (PathBuf, bool)| if twin { Source::Twin(file) } else { Source::OneOf(file) };
+    Ok(files.into_iter().zip(twins).map(source).collect())
 }
 
 impl Source {
     /// The file, or the first of them, for messages.
     pub(super) fn file(&self) -> &Path {
         match self {
-            Self::File(file) | Self::Twin(file) => file,
+            Self::File(file) | Self::OneOf(file) | Self::Twin(file) => file,
             Self::Together(files) => files.first().map_or(Path::new("-"), |first| first),
         }
     }
@@ -171,28 +185,38 @@ impl Source {
     pub(super) fn called(&self, name: &str) -> String {
         match self {
             Self::Twin(file) => printable(&file.to_string_lossy()),
-            Self::File(_) | Self::Together(_) => name.to_owned(),
+            Self::File(_) | Self::OneOf(_) | Self::Together(_) => name.to_owned(),
         }
     }
 
     /// Whether it is scenarios one after the other on standard input.
     pub(super) fn is_lines(&self, import: &Options) -> bool {
-        matches!(self, Self::File(file) if file == Path::new("-")) && import.from.is_none()
+        matches!(self, Self::File(file) | Self::OneOf(file) if file == Path::new("-")) && import.from.is_none()
     }
 
     /// Whether it is a scenario file, which a plan may replace.
     pub(super) fn is_scenario(&self, import: &Options) -> Result<bool, Stop> {
         match self {
-            Self::File(file) | Self::Twin(file) => Ok(input::kind(file, import)? == Kind::Scenario),
+            Self::File(file) | Self::OneOf(file) | Self::Twin(file) => Ok(input::kind(file, import)? == Kind::Scenario),
             Self::Together(_) => Ok(false),
         }
     }
 
     pub(super) fn scenario(&self, import: &Options) -> Result<Scenario, Stop> {
         match self {
-            Self::File(file) | Self::Twin(file) => scenario(file, import),
+            Self::File(file) | Self::OneOf(file) | Self::Twin(file) => self.scenario_from(text(file)?, import),
             Self::Together(files) => together(files, import),
         }
+    }
+
+    /// The same in a text that is read already.
+    pub(super) fn scenario_from(&self, text: String, import: &Options) -> Result<Scenario, Stop> {
+        let file = self.file();
+        if let Self::File(_) = self {
+            return scenario_from(file, text, import);
+        }
+        keep(import);
+        told(file, input::read_one_of(file, text, import)?, import)
     }
 }
 

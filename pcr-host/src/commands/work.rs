@@ -2,7 +2,7 @@
 
 use super::number::{Number, with_scalar};
 use super::printed::is_alone;
-use super::sources::{Source, gathered, give_margin, scenario_from};
+use super::sources::{Source, gathered, give_margin};
 use super::{Form, NOT_WRITTEN, Printed, Stop, WRONG_INPUT, complain, say};
 use crate::progress::Progress;
 use pcr_formats::import::{Options, shortened};
@@ -94,7 +94,7 @@ fn one<W: Work>(
     out: &mut impl Write,
 ) -> Result<bool, Stop> {
     let mut scenario = match text {
-        Some(text) => scenario_from(source.file(), text, import)?,
+        Some(text) => source.scenario_from(text, import)?,
         None => source.scenario(import)?,
     };
     scenario.name = source.called(&scenario.name);

@@ -116,6 +116,19 @@ fn options_that_do_nothing_are_refused() {
     }
     // Missions are random, and so is whether they have corners.
     run(&["traffic", &straight, "--radius", "0.3", "--agents", "1", "--corner-radius", "1", "-q"]).ok();
+    // Of several files it is enough if one has something for it.
+    let on = |files: &[&str]| {
+        let options = ["--route", "A:B", "--radius", "0.3", "--tolerance", "0.01", "--json"];
+        run(&[&["check"], files, &options].concat())
+    };
+    let plant = include_str!("../../../tests/data/small/plant.xml");
+    let direct = plant.replace("y=\"-40\"", "y=\"0\"");
+    let [bezier, direct, same] = [("bezier", plant), ("direct", &direct), ("same", &direct)]
+        .map(|(name, text)| file("habits", &format!("{name}.xml"), text));
+    let both = on(&[&direct, &bezier]);
+    assert_eq!((both.status, both.out.lines().count(), both.err.contains("refused")), (0, 2, false), "{}", both.err);
+    let none = "--tolerance has no effect on any of these files: there is no curve in what is read but lines and arcs";
+    assert_eq!(on(&[&direct, &same]).failed(2), format!("pcr: {none}\n"));
     for (arguments, reason) in [
         (&["nodes", &straight, "--tolerance", "0.01"][..], curve),
         (&["locks", &straight, "--radius", "0.3", "--tolerance", "0.01"], curve),

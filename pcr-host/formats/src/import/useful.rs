@@ -70,9 +70,10 @@ impl Options {
         given.into_iter().find_map(|(field, option, _)| Some((option, useless(field, kind)?)))
     }
 
-    /// An option that is given and had no effect on what was read with these warnings, and why.
-    pub fn unused(&self, warnings: &Warnings) -> Option<(&'static str, &'static str)> {
-        let mut given = self.all().into_iter().filter(|(field, _, given)| *given && !warnings.has_used(field));
+    /// An option that is given and had no effect on any of the files that were read with these warnings, and why.
+    pub fn unused(&self, files: &[&Warnings]) -> Option<(&'static str, &'static str)> {
+        let used = |field: &str| files.iter().any(|warnings| warnings.has_used(field));
+        let mut given = self.all().into_iter().filter(|(field, _, given)| *given && !used(field));
         given.find_map(|(field, option, _)| Some((option, unused(field)?)))
     }
 }
