@@ -87,6 +87,9 @@ impl Layout {
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf, options: Choices) -> PyResult<(Self, Vec<String>)> {
         let options = options.options()?;
+        if let Some(option) = options.one_of(&["routes", "corner_radius"]) {
+            return Err(refused(format!("{option} has no effect: locks and delays are of all edges as they are")));
+        }
         py.detach(|| {
             let moves = options.acceleration.is_some();
             let (imported, warnings) = input::read_layout(&path, &options, moves).map_err(refused)?;

@@ -419,6 +419,9 @@ class Refusals(unittest.TestCase):
                     lambda: pcr.Layout.read(GRAPH, radius=-1.0), lambda: pcr.Layout.read(GRAPH, radius=0.4).delays(0.4, 0.0),
                     lambda: pcr.Layout.read(GRAPH, radius=0.4).delays(0.4, math.nan), lambda: pcr.Layout.read(GRAPH).delays(0.4, 1.0, acceleration=-1.0),
                     lambda: pcr.Fleet.read(TWELVE, radius=0.5), lambda: pcr.Fleet.read(TWELVE, format="xml"), lambda: pcr.Layout.read(GRAPH, tolerance=2e6),
+                    # What has no effect: edges have no corners, and a straight route has none.
+                    lambda: pcr.Layout.read(GRAPH, corner_radius=1.0), lambda: pcr.Layout.read(GRAPH, routes=["0:1"]), lambda: pcr.Layout.read(GRAPH, tolerance=0.1),
+                    lambda: pcr.Fleet.read(GRAPH, routes=["0:1"], corner_radius=1.0),
                     # What is nowhere on the path is not "free".
                     lambda: fleet.safe_intervals(1, -0.5, (0.0, 50.0)), lambda: fleet.safe_intervals(1, 99.0, (0.0, 50.0)),
                     lambda: fleet.closest(1, 1), lambda: fleet.map(-1, 0.0, 1.0, 5), lambda: fleet.map(1, 0.0, 1.0, -5), lambda: fleet.map(1, 0.0, 1.0, 2**70),

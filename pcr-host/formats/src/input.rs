@@ -305,9 +305,9 @@ pub fn read_layout_from(
     let read = if moves { import::roads } else { import::layout };
     match read(format, text, options, &mut warnings) {
         Ok(mut imported) => {
-            // Corners are of ways, which are not asked for here.
-            let of_edges = Options { corner_radius: None, ..options.clone() };
-            used(&name, &of_edges, &warnings)?;
+            // Which ways there are, and what is rounded on them, is up to who reads the layout.
+            warnings.use_option("corner_radius");
+            used(&name, options, &warnings)?;
             or_stem(&mut imported.layout.name, file);
             Ok((imported, warnings))
         }

@@ -14,7 +14,11 @@ Path = Union[str, PathLike[str]]
 
 
 class Options(TypedDict, total=False):
-    """The options of ``pcr import``, by their names there. ``None`` is as if it was not there."""
+    """The options of ``pcr import``, by their names there. ``None`` is as if it was not there.
+
+    An option without effect raises an :class:`Error`: ``tolerance`` where there is no curve, ``horizon`` where all edges are released,
+    ``corner_radius`` where no corner is rounded with it or without it. For a :class:`Layout` so do ``routes`` and ``corner_radius``.
+    """
 
     #: nav2, lif, rmf, opendrive, opentcs, ccbs, grid, path or vda5050; by name and content if left out.
     format: Optional[str]

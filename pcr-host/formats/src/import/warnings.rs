@@ -51,7 +51,7 @@ impl Warnings {
     }
 
     /// Notes that the option of this field had an effect.
-    pub(super) fn use_option(&mut self, field: &'static str) {
+    pub(crate) fn use_option(&mut self, field: &'static str) {
         self.used.insert(field);
     }
 
