@@ -2,7 +2,6 @@
 
 mod commands;
 mod progress;
-mod stderr;
 
 use commands::{Stop, complain};
 use std::process::ExitCode;

@@ -1,7 +1,6 @@
 //! A line on the terminal that shows the progress of long work.
 
-use crate::stderr::Stderr;
-use std::io::Write;
+use std::io::{self, IsTerminal, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
@@ -40,7 +39,7 @@ impl Progress {
     /// Begins to watch over some work.
     pub(crate) fn new(what: impl Into<String>) -> Self {
         let counts = Arc::<Counts>::default();
-        let told = Stderr.is_terminal() && !SILENT.load(Ordering::Relaxed);
+        let told = io::stderr().is_terminal() && !SILENT.load(Ordering::Relaxed);
         let running = if told { watch(what.into(), Arc::clone(&counts)) } else { None };
         Self { counts, running }
     }
@@ -63,7 +62,7 @@ fn watch(what: String, counts: Arc<Counts>) -> Option<(Sender<()>, JoinHandle<()
             show(&what, &counts, begin.elapsed());
         }
         if wait == INTERVAL {
-            let _ = write!(Stderr, "\r\x1b[K");
+            let _ = write!(io::stderr(), "\r\x1b[K");
         }
     };
     let watch = thread::Builder::new().name("progress".into()).spawn(tell).ok()?;
@@ -74,12 +73,12 @@ fn watch(what: String, counts: Arc<Counts>) -> Option<(Sender<()>, JoinHandle<()
 fn show(what: &str, counts: &Counts, elapsed: Duration) {
     let seconds = elapsed.as_secs();
     let _ = match (counts.done.load(Ordering::Relaxed), counts.total.load(Ordering::Relaxed)) {
-        (0, 0) => write!(Stderr, "\r\x1b[K{what} ({seconds} s)"),
-        (done, 0) => write!(Stderr, "\r\x1b[K{what}: {done} ({seconds} s)"),
+        (0, 0) => write!(io::stderr(), "\r\x1b[K{what} ({seconds} s)"),
+        (done, 0) => write!(io::stderr(), "\r\x1b[K{what}: {done} ({seconds} s)"),
         (done, total) => {
             let rest = remaining(done, total, elapsed).map_or(String::new(), |rest| format!(", {rest} s to go"));
             let (share, rate) = (done.saturating_mul(100) / total, done as f64 / elapsed.as_secs_f64());
-            write!(Stderr, "\r\x1b[K{what}: {done} of {total} ({share} %, {rate:.0} a second, {seconds} s{rest})")
+            write!(io::stderr(), "\r\x1b[K{what}: {done} of {total} ({share} %, {rate:.0} a second, {seconds} s{rest})")
         }
     };
 }

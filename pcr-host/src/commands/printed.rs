@@ -1,6 +1,5 @@
 //! The format of printed answers, and where they are printed.
 
-use crate::stderr::Stderr;
 use clap::{Args, ValueEnum};
 use pcr_formats::scenario::printable;
 use std::io::{self, BufWriter, Write};
@@ -80,13 +79,14 @@ pub(super) fn stdout() -> impl Write {
     Read::of(io::stdout().lock())
 }
 
-fn stderr() -> Read<Stderr> {
-    Read::of(Stderr)
+/// Not locked: the thread that shows the progress writes to it, too.
+fn stderr() -> impl Write {
+    Read::of(io::stderr())
 }
 
 /// A message on standard error, a line whatever is in it. Where that is closed, the exit status has to do.
 pub(crate) fn complain(message: &str) {
-    let _ = writeln!(Stderr, "pcr: {}", printable(message));
+    let _ = writeln!(io::stderr(), "pcr: {}", printable(message));
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]

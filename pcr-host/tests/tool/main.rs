@@ -29,8 +29,4 @@ mod schema;
 mod serve;
 mod simulate;
 mod sources;
-// What writes to it is read in by a test, and finds it here.
-#[allow(dead_code)]
-#[path = "../../src/stderr.rs"]
-mod stderr;
 mod streams;
