@@ -3,7 +3,7 @@
 //! `-h` shows the common options of a command, one line each; `--help` adds those about layouts and other formats,
 //! examples and exit statuses. Options without effect in a command are not shown.
 
-use super::rules::ruled;
+use super::rules::{ruled, unmet};
 use super::tips::with_tip;
 use super::{Arguments, Stop};
 use clap::{Arg, ArgAction, Command, CommandFactory, FromArgMatches};
@@ -36,7 +36,9 @@ pub(super) fn parse(mut words: Vec<OsString>) -> Result<Option<Arguments>, Stop>
         // Both in the form of a line an option.
         (*word, long) = ("-h".into(), true);
     }
-    match command(long).try_get_matches_from(&words) {
+    let mut commands = command(long);
+    let parsed = commands.try_get_matches_from_mut(&words);
+    match parsed.and_then(|matches| unmet(&commands, &matches).map_or(Ok(matches), Err)) {
         Ok(matches) => Arguments::from_arg_matches(&matches).map(Some).map_err(|error| Stop::Usage(Box::new(error))),
         Err(error) if error.use_stderr() => Err(Stop::Usage(Box::new(with_tip(error, &words)))),
         Err(asked) => {

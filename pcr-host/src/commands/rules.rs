@@ -3,7 +3,8 @@
 
 use Rule::{Excludes, Needs};
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
-use clap::{Arg, ArgGroup, Command};
+use clap::parser::ValueSource;
+use clap::{Arg, ArgMatches, Command};
 
 /// What arguments are to others.
 #[derive(Clone, Copy, PartialEq)]
@@ -154,30 +155,34 @@ fn of(command: &str) -> impl Iterator<Item = &'static Ruled> {
     RULES.iter().filter(move |(name, ..)| name.is_empty() || *name == command)
 }
 
-/// The group of several of which one is needed.
-fn group(others: &[&str]) -> String {
-    others.join("-or-")
-}
-
-/// A command whose arguments exclude and need one another.
+/// A command whose arguments exclude one another. What they need is not declared: where it is excluded, the parser would not ask for it.
 pub(super) fn ruled(command: Command) -> Command {
     let name = command.get_name().to_owned();
     let has = |id: &&str| command.get_arguments().any(|argument| argument.get_id() == *id);
     let applies = |(of, .., others, _): &&Ruled| !of.is_empty() || others.iter().all(&has);
-    let rules: Vec<&Ruled> = of(&name).filter(applies).collect();
-    let groups = rules.iter().filter(|(.., rule, others, _)| *rule == Needs && others.len() > 1);
-    let command = groups.fold(command, |command, (.., others, _)| {
-        command.group(ArgGroup::new(group(others)).args(*others).multiple(true))
-    });
+    let rules: Vec<&Ruled> = of(&name).filter(|(.., rule, _, _)| *rule == Excludes).filter(applies).collect();
     command.mut_args(|argument| {
         let id = argument.get_id().to_string();
         let own = rules.iter().filter(|(_, arguments, ..)| arguments.contains(&id.as_str()));
-        own.fold(argument, |argument: Arg, (.., rule, others, _)| match (rule, others) {
-            (Excludes, others) => argument.conflicts_with_all(*others),
-            (Needs, [only]) => argument.requires(*only),
-            (Needs, several) => argument.requires(group(several)),
-        })
+        own.fold(argument, |argument: Arg, (.., others, _)| argument.conflicts_with_all(*others))
     })
+}
+
+/// The error of an argument without any of those that it needs.
+pub(super) fn unmet(commands: &Command, given: &ArgMatches) -> Option<Error> {
+    let (name, given) = given.subcommand()?;
+    let command = commands.find_subcommand(name)?;
+    let is_given =
+        |id: &&str| given.ids().any(|one| one == id) && given.value_source(id) == Some(ValueSource::CommandLine);
+    let is_broken = |(_, arguments, rule, others, _): &&Ruled| {
+        *rule == Needs && arguments.iter().any(is_given) && !others.iter().any(is_given)
+    };
+    let (.., others, _) = of(name).find(is_broken)?;
+    let needed = command.get_arguments().filter(|argument| others.contains(&argument.get_id().as_str()));
+    let needed: Vec<String> = needed.map(Arg::to_string).collect();
+    let mut error = Error::new(ErrorKind::MissingRequiredArgument).with_cmd(command);
+    error.insert(ContextKind::InvalidArg, ContextValue::Strings(vec![needed.join(" or ")]));
+    Some(error)
 }
 
 /// Why arguments are refused beside one another, or without another.
@@ -203,7 +208,7 @@ pub(super) fn why(error: &Error, command: &str, given: impl Fn(&str) -> bool) ->
     of(command).find(breaks).map(|(.., why)| *why)
 }
 
-/// The name of an argument, which the parser shows as `--name <VALUE>`, `[NAME]`, or `<--name <VALUE>|--other <VALUE>>`.
+/// The name of an argument, which the parser shows as `--name <VALUE>` or `[NAME]`.
 fn id(shown: &str) -> String {
     let shown = shown.trim_start_matches(['<', '[']).trim_start_matches("--");
     let end = shown.find(|letter: char| !letter.is_alphanumeric() && letter != '-').unwrap_or(shown.len());

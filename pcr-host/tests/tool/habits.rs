@@ -135,7 +135,10 @@ fn options_that_do_nothing_are_refused() {
         (&["regions", &straight, "--route", "N1:N2", "--tolerance", "0.01"], curve),
         (&["check", &order, "--tolerance", "0.01"], curve),
         (&["check", &square, "--tolerance", "0.01"], curve),
-        (&["check", &order, "--horizon"], "--horizon has no effect: no order has a horizon: all edges are released"),
+        (
+            &["check", &order, "--horizon"],
+            "--horizon has no effect: it is of orders that end in edges not released, and there is none",
+        ),
         (&["check", &nav2, "--route", "0:1", "--corner-radius", "1"], corner),
         (&["check", &nav2, "--route", "0:1", "--corner-radius", "0"], corner),
         (&["check", &straight, "--route", "N1:N2", "--corner-radius", "0"], corner),

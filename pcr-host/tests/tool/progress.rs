@@ -21,7 +21,10 @@ fn pictures_are_done_while_a_terminal_shows_the_progress() {
     use std::process::{Command, Stdio};
     let pair = |k: u64| {
         let y = 8.0 * k as f64;
-        [straight(2 * k + 1, [-2.0, y, 0.0], 4.0), straight(2 * k + 2, [0.0, y - 2.0, 1.570_796_3], 4.0)]
+        [
+            straight(2 * k + 1, [-2.0, y, 0.0], 4.0),
+            straight(2 * k + 2, [0.0, y - 2.0, std::f64::consts::FRAC_PI_2], 4.0),
+        ]
     };
     let agents: Vec<_> = (0..30).flat_map(pair).collect();
     let scenario = file("terminal", "pairs.json", serde_json::json!({ "agents": agents }).to_string());

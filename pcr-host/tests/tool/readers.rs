@@ -153,7 +153,9 @@ fn what_an_update_in_another_file_releases_is_not_said_to_be_left_out() {
     let vain = run(&[&["import", "vda5050", &first, &all, "--horizon"], &VEHICLE[..]].concat()).failed(2);
     assert_eq!(
         vain,
-        format!("pcr: {first}: --horizon has no effect: no order has a horizon: all edges are released\n")
+        format!(
+            "pcr: {first}: --horizon has no effect: it is of orders that end in edges not released, and there is none\n"
+        )
     );
 }
 

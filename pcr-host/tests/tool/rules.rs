@@ -28,6 +28,19 @@ fn given(name: &str) -> Vec<String> {
     vec![format!("--{name}={value}")]
 }
 
+/// The arguments of a command that exclude some of it.
+fn excluders(command: &str, of: &[&str]) -> Vec<&'static str> {
+    let rules = RULES.iter().filter(|(name, _, rule, ..)| *name == command && *rule == Rule::Excludes);
+    let sides = rules.flat_map(|(_, arguments, _, others, _)| [(arguments, others), (others, arguments)]);
+    let hit = sides.filter(|(_, others)| others.iter().any(|other| of.contains(other)));
+    hit.flat_map(|(arguments, _)| arguments.iter().copied()).collect()
+}
+
+/// Whether an argument of a command needs others.
+fn needs(command: &str, argument: &str) -> bool {
+    RULES.iter().any(|(name, of, rule, ..)| *name == command && *rule == Rule::Needs && of.contains(&argument))
+}
+
 #[test]
 fn arguments_that_exclude_or_need_one_another_are_refused_with_a_reason() {
     let refused = |command: &str, arguments: &[&str], reason: &str| {
@@ -46,7 +59,14 @@ fn arguments_that_exclude_or_need_one_another_are_refused_with_a_reason() {
         let commands = if command.is_empty() { &["regions", "compare", "traffic"][..] } else { &[command][..] };
         for (command, argument) in commands.iter().flat_map(|command| arguments.iter().map(move |one| (command, one))) {
             match rule {
-                Rule::Needs => refused(command, &[argument], reason),
+                Rule::Needs => {
+                    refused(command, &[argument], reason);
+                    // Also beside what excludes the needed one.
+                    let own = excluders(command, &[argument]);
+                    let allowed = |one: &&str| !others.contains(one) && !own.contains(one) && !needs(command, one);
+                    let beside = excluders(command, others).into_iter().filter(allowed);
+                    beside.for_each(|other| refused(command, &[argument, other], reason));
+                }
                 Rule::Excludes => others.iter().for_each(|other| {
                     refused(command, &[argument, other], reason);
                     refused(command, &[other, argument], reason);
