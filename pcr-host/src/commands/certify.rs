@@ -11,10 +11,10 @@ use pcr_formats::input;
 use pcr_formats::scenario::Labels;
 use pcr_planning::certify::{Certified, Dump};
 use pcr_planning::locks::rounded;
-use pcr_planning::regions::table_of;
+use pcr_planning::regions::{Failure, table_of};
 use pcr_planning::{locks, report};
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Exit status: the checker's own rounding does not tell.
@@ -69,15 +69,13 @@ impl Arguments {
             return Err(Stop::arguments("--limit is for --format json and table"));
         }
         let certified = self.certified()?;
+        let file = self.table.as_deref().or(self.file.as_deref()).unwrap_or(Path::new("-"));
         // Nothing would be proved.
         if certified.is_empty() {
-            return Err(Stop::Error("there is no table to be certified".into(), WRONG_INPUT));
+            return Err(Stop::wrong(file, "there is no table to be certified"));
         }
         if certified.iter().all(|one| one.pairs == 0 && one.error.is_none()) {
-            return Err(Stop::Error(
-                "there are no two discs of different agents, of which contacts could be certified".into(),
-                WRONG_INPUT,
-            ));
+            return Err(Stop::wrong(file, Failure::NoPair));
         }
         let mut out = self.printed.out(false);
         if self.printed.form() == Form::Csv {

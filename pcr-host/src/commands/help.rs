@@ -123,7 +123,7 @@ pub(super) fn useless(command: &str) -> &'static [&'static str] {
     match command {
         "import" => &["from"],
         // Rotation is of use for arcs with --acceleration only.
-        "locks" => &["routes", "rotation", "rotation_acceleration", "corner_radius", "horizon"],
+        "locks" => &["routes", "corner_radius", "horizon"],
         DRIVING => &["routes", "corner_radius", "horizon"],
         STANDING => {
             &["routes", "speed", "acceleration", "rotation", "rotation_acceleration", "corner_radius", "horizon"]

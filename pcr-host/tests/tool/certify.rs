@@ -77,11 +77,13 @@ fn tables_of_other_formats_and_of_nothing_are_refused() {
     alone.as_object_mut().unwrap().remove("radius");
     alone["footprint"] = outline;
     let name = file("certify", "alone.json", json!({ "agents": [alone] }).to_string());
-    let nothing = "pcr: there are no two discs of different agents, of which contacts could be certified\n";
-    assert_eq!(run(&["certify", &name]).failed(2), nothing);
+    let nothing = |name: &str| {
+        format!("pcr: {name}: there are no two discs of different agents, of which contacts could be certified\n")
+    };
+    assert_eq!(run(&["certify", &name]).failed(2), nothing(&name));
     let told = table("alone.json", &json!({ "agents": [alone] }), &[]);
     let name = file("certify", "alone-table.json", told.to_string());
-    assert_eq!(run(&["certify", "--table", &name]).failed(2), nothing);
+    assert_eq!(run(&["certify", "--table", &name]).failed(2), nothing(&name));
     // Loads are other discs of one body, on other stretches.
     let mut loaded = straight(1, [-2.0, 0.0, 0.0], 2.0);
     loaded["path"] = json!([{ "kind": "line", "length": 2 }, { "kind": "line", "length": 2 }]);
