@@ -129,9 +129,7 @@ impl Format {
         Self::Path,
         Self::Vda5050,
     ];
-}
 
-impl Format {
     /// The radius with which routes round corners if no other is asked for \[m\].
     fn corner_radius(self) -> Option<f64> {
         (self == Self::Nav2).then_some(CORNER_RADIUS)

@@ -1,7 +1,7 @@
 //! What is large, compiled once for each number format.
 //!
 //! A generic function is compiled again in every crate that calls it. The functions here are not generic: every format has its own,
-//! which calls the generic one. The public functions of the same names call these.
+//! which calls the generic one. The public functions call these.
 
 use crate::bodies::Bodies;
 use crate::certify::Proof;
@@ -18,19 +18,25 @@ use pcr_formats::scenario::Scenario;
 
 /// The functions of a number format.
 pub trait Compiled: Sized {
+    /// [`Fleet::new`].
     fn fleet(scenario: &Scenario) -> Result<Fleet<Self>, Refused>
     where
         Self: Format;
+    /// [`Bodies::new`].
     fn bodies(scenario: &Scenario) -> Result<Bodies<Self>, Refused>
     where
         Self: Format;
+    /// [`rounded`](crate::fleet::rounded).
     fn rounded(scenario: &Scenario) -> Result<Option<String>, Refused>;
+    /// [`build_ecm`](crate::fleet::build_ecm).
     fn table(motions: &[Motion<'_, Self>]) -> Result<HostEcm<Self>, Full>
     where
         Self: Format;
+    /// [`build_orders`](crate::fleet::build_orders).
     fn orders(motions: &[Motion<'_, Self>]) -> Result<HostOrders<Self>, Full>
     where
         Self: Format;
+    /// [`Ecm::fill_row`].
     fn row(table: &mut HostEcm<Self>, motions: &[Motion<'_, Self>], ego: usize) -> Result<(), TableError>
     where
         Self: Format;
@@ -43,9 +49,13 @@ pub trait Compiled: Sized {
     ) -> Result<Vec<Region>, Failure>
     where
         Self: Format;
+    /// [`Verdict::watched`].
     fn verdict(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Verdict, Failure>;
+    /// [`Verdict::any`].
     fn any(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure>;
+    /// [`Proof::of`].
     fn proof(scenario: &Scenario) -> Result<Proof, Refused>;
+    /// [`table_of`](crate::regions::table_of).
     fn certificate(scenario: &Scenario) -> Result<Vec<Table>, Failure>;
 }
 

@@ -192,13 +192,14 @@ pub(crate) fn gathered<'a, S: Format, T: Send>(
     for first in (0..motions.len()).step_by(GATHERED) {
         let end = motions.len().min(first + GATHERED);
         let of_stretch = |stretch: usize| {
-            let (mut walk, first) = (Walk::new(motions, &grid), first + stretch * STRETCH);
-            let rows = (first..end.min(first + STRETCH)).map(|ego| Ok(make(walk.row(ego)?)));
+            let mut walk = Walk::new(motions, &grid);
+            let begin = first + stretch * STRETCH;
+            let rows = (begin..end.min(begin + STRETCH)).map(|ego| Ok(make(walk.row(ego)?)));
             rows.collect::<Result<Vec<Vec<T>>, Full>>()
         };
-        for made in cores::made(0..(end - first).div_ceil(STRETCH), &of_stretch) {
-            for made in made? {
-                held.extend(&mut all, made, 0, what)?;
+        for stretch in cores::made(0..(end - first).div_ceil(STRETCH), &of_stretch) {
+            for row in stretch? {
+                held.extend(&mut all, row, 0, what)?;
             }
         }
     }

@@ -2,6 +2,7 @@
 //! nothing is refused without it.
 
 use Rule::{Excludes, Needs};
+use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Command};
@@ -177,16 +178,25 @@ pub(super) fn unmet(commands: &Command, given: &ArgMatches) -> Option<Error> {
     let is_broken = |(_, arguments, rule, others, _): &&Ruled| {
         *rule == Needs && arguments.iter().any(is_given) && !others.iter().any(is_given)
     };
-    let (.., others, _) = of(name).find(is_broken)?;
+    let (.., others, why) = of(name).find(is_broken)?;
     let needed = command.get_arguments().filter(|argument| others.contains(&argument.get_id().as_str()));
     let needed: Vec<String> = needed.map(Arg::to_string).collect();
     let mut error = Error::new(ErrorKind::MissingRequiredArgument).with_cmd(command);
     error.insert(ContextKind::InvalidArg, ContextValue::Strings(vec![needed.join(" or ")]));
+    advise(&mut error, why);
     Some(error)
 }
 
-/// Why arguments are refused beside one another, or without another.
-pub(super) fn why(error: &Error, command: &str, given: impl Fn(&str) -> bool) -> Option<&'static str> {
+/// Adds to an error what to do instead, or why.
+pub(super) fn advise(error: &mut Error, tip: &str) {
+    error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(tip.to_owned())]));
+}
+
+/// Why arguments are refused beside one another.
+pub(super) fn why(error: &Error, command: &str) -> Option<&'static str> {
+    if error.kind() != ErrorKind::ArgumentConflict {
+        return None;
+    }
     let ids = |kind| match error.get(kind) {
         Some(ContextValue::String(one)) => vec![id(one)],
         Some(ContextValue::Strings(several)) => several.iter().map(|one| id(one)).collect(),
@@ -194,16 +204,9 @@ pub(super) fn why(error: &Error, command: &str, given: impl Fn(&str) -> bool) ->
     };
     let (wrong, prior) = (ids(ContextKind::InvalidArg), ids(ContextKind::PriorArg));
     let is = |of: &[String], one: &str| of.iter().any(|id| id == one);
+    let meet = |one: &str, other: &str| is(&wrong, one) && is(&prior, other) || is(&wrong, other) && is(&prior, one);
     let breaks = |(_, arguments, rule, others, _): &&Ruled| {
-        arguments.iter().any(|one| match (error.kind(), rule) {
-            (ErrorKind::ArgumentConflict, Excludes) => {
-                others.iter().any(|other| is(&wrong, one) && is(&prior, other) || is(&wrong, other) && is(&prior, one))
-            }
-            (ErrorKind::MissingRequiredArgument, Needs) => {
-                given(&format!("--{}", one.replace('_', "-"))) && others.iter().any(|other| is(&wrong, other))
-            }
-            _ => false,
-        })
+        *rule == Excludes && arguments.iter().any(|one| others.iter().any(|other| meet(one, other)))
     };
     of(command).find(breaks).map(|(.., why)| *why)
 }

@@ -1,7 +1,6 @@
 //! What to do instead, after a word of the command line that was refused.
 
 use super::rules;
-use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 use std::ffi::OsString;
 use std::path::Path;
@@ -10,7 +9,6 @@ use std::path::Path;
 pub(super) fn with_tip(mut error: Error, words: &[OsString]) -> Error {
     let words: Vec<_> = words.iter().skip(1).map(|word| word.to_string_lossy()).collect();
     let command = words.iter().find(|word| !word.starts_with('-')).map_or("", |word| word);
-    let has = |option: &str| words.iter().any(|word| word == option || word.starts_with(&format!("{option}=")));
     let wrong = match error.get(ContextKind::InvalidArg).or(error.get(ContextKind::InvalidSubcommand)) {
         Some(ContextValue::String(wrong)) => wrong.as_str(),
         _ => "",
@@ -37,7 +35,7 @@ pub(super) fn with_tip(mut error: Error, words: &[OsString]) -> Error {
         (ErrorKind::UnknownArgument, "fleet") if wrong == "--json" || wrong == "--format" => {
             "--certify prints JSON, and nothing else does"
         }
-        _ => match rules::why(&error, command, has) {
+        _ => match rules::why(&error, command) {
             Some(why) => why,
             None => return error,
         },
@@ -45,6 +43,7 @@ pub(super) fn with_tip(mut error: Error, words: &[OsString]) -> Error {
     for other in [ContextKind::SuggestedSubcommand, ContextKind::SuggestedArg] {
         error.remove(other);
     }
-    error.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(tip.to_owned())]));
+    let tip = tip.to_owned();
+    rules::advise(&mut error, &tip);
     error
 }

@@ -137,7 +137,7 @@ fn options_that_do_nothing_are_refused() {
         (&["check", &square, "--tolerance", "0.01"], curve),
         (
             &["check", &order, "--horizon"],
-            "--horizon has no effect: it is of orders that end in edges not released, and there is none",
+            "--horizon has no effect: it is for orders that end in edges that are not released, and there is none",
         ),
         (&["check", &nav2, "--route", "0:1", "--corner-radius", "1"], corner),
         (&["check", &nav2, "--route", "0:1", "--corner-radius", "0"], corner),

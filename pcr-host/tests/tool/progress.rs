@@ -13,7 +13,7 @@ fn what_is_left_takes_as_long_as_what_is_done() {
     assert_eq!([after(9), after(10), after(250), after(1000)], [None, Some(990), Some(30), Some(0)]);
 }
 
-/// Pictures that took more than a second were never done where standard error was a terminal.
+/// Pictures that took more than a second, after which the progress is shown, were never done where standard error was a terminal.
 #[cfg(target_os = "linux")]
 #[test]
 fn pictures_are_done_while_a_terminal_shows_the_progress() {

@@ -154,7 +154,7 @@ fn what_an_update_in_another_file_releases_is_not_said_to_be_left_out() {
     assert_eq!(
         vain,
         format!(
-            "pcr: {first}: --horizon has no effect: it is of orders that end in edges not released, and there is none\n"
+            "pcr: {first}: --horizon has no effect: it is for orders that end in edges that are not released, and there is none\n"
         )
     );
 }

@@ -84,7 +84,7 @@ impl Options {
 fn unused(field: &str) -> Option<&'static str> {
     match field {
         "tolerance" => Some("there is no curve in what is read but lines and arcs"),
-        "horizon" => Some("it is of orders that end in edges not released, and there is none"),
+        "horizon" => Some("it is for orders that end in edges that are not released, and there is none"),
         "corner_radius" => Some("with it or without it, no corner of a route is rounded"),
         _ => None,
     }
