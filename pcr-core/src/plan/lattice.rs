@@ -130,7 +130,13 @@ pub(super) fn level<S: Scalar>(top: S, index: usize) -> S {
 }
 
 /// The borders of the slabs of a cell.
-pub(super) fn borders<S: Scalar>(cell: Interval<S>) -> [S; SLABS + 1] {
+fn borders<S: Scalar>(cell: Interval<S>) -> [S; SLABS + 1] {
     let (quarter, half) = (cell.length().half().half(), cell.length().half());
     [cell.lo, cell.lo + quarter, cell.lo + half, cell.lo + half + quarter, cell.hi]
+}
+
+/// The slabs of a cell, one after the other, and its end.
+pub(super) fn parts<S: Scalar>(cell: Interval<S>) -> [Interval<S>; SLABS + 1] {
+    let [lo, first, middle, last, hi] = borders(cell);
+    [[lo, first], [first, middle], [middle, last], [last, hi], [hi, hi]].map(|[from, to]| Interval::new(from, to))
 }

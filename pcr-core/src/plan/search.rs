@@ -3,7 +3,7 @@
 use crate::error::Invalid;
 use crate::geometry::Interval;
 use crate::plan::constraint::Constraint;
-use crate::plan::lattice::{Edge, LEVELS, Lattice, SLABS, borders};
+use crate::plan::lattice::{Edge, LEVELS, Lattice, SLABS, parts};
 use crate::plan::outcome::{NoSpeedPlan, SpeedPlan};
 use crate::plan::station::Station;
 use crate::plan::times::Times;
@@ -23,11 +23,8 @@ pub(super) struct Search<'c, S: Scalar, L, I> {
     pub(super) length: S,
 }
 
-/// The times at which the slabs of a cell and its end are blocked.
-struct Blocked<S> {
-    slabs: [Times<S>; SLABS],
-    end: Times<S>,
-}
+/// The times at which the [`parts`] of a cell are blocked.
+type Blocked<S> = [Times<S>; SLABS + 1];
 
 impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, L, I> {
     /// Initializes the stations, with the times at which the agent may set off from the first one.
@@ -50,7 +47,7 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
         let before = if at_rest { Interval::new(-S::LIMIT, from) } else { Interval::new(from, from) };
         stands(&self.regions, S::ZERO, before)?;
         let mut blocked = Times::NONE;
-        self.cover(&mut blocked, Interval::new(S::ZERO, S::ZERO));
+        self.cover(&[Interval::new(S::ZERO, S::ZERO)], core::slice::from_mut(&mut blocked));
         // No other agent is there before, and constraints on the time before do not count.
         let until = blocked.iter().find(|window| window.hi > begin).map_or(S::LIMIT, |window| window.lo);
         if until < from {
@@ -62,12 +59,26 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
         Ok(())
     }
 
-    /// Adds the times at which a part of the path is blocked. What ended before the agent sets off would only take room.
-    fn cover(&self, times: &mut Times<S>, part: Interval<S>) {
+    /// Adds the times at which each of some parts of the path, one after the other, is blocked.
+    fn cover(&self, parts: &[Interval<S>], blocked: &mut [Times<S>]) {
+        let (Some(first), Some(last)) = (parts.first(), parts.last()) else { return };
+        let add = |times: &mut Times<S>, window: Interval<S>| {
+            // What ended before the agent sets off would only take room.
+            if window.hi > self.from {
+                times.cover(window);
+            }
+        };
         let always = Interval::new(-S::LIMIT, S::LIMIT);
-        let blocked = self.near(part).flat_map(|region| region.blocked(part, always));
-        let windows = blocked.chain(self.constrained(part));
-        windows.filter(|window| window.hi > self.from).for_each(|window| times.cover(window));
+        // Few regions are on any of the parts.
+        for region in self.near(first.hull(*last)) {
+            let length = region.length();
+            for (&part, times) in parts.iter().zip(blocked.iter_mut()).filter(|(part, _)| length.meets(**part)) {
+                region.blocked(part, always).for_each(|window| add(times, window));
+            }
+        }
+        for (&part, times) in parts.iter().zip(blocked) {
+            self.constrained(part).for_each(|window| add(times, window));
+        }
     }
 
     /// The times at which constraints forbid a part of the path.
@@ -81,19 +92,16 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
     }
 
     fn blocked(&self, cell: Interval<S>) -> Blocked<S> {
-        let mut blocked = Blocked { slabs: [const { Times::NONE }; SLABS], end: Times::NONE };
-        let borders = borders(cell);
-        for ((slab, &lo), &hi) in blocked.slabs.iter_mut().zip(&borders).zip(borders.iter().skip(1)) {
-            self.cover(slab, Interval::new(lo, hi));
-        }
-        self.cover(&mut blocked.end, Interval::new(cell.hi, cell.hi));
+        let mut blocked = [const { Times::NONE }; SLABS + 1];
+        self.cover(&parts(cell), &mut blocked);
         blocked
     }
 
     /// The times at which the agent may leave a station so that it passes the cell after it without contact.
     fn departures(&self, reached: &Times<S>, passes: &[S], blocked: &Blocked<S>) -> Times<S> {
         let mut departures = reached.clone();
-        for ((slab, &enters), &leaves) in blocked.slabs.iter().zip(passes).zip(passes.iter().skip(1)) {
+        // The end of the cell, the last part, has no borders.
+        for ((slab, &enters), &leaves) in blocked.iter().zip(passes).zip(passes.iter().skip(1)) {
             for window in slab.iter() {
                 // A window without an end stays unbounded.
                 let until = if window.hi >= S::LIMIT { S::LIMIT.double() } else { window.hi - enters };
@@ -136,8 +144,9 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
                         .for_each(|times| arrivals.add(times));
                 }
             }
+            let [.., end] = &blocked;
             if let Some(times) = next.reached.first_mut().filter(|_| self.levels(false, is_last).contains(&0)) {
-                stand(times, self.lattice.stands_at(next.length), &blocked.end);
+                stand(times, self.lattice.stands_at(next.length), end);
             }
             if next.reached.iter().all(Times::is_empty) {
                 return Err(self.stopped(Interval::new(here.length, next.length)));
@@ -203,8 +212,8 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
             // At rest the agent may have waited since its place became free.
             let waits = next.level == 0;
             let until = next.leaves - if waits { self.lattice.stands_at(next.length) } else { S::ZERO };
-            let since =
-                blocked.end.iter().map(|window| window.hi).filter(|&hi| hi <= next.leaves).fold(-S::LIMIT, S::max);
+            let [.., end] = &blocked;
+            let since = end.iter().map(|window| window.hi).filter(|&hi| hi <= next.leaves).fold(-S::LIMIT, S::max);
             let mut best: Option<(S, S, usize)> = None;
             for from in self.levels(is_first, false) {
                 let (Some(reached), Some(edge)) = (here.reached(from), self.lattice.edge(place, from, next.level))
