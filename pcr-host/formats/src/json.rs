@@ -5,26 +5,31 @@
 //! traversed. So numbers keep their text, words for values that are not finite count as numbers, equal keys are kept,
 //! and every value knows its line. Otherwise this is RFC 8259; the tests compare it with `serde_json`.
 
-/// A value and where it begins.
+use std::borrow::Cow;
+
+/// A value and where it begins. Words and strings without escapes are parts of the text.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Json {
+pub(crate) struct Json<'t> {
     /// Line of the text, counted from 1.
     pub(crate) line: usize,
-    pub(crate) data: Data,
+    pub(crate) data: Data<'t>,
 }
 
 /// The kinds of values.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Data {
+pub(crate) enum Data<'t> {
     Null,
     Bool(bool),
     /// As written: a JSON number, or `NaN` or `Infinity` in one of their spellings.
-    Number(String),
-    Text(String),
-    Array(Vec<Json>),
+    Number(Cow<'t, str>),
+    Text(Cow<'t, str>),
+    Array(Vec<Json<'t>>),
     /// In the order of the text, equal keys included.
-    Object(Vec<(String, Json)>),
+    Object(Vec<Member<'t>>),
 }
+
+/// A key and its value.
+pub(crate) type Member<'t> = (Cow<'t, str>, Json<'t>);
 
 /// Why a text is not JSON.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,13 +49,17 @@ pub(crate) const QUOTED: usize = 40;
 
 /// The value in a text.
 #[cfg(test)]
-pub(crate) fn parse(text: &str) -> Result<Json, SyntaxError> {
+pub(crate) fn parse(text: &str) -> Result<Json<'_>, SyntaxError> {
     parse_listing(text, "", &mut |_| {})
 }
 
 /// The value in a text; the elements of the array that is its member `list` are handed to `take` one after the other and are not
 /// in it, so that no tree of a long list is held.
-pub(crate) fn parse_listing(text: &str, list: &str, take: &mut dyn FnMut(Json)) -> Result<Json, SyntaxError> {
+pub(crate) fn parse_listing<'t>(
+    text: &'t str,
+    list: &str,
+    take: &mut dyn FnMut(Json<'t>),
+) -> Result<Json<'t>, SyntaxError> {
     let mut parser = Parser { text, at: 0, line: 1, line_start: 0, list, take };
     let value = parser.value(0)?;
     match parser.peek() {
@@ -68,47 +77,47 @@ struct Parser<'t, 'l> {
     line_start: usize,
     /// The member of the outermost object whose elements go here.
     list: &'l str,
-    take: &'l mut dyn FnMut(Json),
+    take: &'l mut dyn FnMut(Json<'t>),
 }
 
 impl<'t> Parser<'t, '_> {
-    fn value(&mut self, depth: usize) -> Result<Json, SyntaxError> {
+    fn value(&mut self, depth: usize) -> Result<Json<'t>, SyntaxError> {
         let next = self.peek();
         let line = self.line;
         let data = match next {
-            Some('{' | '[') if depth == DEEPEST => {
+            Some(b'{' | b'[') if depth == DEEPEST => {
                 return Err(self.error(format!("arrays and objects nested more than {DEEPEST} deep")));
             }
-            Some('{') => Data::Object(self.members(depth)?),
-            Some('[') => {
+            Some(b'{') => Data::Object(self.members(depth)?),
+            Some(b'[') => {
                 let mut elements = Vec::new();
                 self.elements(depth, |_, element| elements.push(element))?;
                 Data::Array(elements)
             }
-            Some('"') => Data::Text(self.string()?),
+            Some(b'"') => Data::Text(self.string()?),
             _ => self.word()?,
         };
         Ok(Json { line, data })
     }
 
-    fn elements(&mut self, depth: usize, mut take: impl FnMut(&mut Self, Json)) -> Result<(), SyntaxError> {
-        self.advance(1);
-        if self.accept(']') {
+    fn elements(&mut self, depth: usize, mut take: impl FnMut(&mut Self, Json<'t>)) -> Result<(), SyntaxError> {
+        self.at += 1;
+        if self.accept(b']') {
             return Ok(());
         }
         loop {
             let element = self.value(depth + 1)?;
             take(self, element);
-            if self.accept(']') {
+            if self.accept(b']') {
                 return Ok(());
             }
-            self.expect(',', "`,` or `]`")?;
+            self.expect(b',', "`,` or `]`")?;
         }
     }
 
     /// A member of an object, or an empty array in place of the list whose elements are taken.
-    fn member(&mut self, key: &str, depth: usize) -> Result<Json, SyntaxError> {
-        if depth > 0 || key != self.list || self.peek() != Some('[') {
+    fn member(&mut self, key: &str, depth: usize) -> Result<Json<'t>, SyntaxError> {
+        if depth > 0 || key != self.list || self.peek() != Some(b'[') {
             return self.value(depth + 1);
         }
         let line = self.line;
@@ -116,40 +125,43 @@ impl<'t> Parser<'t, '_> {
         Ok(Json { line, data: Data::Array(Vec::new()) })
     }
 
-    fn members(&mut self, depth: usize) -> Result<Vec<(String, Json)>, SyntaxError> {
+    fn members(&mut self, depth: usize) -> Result<Vec<Member<'t>>, SyntaxError> {
         let mut members = Vec::new();
-        self.advance(1);
-        if self.accept('}') {
+        self.at += 1;
+        if self.accept(b'}') {
             return Ok(members);
         }
         loop {
-            if self.peek() != Some('"') {
+            if self.peek() != Some(b'"') {
                 return Err(self.expected("a key in quotes"));
             }
             let key = self.string()?;
-            self.expect(':', "`:`")?;
+            self.expect(b':', "`:`")?;
             let value = self.member(&key, depth)?;
             members.push((key, value));
-            if self.accept('}') {
+            if self.accept(b'}') {
                 return Ok(members);
             }
-            self.expect(',', "`,` or `}`")?;
+            self.expect(b',', "`,` or `}`")?;
         }
     }
 
-    fn string(&mut self) -> Result<String, SyntaxError> {
-        let mut string = String::new();
-        self.advance(1);
+    fn string(&mut self) -> Result<Cow<'t, str>, SyntaxError> {
+        let mut string = Cow::Borrowed("");
+        self.at += 1;
         loop {
-            let plain = self.rest().find(|c| c == '"' || c == '\\' || c < ' ').unwrap_or(self.rest().len());
-            string.push_str(self.rest().get(..plain).unwrap_or_default());
-            self.advance(plain);
-            match self.rest().chars().next() {
-                Some('"') => {
-                    self.advance(1);
+            let plain = self.taken(|byte| !matches!(byte, b'"' | b'\\' | 0..b' '));
+            if string.is_empty() {
+                string = plain.into()
+            } else {
+                string.to_mut().push_str(plain)
+            }
+            match self.next() {
+                Some(b'"') => {
+                    self.at += 1;
                     return Ok(string);
                 }
-                Some('\\') => string.push(self.escape()?),
+                Some(b'\\') => string.to_mut().push(self.escape()?),
                 Some(_) => return Err(self.error("a control character in a string; write it as \\u00XX")),
                 None => return Err(self.error("the text ends within a string")),
             }
@@ -169,7 +181,7 @@ impl<'t> Parser<'t, '_> {
         ];
         let letter = self.rest().chars().nth(1);
         if let Some((_, meant)) = SIMPLE.into_iter().find(|&(escaped, _)| Some(escaped) == letter) {
-            self.advance(2);
+            self.at += 2;
             return Ok(meant);
         }
         let units = (self.unit(0), self.unit(6));
@@ -181,7 +193,7 @@ impl<'t> Parser<'t, '_> {
             (None, _) => (None, 0),
         };
         let meant = meant.ok_or_else(|| self.error("an unknown escape in a string"))?;
-        self.advance(long);
+        self.at += long;
         Ok(meant)
     }
 
@@ -193,54 +205,61 @@ impl<'t> Parser<'t, '_> {
     }
 
     /// A number, or a value that is written as a word.
-    fn word(&mut self) -> Result<Data, SyntaxError> {
-        let belongs = |c: char| c.is_ascii_alphanumeric() || matches!(c, '+' | '-' | '.' | '_');
-        let end = self.rest().find(|c| !belongs(c)).unwrap_or(self.rest().len());
-        let word = self.rest().get(..end).unwrap_or_default();
-        let data = match word {
+    fn word(&mut self) -> Result<Data<'t>, SyntaxError> {
+        let begin = self.at;
+        let word = self.taken(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'+' | b'-' | b'.' | b'_'));
+        Ok(match word {
             "true" => Data::Bool(true),
             "false" => Data::Bool(false),
             "null" => Data::Null,
-            number if is_number(number) || is_not_finite(number) => Data::Number(number.to_owned()),
-            _ => return Err(self.expected("a value")),
-        };
-        self.advance(end);
-        Ok(data)
+            number if is_number(number) || is_not_finite(number) => Data::Number(number.into()),
+            _ => {
+                self.at = begin;
+                return Err(self.expected("a value"));
+            }
+        })
     }
 
     fn rest(&self) -> &'t str {
         self.text.get(self.at..).unwrap_or_default()
     }
 
-    fn advance(&mut self, bytes: usize) {
-        self.at += bytes;
+    fn next(&self) -> Option<u8> {
+        self.text.as_bytes().get(self.at).copied()
     }
 
-    /// The next character that is not white space.
-    fn peek(&mut self) -> Option<char> {
+    /// Takes the bytes of a kind that come next, of which other characters than those of ASCII have all or none.
+    fn taken(&mut self, kind: impl Fn(u8) -> bool) -> &'t str {
+        let begin = self.at;
+        while self.next().is_some_and(&kind) {
+            self.at += 1;
+        }
+        self.text.get(begin..self.at).unwrap_or_default()
+    }
+
+    /// The next byte that is not white space.
+    fn peek(&mut self) -> Option<u8> {
         loop {
-            let next = self.rest().chars().next();
+            let next = self.next();
             match next {
-                Some('\n') => {
-                    self.advance(1);
+                Some(b'\n') => {
+                    self.at += 1;
                     self.line += 1;
                     self.line_start = self.at;
                 }
-                Some(' ' | '\t' | '\r') => self.advance(1),
+                Some(b' ' | b'\t' | b'\r') => self.at += 1,
                 _ => return next,
             }
         }
     }
 
-    fn accept(&mut self, mark: char) -> bool {
+    fn accept(&mut self, mark: u8) -> bool {
         let there = self.peek() == Some(mark);
-        if there {
-            self.advance(mark.len_utf8());
-        }
+        self.at += usize::from(there);
         there
     }
 
-    fn expect(&mut self, mark: char, name: &str) -> Result<(), SyntaxError> {
+    fn expect(&mut self, mark: u8, name: &str) -> Result<(), SyntaxError> {
         if self.accept(mark) { Ok(()) } else { Err(self.expected(name)) }
     }
 
@@ -279,17 +298,17 @@ fn is_not_finite(word: &str) -> bool {
     ["nan", "inf", "infinity"].iter().any(|name| word.eq_ignore_ascii_case(name))
 }
 
-impl From<&serde_json::Value> for Json {
-    fn from(value: &serde_json::Value) -> Self {
+impl<'t> From<&'t serde_json::Value> for Json<'t> {
+    fn from(value: &'t serde_json::Value) -> Self {
         use serde_json::Value;
         let data = match value {
             Value::Null => Data::Null,
             Value::Bool(value) => Data::Bool(*value),
-            Value::Number(number) => Data::Number(number.to_string()),
-            Value::String(text) => Data::Text(text.clone()),
+            Value::Number(number) => Data::Number(number.to_string().into()),
+            Value::String(text) => Data::Text(text.into()),
             Value::Array(elements) => Data::Array(elements.iter().map(Self::from).collect()),
             Value::Object(members) => {
-                Data::Object(members.iter().map(|(key, value)| (key.clone(), value.into())).collect())
+                Data::Object(members.iter().map(|(key, value)| (key.into(), value.into())).collect())
             }
         };
         Self { line: 1, data }
@@ -302,14 +321,14 @@ mod tests {
     use serde_json::Value;
 
     /// The tree as `serde_json` represents it.
-    fn value(json: &Json) -> Value {
+    fn value(json: &Json<'_>) -> Value {
         match &json.data {
             Data::Null => Value::Null,
             Data::Bool(value) => Value::Bool(*value),
             Data::Number(text) => serde_json::from_str(text).unwrap(),
-            Data::Text(text) => Value::String(text.clone()),
+            Data::Text(text) => Value::String(text.to_string()),
             Data::Array(elements) => elements.iter().map(value).collect(),
-            Data::Object(members) => members.iter().map(|(key, member)| (key.clone(), value(member))).collect(),
+            Data::Object(members) => members.iter().map(|(key, member)| (key.to_string(), value(member))).collect(),
         }
     }
 

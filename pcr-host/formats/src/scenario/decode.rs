@@ -61,13 +61,13 @@ impl Scenario {
     }
 
     /// The content of a file beside its agents, with the agents.
-    fn decode(json: &Json, agents: Agents) -> Result<Self, ScenarioError> {
+    fn decode(json: &Json<'_>, agents: Agents) -> Result<Self, ScenarioError> {
         let name = match &json.data {
             Data::Object(members) => members.iter().find(|(key, _)| key == "name"),
             _ => None,
         };
         let name = match name {
-            Some((_, Json { data: Data::Text(name), .. })) => name.clone(),
+            Some((_, Json { data: Data::Text(name), .. })) => name.to_string(),
             _ => String::new(),
         };
         match Self::agents(json, agents).and_then(|agents| Ok((agents, Self::warnings(json)?))) {
@@ -79,19 +79,19 @@ impl Scenario {
         }
     }
 
-    fn warnings(json: &Json) -> Result<Vec<String>, ScenarioError> {
+    fn warnings(json: &Json<'_>) -> Result<Vec<String>, ScenarioError> {
         let fields = Place::default().fields(json, &FIELDS)?;
         if fields.get("warnings").is_none() {
             return Ok(Vec::new());
         }
-        let text = |warning: &Json| match &warning.data {
-            Data::Text(text) => Ok(text.clone()),
+        let text = |warning: &Json<'_>| match &warning.data {
+            Data::Text(text) => Ok(text.to_string()),
             _ => Err(fields.unexpected("warnings", warning, "a list of strings")),
         };
         fields.array("warnings")?.iter().map(text).collect()
     }
 
-    fn agents(json: &Json, agents: Agents) -> Result<Vec<Agent>, ScenarioError> {
+    fn agents(json: &Json<'_>, agents: Agents) -> Result<Vec<Agent>, ScenarioError> {
         is_scenario(json)?;
         let fields = Place::default().fields(json, &FIELDS)?;
         match fields.get("version").map(|version| (version, &version.data)) {
@@ -116,7 +116,7 @@ impl Scenario {
 }
 
 /// Refuses files of another format, before one of their keys is refused as unknown, and the line in place of a plan that there is not.
-fn is_scenario(json: &Json) -> Result<(), ScenarioError> {
+fn is_scenario(json: &Json<'_>) -> Result<(), ScenarioError> {
     let Data::Object(members) = &json.data else { return Ok(()) };
     let member = |key: &str| members.iter().find(|(name, _)| name == key).map(|(_, value)| (value, &value.data));
     match member("format") {
@@ -154,7 +154,7 @@ struct Agents {
 }
 
 impl Agents {
-    fn add(&mut self, json: &Json) {
+    fn add(&mut self, json: &Json<'_>) {
         if self.fault.is_none()
             && let Err(fault) = self.decode(json)
         {
@@ -162,11 +162,11 @@ impl Agents {
         }
     }
 
-    fn decode(&mut self, json: &Json) -> Result<(), ScenarioError> {
+    fn decode(&mut self, json: &Json<'_>) -> Result<(), ScenarioError> {
         let (agent, text) = Agent::decode(json, self.all.len())?;
         let refused = |problem: &dyn fmt::Display| {
-            let place = Place { agent: Some(format!("agent {}", agent.called())), part: None };
-            Err(place.error(json.line, "id", problem))
+            let called = format!("agent {}", agent.called());
+            Err(Place { agent: Some(&called), part: None }.error(json.line, "id", problem))
         };
         if text && !self.texts.insert(agent.label.clone()) {
             return refused(&format_args!("{:?} is given to two agents", agent.label));
@@ -184,7 +184,7 @@ impl Agents {
 
 impl Agent {
     /// The agent at a place, and whether its id is a text.
-    fn decode(json: &Json, index: usize) -> Result<(Self, bool), ScenarioError> {
+    fn decode(json: &Json<'_>, index: usize) -> Result<(Self, bool), ScenarioError> {
         const KNOWN: [&str; 14] = [
             "id",
             "label",
@@ -202,16 +202,17 @@ impl Agent {
             "profile",
         ];
         let name = Name::of(json, index);
-        let place = Place { agent: Some(name.called(index)), part: None };
+        let called = name.called(index);
+        let place = Place { agent: Some(&called), part: None };
         let fields = place.fields(json, &KNOWN)?;
         let id = name.checked(&fields)?;
-        let (radius, footprint) = outline(&fields, &place)?;
+        let (radius, footprint) = outline(&fields, place)?;
         let margin = fields.get("margin").map_or(Ok(0.0), |_| fields.number("margin", Range::NotNegative))?;
         let t_start = fields.get("t_start").map_or(Ok(0.0), |_| fields.number("t_start", Range::Any))?;
         let start = fields.object("start", "start.", &["x", "y", "heading"])?;
         let start =
             [start.number("x", Range::Any)?, start.number("y", Range::Any)?, start.number("heading", Range::Any)?];
-        let path = path(&fields, &place)?;
+        let path = path(&fields, place)?;
         let motion = motion(&fields, &path)?;
         let loads = loads(&fields, path.len())?;
         let Name { label, is_text, .. } = name;
@@ -240,11 +241,11 @@ impl Agent {
 }
 
 /// The path of an agent, if it is neither too long nor of too many segments.
-fn path(fields: &Fields<'_>, place: &Place) -> Result<Vec<PathSegment>, ScenarioError> {
+fn path(fields: &Fields<'_>, place: Place<'_>) -> Result<Vec<PathSegment>, ScenarioError> {
     let given = fields.array("path")?;
     let mut path = Vec::with_capacity(given.len());
     for (index, json) in given.iter().enumerate() {
-        path.push(PathSegment::decode(json, &place.part("segment", index))?);
+        path.push(PathSegment::decode(json, place.part("segment", index))?);
     }
     let length: f64 = path.iter().map(PathSegment::length).sum();
     let segments: f64 = path.iter().map(PathSegment::turns).sum();
@@ -279,7 +280,7 @@ fn motion(fields: &Fields<'_>, path: &[PathSegment]) -> Result<MotionSpec, Scena
 }
 
 impl PathSegment {
-    fn decode(json: &Json, place: &Place) -> Result<Self, ScenarioError> {
+    fn decode(json: &Json<'_>, place: Place<'_>) -> Result<Self, ScenarioError> {
         let kind = match &json.data {
             Data::Object(members) => members.iter().find(|(key, _)| key == "kind").map(|(_, kind)| kind),
             _ => None,

@@ -1,6 +1,6 @@
 //! Fields of a scenario, and errors that name them.
 
-use crate::json::{Data, Json, QUOTED};
+use crate::json::{Data, Json, Member, QUOTED};
 use std::fmt;
 
 /// Largest magnitude of a number in a scenario, in its unit, and of the length and the duration of a path.
@@ -14,25 +14,33 @@ pub const LIMIT: f64 = 1e10;
 pub struct ScenarioError {
     pub(super) scenario: String,
     line: usize,
-    /// Place and field; boxed, because errors are returned by value everywhere.
-    about: Box<(Place, Option<String>)>,
+    /// Boxed, because errors are returned by value everywhere.
+    about: Box<About>,
     message: String,
+}
+
+/// The place of a fault.
+#[derive(Clone, Debug, PartialEq)]
+struct About {
+    agent: Option<String>,
+    part: Option<(&'static str, usize)>,
+    field: Option<String>,
 }
 
 impl ScenarioError {
     /// The agent that it is about, as messages name it: "agent 7".
     pub fn agent(&self) -> Option<&str> {
-        self.about.0.agent.as_deref()
+        self.about.agent.as_deref()
     }
 
     /// "segment" or "piece", and which one, counted from 1.
     pub fn part(&self) -> Option<(&'static str, usize)> {
-        self.about.0.part
+        self.about.part
     }
 
     /// The field.
     pub fn field(&self) -> Option<&str> {
-        self.about.1.as_deref()
+        self.about.field.as_deref()
     }
 
     /// Line of the text, counted from 1. It is not part of the message.
@@ -55,47 +63,48 @@ impl fmt::Display for ScenarioError {
 impl std::error::Error for ScenarioError {}
 
 /// The present place in a scenario.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Place {
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Place<'n> {
     /// Its number, or its place in the file where it has none.
-    pub(super) agent: Option<String>,
+    pub(super) agent: Option<&'n str>,
     /// Segment of the path or piece of the profile, counted from 1.
     pub(super) part: Option<(&'static str, usize)>,
 }
 
-impl Place {
+impl<'n> Place<'n> {
     /// The error at this place; `field` is empty where the place as a whole is meant.
-    pub(super) fn error(&self, line: usize, field: &str, problem: impl fmt::Display) -> ScenarioError {
+    pub(super) fn error(self, line: usize, field: &str, problem: impl fmt::Display) -> ScenarioError {
         let part = self.part.map(|(part, number)| format!("{part} {number}"));
         let field = Some(field.to_owned()).filter(|field| !field.is_empty());
-        let place: Vec<String> = [self.agent.clone(), part, field.clone()].into_iter().flatten().collect();
+        let place: Vec<&str> = [self.agent, part.as_deref(), field.as_deref()].into_iter().flatten().collect();
         let colon = if place.is_empty() { "" } else { ": " };
         let message = format!("{}{colon}{problem}", place.join(", "));
-        ScenarioError { scenario: String::new(), line, about: Box::new((self.clone(), field)), message }
+        let about = About { agent: self.agent.map(str::to_owned), part: self.part, field };
+        ScenarioError { scenario: String::new(), line, about: Box::new(about), message }
     }
 
-    pub(super) fn part(&self, name: &'static str, index: usize) -> Self {
-        Self { agent: self.agent.clone(), part: Some((name, index + 1)) }
+    pub(super) fn part(self, name: &'static str, index: usize) -> Self {
+        Self { part: Some((name, index + 1)), ..self }
     }
 
     /// The fields of an object that has no others than these.
-    pub(super) fn fields<'j>(&self, json: &'j Json, known: &[&str]) -> Result<Fields<'j>, ScenarioError> {
+    pub(super) fn fields(self, json: &'n Json<'_>, known: &[&str]) -> Result<Fields<'n>, ScenarioError> {
         self.fields_inside(json, "", known)
     }
 
     /// The same for an object within the one that the place names; `inside` precedes its fields in messages.
-    fn fields_inside<'j>(
-        &self,
-        json: &'j Json,
+    fn fields_inside(
+        self,
+        json: &'n Json<'_>,
         inside: &'static str,
         known: &[&str],
-    ) -> Result<Fields<'j>, ScenarioError> {
+    ) -> Result<Fields<'n>, ScenarioError> {
         let Data::Object(members) = &json.data else {
             return Err(self.error(json.line, "", format!("{} where an object is expected", brief(json))));
         };
-        let fields = Fields { place: self.clone(), inside, line: json.line, members };
+        let fields = Fields { place: self, inside, line: json.line, members };
         for (index, (key, value)) in members.iter().enumerate() {
-            if !known.contains(&key.as_str()) {
+            if !known.contains(&&**key) {
                 let problem = format!("unknown key; known are {}", known.join(", "));
                 return Err(fields.error(value.line, &shortened(key), problem));
             }
@@ -110,11 +119,11 @@ impl Place {
 
 /// The members of an object whose keys are known.
 pub(super) struct Fields<'j> {
-    pub(super) place: Place,
+    pub(super) place: Place<'j>,
     /// Text that precedes its fields in messages.
     inside: &'static str,
     pub(super) line: usize,
-    members: &'j [(String, Json)],
+    members: &'j [Member<'j>],
 }
 
 impl<'j> Fields<'j> {
@@ -127,19 +136,19 @@ impl<'j> Fields<'j> {
         self.error(self.get(field).map_or(self.line, |json| json.line), field, problem)
     }
 
-    pub(super) fn get(&self, field: &str) -> Option<&'j Json> {
+    pub(super) fn get(&self, field: &str) -> Option<&'j Json<'j>> {
         self.members.iter().find(|(key, _)| key == field).map(|(_, value)| value)
     }
 
-    pub(super) fn required(&self, field: &str) -> Result<&'j Json, ScenarioError> {
+    pub(super) fn required(&self, field: &str) -> Result<&'j Json<'j>, ScenarioError> {
         self.get(field).ok_or_else(|| self.error(self.line, field, "missing"))
     }
 
-    pub(super) fn unexpected(&self, field: &str, found: &Json, expected: &str) -> ScenarioError {
+    pub(super) fn unexpected(&self, field: &str, found: &Json<'_>, expected: &str) -> ScenarioError {
         self.error(found.line, field, format!("{} where {expected} is expected", brief(found)))
     }
 
-    pub(super) fn array(&self, field: &str) -> Result<&'j [Json], ScenarioError> {
+    pub(super) fn array(&self, field: &str) -> Result<&'j [Json<'j>], ScenarioError> {
         let found = self.required(field)?;
         match &found.data {
             Data::Array(elements) => Ok(elements),
@@ -190,7 +199,7 @@ pub fn figure(number: f64) -> String {
 }
 
 /// A value as messages quote it.
-pub(super) fn brief(json: &Json) -> String {
+pub(super) fn brief(json: &Json<'_>) -> String {
     match &json.data {
         Data::Null => "null".into(),
         Data::Bool(value) => value.to_string(),

@@ -13,13 +13,13 @@ pub(super) struct Name {
 }
 
 impl Name {
-    pub(super) fn of(json: &Json, index: usize) -> Self {
+    pub(super) fn of(json: &Json<'_>, index: usize) -> Self {
         let given = |name: &str| match &json.data {
             Data::Object(members) => members.iter().find(|(key, _)| key == name).map(|(_, value)| value),
             _ => None,
         };
-        let text = |value: Option<&Json>| match value {
-            Some(Json { data: Data::Text(text), .. }) if labels::fault(text).is_none() => text.clone(),
+        let text = |value: Option<&Json<'_>>| match value {
+            Some(Json { data: Data::Text(text), .. }) if labels::fault(text).is_none() => text.to_string(),
             _ => String::new(),
         };
         // A text of digits could be meant for a number.

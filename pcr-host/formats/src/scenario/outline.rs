@@ -6,7 +6,7 @@ use crate::footprint::Footprint;
 use crate::json::{Data, Json};
 
 /// The radius and the footprint of what has either.
-pub(super) fn outline(fields: &Fields<'_>, place: &Place) -> Result<(f64, Option<Footprint>), ScenarioError> {
+pub(super) fn outline(fields: &Fields<'_>, place: Place<'_>) -> Result<(f64, Option<Footprint>), ScenarioError> {
     if fields.get("footprint").is_none() {
         return Ok((fields.number("radius", Range::Positive)?, None));
     }
@@ -17,7 +17,7 @@ pub(super) fn outline(fields: &Fields<'_>, place: &Place) -> Result<(f64, Option
     Ok((footprint.reach(), Some(footprint)))
 }
 
-fn footprint(outer: &Fields<'_>, place: &Place) -> Result<Footprint, ScenarioError> {
+fn footprint(outer: &Fields<'_>, place: Place<'_>) -> Result<Footprint, ScenarioError> {
     let fields = outer.object("footprint", "footprint.", &["polygon", "overhang", "growth"])?;
     let corners = fields.array("polygon")?.iter().enumerate().map(|(index, json)| {
         let corner = place.part("corner", index).fields(json, &["ahead", "left"])?;
@@ -39,7 +39,7 @@ pub(super) fn loads(agent: &Fields<'_>, segments: usize) -> Result<Vec<Load>, Sc
     for (index, json) in agent.array("loads")?.iter().enumerate() {
         let place = agent.place.part("load", index);
         let fields = place.fields(json, &["segments", "radius", "footprint"])?;
-        let (radius, footprint) = outline(&fields, &place)?;
+        let (radius, footprint) = outline(&fields, place)?;
         let range = fields.array("segments")?;
         let ends: Vec<usize> = range.iter().map(|end| segment(&fields, end, segments)).collect::<Result<_, _>>()?;
         let line = fields.required("segments")?.line;
@@ -57,7 +57,7 @@ pub(super) fn loads(agent: &Fields<'_>, segments: usize) -> Result<Vec<Load>, Sc
 }
 
 /// The place of a segment by its number, which counts from 1.
-fn segment(fields: &Fields<'_>, json: &Json, segments: usize) -> Result<usize, ScenarioError> {
+fn segment(fields: &Fields<'_>, json: &Json<'_>, segments: usize) -> Result<usize, ScenarioError> {
     let number = match &json.data {
         Data::Number(text) => whole(text).and_then(|number| usize::try_from(number).ok()),
         _ => None,

@@ -5,7 +5,7 @@ use super::{Agent, KINK, MotionSpec, PathSegment, TURN};
 use crate::json::{Data, Json};
 
 /// Whether a segment in a file is one.
-pub(super) fn is_given(segment: &Json) -> bool {
+pub(super) fn is_given(segment: &Json<'_>) -> bool {
     let Data::Object(members) = &segment.data else { return false };
     members.iter().any(|(key, value)| key == "kind" && matches!(&value.data, Data::Text(kind) if kind == "turn"))
 }
