@@ -127,10 +127,13 @@ impl Sweep {
         pass.each(told, find, |found| {
             held.extend(&mut all, found, 0, "locks").map_err(|large| E::from(ImportError::new(large.to_string())))
         })?;
+        // The number of nodes, and the places as numbers of their own: arrays are compared by a loop.
+        let places = |&Found { places: [first, second], .. }: &Found| {
+            (u8::from(!self.is_edge(first)) + u8::from(!self.is_edge(second)), first, second)
+        };
         all.par_sort_unstable_by(|a: &Found, b: &Found| {
-            let nodes = |found: &Found| found.places.map(|place| !self.is_edge(place));
             let lengths = |k: usize| a.lengths[k][0].total_cmp(&b.lengths[k][0]);
-            (nodes(a), a.places).cmp(&(nodes(b), b.places)).then(lengths(0)).then(lengths(1))
+            places(a).cmp(&places(b)).then_with(|| lengths(0)).then_with(|| lengths(1))
         });
         for stretch in all.chunks(STRETCH) {
             let parts = stretch.par_chunks(STRETCH / 16).map(&make);
@@ -167,10 +170,10 @@ impl Sweep {
         pairs: &[(usize, [usize; 2])],
         motion: impl Fn(usize) -> Option<Motion<'m, f64>> + Copy,
     ) -> Result<Vec<(usize, Extents)>, ImportError> {
-        let mut row = Vec::new();
+        let (mut row, mut pieces) = (Vec::new(), vec![Piece::EMPTY; PIECES]);
         for group in pairs.chunk_by(|a, b| a.0 == b.0) {
             let Some(&(other, _)) = group.first() else { continue };
-            let extents = self.extents(group.iter().map(|&(_, discs)| discs), motion)?;
+            let extents = self.extents(group.iter().map(|&(_, discs)| discs), motion, &mut pieces)?;
             row.extend(extents.into_iter().map(|extents| (other, extents)));
         }
         Ok(row)
@@ -180,13 +183,14 @@ impl Sweep {
         self.discs.get(disc).and_then(|disc| self.rides.get(disc.agent)).map_or(usize::MAX, |ride| ride.1 as usize)
     }
 
-    /// The extents of the regions of some pairs of discs of two tracks, of which those that overlap are one.
+    /// The extents of the regions of some pairs of discs of two tracks, of which those that overlap are one. The room for pieces grows.
     fn extents<'m>(
         &self,
         pairs: impl Iterator<Item = [usize; 2]>,
         motion: impl Fn(usize) -> Option<Motion<'m, f64>>,
+        pieces: &mut Vec<Piece<f64>>,
     ) -> Result<Vec<Extents>, ImportError> {
-        let (mut extents, mut pieces) = (Vec::new(), vec![Piece::EMPTY; PIECES]);
+        let mut extents = Vec::new();
         for [own, other] in pairs {
             let swap = other < own;
             let [first, second] = if swap { [other, own] } else { [own, other] };
@@ -195,7 +199,7 @@ impl Sweep {
                 let disc = &self.discs[disc];
                 self.rides[disc.agent].0.on_edge(disc.on_agent([range.lo, range.hi]))
             };
-            while let Err(full) = overlaps(&a, &b, &mut pieces, |region| {
+            while let Err(full) = overlaps(&a, &b, pieces, |region| {
                 let lengths = [on(first, region.length()), on(second, region.other_length())];
                 extents.push(if swap { [lengths[1], lengths[0]] } else { lengths });
             }) {
