@@ -6,13 +6,13 @@
 use crate::bodies::Bodies;
 use crate::certify::Proof;
 use crate::check::Verdict;
-use crate::fleet::{Fleet, Format, HostEcm, HostOrders, Refused, rounding};
+use crate::fleet::{Fleet, Format, Refused, rounding};
 use crate::regions::{Failure, Region, Sheet, Told, tables};
 use crate::rows::Grid;
 use pcr_certify::data::Table;
+use pcr_core::Motion;
 #[cfg(feature = "micromath")]
 use pcr_core::scalar::Micro;
-use pcr_core::{Ecm, Full, Motion, Orders, TableError};
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::Scenario;
 
@@ -28,18 +28,6 @@ pub trait Compiled: Sized {
         Self: Format;
     /// [`rounded`](crate::fleet::rounded).
     fn rounded(scenario: &Scenario) -> Result<Option<String>, Refused>;
-    /// [`build_ecm`](crate::fleet::build_ecm).
-    fn table(motions: &[Motion<'_, Self>]) -> Result<HostEcm<Self>, Full>
-    where
-        Self: Format;
-    /// [`build_orders`](crate::fleet::build_orders).
-    fn orders(motions: &[Motion<'_, Self>]) -> Result<HostOrders<Self>, Full>
-    where
-        Self: Format;
-    /// [`Ecm::fill_row`].
-    fn row(table: &mut HostEcm<Self>, motions: &[Motion<'_, Self>], ego: usize) -> Result<(), TableError>
-    where
-        Self: Format;
     /// The regions of one agent of a sheet.
     fn regions(
         sheet: &Sheet<'_, Self>,
@@ -71,15 +59,6 @@ macro_rules! compiled {
             }
             fn rounded(scenario: &Scenario) -> Result<Option<String>, Refused> {
                 rounding::generic::<Self>(scenario)
-            }
-            fn table(motions: &[Motion<'_, Self>]) -> Result<HostEcm<Self>, Full> {
-                Ecm::grown(motions)
-            }
-            fn orders(motions: &[Motion<'_, Self>]) -> Result<HostOrders<Self>, Full> {
-                Orders::grown(motions)
-            }
-            fn row(table: &mut HostEcm<Self>, motions: &[Motion<'_, Self>], ego: usize) -> Result<(), TableError> {
-                table.fill_row(motions, ego)
             }
             fn regions(
                 sheet: &Sheet<'_, Self>,

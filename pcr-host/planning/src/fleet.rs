@@ -12,11 +12,13 @@ use crate::compiled::Compiled;
 use crate::memory;
 use pcr_certify::data::Angle;
 use pcr_core::{
-    Ecm, Full, Invalid, Limits, Motion, Order, Orders, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef,
-    Radians, Region, Scalar, Segment, TableError, Turn,
+    Ecm, Full, Invalid, Limits, Motion, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef, Radians, Region,
+    Scalar, Segment, TableError, Turn,
 };
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
+use pcr_tables::Tables;
+pub use pcr_tables::{HostEcm, HostOrders};
 pub(crate) use rounding::Rounding;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -32,7 +34,7 @@ fn in_angles(radians: f64) -> Option<f64> {
 }
 
 /// A number format that scenario files can be read into.
-pub trait Format: Compiled + Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
+pub trait Format: Compiled + Tables + Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
     /// Name on the command line and in the output.
     const NAME: &'static str;
     /// The nearest number of the format.
@@ -375,9 +377,6 @@ fn waiting<S: Format>(agent: &Agent) -> MotionSpec {
     MotionSpec::Profile { v0, pieces: pieces.collect() }
 }
 
-/// A table on the heap.
-pub type HostEcm<S> = Ecm<S, Vec<Region>, Vec<Piece<S>>>;
-
 /// The extended collision map of a fleet of any size: the storage grows until it is large enough.
 ///
 /// # Errors
@@ -385,9 +384,6 @@ pub type HostEcm<S> = Ecm<S, Vec<Region>, Vec<Piece<S>>>;
 pub fn build_ecm<S: Format>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Full> {
     S::table(motions)
 }
-
-/// A table of passing orders on the heap.
-pub type HostOrders<S> = Orders<S, Vec<Region>, Vec<Piece<S>>, Vec<Order<S>>>;
 
 /// The table of passing orders of a fleet of any size, without decisions: the storage grows until it is large enough for all
 /// regions.
