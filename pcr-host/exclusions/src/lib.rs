@@ -21,7 +21,6 @@
 //! cover     covers of a graph by cliques, and a lower bound of their number
 //! edit      changes of a text at spans; the rest is kept byte for byte
 //! json      JSON with the span of every value
-//! yaml      YAML with the span of every value
 //! settings  options and warnings of writers
 //! outline   polygons around corridors
 //! nav2, opentcs, rmf, vda5050, own   the formats
@@ -45,7 +44,6 @@ mod settings;
 mod vda5050;
 mod way;
 mod write;
-mod yaml;
 
 pub use audit::{Audit, Gap, Needless, Spot};
 pub use nearest::{Approach, nearest, stretch};

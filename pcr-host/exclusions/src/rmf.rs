@@ -17,9 +17,9 @@ pub(crate) use cut::prepare;
 use crate::audit::groups;
 use crate::edit::{Edits, column, ending};
 use crate::settings::Notes;
-use crate::yaml::{Spanned, Style, Value as Kind};
 use crate::{Claim, Rules};
-use pcr_formats::import::{Id, ImportError, Imported, is_navigation_graph, yaml};
+use pcr_formats::import::{Id, ImportError, Imported, is_navigation_graph};
+use pcr_formats::yaml::{self, Document, Spanned, Style, Value as Kind};
 use pcr_planning::locks::Locks;
 use serde_json::{Value, json};
 use std::collections::{BTreeSet, HashMap};
@@ -42,11 +42,10 @@ struct Form {
 impl Form {
     const LANE: usize = 2;
 
-    fn of(text: &str) -> Result<(Self, Value), ImportError> {
-        let root = yaml(text)?;
+    fn of(text: &str, root: &Value) -> Self {
         let quoted = serde_json::from_str::<serde::de::IgnoredAny>(text).is_ok();
-        let graph = is_navigation_graph(&root);
-        Ok((Self { vertex: if graph { 2 } else { 4 }, typed: !graph, quoted }, root))
+        let graph = is_navigation_graph(root);
+        Self { vertex: if graph { 2 } else { 4 }, typed: !graph, quoted }
     }
 
     /// A parameter, with its name and value.
@@ -73,7 +72,7 @@ fn place_of(id: &Id) -> Option<(&str, usize)> {
 
 /// Reads the groups.
 pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
-    let (form, root) = Form::of(text)?;
+    let (form, root, _) = opened(text)?;
     let mut names: Vec<String> = Vec::new();
     let mut known: HashMap<String, usize> = HashMap::new();
     let mut group = |kind: &str, id: &Id, parameters: usize| -> Result<Vec<usize>, ImportError> {
@@ -109,18 +108,31 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
     Ok(Rules { groups, ..Rules::of_ways(imported, ways, nodes) })
 }
 
-fn spans(text: &str) -> Result<Spanned, ImportError> {
-    Spanned::of(text).ok_or_else(|| ImportError::new("YAML in which the places of values cannot be told"))
+/// A file: its form, all of it, and the same with its places.
+fn opened(text: &str) -> Result<(Form, Value, Document<'_>), ImportError> {
+    let document = Document::read(text).map_err(yaml::Error::refused)?;
+    let root = document.value().map_err(yaml::Error::refused)?;
+    Ok((Form::of(text, &root), root, document))
+}
+
+/// A file to change: its form, and its values with their places.
+fn placed(text: &str) -> Result<(Form, Spanned<'_>), ImportError> {
+    let (form, _, document) = opened(text)?;
+    if document.is_placed {
+        Ok((form, document.root))
+    } else {
+        Err(ImportError::new("YAML in which the places of values cannot be told"))
+    }
 }
 
 /// The value of a parameter; in buildings a parameter is a list of type and value.
-fn typed<'a>(parameters: Option<&'a Spanned>, name: &str) -> Option<&'a str> {
+fn typed<'a>(parameters: Option<&'a Spanned<'_>>, name: &str) -> Option<&'a str> {
     let given = parameters?.get(name)?;
     given.list().get(1).unwrap_or(given).text()
 }
 
 /// Refuses to change an element whose text also stands for another one.
-fn own(element: &Spanned, kind: &str, id: &Id) -> Result<(), ImportError> {
+fn own(element: &Spanned<'_>, kind: &str, id: &Id) -> Result<(), ImportError> {
     let problem =
         || format!("{kind} {id}: there is an anchor or an alias in it; what is shared cannot be changed for one");
     if element.shared { Err(ImportError::new(problem())) } else { Ok(()) }
@@ -130,16 +142,15 @@ fn own(element: &Spanned, kind: &str, id: &Id) -> Result<(), ImportError> {
 pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks, notes: &mut Notes) -> Result<String, ImportError> {
     let layout = &imported.layout;
     let group = united(layout, locks);
-    let (form, _) = Form::of(text)?;
+    let (form, root) = placed(text)?;
     let name = |node: usize| {
         let name = json!(format!("{PREFIX}{}", layout.nodes[group[node]].id));
         if form.typed { format!("[1, {name}]") } else { name.to_string() }
     };
     notes.groups = group.iter().collect::<BTreeSet<_>>().len();
-    let root = spans(text)?;
     let mut edits = Edits::default();
     let mut replaced = BTreeSet::new();
-    let element = |kind: &str, id: &Id| -> Option<&Spanned> {
+    let element = |kind: &str, id: &Id| -> Option<&Spanned<'_>> {
         let (level, place) = place_of(id)?;
         root.get("levels")?.get(level)?.get(kind)?.list().get(place)
     };
@@ -165,7 +176,7 @@ pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks, notes: &mut 
 }
 
 /// Sets the group in the parameters of a lane or a vertex.
-fn set(edits: &mut Edits, text: &str, form: Form, element: &Spanned, place: usize, group: &str) -> Option<()> {
+fn set(edits: &mut Edits, text: &str, form: Form, element: &Spanned<'_>, place: usize, group: &str) -> Option<()> {
     let whole = form.parameter("mutex", group);
     let Kind::Sequence(style, list) = &element.value else { return None };
     if let Some(parameters) = list.get(place) {
@@ -175,7 +186,8 @@ fn set(edits: &mut Edits, text: &str, form: Form, element: &Spanned, place: usiz
             (None, Style::Flow, _, Some(last)) => edits.insert(last.value.span.end, format!(", {whole}")),
             (None, Style::Flow, ..) => edits.insert(parameters.span.start + 1, whole),
             (None, Style::Block, Some(first), _) => {
-                edits.insert(first.at, format!("{whole}{}{}", ending(text), " ".repeat(column(text, first.at))));
+                let at = first.key.span.start;
+                edits.insert(at, format!("{whole}{}{}", ending(text), " ".repeat(column(text, at))));
             }
             (None, Style::Block, ..) => return None,
         }

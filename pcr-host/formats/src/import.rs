@@ -65,7 +65,6 @@ mod vda5050;
 mod vehicle;
 mod warnings;
 mod xml;
-mod yaml;
 
 pub use grid::GridPlan;
 pub use layout::{Edge, Id, Layout, Node};
@@ -78,11 +77,11 @@ pub use useful::Kind;
 pub use value::parse as parse_json;
 pub use vehicle::{CORNER_RADIUS, HEADING, Options, TOLERANCE, Vehicle};
 pub use warnings::{Warnings, shortened};
-pub use yaml::yaml;
 
 use crate::mark::unmarked;
 use crate::own;
 use crate::scenario::{Agent, Scenario};
+use crate::yaml::{self, Document};
 use names::name_printably;
 use serde_json::Value;
 use std::path::Path;
@@ -351,7 +350,8 @@ fn report_routes(layout: &Layout, scenario: &Scenario, radius: f64, warnings: &m
 fn of_fleet(text: &str, warnings: &mut Warnings) -> Result<Given, ImportError> {
     // JSON is YAML, too, but says better what is wrong with it.
     let json = unmarked(text).trim_start().starts_with('{');
-    let value = if json { value::parse(text) } else { yaml(text) }?;
+    let of_yaml = || Document::read(text)?.value();
+    let value = if json { value::parse(text) } else { of_yaml().map_err(yaml::Error::refused) }?;
     if factsheet::is_factsheet(&value) { factsheet::read(&value, warnings) } else { rmf::fleet(&value) }
 }
 

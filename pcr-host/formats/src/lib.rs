@@ -10,6 +10,7 @@
 //! paper      the embedded scenario and the paper's numbers
 //! plane      points and angles of the plane
 //! random     random numbers that are the same on every machine
+//! yaml       YAML with the place of every value                 Document
 //! ```
 
 pub mod footprint;
@@ -24,3 +25,4 @@ pub mod paper;
 pub mod plane;
 pub mod random;
 pub mod scenario;
+pub mod yaml;

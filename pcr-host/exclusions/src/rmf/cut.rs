@@ -1,10 +1,10 @@
 //! Lanes cut into parts, and one lane for each direction.
 
-use super::{Form, own, place_of, spans, typed};
+use super::{Form, own, place_of, placed, typed};
 use crate::edit::{Edits, column, ending, rest_of_line};
 use crate::settings::Notes;
-use crate::yaml::{Spanned, Style, Value};
 use pcr_formats::import::{ImportError, Imported};
+use pcr_formats::yaml::{Spanned, Style, Value};
 use std::collections::{BTreeMap, HashMap};
 
 /// Cuts lanes into equal parts no longer than `most` \[m\], if that is asked for, and makes two lanes of each that leads both ways.
@@ -14,13 +14,12 @@ pub(crate) fn prepare(
     most: Option<f64>,
     notes: &mut Notes,
 ) -> Result<String, ImportError> {
-    let (form, _) = Form::of(text)?;
-    let root = spans(text)?;
+    let (form, root) = placed(text)?;
     let mut edits = Edits::default();
     let lanes: HashMap<(&str, usize), usize> =
         imported.layout.edges.iter().enumerate().filter_map(|(k, edge)| Some((place_of(&edge.id)?, k))).collect();
     for level in root.get("levels").map_or(&[][..], Spanned::members) {
-        let (name, level) = (level.name.as_str(), &level.value);
+        let (name, level) = (level.key.text().unwrap_or_default(), &level.value);
         let (Some(list), Some(vertices)) = (level.get("lanes"), level.get("vertices")) else { continue };
         let mut cutter = Cutter { form, at: corners(vertices), added: Vec::new(), between: BTreeMap::new() };
         let mut further = Vec::new();
@@ -68,7 +67,7 @@ pub(crate) fn prepare(
 }
 
 /// Why a lane cannot be cut.
-fn whole(lane: &Spanned) -> Option<&'static str> {
+fn whole(lane: &Spanned<'_>) -> Option<&'static str> {
     let has = |name: &str| typed(lane.list().get(Form::LANE), name).is_some_and(|value| !value.is_empty());
     if has("demo_mock_floor_name") || has("demo_mock_lift_name") {
         Some("it stands for a lift")
@@ -82,8 +81,8 @@ fn whole(lane: &Spanned) -> Option<&'static str> {
 }
 
 /// Positions of the vertices, as in the file.
-fn corners(vertices: &Spanned) -> Vec<Option<[f64; 2]>> {
-    let number = |vertex: &Spanned, k: usize| vertex.list().get(k)?.text()?.parse::<f64>().ok();
+fn corners(vertices: &Spanned<'_>) -> Vec<Option<[f64; 2]>> {
+    let number = |vertex: &Spanned<'_>, k: usize| vertex.list().get(k)?.text()?.parse::<f64>().ok();
     vertices.list().iter().map(|vertex| Some([number(vertex, 0)?, number(vertex, 1)?])).collect()
 }
 
@@ -123,11 +122,11 @@ impl Cutter {
 }
 
 /// The text of a lane with other ends, for one way only.
-fn copy(text: &str, lane: &Spanned, ends: [usize; 2], back: bool) -> String {
+fn copy(text: &str, lane: &Spanned<'_>, ends: [usize; 2], back: bool) -> String {
     let begin = lane.span.start;
     let mut edits = Edits::default();
     let mut replace =
-        |old: &Spanned, new: &str| edits.replace(old.span.start - begin..old.span.end - begin, old.instead(new));
+        |old: &Spanned<'_>, new: &str| edits.replace(old.span.start - begin..old.span.end - begin, old.instead(new));
     for (end, old) in ends.iter().zip(lane.list()) {
         replace(old, &end.to_string());
     }
@@ -149,7 +148,7 @@ fn copy(text: &str, lane: &Spanned, ends: [usize; 2], back: bool) -> String {
 }
 
 /// Adds elements to the end of a list, a line each where it has a line each. Each comes with the column in which its text began.
-fn append(edits: &mut Edits, text: &str, list: &Spanned, further: &[(usize, String)]) {
+fn append(edits: &mut Edits, text: &str, list: &Spanned<'_>, further: &[(usize, String)]) {
     let Value::Sequence(style, elements) = &list.value else { return };
     let Some(last) = elements.last() else { return };
     let margin = column(text, list.span.start);

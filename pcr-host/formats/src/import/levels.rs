@@ -6,11 +6,9 @@
 //! rotation and the scale, and their places the translation, each as a mean.
 
 use super::value::Object;
-use super::yaml::yaml;
 use super::{ImportError, Warnings};
-use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, Visitor};
+use crate::yaml::{self, Document};
 use serde_json::Value;
-use std::fmt;
 
 /// Relative difference of two scales of a level that goes without a warning.
 const SPREAD: f64 = 0.01;
@@ -55,12 +53,16 @@ pub(super) struct Reference<'j> {
 impl<'j> Reference<'j> {
     /// That of the building in a file.
     pub(super) fn of(
-        text: &str,
+        document: &Document<'_>,
         building: &Object<'j>,
         levels: &Object<'j>,
         warnings: &mut Warnings,
     ) -> Result<Self, ImportError> {
-        let name = building.text("reference_level_name")?.map(str::to_owned).or_else(|| first(text));
+        let name = match building.text("reference_level_name")? {
+            Some(name) => Some(name.to_owned()),
+            // The first one of the file, whose order a value of JSON does not have.
+            None => document.names("levels").map_err(yaml::Error::refused)?.into_iter().next(),
+        };
         let Some((name, value)) = levels.members().find(|(level, _)| name.as_ref().is_none_or(|name| *level == name))
         else {
             return match name {
@@ -237,39 +239,4 @@ fn scale(level: &Object<'_>, vertices: &[Vertex], warnings: &mut Warnings) -> Re
         warnings.add(&level.name, format!("its measurements differ from their mean by up to {percent:.1} %"));
     }
     Ok(Some(mean))
-}
-
-/// The first level of a building, in the order of the file.
-fn first(text: &str) -> Option<String> {
-    #[derive(serde::Deserialize)]
-    struct Building {
-        levels: First,
-    }
-    let building: Building = yaml(text).ok()?;
-    building.levels.0
-}
-
-/// The first key of a map.
-struct First(Option<String>);
-
-impl<'de> Deserialize<'de> for First {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Keys;
-        impl<'de> Visitor<'de> for Keys {
-            type Value = First;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a map")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<First, A::Error> {
-                let mut first = None;
-                while let Some((key, _)) = map.next_entry::<String, IgnoredAny>()? {
-                    first = first.or(Some(key));
-                }
-                Ok(First(first))
-            }
-        }
-        deserializer.deserialize_map(Keys)
-    }
 }

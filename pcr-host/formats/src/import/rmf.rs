@@ -10,10 +10,10 @@ use super::layout::{Edge, Id, Layout, Node};
 use super::levels::{Placing, Reference, Vertex, ends, parameter, vertices};
 use super::value::Object;
 use super::vehicle::Given;
-use super::yaml::yaml;
 use super::{ImportError, Options, Warnings, facing};
 use crate::footprint::Footprint;
 use crate::scenario::Placed;
+use crate::yaml::{self, Document};
 use serde_json::Value;
 use std::collections::{BTreeSet, HashMap};
 
@@ -62,7 +62,8 @@ pub(super) fn read(
     outline: Option<&Footprint>,
     warnings: &mut Warnings,
 ) -> Result<Layout, ImportError> {
-    let value: Value = yaml(text)?;
+    let document = Document::read(text).map_err(yaml::Error::refused)?;
+    let value = document.value().map_err(yaml::Error::refused)?;
     let root = Object::new("building", &value)?;
     if root.get("rmf_fleet").is_some() {
         return Err(ImportError::new("it is the configuration of a fleet; give it beside a building, with --fleet"));
@@ -75,7 +76,7 @@ pub(super) fn read(
     }
     let reference = match root.text("coordinate_system")? {
         None if graph => None,
-        None | Some("reference_image") => Some(Reference::of(text, &root, &levels, warnings)?),
+        None | Some("reference_image") => Some(Reference::of(&document, &root, &levels, warnings)?),
         Some("cartesian_meters") => None,
         Some(other) => return Err(ImportError::new(format!("building, coordinate_system: {other} is not read"))),
     };

@@ -1,0 +1,150 @@
+//! What a scalar stands for.
+//!
+//! Without a tag or quotes: null, the booleans of YAML 1.1 (`yes` and `off` are some), integers in decimal, hexadecimal, octal
+//! (`0o17`) and binary, with single `_` between their digits, decimal numbers, and otherwise a text. Dates are texts. With a zero before
+//! other digits a number is not an integer.
+
+use super::Kind;
+use serde_json::{Number, Value};
+
+/// The value of a scalar, or why it has none.
+pub(super) fn value(kind: Kind, text: &str) -> Result<Value, String> {
+    // Blanks can only be around what is in quotes.
+    let inner = text.trim_matches([' ', '\t', '\r', '\n']);
+    let read = match kind {
+        Kind::Text => return Ok(Value::String(text.to_owned())),
+        Kind::Any | Kind::Unknown | Kind::Merge => return plain(text),
+        Kind::Null => return Ok(Value::Null),
+        Kind::Flag => flag(inner).map(Value::Bool),
+        Kind::Integer => integer(inner).map(Value::Number),
+        Kind::Float => float(inner)?.map(Value::Number),
+        Kind::Sequence | Kind::Mapping => None,
+    };
+    read.ok_or_else(|| format!("{text:?} is not what its tag tells"))
+}
+
+fn plain(text: &str) -> Result<Value, String> {
+    if text.starts_with(|first: char| first.is_ascii_digit() || matches!(first, '+' | '-' | '.')) {
+        let number = match integer(text) {
+            Some(number) => Some(number),
+            None => float(text)?,
+        };
+        return Ok(number.map_or_else(|| Value::String(text.to_owned()), Value::Number));
+    }
+    if is_null(text) {
+        return Ok(Value::Null);
+    }
+    Ok(flag(text).map_or_else(|| Value::String(text.to_owned()), Value::Bool))
+}
+
+/// Whether it stands for nothing if it has no tag and no quotes.
+pub(super) fn is_null(text: &str) -> bool {
+    text.is_empty() || text == "~" || text.eq_ignore_ascii_case("null")
+}
+
+fn flag(text: &str) -> Option<bool> {
+    let is = |words: [&str; 4]| words.iter().any(|word| text.eq_ignore_ascii_case(word));
+    if is(["true", "yes", "on", "y"]) { Some(true) } else { is(["false", "no", "off", "n"]).then_some(false) }
+}
+
+/// An integer of 64 bits.
+pub(super) fn integer(text: &str) -> Option<Number> {
+    let positive = text.strip_prefix('+').unwrap_or(text);
+    let unsigned = text.strip_prefix('-').unwrap_or(positive);
+    let (radix, digits) = match unsigned.get(..2) {
+        Some("0x" | "0X") => (16, unsigned.get(2..)?),
+        Some("0o" | "0O") => (8, unsigned.get(2..)?),
+        Some("0b" | "0B") => (2, unsigned.get(2..)?),
+        _ if unsigned != "0" && unsigned.starts_with('0') => return None,
+        _ => (10, unsigned),
+    };
+    let mut magnitude: u64 = 0;
+    let mut is_after_digit = false;
+    for sign in digits.chars() {
+        is_after_digit = match sign.to_digit(radix) {
+            Some(digit) => {
+                magnitude = magnitude.checked_mul(radix.into())?.checked_add(digit.into())?;
+                true
+            }
+            None if sign == '_' && is_after_digit => false,
+            None => return None,
+        };
+    }
+    match () {
+        () if !is_after_digit => None,
+        () if text.starts_with('-') => 0_i64.checked_sub_unsigned(magnitude).map(Number::from),
+        () => Some(Number::from(magnitude)),
+    }
+}
+
+/// A finite number; `None` for what is none.
+fn float(text: &str) -> Result<Option<Number>, String> {
+    let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
+    let not_finite = || format!("{text} is not a finite number");
+    if [".inf", ".nan"].iter().any(|name| unsigned.eq_ignore_ascii_case(name)) {
+        return Err(not_finite());
+    }
+    // Words such as `inf` are texts here.
+    if !unsigned.starts_with(|first: char| first.is_ascii_digit() || first == '.') {
+        return Ok(None);
+    }
+    match text.parse::<f64>() {
+        Ok(number) => Number::from_f64(number).map(Some).ok_or_else(not_finite),
+        Err(_) => Ok(None),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn scalars_without_tags_are_numbers_words_or_texts() {
+        let cases = [
+            (json!(null), "~ null Null nULL"),
+            (json!(true), "true True yes ON y"),
+            (json!(false), "false FALSE no Off N"),
+            (json!(31), "31 +31 0x1F 0X1f 0o37 0b1_1111 3_1"),
+            (json!(-8), "-8 -0o10 -0x8"),
+            (json!(0), "0 -0 +0"),
+            (json!(u64::MAX), "18446744073709551615 0xffffffffffffffff"),
+            (json!(i64::MIN), "-9223372036854775808"),
+            // With a zero before other digits it may be meant as an octal number: no index of anything.
+            (json!(7.0), "7.0 7. 007 +07.0 70e-1 .7E+1"),
+            (json!(2f64.powi(64)), "18446744073709551616"),
+        ];
+        for (expected, texts) in cases {
+            for text in texts.split(' ') {
+                assert_eq!(value(Kind::Any, text), Ok(expected.clone()), "{text}");
+            }
+        }
+        let texts =
+            "nan inf -Infinity 1__0 _1 1_ 0x 0b2 0o8 0x_1 1_0.5 1e 2001-01-01 12:30 1,5 -- . + ++1 -+1 1f tru << = ١";
+        for text in texts.split(' ') {
+            assert_eq!(value(Kind::Any, text), Ok(json!(text)));
+        }
+        assert_eq!(value(Kind::Any, ""), Ok(Value::Null));
+        for text in ".inf -.INF +.inf .nan 1e999 -1e999 .1e999".split(' ') {
+            assert_eq!(value(Kind::Any, text), Err(format!("{text} is not a finite number")));
+        }
+    }
+
+    #[test]
+    fn tags_are_obeyed() {
+        for (kind, text, expected) in [
+            (Kind::Text, "0x1F", json!("0x1F")),
+            (Kind::Text, "", json!("")),
+            (Kind::Integer, " 0x1F\n", json!(31)),
+            (Kind::Float, "31", json!(31.0)),
+            (Kind::Flag, "off", json!(false)),
+            (Kind::Null, "7", json!(null)),
+        ] {
+            assert_eq!(value(kind, text), Ok(expected));
+        }
+        for (kind, text) in [(Kind::Integer, "1.5"), (Kind::Float, "x"), (Kind::Flag, "1"), (Kind::Integer, "")] {
+            assert_eq!(value(kind, text), Err(format!("{text:?} is not what its tag tells")));
+        }
+        assert!(value(Kind::Float, ".nan").is_err());
+    }
+}
