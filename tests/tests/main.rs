@@ -100,3 +100,4 @@ mod table;
 mod touches;
 mod traffic;
 mod waits;
+mod yaml;
