@@ -3,12 +3,15 @@
 use super::super::axis::TICK_SIZE;
 use super::super::palette::{Colour, DISTINCT};
 use super::super::scene::{Scene, Shape};
-use super::super::svg::{Pixels, Svg, lines, text_width};
+use super::super::svg::{PathData, Pixels, Svg, lines, text_width};
 
 /// Height of a row \[px\].
 const ROW: f64 = 15.0;
 
-/// Width of the sample of an entry with its gap \[px\].
+/// Width of the sample of an entry \[px\].
+const WIDTH: f64 = 14.0;
+
+/// The same with its gap \[px\].
 const SAMPLE: f64 = 19.0;
 
 /// Distance from one entry to the next \[px\].
@@ -114,7 +117,7 @@ impl Legend {
                     &[
                         ("x", &Pixels(entry.x)),
                         ("y", &Pixels(y - 4.0)),
-                        ("width", &"14"),
+                        ("width", &Pixels(WIDTH)),
                         ("height", &"8"),
                         ("fill", fill),
                         ("fill-opacity", &opacity),
@@ -125,14 +128,19 @@ impl Legend {
             };
             match entry.sample {
                 Sample::Trajectory => {
-                    let line = format_args!("M{} {}h14", Pixels(entry.x), Pixels(y)).to_string();
+                    let mut line = PathData::default();
+                    line.move_to([entry.x, y]);
+                    line.line_to([entry.x + WIDTH, y]);
                     svg.empty("path", &[("d", &line), ("stroke", &"#111"), ("stroke-width", &"1.7")]);
                 }
                 Sample::Region => rect(svg, &"#6b7178", 0.3, &"#6b7178"),
                 Sample::Strip => {
                     rect(svg, &"none", 1.0, &"#6b7178");
-                    let lines =
-                        format_args!("M{} {}l4 -8m1 8l4 -8m1 8l4 -8", Pixels(entry.x), Pixels(y + 4.0)).to_string();
+                    let mut lines = PathData::default();
+                    for x in [0.0, 5.0, 10.0].map(|x| entry.x + x) {
+                        lines.move_to([x, y + 4.0]);
+                        lines.line_to([x + 4.0, y - 4.0]);
+                    }
                     svg.empty("path", &[("d", &lines), ("stroke", &"#6b7178"), ("stroke-width", &"0.7")]);
                 }
                 Sample::Agent(colour) => rect(svg, &colour, 0.3, &colour),
