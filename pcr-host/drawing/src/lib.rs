@@ -404,6 +404,14 @@ mod tests {
     }
 
     #[test]
+    fn a_picture_that_cannot_be_drawn_as_png_is_an_error() {
+        let mut svg = svg::Svg::new(9.0, 9.0, "");
+        svg.empty("ellipse", &[("rx", &"2")]);
+        let refused = files("a", svg.finish()).unwrap_err();
+        assert_eq!(refused.to_string(), "<ellipse>: such an element cannot be drawn as PNG");
+    }
+
+    #[test]
     fn a_directory_that_cannot_be_is_an_error() {
         let scenario = Scenario::from_json(r#"{ "agents": [] }"#).unwrap();
         let file = std::env::temp_dir().join(format!("pcr-pictures-file-{}", std::process::id()));
