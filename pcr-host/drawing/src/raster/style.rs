@@ -6,7 +6,7 @@ use roxmltree::Node;
 use std::io;
 use tiny_skia::{LineCap, LineJoin, Stroke, StrokeDash, Transform};
 
-/// What fills an area.
+/// What an area or a line is filled with.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Fill<'d> {
     Nothing,
@@ -76,18 +76,8 @@ impl<'d> Style<'d> {
             "stroke-opacity" => self.stroke_opacity = opacity(value)?,
             "stroke-width" => self.line.width = size(value)?,
             "stroke-dasharray" => self.line.dash = Some(StrokeDash::new(numbers::<2>(value)?.to_vec(), 0.0)?),
-            "stroke-linecap" => {
-                self.line.line_cap = match value {
-                    "round" => LineCap::Round,
-                    _ => return None,
-                }
-            }
-            "stroke-linejoin" => {
-                self.line.line_join = match value {
-                    "round" => LineJoin::Round,
-                    _ => return None,
-                }
-            }
+            "stroke-linecap" => self.line.line_cap = (value == "round").then_some(LineCap::Round)?,
+            "stroke-linejoin" => self.line.line_join = (value == "round").then_some(LineJoin::Round)?,
             "paint-order" => self.stroke_first = (value == "stroke").then_some(true)?,
             "font-size" => self.font_size = f64::from(size(value)?),
             "opacity" => self.opacity = opacity(value)?,
