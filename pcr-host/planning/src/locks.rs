@@ -114,7 +114,7 @@ impl Locks {
         let sweep = Sweep::new(imported, nodes)?;
         let mut locks = Self::head(imported, nodes);
         let mut held = 0;
-        sweep.each(told, <[Found]>::to_vec, |found| {
+        sweep.each(told, &<[Found]>::to_vec, |found| {
             // A lock has two ids.
             held += found.len() as u64 * (size_of::<Lock>() + 64) as u64;
             if held > memory::STEP {
@@ -183,19 +183,32 @@ pub fn rounded(layout: &Layout) -> Option<String> {
 /// As [`Locks::of`].
 pub fn scenarios(imported: &Imported) -> Result<Vec<Scenario>, ImportError> {
     let (layout, rides) = (&imported.layout, Rides::new(imported));
+    let (edges, nodes) = (edges_by_id(layout), nodes_by_id(layout));
     let levels = layout.levels.iter().enumerate();
     levels
         .map(|(level, name)| {
-            let mut edges: Vec<&Edge> = layout.edges.iter().filter(|edge| layout.is_on(edge, level)).collect();
-            edges.sort_by(|a, b| a.id.cmp(&b.id));
-            let mut nodes: Vec<usize> = (0..layout.nodes.len()).filter(|&k| layout.nodes[k].level == level).collect();
-            nodes.sort_by(|&a, &b| layout.nodes[a].id.cmp(&layout.nodes[b].id));
-            let there = edges.into_iter().flat_map(|edge| rides.on(edge)).chain(nodes.into_iter().map(|k| rides.at(k)));
-            let rides: Vec<Ride> = there.collect();
+            let edges = edges.iter().filter(|edge| layout.is_on(edge, level));
+            let nodes = nodes.iter().filter(|&&node| layout.nodes[node].level == level);
+            let rides: Vec<Ride> =
+                edges.flat_map(|edge| rides.on(edge)).chain(nodes.map(|&node| rides.at(node))).collect();
             let name = if layout.levels.len() > 1 { format!("{} {name}", layout.name) } else { layout.name.clone() };
             Ok(Scenario { name: name.trim().to_owned(), ..scenario(&rides)? })
         })
         .collect()
+}
+
+/// The edges of a layout in the order of their ids.
+fn edges_by_id(layout: &Layout) -> Vec<&Edge> {
+    let mut edges: Vec<&Edge> = layout.edges.iter().collect();
+    edges.sort_by(|a, b| a.id.cmp(&b.id));
+    edges
+}
+
+/// The places of the nodes of a layout in the order of their ids.
+fn nodes_by_id(layout: &Layout) -> Vec<usize> {
+    let mut nodes: Vec<usize> = (0..layout.nodes.len()).collect();
+    nodes.sort_by(|&a, &b| layout.nodes[a].id.cmp(&layout.nodes[b].id));
+    nodes
 }
 
 /// The rides as agents.

@@ -77,7 +77,7 @@ fn table(all: &[Measured], title: &str, text: &mut String) {
 fn measured(imported: &Imported, with_delays: bool) -> Result<Measured, ImportError> {
     let count = |found: usize, start: Instant| [found as f64, start.elapsed().as_secs_f64()];
     let (start, mut found) = (Instant::now(), 0);
-    Sweep::new(imported, false)?.each(&|_, _| {}, <[Found]>::len, |some| {
+    Sweep::new(imported, false)?.each(&|_, _| {}, &<[Found]>::len, |some| {
         found += some;
         Ok::<(), ImportError>(())
     })?;
@@ -85,7 +85,7 @@ fn measured(imported: &Imported, with_delays: bool) -> Result<Measured, ImportEr
     let delays = || {
         let (start, mut found) = (Instant::now(), 0);
         let driving = Driving { speed: 1.0, acceleration: None };
-        Delays::new(imported, driving, false)?.each(&|_, _| {}, <[Unsafe]>::len, |some| {
+        Delays::new(imported, driving, false)?.each(&|_, _| {}, &<[Unsafe]>::len, |some| {
             found += some;
             Ok::<(), ImportError>(())
         })?;

@@ -12,13 +12,14 @@ use super::pass::{PIECES, Told, in_stretches};
 use super::rides::Rides;
 use super::straight::Straight;
 use super::sweep::straight_ends;
+use super::{edges_by_id, nodes_by_id};
+use crate::cores;
 use crate::fleet::Fleet;
 use crate::memory;
 use crate::rows::{Grid, area};
 use pcr_core::{Full, Interval, Motion, Piece, RegionRef, overlaps, union};
 use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Step, Vehicle};
 use pcr_formats::scenario::{Agent, MotionSpec, Scenario, label};
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// Number of agents that are built at a time.
@@ -85,11 +86,8 @@ impl Delays {
                 "delays are of discs: when an outline turns at a node is not known; --radius takes it as a disc";
             return Err(ImportError::new(problem));
         }
-        let mut order: Vec<&Edge> = layout.edges.iter().collect();
-        order.sort_by(|a, b| a.id.cmp(&b.id));
-        let steps: Vec<Step<'_>> = order.into_iter().flat_map(Edge::steps).collect();
-        let mut places: Vec<usize> = (0..if nodes { layout.nodes.len() } else { 0 }).collect();
-        places.sort_by(|&a, &b| layout.nodes[a].id.cmp(&layout.nodes[b].id));
+        let steps: Vec<Step<'_>> = edges_by_id(layout).into_iter().flat_map(Edge::steps).collect();
+        let places = if nodes { nodes_by_id(layout) } else { Vec::new() };
         let level = |node: usize| layout.level_of(node);
         let on_edges = steps.iter().map(|step| step.edge.ends.map(level));
         let mut all = Self {
@@ -130,12 +128,15 @@ impl Delays {
         };
         let units: Vec<usize> = (0..all.levels.len()).collect();
         for stretch in units.chunks(STRETCH) {
-            let fleets = stretch.par_chunks(64).map(|units| {
+            let parts: Vec<&[usize]> = stretch.chunks(64).collect();
+            let fleets = cores::made(0..parts.len(), &|part| {
+                let units = parts[part];
                 let agents = units.iter().map(|&unit| Agent { id: unit as u64, ..agent(unit) });
                 let scenario = import::checked(&Scenario::new("", agents.collect()))?;
                 Fleet::<f64>::new(&scenario).map_err(|refused| ImportError::new(refused.to_string()))
             });
-            for fleet in fleets.collect::<Result<Vec<_>, ImportError>>()? {
+            for fleet in fleets {
+                let fleet = fleet?;
                 all.areas.extend(fleet.motions().iter().map(area));
                 all.fleet.append(fleet);
             }
@@ -161,7 +162,7 @@ impl Delays {
     pub fn each<T: Send, E: From<ImportError>>(
         &self,
         told: Told<'_>,
-        make: impl Fn(&[Unsafe]) -> T + Sync,
+        make: &(dyn Fn(&[Unsafe]) -> T + Sync),
         take: impl FnMut(T) -> Result<(), E>,
     ) -> Result<(), E> {
         let grid = Grid::new(self.areas.clone());
@@ -176,7 +177,7 @@ impl Delays {
             }
             Ok(make(&found))
         };
-        in_stretches(self.levels.len(), |unit| 1 + counts[unit] as usize, told, row, take)
+        in_stretches(self.levels.len(), |unit| 1 + counts[unit] as usize, told, &row, take)
     }
 
     /// The results of two units, in the order of their indices.

@@ -92,7 +92,7 @@ pub fn write_index(sweep: &Sweep, origin: u32, out: &mut File, told: Told<'_>) -
         }
         Ok((track, crc32(&bytes), bytes))
     };
-    pass.each(told, row, |(track, sum, bytes)| {
+    pass.each(told, &row, |(track, sum, bytes)| {
         let count = (bytes.len() / RECORD) as u32;
         let own = &sweep.tracks[track];
         tracks.extend(records.to_le_bytes());

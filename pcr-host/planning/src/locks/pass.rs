@@ -3,6 +3,7 @@
 
 use super::sweep::{STRETCH, Sweep, Track};
 use super::{Extents, joined};
+use crate::cores;
 use crate::memory::{self, Held};
 use crate::rows::Grid;
 use pcr_core::{Full, Interval, Motion, Piece, overlaps};
@@ -47,7 +48,7 @@ impl<'a> Pass<'a> {
     pub(super) fn each<T: Send, E: From<ImportError>>(
         &self,
         told: Told<'_>,
-        row: impl Fn(usize) -> Result<T, ImportError> + Sync,
+        row: &(dyn Fn(usize) -> Result<T, ImportError> + Sync),
         take: impl FnMut(T) -> Result<(), E>,
     ) -> Result<(), E> {
         let work = |track: usize| {
@@ -85,7 +86,7 @@ pub(super) fn in_stretches<T: Send, E: From<ImportError>>(
     rows: usize,
     work: impl Fn(usize) -> usize,
     told: Told<'_>,
-    row: impl Fn(usize) -> Result<T, ImportError> + Sync,
+    row: &(dyn Fn(usize) -> Result<T, ImportError> + Sync),
     mut take: impl FnMut(T) -> Result<(), E>,
 ) -> Result<(), E> {
     let (mut next, mut done) = (0, 0);
@@ -96,7 +97,7 @@ pub(super) fn in_stretches<T: Send, E: From<ImportError>>(
             held += work(next);
             next += 1;
         }
-        let made = (first..next).into_par_iter().map(&row);
+        let made = cores::made(first..next, row).into_iter();
         made.collect::<Result<Vec<T>, ImportError>>()?.into_iter().try_for_each(&mut take)?;
         done += held;
         told(done, total);
@@ -113,7 +114,7 @@ impl Sweep {
     pub fn each<T: Send, E: From<ImportError>>(
         &self,
         told: Told<'_>,
-        make: impl Fn(&[Found]) -> T + Sync,
+        make: &(dyn Fn(&[Found]) -> T + Sync),
         mut take: impl FnMut(T) -> Result<(), E>,
     ) -> Result<(), E> {
         let pass = Pass::new(self);
@@ -121,25 +122,30 @@ impl Sweep {
         let expected: usize = self.tracks.iter().map(|track| most(track) * track.members.len().pow(2) / 2).sum();
         let find = |track: usize| Ok(self.found(track, &pass.row(track, false)?));
         if expected > HELD {
-            return pass.each(told, |track| find(track).map(|found| make(&found)), take);
+            return pass.each(told, &|track| find(track).map(|found| make(&found)), take);
         }
         let (mut all, mut held) = (Vec::new(), Held::default());
-        pass.each(told, find, |found| {
+        pass.each(told, &find, |found| {
             held.extend(&mut all, found, 0, "locks").map_err(|large| E::from(ImportError::new(large.to_string())))
         })?;
+        self.sort(&mut all);
+        for stretch in all.chunks(STRETCH) {
+            let parts: Vec<&[Found]> = stretch.chunks(STRETCH / 16).collect();
+            cores::made(0..parts.len(), &|part| make(parts[part])).into_iter().try_for_each(&mut take)?;
+        }
+        Ok(())
+    }
+
+    /// Pairs of edges, then edges with nodes, then pairs of nodes, each by places and lengths.
+    fn sort(&self, all: &mut [Found]) {
         // The number of nodes, and the places as numbers of their own: arrays are compared by a loop.
         let places = |&Found { places: [first, second], .. }: &Found| {
             (u8::from(!self.is_edge(first)) + u8::from(!self.is_edge(second)), first, second)
         };
-        all.par_sort_unstable_by(|a: &Found, b: &Found| {
+        all.par_sort_unstable_by(|a, b| {
             let lengths = |k: usize| a.lengths[k][0].total_cmp(&b.lengths[k][0]);
             places(a).cmp(&places(b)).then_with(|| lengths(0)).then_with(|| lengths(1))
         });
-        for stretch in all.chunks(STRETCH) {
-            let parts = stretch.par_chunks(STRETCH / 16).map(&make);
-            parts.collect::<Vec<_>>().into_iter().try_for_each(&mut take)?;
-        }
-        Ok(())
     }
 
     /// The locks of the members of tracks, from a row of tracks.

@@ -4,12 +4,13 @@
 //! on the other, and they are computed once.
 
 use super::rides::{Lengths, Ride, Rides, reversed};
+use super::{edges_by_id, nodes_by_id};
 use crate::bodies::{Bodies, Disced};
+use crate::cores;
 use crate::fleet::Fleet;
 use crate::rows::area;
 use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Layout};
 use pcr_formats::scenario::{Agent, PathSegment, Scenario, label};
-use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -68,8 +69,7 @@ impl Sweep {
     /// [`ImportError`] for coordinates beyond what can be computed with.
     pub fn new(imported: &Imported, nodes: bool) -> Result<Self, ImportError> {
         let (layout, rides) = (&imported.layout, Rides::new(imported));
-        let mut order: Vec<&Edge> = layout.edges.iter().collect();
-        order.sort_by(|a, b| a.id.cmp(&b.id));
+        let order = edges_by_id(layout);
         let mut ids: Vec<Id> = order.iter().map(|edge| edge.id.clone()).collect();
         let mut plans: Vec<Box<dyn Fn() -> Plan + Sync + '_>> = Vec::new();
         for members in tracks(layout, &order, rides.vehicle().footprint.is_none()) {
@@ -82,9 +82,7 @@ impl Sweep {
             }));
         }
         if nodes {
-            let mut order: Vec<usize> = (0..layout.nodes.len()).collect();
-            order.sort_by(|&a, &b| layout.nodes[a].id.cmp(&layout.nodes[b].id));
-            for node in order {
+            for node in nodes_by_id(layout) {
                 let (place, rides, level) = (ids.len(), &rides, layout.nodes[node].level);
                 ids.push(layout.nodes[node].id.clone());
                 let members = vec![(place, false)];
@@ -108,12 +106,13 @@ impl Sweep {
             areas: Vec::new(),
         };
         for stretch in plans.chunks(STRETCH) {
-            let made = stretch.par_iter().map(|plan| {
-                let plan = plan();
-                let bodies = bodies(&plan, &sweep.ids)?;
-                Ok((plan, bodies))
+            let made = cores::made(0..stretch.len(), &|place| {
+                let plan = stretch[place]();
+                let bodies = bodies(&plan, &sweep.ids);
+                bodies.map(|bodies| (plan, bodies))
             });
-            for (plan, bodies) in made.collect::<Result<Vec<_>, ImportError>>()? {
+            for made in made {
+                let (plan, bodies) = made?;
                 sweep.add(plan, bodies);
             }
         }

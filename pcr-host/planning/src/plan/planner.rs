@@ -7,10 +7,10 @@ use super::task::Planner;
 use super::{Answer, Costs, Method, Plan, Planned, Priority, Unsolved, bound, sides, speeds};
 use crate::certify::Proof;
 use crate::check::Verdict;
+use crate::cores;
 use crate::regions::Failure;
 use pcr_core::{Drive, Motion, Unsolved as Never};
 use pcr_formats::scenario::{Labels, MotionSpec, Scenario};
-use rayon::prelude::*;
 
 /// Costs that differ by less are printed alike \[s\].
 const NEAR: f64 = 1e-4;
@@ -189,7 +189,8 @@ impl<'m> Planner<'_, 'm> {
             Err(failure) => (Vec::from_iter(certain), Some(format!("other pairs were not looked for: {failure}"))),
         };
         let is_certain = !pairs.is_empty();
-        unsolved.par_extend(pairs.into_par_iter().map(|agents| Unsolved::of(self.scenario, ids(agents), true)));
+        let of_pair = |pair: usize| Unsolved::of(self.scenario, ids(pairs[pair]), true);
+        unsolved.extend(cores::made(0..pairs.len(), &of_pair));
         if !is_certain {
             unsolved.push(match never {
                 Never::Priorities(agents) => Unsolved::of(self.scenario, ids(agents), false),

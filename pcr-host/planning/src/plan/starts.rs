@@ -5,9 +5,9 @@ use super::delays::{self, Objective, Outcome};
 use super::forbidden::{Forbidden, Out, Schedule};
 use super::task::Planner;
 use super::{Priority, Unsolved, reason};
+use crate::cores;
 use crate::regions::Failure;
 use pcr_core::Motion;
-use rayon::prelude::*;
 use std::collections::HashSet;
 
 /// Delays of some agents of a fleet, in the order of the fleet.
@@ -156,7 +156,8 @@ impl Starts {
             }
         };
         // Large fleets have thousands of conflicts.
-        unsolved.par_extend(self.conflicts.par_iter().filter_map(of_conflict));
+        let told = cores::made(0..self.conflicts.len(), &|conflict| of_conflict(&self.conflicts[conflict]));
+        unsolved.extend(told.into_iter().flatten());
         if !self.fewest && planner.request.leave_out {
             let delays = self.delays.as_deref().unwrap_or_default();
             let explained = |agent: &usize| self.conflicts.iter().any(|conflict| conflict.contains(agent));

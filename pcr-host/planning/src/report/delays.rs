@@ -81,7 +81,7 @@ impl DelayTable {
         let (nodes, node_pairs) = (nodes.map(|_| Vec::new()), node_pairs.map(|_| Vec::new()));
         let mut table = Self { layout, vehicle, driving, delays: Vec::new(), nodes, node_pairs, warnings };
         let mut held = 0;
-        delays.each(told, <[Unsafe]>::to_vec, |found| {
+        delays.each(told, &<[Unsafe]>::to_vec, |found| {
             held += found.len() as u64 * (size_of::<Delay>() + 64) as u64;
             if held > memory::STEP {
                 let count = table.delays.len();
@@ -138,7 +138,7 @@ pub fn delays_csv(delays: &Delays, told: Told<'_>, out: &mut dyn Write) -> Resul
         }
         text
     };
-    delays.each(told, lines, |text| Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?))
+    delays.each(told, &lines, |text| Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?))
 }
 
 /// The first line of [`delays_lines`].
@@ -195,7 +195,7 @@ pub fn delays_lines(
         (found.len(), text)
     };
     let mut count = 0;
-    delays.each(told, lines, |(lines, text)| {
+    delays.each(told, &lines, |(lines, text)| {
         count += lines;
         Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?)
     })?;

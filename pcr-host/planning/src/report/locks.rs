@@ -56,7 +56,7 @@ pub fn locks_csv(sweep: &Sweep, told: Told<'_>, out: &mut dyn Write) -> Result<(
         }
         text
     };
-    sweep.each(told, lines, |text| Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?))
+    sweep.each(told, &lines, |text| Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?))
 }
 
 /// The same of a table that is in memory, in its order.
@@ -133,7 +133,7 @@ pub fn locks_lines(head: &Locks, sweep: &Sweep, told: Told<'_>, out: &mut dyn Wr
         (found.len(), text)
     };
     let mut count = 0;
-    sweep.each(told, lines, |(lines, text)| {
+    sweep.each(told, &lines, |(lines, text)| {
         count += lines;
         Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?)
     })?;
