@@ -14,7 +14,7 @@ timed() {
 }
 
 # Everything is built alike, so that it is built once: with methods of other libraries in comparisons, and the supervisor in the tool.
-everything_in=(--workspace --features pcr-tests/peers,pcr-host/serve --locked)
+everything_in=(--workspace --features pcr-tests/peers,pcr-host/peers,pcr-host/serve --locked)
 # Lints and documentation are of the same profile as the tests: macros and programs that run in builds are built once then.
 profile=checked
 # These two have no tests of their own here, but much that they depend on.
@@ -56,7 +56,7 @@ style() {
   fi
   .ci/dependencies.py
   deny
-  .ci/circles.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,planning,execution,exclusions,drawing,comparing,serve}/src
+  .ci/circles.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,kernels,planning,execution,exclusions,drawing,comparing,serve}/src
   # A file that main.rs does not name would not be run.
   diff <(sed -n 's/^mod \(.*\);/\1/p' tests/tests/main.rs) <(LC_ALL=C ls tests/tests | sed -n 's/\.rs$//p' | grep -vx main)
 }
@@ -245,7 +245,7 @@ features() {
     cargo clippy -q -p $crate --profile "$profile" --locked --all-features --all-targets -- -D warnings
   done
   step "each part of the host alone, with the features that it names itself"
-  for crate in pcr-formats pcr-planning pcr-execution pcr-exclusions pcr-drawing pcr-comparing pcr-host; do
+  for crate in pcr-formats pcr-kernels pcr-planning pcr-execution pcr-exclusions pcr-drawing pcr-comparing pcr-host; do
     echo "$crate"
     cargo clippy -q -p $crate --profile "$profile" --locked --no-default-features -- -D warnings
   done

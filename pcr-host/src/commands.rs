@@ -248,6 +248,13 @@ impl Stop {
         Self::Error(problem.into(), WRONG_INPUT)
     }
 
+    /// Something that this build is without.
+    #[cfg_attr(all(feature = "serve", feature = "peers"), allow(dead_code))]
+    fn without(what: &str, feature: &str) -> Self {
+        let install = format!("cargo install --locked --path pcr-host --features {feature}");
+        Self::arguments(format!("this pcr was built without {what}: {install}"))
+    }
+
     /// Something wrong with a file.
     fn wrong(file: &Path, problem: impl std::fmt::Display) -> Self {
         let name = if file == Path::new("-") { "standard input".into() } else { file.to_string_lossy() };

@@ -45,7 +45,7 @@ fn main() -> ExitCode {
                 rows.push(row);
                 Ok::<(), ImportError>(())
             };
-            delays.each(&|_, _| {}, <[Unsafe]>::to_vec, take).expect("a roadmap");
+            delays.each(&|_, _| {}, &<[Unsafe]>::to_vec, take).expect("a roadmap");
             black_box(&rows);
             least = least.min(start.elapsed().as_secs_f64());
             found = rows

@@ -28,7 +28,7 @@ fn found(delays: &Delays) -> Intervals {
         }
         Ok::<(), ImportError>(())
     };
-    delays.each(&|_, _| {}, <[Unsafe]>::to_vec, take).unwrap();
+    delays.each(&|_, _| {}, &<[Unsafe]>::to_vec, take).unwrap();
     all
 }
 
@@ -221,7 +221,7 @@ fn a_vehicle_that_stands_beside_its_node_is_in_the_way_there() {
             Ok::<(), ImportError>(())
         };
         let delays = Delays::new(&imported, Driving { speed: 1.0, acceleration: None }, true).unwrap();
-        delays.each(&|_, _| {}, <[Unsafe]>::to_vec, take).unwrap();
+        delays.each(&|_, _| {}, &<[Unsafe]>::to_vec, take).unwrap();
         [times, pairs]
     };
     assert_eq!([table(0.0), table(0.049)], [[0, 0], [1, 1]]);

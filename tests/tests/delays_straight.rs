@@ -28,7 +28,7 @@ fn every_interval_of_a_roadmap_is_that_of_the_definition() {
     let driving = Driving { speed: 1.0, acceleration: None };
     let delays = Delays::new(&imported, driving, true).unwrap();
     let (mut found, mut times, mut pairs) = (HashMap::new(), 0, 0);
-    let all = delays.each::<_, pcr_formats::import::ImportError>(&|_, _| {}, <[Unsafe]>::to_vec, |row| {
+    let all = delays.each::<_, pcr_formats::import::ImportError>(&|_, _| {}, &<[Unsafe]>::to_vec, |row| {
         for unsafe_ in row {
             match unsafe_ {
                 Unsafe::Delays(pair, interval) => assert_eq!(found.insert(pair, interval), None),

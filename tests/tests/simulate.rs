@@ -198,7 +198,7 @@ fn nothing_is_lost_without_disturbances_and_without_others() {
 
 #[test]
 fn the_figures_follow_from_the_record() {
-    for controller in Controller::ALL {
+    for &controller in Controller::ALL {
         let task = forage::task(2, 1);
         let outcome = run(&task, controller, settings(2, USUAL)).expect("a run");
         let Outcome { run, trace, .. } = &outcome;
@@ -297,7 +297,7 @@ fn who_never_sets_off_has_not_gone_round() {
 #[test]
 fn the_same_seed_gives_the_same_run() {
     let once = |seed, controller| run(&forage::task(3, 1), controller, settings(seed, USUAL)).expect("a run");
-    for controller in Controller::ALL {
+    for &controller in Controller::ALL {
         let (first, second, other) = (once(3, controller), once(3, controller), once(4, controller));
         assert_eq!(first.trace, second.trace, "{controller:?}");
         let without_times = |mut run: Run| {
@@ -396,15 +396,17 @@ fn robots_whose_paths_cross_several_times_get_past_one_another() {
     assert!(solved > if cfg!(optimized) { 15 } else { 0 }, "{solved}");
 }
 
+/// A robot with a straight way of 10 m.
+fn lane(id: u64, y: f64) -> String {
+    format!(
+        r#"{{ "id": {id}, "radius": 0.25, "v_max": 1, "a_max": 1, "start": {{ "x": 0, "y": {y}, "heading": 0 }},
+             "path": [ {{ "kind": "line", "length": 10 }} ] }}"#
+    )
+}
+
 /// The run was given up long before they could have arrived, and nobody said so.
 #[test]
 fn robots_that_are_held_up_for_long_arrive_all_the_same() {
-    let lane = |id: u64, y: f64| {
-        format!(
-            r#"{{ "id": {id}, "radius": 0.25, "v_max": 1, "a_max": 1, "start": {{ "x": 0, "y": {y}, "heading": 0 }},
-                 "path": [ {{ "kind": "line", "length": 10 }} ] }}"#
-        )
-    };
     let text = format!(r#"{{ "agents": [{}, {}] }}"#, lane(1, 0.0), lane(2, 3.0));
     let task = Task::of(&Scenario::from_json(&text).expect("a scenario")).expect("a task");
     let outcome = run(&task, Controller::Pcr, settings(1, Disturbance { delay: 600.0, ..USUAL })).expect("a run");
@@ -412,7 +414,12 @@ fn robots_that_are_held_up_for_long_arrive_all_the_same() {
     // Two head-on are in each other's way for good.
     let outcome = run(&head_on(), Controller::Pcr, settings(1, USUAL)).expect("a run");
     assert_eq!(outcome.run.ended, Ended::Standstill);
-    // A controller that does not know that its goal is taken is stopped at the limit.
+}
+
+/// A controller that does not know that its goal is taken is stopped at the limit.
+#[cfg(feature = "peers")]
+#[test]
+fn who_waits_for_a_place_that_never_gets_free_is_stopped_at_the_limit() {
     let text = format!(
         r#"{{ "agents": [{}, {{ "id": 2, "radius": 0.25, "v_max": 1, "a_max": 1, "start": {{ "x": 10, "y": 0, "heading": 0 }},
                                "path": [] }}] }}"#,

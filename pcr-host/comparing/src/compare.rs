@@ -195,12 +195,14 @@ pub fn names() -> Vec<String> {
 
 /// Libraries in C++ that methods use, with their versions, or that they are left out.
 #[cfg(feature = "peers")]
+#[cfg(feature = "peers")]
 pub(crate) fn libraries() -> Vec<String> {
     [program::Program::FCL, program::Program::BOX2D].map(program::Program::library).into()
 }
 
 /// The same: none.
 #[cfg(not(feature = "peers"))]
+#[cfg(feature = "peers")]
 pub(crate) fn libraries() -> Vec<String> {
     vec!["built without the feature `peers`".into()]
 }

@@ -323,17 +323,19 @@ fn encounters<S: Format>(
             continue;
         }
         let encounter = Encounter::new(own.1, other.1);
-        found.extend(encounter.conflicts(time).map(|conflict| Conflict {
-            i,
-            j,
-            t: ends(conflict.time),
-            depth: conflict.depth.to_f64(),
-            l_i: own.0.on_agent(ends(conflict.length)),
-            l_j: other.0.on_agent(ends(conflict.other_length)),
-            touching: conflict.touching,
-        }));
+        S::conflicts(&encounter, time, &mut |conflict| {
+            found.push(Conflict {
+                i,
+                j,
+                t: ends(conflict.time),
+                depth: conflict.depth.to_f64(),
+                l_i: own.0.on_agent(ends(conflict.length)),
+                l_j: other.0.on_agent(ends(conflict.other_length)),
+                touching: conflict.touching,
+            });
+        });
         if closest {
-            let approach = encounter.closest(time);
+            let approach = S::closest(&encounter, time);
             let clearance = (approach.separation - encounter.radius()).to_f64();
             if closest_of.is_none_or(|closest| clearance < closest.clearance) {
                 let (t, separation) = (approach.time.to_f64(), approach.separation.to_f64());

@@ -17,8 +17,8 @@ use pcr_core::{
 };
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
-use pcr_tables::Tables;
-pub use pcr_tables::{HostEcm, HostOrders};
+use pcr_kernels::Kernels;
+pub use pcr_kernels::{HostEcm, HostOrders};
 pub(crate) use rounding::Rounding;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -34,7 +34,7 @@ fn in_angles(radians: f64) -> Option<f64> {
 }
 
 /// A number format that scenario files can be read into.
-pub trait Format: Compiled + Tables + Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
+pub trait Format: Compiled + Kernels + Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
     /// Name on the command line and in the output.
     const NAME: &'static str;
     /// The nearest number of the format.

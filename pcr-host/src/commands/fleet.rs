@@ -89,9 +89,7 @@ pub(super) struct Arguments {
 impl Arguments {
     #[cfg(not(feature = "serve"))]
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        Err(Stop::arguments(
-            "this pcr was built without `serve`: cargo install --locked --path pcr-host --features serve",
-        ))
+        Err(Stop::without("`serve`", "serve"))
     }
 
     #[cfg(feature = "serve")]

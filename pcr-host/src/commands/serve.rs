@@ -97,9 +97,7 @@ fn place(text: &str) -> Result<String, String> {
 #[cfg(not(feature = "serve"))]
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        Err(Stop::arguments(
-            "this pcr was built without `serve`: cargo install --locked --path pcr-host --features serve",
-        ))
+        Err(Stop::without("`serve`", "serve"))
     }
 }
 

@@ -44,7 +44,7 @@ pub(super) struct Arguments {
     /// Four robots that forage, instead of a scenario
     #[arg(long)]
     foraging: bool,
-    /// Only this controller: pcr, potential or orca
+    /// Only this controller: pcr, potential or orca (feature `peers`)
     #[arg(long, value_enum, value_name = "NAME", hide_possible_values = true)]
     controller: Option<Choice>,
     /// The same seed gives the same run
@@ -84,13 +84,17 @@ enum Choice {
     Orca,
 }
 
-impl From<Choice> for Controller {
-    fn from(choice: Choice) -> Self {
-        match choice {
-            Choice::Pcr => Self::Pcr,
-            Choice::Potential => Self::Potential,
-            Choice::Orca => Self::Orca,
-        }
+impl Choice {
+    fn controllers(choice: Option<Self>) -> Result<Vec<Controller>, Stop> {
+        Ok(match choice {
+            None => Controller::ALL.to_vec(),
+            Some(Self::Pcr) => vec![Controller::Pcr],
+            Some(Self::Potential) => vec![Controller::Potential],
+            #[cfg(feature = "peers")]
+            Some(Self::Orca) => vec![Controller::Orca],
+            #[cfg(not(feature = "peers"))]
+            Some(Self::Orca) => return Err(Stop::without("ORCA", "peers")),
+        })
     }
 }
 
@@ -130,7 +134,7 @@ impl Arguments {
         let Self { noise, slip, delay, drift, .. } = self;
         let disturbance = Disturbance { noise, slip, delay, drift };
         let settings = Settings { seed: self.seed, replan: self.replan.unwrap_or(REPLAN), disturbance };
-        let controllers = self.controller.map_or(Controller::ALL.to_vec(), |choice| vec![choice.into()]);
+        let controllers = Choice::controllers(self.controller)?;
         let progress = Progress::new("runs");
         let mut outcomes = Vec::new();
         for (done, &controller) in controllers.iter().enumerate() {

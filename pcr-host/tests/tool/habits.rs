@@ -212,13 +212,23 @@ fn refused_words_come_with_a_tip() {
     assert!(message.starts_with("pcr: none.locks: there is no such table of locks"), "{message}");
 }
 
-#[cfg(not(feature = "serve"))]
+#[cfg(not(all(feature = "serve", feature = "peers")))]
 #[test]
 fn what_is_not_built_in_says_how_to_get_it() {
     let short = run(&["-h"]).ok();
-    assert_eq!(short.matches("(not in this build)\n").count(), 2, "{short}");
-    let message = run(&["serve", "--journal", "nowhere"]).failed(2);
-    assert!(message.contains("cargo install --locked --path pcr-host --features serve"), "{message}");
+    let missing = usize::from(cfg!(not(feature = "peers"))) + 2 * usize::from(cfg!(not(feature = "serve")));
+    assert_eq!(short.matches("(not in this build)\n").count(), missing, "{short}");
+    let says = |arguments: &[&str], feature: &str| {
+        let message = run(arguments).failed(2);
+        assert!(message.contains(&format!("cargo install --locked --path pcr-host --features {feature}")), "{message}");
+    };
+    if cfg!(not(feature = "serve")) {
+        says(&["serve", "--journal", "nowhere"], "serve");
+    }
+    if cfg!(not(feature = "peers")) {
+        says(&["evaluate"], "peers");
+        says(&["simulate", "--foraging", "--controller", "orca"], "peers");
+    }
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod check;
 mod compare;
 #[cfg(unix)]
 mod console;
+#[cfg(feature = "peers")]
 mod evaluate;
 mod examples;
 mod exclusions;
