@@ -44,7 +44,7 @@ pub(super) struct Arguments {
     /// Four robots that forage, instead of a scenario
     #[arg(long)]
     foraging: bool,
-    /// Only this controller: pcr, potential or orca (feature `peers`)
+    /// Only this controller: pcr, potential or orca
     #[arg(long, value_enum, value_name = "NAME", hide_possible_values = true)]
     controller: Option<Choice>,
     /// The same seed gives the same run
