@@ -19,7 +19,7 @@ use crate::edit::{Edits, column, ending};
 use crate::settings::Notes;
 use crate::{Claim, Rules};
 use pcr_formats::import::{Id, ImportError, Imported, is_navigation_graph};
-use pcr_formats::yaml::{self, Document, Spanned, Style, Value as Kind};
+use pcr_formats::yaml::{Document, Spanned, Style, Value as Kind};
 use pcr_planning::locks::Locks;
 use serde_json::{Value, json};
 use std::collections::{BTreeSet, HashMap};
@@ -110,8 +110,8 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
 
 /// A file: its form, all of it, and the same with its places.
 fn opened(text: &str) -> Result<(Form, Value, Document<'_>), ImportError> {
-    let document = Document::read(text).map_err(yaml::Error::refused)?;
-    let root = document.value().map_err(yaml::Error::refused)?;
+    let document = Document::read(text).map_err(ImportError::of_yaml)?;
+    let root = document.value().map_err(ImportError::of_yaml)?;
     Ok((Form::of(text, &root), root, document))
 }
 

@@ -160,6 +160,11 @@ impl ImportError {
     pub fn new(problem: impl Into<String>) -> Self {
         Self(problem.into())
     }
+
+    /// For what is wrong in YAML. (With `From`, the compiler could no longer infer errors of many closures.)
+    pub fn of_yaml(error: yaml::Error) -> Self {
+        Self(error.to_string())
+    }
 }
 
 impl fmt::Display for ImportError {
@@ -351,7 +356,7 @@ fn of_fleet(text: &str, warnings: &mut Warnings) -> Result<Given, ImportError> {
     // JSON is YAML, too, but says better what is wrong with it.
     let json = unmarked(text).trim_start().starts_with('{');
     let of_yaml = || Document::read(text)?.value();
-    let value = if json { value::parse(text) } else { of_yaml().map_err(yaml::Error::refused) }?;
+    let value = if json { value::parse(text) } else { of_yaml().map_err(ImportError::of_yaml) }?;
     if factsheet::is_factsheet(&value) { factsheet::read(&value, warnings) } else { rmf::fleet(&value) }
 }
 

@@ -11,7 +11,6 @@
 mod json;
 mod scalar;
 
-use crate::import::ImportError;
 use granit_parser::{ErrorKind, Event, Parser, ScalarStyle, StrInput, StructureStyle};
 use std::borrow::Cow;
 use std::fmt;
@@ -41,13 +40,6 @@ impl fmt::Display for Error {
 }
 
 impl std::error::Error for Error {}
-
-impl Error {
-    /// The same of a file that is refused for it. (With `From`, the compiler could no longer infer errors of many closures.)
-    pub fn refused(self) -> ImportError {
-        ImportError::new(self.to_string())
-    }
-}
 
 /// What a text says.
 #[derive(Clone, Debug)]
@@ -410,7 +402,6 @@ mod tests {
         ] {
             let error = Document::read(text).and_then(|document| document.value()).unwrap_err();
             assert_eq!(error.to_string(), expected);
-            assert_eq!(error.refused().to_string(), expected);
         }
         for text in ["", "# nothing\n", "---\n", "...\n", "\u{feff}", "%YAML 1.2\n---\n"] {
             assert_eq!(Document::read(text).unwrap().value(), Ok(serde_json::Value::Null));

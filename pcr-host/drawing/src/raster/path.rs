@@ -11,22 +11,6 @@ const STRAY: f64 = 0.002;
 /// The same for a radius of 1 and an angle of 1 rad; it grows with the sixth power of the angle.
 const UNIT_STRAY: f64 = 1.81e-5;
 
-/// Attributes of an element that say where it is; `None` for an element that is not drawn.
-pub(super) fn geometry(element: &str) -> Option<&'static [&'static str]> {
-    Some(match element {
-        "circle" => &["cx", "cy", "r"],
-        "defs" | "g" | "title" => &[],
-        "line" => &["x1", "y1", "x2", "y2"],
-        "path" => &["d"],
-        "pattern" => &["width", "height", "patternUnits", "patternTransform"],
-        "polygon" => &["points"],
-        "rect" => &["x", "y", "width", "height"],
-        "svg" => &["width", "height", "viewBox"],
-        "text" => &["x", "y", "text-anchor"],
-        _ => return None,
-    })
-}
-
 /// Adds the outline of a shape in a picture of this width and height \[px\].
 pub(super) fn shape(node: Node<'_, '_>, [width, height]: [f32; 2], to: &mut PathBuilder) -> Option<()> {
     // What has no such attribute is at 0.

@@ -1,6 +1,5 @@
 //! Attributes that say how an element looks. What the writer of SVG does not write is `None`.
 
-use super::path::geometry;
 use super::refused;
 use roxmltree::Node;
 use std::io;
@@ -89,6 +88,22 @@ impl<'d> Style<'d> {
         }
         Some(())
     }
+}
+
+/// Attributes of an element that say where it is; `None` for an element that is not drawn.
+fn geometry(element: &str) -> Option<&'static [&'static str]> {
+    Some(match element {
+        "circle" => &["cx", "cy", "r"],
+        "defs" | "g" | "title" => &[],
+        "line" => &["x1", "y1", "x2", "y2"],
+        "path" => &["d"],
+        "pattern" => &["width", "height", "patternUnits", "patternTransform"],
+        "polygon" => &["points"],
+        "rect" => &["x", "y", "width", "height"],
+        "svg" => &["width", "height", "viewBox"],
+        "text" => &["x", "y", "text-anchor"],
+        _ => return None,
+    })
 }
 
 /// A finite number.

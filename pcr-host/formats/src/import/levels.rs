@@ -7,7 +7,7 @@
 
 use super::value::Object;
 use super::{ImportError, Warnings};
-use crate::yaml::{self, Document};
+use crate::yaml::Document;
 use serde_json::Value;
 
 /// Relative difference of two scales of a level that goes without a warning.
@@ -61,7 +61,7 @@ impl<'j> Reference<'j> {
         let name = match building.text("reference_level_name")? {
             Some(name) => Some(name.to_owned()),
             // The first one of the file, whose order a value of JSON does not have.
-            None => document.names("levels").map_err(yaml::Error::refused)?.into_iter().next(),
+            None => document.names("levels").map_err(ImportError::of_yaml)?.into_iter().next(),
         };
         let Some((name, value)) = levels.members().find(|(level, _)| name.as_ref().is_none_or(|name| *level == name))
         else {

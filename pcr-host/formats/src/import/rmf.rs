@@ -13,7 +13,7 @@ use super::vehicle::Given;
 use super::{ImportError, Options, Warnings, facing};
 use crate::footprint::Footprint;
 use crate::scenario::Placed;
-use crate::yaml::{self, Document};
+use crate::yaml::Document;
 use serde_json::Value;
 use std::collections::{BTreeSet, HashMap};
 
@@ -62,8 +62,8 @@ pub(super) fn read(
     outline: Option<&Footprint>,
     warnings: &mut Warnings,
 ) -> Result<Layout, ImportError> {
-    let document = Document::read(text).map_err(yaml::Error::refused)?;
-    let value = document.value().map_err(yaml::Error::refused)?;
+    let document = Document::read(text).map_err(ImportError::of_yaml)?;
+    let value = document.value().map_err(ImportError::of_yaml)?;
     let root = Object::new("building", &value)?;
     if root.get("rmf_fleet").is_some() {
         return Err(ImportError::new("it is the configuration of a fleet; give it beside a building, with --fleet"));
