@@ -229,7 +229,8 @@ impl Book {
                 }
             }
         }
-        ties.sort_unstable_by_key(|tie| (tie.other, tie.places));
+        // Numbers of their own: arrays are compared by a loop.
+        ties.sort_unstable_by_key(|&Tie { other, places: [own, their], .. }| (other, own, their));
         let pairs = ties.chunk_by_mut(|a, b| a.other == b.other);
         pairs.flat_map(|ties| joined(ties, robot, [way, &robots[ties[0].other].way])).collect()
     }

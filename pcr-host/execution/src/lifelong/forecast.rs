@@ -216,22 +216,26 @@ impl<'r> Taken<'r> {
     }
 
     /// The nearest region that it has not reached.
+    #[inline]
     fn region(&self) -> Option<&Wait<'r>> {
         self.regions.get(self.met)
     }
 
     /// Whether a region comes before the next gate.
+    #[inline]
     fn meets(&self) -> bool {
         self.region().is_some_and(|wait| wait.ends[0].gate.at < self.nearest.0)
     }
 
     /// The nearest gate, and its region.
+    #[inline]
     fn gate(&self) -> Option<(&Wait<'r>, &'r Timed)> {
         let wait = self.open.get(self.nearest.1)?;
         Some((wait, wait.gates.first()?))
     }
 
     /// Finds the nearest gate; of several at the same length that of the region that was reached last.
+    #[inline]
     fn look(&mut self) {
         self.nearest = (f64::INFINITY, 0);
         for (place, wait) in self.open.iter().enumerate() {
@@ -244,6 +248,7 @@ impl<'r> Taken<'r> {
 
     /// What is nearest ahead: the first robot there, the gate, and whether it is a region; for a region the gate is its last
     /// one, which tells when the first has left.
+    #[inline]
     fn ahead(&self) -> Option<(usize, Timed, bool)> {
         if self.next() >= self.length {
             return None;
@@ -256,6 +261,7 @@ impl<'r> Taken<'r> {
     }
 
     /// Length of the nearest gate or region ahead.
+    #[inline]
     fn next(&self) -> f64 {
         let region = self.region().map_or(f64::INFINITY, |wait| wait.ends[0].gate.at);
         self.nearest.0.min(region)

@@ -33,11 +33,13 @@ impl Timeline {
 
     /// Arrival at a length of the way, counted from now \[s\]. `time` is the time of the way there:
     /// max(`made` + (`time` - `start`) - `now`, 0) + delays before `length`.
+    #[inline]
     pub(super) fn from(&self, time: f64, length: f64, now: f64) -> f64 {
         (time - self.start + self.made - now).max(0.0) + self.late(length)
     }
 
     /// Time at which the robot, as the first one, opens a gate for the second, counted from now \[s\].
+    #[inline]
     pub(super) fn opens(&self, timed: &Timed, now: f64) -> f64 {
         // A robot that waits stands up to this much before its gate.
         self.from(timed.opens, timed.gate.needs + 2.0 * SHORT, now)
@@ -70,6 +72,7 @@ impl Timeline {
     }
 
     /// Sum of the delays before a length \[s\].
+    #[inline]
     fn late(&self, length: f64) -> f64 {
         self.delays.partition_point(|delay| delay.0 < length).checked_sub(1).map_or(0.0, |last| self.delays[last].1)
     }

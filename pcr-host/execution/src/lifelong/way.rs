@@ -126,6 +126,7 @@ impl Way {
     }
 
     /// The same, on an atom that contains this length or ends there.
+    #[inline]
     fn time_on(&self, atom: usize, length: f64) -> f64 {
         let beyond = length - self.offsets[atom];
         if beyond > 0.0 { self.times[atom] + beyond / self.speeds[atom] } else { self.times[atom] }
@@ -138,6 +139,7 @@ impl Way {
     }
 
     /// Index of the atom that contains a length; at a node the earlier one.
+    #[inline]
     pub(super) fn atom(&self, length: f64) -> usize {
         self.offsets.partition_point(|&offset| offset < length).saturating_sub(1).min(self.atoms.len() - 1)
     }
