@@ -249,6 +249,8 @@ features() {
     echo "$crate"
     cargo clippy -q -p $crate --profile "$profile" --locked --no-default-features -- -D warnings
   done
+  step "the tool as users build it says what is not in it"
+  cargo test -q -p pcr-host --profile "$profile" --locked --test tool -- habits::what_is_not_built_in simulate::
   step "defmt::Format on all public types"
   local source name missing=""
   for source in pcr-core/src pcr-fixed/src; do

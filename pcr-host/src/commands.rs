@@ -249,7 +249,6 @@ impl Stop {
     }
 
     /// Something that this build is without.
-    #[cfg_attr(all(feature = "serve", feature = "peers"), allow(dead_code))]
     fn without(what: &str, feature: &str) -> Self {
         let install = format!("cargo install --locked --path pcr-host --features {feature}");
         Self::arguments(format!("this pcr was built without {what}: {install}"))

@@ -1,5 +1,6 @@
 //! YAML against another reader of it: the same values, and the same texts refused.
 
+use pcr_formats::random::Random;
 use pcr_formats::yaml::Document;
 use serde_json::Value;
 use std::fs;
@@ -78,13 +79,8 @@ fn texts_from_parts_say_the_same_to_both_readers() {
         "1", "-", "+", ".", "0x", "e3", "_", "~", "null", "no", "'", "\"", " ", ": ", "#", " #", "[", "]", "{", "}",
         ", ", "\n", "\n  ", "- ", "? ", "&a ", "*a", "!!str ", "!!int ", "|\n  x", "<<", "\t", "é", "\\",
     ];
-    let mut random = 88_172_645_463_325_252_u64;
-    let mut next = |bound: usize| {
-        random ^= random << 13;
-        random ^= random >> 7;
-        random ^= random << 17;
-        (random % bound as u64) as usize
-    };
+    let mut random = Random(1);
+    let mut next = |count: usize| random.below(count);
     let (mut read, mut refused) = (0, 0);
     for _ in 0..20_000 {
         let begin = ["", "a: ", "- ", "a: &a 1\nb: ", "[&a x, "][next(5)];

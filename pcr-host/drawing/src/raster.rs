@@ -211,6 +211,7 @@ mod tests {
             ("<polygon points='1 2 3 4'/>", "<polygon>: its shape"),
             ("<text x='1' y='2' text-anchor='centre'>a</text>", "<text>: its shape"),
             ("<text x='1' y='2'>a<tspan>b</tspan></text>", "<text>: what is in it"),
+            ("<defs><circle r='1'/></defs>", "<defs>: what is in it"),
             ("<line x1='-3e38' x2='3e38'/>", "<line>: its size"),
             ("<defs><pattern id='a' width='1' height='1'/></defs>", "<pattern>: its repetition"),
         ] {

@@ -85,16 +85,11 @@ enum Choice {
 }
 
 impl Choice {
-    fn controllers(choice: Option<Self>) -> Result<Vec<Controller>, Stop> {
-        Ok(match choice {
-            None => Controller::ALL.to_vec(),
-            Some(Self::Pcr) => vec![Controller::Pcr],
-            Some(Self::Potential) => vec![Controller::Potential],
-            #[cfg(feature = "peers")]
-            Some(Self::Orca) => vec![Controller::Orca],
-            #[cfg(not(feature = "peers"))]
-            Some(Self::Orca) => return Err(Stop::without("ORCA", "peers")),
-        })
+    /// The controller, if it is in this build.
+    fn controller(self) -> Result<Controller, Stop> {
+        let name = self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
+        let there = Controller::ALL.iter().copied().find(|controller| controller.name() == name);
+        there.ok_or_else(|| Stop::without(&format!("the controller {name}"), "peers"))
     }
 }
 
@@ -134,7 +129,10 @@ impl Arguments {
         let Self { noise, slip, delay, drift, .. } = self;
         let disturbance = Disturbance { noise, slip, delay, drift };
         let settings = Settings { seed: self.seed, replan: self.replan.unwrap_or(REPLAN), disturbance };
-        let controllers = Choice::controllers(self.controller)?;
+        let controllers = match self.controller {
+            Some(choice) => vec![choice.controller()?],
+            None => Controller::ALL.to_vec(),
+        };
         let progress = Progress::new("runs");
         let mut outcomes = Vec::new();
         for (done, &controller) in controllers.iter().enumerate() {

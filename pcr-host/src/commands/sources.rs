@@ -65,7 +65,9 @@ pub(super) fn scenario(file: &Path, import: &Options) -> Result<Scenario, Stop> 
 /// The same in a text that is read already.
 pub(super) fn scenario_from(file: &Path, text: String, import: &Options) -> Result<Scenario, Stop> {
     keep(import);
-    told(file, input::read_from(file, text, import)?, import)
+    let scenario = told(file, input::read_from(file, text, import)?, import);
+    refuse_margin(&scenario, import).map_err(|why| Stop::wrong(file, why))?;
+    Ok(scenario)
 }
 
 /// The text of a file, which is not to be replaced by something else.
@@ -86,26 +88,38 @@ fn ask_for(file: &Path) -> Result<(), Stop> {
 }
 
 /// A scenario that was read, with the margin that is asked for; warnings about it are told.
-fn told(file: &Path, (mut scenario, warnings): (Scenario, Warnings), import: &Options) -> Result<Scenario, Stop> {
+fn told(file: &Path, (mut scenario, warnings): (Scenario, Warnings), import: &Options) -> Scenario {
     warn(file, &warnings);
     if warnings.is_empty() {
         // Those of whoever has written it: what is left out of a file is left out of all that is made of it.
         say(file, scenario.warnings.iter().map(|line| shortened(line)));
     }
-    give_margin(&mut scenario, import).map_err(|why| Stop::wrong(file, why))?;
-    Ok(scenario)
+    give_margin(&mut scenario, import);
+    scenario
 }
 
 /// Gives the margin that is asked for to all agents that have none.
-pub(super) fn give_margin(scenario: &mut Scenario, import: &Options) -> Result<(), String> {
-    let Some(margin) = import.margin else { return Ok(()) };
-    // What was read from another format has it already.
-    let own = |agent: &Agent| agent.margin != 0.0 && agent.margin != margin;
-    if !scenario.agents.is_empty() && scenario.agents.iter().all(own) {
-        return Err("--margin has no effect: every agent has a margin of its own".into());
+pub(super) fn give_margin(scenario: &mut Scenario, import: &Options) {
+    if let Some(margin) = import.margin {
+        scenario.give_margin(margin);
     }
-    scenario.give_margin(margin);
-    Ok(())
+}
+
+/// Why no agent takes a margin.
+const OWN_MARGINS: &str = "every agent has a margin of its own";
+
+/// Whether any agent takes the margin that is asked for, or has it already.
+fn takes_margin(scenario: &Scenario, margin: f64) -> bool {
+    let takes = |agent: &Agent| agent.margin == 0.0 || agent.margin == margin;
+    scenario.agents.is_empty() || scenario.agents.iter().any(takes)
+}
+
+/// Refuses a margin that no agent of the only scenario takes.
+pub(super) fn refuse_margin(scenario: &Scenario, import: &Options) -> Result<(), String> {
+    match import.margin {
+        Some(margin) if !takes_margin(scenario, margin) => Err(format!("--margin has no effect: {OWN_MARGINS}")),
+        _ => Ok(()),
+    }
 }
 
 /// Refuses a margin for a command that looks at the discs themselves.
@@ -149,18 +163,19 @@ fn apart(files: Vec<PathBuf>, import: &Options) -> Result<Vec<Source>, Stop> {
         // What is no file can be read once only.
         std::fs::metadata(file).ok().filter(|there| there.is_file())?;
         let (scenario, warnings) = input::read_one_of(file, input::read_text(file).ok()?, import).ok()?;
-        Some((scenario.name, warnings))
+        let takes_margin = import.margin.is_none_or(|margin| takes_margin(&scenario, margin));
+        Some((scenario.name, takes_margin, warnings))
     };
-    let read: Vec<Option<(String, Warnings)>> = files.iter().map(read).collect();
-    let warnings: Vec<&Warnings> = read.iter().flatten().map(|(_, warnings)| warnings).collect();
+    let read: Vec<Option<(String, bool, Warnings)>> = files.iter().map(read).collect();
+    let warnings: Vec<&Warnings> = read.iter().flatten().map(|(.., warnings)| warnings).collect();
+    let margin = || (!read.iter().flatten().any(|read| read.1)).then_some(("--margin", OWN_MARGINS));
     if warnings.len() == files.len()
-        && let Some((option, why)) = import.unused(&warnings)
+        && let Some((option, why)) = import.unused(&warnings).or_else(margin)
     {
         return Err(Stop::arguments(format!("{option} has no effect on any of these files: {why}")));
     }
     let named = files.iter().zip(read);
-    let names: Vec<String> =
-        named.map(|(file, read)| read.map_or_else(|| input::stem(file), |(name, _)| name)).collect();
+    let names: Vec<String> = named.map(|(file, read)| read.map_or_else(|| input::stem(file), |read| read.0)).collect();
     let is_twin = |name: &String| !name.is_empty() && names.iter().filter(|other| *other == name).count() > 1;
     let twins: Vec<bool> = names.iter().map(is_twin).collect();
     let source = |(file, twin): (PathBuf, bool)| if twin { Source::Twin(file) } else { Source::OneOf(file) };
@@ -216,7 +231,7 @@ impl Source {
             return scenario_from(file, text, import);
         }
         keep(import);
-        told(file, input::read_one_of(file, text, import)?, import)
+        Ok(told(file, input::read_one_of(file, text, import)?, import))
     }
 }
 
@@ -227,7 +242,8 @@ pub(super) fn together(files: &[PathBuf], import: &Options) -> Result<Scenario, 
     let (mut scenario, warnings) = input::read_all(files, import)?;
     warnings.iter().for_each(|(file, warnings)| warn(file, warnings));
     let first = files.first().map_or(Path::new("-"), |first| first);
-    give_margin(&mut scenario, import).map_err(|why| Stop::wrong(first, why))?;
+    give_margin(&mut scenario, import);
+    refuse_margin(&scenario, import).map_err(|why| Stop::wrong(first, why))?;
     Ok(scenario)
 }
 

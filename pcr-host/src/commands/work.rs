@@ -2,7 +2,7 @@
 
 use super::number::{Number, with_scalar};
 use super::printed::is_alone;
-use super::sources::{Source, gathered, give_margin};
+use super::sources::{Source, gathered, give_margin, refuse_margin};
 use super::{Form, NOT_WRITTEN, Printed, Stop, WRONG_INPUT, complain, say};
 use crate::progress::Progress;
 use pcr_formats::import::{Options, shortened};
@@ -139,7 +139,8 @@ fn answer_lines<W: Work>(
                 let number = line.number;
                 let warnings = scenario.warnings.iter().map(|warning| format!("line {number}: {}", shortened(warning)));
                 say(Path::new("-"), warnings);
-                let lost = give_margin(&mut scenario, import)
+                give_margin(&mut scenario, import);
+                let lost = refuse_margin(&scenario, import)
                     .and_then(|()| tell_rounding(work.scalar(), &mut scenario).map_err(|refused| refused.to_string()));
                 let answered = match lost {
                     Ok(lost) => {

@@ -129,8 +129,22 @@ fn options_that_do_nothing_are_refused() {
     assert_eq!((both.status, both.out.lines().count(), both.err.contains("refused")), (0, 2, false), "{}", both.err);
     let none = "--tolerance has no effect on any of these files: there is no curve in what is read but lines and arcs";
     assert_eq!(on(&[&direct, &same]).failed(2), format!("pcr: {none}\n"));
+    let margin = |files: &[&str]| run(&[&["regions"], files, &["--margin", "0.1", "--json"]].concat());
+    let both = margin(&[&wide, &scenario]);
+    assert_eq!((both.status, both.out.lines().count(), both.err.as_str()), (0, 2, ""));
+    let none = "--margin has no effect on any of these files: every agent has a margin of its own";
+    assert_eq!(margin(&[&wide, &wide]).failed(2), format!("pcr: {none}\n"));
+    // A fleet counts as far as other options leave something of it.
+    let [limits, named] = [("limits", ""), ("named", "  name: small\n")].map(|(name, more)| {
+        file("habits", &format!("{name}.yaml"), format!("rmf_fleet:\n  limits: {{linear: [1.0, 0.5]}}\n{more}"))
+    });
+    let driven = ["regions", &nav2, "--route", "0:1", "--acceleration", "1", "--fleet"];
+    run(&[&driven[..], &[&limits, "-q"]].concat()).ok();
+    run(&[&driven[..], &[&named, "--speed", "1", "-q"]].concat()).ok();
+    let fleet = [&driven[..], &[&limits, "--speed", "1"]].concat();
     for (arguments, reason) in [
-        (&["nodes", &straight, "--tolerance", "0.01"][..], curve),
+        (&fleet[..], "--fleet has no effect: other options say all that is in it, or it says nothing"),
+        (&["nodes", &straight, "--tolerance", "0.01"], curve),
         (&["locks", &straight, "--radius", "0.3", "--tolerance", "0.01"], curve),
         (&["regions", &straight, "--route", "N1:N2", "--tolerance", "0.01"], curve),
         (&["check", &order, "--tolerance", "0.01"], curve),

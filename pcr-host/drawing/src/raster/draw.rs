@@ -70,6 +70,10 @@ impl<'d> Drawing<'d> {
     ) -> io::Result<()> {
         match node.tag_name().name() {
             "title" => return Ok(()),
+            // What else is in it is not drawn where it is, but where it is named.
+            "defs" if node.children().any(|child| child.is_element() && !child.has_tag_name("pattern")) => {
+                return Err(refused(node, "what is in it"));
+            }
             "g" | "defs" => return self.children(node, style, transform, onto),
             "pattern" => return self.pattern(node, style),
             _ => {}

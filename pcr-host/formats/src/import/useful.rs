@@ -32,7 +32,8 @@ impl Kind {
 }
 
 impl Options {
-    /// The fields that are given, with the names that they have on the command line. The margin is not among them: it is of use everywhere.
+    /// The fields that are given, with the names that they have on the command line. The margin is not among them: the agents of any kind of
+    /// file may take it.
     fn all(&self) -> [(&'static str, &'static str, bool); 14] {
         [
             ("from", "--from", self.from.is_some()),
@@ -83,6 +84,7 @@ impl Options {
 /// of them need it.
 fn unused(field: &str) -> Option<&'static str> {
     match field {
+        "fleet" => Some("other options say all that is in it, or it says nothing"),
         "tolerance" => Some("there is no curve in what is read but lines and arcs"),
         "horizon" => Some("it is for orders that end in edges that are not released, and there is none"),
         "corner_radius" => Some("with it or without it, no corner of a route is rounded"),

@@ -132,6 +132,20 @@ impl Options {
         self.tolerance.unwrap_or(TOLERANCE)
     }
 
+    /// Whether anything that a file says about the vehicle counts beside these options.
+    pub(super) fn leave(&self, given: &Given) -> bool {
+        let numbers = [
+            (self.radius, given.radius.or(given.footprint.as_ref().map(Footprint::reach))),
+            (self.margin, given.margin),
+            (self.speed, given.speed),
+            (self.acceleration, given.acceleration),
+            (self.rotation, given.rotation),
+            (self.rotation_acceleration, given.rotation_acceleration),
+        ];
+        let is_left = |(option, given): (Option<f64>, Option<f64>)| option.is_none() && given.is_some();
+        self.vehicle.is_none() && given.name.is_some() || numbers.into_iter().any(is_left)
+    }
+
     /// The vehicle: what the options say, else the file, else a default that is warned about. If nothing `moves` only the
     /// radius matters.
     pub(super) fn vehicle(&self, given: &Given, moves: bool, warnings: &mut Warnings) -> Vehicle {
