@@ -14,8 +14,11 @@
 //! A journal that was begun anew has the whole state in its first frame, and was on the disk before it replaced the
 //! journal before it. Its last byte of the header says so: if its first frame is incomplete, that is damage.
 
+mod lock;
+
 use crate::entry::{Entry, Keep};
-use std::fs::{self, File, OpenOptions, TryLockError};
+use lock::Lock;
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -58,8 +61,7 @@ pub struct Found {
 pub struct Journal {
     folder: PathBuf,
     file: File,
-    /// Locks the folder as long as the journal is open.
-    _lock: File,
+    _lock: Lock,
     /// End of its frames \[bytes\].
     len: u64,
     /// End of the state with which it was begun \[bytes\].
@@ -80,12 +82,7 @@ impl Journal {
     /// version, and other errors of files.
     pub fn open(folder: &Path) -> io::Result<(Self, Found)> {
         fs::create_dir_all(folder).map_err(of(folder))?;
-        let lock = folder.join("lock");
-        let lock = OpenOptions::new().write(true).create(true).truncate(false).open(&lock).map_err(of(&lock))?;
-        lock.try_lock().map_err(|error| match error {
-            TryLockError::WouldBlock => io::Error::new(ErrorKind::WouldBlock, "another supervisor has it open"),
-            TryLockError::Error(error) => error,
-        })?;
+        let lock = Lock::of(&folder.join("lock"))?;
         let path = folder.join("journal");
         if !path.try_exists().map_err(of(&path))? {
             written(folder, HEADER)?;
