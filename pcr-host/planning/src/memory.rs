@@ -62,12 +62,18 @@ const OF_TEXT: u64 = 8;
 /// # Errors
 /// As [`ask`].
 pub fn ask_for_text(bytes: u64) -> Result<(), TooLarge> {
-    let needed = OF_TEXT * bytes;
-    // No other thread takes addresses yet.
+    ask_alone(OF_TEXT * bytes, || "what is read".into())
+}
+
+/// Asks for some bytes that this thread allocates while the others take no addresses.
+///
+/// # Errors
+/// As [`ask`].
+pub fn ask_alone(bytes: u64, what: impl FnOnce() -> String) -> Result<(), TooLarge> {
     let limits = [address_space(), group(), machine()];
     match limits.into_iter().flatten().min() {
-        Some(left) if needed > STEP && needed > left => {
-            Err(TooLarge { what: "what is read".into(), needed: Some(needed), left: Some(left) })
+        Some(left) if bytes > STEP && bytes > left => {
+            Err(TooLarge { what: what(), needed: Some(bytes), left: Some(left) })
         }
         _ => Ok(()),
     }

@@ -65,7 +65,7 @@ pub(super) fn scenario(file: &Path, import: &Options) -> Result<Scenario, Stop> 
 /// The same in a text that is read already.
 pub(super) fn scenario_from(file: &Path, text: String, import: &Options) -> Result<Scenario, Stop> {
     keep(import);
-    let scenario = told(file, input::read_from(file, text, import)?, import);
+    let scenario = told(file, input::read_from(file, text, import)?, import)?;
     refuse_margin(&scenario, import).map_err(|why| Stop::wrong(file, why))?;
     Ok(scenario)
 }
@@ -87,15 +87,29 @@ fn ask_for(file: &Path) -> Result<(), Stop> {
     memory::ask_for_text(bytes).map_err(|large| Stop::wrong(file, large))
 }
 
+/// What an agent and a segment of its path take in an answer \[bytes\].
+const AGENT_BYTES: usize = 1600;
+const SEGMENT_BYTES: usize = 400;
+
+/// Asks for the memory that it takes to answer about a scenario, beside the answer.
+fn ask_to_answer(file: &Path, scenario: &Scenario) -> Result<(), Stop> {
+    let agents = scenario.agents.len();
+    let segments: usize = scenario.agents.iter().map(|agent| agent.path.len()).sum();
+    let bytes = agents * AGENT_BYTES + segments * SEGMENT_BYTES;
+    let what = || format!("an answer about {agents} agents");
+    memory::ask_alone(bytes as u64, what).map_err(|large| Stop::wrong(file, large))
+}
+
 /// A scenario that was read, with the margin that is asked for; warnings about it are told.
-fn told(file: &Path, (mut scenario, warnings): (Scenario, Warnings), import: &Options) -> Scenario {
+fn told(file: &Path, (mut scenario, warnings): (Scenario, Warnings), import: &Options) -> Result<Scenario, Stop> {
+    ask_to_answer(file, &scenario)?;
     warn(file, &warnings);
     if warnings.is_empty() {
         // Those of whoever has written it: what is left out of a file is left out of all that is made of it.
         say(file, scenario.warnings.iter().map(|line| shortened(line)));
     }
     give_margin(&mut scenario, import);
-    scenario
+    Ok(scenario)
 }
 
 /// Gives the margin that is asked for to all agents that have none.
@@ -231,7 +245,7 @@ impl Source {
             return scenario_from(file, text, import);
         }
         keep(import);
-        Ok(told(file, input::read_one_of(file, text, import)?, import))
+        told(file, input::read_one_of(file, text, import)?, import)
     }
 }
 
@@ -242,6 +256,7 @@ pub(super) fn together(files: &[PathBuf], import: &Options) -> Result<Scenario, 
     let (mut scenario, warnings) = input::read_all(files, import)?;
     warnings.iter().for_each(|(file, warnings)| warn(file, warnings));
     let first = files.first().map_or(Path::new("-"), |first| first);
+    ask_to_answer(first, &scenario)?;
     give_margin(&mut scenario, import);
     refuse_margin(&scenario, import).map_err(|why| Stop::wrong(first, why))?;
     Ok(scenario)

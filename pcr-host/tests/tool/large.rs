@@ -117,6 +117,11 @@ fn what_memory_does_not_hold_is_refused_with_a_number() {
         let number = message.contains(" MB ") && message.starts_with("pcr: ");
         assert!(status == Some(2) && number, "{arguments:?}: {status:?} {message}");
     }
+    // Wherever the limit is, there is an answer or a number.
+    for limit in (50_000..120_000).step_by(10_000) {
+        let (status, message) = limited(limit, &["check", &many, "-q"]);
+        assert!(status == Some(0) || status == Some(2) && message.contains(" MB of memory; "), "{limit}: {message}");
+    }
     // Who has none is told before an allocation fails, whose message is not ours.
     let (status, message) = limited(60_000, &["demo", "--scenario"]);
     assert!(status == Some(0) && message.starts_with("pcr: warning: hardly any memory is left"), "{message}");
