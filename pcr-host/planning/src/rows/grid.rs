@@ -1,10 +1,13 @@
 //! Finds boxes that meet, with an even grid: each box is in all cells that it covers. A cell has the average size of
 //! the boxes, so in a fleet of constant density a box has a constant number of neighbours.
 
-use rayon::prelude::*;
+use crate::cores;
 
 /// Cells for each box at most: long boxes cannot fill the memory.
 const CELLS: f64 = 4.0;
+
+/// Boxes whose neighbours are counted at once.
+const COUNTED: usize = 1024;
 
 /// Left, bottom, right, top.
 type Box = [f64; 4];
@@ -125,11 +128,17 @@ impl Grid {
 
     /// How many others meet each box: what a pass over all of them looks at. O(boxes in the cells that they cover), on all cores.
     pub fn counts(&self) -> Vec<u32> {
-        let count = |near: &mut Vec<u32>, place: usize| {
-            self.around(place, near);
-            near.len() as u32
+        let count = self.boxes.len();
+        let of_some = |some: usize| {
+            let mut near = Vec::new();
+            let places = some * COUNTED..count.min((some + 1) * COUNTED);
+            let counted = places.map(|place| {
+                self.around(place, &mut near);
+                near.len() as u32
+            });
+            counted.collect::<Vec<u32>>()
         };
-        (0..self.boxes.len()).into_par_iter().map_init(Vec::new, count).collect()
+        cores::made(0..count.div_ceil(COUNTED), &of_some).concat()
     }
 
     /// The boxes after this one that meet it, in increasing order, in place of what is in `near`.
