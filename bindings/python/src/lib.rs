@@ -124,7 +124,7 @@ impl Fleet {
     }
 
     /// Who passes first, as the motions do.
-    fn orders(&self, motions: &[Motion<'_, f64>]) -> PyResult<HostOrders<f64>> {
+    fn orders(&self, motions: &[Motion<'_, f64>]) -> PyResult<HostOrders> {
         let mut orders = orders(&self.scenario, motions).map_err(refused)?;
         orders.as_planned(motions).map_err(|refusal| match refusal {
             // The library counts places.

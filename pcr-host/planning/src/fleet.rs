@@ -17,8 +17,10 @@ use pcr_core::{
 };
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
+pub use pcr_kernels::HostEcm;
 use pcr_kernels::Kernels;
-pub use pcr_kernels::{HostEcm, HostOrders};
+use pcr_kernels::planning;
+pub use pcr_kernels::planning::HostOrders;
 pub(crate) use rounding::Rounding;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -390,8 +392,8 @@ pub fn build_ecm<S: Format>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Ful
 ///
 /// # Errors
 /// As [`build_ecm`].
-pub fn build_orders<S: Format>(motions: &[Motion<'_, S>]) -> Result<HostOrders<S>, Full> {
-    S::orders(motions)
+pub fn build_orders(motions: &[Motion<'_, f64>]) -> Result<HostOrders, Full> {
+    planning::orders(motions)
 }
 
 /// The table of the regions of one agent with all others.

@@ -226,7 +226,7 @@ pub fn table<S: Format>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Resul
 ///
 /// # Errors
 /// As [`table`].
-pub fn orders<S: Format>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Result<HostOrders<S>, Failure> {
+pub fn orders(scenario: &Scenario, motions: &[Motion<'_, f64>]) -> Result<HostOrders, Failure> {
     build_orders(motions).map_err(|full| unfit(full, scenario, motions.len()))
 }
 

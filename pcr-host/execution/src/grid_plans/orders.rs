@@ -8,7 +8,7 @@ use pcr_planning::fleet::{HostOrders, build_orders};
 const AHEAD: f64 = 2.0;
 
 /// The orders in which the motions pass their regions; with these all robots can finish.
-pub(super) fn table(motions: &[Motion<'_, f64>]) -> Result<HostOrders<f64>, String> {
+pub(super) fn table(motions: &[Motion<'_, f64>]) -> Result<HostOrders, String> {
     let mut table = build_orders(motions).map_err(|full| full.to_string())?;
     table.as_planned(motions).map_err(|refused| refused.to_string())?;
     let progress = vec![Progress::at_rest(0.0); motions.len()];
@@ -54,7 +54,7 @@ pub(super) struct Kept<'a> {
 }
 
 impl<'a> Kept<'a> {
-    pub(super) fn new(table: &'a HostOrders<f64>, motions: &'a [Motion<'a, f64>]) -> Result<Self, String> {
+    pub(super) fn new(table: &'a HostOrders, motions: &'a [Motion<'a, f64>]) -> Result<Self, String> {
         let mut pairs = Vec::new();
         for robot in 0..motions.len() {
             let row = table.row(motions, robot).map_err(|mismatch| mismatch.to_string())?;

@@ -30,7 +30,7 @@ pub(super) struct Guard {
     /// At 1 m/s from time 0 on: orders do not depend on times.
     drives: Vec<Drive>,
     radii: Vec<f64>,
-    orders: HostOrders<f64>,
+    orders: HostOrders,
 }
 
 impl Guard {

@@ -7,13 +7,9 @@ use super::Priority;
 use super::task::Planner;
 use crate::fleet::HostEcm;
 use crate::regions::Failure;
-use pcr_core::{
-    Drive, Motion, Profile, RegionRef, SpeedPlan, Station, Unsolved as Never, earliest_start, plan_speed,
-    plan_speed_below, plan_speeds,
-};
+use pcr_core::{Drive, Motion, Profile, RegionRef, SpeedPlan, Station, Unsolved as Never};
+use pcr_kernels::planning::{PHASES, Regions, Speeds, earliest_start, plan_speed, plan_speed_below, plan_speeds};
 
-/// Largest number of phases of a speed profile.
-const PHASES: usize = 128;
 /// Number of stations on a path: 256 cells.
 const STATIONS: usize = 257;
 /// Largest number of profiles: for each agent in small fleets, for the whole fleet, and at least for each agent.
@@ -26,8 +22,6 @@ const ROUNDS: usize = 8;
 const AGAIN: usize = 4;
 /// Smallest gain that counts \[s\].
 const SOONER: f64 = 1e-6;
-
-type Speeds = Profile<f64, PHASES>;
 
 /// Storage for the profiles of all attempts.
 pub(super) fn pool(agents: usize) -> Vec<Speeds> {
@@ -100,21 +94,17 @@ enum Found<'m> {
 
 impl<'m> Found<'m> {
     /// Uses the row of the agent in this motion: a delay counts from the motion of the row.
-    fn of<'a>(
-        motion: &Motion<'m, f64>,
-        regions: impl Iterator<Item = RegionRef<'a, f64>> + Clone,
-        stations: &mut [Station<f64>],
-    ) -> Option<Self> {
+    fn of(motion: &Motion<'m, f64>, regions: Regions<'_, '_>, stations: &mut [Station<f64>]) -> Option<Self> {
         let Some(drive) = Drive::of(motion) else {
-            let later = earliest_start(regions.clone(), 0.0).and_then(|delay| motion.delayed(delay).ok());
-            let plan = plan_speed_below(motion, regions, &[], stations).ok();
+            let later = earliest_start(regions, 0.0).and_then(|delay| motion.delayed(delay).ok());
+            let plan = plan_speed_below(motion, regions, stations).ok();
             let sooner = |end: f64| later.is_none_or(|later| end < later.time().hi - SOONER);
             return match plan.filter(|plan| sooner(plan.end())) {
                 Some(plan) => Some(Self::Speeds(Box::new(plan))),
                 None => later.map(Self::Later),
             };
         };
-        plan_speed(motion, drive, regions, &[], stations).ok().map(|plan| Self::Speeds(Box::new(plan)))
+        plan_speed(motion, drive, regions, stations).ok().map(|plan| Self::Speeds(Box::new(plan)))
     }
 
     /// Time of arrival \[s\].
@@ -187,8 +177,8 @@ fn again<'m>(
             let motion = planner.motions[agent];
             // Delays count from the motion of the row, which is that of the file.
             let before = std::mem::replace(&mut plan[agent], motion);
-            let regions = ecm.row(plan, agent).expect("the table of the fleet");
-            let found = Found::of(&motion, regions, stations);
+            let regions: Vec<RegionRef<'_, f64>> = ecm.row(plan, agent).expect("the table of the fleet").collect();
+            let found = Found::of(&motion, &regions, stations);
             let found = found.filter(|found| found.end() < before.time().hi - SOONER);
             let better = found.and_then(|found| found.motion(motion, room));
             sooner |= better.is_some();

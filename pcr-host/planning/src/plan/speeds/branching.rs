@@ -5,7 +5,8 @@
 use super::{Found, Room};
 use crate::fleet::HostEcm;
 use crate::plan::task::Planner;
-use pcr_core::{Motion, Station, first_overlap};
+use pcr_core::{Motion, RegionRef, Station};
+use pcr_kernels::planning::first_overlap;
 
 /// Nodes at most.
 const NODES: usize = 400;
@@ -60,8 +61,8 @@ fn collision(ecm: &HostEcm<f64>, plan: &[Motion<'_, f64>]) -> Option<[usize; 2]>
     let all = Motion::span(plan);
     (0..plan.len()).find_map(|agent| {
         let regions = ecm.row(plan, agent).expect("the table of the fleet");
-        let after = regions.filter(|region| region.other() > agent);
-        first_overlap(&plan[agent], after, all).expect("its own row").map(|met| [agent, met.other])
+        let after: Vec<RegionRef<'_, f64>> = regions.filter(|region| region.other() > agent).collect();
+        first_overlap(&plan[agent], &after, all).expect("its own row").map(|met| [agent, met.other])
     })
 }
 
@@ -123,7 +124,7 @@ fn plan_again<'m>(
     // Delays count from the motion that the row is of: that of the file.
     node.plan[agent] = motion;
     let regions = ecm.row(&node.plan, agent).expect("the table of the fleet");
-    let regions = regions.filter(|region| above.contains(&region.other()));
-    node.plan[agent] = Found::of(&motion, regions, stations)?.motion(motion, room)?;
+    let regions: Vec<RegionRef<'_, f64>> = regions.filter(|region| above.contains(&region.other())).collect();
+    node.plan[agent] = Found::of(&motion, &regions, stations)?.motion(motion, room)?;
     Some(())
 }
