@@ -255,6 +255,7 @@ impl<'t> Reader<'t> {
                     }
                     elements.push(self.node(event, span, depth)?);
                 };
+                elements.shrink_to_fit();
                 let style = Style::from(given);
                 let mut span = whole(style, elements.last().map(|last| last.span.end), end);
                 if let (Style::Block, Some(first)) = (style, elements.first()) {
@@ -282,6 +283,7 @@ impl<'t> Reader<'t> {
                     self.is_placed &= key.text().is_some();
                     members.push(Member { key, value });
                 };
+                members.shrink_to_fit();
                 let style = Style::from(given);
                 let span = whole(style, members.last().map(|last| last.value.span.end), end);
                 Ok(Spanned { span, value: Value::Mapping(style, members), shared, anchor, kind })

@@ -54,8 +54,11 @@ pub fn ask(bytes: u64, what: impl FnOnce() -> String) -> Result<(), TooLarge> {
     if bytes < STEP { Ok(()) } else { ask_at_all(bytes, what) }
 }
 
-/// What is made of a text, as a part of its size: its numbers, and what they are read to.
+/// What is made of a text while it is read, as a part of its size: its numbers, and what they are read to.
 const OF_TEXT: u64 = 8;
+
+/// The same where a tree is made of all of it.
+const OF_TREE: u64 = 32;
 
 /// Asks for what is made of a text of so many bytes while it is read, by this thread alone.
 ///
@@ -63,6 +66,14 @@ const OF_TEXT: u64 = 8;
 /// As [`ask`].
 pub fn ask_for_text(bytes: u64) -> Result<(), TooLarge> {
     ask_alone(OF_TEXT * bytes, || "what is read".into())
+}
+
+/// The same for a text of which a tree is made, as of all but scenarios.
+///
+/// # Errors
+/// As [`ask`].
+pub fn ask_for_tree(bytes: u64) -> Result<(), TooLarge> {
+    ask_alone(OF_TREE * bytes, || "what is made of the file".into())
 }
 
 /// Asks for some bytes that this thread allocates while the others take no addresses.

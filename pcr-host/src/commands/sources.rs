@@ -65,6 +65,9 @@ pub(super) fn scenario(file: &Path, import: &Options) -> Result<Scenario, Stop> 
 /// The same in a text that is read already.
 pub(super) fn scenario_from(file: &Path, text: String, import: &Options) -> Result<Scenario, Stop> {
     keep(import);
+    if input::kind_of(file, &text, import) != Kind::Scenario {
+        memory::ask_for_tree(text.len() as u64).map_err(|large| Stop::wrong(file, large))?;
+    }
     let scenario = told(file, input::read_from(file, text, import)?, import)?;
     refuse_margin(&scenario, import).map_err(|why| Stop::wrong(file, why))?;
     Ok(scenario)
@@ -300,6 +303,7 @@ pub(super) fn layout_from(
         _ => import.clone(),
     };
     keep(import);
+    memory::ask_for_tree(text.len() as u64).map_err(|large| Stop::wrong(file, large))?;
     let (imported, warnings) = input::read_layout_from(file, text, import, moves).map_err(|error| match error {
         // There is no --from to say it with.
         InputError::NoLayout(_) if command == FLEET => {

@@ -2,6 +2,7 @@
 
 use crate::fixture::{directory, file, run, straight};
 use serde_json::json;
+use std::fmt::Write as _;
 use std::process::Command;
 
 /// Discs that stand, so many metres apart.
@@ -118,9 +119,15 @@ fn what_memory_does_not_hold_is_refused_with_a_number() {
         assert!(status == Some(2) && number, "{arguments:?}: {status:?} {message}");
     }
     // Wherever the limit is, there is an answer or a number.
-    for limit in (50_000..120_000).step_by(10_000) {
-        let (status, message) = limited(limit, &["check", &many, "-q"]);
-        assert!(status == Some(0) || status == Some(2) && message.contains(" MB of memory; "), "{limit}: {message}");
+    let building = file("large", "large.building.yaml", lanes(20_000));
+    for (arguments, limits) in
+        [(["check", &many, "-q"], 50_000..120_000), (["nodes", &building, "-q"], 60_000..240_000)]
+    {
+        for limit in limits.step_by(10_000) {
+            let (status, message) = limited(limit, &arguments);
+            let fits = status == Some(0) || status == Some(2) && message.contains(" MB of memory; ");
+            assert!(fits, "{arguments:?} {limit}: {message}");
+        }
     }
     // Who has none is told before an allocation fails, whose message is not ours.
     let (status, message) = limited(60_000, &["demo", "--scenario"]);
@@ -128,6 +135,23 @@ fn what_memory_does_not_hold_is_refused_with_a_number() {
     // Row by row it fits.
     let (status, message) = limited(400_000, &["regions", &heap, "--format", "csv"]);
     assert_eq!((status, message.as_str()), (Some(0), ""));
+}
+
+/// A building with so many lanes, one after the other.
+#[cfg(target_os = "linux")]
+fn lanes(count: usize) -> String {
+    let mut text =
+        "name: large\ncoordinate_system: cartesian_meters\nlevels:\n  L1:\n    elevation: 0\n    vertices:\n"
+            .to_owned();
+    for k in 0..=count {
+        writeln!(text, "      - [{k}, 0, 0, v{k}]").unwrap();
+    }
+    text.push_str("    lanes:\n");
+    for k in 0..count {
+        writeln!(text, "      - [{k}, {}, {{bidirectional: [4, true], graph_idx: [2, 0], mutex: [1, \"\"]}}]", k + 1)
+            .unwrap();
+    }
+    text
 }
 
 /// A path of so many segments that crosses a line again and again.
