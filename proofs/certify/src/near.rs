@@ -13,31 +13,56 @@ fn meet(a: &Area, b: &Area) -> bool {
     a[0] <= b[2] && b[0] <= a[2] && a[1] <= b[3] && b[1] <= a[3]
 }
 
-/// An index of boxes.
+/// An index of boxes: rows as high as the highest box, and in each row the boxes whose lower side is in it, in the order of their left sides.
 #[derive(Clone, Debug)]
 pub(crate) struct Near {
     areas: Vec<Area>,
-    /// Places of the boxes, by their left sides.
+    /// Places of the boxes, by their rows and left sides.
     order: Vec<usize>,
     /// No box is wider \[m\].
     widest: f64,
+    /// No box is higher \[m\].
+    highest: f64,
 }
 
 impl Near {
     pub(crate) fn new(areas: Vec<Area>) -> Self {
-        let mut order: Vec<usize> = (0..areas.len()).collect();
-        order.sort_by(|&a, &b| areas[a][0].total_cmp(&areas[b][0]));
-        let widest = areas.iter().map(|area| (area[2] - area[0]).next_up()).fold(0.0, f64::max);
-        Self { areas, order, widest }
+        let most = |axis: usize| areas.iter().map(|area| (area[axis + 2] - area[axis]).next_up()).fold(0.0, f64::max);
+        let mut near = Self { widest: most(0), highest: most(1), order: (0..areas.len()).collect(), areas };
+        let mut order = std::mem::take(&mut near.order);
+        order.sort_by(|&a, &b| near.row(a).total_cmp(&near.row(b)).then(near.left(a).total_cmp(&near.left(b))));
+        Self { order, ..near }
     }
 
-    /// Places behind this one whose boxes meet its own, in order. O(boxes no farther to the left than the widest box is wide).
+    fn left(&self, place: usize) -> f64 {
+        self.areas[place][0]
+    }
+
+    fn row(&self, place: usize) -> f64 {
+        self.row_of(self.areas[place][1])
+    }
+
+    /// The row of an ordinate; never less for a larger one.
+    fn row_of(&self, y: f64) -> f64 {
+        // All are in one row if one of them reaches without end.
+        if self.highest < f64::INFINITY { (y / self.highest).floor() } else { 0.0 }
+    }
+
+    /// Places behind this one whose boxes meet its own, in order. O(boxes in the same rows and the rows beside them, no farther to the left
+    /// than the widest box is wide).
     pub(crate) fn after(&self, place: usize) -> Vec<usize> {
         let Some(own) = self.areas.get(place) else { return Vec::new() };
-        let left = |&place: &usize| self.areas[place][0];
-        let first = self.order.partition_point(|place| left(place) < (own[0] - self.widest).next_down());
-        let those = self.order[first..].iter().copied().take_while(|place| left(place) <= own[2]);
-        let mut near: Vec<usize> = those.filter(|&other| other > place && meet(own, &self.areas[other])).collect();
+        let (lowest, leftmost) = ((own[1] - self.highest).next_down(), (own[0] - self.widest).next_down());
+        let (first, last) = (self.row_of(lowest), self.row_of(own[3]));
+        let mut rest = &self.order[self.order.partition_point(|&place| self.row(place) < first)..];
+        let mut near = Vec::new();
+        while let Some(row) = rest.first().map(|&place| self.row(place)).filter(|row| *row <= last) {
+            let (own_row, others) = rest.split_at(rest.partition_point(|&place| self.row(place) <= row));
+            let begin = own_row.partition_point(|&place| self.left(place) < leftmost);
+            let those = own_row[begin..].iter().copied().take_while(|&place| self.left(place) <= own[2]);
+            near.extend(those.filter(|&other| other > place && meet(own, &self.areas[other])));
+            rest = others;
+        }
         near.sort_unstable();
         near
     }
@@ -69,4 +94,39 @@ pub(crate) fn area(stretches: &[Stretch], reach: f64) -> Area {
         }
     }
     area
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Area, Near, meet};
+
+    #[test]
+    fn all_boxes_that_meet_are_found() {
+        let inf = f64::INFINITY;
+        let far = [[1e300, 1e300, 1e300, 1e300], [-1e300, -1e300, -1e300, -1e300], [0.0, 1e18, 1.0, 1e18]];
+        let endless = [[-inf, -inf, inf, inf], [0.0, -inf, 1.0, inf], [-inf, 2.0, inf, 3.0]];
+        for (count, others) in [(0, &[][..]), (400, &[]), (400, &far), (400, &endless), (0, &endless)] {
+            let mut bits = 1_u64;
+            let mut random = || {
+                bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (bits >> 40) as f64 / (1 << 20) as f64
+            };
+            let mut areas: Vec<Area> = (0..count)
+                .map(|k| {
+                    // Sides on whole numbers touch, and some boxes are points.
+                    let (x, y) = (random().floor() - 8.0, random().floor() - 8.0);
+                    let [wide, high] =
+                        [random(), random()].map(|size| if k % 2 == 0 { (0.25 * size).floor() } else { 0.0 });
+                    [x, y, x + wide, y + high]
+                })
+                .collect();
+            areas.extend(others);
+            let near = Near::new(areas.clone());
+            for place in 0..areas.len() {
+                let behind = place + 1..areas.len();
+                let all: Vec<usize> = behind.filter(|&other| meet(&areas[place], &areas[other])).collect();
+                assert_eq!(near.after(place), all, "{:?}", areas[place]);
+            }
+        }
+    }
 }
