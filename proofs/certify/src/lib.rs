@@ -13,8 +13,9 @@
 //! data       what is read: paths, motions, pieces
 //! dump       the same from the text that a microcontroller prints
 //! path       segments in the plane
-//! pair       the pieces of two segments: C-rect and C4                       lemma 2
+//! pair       the pieces of two segments, and what is found
 //! shares     one of two intervals: C-share                                  lemma 4
+//! segments   all contacts held, and nothing else: C-rect and C4             lemma 2
 //! travel     the travelled length over time, as the phases say
 //! regions    what is told of all pieces together: lengths and times         lemma 7
 //! table      all pairs; the margin
@@ -71,6 +72,7 @@ pub mod pair;
 pub mod path;
 pub mod plane;
 pub mod regions;
+pub mod segments;
 pub mod shares;
 pub mod table;
 pub mod travel;

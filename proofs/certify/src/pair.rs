@@ -1,10 +1,9 @@
-//! Two agents: whether the pieces of their regions hold all contacts, and nothing else.
+//! Two agents: the pieces of their regions on their segments, what is asked of them, and what is found.
 
 use crate::ball::Ball;
-use crate::cell::{Both, Claim, Outcome};
+use crate::cell::{Both, Outcome};
 use crate::data::{Pair, Piece, Share};
 use crate::path::Stretch;
-use crate::shares;
 use crate::twofold::Twofold;
 
 /// What a table promises.
@@ -158,46 +157,6 @@ impl Segments<'_> {
         lengths[other] = self.stretches[other].on_path(foot);
         let clearance = (distance - radii.radius).told();
         Witness { promise, agents: pair.agents, lengths, clearance, excess: pair.excess }
-    }
-
-    /// C-rect and C4, and C-share where a piece stands for one interval of two.
-    pub fn check(&mut self, pair: &Pair, radii: &Radii, tells: bool, findings: &mut Findings) {
-        findings.segments += 1;
-        findings.pieces += self.pieces.len();
-        let covered = Claim::Above(radii.covered);
-        if self.pieces.is_empty() {
-            let [first, second] = &mut self.whole;
-            let outcome = covered.decide(second, first, &mut findings.steps);
-            if !matches!(outcome, Outcome::Proved) {
-                let mut near = first.clone();
-                self.note(outcome, Promise::Covered, pair, radii, 1, &mut near, findings);
-            }
-            return;
-        }
-        let [first, second] = self.stretches;
-        for cell in self.cells() {
-            let part = second.placed.part(cell);
-            for gap in
-                gaps(self.held(cell, &[Share::Only, Share::Start, Share::End]), [Twofold::ZERO, first.placed.length])
-            {
-                let mut near = first.placed.part(gap);
-                let outcome = covered.decide(&part, &mut near, &mut findings.steps);
-                self.note(outcome, Promise::Covered, pair, radii, 1, &mut near, findings);
-            }
-        }
-        if self.pieces.iter().any(|(_, share)| *share != Share::Only) {
-            shares::check(self, pair, radii, findings);
-        }
-        let is_beside = |stretch: &&Stretch| stretch.turns_within(radii.radius, radii.beside);
-        let told = if self.stretches.iter().any(is_beside) { radii.beside } else { radii.told };
-        for (lengths, _) in self.pieces.clone().into_iter().filter(|_| tells) {
-            let mut parts = [0, 1].map(|k| self.stretches[k].placed.part(lengths[k]));
-            for of in [0, 1] {
-                let cell = parts[of].clone();
-                let outcome = Claim::Within(told).decide(&cell, &mut parts[1 - of], &mut findings.steps);
-                self.note(outcome, Promise::Near, pair, radii, of, &mut parts[1 - of], findings);
-            }
-        }
     }
 
     /// Keeps what is not proved.

@@ -6,9 +6,9 @@ use crate::data::{Agent, Pair, Table};
 use crate::near::{Area, Near, area};
 use crate::pair::{Findings, Radii, Segments, pieces_of};
 use crate::path::{LEAST, Stretch, stretches};
-use crate::regions;
 use crate::travel;
 use crate::twofold::Twofold;
+use crate::{regions, segments};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
@@ -192,7 +192,7 @@ impl<'a> Checker<'a> {
                     whole: [wholes[a][i].clone(), wholes[b][j].clone()],
                     pieces: those.map(|piece| (piece.lengths, piece.share)).collect(),
                 };
-                segments.check(pair, &radii, tells, &mut findings);
+                segments::check(&mut segments, pair, &radii, tells, &mut findings);
             }
         }
         if tells {
