@@ -58,6 +58,11 @@ pub enum PcrStatus {
     TooLarge,
 }
 
+/// Checks that a pointer is not null.
+pub(crate) fn given<T>(pointer: Option<T>) -> Result<T, PcrStatus> {
+    pointer.ok_or(PcrStatus::Null)
+}
+
 impl From<Invalid> for PcrStatus {
     fn from(invalid: Invalid) -> Self {
         match invalid {

@@ -1,16 +1,9 @@
 //! Reads agents from the numbers of the caller, and builds their paths and motions.
 
+use crate::limits::{AGENTS, LEGS, STRIDE};
 use crate::message::Fault;
 use heapless::Vec;
 use pcr_core::{Limits, Motion, Path, Point, Pose, Profile, Radians};
-
-/// Largest number of agents.
-pub const AGENTS: usize = 24;
-/// Largest number of legs of a path.
-pub const LEGS: usize = 32;
-/// Numbers of an agent: x, y, heading, radius, start, largest speed, largest acceleration, number of legs; then two for
-/// each leg.
-pub const STRIDE: usize = 8 + 2 * LEGS;
 
 /// All agents, a row of [`STRIDE`] numbers each.
 pub type Input = [f64; AGENTS * STRIDE];

@@ -1,6 +1,7 @@
 //! The fleet, its table, and its answers as rows of numbers.
 
-use crate::agents::{AGENTS, Agents, Input};
+use crate::agents::{Agents, Input};
+use crate::limits::AGENTS;
 use crate::message::Fault;
 use heapless::Vec;
 use pcr_core::{Ecm, Encounter, Hold, Interval, Mismatch, Motion, Order, Orders, Piece, Progress, Region, plan_delays};

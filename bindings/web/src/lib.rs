@@ -30,13 +30,15 @@
 
 pub mod agents;
 pub mod fleet;
+pub mod limits;
 pub mod message;
 
-use agents::{AGENTS, Input, STRIDE};
+use agents::Input;
 use core::cell::UnsafeCell;
 use core::fmt::Write;
 use fleet::{Fleet, Memory, Rows};
 use heapless::String;
+use limits::{AGENTS, STRIDE};
 use message::Fault;
 
 #[cfg(all(target_arch = "wasm32", not(test)))]

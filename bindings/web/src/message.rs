@@ -1,5 +1,6 @@
 //! Errors as sentences. Agents and legs are counted from 1.
 
+use crate::limits::{AGENTS, LEGS};
 use core::fmt;
 use pcr_core::{Full, Invalid, Mismatch, Refused, Unsolved};
 
@@ -70,8 +71,8 @@ fn number(agent: usize) -> usize {
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Agents(count) => write!(f, "{count} agents: there is room for {}", crate::agents::AGENTS),
-            Self::Legs(agent) => write!(f, "agent {}: 0 to {} legs", number(agent), crate::agents::LEGS),
+            Self::Agents(count) => write!(f, "{count} agents: there is room for {}", AGENTS),
+            Self::Legs(agent) => write!(f, "agent {}: 0 to {} legs", number(agent), LEGS),
             Self::Invalid(agent, None, why) => write!(f, "agent {}: {why}", number(agent)),
             Self::Invalid(agent, Some(leg), why) => write!(f, "agent {}, leg {}: {why}", number(agent), number(leg)),
             Self::NotBuilt => f.write_str("there is no fleet: none was built, or the last one was refused"),

@@ -1,7 +1,8 @@
 //! What the module refuses, and that an answer of no rows means that there is nothing.
 
-use pcr_web::agents::{AGENTS, Input, LEGS, STRIDE};
+use pcr_web::agents::Input;
 use pcr_web::fleet::{Fleet, Memory, Rows};
+use pcr_web::limits::{AGENTS, LEGS, STRIDE};
 use pcr_web::message::Fault;
 
 /// Two that cross, 4 m before them.

@@ -1,10 +1,9 @@
 //! A fleet in the memory of the caller, in safe Rust.
 
 use super::number::{S, angle, inner};
-use super::points::given;
 use super::types::{PcrAgent, PcrMemory};
 use crate::memory::{Arena, Stack, both, values};
-use crate::status::{PCR_LEFT, PCR_LINE, PCR_RIGHT, PcrStatus};
+use crate::status::{PCR_LEFT, PCR_LINE, PCR_RIGHT, PcrStatus, given};
 use pcr_core::{
     Ecm, Full, Interval, Limits, Mismatch, Mission, Motion, Order, Orders, Pass, PathRef, Phase, Piece, Point, Pose,
     Profile, ProfileRef, Progress, Reach, Refused, Region, RegionRef, Scalar, Segment, TableError, Tolerances, Turn,

@@ -3,10 +3,10 @@
 
 use super::fleet::{OrderedMut, on_path};
 use super::number::{Real, S, inner, plain};
-use super::points::{Room, ask, change, given, interval, number, range, short, status};
+use super::points::{Room, ask, change, interval, number, range, short, status};
 use super::types::{PcrAgent, PcrBrakes, PcrFleet, PcrHold, PcrPassing, PcrProgress, PcrTolerances};
 use crate::memory::values;
-use crate::status::{PcrHoldKind, PcrRefused, PcrStatus, decision, pass};
+use crate::status::{PcrHoldKind, PcrRefused, PcrStatus, decision, given, pass};
 use pcr_core::{Brakes, Hold, Interval, Pass, Progress, Refused, Scalar, Tolerances};
 
 /// Converts a refusal, and writes the reason if there is a place for it.

@@ -1,10 +1,10 @@
 //! Conflicts of motions, and functions that resolve them.
 
 use super::number::{Real, S, plain};
-use super::points::{Room, ask, change, given, interval, number, range};
+use super::points::{Room, ask, change, interval, number, range};
 use super::types::{PcrConflict, PcrFleet, PcrInterval, PcrMet, PcrMotion};
 use crate::memory::{Stack, places};
-use crate::status::{PcrStatus, PcrUnsolved};
+use crate::status::{PcrStatus, PcrUnsolved, given};
 use pcr_core::{Conflict, Encounter, earliest_start, excess, first_conflict, first_overlap, safe_intervals};
 
 fn record(conflict: &Conflict<S>) -> PcrConflict {

@@ -4,7 +4,7 @@ use super::fleet::Fleet;
 use super::number::{Real, S, inner, plain};
 use super::types::{PcrFleet, PcrInterval};
 use crate::memory::{self, Place};
-use crate::status::PcrStatus;
+use crate::status::{PcrStatus, given};
 use pcr_core::{Interval, Scalar};
 
 // SAFETY: the type consists of integers and is opaque.
@@ -28,11 +28,6 @@ pub(super) fn change(
     work: impl FnOnce(&mut Fleet) -> Result<(), PcrStatus>,
 ) -> PcrStatus {
     status(given(place).and_then(|place| work(memory::get_mut(place))))
-}
-
-/// Checks that a pointer is not null.
-pub(super) fn given<T>(pointer: Option<T>) -> Result<T, PcrStatus> {
-    pointer.ok_or(PcrStatus::Null)
 }
 
 /// The caller's buffer for values, and the place for their count.

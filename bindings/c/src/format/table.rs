@@ -2,10 +2,10 @@
 
 use super::fleet::Fleet;
 use super::number::Real;
-use super::points::{Room, ask, change, given, interval, number, short, status};
+use super::points::{Room, ask, change, interval, number, short, status};
 use super::types::{PcrAgent, PcrFleet, PcrInterval, PcrMemory, PcrRegion};
 use crate::memory::{get, put};
-use crate::status::PcrStatus;
+use crate::status::{PcrStatus, given};
 use pcr_core::RegionRef;
 
 /// Creates a fleet without agents in the memory of the caller.
