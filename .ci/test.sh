@@ -56,7 +56,8 @@ style() {
   fi
   .ci/dependencies.py
   deny
-  .ci/circles.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,kernels,planning,execution,exclusions,drawing,comparing,serve}/src
+  .ci/circles.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,kernels,planning,execution,exclusions,drawing,comparing,serve}/src \
+    bindings/{c,python,web}/src proofs/certify/src tests/src
   # A file that main.rs does not name would not be run.
   diff <(sed -n 's/^mod \(.*\);/\1/p' tests/tests/main.rs) <(LC_ALL=C ls tests/tests | sed -n 's/\.rs$//p' | grep -vx main)
 }

@@ -13,7 +13,7 @@ pub use relations::{RELATIONS, Relation};
 pub use tangencies::{behind, inner_tangent};
 
 use crate::disc::{Disc, Drive, Leg};
-use crate::outward::neighbour;
+use crate::neighbour::neighbour;
 use pcr_planning::fleet::Format;
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};

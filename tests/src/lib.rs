@@ -14,6 +14,7 @@ pub mod exact;
 pub mod execution;
 pub mod generators;
 pub mod limits;
+pub mod neighbour;
 pub mod oracle;
 pub mod outward;
 pub mod paper;

@@ -15,7 +15,6 @@ use pcr_core::scalar::Micro;
 use pcr_core::{Full, excess};
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_planning::fleet::{Format, build_ecm};
-pub use search::neighbour;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::{fmt, thread};

@@ -1,20 +1,5 @@
 //! Looking for points worth checking: nothing is decided here.
 
-use pcr_planning::fleet::Format;
-
-/// Next number of the format above `x`, or below it.
-pub fn neighbour<S: Format>(x: S, above: bool) -> S {
-    let value = x.to_f64();
-    let mut step = (value.abs() * f64::EPSILON).max(f64::MIN_POSITIVE.sqrt());
-    loop {
-        let next = S::from_f64(if above { value + step } else { value - step });
-        if next != x {
-            return next;
-        }
-        step *= 2.0;
-    }
-}
-
 /// A point that is no further than its neighbours, by a search that halves its steps.
 pub(super) fn descend(f: impl Fn([f64; 2]) -> f64, from: [f64; 2], size: [f64; 2]) -> [f64; 2] {
     const HALVINGS: usize = 40;

@@ -1,9 +1,10 @@
 //! The checks of an ordered pair.
 
-use super::search::{bisect, descend, neighbour, valley};
+use super::search::{bisect, descend, valley};
 use super::{Seen, Violation};
 use crate::exact::{Route, Travel, Twofold};
 use crate::generators::Dice;
+use crate::neighbour::neighbour;
 use crate::oracle::line;
 use pcr_core::{Interval, Motion, RegionRef};
 use pcr_planning::fleet::Format;
