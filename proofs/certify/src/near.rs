@@ -44,8 +44,9 @@ impl Near {
 
     /// The row of an ordinate; never less for a larger one.
     fn row_of(&self, y: f64) -> f64 {
-        // All are in one row if one of them reaches without end.
-        if self.highest < f64::INFINITY { (y / self.highest).floor() } else { 0.0 }
+        // All are in one row if one of them reaches without end. Adding 0 makes 0 of -0, which is equal to it and sorted before it: the boxes
+        // of one row would not be in the order of their left sides.
+        if self.highest < f64::INFINITY { (y / self.highest).floor() + 0.0 } else { 0.0 }
     }
 
     /// Places behind this one whose boxes meet its own, in order. O(boxes in the same rows and the rows beside them, no farther to the left
@@ -105,7 +106,9 @@ mod tests {
         let inf = f64::INFINITY;
         let far = [[1e300, 1e300, 1e300, 1e300], [-1e300, -1e300, -1e300, -1e300], [0.0, 1e18, 1.0, 1e18]];
         let endless = [[-inf, -inf, inf, inf], [0.0, -inf, 1.0, inf], [-inf, 2.0, inf, 3.0]];
-        for (count, others) in [(0, &[][..]), (400, &[]), (400, &far), (400, &endless), (0, &endless)] {
+        // Their row is -0, unless it is made 0, and begins with their left sides where that of the others ends.
+        let zeros = [[5.0, -0.0, 6.0, 1.0], [6.0, -5e-324, 7.0, 1.0], [7.0, 0.0, 8.0, 1.0]];
+        for (count, others) in [(0, &[][..]), (400, &[]), (400, &zeros), (400, &far), (400, &endless), (0, &endless)] {
             let mut bits = 1_u64;
             let mut random = || {
                 bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
