@@ -1,4 +1,4 @@
-//! The C types that are the same in all number formats.
+//! What is the same in all number formats: C types, and the check for null pointers.
 
 use pcr_core::{Full, Invalid, Mismatch, Pass, Refused, TableError, Unsolved};
 

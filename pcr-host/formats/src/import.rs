@@ -376,7 +376,7 @@ fn given(options: &Options, warnings: &mut Warnings) -> Result<Given, ImportErro
         let failed = |problem: &dyn fmt::Display| ImportError::new(format!("{}: {problem}", file.display()));
         let text = fs::read_to_string(file).map_err(|error| failed(&format_args!("cannot be read: {error}")))?;
         given = of_fleet(&text, warnings).map_err(|error| failed(&error))?;
-        if options.leave(&given) {
+        if options.leave_some_of(&given) {
             warnings.use_option("fleet");
         }
     }

@@ -1,7 +1,8 @@
 //! The functions of `pcr-core` that a desktop spends its time in.
 //!
 //! A generic function is compiled in the crate that calls it. These are called here, so that they are compiled once for each number
-//! format, and for speed; what only plans need, in [`planning`], for `f64` only. The crates that call these are compiled for their size, and take little longer.
+//! format, and for speed. What only plans need is in [`planning`], for `f64`. The crates that call these are compiled for size, which
+//! makes the tool little slower.
 
 pub mod planning;
 

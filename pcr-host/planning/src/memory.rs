@@ -60,12 +60,12 @@ const OF_TEXT: u64 = 8;
 /// The same where a tree is made of all of it.
 const OF_TREE: u64 = 32;
 
-/// Asks for what is made of a text of so many bytes while it is read, by this thread alone.
+/// Asks for what is made of a text of so many bytes while it is read.
 ///
 /// # Errors
 /// As [`ask`].
 pub fn ask_for_text(bytes: u64) -> Result<(), TooLarge> {
-    ask_alone(OF_TEXT * bytes, || "what is read".into())
+    ask_for_all_left(OF_TEXT * bytes, || "what is read".into())
 }
 
 /// The same for a text of which a tree is made, as of all but scenarios.
@@ -73,14 +73,14 @@ pub fn ask_for_text(bytes: u64) -> Result<(), TooLarge> {
 /// # Errors
 /// As [`ask`].
 pub fn ask_for_tree(bytes: u64) -> Result<(), TooLarge> {
-    ask_alone(OF_TREE * bytes, || "what is made of the file".into())
+    ask_for_all_left(OF_TREE * bytes, || "what is made of the file".into())
 }
 
-/// Asks for some bytes that this thread allocates while the others take no addresses.
+/// Asks for some bytes and keeps no reserve: for estimates that are high, or while no other thread takes addresses.
 ///
 /// # Errors
 /// As [`ask`].
-pub fn ask_alone(bytes: u64, what: impl FnOnce() -> String) -> Result<(), TooLarge> {
+pub fn ask_for_all_left(bytes: u64, what: impl FnOnce() -> String) -> Result<(), TooLarge> {
     let limits = [address_space(), group(), machine()];
     match limits.into_iter().flatten().min() {
         Some(left) if bytes > STEP && bytes > left => {

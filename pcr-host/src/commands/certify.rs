@@ -12,16 +12,13 @@ use pcr_formats::scenario::Labels;
 use pcr_planning::certify::{Certified, Dump};
 use pcr_planning::locks::rounded;
 use pcr_planning::regions::{Failure, table_of};
-use pcr_planning::{locks, memory, report};
+use pcr_planning::{locks, report};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Exit status: the checker's own rounding does not tell.
 const UNDECIDED: u8 = 4;
-
-/// Memory of a segment in the table and in the checker \[bytes\].
-const SEGMENT_BYTES: usize = 800;
 
 const STATUSES: &str = "\
 Exit status:
@@ -127,9 +124,6 @@ impl Arguments {
             let lost = tell_rounding(self.scalar, &mut scenario).map_err(|refused| Stop::wrong(file, refused))?;
             say(file, lost);
             let scenario = &scenario;
-            let segments: usize = scenario.agents.iter().map(|agent| agent.path.len()).sum();
-            let what = || format!("the proof for {segments} segments");
-            memory::ask((segments * SEGMENT_BYTES) as u64, what).map_err(|large| Stop::wrong(file, large))?;
             let tables = with_scalar!(self.scalar, S => table_of::<S>(scenario));
             let tables = tables.map_err(|failure| Stop::wrong(file, failure))?;
             let (labels, warnings) = (Labels::of(scenario), [&warnings[..], &scenario.warnings].concat());

@@ -65,9 +65,7 @@ pub(super) fn scenario(file: &Path, import: &Options) -> Result<Scenario, Stop> 
 /// The same in a text that is read already.
 pub(super) fn scenario_from(file: &Path, text: String, import: &Options) -> Result<Scenario, Stop> {
     keep(import);
-    if input::kind_of(file, &text, import) != Kind::Scenario {
-        memory::ask_for_tree(text.len() as u64).map_err(|large| Stop::wrong(file, large))?;
-    }
+    ask_to_read(file, &text, import)?;
     let scenario = told(file, input::read_from(file, text, import)?, import)?;
     refuse_margin(&scenario, import).map_err(|why| Stop::wrong(file, why))?;
     Ok(scenario)
@@ -90,6 +88,14 @@ fn ask_for(file: &Path) -> Result<(), Stop> {
     memory::ask_for_text(bytes).map_err(|large| Stop::wrong(file, large))
 }
 
+/// Asks for the memory of the tree that is made of a text. Scenarios are read agent by agent.
+fn ask_to_read(file: &Path, text: &str, import: &Options) -> Result<(), Stop> {
+    match input::kind_of(file, text, import) {
+        Kind::Scenario => Ok(()),
+        _ => memory::ask_for_tree(text.len() as u64).map_err(|large| Stop::wrong(file, large)),
+    }
+}
+
 /// What an agent and a segment of its path take in an answer \[bytes\].
 const AGENT_BYTES: usize = 1600;
 const SEGMENT_BYTES: usize = 400;
@@ -100,7 +106,7 @@ fn ask_to_answer(file: &Path, scenario: &Scenario) -> Result<(), Stop> {
     let segments: usize = scenario.agents.iter().map(|agent| agent.path.len()).sum();
     let bytes = agents * AGENT_BYTES + segments * SEGMENT_BYTES;
     let what = || format!("an answer about {agents} agents");
-    memory::ask_alone(bytes as u64, what).map_err(|large| Stop::wrong(file, large))
+    memory::ask_for_all_left(bytes as u64, what).map_err(|large| Stop::wrong(file, large))
 }
 
 /// A scenario that was read, with the margin that is asked for; warnings about it are told.
@@ -248,6 +254,7 @@ impl Source {
             return scenario_from(file, text, import);
         }
         keep(import);
+        ask_to_read(file, &text, import)?;
         told(file, input::read_one_of(file, text, import)?, import)
     }
 }
@@ -303,7 +310,7 @@ pub(super) fn layout_from(
         _ => import.clone(),
     };
     keep(import);
-    memory::ask_for_tree(text.len() as u64).map_err(|large| Stop::wrong(file, large))?;
+    ask_to_read(file, text, import)?;
     let (imported, warnings) = input::read_layout_from(file, text, import, moves).map_err(|error| match error {
         // There is no --from to say it with.
         InputError::NoLayout(_) if command == FLEET => {

@@ -133,7 +133,7 @@ impl Options {
     }
 
     /// Whether anything that a file says about the vehicle counts beside these options.
-    pub(super) fn leave(&self, given: &Given) -> bool {
+    pub(super) fn leave_some_of(&self, given: &Given) -> bool {
         let numbers = [
             (self.radius, given.radius.or(given.footprint.as_ref().map(Footprint::reach))),
             (self.margin, given.margin),

@@ -9,11 +9,16 @@ use pcr_certify::table::Close;
 use pcr_core::{Motion, excess};
 use pcr_formats::scenario::Scenario;
 
+/// Memory of a segment in a table and in the checker \[bytes\].
+const SEGMENT_BYTES: u64 = 800;
+
 /// The tables of a scenario, to be certified: that of contact, and that in which margins overlap, if any agent has one.
 ///
 /// # Errors
-/// [`Failure`] where a value does not fit the format.
+/// [`Failure`] where a value does not fit the format, or memory does not hold the tables.
 pub fn table_of<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
+    let segments: usize = scenario.agents.iter().map(|agent| agent.path.len()).sum();
+    memory::ask(segments as u64 * SEGMENT_BYTES, || format!("the proof for {segments} segments"))?;
     S::certificate(scenario)
 }
 
