@@ -17,7 +17,7 @@
 //! live        a page that shows a running fleet
 //! template    pages that contain everything they need
 //! svg         the writer of SVG files
-//! raster      SVG to PNG (feature `png`)
+//! png         SVG to PNG (feature `png`)
 //! ```
 
 mod audit;
@@ -34,7 +34,7 @@ mod page;
 mod palette;
 pub mod plot;
 #[cfg(feature = "png")]
-mod raster;
+mod png;
 pub mod replay;
 mod scene;
 mod svg;
@@ -66,13 +66,10 @@ pub struct Written {
 }
 
 impl Written {
-    fn add(&mut self, directory: &Path, files: Files) -> io::Result<()> {
-        for (name, content) in files {
+    fn add(&mut self, directory: &Path, drawn: Drawn) -> io::Result<()> {
+        self.boxes.extend(drawn.boxes);
+        for (name, content) in drawn.files {
             let file = directory.join(&name);
-            #[cfg(feature = "png")]
-            if file.extension().is_some_and(|extension| extension == "svg") {
-                self.boxes.extend(raster::boxes(&content));
-            }
             // The folder is named by who writes into it.
             output::write(&file, content).map_err(|error| match Kept::of(&error) {
                 Some(_) => error,
@@ -112,7 +109,7 @@ pub fn write(
         let mut pictures = vec![Picture::Page, Picture::Overview, Picture::Workspace];
         pictures.extend(scene.egos().map(Picture::Map));
         let mut written = vec![Written::default(); pictures.len()];
-        let (mut done, mut page) = (0, Files::new());
+        let (mut done, mut page) = (0, Drawn::default());
         progress(done, pictures.len());
         draw_all(scene, &pictures, &mut |place, drawn| {
             match pictures[place] {
@@ -173,16 +170,16 @@ fn write_levels(
     picture: impl Fn(usize) -> String,
     (page, content): (&str, String),
 ) -> io::Result<Written> {
-    let mut files = Files::new();
+    let mut drawn = Drawn::default();
     for level in 0..imported.layout.levels.len() {
         let name = if level > 0 { format!("{name}-{}", level + 1) } else { name.to_owned() };
-        files.extend(self::files(&name, picture(level))?);
+        drawn.add_picture(&name, picture(level))?;
     }
     // The page is last: before it is there, nobody looks at the pictures.
-    files.push((page.to_owned(), content.into_bytes()));
+    drawn.files.push((page.to_owned(), content.into_bytes()));
     output::folder(directory)?;
     let mut written = Written::default();
-    written.add(directory, files)?;
+    written.add(directory, drawn)?;
     Ok(written)
 }
 
@@ -225,37 +222,48 @@ enum Picture {
     Map(usize),
 }
 
-/// Files with their names.
-type Files = Vec<(String, Vec<u8>)>;
+/// Contents of files that are not written yet.
+#[derive(Clone, Debug, Default)]
+struct Drawn {
+    /// Names and contents.
+    files: Vec<(String, Vec<u8>)>,
+    /// Letters that the PNG pictures show as boxes.
+    boxes: BTreeSet<char>,
+}
 
-impl Picture {
-    fn draw(self, scene: &Scene<'_>) -> io::Result<Files> {
-        let (name, svg) = match self {
-            Self::Page => return Ok(vec![("index.html".to_owned(), page::page(scene).into_bytes())]),
-            Self::Overview => ("overview".to_owned(), overview::picture(scene)),
-            Self::Workspace => ("workspace".to_owned(), workspace::picture(scene)),
-            Self::Map(ego) => (format!("ecm-{}", scene.id(ego)), map::picture(scene, ego)),
-        };
-        self::files(&name, svg)
+impl Drawn {
+    /// Adds a picture as SVG, with the feature `png` also as PNG.
+    fn add_picture(&mut self, name: &str, svg: String) -> io::Result<()> {
+        #[cfg(feature = "png")]
+        let (boxes, png) = (png::missing_letters(&svg)?, png::png(&svg)?);
+        self.files.push((format!("{name}.svg"), svg.into_bytes()));
+        #[cfg(feature = "png")]
+        {
+            self.files.push((format!("{name}.png"), png));
+            self.boxes.extend(boxes);
+        }
+        Ok(())
     }
 }
 
-/// The files of a picture.
-fn files(name: &str, svg: String) -> io::Result<Files> {
-    #[cfg(feature = "png")]
-    let png = raster::png(&svg)?;
-    Ok(vec![
-        (format!("{name}.svg"), svg.into_bytes()),
-        #[cfg(feature = "png")]
-        (format!("{name}.png"), png),
-    ])
+impl Picture {
+    fn draw(self, scene: &Scene<'_>) -> io::Result<Drawn> {
+        let mut drawn = Drawn::default();
+        match self {
+            Self::Page => drawn.files.push(("index.html".to_owned(), page::page(scene).into_bytes())),
+            Self::Overview => drawn.add_picture("overview", overview::picture(scene))?,
+            Self::Workspace => drawn.add_picture("workspace", workspace::picture(scene))?,
+            Self::Map(ego) => drawn.add_picture(&format!("ecm-{}", scene.id(ego)), map::picture(scene, ego))?,
+        }
+        Ok(drawn)
+    }
 }
 
 /// Draws on all cores; hands over each picture with its place in the list, in the order in which they are done.
 fn draw_all(
     scene: &Scene<'_>,
     pictures: &[Picture],
-    take: &mut dyn FnMut(usize, io::Result<Files>) -> io::Result<()>,
+    take: &mut dyn FnMut(usize, io::Result<Drawn>) -> io::Result<()>,
 ) -> io::Result<()> {
     let workers = thread::available_parallelism().map_or(1, usize::from).min(pictures.len());
     let next = AtomicUsize::new(0);
@@ -312,7 +320,7 @@ mod tests {
                     assert!(!text.contains("NaN") && !text.contains("inf"), "{file:?}");
                 }
                 Some("png") => {
-                    let reader = png::Decoder::new(io::Cursor::new(&content)).read_info().unwrap();
+                    let reader = ::png::Decoder::new(io::Cursor::new(&content)).read_info().unwrap();
                     assert!(reader.info().width > 400 && reader.info().height > 200);
                 }
                 _ => assert!(content.starts_with(b"<!DOCTYPE html>")),
@@ -401,14 +409,6 @@ mod tests {
         let arcs = document.descendants().filter_map(|node| node.attribute("d")).map(|d| d.matches('A').count());
         // 6 rad in parts of at most 3/4 π.
         assert_eq!(arcs.sum::<usize>(), 3);
-    }
-
-    #[test]
-    fn a_picture_that_cannot_be_drawn_as_png_is_an_error() {
-        let mut svg = svg::Svg::new(9.0, 9.0, "");
-        svg.empty("ellipse", &[("rx", &"2")]);
-        let refused = files("a", svg.finish()).unwrap_err();
-        assert_eq!(refused.to_string(), "<ellipse>: such an element cannot be drawn as PNG");
     }
 
     #[test]
