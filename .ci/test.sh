@@ -13,8 +13,8 @@ timed() {
   time "$1"
 }
 
-# Everything is built alike, so that it is built once: with methods of other libraries in comparisons, and the supervisor in the tool.
-everything_in=(--workspace --features pcr-tests/peers,pcr-host/peers,pcr-host/serve --locked)
+# Everything is built alike, so that it is built once: with methods of other libraries in comparisons.
+everything_in=(--workspace --features pcr-tests/peers,pcr-host/peers --locked)
 # Lints and documentation are of the same profile as the tests: macros and programs that run in builds are built once then.
 profile=checked
 # These two have no tests of their own here, but much that they depend on.
@@ -208,7 +208,7 @@ packages() {
   (
     cd "$target/unpacked"
     export CARGO_TARGET_DIR=$target CARGO_INCREMENTAL=0
-    cargo check -q --workspace --profile "$profile" --all-targets --features pcr-core/std,pcr-host/serve
+    cargo check -q --workspace --profile "$profile" --all-targets --features pcr-core/std
     # What is recorded for the proofs is compared in the repository, where the proofs are.
     cargo test -q -p pcr-core -p pcr-fixed -p pcr-certify --profile "$profile" --lib --examples --features pcr-core/std -- --skip recorded::
   )

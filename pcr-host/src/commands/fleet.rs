@@ -1,9 +1,7 @@
-//! `pcr fleet`, if the tool is built with `serve`.
+//! `pcr fleet`.
 
-#[cfg(feature = "serve")]
 mod run;
 
-#[cfg(feature = "serve")]
 pub(super) use run::{Crew, Run, world};
 
 use super::{Stop, whole};
@@ -35,7 +33,6 @@ User and password of the broker: PCR_BROKER_USER and PCR_BROKER_PASSWORD.";
 /// Simulate VDA 5050 vehicles and their fleet manager
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
-#[cfg_attr(not(feature = "serve"), allow(dead_code))]
 pub(super) struct Arguments {
     /// Layout (goals: its safe ends); standard input if left out or `-`
     layout: Option<PathBuf>,
@@ -87,12 +84,6 @@ pub(super) struct Arguments {
 }
 
 impl Arguments {
-    #[cfg(not(feature = "serve"))]
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        Err(Stop::without("`serve`", "serve"))
-    }
-
-    #[cfg(feature = "serve")]
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
         run::run(self)
     }

@@ -96,8 +96,7 @@ fn tailored(command: Command, long: bool) -> Command {
 
 /// Whether a command is not in this build.
 fn is_missing(name: &str) -> bool {
-    cfg!(not(feature = "serve")) && matches!(name, "serve" | "fleet")
-        || cfg!(not(feature = "peers")) && name == "evaluate"
+    cfg!(not(feature = "peers")) && name == "evaluate"
 }
 
 /// A command that only says how it is to be had.

@@ -127,7 +127,6 @@ impl Printed {
 }
 
 /// Where tables go that have no other form: those of `pcr fleet`. Standard output may be `taken` by what is asked for.
-#[cfg(feature = "serve")]
 pub(super) fn tables(taken: bool) -> Box<dyn Write> {
     match () {
         () if quiet() => Box::new(io::sink()),

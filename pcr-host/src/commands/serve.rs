@@ -1,17 +1,11 @@
-//! `pcr serve`, if the tool is built with `serve`.
+//! `pcr serve`.
 
-#[cfg(feature = "serve")]
 mod bridge;
-#[cfg(feature = "serve")]
 mod demo;
-#[cfg(feature = "serve")]
 mod run;
-#[cfg(feature = "serve")]
 mod threads;
 
-#[cfg(feature = "serve")]
 pub(super) use bridge::{VEHICLES, broker, interfaces};
-#[cfg(feature = "serve")]
 pub(super) use run::AT_BROKERS;
 
 use super::{Stop, whole};
@@ -39,7 +33,6 @@ Examples:
 /// Supervise a fleet: decide how far each robot may go now
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
-#[cfg_attr(not(feature = "serve"), allow(dead_code))]
 pub(super) struct Arguments {
     /// Directory of the journal; the next start goes on from it
     #[arg(long, value_name = "DIR")]
@@ -94,14 +87,6 @@ fn place(text: &str) -> Result<String, String> {
     }
 }
 
-#[cfg(not(feature = "serve"))]
-impl Arguments {
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        Err(Stop::without("`serve`", "serve"))
-    }
-}
-
-#[cfg(feature = "serve")]
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
         run::run(self)

@@ -263,7 +263,6 @@ fn what_is_read_is_not_lost_to_something_of_another_kind() {
         (vec!["compare", &chart, "--method", "polyline", "--rounds", "1", "-o", out], &chart),
         (vec!["compare", &scenario, &chart, "--method", "polyline", "--rounds", "1", "-o", out], &chart),
         ([&["traffic", &plan, "--from", "nav2", "--agents", "3", "-o", out], &vehicle[..]].concat(), &plan),
-        #[cfg(feature = "serve")]
         (vec!["fleet", &graph, "--vehicles", "2", "--alone", "supervisor", "--time", "5", "--record", &graph], &graph),
     ] {
         let before = fs::read(file).unwrap();

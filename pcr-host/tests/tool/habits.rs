@@ -226,23 +226,17 @@ fn refused_words_come_with_a_tip() {
     assert!(message.starts_with("pcr: none.locks: there is no such table of locks"), "{message}");
 }
 
-#[cfg(not(all(feature = "serve", feature = "peers")))]
+#[cfg(not(feature = "peers"))]
 #[test]
 fn what_is_not_built_in_says_how_to_get_it() {
     let short = run(&["-h"]).ok();
-    let missing = usize::from(cfg!(not(feature = "peers"))) + 2 * usize::from(cfg!(not(feature = "serve")));
-    assert_eq!(short.matches("(not in this build)\n").count(), missing, "{short}");
+    assert_eq!(short.matches("(not in this build)\n").count(), 1, "{short}");
     let says = |arguments: &[&str], feature: &str| {
         let message = run(arguments).failed(2);
         assert!(message.contains(&format!("cargo install --locked --path pcr-host --features {feature}")), "{message}");
     };
-    if cfg!(not(feature = "serve")) {
-        says(&["serve", "--journal", "nowhere"], "serve");
-    }
-    if cfg!(not(feature = "peers")) {
-        says(&["evaluate"], "peers");
-        says(&["simulate", "--foraging", "--controller", "orca"], "peers");
-    }
+    says(&["evaluate"], "peers");
+    says(&["simulate", "--foraging", "--controller", "orca"], "peers");
 }
 
 #[test]
@@ -317,7 +311,6 @@ fn quiet_is_quiet() {
     let demo = pcr().arg("-q").current_dir(&empty).output().unwrap();
     assert!(demo.status.success() && demo.stdout.is_empty() && demo.stderr.is_empty());
     assert_eq!(std::fs::read_dir(&empty).unwrap().count(), 0);
-    #[cfg(feature = "serve")]
     silent(&["-q", "fleet", &layout, "--vehicles", "2", "--alone", "supervisor", "--time", "5"], 0);
     // What a program asked for is there all the same, and so are errors.
     assert_eq!(run(&["check", "-q", "--json", &scenario]).out.lines().count(), 1);

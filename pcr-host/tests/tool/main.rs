@@ -26,7 +26,6 @@ mod readers;
 mod refusals;
 mod rules;
 mod schema;
-#[cfg(feature = "serve")]
 mod serve;
 mod simulate;
 mod sources;

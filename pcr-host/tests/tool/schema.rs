@@ -106,7 +106,6 @@ fn every_output_fits_its_schema() {
     formats.push(fits(run(&delays).out.lines().next().unwrap()));
     let lines = run(&["locks", &layout, "--radius", "0.3", "--lines", "-q"]).out;
     formats.push(fits(lines.lines().next().unwrap()));
-    #[cfg(feature = "serve")]
     formats.extend(simulated());
     // There is no schema of which nothing was seen.
     let mut there: Vec<String> = fs::read_dir(format!("{ROOT}/docs/schema"))
@@ -115,11 +114,6 @@ fn every_output_fits_its_schema() {
         .collect();
     // Lines of `pcr serve`: pcr-host/serve/tests/lines.rs.
     there.retain(|name| name != "pcr-serve.schema.json");
-    if cfg!(not(feature = "serve")) {
-        there.retain(|name| {
-            !["pcr-contacts.schema.json", "pcr-record.schema.json", "pcr-vehicles.schema.json"].contains(&name.as_str())
-        });
-    }
     there.sort();
     formats.sort();
     formats.dedup();
@@ -127,7 +121,6 @@ fn every_output_fits_its_schema() {
 }
 
 /// What `pcr fleet` writes.
-#[cfg(feature = "serve")]
 fn simulated() -> Vec<String> {
     let layout = real("nav2/aws_graph.geojson");
     let (vehicles, record) = (file("schema", "vehicles.json", ""), file("schema", "record.txt", ""));
