@@ -1,40 +1,71 @@
 #!/usr/bin/env python3
-"""Files of a crate that import one another in a circle, which none may: circles.py FOLDER... A file and the files in the folder of its
-name are one part, and may name each other; tests at the end of a file may name anything."""
+"""Finds modules of a crate that import one another in a circle, which none may: circles.py FOLDER...
+
+A file and the files in the folder of its name are one part: they may name each other, and what any of them imports the part imports.
+Parts are compared with the others of their folder. Modules under `#[cfg(test)]`, in a file or of their own, may name anything."""
 import pathlib, re, sys
 
+# What `#[cfg(test)]` and further attributes stand before: a module of its own, or one that ends where a line begins with `}`.
+TESTS = re.compile(r"^#\[cfg\(test\)\]\n(?:#\[.*\]\n)*(?:pub(?:\([^)]*\))? )?mod (\w+)(?:;| \{\n(?:(?!\}).*\n)*\})", re.M)
+IMPORT = re.compile(r"\b((?:super::)+|crate::|self::)")
+
+
 def module(path, root):
-    parts = list(path.relative_to(root).with_suffix("").parts)
-    return tuple(p for p in parts if p not in ("lib", "mod", "main"))
+    parts = path.relative_to(root).with_suffix("").parts
+    return tuple(part for part in parts if part not in ("lib", "mod", "main"))
+
+
+def leaves(text):
+    """Yields the paths that a `use` or a call names, from the end of `crate::` or `super::` on; groups may be nested."""
+    head = re.match(r"\s*(\w+)", text)
+    if text.lstrip().startswith("{"):
+        depth, begin = 0, text.index("{") + 1
+        for place in range(begin - 1, len(text)):
+            depth += {"{": 1, "}": -1}.get(text[place], 0)
+            if text[place] == "," and depth == 1 or depth == 0:
+                yield from leaves(text[begin:place])
+                begin = place + 1
+            if depth == 0:
+                return
+    elif head:
+        rest = text[head.end():]
+        yield from ((head[1], *leaf) for leaf in leaves(rest[2:])) if rest.startswith("::") else [(head[1],)]
+    else:
+        # Such as `*`: all of what stands before it.
+        yield ()
+
+
+def imports(text, name):
+    """Yields the absolute paths that the text of the module `name` imports or names."""
+    for base in IMPORT.finditer(text):
+        word = base[1]
+        at = {"crate::": (), "self::": name}.get(word, name[: len(name) - word.count("super::")])
+        yield from (at + leaf for leaf in leaves(text[base.end():]))
+
 
 def graph(root):
-    files = {module(p, root): p for p in root.rglob("*.rs") if "bin" not in p.relative_to(root).parts[:-1]}
+    """Returns for each folder of modules which of its parts import which others, with a file that does."""
+    texts = {module(path, root): path.read_text() for path in sorted(root.rglob("*.rs")) if "bin" not in path.relative_to(root).parts[:-1]}
+    tests = {name + (test,) for name, text in texts.items() for test in TESTS.findall(text)}
+    texts = {name: text for name, text in texts.items() if not any(name[: len(test)] == test for test in tests)}
     edges = {}
-    for name, path in files.items():
-        text = re.sub(r"//.*", "", path.read_text().split("#[cfg(test)]\nmod ")[0])
-        found = set()
-        for base, rest in re.findall(r"\b((?:super::)+|crate::)((?:\w+::)*(?:\w+|\{[^;]*?\}))", text):
-            at = () if base == "crate::" else name[: len(name) - base.count("super::")]
-            lead = tuple(p for p in rest.split("::") if re.fullmatch(r"\w+", p))
-            group = re.search(r"\{(.*)\}", rest, re.S)
-            heads = [lead] if not group else [lead + (i.strip().split("::")[0],) for i in group[1].split(",") if i.strip()]
-            for head in heads:
-                for n in range(len(head), 0, -1):
-                    target = at + head[:n]
-                    if target in files and target != name:
-                        found.add(target)
-                        break
-        edges[name] = found
-    return edges
+    for name, text in texts.items():
+        for path in imports(re.sub(r"//.*", "", TESTS.sub("", text)), name):
+            target = next((path[:n] for n in range(len(path), -1, -1) if path[:n] in texts), ())
+            same = next((k for k, (a, b) in enumerate(zip(name, target)) if a != b), None)
+            if same is not None:
+                edges.setdefault(name[:same], {}).setdefault(name[same], {}).setdefault(target[same], name)
+    return texts, edges
+
 
 def circles(edges):
-    """Sets of modules that reach one another (Tarjan)."""
+    """Returns the sets of parts that reach one another (Tarjan)."""
     index, low, stack, found = {}, {}, [], []
 
     def visit(node):
         index[node] = low[node] = len(index)
         stack.append(node)
-        for other in edges[node]:
+        for other in edges.get(node, ()):
             if other not in index:
                 visit(other)
                 low[node] = min(low[node], low[other])
@@ -45,7 +76,7 @@ def circles(edges):
             part = stack[place:]
             del stack[place:]
             if len(part) > 1:
-                found.append(sorted("/".join(name) for name in part))
+                found.append(sorted(part))
 
     for node in edges:
         if node not in index:
@@ -53,10 +84,22 @@ def circles(edges):
     return found
 
 
-folders = sys.argv[1:]
-graphs = {folder: graph(pathlib.Path(folder)) for folder in folders}
-if not folders or not all(graphs.values()):
-    sys.exit("circles.py FOLDER...: no Rust files there")
-bad = [f"{folder}: {' '.join(circle)}" for folder, edges in graphs.items() for circle in circles(edges)]
-print("\n".join(bad), end="\n" if bad else "")
-sys.exit(bool(bad))
+def report(root):
+    """Returns a line for each circle of a folder of sources."""
+    texts, folders = graph(root)
+    if not texts:
+        sys.exit(f"circles.py: {root} has no Rust files")
+    lines = []
+    for folder, edges in folders.items():
+        for circle in circles(edges):
+            through = [f"{a} imports {b} in {'/'.join(name)}" for a in circle for b, name in edges.get(a, {}).items() if b in circle]
+            lines.append(f"{'/'.join((str(root), *folder))}: {' '.join(circle)} ({'; '.join(through)})")
+    return lines
+
+
+if __name__ == "__main__":
+    if not sys.argv[1:]:
+        sys.exit("circles.py FOLDER...")
+    bad = [line for folder in sys.argv[1:] for line in report(pathlib.Path(folder))]
+    print("\n".join(bad), end="\n" if bad else "")
+    sys.exit(bool(bad))

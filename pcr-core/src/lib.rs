@@ -50,6 +50,7 @@ mod geometry;
 #[doc(hidden)]
 pub mod internals;
 mod intervals;
+mod lap;
 mod motion;
 mod orders;
 mod overlaps;
@@ -67,10 +68,10 @@ pub use ecm::{Ecm, Region};
 pub use error::{Full, Invalid, Mismatch, TableError};
 pub use geometry::{Bounds, Direction, Interval, Point, Pose, Vector};
 pub use intervals::{Gaps, Union, gaps, union};
+pub use lap::Share;
 pub use motion::{LENGTH_TOLERANCE_LOG2, Motion};
 pub use orders::{Brakes, Decision, Hold, Mission, Order, Orders, Pass, Progress, Reach, Refused, Tolerances};
 pub use overlaps::overlaps;
-pub use pair::footprint::Share;
 pub use path::{Path, PathRef};
 pub use pieces::Piece;
 pub use plan::{

@@ -8,7 +8,7 @@
 
 use crate::error::Full;
 use crate::geometry::Interval;
-use crate::pair::footprint::{Lap, Share};
+use crate::lap::{Lap, Share};
 use crate::scalar::Scalar;
 use crate::segment::Segment;
 use core::marker::PhantomData;

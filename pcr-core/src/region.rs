@@ -3,9 +3,9 @@
 use crate::error::is_no_number;
 use crate::geometry::Interval;
 use crate::intervals::union;
+use crate::lap::Share;
 use crate::motion::Motion;
 use crate::pair::Pair;
-use crate::pair::footprint::Share;
 use crate::pieces::List;
 use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};

@@ -1,5 +1,6 @@
 //! The commands of the tool, one file each: their arguments, their work, and their exit statuses.
 
+mod brokers;
 mod certify;
 mod check;
 mod compare;
@@ -31,8 +32,8 @@ use clap::{Parser, Subcommand};
 use pcr_formats::import::Warnings;
 use pcr_formats::input::InputError;
 use pcr_formats::output::{self, Kept};
+use pcr_planning::failure::Failure;
 use pcr_planning::memory;
-use pcr_planning::regions::Failure;
 pub(crate) use printed::complain;
 use printed::{Form, Printed, quiet};
 use sources::scenario;

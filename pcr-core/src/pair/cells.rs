@@ -10,12 +10,13 @@
 //! between almost parallel lines is lost to rounding.
 
 use super::events::{add_events, add_turning_lengths, wraps};
-use super::footprint::{Footprint, Lap, Reach, Share};
+use super::footprint::{Footprint, Reach};
 use super::lengths::Lengths;
 use super::offset::on_first_lap;
 use crate::bits::Runs;
 use crate::error::Full;
 use crate::geometry::Interval;
+use crate::lap::{Lap, Share};
 use crate::pieces::{Piece, Pieces};
 use crate::scalar::Scalar;
 use crate::segment::Segment;

@@ -5,9 +5,10 @@
 //! same piece. Cells of different laps can meet only where the disc covers the whole circle.
 
 use super::cells::SegmentPair;
-use super::footprint::{Footprint, Lap, Reach, Share, shift};
+use super::footprint::{Footprint, Reach};
 use crate::error::Full;
 use crate::geometry::Interval;
+use crate::lap::{Lap, Share, shift};
 use crate::pieces::{NONE, Piece, Pieces};
 use crate::scalar::Scalar;
 use crate::segment::Segment;

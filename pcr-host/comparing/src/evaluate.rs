@@ -37,7 +37,7 @@ use crate::compare::Effort;
 use pcr_formats::import::{self, Format, Imported, Options, Warnings};
 use pcr_formats::output;
 use pcr_formats::scenario::Scenario;
-use pcr_planning::regions::Failure;
+use pcr_planning::failure::Failure;
 use std::path::{Path, PathBuf};
 use std::{fmt, fs, io};
 

@@ -8,8 +8,8 @@ use crate::palette::colour;
 use crate::template::Page;
 use pcr_core::{Motion, RegionRef};
 use pcr_execution::simulate::{Controller, FRAME, Journey, Outcome, Snapshot, Task, Vector};
+use pcr_planning::failure::Failure;
 use pcr_planning::fleet::build_ecm;
-use pcr_planning::regions::Failure;
 use serde_json::{Value, json};
 
 const PAGE: Page = Page {

@@ -56,8 +56,8 @@ use agent::Errors;
 use body::{Command, Turning};
 #[cfg(feature = "orca")]
 use orca::Orca;
+use pcr_planning::failure::Failure;
 use pcr_planning::memory;
-use pcr_planning::regions::Failure;
 use potential::Potential;
 use replan::Waits;
 use serde::Serialize;

@@ -13,8 +13,9 @@ use pcr_formats::import::{Id, Imported};
 use pcr_formats::scenario::{Agent, Scenario};
 use pcr_planning::certify::Proof;
 use pcr_planning::check::Verdict;
+use pcr_planning::failure::Failure;
 use pcr_planning::plan::{Forbidden, Schedule, Unsolved};
-use pcr_planning::regions::{self, Answer, Failure};
+use pcr_planning::regions::{self, Answer};
 use serde::Serialize;
 
 /// The options of a request for missions.

@@ -115,10 +115,6 @@ impl<S: Format> Bodies<S> {
     /// # Errors
     /// [`Refused`] where a value does not fit the number format.
     pub fn new(scenario: &Scenario) -> Result<Self, Refused> {
-        S::bodies(scenario)
-    }
-
-    pub(crate) fn generic(scenario: &Scenario) -> Result<Self, Refused> {
         let mut bodies = (Vec::new(), Vec::new());
         for (place, agent) in scenario.agents.iter().enumerate() {
             discs::<S, _>(agent, place, &mut bodies, rounded::<S>)?;

@@ -6,9 +6,10 @@
 use crate::bodies::{Bodies, Disced};
 use crate::certify::Proof;
 use crate::cores;
+use crate::failure::Failure;
 use crate::fleet::Format;
 use crate::memory::{self, Held};
-use crate::regions::{Failure, Told};
+use crate::regions::Told;
 use crate::rows::{Grid, grown};
 use pcr_core::{Encounter, Interval, Motion};
 use pcr_formats::scenario::{Labels, Scenario};
@@ -96,10 +97,6 @@ impl Verdict {
     /// # Errors
     /// As [`Verdict::of`].
     pub fn watched<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
-        S::verdict(scenario, closest, told)
-    }
-
-    pub(crate) fn generic<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
         let (fleet, discs, _) = Bodies::<S>::moving(scenario)?;
         Self::between(scenario, &discs, &fleet.motions(), closest, told)
     }
@@ -109,10 +106,6 @@ impl Verdict {
     /// # Errors
     /// [`Failure`] where a value does not fit the format.
     pub fn any<S: Format>(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure> {
-        S::any(scenario, told)
-    }
-
-    pub(crate) fn any_generic<S: Format>(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure> {
         let (fleet, discs, _) = Bodies::<S>::moving(scenario)?;
         let motions = fleet.motions();
         let pairs = Pairs::new(scenario, &discs, &motions);
@@ -323,19 +316,17 @@ fn encounters<S: Format>(
             continue;
         }
         let encounter = Encounter::new(own.1, other.1);
-        S::conflicts(&encounter, time, &mut |conflict| {
-            found.push(Conflict {
-                i,
-                j,
-                t: ends(conflict.time),
-                depth: conflict.depth.to_f64(),
-                l_i: own.0.on_agent(ends(conflict.length)),
-                l_j: other.0.on_agent(ends(conflict.other_length)),
-                touching: conflict.touching,
-            });
-        });
+        found.extend(encounter.conflicts(time).map(|conflict| Conflict {
+            i,
+            j,
+            t: ends(conflict.time),
+            depth: conflict.depth.to_f64(),
+            l_i: own.0.on_agent(ends(conflict.length)),
+            l_j: other.0.on_agent(ends(conflict.other_length)),
+            touching: conflict.touching,
+        }));
         if closest {
-            let approach = S::closest(&encounter, time);
+            let approach = encounter.closest(time);
             let clearance = (approach.separation - encounter.radius()).to_f64();
             if closest_of.is_none_or(|closest| clearance < closest.clearance) {
                 let (t, separation) = (approach.time.to_f64(), approach.separation.to_f64());

@@ -8,22 +8,23 @@ pub mod speed;
 #[cfg(test)]
 mod tests;
 
-use crate::compiled::Compiled;
 use crate::memory;
 use pcr_certify::data::Angle;
 use pcr_core::{
-    Ecm, Full, Invalid, Limits, Motion, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef, Radians, Region,
-    Scalar, Segment, TableError, Turn,
+    Ecm, Full, Invalid, Limits, Motion, Order, Orders, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef,
+    Radians, Region, Scalar, Segment, TableError, Turn,
 };
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
-pub use pcr_kernels::HostEcm;
-use pcr_kernels::Kernels;
-use pcr_kernels::planning;
-pub use pcr_kernels::planning::HostOrders;
 pub(crate) use rounding::Rounding;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
+
+/// A table on the heap.
+pub type HostEcm<S> = Ecm<S, Vec<Region>, Vec<Piece<S>>>;
+
+/// A table of passing orders on the heap.
+pub type HostOrders = Orders<f64, Vec<Region>, Vec<Piece<f64>>, Vec<Order<f64>>>;
 
 /// Largest magnitude of a heading at the start of a path, or of a turn in place, in a scenario \[rad\]: 2²⁴, the limit of the core
 /// in `f64`. It is the same in every format. Up to this limit, the error of subtracting whole turns in `f64` is below the last
@@ -36,7 +37,7 @@ fn in_angles(radians: f64) -> Option<f64> {
 }
 
 /// A number format that scenario files can be read into.
-pub trait Format: Compiled + Kernels + Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
+pub trait Format: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
     /// Name on the command line and in the output.
     const NAME: &'static str;
     /// The nearest number of the format.
@@ -166,7 +167,7 @@ fn derived<S: Format>(reason: Invalid) -> String {
 /// # Errors
 /// [`Refused`] if a value does not fit the number format.
 pub fn rounded<S: Format>(scenario: &Scenario) -> Result<Option<String>, Refused> {
-    S::rounded(scenario)
+    rounding::warning::<S>(scenario)
 }
 
 /// The paths and profiles of a scenario in one number format.
@@ -196,10 +197,6 @@ impl<S: Format> Fleet<S> {
     /// # Errors
     /// [`Refused`] if a value does not fit the number format.
     pub fn new(scenario: &Scenario) -> Result<Self, Refused> {
-        S::fleet(scenario)
-    }
-
-    pub(crate) fn generic(scenario: &Scenario) -> Result<Self, Refused> {
         let agents = scenario.agents.iter().map(|agent| {
             let refused = |(part, problem)| Refused { agent: agent.called(), part, format: S::NAME, problem };
             Parts::new(agent).map_err(refused)
@@ -384,7 +381,7 @@ fn waiting<S: Format>(agent: &Agent) -> MotionSpec {
 /// # Errors
 /// [`Full::Agents`] for more than 65536 agents, [`Full::Pair`] where two of them have more than 32767 pieces.
 pub fn build_ecm<S: Format>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Full> {
-    S::table(motions)
+    Ecm::grown(motions)
 }
 
 /// The table of passing orders of a fleet of any size, without decisions: the storage grows until it is large enough for all
@@ -393,7 +390,7 @@ pub fn build_ecm<S: Format>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Ful
 /// # Errors
 /// As [`build_ecm`].
 pub fn build_orders(motions: &[Motion<'_, f64>]) -> Result<HostOrders, Full> {
-    planning::orders(motions)
+    Orders::grown(motions)
 }
 
 /// The table of the regions of one agent with all others.
@@ -422,7 +419,7 @@ pub(crate) fn table_of<S: Format>(
     memory::for_list(pieces, piece).map_err(room(Full::Pieces))?;
     let mut ecm = Ecm::new(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]);
     loop {
-        match S::row(&mut ecm, motions, agent) {
+        match ecm.fill_row(motions, agent) {
             Err(TableError::Full(full)) => ecm.grow(full)?,
             done => return Ok(done.map(|()| ecm).expect("an agent of the fleet")),
         }

@@ -3,6 +3,7 @@
 //! ```text
 //! fleet        paths and motions in a number format                Fleet, build_ecm
 //! bodies       agents with footprints as discs                     Bodies
+//! failure      why there is no answer                              Failure
 //! certificate  tables as plain numbers for the checker
 //! certify      proofs by the checker                               Certified, Proof
 //! regions      regions as plain numbers, and their JSON            Answer, Request
@@ -12,7 +13,6 @@
 //! memory       refuses what does not fit into memory               TooLarge
 //! checksum     checksums of files that are read in parts
 //! cores        work on all cores
-//! compiled     what is large, compiled once for each number format
 //! nodes        nodes and edges of a layout                         Listing
 //! plan         delays without conflicts                            Plan
 //! queue        the conflicts of a fleet while its motions change   Queue
@@ -25,8 +25,8 @@ pub mod certificate;
 pub mod certify;
 pub mod check;
 pub mod checksum;
-mod compiled;
 mod cores;
+pub mod failure;
 pub mod fleet;
 pub mod locks;
 pub mod memory;

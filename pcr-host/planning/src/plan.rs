@@ -19,9 +19,9 @@ mod task;
 mod tests;
 
 use crate::certify::Proof;
+use crate::failure::Failure;
 use crate::fleet::Fleet;
 use crate::memory;
-use crate::regions::Failure;
 pub use circle::sides;
 pub(crate) use circle::sides_of;
 pub use delays::{Effort, Objective};

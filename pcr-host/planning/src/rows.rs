@@ -10,9 +10,9 @@ mod grid;
 pub use grid::Grid;
 
 use crate::cores;
+use crate::failure::Failure;
 use crate::fleet::{Format, HostEcm, table_of};
 use crate::memory::Held;
-use crate::regions::Failure;
 use pcr_core::{Full, Mismatch, Motion, RegionRef, TableError, excess};
 use rayon::prelude::*;
 
@@ -58,7 +58,7 @@ impl<'a, S: Format> Row<'a, S> {
         self.agents.extend_from_slice(after);
         self.motions.clear();
         self.motions.extend(self.agents.iter().map(|&agent| &motions[agent as usize]));
-        let filled = match S::row(&mut self.table, &self.motions, self.place) {
+        let filled = match self.table.fill_row(&self.motions, self.place) {
             Err(TableError::Full(Full::Regions | Full::Pieces)) => {
                 let agents = self.agents.len();
                 table_of(&self.motions, self.place, [2 * agents, 3 * agents]).map(|table| self.table = table)

@@ -5,9 +5,6 @@ mod demo;
 mod run;
 mod threads;
 
-pub(super) use bridge::{VEHICLES, broker, interfaces};
-pub(super) use run::AT_BROKERS;
-
 use super::{Stop, whole};
 use clap::Args;
 use std::path::PathBuf;

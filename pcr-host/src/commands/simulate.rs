@@ -8,7 +8,7 @@ use pcr_drawing::replay;
 use pcr_execution::report;
 use pcr_execution::simulate::{self, Controller, Disturbance, Settings, Simulation, Task, forage};
 use pcr_formats::import::Options;
-use pcr_planning::regions::Failure;
+use pcr_planning::failure::Failure;
 use pcr_planning::report::json;
 use std::io::Write;
 use std::path::PathBuf;

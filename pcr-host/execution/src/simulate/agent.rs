@@ -7,7 +7,7 @@ use super::course::{Course, Drive};
 use super::replan::State;
 use super::task::Robot;
 use pcr_core::{Interval, Invalid, Limits, Point, Pose, Radians};
-use pcr_planning::regions::Failure;
+use pcr_planning::failure::Failure;
 
 /// Bounds on the errors of camera and robots.
 #[derive(Clone, Copy, Debug)]

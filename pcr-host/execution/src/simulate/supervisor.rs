@@ -18,7 +18,7 @@ use super::replan::{InTheWay, Plan, Problem, SEARCHED, State, Waits};
 use super::task::{Obstacle, Robot, Task};
 use super::{Command, Control, FRAME, Frame, Snapshot};
 use pcr_core::{Interval, Limits};
-use pcr_planning::regions::Failure;
+use pcr_planning::failure::Failure;
 use std::time::Instant;
 
 /// If no robot has moved for this long plus two planning periods, the fleet is stuck \[s\].

@@ -5,8 +5,8 @@ use super::course::Course;
 use super::vector::{Vector, norm, sub};
 use pcr_core::Limits;
 use pcr_formats::scenario::{Agent, Labels, MotionSpec, Part, PathSegment, Scenario, TURN};
+use pcr_planning::failure::Failure;
 use pcr_planning::fleet::Fleet;
-use pcr_planning::regions::Failure;
 
 /// When the last robot may set off \[s\]: every frame until then is simulated and kept.
 const LATEST: f64 = 1e4;

@@ -2,8 +2,8 @@
 
 use crate::bodies::Bodies;
 use crate::certificate;
+use crate::failure::Failure;
 use crate::fleet::{Format, Refused};
-use crate::regions::Failure;
 use pcr_certify::motion::{Meeting, Mover, meetings};
 use pcr_core::Motion;
 use pcr_formats::scenario::Scenario;
@@ -48,10 +48,6 @@ impl Proof {
     /// # Errors
     /// [`Refused`] if a value does not fit the format.
     pub fn of<S: Format>(scenario: &Scenario) -> Result<Self, Refused> {
-        S::proof(scenario)
-    }
-
-    pub(crate) fn generic<S: Format>(scenario: &Scenario) -> Result<Self, Refused> {
         let (fleet, discs, given) = Bodies::<S>::moving(scenario)?;
         let motions = fleet.motions();
         let all = Motion::span(&motions);

@@ -36,8 +36,8 @@ impl Rounding {
 /// The largest distance from the motion in the file without a warning \[m\].
 const UNTOLD: f64 = 1e-3;
 
-/// What [`super::rounded`] says.
-pub(crate) fn generic<S: Format>(scenario: &Scenario) -> Result<Option<String>, Refused> {
+/// Returns the warning of [`super::rounded`].
+pub(super) fn warning<S: Format>(scenario: &Scenario) -> Result<Option<String>, Refused> {
     if S::NAME == f64::NAME {
         return Ok(None);
     }

@@ -20,7 +20,6 @@ use crate::rows::{Grid, area};
 use pcr_core::{Full, Interval, Motion, Piece, RegionRef, overlaps, union};
 use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Step, Vehicle};
 use pcr_formats::scenario::{Agent, MotionSpec, Scenario, label};
-use pcr_kernels::planning::passing_delays;
 use serde::Serialize;
 
 /// Number of agents that are built at a time.
@@ -219,7 +218,7 @@ impl Delays {
         self.regions(own, their, [a, b], |region| {
             all.push(if b < ways {
                 // `passing_delays` delays the ego, which is on the first way; hence the changed sign.
-                let Interval { lo, hi } = passing_delays(region);
+                let Interval { lo, hi } = region.passing_delays();
                 Interval::new(-hi, -lo)
             } else {
                 own.time_in(region.length())

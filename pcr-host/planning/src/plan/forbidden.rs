@@ -16,12 +16,11 @@
 use super::delays::{self, NEVER, Objective, Pair, Problem, Ticks, earliest};
 use super::{grown, sides_of as sides};
 use crate::bodies::{Bodies, Disced};
+use crate::failure::Failure;
 use crate::memory;
-use crate::regions::Failure;
 use crate::rows;
 use pcr_core::{Interval, Motion, RegionRef, Scalar};
 use pcr_formats::scenario::Scenario;
-use pcr_kernels::planning::{forbidden_delays, passing_delays};
 
 /// Differences of two delays (own minus other) at which the two agents meet \[ticks\], rounded outward.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +59,7 @@ impl Owner {
 
 /// The delays with which two discs meet. `own` and `other` tell whether a disc is there before its start and after its end.
 fn met_with(region: &RegionRef<'_, f64>, own: [bool; 2], other: [bool; 2]) -> Interval<f64> {
-    let delays = forbidden_delays(region);
+    let delays = region.forbidden_delays();
     let [after, before] = sides(region, own, other);
     let (early, late) = (delays.lo <= -<f64 as Scalar>::LIMIT, delays.hi >= <f64 as Scalar>::LIMIT);
     if (after || !early) && (before || !late) {
@@ -68,7 +67,7 @@ fn met_with(region: &RegionRef<'_, f64>, own: [bool; 2], other: [bool; 2]) -> In
     }
     // Forbidden delays are unbounded on a side where a disc stands before its start or after its end. If the disc is not there at that
     // time, that side ends where the delays end with which the two meet under way.
-    let passing = passing_delays(region);
+    let passing = region.passing_delays();
     Interval {
         lo: if early && !after { passing.lo } else { delays.lo },
         hi: if late && !before { passing.hi } else { delays.hi },

@@ -8,7 +8,7 @@ use super::{Answer, Costs, Method, Plan, Planned, Priority, Unsolved, bound, sid
 use crate::certify::Proof;
 use crate::check::Verdict;
 use crate::cores;
-use crate::regions::Failure;
+use crate::failure::Failure;
 use pcr_core::{Drive, Motion, Unsolved as Never};
 use pcr_formats::scenario::{Labels, MotionSpec, Scenario};
 

@@ -5,10 +5,21 @@ mod branching;
 
 use super::Priority;
 use super::task::Planner;
+use crate::failure::Failure;
 use crate::fleet::HostEcm;
-use crate::regions::Failure;
-use pcr_core::{Drive, Motion, Profile, RegionRef, SpeedPlan, Station, Unsolved as Never};
-use pcr_kernels::planning::{PHASES, Regions, Speeds, earliest_start, plan_speed, plan_speed_below, plan_speeds};
+use pcr_core::{
+    Drive, Motion, Profile, RegionRef, SpeedPlan, Station, Unsolved as Never, earliest_start, plan_speed,
+    plan_speed_below, plan_speeds,
+};
+
+/// Largest number of phases of a planned profile.
+const PHASES: usize = 128;
+
+/// A planned profile.
+pub(super) type Speeds = Profile<f64, PHASES>;
+
+/// The regions that an agent avoids.
+type Regions<'r, 'a> = &'r [RegionRef<'a, f64>];
 
 /// Number of stations on a path: 256 cells.
 const STATIONS: usize = 257;
@@ -96,15 +107,15 @@ impl<'m> Found<'m> {
     /// Uses the row of the agent in this motion: a delay counts from the motion of the row.
     fn of(motion: &Motion<'m, f64>, regions: Regions<'_, '_>, stations: &mut [Station<f64>]) -> Option<Self> {
         let Some(drive) = Drive::of(motion) else {
-            let later = earliest_start(regions, 0.0).and_then(|delay| motion.delayed(delay).ok());
-            let plan = plan_speed_below(motion, regions, stations).ok();
+            let later = earliest_start(regions.iter().cloned(), 0.0).and_then(|delay| motion.delayed(delay).ok());
+            let plan = plan_speed_below(motion, regions.iter().cloned(), &[], stations).ok();
             let sooner = |end: f64| later.is_none_or(|later| end < later.time().hi - SOONER);
             return match plan.filter(|plan| sooner(plan.end())) {
                 Some(plan) => Some(Self::Speeds(Box::new(plan))),
                 None => later.map(Self::Later),
             };
         };
-        plan_speed(motion, drive, regions, stations).ok().map(|plan| Self::Speeds(Box::new(plan)))
+        plan_speed(motion, drive, regions.iter().cloned(), &[], stations).ok().map(|plan| Self::Speeds(Box::new(plan)))
     }
 
     /// Time of arrival \[s\].

@@ -6,7 +6,7 @@ use super::forbidden::{Forbidden, Out, Schedule};
 use super::task::Planner;
 use super::{Priority, Unsolved, reason};
 use crate::cores;
-use crate::regions::Failure;
+use crate::failure::Failure;
 use pcr_core::Motion;
 use std::collections::HashSet;
 

@@ -3,8 +3,9 @@
 use super::circle;
 use super::delays::Objective;
 use super::{Priority, Request};
+use crate::failure::Failure;
 use crate::fleet::HostEcm;
-use crate::regions::{self, Failure};
+use crate::regions;
 use crate::rows;
 use pcr_core::Motion;
 use pcr_formats::scenario::Scenario;

@@ -2,9 +2,11 @@
 //! other, and rows are computed on all cores. Each row is freed after it has been passed on.
 
 use super::record::Work;
-use super::{Answer, Cover, Failure, Region, Request, outlines};
+use super::tables::table_of;
+use super::{Answer, Cover, Region, Request, outlines};
 use crate::bodies::Bodies;
 use crate::cores;
+use crate::failure::Failure;
 use crate::fleet::Format;
 use crate::memory::Held;
 use crate::rows::{self, Grid, Row};
@@ -101,7 +103,7 @@ impl<'s, S: Format> Sheet<'s, S> {
                 before < STRETCH
             };
             let (stretch, after) = rest.split_at(rest.iter().take_while(more).count());
-            for row in cores::made(0..stretch.len(), &|k| S::regions(self, &motions, &grid, stretch[k]).map(&make)) {
+            for row in cores::made(0..stretch.len(), &|k| self.regions(&motions, &grid, stretch[k]).map(&make)) {
                 take(row?)?;
             }
             done += stretch.iter().map(|&ego| work(ego) as usize).sum::<usize>();
@@ -112,7 +114,7 @@ impl<'s, S: Format> Sheet<'s, S> {
     }
 
     /// The regions of one agent.
-    pub(crate) fn regions(&self, motions: &[Motion<'_, S>], grid: &Grid, ego: usize) -> Result<Vec<Region>, Failure> {
+    fn regions(&self, motions: &[Motion<'_, S>], grid: &Grid, ego: usize) -> Result<Vec<Region>, Failure> {
         let mut near = Vec::new();
         let rows = self.discs[ego].clone().map(|disc| {
             grid.around(disc, &mut near);
@@ -139,7 +141,7 @@ impl<'s, S: Format> Sheet<'s, S> {
     /// # Errors
     /// [`Failure`] where a value does not fit the format.
     pub fn head(&self) -> Result<Answer, Failure> {
-        let certificate = || S::certificate(self.scenario);
+        let certificate = || table_of::<S>(self.scenario);
         let agents = self.scenario.agents.iter().zip(&self.discs);
         Ok(Answer {
             name: self.scenario.name.clone(),

@@ -1,7 +1,7 @@
 //! The tables of a scenario in the form that the checker takes, for fleets of any size.
 
-use super::Failure;
 use crate::bodies::Bodies;
+use crate::failure::Failure;
 use crate::fleet::Format;
 use crate::{certificate, memory, rows};
 use pcr_certify::data::{Agent, Table};
@@ -19,10 +19,6 @@ const SEGMENT_BYTES: u64 = 800;
 pub fn table_of<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
     let segments: usize = scenario.agents.iter().map(|agent| agent.path.len()).sum();
     memory::ask(segments as u64 * SEGMENT_BYTES, || format!("the proof for {segments} segments"))?;
-    S::certificate(scenario)
-}
-
-pub(crate) fn generic<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
     let Bodies { scenario: discs, fleet, discs: owners } = Bodies::<S>::new(scenario)?;
     let motions = fleet.motions();
     let ids: Vec<u64> = owners.iter().map(|disc| scenario.agents[disc.agent].id).collect();

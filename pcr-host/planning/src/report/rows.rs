@@ -2,8 +2,9 @@
 //! them in memory.
 
 use super::{csv_rows, json};
+use crate::failure::Failure;
 use crate::fleet::Format;
-use crate::regions::{Failure, Region, Sheet, Told};
+use crate::regions::{Region, Sheet, Told};
 use std::io::{self, Write};
 
 /// Why an answer was not printed, or not to its end.

@@ -1,7 +1,7 @@
 //! Vehicles and their manager at a broker.
 
+use super::super::brokers::{AT_BROKERS, VEHICLES, broker, interfaces};
 use super::super::printed::{notes, stdout, tables};
-use super::super::serve::{AT_BROKERS, VEHICLES, broker, interfaces};
 use super::super::sources::{FLEET, layout, layout_source};
 use super::super::{CONFLICTS, NO_STREAM, NOT_WRITTEN, Stop, WRONG_INPUT, complain, is_standard};
 use super::Arguments;

@@ -1,5 +1,6 @@
 //! Runs the VDA 5050 bridge beside the thread that owns the supervisor.
 
+use super::super::brokers::{VEHICLES, broker, interfaces};
 use super::super::{NOT_WRITTEN, Stop, WRONG_INPUT};
 use super::Arguments;
 use pcr_formats::once::Once;
@@ -42,29 +43,6 @@ impl Fleet {
         Ok(Some(Self { broker, interfaces, profiles: profiles(file)? }))
     }
 }
-
-/// Topics of the manager and of the vehicles, which have to be different ones.
-pub(in super::super) fn interfaces(topics: &[String]) -> Result<[Interface; 2], Stop> {
-    let wrong = |why: String| Stop::arguments(format!("--topics: {why}"));
-    let [manager, vehicles] = topics else { return Err(wrong("two are expected".into())) };
-    if manager == vehicles {
-        return Err(wrong("the manager's and the vehicles' have to be different".into()));
-    }
-    Ok([Interface::new(manager).map_err(wrong)?, Interface::new(vehicles).map_err(wrong)?])
-}
-
-/// A broker at HOST:PORT.
-pub(in super::super) fn broker(place: &str) -> Result<Broker, Stop> {
-    let (host, port) = place.rsplit_once(':').unwrap_or((place, "1883"));
-    let port = port.parse().map_err(|_| Stop::arguments(format!("--broker {place}: HOST:PORT is expected")))?;
-    let host = host.trim_start_matches('[').trim_end_matches(']');
-    let login = std::env::var("PCR_BROKER_USER").ok();
-    let login = login.map(|user| (user, std::env::var("PCR_BROKER_PASSWORD").unwrap_or_default()));
-    Ok(Broker { login, ..Broker::new(host, port) })
-}
-
-/// What a file of vehicles says that it is, and its version.
-pub(in super::super) const VEHICLES: (&str, u64) = ("pcr-vehicles", 1);
 
 /// The list in a file of vehicles, which may leave out what it is.
 fn listed(value: &Value) -> Result<&Vec<Value>, String> {

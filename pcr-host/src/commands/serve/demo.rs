@@ -1,9 +1,10 @@
 //! A broker, vehicles and their manager, to try a supervisor with.
 
 use super::super::Stop;
+use super::super::brokers::interfaces;
 use super::super::fleet::{self, Crew};
 use super::Arguments;
-use super::bridge::{Fleet, interfaces};
+use super::bridge::Fleet;
 use pcr_serve::entry::Layout as Drawn;
 use pcr_serve::log::{Level, Log};
 use pcr_serve::vda5050::lane::Profile;

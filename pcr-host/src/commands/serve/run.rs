@@ -1,5 +1,6 @@
 //! Runs the supervisor with its journal, clients and page.
 
+use super::super::brokers::AT_BROKERS;
 use super::super::printed::{notes, quiet};
 use super::super::{NOT_WRITTEN, Stop, WRONG_INPUT};
 use super::demo::Demo;
@@ -124,10 +125,6 @@ impl Unheard {
         }
     }
 }
-
-/// Least width and lookahead for vehicles of VDA 5050: they are told to stop, and say where they are, so much before where they may be \[m\]; and
-/// they say so less often \[s\].
-pub(in super::super) const AT_BROKERS: (f64, f64) = (0.3, 8.0);
 
 /// What the command line says, and what is usual where it says nothing.
 fn settings(arguments: &Arguments) -> Result<Settings, Stop> {

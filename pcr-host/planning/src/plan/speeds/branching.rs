@@ -5,8 +5,7 @@
 use super::{Found, Room};
 use crate::fleet::HostEcm;
 use crate::plan::task::Planner;
-use pcr_core::{Motion, RegionRef, Station};
-use pcr_kernels::planning::first_overlap;
+use pcr_core::{Motion, RegionRef, Station, first_overlap};
 
 /// Nodes at most.
 const NODES: usize = 400;
@@ -61,8 +60,8 @@ fn collision(ecm: &HostEcm<f64>, plan: &[Motion<'_, f64>]) -> Option<[usize; 2]>
     let all = Motion::span(plan);
     (0..plan.len()).find_map(|agent| {
         let regions = ecm.row(plan, agent).expect("the table of the fleet");
-        let after: Vec<RegionRef<'_, f64>> = regions.filter(|region| region.other() > agent).collect();
-        first_overlap(&plan[agent], &after, all).expect("its own row").map(|met| [agent, met.other])
+        let after = regions.filter(|region| region.other() > agent);
+        first_overlap(&plan[agent], after, all).expect("its own row").map(|met| [agent, met.other])
     })
 }
 
