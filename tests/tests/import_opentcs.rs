@@ -18,9 +18,9 @@ fn the_demo_is_read_with_warnings_about_its_lengths() {
     assert_eq!(plant.edges.iter().filter(is_curved).count(), 35);
     assert!(plant.edges.iter().all(|edge| edge.deviation <= 1e-3));
     let listed =
-        warnings.iter().find(|(problem, _)| *problem == "its length is not that of its geometry, which counts");
+        warnings.iter().find(|(_, problem, _)| *problem == "its length is not that of its geometry, which counts");
     // 34 of the 40 straight ones, and most of the curves.
-    let listed = listed.unwrap().1;
+    let listed = listed.unwrap().2;
     let straight = plant.edges.iter().filter(|edge| !is_curved(edge) && listed.contains(&format!("path {}", edge.id)));
     assert!((30..=34).contains(&straight.count()), "{listed:?}");
     assert!(listed.len() >= 34 + 24, "{}", listed.len());

@@ -81,6 +81,7 @@ pub use warnings::{Warnings, shortened};
 use crate::mark::unmarked;
 use crate::own;
 use crate::scenario::{Agent, Scenario};
+use crate::warning::WarningCode;
 use crate::yaml::{self, Document};
 use names::name_printably;
 use serde_json::Value;
@@ -333,7 +334,7 @@ fn report(deviations: &[(String, f64)], warnings: &mut Warnings) {
     for (name, _) in deviations.iter().filter(|(_, deviation)| *deviation > UNSAID) {
         let problem =
             format!("its lines and arcs are up to {most:.1e} m from its curve, by which the vehicle is larger there");
-        warnings.add(name, problem);
+        warnings.add(WarningCode::CurveDeviation, name, problem);
     }
 }
 
@@ -408,7 +409,11 @@ pub fn scenario(
             let largest = "the largest with which no plan on a grid has a contact";
             let vehicle = of_plan(options, largest, warnings)?;
             if value::is_open(text) {
-                warnings.add("last line", "it does not end; if the file was cut there, cells may be missing");
+                warnings.add(
+                    WarningCode::MayBeCut,
+                    "last line",
+                    "it does not end; if the file was cut there, cells may be missing",
+                );
             }
             with_margin(GridPlan::read(text)?.scenario(vehicle.radius)?, &vehicle)
         }
@@ -422,7 +427,11 @@ pub fn scenario(
             let vehicle = options.vehicle(&given(options, warnings)?, true, warnings);
             let (scenario, radii) = if format == Format::Path {
                 if value::is_open(text) {
-                    warnings.add("last line", "it does not end; if the file was cut there, digits may be missing");
+                    warnings.add(
+                        WarningCode::MayBeCut,
+                        "last line",
+                        "it does not end; if the file was cut there, digits may be missing",
+                    );
                 }
                 let scenario = samples::read(text, options, &vehicle, warnings)?;
                 let names = scenario.agents.iter().map(|agent| format!("path {}", agent.id)).collect::<Vec<_>>();
@@ -451,7 +460,7 @@ fn with_margin(mut scenario: Scenario, vehicle: &Vehicle) -> Scenario {
 fn of_plan(options: &Options, why: &str, warnings: &mut Warnings) -> Result<Vehicle, ImportError> {
     let mut given = given(options, warnings)?;
     if options.radius.is_none() && given.radius.is_none() && given.footprint.is_none() {
-        warnings.add("radius", format!("not in the file; {why}, √2/4, is taken"));
+        warnings.add(WarningCode::AssumedVehicle, "radius", format!("not in the file; {why}, √2/4, is taken"));
         given.radius = Some(ccbs::RADIUS);
     }
     Ok(options.vehicle(&given, false, warnings))

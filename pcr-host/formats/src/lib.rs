@@ -10,6 +10,7 @@
 //! paper      the embedded scenario and the paper's numbers
 //! plane      points and angles of the plane
 //! random     random numbers that are the same on every machine
+//! warning    codes of warnings                                  WarningCode
 //! yaml       YAML with the place of every value                 Document
 //! ```
 
@@ -25,4 +26,5 @@ pub mod paper;
 pub mod plane;
 pub mod random;
 pub mod scenario;
+pub mod warning;
 pub mod yaml;

@@ -7,7 +7,7 @@ use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::timed;
 use super::xml::{astray, child, children, content, lose_astray, number, only, optional, parse, warn_of_unknown};
-use super::{ImportError, Vehicle, Warnings};
+use super::{ImportError, Vehicle, WarningCode, Warnings};
 use crate::plane::distance;
 use crate::scenario::{Agent, Placed, Scenario};
 
@@ -81,7 +81,7 @@ pub(super) fn roadmap(text: &str, warnings: &mut Warnings) -> Result<Layout, Imp
         let line = Placed::line(from, to);
         let straight = line.shape.length() > 0.0;
         if !straight {
-            warnings.add(format_args!("edge {id}"), "its length is 0");
+            warnings.add(WarningCode::ZeroLength, format_args!("edge {id}"), "its length is 0");
         }
         let back = match edge.attribute("directed").map(str::trim) {
             None => undirected,

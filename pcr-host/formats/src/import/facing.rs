@@ -2,7 +2,7 @@
 
 use super::biarc::Fit;
 use super::value::Object;
-use super::{Edge, ImportError, Node, Warnings};
+use super::{Edge, ImportError, Node, WarningCode, Warnings};
 use crate::footprint::Footprint;
 use crate::plane::{distance, wrapped};
 use crate::scenario::{Agent, KINK, PathSegment, Placed, TURN};
@@ -56,7 +56,7 @@ pub(super) fn warn_of_nodes(
             let name = format!("{called} {}", nodes[node].id);
             let problem =
                 format!("its {field} is that of none of its edges, and not read: outlines face along their paths here");
-            warnings.add(name, problem);
+            warnings.add(WarningCode::Orientation, name, problem);
         }
     }
 }
@@ -68,8 +68,11 @@ pub(super) fn warn_of_half_turns<'a>(agents: impl Iterator<Item = (&'a str, &'a 
         let half =
             |shape: &PathSegment| matches!(*shape, PathSegment::Arc { radius: TURN, sweep } if sweep.abs() > PI - KINK);
         if is_other_backward(agent.footprint.as_ref()) && agent.path.iter().any(half) {
-            warnings
-                .add(name, "turns by half a turn in place: to one side here, although it may turn to the other one");
+            warnings.add(
+                WarningCode::HalfTurn,
+                name,
+                "turns by half a turn in place: to one side here, although it may turn to the other one",
+            );
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::value::Object;
 use super::vehicle::Given;
-use super::{ImportError, Warnings};
+use super::{ImportError, WarningCode, Warnings};
 use crate::footprint::Footprint;
 use crate::plane::hull;
 use serde_json::Value;
@@ -37,7 +37,11 @@ pub(super) fn read(value: &Value, warnings: &mut Warnings) -> Result<Given, Impo
         ([], Some(physical)) => rectangle(physical, warnings)?,
         ([], None) => None,
         (several, _) => {
-            warnings.add("envelopes2d", format!("there are {}; the convex hull of all is taken", several.len()));
+            warnings.add(
+                WarningCode::VehiclesDiffer,
+                "envelopes2d",
+                format!("there are {}; the convex hull of all is taken", several.len()),
+            );
             let corners = several.iter().map(polygon).collect::<Result<Vec<_>, _>>()?;
             if let Some(empty) = corners.iter().position(Vec::is_empty) {
                 return Err(ImportError::new(format!("factsheet, envelopes2d {}: 0 corners", empty + 1)));
@@ -80,7 +84,11 @@ fn polygon(envelope: &Value) -> Result<Vec<[f64; 2]>, ImportError> {
 
 fn rectangle(physical: &Object<'_>, warnings: &mut Warnings) -> Result<Option<Vec<[f64; 2]>>, ImportError> {
     let Some((length, width)) = physical.positive("length")?.zip(physical.positive("width")?) else { return Ok(None) };
-    warnings.add("contour", "not in the file; its length and width are taken around the reference point");
+    warnings.add(
+        WarningCode::AssumedSize,
+        "contour",
+        "not in the file; its length and width are taken around the reference point",
+    );
     let (ahead, left) = (0.5 * length, 0.5 * width);
     Ok(Some(vec![[ahead, left], [-ahead, left], [-ahead, -left], [ahead, -left]]))
 }

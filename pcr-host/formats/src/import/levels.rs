@@ -6,7 +6,7 @@
 //! rotation and the scale, and their places the translation, each as a mean.
 
 use super::value::Object;
-use super::{ImportError, Warnings};
+use super::{ImportError, WarningCode, Warnings};
 use crate::yaml::Document;
 use serde_json::Value;
 
@@ -99,14 +99,22 @@ impl<'j> Reference<'j> {
             (Some((scale, placing, spread)), measured) => {
                 if spread > SPREAD {
                     let problem = "its fiducials give scales that differ from their mean by up to";
-                    warnings.add(&level.name, format!("{problem} {:.1} %", 100.0 * spread));
+                    warnings.add(
+                        WarningCode::UncertainScale,
+                        &level.name,
+                        format!("{problem} {:.1} %", 100.0 * spread),
+                    );
                 }
                 if let Some(measured) = measured
                     && (measured / scale - 1.0).abs() > SPREAD
                 {
                     let more = 100.0 * (measured / scale - 1.0);
                     let problem = format!("its measurements give a scale that differs by {more:+.1} %");
-                    warnings.add(&level.name, format!("{problem}; that of its fiducials counts, as for Open-RMF"));
+                    warnings.add(
+                        WarningCode::UncertainScale,
+                        &level.name,
+                        format!("{problem}; that of its fiducials counts, as for Open-RMF"),
+                    );
                 }
                 Ok(placing)
             }
@@ -115,7 +123,11 @@ impl<'j> Reference<'j> {
                     Some(_) => format!("no two fiducials place it upon level {}", self.name),
                     None => format!("level {}, upon which it belongs, has no measurements", self.name),
                 };
-                warnings.add(&level.name, format!("{problem}; it has the scale of its own measurements"));
+                warnings.add(
+                    WarningCode::UncertainScale,
+                    &level.name,
+                    format!("{problem}; it has the scale of its own measurements"),
+                );
                 Ok(Placing::scaled(measured))
             }
             (None, None) => Err(no_scale(level)),
@@ -236,7 +248,11 @@ fn scale(level: &Object<'_>, vertices: &[Vertex], warnings: &mut Warnings) -> Re
     let spread = scales.iter().map(|scale| (scale / mean - 1.0).abs()).fold(0.0, f64::max);
     if spread > SPREAD {
         let percent = 100.0 * spread;
-        warnings.add(&level.name, format!("its measurements differ from their mean by up to {percent:.1} %"));
+        warnings.add(
+            WarningCode::UncertainScale,
+            &level.name,
+            format!("its measurements differ from their mean by up to {percent:.1} %"),
+        );
     }
     Ok(Some(mean))
 }

@@ -7,7 +7,7 @@ use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::trajectory::Trajectory;
 use super::value::Object;
-use super::{ImportError, Options, Warnings, facing, route, trajectory, value};
+use super::{ImportError, Options, WarningCode, Warnings, facing, route, trajectory, value};
 use crate::footprint::Footprint;
 use crate::plane::distance;
 use crate::scenario::Placed;
@@ -87,7 +87,11 @@ pub(super) fn read(
         }
         None if types.len() > 1 => {
             let there = types.into_iter().collect::<Vec<_>>().join(", ");
-            warnings.add(there, "several vehicle types; the ways of all of them are taken (--vehicle TYPE)");
+            warnings.add(
+                WarningCode::SeveralGraphs,
+                there,
+                "several vehicle types; the ways of all of them are taken (--vehicle TYPE)",
+            );
         }
         _ => {}
     }
@@ -145,7 +149,7 @@ impl Reader<'_> {
         };
         if !maps.is_empty() || layouts.len() > 1 {
             let what = format!("nodes without mapId, which are taken to be on level {level}");
-            self.warnings.add(&layout.name, what);
+            self.warnings.add(WarningCode::AssumedLevel, &layout.name, what);
         }
         Ok(Some(level))
     }
@@ -244,7 +248,7 @@ impl Reader<'_> {
                 if property.get(field).is_some_and(|allowed| allowed.as_str() != Some("BOTH")) {
                     let problem =
                         format!("its {field} is not read; a vehicle turns in place where its path has a corner");
-                    self.warnings.add(format_args!("edge {id}"), problem);
+                    self.warnings.add(WarningCode::UnreadField, format_args!("edge {id}"), problem);
                 }
             }
             if let Some(outline) = self.outline {
@@ -253,7 +257,7 @@ impl Reader<'_> {
                 let edge = property.clone().called(format!("edge {id}"));
                 facing::along(&edge, "vehicleOrientation", 1_f64.to_radians(), ahead, outline, self.warnings)?;
                 if property.flag("rotationAllowed")? == Some(true) {
-                    self.warnings.add(format_args!("edge {id}"), facing::ROTATION);
+                    self.warnings.add(WarningCode::Orientation, format_args!("edge {id}"), facing::ROTATION);
                 }
             }
             if let Some(trajectory) = property.object("trajectory")? {
@@ -268,7 +272,7 @@ impl Reader<'_> {
             }
         }
         if edge.curve.is_empty() {
-            self.warnings.add(format_args!("edge {id}"), "its length is 0");
+            self.warnings.add(WarningCode::ZeroLength, format_args!("edge {id}"), "its length is 0");
         }
         Ok(edge)
     }
@@ -285,8 +289,11 @@ impl Reader<'_> {
             if gap > GAP {
                 let told =
                     if is_passed { "" } else { "; no route passes there, and no lock covers what is between them" };
-                self.warnings
-                    .add(format_args!("edge {id}"), format!("its trajectory {place} {gap:.3} m from its node{told}"));
+                self.warnings.add(
+                    WarningCode::Gap,
+                    format_args!("edge {id}"),
+                    format!("its trajectory {place} {gap:.3} m from its node{told}"),
+                );
             }
         }
         passed

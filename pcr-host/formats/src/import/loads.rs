@@ -4,7 +4,7 @@
 //! hull of contour and loads; a disc becomes the disc around both.
 
 use super::value::Object;
-use super::{ImportError, Vehicle, Warnings};
+use super::{ImportError, Vehicle, WarningCode, Warnings};
 use crate::footprint::Footprint;
 use crate::plane::hull;
 
@@ -15,17 +15,28 @@ pub(super) fn loaded(state: &Object<'_>, vehicle: &Vehicle, warnings: &mut Warni
         let load = Object::new(format!("{}, load {}", state.name, k + 1), value)?;
         let size = load.object("loadDimensions")?.map(|size| Ok([size.number("length")?, size.number("width")?]));
         let Some([Some(length), Some(width)]) = size.transpose()? else {
-            warnings.add(&load.name, "it has no length and width; the outline of the vehicle is taken for both");
+            warnings.add(
+                WarningCode::AssumedSize,
+                &load.name,
+                "it has no length and width; the outline of the vehicle is taken for both",
+            );
             continue;
         };
         if length <= 0.0 || width <= 0.0 {
-            warnings
-                .add(&load.name, "its length or width is not above 0; the outline of the vehicle is taken for both");
+            warnings.add(
+                WarningCode::AssumedSize,
+                &load.name,
+                "its length or width is not above 0; the outline of the vehicle is taken for both",
+            );
             continue;
         }
         let reference = load.object("boundingBoxReference")?;
         if reference.is_none() {
-            warnings.add(&load.name, "it has no boundingBoxReference; it is taken around the reference point");
+            warnings.add(
+                WarningCode::AssumedSize,
+                &load.name,
+                "it has no boundingBoxReference; it is taken around the reference point",
+            );
         }
         let at = reference.as_ref().map_or(Ok([0.0; 2]), Object::point)?;
         let (sin, cos) = reference.map_or(Ok(None), |it| it.number("theta"))?.unwrap_or(0.0).sin_cos();

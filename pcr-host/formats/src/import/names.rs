@@ -3,8 +3,8 @@
 //! Files may give the same name to two different nodes or edges, and the programs that load them accept that. This
 //! reader does, too: the second one is called `name#2`. An exact copy, which differs in nothing, is read once.
 
-use super::Warnings;
 use super::layout::{Edge, Id, Node};
+use super::{WarningCode, Warnings};
 use crate::scenario::{LONGEST_LABEL, label};
 use std::collections::{HashMap, HashSet};
 use std::fmt;
@@ -14,7 +14,7 @@ pub(super) fn name_printably(name: &mut String, warnings: &mut Warnings) {
     let called = label(name);
     if called != *name {
         let problem = format!("it becomes {called}: names are printable text of up to {LONGEST_LABEL} characters");
-        warnings.add("name", problem);
+        warnings.add(WarningCode::Renamed, "name", problem);
         *name = called;
     }
 }
@@ -113,7 +113,7 @@ impl<T: Named> Names<T> {
         }
         let alike = if called.count > 0 { Some(called.alike.entry(bits(thing.numbers())).or_default()) } else { None };
         if let Some(&copied) = alike.as_deref().and_then(|alike| alike.iter().find(is_copy)) {
-            warnings.add(name, "given twice, the same each time");
+            warnings.add(WarningCode::GivenTwice, name, "given twice, the same each time");
             // It is the last one of its name again.
             called.last = copied;
             return copied;
@@ -131,7 +131,11 @@ impl<T: Named> Names<T> {
             count += 1;
         }
         if *thing.id() != id {
-            warnings.add(name, format!("several have this name; one of them is called {} here", thing.id()));
+            warnings.add(
+                WarningCode::Renamed,
+                name,
+                format!("several have this name; one of them is called {} here", thing.id()),
+            );
         }
         self.taken.insert(thing.id().clone());
         self.list.push(thing);
@@ -188,8 +192,8 @@ mod tests {
             assert_eq!(names.add(node("a", f64::from(k)), &mut warnings), k as usize);
         }
         assert_eq!(names.list().len(), count as usize);
-        let copies = warnings.iter().find(|(problem, _)| problem.starts_with("given twice")).unwrap();
-        assert_eq!(copies.1.len(), count as usize);
+        let copies = warnings.iter().find(|(_, problem, _)| problem.starts_with("given twice")).unwrap();
+        assert_eq!(copies.2.len(), count as usize);
         // 0 and -0 are one place.
         assert_eq!(names.add(node("a", -0.0), &mut warnings), 0);
     }

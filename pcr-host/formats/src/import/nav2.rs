@@ -7,7 +7,7 @@
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::value::Object;
-use super::{ImportError, Warnings, value};
+use super::{ImportError, WarningCode, Warnings, value};
 use crate::scenario::Placed;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -40,9 +40,11 @@ pub(super) fn read(text: &str, full_speed: f64, warnings: &mut Warnings) -> Resu
                 }
             }
             Ok(Some(line)) => lines.push(line),
-            Ok(None) => graph
-                .warnings
-                .add(format_args!("feature {}", k + 1), "it is no point and no line, hence no part of the graph"),
+            Ok(None) => graph.warnings.add(
+                WarningCode::NotInGraph,
+                format_args!("feature {}", k + 1),
+                "it is no point and no line, hence no part of the graph",
+            ),
             Err(error) => graph.warnings.lose(error),
         }
     }
@@ -164,13 +166,16 @@ impl Graph<'_> {
         if let Geometry::Line(Some(drawn)) = drawn {
             let off = |k: usize| (drawn[k][0] - at[k][0]).hypot(drawn[k][1] - at[k][1]) > DRAWN;
             if off(0) || off(1) {
-                self.warnings
-                    .add(&named, "its drawn line does not join its nodes; the straight line between them is taken");
+                self.warnings.add(
+                    WarningCode::Gap,
+                    &named,
+                    "its drawn line does not join its nodes; the straight line between them is taken",
+                );
             }
         }
         let straight = line.shape.length() > 0.0;
         if !straight {
-            self.warnings.add(&named, "its length is 0");
+            self.warnings.add(WarningCode::ZeroLength, &named, "its length is 0");
         }
         let speed = self.speed_limit(&named, properties, speed)?;
         let curve = if straight { vec![line] } else { Vec::new() };
@@ -186,7 +191,11 @@ impl Graph<'_> {
             Some(fraction) if fraction > 0.0 && fraction <= 1.0 => Some(fraction * full),
             Some(percent) if percent > 1.0 && percent <= 100.0 => Some(percent / 100.0 * full),
             _ => {
-                self.warnings.add(edge, "its speed_limit is not above 0 and up to 100 (percent); it is not used");
+                self.warnings.add(
+                    WarningCode::SpeedLimit,
+                    edge,
+                    "its speed_limit is not above 0 and up to 100 (percent); it is not used",
+                );
                 None
             }
         })

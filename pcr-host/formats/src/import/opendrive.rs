@@ -10,7 +10,7 @@ use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::route::turn_over;
 use super::xml::{child, children, lose_astray, number, only, optional, parse, warn_of_unknown};
-use super::{ImportError, Warnings};
+use super::{ImportError, WarningCode, Warnings};
 use crate::plane::{distance, wrapped};
 use crate::scenario::PathSegment;
 use crate::scenario::Placed;
@@ -109,14 +109,14 @@ pub(super) fn read(text: &str, warnings: &mut Warnings) -> Result<Layout, Import
         let problem = format!(
             "joints are open, by {gap:.1e} m and {angle:.1e} rad at most; they are closed and count as deviation"
         );
-        warnings.add(road, problem);
+        warnings.add(WarningCode::Gap, road, problem);
     }
     let (group, Links { count, apart, widest }) = groups(&names, &links, warnings);
     if apart > 0 {
         let problem = format!(
             "{apart} of {count} are between reference lines up to {widest:.3} m apart; no route passes there from road to road"
         );
-        warnings.add("links of roads", problem);
+        warnings.add(WarningCode::Gap, "links of roads", problem);
     }
     let mut layout =
         Layout { name: header.to_owned(), levels: vec![String::new()], edges: names.into_list(), ..Layout::default() };
@@ -256,7 +256,11 @@ fn speed(road: roxmltree::Node<'_, '_>, name: &str, warnings: &mut Warnings) -> 
     }
     let least = limits.iter().copied().reduce(f64::min);
     if limits.iter().any(|limit| Some(*limit) != least) {
-        warnings.add(name, "its speed limit changes on the way; the least one is taken for all of it");
+        warnings.add(
+            WarningCode::SpeedLimit,
+            name,
+            "its speed limit changes on the way; the least one is taken for all of it",
+        );
     }
     Ok(least)
 }
@@ -313,7 +317,11 @@ fn groups(
                 (other, _) => {
                     let problem = other.err().unwrap_or_else(|| "it has no contactPoint".to_owned());
                     let road = roads.list()[place].id.clone();
-                    warnings.add(format_args!("road {road}, {name}"), format!("{problem}; no route leads over it"));
+                    warnings.add(
+                        WarningCode::BrokenLink,
+                        format_args!("road {road}, {name}"),
+                        format!("{problem}; no route leads over it"),
+                    );
                 }
             }
         }

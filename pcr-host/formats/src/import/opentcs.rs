@@ -11,7 +11,7 @@ use super::names::Names;
 use super::nurbs::Bezier;
 use super::warnings::{DIFFERENCE, LENGTH};
 use super::xml::{children, lose_astray, number, only, optional, parse, warn_of_unknown};
-use super::{ImportError, Options, Warnings, facing};
+use super::{ImportError, Options, WarningCode, Warnings, facing};
 use crate::footprint::Footprint;
 use crate::plane::distance;
 use crate::scenario::Placed;
@@ -124,7 +124,11 @@ pub(super) fn read(
     for element in root.children().filter(|element| element.children().any(is_outline)) {
         let name = element.attribute("name").unwrap_or_default();
         let name = format!("{} {name}", element.tag_name().name());
-        warnings.add(name, "its vehicleEnvelope is not read; the vehicle has its own outline everywhere");
+        warnings.add(
+            WarningCode::UnreadField,
+            name,
+            "its vehicleEnvelope is not read; the vehicle has its own outline everywhere",
+        );
     }
     children(root, "vehicle").for_each(|vehicle| warn_of_unknown(vehicle, &OF_VEHICLE, warnings));
     let mut edges = edges.into_list();
@@ -244,7 +248,11 @@ fn edge(
     let closed = locked || ways == [false; 2];
     if closed {
         let why = if locked { "it is locked" } else { "its speeds are 0 in both directions" };
-        warnings.add(name.as_str(), format!("{why}: no routes lead over it, and locks count it all the same"));
+        warnings.add(
+            WarningCode::ClosedEdge,
+            name.as_str(),
+            format!("{why}: no routes lead over it, and locks count it all the same"),
+        );
     }
     let edge = Edge {
         ways: [ways[0] || closed && !ways[1], ways[1]],
@@ -256,12 +264,18 @@ fn edge(
         ..Edge::new(Id::Text(id), ends, fit.pieces)
     };
     if speed[0].is_none() {
-        warnings.add(&name, "it has no maxVelocity; it is taken to be open, without a limit of its own");
+        warnings.add(
+            WarningCode::SpeedLimit,
+            &name,
+            "it has no maxVelocity; it is taken to be open, without a limit of its own",
+        );
     }
     let drawn = edge.length();
     match limit("length")? {
-        None => warnings.add(name, "it has no length; that of its geometry counts"),
-        Some(typed) if (typed - drawn).abs() > DIFFERENCE * drawn => warnings.add(name, LENGTH),
+        None => warnings.add(WarningCode::WrittenLength, name, "it has no length; that of its geometry counts"),
+        Some(typed) if (typed - drawn).abs() > DIFFERENCE * drawn => {
+            warnings.add(WarningCode::WrittenLength, name, LENGTH)
+        }
         Some(_) => {}
     }
     Ok(edge)

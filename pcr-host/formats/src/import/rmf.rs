@@ -10,7 +10,7 @@ use super::layout::{Edge, Id, Layout, Node};
 use super::levels::{Placing, Reference, Vertex, ends, parameter, vertices};
 use super::value::Object;
 use super::vehicle::Given;
-use super::{ImportError, Options, Warnings, facing};
+use super::{ImportError, Options, WarningCode, Warnings, facing};
 use crate::footprint::Footprint;
 use crate::scenario::Placed;
 use crate::yaml::Document;
@@ -72,7 +72,11 @@ pub(super) fn read(
     let graph = is_navigation_graph(&value);
     // YAML does not tell where it ends.
     if !graph && root.get("name").is_none() {
-        warnings.add("building", "it has no name, which a building has behind its levels: the file may be cut");
+        warnings.add(
+            WarningCode::MayBeCut,
+            "building",
+            "it has no name, which a building has behind its levels: the file may be cut",
+        );
     }
     let reference = match root.text("coordinate_system")? {
         None if graph => None,
@@ -96,7 +100,7 @@ pub(super) fn read(
         let mut level = Level { name, graph, placing, vertices, outline, nodes: HashMap::new(), layout: &mut layout };
         for (k, lane) in object.list("lanes")?.iter().enumerate() {
             match level.lane(k, lane, options, &mut graphs) {
-                Ok(Some(problem)) => warnings.add(format_args!("lane {name}/{k}"), problem),
+                Ok(Some((code, problem))) => warnings.add(code, format_args!("lane {name}/{k}"), problem),
                 Ok(None) => {}
                 Err(problem) => warnings.lose(format_args!("lane {name}/{k}: {problem}")),
             }
@@ -111,12 +115,16 @@ pub(super) fn read(
     }
     if graphs.len() > 1 && options.graph.is_none() {
         let there = graphs.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-        warnings.add(format_args!("graphs {there}"), "the lanes of all of them are taken (--graph N)");
+        warnings.add(
+            WarningCode::SeveralGraphs,
+            format_args!("graphs {there}"),
+            "the lanes of all of them are taken (--graph N)",
+        );
     }
     if layout.levels.len() > 1
         && root.object("lifts").ok().flatten().is_some_and(|lifts| lifts.members().next().is_some())
     {
-        warnings.add("lifts", "they are not read; routes stay on their level");
+        warnings.add(WarningCode::UnreadField, "lifts", "they are not read; routes stay on their level");
     }
     Ok(layout)
 }
@@ -154,7 +162,7 @@ impl Level<'_> {
         value: &Value,
         options: &Options,
         graphs: &mut BTreeSet<u64>,
-    ) -> Result<Option<String>, String> {
+    ) -> Result<Option<(WarningCode, &'static str)>, String> {
         let parameters = value.get(2).filter(|parameters| !parameters.is_null());
         if let Some(odd) = parameters.filter(|parameters| !parameters.is_object()) {
             return Err(format!("its parameters {odd} are not read"));
@@ -199,8 +207,12 @@ impl Level<'_> {
             speed: [speed.filter(|speed| *speed < 1e6); 2],
             ..Edge::new(Id::Text(format!("{}/{k}", self.name)), [from.0, to.0], curve)
         });
-        let one_way =
-            (both_ways && self.graph).then_some("it is taken one way, as fleet adapters do with navigation graphs");
-        Ok((!straight).then_some("its length is 0").or(one_way).map(str::to_owned))
+        Ok(match () {
+            () if !straight => Some((WarningCode::ZeroLength, "its length is 0")),
+            () if both_ways && self.graph => {
+                Some((WarningCode::OneWay, "it is taken one way, as fleet adapters do with navigation graphs"))
+            }
+            () => None,
+        })
     }
 }

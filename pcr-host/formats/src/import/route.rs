@@ -8,7 +8,7 @@
 use super::layout::{Edge, Layout};
 use super::trace::{Trace, Tracer};
 use super::vehicle::Asked;
-use super::{ImportError, Options, Vehicle, Warnings, facing, speed};
+use super::{ImportError, Options, Vehicle, WarningCode, Warnings, facing, speed};
 use crate::plane::distance;
 use crate::scenario::Placed;
 use crate::scenario::{Agent, PathSegment, Scenario, label};
@@ -312,10 +312,14 @@ pub(super) fn scenario(
     if let Some(radius) = usual_radius.filter(|_| rounded && options.corner_radius.is_none()) {
         let problem =
             format!("rounded with {radius} m, as by nav2 with smooth_corners; --corner-radius 0 if it does not");
-        warnings.add("corners", problem);
+        warnings.add(WarningCode::CornerSmoothing, "corners", problem);
     }
     if levels.windows(2).any(|pair| pair[0] != pair[1]) {
-        warnings.add("routes", "they are on different levels, which a scenario does not tell apart");
+        warnings.add(
+            WarningCode::SeveralLevels,
+            "routes",
+            "they are on different levels, which a scenario does not tell apart",
+        );
     }
     Ok(Scenario::new(layout.name.clone(), agents))
 }

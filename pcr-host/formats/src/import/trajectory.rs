@@ -3,7 +3,7 @@
 use super::biarc::{Fit, fit};
 use super::nurbs::Nurbs;
 use super::value::Object;
-use super::{ImportError, Warnings};
+use super::{ImportError, WarningCode, Warnings};
 use crate::scenario::LIMIT;
 
 /// A trajectory as lines and arcs.
@@ -41,7 +41,11 @@ pub(super) fn read(object: &Object<'_>, tolerance: f64, warnings: &mut Warnings)
         Some(degree) => return Err(named(ImportError::new(format!("degree {degree}, which is no degree")))),
     };
     if degree > 1 && !knots.is_empty() && knots.len() == points.len() + degree {
-        warnings.add(&object.name, "its degree is one more than its knots say; it is taken as the order of the curve");
+        warnings.add(
+            WarningCode::CurveDegree,
+            &object.name,
+            "its degree is one more than its knots say; it is taken as the order of the curve",
+        );
         degree -= 1;
     }
     let curves = Nurbs { degree, knots, points }.beziers().map_err(named)?;

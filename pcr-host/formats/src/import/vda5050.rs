@@ -18,8 +18,7 @@ mod state;
 
 use super::trajectory::Trajectory;
 use super::value::{self, Object};
-use super::warnings::TOGETHER;
-use super::{ImportError, Options, Vehicle, Warnings, facing, loads, trajectory, updates};
+use super::{ImportError, Options, Vehicle, WarningCode, Warnings, facing, loads, trajectory, updates};
 use crate::scenario::{Agent, LONGEST_LABEL, Scenario, label};
 use begin::Begin;
 use serde_json::Value;
@@ -84,8 +83,11 @@ pub(super) fn read(
     facing::warn_of_half_turns(names.zip(&scenario.agents), reader.warnings);
     if reader.maps.len() > 1 {
         let maps = reader.maps.into_iter().collect::<Vec<_>>().join(", ");
-        warnings
-            .add(format_args!("maps {maps}"), format!("{TOGETHER}on several, which a scenario does not tell apart"));
+        warnings.add(
+            WarningCode::SeveralLevels,
+            format_args!("maps {maps}"),
+            "the agents are on several, which a scenario does not tell apart",
+        );
     }
     Ok((scenario, radii))
 }
@@ -110,7 +112,7 @@ impl Reader<'_> {
         if called != own {
             let problem =
                 format!("its label becomes {called}: labels are printable text of up to {LONGEST_LABEL} characters");
-            self.warnings.add(format!("agent {id}"), problem);
+            self.warnings.add(WarningCode::Renamed, format!("agent {id}"), problem);
         }
         let state = ["nodeStates", "mobileRobotPosition", "plannedPath", "intermediatePath"];
         let message = message.clone();

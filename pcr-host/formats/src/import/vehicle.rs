@@ -1,6 +1,6 @@
 //! The vehicle that travels a layout, and the options of the command line about it and its routes.
 
-use super::{Format, ImportError, Warnings};
+use super::{Format, ImportError, WarningCode, Warnings};
 use crate::footprint::Footprint;
 use std::path::PathBuf;
 
@@ -166,7 +166,7 @@ impl Options {
         if let Some((radius, reach)) = self.radius.zip(outline).filter(|(radius, reach)| radius < reach) {
             let problem =
                 format!("{radius} m, a disc; the outline of the vehicle, which is not used then, reaches {reach:.3} m");
-            warnings.add("radius", problem);
+            warnings.add(WarningCode::RadiusBelowOutline, "radius", problem);
         }
         let radius = choose(self.radius, reach.or(given.radius), 0.5, "radius [m]");
         let vehicle = Vehicle {
@@ -188,7 +188,11 @@ impl Options {
             assumed.retain(|what| what.starts_with("radius"));
         }
         if !assumed.is_empty() {
-            warnings.add("vehicle", format!("not in the file and not given, hence taken as: {}", assumed.join(", ")));
+            warnings.add(
+                WarningCode::AssumedVehicle,
+                "vehicle",
+                format!("not in the file and not given, hence taken as: {}", assumed.join(", ")),
+            );
         }
         vehicle
     }

@@ -1,14 +1,9 @@
 //! What there is to say about a file that is read: warnings about parts that were not read exactly as written, parts that could not be
 //! read, and the options that had an effect on it.
 
+use crate::warning::WarningCode;
 use std::collections::{HashMap, HashSet};
 use std::fmt;
-
-/// How warnings begin that are about agents together, who may be from several files.
-pub(super) const TOGETHER: &str = "the agents are ";
-
-/// How a warning ends that is about a part of an order which an update may release.
-pub(super) const NOT_RELEASED: &str = "edges are not released and left out (--horizon)";
 
 /// The length of an edge that is written differs from that of its geometry by more than [`DIFFERENCE`].
 pub(super) const LENGTH: &str = "its length is not that of its geometry, which counts";
@@ -19,12 +14,26 @@ pub(super) const DIFFERENCE: f64 = 0.01;
 /// Names of one warning that are listed; the others are counted.
 const LISTED: usize = 8;
 
+/// A problem, and the names of what has it.
+#[derive(Clone, Debug, PartialEq)]
+struct Problem {
+    code: WarningCode,
+    words: String,
+    names: Vec<String>,
+}
+
+impl Problem {
+    fn key(&self) -> (WarningCode, String) {
+        (self.code, self.words.clone())
+    }
+}
+
 /// Warnings, each with the names of what it is about.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Warnings {
-    list: Vec<(String, Vec<String>)>,
-    /// Places in the list by the words.
-    places: HashMap<String, usize>,
+    list: Vec<Problem>,
+    /// Places in the list by the code and the words.
+    places: HashMap<(WarningCode, String), usize>,
     lost: Vec<String>,
     /// Fields of options that had an effect.
     used: HashSet<&'static str>,
@@ -32,13 +41,13 @@ pub struct Warnings {
 
 impl Warnings {
     /// Adds a warning about the thing of this name. Warnings of the same words are told once, with all their names.
-    pub(crate) fn add(&mut self, name: impl fmt::Display, problem: impl Into<String>) {
-        let (name, problem) = (name.to_string(), problem.into());
-        match self.places.get(&problem).and_then(|place| self.list.get_mut(*place)) {
-            Some((_, names)) => names.push(name),
+    pub(crate) fn add(&mut self, code: WarningCode, name: impl fmt::Display, problem: impl Into<String>) {
+        let (name, key) = (name.to_string(), (code, problem.into()));
+        match self.places.get(&key).and_then(|place| self.list.get_mut(*place)) {
+            Some(problem) => problem.names.push(name),
             None => {
-                self.places.insert(problem.clone(), self.list.len());
-                self.list.push((problem, vec![name]));
+                self.places.insert(key.clone(), self.list.len());
+                self.list.push(Problem { code, words: key.1, names: vec![name] });
             }
         }
     }
@@ -47,7 +56,7 @@ impl Warnings {
     /// asked for.
     pub(crate) fn lose(&mut self, problem: impl fmt::Display) {
         self.lost.push(problem.to_string());
-        self.add(problem, "left out");
+        self.add(WarningCode::LeftOut, problem, "left out");
     }
 
     /// Notes that the option of this field had an effect.
@@ -63,28 +72,28 @@ impl Warnings {
     /// Settles the warnings of files that were read each by itself, and then together, with the warnings `all`: what an update releases
     /// is released, and what is said of all together, and of none by itself, is added to the last one.
     pub(crate) fn settle(files: &mut [&mut Self], all: &Self) {
-        let names = |of: &Self, problem: &str| {
-            let place = of.places.get(problem).and_then(|place| of.list.get(*place));
-            place.map_or_else(HashSet::new, |(_, names)| names.iter().cloned().collect())
+        let names = |of: &Self, problem: &Problem| -> HashSet<String> {
+            let place = of.places.get(&problem.key()).and_then(|place| of.list.get(*place));
+            place.map_or_else(HashSet::new, |problem| problem.names.iter().cloned().collect())
         };
         for file in files.iter_mut() {
-            for (problem, own) in file.list.iter_mut().filter(|(problem, _)| problem.ends_with(NOT_RELEASED)) {
+            for problem in file.list.iter_mut().filter(|problem| problem.code == WarningCode::NotReleased) {
                 let left_out = names(all, problem);
-                own.retain(|name| left_out.contains(name));
+                problem.names.retain(|name| left_out.contains(name));
             }
-            file.list.retain(|(_, names)| !names.is_empty());
-            file.places = file.list.iter().enumerate().map(|(place, (problem, _))| (problem.clone(), place)).collect();
+            file.list.retain(|problem| !problem.names.is_empty());
+            file.places = file.list.iter().enumerate().map(|(place, problem)| (problem.key(), place)).collect();
         }
         let mut new = Vec::new();
-        for (problem, of_all) in &all.list {
+        for problem in &all.list {
             let said: HashSet<String> = files.iter().flat_map(|file| names(file, problem)).collect();
             // Of other warnings the names may be others: messages are numbered in each file.
-            let is_named = problem.ends_with(NOT_RELEASED) || problem.starts_with(TOGETHER);
+            let is_named = matches!(problem.code, WarningCode::NotReleased | WarningCode::SeveralLevels);
             let is_new = |name: &&String| said.is_empty() || is_named && !said.contains(*name);
-            new.extend(of_all.iter().filter(is_new).map(|name| (name, problem)));
+            new.extend(problem.names.iter().filter(is_new).map(|name| (name, problem)));
         }
         if let Some(last) = files.last_mut() {
-            new.into_iter().for_each(|(name, problem)| last.add(name, problem));
+            new.into_iter().for_each(|(name, problem)| last.add(problem.code, name, problem.words.clone()));
         }
     }
 
@@ -98,19 +107,19 @@ impl Warnings {
         self.list.is_empty()
     }
 
-    /// The warnings: problems, and the names of what has them, in the order in which they were found.
-    pub fn iter(&self) -> impl Iterator<Item = (&str, &[String])> {
-        self.list.iter().map(|(problem, names)| (problem.as_str(), names.as_slice()))
+    /// The warnings: codes, problems, and the names of what has them, in the order in which they were found.
+    pub fn iter(&self) -> impl Iterator<Item = (WarningCode, &str, &[String])> {
+        self.list.iter().map(|problem| (problem.code, problem.words.as_str(), problem.names.as_slice()))
     }
 
     /// The lines in which they are told to people, who do not read hundreds of names.
     pub fn lines(&self) -> Vec<String> {
-        self.list.iter().map(|(problem, names)| format!("{}: {problem}", listed(names, ", "))).collect()
+        self.list.iter().map(|Problem { words, names, .. }| format!("{}: {words}", listed(names, ", "))).collect()
     }
 
     /// The lines in which programs get them, with all names.
     pub fn all(&self) -> Vec<String> {
-        self.list.iter().map(|(problem, names)| format!("{}: {problem}", names.join(", "))).collect()
+        self.list.iter().map(|Problem { words, names, .. }| format!("{}: {words}", names.join(", "))).collect()
     }
 }
 
@@ -144,9 +153,9 @@ mod tests {
     fn the_same_words_are_told_once() {
         let mut warnings = Warnings::default();
         for k in 0..10 {
-            warnings.add(format_args!("edge {k}"), "too short");
+            warnings.add(WarningCode::ZeroLength, format_args!("edge {k}"), "too short");
         }
-        warnings.add("node 3", "given twice");
+        warnings.add(WarningCode::GivenTwice, "node 3", "given twice");
         let edges = (0..8).map(|k| format!("edge {k}")).collect::<Vec<_>>().join(", ");
         assert_eq!(warnings.lines(), [format!("{edges} and 2 more: too short"), "node 3: given twice".to_owned()]);
         let long = format!("{}: too short", vec!["edge"; 1000].join(", "));

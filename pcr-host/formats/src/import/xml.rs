@@ -1,6 +1,6 @@
 //! Lenient reading of XML: attributes as numbers, and messages that name the element.
 
-use super::{ImportError, Warnings};
+use super::{ImportError, WarningCode, Warnings};
 use crate::mark::unmarked;
 use crate::scenario::LIMIT;
 use roxmltree::{Document, Node};
@@ -142,7 +142,11 @@ pub(super) fn warn_of_unknown(home: Node<'_, '_>, known: &[&str], warnings: &mut
     for element in home.children().filter(Node::is_element) {
         let own = element.tag_name().name();
         if !known.contains(&own) {
-            warnings.add(own, format!("not known in {}, and not read", home.tag_name().name()));
+            warnings.add(
+                WarningCode::UnknownKey,
+                own,
+                format!("not known in {}, and not read", home.tag_name().name()),
+            );
         }
     }
 }

@@ -6,7 +6,7 @@
 
 use super::super::vehicle::Given;
 use super::super::xml::{children, only, optional, parse};
-use super::super::{Edge, ImportError, Options, Warnings};
+use super::super::{Edge, ImportError, Options, WarningCode, Warnings};
 use super::{MILLI, metres};
 use crate::footprint::Footprint;
 
@@ -46,7 +46,11 @@ pub(super) fn limit_backward(
         let name = named(vehicle);
         match metres(vehicle, &name, "maxReverseVelocity")? {
             Some(0.0) if !ways.is_empty() => {
-                warnings.add(name, "its maxReverseVelocity is 0; it is taken to drive backward all the same");
+                warnings.add(
+                    WarningCode::DrivesBackward,
+                    name,
+                    "its maxReverseVelocity is 0; it is taken to drive backward all the same",
+                );
             }
             Some(own) if own > 0.0 => {
                 ways.iter_mut()
@@ -103,7 +107,11 @@ fn slowest(all: &[Vehicle], options: &Options, given: &mut Given, warnings: &mut
     let speeds = || all.iter().filter_map(|vehicle| vehicle.speed);
     let Some(least) = speeds().reduce(f64::min).filter(|_| given.speed.is_none()) else { return };
     if options.speed.is_none() && speeds().any(|speed| speed != least) {
-        warnings.add("vehicles", format!("their maxVelocity differs; the least of {least} m/s is taken"));
+        warnings.add(
+            WarningCode::VehiclesDiffer,
+            "vehicles",
+            format!("their maxVelocity differs; the least of {least} m/s is taken"),
+        );
     }
     given.speed = Some(least);
 }
@@ -114,7 +122,7 @@ fn warn_of_lengths(all: &[Vehicle], options: &Options, warnings: &mut Warnings) 
         if let Some(length) = vehicle.length.filter(|length| options.radius.is_none_or(|radius| 2.0 * radius < *length))
         {
             let problem = format!("it is {length} m long, and the model says nothing more of its outline");
-            warnings.add(&vehicle.name, problem);
+            warnings.add(WarningCode::LongVehicle, &vehicle.name, problem);
         }
     }
 }

@@ -3,8 +3,8 @@
 use super::super::trace::Tracer;
 use super::super::trajectory::Trajectory;
 use super::super::value::Object;
-use super::super::warnings::{DIFFERENCE, LENGTH, NOT_RELEASED};
-use super::super::{ImportError, facing, route};
+use super::super::warnings::{DIFFERENCE, LENGTH};
+use super::super::{ImportError, WarningCode, facing, route};
 use super::part::{Part, go_on, parts};
 use super::{ACTIONS, GAP, Reader, gap};
 use crate::footprint::Footprint;
@@ -69,8 +69,12 @@ impl Reader<'_> {
             if self.options.horizon {
                 self.warnings.use_option("horizon");
             } else {
-                let ahead = format!("{} of {} {NOT_RELEASED}", edges.len() - base, edges.len());
-                self.warnings.add(&order.name, ahead);
+                let ahead = format!(
+                    "{} of {} edges are not released and left out (--horizon)",
+                    edges.len() - base,
+                    edges.len()
+                );
+                self.warnings.add(WarningCode::NotReleased, &order.name, ahead);
                 nodes.truncate(base + 1);
                 edges.truncate(base);
             }
@@ -87,20 +91,23 @@ impl Reader<'_> {
             // Of both spellings the second one is that of the schema of 2.0.
             if let Some(field) = ["allowedDeviationXY", "allowedDeviationXy"].into_iter().find(|field| allowed(field)) {
                 let problem = format!("its {field} is not read; the vehicle is taken to pass the node itself");
-                self.warnings.add(&node.object.name, problem);
+                self.warnings.add(WarningCode::AllowedDeviation, &node.object.name, problem);
             }
             if outline && allowed("allowedDeviationTheta") {
                 let problem = "its allowedDeviationTheta is not read; the vehicle is taken to face along its path";
-                self.warnings.add(&node.object.name, problem);
+                self.warnings.add(WarningCode::Orientation, &node.object.name, problem);
             }
         }
         for edge in edges {
             if edge.object.get("corridor").is_some() {
-                self.warnings
-                    .add(&edge.object.name, "its corridor is not read; the vehicle keeps to the middle of its way");
+                self.warnings.add(
+                    WarningCode::AllowedDeviation,
+                    &edge.object.name,
+                    "its corridor is not read; the vehicle keeps to the middle of its way",
+                );
             }
             if outline && edge.object.flag("rotationAllowed")? == Some(true) {
-                self.warnings.add(&edge.object.name, facing::ROTATION);
+                self.warnings.add(WarningCode::Orientation, &edge.object.name, facing::ROTATION);
             }
         }
         Ok(())
@@ -117,7 +124,7 @@ impl Reader<'_> {
             acts |= !part.object.list("actions")?.is_empty();
         }
         if acts {
-            self.warnings.add(&order.name, ACTIONS);
+            self.warnings.add(WarningCode::Actions, &order.name, ACTIONS);
         }
         Ok(())
     }
@@ -149,7 +156,7 @@ impl Reader<'_> {
         // 0 is what senders write that do not know it.
         let typed = edge.number("length")?.filter(|typed| *typed != 0.0);
         if typed.is_some_and(|typed| (typed - drawn).abs() > DIFFERENCE * drawn + GAP) {
-            self.warnings.add(&edge.name, LENGTH);
+            self.warnings.add(WarningCode::WrittenLength, &edge.name, LENGTH);
         }
         Ok(())
     }

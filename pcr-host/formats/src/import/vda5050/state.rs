@@ -2,7 +2,7 @@
 
 use super::super::trace::{Trace, Tracer};
 use super::super::value::Object;
-use super::super::{ImportError, Vehicle, facing, route, timed};
+use super::super::{ImportError, Vehicle, WarningCode, facing, route, timed};
 use super::begin::{Begin, stamp};
 use super::part::{Part, parts};
 use super::{ACTIONS, GAP, Reader, gap};
@@ -110,7 +110,11 @@ impl Reader<'_> {
         self.goes(state)?;
         let behind = self.goes_on(state, end, path.list("traversedNodes")?)?;
         if moves(state)? {
-            self.warnings.add(&state.name, "it moves already; its plannedPath is travelled from rest");
+            self.warnings.add(
+                WarningCode::MovesAlready,
+                &state.name,
+                "it moves already; its plannedPath is travelled from rest",
+            );
         }
         let mut tracer = Tracer::default();
         pieces.iter().for_each(|piece| tracer.follow(piece));
@@ -164,7 +168,7 @@ impl Reader<'_> {
             acts |= action.text("actionStatus")?.is_some_and(|status| !["FINISHED", "FAILED"].contains(&status));
         }
         if acts {
-            self.warnings.add(&state.name, ACTIONS);
+            self.warnings.add(WarningCode::Actions, &state.name, ACTIONS);
         }
         Ok(())
     }

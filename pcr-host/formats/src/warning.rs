@@ -1,0 +1,129 @@
+//! Warnings, each with the code by which it is acknowledged.
+
+use std::fmt;
+
+/// Defines the codes from one list, so that none is without a name and a line of explanation.
+macro_rules! codes {
+    ($($(#[doc = $explanation:literal])+ $variant:ident = $name:literal,)+) => {
+        /// What a warning is about, whatever it names.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum WarningCode {
+            $($(#[doc = $explanation])+ $variant,)+
+        }
+
+        impl WarningCode {
+            /// All codes, in the order of the documentation.
+            pub const ALL: &[Self] = &[$(Self::$variant,)+];
+
+            /// Returns the name by which people and programs call it.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name,)+
+                }
+            }
+
+            /// Returns one line of explanation.
+            pub fn explanation(self) -> String {
+                let lines: &[&str] = match self {
+                    $(Self::$variant => &[$($explanation,)+],)+
+                };
+                lines.concat().trim().to_owned()
+            }
+        }
+    };
+}
+
+codes! {
+    /// Part of the file is left out, as `--partial` asks for.
+    LeftOut = "left-out",
+    /// The file may have been cut: it lacks an end that such files have.
+    MayBeCut = "may-be-cut",
+    /// A key or an element is not known at this place, and its content is not read.
+    UnknownKey = "unknown-key",
+    /// A known field is not read, because nothing here depends on it or stands for it.
+    UnreadField = "unread-field",
+    /// A name or label was replaced: names here are unique, printable and of limited length.
+    Renamed = "renamed",
+    /// A node or edge is in the file several times, the same each time; it is read once.
+    GivenTwice = "given-twice",
+    /// A size or limit of the vehicle is neither in the file nor given by an option; a common value is assumed.
+    AssumedVehicle = "assumed-vehicle",
+    /// The size of the vehicle is incomplete in the file, and is completed in the way that the message says.
+    AssumedSize = "assumed-size",
+    /// Vehicles or envelopes differ; the largest outline or the lowest limit of all is used.
+    VehiclesDiffer = "vehicles-differ",
+    /// The radius that was given is smaller than the outline of the vehicle.
+    RadiusBelowOutline = "radius-below-outline",
+    /// The vehicle is longer than its disc, and the file describes no outline.
+    LongVehicle = "long-vehicle",
+    /// The file has several vehicle types or graphs; the edges of all of them are used.
+    SeveralGraphs = "several-graphs",
+    /// The agents are on several maps or levels, which one scenario does not tell apart.
+    SeveralLevels = "several-levels",
+    /// Nodes name no level; the message says on which one they are taken to be.
+    AssumedLevel = "assumed-level",
+    /// A scale in pixels is not certain: measurements differ, or fiducials are missing.
+    UncertainScale = "uncertain-scale",
+    /// Lines and arcs deviate from a curve, by which the vehicle is enlarged there.
+    CurveDeviation = "curve-deviation",
+    /// The degree of a curve contradicts its knots.
+    CurveDegree = "curve-degree",
+    /// Pieces of a route do not join: a drawn line, a trajectory or a link ends at another place than its node.
+    Gap = "gap",
+    /// An edge has length 0.
+    ZeroLength = "zero-length",
+    /// The length that is written is missing or contradicts the geometry, which counts.
+    WrittenLength = "written-length",
+    /// A speed limit is missing, invalid or not constant on an edge.
+    SpeedLimit = "speed-limit",
+    /// An edge is closed in both directions: no route uses it, and exclusions count it.
+    ClosedEdge = "closed-edge",
+    /// An edge is used one way only, although the file says that it has both.
+    OneWay = "one-way",
+    /// A link between roads cannot be followed; no route uses it.
+    BrokenLink = "broken-link",
+    /// An object is neither a node nor an edge.
+    NotInGraph = "not-in-graph",
+    /// Routes round corners, and leave their edges by a distance that a margin has to cover.
+    CornerSmoothing = "corner-smoothing",
+    /// Orientations are not read; the outline of the vehicle faces along its path.
+    Orientation = "orientation",
+    /// A vehicle may turn in place by half a turn to either side; only one side is covered.
+    HalfTurn = "half-turn",
+    /// The file forbids a vehicle to drive backward; it is treated as if it could.
+    DrivesBackward = "drives-backward",
+    /// A vehicle may leave the middle of its edge or the exact position of a node, which is not covered.
+    AllowedDeviation = "allowed-deviation",
+    /// Actions have no duration in the file, and take no time here.
+    Actions = "actions",
+    /// Edges of an order are not released; they are left out.
+    NotReleased = "not-released",
+    /// A vehicle is already moving; its planned path is travelled from rest.
+    MovesAlready = "moves-already",
+}
+
+impl fmt::Display for WarningCode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_code_has_a_name_and_an_explanation_of_its_own() {
+        for (place, code) in WarningCode::ALL.iter().enumerate() {
+            let name = code.name();
+            assert!(
+                name.split('-').all(|word| !word.is_empty() && word.chars().all(|c| c.is_ascii_lowercase())),
+                "{name}"
+            );
+            let explanation = code.explanation();
+            assert!(explanation.ends_with('.') && !explanation.contains(['|', '\n']), "{name}: {explanation}");
+            let others = &WarningCode::ALL[place + 1..];
+            assert!(others.iter().all(|other| other.name() != name && other.explanation() != explanation), "{name}");
+        }
+    }
+}
