@@ -13,8 +13,8 @@ timed() {
   time "$1"
 }
 
-# Everything is built alike, so that it is built once: with methods of other libraries in comparisons.
-everything_in=(--workspace --features pcr-tests/peers,pcr-host/peers --locked)
+# Everything is built alike, so that it is built once.
+everything_in=(--workspace --locked)
 # Lints and documentation are of the same profile as the tests: macros and programs that run in builds are built once then.
 profile=checked
 # These two have no tests of their own here, but much that they depend on.
@@ -57,7 +57,7 @@ style() {
   .ci/dependencies.py
   deny
   .ci/circles_test.py
-  .ci/circles.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,planning,execution,exclusions,drawing,comparing,serve}/src \
+  .ci/circles.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,planning,execution,exclusions,drawing,comparing,lab,serve}/src \
     bindings/{c,python,web}/src proofs/certify/src tests/src
   # A file that main.rs does not name would not be run.
   diff <(sed -n 's/^mod \(.*\);/\1/p' tests/tests/main.rs) <(LC_ALL=C ls tests/tests | sed -n 's/\.rs$//p' | grep -vx main)
@@ -82,7 +82,7 @@ docs() {
 }
 
 tests() {
-  step "tests: optimized, overflow checks and assertions on, methods of other libraries in comparisons"
+  step "tests: optimized, overflow checks and assertions on"
   peer_libraries
   # Not the examples: the lints have checked that they compile, and those that are run are named.
   cargo test "${checked[@]}" "${targets[@]}"
@@ -251,8 +251,6 @@ features() {
     echo "$crate"
     cargo clippy -q -p $crate --profile "$profile" --locked --no-default-features -- -D warnings
   done
-  step "the tool as users build it says what is not in it"
-  cargo test -q -p pcr-host --profile "$profile" --locked --test tool -- habits::what_is_not_built_in simulate::
   step "defmt::Format on all public types"
   local source name missing=""
   for source in pcr-core/src pcr-fixed/src; do

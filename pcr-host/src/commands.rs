@@ -6,7 +6,6 @@ mod check;
 mod compare;
 mod completions;
 mod demo;
-mod evaluate;
 mod exclusions;
 mod fleet;
 mod help;
@@ -106,7 +105,6 @@ enum Command {
     Import(import::Arguments),
     Serve(serve::Arguments),
     Compare(compare::Arguments),
-    Evaluate(evaluate::Arguments),
     Fleet(fleet::Arguments),
     Demo(demo::Arguments),
     Completions(completions::Shells),
@@ -156,7 +154,6 @@ pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, Stop> {
         Some(Command::Import(arguments)) => arguments.run(),
         Some(Command::Serve(arguments)) => arguments.run(),
         Some(Command::Compare(arguments)) => arguments.run(),
-        Some(Command::Evaluate(arguments)) => arguments.run(),
         Some(Command::Fleet(arguments)) => arguments.run(),
         Some(Command::Demo(arguments)) => arguments.run(),
         Some(Command::Completions(arguments)) => arguments.run(),
@@ -247,12 +244,6 @@ impl Stop {
     /// Wrong arguments that only the command itself can tell.
     fn arguments(problem: impl Into<String>) -> Self {
         Self::Error(problem.into(), WRONG_INPUT)
-    }
-
-    /// Something that this build is without.
-    fn without(what: &str, feature: &str) -> Self {
-        let install = format!("cargo install --locked --path pcr-host --features {feature}");
-        Self::arguments(format!("this pcr was built without {what}: {install}"))
     }
 
     /// Something wrong with a file.

@@ -3,8 +3,8 @@
 //! called `set3_...json`; its `stats.json` has the published times of the preprocessing of each set. Exit status 1 for any contact that is
 //! missing and any end that is too far out.
 
-use pcr_comparing::roadmap;
 use pcr_formats::import::ImportError;
+use pcr_lab::roadmap;
 use pcr_planning::locks::{Delays, Driving, Straight, Unsafe};
 use pcr_tests::delays::published::cut_conic;
 use pcr_tests::delays::{Exact, ends_of};

@@ -3,8 +3,8 @@
 //! Each plan `NAME.path` is carried out by passing orders, with discs of each radius, and by cells, under the same stops: those of
 //! `NAME_sit_0.json`, if that is there, and random ones.
 
-use pcr_execution::grid_plans::{By, Stops, carried_out, random_stops, situation};
 use pcr_formats::import::GridPlan;
+use pcr_lab::grid_plans::{By, Stops, carried_out, random_stops, situation};
 use std::error::Error;
 use std::path::Path;
 

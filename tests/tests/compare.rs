@@ -1,10 +1,9 @@
 //! Methods side by side: what errors are measured by agrees with the oracle, the methods keep what they promise, and the
 //! measure of errors sees a wrong answer.
 
-#[cfg(feature = "peers")]
-use pcr_comparing::compare::Absent;
-use pcr_comparing::compare::{Comparison, Effort, Errors, Question, Row, Track, crowd, reference};
+use pcr_comparing::compare::{Absent, Comparison, Effort, Errors, Question, Row, Track, crowd, reference};
 use pcr_formats::scenario::Scenario;
+use pcr_lab::methods::methods;
 use pcr_planning::fleet::{Fleet, build_ecm};
 use pcr_planning::rows::{Row as FleetRow, Walk, each, grid, rows};
 use pcr_tests::disc::{Disc, Drive};
@@ -17,7 +16,7 @@ const EFFORT: Effort = Effort { rounds: 2, budget: 0.01, slices: 5_000 };
 
 fn compared(scenario: &Scenario, filters: &[&str]) -> Vec<Row> {
     let filters: Vec<String> = filters.iter().map(|filter| (*filter).to_owned()).collect();
-    Comparison::new(scenario, EFFORT, &filters, &mut |_, _| {}).expect("it fits").rows
+    Comparison::new(scenario, methods(), EFFORT, &filters, &mut |_, _| {}).expect("it fits").rows
 }
 
 #[test]
@@ -180,14 +179,14 @@ fn the_grid_finds_the_boxes_that_meet() {
     }
 }
 
-#[cfg(feature = "peers")]
 #[test]
 fn other_libraries_find_what_is_no_graze() {
     /// Slowest sampling, and a slack of 15 mm at small speeds.
     const LATE: f64 = 0.1;
     for seed in 0..FLEETS {
         let filters = ["parry", "FCL", "Box2D"].map(str::to_owned);
-        let comparison = Comparison::new(&crowd(12, seed), EFFORT, &filters, &mut |_, _| {}).expect("it fits");
+        let comparison =
+            Comparison::new(&crowd(12, seed), methods(), EFFORT, &filters, &mut |_, _| {}).expect("it fits");
         for Absent { method, reason } in &comparison.absent {
             assert!(!method.starts_with("parry"), "parry is a crate");
             assert!(reason.contains("was not installed"), "{method}: {reason}");

@@ -1,7 +1,7 @@
 //! Unsafe delays of straight edges at constant speed against their definition with 106 bits.
 
-use pcr_comparing::roadmap;
 use pcr_formats::import::{Imported, Node};
+use pcr_lab::roadmap;
 use pcr_planning::locks::{Delays, Driving, Straight, Unsafe};
 use pcr_tests::delays::{Exact, ends_of};
 use pcr_tests::generators::Dice;

@@ -1,8 +1,8 @@
 //! Plans on grids, read and carried out while robots are late: nobody touches anybody, everybody arrives, later than planned and no later than
 //! by cells.
 
-use pcr_execution::grid_plans::{By, Outcome, carried_out, random_stops, situation};
 use pcr_formats::import::{Format, GridPlan, Options, Warnings, scenario};
+use pcr_lab::grid_plans::{By, Outcome, carried_out, random_stops, situation};
 use pcr_planning::certify::Proof;
 
 const NAMES: [&str; 3] = ["11_an_60", "17_an_95", "24_an_95"];

@@ -1,7 +1,7 @@
 //! Tasks of others on roadmaps: all are done without a contact, however late robots are, and at least as many a second as published.
 
-use pcr_comparing::roadmap::read;
 use pcr_execution::lifelong::{Delays, Method, Report, Request, Tasks, run_tasks};
+use pcr_lab::roadmap::read;
 
 /// Roadmaps, and the published tasks a second.
 const SETS: [(&str, f64); 9] = [

@@ -417,7 +417,6 @@ fn robots_that_are_held_up_for_long_arrive_all_the_same() {
 }
 
 /// A controller that does not know that its goal is taken is stopped at the limit.
-#[cfg(feature = "peers")]
 #[test]
 fn who_waits_for_a_place_that_never_gets_free_is_stopped_at_the_limit() {
     let text = format!(

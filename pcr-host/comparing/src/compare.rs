@@ -7,11 +7,7 @@
 //! pcr        this library, in every format, on one core and all
 //! sampled    the sampled collision map of the paper's reference [34]
 //! polyline   flattened paths, closed-form discs piece by piece
-//! casts      generic continuous collision detection     (feature `peers`)
-//! mesh       proximity of meshes, sample by sample      (feature `peers`)
-//! program    libraries in C++, as programs beside this  (feature `peers`)
-//! fcl        proximity of meshes by FCL                 (feature `peers`)
-//! box2d      the time of impact of Box2D                (feature `peers`)
+//! mesh       proximity of meshes, sample by sample, as the paper uses PQP
 //! crowd      random fleets of any size
 //! errors     an answer against the reference
 //! measure    times, in rounds                           Comparison
@@ -22,30 +18,21 @@
 //! All methods start from the same paths and motions, already placed in the plane. Sampling, flattening and the
 //! construction of meshes are part of a method, and of its time.
 
-#[cfg(feature = "peers")]
-mod box2d;
-#[cfg(feature = "peers")]
-mod casts;
 mod chart;
 mod crowd;
 mod errors;
-#[cfg(feature = "peers")]
-mod fcl;
-pub(crate) mod measure;
-#[cfg(feature = "peers")]
-mod mesh;
+mod measure;
+pub mod mesh;
 mod pcr;
-mod polyline;
-#[cfg(feature = "peers")]
-mod program;
+pub mod polyline;
 pub mod reference;
-pub(crate) mod sampled;
-pub(crate) mod stopwatch;
-mod track;
+pub mod sampled;
+pub mod stopwatch;
+pub mod track;
 
 pub use crowd::crowd;
 pub use errors::Errors;
-pub use measure::{Absent, Comparison, Effort, Row};
+pub use measure::{Absent, Comparison, Effort, Row, median};
 pub use track::Track;
 
 use pcr_core::Motion;
@@ -69,13 +56,13 @@ pub struct Input {
 #[derive(Debug)]
 pub struct Field<'a> {
     /// As plain numbers.
-    pub(crate) tracks: &'a [Track],
+    pub tracks: &'a [Track],
     double: Vec<Motion<'a, f64>>,
     single: Vec<Motion<'a, f32>>,
     /// None where the fleet is beyond the format.
     fixed: Option<Vec<Motion<'a, Q16>>>,
     /// From the first start to the last arrival \[s\].
-    pub(crate) horizon: [f64; 2],
+    pub horizon: [f64; 2],
 }
 
 impl Input {
@@ -118,14 +105,17 @@ pub enum Question {
 
 /// A contact that a method found: two agents, the lower one first, and when \[s\]; no end where it tells none.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Found {
-    pub(crate) agents: [usize; 2],
-    pub(crate) begin: f64,
-    pub(crate) end: Option<f64>,
+pub struct Found {
+    /// Places of the agents in the fleet.
+    pub agents: [usize; 2],
+    /// Its first time \[s\].
+    pub begin: f64,
+    /// Its last time \[s\], where the method tells one.
+    pub end: Option<f64>,
 }
 
 /// The collision regions that a method found.
-pub(crate) trait Regions {
+pub trait Regions {
     /// Both directions of every pair.
     fn count(&self) -> usize;
     /// What is kept of them.
@@ -134,20 +124,22 @@ pub(crate) trait Regions {
     fn slice(&self, ego: usize, other: usize, time: f64) -> Vec<[f64; 2]>;
 }
 
-pub(crate) enum Answer<'a> {
+/// What a method found.
+pub enum Answer<'a> {
+    /// Collision regions.
     Regions(Box<dyn Regions + 'a>),
     /// By the agents, then by the begin.
     Conflicts(Vec<Found>),
 }
 
 /// An answer, or why there is none.
-pub(crate) type Outcome<'f> = Result<Answer<'f>, String>;
+pub type Outcome<'f> = Result<Answer<'f>, String>;
 
 /// Why a method has no answer that can have one for other fleets.
 const BEYOND: &str = "this fleet is beyond what it can hold";
 
 /// A way to find collisions.
-pub(crate) trait Method: Sync {
+pub trait Method: Sync {
     /// With resolution or format.
     fn name(&self) -> String;
     /// What it is asked for.
@@ -171,40 +163,19 @@ pub(crate) trait Method: Sync {
     }
 }
 
-/// All methods, those that lack something too; pcr on one core first for each question: what the others are compared with.
-pub(crate) fn methods() -> Vec<Box<dyn Method>> {
+/// Returns the methods of `pcr compare`; pcr on one core first for each question: what the others are compared with.
+pub fn methods() -> Vec<Box<dyn Method>> {
     let mut methods = pcr::regions();
     methods.extend(sampled::methods());
     methods.extend(pcr::conflicts());
     methods.extend(polyline::methods());
-    #[cfg(feature = "peers")]
-    methods.extend(casts::methods());
-    #[cfg(feature = "peers")]
-    methods.extend(box2d::methods());
-    #[cfg(feature = "peers")]
     methods.extend(mesh::methods());
-    #[cfg(feature = "peers")]
-    methods.extend(fcl::methods());
     methods
 }
 
-/// The names of all methods, those that lack something too.
-pub fn names() -> Vec<String> {
-    methods().iter().map(|method| method.name()).collect::<std::collections::BTreeSet<_>>().into_iter().collect()
-}
-
-/// Libraries in C++ that methods use, with their versions, or that they are left out.
-#[cfg(feature = "peers")]
-#[cfg(feature = "peers")]
-pub(crate) fn libraries() -> Vec<String> {
-    [program::Program::FCL, program::Program::BOX2D].map(program::Program::library).into()
-}
-
-/// The same: none.
-#[cfg(not(feature = "peers"))]
-#[cfg(feature = "peers")]
-pub(crate) fn libraries() -> Vec<String> {
-    vec!["built without the feature `peers`".into()]
+/// Returns the names of methods, each once, in alphabetic order.
+pub fn names(methods: &[Box<dyn Method>]) -> Vec<String> {
+    methods.iter().map(|method| method.name()).collect::<std::collections::BTreeSet<_>>().into_iter().collect()
 }
 
 /// A number format with a fleet in it.

@@ -2,13 +2,11 @@
 //!
 //! ```text
 //! traffic     random missions on a layout, and their plan          Traffic
-//! grid_plans  plans on grids, carried out by robots that are late  Outcome
 //! lifelong    robots that get a new mission after each one         run, Outcome
 //! simulate    plans in closed loop, with noise and delays          run, Task
 //! report      their results as JSON, CSV and tables
 //! ```
 
-pub mod grid_plans;
 pub mod lifelong;
 pub mod report;
 pub mod simulate;

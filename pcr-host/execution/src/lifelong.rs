@@ -85,7 +85,7 @@ pub use run::{run, run_tasks};
 pub use streets::streets;
 pub use tasks::Tasks;
 
-pub(crate) use gates::{Gate, gates};
+pub use gates::{Gate, gates};
 
 use ends::Ends;
 use pcr_formats::import::Imported;

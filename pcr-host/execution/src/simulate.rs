@@ -34,7 +34,6 @@ pub mod forage;
 mod guard;
 mod noise;
 mod observer;
-#[cfg(feature = "orca")]
 mod orca;
 mod outcome;
 mod potential;
@@ -54,7 +53,6 @@ pub use vector::Vector;
 
 use agent::Errors;
 use body::{Command, Turning};
-#[cfg(feature = "orca")]
 use orca::Orca;
 use pcr_planning::failure::Failure;
 use pcr_planning::memory;
@@ -79,25 +77,18 @@ pub enum Controller {
     /// Each robot by itself in an artificial potential field.
     Potential,
     /// Each robot by itself, by optimal reciprocal collision avoidance.
-    #[cfg(feature = "orca")]
     Orca,
 }
 
 impl Controller {
     /// All controllers.
-    pub const ALL: &[Self] = &[
-        Self::Pcr,
-        Self::Potential,
-        #[cfg(feature = "orca")]
-        Self::Orca,
-    ];
+    pub const ALL: &[Self] = &[Self::Pcr, Self::Potential, Self::Orca];
 
     /// Name in the output.
     pub fn name(self) -> &'static str {
         match self {
             Self::Pcr => "pcr",
             Self::Potential => "potential",
-            #[cfg(feature = "orca")]
             Self::Orca => "orca",
         }
     }
@@ -181,7 +172,6 @@ pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Ou
     let mut control: Box<dyn Control> = match controller {
         Controller::Pcr => Box::new(Supervisor::new(task, Errors { noise, drift }, settings.replan)?),
         Controller::Potential => Box::new(Potential::new(task)),
-        #[cfg(feature = "orca")]
         Controller::Orca => Box::new(Orca::new(task, noise + drift)),
     };
     let mut world = World::new(task, settings);

@@ -68,7 +68,7 @@ const SLICES: usize = 20_000;
 impl Arguments {
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
         without_margin(&self.import)?;
-        let names = compare::names();
+        let names = compare::names(&compare::methods());
         if let Some(word) = self.methods.iter().find(|word| !names.iter().any(|name| name.contains(word.as_str()))) {
             let names = names.join(", ");
             return Err(Stop::arguments(format!("--method {word}: no method has a name with that; there are {names}")));
@@ -96,8 +96,10 @@ impl Arguments {
             let progress = Progress::new("methods");
             let refused = |refused| Stop::wrong(source.file(), Failure::Refused(refused));
             let comparison =
-                Comparison::new(&scenario, effort, &self.methods, &mut |done, total| progress.set(done, total))
-                    .map_err(refused)?;
+                Comparison::new(&scenario, compare::methods(), effort, &self.methods, &mut |done, total| {
+                    progress.set(done, total)
+                })
+                .map_err(refused)?;
             drop(progress);
             match format {
                 Output::Table | Output::Markdown if place > 0 => writeln!(out)?,

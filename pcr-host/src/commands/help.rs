@@ -69,7 +69,6 @@ pub(super) fn command(long: bool) -> Command {
 
 fn tailored(command: Command, long: bool) -> Command {
     let name = command.get_name().to_owned();
-    let command = if is_missing(&name) { without(command) } else { command };
     let command = ruled(command);
     let useless = useless(&name);
     let layouts = command.get_arguments().any(|argument| argument.get_help_heading() == Some(LAYOUTS));
@@ -92,17 +91,6 @@ fn tailored(command: Command, long: bool) -> Command {
             .after_help(format!("Options for layouts and other formats, examples, exit statuses: pcr {name} --help")),
         (false, false) => command.after_help(format!("Examples and exit statuses: pcr {name} --help")),
     }
-}
-
-/// Whether a command is not in this build.
-fn is_missing(name: &str) -> bool {
-    cfg!(not(feature = "peers")) && name == "evaluate"
-}
-
-/// A command that only says how it is to be had.
-fn without(command: Command) -> Command {
-    let about = command.get_about().map(ToString::to_string).unwrap_or_default();
-    command.about(format!("{about} (not in this build)"))
 }
 
 /// With the option for help, which says of itself that there is more only where there is.

@@ -85,11 +85,12 @@ enum Choice {
 }
 
 impl Choice {
-    /// The controller, if it is in this build.
-    fn controller(self) -> Result<Controller, Stop> {
-        let name = self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
-        let there = Controller::ALL.iter().copied().find(|controller| controller.name() == name);
-        there.ok_or_else(|| Stop::without(&format!("the controller {name}"), "peers"))
+    fn controller(self) -> Controller {
+        match self {
+            Self::Pcr => Controller::Pcr,
+            Self::Potential => Controller::Potential,
+            Self::Orca => Controller::Orca,
+        }
     }
 }
 
@@ -130,7 +131,7 @@ impl Arguments {
         let disturbance = Disturbance { noise, slip, delay, drift };
         let settings = Settings { seed: self.seed, replan: self.replan.unwrap_or(REPLAN), disturbance };
         let controllers = match self.controller {
-            Some(choice) => vec![choice.controller()?],
+            Some(choice) => vec![choice.controller()],
             None => Controller::ALL.to_vec(),
         };
         let progress = Progress::new("runs");

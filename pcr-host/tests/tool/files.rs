@@ -76,25 +76,6 @@ fn every_output_is_whole_or_not_there() {
     }
 }
 
-/// One part of a document is written anew, and the document stays as it was.
-#[cfg(feature = "peers")]
-#[test]
-fn a_document_is_whole_if_a_part_of_it_cannot_be_written() {
-    let data = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data");
-    let out = folder("document");
-    let target = out.to_str().unwrap();
-    let document = out.join("evaluation.md");
-    let quick = "Written with `--quick`: small fleets, without the slowest methods.";
-    let before = format!(
-        "`pcr evaluate` writes this document with all numbers and pictures. {quick}\n\n## Memory, and bytes on the wire\n\n{}",
-        "## Scale\n\n".repeat(500)
-    );
-    fs::write(&document, &before).unwrap();
-    let only = ["evaluate", "--quick", "--only", "memory", "--data", data, "-o", target, "-q"];
-    let (status, message) = limited(1, &only);
-    assert_eq!((status, fs::read_to_string(&document).unwrap() == before), (3, true), "{message}");
-}
-
 /// A run that stops on its way leaves no new page over old pictures.
 #[test]
 fn pages_are_written_after_their_pictures() {
@@ -224,10 +205,6 @@ fn a_run_that_fails_leaves_no_empty_folder() {
     let folder = folder("left");
     let out = folder.join("deep/maps");
     let out = out.to_str().unwrap();
-    if cfg!(feature = "peers") {
-        let run = run(&["evaluate", "--data", "nowhere", "--only", "fleets", "-o", out]);
-        assert_eq!((run.status, names(&folder)), (2, Vec::new()), "{}", run.err);
-    }
     let (status, message) = limited(1, &["map", PAPER, "-o", out]);
     assert_eq!((status, names(&folder)), (3, Vec::new()), "{message}");
 }
@@ -293,7 +270,6 @@ fn folders_have_names() {
         &["compare", PAPER, "-o", ""],
         &["traffic", &layout, "--radius", "0.4", "-o", ""],
         &["demo", "-o", ""],
-        &["evaluate", "--quick", "--data", data, "-o", ""],
         &["plan", PAPER, "--pictures", ""],
     ] {
         let run = run(arguments);

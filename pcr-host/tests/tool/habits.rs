@@ -3,7 +3,7 @@
 use crate::fixture::{PAPER, crossing, directory, file, pcr, run};
 use serde_json::Value;
 
-const COMMANDS: [&str; 17] = [
+const COMMANDS: [&str; 16] = [
     "regions",
     "certify",
     "check",
@@ -16,7 +16,6 @@ const COMMANDS: [&str; 17] = [
     "import",
     "serve",
     "compare",
-    "evaluate",
     "demo",
     "fleet",
     "completions",
@@ -82,7 +81,7 @@ fn options_are_listed_where_they_do_something() {
     assert!(
         !help("check").contains("--margin") && !help("map").contains("--margin") && help("plan").contains("--margin")
     );
-    assert!(!help("demo").contains("--radius") && !help("evaluate").contains("--radius"));
+    assert!(!help("demo").contains("--radius"));
 }
 
 #[test]
@@ -224,19 +223,6 @@ fn refused_words_come_with_a_tip() {
     }
     let message = run(&["locks", &layout, "--radius", "0.3", "-q", "--edge", "1", "--index", "none.locks"]).failed(2);
     assert!(message.starts_with("pcr: none.locks: there is no such table of locks"), "{message}");
-}
-
-#[cfg(not(feature = "peers"))]
-#[test]
-fn what_is_not_built_in_says_how_to_get_it() {
-    let short = run(&["-h"]).ok();
-    assert_eq!(short.matches("(not in this build)\n").count(), 1, "{short}");
-    let says = |arguments: &[&str], feature: &str| {
-        let message = run(arguments).failed(2);
-        assert!(message.contains(&format!("cargo install --locked --path pcr-host --features {feature}")), "{message}");
-    };
-    says(&["evaluate"], "peers");
-    says(&["simulate", "--foraging", "--controller", "orca"], "peers");
 }
 
 #[test]

@@ -5,8 +5,6 @@ mod check;
 mod compare;
 #[cfg(unix)]
 mod console;
-#[cfg(feature = "peers")]
-mod evaluate;
 mod examples;
 mod exclusions;
 mod files;

@@ -226,7 +226,6 @@ fn help_has_examples_and_exit_statuses() {
     for (command, wrong) in [
         ("nodes", "wrong arguments, or a layout that"),
         ("import", "wrong arguments, or a file that"),
-        ("evaluate", "wrong arguments, or fleets"),
         ("demo", "wrong arguments\n"),
         ("completions", "wrong arguments\n"),
         ("man", "wrong arguments\n"),

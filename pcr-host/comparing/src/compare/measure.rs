@@ -2,7 +2,7 @@
 //! machine down for a while affects all of them. A ratio is the median of the ratios of the rounds.
 
 use super::errors::{Errors, Truth, errors};
-use super::{Answer, Field, Input, Method, Question, methods};
+use super::{Answer, Field, Input, Method, Question};
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::Refused;
 use serde::Serialize;
@@ -66,20 +66,20 @@ pub struct Row {
 }
 
 impl Comparison {
-    /// Runs all methods whose name holds one of `filters`, and the first one of each question; all of them without filters.
-    /// `progress` is told how many methods are done, and of how many.
+    /// Runs those of the `methods` whose name holds one of `filters`, and pcr; all of them without filters. `progress` is called with the
+    /// number of methods that are done, and of all.
     ///
     /// # Errors
     /// [`Refused`] where a value does not fit floating point.
     pub fn new(
         scenario: &Scenario,
+        mut methods: Vec<Box<dyn Method>>,
         effort: Effort,
         filters: &[String],
         progress: &mut dyn FnMut(usize, usize),
     ) -> Result<Self, Refused> {
         let input = Input::new(scenario)?;
         let field = input.field();
-        let mut methods = methods();
         if !filters.is_empty() {
             methods.retain(|method| {
                 let name = method.name();
@@ -172,8 +172,8 @@ fn row(truth: &Truth, method: &dyn Method, answer: &Answer<'_>) -> Row {
     Row { method: method_name, question, tells, ms: 0.0, ratio: 1.0, rounds: 0, count, bytes, errors }
 }
 
-/// The middle one, the lower one of two.
-pub(crate) fn median(mut values: Vec<f64>) -> f64 {
+/// Returns the middle one of some values, the lower one of two; NaN of none.
+pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len().saturating_sub(1) / 2).copied().unwrap_or(f64::NAN)
 }

@@ -9,16 +9,16 @@ use parry3d_f64::shape::TriMesh;
 use std::f64::consts::{PI, TAU};
 
 /// Time between samples, that of the paper \[s\].
-pub(super) const STEP: f64 = 0.01;
+pub const STEP: f64 = 0.01;
 
 /// Sides of a cylinder: two triangles a side, and two less than there are sides on either end make 100.
-pub(super) const SIDES: u32 = 26;
+pub const SIDES: u32 = 26;
 
 /// Height of a cylinder \[m\].
-pub(super) const HEIGHT: f64 = 0.1;
+pub const HEIGHT: f64 = 0.1;
 
 /// How far the second cylinder stands above the first one, so that no two faces lie in one plane \[m\].
-pub(super) const STEP_UP: f64 = 0.037;
+pub const STEP_UP: f64 = 0.037;
 
 struct Mesh;
 
@@ -61,13 +61,13 @@ impl Method for Mesh {
 }
 
 /// The times at which a fleet is looked at.
-pub(super) fn samples(field: &Field<'_>) -> Vec<f64> {
+pub fn samples(field: &Field<'_>) -> Vec<f64> {
     let [begin, end] = field.horizon;
     (0..=((end - begin) / STEP) as usize).map(|k| begin + STEP * k as f64).collect()
 }
 
 /// The radius of the edges of a cylinder around a disc.
-pub(super) fn circumscribed(radius: f64) -> f64 {
+pub fn circumscribed(radius: f64) -> f64 {
     radius / (PI / f64::from(SIDES)).cos()
 }
 

@@ -50,15 +50,17 @@ impl Method for Polyline {
 
 /// From here on with constant velocity.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Knot {
-    pub(super) time: f64,
-    pub(super) at: Point,
+pub struct Knot {
+    /// When \[s\].
+    pub time: f64,
+    /// Where.
+    pub at: Point,
     velocity: Point,
 }
 
 /// The times at which a track is cut: where segments and phases begin, and between them so often that on none of the parts
 /// acceleration and curvature (with `weight` 1, otherwise less) lead it away from its chord by more than the tolerance.
-pub(super) fn cuts(track: &Track, tolerance: f64, weight: f64) -> Vec<f64> {
+pub fn cuts(track: &Track, tolerance: f64, weight: f64) -> Vec<f64> {
     let mut borders: Vec<f64> = track.phases().iter().map(|phase| phase.begin).collect();
     borders.extend(track.ways().iter().map(|way| track.time_at(way.from)));
     borders.extend(track.time);
@@ -80,7 +82,7 @@ pub(super) fn cuts(track: &Track, tolerance: f64, weight: f64) -> Vec<f64> {
 }
 
 /// A track as lines: no position is off by more than the tolerance.
-pub(super) fn knots(track: &Track, tolerance: f64, horizon: [f64; 2]) -> Vec<Knot> {
+pub fn knots(track: &Track, tolerance: f64, horizon: [f64; 2]) -> Vec<Knot> {
     let mut times = vec![horizon[0]];
     times.extend(cuts(track, tolerance, 1.0));
     times.push(horizon[1]);

@@ -4,7 +4,6 @@
 
 use super::track::{EMPTY, Track, hull, near};
 use super::{Answer, Field, Method, Outcome, Question, Regions};
-#[cfg(feature = "peers")]
 use pcr_drawing::Bar;
 
 /// Distances that are computed together before any of them is looked at.
@@ -40,8 +39,7 @@ impl Method for Sampled {
 }
 
 /// What the map of an agent says at all samples.
-#[cfg(feature = "peers")]
-pub(crate) fn bars(field: &Field<'_>, step: f64, ego: usize) -> Vec<Bar> {
+pub fn bars(field: &Field<'_>, step: f64, ego: usize) -> Vec<Bar> {
     let map = Sampled { step, boxes: true }.map(field);
     let mut bars = Vec::new();
     for (other, samples) in map.samples.iter().enumerate().filter(|(other, _)| *other != ego) {

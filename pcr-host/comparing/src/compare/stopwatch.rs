@@ -17,7 +17,7 @@ const MOST: f64 = 10_000.0;
 
 /// The time that work takes \[s\] by `clock`, and what it makes. Short work counts by the mean of its repetitions, without the
 /// first time.
-pub(crate) fn steady<T>(clock: fn(&Stopwatch) -> f64, mut work: impl FnMut() -> T) -> (f64, T) {
+pub fn steady<T>(clock: fn(&Stopwatch) -> f64, mut work: impl FnMut() -> T) -> (f64, T) {
     let watch = Stopwatch::start();
     let made = black_box(work());
     let first = clock(&watch);
@@ -32,19 +32,20 @@ pub(crate) fn steady<T>(clock: fn(&Stopwatch) -> f64, mut work: impl FnMut() -> 
 
 /// A running clock of this thread.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stopwatch {
+pub struct Stopwatch {
     begin: Instant,
     spent: Option<f64>,
 }
 
 impl Stopwatch {
-    pub(crate) fn start() -> Self {
+    /// Starts it.
+    pub fn start() -> Self {
         let spent = spent();
         Self { begin: Instant::now(), spent }
     }
 
     /// \[s\]
-    pub(crate) fn elapsed(&self) -> f64 {
+    pub fn elapsed(&self) -> f64 {
         let elapsed = self.wall();
         if elapsed < LONG {
             return elapsed;
@@ -54,7 +55,7 @@ impl Stopwatch {
     }
 
     /// The same by the clock on the wall, for work of several threads \[s\].
-    pub(crate) fn wall(&self) -> f64 {
+    pub fn wall(&self) -> f64 {
         self.begin.elapsed().as_secs_f64()
     }
 }

@@ -4,48 +4,49 @@
 use pcr_formats::scenario::{Agent, PathSegment};
 
 /// A point \[m\].
-pub(crate) type Point = [f64; 2];
+pub type Point = [f64; 2];
 
 /// A disc on its way.
 #[derive(Clone, Debug)]
 pub struct Track {
     /// \[m\]
-    pub(crate) radius: f64,
+    pub radius: f64,
     ways: Vec<Way>,
     phases: Vec<Phase>,
     /// From setting off to arrival \[s\].
-    pub(crate) time: [f64; 2],
+    pub time: [f64; 2],
     /// Of the path \[m\].
-    pub(crate) length: f64,
+    pub length: f64,
 }
 
 /// A line or an arc.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Way {
+pub struct Way {
     /// Travelled before \[m\].
-    pub(crate) from: f64,
+    pub from: f64,
     /// \[m\]
-    pub(crate) length: f64,
-    pub(crate) start: Point,
+    pub length: f64,
+    /// Its first point.
+    pub start: Point,
     /// Heading at its start, as a unit vector.
-    pub(crate) direction: Point,
+    pub direction: Point,
     /// Left positive \[1/m\].
-    pub(crate) curvature: f64,
+    pub curvature: f64,
 }
 
 /// Constant acceleration.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Phase {
+pub struct Phase {
     /// \[s\]
-    pub(crate) begin: f64,
+    pub begin: f64,
     /// \[s\]
-    pub(crate) duration: f64,
+    pub duration: f64,
     /// Travelled before \[m\].
-    pub(crate) from: f64,
+    pub from: f64,
     /// At its begin \[m/s\].
-    pub(crate) speed: f64,
+    pub speed: f64,
     /// \[m/s²\]
-    pub(crate) acceleration: f64,
+    pub acceleration: f64,
 }
 
 impl Way {
@@ -55,7 +56,7 @@ impl Way {
     }
 
     /// Position at a length from its start \[m\], by the chord.
-    pub(crate) fn at(&self, length: f64) -> Point {
+    pub fn at(&self, length: f64) -> Point {
         let [x, y] = self.direction;
         let half = 0.5 * self.curvature * length;
         let [along, across] = if half == 0.0 {
@@ -71,7 +72,7 @@ impl Way {
 
 impl Phase {
     /// Length travelled at a time \[m\].
-    pub(crate) fn length_at(&self, time: f64) -> f64 {
+    pub fn length_at(&self, time: f64) -> f64 {
         let elapsed = (time - self.begin).clamp(0.0, self.duration);
         self.from + elapsed * (self.speed + 0.5 * self.acceleration * elapsed)
     }
@@ -84,11 +85,13 @@ impl Phase {
         self.begin + elapsed.clamp(0.0, self.duration)
     }
 
-    pub(crate) fn end(&self) -> f64 {
+    /// Returns when it ends \[s\].
+    pub fn end(&self) -> f64 {
         self.begin + self.duration
     }
 
-    pub(crate) fn top_speed(&self) -> f64 {
+    /// Returns its largest speed \[m/s\].
+    pub fn top_speed(&self) -> f64 {
         self.speed.max(self.speed + self.acceleration * self.duration)
     }
 }
@@ -118,52 +121,54 @@ impl Track {
         Self { radius: agent.reach(), ways, phases, time: [agent.t_start, end], length: from }
     }
 
-    pub(crate) fn ways(&self) -> &[Way] {
+    /// Returns the lines and arcs of the path.
+    pub fn ways(&self) -> &[Way] {
         &self.ways
     }
 
-    pub(crate) fn phases(&self) -> &[Phase] {
+    /// Returns the phases of constant acceleration.
+    pub fn phases(&self) -> &[Phase] {
         &self.phases
     }
 
     /// The way on which a length lies.
-    pub(crate) fn way_at(&self, length: f64) -> &Way {
+    pub fn way_at(&self, length: f64) -> &Way {
         let after = self.ways.partition_point(|way| way.from <= length).max(1);
         &self.ways[after - 1]
     }
 
     /// Position at a travelled length \[m\].
-    pub(crate) fn at(&self, length: f64) -> Point {
+    pub fn at(&self, length: f64) -> Point {
         let way = self.way_at(length);
         way.at((length - way.from).min(way.length))
     }
 
     /// Length travelled at a time \[m\].
-    pub(crate) fn length_at(&self, time: f64) -> f64 {
+    pub fn length_at(&self, time: f64) -> f64 {
         let after = self.phases.partition_point(|phase| phase.begin <= time);
         let phase = after.checked_sub(1).and_then(|place| self.phases.get(place));
         phase.map_or(0.0, |phase| phase.length_at(time)).clamp(0.0, self.length)
     }
 
     /// Position at a time.
-    pub(crate) fn position(&self, time: f64) -> Point {
+    pub fn position(&self, time: f64) -> Point {
         self.at(self.length_at(time))
     }
 
     /// When a length is first reached \[s\].
-    pub(crate) fn time_at(&self, length: f64) -> f64 {
+    pub fn time_at(&self, length: f64) -> f64 {
         let after = self.phases.partition_point(|phase| phase.from < length);
         let phase = after.checked_sub(1).and_then(|place| self.phases.get(place));
         phase.map_or(self.time[0], |phase| phase.time_at(length))
     }
 
     /// \[m/s\]
-    pub(crate) fn top_speed(&self) -> f64 {
+    pub fn top_speed(&self) -> f64 {
         self.phases.iter().map(Phase::top_speed).fold(0.0, f64::max)
     }
 
     /// Left, bottom, right and top of a box around the path \[m\]: with the sagitta of arcs on all sides.
-    pub(crate) fn bounds(&self) -> [f64; 4] {
+    pub fn bounds(&self) -> [f64; 4] {
         let mut bounds = EMPTY;
         for way in &self.ways {
             /// Chords that an arc is divided into.
@@ -180,16 +185,16 @@ impl Track {
 }
 
 /// No box.
-pub(crate) const EMPTY: [f64; 4] = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+pub const EMPTY: [f64; 4] = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
 
 /// The box, with a square around a point.
-pub(crate) fn hull(bounds: [f64; 4], [x, y]: Point, half: f64) -> [f64; 4] {
+pub fn hull(bounds: [f64; 4], [x, y]: Point, half: f64) -> [f64; 4] {
     let [left, bottom, right, top] = bounds;
     [left.min(x - half), bottom.min(y - half), right.max(x + half), top.max(y + half)]
 }
 
 /// Whether two boxes come within `reach` of one another.
-pub(crate) fn near(a: [f64; 4], b: [f64; 4], reach: f64) -> bool {
+pub fn near(a: [f64; 4], b: [f64; 4], reach: f64) -> bool {
     a[0] - reach <= b[2] && b[0] - reach <= a[2] && a[1] - reach <= b[3] && b[1] - reach <= a[3]
 }
 

@@ -7,9 +7,11 @@ use pcr_planning::fleet::build_ecm;
 
 /// The second waits at `at` \[m\] until the first is at `needs` \[m\] of its path or beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Gate {
-    pub(crate) at: f64,
-    pub(crate) needs: f64,
+pub struct Gate {
+    /// Where the second waits on its path \[m\].
+    pub at: f64,
+    /// Where the first has to be on its path \[m\].
+    pub needs: f64,
 }
 
 /// A gate of two ways, with the times of both ways: if no robot was in the way, counted from the starts of the ways \[s\].
@@ -49,7 +51,7 @@ impl Contact {
 }
 
 /// The gates of the ego as the second robot, for its regions with one other robot.
-pub(crate) fn gates(regions: &[RegionRef<'_, f64>], pitch: f64) -> Vec<Gate> {
+pub fn gates(regions: &[RegionRef<'_, f64>], pitch: f64) -> Vec<Gate> {
     let Some(extent) = regions.iter().map(|region| region.other_length()).reduce(Interval::hull) else {
         return Vec::new();
     };

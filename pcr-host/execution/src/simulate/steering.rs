@@ -53,7 +53,6 @@ impl Steered {
     }
 
     /// Whether its target is the end of its path.
-    #[cfg(feature = "orca")]
     pub(super) fn heads_for_end(&self) -> bool {
         self.course.as_ref().is_some_and(|course| self.target >= course.length())
     }

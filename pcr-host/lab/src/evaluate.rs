@@ -33,7 +33,7 @@ mod shares;
 mod tasks;
 mod traffic;
 
-use crate::compare::Effort;
+use pcr_comparing::compare::Effort;
 use pcr_formats::import::{self, Format, Imported, Options, Warnings};
 use pcr_formats::output;
 use pcr_formats::scenario::Scenario;

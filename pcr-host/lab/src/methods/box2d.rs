@@ -1,9 +1,9 @@
 //! The time of impact of Box2D, for pairs of lines whose boxes meet. Its bodies move uniformly on lines between two
 //! times, so paths are flattened to a tenth of a millimetre. It finds only the first contact of a pair.
 
-use super::polyline::knots;
 use super::program::{Peer, Program};
-use super::{Field, Method};
+use pcr_comparing::compare::polyline::knots;
+use pcr_comparing::compare::{Field, Method};
 
 /// Largest distance from the path \[m\]: a tenth of what Box2D's own tolerance is.
 const TOLERANCE: f64 = 1e-4;

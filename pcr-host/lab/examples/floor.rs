@@ -1,4 +1,4 @@
-//! Writes the random fleet of the evaluation as a scenario: `cargo run --release -p pcr-comparing --example floor -- 100000 > floor.json`.
+//! Writes the random fleet of the evaluation as a scenario: `cargo run --release -p pcr-lab --example floor -- 100000 > floor.json`.
 
 use pcr_comparing::compare::crowd;
 use std::io::{self, Write};

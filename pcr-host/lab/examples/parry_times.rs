@@ -2,7 +2,7 @@
 //! not return within five seconds is given up.
 //!
 //! ```sh
-//! cargo run --release -p pcr-comparing --features peers --example parry_times
+//! cargo run --release -p pcr-lab --example parry_times
 //! ```
 
 use parry2d_f64::math::{Pose, Vector};

@@ -1,7 +1,7 @@
 //! Describes the machine on which the evaluation runs.
 
 use super::Extent;
-use crate::compare::libraries;
+use crate::methods::libraries;
 use std::fs;
 use std::thread::available_parallelism;
 
@@ -28,7 +28,7 @@ pub(super) fn preamble(extent: Extent) -> String {
     let (os, architecture) = (std::env::consts::OS, std::env::consts::ARCH);
     format!(
         "# Evaluation\n\n\
-        `cargo run --release --features peers -- {OWN}, and with \
+        `cargo run --release -p pcr-lab -- {OWN}, and with \
         `--only PART` one part of it anew; nothing is edited by hand.{quick}\n\n\
         **Machine**: {cpu}, {cores} cores, {memory} of memory, {os} on {architecture}; load at the beginning {load} ({cores} would keep all cores \
         busy). **Libraries in C++**: {libraries}. Times are medians. The results are the *ratios*: in each round all methods run one after the \

@@ -1,7 +1,8 @@
 //! Contacts and near misses down to a ten-millionth of a metre.
 
 use super::{Extent, Fleets, Problem, Section};
-use crate::compare::{Answer, Field, Input, Method, Question, methods};
+use crate::methods::methods;
+use pcr_comparing::compare::{Answer, Field, Input, Method, Question};
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario};
 use pcr_planning::fleet::Refused;
 use std::f64::consts::{FRAC_PI_2, PI, SQRT_2};
@@ -140,7 +141,7 @@ fn pairs(clearance: f64) -> [Scenario; KINDS] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compare::reference::contacts;
+    use pcr_comparing::compare::reference::contacts;
 
     #[test]
     fn pairs_come_as_near_as_they_are_said_to() {

@@ -2,7 +2,7 @@
 
 use super::super::machine::line;
 use super::super::{Extent, Problem};
-use crate::compare::stopwatch::Stopwatch;
+use pcr_comparing::compare::stopwatch::Stopwatch;
 use pcr_core::{Full, Motion};
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::{Fleet, build_ecm};

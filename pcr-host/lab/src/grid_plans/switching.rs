@@ -6,7 +6,7 @@
 
 use super::orders::Kept;
 use super::{Holds, LEAST, SPEED};
-use crate::lifelong::{Gate, gates};
+use pcr_execution::lifelong::{Gate, gates};
 
 /// Largest step of the first robot between two gates \[m\]. Holds are those of the last gate that it has opened, so they are rounded
 /// down.

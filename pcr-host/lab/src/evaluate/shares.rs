@@ -1,8 +1,8 @@
 //! Fig. 12: the time to find the pairs that come near each other, and the time to compute their regions.
 
 use super::{Extent, Fleets, Problem, Section, picture};
-use crate::compare::measure::median;
-use crate::compare::stopwatch::{Stopwatch, steady};
+use pcr_comparing::compare::median;
+use pcr_comparing::compare::stopwatch::{Stopwatch, steady};
 use pcr_core::{Motion, Scalar as _};
 use pcr_drawing::plot::{Chart, Series};
 use pcr_planning::fleet::{Fleet, build_ecm};

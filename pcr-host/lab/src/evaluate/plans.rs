@@ -1,7 +1,7 @@
 //! The quality of start delays: their cost, the proved bound, and the time to compute them.
 
 use super::{Extent, Fleets, Problem, Section};
-use crate::compare::crowd;
+use pcr_comparing::compare::crowd;
 use pcr_execution::traffic;
 use pcr_formats::scenario::Scenario;
 use pcr_planning::plan::{Plan, Request};

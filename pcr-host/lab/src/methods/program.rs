@@ -2,8 +2,8 @@
 //! are installed. They read numbers, and write the time of the computation and the contacts. The time to start them and
 //! to transfer the numbers does not count.
 
-use super::stopwatch::{Stopwatch, steady};
-use super::{Answer, Field, Found, Method, Outcome, Question};
+use pcr_comparing::compare::stopwatch::{Stopwatch, steady};
+use pcr_comparing::compare::{Answer, Field, Found, Method, Outcome, Question};
 use std::io::{self, Write as _};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -24,7 +24,7 @@ impl Program {
         name: "FCL",
         version: option_env!("PCR_PEER_FCL_VERSION"),
         path: option_env!("PCR_PEER_FCL"),
-        missing: "libfcl-dev was not installed when pcr was built",
+        missing: "libfcl-dev was not installed when pcr-lab was built",
     };
 
     /// Box2D.
@@ -32,7 +32,7 @@ impl Program {
         name: "Box2D",
         version: option_env!("PCR_PEER_BOX2D_VERSION"),
         path: option_env!("PCR_PEER_BOX2D"),
-        missing: "libbox2d-dev was not installed when pcr was built",
+        missing: "libbox2d-dev was not installed when pcr-lab was built",
     };
 
     /// The library with its version, or that it is left out.
@@ -47,7 +47,7 @@ impl Program {
     fn missing(self) -> Option<&'static str> {
         match self.path {
             None => Some(self.missing),
-            Some(_) if !self.is_there() => Some("its program is no longer where pcr was built"),
+            Some(_) if !self.is_there() => Some("its program is no longer where pcr-lab was built"),
             Some(_) => None,
         }
     }

@@ -1,7 +1,7 @@
 //! Fig. 13 and 14 of the paper.
 
 use super::{Extent, Fleets, Problem, Section, picture};
-use crate::compare::{Input, sampled};
+use pcr_comparing::compare::{Input, sampled};
 use pcr_core::Interval;
 use pcr_drawing::{self as picture, Overlay};
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario};

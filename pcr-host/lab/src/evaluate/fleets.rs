@@ -1,8 +1,9 @@
 //! Table VI, and all methods on two of its fleets.
 
 use super::{Extent, Fleets, Problem, Section, picture};
-use crate::compare::{Comparison, Errors, Question, Row};
-use crate::report::comparison_table;
+use crate::methods::methods;
+use pcr_comparing::compare::{Comparison, Errors, Question, Row};
+use pcr_comparing::report::comparison_table;
 use pcr_planning::report::figures::{bytes, digits, time, times};
 use std::fmt::Write as _;
 
@@ -10,7 +11,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     let filters: Vec<String> = extent.filters().iter().map(|&filter| filter.to_owned()).collect();
     let mut all = Vec::new();
     for fleet in &fleets.all {
-        all.push(Comparison::new(&fleet.scenario, extent.effort(), &filters, &mut |_, _| {})?);
+        all.push(Comparison::new(&fleet.scenario, methods(), extent.effort(), &filters, &mut |_, _| {})?);
     }
     let mut text = table(fleets, &all);
     let mut pictures = Vec::new();

@@ -5,14 +5,14 @@
 //!
 //! Every cast begins at the time 0 and covers [`LONGEST`] at most: version 0.31 does not return for times above some 16
 //! s
-//! (`cargo run --release --features peers --example parry_times`).
+//! (`cargo run --release -p pcr-lab --example parry_times`).
 
-use super::polyline::cuts;
-use super::track::{EMPTY, Point, Track, hull, near};
-use super::{Answer, Field, Found, Method, Outcome, Question};
 use parry2d_f64::math::{Pose, Vector};
 use parry2d_f64::query::{NonlinearRigidMotion, cast_shapes_nonlinear};
 use parry2d_f64::shape::Ball;
+use pcr_comparing::compare::polyline::cuts;
+use pcr_comparing::compare::track::{EMPTY, Point, Track, hull, near};
+use pcr_comparing::compare::{Answer, Field, Found, Method, Outcome, Question};
 
 /// Largest error of a position where speeds change \[m\].
 const TOLERANCE: f64 = 1e-4;

@@ -1,12 +1,40 @@
-//! `pcr evaluate`: the document with its pictures, from small fleets.
+//! The binary `pcr-lab`: the document with its pictures, from small fleets, and a comparison.
 
-use crate::fixture::{directory, run};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What a run has printed, and its exit status.
+struct Run {
+    out: String,
+    err: String,
+    status: i32,
+}
+
+impl Run {
+    /// The message of a run that has failed with this status.
+    fn failed(self, status: i32) -> String {
+        assert_eq!((self.status, self.out.as_str()), (status, ""), "{}", self.err);
+        self.err
+    }
+}
+
+fn run(arguments: &[&str]) -> Run {
+    let output = Command::new(env!("CARGO_BIN_EXE_pcr-lab")).args(arguments).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    Run { out: text(output.stdout), err: text(output.stderr), status: output.status.code().unwrap() }
+}
+
+/// A folder for the files of one test.
+fn directory(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
 
 #[test]
 fn the_document_and_all_its_pictures_are_written() {
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data");
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data");
     let output = directory("evaluate");
     // Of a run that has failed.
     let _ = fs::remove_file(output.join("evaluation.md"));
@@ -37,8 +65,6 @@ fn the_document_and_all_its_pictures_are_written() {
     // One part anew: nothing else changes, and that part as little as memory does.
     let target = output.to_str().unwrap();
     let only = ["evaluate", "--quick", "--data", data.to_str().unwrap(), "-o", target, "--only", "memory"];
-    let written = run(&[&only[..], &["-q"]].concat());
-    assert_eq!((written.status, written.out, written.err), (0, String::new(), String::new()));
     let written = run(&only).out;
     assert_eq!(written, format!("{}\n", output.join("evaluation.md").display()));
     assert_eq!(fs::read_to_string(output.join("evaluation.md")).unwrap(), text);
@@ -47,7 +73,7 @@ fn the_document_and_all_its_pictures_are_written() {
     assert!(message.contains("was written with --quick"), "{message}");
     let without = text.replace("## Memory, and bytes on the wire", "## Something else");
     fs::write(output.join("evaluation.md"), &without).unwrap();
-    let message = run(&[&only[..], &["-q"]].concat()).failed(2);
+    let message = run(&only).failed(2);
     assert!(message.contains("has no section \"## Memory, and bytes on the wire\""), "{message}");
     assert_eq!(fs::read_to_string(output.join("evaluation.md")).unwrap(), without);
     // Somebody else's is not lost, also if it is no text.
@@ -63,5 +89,13 @@ fn the_document_and_all_its_pictures_are_written() {
 #[test]
 fn data_that_is_not_there_is_named() {
     let message = run(&["evaluate", "--quick", "--data", "nowhere"]).failed(2);
-    assert!(message.starts_with("pcr: nowhere/paper12.json: cannot be read: "), "{message}");
+    assert!(message.starts_with("pcr-lab: nowhere/paper12.json: cannot be read: "), "{message}");
+}
+
+#[test]
+fn a_comparison_has_the_methods_of_others() {
+    let fleet = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/crossing.json");
+    let compared = run(&["compare", fleet.to_str().unwrap(), "--method", "parry", "--rounds", "1"]);
+    assert_eq!(compared.status, 0, "{}", compared.err);
+    assert!(compared.out.contains("parry2d casts") && compared.out.contains("parry3d meshes"), "{}", compared.out);
 }

@@ -4,11 +4,11 @@ mod copies;
 mod course;
 
 use super::{Extent, Fleets, Problem, Section, picture};
-use crate::compare::crowd;
-use crate::compare::measure::median;
-use crate::compare::stopwatch::Stopwatch;
 use copies::Copies;
 use course::{Course, TABLE};
+use pcr_comparing::compare::crowd;
+use pcr_comparing::compare::median;
+use pcr_comparing::compare::stopwatch::Stopwatch;
 use pcr_drawing::plot::{Chart, Series};
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::{Fleet, build_ecm};

@@ -1,5 +1,4 @@
-//! Compiles the programs in `peers/` that run other libraries' methods, each where its library is installed; with the feature
-//! `peers` only. Where a library is not installed, the tool says so when it compares; in continuous integration (`CI=true`) that
+//! Compiles the programs in `peers/` that run other libraries' methods, each where its library is installed. Where a library is not installed, the tool says so when it compares; in continuous integration (`CI=true`) that
 //! is an error. A program that cannot be compiled is an error everywhere.
 
 use std::env;
@@ -10,7 +9,7 @@ fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-changed=peers");
     let directory = env::var_os("OUT_DIR").map(PathBuf::from);
-    let Some(directory) = directory.filter(|_| env::var_os("CARGO_FEATURE_PEERS").is_some()) else { return };
+    let Some(directory) = directory else { return };
     println!("cargo:rerun-if-env-changed=CI");
     println!("cargo:rerun-if-env-changed=PKG_CONFIG_PATH");
     let in_ci = env::var("CI").is_ok_and(|ci| ci == "true");

@@ -1,9 +1,9 @@
 //! Proximity of meshes at every sample of time by FCL, from the authors of the library PQP that the paper uses: the same
 //! cylinders and samples as with `parry3d`.
 
-use super::mesh::{HEIGHT, SIDES, STEP, STEP_UP, circumscribed, samples};
 use super::program::{Peer, Program};
-use super::{Field, Method};
+use pcr_comparing::compare::mesh::{HEIGHT, SIDES, STEP, STEP_UP, circumscribed, samples};
+use pcr_comparing::compare::{Field, Method};
 
 pub(super) fn methods() -> Vec<Box<dyn Method>> {
     let name = format!("FCL meshes {STEP} s");

@@ -2,7 +2,7 @@
 //! by cells.
 
 use super::{Extent, Fleets, Problem, Section};
-use pcr_execution::grid_plans::{By, Outcome, Stops, carried_out, random_stops, situation};
+use crate::grid_plans::{By, Outcome, Stops, carried_out, random_stops, situation};
 use pcr_formats::import::GridPlan;
 use pcr_planning::report::figures::digits;
 use std::fmt::Write as _;

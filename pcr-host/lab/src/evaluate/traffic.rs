@@ -1,7 +1,7 @@
 //! Random missions on the route graph of a real warehouse: regions, start delays and their check.
 
 use super::{Extent, Fleets, Problem, Section, picture};
-use crate::compare::stopwatch::{Stopwatch, steady};
+use pcr_comparing::compare::stopwatch::{Stopwatch, steady};
 use pcr_drawing::{Ground, overview};
 use pcr_execution::traffic::{Request, Traffic, schedule};
 use pcr_formats::footprint::Footprint;

@@ -1,8 +1,9 @@
 //! The memory that is needed for a collision, and the bytes to transmit it.
 
 use super::{Extent, Fleets, Problem, Section};
-use crate::compare::Answer;
-use crate::compare::{Input, Question, methods};
+use crate::methods::methods;
+use pcr_comparing::compare::Answer;
+use pcr_comparing::compare::{Input, Question};
 use pcr_planning::regions::{self, Request};
 use pcr_planning::report::figures::bytes;
 use std::fmt::Write as _;

@@ -1,0 +1,29 @@
+//! Methods of other libraries, beside those that `pcr compare` has.
+//!
+//! ```text
+//! casts    generic continuous collision detection
+//! program  libraries in C++, as programs beside this
+//! fcl      proximity of meshes by FCL
+//! box2d    the time of impact of Box2D
+//! ```
+
+mod box2d;
+mod casts;
+mod fcl;
+mod program;
+
+use pcr_comparing::compare::{self, Method};
+
+/// Returns all methods: those of `pcr compare`, and those of other libraries, also where the library is missing.
+pub fn methods() -> Vec<Box<dyn Method>> {
+    let mut methods = compare::methods();
+    methods.extend(casts::methods());
+    methods.extend(box2d::methods());
+    methods.extend(fcl::methods());
+    methods
+}
+
+/// Returns the libraries in C++ that methods use, with their versions, or that they are left out.
+pub(crate) fn libraries() -> Vec<String> {
+    [program::Program::FCL, program::Program::BOX2D].map(program::Program::library).into()
+}
