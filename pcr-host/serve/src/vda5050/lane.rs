@@ -6,6 +6,7 @@
 
 mod actions;
 mod ends;
+mod interim;
 mod job;
 mod maps;
 mod mirror;
@@ -29,6 +30,7 @@ use super::topics::{Key, Kind};
 use super::version::Version;
 use crate::robot::Abilities;
 use crate::supervisor::{Damaged, Supervisor};
+use interim::Interim;
 use newest::Newest;
 use notes::noted;
 use past::{Noted, Past};
@@ -98,8 +100,10 @@ pub struct Lane {
     name: String,
     version: Option<Version>,
     newest: BTreeMap<Kind, Newest>,
+    /// The last visualization that counted.
+    interim: Interim,
     state: Option<Arc<State>>,
-    /// Time at which that came \[s\].
+    /// The newest state was written at this time or before \[s\].
     heard_at: f64,
     job: Option<Job>,
     /// Orders and updates that have come after a restart before its first state.
@@ -147,6 +151,7 @@ impl Lane {
             name,
             version,
             newest,
+            interim: Interim::default(),
             state,
             heard_at,
             job,

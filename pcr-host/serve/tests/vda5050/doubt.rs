@@ -2,16 +2,23 @@
 
 use crate::pair::{CAN, key};
 use crate::site::{interfaces, settings};
+use pcr_formats::random::Random;
 use pcr_serve::course::Start;
 use pcr_serve::entry::Nowhere;
 use pcr_serve::supervisor::Supervisor;
 use pcr_serve::vda5050::bridge::{self, Bridge};
 use pcr_serve::vda5050::door::Limits;
+use pcr_serve::vda5050::stamp::written;
 use pcr_serve::vda5050::topics::Kind;
 use pcr_serve::vda5050::version::Version;
 use pcr_serve::vehicles::vehicle::Vehicle;
 use pcr_serve::vehicles::world::profile;
 use serde_json::{Value, json};
+
+/// The time at which a message was written \[s\].
+fn seconds(message: &Value) -> f64 {
+    pcr_formats::import::seconds(message["timestamp"].as_str().unwrap()).unwrap()
+}
 
 /// A vehicle with all of a way of 10 m along the x axis, in two edges.
 struct Lone {
@@ -35,9 +42,13 @@ impl Lone {
     }
 
     fn driving() -> Self {
+        Self::driving_for(5.5)
+    }
+
+    fn driving_for(time: f64) -> Self {
         let mut own = Self::standing();
         own.order("a", 0.0, 1);
-        own.lasts(5.5);
+        own.lasts(time);
         let at = own.robot_at();
         assert!((2.0..5.0).contains(&at) && own.vehicle.taken() >= 1, "{at}");
         own
@@ -156,15 +167,147 @@ fn a_position_between_states_that_is_back_ends_no_alarm() {
     state["agvPosition"]["x"] = json!(own.robot_at() - 1.5);
     own.hears(Kind::State, &state);
     assert!(own.has_alarm());
-    let between = |own: &Lone, x: f64, header: u64| {
-        let mut message = state.clone();
+    let (mut header, said) = (0, state.clone());
+    let mut between = |own: &Lone, x: f64, stamp: &str| {
+        let mut message = said.clone();
+        header += 1;
         (message["headerId"], message["agvPosition"]["x"]) = (json!(header), json!(x));
+        message["timestamp"] = json!(stamp);
         (message.to_string(), interfaces()[1].topic(Version::V2_1, &key(), Kind::Visualization), own.time)
     };
-    for (x, header, alarm) in [(own.robot_at() - 1.4, 1, true), (own.robot_at(), 2, false)] {
-        let (text, topic, time) = between(&own, x, header);
+    // One of the same time may have been written before the state: it ends no alarm either.
+    let [same, later] = [0.0, 0.1].map(|later| written(seconds(&state) + later));
+    for (x, stamp, alarm) in
+        [(own.robot_at() - 1.4, &later, true), (own.robot_at(), &same, true), (own.robot_at(), &later, false)]
+    {
+        let (text, topic, time) = between(&own, x, stamp);
         own.bridge.receive(&mut own.supervisor, &topic, text.as_bytes(), time);
         assert_eq!(own.has_alarm(), alarm, "{x}: {:?}", own.bridge.log());
+    }
+}
+
+/// A message of the vehicle, written so long after its last state \[s\]; `x` is counted from the place that is known of it \[m\].
+fn says(own: &Lone, state: &Value, kind: Kind, after: f64, [x, y]: [f64; 2]) -> Value {
+    let mut message = state.clone();
+    // Each kind has numbers of its own.
+    let number = state["headerId"].as_u64().unwrap() * u64::from(kind == Kind::State);
+    message["headerId"] = json!(number + 1 + (after.max(0.0) * 1e3) as u64);
+    message["timestamp"] = json!(written(seconds(state) + after));
+    message["agvPosition"]["x"] = json!(own.robot_at() + x);
+    message["agvPosition"]["y"] = json!(y);
+    message
+}
+
+/// A vehicle on its way was off it, by a state that came after a visualization but was written before.
+#[test]
+fn a_state_that_a_visualization_has_overtaken_neither_begins_nor_ends_an_alarm() {
+    // Also where both have the same time: many vehicles know whole seconds only.
+    for written_before in [0.3, 0.6] {
+        let mut own = Lone::driving_for(4.5);
+        let state = own.state();
+        own.hears(Kind::State, &state);
+        let [ahead, behind, back] = [[0.9, 0.0], [0.1, 0.0], [-0.9, 0.0]];
+        let [late, first, second] = [(0.1, behind), (0.6, ahead), (written_before, behind)]
+            .map(|(after, place)| says(&own, &state, Kind::State, after, place));
+        let between = says(&own, &state, Kind::Visualization, 0.6, ahead);
+        let at = own.robot_at();
+        own.hears(Kind::Visualization, &between);
+        assert!((own.robot_at() - at - 0.9).abs() < 0.5, "it counts: {at} {}", own.robot_at());
+        for message in [&second, &late, &second] {
+            own.time += 0.01;
+            own.hears(Kind::State, message);
+            own.turn();
+            assert!(!own.has_alarm(), "{written_before}: {:?}", own.bridge.log());
+        }
+        let mut lost = second.clone();
+        (lost["headerId"], lost["lastNodeSequenceId"]) = (json!(1 << 20), json!(1));
+        own.hears(Kind::State, &lost);
+        assert!(!own.has_alarm(), "on its way, behind where it was said to be");
+        // It is off its way by a newer visualization as far as that tells, and then by a state: the older one does not end that.
+        let off = says(&own, &first, Kind::State, 0.1, [0.0, 2.0]);
+        own.hears(Kind::State, &off);
+        assert!(own.has_alarm());
+        own.hears(Kind::State, &second);
+        own.turn();
+        assert!(own.has_alarm());
+        // What is written after the visualization counts at once, also where it is back.
+        let mut own = Lone::driving_for(4.5);
+        let state = own.state();
+        let between = says(&own, &state, Kind::Visualization, 0.6, ahead);
+        let later = says(&own, &state, Kind::State, 0.7, back);
+        own.hears(Kind::Visualization, &between);
+        own.hears(Kind::State, &later);
+        assert!(own.has_alarm());
+    }
+}
+
+/// States and visualizations of a vehicle that is always where it may be, in any order, with time stamps as exact as vehicles write them.
+#[test]
+fn a_vehicle_on_its_way_has_no_alarm_in_whatever_order_its_messages_come() {
+    let (mut counted, mut overtaken) = (0, 0);
+    for seed in 0..60 {
+        let (mut dice, mut own) = (Random(seed), Lone::standing());
+        own.order("a", 0.0, 1);
+        own.lasts(1.0);
+        let mut waiting: Vec<(f64, Kind, Value)> = Vec::new();
+        let (mut number, mut newest) = (0, [0.0_f64; 2]);
+        for _ in 0..80 {
+            own.time += 0.1;
+            own.vehicle.advance(0.1);
+            let mut state = own.state();
+            if seed % 2 == 1 {
+                // Whole seconds, as many vehicles have them.
+                state["timestamp"] = json!(written(seconds(&state).floor()));
+            }
+            let kind = if dice.below(3) == 0 { Kind::State } else { Kind::Visualization };
+            if kind == Kind::Visualization {
+                number += 1;
+                state["headerId"] = json!(number);
+            }
+            waiting.push((own.time + 2.0 * dice.unit().powi(3), kind, state));
+            let (come, later): (Vec<_>, Vec<_>) = waiting.into_iter().partition(|(at, ..)| *at <= own.time);
+            waiting = later;
+            for (_, kind, message) in come {
+                let (at, stamp) = (own.robot_at(), seconds(&message));
+                own.hears(kind, &message);
+                assert!(!own.has_alarm(), "seed {seed}, at {} s: {message}", own.time);
+                counted += usize::from(kind == Kind::Visualization && own.robot_at() > at);
+                let [states, others] = &mut newest;
+                overtaken += usize::from(kind == Kind::State && stamp > *states && stamp < *others);
+                *(if kind == Kind::State { states } else { others }) =
+                    stamp.max(if kind == Kind::State { *states } else { *others });
+            }
+            own.turn();
+        }
+        assert!(own.robot_at() > 4.0, "seed {seed}: {}", own.robot_at());
+    }
+    assert!(counted > 500 && overtaken > 50, "{counted} {overtaken}");
+}
+
+/// It could have said by one wrong time stamp that it is never off its way again.
+#[test]
+fn a_visualization_from_a_clock_that_is_wrong_hides_no_alarm() {
+    for answers in [true, false] {
+        let mut own = Lone::driving();
+        let state = own.state();
+        let between = says(&own, &state, Kind::Visualization, 3600.0, [0.1, 0.0]);
+        own.hears(Kind::Visualization, &between);
+        let mut said = 0;
+        while !own.has_alarm() {
+            said += 1;
+            assert!(said < 100, "it is never off its way");
+            own.time += 1.0;
+            own.vehicle.advance(1.0);
+            own.turn();
+            let mut off = own.state();
+            off["agvPosition"]["y"] = json!(2.0);
+            if !answers {
+                off["actionStates"] = json!([]);
+            }
+            own.hears(Kind::State, &off);
+        }
+        // With the answer to the request; without one, after the time by which any message comes.
+        assert_eq!(said, if answers { 2 } else { 61 }, "{answers}");
     }
 }
 

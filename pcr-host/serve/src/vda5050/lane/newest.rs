@@ -19,7 +19,7 @@ pub(super) const LATEST: f64 = 60.0;
 const ROW: u32 = 3;
 
 /// Time between two requests \[s\].
-const AGAIN: f64 = 1.0;
+pub(super) const AGAIN: f64 = 1.0;
 
 /// Number, time stamp and arrival of a message.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -167,12 +167,12 @@ impl Newest {
         self.asked = Some((id, now));
     }
 
-    /// Whether a message of another kind that comes now was not written before this one. Only time stamps tell, because each kind has
-    /// numbers of its own.
-    pub(super) fn is_before(&self, header: &Header, now: f64) -> bool {
+    /// Returns by how much later than this one a message of another kind was written \[s\]; `None` if nobody knows. Only time stamps tell,
+    /// because each kind has numbers of its own.
+    pub(super) fn lead(&self, header: &Header, now: f64) -> Option<f64> {
         let mark = Mark::of(header, now);
-        let is_later = |known: &Mark| mark.stamp.zip(known.stamp).is_some_and(|(own, known)| own >= known);
-        self.known.is_some_and(|known| is_later(&known) && self.is_of(&known, &mark))
+        let known = self.known.filter(|known| self.is_of(known, &mark))?;
+        mark.stamp.zip(known.stamp).map(|(own, known)| own - known)
     }
 
     /// Whether a message belongs to the present count and not to the old one.

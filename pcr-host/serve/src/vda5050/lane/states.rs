@@ -6,6 +6,7 @@ use super::super::messages::Visualization;
 use super::super::state::{Pose, State};
 use super::super::topics::Kind;
 use super::ends::KEPT;
+use super::interim::Interim;
 use super::job::RECEIVED;
 use super::maps::{MAP, map_of};
 use super::newest::{Newest, Place};
@@ -29,6 +30,8 @@ enum With {
     Between,
     /// A state that was written before the newest one.
     Late,
+    /// The newest state, but it was not written after a visualization that has counted: its place neither begins nor ends an alarm.
+    Overtaken,
     /// The newest state, perhaps written before the supervisor was started: it ends no alarm, and a vehicle seated by it is in doubt.
     Doubtful,
 }
@@ -57,6 +60,7 @@ impl Lane {
             // Its clock may have restarted.
             self.newest.remove(&Kind::Visualization);
             self.newest.remove(&Kind::Factsheet);
+            self.interim = Interim::default();
             self.ask_for("factsheetRequest");
         }
         let is_new = place != Place::Late;
@@ -68,10 +72,12 @@ impl Lane {
             job.refused = job.is_refused(&state).then(|| job.refused.unwrap_or(now));
         }
         let is_proven = self.is_proven();
-        let with = match (is_new, is_proven) {
-            (true, true) => With::Newest,
-            (true, false) => With::Doubtful,
-            (false, _) => With::Late,
+        let overtaken = self.interim.overtook(&state.header, now, |action| state.names(action));
+        let with = match (is_new, is_proven, overtaken) {
+            (true, true, Some(_)) => With::Overtaken,
+            (true, true, None) => With::Newest,
+            (true, false, _) => With::Doubtful,
+            (false, ..) => With::Late,
         };
         let located = self.locate(supervisor, &state, with, now);
         if is_new && is_proven && self.is_doubtful {
@@ -80,7 +86,7 @@ impl Lane {
         if is_new {
             self.state = Some(Arc::new(state));
             if is_proven {
-                self.heard_at = now;
+                self.heard_at = overtaken.unwrap_or(now);
                 self.finish(supervisor, now);
             }
             self.take_early(supervisor, now);
@@ -101,9 +107,11 @@ impl Lane {
     }
 
     /// Requests a state that is certainly newer than all states so far, if that is in doubt.
-    pub fn ask_when(&mut self, now: f64) {
+    /// Returns the id of the request.
+    pub fn ask_when(&mut self, now: f64) -> String {
         let id = self.ask_for("stateRequest");
-        self.newest.entry(Kind::State).or_default().asks(id, now);
+        self.newest.entry(Kind::State).or_default().asks(id.clone(), now);
+        id
     }
 
     /// Takes the order update id of a state as a confirmation. The first state of an order may still have the last node of the order
@@ -126,13 +134,24 @@ impl Lane {
         }
     }
 
+    /// Takes it that the vehicle is off its path, unless a newer visualization says where it is.
+    fn strays(&mut self, supervisor: &mut Supervisor, at: [f64; 2], with: With, now: f64) {
+        if with != With::Overtaken {
+            // The place is finite, and the robot is there: this cannot be refused.
+            let _ = supervisor.off(&self.name, at, 0.0, now);
+        } else if self.interim.contradicts(now) {
+            let id = self.ask_when(now);
+            self.interim.asks(id, now);
+        }
+    }
+
     /// Takes the position of the vehicle, as far as it is certain.
     ///
     /// # Errors
     /// [`Refusal`] for a position on another map.
     fn locate(&mut self, supervisor: &mut Supervisor, state: &State, with: With, now: f64) -> Result<(), Refusal> {
         let Some(pose) = state.position().filter(|pose| pose.is_known()) else { return Ok(()) };
-        let (at, is_new) = ([pose.x, pose.y], with == With::Newest);
+        let (at, is_new) = ([pose.x, pose.y], matches!(with, With::Newest | With::Overtaken));
         // What is doubtful may begin an alarm, but changes none.
         let has_alarm = supervisor.robot(&self.name).is_ok_and(|robot| robot.alarm.is_some());
         let alarms = is_new || with == With::Doubtful && !has_alarm;
@@ -172,7 +191,7 @@ impl Lane {
                     // The vehicle names a node that was not released, a node of an earlier order, or none, or one that it has ahead. If its
                     // position is on its path anyway, this is not an alarm.
                     if alarms && self.on_its_way(job, robot, pose).is_none() {
-                        let _ = supervisor.off(&self.name, at, 0.0, now);
+                        self.strays(supervisor, at, with, now);
                     }
                     return Ok(());
                 };
@@ -197,19 +216,28 @@ impl Lane {
         };
         match found {
             // The vehicle rolled or was pushed back into a part of its path that may already be free for others.
-            Some([_, hi]) if alarms && hi < back => _ = supervisor.off(&self.name, at, 0.0, now),
+            Some([_, hi]) if alarms && hi < back => self.strays(supervisor, at, with, now),
             // It may have passed the next node since, and be on its way back: this neither begins nor ends an alarm.
             Some([_, hi]) if with == With::Between && hi < back => {}
             // It may be a place from before the order.
             Some(_) if with == With::Doubtful && !is_of_order => {}
             Some(at) => {
                 // Older than the newest message that is certain, by an unknown time.
-                let is_older = matches!(with, With::Late | With::Doubtful);
-                let age = if is_older { (now - self.heard_at).max(0.0) + LATE } else { 0.0 };
+                let newer = match with {
+                    With::Newest | With::Between => None,
+                    With::Overtaken => self.interim.overtook(&state.header, now, |_| false),
+                    With::Late | With::Doubtful => Some(self.heard_at),
+                };
+                let age = newer.map_or(0.0, |newer| (now - newer).max(0.0) + LATE);
+                if with == With::Between {
+                    self.interim.take(&state.header, now);
+                } else if is_new {
+                    self.interim.agrees();
+                }
                 // Path and interval are valid, so this cannot be refused.
                 let _ = supervisor.position(&Report { robot: self.name.clone(), path, at, age: age.min(OLDEST) }, now);
             }
-            None if alarms => _ = supervisor.off(&self.name, at, 0.0, now),
+            None if alarms => self.strays(supervisor, at, with, now),
             None => {}
         }
         Ok(())
@@ -243,14 +271,19 @@ impl Lane {
         if message.header != Header::default() {
             message.header.check(&self.profile.key, is_third)?;
         }
-        let is_after = self.newest.get(&Kind::State).is_some_and(|state| state.is_before(&message.header, now));
-        let is_proven = self.is_proven();
-        let newest = self.newest.entry(Kind::Visualization).or_default();
-        if !is_after || !is_proven || newest.take(&message.header, now, |_| false) == Place::Late {
+        let lead = self.newest.get(&Kind::State).and_then(|state| state.lead(&message.header, now));
+        let Some(lead) = lead.filter(|lead| *lead >= 0.0 && self.is_proven()) else { return Ok(()) };
+        if self.newest.entry(Kind::Visualization).or_default().take(&message.header, now, |_| false) == Place::Late {
+            return Ok(());
+        }
+        // One of the same time as the state may be the older one of the two: what the state says of an alarm counts.
+        let has_alarm = supervisor.robot(&self.name).is_ok_and(|robot| robot.alarm.is_some());
+        if has_alarm && lead == 0.0 {
             return Ok(());
         }
         if let Some(mut state) = self.state.as_deref().cloned() {
             let has_it = self.job.as_ref().is_some_and(|job| job.held.order_id == state.order_id);
+            state.header = message.header;
             (state.agv_position, state.mobile_robot_position) = (message.agv_position, message.mobile_robot_position);
             // It may have passed the next node since: no alarm.
             if has_it {
