@@ -5,6 +5,7 @@
 //! `cargo run --release -p pcr-serve --example latency -- ROBOTS RATE MESSAGES`
 
 use pcr_serve::journal::Journal;
+use pcr_serve::lines::Request;
 use pcr_serve::log::{Level, Log};
 use pcr_serve::outbox::{Lines, outbox};
 use pcr_serve::server::{Handle, Input, queue, serve};
@@ -51,7 +52,7 @@ impl Driver {
         request["id"] = self.sent.len().into();
         self.sent.push(is_position.then(Instant::now));
         self.open += 1;
-        self.handle.send(Input::Line(1, request.to_string().into_bytes()));
+        self.handle.send(Input::Line(1, Request::read(request.to_string().as_bytes())));
     }
 
     fn position(&mut self, k: usize) {

@@ -1,7 +1,7 @@
 //! Takes connections, up to a number at a time.
 
 use crate::log::{Level, Log};
-use std::net::{TcpListener, TcpStream};
+use crate::sockets::{Listener, Stream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
@@ -10,18 +10,19 @@ use std::time::Duration;
 /// Pause after a connection that could not be taken: without a free file descriptor the next one fails at once, too.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Takes connections for ever. Each goes to `serve` in a thread of this name, and has one of `most` places until that returns.
+/// Takes connections for ever. Each goes to `serve`, with a name of the other end, in a thread of this name, and has one of `most` places
+/// until that returns.
 pub(crate) fn each(
-    listener: &TcpListener,
+    listener: &Listener,
     name: &'static str,
     most: usize,
     log: Log,
-    serve: impl Fn(TcpStream) + Clone + Send + 'static,
+    serve: impl Fn(Stream, &str) + Clone + Send + 'static,
 ) {
     let (open, mut fails, mut refuses) = (Arc::new(AtomicUsize::new(0)), false, false);
-    for stream in listener.incoming() {
-        let stream = match stream {
-            Ok(stream) => stream,
+    loop {
+        let (stream, who) = match listener.accept() {
+            Ok(taken) => taken,
             Err(error) => {
                 if !std::mem::replace(&mut fails, true) {
                     log.write(Level::Error, "connections cannot be taken", &[("for", &name), ("why", &error)]);
@@ -32,7 +33,6 @@ pub(crate) fn each(
         };
         fails = false;
         if open.load(Ordering::Relaxed) >= most {
-            let who = stream.peer_addr().map_or_else(|_| String::new(), |address| address.to_string());
             if !std::mem::replace(&mut refuses, true) {
                 log.write(
                     Level::Warn,
@@ -46,7 +46,7 @@ pub(crate) fn each(
         let (serve, place) = (serve.clone(), Place::taken(&open));
         let work = move || {
             let _place = place;
-            serve(stream);
+            serve(stream, &who);
         };
         if let Err(error) = thread::Builder::new().name(name.into()).spawn(work) {
             log.write(Level::Error, "no thread for a connection", &[("for", &name), ("why", &error)]);
@@ -74,17 +74,18 @@ impl Drop for Place {
 mod tests {
     use super::*;
     use std::io::{Read, Write};
+    use std::net::{TcpListener, TcpStream};
 
     #[test]
     fn one_beyond_all_places_is_refused_until_a_place_is_free() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let at = listener.local_addr().unwrap();
-        let serve = |mut stream: TcpStream| {
+        let serve = |mut stream: Stream, _: &str| {
             stream.write_all(b"here").unwrap();
             // Until the client ends.
             let _ = stream.read_to_end(&mut Vec::new());
         };
-        thread::spawn(move || each(&listener, "test", 1, Log::new(Level::Error), serve));
+        thread::spawn(move || each(&listener.into(), "test", 1, Log::new(Level::Error), serve));
         let connected = || {
             let (mut client, mut said) = (TcpStream::connect(at).unwrap(), [0; 4]);
             client.read_exact(&mut said).map(|()| client)

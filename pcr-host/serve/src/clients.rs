@@ -1,32 +1,56 @@
-//! Clients of the line protocol: standard input and output, and TCP.
+//! Clients of the line protocol: standard input and output, and sockets.
 
 use crate::accept;
-use crate::lines::LONGEST;
+use crate::fault::Fault;
+use crate::hello::{self, Refusal};
+use crate::lines::{self, LONGEST, Request};
 use crate::log::Log;
 use crate::outbox::{Lines, outbox};
+use crate::refusals::Refusals;
 use crate::server::{Handle, Input};
+use crate::sockets::{Listener, Stream};
+use crate::token::Token;
 use socket2::{SockRef, TcpKeepalive};
+use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read, Write};
-use std::net::{Shutdown, TcpListener, TcpStream};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::net::{Shutdown, TcpStream};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Number of the next client.
 static NEXT: AtomicU64 = AtomicU64::new(1);
 
-/// Time that a disconnected TCP client has to read some of its lines, before the connection ends.
+/// Time that a disconnected client of a socket has to read some of its lines, before the connection ends.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Time without any message after which the system asks whether a client is still there, and time between two such questions.
 const PROBE: Duration = Duration::from_secs(15);
 
-/// Largest number of TCP clients at a time.
-const MOST: usize = 256;
+/// Who may be a client of a socket, and how many at a time.
+#[derive(Clone, Debug)]
+pub struct Access {
+    /// The token that a client has to send; `None`: whoever can connect is a client, as the permissions of a file say.
+    pub token: Option<Token>,
+    /// Time in which the first line has to come.
+    pub within: Duration,
+    /// Largest number of clients.
+    pub clients: usize,
+    /// Largest number of connections whose first line has not come yet. One more ends the oldest of them.
+    pub strangers: usize,
+}
+
+impl Access {
+    /// The usual numbers.
+    pub fn new(token: Option<Token>) -> Self {
+        Self { token, within: Duration::from_secs(5), clients: 256, strangers: 64 }
+    }
+}
 
 /// Reads lines from `input` and writes answers to `output`. Returns when the input has ended and all lines that were read are
-/// answered. If the output cannot be written, `lost` is called at once, with the reason; what is read after that is carried out,
-/// but not answered.
+/// answered. If the output cannot be written, `lost` is called at once, with the reason; what is read after
+/// that is carried out, but not answered.
 ///
 /// # Errors
 /// The thread for the answers cannot be started; nothing is read then.
@@ -36,6 +60,24 @@ pub fn serve(
     output: impl Write + Send + 'static,
     lost: impl FnOnce(io::Error) + Send + 'static,
 ) -> io::Result<()> {
+    converse(handle, output, lost, |number| {
+        // An error of reading counts as the end.
+        let _ = read(&mut BufReader::new(input), |_, _, request| {
+            handle.send(match request {
+                Some(request) => Input::Line(number, request),
+                None => Input::Answer(number, lines::too_long()),
+            })
+        });
+    })
+}
+
+/// Writes answers to `output` while `reads` reads the lines of a client with a number.
+fn converse(
+    handle: &Handle,
+    output: impl Write + Send + 'static,
+    lost: impl FnOnce(io::Error) + Send + 'static,
+    reads: impl FnOnce(u64),
+) -> io::Result<()> {
     let number = NEXT.fetch_add(1, Ordering::Relaxed);
     let (sender, lines) = outbox();
     let work = move || write(&lines, output).unwrap_or_else(lost);
@@ -43,8 +85,7 @@ pub fn serve(
     if !handle.send(Input::Opened(number, sender)) {
         return Ok(());
     }
-    // An error of reading counts as the end.
-    let _ = read(handle, number, BufReader::new(input));
+    reads(number);
     handle.send(Input::Closed(number));
     let _ = writer.join();
     Ok(())
@@ -74,20 +115,29 @@ fn put(lines: &Lines, output: &mut impl Write, mut bytes: &[u8]) -> io::Result<(
     Ok(())
 }
 
-fn read(handle: &Handle, number: u64, mut input: impl BufRead) -> io::Result<()> {
+/// Gives each line to `take`, with what has come behind it, and the request in it; `None`: the line is too long, and is skipped. Ends when
+/// `take` returns `false`.
+fn read<R: Read>(
+    input: &mut BufReader<R>,
+    mut take: impl FnMut(&[u8], &[u8], Option<Request>) -> bool,
+) -> io::Result<()> {
     loop {
         let mut line = Vec::new();
         let read = input.by_ref().take(LONGEST as u64 + 1).read_until(b'\n', &mut line)?;
         if read == 0 {
             return Ok(());
         }
-        if line.last() != Some(&b'\n') && line.len() > LONGEST {
-            skip(&mut input)?;
-            handle.send(Input::TooLong(number));
-            continue;
-        }
-        let text = line.trim_ascii();
-        if !text.is_empty() && !handle.send(Input::Line(number, text.to_vec())) {
+        let goes_on = if line.last() != Some(&b'\n') && line.len() > LONGEST {
+            let goes_on = take(&line, input.buffer(), None);
+            if goes_on {
+                skip(input)?;
+            }
+            goes_on
+        } else {
+            let text = line.trim_ascii();
+            text.is_empty() || take(text, input.buffer(), Some(Request::read(text)))
+        };
+        if !goes_on {
             return Ok(());
         }
     }
@@ -108,19 +158,84 @@ fn skip(input: &mut impl BufRead) -> io::Result<()> {
     }
 }
 
-/// Takes clients over TCP, for ever.
-pub fn listen(handle: &Handle, listener: &TcpListener, log: Log) {
-    let handle = handle.clone();
-    accept::each(listener, "client", MOST, log, move |stream| {
-        // Answers are short, and wanted at once.
-        if stream.set_nodelay(true).and_then(|()| stream.set_write_timeout(Some(PATIENCE))).is_ok()
-            && probed(&stream).is_ok()
-            && let (Ok(input), Ok(output)) = (stream.try_clone(), stream.try_clone())
-        {
-            // A connection that cannot be written to has ended: then its input ends, too.
-            let _ = serve(&handle, input, Closing(output), drop);
-        }
+/// Takes clients at a socket, for ever. The first line of each has to be a hello, and a connection ends at the first line that is no JSON
+/// object.
+pub fn listen(handle: &Handle, listener: &Listener, access: Access, log: Log) {
+    let (handle, most) = (handle.clone(), access.clients + 2 * access.strangers);
+    let (strangers, clients) = (Strangers::new(access.strangers, Refusals::new(log)), Arc::new(AtomicUsize::new(0)));
+    accept::each(listener, "client", most, log, move |stream, who| {
+        // An error means that the connection has ended.
+        let _ = welcome(&handle, &access, &strangers, &clients, stream, who);
     });
+}
+
+/// Serves a connection until it ends.
+fn welcome(
+    handle: &Handle,
+    access: &Access,
+    strangers: &Strangers,
+    clients: &Arc<AtomicUsize>,
+    mut stream: Stream,
+    who: &str,
+) -> io::Result<()> {
+    stream.set_write_timeout(Some(PATIENCE))?;
+    if let Stream::Tcp(stream) = &stream {
+        // Answers are short, and wanted at once.
+        stream.set_nodelay(true)?;
+        probed(stream)?;
+    }
+    let stranger = strangers.enter(&stream, who)?;
+    let mut input = BufReader::new(stream.try_clone()?);
+    let first = match hello::read(&mut input, access.token.as_ref(), access.within) {
+        Ok(None) => return Ok(()),
+        Ok(Some(first)) => first,
+        Err(refusal) => return refuse(&mut stream, &strangers.refusals, who, &refusal),
+    };
+    let Some(_place) = Place::taken(clients, access.clients) else {
+        let fault = Fault::Full { places: access.clients };
+        let refusal = Refusal::Hello(fault.clone(), first.refused(fault));
+        return refuse(&mut stream, &strangers.refusals, who, &refusal);
+    };
+    if !stranger.leaves() {
+        // It was ended just now.
+        return Ok(());
+    }
+    stream.set_read_timeout(None)?;
+    // A connection that cannot be written to has ended: then its input ends, too.
+    converse(handle, Shut(stream.try_clone()?), drop, |number| {
+        if !handle.send(Input::Line(number, first)) {
+            return;
+        }
+        let _ = read(&mut input, |line, behind, request| {
+            let refusal = match request {
+                Some(request) if request.is_object() => return handle.send(Input::Line(number, request)),
+                Some(request) => hello::no_object(line, behind, &request),
+                None => Refusal::TooLong(LONGEST),
+            };
+            strangers.refusals.note(who, &refusal);
+            handle.send(Input::Answer(number, refusal.answer()));
+            false
+        });
+    })
+}
+
+/// Writes a last line to a connection and ends it.
+fn refuse(stream: &mut Stream, refusals: &Refusals, who: &str, refusal: &Refusal) -> io::Result<()> {
+    /// Largest size and longest time of what is read after it: an end with bytes that are not read may take the line away from the client.
+    const REST: (u64, Duration) = (1 << 16, Duration::from_secs(1));
+    refusals.note(who, refusal);
+    stream.set_write_timeout(Some(REST.1))?;
+    stream.write_all(format!("{}\n", refusal.answer()).as_bytes())?;
+    stream.shutdown(Shutdown::Write)?;
+    let (until, mut left, mut part) = (Instant::now() + REST.1, REST.0, [0; 4096]);
+    while left > 0 && Instant::now() < until {
+        stream.set_read_timeout(Some(REST.1))?;
+        match stream.read(&mut part)? {
+            0 => break,
+            count => left = left.saturating_sub(count as u64),
+        }
+    }
+    Ok(())
 }
 
 /// Has the system ask from time to time whether the other end is still there. Without this, a client whose machine has gone keeps its
@@ -131,9 +246,9 @@ fn probed(stream: &TcpStream) -> io::Result<()> {
 }
 
 /// Ends both ways of a connection when nothing more is written to it: a client that is let go.
-struct Closing(TcpStream);
+struct Shut(Stream);
 
-impl Write for Closing {
+impl Write for Shut {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.0.write(bytes)
     }
@@ -143,16 +258,83 @@ impl Write for Closing {
     }
 }
 
-impl Drop for Closing {
+impl Drop for Shut {
     fn drop(&mut self) {
         // It may be closed already.
         let _ = self.0.shutdown(Shutdown::Both);
     }
 }
 
+/// One of the places for clients; free again when it is dropped.
+struct Place(Arc<AtomicUsize>);
+
+impl Place {
+    fn taken(of: &Arc<AtomicUsize>, most: usize) -> Option<Self> {
+        let next = |count: usize| (count < most).then_some(count + 1);
+        of.fetch_update(Ordering::Relaxed, Ordering::Relaxed, next).ok().map(|_| Self(of.clone()))
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+/// Connections whose first line has not come yet, oldest first.
+#[derive(Clone)]
+struct Strangers {
+    most: usize,
+    open: Arc<Mutex<VecDeque<(u64, Stream, String)>>>,
+    refusals: Refusals,
+}
+
+impl Strangers {
+    fn new(most: usize, refusals: Refusals) -> Self {
+        Self { most, open: Arc::default(), refusals }
+    }
+
+    /// Notes a connection. If there are too many, the oldest ones end: a client sends its first line at once.
+    fn enter(&self, stream: &Stream, who: &str) -> io::Result<Stranger> {
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        open.push_back((number, stream.try_clone()?, who.into()));
+        while open.len() > self.most
+            && let Some((_, oldest, who)) = open.pop_front()
+        {
+            // Its thread sees the end.
+            let _ = oldest.shutdown(Shutdown::Both);
+            self.refusals.note(&who, &Refusal::Crowded);
+        }
+        Ok(Stranger { number, open: self.open.clone() })
+    }
+}
+
+/// One of these connections; it is none any more when this is dropped.
+struct Stranger {
+    number: u64,
+    open: Arc<Mutex<VecDeque<(u64, Stream, String)>>>,
+}
+
+impl Stranger {
+    /// Takes it from the list; returns whether it was still there.
+    fn leaves(&self) -> bool {
+        let mut open = self.open.lock().unwrap_or_else(PoisonError::into_inner);
+        let place = open.iter().position(|(number, ..)| *number == self.number);
+        place.and_then(|place| open.remove(place)).is_some()
+    }
+}
+
+impl Drop for Stranger {
+    fn drop(&mut self) {
+        self.leaves();
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::net::TcpListener;
 
     /// A client whose machine had gone kept its place until the program ended.
     #[test]

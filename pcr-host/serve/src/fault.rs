@@ -40,6 +40,24 @@ pub enum Fault {
         /// What is wrong, in words.
         why: String,
     },
+    /// The version of the lines is another one, or is missing where it has to be.
+    Version {
+        /// What is wrong, in words.
+        why: String,
+    },
+    /// The first line of a connection is no hello.
+    NoHello,
+    /// The token of a hello is missing or wrong.
+    Unauthorized {
+        /// What is wrong, in words.
+        why: &'static str,
+    },
+    /// All places for clients are taken.
+    Full {
+        /// Number of places.
+        #[serde(skip)]
+        places: usize,
+    },
     /// The client does not read the messages sent to it.
     Slow {
         /// Number of bytes that wait for it.
@@ -73,7 +91,15 @@ impl fmt::Display for Fault {
             Self::Apart { distance, angle } => {
                 write!(f, "the path begins {distance} m and {angle} rad off the end of the one before it")
             }
-            Self::Invalid { why } | Self::Malformed { why } => f.write_str(why),
+            Self::Invalid { why } | Self::Malformed { why } | Self::Version { why } => f.write_str(why),
+            Self::NoHello => f.write_str(
+                "the first line of a connection has to be {\"pcr\": 1, \"verb\": \"hello\", \"token\": \"...\"}, with the token from the file that \
+                 the log of the supervisor names at its start; nothing was carried out",
+            ),
+            Self::Unauthorized { why } => {
+                write!(f, "{why}: send the token from the file that the log of the supervisor names at its start")
+            }
+            Self::Full { places } => write!(f, "all {places} places for clients are taken: end another one, or try again later"),
             Self::Slow { bytes } => {
                 write!(f, "{bytes} bytes wait for this client, which does not read them: this is the last line")
             }

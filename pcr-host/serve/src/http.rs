@@ -1,14 +1,15 @@
-//! A small HTTP/1.1 server for the live page and the metrics. It only answers GET, so that nothing can be changed
-//! through it.
+//! A small HTTP/1.1 server for the live page and the metrics. It only answers GET and HEAD, so that nothing can be changed
+//! through it. Pages of others can neither read its answers nor show them.
 
 use crate::accept;
 use crate::log::Log;
 use crate::metrics;
 use crate::query::View;
 use crate::server::Handle;
+use crate::sockets::{Listener, Stream};
 use serde_json::json;
 use std::io::{self, Read, Write};
-use std::net::{Ipv4Addr, Ipv6Addr, TcpListener, TcpStream};
+use std::net::{Ipv4Addr, Ipv6Addr};
 use std::time::Duration;
 
 /// Largest length of a request \[bytes\].
@@ -56,15 +57,15 @@ impl Site {
 }
 
 /// Serves for ever.
-pub fn listen(handle: &Handle, listener: &TcpListener, site: Site, log: Log) {
+pub fn listen(handle: &Handle, listener: &Listener, site: Site, log: Log) {
     let handle = handle.clone();
-    accept::each(listener, "request", MOST, log, move |stream| {
+    accept::each(listener, "request", MOST, log, move |stream, _| {
         // An error means that the client has gone.
         let _ = converse(&handle, &site, stream);
     });
 }
 
-fn converse(handle: &Handle, site: &Site, mut stream: TcpStream) -> io::Result<()> {
+fn converse(handle: &Handle, site: &Site, mut stream: Stream) -> io::Result<()> {
     let patience = Some(Duration::from_secs(5));
     stream.set_read_timeout(patience)?;
     stream.set_write_timeout(patience)?;
@@ -74,36 +75,49 @@ fn converse(handle: &Handle, site: &Site, mut stream: TcpStream) -> io::Result<(
         let count = stream.read(&mut part)?;
         bytes.extend(&part[..count]);
         if count == 0 || bytes.len() > LONGEST {
-            return respond(&mut stream, "400 Bad Request", "text/plain", "a request ends with an empty line\n");
+            return respond(&mut stream, "400 Bad Request", "text/plain", "a request ends with an empty line\n", true);
         }
     }
     let (status, kind, body) = answer(handle, site, &bytes);
-    respond(&mut stream, status, kind, &body)
+    let has_body = !bytes.starts_with(b"HEAD ");
+    respond(&mut stream, status, kind, &body, has_body)
 }
 
-fn respond(stream: &mut TcpStream, status: &str, kind: &str, body: &str) -> io::Result<()> {
+fn respond(stream: &mut Stream, status: &str, kind: &str, body: &str, has_body: bool) -> io::Result<()> {
+    let allow = if status.starts_with("405") { "Allow: GET, HEAD\r\n" } else { "" };
     let head = format!(
-        "HTTP/1.1 {status}\r\nContent-Type: {kind}; charset=utf-8\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
-         X-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n",
+        "HTTP/1.1 {status}\r\n{allow}Content-Type: {kind}; charset=utf-8\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
+         X-Content-Type-Options: nosniff\r\nCross-Origin-Resource-Policy: same-origin\r\n\
+         Content-Security-Policy: frame-ancestors 'none'\r\nConnection: close\r\n\r\n",
         body.len()
     );
     stream.write_all(head.as_bytes())?;
-    stream.write_all(body.as_bytes())
+    if has_body { stream.write_all(body.as_bytes()) } else { Ok(()) }
 }
 
 /// Status, kind and body of the answer to a request.
 pub fn answer(handle: &Handle, site: &Site, request: &[u8]) -> (&'static str, &'static str, String) {
-    let text = String::from_utf8_lossy(request);
-    let mut lines = text.split("\r\n");
-    let mut words = lines.next().unwrap_or_default().split(' ');
-    let (method, target) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
     let plain = |status, text: &str| (status, "text/plain", format!("{text}\n"));
-    let host = lines.find_map(|line| line.split_once(':').filter(|(key, _)| key.eq_ignore_ascii_case("host")));
-    if !host.is_some_and(|(_, host)| site.is_here(host.trim())) {
+    let text = String::from_utf8_lossy(request);
+    let mut lines = text.split("\r\n").take_while(|line| !line.is_empty());
+    let words: Vec<&str> = lines.next().unwrap_or_default().split(' ').collect();
+    let [method, target, "HTTP/1.1" | "HTTP/1.0"] = words[..] else {
+        return plain("400 Bad Request", "a request of HTTP/1.1 begins with METHOD PATH HTTP/1.1");
+    };
+    let headers: Vec<(&str, &str)> = lines.filter_map(|line| line.split_once(':')).collect();
+    let values = |name: &str| {
+        let found: Vec<&str> =
+            headers.iter().filter(|(key, _)| key.eq_ignore_ascii_case(name)).map(|(_, value)| value.trim()).collect();
+        found
+    };
+    if !matches!(values("host")[..], [host] if site.is_here(host)) {
         return plain("403 Forbidden", "not under this name");
     }
-    if method != "GET" {
-        return plain("405 Method Not Allowed", "only GET");
+    if !["GET", "HEAD"].contains(&method) {
+        return plain("405 Method Not Allowed", "only GET and HEAD");
+    }
+    if values("upgrade").iter().any(|upgrade| upgrade.eq_ignore_ascii_case("websocket")) {
+        return plain("400 Bad Request", "there are no WebSockets here");
     }
     let (path, query) = target.split_once('?').unwrap_or((target, ""));
     match path {

@@ -5,23 +5,29 @@ use crate::course::Start;
 use crate::entry::Layout;
 use crate::event::Event;
 use crate::fault::Fault;
+use crate::metrics::Census;
 use crate::query::{self, Question};
 use crate::robot::Abilities;
 use crate::supervisor::{Proposal, Report, Supervisor};
 use pcr_formats::once::Once;
 use serde::Deserialize;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 /// The version of the protocol: requests may name it, answers and events do.
 pub const VERSION: u64 = 1;
 
+/// Name and version of this program.
+const PROGRAM: &str = concat!("pcr-serve ", env!("CARGO_PKG_VERSION"));
+
 /// Longer lines are refused \[bytes\].
 pub const LONGEST: usize = 1 << 20;
 
-/// A request. Repeating a request changes nothing.
+/// What a request asks for. Repeating a request changes nothing.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "verb", rename_all = "snake_case")]
 enum Verb {
+    /// The first line of a connection.
+    Hello(Hello),
     /// What the page draws.
     Layout(Layout),
     /// A new robot, which stands.
@@ -40,6 +46,15 @@ enum Verb {
     Query(Question),
     /// Whether the client wants events.
     Watch(Watch),
+}
+
+/// The first line of a connection.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hello {
+    /// Proves that the client may read the file with the token.
+    #[serde(default)]
+    pub token: Option<String>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -87,20 +102,104 @@ pub struct Reply {
     pub watches: Option<bool>,
 }
 
-/// Carries out the request of a line. Ages count from the time `came` \[s\]; the line may have waited since.
+/// A line, read.
+#[derive(Clone, Debug)]
+pub struct Request {
+    id: Value,
+    verb: Result<Verb, Fault>,
+    has_version: bool,
+    is_object: bool,
+}
+
+impl Request {
+    /// Reads a line. An error in it becomes the answer.
+    pub fn read(line: &[u8]) -> Self {
+        let mut own = Self { id: Value::Null, verb: Err(malformed("")), has_version: false, is_object: false };
+        let value: Result<Once, _> = serde_json::from_slice(line);
+        // JSON that is an error has a name twice.
+        own.is_object =
+            matches!(&value, Ok(Once(Value::Object(_)))) || value.as_ref().is_err_and(|error| error.is_data());
+        match value {
+            Ok(Once(Value::Object(object))) => own.verb = own.verb_of(object),
+            Ok(_) => own.verb = Err(malformed("it is no JSON object")),
+            Err(error) => own.verb = Err(malformed(format!("it is no JSON object: {error}"))),
+        }
+        own
+    }
+
+    /// The request of an object, of which it takes id and version.
+    fn verb_of(&mut self, mut object: Map<String, Value>) -> Result<Verb, Fault> {
+        let id = object.remove("id").unwrap_or(Value::Null);
+        if !(id.is_null() || id.is_string() || id.is_number()) {
+            return Err(malformed("id: it has to be a text or a number"));
+        }
+        // It would come back as another one.
+        if id.as_f64().is_some_and(|number| !(id.is_i64() || id.is_u64()) && number.abs() >= (1_u64 << 53) as f64) {
+            return Err(malformed("id: a number with so many digits has to be a text"));
+        }
+        self.id = id;
+        match object.remove("pcr") {
+            None => {}
+            Some(version) if version == VERSION => self.has_version = true,
+            Some(version) => {
+                return Err(Fault::Version {
+                    why: format!("pcr: the version is {VERSION}, not {version}: use a client of version {VERSION}"),
+                });
+            }
+        }
+        serde_json::from_value(Value::Object(object)).map_err(|error| malformed(error.to_string()))
+    }
+
+    /// Whether the line is a JSON object.
+    pub fn is_object(&self) -> bool {
+        self.is_object
+    }
+
+    /// Returns the hello of a client, which names the version.
+    ///
+    /// # Errors
+    /// [`Fault::Version`] for another version or none, [`Fault::NoHello`] for another line.
+    pub fn hello(&self) -> Result<&Hello, Fault> {
+        match &self.verb {
+            Ok(Verb::Hello(_)) if !self.has_version => {
+                Err(Fault::Version { why: format!("hello has to name the version, \"pcr\": {VERSION}") })
+            }
+            Ok(Verb::Hello(hello)) => Ok(hello),
+            Err(fault @ Fault::Version { .. }) => Err(fault.clone()),
+            _ => Err(Fault::NoHello),
+        }
+    }
+
+    /// Returns the answer that refuses it.
+    pub fn refused(&self, fault: Fault) -> Value {
+        answer(self.id.clone(), Err(fault))
+    }
+}
+
+fn malformed(why: impl Into<String>) -> Fault {
+    Fault::Malformed { why: why.into() }
+}
+
+/// Reads and carries out the request of a line. Ages count from the time `came` \[s\]; the line may have waited since.
 pub fn handle(supervisor: &mut Supervisor, line: &[u8], came: f64, now: f64) -> Reply {
-    let (id, verb) = read(line);
+    carry_out(supervisor, Request::read(line), came, now)
+}
+
+/// Carries out a request. Ages count from the time `came` \[s\]; the line may have waited since.
+pub fn carry_out(supervisor: &mut Supervisor, request: Request, came: f64, now: f64) -> Reply {
+    let Request { id, verb, .. } = request;
     let mut watches = None;
     let done = verb.and_then(|verb| match verb {
+        Verb::Hello(_) => Ok(json!({ "version": VERSION, "program": PROGRAM, "fleet": Census::of(supervisor) })),
         Verb::Layout(layout) => supervisor.draw(layout).map(|()| json!({})),
         Verb::Add(Added { robot, start, abilities }) => {
             supervisor.add(&robot, abilities, start)?;
             let robot = supervisor.robot(&robot)?;
             Ok(json!({ "path": robot.path }))
         }
-        Verb::Replace(proposal) if proposal.after.is_none() => Err(Fault::Malformed {
-            why: "replace needs `after`: the length of the path from which on it is another one".into(),
-        }),
+        Verb::Replace(proposal) if proposal.after.is_none() => {
+            Err(malformed("replace needs `after`: the length of the path from which on it is another one"))
+        }
         Verb::Replace(proposal) | Verb::Mission(proposal) => {
             supervisor.mission(&proposal, now).map(|verdict| json!(verdict))
         }
@@ -152,28 +251,4 @@ fn answer(id: Value, done: Result<Value, Fault>) -> Value {
             json!({ "pcr": VERSION, "id": id, "error": error })
         }
     }
-}
-
-/// The `id` of a line, if it can be read, and its request.
-fn read(line: &[u8]) -> (Value, Result<Verb, Fault>) {
-    let malformed = |why: String| Fault::Malformed { why };
-    let mut object = match serde_json::from_slice(line) {
-        Ok(Once(Value::Object(object))) => object,
-        Ok(_) => return (Value::Null, Err(malformed("it is no JSON object".into()))),
-        Err(error) => return (Value::Null, Err(malformed(format!("it is no JSON object: {error}")))),
-    };
-    let id = object.remove("id").unwrap_or(Value::Null);
-    if !(id.is_null() || id.is_string() || id.is_number()) {
-        return (Value::Null, Err(malformed("id: it has to be a text or a number".into())));
-    }
-    // It would come back as another one.
-    if id.as_f64().is_some_and(|number| !(id.is_i64() || id.is_u64()) && number.abs() >= (1_u64 << 53) as f64) {
-        return (Value::Null, Err(malformed("id: a number with so many digits has to be a text".into())));
-    }
-    match object.remove("pcr") {
-        None => {}
-        Some(version) if version == VERSION => {}
-        Some(version) => return (id, Err(malformed(format!("pcr: the version is {VERSION}, not {version}")))),
-    }
-    (id, serde_json::from_value(Value::Object(object)).map_err(|error| malformed(error.to_string())))
 }

@@ -1,6 +1,7 @@
 //! Metrics in the text format of Prometheus.
 
 use crate::supervisor::Supervisor;
+use serde::Serialize;
 use std::fmt::Write;
 use std::time::Duration;
 
@@ -26,12 +27,40 @@ impl Latency {
     }
 }
 
+/// Numbers of robots by what they do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Census {
+    robots: u64,
+    /// Whose mission is not admitted yet.
+    waiting: u64,
+    /// That are not where they may be.
+    alarmed: u64,
+    /// That have to stop for one of these.
+    stopped: u64,
+    /// That are not heard.
+    silent: u64,
+}
+
+impl Census {
+    /// Counts the robots of a supervisor.
+    pub fn of(supervisor: &Supervisor) -> Self {
+        let robots = supervisor.robots();
+        let count = |which: fn(&crate::robot::Robot) -> bool| robots.iter().filter(|robot| which(robot)).count() as u64;
+        Self {
+            robots: robots.len() as u64,
+            waiting: count(|robot| robot.waiting.is_some()),
+            alarmed: count(|robot| robot.alarm.is_some()),
+            stopped: count(|robot| robot.stopped.is_some()),
+            silent: count(|robot| robot.silent),
+        }
+    }
+}
+
 /// The page `/metrics`.
 pub fn text(supervisor: &Supervisor, latency: &Latency) -> String {
     let mut text = String::new();
     let counts = supervisor.counts();
-    let robots = supervisor.robots();
-    let count = |which: fn(&crate::robot::Robot) -> bool| robots.iter().filter(|robot| which(robot)).count() as u64;
+    let census = Census::of(supervisor);
     for (name, kind, help, value) in [
         ("positions_total", "counter", "Messages with a position.", counts.positions),
         (
@@ -48,21 +77,11 @@ pub fn text(supervisor: &Supervisor, latency: &Latency) -> String {
         ("evaluations_total", "counter", "Holds computed.", counts.evaluations),
         ("alarms_total", "counter", "Robots that were not where they may be.", counts.alarms),
         ("journal_writes_total", "counter", "Writes of the journal.", counts.writes),
-        ("robots", "gauge", "Robots.", robots.len() as u64),
-        (
-            "robots_waiting",
-            "gauge",
-            "Robots whose mission is not admitted yet.",
-            count(|robot| robot.waiting.is_some()),
-        ),
-        ("robots_alarmed", "gauge", "Robots that are not where they may be.", count(|robot| robot.alarm.is_some())),
-        (
-            "robots_stopped",
-            "gauge",
-            "Robots that had to stop for one of these.",
-            count(|robot| robot.stopped.is_some()),
-        ),
-        ("robots_silent", "gauge", "Robots that are not heard.", count(|robot| robot.silent)),
+        ("robots", "gauge", "Robots.", census.robots),
+        ("robots_waiting", "gauge", "Robots whose mission is not admitted yet.", census.waiting),
+        ("robots_alarmed", "gauge", "Robots that are not where they may be.", census.alarmed),
+        ("robots_stopped", "gauge", "Robots that had to stop for one of these.", census.stopped),
+        ("robots_silent", "gauge", "Robots that are not heard.", census.silent),
         ("regions", "gauge", "Collision regions of all paths.", supervisor.orders().ecm().len() as u64),
     ] {
         // Writing to a text does not fail.

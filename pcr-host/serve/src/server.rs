@@ -4,7 +4,7 @@
 use crate::board::Board;
 use crate::event::Event;
 use crate::fault::Fault;
-use crate::lines;
+use crate::lines::{self, Request};
 use crate::log::{Level, Log};
 use crate::outbox::{Lost, Outbox};
 use crate::supervisor::Supervisor;
@@ -50,9 +50,9 @@ pub enum Input {
     /// A client has connected; its lines go to this outbox.
     Opened(u64, Outbox),
     /// A line of a client.
-    Line(u64, Vec<u8>),
-    /// A line of a client was too long.
-    TooLong(u64),
+    Line(u64, Request),
+    /// An answer to a line of a client that was not read as a request.
+    Answer(u64, Value),
     /// A client has disconnected.
     Closed(u64),
     /// A call with the supervisor, such as a query of the page or a message of a vehicle.
@@ -230,14 +230,15 @@ impl Desk {
                 Input::Opened(client, out) => drop(self.clients.insert(client, Client { out, watches: false })),
                 // Its earlier requests are answered.
                 Input::Closed(client) => told.closed.push(client),
-                Input::TooLong(client) => told.answers.push((client, lines::too_long())),
-                Input::Line(client, line) => {
-                    let reply = lines::handle(supervisor, &line, time, now);
-                    if let (Some(watches), Some(client)) = (reply.watches, self.clients.get_mut(&client)) {
-                        client.watches = watches;
+                Input::Answer(client, answer) => told.answers.push((client, answer)),
+                Input::Line(number, request) => {
+                    // One that was let go does not learn what becomes of its requests: those that still wait are not carried out.
+                    if let Some(client) = self.clients.get_mut(&number) {
+                        let reply = lines::carry_out(supervisor, request, time, now);
+                        client.watches = reply.watches.unwrap_or(client.watches);
+                        told.answers.push((number, reply.answer));
+                        told.times.push(came);
                     }
-                    told.answers.push((client, reply.answer));
-                    told.times.push(came);
                 }
                 Input::Call(call) => told.thens.extend(call(supervisor, &self.board, now)),
                 Input::Tell(listener) => self.listeners.push(listener),
@@ -341,8 +342,8 @@ impl Desk {
 fn send(clients: &mut HashMap<u64, Client>, number: u64, line: &Value, log: Log) {
     let Some(client) = clients.get(&number) else { return };
     match client.out.send(format!("{line}\n")) {
-        Ok(()) => {}
-        Err(Lost::Gone) => drop(clients.remove(&number)),
+        // One that has gone may have left requests, which are carried out: it is removed when its input has ended.
+        Ok(()) | Err(Lost::Gone) => {}
         Err(Lost::Slow) => {
             // A client that misses lines would not notice it.
             log.write(Level::Warn, "a client reads too slowly and is let go", &[("client", &number)]);

@@ -1,8 +1,9 @@
 //! The line protocol: the example of the document, the schema, and bytes that are no requests.
 
 use pcr_formats::random::Random;
+use pcr_serve::clients::Access;
 use pcr_serve::entry::Nowhere;
-use pcr_serve::lines::{LONGEST, handle, news};
+use pcr_serve::lines::{Request, handle, news};
 use pcr_serve::log::{Level, Log};
 use pcr_serve::outbox::{BACKLOG, Lost, outbox};
 use pcr_serve::server::{Call, Input, queue, serve};
@@ -16,15 +17,15 @@ use std::sync::mpsc::sync_channel;
 use std::thread;
 use std::time::{Duration, Instant};
 
-fn supervisor() -> Supervisor {
+pub(crate) fn supervisor() -> Supervisor {
     Supervisor::new(Settings::default(), Box::new(Nowhere))
 }
 
-fn document(name: &str) -> String {
+pub(crate) fn document(name: &str) -> String {
     std::fs::read_to_string(format!("{}/../../docs/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap()
 }
 
-fn fits(schema: &Value, line: &Value) {
+pub(crate) fn fits(schema: &Value, line: &Value) {
     let validator = jsonschema::draft202012::new(schema).unwrap();
     let faults: Vec<String> = validator.iter_errors(line).map(|error| error.to_string()).collect();
     assert!(faults.is_empty(), "{line}: {faults:?}");
@@ -102,10 +103,12 @@ fn who_asks_for_holds_hears_that_a_robot_is_stopped() {
     assert_eq!(stopped, [Value::Null, json!("new"), Value::Null]);
 }
 
+const HELLO: &str = "{\"id\": \"h\", \"pcr\": 1, \"verb\": \"hello\"}\n";
+
 const ABILITIES: &str = r#"{"radius": 0.25, "speed": 1, "acceleration": 0.5}"#;
 
 /// What clients can say that is right, or nearly.
-fn requests() -> Vec<String> {
+pub(crate) fn requests() -> Vec<String> {
     let add = |name: &str, x: f64| {
         format!(
             r#"{{"id": 1, "verb": "add", "robot": "{name}", "start": {{"x": {x}, "y": 0, "heading": 0}}, "abilities": {ABILITIES}}}"#
@@ -130,6 +133,8 @@ fn requests() -> Vec<String> {
         r#"{"verb": "off", "robot": "b", "x": 1, "y": 1}"#.into(),
         r#"{"verb": "remove", "robot": "a"}"#.into(),
         r#"{"verb": "remove", "robot": "a"}"#.into(),
+        r#"{"pcr": 1, "verb": "hello", "token": "x"}"#.into(),
+        r#"{"id": 1, "verb": "hello"}"#.into(),
         r#"{"pcr": 2, "verb": "watch"}"#.into(),
         r#"{"id": [1], "verb": "watch"}"#.into(),
         r#"{"id": 1, "verb": "query", "what": "safe", "robot": "b", "length": [0, 0], "until": 10}"#.into(),
@@ -190,6 +195,7 @@ fn every_answer_fits_the_schema_and_nothing_panics() {
         "ok",
         "robot_exists",
         "silent",
+        "version",
     ] {
         assert!(seen.contains(&kind), "{kind} is not among {seen:?}");
     }
@@ -347,9 +353,11 @@ fn ages_count_from_when_a_line_came() {
         supervisor.robots().iter().any(|robot| robot.alarm.is_some())
     };
     assert!(!ask(busy));
+    let (out, _lines) = outbox();
+    sender.send((begin, Input::Opened(1, out))).unwrap();
     let say = |after: u64, request: Value| {
-        let line = request.to_string().into_bytes();
-        sender.send((begin + Duration::from_millis(after), Input::Line(1, line))).unwrap();
+        let request = Request::read(request.to_string().as_bytes());
+        sender.send((begin + Duration::from_millis(after), Input::Line(1, request))).unwrap();
     };
     say(0, serde_json::from_str(&requests()[0]).unwrap());
     say(1, json!({ "verb": "mission", "robot": "a", "mission": "1", "path": [{ "kind": "line", "length": 2 }] }));
@@ -375,9 +383,9 @@ fn clients_over_tcp_and_the_page() {
     let site =
         http::Site { page: "<p>here</p>".into(), draw: Some(draw), hosts: vec![shown.to_string()], addresses: false };
     let own = handle.clone();
-    thread::spawn(move || clients::listen(&own, &lines, Log::new(Level::Error)));
+    thread::spawn(move || clients::listen(&own, &lines.into(), Access::new(None), Log::new(Level::Error)));
     let own = handle.clone();
-    thread::spawn(move || http::listen(&own, &page, site, Log::new(Level::Error)));
+    thread::spawn(move || http::listen(&own, &page.into(), site, Log::new(Level::Error)));
     let server = thread::spawn(move || serve(&mut supervisor, &inputs, &Kept::default(), Log::new(Level::Error)));
 
     let (mut out, mut other) = (TcpStream::connect(at).unwrap(), TcpStream::connect(at).unwrap());
@@ -386,16 +394,23 @@ fn clients_over_tcp_and_the_page() {
     let next = |lines: &mut dyn Iterator<Item = std::io::Result<String>>| -> Value {
         serde_json::from_str(&lines.next().unwrap().unwrap()).unwrap()
     };
+    for (client, answers) in [(&mut out, &mut answers), (&mut other, &mut others)] {
+        client.write_all(HELLO.as_bytes()).unwrap();
+        let welcome = next(answers);
+        assert_eq!((&welcome["id"], &welcome["ok"]["version"]), (&json!("h"), &json!(1)), "{welcome}");
+        assert_eq!(
+            welcome["ok"]["fleet"],
+            json!({ "robots": 0, "waiting": 0, "alarmed": 0, "stopped": 0, "silent": 0 })
+        );
+        fits(&serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap(), &welcome);
+    }
     other.write_all(b"{\"verb\": \"watch\"}\n").unwrap();
     assert_eq!(next(&mut others)["ok"], json!({}));
     for request in &requests()[..2] {
         out.write_all(format!("{request}\n").as_bytes()).unwrap();
         assert_eq!(next(&mut answers)["ok"], json!({ "path": 1 }));
     }
-    // A line that is too long, and one without an end.
-    out.write_all(&vec![b'x'; LONGEST + 2]).unwrap();
-    out.write_all(b"\n{\"id\": 5, \"verb\": \"mission\", \"robot\": \"a\", \"mission\": \"m\", \"path\": [{\"kind\": \"line\", \"length\": 1}]}\n").unwrap();
-    assert_eq!(next(&mut answers)["error"]["code"], "malformed");
+    out.write_all(b"{\"id\": 5, \"verb\": \"mission\", \"robot\": \"a\", \"mission\": \"m\", \"path\": [{\"kind\": \"line\", \"length\": 1}]}\n").unwrap();
     assert_eq!(next(&mut answers)["id"], 5);
     assert_eq!(next(&mut others)["event"], "admitted");
     assert_eq!(next(&mut others)["event"], "hold");
@@ -410,7 +425,7 @@ fn clients_over_tcp_and_the_page() {
     let ask = |path: &str| get(&format!("GET {path} HTTP/1.1\r\nHost: {shown}\r\n\r\n"));
     assert!(ask("/").ends_with("<p>here</p>"));
     let metrics = ask("/metrics");
-    assert!(metrics.contains("\npcr_robots 2\n") && metrics.contains("pcr_latency_seconds_count 4\n"), "{metrics}");
+    assert!(metrics.contains("\npcr_robots 2\n") && metrics.contains("pcr_latency_seconds_count 6\n"), "{metrics}");
     let state = ask("/state");
     let state: Value = serde_json::from_str(state.split("\r\n\r\n").nth(1).unwrap()).unwrap();
     assert_eq!(state["robots"].as_array().unwrap().len(), 2);
@@ -486,18 +501,18 @@ fn a_client_that_never_reads_is_let_go_and_told_why() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let at = listener.local_addr().unwrap();
     let own = handle.clone();
-    thread::spawn(move || clients::listen(&own, &listener, Log::new(Level::Error)));
+    thread::spawn(move || clients::listen(&own, &listener.into(), Access::new(None), Log::new(Level::Error)));
     let server = thread::spawn(move || serve(&mut supervisor, &inputs, &Kept::default(), Log::new(Level::Error)));
     let (mut slow, mut other) = (TcpStream::connect(at).unwrap(), TcpStream::connect(at).unwrap());
+    for client in [&mut slow, &mut other] {
+        client.write_all(HELLO.as_bytes()).unwrap();
+    }
     slow.write_all(format!("{}\n", requests()[0]).as_bytes()).unwrap();
     // Answers are as long as the requests, as the id comes back.
     let id = "x".repeat(900_000);
     let request = format!(r#"{{"id": "{id}", "verb": "position", "robot": "a", "path": 1, "at": [0, 0]}}"#);
     for _ in 0..REQUESTS {
         slow.write_all(format!("{request}\n").as_bytes()).unwrap();
-    }
-    while handle.ask(|supervisor, _, _| supervisor.counts().positions).unwrap() < REQUESTS {
-        thread::yield_now();
     }
     // More than connections hold has waited: it is let go, and gets what had waited, and why there is no more.
     let answers: Vec<String> = BufReader::new(slow).lines().map(Result::unwrap).collect();
@@ -506,9 +521,39 @@ fn a_client_that_never_reads_is_let_go_and_told_why() {
     assert_eq!((&last["id"], &last["error"]["code"]), (&Value::Null, &json!("slow")), "{last}");
     assert!((before.len() as u64) < REQUESTS, "{}", before.len());
     other.write_all(b"{\"id\": 1, \"verb\": \"query\", \"what\": \"counts\"}\n").unwrap();
-    let mut line = String::new();
-    BufReader::new(other).read_line(&mut line).unwrap();
-    assert!(line.contains("\"ok\""), "{line}");
+    let answered: Vec<String> = BufReader::new(other).lines().take(2).map(Result::unwrap).collect();
+    assert!(answered.iter().all(|line| line.contains("\"ok\"")), "{answered:?}");
+    handle.send(Input::Stop);
+    server.join().unwrap().unwrap();
+}
+
+/// What it had sent was carried out, and nobody was told.
+#[test]
+fn what_a_client_has_sent_that_was_let_go_is_not_carried_out() {
+    let mut supervisor = supervisor();
+    let (handle, inputs) = queue();
+    let server = thread::spawn(move || serve(&mut supervisor, &inputs, &Kept::default(), Log::new(Level::Error)));
+    let (out, lines) = outbox();
+    handle.send(Input::Opened(1, out));
+    let say = |line: &str| assert!(handle.send(Input::Line(1, Request::read(line.as_bytes()))));
+    let robots = || handle.ask(|supervisor, _, _| supervisor.robots().len()).unwrap();
+    let long = format!(r#"{{"id": "{}", "verb": "watch"}}"#, "x".repeat(BACKLOG / 2));
+    say(&requests()[0]);
+    (0..3).for_each(|_| say(&long));
+    // What was decided before these is told.
+    assert_eq!([robots(), robots(), robots()], [1; 3]);
+    assert!(lines.is_closed());
+    say(&requests()[1]);
+    assert_eq!(robots(), 1);
+    // One that has gone does not read what becomes of its requests, and has sent them all the same.
+    let (out, lines) = outbox();
+    handle.send(Input::Opened(2, out));
+    drop(lines);
+    for line in [&requests()[0], &long, &requests()[1]] {
+        assert!(handle.send(Input::Line(2, Request::read(line.as_bytes()))));
+        robots();
+    }
+    assert_eq!(robots(), 2);
     handle.send(Input::Stop);
     server.join().unwrap().unwrap();
 }

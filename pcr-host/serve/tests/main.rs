@@ -9,6 +9,7 @@ mod lines;
 mod office;
 mod overtaken;
 mod runs;
+mod sockets;
 mod stops;
 mod world;
 mod writer;

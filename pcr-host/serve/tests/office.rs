@@ -2,6 +2,7 @@
 
 use crate::world::Disc;
 use pcr_serve::entry::{Entry, Keep};
+use pcr_serve::lines::Request;
 use pcr_serve::log::{Level, Log};
 use pcr_serve::outbox::{Lines, outbox};
 use pcr_serve::server::{Handle, Input, queue, serve};
@@ -76,7 +77,7 @@ impl Office {
     }
 
     pub(crate) fn ask(&self, request: &Value) {
-        self.handle.send(Input::Line(1, request.to_string().into_bytes()));
+        self.handle.send(Input::Line(1, Request::read(request.to_string().as_bytes())));
     }
 
     pub(crate) fn mission(&self, id: u64, robot: &str) {

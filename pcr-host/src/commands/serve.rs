@@ -2,11 +2,15 @@
 
 mod bridge;
 mod demo;
+mod listen;
 mod run;
 mod threads;
 
 use super::{Stop, whole};
 use clap::Args;
+use pcr_serve::log::{Level, Log};
+use std::fmt::Display;
+use std::net::{SocketAddr, TcpListener};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -22,7 +26,8 @@ Exit status:
 const EXAMPLES: &str = "\
 Examples:
   pcr serve --journal state                  lines of JSON (docs/serve.md)
-  pcr serve --journal state --listen 7070    the same for clients over TCP
+  pcr serve --journal state --listen         the same at the socket state/socket
+  pcr serve --journal state --listen 7070    and over TCP, with state/token
   pcr serve --journal state --page 8080      and a page: http://localhost:8080
   pcr serve --journal state --stay --broker localhost:1883 --fleet vehicles.json
   pcr serve --demo warehouse_graph.geojson   broker, vehicles, manager and page";
@@ -34,9 +39,15 @@ pub(super) struct Arguments {
     /// Directory of the journal; the next start goes on from it
     #[arg(long, value_name = "DIR")]
     journal: Option<PathBuf>,
-    /// Clients over TCP: a port of this machine, or ADDRESS:PORT
-    #[arg(long, value_name = "PORT", value_parser = place)]
-    listen: Option<String>,
+    /// Clients of the lines: at the socket DIR/socket, at unix:PATH, or over TCP at a port of this machine or at ADDRESS:PORT
+    #[arg(long, value_name = "PLACE", num_args = 0..=1, default_missing_value = listen::USUAL, value_parser = listen::place)]
+    listen: Vec<listen::Place>,
+    /// File with the token of clients over TCP, made if there is none [default: DIR/token]
+    #[arg(long, value_name = "FILE")]
+    token_file: Option<PathBuf>,
+    /// Let --listen take clients of other machines: neither the token nor the lines are encrypted
+    #[arg(long)]
+    allow_remote: bool,
     /// The live page and metrics: a port, or ADDRESS:PORT
     #[arg(long, value_name = "PORT", value_parser = place)]
     page: Option<String>,
@@ -82,6 +93,22 @@ fn place(text: &str) -> Result<String, String> {
         Ok(_) => Ok(text.to_owned()),
         Err(_) => Err("a port (0 to 65535) or ADDRESS:PORT is expected".into()),
     }
+}
+
+/// Listens at one of some addresses, and says in the log at which, with other values.
+fn bound(
+    option: &str,
+    place: &str,
+    addresses: &[SocketAddr],
+    values: &[(&str, &dyn Display)],
+    log: Log,
+) -> Result<TcpListener, Stop> {
+    let wrong = |error: std::io::Error| Stop::arguments(format!("{option}: {place}: {error}"));
+    let listener = TcpListener::bind(addresses).map_err(wrong)?;
+    let address = listener.local_addr().map_err(wrong)?;
+    let first: [(&str, &dyn Display); 2] = [("for", &option), ("address", &address)];
+    log.write(Level::Info, "listening", &[&first[..], values].concat());
+    Ok(listener)
 }
 
 impl Arguments {

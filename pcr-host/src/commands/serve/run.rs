@@ -5,7 +5,7 @@ use super::super::printed::{notes, quiet};
 use super::super::{NOT_WRITTEN, Stop, WRONG_INPUT};
 use super::demo::Demo;
 use super::threads::thread;
-use super::{Arguments, bridge};
+use super::{Arguments, bound, bridge, listen};
 use pcr_drawing::live;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, TURN};
 use pcr_serve::course::Shape;
@@ -25,6 +25,7 @@ use std::thread;
 
 pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     let settings = settings(&arguments)?;
+    listen::check(&arguments)?;
     let log = log_of(&arguments)?;
     let demo = arguments.demo.as_deref().map(|layout| Demo::start(layout, &arguments, log)).transpose()?;
     let (handle, inputs) = queue();
@@ -38,11 +39,8 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
             bridge::Fleet::of(&arguments)?.map(|fleet| bridge::start(&handle, &supervisor, fleet, log)).transpose()?
         }
     };
-    if let Some(listener) = arguments.listen.as_deref().map(|place| bound("--listen", place, log)).transpose()? {
-        let handle = handle.clone();
-        thread("clients", move || clients::listen(&handle, &listener, log))?;
-    }
-    if let Some(listener) = page(&arguments).map(|place| bound("--page", place, log)).transpose()? {
+    let _sockets = listen::start(&arguments, &handle, log)?;
+    if let Some(listener) = page(&arguments).map(|place| shown(place, log)).transpose()? {
         let url = listener.local_addr().map_or_else(|_| String::new(), |address| format!("http://{address}/"));
         match demo {
             Some(_) => writeln!(notes(), "pcr: open {url} in a browser; Ctrl-C ends the demo")?,
@@ -50,7 +48,7 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         }
         let site = site(&listener);
         let handle = handle.clone();
-        thread("page", move || http::listen(&handle, &listener, site, log))?;
+        thread("page", move || http::listen(&handle, &listener.into(), site, log))?;
     }
     let stays = arguments.stay || demo.is_some();
     let (failed, failures) = channel();
@@ -218,19 +216,14 @@ fn open(arguments: &Arguments, settings: Settings, handle: &Handle, log: Log) ->
     Ok((supervisor, kept))
 }
 
-/// A place to listen at: of this machine only, if no address is told.
-fn bound(option: &str, place: &str, log: Log) -> Result<TcpListener, Stop> {
-    let wrong = |error: &dyn std::fmt::Display| Stop::arguments(format!("{option}: {place}: {error}"));
-    let listener = match place.parse::<u16>() {
-        Ok(port) => TcpListener::bind(("127.0.0.1", port)),
-        Err(_) => TcpListener::bind(place),
-    };
-    let listener = listener.map_err(|error| wrong(&error))?;
-    let address = listener.local_addr().map_err(|error| wrong(&error))?;
-    if !address.ip().is_loopback() {
-        log.write(Level::Warn, "others than this machine can reach it: there is no password", &[("address", &address)]);
+/// Listens for the page.
+fn shown(place: &str, log: Log) -> Result<TcpListener, Stop> {
+    let addresses = listen::addresses(place).map_err(|error| Stop::arguments(format!("--page: {place}: {error}")))?;
+    let listener = bound("--page", place, &addresses, &[], log)?;
+    if listener.local_addr().is_ok_and(|address| !address.ip().is_loopback()) {
+        let what = "other machines can reach the page: whoever does sees the fleet, and can change nothing";
+        log.write(Level::Warn, what, &[("address", &place)]);
     }
-    log.write(Level::Info, "listening", &[("for", &option), ("address", &address)]);
     Ok(listener)
 }
 
