@@ -156,6 +156,8 @@ pages() {
   browser
   tool
   pcr-host/tests/browser/pages.py "${CARGO_TARGET_DIR:-target}/checked/pcr" target/pages
+  step "pages of others, in a real browser: they command no robot"
+  pcr-host/tests/browser/foreign.py "${CARGO_TARGET_DIR:-target}/checked/pcr" target/pages
 }
 
 web() {

@@ -53,6 +53,7 @@ impl Refusal {
                 "its first line is no hello: a client of an earlier version, or of something else (docs/serve.md)".into()
             }
             Self::Hello(Fault::Unauthorized { why }, _) => (*why).into(),
+            Self::Hello(Fault::Version { .. }, _) => "its hello has another version, or none".into(),
             Self::Hello(fault, _) => fault.to_string(),
         }
     }

@@ -16,9 +16,6 @@ use serde_json::{Map, Value, json};
 /// The version of the protocol: requests may name it, answers and events do.
 pub const VERSION: u64 = 1;
 
-/// Name and version of this program.
-const PROGRAM: &str = concat!("pcr-serve ", env!("CARGO_PKG_VERSION"));
-
 /// Longer lines are refused \[bytes\].
 pub const LONGEST: usize = 1 << 20;
 
@@ -190,7 +187,7 @@ pub fn carry_out(supervisor: &mut Supervisor, request: Request, came: f64, now: 
     let Request { id, verb, .. } = request;
     let mut watches = None;
     let done = verb.and_then(|verb| match verb {
-        Verb::Hello(_) => Ok(json!({ "version": VERSION, "program": PROGRAM, "fleet": Census::of(supervisor) })),
+        Verb::Hello(_) => Ok(json!({ "version": VERSION, "fleet": Census::of(supervisor) })),
         Verb::Layout(layout) => supervisor.draw(layout).map(|()| json!({})),
         Verb::Add(Added { robot, start, abilities }) => {
             supervisor.add(&robot, abilities, start)?;

@@ -5,7 +5,7 @@ use std::net::{Shutdown, TcpListener, TcpStream};
 use std::time::Duration;
 
 #[cfg(unix)]
-pub use unix::File;
+pub use unix::SocketFile;
 
 #[cfg(unix)]
 use std::os::unix::net::{UnixListener, UnixStream};
@@ -126,13 +126,13 @@ mod unix {
 
     /// The file of a Unix socket, to which only its owner can connect. It is removed when this is dropped.
     #[derive(Debug)]
-    pub struct File {
+    pub struct SocketFile {
         path: PathBuf,
         /// Device and number of the file.
         id: (u64, u64),
     }
 
-    impl File {
+    impl SocketFile {
         /// Listens at a file, which is made. One that a program has left behind is replaced.
         ///
         /// # Errors
@@ -150,7 +150,7 @@ mod unix {
         }
     }
 
-    impl Drop for File {
+    impl Drop for SocketFile {
         fn drop(&mut self) {
             // Somebody else may have put another file there.
             if fs::symlink_metadata(&self.path).is_ok_and(|there| (there.dev(), there.ino()) == self.id) {
@@ -179,7 +179,7 @@ mod unix {
 
     /// Makes the socket in a folder that nobody else can look into, gives it its permissions, and moves it to its place. So nobody else can
     /// connect at any time.
-    fn placed(path: &Path, folder: &Path) -> io::Result<(Listener, File)> {
+    fn placed(path: &Path, folder: &Path) -> io::Result<(Listener, SocketFile)> {
         let mut random = [0; 4];
         getrandom::fill(&mut random).map_err(io::Error::other)?;
         let inner = folder.join(format!(".pcr-{:08x}", u32::from_ne_bytes(random)));
@@ -194,7 +194,7 @@ mod unix {
             fs::set_permissions(&socket, Permissions::from_mode(0o600))?;
             let there = fs::symlink_metadata(&socket)?;
             fs::rename(&socket, path)?;
-            Ok((Listener::Unix(listener), File { path: path.into(), id: (there.dev(), there.ino()) }))
+            Ok((Listener::Unix(listener), SocketFile { path: path.into(), id: (there.dev(), there.ino()) }))
         };
         let made = made();
         // It is empty after the move.
@@ -219,7 +219,7 @@ mod unix {
         fn only_its_owner_can_connect_and_it_is_removed_at_the_end() {
             let folder = folder("own");
             let path = folder.join("lines");
-            let (listener, file) = File::bind(&path).unwrap();
+            let (listener, file) = SocketFile::bind(&path).unwrap();
             let there = fs::symlink_metadata(&path).unwrap();
             assert!(there.file_type().is_socket());
             assert_eq!(there.permissions().mode() & 0o777, 0o600);
@@ -230,7 +230,7 @@ mod unix {
             let mut said = [0; 4];
             stream.read_exact(&mut said).unwrap();
             assert_eq!(&said, b"here");
-            let why = File::bind(&path).unwrap_err();
+            let why = SocketFile::bind(&path).unwrap_err();
             assert!(
                 why.kind() == ErrorKind::AddrInUse && why.to_string().ends_with("another program listens there"),
                 "{why}"
@@ -244,24 +244,24 @@ mod unix {
         fn a_socket_that_was_left_behind_is_replaced_and_nothing_else_is() {
             let folder = folder("left");
             let path = folder.join("lines");
-            let (listener, file) = File::bind(&path).unwrap();
+            let (listener, file) = SocketFile::bind(&path).unwrap();
             std::mem::forget(file);
             drop(listener);
             assert!(path.exists());
-            let (listener, file) = File::bind(&path).unwrap();
+            let (listener, file) = SocketFile::bind(&path).unwrap();
             assert!(UnixStream::connect(&path).is_ok());
             // One that was put there meanwhile is not removed.
             fs::remove_file(&path).unwrap();
             fs::write(&path, "other").unwrap();
             drop((listener, file));
             assert_eq!(fs::read_to_string(&path).unwrap(), "other");
-            let why = File::bind(&path).unwrap_err().to_string();
+            let why = SocketFile::bind(&path).unwrap_err().to_string();
             assert!(why.contains("no socket"), "{why}");
             assert_eq!(fs::read_to_string(&path).unwrap(), "other");
             let long = folder.join("x".repeat(120));
-            let why = File::bind(&long).unwrap_err().to_string();
+            let why = SocketFile::bind(&long).unwrap_err().to_string();
             assert!(why.ends_with("the name is too long for a socket: choose a shorter one"), "{why}");
-            assert!(File::bind(&folder.join("missing/lines")).is_err());
+            assert!(SocketFile::bind(&folder.join("missing/lines")).is_err());
             assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
             fs::remove_dir_all(folder).unwrap();
         }
@@ -271,9 +271,9 @@ mod unix {
             let folder = folder("once");
             let path = folder.join("lines");
             // One is left behind.
-            std::mem::forget(File::bind(&path).unwrap().1);
+            std::mem::forget(SocketFile::bind(&path).unwrap().1);
             let bound: Vec<_> = std::thread::scope(|scope| {
-                let threads: Vec<_> = (0..8).map(|_| scope.spawn(|| File::bind(&path))).collect();
+                let threads: Vec<_> = (0..8).map(|_| scope.spawn(|| SocketFile::bind(&path))).collect();
                 threads.into_iter().map(|thread| thread.join().unwrap()).collect()
             });
             assert_eq!(bound.iter().filter(|bound| bound.is_ok()).count(), 1, "{bound:?}");

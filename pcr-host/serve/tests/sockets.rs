@@ -230,7 +230,7 @@ fn a_connection_ends_at_the_first_line_that_is_no_object() {
     last.shutdown(Shutdown::Write).unwrap();
     let mut said = String::new();
     last.read_to_string(&mut said).unwrap();
-    assert!(said.contains("\"program\":\"pcr-serve "), "{said}");
+    assert!(said.contains("\"version\":1"), "{said}");
 }
 
 #[test]
@@ -349,7 +349,7 @@ fn clients_at_a_file_need_no_token() {
     let folder = std::env::temp_dir().join(format!("pcr-sockets-{}-file", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let path = folder.join("socket");
-    let (listener, file) = sockets::File::bind(&path).unwrap();
+    let (listener, file) = sockets::SocketFile::bind(&path).unwrap();
     let (handle, inputs) = queue();
     let own = handle.clone();
     thread::spawn(move || clients::listen(&own, &listener, Access::new(None), Log::new(Level::Error)));

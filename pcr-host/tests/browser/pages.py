@@ -37,7 +37,7 @@ FLAGS = ("--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --
 class Browser:
     """A Chromium and one page in it."""
 
-    def __init__(self, program):
+    def __init__(self, program, *flags):
         self.profile = tempfile.mkdtemp(prefix="pcr-pages-")
         (to_read, self.write), (self.read, to_write) = os.pipe(), os.pipe()
 
@@ -48,7 +48,7 @@ class Browser:
             os.dup2(ends[1], 4)
 
         self.process = subprocess.Popen(
-            [program, *FLAGS, f"--user-data-dir={self.profile}", "about:blank"],
+            [program, *FLAGS, *flags, f"--user-data-dir={self.profile}", "about:blank"],
             preexec_fn=ends, close_fds=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(to_read)
         os.close(to_write)
@@ -129,6 +129,14 @@ class Browser:
         self.process.kill()
         self.process.wait()
         shutil.rmtree(self.profile, ignore_errors=True)
+
+
+def program():
+    """Where Chromium is."""
+    found = next((path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path), None)
+    if not found:
+        raise SystemExit("pages: no Chromium (Debian's package chromium)")
+    return found
 
 
 CONTROLS = """[...document.querySelectorAll('button, select, input, [tabindex="0"]')]
@@ -492,10 +500,7 @@ def main(tool, folder, *names):
     pages = {name: folder / page for name, page in pages.items()}
     fleet = Fleet(tool)
     pages["live"] = fleet.address
-    program = next((path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path), None)
-    if not program:
-        raise SystemExit("pages: no Chromium (Debian's package chromium)")
-    browser = Browser(program)
+    browser = Browser(program())
     failed = 0
     try:
         for name in names or pages:

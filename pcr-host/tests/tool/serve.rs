@@ -190,28 +190,209 @@ fn answers_that_cannot_be_written_end_it() {
     drop(stdin);
 }
 
+/// A supervisor that takes clients of the lines, and what it has logged at its start.
+#[cfg(target_os = "linux")]
+struct Listening {
+    child: std::process::Child,
+    log: Box<dyn Iterator<Item = String>>,
+    /// The line that says where it listens.
+    said: String,
+}
+
+#[cfg(target_os = "linux")]
+impl Listening {
+    fn start(arguments: &[&str], out: Stdio) -> Self {
+        use std::io::{BufRead, BufReader};
+        let mut command = pcr();
+        command.args(["serve", "--stay"]).args(arguments).stdin(Stdio::piped()).stdout(out).stderr(Stdio::piped());
+        let mut child = command.spawn().unwrap();
+        let mut log = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
+        let said = log.by_ref().find(|line| line.contains("msg=\"listening\""));
+        let said = said.unwrap_or_else(|| panic!("{arguments:?}: it does not listen"));
+        Self { child, log: Box::new(log), said }
+    }
+
+    /// A value of that line.
+    fn value(&self, key: &str) -> String {
+        let (_, rest) =
+            self.said.split_once(&format!(" {key}=\"")).unwrap_or_else(|| panic!("{}: no {key}", self.said));
+        rest.split('"').next().unwrap().to_owned()
+    }
+
+    fn client(&self) -> std::net::TcpStream {
+        std::net::TcpStream::connect(self.value("address")).unwrap()
+    }
+
+    fn hello(&self) -> String {
+        let token = std::fs::read_to_string(self.value("token")).unwrap();
+        format!("{}\n", json!({ "pcr": 1, "verb": "hello", "token": token.trim_end() }))
+    }
+}
+
+#[cfg(target_os = "linux")]
+impl Drop for Listening {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Writes lines and returns those that come back until the connection ends.
+#[cfg(target_os = "linux")]
+fn answers(mut stream: impl std::io::Read + std::io::Write, lines: &str) -> Vec<Value> {
+    use std::io::{BufRead, BufReader};
+    stream.write_all(lines.as_bytes()).unwrap();
+    BufReader::new(stream).lines().map_while(Result::ok).map(|line| serde_json::from_str(&line).unwrap()).collect()
+}
+
+#[cfg(target_os = "linux")]
+const ROBOTS: &str = "{\"verb\":\"query\",\"what\":\"robots\"}\n";
+
+/// Ends a connection.
+#[cfg(target_os = "linux")]
+const END: &str = "end\n";
+
 /// Robots and other clients still need a supervisor whose own output is full.
 #[cfg(target_os = "linux")]
 #[test]
 fn it_stays_where_answers_cannot_be_written() {
-    use std::io::{BufRead, BufReader, Write};
+    use std::io::Write;
     let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    let mut command = pcr();
-    command.args(["serve", "--stay", "--listen", "0"]).stdin(Stdio::piped()).stdout(full).stderr(Stdio::piped());
-    let mut child = command.spawn().unwrap();
-    let mut log = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
-    let listens = log.by_ref().find(|line| line.contains("msg=\"listening\"")).unwrap();
-    let address = listens.rsplit('=').next().unwrap().trim_matches('"').to_owned();
-    child.stdin.take().unwrap().write_all(ADD.as_bytes()).unwrap();
-    assert!(log.any(|line| line.contains("level=error") && line.contains("standard output cannot be written")));
-    let client = std::net::TcpStream::connect(address).unwrap();
-    (&client).write_all(b"{\"verb\":\"query\",\"what\":\"robots\"}\n").unwrap();
-    let mut line = String::new();
-    BufReader::new(&client).read_line(&mut line).unwrap();
-    let answer: Value = serde_json::from_str(&line).unwrap();
-    assert_eq!(answer["ok"]["robots"][0]["mission"], "1", "{line}");
-    child.kill().unwrap();
-    child.wait().unwrap();
+    let folder = directory("stays").join("state");
+    let _ = std::fs::remove_dir_all(&folder);
+    let mut own = Listening::start(&["--journal", folder.to_str().unwrap(), "--listen", "0"], full.into());
+    own.child.stdin.take().unwrap().write_all(ADD.as_bytes()).unwrap();
+    assert!(own.log.any(|line| line.contains("level=error") && line.contains("standard output cannot be written")));
+    let said = answers(own.client(), &format!("{}{ROBOTS}{END}", own.hello()));
+    assert_eq!(said[1]["ok"]["robots"][0]["mission"], "1", "{said:?}");
+}
+
+/// Whoever could connect could command robots: any program of the machine, and any page in a browser.
+#[cfg(target_os = "linux")]
+#[test]
+fn clients_over_tcp_need_the_token_of_a_file() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = directory("token").join("state");
+    let _ = std::fs::remove_dir_all(&folder);
+    let name = folder.to_str().unwrap();
+    let mut own = Listening::start(&["--journal", name, "--listen", "0"], Stdio::null());
+    let token = folder.join("token");
+    assert_eq!(own.value("token"), token.to_string_lossy());
+    assert_eq!(std::fs::metadata(&token).unwrap().permissions().mode() & 0o777, 0o600);
+    let secret = std::fs::read_to_string(&token).unwrap().trim_end().to_owned();
+    assert!(!own.said.contains(&secret));
+    let post = format!(
+        "POST / HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: http://evil.example\r\nContent-Length: {}\r\n\r\n{ADD}{END}",
+        ADD.len() + END.len()
+    );
+    for (lines, code, kind) in [
+        (format!("{ADD}{END}"), "no_hello", "its first line is no hello"),
+        (format!("{{\"pcr\":1,\"verb\":\"hello\"}}\n{ADD}{END}"), "unauthorized", "hello has no token"),
+        (own.hello().replace(&secret[..9], "000000000") + ADD, "unauthorized", ""),
+        (own.hello().replace(":1", ":2") + ADD, "version", "its hello has another version, or none"),
+        (post, "malformed", "a browser or an HTTP client has sent a request to the lines"),
+    ] {
+        let said = answers(own.client(), &lines);
+        assert_eq!((said.len(), &said[0]["error"]["code"]), (1, &json!(code)), "{lines}: {said:?}");
+        if !kind.is_empty() {
+            let line = own.log.find(|line| line.contains("msg=\"a connection to the lines is refused\"")).unwrap();
+            assert!(line.contains("level=warn") && line.contains(kind), "{line}");
+            assert!(
+                !line.contains(&secret) && (code != "malformed" || line.contains("page=\"http://evil.example\"")),
+                "{line}"
+            );
+        }
+    }
+    let said = answers(own.client(), &format!("{}{ROBOTS}{ADD}{END}", own.hello()));
+    assert_eq!(said[0]["ok"]["fleet"]["robots"], 0, "{said:?}");
+    assert_eq!((&said[1]["ok"]["robots"], &said[2]["ok"]["path"]), (&json!([]), &json!(1)), "{said:?}");
+    // The next start has the same token.
+    drop(own);
+    let own = Listening::start(&["--journal", name, "--listen", "127.0.0.1:0"], Stdio::null());
+    assert_eq!(std::fs::read_to_string(&token).unwrap().trim_end(), secret);
+    let said = answers(own.client(), &format!("{}{ROBOTS}{END}", own.hello()));
+    assert_eq!(said[1]["ok"]["robots"][0]["robot"], "a", "{said:?}");
+    drop(own);
+    // One that others may read is refused, here and anywhere else.
+    std::fs::set_permissions(&token, std::fs::Permissions::from_mode(0o644)).unwrap();
+    let refused = run(&["serve", "--log", "error", "--journal", name, "--listen", "0"]).failed(2);
+    assert!(
+        refused.starts_with(&format!("pcr: --token-file: {}: others than its owner may read", token.display())),
+        "{refused}"
+    );
+    let own = folder.join("own");
+    let own = Listening::start(&["--token-file", own.to_str().unwrap(), "--listen", "0"], Stdio::null());
+    assert_eq!(answers(own.client(), &format!("{}{END}", own.hello()))[0]["ok"]["version"], 1);
+}
+
+/// At a socket in the folder of the journal, programs of the same user are clients.
+#[cfg(target_os = "linux")]
+#[test]
+fn clients_at_a_socket_need_a_hello_and_no_token() {
+    use std::os::unix::fs::{FileTypeExt, PermissionsExt};
+    use std::os::unix::net::UnixStream;
+    let folder = directory("socket").join("state");
+    let _ = std::fs::remove_dir_all(&folder);
+    let name = folder.to_str().unwrap();
+    let socket = folder.join("socket");
+    let other = format!("unix:{}", folder.join("other").display());
+    for round in 0..3 {
+        // Once after an end in order, and once after a kill.
+        let mut own =
+            Listening::start(&["--journal", name, "--listen", "--listen", &other, "--silence", "9"], Stdio::null());
+        assert_eq!(own.value("socket"), socket.to_string_lossy());
+        let kind = std::fs::symlink_metadata(&socket).unwrap();
+        assert!(kind.file_type().is_socket() && kind.permissions().mode() & 0o777 == 0o600);
+        let said = answers(UnixStream::connect(&socket).unwrap(), &format!("{ADD}{END}"));
+        assert_eq!((said.len(), &said[0]["error"]["code"]), (1, &json!("no_hello")), "{said:?}");
+        let said =
+            answers(UnixStream::connect(&socket).unwrap(), &format!("{{\"pcr\":1,\"verb\":\"hello\"}}\n{ROBOTS}{END}"));
+        assert_eq!((said.len(), &said[1]["ok"]["robots"]), (3, &json!([])), "{said:?}");
+        assert!(own.log.any(|line| line.contains("msg=\"listening\"") && line.contains("other\"")));
+        assert!(UnixStream::connect(folder.join("other")).is_ok());
+        if round == 0 {
+            // Another supervisor does not take it.
+            let place = format!("unix:{}", socket.display());
+            let refused = run(&["serve", "--log", "error", "--listen", &place]).failed(2);
+            assert_eq!(refused, format!("pcr: --listen: {}: another program listens there\n", socket.display()));
+            let ends = std::process::Command::new("kill").arg(own.child.id().to_string()).status().unwrap();
+            assert!(ends.success() && own.child.wait().unwrap().success());
+            assert!(!socket.exists());
+        }
+    }
+    assert!(!folder.join("token").exists());
+}
+
+#[test]
+fn places_that_are_none_and_addresses_of_others_are_refused() {
+    let folder = directory("places").join("state");
+    let name = folder.to_str().unwrap();
+    for (arguments, reason) in [
+        (
+            &["--listen", "0"][..],
+            "--listen: clients over TCP need a token: --journal DIR keeps it in DIR/token, or --token-file FILE says where\n",
+        ),
+        (
+            &["--listen"],
+            "--listen: the socket is in the folder of --journal, which is not given; or --listen unix:PATH\n",
+        ),
+        (
+            &["--journal", name, "--listen", "--token-file", "x"],
+            "--token-file has no effect: only clients over TCP need a token\n",
+        ),
+        (&["--journal", name, "--allow-remote"], "--allow-remote has no effect: --listen names no address\n"),
+        (
+            &["--journal", name, "--listen", "0.0.0.0:0"],
+            "--listen: 0.0.0.0:0: other machines can reach this address, and neither the token nor the lines are encrypted",
+        ),
+        (&["--journal", name, "--listen", "[::]:0"], "other machines can reach this address"),
+        (&["--journal", name, "--listen", "/tmp/x"], "unix:PATH, a port (0 to 65535) or ADDRESS:PORT is expected"),
+        (&["--journal", name, "--listen", "unix:/"], "--listen: /: "),
+    ] {
+        let run = run(&[&["serve", "--log", "error"][..], arguments].concat());
+        assert_eq!((run.status, run.out.as_str()), (2, ""), "{arguments:?}: {}", run.err);
+        assert!(run.err.contains(reason), "{arguments:?}: {}", run.err);
+    }
 }
 
 /// It was the journal of which was said that it cannot be written.

@@ -6,7 +6,9 @@ use super::{Arguments, bound};
 use pcr_serve::clients::{self, Access};
 use pcr_serve::log::{Level, Log};
 use pcr_serve::server::Handle;
-use pcr_serve::sockets::{self, Listener};
+use pcr_serve::sockets::Listener;
+#[cfg(unix)]
+use pcr_serve::sockets::SocketFile;
 use pcr_serve::token::Token;
 use std::net::{SocketAddr, ToSocketAddrs};
 use std::path::{Path, PathBuf};
@@ -60,7 +62,7 @@ fn token_file(arguments: &Arguments) -> Option<PathBuf> {
 }
 
 /// The files of sockets, which are removed at the end.
-pub(super) struct Sockets(#[cfg(unix)] Vec<sockets::File>);
+pub(super) struct Sockets(#[cfg(unix)] Vec<SocketFile>);
 
 /// Takes clients at all places, each in a thread of its own.
 pub(super) fn start(arguments: &Arguments, handle: &Handle, log: Log) -> Result<Sockets, Stop> {
@@ -86,8 +88,7 @@ pub(super) fn start(arguments: &Arguments, handle: &Handle, log: Log) -> Result<
 impl Sockets {
     #[cfg(unix)]
     fn bind(&mut self, path: &Path, log: Log) -> Result<Listener, Stop> {
-        let (listener, file) =
-            sockets::File::bind(path).map_err(|error| Stop::arguments(format!("--listen: {error}")))?;
+        let (listener, file) = SocketFile::bind(path).map_err(|error| Stop::arguments(format!("--listen: {error}")))?;
         self.0.push(file);
         log.write(Level::Info, "listening", &[("for", &"--listen"), ("socket", &path.display())]);
         Ok(listener)
