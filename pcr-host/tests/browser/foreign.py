@@ -14,6 +14,7 @@ import http.server
 import json
 import os
 import re
+import shutil
 import socket
 import subprocess
 import sys
@@ -21,7 +22,7 @@ import threading
 import time
 from pathlib import Path
 
-from pages import SLEEP, Browser, program
+from pages import Browser, program
 
 ABILITIES = {"radius": 0.25, "speed": 1, "acceleration": 0.5}
 # East stands in the crossing that north waits for: without it, north may go on.
@@ -104,7 +105,9 @@ class Supervisor:
     def state(self):
         """All that a client could have changed."""
         robots, counts = (answer["ok"] for answer in self.ask([{"verb": "query", "what": what} for what in ("robots", "counts")], self.token)[1:])
-        return robots["robots"], {name: counts[name] for name in ("positions", "missions", "admitted", "refused")}
+        # By itself it notes who is silent, and tries the missions again that wait.
+        robots = [{name: value for name, value in robot.items() if name != "silent"} for robot in robots["robots"]]
+        return robots, {name: counts[name] for name in ("positions", "missions", "admitted")}
 
 
 class Quiet(http.server.SimpleHTTPRequestHandler):
@@ -143,7 +146,8 @@ def check(browser, supervisor, host):
                           f"const form = Object.assign(document.createElement('form'), {{ method: 'post', enctype: '{kind}', action: url }}); "
                           "const area = document.createElement('textarea'); [area.name, area.value] = [text, '']; form.append(area); "
                           "document.body.append(form); form.submit(); })()")
-            browser.value(SLEEP.format(300))
+            # The page that is shown may be another one by now, in which nothing can be asked.
+            time.sleep(0.3)
     if supervisor.state() != before:
         wrong.append(f"{host}: a form: the state is another one")
     # Under a name that leads here, the live page shows nothing.
@@ -158,7 +162,7 @@ def check(browser, supervisor, host):
 def main(tool, folder):
     folder = Path(folder).resolve() / "foreign"
     folder.mkdir(parents=True, exist_ok=True)
-    subprocess.run(["rm", "-rf", folder / "state"], check=True)
+    shutil.rmtree(folder / "state", ignore_errors=True)
     (folder / "evil.html").write_text("<!doctype html><title>somebody else</title><body></body>")
     server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Quiet, directory=folder))
     threading.Thread(target=server.serve_forever, daemon=True).start()
