@@ -39,14 +39,14 @@ pub(super) struct Arguments {
     /// Directory of the journal; the next start goes on from it
     #[arg(long, value_name = "DIR")]
     journal: Option<PathBuf>,
-    /// Clients of the lines: at the socket DIR/socket, at unix:PATH, or over TCP at a port of this machine or at ADDRESS:PORT
+    /// Clients of the lines: at the socket DIR/socket, at unix:PATH, or over TCP at [ADDRESS:]PORT
     #[arg(long, value_name = "PLACE", num_args = 0..=1, default_missing_value = listen::USUAL, value_parser = listen::place)]
     listen: Vec<listen::Place>,
-    /// File with the token of clients over TCP, made if there is none [default: DIR/token]
-    #[arg(long, value_name = "FILE")]
+    /// File with the token of clients over TCP [default: DIR/token]
+    #[arg(long, value_name = "FILE", hide_short_help = true)]
     token_file: Option<PathBuf>,
-    /// Let --listen take clients of other machines: neither the token nor the lines are encrypted
-    #[arg(long)]
+    /// Let --listen take clients of other machines, without encryption
+    #[arg(long, hide_short_help = true)]
     allow_remote: bool,
     /// The live page and metrics: a port, or ADDRESS:PORT
     #[arg(long, value_name = "PORT", value_parser = place)]
