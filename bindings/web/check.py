@@ -8,6 +8,7 @@
 - delays that the page plans leave no conflict for the tool;
 - a saved file is the scenario, for the page and for the tool; plans that the tool writes are loaded, and what is no scenario is refused with a reason;
 - what the tool refuses is refused, in files and in fields, and what it takes is taken, with the reason said and nothing of it drawn;
+- an agent is removed, and the others keep their colours and can be edited;
 - a link that is copied opens the scenario, in a new window and in one that shows the page.
 
 Screenshots stay in FOLDER."""
@@ -232,6 +233,32 @@ def fields(browser):
     return wrong
 
 
+def removals(browser):
+    """Whoever removes an agent can go on with the others, which keep their colours; without any, one is added."""
+    wrong = []
+    state = lambda: browser.value("""({ ids: scenario.agents.map((agent) => agent.id), colours: scenario.agents.map((_, k) => colour(k)), which: $('which').textContent,
+      chosen: $('agent').selectedOptions[0]?.text ?? '', removable: !$('remove').disabled, sliders: document.querySelectorAll('#sliders input').length, wrong: $('said').classList.contains('wrong') })""")
+    click = lambda button: (browser.value(f"$('{button}').click(); 0"), browser.value(SLEEP.format(50)), state())[2]
+    for steps in (("add", "remove", "remove", "remove"), ("remove", "add", "remove", "remove"), ("plan", "remove", "add", "remove", "remove")):
+        browser.value("open(START); 0")
+        for chosen in ("0", "scenario.agents.length - 1", "2"):
+            browser.value(f"chosen = {chosen}; edit(); update(); 0")
+            before = state()
+            for step in steps:
+                after = click(step)
+                is_whole = not after["ids"] or after["removable"] and after["sliders"] and after["which"] == after["chosen"] != "" and not after["wrong"]
+                if not is_whole:
+                    wrong.append(f"the editor is dead after {step} of {steps}: {after}")
+                colours = dict(zip(before["ids"], before["colours"]))
+                if any(colours.get(id, colour) != colour for id, colour in zip(after["ids"], after["colours"])) or len(set(after["colours"])) != len(after["ids"]):
+                    wrong.append(f"colours change, or are not told apart, after {step} of {steps}: {before['colours']} {after['colours']}")
+                before = after
+    while state()["ids"]:
+        click("remove")
+    alone = click("add")
+    return wrong + ([] if alone["removable"] and alone["sliders"] and alone["which"] else [f"an agent that is added to none: {alone}"])
+
+
 def links(browser, page):
     """Copies a link and opens it, in a page that is newly opened and in one that shows something else."""
     wrong = []
@@ -321,7 +348,7 @@ def main(tool, page, folder):
         drag(browser, "leg", (90, -60), moves=40)
         took = sorted(browser.value("update = inner, took"))
         print(f"a drag with {browser.value('scenario.agents.length')} agents, regions and pictures: {len(took)} frames of {took[len(took) // 2]:.1f} ms, {took[-1]:.1f} ms at most")
-        wrong += snapping(browser) + keys(browser) + files(tool, folder, browser) + refusals(tool, folder, browser) + fields(browser) + links(browser, page)
+        wrong += snapping(browser) + keys(browser) + files(tool, folder, browser) + refusals(tool, folder, browser) + fields(browser) + removals(browser) + links(browser, page)
         wrong += browser.noise()
         browser.open(page, 390, "dark")
         ready(browser)

@@ -2,13 +2,26 @@
 const $ = (id) => document.getElementById(id);
 const AGENTS = 24, LEGS = 32, COLUMNS = 360;
 // The palette of pictures, told apart by brightness as well.
-const colour = (k) => `hsl(${(k * 137.5 + 210) % 360} 65% ${dark() ? 62 : 42}%)`;
+const colour = (k) => `hsl(${(hue(scenario.agents[k]) * 137.5 + 210) % 360} 65% ${dark() ? 62 : 42}%)`;
 const dark = () => matchMedia("(prefers-color-scheme: dark)").matches;
 const tint = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 let pcr, scenario, chosen = 0, time = 0, playing = false, answers, view, grabbed = null, queued = false;
+// The number of the colour of each agent, which it keeps while others are added and removed.
+const hues = new WeakMap();
 // Why what stands in a field was not taken.
 let untaken = "";
+
+/** The number of an agent's colour: the one that it has, or else the least that no agent has. */
+function hue(agent) {
+  if (!hues.has(agent)) {
+    const taken = new Set(scenario.agents.map((other) => hues.get(other)));
+    let number = 0;
+    while (taken.has(number)) number++;
+    hues.set(agent, number);
+  }
+  return hues.get(agent);
+}
 
 function say(text, wrong = false) {
   $("said").textContent = text;
@@ -25,7 +38,6 @@ function build(next) {
 /** Computes everything anew; what cannot be computed is said, and nothing of it is drawn. */
 function update() {
   const agents = scenario.agents;
-  chosen = Math.max(0, Math.min(chosen, agents.length - 1));
   answers = { conflicts: [], map: [], holds: null, first: 0, last: 1, valid: false };
   try {
     build(scenario);
@@ -80,9 +92,12 @@ function later(act = update) {
 
 const SLIDERS = [["radius", "Radius [m]", 0.02, 1], ["v_max", "Speed [m/s]", 0.05, 3], ["a_max", "Acceleration [m/s²]", 0.05, 3], ["t_start", "Start [s]", 0, 60]];
 
-/** The controls of the chosen agent. */
+/** The controls of the chosen agent; of the last one, if the chosen one was behind it and is removed. */
 function edit() {
-  const agents = scenario.agents, agent = agents[chosen];
+  const agents = scenario.agents;
+  chosen = Math.max(0, Math.min(chosen, agents.length - 1));
+  agents.forEach(hue);
+  const agent = agents[chosen];
   untaken = "";
   $("agent").replaceChildren(...agents.map((_, k) => new Option(name(k), k, false, k === chosen)));
   $("which").textContent = agent ? name(chosen) : "";
