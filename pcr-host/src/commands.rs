@@ -25,16 +25,17 @@ mod tips;
 mod traffic;
 mod work;
 
-use crate::progress;
+use crate::{abort, progress};
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use pcr_formats::import::Warnings;
 use pcr_formats::input::InputError;
 use pcr_formats::output::{self, Kept};
+use pcr_formats::warning::WarningCode;
 use pcr_planning::failure::Failure;
 use pcr_planning::memory;
 pub(crate) use printed::complain;
-use printed::{Form, Printed, quiet};
+use printed::{Form, Printed, acknowledge, caution, quiet};
 use sources::scenario;
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -57,6 +58,7 @@ Exit status:
   2  wrong arguments, or a file that cannot be read or was refused
   3  the output could not be written
   4  undecided: the rounding of the checker is too large
+  134  a fault of pcr, which aborted; please report it
 For those of one command: pcr COMMAND --help";
 
 /// The exit statuses of a command that answers no question, with the reasons for [`WRONG_INPUT`].
@@ -87,6 +89,11 @@ pub(crate) struct Arguments {
     /// Only errors, JSON and CSV; no tables or warnings
     #[arg(short, long, global = true, overrides_with = "quiet")]
     quiet: bool,
+    /// Print the progress of long work also where standard error is no terminal
+    #[arg(long, global = true, overrides_with = "progress", hide_short_help = true)]
+    progress: bool,
+    #[command(flatten)]
+    warnings: printed::Judgement,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -127,20 +134,34 @@ impl Command {
 pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, Stop> {
     survive_limits();
     let Some(arguments) = help::parse(words)? else { return Ok(ExitCode::SUCCESS) };
+    let left = memory::left();
+    abort::watch(left);
+    arguments.warnings.apply();
+    if arguments.progress {
+        progress::request();
+    }
     if arguments.quiet {
         printed::be_quiet();
         progress::silence();
-    } else if memory::left() == Some(0) {
-        complain(
-            "warning: hardly any memory is left to this process; if it runs out, the answer is \"memory allocation of N bytes \
-             failed\", and the exit status is 2",
+    }
+    if left == Some(0) {
+        caution(
+            WarningCode::Memory,
+            "hardly any memory is left to this process; if it runs out, the answer is \"memory allocation of N bytes failed\", and \
+             the exit status is 2",
         );
     }
     spread();
     if arguments.command.as_ref().is_some_and(Command::is_answered_by_status) {
         printed::go_to_the_end();
     }
-    match arguments.command {
+    let status = run_command(arguments.command)?;
+    printed::refuse_denied().map_err(Stop::arguments)?;
+    Ok(status)
+}
+
+fn run_command(command: Option<Command>) -> Result<ExitCode, Stop> {
+    match command {
         None => demo::Arguments::default().run(),
         Some(Command::Regions(arguments)) => arguments.run(),
         Some(Command::Certify(arguments)) => arguments.run(),
@@ -161,18 +182,13 @@ pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, Stop> {
     }
 }
 
-/// A limit on the size of files is an error of a write, with its message, and no signal that ends the program. Where memory is
-/// refused that nobody has asked for before, the message of the allocator ("memory allocation of N bytes failed") has to do, and
-/// the status is that of an input that is too large: not that of a crash.
+/// A limit on the size of files is an error of a write, with its message, and no signal that ends the program.
 fn survive_limits() {
     #[cfg(unix)]
     {
-        use signal_hook::consts::{SIGABRT, SIGXFSZ};
-        use std::sync::atomic::AtomicBool;
+        use signal_hook::consts::SIGXFSZ;
         // Where a signal cannot be caught, it ends the program as it does others; no file is damaged by that.
         let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
-        let always = Arc::new(AtomicBool::new(true));
-        let _ = signal_hook::flag::register_conditional_shutdown(SIGABRT, WRONG_INPUT.into(), always);
     }
 }
 
@@ -262,15 +278,18 @@ impl Stop {
 }
 
 fn warn(file: &Path, warnings: &Warnings) {
-    say(file, warnings.lines());
+    say(file, warnings.coded_lines());
 }
 
+/// Prints the warnings about a file, each with its code; not those that are acknowledged, and not more than people read.
 fn say(file: &Path, lines: impl IntoIterator<Item = String>) {
+    let mut lines = lines.into_iter().collect();
+    acknowledge(&mut lines);
     if quiet() {
         return;
     }
     let name = if file == Path::new("-") { "standard input".into() } else { file.to_string_lossy() };
-    for line in lines {
+    for line in printed::few(lines) {
         complain(&format!("warning: {name}: {line}"));
     }
 }
@@ -289,7 +308,7 @@ fn warn_of_boxes(folder: &Path, written: &pcr_drawing::Written) {
         "PNG has boxes for letters that the font of the program lacks: {}{more}; SVG has them",
         named.join(" ")
     );
-    say(folder, [text]);
+    say(folder, [WarningCode::MissingLetters.text(text)]);
 }
 
 /// A whole number from 0, such as a seed.

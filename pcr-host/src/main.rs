@@ -1,5 +1,6 @@
 //! The command `pcr`; this file only sets its exit status.
 
+mod abort;
 mod commands;
 mod progress;
 

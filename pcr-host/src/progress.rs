@@ -2,7 +2,7 @@
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
@@ -13,15 +13,24 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// Time between two looks at the counts.
 const INTERVAL: Duration = Duration::from_millis(200);
 
+/// Time between two lines where standard error is no terminal.
+const LINES: Duration = Duration::from_secs(5);
+
 static SILENT: AtomicBool = AtomicBool::new(false);
+static REQUESTED: AtomicBool = AtomicBool::new(false);
 
 /// From now on nothing is told.
 pub(crate) fn silence() {
     SILENT.store(true, Ordering::Relaxed);
 }
 
-/// Tells what goes on, on standard error, if that is a terminal and the work takes more than a second. The line is
-/// wiped when the value is dropped.
+/// From now on the progress is told where standard error is no terminal, too, in a line every few seconds.
+pub(crate) fn request() {
+    REQUESTED.store(true, Ordering::Relaxed);
+}
+
+/// Tells what goes on, on standard error, if that is a terminal or it is requested, and the work takes more than a second; with a percentage and the remaining
+/// time where these are known. The line is wiped when the value is dropped.
 #[derive(Debug)]
 pub(crate) struct Progress {
     counts: Arc<Counts>,
@@ -29,19 +38,29 @@ pub(crate) struct Progress {
 }
 
 #[derive(Debug, Default)]
-struct Counts {
-    done: AtomicUsize,
+pub(crate) struct Counts {
+    pub(crate) done: AtomicUsize,
     /// 0 where it is not known.
-    total: AtomicUsize,
+    pub(crate) total: AtomicUsize,
+    /// When the work ends at the latest, counted from its begin; milliseconds, 0 where it is not known.
+    pub(crate) limit: AtomicU64,
 }
 
 impl Progress {
     /// Begins to watch over some work.
     pub(crate) fn new(what: impl Into<String>) -> Self {
         let counts = Arc::<Counts>::default();
-        let told = io::stderr().is_terminal() && !SILENT.load(Ordering::Relaxed);
-        let running = if told { watch(what.into(), Arc::clone(&counts)) } else { None };
+        let is_terminal = io::stderr().is_terminal();
+        let told = (is_terminal || REQUESTED.load(Ordering::Relaxed)) && !SILENT.load(Ordering::Relaxed);
+        let running = if told { watch(what.into(), Arc::clone(&counts), is_terminal) } else { None };
         Self { counts, running }
+    }
+
+    /// Begins to watch over some work that takes this long at most.
+    pub(crate) fn until(what: impl Into<String>, limit: Duration) -> Self {
+        let progress = Self::new(what);
+        progress.counts.limit.store(u64::try_from(limit.as_millis()).unwrap_or(u64::MAX), Ordering::Relaxed);
+        progress
     }
 
     /// So many of so many things are done; `total` is 0 where it is not known.
@@ -52,14 +71,20 @@ impl Progress {
 }
 
 /// A thread that tells until the sender is dropped. Where the system has no thread for it, nothing is told.
-fn watch(what: String, counts: Arc<Counts>) -> Option<(Sender<()>, JoinHandle<()>)> {
+fn watch(what: String, counts: Arc<Counts>, is_terminal: bool) -> Option<(Sender<()>, JoinHandle<()>)> {
     let (stop, stopped) = mpsc::channel::<()>();
     let tell = move || {
         let begin = Instant::now();
         let mut wait = PATIENCE;
         while stopped.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
-            wait = INTERVAL;
-            show(&what, &counts, begin.elapsed());
+            wait = if is_terminal { INTERVAL } else { LINES };
+            let line = line(&what, &counts, begin.elapsed());
+            // A terminal that cannot be written to is no reason to stop.
+            let _ = if is_terminal {
+                write!(io::stderr(), "\r\x1b[K{line}")
+            } else {
+                writeln!(io::stderr(), "pcr: {line}")
+            };
         }
         if wait == INTERVAL {
             let _ = write!(io::stderr(), "\r\x1b[K");
@@ -69,18 +94,24 @@ fn watch(what: String, counts: Arc<Counts>) -> Option<(Sender<()>, JoinHandle<()
     Some((stop, watch))
 }
 
-/// A terminal that cannot be written to is no reason to stop.
-fn show(what: &str, counts: &Counts, elapsed: Duration) {
+/// What is told after some time.
+pub(crate) fn line(what: &str, counts: &Counts, elapsed: Duration) -> String {
     let seconds = elapsed.as_secs();
-    let _ = match (counts.done.load(Ordering::Relaxed), counts.total.load(Ordering::Relaxed)) {
-        (0, 0) => write!(io::stderr(), "\r\x1b[K{what} ({seconds} s)"),
-        (done, 0) => write!(io::stderr(), "\r\x1b[K{what}: {done} ({seconds} s)"),
+    match (counts.done.load(Ordering::Relaxed), counts.total.load(Ordering::Relaxed)) {
+        (0, 0) if counts.limit.load(Ordering::Relaxed) > 0 => {
+            let limit = Duration::from_millis(counts.limit.load(Ordering::Relaxed));
+            let share = (100.0 * elapsed.as_secs_f64() / limit.as_secs_f64()).min(100.0);
+            let rest = limit.saturating_sub(elapsed).as_secs();
+            format!("{what} ({share:.0} % of the time limit, {seconds} s, {rest} s to go)")
+        }
+        (0, 0) => format!("{what} ({seconds} s)"),
+        (done, 0) => format!("{what}: {done} ({seconds} s)"),
         (done, total) => {
             let rest = remaining(done, total, elapsed).map_or(String::new(), |rest| format!(", {rest} s to go"));
             let (share, rate) = (done.saturating_mul(100) / total, done as f64 / elapsed.as_secs_f64());
-            write!(io::stderr(), "\r\x1b[K{what}: {done} of {total} ({share} %, {rate:.0} a second, {seconds} s{rest})")
+            format!("{what}: {done} of {total} ({share} %, {rate:.0} a second, {seconds} s{rest})")
         }
-    };
+    }
 }
 
 /// Seconds that the rest takes if it takes as long as what is done; nothing before a hundredth is.

@@ -245,7 +245,7 @@ fn paths_of_a_plant_are_cut_where_nothing_belongs_to_all_of_them() {
     ] {
         let (text, report, _) = cut(&plant(content, more), 2.0);
         assert!(
-            report.warnings.iter().any(|said| said.contains(reason) && said.ends_with(": c-d")),
+            report.warnings.iter().any(|said| said.contains(reason) && said.ends_with(": c-d [left-whole]")),
             "{:?}",
             report.warnings
         );

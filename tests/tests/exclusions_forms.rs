@@ -126,7 +126,7 @@ fn lanes(text: &str) -> Value {
 fn buildings_in_all_forms_of_yaml_get_the_same_groups() {
     let expected = written(Format::Rmf, BUILDING, 0.4, Target::Rmf, None);
     let cut = written(Format::Rmf, BUILDING, 0.4, Target::Rmf, Some(1.5));
-    assert!(expected.1.warnings.contains(&"groups of the file are replaced: mine".to_owned()));
+    assert!(expected.1.warnings.contains(&"groups of the file are replaced: mine [replaced-exclusions]".to_owned()));
     assert_eq!((expected.1.edges, cut.1.edges), (5, 14));
     for text in forms() {
         for (expected, split) in [(&expected, None), (&cut, Some(1.5))] {

@@ -224,7 +224,7 @@ fn a_roadmap_is_read_whole_or_refused() {
         .unwrap()
         .layout;
     assert_eq!(still.edges.iter().map(|edge| edge.curve.len()).collect::<Vec<_>>(), [0, 1]);
-    assert!(still.warnings.contains(&"edge e: its length is 0".to_owned()), "{:?}", still.warnings);
+    assert!(still.warnings.contains(&"edge e: its length is 0 [zero-length]".to_owned()), "{:?}", still.warnings);
     assert!(!still.warnings.iter().any(|line| line.starts_with("edge f")), "{:?}", still.warnings);
     let two = format!("<graphml>{}</graphml>", "<graph/>".repeat(2));
     assert_eq!(read(&two, false).unwrap_err(), "graphml, graph: there are several; one is expected");

@@ -283,7 +283,7 @@ fn what_cannot_be_read_is_refused_by_name() {
     assert_eq!(rest.edges.iter().map(|edge| edge.id.to_string()).collect::<Vec<_>>(), ["101", "101#2"]);
     assert_eq!(rest.warnings, warnings.all());
     assert!(
-        rest.warnings.contains(&"edge 100, endid: there is no node 44: left out".to_owned()),
+        rest.warnings.contains(&"edge 100, endid: there is no node 44: left out [left-out]".to_owned()),
         "{:?}",
         rest.warnings
     );

@@ -25,7 +25,7 @@ fn states_tell_paths_with_or_without_times() {
     let (scenario, warnings) = read(&state(json!({})), &partial).unwrap();
     assert_eq!((scenario.agents[0].path.len(), scenario.agents[0].start), (0, [4.0, 0.0, 0.0]));
     assert_eq!(warnings, [format!("{lost}: left out")]);
-    assert_eq!(scenario.warnings, warnings);
+    assert_eq!(scenario.warnings, [format!("{lost}: left out [left-out]")]);
     let (scenario, warnings) = read(&state(json!({ "nodeStates": [] })), &options()).unwrap();
     assert_eq!((scenario.agents[0].path.len(), warnings.len()), (0, 0));
     let timed = json!({ "polyline": [{ "x": 6.0, "y": 2.0, "eta": "2026-11-21T08:00:04Z" }] });

@@ -174,6 +174,6 @@ fn missions_that_are_passed_over_are_told_with_their_reasons() {
 fn levels_without_missions_are_told() {
     let hotel = read(Format::Rmf, include_str!("../data/real/rmf/hotel.building.yaml"), 0.3);
     let (traffic, [missions, plan]) = Traffic::of(&hotel, Request { agents: 2, seed: 1 }).unwrap();
-    let told = "levels: missions are drawn on L1 only, of 3".to_owned();
+    let told = "levels: missions are drawn on L1 only, of 3 [one-level]".to_owned();
     assert!([&traffic.warnings, &missions.warnings, &plan.warnings].iter().all(|warnings| warnings.contains(&told)));
 }

@@ -22,6 +22,7 @@ use crate::{Claim, Rules};
 use pcr_formats::import::{Id, ImportError, Imported, Layout};
 use pcr_formats::plane::hull;
 use pcr_formats::scenario::Placed;
+use pcr_formats::warning::WarningCode;
 use pcr_planning::locks::Locks;
 use roxmltree::{Document, Node};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -97,11 +98,11 @@ fn held(root: Node<'_, '_>, layout: &Layout, is_asked: impl Fn(&str) -> bool) ->
             return Err(ImportError::new(format!("block {}: there is another one of this name", name(block))));
         }
         if block.attribute("type").is_some_and(|kind| kind != "SINGLE_VEHICLE_ONLY") {
-            warnings.push(format!(
+            warnings.push(WarningCode::UncountedExclusion.text(format_args!(
                 "block {}: {} does not keep vehicles apart that follow one another; it is not counted",
                 name(block),
                 block.attribute("type").unwrap_or_default()
-            ));
+            )));
             continue;
         }
         for member in elements(block, "member").map(name) {
@@ -159,7 +160,8 @@ fn envelopes(
         }
     }
     if other {
-        warnings.push("envelopes: those that are not of the one key of all vehicles are not counted".to_owned());
+        let text = "envelopes: those that are not of the one key of all vehicles are not counted";
+        warnings.push(WarningCode::UncountedExclusion.text(text));
     }
     let mut next = first;
     for (k, (a, own)) in outlines.iter().enumerate() {

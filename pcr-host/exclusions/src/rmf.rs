@@ -19,6 +19,7 @@ use crate::edit::{Edits, column, ending};
 use crate::settings::Notes;
 use crate::{Claim, Rules};
 use pcr_formats::import::{Id, ImportError, Imported, is_navigation_graph};
+use pcr_formats::warning::WarningCode;
 use pcr_formats::yaml::{Document, Spanned, Style, Value as Kind};
 use pcr_planning::locks::Locks;
 use serde_json::{Value, json};
@@ -170,7 +171,8 @@ pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks, notes: &mut 
     }
     if !replaced.is_empty() {
         let names: Vec<String> = replaced.into_iter().collect();
-        notes.said.push(format!("groups of the file are replaced: {}", names.join(", ")));
+        let text = format_args!("groups of the file are replaced: {}", names.join(", "));
+        notes.said.push(WarningCode::ReplacedExclusions.text(text));
     }
     Ok(edits.made(text))
 }

@@ -18,6 +18,7 @@ use pcr_formats::import::{ImportError, Imported, Layout, parse_json};
 use pcr_formats::plane::hull;
 use pcr_formats::scenario::Placed;
 use pcr_formats::scenario::{LIMIT, PathSegment};
+use pcr_formats::warning::WarningCode;
 use pcr_planning::checksum::crc32;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -216,7 +217,8 @@ fn zones_of(root: &Value, layout: &Layout) -> Result<Zones, ImportError> {
             }
             let kind = text_of(zone, "zoneType").map_err(|wrong| problem(&wrong))?;
             if kind != "RELEASE" && kind != "BLOCKED" {
-                warnings.push(format!("zone {name}: {kind} keeps no vehicles apart"));
+                let text = format_args!("zone {name}: {kind} keeps no vehicles apart");
+                warnings.push(WarningCode::UncountedExclusion.text(text));
                 continue;
             }
             let polygon = polygon(&zone["vertices"]).map_err(|wrong| problem(&format!("vertices: {wrong}")))?;

@@ -6,6 +6,7 @@
 use crate::settings::{Notes, Settings};
 use crate::{Audit, Target, nav2, opentcs, own, read, rmf, table, vda5050};
 use pcr_formats::import::{self, Format, ImportError, Imported, Options, Warnings};
+use pcr_formats::warning::WarningCode;
 use pcr_planning::locks::{LockVehicle, Locks};
 use pcr_planning::memory;
 use serde::Serialize;
@@ -146,7 +147,8 @@ impl Source<'_> {
         let mut notes = Notes::default();
         let imported = self.layout(text)?;
         if imported.vehicle.footprint.is_some() && settings.target == Target::Vda5050 {
-            notes.said.push("zones: they are for the disc around the outline".into());
+            let text = "zones: they are for the disc around the outline";
+            notes.said.push(WarningCode::DiscAroundOutline.text(text));
         }
         if let Some(most) = settings.split {
             let parts = imported.layout.edges.iter().map(|edge| (edge.length() / most).ceil()).sum::<f64>() as u64;
@@ -154,14 +156,14 @@ impl Source<'_> {
             asked.map_err(|large| ImportError::new(large.to_string()))?;
         }
         if let (Target::Rmf, Some(graph)) = (settings.target, self.options.graph) {
-            notes
-                .said
-                .push(format!("lanes of other graphs than {graph} are left as they are, and nothing is said of them"));
+            let text =
+                format_args!("lanes of other graphs than {graph} are left as they are, and nothing is said of them");
+            notes.said.push(WarningCode::OtherGraphs.text(text));
         }
         let cut = match (settings.target, settings.split) {
             (Target::Nav2, Some(most)) => {
                 let (text, whole) = nav2::split(text, most)?;
-                notes.said.extend(whole);
+                notes.said.extend(whole.into_iter().map(|text| WarningCode::LeftWhole.text(text)));
                 text
             }
             (Target::OpenTcs, Some(most)) => {

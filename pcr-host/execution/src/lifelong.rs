@@ -81,7 +81,7 @@ pub use answer::{Driven, Lifelong};
 pub use ends::WellFormedness;
 pub use outcome::{Outcome, Report, Shares};
 pub use record::Certificate;
-pub use run::{run, run_tasks};
+pub use run::{run, run_tasks, watched};
 pub use streets::streets;
 pub use tasks::Tasks;
 

@@ -65,6 +65,9 @@ use world::World;
 /// Time of a frame \[s\]: the camera of the paper sees 30 a second.
 pub const FRAME: f64 = 1.0 / 30.0;
 
+/// Frames from one look at the progress to the next.
+const TOLD: usize = 100;
+
 /// Number of frames between two checks whether memory holds the record.
 const CHECKED: usize = 4096;
 
@@ -168,6 +171,19 @@ trait Control {
 /// # Errors
 /// [`Failure`] if a value is out of range or the table cannot hold the fleet.
 pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Outcome, Failure> {
+    watched(task, controller, settings, &|_| {})
+}
+
+/// Simulates as [`run`], and tells from time to time which share of the missions is done, from 0 to 1.
+///
+/// # Errors
+/// Errors of [`run`].
+pub fn watched(
+    task: &Task,
+    controller: Controller,
+    settings: Settings,
+    told: &dyn Fn(f64),
+) -> Result<Outcome, Failure> {
     let Disturbance { noise, drift, .. } = settings.disturbance;
     let mut control: Box<dyn Control> = match controller {
         Controller::Pcr => Box::new(Supervisor::new(task, Errors { noise, drift }, settings.replan)?),
@@ -183,6 +199,9 @@ pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Ou
         if frame % CHECKED == 0 {
             // The record is kept in lists, which double as they grow.
             memory::ask((2 * (frame + CHECKED) * room) as u64, || format!("a record of {} frames", frame + CHECKED))?;
+        }
+        if frame % TOLD == 0 {
+            told(world.share());
         }
         world.missions(frame, control.as_mut());
         if world.is_done() {

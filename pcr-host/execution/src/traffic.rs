@@ -11,6 +11,7 @@ mod schedule;
 use missions::{Drawn, Mission};
 use pcr_formats::import::{Id, Imported};
 use pcr_formats::scenario::{Agent, Scenario};
+use pcr_formats::warning::WarningCode;
 use pcr_planning::certify::Proof;
 use pcr_planning::check::Verdict;
 use pcr_planning::failure::Failure;
@@ -96,6 +97,11 @@ pub struct Travel {
     pub t_end: Option<f64>,
 }
 
+/// Returns an upper bound for the number of agents that a layout has room for at one time, on the level with the most nodes.
+pub fn room(imported: &Imported) -> usize {
+    missions::room(imported)
+}
+
 impl Traffic {
     /// The traffic on a layout, the scenario of all missions with all agents setting off at once, and that of the plan.
     ///
@@ -108,8 +114,8 @@ impl Traffic {
         let mut missions = Scenario { warnings: layout.warnings.clone(), ..Scenario::new(layout.name.clone(), agents) };
         if layout.levels.len() > 1 {
             let level = &layout.levels[layout.largest_level()];
-            let problem = format!("levels: missions are drawn on {level} only, of {}", layout.levels.len());
-            missions.warnings.push(problem);
+            let problem = format_args!("levels: missions are drawn on {level} only, of {}", layout.levels.len());
+            missions.warnings.push(WarningCode::OneLevel.text(problem));
         }
         let regions = Answer::of::<f64>(&missions, regions::Request::default())?.regions.len();
         let Schedule { delays, out, .. } = schedule(&missions, request.seed)?;
@@ -146,6 +152,11 @@ impl Traffic {
             warnings: missions.warnings.clone(),
         };
         Ok((traffic, [missions, plan]))
+    }
+
+    /// Whether every agent that was asked for has a mission and a plan.
+    pub fn is_complete(&self) -> bool {
+        self.planned == self.asked
     }
 
     /// Whether at least one agent has a plan, and the plan is proved to be free of contact.

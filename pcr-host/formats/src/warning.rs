@@ -1,6 +1,7 @@
 //! Warnings, each with the code by which it is acknowledged.
 
 use std::fmt;
+use std::str::FromStr;
 
 /// Defines the codes from one list, so that none is without a name and a line of explanation.
 macro_rules! codes {
@@ -100,6 +101,71 @@ codes! {
     NotReleased = "not-released",
     /// A vehicle is already moving; its planned path is travelled from rest.
     MovesAlready = "moves-already",
+    /// The number format moves agents by more than 1 mm.
+    NumberFormat = "number-format",
+    /// An agent keeps its own motion, which is slower than its limits, in a plan of speeds.
+    OwnMotion = "own-motion",
+    /// The motion of an agent is replaced by one from rest to rest in the simulation.
+    ReplacedMotion = "replaced-motion",
+    /// Times of the simulation count from the first start, not from 0.
+    ShiftedTimes = "shifted-times",
+    /// Agents without a path touch one another.
+    StandingContact = "standing-contact",
+    /// The path of an agent ends where it begins, and a controller without a plan has nothing to do.
+    ClosedPath = "closed-path",
+    /// Agents are missing in the plan, as `--leave-out` allows.
+    AgentsLeftOut = "agents-left-out",
+    /// Missions are drawn on one level of several.
+    OneLevel = "one-level",
+    /// More agents were asked for than the layout has room for.
+    AgentsLimited = "agents-limited",
+    /// Part of the exclusions in the file does not keep vehicles apart, and is not counted.
+    UncountedExclusion = "uncounted-exclusion",
+    /// Exclusions of the file are replaced by those that are written.
+    ReplacedExclusions = "replaced-exclusions",
+    /// Edges, lanes or paths are not cut, because something belongs to all of their length.
+    LeftWhole = "left-whole",
+    /// Lanes of other graphs are left as they are.
+    OtherGraphs = "other-graphs",
+    /// Zones are for the disc around the outline of the vehicle.
+    DiscAroundOutline = "disc-around-outline",
+    /// Hardly any memory is left to the process.
+    Memory = "memory",
+    /// Pictures of an earlier run or plan remain in the folder.
+    EarlierPictures = "earlier-pictures",
+    /// The font of PNG pictures lacks some letters.
+    MissingLetters = "missing-letters",
+    /// Fewer parking endpoints are free than there are vehicles.
+    ParkingEndpoints = "parking-endpoints",
+    /// The warning is from a file of an earlier version, which had no codes.
+    Uncoded = "uncoded",
+}
+
+impl WarningCode {
+    /// Returns the text of a warning with this code: the message, then the code in brackets.
+    pub fn text(self, message: impl fmt::Display) -> String {
+        format!("{message} [{self}]")
+    }
+
+    /// Returns the code at the end of the text of a warning; [`WarningCode::Uncoded`] where there is none that is known.
+    pub fn of(text: &str) -> Self {
+        let name = text.strip_suffix(']').and_then(|text| text.rsplit_once(" [")).map(|(_, name)| name);
+        name.and_then(|name| name.parse().ok()).unwrap_or(Self::Uncoded)
+    }
+
+    /// Returns the text of a warning from a file, which has a code at its end; [`WarningCode::Uncoded`] is added where there is none.
+    pub fn coded(text: String) -> String {
+        let has_none = Self::of(&text) == Self::Uncoded && !text.ends_with("[uncoded]");
+        if has_none { Self::Uncoded.text(text) } else { text }
+    }
+}
+
+impl FromStr for WarningCode {
+    type Err = ();
+
+    fn from_str(name: &str) -> Result<Self, ()> {
+        Self::ALL.iter().copied().find(|code| code.name() == name).ok_or(())
+    }
 }
 
 impl fmt::Display for WarningCode {
@@ -111,6 +177,18 @@ impl fmt::Display for WarningCode {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_text_tells_its_code() {
+        for &code in WarningCode::ALL {
+            let text = code.text("edge 1: too [short]");
+            assert_eq!((WarningCode::of(&text), WarningCode::coded(text.clone())), (code, text));
+        }
+        for text in ["edge 1: too short", "edge 1: its parameters [gap", "edge 1[gap]", "edge 1 [none-such]", ""] {
+            assert_eq!(WarningCode::of(text), WarningCode::Uncoded, "{text}");
+            assert_eq!(WarningCode::coded(text.to_owned()), format!("{text} [uncoded]"));
+        }
+    }
 
     #[test]
     fn every_code_has_a_name_and_an_explanation_of_its_own() {

@@ -7,15 +7,17 @@ mod told;
 
 pub use motions::{Contact, Proof};
 
-use pcr_certify::data::Table;
+use crate::regions::Told;
+pub use pcr_certify::data::Table;
 use pcr_certify::dump;
 use pcr_certify::pair::{Findings, Promise};
 use pcr_certify::table::{Checker, Margin};
 use pcr_formats::scenario::Labels;
+use pcr_formats::warning::WarningCode;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use told::{Asked, Cover, Told};
+use told::{Asked, Cover};
 
 /// The result of the proof of a table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -92,9 +94,9 @@ pub struct Dump {
     #[serde(default)]
     agent: Option<u64>,
     #[serde(default)]
-    regions: Option<Vec<Told>>,
+    regions: Option<Vec<told::Told>>,
     #[serde(default)]
-    margin_regions: Option<Vec<Told>>,
+    margin_regions: Option<Vec<told::Told>>,
     #[serde(default)]
     footprints: Vec<Cover>,
 }
@@ -144,7 +146,8 @@ impl Dump {
         if said.certificate.is_none() {
             return Err("there is no certificate in it; pcr regions --json --certificate prints one".into());
         }
-        let dump: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        let mut dump: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        dump.warnings = dump.warnings.into_iter().map(WarningCode::coded).collect();
         for table in &dump.certificate {
             told::bodies(table, &dump.footprints)?;
             told::asked(table, dump.agent)?;
@@ -183,8 +186,16 @@ impl Dump {
 impl Certified {
     /// Proves a table; also finds its margin, if requested.
     pub fn of(name: &str, table: &Table, margin: bool) -> Self {
+        Self::watched(name, table, margin, &|_, _| {})
+    }
+
+    /// Proves a table as [`Certified::of`], and tells before each pair how many checks of how many are done.
+    pub fn watched(name: &str, table: &Table, margin: bool, told: Told<'_>) -> Self {
+        /// What a margin takes, in times of the check.
+        const MARGIN: usize = 12;
+        let all = table.pairs.len() * if margin { 1 + MARGIN } else { 1 };
         let checked = Checker::new(table).and_then(|checker| {
-            let findings = checker.check(Margin::Needed)?;
+            let findings = checker.watched(Margin::Needed, &|done| told(done, all))?;
             let margin = if margin { checker.margin()? } else { None };
             Ok((findings, margin))
         });

@@ -27,6 +27,7 @@ pub use pass::{Found, Told};
 use pcr_formats::footprint::Disc;
 use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Layout};
 use pcr_formats::scenario::{Agent, Scenario};
+use pcr_formats::warning::WarningCode;
 use rides::Ride;
 pub use rides::{Rides, corridor};
 use serde::Serialize;
@@ -170,10 +171,10 @@ impl Locks {
 /// A warning for layouts whose routes round corners.
 pub fn rounded(layout: &Layout) -> Option<String> {
     let radius = layout.corner_radius.filter(|radius| *radius > 0.0)?;
-    Some(format!(
+    Some(WarningCode::CornerSmoothing.text(format_args!(
         "corners: routes round them with {radius} m, off their edges by up to {radius} m (1 - cos(a/2)) in a turn by a; locks are those of \
          vehicles that keep to the edges: give that as --margin"
-    ))
+    )))
 }
 
 /// The swept areas of vehicles on all edges and nodes of each level, as the agents from whose regions the locks are computed. A

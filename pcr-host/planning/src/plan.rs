@@ -28,6 +28,7 @@ pub use delays::{Effort, Objective};
 pub use forbidden::{Forbidden, Out, Schedule};
 use pcr_core::{Encounter, Motion};
 use pcr_formats::scenario::{Labels, Scenario};
+use pcr_formats::warning::WarningCode;
 
 pub use reason::Spot;
 use serde::ser::SerializeStruct;
@@ -291,7 +292,9 @@ impl Plan {
             let called: Vec<String> = out.iter().map(|&agent| scenario.agents[agent].called()).collect();
             if !called.is_empty() {
                 let (count, all) = (called.len(), scenario.agents.len());
-                solved.warnings.push(format!("left out of the plan: {count} of {all} agents: {}", called.join(", ")));
+                let who = called.join(", ");
+                let text = format_args!("left out of the plan: {count} of {all} agents: {who}");
+                solved.warnings.push(WarningCode::AgentsLeftOut.text(text));
             }
         }
         Ok((partial, solved))

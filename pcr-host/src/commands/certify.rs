@@ -4,12 +4,13 @@ use super::help::STANDING;
 use super::number::{Number, with_scalar};
 use super::sources::{layout_from, scenario_from, source, text};
 use super::work::tell_rounding;
-use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, say};
+use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, acknowledge, say};
+use crate::progress::Progress;
 use clap::Args;
 use pcr_formats::import::{Kind, Options};
 use pcr_formats::input;
 use pcr_formats::scenario::Labels;
-use pcr_planning::certify::{Certified, Dump};
+use pcr_planning::certify::{Certified, Dump, Table};
 use pcr_planning::failure::Failure;
 use pcr_planning::locks::rounded;
 use pcr_planning::regions::table_of;
@@ -99,15 +100,22 @@ impl Arguments {
         })
     }
 
+    /// Proves a table, and shows how far that is.
+    fn proved(&self, file: &Path, name: &str, table: &Table) -> Certified {
+        let progress = Progress::new(format!("{}: checks of pairs", file.display()));
+        Certified::watched(name, table, self.limit, &|done, total| progress.set(done, total))
+    }
+
     fn certified(&self) -> Result<Vec<Certified>, Stop> {
         if let Some(file) = &self.table {
             if let Some(option) = self.import.given().first() {
                 return Err(Stop::arguments(format!("{option} has no effect: the table already contains all values")));
             }
             let text = input::read_text(file)?;
-            let dump = Dump::of(&text, &input::stem(file)).map_err(|problem| Stop::wrong(file, problem))?;
+            let mut dump = Dump::of(&text, &input::stem(file)).map_err(|problem| Stop::wrong(file, problem))?;
+            acknowledge(&mut dump.warnings);
             let tables = dump.certificate.iter();
-            let certified = tables.map(|table| Certified::of(&dump.name, table, self.limit));
+            let certified = tables.map(|table| self.proved(file, &dump.name, table));
             return Ok(certified.map(|one| one.with(&dump.labels, &dump.warnings)).collect());
         }
         let file = &source(self.file.clone())?;
@@ -117,6 +125,7 @@ impl Arguments {
             Kind::Layout(_) if self.import.one_of(&["routes"]).is_none() => {
                 let imported = layout_from(file, &text, &self.import, STANDING, false)?;
                 warnings.extend(imported.layout.warnings.iter().cloned().chain(rounded(&imported.layout)));
+                acknowledge(&mut warnings);
                 locks::scenarios(&imported).map_err(|error| Stop::wrong(file, error))?
             }
             _ => vec![scenario_from(file, text, &self.import)?],
@@ -128,7 +137,7 @@ impl Arguments {
             let tables = with_scalar!(self.scalar, S => table_of::<S>(scenario));
             let tables = tables.map_err(|failure| Stop::wrong(file, failure))?;
             let (labels, warnings) = (Labels::of(scenario), [&warnings[..], &scenario.warnings].concat());
-            let certified = tables.iter().map(|table| Certified::of(&scenario.name, table, self.limit));
+            let certified = tables.iter().map(|table| self.proved(file, &scenario.name, table));
             Ok(certified.map(|one| one.with(&labels, &warnings)).collect::<Vec<_>>())
         });
         Ok(certified.collect::<Result<Vec<_>, Stop>>()?.into_iter().flatten().collect())

@@ -1,6 +1,7 @@
 //! The part of `pcr locks` that writes exclusions into layout files, and audits such files.
 
 use super::help::STANDING;
+use super::printed::acknowledge_parts;
 use super::sources::{layout_from, text};
 use super::{CONFLICTS, Form, Printed, Stop, is_standard, warn_of_boxes, write_over};
 use clap::Args;
@@ -79,8 +80,9 @@ impl Asked {
         let settings = Settings { target, split: self.split, envelopes: self.envelopes.clone() };
         let name = input::stem(file);
         // What is to be said of the layout has been said when it was read.
-        let (written, report, _) = pcr_exclusions::write(format, &content, import, &name, &settings)
+        let (written, mut report, _) = pcr_exclusions::write(format, &content, import, &name, &settings)
             .map_err(|error| Stop::wrong(file, error))?;
+        acknowledge_parts(&mut report.warnings, &mut report.of_layout);
         // A layout may get what keeps its vehicles apart; a table of that is no layout.
         write_over(output, &written, file, || Ok(target.layout() == Some(format)))?;
         let mut out = printed.out(standard);
@@ -134,7 +136,8 @@ fn audit(
     let wrong = |error| Stop::wrong(source, error);
     let rules = pcr_exclusions::read(target, &content, &imported).map_err(wrong)?;
     let locks = pcr_exclusions::table(&imported).map_err(wrong)?;
-    let audit = Audit::of(&imported, &locks, &rules, target).map_err(wrong)?;
+    let mut audit = Audit::of(&imported, &locks, &rules, target).map_err(wrong)?;
+    acknowledge_parts(&mut audit.warnings, &mut audit.of_layout);
     if let Some(directory) = output {
         let written = picture::write_audit(&imported, &locks, &rules, &audit, directory);
         warn_of_boxes(directory, &written.map_err(|error| Stop::not_written(directory, &error))?);

@@ -4,11 +4,11 @@ use super::exclusions::Asked;
 use super::help::{DRIVING, STANDING};
 use super::printed::notes;
 use super::sources::{layout, layout_source};
-use super::{Form, NO_FOLDER, NO_STREAM, Printed, Stop, is_standard, warn_of_boxes};
+use super::{Form, NO_FOLDER, NO_STREAM, Printed, Stop, acknowledge, is_standard, warn_of_boxes};
 use crate::progress::Progress;
 use clap::Args;
 use pcr_drawing as picture;
-use pcr_formats::import::{ImportError, Options};
+use pcr_formats::import::{ImportError, Imported, Options};
 use pcr_formats::output;
 use pcr_planning::locks::{Delays, Driving, Index, IndexError, Locks, Sweep, Told, origin, write_index};
 use pcr_planning::memory;
@@ -120,14 +120,15 @@ impl Arguments {
         if self.lines || (form == Form::Csv && self.output.is_none()) {
             let sweep = Sweep::new(&imported, self.nodes).map_err(wrong)?;
             let printed = match self.lines {
-                true => report::locks_lines(&Locks::head(&imported, self.nodes), &sweep, told, &mut out),
+                true => report::locks_lines(&head(&imported, self.nodes), &sweep, told, &mut out),
                 false => report::locks_csv(&sweep, told, &mut out),
             };
             printed.map_err(|unprinted| unprinted_of(file, unprinted))?;
             out.flush()?;
             return Ok(ExitCode::SUCCESS);
         }
-        let locks = Locks::watched(&imported, self.nodes, told).map_err(wrong)?;
+        let mut locks = Locks::watched(&imported, self.nodes, told).map_err(wrong)?;
+        acknowledge(&mut locks.warnings);
         drop(progress);
         if let Some(directory) = &self.output {
             let written = picture::write_locks(&imported, &locks, directory);
@@ -163,7 +164,7 @@ impl Arguments {
         let progress = Progress::new(format!("{}: pairs of edges", file.display()));
         let told: Told<'_> = &|done, total| progress.set(done, total);
         let delays = Delays::new(&imported, driving, self.nodes).map_err(wrong)?;
-        let head = Locks::head(&imported, self.nodes);
+        let head = self::head(&imported, self.nodes);
         let mut out = self.out();
         let printed = match self.printed.form() {
             _ if self.lines => report::delays_lines(&head, driving, &delays, told, &mut out),
@@ -225,12 +226,12 @@ impl Arguments {
             (found(file, None)?, None)
         } else if let Some(index) = &self.index {
             let imported = layout(file, &self.import, STANDING, false)?;
-            (found(index, Some(origin(&imported)))?, Some(Locks::head(&imported, self.nodes)))
+            (found(index, Some(origin(&imported)))?, Some(head(&imported, self.nodes)))
         } else {
             let imported = layout(file, &self.import, STANDING, false)?;
             let sweep = Sweep::new(&imported, self.nodes).map_err(|error| Stop::wrong(file, error))?;
             let partners = sweep.partners(edge).map_err(|error| Stop::wrong(file, error))?;
-            (partners, Some(Locks::head(&imported, self.nodes)))
+            (partners, Some(head(&imported, self.nodes)))
         };
         let Some(partners) = partners else {
             return Err(Stop::wrong(file, format!("there is no edge {edge}; pcr nodes lists them")));
@@ -251,6 +252,13 @@ impl Arguments {
         out.flush()?;
         Ok(ExitCode::SUCCESS)
     }
+}
+
+/// What stands before the locks of a layout, without the warnings that are acknowledged.
+fn head(imported: &Imported, nodes: bool) -> Locks {
+    let mut head = Locks::head(imported, nodes);
+    acknowledge(&mut head.warnings);
+    head
 }
 
 /// Whether there is something of this name that is neither a file nor a folder.

@@ -9,6 +9,7 @@ use pcr_core::Motion;
 use pcr_drawing::{self as picture, Ground};
 use pcr_formats::import::Options;
 use pcr_formats::scenario::Scenario;
+use pcr_formats::warning::WarningCode;
 use pcr_planning::failure::Failure;
 use pcr_planning::fleet::Fleet;
 use pcr_planning::regions;
@@ -131,6 +132,7 @@ fn warn_of_earlier(directory: &Path, written: &[PathBuf]) {
         there.filter(|name| is_map(&name.to_string_lossy()) && !written.contains(&Some(name.as_os_str()))).collect();
     if let Some(first) = earlier.iter().min() {
         let (count, first) = (counted(earlier.len(), "picture"), first.display());
-        say(directory, [format!("of an earlier run, with other agents: {count}, such as {first}")]);
+        let text = format!("of an earlier run, with other agents: {count}, such as {first}");
+        say(directory, [WarningCode::EarlierPictures.text(text)]);
     }
 }

@@ -3,12 +3,15 @@
 use super::map::{are_few, ask_for_regions, draw};
 use super::printed::notes;
 use super::sources::{Source, gathered};
-use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, complain, folder, is_standard, say, write_over, write_to};
+use super::{
+    CONFLICTS, Form, Printed, Stop, WRONG_INPUT, acknowledge, complain, folder, is_standard, say, write_over, write_to,
+};
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_formats::import::Options;
 use pcr_formats::output;
 use pcr_formats::scenario::{Agent, Scenario};
+use pcr_formats::warning::WarningCode;
 use pcr_planning::failure::Failure;
 use pcr_planning::plan::{Effort, Method, Objective, Plan, Priority, Request};
 use pcr_planning::regions::find;
@@ -247,10 +250,16 @@ impl Arguments {
             are_few(agents, "maps are drawn").and_then(|()| ask_for_regions(&scenario)).map_err(wrong)?;
         }
         // How long it takes nobody knows before.
-        let progress = Progress::new(format!("{}: planning {agents} agents", source.file().display()));
+        let what = format!("{}: planning {agents} agents", source.file().display());
+        let progress = match self.time_limit {
+            Some(limit) => Progress::until(what, limit),
+            None => Progress::new(what),
+        };
         let planned = Plan::of(&scenario, &request);
         drop(progress);
-        let (mut plan, solved) = planned.map_err(wrong)?;
+        let (mut plan, mut solved) = planned.map_err(wrong)?;
+        acknowledge(&mut plan.warnings);
+        solved.iter_mut().for_each(|solved| acknowledge(&mut solved.warnings));
         plan.name = source.called(&plan.name);
         // Those of the scenario are said already.
         say(source.file(), plan.warnings.iter().skip(scenario.warnings.len()).cloned());
@@ -288,7 +297,8 @@ impl Arguments {
             match &solved {
                 Some(solved) => draw(solved, None, None, &after, told)?,
                 None if after.join("index.html").exists() => {
-                    say(&after, ["of an earlier plan, and there is none now".to_owned()]);
+                    let text = "of an earlier plan, and there is none now";
+                    say(&after, [WarningCode::EarlierPictures.text(text)]);
                 }
                 None => {}
             }

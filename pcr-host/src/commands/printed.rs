@@ -1,13 +1,144 @@
 //! The format of printed answers, and where they are printed.
 
-use clap::{Args, ValueEnum};
+use clap::{ArgAction, Args, ValueEnum};
 use pcr_formats::scenario::printable;
+use pcr_formats::warning::WarningCode;
+use std::collections::BTreeSet;
 use std::io::{self, BufWriter, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 static QUIET: AtomicBool = AtomicBool::new(false);
 static TO_THE_END: AtomicBool = AtomicBool::new(false);
 static GONE: AtomicBool = AtomicBool::new(false);
+
+static JUDGEMENT: OnceLock<Judgement> = OnceLock::new();
+static DENIED: Mutex<BTreeSet<WarningCode>> = Mutex::new(BTreeSet::new());
+
+/// Lines of warnings about one file that people read; the others are counted.
+const FEW: usize = 4;
+
+/// What is done with warnings.
+#[derive(Args, Debug, Default)]
+pub(super) struct Judgement {
+    /// Acknowledge warnings of these codes: they are not printed and not in the answer. With commas, or several times
+    #[arg(long, value_name = "CODE", global = true, action = ArgAction::Append, value_delimiter = ',', hide_short_help = true, value_parser = code)]
+    allow: Vec<WarningCode>,
+    /// End with status 2 after the answer if there are warnings of these codes; `warnings` stands for all
+    #[arg(long, value_name = "CODE", global = true, action = ArgAction::Append, value_delimiter = ',', hide_short_help = true, value_parser = denied)]
+    deny: Vec<Denied>,
+    /// Print `all` warnings, or only a `few` of each file [default: few]
+    #[arg(
+        long,
+        value_name = "MANY",
+        global = true,
+        value_enum,
+        overrides_with = "warnings",
+        hide_short_help = true,
+        hide_possible_values = true
+    )]
+    warnings: Option<Many>,
+}
+
+/// How many warnings are printed.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum Many {
+    Few,
+    All,
+}
+
+/// Warnings that end the program with an error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Denied {
+    All,
+    Code(WarningCode),
+}
+
+fn code(name: &str) -> Result<WarningCode, String> {
+    name.parse().map_err(|()| {
+        let names: Vec<&str> = WarningCode::ALL.iter().map(|code| code.name()).collect();
+        format!("no warning has this code; the codes are {}", names.join(", "))
+    })
+}
+
+fn denied(name: &str) -> Result<Denied, String> {
+    if name == "warnings" { Ok(Denied::All) } else { code(name).map(Denied::Code) }
+}
+
+impl Judgement {
+    /// Holds for all that is printed from now on.
+    pub(super) fn apply(self) {
+        // Once for each run of the program.
+        let _ = JUDGEMENT.set(self);
+    }
+
+    fn denies(&self, code: WarningCode) -> bool {
+        self.deny.iter().any(|denied| matches!(denied, Denied::All) || *denied == Denied::Code(code))
+    }
+}
+
+/// Removes the warnings that are acknowledged, and notes those that are denied.
+pub(super) fn acknowledge(warnings: &mut Vec<String>) {
+    let Some(judgement) = JUDGEMENT.get() else { return };
+    warnings.retain(|warning| !judgement.allow.contains(&WarningCode::of(warning)));
+    let denied = warnings.iter().map(|warning| WarningCode::of(warning)).filter(|code| judgement.denies(*code));
+    DENIED.lock().unwrap_or_else(PoisonError::into_inner).extend(denied);
+}
+
+/// The same of warnings of which the first ones are about a layout; their number is changed as well.
+pub(super) fn acknowledge_parts(warnings: &mut Vec<String>, of_layout: &mut usize) {
+    let mut rest = warnings.split_off((*of_layout).min(warnings.len()));
+    acknowledge(warnings);
+    acknowledge(&mut rest);
+    *of_layout = warnings.len();
+    warnings.append(&mut rest);
+}
+
+/// Prints a warning that is about no file.
+pub(super) fn caution(code: WarningCode, text: &str) {
+    let mut warnings = vec![code.text(text)];
+    acknowledge(&mut warnings);
+    if !quiet() {
+        warnings.iter().for_each(|warning| complain(&format!("warning: {warning}")));
+    }
+}
+
+/// Refuses what was answered with warnings that are denied.
+pub(super) fn refuse_denied() -> Result<(), String> {
+    let denied = DENIED.lock().unwrap_or_else(PoisonError::into_inner);
+    if denied.is_empty() {
+        return Ok(());
+    }
+    let names: Vec<&str> = denied.iter().map(|code| code.name()).collect();
+    Err(format!("--deny: there are warnings of {}; see docs/warnings.md", names.join(", ")))
+}
+
+/// The lines that are printed of some warnings: one for each code, and of no more than a few codes, unless all are asked for.
+pub(super) fn few(warnings: Vec<String>) -> Vec<String> {
+    if JUDGEMENT.get().is_some_and(|judgement| judgement.warnings == Some(Many::All)) {
+        return warnings;
+    }
+    let mut codes: Vec<(WarningCode, String, usize)> = Vec::new();
+    for warning in warnings {
+        let code = WarningCode::of(&warning);
+        // Those without a code have nothing in common.
+        match codes.iter_mut().find(|(other, ..)| *other == code && code != WarningCode::Uncoded) {
+            Some((_, _, more)) => *more += 1,
+            None => codes.push((code, warning, 0)),
+        }
+    }
+    let rest = if codes.len() > FEW { codes.split_off(FEW - 1) } else { Vec::new() };
+    let mut lines: Vec<String> = codes
+        .into_iter()
+        .map(|(_, first, more)| if more > 0 { format!("{first} and {more} more; --warnings all") } else { first })
+        .collect();
+    if !rest.is_empty() {
+        let count: usize = rest.iter().map(|(.., more)| 1 + more).sum();
+        let names: Vec<&str> = rest.iter().map(|(code, ..)| code.name()).collect();
+        lines.push(format!("{count} more, of {}; --warnings all", names.join(", ")));
+    }
+    lines
+}
 
 /// From now on nothing is said to people but errors.
 pub(super) fn be_quiet() {

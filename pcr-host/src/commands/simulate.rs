@@ -1,7 +1,7 @@
 //! `pcr simulate`.
 
 use super::sources::source;
-use super::{CONFLICTS, Form, Printed, Stop, is_standard, say, scenario, whole, write_to};
+use super::{CONFLICTS, Form, Printed, Stop, acknowledge, is_standard, say, scenario, whole, write_to};
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_drawing::replay;
@@ -121,7 +121,8 @@ impl Arguments {
             true => forage::task(self.seed, self.trips.unwrap_or(TRIPS)),
             false => {
                 let scenario = scenario(&file, &self.import)?;
-                let task = Task::of(&scenario).map_err(named)?;
+                let mut task = Task::of(&scenario).map_err(named)?;
+                acknowledge(&mut task.warnings);
                 // Those of the scenario are said already.
                 say(&file, task.warnings.iter().skip(scenario.warnings.len()).cloned());
                 task
@@ -134,17 +135,18 @@ impl Arguments {
             Some(choice) => vec![choice.controller()],
             None => Controller::ALL.to_vec(),
         };
-        let progress = Progress::new("runs");
+        let progress = Progress::new("hundredths of runs");
         let mut outcomes = Vec::new();
         for (done, &controller) in controllers.iter().enumerate() {
-            progress.set(done, controllers.len());
-            outcomes.push(simulate::run(&task, controller, settings).map_err(named)?);
+            let told = |share: f64| progress.set(100 * done + (100.0 * share) as usize, 100 * controllers.len());
+            outcomes.push(simulate::watched(&task, controller, settings, &told).map_err(named)?);
         }
         drop(progress);
         if let Some(output) = &self.output {
             write_to(output, &replay::page(&task, &outcomes).map_err(named)?)?;
         }
-        let simulation = Simulation::of(&task, settings, &outcomes);
+        let mut simulation = Simulation::of(&task, settings, &outcomes);
+        acknowledge(&mut simulation.warnings);
         say(&file, simulation.warnings.iter().skip(task.warnings.len()).cloned());
         let mut out = self.printed.out(is_standard(self.output.as_ref()));
         match self.printed.form() {

@@ -1,7 +1,7 @@
 //! Sources of scenarios: the files that are named, otherwise standard input.
 
 use super::help::{DRIVING, STANDING, useless};
-use super::{Stop, say, warn};
+use super::{Stop, acknowledge, say, warn};
 use pcr_formats::import::{Imported, Kind, Options, Warnings, shortened};
 use pcr_formats::input::InputError;
 use pcr_formats::scenario::{Agent, Scenario, label, printable};
@@ -117,6 +117,7 @@ fn told(file: &Path, (mut scenario, warnings): (Scenario, Warnings), import: &Op
         // Those of whoever has written it: what is left out of a file is left out of all that is made of it.
         say(file, scenario.warnings.iter().map(|line| shortened(line)));
     }
+    acknowledge(&mut scenario.warnings);
     give_margin(&mut scenario, import);
     Ok(scenario)
 }
@@ -265,6 +266,7 @@ pub(super) fn together(files: &[PathBuf], import: &Options) -> Result<Scenario, 
     files.iter().try_for_each(|file| ask_for(file))?;
     let (mut scenario, warnings) = input::read_all(files, import)?;
     warnings.iter().for_each(|(file, warnings)| warn(file, warnings));
+    acknowledge(&mut scenario.warnings);
     let first = files.first().map_or(Path::new("-"), |first| first);
     ask_to_answer(first, &scenario)?;
     give_margin(&mut scenario, import);
@@ -311,7 +313,7 @@ pub(super) fn layout_from(
     };
     keep(import);
     ask_to_read(file, text, import)?;
-    let (imported, warnings) = input::read_layout_from(file, text, import, moves).map_err(|error| match error {
+    let (mut imported, warnings) = input::read_layout_from(file, text, import, moves).map_err(|error| match error {
         // There is no --from to say it with.
         InputError::NoLayout(_) if command == FLEET => {
             Stop::wrong(file, "not known as a layout by its name or content")
@@ -319,6 +321,7 @@ pub(super) fn layout_from(
         error => error.into(),
     })?;
     warn(file, &warnings);
+    acknowledge(&mut imported.layout.warnings);
     if matches!(command, DRIVING | STANDING) {
         say(file, rounded(&imported.layout));
     }

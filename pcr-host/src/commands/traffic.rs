@@ -2,16 +2,18 @@
 
 use super::printed::notes;
 use super::sources::{layout, layout_source};
-use super::{CONFLICTS, Form, Printed, Stop, folder, map, whole, write_to};
+use super::{CONFLICTS, Form, Printed, Stop, acknowledge, folder, map, say, whole, write_to};
+use crate::progress::Progress;
 use clap::Args;
 use pcr_drawing::Ground;
 use pcr_execution::lifelong::{self, Delays, Lifelong, Method};
 use pcr_execution::report;
-use pcr_execution::traffic::{Request, Traffic};
-use pcr_formats::import::Options;
+use pcr_execution::traffic::{Request, Traffic, room};
+use pcr_formats::import::{Imported, Options};
+use pcr_formats::warning::WarningCode;
 use pcr_planning::report::json;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
@@ -24,7 +26,8 @@ Examples:
 const STATUSES: &str = "\
 Exit status:
   0  done; no contact, proved
-  1  a contact, or one that could not be ruled out, or nobody has a plan;
+  1  a contact, or one that could not be ruled out, or nobody has a plan, or
+     fewer agents have a mission and a plan than --agents asks for;
      with --hours also: a robot waits for ever or went beyond its hold, or
      missions waited while nobody reached a goal or moved for too long
   2  wrong arguments, or a layout that cannot be read or was refused
@@ -36,9 +39,9 @@ Exit status:
 pub(super) struct Arguments {
     /// The layout; standard input if left out or `-`
     layout: Option<PathBuf>,
-    /// Agents; a mission each, or many with --hours
-    #[arg(long, value_name = "N", default_value_t = 50, value_parser = clap::value_parser!(u16).range(1..))]
-    agents: u16,
+    /// Agents; a mission each, or many with --hours [default: as many as there is room for, up to 50]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    agents: Option<u16>,
     /// The same seed gives the same missions
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
     seed: u64,
@@ -63,17 +66,38 @@ pub(super) struct Arguments {
     import: Options,
 }
 
+/// Agents if no number is asked for, where there is room.
+const AGENTS: usize = 50;
+
 impl Arguments {
+    /// The number of agents that missions are drawn for: no more than the layout has room for, of which a warning tells at once.
+    fn room(asked: Option<u16>, file: &Path, imported: &mut Imported) -> usize {
+        let room = room(imported);
+        let Some(asked) = asked.map(usize::from) else { return AGENTS.min(room) };
+        if asked > room {
+            let text = format!(
+                "--agents {asked}: at most {room} fit on the nodes of this layout at one time; missions are drawn for {room}"
+            );
+            let mut warnings = vec![WarningCode::AgentsLimited.text(text)];
+            acknowledge(&mut warnings);
+            say(file, warnings.iter().cloned());
+            imported.layout.warnings.append(&mut warnings);
+        }
+        asked.min(room)
+    }
+
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
         if self.hours.is_some() && self.import.corner_radius.is_some() {
             return Err(Stop::arguments("--corner-radius has no effect: with --hours robots turn in place at corners"));
         }
         let file = &layout_source(self.layout)?;
-        let imported = layout(file, &self.import, "traffic", true)?;
+        let mut imported = layout(file, &self.import, "traffic", true)?;
+        let agents = Self::room(self.agents, file, &mut imported);
+        let asked = self.agents.map_or(agents, usize::from);
         if let Some(hours) = self.hours {
             let usual = Delays::default();
             let request = lifelong::Request {
-                agents: self.agents.into(),
+                agents,
                 duration: 3600.0 * hours,
                 delays: Delays {
                     stopped: self.stopped.unwrap_or(usual.stopped),
@@ -84,15 +108,24 @@ impl Arguments {
                 method: Method::Orders,
             };
             let methods: &[Method] = if self.compare { &Method::ALL } else { &[Method::Orders] };
-            let answer = Lifelong::of(&imported, request, methods).map_err(|problem| Stop::wrong(file, problem))?;
-            return print(&self.printed, &answer);
+            let progress = Progress::new(format!("{}: simulated seconds", file.display()));
+            let all = request.duration * methods.len() as f64;
+            let told = |now: f64| progress.set(now as usize, all.ceil() as usize);
+            let answer = Lifelong::watched(&imported, request, methods, &told);
+            drop(progress);
+            let mut answer = answer.map_err(|problem| Stop::wrong(file, problem))?;
+            answer.asked = asked;
+            let is_complete = self.agents.is_none() || answer.runs.iter().all(|run| run.outcome.robots == asked);
+            return print(&self.printed, &answer, is_complete);
         }
         let wrong = |failure| Stop::wrong(file, failure);
         if self.output.is_some() {
-            map::are_few(self.agents.into(), "maps are drawn").map_err(wrong)?;
+            map::are_few(asked, "maps are drawn").map_err(wrong)?;
         }
-        let request = Request { agents: self.agents.into(), seed: self.seed };
-        let (traffic, [missions, plan]) = Traffic::of(&imported, request).map_err(wrong)?;
+        let request = Request { agents, seed: self.seed };
+        let (mut traffic, [mut missions, mut plan]) = Traffic::of(&imported, request).map_err(wrong)?;
+        traffic.asked = asked;
+        [&mut traffic.warnings, &mut missions.warnings, &mut plan.warnings].into_iter().for_each(acknowledge);
         if self.output.is_some() {
             map::ask_for_regions(&plan).map_err(wrong)?;
         }
@@ -109,7 +142,8 @@ impl Arguments {
             write_to(&directory.join("missions.json"), &missions.to_json())?;
             write_to(&directory.join("plan.json"), &plan.to_json())?;
         }
-        Ok(status(traffic.is_sound()))
+        let is_complete = self.agents.is_none() || traffic.is_complete();
+        Ok(status(traffic.is_sound() && is_complete))
     }
 }
 
@@ -117,7 +151,7 @@ fn status(sound: bool) -> ExitCode {
     if sound { ExitCode::SUCCESS } else { ExitCode::from(CONFLICTS) }
 }
 
-fn print(printed: &Printed, answer: &Lifelong) -> Result<ExitCode, Stop> {
+fn print(printed: &Printed, answer: &Lifelong, is_complete: bool) -> Result<ExitCode, Stop> {
     let mut out = printed.out(false);
     match printed.form() {
         Form::Table => report::lifelong_table(answer, &mut out)?,
@@ -125,7 +159,7 @@ fn print(printed: &Printed, answer: &Lifelong) -> Result<ExitCode, Stop> {
         Form::Csv => report::lifelong_csv(answer, &mut out)?,
     }
     out.flush()?;
-    Ok(status(answer.is_sound()))
+    Ok(status(answer.is_sound() && is_complete))
 }
 
 /// Above 0, up to a week.

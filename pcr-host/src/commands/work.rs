@@ -3,7 +3,7 @@
 use super::number::{Number, with_scalar};
 use super::printed::is_alone;
 use super::sources::{Source, gathered, give_margin, refuse_margin};
-use super::{Form, NOT_WRITTEN, Printed, Stop, WRONG_INPUT, complain, say};
+use super::{Form, NOT_WRITTEN, Printed, Stop, WRONG_INPUT, acknowledge, complain, say};
 use crate::progress::Progress;
 use pcr_formats::import::{Options, shortened};
 use pcr_formats::input::{self, InputError, Lines};
@@ -80,9 +80,10 @@ pub(super) fn run<W: Work>(work: &W, files: Vec<PathBuf>, import: &Options, prin
 
 /// A warning about what the number format makes of the motions, which the scenario has from now on.
 pub(super) fn tell_rounding(scalar: Number, scenario: &mut Scenario) -> Result<Option<String>, Refused> {
-    let warning = with_scalar!(scalar, S => rounded::<S>(scenario))?;
-    scenario.warnings.extend(warning.clone());
-    Ok(warning)
+    let mut warnings = Vec::from_iter(with_scalar!(scalar, S => rounded::<S>(scenario))?);
+    acknowledge(&mut warnings);
+    scenario.warnings.extend(warnings.iter().cloned());
+    Ok(warnings.pop())
 }
 
 /// Answers one source; of standard input the text may be there already.
@@ -137,6 +138,7 @@ fn answer_lines<W: Work>(
         let outcome = match line.scenario {
             Ok(mut scenario) => {
                 let number = line.number;
+                acknowledge(&mut scenario.warnings);
                 let warnings = scenario.warnings.iter().map(|warning| format!("line {number}: {}", shortened(warning)));
                 say(Path::new("-"), warnings);
                 give_margin(&mut scenario, import);

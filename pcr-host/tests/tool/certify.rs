@@ -23,7 +23,7 @@ fn labels_and_warnings_are_told() {
     scenario["agents"][0]["label"] = json!("AGV-7");
     scenario["warnings"] = json!(["edge 3: guessed"]);
     let told = table("labelled.json", &scenario, &["-q"]);
-    let (labels, warnings) = (json!({ "1": "AGV-7" }), json!(["edge 3: guessed"]));
+    let (labels, warnings) = (json!({ "1": "AGV-7" }), json!(["edge 3: guessed [uncoded]"]));
     let name = file("certify", "labelled-table.json", told.to_string());
     let scenario = file("certify", "labelled.json", scenario.to_string());
     for arguments in

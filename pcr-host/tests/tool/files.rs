@@ -107,7 +107,7 @@ fn pictures_of_an_earlier_run_are_told() {
     let each = if cfg!(feature = "png") { 2 } else { 1 };
     let (count, first) = (10 * each, if each == 2 { "png" } else { "svg" });
     let expected = format!(
-        "pcr: warning: {}: of an earlier run, with other agents: {count} pictures, such as ecm-10.{first}\n",
+        "pcr: warning: {}: of an earlier run, with other agents: {count} pictures, such as ecm-10.{first} [earlier-pictures]\n",
         maps.display()
     );
     assert_eq!((told.status, told.err), (0, expected));

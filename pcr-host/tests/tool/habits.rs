@@ -348,7 +348,12 @@ fn completions_and_manual_pages_name_every_command() {
     assert!(!zsh.contains(":HOST:PORT"), "{zsh}");
     // Commands are offered for what they are expected for.
     let bash = run(&["completions", "bash"]).ok();
-    assert!(bash.contains("opts=\"-h -q --help --quiet regions certify check plan map"), "{bash}");
+    assert!(
+        bash.contains(
+            "opts=\"-h -q --help --quiet --progress --allow --deny --warnings regions certify check plan map"
+        ),
+        "{bash}"
+    );
 }
 
 #[test]

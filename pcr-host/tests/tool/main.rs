@@ -1,5 +1,6 @@
 //! The binary `pcr`, end to end: arguments and standard input in; output, messages and exit status out.
 
+mod abort;
 mod certify;
 mod check;
 mod compare;
@@ -28,3 +29,4 @@ mod serve;
 mod simulate;
 mod sources;
 mod streams;
+mod warnings;

@@ -11,7 +11,8 @@ fn plan(name: &str, scenario: &Value, arguments: &[&str]) -> (i32, Value, Option
     let output = directory("plan").join(format!("{name}-plan.json"));
     let _ = fs::remove_file(&output);
     let output = output.to_str().unwrap().to_owned();
-    let run = run(&[&["plan", &input, "-o", &output, "--format", "json"], arguments].concat());
+    let asked = ["plan", &input, "-o", &output, "--format", "json", "--warnings", "all"];
+    let run = run(&[&asked, arguments].concat());
     let report: Value = serde_json::from_str(&run.out).unwrap();
     // What it warns of is said, and nothing else.
     let warnings = report["warnings"].as_array().into_iter().flatten();
@@ -347,7 +348,7 @@ fn whom_other_speeds_keep_is_not_left_out() {
     // The file of the plan says so, too.
     let plan = run(&["plan", &name, "--method", "speed", "--leave-out", "-q", "-o", "-"]).out;
     let plan: Value = serde_json::from_str(&plan).unwrap();
-    assert_eq!(plan["warnings"][0], format!("left out of the plan: 1 of 4 agents: {out}"));
+    assert_eq!(plan["warnings"][0], format!("left out of the plan: 1 of 4 agents: {out} [agents-left-out]"));
 }
 
 #[test]
@@ -449,7 +450,8 @@ fn pictures_of_an_earlier_plan_are_told() {
     let stuck = json!({ "agents": [straight(1, [0.0, 0.0, 0.0], 4.0), straight(2, [0.1, 0.0, 0.0], 4.0)] });
     let stuck = file("plan", "earlier-stuck.json", stuck.to_string());
     let said = |scenario: &str| run(&["plan", scenario, "--pictures", &pictures, "--json"]).err;
-    let told = format!("pcr: warning: {pictures}/after: of an earlier plan, and there is none now\n");
+    let told =
+        format!("pcr: warning: {pictures}/after: of an earlier plan, and there is none now [earlier-pictures]\n");
     assert!(!said(&stuck).contains("earlier plan") && !said(&free).contains("earlier plan"));
     assert!(said(&stuck).ends_with(&told));
 }

@@ -4,13 +4,25 @@
 #[path = "../../src/progress.rs"]
 mod source;
 
-use source::remaining;
+use source::{Counts, line, remaining};
 use std::time::Duration;
 
 #[test]
 fn what_is_left_takes_as_long_as_what_is_done() {
     let after = |done| remaining(done, 1000, Duration::from_secs(10));
     assert_eq!([after(9), after(10), after(250), after(1000)], [None, Some(990), Some(30), Some(0)]);
+}
+
+#[test]
+fn the_line_has_a_percentage_and_the_remaining_time() {
+    let line = |done: usize, total: usize, limit: u64| {
+        let counts = Counts { done: done.into(), total: total.into(), limit: limit.into() };
+        line("planning", &counts, Duration::from_secs(10))
+    };
+    assert_eq!(line(250, 1000, 0), "planning: 250 of 1000 (25 %, 25 a second, 10 s, 30 s to go)");
+    assert_eq!(line(0, 0, 40_000), "planning (25 % of the time limit, 10 s, 30 s to go)");
+    assert_eq!(line(0, 0, 0), "planning (10 s)");
+    assert_eq!(line(7, 0, 0), "planning: 7 (10 s)");
 }
 
 /// Pictures that took more than a second, after which the progress is shown, were never done where standard error was a terminal.

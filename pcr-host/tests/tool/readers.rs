@@ -46,7 +46,7 @@ fn a_name_that_is_no_label_is_read_with_a_warning() {
         let read = run(&[&["check", &graph(name), "--route", "1:2", "--json"], &VEHICLE[..]].concat());
         let answer: Value = serde_json::from_str(&read.out).unwrap();
         assert_eq!((read.status, &answer["name"]), (0, &json!(called)), "{}", read.err);
-        let told = format!("name: it becomes {called}: names are printable text of up to 200 characters");
+        let told = format!("name: it becomes {called}: names are printable text of up to 200 characters [renamed]");
         assert!(answer["warnings"].as_array().unwrap().contains(&json!(told)), "{answer}");
     }
     let plain = run(&["nodes", &graph("plain"), "--json"]).json();
@@ -144,9 +144,12 @@ fn what_an_update_in_another_file_releases_is_not_said_to_be_left_out() {
         (length, read.err.lines().map(str::to_owned).collect::<Vec<_>>())
     };
     assert_eq!(warnings(&[&first, &all]), (json!(20.0), vec![]));
-    let told = format!("pcr: warning: {some}: order o: 1 of 4 edges are not released and left out (--horizon)");
+    let told =
+        format!("pcr: warning: {some}: order o: 1 of 4 edges are not released and left out (--horizon) [not-released]");
     assert_eq!(warnings(&[&first, &some]), (json!(15.0), vec![told]));
-    let told = format!("pcr: warning: {first}: order o: 2 of 4 edges are not released and left out (--horizon)");
+    let told = format!(
+        "pcr: warning: {first}: order o: 2 of 4 edges are not released and left out (--horizon) [not-released]"
+    );
     assert_eq!(warnings(&[&first]), (json!(10.0), vec![told]));
     // What counts is what they amount to together.
     run(&[&["import", "vda5050", &first, &some, "--horizon"], &VEHICLE[..]].concat()).ok();

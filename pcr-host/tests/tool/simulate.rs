@@ -98,9 +98,9 @@ fn a_profile_that_is_under_way_is_sped_up_within_its_duration() {
         warning
     };
     for accel in [1e-7, 1e-17, 1e-300] {
-        assert!(rolls(accel).ends_with("by which it takes 8.000 s"), "{accel}");
+        assert!(rolls(accel).ends_with("by which it takes 8.000 s [replaced-motion]"), "{accel}");
     }
-    assert!(rolls(0.0).ends_with("by which it takes 5.000 s"));
+    assert!(rolls(0.0).ends_with("by which it takes 5.000 s [replaced-motion]"));
     let mut far = crossing();
     far["agents"][0]["a_max"] = json!(1e-12);
     let name = file("simulate", "far.json", far.to_string());
@@ -126,12 +126,18 @@ fn negative_starts_keep_their_distance_in_time() {
     assert_eq!(early, late);
     assert_eq!(
         (warned, silent),
-        (json!(["the first agent sets off at -100 s; times of the simulation count from there"]), json!([]))
+        (
+            json!(["the first agent sets off at -100 s; times of the simulation count from there [shifted-times]"]),
+            json!([])
+        )
     );
     // Times since 1970 were refused.
     let (since_1970, warned) = runs(1.7e9);
     assert_eq!(since_1970, late);
-    assert_eq!(warned[0], "the first agent sets off at 1700000000 s; times of the simulation count from there");
+    assert_eq!(
+        warned[0],
+        "the first agent sets off at 1700000000 s; times of the simulation count from there [shifted-times]"
+    );
 }
 
 /// Agents that never move are no robots, so that no run counts their contacts.
@@ -145,9 +151,9 @@ fn agents_that_stand_in_contact_are_warned_about() {
     let name = file("simulate", "heap.json", json!({ "agents": agents }).to_string());
     let result = run(&["simulate", &name, "--json"]);
     assert_eq!(result.status, 0);
-    assert_eq!(result.err, format!("pcr: warning: {name}: agents 1 and 3 stand in contact\n"));
+    assert_eq!(result.err, format!("pcr: warning: {name}: agents 1 and 3 stand in contact [standing-contact]\n"));
     let simulation: serde_json::Value = serde_json::from_str(&result.out).unwrap();
-    assert_eq!(simulation["warnings"], json!(["agents 1 and 3 stand in contact"]));
+    assert_eq!(simulation["warnings"], json!(["agents 1 and 3 stand in contact [standing-contact]"]));
     // They just touch.
     let agents = json!([stands(1, [0.0, 0.0], 0.5), stands(2, [1.0, 0.0], 0.5)]);
     let name = file("simulate", "touch.json", json!({ "agents": agents }).to_string());
@@ -156,7 +162,14 @@ fn agents_that_stand_in_contact_are_warned_about() {
     let agents: Vec<_> = (0..10).map(|id| stands(id, [0.0, 0.0], 0.5)).collect();
     let name = file("simulate", "many.json", json!({ "agents": agents }).to_string());
     let said = run(&["simulate", &name, "--controller", "potential"]).err;
-    assert!(said.lines().count() == 17 && said.ends_with(": 29 more pairs of agents stand in contact\n"), "{said}");
+    assert!(
+        said.lines().count() == 1
+            && said.ends_with("stand in contact [standing-contact] and 16 more; --warnings all\n"),
+        "{said}"
+    );
+    let said = run(&["simulate", &name, "--controller", "potential", "--warnings", "all"]).err;
+    let last = ": 29 more pairs of agents stand in contact [standing-contact]\n";
+    assert!(said.lines().count() == 17 && said.ends_with(last), "{said}");
 }
 
 #[test]

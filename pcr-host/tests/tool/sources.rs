@@ -225,11 +225,15 @@ fn what_was_left_out_is_told_by_all_that_is_made_of_it() {
         let told = run(arguments);
         assert_eq!(told.status, status, "{arguments:?}: {}", told.err);
         let lines: Vec<&str> = told.err.lines().collect();
-        assert_eq!(lines[0], format!("pcr: warning: {name}: edge 7 was dropped"), "{arguments:?}");
-        assert!(lines[1].len() < 500 && lines[1].ends_with(", edge: left out"), "{arguments:?}: {}", lines[1]);
+        assert_eq!(lines[0], format!("pcr: warning: {name}: edge 7 was dropped [uncoded]"), "{arguments:?}");
+        assert!(
+            lines[1].len() < 500 && lines[1].ends_with(", edge: left out [uncoded]"),
+            "{arguments:?}: {}",
+            lines[1]
+        );
         assert_eq!(lines.len(), 2, "{arguments:?}: {}", told.err);
         assert_eq!(run(&[arguments, &["-q"]].concat()).err, "", "{arguments:?}");
     }
     let piped = run_with(&["check"], scenario.to_string().as_bytes());
-    assert_eq!(piped.err.lines().next(), Some("pcr: warning: standard input: line 1: edge 7 was dropped"));
+    assert_eq!(piped.err.lines().next(), Some("pcr: warning: standard input: line 1: edge 7 was dropped [uncoded]"));
 }

@@ -144,9 +144,18 @@ impl<'a> Checker<'a> {
     /// # Errors
     /// A piece that is none.
     pub fn check(&self, margin: Margin) -> Result<Findings, String> {
+        self.watched(margin, &|_| {})
+    }
+
+    /// Checks every pair as [`Checker::check`], and tells before each one how many are checked.
+    ///
+    /// # Errors
+    /// A piece that is none.
+    pub fn watched(&self, margin: Margin, told: &dyn Fn(usize)) -> Result<Findings, String> {
         let wholes = self.wholes();
         let mut findings = Findings::default();
-        for pair in self.pairs {
+        for (checked, pair) in self.pairs.iter().enumerate() {
+            told(checked);
             findings.add(self.pair(pair, &wholes, self.radii(pair, margin), true)?);
         }
         Ok(findings)

@@ -9,6 +9,7 @@ use crate::edit::{Edits, ending, indent};
 use crate::settings::Notes;
 use pcr_formats::import::{Edge, ImportError, Imported};
 use pcr_formats::scenario::PathSegment;
+use pcr_formats::warning::WarningCode;
 use roxmltree::{Document, Node};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fmt::Write as _;
@@ -48,7 +49,7 @@ pub(crate) fn split(
     }
     let said =
         left_whole.into_iter().map(|(reason, names)| format!("paths left whole, {reason}: {}", names.join(", ")));
-    notes.said.extend(said);
+    notes.said.extend(said.map(|text: String| WarningCode::LeftWhole.text(text)));
     Ok(cutter.made())
 }
 

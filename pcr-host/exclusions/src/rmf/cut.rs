@@ -4,6 +4,7 @@ use super::{Form, own, place_of, placed, typed};
 use crate::edit::{Edits, column, ending, rest_of_line};
 use crate::settings::Notes;
 use pcr_formats::import::{ImportError, Imported};
+use pcr_formats::warning::WarningCode;
 use pcr_formats::yaml::{Spanned, Style, Value};
 use std::collections::{BTreeMap, HashMap};
 
@@ -27,7 +28,8 @@ pub(crate) fn prepare(
             let Some(edge) = lanes.get(&(name, k)).map(|&edge| &imported.layout.edges[edge]) else { continue };
             let mut parts = most.map_or(1.0, |most| (edge.length() / most - 1e-9).ceil().max(1.0)) as usize;
             if let Some(reason) = whole(lane).filter(|_| parts > 1) {
-                notes.said.push(format!("lane {} is left whole: {reason}", edge.id));
+                let text = format_args!("lane {} is left whole: {reason}", edge.id);
+                notes.said.push(WarningCode::LeftWhole.text(text));
                 parts = 1;
             }
             if parts == 1 && !edge.is_two_way() {

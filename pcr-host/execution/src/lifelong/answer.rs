@@ -51,10 +51,24 @@ impl Lifelong {
     /// # Errors
     /// Errors of [`run`].
     pub fn of(imported: &Imported, request: Request, methods: &[Method]) -> Result<Self, String> {
+        Self::watched(imported, request, methods, &|_| {})
+    }
+
+    /// Runs as [`Lifelong::of`], and tells from time to time how much of the time of all runs is simulated \[s\].
+    ///
+    /// # Errors
+    /// Errors of [`super::run`].
+    pub fn watched(
+        imported: &Imported,
+        request: Request,
+        methods: &[Method],
+        told: &dyn Fn(f64),
+    ) -> Result<Self, String> {
         let mut well_formedness = WellFormedness::default();
         let (mut runs, mut alone) = (Vec::new(), 0.0);
-        for &method in methods {
-            let report = run(imported, Request { method, ..request })?;
+        for (before, &method) in methods.iter().enumerate() {
+            let before = before as f64 * request.duration;
+            let report = run::watched(imported, Request { method, ..request }, &|now| told(before + now))?;
             runs.push(Driven::of(&report));
             alone = report.alone;
             well_formedness = report.layout;
@@ -80,6 +94,28 @@ impl Lifelong {
             let Outcome { certificate, breaches, stuck, idle_because, .. } = &run.outcome;
             certificate.verdict == "proved" && *breaches == 0 && *stuck == 0 && idle_because.is_none()
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pcr_formats::import::{Format, Options, Warnings, roads};
+    use std::cell::RefCell;
+
+    #[test]
+    fn the_time_that_is_simulated_is_told_over_all_runs() {
+        let text = include_str!("../../../../tests/data/real/nav2/sample_graph.geojson");
+        let options = Options { radius: Some(0.3), ..Options::default() };
+        let imported = roads(Format::Nav2, text, &options, &mut Warnings::default()).unwrap();
+        let (delays, method) = (Delays::default(), Method::Orders);
+        let request = Request { agents: 2, duration: 60.0, delays, seed: 1, method };
+        let told = RefCell::new(Vec::new());
+        let methods = [Method::Orders, Method::EdgeLocks];
+        let watched = Lifelong::watched(&imported, request, &methods, &|now| told.borrow_mut().push(now)).unwrap();
+        let told = told.into_inner();
+        assert!(told.is_sorted() && told.len() >= 2 * methods.len(), "{told:?}");
+        assert_eq!((told.last(), watched.runs.len()), (Some(&120.0), 2));
     }
 }
 

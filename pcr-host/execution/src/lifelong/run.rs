@@ -30,7 +30,15 @@ const QUIET: f64 = 60.0;
 /// # Errors
 /// An edge that is no path, or a layout without room for any robot.
 pub fn run(imported: &Imported, request: Request) -> Result<Report, String> {
-    driven(Run::new(imported, request, None)?, imported, request)
+    watched(imported, request, &|_| {})
+}
+
+/// Runs a fleet as [`run`], and tells from time to time how much of the time is simulated \[s\].
+///
+/// # Errors
+/// Errors of [`run`].
+pub fn watched(imported: &Imported, request: Request, told: &dyn Fn(f64)) -> Result<Report, String> {
+    driven(Run::new(imported, request, None)?, imported, request, told)
 }
 
 /// Runs a fleet on a layout with shared tasks and the starts that belong to them, until all tasks are done or the time of the
@@ -40,10 +48,10 @@ pub fn run(imported: &Imported, request: Request) -> Result<Report, String> {
 /// # Errors
 /// As [`run`], and a node that is not in the layout.
 pub fn run_tasks(imported: &Imported, request: Request, tasks: &Tasks) -> Result<Report, String> {
-    driven(Run::new(imported, request, Some(tasks))?, imported, request)
+    driven(Run::new(imported, request, Some(tasks))?, imported, request, &|_| {})
 }
 
-fn driven(mut run: Run, imported: &Imported, request: Request) -> Result<Report, String> {
+fn driven(mut run: Run, imported: &Imported, request: Request, told: &dyn Fn(f64)) -> Result<Report, String> {
     let steady = if run.tasks.is_none() { run.alone(START * request.duration) } else { 0 };
     let alone = steady as f64 * 3600.0 / ((1.0 - START) * request.duration);
     let mut certificate = Certificate::new();
@@ -54,6 +62,7 @@ fn driven(mut run: Run, imported: &Imported, request: Request) -> Result<Report,
         let open = now < request.duration && run.has_work();
         let ended = !open && (still > REST || run.robots.iter().all(Robot::has_arrived));
         if (tick > 0 && tick % WINDOW == 0) || ended {
+            told(now.min(request.duration));
             certificate.window(&run.site, &mut run.robots, &mut window, imported.vehicle.radius, now);
         }
         if ended {

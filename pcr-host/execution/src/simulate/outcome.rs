@@ -8,6 +8,7 @@ use super::task::Task;
 use super::vector::{Vector, norm, sub};
 use super::{Controller, Disturbance, FRAME, Settings, Snapshot};
 use pcr_formats::scenario::Labels;
+use pcr_formats::warning::WarningCode;
 use serde::Serialize;
 
 /// A robot that is slower than this share of its top speed waits.
@@ -86,7 +87,7 @@ impl Simulation {
         let (name, labels, mut warnings) = (task.name.clone(), task.labels.clone(), task.warnings.clone());
         if outcomes.iter().any(|outcome| outcome.run.controller == Controller::Potential) {
             let why = "its path ends where it begins; the controller potential goes straight to the end, and has nothing to do";
-            warnings.extend(closed(task).map(|id| format!("agent {id}: {why}")));
+            warnings.extend(closed(task).map(|id| WarningCode::ClosedPath.text(format_args!("agent {id}: {why}"))));
         }
         Self { name, labels, seed, replan, noise, drift, slip, delay, runs, warnings }
     }

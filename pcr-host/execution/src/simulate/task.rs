@@ -5,6 +5,7 @@ use super::course::Course;
 use super::vector::{Vector, norm, sub};
 use pcr_core::Limits;
 use pcr_formats::scenario::{Agent, Labels, MotionSpec, Part, PathSegment, Scenario, TURN};
+use pcr_formats::warning::WarningCode;
 use pcr_planning::failure::Failure;
 use pcr_planning::fleet::Fleet;
 
@@ -95,7 +96,8 @@ impl Task {
         let first = starts().fold(f64::INFINITY, f64::min);
         let begin = if starts().any(|start| start > LATEST) { first } else { first.min(0.0) };
         if begin != 0.0 {
-            warnings.push(format!("the first agent sets off at {begin} s; times of the simulation count from there"));
+            let text = format_args!("the first agent sets off at {begin} s; times of the simulation count from there");
+            warnings.push(WarningCode::ShiftedTimes.text(text));
         }
         for (place, (agent, motion)) in scenario.agents.iter().zip(fleet.motions()).enumerate() {
             let tops = tops(agent);
@@ -112,10 +114,10 @@ impl Task {
                 }
                 if own > least * (1.0 + SLOWER) || least > own * (1.0 + SLOWER) {
                     let by = "from rest to rest by its largest speed on each segment and its largest acceleration";
-                    warnings.push(format!(
+                    warnings.push(WarningCode::ReplacedMotion.text(format_args!(
                         "agent {}: its own motion takes {own:.3} s; it is simulated {by}, by which it takes {least:.3} s",
                         agent.id
-                    ));
+                    )));
                 }
                 let missions = vec![Mission { release: agent.t_start - begin, course }];
                 robots.push(Robot { id: agent.id, radius: agent.reach(), margin: agent.margin, limits, missions });
@@ -150,7 +152,8 @@ fn overlapping(standing: &[(u64, Vector, f64)]) -> Vec<String> {
     named.sort_unstable();
     let more = count - named.len();
     let named = named.into_iter().map(|[i, j]| format!("agents {i} and {j} stand in contact"));
-    named.chain((more > 0).then(|| format!("{more} more pairs of agents stand in contact"))).collect()
+    let all = named.chain((more > 0).then(|| format!("{more} more pairs of agents stand in contact")));
+    all.map(|text| WarningCode::StandingContact.text(text)).collect()
 }
 
 /// The largest speed of a profile on each segment \[m/s\], and that of a turn in place in the mean, without the waits; infinite without a profile.

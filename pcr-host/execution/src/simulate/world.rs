@@ -75,6 +75,26 @@ impl<'a> World<'a> {
         }
     }
 
+    /// The share of the missions that is done, from 0 to 1: each counts with its time without other robots, and those under way with
+    /// the part of their path behind the robot.
+    pub(super) fn share(&self) -> f64 {
+        let (mut done, mut all) = (0.0, 0.0);
+        for agent in &self.agents {
+            for (place, mission) in agent.robot.missions.iter().enumerate() {
+                let time = mission.course.unimpeded(agent.robot.limits);
+                all += time;
+                done += match place + 1 {
+                    under_way if under_way == agent.begun && agent.travels => {
+                        time * (agent.body.travelled() / mission.course.length()).clamp(0.0, 1.0)
+                    }
+                    number if number <= agent.begun => time,
+                    _ => 0.0,
+                };
+            }
+        }
+        if all > 0.0 { done / all } else { 0.0 }
+    }
+
     /// Whether all missions are done.
     pub(super) fn is_done(&self) -> bool {
         self.agents.iter().all(|agent| !agent.travels && agent.begun == agent.robot.missions.len())

@@ -6,7 +6,8 @@ use pcr_formats::plane::distance;
 use pcr_formats::random::Random;
 use pcr_formats::scenario::Agent;
 use pcr_formats::scenario::Placed;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// How many times the sum of their radii and margins agents keep that wait at their starts or stand at their ends: more than
 /// 1 by what plans and checks may take for a contact.
@@ -46,6 +47,24 @@ pub(super) struct Drawn {
     pub(super) missions: Vec<Mission>,
     /// How many were passed over, by the reason.
     pub(super) passed_over: BTreeMap<String, usize>,
+}
+
+/// An upper bound for the number of agents that can stand at nodes of the level with the most nodes at one time: at most one in each
+/// square whose diagonal is the distance that two of them keep.
+pub(super) fn room(imported: &Imported) -> usize {
+    /// Slightly smaller squares, so that rounding joins no two nodes that are far enough from one another.
+    const SMALLER: f64 = 1.0 - 1e-6;
+    /// Up to so many squares from the origin the rounding is smaller than that.
+    const FAR: f64 = 1e9;
+    let Imported { layout, vehicle } = imported;
+    let level = layout.largest_level();
+    let side = 2.0 * (vehicle.radius + vehicle.margin) * FRAC_1_SQRT_2 * SMALLER;
+    let there = || layout.nodes.iter().filter(|node| node.level == level);
+    let square = |at: [f64; 2]| at.map(|coordinate| (coordinate / side).floor());
+    if there().any(|node| square(node.at).iter().any(|number| !(0.0..FAR).contains(&number.abs()))) {
+        return there().count();
+    }
+    there().map(|node| square(node.at).map(|number| number as i64)).collect::<HashSet<_>>().len()
 }
 
 /// Draws at most, where not all agents have a mission in the first one.

@@ -112,14 +112,26 @@ impl Warnings {
         self.list.iter().map(|problem| (problem.code, problem.words.as_str(), problem.names.as_slice()))
     }
 
-    /// The lines in which they are told to people, who do not read hundreds of names.
+    /// The lines in which they are told to people, who do not read hundreds of names, without their codes.
     pub fn lines(&self) -> Vec<String> {
         self.list.iter().map(|Problem { words, names, .. }| format!("{}: {words}", listed(names, ", "))).collect()
     }
 
-    /// The lines in which programs get them, with all names.
+    /// The same lines with their codes.
+    pub fn coded_lines(&self) -> Vec<String> {
+        self.list.iter().zip(self.lines()).map(|(problem, line)| problem.code.text(line)).collect()
+    }
+
+    /// The lines in which programs get them, with all names and their codes.
     pub fn all(&self) -> Vec<String> {
-        self.list.iter().map(|Problem { words, names, .. }| format!("{}: {words}", names.join(", "))).collect()
+        let text = |Problem { code, words, names }: &Problem| code.text(format_args!("{}: {words}", names.join(", ")));
+        self.list.iter().map(text).collect()
+    }
+
+    /// Removes the warnings that the options acknowledge.
+    pub fn acknowledge(&mut self, codes: &[WarningCode]) {
+        self.list.retain(|problem| !codes.contains(&problem.code));
+        self.places = self.list.iter().enumerate().map(|(place, problem)| (problem.key(), place)).collect();
     }
 }
 
@@ -161,6 +173,7 @@ mod tests {
         let long = format!("{}: too short", vec!["edge"; 1000].join(", "));
         assert!(shortened(&long).len() < 320 && shortened(&long).ends_with(": too short"));
         assert_eq!(shortened("edge 1: too short"), "edge 1: too short");
-        assert_eq!(warnings.all()[0], format!("{edges}, edge 8, edge 9: too short"));
+        assert_eq!(warnings.all()[0], format!("{edges}, edge 8, edge 9: too short [zero-length]"));
+        assert_eq!(warnings.coded_lines()[1], "node 3: given twice [given-twice]");
     }
 }

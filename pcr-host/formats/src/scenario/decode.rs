@@ -10,6 +10,7 @@ use super::{Agent, MotionSpec, PathSegment, Scenario, TURN};
 use crate::json::{self, Data, Json};
 use crate::mark::unmarked;
 use crate::own;
+use crate::warning::WarningCode;
 use serde_json::Value;
 use std::collections::HashSet;
 use std::fmt;
@@ -85,7 +86,7 @@ impl Scenario {
             return Ok(Vec::new());
         }
         let text = |warning: &Json<'_>| match &warning.data {
-            Data::Text(text) => Ok(text.to_string()),
+            Data::Text(text) => Ok(WarningCode::coded(text.to_string())),
             _ => Err(fields.unexpected("warnings", warning, "a list of strings")),
         };
         fields.array("warnings")?.iter().map(text).collect()

@@ -130,7 +130,7 @@ mod tests {
             Footprint::new(vec![[0.1 + 0.2, -1.0], [1.0, 1.0 / 3.0], [-1.0, 0.5]], Some(0.3)).unwrap().grown(0.01);
         let outlined = Agent { id: 2, radius: outline.reach(), footprint: Some(outline), ..stands.clone() };
         let scenario = Scenario {
-            warnings: vec!["edge \"5\": left out".into()],
+            warnings: vec!["edge \"5\": left out [left-out]".into()],
             ..Scenario::new("a \"name\" \\", vec![agent, stands, moves, outlined])
         };
         assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));

@@ -3,6 +3,7 @@
 use super::{Fleet, Format, Refused, turn_in_place};
 use pcr_core::Motion;
 use pcr_formats::scenario::{Agent, PathSegment, Placed, Scenario};
+use pcr_formats::warning::WarningCode;
 use std::f64::consts::{PI, TAU};
 
 /// What a format makes of a motion, at most.
@@ -52,10 +53,10 @@ pub(super) fn warning<S: Format>(scenario: &Scenario) -> Result<Option<String>, 
     let worst = told.iter().max_by(|(a, _), (b, _)| a.total_cmp(b));
     Ok(worst.map(|(distance, agent)| {
         let (format, count, all, called) = (S::NAME, told.len(), motions.len(), agent.called());
-        format!(
+        WarningCode::NumberFormat.text(format_args!(
             "rounding to {format} moves {count} of {all} agents by more than 1 mm; agent {called} is up to {distance:.3} m from where \
              the file has it"
-        )
+        ))
     }))
 }
 

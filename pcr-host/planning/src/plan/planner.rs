@@ -11,6 +11,7 @@ use crate::cores;
 use crate::failure::Failure;
 use pcr_core::{Drive, Motion, Unsolved as Never};
 use pcr_formats::scenario::{Labels, MotionSpec, Scenario};
+use pcr_formats::warning::WarningCode;
 
 /// Costs that differ by less are printed alike \[s\].
 const NEAR: f64 = 1e-4;
@@ -41,7 +42,8 @@ impl<'m> Planner<'_, 'm> {
                 } else {
                     "its own profile is slower on the way than its largest speed and acceleration"
                 };
-                format!("agent {}: {why}; it is nowhere faster than its own motion", agent.id)
+                WarningCode::OwnMotion
+                    .text(format_args!("agent {}: {why}; it is nowhere faster than its own motion", agent.id))
             }));
         }
         warnings

@@ -1,13 +1,14 @@
 //! Vehicles and their manager at a broker.
 
 use super::super::brokers::{AT_BROKERS, VEHICLES, broker, interfaces};
-use super::super::printed::{notes, stdout, tables};
+use super::super::printed::{caution, stdout, tables};
 use super::super::sources::{FLEET, layout, layout_source};
 use super::super::{CONFLICTS, NO_STREAM, NOT_WRITTEN, Stop, WRONG_INPUT, complain, is_standard};
 use super::Arguments;
 use pcr_execution::lifelong::{streets, well_formedness};
 use pcr_formats::import::{self, Imported, Options};
 use pcr_formats::output;
+use pcr_formats::warning::WarningCode;
 use pcr_serve::entry::Nowhere;
 use pcr_serve::supervisor::Supervisor;
 use pcr_serve::vda5050::lane::Profile;
@@ -170,12 +171,12 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     }
     let free = world.manager.free();
     if free < vehicles {
-        writeln!(
-            notes(),
-            "pcr: warning: of {} safe ends, {free} are free while all {vehicles} vehicles stand; a mission to one of the \
-             others waits until its vehicle has left",
-            free + vehicles
-        )?;
+        let all = free + vehicles;
+        let text = format!(
+            "of {all} parking endpoints, {free} are free while all {vehicles} vehicles stand; a mission to one of the others waits \
+             until its vehicle has left"
+        );
+        caution(WarningCode::ParkingEndpoints, &text);
     }
     if let Some(file) = &arguments.profiles {
         let text = profiles(&world);
