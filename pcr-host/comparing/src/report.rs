@@ -1,8 +1,8 @@
 //! Comparisons as text.
 
 use crate::compare::{Absent, Comparison, Errors, Question, Row};
+use pcr_planning::figures::{bytes, seconds, share, time, times};
 use pcr_planning::report::columns::Columns;
-use pcr_planning::report::figures::{bytes, seconds, share, time, times};
 use pcr_planning::report::{Document, counted, heading, quoted};
 use std::io::{self, Write};
 

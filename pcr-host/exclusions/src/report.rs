@@ -1,9 +1,9 @@
 //! Reports of written exclusions and of audits, for reading and as CSV.
 
 use crate::{Audit, Gap, Spot, Written};
+use pcr_planning::figures::{above, given, thousandths};
 use pcr_planning::locks::LockVehicle;
 use pcr_planning::report::columns::Columns;
-use pcr_planning::report::figures::{given, thousandths};
 use pcr_planning::report::{Document, counted, printable, quoted};
 use std::io::{self, Write};
 
@@ -24,7 +24,7 @@ fn named(layout: &str) -> String {
 fn vehicle(vehicle: &LockVehicle) -> String {
     match vehicle.discs.len() {
         0 => format!("radius {} m", given(vehicle.radius)),
-        discs => format!("an outline of {discs} discs within {:.3} m", vehicle.radius),
+        discs => format!("an outline of {discs} discs within {} m", above(vehicle.radius)),
     }
 }
 

@@ -18,6 +18,7 @@
 //! queue        the conflicts of a fleet while its motions change   Queue
 //! safe         when a part of a path is free, in large fleets     safe_intervals
 //! report       JSON, CSV and tables
+//! figures      numbers as text
 //! ```
 
 pub mod bodies;
@@ -27,6 +28,7 @@ pub mod check;
 pub mod checksum;
 mod cores;
 pub mod failure;
+pub mod figures;
 pub mod fleet;
 pub mod locks;
 pub mod memory;

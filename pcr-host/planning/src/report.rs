@@ -4,7 +4,6 @@ mod certified;
 pub mod columns;
 mod conflicts;
 mod delays;
-pub mod figures;
 mod locks;
 mod nodes;
 mod overview;

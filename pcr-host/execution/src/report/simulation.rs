@@ -2,8 +2,8 @@
 
 use crate::simulate::{Ended, Run, Simulation};
 use pcr_formats::scenario::Labels;
+use pcr_planning::figures::small;
 use pcr_planning::report::columns::Columns;
-use pcr_planning::report::figures::small;
 use pcr_planning::report::{called, counted, heading, quoted};
 use std::io::{self, Write};
 

@@ -2,8 +2,8 @@
 
 use crate::traffic::{PassedOver, Traffic};
 use pcr_formats::scenario::Labels;
+use pcr_planning::figures::{above, exact, thousandths};
 use pcr_planning::report::columns::Columns;
-use pcr_planning::report::figures::thousandths;
 use pcr_planning::report::{all_called, counted, heading, printable, proof_line, quoted};
 use std::io::{self, Write};
 
@@ -47,11 +47,18 @@ pub fn traffic_table(traffic: &Traffic, out: &mut dyn Write) -> io::Result<()> {
         )?;
     }
     let mut columns = Columns::new(&["agent", "<from", "<to", "length [m]", "delay [s]", "t_end [s]"]);
-    let time = |time: Option<f64>| time.map_or_else(|| "-".to_owned(), thousandths);
+    let time = |time: Option<f64>, digits: fn(f64) -> String| time.map_or_else(|| "-".to_owned(), digits);
     for mission in &traffic.missions {
         let [from, to] = [&mission.from, &mission.to].map(|id| printable(&id.to_string()));
         let length = thousandths(mission.length);
-        columns.row(vec![mission.id.to_string(), from, to, length, time(mission.delay), time(mission.t_end)]);
+        columns.row(vec![
+            mission.id.to_string(),
+            from,
+            to,
+            length,
+            time(mission.delay, exact),
+            time(mission.t_end, above),
+        ]);
     }
     columns.write(out)?;
     for unsolved in &traffic.unsolved {

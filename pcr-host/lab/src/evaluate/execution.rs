@@ -4,7 +4,7 @@
 use super::{Extent, Fleets, Problem, Section};
 use crate::grid_plans::{By, Outcome, Stops, carried_out, random_stops, situation};
 use pcr_formats::import::GridPlan;
-use pcr_planning::report::figures::digits;
+use pcr_planning::figures::digits;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};

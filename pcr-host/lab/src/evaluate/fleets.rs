@@ -4,7 +4,7 @@ use super::{Extent, Fleets, Problem, Section, picture};
 use crate::methods::methods;
 use pcr_comparing::compare::{Comparison, Errors, Question, Row};
 use pcr_comparing::report::comparison_table;
-use pcr_planning::report::figures::{bytes, digits, time, times};
+use pcr_planning::figures::{bytes, digits, time, times};
 use std::fmt::Write as _;
 
 pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {

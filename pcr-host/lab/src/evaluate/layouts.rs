@@ -3,7 +3,7 @@
 use super::{Extent, Fleets, Problem, Section};
 use pcr_execution::lifelong::{Delays, Driven, Lifelong, Method, Request};
 use pcr_formats::import::{self, Format, Imported, Options, Warnings};
-use pcr_planning::report::figures::digits;
+use pcr_planning::figures::digits;
 use std::fmt::Write as _;
 use std::fs;
 

@@ -4,7 +4,7 @@
 use super::{Extent, Fleets, Problem, Section};
 use pcr_execution::lifelong::{Delays, Driven, Lifelong, Method, Request, streets};
 use pcr_formats::import::Imported;
-use pcr_planning::report::figures::digits;
+use pcr_planning::figures::digits;
 use std::fmt::Write as _;
 
 /// Radius of the discs \[m\].

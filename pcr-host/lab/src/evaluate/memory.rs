@@ -4,8 +4,8 @@ use super::{Extent, Fleets, Problem, Section};
 use crate::methods::methods;
 use pcr_comparing::compare::Answer;
 use pcr_comparing::compare::{Input, Question};
+use pcr_planning::figures::bytes;
 use pcr_planning::regions::{self, Request};
-use pcr_planning::report::figures::bytes;
 use std::fmt::Write as _;
 
 pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {

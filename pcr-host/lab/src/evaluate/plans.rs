@@ -4,8 +4,8 @@ use super::{Extent, Fleets, Problem, Section};
 use pcr_comparing::compare::crowd;
 use pcr_execution::traffic;
 use pcr_formats::scenario::Scenario;
+use pcr_planning::figures::{digits, time};
 use pcr_planning::plan::{Plan, Request};
-use pcr_planning::report::figures::{digits, time};
 use std::fmt::Write as _;
 use std::time::Instant;
 

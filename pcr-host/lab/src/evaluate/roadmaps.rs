@@ -6,8 +6,8 @@ use super::{Extent, Fleets, Problem, Section};
 use pcr_formats::import::{Edge, Id, ImportError, Imported, Layout, Node, Vehicle};
 use pcr_formats::random::Random;
 use pcr_formats::scenario::{PathSegment, Placed};
+use pcr_planning::figures::digits;
 use pcr_planning::locks::{Delays, Driving, Found, Sweep, Unsafe};
-use pcr_planning::report::figures::digits;
 use std::fmt::Write as _;
 use std::time::Instant;
 

@@ -11,8 +11,8 @@ use pcr_comparing::compare::median;
 use pcr_comparing::compare::stopwatch::Stopwatch;
 use pcr_drawing::plot::{Chart, Series};
 use pcr_formats::scenario::Scenario;
+use pcr_planning::figures::{digits, time};
 use pcr_planning::fleet::{Fleet, build_ecm};
-use pcr_planning::report::figures::{digits, time};
 use std::fmt::Write as _;
 
 pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {

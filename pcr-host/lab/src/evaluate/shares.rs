@@ -5,8 +5,8 @@ use pcr_comparing::compare::median;
 use pcr_comparing::compare::stopwatch::{Stopwatch, steady};
 use pcr_core::{Motion, Scalar as _};
 use pcr_drawing::plot::{Chart, Series};
+use pcr_planning::figures::{share, time};
 use pcr_planning::fleet::{Fleet, build_ecm};
-use pcr_planning::report::figures::{share, time};
 use std::fmt::Write as _;
 use std::hint::black_box;
 

@@ -3,7 +3,7 @@
 use super::{Extent, Fleets, Problem, Section};
 use crate::roadmap;
 use pcr_execution::lifelong::{Delays, Method, Report, Request, run_tasks};
-use pcr_planning::report::figures::digits;
+use pcr_planning::figures::digits;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;

@@ -7,8 +7,8 @@ use pcr_execution::traffic::{Request, Traffic, schedule};
 use pcr_formats::footprint::Footprint;
 use pcr_formats::import::Imported;
 use pcr_planning::check::Verdict;
+use pcr_planning::figures::{digits, time};
 use pcr_planning::fleet::build_ecm;
-use pcr_planning::report::figures::{digits, time};
 use std::fmt::Write as _;
 
 /// Radius of the discs \[m\].

@@ -3,6 +3,7 @@
 
 use super::{grown, sides_of};
 use crate::bodies::{Bodies, Disced};
+use crate::figures::outward;
 use crate::fleet::Fleet;
 use crate::rows::Row;
 use pcr_core::{Encounter, Interval, Motion, RegionRef};
@@ -249,8 +250,8 @@ impl Spot {
     }
 
     pub(super) fn words(&self) -> String {
-        let [[a, b], [c, d]] = self.lengths;
+        let [[a, b], [c, d]] = self.lengths.map(outward);
         let [x, y] = self.at;
-        format!("on lengths {a:.3} to {b:.3} m and {c:.3} to {d:.3} m, around ({x:.3}, {y:.3})")
+        format!("on lengths {a} to {b} m and {c} to {d} m, around ({x:.3}, {y:.3})")
     }
 }

@@ -10,9 +10,9 @@ use crate::fleet::Format;
 use pcr_core::RegionRef;
 use std::collections::BTreeMap;
 
-/// Times at which two regions of discs are looked at for a common point, beside the first. Those of discs side by side overlap
-/// over most of their extent.
-const LOOKS: u32 = 64;
+/// Times at which two regions of discs are looked at for a common point, at least, as long as none is found. Those of discs side by side
+/// overlap over most of their extent.
+const LOOKS: f64 = 64.0;
 
 /// Times and lengths that are one but for rounding \[s\], \[m\]: where one outline gives way to another.
 const NEAR: f64 = 1e-9;
@@ -62,17 +62,13 @@ impl Part<'_> {
         self.region.slice(time).into_iter().map(|lengths| self.discs[0].on_agent(lengths)).collect()
     }
 
-    /// Whether a point of both was found.
-    fn meets(&self, other: &Self) -> bool {
+    /// The times at which both may have a common point; `None` if there are none. Parts whose gap may be due to rounding belong
+    /// together.
+    fn common_time(&self, other: &Self) -> Option<[f64; 2]> {
         let [lo, hi] = common(self.time, other.time);
         let [from, to] = common(self.length, other.length);
-        // Parts whose gap may be due to rounding belong together.
-        let (hi, to) = (if hi < lo { hi + NEAR } else { hi }, to + NEAR);
-        let overlap = |time: f64| {
-            let own = self.slice(time);
-            other.slice(time).iter().any(|b| own.iter().any(|a| a[0] <= b[1] + NEAR && b[0] <= a[1] + NEAR))
-        };
-        lo <= hi && from <= to && (0..=LOOKS).any(|k| overlap(lo + (hi - lo) * f64::from(k) / f64::from(LOOKS)))
+        let hi = if hi < lo { hi + NEAR } else { hi };
+        (lo <= hi && from <= to + NEAR).then_some([lo, hi])
     }
 }
 
@@ -119,32 +115,108 @@ fn unions(agents: [u64; 2], parts: &[Part<'_>], slices: Option<usize>) -> Vec<Re
 fn components<'p, 'a>(parts: &'p [Part<'a>]) -> Vec<Vec<&'p Part<'a>>> {
     let mut sorted: Vec<&Part<'a>> = parts.iter().collect();
     sorted.sort_by(|a, b| a.time[0].total_cmp(&b.time[0]));
-    let mut group: Vec<usize> = (0..sorted.len()).collect();
-    fn find(group: &mut [usize], mut part: usize) -> usize {
-        while group[part] != part {
-            group[part] = group[group[part]];
-            part = group[part];
+    let mut sweep = Sweep { group: (0..sorted.len()).collect(), parts: &sorted };
+    let all = sorted.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |all, part| hull(all, part.time));
+    sweep.between(all, &(0..sorted.len()).collect::<Vec<_>>());
+    sweep.at_ends();
+    let mut components: BTreeMap<usize, Vec<&Part<'a>>> = BTreeMap::new();
+    for (place, part) in sorted.iter().enumerate() {
+        components.entry(sweep.root(place)).or_default().push(part);
+    }
+    components.into_values().collect()
+}
+
+/// A sweep over time that joins parts with common points. At each time the lengths of a part are computed once, for all parts that it may
+/// meet. Parts that are joined already are not looked at again.
+struct Sweep<'s, 'p, 'a> {
+    parts: &'s [&'p Part<'a>],
+    /// For each part another one of its component with a lower or the same index; only the first of a component has its own.
+    group: Vec<usize>,
+}
+
+impl Sweep<'_, '_, '_> {
+    /// The first part of the component.
+    fn root(&mut self, mut part: usize) -> usize {
+        while self.group[part] != part {
+            self.group[part] = self.group[self.group[part]];
+            part = self.group[part];
         }
         part
     }
-    // Earlier parts that are not over yet.
-    let mut lasting: Vec<usize> = Vec::new();
-    for (place, part) in sorted.iter().enumerate() {
-        lasting.retain(|&other| sorted[other].time[1] + NEAR >= part.time[0]);
-        for &other in &lasting {
-            let (a, b) = (find(&mut group, place), find(&mut group, other));
-            // Parts that are connected already need no test.
-            if a != b && part.meets(sorted[other]) {
-                group[a.max(b)] = a.min(b);
+
+    fn join(&mut self, a: usize, b: usize) {
+        let [a, b] = [a, b].map(|part| self.root(part));
+        self.group[a.max(b)] = a.min(b);
+    }
+
+    /// Joins those of the parts that overlap at a time.
+    fn at(&mut self, time: f64, parts: &[usize]) {
+        let slices = |&part: &usize| self.parts[part].slice(time).into_iter().map(move |lengths| (lengths, part));
+        let mut slices: Vec<([f64; 2], usize)> = parts.iter().flat_map(slices).collect();
+        slices.sort_by(|a, b| a.0[0].total_cmp(&b.0[0]));
+        let mut farthest: Option<(f64, usize)> = None;
+        for ([lo, hi], part) in slices {
+            match farthest {
+                Some((end, before)) if lo <= end + NEAR => {
+                    self.join(before, part);
+                    farthest = Some(if hi > end { (hi, part) } else { (end, before) });
+                }
+                _ => farthest = Some((hi, part)),
             }
         }
-        lasting.push(place);
     }
-    let mut components: BTreeMap<usize, Vec<&Part<'a>>> = BTreeMap::new();
-    for (place, part) in sorted.iter().enumerate() {
-        components.entry(find(&mut group, place)).or_default().push(part);
+
+    /// Those of the parts that are not joined with another one that they may meet in this time. A pair that this time is short for has
+    /// been looked at often enough; one with hardly any time in common is left to [`Sweep::at_ends`].
+    fn open(&mut self, [lo, hi]: [f64; 2], parts: &[usize]) -> Vec<usize> {
+        let roots: Vec<usize> = parts.iter().map(|&part| self.root(part)).collect();
+        let mut is_open = vec![false; parts.len()];
+        for (k, &part) in parts.iter().enumerate() {
+            for (l, &other) in parts.iter().enumerate().skip(k + 1) {
+                if roots[k] != roots[l]
+                    && !(is_open[k] && is_open[l])
+                    && let Some(time) = self.parts[part].common_time(self.parts[other])
+                    && time[0] <= hi
+                    && time[1] >= lo
+                    && time[1] - time[0] > NEAR
+                    && hi - lo > (time[1] - time[0]) / LOOKS
+                {
+                    (is_open[k], is_open[l]) = (true, true);
+                }
+            }
+        }
+        parts.iter().zip(is_open).filter_map(|(&part, open)| open.then_some(part)).collect()
     }
-    components.into_values().collect()
+
+    /// Joins the parts inside of a time, which is halved as long as any two are open.
+    fn between(&mut self, [lo, hi]: [f64; 2], parts: &[usize]) {
+        let open = self.open([lo, hi], parts);
+        if open.is_empty() {
+            return;
+        }
+        let middle = lo + 0.5 * (hi - lo);
+        // Of a late time there is none in between.
+        if middle <= lo || middle >= hi {
+            return;
+        }
+        self.at(middle, &open);
+        self.between([lo, middle], &open);
+        self.between([middle, hi], &open);
+    }
+
+    /// Joins parts that meet where either begins or ends.
+    fn at_ends(&mut self) {
+        for place in 0..self.parts.len() {
+            for other in 0..place {
+                let ends = self.parts[place].common_time(self.parts[other]);
+                for time in ends.into_iter().flatten() {
+                    if self.root(place) != self.root(other) {
+                        self.at(time, &[place, other]);
+                    }
+                }
+            }
+        }
+    }
 }
 
 fn union([i, j]: [u64; 2], parts: &[&Part<'_>], slices: Option<usize>) -> Region {

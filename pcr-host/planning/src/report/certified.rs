@@ -1,9 +1,9 @@
 //! Results of the checker for tables, as text.
 
 use super::columns::Columns;
-use super::figures::{small, thousandths};
 use super::{agents, called, heading, quoted};
 use crate::certify::Certified;
+use crate::figures::{small, thousandths};
 use std::io::{self, Write};
 
 /// The header line of [`certified_csv`].

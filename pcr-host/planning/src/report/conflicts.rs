@@ -1,10 +1,10 @@
 //! Conflicts as text.
 
 use super::columns::Columns;
-use super::figures::{small, thousandths};
 use super::proofs::proof_line;
 use super::{agents, called, heading, quoted};
 use crate::check::{Conflict, Verdict};
+use crate::figures::{outward, small, thousandths};
 use std::io::{self, Write};
 
 /// The header line of [`conflicts_csv`].
@@ -47,9 +47,9 @@ pub fn conflicts_table(verdict: &Verdict, out: &mut dyn Write) -> io::Result<()>
         let touching = verdict.conflicts.iter().filter(|conflict| conflict.touching).count();
         for conflict in &verdict.conflicts {
             let mut row = [conflict.i, conflict.j].map(|id| called(&verdict.labels, id)).to_vec();
-            row.extend(conflict.t.map(thousandths));
+            row.extend(outward(conflict.t));
             row.push(small(conflict.depth));
-            row.extend(conflict.l_i.into_iter().chain(conflict.l_j).map(thousandths));
+            row.extend([conflict.l_i, conflict.l_j].into_iter().flat_map(outward));
             row.push(if conflict.touching { "*" } else { "" }.into());
             columns.row(row);
         }

@@ -1,9 +1,9 @@
 //! Tables of unsafe delays, for programs and for reading.
 
 use super::columns::Columns;
-use super::figures::{given, thousandths};
 use super::locks::LocksUnprinted;
 use super::{Document, counted, json, printable, quoted};
+use crate::figures::{given, outward};
 use crate::locks::{Delays, Driving, LockVehicle, Locks, Told, Unsafe};
 use crate::memory;
 use pcr_formats::import::{Id, ImportError};
@@ -202,14 +202,7 @@ pub fn delays_lines(
     Ok(writeln!(out, r#"{{"delays":{count}}}"#)?)
 }
 
-/// Times outward to the millisecond.
-fn range([from, to]: [f64; 2]) -> [String; 2] {
-    // A rounding error does not add a millisecond.
-    let (from, to) = ((from * 1e3 + 1e-6).floor() / 1e3, (to * 1e3 - 1e-6).ceil() / 1e3);
-    [from, to].map(thousandths)
-}
-
-/// The delays in columns.
+/// The delays in columns, times outward to the millisecond.
 ///
 /// # Errors
 /// Errors of the writer.
@@ -226,7 +219,7 @@ pub fn delays_table(table: &DelayTable, out: &mut dyn Write) -> io::Result<()> {
     if count > 0 {
         let mut columns = Columns::new(&["<a", "<b", "b later by [s]", "to"]);
         for Delay { a, a_backward, b, b_backward, delay } in &table.delays {
-            columns.row([[text(a, *a_backward), text(b, *b_backward)], range(*delay)].concat());
+            columns.row([[text(a, *a_backward), text(b, *b_backward)], outward(*delay)].concat());
         }
         columns.write(out)?;
     }
@@ -234,7 +227,7 @@ pub fn delays_table(table: &DelayTable, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "{} of times at nodes", counted(nodes.len(), "interval"))?;
         let mut columns = Columns::new(&["<node", "<edge", "from [s]", "to"]);
         for NodeTimes { node, edge, backward, time } in nodes {
-            columns.row([[text(node, false), text(edge, *backward)], range(*time)].concat());
+            columns.row([[text(node, false), text(edge, *backward)], outward(*time)].concat());
         }
         columns.write(out)?;
     }

@@ -1,8 +1,8 @@
 //! Tables of locks, for programs and for reading.
 
 use super::columns::Columns;
-use super::figures::{given, thousandths};
 use super::{Document, counted, json, printable, quoted};
+use crate::figures::{above, given, outward};
 use crate::locks::{Found, LockVehicle, Locks, Partner, Sweep, Told};
 use pcr_formats::import::{Id, ImportError};
 use serde::Serialize;
@@ -188,16 +188,9 @@ pub fn edge_table(locks: &EdgeLocks, out: &mut dyn Write) -> io::Result<()> {
     let mut columns = Columns::new(&["<other", "from [m]", "to", "other from [m]", "to"]);
     for Partner { name, node, own, other } in &locks.partners {
         let name = format!("{}{name}", if *node { "node " } else { "" });
-        columns.row([vec![printable(&name)], range(*own).to_vec(), range(*other).to_vec()].concat());
+        columns.row([vec![printable(&name)], outward(*own).to_vec(), outward(*other).to_vec()].concat());
     }
     columns.write(out)
-}
-
-/// Lengths outward to the millimetre.
-fn range([from, to]: [f64; 2]) -> [String; 2] {
-    // A rounding error does not add a millimetre.
-    let (from, to) = ((from * 1e3 + 1e-6).floor() / 1e3, (to * 1e3 - 1e-6).ceil() / 1e3);
-    [from, to].map(thousandths)
 }
 
 /// The locks in columns, lengths outward to the millimetre.
@@ -211,14 +204,14 @@ pub fn locks_table(locks: &Locks, out: &mut dyn Write) -> io::Result<()> {
     let (count, pairs) = (counted(locks.locks.len(), "lock"), counted(pairs.len(), "pair"));
     let vehicle = match (locks.vehicle.discs.len(), locks.vehicle.radius) {
         (0, radius) => format!("radius {} m", given(radius)),
-        (discs, radius) => format!("an outline of {discs} discs within {radius:.3} m"),
+        (discs, radius) => format!("an outline of {discs} discs within {} m", above(radius)),
     };
     writeln!(out, "{}: {count} of {pairs} of edges, {vehicle}", printable(name))?;
     let text = |id: &dyn ToString| printable(&id.to_string());
     if !locks.locks.is_empty() {
         let mut columns = Columns::new(&["<a", "<b", "a from [m]", "to", "b from [m]", "to"]);
         for lock in &locks.locks {
-            let cells = [[text(&lock.a), text(&lock.b)], range(lock.a_length), range(lock.b_length)];
+            let cells = [[text(&lock.a), text(&lock.b)], outward(lock.a_length), outward(lock.b_length)];
             columns.row(cells.concat());
         }
         columns.write(out)?;
@@ -227,7 +220,7 @@ pub fn locks_table(locks: &Locks, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "{} of nodes", counted(nodes.len(), "lock"))?;
         let mut columns = Columns::new(&["<node", "<edge", "from [m]", "to"]);
         for lock in nodes {
-            columns.row([[text(&lock.node), text(&lock.edge)], range(lock.edge_length)].concat());
+            columns.row([[text(&lock.node), text(&lock.edge)], outward(lock.edge_length)].concat());
         }
         columns.write(out)?;
     }

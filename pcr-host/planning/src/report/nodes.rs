@@ -1,8 +1,8 @@
 //! Nodes and edges of a layout as text.
 
 use super::columns::Columns;
-use super::figures::thousandths;
 use super::{counted, heading, printable, quoted};
+use crate::figures::thousandths;
 use crate::nodes::{Listing, Way};
 use std::io::{self, Write};
 

@@ -1,9 +1,9 @@
 //! Plans as text.
 
 use super::columns::Columns;
-use super::figures::thousandths;
 use super::proofs::proof_line;
 use super::{all_called, called, heading, quoted};
+use crate::figures::{above, exact};
 use crate::plan::{Costs, Plan, Planned};
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -47,7 +47,7 @@ pub fn plan_table(plan: &Plan, out: &mut dyn Write) -> io::Result<()> {
     let agents: HashMap<u64, &Planned> = plan.agents.iter().map(|agent| (agent.id, agent)).collect();
     let by_priority = plan.order.iter().filter_map(|id| agents.get(id));
     for agent in by_priority {
-        columns.row(vec![called(&plan.labels, agent.id), thousandths(agent.delay), thousandths(agent.t_end)]);
+        columns.row(vec![called(&plan.labels, agent.id), exact(agent.delay), above(agent.t_end)]);
     }
     columns.write(out)?;
     writeln!(out, "{}", costs_line(costs, plan.objective))?;

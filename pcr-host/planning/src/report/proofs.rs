@@ -1,8 +1,8 @@
 //! What has been proved of motions, as text.
 
-use super::figures::{small, thousandths};
 use super::{all_called, counted};
 use crate::certify::{Contact, Proof};
+use crate::figures::{small, thousandths};
 use pcr_formats::scenario::Labels;
 
 /// A line about a proof, in which agents have their labels.

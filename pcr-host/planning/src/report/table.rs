@@ -1,8 +1,8 @@
 //! Regions and crossings for reading.
 
 use super::columns::Columns;
-use super::figures::thousandths;
 use super::{agents, called, counted, crossings, heading, types};
+use crate::figures::{above, outward, thousandths};
 use crate::regions::{Answer, Descriptor, Region};
 use pcr_formats::scenario::Labels;
 use std::collections::HashMap;
@@ -68,9 +68,9 @@ pub fn table(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
     for cover in answer.footprints.iter().filter(|cover| cover.overhang > 0.0) {
         let discs = cover.discs.len();
         let stretch = cover.segments.map_or(String::new(), |[a, b]| format!(", segments {a} to {b}"));
-        let (id, overhang) = (cover.id, cover.overhang + cover.growth);
+        let (id, overhang) = (cover.id, above(cover.overhang + cover.growth));
         let id = called(&answer.labels, id);
-        writeln!(out, "agent {id}{stretch}: a footprint of {discs} discs that reach {overhang:.3} m out of it")?;
+        writeln!(out, "agent {id}{stretch}: a footprint of {discs} discs that reach {overhang} m out of it")?;
     }
     if !all.is_empty() {
         writeln!(out, "\nCrossings: j passes L on the path of i at T; theta = heading of j - heading of i")?;
@@ -127,7 +127,7 @@ fn extents(
     }
     for (index, region) in regions.iter().enumerate() {
         let mut row = [region.i, region.j].map(|id| called(labels, id)).to_vec();
-        row.extend([region.t[0], region.t[1], region.l[0], region.l[1]].map(thousandths));
+        row.extend([region.t, region.l].into_iter().flat_map(outward));
         let open = match (region.open_start, region.open_end) {
             (false, false) => "-",
             (true, false) => "start",
