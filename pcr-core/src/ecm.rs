@@ -51,12 +51,14 @@ impl Default for Region {
 /// query.
 ///
 /// Every method takes the fleet as an argument and refuses a fleet other than that of the table. It compares a checksum
-/// of the number of agents, their paths and their radii, which has 32 bits: it guards against mistakes, and overlooks
-/// about one in two billion. Start times, profiles, margins and lateness may change.
+/// of the number of agents, their paths, their radii and the lags for which the regions hold, which has 32 bits: it guards
+/// against mistakes, and overlooks about one in two billion. Start times, margins and lateness may change, and so may
+/// profiles ([`Motion::with_profile`]) as long as the [`Motion::lag`] of the motion stays within that.
 ///
-/// A motion whose [`Motion::lag`] has grown since (by a longer wait in floating point, or a profile that misses the end
-/// of its path by more) has to be given to [`Ecm::replace`]. The regions are those of the lag with which they were
-/// computed: with a larger one they are too small, or are missing where the agents only came near.
+/// A motion whose lag has grown beyond it (by a wait of hours in `f32`, or a profile that misses the end of its path by
+/// more) is refused: the regions would be too small for it, or missing where the agents only came near. Give it to
+/// [`Ecm::replace`], or the largest duration to [`Motion::with_longest`] before the table is made. A motion that is made
+/// anew by [`Motion::new`] has a lag of its own, and is refused also where that is smaller.
 ///
 /// [`Ecm::replace`] replaces one agent. [`Ecm::insert`] and [`Ecm::remove`] are for fleets to which agents are added,
 /// or from which they are removed, at the end. On a host, with the feature `std`, a table that stores vectors can grow:

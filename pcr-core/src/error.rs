@@ -118,7 +118,9 @@ impl fmt::Display for Mismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoSuchAgent(agent) => write!(f, "the fleet has no agent {agent}"),
-            Self::OtherFleet => f.write_str("the table of regions is that of another fleet"),
+            Self::OtherFleet => {
+                f.write_str("the table of regions is that of another fleet, or of motions with another lag")
+            }
             Self::OnlyRow(agent) => write!(f, "the table holds the regions of agent {agent} only"),
             Self::NoSuchRegion(place) => write!(f, "the agent has no region in place {place} of the table"),
         }

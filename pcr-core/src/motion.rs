@@ -28,7 +28,8 @@ pub struct Motion<'a, S: Scalar> {
     bounds: Bounds<S>,
     extent: S,
     drift: S,
-    lag: S,
+    /// Largest lag for which its regions hold.
+    allowance: S,
     top_speed: S,
     /// Checksum of the path.
     digest: u32,
@@ -47,7 +48,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
         let time = travel_time(profile, start)?;
         let bounds = path.bounds();
         let extent = bounds.extent().max(path.length()) + radius.double();
-        let gap = (profile.length() - path.length()).abs();
+        let gap = gap(path, profile);
         let share = (LENGTH_TOLERANCE_LOG2..0).fold(path.length(), |length, _| length.half());
         if gap > S::slack(extent).max(share) {
             let [path, profile] = [path.length(), profile.length()].map(S::millimetres);
@@ -61,11 +62,10 @@ impl<'a, S: Scalar> Motion<'a, S> {
             });
         let drift = S::drift(arcs, extent + diameter);
         let top_speed = profile.top_speed();
-        // Bound on the distance between the agent and the position that its profile gives.
-        let lag = S::lag(top_speed, profile.duration()) + gap;
+        let allowance = S::least_allowance(extent).max(S::lag(top_speed, profile.duration()) + gap);
         let (margin, lateness) = (S::ZERO, S::ZERO);
         let digest = path.digest();
-        Ok(Self { path, profile, radius, margin, time, lateness, bounds, extent, drift, lag, top_speed, digest })
+        Ok(Self { path, profile, radius, margin, time, lateness, bounds, extent, drift, allowance, top_speed, digest })
     }
 
     /// The same motion with a margin \[m\] around the disc, for localization errors, latency or comfort. Margins do not
@@ -120,12 +120,28 @@ impl<'a, S: Scalar> Motion<'a, S> {
         Self { radius, extent, margin: S::ZERO, ..self }
     }
 
-    /// The same disc on the same path with another profile and start time \[s\].
+    /// The same disc on the same path with another profile and start time \[s\]. A table of the motion holds for it, too, unless its
+    /// [`Motion::lag`] is larger than that for which the regions were computed ([`Motion::with_longest`]).
     ///
     /// # Errors
     /// As [`Motion::new`].
     pub fn with_profile(self, profile: ProfileRef<'a, S>, start: S) -> Result<Self, Invalid> {
-        Self::new(self.path, profile, self.radius, start)?.with_margin(self.margin)?.with_lateness(self.lateness)
+        let motion = Self::new(self.path, profile, self.radius, start)?;
+        let allowance = self.allowance.max(motion.allowance);
+        Self { allowance, ..motion }.with_margin(self.margin)?.with_lateness(self.lateness)
+    }
+
+    /// The same motion, whose regions also hold for profiles that take up to `longest` \[s\] and are not faster. The error bound
+    /// ([`excess`](crate::excess)) grows with that time. Without it, regions hold for about eight times the time in which the agent goes
+    /// its extent at top speed, and in fixed point for any time. For plans that let agents wait long, give it before the table is made.
+    ///
+    /// # Errors
+    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`].
+    pub fn with_longest(self, longest: S) -> Result<Self, Invalid> {
+        not_negative(longest, "longest duration")?;
+        let lag = S::lag(self.top_speed, longest) + gap(self.path, self.profile);
+        in_range(lag, "lag")?;
+        Ok(Self { allowance: self.allowance.max(lag), ..self })
     }
 
     /// The same motion, later by `delay` \[s\].
@@ -185,22 +201,25 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.bounds
     }
 
-    /// Whether it has the path of the other motion, and a disc that is not larger.
+    /// Whether the regions of the other motion hold for it: it has the same path, a disc that is not larger, and a lag for which they were
+    /// computed.
     pub(crate) fn is_within(&self, other: &Self) -> bool {
-        self.digest == other.digest && self.radius <= other.radius
+        self.digest == other.digest && self.radius <= other.radius && self.lag() <= other.allowance
     }
 
-    /// A checksum of all that the regions of this agent depend on: path, radius, and its index in the fleet.
+    /// A checksum of all that the regions of this agent depend on: path, radius, the lag for which they hold, and its index in the fleet.
     pub(crate) fn digest(&self, place: usize) -> u32 {
-        // Radius and index go into the checksum as one number, because every query checks the whole fleet. The index is
-        // multiplied, so that exchanging two agents cannot cancel a change of radius.
-        digest(self.digest, self.radius.digest() ^ (place as u32).wrapping_mul(0x9E37_79B9))
+        // All of it goes into the checksum as one number, because every query checks the whole fleet. Index and lag are
+        // multiplied, so that exchanging two agents cannot cancel a change of radius, and a change of radius not one of the lag.
+        let [place, allowance] =
+            [(place as u32).wrapping_mul(0x9E37_79B9), self.allowance.digest().wrapping_mul(0x85EB_CA6B)];
+        digest(self.digest, self.radius.digest() ^ place ^ allowance)
     }
 
     /// Box around the area that the disc sweeps, expanded by twice the rounding error of a distance \[m\]. Agents whose
     /// boxes do not meet have no region.
     pub(crate) fn swept(&self) -> Bounds<S> {
-        let slack = S::slack(self.extent) + self.drift + self.lag;
+        let slack = S::slack(self.extent) + self.drift + self.allowance;
         self.bounds.expanded(self.radius + slack.double())
     }
 
@@ -217,7 +236,12 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// Largest distance of the agent from its exact place at a time \[m\], because of the rounding of times and the
     /// difference between the lengths of profile and path.
     pub fn lag(&self) -> S {
-        self.lag
+        S::lag(self.top_speed, self.profile.duration()) + gap(self.path, self.profile)
+    }
+
+    /// Largest lag for which the regions of the motion hold \[m\], at least its own.
+    pub(crate) fn allowance(&self) -> S {
+        self.allowance
     }
 
     /// Largest distance of the agent from both ends of a segment that it passes at a single time \[m\]: a quarter of
@@ -275,6 +299,11 @@ impl<'a, S: Scalar> Motion<'a, S> {
     fn latest(&self) -> S {
         self.time.lo.abs().max(self.time.hi.abs())
     }
+}
+
+/// Difference of the lengths of path and profile \[m\].
+fn gap<S: Scalar>(path: PathRef<'_, S>, profile: ProfileRef<'_, S>) -> S {
+    (profile.length() - path.length()).abs()
 }
 
 /// The interval from the start to the arrival; the arrival is rounded up.

@@ -38,7 +38,7 @@ pub(crate) struct Pair<'a, S: Scalar> {
 impl<'a, S: Scalar> Pair<'a, S> {
     pub(crate) fn new(first: &'a Motion<'a, S>, second: &'a Motion<'a, S>) -> Self {
         let slack = S::slack(first.extent().max(second.extent())) + first.drift() + second.drift();
-        let slack = slack + first.lag().max(second.lag());
+        let slack = slack + first.allowance().max(second.allowance());
         Self { first, second, slack, radius: first.radius() + second.radius() + slack }
     }
 

@@ -301,6 +301,9 @@ impl Plan {
     }
 }
 
+/// Longest motion of a speed plan, over a day \[s\]: the regions hold for it.
+const LONGEST: f64 = 1e5;
+
 /// The motions with their margins, and with what the check may take for a contact. A radius at the limit of the format
 /// stays as it is, and the check has the last word.
 pub(crate) fn grown(fleet: &Fleet<f64>) -> Vec<Motion<'_, f64>> {
@@ -308,5 +311,5 @@ pub(crate) fn grown(fleet: &Fleet<f64>) -> Vec<Motion<'_, f64>> {
     let tolerance = motions.iter().map(|motion| Encounter::new(motion, motion).tolerance()).fold(0.0, f64::max);
     // The growths of two agents add up: what planning and what the check may be off.
     let grown = motions.iter().map(|&motion| motion.with_margin(motion.margin() + tolerance).unwrap_or(motion));
-    grown.map(|motion| motion.inflated()).collect()
+    grown.map(|motion| motion.with_longest(LONGEST).unwrap_or(motion).inflated()).collect()
 }

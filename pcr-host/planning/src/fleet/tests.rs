@@ -1,6 +1,8 @@
 //! Tests of what a number format refuses, and that the conversion to it loses nothing else.
 
 use super::*;
+use pcr_core::{Drive, Mismatch, NoSpeedPlan, Station, first_conflict, plan_speed};
+use pcr_fixed::{Q12, Q16, Q20};
 use serde_json::{Value, json};
 
 /// A line of 2 m and a quarter turn.
@@ -224,4 +226,134 @@ fn the_limits_of_headings_are_those_of_the_core() {
     }
     of_core::<f64>(Radians);
     of_core::<f32>(|heading| Radians(heading as f32));
+}
+
+/// Two agents that pass one another on lanes of 20 m, at 1 m/s.
+fn lanes<S: Format>(apart: f64) -> Fleet<S> {
+    let lane = |id: u64, x: f64, y: f64, heading: f64| {
+        json!({
+            "id": id, "radius": 0.25, "start": { "x": x, "y": y, "heading": heading },
+            "path": [{ "kind": "line", "length": 20.0 }], "profile": { "v0": 1.0, "pieces": [{ "duration": 20.0, "accel": 0.0 }] },
+        })
+    };
+    let agents = [lane(1, 0.0, 0.0, 0.0), lane(2, 20.0, apart, PI)];
+    Fleet::new(&Scenario::from_value(&json!({ "agents": agents })).expect("a scenario")).expect("it fits")
+}
+
+/// A table holds for other profiles of its agents as long as their lag is not larger than what its regions were computed for. It said that
+/// agents were free of one another whose regions it had not.
+fn holds_for_its_lag<S: Format>(other: &Profile<S, 3>, may_wait: bool) {
+    let fleet = lanes::<S>(0.4);
+    let mut motions = fleet.motions();
+    let table = build_ecm(&motions).expect("memory");
+    let refused = Some(Mismatch::OtherFleet);
+    let asked = |table: &HostEcm<S>, fleet: &[Motion<'_, S>]| {
+        [
+            table.row(fleet, 0).err(),
+            table.pair(fleet, 1, 0).err(),
+            table.regions(fleet).err(),
+            table.regions_once(fleet).err(),
+        ]
+    };
+    assert_eq!(asked(&table, &motions), [None; 4], "{}", S::NAME);
+    let with = |motion: Motion<'_, S>| motion.with_profile(other.as_profile(), S::ZERO).map(|other| other.lag());
+    let larger = with(motions[0]).expect("its path") > motions[0].lag();
+    assert!(larger, "{}", S::NAME);
+    for agent in 0..2 {
+        let mut changed = motions.clone();
+        changed[agent] = motions[agent].with_profile(other.as_profile(), S::ZERO).expect("its path");
+        assert_eq!(asked(&table, &changed), [refused; 4], "{}: agent {agent}", S::NAME);
+        let regions = table.row(&motions, agent).expect("the table of the fleet");
+        let met = first_conflict(&changed[agent], regions, changed[agent].time());
+        assert_eq!(met.err(), refused, "{}: agent {agent}", S::NAME);
+        // Given to the table, it has its regions, and the motion before may come back.
+        let mut again = table.clone();
+        let late = changed[agent];
+        let mut replaced = motions.clone();
+        again.replace(&mut replaced, agent, late).expect("memory");
+        assert_eq!(asked(&again, &replaced), [None; 4], "{}", S::NAME);
+        let own = motions[agent].profile();
+        replaced[agent] = late.with_profile(own, S::ZERO).expect("its path");
+        assert_eq!(asked(&again, &replaced), [None; 4], "{}: a smaller lag", S::NAME);
+    }
+    // What changes no lag may change.
+    motions[0] =
+        motions[0].delayed(S::from_f64(9.0)).expect("a start").with_margin(S::from_f64(0.1)).expect("a margin");
+    assert_eq!(asked(&table, &motions), [None; 4], "{}", S::NAME);
+    // A table that is made for long motions.
+    let longest = other.as_profile().duration();
+    let prepared: Vec<_> = motions.iter().map(|motion| motion.with_longest(longest).expect("a duration")).collect();
+    let table = build_ecm(&prepared).expect("memory");
+    let late: Vec<_> =
+        prepared.iter().map(|motion| motion.with_profile(other.as_profile(), S::ZERO).expect("its path")).collect();
+    assert_eq!(asked(&table, &late), if may_wait { [None; 4] } else { [refused; 4] }, "{}", S::NAME);
+}
+
+#[test]
+fn a_table_is_not_that_of_motions_with_a_longer_wait() {
+    let waits = |seconds: f64| (seconds, 0.0);
+    let f64s = Profile::from_pieces(0.0, [waits(300.0), (1.0, 1.0), (19.5, 0.0)]).expect("a profile");
+    holds_for_its_lag::<f64>(&f64s, true);
+    let f32s = Profile::from_pieces(0.0, [(20_000.0, 0.0), (1.0, 1.0), (19.5, 0.0)]).expect("a profile");
+    holds_for_its_lag::<f32>(&f32s, true);
+    // With it they touch: the lag is 9 mm, and they pass at 8 mm.
+    let fleet = lanes::<f32>(0.508);
+    let late: Vec<_> =
+        fleet.motions().iter().map(|motion| motion.with_profile(f32s.as_profile(), 0.0).expect("its path")).collect();
+    let before = build_ecm(&fleet.motions()).expect("memory");
+    assert!(before.is_empty() && before.row(&late, 0).is_err());
+    assert_eq!(build_ecm(&late).expect("memory").len(), 1);
+}
+
+#[test]
+fn a_table_is_not_that_of_motions_that_miss_the_end_by_more() {
+    fn misses<S: Format>(by: f64) {
+        let [one, duration, none] = [1.0, 20.0 + by, 0.0].map(S::from_f64);
+        holds_for_its_lag::<S>(&Profile::from_pieces(one, [(duration, none)]).expect("a profile"), false);
+    }
+    misses::<f64>(1.5e-5);
+    misses::<Q12>(2.0 / 4096.0);
+    misses::<Q16>(1.0 / 65_536.0);
+    misses::<Q20>(8.0 / 1_048_576.0);
+}
+
+#[test]
+fn passing_orders_are_not_those_of_motions_with_another_lag() {
+    let fleet = lanes::<f64>(0.3);
+    let mut motions = fleet.motions();
+    let orders = build_orders(&motions).expect("memory");
+    assert_eq!(orders.row(&motions, 0).map(drop), Ok(()));
+    let longer = Profile::<f64, 1>::from_pieces(1.0, [(20.000_015, 0.0)]).expect("a profile");
+    motions[1] = motions[1].with_profile(longer.as_profile(), 0.0).expect("its path");
+    assert_eq!(orders.row(&motions, 0).map(drop), Err(Mismatch::OtherFleet));
+}
+
+/// A robot that has to wait on its way for longer than its regions hold gets no speed plan, and one whose table is made for that does.
+#[test]
+fn speeds_are_planned_only_as_long_as_the_regions_hold() {
+    let agent = |id: u64, start: [f64; 3], length: f64, t_start: f64| {
+        let [x, y, heading] = start;
+        json!({
+            "id": id, "radius": 0.25, "v_max": 1.0, "a_max": 1.0, "t_start": t_start,
+            "start": { "x": x, "y": y, "heading": heading }, "path": [{ "kind": "line", "length": length }],
+        })
+    };
+    // One stands in the middle of the way, until it sets off; another one comes to the start soon.
+    let agents = [
+        agent(1, [-6.0, 0.0, 0.0], 8.0, 0.0),
+        agent(2, [0.0, 0.0, PI / 2.0], 4.0, 200.0),
+        agent(3, [-6.0, -9.0, PI / 2.0], 18.0, 0.0),
+    ];
+    let scenario = Scenario::from_value(&json!({ "agents": agents })).expect("a scenario");
+    let fleet = Fleet::<f64>::new(&scenario).expect("it fits");
+    let planned = |motions: &[Motion<'_, f64>]| {
+        let table = build_ecm(motions).expect("memory");
+        let drive = Drive::of(&motions[0]).expect("from rest to rest");
+        let row = table.row(motions, 0).expect("the table of the fleet");
+        plan_speed::<f64, 64>(&motions[0], drive, row, &[], &mut [Station::EMPTY; 65]).map(|plan| plan.end())
+    };
+    let motions = fleet.motions();
+    assert_eq!(planned(&motions), Err(NoSpeedPlan::Invalid(Invalid::OutOfRange("lag"))));
+    let long: Vec<_> = motions.iter().map(|motion| motion.with_longest(1000.0).expect("a duration")).collect();
+    assert!(planned(&long).expect("a plan") > 200.0);
 }
