@@ -53,12 +53,12 @@ impl Default for Region {
 /// Every method takes the fleet as an argument and refuses a fleet other than that of the table. It compares a checksum
 /// of the number of agents, their paths, their radii and the lags for which the regions hold, which has 32 bits: it guards
 /// against mistakes, and overlooks about one in two billion. Start times, margins and lateness may change, and so may
-/// profiles ([`Motion::with_profile`]) as long as the [`Motion::lag`] of the motion stays within that.
+/// profiles ([`Motion::with_profile`]) as long as the [`Motion::lag`] does not grow.
 ///
-/// A motion whose lag has grown beyond it (by a wait of hours in `f32`, or a profile that misses the end of its path by
+/// A motion whose lag has grown (by a longer wait in floating point, or a profile that misses the end of its path by
 /// more) is refused: the regions would be too small for it, or missing where the agents only came near. Give it to
-/// [`Ecm::replace`], or the largest duration to [`Motion::with_longest`] before the table is made. A motion that is made
-/// anew by [`Motion::new`] has a lag of its own, and is refused also where that is smaller.
+/// [`Ecm::replace`], or the longest duration to [`Motion::with_longest`] before the table is made. A motion that is made
+/// anew by [`Motion::new`] has the lag of its own profile, and is refused also where that is smaller.
 ///
 /// [`Ecm::replace`] replaces one agent. [`Ecm::insert`] and [`Ecm::remove`] are for fleets to which agents are added,
 /// or from which they are removed, at the end. On a host, with the feature `std`, a table that stores vectors can grow:
@@ -165,6 +165,21 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
     ) -> Result<impl Iterator<Item = RegionRef<'a, S>> + Clone, Mismatch> {
         self.holds(fleet, [ego, ego])?;
         Ok(self.of(fleet, ego))
+    }
+
+    /// The regions of one agent in a plan: the motions of the fleet with other starts and profiles. Contacts deeper than
+    /// [`Encounter::tolerance`](crate::Encounter::tolerance) are in these regions also where a lag is larger than the table allows for,
+    /// as four times the lags are part of the tolerance.
+    pub(crate) fn row_of_plan<'a>(
+        &'a self,
+        fleet: &[Motion<'_, S>],
+        plan: &'a [Motion<'a, S>],
+        ego: usize,
+    ) -> Result<impl Iterator<Item = RegionRef<'a, S>> + Clone, Mismatch> {
+        self.holds(fleet, [ego, ego])?;
+        let mut both = fleet.iter().zip(plan);
+        let is_same = fleet.len() == plan.len() && both.all(|(given, planned)| planned.is_same_disc(given));
+        if is_same { Ok(self.of(plan, ego)) } else { Err(Mismatch::OtherFleet) }
     }
 
     /// The regions of the agent `ego` with the agent `other`. O(agents + log regions).
@@ -329,9 +344,7 @@ where
     /// touched.
     ///
     /// # Errors
-    /// [`Full`] if the storage is too small, and [`Mismatch`]; the fleet and the table are then unchanged. Only if the
-    /// regions from before do not fit any more, because the lag of a motion has grown since, the table is empty, as
-    /// after [`Ecm::clear`].
+    /// [`Full`] if the storage is too small, and [`Mismatch`]; the fleet and the table are then unchanged.
     pub fn replace<'m>(
         &mut self,
         fleet: &mut [Motion<'m, S>],
@@ -348,7 +361,7 @@ where
         if outcome.is_err()
             && let Some(place) = fleet.get_mut(agent)
         {
-            // The old regions fit: they are computed again from the same motions. With a larger lag they may not.
+            // The old regions fit, as they are computed again from the same motions. If they did not, there would be no answer.
             *place = before;
             if self.add_row(fleet, agent).is_err() {
                 self.clear();

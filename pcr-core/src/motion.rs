@@ -62,7 +62,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
             });
         let drift = S::drift(arcs, extent + diameter);
         let top_speed = profile.top_speed();
-        let allowance = S::least_allowance(extent).max(S::lag(top_speed, profile.duration()) + gap);
+        let allowance = S::lag(top_speed, profile.duration()) + gap;
         let (margin, lateness) = (S::ZERO, S::ZERO);
         let digest = path.digest();
         Ok(Self { path, profile, radius, margin, time, lateness, bounds, extent, drift, allowance, top_speed, digest })
@@ -131,9 +131,9 @@ impl<'a, S: Scalar> Motion<'a, S> {
         Self { allowance, ..motion }.with_margin(self.margin)?.with_lateness(self.lateness)
     }
 
-    /// The same motion, whose regions also hold for profiles that take up to `longest` \[s\] and are not faster. The error bound
-    /// ([`excess`](crate::excess)) grows with that time. Without it, regions hold for about eight times the time in which the agent goes
-    /// its extent at top speed, and in fixed point for any time. For plans that let agents wait long, give it before the table is made.
+    /// The same motion, whose regions also hold for profiles that take up to `longest` \[s\] and are not faster
+    /// ([`Motion::with_profile`]). Their error bound ([`excess`](crate::excess)) grows with that time, in fixed point not. For plans in which
+    /// agents wait, give it to the motions before the table is made.
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`].
@@ -201,10 +201,14 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.bounds
     }
 
-    /// Whether the regions of the other motion hold for it: it has the same path, a disc that is not larger, and a lag for which they were
-    /// computed.
+    /// Whether it has the path of the other motion, and a disc that is not larger.
     pub(crate) fn is_within(&self, other: &Self) -> bool {
-        self.digest == other.digest && self.radius <= other.radius && self.lag() <= other.allowance
+        self.digest == other.digest && self.radius <= other.radius
+    }
+
+    /// Whether it is the same disc on the same path.
+    pub(crate) fn is_same_disc(&self, other: &Self) -> bool {
+        self.digest == other.digest && self.radius == other.radius
     }
 
     /// A checksum of all that the regions of this agent depend on: path, radius, the lag for which they hold, and its index in the fleet.

@@ -192,12 +192,6 @@ pub trait Scalar:
         let _ = (speed, time);
         Self::ZERO
     }
-    /// Lag for which the regions of a motion of this extent hold at least; 0 in a format that adds exactly. With it a table also holds for
-    /// speed profiles that take somewhat longer.
-    fn least_allowance(extent: Self) -> Self {
-        let _ = extent;
-        Self::ZERO
-    }
     /// Distance at which a search for a contact stops, in a configuration of the given extent: discs this close to each
     /// other may be reported as touching. It is not an error bound but a choice, because a smaller value takes more
     /// steps. At least two slacks.

@@ -41,7 +41,7 @@ where
             return Err(Blocked::Never(Unsolved::NoSuchAgent(agent)));
         };
         *planned = motion;
-        let regions = ecm.row(plan, agent)?.filter(|region| before.contains(&region.other()));
+        let regions = ecm.row_of_plan(fleet, plan, agent)?.filter(|region| before.contains(&region.other()));
         let delayed = match earliest(motion, regions.clone()) {
             Ok(delayed) => delayed.ok_or_else(|| blocking(agent, regions, before))?,
             Err(reason) => return Err(Blocked::Never(Unsolved::Invalid { agent, reason })),
@@ -51,7 +51,7 @@ where
         }
         Ok(())
     })?;
-    verified(ecm, plan, order)
+    verified(ecm, fleet, plan, order)
 }
 
 /// The motion with the earliest start that the regions allow, if they allow any.

@@ -127,7 +127,12 @@ pub(super) fn in_order(
 }
 
 /// Refuses a plan in which an agent overlaps with one before it in the order, by more than a rounding.
-pub(super) fn verified<S, R, P>(ecm: &Ecm<S, R, P>, plan: &[Motion<'_, S>], order: &[usize]) -> Result<(), Unsolved>
+pub(super) fn verified<S, R, P>(
+    ecm: &Ecm<S, R, P>,
+    fleet: &[Motion<'_, S>],
+    plan: &[Motion<'_, S>],
+    order: &[usize],
+) -> Result<(), Unsolved>
 where
     S: Scalar,
     R: AsRef<[Region]>,
@@ -139,7 +144,7 @@ where
     for (place, &agent) in (0..order.len()).zip(order) {
         let motion = plan.get(agent).ok_or(Unsolved::NoSuchAgent(agent))?;
         let before = order.get(..place).unwrap_or_default();
-        let regions = ecm.row(plan, agent)?.filter(|region| before.contains(&region.other()));
+        let regions = ecm.row_of_plan(fleet, plan, agent)?.filter(|region| before.contains(&region.other()));
         if let Some(region) = regions.into_iter().find(|region| region.overlap(motion, time).is_some()) {
             return Err(Unsolved::Overlap([agent, region.other()]));
         }

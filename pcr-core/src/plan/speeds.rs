@@ -53,7 +53,7 @@ where
         };
         *planned = motion;
         let chosen = {
-            let regions = ecm.row(plan, agent)?.filter(|region| before.contains(&region.other()));
+            let regions = ecm.row_of_plan(fleet, plan, agent)?.filter(|region| before.contains(&region.other()));
             let invalid = |reason| Blocked::Never(Unsolved::Invalid { agent, reason });
             let (later, late) = match earliest(motion, regions.clone()) {
                 Ok(later) => (later, None),
@@ -86,7 +86,7 @@ where
         }
         Ok(())
     })?;
-    verified(ecm, plan, order)
+    verified(ecm, fleet, plan, order)
 }
 
 /// How to react to this reason.

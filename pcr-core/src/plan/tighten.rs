@@ -16,16 +16,6 @@ use crate::scalar::Scalar;
 const HALVINGS: u32 = 32;
 
 impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, L, I> {
-    /// The motion of the plan, for which the regions hold.
-    fn driven<'p, const N: usize>(
-        &self,
-        ego: &Motion<'p, S>,
-        plan: &'p SpeedPlan<S, N>,
-    ) -> Result<Motion<'p, S>, Invalid> {
-        let motion = ego.with_profile(plan.profile.as_profile(), plan.start)?;
-        if motion.lag() > ego.allowance() { Err(Invalid::OutOfRange("lag")) } else { Ok(motion) }
-    }
-
     /// Whether the plan has no conflict from a time on and breaks no constraint.
     fn is_free<const N: usize>(
         &self,
@@ -33,7 +23,7 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
         plan: &SpeedPlan<S, N>,
         from: S,
     ) -> Result<bool, NoSpeedPlan<S>> {
-        let motion = self.driven(ego, plan)?;
+        let motion = ego.with_profile(plan.profile.as_profile(), plan.start)?;
         Ok(self.broken(&motion, ego.time().lo).is_none()
             && first_conflict(&motion, self.regions.clone(), self.during(&motion, from))?.is_none())
     }
@@ -59,7 +49,7 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
     ) -> Result<(), NoSpeedPlan<S>> {
         let [start, _] = self.lattice.ends();
         let from = if start == 0 { -S::LIMIT } else { plan.start };
-        let motion = self.driven(ego, plan)?;
+        let motion = ego.with_profile(plan.profile.as_profile(), plan.start)?;
         let during = self.during(&motion, from);
         if let Some(constraint) = self.broken(&motion, ego.time().lo) {
             return Err(NoSpeedPlan::Constrained { length: constraint.length.lo });

@@ -166,10 +166,6 @@ macro_rules! impl_float {
                 // a stop, one for a phase without duration.
                 4.0 * $t::EPSILON * speed * time
             }
-            fn least_allowance(extent: Self) -> Self {
-                // The lag of a motion that would go eight times its extent at its top speed: SLACK is 64.
-                Self::slack(extent)
-            }
         }
 
         impl Wide<$t> for $t {

@@ -140,9 +140,6 @@ impl Scalar for Micro {
     fn lag(speed: Self, time: Self) -> Self {
         Self(f32::lag(speed.0, time.0))
     }
-    fn least_allowance(extent: Self) -> Self {
-        Self(f32::least_allowance(extent.0))
-    }
     fn portion(self, part: Self, whole: Self) -> Self {
         Self(self.0.portion(part.0, whole.0))
     }

@@ -1,7 +1,7 @@
 //! Tests of what a number format refuses, and that the conversion to it loses nothing else.
 
 use super::*;
-use pcr_core::{Drive, Mismatch, NoSpeedPlan, Station, first_conflict, plan_speed};
+use pcr_core::{Mismatch, first_conflict, plan_delays, plan_speeds};
 use pcr_fixed::{Q12, Q16, Q20};
 use serde_json::{Value, json};
 
@@ -263,9 +263,10 @@ fn holds_for_its_lag<S: Format>(other: &Profile<S, 3>, may_wait: bool) {
         let mut changed = motions.clone();
         changed[agent] = motions[agent].with_profile(other.as_profile(), S::ZERO).expect("its path");
         assert_eq!(asked(&table, &changed), [refused; 4], "{}: agent {agent}", S::NAME);
+        // The tolerance of a search for conflicts counts lags, which is enough for contacts of any depth above it.
         let regions = table.row(&motions, agent).expect("the table of the fleet");
         let met = first_conflict(&changed[agent], regions, changed[agent].time());
-        assert_eq!(met.err(), refused, "{}: agent {agent}", S::NAME);
+        assert!(met.is_ok(), "{}: agent {agent}", S::NAME);
         // Given to the table, it has its regions, and the motion before may come back.
         let mut again = table.clone();
         let late = changed[agent];
@@ -326,34 +327,4 @@ fn passing_orders_are_not_those_of_motions_with_another_lag() {
     let longer = Profile::<f64, 1>::from_pieces(1.0, [(20.000_015, 0.0)]).expect("a profile");
     motions[1] = motions[1].with_profile(longer.as_profile(), 0.0).expect("its path");
     assert_eq!(orders.row(&motions, 0).map(drop), Err(Mismatch::OtherFleet));
-}
-
-/// A robot that has to wait on its way for longer than its regions hold gets no speed plan, and one whose table is made for that does.
-#[test]
-fn speeds_are_planned_only_as_long_as_the_regions_hold() {
-    let agent = |id: u64, start: [f64; 3], length: f64, t_start: f64| {
-        let [x, y, heading] = start;
-        json!({
-            "id": id, "radius": 0.25, "v_max": 1.0, "a_max": 1.0, "t_start": t_start,
-            "start": { "x": x, "y": y, "heading": heading }, "path": [{ "kind": "line", "length": length }],
-        })
-    };
-    // One stands in the middle of the way, until it sets off; another one comes to the start soon.
-    let agents = [
-        agent(1, [-6.0, 0.0, 0.0], 8.0, 0.0),
-        agent(2, [0.0, 0.0, PI / 2.0], 4.0, 200.0),
-        agent(3, [-6.0, -9.0, PI / 2.0], 18.0, 0.0),
-    ];
-    let scenario = Scenario::from_value(&json!({ "agents": agents })).expect("a scenario");
-    let fleet = Fleet::<f64>::new(&scenario).expect("it fits");
-    let planned = |motions: &[Motion<'_, f64>]| {
-        let table = build_ecm(motions).expect("memory");
-        let drive = Drive::of(&motions[0]).expect("from rest to rest");
-        let row = table.row(motions, 0).expect("the table of the fleet");
-        plan_speed::<f64, 64>(&motions[0], drive, row, &[], &mut [Station::EMPTY; 65]).map(|plan| plan.end())
-    };
-    let motions = fleet.motions();
-    assert_eq!(planned(&motions), Err(NoSpeedPlan::Invalid(Invalid::OutOfRange("lag"))));
-    let long: Vec<_> = motions.iter().map(|motion| motion.with_longest(1000.0).expect("a duration")).collect();
-    assert!(planned(&long).expect("a plan") > 200.0);
 }
