@@ -105,8 +105,9 @@ impl core::error::Error for Full {}
 pub enum Mismatch {
     /// The fleet has no such agent.
     NoSuchAgent(usize),
-    /// The table was computed for another fleet: the number of agents, their paths, radii or order differ. About one in
-    /// two billion such fleets is overlooked, because paths and radii are compared by checksums of 32 bits.
+    /// The table was computed for another fleet: the number of agents, their paths, radii, order or
+    /// [lags](crate::Motion::lag) differ. About one in two billion such fleets is overlooked, because all of this is
+    /// compared by checksums of 32 bits.
     OtherFleet,
     /// The table holds the regions of this agent only ([`Ecm::fill_row`](crate::Ecm::fill_row)).
     OnlyRow(usize),

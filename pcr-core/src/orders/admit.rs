@@ -184,8 +184,8 @@ where
         Ok(())
     }
 
-    /// Gives an agent the motion from before. Its regions fit, as they did before. If they do not, because the lag of a
-    /// motion has grown since, the table is empty: it must not answer with what it does not have.
+    /// Gives an agent the motion from before. Its regions fit, as they did before. If they did not, the
+    /// table would be empty: it must not answer with what it does not have.
     fn put_back<'m>(
         &mut self,
         fleet: &mut [Motion<'m, S>],

@@ -21,6 +21,7 @@
 //! table      all pairs; the margin
 //! mover      an agent in the plane over time                                lemma 8
 //! motion     discs that never touch
+//! delays     start delays with which two discs never touch
 //! ```
 //!
 //! Why that proves what it says is in `docs/certificates.md` of the repository, with the lemmas by these numbers.
@@ -64,6 +65,7 @@
 pub mod ball;
 pub mod cell;
 pub mod data;
+pub mod delays;
 pub mod dump;
 pub mod motion;
 pub mod mover;

@@ -196,6 +196,7 @@ fn motions<S: Scalar>(fleet: &[Motion<'_, S>]) {
         any(Motion::new(path, profile, number(), number()).is_ok());
         any(Motion::delayed(*motion, number()).is_ok());
         any(Motion::with_profile(*motion, profile, number()).is_ok());
+        any(Motion::with_longest(*motion, number()).is_ok());
         any((Motion::with_lateness(*motion, number()).is_ok(), Motion::lateness(motion)));
         any(Profile::<S, 4>::stretched(profile, number()).is_ok());
         any((Motion::time_excess(motion), Motion::lag(motion), excess(motion, motion)));

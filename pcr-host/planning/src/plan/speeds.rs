@@ -188,8 +188,9 @@ fn again<'m>(
             let motion = planner.motions[agent];
             // Delays count from the motion of the row, which is that of the file.
             let before = std::mem::replace(&mut plan[agent], motion);
-            let regions: Vec<RegionRef<'_, f64>> = ecm.row(plan, agent).expect("the table of the fleet").collect();
-            let found = Found::of(&motion, &regions, stations);
+            // The table does not hold for plans that take longer than `LONGEST`.
+            let row = ecm.row(plan, agent).map(|row| row.collect::<Vec<RegionRef<'_, f64>>>());
+            let found = row.ok().and_then(|regions| Found::of(&motion, &regions, stations));
             let found = found.filter(|found| found.end() < before.time().hi - SOONER);
             let better = found.and_then(|found| found.motion(motion, room));
             sooner |= better.is_some();

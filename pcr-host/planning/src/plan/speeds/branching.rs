@@ -5,7 +5,7 @@
 use super::{Found, Room};
 use crate::fleet::HostEcm;
 use crate::plan::task::Planner;
-use pcr_core::{Motion, RegionRef, Station, first_overlap};
+use pcr_core::{Mismatch, Motion, RegionRef, Station, first_overlap};
 
 /// Nodes at most.
 const NODES: usize = 400;
@@ -39,7 +39,9 @@ pub(super) fn searched<'m>(
         if node.cost >= limit {
             continue;
         }
-        let Some([i, j]) = collision(ecm, &node.plan) else {
+        // The table does not hold for plans that take longer than `LONGEST`.
+        let Ok(collision) = collision(ecm, &node.plan) else { continue };
+        let Some([i, j]) = collision else {
             limit = node.cost;
             best = Some(node.plan);
             continue;
@@ -56,13 +58,15 @@ pub(super) fn searched<'m>(
 }
 
 /// Two agents that collide.
-fn collision(ecm: &HostEcm<f64>, plan: &[Motion<'_, f64>]) -> Option<[usize; 2]> {
+fn collision(ecm: &HostEcm<f64>, plan: &[Motion<'_, f64>]) -> Result<Option<[usize; 2]>, Mismatch> {
     let all = Motion::span(plan);
-    (0..plan.len()).find_map(|agent| {
-        let regions = ecm.row(plan, agent).expect("the table of the fleet");
-        let after = regions.filter(|region| region.other() > agent);
-        first_overlap(&plan[agent], after, all).expect("its own row").map(|met| [agent, met.other])
-    })
+    for (agent, motion) in plan.iter().enumerate() {
+        let after = ecm.row(plan, agent)?.filter(|region| region.other() > agent);
+        if let Some(met) = first_overlap(motion, after, all)? {
+            return Ok(Some([agent, met.other]));
+        }
+    }
+    Ok(None)
 }
 
 /// The node with one more priority, if there is a plan for all who have to give way.
@@ -122,7 +126,7 @@ fn plan_again<'m>(
     let motion = planner.motions[agent];
     // Delays count from the motion that the row is of: that of the file.
     node.plan[agent] = motion;
-    let regions = ecm.row(&node.plan, agent).expect("the table of the fleet");
+    let regions = ecm.row(&node.plan, agent).ok()?;
     let regions: Vec<RegionRef<'_, f64>> = regions.filter(|region| above.contains(&region.other())).collect();
     node.plan[agent] = Found::of(&motion, &regions, stations)?.motion(motion, room)?;
     Some(())
