@@ -29,6 +29,13 @@ pub fn outward([lo, hi]: [f64; 2]) -> [String; 2] {
     [below(lo), above(hi)]
 }
 
+/// Returns the same of an interval whose ends are on a thousandth but for a rounding, less than 1e-9: such an end stays there. Edges of layouts
+/// have lengths like that, and a rounding does not add a millimetre to their locks.
+pub fn outward_but_for_rounding([lo, hi]: [f64; 2]) -> [String; 2] {
+    const ROUNDING: f64 = 1e-9;
+    outward([lo + ROUNDING, hi - ROUNDING])
+}
+
 /// Returns all digits, at least three behind the point: a number that is copied has to be the same, such as a start delay, for which another
 /// one nearby may not be free of conflicts.
 pub fn exact(value: f64) -> String {
@@ -115,7 +122,7 @@ pub fn share(part: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{above, below, exact, given, outward, seconds, share, small, thousandths};
+    use super::{above, below, exact, given, outward, outward_but_for_rounding, seconds, share, small, thousandths};
 
     #[test]
     fn sums_are_told_as_they_were_given() {
@@ -153,6 +160,13 @@ mod tests {
         assert_eq!(outward(huge).map(|text| text.parse::<f64>().expect("a number")), huge);
         assert_eq!(outward([f64::NEG_INFINITY, f64::INFINITY]), ["-inf", "inf"]);
         assert_eq!([below(f64::NAN), above(f64::NAN)], ["NaN", "NaN"]);
+    }
+
+    #[test]
+    fn a_rounding_adds_no_thousandth() {
+        assert_eq!(outward_but_for_rounding([0.1_f64.next_down(), 3.850_000_000_000_001_4]), ["0.100", "3.850"]);
+        assert_eq!(outward_but_for_rounding([-0.500_000_000_000_1, 0.0]), ["-0.500", "0.000"]);
+        assert_eq!(outward_but_for_rounding([0.0999, 3.850_000_1]), ["0.099", "3.851"]);
     }
 
     #[test]

@@ -242,7 +242,7 @@ impl Plan {
         memory::ask(agents as u64 * AGENT_BYTES, || format!("the plan of {agents} agents"))?;
         let begin = Instant::now();
         let fleet = Fleet::<f64>::new(scenario)?;
-        let motions = grown(&fleet);
+        let motions = prepared(&fleet, request.method);
         let planner = Planner { scenario, request, motions: &motions, begin };
         let starts = Starts::of(&planner)?;
         let everybody = starts.of_all();
@@ -263,7 +263,7 @@ impl Plan {
             let agents = staying.iter().map(|&agent| scenario.agents[agent].clone()).collect();
             let rest = Scenario { agents, ..scenario.clone() };
             let fleet = Fleet::<f64>::new(&rest)?;
-            let motions = grown(&fleet);
+            let motions = prepared(&fleet, request.method);
             // An order may name those that are left out.
             let request = &request.among(&rest);
             Planner { scenario: &rest, request, motions: &motions, begin }.plan(known)
@@ -304,6 +304,15 @@ impl Plan {
 /// Longest motion of a speed plan, over a day \[s\]: the regions hold for it.
 const LONGEST: f64 = 1e5;
 
+/// The motions to plan with. Start delays change no profile.
+fn prepared(fleet: &Fleet<f64>, method: Method) -> Vec<Motion<'_, f64>> {
+    let motions = grown(fleet);
+    match method {
+        Method::Delay => motions,
+        Method::Speed => motions.into_iter().map(|motion| motion.with_longest(LONGEST).unwrap_or(motion)).collect(),
+    }
+}
+
 /// The motions with their margins, and with what the check may take for a contact. A radius at the limit of the format
 /// stays as it is, and the check has the last word.
 pub(crate) fn grown(fleet: &Fleet<f64>) -> Vec<Motion<'_, f64>> {
@@ -311,5 +320,5 @@ pub(crate) fn grown(fleet: &Fleet<f64>) -> Vec<Motion<'_, f64>> {
     let tolerance = motions.iter().map(|motion| Encounter::new(motion, motion).tolerance()).fold(0.0, f64::max);
     // The growths of two agents add up: what planning and what the check may be off.
     let grown = motions.iter().map(|&motion| motion.with_margin(motion.margin() + tolerance).unwrap_or(motion));
-    grown.map(|motion| motion.with_longest(LONGEST).unwrap_or(motion).inflated()).collect()
+    grown.map(|motion| motion.inflated()).collect()
 }

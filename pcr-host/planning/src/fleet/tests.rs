@@ -1,7 +1,7 @@
 //! Tests of what a number format refuses, and that the conversion to it loses nothing else.
 
 use super::*;
-use pcr_core::{Mismatch, first_conflict, plan_delays, plan_speeds};
+use pcr_core::{Mismatch, first_conflict};
 use pcr_fixed::{Q12, Q16, Q20};
 use serde_json::{Value, json};
 

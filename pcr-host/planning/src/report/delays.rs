@@ -3,7 +3,7 @@
 use super::columns::Columns;
 use super::locks::LocksUnprinted;
 use super::{Document, counted, json, printable, quoted};
-use crate::figures::{given, outward};
+use crate::figures::{given, outward_but_for_rounding};
 use crate::locks::{Delays, Driving, LockVehicle, Locks, Told, Unsafe};
 use crate::memory;
 use pcr_formats::import::{Id, ImportError};
@@ -219,7 +219,7 @@ pub fn delays_table(table: &DelayTable, out: &mut dyn Write) -> io::Result<()> {
     if count > 0 {
         let mut columns = Columns::new(&["<a", "<b", "b later by [s]", "to"]);
         for Delay { a, a_backward, b, b_backward, delay } in &table.delays {
-            columns.row([[text(a, *a_backward), text(b, *b_backward)], outward(*delay)].concat());
+            columns.row([[text(a, *a_backward), text(b, *b_backward)], outward_but_for_rounding(*delay)].concat());
         }
         columns.write(out)?;
     }
@@ -227,7 +227,7 @@ pub fn delays_table(table: &DelayTable, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "{} of times at nodes", counted(nodes.len(), "interval"))?;
         let mut columns = Columns::new(&["<node", "<edge", "from [s]", "to"]);
         for NodeTimes { node, edge, backward, time } in nodes {
-            columns.row([[text(node, false), text(edge, *backward)], outward(*time)].concat());
+            columns.row([[text(node, false), text(edge, *backward)], outward_but_for_rounding(*time)].concat());
         }
         columns.write(out)?;
     }

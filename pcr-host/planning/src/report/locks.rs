@@ -2,7 +2,7 @@
 
 use super::columns::Columns;
 use super::{Document, counted, json, printable, quoted};
-use crate::figures::{above, given, outward};
+use crate::figures::{above, given, outward_but_for_rounding};
 use crate::locks::{Found, LockVehicle, Locks, Partner, Sweep, Told};
 use pcr_formats::import::{Id, ImportError};
 use serde::Serialize;
@@ -188,7 +188,14 @@ pub fn edge_table(locks: &EdgeLocks, out: &mut dyn Write) -> io::Result<()> {
     let mut columns = Columns::new(&["<other", "from [m]", "to", "other from [m]", "to"]);
     for Partner { name, node, own, other } in &locks.partners {
         let name = format!("{}{name}", if *node { "node " } else { "" });
-        columns.row([vec![printable(&name)], outward(*own).to_vec(), outward(*other).to_vec()].concat());
+        columns.row(
+            [
+                vec![printable(&name)],
+                outward_but_for_rounding(*own).to_vec(),
+                outward_but_for_rounding(*other).to_vec(),
+            ]
+            .concat(),
+        );
     }
     columns.write(out)
 }
@@ -211,7 +218,11 @@ pub fn locks_table(locks: &Locks, out: &mut dyn Write) -> io::Result<()> {
     if !locks.locks.is_empty() {
         let mut columns = Columns::new(&["<a", "<b", "a from [m]", "to", "b from [m]", "to"]);
         for lock in &locks.locks {
-            let cells = [[text(&lock.a), text(&lock.b)], outward(lock.a_length), outward(lock.b_length)];
+            let cells = [
+                [text(&lock.a), text(&lock.b)],
+                outward_but_for_rounding(lock.a_length),
+                outward_but_for_rounding(lock.b_length),
+            ];
             columns.row(cells.concat());
         }
         columns.write(out)?;
@@ -220,7 +231,7 @@ pub fn locks_table(locks: &Locks, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "{} of nodes", counted(nodes.len(), "lock"))?;
         let mut columns = Columns::new(&["<node", "<edge", "from [m]", "to"]);
         for lock in nodes {
-            columns.row([[text(&lock.node), text(&lock.edge)], outward(lock.edge_length)].concat());
+            columns.row([[text(&lock.node), text(&lock.edge)], outward_but_for_rounding(lock.edge_length)].concat());
         }
         columns.write(out)?;
     }
