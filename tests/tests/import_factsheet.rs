@@ -71,6 +71,9 @@ fn without_a_contour_length_and_width_are_taken() {
     assert_eq!(polygon, [[0.95, 0.4], [-0.95, 0.4], [-0.95, -0.4], [0.95, -0.4]]);
     assert!(warned.contains("contour: not in the file"), "{warned}");
     sheet["physicalParameters"]["width"] = Value::Null;
+    // One without the other is no size.
+    assert_eq!(lines(&sheet).0.unwrap_err(), "factsheet, physicalParameters, width: missing");
+    sheet["physicalParameters"]["length"] = Value::Null;
     let fork = lines(&sheet).0.unwrap();
     assert_eq!((fork.footprint, fork.radius), (None, 0.5));
 }

@@ -1,6 +1,6 @@
 //! Layouts of the VDMA: the published examples, trajectories within their tolerance, vehicle types, levels.
 
-use pcr_formats::import::{Format, Id, Layout, Options, Warnings, layout, scenario};
+use pcr_formats::import::{Facing, Format, Id, Layout, Options, Warnings, layout, scenario};
 use pcr_formats::scenario::PathSegment;
 use serde_json::{Value, json};
 
@@ -161,7 +161,7 @@ fn crossing(maps: [Option<&str>; 4], levels: Option<[Option<&str>; 2]>) -> Value
             })
             .collect(),
     };
-    json!({ "metaInformation": { "projectIdentification": "p" }, "layouts": layouts })
+    json!({ "metaInformation": { "projectIdentification": "p", "lifVersion": "1.0.0" }, "layouts": layouts })
 }
 
 /// Two levels instead of one would leave out what can touch.
@@ -281,7 +281,7 @@ fn edges_have_the_limits_and_the_gaps_of_the_file() {
         json!({ "degree": 1, "knotVector": [0, 0, 1, 1], "controlPoints": points })
     };
     let edge = |id: &str, to: &str, properties: Value| json!({ "edgeId": id, "startNodeId": "a", "endNodeId": to, "vehicleTypeEdgeProperties": properties });
-    let lif = json!({ "layouts": [{ "layoutId": "l", "nodes": [node("a", 1.0, 2.0), node("b", 4.0, 6.0), node("c", 1.0, 2.0)], "edges": [
+    let lif = json!({ "metaInformation": { "lifVersion": "1.0.0" }, "layouts": [{ "layoutId": "l", "nodes": [node("a", 1.0, 2.0), node("b", 4.0, 6.0), node("c", 1.0, 2.0)], "edges": [
         edge("plain", "b", json!([])),
         edge("slow", "b", json!([{ "vehicleTypeId": "t", "maxSpeed": 0.7, "maxRotationSpeed": 0.3 }])),
         edge("near", "b", json!([{ "vehicleTypeId": "t", "trajectory": line([1.0, 2.0], [4.0, 6.0]) }])),
@@ -309,28 +309,40 @@ fn edges_have_the_limits_and_the_gaps_of_the_file() {
     );
 }
 
-/// A vehicle that drives sideways was read as if its outline faced along the edge.
+/// A vehicle that drives sideways was read as if its outline faced along the edge, and radians were taken for degrees.
 #[test]
-fn outlines_face_along_edges_or_are_refused() {
+fn outlines_face_as_edges_say() {
     let node = |id: &str, y: f64| json!({ "nodeId": id, "nodePosition": { "x": 0.0, "y": y } });
     let lif = |orientation: f64, kind: Value| {
         let property = json!([{ "vehicleTypeId": "t", "vehicleOrientation": orientation, "orientationType": kind }]);
         let edge =
             json!({ "edgeId": "e", "startNodeId": "a", "endNodeId": "b", "vehicleTypeEdgeProperties": property });
-        json!({ "layouts": [{ "layoutId": "l", "nodes": [node("a", 0.0), node("b", 5.0)], "edges": [edge] }] })
+        json!({ "metaInformation": { "lifVersion": "1.0.0" }, "layouts": [{ "layoutId": "l", "nodes": [node("a", 0.0), node("b", 5.0)], "edges": [edge] }] })
             .to_string()
     };
     let fleet = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
     let outlined = Options { fleet: Some(fleet.into()), radius: None, ..options() };
-    for (orientation, kind) in [(0.0, Value::Null), (360.0, json!("TANGENTIAL")), (90.0, json!("GLOBAL"))] {
-        assert_eq!(read(&lif(orientation, kind), &outlined).0.edges.len(), 1);
-    }
-    for (orientation, kind) in [(90.0, Value::Null), (180.0, json!("TANGENTIAL")), (0.0, json!("GLOBAL"))] {
+    let (quarter, half) = (std::f64::consts::FRAC_PI_2, std::f64::consts::PI);
+    for (orientation, kind, facing) in [
+        (0.0, Value::Null, Facing::Ahead),
+        (2.0 * half, json!("TANGENTIAL"), Facing::Ahead),
+        (quarter, json!("GLOBAL"), Facing::Ahead),
+        (half, Value::Null, Facing::Backward),
+        (-quarter, json!("GLOBAL"), Facing::Backward),
+        (quarter, Value::Null, Facing::Any),
+        // Not 0.05 degrees.
+        (0.05, Value::Null, Facing::Any),
+        (0.0, json!("GLOBAL"), Facing::Any),
+    ] {
         let text = lif(orientation, kind);
-        let error = layout(Format::Lif, &text, &outlined, &mut Warnings::default()).unwrap_err().to_string();
-        assert!(error.starts_with(&format!("edge e: its vehicleOrientation {orientation}, as outlines")), "{error}");
-        assert_eq!(read(&text, &options()).0.edges.len(), 1);
+        assert_eq!(read(&text, &outlined).0.edges[0].facing[0], facing, "{orientation}");
+        assert_eq!(read(&text, &options()).0.edges[0].facing[0], Facing::Ahead, "it does not matter how a disc faces");
     }
+    let error = |text: &str| layout(Format::Lif, text, &outlined, &mut Warnings::default()).unwrap_err().to_string();
+    let degrees = error(&lif(180.0, Value::Null));
+    assert!(degrees.contains("vehicleOrientation: 180 is more than one turn; the format has radians"), "{degrees}");
+    let odd = error(&lif(0.0, json!("SIDEWAYS")));
+    assert!(odd.contains("orientationType: SIDEWAYS is neither TANGENTIAL nor GLOBAL"), "{odd}");
 }
 
 /// Of the speeds of two types one was taken, and the table of delays was wrong for the other.
@@ -390,7 +402,7 @@ fn cross(edges: Value, theta: Value) -> Value {
         json!({ "nodeId": id, "nodePosition": { "x": x, "y": y }, "vehicleTypeNodeProperties": properties })
     };
     let nodes = [node("a", 0.0, 0.0), node("b", 10.0, 0.0), node("c", 5.0, -5.0), node("d", 5.0, 5.0)];
-    json!({ "layouts": [{ "layoutId": "l", "nodes": nodes, "edges": edges }] })
+    json!({ "metaInformation": { "lifVersion": "1.0.0" }, "layouts": [{ "layoutId": "l", "nodes": nodes, "edges": edges }] })
 }
 
 fn edge(id: &str, from: &str, to: &str, property: Value) -> Value {
@@ -433,25 +445,24 @@ fn a_trajectory_that_is_a_point_is_no_way_to_a_node_elsewhere() {
     assert!(warnings.iter().any(|line| line.starts_with("edge cc: its length is 0")), "{warnings:?}");
 }
 
-/// They were not read, and nothing was said.
+/// They were not read, and a vehicle that turned on its way or came backward to a node had too few locks.
 #[test]
-fn thetas_and_turns_of_an_outline_are_told() {
+fn thetas_and_turns_of_an_outline_are_covered() {
     let fleet = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
     let outlined = Options { fleet: Some(fleet.into()), radius: None, ..options() };
-    let told = |theta: Value, options: &Options| {
+    let facing = |theta: Value, options: &Options| {
         let turns = json!({ "vehicleTypeId": "t", "rotationAllowed": true });
         let edges = json!([edge("ab", "a", "b", json!({ "vehicleTypeId": "t" })), edge("cd", "c", "d", turns)]);
-        let (_, warnings) = read(&cross(edges, theta).to_string(), options);
-        let said = ["node b: its theta is that of none of its edges", "edge cd: its rotationAllowed is not read"];
-        said.map(|said| warnings.iter().any(|line| line.starts_with(said)))
+        let (layout, _) = read(&cross(edges, theta).to_string(), options);
+        [0, 1].map(|place| layout.edges[place].facing[0])
     };
-    assert_eq!(told(json!(0.0), &outlined), [false, true]);
-    assert_eq!(told(json!(1.57), &outlined), [true, true]);
+    assert_eq!(facing(json!(0.0), &outlined), [Facing::Ahead, Facing::Any]);
+    assert_eq!(facing(json!(1.57), &outlined), [Facing::Either, Facing::Any]);
+    assert_eq!(facing(json!(1.57), &options()), [Facing::Ahead, Facing::Ahead]);
     let other = Options { vehicle: Some("other".into()), ..outlined.clone() };
     let edges = json!([edge("ab", "a", "b", json!({ "vehicleTypeId": "other" }))]);
-    let (_, warnings) = read(&cross(edges, json!(1.57)).to_string(), &other);
-    assert!(!warnings.iter().any(|line| line.contains("theta")), "it is that of another type: {warnings:?}");
-    assert_eq!(told(json!(1.57), &options()), [false, false]);
+    let (layout_of_other, _) = read(&cross(edges, json!(1.57)).to_string(), &other);
+    assert_eq!(layout_of_other.edges[0].facing[0], Facing::Ahead, "it is the theta of another type");
     let curve = json!({ "controlPoints": [{ "x": 0, "y": 0, "orientation": 1.57 }, { "x": 10, "y": 0 }] });
     let sideways = json!([edge("ab", "a", "b", json!({ "vehicleTypeId": "t", "trajectory": curve }))]);
     let text = cross(sideways, Value::Null).to_string();
@@ -470,7 +481,11 @@ fn a_layout_has_nodes_and_edges() {
         other[format!("{list}s")] = hidden;
         value["layouts"].as_array_mut().unwrap().push(other);
         let error = layout_error(&value.to_string());
-        assert!(error.starts_with(&format!("layout 2, {list}: missing")), "{error}");
+        assert!(
+            error.contains(&format!("layout 2: its key {list}s is not known here; it may be meant for {list}")),
+            "{error}"
+        );
+        assert!(error.contains(&format!("layout 2, {list}: missing")), "{error}");
         value["layouts"][1][list] = json!([]);
         value["layouts"][1]["edges"] = json!([]);
         assert_eq!(read(&value.to_string(), &options()).0.edges.len(), 1);

@@ -139,7 +139,7 @@ fn trajectories_are_followed_from_node_to_node() {
 
 /// A vehicle that drives backward was read as if its outline faced along its path.
 #[test]
-fn outlines_face_along_their_paths_or_are_refused() {
+fn outlines_face_as_orders_say() {
     let outlined = outlined();
     let order = |edge: Value, theta: [Value; 2]| {
         let node = |k: usize, y: f64| {
@@ -162,12 +162,35 @@ fn outlines_face_along_their_paths_or_are_refused() {
         assert!(read(&order(edge.clone(), [json!(1.571), json!(ahead)]), &outlined).is_ok(), "{edge}");
     }
     let backward = std::f64::consts::PI;
-    for edge in [json!({ "orientation": backward }), json!({ "orientation": 0.0, "orientationType": "GLOBAL" })] {
-        let error = read(&order(edge.clone(), none.clone()), &outlined).unwrap_err();
-        assert!(error.starts_with("order o, edge e: its orientation "), "{error}");
-        // It does not matter how a disc faces.
+    let outline = |edge: Value, thetas: [Value; 2]| {
+        let agent = read(&order(edge, thetas), &outlined).unwrap().0.agents.remove(0);
+        (agent.footprint.map(|footprint| footprint.polygon().to_vec()), (agent.radius * 1e9).round())
+    };
+    let (Some(forward), reach) = outline(json!({}), none.clone()) else { panic!("no outline") };
+    let turned: Vec<_> = forward.iter().map(|corner| corner.map(|x| -x)).collect();
+    for thetas in [none.clone(), [json!(-ahead), json!(-ahead)]] {
+        assert_eq!(outline(json!({ "orientation": backward }), thetas.clone()), (Some(turned.clone()), reach));
+        let global = json!({ "orientation": -ahead, "orientationType": "GLOBAL" });
+        assert_eq!(outline(global, thetas), (Some(turned.clone()), reach));
+    }
+    // Any other way, or one of which nothing is said in version 3: the disc around it.
+    for edge in [
+        json!({ "orientation": 0.0, "orientationType": "GLOBAL" }),
+        json!({ "orientation": 1.0 }),
+        json!({ "orientation": 0.0, "rotationAllowed": true }),
+        json!({ "reachOrientationBeforeEntering": false }),
+    ] {
+        assert_eq!(outline(edge.clone(), none.clone()), (None, reach), "{edge}");
         assert!(read(&order(edge, none.clone()), &options()).is_ok());
     }
+    let third = |edge: Value| {
+        let mut order: Value = serde_json::from_str(&order(edge, none.clone())).unwrap();
+        order["version"] = json!("3.0.0");
+        read(&order.to_string(), &outlined).unwrap().0.agents.remove(0).footprint.is_some()
+    };
+    assert!(third(json!({ "orientation": 0.0 })) && !third(json!({})));
+    let degrees = read(&order(json!({ "orientation": 180.0 }), none.clone()), &outlined).unwrap_err();
+    assert!(degrees.contains("orientation: 180 is more than one turn; the format has radians"), "{degrees}");
     for theta in [[json!(-ahead), Value::Null], [Value::Null, json!(backward)]] {
         let error = read(&order(json!({}), theta), &outlined).unwrap_err();
         assert!(error.contains(": its theta ") && error.contains("outlines face along their paths"), "{error}");
@@ -220,14 +243,14 @@ fn deviations_make_agents_larger_and_are_told() {
     order["edges"][1]["trajectory"] = curve();
     order["edges"][1]["corridor"] = json!({ "leftWidth": 1.0, "rightWidth": 1.0 });
     order["nodes"][1]["nodePosition"] = json!({ "x": 8.0, "y": 2.0 });
+    let (scenario, _) = read(&order.to_string(), &options()).unwrap();
+    let wide = scenario.agents[0].radius;
+    order["edges"][1].as_object_mut().unwrap().remove("corridor");
     let (scenario, warnings) = read(&order.to_string(), &options()).unwrap();
     let radius = scenario.agents[0].radius;
     assert!(radius > 0.4 + 1e-5 && radius < 0.4 + 1.1e-3, "{radius}");
+    assert!((wide - radius - 1.0).abs() < 1e-9, "{wide} {radius}");
     assert!(warnings.iter().any(|line| line.starts_with("agent 1: its lines and arcs are up to")), "{warnings:?}");
-    assert!(
-        warnings.iter().any(|line| line.starts_with("order square, edge e1: its corridor is not read")),
-        "{warnings:?}"
-    );
     let state = |y: f64| {
         json!({ "serialNumber": "r", "nodeStates": [], "plannedPath": { "trajectory": curve() },
             "mobileRobotPosition": { "x": 4.0, "y": y } })
@@ -407,9 +430,11 @@ fn what_an_outline_may_do_is_told() {
     order["edges"][2]["rotationAllowed"] = json!(true);
     let told = |options: &Options| {
         let (_, warnings) = read(&order.to_string(), options).unwrap();
-        let said = ["allowedDeviationXy is not", "allowedDeviationTheta is not", "rotationAllowed is not"];
+        let said = ["allowedDeviationXy is not", "allowedDeviationTheta is not"];
         said.map(|said| warnings.iter().any(|line| line.contains(said)))
     };
-    assert_eq!(told(&outlined()), [true; 3]);
-    assert_eq!(told(&options()), [true, false, false]);
+    assert_eq!(told(&outlined()), [true; 2]);
+    assert_eq!(told(&options()), [true, false]);
+    // One that rotates on its way covers the disc around it.
+    assert!(read(&order.to_string(), &outlined()).unwrap().0.agents[0].footprint.is_none());
 }

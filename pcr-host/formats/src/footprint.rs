@@ -6,7 +6,7 @@
 
 mod simple;
 
-use crate::plane::{distance, from_segment};
+use crate::plane::{distance, from_segment, hull};
 use serde::Serialize;
 
 /// Discs of a cover at most.
@@ -129,6 +129,27 @@ impl Footprint {
         let corners = &self.polygon;
         let opposite = corners.iter().cycle().skip(corners.len() / 2);
         corners.len().is_multiple_of(2) && corners.iter().zip(opposite).all(|(a, b)| *a == b.map(|x| -x))
+    }
+
+    /// The outline turned by half a turn about its reference point: that of a vehicle that drives backward.
+    #[must_use]
+    pub fn backward(&self) -> Self {
+        let polygon = self.polygon.iter().map(|corner| corner.map(|x| -x)).collect();
+        let discs = self.discs.iter().map(|disc| Disc { ahead: -disc.ahead, left: -disc.left, ..*disc }).collect();
+        Self { polygon, discs, ..self.clone() }
+    }
+
+    /// The convex hull of the outline and the same turned by half a turn, which holds the vehicle whether it drives ahead or backward;
+    /// nothing if it would have too many corners or discs.
+    pub fn either_way(&self) -> Option<Self> {
+        let both = self.polygon.iter().chain(&self.backward().polygon).copied().collect();
+        // No disc may reach farther out than those of the outline are allowed to.
+        Self::new(hull(both), self.allowed).ok().map(|outline| outline.grown(self.growth))
+    }
+
+    /// Radius of the disc around the reference point that is in the outline \[m\]; below 0 where that point is outside of it.
+    pub fn inner_radius(&self) -> f64 {
+        depth(&self.polygon, [0.0; 2]) + self.growth
     }
 
     /// Radius of the disc around the reference point that holds all discs \[m\].

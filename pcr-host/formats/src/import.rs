@@ -7,6 +7,7 @@
 //! updates     orders and their updates
 //! loads       the load that a vehicle of VDA 5050 carries
 //! facing      which way vehicles face on their paths
+//! corridor    room beside an edge that a vehicle may use
 //! factsheet   contours and limits of vehicles of VDA 5050 (JSON)
 //! rmf         buildings and fleets of Open-RMF (YAML)
 //! levels      where the levels of such a building are
@@ -26,6 +27,7 @@
 //! route       the shortest way between nodes, corners rounded
 //! vehicle     radius, speeds, and the options of the command line            Vehicle, Options
 //! names       unique names for nodes and edges with the same name
+//! keys        the keys that objects of a format may have
 //! useful      which options have an effect on which files                    Kind
 //! warnings    faults that were read nevertheless                             Warnings
 //! ```
@@ -37,10 +39,12 @@
 mod bernstein;
 mod biarc;
 mod ccbs;
+mod corridor;
 mod facing;
 mod factsheet;
 mod grid;
 mod heading;
+mod keys;
 mod layout;
 mod levels;
 mod lif;
@@ -75,9 +79,10 @@ pub use stamp::seconds;
 pub use timed::sectioned;
 pub use useful::Kind;
 pub use value::parse as parse_json;
-pub use vehicle::{CORNER_RADIUS, HEADING, Options, TOLERANCE, Vehicle};
+pub use vehicle::{CORNER_RADIUS, Facing, HEADING, Options, TOLERANCE, Vehicle};
 pub use warnings::{Warnings, shortened};
 
+use crate::footprint::Footprint;
 use crate::mark::unmarked;
 use crate::own;
 use crate::scenario::{Agent, Scenario};
@@ -281,7 +286,7 @@ fn imported(
     let outline = vehicle.footprint.as_ref();
     let mut layout = whole(options, warnings, |warnings| match format {
         Format::Nav2 => nav2::read(text, vehicle.speed, warnings),
-        Format::Lif => lif::read(text, options, outline, warnings),
+        Format::Lif => lif::read(text, options, &vehicle, warnings),
         Format::Rmf => rmf::read(text, options, outline, warnings),
         Format::OpenDrive => opendrive::read(text, warnings),
         Format::OpenTcs => opentcs::read(text, options, outline, warnings),
@@ -298,7 +303,8 @@ fn imported(
         layout.one_speed()?;
     }
     layout.corner_radius = options.corner_radius.or(format.corner_radius());
-    let off: Vec<_> = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.off(&vehicle))).collect();
+    let off = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.off(&vehicle) - edge.room));
+    let off: Vec<_> = off.collect();
     report(&off, warnings);
     if NO_NAMES.contains(&layout.name.as_str()) {
         layout.name.clear();
@@ -339,17 +345,24 @@ fn report(deviations: &[(String, f64)], warnings: &mut Warnings) {
 }
 
 /// The same for agents, and the radii that their vehicles have.
-fn report_agents(scenario: &Scenario, radii: &[f64], warnings: &mut Warnings) {
-    let off =
-        scenario.agents.iter().zip(radii).map(|(agent, radius)| (format!("agent {}", agent.id), agent.radius - radius));
+fn report_agents(scenario: &Scenario, radii: &[f64], vehicle: &Vehicle, warnings: &mut Warnings) {
+    let agents = scenario.agents.iter().zip(radii);
+    let off = agents.map(|(agent, radius)| (format!("agent {}", agent.id), grown(agent, *radius, vehicle)));
     report(&off.collect::<Vec<_>>(), warnings);
 }
 
 /// The same for routes that are further off than their edges, which are told already: gaps and differences of lengths are theirs.
-fn report_routes(layout: &Layout, scenario: &Scenario, radius: f64, warnings: &mut Warnings) {
+fn report_routes(layout: &Layout, scenario: &Scenario, vehicle: &Vehicle, warnings: &mut Warnings) {
     let told = layout.edges.iter().map(|edge| edge.deviation).fold(0.0, f64::max);
-    let off = scenario.agents.iter().map(|agent| (format!("agent {}", agent.id), agent.radius - radius));
+    let agents = scenario.agents.iter();
+    let off = agents.map(|agent| (format!("agent {}", agent.id), grown(agent, vehicle.radius, vehicle)));
     report(&off.filter(|(_, deviation)| *deviation > told + UNSAID).collect::<Vec<_>>(), warnings);
+}
+
+/// By how much an agent is larger than its vehicle, which has this radius \[m\]. The outline of one that drives backward is another one.
+fn grown(agent: &Agent, radius: f64, vehicle: &Vehicle) -> f64 {
+    let before = vehicle.footprint.as_ref().map_or(0.0, Footprint::growth);
+    agent.footprint.as_ref().map_or(agent.radius - radius, |outline| outline.growth() - before)
 }
 
 /// What the configuration of a fleet or a factsheet says.
@@ -358,7 +371,7 @@ fn of_fleet(text: &str, warnings: &mut Warnings) -> Result<Given, ImportError> {
     let json = unmarked(text).trim_start().starts_with('{');
     let of_yaml = || Document::read(text)?.value();
     let value = if json { value::parse(text) } else { of_yaml().map_err(ImportError::of_yaml) }?;
-    if factsheet::is_factsheet(&value) { factsheet::read(&value, warnings) } else { rmf::fleet(&value) }
+    if factsheet::is_factsheet(&value) { factsheet::read(&value, warnings) } else { rmf::fleet(&value, warnings) }
 }
 
 /// Reads the vehicle of a fleet: the configuration of Open-RMF, or a factsheet of VDA 5050.
@@ -420,7 +433,7 @@ pub fn scenario(
         Format::Nav2 | Format::Lif | Format::Rmf | Format::OpenDrive | Format::OpenTcs | Format::Ccbs => {
             let Imported { layout, vehicle } = imported(format, text, options, true, warnings)?;
             let scenario = route::scenario(&layout, &vehicle, options, format.corner_radius(), warnings)?;
-            report_routes(&layout, &scenario, vehicle.radius, warnings);
+            report_routes(&layout, &scenario, &vehicle, warnings);
             scenario
         }
         Format::Path | Format::Vda5050 => {
@@ -441,7 +454,7 @@ pub fn scenario(
             } else {
                 whole(options, warnings, |warnings| vda5050::read(text, options, &vehicle, warnings))?
             };
-            report_agents(&scenario, &radii, warnings);
+            report_agents(&scenario, &radii, &vehicle, warnings);
             scenario
         }
     };

@@ -41,6 +41,8 @@ codes! {
     MayBeCut = "may-be-cut",
     /// A key or an element is not known at this place, and its content is not read.
     UnknownKey = "unknown-key",
+    /// The version of the file is missing or not known; the message says as which one it is read.
+    UnknownVersion = "unknown-version",
     /// A known field is not read, because nothing here depends on it or stands for it.
     UnreadField = "unread-field",
     /// A name or label was replaced: names here are unique, printable and of limited length.
@@ -71,6 +73,8 @@ codes! {
     CurveDegree = "curve-degree",
     /// Pieces of a route do not join: a drawn line, a trajectory or a link ends at another place than its node.
     Gap = "gap",
+    /// A vehicle follows a line on the ground whose course is not in the file; a straight one is assumed.
+    PhysicalLine = "physical-line",
     /// An edge has length 0.
     ZeroLength = "zero-length",
     /// The length that is written is missing or contradicts the geometry, which counts.

@@ -3,6 +3,7 @@
 //! A section goes straight at constant speed; a section without length is a wait. Agents begin at time 0 and stay at
 //! their goals.
 
+use super::keys::Keys;
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::timed;
@@ -20,6 +21,10 @@ const GAP: f64 = 1e-6;
 /// By how much a path may last longer or shorter than its sections \[s\], and as a part of it: numbers are rounded in files.
 const LATE: f64 = 1e-3;
 const ROUNDED: f64 = 1e-4;
+
+/// GraphML leaves other attributes to its users.
+const GRAPH: Keys = Keys::new(&["id", "edgedefault"], &[]).free();
+const EDGE: Keys = Keys::new(&["id", "source", "target", "directed"], &[]).free();
 
 /// Reads a roadmap: nodes with `x,y` as their first datum.
 pub(super) fn roadmap(text: &str, warnings: &mut Warnings) -> Result<Layout, ImportError> {
@@ -40,6 +45,7 @@ pub(super) fn roadmap(text: &str, warnings: &mut Warnings) -> Result<Layout, Imp
         let id = hyperedge.attribute("id").unwrap_or_default();
         warnings.lose(format_args!("hyperedge {id}: it joins any number of nodes, and an edge joins two"));
     }
+    GRAPH.check_attributes(graph, "graph", warnings)?;
     let undirected = match graph.attribute("edgedefault") {
         Some("undirected") => true,
         None | Some("directed") => false,
@@ -66,6 +72,10 @@ pub(super) fn roadmap(text: &str, warnings: &mut Warnings) -> Result<Layout, Imp
     let mut edges = Names::new();
     for (k, edge) in children(graph, "edge").enumerate() {
         let id = edge.attribute("id").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
+        if let Err(error) = EDGE.check_attributes(edge, &format!("edge {id}"), warnings) {
+            warnings.lose(error);
+            continue;
+        }
         let end = |name: &str| {
             let node = edge.attribute(name).ok_or_else(|| format!("edge {id}, {name}: missing"))?;
             nodes.place(&Id::Text(node.to_owned())).map_err(|unclear| format!("edge {id}, {name}: {unclear}"))

@@ -1,12 +1,15 @@
-//! Which way a vehicle faces as it travels: an outline is read as if it faced along its path.
+//! Which way a vehicle faces as it travels. Paths have no gears, so that an outline that faces another way than along its path is replaced
+//! by one that covers it.
 
 use super::biarc::Fit;
 use super::value::Object;
+use super::vehicle::Facing;
 use super::{Edge, ImportError, Node, WarningCode, Warnings};
 use crate::footprint::Footprint;
 use crate::plane::{distance, wrapped};
 use crate::scenario::{Agent, KINK, PathSegment, Placed, TURN};
-use std::f64::consts::{PI, TAU};
+use std::collections::HashMap;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Angle that is rounding in a file and nothing else \[rad\].
 const ROUNDING: f64 = 1e-3;
@@ -24,9 +27,6 @@ pub(super) fn is_ahead(outline: &Footprint, angle: f64) -> bool {
 
 /// The message about a backward drive that was not read.
 pub(super) const BACKWARD: &str = "it is driven backward, and outlines face along their paths here";
-
-/// What is said of an edge on which a vehicle may rotate.
-pub(super) const ROTATION: &str = "its rotationAllowed is not read; the vehicle is taken to face along its path";
 
 /// Whether it matters that the vehicle drives backward: neither to a disc nor to an outline that is the same then.
 pub(super) fn is_other_backward(outline: Option<&Footprint>) -> bool {
@@ -61,6 +61,39 @@ pub(super) fn warn_of_nodes(
     }
 }
 
+/// Lets an outline face either way on the edges of nodes at which it faces as on none of them, where a field has its direction \[rad\]:
+/// it turns there, or comes there backward.
+pub(super) fn turn_at_nodes(given: &[(usize, f64)], edges: &mut [Edge], outline: Option<&Footprint>) {
+    let Some(outline) = outline.filter(|_| !given.is_empty()) else { return };
+    let mut of_nodes: HashMap<usize, Vec<usize>> = HashMap::new();
+    for (place, edge) in edges.iter().enumerate() {
+        edge.ends.iter().for_each(|node| of_nodes.entry(*node).or_default().push(place));
+    }
+    for (node, angle) in given {
+        let own = of_nodes.get(node).map_or(&[][..], Vec::as_slice);
+        let is_there = |place: &usize| {
+            let Some(edge) = edges.get(*place) else { return false };
+            let Some((first, last)) = edge.curve.first().zip(edge.curve.last()) else { return false };
+            let faces = |heading: f64| match edge.facing[0] {
+                Facing::Ahead => is_ahead(outline, angle - heading),
+                Facing::Backward => is_ahead(outline, angle - heading - PI),
+                Facing::Either => is_ahead(outline, angle - heading) || is_ahead(outline, angle - heading - PI),
+                Facing::Any => true,
+            };
+            let at = |k: usize, heading: f64| edge.ends[k] == *node && faces(heading);
+            at(0, first.heading) || at(1, last.heading_at_end())
+        };
+        if own.iter().any(is_there) {
+            continue;
+        }
+        for place in own {
+            if let Some(edge) = edges.get_mut(*place) {
+                edge.facing = edge.facing.map(|facing| facing.or(Facing::Either));
+            }
+        }
+    }
+}
+
 /// Says of which agents (each with a name) the outline turns in place by half a turn: a vehicle may do so to either side, and a path
 /// has one of them.
 pub(super) fn warn_of_half_turns<'a>(agents: impl Iterator<Item = (&'a str, &'a Agent)>, warnings: &mut Warnings) {
@@ -82,23 +115,46 @@ pub(super) fn lose(of: &str, field: &str, value: f64, warnings: &mut Warnings) {
     warnings.lose(format_args!("{of}: its {field} {value}, as outlines face along their paths here"));
 }
 
-/// Loses the orientation of an edge, in the unit of its field \[rad\], unless that is along its way, of which a straight one has a
-/// heading.
-pub(super) fn along(
+/// Which way a vehicle faces on an edge that says so, by orientations \[rad\] of which it takes any one: those on the map, of which only a
+/// straight edge tells which way along it they are, or those with respect to the edge.
+///
+/// # Errors
+/// [`ImportError`] for a type of orientation that is not known, and for an orientation beyond one turn, which is one in degrees.
+pub(super) fn of_edge(
     edge: &Object<'_>,
     field: &str,
-    unit: f64,
+    orientations: &[f64],
     heading: Option<f64>,
-    outline: &Footprint,
-    warnings: &mut Warnings,
-) -> Result<(), ImportError> {
-    let Some(orientation) = edge.number(field)? else { return Ok(()) };
-    let is_global = edge.text("orientationType")?.is_some_and(|kind| kind.eq_ignore_ascii_case("GLOBAL"));
-    let ahead = if is_global { heading } else { Some(0.0) };
-    if !ahead.is_some_and(|ahead| is_ahead(outline, orientation * unit - ahead)) {
-        lose(&edge.name, field, orientation, warnings);
+) -> Result<Option<Facing>, ImportError> {
+    let is_global = match edge.text("orientationType")? {
+        None => false,
+        Some(kind) if kind.eq_ignore_ascii_case("TANGENTIAL") => false,
+        Some(kind) if kind.eq_ignore_ascii_case("GLOBAL") => true,
+        Some(other) => {
+            let problem = format!("{}, orientationType: {other} is neither TANGENTIAL nor GLOBAL", edge.name);
+            return Err(ImportError::new(problem));
+        }
+    };
+    if let Some(far) = orientations.iter().find(|orientation| orientation.abs() > TAU + ROUNDING) {
+        let problem = format!("{}, {field}: {far} is more than one turn; the format has radians", edge.name);
+        return Err(ImportError::new(problem));
     }
-    Ok(())
+    let ahead = if is_global { heading } else { Some(0.0) };
+    let facing = |orientation: &f64| match ahead.map(|ahead| wrapped(orientation - ahead).abs()) {
+        Some(off) if off <= ROUNDING => Facing::Ahead,
+        Some(off) if off >= PI - ROUNDING => Facing::Backward,
+        _ => Facing::Any,
+    };
+    Ok(orientations.iter().map(facing).reduce(Facing::or))
+}
+
+/// Which way a vehicle faces along lines and arcs if nothing is said: along them, or either way where they turn back, because it may turn
+/// round there or go on in the other gear.
+pub(super) fn of_curve(pieces: &[Placed]) -> Facing {
+    let turns_back = |[before, after]: [&Placed; 2]| wrapped(after.heading - before.heading_at_end()).abs() > FRAC_PI_2;
+    let pieces: Vec<&Placed> = pieces.iter().filter(|piece| piece.shape.length() > 0.0).collect();
+    let back = pieces.windows(2).any(|pair| turns_back([pair[0], pair[1]]));
+    if back { Facing::Either } else { Facing::Ahead }
 }
 
 /// Loses orientations of control points, which are in world coordinates (VDA 5050 1.x), unless they are along the curve. Where on the
@@ -168,7 +224,6 @@ pub(super) fn heading_beside(piece: &Placed, point: [f64; 2], within: f64) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::FRAC_PI_2;
 
     #[test]
     fn a_heading_is_that_beside_the_point() {

@@ -1,5 +1,6 @@
 //! Factsheets of VDA 5050 (2.x and 3.0): the contour of a vehicle and its limits.
 
+use super::keys::Keys;
 use super::value::Object;
 use super::vehicle::Given;
 use super::{ImportError, WarningCode, Warnings};
@@ -10,6 +11,73 @@ use serde_json::Value;
 /// Names of a member in versions 3 and 2.
 type Names = [&'static str; 2];
 
+const ROOT: Keys = Keys::new(
+    &["typeSpecification", "physicalParameters", "mobileRobotGeometry", "agvGeometry"],
+    &[
+        "headerId",
+        "timestamp",
+        "version",
+        "manufacturer",
+        "serialNumber",
+        "protocolLimits",
+        "protocolFeatures",
+        "loadSpecification",
+        "vehicleConfig",
+        "mobileRobotConfiguration",
+        "localizationParameters",
+    ],
+)
+.not(&["envelopes2d", "polygonPoints", "vertices", "length", "width"]);
+
+const TYPE: Keys = Keys::new(
+    &["seriesName"],
+    &[
+        "seriesDescription",
+        "agvKinematic",
+        "agvKinematics",
+        "agvClass",
+        "mobileRobotKinematics",
+        "mobileRobotClass",
+        "maxLoadMass",
+        "maximumLoadMass",
+        "localizationTypes",
+        "navigationTypes",
+        "supportedZones",
+    ],
+);
+
+const PHYSICAL: Keys = Keys::new(
+    &[
+        "maximumSpeed",
+        "speedMax",
+        "maximumDeceleration",
+        "decelerationMax",
+        "maximumAcceleration",
+        "accelerationMax",
+        "maximumAngularSpeed",
+        "angularSpeedMax",
+        "length",
+        "width",
+    ],
+    &[
+        "minimumSpeed",
+        "speedMin",
+        "minimumAngularSpeed",
+        "angularSpeedMin",
+        "minimumHeight",
+        "maximumHeight",
+        "heightMin",
+        "heightMax",
+    ],
+);
+
+const GEOMETRY: Keys =
+    Keys::new(&["envelopes2d"], &["wheelDefinitions", "envelopes3d"]).not(&["polygonPoints", "vertices"]);
+
+const ENVELOPE: Keys = Keys::new(&["vertices", "polygonPoints"], &["set", "envelope2dId", "description"]);
+
+const POINT: Keys = Keys::new(&["x", "y"], &[]);
+
 /// Whether a JSON value looks like one.
 pub(super) fn is_factsheet(root: &Value) -> bool {
     ["physicalParameters", "mobileRobotGeometry", "agvGeometry"].iter().any(|member| root.get(member).is_some())
@@ -18,12 +86,15 @@ pub(super) fn is_factsheet(root: &Value) -> bool {
 /// Reads one: the contour in it, the hull of several or, if there is none, the rectangle of length and width around the reference point.
 pub(super) fn read(value: &Value, warnings: &mut Warnings) -> Result<Given, ImportError> {
     let root = Object::new("factsheet", value)?;
+    ROOT.check(&root, warnings)?;
     let mut given = Given::default();
     if let Some(kind) = root.object("typeSpecification")? {
-        given.name = kind.text("seriesName")?.map(str::to_owned);
+        TYPE.check(&kind, warnings)?;
+        given.name = kind.label("seriesName")?;
     }
     let physical = root.object("physicalParameters")?;
     if let Some(physical) = &physical {
+        PHYSICAL.check(physical, warnings)?;
         given.speed = either(physical, ["maximumSpeed", "speedMax"])?;
         let braking = either(physical, ["maximumDeceleration", "decelerationMax"])?;
         let speeding = either(physical, ["maximumAcceleration", "accelerationMax"])?;
@@ -31,9 +102,12 @@ pub(super) fn read(value: &Value, warnings: &mut Warnings) -> Result<Given, Impo
         given.rotation = either(physical, ["maximumAngularSpeed", "angularSpeedMax"])?;
     }
     let geometry = root.object("mobileRobotGeometry")?.map_or_else(|| root.object("agvGeometry"), |it| Ok(Some(it)))?;
+    if let Some(geometry) = &geometry {
+        GEOMETRY.check(geometry, warnings)?;
+    }
     let envelopes = geometry.as_ref().map_or(Ok(&[][..]), |geometry| geometry.list("envelopes2d"))?;
     let polygon = match (envelopes, &physical) {
-        ([only], _) => Some(polygon(only)?),
+        ([only], _) => Some(polygon(only, warnings)?),
         ([], Some(physical)) => rectangle(physical, warnings)?,
         ([], None) => None,
         (several, _) => {
@@ -42,7 +116,7 @@ pub(super) fn read(value: &Value, warnings: &mut Warnings) -> Result<Given, Impo
                 "envelopes2d",
                 format!("there are {}; the convex hull of all is taken", several.len()),
             );
-            let corners = several.iter().map(polygon).collect::<Result<Vec<_>, _>>()?;
+            let corners = several.iter().map(|one| polygon(one, warnings)).collect::<Result<Vec<_>, _>>()?;
             if let Some(empty) = corners.iter().position(Vec::is_empty) {
                 return Err(ImportError::new(format!("factsheet, envelopes2d {}: 0 corners", empty + 1)));
             }
@@ -72,18 +146,28 @@ fn either(object: &Object<'_>, names: Names) -> Result<Option<f64>, ImportError>
     Ok(found)
 }
 
-fn polygon(envelope: &Value) -> Result<Vec<[f64; 2]>, ImportError> {
+fn polygon(envelope: &Value, warnings: &mut Warnings) -> Result<Vec<[f64; 2]>, ImportError> {
     let envelope = Object::new("factsheet, envelopes2d", envelope)?;
+    ENVELOPE.check(&envelope, warnings)?;
     let points = match envelope.list("vertices")? {
         [] => envelope.list("polygonPoints")?,
         vertices => vertices,
     };
-    let corner = |(k, point)| Object::new(format!("{}, point {}", envelope.name, k + 1), point)?.point();
+    let corner = |(k, point)| {
+        let point = Object::new(format!("{}, point {}", envelope.name, k + 1), point)?;
+        POINT.check(&point, warnings)?;
+        point.point()
+    };
     points.iter().enumerate().map(corner).collect()
 }
 
 fn rectangle(physical: &Object<'_>, warnings: &mut Warnings) -> Result<Option<Vec<[f64; 2]>>, ImportError> {
-    let Some((length, width)) = physical.positive("length")?.zip(physical.positive("width")?) else { return Ok(None) };
+    let (length, width) = match (physical.positive("length")?, physical.positive("width")?) {
+        (Some(length), Some(width)) => (length, width),
+        (None, None) => return Ok(None),
+        (Some(_), None) => return Err(physical.missing("width")),
+        (None, Some(_)) => return Err(physical.missing("length")),
+    };
     warnings.add(
         WarningCode::AssumedSize,
         "contour",

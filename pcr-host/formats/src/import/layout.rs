@@ -1,5 +1,6 @@
 //! A layout: nodes, and edges between them with their exact geometry; the common form of all layout files.
 
+use super::vehicle::Facing;
 use super::{ImportError, Vehicle};
 use crate::scenario::Placed;
 use serde::{Deserialize, Serialize};
@@ -72,9 +73,13 @@ pub struct Edge {
     pub speed: [Option<f64>; 2],
     /// Largest speed of rotation \[rad/s\], where it is limited.
     pub rotation: Option<f64>,
-    /// Largest distance of the curve in the file from `curve` at the same length \[m\]: 0 where the file has lines and
-    /// arcs.
+    /// Which way the vehicle faces in either direction, with respect to its way there.
+    pub facing: [Facing; 2],
+    /// How far the vehicle may be from where it is on `curve` at the same length \[m\]: where the file has lines and arcs, it is the
+    /// `room`, and else by how much the curve in the file is off in addition.
     pub deviation: f64,
+    /// How far the vehicle may leave its curve to go round obstacles \[m\], in a corridor that the file gives it.
+    pub room: f64,
     /// Largest difference of both lengths \[m\].
     pub longer: f64,
     /// Largest difference of both headings at the same length \[rad\].
@@ -85,8 +90,9 @@ impl Edge {
     /// One way along these lines and arcs, open and without limits.
     pub fn new(id: Id, ends: [usize; 2], curve: Vec<Placed>) -> Self {
         let ways = [true, false];
-        let (deviation, longer, turned) = (0.0, 0.0, 0.0);
-        Self { id, ends, curve, ways, closed: false, speed: [None; 2], rotation: None, deviation, longer, turned }
+        let (deviation, room, longer, turned) = (0.0, 0.0, 0.0, 0.0);
+        let (speed, rotation, facing) = ([None; 2], None, [Facing::Ahead; 2]);
+        Self { id, ends, curve, ways, closed: false, speed, rotation, facing, deviation, room, longer, turned }
     }
 
     /// How far any point of a vehicle may be from where it is on the curve in the file \[m\].

@@ -1,18 +1,27 @@
-//! The Layout Interchange Format of the VDMA (LIF 0.11 to 1.x): layouts of nodes and edges with properties by vehicle type.
+//! The Layout Interchange Format of the VDMA (LIF 0.11 to 2.0): layouts of nodes and edges with properties by vehicle type.
+//!
+//! ```text
+//! version     the version of a file, and what its names are
+//! ```
 //!
 //! An edge is the NURBS trajectory of the vehicle type, or the straight line between its nodes. If no type is chosen,
 //! all edges are read, and an edge is repeated if types have trajectories of their own.
+
+mod version;
 
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::trajectory::Trajectory;
 use super::value::Object;
-use super::{ImportError, Options, WarningCode, Warnings, facing, route, trajectory, value};
+use super::vehicle::{Facing, Vehicle};
+use super::warnings::DIFFERENCE;
+use super::{ImportError, Options, WarningCode, Warnings, corridor, facing, route, trajectory, value};
 use crate::footprint::Footprint;
 use crate::plane::distance;
 use crate::scenario::Placed;
 use serde_json::Value;
 use std::collections::BTreeSet;
+use version::Version;
 
 /// Largest gap between the end of a trajectory and its node that goes without a warning \[m\].
 const GAP: f64 = 1e-3;
@@ -22,60 +31,75 @@ const CLOSED: f64 = 1e-9;
 
 /// Whether a JSON value looks like a layout.
 pub(super) fn is_layout(root: &Value) -> bool {
-    root.get("layouts").is_some()
+    let of_origins = || root.get("origins").and_then(Value::as_array);
+    root.get("layouts").is_some() || of_origins().is_some_and(|all| all.iter().any(|one| one.get("layouts").is_some()))
 }
 
 /// Reads all layouts of a file as one with several levels, for a vehicle that is a disc or has an outline.
 pub(super) fn read(
     text: &str,
     options: &Options,
-    outline: Option<&Footprint>,
+    vehicle: &Vehicle,
     warnings: &mut Warnings,
 ) -> Result<Layout, ImportError> {
     let value = value::parse(text)?;
     let root = Object::new("LIF", &value)?;
-    if root.get("layouts").is_none() {
-        return Err(root.missing("layouts"));
-    }
-    let name = root.object("metaInformation").ok().flatten();
-    let name = name.and_then(|meta| meta.text("projectIdentification").ok().flatten()).unwrap_or_default();
+    let version = Version::of(&root, &value, warnings)?;
+    let meta = root.object("metaInformation")?;
+    let name = meta.map_or(Ok(None), |meta| match version {
+        Version::First => meta.label("projectIdentification"),
+        Version::Second => meta.label("lifId"),
+    });
     let mut reader = Reader {
+        version,
+        names: version.names(),
         levels: Vec::new(),
         nodes: Names::new(),
         edges: Names::new(),
+        origins: Vec::new(),
         thetas: Vec::new(),
         types: BTreeSet::new(),
         options,
-        outline,
+        vehicle,
+        outline: vehicle.footprint.as_ref(),
         of_speeds: None,
         warnings,
     };
     let mut edges = Vec::new();
-    let layouts = root.list("layouts")?;
-    let maps = maps(layouts.iter().filter_map(|layout| layout.get("nodes")));
-    for (k, value) in layouts.iter().enumerate() {
-        let layout = Object::new(format!("layout {}", k + 1), value)?;
-        let unnamed = reader.unnamed(&layout, layouts, &maps)?;
-        for list in ["nodes", "edges"] {
-            // Under a wrong name they would be none.
-            if layout.get(list).is_none() {
-                reader.warnings.lose(layout.missing(list));
+    let origins = origins(&root, version, reader.warnings)?;
+    for Origin { id, layouts } in &origins {
+        let maps = maps(layouts.iter().filter_map(|layout| layout.get("nodes")));
+        for (k, value) in layouts.iter().enumerate() {
+            let layout = Object::new(format!("layout {}", k + 1), value)?;
+            if let Err(error) = version::LAYOUT.check(&layout, reader.warnings) {
+                reader.warnings.lose(error);
             }
+            let unnamed = reader.unnamed(&layout, layouts, &maps)?;
+            for list in ["nodes", "edges"] {
+                // Under a wrong name they would be none.
+                if layout.get(list).is_none() {
+                    reader.warnings.lose(layout.missing(list));
+                }
+            }
+            for (k, value) in layout.list("nodes")?.iter().enumerate() {
+                reader.node(k, value, unnamed.as_deref(), id.filter(|_| origins.len() > 1));
+            }
+            edges.extend(layout.list("edges")?);
         }
-        for (k, value) in layout.list("nodes")?.iter().enumerate() {
-            reader.node(k, value, unnamed.as_deref());
-        }
-        edges.extend(layout.list("edges")?);
+    }
+    if origins.len() > 1 {
+        let there = origins.iter().filter_map(|origin| origin.id).collect::<Vec<_>>().join(", ");
+        let problem = "how their layouts lie to one another is not in the file; each is taken as levels of its own";
+        reader.warnings.add(WarningCode::AssumedLevel, format_args!("origins {there}"), problem);
     }
     for (k, value) in edges.into_iter().enumerate() {
         if let Err(error) = reader.edge(k, value) {
             reader.warnings.lose(error);
         }
     }
-    let (nodes, edges) = (reader.nodes.list(), reader.edges.list());
-    facing::warn_of_nodes("node", "theta", &reader.thetas, nodes, edges, outline, reader.warnings);
-    let Reader { levels, nodes, edges, mut types, of_speeds, .. } = reader;
-    types.remove("");
+    let Reader { levels, nodes, edges, types, thetas, outline, of_speeds, .. } = reader;
+    let mut edges = edges.into_list();
+    facing::turn_at_nodes(&thetas, &mut edges, outline);
     let vehicle_types = types.iter().cloned().collect();
     if nodes.list().is_empty() {
         return Err(ImportError::new("LIF, layouts: there is no node in them"));
@@ -96,24 +120,79 @@ pub(super) fn read(
         _ => {}
     }
     Ok(Layout {
-        name: name.to_owned(),
+        name: name?.unwrap_or_default(),
         vehicle_types,
         of_speeds,
         levels,
         nodes: nodes.into_list(),
-        edges: edges.into_list(),
+        edges,
         ..Layout::default()
     })
 }
 
+/// Layouts with the same origin of coordinates.
+struct Origin<'j> {
+    /// None in LIF 1, where all layouts have the same.
+    id: Option<&'j str>,
+    layouts: Vec<&'j Value>,
+}
+
+/// The layouts of a file by their origins.
+fn origins<'j>(root: &Object<'j>, version: Version, warnings: &mut Warnings) -> Result<Vec<Origin<'j>>, ImportError> {
+    let mut all: Vec<Origin<'j>> = Vec::new();
+    let own: Vec<&Value> = root.list("layouts")?.iter().collect();
+    if version == Version::First {
+        return if root.get("layouts").is_some() {
+            Ok(vec![Origin { id: None, layouts: own }])
+        } else {
+            Err(root.missing("layouts"))
+        };
+    }
+    if root.get("origins").is_none() && root.get("layouts").is_some() {
+        warnings.add(
+            WarningCode::AssumedLevel,
+            "LIF",
+            "its layouts are not in origins, as those of LIF 2 are; they are taken to have the same origin",
+        );
+        return Ok(vec![Origin { id: None, layouts: own }]);
+    }
+    if !own.is_empty() {
+        return Err(ImportError::new(
+            "LIF: it has layouts in origins and besides them; which origin those have is not said",
+        ));
+    }
+    if root.get("origins").is_none() {
+        return Err(root.missing("origins"));
+    }
+    for (k, value) in root.list("origins")?.iter().enumerate() {
+        let origin = Object::new(format!("origin {}", k + 1), value)?;
+        version::ORIGIN.check(&origin, warnings)?;
+        let id = origin.text("originId")?.ok_or_else(|| origin.missing("originId"))?;
+        if origin.get("layouts").is_none() {
+            warnings.lose(origin.missing("layouts"));
+        }
+        let layouts = origin.list("layouts")?.iter();
+        match all.iter_mut().find(|known| known.id == Some(id)) {
+            Some(known) => known.layouts.extend(layouts),
+            None => all.push(Origin { id: Some(id), layouts: layouts.collect() }),
+        }
+    }
+    Ok(all)
+}
+
 struct Reader<'a> {
+    version: Version,
+    names: &'static version::Names,
     levels: Vec<String>,
     nodes: Names<Node>,
     edges: Names<Edge>,
+    /// For each node the origin of its coordinates, where there are several.
+    origins: Vec<Option<String>>,
     /// At which nodes vehicles face which way \[rad\].
     thetas: Vec<(usize, f64)>,
     types: BTreeSet<String>,
     options: &'a Options,
+    vehicle: &'a Vehicle,
     /// The outline of the vehicle, if its heading matters.
     outline: Option<&'a Footprint>,
     /// The first edge whose vehicle types have different speeds.
@@ -127,7 +206,7 @@ impl Reader<'_> {
     fn unnamed(
         &mut self,
         layout: &Object<'_>,
-        layouts: &[Value],
+        layouts: &[&Value],
         maps: &BTreeSet<&str>,
     ) -> Result<Option<String>, ImportError> {
         let nodes = layout.list("nodes")?;
@@ -154,61 +233,90 @@ impl Reader<'_> {
         Ok(Some(level))
     }
 
-    fn node(&mut self, k: usize, value: &Value, unnamed: Option<&str>) {
-        match read_node(k, value, unnamed) {
+    /// Reads a node; with several origins levels are named by them as well.
+    fn node(&mut self, k: usize, value: &Value, unnamed: Option<&str>, origin: Option<&str>) {
+        match self.read_node(k, value, unnamed) {
             Err(error) => self.warnings.lose(error),
             Ok(ReadNode { object, id, name, level, at }) => {
+                let level = origin.map_or(level.clone(), |origin| format!("{origin} {level}"));
                 let known = self.levels.iter().position(|other| *other == level);
                 let level = known.unwrap_or_else(|| {
                     self.levels.push(level);
                     self.levels.len() - 1
                 });
                 let place = self.nodes.add(Node { id: Id::Text(id), name, level, at }, self.warnings);
-                if let Err(error) = self.node_thetas(&object, place) {
+                self.origins.resize(self.nodes.list().len(), origin.map(str::to_owned));
+                if let Err(error) = self.node_properties(&object, place) {
                     self.warnings.lose(error);
                 }
             }
         }
     }
 
-    /// Which way an outline faces at a node.
-    fn node_thetas(&mut self, node: &Object<'_>, place: usize) -> Result<(), ImportError> {
-        if self.outline.is_none() {
-            return Ok(());
-        }
-        for (k, value) in node.list("vehicleTypeNodeProperties")?.iter().enumerate() {
+    /// Reads what is said of vehicles at a node: which way an outline faces there.
+    fn node_properties(&mut self, node: &Object<'_>, place: usize) -> Result<(), ImportError> {
+        for (k, value) in node.list(self.names.node_properties)?.iter().enumerate() {
             let property = Object::new(format!("{}, properties {}", node.name, k + 1), value)?;
-            if self.is_asked(property.text("vehicleTypeId")?.unwrap_or_default())
-                && let Some(theta) = property.number("theta")?
-            {
+            self.names.node_property.check(&property, self.warnings)?;
+            let types = self.types_of(&property)?;
+            if !self.is_asked(&types) {
+                continue;
+            }
+            if let Some(theta) = property.number("theta")?.filter(|_| self.outline.is_some()) {
                 self.thetas.push((place, theta));
+            }
+            if property.get("allowedDeviationXY").is_some_and(allows) {
+                let problem = "its allowedDeviationXY is not read; the vehicle is taken to pass the node itself";
+                self.warnings.add(WarningCode::AllowedDeviation, &node.name, problem);
             }
         }
         Ok(())
     }
 
+    /// The vehicle types that a property is for; none if it is for all of them.
+    fn types_of(&mut self, property: &Object<'_>) -> Result<Vec<String>, ImportError> {
+        if self.version == Version::First {
+            let own = property.text("vehicleTypeId")?.filter(|own| !own.is_empty());
+            return Ok(own.map(str::to_owned).into_iter().collect());
+        }
+        let mut types = Vec::new();
+        for (k, value) in property.list("mobileRobotTypes")?.iter().enumerate() {
+            let robot = Object::new(format!("{}, mobileRobotTypes {}", property.name, k + 1), value)?;
+            version::ROBOT_TYPE.check(&robot, self.warnings)?;
+            let part = |field: &str| robot.text(field)?.ok_or_else(|| robot.missing(field));
+            types.push(format!("{}.{}", part("manufacturer")?, part("seriesName")?));
+        }
+        Ok(types)
+    }
+
     /// Whether something is for the vehicle type that was asked for. What names no type is for all.
-    fn is_asked(&self, vehicle: &str) -> bool {
-        self.options.vehicle.as_ref().is_none_or(|asked| vehicle.is_empty() || asked == vehicle)
+    fn is_asked(&self, types: &[String]) -> bool {
+        self.options.vehicle.as_ref().is_none_or(|asked| types.is_empty() || types.contains(asked))
     }
 
     fn edge(&mut self, k: usize, value: &Value) -> Result<(), ImportError> {
         let object = Object::new(format!("edge at place {}", k + 1), value)?;
         let id = object.text("edgeId")?.ok_or_else(|| object.missing("edgeId"))?.to_owned();
         let object = object.called(format!("edge {id}"));
+        self.names.edge.check(&object, self.warnings)?;
         let place = |field: &str| {
             let node = object.text(field)?.ok_or_else(|| object.missing(field))?;
             let place = self.nodes.place(&Id::Text(node.to_owned()));
             place.map_err(|unclear| ImportError::new(format!("edge {id}, {field}: {unclear}")))
         };
         let ends = [place("startNodeId")?, place("endNodeId")?];
+        if self.origins.get(ends[0]) != self.origins.get(ends[1]) {
+            let problem = "its nodes have different origins of coordinates, and where it leads is not in the file";
+            return Err(ImportError::new(format!("edge {id}: {problem}")));
+        }
         let mut edges: Vec<Edge> = Vec::new();
-        let properties = object.list("vehicleTypeEdgeProperties")?;
+        let properties = object.list(self.names.edge_properties)?;
         for (k, value) in properties.iter().enumerate() {
             let property = Object::new(format!("edge {id}, properties {}", k + 1), value)?;
-            let vehicle = property.text("vehicleTypeId")?.unwrap_or_default().to_owned();
-            let asked = self.is_asked(&vehicle);
-            self.types.insert(vehicle);
+            self.names.edge_property.check(&property, self.warnings)?;
+            let types = self.types_of(&property)?;
+            let asked = self.is_asked(&types);
+            self.types.extend(types);
             if asked {
                 let edge = self.along(&id, ends, Some(&property))?;
                 // An equal edge at the speed of another type of vehicle is the same edge; only one of the speeds is kept.
@@ -217,8 +325,10 @@ impl Reader<'_> {
                     Some(known) => {
                         // What stands for different curves is as far off as from the farthest of them.
                         known.deviation = known.deviation.max(edge.deviation);
+                        known.room = known.room.max(edge.room);
                         known.longer = known.longer.max(edge.longer);
                         known.turned = known.turned.max(edge.turned);
+                        known.facing = [0, 1].map(|way| known.facing[way].or(edge.facing[way]));
                         if (known.speed, known.rotation) != (edge.speed, edge.rotation) {
                             self.of_speeds.get_or_insert(edge.id);
                         }
@@ -242,22 +352,13 @@ impl Reader<'_> {
         let curve = if straight.shape.length() > 0.0 { vec![straight] } else { Vec::new() };
         let mut edge = Edge::new(Id::Text(id.to_owned()), ends, curve);
         if let Some(property) = property {
-            edge.speed = [property.positive("maxSpeed")?; 2];
-            edge.rotation = property.positive("maxRotationSpeed")?;
+            edge.speed = [property.positive(self.names.speed)?; 2];
+            edge.rotation = property.positive(self.names.rotation_speed)?;
             for field in ["rotationAtStartNodeAllowed", "rotationAtEndNodeAllowed"] {
                 if property.get(field).is_some_and(|allowed| allowed.as_str() != Some("BOTH")) {
                     let problem =
                         format!("its {field} is not read; a vehicle turns in place where its path has a corner");
                     self.warnings.add(WarningCode::UnreadField, format_args!("edge {id}"), problem);
-                }
-            }
-            if let Some(outline) = self.outline {
-                let is_line = straight.shape.length() > 0.0 && property.get("trajectory").is_none();
-                let ahead = Some(straight.heading).filter(|_| is_line);
-                let edge = property.clone().called(format!("edge {id}"));
-                facing::along(&edge, "vehicleOrientation", 1_f64.to_radians(), ahead, outline, self.warnings)?;
-                if property.flag("rotationAllowed")? == Some(true) {
-                    self.warnings.add(WarningCode::Orientation, format_args!("edge {id}"), facing::ROTATION);
                 }
             }
             if let Some(trajectory) = property.object("trajectory")? {
@@ -269,12 +370,60 @@ impl Reader<'_> {
                 let gap = if fit.pieces.is_empty() { point_gap(id, ends, at)? } else { self.gap(id, ends, at) };
                 (edge.deviation, edge.longer, edge.turned) = (fit.deviation + gap, fit.longer, fit.turned);
                 edge.curve = fit.pieces;
+            } else if let Some(line) = property.object("physicalLineGuidedProperty")? {
+                self.guided(id, &line, straight.shape.length())?;
+            }
+            if self.outline.is_some() {
+                let is_line = straight.shape.length() > 0.0 && property.get("trajectory").is_none();
+                let ahead = Some(straight.heading).filter(|_| is_line);
+                edge.facing = [self.facing(property, &edge.curve, ahead)?; 2];
+            }
+            if let Some(room) = corridor::read(property, self.vehicle, self.warnings)? {
+                edge.widen(room);
             }
         }
         if edge.curve.is_empty() {
             self.warnings.add(WarningCode::ZeroLength, format_args!("edge {id}"), "its length is 0");
         }
         Ok(edge)
+    }
+
+    /// Which way an outline faces on an edge with these properties, which has a heading if it is straight.
+    fn facing(&self, property: &Object<'_>, curve: &[Placed], heading: Option<f64>) -> Result<Facing, ImportError> {
+        let is_first = self.version == Version::First;
+        let field = if is_first { "vehicleOrientation" } else { "mobileRobotOrientations" };
+        let mut orientations = Vec::new();
+        if is_first {
+            orientations.extend(property.number(field)?);
+        } else {
+            for value in property.list(field)? {
+                let orientation = value.as_f64().ok_or_else(|| {
+                    ImportError::new(format!("{}, {field}: {value} where a number is expected", property.name))
+                })?;
+                orientations.push(orientation);
+            }
+        }
+        let said = facing::of_edge(property, field, &orientations, heading)?;
+        // A vehicle that rotates on the edge has any heading there, and in LIF 2 so has one of which no orientation is said.
+        let rotates = match is_first {
+            true => property.flag("rotationAllowed")? == Some(true),
+            false => property.flag("reachOrientationBeforeEntering")? == Some(false) || said.is_none(),
+        };
+        Ok(if rotates { Facing::Any } else { said.unwrap_or_else(|| facing::of_curve(curve)) })
+    }
+
+    /// An edge that follows a line on the ground is as long as the line between its nodes, or leads elsewhere.
+    fn guided(&mut self, id: &str, line: &Object<'_>, straight: f64) -> Result<(), ImportError> {
+        version::LINE.check(line, self.warnings)?;
+        let length = line.positive("length")?;
+        if let Some(length) = length.filter(|length| (length - straight).abs() > DIFFERENCE * straight + route::GAP) {
+            let problem = format!("it follows a physical line of {length} m, and its nodes are {straight:.3} m apart");
+            return Err(ImportError::new(format!("edge {id}: {problem}; where the line leads is not in the file")));
+        }
+        let problem =
+            "it follows a physical line, which is not in the file; the straight line between its nodes is taken";
+        self.warnings.add(WarningCode::PhysicalLine, format_args!("edge {id}"), problem);
+        Ok(())
     }
 
     /// The largest gap between the ends of a trajectory and their nodes that a route passes \[m\], with warnings.
@@ -327,13 +476,28 @@ struct ReadNode<'j> {
     at: [f64; 2],
 }
 
-/// Reads a node; `unnamed` is the level if it names no map.
-fn read_node<'j>(k: usize, value: &'j Value, unnamed: Option<&str>) -> Result<ReadNode<'j>, ImportError> {
-    let object = Object::new(format!("node at place {}", k + 1), value)?;
-    let id = object.text("nodeId")?.ok_or_else(|| object.missing("nodeId"))?.to_owned();
-    let object = object.called(format!("node {id}"));
-    let position = object.object("nodePosition")?.ok_or_else(|| object.missing("nodePosition"))?;
-    let level = object.text("mapId")?.or(unnamed).ok_or_else(|| object.missing("mapId"))?.to_owned();
-    let name = object.text("nodeName").ok().flatten().map(str::to_owned);
-    Ok(ReadNode { object, id, name, level, at: position.point()? })
+impl Reader<'_> {
+    /// Reads a node; `unnamed` is the level if it names no map.
+    fn read_node<'j>(
+        &mut self,
+        k: usize,
+        value: &'j Value,
+        unnamed: Option<&str>,
+    ) -> Result<ReadNode<'j>, ImportError> {
+        let object = Object::new(format!("node at place {}", k + 1), value)?;
+        let id = object.text("nodeId")?.ok_or_else(|| object.missing("nodeId"))?.to_owned();
+        let object = object.called(format!("node {id}"));
+        self.names.node.check(&object, self.warnings)?;
+        let position = object.object("nodePosition")?.ok_or_else(|| object.missing("nodePosition"))?;
+        version::POSITION.check(&position, self.warnings)?;
+        let level = object.text("mapId")?.or(unnamed).ok_or_else(|| object.missing("mapId"))?.to_owned();
+        let name = object.label("nodeName")?;
+        Ok(ReadNode { object, id, name, level, at: position.point()? })
+    }
+}
+
+/// Whether an allowed deviation, the half axes of an ellipse, allows any.
+fn allows(deviation: &Value) -> bool {
+    let above = |axis: &&str| deviation.get(axis).and_then(Value::as_f64).is_some_and(|allowed| allowed > 0.0);
+    ["aMaximum", "bMaximum", "aMinimum", "bMinimum", "a", "b"].iter().any(above)
 }

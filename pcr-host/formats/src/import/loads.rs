@@ -3,17 +3,29 @@
 //! A load is a box of a length and a width around its reference in the frame of the vehicle. The outline becomes the convex
 //! hull of contour and loads; a disc becomes the disc around both.
 
+use super::keys::Keys;
 use super::value::Object;
 use super::{ImportError, Vehicle, WarningCode, Warnings};
 use crate::footprint::Footprint;
 use crate::plane::hull;
+
+const LOAD: Keys =
+    Keys::new(&["loadDimensions", "boundingBoxReference"], &["loadId", "loadType", "loadPosition", "weight"])
+        .not(&["length", "width"]);
+const SIZE: Keys = Keys::new(&["length", "width"], &["height"]);
+const REFERENCE: Keys = Keys::new(&["x", "y", "theta"], &["z"]);
 
 /// The vehicle with what the state says that it carries.
 pub(super) fn loaded(state: &Object<'_>, vehicle: &Vehicle, warnings: &mut Warnings) -> Result<Vehicle, ImportError> {
     let mut corners = Vec::new();
     for (k, value) in state.list("loads")?.iter().enumerate() {
         let load = Object::new(format!("{}, load {}", state.name, k + 1), value)?;
-        let size = load.object("loadDimensions")?.map(|size| Ok([size.number("length")?, size.number("width")?]));
+        LOAD.check(&load, warnings)?;
+        let size = load.object("loadDimensions")?;
+        if let Some(size) = &size {
+            SIZE.check(size, warnings)?;
+        }
+        let size = size.map(|size| Ok([size.number("length")?, size.number("width")?]));
         let Some([Some(length), Some(width)]) = size.transpose()? else {
             warnings.add(
                 WarningCode::AssumedSize,
@@ -31,6 +43,9 @@ pub(super) fn loaded(state: &Object<'_>, vehicle: &Vehicle, warnings: &mut Warni
             continue;
         }
         let reference = load.object("boundingBoxReference")?;
+        if let Some(reference) = &reference {
+            REFERENCE.check(reference, warnings)?;
+        }
         if reference.is_none() {
             warnings.add(
                 WarningCode::AssumedSize,

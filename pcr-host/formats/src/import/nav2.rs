@@ -4,6 +4,7 @@
 //! metadata is a fraction of the full speed if it is at most 1, and a percentage above that. Edges of length 0 are
 //! kept, and so are several edges with the same id.
 
+use super::keys::Keys;
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::value::Object;
@@ -18,6 +19,15 @@ const DRAWN: f64 = 1e-3;
 /// Frame of nodes that name none.
 const FRAME: &str = "map";
 
+/// GeoJSON and the route server leave all other keys to their users.
+const ROOT: Keys = Keys::new(&["type", "features", "name"], &[]).free();
+const FEATURE: Keys =
+    Keys::new(&["type", "geometry", "properties"], &["id"]).not(&["coordinates", "startid", "endid"]).free();
+const GEOMETRY: Keys = Keys::new(&["type", "coordinates"], &[]).free();
+const NODE: Keys = Keys::new(&["id", "frame", "name", "metadata"], &[]).free();
+const EDGE: Keys = Keys::new(&["id", "startid", "endid", "metadata"], &[]).free();
+const METADATA: Keys = Keys::new(&["speed_limit"], &[]).free();
+
 /// Whether a JSON value looks like a graph.
 pub(super) fn is_graph(root: &Value) -> bool {
     root.get("type").and_then(Value::as_str) == Some("FeatureCollection")
@@ -27,13 +37,14 @@ pub(super) fn is_graph(root: &Value) -> bool {
 pub(super) fn read(text: &str, full_speed: f64, warnings: &mut Warnings) -> Result<Layout, ImportError> {
     let value = value::parse(text)?;
     let root = Object::new("graph", &value)?;
+    ROOT.check(&root, warnings)?;
     if root.get("features").is_none() {
         return Err(root.missing("features"));
     }
     let mut graph = Graph { nodes: Names::new(), edges: Names::new(), frames: BTreeSet::new(), warnings };
     let mut lines = Vec::new();
     for (k, feature) in root.list("features")?.iter().enumerate() {
-        match Feature::read(k, feature) {
+        match Feature::read(k, feature, graph.warnings) {
             Ok(Some(Feature { id, properties, geometry: Geometry::Point(at) })) => {
                 if let Err(problem) = graph.node(id, &properties, at) {
                     graph.warnings.lose(problem);
@@ -64,7 +75,7 @@ pub(super) fn read(text: &str, full_speed: f64, warnings: &mut Warnings) -> Resu
         )));
     }
     Ok(Layout {
-        name: root.text("name").ok().flatten().unwrap_or_default().to_owned(),
+        name: root.label("name")?.unwrap_or_default(),
         levels: frames.into_iter().collect(),
         nodes: nodes.into_list(),
         edges: edges.into_list(),
@@ -123,14 +134,17 @@ fn ends(value: &Value) -> Option<[[f64; 2]; 2]> {
 
 impl<'j> Feature<'j> {
     /// A node or an edge; nothing of another geometry, which the route server passes over as well.
-    fn read(k: usize, value: &'j Value) -> Result<Option<Self>, ImportError> {
+    fn read(k: usize, value: &'j Value, warnings: &mut Warnings) -> Result<Option<Self>, ImportError> {
         let feature = Object::new(format!("feature {}", k + 1), value)?;
+        FEATURE.check(&feature, warnings)?;
         let geometry = feature.object("geometry")?.ok_or_else(|| feature.missing("geometry"))?;
+        GEOMETRY.check(&geometry, warnings)?;
         let kind = geometry.text("type")?.ok_or_else(|| geometry.missing("type"))?;
         if !["Point", "LineString", "MultiLineString"].contains(&kind) {
             return Ok(None);
         }
         let properties = feature.object("properties")?.ok_or_else(|| feature.missing("properties"))?;
+        if kind == "Point" { NODE } else { EDGE }.check(&properties, warnings)?;
         let id = id(&properties, "id")?;
         let coordinates = geometry.get("coordinates").ok_or_else(|| geometry.missing("coordinates"))?;
         let geometry = match kind {
@@ -146,7 +160,7 @@ impl<'j> Feature<'j> {
 impl Graph<'_> {
     /// Adds a node; one that names no frame is in that of the map, as for the route server.
     fn node(&mut self, id: u64, properties: &Object<'_>, at: [f64; 2]) -> Result<(), ImportError> {
-        let name = properties.text("name").ok().flatten().map(str::to_owned);
+        let name = properties.label("name")?;
         let properties = properties.clone().called(format!("node {id}"));
         self.frames.insert(properties.text("frame")?.filter(|frame| !frame.is_empty()).unwrap_or(FRAME).to_owned());
         self.nodes.add(Node { id: Id::Number(id), name, level: 0, at }, self.warnings);
@@ -186,6 +200,7 @@ impl Graph<'_> {
 
     fn speed_limit(&mut self, edge: &str, properties: &Object<'_>, full: f64) -> Result<Option<f64>, ImportError> {
         let Some(metadata) = properties.object("metadata")? else { return Ok(None) };
+        METADATA.check(&metadata.clone().called(format!("{edge}, metadata")), self.warnings)?;
         let Some(limit) = metadata.get("speed_limit") else { return Ok(None) };
         Ok(match limit.as_f64() {
             Some(fraction) if fraction > 0.0 && fraction <= 1.0 => Some(fraction * full),

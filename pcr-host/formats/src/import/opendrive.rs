@@ -6,6 +6,7 @@
 //! joints within a road, of the size of errors in maps, are closed: the rest of the road keeps its place, and the gap
 //! counts as deviation of its path. So do those between the ends of roads that share a node. Lanes are not read.
 
+use super::keys::Keys;
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
 use super::route::turn_over;
@@ -44,6 +45,10 @@ fn windings(shape: &PathSegment) -> f64 {
     }
 }
 
+/// Files have attributes of others, too.
+const ROAD: Keys = Keys::new(&["id", "length"], &[]).free();
+const SPEED: Keys = Keys::new(&["max", "unit"], &[]).free();
+
 /// The reference line of a road.
 struct Curve {
     pieces: Vec<Placed>,
@@ -80,6 +85,7 @@ pub(super) fn read(text: &str, warnings: &mut Warnings) -> Result<Layout, Import
         let id = road.attribute("id").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
         let name = format!("road {id}");
         let read = |warnings: &mut Warnings| -> Result<_, ImportError> {
+            ROAD.check_attributes(road, &name, warnings)?;
             Ok((curve(road, &name)?, speed(road, &name, warnings)?, only(road, "link")?))
         };
         match read(warnings) {
@@ -239,6 +245,7 @@ fn close(curve: &mut Vec<Placed>) -> [f64; 3] {
 fn speed(road: roxmltree::Node<'_, '_>, name: &str, warnings: &mut Warnings) -> Result<Option<f64>, ImportError> {
     let mut limits = Vec::new();
     for limit in children(road, "type").flat_map(|part| children(part, "speed")) {
+        SPEED.check_attributes(limit, &format!("{name}, speed"), warnings)?;
         let unit = match limit.attribute("unit") {
             Some("mph") => 0.447_04,
             Some("km/h") => 1.0 / 3.6,

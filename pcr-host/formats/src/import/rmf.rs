@@ -6,28 +6,79 @@
 //! stops and turns where two lanes meet at an angle. Lanes and vertices have no names of their own; they are named by
 //! their level and their index in its list, from 0, as in `L1/12`.
 
+use super::keys::Keys;
 use super::layout::{Edge, Id, Layout, Node};
 use super::levels::{Placing, Reference, Vertex, ends, parameter, vertices};
 use super::value::Object;
-use super::vehicle::Given;
-use super::{ImportError, Options, WarningCode, Warnings, facing};
+use super::vehicle::{Facing, Given};
+use super::{ImportError, Options, WarningCode, Warnings};
 use crate::footprint::Footprint;
 use crate::scenario::Placed;
 use crate::yaml::Document;
 use serde_json::Value;
 use std::collections::{BTreeSet, HashMap};
 
+const ROOT: Keys = Keys::new(
+    &["levels", "name", "building_name", "coordinate_system", "reference_level_name", "lifts", "rmf_fleet"],
+    &["graphs", "crowd_sim", "doors", "parameters", "generate_crs", "version", "params", "utm_grid"],
+)
+.not(&["lanes", "vertices", "measurements", "fiducials"]);
+
+const LEVEL: Keys = Keys::new(
+    &["vertices", "lanes", "measurements", "fiducials"],
+    &[
+        "drawing",
+        "elevation",
+        "flattened_x_offset",
+        "flattened_y_offset",
+        "x_meters",
+        "y_meters",
+        "floors",
+        "layers",
+        "walls",
+        "constraints",
+        "doors",
+        "features",
+        "models",
+        "human_lanes",
+        "edges",
+        "roi",
+        "ros_maps",
+    ],
+);
+
+/// Parameters of the lanes of a building.
+const LANE: Keys = Keys::new(
+    &["bidirectional", "graph_idx", "orientation", "speed_limit"],
+    &["demo_mock_floor_name", "demo_mock_lift_name", "mutex", "dock_name"],
+);
+
+/// Those of the lanes of a navigation graph.
+const GRAPH_LANE: Keys = Keys::new(
+    &["is_bidirectional", "graph_idx", "orientation_constraint", "speed_limit"],
+    &["demo_mock_floor_name", "demo_mock_lift_name", "mutex", "dock_name"],
+);
+
+/// The configuration of a fleet is for many programs.
+const FLEET: Keys =
+    Keys::new(&["name", "profile", "limits"], &[]).not(&["footprint", "vicinity", "linear", "angular"]).free();
+const PROFILE: Keys = Keys::new(&["footprint", "vicinity"], &[]);
+const LIMITS: Keys = Keys::new(&["linear", "angular"], &[]);
+
 /// Reads the vehicles from the configuration of a fleet: the footprint is the radius, and the vicinity beyond it is the margin.
-pub(super) fn fleet(value: &Value) -> Result<Given, ImportError> {
+pub(super) fn fleet(value: &Value, warnings: &mut Warnings) -> Result<Given, ImportError> {
     let root = Object::new("fleet", value)?;
     let fleet = root.object("rmf_fleet")?.ok_or_else(|| root.missing("rmf_fleet"))?;
-    let mut given = Given { name: fleet.text("name")?.map(str::to_owned), ..Given::default() };
+    FLEET.check(&fleet, warnings)?;
+    let mut given = Given { name: fleet.label("name")?, ..Given::default() };
     if let Some(profile) = fleet.object("profile")? {
+        PROFILE.check(&profile, warnings)?;
         given.radius = profile.positive("footprint")?;
         let vicinity = profile.positive("vicinity")?;
         given.margin = given.radius.zip(vicinity).map(|(radius, vicinity)| (vicinity - radius).max(0.0));
     }
     if let Some(limits) = fleet.object("limits")? {
+        LIMITS.check(&limits, warnings)?;
         let pair = |field: &str| {
             let number = |value: &Value| value.as_f64().filter(|x| *x > 0.0 && *x < 1e6);
             match limits.list(field)? {
@@ -68,6 +119,7 @@ pub(super) fn read(
     if root.get("rmf_fleet").is_some() {
         return Err(ImportError::new("it is the configuration of a fleet; give it beside a building, with --fleet"));
     }
+    ROOT.check(&root, warnings)?;
     let levels = root.object("levels")?.ok_or_else(|| root.missing("levels"))?;
     let graph = is_navigation_graph(&value);
     // YAML does not tell where it ends.
@@ -85,12 +137,15 @@ pub(super) fn read(
         Some(other) => return Err(ImportError::new(format!("building, coordinate_system: {other} is not read"))),
     };
     let mut layout = Layout {
-        name: root.text(if graph { "building_name" } else { "name" }).ok().flatten().unwrap_or_default().to_owned(),
+        name: root.label(if graph { "building_name" } else { "name" })?.unwrap_or_default(),
         ..Layout::default()
     };
     let mut graphs = BTreeSet::new();
     for (name, value) in levels.members() {
         let object = Object::new(format!("level {name}"), value)?;
+        if let Err(error) = LEVEL.check(&object, warnings) {
+            warnings.lose(error);
+        }
         let vertices = vertices(&object, graph)?;
         if object.list("lanes")?.is_empty() {
             continue;
@@ -99,7 +154,7 @@ pub(super) fn read(
         let placing = placing.transpose()?.unwrap_or(Placing::METRES);
         let mut level = Level { name, graph, placing, vertices, outline, nodes: HashMap::new(), layout: &mut layout };
         for (k, lane) in object.list("lanes")?.iter().enumerate() {
-            match level.lane(k, lane, options, &mut graphs) {
+            match level.lane(k, lane, options, &mut graphs, warnings) {
                 Ok(Some((code, problem))) => warnings.add(code, format_args!("lane {name}/{k}"), problem),
                 Ok(None) => {}
                 Err(problem) => warnings.lose(format_args!("lane {name}/{k}: {problem}")),
@@ -121,9 +176,7 @@ pub(super) fn read(
             "the lanes of all of them are taken (--graph N)",
         );
     }
-    if layout.levels.len() > 1
-        && root.object("lifts").ok().flatten().is_some_and(|lifts| lifts.members().next().is_some())
-    {
+    if layout.levels.len() > 1 && root.object("lifts")?.is_some_and(|lifts| lifts.members().next().is_some()) {
         warnings.add(WarningCode::UnreadField, "lifts", "they are not read; routes stay on their level");
     }
     Ok(layout)
@@ -162,10 +215,20 @@ impl Level<'_> {
         value: &Value,
         options: &Options,
         graphs: &mut BTreeSet<u64>,
+        warnings: &mut Warnings,
     ) -> Result<Option<(WarningCode, &'static str)>, String> {
         let parameters = value.get(2).filter(|parameters| !parameters.is_null());
         if let Some(odd) = parameters.filter(|parameters| !parameters.is_object()) {
             return Err(format!("its parameters {odd} are not read"));
+        }
+        if let Some(parameters) = parameters {
+            // A message of a lane names it anyway.
+            let parameters = Object::new("its parameters", parameters).map_err(|error| error.to_string())?;
+            let mut odd = Warnings::default();
+            let keys = if self.graph { GRAPH_LANE } else { LANE };
+            keys.check(&parameters, &mut odd).map_err(|error| error.to_string())?;
+            odd.iter()
+                .for_each(|(code, problem, _)| warnings.add(code, format_args!("lane {}/{k}", self.name), problem));
         }
         // A parameter that is there and has the wrong type is not left aside.
         fn typed<T>(
@@ -188,15 +251,16 @@ impl Level<'_> {
         // Fleet adapters take a lane of a navigation graph one way, whatever else it says.
         let two_way = typed(parameters, if self.graph { "is_bidirectional" } else { "bidirectional" }, Value::as_bool)?;
         let both_ways = two_way.unwrap_or(false);
-        if facing::is_other_backward(self.outline) {
+        let mut facing = [Facing::Ahead; 2];
+        if self.outline.is_some() {
             let field = if self.graph { "orientation_constraint" } else { "orientation" };
-            match typed(parameters, field, |value| value.as_str().map(str::to_owned))?.as_deref() {
-                None | Some("") => {}
-                // A vehicle that does not turn round drives backward in the other direction.
-                Some("forward") if self.graph || !both_ways => {}
-                Some("forward" | "backward") => return Err(format!("{field}: {}", facing::BACKWARD)),
+            // A vehicle that does not turn round faces the other way in the other direction, where the building does not say what it does.
+            facing = match typed(parameters, field, |value| value.as_str().map(str::to_owned))?.as_deref() {
+                None | Some("") => facing,
+                Some("forward") => [Facing::Ahead, Facing::Either],
+                Some("backward") => [Facing::Backward, Facing::Either],
                 Some(other) => return Err(format!("{field}: {other} is not read")),
-            }
+            };
         }
         // 0 is what the editor writes where there is no limit.
         let not_negative = |value: &Value| value.as_f64().filter(|speed| *speed >= 0.0);
@@ -204,6 +268,7 @@ impl Level<'_> {
         let curve = if straight { vec![line] } else { Vec::new() };
         self.layout.edges.push(Edge {
             ways: [true, both_ways && !self.graph],
+            facing,
             speed: [speed.filter(|speed| *speed < 1e6); 2],
             ..Edge::new(Id::Text(format!("{}/{k}", self.name)), [from.0, to.0], curve)
         });

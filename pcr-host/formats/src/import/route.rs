@@ -7,7 +7,7 @@
 
 use super::layout::{Edge, Layout};
 use super::trace::{Trace, Tracer};
-use super::vehicle::Asked;
+use super::vehicle::{Asked, Facing};
 use super::{ImportError, Options, Vehicle, WarningCode, Warnings, facing, speed};
 use crate::plane::distance;
 use crate::scenario::Placed;
@@ -63,6 +63,11 @@ impl Step<'_> {
             PathSegment::Line { .. } => None,
         });
         bends.chain(self.speed()).fold(fastest, f64::min)
+    }
+
+    /// Which way the vehicle faces, with respect to the direction of travel.
+    pub fn facing(self) -> Facing {
+        self.edge.facing[usize::from(self.backward)]
     }
 
     /// Largest distance from the curve in the file after the same length of travel \[m\]: backward, lengths count from the other end.
@@ -236,7 +241,7 @@ impl Edge {
     fn is_straight(&self) -> bool {
         match self.curve.as_slice() {
             [] => true,
-            [only] => matches!(only.shape, PathSegment::Line { .. }) && self.deviation == 0.0,
+            [only] => matches!(only.shape, PathSegment::Line { .. }) && self.deviation == self.room,
             _ => false,
         }
     }
@@ -302,7 +307,8 @@ pub(super) fn scenario(
         let way = format!("{} > {}", name(asked.ends[0]), name(asked.ends[1]));
         // If the file names its vehicles, the routes belong to them, in the order of both.
         let label = label(&layout.vehicles.get(k).map_or(way.clone(), |vehicle| format!("{vehicle} {way}")));
-        agents.push(Agent { label, ..agent(k as u64 + 1, &trace, vehicle, asked.time) });
+        let vehicle = vehicle.facing(along(&steps));
+        agents.push(Agent { label, ..agent(k as u64 + 1, &trace, &vehicle, asked.time) });
     }
     let names = options.routes.iter().map(|route| format!("route {route}")).collect::<Vec<_>>();
     facing::warn_of_half_turns(names.iter().map(String::as_str).zip(&agents), warnings);
@@ -333,10 +339,16 @@ pub(super) fn mission(
 ) -> Result<Option<Agent>, ImportError> {
     let Some(steps) = shortest(layout, ends) else { return Ok(None) };
     let trace = trace(layout, ends[0], &steps)?;
-    Ok(Some(agent(id, &trace, vehicle, 0.0)))
+    Ok(Some(agent(id, &trace, &vehicle.facing(along(&steps)), 0.0)))
 }
 
-/// The vehicle on a single edge, in one direction, with the limits of the edge.
+/// Which way a vehicle faces on a route.
+fn along(steps: &[Step<'_>]) -> Facing {
+    steps.iter().map(|step| step.facing()).reduce(Facing::then).unwrap_or_default()
+}
+
+/// The vehicle on a single edge, in one direction, with the limits of the edge. It has the outline that it has there, which
+/// [`Vehicle::facing`] gives.
 pub fn ride(vehicle: &Vehicle, step: Step<'_>) -> Agent {
     let mut tracer = Tracer::default();
     tracer.limit(step.speed(), step.edge.rotation);

@@ -1,10 +1,16 @@
 //! Trajectories of VDA 5050 and LIF: NURBS in the project's coordinates.
 
 use super::biarc::{Fit, fit};
+use super::keys::Keys;
 use super::nurbs::Nurbs;
 use super::value::Object;
 use super::{ImportError, WarningCode, Warnings};
 use crate::scenario::LIMIT;
+
+const KEYS: Keys = Keys::new(&["degree", "knotVector", "controlPoints"], &[]);
+
+/// The orientation is that of VDA 5050 1.x.
+const POINT: Keys = Keys::new(&["x", "y", "weight", "orientation"], &[]);
 
 /// A trajectory as lines and arcs.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,9 +26,11 @@ pub(super) struct Trajectory {
 /// `degree`: where the number of knots says so, it is taken as that, with a warning.
 pub(super) fn read(object: &Object<'_>, tolerance: f64, warnings: &mut Warnings) -> Result<Trajectory, ImportError> {
     let named = |error: ImportError| ImportError::new(format!("{}: {error}", object.name));
+    KEYS.check(object, warnings)?;
     let mut points = Vec::new();
     for (k, value) in object.list("controlPoints")?.iter().enumerate() {
         let point = Object::new(format!("{}, control point {}", object.name, k + 1), value)?;
+        POINT.check(&point, warnings)?;
         points.push((point.point()?, point.number("weight")?.unwrap_or(1.0)));
     }
     let mut knots = Vec::new();
@@ -40,6 +48,11 @@ pub(super) fn read(object: &Object<'_>, tolerance: f64, warnings: &mut Warnings)
         Some(degree) if degree.fract() == 0.0 && (1.0..=64.0).contains(&degree) => degree as usize,
         Some(degree) => return Err(named(ImportError::new(format!("degree {degree}, which is no degree")))),
     };
+    // Senders that mean a straight edge write an empty object, or a type.
+    if points.is_empty() {
+        let problem = "it has no controlPoints; a straight edge has no trajectory, or null in its place";
+        return Err(named(ImportError::new(problem)));
+    }
     if degree > 1 && !knots.is_empty() && knots.len() == points.len() + degree {
         warnings.add(
             WarningCode::CurveDegree,

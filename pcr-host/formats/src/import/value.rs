@@ -116,6 +116,14 @@ impl<'j> Object<'j> {
         self.get(field).map(|value| value.as_str().ok_or_else(|| self.unexpected(field, value, "a text"))).transpose()
     }
 
+    /// A name: a text, or a number as some tools write one.
+    pub(super) fn label(&self, field: &str) -> Result<Option<String>, ImportError> {
+        match self.get(field) {
+            Some(Value::Number(number)) => Ok(Some(number.to_string())),
+            _ => self.text(field).map(|text| text.map(str::to_owned)),
+        }
+    }
+
     /// True or false.
     pub(super) fn flag(&self, field: &str) -> Result<Option<bool>, ImportError> {
         let flag = |value: &'j Value| value.as_bool().ok_or_else(|| self.unexpected(field, value, "true or false"));

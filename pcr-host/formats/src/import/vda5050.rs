@@ -12,6 +12,7 @@
 //! - Orders do not say when they begin: all do at the time 0, and they are not read together with states with paths.
 
 mod begin;
+mod keys;
 mod order;
 mod part;
 mod state;
@@ -57,7 +58,7 @@ fn messages(text: &str) -> Result<Vec<Value>, ImportError> {
     updates::joined(messages)
 }
 
-/// Reads orders and states; returns the radii of the vehicles with their loads as well.
+/// Reads orders and states; returns the radii of the vehicles with their loads and corridors as well.
 pub(super) fn read(
     text: &str,
     options: &Options,
@@ -103,7 +104,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// The agent of a message, and the radius that its vehicle has with what it carries.
+    /// The agent of a message, and the radius that its vehicle has with what it carries, and with the room that it has beside its way.
     fn message(&mut self, id: u64, message: &Object<'_>) -> Result<(Agent, f64), ImportError> {
         let name = message.text("orderId")?.unwrap_or_default();
         let robot = message.text("serialNumber")?.unwrap_or_default();
@@ -119,7 +120,8 @@ impl Reader<'_> {
         if message.get("nodes").is_some() {
             let order = message.called(format!("order {name}"));
             self.begins.push((order.name.clone(), Begin::Unsaid));
-            Ok((Agent { label: called, ..self.order(id, &order)? }, self.vehicle.radius))
+            let (agent, radius) = self.order(id, &order)?;
+            Ok((Agent { label: called, ..agent }, radius))
         } else if state.iter().any(|field| message.get(field).is_some()) {
             let state =
                 message.called(if robot.is_empty() { format!("state {id}") } else { format!("state of {robot}") });

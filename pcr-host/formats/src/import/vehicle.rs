@@ -25,7 +25,64 @@ pub struct Vehicle {
     pub rotation_acceleration: f64,
 }
 
+/// Which way a vehicle faces where it travels a path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Facing {
+    /// Along its path.
+    #[default]
+    Ahead,
+    /// Against its path: it drives backward.
+    Backward,
+    /// One of both, which of them is not known.
+    Either,
+    /// Any way.
+    Any,
+}
+
+impl Facing {
+    /// What holds if either of two may.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Any, _) | (_, Self::Any) => Self::Any,
+            (a, b) if a == b => a,
+            _ => Self::Either,
+        }
+    }
+
+    /// What holds on a path of two parts: a vehicle that faces another way on the second one has turned round between them.
+    #[must_use]
+    pub fn then(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Ahead, Self::Ahead) => Self::Ahead,
+            (Self::Backward, Self::Backward) => Self::Backward,
+            _ => Self::Any,
+        }
+    }
+}
+
 impl Vehicle {
+    /// The vehicle as if it faced along its path, covering what it covers where it faces so: until a path can be driven backward, an
+    /// outline that may face either way is the convex hull of both, and one that may face any way is the disc around it.
+    #[must_use]
+    pub fn facing(&self, facing: Facing) -> Self {
+        let Some(footprint) = &self.footprint else { return self.clone() };
+        let outline = match facing {
+            Facing::Ahead => return self.clone(),
+            Facing::Backward | Facing::Either if footprint.is_same_backward() => return self.clone(),
+            Facing::Backward => Some(footprint.backward()),
+            Facing::Either => footprint.either_way(),
+            Facing::Any => None,
+        };
+        let radius = outline.as_ref().map_or(self.radius, Footprint::reach).max(self.radius);
+        Self { radius, footprint: outline, ..self.clone() }
+    }
+
+    /// Radius of the disc around its reference point that it covers \[m\]; below 0 where that point is outside of it.
+    pub(super) fn inner_radius(&self) -> f64 {
+        self.footprint.as_ref().map_or(self.radius, Footprint::inner_radius)
+    }
+
     /// How far a turn by an angle \[rad\] moves any point of it at most \[m\]: 0 for a disc.
     pub fn moved_by(&self, angle: f64) -> f64 {
         if self.footprint.is_some() { self.radius * angle } else { 0.0 }

@@ -13,6 +13,9 @@ pub fn origin(imported: &Imported) -> u32 {
     add(&(vehicle.radius, vehicle.margin, &vehicle.footprint, layout.nodes.len(), layout.edges.len()));
     layout.nodes.iter().for_each(|node| add(&(&node.id, node.level, node.at)));
     let edges = layout.edges.iter();
-    edges.for_each(|edge| add(&(&edge.id, edge.ends, &edge.curve, edge.ways, edge.closed, edge.off(vehicle))));
+    edges.for_each(|edge| {
+        let facing = vehicle.footprint.as_ref().map(|_| edge.facing);
+        add(&(&edge.id, edge.ends, &edge.curve, edge.ways, edge.closed, edge.off(vehicle), facing));
+    });
     sum
 }

@@ -6,11 +6,12 @@
 //! or within an edge, may go to either side.
 
 use crate::bodies::tracks;
-use pcr_formats::import::{Edge, Imported, Layout, Step, Vehicle, ride, turn};
+use pcr_formats::import::{Edge, Facing, Imported, Layout, Step, Vehicle, ride, turn};
 use pcr_formats::plane::wrapped;
 use pcr_formats::scenario::Agent;
 use pcr_formats::scenario::{KINK, PathSegment, Placed, TURN};
-use std::f64::consts::{PI, TAU};
+use std::collections::{HashMap, HashSet};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Rounding of lengths, relative.
 const ROUNDING: f64 = 1e-12;
@@ -68,6 +69,8 @@ pub(crate) fn reversed(length: f64, [lo, hi]: [f64; 2]) -> [f64; 2] {
 pub struct Rides<'a> {
     layout: &'a Layout,
     vehicle: Vehicle,
+    /// The vehicle as it covers what it may cover where it faces otherwise than along its way.
+    outlines: HashMap<Facing, Vehicle>,
     /// For each node the ways on which the vehicle comes to it, and leaves it.
     sides: Vec<[Vec<Side<'a>>; 2]>,
     /// How far from each node a vehicle may be that has come to the end of an edge there \[m\].
@@ -97,7 +100,9 @@ impl<'a> Rides<'a> {
                 }
             }
         }
-        Self { layout, vehicle, sides: all, beside }
+        let facings: HashSet<Facing> = turning.iter().flat_map(|edge| edge.facing).collect();
+        let outlines = facings.into_iter().map(|facing| (facing, vehicle.facing(facing))).collect();
+        Self { layout, vehicle, outlines, sides: all, beside }
     }
 
     /// The vehicle, larger by its margin.
@@ -119,7 +124,8 @@ impl<'a> Rides<'a> {
             // Without a length it has no direction.
             return vec![self.at(step.origin())];
         };
-        let (length, vehicle) = (step.edge.length(), grown(&self.vehicle, step.edge.off(&self.vehicle)));
+        let facing = self.facing(step);
+        let (length, vehicle) = (step.edge.length(), grown(facing, step.edge.off(facing)));
         let [from, to] = if step.backward { [length, 0.0] } else { [0.0, length] };
         let before = self.turns(Side { step, heading: start.heading }, 0);
         let after = self.turns(Side { step, heading: end.heading }, 1);
@@ -134,7 +140,9 @@ impl<'a> Rides<'a> {
         let mut before: Option<Placed> = None;
         let mut travelled = 0.0;
         let halves = step.curve().into_iter().filter(|piece| piece.shape.length() > 0.0).filter_map(|piece| {
-            let is_half = before.is_some_and(|before| is_half(wrapped(piece.heading - before.heading_at_end())));
+            // Where it turns back in one gear or the other, it may also turn by less.
+            let least = if step.facing() == Facing::Ahead { PI - KINK } else { FRAC_PI_2 };
+            let is_half = before.is_some_and(|before| wrapped(piece.heading - before.heading_at_end()).abs() > least);
             let at = if step.backward { length - travelled } else { travelled };
             (before, travelled) = (Some(piece), travelled + piece.shape.length());
             is_half.then(|| Ride { agent: turn(&vehicle, piece.at, 0.0, TAU), lengths: Lengths::At(at) })
@@ -143,7 +151,7 @@ impl<'a> Rides<'a> {
     }
 
     fn along(&self, step: Step<'_>) -> Ride {
-        let agent = self.along_with(&self.vehicle, step);
+        let agent = self.along_with(self.facing(step), step);
         let turns = agent.path.iter().filter(|shape| matches!(shape, PathSegment::Arc { radius: TURN, .. }));
         let turns = turns.map(PathSegment::length).sum::<f64>() + 0.0;
         let lengths = match step.backward {
@@ -159,6 +167,11 @@ impl<'a> Rides<'a> {
             Some(_) => ride(vehicle, step),
             None => turn(&grown(vehicle, step.edge.deviation), self.place(step.origin()), 0.0, 0.0),
         }
+    }
+
+    /// The vehicle as it is where it faces as on this way.
+    fn facing(&self, step: Step<'_>) -> &Vehicle {
+        self.outlines.get(&step.facing()).unwrap_or(&self.vehicle)
     }
 
     /// The vehicle that stands at a node, or where an edge ends beside it, in any heading.
@@ -185,6 +198,10 @@ impl<'a> Rides<'a> {
         let mut range = [0.0_f64; 2];
         for other in &sides[side] {
             let [arrives, leaves] = if side == 0 { [other, &own] } else { [&own, other] };
+            // What faces another way on the next edge turns round in between, to either side.
+            if arrives.step.facing().then(leaves.step.facing()) == Facing::Any {
+                return [-PI, PI];
+            }
             let turn = arrives.turn(leaves);
             let leads_on = |way: &Side<'_>| !way.step.edge.closed && !arrives.turns_back(way);
             if arrives.turns_back(leaves) && sides[1].iter().any(leads_on) {

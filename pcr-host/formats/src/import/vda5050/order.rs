@@ -3,13 +3,15 @@
 use super::super::trace::Tracer;
 use super::super::trajectory::Trajectory;
 use super::super::value::Object;
+use super::super::vehicle::Facing;
 use super::super::warnings::{DIFFERENCE, LENGTH};
-use super::super::{ImportError, WarningCode, facing, route};
-use super::part::{Part, go_on, parts};
-use super::{ACTIONS, GAP, Reader, gap};
+use super::super::{ImportError, WarningCode, corridor, facing, route};
+use super::part::{Part, check, go_on, parts};
+use super::{ACTIONS, GAP, Reader, gap, keys};
 use crate::footprint::Footprint;
-use crate::scenario::Agent;
+use crate::scenario::{Agent, Placed};
 use serde_json::Value;
+use std::f64::consts::PI;
 
 /// How an order is travelled up to some node.
 #[derive(Default)]
@@ -23,36 +25,58 @@ struct Way {
     turned: f64,
     /// By which the vehicle may be ahead of its path, or behind.
     longer: f64,
+    /// How far it may leave its edges \[m\].
+    room: f64,
+    /// Which way it faces on its edges.
+    facing: Option<Facing>,
 }
 
 impl Reader<'_> {
-    /// The agent of an order.
-    pub(super) fn order(&mut self, id: u64, order: &Object<'_>) -> Result<Agent, ImportError> {
+    /// The agent of an order, and the radius of its vehicle with the room that the order gives it.
+    pub(super) fn order(&mut self, id: u64, order: &Object<'_>) -> Result<(Agent, f64), ImportError> {
+        keys::ORDER.check(order, self.warnings)?;
         let [nodes, edges] = self.base(order)?;
+        check(&nodes, &keys::NODE, self.warnings)?;
+        check(&edges, &keys::EDGE, self.warnings)?;
+        let is_third = self.is_third(order)?;
         self.maps(order, nodes.iter().map(|node| node.object.object("nodePosition")))?;
-        self.warn_of_freedom(&nodes, &edges)?;
+        self.warn_of_freedom(&nodes)?;
         let mut way = Way { position: position(nodes.first())?, ..Way::default() };
         if way.position.is_none() && edges.is_empty() {
             return Err(nodes.first().map_or_else(|| order.missing("nodes"), unplaced));
         }
         for (edge, ends) in edges.iter().zip(nodes.windows(2)) {
             if let [before, after] = ends {
-                self.edge(&mut way, &edge.object, [before, after])?;
+                self.edge(&mut way, &edge.object, [before, after], is_third)?;
             }
         }
         let stands = way.headings.iter().all(Option::is_none);
         let outline = self.vehicle.footprint.as_ref();
-        if let Some(outline) = outline.filter(|_| !stands) {
-            self.thetas(&nodes, &way.headings, outline)?;
+        // What stands faces as its nodes say.
+        let moves = |_: &Facing| !stands || way.room > 0.0;
+        let facing = way.facing.filter(moves).unwrap_or_default();
+        if let Some(outline) = outline.filter(|_| !stands && facing != Facing::Any) {
+            self.thetas(&nodes, &way.headings, outline, facing)?;
         }
         self.warn_of_actions(order, nodes.iter().chain(&edges))?;
         let mut trace = way.tracer.finish(way.position.unwrap_or_default());
-        trace.deviation += way.deviation.max(way.longer);
+        trace.deviation += way.deviation.max(way.longer) + way.room;
         trace.turned += way.turned;
         if stands && let Some(theta) = rests(&nodes, outline)? {
             (trace.start[2], trace.faces) = (theta, true);
         }
-        Ok(route::agent(id, &trace, self.vehicle, 0.0))
+        Ok((route::agent(id, &trace, &self.vehicle.facing(facing), 0.0), self.vehicle.radius + way.room))
+    }
+
+    /// Whether a message is of version 3, which leaves it to the vehicle how it faces on an edge that says nothing of it.
+    fn is_third(&mut self, order: &Object<'_>) -> Result<bool, ImportError> {
+        let Some(version) = order.text("version")? else { return Ok(false) };
+        let major = version.split('.').next().and_then(|major| major.trim().parse::<u64>().ok());
+        if !matches!(major, Some(1..=3)) {
+            let problem = format!("its version {version} is not known; it is read as 3.0.0");
+            self.warnings.add(WarningCode::UnknownVersion, &order.name, problem);
+        }
+        Ok(!matches!(major, Some(1 | 2)))
     }
 
     /// Nodes and edges up to the first one that is not released, or all of them if that is asked for.
@@ -82,8 +106,8 @@ impl Reader<'_> {
         Ok([nodes, edges])
     }
 
-    /// Says where the vehicle may leave its way, which is not read.
-    fn warn_of_freedom(&mut self, nodes: &[Part<'_>], edges: &[Part<'_>]) -> Result<(), ImportError> {
+    /// Says at which nodes the vehicle may pass beside them, which is not read.
+    fn warn_of_freedom(&mut self, nodes: &[Part<'_>]) -> Result<(), ImportError> {
         let outline = self.vehicle.footprint.is_some();
         for node in nodes {
             let Some(position) = node.object.object("nodePosition")? else { continue };
@@ -96,18 +120,6 @@ impl Reader<'_> {
             if outline && allowed("allowedDeviationTheta") {
                 let problem = "its allowedDeviationTheta is not read; the vehicle is taken to face along its path";
                 self.warnings.add(WarningCode::Orientation, &node.object.name, problem);
-            }
-        }
-        for edge in edges {
-            if edge.object.get("corridor").is_some() {
-                self.warnings.add(
-                    WarningCode::AllowedDeviation,
-                    &edge.object.name,
-                    "its corridor is not read; the vehicle keeps to the middle of its way",
-                );
-            }
-            if outline && edge.object.flag("rotationAllowed")? == Some(true) {
-                self.warnings.add(WarningCode::Orientation, &edge.object.name, facing::ROTATION);
             }
         }
         Ok(())
@@ -130,8 +142,18 @@ impl Reader<'_> {
     }
 
     /// Goes on along an edge.
-    fn edge(&mut self, way: &mut Way, edge: &Object<'_>, ends: [&Part<'_>; 2]) -> Result<(), ImportError> {
+    fn edge(
+        &mut self,
+        way: &mut Way,
+        edge: &Object<'_>,
+        ends: [&Part<'_>; 2],
+        is_third: bool,
+    ) -> Result<(), ImportError> {
         joins(edge, ends)?;
+        if let Some(room) = corridor::read(edge, self.vehicle, self.warnings)?.filter(|room| *room > 0.0) {
+            way.room = way.room.max(room);
+            way.faces(Facing::Any);
+        }
         let speed = either(edge, ["maxSpeed", "maximumSpeed"])?;
         way.tracer.limit(speed, either(edge, ["maxRotationSpeed", "maximumRotationSpeed"])?);
         let target = ends[1].position()?;
@@ -139,14 +161,14 @@ impl Reader<'_> {
             let from = way.position.ok_or_else(|| unplaced(ends[0]))?;
             let to = target.ok_or_else(|| unplaced(ends[1]))?;
             let ahead = Some((to[1] - from[1]).atan2(to[0] - from[0])).filter(|_| from != to);
-            self.faces_along(edge, ahead)?;
+            way.faces(self.facing(edge, is_third, ahead, &[])?);
             way.line(from, to, ahead);
             return self.has_length(edge, gap(from, to));
         };
-        self.faces_along(edge, None)?;
         let trajectory = trajectory.called(format!("{}, trajectory", edge.name));
         let vehicle = self.vehicle;
         let read = self.trajectory(&trajectory, vehicle)?;
+        way.faces(self.facing(edge, is_third, None, &read.fit.pieces)?);
         way.follow(edge, &read, target)?;
         self.has_length(edge, read.fit.pieces.iter().map(|piece| piece.shape.length()).sum())
     }
@@ -161,10 +183,25 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// An outline faces along an edge, which has this heading where it is straight.
-    fn faces_along(&mut self, edge: &Object<'_>, heading: Option<f64>) -> Result<(), ImportError> {
-        let Some(outline) = &self.vehicle.footprint else { return Ok(()) };
-        facing::along(edge, "orientation", 1.0, heading, outline, self.warnings)
+    /// Which way an outline faces on an edge, which has this heading where it is straight.
+    fn facing(
+        &self,
+        edge: &Object<'_>,
+        is_third: bool,
+        heading: Option<f64>,
+        pieces: &[Placed],
+    ) -> Result<Facing, ImportError> {
+        if self.vehicle.footprint.is_none() {
+            return Ok(Facing::Ahead);
+        }
+        let orientation = edge.number("orientation")?;
+        let said = facing::of_edge(edge, "orientation", orientation.as_slice(), heading)?;
+        // One that rotates on the edge has any heading there.
+        let reaches = edge.flag("reachOrientationBeforeEntering")?;
+        if edge.flag("rotationAllowed")? == Some(true) || reaches == Some(false) || is_third && said.is_none() {
+            return Ok(Facing::Any);
+        }
+        Ok(said.unwrap_or_else(|| facing::of_curve(pieces)))
     }
 
     /// An outline at a node is as the path arrives there, or as it departs; `headings` are those of the edges at both ends.
@@ -173,12 +210,20 @@ impl Reader<'_> {
         nodes: &[Part<'_>],
         headings: &[Option<[f64; 2]>],
         outline: &Footprint,
+        facing: Facing,
     ) -> Result<(), ImportError> {
+        let turned: &[f64] = match facing {
+            Facing::Ahead => &[0.0],
+            Facing::Backward => &[PI],
+            Facing::Either | Facing::Any => &[0.0, PI],
+        };
         for (k, node) in nodes.iter().enumerate() {
             let Some(theta) = node.theta()? else { continue };
             let arrives = k.checked_sub(1).and_then(|before| headings.get(before).copied().flatten()).map(|way| way[1]);
             let departs = headings.get(k).copied().flatten().map(|way| way[0]);
-            if !arrives.into_iter().chain(departs).any(|heading| facing::is_ahead(outline, theta - heading)) {
+            let is_there =
+                |heading: f64| turned.iter().any(|turned| facing::is_ahead(outline, theta - heading - turned));
+            if !arrives.into_iter().chain(departs).any(is_there) {
                 facing::lose(&node.object.name, "theta", theta, self.warnings);
             }
         }
@@ -187,6 +232,11 @@ impl Reader<'_> {
 }
 
 impl Way {
+    /// The vehicle faces so on the next edge.
+    fn faces(&mut self, next: Facing) {
+        self.facing = Some(self.facing.map_or(next, |before| before.then(next)));
+    }
+
     fn line(&mut self, from: [f64; 2], to: [f64; 2], ahead: Option<f64>) {
         self.tracer.line(from, to);
         self.headings.push(ahead.map(|heading| [heading; 2]));

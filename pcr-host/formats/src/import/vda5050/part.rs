@@ -1,7 +1,9 @@
 //! Nodes and edges of an order or a state, in the order of travel.
 
-use super::super::ImportError;
+use super::super::keys::Keys;
 use super::super::value::Object;
+use super::super::{ImportError, Warnings};
+use super::keys::NODE_POSITION;
 use serde_json::Value;
 
 /// A node or an edge.
@@ -50,6 +52,17 @@ pub(super) fn parts<'j>(of: &Object<'j>, list: &str, what: &str, id: &str) -> Re
         return Err(ImportError::new(format!("{}, sequenceId: {number} is there twice", again.object.name)));
     }
     Ok(parts)
+}
+
+/// Checks the keys of nodes or edges, and of the positions of nodes.
+pub(super) fn check(parts: &[Part<'_>], keys: &Keys, warnings: &mut Warnings) -> Result<(), ImportError> {
+    for part in parts {
+        keys.check(&part.object, warnings)?;
+        if let Some(position) = part.object.object("nodePosition")? {
+            NODE_POSITION.check(&position, warnings)?;
+        }
+    }
+    Ok(())
 }
 
 /// Checks that numbers go on from node to edge to node: where one is missing, a part of the way is.

@@ -2,13 +2,15 @@
 
 use super::super::trace::{Trace, Tracer};
 use super::super::value::Object;
+use super::super::vehicle::Facing;
 use super::super::{ImportError, Vehicle, WarningCode, facing, route, timed};
 use super::begin::{Begin, stamp};
-use super::part::{Part, parts};
-use super::{ACTIONS, GAP, Reader, gap};
+use super::part::{Part, check, parts};
+use super::{ACTIONS, GAP, Reader, gap, keys};
 use crate::footprint::Footprint;
 use crate::scenario::{Agent, MotionSpec, Placed};
 use serde_json::Value;
+use std::f64::consts::PI;
 
 /// Angle between a vehicle and its path that is taken for the error of its localization \[rad\].
 const SEEN: f64 = 0.15;
@@ -27,8 +29,16 @@ impl Reader<'_> {
         state: &Object<'_>,
         vehicle: &Vehicle,
     ) -> Result<(Agent, Begin), ImportError> {
+        keys::STATE.check(state, self.warnings)?;
         let pose = self.pose(state)?;
         let nodes = parts(state, "nodeStates", "node", "nodeId")?;
+        check(&nodes, &keys::NODE, self.warnings)?;
+        check(&parts(state, "edgeStates", "edge", "edgeId")?, &keys::EDGE_STATE, self.warnings)?;
+        for (field, keys) in [("velocity", keys::VELOCITY), ("safetyState", keys::SAFETY)] {
+            if let Some(object) = state.object(field)? {
+                keys.check(&object, self.warnings)?;
+            }
+        }
         let positions = nodes.iter().filter(|node| node.released).map(|node| node.object.object("nodePosition"));
         self.maps(state, std::iter::once(position(state)).chain(positions))?;
         let planned = state.object("plannedPath")?;
@@ -46,8 +56,9 @@ impl Reader<'_> {
     }
 
     /// Where the vehicle is; it has to know that.
-    fn pose(&self, state: &Object<'_>) -> Result<Pose, ImportError> {
+    fn pose(&mut self, state: &Object<'_>) -> Result<Pose, ImportError> {
         let Some(pose) = position(state)? else { return Ok(Pose { at: None, heading: None }) };
+        keys::POSITION.check(&pose, self.warnings)?;
         let unknown =
             |field: &str| Err(ImportError::new(format!("{}, {field}: it does not know where it is", pose.name)));
         for field in ["localized", "positionInitialized"] {
@@ -70,12 +81,14 @@ impl Reader<'_> {
         pose: &Pose,
         vehicle: &Vehicle,
     ) -> Result<(Agent, Begin), ImportError> {
+        keys::INTERMEDIATE.check(path, self.warnings)?;
         let mut stops = Vec::new();
         if let Some(at) = pose.at {
             stops.push((at, stamp(state, "timestamp")?));
         }
         for (k, value) in path.list("polyline")?.iter().enumerate() {
             let point = Object::new(format!("{}, point {}", path.name, k + 1), value)?;
+            keys::TIMED_POINT.check(&point, self.warnings)?;
             stops.push((point.point()?, stamp(&point, "eta")?));
         }
         let begin = stops.first().map(|(_, time)| *time).unwrap_or_default();
@@ -98,6 +111,7 @@ impl Reader<'_> {
         pose: &Pose,
         vehicle: &Vehicle,
     ) -> Result<(Agent, Begin), ImportError> {
+        keys::PLANNED.check(path, self.warnings)?;
         let trajectory = path.object("trajectory")?.ok_or_else(|| path.missing("trajectory"))?;
         let read = self.trajectory(&trajectory, vehicle)?;
         let [begin, end] = read.ends;
@@ -121,15 +135,18 @@ impl Reader<'_> {
         let mut trace = tracer.finish(pose.at.unwrap_or(begin));
         trace.deviation += read.fit.deviation + before.max(behind);
         trace.turned += read.fit.turned;
+        let mut facing = Facing::Ahead;
         if let Some(outline) = &vehicle.footprint {
-            trace.turned += self.faces(state, pose, pieces, outline)?;
+            let askew;
+            (facing, askew) = self.faces(state, pose, pieces, outline)?;
+            trace.turned += askew;
             set_heading(&mut trace, pose, pieces);
         }
         let begin = match state.get("timestamp") {
             None => Begin::Unsaid,
             Some(_) => Begin::At(stamp(state, "timestamp")?),
         };
-        Ok((route::agent(id, &trace, vehicle, 0.0), begin))
+        Ok((route::agent(id, &trace, &vehicle.facing(facing), 0.0), begin))
     }
 
     /// The agent that stands where it is, unless it says that it goes on.
@@ -177,18 +194,26 @@ impl Reader<'_> {
         self.warnings.lose(format_args!("{}: its way, as it moves and does not say where to", state.name));
     }
 
-    /// Where the vehicle is and at nodes an outline faces along its planned path. Returns by how much the vehicle is turned from it, as
-    /// far as that is the error of a measurement \[rad\].
+    /// Which way an outline faces on its planned path: along it, or backward if the vehicle does so where it is. Returns by how much it
+    /// is turned from that as well, as far as this is the error of a measurement \[rad\].
     fn faces(
         &mut self,
         state: &Object<'_>,
         pose: &Pose,
         pieces: &[Placed],
         outline: &Footprint,
-    ) -> Result<f64, ImportError> {
+    ) -> Result<(Facing, f64), ImportError> {
         let first = pieces.first().map(|first| first.heading);
         let seen = pose.heading.zip(first);
-        let mut askew = seen.map_or(0.0, |(theta, heading)| facing::askew(outline, theta - heading));
+        let off = |turned: f64| seen.map_or(0.0, |(theta, heading)| facing::askew(outline, theta - heading - turned));
+        // Where it turns back on its way, it may go on in the other gear.
+        let of_curve = facing::of_curve(pieces);
+        let (facing, turned) = match (off(PI) < off(0.0), of_curve) {
+            (true, Facing::Ahead) => (Facing::Backward, PI),
+            (false, _) => (of_curve, 0.0),
+            (true, _) => (of_curve, PI),
+        };
+        let mut askew = off(turned);
         if askew > SEEN {
             facing::lose(&state.name, "theta", pose.heading.unwrap_or_default(), self.warnings);
             askew = 0.0;
@@ -200,11 +225,14 @@ impl Reader<'_> {
             if passes.peek().is_none() && !pieces.is_empty() {
                 let name = &node.object.name;
                 self.warnings.lose(format_args!("{name}: its theta {theta}, as the planned path does not pass it"));
-            } else if !passes.any(|heading| facing::is_ahead(outline, theta - heading)) {
+            } else if !passes.any(|heading| {
+                let either = facing == Facing::Either && facing::is_ahead(outline, theta - heading - turned - PI);
+                either || facing::is_ahead(outline, theta - heading - turned)
+            }) {
                 facing::lose(&node.object.name, "theta", theta, self.warnings);
             }
         }
-        Ok(askew)
+        Ok((facing, askew))
     }
 
     /// How far the last node that is released is from the end of a path \[m\], which has to be there: the vehicle does not stand where it
