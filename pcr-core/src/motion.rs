@@ -257,7 +257,17 @@ impl<'a, S: Scalar> Motion<'a, S> {
 
     /// Distance that the agent goes at its top speed during a time that contains its motion and the time 0 \[m\].
     pub(crate) fn reach(&self) -> S {
-        self.top_speed.times(self.latest()).narrow()
+        self.way_until(self.latest())
+    }
+
+    /// Distance that the agent goes at its top speed during such a time \[s\] \[m\].
+    pub(crate) fn way_until(&self, latest: S) -> S {
+        self.top_speed.times(latest).narrow()
+    }
+
+    /// The same motion of a disc that is larger by a few rounding errors \[m\], for a search that has to leave room for them.
+    pub(crate) fn enlarged(&self, by: S) -> Self {
+        Self { radius: self.radius + by, ..*self }
     }
 
     /// λ: length travelled at a time \[m\], clamped to the length of the path.
@@ -300,7 +310,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     }
 
     /// The largest magnitude of a time of the motion \[s\].
-    fn latest(&self) -> S {
+    pub(crate) fn latest(&self) -> S {
         self.time.lo.abs().max(self.time.hi.abs())
     }
 }

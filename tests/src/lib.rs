@@ -10,6 +10,7 @@ pub mod closed_loop;
 pub mod constants;
 pub mod delays;
 pub mod disc;
+pub mod ends;
 pub mod exact;
 pub mod execution;
 pub mod generators;

@@ -22,7 +22,7 @@ pub struct Approach<S> {
 }
 
 impl<S: Scalar> Encounter<'_, S> {
-    /// The closest approach of the two agents during an interval of time \[s\], within [`Encounter::tolerance`] of the
+    /// The closest approach of the two agents during an interval of time \[s\], within half of [`Encounter::tolerance`] of the
     /// least separation. Each agent stands at its start before it sets off and at its end after its arrival. The
     /// clearance is the separation minus [`Encounter::radius`].
     ///
@@ -49,7 +49,9 @@ impl<S: Scalar> Encounter<'_, S> {
 
     /// Searches a window for a separation that is less than `best` and `bound`.
     fn closest_in(&self, window: &Window<'_, S>, bound: S, best: &mut Approach<S>) {
-        let fine = self.tolerance().half();
+        // The nearest place of the chord and that of the motion are each off by the error of the chord, and the distance by the pad, a quarter
+        // of the tolerance at most: half of the tolerance in all.
+        let fine = self.tolerance().half().half().half();
         let mut now = window.at(window.time.lo);
         let mut step = window.time.length();
         loop {

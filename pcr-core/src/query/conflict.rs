@@ -22,9 +22,9 @@ pub struct Conflict<S> {
     pub other_length: Interval<S>,
     /// The closest approach of the centres during the contact.
     pub deepest: Approach<S>,
-    /// Largest overlap \[m\]: sum of the radii minus the least separation; 0 if the discs only touch.
+    /// Largest overlap \[m\]: sum of the radii minus the least separation, within half of [`Encounter::tolerance`]; 0 if the discs only touch.
     pub depth: S,
-    /// Whether the depth is at most [`Encounter::tolerance`]: it may then be no contact.
+    /// Whether the depth is at most half of [`Encounter::tolerance`]: it may then be no contact. A touch is in truth no deeper than the tolerance.
     pub touching: bool,
 }
 
@@ -180,7 +180,7 @@ impl<S: Scalar> Encounter<'_, S> {
             other_length: Interval::new(other.length_at(time.lo), other.length_at(time.hi)),
             deepest,
             depth,
-            touching: depth <= self.tolerance(),
+            touching: depth <= self.tolerance().half(),
         }
     }
 }

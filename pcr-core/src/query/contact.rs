@@ -26,7 +26,7 @@ use crate::scalar::Scalar;
 /// A pair of agents in motion: whether and when they are in contact, and how near they come.
 ///
 /// Contacts are found for the sum of the radii plus an allowance for rounding, [`Encounter::tolerance`] at most. An
-/// overlap that is deeper than the tolerance is never missed; discs that are further apart than it are never reported.
+/// overlap is never missed; discs that are further apart than the tolerance are never reported.
 ///
 /// ```
 /// use pcr_core::{Encounter, Interval, Limits, Motion, Path, Point, Pose, Profile, Radians};
@@ -60,12 +60,9 @@ pub struct Encounter<'a, S: Scalar> {
 impl<'a, S: Scalar> Encounter<'a, S> {
     /// Pairs two motions. Lengths of the `ego` come first in results.
     pub fn new(ego: &'a Motion<'a, S>, other: &'a Motion<'a, S>) -> Self {
-        let extent = ego.extent().max(other.extent());
-        let quadruple = |length: S| length.double().double();
-        // The slack of both positions (docs/errors.md); the rounding error of a time counts multiplied by the speed.
-        let pad = S::slack(extent + ego.reach() + other.reach());
-        let pad = [ego, other].into_iter().fold(pad, |pad, motion| pad + motion.drift() + motion.lag() + motion.leap());
-        Self { ego, other, pad, tolerance: S::tolerance(extent).max(quadruple(pad)) }
+        let pad = pad(ego, other, ego.reach() + other.reach());
+        let tolerance = S::tolerance(ego.extent().max(other.extent()));
+        Self { ego, other, pad, tolerance: tolerance.max(pad.double().double()) }
     }
 
     /// The interval from the first start to the last arrival of the two agents \[s\].
@@ -78,8 +75,8 @@ impl<'a, S: Scalar> Encounter<'a, S> {
         self.ego.radius() + self.other.radius()
     }
 
-    /// Tolerance ε \[m\]: contacts deeper than this are never missed, clearances above it are never reported as
-    /// contacts. It is the larger of two values: [`Scalar::tolerance`] of the larger extent; and 4 slacks of that
+    /// Tolerance ε \[m\]: clearances above it are never reported as contacts, and touches ([`Conflict::touching`](crate::Conflict::touching)) are no
+    /// deeper. Contacts are not missed, however slight they are. It is the larger of two values: [`Scalar::tolerance`] of the larger extent; and 4 slacks of that
     /// extent plus the distances that both agents go at top speed since the time 0, plus four times the
     /// [`Scalar::drift`] and the [`Scalar::lag`] of both and, in fixed point, the distances at top speed in five last
     /// digits. In `f64` it is 2e-10 of the extent, unless an agent goes farther than some 4000 extents at its top speed in its time since 0:
@@ -102,6 +99,13 @@ impl<'a, S: Scalar> Encounter<'a, S> {
         let windows = (!apart).then(|| Windows::new([self.ego, self.other], during.limited(), self.pad));
         Contacts { encounter: *self, radius: reach, windows, scan: None, since: None, last: None, steps: 0 }
     }
+}
+
+/// Bound on the rounding error of the distance of two agents \[m\], if both together go so far at their top speeds since the time 0 \[m\].
+pub(super) fn pad<S: Scalar>(ego: &Motion<'_, S>, other: &Motion<'_, S>, reach: S) -> S {
+    // The slack of both positions (docs/errors.md); the rounding error of a time counts multiplied by the speed.
+    let pad = S::slack(ego.extent().max(other.extent()) + reach);
+    [ego, other].into_iter().fold(pad, |pad, motion| pad + motion.drift() + motion.lag() + motion.leap())
 }
 
 impl<S: Scalar> Motion<'_, S> {

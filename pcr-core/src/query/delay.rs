@@ -4,15 +4,18 @@
 //! delay of T_other(s) - T_ego(l). The image of a connected region is connected, so every region forbids one interval
 //! of delays, whatever the profiles. The interval is unbounded above if the ego is hit while it stands at its start
 //! (starting later does not help), or if it meets the other agent standing at its end; it is unbounded below in the
-//! mirrored cases. A finite end is bracketed (`bracket`): the extreme delay that the bounding box of the region allows lies
-//! outside, a delay with a contact inside. The outer end of the bracket, at which there was no contact, is the result.
+//! mirrored cases. A finite end is bracketed (`bracket`): a delay with a contact lies inside, and outside the extreme delay that the bounding box
+//! of the region allows, or a larger one if there is a contact at that. The outer end of the bracket, which was tried and is clear, is the result.
 //! If agents may be late, the interval is longer by their lateness.
+//!
+//! Delays beyond that end were not tried. They are clear because the delays at which the region of a given radius is met are one interval: the search is
+//! made with a radius that is larger by an allowance, of which rounding can use up a part only (docs/errors.md).
 
 use crate::error::in_range;
 use crate::geometry::Interval;
 use crate::motion::Motion;
-use crate::query::bracket::Bracket;
-use crate::query::contact::Encounter;
+use crate::query::bracket::{Bracket, Trial};
+use crate::query::contact::{Encounter, pad};
 use crate::query::safe::times;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
@@ -22,15 +25,16 @@ impl<S: Scalar> RegionRef<'_, S> {
     /// earlier starts. An end of magnitude [`Scalar::LIMIT`] stands for infinity. If agents may be late
     /// ([`Motion::with_lateness`]), these are the delays with which they may meet.
     ///
-    /// The error of an end is [`Scalar::tolerance`] of the time from the first start to the last arrival, or four
-    /// [`Scalar::rounding`] of the latest time if that is more, plus the delay that corresponds to a distance of
-    /// [`Encounter::tolerance`]. For a region in which the discs only touch, the result may be all delays that its
-    /// bounding box allows. Cost: 10 to 30 searches for contacts for each finite end.
+    /// With a delay outside of the interval, also at its ends, [`Motion::delayed`] returns a motion that does not meet this region, not even
+    /// within rounding. The interval exceeds the exact one by at most [`Scalar::tolerance`] of the time from the first start to the last
+    /// arrival, or four [`Scalar::rounding`] of the latest time if that is more, and by what a distance of twice
+    /// [`Encounter::tolerance`] changes; by more only where pieces of another region of the pair lie beside those of this one and the agents meet there
+    /// as well, or, for discs that hardly touch, up to the delays that the bounding box of the region allows
+    /// ([docs/errors.md](https://docs.rs/pcr-core), "Delays and durations"). Cost: 10 to 30 searches for contacts for each finite end.
     pub fn forbidden_delays(&self) -> Interval<S> {
-        let possible = self.possible_delays();
-        let met = self.delays_inside().find(|&delay| possible.contains(delay) && self.contact_after(delay).is_some());
-        let ends = [possible.lo, possible.hi].map(|beyond| met.map_or(beyond, |met| self.end_of_delays(met, beyond)));
-        self.with_lateness(Interval::new(ends[0], ends[1]))
+        let [before, after] = self.lets_pass();
+        let allowance = self.allowance();
+        self.delays(allowance, [before, after], &|delay| self.after(delay, allowance))
     }
 
     /// The delays of the ego's start \[s\] with which it meets this region while both agents are under way, rounded
@@ -39,14 +43,29 @@ impl<S: Scalar> RegionRef<'_, S> {
     ///
     /// Accuracy, lateness and cost are those of [`RegionRef::forbidden_delays`].
     pub fn passing_delays(&self) -> Interval<S> {
-        let possible = self.delays_of(self.ego_motion().time_in(self.length()));
-        let meets = |delay| self.contact_in_passing(delay);
-        let met = self.delays_inside().find(|&delay| possible.contains(delay) && meets(delay).is_some());
-        let end = |outside| {
-            let bracket = |inside| Bracket { inside, outside, resolution: self.resolution() };
-            met.map_or(outside, |met| bracket(met).shrunk(meets))
-        };
-        self.with_lateness(Interval::new(end(possible.lo), end(possible.hi)))
+        let allowance = self.allowance();
+        self.delays(allowance, [true; 2], &|delay| self.in_passing(delay, allowance))
+    }
+
+    /// The interval of delays around one inside, of which each end is either finite or not.
+    fn delays(&self, allowance: S, finite: [bool; 2], trial: &impl Fn(S) -> Trial<S>) -> Interval<S> {
+        let (near, far) = (self.near_delays(allowance), self.far_delays());
+        let met = self.delays_inside().find(|&delay| near.contains(delay) && trial(delay).is_inside());
+        let bracket = |ends| Bracket::new(met.unwrap_or(near.middle()), ends, self.resolution(), trial);
+        let end = |ends| bracket(ends).map(|bracket| met.map_or(bracket.outside(), |_| bracket.shrunk(trial)));
+        let [lo, hi] = [[near.lo.max(far.lo), far.lo], [near.hi.min(far.hi), far.hi]];
+        let lo = if finite[0] { end(lo) } else { None };
+        let hi = if finite[1] { end(hi) } else { None };
+        self.with_lateness(Interval::new(lo.unwrap_or(-S::LIMIT), hi.unwrap_or(S::LIMIT)))
+    }
+
+    /// How much farther apart than R the agents have to be at a delay for which the region is clear \[m\]: so much that all delays
+    /// beyond it are clear of R as well, whatever is rounded (docs/errors.md).
+    pub(super) fn allowance(&self) -> S {
+        let (ego, other) = (self.ego_motion(), self.other_motion());
+        // If both are under way at the same time, the ego's times are no later than this.
+        let latest = other.latest() + ego.profile().duration();
+        pad(ego, other, ego.way_until(latest) + other.reach()).double().double()
     }
 
     /// Delays with which the agents meet at points inside the region.
@@ -58,16 +77,25 @@ impl<S: Scalar> RegionRef<'_, S> {
         })
     }
 
-    /// The delays that the bounding box of the region allows.
-    fn possible_delays(&self) -> Interval<S> {
-        let Interval { lo, hi } = self.delays_of(self.ego_motion().time_in(self.length()));
-        let [before, after] = self.lets_pass();
-        Interval::new(if before { lo } else { -S::LIMIT }, if after { hi } else { S::LIMIT })
+    /// The delays that the bounding box of the region allows, where no end of a path belongs to it.
+    fn near_delays(&self, allowance: S) -> Interval<S> {
+        let own = self.ego_motion().time_in(self.length().widen(allowance, whole(self.ego_motion())));
+        self.delays_of(own, allowance)
     }
 
-    /// The delays that move the ego's times `own` \[s\] onto times at which the other agent is in the region.
-    pub(super) fn delays_of(&self, own: Interval<S>) -> Interval<S> {
-        let their = self.time();
+    /// The delays with which both agents can be under way at the same time, and that the format can represent.
+    fn far_delays(&self) -> Interval<S> {
+        let (own, their) = (self.ego_motion().time(), self.other_motion().time());
+        let slack = self.resolution();
+        let most = Interval::new(-S::LIMIT - own.lo, S::LIMIT - own.hi);
+        let most = Interval::new(most.lo.max(-S::LIMIT), most.hi.min(S::LIMIT));
+        Interval::new((their.lo - own.hi - slack).max(most.lo), (their.hi - own.lo + slack).min(most.hi))
+    }
+
+    /// The delays that move the ego's times `own` \[s\] onto times at which the other agent is in the region, or within a distance of it.
+    pub(super) fn delays_of(&self, own: Interval<S>, allowance: S) -> Interval<S> {
+        let other = self.other_motion();
+        let their = other.time_in(self.other_length().widen(allowance, whole(other)));
         // Differences of times have a rounding error of their own.
         let slack = self.resolution();
         Interval::new(their.lo - own.hi - slack, their.hi - own.lo + slack)
@@ -90,73 +118,96 @@ impl<S: Scalar> RegionRef<'_, S> {
         self.ego_motion().time().hull(self.other_motion().time()).resolution()
     }
 
-    /// The end of the forbidden delays, between a forbidden delay and one beyond the end.
-    fn end_of_delays(&self, inside: S, outside: S) -> S {
-        if outside.abs() >= S::LIMIT {
-            return outside;
-        }
-        Bracket { inside, outside, resolution: self.resolution() }.shrunk(|delay| self.contact_after(delay))
-    }
-
-    /// How long the ego is in contact in this region if it starts later by this delay; `None` if it is not.
-    fn contact_after(&self, delay: S) -> Option<S> {
+    /// What happens in this region if the ego starts later by this delay.
+    fn after(&self, delay: S, allowance: S) -> Trial<S> {
         // A start that the format cannot represent counts as forbidden.
-        self.ego_motion().delayed(delay).map_or(Some(S::ZERO), |ego| self.contact_of(&ego, self.length(), -S::LIMIT))
+        let Ok(ego) = self.ego_motion().delayed(delay) else { return Trial::Contact(S::ZERO) };
+        self.tried(&ego, self.length(), ego.time().hull(self.other_motion().time()), allowance)
     }
 
-    /// How long the ego is in contact in this region while both agents are under way, if it starts later by this delay;
-    /// `None` if it is not.
-    fn contact_in_passing(&self, delay: S) -> Option<S> {
-        let Ok(ego) = self.ego_motion().delayed(delay) else { return Some(S::ZERO) };
+    /// What happens in this region while both agents are under way, if the ego starts later by this delay.
+    fn in_passing(&self, delay: S, allowance: S) -> Trial<S> {
+        let Ok(ego) = self.ego_motion().delayed(delay) else { return Trial::Contact(S::ZERO) };
         let under_way = ego.time().common(self.other_motion().time());
         if under_way.lo > under_way.hi {
-            return None;
+            return Trial::Clear;
         }
-        self.contact_during(&ego, self.length(), under_way)
+        self.tried(&ego, self.length(), under_way, allowance)
     }
 
-    /// Duration \[s\] of the first contact of the ego on a part of this region from a time on, where `ego` is another
-    /// motion along its path; `None` if there is no contact.
-    pub(super) fn contact_of(&self, ego: &Motion<'_, S>, part: Interval<S>, from: S) -> Option<S> {
-        let Interval { lo, hi } = ego.time().hull(self.other_motion().time());
-        self.contact_during(ego, part, Interval::new(lo.max(from), hi))
-    }
-
-    /// The same during an interval of time \[s\].
-    fn contact_during(&self, ego: &Motion<'_, S>, part: Interval<S>, all: Interval<S>) -> Option<S> {
-        let other = self.other_motion();
+    /// What happens on a part of this region during an interval of time \[s\], where `ego` is another motion along the ego's path. It is
+    /// clear only if the agents are farther apart than R and the allowance whenever both are within the allowance of lengths of the region.
+    pub(super) fn tried(&self, ego: &Motion<'_, S>, part: Interval<S>, during: Interval<S>, allowance: S) -> Trial<S> {
+        let (ego, other) = (&ego.enlarged(allowance), self.other_motion());
         let encounter = Encounter::new(ego, other);
-        let (own, their) = (times(ego, part, all)?, times(other, self.other_length(), all)?);
-        let during = Interval::new(own.lo.max(their.lo), own.hi.min(their.hi));
-        // A contact is connected, hence belongs to one region; of a grazing contact only the deepest point may be
-        // inside. Regions cover everything within R, so a contact outside of all regions is a touch, within the
-        // allowance that `Encounter::new` adds to R.
+        // An agent is off the place of a time by less than the pad.
+        let beside = allowance + encounter.pad();
+        let near = |motion: &Motion<'_, S>, part: Interval<S>, during| {
+            times(motion, part.widen(beside, whole(motion)), during)
+        };
+        let both = |own, their, during| near(other, their, near(ego, own, during)?);
+        let Some(window) = both(part, self.other_length(), during) else { return Trial::Clear };
         let covers = |time: S| self.covers(ego.length_at(time), other.length_at(time));
-        let belongs = |contact: &Interval<S>| covers(contact.middle()) || covers(encounter.closest(*contact).time);
-        let mut contacts = (during.lo <= during.hi).then(|| encounter.contacts(during)).into_iter().flatten();
-        contacts.find(belongs).map(Interval::length)
+        let mut found = Trial::Clear;
+        for contact in encounter.contacts(window) {
+            let long = contact.length();
+            if covers(contact.middle()) {
+                return Trial::Contact(long);
+            }
+            let beside_pieces = self.pieces().filter_map(|piece| both(piece.length, piece.other_length, contact));
+            let Some(near) = beside_pieces.reduce(Interval::hull) else { continue };
+            let closest = encounter.closest(near);
+            if covers(near.middle()) || covers(closest.time) {
+                return Trial::Contact(long);
+            }
+            // Of a slight contact only the deepest point may be in the region, and `closest` may miss that by the tolerance.
+            let depth = encounter.radius() - allowance - closest.separation;
+            if depth <= encounter.tolerance() {
+                return Trial::Touch(long);
+            }
+            found = Trial::Elsewhere;
+        }
+        found
     }
 
-    /// The least delay from `delay` on with which the ego does not meet this region.
-    fn next_free(&self, delay: S) -> Option<S> {
-        let possible = self.possible_delays();
-        if !self.with_lateness(possible).contains(delay) {
-            return Some(delay);
-        }
+    /// The least delay from `delay` on with which the ego does not meet this region, and whether it is clear; if not, another region
+    /// forbids the delay. `strictly`, no such delay is returned.
+    fn next_free(&self, delay: S, strictly: bool) -> Option<(S, bool)> {
         if self.is_uncertain() {
+            let Interval { lo, hi } = self.near_delays(self.allowance());
+            let [before, after] = self.lets_pass();
+            let possible = Interval::new(if before { lo } else { -S::LIMIT }, if after { hi } else { S::LIMIT });
+            if !self.with_lateness(possible).contains(delay) {
+                return Some((delay, true));
+            }
             let forbidden = self.forbidden_delays();
             let end = if forbidden.lo <= delay { forbidden.hi.max(delay) } else { delay };
-            return (end < S::LIMIT).then_some(end);
+            return (end < S::LIMIT).then_some((end, true));
         }
-        if self.contact_after(delay).is_none() {
-            return Some(delay);
+        let trial = |delay| self.after(delay, S::ZERO);
+        match trial(delay) {
+            Trial::Clear => return Some((delay, true)),
+            Trial::Elsewhere if !strictly => return Some((delay, false)),
+            _ => {}
         }
-        (possible.hi < S::LIMIT).then(|| self.end_of_delays(delay, possible.hi))
+        let [_, after] = self.lets_pass();
+        if !after {
+            return None;
+        }
+        let (near, far) = (self.near_delays(S::ZERO).hi.max(delay), self.far_delays().hi);
+        let bracket = Bracket::new(delay, [near.min(far), far], self.resolution(), &trial)?;
+        Some((if strictly { bracket.outside() } else { bracket.shrunk(&trial) }, true))
     }
 }
 
+/// All lengths of the path of a motion.
+pub(super) fn whole<S: Scalar>(motion: &Motion<'_, S>) -> Interval<S> {
+    Interval::new(S::ZERO, motion.path().length())
+}
+
 /// The least delay of the ego's start, from `from` \[s\] on, with which it meets none of the regions. Pass the regions
-/// of its row in the table, or those with some of the other agents. `None` if no delay that the format can represent
+/// of its row in the table, or those with some of the other agents. With the result, [`Motion::delayed`] returns a motion that does not come
+/// nearer to the agents of these regions than the sum of the radii. `None` if no delay that the format can represent
 /// helps, or if `from` is no such number; then [`RegionRef::forbidden_delays`] of each region shows which ones forbid all late starts.
 ///
 /// Cost: a comparison of ranges for each region, and 10 to 30 searches for contacts for each region that is met.
@@ -181,23 +232,31 @@ pub fn earliest_start<'a, S: Scalar>(regions: impl Iterator<Item = RegionRef<'a,
     settle(regions, from, RegionRef::next_free)
 }
 
-/// The least value from `from` on that is free for all regions.
+/// The least value from `from` on that is free for all regions. `next_free` returns the next value at which one region is not met, and
+/// whether it is clear there.
 pub(super) fn settle<'a, S: Scalar>(
     regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
     from: S,
-    next_free: impl Fn(&RegionRef<'a, S>, S) -> Option<S>,
+    next_free: impl Fn(&RegionRef<'a, S>, S, bool) -> Option<(S, bool)>,
 ) -> Option<S> {
-    let mut delay = from;
-    // A region that was passed is not met again: one round for each region, and one that changes nothing.
-    for () in regions.clone().map(|_| ()).chain([()]) {
-        let mut later = delay;
-        for region in regions.clone() {
-            later = next_free(&region, later)?;
+    let mut value = from;
+    // Strictly, if a value that no region claims is not clear of all of them, or if they do not settle.
+    for strictly in [false, true] {
+        // A region that was passed is not met again: one round for each region, and one that changes nothing.
+        for () in regions.clone().map(|_| ()).chain([()]) {
+            let (mut later, mut clear) = (value, true);
+            for region in regions.clone() {
+                let (next, is_clear) = next_free(&region, later, strictly)?;
+                (later, clear) = (next, clear && is_clear);
+            }
+            if later <= value {
+                if clear {
+                    return Some(value);
+                }
+                break;
+            }
+            value = later;
         }
-        if later <= delay {
-            return Some(delay);
-        }
-        delay = later;
     }
     None
 }

@@ -5,38 +5,53 @@
 
 use crate::error::in_range;
 use crate::geometry::Interval;
-use crate::query::bracket::Bracket;
-use crate::query::delay::{earliest_start, settle};
+use crate::query::bracket::{Bracket, Trial};
+use crate::query::delay::{earliest_start, settle, whole};
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
 impl<S: Scalar> RegionRef<'_, S> {
     /// The least wait from `wait` on, at a length of the path, with which the ego does not meet the rest of this
-    /// region.
-    fn next_free_after(&self, at: S, wait: S) -> Option<S> {
-        let at = self.ego_motion().path().length().min(at);
+    /// region, and whether the rest is clear then (as `settle` asks).
+    fn next_free_after(&self, at: S, wait: S, strictly: bool) -> Option<(S, bool)> {
+        let (ego, other) = (self.ego_motion(), self.other_motion());
+        let at = ego.path().length().min(at);
         let part = Interval::new(self.length().lo.max(at), self.length().hi);
         if part.lo > part.hi {
-            return Some(wait);
+            return Some((wait, true));
         }
         // Standing at the end of the path belongs to the rest.
-        let ego = self.ego_motion();
         let leaves = self.leaves(at);
-        let contact =
-            |wait: S| ego.delayed(wait).map_or(Some(S::ZERO), |ego| self.contact_of(&ego, part, leaves + wait));
-        let own = ego.time_in(part);
-        let possible = self.with_lateness(self.delays_of(Interval::new(own.lo.max(leaves), own.hi.max(leaves))));
-        let parked = self.blocked(part, Interval::new(S::LIMIT, S::LIMIT)).next().is_some();
-        let stands = part.hi >= ego.path().length() || self.is_open_at_start();
-        let apart = wait >= possible.hi && !parked || wait < possible.lo && !stands;
-        // If agents may be late, all waits that the bounding box allows count as forbidden.
-        if apart || !self.is_uncertain() && contact(wait).is_none() {
-            return Some(wait);
+        // The motion with the wait is made by someone else, who rounds its times again.
+        let allowance = self.allowance();
+        let trial = |wait: S| {
+            let Ok(ego) = ego.delayed(wait) else { return Trial::Contact(S::ZERO) };
+            let Interval { lo, hi } = ego.time().hull(other.time());
+            self.tried(&ego, part, Interval::new(lo.max(leaves + wait).min(hi), hi), allowance)
+        };
+        let is_parked = || self.blocked(part, Interval::new(S::LIMIT, S::LIMIT)).next().is_some();
+        let own = ego.time_in(part.widen(allowance, whole(ego)));
+        let own = Interval::new(own.lo.max(leaves), own.hi.max(leaves));
+        if self.is_uncertain() {
+            // All waits that the bounding box allows count as forbidden.
+            let near = self.with_lateness(self.delays_of(own, allowance));
+            let (parked, stands) = (is_parked(), part.hi >= ego.path().length() || self.is_open_at_start());
+            let apart = wait >= near.hi && !parked || wait < near.lo && !stands;
+            return if apart { Some((wait, true)) } else { (!parked).then_some((near.hi, true)) };
         }
-        if self.is_uncertain() || parked {
-            return (!parked).then_some(possible.hi);
+        match trial(wait) {
+            Trial::Clear => return Some((wait, true)),
+            Trial::Elsewhere if !strictly => return Some((wait, false)),
+            _ => {}
         }
-        Some(Bracket { inside: wait, outside: possible.hi, resolution: self.resolution() }.shrunk(contact))
+        if is_parked() {
+            return None;
+        }
+        let most = S::LIMIT.min(S::LIMIT - ego.time().hi);
+        let far = (other.time().hi - leaves + self.resolution()).max(wait).min(most);
+        let near = self.delays_of(own, allowance).hi.max(wait).min(far);
+        let bracket = Bracket::new(wait, [near, far], self.resolution(), &trial)?;
+        Some((if strictly { bracket.outside() } else { bracket.shrunk(&trial) }, true))
     }
 
     /// The time at which the ego's motion leaves a length of its path.
@@ -58,6 +73,9 @@ impl<S: Scalar> RegionRef<'_, S> {
 /// the other agents. The length is clamped to the path; a wait at length 0 is a delay of the start. `None` if no wait
 /// helps, if the agent would be hit while it waits, or for an argument that is NaN or beyond [`Scalar::LIMIT`]. The
 /// function does not check that the agent can stop there; a motion that is at rest at this length can.
+///
+/// A motion that stands at this length longer by the result does not come nearer to the agents of these regions than the sum of the radii from then on, however
+/// its times are rounded when the wait is added to them.
 ///
 /// If the motion itself waits at this length, the additional wait comes after that. If the length cuts a region in two,
 /// a wait with which the agent would pass between the parts may be missed. If agents may be late, a wait that is
@@ -89,7 +107,7 @@ pub fn earliest_departure<'a, S: Scalar>(
         return earliest_start(regions, from);
     }
     let (length, from) = (in_range(length, "length").ok()?, in_range(from, "wait").ok()?);
-    let wait = settle(regions.clone(), from, |region, wait| region.next_free_after(length, wait))?;
+    let wait = settle(regions.clone(), from, |region, wait, strictly| region.next_free_after(length, wait, strictly))?;
     let longest = regions.map(|region| region.longest_wait(length)).fold(S::LIMIT, S::min);
     (wait <= S::ZERO || wait <= longest).then_some(wait)
 }
