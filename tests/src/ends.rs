@@ -7,10 +7,11 @@
 
 use crate::disc::{Course, Disc, Drive, Driven, Leg};
 use crate::generators::{Dice, drive, leg};
+use crate::oracle::Pair;
 use crate::outward::Total;
 use pcr_certify::motion::{Mover, meetings};
 use pcr_core::scalar::Micro;
-use pcr_core::{Encounter, Interval, Motion, Profile, RegionRef, earliest_start, least_duration, union};
+use pcr_core::{Encounter, Interval, Motion, Profile, RegionRef, earliest_start, excess, least_duration, union};
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_planning::certificate;
 use pcr_planning::fleet::{Format, build_ecm};
@@ -31,10 +32,14 @@ pub struct Ends {
     pub values: u64,
     /// Of these, ends of intervals and results of searches.
     pub ends: u64,
-    /// The least clearance at an end, in parts of the tolerance of the search there, and the number of the scene.
+    /// The least clearance at an end, in parts of [`excess`], and the number of the scene.
     pub least: Option<(f64, u64)>,
     /// Free values at which the motions are not apart.
     pub lost: Vec<String>,
+    /// Ends of deep regions that were compared with the exact ones.
+    pub compared: u64,
+    /// Those that are farther out than the bound says.
+    pub wide: Vec<String>,
 }
 
 impl Total for Ends {
@@ -43,6 +48,8 @@ impl Total for Ends {
         self.values += other.values;
         self.ends += other.ends;
         self.lost.extend_from_slice(&other.lost);
+        self.compared += other.compared;
+        self.wide.extend_from_slice(&other.wide);
         let both = [self.least, other.least].into_iter().flatten();
         self.least = both.min_by(|a, b| a.0.total_cmp(&b.0));
     }
@@ -64,31 +71,43 @@ impl Ends {
     }
 }
 
+/// Whether two motions are proved to be apart by more than a distance \[m\] during a time \[s\]. The headings are those at the starts of their paths.
+///
+/// # Panics
+/// If the checker does not take a motion of the library.
+pub fn apart<S: Format>(motions: [&Motion<'_, S>; 2], headings: [f64; 2], time: [f64; 2], more: f64) -> bool {
+    let mover = |place: usize| {
+        let heading = S::angle(headings[place]).expect("an angle");
+        let mut agent = certificate::agent(place as u64, motions[place], heading, &[]);
+        // Less than the radius of one disc may be taken from both.
+        let [own, their] = motions.map(|motion| motion.radius().to_f64());
+        agent.radius +=
+            if more < 0.0 { more * [own, their][place] / (own + their) } else { more * (1.0 - place as f64) };
+        Mover::new(&agent, time).expect("a motion of the library")
+    };
+    let found = meetings(&[mover(0), mover(1)]);
+    found.contacts.is_empty() && found.undecided.is_empty()
+}
+
 /// Two motions, and the headings at their starts.
 struct Both<'a, S: Format> {
     fleet: [Motion<'a, S>; 2],
-    headings: [S::Angle; 2],
+    headings: [f64; 2],
 }
 
 impl<S: Format> Both<'_, S> {
-    /// Whether the other agent and the ego in another motion along its path are proved to be apart, by more than a distance \[m\], during a time.
+    /// Whether the other agent and the ego in another motion along its path are proved to be apart.
     fn apart(&self, ego: &Motion<'_, S>, time: [f64; 2], more: f64) -> bool {
-        let mover = |place: usize, motion: &Motion<'_, S>| {
-            let mut agent = certificate::agent(place as u64, motion, self.headings[place], &[]);
-            agent.radius += if place == 0 { more } else { 0.0 };
-            Mover::new(&agent, time).expect("a motion of the library")
-        };
-        let found = meetings(&[mover(0, ego), mover(1, &self.fleet[1])]);
-        found.contacts.is_empty() && found.undecided.is_empty()
+        apart([ego, &self.fleet[1]], self.headings, time, more)
     }
 
-    /// The largest clearance up to three tolerances for which they are apart, in parts of the tolerance.
+    /// The largest clearance up to 16 ε for which they are apart, in parts of ε.
     fn clearance(&self, ego: &Motion<'_, S>, time: [f64; 2]) -> f64 {
-        let tolerance = Encounter::new(ego, &self.fleet[1]).tolerance().to_f64();
-        let (mut least, mut most) = (0.0, 3.0);
-        for _ in 0..8 {
+        let unit = excess(ego, &self.fleet[1]).to_f64();
+        let (mut least, mut most) = (0.0, 16.0);
+        for _ in 0..11 {
             let middle = 0.5 * (least + most);
-            if self.apart(ego, time, middle * tolerance) {
+            if self.apart(ego, time, middle * unit) {
                 least = middle;
             } else {
                 most = middle;
@@ -107,6 +126,52 @@ impl<S: Format> Both<'_, S> {
             let least = self.clearance(ego, time);
             if found.least.is_none_or(|(known, _)| least < known) {
                 found.least = Some((least, 0));
+            }
+        }
+    }
+}
+
+impl<S: Format> Both<'_, S> {
+    /// Compares the ends of what deep regions forbid: just inside of an end, discs that are larger by what the bound allows meet.
+    fn compare<'r>(&self, row: impl Iterator<Item = RegionRef<'r, S>>, discs: [&Disc; 2], found: &mut Ends)
+    where
+        S: 'r,
+    {
+        let pair = Pair::new(discs[0], discs[1]);
+        let all = self.fleet[0].time().hull(self.fleet[1].time());
+        let latest = all.lo.abs().max(all.hi.abs());
+        let resolution = S::tolerance(all.length()).max(S::rounding(latest).double().double());
+        for region in row {
+            let lengths = region.other_length();
+            let depths =
+                (1..16).map(|k| lengths.lo.to_f64() + lengths.length().to_f64() * f64::from(k) / 16.0).flat_map(|at| {
+                    let at = region.other_motion().time_in(Interval::new(S::from_f64(at), S::from_f64(at))).lo;
+                    let s = region.other_motion().length_at(at).to_f64();
+                    let slices: Vec<f64> =
+                        region.slice_at(at).map(|slice| pair.clearance(s, slice.middle().to_f64())).collect();
+                    slices
+                });
+            let tolerance = Encounter::new(&self.fleet[0], &self.fleet[1]).tolerance().to_f64();
+            if depths.fold(f64::INFINITY, f64::min) > -8.0 * tolerance {
+                continue;
+            }
+            for (what, passing, Interval { lo, hi }) in
+                [("delay", false, region.forbidden_delays()), ("passing", true, region.passing_delays())]
+            {
+                for (end, inward) in [(lo, resolution.double()), (hi, -resolution.double())] {
+                    let Ok(ego) = self.fleet[0].delayed(end + inward) else { continue };
+                    if end.abs() >= S::LIMIT {
+                        continue;
+                    }
+                    // An allowance and a tolerance; the times that the allowance is for may be later than these.
+                    let more = 3.0 * tolerance.max(Encounter::new(&ego, &self.fleet[1]).tolerance().to_f64());
+                    let (own, their) = (ego.time(), self.fleet[1].time());
+                    let under_way = [own.lo.max(their.lo).to_f64(), own.hi.min(their.hi).to_f64()];
+                    found.compared += 1;
+                    if self.apart(&ego, if passing { under_way } else { ALWAYS }, more) {
+                        found.wide.push(format!("{what} {end:?}"));
+                    }
+                }
             }
         }
     }
@@ -161,8 +226,7 @@ pub fn judged<S: Format>(scene: &Scene, beyond: bool, seed: u64) -> Option<Ends>
     let dice = &mut Dice::seeded(seed ^ 0x5eed);
     let courses = scene.each_ref().map(fitted::<S>);
     let [Some((own, (disc, ..))), Some((their, (other, ..)))] = courses else { return None };
-    let headings = [disc.start[2], other.start[2]].map(|heading| S::angle(heading).expect("an angle"));
-    let both = Both { fleet: [own.motion(), their.motion()], headings };
+    let both = Both { fleet: [own.motion(), their.motion()], headings: [disc.start[2], other.start[2]] };
     let fleet = &both.fleet;
     let ecm = build_ecm(fleet).ok()?;
     let row = || ecm.row(fleet, 0).expect("the table of the fleet");
@@ -186,6 +250,9 @@ pub fn judged<S: Format>(scene: &Scene, beyond: bool, seed: u64) -> Option<Ends>
         if time[0] <= time[1] {
             both.judge("passing", delay, &ego, time, is_end, &mut found);
         }
+    }
+    if beyond {
+        both.compare(row(), [&disc, &other], &mut found);
     }
     for from in [S::ZERO, fleet[1].time().lo - fleet[0].time().hi] {
         if let Some(delay) = earliest_start(row(), from) {
@@ -292,7 +359,7 @@ pub fn scenes<S: Format>(first: u64, count: u64) -> Ends {
 
 fn numbered(mut found: Ends, seed: u64) -> Ends {
     found.least = found.least.map(|(least, _)| (least, seed));
-    found.lost.iter_mut().for_each(|lost| *lost = format!("scene {seed}: {lost}"));
+    found.lost.iter_mut().chain(&mut found.wide).for_each(|value| *value = format!("scene {seed}: {value}"));
     found
 }
 
@@ -355,7 +422,8 @@ mod tests {
 
     #[test]
     fn a_row_is_one_of_a_table() {
-        let found = Ends { scenes: 7, values: 1_234, ends: 50, least: Some((0.25, 3)), lost: vec![String::new()] };
+        let found =
+            Ends { scenes: 7, values: 1_234, least: Some((0.25, 3)), lost: vec![String::new()], ..Ends::default() };
         let row = "| <a id=\"f-q16\"></a>`q16` | 1 | 7 | 1234 | 0.250 | 3 |";
         assert_eq!(found.row("q16"), row);
         let columns = |line: &str| line.matches('|').count();

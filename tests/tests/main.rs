@@ -19,6 +19,7 @@ mod delays_published;
 mod delays_straight;
 mod documents;
 mod earned;
+mod ends;
 mod exclusions;
 mod exclusions_audit;
 mod exclusions_forms;

@@ -7,6 +7,7 @@ use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::{Fleet, Format, build_ecm};
 use pcr_tests::disc::{Course, Disc, Driven};
+use pcr_tests::ends::{apart, scene};
 use pcr_tests::generators::{Dice, drive, leg};
 use std::f64::consts::PI;
 
@@ -116,4 +117,62 @@ fn a_touch_does_not_hide_a_collision() {
     let conflict = overlap.conflict;
     assert!((conflict.depth - 0.118).abs() < 1e-3 && (conflict.time.lo - 29.604).abs() < 1e-3, "{conflict:?}");
     assert!((conflict.time.hi - 30.343).abs() < 1e-3, "to its end: {conflict:?}");
+}
+
+/// A touch is no deeper than the tolerance: discs that are smaller by it are apart. In `Q12` it was deeper by a fifth.
+fn touches_are_slight<S: Format>(cases: u64) {
+    let mut touches = 0;
+    for seed in 0..cases {
+        let [own, their] = scene::<S>(seed).each_ref().map(Course::<S>::rounded);
+        let (Some((own, (disc, ..))), Some((their, (other, ..)))) = (own, their) else { continue };
+        let fleet = [own.motion(), their.motion()];
+        let Ok(ecm) = build_ecm(&fleet) else { continue };
+        let tolerance = Encounter::new(&fleet[0], &fleet[1]).tolerance().to_f64();
+        let speed = fleet.iter().map(|motion| motion.profile().top_speed().to_f64()).fold(0.1, f64::max);
+        for region in ecm.row(&fleet, 0).expect("the table of the fleet") {
+            let Interval { lo, hi } = region.forbidden_delays();
+            let ends = [(lo, 1.0), (hi, -1.0)].into_iter().filter(|(end, _)| end.abs() < S::LIMIT);
+            // Contacts get deeper by up to the top speed times the way inward.
+            let inside = ends.flat_map(|(end, inward)| {
+                (1..12).map(move |k| end + S::from_f64(inward * f64::from(k) * 0.2 * tolerance / speed))
+            });
+            for ego in inside.filter_map(|delay| fleet[0].delayed(delay).ok()) {
+                let pair = Encounter::new(&ego, &fleet[1]);
+                for conflict in pair.conflicts(pair.time()).filter(|conflict| conflict.touching) {
+                    touches += 1;
+                    let time = [conflict.time.lo.to_f64(), conflict.time.hi.to_f64()];
+                    let headings = [disc.start[2], other.start[2]];
+                    let less = -pair.tolerance().to_f64();
+                    assert!(apart([&ego, &fleet[1]], headings, time, less), "{}, {seed}: {conflict:?}", S::NAME);
+                }
+            }
+        }
+    }
+    assert!(touches > 20, "{}: {touches}", S::NAME);
+}
+
+#[test]
+fn a_touch_is_no_deeper_than_the_tolerance() {
+    let cases = if cfg!(optimized) { 1_000 } else { 150 };
+    touches_are_slight::<f64>(cases);
+    touches_are_slight::<f32>(cases);
+    touches_are_slight::<Micro>(cases);
+    touches_are_slight::<Q12>(cases);
+    touches_are_slight::<Q16>(cases);
+    touches_are_slight::<Q20>(cases);
+}
+
+/// Two motions to plan with that an adversary found: they were said to touch, and the true discs overlapped by 1.6e-9 m.
+#[test]
+fn discs_do_not_touch_where_those_to_plan_with_do() {
+    let scenario = Scenario::from_json(include_str!("../data/cases/touch-for-plan.json")).expect("a scenario");
+    let fleet = Fleet::<f64>::new(&scenario).expect("a fleet");
+    let motions = fleet.motions();
+    let planned: Vec<_> = motions.iter().map(|motion| motion.for_plan().expect("in range")).collect();
+    let pair = Encounter::new(&planned[0], &planned[1]);
+    let headings = [0, 1].map(|k| scenario.agents[k].start[2]);
+    let is_apart = apart([&motions[0], &motions[1]], headings, [f64::NEG_INFINITY, f64::INFINITY], 0.0);
+    let all_touch = pair.conflicts(pair.time()).all(|conflict| conflict.touching);
+    assert!(is_apart || !all_touch, "{:?}", pair.conflicts(pair.time()).collect::<Vec<_>>());
+    assert!(!is_apart, "the case is one of an overlap");
 }
