@@ -54,6 +54,17 @@ MUTANTS = [
     (("pcr-core/src/pair/events.rs", "slack.double().double().double().double()", "slack.double()"), ["e-wraps"]),
     (("pcr-core/src/crossing.rs", "slack.double().double()", "slack.double()"), ["e-crossings"]),
     ((FLOAT, "heading: 1_024.0", "heading: 16_777_216.0"), ["e-headings"]),
+    # Free values: what a search leaves for rounding, what it takes for clear, and what is a touch.
+    (("pcr-core/src/query/delay.rs", "other.reach()).double().double()", "other.reach()).double()"), ["e-delays"]),
+    (("pcr-core/src/query/delay.rs", "other.latest() + ego.profile().duration()", "ego.profile().duration()"), ["e-delays"]),
+    (("pcr-core/src/query/delay.rs", "allowance + encounter.pad()", "allowance"), ["e-free"]),
+    (("pcr-core/src/query/bracket.rs", "if end == clear {", "if true {"), ["e-free"]),
+    (("pcr-core/src/query/bracket.rs", "if found == Trial::Clear {", "if found != Trial::Elsewhere {"), ["e-free"]),
+    (("pcr-core/src/query/stretch.rs", "+ leap + noise", "+ leap"), ["e-durations"]),
+    (("pcr-core/src/query/clearance.rs", "tolerance().half().half().half();", "tolerance().half();"), ["e-touches"]),
+    (("pcr-core/src/query/conflict.rs", "self.tolerance().half(),", "self.tolerance(),"), ["e-touches"]),
+    (row("e-delays", "2 + 1 + 0.015625", "2 + 2 + 0.015625"), ["e-delays"]),
+    (row("e-touches", "2 * 0.125 + 0.25", "2 * 0.5 + 0.25"), ["e-touches"]),
     # Sine and cosine: a part of a quarter turn, and a coefficient.
     ((TRIG, "1.570_796_326_734_125_6", "1.570_796_326_744_125_6"), ["e-sine"]),
     ((TRIG, "1.570_796_326_734_125_6", "1.570_796_326_734_225_6"), ["e-sine"]),

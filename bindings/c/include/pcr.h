@@ -279,7 +279,7 @@ typedef struct PcrConflict {
    */
   float depth;
   /*
-   Whether the depth is at most the tolerance: it may then be no contact.
+   Whether it is so slight that it may be no contact; it is then no deeper than the tolerance.
    */
   bool touching;
 } PcrConflict;

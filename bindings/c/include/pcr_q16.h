@@ -282,7 +282,7 @@ typedef struct PcrQ16Conflict {
    */
   int32_t depth;
   /*
-   Whether the depth is at most the tolerance: it may then be no contact.
+   Whether it is so slight that it may be no contact; it is then no deeper than the tolerance.
    */
   bool touching;
 } PcrQ16Conflict;

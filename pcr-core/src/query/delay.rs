@@ -25,12 +25,12 @@ impl<S: Scalar> RegionRef<'_, S> {
     /// earlier starts. An end of magnitude [`Scalar::LIMIT`] stands for infinity. If agents may be late
     /// ([`Motion::with_lateness`]), these are the delays with which they may meet.
     ///
-    /// With a delay outside of the interval, also at its ends, [`Motion::delayed`] returns a motion that does not meet this region, not even
-    /// within rounding. The interval exceeds the exact one by at most [`Scalar::tolerance`] of the time from the first start to the last
-    /// arrival, or four [`Scalar::rounding`] of the latest time if that is more, and by what a distance of twice
-    /// [`Encounter::tolerance`] changes; by more only where pieces of another region of the pair lie beside those of this one and the agents meet there
-    /// as well, or, for discs that hardly touch, up to the delays that the bounding box of the region allows
-    /// ([docs/errors.md](https://docs.rs/pcr-core), "Delays and durations"). Cost: 10 to 30 searches for contacts for each finite end.
+    /// With a delay outside of the interval, and at its ends, [`Motion::delayed`] returns a motion that does not come nearer to the other agent than
+    /// the sum of the radii in this region. The interval is longer than the exact one by at most what discs make of it that are larger by three
+    /// [`Encounter::tolerance`], and at each end by [`Scalar::tolerance`] of the time from the first start to the last arrival, or four
+    /// [`Scalar::rounding`] of the latest time if that is more. (`docs/errors.md` derives this.) There are two exceptions: where the agents also meet in another
+    /// region of their pair whose pieces lie beside those of this one, an end may be that of the other; and for a region in
+    /// which the discs hardly touch, the result may be all delays that its bounding box allows. Cost: 10 to 30 searches for contacts for each finite end.
     pub fn forbidden_delays(&self) -> Interval<S> {
         let [before, after] = self.lets_pass();
         let allowance = self.allowance();

@@ -96,7 +96,7 @@ pub struct PcrConflict {
     pub other_length: PcrInterval,
     /// Largest overlap of the discs (m).
     pub depth: Real,
-    /// Whether the depth is at most the tolerance: it may then be no contact.
+    /// Whether it is so slight that it may be no contact; it is then no deeper than the tolerance.
     pub touching: bool,
 }
 

@@ -221,7 +221,9 @@ impl Delays {
                 let Interval { lo, hi } = region.passing_delays();
                 Interval::new(-hi, -lo)
             } else {
-                own.time_in(region.length())
+                // A vehicle that hardly moves may be at a length much earlier than it is computed to be.
+                let Interval { lo, hi } = region.length();
+                own.time_in(Interval::new(lo - own.lag(), hi + own.lag()))
             });
         })?;
         found.extend(union(all.into_iter()).map(|Interval { lo, hi }| match b < ways {
