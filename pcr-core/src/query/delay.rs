@@ -54,8 +54,10 @@ impl<S: Scalar> RegionRef<'_, S> {
         let bracket = |ends| Bracket::new(met.unwrap_or(near.middle()), ends, self.resolution(), trial);
         let end = |ends| bracket(ends).map(|bracket| met.map_or(bracket.outside(), |_| bracket.shrunk(trial)));
         let [lo, hi] = [[near.lo.max(far.lo), far.lo], [near.hi.min(far.hi), far.hi]];
-        let lo = if finite[0] { end(lo) } else { None };
-        let hi = if finite[1] { end(hi) } else { None };
+        // A delay that is free, but out of the range of the format, was not tried. No motion can have it.
+        let beyond = [near.lo < far.lo, near.hi > far.hi];
+        let lo = if finite[0] { end(lo).or(beyond[0].then_some(near.lo.max(-S::LIMIT))) } else { None };
+        let hi = if finite[1] { end(hi).or(beyond[1].then_some(near.hi.min(S::LIMIT))) } else { None };
         self.with_lateness(Interval::new(lo.unwrap_or(-S::LIMIT), hi.unwrap_or(S::LIMIT)))
     }
 

@@ -29,8 +29,8 @@ impl<S: Scalar> RegionRef<'_, S> {
     /// the upper end to the same divided by the lower end. An upper end of [`Scalar::LIMIT`] stands for infinity. `N`
     /// must be at least the number of phases of the motion.
     ///
-    /// With a duration outside of the interval, also at its ends, [`Profile::stretched`] returns a profile with which the ego does not meet this region,
-    /// not even within rounding. The interval exceeds the exact one by as much as that of [`RegionRef::forbidden_delays`]; and in fixed point, where a
+    /// With a duration outside of the interval, and at its ends, [`Profile::stretched`] returns a profile with which the ego does not come nearer to the
+    /// other agent than the sum of the radii in this region. The interval exceeds the exact one by as much as that of [`RegionRef::forbidden_delays`]; and in fixed point, where a
     /// stretched profile has speeds of few digits, by what the distance changes that an agent goes at one last digit of a speed
     /// until the other one has left the region. If the start time cuts off all but a small part of the
     /// region, or if agents may be late, the result may be all durations that the bounding box of the region allows.
@@ -39,26 +39,28 @@ impl<S: Scalar> RegionRef<'_, S> {
     /// # Errors
     /// [`Invalid::Full`] if the motion has more than `N` phases and a duration has to be tried.
     pub fn forbidden_durations<const N: usize>(&self) -> Result<Option<Interval<S>>, Invalid> {
-        let own = self.allowance();
+        let whole = self.ego_motion().profile().duration();
+        let own = if whole > S::ZERO { self.allowance_in(whole) } else { self.allowance() };
         let Some(possible) = self.possible_durations(own) else {
             return Ok(None);
         };
+        if self.is_uncertain() {
+            return Ok(Some(possible));
+        }
         let (mut met, mut full) = (None, None);
-        if !self.is_uncertain() {
-            // The start time may cut off all but a corner of the region.
-            let eighth = possible.length().half().half().half();
-            let even = [(); 7].iter().scan(possible.lo, |place, ()| {
-                *place = *place + eighth;
-                Some(*place)
-            });
-            let points = self.inner_points().map(|[length, other_length]| self.duration_to_meet(length, other_length));
-            for duration in points.chain(even) {
-                if met.is_none() && duration > S::ZERO && possible.contains(duration) {
-                    let allowance = self.allowance_in(duration);
-                    let trial = self.tried_in::<N>(duration, allowance);
-                    full = full.or(trial.err());
-                    met = trial.is_ok_and(Trial::is_inside).then_some((duration, allowance));
-                }
+        // The start time may cut off all but a corner of the region.
+        let eighth = possible.length().half().half().half();
+        let even = [(); 7].iter().scan(possible.lo, |place, ()| {
+            *place = *place + eighth;
+            Some(*place)
+        });
+        let points = self.inner_points().map(|[length, other_length]| self.duration_to_meet(length, other_length));
+        for duration in points.chain(even) {
+            if met.is_none() && duration > S::ZERO && possible.contains(duration) {
+                let allowance = self.allowance_in(duration);
+                let trial = self.tried_in::<N>(duration, allowance);
+                full = full.or(trial.err());
+                met = trial.is_ok_and(Trial::is_inside).then_some((duration, allowance));
             }
         }
         if let Some(full) = full {
@@ -72,8 +74,9 @@ impl<S: Scalar> RegionRef<'_, S> {
             Some(met.map_or(bracket.outside(), |_| bracket.shrunk(&trial)))
         };
         let is_finite = |end: S| S::ZERO < end && end < S::LIMIT;
-        let ends = [(possible.lo, S::ZERO), (possible.hi, S::LIMIT)];
-        let [lo, hi] = ends.map(|(near, far)| if is_finite(near) { end(near, far).unwrap_or(far) } else { near });
+        let lo = if is_finite(possible.lo) { end(possible.lo, S::ZERO).unwrap_or(S::ZERO) } else { possible.lo };
+        let most = self.longest_duration().max(possible.hi);
+        let hi = if is_finite(possible.hi) { end(possible.hi, most).unwrap_or(S::LIMIT) } else { possible.hi };
         Ok(Some(Interval::new(lo, hi)))
     }
 
@@ -122,12 +125,17 @@ impl<S: Scalar> RegionRef<'_, S> {
             return None;
         }
         let lo = if never { S::ZERO } else { scaled(then.lo, latest) - slack };
-        let most = S::LIMIT - start.max(S::ZERO);
+        let most = self.longest_duration();
         // If it is longer than all that the format has, a shorter one may be clear.
         let longest = if soonest > S::ZERO { (scaled(then.hi, soonest) + slack).min(most) } else { most };
         let hi = if ever { S::LIMIT } else { longest };
         // None, if all of them are longer than any that the format has.
         (lo <= S::LIMIT).then(|| Interval::new(lo.max(S::ZERO), hi.max(lo).max(S::ZERO)))
+    }
+
+    /// The longest duration of the ego's motion that the format can represent.
+    fn longest_duration(&self) -> S {
+        S::LIMIT - self.ego_motion().time().lo.max(S::ZERO)
     }
 
     /// What happens in this region with this duration of the ego's motion.
@@ -164,7 +172,8 @@ impl<S: Scalar> RegionRef<'_, S> {
         if near >= S::LIMIT {
             return None;
         }
-        let Some(bracket) = Bracket::new(duration, [near, S::LIMIT], self.resolution(), &trial) else {
+        let far = self.longest_duration().max(near);
+        let Some(bracket) = Bracket::new(duration, [near, far], self.resolution(), &trial) else {
             lost.set(true);
             return None;
         };
