@@ -55,9 +55,9 @@ impl<S: Scalar> RegionRef<'_, S> {
         let end = |ends| bracket(ends).map(|bracket| met.map_or(bracket.outside(), |_| bracket.shrunk(trial)));
         let [lo, hi] = [[near.lo.max(far.lo), far.lo], [near.hi.min(far.hi), far.hi]];
         // A delay that is free, but out of the range of the format, was not tried. No motion can have it.
-        let beyond = [near.lo < far.lo, near.hi > far.hi];
-        let lo = if finite[0] { end(lo).or(beyond[0].then_some(near.lo.max(-S::LIMIT))) } else { None };
-        let hi = if finite[1] { end(hi).or(beyond[1].then_some(near.hi.min(S::LIMIT))) } else { None };
+        let apart = self.apart_delays();
+        let lo = if finite[0] { end(lo).or((apart.lo < far.lo).then_some(apart.lo.max(-S::LIMIT))) } else { None };
+        let hi = if finite[1] { end(hi).or((apart.hi > far.hi).then_some(apart.hi.min(S::LIMIT))) } else { None };
         self.with_lateness(Interval::new(lo.unwrap_or(-S::LIMIT), hi.unwrap_or(S::LIMIT)))
     }
 
@@ -85,13 +85,17 @@ impl<S: Scalar> RegionRef<'_, S> {
         self.delays_of(own, allowance)
     }
 
-    /// The delays with which both agents can be under way at the same time, and that the format can represent.
+    /// The delays with which both agents can be under way at the same time.
+    fn apart_delays(&self) -> Interval<S> {
+        let (own, their, slack) = (self.ego_motion().time(), self.other_motion().time(), self.resolution());
+        Interval::new(their.lo - own.hi - slack, their.hi - own.lo + slack)
+    }
+
+    /// Those of them that the format can represent.
     fn far_delays(&self) -> Interval<S> {
-        let (own, their) = (self.ego_motion().time(), self.other_motion().time());
-        let slack = self.resolution();
-        let most = Interval::new(-S::LIMIT - own.lo, S::LIMIT - own.hi);
-        let most = Interval::new(most.lo.max(-S::LIMIT), most.hi.min(S::LIMIT));
-        Interval::new((their.lo - own.hi - slack).max(most.lo), (their.hi - own.lo + slack).min(most.hi))
+        let (own, apart) = (self.ego_motion().time(), self.apart_delays());
+        let most = Interval::new((-S::LIMIT - own.lo).max(-S::LIMIT), (S::LIMIT - own.hi).min(S::LIMIT));
+        Interval::new(apart.lo.max(most.lo), apart.hi.min(most.hi))
     }
 
     /// The delays that move the ego's times `own` \[s\] onto times at which the other agent is in the region, or within a distance of it.
