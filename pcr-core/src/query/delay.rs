@@ -190,6 +190,10 @@ impl<S: Scalar> RegionRef<'_, S> {
             let end = if forbidden.lo <= delay { forbidden.hi.max(delay) } else { delay };
             return (end < S::LIMIT).then_some((end, true));
         }
+        // No motion can have a delay that is out of range: who tries is told so.
+        if self.ego_motion().delayed(delay).is_err() {
+            return Some((delay, true));
+        }
         let trial = |delay| self.after(delay, S::ZERO);
         match trial(delay) {
             Trial::Clear => return Some((delay, true)),
@@ -201,7 +205,10 @@ impl<S: Scalar> RegionRef<'_, S> {
             return None;
         }
         let (near, far) = (self.near_delays(S::ZERO).hi.max(delay), self.far_delays().hi);
-        let bracket = Bracket::new(delay, [near.min(far), far], self.resolution(), &trial)?;
+        let Some(bracket) = Bracket::new(delay, [near.min(far), far], self.resolution(), &trial) else {
+            let apart = self.apart_delays().hi;
+            return (far < apart && apart < S::LIMIT).then_some((apart, true));
+        };
         Some((if strictly { bracket.outside() } else { bracket.shrunk(&trial) }, true))
     }
 }
@@ -213,8 +220,8 @@ pub(super) fn whole<S: Scalar>(motion: &Motion<'_, S>) -> Interval<S> {
 
 /// The least delay of the ego's start, from `from` \[s\] on, with which it meets none of the regions. Pass the regions
 /// of its row in the table, or those with some of the other agents. With the result, [`Motion::delayed`] returns a motion that does not come
-/// nearer to the agents of these regions than the sum of the radii. `None` if no delay that the format can represent
-/// helps, or if `from` is no such number; then [`RegionRef::forbidden_delays`] of each region shows which ones forbid all late starts.
+/// nearer to the agents of these regions than the sum of the radii, or refuses if all delays that would help are out of range. `None` if no delay
+/// helps, or if `from` is no number that the format can represent; then [`RegionRef::forbidden_delays`] of each region shows which ones forbid all late starts.
 ///
 /// Cost: a comparison of ranges for each region, and 10 to 30 searches for contacts for each region that is met.
 ///
