@@ -10,6 +10,7 @@
 //! paper      the embedded scenario and the paper's numbers
 //! plane      points and angles of the plane
 //! random     random numbers that are the same on every machine
+//! vda5050    messages of VDA 5050, and the rules for orders        Order, OrderState
 //! warning    codes of warnings                                  WarningCode
 //! yaml       YAML with the place of every value                 Document
 //! ```
@@ -26,5 +27,6 @@ pub mod paper;
 pub mod plane;
 pub mod random;
 pub mod scenario;
+pub mod vda5050;
 pub mod warning;
 pub mod yaml;

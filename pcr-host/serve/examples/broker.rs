@@ -5,13 +5,13 @@
 //! `cargo run --release -p pcr-serve --example broker -- PCR VEHICLES RATE SECONDS [CORE]` starts mosquitto and `PCR serve`, which is the
 //! tool, built with its feature `serve`, with a journal on the disc; on one core alone if that is named (`taskset`).
 
+use pcr_formats::vda5050::header::Header;
+use pcr_formats::vda5050::order::Order;
+use pcr_formats::vda5050::topics::{Interface, Key, Kind};
+use pcr_formats::vda5050::version::Version;
 use pcr_serve::course::Start;
 use pcr_serve::vda5050::bridge::Publish;
-use pcr_serve::vda5050::header::Header;
 use pcr_serve::vda5050::mqtt::{Broker, Link, News};
-use pcr_serve::vda5050::order::Order;
-use pcr_serve::vda5050::topics::{Interface, Key, Kind};
-use pcr_serve::vda5050::version::Version;
 use pcr_serve::vehicles::drive::Abilities;
 use pcr_serve::vehicles::vehicle::Vehicle;
 use pcr_serve::vehicles::world::profile;

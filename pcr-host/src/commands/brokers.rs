@@ -1,8 +1,8 @@
 //! Brokers of VDA 5050 on the command line, and what `pcr serve` and `pcr fleet` have in common there.
 
 use super::Stop;
+use pcr_formats::vda5050::topics::Interface;
 use pcr_serve::vda5050::mqtt::Broker;
-use pcr_serve::vda5050::topics::Interface;
 
 /// Least width and lookahead for vehicles of VDA 5050: they are told to stop, and say where they are, so much before where they may be \[m\]; and
 /// they say so less often \[s\].

@@ -1,10 +1,15 @@
-//! Messages of VDA 5050 about one vehicle: the updates of an order are joined with it.
+//! Messages of VDA 5050 about one vehicle: an order is joined with its updates, by the rules that vehicles apply
+//! ([`OrderState`]).
 //!
-//! An update begins at a node of the order, by its `sequenceId`, and replaces all that follows there. A message that is
-//! sent again counts once. Anything else about the same vehicle would make two of it, and is refused.
+//! A message that is sent again counts once. An update that a vehicle would refuse is refused: the vehicle goes on with the order that
+//! it has, so the file does not say what its sender meant. Anything else about the same vehicle would make two of it, and is refused.
 
-use super::ImportError;
 use super::value::Object;
+use super::{ImportError, Warnings};
+use crate::vda5050::decode::{Refusal, from_value};
+use crate::vda5050::order::Order;
+use crate::vda5050::order_state::OrderState;
+use crate::vda5050::version::Version;
 use serde_json::Value;
 use std::collections::{HashMap, HashSet};
 
@@ -15,8 +20,9 @@ fn vehicle(message: &Value) -> Result<Option<[&str; 2]>, ImportError> {
     Ok(Some([text("manufacturer")?, text("serialNumber")?]).filter(|[_, serial]| !serial.is_empty()))
 }
 
-/// The messages, of which no two are about one vehicle; in the order of the first ones.
-pub(super) fn joined(messages: Vec<Value>) -> Result<Vec<Value>, ImportError> {
+/// Joins the messages so that no two are about one vehicle; in the order of the first ones. With `--partial` updates that are refused are
+/// left out.
+pub(super) fn joined(messages: Vec<Value>, warnings: &mut Warnings) -> Result<Vec<Value>, ImportError> {
     let mut vehicles: Vec<Vec<Value>> = Vec::new();
     let mut places = HashMap::new();
     for message in messages {
@@ -33,65 +39,93 @@ pub(super) fn joined(messages: Vec<Value>) -> Result<Vec<Value>, ImportError> {
     if let Some([_, serial]) = places.keys().find(|[maker, serial]| maker.is_empty() && made.contains(serial)) {
         return Err(ImportError::new(format!("vehicle {serial}: its manufacturer is not in all messages")));
     }
-    vehicles.into_iter().map(of_one).collect()
+    vehicles.into_iter().map(|messages| of_one(messages, warnings)).collect()
 }
 
-/// The one message that several about one vehicle amount to.
-fn of_one(messages: Vec<Value>) -> Result<Value, ImportError> {
-    let order = |message: &Value| message.get("nodes").and(message.get("orderId")).cloned();
-    let all: Vec<_> = messages.iter().map(order).collect();
-    if all.len() > 1 && all.iter().any(|order| order.is_none() || *order != all[0]) {
-        let serial = messages.first().map_or(Ok(None), vehicle)?.unwrap_or_default()[1];
-        let problem = "several messages are about it; one order with its updates, or one state is expected";
+/// Joins the messages about one vehicle to one.
+fn of_one(messages: Vec<Value>, warnings: &mut Warnings) -> Result<Value, ImportError> {
+    let serial = messages.first().map_or(Ok(None), vehicle)?.unwrap_or_default()[1].to_owned();
+    if let Some(action) = messages.iter().find_map(halting_action) {
+        let problem = format!("{action} is sent to it; where it stops then is not in the file: give its state instead");
         return Err(ImportError::new(format!("vehicle {serial}: {problem}")));
     }
-    if all.len() > 1 { with_updates(messages) } else { messages.into_iter().next().ok_or_else(none) }
+    let order = |message: &Value| message.get("nodes").and(message.get("orderId")).cloned();
+    let all: Vec<_> = messages.iter().map(order).collect();
+    match all.first() {
+        Some(None) if all.len() == 1 => messages.into_iter().next().ok_or_else(none),
+        Some(Some(first)) if all.iter().all(|order| order.as_ref() == Some(first)) => with_updates(messages, warnings),
+        _ => {
+            let problem = "several messages are about it; one order with its updates, or one state is expected";
+            Err(ImportError::new(format!("vehicle {serial}: {problem}")))
+        }
+    }
 }
 
 fn none() -> ImportError {
     ImportError::new("there is no message")
 }
 
-/// An order with its updates, in any order.
-fn with_updates(messages: Vec<Value>) -> Result<Value, ImportError> {
-    let number =
-        |message: &Value| Object::new("order", message)?.number("orderUpdateId").map(Option::unwrap_or_default);
-    let numbers = messages.iter().map(number).collect::<Result<Vec<_>, _>>()?;
-    let mut numbered: Vec<(f64, Value)> = numbers.into_iter().zip(messages).collect();
-    numbered.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut whole = numbered.first().map(|(_, first)| first.clone()).ok_or_else(none)?;
-    for pair in numbered.windows(2) {
-        let [(before, last), (number, update)] = pair else { continue };
-        let id = update.get("orderId").and_then(Value::as_str).unwrap_or_default();
-        let name = format!("order {id}, update {number}");
-        if number > before {
-            extend(&mut whole, update, &name)?;
-        } else if ["nodes", "edges"].iter().any(|list| last.get(list) != update.get(list)) {
-            return Err(ImportError::new(format!("{name}: it is there twice, and not the same")));
+/// Returns the instant action of a message that ends or halts an order, if it has one.
+fn halting_action(message: &Value) -> Option<String> {
+    let lists = ["actions", "instantActions"].into_iter().filter_map(|name| message.get(name)?.as_array());
+    let types =
+        lists.flatten().filter_map(|action| ["actionType", "actionName"].iter().find_map(|name| action.get(*name)));
+    types.filter_map(Value::as_str).find(|name| ["cancelOrder", "startPause"].contains(name)).map(str::to_owned)
+}
+
+/// Joins an order with its updates, which may be in any order.
+fn with_updates(messages: Vec<Value>, warnings: &mut Warnings) -> Result<Value, ImportError> {
+    let mut orders = messages.into_iter().map(decoded).collect::<Result<Vec<_>, _>>()?;
+    orders.sort_by_key(|(_, order)| order.order_update_id);
+    let mut orders = orders.into_iter();
+    let (mut whole, first) = orders.next().ok_or_else(none)?;
+    let refused =
+        |id: &str, update: u64, refusal: &Refusal| ImportError::new(format!("{}, {refusal}", name(id, update)));
+    let (id, update) = (first.order_id.clone(), first.order_update_id);
+    let major = |order: &Order| Version::of(&order.header.version).map(Version::major);
+    let version = major(&first);
+    let mut state = OrderState::new(first).map_err(|rejected| refused(&id, update, &rejected.refusal))?;
+    for (_, order) in orders {
+        let update = order.order_update_id;
+        let taken = if major(&order) == version {
+            state.update(order).map_err(|rejected| rejected.refusal)
+        } else {
+            Err(Refusal::new("version", "not that of the order"))
+        };
+        if let Err(refusal) = taken {
+            // A vehicle refuses it, too, and goes on with what it has.
+            warnings.lose(refused(&id, update, &refusal));
         }
+    }
+    let written =
+        |list: serde_json::Result<Value>| list.map_err(|error| ImportError::new(format!("order {id}: {error}")));
+    let lists = [
+        ("nodes", written(serde_json::to_value(&state.nodes))?),
+        ("edges", written(serde_json::to_value(&state.edges))?),
+    ];
+    if let Value::Object(members) = &mut whole {
+        members.extend(lists.map(|(name, list)| (name.to_owned(), list)));
     }
     Ok(whole)
 }
 
-/// Replaces what follows from the first node of an update on.
-fn extend(order: &mut Value, update: &Value, name: &str) -> Result<(), ImportError> {
-    let update = Object::new(name, update)?;
-    let wrong = |problem: &str| ImportError::new(format!("{name}: {problem}"));
-    let sequence = |part: &Value| part.get("sequenceId").and_then(Value::as_f64);
-    let numbers = update.list("nodes")?.iter().map(sequence).collect::<Option<Vec<_>>>();
-    let first = numbers.and_then(|numbers| numbers.into_iter().reduce(f64::min));
-    let first = first.ok_or_else(|| wrong("it has no nodes with a sequenceId"))?;
-    let begins = |part: &&Value| sequence(part) == Some(first);
-    let node = |nodes: &[Value]| nodes.iter().find(begins).and_then(|node| node.get("nodeId").cloned());
-    let known = order.get("nodes").and_then(Value::as_array).and_then(|nodes| node(nodes));
-    if known.is_none() || known != node(update.list("nodes")?) {
-        return Err(wrong("the order before it does not have its first node"));
+/// Reads an order, and keeps its tree.
+fn decoded(message: Value) -> Result<(Value, Order), ImportError> {
+    let order = from_value::<Order>(message.clone()).map_err(|refusal| {
+        let id = message.get("orderId").and_then(Value::as_str).unwrap_or_default();
+        let update = message.get("orderUpdateId").and_then(Value::as_u64).unwrap_or_default();
+        ImportError::new(format!("{}, {refusal}", name(id, update)))
+    })?;
+    let version = &order.header.version;
+    // A message of a test or of a planner may have no header.
+    if !version.is_empty() && Version::of(version).is_none() {
+        let problem = format!("version: {version:?}; 2.0, 2.1 and 3.0 are read");
+        return Err(ImportError::new(format!("{}, {problem}", name(&order.order_id, order.order_update_id))));
     }
-    for list in ["nodes", "edges"] {
-        let more = update.list(list)?;
-        let Some(parts) = order.get_mut(list).and_then(Value::as_array_mut) else { continue };
-        parts.retain(|part| sequence(part).is_none_or(|number| number < first));
-        parts.extend(more.iter().cloned());
-    }
-    Ok(())
+    Ok((message, order))
+}
+
+/// Returns how messages name an order or an update.
+fn name(id: &str, update: u64) -> String {
+    if update == 0 { format!("order {id}") } else { format!("order {id}, update {update}") }
 }

@@ -44,7 +44,7 @@ pub(super) fn is_message(root: &Value) -> bool {
 }
 
 /// The messages in a text: one, a list of them, or several one after the other.
-fn messages(text: &str) -> Result<Vec<Value>, ImportError> {
+fn messages(text: &str, warnings: &mut Warnings) -> Result<Vec<Value>, ImportError> {
     let mut messages = Vec::new();
     for value in value::several(text) {
         match value? {
@@ -55,7 +55,7 @@ fn messages(text: &str) -> Result<Vec<Value>, ImportError> {
     if messages.is_empty() {
         return Err(ImportError::new("there is no order and no state in it"));
     }
-    updates::joined(messages)
+    updates::joined(messages, warnings)
 }
 
 /// Reads orders and states; returns the radii of the vehicles with their loads and corridors as well.
@@ -65,7 +65,7 @@ pub(super) fn read(
     vehicle: &Vehicle,
     warnings: &mut Warnings,
 ) -> Result<(Scenario, Vec<f64>), ImportError> {
-    let messages = messages(text)?;
+    let messages = messages(text, warnings)?;
     let mut reader = Reader { options, vehicle, warnings, begins: Vec::new(), maps: BTreeSet::new() };
     let mut scenario = Scenario::new("", Vec::new());
     let mut radii = Vec::new();

@@ -1,6 +1,6 @@
 //! Nodes and edges of an order that are still ahead, as listed in states.
 
-use super::order::{Edge, Node, NodePosition};
+use pcr_formats::vda5050::order::{Edge, Node, NodePosition};
 use serde::Serialize;
 use serde_json::Value;
 

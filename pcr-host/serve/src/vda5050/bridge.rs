@@ -1,12 +1,12 @@
 //! Connects all vehicles of a fleet with their manager and the supervisor. It only converts messages, and does no input
 //! or output itself.
 
-use super::door::Limits;
 use super::lane::{Due, Lane, Post, Profile, To};
-use super::topics::{Interface, Key, Kind};
 use crate::event::Event;
 use crate::robot::Robot;
 use crate::supervisor::{Damaged, Supervisor};
+use pcr_formats::vda5050::decode::Limits;
+use pcr_formats::vda5050::topics::{Interface, Key, Kind};
 use serde::Serialize;
 use std::collections::{BTreeSet, HashMap};
 

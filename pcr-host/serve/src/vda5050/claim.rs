@@ -1,11 +1,11 @@
 //! Which of several bridges at a broker is the active one.
 
 use super::bridge::Publish;
-use super::header::Header;
-use super::messages::Connection;
-use super::stamp;
-use super::topics::Key;
-use super::version::Version;
+use pcr_formats::vda5050::header::Header;
+use pcr_formats::vda5050::messages::Connection;
+use pcr_formats::vda5050::stamp;
+use pcr_formats::vda5050::topics::Key;
+use pcr_formats::vda5050::version::Version;
 use serde_json::{Map, Value};
 use std::time::Instant;
 

@@ -2,7 +2,7 @@
 //! vehicle: a bridge that was kept up then reads what is so now, and needs no more memory.
 
 use super::mqtt::News;
-use super::topics::Kind;
+use pcr_formats::vda5050::topics::Kind;
 use std::collections::{HashSet, VecDeque};
 use std::sync::mpsc::RecvTimeoutError;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};

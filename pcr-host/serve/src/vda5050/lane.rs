@@ -1,6 +1,6 @@
 //! Connects one vehicle with its fleet manager and the supervisor.
 //!
-//! The manager's order is stored unchanged ([`Held`](super::held::Held)). The vehicle gets it under the same name, with
+//! The manager's order is stored unchanged ([`OrderState`](pcr_formats::vda5050::order_state::OrderState)). The vehicle gets it under the same name, with
 //! its base cut to the part that the supervisor has allowed, and with its own numbers of nodes and updates, because the
 //! base may end in the middle of an edge. Reports of the vehicle are sent to the manager with the manager's numbers.
 
@@ -22,12 +22,6 @@ mod trim;
 
 pub use job::{Job, Received, Sent, Stop};
 
-use super::header::Header;
-use super::order::Order;
-use super::stamp;
-use super::state::{State, StateError};
-use super::topics::{Key, Kind};
-use super::version::Version;
 use crate::robot::Abilities;
 use crate::supervisor::{Damaged, Supervisor};
 use interim::Interim;
@@ -35,6 +29,12 @@ use newest::Newest;
 use notes::noted;
 use past::{Noted, Past};
 use pause::Pauses;
+use pcr_formats::vda5050::header::Header;
+use pcr_formats::vda5050::order::Order;
+use pcr_formats::vda5050::stamp;
+use pcr_formats::vda5050::state::{State, StateError};
+use pcr_formats::vda5050::topics::{Key, Kind};
+use pcr_formats::vda5050::version::Version;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,12 +1,12 @@
 //! The path of an order: from where the vehicle stands through its nodes, straight or along their trajectories.
 
-use super::door::Refusal;
-use super::held::Held;
-use super::order::{Edge, Node};
 use crate::course::{Shape, Start};
 use pcr_formats::import::{self, Format, Options, Warnings};
 use pcr_formats::plane::distance;
 use pcr_formats::scenario::{PathSegment, Placed, TURN};
+use pcr_formats::vda5050::decode::Refusal;
+use pcr_formats::vda5050::order::{Edge, Node};
+use pcr_formats::vda5050::order_state::OrderState;
 use serde_json::json;
 use std::f64::consts::{PI, TAU};
 
@@ -54,7 +54,7 @@ impl Way {
     ///
     /// # Errors
     /// [`Refusal`] if a node has no position, or a trajectory cannot be read.
-    pub fn new(start: Start, held: &Held) -> Result<Self, Refusal> {
+    pub fn new(start: Start, held: &OrderState) -> Result<Self, Refusal> {
         let (at, heading) = ([start.x, start.y], start.heading);
         let mut way = Self { start, pieces: Vec::new(), shapes: Vec::new(), nodes: Vec::new(), at, heading };
         if let Some(first) = held.nodes.first() {
@@ -69,7 +69,7 @@ impl Way {
     ///
     /// # Errors
     /// As [`Way::new`]; the way must not be used then.
-    pub fn extend(&mut self, held: &Held, after: usize) -> Result<(), Refusal> {
+    pub fn extend(&mut self, held: &OrderState, after: usize) -> Result<(), Refusal> {
         self.nodes.truncate(after + 1);
         let (length, shapes) = self.nodes.last().copied().unwrap_or_default();
         self.shapes.truncate(shapes);
@@ -262,12 +262,12 @@ fn position(node: &Node, place: usize) -> Result<[f64; 2], Refusal> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::door::{Limits, read};
-    use super::super::order::Order;
     use super::*;
+    use pcr_formats::vda5050::decode::{Limits, read};
+    use pcr_formats::vda5050::order::Order;
     use serde_json::Value;
 
-    fn held(points: &[[f64; 2]], curve: Option<Value>) -> Held {
+    fn held(points: &[[f64; 2]], curve: Option<Value>) -> OrderState {
         let nodes: Vec<_> = (points.iter().enumerate())
             .map(|(k, [x, y])| {
                 let at = json!({ "x": x, "y": y, "mapId": "m" });
@@ -278,7 +278,7 @@ mod tests {
             .map(|k| json!({ "edgeId": "e", "sequenceId": 2 * k - 1, "released": true, "actions": [], "trajectory": curve }))
             .collect();
         let order = json!({ "orderId": "o", "orderUpdateId": 0, "nodes": nodes, "edges": edges });
-        Held::new(read::<Order>(order.to_string().as_bytes(), Limits::default()).unwrap()).unwrap()
+        OrderState::new(read::<Order>(order.to_string().as_bytes(), Limits::default()).unwrap()).unwrap()
     }
 
     const ORIGIN: Start = Start { x: 0.0, y: 0.0, heading: 0.0 };

@@ -1,9 +1,9 @@
 //! The motion of a vehicle along a way: it stops where it has to, and turns in place at corners.
 
 use crate::course::Shape;
-use crate::vda5050::held::Held;
 use crate::vda5050::way::Way;
 use pcr_formats::random::Random;
+use pcr_formats::vda5050::order_state::OrderState;
 use serde::{Deserialize, Serialize};
 
 /// The abilities and errors of a vehicle.
@@ -73,7 +73,7 @@ impl Drive {
     }
 
     /// Moves for a time \[s\], up to an end \[m\].
-    pub fn advance(&mut self, way: &Way, held: &Held, end: f64, can: &Abilities, random: &mut Random, time: f64) {
+    pub fn advance(&mut self, way: &Way, held: &OrderState, end: f64, can: &Abilities, random: &mut Random, time: f64) {
         if self.held_up > 0.0 {
             // Held up by an obstacle: it stops immediately.
             (self.held_up, self.speed) = ((self.held_up - time).max(0.0), 0.0);
@@ -117,7 +117,7 @@ impl Drive {
 }
 
 /// Length and angle of the next corner at which the vehicle has not turned yet \[m, rad\].
-fn corner(way: &Way, held: &Held, at: f64, turned: f64) -> Option<(f64, f64)> {
+fn corner(way: &Way, held: &OrderState, at: f64, turned: f64) -> Option<(f64, f64)> {
     /// Largest corner that is driven without a stop \[rad\].
     const SLIGHT: f64 = 0.01;
     let angle = |shapes: &[Shape]| match shapes.first() {

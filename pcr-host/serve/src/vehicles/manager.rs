@@ -7,15 +7,15 @@ mod again;
 
 use super::locks::{Leg, Locks, Method, to_line};
 use crate::course::{Course, Shape, Start};
-use crate::vda5050::door::{self, Limits};
-use crate::vda5050::header::Header;
-use crate::vda5050::order::{Edge, Node, NodePosition, Order};
-use crate::vda5050::stamp;
-use crate::vda5050::state::{Pose, State};
-use crate::vda5050::topics::Key;
-use crate::vda5050::version::Version;
 use pcr_formats::import::{self, Layout, Step, cheapest};
 use pcr_formats::random::Random;
+use pcr_formats::vda5050::decode::{self, Limits};
+use pcr_formats::vda5050::header::Header;
+use pcr_formats::vda5050::order::{Edge, Node, NodePosition, Order};
+use pcr_formats::vda5050::stamp;
+use pcr_formats::vda5050::state::{Pose, State};
+use pcr_formats::vda5050::topics::Key;
+use pcr_formats::vda5050::version::Version;
 use serde_json::Map;
 use std::collections::BTreeMap;
 
@@ -189,7 +189,7 @@ impl Manager {
 
     /// Takes a state; returns the messages to be sent to vehicles.
     pub fn receive(&mut self, key: &Key, payload: &[u8], now: f64) -> Vec<Sent> {
-        let Ok(state) = door::read::<State>(payload, Limits::default()) else { return Vec::new() };
+        let Ok(state) = decode::read::<State>(payload, Limits::default()) else { return Vec::new() };
         let Some(client) = self.clients.get_mut(key) else { return Vec::new() };
         let mut due = Vec::new();
         client.takes_back(&state, now);

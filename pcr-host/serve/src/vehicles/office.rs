@@ -3,7 +3,7 @@
 use super::manager::{Manager, Sent};
 use crate::vda5050::bridge::Publish;
 use crate::vda5050::mqtt::{Broker, Link, News};
-use crate::vda5050::topics::{Interface, Kind};
+use pcr_formats::vda5050::topics::{Interface, Kind};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Instant;
 

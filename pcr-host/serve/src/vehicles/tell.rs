@@ -2,12 +2,12 @@
 
 use super::vehicle::Vehicle;
 use crate::vda5050::ahead::{EdgeAhead, NodeAhead};
-use crate::vda5050::header::Header;
-use crate::vda5050::messages::{Connection, Visualization};
-use crate::vda5050::stamp;
-use crate::vda5050::state::{Listed, Pose, State, Velocity};
-use crate::vda5050::topics::Kind;
-use crate::vda5050::version::Version;
+use pcr_formats::vda5050::header::Header;
+use pcr_formats::vda5050::messages::{Connection, Visualization};
+use pcr_formats::vda5050::stamp;
+use pcr_formats::vda5050::state::{Listed, Pose, State, Velocity};
+use pcr_formats::vda5050::topics::Kind;
+use pcr_formats::vda5050::version::Version;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::f64::consts::{PI, TAU};

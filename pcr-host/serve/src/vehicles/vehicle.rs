@@ -3,17 +3,17 @@
 
 use super::drive::{Abilities, Drive};
 use crate::course::Start;
-use crate::vda5050::door::{self, Limits};
-use crate::vda5050::header::Header;
-use crate::vda5050::held::{Held, Rejected, Taken};
-use crate::vda5050::messages::{Action, InstantActions};
-use crate::vda5050::order::Order;
-use crate::vda5050::stamp;
-use crate::vda5050::state::{ActionState, StateError};
-use crate::vda5050::topics::{Key, Kind};
-use crate::vda5050::version::{Error, Version};
 use crate::vda5050::way::Way;
 use pcr_formats::random::Random;
+use pcr_formats::vda5050::decode::{self, Limits};
+use pcr_formats::vda5050::header::Header;
+use pcr_formats::vda5050::messages::{Action, InstantActions};
+use pcr_formats::vda5050::order::Order;
+use pcr_formats::vda5050::order_state::{OrderState, Rejected, Taken};
+use pcr_formats::vda5050::stamp;
+use pcr_formats::vda5050::state::{ActionState, StateError};
+use pcr_formats::vda5050::topics::{Key, Kind};
+use pcr_formats::vda5050::version::{Error, Version};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
@@ -26,7 +26,7 @@ const ACTION: f64 = 2.0;
 /// An order and its progress.
 #[derive(Clone, Debug)]
 pub(super) struct Task {
-    pub(super) held: Held,
+    pub(super) held: OrderState,
     pub(super) way: Way,
     pub(super) drive: Drive,
     /// The last node that was reached.
@@ -186,7 +186,7 @@ impl Vehicle {
         match kind {
             Kind::Order => {
                 let mut named = (String::new(), 0);
-                let order = door::read::<Order>(payload, Limits::default()).map_err(Rejected::from);
+                let order = decode::read::<Order>(payload, Limits::default()).map_err(Rejected::from);
                 let taken = order.and_then(|order| {
                     named = (order.order_id.clone(), order.order_update_id);
                     self.take(order)
@@ -201,7 +201,7 @@ impl Vehicle {
                 }
             }
             Kind::InstantActions => {
-                if let Ok(message) = door::read::<InstantActions>(payload, Limits::default())
+                if let Ok(message) = decode::read::<InstantActions>(payload, Limits::default())
                     && self.is_ours(&message.header)
                     && let Ok(actions) = message.list()
                 {
@@ -256,7 +256,7 @@ impl Vehicle {
                     return Err(Rejected::new(Error::Order, "orderId", "it was there before"));
                 }
                 let start = task.as_ref().map_or(self.start, |task| task.way.pose(task.drive.at));
-                let held = Held::new(order)?;
+                let held = OrderState::new(order)?;
                 let way = Way::new(start, &held).map_err(|refusal| Rejected { error: Error::Order, refusal })?;
                 if way.node(0).is_none_or(|begins| begins > BEGINS) {
                     return Err(Rejected::new(Error::Order, "nodes[0].nodePosition", "too far off"));

@@ -6,10 +6,10 @@ use super::vehicle::Vehicle;
 use crate::course::Start;
 use crate::robot;
 use crate::vda5050::lane::Profile;
-use crate::vda5050::topics::Key;
-use crate::vda5050::version::Version;
 use crate::vda5050::way::TOLERANCE;
 use pcr_formats::import::Layout;
+use pcr_formats::vda5050::topics::Key;
+use pcr_formats::vda5050::version::Version;
 
 /// Map id.
 const MAP: &str = "map";

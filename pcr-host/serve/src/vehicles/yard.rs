@@ -12,10 +12,10 @@ use crate::event::Event;
 use crate::fault::Fault;
 use crate::supervisor::{Damaged, Supervisor};
 use crate::vda5050::bridge::{self, Bridge, Publish};
-use crate::vda5050::door::Limits;
 use crate::vda5050::lane::Profile;
-use crate::vda5050::topics::{Interface, Kind};
 use pcr_formats::random::Random;
+use pcr_formats::vda5050::decode::Limits;
+use pcr_formats::vda5050::topics::{Interface, Kind};
 use std::io::{self, Write};
 
 /// Settings.

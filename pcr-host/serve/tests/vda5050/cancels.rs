@@ -2,7 +2,7 @@
 
 use crate::pair::order;
 use crate::puppet::Puppet;
-use pcr_serve::vda5050::topics::Kind;
+use pcr_formats::vda5050::topics::Kind;
 
 const WAY: [[f64; 2]; 3] = [[0.0, 0.0], [5.0, 0.0], [10.0, 0.0]];
 

@@ -1,9 +1,9 @@
 //! What everybody believes, for whoever asks why nothing happens.
 
+use pcr_formats::vda5050::state::State;
+use pcr_formats::vda5050::topics::Kind;
 use pcr_serve::supervisor::Supervisor;
 use pcr_serve::vda5050::bridge::Bridge;
-use pcr_serve::vda5050::state::State;
-use pcr_serve::vda5050::topics::Kind;
 use pcr_serve::vehicles::manager::Manager;
 use pcr_serve::vehicles::vehicle::Vehicle;
 

@@ -2,14 +2,14 @@
 
 use crate::pair::{CAN, FRO, Pair, TO, bridge_of, key, order};
 use crate::site::{interfaces, settings};
+use pcr_formats::vda5050::decode::Limits;
+use pcr_formats::vda5050::topics::Kind;
+use pcr_formats::vda5050::version::Version;
 use pcr_serve::course::Start;
 use pcr_serve::entry::Nowhere;
 use pcr_serve::event::Event;
 use pcr_serve::supervisor::{Proposal, Report, Supervisor};
 use pcr_serve::vda5050::bridge::{self, Bridge};
-use pcr_serve::vda5050::door::Limits;
-use pcr_serve::vda5050::topics::Kind;
-use pcr_serve::vda5050::version::Version;
 use pcr_serve::vehicles::drive::Abilities;
 use pcr_serve::vehicles::vehicle::Vehicle;
 use pcr_serve::vehicles::world::profile;

@@ -1,7 +1,7 @@
 //! Orders that are extended for hours.
 
 use crate::pair::{Pair, order};
-use pcr_serve::vda5050::topics::Kind;
+use pcr_formats::vda5050::topics::Kind;
 
 /// Corners every few metres, so that vehicles turn at nodes, and straight parts with several nodes.
 fn place(node: usize) -> [f64; 2] {

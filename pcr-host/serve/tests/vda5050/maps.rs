@@ -2,13 +2,13 @@
 
 use crate::pair::CAN;
 use crate::site::{interfaces, settings};
+use pcr_formats::vda5050::decode::Limits;
+use pcr_formats::vda5050::topics::{Key, Kind};
+use pcr_formats::vda5050::version::Version;
 use pcr_serve::course::Start;
 use pcr_serve::entry::Nowhere;
 use pcr_serve::supervisor::Supervisor;
 use pcr_serve::vda5050::bridge::{self, Bridge};
-use pcr_serve::vda5050::door::Limits;
-use pcr_serve::vda5050::topics::{Key, Kind};
-use pcr_serve::vda5050::version::Version;
 use pcr_serve::vehicles::vehicle::Vehicle;
 use pcr_serve::vehicles::world::profile;
 use serde_json::{Value, json};

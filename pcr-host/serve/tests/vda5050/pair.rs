@@ -1,14 +1,14 @@
 //! One vehicle, its supervisor, and a manager that sends what the test says.
 
 use crate::site::{interfaces, settings};
+use pcr_formats::vda5050::decode::Limits;
+use pcr_formats::vda5050::state::State;
+use pcr_formats::vda5050::topics::{Key, Kind};
+use pcr_formats::vda5050::version::Version;
 use pcr_serve::course::Start;
 use pcr_serve::entry::Nowhere;
 use pcr_serve::supervisor::Supervisor;
 use pcr_serve::vda5050::bridge::{self, Bridge};
-use pcr_serve::vda5050::door::Limits;
-use pcr_serve::vda5050::state::State;
-use pcr_serve::vda5050::topics::{Key, Kind};
-use pcr_serve::vda5050::version::Version;
 use pcr_serve::vehicles::drive::Abilities;
 use pcr_serve::vehicles::vehicle::Vehicle;
 use pcr_serve::vehicles::world::profile;

@@ -2,13 +2,13 @@
 
 use crate::pair::{bridge_of, key, restarted};
 use crate::site::{interfaces, settings};
+use pcr_formats::vda5050::stamp;
+use pcr_formats::vda5050::topics::Kind;
+use pcr_formats::vda5050::version::Version;
 use pcr_serve::entry::Nowhere;
 use pcr_serve::robot::Robot;
 use pcr_serve::supervisor::Supervisor;
 use pcr_serve::vda5050::bridge::Bridge;
-use pcr_serve::vda5050::stamp;
-use pcr_serve::vda5050::topics::Kind;
-use pcr_serve::vda5050::version::Version;
 use serde_json::{Value, json};
 
 pub(crate) struct Puppet {

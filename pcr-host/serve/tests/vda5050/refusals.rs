@@ -2,7 +2,7 @@
 
 use crate::pair::key;
 use crate::site::{SAFE, nodes, warehouse};
-use pcr_serve::vda5050::version::Version;
+use pcr_formats::vda5050::version::Version;
 use pcr_serve::vehicles::manager::Manager;
 use serde_json::{Value, json};
 

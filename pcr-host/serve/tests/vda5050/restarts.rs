@@ -2,7 +2,7 @@
 
 use crate::pair::order;
 use crate::puppet::Puppet;
-use pcr_serve::vda5050::topics::Kind;
+use pcr_formats::vda5050::topics::Kind;
 
 const TO: [[f64; 2]; 2] = [[0.0, 0.0], [4.0, 0.0]];
 const ROUND: [[f64; 2]; 3] = [[0.0, 0.0], [4.0, 0.0], [0.0, 0.0]];

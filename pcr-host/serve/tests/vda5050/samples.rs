@@ -1,8 +1,8 @@
 //! Messages of other projects.
 
-use pcr_serve::vda5050::door::{Limits, read};
-use pcr_serve::vda5050::held::Held;
-use pcr_serve::vda5050::order::Order;
+use pcr_formats::vda5050::decode::{Limits, read};
+use pcr_formats::vda5050::order::Order;
+use pcr_formats::vda5050::order_state::OrderState;
 
 fn sample(name: &str) -> Vec<u8> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/real/vda5050");
@@ -13,7 +13,7 @@ fn sample(name: &str) -> Vec<u8> {
 fn an_order_of_another_project_is_read_and_kept_whole() {
     let bytes = sample("order_v2_flywei.json");
     let order: Order = read(&bytes, Limits::default()).unwrap();
-    let held = Held::new(order.clone()).unwrap();
+    let held = OrderState::new(order.clone()).unwrap();
     assert_eq!((held.nodes.len(), held.base), (2, 1));
     // What is passed on has everything that was in it.
     let written = serde_json::to_value(&order).unwrap();
@@ -26,5 +26,5 @@ fn null_is_nothing_and_numbers_that_do_not_follow_are_refused() {
     assert_eq!(order.nodes.len(), 2);
     assert!(!serde_json::to_string(&order).unwrap().contains("null"));
     // All of its numbers are 0.
-    assert_eq!(Held::new(order).unwrap_err().refusal.field, "edges[0].sequenceId");
+    assert_eq!(OrderState::new(order).unwrap_err().refusal.field, "edges[0].sequenceId");
 }

@@ -1,6 +1,6 @@
 //! The published schemas, against everything that is said.
 
-use pcr_serve::vda5050::topics::{Interface, Kind};
+use pcr_formats::vda5050::topics::{Interface, Kind};
 use serde_json::Value;
 use std::collections::BTreeMap;
 

@@ -3,13 +3,13 @@
 use crate::pair::{CAN, key, order};
 use crate::puppet::Puppet;
 use crate::site::{interfaces, settings};
+use pcr_formats::vda5050::decode::Limits;
+use pcr_formats::vda5050::topics::Kind;
 use pcr_serve::course::Start;
 use pcr_serve::entry::Nowhere;
 use pcr_serve::supervisor::Supervisor;
 use pcr_serve::vda5050::bridge::{self, Bridge, Out};
-use pcr_serve::vda5050::door::Limits;
 use pcr_serve::vda5050::lane::Due;
-use pcr_serve::vda5050::topics::Kind;
 use pcr_serve::vehicles::world::profile;
 use serde_json::{Value, json};
 
@@ -57,7 +57,7 @@ fn a_stop_waits_for_no_journal_and_nothing_lets_go_after_it() {
     // One of the manager's lets it go, too.
     let action = json!({ "actionType": "stopPause", "actionId": "m", "blockingType": "NONE" });
     let message = own.signed(json!({ "actions": [action] }));
-    let topic = interfaces()[0].topic(pcr_serve::vda5050::version::Version::V2_1, &key(), Kind::InstantActions);
+    let topic = interfaces()[0].topic(pcr_formats::vda5050::version::Version::V2_1, &key(), Kind::InstantActions);
     own.bridge.receive(&mut own.supervisor, &topic, message.to_string().as_bytes(), own.time);
     goes.extend(own.due("stopPause"));
     assert!(goes.len() == 2 && goes.iter().all(|out| out.due == Due::Free && !own.bridge.withholds(out)), "{goes:?}");

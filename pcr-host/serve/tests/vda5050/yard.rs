@@ -3,9 +3,9 @@
 use crate::dump;
 use crate::runs::FAIR;
 use crate::site::{SAFE, Scene, at_broker, interfaces, nodes, warehouse};
+use pcr_formats::vda5050::version::Version;
 use pcr_serve::entry::{Entry, Keep, Nowhere};
 use pcr_serve::supervisor::Supervisor;
-use pcr_serve::vda5050::version::Version;
 use pcr_serve::vehicles::drive::Abilities;
 use pcr_serve::vehicles::locks::Method;
 use pcr_serve::vehicles::record::certify;

@@ -8,13 +8,13 @@ use super::Arguments;
 use pcr_execution::lifelong::{streets, well_formedness};
 use pcr_formats::import::{self, Imported, Options};
 use pcr_formats::output;
+use pcr_formats::vda5050::topics::Interface;
+use pcr_formats::vda5050::version::Version;
 use pcr_formats::warning::WarningCode;
 use pcr_serve::entry::Nowhere;
 use pcr_serve::supervisor::Supervisor;
 use pcr_serve::vda5050::lane::Profile;
 use pcr_serve::vda5050::mqtt::Broker;
-use pcr_serve::vda5050::topics::Interface;
-use pcr_serve::vda5050::version::Version;
 use pcr_serve::vehicles::audit::Audit;
 use pcr_serve::vehicles::drive::Abilities;
 use pcr_serve::vehicles::fleet::{Fleet, Settings};
@@ -81,7 +81,7 @@ fn climate(part: f64) -> Climate {
 }
 
 fn profile_radius(can: &Abilities) -> f64 {
-    let key = pcr_serve::vda5050::topics::Key { manufacturer: String::new(), serial_number: String::new() };
+    let key = pcr_formats::vda5050::topics::Key { manufacturer: String::new(), serial_number: String::new() };
     profile(key, can).abilities.reach()
 }
 

@@ -6,10 +6,11 @@ use super::super::value::Object;
 use super::super::vehicle::Facing;
 use super::super::warnings::{DIFFERENCE, LENGTH};
 use super::super::{ImportError, WarningCode, corridor, facing, route};
-use super::part::{Part, check, go_on, parts};
+use super::part::{Part, check, parts};
 use super::{ACTIONS, GAP, Reader, gap, keys};
 use crate::footprint::Footprint;
 use crate::scenario::{Agent, Placed};
+use crate::vda5050::version::Version;
 use serde_json::Value;
 use std::f64::consts::PI;
 
@@ -38,7 +39,7 @@ impl Reader<'_> {
         let [nodes, edges] = self.base(order)?;
         check(&nodes, &keys::NODE, self.warnings)?;
         check(&edges, &keys::EDGE, self.warnings)?;
-        let is_third = self.is_third(order)?;
+        let is_third = is_third(order)?;
         self.maps(order, nodes.iter().map(|node| node.object.object("nodePosition")))?;
         self.warn_of_freedom(&nodes)?;
         let mut way = Way { position: position(nodes.first())?, ..Way::default() };
@@ -68,26 +69,10 @@ impl Reader<'_> {
         Ok((route::agent(id, &trace, &self.vehicle.facing(facing), 0.0), self.vehicle.radius + way.room))
     }
 
-    /// Whether a message is of version 3, which leaves it to the vehicle how it faces on an edge that says nothing of it.
-    fn is_third(&mut self, order: &Object<'_>) -> Result<bool, ImportError> {
-        let Some(version) = order.text("version")? else { return Ok(false) };
-        let major = version.split('.').next().and_then(|major| major.trim().parse::<u64>().ok());
-        if !matches!(major, Some(1..=3)) {
-            let problem = format!("its version {version} is not known; it is read as 3.0.0");
-            self.warnings.add(WarningCode::UnknownVersion, &order.name, problem);
-        }
-        Ok(!matches!(major, Some(1 | 2)))
-    }
-
-    /// Nodes and edges up to the first one that is not released, or all of them if that is asked for.
+    /// Nodes and edges of the base, or all of them if that is asked for; `updates` has checked that they are one way.
     fn base<'j>(&mut self, order: &Object<'j>) -> Result<[Vec<Part<'j>>; 2], ImportError> {
         let mut nodes = parts(order, "nodes", "node", "nodeId")?;
         let mut edges = parts(order, "edges", "edge", "edgeId")?;
-        if nodes.len() != edges.len() + 1 {
-            let problem = format!("{}: {} nodes and {} edges, which is no path", order.name, nodes.len(), edges.len());
-            return Err(ImportError::new(problem));
-        }
-        go_on(&nodes, &edges)?;
         let base = nodes.iter().skip(1).zip(&edges).take_while(|(node, edge)| node.released && edge.released).count();
         if base < edges.len() {
             if self.options.horizon {
@@ -149,7 +134,6 @@ impl Reader<'_> {
         ends: [&Part<'_>; 2],
         is_third: bool,
     ) -> Result<(), ImportError> {
-        joins(edge, ends)?;
         if let Some(room) = corridor::read(edge, self.vehicle, self.warnings)?.filter(|room| *room > 0.0) {
             way.room = way.room.max(room);
             way.faces(Facing::Any);
@@ -297,15 +281,8 @@ fn allows(deviation: &Value) -> bool {
     above(deviation) || ["a", "b"].iter().any(|axis| deviation.get(axis).is_some_and(above))
 }
 
-/// Checks that an edge joins the nodes before and after it, where it names its nodes.
-fn joins(edge: &Object<'_>, ends: [&Part<'_>; 2]) -> Result<(), ImportError> {
-    for (field, node) in ["startNodeId", "endNodeId"].into_iter().zip(ends) {
-        let there = node.object.text("nodeId")?;
-        let named = edge.text(field)?;
-        if named.is_some() && named != there {
-            let (named, there) = (named.unwrap_or_default(), there.unwrap_or_default());
-            return Err(ImportError::new(format!("{}, {field}: {named}, but by sequenceId it is {there}", edge.name)));
-        }
-    }
-    Ok(())
+/// Whether an order is of version 3, which leaves it to the vehicle how it faces on an edge that says nothing of it. `updates` has checked
+/// that its version is known.
+fn is_third(order: &Object<'_>) -> Result<bool, ImportError> {
+    Ok(order.text("version")?.and_then(Version::of) == Some(Version::V3_0))
 }

@@ -9,8 +9,7 @@ use serde_json::Value;
 /// A node or an edge.
 pub(super) struct Part<'j> {
     pub(super) object: Object<'j>,
-    /// Its `sequenceId`, where it has one.
-    sequence: Option<f64>,
+    sequence: f64,
     pub(super) released: bool,
 }
 
@@ -19,8 +18,8 @@ impl<'j> Part<'j> {
         let object = Object::new(format!("{}, {what} {}", list.name, place + 1), value)?;
         let name = object.text(id)?.ok_or_else(|| object.missing(id))?;
         let object = object.called(format!("{}, {what} {name}", list.name));
-        let released = object.flag("released")?.unwrap_or(true);
-        Ok(Self { sequence: object.number("sequenceId")?, released, object })
+        let released = object.flag("released")?.ok_or_else(|| object.missing("released"))?;
+        Ok(Self { sequence: object.required("sequenceId")?, released, object })
     }
 
     /// Where a node is, if it says so.
@@ -34,22 +33,16 @@ impl<'j> Part<'j> {
     }
 }
 
-/// The nodes or the edges of an order or a state. Without numbers the lists are in the order of travel.
+/// Returns the nodes or the edges of an order or a state, in the order of travel.
 pub(super) fn parts<'j>(of: &Object<'j>, list: &str, what: &str, id: &str) -> Result<Vec<Part<'j>>, ImportError> {
     let values = of.list(list)?.iter().enumerate();
     let mut parts = values.map(|(k, value)| Part::new(of, what, k, value, id)).collect::<Result<Vec<_>, _>>()?;
-    if parts.iter().all(|part| part.sequence.is_none()) {
-        return Ok(parts);
-    }
-    if let Some(part) = parts.iter().find(|part| part.sequence.is_none()) {
-        return Err(part.object.missing("sequenceId"));
-    }
-    parts.sort_by(|a, b| a.sequence.unwrap_or_default().total_cmp(&b.sequence.unwrap_or_default()));
+    parts.sort_by(|a, b| a.sequence.total_cmp(&b.sequence));
     // Which of two comes first could not be told.
     let again = parts.iter().zip(parts.iter().skip(1)).find(|(before, after)| before.sequence == after.sequence);
     if let Some((_, again)) = again {
-        let number = again.sequence.unwrap_or_default();
-        return Err(ImportError::new(format!("{}, sequenceId: {number} is there twice", again.object.name)));
+        let problem = format!("{}, sequenceId: {} is there twice", again.object.name, again.sequence);
+        return Err(ImportError::new(problem));
     }
     Ok(parts)
 }
@@ -63,28 +56,4 @@ pub(super) fn check(parts: &[Part<'_>], keys: &Keys, warnings: &mut Warnings) ->
         }
     }
     Ok(())
-}
-
-/// Checks that numbers go on from node to edge to node: where one is missing, a part of the way is.
-pub(super) fn go_on(nodes: &[Part<'_>], edges: &[Part<'_>]) -> Result<(), ImportError> {
-    let parts: Vec<&Part<'_>> = alternating(nodes, edges).collect();
-    if parts.iter().all(|part| part.sequence.is_none()) {
-        return Ok(());
-    }
-    let mut expected = None;
-    for part in parts {
-        let number = part.sequence.ok_or_else(|| part.object.missing("sequenceId"))?;
-        if let Some(expected) = expected.filter(|expected| *expected != number) {
-            let problem = format!("{number} where {expected} is expected, as they count from node to edge to node");
-            return Err(ImportError::new(format!("{}, sequenceId: {problem}", part.object.name)));
-        }
-        expected = Some(number + 1.0);
-    }
-    Ok(())
-}
-
-/// The nodes with the edges between them.
-fn alternating<'p, 'j>(nodes: &'p [Part<'j>], edges: &'p [Part<'j>]) -> impl Iterator<Item = &'p Part<'j>> {
-    let edges = edges.iter().map(Some).chain([None]);
-    nodes.iter().zip(edges).flat_map(|(node, edge)| [Some(node), edge]).flatten()
 }

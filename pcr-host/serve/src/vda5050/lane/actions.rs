@@ -1,15 +1,15 @@
 //! Instant actions: those of the manager, and our own.
 
-use super::super::door::{self, Limits, Refusal};
-use super::super::held::Rejected;
-use super::super::messages::{Action, InstantActions};
-use super::super::state::State;
-use super::super::topics::Kind;
-use super::super::version::{Error, Version};
 use super::release::AGAIN;
 use super::{Due, Lane, To};
 use crate::event::{Cause, Event};
 use crate::supervisor::Supervisor;
+use pcr_formats::vda5050::decode::{self, Limits, Refusal};
+use pcr_formats::vda5050::messages::{Action, InstantActions};
+use pcr_formats::vda5050::order_state::Rejected;
+use pcr_formats::vda5050::state::State;
+use pcr_formats::vda5050::topics::Kind;
+use pcr_formats::vda5050::version::{Error, Version};
 use serde_json::{Map, Value};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
@@ -27,7 +27,7 @@ impl Lane {
         is_third: bool,
         now: f64,
     ) -> Result<(), Refusal> {
-        let message: InstantActions = door::read(bytes, limits)?;
+        let message: InstantActions = decode::read(bytes, limits)?;
         let actions = message.list()?;
         // Schema 2.0 does not require a header.
         let version = match (message.header.version.as_str(), self.version) {

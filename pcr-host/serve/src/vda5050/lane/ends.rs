@@ -7,7 +7,6 @@
 //! meanwhile, it shows that, and is cancelled again. A first order that the vehicle refuses has reached it: only another copy of what it
 //! refuses may still come, and [`REFUSED`] is enough for that.
 
-use super::super::state::State;
 use super::maps::{MAP, map_of};
 use super::newest::LATEST;
 use super::refused::TRIED;
@@ -15,6 +14,7 @@ use super::release::AGAIN;
 use super::{Job, Lane};
 use crate::course::Start;
 use crate::supervisor::Supervisor;
+use pcr_formats::vda5050::state::State;
 
 /// Number of successive states, and time \[s\], after which a vehicle that contradicts its order has lost it or was moved.
 const ASTRAY: (u32, f64) = (3, 2.0);

@@ -1,13 +1,13 @@
 //! The order of a vehicle: as given by the manager, and the part of it that the vehicle has.
 
-use super::super::held::Held;
-use super::super::order::{Edge, Node, NodePosition};
-use super::super::state::State;
 use super::super::way::Way;
 use super::notes::noted;
 use crate::course::Start;
 use crate::robot::Robot;
 use crate::supervisor::Damaged;
+use pcr_formats::vda5050::order::{Edge, Node, NodePosition};
+use pcr_formats::vda5050::order_state::OrderState;
+use pcr_formats::vda5050::state::State;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -54,7 +54,7 @@ pub(super) const RECEIVED: &str = "received";
 #[derive(Clone, Debug)]
 pub struct Job {
     /// The order as the manager gave it.
-    pub held: Held,
+    pub held: OrderState,
     /// Path of the order, from where the vehicle stood.
     pub way: Way,
     /// Edition of VDA 5050 of the manager's order.
@@ -86,20 +86,20 @@ pub struct Job {
 /// The part of the manager's order that is stored as a note.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Given {
-    held: Held,
+    held: OrderState,
     start: Start,
     version: String,
     cancel: Option<String>,
 }
 
 /// Id of the mission that leads to a node, in the supervisor.
-pub(super) fn mission(held: &Held, node: usize) -> String {
+pub(super) fn mission(held: &OrderState, node: usize) -> String {
     format!("{}#{}", held.order_id, held.nodes.get(node).map_or(0, |node| node.sequence_id))
 }
 
 impl Job {
     /// A new order for a vehicle that stands at the start of the way.
-    pub(super) fn new(held: Held, way: Way, version: String) -> Self {
+    pub(super) fn new(held: OrderState, way: Way, version: String) -> Self {
         let first = Stop { sequence: 0, length: way.node(0).unwrap_or(0.0), node: 0, between: false };
         Self {
             held,
@@ -232,7 +232,7 @@ impl Job {
     pub(super) fn rejoined(
         &self,
         robot: &Robot,
-        mut held: Held,
+        mut held: OrderState,
         length: f64,
         version: String,
     ) -> Option<(Self, usize)> {
@@ -344,14 +344,14 @@ impl Job {
 
 /// Limits the allowed deviation at a node to what the margin covers.
 fn limit(position: &mut NodePosition, deviation: f64, version: &str) {
-    use super::super::version::Version;
+    use pcr_formats::vda5050::version::Version;
     let allowed = position.deviation().ok().flatten().unwrap_or(deviation).min(deviation);
     let (name, value) = match Version::of(version) {
         Some(Version::V2_0) => ("allowedDeviationXy", Value::from(allowed)),
         Some(Version::V3_0) => ("allowedDeviationXY", serde_json::json!({ "a": allowed, "b": allowed, "theta": 0.0 })),
         _ => ("allowedDeviationXY", Value::from(allowed)),
     };
-    for old in super::super::order::DEVIATIONS {
+    for old in pcr_formats::vda5050::order::DEVIATIONS {
         position.rest.remove(old);
     }
     position.rest.insert(name.into(), value);

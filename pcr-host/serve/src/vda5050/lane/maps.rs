@@ -1,11 +1,11 @@
 //! The one map of all vehicles.
 
-use super::super::door::Refusal;
-use super::super::state::StateError;
-use super::super::version::Error;
 use super::Lane;
 use crate::robot::Robot;
 use crate::supervisor::Supervisor;
+use pcr_formats::vda5050::decode::Refusal;
+use pcr_formats::vda5050::state::StateError;
+use pcr_formats::vda5050::version::Error;
 
 /// Key of the note with the map of the vehicle.
 pub(super) const MAP: &str = "map";

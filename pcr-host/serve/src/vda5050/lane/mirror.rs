@@ -1,16 +1,16 @@
 //! The state of the vehicle for the manager, in the manager's numbers.
 
 use super::super::ahead::{EdgeAhead, NodeAhead};
-use super::super::door::{self, Limits, Refusal};
-use super::super::header::Header;
-use super::super::messages::{Connection, Factsheet, Responses};
-use super::super::state::{EdgeState, Listed, NodeState, State};
-use super::super::topics::Kind;
-use super::super::version::Version;
 use super::newest::Place;
 use super::{Due, Job, Lane, NEEDS, Post, To};
 use crate::supervisor::Supervisor;
 use pcr_formats::import::{self, Options, Warnings};
+use pcr_formats::vda5050::decode::{self, Limits, Refusal};
+use pcr_formats::vda5050::header::Header;
+use pcr_formats::vda5050::messages::{Connection, Factsheet, Responses};
+use pcr_formats::vda5050::state::{EdgeState, Listed, NodeState, State};
+use pcr_formats::vda5050::topics::Kind;
+use pcr_formats::vda5050::version::Version;
 use serde_json::Value;
 
 /// The nodes and edges ahead, as JSON. It is kept because most states of a vehicle are between the same two nodes.
@@ -62,7 +62,7 @@ impl Lane {
     /// # Errors
     /// [`Refusal`] for an invalid message, or one about another vehicle.
     pub fn untouched(&mut self, kind: Kind, payload: &[u8], limits: Limits, is_third: bool) -> Result<(), Refusal> {
-        let header: Header = door::read(payload, limits)?;
+        let header: Header = decode::read(payload, limits)?;
         header.check(&self.profile.key, is_third)?;
         self.forward(To::Vehicle, kind, is_third, payload);
         Ok(())
@@ -75,7 +75,7 @@ impl Lane {
     /// # Errors
     /// [`Refusal`] for an invalid message, and for rejected requests.
     pub fn responses(&mut self, payload: &[u8], limits: Limits, is_third: bool) -> Result<(), Refusal> {
-        let mut message: Responses = door::read(payload, limits)?;
+        let mut message: Responses = decode::read(payload, limits)?;
         let version = message.header.check(&self.profile.key, is_third)?;
         let mut rejected = None;
         for (k, response) in message.responses.iter_mut().enumerate() {
@@ -108,7 +108,7 @@ impl Lane {
     /// # Errors
     /// [`Refusal`] for an invalid message.
     pub fn connection(&mut self, payload: &[u8], limits: Limits, is_third: bool, now: f64) -> Result<(), Refusal> {
-        let message: Connection = door::read(payload, limits)?;
+        let message: Connection = decode::read(payload, limits)?;
         let version = message.header.check(&self.profile.key, is_third)?;
         self.version.get_or_insert(version);
         if message.connection_state == "ONLINE" && self.state.is_some() {
@@ -129,7 +129,7 @@ impl Lane {
         is_third: bool,
         now: f64,
     ) -> Result<(), Refusal> {
-        let message: Factsheet = door::read(payload, limits)?;
+        let message: Factsheet = decode::read(payload, limits)?;
         let version = message.header.check(&self.profile.key, is_third)?;
         self.version.get_or_insert(version);
         if self.newest.entry(Kind::Factsheet).or_default().take(&message.header, now, |_| false) == Place::Late {

@@ -10,7 +10,7 @@
 //!
 //! The first messages after a start of the supervisor may have been written before it. The same two proofs show that they were not.
 
-use super::super::header::Header;
+use pcr_formats::vda5050::header::Header;
 
 /// No message is later than this \[s\].
 pub(super) const LATEST: f64 = 60.0;

@@ -1,16 +1,16 @@
 //! Orders of the fleet manager.
 
-use super::super::door::{self, Limits, Refusal};
-use super::super::held::{Held, Rejected, Taken};
-use super::super::order::Order;
-use super::super::state::StateError;
-use super::super::version::{Error, Version};
 use super::super::way::{TOLERANCE, Way};
 use super::Lane;
 use super::job::{BEGINS, Job, RECEIVED, mission};
 use super::maps::map_of;
 use super::newest::LATEST;
 use crate::supervisor::{Proposal, Supervisor, Verdict};
+use pcr_formats::vda5050::decode::{self, Limits, Refusal};
+use pcr_formats::vda5050::order::Order;
+use pcr_formats::vda5050::order_state::{OrderState, Rejected, Taken};
+use pcr_formats::vda5050::state::StateError;
+use pcr_formats::vda5050::version::{Error, Version};
 
 /// Largest number of orders and updates that wait for the first state of a vehicle after a restart.
 const EARLY: usize = 8;
@@ -19,7 +19,7 @@ impl Lane {
     /// Takes an order or an update of the manager; an error is reported to the manager.
     pub fn order(&mut self, supervisor: &mut Supervisor, bytes: &[u8], limits: Limits, is_third: bool, now: f64) {
         let (mut id, mut update) = (String::new(), 0);
-        let taken = door::read::<Order>(bytes, limits).map_err(Rejected::from).and_then(|order| {
+        let taken = decode::read::<Order>(bytes, limits).map_err(Rejected::from).and_then(|order| {
             (id, update) = (order.order_id.clone(), order.order_update_id);
             self.take(supervisor, order, is_third, now)
         });
@@ -140,7 +140,7 @@ impl Lane {
         let robot = supervisor.robot(&self.name).map_err(|fault| Rejected::new(Error::Order, "", fault))?;
         let course = &robot.course;
         let start = course.arrival(course.length()).map_err(|fault| Rejected::new(Error::Order, "", fault))?;
-        let held = Held::new(order)?;
+        let held = OrderState::new(order)?;
         let way = Way::new(start, &held).map_err(|refusal| Rejected { error: Error::Order, refusal })?;
         let begins = way.node(0).unwrap_or(0.0);
         if begins > BEGINS {
@@ -175,7 +175,7 @@ impl Lane {
         version: Version,
         now: f64,
     ) -> Result<bool, Rejected> {
-        let held = Held::new(order.clone())?;
+        let held = OrderState::new(order.clone())?;
         let robot = supervisor.robot(&self.name).map_err(|fault| Rejected::new(Error::Order, "", fault))?;
         let rejoined = self.job.as_ref().zip(self.state.as_ref()).and_then(|(lost, state)| {
             let [length, _] = self.on_its_way(lost, robot, state.position()?)?;

@@ -1,14 +1,14 @@
 //! Pauses: our own, while a vehicle must not go on, and those of others, which only they may end.
 
-use super::super::door::Refusal;
-use super::super::messages::{Action, InstantActions};
-use super::super::state::ActionState;
 use super::Lane;
 use super::newest::LATEST;
 use super::notes::noted;
 use super::release::AGAIN;
 use crate::robot::Robot;
 use crate::supervisor::{Damaged, Supervisor};
+use pcr_formats::vda5050::decode::Refusal;
+use pcr_formats::vda5050::messages::{Action, InstantActions};
+use pcr_formats::vda5050::state::ActionState;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 

@@ -4,8 +4,8 @@
 //! they are sent again for some time. A first order that it still refuses then is over, as the standard says; an update is over when
 //! the manager cancels the order.
 
-use super::super::state::{ORDER, State, StateError, text};
 use super::Job;
+use pcr_formats::vda5050::state::{ORDER, State, StateError, text};
 use serde_json::Value;
 
 /// Time for which a first order is sent to a vehicle that refuses it \[s\].

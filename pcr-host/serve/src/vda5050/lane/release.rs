@@ -1,13 +1,13 @@
 //! Updates for the vehicle: its base ends where the supervisor allows.
 
-use super::super::header::Header;
-use super::super::order::Order;
-use super::super::topics::Kind;
-use super::super::version::Version;
 use super::Lane;
 use super::job::{Job, Sent, Stop};
 use crate::robot::Robot;
 use crate::supervisor::Supervisor;
+use pcr_formats::vda5050::header::Header;
+use pcr_formats::vda5050::order::Order;
+use pcr_formats::vda5050::topics::Kind;
+use pcr_formats::vda5050::version::Version;
 
 /// Time between two attempts to send the same \[s\].
 pub(super) const AGAIN: f64 = 1.0;

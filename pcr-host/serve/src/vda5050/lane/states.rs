@@ -1,10 +1,5 @@
 //! Messages of the vehicle.
 
-use super::super::door::{self, Limits, Refusal};
-use super::super::header::Header;
-use super::super::messages::Visualization;
-use super::super::state::{Pose, State};
-use super::super::topics::Kind;
 use super::ends::KEPT;
 use super::interim::Interim;
 use super::job::RECEIVED;
@@ -14,6 +9,11 @@ use super::{DOUBTFUL, Job, Lane};
 use crate::course::Start;
 use crate::robot::{BACK, Robot};
 use crate::supervisor::{Report, Supervisor};
+use pcr_formats::vda5050::decode::{self, Limits, Refusal};
+use pcr_formats::vda5050::header::Header;
+use pcr_formats::vda5050::messages::Visualization;
+use pcr_formats::vda5050::state::{Pose, State};
+use pcr_formats::vda5050::topics::Kind;
 use std::sync::Arc;
 
 /// Least time by which a late message counts as older than the newest one, and largest age that is passed on \[s\]: the supervisor
@@ -49,7 +49,7 @@ impl Lane {
         is_third: bool,
         now: f64,
     ) -> Result<(), Refusal> {
-        let state: State = door::read(bytes, limits)?;
+        let state: State = decode::read(bytes, limits)?;
         let version = state.header.check(&self.profile.key, is_third)?;
         let newest = self.newest.entry(Kind::State).or_default();
         let place = newest.take(&state.header, now, |action| state.names(action));
@@ -266,7 +266,7 @@ impl Lane {
         is_third: bool,
         now: f64,
     ) -> Result<(), Refusal> {
-        let message: Visualization = door::read(bytes, limits)?;
+        let message: Visualization = decode::read(bytes, limits)?;
         // Schema 2.0 does not require a header.
         if message.header != Header::default() {
             message.header.check(&self.profile.key, is_third)?;

@@ -1,9 +1,9 @@
 //! The part of an order that the vehicle has passed is left out, so that an order that is extended for hours stays short: each update
 //! writes all of it to the journal.
 
-use super::super::state::State;
 use super::super::way::Way;
 use super::job::{Job, Sent, Stop};
+use pcr_formats::vda5050::state::State;
 
 /// Number of passed stops that are kept: late states name them.
 const KEPT: usize = 50;

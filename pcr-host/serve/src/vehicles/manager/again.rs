@@ -6,9 +6,9 @@
 
 use super::super::locks::to_line;
 use super::{Client, Given, Manager, NEAR, Sent};
-use crate::vda5050::order::{Edge, Node};
-use crate::vda5050::state::State;
-use crate::vda5050::topics::Key;
+use pcr_formats::vda5050::order::{Edge, Node};
+use pcr_formats::vda5050::state::State;
+use pcr_formats::vda5050::topics::Key;
 
 /// Number of refused orders of a vehicle that are kept.
 const MOST: usize = 8;

@@ -1,6 +1,7 @@
-//! An order as its receiver holds it; updates are stitched to its base as the standard says.
+//! An order as its receiver keeps it. Updates are stitched to the end of its base, as the standard says: the base itself cannot be
+//! changed. The importer, the supervisor and simulated vehicles decide by this, and with these words.
 
-use super::door::Refusal;
+use super::decode::Refusal;
 use super::order::{Edge, Node, Order};
 use super::version::Error;
 use serde::{Deserialize, Serialize};
@@ -9,9 +10,13 @@ use serde_json::{Map, Value};
 /// Largest number of nodes of an order that are kept.
 const MOST: usize = 10_000;
 
+/// Largest distance between the end of the base and the first node of an update, which are one node, so that the difference is
+/// rounding \[m\].
+const SAME_PLACE: f64 = 1e-3;
+
 /// An order with all of its updates so far.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Held {
+pub struct OrderState {
     /// Order id.
     pub order_id: String,
     /// Order update id of the last update that was taken.
@@ -52,13 +57,21 @@ impl Rejected {
     }
 }
 
+impl Rejected {
+    /// The rejection of an update whose number was taken with another content.
+    fn changed(update_id: u64) -> Self {
+        let why = format!("{update_id} was taken already, with other nodes or edges");
+        Self::new(Error::Update, "orderUpdateId", why)
+    }
+}
+
 impl From<Refusal> for Rejected {
     fn from(refusal: Refusal) -> Self {
         Self { error: Error::Malformed, refusal }
     }
 }
 
-impl Held {
+impl OrderState {
     /// A new order.
     ///
     /// # Errors
@@ -70,10 +83,13 @@ impl Held {
         Ok(Self { order_id, update_id, nodes, edges, base, rest })
     }
 
-    /// Applies an update, which has to go on at the last node of the base; it replaces the horizon.
+    /// Applies an update, which has to go on at the last node of the base; it replaces the horizon. An update that was taken already is
+    /// recognized by its number.
     ///
     /// # Errors
-    /// [`Rejected`] if it does not go on there; nothing has changed then.
+    /// [`Rejected`] if its number is lower than that of the last one, if it has the number of the last one and says something else, or if
+    /// it does not go on at the end of the base: at the same node, with the same sequence number, at the same place. Nothing has
+    /// changed then.
     pub fn update(&mut self, mut order: Order) -> Result<Taken, Rejected> {
         order.check()?;
         if order.order_update_id < self.update_id {
@@ -81,15 +97,18 @@ impl Held {
             return Err(Rejected::new(Error::Outdated, "orderUpdateId", why));
         }
         if order.order_update_id == self.update_id {
-            return Ok(Taken::Repeated);
+            return if self.has(&order) { Ok(Taken::Repeated) } else { Err(Rejected::changed(self.update_id)) };
         }
         let (Some(stitch), Some(first)) = (self.nodes.get(self.base), order.nodes.first()) else {
             return Err(Rejected::new(Error::Update, "nodes", "empty"));
         };
         if (&stitch.node_id, stitch.sequence_id) != (&first.node_id, first.sequence_id) {
             let [is, was] = [first, stitch].map(|node| format!("{} ({})", node.node_id, node.sequence_id));
-            let why = format!("it begins at {is}, but the base ends at {was}");
+            let why = format!("it begins at {is}, but the base ends at {was} and cannot be changed");
             return Err(Rejected::new(Error::Update, "nodes[0]", why));
+        }
+        if let Some(why) = moved(stitch, first) {
+            return Err(Rejected::new(Error::Update, "nodes[0].nodePosition", why));
         }
         if self.base + order.nodes.len() > MOST {
             return Err(Rejected::new(Error::Order, "nodes", format!("more than {MOST} of one order")));
@@ -103,6 +122,16 @@ impl Held {
         self.edges.extend(order.edges);
         self.rest = order.rest;
         Ok(Taken::After(after))
+    }
+
+    /// Whether the nodes and edges of an order, which has been checked, are those that are kept. What was passed and dropped is not compared.
+    fn has(&self, order: &Order) -> bool {
+        let first = self.nodes.first().map_or(0, |node| node.sequence_id);
+        let nodes = order.nodes.iter().filter(|node| node.sequence_id >= first);
+        let edges = order.edges.iter().filter(|edge| edge.sequence_id > first);
+        let own_nodes = self.nodes.iter().rev().take(nodes.clone().count()).rev();
+        let own_edges = self.edges.iter().rev().take(edges.clone().count()).rev();
+        own_nodes.map(says).eq(nodes.map(says)) && own_edges.eq(edges)
     }
 
     /// Drops passed nodes up to this index, but not the end of the base.
@@ -119,9 +148,25 @@ impl Held {
     }
 }
 
+/// Returns what is compared of a node: its name, number, whether it is released, and its place.
+fn says(node: &Node) -> (&str, u64, bool, Option<[f64; 2]>) {
+    (&node.node_id, node.sequence_id, node.released, node.node_position.as_ref().map(|place| [place.x, place.y]))
+}
+
+/// Says how far the first node of an update is from the end of the base, if it is elsewhere. A node without a position is where it was.
+fn moved(stitch: &Node, first: &Node) -> Option<String> {
+    let (was, is) = stitch.node_position.as_ref().zip(first.node_position.as_ref())?;
+    if was.map_id != is.map_id {
+        return Some(format!("node {} is on map {}, but it was on map {}", first.node_id, is.map_id, was.map_id));
+    }
+    let apart = (is.x - was.x).hypot(is.y - was.y);
+    (apart > SAME_PLACE).then(|| format!("node {} is {apart:.3} m from where it was", first.node_id))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::door::{Limits, read};
+    use super::super::decode::{Limits, read};
+    use super::super::order::NodePosition;
     use super::*;
     use serde_json::json;
 
@@ -140,7 +185,7 @@ mod tests {
     #[test]
     fn updates_are_stitched_to_the_base() {
         // The example of the standard: f, d, g are released, b and h are not.
-        let mut held = Held::new(order(0, &[("f", 0), ("d", 2), ("g", 4), ("b", 6), ("h", 8)], 3)).unwrap();
+        let mut held = OrderState::new(order(0, &[("f", 0), ("d", 2), ("g", 4), ("b", 6), ("h", 8)], 3)).unwrap();
         assert_eq!(held.base, 2);
         let update = order(1, &[("g", 4), ("b", 6), ("h", 8), ("i", 10)], 3);
         assert_eq!(held.update(update.clone()), Ok(Taken::After(2)));
@@ -161,8 +206,51 @@ mod tests {
     }
 
     #[test]
+    fn the_number_of_an_update_is_taken_once() {
+        let mut held = OrderState::new(order(0, &[("a", 0), ("b", 2), ("c", 4)], 2)).unwrap();
+        assert_eq!(held.update(order(0, &[("a", 0), ("b", 2), ("c", 4)], 2)), Ok(Taken::Repeated));
+        for other in [
+            order(0, &[("a", 0), ("b", 2), ("c", 4)], 3),
+            order(0, &[("a", 0), ("b", 2), ("d", 4)], 2),
+            order(0, &[("a", 0), ("b", 2)], 2),
+            order(0, &[("a", 0), ("b", 2), ("c", 4), ("d", 6)], 2),
+        ] {
+            let rejected = held.update(other).unwrap_err();
+            assert_eq!((rejected.error, rejected.refusal.field.as_str()), (Error::Update, "orderUpdateId"));
+        }
+        let update = order(1, &[("b", 2), ("c", 4), ("d", 6)], 3);
+        assert_eq!(held.update(update.clone()), Ok(Taken::After(1)));
+        assert_eq!(held.update(update.clone()), Ok(Taken::Repeated));
+        // What was passed is not known any more.
+        held.forget(2);
+        assert_eq!(held.update(update), Ok(Taken::Repeated));
+        assert!(held.update(order(1, &[("b", 2), ("c", 4), ("e", 6)], 3)).is_err());
+    }
+
+    #[test]
+    fn the_first_node_of_an_update_is_where_the_base_ends() {
+        let at = |mut order: Order, k: usize, x: f64, map: &str| {
+            order.nodes[k].node_position = Some(NodePosition { x, y: 1.0, map_id: map.into(), rest: Map::new() });
+            order
+        };
+        let first = at(order(0, &[("a", 0), ("b", 2)], 2), 1, 5.0, "m");
+        let update = || order(1, &[("b", 2), ("c", 4)], 2);
+        for (x, map, why) in [
+            (5.0, "m", None),
+            (5.0005, "m", None),
+            (5.01, "m", Some("node b is 0.010 m from where it was")),
+            (5.0, "n", Some("node b is on map n, but it was on map m")),
+        ] {
+            let taken = OrderState::new(first.clone()).unwrap().update(at(update(), 0, x, map));
+            let refused = taken.err().map(|rejected| (rejected.error, rejected.refusal.why));
+            assert_eq!(refused, why.map(|why| (Error::Update, why.to_owned())));
+        }
+        assert!(OrderState::new(first).unwrap().update(update()).is_ok());
+    }
+
+    #[test]
     fn what_is_no_way_is_refused() {
-        let refused = |order: Order| Held::new(order).unwrap_err().refusal.field;
+        let refused = |order: Order| OrderState::new(order).unwrap_err().refusal.field;
         assert_eq!(refused(order(0, &[("a", 0), ("b", 3)], 2)), "edges[0].sequenceId");
         assert_eq!(refused(order(0, &[("a", 0), ("b", 2)], 0)), "nodes[0].released");
         let mut gap = order(0, &[("a", 0), ("b", 2), ("c", 4)], 1);

@@ -283,9 +283,9 @@ impl StateError {
 }
 
 /// Key of references to orders.
-pub(super) const ORDER: &str = "orderId";
+pub const ORDER: &str = "orderId";
 
 /// A text, or a number that should be one.
-pub(super) fn text(value: &Value) -> Option<String> {
+pub fn text(value: &Value) -> Option<String> {
     value.as_str().map(str::to_owned).or_else(|| value.as_u64().map(|number| number.to_string()))
 }

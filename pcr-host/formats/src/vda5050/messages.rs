@@ -1,6 +1,6 @@
 //! Messages other than orders and states. Fields that are not named here are kept unchanged in `rest`.
 
-use super::door::Refusal;
+use super::decode::Refusal;
 use super::header::{Header, message};
 use super::state::{Pose, Velocity};
 use super::version::Version;
@@ -158,7 +158,7 @@ pub struct Response {
 
 #[cfg(test)]
 mod tests {
-    use super::super::door::{Limits, read};
+    use super::super::decode::{Limits, read};
     use super::super::topics::Key;
     use super::*;
 

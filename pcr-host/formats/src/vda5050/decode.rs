@@ -1,13 +1,13 @@
 //! Converts bytes to values. Messages that are too large, are not JSON, or contain numbers that cannot be computed with
 //! are refused with a reason.
 
-use super::bounds::{self, VERBATIM};
-use pcr_formats::once::Once;
+use super::validate::{self, VERBATIM};
+use crate::once::Once;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::fmt;
 
-pub use super::bounds::Limits;
+pub use super::validate::Limits;
 
 /// Why a message is refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -45,13 +45,21 @@ pub fn read<T: DeserializeOwned>(bytes: &[u8], limits: Limits) -> Result<T, Refu
         return Err(Refusal::new("", format!("{} bytes; at most {} are read", bytes.len(), limits.bytes)));
     }
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    bounds::check(bytes, limits).map_err(|(field, why)| Refusal::new(field, why))?;
+    validate::check(bytes, limits).map_err(|(field, why)| Refusal::new(field, why))?;
     // The fast path: only a message with an error or with `null` is parsed into a tree first.
     let has_null = bytes.windows(4).any(|part| part == b"null");
     if let Some(message) = (!has_null).then(|| serde_json::from_slice(bytes).ok()).flatten() {
         return Ok(message);
     }
-    let Once(mut value) = serde_json::from_slice(bytes).map_err(|error| Refusal::new("", error))?;
+    let Once(value) = serde_json::from_slice(bytes).map_err(|error| Refusal::new("", error))?;
+    from_value(value)
+}
+
+/// Reads a message from its tree, as [`read`] does, without limits of its size.
+///
+/// # Errors
+/// [`Refusal`] with the name of the field.
+pub fn from_value<T: DeserializeOwned>(mut value: Value) -> Result<T, Refusal> {
     drop_null(&mut value);
     serde_path_to_error::deserialize(value).map_err(|error| {
         let path = error.path().to_string();
@@ -72,9 +80,9 @@ fn drop_null(value: &mut Value) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::order::Order;
+    use super::super::state::State;
     use super::*;
-    use crate::vda5050::order::Order;
-    use crate::vda5050::state::State;
 
     fn refused(text: &str) -> String {
         read::<Order>(text.as_bytes(), Limits::default()).unwrap_err().to_string()

@@ -1,6 +1,6 @@
 //! The header of every message.
 
-use super::door::Refusal;
+use super::decode::Refusal;
 use super::topics::Key;
 use super::version::Version;
 use serde::{Deserialize, Serialize};

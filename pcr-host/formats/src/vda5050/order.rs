@@ -1,6 +1,6 @@
 //! Orders: nodes and edges to be travelled, of which the first ones are released.
 
-use super::door::Refusal;
+use super::decode::Refusal;
 use super::header::message;
 use super::messages::Action;
 use serde::{Deserialize, Serialize};

@@ -35,7 +35,7 @@ pub fn written(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::written;
-    use pcr_formats::import::seconds;
+    use crate::import::seconds;
 
     #[test]
     fn what_is_written_is_read_as_the_same_time() {
