@@ -32,23 +32,27 @@ fn an_order_and_its_updates_are_one_way_of_one_vehicle() {
     for all in [[&first, &second, &third, &other], [&third, &second, &other, &first]] {
         assert_eq!(lengths(&all), Ok(vec![20.0, 5.0]));
     }
-    // Without the second the way from n1 to n2 is not released.
-    assert_eq!(lengths(&[&first, &third]), Ok(vec![5.0]));
+    // Without the second the order ends at n1.
+    let name = "order o, update 2, ";
+    let gap = "it begins at n2 (4), but the base ends at n1 (2) and cannot be changed";
+    assert!(lengths(&[&first, &third]).unwrap_err().contains(&format!("{name}nodes[0]: {gap}")));
     // One that was sent again counts once, and one that says something else is no update.
     assert_eq!(lengths(&[&first, &first, &second, &second]), Ok(vec![10.0]));
-    let name = "order o, update 1: ";
-    assert_eq!(
-        lengths(&[&first, &second, &order(1, 1, 4, 4)]),
-        Err(format!("{name}it is there twice, and not the same"))
-    );
-    let gap = "the order before it does not have its first node";
-    assert_eq!(lengths(&[&first, &order(1, 3, 4, 4)]), Err(format!("{name}{gap}")));
+    let refused = |messages: &[&Value], expected: &str| {
+        let error = lengths(messages).unwrap_err();
+        assert!(error.contains(&format!("order o, update 1, {expected}")), "{error}");
+    };
+    refused(&[&first, &second, &order(1, 1, 4, 4)], "orderUpdateId: 1 was taken already, with another content");
+    let elsewhere =
+        |is: &str| format!("nodes[0]: it begins at {is}, but the base ends at n1 (2) and cannot be changed");
+    refused(&[&first, &order(1, 3, 4, 4)], &elsewhere("n3 (6)"));
+    refused(&[&first, &order(1, 0, 4, 4)], &elsewhere("n0 (0)"));
     let mut renamed = second.clone();
     renamed["nodes"][0]["nodeId"] = json!("elsewhere");
-    assert_eq!(lengths(&[&first, &renamed]), Err(format!("{name}{gap}")));
+    refused(&[&first, &renamed], &elsewhere("elsewhere (2)"));
     let mut unnumbered = second.clone();
     unnumbered["nodes"][0]["sequenceId"] = Value::Null;
-    assert_eq!(lengths(&[&first, &unnumbered]), Err(format!("{name}it has no nodes with a sequenceId")));
+    refused(&[&first, &unnumbered], "nodes[0]: missing field `sequenceId`");
     // Two orders, or an order and a state, would be two vehicles at one place.
     let several = "vehicle R: several messages are about it; one order with its updates, or one state is expected";
     let mut next = order(0, 1, 2, 2);
@@ -71,6 +75,90 @@ fn an_order_and_its_updates_are_one_way_of_one_vehicle() {
     assert_eq!(lengths(&[&unnamed, &first]), Err("vehicle R: its manufacturer is not in all messages".to_owned()));
 }
 
+/// Orders, updates and a vehicle that stands, as files gave them; the nodes of `order` with names and places of their own.
+fn way(update: u64, first: usize, nodes: &[(&str, [f64; 2])]) -> Value {
+    let node = |(k, (name, [x, y])): (usize, &(&str, [f64; 2]))| {
+        json!({ "nodeId": name, "sequenceId": 2 * (first + k), "released": true, "actions": [],
+            "nodePosition": { "x": x, "y": y, "mapId": "m" } })
+    };
+    let edge = |k: usize| {
+        json!({ "edgeId": format!("e{k}"), "sequenceId": 2 * (first + k) - 1, "released": true, "actions": [],
+            "startNodeId": nodes[k - 1].0, "endNodeId": nodes[k].0 })
+    };
+    json!({ "version": "2.0.0", "orderId": "o", "orderUpdateId": update, "manufacturer": "M", "serialNumber": "R",
+        "nodes": nodes.iter().enumerate().map(node).collect::<Vec<_>>(),
+        "edges": (1..nodes.len()).map(edge).collect::<Vec<_>>() })
+}
+
+/// It was taken at any node, so that the vehicle left its base, and did not meet the one that stood there.
+#[test]
+fn an_update_that_a_vehicle_refuses_is_refused_and_the_base_stays() {
+    let base = way(0, 0, &[("A", [0.0, 0.0]), ("B", [10.0, 0.0]), ("C", [10.0, 10.0])]);
+    let mut other = way(0, 0, &[("B2", [10.0, 0.5])]);
+    (other["serialNumber"], other["orderId"]) = (json!("R2"), json!("o2"));
+    let leaves = way(1, 0, &[("A", [0.0, 0.0]), ("D", [0.0, 10.0])]);
+    let moved = way(1, 2, &[("C", [20.0, 0.0]), ("D", [30.0, 0.0])]);
+    let mut horizon = base.clone();
+    for part in [&["nodes", "2"], &["edges", "1"]] {
+        horizon[part[0]][part[1].parse::<usize>().unwrap()]["released"] = json!(false);
+    }
+    let ahead = way(1, 2, &[("C", [10.0, 10.0]), ("D", [0.0, 10.0])]);
+    let partial = Options { partial: true, ..options() };
+    for (first, update, length, problem) in [
+        (&base, &leaves, 20.0, "nodes[0]: it begins at A (0), but the base ends at C (4) and cannot be changed"),
+        (&base, &moved, 20.0, "nodes[0].nodePosition: node C is 14.142 m from where it was"),
+        (&horizon, &ahead, 10.0, "nodes[0]: it begins at C (4), but the base ends at B (2) and cannot be changed"),
+    ] {
+        let problem = format!("order o, update 1, {problem}");
+        let text = [first, update, &other].map(Value::to_string).join("\n");
+        let error = read(&text, &options()).unwrap_err();
+        assert!(error.contains(&problem), "{error}");
+        let (scenario, warnings) = read(&text, &partial).unwrap();
+        assert!(warnings.contains(&format!("{problem}: left out")), "{warnings:?}");
+        assert_eq!(scenario.agents[0].length(), length);
+    }
+    // Alone, it is not known where the vehicle was before.
+    let (_, warnings) = read(&ahead.to_string(), &options()).unwrap();
+    let alone =
+        "order o, update 1: the order before it is not there; it is read as if the vehicle began at its first node";
+    assert!(warnings.contains(&alone.to_owned()), "{warnings:?}");
+}
+
+/// What else a fleet manager says changes the way, and was refused as no message at all, or made two vehicles of one.
+#[test]
+fn what_halts_a_vehicle_or_gives_it_zones_is_refused_by_name() {
+    let first = order(0, 0, 2, 2);
+    let message = |field: &str, content: Value| json!({ "manufacturer": "M", "serialNumber": "R", field: content });
+    let action = |name: &str| json!([{ "actionType": name, "actionId": "a", "blockingType": "NONE" }]);
+    for (message, problem) in [
+        (
+            message("actions", action("cancelOrder")),
+            "cancelOrder is sent to it; where it stops then is not in the file",
+        ),
+        (message("instantActions", action("startPause")), "startPause is sent to it; where it stops then"),
+        (message("actions", action("enableZoneSet")), "enableZoneSet is sent to it; zones are not read"),
+        (message("zoneSet", json!({ "zoneSetId": "z", "zones": [] })), "a zone set is sent to it, which is not read"),
+    ] {
+        for both in [[&first, &message], [&message, &first]] {
+            let error = lengths(&both).unwrap_err();
+            assert!(error.starts_with(&format!("vehicle R: {problem}")), "{error}");
+        }
+    }
+}
+
+/// They were refused for the number of their points.
+#[test]
+fn a_trajectory_without_points_is_refused_by_what_is_missing() {
+    for trajectory in [json!({}), json!({ "type": "Straight" }), json!({ "degree": 1, "controlPoints": [] })] {
+        let mut order = order(0, 0, 1, 1);
+        order["edges"][0]["trajectory"] = trajectory;
+        let error = read(&order.to_string(), &options()).unwrap_err();
+        assert!(error.starts_with("order o, edge e0, trajectory") && error.contains("controlPoints"), "{error}");
+        order["edges"][0]["trajectory"] = Value::Null;
+        assert!(read(&order.to_string(), &options()).is_ok());
+    }
+}
+
 /// It faced east.
 #[test]
 fn an_outline_that_faces_nobody_knows_where_to_is_the_disc_around_it() {
@@ -81,7 +169,10 @@ fn an_outline_that_faces_nobody_knows_where_to_is_the_disc_around_it() {
         ..Options::default()
     };
     let place = |theta: Value| json!({ "x": 1.0, "y": 2.0, "theta": theta, "mapId": "m" });
-    let stands = |theta: Value| json!({ "orderId": "o", "nodes": [{ "nodeId": "a", "nodePosition": place(theta) }], "edges": [] });
+    let stands = |theta: Value| {
+        let node = json!({ "nodeId": "a", "sequenceId": 0, "released": true, "nodePosition": place(theta) });
+        json!({ "orderId": "o", "nodes": [node], "edges": [] })
+    };
     let is = |theta: Value| json!({ "serialNumber": "R", "nodeStates": [], "mobileRobotPosition": place(theta) });
     let mut unreleased = order(0, 0, 1, 0);
     for node in 0..2 {

@@ -41,6 +41,10 @@ pub(crate) fn square() -> Value {
     json!({ "orderId": "square", "version": "3.0.0", "nodes": nodes, "edges": edges })
 }
 
+fn action(name: &str) -> Value {
+    json!({ "actionType": name, "actionId": name, "blockingType": "NONE" })
+}
+
 #[test]
 fn published_orders() {
     for name in ["order.json", "x"] {
@@ -54,15 +58,18 @@ fn published_orders() {
     let MotionSpec::Profile { pieces, .. } = &agent.motion else { panic!() };
     assert!((pieces[0].0 - 3.0).abs() < 1e-9 && pieces.len() == 3);
     assert!(warnings[0].contains("its actions take no time here"));
-    // All its numbers are 0.
-    let error = read(NULLS, &options()).unwrap_err();
-    assert_eq!(error, "order some-order-id, node node-without-node-position, sequenceId: 0 is there twice");
-    let unnumbered = NULLS.replace("\"sequenceId\" : 0", "\"sequenceId\" : null");
-    let error = read(&unnumbered, &options()).unwrap_err();
-    let expected = "order some-order-id, edge some-edge-id, startNodeId: source-node, \
-        but by sequenceId it is node-with-node-position-and-action";
-    assert_eq!(error, expected);
-    let joined = unnumbered.replace("\"source-node\"", "null").replace("\"destination-node\"", "null");
+    // A test of its sender: its version is none, and all its numbers are 0.
+    let refused = |text: &str| read(text, &options()).unwrap_err().replace("order some-order-id, ", "");
+    assert_eq!(refused(NULLS), "version: \"version\"; 2.0, 2.1 and 3.0 are read");
+    let versioned = NULLS.replace("\"version\" : \"version\"", "\"version\" : \"2.0.0\"");
+    assert_eq!(refused(&versioned), "edges[0].sequenceId: [0, 0, 0] do not follow one another");
+    let unnumbered = versioned.replace("\"sequenceId\" : 0", "\"sequenceId\" : null");
+    assert_eq!(refused(&unnumbered), "nodes[0]: missing field `sequenceId`");
+    let numbered = ["0", "2", "1"].into_iter().fold(versioned, |text, number| {
+        text.replacen("\"sequenceId\" : 0,", &format!("\"sequenceId\" : {number} ,"), 1)
+    });
+    assert_eq!(refused(&numbered), "edges[0].startNodeId: by sequenceId it is node-with-node-position-and-action");
+    let joined = numbered.replace("\"source-node\"", "null").replace("\"destination-node\"", "null");
     let expected = "order some-order-id, node node-without-node-position, nodePosition: missing";
     assert_eq!(read(&joined, &options()).unwrap_err(), expected);
 }
@@ -83,21 +90,38 @@ fn the_base_is_travelled_and_the_horizon_if_asked_for() {
         }
     }
     assert_eq!(read(&order.to_string(), &options()).unwrap().0.agents[0].structure(), "SASAS");
-    for (list, id, structure) in
-        [("nodes", "n2", "S"), ("edges", "e1", "S"), ("nodes", "n3", "SAS"), ("edges", "e2", "SAS")]
-    {
+    let released = |order: &Value, list: &str, id: &str, is_released: Value| {
         let mut order = order.clone();
         let parts = order[list].as_array_mut().unwrap();
         let part = parts.iter_mut().find(|part| part["nodeId"] == *id || part["edgeId"] == *id).unwrap();
-        part["released"] = json!(false);
-        assert_eq!(read(&order.to_string(), &options()).unwrap().0.agents[0].structure(), structure, "{id}");
-        let part = order[list].as_array_mut().unwrap().iter_mut();
-        part.for_each(|part| part["released"] = json!("no"));
-        assert!(
-            read(&order.to_string(), &options())
-                .unwrap_err()
-                .ends_with("released: a text where true or false is expected")
-        );
+        part["released"] = is_released;
+        order
+    };
+    for (k, structure) in [(1, "S"), (2, "SAS")] {
+        let [edge, node] = [format!("e{k}"), format!("n{}", k + 1)];
+        let edge_only = released(&order, "edges", &edge, json!(false));
+        let both = released(&edge_only, "nodes", &node, json!(false));
+        // What is released after that is no part of the base.
+        let refused = format!("order square, edges[{k}].released: the base is one way up to a node");
+        for wrong in [&edge_only, &released(&order, "nodes", &node, json!(false))] {
+            assert_eq!(read(&wrong.to_string(), &options()).unwrap_err(), refused);
+        }
+        match k {
+            1 => {
+                assert!(read(&both.to_string(), &options()).unwrap_err().starts_with("order square, edges[2].released"))
+            }
+            _ => assert_eq!(read(&both.to_string(), &options()).unwrap().0.agents[0].structure(), structure),
+        }
+        for (list, id) in [("nodes", &node), ("edges", &edge)] {
+            let text = released(&order, list, id, json!("no"));
+            let error = read(&text.to_string(), &options()).unwrap_err();
+            assert!(
+                error.starts_with(&format!("order square, {list}[")) && error.contains("expected a boolean"),
+                "{error}"
+            );
+            let missing = released(&order, list, id, Value::Null);
+            assert!(read(&missing.to_string(), &options()).unwrap_err().ends_with(": missing field `released`"));
+        }
     }
     // 0.5 m/s on the first edge: 1 s up and down, and 7 s; then a quarter turn.
     let MotionSpec::Profile { pieces, .. } = &scenario.agents[0].motion else { panic!() };
@@ -143,10 +167,10 @@ fn outlines_face_as_orders_say() {
     let outlined = outlined();
     let order = |edge: Value, theta: [Value; 2]| {
         let node = |k: usize, y: f64| {
-            json!({ "nodeId": format!("n{k}"), "sequenceId": 2 * k, "actions": [],
+            json!({ "nodeId": format!("n{k}"), "sequenceId": 2 * k, "released": true, "actions": [],
                 "nodePosition": { "x": 0.0, "y": y, "theta": theta[k], "mapId": "m" } })
         };
-        let mut way = json!({ "edgeId": "e", "sequenceId": 1, "actions": [] });
+        let mut way = json!({ "edgeId": "e", "sequenceId": 1, "released": true, "actions": [] });
         way.as_object_mut().unwrap().extend(edge.as_object().unwrap().clone());
         json!({ "orderId": "o", "nodes": [node(0, 0.0), node(1, 5.0)], "edges": [way] }).to_string()
     };
@@ -196,7 +220,8 @@ fn outlines_face_as_orders_say() {
         assert!(error.contains(": its theta ") && error.contains("outlines face along their paths"), "{error}");
     }
     // Who stands faces as it says.
-    let standing = json!({ "orderId": "o", "nodes": [{ "nodeId": "a", "nodePosition": { "x": 1.0, "y": 2.0, "theta": 0.5 } }], "edges": [] });
+    let standing = json!({ "orderId": "o", "edges": [],
+        "nodes": [{ "nodeId": "a", "sequenceId": 0, "released": true, "nodePosition": { "x": 1.0, "y": 2.0, "theta": 0.5 } }] });
     assert_eq!(read(&standing.to_string(), &outlined).unwrap().0.agents[0].start, [1.0, 2.0, 0.5]);
 }
 
@@ -207,8 +232,11 @@ fn what_is_wrong_is_named() {
         *order.pointer_mut(pointer).unwrap() = value;
         read(&order.to_string(), &Options { horizon: true, ..options() }).unwrap_err()
     };
-    assert_eq!(broken("/edges", json!([])), "order square: 4 nodes and 0 edges, which is no path");
-    assert_eq!(broken("/nodes/0/nodeId", json!(3)), "order square, node 1, nodeId: a number where a text is expected");
+    assert_eq!(broken("/edges", json!([])), "order square, nodes: 4 nodes and 0 edges are no way");
+    assert_eq!(
+        broken("/nodes/0/nodeId", json!(3)),
+        "order square, nodes[0].nodeId: invalid type: integer `3`, expected a string"
+    );
     assert_eq!(
         broken("/edges/2/maximumSpeed", json!(-1)),
         "order square, edge e0, maximumSpeed: -1 where a number above 0 is expected"
@@ -223,11 +251,11 @@ fn what_is_wrong_is_named() {
     }
     assert_eq!(
         broken("/nodes/0/nodePosition/x", json!(1e300)),
-        "order square, node n3, nodePosition, x: 1e300 is out of range; allowed is up to 1e10"
+        "order square, nodes[0].nodePosition.x: 1e300 is out of range; allowed is up to 1e10"
     );
     assert_eq!(
         broken("/nodes/0/nodePosition/x", json!(-1e300)),
-        "order square, node n3, nodePosition, x: -1e300 is out of range; allowed is up to 1e10"
+        "order square, nodes[0].nodePosition.x: -1e300 is out of range; allowed is up to 1e10"
     );
     assert_eq!(broken("/nodes", json!(null)), "message 1, nodes or nodeStates: missing");
 }
@@ -270,18 +298,22 @@ fn deviations_make_agents_larger_and_are_told() {
 
 #[test]
 fn orders_stay_on_a_map_and_stand_where_they_have_no_edges() {
-    let node =
-        |id: &str, x: f64, map: &str| json!({ "nodeId": id, "nodePosition": { "x": x, "y": 1.0, "mapId": map } });
+    let node = |id: &str, x: f64, map: &str| {
+        json!({ "nodeId": id, "sequenceId": if x == 3.0 { 2 } else { 0 }, "released": true,
+            "nodePosition": { "x": x, "y": 1.0, "mapId": map } })
+    };
     let order = |nodes: Value, edges: usize| {
-        let edges: Vec<Value> = (0..edges).map(|k| json!({ "edgeId": format!("e{k}") })).collect();
+        let released = nodes.as_array().unwrap().last().unwrap()["released"].clone();
+        let edge = |k: usize| json!({ "edgeId": format!("e{k}"), "sequenceId": 2 * k + 1, "released": released });
+        let edges: Vec<Value> = (0..edges).map(edge).collect();
         json!({ "orderId": "o", "nodes": nodes, "edges": edges }).to_string()
     };
-    // Without `released` it all is.
     let (scenario, warnings) = read(&order(json!([node("a", 0.0, "m"), node("b", 3.0, "m")]), 1), &options()).unwrap();
     assert_eq!((scenario.agents[0].structure().as_str(), warnings.len()), ("S", 0));
     let (scenario, _) = read(&order(json!([node("a", 2.0, "m")]), 0), &options()).unwrap();
     assert_eq!((scenario.agents[0].path.len(), scenario.agents[0].start), (0, [2.0, 1.0, 0.0]));
-    let nowhere = read(&order(json!([{ "nodeId": "a" }]), 0), &options()).unwrap_err();
+    let nowhere = json!([{ "nodeId": "a", "sequenceId": 0, "released": true }]);
+    let nowhere = read(&order(nowhere, 0), &options()).unwrap_err();
     assert_eq!(nowhere, "order o, node a, nodePosition: missing");
     let across = order(json!([node("a", 0.0, "m"), node("b", 3.0, "n")]), 1);
     assert_eq!(read(&across, &options()).unwrap_err(), "order o: it leads from map m to map n");
@@ -299,7 +331,7 @@ fn orders_stay_on_a_map_and_stand_where_they_have_no_edges() {
     assert_eq!(warnings, ["maps m, n: the agents are on several, which a scenario does not tell apart"]);
     // What is beyond the base is not travelled: neither its map nor its actions count.
     let mut beyond = node("b", 3.0, "n");
-    (beyond["released"], beyond["actions"]) = (json!(false), json!([{ "actionType": "pick" }]));
+    (beyond["released"], beyond["actions"]) = (json!(false), json!([action("pick")]));
     let (scenario, warnings) = read(&order(json!([node("a", 0.0, "m"), beyond]), 1), &options()).unwrap();
     assert_eq!(scenario.agents[0].path.len(), 0);
     assert_eq!(warnings, ["order o: 1 of 1 edges are not released and left out (--horizon)"]);
@@ -315,8 +347,11 @@ pub(crate) fn outlined() -> Options {
 #[test]
 fn who_turns_in_place_is_the_disc_around_the_outline() {
     let order = |thetas: [Value; 3]| {
-        let node = |k: usize| json!({ "nodeId": format!("n{k}"), "nodePosition": { "x": 1.0, "y": 2.0, "theta": thetas[k], "mapId": "m" } });
-        let edges = [json!({ "edgeId": "a" }), json!({ "edgeId": "b" })];
+        let node = |k: usize| {
+            json!({ "nodeId": format!("n{k}"), "sequenceId": 2 * k, "released": true,
+                "nodePosition": { "x": 1.0, "y": 2.0, "theta": thetas[k], "mapId": "m" } })
+        };
+        let edges = [1, 3].map(|number| json!({ "edgeId": "e", "sequenceId": number, "released": true }));
         json!({ "orderId": "o", "nodes": [node(0), node(1), node(2)], "edges": edges }).to_string()
     };
     let read = |thetas| read(&order(thetas), &outlined()).unwrap().0.agents.remove(0);
@@ -349,8 +384,11 @@ fn control_points_say_how_an_outline_faces() {
         let point = |k: usize, x: f64, y: f64| json!({ "x": x, "y": y, "orientation": orientations[k] });
         let curve =
             json!({ "degree": 2, "controlPoints": [point(0, 0.0, 0.0), point(1, 3.0, middle), point(2, 6.0, 0.0)] });
-        let node = |id: &str, x: f64| json!({ "nodeId": id, "nodePosition": { "x": x, "y": 0.0 } });
-        let edge = json!({ "edgeId": "e", "trajectory": curve });
+        let node = |id: &str, x: f64| {
+            json!({ "nodeId": id, "sequenceId": if x == 0.0 { 0 } else { 2 }, "released": true,
+                "nodePosition": { "x": x, "y": 0.0 } })
+        };
+        let edge = json!({ "edgeId": "e", "sequenceId": 1, "released": true, "trajectory": curve });
         json!({ "orderId": "o", "nodes": [node("a", 0.0), node("b", 6.0)], "edges": [edge] }).to_string()
     };
     let none = Value::Null;
@@ -382,7 +420,8 @@ fn names_are_texts_and_numbers_go_on() {
         order["serialNumber"] = json!("r");
         order[field] = json!(5);
         let error = read(&order.to_string(), &options()).unwrap_err();
-        assert!(error.ends_with(&format!("{field}: a number where a text is expected")), "{error}");
+        let said = ["a number where a text is expected", "invalid type: integer `5`, expected a string", "not a text"];
+        assert!(said.iter().any(|said| error.ends_with(&format!("{field}: {said}"))), "{error}");
     }
     let numbered = |pointer: &str, number: Value| {
         let mut order = square();
@@ -390,34 +429,44 @@ fn names_are_texts_and_numbers_go_on() {
         read(&order.to_string(), &options()).map_err(|error| error.replace("order square, ", ""))
     };
     // The lists are reversed: n3 is the first one, and e2.
-    let expected = "node n3, sequenceId: 8 where 6 is expected, as they count from node to edge to node";
-    assert_eq!(numbered("/nodes/0/sequenceId", json!(8)).unwrap_err(), expected);
-    let expected = "edge e2, sequenceId: 7 where 5 is expected, as they count from node to edge to node";
-    assert_eq!(numbered("/edges/0/sequenceId", json!(7)).unwrap_err(), expected);
-    assert!(numbered("/nodes/0/sequenceId", json!(4)).unwrap_err().ends_with("sequenceId: 4 is there twice"));
-    assert_eq!(numbered("/nodes/0/sequenceId", Value::Null).unwrap_err(), "node n3, sequenceId: missing");
-    // What begins elsewhere than at 0 is an update, and what has no numbers at all is in the order of the lists.
+    for (pointer, number, numbers) in [
+        ("/nodes/0/sequenceId", 8, "[4, 5, 8]"),
+        ("/edges/0/sequenceId", 7, "[4, 7, 6]"),
+        ("/nodes/0/sequenceId", 4, "[4, 5, 4]"),
+    ] {
+        let error = numbered(pointer, json!(number)).unwrap_err();
+        assert_eq!(error, format!("edges[2].sequenceId: {numbers} do not follow one another"));
+    }
+    assert_eq!(numbered("/nodes/0/sequenceId", Value::Null).unwrap_err(), "nodes[0]: missing field `sequenceId`");
+    for wrong in [json!(-1), json!(2.5), json!("6")] {
+        let error = numbered("/nodes/0/sequenceId", wrong).unwrap_err();
+        assert!(error.starts_with("nodes[0].sequenceId: invalid "), "{error}");
+    }
+    // What begins elsewhere than at 0 is an update, of which the order is missing.
     let mut later = square();
     for part in ["nodes", "edges"] {
         for part in later[part].as_array_mut().unwrap() {
             part["sequenceId"] = json!(part["sequenceId"].as_u64().unwrap() + 4);
         }
     }
-    assert_eq!(read(&later.to_string(), &options()).unwrap().0.agents[0].structure(), "SAS");
+    let (scenario, warnings) = read(&later.to_string(), &options()).unwrap();
+    assert_eq!(scenario.agents[0].structure(), "SAS");
+    let alone = "order square: the order before it is not there; it is read as if the vehicle began at its first node";
+    assert!(warnings.iter().any(|line| line == alone), "{warnings:?}");
 }
 
 /// They were only looked for at nodes, and what was no list was none.
 #[test]
 fn actions_of_edges_are_told_and_have_to_be_lists() {
     let mut order = square();
-    order["edges"][2]["actions"] = json!([{ "actionType": "beep", "blockingType": "NONE" }]);
+    order["edges"][2]["actions"] = json!([action("beep")]);
     let (_, warnings) = read(&order.to_string(), &options()).unwrap();
     assert!(warnings.iter().any(|line| line.starts_with("order square: its actions take no time")), "{warnings:?}");
-    for (pointer, name) in [("/nodes/3/actions", "node n0"), ("/edges/2/actions", "edge e0")] {
+    for (pointer, name) in [("/nodes/3/actions", "nodes[3]"), ("/edges/2/actions", "edges[2]")] {
         let mut order = square();
         *order.pointer_mut(pointer).unwrap() = json!(5);
         let error = read(&order.to_string(), &options()).unwrap_err();
-        assert_eq!(error, format!("order square, {name}, actions: a number where a list is expected"));
+        assert_eq!(error, format!("order square, {name}.actions: invalid type: integer `5`, expected a sequence"));
     }
 }
 

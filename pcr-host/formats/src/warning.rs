@@ -103,6 +103,8 @@ codes! {
     Actions = "actions",
     /// Edges of an order are not released; they are left out.
     NotReleased = "not-released",
+    /// An update of an order is there without the order before it; it is read as if the vehicle began at its first node.
+    UpdateAlone = "update-alone",
     /// A vehicle is already moving; its planned path is travelled from rest.
     MovesAlready = "moves-already",
     /// The number format moves agents by more than 1 mm.

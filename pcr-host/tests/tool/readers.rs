@@ -162,6 +162,38 @@ fn what_an_update_in_another_file_releases_is_not_said_to_be_left_out() {
     );
 }
 
+/// An update was taken at any node: the vehicle left its way, and what stood on that was not met.
+#[test]
+fn an_update_that_leaves_the_base_is_refused_and_the_base_collides() {
+    let node = |(k, (name, x, y)): (usize, &(&str, f64, f64))| {
+        json!({ "nodeId": name, "sequenceId": 2 * k, "released": true, "actions": [],
+            "nodePosition": { "x": x, "y": y, "mapId": "m" } })
+    };
+    let message = |serial: &str, update: u32, nodes: &[(&str, f64, f64)]| {
+        let edge =
+            |k: usize| json!({ "edgeId": format!("e{k}"), "sequenceId": 2 * k + 1, "released": true, "actions": [] });
+        let order = json!({ "manufacturer": "M", "serialNumber": serial, "orderId": format!("o{serial}"),
+            "orderUpdateId": update, "nodes": nodes.iter().enumerate().map(node).collect::<Vec<_>>(),
+            "edges": (1..nodes.len()).map(|k| edge(k - 1)).collect::<Vec<_>>() });
+        file("leaves", &format!("{serial}{update}.json"), order.to_string())
+    };
+    let base = message("1", 0, &[("A", 0.0, 0.0), ("B", 10.0, 0.0), ("C", 10.0, 10.0)]);
+    let update = message("1", 1, &[("A", 0.0, 0.0), ("D", 0.0, 10.0)]);
+    let other = message("2", 0, &[("B2", 10.0, 0.5)]);
+    let import = |more: &[&str]| {
+        run(&[&["import", "vda5050", &base, &update, &other, "--radius", "0.4", "-o", "-"], more].concat())
+    };
+    let problem = "order o1, update 1, nodes[0]: it begins at A (0), but the base ends at C (4) and cannot be changed";
+    let refused = import(&[]).failed(2);
+    assert!(refused.contains(problem), "{refused}");
+    let read = import(&["--partial"]);
+    assert!(read.status == 0 && read.err.contains(&format!("{problem}: left out")), "{}", read.err);
+    let scenario: Value = serde_json::from_str(&read.out).unwrap();
+    let warnings = scenario["warnings"].to_string();
+    assert!(warnings.contains("update 1, nodes[0]") && !warnings.contains("is not there"), "{warnings}");
+    assert_eq!(run_with(&["check"], read.out.as_bytes()).status, 1);
+}
+
 #[test]
 fn an_outline_with_parts_without_width_is_refused_by_its_file() {
     let point = |[x, y]: [f64; 2]| json!({ "x": x, "y": y });

@@ -2,10 +2,11 @@
 //! ([`OrderState`]).
 //!
 //! A message that is sent again counts once. An update that a vehicle would refuse is refused: the vehicle goes on with the order that
-//! it has, so the file does not say what its sender meant. Anything else about the same vehicle would make two of it, and is refused.
+//! it has, so the file does not say what its sender meant. Anything else about the same vehicle would make two of it, and is refused. A
+//! record may begin with an update: then it is not known where its vehicle was before, and a warning says so.
 
 use super::value::Object;
-use super::{ImportError, Warnings};
+use super::{ImportError, WarningCode, Warnings};
 use crate::vda5050::decode::{Refusal, from_value};
 use crate::vda5050::order::Order;
 use crate::vda5050::order_state::OrderState;
@@ -45,8 +46,7 @@ pub(super) fn joined(messages: Vec<Value>, warnings: &mut Warnings) -> Result<Ve
 /// Joins the messages about one vehicle to one.
 fn of_one(messages: Vec<Value>, warnings: &mut Warnings) -> Result<Value, ImportError> {
     let serial = messages.first().map_or(Ok(None), vehicle)?.unwrap_or_default()[1].to_owned();
-    if let Some(action) = messages.iter().find_map(halting_action) {
-        let problem = format!("{action} is sent to it; where it stops then is not in the file: give its state instead");
+    if let Some(problem) = messages.iter().find_map(other_way) {
         return Err(ImportError::new(format!("vehicle {serial}: {problem}")));
     }
     let order = |message: &Value| message.get("nodes").and(message.get("orderId")).cloned();
@@ -65,26 +65,46 @@ fn none() -> ImportError {
     ImportError::new("there is no message")
 }
 
-/// Returns the instant action of a message that ends or halts an order, if it has one.
-fn halting_action(message: &Value) -> Option<String> {
+/// Says why a vehicle does not travel its order as it is written, if a message that is no order changes that.
+fn other_way(message: &Value) -> Option<String> {
+    if message.get("zoneSet").is_some() {
+        return Some(
+            "a zone set is sent to it, which is not read: in its zones it may be slower, wait or leave its way".into(),
+        );
+    }
     let lists = ["actions", "instantActions"].into_iter().filter_map(|name| message.get(name)?.as_array());
     let types =
         lists.flatten().filter_map(|action| ["actionType", "actionName"].iter().find_map(|name| action.get(*name)));
-    types.filter_map(Value::as_str).find(|name| ["cancelOrder", "startPause"].contains(name)).map(str::to_owned)
+    types.filter_map(Value::as_str).find_map(|name| match name {
+        "cancelOrder" | "startPause" => {
+            Some(format!("{name} is sent to it; where it stops then is not in the file: give its state instead"))
+        }
+        "enableZoneSet" => {
+            Some(format!("{name} is sent to it; zones are not read: in them it may be slower, wait or leave its way"))
+        }
+        _ => None,
+    })
 }
 
 /// Joins an order with its updates, which may be in any order.
 fn with_updates(messages: Vec<Value>, warnings: &mut Warnings) -> Result<Value, ImportError> {
-    let mut orders = messages.into_iter().map(decoded).collect::<Result<Vec<_>, _>>()?;
+    let is_single = messages.len() == 1;
+    let mut orders = messages.into_iter().map(|message| decoded(message, is_single)).collect::<Result<Vec<_>, _>>()?;
     orders.sort_by_key(|(_, order)| order.order_update_id);
     let mut orders = orders.into_iter();
     let (mut whole, first) = orders.next().ok_or_else(none)?;
+    // A vehicle that has no order takes those that begin at 0.
+    let begins = first.nodes.iter().map(|node| node.sequence_id).min();
+    if first.order_update_id > 0 || begins.is_some_and(|begins| begins > 0) {
+        let problem = "the order before it is not there; it is read as if the vehicle began at its first node";
+        warnings.add(WarningCode::UpdateAlone, name(&first.order_id, first.order_update_id), problem);
+    }
     let refused =
         |id: &str, update: u64, refusal: &Refusal| ImportError::new(format!("{}, {refusal}", name(id, update)));
     let (id, update) = (first.order_id.clone(), first.order_update_id);
     let major = |order: &Order| Version::of(&order.header.version).map(Version::major);
     let version = major(&first);
-    let mut state = OrderState::new(first).map_err(|rejected| refused(&id, update, &rejected.refusal))?;
+    let mut state = OrderState::recorded(first).map_err(|rejected| refused(&id, update, &rejected.refusal))?;
     for (_, order) in orders {
         let update = order.order_update_id;
         let taken = if major(&order) == version {
@@ -96,6 +116,9 @@ fn with_updates(messages: Vec<Value>, warnings: &mut Warnings) -> Result<Value, 
             // A vehicle refuses it, too, and goes on with what it has.
             warnings.lose(refused(&id, update, &refusal));
         }
+    }
+    if is_single {
+        return Ok(whole);
     }
     let written =
         |list: serde_json::Result<Value>| list.map_err(|error| ImportError::new(format!("order {id}: {error}")));
@@ -109,18 +132,29 @@ fn with_updates(messages: Vec<Value>, warnings: &mut Warnings) -> Result<Value, 
     Ok(whole)
 }
 
-/// Reads an order, and keeps its tree.
-fn decoded(message: Value) -> Result<(Value, Order), ImportError> {
-    let order = from_value::<Order>(message.clone()).map_err(|refusal| {
+/// Reads an order, and keeps its tree. One that is the only message may leave out what tells it apart from others: its number, and its map.
+fn decoded(message: Value, is_single: bool) -> Result<(Value, Order), ImportError> {
+    let refused = |refusal| {
         let id = message.get("orderId").and_then(Value::as_str).unwrap_or_default();
         let update = message.get("orderUpdateId").and_then(Value::as_u64).unwrap_or_default();
         ImportError::new(format!("{}, {refusal}", name(id, update)))
-    })?;
-    let version = &order.header.version;
+    };
+    let mut whole = message.clone();
+    if is_single {
+        let set = |place: &mut Value, field: &str, value: Value| {
+            if let Some(missing) = place.as_object_mut().filter(|members| members.get(field).is_none_or(Value::is_null))
+            {
+                missing.insert(field.to_owned(), value);
+            }
+        };
+        set(&mut whole, "orderUpdateId", 0.into());
+        let nodes = whole.get_mut("nodes").and_then(Value::as_array_mut).into_iter().flatten();
+        nodes.filter_map(|node| node.get_mut("nodePosition")).for_each(|place| set(place, "mapId", "".into()));
+    }
+    let order = from_value::<Order>(whole).map_err(refused)?;
     // A message of a test or of a planner may have no header.
-    if !version.is_empty() && Version::of(version).is_none() {
-        let problem = format!("version: {version:?}; 2.0, 2.1 and 3.0 are read");
-        return Err(ImportError::new(format!("{}, {problem}", name(&order.order_id, order.order_update_id))));
+    if !order.header.version.is_empty() {
+        order.header.edition().map_err(refused)?;
     }
     Ok((message, order))
 }

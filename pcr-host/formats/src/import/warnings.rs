@@ -70,16 +70,18 @@ impl Warnings {
     }
 
     /// Settles the warnings of files that were read each by itself, and then together, with the warnings `all`: what an update releases
-    /// is released, and what is said of all together, and of none by itself, is added to the last one.
+    /// is released, an update with its order is not alone, and what is said of all together, and of none by itself, is added to the last one.
     pub(crate) fn settle(files: &mut [&mut Self], all: &Self) {
         let names = |of: &Self, problem: &Problem| -> HashSet<String> {
             let place = of.places.get(&problem.key()).and_then(|place| of.list.get(*place));
             place.map_or_else(HashSet::new, |problem| problem.names.iter().cloned().collect())
         };
         for file in files.iter_mut() {
-            for problem in file.list.iter_mut().filter(|problem| problem.code == WarningCode::NotReleased) {
-                let left_out = names(all, problem);
-                problem.names.retain(|name| left_out.contains(name));
+            let by_others =
+                |problem: &&mut Problem| [WarningCode::NotReleased, WarningCode::UpdateAlone].contains(&problem.code);
+            for problem in file.list.iter_mut().filter(by_others) {
+                let still = names(all, problem);
+                problem.names.retain(|name| still.contains(name));
             }
             file.list.retain(|problem| !problem.names.is_empty());
             file.places = file.list.iter().enumerate().map(|(place, problem)| (problem.key(), place)).collect();

@@ -52,14 +52,19 @@ pub fn read<T: DeserializeOwned>(bytes: &[u8], limits: Limits) -> Result<T, Refu
         return Ok(message);
     }
     let Once(value) = serde_json::from_slice(bytes).map_err(|error| Refusal::new("", error))?;
-    from_value(value)
+    decoded(value)
 }
 
 /// Reads a message from its tree, as [`read`] does, without limits of its size.
 ///
 /// # Errors
 /// [`Refusal`] with the name of the field.
-pub fn from_value<T: DeserializeOwned>(mut value: Value) -> Result<T, Refusal> {
+pub fn from_value<T: DeserializeOwned>(value: Value) -> Result<T, Refusal> {
+    validate::check_tree(&value, Limits::NONE).map_err(|(field, why)| Refusal::new(field, why))?;
+    decoded(value)
+}
+
+fn decoded<T: DeserializeOwned>(mut value: Value) -> Result<T, Refusal> {
     drop_null(&mut value);
     serde_path_to_error::deserialize(value).map_err(|error| {
         let path = error.path().to_string();
@@ -84,8 +89,15 @@ mod tests {
     use super::super::state::State;
     use super::*;
 
+    /// As bytes, and as a tree if it is one: with the same words.
     fn refused(text: &str) -> String {
-        read::<Order>(text.as_bytes(), Limits::default()).unwrap_err().to_string()
+        let refused = read::<Order>(text.as_bytes(), Limits::default()).unwrap_err().to_string();
+        if let Ok(Once(tree)) = serde_json::from_str(text)
+            && !refused.contains("at most")
+        {
+            assert_eq!(from_value::<Order>(tree).unwrap_err().to_string(), refused);
+        }
+        refused
     }
 
     #[test]

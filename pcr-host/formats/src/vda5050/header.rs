@@ -60,12 +60,20 @@ impl Header {
                 return Err(Refusal::new(field, format!("{said:?}, but the topic is that of {topic:?}")));
             }
         }
-        match Version::of(&self.version) {
-            None => Err(Refusal::new("version", format!("{:?}; 2.0, 2.1 and 3.0 are read", self.version))),
-            Some(version) if (version == Version::V3_0) != is_third => {
-                Err(Refusal::new("version", format!("{version} in a topic of v{}", if is_third { 3 } else { 2 })))
-            }
-            Some(version) => Ok(version),
+        let version = self.edition()?;
+        if (version == Version::V3_0) != is_third {
+            let why = format!("{version} in a topic of v{}", if is_third { 3 } else { 2 });
+            return Err(Refusal::new("version", why));
         }
+        Ok(version)
+    }
+
+    /// The edition.
+    ///
+    /// # Errors
+    /// One that is not read.
+    pub fn edition(&self) -> Result<Version, Refusal> {
+        let unknown = || Refusal::new("version", format!("{:?}; 2.0, 2.1 and 3.0 are read", self.version));
+        Version::of(&self.version).ok_or_else(unknown)
     }
 }

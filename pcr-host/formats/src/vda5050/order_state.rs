@@ -3,7 +3,8 @@
 
 use super::decode::Refusal;
 use super::order::{Edge, Node, Order};
-use super::version::Error;
+use super::state::{ORDER, StateError};
+use super::version::{Error, Version};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -27,6 +28,9 @@ pub struct OrderState {
     pub edges: Vec<Edge>,
     /// Index of the last node of the base.
     pub base: usize,
+    /// Sequence number of the first node of the last update that was taken; `None` in journals of earlier versions.
+    #[serde(default)]
+    begins: Option<u64>,
     /// All other fields of the last update that was taken, as `zoneSetId`, kept unchanged.
     #[serde(default)]
     pub rest: Map<String, Value>,
@@ -55,13 +59,13 @@ impl Rejected {
     pub fn new(error: Error, field: &str, why: impl std::fmt::Display) -> Self {
         Self { error, refusal: Refusal::new(field, why) }
     }
-}
 
-impl Rejected {
-    /// The rejection of an update whose number was taken with another content.
-    fn changed(update_id: u64) -> Self {
-        let why = format!("{update_id} was taken already, with other nodes or edges");
-        Self::new(Error::Update, "orderUpdateId", why)
+    /// The error by which a receiver reports it; with references if the message said which order and update it is.
+    pub fn report(&self, version: Version, order: &str, update: u64) -> StateError {
+        let update = update.to_string();
+        let mut references = vec![(ORDER, order), ("orderUpdateId", update.as_str())];
+        references.retain(|_| !order.is_empty());
+        StateError::warning(version.error(self.error), self.refusal.to_string(), &references)
     }
 }
 
@@ -72,15 +76,30 @@ impl From<Refusal> for Rejected {
 }
 
 impl OrderState {
-    /// A new order.
+    /// A new order, for a vehicle that has none.
+    ///
+    /// # Errors
+    /// As [`Order::check`]; and since edition 3.0 the number of a new order has to be 0.
+    pub fn new(order: Order) -> Result<Self, Rejected> {
+        let (update, is_third) = (order.order_update_id, Version::of(&order.header.version) == Some(Version::V3_0));
+        let state = Self::recorded(order)?;
+        if is_third && update > 0 {
+            let why = format!("{update} of an order that the vehicle does not have; a new order has 0");
+            return Err(Rejected::new(Error::Order, "orderUpdateId", why));
+        }
+        Ok(state)
+    }
+
+    /// An order of which the first messages may not have been recorded.
     ///
     /// # Errors
     /// As [`Order::check`].
-    pub fn new(mut order: Order) -> Result<Self, Rejected> {
+    pub fn recorded(mut order: Order) -> Result<Self, Rejected> {
         order.check()?;
         let base = order.base();
         let Order { order_id, order_update_id: update_id, nodes, edges, rest, .. } = order;
-        Ok(Self { order_id, update_id, nodes, edges, base, rest })
+        let begins = nodes.first().map(|node| node.sequence_id);
+        Ok(Self { order_id, update_id, nodes, edges, base, begins, rest })
     }
 
     /// Applies an update, which has to go on at the last node of the base; it replaces the horizon. An update that was taken already is
@@ -97,7 +116,9 @@ impl OrderState {
             return Err(Rejected::new(Error::Outdated, "orderUpdateId", why));
         }
         if order.order_update_id == self.update_id {
-            return if self.has(&order) { Ok(Taken::Repeated) } else { Err(Rejected::changed(self.update_id)) };
+            let why = format!("{} was taken already, with another content", self.update_id);
+            let other = || Rejected::new(Error::SameUpdate, "orderUpdateId", why);
+            return self.has(&order).then_some(Taken::Repeated).ok_or_else(other);
         }
         let (Some(stitch), Some(first)) = (self.nodes.get(self.base), order.nodes.first()) else {
             return Err(Rejected::new(Error::Update, "nodes", "empty"));
@@ -114,6 +135,7 @@ impl OrderState {
             return Err(Rejected::new(Error::Order, "nodes", format!("more than {MOST} of one order")));
         }
         let after = self.base;
+        self.begins = Some(first.sequence_id);
         self.base += order.base();
         self.update_id = order.order_update_id;
         self.nodes.truncate(after + 1);
@@ -124,14 +146,22 @@ impl OrderState {
         Ok(Taken::After(after))
     }
 
-    /// Whether the nodes and edges of an order, which has been checked, are those that are kept. What was passed and dropped is not compared.
+    /// Whether an order, which has been checked, says what the last update said. What was passed and dropped is not compared.
     fn has(&self, order: &Order) -> bool {
+        let begins = order.nodes.first().map(|node| node.sequence_id);
+        if self.begins.is_some() && self.begins != begins || self.rest != order.rest {
+            return false;
+        }
         let first = self.nodes.first().map_or(0, |node| node.sequence_id);
-        let nodes = order.nodes.iter().filter(|node| node.sequence_id >= first);
-        let edges = order.edges.iter().filter(|edge| edge.sequence_id > first);
-        let own_nodes = self.nodes.iter().rev().take(nodes.clone().count()).rev();
-        let own_edges = self.edges.iter().rev().take(edges.clone().count()).rev();
-        own_nodes.map(says).eq(nodes.map(says)) && own_edges.eq(edges)
+        let since = |sequence: u64| sequence >= first && begins.is_some_and(|begins| sequence >= begins);
+        let nodes = order.nodes.iter().filter(|node| since(node.sequence_id));
+        let edges = order.edges.iter().filter(|edge| since(edge.sequence_id));
+        let mut pairs = self.nodes.iter().filter(|node| since(node.sequence_id)).zip(nodes).enumerate();
+        // Of the first node of an update, that of the base is kept.
+        let same = |(k, (own, other)): (usize, (&Node, &Node))| if k == 0 { is_node(own, other) } else { own == other };
+        self.nodes.last().map(|node| node.sequence_id) == order.nodes.last().map(|node| node.sequence_id)
+            && pairs.all(same)
+            && self.edges.iter().filter(|edge| since(edge.sequence_id)).eq(edges)
     }
 
     /// Drops passed nodes up to this index, but not the end of the base.
@@ -148,9 +178,9 @@ impl OrderState {
     }
 }
 
-/// Returns what is compared of a node: its name, number, whether it is released, and its place.
-fn says(node: &Node) -> (&str, u64, bool, Option<[f64; 2]>) {
-    (&node.node_id, node.sequence_id, node.released, node.node_position.as_ref().map(|place| [place.x, place.y]))
+/// Whether the first node of an update is this one.
+fn is_node(stitch: &Node, first: &Node) -> bool {
+    (&stitch.node_id, stitch.sequence_id) == (&first.node_id, first.sequence_id) && moved(stitch, first).is_none()
 }
 
 /// Says how far the first node of an update is from the end of the base, if it is elsewhere. A node without a position is where it was.
@@ -216,7 +246,7 @@ mod tests {
             order(0, &[("a", 0), ("b", 2), ("c", 4), ("d", 6)], 2),
         ] {
             let rejected = held.update(other).unwrap_err();
-            assert_eq!((rejected.error, rejected.refusal.field.as_str()), (Error::Update, "orderUpdateId"));
+            assert_eq!((rejected.error, rejected.refusal.field.as_str()), (Error::SameUpdate, "orderUpdateId"));
         }
         let update = order(1, &[("b", 2), ("c", 4), ("d", 6)], 3);
         assert_eq!(held.update(update.clone()), Ok(Taken::After(1)));
@@ -225,6 +255,25 @@ mod tests {
         held.forget(2);
         assert_eq!(held.update(update), Ok(Taken::Repeated));
         assert!(held.update(order(1, &[("b", 2), ("c", 4), ("e", 6)], 3)).is_err());
+        // A part of it is something else, and so is what says more of a node or of the order.
+        assert!(held.update(order(1, &[("c", 4), ("d", 6)], 2)).is_err());
+        let mut turned = order(1, &[("b", 2), ("c", 4), ("d", 6)], 3);
+        turned.nodes[2].rest.insert("nodeDescription".into(), "dock".into());
+        assert!(held.update(turned).is_err());
+        let mut zoned = order(1, &[("b", 2), ("c", 4), ("d", 6)], 3);
+        zoned.rest.insert("zoneSetId".into(), "other".into());
+        assert!(held.update(zoned).is_err());
+    }
+
+    /// Since 3.0; a record may begin later.
+    #[test]
+    fn a_new_order_has_the_number_0() {
+        for (version, is_taken) in [("", true), ("2.1.0", true), ("3.0.0", false)] {
+            let mut late = order(3, &[("a", 0), ("b", 2)], 2);
+            late.header.version = version.into();
+            assert_eq!(OrderState::new(late.clone()).is_ok(), is_taken);
+            assert!(OrderState::recorded(late).is_ok());
+        }
     }
 
     #[test]

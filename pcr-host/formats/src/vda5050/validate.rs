@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde_json::Value;
 use std::borrow::Cow;
 use std::fmt;
 
@@ -33,6 +34,11 @@ impl Default for Limits {
     }
 }
 
+impl Limits {
+    /// No limits, for files.
+    pub(super) const NONE: Self = Self { bytes: usize::MAX, list: usize::MAX, text: usize::MAX, sent: usize::MAX };
+}
+
 /// Checks a whole message.
 ///
 /// # Errors
@@ -40,15 +46,18 @@ impl Default for Limits {
 pub(super) fn check(bytes: &[u8], limits: Limits) -> Result<(), (String, String)> {
     let mut fault = Fault::default();
     let mut reader = serde_json::Deserializer::from_slice(bytes);
-    let all = Check { limits, fault: &mut fault, depth: 0, asked: Asked::Anything };
-    let read = all.deserialize(&mut reader).and_then(|()| reader.end());
-    read.map_err(|error| match fault.why {
-        Some(why) => {
-            fault.path.reverse();
-            (fault.path.concat().trim_start_matches('.').into(), why)
-        }
-        None => (String::new(), error.to_string()),
-    })
+    let read = Check::new(limits, &mut fault).deserialize(&mut reader).and_then(|()| reader.end());
+    read.map_err(|error| fault.or(&error))
+}
+
+/// Checks a message that is a tree already.
+///
+/// # Errors
+/// As [`check`].
+pub(super) fn check_tree(message: &Value, limits: Limits) -> Result<(), (String, String)> {
+    let mut fault = Fault::default();
+    let read = Check::new(limits, &mut fault).deserialize(message);
+    read.map_err(|error| fault.or(&error))
 }
 
 /// The reason for a refusal, and the path of the field, innermost name first.
@@ -56,6 +65,15 @@ pub(super) fn check(bytes: &[u8], limits: Limits) -> Result<(), (String, String)
 struct Fault {
     why: Option<String>,
     path: Vec<String>,
+}
+
+impl Fault {
+    /// The path of the field and the reason; those of the reader where nothing was refused here.
+    fn or(mut self, error: &serde_json::Error) -> (String, String) {
+        let Some(why) = self.why else { return (String::new(), error.to_string()) };
+        self.path.reverse();
+        (self.path.concat().trim_start_matches('.').into(), why)
+    }
 }
 
 /// The expected type of a value.
@@ -81,6 +99,12 @@ struct Check<'f> {
     fault: &'f mut Fault,
     depth: usize,
     asked: Asked,
+}
+
+impl<'f> Check<'f> {
+    fn new(limits: Limits, fault: &'f mut Fault) -> Self {
+        Self { limits, fault, depth: 0, asked: Asked::Anything }
+    }
 }
 
 impl Check<'_> {

@@ -58,6 +58,10 @@ impl Version {
             (Error::Outdated, false) => "OUTDATED_ORDER_UPDATE",
             (Error::Update, true) => "orderUpdateError",
             (Error::Update, false) => "INVALID_ORDER",
+            (Error::SameUpdate, true) => "orderUpdateError",
+            (Error::SameUpdate, false) => "SAME_ORDER_UPDATE_ID",
+            (Error::Cancelled, true) => "orderUpdateError",
+            (Error::Cancelled, false) => "ORDER_UPDATE_FOLLOWING_CANCEL",
             (Error::NothingToCancel, true) => "noOrderToCancel",
             (Error::NothingToCancel, false) => "NO_ORDER_TO_CANCEL",
         }
@@ -81,6 +85,10 @@ pub enum Error {
     Outdated,
     /// It does not continue the present order.
     Update,
+    /// It has the number of an update that was taken, and another content.
+    SameUpdate,
+    /// It continues an order that was cancelled.
+    Cancelled,
     /// There is no order to cancel.
     NothingToCancel,
 }

@@ -217,10 +217,7 @@ impl Vehicle {
     }
 
     fn reject(&mut self, rejected: &Rejected, (order, update): &(String, u64)) {
-        let update = update.to_string();
-        let kind = self.version.error(rejected.error);
-        let references = [("orderId", order.as_str()), ("orderUpdateId", update.as_str())];
-        let error = StateError::warning(kind, rejected.refusal.to_string(), &references);
+        let error = rejected.report(self.version, order, *update);
         if !self.errors.contains(&error) {
             self.errors.push(error);
         }
@@ -244,7 +241,7 @@ impl Vehicle {
                 self.actions.extend(new.into_iter().filter(|action| !known.contains(&action.action_id)));
             }
             Some(task) if task.held.order_id == order.order_id => {
-                return Err(Rejected::new(Error::Update, "orderId", "it was cancelled"));
+                return Err(Rejected::new(Error::Cancelled, "orderId", "it was cancelled"));
             }
             task => {
                 if task.as_ref().is_some_and(|task| !task.cancelled && task.done + 1 < task.held.nodes.len())
@@ -258,8 +255,10 @@ impl Vehicle {
                 let start = task.as_ref().map_or(self.start, |task| task.way.pose(task.drive.at));
                 let held = OrderState::new(order)?;
                 let way = Way::new(start, &held).map_err(|refusal| Rejected { error: Error::Order, refusal })?;
-                if way.node(0).is_none_or(|begins| begins > BEGINS) {
-                    return Err(Rejected::new(Error::Order, "nodes[0].nodePosition", "too far off"));
+                let begins = way.node(0).unwrap_or(0.0);
+                if begins > BEGINS {
+                    let why = format!("{begins:.3} m from the vehicle");
+                    return Err(Rejected::new(Error::Order, "nodes[0].nodePosition", why));
                 }
                 self.start = start;
                 /// Number of ids that are kept.

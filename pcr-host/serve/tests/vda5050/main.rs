@@ -21,5 +21,6 @@ mod standing;
 mod stops;
 #[cfg(feature = "tls")]
 mod tls;
+mod verdicts;
 mod yard;
 mod zones;

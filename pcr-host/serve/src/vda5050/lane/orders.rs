@@ -9,7 +9,6 @@ use crate::supervisor::{Proposal, Supervisor, Verdict};
 use pcr_formats::vda5050::decode::{self, Limits, Refusal};
 use pcr_formats::vda5050::order::Order;
 use pcr_formats::vda5050::order_state::{OrderState, Rejected, Taken};
-use pcr_formats::vda5050::state::StateError;
 use pcr_formats::vda5050::version::{Error, Version};
 
 /// Largest number of orders and updates that wait for the first state of a vehicle after a restart.
@@ -34,11 +33,7 @@ impl Lane {
     /// Reports to the manager why an order is rejected.
     pub(super) fn reject(&mut self, rejected: &Rejected, order: &str, update: u64) {
         let Some(version) = self.version else { return };
-        let kind = version.error(rejected.error);
-        let update = update.to_string();
-        let mut references = vec![("orderId", order), ("orderUpdateId", update.as_str())];
-        references.retain(|_| !order.is_empty());
-        let error = StateError::warning(kind, rejected.refusal.to_string(), &references);
+        let error = rejected.report(version, order, update);
         /// Largest number of errors that are kept.
         const MOST: usize = 10;
         if !self.errors.contains(&error) {
@@ -209,7 +204,7 @@ impl Lane {
     fn extend(&mut self, supervisor: &mut Supervisor, order: Order, now: f64) -> Result<bool, Rejected> {
         let Some(job) = &self.job else { return Ok(false) };
         if job.cancel.is_some() {
-            return Err(Rejected::new(Error::Order, "orderId", "it is being cancelled"));
+            return Err(Rejected::new(Error::Cancelled, "orderId", "it is being cancelled"));
         }
         if job.lost.is_some() {
             return Err(Rejected::new(Error::Order, "orderId", "the vehicle has lost it"));
