@@ -10,7 +10,7 @@ fn states_tell_paths_with_or_without_times() {
     let pose = json!({ "x": 4.0, "y": 0.0, "theta": 0.0, "mapId": "m", "localized": true });
     let state = |more: Value| {
         let mut state = json!({ "timestamp": "2026-11-21T08:00:00.000Z", "serialNumber": "r7", "orderId": "o",
-            "nodeStates": [{ "nodeId": "n1" }], "edgeStates": [], "mobileRobotPosition": pose });
+            "nodeStates": [{ "nodeId": "n1", "sequenceId": 2, "released": true }], "edgeStates": [], "mobileRobotPosition": pose });
         state.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
         state.to_string()
     };
@@ -91,7 +91,7 @@ fn a_state_that_goes_on_is_refused() {
         json!({ "driving": true }),
         json!({ "velocity": { "vx": 0.0, "vy": -0.5 } }),
         json!({ "velocity": { "omega": 0.1 } }),
-        json!({ "edgeStates": [{ "edgeId": "e1" }] }),
+        json!({ "edgeStates": [{ "edgeId": "e1", "sequenceId": 1, "released": true }] }),
     ] {
         assert_eq!(read(&state(moves), &options()).unwrap_err(), format!("{lost}; --partial leaves that out"));
     }

@@ -33,10 +33,6 @@ pub(super) fn read(object: &Object<'_>, tolerance: f64, warnings: &mut Warnings)
         POINT.check(&point, warnings)?;
         points.push((point.point()?, point.number("weight")?.unwrap_or(1.0)));
     }
-    if points.is_empty() {
-        let problem = "controlPoints: missing; leave the trajectory out if the edge is straight between its nodes";
-        return Err(ImportError::new(format!("{}, {problem}", object.name)));
-    }
     let mut knots = Vec::new();
     for value in object.list("knotVector")? {
         let knot = value.as_f64().ok_or_else(|| named(ImportError::new("a knot that is not a number")))?;
