@@ -215,7 +215,7 @@ fn orientations_are_those_that_the_vehicle_may_have() {
         (json!({ "mobileRobotOrientations": [0.0] }), Facing::Ahead),
         (json!({ "mobileRobotOrientations": [half] }), Facing::Backward),
         (json!({ "mobileRobotOrientations": [0.0, half] }), Facing::Either),
-        (json!({ "mobileRobotOrientations": [0.0, -1.5708] }), Facing::Any),
+        (json!({ "mobileRobotOrientations": [0.0, -half / 2.0] }), Facing::Any),
         // Nothing said: any.
         (json!({}), Facing::Any),
         (json!({ "mobileRobotOrientations": [] }), Facing::Any),

@@ -97,6 +97,18 @@ impl Lifelong {
     }
 }
 
+impl Driven {
+    fn of(report: &Report) -> Self {
+        Self {
+            outcome: report.outcome.clone(),
+            decisions: report.decisions.len(),
+            decision_median: report.decided_within(0.5),
+            decision_p99: report.decided_within(0.99),
+            computed_in: report.time.as_secs_f64(),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,17 +128,5 @@ mod tests {
         let told = told.into_inner();
         assert!(told.is_sorted() && told.len() >= 2 * methods.len(), "{told:?}");
         assert_eq!((told.last(), watched.runs.len()), (Some(&120.0), 2));
-    }
-}
-
-impl Driven {
-    fn of(report: &Report) -> Self {
-        Self {
-            outcome: report.outcome.clone(),
-            decisions: report.decisions.len(),
-            decision_median: report.decided_within(0.5),
-            decision_p99: report.decided_within(0.99),
-            computed_in: report.time.as_secs_f64(),
-        }
     }
 }

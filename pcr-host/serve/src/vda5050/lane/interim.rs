@@ -8,8 +8,8 @@
 //! visualization makes the supervisor send a `stateRequest`, and a state that names it is newer. Without an answer, states count again
 //! after [`LATEST`], because no message is later than that.
 
-use pcr_formats::vda5050::header::Header;
 use super::newest::{AGAIN, LATEST};
+use pcr_formats::vda5050::header::Header;
 
 /// The last visualization whose position has counted.
 #[derive(Clone, Debug, Default)]
