@@ -21,6 +21,7 @@
 //! cover     covers of a graph by cliques, and a lower bound of their number
 //! edit      changes of a text at spans; the rest is kept byte for byte
 //! json      JSON with the span of every value
+//! kept      a written layout is the one before, with its edges cut
 //! settings  options and warnings of writers
 //! outline   polygons around corridors
 //! nav2, opentcs, rmf, vda5050, own   the formats
@@ -31,6 +32,7 @@ mod audit;
 mod cover;
 mod edit;
 mod json;
+mod kept;
 mod meetings;
 mod nav2;
 mod nearest;

@@ -148,13 +148,15 @@ fn features<'a>(root: &'a Value, spans: &'a Spanned) -> impl Iterator<Item = (&'
 /// Cuts edges into equal parts no longer than this \[m\]; returns the text, and which edges are left whole, and why.
 pub(crate) fn split(text: &str, most: f64) -> Result<(String, Vec<String>), ImportError> {
     let (root, spans) = both(text)?;
-    let mut cutter = Cutter::new(&root);
+    let mut cutter = Cutter::new(&root)?;
     let (mut edits, mut whole_ones) = (Edits::default(), Vec::new());
     let end = ending(text);
     let mut nodes = Vec::new();
     for (feature, span) in features(&root, &spans).filter(|(feature, _)| is_node(feature) == Some(false)) {
         let properties = &feature["properties"];
-        let Some((ends, at)) = cutter.ends(properties) else { continue };
+        let (ends, at) = cutter.ends(properties).ok_or_else(|| {
+            ImportError::new(format!("edge {}: its nodes, or their coordinates, are not in the file", properties["id"]))
+        })?;
         let length = (at[1][0] - at[0][0]).hypot(at[1][1] - at[0][1]);
         let parts = (length / most - 1e-9).ceil().max(1.0);
         if parts < 2.0 {
@@ -204,18 +206,22 @@ struct Cutter {
 }
 
 impl Cutter {
-    fn new(root: &Value) -> Self {
+    fn new(root: &Value) -> Result<Self, ImportError> {
         let (mut at, mut frames, mut next) = (BTreeMap::new(), BTreeMap::new(), [0, 0]);
         for feature in root["features"].as_array().into_iter().flatten() {
             let (Some(node), Some(id)) = (is_node(feature), graph_id(&feature["properties"]["id"])) else { continue };
-            next[usize::from(node)] = next[usize::from(node)].max(id + 1);
+            let after = id.checked_add(1).ok_or_else(|| ImportError::new(format!("id {id}: no larger one is left")))?;
+            next[usize::from(node)] = next[usize::from(node)].max(after);
             if node {
-                let coordinate = |k: usize| feature["geometry"]["coordinates"][k].as_f64().unwrap_or_default();
-                at.insert(id, [coordinate(0), coordinate(1)]);
+                let coordinate = |k: usize| {
+                    let problem = || ImportError::new(format!("node {id}, coordinates: two numbers are expected"));
+                    feature["geometry"]["coordinates"][k].as_f64().ok_or_else(problem)
+                };
+                at.insert(id, [coordinate(0)?, coordinate(1)?]);
                 frames.insert(id, feature["properties"]["frame"].clone());
             }
         }
-        Self { at, frames, next, between: BTreeMap::new() }
+        Ok(Self { at, frames, next, between: BTreeMap::new() })
     }
 
     fn new_edge(&mut self) -> u64 {

@@ -10,6 +10,9 @@
 //! `SAME_DIRECTION_ONLY` excludes no contact: it lets vehicles in that follow one another.
 
 mod cut;
+mod ids;
+mod version;
+mod visual;
 
 pub(crate) use cut::split;
 
@@ -19,6 +22,7 @@ use crate::edit::{Edits, ending, indent};
 use crate::outline::{around, intersect};
 use crate::settings::{Notes, Settings};
 use crate::{Claim, Rules};
+use ids::Ids;
 use pcr_formats::import::{Id, ImportError, Imported, Layout};
 use pcr_formats::plane::hull;
 use pcr_formats::scenario::Placed;
@@ -27,12 +31,18 @@ use pcr_planning::locks::Locks;
 use roxmltree::{Document, Node};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fmt::Write as _;
+use version::Version;
+use visual::Visual;
 
 /// Prefix of the names of blocks that are written here; such blocks are replaced when a file is written again.
 const PREFIX: &str = "pcr-block-";
 
-/// Additional distance of envelopes from corridors, for coordinates that are rounded to a millimetre \[m\].
-const ROUNDING: f64 = 1e-3;
+/// Colour of these blocks.
+const COLOR: &str = "#A94022";
+
+/// How far points at whole millimetres may be from where they are meant to be, and by how much envelopes reach beyond corridors for that
+/// \[m\].
+pub(crate) const ROUNDING: f64 = 1e-3;
 
 fn parse(text: &str) -> Result<Document<'_>, ImportError> {
     Document::parse(text.trim_start_matches('\u{feff}')).map_err(|error| ImportError::new(format!("not XML: {error}")))
@@ -200,6 +210,7 @@ pub(crate) fn write(
     }
     let mut edits = Edits::default();
     let root = document.root_element();
+    let version = Version::of(root)?;
     let prefixed = |child: &Node<'_, '_>| {
         let tag = text[child.range().start + offset..].split([' ', '\t', '\r', '\n', '/', '>']).next();
         child.is_element() && tag.is_some_and(|tag| tag.contains(':'))
@@ -208,12 +219,42 @@ pub(crate) fn write(
         let name = child.tag_name().name();
         return Err(ImportError::new(format!("{name}: names of elements with a prefix are not written")));
     }
+    let model = Model { text, offset, root, version };
     if let Some(key) = &settings.envelopes {
-        notes.groups = write_envelopes(root, offset, imported, key, &mut edits)?;
+        if !version.has_envelopes() {
+            let problem = format!("--envelopes: models of version {version} have none; without it blocks are written");
+            return Err(ImportError::new(problem));
+        }
+        notes.groups = write_envelopes(&model, imported, key, &mut edits)?;
     } else {
-        write_blocks(text, root, offset, layout, locks, notes, &mut edits)?;
+        write_blocks(&model, layout, locks, notes, &mut edits)?;
     }
     Ok(edits.made(text))
+}
+
+/// Refuses a written model that has what its version has not, if the model before had not.
+pub(crate) fn check(before: &str, after: &str) -> Result<(), ImportError> {
+    let faults = |text: &str| -> Result<(Version, BTreeSet<String>), ImportError> {
+        let document = parse(text)?;
+        let version = Version::of(document.root_element())?;
+        Ok((version, version::faults(document.root_element(), version)))
+    };
+    let ((version, known), (_, found)) = (faults(before)?, faults(after)?);
+    match found.difference(&known).next() {
+        None => Ok(()),
+        Some(fault) => {
+            Err(ImportError::new(format!("what would be written is no model of version {version}: {fault}")))
+        }
+    }
+}
+
+/// A model that is to be changed.
+struct Model<'a, 'i> {
+    text: &'a str,
+    /// Offset of the document in the text.
+    offset: usize,
+    root: Node<'a, 'i>,
+    version: Version,
 }
 
 /// What has to be in a block, and what may be: pairs of resources, paths first.
@@ -255,9 +296,7 @@ fn is_ours(name: &str) -> bool {
 }
 
 fn write_blocks(
-    text: &str,
-    root: Node<'_, '_>,
-    offset: usize,
+    &Model { text, offset, root, version }: &Model<'_, '_>,
     layout: &Layout,
     locks: &Locks,
     notes: &mut Notes,
@@ -276,8 +315,10 @@ fn write_blocks(
     (notes.groups, notes.at_least) = (cover.cliques.len(), Some(cover.at_least));
     let (old, kept): (Vec<Node<'_, '_>>, Vec<Node<'_, '_>>) =
         elements(root, "block").partition(|block| is_ours(name(*block)));
-    for block in &old {
-        let range = block.range();
+    let visual = Visual::of(root);
+    let drawn = old.iter().filter_map(|block| visual.element(name(*block)));
+    for element in old.iter().copied().chain(drawn) {
+        let range = element.range();
         let from = text[..range.start + offset].trim_end().len();
         edits.replace(from..range.end + offset, "");
     }
@@ -285,7 +326,8 @@ fn write_blocks(
     let after =
         |names: &[&str]| root.children().rfind(|child| child.is_element() && names.contains(&child.tag_name().name()));
     let last = kept.last().copied().or_else(|| after(&["location", "locationType", "vehicle", "path", "point"]));
-    let Some(last) = last else { return Ok(()) };
+    // A layout has points.
+    let last = last.ok_or_else(|| ImportError::new("model: there is no point in it"))?;
     let at = last.range().end + offset;
     let margin = indent(text, last.range().start + offset).unwrap_or("    ").to_owned();
     let id = |place: usize| match place.checked_sub(layout.edges.len()) {
@@ -295,15 +337,22 @@ fn write_blocks(
     // Names are those of one thing each in a model, of whatever kind.
     let taken: BTreeSet<&str> = root.children().filter(|child| !old.contains(child)).map(name).collect();
     let mut names = (1_u32..).map(|k| format!("{PREFIX}{k:04}")).filter(|name| !taken.contains(name.as_str()));
-    let (mut blocks, end) = (String::new(), ending(text));
+    let (mut blocks, mut drawn, end) = (String::new(), Vec::new(), ending(text));
+    let mut ids = Ids::of(root, version)?;
+    let kind = if version.has_types_of_blocks() { " type=\"SINGLE_VEHICLE_ONLY\"" } else { "" };
     for (clique, name) in cover.cliques.iter().zip(&mut names) {
-        let _ = write!(blocks, "{end}{margin}<block name=\"{name}\" type=\"SINGLE_VEHICLE_ONLY\">");
+        let _ = write!(blocks, "{end}{margin}<block{} name=\"{name}\"{kind}>", ids.attribute());
         for place in clique {
             let _ = write!(blocks, "{end}{margin}    <member name=\"{}\"/>", escaped(&id(*place).to_string()));
         }
-        let _ = write!(blocks, "{end}{margin}    <blockLayout color=\"#A94022\"/>{end}{margin}</block>");
+        if version.has_layouts() {
+            let _ = write!(blocks, "{end}{margin}    <blockLayout color=\"{COLOR}\"/>");
+        }
+        let _ = write!(blocks, "{end}{margin}</block>");
+        drawn.push(Visual::new_element(&name, "0", &[("COLOR", COLOR.to_owned())]));
     }
     edits.insert(at, blocks);
+    visual.add(text, offset, &drawn, edits);
     Ok(())
 }
 
@@ -313,8 +362,7 @@ fn escaped(text: &str) -> String {
 }
 
 fn write_envelopes(
-    root: Node<'_, '_>,
-    offset: usize,
+    &Model { text, offset, root, .. }: &Model<'_, '_>,
     imported: &Imported,
     key: &str,
     edits: &mut Edits,
@@ -353,10 +401,18 @@ fn write_envelopes(
             (Some(last), _) => edits.insert(last.range().end + offset, envelope),
             (None, Some(first)) => edits.insert(first.range().start + offset, envelope),
             (None, None) => {
-                return Err(ImportError::new(format!(
-                    "{}: an element without content has no room for an envelope",
-                    name(element)
-                )));
+                let range = element.range().start + offset..element.range().end + offset;
+                let tag = element.tag_name().name();
+                // `<point .../>`, or `<point ...></point>`.
+                match text[range.clone()].strip_suffix("/>") {
+                    Some(open) => edits.replace(range.start + open.len()..range.end, format!(">{envelope}</{tag}>")),
+                    None => {
+                        let close = text[range.clone()].rfind("</").ok_or_else(|| {
+                            ImportError::new(format!("{}: where the element ends cannot be told", name(element)))
+                        })?;
+                        edits.insert(range.start + close, envelope);
+                    }
+                }
             }
         }
     }

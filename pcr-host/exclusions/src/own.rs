@@ -58,7 +58,7 @@ fn outward([from, to]: [f64; 2]) -> [f64; 2] {
 }
 
 /// Writes the locks of a table that includes nodes, one edge or node on each line.
-pub(crate) fn write(imported: &Imported, locks: &Locks) -> String {
+pub(crate) fn write(imported: &Imported, locks: &Locks) -> Result<String, ImportError> {
     let layout = &imported.layout;
     let mut edges: BTreeMap<&Id, Vec<Lock>> = BTreeMap::new();
     let lock = |edge: &Id, other, own| Lock { edge: edge.clone(), other, own };
@@ -84,12 +84,12 @@ pub(crate) fn write(imported: &Imported, locks: &Locks) -> String {
         let _ = writeln!(text, "  \"{kind}s\": [");
         for (k, (id, list)) in lists.iter().enumerate() {
             let comma = if k + 1 < lists.len() { "," } else { "" };
-            let list = serde_json::to_string(list).unwrap_or_default();
+            let list = serde_json::to_string(list).map_err(|error| ImportError::new(error.to_string()))?;
             let _ = writeln!(text, "    {{ \"{kind}\": {}, \"locks\": {list} }}{comma}", json!(id));
         }
         let _ = write!(text, "  {end}");
     }
-    text
+    Ok(text)
 }
 
 /// Reads the locks.

@@ -186,7 +186,10 @@ fn text_of<'j>(object: &'j Value, field: &str) -> Result<&'j str, String> {
 type Zones = (Vec<Zone>, Vec<Group>, Vec<String>);
 
 fn zones_of(root: &Value, layout: &Layout) -> Result<Zones, ImportError> {
-    let maps: BTreeSet<&str> = (0..layout.levels.len()).map(|level| map(layout, level)).collect();
+    let mut maps: BTreeMap<&str, usize> = BTreeMap::new();
+    for level in 0..layout.levels.len() {
+        maps.entry(map(layout, level)).or_insert(level);
+    }
     let (mut zones, mut groups, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
     let mut sets: BTreeSet<&str> = BTreeSet::new();
     for (k, message) in messages(root).into_iter().enumerate() {
@@ -194,10 +197,10 @@ fn zones_of(root: &Value, layout: &Layout) -> Result<Zones, ImportError> {
         let place = if root.is_array() { format!("message {}, zoneSet", k + 1) } else { "zoneSet".to_owned() };
         let refused = |problem: &str| ImportError::new(format!("{place}, {problem}"));
         let id = text_of(set, "mapId").map_err(|problem| refused(&problem))?;
-        if !maps.contains(id) {
-            let there = maps.into_iter().collect::<Vec<_>>().join(", ");
+        let Some(&level) = maps.get(id) else {
+            let there = maps.into_keys().collect::<Vec<_>>().join(", ");
             return Err(refused(&format!("mapId: the layout has no map {id}; it has {there}")));
-        }
+        };
         if !sets.insert(id) {
             let problem =
                 "a second one of this map; vehicles have one set of a map enabled at most, audit each by itself";
@@ -222,7 +225,6 @@ fn zones_of(root: &Value, layout: &Layout) -> Result<Zones, ImportError> {
                 continue;
             }
             let polygon = polygon(&zone["vertices"]).map_err(|wrong| problem(&format!("vertices: {wrong}")))?;
-            let level = (0..layout.levels.len()).find(|&level| map(layout, level) == id).unwrap_or_default();
             groups.push(Group { name: name.to_owned(), outline: polygon.clone(), level, ..Group::default() });
             zones.push(Zone { map: id.to_owned(), blocked: kind == "BLOCKED", bounds: bounds(&polygon), polygon });
         }
@@ -301,7 +303,7 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
 }
 
 /// Writes the zone set of each map: one message, or a list of them.
-pub(crate) fn write(imported: &Imported, settings: &Settings, notes: &mut Notes) -> String {
+pub(crate) fn write(imported: &Imported, settings: &Settings, notes: &mut Notes) -> Result<String, ImportError> {
     let layout = &imported.layout;
     let mut messages = Vec::new();
     for level in 0..layout.levels.len() {
@@ -327,8 +329,8 @@ pub(crate) fn write(imported: &Imported, settings: &Settings, notes: &mut Notes)
         }));
     }
     let all = if messages.len() == 1 { messages.remove(0) } else { Value::Array(messages) };
-    // Writing to a string does not fail.
-    serde_json::to_string_pretty(&all).unwrap_or_default() + "\n"
+    let text = serde_json::to_string_pretty(&all).map_err(|error| ImportError::new(error.to_string()))?;
+    Ok(text + "\n")
 }
 
 type Outline = (String, Vec<[f64; 2]>);

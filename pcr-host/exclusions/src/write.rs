@@ -1,8 +1,9 @@
 //! Writes exclusions into layout files of fleet software, and counts what they exclude beyond the exact table.
 //!
-//! A written file is read again, by the reader that audits files of other origin; it is refused if any contact is not
-//! excluded.
+//! A written file is read again, by the reader that audits files of other origin. It is refused if any contact is not excluded, if its
+//! layout is not the one before with its edges cut, and if it has what its version has not.
 
+use crate::kept::{Cut, compare};
 use crate::settings::{Notes, Settings};
 use crate::{Audit, Target, nav2, opentcs, own, read, rmf, table, vda5050};
 use pcr_formats::import::{self, Format, ImportError, Imported, Options, Warnings};
@@ -120,18 +121,29 @@ impl Source<'_> {
         Ok(imported)
     }
 
-    fn write(&self, text: &str, settings: &Settings) -> Result<Done, ImportError> {
+    fn write(&self, before: &str, settings: &Settings) -> Result<Done, ImportError> {
         let target = settings.target;
-        let (text, imported, mut notes) = self.prepared(text, settings)?;
+        let original = self.layout(before)?;
+        let (text, imported, mut notes) = self.prepared(before, &original, settings)?;
         let locks = table(&imported)?;
         let text = match target {
             Target::Nav2 => nav2::write(&text, &imported, &locks)?,
             Target::Rmf => rmf::write(&text, &imported, &locks, &mut notes)?,
             Target::OpenTcs => opentcs::write(&text, &imported, &locks, settings, &mut notes)?,
-            Target::Vda5050 => vda5050::write(&imported, settings, &mut notes),
-            Target::Pcr => own::write(&imported, &locks),
+            Target::Vda5050 => vda5050::write(&imported, settings, &mut notes)?,
+            Target::Pcr => own::write(&imported, &locks)?,
         };
-        let again = if target.layout().is_some() { self.layout(&text)? } else { imported };
+        let again = if target.layout().is_some() {
+            let again = self.layout(&text)?;
+            let rounding = if target == Target::OpenTcs { opentcs::ROUNDING } else { 0.0 };
+            compare(&original, &again, Cut { most: settings.split, rounding })?;
+            if target == Target::OpenTcs {
+                opentcs::check(before, &text)?;
+            }
+            again
+        } else {
+            imported
+        };
         let rules = read(target, &text, &again)?;
         let audit = Audit::of(&again, &locks, &rules, target)?;
         if let Some(gap) = audit.gaps.first() {
@@ -143,9 +155,13 @@ impl Source<'_> {
     }
 
     /// The file into which is written, with its edges cut, and its layout.
-    fn prepared(&self, text: &str, settings: &Settings) -> Result<(String, Imported, Notes), ImportError> {
+    fn prepared(
+        &self,
+        text: &str,
+        imported: &Imported,
+        settings: &Settings,
+    ) -> Result<(String, Imported, Notes), ImportError> {
         let mut notes = Notes::default();
-        let imported = self.layout(text)?;
         if imported.vehicle.footprint.is_some() && settings.target == Target::Vda5050 {
             let text = "zones: they are for the disc around the outline";
             notes.said.push(WarningCode::DiscAroundOutline.text(text));
@@ -167,10 +183,10 @@ impl Source<'_> {
                 text
             }
             (Target::OpenTcs, Some(most)) => {
-                opentcs::split(text, &imported, most, settings.envelopes.as_deref(), &mut notes)?
+                opentcs::split(text, imported, most, settings.envelopes.as_deref(), &mut notes)?
             }
-            (Target::Rmf, most) => rmf::prepare(text, &imported, most, &mut notes)?,
-            _ => return Ok((text.to_owned(), imported, notes)),
+            (Target::Rmf, most) => rmf::prepare(text, imported, most, &mut notes)?,
+            _ => return Ok((text.to_owned(), imported.clone(), notes)),
         };
         let imported = self.layout(&cut)?;
         Ok((cut, imported, notes))

@@ -3,7 +3,12 @@
 //! The routes of vehicles do not change. Each path has its own points, also if another path leads back along it, so
 //! that no route begins, ends or turns around in between. The first part keeps the name of the path. A path with a
 //! property that belongs to the whole of it is not cut.
+//!
+//! What new points are called, and where they say where they are, is that of the version of the model.
 
+use super::ids::Ids;
+use super::version::Version;
+use super::visual::Visual;
 use super::{elements, escaped, name, parse};
 use crate::edit::{Edits, ending, indent};
 use crate::settings::Notes;
@@ -34,7 +39,7 @@ pub(crate) fn split(
         return Err(ImportError::new(problem));
     }
     let document = parse(text)?;
-    let mut cutter = Cutter::new(text, &document, imported);
+    let mut cutter = Cutter::new(text, &document, imported)?;
     let mut left_whole: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for path in elements(document.root_element(), "path") {
         let Some(edge) = cutter.edges.get(name(path)).copied() else { continue };
@@ -50,7 +55,35 @@ pub(crate) fn split(
     let said =
         left_whole.into_iter().map(|(reason, names)| format!("paths left whole, {reason}: {}", names.join(", ")));
     notes.said.extend(said.map(|text: String| WarningCode::LeftWhole.text(text)));
+    if !cutter.of_one_cost.is_empty() {
+        let names = cutter.of_one_cost.join(", ");
+        notes.said.push(format!("routingCost: smaller than the number of parts, so each part has it: {names}"));
+    }
     Ok(cutter.made())
+}
+
+/// A coordinate in millimetres, where it is said.
+fn coordinate(node: Node<'_, '_>, what: &str, attribute: &str) -> Result<Option<f64>, ImportError> {
+    let Some(text) = node.attribute(attribute) else { return Ok(None) };
+    let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    let problem = || ImportError::new(format!("{what}, {attribute}: {text:?} where a number is expected"));
+    number.map(Some).ok_or_else(problem)
+}
+
+/// A coordinate in millimetres that has to be said.
+fn needed(node: Node<'_, '_>, what: &str, attribute: &str) -> Result<f64, ImportError> {
+    let problem = || ImportError::new(format!("{what}, {attribute}: missing, which is where its version has it"));
+    coordinate(node, what, attribute)?.ok_or_else(problem)
+}
+
+/// The names of the points at the ends of a path.
+fn ends<'a>(path: Node<'a, '_>) -> Option<[&'a str; 2]> {
+    Some([path.attribute("sourcePoint")?, path.attribute("destinationPoint")?])
+}
+
+/// What is at a part of the way between two, rounded to a whole number.
+fn between([from, to]: [f64; 2], k: u32, parts: u32) -> i64 {
+    (from + (to - from) * f64::from(k) / f64::from(parts)).round() as i64
 }
 
 struct Cutter<'a, 'i> {
@@ -60,36 +93,57 @@ struct Cutter<'a, 'i> {
     /// Its line ending.
     end: &'static str,
     root: Node<'a, 'i>,
+    version: Version,
+    ids: Ids,
+    visual: Visual<'a, 'i>,
     points: HashMap<&'a str, Node<'a, 'i>>,
     edges: HashMap<String, &'a Edge>,
     /// Members of blocks for vehicles in the same direction.
     of_one_direction: BTreeSet<&'a str>,
+    /// Points one after the other on static routes.
+    hops: BTreeSet<[&'a str; 2]>,
+    /// Paths whose routing cost could not be shared by their parts.
+    of_one_cost: Vec<&'a str>,
     /// Names in the file, and new names.
     taken: BTreeSet<String>,
     added: String,
+    /// New elements of the visual layout.
+    drawn: Vec<String>,
     /// For each path that was cut, its parts other than the first one.
     resources: HashMap<&'a str, Vec<String>>,
     edits: Edits,
 }
 
 impl<'a, 'i> Cutter<'a, 'i> {
-    fn new(text: &'a str, document: &'a Document<'i>, imported: &'a Imported) -> Self {
+    fn new(text: &'a str, document: &'a Document<'i>, imported: &'a Imported) -> Result<Self, ImportError> {
         let root = document.root_element();
+        let version = Version::of(root)?;
         let single = |block: &Node<'_, '_>| block.attribute("type").is_none_or(|kind| kind == "SINGLE_VEHICLE_ONLY");
         let others = elements(root, "block").filter(|block| !single(block));
-        Self {
+        let mut hops = BTreeSet::new();
+        for route in elements(root, "staticRoute") {
+            let points: Vec<&str> = elements(route, "hop").map(name).collect();
+            hops.extend(points.windows(2).map(|pair| [pair[0], pair[1]]));
+        }
+        Ok(Self {
             text,
             offset: text.len() - text.trim_start_matches('\u{feff}').len(),
             end: ending(text),
             root,
+            version,
+            ids: Ids::of(root, version)?,
+            visual: Visual::of(root),
             points: elements(root, "point").map(|point| (name(point), point)).collect(),
             edges: imported.layout.edges.iter().map(|edge| (edge.id.to_string(), edge)).collect(),
             of_one_direction: others.flat_map(|block| elements(block, "member")).map(name).collect(),
+            hops,
+            of_one_cost: Vec::new(),
             taken: root.children().map(|child| name(child).to_owned()).collect(),
             added: String::new(),
+            drawn: Vec::new(),
             resources: HashMap::new(),
             edits: Edits::default(),
-        }
+        })
     }
 
     fn span(&self, range: Range<usize>) -> Range<usize> {
@@ -123,20 +177,22 @@ impl<'a, 'i> Cutter<'a, 'i> {
             Some("as their envelopes are around all of them")
         } else if self.of_one_direction.contains(name(path)) {
             Some("as their blocks ask by which path vehicles come in")
+        } else if elements(path, "typeActions").next().is_some() {
+            Some("as their actions are at distances along all of them")
+        } else if ends(path).is_some_and(|ends| self.hops.contains(&ends)) {
+            Some("as static routes lead over them")
         } else {
             None
         }
     }
 
     fn cut(&mut self, path: Node<'a, 'i>, parts: u32) -> Result<(), ImportError> {
-        let ends = ["sourcePoint", "destinationPoint"].map(|end| path.attribute(end).unwrap_or_default());
-        let [Some(from), Some(to)] = ends.map(|end| self.points.get(end).copied()) else { return Ok(()) };
-        let number = |node: Node<'_, '_>, attribute| node.attribute(attribute)?.trim().parse::<f64>().ok();
-        let at = |attribute: &'static str| [from, to].map(|point| number(point, attribute).unwrap_or_default());
-        let typed = number(path, "length");
-        let share =
-            |[from, to]: [f64; 2], k: u32| (from + (to - from) * f64::from(k) / f64::from(parts)).round() as i64;
-        let (called, length) = (name(path), self.edges[name(path)].length());
+        let called = name(path);
+        let unknown = || ImportError::new(format!("path {called}: its points are not in the model"));
+        let ends = ends(path).ok_or_else(unknown)?;
+        let [Some(from), Some(to)] = ends.map(|end| self.points.get(end).copied()) else { return Err(unknown()) };
+        let what = format!("path {called}");
+        let length = self.edges[called].length();
         let mut points = vec![ends[0].to_owned()];
         points.extend(
             (1..parts).map(|k| self.fresh(format!("{called}+{:.3}", length * f64::from(k) / f64::from(parts)))),
@@ -144,41 +200,128 @@ impl<'a, 'i> Cutter<'a, 'i> {
         points.push(ends[1].to_owned());
         let mut names = vec![called.to_owned()];
         names.extend((2..=parts).map(|k| self.fresh(format!("{called} part {k}"))));
-        let margin = self.margin(from);
-        let layer = elements(path, "pathLayout").find_map(|layout| layout.attribute("layerId"));
-        let copies = (0..parts).zip(points.windows(2)).zip(&names).map(|((k, ends), name)| {
-            let length = typed.map(|typed| (share([0.0, typed], k + 1) - share([0.0, typed], k)).max(1).to_string());
+        let typed = coordinate(path, &what, "length")?;
+        let cost = coordinate(path, &what, "routingCost")?;
+        let of_one_cost = cost.is_some_and(|cost| cost.abs() < f64::from(parts));
+        if of_one_cost {
+            self.of_one_cost.push(called);
+        }
+        // The parts have together what the path has.
+        let share = |whole: Option<f64>, k: u32| whole.map(|all| between([0.0, all], k + 1, parts) - between([0.0, all], k, parts));
+        let mut copies = Vec::new();
+        for ((k, ends), name) in (0..parts).zip(points.windows(2)).zip(&names) {
             let changed = [
+                ("id", if k == 0 { None } else { self.ids.next().map(|id| id.to_string()) }),
                 ("name", Some(name.clone())),
                 ("sourcePoint", Some(ends[0].clone())),
                 ("destinationPoint", Some(ends[1].clone())),
-                ("length", length),
+                ("length", share(typed, k).map(|length| length.max(1).to_string())),
+                ("routingCost", share(cost.filter(|_| !of_one_cost), k).map(|cost| cost.to_string())),
             ];
-            self.copy(path, &changed)
-        });
-        let copies = copies.collect::<Vec<_>>().join(&format!("{}{}", self.end, self.margin(path)));
+            copies.push(self.copy(path, &changed));
+            if let Some(element) = self.visual.element(called).filter(|_| k > 0) {
+                let copy = self.copy(element, &[("visualizedObjectName", Some(name.clone()))]);
+                self.drawn.push(copy);
+            }
+        }
+        let copies = copies.join(&format!("{}{}", self.end, self.margin(path)));
         for (k, (point, out)) in (1..parts).zip(points[1..].iter().zip(&names[1..])) {
-            let [x, y, z] = ["positionX", "positionY", "positionZ"].map(|attribute| share(at(attribute), k));
-            let end = self.end;
-            let _ = write!(
-                self.added,
-                "{end}{margin}<point name=\"{}\" positionX=\"{x}\" positionY=\"{y}\" positionZ=\"{z}\" vehicleOrientationAngle=\"NaN\" type=\"HALT_POSITION\">",
-                escaped(point)
-            );
-            // A vehicle that may go to the end of the path may go to its new points.
-            if let Some(room) = elements(to, "maxVehicleBoundingBox").next() {
-                let _ = write!(self.added, "{end}{margin}    {}", &self.text[self.span(room.range())]);
-            }
-            let _ = write!(self.added, "{end}{margin}    <outgoingPath name=\"{}\"/>", escaped(out));
-            if let Some(layer) = layer {
-                let layout = format!("<pointLayout labelOffsetX=\"-10\" labelOffsetY=\"-20\" layerId=\"{layer}\"/>");
-                let _ = write!(self.added, "{end}{margin}    {layout}");
-            }
-            let _ = write!(self.added, "{end}{margin}</point>");
+            self.add_point(path, [from, to], [k, parts], [point, out])?;
         }
         self.edits.replace(self.span(path.range()), copies);
         let inner = points.len() - 1;
         self.resources.insert(called, names.drain(1..).chain(points.drain(1..inner)).collect());
+        Ok(())
+    }
+
+    /// Adds the point after so many of all parts of a path, with its name and that of the path from there.
+    fn add_point(
+        &mut self,
+        path: Node<'a, 'i>,
+        ends: [Node<'a, 'i>; 2],
+        [k, parts]: [u32; 2],
+        [point, out]: [&str; 2],
+    ) -> Result<(), ImportError> {
+        let (version, end, margin) = (self.version, self.end, self.margin(ends[0]));
+        let what = ends.map(|end| format!("point {}", name(end)));
+        let [x, y, z] = version.place();
+        let mut own = [[0.0; 2]; 2];
+        for (k, end) in ends.iter().enumerate() {
+            own[k] = [needed(*end, &what[k], x)?, needed(*end, &what[k], y)?];
+        }
+        let mut places: Vec<(&str, i64)> =
+            [x, y].into_iter().enumerate().map(|(at, name)| (name, between([own[0][at], own[1][at]], k, parts))).collect();
+        let heights = [0, 1].map(|k| coordinate(ends[k], &what[k], z));
+        match heights {
+            [Err(error), _] | [_, Err(error)] => return Err(error),
+            // Before version 6 a point that says nothing is at height 0.
+            [Ok(None), Ok(None)] if !version.has_boxes() => {}
+            [Ok(low), Ok(high)] => {
+                if version.has_boxes() {
+                    needed(ends[0], &what[0], z)?;
+                    needed(ends[1], &what[1], z)?;
+                }
+                places.push((z, between([low.unwrap_or(0.0), high.unwrap_or(0.0)], k, parts)));
+            }
+        }
+        let attributes = places.iter().map(|(name, at)| format!(" {name}=\"{at}\"")).collect::<String>();
+        let _ = write!(
+            self.added,
+            "{end}{margin}<point{} name=\"{}\"{attributes} vehicleOrientationAngle=\"NaN\" type=\"HALT_POSITION\">",
+            self.ids.attribute(),
+            escaped(point)
+        );
+        // A vehicle that may go to the end of the path may go to its new points.
+        match elements(ends[1], "maxVehicleBoundingBox").next() {
+            Some(room) => {
+                let _ = write!(self.added, "{end}{margin}    {}", &self.text[self.span(room.range())]);
+            }
+            None if version.has_boxes() => {
+                let problem = "maxVehicleBoundingBox: missing, and new points have to have that of the end of their path";
+                return Err(ImportError::new(format!("{}, {problem}", what[1])));
+            }
+            None => {}
+        }
+        let _ = write!(self.added, "{end}{margin}    <outgoingPath name=\"{}\"/>", escaped(out));
+        let layer = elements(path, "pathLayout").find_map(|layout| layout.attribute("layerId"));
+        if let Some(layer) = layer.filter(|_| version.has_layouts()) {
+            let drawn = match version.drawn() {
+                None => String::new(),
+                Some(names) => {
+                    let mut drawn = own;
+                    for (k, end) in ends.iter().enumerate() {
+                        // A point without a layout is drawn where it is.
+                        let Some(layout) = elements(*end, "pointLayout").next() else { continue };
+                        drawn[k] = [needed(layout, &what[k], names[0])?, needed(layout, &what[k], names[1])?];
+                    }
+                    let place = |at: usize| between([drawn[0][at], drawn[1][at]], k, parts);
+                    format!("{}=\"{}\" {}=\"{}\" ", names[0], place(0), names[1], place(1))
+                }
+            };
+            let [x, y] = version.label();
+            let layout = format!("<pointLayout {drawn}{x}=\"-10\" {y}=\"-20\" layerId=\"{}\"/>", escaped(layer));
+            let _ = write!(self.added, "{end}{margin}    {layout}");
+        }
+        let _ = write!(self.added, "{end}{margin}</point>");
+        self.draw_point(ends, [k, parts], point)
+    }
+
+    /// Adds what the visual layout says of a new point, if it says something of both ends of its path.
+    fn draw_point(&mut self, ends: [Node<'a, 'i>; 2], [k, parts]: [u32; 2], point: &str) -> Result<(), ImportError> {
+        let [Some(from), Some(to)] = ends.map(|end| self.visual.element(name(end))) else { return Ok(()) };
+        let mut values = Vec::new();
+        for key in ["POSITION_X", "POSITION_Y"] {
+            let given = [from, to].map(|element| Visual::value(element, key));
+            let [Some(low), Some(high)] = given else { continue };
+            let number = |text: &str| {
+                let problem = || ImportError::new(format!("visualLayout, {key}: {text:?} where a number is expected"));
+                text.parse::<f64>().ok().filter(|number| number.is_finite()).ok_or_else(problem)
+            };
+            values.push((key, between([number(low)?, number(high)?], k, parts).to_string()));
+        }
+        let layer = from.attribute("layer").or(to.attribute("layer"));
+        let layer = layer.ok_or_else(|| ImportError::new("visualLayout, modelLayoutElement, layer: missing"))?;
+        self.drawn.push(Visual::new_element(point, layer, &values));
         Ok(())
     }
 
@@ -200,7 +343,9 @@ impl<'a, 'i> Cutter<'a, 'i> {
         if let Some(last) = elements(self.root, "point").last() {
             self.edits.insert(last.range().end + self.offset, std::mem::take(&mut self.added));
         }
-        for member in elements(self.root, "block").flat_map(|block| elements(block, "member")) {
+        self.visual.add(self.text, self.offset, &self.drawn, &mut self.edits);
+        let groups = self.root.children().filter(|child| child.has_tag_name("block") || child.has_tag_name("group"));
+        for member in groups.flat_map(|group| elements(group, "member")) {
             let margin = self.margin(member);
             for further in self.resources.get(name(member)).into_iter().flatten() {
                 let at = member.range().end + self.offset;

@@ -45,8 +45,12 @@ pub(crate) fn prepare(
             }
             let ends =
                 [0, 1].map(|k| lane.list().get(k).and_then(Spanned::text).and_then(|text| text.parse::<usize>().ok()));
-            let [Some(from), Some(to)] = ends else { continue };
-            let chain = cutter.chain([from, to], parts);
+            let [Some(from), Some(to)] = ends else {
+                return Err(ImportError::new(format!("lanes {}: indices of two vertices are expected", edge.id)));
+            };
+            let chain = cutter.chain([from, to], parts).ok_or_else(|| {
+                ImportError::new(format!("lanes {}: places of its vertices are expected", edge.id))
+            })?;
             let ways: &[bool] = if edge.is_two_way() { &[false, true] } else { &[false] };
             let mut copies = Vec::new();
             for &back in ways {
@@ -97,11 +101,9 @@ struct Cutter {
 
 impl Cutter {
     /// The vertices along a lane, new ones where no other lane has been cut between the same two.
-    fn chain(&mut self, [from, to]: [usize; 2], parts: usize) -> Vec<usize> {
+    fn chain(&mut self, [from, to]: [usize; 2], parts: usize) -> Option<Vec<usize>> {
         let (low, high) = (from.min(to), from.max(to));
-        let (Some(Some(a)), Some(Some(b))) = (self.at.get(low).copied(), self.at.get(high).copied()) else {
-            return vec![from, to];
-        };
+        let (a, b) = (self.at.get(low).copied()??, self.at.get(high).copied()??);
         let first = self.at.len();
         let (form, at, added) = (self.form, &mut self.at, &mut self.added);
         let cut = self.between.entry((low, high, parts)).or_insert_with(|| {
@@ -119,7 +121,7 @@ impl Cutter {
         if from > to {
             chain.reverse();
         }
-        chain
+        Some(chain)
     }
 }
 
