@@ -6,7 +6,7 @@
 //! that a vehicle at the node keeps others off the edge, and two nodes need nothing more.
 
 use crate::meetings::Meetings;
-use crate::{Group, Rules, Target, Way, nearest, stretch};
+use crate::{Group, Rules, Selection, Stamp, Target, Way, nearest, stretch};
 use pcr_formats::import::{Edge, Id, ImportError, Imported, Layout};
 use pcr_formats::scenario::Placed;
 use pcr_planning::locks::{Lock, LockVehicle, Locks, NodeLock, Rides, corridor, rounded};
@@ -24,6 +24,12 @@ pub struct Audit {
     pub vehicle: LockVehicle,
     /// Format of the exclusions.
     pub exclusions: String,
+    /// For which vehicle the file was written, where it says so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub written_for: Option<Stamp>,
+    /// The edges and nodes that were asked about; nothing if all were.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub selected: Vec<Spot>,
     /// Number of groups, blocks, zones or lists of the file.
     pub groups: usize,
     /// Number of pairs of edges, or of a node and an edge, on which two vehicles can touch; each edge and itself is a pair.
@@ -99,15 +105,33 @@ impl Audit {
     /// # Errors
     /// [`ImportError`] for locks without those of nodes, and for locks and rules of another layout: they would seem to suffice.
     pub fn of(imported: &Imported, locks: &Locks, rules: &Rules, target: Target) -> Result<Self, ImportError> {
+        Self::of_some(imported, locks, rules, target, &Selection::default())
+    }
+
+    /// The same of pairs of which one is selected.
+    ///
+    /// # Errors
+    /// As [`Audit::of`].
+    pub fn of_some(
+        imported: &Imported,
+        locks: &Locks,
+        rules: &Rules,
+        target: Target,
+        selection: &Selection,
+    ) -> Result<Self, ImportError> {
         let places = Places::of(&imported.layout);
-        let nodes = places.nodes(locks)?;
-        let edges = places.edges(locks)?;
+        let mut nodes = places.nodes(locks)?;
+        nodes.retain(|([node, edge], _)| selection.has_either(*node, *edge));
+        let mut edges = places.edges(locks)?;
+        edges.retain(|(pair, _)| selection.has(*pair));
         fit(&imported.layout, rules)?;
         let auditor = Auditor::new(imported, rules);
         let mut audit = Self {
             layout: locks.layout.clone(),
             vehicle: locks.vehicle.clone(),
             exclusions: target.to_string(),
+            written_for: rules.stamp.clone(),
+            selected: selection.spots(imported),
             groups: rules.groups.len(),
             can_touch: 0,
             gaps: Vec::new(),
@@ -119,12 +143,13 @@ impl Audit {
         };
         audit.of_layout = audit.warnings.len();
         audit.warnings.extend_from_slice(&rules.warnings);
+        audit.warnings.extend(rules.stamp.as_ref().and_then(|stamp| stamp.difference(imported)));
         let mut pairs: BTreeMap<[usize; 2], Vec<[[f64; 2]; 2]>> = BTreeMap::new();
         for (pair, lengths) in edges {
             pairs.entry(pair).or_default().push(lengths);
             audit.needed += lengths.map(|[from, to]| to - from).into_iter().product::<f64>();
         }
-        for (k, edge) in imported.layout.edges.iter().enumerate() {
+        for (k, edge) in imported.layout.edges.iter().enumerate().filter(|(k, _)| selection.has([*k; 2])) {
             pairs.entry([k, k]).or_default().push([[0.0, edge.length()]; 2]);
         }
         for (&[a, b], locked) in &pairs {
@@ -133,7 +158,7 @@ impl Audit {
             audit.gaps.extend(gaps.max_by(|x, y| x.depth.total_cmp(&y.depth)));
         }
         audit.add_nodes(&auditor, nodes);
-        for [a, b] in auditor.excluded_pairs() {
+        for [a, b] in auditor.excluded_pairs().filter(|pair| selection.has(*pair)) {
             audit.excluded += auditor.area([a, b]);
             if !pairs.contains_key(&[a, b]) && !pairs.contains_key(&[b, a]) {
                 let id = |place: usize| imported.layout.edges[place].id.clone();

@@ -30,7 +30,10 @@ pub(crate) fn compare(before: &Imported, after: &Imported, cut: Cut) -> Result<(
     }
     let (old, new) = (&before.layout, &after.layout);
     if (&old.name, &old.levels) != (&new.name, &new.levels) {
-        return refused(format!("{:?} with levels {:?} became {:?} with {:?}", old.name, old.levels, new.name, new.levels));
+        return refused(format!(
+            "{:?} with levels {:?} became {:?} with {:?}",
+            old.name, old.levels, new.name, new.levels
+        ));
     }
     let places: HashMap<&Id, usize> = new.nodes.iter().enumerate().map(|(place, node)| (&node.id, place)).collect();
     let mut kept = vec![false; new.nodes.len()];
@@ -80,7 +83,9 @@ impl Ways {
     /// An edge of which a direction is not taken.
     fn unused<'a>(&self, layout: &'a Layout) -> Option<&'a Edge> {
         let mut edges = layout.edges.iter().zip(&self.taken);
-        edges.find(|(edge, taken)| edge.ways.iter().zip(*taken).any(|(way, taken)| *way && !taken)).map(|(edge, _)| edge)
+        edges
+            .find(|(edge, taken)| edge.ways.iter().zip(*taken).any(|(way, taken)| *way && !taken))
+            .map(|(edge, _)| edge)
     }
 }
 
@@ -105,7 +110,11 @@ impl Chain<'_> {
             let own = |&&(place, _): &&(usize, bool)| layout.edges[place].id == self.edge.id;
             let all = || ways.from[at].iter().filter(fits);
             let Some(&(place, backward)) = all().find(own).or_else(|| all().next()) else {
-                return Err(if parts == 0 { "it is missing, or not what it was".into() } else { "a part is missing".into() });
+                return Err(if parts == 0 {
+                    "it is missing, or not what it was".into()
+                } else {
+                    "a part is missing".into()
+                });
             };
             if parts == 0 && !self.backward && layout.edges[place].id != self.edge.id {
                 return Err(format!("it is called {} there", layout.edges[place].id));
@@ -185,9 +194,14 @@ mod tests {
     fn graph(nodes: &[(u64, [f64; 2])], edges: &[(u64, [u64; 2])]) -> Imported {
         let feature = |properties: Value, geometry: Value| json!({ "type": "Feature", "properties": properties, "geometry": geometry });
         let mut features: Vec<Value> = Vec::new();
-        features.extend(nodes.iter().map(|(id, at)| feature(json!({ "id": id }), json!({ "type": "Point", "coordinates": at }))));
+        features.extend(
+            nodes.iter().map(|(id, at)| feature(json!({ "id": id }), json!({ "type": "Point", "coordinates": at }))),
+        );
         features.extend(edges.iter().map(|(id, [from, to])| {
-            feature(json!({ "id": id, "startid": from, "endid": to }), json!({ "type": "MultiLineString", "coordinates": [] }))
+            feature(
+                json!({ "id": id, "startid": from, "endid": to }),
+                json!({ "type": "MultiLineString", "coordinates": [] }),
+            )
         }));
         let text = json!({ "type": "FeatureCollection", "features": features }).to_string();
         let options = Options { radius: Some(0.3), ..Options::default() };
@@ -215,12 +229,28 @@ mod tests {
             (vec![(4, [3.3, 4.2])], edges, "edge 7: it is missing"),
             (vec![(4, [9.3, 12.1])], edges, "edge 7: it is missing"),
             // Other ends, another direction, an edge and a node too many.
-            (vec![(4, [3.3, 4.1])], [(7, [1, 4]), (8, [2, 4]), (9, [2, 3]), (10, [4, 3]), (11, [4, 1])], "edge 7: a part"),
-            (vec![(4, [3.3, 4.1])], [(7, [1, 4]), (8, [2, 4]), (9, [3, 2]), (10, [4, 2]), (11, [4, 1])], "edge 9: it is"),
-            (vec![(4, [3.3, 4.1])], [(7, [1, 2]), (8, [2, 1]), (9, [2, 3]), (10, [4, 2]), (11, [4, 1])], "edge 10 is on none"),
+            (
+                vec![(4, [3.3, 4.1])],
+                [(7, [1, 4]), (8, [2, 4]), (9, [2, 3]), (10, [4, 3]), (11, [4, 1])],
+                "edge 7: a part",
+            ),
+            (
+                vec![(4, [3.3, 4.1])],
+                [(7, [1, 4]), (8, [2, 4]), (9, [3, 2]), (10, [4, 2]), (11, [4, 1])],
+                "edge 9: it is",
+            ),
+            (
+                vec![(4, [3.3, 4.1])],
+                [(7, [1, 2]), (8, [2, 1]), (9, [2, 3]), (10, [4, 2]), (11, [4, 1])],
+                "edge 10 is on none",
+            ),
             (vec![(4, [3.3, 4.1]), (5, [0.0, 9.0])], edges, "node 5 is on none"),
             // A part of another name where the edge begins.
-            (vec![(4, [3.3, 4.1])], [(12, [1, 4]), (8, [2, 4]), (9, [2, 3]), (10, [4, 2]), (11, [4, 1])], "edge 7: it is called 12"),
+            (
+                vec![(4, [3.3, 4.1])],
+                [(12, [1, 4]), (8, [2, 4]), (9, [2, 3]), (10, [4, 2]), (11, [4, 1])],
+                "edge 7: it is called 12",
+            ),
         ] {
             let after = graph(&[&NODES[..], &nodes].concat(), &edges);
             let error = compare(&before, &after, whole).expect_err(expected).to_string();

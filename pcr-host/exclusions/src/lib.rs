@@ -22,7 +22,9 @@
 //! edit      changes of a text at spans; the rest is kept byte for byte
 //! json      JSON with the span of every value
 //! kept      a written layout is the one before, with its edges cut
+//! selection which edges and nodes an audit is about
 //! settings  options and warnings of writers
+//! stamp     for which vehicle a file was written
 //! outline   polygons around corridors
 //! nav2, opentcs, rmf, vda5050, own   the formats
 //! report    results of writing and of audits, as text
@@ -42,16 +44,20 @@ mod own;
 mod reach;
 pub mod report;
 mod rmf;
+mod selection;
 mod settings;
+mod stamp;
 mod vda5050;
 mod way;
 mod write;
 
 pub use audit::{Audit, Gap, Needless, Spot};
 pub use nearest::{Approach, nearest, stretch};
+pub use selection::Selection;
 pub use settings::Settings;
+pub use stamp::Stamp;
 pub use way::{Mark, Section, Way};
-pub use write::{Written, write};
+pub use write::{Written, sized, write};
 
 use pcr_formats::import::{Format, ImportError, Imported};
 use pcr_planning::locks::Locks;
@@ -191,6 +197,8 @@ pub struct Rules {
     pub groups: Vec<Group>,
     /// Parts of the file that have no effect, with the reasons.
     pub warnings: Vec<String>,
+    /// For which vehicle the file was written, where it says so.
+    pub stamp: Option<Stamp>,
     /// For each token the level on which it holds, for vehicles that can be on one of several levels; empty if levels do not
     /// matter.
     pub levels: Vec<usize>,
@@ -209,6 +217,15 @@ impl Rules {
             [false, true].map(|back| Way::whole(edge.length(), back, &claims[usize::from(back)]))
         });
         Self { edges: edges.collect(), nodes, ..Self::default() }
+    }
+
+    /// The rules with what their file says of the vehicle that they are for, if it says anything.
+    pub(crate) fn stamped(mut self, said: Option<&str>) -> Self {
+        self.stamp = said.and_then(Stamp::read);
+        if let (Some(said), None) = (said, &self.stamp) {
+            self.warnings.push(format!("for which vehicle the exclusions were written cannot be read: {said}"));
+        }
+        self
     }
 }
 

@@ -8,6 +8,7 @@
 
 use crate::edit::{Edits, ending};
 use crate::json::{Spanned, Value as Kind};
+use crate::stamp::{MEMBER, Stamp};
 use crate::{Claim, Group, Rules};
 use pcr_formats::import::{Id, ImportError, Imported, graph_id, parse_json};
 use pcr_planning::locks::Locks;
@@ -85,7 +86,8 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         Ok(Claim { bars, ..Claim::default() })
     });
     let (edges, nodes) = (edges.collect::<Result<_, ImportError>>()?, nodes.collect::<Result<_, ImportError>>()?);
-    Ok(Rules { groups, ..Rules::of_edges(imported, edges, nodes) })
+    let said = root.get(MEMBER).map(Value::to_string);
+    Ok(Rules { groups, ..Rules::of_edges(imported, edges, nodes) }.stamped(said.as_deref()))
 }
 
 /// Writes the lists of a table with nodes.
@@ -113,6 +115,12 @@ pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks) -> Result<St
         if let Some(properties) = span.get("properties") {
             set(&mut edits, properties, &Value::from(ids).to_string());
         }
+    }
+    let stamp = Stamp::of(imported).text();
+    match (spans.get(MEMBER), spans.end_of_members()) {
+        (Some(old), _) => edits.replace(old.span.clone(), stamp),
+        (None, Some((at, comma))) => edits.insert(at, format!("{comma}\"{MEMBER}\": {stamp}")),
+        (None, None) => return Err(ImportError::new("graph: an object is expected")),
     }
     Ok(edits.made(text))
 }

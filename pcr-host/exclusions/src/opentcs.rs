@@ -11,6 +11,8 @@
 
 mod cut;
 mod ids;
+#[cfg(test)]
+mod tests;
 mod version;
 mod visual;
 
@@ -21,6 +23,7 @@ use crate::cover::cover;
 use crate::edit::{Edits, ending, indent};
 use crate::outline::{around, intersect};
 use crate::settings::{Notes, Settings};
+use crate::stamp::{PROPERTY, Stamp};
 use crate::{Claim, Rules};
 use ids::Ids;
 use pcr_formats::import::{Id, ImportError, Imported, Layout};
@@ -83,7 +86,8 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         let ends = edge.ends.iter().flat_map(|&end| &tokens[layout.edges.len() + end]);
         Claim::exclusive(tokens[place].iter().chain(ends).copied().collect())
     });
-    Ok(Rules { groups, warnings, ..Rules::of_edges(imported, edges.collect(), nodes) })
+    let said = stamped(document.root_element()).map(|(_, said)| said);
+    Ok(Rules { groups, warnings, ..Rules::of_edges(imported, edges.collect(), nodes) }.stamped(said))
 }
 
 /// What a vehicle has with each resource, paths first: tokens of the resource, of its blocks, and of envelopes that meet.
@@ -229,7 +233,38 @@ pub(crate) fn write(
     } else {
         write_blocks(&model, layout, locks, notes, &mut edits)?;
     }
+    write_stamp(&model, imported, &mut edits)?;
     Ok(edits.made(text))
+}
+
+/// What says in a model for which vehicle its exclusions were written, and what it says.
+fn stamped<'a, 'i>(model: Node<'a, 'i>) -> Option<(Node<'a, 'i>, &'a str)> {
+    let property = elements(model, "property").find(|property| name(*property) == PROPERTY);
+    if let Some(property) = property {
+        return Some((property, property.attribute("value").unwrap_or("nothing")));
+    }
+    let text = |comment: Node<'a, 'i>| comment.text().and_then(|text| text.trim().strip_prefix(PROPERTY));
+    let mut comments = model.children().filter(Node::is_comment);
+    comments.find_map(|comment| Some((comment, text(comment)?.trim())))
+}
+
+/// Says in a model for which vehicle its exclusions are: as the last of its properties or, where it has none, in a comment.
+fn write_stamp(model: &Model<'_, '_>, imported: &Imported, edits: &mut Edits) -> Result<(), ImportError> {
+    let &Model { text, offset, root, version } = model;
+    let stamp = Stamp::of(imported).text();
+    let element = match version.has_properties() {
+        true => format!("<property name=\"{PROPERTY}\" value=\"{}\"/>", escaped(&stamp)),
+        false => format!("<!-- {PROPERTY} {stamp} -->"),
+    };
+    if let Some((old, _)) = stamped(root) {
+        edits.replace(old.range().start + offset..old.range().end + offset, element);
+        return Ok(());
+    }
+    let missing = || ImportError::new("model: there is nothing in it");
+    let last = root.children().rfind(Node::is_element).ok_or_else(missing)?;
+    let margin = indent(text, last.range().start + offset).unwrap_or("    ");
+    edits.insert(last.range().end + offset, format!("{}{margin}{element}", ending(text)));
+    Ok(())
 }
 
 /// Refuses a written model that has what its version has not, if the model before had not.
@@ -338,7 +373,7 @@ fn write_blocks(
     let taken: BTreeSet<&str> = root.children().filter(|child| !old.contains(child)).map(name).collect();
     let mut names = (1_u32..).map(|k| format!("{PREFIX}{k:04}")).filter(|name| !taken.contains(name.as_str()));
     let (mut blocks, mut drawn, end) = (String::new(), Vec::new(), ending(text));
-    let mut ids = Ids::of(root, version)?;
+    let mut ids = Ids::of(root, version, |element| old.contains(&element))?;
     let kind = if version.has_types_of_blocks() { " type=\"SINGLE_VEHICLE_ONLY\"" } else { "" };
     for (clique, name) in cover.cliques.iter().zip(&mut names) {
         let _ = write!(blocks, "{end}{margin}<block{} name=\"{name}\"{kind}>", ids.attribute());

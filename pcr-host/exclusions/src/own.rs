@@ -3,6 +3,7 @@
 //!
 //! An edge locks itself. Lengths are those of the table of locks, rounded outward to the next micrometre but one.
 
+use crate::stamp::Stamp;
 use crate::{Claim, Group, Mark, Rules, Way};
 use pcr_formats::import::{Id, ImportError, Imported};
 use pcr_planning::locks::Locks;
@@ -27,6 +28,8 @@ struct Said {
 /// without a tree of values.
 #[derive(Deserialize)]
 struct File {
+    /// For which vehicle it was written; files of the first releases do not say that.
+    written: Option<Stamp>,
     edges: Vec<Entry>,
     nodes: Vec<Entry>,
 }
@@ -76,9 +79,10 @@ pub(crate) fn write(imported: &Imported, locks: &Locks) -> Result<String, Import
         nodes.entry(&found.node).or_default().push(lock(&found.edge, outward(found.edge_length), None));
     }
     let mut text = format!(
-        "{{ \"format\": \"{FORMAT}\", \"version\": 1, \"layout\": {}, \"vehicle\": {},\n",
+        "{{ \"format\": \"{FORMAT}\", \"version\": 1, \"layout\": {}, \"vehicle\": {},\n  \"written\": {},\n",
         json!(locks.layout),
-        json!(locks.vehicle)
+        json!(locks.vehicle),
+        Stamp::of(imported).text()
     );
     for (kind, lists, end) in [("edge", &edges, "],\n"), ("node", &nodes, "] }\n")] {
         let _ = writeln!(text, "  \"{kind}s\": [");
@@ -145,5 +149,5 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         }
     }
     let edges = layout.edges.iter().zip(marks).map(|(edge, marks)| Way::both(edge.length(), marks, Vec::new()));
-    Ok(Rules { edges: edges.collect(), nodes, groups, ..Rules::default() })
+    Ok(Rules { edges: edges.collect(), nodes, groups, stamp: file.written, ..Rules::default() })
 }

@@ -80,6 +80,17 @@ fn spot(spot: &Spot) -> String {
     }
 }
 
+/// Which places an audit is of, where it is not of all.
+fn selected(spots: &[Spot]) -> String {
+    match spots {
+        [] => String::new(),
+        some => format!(
+            "; pairs with {}",
+            some.iter().map(|spot| printable(&spot.to_string())).collect::<Vec<_>>().join(", ")
+        ),
+    }
+}
+
 /// The audit: contacts, the deepest first, and needless exclusions.
 ///
 /// # Errors
@@ -87,11 +98,12 @@ fn spot(spot: &Spot) -> String {
 pub fn audit_table(audit: &Audit, out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,
-        "{}: audit of {} of {}, {}",
+        "{}: audit of {} of {}, {}{}",
         named(&audit.layout),
         counted(audit.groups, "group"),
         audit.exclusions,
-        vehicle(&audit.vehicle)
+        vehicle(&audit.vehicle),
+        selected(&audit.selected)
     )?;
     let count = |relation: &str| audit.gaps.iter().filter(|gap| gap.relation == relation).count();
     writeln!(

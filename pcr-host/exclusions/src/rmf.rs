@@ -17,6 +17,7 @@ pub(crate) use cut::prepare;
 use crate::audit::groups;
 use crate::edit::{Edits, column, ending};
 use crate::settings::Notes;
+use crate::stamp::{MEMBER, Stamp};
 use crate::{Claim, Rules};
 use pcr_formats::import::{Id, ImportError, Imported, is_navigation_graph};
 use pcr_formats::warning::WarningCode;
@@ -106,7 +107,8 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
     let ways = ways.collect();
     let groups = groups(layout, &names, &lanes, &vertices);
     let nodes = vertices.into_iter().map(Claim::exclusive).collect();
-    Ok(Rules { groups, ..Rules::of_ways(imported, ways, nodes) })
+    let said = root.get(MEMBER).map(Value::to_string);
+    Ok(Rules { groups, ..Rules::of_ways(imported, ways, nodes) }.stamped(said.as_deref()))
 }
 
 /// A file: its form, all of it, and the same with its places.
@@ -174,7 +176,35 @@ pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks, notes: &mut 
         let text = format_args!("groups of the file are replaced: {}", names.join(", "));
         notes.said.push(WarningCode::ReplacedExclusions.text(text));
     }
+    stamp(&mut edits, text, form, &root, imported)?;
     Ok(edits.made(text))
+}
+
+/// Says for which vehicle the groups are.
+fn stamp(
+    edits: &mut Edits,
+    text: &str,
+    form: Form,
+    root: &Spanned<'_>,
+    imported: &Imported,
+) -> Result<(), ImportError> {
+    let stamp = Stamp::of(imported).text();
+    if let Some(old) = root.get(MEMBER) {
+        edits.replace(old.span.clone(), old.instead(&stamp));
+        return Ok(());
+    }
+    let whole = form.parameter(MEMBER, &stamp);
+    match &root.value {
+        Kind::Mapping(Style::Flow, members) if !members.is_empty() => {
+            edits.insert(root.span.start + 1, format!("{whole}, "));
+        }
+        Kind::Mapping(Style::Block, members) if !members.is_empty() => {
+            let at = members[0].key.span.start;
+            edits.insert(at, format!("{whole}{}{}", ending(text), " ".repeat(column(text, at))));
+        }
+        _ => return Err(ImportError::new("building: a mapping is expected")),
+    }
+    Ok(())
 }
 
 /// Sets the group in the parameters of a lane or a vertex.

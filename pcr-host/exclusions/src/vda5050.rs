@@ -13,6 +13,7 @@
 use crate::outline::{around, depth};
 use crate::reach::within;
 use crate::settings::{Notes, Settings};
+use crate::stamp::Stamp;
 use crate::{Claim, Group, Mark, Rules, Way, stretch};
 use pcr_formats::import::{ImportError, Imported, Layout, parse_json};
 use pcr_formats::plane::hull;
@@ -246,7 +247,11 @@ fn tokens(zone: usize, count: usize, Entered { sure, whole, possible }: Entered)
 /// Reads the zones.
 pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
     let layout = &imported.layout;
-    let (zones, mut groups, warnings) = zones_of(&parse_json(text)?, layout)?;
+    let root = parse_json(text)?;
+    let (zones, mut groups, warnings) = zones_of(&root, layout)?;
+    let said = messages(&root).into_iter().filter_map(|message| message["zoneSet"]["zoneSetDescriptor"].as_str());
+    // A descriptor may be anybody's.
+    let stamp = said.filter_map(Stamp::read).next();
     let (reach, count) = (Reach::of(imported), zones.len());
     let there = |zone: &Zone, level: usize| map(layout, level) == zone.map;
     let edges = layout.edges.iter().map(|edge| {
@@ -299,7 +304,7 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         groups[token].edges = edges.into_iter().collect();
     }
     let levels = (0..3 * count).map(|token| groups[token % count].level).collect();
-    Ok(Rules { edges, nodes, groups, warnings, levels })
+    Ok(Rules { edges, nodes, groups, warnings, stamp, levels })
 }
 
 /// Writes the zone set of each map: one message, or a list of them.
@@ -322,7 +327,9 @@ pub(crate) fn write(imported: &Imported, settings: &Settings, notes: &mut Notes)
         // Other zones are another set: vehicles know sets by their names.
         let zones = Value::Array(zones);
         let sum = crc32(zones.to_string().as_bytes());
-        let set = json!({ "mapId": map, "zoneSetId": format!("{map}-pcr-{sum:08x}"), "zones": zones });
+        let set = json!({
+            "mapId": map, "zoneSetId": format!("{map}-pcr-{sum:08x}"), "zoneSetDescriptor": Stamp::of(imported).text(), "zones": zones
+        });
         messages.push(json!({
             "headerId": 0, "timestamp": "1970-01-01T00:00:00.000Z", "version": "3.0.0", "manufacturer": "", "serialNumber": "",
             "zoneSet": set

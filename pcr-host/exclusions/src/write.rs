@@ -5,8 +5,8 @@
 
 use crate::kept::{Cut, compare};
 use crate::settings::{Notes, Settings};
-use crate::{Audit, Target, nav2, opentcs, own, read, rmf, table, vda5050};
-use pcr_formats::import::{self, Format, ImportError, Imported, Options, Warnings};
+use crate::{Audit, Stamp, Target, nav2, opentcs, own, read, rmf, table, vda5050};
+use pcr_formats::import::{self, Format, ImportError, Imported, Options, SizeSource, Warnings};
 use pcr_formats::warning::WarningCode;
 use pcr_planning::locks::{LockVehicle, Locks};
 use pcr_planning::memory;
@@ -74,6 +74,19 @@ pub fn write(
     Ok((done.text, report, done.audit))
 }
 
+/// Refuses a vehicle of a size that nobody gave: others rely on exclusions and audits.
+///
+/// # Errors
+/// That it is not in the file, and which options say it.
+pub fn sized(imported: &Imported) -> Result<(), ImportError> {
+    match imported.vehicle.size {
+        SizeSource::Assumed => Err(ImportError::new(
+            "the size of the vehicle is not in the file, and none is assumed for what others rely on; give --radius M, or --fleet FILE",
+        )),
+        SizeSource::Option | SizeSource::Fleet | SizeSource::File => Ok(()),
+    }
+}
+
 /// # Errors
 /// The first option that has no place in what is to be written.
 fn refuse(format: Format, options: &Options, settings: &Settings) -> Result<(), ImportError> {
@@ -124,6 +137,7 @@ impl Source<'_> {
     fn write(&self, before: &str, settings: &Settings) -> Result<Done, ImportError> {
         let target = settings.target;
         let original = self.layout(before)?;
+        sized(&original)?;
         let (text, imported, mut notes) = self.prepared(before, &original, settings)?;
         let locks = table(&imported)?;
         let text = match target {
@@ -145,6 +159,9 @@ impl Source<'_> {
             imported
         };
         let rules = read(target, &text, &again)?;
+        if rules.stamp.as_ref() != Some(&Stamp::of(&again)) {
+            return Err(ImportError::new("what would be written does not say for which vehicle it is"));
+        }
         let audit = Audit::of(&again, &locks, &rules, target)?;
         if let Some(gap) = audit.gaps.first() {
             let (a, b, depth) = (&gap.a, &gap.b, gap.depth);

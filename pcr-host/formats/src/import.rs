@@ -79,7 +79,7 @@ pub use stamp::seconds;
 pub use timed::sectioned;
 pub use useful::Kind;
 pub use value::parse as parse_json;
-pub use vehicle::{CORNER_RADIUS, Facing, HEADING, Options, TOLERANCE, Vehicle};
+pub use vehicle::{CORNER_RADIUS, Facing, HEADING, Options, SizeSource, TOLERANCE, Vehicle};
 pub use warnings::{Warnings, shortened};
 
 use crate::footprint::Footprint;
@@ -379,7 +379,7 @@ fn of_fleet(text: &str, warnings: &mut Warnings) -> Result<Given, ImportError> {
 /// # Errors
 /// [`ImportError`] where the text is neither.
 pub fn vehicle(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Vehicle, ImportError> {
-    let given = of_fleet(text, warnings)?;
+    let given = Given { is_of_fleet: true, ..of_fleet(text, warnings)? };
     Ok(options.vehicle(&given, true, warnings))
 }
 
@@ -390,6 +390,7 @@ fn given(options: &Options, warnings: &mut Warnings) -> Result<Given, ImportErro
         let failed = |problem: &dyn fmt::Display| ImportError::new(format!("{}: {problem}", file.display()));
         let text = fs::read_to_string(file).map_err(|error| failed(&format_args!("cannot be read: {error}")))?;
         given = of_fleet(&text, warnings).map_err(|error| failed(&error))?;
+        given.is_of_fleet = given.radius.is_some() || given.footprint.is_some();
         if options.leave_some_of(&given) {
             warnings.use_option("fleet");
         }

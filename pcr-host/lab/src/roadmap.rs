@@ -2,7 +2,7 @@
 //! (JSON of networkx).
 
 use pcr_execution::lifelong::Tasks;
-use pcr_formats::import::{Edge, Id, Imported, Layout, Node, Vehicle};
+use pcr_formats::import::{Edge, Id, Imported, Layout, Node, SizeSource, Vehicle};
 use pcr_formats::scenario::Placed;
 use serde_json::Value;
 use std::collections::HashMap;
@@ -42,6 +42,7 @@ pub fn read(text: &str) -> Result<(Imported, Tasks), String> {
         name: None,
         radius: 1.0,
         footprint: None,
+        size: SizeSource::Option,
         margin: 0.0,
         speed: 1.0,
         acceleration: AT_ONCE,

@@ -6,7 +6,7 @@ use super::sources::{layout_from, text};
 use super::{CONFLICTS, Form, Printed, Stop, is_standard, warn_of_boxes, write_over};
 use clap::Args;
 use pcr_drawing as picture;
-use pcr_exclusions::{Audit, Settings, Target, report};
+use pcr_exclusions::{Audit, Selection, Settings, Target, report, sized};
 use pcr_formats::import::{Format, Imported, Options};
 use pcr_formats::input;
 use pcr_planning::report::json;
@@ -29,6 +29,9 @@ pub(super) struct Asked {
     /// List where vehicles that obey the exclusions in the layout, or FILE, can still touch (status 1 if any)
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     audit: Option<Option<PathBuf>>,
+    /// With --audit: only pairs with this node; repeat it for more nodes
+    #[arg(long, value_name = "NAME", hide_short_help = true)]
+    node: Vec<String>,
 }
 
 fn length(text: &str) -> Result<f64, String> {
@@ -56,10 +59,11 @@ impl Asked {
         import: &Options,
         printed: &Printed,
         output: Option<&PathBuf>,
+        edges: &[String],
     ) -> Option<Result<ExitCode, Stop>> {
         match (self.write, &self.audit) {
             (Some(target), _) => Some(self.write(target, file, import, printed, output?)),
-            (None, Some(beside)) => Some(audit(file, beside.as_deref(), import, printed, output)),
+            (None, Some(beside)) => Some(self.audit(file, beside.as_deref(), import, printed, output, edges)),
             (None, None) => None,
         }
     }
@@ -93,6 +97,62 @@ impl Asked {
         out.flush()?;
         Ok(ExitCode::SUCCESS)
     }
+
+    fn audit(
+        &self,
+        file: &Path,
+        beside: Option<&Path>,
+        import: &Options,
+        printed: &Printed,
+        output: Option<&PathBuf>,
+        edges: &[String],
+    ) -> Result<ExitCode, Stop> {
+        if beside.is_some_and(|beside| beside == file && beside == Path::new("-")) {
+            return Err(Stop::arguments("--audit=-: standard input is the layout already"));
+        }
+        let content = text(file)?;
+        let imported: Imported = layout_from(file, &content, import, STANDING, false)?;
+        sized(&imported).map_err(|error| Stop::wrong(file, error))?;
+        let selection = Selection::of(&imported, edges, &self.node).map_err(|error| Stop::wrong(file, error))?;
+        let (source, content) = match beside {
+            Some(beside) => (beside, text(beside)?),
+            None => (file, content),
+        };
+        let target = match beside {
+            Some(_) => Target::of_text(&content),
+            None => import.from.or_else(|| Format::of(file, &content)).and_then(Target::of_layout),
+        };
+        let target = target.ok_or_else(|| unread(source, &content, beside.is_some()))?;
+        let wrong = |error| Stop::wrong(source, error);
+        let rules = pcr_exclusions::read(target, &content, &imported).map_err(wrong)?;
+        let locks = pcr_exclusions::table(&imported).map_err(wrong)?;
+        let mut audit = Audit::of_some(&imported, &locks, &rules, target, &selection).map_err(wrong)?;
+        acknowledge_parts(&mut audit.warnings, &mut audit.of_layout);
+        if let Some(directory) = output {
+            let written = picture::write_audit(&imported, &locks, &rules, &audit, directory);
+            warn_of_boxes(directory, &written.map_err(|error| Stop::not_written(directory, &error))?);
+        }
+        let mut out = printed.out(false);
+        match printed.form() {
+            Form::Table => report::audit_table(&audit, &mut out)?,
+            Form::Json => json(&audit, &mut out)?,
+            Form::Csv => report::audit_csv(&audit, &mut out)?,
+        }
+        out.flush()?;
+        Ok(if audit.suffices() { ExitCode::SUCCESS } else { ExitCode::from(CONFLICTS) })
+    }
+}
+
+/// Why a file, beside a layout or not, cannot be audited.
+fn unread(source: &Path, content: &str, is_beside: bool) -> Stop {
+    match is_beside {
+        true if Format::of(source, content).and_then(Target::of_layout).is_some() => Stop::wrong(
+            source,
+            "neither a zone set of VDA 5050 nor a lock file; a layout that holds exclusions itself is audited without another file: --audit",
+        ),
+        true => Stop::wrong(source, "neither a zone set of VDA 5050 nor a lock file"),
+        false => Stop::wrong(source, "files of this format hold no exclusions; name the file that does: --audit=FILE"),
+    }
 }
 
 /// The text of a layout, and its format; everything that is wrong with it, or with the options, is said.
@@ -103,51 +163,4 @@ fn read(file: &Path, import: &Options) -> Result<(Format, String), Stop> {
     };
     layout_from(file, &content, import, STANDING, false)?;
     Ok((format, content))
-}
-
-fn audit(
-    file: &Path,
-    beside: Option<&Path>,
-    import: &Options,
-    printed: &Printed,
-    output: Option<&PathBuf>,
-) -> Result<ExitCode, Stop> {
-    if beside.is_some_and(|beside| beside == file && beside == Path::new("-")) {
-        return Err(Stop::arguments("--audit=-: standard input is the layout already"));
-    }
-    let content = text(file)?;
-    let imported: Imported = layout_from(file, &content, import, STANDING, false)?;
-    let (source, content) = match beside {
-        Some(beside) => (beside, text(beside)?),
-        None => (file, content),
-    };
-    let target = match beside {
-        Some(_) => Target::of_text(&content),
-        None => import.from.or_else(|| Format::of(file, &content)).and_then(Target::of_layout),
-    };
-    let target = target.ok_or_else(|| match beside {
-        Some(_) if Format::of(source, &content).and_then(Target::of_layout).is_some() => Stop::wrong(
-            source,
-            "neither a zone set of VDA 5050 nor a lock file; a layout that holds exclusions itself is audited without another file: --audit",
-        ),
-        Some(_) => Stop::wrong(source, "neither a zone set of VDA 5050 nor a lock file"),
-        None => Stop::wrong(source, "files of this format hold no exclusions; name the file that does: --audit=FILE"),
-    })?;
-    let wrong = |error| Stop::wrong(source, error);
-    let rules = pcr_exclusions::read(target, &content, &imported).map_err(wrong)?;
-    let locks = pcr_exclusions::table(&imported).map_err(wrong)?;
-    let mut audit = Audit::of(&imported, &locks, &rules, target).map_err(wrong)?;
-    acknowledge_parts(&mut audit.warnings, &mut audit.of_layout);
-    if let Some(directory) = output {
-        let written = picture::write_audit(&imported, &locks, &rules, &audit, directory);
-        warn_of_boxes(directory, &written.map_err(|error| Stop::not_written(directory, &error))?);
-    }
-    let mut out = printed.out(false);
-    match printed.form() {
-        Form::Table => report::audit_table(&audit, &mut out)?,
-        Form::Json => json(&audit, &mut out)?,
-        Form::Csv => report::audit_csv(&audit, &mut out)?,
-    }
-    out.flush()?;
-    Ok(if audit.suffices() { ExitCode::SUCCESS } else { ExitCode::from(CONFLICTS) })
 }

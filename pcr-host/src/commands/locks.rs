@@ -8,6 +8,7 @@ use super::{Form, NO_FOLDER, NO_STREAM, Printed, Stop, acknowledge, is_standard,
 use crate::progress::Progress;
 use clap::Args;
 use pcr_drawing as picture;
+use pcr_exclusions::sized;
 use pcr_formats::import::{ImportError, Imported, Options};
 use pcr_formats::output;
 use pcr_planning::locks::{Delays, Driving, Index, IndexError, Locks, Sweep, Told, origin, write_index};
@@ -51,9 +52,9 @@ pub(super) struct Arguments {
     /// Print JSON Lines, one lock per line, for tables of any size
     #[arg(long, hide_short_help = true)]
     lines: bool,
-    /// Only the locks of this edge or node
+    /// Only the locks of this edge or node; with --audit only pairs with this edge, or with one of several
     #[arg(long, value_name = "NAME")]
-    edge: Option<String>,
+    edge: Vec<String>,
     /// Write the locks to FILE; with --edge, read them from it
     #[arg(long, value_name = "FILE", hide_short_help = true)]
     index: Option<PathBuf>,
@@ -84,11 +85,17 @@ impl Arguments {
             return Err(Stop::wrong(index, why));
         }
         let file = &layout_source(self.layout.clone())?;
-        if let Some(done) = self.asked.run(file, &self.import, &self.printed, self.output.as_ref()) {
+        if let Some(done) = self.asked.run(file, &self.import, &self.printed, self.output.as_ref(), &self.edge) {
             return done;
         }
-        if let Some(edge) = &self.edge {
-            return self.of_edge(file, edge);
+        match &self.edge[..] {
+            [] => {}
+            [edge] => return self.of_edge(file, edge),
+            _ => {
+                return Err(Stop::arguments(
+                    "--edge: locks are listed of one edge; with --audit it may be given several times",
+                ));
+            }
         }
         if self.delays {
             return self.unsafe_delays(file);
@@ -161,6 +168,7 @@ impl Arguments {
         let driving = Driving { speed, acceleration: self.import.acceleration };
         let imported = layout(file, &self.import, DRIVING, driving.acceleration.is_some())?;
         let wrong = |error: ImportError| Stop::wrong(file, error);
+        sized(&imported).map_err(wrong)?;
         let progress = Progress::new(format!("{}: pairs of edges", file.display()));
         let told: Told<'_> = &|done, total| progress.set(done, total);
         let delays = Delays::new(&imported, driving, self.nodes).map_err(wrong)?;

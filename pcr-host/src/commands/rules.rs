@@ -21,7 +21,7 @@ pub(crate) enum Rule {
 pub(crate) type Ruled = (&'static str, &'static [&'static str], Rule, &'static [&'static str], &'static str);
 
 /// All of them.
-pub(crate) const RULES: [Ruled; 28] = [
+pub(crate) const RULES: [Ruled; 29] = [
     ("", &["json"], Excludes, &["format"], "--json is --format json; give one of them"),
     ("demo", &["scenario"], Excludes, &["output"], "--scenario prints the scenario and draws no pictures"),
     (
@@ -78,8 +78,15 @@ pub(crate) const RULES: [Ruled; 28] = [
         "locks",
         &["audit"],
         Excludes,
-        &["write", "lines", "edge", "index", "nodes", "delays"],
+        &["write", "lines", "index", "nodes", "delays"],
         "--audit looks at the exclusions in a file and does nothing else; give it in a run of its own",
+    ),
+    (
+        "locks",
+        &["node"],
+        Needs,
+        &["audit"],
+        "an audit is of some nodes; the locks of one, as of an edge, are listed with --edge",
     ),
     (
         "locks",

@@ -92,6 +92,7 @@ impl Arguments {
         }
         let file = &layout_source(self.layout)?;
         let mut imported = layout(file, &self.import, "traffic", true)?;
+        pcr_exclusions::sized(&imported).map_err(|error| Stop::wrong(file, error))?;
         let agents = Self::room(self.agents, file, &mut imported);
         let asked = self.agents.map_or(agents, usize::from);
         if let Some(hours) = self.hours {

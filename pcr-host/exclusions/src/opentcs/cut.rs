@@ -55,6 +55,9 @@ pub(crate) fn split(
     let said =
         left_whole.into_iter().map(|(reason, names)| format!("paths left whole, {reason}: {}", names.join(", ")));
     notes.said.extend(said.map(|text: String| WarningCode::LeftWhole.text(text)));
+    notes.said.extend(cutter.strange.iter().map(|name| {
+        format!("point, {name}: models of version {} do not have it; openTCS loads no such file", cutter.version)
+    }));
     if !cutter.of_one_cost.is_empty() {
         let names = cutter.of_one_cost.join(", ");
         notes.said.push(format!("routingCost: smaller than the number of parts, so each part has it: {names}"));
@@ -102,6 +105,8 @@ struct Cutter<'a, 'i> {
     of_one_direction: BTreeSet<&'a str>,
     /// Points one after the other on static routes.
     hops: BTreeSet<[&'a str; 2]>,
+    /// Attributes for places that the version does not have.
+    strange: BTreeSet<&'static str>,
     /// Paths whose routing cost could not be shared by their parts.
     of_one_cost: Vec<&'a str>,
     /// Names in the file, and new names.
@@ -131,12 +136,13 @@ impl<'a, 'i> Cutter<'a, 'i> {
             end: ending(text),
             root,
             version,
-            ids: Ids::of(root, version)?,
+            ids: Ids::of(root, version, |_| false)?,
             visual: Visual::of(root),
             points: elements(root, "point").map(|point| (name(point), point)).collect(),
             edges: imported.layout.edges.iter().map(|edge| (edge.id.to_string(), edge)).collect(),
             of_one_direction: others.flat_map(|block| elements(block, "member")).map(name).collect(),
             hops,
+            strange: BTreeSet::new(),
             of_one_cost: Vec::new(),
             taken: root.children().map(|child| name(child).to_owned()).collect(),
             added: String::new(),
@@ -207,7 +213,9 @@ impl<'a, 'i> Cutter<'a, 'i> {
             self.of_one_cost.push(called);
         }
         // The parts have together what the path has.
-        let share = |whole: Option<f64>, k: u32| whole.map(|all| between([0.0, all], k + 1, parts) - between([0.0, all], k, parts));
+        let share = |whole: Option<f64>, k: u32| {
+            whole.map(|all| between([0.0, all], k + 1, parts) - between([0.0, all], k, parts))
+        };
         let mut copies = Vec::new();
         for ((k, ends), name) in (0..parts).zip(points.windows(2)).zip(&names) {
             let changed = [
@@ -244,13 +252,22 @@ impl<'a, 'i> Cutter<'a, 'i> {
     ) -> Result<(), ImportError> {
         let (version, end, margin) = (self.version, self.end, self.margin(ends[0]));
         let what = ends.map(|end| format!("point {}", name(end)));
-        let [x, y, z] = version.place();
+        // A file may say it as another version does; openTCS does not load it, before or after.
+        let says = |names: &[&str; 3]| ends.iter().all(|end| names[..2].iter().all(|name| end.has_attribute(*name)));
+        let [usual, _] = version.places();
+        let [x, y, z] = version.places().into_iter().find(says).unwrap_or(usual);
+        if x != usual[0] {
+            self.strange.insert(x);
+        }
         let mut own = [[0.0; 2]; 2];
         for (k, end) in ends.iter().enumerate() {
             own[k] = [needed(*end, &what[k], x)?, needed(*end, &what[k], y)?];
         }
-        let mut places: Vec<(&str, i64)> =
-            [x, y].into_iter().enumerate().map(|(at, name)| (name, between([own[0][at], own[1][at]], k, parts))).collect();
+        let mut places: Vec<(&str, i64)> = [x, y]
+            .into_iter()
+            .enumerate()
+            .map(|(at, name)| (name, between([own[0][at], own[1][at]], k, parts)))
+            .collect();
         let heights = [0, 1].map(|k| coordinate(ends[k], &what[k], z));
         match heights {
             [Err(error), _] | [_, Err(error)] => return Err(error),
@@ -277,7 +294,8 @@ impl<'a, 'i> Cutter<'a, 'i> {
                 let _ = write!(self.added, "{end}{margin}    {}", &self.text[self.span(room.range())]);
             }
             None if version.has_boxes() => {
-                let problem = "maxVehicleBoundingBox: missing, and new points have to have that of the end of their path";
+                let problem =
+                    "maxVehicleBoundingBox: missing, and new points have to have that of the end of their path";
                 return Err(ImportError::new(format!("{}, {problem}", what[1])));
             }
             None => {}

@@ -8,15 +8,19 @@ use roxmltree::Node;
 pub(super) struct Ids(Option<u64>);
 
 impl Ids {
-    /// Those beyond the largest number of a model.
+    /// Those beyond the largest number of a model, leaving out elements that go.
     ///
     /// # Errors
     /// An `id` that is no whole number.
-    pub(super) fn of(model: Node<'_, '_>, version: Version) -> Result<Self, ImportError> {
+    pub(super) fn of<'a, 'i>(
+        model: Node<'a, 'i>,
+        version: Version,
+        goes: impl Fn(Node<'a, 'i>) -> bool,
+    ) -> Result<Self, ImportError> {
         if version > Version::V002 {
             return Ok(Self(None));
         }
-        let ids = model.descendants().filter_map(|element| element.attribute("id"));
+        let ids = model.descendants().filter(|element| !goes(*element)).filter_map(|element| element.attribute("id"));
         let number = |id: &str| {
             let problem = || ImportError::new(format!("id: {id:?} where a whole number is expected"));
             id.trim().parse::<u32>().map(u64::from).map_err(|_| problem())

@@ -37,9 +37,10 @@ impl Version {
         found.ok_or_else(|| problem(&format!("{text} is not known")))
     }
 
-    /// Names of the attributes of a point for its place: x, y, z.
-    pub(crate) fn place(self) -> [&'static str; 3] {
-        if self < V600 { ["xPosition", "yPosition", "zPosition"] } else { ["positionX", "positionY", "positionZ"] }
+    /// Names of the attributes of a point for its place, x, y, z: those of the version, and those of others.
+    pub(crate) fn places(self) -> [[&'static str; 3]; 2] {
+        let (old, new) = (["xPosition", "yPosition", "zPosition"], ["positionX", "positionY", "positionZ"]);
+        if self < V600 { [old, new] } else { [new, old] }
     }
 
     /// Names of the attributes of a `pointLayout` for the place at which a point is drawn, where the version has such.

@@ -48,9 +48,9 @@ pub(crate) fn prepare(
             let [Some(from), Some(to)] = ends else {
                 return Err(ImportError::new(format!("lanes {}: indices of two vertices are expected", edge.id)));
             };
-            let chain = cutter.chain([from, to], parts).ok_or_else(|| {
-                ImportError::new(format!("lanes {}: places of its vertices are expected", edge.id))
-            })?;
+            let chain = cutter
+                .chain([from, to], parts)
+                .ok_or_else(|| ImportError::new(format!("lanes {}: places of its vertices are expected", edge.id)))?;
             let ways: &[bool] = if edge.is_two_way() { &[false, true] } else { &[false] };
             let mut copies = Vec::new();
             for &back in ways {

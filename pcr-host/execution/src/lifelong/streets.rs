@@ -1,6 +1,6 @@
 //! A generated site of any size: crossing one-way streets, with bays on both sides.
 
-use pcr_formats::import::{Edge, Id, Imported, Layout, Node, Vehicle};
+use pcr_formats::import::{Edge, Id, Imported, Layout, Node, SizeSource, Vehicle};
 use pcr_formats::scenario::{PathSegment, Placed};
 
 /// Distance between two crossings \[m\].
@@ -14,6 +14,7 @@ const VEHICLE: Vehicle = Vehicle {
     name: None,
     radius: 0.4,
     footprint: None,
+    size: SizeSource::Option,
     margin: 0.0,
     speed: 1.0,
     acceleration: 0.5,

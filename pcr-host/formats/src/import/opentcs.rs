@@ -1,8 +1,9 @@
 //! Plant models of openTCS: points in millimetres, paths straight or as Bézier curves.
 //!
-//! Control points are in units of the visual layout, y down. The `length` of a path was typed by its author; if it
+//! Control points are in units of the visual layout, y down; in models up to version 0.0.3 they are in the visual layout itself. The `length` of a path was typed by its author; if it
 //! differs from the geometry, the geometry is used and there is a warning.
 
+mod drawn;
 mod vehicles;
 
 use super::biarc::{Fit, fit};
@@ -15,7 +16,7 @@ use super::{ImportError, Options, WarningCode, Warnings, facing};
 use crate::footprint::Footprint;
 use crate::plane::distance;
 use crate::scenario::Placed;
-use std::collections::HashMap;
+use drawn::{Bend, Drawn};
 use std::f64::consts::FRAC_PI_2;
 
 pub(super) use vehicles::vehicles;
@@ -33,6 +34,9 @@ const OF_PATH: [&str; 4] = ["peripheralOperation", "vehicleEnvelope", "property"
 /// The same of a vehicle.
 const OF_VEHICLE: [&str; 3] = ["boundingBox", "property", "vehicleLayout"];
 
+/// Versions whose names and elements are known.
+const VERSIONS: [&str; 7] = ["0.0.1", "0.0.2", "0.0.3", "0.0.4", "0.0.5", "6.0.0", "7.0.0"];
+
 /// How far the place of a point in the visual layout may be from its own \[m\].
 const SHIFT: f64 = 0.05;
 
@@ -42,7 +46,7 @@ const MILLI: f64 = 1e-3;
 /// The attribute of points for the direction of vehicles there \[°\].
 const ANGLE: &str = "vehicleOrientationAngle";
 
-/// Unit of the visual layout of a model that names none \[mm\].
+/// Unit of the visual layout of a model that has none, as in openTCS \[mm\].
 const UNIT: f64 = 50.0;
 
 /// Reads a model.
@@ -57,22 +61,28 @@ pub(super) fn read(
     if !root.has_tag_name("model") {
         return Err(ImportError::new(format!("{}: not a plant model of openTCS", root.tag_name().name())));
     }
+    if let Some(version) = root.attribute("version").filter(|version| !VERSIONS.contains(&version.trim())) {
+        warnings.add("model", format!("version {version} is not known; what is called as up to 7.0.0 is read"));
+    }
+    let visual = only(root, "visualLayout")?;
+    let drawn = Drawn::of(visual)?;
     lose_astray(root, &["point", "path", "vehicle"], warnings);
     warn_of_unknown(root, &KNOWN, warnings);
     let mut nodes = Names::new();
     // How far each point is from its place in the visual layout.
-    let mut shifts: Vec<f64> = Vec::new();
+    let mut shifts: Vec<Option<f64>> = Vec::new();
     // Which way vehicles face at which nodes, where that is said [rad].
     let mut angles: Vec<(usize, f64)> = Vec::new();
     for (k, point) in children(root, "point").enumerate() {
         warn_of_unknown(point, &OF_POINT, warnings);
         let id = point.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
-        match place(point, &format!("point {id}")) {
+        match place(point, &id, &drawn) {
             Err(error) => warnings.lose(error),
-            Ok([at, drawn]) => {
+            Ok((at, drawn)) => {
                 let place = nodes.add(Node { id: Id::Text(id.clone()), name: None, level: 0, at }, warnings);
-                shifts.resize(shifts.len().max(place + 1), 0.0);
-                shifts[place] = shifts[place].max(distance(at, drawn));
+                shifts.resize(shifts.len().max(place + 1), None);
+                let shift = drawn.map(|drawn| distance(at, drawn));
+                shifts[place] = shifts[place].into_iter().chain(shift).reduce(f64::max);
                 // To a disc it does not matter.
                 match outline.map_or(Ok(None), |_| angle(point, &format!("point {id}"))) {
                     Ok(angle) => angles.extend(angle.map(|angle| (place, angle))),
@@ -84,16 +94,15 @@ pub(super) fn read(
     if nodes.list().is_empty() {
         return Err(ImportError::new("model: there is no point in it"));
     }
-    let visual = only(root, "visualLayout")?;
     let unit = |attribute: &str| match visual.map(|visual| optional(visual, "visualLayout", attribute)).transpose()? {
-        None | Some(None) => Ok(UNIT * MILLI),
-        Some(Some(unit)) if unit > 0.0 => Ok(unit * MILLI),
+        None => Ok(Some(UNIT * MILLI)),
+        Some(None) => Ok(None),
+        Some(Some(unit)) if unit > 0.0 => Ok(Some(unit * MILLI)),
         Some(Some(unit)) => {
             Err(ImportError::new(format!("visualLayout, {attribute}: {unit} where a number above 0 is expected")))
         }
     };
-    let units = [unit("scaleX")?, -unit("scaleY")?];
-    let bent = visual.map(bent).unwrap_or_default();
+    let units = [unit("scaleX")?, unit("scaleY")?.map(|unit| -unit)];
     let mut edges = Names::new();
     for (k, path) in children(root, "path").enumerate() {
         warn_of_unknown(path, &OF_PATH, warnings);
@@ -101,7 +110,7 @@ pub(super) fn read(
         match edge(
             path,
             id,
-            &Frame { nodes: &nodes, shifts: &shifts, units, bent: &bent },
+            &Frame { nodes: &nodes, shifts: &shifts, units, drawn: &drawn },
             options.tolerance(),
             warnings,
         ) {
@@ -150,30 +159,41 @@ pub(super) fn read(
 /// Where points and control points are.
 struct Frame<'a> {
     nodes: &'a Names<Node>,
-    /// How far each node is from its place in the visual layout, where control points are \[m\].
-    shifts: &'a [f64],
-    /// Metres of a unit of the visual layout.
-    units: [f64; 2],
-    /// Paths that the visual layout bends in the way of models up to version 0.0.3, by how.
-    bent: &'a HashMap<&'a str, &'a str>,
+    /// How far each node is from its place in the visual layout, where control points are, if that is said \[m\].
+    shifts: &'a [Option<f64>],
+    /// Metres of a unit of the visual layout, if it says that.
+    units: [Option<f64>; 2],
+    /// How the visual layout draws paths, up to version 0.0.3.
+    drawn: &'a Drawn<'a>,
 }
 
 /// Where a point is, and where it is drawn, if that is said \[m\].
-fn place(point: roxmltree::Node<'_, '_>, name: &str) -> Result<[[f64; 2]; 2], ImportError> {
+fn place(
+    point: roxmltree::Node<'_, '_>,
+    id: &str,
+    elsewhere: &Drawn<'_>,
+) -> Result<([f64; 2], Option<[f64; 2]>), ImportError> {
+    let name = &format!("point {id}");
     // Models before version 6 have other names.
     let at = |node: roxmltree::Node<'_, '_>, [attribute, old]: [&str; 2]| {
-        let attribute = if node.has_attribute(attribute) || !node.has_attribute(old) { attribute } else { old };
+        let both = node.has_attribute(attribute) && node.has_attribute(old);
+        if both {
+            return Err(ImportError::new(format!("{name}: {attribute} and {old}, of which a version has one")));
+        }
+        let attribute = if node.has_attribute(old) { old } else { attribute };
         number(node, name, attribute).map(|x| x * MILLI)
     };
     let [x, y] = [["positionX", "xPosition"], ["positionY", "yPosition"]];
     let own = [at(point, x)?, at(point, y)?];
     let layout = only(point, "pointLayout")?;
-    let drawn = |names: [&str; 2], own: f64| {
-        layout
-            .filter(|layout| names.iter().any(|name| layout.has_attribute(*name)))
-            .map_or(Ok(own), |layout| at(layout, names))
+    let says = |layout: &roxmltree::Node<'_, '_>| [x, y].into_iter().flatten().any(|name| layout.has_attribute(name));
+    let drawn = match layout.filter(says) {
+        Some(layout) => Some([at(layout, x)?, at(layout, y)?]),
+        // Version 7 draws points where they are.
+        None if layout.is_some() => Some(own),
+        None => elsewhere.point(id)?,
     };
-    Ok([own, [drawn(x, own[0])?, drawn(y, own[1])?]])
+    Ok((own, drawn))
 }
 
 /// A length \[m\] or a speed \[m/s\], which is not below 0.
@@ -194,21 +214,6 @@ fn angle(point: roxmltree::Node<'_, '_>, name: &str) -> Result<Option<f64>, Impo
     }
 }
 
-/// Paths that are not straight in the visual layout of models up to version 0.0.3.
-fn bent<'a>(visual: roxmltree::Node<'a, '_>) -> HashMap<&'a str, &'a str> {
-    let mut bent = HashMap::new();
-    for element in children(visual, "modelLayoutElement") {
-        let value = |name: &str| {
-            let mut properties = children(element, "property");
-            properties.find(|property| property.attribute("name") == Some(name))?.attribute("value").map(str::trim)
-        };
-        let kind = value("CONN_TYPE").filter(|kind| *kind != "DIRECT");
-        let kind = kind.or(value("CONTROL_POINTS").filter(|points| !points.is_empty()).and(Some("DIRECT")));
-        bent.extend(element.attribute("visualizedObjectName").zip(kind));
-    }
-    bent
-}
-
 /// The edge that a path is.
 fn edge(
     path: roxmltree::Node<'_, '_>,
@@ -225,12 +230,14 @@ fn edge(
         nodes.place(&Id::Text(point.to_owned())).map_err(|unclear| problem(&unclear))
     };
     let ends = [end("sourcePoint")?, end("destinationPoint")?];
-    if let Some(kind) = frame.bent.get(id.as_str()) {
-        return Err(ImportError::new(format!(
-            "{name}: {kind} in a modelLayoutElement of the visual layout is not read"
-        )));
+    let bend = bend(path, &id, &name, frame)?;
+    let is_curved = !bend.points.is_empty();
+    if is_curved && ends.iter().any(|node| matches!(frame.shifts.get(*node), None | Some(None))) {
+        let problem =
+            "where its points are drawn is not said; its control points are taken to be in the frame of the model";
+        warnings.add(&name, problem);
     }
-    let fit = curve(path, &name, ends, frame, tolerance)?;
+    let fit = curve(bend, &name, ends, frame, tolerance)?;
     if fit.bends {
         warnings.use_option("tolerance");
     }
@@ -281,24 +288,38 @@ fn edge(
     Ok(edge)
 }
 
-/// The lines and arcs of a path.
-fn curve(
-    path: roxmltree::Node<'_, '_>,
-    name: &str,
-    ends: [usize; 2],
-    frame: &Frame<'_>,
-    tolerance: f64,
-) -> Result<Fit, ImportError> {
-    let layout = only(path, "pathLayout")?;
-    let mut inner = layout.into_iter().flat_map(|layout| layout.children()).filter(roxmltree::Node::is_element);
+/// How a path is drawn: by its own layout, or by the visual layout.
+fn bend(path: roxmltree::Node<'_, '_>, id: &str, name: &str, frame: &Frame<'_>) -> Result<Bend, ImportError> {
+    let elsewhere = frame.drawn.path(id)?;
+    let Some(layout) = only(path, "pathLayout")? else {
+        return Ok(elsewhere.unwrap_or(Bend { kind: "DIRECT".to_owned(), points: Vec::new() }));
+    };
+    if elsewhere.is_some() {
+        let problem = "pathLayout, and a modelLayoutElement of the visual layout: a version has one of them";
+        return Err(ImportError::new(format!("{name}: {problem}")));
+    }
+    let mut inner = layout.children().filter(roxmltree::Node::is_element);
     if let Some(other) = inner.find(|inner| !inner.has_tag_name("controlPoint")) {
         return Err(ImportError::new(format!("{name}, pathLayout: {} is not read", other.tag_name().name())));
     }
+    let point = |point: roxmltree::Node<'_, '_>| Ok([number(point, name, "x")?, number(point, name, "y")?]);
+    let points = children(layout, "controlPoint").map(point).collect::<Result<_, ImportError>>()?;
+    // A path with control points that says nothing is none that is read.
+    Ok(Bend { kind: layout.attribute("connectionType").unwrap_or("DIRECT").to_owned(), points })
+}
+
+/// The lines and arcs of a path.
+fn curve(bend: Bend, name: &str, ends: [usize; 2], frame: &Frame<'_>, tolerance: f64) -> Result<Fit, ImportError> {
     let [from, to] = ends.map(|node| frame.nodes.list()[node].at);
     let mut points = vec![from];
-    for point in layout.into_iter().flat_map(|layout| children(layout, "controlPoint")) {
-        let [x, y] = frame.units;
-        points.push([number(point, name, "x")? * x, number(point, name, "y")? * y]);
+    if !bend.points.is_empty() {
+        let missing = || {
+            ImportError::new(format!(
+                "{name}: visualLayout, scaleX, scaleY: missing; its control points are in these units"
+            ))
+        };
+        let [Some(unit_x), Some(unit_y)] = frame.units else { return Err(missing()) };
+        points.extend(bend.points.iter().map(|[x, y]| [x * unit_x, y * unit_y]));
     }
     let shift = if points.len() > 1 { shift(name, ends, frame)? } else { 0.0 };
     // The control points are off together: only the legs from the first point and to the last one have other lengths.
@@ -306,13 +327,13 @@ fn curve(
     let first = points.first().zip(points.get(1)).map_or(f64::INFINITY, |(from, to)| distance(*from, *to));
     let last = points.last().map_or(f64::INFINITY, |from| distance(*from, to));
     let askew = if shift > 0.0 { (shift / first.min(last)).min(1.0) * FRAC_PI_2 } else { 0.0 };
-    let fit = shape(layout, name, points, to, tolerance)?;
+    let fit = shape(&bend.kind, name, points, to, tolerance)?;
     Ok(Fit { deviation: fit.deviation + shift + legs, longer: fit.longer + legs, turned: fit.turned + askew, ..fit })
 }
 
 /// How far the control points of a path may be from where they are meant to be \[m\].
 fn shift(name: &str, ends: [usize; 2], frame: &Frame<'_>) -> Result<f64, ImportError> {
-    let shift = ends.iter().filter_map(|node| frame.shifts.get(*node)).fold(0.0, |most: f64, shift| most.max(*shift));
+    let shift = ends.iter().filter_map(|node| *frame.shifts.get(*node)?).fold(0.0, f64::max);
     if shift > SHIFT {
         let problem = "its control points are in the frame of the visual layout, where its end points are";
         return Err(ImportError::new(format!(
@@ -323,16 +344,10 @@ fn shift(name: &str, ends: [usize; 2], frame: &Frame<'_>) -> Result<f64, ImportE
 }
 
 /// The lines and arcs through points, or for their curve.
-fn shape(
-    layout: Option<roxmltree::Node<'_, '_>>,
-    name: &str,
-    mut points: Vec<[f64; 2]>,
-    to: [f64; 2],
-    tolerance: f64,
-) -> Result<Fit, ImportError> {
+fn shape(kind: &str, name: &str, mut points: Vec<[f64; 2]>, to: [f64; 2], tolerance: f64) -> Result<Fit, ImportError> {
     points.push(to);
     let named = |error: ImportError| ImportError::new(format!("{name}: {error}"));
-    match layout.and_then(|layout| layout.attribute("connectionType")).unwrap_or("DIRECT") {
+    match kind {
         // Cubic curves, one after the other.
         "BEZIER" | "BEZIER_3" if points.len() > 3 && points.len() % 3 == 1 => {
             let curves: Vec<Bezier> = (0..points.len() / 3).map(|k| Bezier::new(&points[3 * k..3 * k + 4])).collect();

@@ -87,6 +87,7 @@ mod tests {
         name: None,
         radius: 0.4,
         footprint: None,
+        size: super::super::SizeSource::Option,
         margin: 0.0,
         speed: 2.0,
         acceleration: 0.5,

@@ -4,6 +4,20 @@ use super::{Format, ImportError, WarningCode, Warnings};
 use crate::footprint::Footprint;
 use std::path::PathBuf;
 
+/// Where the size of a vehicle comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SizeSource {
+    /// The radius is an option.
+    Option,
+    /// It is in the configuration of a fleet or in a factsheet.
+    Fleet,
+    /// It is in the file of the layout.
+    File,
+    /// Nobody said it.
+    #[default]
+    Assumed,
+}
+
 /// What a vehicle is and can.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vehicle {
@@ -13,6 +27,8 @@ pub struct Vehicle {
     pub radius: f64,
     /// Its outline, if it is no disc.
     pub footprint: Option<Footprint>,
+    /// Where radius or outline come from.
+    pub size: SizeSource,
     /// Margin to be kept around it \[m\].
     pub margin: f64,
     /// \[m/s\]
@@ -95,6 +111,8 @@ pub(super) struct Given {
     pub(super) name: Option<String>,
     pub(super) radius: Option<f64>,
     pub(super) footprint: Option<Footprint>,
+    /// Whether radius and outline are those of a fleet.
+    pub(super) is_of_fleet: bool,
     pub(super) margin: Option<f64>,
     pub(super) speed: Option<f64>,
     pub(super) acceleration: Option<f64>,
@@ -225,11 +243,18 @@ impl Options {
                 format!("{radius} m, a disc; the outline of the vehicle, which is not used then, reaches {reach:.3} m");
             warnings.add(WarningCode::RadiusBelowOutline, "radius", problem);
         }
+        let size = match (self.radius, reach.or(given.radius)) {
+            (Some(_), _) => SizeSource::Option,
+            (None, None) => SizeSource::Assumed,
+            (None, Some(_)) if given.is_of_fleet => SizeSource::Fleet,
+            (None, Some(_)) => SizeSource::File,
+        };
         let radius = choose(self.radius, reach.or(given.radius), 0.5, "radius [m]");
         let vehicle = Vehicle {
             name: given.name.clone(),
             radius,
             footprint,
+            size,
             margin: self.margin.or(given.margin).unwrap_or(0.0),
             speed: choose(self.speed, given.speed, 1.0, "speed [m/s]"),
             acceleration: choose(self.acceleration, given.acceleration, 0.5, "acceleration [m/s²]"),

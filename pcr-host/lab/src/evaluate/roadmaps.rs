@@ -3,7 +3,7 @@
 
 use super::scale::exponent;
 use super::{Extent, Fleets, Problem, Section};
-use pcr_formats::import::{Edge, Id, ImportError, Imported, Layout, Node, Vehicle};
+use pcr_formats::import::{Edge, Id, ImportError, Imported, Layout, Node, SizeSource, Vehicle};
 use pcr_formats::random::Random;
 use pcr_formats::scenario::{PathSegment, Placed};
 use pcr_planning::figures::digits;
@@ -138,6 +138,7 @@ fn roadmap(count: usize, seed: u64, is_curved: bool) -> Imported {
         name: None,
         radius: RADIUS,
         footprint: None,
+        size: SizeSource::Option,
         margin: 0.0,
         speed: 1.0,
         acceleration: 1.0,

@@ -74,6 +74,8 @@ struct Vehicle {
     length: Option<f64>,
     /// Its box, or what is wrong with it; `None` where it has none.
     half: Option<Result<Half, String>>,
+    /// Whether its box says where its reference point is.
+    is_placed: bool,
 }
 
 impl Vehicle {
@@ -82,7 +84,9 @@ impl Vehicle {
         let speed = metres(vehicle, &name, "maxVelocity")?.filter(|speed| *speed > 0.0);
         let half = only(vehicle, "boundingBox")?.map(|outline| half(outline, &name)).transpose()?;
         let length = optional(vehicle, &name, "length")?.map(|length| length * MILLI);
-        Ok(Self { speed, length, half, name })
+        let offsets = ["referenceOffsetX", "referenceOffsetY"];
+        let is_placed = only(vehicle, "boundingBox")?.is_none_or(|own| offsets.iter().all(|at| own.has_attribute(*at)));
+        Ok(Self { speed, length, half, is_placed, name })
     }
 }
 
@@ -140,6 +144,12 @@ fn largest(all: &[Vehicle], options: &Options, warnings: &mut Warnings) -> Optio
             _ if options.radius.is_some() => {}
             Some(Err(problem)) => warnings.lose(problem),
             None => warnings.lose(format_args!("{}, boundingBox: missing, and others have one", vehicle.name)),
+        }
+    }
+    if options.radius.is_none() {
+        for vehicle in all.iter().filter(|vehicle| !vehicle.is_placed) {
+            let problem = "its boundingBox does not say where its reference point is; it is taken to be in the middle";
+            warnings.add(&vehicle.name, problem);
         }
     }
     largest
