@@ -29,7 +29,7 @@ pub(super) struct Asked {
     /// List where vehicles that obey the exclusions in the layout, or FILE, can still touch (status 1 if any)
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     audit: Option<Option<PathBuf>>,
-    /// With --audit: only pairs with this node; repeat it for more nodes
+    /// With --audit: only this node; repeat it for more
     #[arg(long, value_name = "NAME", hide_short_help = true)]
     node: Vec<String>,
 }

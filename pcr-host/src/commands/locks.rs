@@ -46,19 +46,19 @@ pub(super) struct Arguments {
     /// Add the lengths that a vehicle at a node blocks
     #[arg(long)]
     nodes: bool,
-    /// Print instead the start delays with which vehicles on two edges touch; at --speed, with --acceleration from rest to rest
+    /// Print the start delays with which vehicles touch; at --speed, with --acceleration from rest to rest
     #[arg(long)]
     delays: bool,
-    /// Print JSON Lines, one lock per line, for tables of any size
+    /// Print JSON Lines, a lock a line, for tables of any size
     #[arg(long, hide_short_help = true)]
     lines: bool,
-    /// Only the locks of this edge or node; with --audit only pairs with this edge, or with one of several
+    /// Only this edge or node; with --audit repeat it for more
     #[arg(long, value_name = "NAME")]
     edge: Vec<String>,
     /// Write the locks to FILE; with --edge, read them from it
     #[arg(long, value_name = "FILE", hide_short_help = true)]
     index: Option<PathBuf>,
-    /// Directory for pictures and a page; with --write the file
+    /// Directory for pictures and a page; of --write the file
     #[arg(short, long, value_name = "PATH")]
     output: Option<PathBuf>,
     #[command(flatten)]
