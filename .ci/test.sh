@@ -105,7 +105,7 @@ benches() {
 
 # Files that are written for openTCS, against its schema; those of all formats, by readers that share nothing with the tool.
 schemas() {
-  step "plant models, by the schema of openTCS"
+  step "plant models, by the schemas of openTCS"
   command -v xmllint >/dev/null || .ci/install.sh libxml2-utils
   ignored plant_models
   step "written files, by readers of their own"

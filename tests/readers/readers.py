@@ -158,12 +158,25 @@ def opentcs(text):
     of = lambda node, tag: [child for child in node if child.tag.rsplit("}", 1)[-1] == tag]
     place = lambda node, x, y: (float(node.get(x)) / 1e3, float(node.get(y)) / 1e3)
     units = [(float(v.get("scaleX")), float(v.get("scaleY"))) for v in of(root, "visualLayout")] or [(50.0, 50.0)]
-    points = {p.get("name"): place(p, "positionX", "positionY") for p in of(root, "point")}
+    # Names changed with version 6.
+    new = int(root.get("version").split(".")[0]) >= 6
+    own = ("positionX", "positionY") if new else ("xPosition", "yPosition")
+    points = {p.get("name"): place(p, *own) for p in of(root, "point")}
+    # Up to version 0.0.3 the visual layout has the curves.
+    drawn = {
+        element.get("visualizedObjectName"): {p.get("name"): p.get("value") for p in of(element, "property")}
+        for visual in of(root, "visualLayout")
+        for element in of(visual, "modelLayoutElement")
+    }
     paths = {}
     for path in of(root, "path"):
         ends = (path.get("sourcePoint"), path.get("destinationPoint"))
         layout = (of(path, "pathLayout") or [ET.Element("none")])[0]
         control = [place(c, "x", "y") for c in of(layout, "controlPoint")]
+        if path.get("name") in drawn:
+            layout = ET.Element("none", connectionType=drawn[path.get("name")].get("CONN_TYPE", ""))
+            pairs = [pair for pair in drawn[path.get("name")].get("CONTROL_POINTS", "").split(";") if pair]
+            control = [tuple(float(x) / 1e3 for x in pair.split(",")) for pair in pairs]
         corners = [points[ends[0]], *((x * units[0][0], -y * units[0][1]) for x, y in control), points[ends[1]]]
         line = corners
         if layout.get("connectionType", "").startswith("BEZIER"):
@@ -330,10 +343,100 @@ def check(target, kind, layout, written, radius):
     return {"nav2": check_nav2, "rmf": check_rmf, "opentcs": check_opentcs}[target](written, radius)
 
 
+# ---- geometry: a written layout is the one before, with its edges cut ----
+
+
+def ways(kind, text):
+    """Nodes with their levels and places, and edges in the directions in which they may be travelled: name, ends, line."""
+    if kind == "nav2":
+        nodes, _, _ = nav2(text)
+        found = []
+        for feature in json.loads(plain(text))["features"]:
+            own = feature["properties"]
+            if feature["geometry"]["type"] != "Point":
+                ends = (own["startid"], own["endid"])
+                found.append((own["id"], *ends, [nodes[end] for end in ends]))
+        return {name: ("", at) for name, at in nodes.items()}, found
+    if kind == "rmf":
+        nodes, found = {}, []
+        for level, at, _, lanes in rmf(text):
+            nodes.update({(level, k): (level, place) for k, place in enumerate(at)})
+            found += [((level, k), (level, a), (level, b), [at[a], at[b]]) for a, b, _, k in lanes]
+        return nodes, found
+    points, paths, _, _ = opentcs(text)
+    back = {}
+    for path in ET.fromstring(plain(text).encode()):
+        back[path.get("name")] = float(path.get("maxReverseVelocity") or 0) > 0
+    found = [(name, a, b, line) for name, ((a, b), line) in paths.items()]
+    found += [(name, b, a, line[::-1]) for name, ((a, b), line) in paths.items() if back[name]]
+    return {name: ("", at) for name, at in points.items()}, found
+
+
+def along(line, p):
+    """How far along a straight line a point is, and how far beside it."""
+    (x, y), (u, v) = line[0], line[-1]
+    long = math.hypot(u - x, v - y)
+    dx, dy = (u - x) / long, (v - y) / long
+    return (p[0] - x) * dx + (p[1] - y) * dy, abs((p[1] - y) * dx - (p[0] - x) * dy)
+
+
+def moved(kind, before, after, most):
+    """What is no longer where it was: nodes, edges that are neither as they were nor chains of parts that are no longer than `most`, and what was added."""
+    nodes, edges = ways(kind, before)
+    new_nodes, parts = ways(kind, after)
+    off = 1.01e-3 if kind == "opentcs" else 1e-7
+    faults = [f"node {name} is at {new_nodes.get(name)}, was at {at}" for name, at in nodes.items() if new_nodes.get(name) != at]
+    left, passed = list(parts), set()
+    for name, a, b, line in edges:
+        same = [part for part in left if part[1:3] == (a, b) and part[3] == line]
+        same.sort(key=lambda part: part[0] != name)
+        if same:
+            left.remove(same[0])
+            continue
+        at, done, straight = a, 0.0, len(line) == 2
+        while straight and at != b:
+            following = [
+                part
+                for part in left
+                if part[1] == at and len(part[3]) == 2 and (part[2] == b or part[2] not in nodes)
+                and along(line, new_nodes[part[2]][1])[1] <= off
+                and done < along(line, new_nodes[part[2]][1])[0] <= math.dist(*line) + off
+                and along(line, new_nodes[part[2]][1])[0] - done <= most + 2 * off
+            ]
+            if not following:
+                break
+            following.sort(key=lambda part: part[0] != name)
+            left.remove(following[0])
+            at = following[0][2]
+            done = along(line, new_nodes[at][1])[0]
+            passed.add(at)
+        if at != b or not straight:
+            faults.append(f"edge {name} from {a} to {b} is gone behind {at}")
+    faults += [f"edge {part[:3]} was not there" for part in left]
+    faults += [f"node {name} was not there" for name in new_nodes if name not in nodes and name not in passed]
+    return faults
+
+
+def stamp(target, text):
+    """For which vehicle a file says that it was written."""
+    if target in ("nav2", "rmf"):
+        return of_yaml(text)["pcr_vehicle"]
+    if target == "opentcs":
+        root = ET.fromstring(plain(text).encode())
+        said = [child.get("value") for child in root if child.tag == "property" and child.get("name") == "pcr:vehicle"]
+        said += re.findall(r"<!-- pcr:vehicle (.*) -->", text)
+        return json.loads(said[0])
+    if target == "vda5050":
+        sets = json.loads(plain(text))
+        return json.loads((sets if isinstance(sets, list) else [sets])[0]["zoneSet"]["zoneSetDescriptor"])
+    return json.loads(text)["written"]
+
+
 def without_exclusions(kind, text):
     """All that a file says beside exclusions, for comparing what else has changed."""
     if kind == "nav2":
         root = json.loads(plain(text))
+        root.pop("pcr_vehicle", None)
         for feature in root["features"]:
             own = feature["properties"]
             if isinstance(own.get("metadata"), dict):
@@ -343,6 +446,7 @@ def without_exclusions(kind, text):
         return root
     if kind == "rmf":
         root = of_yaml(text)
+        root.pop("pcr_vehicle", None)
         for level in root["levels"].values():
             for element in (level.get("lanes") or []) + (level.get("vertices") or []):
                 for more in (part for part in element if isinstance(part, dict)):
@@ -353,8 +457,12 @@ def without_exclusions(kind, text):
         return root
     root = ET.fromstring(plain(text).encode())
     for element in list(root):
-        if re.fullmatch(r"pcr-block-\d{4,}", element.get("name", "")):
+        if re.fullmatch(r"pcr-block-\d{4,}", element.get("name", "")) or element.get("name") == "pcr:vehicle":
             root.remove(element)
+        if element.tag == "visualLayout":
+            for drawn in list(element):
+                if drawn.get("visualizedObjectName", "").startswith("pcr-block-"):
+                    element.remove(drawn)
     for element in root.iter():
         element.attrib.pop("envelopeKey", None)
         element.tail = None

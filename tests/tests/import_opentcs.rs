@@ -412,23 +412,68 @@ fn curves_are_where_the_layout_has_their_points() {
     assert!(layout(Format::OpenTcs, &straight, &options(&[]), &mut Warnings::default()).is_ok());
 }
 
-/// Curves of models up to version 0.0.3 are elsewhere, and were straight.
+/// Curves of models up to version 0.0.3 are in the visual layout, and were straight.
 #[test]
-fn curves_of_the_first_models_are_refused() {
-    let visual = |kind: &str, points: &str| {
-        let property = |name: &str, value: &str| format!("<property name=\"{name}\" value=\"{value}\"/>");
-        let of = "modelLayoutElement visualizedObjectName=\"A-B\" layer=\"0\"";
-        let properties = [property("CONN_TYPE", kind), property("CONTROL_POINTS", points)].concat();
-        plant(&format!(
-            "<visualLayout name=\"v\" scaleX=\"50\" scaleY=\"50\"><{of}>{properties}</modelLayoutElement></visualLayout>"
-        ))
+fn curves_of_the_first_models_are_those_of_the_later_ones() {
+    let property = |name: &str, value: &str| format!("<property name=\"{name}\" value=\"{value}\"/>");
+    let element = |of: &str, properties: &[String]| {
+        format!(
+            "<modelLayoutElement visualizedObjectName=\"{of}\" layer=\"0\">{}</modelLayoutElement>",
+            properties.concat()
+        )
     };
-    assert!(layout(Format::OpenTcs, &visual("DIRECT", ""), &options(&[]), &mut Warnings::default()).is_ok());
-    for (kind, points) in [("BEZIER", "1,2;3,4"), ("DIRECT", "1,2")] {
-        let error = failed(&visual(kind, points));
-        let expected = format!("path A-B: {kind} in a modelLayoutElement of the visual layout is not read");
-        assert!(error.starts_with(&expected), "{error}");
+    let model = |elements: &str| {
+        plant(&format!("<visualLayout name=\"v\" scaleX=\"50\" scaleY=\"50\">{elements}</visualLayout>"))
+    };
+    let path =
+        |kind: &str, points: &str| element("A-B", &[property("CONN_TYPE", kind), property("CONTROL_POINTS", points)]);
+    let at = |of: &str, x: &str, y: &str| element(of, &[property("POSITION_X", x), property("POSITION_Y", y)]);
+    let placed = [at("A", "0", "0"), at("B", "20000", "0")].concat();
+    let read = |elements: &str| {
+        let mut warnings = Warnings::default();
+        let read = layout(Format::OpenTcs, &model(elements), &options(&[]), &mut warnings);
+        read.map(|read| (read.layout.edges[0].clone(), warnings.lines()))
+    };
+    let later = plant("").replacen(
+        "length=\"20000\" maxVelocity=\"1000\" maxReverseVelocity=\"0\"/>",
+        "length=\"20000\" maxVelocity=\"1000\" maxReverseVelocity=\"0\"><pathLayout connectionType=\"BEZIER\">\
+         <controlPoint x=\"100\" y=\"-10\"/><controlPoint x=\"300\" y=\"-10\"/></pathLayout></path>",
+        1,
+    );
+    let later =
+        layout(Format::OpenTcs, &later, &options(&[]), &mut Warnings::default()).unwrap().layout.edges[0].clone();
+    // Releases differ in the case of the names.
+    for kind in ["BEZIER", "Bezier"] {
+        let (edge, warnings) = read(&[&placed, path(kind, "100,-10;300,-10").as_str()].concat()).unwrap();
+        assert_eq!(edge, later);
+        assert!(warnings.iter().all(|line| !line.contains("drawn")), "{warnings:?}");
     }
+    // Where its points are drawn matters, and is told where it is not said.
+    let (edge, warnings) = read(&path("BEZIER", "100,-10;300,-10")).unwrap();
+    assert_eq!(edge, later);
+    assert!(
+        warnings.iter().any(|line| line.starts_with("path A-B: where its points are drawn is not said")),
+        "{warnings:?}"
+    );
+    let moved = [at("A", "0", "30"), at("B", "20000", "0")].concat();
+    let (edge, _) = read(&[&moved, path("BEZIER", "100,-10;300,-10").as_str()].concat()).unwrap();
+    assert!((edge.deviation - later.deviation - 3.0 * 0.03).abs() < 1e-9, "{} {}", edge.deviation, later.deviation);
+    let (straight, _) = read(&[&placed, path("DIRECT", "").as_str()].concat()).unwrap();
+    assert_eq!(straight.length(), 20.0);
+    for (kind, points, expected) in [
+        ("DIRECT", "1,2", "path A-B: DIRECT with 1 control points is not read"),
+        ("ELBOW", "", "path A-B: ELBOW with 0 control points is not read"),
+        ("Slanted", "", "path A-B: SLANTED with 0 control points is not read"),
+        ("BEZIER", "1,2;3", "A-B, CONTROL_POINTS: \"3\" where x,y is expected"),
+        ("BEZIER", "1,2;x,4", "A-B, modelLayoutElement, CONTROL_POINTS: \"x\" where a number is expected"),
+    ] {
+        let error = read(&[&placed, path(kind, points).as_str()].concat()).unwrap_err().to_string();
+        assert!(error.starts_with(expected), "{error}");
+    }
+    let error = read(&[at("A", "0", "x"), path("BEZIER", "100,-10;300,-10")].concat()).unwrap_err().to_string();
+    assert!(error.starts_with("A, modelLayoutElement, POSITION_Y: \"x\" where"), "{error}");
+    let twice = [path("BEZIER", "100,-10;300,-10"), path("DIRECT", "")].concat();
+    assert!(read(&twice).unwrap_err().to_string().contains("modelLayoutElement A-B: there are several"));
 }
 
 /// They disappeared.

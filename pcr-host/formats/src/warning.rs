@@ -45,6 +45,8 @@ codes! {
     UnknownVersion = "unknown-version",
     /// A known field is not read, because nothing here depends on it or stands for it.
     UnreadField = "unread-field",
+    /// The file names a version of its format that is not known; it is read as the newest one that is.
+    UnknownVersion = "unknown-version",
     /// A name or label was replaced: names here are unique, printable and of limited length.
     Renamed = "renamed",
     /// A node or edge is in the file several times, the same each time; it is read once.
@@ -69,6 +71,8 @@ codes! {
     UncertainScale = "uncertain-scale",
     /// Lines and arcs deviate from a curve, by which the vehicle is enlarged there.
     CurveDeviation = "curve-deviation",
+    /// Where the ends of a curve are drawn is not said; its control points are taken to be in the frame of the file.
+    AssumedFrame = "assumed-frame",
     /// The degree of a curve contradicts its knots.
     CurveDegree = "curve-degree",
     /// Pieces of a route do not join: a drawn line, a trajectory or a link ends at another place than its node.

@@ -161,22 +161,183 @@ fn that_routes_round_corners_is_said_by_whoever_looks_at_edges() {
     }
 }
 
-/// openTCS reads models by this schema.
+/// openTCS reads models by these schemas. Of 0.0.2 there were several: the first one wants numbers, and knows no types of blocks.
 #[test]
 #[ignore = "needs xmllint (Debian's package libxml2-utils)"]
-fn plant_models_are_valid() {
-    let layout = real("opentcs/Demo-01.xml");
+fn plant_models_of_every_version_are_valid() {
+    let small =
+        |version: &str| format!("{}/../tests/data/small/opentcs/plant-{version}.xml", env!("CARGO_MANIFEST_DIR"));
+    let versions = ["0.0.1", "0.0.2", "0.0.3", "0.0.4", "0.0.5", "6.0.0", "7.0.0"];
+    let mut models: Vec<(String, Vec<String>)> =
+        versions.iter().map(|version| (small(version), vec![format!("model-{version}.xsd")])).collect();
+    models[1].1.push("model-0.0.2-first.xsd".to_owned());
+    models.push((real("opentcs/Demo-01.xml"), vec!["model-7.0.0.xsd".to_owned()]));
     let cut = ["--split", "2", "--envelopes", "pcr"];
-    for (name, more) in
-        [("blocks.xml", &[][..]), ("envelopes.xml", &cut[2..]), ("cut.xml", &cut[..2]), ("cut-envelopes.xml", &cut)]
-    {
+    for (layout, schemas) in &models {
+        for (name, more) in
+            [("blocks.xml", &[][..]), ("envelopes.xml", &cut[2..]), ("cut.xml", &cut[..2]), ("cut-envelopes.xml", &cut)]
+        {
+            let written = output(name);
+            let write = ["locks", layout, "--radius", "0.9", "--write", "opentcs", "-o", &written, "-q"];
+            let run = run(&[&write[..], more].concat());
+            if run.status == 2 && more.contains(&"--envelopes") {
+                assert!(run.err.contains("have none") && layout.contains("plant-0.0."), "{}", run.err);
+                continue;
+            }
+            assert_eq!(run.status, 0, "{}", run.err);
+            assert_ne!(fs::read_to_string(&written).unwrap(), fs::read_to_string(layout).unwrap());
+            for schema in schemas {
+                let mut xmllint = std::process::Command::new("xmllint");
+                xmllint.args(["--noout", "--schema", &real(&format!("opentcs/{schema}")), &written]);
+                let Ok(output) = xmllint.output() else { panic!("xmllint (libxml2-utils) is needed for this test") };
+                assert!(output.status.success(), "{layout}: {}", String::from_utf8_lossy(&output.stderr));
+            }
+        }
+    }
+}
+
+/// Two lanes 1.1 m apart, of which a radius of 0.6 m makes one group.
+fn lanes() -> String {
+    let node = |id: u32, x: f64, y: f64| json!({ "type": "Feature", "properties": { "id": id }, "geometry": { "type": "Point", "coordinates": [x, y] } });
+    let edge = |id: u32, from: u32, to: u32| {
+        json!({ "type": "Feature", "properties": { "id": id, "startid": from, "endid": to },
+            "geometry": { "type": "MultiLineString", "coordinates": [] } })
+    };
+    let features =
+        [node(0, 0.0, 0.0), node(1, 10.0, 0.0), node(2, 0.0, 1.1), node(3, 10.0, 1.1), edge(10, 0, 1), edge(11, 2, 3)];
+    json!({ "type": "FeatureCollection", "features": features }).to_string()
+}
+
+/// A radius of 0.5 m was guessed, in silence.
+#[test]
+fn what_others_rely_on_has_no_assumed_size() {
+    let (layout, written) = (file("exclusions", "lanes.geojson", lanes()), output("sized.geojson"));
+    for arguments in [
+        &["locks", &layout, "--write", "nav2", "-o", &written][..],
+        &["locks", &layout, "--write", "vda5050", "-o", &written],
+        &["locks", &layout, "--write", "pcr", "-o", &written],
+        &["locks", &layout, "--audit"],
+        &["locks", &layout, "--delays", "--speed", "1"],
+        &["traffic", &layout, "--agents", "1"],
+        &["traffic", &layout, "--agents", "1", "--hours", "0.01"],
+    ] {
+        for quiet in [&[][..], &["-q"]] {
+            let message = run(&[arguments, quiet].concat()).failed(2);
+            assert!(
+                message.contains("the size of the vehicle is not in the file") && message.contains("give --radius M"),
+                "{message}"
+            );
+            assert!(!std::path::Path::new(&written).exists(), "{arguments:?}");
+        }
+    }
+    // It is in the file of the vehicle, or an option.
+    let fleet = file("exclusions", "sized.json", "{ \"physicalParameters\": { \"length\": 1, \"width\": 0.5 } }");
+    run(&["locks", &layout, "--fleet", &fleet, "--write", "nav2", "-o", &written, "-q"]).ok();
+    let text = fs::read_to_string(&written).unwrap();
+    assert!(text.contains("\"source\": \"fleet\", \"outline\": [["), "{text}");
+    // A list of locks for a person to look at still says what it assumes.
+    assert!(run(&["locks", &layout]).err.contains("radius [m] 0.5"));
+}
+
+#[test]
+fn a_written_file_says_for_which_vehicle_it_is_and_an_audit_compares_it() {
+    let lanes = file("exclusions", "stamped.geojson", lanes());
+    let plant =
+        |version: &str| format!("{}/../tests/data/small/opentcs/plant-{version}.xml", env!("CARGO_MANIFEST_DIR"));
+    let by = format!(
+        "\"by\": \"pcr {}\", \"radius\": 0.6, \"margin\": 0.05, \"source\": \"option\"}}",
+        env!("CARGO_PKG_VERSION")
+    );
+    let quoted = by.replace('"', "&quot;");
+    let descriptor = format!("\"zoneSetDescriptor\": \"{{{}\"", by.replace('"', "\\\""));
+    for (layout, target, name, place) in [
+        (lanes.clone(), "nav2", "stamped.out.geojson", format!("\"pcr_vehicle\": {{{by}")),
+        (real("rmf/office.building.yaml"), "rmf", "stamped.building.yaml", format!("pcr_vehicle: {{{by}")),
+        (plant("0.0.2"), "opentcs", "stamped-2.xml", format!("<!-- pcr:vehicle {{{by} -->")),
+        (plant("0.0.3"), "opentcs", "stamped-3.xml", format!("<property name=\"pcr:vehicle\" value=\"{{{quoted}\"/>")),
+        (plant("7.0.0"), "opentcs", "stamped-7.xml", format!("<property name=\"pcr:vehicle\" value=\"{{{quoted}\"/>")),
+        (lanes.clone(), "vda5050", "stamped.zones.json", descriptor),
+        (lanes, "pcr", "stamped.locks.json", format!("\"written\": {{{by}")),
+    ] {
         let written = output(name);
-        let write = ["locks", &layout, "--radius", "0.9", "--write", "opentcs", "-o", &written, "-q"];
-        assert_eq!(run(&[&write[..], more].concat()).status, 0);
-        assert_ne!(fs::read_to_string(&written).unwrap(), fs::read_to_string(&layout).unwrap());
-        let mut xmllint = std::process::Command::new("xmllint");
-        xmllint.args(["--noout", "--schema", &real("opentcs/model-7.0.0.xsd"), &written]);
-        let Ok(output) = xmllint.output() else { panic!("xmllint (libxml2-utils) is needed for this test") };
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let vehicle = ["--radius", "0.6", "--margin", "0.05", "-q"];
+        run(&[&["locks", &layout, "--write", target, "-o", &written][..], &vehicle].concat()).ok();
+        let text = fs::read_to_string(&written).unwrap();
+        assert_eq!(text.matches(&place).count(), 1, "{target}: {place}\n{text}");
+        let beside = format!("--audit={written}");
+        let audit = match target {
+            "vda5050" | "pcr" => ["locks", &layout, &beside, "--json"],
+            _ => ["locks", &written, "--audit", "--json"],
+        };
+        let told = |vehicle: &[&str]| {
+            let answer = run(&[&audit[..], vehicle].concat()).out;
+            let answer: Value = serde_json::from_str(&answer).unwrap();
+            assert_eq!(answer["written_for"]["radius"], 0.6, "{target}");
+            let lines = answer["warnings"].as_array().unwrap().clone();
+            lines.iter().filter(|line| line.as_str().unwrap().contains("were written for")).cloned().collect::<Vec<_>>()
+        };
+        assert_eq!(told(&vehicle), Vec::<Value>::new(), "{target}");
+        for other in [&["--radius", "0.7", "--margin", "0.05", "-q"][..], &["--radius", "0.6", "-q"]] {
+            let lines = told(other);
+            assert_eq!(lines.len(), 1, "{target}: {lines:?}");
+            let line = lines[0].as_str().unwrap();
+            assert!(
+                line.starts_with("the exclusions were written for radius 0.6 m and margin 0.05 m, by pcr "),
+                "{line}"
+            );
+        }
+        if target == "nav2" || target == "opentcs" || target == "rmf" {
+            // Written again it is replaced.
+            run(&[&["locks", &written, "--write", target, "-o", &written][..], &vehicle].concat()).ok();
+            assert_eq!(fs::read_to_string(&written).unwrap(), text, "{target}");
+        }
+    }
+    // What cannot be read is told.
+    let text =
+        fs::read_to_string(output("stamped.out.geojson")).unwrap().replace("\"radius\": 0.6", "\"radius\": \"0.6\"");
+    let audit = run(&["locks", &file("exclusions", "damaged.geojson", text), "--audit", "--radius", "0.6"]);
+    assert!(audit.out.contains("for which vehicle the exclusions were written cannot be read: {"), "{}", audit.out);
+}
+
+/// One mutex was asked about, and 28 lines were the answer.
+#[test]
+fn an_audit_is_of_the_edges_and_nodes_that_are_asked_about() {
+    let dock = "building_name: dock\nlevels:\n  L1:\n    lanes:\n    - [0, 1, {mutex: dock}]\n    - [1, 0, {mutex: dock}]\n    - [2, 0, {}]\n    \
+                - [0, 2, {}]\n    - [3, 0, {}]\n    - [0, 3, {}]\n    vertices:\n    - [0, 0, {name: pre_dock}]\n    \
+                - [0, 3, {name: dock, mutex: dock}]\n    - [-4, 0, {name: west}]\n    - [4, 0, {name: east}]\n";
+    let dock = file("exclusions", "dock.yaml", dock);
+    let audit = |more: &[&str]| {
+        let run = run(&[&["locks", &dock, "--radius", "0.3", "--audit", "--json", "-q"], more].concat());
+        let answer: Value = serde_json::from_str(&run.out).unwrap();
+        let gaps = answer["gaps"].as_array().unwrap().clone();
+        assert_eq!(run.status, i32::from(!gaps.is_empty()));
+        (answer, gaps)
+    };
+    let (all, every) = audit(&[]);
+    assert!(every.len() > 20 && all.get("selected").is_none(), "{all}");
+    let has = |gap: &Value, kind: &str, id: &str| gap["a"][kind] == id || gap["b"][kind] == id;
+    for (more, kept) in [
+        (&["--edge", "L1/0"][..], &[("edge", "L1/0")][..]),
+        (&["--edge", "L1/0", "--edge", "L1/1"], &[("edge", "L1/0"), ("edge", "L1/1")]),
+        (&["--node", "L1/1"], &[("node", "L1/1")]),
+        (&["--node", "west", "--edge", "L1/4"], &[("node", "L1/2"), ("edge", "L1/4")]),
+    ] {
+        let (answer, gaps) = audit(more);
+        let expected: Vec<Value> =
+            every.iter().filter(|gap| kept.iter().any(|(kind, id)| has(gap, kind, id))).cloned().collect();
+        assert_eq!(gaps, expected, "{more:?}");
+        assert_eq!(answer["selected"].as_array().unwrap().len(), kept.len());
+        assert!(answer["can_touch"].as_u64() < all["can_touch"].as_u64());
+    }
+    // The mutex keeps its node and its two lanes apart.
+    assert_eq!(audit(&["--node", "dock"]).1.len(), 0);
+    for (more, reason) in [
+        (&["--audit", "--edge", "L1/9"][..], "--edge L1/9: there is no such edge"),
+        (&["--audit", "--node", "south"], "--node south: there is no such node"),
+        (&["--node", "dock"], "an audit is of some nodes"),
+        (&["--edge", "L1/0", "--edge", "L1/1"], "--edge: locks are listed of one edge"),
+    ] {
+        let message = run(&[&["locks", &dock, "--radius", "0.3", "-q"], more].concat()).failed(2);
+        assert!(message.contains(reason), "{message}");
     }
 }

@@ -108,7 +108,7 @@ fn every_real_file_is_read_or_refused_by_name() {
             &["regions", name],
             &["check", name],
             &["plan", name],
-            &["traffic", name, "--agents", "3"],
+            &["traffic", name, "--agents", "3", "--radius", "0.3"],
             // A file where a directory has to be: what can be drawn is refused for that, status 3.
             &["map", name, "-o", &pictures],
         ]

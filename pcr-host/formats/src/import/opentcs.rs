@@ -62,7 +62,11 @@ pub(super) fn read(
         return Err(ImportError::new(format!("{}: not a plant model of openTCS", root.tag_name().name())));
     }
     if let Some(version) = root.attribute("version").filter(|version| !VERSIONS.contains(&version.trim())) {
-        warnings.add("model", format!("version {version} is not known; what is called as up to 7.0.0 is read"));
+        warnings.add(
+            WarningCode::UnknownVersion,
+            "model",
+            format!("version {version} is not known; what is called as up to 7.0.0 is read"),
+        );
     }
     let visual = only(root, "visualLayout")?;
     let drawn = Drawn::of(visual)?;
@@ -235,7 +239,7 @@ fn edge(
     if is_curved && ends.iter().any(|node| matches!(frame.shifts.get(*node), None | Some(None))) {
         let problem =
             "where its points are drawn is not said; its control points are taken to be in the frame of the model";
-        warnings.add(&name, problem);
+        warnings.add(WarningCode::AssumedFrame, &name, problem);
     }
     let fit = curve(bend, &name, ends, frame, tolerance)?;
     if fit.bends {

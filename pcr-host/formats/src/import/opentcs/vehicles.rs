@@ -149,7 +149,7 @@ fn largest(all: &[Vehicle], options: &Options, warnings: &mut Warnings) -> Optio
     if options.radius.is_none() {
         for vehicle in all.iter().filter(|vehicle| !vehicle.is_placed) {
             let problem = "its boundingBox does not say where its reference point is; it is taken to be in the middle";
-            warnings.add(&vehicle.name, problem);
+            warnings.add(WarningCode::AssumedSize, &vehicle.name, problem);
         }
     }
     largest
