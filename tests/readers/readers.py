@@ -67,6 +67,11 @@ def of_yaml(text):
 # ---- nav2: closed_edges in the metadata, as nav2_route's loader finds features ----
 
 
+def number(name):
+    """An id, which some tools write as a text or with a decimal point."""
+    return int(float(name))
+
+
 def nav2(text):
     nodes, edges, closed = {}, [], {}
     features = json.loads(plain(text))["features"]
@@ -77,10 +82,10 @@ def nav2(text):
             # As the service takes them.
             assert all(isinstance(edge, int) and 0 <= edge <= 65535 for edge in barred), barred
             if kind == "Point" and of == "Point":
-                nodes[own["id"]] = tuple(feature["geometry"]["coordinates"][:2])
-                closed.setdefault(own["id"], []).append(barred)
+                nodes[number(own["id"])] = tuple(feature["geometry"]["coordinates"][:2])
+                closed.setdefault(number(own["id"]), []).append(barred)
             elif kind in ("LineString", "MultiLineString") and of == "Line":
-                edges.append((own["id"], [nodes[own["startid"]], nodes[own["endid"]]], barred))
+                edges.append((number(own["id"]), [nodes[number(own["startid"])], nodes[number(own["endid"])]], barred))
     return nodes, edges, closed
 
 
@@ -354,8 +359,8 @@ def ways(kind, text):
         for feature in json.loads(plain(text))["features"]:
             own = feature["properties"]
             if feature["geometry"]["type"] != "Point":
-                ends = (own["startid"], own["endid"])
-                found.append((own["id"], *ends, [nodes[end] for end in ends]))
+                ends = (number(own["startid"]), number(own["endid"]))
+                found.append((number(own["id"]), *ends, [nodes[end] for end in ends]))
         return {name: ("", at) for name, at in nodes.items()}, found
     if kind == "rmf":
         nodes, found = {}, []

@@ -214,7 +214,6 @@ pub(crate) fn write(
     }
     let mut edits = Edits::default();
     let root = document.root_element();
-    let version = Version::of(root)?;
     let prefixed = |child: &Node<'_, '_>| {
         let tag = text[child.range().start + offset..].split([' ', '\t', '\r', '\n', '/', '>']).next();
         child.is_element() && tag.is_some_and(|tag| tag.contains(':'))
@@ -223,6 +222,7 @@ pub(crate) fn write(
         let name = child.tag_name().name();
         return Err(ImportError::new(format!("{name}: names of elements with a prefix are not written")));
     }
+    let version = Version::of(root)?;
     let model = Model { text, offset, root, version };
     if let Some(key) = &settings.envelopes {
         if !version.has_envelopes() {
