@@ -222,7 +222,9 @@ fn what_others_rely_on_has_no_assumed_size() {
         &["traffic", &layout, "--agents", "1", "--hours", "0.01"],
     ] {
         for quiet in [&[][..], &["-q"]] {
-            let message = run(&[arguments, quiet].concat()).failed(2);
+            let refused = run(&[arguments, quiet].concat());
+            assert_eq!(refused.status, 2, "{arguments:?}");
+            let message = refused.err;
             assert!(
                 message.contains("the size of the vehicle is not in the file") && message.contains("give --radius M"),
                 "{message}"
@@ -337,7 +339,7 @@ fn an_audit_is_of_the_edges_and_nodes_that_are_asked_about() {
         (&["--node", "dock"], "an audit is of some nodes"),
         (&["--edge", "L1/0", "--edge", "L1/1"], "--edge: locks are listed of one edge"),
     ] {
-        let message = run(&[&["locks", &dock, "--radius", "0.3", "-q"], more].concat()).failed(2);
-        assert!(message.contains(reason), "{message}");
+        let refused = run(&[&["locks", &dock, "--radius", "0.3", "-q"], more].concat());
+        assert!(refused.status == 2 && refused.err.contains(reason), "{} {}", refused.status, refused.err);
     }
 }
