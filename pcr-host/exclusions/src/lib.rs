@@ -60,6 +60,7 @@ pub use way::{Mark, Section, Way};
 pub use write::{Written, sized, write};
 
 use pcr_formats::import::{Format, ImportError, Imported};
+use pcr_formats::warning::WarningCode;
 use pcr_planning::locks::Locks;
 use pcr_planning::memory;
 use std::fmt;
@@ -223,7 +224,8 @@ impl Rules {
     pub(crate) fn stamped(mut self, said: Option<&str>) -> Self {
         self.stamp = said.and_then(Stamp::read);
         if let (Some(said), None) = (said, &self.stamp) {
-            self.warnings.push(format!("for which vehicle the exclusions were written cannot be read: {said}"));
+            let text = format_args!("for which vehicle the exclusions were written cannot be read: {said}");
+            self.warnings.push(WarningCode::UnreadField.text(text));
         }
         self
     }

@@ -8,6 +8,7 @@
 //! | pcr | `written` |
 
 use pcr_formats::import::{Imported, SizeSource};
+use pcr_formats::warning::WarningCode;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -80,8 +81,8 @@ impl Stamp {
         let has_same_outline = self.outline.len() == now.outline.len()
             && self.outline.iter().flatten().zip(now.outline.iter().flatten()).all(|(a, b)| is_near(*a, *b));
         let is_same = is_near(self.radius, now.radius) && is_near(self.margin, now.margin) && has_same_outline;
-        (!is_same)
-            .then(|| format!("the exclusions were written for {self}, by {}; they are audited for {now}", self.by))
+        let text = format!("the exclusions were written for {self}, by {}; they are audited for {now}", self.by);
+        (!is_same).then(|| WarningCode::OtherVehicle.text(text))
     }
 }
 

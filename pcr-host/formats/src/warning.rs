@@ -135,6 +135,10 @@ codes! {
     ReplacedExclusions = "replaced-exclusions",
     /// Edges, lanes or paths are not cut, because something belongs to all of their length.
     LeftWhole = "left-whole",
+    /// The parts of a path cannot share what it costs; each has the cost of all of it.
+    UnsharedCost = "unshared-cost",
+    /// The exclusions in the file were written for another vehicle than the one of the audit.
+    OtherVehicle = "other-vehicle",
     /// Lanes of other graphs are left as they are.
     OtherGraphs = "other-graphs",
     /// Zones are for the disc around the outline of the vehicle.

@@ -56,11 +56,15 @@ pub(crate) fn split(
         left_whole.into_iter().map(|(reason, names)| format!("paths left whole, {reason}: {}", names.join(", ")));
     notes.said.extend(said.map(|text: String| WarningCode::LeftWhole.text(text)));
     notes.said.extend(cutter.strange.iter().map(|name| {
-        format!("point, {name}: models of version {} do not have it; openTCS loads no such file", cutter.version)
+        let version = cutter.version;
+        let text =
+            format_args!("point, {name}: models of version {version} do not have it; openTCS loads no such file");
+        WarningCode::UnknownKey.text(text)
     }));
     if !cutter.of_one_cost.is_empty() {
         let names = cutter.of_one_cost.join(", ");
-        notes.said.push(format!("routingCost: smaller than the number of parts, so each part has it: {names}"));
+        let text = format_args!("routingCost: smaller than the number of parts, so each part has it: {names}");
+        notes.said.push(WarningCode::UnsharedCost.text(text));
     }
     Ok(cutter.made())
 }
