@@ -45,8 +45,6 @@ codes! {
     UnknownVersion = "unknown-version",
     /// A known field is not read, because nothing here depends on it or stands for it.
     UnreadField = "unread-field",
-    /// The file names a version of its format that is not known; it is read as the newest one that is.
-    UnknownVersion = "unknown-version",
     /// A name or label was replaced: names here are unique, printable and of limited length.
     Renamed = "renamed",
     /// A node or edge is in the file several times, the same each time; it is read once.
