@@ -41,7 +41,7 @@ MUTANTS = [
     ((FIXED, "const SLACK_SHIFT: u32 = 26;", "const SLACK_SHIFT: u32 = 28;"), ["e-fixed", "q-parts"]),
     ((FIXED, "SLACK + (extent.0 >> SLACK_SHIFT)", "SLACK / 2 + (extent.0 >> SLACK_SHIFT)"), ["e-fixed"]),
     ((FIXED, "3 * (arcs + 2)", "3 * arcs"), ["q-drift"]),
-    ((PAIR, "first.lag().max(second.lag())", "first.lag().min(second.lag())"), ["e-promise"]),
+    ((PAIR, "first.allowance().max(second.allowance())", "first.allowance().min(second.allowance())"), ["e-promise"]),
     ((PAIR, "self.slack.double()", "self.slack"), ["e-promise"]),
     # Constants beside the budget.
     ((FLOAT, "4.0 * $t::EPSILON * speed", "0.4 * $t::EPSILON * speed"), ["e-phases"]),
@@ -55,7 +55,8 @@ MUTANTS = [
     (("pcr-core/src/crossing.rs", "slack.double().double()", "slack.double()"), ["e-crossings"]),
     ((FLOAT, "heading: 1_024.0", "heading: 16_777_216.0"), ["e-headings"]),
     # Free values: what a search leaves for rounding, what it takes for clear, and what is a touch.
-    (("pcr-core/src/query/delay.rs", "other.reach()).double().double()", "other.reach()).double()"), ["e-delays"]),
+    (("pcr-core/src/query/delay.rs", "pad.max(self.slack()).double().double()", "pad.max(self.slack()).double()"), ["e-delays"]),
+    (("pcr-core/src/query/delay.rs", "pad.max(self.slack())", "pad"), ["e-delays"]),
     (("pcr-core/src/query/delay.rs", "other.latest() + ego.profile().duration()", "ego.profile().duration()"), ["e-delays"]),
     (("pcr-core/src/query/delay.rs", "allowance + encounter.pad()", "allowance"), ["e-free"]),
     (("pcr-core/src/query/bracket.rs", "if end == clear {", "if true {"), ["e-free"]),

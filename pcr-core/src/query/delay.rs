@@ -67,7 +67,9 @@ impl<S: Scalar> RegionRef<'_, S> {
         let (ego, other) = (self.ego_motion(), self.other_motion());
         // If both are under way at the same time, the ego's times are no later than this.
         let latest = other.latest() + ego.profile().duration();
-        pad(ego, other, ego.way_until(latest) + other.reach()).double().double()
+        let pad = pad(ego, other, ego.way_until(latest) + other.reach());
+        // The region may hold for motions with more lag than these, and is larger then.
+        pad.max(self.slack()).double().double()
     }
 
     /// Delays with which the agents meet at points inside the region.

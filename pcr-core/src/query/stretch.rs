@@ -87,7 +87,7 @@ impl<S: Scalar> RegionRef<'_, S> {
         let start = ego.time().lo;
         let speed = ego.profile().top_speed().portion(ego.profile().duration(), duration);
         let latest = other.latest().max(start.abs() + duration);
-        let rest = pad(ego, other, speed.times(latest).narrow() + other.reach());
+        let rest = pad(ego, other, speed.times(latest).narrow() + other.reach()).max(self.slack());
         let leap = speed.times(S::slack(S::ZERO)).narrow();
         // A speed is off by half a last digit, a sixteenth of the slack, until the other agent has left the region.
         let since = (other.time_in(self.other_length()).hi - start).max(S::ZERO).min(S::LIMIT);
