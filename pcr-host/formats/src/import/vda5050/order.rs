@@ -37,8 +37,6 @@ impl Reader<'_> {
     pub(super) fn order(&mut self, id: u64, order: &Object<'_>) -> Result<(Agent, f64), ImportError> {
         keys::ORDER.check(order, self.warnings)?;
         let [nodes, edges] = self.base(order)?;
-        check(&nodes, &keys::NODE, self.warnings)?;
-        check(&edges, &keys::EDGE, self.warnings)?;
         let is_third = is_third(order)?;
         self.maps(order, nodes.iter().map(|node| node.object.object("nodePosition")))?;
         self.warn_of_freedom(&nodes)?;
@@ -73,6 +71,9 @@ impl Reader<'_> {
     fn base<'j>(&mut self, order: &Object<'j>) -> Result<[Vec<Part<'j>>; 2], ImportError> {
         let mut nodes = parts(order, "nodes", "node", "nodeId")?;
         let mut edges = parts(order, "edges", "edge", "edgeId")?;
+        // Also of what is left out below.
+        check(&nodes, &keys::NODE, self.warnings)?;
+        check(&edges, &keys::EDGE, self.warnings)?;
         let base = nodes.iter().skip(1).zip(&edges).take_while(|(node, edge)| node.released && edge.released).count();
         if base < edges.len() {
             if self.options.horizon {
