@@ -28,7 +28,7 @@ mod work;
 use crate::{abort, progress};
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Parser, Subcommand};
-use pcr_formats::import::Warnings;
+use pcr_formats::import::{ImportError, Warnings};
 use pcr_formats::input::InputError;
 use pcr_formats::output::{self, Kept};
 use pcr_formats::warning::WarningCode;
@@ -69,6 +69,9 @@ fn statuses(wrong: &str) -> String {
 /// The reasons for [`WRONG_INPUT`] of commands that read scenarios.
 const SCENARIOS: &str = "wrong arguments, or one of the scenarios cannot be read or was refused";
 
+/// The units of scenarios, for the help of commands that read them.
+const UNITS: &str = "Units: metres, seconds, radians (heading_deg, sweep_deg: degrees)";
+
 const EXAMPLES: &str = "\
 Examples:
   pcr                                      the paper's 12 agents: its tables beside ours, pictures in pcr-out/
@@ -84,7 +87,7 @@ Examples:
 /// Agents are discs that move on given paths. For each agent, pcr computes which parts of its path are blocked by another agent, and
 /// when. It computes this in closed form and does not sample. Without a command it shows the paper's 12 agents and draws them to pcr-out/.
 #[derive(Parser)]
-#[command(name = "pcr", version, after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
+#[command(name = "pcr", version, after_help = format!("{EXAMPLES}\n\n{UNITS}\n\n{STATUSES}"))]
 pub(crate) struct Arguments {
     /// Only errors, JSON and CSV; no tables or warnings
     #[arg(short, long, global = true, overrides_with = "quiet")]
@@ -268,6 +271,12 @@ impl Stop {
         Self::Error(format!("{name}: {problem}"), WRONG_INPUT)
     }
 
+    /// Something wrong with the content of a file, at its line and column if they are known.
+    fn refused(file: &Path, error: &ImportError) -> Self {
+        let name = if file == Path::new("-") { "standard input".into() } else { file.to_string_lossy() };
+        Self::Error(error.in_file(&name), WRONG_INPUT)
+    }
+
     /// A file or directory that could not be written.
     fn not_written(output: &Path, error: &io::Error) -> Self {
         if let Some(kept) = Kept::of(error) {
@@ -314,6 +323,24 @@ fn warn_of_boxes(folder: &Path, written: &pcr_drawing::Written) {
 /// A whole number from 0, such as a seed.
 fn whole<T: FromStr>(text: &str) -> Result<T, String> {
     text.parse().map_err(|_| "a whole number from 0 is expected".to_owned())
+}
+
+/// A number whose range the command checks, after the rules about its arguments; `expected` is told if it is none.
+fn number<T: FromStr>(text: &str, expected: &str) -> Result<T, String> {
+    text.parse().map_err(|_| format!("{expected} is expected"))
+}
+
+/// A whole number of a range.
+fn whole_within<T: TryFrom<u64>>(text: &str, lo: u64, hi: u64) -> Result<T, String> {
+    let number = text.parse::<u64>().ok().filter(|number| (lo..=hi).contains(number));
+    let number = number.and_then(|number| T::try_from(number).ok());
+    number.ok_or_else(|| format!("a whole number from {lo} to {hi} is expected"))
+}
+
+/// A number of a range.
+fn within(text: &str, lo: f64, hi: f64) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| (lo..=hi).contains(number));
+    number.ok_or_else(|| format!("a number from {lo} to {hi} is expected"))
 }
 
 /// Whether an output is standard output.

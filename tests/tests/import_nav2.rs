@@ -3,7 +3,7 @@
 use pcr_core::{Curve, Motion};
 use pcr_formats::import::{Format, Imported, Layout, Options, Warnings, layout, scenario};
 use pcr_formats::scenario::TURN;
-use pcr_formats::scenario::{MotionSpec, Scenario};
+use pcr_formats::scenario::{MotionSpec, PathSegment, Scenario};
 use pcr_planning::fleet::Fleet;
 use pcr_planning::locks::Locks;
 use serde_json::{Value, json};
@@ -383,36 +383,38 @@ fn nodes_are_in_one_frame() {
     assert!(read([json!(7), json!("map")]).unwrap_err().starts_with("node 0, frame: "));
 }
 
-/// Whether the route server rounds corners is not in the graph.
+/// nav2 rounds no corners by default (`smooth_corners`).
 #[test]
-fn rounded_corners_are_told_unless_they_were_asked_for() {
-    let told = |corner_radius: Option<f64>, route: &str| {
+fn corners_are_rounded_only_if_that_is_asked_for() {
+    let arcs = |corner_radius: Option<f64>| {
         let mut warnings = Warnings::default();
-        let options = Options { corner_radius, ..options(&[route], 1.0) };
-        scenario(Format::Nav2, WAREHOUSE, &options, &mut warnings).unwrap();
-        warnings.lines().iter().any(|line| line.starts_with("corners: rounded with 1 m"))
+        let options = Options { corner_radius, ..options(&["0:50"], 1.0) };
+        let scenario = scenario(Format::Nav2, WAREHOUSE, &options, &mut warnings).unwrap();
+        assert!(warnings.lines().iter().all(|line| !line.starts_with("corners")), "{:?}", warnings.lines());
+        let is_arc = |segment: &&PathSegment| matches!(segment, PathSegment::Arc { radius, .. } if *radius == 1.0);
+        scenario.agents[0].path.iter().filter(is_arc).count()
     };
-    assert!(told(None, "0:50") && !told(Some(1.0), "0:50") && !told(Some(0.0), "0:50"));
-    assert!(!told(None, "3:3"));
+    assert_eq!((arcs(None), arcs(Some(0.0))), (0, 0));
+    assert!(arcs(Some(1.0)) > 0);
 }
 
-/// A radius has an effect if it rounds a corner, and also if it rounds none of those that are rounded without it.
+/// A radius has an effect if it rounds a corner, and 0 is what is done anyway.
 #[test]
-fn a_corner_radius_is_of_use_where_a_corner_is_rounded_with_it_or_without_it() {
+fn a_corner_radius_is_of_use_where_a_corner_is_rounded_with_it() {
     // A corner with room for the usual arc (1.52 m and 3 m); one of 5 mrad; none.
     let slight = two_edges([[0.0, 0.0], [10.0, 0.0], [20.0, 0.05]], [100, 100]);
-    // Continuous-CBS rounds no corner unless that is asked for.
     let other = include_str!("../data/small/roadmap.xml");
     for (format, text, route, radius, is_used) in [
         (Format::Nav2, AWS, "11:13", 0.0, true),
         (Format::Nav2, AWS, "11:13", 0.5, true),
         (Format::Nav2, AWS, "11:13", 1.0, true),
         (Format::Nav2, AWS, "11:13", 2.0, true),
-        (Format::Nav2, AWS, "11:12", 0.0, false),
+        (Format::Nav2, AWS, "11:12", 0.0, true),
         (Format::Nav2, AWS, "11:12", 2.0, false),
         (Format::Nav2, &slight, "0:2", 0.0, true),
         (Format::Nav2, &slight, "0:2", 1000.0, true),
-        (Format::Ccbs, other, "n0:n2", 0.0, false),
+        (Format::Nav2, &slight, "0:2", 10000.0, false),
+        (Format::Ccbs, other, "n0:n2", 0.0, true),
         (Format::Ccbs, other, "n0:n2", 0.5, true),
         (Format::Ccbs, other, "n0:n2", 1000.0, false),
     ] {
@@ -422,15 +424,6 @@ fn a_corner_radius_is_of_use_where_a_corner_is_rounded_with_it_or_without_it() {
         let unused = options.unused(&[&warnings]).map(|(option, _)| option);
         assert_eq!(unused, (!is_used).then_some("--corner-radius"), "{format} {route} {radius}");
     }
-    // The arc of 5 mrad is told as well.
-    let mut warnings = Warnings::default();
-    let usual = Options { corner_radius: None, ..options(&["0:2"], 0.0) };
-    scenario(Format::Nav2, &slight, &usual, &mut warnings).unwrap();
-    assert!(
-        warnings.lines().iter().any(|line| line.starts_with("corners: rounded with 1 m")),
-        "{:?}",
-        warnings.lines()
-    );
 }
 
 /// A graph of two edges one after the other, with speed limits in percent.

@@ -99,11 +99,11 @@ fn what_is_wrong_is_refused_by_name_and_left_out_if_asked_for() {
     let road = |id: &str, geometry: &str| format!("<road id=\"{id}\"><planView>{geometry}</planView></road>");
     let line = "<geometry x=\"0\" y=\"0\" hdg=\"0\" length=\"5\"><line/></geometry>";
     let file = |roads: &[String]| format!("<OpenDRIVE>{}</OpenDRIVE>", roads.concat());
-    let spiral = line.replace("<line/>", "<spiral curvStart=\"0\" curvEnd=\"0.1\"/>");
+    let other = line.replace("<line/>", "<bezier/>");
     let apart = line.replace("x=\"0\"", "x=\"6\"");
     let text = file(&[
         road("7", line),
-        road("8", &spiral),
+        road("8", &other),
         road("9", &format!("{line}{apart}")),
         road("10", &line.replace("5", "1e300")),
         road("7", line),
@@ -117,7 +117,7 @@ fn what_is_wrong_is_refused_by_name_and_left_out_if_asked_for() {
     assert_eq!((read.edges.len(), read.nodes.len()), (1, 2));
     let warnings = warnings.lines().join("\n");
     for expected in [
-        "road 8, geometry 1: spiral is not a line and not an arc",
+        "road 8, geometry 1: bezier is not read",
         "road 9, geometry 2: it begins 1.000 m from the end of the one before",
         "road 10, geometry 1, length: \"1e300\" where a number up to 1e10 is expected",
         "road 12, geometry 1: its length, heading or sweep is out of range",
@@ -129,9 +129,9 @@ fn what_is_wrong_is_refused_by_name_and_left_out_if_asked_for() {
     assert!(warnings.contains("edge 7: given twice, the same each time"), "{warnings}");
     let failed = |text: &str| layout_error(text);
     assert_eq!(failed("<a/>"), "a: not an OpenDRIVE file");
-    assert_eq!(failed(&file(&[])), "OpenDRIVE: there is no road of lines and arcs in it");
-    let expected = "road 1, geometry 1: spiral is not a line and not an arc; --partial leaves that out";
-    assert_eq!(failed(&file(&[road("1", &spiral)])), expected);
+    assert_eq!(failed(&file(&[])), "OpenDRIVE: there is no road in it that can be read");
+    let expected = "road 1, geometry 1: bezier is not read; --partial leaves that out";
+    assert_eq!(failed(&file(&[road("1", &other)])), expected);
     let two =
         format!("<planView>{line}</planView>{}", road("1", line).replace("<road id=\"1\">", "").replace("</road>", ""));
     assert!(failed(&file(&[format!("<road id=\"1\">{two}</road>")])).starts_with("road, planView: there are several"));

@@ -200,8 +200,13 @@ fn levels_are_laid_upon_the_reference_level_by_their_fiducials() {
         ("[[10, 30, p], [10, -50, q], [70, 30, p]]", "level lower, fiducial 2: another one is p"),
         ("[[10, 30, p], [10, -50, q], [70, up, r]]", "level lower, fiducial 2: no place and name"),
     ] {
-        let refused = failed(&two_levels("", [fiducials[0], wrong], [own, none]));
-        assert!(refused.starts_with(problem), "{refused}");
+        // A level has no other scale if parts may be left out.
+        for partial in [false, true] {
+            let options = Options { partial, ..tiny(&[]) };
+            let text = two_levels("", [fiducials[0], wrong], [own, none]);
+            let refused = layout(Format::Rmf, &text, &options, &mut Warnings::default()).unwrap_err().to_string();
+            assert_eq!(refused, problem);
+        }
     }
     // A real one: by its fiducials L2 has 0.056199 m a pixel, by its own measurements 0.055452 m.
     let upper = |text: &str| {
@@ -223,13 +228,13 @@ fn what_is_wrong_is_named() {
     let unmeasured = format!("{}{}", &TRIPLE_H[..start], &TRIPLE_H[end..]);
     assert_eq!(failed(&unmeasured), "level L1, measurements: none that gives the scale of its pixels");
     assert_eq!(
-        failed(&format!("coordinate_system: wgs84\n{TRIPLE_H}")),
-        "building, coordinate_system: wgs84 is not read"
+        failed(&format!("coordinate_system: mars\n{TRIPLE_H}")),
+        "building, coordinate_system: mars is not read"
     );
     assert_eq!(failed("a: b"), "building, levels: missing");
     let config = std::fs::read_to_string(fleet("office_tinyRobot").unwrap()).unwrap();
     assert_eq!(failed(&config), "it is the configuration of a fleet; give it beside a building, with --fleet");
-    assert!(failed("a: [").starts_with("not YAML: "));
+    assert!(failed("a: [").starts_with("line 1, column 4: not YAML: "));
     let broken = TRIPLE_H.replacen("- [0, 1, {", "- [0, 999, {", 1);
     assert_eq!(failed(&broken), "lane L1/0: there is no vertex 999; --partial leaves that out");
     let (rest, warnings) = read(&broken, &Options { partial: true, ..tiny(&[]) });
@@ -279,11 +284,11 @@ fn lanes_have_the_parameters_of_the_file() {
     for other in ["[0, 9, {}]", "[0, 2, {distance: [3, 0]}]", "[0, 2, {}]"] {
         let text = building(&format!("[[0, 1, {{distance: [3, 20]}}], {other}]"), &lanes[..1], "");
         let problem = "level L1, measurement 1: it gives no scale";
-        let (options, mut warnings) = (tiny(&[]), Warnings::default());
-        let refused = layout(Format::Rmf, &text, &options, &mut warnings).expect_err(other).to_string();
-        assert!(refused.contains(problem), "{refused}");
-        let (_, warnings) = read(&text, &Options { partial: true, ..options });
-        assert_eq!(warnings, [format!("{problem}: left out")]);
+        for partial in [false, true] {
+            let options = Options { partial, ..tiny(&[]) };
+            let refused = layout(Format::Rmf, &text, &options, &mut Warnings::default()).expect_err(other).to_string();
+            assert_eq!(refused, problem);
+        }
     }
 }
 
@@ -315,12 +320,101 @@ fn parameters_without_a_value_are_refused() {
     }
 }
 
-/// They had no name, and nothing was said.
+/// Names of vertices, levels, fiducials, buildings and fleets are any scalars, as they are written. Some had no name, and nothing was said;
+/// others were refused, and left out a level got another scale.
 #[test]
-fn whole_numbers_are_names() {
-    let building = "name: site\nlevels:\n  L1:\n    vertices: [[0, 0, 0, 101], [10, 0, 0, \"102\"]]\n    measurements: [[0, 1, {distance: [3, 10]}]]\n    lanes: [[0, 1, {}]]\n";
-    let (imported, _) = read(building, &Options { radius: Some(0.4), ..Options::default() });
-    assert_eq!([node(&imported.layout, "101")[0], node(&imported.layout, "102")[0]], [0.0, 10.0]);
+fn names_are_any_scalars() {
+    let building = |name: &str| {
+        format!(
+            "name: {name}\nreference_level_name: {name}\nlevels:\n  {name}:\n    vertices: [[0, 0, 0, {name}], [10, 0, 0, b]]\n    \
+             fiducials: [[0, 0, {name}], [10, 0, 2]]\n    measurements: [[0, 1, {{distance: [3, 10]}}]]\n    lanes: [[0, 1, {{}}]]\n  \
+             upper:\n    vertices: [[50, 50, 0, c], [70, 50, 0, d]]\n    fiducials: [[50, 50, {name}], [70, 50, 2]]\n    \
+             measurements: [[0, 1, {{distance: [3, 21]}}]]\n    lanes: [[0, 1, {{}}]]\n"
+        )
+    };
+    for (written, name) in [
+        ("101", "101"),
+        ("\"102\"", "102"),
+        ("007", "007"),
+        ("1.50", "1.50"),
+        ("true", "true"),
+        ("no", "no"),
+        ("~", "null"),
+        ("null", "null"),
+        ("0x1F", "0x1F"),
+        ("'a b'", "a b"),
+        ("-3", "-3"),
+        ("2026-11-28", "2026-11-28"),
+    ] {
+        for partial in [false, true] {
+            let options = Options { radius: Some(0.4), partial, ..Options::default() };
+            let (imported, warnings) = read(&building(written), &options);
+            let layout = &imported.layout;
+            let is_named = name != "null";
+            assert_eq!(layout.name, if is_named { name } else { "" }, "{written}");
+            assert!(layout.levels.iter().any(|level| level == name), "{written}: {:?}", layout.levels);
+            assert_eq!(node(layout, &format!("{name}/1")), [10.0, 0.0]);
+            assert_eq!(layout.nodes[layout.node(&format!("{name}/0")).unwrap()].name.as_deref(), Some(name));
+            // The upper level has the scale of its fiducials.
+            let upper = layout.edges.iter().find(|edge| edge.id.to_string() == "upper/0").unwrap();
+            assert!((upper.length() - 10.0).abs() < 1e-12, "{written}: {}", upper.length());
+            let scales = warnings.iter().filter(|line| line.contains("give a scale that differs by +110.0 %")).count();
+            assert_eq!(scales, 1, "{written}: {warnings:?}");
+        }
+    }
+    // Which of its programs reads it would decide.
+    for [here, there] in [["1", "\"1\""], ["1", "1.0"], ["1", "true"]] {
+        let text = building("9").replace("[0, 0, 9]", &format!("[0, 0, {here}]"));
+        let text = text.replace("[50, 50, 9]", &format!("[50, 50, {there}]"));
+        let options = Options { partial: true, ..tiny(&[]) };
+        let error = layout(Format::Rmf, &text, &options, &mut Warnings::default()).unwrap_err().to_string();
+        assert!(error.contains("the programs of Open-RMF differ"), "{error}");
+    }
+    // Navigation graphs, and fleets.
+    let graph = "building_name: 12\nlevels:\n  3:\n    vertices: [[0, 0, {name: 04}], [5, 0, {name: true}]]\n    lanes: [[0, 1, {}]]\n";
+    let (imported, _) = read(graph, &Options { radius: Some(0.4), ..Options::default() });
+    assert_eq!((imported.layout.name.as_str(), imported.layout.levels), ("12", vec!["3".to_owned()]));
+    let names: Vec<_> = imported.layout.nodes.iter().map(|node| node.name.as_deref().unwrap()).collect();
+    assert_eq!(names, ["04", "true"]);
+    let fleet = "rmf_fleet:\n  name: 042\n  profile: {footprint: 0.3}\n";
+    let vehicle = pcr_formats::import::vehicle(fleet, &Options::default(), &mut Warnings::default()).unwrap();
+    assert_eq!((vehicle.name.as_deref(), vehicle.radius), (Some("042"), 0.3));
+}
+
+/// A building with longitudes and latitudes, as the building tools project it: expected figures by pyproj (PROJ 9).
+#[test]
+fn longitudes_and_latitudes_are_projected() {
+    let campus = |crs: &str| {
+        format!(
+            "coordinate_system: wgs84\nlevels:\n  L1:\n    elevation: 0\n    vertices:\n      - [103.8198, 1.3521, 0, a]\n      \
+             - [103.8208, 1.3529, 0, b]\n      - [999, 0, 0, \"\"]\n    lanes:\n      - [0, 1, {{bidirectional: [4, true]}}]\nname: campus\n\
+             parameters:\n  generate_crs: [1, {crs}]\n  suggested_offset_x: [3, 22000]\n  suggested_offset_y: [3, 31500]\n"
+        )
+    };
+    for (crs, a, b, is_mirrored) in [
+        ("EPSG:3414", [26495.534871029, 37133.868476454], [26606.824033736, 37222.327796764], false),
+        ("EPSG:32648", [149479.866291019, 368700.272373035], [149568.255591945, 368811.583247583], true),
+    ] {
+        let (imported, warnings) = read(&campus(crs), &tiny(&[]));
+        let found = ["a", "b"].map(|name| node(&imported.layout, name));
+        for (found, expected) in found.into_iter().zip([a, b]) {
+            assert!((found[0] - expected[0]).hypot(found[1] - expected[1]) < 1e-6, "{crs}: {found:?}");
+        }
+        assert_eq!(warnings.iter().any(|line| line.contains("easting for a northing")), is_mirrored, "{warnings:?}");
+    }
+    let failed = |text: &str| layout(Format::Rmf, text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();
+    let unknown = failed(&campus("EPSG:4326"));
+    assert!(unknown.starts_with("building, parameters, generate_crs: EPSG:4326 is not read; EPSG:326xx"), "{unknown}");
+    let none = campus("EPSG:3414").replace("generate_crs", "other");
+    assert_eq!(failed(&none), "building, parameters, generate_crs: missing");
+    let far = failed(&campus("EPSG:3414").replace("[0, 1, {", "[0, 2, {"));
+    assert!(far.starts_with("lane L1/0: longitude 999, latitude 0: out of range"), "{far}");
+    // Left and right would be exchanged.
+    let factsheet = PathBuf::from(format!("{}/data/small/factsheet.json", env!("CARGO_MANIFEST_DIR")));
+    let options = Options { fleet: Some(factsheet), ..Options::default() };
+    let mirrored = layout(Format::Rmf, &campus("EPSG:32648"), &options, &mut Warnings::default()).unwrap_err();
+    assert!(mirrored.to_string().contains("a contour is refused"), "{mirrored}");
+    assert!(layout(Format::Rmf, &campus("EPSG:3414"), &options, &mut Warnings::default()).is_ok());
 }
 
 /// YAML does not tell where it ends: the rest of a building could be missing without a word.

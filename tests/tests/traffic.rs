@@ -16,7 +16,9 @@ const LEVELS: &str = include_str!("../data/real/rmf/office.building.yaml");
 const STEP: f64 = 0.05;
 
 fn read(format: Format, text: &str, radius: f64) -> Imported {
-    let options = Options { radius: Some(radius), ..Options::default() };
+    // Routes of nav2 round corners where smooth_corners is set.
+    let corner_radius = (format == Format::Nav2).then_some(1.0);
+    let options = Options { radius: Some(radius), corner_radius, ..Options::default() };
     roads(format, text, &options, &mut Warnings::default()).unwrap()
 }
 

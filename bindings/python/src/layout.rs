@@ -3,7 +3,7 @@
 use crate::{json, refused};
 use pcr_formats::import::{Format, Imported, Options};
 use pcr_formats::input;
-use pcr_planning::locks::{Delays, Driving, Locks, rounded};
+use pcr_planning::locks::{Delays, Driving, Locks};
 use pcr_planning::report::DelayTable;
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -93,9 +93,7 @@ impl Layout {
         py.detach(|| {
             let moves = options.acceleration.is_some();
             let (imported, warnings) = input::read_layout(&path, &options, moves).map_err(refused)?;
-            let mut warnings = warnings.all();
-            warnings.extend(rounded(&imported.layout));
-            Ok((Self(imported), warnings))
+            Ok((Self(imported), warnings.all()))
         })
     }
 

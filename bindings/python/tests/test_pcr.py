@@ -135,9 +135,7 @@ class Tool(unittest.TestCase):
         layout, told = pcr.Layout.read(file, graph=2, radius=0.3), tool("locks", file, "--graph", 2, "--radius", 0.3)
         self.assertEqual(layout.warnings, told["warnings"])
         self.assertEqual(len(layout.locks()), len(told["locks"]))
-        # Routes of nav2 round corners, of which locks do not know.
         layout, told = pcr.Layout.read(GRAPH, radius=0.3), tool("locks", GRAPH, "--radius", 0.3)
-        self.assertTrue(any(text.startswith("corners: routes round them") for text in layout.warnings))
         self.assertEqual(layout.warnings, told["warnings"])
 
     def test_warnings_are_those_of_the_file_of_a_fleet(self) -> None:

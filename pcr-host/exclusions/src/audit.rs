@@ -9,7 +9,7 @@ use crate::meetings::Meetings;
 use crate::{Group, Rules, Selection, Stamp, Target, Way, nearest, stretch};
 use pcr_formats::import::{Edge, Id, ImportError, Imported, Layout};
 use pcr_formats::scenario::Placed;
-use pcr_planning::locks::{Lock, LockVehicle, Locks, NodeLock, Rides, corridor, rounded};
+use pcr_planning::locks::{Lock, LockVehicle, Locks, NodeLock, Rides, corridor};
 use serde::Serialize;
 use std::cell::LazyCell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -138,7 +138,7 @@ impl Audit {
             needless: Vec::new(),
             excluded: 0.0,
             needed: 0.0,
-            warnings: imported.layout.warnings.iter().cloned().chain(rounded(&imported.layout)).collect(),
+            warnings: imported.layout.warnings.clone(),
             of_layout: 0,
         };
         audit.of_layout = audit.warnings.len();

@@ -48,7 +48,7 @@ const COLOR: &str = "#A94022";
 pub(crate) const ROUNDING: f64 = 1e-3;
 
 fn parse(text: &str) -> Result<Document<'_>, ImportError> {
-    Document::parse(text.trim_start_matches('\u{feff}')).map_err(|error| ImportError::new(format!("not XML: {error}")))
+    Document::parse(text.trim_start_matches('\u{feff}')).map_err(|error| ImportError::of_xml(text, &error))
 }
 
 fn elements<'a, 'i>(node: Node<'a, 'i>, name: &'static str) -> impl Iterator<Item = Node<'a, 'i>> {

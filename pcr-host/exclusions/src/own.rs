@@ -98,7 +98,7 @@ pub(crate) fn write(imported: &Imported, locks: &Locks) -> Result<String, Import
 
 /// Reads the locks.
 pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
-    let json = |error: serde_json::Error| ImportError::new(format!("not JSON of the expected form: {error}"));
+    let json = |error: serde_json::Error| ImportError::of_json(text, &error, "JSON of the expected form");
     let said: Said = serde_json::from_str(text).map_err(json)?;
     if said.format != FORMAT || said.version != 1 {
         return Err(ImportError::new(format!("format, version: {FORMAT}, 1 are expected")));

@@ -1,10 +1,9 @@
 //! Reports of written exclusions and of audits, for reading and as CSV.
 
 use crate::{Audit, Gap, Spot, Written};
-use pcr_planning::figures::{above, given, thousandths};
-use pcr_planning::locks::LockVehicle;
+use pcr_planning::figures::thousandths;
 use pcr_planning::report::columns::Columns;
-use pcr_planning::report::{Document, counted, printable, quoted};
+use pcr_planning::report::{Document, counted, printable, quoted, vehicle_text};
 use std::io::{self, Write};
 
 impl Document for Written {
@@ -19,13 +18,6 @@ const ROWS: usize = 40;
 
 fn named(layout: &str) -> String {
     printable(if layout.is_empty() { "layout" } else { layout })
-}
-
-fn vehicle(vehicle: &LockVehicle) -> String {
-    match vehicle.discs.len() {
-        0 => format!("radius {} m", given(vehicle.radius)),
-        discs => format!("an outline of {discs} discs within {} m", above(vehicle.radius)),
-    }
 }
 
 fn times(excluded: f64, needed: f64) -> String {
@@ -51,7 +43,7 @@ pub fn written_table(written: &Written, out: &mut dyn Write) -> io::Result<()> {
         written.exclusions,
         counted(written.edges, "edge"),
         counted(written.nodes, "node"),
-        vehicle(&written.vehicle)
+        vehicle_text(&written.vehicle)
     )?;
     let cliques = |least| format!("; if all places of a group have to touch one another, at least {least} are needed");
     let bound = written.at_least.map_or(String::new(), cliques);
@@ -102,7 +94,7 @@ pub fn audit_table(audit: &Audit, out: &mut dyn Write) -> io::Result<()> {
         named(&audit.layout),
         counted(audit.groups, "group"),
         audit.exclusions,
-        vehicle(&audit.vehicle),
+        vehicle_text(&audit.vehicle),
         selected(&audit.selected)
     )?;
     let count = |relation: &str| audit.gaps.iter().filter(|gap| gap.relation == relation).count();

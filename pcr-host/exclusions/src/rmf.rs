@@ -87,6 +87,7 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
             Value::String(name) => name.clone(),
             // Adapters accept any scalar as a name.
             Value::Number(number) => number.to_string(),
+            Value::Bool(true) => "true".to_owned(),
             other => return Err(ImportError::new(format!("{kind} {id}, mutex: {other} where a name is expected"))),
         };
         Ok(vec![*known.entry(name).or_insert_with_key(|name| {

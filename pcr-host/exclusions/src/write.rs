@@ -131,6 +131,7 @@ impl Source<'_> {
         if imported.layout.name.is_empty() {
             self.name.clone_into(&mut imported.layout.name);
         }
+        imported.layout.include_corners();
         Ok(imported)
     }
 

@@ -11,6 +11,7 @@
 //! factsheet   contours and limits of vehicles of VDA 5050 (JSON)
 //! rmf         buildings and fleets of Open-RMF (YAML)
 //! levels      where the levels of such a building are
+//! projection  longitudes and latitudes to metres
 //! opendrive   reference lines of roads (XML)
 //! opentcs     plant models (XML)
 //! ccbs        roadmaps and plans of Continuous-CBS (XML)
@@ -18,6 +19,8 @@
 //! trajectory  NURBS as in VDA 5050 and LIF
 //! nurbs       NURBS to Bézier curves
 //! biarc       curves to lines and arcs, with a certified distance
+//! clothoid    clothoids to arcs, with a proven distance
+//! polynomial  parametric cubic curves of OpenDRIVE to Bézier curves
 //! samples     paths by their points (text)
 //! timed       plans of points and times
 //! stamp       time stamps
@@ -39,6 +42,7 @@
 mod bernstein;
 mod biarc;
 mod ccbs;
+mod clothoid;
 mod corridor;
 mod facing;
 mod factsheet;
@@ -54,6 +58,8 @@ mod nav2;
 mod nurbs;
 mod opendrive;
 mod opentcs;
+mod polynomial;
+mod projection;
 mod rmf;
 mod route;
 mod samples;
@@ -79,7 +85,7 @@ pub use stamp::seconds;
 pub use timed::sectioned;
 pub use useful::Kind;
 pub use value::parse as parse_json;
-pub use vehicle::{CORNER_RADIUS, Facing, HEADING, Options, SizeSource, TOLERANCE, Vehicle};
+pub use vehicle::{Facing, HEADING, Options, SizeSource, TOLERANCE, Vehicle};
 pub use warnings::{Warnings, shortened};
 
 use crate::footprint::Footprint;
@@ -134,11 +140,6 @@ impl Format {
         Self::Path,
         Self::Vda5050,
     ];
-
-    /// The radius with which routes round corners if no other is asked for \[m\].
-    fn corner_radius(self) -> Option<f64> {
-        (self == Self::Nav2).then_some(CORNER_RADIUS)
-    }
 }
 
 impl fmt::Display for Format {
@@ -159,23 +160,71 @@ impl fmt::Display for Format {
 
 /// Why a file was refused.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ImportError(String);
+pub struct ImportError {
+    problem: String,
+    /// Line and character of the text, counted from 1, as far as they are known.
+    line: Option<usize>,
+    column: Option<usize>,
+}
 
 impl ImportError {
     /// For this reason.
     pub fn new(problem: impl Into<String>) -> Self {
-        Self(problem.into())
+        Self { problem: problem.into(), line: None, column: None }
+    }
+
+    /// For something at this line and character, both counted from 1.
+    pub fn at(line: usize, column: Option<usize>, problem: impl Into<String>) -> Self {
+        Self { line: Some(line), column, ..Self::new(problem) }
     }
 
     /// For what is wrong in YAML. (With `From`, the compiler could no longer infer errors of many closures.)
     pub fn of_yaml(error: yaml::Error) -> Self {
-        Self(error.to_string())
+        Self::at(error.line, Some(error.column), error.cause())
+    }
+
+    /// For what is wrong in the XML of a text.
+    pub fn of_xml(text: &str, error: &roxmltree::Error) -> Self {
+        use roxmltree::Error;
+        let (whole, place) = (error.to_string(), error.pos());
+        // Where the parser knows no place, its message has none.
+        match (whole.strip_suffix(&format!(" at {place}")), error) {
+            (Some(problem), _) => Self::at(place.row as usize, Some(place.col as usize), format!("not XML: {problem}")),
+            (None, Error::UnexpectedEndOfStream | Error::UnclosedRootNode | Error::NoRootNode) => {
+                let last = text.rsplit('\n').next().unwrap_or_default();
+                let line = text.matches('\n').count() + 1;
+                Self::at(line, Some(last.chars().count() + 1), format!("not XML: {whole}"))
+            }
+            _ => Self::new(format!("not XML: {whole}")),
+        }
+    }
+
+    /// For what is wrong in the JSON of a text, which ought to be `what`.
+    pub fn of_json(text: &str, error: &serde_json::Error, what: &str) -> Self {
+        let whole = error.to_string();
+        let (line, byte) = (error.line(), error.column());
+        let problem = whole.strip_suffix(&format!(" at line {line} column {byte}"));
+        let Some(problem) = problem.filter(|_| line > 0) else { return Self::new(format!("not {what}: {whole}")) };
+        // Its columns are bytes.
+        let before = text.lines().nth(line - 1).unwrap_or_default().as_bytes();
+        let before = before.get(..byte.saturating_sub(1)).unwrap_or(before);
+        Self::at(line, Some(String::from_utf8_lossy(before).chars().count() + 1), format!("not {what}: {problem}"))
+    }
+
+    /// The message about a file of this name: `file:line:column: problem`, as editors and terminals recognise it.
+    pub fn in_file(&self, name: &str) -> String {
+        let place = [self.line, self.column].into_iter().flatten().map(|number| format!(":{number}"));
+        format!("{name}{}: {}", place.collect::<String>(), self.problem)
     }
 }
 
 impl fmt::Display for ImportError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
+        match (self.line, self.column) {
+            (None, _) => f.write_str(&self.problem),
+            (Some(line), None) => write!(f, "line {line}: {}", self.problem),
+            (Some(line), Some(column)) => write!(f, "line {line}, column {column}: {}", self.problem),
+        }
     }
 }
 
@@ -288,7 +337,7 @@ fn imported(
         Format::Nav2 => nav2::read(text, vehicle.speed, warnings),
         Format::Lif => lif::read(text, options, &vehicle, warnings),
         Format::Rmf => rmf::read(text, options, outline, warnings),
-        Format::OpenDrive => opendrive::read(text, warnings),
+        Format::OpenDrive => opendrive::read(text, options, warnings),
         Format::OpenTcs => opentcs::read(text, options, outline, warnings),
         Format::Ccbs => ccbs::roadmap(text, warnings),
         Format::Grid => Err(ImportError::new("a plan on a grid is not a layout")),
@@ -302,7 +351,7 @@ fn imported(
     if moves {
         layout.one_speed()?;
     }
-    layout.corner_radius = options.corner_radius.or(format.corner_radius());
+    layout.corner_radius = options.corner_radius;
     let off = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.off(&vehicle) - edge.room));
     let off: Vec<_> = off.collect();
     report(&off, warnings);
@@ -369,9 +418,21 @@ fn grown(agent: &Agent, radius: f64, vehicle: &Vehicle) -> f64 {
 fn of_fleet(text: &str, warnings: &mut Warnings) -> Result<Given, ImportError> {
     // JSON is YAML, too, but says better what is wrong with it.
     let json = unmarked(text).trim_start().starts_with('{');
-    let of_yaml = || Document::read(text)?.value();
-    let value = if json { value::parse(text) } else { of_yaml().map_err(ImportError::of_yaml) }?;
-    if factsheet::is_factsheet(&value) { factsheet::read(&value, warnings) } else { rmf::fleet(&value, warnings) }
+    let of_yaml = || {
+        let document = Document::read(text)?;
+        Ok((document.value()?, document.texts()?))
+    };
+    let (value, texts) = if json {
+        let value = value::parse(text)?;
+        (value.clone(), value)
+    } else {
+        of_yaml().map_err(ImportError::of_yaml)?
+    };
+    if factsheet::is_factsheet(&value) {
+        factsheet::read(&value, warnings)
+    } else {
+        rmf::fleet(&value, &texts, warnings)
+    }
 }
 
 /// Reads the vehicle of a fleet: the configuration of Open-RMF, or a factsheet of VDA 5050.
@@ -389,7 +450,8 @@ fn given(options: &Options, warnings: &mut Warnings) -> Result<Given, ImportErro
     if let Some(file) = &options.fleet {
         let failed = |problem: &dyn fmt::Display| ImportError::new(format!("{}: {problem}", file.display()));
         let text = fs::read_to_string(file).map_err(|error| failed(&format_args!("cannot be read: {error}")))?;
-        given = of_fleet(&text, warnings).map_err(|error| failed(&error))?;
+        let name = file.display().to_string();
+        given = of_fleet(&text, warnings).map_err(|error| ImportError::new(error.in_file(&name)))?;
         given.is_of_fleet = given.radius.is_some() || given.footprint.is_some();
         if options.leave_some_of(&given) {
             warnings.use_option("fleet");
@@ -416,12 +478,12 @@ pub fn scenario(
     }
     let mut scenario = match format {
         Format::Ccbs if xml::root_of(text) != Some("graphml") => {
-            let vehicle = of_plan(options, "the default of the program", warnings)?;
+            let vehicle = of_plan(options, ccbs::DEFAULT, warnings)?;
             with_margin(ccbs::log(text, &vehicle)?, &vehicle)
         }
         Format::Grid => {
-            let largest = "the largest with which no plan on a grid has a contact";
-            let vehicle = of_plan(options, largest, warnings)?;
+            let default = (grid::RADIUS, "with which no valid plan has a contact");
+            let vehicle = of_plan(options, default, warnings)?;
             if value::is_open(text) {
                 warnings.add(
                     WarningCode::MayBeCut,
@@ -433,7 +495,7 @@ pub fn scenario(
         }
         Format::Nav2 | Format::Lif | Format::Rmf | Format::OpenDrive | Format::OpenTcs | Format::Ccbs => {
             let Imported { layout, vehicle } = imported(format, text, options, true, warnings)?;
-            let scenario = route::scenario(&layout, &vehicle, options, format.corner_radius(), warnings)?;
+            let scenario = route::scenario(&layout, &vehicle, options, warnings)?;
             report_routes(&layout, &scenario, &vehicle, warnings);
             scenario
         }
@@ -470,12 +532,17 @@ fn with_margin(mut scenario: Scenario, vehicle: &Vehicle) -> Scenario {
     scenario
 }
 
-/// The vehicle of a plan, which gives no radius.
-fn of_plan(options: &Options, why: &str, warnings: &mut Warnings) -> Result<Vehicle, ImportError> {
+/// The vehicle of a plan, which gives no radius: a default \[m\], and why it is that.
+fn of_plan(options: &Options, default: (f64, &str), warnings: &mut Warnings) -> Result<Vehicle, ImportError> {
     let mut given = given(options, warnings)?;
     if options.radius.is_none() && given.radius.is_none() && given.footprint.is_none() {
-        warnings.add(WarningCode::AssumedVehicle, "radius", format!("not in the file; {why}, √2/4, is taken"));
-        given.radius = Some(ccbs::RADIUS);
+        let (radius, why) = default;
+        warnings.add(
+            WarningCode::AssumedVehicle,
+            "radius",
+            format!("not in the file and not given, hence taken as {radius} m, {why}"),
+        );
+        given.radius = Some(radius);
     }
     Ok(options.vehicle(&given, false, warnings))
 }

@@ -48,8 +48,12 @@ impl fmt::Display for InputError {
         match self {
             Self::Unreadable(file, error) => write!(f, "{}: cannot be read: {error}", name(file)),
             Self::NotText(file) => write!(f, "{}: not text in UTF-8", name(file)),
-            Self::Refused(file, error) => write!(f, "{}:{}: {error}", name(file), error.line()),
-            Self::Foreign(file, format, error) => write!(f, "{}: {error} (read as {format})", name(file)),
+            Self::Refused(file, error) => {
+                // As editors and terminals recognise it.
+                let column = error.column().map_or_else(String::new, |column| format!(":{column}"));
+                write!(f, "{}:{}{column}: {error}", name(file), error.line())
+            }
+            Self::Foreign(file, format, error) => write!(f, "{} (read as {format})", error.in_file(&name(file))),
             Self::Empty(file, what) => write!(f, "{}: empty; {what} is expected", name(file)),
             Self::Unknown(file) => write!(
                 f,

@@ -15,6 +15,8 @@
 //!
 //! - Metres, seconds, radians. `sweep` is positive to the left and may be more than a turn. A segment starts in the
 //!   pose in which the one before it ends; one of length 0 is skipped.
+//! - `heading_deg`, `sweep_deg`, `turn_v_max_deg` and `turn_a_max_deg` are degrees instead of radians. A `heading` or `sweep` above one
+//!   turn causes a warning, unless the file has `"angles": "radians"` beside `agents`.
 //! - An empty path, or one of length 0, is an agent that stands at its start for the whole time.
 //! - The motion is from rest to rest in the least time under `v_max` and `a_max`. Instead an agent may have
 //!   `"profile": { "v0": 0.5, "pieces": [ { "duration": 2.0, "accel": 0.0 } ] }`: the speed at the start, then constant
@@ -36,6 +38,7 @@
 //! Whatever is out of range, missing, unknown, repeated or not finite is refused by a [`ScenarioError`] that names the
 //! agent, the segment, the field, the value and what is allowed there. Hence the scenario is decoded by hand.
 
+mod angles;
 mod decode;
 mod encode;
 mod fields;

@@ -91,8 +91,8 @@ codes! {
     BrokenLink = "broken-link",
     /// An object is neither a node nor an edge.
     NotInGraph = "not-in-graph",
-    /// Routes round corners, and leave their edges by a distance that a margin has to cover.
-    CornerSmoothing = "corner-smoothing",
+    /// The programs that the file is for exchange its axes, so that left and right are exchanged, and so does the reader.
+    MirroredAxes = "mirrored-axes",
     /// Orientations are not read; the outline of the vehicle faces along its path.
     Orientation = "orientation",
     /// A vehicle may turn in place by half a turn to either side; only one side is covered.
@@ -149,6 +149,8 @@ codes! {
     MissingLetters = "missing-letters",
     /// Fewer parking endpoints are free than there are vehicles.
     ParkingEndpoints = "parking-endpoints",
+    /// An angle in radians is above one turn, and probably meant in degrees.
+    AngleUnit = "angle-unit",
     /// The warning is from a file of an earlier version, which had no codes.
     Uncoded = "uncoded",
 }

@@ -32,10 +32,17 @@ pub struct Error {
     pub is_limit: bool,
 }
 
+impl Error {
+    /// What is wrong, without its place.
+    pub fn cause(&self) -> String {
+        let what = if self.is_limit { "too large or too deep" } else { "not YAML" };
+        format!("{what}: {}", self.problem)
+    }
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let what = if self.is_limit { "too large or too deep" } else { "not YAML" };
-        write!(f, "{what}: line {} column {}: {}", self.line, self.column, self.problem)
+        write!(f, "line {}, column {}: {}", self.line, self.column, self.cause())
     }
 }
 
@@ -393,14 +400,14 @@ mod tests {
     #[test]
     fn errors_tell_their_places() {
         for (text, expected) in [
-            ("a: 1\nb: [é, 'x\n", "not YAML: line 2 column 8: unclosed quote"),
-            ("a: 1\nb: {x: [1,\n", "not YAML: line 2 column 8: unclosed bracket '['"),
-            ("é: 1\né: 2", "not YAML: line 2 column 1: \"é\" is there twice"),
-            ("[é, .nan]", "not YAML: line 1 column 5: .nan is not a finite number"),
-            ("--- 1\n--- 2", "not YAML: line 2 column 1: a second document begins"),
-            ("a: !include b.yaml", "not YAML: line 1 column 13: what has the tag !include is not read"),
-            ("a: !!map [1]", "not YAML: line 1 column 10: the tag !!map does not fit"),
-            ("1\n...\n@", "not YAML: line 3 column 1: unexpected character: `@'"),
+            ("a: 1\nb: [é, 'x\n", "line 2, column 8: not YAML: unclosed quote"),
+            ("a: 1\nb: {x: [1,\n", "line 2, column 8: not YAML: unclosed bracket '['"),
+            ("é: 1\né: 2", "line 2, column 1: not YAML: \"é\" is there twice"),
+            ("[é, .nan]", "line 1, column 5: not YAML: .nan is not a finite number"),
+            ("--- 1\n--- 2", "line 2, column 1: not YAML: a second document begins"),
+            ("a: !include b.yaml", "line 1, column 13: not YAML: what has the tag !include is not read"),
+            ("a: !!map [1]", "line 1, column 10: not YAML: the tag !!map does not fit"),
+            ("1\n...\n@", "line 3, column 1: not YAML: unexpected character: `@'"),
         ] {
             let error = Document::read(text).and_then(|document| document.value()).unwrap_err();
             assert_eq!(error.to_string(), expected);

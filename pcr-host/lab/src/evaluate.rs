@@ -242,6 +242,9 @@ const TABLE_VI: [(&str, [usize; 2], [f64; 3], &str); 6] = [
     ("table6-100.json", [100, 2_478], [255.7, 2_032_841.0, 53_619.0], "159 KB / 202 MB"),
 ];
 
+/// Radius with which the missions on layouts round corners \[m\]: that of nav2, if it does.
+const CORNER_RADIUS: f64 = 1.0;
+
 impl Fleets {
     fn read(data: &Path, extent: Extent) -> Result<Self, Problem> {
         let rows = match extent {
@@ -263,7 +266,7 @@ impl Fleets {
         let path = self.data.join("real/nav2/warehouse_graph.geojson");
         let problem = |problem: String| Problem::File(path.clone(), problem);
         let text = fs::read_to_string(&path).map_err(|error| problem(format!("cannot be read: {error}")))?;
-        let options = Options { radius: Some(radius), ..Options::default() };
+        let options = Options { radius: Some(radius), corner_radius: Some(CORNER_RADIUS), ..Options::default() };
         // What it assumes about speeds goes for all agents alike.
         let imported = import::roads(Format::Nav2, &text, &options, &mut Warnings::default());
         imported.map_err(|error| problem(error.to_string()))

@@ -27,7 +27,6 @@ pub use pass::{Found, Told};
 use pcr_formats::footprint::Disc;
 use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Layout};
 use pcr_formats::scenario::{Agent, Scenario};
-use pcr_formats::warning::WarningCode;
 use rides::Ride;
 pub use rides::{Rides, corridor};
 use serde::Serialize;
@@ -61,6 +60,9 @@ pub struct LockVehicle {
     pub name: Option<String>,
     /// Radius of its disc \[m\], with margin; for a footprint that of the disc around all of it.
     pub radius: f64,
+    /// By how much it is larger on edges at rounded corners, if these are included \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub corner_margin: Option<f64>,
     /// For a footprint: no point of a disc is farther than this from the outline \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub overhang: Option<f64>,
@@ -140,13 +142,14 @@ impl Locks {
             vehicle: LockVehicle {
                 name: vehicle.name.clone(),
                 radius: vehicle.radius,
+                corner_margin: Some(layout.corner_margin).filter(|margin| *margin > 0.0),
                 overhang: footprint.map(|footprint| footprint.overhang()),
                 discs: footprint.map_or_else(Vec::new, |footprint| footprint.discs().to_vec()),
             },
             locks: Vec::new(),
             nodes: nodes.then(Vec::new),
             node_pairs: nodes.then(Vec::new),
-            warnings: layout.warnings.iter().cloned().chain(rounded(layout)).collect(),
+            warnings: layout.warnings.clone(),
         }
     }
 
@@ -166,15 +169,6 @@ impl Locks {
             (false, _) => self.node_pairs.get_or_insert_default().push([a_id, b_id]),
         }
     }
-}
-
-/// A warning for layouts whose routes round corners.
-pub fn rounded(layout: &Layout) -> Option<String> {
-    let radius = layout.corner_radius.filter(|radius| *radius > 0.0)?;
-    Some(WarningCode::CornerSmoothing.text(format_args!(
-        "corners: routes round them with {radius} m, off their edges by up to {radius} m (1 - cos(a/2)) in a turn by a; locks are those of \
-         vehicles that keep to the edges: give that as --margin"
-    )))
 }
 
 /// The swept areas of vehicles on all edges and nodes of each level, as the agents from whose regions the locks are computed. A

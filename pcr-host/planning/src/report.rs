@@ -18,7 +18,7 @@ pub use conflicts::{CONFLICTS_CSV_HEADER, conflicts_csv, conflicts_table};
 pub use delays::{DELAYS_HEADER, Delay, DelayTable, NodeTimes, delays_csv, delays_lines, delays_table};
 pub use locks::{
     EDGE_HEADER, EdgeLocks, LOCKS_HEADER, LocksUnprinted, edge_csv, edge_table, kept_locks_csv, locks_csv, locks_lines,
-    locks_table,
+    locks_table, vehicle_text,
 };
 pub use nodes::{nodes_csv, nodes_table};
 pub use overview::overview;

@@ -12,7 +12,6 @@ use pcr_formats::input;
 use pcr_formats::scenario::Labels;
 use pcr_planning::certify::{Certified, Dump, Table};
 use pcr_planning::failure::Failure;
-use pcr_planning::locks::rounded;
 use pcr_planning::regions::table_of;
 use pcr_planning::{locks, report};
 use std::io::Write;
@@ -124,7 +123,7 @@ impl Arguments {
         let scenarios = match input::kind_of(file, &text, &self.import) {
             Kind::Layout(_) if self.import.one_of(&["routes"]).is_none() => {
                 let imported = layout_from(file, &text, &self.import, STANDING, false)?;
-                warnings.extend(imported.layout.warnings.iter().cloned().chain(rounded(&imported.layout)));
+                warnings.extend(imported.layout.warnings.iter().cloned());
                 acknowledge(&mut warnings);
                 locks::scenarios(&imported).map_err(|error| Stop::wrong(file, error))?
             }

@@ -1,7 +1,7 @@
 //! `pcr compare`.
 
 use super::sources::{gathered, without_margin};
-use super::{SCENARIOS, Stop, folder, quiet, statuses};
+use super::{SCENARIOS, Stop, folder, quiet, statuses, whole_within};
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_comparing::compare::{self, Comparison, Effort, Question};
@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     #[arg(long = "method", value_name = "WORD")]
     methods: Vec<String>,
     /// Rounds, 1 to 1000; slow methods have fewer
-    #[arg(long, value_name = "N", default_value_t = 51, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 51, value_parser = |text: &str| whole_within::<u16>(text, 1, 1000))]
     rounds: u16,
     /// table, markdown, json or csv
     #[arg(long, value_enum, default_value_t = Output::Table, hide_possible_values = true)]

@@ -7,7 +7,7 @@ use super::{CONFLICTS, Form, Printed, Stop, is_standard, warn_of_boxes, write_ov
 use clap::Args;
 use pcr_drawing as picture;
 use pcr_exclusions::{Audit, Selection, Settings, Target, report, sized};
-use pcr_formats::import::{Format, Imported, Options};
+use pcr_formats::import::{Format, ImportError, Imported, Options};
 use pcr_formats::input;
 use pcr_planning::report::json;
 use std::io::Write;
@@ -85,7 +85,7 @@ impl Asked {
         let name = input::stem(file);
         // What is to be said of the layout has been said when it was read.
         let (written, mut report, _) = pcr_exclusions::write(format, &content, import, &name, &settings)
-            .map_err(|error| Stop::wrong(file, error))?;
+            .map_err(|error| Stop::refused(file, &error))?;
         acknowledge_parts(&mut report.warnings, &mut report.of_layout);
         // A layout may get what keeps its vehicles apart; a table of that is no layout.
         write_over(output, &written, file, || Ok(target.layout() == Some(format)))?;
@@ -123,7 +123,7 @@ impl Asked {
             None => import.from.or_else(|| Format::of(file, &content)).and_then(Target::of_layout),
         };
         let target = target.ok_or_else(|| unread(source, &content, beside.is_some()))?;
-        let wrong = |error| Stop::wrong(source, error);
+        let wrong = |error: ImportError| Stop::refused(source, &error);
         let rules = pcr_exclusions::read(target, &content, &imported).map_err(wrong)?;
         let locks = pcr_exclusions::table(&imported).map_err(wrong)?;
         let mut audit = Audit::of_some(&imported, &locks, &rules, target, &selection).map_err(wrong)?;

@@ -4,7 +4,7 @@ mod run;
 
 pub(super) use run::{Crew, Run, world};
 
-use super::{Stop, whole};
+use super::{Stop, number, whole};
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -37,7 +37,7 @@ pub(super) struct Arguments {
     /// Layout (goals: its safe ends); standard input if left out or `-`
     layout: Option<PathBuf>,
     /// A site of N streets each way, instead of a layout
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = |text: &str| number::<usize>(text, "a whole number from 2 to 100"))]
     streets: Option<usize>,
     /// Address of the broker
     #[arg(long, value_name = "HOST:PORT", default_value = "localhost:1883")]
@@ -52,10 +52,10 @@ pub(super) struct Arguments {
     #[arg(long, value_names = ["M", "V"], num_args = 2, default_values = ["fleet", "uagv"])]
     topics: Vec<String>,
     /// Speed relative to real time, 0.1 to 100
-    #[arg(long, value_name = "N", default_value_t = 1.0)]
+    #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = |text: &str| number::<f64>(text, "a number from 0.1 to 100"))]
     pace: f64,
     /// End after this simulated time
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = |text: &str| number::<f64>(text, "a number from 0.1 to 1e7"))]
     time: Option<f64>,
     /// After --time, continue until all missions are done or none is completed for 1 h
     #[arg(long)]
@@ -64,10 +64,10 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "METHOD")]
     alone: Option<String>,
     /// Lost connections of a vehicle per hour
-    #[arg(long, value_name = "N", default_value_t = 0.0)]
+    #[arg(long, value_name = "N", default_value_t = 0.0, value_parser = |text: &str| number::<f64>(text, "a number from 0 to 1e4"))]
     drops: f64,
     /// Fraction of messages lost; the same fraction is repeated, and the same is late
-    #[arg(long, value_name = "PART", default_value_t = 0.0)]
+    #[arg(long, value_name = "PART", default_value_t = 0.0, value_parser = |text: &str| number::<f64>(text, "a number from 0 to 0.5"))]
     weather: f64,
     /// The same seed makes the same vehicles
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]

@@ -5,7 +5,7 @@
 
 use super::rules::{ruled, unmet};
 use super::tips::with_tip;
-use super::{Arguments, Stop};
+use super::{Arguments, Stop, UNITS};
 use clap::{Arg, ArgAction, Command, CommandFactory, FromArgMatches};
 use std::ffi::OsString;
 use std::io::{self, IsTerminal, Write};
@@ -86,12 +86,19 @@ fn tailored(command: Command, long: bool) -> Command {
     });
     let command = with_help(command, long);
     match (long, layouts) {
+        (true, _) if READ_SCENARIOS.contains(&name.as_str()) => {
+            let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+            command.after_help(format!("{UNITS}\n\n{after}"))
+        }
         (true, _) => command,
         (false, true) => command
             .after_help(format!("Options for layouts and other formats, examples, exit statuses: pcr {name} --help")),
         (false, false) => command.after_help(format!("Examples and exit statuses: pcr {name} --help")),
     }
 }
+
+/// Commands that read scenarios, whose units their help has.
+const READ_SCENARIOS: [&str; 7] = ["regions", "certify", "check", "plan", "map", "simulate", "compare"];
 
 /// With the option for help, which says of itself that there is more only where there is.
 fn with_help(command: Command, long: bool) -> Command {
@@ -111,11 +118,9 @@ pub(super) fn useless(command: &str) -> &'static [&'static str] {
     match command {
         "import" => &["from"],
         // Rotation is of use for arcs with --acceleration only.
-        "locks" => &["routes", "corner_radius", "horizon"],
+        "locks" => &["routes", "horizon"],
         DRIVING => &["routes", "corner_radius", "horizon"],
-        STANDING => {
-            &["routes", "speed", "acceleration", "rotation", "rotation_acceleration", "corner_radius", "horizon"]
-        }
+        STANDING => &["routes", "speed", "acceleration", "rotation", "rotation_acceleration", "horizon"],
         "traffic" => &["routes", "horizon"],
         "check" | "compare" | "map" => &["margin"],
         "nodes" => &[

@@ -49,7 +49,7 @@ pub(super) struct Arguments {
     /// Print the start delays with which vehicles touch; at --speed, with --acceleration from rest to rest
     #[arg(long)]
     delays: bool,
-    /// Print JSON Lines, a lock a line, for tables of any size
+    /// JSON Lines, one lock per line, for tables of any size
     #[arg(long, hide_short_help = true)]
     lines: bool,
     /// Only this edge or node; with --audit repeat it for more

@@ -2,7 +2,7 @@
 
 use super::number::{Number, with_scalar};
 use super::work::{Work, run};
-use super::{Form, Printed, SCENARIOS, Stop, statuses};
+use super::{Form, Printed, SCENARIOS, Stop, statuses, whole_within};
 use clap::Args;
 use clap::builder::NonEmptyStringValueParser;
 use pcr_formats::import::Options;
@@ -25,7 +25,7 @@ Examples:
   pcr regions - --format json < fleets.jsonl   JSON Lines: a scenario a line";
 
 /// Slices that are given for a region: more than any picture or table can use, and not more than memory holds.
-const MOST_SLICES: i64 = 10_000;
+const MOST_SLICES: u64 = 10_000;
 
 /// Print the collision regions of a scenario
 #[derive(Args)]
@@ -40,7 +40,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "ID", value_parser = NonEmptyStringValueParser::new())]
     agent: Option<String>,
     /// Add the lengths inside each region at N times (JSON only)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=MOST_SLICES))]
+    #[arg(long, value_name = "N", value_parser = |text: &str| whole_within::<u32>(text, 0, MOST_SLICES))]
     slices: Option<u32>,
     /// Add the table itself for `pcr certify --table` (JSON only)
     #[arg(long)]

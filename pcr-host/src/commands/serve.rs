@@ -6,7 +6,7 @@ mod listen;
 mod run;
 mod threads;
 
-use super::{Stop, whole};
+use super::{Stop, whole, within};
 use clap::Args;
 use pcr_serve::log::{Level, Log};
 use std::fmt::Display;
@@ -55,13 +55,13 @@ pub(super) struct Arguments {
     #[arg(long)]
     stay: bool,
     /// How near to its hold a waiting robot's reported position has to come, in m [0.1; VDA 5050: 0.3]
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", value_parser = |text: &str| within(text, 0.001, 10.0))]
     width: Option<f64>,
     /// Tell a robot to go on this long before it must brake, in s [2; VDA 5050: 8, also the least]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = |text: &str| within(text, 0.1, 600.0))]
     lookahead: Option<f64>,
     /// A robot is silent after this time, in s
-    #[arg(long, value_name = "S", default_value_t = 5.0)]
+    #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = |text: &str| within(text, 0.1, 86400.0))]
     silence: f64,
     /// Broker of a fleet of VDA 5050; user and password from PCR_BROKER_USER, PCR_BROKER_PASSWORD
     #[arg(long, value_name = "HOST:PORT")]

@@ -1,7 +1,9 @@
 //! `pcr simulate`.
 
 use super::sources::source;
-use super::{CONFLICTS, Form, Printed, Stop, acknowledge, is_standard, say, scenario, whole, write_to};
+use super::{
+    CONFLICTS, Form, Printed, Stop, acknowledge, is_standard, say, scenario, whole, whole_within, within, write_to,
+};
 use crate::progress::Progress;
 use clap::{Args, ValueEnum};
 use pcr_drawing::replay;
@@ -66,7 +68,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = |text: &str| within(text, 0.0, 3600.0))]
     delay: f64,
     /// Trips of each foraging robot (3 if left out)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, value_name = "N", value_parser = |text: &str| whole_within::<u32>(text, 1, 1000))]
     trips: Option<u32>,
     /// A page to watch the runs; `-` for standard output
     #[arg(short, long, value_name = "FILE")]
@@ -92,11 +94,6 @@ impl Choice {
             Self::Orca => Controller::Orca,
         }
     }
-}
-
-fn within(text: &str, lo: f64, hi: f64) -> Result<f64, String> {
-    let number: f64 = text.parse().map_err(|_| "it is no number".to_owned())?;
-    if (lo..=hi).contains(&number) { Ok(number) } else { Err(format!("allowed is {lo} to {hi}")) }
 }
 
 impl Arguments {

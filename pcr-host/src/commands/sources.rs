@@ -6,7 +6,7 @@ use pcr_formats::import::{Imported, Kind, Options, Warnings, shortened};
 use pcr_formats::input::InputError;
 use pcr_formats::scenario::{Agent, Scenario, label, printable};
 use pcr_formats::{input, output};
-use pcr_planning::locks::{Index, rounded};
+use pcr_planning::locks::Index;
 use pcr_planning::memory;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
@@ -322,8 +322,8 @@ pub(super) fn layout_from(
     })?;
     warn(file, &warnings);
     acknowledge(&mut imported.layout.warnings);
-    if matches!(command, DRIVING | STANDING) {
-        say(file, rounded(&imported.layout));
+    if command == STANDING {
+        imported.layout.include_corners();
     }
     Ok(imported)
 }

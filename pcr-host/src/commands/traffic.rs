@@ -2,7 +2,7 @@
 
 use super::printed::notes;
 use super::sources::{layout, layout_source};
-use super::{CONFLICTS, Form, Printed, Stop, acknowledge, folder, map, say, whole, write_to};
+use super::{CONFLICTS, Form, Printed, Stop, acknowledge, folder, map, say, whole, whole_within, write_to};
 use crate::progress::Progress;
 use clap::Args;
 use pcr_drawing::Ground;
@@ -40,7 +40,7 @@ pub(super) struct Arguments {
     /// The layout; standard input if left out or `-`
     layout: Option<PathBuf>,
     /// Agents; a mission each, or many with --hours [default: as many as there is room for, up to 50]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, value_name = "N", value_parser = |text: &str| whole_within::<u16>(text, 1, u16::MAX.into()))]
     agents: Option<u16>,
     /// The same seed gives the same missions
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]

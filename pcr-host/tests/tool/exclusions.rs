@@ -126,39 +126,91 @@ fn what_cannot_be_done_is_refused() {
     assert!(!std::path::Path::new(&written).exists());
 }
 
-/// Routes of nav2 leave the edges at corners, and locks are of the edges.
+/// Vehicles that round corners leave the edges there: by R (1 - cos(a/2)) in a turn by a, if there is room for the arc.
 #[test]
-fn that_routes_round_corners_is_said_by_whoever_looks_at_edges() {
-    let (nav2, lif, written) =
-        (real("nav2/sample_graph.geojson"), real("lif/example_07.lif.json"), output("said.geojson"));
-    let corners = "corners: routes round them with 1 m, off their edges by up to";
-    let count = |arguments: &[&str]| run(&[arguments, &["--radius", "0.3"]].concat()).err.matches(corners).count();
-    let write = ["locks", &nav2, "--write", "nav2", "-o", &written];
-    for arguments in [
-        &["locks", &nav2][..],
-        &["locks", &nav2, "--format", "csv"],
-        &["locks", &nav2, "--json"],
-        &["locks", &nav2, "--lines"],
-        &write,
-        &["locks", &written, "--audit"],
-        &["certify", &nav2],
-    ] {
-        assert_eq!(count(arguments), 1, "{arguments:?}");
-        assert_eq!(count(&[arguments, &["-q"]].concat()), 0, "{arguments:?}");
-    }
-    assert_eq!(count(&["locks", &lif]), 0);
-    // A layout that comes in by a pipe.
-    let layout = fs::read_to_string(&nav2).unwrap();
-    let piped = run_with(
-        &["locks", "-", "--radius", "0.3", "--from", "nav2", "--write", "nav2", "-o", &written],
-        layout.as_bytes(),
+fn locks_include_rounded_corners_if_that_is_asked_for() {
+    // Two edges of 5 m at a right angle, both ways, and two edges beside them; no way leads from one to the other.
+    let (edge, node) = (
+        |id: u32, from: u32, to: u32| {
+            json!({ "type": "Feature", "properties": { "id": id, "startid": from, "endid": to },
+            "geometry": { "type": "LineString", "coordinates": [] } })
+        },
+        |id: u32, x: f64, y: f64| {
+            json!({ "type": "Feature", "properties": { "id": id },
+            "geometry": { "type": "Point", "coordinates": [x, y] } })
+        },
     );
-    assert_eq!((piped.status, piped.err.matches(corners).count()), (0, 1), "{}", piped.err);
-    for asked in [&["locks", &written, "--audit", "--json"][..], &[&write[..], &["--json"]].concat()] {
-        let report: Value = serde_json::from_str(&run(&[asked, &["--radius", "0.3"]].concat()).out).unwrap();
-        let warnings = report["warnings"].as_array().unwrap();
-        assert!(warnings.iter().any(|said| said.as_str().unwrap().contains(corners)), "{report}");
+    let features = [
+        node(0, 0.0, 0.0),
+        node(1, 5.0, 0.0),
+        node(2, 5.0, 5.0),
+        node(3, 0.0, 0.7),
+        node(4, 4.0, 0.7),
+        edge(10, 0, 1),
+        edge(11, 1, 2),
+        edge(12, 2, 1),
+        edge(13, 1, 0),
+        edge(14, 3, 4),
+    ];
+    let name =
+        file("exclusions", "corner.geojson", json!({ "type": "FeatureCollection", "features": features }).to_string());
+    let locks = |more: &[&str]| {
+        let run = run(&[&["locks", &name, "--radius", "0.3", "--json"], more].concat());
+        assert_eq!((run.status, run.err.as_str()), (0, ""), "{more:?}");
+        serde_json::from_str::<Value>(&run.out).unwrap()
+    };
+    let pairs = |table: &Value| -> Vec<[u64; 2]> {
+        let all = table["locks"].as_array().unwrap().iter();
+        all.map(|lock| ["a", "b"].map(|end| lock[end].as_u64().unwrap())).collect()
+    };
+    // nav2 does not round corners by default, and nothing is said.
+    let none = locks(&[]);
+    assert!(!pairs(&none).contains(&[10, 14]) && none["vehicle"]["corner_margin"].is_null());
+    for radius in ["0", "5.1"] {
+        assert_eq!(locks(&["--corner-radius", radius]), none, "{radius}");
     }
+    let rounded = locks(&["--corner-radius", "1"]);
+    let margin = 1.0 - 0.5_f64.sqrt();
+    assert!((rounded["vehicle"]["corner_margin"].as_f64().unwrap() - margin).abs() < 1e-9, "{rounded}");
+    // The edge beside it is 0.7 m away, and 0.6 m are two radii.
+    assert!(pairs(&rounded).contains(&[10, 14]) && pairs(&rounded).contains(&[13, 14]), "{rounded}");
+    // As with a margin of as much, which all edges of the corner have.
+    let wider = locks(&["--margin", &margin.to_string()]);
+    let of = |table: &Value| -> Vec<Value> {
+        let all = table["locks"].as_array().unwrap().iter();
+        all.filter(|lock| lock["b"] != json!(14)).cloned().collect()
+    };
+    let (own, with_margin) = (of(&rounded), of(&wider));
+    assert_eq!(own.len(), with_margin.len());
+    for (own, wider) in own.iter().zip(&with_margin) {
+        for side in ["a_length", "b_length"] {
+            for end in 0..2 {
+                let [own, wider] = [own, wider].map(|lock| lock[side][end].as_f64().unwrap());
+                assert!((own - wider).abs() < 1e-6, "{own} {wider}");
+            }
+        }
+    }
+    // Everything that is about locks takes it, and says it.
+    let (guarded, index) = (output("corners.geojson"), output("corners.locks"));
+    let text = "up to 0.293 m more for rounded corners";
+    let rounding = ["--radius", "0.3", "--corner-radius", "1"];
+    let printed = |arguments: &[&str]| {
+        let run = run(&[arguments, &rounding].concat());
+        assert_eq!(run.status, 0, "{arguments:?}: {}{}", run.out, run.err);
+        format!("{}{}", run.out, run.err)
+    };
+    assert!(printed(&["locks", &name]).contains(text));
+    assert!(printed(&["locks", &name, "--write", "nav2", "-o", &guarded]).contains(text));
+    assert!(printed(&["locks", &guarded, "--audit"]).contains(text));
+    printed(&["certify", &name]);
+    // A file for vehicles that keep to their edges does not suffice for those that round corners; a table of locks is of one of both.
+    let keep = run(&["locks", &name, "--radius", "0.3", "--write", "nav2", "-o", &guarded]);
+    assert_eq!(keep.status, 0, "{}", keep.err);
+    assert_eq!(run(&[&["locks", &guarded, "--audit"], &rounding[..]].concat()).status, 1);
+    printed(&["locks", &name, "--index", &index]);
+    printed(&["locks", &name, "--index", &index, "--edge", "10"]);
+    let other = run(&["locks", &name, "--radius", "0.3", "--index", &index, "--edge", "10"]).failed(2);
+    assert!(other.contains("another layout or vehicle"), "{other}");
 }
 
 /// openTCS reads models by these schemas. Of 0.0.2 there were several: the first one wants numbers, and knows no types of blocks.

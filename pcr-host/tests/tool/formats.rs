@@ -136,7 +136,7 @@ fn damaged_files_are_refused_by_name() {
     let cases = [
         ("a.geojson", part("nav2/warehouse_graph.geojson", 3000), "not JSON: EOF while parsing"),
         ("a.lif.json", part("lif/example_07.lif.json", 2000), "not JSON: EOF while parsing"),
-        ("a.building.yaml", part("rmf/office.building.yaml", 3000), "not YAML: line 44"),
+        ("a.building.yaml", part("rmf/office.building.yaml", 3000), "a.building.yaml:44:"),
         ("a.xodr", part("opendrive/Town01.planview.xodr", 4000), "not XML: unexpected end of stream"),
         ("a.xml", part("opentcs/Demo-01.xml", 5000), "not XML: unexpected end of stream"),
         ("b.geojson", part("opentcs/Demo-01.xml", 5000), "not JSON: expected value"),
@@ -151,11 +151,18 @@ fn damaged_files_are_refused_by_name() {
     for (name, content, expected) in cases {
         let name = file("damaged", name, content);
         let failed = run(&["locks", &name, "--radius", "0.4"]).failed(2);
-        assert!(failed.starts_with(&format!("pcr: {name}: ")) && failed.contains(expected), "{failed}");
+        // The line and the column of what is wrong in the text are where editors and terminals look for them.
+        let place = failed.strip_prefix(&format!("pcr: {name}:")).unwrap_or_else(|| panic!("{failed}"));
+        let is_placed = place.split(':').take(2).all(|number| number.parse::<usize>().is_ok());
+        let is_text =
+            ["not JSON", "not YAML", "not XML", "number out of range"].iter().any(|fault| failed.contains(fault));
+        assert!(failed.contains(expected) && is_placed == is_text, "{failed}");
     }
     let huge = file("damaged", "huge.path", "0 0\n1e308 0\n");
     assert!(
-        run(&["regions", &huge, "--radius", "0.4"]).err.contains("line 2: two numbers x y up to 1e10 are expected")
+        run(&["regions", &huge, "--radius", "0.4"])
+            .err
+            .contains("huge.path:2:1: two numbers x y up to 1e10 are expected")
     );
     // A graph is known by its content, too.
     let graph = file("damaged", "graph.json", std::fs::read(real("nav2/aws_graph.geojson")).unwrap());

@@ -35,7 +35,7 @@ fn a_bad_line_is_answered_in_its_place_and_the_run_goes_on() {
         answers[1],
         json!({ "format": "pcr-regions", "version": 1, "name": "bad", "scalar": "f64", "regions": [], "error": message, "warnings": [] })
     );
-    assert_eq!(answers[2]["error"], json!("line 5: column 2: ] where a key in quotes is expected"));
+    assert_eq!(answers[2]["error"], json!("line 5, column 2: ] where a key in quotes is expected"));
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn tables_and_csv_of_lines_have_their_errors_on_standard_error() {
     let csv = run_with(&["regions", "-", "--format", "csv"], input.as_bytes());
     let names: Vec<&str> = csv.out.lines().map(|line| line.split(',').next().unwrap()).collect();
     assert_eq!(names, ["name", "first", "first", "last", "last"]);
-    let message = "pcr: standard input: line 2: column 1: nonsense where a value is expected\n\
+    let message = "pcr: standard input: line 2, column 1: nonsense where a value is expected\n\
                    pcr: standard input: 1 of 3 scenarios refused\n";
     assert_eq!((csv.status, csv.err.as_str()), (2, message));
     let table = run_with(&["regions", "-"], input.as_bytes());

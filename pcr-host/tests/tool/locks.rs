@@ -355,9 +355,7 @@ fn delays_are_those_of_the_closed_form_in_every_form() {
     let csv = run(&[&arguments[..], &["--format", "csv"]].concat()).ok();
     assert!(csv.starts_with("a,a_direction,b,b_direction,from,to\n7,forward,7,forward,-0.5"), "{csv}");
     assert_eq!(csv.lines().count(), 1 + found.len());
-    let table = run(&arguments[..8]);
-    assert!(table.err.contains("corners: routes round them with 1 m"), "{}", table.err);
-    let text = table.out;
+    let text = run(&arguments[..8]).ok();
     let expected = "\
 delays: 3 intervals of unsafe delays, radius 0.25 m, at 1 m/s
   a   b   b later by [s]     to

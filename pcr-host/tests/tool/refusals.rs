@@ -74,7 +74,7 @@ fn lines_of_the_file_are_named() {
     assert_eq!(message(text.replace('\n', "\r\n"), &[]), expected);
     let broken = text.replacen("true", "true false", 1);
     let column = 2 + broken.lines().nth(line - 1).unwrap().find(" false").unwrap();
-    assert_eq!(message(broken, &[]), format!("{line}: column {column}: false where `,` or `}}` is expected"));
+    assert_eq!(message(broken, &[]), format!("{line}:{column}: false where `,` or `}}` is expected"));
 }
 
 #[test]
@@ -83,15 +83,15 @@ fn texts_that_are_no_scenario() {
     assert_eq!(message("\u{feff}", &[]), "empty; a scenario is expected");
     assert_eq!(message("[]", &[]), "1: an array where an object is expected");
     assert_eq!(message("{}", &[]), "1: agents: missing");
-    assert_eq!(message("{\"agents\": [", &[]), "1: column 13: the text ends where a value is expected");
+    assert_eq!(message("{\"agents\": [", &[]), "1:13: the text ends where a value is expected");
     assert_eq!(message("{\"agents\": [], \"agents\": []}", &[]), "1: agents: given twice");
-    assert_eq!(message("[".repeat(1_000_000), &[]), "1: column 65: arrays and objects nested more than 64 deep");
+    assert_eq!(message("[".repeat(1_000_000), &[]), "1:65: arrays and objects nested more than 64 deep");
     assert_eq!(message(b"{\"agents\": \xff}", &[]), "not text in UTF-8");
     let unknown = "no scenario, which is a JSON object, nor another format that is known by its name or content; say what it is with --from";
     assert_eq!(message("\0\u{1}\u{2}", &[]), unknown);
     assert_eq!(message("# A title", &[]), unknown);
     let lines = format!("{}\n{}\n", crossing(), crossing());
-    let expected = "2: column 1: more text after the end of the scenario (pcr check and pcr regions read several on standard input, each on a line of its own)";
+    let expected = "2:1: more text after the end of the scenario (pcr check and pcr regions read several on standard input, each on a line of its own)";
     assert_eq!(message(lines, &[]), expected);
 }
 
@@ -254,5 +254,44 @@ fn times_that_are_none_are_refused_in_plain_words() {
             "{}",
             refused.err
         );
+    }
+}
+
+/// Every option that takes a number or a choice says which.
+#[test]
+fn numbers_and_choices_of_options_say_what_is_expected() {
+    let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/sample_graph.geojson");
+    for (arguments, expected) in [
+        (&["traffic", layout, "--agents", "ten"][..], "a whole number from 1 to 65535 is expected"),
+        (&["traffic", layout, "--agents", "65536"], "a whole number from 1 to 65535 is expected"),
+        (&["traffic", layout, "--agents", "0"], "a whole number from 1 to 65535 is expected"),
+        (&["traffic", layout, "--seed", "x"], "a whole number from 0 is expected"),
+        (&["traffic", layout, "--hours", "all"], "a number above 0 and up to 168 is expected"),
+        (&["regions", PAPER, "--slices", "2.5"], "a whole number from 0 to 10000 is expected"),
+        (&["simulate", PAPER, "--trips", "many"], "a whole number from 1 to 1000 is expected"),
+        (&["simulate", PAPER, "--noise", "much"], "a number from 0 to 10 is expected"),
+        (&["compare", PAPER, "--rounds", "1001"], "a whole number from 1 to 1000 is expected"),
+        (&["locks", layout, "--radius", "wide"], "a number from 1e-6 to 1e6 is expected"),
+        (&["locks", layout, "--corner-radius", "-1"], "a number from 0 to 1e6 is expected"),
+        (&["locks", layout, "--graph", "first"], "a whole number from 0 is expected"),
+        (&["locks", layout, "--split", "0"], "a number above 0, up to 1e6, is expected"),
+        (&["plan", PAPER, "--time-limit", "soon"], "a number of seconds from 0 is expected"),
+        (&["fleet", "--streets", "1"], "a whole number from 2 to 100 is expected"),
+        (&["fleet", "--pace", "fast"], "a number from 0.1 to 100 is expected"),
+        (&["fleet", "--vehicles", "-2"], "a whole number from 0 is expected"),
+        (&["serve", "--silence", "long"], "a number from 0.1 to 86400 is expected"),
+        (&["check", PAPER, "--scalar", "f16"], "[possible values: f64, f32"),
+        (&["plan", PAPER, "--method", "luck"], "[possible values: delay, speed]"),
+        (&["plan", PAPER, "--objective", "fun"], "[possible values: sum, makespan]"),
+        (&["check", PAPER, "--format", "xml"], "[possible values: "),
+        (&["import", "dxf", layout], "[possible values: nav2, lif"),
+        (&["check", PAPER, "--from", "dxf"], "[possible values: nav2, lif"),
+        (&["locks", layout, "--write", "dxf", "-o", "-"], "[possible values: nav2"),
+        (&["simulate", PAPER, "--controller", "none"], "pcr, potential"),
+    ] {
+        let refused = run(arguments);
+        assert_eq!((refused.status, refused.out.as_str()), (2, ""), "{arguments:?}");
+        assert!(refused.err.contains(expected), "{arguments:?}: {}", refused.err);
+        assert!(!refused.err.contains("invalid digit") && !refused.err.contains("invalid float"), "{}", refused.err);
     }
 }

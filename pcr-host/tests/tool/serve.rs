@@ -30,7 +30,7 @@ fn options_without_effect_are_refused() {
         (&["serve", "--topics", "a", "b"], "were not provided"),
         (&["serve", "--demo", LAYOUT, "--lookahead", "2"], "--lookahead: allowed is 8 to 600 for vehicles of VDA 5050"),
         (&["serve", "--demo", LAYOUT, "--width", "0.1"], "--width: allowed is 0.3 to 10 for vehicles of VDA 5050"),
-        (&["serve", "--lookahead", "0.05"], "--lookahead: allowed is 0.1 to 600\n"),
+        (&["serve", "--lookahead", "0.05"], "for '--lookahead <S>': a number from 0.1 to 600 is expected\n"),
     ] {
         let run = run(arguments);
         assert_eq!((run.status, run.out.as_str()), (2, ""), "{arguments:?}");

@@ -57,7 +57,7 @@ fn settings_out_of_range_are_refused() {
         assert_eq!((refused.status, refused.out.as_str()), (2, ""));
         let expected = format!("error: invalid value '{value}' for '{option} ");
         assert!(refused.err.starts_with(&expected), "{}", refused.err);
-        assert!(refused.err.contains(&format!(": allowed is {allowed}\n")), "{}", refused.err);
+        assert!(refused.err.contains(&format!(": a number from {allowed} is expected\n")), "{}", refused.err);
     }
     for (option, value) in [("--trips", "0"), ("--noise", "much"), ("--seed", "-1"), ("--controller", "none")] {
         let refused = run(&["simulate", &format!("{option}={value}")]);

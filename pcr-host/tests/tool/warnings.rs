@@ -7,6 +7,8 @@ use std::collections::BTreeSet;
 use std::fs;
 
 const ONE_ID: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/cases/one-id-two-edges.geojson");
+const WAREHOUSE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/warehouse_graph.geojson");
+
 const SAMPLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/real/nav2/sample_graph.geojson");
 
 /// The codes of the warnings that are printed.
@@ -76,7 +78,7 @@ fn what_is_acknowledged_is_neither_printed_nor_in_what_is_written() {
     let none = run(&[&command[..], &["--allow", first, "--allow", &rest.join(",")]].concat());
     assert_eq!((none.status, none.err.as_str(), &parsed(&none)["warnings"]), (0, "", &Value::Null));
     // Those of the answer itself, and of an audit behind those of the layout.
-    let locks = ["locks", SAMPLE, "--radius", "0.3", "--audit", "--json"];
+    let locks = ["locks", WAREHOUSE, "--radius", "0.4", "--audit", "--json"];
     let audit = run(&locks);
     let names: Vec<&str> = answered(&parsed(&audit)).iter().map(|code| code.name()).collect();
     let allowed = run(&[&locks[..], &["--allow", &names.join(",")]].concat());

@@ -25,7 +25,7 @@ use crate::scenario::Placed;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Lines and arcs at most that a curve may need.
-const MOST: usize = 5_000;
+pub(super) const MOST: usize = 5_000;
 
 /// How often a piece may be halved.
 const HALVINGS: u32 = 40;
@@ -142,7 +142,7 @@ fn point_at(begin: [f64; 2], pieces: &[Placed], length: f64) -> [f64; 2] {
 }
 
 /// Cuts a curve into parts that are nearly straight.
-fn parts(curve: &Bezier, most: f64, halvings: u32, into: &mut Vec<Part>) {
+pub(super) fn parts(curve: &Bezier, most: f64, halvings: u32, into: &mut Vec<Part>) {
     let [from, end] = curve.ends();
     let (chord, polygon) = (apart_by(from, end), curve.polygon());
     let side =
@@ -222,7 +222,7 @@ struct Best {
 /// Largest difference of headings that is accepted at a tolerance \[rad\]: 5 mrad at 1 mm. The distance of a biarc from its curve falls with
 /// the cube of its length and the angle with the square, so this falls as the angle does, and the number of arcs grows alike for both. A bend
 /// with a radius of some metres takes about twice as many arcs as for the distance alone.
-fn most_turned(tolerance: f64) -> f64 {
+pub(super) fn most_turned(tolerance: f64) -> f64 {
     (0.5 * tolerance.cbrt().powi(2)).min(0.05)
 }
 

@@ -12,8 +12,10 @@ use super::{ImportError, Vehicle, WarningCode, Warnings};
 use crate::plane::distance;
 use crate::scenario::{Agent, Placed, Scenario};
 
-/// Radius that the program takes where its configuration gives none \[m\].
-pub(super) const RADIUS: f64 = std::f64::consts::SQRT_2 / 4.0;
+/// Radius of a log where no other is given \[m\], and why. The program itself takes √2/4 m if its configuration gives none; its agents then
+/// just touch, and the digits of a log would decide whether they do.
+pub(super) const DEFAULT: (f64, &str) =
+    (0.3535, "just below √2/4, the default of the program, with which agents touch");
 
 /// Largest gap between two sections that counts as none \[m\].
 const GAP: f64 = 1e-6;

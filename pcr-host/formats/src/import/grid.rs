@@ -16,6 +16,11 @@ use super::value::is_open;
 use crate::mark::unmarked;
 use crate::scenario::Scenario;
 
+/// Radius where no other is given \[m\]. Two agents of a valid plan come as near as √2/2 m, where one leaves a cell that another one enters
+/// around a corner. This leaves 3.5 mm of each radius to what turns in place and rounding displace, and to the tolerance of the search for
+/// conflicts, which is 0.2 mm at the farthest cell.
+pub(super) const RADIUS: f64 = 0.35;
+
 /// Most cells of a file, waits counted.
 const MOST: usize = 2_000_000;
 
@@ -43,11 +48,11 @@ impl GridPlan {
     /// # Errors
     /// [`ImportError`] with the line, also for a step to a cell that shares no side with the one before.
     pub fn read(text: &str) -> Result<Self, ImportError> {
-        let lines = unmarked(text).lines().map(str::trim).enumerate();
+        let lines = unmarked(text).lines().enumerate().map(|(number, whole)| (number, whole, whole.trim()));
         let (mut cells, mut told, mut count) = (Vec::new(), None, 0);
         let mut arrow = None;
-        for (number, line) in lines.filter(|(_, line)| !line.is_empty()) {
-            let wrong = |problem: String| ImportError::new(format!("line {}: {problem}", number + 1));
+        for (number, whole, line) in lines.filter(|(_, _, line)| !line.is_empty()) {
+            let wrong = |problem: String| ImportError::at(number + 1, None, problem);
             if cells.is_empty() && told.is_none() && !line.starts_with("Agent") {
                 told = Some(line.parse::<usize>().map_err(|_| wrong("a number of agents is expected".into()))?);
                 continue;
@@ -61,7 +66,12 @@ impl GridPlan {
                     "it ends with an arrow and the lines before do not, or the other way round: it was cut".into(),
                 ));
             }
-            let path = steps(path).map_err(wrong)?;
+            let path = steps(path).map_err(|(field, problem)| {
+                // The field is a part of the line.
+                let before = (field.as_ptr() as usize).checked_sub(whole.as_ptr() as usize);
+                let column = before.and_then(|bytes| whole.get(..bytes)).map(|before| before.chars().count() + 1);
+                ImportError::at(number + 1, column, problem)
+            })?;
             count += path.len();
             if count > MOST {
                 return Err(wrong(format!("more than {MOST} cells up to here")));
@@ -98,8 +108,8 @@ impl GridPlan {
     }
 }
 
-/// The cells of an agent: `(3,1)->(3,2)->`.
-fn steps(path: &str) -> Result<Vec<[i32; 2]>, String> {
+/// The cells of an agent: `(3,1)->(3,2)->`; or the part of the text that is wrong, and why.
+fn steps(path: &str) -> Result<Vec<[i32; 2]>, (&str, String)> {
     let mut cells: Vec<[i32; 2]> = Vec::new();
     let path = path.trim();
     // There may be an arrow after the last cell, but only one: what follows another one would be left out.
@@ -110,11 +120,12 @@ fn steps(path: &str) -> Result<Vec<[i32; 2]>, String> {
             let number = |text: &str| text.trim().parse::<i32>().ok().filter(|it| it.unsigned_abs() <= FARTHEST);
             Some([number(x)?, number(y)?])
         });
-        let cell = cell.ok_or_else(|| format!("cell {number}: two whole numbers up to {FARTHEST} are expected"))?;
+        let cell =
+            cell.ok_or_else(|| (field, format!("cell {number}: two whole numbers up to {FARTHEST} are expected")))?;
         if let Some(last) = cells.last()
             && last[0].abs_diff(cell[0]) + last[1].abs_diff(cell[1]) > 1
         {
-            return Err(format!("cell {number}: it shares no side with the one before"));
+            return Err((field, format!("cell {number}: it shares no side with the one before")));
         }
         cells.push(cell);
     }
@@ -144,11 +155,16 @@ mod tests {
 
     #[test]
     fn what_is_no_plan_is_refused_with_its_line() {
-        let message = |text: &str| GridPlan::read(text).unwrap_err().to_string();
+        let message = |text: &str| {
+            let error = GridPlan::read(text).unwrap_err();
+            error.line.map_or_else(String::new, |line| format!("line {line}: ")) + &error.problem
+        };
         assert_eq!(message("x"), "line 1: a number of agents is expected");
         assert_eq!(message("2\nAgent 0: (0,0)->\n"), "2 agents are announced, 1 are there");
         assert_eq!(message("1\nAgent 1: (0,0)->"), "line 2: `Agent 0:` and its cells are expected");
         assert_eq!(message("Agent 0: (0,0)->(1,1)"), "line 1: cell 1: it shares no side with the one before");
+        let error = GridPlan::read("1\n  Agent 0: (0,0)->(1,1)\n").unwrap_err();
+        assert_eq!(error.in_file("p.txt"), "p.txt:2:19: cell 1: it shares no side with the one before");
         assert_eq!(message("Agent 0:"), "line 1: cell 0: two whole numbers up to 1000000 are expected");
         for (cell, path) in [
             (1, "(0,0)->->(1,0)->"),

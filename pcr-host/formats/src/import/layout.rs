@@ -131,8 +131,11 @@ pub struct Layout {
     pub of_speeds: Option<Id>,
     /// Vehicles that the file names.
     pub vehicles: Vec<String>,
-    /// Radius with which routes round corners between straight edges \[m\], where the format has such a rule.
+    /// Radius with which routes round corners between straight edges \[m\], if that is asked for.
     pub corner_radius: Option<f64>,
+    /// Largest distance of a vehicle from its edges in rounded corners \[m\], if the deviations of the edges contain it
+    /// ([`Layout::include_corners`]); else 0.
+    pub corner_margin: f64,
     /// Warnings of the reader of the file.
     pub warnings: Vec<String>,
 }

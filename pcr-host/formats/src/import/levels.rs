@@ -5,17 +5,42 @@
 //! other levels are laid upon it by the fiducials that both have: their bearings and distances to one another give the
 //! rotation and the scale, and their places the translation, each as a mean.
 
+use super::projection::Projection;
 use super::value::Object;
 use super::{ImportError, WarningCode, Warnings};
-use crate::yaml::Document;
 use serde_json::Value;
 
 /// Relative difference of two scales of a level that goes without a warning.
 const SPREAD: f64 = 0.01;
 
+/// From the coordinates of a file to metres, y up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Placing {
+    /// From a floor plan, y down; or from metres.
+    Plan(Plan),
+    /// From longitudes and latitudes.
+    Earth(Projection),
+}
+
+impl Placing {
+    /// From metres, y up.
+    pub(super) const METRES: Self = Self::Plan(Plan::METRES);
+
+    /// The point in metres.
+    ///
+    /// # Errors
+    /// A message if the projection does not reach as far.
+    pub(super) fn apply(&self, at: [f64; 2]) -> Result<[f64; 2], String> {
+        match self {
+            Self::Plan(plan) => Ok(plan.apply(at)),
+            Self::Earth(projection) => projection.apply(at),
+        }
+    }
+}
+
 /// From a floor plan, y down, to metres, y up: scaled, rotated and moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Placing {
+pub(super) struct Plan {
     /// Metres of a unit of the plan, to the right and down.
     scale: [f64; 2],
     /// Cosine and sine of the rotation.
@@ -24,9 +49,9 @@ pub(super) struct Placing {
     shift: [f64; 2],
 }
 
-impl Placing {
+impl Plan {
     /// Coordinates in metres, y up.
-    pub(super) const METRES: Self = Self { scale: [1.0; 2], turn: [1.0, 0.0], shift: [0.0; 2] };
+    const METRES: Self = Self { scale: [1.0; 2], turn: [1.0, 0.0], shift: [0.0; 2] };
 
     /// Scaled only.
     fn scaled(scale: f64) -> Self {
@@ -34,7 +59,7 @@ impl Placing {
     }
 
     /// A point of the plan in metres.
-    pub(super) fn apply(&self, at: [f64; 2]) -> [f64; 2] {
+    fn apply(&self, at: [f64; 2]) -> [f64; 2] {
         let [x, y] = [0, 1].map(|k| at[k] * self.scale[k]);
         let [cos, sin] = self.turn;
         [cos * x - sin * y + self.shift[0], sin * x + cos * y + self.shift[1]]
@@ -47,61 +72,76 @@ pub(super) struct Reference<'j> {
     name: String,
     /// Metres of a pixel; `None` without measurements.
     scale: Option<f64>,
-    fiducials: Vec<(&'j str, [f64; 2])>,
+    fiducials: Vec<Fiducial<'j>>,
+}
+
+/// A point of the building that several levels have.
+#[derive(Clone, Copy, Debug)]
+struct Fiducial<'j> {
+    /// Its name as it is written.
+    name: &'j str,
+    /// The value that its name stands for.
+    value: &'j Value,
+    /// In pixels.
+    at: [f64; 2],
+}
+
+impl Fiducial<'_> {
+    /// Whether both have the same name; nothing if programs differ about it, which compare texts (C++) or values (Python: `1`, `1.0` and
+    /// `true` are equal, `1` and `"1"` are not).
+    fn is_called_as(&self, other: &Self) -> Option<bool> {
+        let number = |value: &Value| value.as_f64().or_else(|| value.as_bool().map(f64::from));
+        let by_value = match [self.value, other.value].map(number) {
+            [Some(a), Some(b)] => a == b,
+            _ => self.value == other.value,
+        };
+        (by_value == (self.name == other.name)).then_some(by_value)
+    }
 }
 
 impl<'j> Reference<'j> {
-    /// That of the building in a file.
-    pub(super) fn of(
-        document: &Document<'_>,
-        building: &Object<'j>,
-        levels: &Object<'j>,
-        warnings: &mut Warnings,
-    ) -> Result<Self, ImportError> {
-        let name = match building.text("reference_level_name")? {
-            Some(name) => Some(name.to_owned()),
-            // The first one of the file, whose order a value of JSON does not have.
-            None => document.names("levels").map_err(ImportError::of_yaml)?.into_iter().next(),
+    /// The level of this name, which the building gives, or which is the first one of its file.
+    pub(super) fn new(levels: &[Level<'j>], named: Option<&str>, warnings: &mut Warnings) -> Result<Self, ImportError> {
+        let level = match named {
+            Some(name) => levels
+                .iter()
+                .find(|level| level.name == name)
+                .ok_or_else(|| ImportError::new(format!("building, reference_level_name: there is no level {name}")))?,
+            None => return Ok(Self::default()),
         };
-        let Some((name, value)) = levels.members().find(|(level, _)| name.as_ref().is_none_or(|name| *level == name))
-        else {
-            return match name {
-                Some(name) => {
-                    Err(ImportError::new(format!("building, reference_level_name: there is no level {name}")))
-                }
-                None => Ok(Self::default()),
-            };
-        };
-        let level = Object::new(format!("level {name}"), value)?;
-        let vertices = vertices(&level, false)?;
-        let scale = scale(&level, &vertices, warnings)?;
-        Ok(Self { name: name.clone(), scale, fiducials: fiducials(&level, warnings)? })
+        let scale = scale(level, warnings)?;
+        Ok(Self { name: level.name.to_owned(), scale, fiducials: fiducials(level)? })
     }
 
     /// Where a level is.
-    pub(super) fn place(
-        &self,
-        name: &str,
-        level: &Object<'_>,
-        vertices: &[Vertex],
-        warnings: &mut Warnings,
-    ) -> Result<Placing, ImportError> {
-        if name == self.name {
-            return self.scale.map(Placing::scaled).ok_or_else(|| no_scale(level));
+    pub(super) fn place(&self, level: &Level<'_>, warnings: &mut Warnings) -> Result<Placing, ImportError> {
+        if level.name == self.name {
+            return self.scale.map(|scale| Placing::Plan(Plan::scaled(scale))).ok_or_else(|| no_scale(level));
         }
-        let own = fiducials(level, warnings)?;
-        let pairs: Vec<_> = own
-            .iter()
-            .filter_map(|(name, at)| Some([self.fiducials.iter().find(|known| known.0 == *name)?.1, *at]))
-            .collect();
-        let measured = scale(level, vertices, warnings)?;
+        let mut pairs = Vec::new();
+        for own in &fiducials(level)? {
+            for known in &self.fiducials {
+                match known.is_called_as(own) {
+                    Some(true) => pairs.push([known.at, own.at]),
+                    Some(false) => {}
+                    None => {
+                        let [there, here] = [known, own].map(|fiducial| fiducial.value);
+                        return Err(ImportError::new(format!(
+                            "{}, fiducials: {here}, and {there} in level {}; the programs of Open-RMF differ on whether these are one name",
+                            level.object.name, self.name
+                        )));
+                    }
+                }
+            }
+        }
+        let measured = scale(level, warnings)?;
         match (self.laid_upon(&pairs), measured) {
             (Some((scale, placing, spread)), measured) => {
                 if spread > SPREAD {
                     let problem = "its fiducials give scales that differ from their mean by up to";
                     warnings.add(
                         WarningCode::UncertainScale,
-                        &level.name,
+                        &level.object.name,
                         format!("{problem} {:.1} %", 100.0 * spread),
                     );
                 }
@@ -112,11 +152,11 @@ impl<'j> Reference<'j> {
                     let problem = format!("its measurements give a scale that differs by {more:+.1} %");
                     warnings.add(
                         WarningCode::UncertainScale,
-                        &level.name,
+                        &level.object.name,
                         format!("{problem}; that of its fiducials counts, as for Open-RMF"),
                     );
                 }
-                Ok(placing)
+                Ok(Placing::Plan(placing))
             }
             (None, Some(measured)) => {
                 let problem = match self.scale {
@@ -125,10 +165,10 @@ impl<'j> Reference<'j> {
                 };
                 warnings.add(
                     WarningCode::UncertainScale,
-                    &level.name,
+                    &level.object.name,
                     format!("{problem}; it has the scale of its own measurements"),
                 );
-                Ok(Placing::scaled(measured))
+                Ok(Placing::Plan(Plan::scaled(measured)))
             }
             (None, None) => Err(no_scale(level)),
         }
@@ -136,7 +176,7 @@ impl<'j> Reference<'j> {
 
     /// The scale \[m\] and place of a level by pairs of fiducials, that of the reference level first, and by how much of their mean
     /// the scales of the pairs differ.
-    fn laid_upon(&self, pairs: &[[[f64; 2]; 2]]) -> Option<(f64, Placing, f64)> {
+    fn laid_upon(&self, pairs: &[[[f64; 2]; 2]]) -> Option<(f64, Plan, f64)> {
         // Bearings of plans with y down are mirrored.
         let between = |a: [f64; 2], b: [f64; 2]| [b[0] - a[0], a[1] - b[1]];
         let (mut ratios, mut turn) = (Vec::new(), [0.0; 2]);
@@ -154,57 +194,79 @@ impl<'j> Reference<'j> {
         let of_reference = self.scale?;
         let scale = of_reference / ratio;
         let angle = turn[1].atan2(turn[0]);
-        let turned = Placing { turn: [angle.cos(), angle.sin()], ..Placing::scaled(scale) };
-        let reference = Placing::scaled(of_reference);
+        let turned = Plan { turn: [angle.cos(), angle.sin()], ..Plan::scaled(scale) };
+        let reference = Plan::scaled(of_reference);
         let mut shift = [0.0; 2];
         for pair in pairs {
             let [there, here] = [reference.apply(pair[0]), turned.apply(pair[1])];
             shift = [0, 1].map(|k| shift[k] + (there[k] - here[k]) / pairs.len() as f64);
         }
-        Some((scale, Placing { shift, ..turned }, spread))
+        Some((scale, Plan { shift, ..turned }, spread))
     }
 }
 
-fn no_scale(level: &Object<'_>) -> ImportError {
-    ImportError::new(format!("{}, measurements: none that gives the scale of its pixels", level.name))
+fn no_scale(level: &Level<'_>) -> ImportError {
+    ImportError::new(format!("{}, measurements: none that gives the scale of its pixels", level.object.name))
 }
 
-/// Names and places of the fiducials of a level; of several with one name the first one.
-fn fiducials<'j>(level: &Object<'j>, warnings: &mut Warnings) -> Result<Vec<(&'j str, [f64; 2])>, ImportError> {
-    let mut all: Vec<(&str, [f64; 2])> = Vec::new();
-    for (k, value) in level.list("fiducials")?.iter().enumerate() {
+/// The fiducials of a level. One that cannot be read is an error even if parts may be left out: the level would have another scale.
+fn fiducials<'j>(level: &Level<'j>) -> Result<Vec<Fiducial<'j>>, ImportError> {
+    let mut all: Vec<Fiducial<'j>> = Vec::new();
+    for (k, value) in level.object.list("fiducials")?.iter().enumerate() {
+        let refused =
+            |problem: String| Err(ImportError::new(format!("{}, fiducial {k}: {problem}", level.object.name)));
         let number = |place: usize| value.get(place).and_then(Value::as_f64);
-        let name = value.get(2).and_then(Value::as_str);
-        match (number(0), number(1), name) {
-            (Some(x), Some(y), Some(name)) if all.iter().all(|known| known.0 != name) => all.push((name, [x, y])),
-            (Some(_), Some(_), Some(name)) => {
-                warnings.lose(format_args!("{}, fiducial {k}: another one is {name}", level.name));
-            }
-            _ => warnings.lose(format_args!("{}, fiducial {k}: no place and name", level.name)),
+        let name = level.text(&["fiducials"], &[k, 2]).zip(value.get(2));
+        let (Some(x), Some(y), Some((name, value))) = (number(0), number(1), name) else {
+            return refused("no place and name".into());
+        };
+        if all.iter().any(|known| known.name == name) {
+            return refused(format!("another one is {name}"));
         }
+        all.push(Fiducial { name, value, at: [x, y] });
     }
     Ok(all)
+}
+
+/// A level of the file: its values, and its scalars as they are written.
+pub(super) struct Level<'j> {
+    pub(super) name: &'j str,
+    pub(super) object: Object<'j>,
+    texts: &'j Value,
+    pub(super) vertices: Vec<Vertex>,
 }
 
 /// Position as in the file, and name; `None` for what is no vertex.
 pub(super) type Vertex = Option<([f64; 2], Option<String>)>;
 
-/// The vertices of a level.
-pub(super) fn vertices(level: &Object<'_>, graph: bool) -> Result<Vec<Vertex>, ImportError> {
-    Ok(level.list("vertices")?.iter().map(|value| vertex(value, graph)).collect())
-}
+impl<'j> Level<'j> {
+    /// A level of a building, or of a `graph` for navigation.
+    pub(super) fn new(name: &'j str, value: &'j Value, texts: &'j Value, graph: bool) -> Result<Self, ImportError> {
+        let object = Object::new(format!("level {name}"), value)?;
+        let mut level = Self { name, object, texts, vertices: Vec::new() };
+        let all = level.object.list("vertices")?.iter().enumerate();
+        level.vertices = all.map(|(k, value)| level.vertex(k, value, graph)).collect();
+        Ok(level)
+    }
 
-fn vertex(value: &Value, graph: bool) -> Vertex {
-    let list = value.as_array()?;
-    let number = |k: usize| list.get(k)?.as_f64().filter(|x| x.abs() <= crate::scenario::LIMIT);
-    let name = if graph { list.get(2).and_then(|parameters| parameters.get("name")) } else { list.get(3) };
-    // Adapters take any scalar for a name, whole numbers among them.
-    let name = name.and_then(|name| match name {
-        Value::String(text) => Some(text.clone()),
-        Value::Number(number) if number.is_i64() || number.is_u64() => Some(number.to_string()),
-        _ => None,
-    });
-    Some(([number(0)?, number(1)?], name.filter(|name| !name.is_empty())))
+    /// A scalar as it is written, by its member and its places in lists.
+    fn text(&self, members: &[&str], places: &[usize]) -> Option<&'j str> {
+        let member = members.iter().try_fold(self.texts, |value, member| value.get(member))?;
+        places.iter().try_fold(member, |value, place| value.get(place))?.as_str()
+    }
+
+    /// A vertex, whose name may be any scalar.
+    fn vertex(&self, k: usize, value: &Value, graph: bool) -> Vertex {
+        let list = value.as_array()?;
+        let number = |k: usize| list.get(k)?.as_f64().filter(|x| x.abs() <= crate::scenario::LIMIT);
+        let name = if graph {
+            let parameters = self.texts.get("vertices").and_then(|list| list.get(k)?.get(2)?.get("name"));
+            parameters.and_then(Value::as_str)
+        } else {
+            self.text(&["vertices"], &[k, 3])
+        };
+        Some(([number(0)?, number(1)?], name.filter(|name| !name.is_empty()).map(str::to_owned)))
+    }
 }
 
 /// The value of a parameter, which is a list of its type and itself; a list without it is no value, and given as it is.
@@ -227,18 +289,21 @@ pub(super) fn ends(value: &Value, vertices: &[Vertex]) -> Result<[(usize, [f64; 
 }
 
 /// Metres of a pixel: the mean of the measurements of a level; `None` without any.
-fn scale(level: &Object<'_>, vertices: &[Vertex], warnings: &mut Warnings) -> Result<Option<f64>, ImportError> {
+fn scale(level: &Level<'_>, warnings: &mut Warnings) -> Result<Option<f64>, ImportError> {
     let mut scales = Vec::new();
-    for (k, value) in level.list("measurements")?.iter().enumerate() {
+    for (k, value) in level.object.list("measurements")?.iter().enumerate() {
         let metres = parameter(value.get(2), "distance").and_then(Value::as_f64);
-        let scale = ends(value, vertices)
+        let scale = ends(value, &level.vertices)
             .ok()
             .zip(metres)
             .map(|([(_, a), (_, b)], metres)| metres / (a[0] - b[0]).hypot(a[1] - b[1]));
         match scale.filter(|scale| (1e-9..1e9).contains(scale)) {
             Some(scale) => scales.push(scale),
-            // The building tools do not leave it out: they count a distance of 0, and stop if there is none.
-            None => warnings.lose(format_args!("{}, measurement {k}: it gives no scale", level.name)),
+            // The building tools do not leave it out: they count a distance of 0, and stop if there is none. Without it the level would have
+            // another scale, so that it is an error even if parts may be left out.
+            None => {
+                return Err(ImportError::new(format!("{}, measurement {k}: it gives no scale", level.object.name)));
+            }
         }
     }
     if scales.is_empty() {
@@ -250,7 +315,7 @@ fn scale(level: &Object<'_>, vertices: &[Vertex], warnings: &mut Warnings) -> Re
         let percent = 100.0 * spread;
         warnings.add(
             WarningCode::UncertainScale,
-            &level.name,
+            &level.object.name,
             format!("its measurements differ from their mean by up to {percent:.1} %"),
         );
     }

@@ -1,4 +1,5 @@
-//! OpenDRIVE: the reference lines of roads, whose lines and arcs are used unchanged.
+//! OpenDRIVE: the reference lines of roads, whose lines and arcs are used unchanged. Spirals (`clothoid`) and cubic curves (`polynomial`)
+//! become arcs within the tolerance, and how far these are from them counts as deviation.
 //!
 //! A road is an edge that may be travelled in both directions; its ends are nodes. Linked roads share a node if their
 //! reference lines meet; the node then has the names of all these ends. If the lines of linked roads do not meet,
@@ -6,16 +7,19 @@
 //! joints within a road, of the size of errors in maps, are closed: the rest of the road keeps its place, and the gap
 //! counts as deviation of its path. So do those between the ends of roads that share a node. Lanes are not read.
 
+use super::biarc::{self, Fit};
+use super::clothoid;
 use super::keys::Keys;
 use super::layout::{Edge, Id, Layout, Node};
 use super::names::Names;
+use super::polynomial::{self, Cubic};
 use super::route::turn_over;
 use super::xml::{child, children, lose_astray, number, only, optional, parse, warn_of_unknown};
-use super::{ImportError, WarningCode, Warnings};
+use super::{ImportError, Options, WarningCode, Warnings};
 use crate::plane::{distance, wrapped};
-use crate::scenario::PathSegment;
-use crate::scenario::Placed;
+use crate::scenario::{LIMIT, PathSegment, Placed};
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 
 /// Gap \[m\] and angle \[rad\] of a joint that are rounding and nothing else.
 const CLOSED: f64 = 1e-9;
@@ -25,6 +29,9 @@ const GAP: f64 = 0.05;
 
 /// Largest part of its length by which the geometry of a road may miss it, if that is more than [`GAP`]: lengths are rounded in maps.
 const ROUNDED: f64 = 1e-4;
+
+/// Largest part of its length by which a parametric curve may miss that of its record, if that is more than [`GAP`]: editors fit them.
+const PARAMETRIC: f64 = 0.01;
 
 /// Elements that may be in any other one, and say nothing of its shape.
 const ADDED: [&str; 2] = ["userData", "dataQuality"];
@@ -41,7 +48,7 @@ const WINDINGS: f64 = 100.0;
 fn windings(shape: &PathSegment) -> f64 {
     match shape {
         PathSegment::Line { .. } => 0.0,
-        PathSegment::Arc { sweep, .. } => sweep.abs() / std::f64::consts::TAU,
+        PathSegment::Arc { sweep, .. } => sweep.abs() / TAU,
     }
 }
 
@@ -60,10 +67,12 @@ struct Curve {
     longer: f64,
     /// Gap \[m\] and angle \[rad\] of its widest joint.
     joint: [f64; 2],
+    /// Whether it has curves for which arcs stand.
+    is_fitted: bool,
 }
 
 /// Reads the roads.
-pub(super) fn read(text: &str, warnings: &mut Warnings) -> Result<Layout, ImportError> {
+pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Layout, ImportError> {
     let document = parse(text)?;
     let root = document.root_element();
     if !root.has_tag_name("OpenDRIVE") {
@@ -86,14 +95,17 @@ pub(super) fn read(text: &str, warnings: &mut Warnings) -> Result<Layout, Import
         let name = format!("road {id}");
         let read = |warnings: &mut Warnings| -> Result<_, ImportError> {
             ROAD.check_attributes(road, &name, warnings)?;
-            Ok((curve(road, &name)?, speed(road, &name, warnings)?, only(road, "link")?))
+            Ok((curve(road, &name, options.tolerance())?, speed(road, &name, warnings)?, only(road, "link")?))
         };
         match read(warnings) {
             Err(error) => warnings.lose(error),
             Ok((Curve { pieces, .. }, ..)) if pieces.is_empty() => {
                 warnings.lose(format_args!("{name}: it has no geometry"))
             }
-            Ok((Curve { pieces, deviation, longer, turned, joint }, speed, link)) => {
+            Ok((Curve { pieces, deviation, longer, turned, joint, is_fitted }, speed, link)) => {
+                if is_fitted {
+                    warnings.use_option("tolerance");
+                }
                 if joint.iter().any(|gap| *gap > CLOSED) {
                     widest = [widest[0].max(joint[0]), widest[1].max(joint[1])];
                     open.push(name);
@@ -108,7 +120,7 @@ pub(super) fn read(text: &str, warnings: &mut Warnings) -> Result<Layout, Import
         }
     }
     if names.list().is_empty() {
-        return Err(ImportError::new("OpenDRIVE: there is no road of lines and arcs in it"));
+        return Err(ImportError::new("OpenDRIVE: there is no road in it that can be read"));
     }
     for road in open {
         let [gap, angle] = widest;
@@ -136,11 +148,89 @@ fn named(id: &str) -> Id {
     number.map_or_else(|| Id::Text(id.to_owned()), Id::Number)
 }
 
+/// A record of the geometry of a road.
+struct Record<'r> {
+    /// For messages.
+    name: &'r str,
+    at: [f64; 2],
+    heading: f64,
+    length: f64,
+}
+
+impl Record<'_> {
+    /// The lines and arcs of its shape.
+    fn fit(&self, shape: roxmltree::Node<'_, '_>, tolerance: f64) -> Result<Fit, ImportError> {
+        let Self { name, at, heading, length } = *self;
+        let field = |attribute: &str| number(shape, name, attribute);
+        let named = |error: ImportError| ImportError::new(format!("{name}: {error}"));
+        let placed = |shape| vec![Placed { at, heading, shape }];
+        let cubic = |names: [&str; 4]| -> Result<Cubic, ImportError> {
+            Ok([field(names[0])?, field(names[1])?, field(names[2])?, field(names[3])?])
+        };
+        match shape.tag_name().name() {
+            "line" => Ok(Fit::exact(placed(PathSegment::Line { length }))),
+            "arc" => {
+                let curvature = field("curvature")?;
+                let sweep = length * curvature;
+                Ok(match curvature.abs().recip() {
+                    radius if radius < STRAIGHT => Fit::exact(placed(PathSegment::Arc { radius, sweep })),
+                    _ => Fit {
+                        // How far the arc leaves its tangent.
+                        deviation: 0.5 * length * sweep.abs(),
+                        turned: sweep.abs(),
+                        ..Fit::exact(placed(PathSegment::Line { length }))
+                    },
+                })
+            }
+            "spiral" => {
+                let curvatures = [field("curvStart")?, field("curvEnd")?];
+                if length * curvatures.iter().fold(0.0, |most: f64, k| most.max(k.abs())) > WINDINGS * TAU {
+                    return Err(ImportError::new(format!("{name}: its length, heading or sweep is out of range")));
+                }
+                clothoid::fit(at, heading, length, curvatures, tolerance).map_err(named)
+            }
+            "paramPoly3" => {
+                let [u, v] = [cubic(["aU", "bU", "cU", "dU"])?, cubic(["aV", "bV", "cV", "dV"])?];
+                let last = match shape.attribute("pRange") {
+                    None | Some("normalized") => 1.0,
+                    Some("arcLength") => length,
+                    Some(other) => {
+                        return Err(ImportError::new(format!("{name}, paramPoly3, pRange: {other} is not known")));
+                    }
+                };
+                let curve = polynomial::parametric([u, v], last, at, heading);
+                let fit = biarc::fit(std::slice::from_ref(&curve), tolerance).map_err(named)?;
+                // A curve that has another length than its record is another curve: its parameter has another range, or it is damaged.
+                let [least, most] = polynomial::length_of(&curve, tolerance);
+                let apart = (least - length).max(length - most);
+                if apart > GAP.max(PARAMETRIC * length) {
+                    let problem = format!("its curve is {most:.3} m long, and its length is {length}");
+                    return Err(ImportError::new(format!("{name}: {problem}")));
+                }
+                Ok(fit)
+            }
+            "poly3" => {
+                let v = cubic(["a", "b", "c", "d"])?;
+                let placed = Placed { at, heading, shape: PathSegment::Line { length } };
+                let (curve, unsure) = polynomial::graph(v, length, placed, tolerance).map_err(named)?;
+                if unsure > tolerance {
+                    return Err(ImportError::new(format!("{name}: its length is known to {unsure:.1e} m only")));
+                }
+                let fit = biarc::fit(std::slice::from_ref(&curve), tolerance).map_err(named)?;
+                Ok(Fit { deviation: fit.deviation + unsure, longer: fit.longer + unsure, ..fit })
+            }
+            other => Err(ImportError::new(format!("{name}: {other} is not read"))),
+        }
+    }
+}
+
 /// The lines and arcs of a road, and its widest joint.
-fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<Curve, ImportError> {
+fn curve(road: roxmltree::Node<'_, '_>, name: &str, tolerance: f64) -> Result<Curve, ImportError> {
     let mut curve: Vec<Placed> = Vec::new();
     let (mut joint, mut deviation, mut turned) = ([0.0_f64; 2], 0.0_f64, 0.0_f64);
     let mut along = 0.0_f64;
+    // By how much curves and their arcs differ in length up to here, and how far the end of the last one may be from that of its arcs.
+    let (mut longer, mut off, mut is_fitted) = (0.0_f64, [0.0_f64; 2], false);
     let view = only(road, "planView")?.ok_or_else(|| ImportError::new(format!("{name}, planView: missing")))?;
     let records = view.children().filter(|child| child.is_element() && !ADDED.contains(&child.tag_name().name()));
     for (k, record) in records.enumerate() {
@@ -163,55 +253,41 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str) -> Result<Curve, ImportError
         if let Some(second) = elements.next() {
             return Err(ImportError::new(format!("{name}: a second shape, {}", second.tag_name().name())));
         }
-        let shape = match element.map(|element| (element.tag_name().name(), element)) {
-            Some(("line", _)) => PathSegment::Line { length },
-            Some(("arc", arc)) => {
-                let curvature = number(arc, &name, "curvature")?;
-                let sweep = length * curvature;
-                match curvature.abs().recip() {
-                    radius if radius < STRAIGHT => PathSegment::Arc { radius, sweep },
-                    _ => {
-                        // How far the arc leaves its tangent.
-                        deviation = deviation.max(0.5 * length * sweep.abs());
-                        turned = turned.max(sweep.abs());
-                        PathSegment::Line { length }
-                    }
-                }
-            }
-            Some((other, _)) => return Err(ImportError::new(format!("{name}: {other} is not a line and not an arc"))),
-            None => return Err(ImportError::new(format!("{name}: it has no shape"))),
-        };
-        if length < 0.0
-            || length.is_nan()
-            || heading.abs() > 1e6
-            || shape.length() > crate::scenario::LIMIT
-            || windings(&shape) > WINDINGS
-        {
+        let element = element.ok_or_else(|| ImportError::new(format!("{name}: it has no shape")))?;
+        if !(0.0..=LIMIT).contains(&length) || heading.abs() > 1e6 {
             return Err(ImportError::new(format!("{name}: its length, heading or sweep is out of range")));
         }
         if length == 0.0 {
             continue;
         }
-        let placed = Placed { at, heading, shape };
-        if let Some(before) = curve.last() {
-            let end = before.end();
-            let turn = (heading - before.heading_at_end()).rem_euclid(std::f64::consts::TAU);
-            let gap = distance(end, at);
+        let fit = Record { name: &name, at, heading, length }.fit(element, tolerance)?;
+        if fit.pieces.iter().any(|piece| piece.shape.length() > LIMIT || windings(&piece.shape) > WINDINGS) {
+            return Err(ImportError::new(format!("{name}: its length, heading or sweep is out of range")));
+        }
+        if let (Some(before), Some(first)) = (curve.last(), fit.pieces.first()) {
+            let gap = (distance(before.end(), first.at) - off[0]).max(0.0);
             if gap > GAP {
                 return Err(ImportError::new(format!("{name}: it begins {gap:.3} m from the end of the one before")));
             }
-            joint = [joint[0].max(gap), joint[1].max(turn.min(std::f64::consts::TAU - turn))];
+            let turn = wrapped(first.heading - before.heading_at_end()).abs();
+            joint = [joint[0].max(gap), joint[1].max(turn - off[1])];
         }
-        curve.push(placed);
+        is_fitted |= fit.bends;
+        off = [fit.deviation, fit.turned];
+        // A vehicle on the curve is ahead of one on the arcs, or behind it, by the difference of their lengths.
+        deviation = deviation.max(fit.deviation + longer);
+        turned = turned.max(fit.turned + turn_over(&fit.pieces, longer));
+        longer += fit.longer;
+        curve.extend(fit.pieces);
     }
     if let Some(length) = optional(road, name, "length")?
         && (length - along).abs() > GAP.max(ROUNDED * length)
     {
         return Err(ImportError::new(format!("{name}: its length is {length}, and its records have {along:.3} m")));
     }
-    let [closed, longer, askew] = close(&mut curve);
-    let turned = turned + askew + turn_over(&curve, longer);
-    Ok(Curve { pieces: curve, deviation: deviation + closed, longer, turned, joint })
+    let [closed, closing, askew] = close(&mut curve);
+    let turned = turned + askew + turn_over(&curve, closing);
+    Ok(Curve { pieces: curve, deviation: deviation + closed, longer: longer + closing, turned, joint, is_fitted })
 }
 
 /// Closes the joints that are open: a line goes from where the piece before ends to its own end, an arc is displaced as a whole.
@@ -373,3 +449,6 @@ fn end_of(edges: &[Edge], end: usize) -> [f64; 2] {
     let at = if end.is_multiple_of(2) { curve.first().map(|first| first.at) } else { curve.last().map(Placed::end) };
     at.unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests;

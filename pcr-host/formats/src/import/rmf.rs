@@ -1,6 +1,7 @@
 //! Buildings of Open-RMF (`*.building.yaml`), navigation graphs (`nav_graphs/*.yaml`) and the configuration of a fleet.
 //!
-//! Vertices of a building are pixels of a floor plan, y down (`levels` tells where they are in metres). Vertices of a
+//! Vertices of a building are pixels of a floor plan, y down (`levels` tells where they are in metres), or longitudes and latitudes
+//! (`projection`). Vertices of a
 //! navigation graph, which the building tools generate
 //! and fleet adapters load, are in metres, y up, and each lane leads in one direction. A lane is straight; the vehicle
 //! stops and turns where two lanes meet at an angle. Lanes and vertices have no names of their own; they are named by
@@ -8,7 +9,8 @@
 
 use super::keys::Keys;
 use super::layout::{Edge, Id, Layout, Node};
-use super::levels::{Placing, Reference, Vertex, ends, parameter, vertices};
+use super::levels::{self, Placing, Reference, ends, parameter};
+use super::projection::Projection;
 use super::value::Object;
 use super::vehicle::{Facing, Given};
 use super::{ImportError, Options, WarningCode, Warnings};
@@ -66,11 +68,19 @@ const PROFILE: Keys = Keys::new(&["footprint", "vicinity"], &[]);
 const LIMITS: Keys = Keys::new(&["linear", "angular"], &[]);
 
 /// Reads the vehicles from the configuration of a fleet: the footprint is the radius, and the vicinity beyond it is the margin.
-pub(super) fn fleet(value: &Value, warnings: &mut Warnings) -> Result<Given, ImportError> {
+/// `texts` has its scalars as they are written: a name may be any of them.
+pub(super) fn fleet(value: &Value, texts: &Value, warnings: &mut Warnings) -> Result<Given, ImportError> {
     let root = Object::new("fleet", value)?;
     let fleet = root.object("rmf_fleet")?.ok_or_else(|| root.missing("rmf_fleet"))?;
     FLEET.check(&fleet, warnings)?;
-    let mut given = Given { name: fleet.label("name")?, ..Given::default() };
+    let name = match fleet.get("name") {
+        None => None,
+        Some(_) => {
+            let text = texts["rmf_fleet"]["name"].as_str();
+            Some(text.ok_or_else(|| ImportError::new("fleet, rmf_fleet, name: a name is expected"))?.to_owned())
+        }
+    };
+    let mut given = Given { name, ..Given::default() };
     if let Some(profile) = fleet.object("profile")? {
         PROFILE.check(&profile, warnings)?;
         given.radius = profile.positive("footprint")?;
@@ -130,37 +140,55 @@ pub(super) fn read(
             "it has no name, which a building has behind its levels: the file may be cut",
         );
     }
-    let reference = match root.text("coordinate_system")? {
-        None if graph => None,
-        None | Some("reference_image") => Some(Reference::of(&document, &root, &levels, warnings)?),
-        Some("cartesian_meters") => None,
+    let texts = document.texts().map_err(ImportError::of_yaml)?;
+    let text = |field: &str| root.get(field).and_then(|_| texts.get(field)?.as_str());
+    let all: Vec<levels::Level<'_>> = levels
+        .members()
+        .map(|(name, value)| levels::Level::new(name, value, &texts["levels"][name], graph))
+        .collect::<Result<_, _>>()?;
+    let frame = match root.text("coordinate_system")? {
+        None if graph => Frame::Metres,
+        None | Some("reference_image") => {
+            // The first one of the file, whose order a value of JSON does not have; a level may also be called null.
+            let first = document.names("levels").map_err(ImportError::of_yaml)?.into_iter().next();
+            let null =
+                || texts.get("reference_level_name")?.as_str().filter(|name| all.iter().any(|it| it.name == *name));
+            let named = text("reference_level_name").or_else(null).or(first.as_deref());
+            Frame::Images(Reference::new(&all, named, warnings)?)
+        }
+        Some("cartesian_meters") => Frame::Metres,
+        // The building tools write metres into navigation graphs of such buildings, and no name of a system.
+        Some("wgs84") if graph => Frame::Metres,
+        Some("wgs84") => Frame::Earth(earth(&root, outline, warnings)?),
         Some(other) => return Err(ImportError::new(format!("building, coordinate_system: {other} is not read"))),
     };
     let mut layout = Layout {
-        name: root.label(if graph { "building_name" } else { "name" })?.unwrap_or_default(),
+        name: text(if graph { "building_name" } else { "name" }).unwrap_or_default().to_owned(),
         ..Layout::default()
     };
     let mut graphs = BTreeSet::new();
-    for (name, value) in levels.members() {
-        let object = Object::new(format!("level {name}"), value)?;
-        if let Err(error) = LEVEL.check(&object, warnings) {
+    for source in &all {
+        let (name, lanes) = (source.name, source.object.list("lanes")?);
+        if let Err(error) = LEVEL.check(&source.object, warnings) {
             warnings.lose(error);
         }
-        let vertices = vertices(&object, graph)?;
-        if object.list("lanes")?.is_empty() {
+        if lanes.is_empty() {
             continue;
         }
-        let placing = reference.as_ref().map(|reference| reference.place(name, &object, &vertices, warnings));
-        let placing = placing.transpose()?.unwrap_or(Placing::METRES);
-        let mut level = Level { name, graph, placing, vertices, outline, nodes: HashMap::new(), layout: &mut layout };
-        for (k, lane) in object.list("lanes")?.iter().enumerate() {
+        let placing = match &frame {
+            Frame::Metres => Placing::METRES,
+            Frame::Images(reference) => reference.place(source, warnings)?,
+            Frame::Earth(projection) => Placing::Earth(*projection),
+        };
+        let mut level = Level { source, graph, placing, outline, nodes: HashMap::new(), layout: &mut layout };
+        for (k, lane) in lanes.iter().enumerate() {
             match level.lane(k, lane, options, &mut graphs, warnings) {
                 Ok(Some((code, problem))) => warnings.add(code, format_args!("lane {name}/{k}"), problem),
                 Ok(None) => {}
                 Err(problem) => warnings.lose(format_args!("lane {name}/{k}: {problem}")),
             }
         }
-        layout.levels.push(name.clone());
+        layout.levels.push(name.to_owned());
     }
     if layout.edges.is_empty() {
         return Err(ImportError::new(match options.graph {
@@ -182,13 +210,42 @@ pub(super) fn read(
     Ok(layout)
 }
 
+/// The coordinates of a file.
+enum Frame<'j> {
+    /// Metres, y up.
+    Metres,
+    /// Pixels of floor plans, y down.
+    Images(Reference<'j>),
+    /// Longitudes and latitudes.
+    Earth(Projection),
+}
+
+/// The projection of a building with longitudes and latitudes: that of its `generate_crs`, as its building tools use it.
+fn earth(root: &Object<'_>, outline: Option<&Footprint>, warnings: &mut Warnings) -> Result<Projection, ImportError> {
+    let refused = |problem: String| ImportError::new(format!("building, parameters, generate_crs: {problem}"));
+    let parameters = root.object("parameters")?.ok_or_else(|| root.missing("parameters"))?;
+    let value = parameters.get("generate_crs").ok_or_else(|| parameters.missing("generate_crs"))?;
+    let name = value.as_array().and_then(|typed| typed.get(1)).unwrap_or(value);
+    let name = name.as_str().ok_or_else(|| refused(format!("{name} where a name such as EPSG:3414 is expected")))?;
+    let projection = Projection::named(name).map_err(refused)?;
+    if projection.is_mirrored() {
+        if outline.is_some() {
+            let problem = "the building tools exchange easting and northing of this system, so that left and right are exchanged, too; a \
+                           contour is refused, give its --radius";
+            return Err(refused(format!("{name}: {problem}")));
+        }
+        let problem = "the building tools take its easting for a northing and its northing for an easting; coordinates here are theirs";
+        warnings.add(WarningCode::MirroredAxes, name, problem);
+    }
+    Ok(projection)
+}
+
 struct Level<'a> {
-    name: &'a str,
+    source: &'a levels::Level<'a>,
     /// Whether the file is a navigation graph.
     graph: bool,
     /// From the coordinates of its vertices to metres.
     placing: Placing,
-    vertices: Vec<Vertex>,
     /// The outline of the vehicle, if its heading matters.
     outline: Option<&'a Footprint>,
     /// Places of the nodes in the layout, by vertex.
@@ -197,15 +254,14 @@ struct Level<'a> {
 }
 
 impl Level<'_> {
-    fn node(&mut self, vertex: usize, pixels: [f64; 2]) -> (usize, [f64; 2]) {
-        let at = self.placing.apply(pixels);
-        let place = *self.nodes.entry(vertex).or_insert_with(|| {
-            let name = self.vertices.get(vertex).and_then(|vertex| vertex.as_ref()?.1.clone());
+    /// The node of a vertex, which is at this place \[m\].
+    fn node(&mut self, vertex: usize, at: [f64; 2]) -> usize {
+        *self.nodes.entry(vertex).or_insert_with(|| {
+            let name = self.source.vertices.get(vertex).and_then(|vertex| vertex.as_ref()?.1.clone());
             let level = self.layout.levels.len();
-            self.layout.nodes.push(Node { id: Id::Text(format!("{}/{vertex}", self.name)), name, level, at });
+            self.layout.nodes.push(Node { id: Id::Text(format!("{}/{vertex}", self.source.name)), name, level, at });
             self.layout.nodes.len() - 1
-        });
-        (place, at)
+        })
     }
 
     /// Adds a lane; returns a warning, or says why it is left out.
@@ -227,8 +283,9 @@ impl Level<'_> {
             let mut odd = Warnings::default();
             let keys = if self.graph { GRAPH_LANE } else { LANE };
             keys.check(&parameters, &mut odd).map_err(|error| error.to_string())?;
-            odd.iter()
-                .for_each(|(code, problem, _)| warnings.add(code, format_args!("lane {}/{k}", self.name), problem));
+            odd.iter().for_each(|(code, problem, _)| {
+                warnings.add(code, format_args!("lane {}/{k}", self.source.name), problem)
+            });
         }
         // A parameter that is there and has the wrong type is not left aside.
         fn typed<T>(
@@ -243,10 +300,11 @@ impl Level<'_> {
         if options.graph.is_some_and(|asked| asked != graph) {
             return Ok(None);
         }
-        let both = ends(value, &self.vertices)?;
+        let both = ends(value, &self.source.vertices)?;
+        let at = [self.placing.apply(both[0].1)?, self.placing.apply(both[1].1)?];
         graphs.insert(graph);
-        let [from, to] = both.map(|(vertex, pixels)| self.node(vertex, pixels));
-        let line = Placed::line(from.1, to.1);
+        let [from, to] = [0, 1].map(|end| self.node(both[end].0, at[end]));
+        let line = Placed::line(at[0], at[1]);
         let straight = line.shape.length() > 0.0;
         // Fleet adapters take a lane of a navigation graph one way, whatever else it says.
         let two_way = typed(parameters, if self.graph { "is_bidirectional" } else { "bidirectional" }, Value::as_bool)?;
@@ -270,7 +328,7 @@ impl Level<'_> {
             ways: [true, both_ways && !self.graph],
             facing,
             speed: [speed.filter(|speed| *speed < 1e6); 2],
-            ..Edge::new(Id::Text(format!("{}/{k}", self.name)), [from.0, to.0], curve)
+            ..Edge::new(Id::Text(format!("{}/{k}", self.source.name)), [from, to], curve)
         });
         Ok(match () {
             () if !straight => Some((WarningCode::ZeroLength, "its length is 0")),

@@ -247,6 +247,52 @@ impl Edge {
     }
 }
 
+impl Layout {
+    /// Adds to every straight edge how far vehicles leave it where they round the corners at its ends with [`Layout::corner_radius`], and
+    /// how far they are turned there. From then on the layout is one of places, not of routes: its corners are not rounded again.
+    ///
+    /// An arc of radius R for a turn by α is R (1 − cos(α/2)) off its edges. Every corner of two edges counts that some route may round.
+    pub fn include_corners(&mut self) {
+        /// Larger than the rounding of the closed form.
+        const OUTWARD: f64 = 1.0 + 1e-12;
+        let Some(radius) = self.corner_radius.take().filter(|radius| *radius > 0.0) else { return };
+        let mut ends: Vec<[Vec<(usize, usize)>; 2]> = vec![Default::default(); self.nodes.len()];
+        for (k, edge) in self.edges.iter().enumerate().filter(|(_, edge)| edge.is_straight()) {
+            for step in edge.steps() {
+                for (node, other, side) in [(step.target(), step.origin(), 0), (step.origin(), step.target(), 1)] {
+                    if let Some(sides) = ends.get_mut(node) {
+                        sides[side].push((k, other));
+                    }
+                }
+            }
+        }
+        let mut off = vec![[0.0_f64; 2]; self.edges.len()];
+        for (node, [incoming, outgoing]) in ends.iter().enumerate() {
+            for &(before, from) in incoming {
+                for &(after, to) in outgoing {
+                    let [start, corner, end] = [from, node, to].map(|node| self.position(node));
+                    let Some(Placed { shape: PathSegment::Arc { sweep, .. }, .. }) =
+                        corner_arc(start, corner, end, radius)
+                    else {
+                        continue;
+                    };
+                    let half = 0.5 * sweep.abs();
+                    // 1 - cos(a) without cancellation.
+                    let leaves = OUTWARD * 2.0 * radius * (0.5 * half).sin().powi(2);
+                    for edge in [before, after] {
+                        off[edge] = [off[edge][0].max(leaves), off[edge][1].max(OUTWARD * half)];
+                    }
+                }
+            }
+        }
+        for (edge, [leaves, turned]) in self.edges.iter_mut().zip(off) {
+            edge.deviation += leaves;
+            edge.turned += turned;
+            self.corner_margin = self.corner_margin.max(leaves);
+        }
+    }
+}
+
 /// The arc with which nav2 rounds the corner between two edges, `None` where it leaves it out.
 pub(super) fn corner_arc(start: [f64; 2], corner: [f64; 2], end: [f64; 2], radius: f64) -> Option<Placed> {
     let back = [start[0] - corner[0], start[1] - corner[1]];
@@ -272,12 +318,11 @@ pub(super) fn corner_arc(start: [f64; 2], corner: [f64; 2], end: [f64; 2], radiu
     Some(Placed { at, heading, shape: PathSegment::Arc { radius, sweep } })
 }
 
-/// The routes that the options ask for as a scenario, an agent a route; corners have the usual radius if no other is asked for.
+/// The routes that the options ask for as a scenario, an agent a route.
 pub(super) fn scenario(
     layout: &Layout,
     vehicle: &Vehicle,
     options: &Options,
-    usual_radius: Option<f64>,
     warnings: &mut Warnings,
 ) -> Result<Scenario, ImportError> {
     if options.routes.is_empty() {
@@ -289,16 +334,14 @@ pub(super) fn scenario(
     }
     let mut agents = Vec::new();
     let mut levels = Vec::new();
-    let mut rounded = false;
+    // A radius of 0 asks for what is done anyway.
+    let mut rounded = options.corner_radius == Some(0.0);
     for (k, route) in options.routes.iter().enumerate() {
         let asked = Asked::parse(route, |name| layout.nodes_called(name))?;
         let refused = |problem: &dyn fmt::Display| ImportError::new(format!("route {route}: {problem}"));
         let steps = shortest(layout, asked.ends).ok_or_else(|| refused(&"there is no way from node to node"))?;
         let trace = trace(layout, asked.ends[0], &steps).map_err(|error| refused(&error))?;
-        // An option that rounds no corner has an effect where one would be rounded without it.
-        rounded |= [layout.corner_radius, usual_radius]
-            .into_iter()
-            .any(|radius| corner_arcs(layout, asked.ends[0], &steps, radius).iter().any(Option::is_some));
+        rounded |= corner_arcs(layout, asked.ends[0], &steps, layout.corner_radius).iter().any(Option::is_some);
         levels.push(layout.level_of(asked.ends[0]));
         let name = |place: usize| {
             let node = &layout.nodes[place];
@@ -314,11 +357,6 @@ pub(super) fn scenario(
     facing::warn_of_half_turns(names.iter().map(String::as_str).zip(&agents), warnings);
     if rounded {
         warnings.use_option("corner_radius");
-    }
-    if let Some(radius) = usual_radius.filter(|_| rounded && options.corner_radius.is_none()) {
-        let problem =
-            format!("rounded with {radius} m, as by nav2 with smooth_corners; --corner-radius 0 if it does not");
-        warnings.add(WarningCode::CornerSmoothing, "corners", problem);
     }
     if levels.windows(2).any(|pair| pair[0] != pair[1]) {
         warnings.add(
@@ -469,8 +507,7 @@ mod tests {
             let routes = vec!["0:2".to_owned(), "3:4".to_owned()];
             let (options, mut warnings) = (Options { routes, ..Options::default() }, Warnings::default());
             let vehicle = layout(Format::Nav2, &graphs()[0], &Options::default(), &mut Warnings::default());
-            scenario(&bend(level), &vehicle.expect("a graph").vehicle, &options, None, &mut warnings)
-                .expect("two routes");
+            scenario(&bend(level), &vehicle.expect("a graph").vehicle, &options, &mut warnings).expect("two routes");
             warnings.lines().iter().any(|line| line.contains("they are on different levels"))
         };
         assert_eq!([told(0), told(1)], [false, true]);

@@ -63,16 +63,20 @@ fn paths(text: &str) -> Result<Vec<Vec<[f64; 2]>>, ImportError> {
         if has_empty_column(line) {
             let problem =
                 "nothing before or between tabs, where a column may be missing; one tab or blanks are expected";
-            return Err(ImportError::new(format!("line {}: {problem}", k + 1)));
+            return Err(ImportError::at(k + 1, None, problem));
         }
         if mixes_separators(content) {
             let problem =
                 "commas beside other separators: decimal commas, or several points; one point x y is expected";
-            return Err(ImportError::new(format!("line {}: {problem}", k + 1)));
+            return Err(ImportError::at(k + 1, None, problem));
         }
         let mut numbers = fields(content).map(|field| field.parse::<f64>().ok().filter(|x| x.abs() <= LIMIT));
         let (Some(Some(x)), Some(Some(y))) = (numbers.next(), numbers.next()) else {
-            return Err(ImportError::new(format!("line {}: two numbers x y up to {LIMIT:e} are expected", k + 1)));
+            // At the first field that is none.
+            let field = fields(content).take(2).find(|field| !field.parse::<f64>().is_ok_and(|x| x.abs() <= LIMIT));
+            let at = field.map(|field| field.as_ptr() as usize - line.as_ptr() as usize);
+            let column = at.and_then(|at| line.get(..at)).map(|before| before.chars().count() + 1);
+            return Err(ImportError::at(k + 1, column, format!("two numbers x y up to {LIMIT:e} are expected")));
         };
         count += 1;
         if count > MOST {
@@ -279,7 +283,10 @@ mod tests {
     fn files_hold_several_paths() {
         let text = "# two\n0 0 0.1\n1,0\n# not the end\n2;0\n\n\n5\t5\n";
         assert_eq!(paths(text).unwrap(), [vec![[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]], vec![[5.0, 5.0]]]);
-        assert_eq!(paths("0 0\n1 x").unwrap_err().to_string(), "line 2: two numbers x y up to 1e10 are expected");
+        assert_eq!(
+            paths("0 0\n1 x").unwrap_err().to_string(),
+            "line 2, column 3: two numbers x y up to 1e10 are expected"
+        );
         assert!(paths("1e11 0").is_err() && paths("nan 0").is_err());
         for mixed in ["1,5 2,5", "1,5;2,5", "0,0\t4,0 4,4", "1, 5 2, 5", "1 2,5"] {
             let expected =
@@ -288,10 +295,8 @@ mod tests {
         }
         // A column that is empty is one: the others are not shifted.
         for empty in ["10,,5", ",10,0", ";1;2", "1; ;2", "1,"] {
-            assert!(
-                paths(&format!("0,0\n{empty}\n")).unwrap_err().to_string().starts_with("line 2: two numbers"),
-                "{empty}"
-            );
+            let error = paths(&format!("0,0\n{empty}\n")).unwrap_err().to_string();
+            assert!(error.starts_with("line 2") && error.contains(": two numbers x y"), "{empty}: {error}");
         }
         for one in ["1.0 2.0;", "1 2 ;", "1,2, 3", "1 , 2", " 1\t2 3", "1  2", "1; 2", "1,2,,", "1,2 # a, b c"] {
             assert_eq!(paths(one).unwrap(), [[[1.0, 2.0]]], "{one}");

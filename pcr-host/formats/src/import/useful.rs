@@ -87,7 +87,7 @@ fn unused(field: &str) -> Option<&'static str> {
         "fleet" => Some("other options say all that is in it, or it says nothing"),
         "tolerance" => Some("there is no curve in what is read but lines and arcs"),
         "horizon" => Some("it is for orders that end in edges that are not released, and there is none"),
-        "corner_radius" => Some("with it or without it, no corner of a route is rounded"),
+        "corner_radius" => Some("no corner of a route is rounded with it"),
         _ => None,
     }
 }

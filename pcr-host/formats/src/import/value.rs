@@ -12,13 +12,13 @@ pub(super) fn is_open(text: &str) -> bool {
 }
 
 /// The values in a text of several, one after the other. An object with a key twice is refused.
-pub(super) fn several(text: &str) -> impl Iterator<Item = Result<Value, ImportError>> {
+pub(super) fn several(text: &str) -> impl Iterator<Item = Result<Value, ImportError>> + use<'_> {
     let values = serde_json::Deserializer::from_str(unmarked(text)).into_iter::<Once>();
-    values.map(|value| value.map(|once| once.0).map_err(|error| not_json(&error)))
+    values.map(move |value| value.map(|once| once.0).map_err(|error| not_json(text, &error)))
 }
 
-fn not_json(error: &serde_json::Error) -> ImportError {
-    ImportError::new(format!("not JSON: {error}"))
+fn not_json(text: &str, error: &serde_json::Error) -> ImportError {
+    ImportError::of_json(unmarked(text), error, "JSON")
 }
 
 /// The value in a JSON text; a byte order mark at its start is skipped. An object with a key twice is refused.
@@ -27,7 +27,7 @@ fn not_json(error: &serde_json::Error) -> ImportError {
 /// Why it cannot be read.
 pub fn parse(text: &str) -> Result<Value, ImportError> {
     let value: Result<Once, _> = serde_json::from_str(unmarked(text));
-    value.map(|once| once.0).map_err(|error| not_json(&error))
+    value.map(|once| once.0).map_err(|error| not_json(text, &error))
 }
 
 /// An object and how messages name it.
@@ -158,7 +158,9 @@ mod tests {
         assert_eq!(parse(text).unwrap(), expected);
         assert_eq!(parse(&format!("\u{feff}{text}")).unwrap(), expected);
         let error = parse(r#"{"a": 1, "a": 1}"#).unwrap_err().to_string();
-        assert!(error.starts_with("not JSON: \"a\" is there twice at line 1"), "{error}");
+        assert_eq!(error, "line 1, column 12: not JSON: \"a\" is there twice");
+        let error = parse("{\"a\": 1,\n\"é\": x}").unwrap_err();
+        assert_eq!(error.in_file("f.json"), "f.json:2:6: not JSON: expected value");
         assert!(parse("{\"a\": 1} x").is_err() && parse("{\"a\": 1").is_err());
     }
 }

@@ -123,9 +123,6 @@ pub(super) struct Given {
 /// Largest deviation of a fitted path from a curve, if no other is asked for \[m\].
 pub const TOLERANCE: f64 = 1e-3;
 
-/// Corner radius of nav2 \[m\].
-pub const CORNER_RADIUS: f64 = 1.0;
-
 /// Heading of the options in the help.
 pub const HEADING: &str = "Layouts and other formats";
 
@@ -166,14 +163,14 @@ pub struct Options {
     /// Fleet (Open-RMF) or factsheet (VDA 5050)
     #[cfg_attr(feature = "clap", arg(long, value_name = "FILE"))]
     pub fleet: Option<PathBuf>,
-    /// Radius of corners (nav2: 1 if left out)
+    /// Radius of corners [default: 0, none]
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = not_negative))]
     pub corner_radius: Option<f64>,
     /// Deviation from curves [default: 0.001]
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", value_parser = positive))]
     pub tolerance: Option<f64>,
     /// Graph, if there are several (Open-RMF)
-    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N", value_parser = index))]
     pub graph: Option<u64>,
     /// Include the horizon of orders (VDA 5050)
     #[cfg_attr(feature = "clap", arg(long))]
@@ -200,6 +197,11 @@ fn positive(text: &str) -> Result<f64, String> {
         Ok(number) if number >= 1.0 / MOST => Ok(number),
         _ => Err(format!("a number from {:e} to {MOST:e} is expected", 1.0 / MOST)),
     }
+}
+
+#[cfg(feature = "clap")]
+fn index(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| "a whole number from 0 is expected".to_owned())
 }
 
 impl Options {

@@ -19,7 +19,7 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, ImportError> {
             return Err(ImportError::new(format!("not XML that is read: nested deeper than {DEPTH} elements")));
         }
     }
-    Document::parse(text).map_err(|error| ImportError::new(format!("not XML: {error}")))
+    Document::parse(text).map_err(|error| ImportError::of_xml(text, &error))
 }
 
 /// The tags of a text, without comments, instructions and what is quoted as text. Ends where a tag has no end.

@@ -158,7 +158,8 @@ fn scenario(number: usize, bytes: Vec<u8>) -> Result<Scenario, (String, String)>
             Some(format) => format!("no scenario; it looks like {format}, which is read with --from {format}"),
             None => error.to_string(),
         };
-        (error.scenario().to_owned(), format!("line {line}: {problem}"))
+        let column = error.column().map_or_else(String::new, |column| format!(", column {column}"));
+        (error.scenario().to_owned(), format!("line {line}{column}: {problem}"))
     })
 }
 
@@ -198,7 +199,7 @@ mod tests {
             "\u{feff}{\"name\": \"a\",\r\n \"agents\": [\r\n]}\r\n\n{\"name\": \"b}{\\\"\", \"agents\": []}\n[\n";
         let lines = read(text);
         assert_eq!(lines[..2], [ok(1, "a"), ok(5, "b}{\"")]);
-        assert!(lines[2].1.as_ref().unwrap_err().starts_with("line 7: column 1: the text ends where"), "{lines:?}");
+        assert!(lines[2].1.as_ref().unwrap_err().starts_with("line 7, column 1: the text ends where"), "{lines:?}");
         assert_eq!(lines.len(), 3);
     }
 
@@ -218,7 +219,7 @@ mod tests {
         let lines = read("{\"agents\": [],\n \"units\": 5 }\n{\"agents\": 1}");
         assert_eq!(
             lines[0].1,
-            Err("line 2: units: unknown key; known are format, version, name, agents, warnings".to_owned())
+            Err("line 2: units: unknown key; known are format, version, name, angles, agents, warnings".to_owned())
         );
         assert_eq!(lines[1], (3, Err("line 3: agents: 1 where an array is expected".to_owned())));
     }

@@ -1,5 +1,6 @@
 //! Decodes a scenario from JSON: the meaning of each field, and conditions between fields.
 
+use super::angles::{Angle, Doubts, RADIANS, UNIT};
 use super::fields::{Fields, LIMIT, Place, Range, ScenarioError, brief, figure, whole};
 use super::labels;
 use super::name::Name;
@@ -16,7 +17,7 @@ use std::collections::HashSet;
 use std::fmt;
 
 /// Fields of a scenario file.
-const FIELDS: [&str; 5] = ["format", "version", "name", "agents", "warnings"];
+const FIELDS: [&str; 6] = ["format", "version", "name", UNIT, "agents", "warnings"];
 
 /// Relative difference between the travelled length and the length of the path that is still scaled away: what the library takes, 2⁻²⁰.
 pub const LENGTH_TOLERANCE: f64 = 1.0 / (1_u64 << -pcr_core::LENGTH_TOLERANCE_LOG2) as f64;
@@ -40,10 +41,8 @@ impl Scenario {
         }
         // Agent by agent: the tree of a large fleet would take many times the memory of its text.
         let mut agents = Agents::default();
-        let json = json::parse_listing(text, "agents", &mut |agent| agents.add(&agent)).map_err(|error| {
-            let problem = format!("column {}: {}", error.column, error.problem);
-            Place::default().error(error.line, "", problem)
-        })?;
+        let json = json::parse_listing(text, "agents", &mut |agent| agents.add(&agent))
+            .map_err(|error| Place::default().error(error.line, "", error.problem).at_column(error.column))?;
         Self::decode(&json, agents)
     }
 
@@ -71,7 +70,8 @@ impl Scenario {
             Some((_, Json { data: Data::Text(name), .. })) => name.to_string(),
             _ => String::new(),
         };
-        match Self::agents(json, agents).and_then(|agents| Ok((agents, Self::warnings(json)?))) {
+        let doubts = agents.doubts.warnings();
+        match Self::agents(json, agents).and_then(|agents| Ok((agents, Self::warnings(json, doubts)?))) {
             Ok((agents, warnings)) => Ok(Self { name, agents, warnings }),
             Err(mut error) => {
                 error.scenario = name;
@@ -80,16 +80,28 @@ impl Scenario {
         }
     }
 
-    fn warnings(json: &Json<'_>) -> Result<Vec<String>, ScenarioError> {
+    /// The warnings in the file, and those about its angles unless it declares their unit.
+    fn warnings(json: &Json<'_>, doubts: Vec<String>) -> Result<Vec<String>, ScenarioError> {
         let fields = Place::default().fields(json, &FIELDS)?;
+        let doubts = match fields.get(UNIT).map(|unit| (unit, &unit.data)) {
+            None => doubts,
+            Some((_, Data::Text(unit))) if unit == RADIANS => Vec::new(),
+            Some((unit, _)) => {
+                let expected = format!("\"{RADIANS}\" (degrees have keys of their own, such as heading_deg)");
+                return Err(fields.unexpected(UNIT, unit, &expected));
+            }
+        };
         if fields.get("warnings").is_none() {
-            return Ok(Vec::new());
+            return Ok(doubts);
         }
         let text = |warning: &Json<'_>| match &warning.data {
             Data::Text(text) => Ok(WarningCode::coded(text.to_string())),
             _ => Err(fields.unexpected("warnings", warning, "a list of strings")),
         };
-        fields.array("warnings")?.iter().map(text).collect()
+        let mut warnings: Vec<String> = fields.array("warnings")?.iter().map(text).collect::<Result<_, _>>()?;
+        let new: Vec<String> = doubts.into_iter().filter(|doubt| !warnings.contains(doubt)).collect();
+        warnings.extend(new);
+        Ok(warnings)
     }
 
     fn agents(json: &Json<'_>, agents: Agents) -> Result<Vec<Agent>, ScenarioError> {
@@ -150,6 +162,7 @@ struct Agents {
     texts: HashSet<String>,
     /// Whether ids are texts.
     all_texts: Option<bool>,
+    doubts: Doubts,
     /// The error of the first agent that is refused; later agents are not read.
     fault: Option<ScenarioError>,
 }
@@ -164,7 +177,7 @@ impl Agents {
     }
 
     fn decode(&mut self, json: &Json<'_>) -> Result<(), ScenarioError> {
-        let (agent, text) = Agent::decode(json, self.all.len())?;
+        let (agent, text) = Agent::decode(json, self.all.len(), &mut self.doubts)?;
         let refused = |problem: &dyn fmt::Display| {
             let called = format!("agent {}", agent.called());
             Err(Place { agent: Some(&called), part: None }.error(json.line, "id", problem))
@@ -185,8 +198,8 @@ impl Agents {
 
 impl Agent {
     /// The agent at a place, and whether its id is a text.
-    fn decode(json: &Json<'_>, index: usize) -> Result<(Self, bool), ScenarioError> {
-        const KNOWN: [&str; 14] = [
+    fn decode(json: &Json<'_>, index: usize, doubts: &mut Doubts) -> Result<(Self, bool), ScenarioError> {
+        const KNOWN: [&str; 16] = [
             "id",
             "label",
             "radius",
@@ -196,7 +209,9 @@ impl Agent {
             "v_max",
             "a_max",
             "turn_v_max",
+            "turn_v_max_deg",
             "turn_a_max",
+            "turn_a_max_deg",
             "t_start",
             "start",
             "path",
@@ -210,11 +225,11 @@ impl Agent {
         let (radius, footprint) = outline(&fields, place)?;
         let margin = fields.get("margin").map_or(Ok(0.0), |_| fields.number("margin", Range::NotNegative))?;
         let t_start = fields.get("t_start").map_or(Ok(0.0), |_| fields.number("t_start", Range::Any))?;
-        let start = fields.object("start", "start.", &["x", "y", "heading"])?;
+        let start = fields.object("start", "start.", &["x", "y", "heading", "heading_deg"])?;
         let start =
-            [start.number("x", Range::Any)?, start.number("y", Range::Any)?, start.number("heading", Range::Any)?];
-        let path = path(&fields, place)?;
-        let motion = motion(&fields, &path)?;
+            [start.number("x", Range::Any)?, start.number("y", Range::Any)?, doubts.angle(&start, Angle::Heading)?];
+        let path = path(&fields, place, doubts)?;
+        let motion = motion(&fields, &path, doubts)?;
         let loads = loads(&fields, path.len())?;
         let Name { label, is_text, .. } = name;
         let agent = Self { id, label, radius, footprint, loads, margin, t_start, start, path, motion };
@@ -242,11 +257,11 @@ impl Agent {
 }
 
 /// The path of an agent, if it is neither too long nor of too many segments.
-fn path(fields: &Fields<'_>, place: Place<'_>) -> Result<Vec<PathSegment>, ScenarioError> {
+fn path(fields: &Fields<'_>, place: Place<'_>, doubts: &mut Doubts) -> Result<Vec<PathSegment>, ScenarioError> {
     let given = fields.array("path")?;
     let mut path = Vec::with_capacity(given.len());
     for (index, json) in given.iter().enumerate() {
-        path.push(PathSegment::decode(json, place.part("segment", index))?);
+        path.push(PathSegment::decode(json, place.part("segment", index), doubts)?);
     }
     let length: f64 = path.iter().map(PathSegment::length).sum();
     let segments: f64 = path.iter().map(PathSegment::turns).sum();
@@ -261,18 +276,18 @@ fn path(fields: &Fields<'_>, place: Place<'_>) -> Result<Vec<PathSegment>, Scena
 }
 
 /// The profile that is given, or from rest to rest, or with turns in place.
-fn motion(fields: &Fields<'_>, path: &[PathSegment]) -> Result<MotionSpec, ScenarioError> {
+fn motion(fields: &Fields<'_>, path: &[PathSegment], doubts: &mut Doubts) -> Result<MotionSpec, ScenarioError> {
     let moves = fields.get("profile").is_none();
     let limit = |field| match fields.get(field) {
         None if !moves => Ok(None),
         _ => fields.number(field, Range::Positive).map(Some),
     };
     let turns = moves && fields.array("path")?.iter().any(turns::is_given);
-    let of_turns = |field| match fields.get(field) {
-        None if !turns => Ok(0.0),
-        _ => fields.number(field, Range::Positive),
+    let mut of_turns = |limit: Angle| match limit.is_in(fields) || turns {
+        false => Ok(0.0),
+        true => doubts.angle(fields, limit),
     };
-    let of_turns = [of_turns("turn_v_max")?, of_turns("turn_a_max")?];
+    let of_turns = [of_turns(Angle::TurnSpeed)?, of_turns(Angle::TurnAcceleration)?];
     Ok(match (limit("v_max")?, limit("a_max")?) {
         (Some(v_max), Some(a_max)) if turns => turns::motion(path, [v_max, a_max], of_turns),
         (Some(v_max), Some(a_max)) if moves => MotionSpec::RestToRest { v_max, a_max },
@@ -281,7 +296,7 @@ fn motion(fields: &Fields<'_>, path: &[PathSegment]) -> Result<MotionSpec, Scena
 }
 
 impl PathSegment {
-    fn decode(json: &Json<'_>, place: Place<'_>) -> Result<Self, ScenarioError> {
+    fn decode(json: &Json<'_>, place: Place<'_>, doubts: &mut Doubts) -> Result<Self, ScenarioError> {
         let kind = match &json.data {
             Data::Object(members) => members.iter().find(|(key, _)| key == "kind").map(|(_, kind)| kind),
             _ => None,
@@ -292,16 +307,16 @@ impl PathSegment {
                 Ok(Self::Line { length: fields.number("length", Range::NotNegative)? })
             }
             Some(Data::Text(kind)) if kind == "arc" => {
-                let fields = place.fields(json, &["kind", "radius", "sweep"])?;
+                let fields = place.fields(json, &["kind", "radius", "sweep", "sweep_deg"])?;
                 let radius = fields.number("radius", Range::Positive)?;
-                Ok(Self::Arc { radius, sweep: fields.number("sweep", Range::Any)? })
+                Ok(Self::Arc { radius, sweep: doubts.angle(&fields, Angle::Sweep)? })
             }
             Some(Data::Text(kind)) if kind == "turn" => {
-                let fields = place.fields(json, &["kind", "sweep"])?;
-                Ok(Self::Arc { radius: TURN, sweep: fields.number("sweep", Range::Any)? })
+                let fields = place.fields(json, &["kind", "sweep", "sweep_deg"])?;
+                Ok(Self::Arc { radius: TURN, sweep: doubts.angle(&fields, Angle::Sweep)? })
             }
             _ => {
-                let fields = place.fields(json, &["kind", "length", "radius", "sweep"])?;
+                let fields = place.fields(json, &["kind", "length", "radius", "sweep", "sweep_deg"])?;
                 let kind = fields.required("kind")?;
                 Err(fields.error(
                     kind.line,

@@ -1,5 +1,6 @@
 //! Encodes a scenario as a file.
 
+use super::angles::{RADIANS, UNIT};
 use super::decode::{FORMAT, VERSION};
 use super::{Agent, Load, MotionSpec, PathSegment, Scenario, TURN};
 use crate::footprint::Footprint;
@@ -17,8 +18,9 @@ impl Scenario {
             false => format!("  \"warnings\": {},\n", Value::from(self.warnings.clone())),
         };
         let name = Value::from(self.name.as_str());
+        let unit = if self.has_doubted_angles() { format!("  \"{UNIT}\": \"{RADIANS}\",\n") } else { String::new() };
         format!(
-            "{{ \"format\": \"{FORMAT}\", \"version\": {VERSION}, \"name\": {name},\n{warnings}  \"agents\": {agents} }}\n"
+            "{{ \"format\": \"{FORMAT}\", \"version\": {VERSION}, \"name\": {name},\n{unit}{warnings}  \"agents\": {agents} }}\n"
         )
     }
 

@@ -14,6 +14,7 @@ pub const LIMIT: f64 = 1e10;
 pub struct ScenarioError {
     pub(super) scenario: String,
     line: usize,
+    column: Option<usize>,
     /// Boxed, because errors are returned by value everywhere.
     about: Box<About>,
     message: String,
@@ -48,6 +49,16 @@ impl ScenarioError {
         self.line
     }
 
+    /// Character in the line, counted from 1, where the text is not JSON. It is not part of the message.
+    pub fn column(&self) -> Option<usize> {
+        self.column
+    }
+
+    /// The same with a column.
+    pub(super) fn at_column(self, column: usize) -> Self {
+        Self { column: Some(column), ..self }
+    }
+
     /// Name of the scenario, empty if it was not readable or not given.
     pub fn scenario(&self) -> &str {
         &self.scenario
@@ -74,13 +85,20 @@ pub(super) struct Place<'n> {
 impl<'n> Place<'n> {
     /// The error at this place; `field` is empty where the place as a whole is meant.
     pub(super) fn error(self, line: usize, field: &str, problem: impl fmt::Display) -> ScenarioError {
-        let part = self.part.map(|(part, number)| format!("{part} {number}"));
-        let field = Some(field.to_owned()).filter(|field| !field.is_empty());
-        let place: Vec<&str> = [self.agent, part.as_deref(), field.as_deref()].into_iter().flatten().collect();
+        let place = self.called(field);
         let colon = if place.is_empty() { "" } else { ": " };
-        let message = format!("{}{colon}{problem}", place.join(", "));
+        let message = format!("{place}{colon}{problem}");
+        let field = Some(field.to_owned()).filter(|field| !field.is_empty());
         let about = About { agent: self.agent.map(str::to_owned), part: self.part, field };
-        ScenarioError { scenario: String::new(), line, about: Box::new(about), message }
+        ScenarioError { scenario: String::new(), line, column: None, about: Box::new(about), message }
+    }
+
+    /// Agent, part and field, as far as there are any.
+    fn called(self, field: &str) -> String {
+        let part = self.part.map(|(part, number)| format!("{part} {number}"));
+        let field = Some(field).filter(|field| !field.is_empty());
+        let place: Vec<&str> = [self.agent, part.as_deref(), field].into_iter().flatten().collect();
+        place.join(", ")
     }
 
     pub(super) fn part(self, name: &'static str, index: usize) -> Self {
@@ -134,6 +152,11 @@ impl<'j> Fields<'j> {
     /// The error about a field, at its line if it is given.
     pub(super) fn refused(&self, field: &str, problem: impl fmt::Display) -> ScenarioError {
         self.error(self.get(field).map_or(self.line, |json| json.line), field, problem)
+    }
+
+    /// A field as messages name it, with its agent and its part.
+    pub(super) fn called(&self, field: &str) -> String {
+        self.place.called(&format!("{}{field}", self.inside))
     }
 
     pub(super) fn get(&self, field: &str) -> Option<&'j Json<'j>> {

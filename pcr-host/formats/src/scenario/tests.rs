@@ -2,6 +2,7 @@
 
 use super::*;
 use serde_json::{Value, json};
+use std::f64::consts::PI;
 
 fn agent(id: u64) -> Value {
     json!({
@@ -54,17 +55,17 @@ fn missing_fields_are_named() {
 fn unknown_keys_are_refused_with_those_that_are_known() {
     refused(
         &with("/path/1/length", &json!(1)),
-        "agent 7, segment 2, length: unknown key; known are kind, radius, sweep",
+        "agent 7, segment 2, length: unknown key; known are kind, radius, sweep, sweep_deg",
     );
     refused(&with("/path/0/sweep", &json!(1)), "agent 7, segment 1, sweep: unknown key; known are kind, length");
-    refused(&with("/start/z", &json!(1)), "agent 7, start.z: unknown key; known are x, y, heading");
+    refused(&with("/start/z", &json!(1)), "agent 7, start.z: unknown key; known are x, y, heading, heading_deg");
     refused(
         &with("/speed", &json!(1)),
-        "agent 7, speed: unknown key; known are id, label, radius, footprint, loads, margin, v_max, a_max, turn_v_max, turn_a_max, t_start, start, path, profile",
+        "agent 7, speed: unknown key; known are id, label, radius, footprint, loads, margin, v_max, a_max, turn_v_max, turn_v_max_deg, turn_a_max, turn_a_max_deg, t_start, start, path, profile",
     );
     refused(
         &json!({ "agents": [], "units": "m" }),
-        "units: unknown key; known are format, version, name, agents, warnings",
+        "units: unknown key; known are format, version, name, angles, agents, warnings",
     );
 }
 
@@ -196,17 +197,96 @@ fn what_follows_from_several_fields_is_checked_too() {
 }
 
 #[test]
+fn angles_may_be_in_degrees() {
+    let read = |pointer: &str, key: &str, value: Value| {
+        let mut scenario = with(pointer, &Value::Null);
+        let parent = scenario["agents"][1].pointer_mut(pointer.rsplit_once('/').unwrap().0).unwrap();
+        parent[key] = value;
+        Scenario::from_value(&scenario)
+    };
+    for (degrees, radians) in [(90.0, PI / 2.0), (-180.0, -PI), (360.0, TAU), (720.0, 2.0 * TAU), (0.0, 0.0)] {
+        let scenario = read("/start/heading", "heading_deg", json!(degrees)).unwrap();
+        assert_eq!((scenario.agents[1].start[2], scenario.warnings.len()), (radians, 0), "{degrees}");
+        let scenario = read("/path/1/sweep", "sweep_deg", json!(degrees)).unwrap();
+        let arc = PathSegment::Arc { radius: 1.0, sweep: radians };
+        assert_eq!((scenario.agents[1].path[1], scenario.warnings.len()), (arc, 0), "{degrees}");
+        // What is written of it is not doubted either.
+        assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));
+    }
+    let turn = json!({ "kind": "turn", "sweep_deg": 90 });
+    let mut turns = with("/path/1", &turn);
+    for (agent, keys) in [(0, ["turn_v_max", "turn_a_max"]), (1, ["turn_v_max_deg", "turn_a_max_deg"])] {
+        turns["agents"][agent]["path"][1] = turn.clone();
+        keys.iter().for_each(|key| turns["agents"][agent][key] = json!(1.0));
+    }
+    let scenario = Scenario::from_value(&turns).unwrap();
+    let [radians, degrees] = [0, 1].map(|agent| scenario.agents[agent].duration() - 4.0);
+    // From rest to rest, at 1 °/s² up to 1 °/s, and the same in radians.
+    assert!((radians - (PI / 2.0 + 1.0)).abs() < 1e-9 && (degrees - 91.0).abs() < 1e-9, "{radians} {degrees}");
+    let both = "given beside sweep; give either radians (sweep) or degrees (sweep_deg)";
+    refused(&with("/path/1/sweep_deg", &json!(1)), &format!("agent 7, segment 2, sweep_deg: {both}"));
+    let both = "given beside heading; give either radians (heading) or degrees (heading_deg)";
+    refused(&with("/start/heading_deg", &json!(1)), &format!("agent 7, start.heading_deg: {both}"));
+    let any = "is out of range; allowed is -1e10 to 1e10";
+    let error = read("/start/heading", "heading_deg", json!(2e10)).unwrap_err().to_string();
+    assert_eq!(error, format!("agent 7, start.heading_deg: 20000000000.0 {any}"));
+}
+
+#[test]
+fn radians_above_one_turn_are_doubted() {
+    let warnings = |scenario: &Value| Scenario::from_value(scenario).unwrap().warnings;
+    let unless = "or add \"angles\": \"radians\" to the file if this is meant [angle-unit]";
+    let heading =
+        format!("agent 7, start.heading: 90 is more than one turn in radians; use heading_deg for degrees, {unless}");
+    let mut scenario = with("/start/heading", &json!(90));
+    assert_eq!(warnings(&scenario), [heading.clone()]);
+    scenario["agents"][0]["path"][1]["sweep"] = json!(-90.0);
+    scenario["agents"][1]["path"][1]["sweep"] = json!(6.3);
+    let sweep =
+        "agent 3, segment 2, sweep: -90 is more than one turn in radians (and 1 more); use sweep_deg for degrees,";
+    assert_eq!(warnings(&scenario), [heading.clone(), format!("{sweep} {unless}")]);
+    // It is told once, however often it is read; what the tool writes declares its unit.
+    scenario["warnings"] = json!([heading]);
+    let read = Scenario::from_value(&scenario).unwrap();
+    assert_eq!(read.warnings.len(), 2);
+    assert_eq!(Scenario::from_json(&read.to_json()), Ok(read));
+    scenario["warnings"] = json!([]);
+    scenario["angles"] = json!("radians");
+    assert_eq!(warnings(&scenario), [""; 0]);
+    scenario["angles"] = json!("degrees");
+    refused(
+        &scenario,
+        "angles: \"degrees\" where \"radians\" (degrees have keys of their own, such as heading_deg) is expected",
+    );
+    for turn in [6.2832, -6.2831853, 3.0] {
+        assert_eq!(warnings(&with("/start/heading", &json!(turn))), [""; 0], "{turn}");
+        assert_eq!(warnings(&with("/path/1/sweep", &json!(turn))), [""; 0], "{turn}");
+    }
+    // Turns in place, and how fast they are.
+    let mut turns = with("/path/1", &json!({ "kind": "turn", "sweep": 1.5 }));
+    turns["agents"][1]["turn_v_max"] = json!(45);
+    turns["agents"][1]["turn_a_max"] = json!(90);
+    let [speed, acceleration] = warnings(&turns).try_into().unwrap();
+    assert!(speed.starts_with("agent 7, turn_v_max: 45 is more than one turn a second in radians; use turn_v_max_deg"));
+    assert!(acceleration.starts_with("agent 7, turn_a_max: 90 is more than"), "{acceleration}");
+}
+
+#[test]
 fn faults_of_the_text_come_with_line_and_column() {
+    let refused_at = |text: &str, [line, column]: [usize; 2], message: &str| {
+        refused_text(text, line, message);
+        assert_eq!(Scenario::from_json(text).unwrap_err().column(), Some(column));
+    };
     refused_text("", 1, "empty; a scenario is an object with a list of agents");
     refused_text("\u{feff} \r\n", 1, "empty; a scenario is an object with a list of agents");
-    refused_text("{\"agents\": [}", 1, "column 13: } where a value is expected");
-    refused_text("{\"agents\":\n []", 2, "column 4: the text ends where `,` or `}` is expected");
-    refused_text(
+    refused_at("{\"agents\": [}", [1, 13], "} where a value is expected");
+    refused_at("{\"agents\":\n []", [2, 4], "the text ends where `,` or `}` is expected");
+    refused_at(
         "{\"agents\": []}\n{}",
-        2,
-        "column 1: more text after the end of the scenario (pcr check and pcr regions read several on standard input, each on a line of its own)",
+        [2, 1],
+        "more text after the end of the scenario (pcr check and pcr regions read several on standard input, each on a line of its own)",
     );
-    refused_text(&"[".repeat(100_000), 1, "column 65: arrays and objects nested more than 64 deep");
+    refused_at(&"[".repeat(100_000), [1, 65], "arrays and objects nested more than 64 deep");
 }
 
 #[test]

@@ -17,6 +17,15 @@ impl<'t> Document<'t> {
         Resolver::of(self).value(&self.root, 0)
     }
 
+    /// The same tree with every scalar as its text, without its quotes: for names, which may be any scalar. What stands for nothing and is
+    /// no empty text is `null`.
+    ///
+    /// # Errors
+    /// As [`Document::value`].
+    pub fn texts(&self) -> Result<Json, Error> {
+        Resolver { as_texts: true, ..Resolver::of(self) }.value(&self.root, 0)
+    }
+
     /// The names of the members of a member, in the order of the text; what is merged comes last.
     ///
     /// # Errors
@@ -32,8 +41,8 @@ impl<'t> Document<'t> {
 /// A member of a mapping, or of what is merged into it.
 struct Named<'d, 't> {
     name: &'d str,
-    /// Its name as an integer: `0x1` and `1` are one name, as long as there are no quotes.
-    number: Option<Number>,
+    /// What its name stands for if it is an integer or nothing, as long as there are no quotes: `0x1` and `1` are one name.
+    meaning: Option<Option<Number>>,
     value: &'d Spanned<'t>,
 }
 
@@ -41,17 +50,17 @@ struct Named<'d, 't> {
 #[derive(Default)]
 struct Known<'d> {
     names: HashSet<&'d str>,
-    numbers: HashSet<Number>,
+    meanings: HashSet<Option<Number>>,
 }
 
 impl<'d> Known<'d> {
     /// Adds a name, unless it is known.
     fn add(&mut self, member: &Named<'d, '_>) -> bool {
         let is_new = !self.names.contains(member.name)
-            && member.number.as_ref().is_none_or(|number| !self.numbers.contains(number));
+            && member.meaning.as_ref().is_none_or(|meaning| !self.meanings.contains(meaning));
         if is_new {
             self.names.insert(member.name);
-            self.numbers.extend(member.number.clone());
+            self.meanings.extend(member.meaning.clone());
         }
         is_new
     }
@@ -62,6 +71,8 @@ struct Resolver<'d, 't> {
     anchors: HashMap<usize, &'d Spanned<'t>>,
     /// Values and bytes that may still be read.
     left: usize,
+    /// Whether scalars are read as their texts.
+    as_texts: bool,
 }
 
 impl<'d, 't> Resolver<'d, 't> {
@@ -69,7 +80,7 @@ impl<'d, 't> Resolver<'d, 't> {
         let mut anchors = HashMap::new();
         collect(&document.root, &mut anchors);
         let left = document.text.len().saturating_mul(REPETITION).saturating_add(1024);
-        Self { text: document.text, anchors, left }
+        Self { text: document.text, anchors, left, as_texts: false }
     }
 
     fn error(&self, node: &Spanned<'_>, problem: impl Into<String>) -> Error {
@@ -101,6 +112,10 @@ impl<'d, 't> Resolver<'d, 't> {
         match &node.value {
             Value::Scalar(text) => {
                 self.count(node, text.len())?;
+                if self.as_texts {
+                    let text = if is_nothing(node, text) { NULL } else { &**text };
+                    return Ok(Json::String(text.to_owned()));
+                }
                 scalar::value(node.kind, text).map_err(|problem| self.error(node, problem))
             }
             Value::Sequence(_, elements) => {
@@ -171,13 +186,18 @@ impl<'d, 't> Resolver<'d, 't> {
     fn named(&mut self, key: &'d Spanned<'t>, value: &'d Spanned<'t>) -> Result<Named<'d, 't>, Error> {
         let Value::Scalar(name) = &key.value else { return Err(self.error(key, "a name is expected")) };
         self.count(key, name.len())?;
-        if is_nothing(key, name) || matches!(key.kind, Kind::Integer | Kind::Float | Kind::Flag) {
-            return Err(self.error(key, "a name is expected; quotes make it one"));
+        if key.span.is_empty() {
+            return Err(self.error(key, "a name is expected"));
         }
-        let number = integer(name).filter(|_| key.kind == Kind::Any);
-        Ok(Named { name, number, value })
+        let is_null = is_nothing(key, name);
+        let number = integer(name).filter(|_| matches!(key.kind, Kind::Any | Kind::Integer));
+        let meaning = if is_null { Some(None) } else { number.map(Some) };
+        Ok(Named { name: if is_null { NULL } else { name }, meaning, value })
     }
 }
+
+/// What a name that stands for nothing is called, as programs in C++ read it.
+const NULL: &str = "null";
 
 fn is_merge(key: &Spanned<'_>) -> bool {
     matches!(key.kind, Kind::Any | Kind::Merge) && key.text() == Some("<<")
@@ -221,7 +241,7 @@ mod tests {
             }))
         );
         assert_eq!(value("[&x 1, *x, &x 2, *x]"), Ok(json!([1, 1, 2, 2])));
-        assert_eq!(value("[*x]"), Err("not YAML: line 1 column 2: while parsing node, found unknown anchor".into()));
+        assert_eq!(value("[*x]"), Err("line 1, column 2: not YAML: while parsing node, found unknown anchor".into()));
         for text in ["a: &x [1, *x]", "&x {a: {b: *x}}", "a: &x\n  b: *x\n", "&x {<<: *x}", "&x {? [*x] : 1}"] {
             let error = value(text).unwrap_err();
             assert!(error.contains("an alias for what it is in") || error.contains("a name is expected"), "{error}");
@@ -256,12 +276,29 @@ mod tests {
             value("1: a\n1.0: b\nyes: c\ntrue: d\n0x10: e\n!!str ~: f"),
             Ok(json!({"1": "a", "1.0": "b", "yes": "c", "true": "d", "0x10": "e", "~": "f"}))
         );
-        for text in ["a: 1\na: 2", "a: 1\n'a': 2", "1: a\n'1': b", "1: a\n0x1: b", "{a: 1, a: 1}", "&x a: 1\n*x : 2"] {
+        assert_eq!(value("~: 1\n!!int '1': a\n1.5: b\n'': c"), Ok(json!({"null": 1, "1": "a", "1.5": "b", "": "c"})));
+        for text in [
+            "null: 1\n~: 2",
+            "a: 1\na: 2",
+            "a: 1\n'a': 2",
+            "1: a\n'1': b",
+            "1: a\n0x1: b",
+            "{a: 1, a: 1}",
+            "&x a: 1\n*x : 2",
+        ] {
             assert!(value(text).unwrap_err().ends_with(" is there twice"), "{text}");
         }
-        for text in ["~: 1", ": 1", "? [1]\n: 2", "{{}: 1}", "!!int '1': a", "!!null x: a"] {
+        for text in [": 1", "? [1]\n: 2", "{{}: 1}"] {
             assert!(value(text).unwrap_err().contains("a name is expected"), "{text}");
         }
+    }
+
+    #[test]
+    fn texts_are_those_of_the_scalars() {
+        let texts = |text: &str| Document::read(text).unwrap().texts();
+        let all = json!({"a": ["007", "1.0", "true", "null", "null", "", "x y", "0x10"], "b": {"c": "1"}});
+        assert_eq!(texts("a: [007, 1.0, true, ~, null, '', \"x y\", &n 0x10]\nb: {c: 1}"), Ok(all));
+        assert_eq!(texts("a: &x 1.50\nb: *x\n<<: {c: .nan}"), Ok(json!({"a": "1.50", "b": "1.50", "c": ".nan"})));
     }
 
     #[test]
@@ -284,7 +321,7 @@ mod tests {
         let long = format!("a: &a {}\nb: [{}]", "x".repeat(4000), "*a, ".repeat(100));
         for text in [laughs, merges, long] {
             let error = value(&text).unwrap_err();
-            assert!(error.starts_with("too large or too deep: line "), "{error}");
+            assert!(error.contains(": too large or too deep: "), "{error}");
         }
         // Parameters that many lanes have in common.
         let lanes = "    - [0, 1, *p]\n".repeat(5000);
@@ -312,7 +349,7 @@ mod tests {
             blocks,
         ] {
             let error = value(&text).unwrap_err();
-            assert!(error.starts_with("too large or too deep: line "), "{error}");
+            assert!(error.contains(": too large or too deep: "), "{error}");
         }
     }
 }

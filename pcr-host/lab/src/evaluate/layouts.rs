@@ -1,6 +1,6 @@
 //! Fleets that run for a quarter of an hour on all layouts of others in the repository: orders beside locks.
 
-use super::{Extent, Fleets, Problem, Section};
+use super::{CORNER_RADIUS, Extent, Fleets, Problem, Section};
 use pcr_execution::lifelong::{Delays, Driven, Lifelong, Method, Request};
 use pcr_formats::import::{self, Format, Imported, Options, Warnings};
 use pcr_planning::figures::digits;
@@ -104,7 +104,7 @@ fn read(fleets: &Fleets, name: &str, radius: f64) -> Result<Imported, String> {
     let path = fleets.data.join("real").join(name);
     let text = fs::read_to_string(&path).map_err(|error| format!("cannot be read: {error}"))?;
     let format = Format::of(&path, &text).ok_or("no layout")?;
-    let options = Options { radius: Some(radius), ..Options::default() };
+    let options = Options { radius: Some(radius), corner_radius: Some(CORNER_RADIUS), ..Options::default() };
     import::roads(format, &text, &options, &mut Warnings::default()).map_err(|error| error.to_string())
 }
 

@@ -200,6 +200,18 @@ pub fn edge_table(locks: &EdgeLocks, out: &mut dyn Write) -> io::Result<()> {
     columns.write(out)
 }
 
+/// The vehicle of a table of locks, in words.
+pub fn vehicle_text(vehicle: &LockVehicle) -> String {
+    let outline = match vehicle.discs.len() {
+        0 => format!("radius {} m", given(vehicle.radius)),
+        discs => format!("an outline of {discs} discs within {} m", above(vehicle.radius)),
+    };
+    match vehicle.corner_margin {
+        None => outline,
+        Some(margin) => format!("{outline}, up to {} m more for rounded corners", above(margin)),
+    }
+}
+
 /// The locks in columns, lengths outward to the millimetre.
 ///
 /// # Errors
@@ -209,10 +221,7 @@ pub fn locks_table(locks: &Locks, out: &mut dyn Write) -> io::Result<()> {
     let mut pairs: Vec<_> = locks.locks.iter().map(|lock| (&lock.a, &lock.b)).collect();
     pairs.dedup();
     let (count, pairs) = (counted(locks.locks.len(), "lock"), counted(pairs.len(), "pair"));
-    let vehicle = match (locks.vehicle.discs.len(), locks.vehicle.radius) {
-        (0, radius) => format!("radius {} m", given(radius)),
-        (discs, radius) => format!("an outline of {discs} discs within {} m", above(radius)),
-    };
+    let vehicle = vehicle_text(&locks.vehicle);
     writeln!(out, "{}: {count} of {pairs} of edges, {vehicle}", printable(name))?;
     let text = |id: &dyn ToString| printable(&id.to_string());
     if !locks.locks.is_empty() {

@@ -147,7 +147,7 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
         ("--time", arguments.time.unwrap_or(1.0), 0.1, 1e7),
     ] {
         if !(lo..=hi).contains(&value) {
-            return Err(Stop::arguments(format!("{name}: allowed is {lo} to {hi}")));
+            return Err(Stop::arguments(format!("{name}: a number from {lo} to {hi} is expected")));
         }
     }
     if arguments.vehicles == 0 {
@@ -161,7 +161,7 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     let world = match arguments.streets {
         None => world(&layout_source(arguments.layout.clone())?, &crew)?,
         Some(count @ 2..=100) => generated(count, &crew)?,
-        Some(_) => return Err(Stop::arguments("--streets: allowed is 2 to 100")),
+        Some(_) => return Err(Stop::arguments("--streets: a whole number from 2 to 100 is expected")),
     };
     if let (Some(profiles), Some(record)) = (&arguments.profiles, &arguments.record)
         && !is_standard(Some(profiles))
