@@ -239,7 +239,7 @@ fn radians_above_one_turn_are_doubted() {
     let heading =
         format!("agent 7, start.heading: 90 is more than one turn in radians; use heading_deg for degrees, {unless}");
     let mut scenario = with("/start/heading", &json!(90));
-    assert_eq!(warnings(&scenario), [heading.clone()]);
+    assert_eq!(warnings(&scenario), std::slice::from_ref(&heading));
     scenario["agents"][0]["path"][1]["sweep"] = json!(-90.0);
     scenario["agents"][1]["path"][1]["sweep"] = json!(6.3);
     let sweep =
@@ -258,7 +258,7 @@ fn radians_above_one_turn_are_doubted() {
         &scenario,
         "angles: \"degrees\" where \"radians\" (degrees have keys of their own, such as heading_deg) is expected",
     );
-    for turn in [6.2832, -6.2831853, 3.0] {
+    for turn in [std::f64::consts::TAU, -std::f64::consts::TAU, 3.0] {
         assert_eq!(warnings(&with("/start/heading", &json!(turn))), [""; 0], "{turn}");
         assert_eq!(warnings(&with("/path/1/sweep", &json!(turn))), [""; 0], "{turn}");
     }
