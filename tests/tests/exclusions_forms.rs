@@ -178,7 +178,9 @@ fn what_is_shared_in_a_building_is_refused() {
     }
     // Elsewhere they do no harm.
     let text = format!("more: &x {{}}\nagain: *x\n{BUILDING}");
-    assert!(written(Format::Rmf, &text, 0.4, Target::Rmf, None).0.starts_with("more: &x {}\nagain: *x\n"));
+    let (text, _) = written(Format::Rmf, &text, 0.4, Target::Rmf, None);
+    let (stamp, rest) = text.split_once('\n').unwrap();
+    assert!(stamp.starts_with("pcr_vehicle: {") && rest.starts_with("more: &x {}\nagain: *x\n"), "{text}");
 }
 
 const GRAPH: &str = "building_name: site
@@ -235,6 +237,8 @@ fn navigation_graphs_are_read_and_written() {
         .replace(", mutex: \"pcr/L2/0\"", "")
         .replace(", mutex: \"pcr/L2/1\"", "")
         .replace("mutex: \"pcr/L2/0\"", "");
+    let (stamp, plain) = plain.split_once('\n').unwrap();
+    assert!(stamp.starts_with("pcr_vehicle: {"), "{stamp}");
     assert_eq!(plain, GRAPH);
     for expected in [
         "{orientation_constraint: forward, mutex: \"pcr/L1/0\"}",

@@ -428,7 +428,7 @@ fn curves_of_the_first_models_are_those_of_the_later_ones() {
     let path =
         |kind: &str, points: &str| element("A-B", &[property("CONN_TYPE", kind), property("CONTROL_POINTS", points)]);
     let at = |of: &str, x: &str, y: &str| element(of, &[property("POSITION_X", x), property("POSITION_Y", y)]);
-    let placed = [at("A", "0", "0"), at("B", "20000", "0")].concat();
+    let placed = [at("A->", "0", "0"), at("B", "20000", "0")].concat();
     let read = |elements: &str| {
         let mut warnings = Warnings::default();
         let read = layout(Format::OpenTcs, &model(elements), &options(&[]), &mut warnings);
@@ -455,7 +455,7 @@ fn curves_of_the_first_models_are_those_of_the_later_ones() {
         warnings.iter().any(|line| line.starts_with("path A-B: where its points are drawn is not said")),
         "{warnings:?}"
     );
-    let moved = [at("A", "0", "30"), at("B", "20000", "0")].concat();
+    let moved = [at("A->", "0", "30"), at("B", "20000", "0")].concat();
     let (edge, _) = read(&[&moved, path("BEZIER", "100,-10;300,-10").as_str()].concat()).unwrap();
     assert!((edge.deviation - later.deviation - 3.0 * 0.03).abs() < 1e-9, "{} {}", edge.deviation, later.deviation);
     let (straight, _) = read(&[&placed, path("DIRECT", "").as_str()].concat()).unwrap();
@@ -470,8 +470,8 @@ fn curves_of_the_first_models_are_those_of_the_later_ones() {
         let error = read(&[&placed, path(kind, points).as_str()].concat()).unwrap_err().to_string();
         assert!(error.starts_with(expected), "{error}");
     }
-    let error = read(&[at("A", "0", "x"), path("BEZIER", "100,-10;300,-10")].concat()).unwrap_err().to_string();
-    assert!(error.starts_with("A, modelLayoutElement, POSITION_Y: \"x\" where"), "{error}");
+    let error = read(&[at("A->", "0", "x"), path("BEZIER", "100,-10;300,-10")].concat()).unwrap_err().to_string();
+    assert!(error.starts_with("A->, modelLayoutElement, POSITION_Y: \"x\" where"), "{error}");
     let twice = [path("BEZIER", "100,-10;300,-10"), path("DIRECT", "")].concat();
     assert!(read(&twice).unwrap_err().to_string().contains("modelLayoutElement A-B: there are several"));
 }

@@ -192,7 +192,17 @@ fn place(
     let layout = only(point, "pointLayout")?;
     let says = |layout: &roxmltree::Node<'_, '_>| [x, y].into_iter().flatten().any(|name| layout.has_attribute(name));
     let drawn = match layout.filter(says) {
-        Some(layout) => Some([at(layout, x)?, at(layout, y)?]),
+        Some(layout) => {
+            let said = |names: [&str; 2]| {
+                let is_there = names.iter().any(|name| layout.has_attribute(*name));
+                is_there.then(|| at(layout, names)).transpose()
+            };
+            match (said(x)?, said(y)?) {
+                (Some(x), Some(y)) => Some([x, y]),
+                // One coordinate tells where it is not, and not where it is.
+                (x, y) => Some([x.unwrap_or(own[0]), y.unwrap_or(own[1])]).filter(|at| distance(*at, own) > SHIFT),
+            }
+        }
         // Version 7 draws points where they are.
         None if layout.is_some() => Some(own),
         None => elsewhere.point(id)?,
