@@ -49,10 +49,12 @@ pub(crate) fn compare(before: &Imported, after: &Imported, cut: Cut) -> Result<(
     }
     let mut ways = Ways::of(new);
     let mut passed = vec![false; new.nodes.len()];
-    for edge in &old.edges {
-        for step in edge.steps() {
+    // Forward first: there each edge has its own name, and another one may lead the same way as it does backward.
+    for backward in [false, true] {
+        for edge in &old.edges {
+            let Some(step) = edge.steps().find(|step| step.backward == backward) else { continue };
             let ends = [nodes[step.origin()], nodes[step.target()]];
-            let chain = Chain { edge, backward: step.backward, ends, cut };
+            let chain = Chain { edge, backward, ends, cut };
             if let Err(what) = chain.follow(new, &kept, &mut ways, &mut passed) {
                 return refused(format!("edge {}: {what}", edge.id));
             }
@@ -259,5 +261,22 @@ mod tests {
         let moved = graph(&[(1, [0.3, 0.1 + 1e-12]), NODES[1], NODES[2]], &EDGES);
         let error = compare(&before, &moved, cut).unwrap_err().to_string();
         assert!(error.contains("node 1 is at [0.3"), "{error}");
+    }
+
+    /// A lane both ways became two, and the one back was taken for another lane that leads the same way.
+    #[test]
+    fn lanes_that_lead_the_same_way_keep_their_names() {
+        let options = Options { radius: Some(0.3), ..Options::default() };
+        let building = |lanes: &str| {
+            let text = format!(
+                "coordinate_system: cartesian_meters\nname: m\nlevels:\n  L:\n    lanes: {lanes}\n    vertices: [[0, 0], [4, 0]]\n"
+            );
+            layout(Format::Rmf, &text, &options, &mut Warnings::default()).unwrap()
+        };
+        let before = building("[[0, 1, {bidirectional: [4, true]}], [1, 0, {}]]");
+        let after = building("[[0, 1, {bidirectional: [4, false]}], [1, 0, {}], [1, 0, {bidirectional: [4, false]}]]");
+        let nothing = Cut { most: None, rounding: 0.0 };
+        assert_eq!(compare(&before, &after, nothing), Ok(()));
+        assert!(compare(&before, &building("[[0, 1, {}], [1, 0, {}]]"), nothing).is_err());
     }
 }
