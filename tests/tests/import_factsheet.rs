@@ -108,7 +108,10 @@ fn agents_on_routes_have_the_contour() {
     // With a radius it is a disc.
     let disc = Options { radius: Some(0.4), ..options(&["0:50"]) };
     let disc = scenario(Format::Nav2, WAREHOUSE, &disc, &mut warnings).unwrap();
-    assert_eq!((disc.agents[0].footprint.as_ref(), disc.agents[0].radius), (None, 0.4));
+    assert!(disc.agents[0].footprint.is_none());
+    // Turns in place at corners deviate from their node by nanometres.
+    let growth = disc.agents[0].radius - 0.4;
+    assert!((0.0..1e-8).contains(&growth), "{growth}");
 }
 
 #[test]
