@@ -54,7 +54,7 @@ fn audited<S: Format>(driven: &[Driven; 2]) -> Result<(), TestCaseError> {
         prop_assert_eq!([conflict.time.lo.to_f64(), conflict.time.hi.to_f64()], *contact);
         let depth = audited_approach(&truth, &conflict.deepest, *contact, tolerance)?;
         prop_assert!((conflict.depth.to_f64() - depth.max(0.0)).abs() <= tolerance);
-        prop_assert_eq!(conflict.touching, conflict.depth <= encounter.tolerance());
+        prop_assert_eq!(conflict.touching, conflict.depth <= encounter.tolerance().half());
         for (length, travel) in [(conflict.length, &truth.travels[0]), (conflict.other_length, &truth.travels[1])] {
             for (end, time) in [(length.lo, contact[0]), (length.hi, contact[1])] {
                 prop_assert!((end.to_f64() - travel.length_at(time)).abs() <= tolerance);

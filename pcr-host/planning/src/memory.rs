@@ -58,7 +58,7 @@ pub fn ask(bytes: u64, what: impl FnOnce() -> String) -> Result<(), TooLarge> {
 const OF_TEXT: u64 = 8;
 
 /// The same where a tree is made of all of it.
-const OF_TREE: u64 = 32;
+const OF_TREE: u64 = 56;
 
 /// Asks for what is made of a text of so many bytes while it is read.
 ///

@@ -77,7 +77,11 @@ fn what_is_something_else_is_said_to_be() {
             "a plan of Continuous-CBS, with paths of its own; a layout is expected (read as ccbs)",
         ),
         ("locks", "vda5050/order_v2_flywei.json", "an order or a state is not a layout (read as vda5050)"),
-        ("regions", "vda5050/order_v2_nulls_opentcs.json", "sequenceId: 0 is there twice (read as vda5050)"),
+        (
+            "regions",
+            "vda5050/order_v2_nulls_opentcs.json",
+            "version: \"version\"; 2.0, 2.1 and 3.0 are read (read as vda5050)",
+        ),
         ("locks", "rmf/config/office_tinyRobot_config.yaml", "it is the configuration of a fleet"),
     ] {
         // Warnings about the vehicle come first.

@@ -38,14 +38,14 @@ fn options_without_effect_are_refused() {
     }
 }
 
-/// Ten safe ends: with nine vehicles each mission ends where another one stands.
+/// Ten parking endpoints: with nine vehicles each mission ends where another one stands.
 #[test]
 fn a_layout_that_is_nearly_full_is_said_to_be() {
     let fleet =
         |vehicles: &str| run(&["fleet", LAYOUT, "--alone", "supervisor", "--time", "1", "--vehicles", vehicles]);
     let said = fleet("9").err;
-    assert!(said.contains("pcr: warning: of 10 safe ends, 1 are free while all 9 vehicles stand; a mission to one of the others waits "), "{said}");
-    assert!(!fleet("5").err.contains("safe ends"));
+    assert!(said.contains("pcr: warning: of 10 parking endpoints, 1 are free while all 9 vehicles stand; a mission to one of the others waits "), "{said}");
+    assert!(!fleet("5").err.contains("[parking-endpoints]"));
     let full = fleet("10");
     assert!(full.status == 2 && full.err.ends_with("10 vehicles need 11 places to stand at; there are 10\n"));
 }

@@ -202,7 +202,7 @@ fn a_file_that_is_refused_is_not_missing_in_a_stream_of_plans() {
     let said: Vec<_> =
         answers.iter().map(|answer| (answer["name"].as_str().unwrap(), answer["error"].as_str())).collect();
     assert_eq!((said.len(), said[0]), (3, ("crossing", None)));
-    assert!(said[1].0 == "broken" && said[1].1.unwrap().contains("broken.json:1: "), "{said:?}");
+    assert!(said[1].0 == "broken" && said[1].1.unwrap().contains("broken.json:1:2: "), "{said:?}");
     assert!(said[2].0 == "nowhere" && said[2].1.unwrap().contains("nowhere.json: cannot be read"), "{said:?}");
 }
 
