@@ -39,7 +39,7 @@ pub(super) struct Arguments {
     /// Directory of the journal; the next start goes on from it
     #[arg(long, value_name = "DIR")]
     journal: Option<PathBuf>,
-    /// Clients of the lines: at the socket DIR/socket, at unix:PATH, or over TCP at [ADDRESS:]PORT
+    /// Clients of the lines: at the socket DIR/socket, at unix:PATH, or over TCP at PORT or ADDRESS:PORT
     #[arg(long, value_name = "PLACE", num_args = 0..=1, default_missing_value = listen::USUAL, value_parser = listen::place)]
     listen: Vec<listen::Place>,
     /// File with the token of clients over TCP [default: DIR/token]

@@ -1,5 +1,5 @@
 //! The sampled collision map: both paths are sampled at even times, and every pair of samples within the sum of the
-//! radii is a point of a region. This is the computational method that the paper compares with (its reference [34]),
+//! radii is a point of a region. This is the computational method that the paper compares with (its reference 34),
 //! here optimized: single precision, sixteen distances at a time, runs of points instead of single points.
 
 use super::track::{EMPTY, Track, hull, near};
