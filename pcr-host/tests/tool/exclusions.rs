@@ -264,6 +264,8 @@ fn lanes() -> String {
 #[test]
 fn what_others_rely_on_has_no_assumed_size() {
     let (layout, written) = (file("exclusions", "lanes.geojson", lanes()), output("sized.geojson"));
+    // Of an earlier run.
+    let _ = fs::remove_file(&written);
     for arguments in [
         &["locks", &layout, "--write", "nav2", "-o", &written][..],
         &["locks", &layout, "--write", "vda5050", "-o", &written],
