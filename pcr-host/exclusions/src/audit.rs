@@ -108,10 +108,10 @@ impl Audit {
         Self::of_some(imported, locks, rules, target, &Selection::default())
     }
 
-    /// The same of pairs of which one is selected.
+    /// Audits only the pairs of which at least one side is selected.
     ///
     /// # Errors
-    /// As [`Audit::of`].
+    /// Those of [`Audit::of`].
     pub fn of_some(
         imported: &Imported,
         locks: &Locks,

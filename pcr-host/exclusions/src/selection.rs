@@ -50,7 +50,7 @@ impl Selection {
         self.is_all() || self.nodes.contains(&node) || self.edges.contains(&edge)
     }
 
-    /// What is asked for; nothing if that is all.
+    /// Returns the selected edges and nodes; none if everything is selected.
     pub(crate) fn spots(&self, imported: &Imported) -> Vec<Spot> {
         let layout = &imported.layout;
         let edges = self.edges.iter().map(|&edge| Spot::Edge(layout.edges[edge].id.clone()));

@@ -3,7 +3,7 @@
 //! so, the one behind it is released as much more. All say their states so many times a second, whether they were answered or not.
 //!
 //! `cargo run --release -p pcr-serve --example broker -- PCR VEHICLES RATE SECONDS [CORE]` starts mosquitto and `PCR serve`, which is the
-//! tool, built with its feature `serve`, with a journal on the disc; on one core alone if that is named (`taskset`).
+//! tool, with a journal on the disc; on one core alone if that is named (`taskset`).
 
 use pcr_formats::vda5050::header::Header;
 use pcr_formats::vda5050::order::Order;

@@ -88,7 +88,7 @@ fn ends<'a>(path: Node<'a, '_>) -> Option<[&'a str; 2]> {
     Some([path.attribute("sourcePoint")?, path.attribute("destinationPoint")?])
 }
 
-/// What is at a part of the way between two, rounded to a whole number.
+/// Interpolates between two values, rounded to a whole number.
 fn between([from, to]: [f64; 2], k: u32, parts: u32) -> i64 {
     (from + (to - from) * f64::from(k) / f64::from(parts)).round() as i64
 }

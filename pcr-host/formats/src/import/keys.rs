@@ -10,11 +10,11 @@ use super::{ImportError, WarningCode, Warnings};
 /// The keys of an object.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Keys {
-    /// Those that are read: they say where, which way, how large, or which thing.
+    /// Keys that are read: they tell a place, a direction, a size, or the name of a thing.
     read: &'static [&'static str],
-    /// Those that the format has besides.
+    /// Keys of the format that are not read.
     passed: &'static [&'static str],
-    /// Those that are read in other objects of the format, and mean nothing here.
+    /// Keys that are read in other objects of the format, and mean nothing in this one.
     elsewhere: &'static [&'static str],
     /// Whether users of the format may add keys of their own.
     free: bool,
