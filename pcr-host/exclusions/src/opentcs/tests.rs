@@ -4,16 +4,17 @@ use super::version::{Version, faults};
 use super::*;
 use crate::{Settings, Target, write};
 use pcr_formats::import::{Format, Options, Warnings, layout};
+use std::sync::LazyLock;
 
-const PLANTS: [&str; 7] = [
-    include_str!("../../../../tests/data/small/opentcs/plant-0.0.1.xml"),
-    include_str!("../../../../tests/data/small/opentcs/plant-0.0.2.xml"),
-    include_str!("../../../../tests/data/small/opentcs/plant-0.0.3.xml"),
-    include_str!("../../../../tests/data/small/opentcs/plant-0.0.4.xml"),
-    include_str!("../../../../tests/data/small/opentcs/plant-0.0.5.xml"),
-    include_str!("../../../../tests/data/small/opentcs/plant-6.0.0.xml"),
-    include_str!("../../../../tests/data/small/opentcs/plant-7.0.0.xml"),
-];
+const VERSIONS: [&str; 7] = ["0.0.1", "0.0.2", "0.0.3", "0.0.4", "0.0.5", "6.0.0", "7.0.0"];
+
+/// The same plant in each version.
+static PLANTS: LazyLock<[String; 7]> = LazyLock::new(|| {
+    VERSIONS.map(|version| {
+        let path = format!("{}/../../tests/data/small/opentcs/plant-{version}.xml", env!("CARGO_MANIFEST_DIR"));
+        std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
+    })
+});
 
 fn written(text: &str, split: Option<f64>, envelopes: Option<&str>) -> Result<(String, crate::Written), ImportError> {
     let options = Options { radius: Some(0.55), ..Options::default() };
@@ -33,7 +34,7 @@ fn assert_of_its_version(text: &str) {
 
 #[test]
 fn new_points_are_where_their_version_has_them() {
-    for plant in PLANTS {
+    for plant in PLANTS.iter() {
         assert_of_its_version(plant);
         let version = version(plant);
         let (text, report) = written(plant, Some(2.5), None).unwrap();
@@ -92,7 +93,7 @@ fn new_points_are_where_their_version_has_them() {
 
 #[test]
 fn parts_share_what_their_path_costs() {
-    let (text, report) = written(PLANTS[1], Some(2.5), None).unwrap();
+    let (text, report) = written(&PLANTS[1], Some(2.5), None).unwrap();
     let document = parse(&text).unwrap();
     let sum = |attribute: &str, of: &str| -> u32 {
         let parts = elements(document.root_element(), "path").filter(|path| name(*path).starts_with(of));
@@ -134,7 +135,7 @@ fn curves_are_the_same_in_every_version_that_has_them() {
 
 #[test]
 fn envelopes_are_written_where_a_version_has_them() {
-    for plant in PLANTS {
+    for plant in PLANTS.iter() {
         let version = version(plant);
         for split in [None, Some(2.5)] {
             match written(plant, split, Some("all")) {
@@ -168,7 +169,7 @@ fn envelopes_are_written_where_a_version_has_them() {
 #[test]
 fn what_a_version_needs_is_not_made_up() {
     let failed = |text: &str| written(text, Some(2.5), None).expect_err(text).to_string();
-    let [old, new] = [PLANTS[1], PLANTS[6]];
+    let [old, new] = [&PLANTS[1], &PLANTS[6]];
     // What another version calls a place stays as it is, and is told.
     let other =
         PLANTS[2].replace("xPosition", "positionX").replace("yPosition", "positionY").replace("zPosition", "positionZ");

@@ -117,9 +117,10 @@ mod tests {
 
     #[test]
     fn the_time_that_is_simulated_is_told_over_all_runs() {
-        let text = include_str!("../../../../tests/data/real/nav2/sample_graph.geojson");
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/real/nav2/sample_graph.geojson");
+        let text = std::fs::read_to_string(path).unwrap();
         let options = Options { radius: Some(0.3), ..Options::default() };
-        let imported = roads(Format::Nav2, text, &options, &mut Warnings::default()).unwrap();
+        let imported = roads(Format::Nav2, &text, &options, &mut Warnings::default()).unwrap();
         let (delays, method) = (Delays::default(), Method::Orders);
         let request = Request { agents: 2, duration: 60.0, delays, seed: 1, method };
         let told = RefCell::new(Vec::new());
