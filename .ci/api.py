@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """What programs can use of pcr-core, as rustdoc shows it in the folder DOC/pcr_core.
-  api.py DOC            docs/api-review.md names every public item with a reason, and no other; docs/api.txt has all their declarations:
+  api.py DOC            docs/maintain/api-review.md names every public item with a reason, and no other; docs/maintain/api.txt has all their declarations:
                         signatures, generics and bounds, fields, variants, constants, implemented traits (Send and Sync are among them)
   api.py DOC --write    brings both up to date, and says what is missing; reasons are written by people
-  api.py --since [REVISION]    what of docs/api.txt breaks programs that were written for REVISION (the last tag v*): exit status 1 if
+  api.py --since [REVISION]    what of docs/maintain/api.txt breaks programs that were written for REVISION (the last tag v*): exit status 1 if
                         anything does and the version has not been raised accordingly"""
 import html
 import pathlib
@@ -12,8 +12,8 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-REVIEW = ROOT / "docs/api-review.md"
-DECLARED = ROOT / "docs/api.txt"
+REVIEW = ROOT / "docs/maintain/api-review.md"
+DECLARED = ROOT / "docs/maintain/api.txt"
 KINDS = {"struct": "struct", "enum": "enum", "trait": "trait", "fn": "function", "type": "type", "constant": "constant", "macro": "macro"}
 # Implemented by the compiler, and nothing that a program can name.
 UNSTABLE = re.compile(r"(Freeze|UnsafeUnpin|StructuralPartialEq) for ")
@@ -119,8 +119,8 @@ def declared(found, write):
         DECLARED.write_text("\n".join(lines) + "\n")
         return []
     before = DECLARED.read_text().splitlines()
-    return [f"docs/api.txt has: {line}" for line in before if line not in lines] + [
-        f"docs/api.txt lacks: {line}" for line in lines if line not in before
+    return [f"docs/maintain/api.txt has: {line}" for line in before if line not in lines] + [
+        f"docs/maintain/api.txt lacks: {line}" for line in lines if line not in before
     ]
 
 
@@ -151,10 +151,10 @@ def since(revision):
     if revision is None:
         tags = git("tag", "--list", "v*", "--merged", "HEAD", "--sort=-v:refname").split()
         if not tags:
-            print("no release is tagged (v*), so none can be broken; docs/api.txt is what this commit promises")
+            print("no release is tagged (v*), so none can be broken; docs/maintain/api.txt is what this commit promises")
             return
         revision = tags[0]
-    before, now = git("show", f"{revision}:docs/api.txt").splitlines(), DECLARED.read_text().splitlines()
+    before, now = git("show", f"{revision}:docs/maintain/api.txt").splitlines(), DECLARED.read_text().splitlines()
     old, new = version(git("show", f"{revision}:Cargo.toml")), version((ROOT / "Cargo.toml").read_text())
     found = breaking(before, now)
     # By Cargo's rules: the first number that is not 0 is the one to raise.
@@ -172,7 +172,7 @@ def main():
     if wrong:
         sys.exit("\n".join(wrong))
     count = len(DECLARED.read_text().splitlines())
-    print(f"{len(found)} public items, each with its reason in docs/api-review.md, and {count} declarations as in docs/api.txt")
+    print(f"{len(found)} public items, each with its reason in docs/maintain/api-review.md, and {count} declarations as in docs/maintain/api.txt")
 
 
 main()

@@ -47,7 +47,7 @@ tools() {
   cc -shared -fPIC -O2 -Wall -Wextra -o "$scratch/mcount.so" tools/mcount.c
   cargo build --locked --quiet --target "$host" -p pcr-link
   cargo test --locked --quiet --target "$host" -p pcr-supervisor --features micromath,fixed
-  step "random fleets on a bad line: no two discs touch (docs/firmware.md has the long one)"
+  step "random fleets on a bad line: no two discs touch (docs/guide/firmware.md has the long one)"
   link passing f32 300
   link passing q16 300
 }
@@ -238,7 +238,7 @@ budgets() {
       ;;
   esac
 }
-# docs/firmware.md says what is bought with it, and what stands in the way of 16 KiB, which was the aim.
+# docs/guide/firmware.md says what is bought with it, and what stands in the way of 16 KiB, which was the aim.
 thumb_budget=20992
 # 32-bit instructions where Thumb has 16-bit ones.
 riscv_budget=24832

@@ -1,8 +1,8 @@
-"""Prints every claim of docs/errors*.md and docs/equations.md with how it is held; fails if one is not.
+"""Prints every claim of docs/theory/errors*.md and docs/theory/equations.md with how it is held; fails if one is not.
 
     proofs/check.sh [--quick]      installs what is missing and runs this
 
-A claim is a `[[claim]]` of ledger.toml or a section with an anchor of docs/equations.md. `by` says what holds it:
+A claim is a `[[claim]]` of ledger.toml or a section with an anchor of docs/theory/equations.md. `by` says what holds it:
 
 gappa        scripts of proofs/gappa about kernels as recorded (proofs/recorded; a unit test of pcr-core compares them)
 z3           lemmas of proofs/real/lemmas.py, over the real numbers
@@ -257,8 +257,8 @@ def held(claim):
 
 
 def equations():
-    """The sections of docs/equations.md that have an anchor, and the tests and lemmas that they name."""
-    parts = re.split(r'\n(?=<a id="[^\n]*\n(?:#|\*\*))', text_of("docs/equations.md"))
+    """The sections of docs/theory/equations.md that have an anchor, and the tests and lemmas that they name."""
+    parts = re.split(r'\n(?=<a id="[^\n]*\n(?:#|\*\*))', text_of("docs/theory/equations.md"))
     for part in parts[1:]:
         ids = re.findall(r'<a id="([^"]+)"></a>', part.split("\n")[0])
         named, file = [], None

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Prints every claim of docs/errors*.md and docs/equations.md with how it is held, and fails if one is not, or if a change of a constant
+# Prints every claim of docs/theory/errors*.md and docs/theory/equations.md with how it is held, and fails if one is not, or if a change of a constant
 # that is proved is not told (proofs/mutants.py).
 #   proofs/check.sh            all, 2 minutes
 #   proofs/check.sh --quick    without the runs over all inputs, whose claims then count as missed

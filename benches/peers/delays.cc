@@ -1,5 +1,5 @@
 // Unsafe delays of pairs of straight edges by the conic of Walker and Sturtevant (arXiv 1908.09707), cut by the ends of the edges as
-// the program of CPLP does it, with the sign of its case of equal velocities mended: docs/equations.md, "As others compute them".
+// the program of CPLP does it, with the sign of its case of equal velocities mended: docs/theory/equations.md, "As others compute them".
 //
 // Reads `x y u v` an edge, then takes every pair so often as is said: delays ROUNDS REACH < edges. Prints nanoseconds a pair, how
 // many pairs have an interval, and the sum of the ends.

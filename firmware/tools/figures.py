@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""figures.py [--write]: the tables in README.md and docs/firmware.md are those of the figures in expected/; with --write it
+"""figures.py [--write]: the tables in README.md and docs/guide/firmware.md are those of the figures in expected/; with --write it
 makes them so. `check.sh` compares expected/ with what it measures."""
 import pathlib
 import re
@@ -15,7 +15,7 @@ COLUMNS = [
     ("thumbv6m-none-eabi", "q16", "Cortex-M0"),
     ("riscv32imc-unknown-none-elf", "q16", "RV32IMC"),
 ]
-# In README.md; docs/firmware.md has all.
+# In README.md; docs/guide/firmware.md has all.
 SHOWN = [COLUMNS[0], COLUMNS[4], COLUMNS[5]]
 FORMATS = {"f32": "`f32`", "micro": "`Micro`", "q16": "`Q16`"}
 
@@ -26,10 +26,10 @@ def figures(target, form):
 
 
 def excesses():
-    """ε of each format for two agents at M = VT = 10 m, as docs/errors.md has it (held by `tests/tests/outward.rs`,
+    """ε of each format for two agents at M = VT = 10 m, as docs/theory/errors.md has it (held by `tests/tests/outward.rs`,
     the_excess_is_as_documented)."""
     found = {}
-    for line in (ROOT / "docs/errors.md").read_text().splitlines():
+    for line in (ROOT / "docs/theory/errors.md").read_text().splitlines():
         if m := re.match(r'\| <a id="e-\w+"></a>(.*?) \|.*\| (.*) \|$', line):
             for name, value in zip(m[1].split(", "), m[2].split(", ")):
                 found[name.strip("`").lower()] = value
@@ -59,7 +59,7 @@ def overview():
 
 
 def details():
-    """docs/firmware.md: a line for each figure."""
+    """docs/guide/firmware.md: a line for each figure."""
     found = [figures(target, form) for target, form, _ in COLUMNS]
     yield row(["12 agents"] + [f"{core}, {FORMATS[form]}" for _, form, core in COLUMNS])
     yield "|---" * (len(COLUMNS) + 1) + "|"
@@ -70,7 +70,7 @@ def details():
 def main():
     write = sys.argv[1:] == ["--write"]
     stale = []
-    for name, table in (("README.md", overview), ("docs/firmware.md", details)):
+    for name, table in (("README.md", overview), ("docs/guide/firmware.md", details)):
         path = ROOT / name
         text = path.read_text()
         head, rest = text.split("<!-- figures: firmware/tools/figures.py --write -->\n", 1)

@@ -54,7 +54,7 @@ pub struct Crossing<S: Scalar> {
 /// cross: the angle has to move the paths apart by more than four slacks over the length of a combined radius.
 ///
 /// A crossing at a joint counts once if the sine of the angle between the paths is 1/4 or more; below that, rounding
-/// may count it twice or not at all (`docs/errors.md`).
+/// may count it twice or not at all (`docs/theory/errors.md`).
 ///
 /// Cost: a box test for each pair of segments; a square root and a few arctangents if the boxes overlap.
 pub fn crossings<'a, S: Scalar>(

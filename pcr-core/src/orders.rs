@@ -1,5 +1,5 @@
 //! Passing orders: which agent passes a collision region first. Agents that keep them never collide, whatever their
-//! delays (docs/theory.md).
+//! delays (docs/theory/precedence.md).
 //!
 //! ```text
 //! hold        how far the second agent may go at one region         Hold, RegionRef::hold

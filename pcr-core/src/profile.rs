@@ -2,7 +2,7 @@
 //!
 //! A profile is a chain of phases of constant acceleration; a phase at speed 0 is a wait. Times count from the start of
 //! the motion, so a delay does not change a profile. Both maps are evaluated from the slow end of a phase, where the
-//! square root of the inverse does not cancel (docs/equations.md, time map).
+//! square root of the inverse does not cancel (docs/theory/equations.md, time map).
 
 use crate::error::{self, Invalid, in_range, not_negative, positive};
 use crate::geometry::Interval;

@@ -15,7 +15,7 @@ use crate::segment::{Curve, Segment};
 ///
 /// It contains the exact region for the sum of the radii R. Its slice at any length lies within the exact region for R +
 /// [`RegionRef::excess`]; its first and last length may reach those of the exact region for R + 5/2 of it. So rounding never
-/// hides a collision, in any number format. `docs/errors.md` derives the bounds and names the tests.
+/// hides a collision, in any number format. `docs/theory/errors.md` derives the bounds and names the tests.
 #[derive(Clone, Debug)]
 pub struct RegionRef<'a, S: Scalar> {
     pair: Pair<'a, S>,
@@ -289,7 +289,7 @@ impl<S: Scalar> Iterator for Slices<'_, S> {
 }
 
 /// Error bound ε of the regions of two agents \[m\]: rounding makes a region look as if the sum of the radii were
-/// larger, by ε at most. `docs/errors.md` derives it. Times have a bound of their own, [`Motion::time_excess`].
+/// larger, by ε at most. `docs/theory/errors.md` derives it. Times have a bound of their own, [`Motion::time_excess`].
 ///
 /// ε depends on the number format and on the larger [`Motion::extent`]. In floating point it also depends on the
 /// distance that an agent would go at its top speed during its whole motion, in fixed point on the number of arcs. It

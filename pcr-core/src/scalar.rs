@@ -176,7 +176,7 @@ pub trait Scalar:
         one.acceleration == other.acceleration
     }
     /// Bound on the rounding error of every distance that the kernels compare with a radius, in a configuration of the
-    /// given extent ([`Motion::extent`](crate::Motion::extent)). `docs/errors.md` derives it for each format.
+    /// given extent ([`Motion::extent`](crate::Motion::extent)). `docs/theory/errors.md` derives it for each format.
     fn slack(extent: Self) -> Self;
     /// Bound on the rounding error of a sum, a product or a quotient of a few numbers of this magnitude.
     fn rounding(of: Self) -> Self;

@@ -1,5 +1,5 @@
 //! Compares the sine, cosine and arctangent of every possible input with those of `f64`, for the bounds of
-//! docs/errors.md:
+//! docs/theory/errors.md:
 //!
 //! ```text
 //! cargo run --profile checked -p pcr-fixed --example exhaust -- [turns-sine] [f32-arctangent] [f32-sine]

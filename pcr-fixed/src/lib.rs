@@ -11,7 +11,7 @@
 //!
 //! Speeds and accelerations have the same resolution, in m/s and m/s². Angles are [`Turns`]: 32-bit fractions of a
 //! turn, which wrap around as angles do. The constructors of `pcr-core` refuse values that do not fit; after that
-//! nothing overflows. `docs/errors-fixed.md` bounds the sums. `docs/errors.md` bounds the regions: they contain the
+//! nothing overflows. `docs/theory/errors-fixed.md` bounds the sums. `docs/theory/errors.md` bounds the regions: they contain the
 //! exact ones, and lie within those for a radius that is larger by 16 last digits plus one for each arc
 //! ([`pcr_core::excess`]).
 //!

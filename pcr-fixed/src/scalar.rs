@@ -9,13 +9,13 @@ use crate::{ramp, roots};
 use pcr_core::Scalar;
 use pcr_core::scalar::{Angle, Ramp, Sector, Unit, Wide};
 
-/// Largest bits that constructors accept: the kernels need eight times as much (docs/errors-fixed.md).
+/// Largest bits that constructors accept: the kernels need eight times as much (docs/theory/errors-fixed.md).
 const LIMIT: i32 = 1 << 28;
 
 /// Quotients saturate at this.
 const MOST: u64 = 2 * LIMIT as u64;
 
-/// Bound on rounding errors in a small arena, in last digits: 7.2 by docs/errors.md, plus 0.8 for the part that
+/// Bound on rounding errors in a small arena, in last digits: 7.2 by docs/theory/errors.md, plus 0.8 for the part that
 /// [`Scalar::drift`] leaves out.
 const SLACK: i32 = 8;
 /// Directions and angles are right to a few 2⁻³⁰: the bound grows by 16 times 2⁻³⁰ of the extent, of which 11.6 are

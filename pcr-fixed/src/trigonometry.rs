@@ -23,7 +23,7 @@ fn scaled<const SHIFT: u32>(a: i32, z: u32) -> i32 {
 }
 
 /// Sine and cosine, times 2³⁰, of an angle in units of 2⁻³² of a turn. Right to 1.18 · 2⁻³⁰, and to 1.51 · 2⁻³⁰ as a
-/// vector (all angles: docs/errors.md).
+/// vector (all angles: docs/theory/errors.md).
 ///
 /// Cost: ten products.
 pub(crate) fn sin_cos(angle: i32) -> (i32, i32) {

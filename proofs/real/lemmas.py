@@ -2,7 +2,7 @@
 
     python3 proofs/real/lemmas.py      proves all of them
 
-Names are those of docs/equations.md: ϱ (rho) and r radii, (x, y) local coordinates, d the distance from the centre, n the
+Names are those of docs/theory/equations.md: ϱ (rho) and r radii, (x, y) local coordinates, d the distance from the centre, n the
 offset, N = r² - n² and F = (ϱ + d)² - r² the products under the roots of the half-width.
 """
 

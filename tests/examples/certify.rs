@@ -4,7 +4,7 @@
 //! cargo run --release -p pcr-tests --example certify -- --pairs 10000000 --seed 1 [--format f32]
 //! ```
 //!
-//! Prints the seed of every table that is not proved, and the row of each format in `docs/errors.md`; the exit status is 1 if one is
+//! Prints the seed of every table that is not proved, and the row of each format in `docs/theory/errors.md`; the exit status is 1 if one is
 //! refuted, 2 for wrong arguments.
 
 use pcr_tests::arguments::Arguments;

@@ -4,7 +4,7 @@
 //! cargo run --release -p pcr-tests --example ends -- --scenes 1000 --steps 1000 [--first 0] [--format q16]
 //! ```
 //!
-//! Prints the row of each format in `docs/errors.md`; the exit status is 1 if two motions are not apart, 2 for wrong arguments.
+//! Prints the row of each format in `docs/theory/errors.md`; the exit status is 1 if two motions are not apart, 2 for wrong arguments.
 
 use pcr_tests::arguments::Arguments;
 use pcr_tests::ends::{Ends, FORMATS};

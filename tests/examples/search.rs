@@ -4,7 +4,7 @@
 //! cargo run --release -p pcr-tests --example search -- --starts 1000 --steps 20000 [--first 0] [--format q16]
 //! ```
 //!
-//! Prints the row of each format in `docs/errors.md` and the pair with the smallest margin; the exit status is 1 if a table is refuted,
+//! Prints the row of each format in `docs/theory/errors.md` and the pair with the smallest margin; the exit status is 1 if a table is refuted,
 //! 2 for wrong arguments.
 
 use pcr_core::scalar::Micro;

@@ -50,7 +50,7 @@ impl Proofs {
     pub const HEADINGS: &str = "| format | refuted | pairs | proved | undecided | refused by the format | pieces | most steps for one \
                                 pair of segments |\n|---|---|---|---|---|---|---|---|";
 
-    /// A row of the table in `docs/errors.md`.
+    /// A row of the table in `docs/theory/errors.md`.
     pub fn row(&self, format: &str) -> String {
         let Self { proved, refused, pieces, most, refuted, undecided, .. } = self;
         let numbers = [refuted.len() as u64, self.cases(), *proved, undecided.len() as u64, *refused, *pieces, *most];

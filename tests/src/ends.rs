@@ -60,7 +60,7 @@ impl Ends {
     pub const HEADINGS: &str =
         "| format | not apart | scenes | free values | smallest clearance | its scene |\n|---|---|---|---|---|---|";
 
-    /// A row of the table in `docs/errors.md`.
+    /// A row of the table in `docs/theory/errors.md`.
     pub fn row(&self, format: &str) -> String {
         let Self { scenes, values, least, lost, .. } = self;
         let [least, seed] = match least {

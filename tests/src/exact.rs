@@ -1,5 +1,5 @@
 //! Positions, travelled lengths and times in 106 bits, for the format's numbers as exact input: what the bounds of
-//! `docs/errors.md` are held against, `f64`'s included. Nothing is shared with the library but the numbers.
+//! `docs/theory/errors.md` are held against, `f64`'s included. Nothing is shared with the library but the numbers.
 
 mod route;
 mod travel;

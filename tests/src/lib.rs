@@ -36,7 +36,7 @@ pub struct Readme;
 
 /// The programs of the cookbook run.
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/cookbook.md")]
+#[doc = include_str!("../../docs/guide/cookbook.md")]
 pub struct Cookbook;
 
 /// The example of the core's package runs.

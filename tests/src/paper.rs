@@ -3,7 +3,7 @@
 //! They live in the paper's frame {B}: the ego, agent 2, passes the origin along `+x` at length 0; the other, agent 1,
 //! passes it at time 0 with heading θ and speed υ₁. Each equation that computes something is a module or a function
 //! named after its number; where the printed form is wrong there are two, `as_printed` and `corrected`.
-//! `docs/equations.md` has a line, a counterexample and a test for each.
+//! `docs/theory/equations.md` has a line, a counterexample and a test for each.
 //!
 //! ```text
 //! straight_straight   (8)-(17)     SS, and the contour of the grown agent

@@ -54,7 +54,7 @@ impl Searches {
     pub const HEADINGS: &str =
         "| format | refuted | starts | tables | smallest margin | its start |\n|---|---|---|---|---|---|";
 
-    /// A row of the table in `docs/errors.md`.
+    /// A row of the table in `docs/theory/errors.md`.
     pub fn row(&self, format: &str) -> String {
         let Self { starts, tables, worst, refuted } = self;
         let [margin, seed] = match worst {

@@ -1,4 +1,4 @@
-//! Tables proved by the independent checker, and wrong ones refuted by it (`docs/certificates.md`).
+//! Tables proved by the independent checker, and wrong ones refuted by it (`docs/theory/certificates.md`).
 //!
 //! The long command is `cargo run --release -p pcr-tests --example certify -- --pairs 10000000 --seed 1`.
 

@@ -1,4 +1,4 @@
-//! The closed forms of `docs/equations.md`, transcribed from there: what P1, P3 and the time map claim is true.
+//! The closed forms of `docs/theory/equations.md`, transcribed from there: what P1, P3 and the time map claim is true.
 //!
 //! That the library computes them is what the tests of regions show; here it is the derivation that is tested.
 

@@ -160,7 +160,7 @@ proptest! {
 }
 
 /// A contact counts for the region that covers its middle or its deepest point. One that none covers is a touch: what is
-/// in contact for sure belongs to a region (docs/errors.md).
+/// in contact for sure belongs to a region (docs/theory/errors.md).
 fn contacts_have_a_region<S: Format>(cases: u64) {
     let (mut contacts, mut touches) = (0_u32, 0_u32);
     for seed in 0..cases {

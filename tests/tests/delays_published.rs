@@ -1,4 +1,4 @@
-//! Equations for unsafe delays that others use, and where they are wrong (docs/equations.md). What is true is told by the definition
+//! Equations for unsafe delays that others use, and where they are wrong (docs/theory/equations.md). What is true is told by the definition
 //! with 106 bits.
 
 use pcr_certify::twofold::Twofold;

@@ -1,4 +1,4 @@
-//! Documents name the code as it is: functions and tests that docs/equations.md and docs/errors.md speak of are there.
+//! Documents name the code as it is: functions and tests that docs/theory/equations.md and docs/theory/errors.md speak of are there.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -102,7 +102,7 @@ fn missing(document: &str) -> (Vec<String>, usize) {
 
 #[test]
 fn functions_and_tests_that_documents_name_are_there() {
-    for (path, least) in [("docs/equations.md", 120), ("docs/errors.md", 10)] {
+    for (path, least) in [("docs/theory/equations.md", 120), ("docs/theory/errors.md", 10)] {
         let document = fs::read_to_string(root().join(path)).expect("a document");
         let (missing, names) = missing(&document);
         assert!(missing.is_empty(), "{path} names what is not there: {missing:?}");

@@ -25,7 +25,7 @@ fn written(number: usize) -> String {
 
 #[test]
 fn the_sizes_of_larger_fleets_are_as_documented() {
-    let (document, mut missing) = (include_str!("../../docs/firmware.md"), Vec::new());
+    let (document, mut missing) = (include_str!("../../docs/guide/firmware.md"), Vec::new());
     for (agents, name) in [(12, "paper12"), (30, "table6-30"), (50, "table6-50"), (100, "table6-100")] {
         let path = format!("{}/data/{name}.json", env!("CARGO_MANIFEST_DIR"));
         let scenario = Scenario::from_json(&std::fs::read_to_string(path).expect("a file")).expect("a scenario");
@@ -42,5 +42,5 @@ fn the_sizes_of_larger_fleets_are_as_documented() {
             missing.push(row);
         }
     }
-    assert!(missing.is_empty(), "docs/firmware.md needs\n{}", missing.join("\n"));
+    assert!(missing.is_empty(), "docs/guide/firmware.md needs\n{}", missing.join("\n"));
 }

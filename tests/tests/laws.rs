@@ -173,7 +173,7 @@ fn ramps<S: Format>() {
         let ramp = Ramp { slow, fast, acceleration, duration, length };
         let elapsed = S::from_f64(t * dice.range(0.0, 1.0));
         let (at, e) = (S::ramp_length(ramp, elapsed), elapsed.to_f64());
-        // Its phases say what a profile is; that of these limits is within a slack of it (docs/errors.md, e-profiles).
+        // Its phases say what a profile is; that of these limits is within a slack of it (docs/theory/errors.md, e-profiles).
         let tolerance = slack::<S>(length.to_f64() + t);
         assert!((at.to_f64() - (v * e + 0.5 * a * e * e)).abs() <= tolerance, "{}: {at:?} at {e}", S::NAME);
         let back = S::ramp_time(ramp, at).to_f64();

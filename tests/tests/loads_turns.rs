@@ -11,7 +11,7 @@ use pcr_tests::polygons::{Point, Polygon, apart, placed};
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// What turns in place of a nanometre cost in rounding \[m\], as docs/formats.md has it.
+/// What turns in place of a nanometre cost in rounding \[m\], as docs/reference/formats.md has it.
 const SLACK: f64 = 1e-4;
 
 const LONG: [Point; 4] = [[-0.3, -0.2], [0.9, -0.2], [0.9, 0.2], [-0.3, 0.2]];

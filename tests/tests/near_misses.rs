@@ -1,5 +1,5 @@
 //! What only just does not touch: events and turning points of contacts that are missed by parts of the slack, as derived in
-//! docs/errors.md, and of none that is missed by more. The slack is far above rounding here, so that each rule shows alone.
+//! docs/theory/errors.md, and of none that is missed by more. The slack is far above rounding here, so that each rule shows alone.
 
 use pcr_core::{Point, Pose, Segment, Turn, internals};
 use pcr_fixed::{Q12, Q16, Q20};

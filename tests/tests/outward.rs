@@ -1,5 +1,5 @@
 //! "Outward by construction", in every number format: no collision is outside the regions, nothing in them is further
-//! than the stated excess from one, and times are rounded outward (`pcr_tests::outward`, `docs/errors.md`).
+//! than the stated excess from one, and times are rounded outward (`pcr_tests::outward`, `docs/theory/errors.md`).
 //!
 //! The long command is
 //! `cargo run --release -p pcr-tests --example outward -- --pairs 100000000 --seed 1`.

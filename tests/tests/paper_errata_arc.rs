@@ -2,7 +2,7 @@
 //! counterexample; the corrected form, the definition of contact and pcr-core agree on the right one.
 //!
 //! A second test, where there is one, says exactly when the printed form is right, over random cases of every class.
-//! `docs/equations.md` has an entry for each.
+//! `docs/theory/equations.md` has an entry for each.
 
 use pcr_core::PieceType;
 use pcr_tests::paper::arc_arc::{centre_distance, eq_34, eq_37};

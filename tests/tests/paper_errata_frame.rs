@@ -1,7 +1,7 @@
 //! What is wrong in the paper's equations and tables between the frames (Section 3.4), one test an error: the printed form gives the wrong value of the documented
 //! counterexample; the corrected form, the definition of contact and pcr-core agree on the right one.
 //!
-//! `docs/equations.md` has an entry for each.
+//! `docs/theory/equations.md` has an entry for each.
 
 use pcr_core::{Crossing, Ecm, Motion, Path, Piece, PieceType, Point, Pose, Profile, Radians, Region, Turn, crossings};
 use pcr_tests::paper::global::eq_39;

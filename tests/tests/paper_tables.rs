@@ -1,7 +1,7 @@
 //! Tables V, VI and VII of the paper, from the scenarios that were rebuilt from them.
 //!
 //! The paper prints no coordinates. `data/paper12.json` is one scenario of 12 agents for which everything in Tables V
-//! and VII comes out as printed (`docs/equations.md#table-vii` tells how it was found and which sign in row 17 is a
+//! and VII comes out as printed (`docs/theory/equations.md#table-vii` tells how it was found and which sign in row 17 is a
 //! misprint); `data/table6-*.json` do the same for the rows of Table VI.
 //!
 //! The paper counts *crossings* of paths, each once for either agent. The library finds *connected regions*: paths

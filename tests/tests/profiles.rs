@@ -1,4 +1,4 @@
-//! Where an agent is at a time, against the bounds of docs/errors.md: how far it is from where its phases say, and, in fixed point, how
+//! Where an agent is at a time, against the bounds of docs/theory/errors.md: how far it is from where its phases say, and, in fixed point, how
 //! far these are from the limits, or the durations and accelerations, that constructors were given.
 
 use pcr_core::scalar::Micro;

@@ -95,7 +95,7 @@ impl<X: Shadowed<S = X> + Format> Placed<X> {
     }
 }
 
-/// What rows of docs/errors.md allow a number of a segment to be off \[m\].
+/// What rows of docs/theory/errors.md allow a number of a segment to be off \[m\].
 struct Rows {
     /// Unit roundoff of floating point, last digit and part of a length of fixed point \[m\].
     u: f64,
@@ -246,7 +246,7 @@ fn held<X: Shadowed<S = X> + Format>(size: f64) {
     assert!(10 * seen > 9 * pairs && errors.checked > 2 * seen, "{seen} of {pairs}");
     assert!(errors.offset <= 1.0 && errors.end <= 1.0, "{}: {errors:?}", X::NAME);
     assert!(errors.point <= 1.0 && errors.of_offset <= 1.0, "{}: {errors:?}", X::NAME);
-    // A foot of what is missed by σ, and what P1 may be off, another one (docs/errors.md).
+    // A foot of what is missed by σ, and what P1 may be off, another one (docs/theory/errors.md).
     assert!(errors.event <= 2.0, "{}: {errors:?}", X::NAME);
     // An event for a near miss, within a doubt of σ/2 and S::slack(0), which P3 beyond ϱ = 2R takes for (ϱ + R) / (ϱ - R) times
     // as much, 3 at most. It does no harm.

@@ -128,7 +128,7 @@ fn plans_arrive_when_a_fine_dynamic_program_does_and_meet_nobody() {
     }
     println!("{both} planned by both, of them late by {late:.1?} s; {lost} by the program only, {neither} by neither");
     assert!(both > 2 * neither && neither > 0, "{both} planned");
-    // docs/theory.md states both shares.
+    // docs/theory/queries.md states both shares.
     assert!(
         late.len() as u64 * 200 <= CASES && u64::from(lost) * 200 <= CASES,
         "{late:?} late, {lost} lost of {CASES}"

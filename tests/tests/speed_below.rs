@@ -106,7 +106,7 @@ fn plans_below_a_motion_arrive_when_a_fine_dynamic_program_does() {
     }
     println!("{both} planned by both, of them late by {late:.2?} s; {lost} by the program only; {stops} with a stop");
     assert!(u64::from(both) * 3 > CASES && u64::from(stops) * 3 > CASES, "{both} and {stops} planned");
-    // docs/theory.md states both.
+    // docs/theory/queries.md states both.
     assert!(late.iter().all(|&by| by < 0.25) && lost == 0, "{late:?} late, {lost} lost of {CASES}");
 }
 

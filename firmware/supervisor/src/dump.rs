@@ -1,5 +1,5 @@
 //! The table as text: one line for each region, in thousandths for people and in bits for comparisons; and the whole
-//! table in bits, with its paths and motions, for `pcr certify --table` (docs/certificates.md has the format).
+//! table in bits, with its paths and motions, for `pcr certify --table` (docs/theory/certificates.md has the format).
 //!
 //! It uses integers only: the code of `core::fmt` would take more flash than everything else here.
 

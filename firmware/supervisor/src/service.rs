@@ -19,7 +19,7 @@ pub trait Replies<S: Number> {
     fn send(&mut self, answer: Answer<S>);
 
     /// Called during long computations: after one agent against all before it, one pair of agents, or one region of a
-    /// replan. Feed the watchdog here, and after every answer. docs/firmware.md has the number of instructions between
+    /// replan. Feed the watchdog here, and after every answer. docs/guide/firmware.md has the number of instructions between
     /// two calls.
     fn pause(&mut self) {}
 }

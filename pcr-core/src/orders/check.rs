@@ -3,7 +3,7 @@
 //! The function F moves every agent as far as its holds allow while the others stay where they are. F is monotone.
 //! Agents that keep the orders stay below the least fixed point of F above their present places. It is reached by
 //! moving agents in any order. If it is the end of all paths, all agents arrive, in whatever order they move and
-//! however late they are; if it is not, no schedule lets all of them arrive (docs/theory.md).
+//! however late they are; if it is not, no schedule lets all of them arrive (docs/theory/precedence.md).
 
 use crate::ecm::Region;
 use crate::error::Full;

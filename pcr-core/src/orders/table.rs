@@ -15,7 +15,7 @@ use crate::scalar::Scalar;
 /// The collision regions of a fleet, and for each of them which agent passes it first.
 ///
 /// Agents that keep their [`Orders::hold`] never touch one another, however late they are. If [`Orders::check`] passes,
-/// all of them arrive (`docs/theory.md` has the proofs). Paths and radii matter; the times of the motions are used by
+/// all of them arrive (`docs/theory/precedence.md` has the proofs). Paths and radii matter; the times of the motions are used by
 /// [`Orders::as_planned`] only. As with [`Ecm`], every method that reads paths takes the fleet, and refuses another one.
 ///
 /// The caller provides the storage, as for [`Ecm`]. One [`Order`] is needed for each region; [`Orders::admit`] needs as

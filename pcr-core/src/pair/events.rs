@@ -112,7 +112,7 @@ pub(crate) fn wraps<S: Scalar>(segment: &Segment<S>, radius: S, slack: S) -> boo
     match segment.curve {
         Curve::Line => false,
         Curve::Arc { radius: own, .. } => {
-            // The factor 16 is derived in docs/equations.md#laps.
+            // The factor 16 is derived in docs/theory/equations.md#laps.
             let far = radius + slack.double().double().double().double();
             own <= far || segment.length.double() >= segment.circumference
         }

@@ -12,7 +12,7 @@
 //!
 //! and `n = y`, `u = x`, `H = √((r - |n|)(r + |n|))` on a line. The segment is within `r` at the lengths
 //! `[u - H, u + H]`, on every lap of the circle. This is Eq. (13) and, corrected, Eq. (26)-(29) of the paper, in one
-//! form that is right for every radius, also for `r > ϱ` (docs/equations.md).
+//! form that is right for every radius, also for `r > ϱ` (docs/theory/equations.md).
 
 use crate::geometry::{Direction, Interval, Point};
 use crate::lap::{Lap, shift};

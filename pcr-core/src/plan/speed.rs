@@ -33,7 +33,7 @@ use crate::scalar::Scalar;
 ///
 /// The plan is the earliest among the motions that stop and change their speed at borders of cells only (the number of
 /// cells is at most the number of stations minus one, and at least 8), where a quarter of a cell is blocked as a whole.
-/// Then waits are shortened as far as possible. `docs/theory.md` compares the result with a fine dynamic program over
+/// Then waits are shortened as far as possible. `docs/theory/queries.md` compares the result with a fine dynamic program over
 /// length, speed and time. If the set of times at one border and speed has more than 8 separate intervals, the last but
 /// one is dropped.
 ///

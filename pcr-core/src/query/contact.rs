@@ -103,7 +103,7 @@ impl<'a, S: Scalar> Encounter<'a, S> {
 
 /// Bound on the rounding error of the distance of two agents \[m\], if both together go so far at their top speeds since the time 0 \[m\].
 pub(super) fn pad<S: Scalar>(ego: &Motion<'_, S>, other: &Motion<'_, S>, reach: S) -> S {
-    // The slack of both positions (docs/errors.md); the rounding error of a time counts multiplied by the speed.
+    // The slack of both positions (docs/theory/errors.md); the rounding error of a time counts multiplied by the speed.
     let pad = S::slack(ego.extent().max(other.extent()) + reach);
     [ego, other].into_iter().fold(pad, |pad, motion| pad + motion.drift() + motion.lag() + motion.leap())
 }

@@ -9,7 +9,7 @@
 //! If agents may be late, the interval is longer by their lateness.
 //!
 //! Delays beyond that end were not tried. They are clear because the delays at which the region of a given radius is met are one interval: the search is
-//! made with a radius that is larger by an allowance, of which rounding can use up a part only (docs/errors.md).
+//! made with a radius that is larger by an allowance, of which rounding can use up a part only (docs/theory/errors.md).
 
 use crate::error::in_range;
 use crate::geometry::Interval;
@@ -28,7 +28,7 @@ impl<S: Scalar> RegionRef<'_, S> {
     /// With a delay outside of the interval, and at its ends, [`Motion::delayed`] returns a motion that does not come nearer to the other agent than
     /// the sum of the radii in this region. The interval is longer than the exact one by at most what discs make of it that are larger by three
     /// [`Encounter::tolerance`], and at each end by [`Scalar::tolerance`] of the time from the first start to the last arrival, or four
-    /// [`Scalar::rounding`] of the latest time if that is more. (`docs/errors.md` derives this.) There are two exceptions: where the agents also meet in another
+    /// [`Scalar::rounding`] of the latest time if that is more. (`docs/theory/errors.md` derives this.) There are two exceptions: where the agents also meet in another
     /// region of their pair whose pieces lie beside those of this one, an end may be that of the other; and for a region in
     /// which the discs hardly touch, the result may be all delays that its bounding box allows. Cost: 10 to 30 searches for contacts for each finite end.
     pub fn forbidden_delays(&self) -> Interval<S> {
@@ -62,7 +62,7 @@ impl<S: Scalar> RegionRef<'_, S> {
     }
 
     /// How much farther apart than R the agents have to be at a delay for which the region is clear \[m\]: so much that all delays
-    /// beyond it are clear of R as well, whatever is rounded (docs/errors.md).
+    /// beyond it are clear of R as well, whatever is rounded (docs/theory/errors.md).
     pub(super) fn allowance(&self) -> S {
         let (ego, other) = (self.ego_motion(), self.other_motion());
         // If both are under way at the same time, the ego's times are no later than this.

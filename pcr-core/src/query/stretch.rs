@@ -81,7 +81,7 @@ impl<S: Scalar> RegionRef<'_, S> {
     }
 
     /// [`RegionRef::allowance`] of a search for durations: with the top speed of the stretched motion, and more by twice what rounding its speeds
-    /// moves it in fixed point (docs/errors.md).
+    /// moves it in fixed point (docs/theory/errors.md).
     fn allowance_in(&self, duration: S) -> S {
         let (ego, other) = (self.ego_motion(), self.other_motion());
         let start = ego.time().lo;

@@ -245,7 +245,7 @@ macro_rules! impl_float {
     };
 }
 
-/// Slack in unit roundoffs of the extent: the sum of the worst cases, docs/errors.md.
+/// Slack in unit roundoffs of the extent: the sum of the worst cases, docs/theory/errors.md.
 const SLACK: u8 = 64;
 
 // `tolerance` 2^-32 and 2^-16 of the extent; `split` is 1 more than the power of 2 that halves a significand.

@@ -6,7 +6,7 @@
 //! There is no such method for sines; those use the polynomials of `f32`.
 //!
 //! On a core with an FPU `f32` is both faster and more accurate, because its root is one instruction and its arctangent
-//! one polynomial; `docs/firmware.md` has the figures. This type is for programs that use micromath already and need a
+//! one polynomial; `docs/guide/firmware.md` has the figures. This type is for programs that use micromath already and need a
 //! guaranteed accuracy.
 
 use super::trig::Trig;
@@ -212,7 +212,7 @@ fn sqrt(x: f32) -> f32 {
     }
 }
 
-/// Angle of the vector `(x, y)`, right to 7 unit roundoffs of itself (docs/errors.md); 0 for the zero vector.
+/// Angle of the vector `(x, y)`, right to 7 unit roundoffs of itself (docs/theory/errors.md); 0 for the zero vector.
 fn atan2(y: f32, x: f32) -> f32 {
     use core::f32::consts::PI;
     /// Below this, micromath's squares would lose their digits; above its inverse, they overflow.

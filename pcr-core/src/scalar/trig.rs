@@ -172,13 +172,13 @@ fn far_sin_cos_f64(x: f64) -> (f64, f64) {
 }
 
 atan2!(
-    /// Angle of the vector `(x, y)`, right to 6 unit roundoffs of itself (docs/errors.md); signed zeros as in C.
+    /// Angle of the vector `(x, y)`, right to 6 unit roundoffs of itself (docs/theory/errors.md); signed zeros as in C.
     atan2_f32(f32),
     polynomial: |z| horner_f32(z, [3.333_295e-1, -1.997_771_1e-1, 1.387_768_6e-1, -8.053_745e-2])
 );
 
 atan2!(
-    /// Angle of the vector `(x, y)`, right to 6 unit roundoffs of itself (docs/errors.md); signed zeros as in C.
+    /// Angle of the vector `(x, y)`, right to 6 unit roundoffs of itself (docs/theory/errors.md); signed zeros as in C.
     atan2_f64(f64),
     polynomial: |z: f64| {
         let w = z * z;

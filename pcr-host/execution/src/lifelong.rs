@@ -3,7 +3,7 @@
 //!
 //! A robot drives to its goal and on to a node where it may stand for good, so that no robot ever waits for one without
 //! a mission. If its next mission is admitted on the way, it turns off. Passing orders are decided when a path is
-//! admitted (`docs/theory.md`). For comparison, the same missions are run with locks and with start delays, under the
+//! admitted (`docs/theory/precedence.md`). For comparison, the same missions are run with locks and with start delays, under the
 //! same random delays.
 //!
 //! Words that the modules share:

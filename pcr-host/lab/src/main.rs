@@ -28,11 +28,11 @@ enum Command {
     Compare(CompareArgs),
 }
 
-/// Measure docs/evaluation.md anew on this machine (takes minutes)
+/// Measure docs/maintain/evaluation.md anew on this machine (takes minutes)
 #[derive(clap::Args)]
 struct EvaluateArgs {
     /// Directory for the document and its pictures
-    #[arg(short, long, value_name = "DIR", default_value = "docs")]
+    #[arg(short, long, value_name = "DIR", default_value = "docs/maintain")]
     output: PathBuf,
     /// Directory with the fleets of the paper's Table VI
     #[arg(long, value_name = "DIR", default_value = "tests/data")]

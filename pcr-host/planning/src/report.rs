@@ -42,7 +42,7 @@ use std::io::{self, Write};
 
 /// An answer that is printed as JSON, with its format and version.
 pub trait Document: Serialize {
-    /// Name of the format; the schema is `docs/schema/FORMAT.schema.json`.
+    /// Name of the format; the schema is `docs/reference/schema/FORMAT.schema.json`.
     const FORMAT: &'static str;
     /// Version: counts changes that affect programs which read it; new fields do not.
     const VERSION: u32 = 1;

@@ -1,5 +1,5 @@
 //! A supervisor of fleets: it decides by exact passing orders how far each robot may go, and sends that to the robots.
-//! `docs/serve.md` describes how to use it, and what it guarantees.
+//! `docs/guide/serve.md` describes how to use it, and what it guarantees.
 //!
 //! ```text
 //! course       owned paths                                            Course, Shape

@@ -1,5 +1,5 @@
 //! The line protocol: a JSON object on each line, one answer to each request with its `id`, and events for clients that
-//! subscribe. The schema is `docs/schema/pcr-serve.schema.json`.
+//! subscribe. The schema is `docs/reference/schema/pcr-serve.schema.json`.
 
 use crate::course::Start;
 use crate::entry::Layout;

@@ -45,8 +45,8 @@ fn near(a: &Value, b: &Value) -> bool {
 
 #[test]
 fn the_example_of_the_document() {
-    let schema: Value = serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap();
-    let text = document("serve.md");
+    let schema: Value = serde_json::from_str(&document("reference/schema/pcr-serve.schema.json")).unwrap();
+    let text = document("guide/serve.md");
     let mut supervisor = supervisor();
     let (mut said, mut now, mut requests): (Vec<Value>, f64, u32) = (Vec::new(), 0.0, 0);
     for line in text.lines() {
@@ -73,7 +73,7 @@ fn the_example_of_the_document() {
 /// Whoever asks how far it may go and does not watch would never hear of a `stop`.
 #[test]
 fn who_asks_for_holds_hears_that_a_robot_is_stopped() {
-    let schema: Value = serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap();
+    let schema: Value = serde_json::from_str(&document("reference/schema/pcr-serve.schema.json")).unwrap();
     let mut supervisor = supervisor();
     let add = |name: &str, x: f64| {
         json!({ "verb": "add", "robot": name, "start": { "x": x, "y": 0, "heading": 0 },
@@ -150,7 +150,7 @@ pub(crate) fn requests() -> Vec<String> {
 
 #[test]
 fn every_answer_fits_the_schema_and_nothing_panics() {
-    let schema: Value = serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap();
+    let schema: Value = serde_json::from_str(&document("reference/schema/pcr-serve.schema.json")).unwrap();
     let validator = jsonschema::draft202012::new(&schema).unwrap();
     let (mut dice, mut kinds) = (Random(7), std::collections::BTreeSet::new());
     let all = requests();
@@ -204,7 +204,7 @@ fn every_answer_fits_the_schema_and_nothing_panics() {
 /// What a message says of its age, and what follows from it.
 #[test]
 fn robots_off_their_paths_and_back() {
-    let schema: Value = serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap();
+    let schema: Value = serde_json::from_str(&document("reference/schema/pcr-serve.schema.json")).unwrap();
     let mut supervisor = supervisor();
     let add = json!({ "verb": "add", "robot": "a", "start": { "x": 0, "y": 0, "heading": 0 },
         "abilities": { "radius": 0.25, "speed": 1, "acceleration": 0.5 } });
@@ -254,7 +254,7 @@ fn ids_of_missions_have_a_limit() {
 
 #[test]
 fn a_replacement_is_of_the_path_that_it_names() {
-    let schema: Value = serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap();
+    let schema: Value = serde_json::from_str(&document("reference/schema/pcr-serve.schema.json")).unwrap();
     let mut supervisor = supervisor();
     let lines = |count: usize| vec![json!({ "kind": "line", "length": 3 }); count];
     let replace = |name: &str, after: f64, of: Value| {
@@ -402,7 +402,7 @@ fn clients_over_tcp_and_the_page() {
             welcome["ok"]["fleet"],
             json!({ "robots": 0, "waiting": 0, "alarmed": 0, "stopped": 0, "silent": 0 })
         );
-        fits(&serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap(), &welcome);
+        fits(&serde_json::from_str(&document("reference/schema/pcr-serve.schema.json")).unwrap(), &welcome);
     }
     other.write_all(b"{\"verb\": \"watch\"}\n").unwrap();
     assert_eq!(next(&mut others)["ok"], json!({}));
@@ -484,7 +484,7 @@ fn no_more_bytes_wait_for_a_client_than_said() {
     assert!(lines.is_closed());
     assert_eq!([lines.recv().unwrap(), lines.recv().unwrap()], [half.clone(), half]);
     let last: Value = serde_json::from_str(&lines.recv().unwrap()).unwrap();
-    fits(&serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap(), &last);
+    fits(&serde_json::from_str(&document("reference/schema/pcr-serve.schema.json")).unwrap(), &last);
     assert_eq!(last["error"]["code"], "slow", "{last}");
     assert!(lines.recv().is_err());
     let (out, lines) = outbox();

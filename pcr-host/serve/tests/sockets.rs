@@ -122,7 +122,7 @@ fn client_hello() -> Vec<u8> {
 /// Any page in a browser of the machine could command robots.
 #[test]
 fn nothing_is_carried_out_of_a_connection_that_does_not_begin_with_a_hello() {
-    let schema: Value = serde_json::from_str(&document("schema/pcr-serve.schema.json")).unwrap();
+    let schema: Value = serde_json::from_str(&document("reference/schema/pcr-serve.schema.json")).unwrap();
     let server = Server::new("first", |_| {});
     let mut client = server.client();
     assert_eq!(client.ask(&requests()[0])["ok"]["path"], 1);

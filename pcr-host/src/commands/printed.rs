@@ -110,7 +110,7 @@ pub(super) fn refuse_denied() -> Result<(), String> {
         return Ok(());
     }
     let names: Vec<&str> = denied.iter().map(|code| code.name()).collect();
-    Err(format!("--deny: there are warnings of {}; see docs/warnings.md", names.join(", ")))
+    Err(format!("--deny: there are warnings of {}; see docs/reference/warnings.md", names.join(", ")))
 }
 
 /// The lines that are printed of some warnings: one for each code, and of no more than a few codes, unless all are asked for.

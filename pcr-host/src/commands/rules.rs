@@ -117,7 +117,13 @@ pub(crate) const RULES: [Ruled; 29] = [
         &["lines", "output"],
         "--index writes the locks to a file; print or draw them in a second run",
     ),
-    ("serve", &["broker"], Needs, &["fleet"], "the vehicles are described in a file; add --fleet FILE (docs/serve.md)"),
+    (
+        "serve",
+        &["broker"],
+        Needs,
+        &["fleet"],
+        "the vehicles are described in a file; add --fleet FILE (docs/guide/serve.md)",
+    ),
     (
         "serve",
         &["authority", "fleet"],

@@ -25,7 +25,7 @@ Exit status:
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr serve --journal state                  lines of JSON (docs/serve.md)
+  pcr serve --journal state                  lines of JSON (docs/guide/serve.md)
   pcr serve --journal state --listen         the same at the socket state/socket
   pcr serve --journal state --listen 7070    and over TCP, with state/token
   pcr serve --journal state --page 8080      and a page: http://localhost:8080
@@ -69,7 +69,7 @@ pub(super) struct Arguments {
     /// Use TLS; the broker's certificate must be signed by one in FILE (PEM)
     #[arg(long, value_name = "FILE")]
     authority: Option<PathBuf>,
-    /// The file of vehicles (docs/serve.md)
+    /// The file of vehicles (docs/guide/serve.md)
     #[arg(long, value_name = "FILE")]
     fleet: Option<PathBuf>,
     /// First levels of topics

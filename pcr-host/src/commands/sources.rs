@@ -18,7 +18,7 @@ pub(super) fn sources(files: Vec<PathBuf>) -> Result<Vec<PathBuf>, Stop> {
 
 /// The same of a command that reads other formats only.
 pub(super) fn foreign_sources(files: Vec<PathBuf>) -> Result<Vec<PathBuf>, Stop> {
-    named(files, "name a file of that format, as docs/layouts.md lists them")
+    named(files, "name a file of that format, as docs/reference/layouts.md lists them")
 }
 
 /// The files, or standard input, or what to do where nothing comes from there.
@@ -47,7 +47,7 @@ pub(super) fn source(file: Option<PathBuf>) -> Result<PathBuf, Stop> {
 
 /// The one layout to be read.
 pub(super) fn layout_source(file: Option<PathBuf>) -> Result<PathBuf, Stop> {
-    let hint = "name a layout, such as the route graph of a site; docs/layouts.md lists the formats";
+    let hint = "name a layout, such as the route graph of a site; docs/reference/layouts.md lists the formats";
     let mut files = named(file.into_iter().collect(), hint)?;
     Ok(files.pop().unwrap_or_default())
 }

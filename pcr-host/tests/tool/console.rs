@@ -108,9 +108,9 @@ fn the_readme_shows_what_the_tool_prints() {
 
 #[test]
 fn the_other_documents_show_what_the_tool_prints() {
-    assert!(follow("docs/using.md") >= 1);
-    assert!(follow("docs/cookbook.md") >= 5);
-    assert!(follow("docs/layouts.md") >= 6);
+    assert!(follow("docs/guide/using.md") >= 1);
+    assert!(follow("docs/guide/cookbook.md") >= 5);
+    assert!(follow("docs/reference/layouts.md") >= 6);
 }
 
 #[test]

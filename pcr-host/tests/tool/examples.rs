@@ -226,8 +226,8 @@ fn follow(document: &str) -> usize {
 
 #[test]
 fn examples_of_answers_are_answers() {
-    assert!(follow("docs/formats.md") >= 5);
-    assert!(follow("docs/layouts.md") >= 2);
+    assert!(follow("docs/reference/formats.md") >= 5);
+    assert!(follow("docs/reference/layouts.md") >= 2);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The schemas in `docs/schema` against what the tool reads and writes.
+//! The schemas in `docs/reference/schema` against what the tool reads and writes.
 
 use crate::fixture::{PAPER, crossing, file, run, run_with, straight};
 use serde_json::{Value, json};
@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 
 fn schema(format: &str) -> Value {
-    let path = format!("{ROOT}/docs/schema/{format}.schema.json");
+    let path = format!("{ROOT}/docs/reference/schema/{format}.schema.json");
     serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
 }
 
@@ -108,7 +108,7 @@ fn every_output_fits_its_schema() {
     formats.push(fits(lines.lines().next().unwrap()));
     formats.extend(simulated());
     // There is no schema of which nothing was seen.
-    let mut there: Vec<String> = fs::read_dir(format!("{ROOT}/docs/schema"))
+    let mut there: Vec<String> = fs::read_dir(format!("{ROOT}/docs/reference/schema"))
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();

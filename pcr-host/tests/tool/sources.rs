@@ -54,7 +54,7 @@ fn a_terminal_is_not_waited_for() {
         let command = format!("{pcr} {command}");
         let output = std::process::Command::new("script").args(["-qec", &command, "/dev/null"]).output().unwrap();
         let text = String::from_utf8_lossy(&output.stdout);
-        assert!(text.contains("docs/layouts.md") && !text.contains("scenario"), "{text}");
+        assert!(text.contains("docs/reference/layouts.md") && !text.contains("scenario"), "{text}");
     }
 }
 

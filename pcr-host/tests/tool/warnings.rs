@@ -33,7 +33,7 @@ fn parsed(run: &Run) -> Value {
 
 #[test]
 fn the_documentation_lists_every_code() {
-    let name = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/warnings.md");
+    let name = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/reference/warnings.md");
     let text = fs::read_to_string(name).unwrap();
     let rows: Vec<&str> = text.lines().filter(|line| line.starts_with("| `")).collect();
     let expected: Vec<String> =

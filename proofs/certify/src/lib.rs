@@ -24,7 +24,7 @@
 //! delays     start delays with which two discs never touch
 //! ```
 //!
-//! Why that proves what it says is in `docs/certificates.md` of the repository, with the lemmas by these numbers.
+//! Why that proves what it says is in `docs/theory/certificates.md` of the repository, with the lemmas by these numbers.
 //!
 //! ```
 //! use pcr_certify::data::{Agent, Angle, Pair, Path, Piece, Region, Segment, Share, Table};

@@ -14,7 +14,7 @@
 //! |what either says at a time of its own - where the agent is| <= (V + V') g + h,
 //! ```
 //!
-//! which also is no less than what is left of the way after e. (`docs/certificates.md`, motions.)
+//! which also is no less than what is left of the way after e. (`docs/theory/certificates.md`, motions.)
 
 use crate::ball::{Ball, Real};
 use crate::data::{Agent, Phase};

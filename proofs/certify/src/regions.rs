@@ -1,7 +1,7 @@
 //! What is told of a region: that its lengths are those of its pieces, and that its times hold every contact.
 //!
 //! The told time begins no later than when the agent reaches the first length of the region, and ends no earlier than when it leaves the
-//! last one (`docs/certificates.md`, lemma 7). Where rounding has let it begin later, at the length u, the lengths up to u must be
+//! last one (`docs/theory/certificates.md`, lemma 7). Where rounding has let it begin later, at the length u, the lengths up to u must be
 //! farther than R from all that the pieces hold of the other path, but for what another region tells: then no contact there is untold.
 
 use crate::cell::{Claim, Outcome};

@@ -1,7 +1,7 @@
 //! C-share: where two intervals of an arc may be covered at once, the piece that holds a contact selects the one with it.
 //!
 //! Let α be the length of the arc opposite to the foot, on the lap nearest to the middle of the arc. A piece that stands for
-//! the interval at the start selects it wherever l <= α, one for that at the end wherever l >= α (docs/certificates.md, lemma 4).
+//! the interval at the start selects it wherever l <= α, one for that at the end wherever l >= α (docs/theory/certificates.md, lemma 4).
 //! So for every cell the contacts with l <= α must lie in rectangles of pieces `Only` or `Start`, those with l >= α in such of `Only` or
 //! `End`. On a cell α has a range; where that is too wide the cell is cut in half. A query is at a length of the number format, so that
 //! of a cell in fixed point what lies between the first and the last one of these counts, down to a single one.

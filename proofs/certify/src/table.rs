@@ -13,7 +13,7 @@ use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
 /// Beside an arc whose radius is R within 2 ε, what is told of a length lies within R and so much of ε. That is the bound of every end of a
-/// range in docs/errors.md; elsewhere a whole ε is asked, which is less than what is derived.
+/// range in docs/theory/errors.md; elsewhere a whole ε is asked, which is less than what is derived.
 const TOLD_BESIDE: f64 = 1.5;
 
 /// How much farther than R contacts have to be covered.

@@ -128,7 +128,7 @@ fn goes_on(phase: &Phase, travel: &Travel, path: &Path) -> Result<(), String> {
 }
 
 /// By how much the rounding of its numbers may change the way of a phase \[m\]: in floating point 13 u of the length and 7 u of the
-/// duration at top speed (`docs/errors.md`, times), of which the rounding of the path is 2 u and the lag 8 u; in fixed point a few last
+/// duration at top speed (`docs/theory/errors.md`, times), of which the rounding of the path is 2 u and the lag 8 u; in fixed point a few last
 /// digits of lengths, times and speeds; and always a few of the `f64` that is read.
 fn rounding(phase: &Phase, speed: f64, travel: &Travel, path: &Path) -> Ball<Twofold> {
     let number = Ball::<Twofold>::from;

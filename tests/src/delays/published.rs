@@ -1,6 +1,6 @@
 //! Unsafe delays as other programs compute them, written here after their formulas. Both go back to Walker and Sturtevant
 //! (arXiv 1908.09707, Section 5.1): positions are a conic in time and delay, and the extreme delays are those of the conic.
-//! docs/equations.md goes through them; `tests/delays_published.rs` shows where they are wrong.
+//! docs/theory/equations.md goes through them; `tests/delays_published.rs` shows where they are wrong.
 
 /// A straight edge.
 pub type Line = [[f64; 2]; 2];

@@ -57,7 +57,7 @@ class Plan(NamedTuple):
 class Fleet:
     """Agents on their paths. It does not change; what changes something returns another fleet.
 
-    ``agents`` are mappings with the fields of the tool's files (``docs/formats.md``).
+    ``agents`` are mappings with the fields of the tool's files (``docs/reference/formats.md``).
 
     >>> Fleet([], name="nobody").agents
     []

@@ -1,6 +1,6 @@
 //! Common code of the examples: capacities of a supervisor, its storage, and the panic handler.
 //!
-//! `docs/firmware.md` tells how to choose the capacities; these are for the paper's 12 agents, which the request `Load` takes.
+//! `docs/guide/firmware.md` tells how to choose the capacities; these are for the paper's 12 agents, which the request `Load` takes.
 #![no_std]
 
 use defmt_rtt as _;
@@ -23,7 +23,7 @@ pub type Supervisor = Session<Number, AGENTS, ROOM, REGIONS, PIECES, Table>;
 static SUPERVISOR: ConstStaticCell<Supervisor> =
     ConstStaticCell::new(Session::of(Service::with(Traffic::new(), &BUILT_IN)));
 
-/// The watchdog's time \[ms\]: more than any board here takes from one feeding to the next (`docs/firmware.md`, "Work between two feedings").
+/// The watchdog's time \[ms\]: more than any board here takes from one feeding to the next (`docs/guide/firmware.md`, "Work between two feedings").
 pub const WATCHDOG_MS: u32 = 500;
 
 /// The supervisor, once.

@@ -1,6 +1,6 @@
 //! Expected times of robots along their ways. Forecasts use them, and a large fleet keeps to them between forecasts.
 //!
-//! A timetable that keeps all orders shows that all robots can finish, however late they really are (`docs/theory.md`).
+//! A timetable that keeps all orders shows that all robots can finish, however late they really are (`docs/theory/precedence.md`).
 //! Its times need not be right; only their order matters.
 //!
 //! Every way has times of its own, as if no other robot was in the way ([`Way::time`]). A [`Timeline`] adds the waits.

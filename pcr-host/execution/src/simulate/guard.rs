@@ -2,7 +2,7 @@
 //!
 //! A plan passes each collision region in coordination space on one side: one of the two robots passes first. Regions in
 //! coordination space depend on the paths alone, so robots that keep these orders do not collide, whatever the times. The
-//! orders are those of [`Orders`](pcr_core::Orders), with the proofs of `docs/theory.md`.
+//! orders are those of [`Orders`](pcr_core::Orders), with the proofs of `docs/theory/precedence.md`.
 //!
 //! The discs are enlarged by the distance that robots may be off their paths. The place of a robot along its path is an
 //! interval, of which the worse end is used. A robot drives only as fast as it can brake before the length at which it

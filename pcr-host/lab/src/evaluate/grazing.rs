@@ -73,7 +73,7 @@ pub(super) fn section(_: &Fleets, extent: Extent) -> Result<Section, Problem> {
     }
     text.push_str(
         "\nFixed point and single precision round outward: discs that are nearer than ε count as touching \
-        ([errors.md](errors.md)). Meshes and polylines enclose the discs and paths. Box2D, in single precision, stops at a \
+        ([errors.md](../theory/errors.md)). Meshes and polylines enclose the discs and paths. Box2D, in single precision, stops at a \
         distance of a quarter of its slop of 5 mm.\n",
     );
     Ok(Section { text, pictures: Vec::new() })

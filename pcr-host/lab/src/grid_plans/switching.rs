@@ -2,7 +2,7 @@
 //! all can still finish and arrive sooner then.
 //!
 //! Every order belongs to a collision region, so robots do not touch; after each reversal all robots can still finish,
-//! so none waits for ever (`docs/theory.md`, Theorem 6). Forecasts only decide which orders are better.
+//! so none waits for ever (`docs/theory/precedence.md`, Theorem 6). Forecasts only decide which orders are better.
 
 use super::orders::Kept;
 use super::{Holds, LEAST, SPEED};

@@ -1,4 +1,4 @@
-//! Tables of locks of any size in a file, in which an edge is found without reading the others (docs/formats.md, "Lock
+//! Tables of locks of any size in a file, in which an edge is found without reading the others (docs/reference/formats.md, "Lock
 //! tables").
 
 use super::pass::{Pass, Told};

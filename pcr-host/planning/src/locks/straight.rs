@@ -1,10 +1,10 @@
 //! Closed forms for straight edges that are driven at constant speed: the start delays with which two vehicles touch,
-//! and the times at which a vehicle touches one that stands (docs/equations.md, "Delays of straight edges"). They do
+//! and the times at which a vehicle touches one that stands (docs/theory/equations.md, "Delays of straight edges"). They do
 //! not allocate, so that a solver can compute them whenever it considers a pair.
 
 /// Unit roundoff.
 const ULP: f64 = f64::EPSILON / 2.0;
-/// Roundings that a distance is made of, at most; docs/equations.md counts them.
+/// Roundings that a distance is made of, at most; docs/theory/equations.md counts them.
 const ROUNDINGS: f64 = 32.0;
 
 /// A straight edge, driven at constant speed from its start to its end.

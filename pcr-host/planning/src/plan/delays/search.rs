@@ -3,7 +3,7 @@
 //! A node of the search tree has constraints for the sides that were chosen. The least delays that satisfy them have
 //! the least cost for either objective, which is the lower bound of the node. If they violate no pair, they are its
 //! best solution. Otherwise the search branches on a violated pair: its difference is below the interval, or above it.
-//! No solution is lost by that, and every branch adds one of finitely many constraints. `docs/theory.md` has the
+//! No solution is lost by that, and every branch adds one of finitely many constraints. `docs/theory/queries.md` has the
 //! proofs.
 
 use super::net::Net;
