@@ -22,6 +22,7 @@
 //! mover      an agent in the plane over time                                lemma 8
 //! motion     discs that never touch
 //! delays     start delays with which two discs never touch
+//! outline    the same questions about convex, rounded outlines
 //! ```
 //!
 //! Why that proves what it says is in `docs/theory/certificates.md` of the repository, with the lemmas by these numbers.
@@ -70,6 +71,7 @@ pub mod dump;
 pub mod motion;
 pub mod mover;
 mod near;
+pub mod outline;
 pub mod pair;
 pub mod path;
 pub mod plane;

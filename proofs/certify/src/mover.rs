@@ -29,6 +29,8 @@ use crate::twofold::Twofold;
 pub(crate) struct Leg {
     pub(crate) exact: Course<Twofold>,
     pub(crate) near: Course<f64>,
+    /// Place of its segment in the path.
+    pub(crate) place: usize,
     /// Largest speed \[m/s\].
     pub(crate) speed: f64,
     /// Curvature \[1/m\].
@@ -98,12 +100,12 @@ impl Mover {
         let travel = agent.travel.as_ref().ok_or("no motion")?;
         let start = Twofold::from(travel.start);
         travel::checked(agent)?;
-        let stands = |stretch: &Stretch, at: Twofold| {
+        let stands = |place: usize, stretch: &Stretch, at: Twofold| {
             let course = Course { carrier: stretch.placed.exact, ramp: Ramp::standing(at) };
-            Leg { exact: course, near: Course::of(&course), speed: 0.0, curvature: 0.0, off: 0.0 }
+            Leg { exact: course, near: Course::of(&course), place, speed: 0.0, curvature: 0.0, off: 0.0 }
         };
         let (Some(first), Some(last)) = (stretches.first(), stretches.last()) else { return Err("no segments".into()) };
-        let mut legs = vec![(f64::NEG_INFINITY, stands(first, Twofold::ZERO))];
+        let mut legs = vec![(f64::NEG_INFINITY, stands(0, first, Twofold::ZERO))];
         let mut span = Span { begin: 0, speeds: [0.0; 2], times: [start; 2], lost: 0.0 };
         let (mut arrival, mut reached, mut hidden, mut all_hidden) = (start, 0.0, 0.0, 0.0);
         for phase in &travel.phases {
@@ -122,7 +124,7 @@ impl Mover {
         let end = last.before + last.placed.length;
         let gap = (end - Twofold::from(reached)).abs().to_f64();
         let rest = Span { begin: legs.len(), speeds: [0.0; 2], times: [arrival; 2], lost: 0.0 };
-        legs.push((arrival.to_f64(), stands(last, last.placed.length)));
+        legs.push((arrival.to_f64(), stands(stretches.len() - 1, last, last.placed.length)));
         span.then(rest, hidden, &mut legs).close(legs.len(), 0.0, &mut legs);
         // A length beyond the end of the path is none: the agent is at its end.
         legs.iter_mut().for_each(|(_, leg)| leg.off = up(leg.off + gap));
@@ -227,7 +229,7 @@ fn add_legs(
             Carrier::Line { .. } => 0.0,
             Carrier::Circle { radius, .. } => up(1.0 / radius.to_f64()),
         };
-        let leg = Leg { exact: course, near: Course::of(&course), speed: top, curvature, off: 2.0 * over };
+        let leg = Leg { exact: course, near: Course::of(&course), place, speed: top, curvature, off: 2.0 * over };
         legs.push((from, leg));
         from = to;
         if from >= ends[1] {

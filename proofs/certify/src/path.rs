@@ -110,7 +110,7 @@ impl Stretch {
 }
 
 /// An angle \[rad\].
-fn radians(angle: Angle) -> Number {
+pub(crate) fn radians(angle: Angle) -> Number {
     match angle {
         Angle::Radians(angle) => Ball::from(angle),
         // The product is right within 2^-102 of itself, the constant within 2^-108.
@@ -121,7 +121,7 @@ fn radians(angle: Angle) -> Number {
 /// The unit vector in a direction: up to 2^25 rad the sine and cosine are as right as those of smaller angles (`twofold.rs`).
 ///
 /// Always from the sum of all angles: a vector that is turned again and again has a bound that grows by up to √2 each time.
-fn unit(heading: Number) -> Result<Vector<Twofold>, String> {
+pub(crate) fn unit(heading: Number) -> Result<Vector<Twofold>, String> {
     let allowed = 2.0 * MOST_HEADING;
     // What is no number is not within it either.
     if heading.to_f64().abs().partial_cmp(&allowed).is_none_or(std::cmp::Ordering::is_gt) {

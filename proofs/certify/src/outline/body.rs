@@ -1,0 +1,380 @@
+//! Convex, rounded outlines on the segments of a path: where every corner is at a length, how fast it moves with the length, and how much
+//! its way may bend.
+//!
+//! A body moves rigidly, in one of three ways ([`Sweep`]): along a line, about a centre (on an arc with a heading along the path plus a
+//! constant angle, and when it turns in place), or along a circle with a constant heading. All that is derived here comes from the
+//! corners: a corner of the first and the last kind goes `x(l) = z(l) + Rot(ωl) w` with `w` of constant length.
+
+use super::data::{CORNERS, RawBody, RawCourse, RawHeading, RawOutline};
+use crate::ball::{Ball, Real, Tri};
+use crate::data::{Angle, Path, Segment};
+use crate::path::{LEAST, Stretch, radians, stretches, unit};
+use crate::plane::Vector;
+use crate::twofold::Twofold;
+
+type Number = Ball<Twofold>;
+
+/// No corner and no radius of an outline is larger \[m\].
+const MOST: f64 = 1e12;
+/// No segment turns a body farther \[rad\]: a full turn, and what rounding adds.
+const MOST_TURN: f64 = 7.0;
+
+/// Checks an outline.
+///
+/// # Errors
+/// More or fewer corners than allowed, a number out of range, corners that are no convex polygon, counter-clockwise.
+pub fn checked(outline: &RawOutline) -> Result<(), String> {
+    let count = outline.corners.len();
+    if !(1..=CORNERS).contains(&count) {
+        return Err(format!("an outline of {count} corners; allowed are 1 to {CORNERS}"));
+    }
+    if !outline.corners.iter().flatten().chain([&outline.radius]).all(|number| number.abs() <= MOST) {
+        return Err("a number of the outline is out of range".into());
+    }
+    if outline.radius < 0.0 {
+        return Err(format!("an outline with the radius {} m", outline.radius));
+    }
+    let corner = |k: usize| vector(outline.corners[k % count]);
+    let edge = |k: usize| corner(k + 1) - corner(k);
+    if count > 1 && !(0..count).all(|k| edge(k).dot(edge(k)).is_positive().is_certain()) {
+        return Err("two neighbouring corners of the outline are the same".into());
+    }
+    // Each corner to the left of each edge, but for those of the edge: that is convex, and goes round once.
+    let left = |k: usize, other: usize| edge(k).cross(corner(k + other) - corner(k)).is_positive().is_certain();
+    if count > 2 && !(0..count).all(|k| (2..count).all(|other| left(k, other))) {
+        return Err("the outline is no convex polygon, counter-clockwise".into());
+    }
+    Ok(())
+}
+
+fn vector([x, y]: [f64; 2]) -> Vector<Twofold> {
+    Vector { x: Ball::from(x), y: Ball::from(y) }
+}
+
+/// How a body moves along a segment.
+#[derive(Clone, Copy, Debug)]
+pub enum Sweep<R> {
+    /// Straight on.
+    Line {
+        /// Unit vector along.
+        along: Vector<R>,
+    },
+    /// About a centre.
+    Turn {
+        /// Centre.
+        centre: Vector<R>,
+        /// Angle for each metre, positive to the left \[rad/m\].
+        rate: Ball<R>,
+    },
+    /// Along a circle, with a constant heading.
+    Circle {
+        /// From the centre of the circle to the reference point at its start.
+        arm: Vector<R>,
+        /// Angle for each metre, positive to the left \[rad/m\].
+        rate: Ball<R>,
+    },
+}
+
+/// A body on a segment, in numbers of one type.
+#[derive(Clone, Debug)]
+pub struct Carried<R> {
+    /// How it moves.
+    pub sweep: Sweep<R>,
+    /// Its corners at the start of the segment: from the centre of a turn, otherwise in the plane.
+    corners: Vec<Vector<R>>,
+    /// Outward unit normals of its edges there.
+    normals: Vec<Vector<R>>,
+    /// What turns of each corner: its distance from the centre, or the radius of the circle \[m\]; nothing on a line.
+    pub(crate) arms: Vec<Ball<R>>,
+    /// The largest speed of a corner, for a speed of 1 along the path.
+    pub lever: Ball<R>,
+}
+
+impl<R: Real> Carried<R> {
+    fn of(body: &Carried<Twofold>) -> Self {
+        let sweep = match body.sweep {
+            Sweep::Line { along } => Sweep::Line { along: Vector::of(along) },
+            Sweep::Turn { centre, rate } => Sweep::Turn { centre: Vector::of(centre), rate: Ball::of(rate) },
+            Sweep::Circle { arm, rate } => Sweep::Circle { arm: Vector::of(arm), rate: Ball::of(rate) },
+        };
+        let vectors = |those: &[Vector<Twofold>]| those.iter().map(|&one| Vector::of(one)).collect();
+        Self {
+            sweep,
+            corners: vectors(&body.corners),
+            normals: vectors(&body.normals),
+            arms: body.arms.iter().map(|&one| Ball::of(one)).collect(),
+            lever: Ball::of(body.lever),
+        }
+    }
+
+    /// Angle for each metre of what turns, be it the body or its way \[rad/m\].
+    pub(crate) fn rate(&self) -> Ball<R> {
+        match self.sweep {
+            Sweep::Line { .. } => Ball::from(0.0),
+            Sweep::Turn { rate, .. } | Sweep::Circle { rate, .. } => rate,
+        }
+    }
+
+    /// The fixed point about which a corner turns.
+    pub(crate) fn hub(&self, corner: usize) -> Vector<R> {
+        match self.sweep {
+            Sweep::Line { .. } => self.corners[corner],
+            Sweep::Turn { centre, .. } => centre,
+            Sweep::Circle { arm, .. } => self.corners[corner] - arm,
+        }
+    }
+
+    /// The body at a length along the segment \[m\].
+    pub fn posture(&self, length: Ball<R>) -> Posture<R> {
+        let nothing = Vector { x: Ball::from(0.0), y: Ball::from(0.0) };
+        match self.sweep {
+            Sweep::Line { along } => {
+                let by = along.times(length);
+                let corners: Vec<_> = self.corners.iter().map(|&corner| corner + by).collect();
+                Posture {
+                    velocities: vec![along; corners.len()],
+                    corners,
+                    normals: self.normals.clone(),
+                    origin: nothing,
+                    drift: along,
+                    rate: Ball::from(0.0),
+                }
+            }
+            Sweep::Turn { centre, rate } => {
+                let by = (rate * length).sin_cos();
+                let arms: Vec<_> = self.corners.iter().map(|corner| corner.turned(by)).collect();
+                Posture {
+                    velocities: arms.iter().map(|arm| arm.left().times(rate)).collect(),
+                    corners: arms.into_iter().map(|arm| centre + arm).collect(),
+                    normals: self.normals.iter().map(|normal| normal.turned(by)).collect(),
+                    origin: centre,
+                    drift: nothing,
+                    rate,
+                }
+            }
+            Sweep::Circle { arm, rate } => {
+                let turned = arm.turned((rate * length).sin_cos());
+                let drift = turned.left().times(rate);
+                let corners: Vec<_> = self.corners.iter().map(|&corner| corner + (turned - arm)).collect();
+                Posture {
+                    velocities: vec![drift; corners.len()],
+                    corners,
+                    normals: self.normals.clone(),
+                    origin: nothing,
+                    drift,
+                    rate: Ball::from(0.0),
+                }
+            }
+        }
+    }
+}
+
+/// A body at a length along its segment.
+#[derive(Clone, Debug)]
+pub struct Posture<R> {
+    /// Corners \[m\].
+    pub corners: Vec<Vector<R>>,
+    /// By how much each corner moves for each metre along the path.
+    pub velocities: Vec<Vector<R>>,
+    /// Outward unit normals of the edges, each from a corner to the next one; none of a disc.
+    pub normals: Vec<Vector<R>>,
+    origin: Vector<R>,
+    drift: Vector<R>,
+    rate: Ball<R>,
+}
+
+impl<R: Real> Posture<R> {
+    /// By how much a point that moves with the body moves for each metre along the path.
+    pub fn velocity(&self, point: Vector<R>) -> Vector<R> {
+        self.drift + (point - self.origin).left().times(self.rate)
+    }
+}
+
+/// A body on a segment, in numbers of both types.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// With 106 bits.
+    pub exact: Carried<Twofold>,
+    /// With 53.
+    pub near: Carried<f64>,
+    /// Length of the segment, and what lengths along the path are on it.
+    pub stretch: Stretch,
+    /// Bound on the speed of each point of the body, for a speed of 1 along the path.
+    pub(crate) lever: f64,
+}
+
+/// A body on all segments of its path.
+#[derive(Clone, Debug)]
+pub struct Body<'a> {
+    /// What it has been made of.
+    pub raw: &'a RawBody,
+    /// Its segments.
+    pub segments: Vec<Placed>,
+    /// Radius of its outline \[m\].
+    pub radius: Number,
+    /// How far a corner jumps at most where segments meet, all of them together \[m\].
+    pub(crate) jumps: f64,
+    /// The path as a line of the same lengths: all that the motion along it depends on.
+    pub(crate) lengths: Path,
+}
+
+impl<'a> Body<'a> {
+    /// Puts an outline on its path into the plane.
+    ///
+    /// # Errors
+    /// What is wrong with the outline or with the path: a number out of range, lengths that are no sums, a heading that jumps.
+    pub fn new(raw: &'a RawBody) -> Result<Self, String> {
+        checked(&raw.outline)?;
+        if !((0.0..=MOST).contains(&raw.rounding) && (0.0..=1e-3).contains(&raw.jump)) {
+            return Err("a rounding of lengths or angles is out of range".into());
+        }
+        if !raw.start.iter().all(|number| number.abs() <= 1e15) {
+            return Err("the start is out of range".into());
+        }
+        let lengths = lengths(raw);
+        let along = stretches(&lengths)?;
+        let corners: Vec<_> = raw.outline.corners.iter().map(|&corner| vector(corner)).collect();
+        let reach = corners.iter().map(|corner| upper(corner.norm())).fold(0.0, f64::max);
+        let mut jumps = 0.0;
+        let mut direction = angle(raw.direction)?;
+        let mut at = vector(raw.start);
+        let mut before: Option<Number> = None;
+        let mut segments = Vec::with_capacity(along.len());
+        for (place, (segment, stretch)) in raw.segments.iter().zip(along).enumerate() {
+            let wrong = |problem: String| format!("segment {place}: {problem}");
+            for &turn in &segment.turns {
+                direction = direction + angle(turn).map_err(wrong)?;
+            }
+            let rate = rate(segment.course, segment.length).map_err(wrong)?;
+            let turned = rate * Ball::from(segment.length);
+            let (heading, after) = match segment.heading {
+                RawHeading::Along(facing) => {
+                    let heading = direction + angle(facing).map_err(wrong)?;
+                    (heading, heading + turned)
+                }
+                RawHeading::Steady(heading) => [angle(heading).map_err(wrong)?; 2].into(),
+            };
+            if let Some(before) = before.filter(|_| reach > 0.0) {
+                jumps += reach * goes_on(before, heading, raw.jump).map_err(wrong)?;
+            }
+            let [along, ahead] = [unit(direction).map_err(wrong)?, unit(heading).map_err(wrong)?];
+            let from_reference: Vec<_> =
+                corners.iter().map(|&corner| ahead.times(corner.x) + ahead.left().times(corner.y)).collect();
+            let (sweep, first) = match (segment.course, segment.heading) {
+                (RawCourse::Line, _) => (Sweep::Line { along }, at),
+                (RawCourse::Arc { radius }, RawHeading::Along(_)) => {
+                    let arm = along.left().times(Ball::from(-radius));
+                    (Sweep::Turn { centre: at - arm, rate }, arm)
+                }
+                (RawCourse::Arc { radius }, RawHeading::Steady(_)) => {
+                    (Sweep::Circle { arm: along.left().times(Ball::from(-radius)), rate }, at)
+                }
+                (RawCourse::Pivot { .. }, RawHeading::Along(_)) => {
+                    (Sweep::Turn { centre: at, rate }, vector([0.0, 0.0]))
+                }
+                (RawCourse::Pivot { .. }, RawHeading::Steady(_)) => {
+                    return Err(wrong("a turn in place with a constant heading".into()));
+                }
+            };
+            let placed: Vec<_> = from_reference.into_iter().map(|corner| first + corner).collect();
+            let exact = carried(sweep, placed);
+            let lever = upper(exact.lever);
+            segments.push(Placed { near: Carried::of(&exact), exact, stretch, lever });
+            at = match segment.course {
+                RawCourse::Line => at + along.times(Ball::from(segment.length)),
+                RawCourse::Arc { radius } => {
+                    let arm = along.left().times(Ball::from(-radius));
+                    at - arm + arm.turned(turned.sin_cos())
+                }
+                RawCourse::Pivot { .. } => at,
+            };
+            direction = direction + turned;
+            before = Some(after);
+        }
+        // A few roundings for each segment.
+        let jumps = jumps * (1.0 + 1e-9);
+        Ok(Self { raw, segments, radius: Ball::from(raw.outline.radius), jumps, lengths })
+    }
+
+    /// A bound on the speed of each point of the body on any segment, for a speed of 1 along the path.
+    pub(crate) fn lever(&self) -> f64 {
+        self.segments.iter().map(|segment| segment.lever).fold(1.0, f64::max)
+    }
+}
+
+/// A bound on a number.
+pub(crate) fn upper<R: Real>(ball: Ball<R>) -> f64 {
+    let most = (ball.to_f64() + ball.err) * (1.0 + 4.0 * f64::EPSILON);
+    if most.is_nan() { f64::INFINITY } else { most }
+}
+
+/// The path as a line of the same lengths.
+fn lengths(raw: &RawBody) -> Path {
+    let line = |length, from, to| Segment { length, radius: None, turns: Vec::new(), from, to };
+    Path {
+        start: [0.0; 2],
+        heading: Angle::Radians(0.0),
+        segments: raw.segments.iter().map(|segment| line(segment.length, segment.from, segment.to)).collect(),
+        rounding: raw.rounding,
+        step: raw.step,
+    }
+}
+
+fn angle(angle: Angle) -> Result<Number, String> {
+    let (Angle::Radians(number) | Angle::Turns(number)) = angle;
+    if number.abs() <= 16_777_216.0 { Ok(radians(angle)) } else { Err(format!("an angle of {number} is out of range")) }
+}
+
+/// Angle for each metre along a course \[rad/m\].
+fn rate(course: RawCourse, length: f64) -> Result<Number, String> {
+    let (RawCourse::Arc { radius: reach } | RawCourse::Pivot { lever: reach }) = course else {
+        return Ok(Ball::from(0.0));
+    };
+    if !(LEAST..=1e15).contains(&reach.abs()) {
+        return Err(format!("a radius or lever of {reach} m is out of range"));
+    }
+    if length > MOST_TURN * reach.abs() {
+        return Err("more than one turn".into());
+    }
+    Ok(Ball::from(1.0) / Ball::from(reach))
+}
+
+/// Checks that a heading is another one, but for whole turns and rounding, and returns a bound on how far it is off \[rad\].
+fn goes_on(before: Number, heading: Number, jump: f64) -> Result<f64, String> {
+    let apart = heading - before;
+    let turns = (apart.to_f64() / Twofold::TURN.to_f64()).round();
+    // 2π is right within 2^-106 of itself.
+    let whole = Ball { mid: Twofold::TURN * turns, err: 1e-30 * turns.abs() };
+    let rest = (apart - whole).abs();
+    // Two headings that are the same number may differ by what the sums are not known by.
+    let allowed = Ball::from(jump + 1e-20);
+    match rest.above(allowed) {
+        Tri::No => Ok(upper(rest)),
+        _ => Err(format!("its heading is off by {:e} rad from that before it", rest.to_f64())),
+    }
+}
+
+fn carried(sweep: Sweep<Twofold>, corners: Vec<Vector<Twofold>>) -> Carried<Twofold> {
+    let count = corners.len();
+    let normal = |k: usize| {
+        let edge = corners[(k + 1) % count] - corners[k];
+        let length = edge.norm();
+        let right = edge.left().times(Ball::from(-1.0));
+        Vector { x: right.x / length, y: right.y / length }
+    };
+    let normals = if count > 1 { (0..count).map(normal).collect() } else { Vec::new() };
+    let zero = Ball::from(0.0);
+    let (arms, lever) = match sweep {
+        Sweep::Line { along } => (vec![zero; count], along.norm()),
+        Sweep::Turn { rate, .. } => {
+            let arms: Vec<_> = corners.iter().map(|corner| corner.norm()).collect();
+            let farthest = arms.iter().fold(zero, |most, &arm| most.max(arm));
+            (arms, farthest * rate.abs())
+        }
+        Sweep::Circle { arm, rate } => {
+            let arm = arm.norm();
+            (vec![arm; count], arm * rate.abs())
+        }
+    };
+    Carried { sweep, corners, normals, arms, lever }
+}

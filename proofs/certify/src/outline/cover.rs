@@ -1,0 +1,258 @@
+//! Claims about lengths on one segment of each of two bodies: that no two of a box are within a distance, that each length of a range is
+//! within a distance of some length of another range, that rectangles hold all lengths within a distance.
+//!
+//! A box is cut in half where the bounds of [`super::separation`] do not show the claim; the half-lengths of both bodies shrink to what the
+//! bounds need. Where the distance in the middle of a box breaks the claim, it is refuted there, and where rounding leaves that open even
+//! with 106 bits, it is undecided. Two kinds of tables stay undecided on purpose, as their truth is within rounding or takes too many
+//! boxes: those in which the distance equals the bound up to rounding, and those in which it comes nearer to the bound than about 10^-9 m
+//! along a whole curve in the plane of lengths that is parallel to neither axis.
+
+use super::body::{Carried, Placed};
+use super::separation::{Change, above, below, nearest};
+use crate::ball::{Ball, Real, Tri};
+use crate::pair::gaps;
+use crate::twofold::Twofold;
+
+type Number = Ball<Twofold>;
+
+/// A range of lengths along a segment \[m\].
+pub type Range = [Twofold; 2];
+
+/// What has come of a claim about lengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict {
+    /// It holds.
+    Proved,
+    /// It does not hold at these lengths along the segments \[m\].
+    Refuted([Twofold; 2]),
+    /// At these lengths rounding does not tell, or they take too many steps.
+    Undecided([Twofold; 2]),
+}
+
+/// Boxes that are looked at for one claim at most.
+const MOST: usize = 400_000;
+
+/// Two bodies, each on one segment.
+#[derive(Clone, Copy, Debug)]
+pub struct Segments<'a>(pub [&'a Placed; 2]);
+
+fn number<R: Real>(value: Twofold) -> Ball<R> {
+    Ball::of(Ball { mid: value, err: 0.0 })
+}
+
+fn middle(range: Range) -> Twofold {
+    (range[0] + range[1]).half()
+}
+
+/// Half the length of a range, and what rounding leaves of its middle.
+fn half<R: Real>(range: Range) -> Ball<R> {
+    let [lo, hi] = range.map(|end| Ball::<Twofold> { mid: end, err: 0.0 });
+    let middle = (lo + hi).half();
+    let half = (hi - lo).half();
+    Ball::of(Ball { mid: half.mid, err: half.err + middle.err })
+}
+
+/// One look at a box.
+struct Look {
+    /// Whether all of it is farther than the bound.
+    clear: Tri,
+    /// Whether its middle is within the bound.
+    meets: Tri,
+    /// Which length to cut.
+    cut: usize,
+    /// How the distance changes with each length, about.
+    slopes: [f64; 2],
+    /// The longer half of it as a way of the bodies, over what rounding leaves of the distance.
+    over: f64,
+}
+
+fn look<R: Real>(bodies: [&Carried<R>; 2], ranges: [Range; 2], least: Number) -> Look {
+    let least = Ball::of(least);
+    let halves = ranges.map(half);
+    let [a, b] = [0, 1].map(|k| bodies[k].posture(number(middle(ranges[k]))));
+    let seen = below(bodies, [&a, &b], &Change::Box(halves));
+    let ways = [0, 1].map(|k| (bodies[k].lever * halves[k]).to_f64());
+    let clear = if seen.anywhere.above(least).is_certain() { Tri::Yes } else { Tri::Doubt };
+    let meets = if seen.middle.above(least).is_certain() {
+        Tri::No
+    } else if least.above(above([&a, &b])).is_certain() {
+        Tri::Yes
+    } else {
+        Tri::Doubt
+    };
+    // Where nothing tells which length costs more, the longer way.
+    let weights = if seen.weights[0] == seen.weights[1] { ways } else { seen.weights };
+    let cut = usize::from(weights[1] > weights[0]);
+    let over = ways[0].max(ways[1]) / (seen.middle.err + f64::MIN_POSITIVE);
+    Look { clear, meets, cut, slopes: seen.slopes, over }
+}
+
+impl<'a> Segments<'a> {
+    /// Decides whether all lengths of two ranges are farther apart than `least`, as a distance of the polygons. Counts the boxes.
+    pub fn farther(&self, ranges: [Range; 2], least: Number, steps: &mut usize) -> Verdict {
+        let near = self.0.map(|body| &body.near);
+        let exact = self.0.map(|body| &body.exact);
+        let mut rest = vec![ranges];
+        let mut taken = 0;
+        while let Some(ranges) = rest.pop() {
+            (taken, *steps) = (taken + 1, *steps + 1);
+            let mut seen = look::<f64>(near, ranges, least);
+            // With 106 bits where 53 do not tell, or cannot, as the box is about as small as what they leave.
+            if seen.clear != Tri::Yes && (seen.meets == Tri::Doubt || seen.over < 1024.0) {
+                seen = look::<Twofold>(exact, ranges, least);
+            }
+            if seen.clear.is_certain() {
+                continue;
+            }
+            let at = ranges.map(middle);
+            match seen.meets {
+                Tri::Yes => return Verdict::Refuted(at),
+                Tri::No if taken < MOST && seen.over > 8.0 => {}
+                _ => return Verdict::Undecided(at),
+            }
+            // A range of one length has no halves.
+            let splits = |k: &usize| ranges[*k][0] < at[*k] && at[*k] < ranges[*k][1];
+            let Some(k) = [seen.cut, 1 - seen.cut].into_iter().find(splits) else { return Verdict::Undecided(at) };
+            // The nearer half first: where the claim is broken, halves with both would lead to where it is only just so.
+            let mut parts = [[ranges[k][0], at[k]], [at[k], ranges[k][1]]];
+            if seen.slopes[k] > 0.0 {
+                parts.swap(0, 1);
+            }
+            for part in parts {
+                let mut half = ranges;
+                half[k] = part;
+                rest.push(half);
+            }
+        }
+        Verdict::Proved
+    }
+
+    /// Decides whether each length of the range of the body `of` is within `most` of some length of the range of the other one, as a
+    /// distance of the polygons. Counts the steps.
+    pub fn within(&self, of: usize, ranges: [Range; 2], most: Number, steps: &mut usize) -> Verdict {
+        let mut rest = vec![ranges[of]];
+        let mut taken = 0;
+        while let Some(cell) = rest.pop() {
+            (taken, *steps) = (taken + 1, *steps + 1);
+            let at = middle(cell);
+            let guess = self.guess(of, at, ranges[1 - of]);
+            let near = self.0.map(|body| &body.near);
+            let exact = self.0.map(|body| &body.exact);
+            let shown = witnessed::<f64>(near, of, cell, ranges[1 - of], guess, most)
+                || witnessed::<Twofold>(exact, of, cell, ranges[1 - of], guess, most);
+            if shown {
+                continue;
+            }
+            let point = [at, at];
+            if !witnessed::<Twofold>(exact, of, point, ranges[1 - of], guess, most) {
+                let mut strip = ranges;
+                strip[of] = point;
+                return match self.farther(strip, most, steps) {
+                    Verdict::Proved => Verdict::Refuted(self.pair(of, at, guess)),
+                    _ => Verdict::Undecided(self.pair(of, at, guess)),
+                };
+            }
+            if taken >= MOST || at <= cell[0] || cell[1] <= at {
+                return Verdict::Undecided(self.pair(of, at, guess));
+            }
+            rest.extend([[at, cell[1]], [cell[0], at]]);
+        }
+        Verdict::Proved
+    }
+
+    fn pair(&self, of: usize, at: Twofold, other: Twofold) -> [Twofold; 2] {
+        if of == 0 { [at, other] } else { [other, at] }
+    }
+
+    /// The length of the other body at which it is nearest, about. Nothing rests on it.
+    fn guess(&self, of: usize, at: Twofold, range: Range) -> Twofold {
+        const PARTS: usize = 24;
+        let own = self.0[of].near.posture(number(at));
+        let span = range[1] - range[0];
+        let distance = |part: f64| {
+            let other = self.0[1 - of].near.posture(number(range[0] + span * part));
+            if super::separation::meet([&own, &other]).is_certain() { 0.0 } else { nearest([&own, &other]).distance }
+        };
+        let sampled = (0..=PARTS).map(|k| {
+            let part = k as f64 / PARTS as f64;
+            (distance(part), part)
+        });
+        let (mut best, mut part) = sampled.fold((f64::INFINITY, 0.0), |a, b| if b.0 < a.0 { b } else { a });
+        let mut step = 0.5 / PARTS as f64;
+        while step > 1e-12 && best > 0.0 {
+            let tried = [part - step, part + step].map(|part| part.clamp(0.0, 1.0));
+            match tried.map(|part| (distance(part), part)).into_iter().find(|(distance, _)| *distance < best) {
+                Some(better) => (best, part) = better,
+                None => step *= 0.5,
+            }
+        }
+        (range[0] + span * part).clamp(range[0], range[1])
+    }
+
+    /// Decides for all lengths of both segments whether those within `least` of each other lie in rectangles, and where they do not.
+    /// Each part of the second segment between ends of rectangles is looked at by itself: there a rectangle holds all of it or nothing
+    /// of it, and what is left of the first segment has to be farther (`docs/certificates.md`, lemma 2).
+    pub fn covered(&self, rectangles: &[[Range; 2]], least: Number, steps: &mut usize) -> Vec<Verdict> {
+        let whole = self.0.map(|body| [Twofold::ZERO, body.stretch.placed.length]);
+        let mut cuts: Vec<Twofold> = rectangles.iter().flat_map(|rectangle| rectangle[1]).collect();
+        cuts.extend(whole[1]);
+        // An end that is no number, or beyond the segment, holds nothing.
+        cuts.retain(|cut| whole[1][0] <= *cut && *cut <= whole[1][1]);
+        cuts.sort_by(Twofold::total_cmp);
+        cuts.dedup();
+        let cells: Vec<Range> =
+            if cuts.len() == 1 { vec![whole[1]] } else { cuts.windows(2).map(|cut| [cut[0], cut[1]]).collect() };
+        let mut found = Vec::new();
+        for cell in cells {
+            let holds = |rectangle: &&[Range; 2]| rectangle[1][0] <= cell[0] && cell[1] <= rectangle[1][1];
+            let held = rectangles.iter().filter(holds).map(|rectangle| rectangle[0]).collect();
+            for gap in gaps(held, whole[0]) {
+                match self.farther([gap, cell], least, steps) {
+                    Verdict::Proved => {}
+                    other => found.push(other),
+                }
+            }
+        }
+        found
+    }
+}
+
+/// Whether a pair of points of the bodies shows that a cell is within a distance of the other range, while the other body goes on at a
+/// constant speed, one at which the two points move as little as possible relative to each other.
+fn witnessed<R: Real>(
+    bodies: [&Carried<R>; 2],
+    of: usize,
+    cell: Range,
+    range: Range,
+    guess: Twofold,
+    most: Number,
+) -> bool {
+    let other = 1 - of;
+    let half: Ball<R> = half(cell);
+    let own = bodies[of].posture(number(middle(cell)));
+    let look = |at: Twofold, speed: f64| {
+        let there = bodies[other].posture(number(at));
+        let (mut postures, mut speeds) = ([&own, &own], [Ball::from(1.0); 2]);
+        (postures[other], speeds[other]) = (&there, Ball::from(speed));
+        let pair = nearest(postures);
+        let bound = pair.above(bodies, postures, speeds, half);
+        // Polygons that have a point in common in the middle have none that is farther from the other one than the bodies go.
+        let overlap = if super::separation::meet(postures).is_certain() {
+            (bodies[of].lever + bodies[other].lever * Ball::from(speed.abs())) * half
+        } else {
+            bound
+        };
+        Ball::of(most).above(bound).is_certain() || Ball::of(most).above(overlap).is_certain()
+    };
+    if look(guess, 0.0) {
+        return true;
+    }
+    let there = bodies[other].posture(number(guess));
+    let mut postures = [&own, &own];
+    postures[other] = &there;
+    let speed = nearest(postures).match_speed(postures, of).clamp(-4.0, 4.0);
+    // The other body must not leave its range: it begins a bit farther inside.
+    let away = Twofold::from(speed.abs()) * Twofold::from(half.to_f64() + half.err) * Twofold::from(1.0 + 1e-9);
+    let (lo, hi) = (range[0] + away, range[1] - away);
+    speed != 0.0 && speed.is_finite() && lo <= hi && look(guess.clamp(lo, hi), speed)
+}

@@ -1,0 +1,96 @@
+//! Outlines and bodies as plain numbers, exactly as a format holds them. Nothing here is checked; [`super::body`] does that.
+
+#[cfg(feature = "serde")]
+use serde::{Deserialize, Serialize};
+
+use crate::data::{Angle, Travel};
+
+/// The largest number of corners of an outline.
+pub const CORNERS: usize = 16;
+
+/// A convex polygon that is rounded by a radius.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct RawOutline {
+    /// Corners, counter-clockwise, from the reference point \[m\]: ahead and to the left of a body with the heading 0. A single one
+    /// makes a disc, two make a capsule.
+    pub corners: Vec<[f64; 2]>,
+    /// Radius by which the polygon is enlarged \[m\].
+    pub radius: f64,
+}
+
+/// Where the reference point goes on a segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub enum RawCourse {
+    /// Straight on.
+    Line,
+    /// Along an arc.
+    Arc {
+        /// Radius \[m\], positive where the arc turns left, negative where it turns right.
+        radius: f64,
+    },
+    /// Nowhere: the body turns in place.
+    Pivot {
+        /// Length for each radian \[m\], positive where the body turns left, negative where it turns right.
+        lever: f64,
+    },
+}
+
+/// Where a body looks while it moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub enum RawHeading {
+    /// At a constant angle to the direction of the path: 0 ahead, half a turn in reverse gear.
+    Along(Angle),
+    /// In a constant direction of the plane.
+    Steady(Angle),
+}
+
+/// A segment of the path of a body.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct RawSegment {
+    /// Where the reference point goes.
+    pub course: RawCourse,
+    /// Length \[m\].
+    pub length: f64,
+    /// By how much the direction of the path turns before it, turn by turn. The body does not turn: its heading has to go on.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
+    pub turns: Vec<Angle>,
+    /// Where the body looks.
+    pub heading: RawHeading,
+    /// Length of the path before the segment, as the library has summed it up \[m\].
+    pub from: f64,
+    /// Length of the path up to its end, likewise \[m\].
+    pub to: f64,
+}
+
+/// A body with its path, and its motion if it has one.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct RawBody {
+    /// Number, for messages.
+    pub id: u64,
+    /// Outline.
+    pub outline: RawOutline,
+    /// Abscissa and ordinate of the reference point at the start \[m\].
+    pub start: [f64; 2],
+    /// Direction of the path at the start.
+    pub direction: Angle,
+    /// At least one.
+    pub segments: Vec<RawSegment>,
+    /// What a length along the path may be off by the rounding of sums \[m\].
+    pub rounding: f64,
+    /// What the heading may jump by where two segments meet, by the rounding of angles \[rad\].
+    pub jump: f64,
+    /// What all lengths of a fixed-point format are multiples of \[m\]; 0 in floating point.
+    pub step: f64,
+    /// Motion; none where only the path counts.
+    pub travel: Option<Travel>,
+}

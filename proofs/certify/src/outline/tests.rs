@@ -1,0 +1,711 @@
+//! Bounds, claims and motions against computations that share nothing with them: plain `f64`, densely sampled.
+
+use super::Body;
+use super::cover::{Segments, Verdict};
+use super::data::{RawBody, RawCourse, RawHeading, RawOutline, RawSegment};
+use super::motion::{Driven, Encounter};
+use super::separation::{Change, above, below, nearest};
+use crate::ball::Ball;
+use crate::data::{Angle, Phase, Travel};
+use crate::twofold::Twofold;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+struct Dice(u64);
+
+impl Dice {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+    fn between(&mut self, lo: f64, hi: f64) -> f64 {
+        lo + (hi - lo) * self.unit()
+    }
+    fn of<T: Copy>(&mut self, those: &[T]) -> T {
+        those[(self.unit() * those.len() as f64) as usize]
+    }
+}
+
+fn outline(corners: &[[f64; 2]], radius: f64) -> RawOutline {
+    RawOutline { corners: corners.to_vec(), radius }
+}
+
+/// A rectangle about a point.
+fn rectangle(size: [f64; 2], [x, y]: [f64; 2], radius: f64) -> RawOutline {
+    let [a, b] = size.map(|size| 0.5 * size);
+    outline(&[[x - a, y - b], [x + a, y - b], [x + a, y + b], [x - a, y + b]], radius)
+}
+
+fn single(course: RawCourse, length: f64, heading: RawHeading) -> RawSegment {
+    RawSegment { course, length, turns: Vec::new(), heading, from: 0.0, to: length }
+}
+
+fn ahead() -> RawHeading {
+    RawHeading::Along(Angle::Radians(0.0))
+}
+
+fn body(id: u64, outline: RawOutline, start: [f64; 2], direction: f64, segments: Vec<RawSegment>) -> RawBody {
+    let direction = Angle::Radians(direction);
+    RawBody { id, outline, start, direction, segments, rounding: 1e-12, jump: 1e-9, step: 0.0, travel: None }
+}
+
+fn random(dice: &mut Dice, id: u64) -> RawBody {
+    let offset = if dice.unit() < 0.3 { [dice.between(-2.0, 2.0), dice.between(-1.0, 1.0)] } else { [0.0; 2] };
+    let count = dice.of(&[1, 2, 3, 4, 4, 4, 6, 16]);
+    let size = [dice.between(0.1, 0.8), dice.between(0.1, 0.8)];
+    let first = dice.between(0.0, TAU);
+    let corners: Vec<_> = (0..count)
+        .map(|k| {
+            let angle = first + TAU * (f64::from(k) + 0.6 * dice.unit()) / f64::from(count);
+            [offset[0] + size[0] * angle.cos(), offset[1] + size[1] * angle.sin()]
+        })
+        .collect();
+    let radius = dice.of(&[0.0, 1e-3, 0.05, 0.3]);
+    let turn = dice.between(0.2, TAU);
+    let side = dice.of(&[-1.0, 1.0]);
+    let heading = match dice.of(&[0, 1, 2, 3]) {
+        0 => ahead(),
+        1 => RawHeading::Along(Angle::Radians(PI)),
+        2 => RawHeading::Along(Angle::Turns(dice.unit())),
+        _ => RawHeading::Steady(Angle::Radians(dice.between(-4.0, 4.0))),
+    };
+    let (course, length, heading) = match dice.of(&[0, 1, 2]) {
+        0 => (RawCourse::Line, dice.between(0.5, 3.0), heading),
+        1 => {
+            let radius = dice.between(0.05, 2.0);
+            (RawCourse::Arc { radius: side * radius }, turn * radius, heading)
+        }
+        _ => {
+            let lever = dice.of(&[0.05, 0.5, 1.0]);
+            let heading = if let RawHeading::Steady(_) = heading { ahead() } else { heading };
+            (RawCourse::Pivot { lever: side * lever }, turn * lever, heading)
+        }
+    };
+    let start = [dice.between(-1.5, 1.5), dice.between(-1.5, 1.5)];
+    body(id, outline(&corners, radius), start, dice.between(-4.0, 4.0), vec![single(course, length, heading)])
+}
+
+fn radians(angle: Angle) -> f64 {
+    match angle {
+        Angle::Radians(angle) => angle,
+        Angle::Turns(turns) => TAU * turns,
+    }
+}
+
+/// The corners after a length along the first segment, in plain numbers.
+fn corners(raw: &RawBody, length: f64) -> Vec<[f64; 2]> {
+    let segment = &raw.segments[0];
+    let mut direction = radians(raw.direction);
+    let [mut x, mut y] = raw.start;
+    match segment.course {
+        RawCourse::Line => {
+            x += length * direction.cos();
+            y += length * direction.sin();
+        }
+        RawCourse::Arc { radius } => {
+            let after = direction + length / radius;
+            x += radius * (after.sin() - direction.sin());
+            y -= radius * (after.cos() - direction.cos());
+            direction = after;
+        }
+        RawCourse::Pivot { lever } => direction += length / lever,
+    }
+    let heading = match segment.heading {
+        RawHeading::Along(angle) => direction + radians(angle),
+        RawHeading::Steady(angle) => radians(angle),
+    };
+    let (sin, cos) = heading.sin_cos();
+    raw.outline.corners.iter().map(|[a, b]| [x + a * cos - b * sin, y + a * sin + b * cos]).collect()
+}
+
+fn inside(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let left = |k: usize| {
+        let ([ax, ay], [bx, by]) = (polygon[k], polygon[(k + 1) % polygon.len()]);
+        (bx - ax) * (y - ay) - (by - ay) * (x - ax) >= 0.0
+    };
+    polygon.len() > 2 && (0..polygon.len()).all(left)
+}
+
+/// Distance of two segments of lines that may cross, in plain numbers.
+fn of_edges(a: [[f64; 2]; 2], b: [[f64; 2]; 2]) -> f64 {
+    let cross = |o: [f64; 2], p: [f64; 2], q: [f64; 2]| (p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0]);
+    let sides = [cross(a[0], a[1], b[0]), cross(a[0], a[1], b[1]), cross(b[0], b[1], a[0]), cross(b[0], b[1], a[1])];
+    if sides[0] * sides[1] < 0.0 && sides[2] * sides[3] < 0.0 {
+        return 0.0;
+    }
+    let from = |[x, y]: [f64; 2], [[ax, ay], [bx, by]]: [[f64; 2]; 2]| {
+        let square = (bx - ax).powi(2) + (by - ay).powi(2);
+        let foot = if square > 0.0 { ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / square } else { 0.0 };
+        let foot = foot.clamp(0.0, 1.0);
+        (x - ax - foot * (bx - ax)).hypot(y - ay - foot * (by - ay))
+    };
+    from(a[0], b).min(from(a[1], b)).min(from(b[0], a)).min(from(b[1], a))
+}
+
+/// Distance of two convex polygons in plain numbers.
+fn distance(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
+    if inside(a, b[0]) || inside(b, a[0]) {
+        return 0.0;
+    }
+    let edges = |polygon: &[[f64; 2]]| -> Vec<[[f64; 2]; 2]> {
+        (0..polygon.len()).map(|k| [polygon[k], polygon[(k + 1) % polygon.len()]]).collect()
+    };
+    let (a, b) = (edges(a), edges(b));
+    a.iter().flat_map(|&one| b.iter().map(move |&other| of_edges(one, other))).fold(f64::INFINITY, f64::min)
+}
+
+/// Distance of two bodies at lengths along their first segments, in plain numbers.
+fn plain(raw: [&RawBody; 2], at: [f64; 2]) -> f64 {
+    distance(&corners(raw[0], at[0]), &corners(raw[1], at[1]))
+}
+
+fn number(value: f64) -> Ball<f64> {
+    Ball::from(value)
+}
+
+fn sure(bound: Ball<f64>) -> f64 {
+    bound.mid - bound.err
+}
+
+#[test]
+fn corners_are_where_plain_numbers_have_them() {
+    let mut dice = Dice(1);
+    for _ in 0..2000 {
+        let raw = random(&mut dice, 1);
+        let body = Body::new(&raw).unwrap();
+        let placed = &body.segments[0];
+        let length = dice.between(0.0, raw.segments[0].length);
+        let expected = corners(&raw, length);
+        let (near, exact) = (placed.near.posture(number(length)), placed.exact.posture(Ball::from(length)));
+        for k in 0..expected.len() {
+            let off = |a: f64, b: f64| (a - b).abs();
+            for (ball, fine, plain) in [
+                (near.corners[k].x, exact.corners[k].x, expected[k][0]),
+                (near.corners[k].y, exact.corners[k].y, expected[k][1]),
+            ] {
+                assert!(off(ball.mid, plain) < 1e-12, "{raw:?} {length}: {ball:?} {plain}");
+                assert!((fine - Ball::from(ball.mid)).to_f64().abs() <= ball.err + fine.err, "{ball:?} {fine:?}");
+                assert!(ball.err < 1e-11 && fine.err < 1e-25, "{ball:?} {fine:?}");
+            }
+            // Speeds, by differences.
+            let by = 1e-6;
+            let [before, after] = [length - by, length + by].map(|length| corners(&raw, length)[k]);
+            let velocity = near.velocities[k];
+            let own = near.velocity(near.corners[k]);
+            for (speed, own, axis) in [(velocity.x, own.x, 0), (velocity.y, own.y, 1)] {
+                let slope = (after[axis] - before[axis]) / (2.0 * by);
+                assert!(off(speed.mid, slope) < 1e-6 && off(own.mid, slope) < 1e-6, "{raw:?}: {speed:?} {slope}");
+            }
+            let speed = velocity.norm();
+            assert!(sure(speed) <= placed.lever, "{speed:?} {}", placed.lever);
+        }
+    }
+}
+
+#[test]
+fn bounds_hold_over_boxes_and_are_of_second_order() {
+    let mut dice = Dice(2);
+    let (mut apart, mut tight) = (0, 0.0_f64);
+    for round in 0..4000 {
+        let raw = [random(&mut dice, 1), random(&mut dice, 2)];
+        let bodies = [Body::new(&raw[0]).unwrap(), Body::new(&raw[1]).unwrap()];
+        let size = dice.of(&[1.0, 0.1, 0.01, 1e-4]);
+        let lengths = [0, 1].map(|k| raw[k].segments[0].length);
+        let halves = lengths.map(|length| 0.5 * length * size * if dice.unit() < 0.2 { 0.0 } else { dice.unit() });
+        let middle = [0, 1].map(|k| dice.between(halves[k], lengths[k] - halves[k]));
+        let near = [0, 1].map(|k| &bodies[k].segments[0].near);
+        let [a, b] = [0, 1].map(|k| near[k].posture(number(middle[k])));
+        let seen = below(near, [&a, &b], &Change::Box(halves.map(number)));
+        let there = plain([&raw[0], &raw[1]], middle);
+        // Where the polygons meet, every direction says less than nothing.
+        assert!(sure(seen.middle) <= there + 1e-12 && above([&a, &b]).mid >= there - 1e-12, "{round} {raw:?}");
+        assert!(there == 0.0 || (seen.middle.mid - there).abs() < 1e-11, "{round}: {} {there}", seen.middle.mid);
+        assert!((above([&a, &b]).mid - there).abs() < 1e-11, "{round}: {:?} {there}", above([&a, &b]));
+        for k in 0..60 {
+            // Corners of the box, too.
+            let part = |dice: &mut Dice| if k < 16 { dice.of(&[-1.0, 1.0, 0.0]) } else { dice.between(-1.0, 1.0) };
+            let at = [0, 1].map(|k| middle[k] + halves[k] * part(&mut dice));
+            let found = plain([&raw[0], &raw[1]], at);
+            let most = seen.anywhere.to_f64();
+            assert!(
+                sure(seen.anywhere) <= found + 1e-12,
+                "{round} {raw:?} {middle:?} {halves:?} {at:?}: {found} {most}"
+            );
+        }
+        // What a small box loses beyond the true change is of second order.
+        if there > 0.05 && size < 0.02 {
+            let slope = |k: usize| {
+                let by = 1e-7;
+                let moved = [-by, by].map(|by| {
+                    let mut at = middle;
+                    at[k] += by;
+                    plain([&raw[0], &raw[1]], at)
+                });
+                // The steeper side, where there is a kink.
+                let slopes = [there - moved[0], moved[1] - there].map(|change| (change / by).abs());
+                slopes[0].max(slopes[1])
+            };
+            let lever = [0, 1].map(|k| near[k].lever.mid);
+            let ways = lever[0] * halves[0] + lever[1] * halves[1];
+            let lost = there - slope(0) * halves[0] - slope(1) * halves[1] - seen.anywhere.mid;
+            if ways > 1e-6 {
+                (apart, tight) = (apart + 1, tight.max((lost - 1e-7) / ways));
+            }
+        }
+    }
+    // A tenth of the ways at most, with ways of up to a hundredth of the segments.
+    assert!(apart > 200 && tight < 0.5, "{apart} {tight}");
+}
+
+#[test]
+fn bounds_hold_along_lines_with_accelerations() {
+    let mut dice = Dice(3);
+    let mut used = 0;
+    for round in 0..6000 {
+        let raw = [random(&mut dice, 1), random(&mut dice, 2)];
+        let bodies = [Body::new(&raw[0]).unwrap(), Body::new(&raw[1]).unwrap()];
+        let near = [0, 1].map(|k| &bodies[k].segments[0].near);
+        let middle = [0, 1].map(|k| dice.unit() * raw[k].segments[0].length);
+        let [a, b] = [0, 1].map(|k| near[k].posture(number(middle[k])));
+        let speeds = [0; 2].map(|_| dice.of(&[0.0, 1.0, -0.7]));
+        let accelerations = [0; 2].map(|_| dice.of(&[0.0, 0.0, 0.5, -1.0]));
+        let half = dice.of(&[0.3, 0.05, 1e-3]);
+        let change =
+            Change::Line { speeds: speeds.map(number), accelerations: accelerations.map(number), half: number(half) };
+        let seen = below(near, [&a, &b], &change);
+        let pair = nearest([&a, &b]);
+        let most = pair.above(near, [&a, &b], speeds.map(number), number(half));
+        for _ in 0..30 {
+            let t = half * dice.of(&[-1.0, 1.0, dice.0 as f64 / u64::MAX as f64, 0.3, -0.5]);
+            let at = |accelerated: f64| {
+                [0, 1].map(|k| middle[k] + speeds[k] * t + 0.5 * accelerated * accelerations[k] * t * t)
+            };
+            let found = plain([&raw[0], &raw[1]], at(1.0));
+            assert!(sure(seen.anywhere) <= found + 1e-12, "{round} {raw:?} {middle:?} {change:?}: {seen:?} {found}");
+            let steady = plain([&raw[0], &raw[1]], at(0.0));
+            assert!(most.mid + most.err >= steady - 1e-12, "{round} {raw:?} {middle:?} {change:?}: {most:?} {steady}");
+            used += usize::from(seen.anywhere.mid > 0.0);
+        }
+    }
+    assert!(used > 10_000, "{used}");
+}
+
+fn number_of(ends: [f64; 2]) -> [Twofold; 2] {
+    ends.map(Twofold::from)
+}
+
+/// The least distance over a grid, refined about its least points, in plain numbers.
+fn least(raw: [&RawBody; 2], ranges: [[f64; 2]; 2]) -> f64 {
+    const PARTS: usize = 60;
+    let mut points = Vec::new();
+    let at = |k: usize, part: f64| ranges[k][0] + (ranges[k][1] - ranges[k][0]) * part;
+    for i in 0..=PARTS {
+        for j in 0..=PARTS {
+            let part = [i, j].map(|k| k as f64 / PARTS as f64);
+            points.push((plain(raw, [at(0, part[0]), at(1, part[1])]), part));
+        }
+    }
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut best = f64::INFINITY;
+    for &(mut found, mut part) in points.iter().take(8) {
+        let mut step = 1.0 / PARTS as f64;
+        while step > 1e-9 && found > 0.0 {
+            let moves =
+                [[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]];
+            let tried = moves.map(|by| {
+                let part = [0, 1].map(|k| (part[k] + step * by[k]).clamp(0.0, 1.0));
+                (plain(raw, [at(0, part[0]), at(1, part[1])]), part)
+            });
+            let better = tried.into_iter().fold((found, part), |a, b| if b.0 < a.0 { b } else { a });
+            if better.0 < found { (found, part) = better } else { step *= 0.5 }
+        }
+        best = best.min(found);
+    }
+    best
+}
+
+#[test]
+fn boxes_are_farther_than_a_bit_less_than_their_least_distance_and_not_than_a_bit_more() {
+    let mut dice = Dice(4);
+    let (mut proved, mut steps) = (0, 0);
+    for round in 0..150 {
+        let raw = [random(&mut dice, 1), random(&mut dice, 2)];
+        let bodies = [Body::new(&raw[0]).unwrap(), Body::new(&raw[1]).unwrap()];
+        let segments = Segments([&bodies[0].segments[0], &bodies[1].segments[0]]);
+        let ranges = [0, 1].map(|k| {
+            let length = raw[k].segments[0].length;
+            let from = dice.between(0.0, length);
+            [from, (from + dice.between(0.0, length)).min(length)]
+        });
+        let found = least([&raw[0], &raw[1]], ranges);
+        let boxes = ranges.map(number_of);
+        if found > 2e-6 {
+            proved += 1;
+            let outcome = segments.farther(boxes, Ball::from(found - 1e-6), &mut steps);
+            assert_eq!(outcome, Verdict::Proved, "{round} {raw:?} {ranges:?} {found}");
+        }
+        let outcome = segments.farther(boxes, Ball::from(found + 1e-6), &mut steps);
+        let Verdict::Refuted(at) = outcome else { panic!("{round} {raw:?} {ranges:?} {found}: {outcome:?}") };
+        assert!(plain([&raw[0], &raw[1]], at.map(Twofold::to_f64)) < found + 1e-6);
+    }
+    assert!(proved > 60 && steps < 150 * 20_000, "{proved} {steps}");
+}
+
+/// A rectangle of 1.2 by 0.8 m that turns about its centre, and a wall of 4 by 0.2 m that comes down upon it.
+fn turning_beside_a_wall() -> [RawBody; 2] {
+    let turning = body(
+        1,
+        rectangle([1.2, 0.8], [0.0; 2], 0.0),
+        [0.0; 2],
+        0.0,
+        vec![single(RawCourse::Pivot { lever: 1.0 }, TAU, ahead())],
+    );
+    let across = RawHeading::Steady(Angle::Radians(0.0));
+    let wall = body(
+        2,
+        rectangle([4.0, 0.2], [0.0; 2], 0.05),
+        [0.0, 1.5],
+        -FRAC_PI_2,
+        vec![single(RawCourse::Line, 1.2, across)],
+    );
+    [turning, wall]
+}
+
+/// Rectangles with all contacts of these two, in closed form: four while only corners can touch, two from when a narrow side can, one from
+/// when a long side can.
+fn rectangles_beside_a_wall(by: f64) -> Vec<[[f64; 2]; 2]> {
+    let reach = 0.6_f64.hypot(0.4);
+    let first = 0.4_f64.atan2(0.6);
+    let tops = [FRAC_PI_2 - first, FRAC_PI_2 + first, 3.0 * FRAC_PI_2 - first, 3.0 * FRAC_PI_2 + first];
+    let births = 1.35 - reach;
+    let wide = (0.6 / reach).acos();
+    let mut all: Vec<_> = tops.iter().map(|top| [[top - wide - by, top + wide + by], [births - by, 0.75]]).collect();
+    all.push([[0.0, PI + by], [0.75, 0.95]]);
+    all.push([[PI - by, TAU], [0.75, 0.95]]);
+    all.push([[0.0, TAU], [0.95, 1.2]]);
+    all
+}
+
+fn placed(rectangles: &[[[f64; 2]; 2]]) -> Vec<[[Twofold; 2]; 2]> {
+    rectangles.iter().map(|rectangle| rectangle.map(number_of)).collect()
+}
+
+#[test]
+fn slices_beside_a_wall_end_where_they_are_known_to() {
+    let raw = turning_beside_a_wall();
+    let bodies = [Body::new(&raw[0]).unwrap(), Body::new(&raw[1]).unwrap()];
+    let segments = Segments([&bodies[0].segments[0], &bodies[1].segments[0]]);
+    let slices: [(f64, &[[f64; 2]]); 3] = [
+        (
+            0.7,
+            &[
+                [0.534961326318396, 1.43062612017626],
+                [1.71096653341353, 2.6066313272714],
+                [3.67655397990819, 4.57221877376606],
+                [4.85255918700332, 5.74822398086119],
+            ],
+        ),
+        (0.8, &[[0.279494746222193, 2.8620979073676], [3.42108739981199, 6.00369056095739]]),
+        (0.9, &[[0.0858968327951782, 3.05569582069461], [3.22748948638497, 6.19728847438441]]),
+    ];
+    let mut steps = 0;
+    for (at, slice) in slices {
+        let mut from = 0.0_f64;
+        for end in slice.iter().copied().chain([[TAU, TAU]]) {
+            let gap = [[if from == 0.0 { 0.0 } else { from + 1e-9 }, end[0] - 1e-9], [at, at]];
+            let outcome = segments.farther(gap.map(number_of), Ball::from(0.05), &mut steps);
+            assert_eq!(outcome, Verdict::Proved, "{at} {from}");
+            let radius = Ball::from(0.05);
+            let outward = [[(from - 1e-3).max(0.0), (end[0] + 1e-3).min(TAU)], [at, at]].map(number_of);
+            let found = segments.farther(outward, radius, &mut steps);
+            assert!(matches!(found, Verdict::Refuted(_)), "{at} {from}: {found:?}");
+            from = end[1];
+        }
+    }
+}
+
+#[test]
+fn contacts_beside_a_wall_are_covered_and_altered_rectangles_refuted() {
+    let raw = turning_beside_a_wall();
+    let bodies = [Body::new(&raw[0]).unwrap(), Body::new(&raw[1]).unwrap()];
+    let segments = Segments([&bodies[0].segments[0], &bodies[1].segments[0]]);
+    let radius = Ball::from(0.05);
+    for by in [1e-3, 1e-6, 1e-9, 1e-12] {
+        let all = placed(&rectangles_beside_a_wall(by));
+        let mut steps = 0;
+        let found = segments.covered(&all, radius, &mut steps);
+        assert!(found.is_empty(), "{by}: {found:?}");
+        assert!(steps < 60_000, "{by}: {steps}");
+        for rectangle in &all {
+            for of in [0, 1] {
+                let most = Ball::from(0.05 + 4.0 * by);
+                let outcome = segments.within(of, *rectangle, most, &mut steps);
+                assert_eq!(outcome, Verdict::Proved, "{by} {of} {rectangle:?}");
+            }
+        }
+    }
+    // Each of them a millimetre too small, on each side where it does not end with the segment or with another one.
+    let exact = rectangles_beside_a_wall(1e-9);
+    for place in 0..exact.len() {
+        for (k, end, by) in [(0, 0, 1e-3), (0, 1, -1e-3), (1, 0, 1e-3), (1, 1, -1e-3)] {
+            let mut altered = exact.clone();
+            altered[place][k][end] += by;
+            let found = segments.covered(&placed(&altered), radius, &mut 0);
+            assert!(found.iter().any(|one| matches!(one, Verdict::Refuted(_))), "{place} {k} {end}: {found:?}");
+        }
+    }
+    // Where nothing else touches, 2 mm too much.
+    for k in [0, 1] {
+        let mut altered = exact[0];
+        altered[k][0] -= 2e-3;
+        for (most, far) in [(0.0501, true), (0.053, false)] {
+            let outcome = segments.within(k, altered.map(number_of), Ball::from(most), &mut 0);
+            assert_eq!(matches!(outcome, Verdict::Refuted(_)), far, "{k} {most}: {outcome:?}");
+            assert_eq!(outcome == Verdict::Proved, !far, "{k} {most}: {outcome:?}");
+        }
+    }
+    // The same rectangles for another body: one corner 1 mm farther out, or the radius larger by 1 mm.
+    for change in [0, 1] {
+        let mut other = raw.clone();
+        if change == 0 {
+            other[0].outline.corners[2][1] += 1e-3
+        } else {
+            other[1].outline.radius += 1e-3
+        }
+        let bodies = [Body::new(&other[0]).unwrap(), Body::new(&other[1]).unwrap()];
+        let segments = Segments([&bodies[0].segments[0], &bodies[1].segments[0]]);
+        let radius = bodies[0].radius + bodies[1].radius;
+        let found = segments.covered(&placed(&exact), radius, &mut 0);
+        assert!(found.iter().any(|one| matches!(one, Verdict::Refuted(_))), "{change}: {found:?}");
+    }
+}
+
+/// From rest to rest, with the top speed in the middle.
+fn travel(start: f64, length: f64, top: f64) -> Travel {
+    let half = length / top;
+    let phases = vec![
+        Phase { time: [0.0, half], length: [0.0, 0.5 * length], speed: [0.0, top] },
+        Phase { time: [half, 2.0 * half], length: [0.5 * length, length], speed: [top, 0.0] },
+    ];
+    Travel { start, phases, lag: 0.0, time_excess: 0.0 }
+}
+
+/// The travelled length, in plain numbers.
+fn travelled(raw: &RawBody, time: f64) -> f64 {
+    let (travel, length) = (raw.travel.as_ref().unwrap(), raw.segments[0].length);
+    let half = travel.phases[0].time[1];
+    let since = (time - travel.start).clamp(0.0, 2.0 * half);
+    let top = travel.phases[0].speed[1];
+    if since < half {
+        0.5 * top / half * since * since
+    } else {
+        length - 0.5 * top / half * (2.0 * half - since).powi(2)
+    }
+}
+
+#[test]
+fn motions_agree_with_samples() {
+    let mut dice = Dice(5);
+    let (mut met, mut passed, mut steps) = (0, 0, 0);
+    for round in 0..300 {
+        let mut raw = [random(&mut dice, 1), random(&mut dice, 2)];
+        for one in &mut raw {
+            let top = dice.between(0.3, 2.0);
+            one.travel = Some(travel(dice.between(0.0, 2.0), one.segments[0].length, top));
+        }
+        let distance = |t: f64| plain([&raw[0], &raw[1]], [travelled(&raw[0], t), travelled(&raw[1], t)]);
+        let (span, parts) = (20.0, 10_000);
+        let times = || (0..=parts).map(|k| span * f64::from(k) / f64::from(parts));
+        let mut samples: Vec<_> = times().map(|t| (distance(t), t)).collect();
+        samples.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let refined = samples.iter().take(20).map(|&(mut found, mut at)| {
+            let mut step = span / f64::from(parts);
+            while step > 1e-10 {
+                let tried = [at - step, at + step].map(|t| (distance(t.clamp(0.0, span)), t.clamp(0.0, span)));
+                match tried.into_iter().find(|(less, _)| *less < found) {
+                    Some(better) => (found, at) = better,
+                    None => step *= 0.5,
+                }
+            }
+            found
+        });
+        let least = refined.fold(f64::INFINITY, f64::min);
+        let radius = raw[0].outline.radius + raw[1].outline.radius;
+        let driven = |raw: &[RawBody; 2], check: &mut dyn FnMut(&Encounter<'_>)| {
+            let bodies = [Body::new(&raw[0]).unwrap(), Body::new(&raw[1]).unwrap()];
+            let driven = [0, 1].map(|k| Driven::new(&bodies[k], [0.0, 1e6]).unwrap());
+            check(&Encounter::new(&driven[0], &driven[1]));
+        };
+        // With the radius at what samples find, a bit less or more.
+        for by in [-1e-4, 1e-4] {
+            let mut close = raw.clone();
+            close[0].outline.radius = least + by;
+            close[1].outline.radius = 0.0;
+            if close[0].outline.radius < 0.0 || least == 0.0 {
+                continue;
+            }
+            driven(&close, &mut |pair| {
+                let answer = pair.is_clear([0.0, span], &mut steps);
+                assert_eq!((answer.is_proved(), answer.is_refuted()), (by < 0.0, by > 0.0), "{round} {by}: {answer:?}");
+            });
+        }
+        // The first contact, and all intervals of contact, as samples have them and bisection refines them.
+        let mut ends = Vec::new();
+        let is_in = |t: f64| distance(t) <= radius;
+        let mut before = is_in(0.0);
+        if before {
+            ends.push(0.0);
+        }
+        for t in times().skip(1) {
+            if is_in(t) != before {
+                let (mut lo, mut hi) = (t - span / f64::from(parts), t);
+                for _ in 0..50 {
+                    let middle = 0.5 * (lo + hi);
+                    if is_in(middle) == before { lo = middle } else { hi = middle }
+                }
+                // Outward, so that the intervals hold all contacts.
+                ends.push(if before { hi + 1e-7 } else { lo - 1e-7 });
+                before = !before;
+            }
+        }
+        if before {
+            ends.push(span);
+        }
+        let told: Vec<[f64; 2]> = ends.chunks(2).map(|pair| [pair[0], pair[1]]).collect();
+        if (least - radius).abs() < 1e-6 || told.iter().any(|[begin, end]| end - begin < 2e-2) {
+            continue;
+        }
+        driven(&raw, &mut |pair| {
+            let all = [0.0, span];
+            assert_eq!(pair.is_clear(all, &mut steps).is_refuted(), least < radius, "{round}");
+            let answer = pair.are_conflicts(all, &told, 1e-5, &mut steps);
+            assert!(answer.is_proved(), "{round} {told:?}: {answer:?}");
+            let first = told.first().map(|interval| interval[0]);
+            let answer = pair.is_first_conflict(all, first, 1e-5, &mut steps);
+            assert!(answer.is_proved(), "{round} {first:?}: {answer:?}");
+            let Some(&[begin, end]) = told.first() else {
+                passed += 1;
+                return;
+            };
+            met += 1;
+            assert!(pair.is_first_conflict(all, None, 1e-5, &mut steps).is_refuted());
+            assert!(pair.are_conflicts(all, &told[1..], 1e-5, &mut steps).is_refuted());
+            // An interval that begins too late, or ends too early, by 5 ms: where the bodies do not just graze there.
+            let deep = |t: f64| distance(t) < radius - 1e-6;
+            for (altered, time) in [([begin + 5e-3, end], begin + 2.5e-3), ([begin, end - 5e-3], end - 2.5e-3)] {
+                if deep(time) && distance(altered[0]) < radius && altered[1] < span {
+                    let mut all_told = told.clone();
+                    all_told[0] = altered;
+                    let answer = pair.are_conflicts(all, &all_told, 1e-5, &mut steps);
+                    assert!(answer.is_refuted(), "{round} {altered:?}: {answer:?}");
+                    if altered[0] > begin {
+                        let answer = pair.is_first_conflict(all, Some(altered[0]), 1e-5, &mut steps);
+                        assert!(answer.is_refuted(), "{round} {altered:?}: {answer:?}");
+                    }
+                }
+            }
+            // One that begins too early, where the bodies are not near.
+            let early = begin - 5e-3;
+            if early > 0.0 && distance(early) > radius + 1e-4 {
+                assert!(pair.is_first_conflict(all, Some(early), 1e-5, &mut steps).is_refuted());
+                assert!(pair.is_contact(early, 1e-5).is_refuted());
+            }
+        });
+    }
+    assert!(met > 60 && passed > 60 && steps < 2_000_000, "{met} {passed} {steps}");
+}
+
+/// Two bodies on their first segments: how far they are at least, and what is shown of it.
+fn claim(raw: [&RawBody; 2], ranges: [[f64; 2]; 2], least: f64) -> (Verdict, usize) {
+    let bodies = [Body::new(raw[0]).unwrap(), Body::new(raw[1]).unwrap()];
+    let segments = Segments([&bodies[0].segments[0], &bodies[1].segments[0]]);
+    let mut steps = 0;
+    (segments.farther(ranges.map(number_of), Ball::from(least), &mut steps), steps)
+}
+
+/// A claim that holds by a nanometre is proved, one that fails by as much refuted; one that is just so is never proved.
+fn is_decided(name: &str, raw: [&RawBody; 2], ranges: [[f64; 2]; 2], exact: f64) {
+    let (proved, steps) = claim(raw, ranges, exact - 1e-9);
+    assert_eq!(proved, Verdict::Proved, "{name} after {steps}");
+    assert!(steps < 200_000, "{name}: {steps}");
+    let (refuted, _) = claim(raw, ranges, exact + 1e-9);
+    assert!(matches!(refuted, Verdict::Refuted(_)), "{name}: {refuted:?}");
+    // Within what the `f64` of the bound leaves: nothing is proved that is not so.
+    let (just, _) = claim(raw, ranges, exact + 1e-15);
+    assert_ne!(just, Verdict::Proved, "{name}");
+}
+
+fn line(id: u64, outline: RawOutline, start: [f64; 2], direction: f64, length: f64) -> RawBody {
+    body(id, outline, start, direction, vec![single(RawCourse::Line, length, ahead())])
+}
+
+fn pivot(id: u64, outline: RawOutline, start: [f64; 2], direction: f64, turn: f64) -> RawBody {
+    body(id, outline, start, direction, vec![single(RawCourse::Pivot { lever: 1.0 }, turn, ahead())])
+}
+
+fn arc(id: u64, outline: RawOutline, start: [f64; 2], direction: f64, radius: f64, turn: f64) -> RawBody {
+    let length = turn * radius.abs();
+    body(id, outline, start, direction, vec![single(RawCourse::Arc { radius }, length, ahead())])
+}
+
+#[test]
+fn special_positions_are_decided_to_a_nanometre() {
+    let truck = || rectangle([1.2, 0.8], [0.0; 2], 0.0);
+    // Parallel edges all along both lanes, side by side, in both directions.
+    for back in [0.0, PI] {
+        let own = line(1, truck(), [0.0, 0.0], 0.0, 3.0);
+        let other = line(2, truck(), [3.0 * back / PI, 1.05], back, 3.0);
+        is_decided("lanes", [&own, &other], [[0.0, 3.0]; 2], 0.25);
+    }
+    // A pinch: corners touch before the flat side does, which is nearest to the wall in between; about the parallel position.
+    let [turning, wall] = turning_beside_a_wall();
+    let parallel = [[PI - 0.1, PI + 0.1], [0.9, 0.9]];
+    let corners = 0.6_f64.hypot(0.4);
+    is_decided("pinch", [&turning, &wall], parallel, 0.5 - corners * (0.4_f64.atan2(0.6) + 0.1).sin());
+    is_decided("before the pinch", [&turning, &wall], [[PI, PI], [0.9, 0.9]], 0.1);
+    // The pivot on a corner, and inside of an edge; the other one passes the far corner.
+    let passer = line(2, rectangle([0.4, 0.4], [0.0; 2], 0.1), [-4.0, 2.0], 0.0, 8.0);
+    let cornered = pivot(1, rectangle([1.2, 0.8], [0.6, 0.4], 0.0), [0.0; 2], 0.0, TAU);
+    is_decided("pivot on a corner", [&cornered, &passer], [[0.0, TAU], [0.0, 8.0]], 1.8 - 1.2_f64.hypot(0.8));
+    let edged = pivot(1, rectangle([1.2, 0.8], [0.0, 0.4], 0.0), [0.0; 2], 0.0, TAU);
+    is_decided("pivot on an edge", [&edged, &passer], [[0.0, TAU], [0.0, 8.0]], 1.8 - 0.6_f64.hypot(0.8));
+    // A fork whose reference point is far from it: the corners go faster than the path.
+    let fork = pivot(1, rectangle([1.0, 0.2], [2.0, 0.0], 0.0), [0.0; 2], 0.0, TAU);
+    let beside = line(2, rectangle([0.4, 0.4], [0.0; 2], 0.0), [-4.0, 3.0], 0.0, 8.0);
+    is_decided("fork", [&fork, &beside], [[0.0, TAU], [0.0, 8.0]], 2.8 - 2.5_f64.hypot(0.1));
+    // A tight turn of a large body, whose corners go twelve times as fast as the reference point.
+    let tight = arc(1, truck(), [0.0, -0.05], 0.0, 0.05, TAU * 0.999_999);
+    let far = (0.4_f64 + 0.05).hypot(0.6);
+    is_decided("lever", [&tight, &beside], [[0.0, 0.05 * TAU * 0.999_999], [0.0, 8.0]], 2.8 - far);
+    // Corner on corner, exactly at a distance of 5 m, and lines that move away from there.
+    let one = line(1, rectangle([1.0, 1.0], [-0.5, -0.5], 0.0), [0.0; 2], PI, 2.0);
+    let mut one = one;
+    one.segments[0].heading = RawHeading::Steady(Angle::Radians(0.0));
+    let two = line(2, rectangle([1.0, 1.0], [0.5, 0.5], 0.0), [3.0, 4.0], 0.0, 2.0);
+    is_decided("corner on corner", [&one, &two], [[0.0, 2.0]; 2], 5.0);
+    // Crab: across its heading along a line, and reverse gear on an arc.
+    let mut crab = line(1, truck(), [0.0, 0.0], 0.0, 3.0);
+    crab.segments[0].heading = RawHeading::Along(Angle::Turns(0.25));
+    is_decided("crab", [&crab, &line(2, truck(), [0.0, 1.25], 0.0, 3.0)], [[0.0, 3.0]; 2], 0.25);
+    let mut reverse = arc(1, rectangle([1.2, 0.8], [0.4, 0.0], 0.0), [0.0, -2.0], 0.0, 2.0, TAU * 0.999_999);
+    reverse.segments[0].heading = RawHeading::Along(Angle::Radians(PI));
+    let standing = line(2, rectangle([0.2, 0.2], [0.0; 2], 0.0), [0.0, 0.0], 0.0, 0.0);
+    is_decided("reverse", [&reverse, &standing], [[0.0, 2.0 * TAU * 0.999_999], [0.0, 0.0]], 1.6 - 0.1_f64.hypot(0.1));
+}
+
+#[test]
+fn a_distance_that_is_the_same_along_a_curve_is_decided_to_a_tenth_of_a_micrometre() {
+    // Two rectangles on concentric arcs, the same way round: the distance depends on one angle less the other one only, and is least along
+    // a diagonal of the square of lengths. What is missing there to a nanometre takes more boxes than are looked at.
+    let truck = || rectangle([0.6, 0.4], [0.0; 2], 0.0);
+    let inner = arc(1, truck(), [0.0, -1.0], 0.0, 1.0, 1.5);
+    let outer = arc(2, truck(), [0.0, -2.0], 0.0, 2.0, 1.5);
+    let exact = 1.8 - 0.3_f64.hypot(1.2);
+    for (by, steps_allowed) in [(1e-3, 20_000), (1e-5, 200_000)] {
+        let (proved, steps) = claim([&inner, &outer], [[0.0, 1.5], [0.0, 3.0]], exact - by);
+        assert!(proved == Verdict::Proved && steps < steps_allowed, "{by}: {proved:?} after {steps}");
+        let (refuted, _) = claim([&inner, &outer], [[0.0, 1.5], [0.0, 3.0]], exact + by);
+        assert!(matches!(refuted, Verdict::Refuted(_)), "{by}: {refuted:?}");
+    }
+    let (beyond, _) = claim([&inner, &outer], [[0.0, 1.5], [0.0, 3.0]], exact - 1e-12);
+    assert!(matches!(beyond, Verdict::Undecided(_)), "{beyond:?}");
+}
