@@ -75,7 +75,7 @@ pub mod outline;
 pub mod pair;
 pub mod path;
 pub mod plane;
-pub mod regions;
+mod regions;
 pub mod segments;
 pub mod shares;
 pub mod table;

@@ -11,16 +11,63 @@ use crate::path::Stretch;
 use crate::travel;
 use crate::twofold::Twofold;
 
+/// The distances of two agents, be they discs or outlines.
+pub(crate) trait Distances {
+    /// Decides whether lengths on a segment of the agent `k` are all farther than R from lengths on a segment of the other agent.
+    fn are_clear(
+        &self,
+        segments: [usize; 2],
+        k: usize,
+        own: [Twofold; 2],
+        other: [Twofold; 2],
+        steps: &mut usize,
+    ) -> Outcome;
+    /// Keeps what is not proved about a length of a piece of the agent `k`.
+    fn note(&self, outcome: Outcome, promise: Promise, piece: &Placed, k: usize, findings: &mut Findings);
+}
+
+/// Two discs.
+pub(crate) struct Discs<'a> {
+    pub(crate) stretches: [&'a [Stretch]; 2],
+    pub(crate) pair: &'a Pair,
+    pub(crate) radii: &'a Radii,
+}
+
+impl Distances for Discs<'_> {
+    fn are_clear(
+        &self,
+        segments: [usize; 2],
+        k: usize,
+        own: [Twofold; 2],
+        other: [Twofold; 2],
+        steps: &mut usize,
+    ) -> Outcome {
+        let part = |side: usize, range| self.stretches[side][segments[side]].placed.part(range);
+        Claim::Above(self.radii.radius).decide(&part(k, own), &mut part(1 - k, other), steps)
+    }
+
+    fn note(&self, outcome: Outcome, promise: Promise, piece: &Placed, k: usize, findings: &mut Findings) {
+        let segments = Segments {
+            stretches: [0, 1].map(|side| &self.stretches[side][piece.segments[side]]),
+            whole: [0, 1].map(|side| self.stretches[side][piece.segments[side]].placed.whole()),
+            pieces: Vec::new(),
+        };
+        let other = 1 - k;
+        let mut near = segments.stretches[other].placed.part(piece.lengths[other]);
+        segments.note(outcome, promise, self.pair, self.radii, k, &mut near, findings);
+    }
+}
+
 /// Checks the regions of a pair.
 ///
 /// # Errors
 /// A region that is none: without pieces, with lengths that are not those of its pieces, without times where there are motions.
-pub fn check(
+pub(crate) fn check(
     agents: [&Agent; 2],
     stretches: [&[Stretch]; 2],
     pair: &Pair,
     pieces: &[Placed],
-    radii: &Radii,
+    distances: &impl Distances,
     findings: &mut Findings,
 ) -> Result<(), String> {
     lengths_are_those_of_pieces(pair)?;
@@ -39,7 +86,7 @@ pub fn check(
             }
             let told = Told { region: place, k, time, travel, agent: agents[k], lengths: region.lengths[k] };
             for end in [0, 1] {
-                told.check(end, stretches, pair, &those, pieces, radii, findings);
+                told.check(end, stretches, pair, &those, pieces, distances, findings);
             }
         }
     }
@@ -81,7 +128,7 @@ impl Told<'_> {
         pair: &Pair,
         pieces: &[&Placed],
         all: &[Placed],
-        radii: &Radii,
+        distances: &impl Distances,
         findings: &mut Findings,
     ) {
         let path = &self.agent.path;
@@ -94,14 +141,7 @@ impl Told<'_> {
         // Before it sets off an agent stands at 0, after its arrival at the end: there no time is too early or too late.
         let always = if end == 0 { since(told) <= Twofold::ZERO } else { since(told) >= end_of_all };
         let note = |outcome, promise, piece: &Placed, findings: &mut Findings| {
-            let segments = Segments {
-                stretches: [0, 1].map(|side| &stretches[side][piece.segments[side]]),
-                whole: [0, 1].map(|side| stretches[side][piece.segments[side]].placed.whole()),
-                pieces: Vec::new(),
-            };
-            let other = 1 - self.k;
-            let mut near = segments.stretches[other].placed.part(piece.lengths[other]);
-            segments.note(outcome, promise, pair, radii, self.k, &mut near, findings);
+            distances.note(outcome, promise, piece, self.k, findings);
         };
         if !always {
             // What the lengths along the path may be off is added.
@@ -113,7 +153,7 @@ impl Told<'_> {
                 let elsewhere: Vec<&Placed> =
                     all.iter().filter(|piece| piece.region != self.region).filter(told).collect();
                 for piece in pieces {
-                    let outcome = self.strip_is_clear(strip, stretches, piece, &elsewhere, radii, findings);
+                    let outcome = self.strip_is_clear(strip, stretches, piece, &elsewhere, distances, findings);
                     note(outcome, Promise::Timed, piece, findings);
                 }
             }
@@ -164,7 +204,7 @@ impl Told<'_> {
         stretches: [&[Stretch]; 2],
         piece: &Placed,
         elsewhere: &[&Placed],
-        radii: &Radii,
+        distances: &impl Distances,
         findings: &mut Findings,
     ) -> Outcome {
         let other = 1 - self.k;
@@ -181,10 +221,8 @@ impl Told<'_> {
             it.segments == piece.segments && from <= lo && hi <= to
         };
         let held = elsewhere.iter().filter(holds).map(|it| it.lengths[other]).collect();
-        let own = own.placed.part([lo, hi]);
         for left in gaps(held, piece.lengths[other]) {
-            let mut near = stretches[other][piece.segments[other]].placed.part(left);
-            let outcome = Claim::Above(radii.radius).decide(&own, &mut near, &mut findings.steps);
+            let outcome = distances.are_clear(piece.segments, self.k, [lo, hi], left, &mut findings.steps);
             if !matches!(outcome, Outcome::Proved) {
                 return outcome;
             }

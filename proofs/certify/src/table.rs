@@ -206,7 +206,8 @@ impl<'a> Checker<'a> {
         }
         if tells {
             let agents = [self.agents[a].agent, self.agents[b].agent];
-            regions::check(agents, [first, second], pair, &pieces, &radii, &mut findings).map_err(named)?;
+            let discs = regions::Discs { stretches: [first, second], pair, radii: &radii };
+            regions::check(agents, [first, second], pair, &pieces, &discs, &mut findings).map_err(named)?;
         }
         Ok(findings)
     }

@@ -8,6 +8,7 @@
 use super::data::{CORNERS, RawBody, RawCourse, RawHeading, RawOutline};
 use crate::ball::{Ball, Real, Tri};
 use crate::data::{Angle, Path, Segment};
+use crate::near::Area;
 use crate::path::{LEAST, Stretch, radians, stretches, unit};
 use crate::plane::Vector;
 use crate::twofold::Twofold;
@@ -294,6 +295,30 @@ impl<'a> Body<'a> {
         // A few roundings for each segment.
         let jumps = jumps * (1.0 + 1e-9);
         Ok(Self { raw, segments, radius: Ball::from(raw.outline.radius), jumps, lengths })
+    }
+
+    /// The box around all that the body passes, grown by a reach \[m\]. No corner is farther from where it is at the nearer end of a segment
+    /// than half the length, times the lever.
+    pub(crate) fn area(&self, reach: f64) -> Area {
+        let mut area = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+        for segment in &self.segments {
+            let length = segment.stretch.placed.length;
+            let way = (0.5 * segment.lever * length.to_f64()).next_up().next_up();
+            let grown = ((way + reach).next_up() + self.raw.outline.radius).next_up();
+            for end in [Twofold::ZERO, length] {
+                for corner in segment.exact.posture(Ball { mid: end, err: 0.0 }).corners {
+                    for (axis, value) in [corner.x, corner.y].into_iter().enumerate() {
+                        let by = (value.err.next_up() + grown).next_up();
+                        let middle = value.mid.to_f64();
+                        // What is no number may be anywhere.
+                        let outward = |side: f64, end: f64| if side.is_nan() { end } else { side };
+                        area[axis] = area[axis].min(outward((middle.next_down() - by).next_down(), f64::NEG_INFINITY));
+                        area[axis + 2] = area[axis + 2].max(outward((middle.next_up() + by).next_up(), f64::INFINITY));
+                    }
+                }
+            }
+        }
+        area
     }
 
     /// A bound on the speed of each point of the body on any segment, for a speed of 1 along the path.

@@ -127,6 +127,18 @@ impl<'a> Segments<'a> {
         Verdict::Proved
     }
 
+    /// Whether one look at a box shows that all of it is farther apart than `least`.
+    pub(crate) fn is_farther_at_once(&self, ranges: [Range; 2], least: Number) -> bool {
+        look::<f64>(self.0.map(|body| &body.near), ranges, least).clear.is_certain()
+            || look::<Twofold>(self.0.map(|body| &body.exact), ranges, least).clear.is_certain()
+    }
+
+    /// Whether one look shows that a length of the first segment is within `most` of all of a cell of the second one.
+    pub(crate) fn is_within_at(&self, at: Twofold, cell: Range, most: Number) -> bool {
+        witnessed::<f64>(self.0.map(|body| &body.near), 1, cell, [at, at], at, most)
+            || witnessed::<Twofold>(self.0.map(|body| &body.exact), 1, cell, [at, at], at, most)
+    }
+
     /// Decides whether each length of the range of the body `of` is within `most` of some length of the range of the other one, as a
     /// distance of the polygons. Counts the steps.
     pub fn within(&self, of: usize, ranges: [Range; 2], most: Number, steps: &mut usize) -> Verdict {
@@ -165,7 +177,7 @@ impl<'a> Segments<'a> {
     }
 
     /// The length of the other body at which it is nearest, about. Nothing rests on it.
-    fn guess(&self, of: usize, at: Twofold, range: Range) -> Twofold {
+    pub(crate) fn guess(&self, of: usize, at: Twofold, range: Range) -> Twofold {
         const PARTS: usize = 24;
         let own = self.0[of].near.posture(number(at));
         let span = range[1] - range[0];

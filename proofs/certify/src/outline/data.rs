@@ -3,7 +3,7 @@
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
-use crate::data::{Angle, Travel};
+use crate::data::{Angle, Region, Travel};
 
 /// The largest number of corners of an outline.
 pub const CORNERS: usize = 16;
@@ -93,4 +93,47 @@ pub struct RawBody {
     pub step: f64,
     /// Motion; none where only the path counts.
     pub travel: Option<Travel>,
+}
+
+/// A part of a collision region of two bodies: a rectangle of lengths along both paths, on one segment of each.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct RawPiece {
+    /// Places of the segments in their paths.
+    pub segments: [usize; 2],
+    /// From and to, along the path of the first and of the second body \[m\].
+    pub lengths: [[f64; 2]; 2],
+    /// k and n: of the n intervals that are covered of the segment of the first body at once, in order, the k-th one, from 0.
+    pub rank: [u8; 2],
+    /// Place of its region among those of the pair.
+    pub region: usize,
+}
+
+/// Two bodies and the pieces of their regions.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct RawPair {
+    /// Places of the bodies, the first one first.
+    pub bodies: [usize; 2],
+    /// By how much the radius of the regions may be too large: ε \[m\].
+    pub excess: f64,
+    /// Regions.
+    pub regions: Vec<Region>,
+    /// Pieces of all regions, in no order.
+    pub pieces: Vec<RawPiece>,
+}
+
+/// A table of collision regions of bodies: every two with different numbers are a pair of it, or far apart.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+pub struct RawTable {
+    /// The bodies. Discs among them have a single corner, at their reference point.
+    pub bodies: Vec<RawBody>,
+    /// The pairs.
+    pub pairs: Vec<RawPair>,
+    /// ε of those that are left out because their paths are far apart \[m\]; none where nobody is left out.
+    pub apart: Option<f64>,
 }

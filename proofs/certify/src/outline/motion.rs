@@ -12,6 +12,7 @@ use crate::ball::{Ball, Real, Tri};
 use crate::data::Agent;
 use crate::motion::{Meeting, Meetings};
 use crate::mover::{Leg, Mover};
+use crate::near::Near;
 use crate::travel::Ramp;
 use crate::twofold::Twofold;
 
@@ -289,9 +290,13 @@ fn middle([lo, hi]: [f64; 2]) -> f64 {
 /// All pairs of bodies with different numbers, at all times: no contact, or where there is one.
 pub fn meetings(driven: &[Driven<'_>]) -> Meetings {
     let mut found = Meetings::default();
+    // Along its path a body may be anywhere: how far off that is does not count, but for an end that differs from that of its motion.
+    let near = Near::new(driven.iter().map(|one| one.body.area((one.mover.off * one.lever).next_up())).collect());
     for (place, own) in driven.iter().enumerate() {
-        for other in driven[place + 1..].iter().filter(|other| other.mover.id != own.mover.id) {
-            found.pairs += 1;
+        let others = &driven[place + 1..];
+        found.pairs += others.iter().filter(|other| other.mover.id != own.mover.id).count();
+        let close = near.after(place).into_iter().map(|other| &driven[other]);
+        for other in close.filter(|other| other.mover.id != own.mover.id) {
             let agents = [own.mover.id, other.mover.id];
             let meeting = |moment: Moment| Meeting { agents, time: moment.time, clearance: moment.clearance };
             let always = [f64::NEG_INFINITY, f64::INFINITY];

@@ -2,11 +2,14 @@
 
 use super::Body;
 use super::cover::{Segments, Verdict};
-use super::data::{RawBody, RawCourse, RawHeading, RawOutline, RawSegment};
+use super::data::{RawBody, RawCourse, RawHeading, RawOutline, RawPair, RawPiece, RawSegment, RawTable};
 use super::motion::{Driven, Encounter};
 use super::separation::{Change, above, below, nearest};
+use super::table::{Checker, Report};
 use crate::ball::Ball;
-use crate::data::{Angle, Phase, Travel};
+use crate::data::{Angle, Phase, Region, Travel};
+use crate::pair::Promise;
+use crate::table::Margin;
 use crate::twofold::Twofold;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -176,12 +179,11 @@ fn corners_are_where_plain_numbers_have_them() {
         let length = dice.between(0.0, raw.segments[0].length);
         let expected = corners(&raw, length);
         let (near, exact) = (placed.near.posture(number(length)), placed.exact.posture(Ball::from(length)));
-        for k in 0..expected.len() {
+        for (k, plain) in expected.iter().enumerate() {
             let off = |a: f64, b: f64| (a - b).abs();
-            for (ball, fine, plain) in [
-                (near.corners[k].x, exact.corners[k].x, expected[k][0]),
-                (near.corners[k].y, exact.corners[k].y, expected[k][1]),
-            ] {
+            for (ball, fine, plain) in
+                [(near.corners[k].x, exact.corners[k].x, plain[0]), (near.corners[k].y, exact.corners[k].y, plain[1])]
+            {
                 assert!(off(ball.mid, plain) < 1e-12, "{raw:?} {length}: {ball:?} {plain}");
                 assert!((fine - Ball::from(ball.mid)).to_f64().abs() <= ball.err + fine.err, "{ball:?} {fine:?}");
                 assert!(ball.err < 1e-11 && fine.err < 1e-25, "{ball:?} {fine:?}");
@@ -372,16 +374,16 @@ fn turning_beside_a_wall() -> [RawBody; 2] {
 
 /// Rectangles with all contacts of these two, in closed form: four while only corners can touch, two from when a narrow side can, one from
 /// when a long side can.
-fn rectangles_beside_a_wall(by: f64) -> Vec<[[f64; 2]; 2]> {
+fn rectangles_beside_a_wall(radius: f64, by: f64) -> Vec<[[f64; 2]; 2]> {
     let reach = 0.6_f64.hypot(0.4);
     let first = 0.4_f64.atan2(0.6);
     let tops = [FRAC_PI_2 - first, FRAC_PI_2 + first, 3.0 * FRAC_PI_2 - first, 3.0 * FRAC_PI_2 + first];
-    let births = 1.35 - reach;
+    let [births, narrow, long] = [reach, 0.6, 0.4].map(|height| 1.4 - radius - height);
     let wide = (0.6 / reach).acos();
-    let mut all: Vec<_> = tops.iter().map(|top| [[top - wide - by, top + wide + by], [births - by, 0.75]]).collect();
-    all.push([[0.0, PI + by], [0.75, 0.95]]);
-    all.push([[PI - by, TAU], [0.75, 0.95]]);
-    all.push([[0.0, TAU], [0.95, 1.2]]);
+    let mut all: Vec<_> = tops.iter().map(|top| [[top - wide - by, top + wide + by], [births - by, narrow]]).collect();
+    all.push([[0.0, PI + by], [narrow, long]]);
+    all.push([[PI - by, TAU], [narrow, long]]);
+    all.push([[0.0, TAU], [long, 1.2]]);
     all
 }
 
@@ -430,7 +432,7 @@ fn contacts_beside_a_wall_are_covered_and_altered_rectangles_refuted() {
     let segments = Segments([&bodies[0].segments[0], &bodies[1].segments[0]]);
     let radius = Ball::from(0.05);
     for by in [1e-3, 1e-6, 1e-9, 1e-12] {
-        let all = placed(&rectangles_beside_a_wall(by));
+        let all = placed(&rectangles_beside_a_wall(0.05, by));
         let mut steps = 0;
         let found = segments.covered(&all, radius, &mut steps);
         assert!(found.is_empty(), "{by}: {found:?}");
@@ -444,7 +446,7 @@ fn contacts_beside_a_wall_are_covered_and_altered_rectangles_refuted() {
         }
     }
     // Each of them a millimetre too small, on each side where it does not end with the segment or with another one.
-    let exact = rectangles_beside_a_wall(1e-9);
+    let exact = rectangles_beside_a_wall(0.05, 1e-9);
     for place in 0..exact.len() {
         for (k, end, by) in [(0, 0, 1e-3), (0, 1, -1e-3), (1, 0, 1e-3), (1, 1, -1e-3)] {
             let mut altered = exact.clone();
@@ -708,4 +710,161 @@ fn a_distance_that_is_the_same_along_a_curve_is_decided_to_a_tenth_of_a_micromet
     }
     let (beyond, _) = claim([&inner, &outer], [[0.0, 1.5], [0.0, 3.0]], exact - 1e-12);
     assert!(matches!(beyond, Verdict::Undecided(_)), "{beyond:?}");
+}
+
+/// A table of the rectangle and the wall, with half of the excess as slack.
+fn table_beside_a_wall(excess: f64) -> RawTable {
+    let ranks = [[0, 4], [1, 4], [2, 4], [3, 4], [0, 2], [1, 2], [0, 1]];
+    let pieces: Vec<_> = rectangles_beside_a_wall(0.05 + 0.5 * excess, 0.0)
+        .into_iter()
+        .zip(ranks)
+        .map(|(lengths, rank)| RawPiece { segments: [0, 0], lengths, rank, region: 0 })
+        .collect();
+    let mut table = RawTable {
+        bodies: turning_beside_a_wall().to_vec(),
+        pairs: vec![RawPair { bodies: [0, 1], excess, regions: Vec::new(), pieces }],
+        apart: None,
+    };
+    with_hull(&mut table);
+    table
+}
+
+/// The region of all pieces, with the times at which the bodies are at its ends, if they move at 1 m/s from the start.
+fn with_hull(table: &mut RawTable) {
+    let moves = table.bodies.iter().all(|body| body.travel.is_some());
+    let pieces = &table.pairs[0].pieces;
+    let lengths = [0, 1].map(|k| {
+        let lo = pieces.iter().map(|piece| piece.lengths[k][0]).fold(f64::INFINITY, f64::min);
+        let hi = pieces.iter().map(|piece| piece.lengths[k][1]).fold(f64::NEG_INFINITY, f64::max);
+        [lo, hi]
+    });
+    table.pairs[0].regions = vec![Region { lengths, times: moves.then_some(lengths) }];
+}
+
+fn steady(body: &mut RawBody) {
+    let length = body.segments[0].length;
+    let phases = vec![Phase { time: [0.0, length], length: [0.0, length], speed: [1.0; 2] }];
+    body.travel = Some(Travel { start: 0.0, phases, lag: 0.0, time_excess: 1e-9 });
+}
+
+fn checked(table: &RawTable) -> Report {
+    Checker::new(table).unwrap().check(Margin::Needed).unwrap()
+}
+
+#[test]
+fn a_table_is_proved_and_altered_ones_are_refuted() {
+    for excess in [1e-3, 1e-5, 1e-8, 1e-11] {
+        let mut table = table_beside_a_wall(excess);
+        for moves in [false, true] {
+            if moves {
+                table.bodies.iter_mut().for_each(steady);
+                with_hull(&mut table);
+            }
+            let report = checked(&table);
+            assert!(report.findings.refuted.is_empty(), "{excess}: {report:?}");
+            assert!(report.findings.undecided.is_empty(), "{excess}: {report:?}");
+            // A tenth of the excess, about, at each of the three events.
+            assert!(report.unranked < 8.0 * excess, "{excess}: {}", report.unranked);
+            assert_eq!(report.findings.times, usize::from(moves));
+        }
+        let margin = Checker::new(&table).unwrap().margin().unwrap().unwrap();
+        assert!(margin > 0.49 && margin < 0.51, "{margin}");
+    }
+    let table = table_beside_a_wall(1e-5);
+    let refuted = |name: &str, promise: Promise, change: &dyn Fn(&mut RawTable)| {
+        let mut altered = table.clone();
+        change(&mut altered);
+        with_hull(&mut altered);
+        let report = checked(&altered);
+        assert!(report.findings.refuted.iter().any(|witness| witness.promise == promise), "{name}: {report:?}");
+    };
+    for k in 0..7 {
+        refuted("a piece is missing", Promise::Covered, &|table| {
+            table.pairs[0].pieces.remove(k);
+        });
+        refuted("it begins too late", Promise::Covered, &|table| table.pairs[0].pieces[k].lengths[0][0] += 1e-3);
+        refuted("it ends too early", Promise::Covered, &|table| table.pairs[0].pieces[k].lengths[1][1] -= 1e-3);
+    }
+    refuted("it begins too early", Promise::Near, &|table| table.pairs[0].pieces[0].lengths[0][0] -= 1e-3);
+    refuted("a corner is elsewhere", Promise::Covered, &|table| table.bodies[0].outline.corners[1][0] += 1e-3);
+    refuted("the radius is larger", Promise::Covered, &|table| table.bodies[1].outline.radius += 1e-3);
+    refuted("the radius is less", Promise::Near, &|table| table.bodies[1].outline.radius -= 1e-3);
+    refuted("ranks are exchanged", Promise::Shared, &|table| {
+        for (k, rank) in [[1, 4], [0, 4]].into_iter().enumerate() {
+            table.pairs[0].pieces[k].rank = rank;
+        }
+    });
+    refuted("another one of two", Promise::Shared, &|table| table.pairs[0].pieces[4].rank = [1, 2]);
+    // Of more intervals than there are nothing is proved.
+    let mut altered = table.clone();
+    altered.pairs[0].pieces[4].rank = [0, 3];
+    let report = checked(&altered);
+    assert!(report.findings.undecided.iter().any(|witness| witness.promise == Promise::Shared), "{report:?}");
+    let mut moving = table.clone();
+    moving.bodies.iter_mut().for_each(steady);
+    with_hull(&mut moving);
+    for (k, end, by, promise) in [(1, 0, 1e-3, Promise::Timed), (1, 0, -1e-3, Promise::Prompt)] {
+        let mut altered = moving.clone();
+        altered.pairs[0].regions[0].times.as_mut().unwrap()[k][end] += by;
+        let report = checked(&altered);
+        assert!(report.findings.refuted.iter().any(|witness| witness.promise == promise), "{promise:?}: {report:?}");
+    }
+}
+
+#[test]
+fn what_is_no_table_no_outline_and_no_path_is_refused_by_name() {
+    let table = table_beside_a_wall(1e-5);
+    let refused = |why: &str, change: &dyn Fn(&mut RawTable)| {
+        let mut altered = table.clone();
+        change(&mut altered);
+        let found = Checker::new(&altered).and_then(|checker| checker.check(Margin::Needed)).unwrap_err();
+        assert!(found.contains(why), "{found}");
+    };
+    refused("is missing", &|table| table.pairs.clear());
+    refused("is none, or there twice", &|table| table.pairs.push(table.pairs[0].clone()));
+    refused("stands for the interval 4 of 4", &|table| table.pairs[0].pieces[3].rank = [4, 4]);
+    refused("not on its segment", &|table| table.pairs[0].pieces[3].lengths[1][1] = 1.3);
+    refused("its lengths are not those of its pieces", &|table| table.pairs[0].regions[0].lengths[0][1] = 3.0);
+    refused("no convex polygon", &|table| table.bodies[0].outline.corners.reverse());
+    refused("no convex polygon", &|table| table.bodies[0].outline.corners.swap(1, 2));
+    refused("no convex polygon", &|table| table.bodies[0].outline.corners[2] = [0.0, 0.0]);
+    // Twice around.
+    refused("no convex polygon", &|table| {
+        let corner = |k: usize| [(TAU * 0.4 * k as f64).cos(), (TAU * 0.4 * k as f64).sin()];
+        table.bodies[0].outline.corners = (0..5).map(corner).collect();
+    });
+    refused("are the same", &|table| table.bodies[0].outline.corners[1] = table.bodies[0].outline.corners[0]);
+    refused("of 0 corners", &|table| table.bodies[0].outline.corners.clear());
+    refused("of 17 corners", &|table| table.bodies[0].outline.corners = vec![[0.0; 2]; 17]);
+    refused("out of range", &|table| table.bodies[0].outline.corners[0][1] = f64::NAN);
+    refused("radius -1", &|table| table.bodies[0].outline.radius = -1.0);
+    refused("more than one turn", &|table| table.bodies[0].segments[0].course = RawCourse::Pivot { lever: 0.5 });
+    refused("out of range", &|table| table.bodies[0].segments[0].course = RawCourse::Arc { radius: 0.0 });
+    refused("with a constant heading", &|table| {
+        table.bodies[0].segments[0].heading = RawHeading::Steady(Angle::Turns(0.0));
+    });
+    // A heading that jumps where two segments meet, and one that goes on in reverse gear.
+    let next = |facing: f64, turn: f64| {
+        let mut altered = table.clone();
+        let mut second = single(RawCourse::Line, 1.0, RawHeading::Along(Angle::Turns(facing)));
+        second.turns = vec![Angle::Turns(turn)];
+        (second.from, second.to) = (1.2, 2.2);
+        altered.bodies[1].segments[0].heading = ahead();
+        altered.bodies[1].segments.push(second);
+        Checker::new(&altered).map(|_| ())
+    };
+    assert_eq!(next(0.0, 0.0), Ok(()));
+    assert_eq!(next(0.5, 0.5), Ok(()));
+    assert!(next(0.0, 0.5).unwrap_err().contains("its heading is off by"));
+    assert!(next(1e-6, 0.0).unwrap_err().contains("its heading is off by"));
+}
+
+#[test]
+fn who_is_left_out_has_to_be_far() {
+    let mut table = table_beside_a_wall(1e-5);
+    table.pairs.clear();
+    table.apart = Some(1e-5);
+    assert!(Checker::new(&table).unwrap_err().contains("is missing"));
+    table.bodies[1].start[1] += 20.0;
+    assert!(Checker::new(&table).is_ok());
 }

@@ -1,0 +1,277 @@
+//! A whole table of bodies: every pair of them, every pair of their segments, and what is told of each region.
+//!
+//! The promises are those of discs (`docs/certificates.md`): C-rect, C-share (the k-th of n intervals), C4 and E_t, with the distance of the
+//! outlines in place of that of the discs. The lag of a motion is what a corner may be off.
+
+use super::body::Body;
+use super::cover::{Segments, Verdict};
+use super::data::{RawPair, RawTable};
+use super::ranks::{self, Bounds};
+use super::separation::above;
+use crate::ball::Ball;
+use crate::cell::Outcome;
+use crate::data::{Agent, Pair, Piece, Share};
+use crate::near::{Area, Near};
+use crate::pair::{Findings, Placed, Promise, Witness, pieces_of};
+use crate::path::{LEAST, Stretch};
+use crate::regions::{self, Distances};
+use crate::table::Margin;
+use crate::travel;
+use crate::twofold::Twofold;
+use std::collections::HashSet;
+
+/// What has come of a check of a table of bodies.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    /// What is refuted, what is undecided, and what was looked at.
+    pub findings: Findings,
+    /// How much of the second segments of all pairs is so near to an event that of no more than the number of intervals nothing is
+    /// proved ([`super::ranks`]) \[m\].
+    pub unranked: f64,
+}
+
+/// A table whose numbers have been looked through.
+#[derive(Clone, Debug)]
+pub struct Checker<'a> {
+    bodies: Vec<Body<'a>>,
+    /// The segments of each as lengths, and its motion.
+    lines: Vec<(Vec<Stretch>, Agent)>,
+    pairs: &'a [RawPair],
+}
+
+impl<'a> Checker<'a> {
+    /// Puts the bodies on their paths into the plane.
+    ///
+    /// # Errors
+    /// What is wrong with the table: numbers out of range, a path or an outline that is none, a pair that is missing or there twice.
+    pub fn new(table: &'a RawTable) -> Result<Self, String> {
+        let (mut bodies, mut lines) = (Vec::new(), Vec::new());
+        for (place, raw) in table.bodies.iter().enumerate() {
+            let wrong = |problem: String| format!("body {} (place {place}): {problem}", raw.id);
+            let body = Body::new(raw).map_err(wrong)?;
+            let agent = Agent {
+                id: raw.id,
+                radius: raw.outline.radius,
+                path: body.lengths.clone(),
+                travel: raw.travel.clone(),
+            };
+            travel::checked(&agent).and_then(|()| travel::arrives(&agent)).map_err(wrong)?;
+            lines.push((body.segments.iter().map(|segment| segment.stretch.clone()).collect(), agent));
+            bodies.push(body);
+        }
+        let checker = Self { bodies, lines, pairs: &table.pairs };
+        checker.all_pairs_are_there(table.apart)?;
+        Ok(checker)
+    }
+
+    fn all_pairs_are_there(&self, apart: Option<f64>) -> Result<(), String> {
+        let count = self.bodies.len();
+        let id = |place: usize| self.bodies[place].raw.id;
+        let mut there = HashSet::with_capacity(self.pairs.len());
+        for pair in self.pairs {
+            let [a, b] = pair.bodies;
+            if a == b || a >= count || b >= count || id(a) == id(b) || !there.insert([a.min(b), a.max(b)]) {
+                return Err(format!("the pair of places {a} and {b} is none, or there twice"));
+            }
+            if !(LEAST..1e15).contains(&pair.excess) {
+                return Err(format!("the excess of places {a} and {b} is out of range"));
+            }
+        }
+        let is_missing = |a: usize, b: usize| id(a) != id(b) && !there.contains(&[a, b]);
+        let missing = match apart {
+            Some(excess) if (LEAST..1e15).contains(&excess) => {
+                let near = Near::new((0..count).map(|place| self.area(place, excess)).collect());
+                (0..count).find_map(|a| near.after(a).into_iter().find(|&b| is_missing(a, b)).map(|b| (a, b)))
+            }
+            Some(_) => return Err("the excess of those that are left out is out of range".into()),
+            None => (0..count).find_map(|a| (a + 1..count).find(|&b| is_missing(a, b)).map(|b| (a, b))),
+        };
+        missing.map_or(Ok(()), |(a, b)| Err(format!("the pair of places {a} and {b} is missing")))
+    }
+
+    /// The box of all that a body passes, with what its lengths are off and ε.
+    fn area(&self, place: usize, excess: f64) -> Area {
+        self.bodies[place].area((self.off(place) + excess).next_up())
+    }
+
+    /// What a corner may be off by the rounding of lengths and times \[m\].
+    fn off(&self, place: usize) -> f64 {
+        let body = &self.bodies[place];
+        let lag = body.raw.travel.as_ref().map_or(0.0, |travel| travel.lag);
+        (body.raw.rounding * body.lever() + lag).next_up()
+    }
+
+    /// Checks every pair.
+    ///
+    /// # Errors
+    /// A piece or a region that is none.
+    pub fn check(&self, margin: Margin) -> Result<Report, String> {
+        let mut report = Report::default();
+        for pair in self.pairs {
+            self.pair(pair, margin, true, &mut report)?;
+        }
+        Ok(report)
+    }
+
+    /// The largest margin, in ε, at which contacts are covered in all pairs with regions, up to 1 and found to 2^-12; none without any. An
+    /// exact table with a slack of ε/2 would have 1/2.
+    ///
+    /// # Errors
+    /// A piece that is none.
+    pub fn margin(&self) -> Result<Option<f64>, String> {
+        const STEPS: u32 = 12;
+        let holds = |pair: &RawPair, part: f64| -> Result<bool, String> {
+            let mut report = Report::default();
+            self.pair(pair, Margin::Epsilons(part), false, &mut report)?;
+            Ok(report.findings.refuted.is_empty() && report.findings.undecided.is_empty())
+        };
+        let mut least: Option<f64> = None;
+        for pair in self.pairs.iter().filter(|pair| !pair.pieces.is_empty()) {
+            let (mut lo, mut hi) = (-1.0, least.unwrap_or(1.0));
+            if !holds(pair, lo)? {
+                return Ok(Some(f64::NEG_INFINITY));
+            }
+            if holds(pair, hi)? {
+                lo = hi;
+            }
+            for _ in 0..STEPS {
+                let middle = 0.5 * (lo + hi);
+                if holds(pair, middle)? { lo = middle } else { hi = middle }
+            }
+            least = Some(lo);
+        }
+        Ok(least)
+    }
+
+    fn pair(&self, pair: &RawPair, margin: Margin, tells: bool, report: &mut Report) -> Result<(), String> {
+        let [a, b] = pair.bodies;
+        let named = |problem: String| format!("the pair of places {a} and {b}: {problem}");
+        let bodies = [&self.bodies[a], &self.bodies[b]];
+        let lines = [&self.lines[a], &self.lines[b]];
+        let stretches: [&[Stretch]; 2] = lines.map(|(stretches, _)| &stretches[..]);
+        let more = match margin {
+            Margin::Needed => self.off(a).max(self.off(b)).max(0.25 * pair.excess),
+            Margin::Epsilons(part) => part * pair.excess,
+        };
+        let radius = bodies[0].radius + bodies[1].radius;
+        let bounds = Bounds { radius, covered: radius + Ball::from(more), told: radius + Ball::from(pair.excess) };
+        let like = |piece: &super::data::RawPiece| Piece {
+            segments: piece.segments,
+            lengths: piece.lengths,
+            share: Share::Only,
+            region: piece.region,
+        };
+        let mut pieces: Vec<(Placed, [u8; 2])> = Vec::with_capacity(pair.pieces.len());
+        for piece in &pair.pieces {
+            let [k, of] = piece.rank;
+            if k >= of {
+                return Err(named(format!("a piece that stands for the interval {k} of {of}")));
+            }
+            pieces
+                .extend(pieces_of(&[like(piece)], stretches).map_err(named)?.into_iter().map(|one| (one, piece.rank)));
+        }
+        let pair_of_discs = Pair {
+            agents: pair.bodies,
+            excess: pair.excess,
+            regions: pair.regions.clone(),
+            pieces: pair.pieces.iter().map(like).collect(),
+        };
+        let outlines = Outlines { bodies, pair: &pair_of_discs, radius };
+        for (i, own) in bodies[0].segments.iter().enumerate() {
+            for (j, other) in bodies[1].segments.iter().enumerate() {
+                let segments = Segments([own, other]);
+                let those = pieces.iter().filter(|(piece, _)| piece.segments == [i, j]);
+                let those: Vec<_> = those.map(|(piece, rank)| (piece.lengths, *rank)).collect();
+                let rectangles: Vec<_> = those.iter().map(|(lengths, _)| *lengths).collect();
+                report.findings.segments += 1;
+                report.findings.pieces += rectangles.len();
+                let steps = &mut report.findings.steps;
+                let uncovered = segments.covered(&rectangles, bounds.covered, steps);
+                let ranks = ranks::check(&segments, &those, bounds, steps);
+                report.unranked += ranks.unranked;
+                let mut far = Vec::new();
+                for rectangle in rectangles.iter().filter(|_| tells) {
+                    far.extend([0, 1].map(|of| segments.within(of, *rectangle, bounds.told, steps)));
+                }
+                for (promise, verdicts) in
+                    [(Promise::Covered, uncovered), (Promise::Shared, ranks.found), (Promise::Near, far)]
+                {
+                    for verdict in verdicts {
+                        outlines.keep(verdict, promise, [i, j], &mut report.findings);
+                    }
+                }
+            }
+        }
+        if tells {
+            let agents = lines.map(|(_, agent)| agent);
+            let placed: Vec<Placed> = pieces.iter().map(|(piece, _)| *piece).collect();
+            regions::check(agents, stretches, &pair_of_discs, &placed, &outlines, &mut report.findings)
+                .map_err(named)?;
+        }
+        Ok(())
+    }
+}
+
+/// Distances of two bodies.
+struct Outlines<'a> {
+    bodies: [&'a Body<'a>; 2],
+    pair: &'a Pair,
+    radius: Ball<Twofold>,
+}
+
+impl Outlines<'_> {
+    fn segments(&self, places: [usize; 2]) -> Segments<'_> {
+        Segments([0, 1].map(|k| &self.bodies[k].segments[places[k]]))
+    }
+
+    fn keep(&self, verdict: Verdict, promise: Promise, places: [usize; 2], findings: &mut Findings) {
+        let (refuted, at) = match verdict {
+            Verdict::Proved => return,
+            Verdict::Refuted(at) => (true, at),
+            Verdict::Undecided(at) => (false, at),
+        };
+        let Segments(segments) = self.segments(places);
+        let postures = [0, 1].map(|k| segments[k].exact.posture(Ball { mid: at[k], err: 0.0 }));
+        let witness = Witness {
+            promise,
+            agents: self.pair.agents,
+            lengths: [0, 1].map(|k| segments[k].stretch.on_path(at[k])),
+            clearance: (above([&postures[0], &postures[1]]) - self.radius).told(),
+            excess: self.pair.excess,
+        };
+        if refuted { findings.refuted.push(witness) } else { findings.undecided.push(witness) }
+    }
+}
+
+impl Distances for Outlines<'_> {
+    fn are_clear(
+        &self,
+        places: [usize; 2],
+        k: usize,
+        own: [Twofold; 2],
+        other: [Twofold; 2],
+        steps: &mut usize,
+    ) -> Outcome {
+        let ranges = if k == 0 { [own, other] } else { [other, own] };
+        match self.segments(places).farther(ranges, self.radius, steps) {
+            Verdict::Proved => Outcome::Proved,
+            Verdict::Refuted(at) => Outcome::Refuted(at[k]),
+            Verdict::Undecided(at) => Outcome::Undecided(at[k]),
+        }
+    }
+
+    fn note(&self, outcome: Outcome, promise: Promise, piece: &Placed, k: usize, findings: &mut Findings) {
+        let pair = |at: Twofold| {
+            let mut lengths = piece.lengths.map(|range| range[0]);
+            lengths[k] = at;
+            lengths[1 - k] = self.segments(piece.segments).guess(k, at, piece.lengths[1 - k]);
+            lengths
+        };
+        let verdict = match outcome {
+            Outcome::Proved => return,
+            Outcome::Refuted(at) => Verdict::Refuted(pair(at)),
+            Outcome::Undecided(at) => Verdict::Undecided(pair(at)),
+        };
+        self.keep(verdict, promise, piece.segments, findings);
+    }
+}
