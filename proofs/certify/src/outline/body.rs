@@ -170,6 +170,26 @@ impl<R: Real> Carried<R> {
     }
 }
 
+impl Carried<f64> {
+    /// The corners at a length along the segment, about \[m\]: for searches, on which nothing rests.
+    pub(crate) fn sketch(&self, length: f64) -> Vec<[f64; 2]> {
+        let corners = self.corners.iter().map(|corner| [corner.x.mid, corner.y.mid]);
+        let moved = |[x, y]: [f64; 2]| corners.clone().map(|[a, b]| [a + x, b + y]).collect();
+        match self.sweep {
+            Sweep::Line { along } => moved([along.x.mid * length, along.y.mid * length]),
+            Sweep::Turn { centre, rate } => {
+                let (sin, cos) = (rate.mid * length).sin_cos();
+                corners.map(|[a, b]| [centre.x.mid + a * cos - b * sin, centre.y.mid + a * sin + b * cos]).collect()
+            }
+            Sweep::Circle { arm, rate } => {
+                let (sin, cos) = (rate.mid * length).sin_cos();
+                let (x, y) = (arm.x.mid, arm.y.mid);
+                moved([x * cos - y * sin - x, x * sin + y * cos - y])
+            }
+        }
+    }
+}
+
 /// A body at a length along its segment.
 #[derive(Clone, Debug)]
 pub struct Posture<R> {

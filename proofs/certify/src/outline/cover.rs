@@ -8,7 +8,7 @@
 //! along a whole curve in the plane of lengths that is parallel to neither axis.
 
 use super::body::{Carried, Placed};
-use super::separation::{Change, above, below, nearest};
+use super::separation::{Change, above, below, meet, nearest, sketched};
 use crate::ball::{Ball, Real, Tri};
 use crate::pair::gaps;
 use crate::twofold::Twofold;
@@ -179,11 +179,11 @@ impl<'a> Segments<'a> {
     /// The length of the other body at which it is nearest, about. Nothing rests on it.
     pub(crate) fn guess(&self, of: usize, at: Twofold, range: Range) -> Twofold {
         const PARTS: usize = 24;
-        let own = self.0[of].near.posture(number(at));
+        let own = self.0[of].near.sketch(at.to_f64());
         let span = range[1] - range[0];
         let distance = |part: f64| {
-            let other = self.0[1 - of].near.posture(number(range[0] + span * part));
-            if super::separation::meet([&own, &other]).is_certain() { 0.0 } else { nearest([&own, &other]).distance }
+            let other = self.0[1 - of].near.sketch((range[0] + span * part).to_f64());
+            sketched([&own, &other])
         };
         let sampled = (0..=PARTS).map(|k| {
             let part = k as f64 / PARTS as f64;
@@ -249,7 +249,7 @@ fn witnessed<R: Real>(
         let pair = nearest(postures);
         let bound = pair.above(bodies, postures, speeds, half);
         // Polygons that have a point in common in the middle have none that is farther from the other one than the bodies go.
-        let overlap = if super::separation::meet(postures).is_certain() {
+        let overlap = if meet(postures).is_certain() {
             (bodies[of].lever + bodies[other].lever * Ball::from(speed.abs())) * half
         } else {
             bound

@@ -12,15 +12,15 @@
 //! point of the bodies goes farther than ε, are not proved, and their length is told. A small cell without such an extreme is undecided.
 
 use super::cover::{Range, Segments, Verdict};
-use super::separation::{meet, nearest};
+use super::separation::sketched;
 use crate::ball::Ball;
 use crate::pair::gaps;
 use crate::twofold::Twofold;
 
 type Number = Ball<Twofold>;
 
-/// Samples of a slice.
-const SAMPLES: usize = 96;
+/// Samples of a slice, and between any two ends of pieces.
+const SAMPLES: usize = 32;
 /// Cells of one pair of segments at most.
 const MOST: usize = 20_000;
 
@@ -71,7 +71,7 @@ pub fn check(segments: &Segments<'_>, pieces: &[([Range; 2], [u8; 2])], bounds: 
             continue;
         }
         let middle = (cell[0] + cell[1]).half();
-        let extremes = extremes(segments, middle);
+        let extremes = extremes(segments, &held, middle);
         if let Some(walls) = walls(segments, &extremes, cell, bounds, steps)
             && held.iter().all(|(_, [_, of])| usize::from(*of) <= walls.len() + 1)
         {
@@ -88,7 +88,9 @@ pub fn check(segments: &Segments<'_>, pieces: &[([Range; 2], [u8; 2])], bounds: 
         if extremes.iter().any(event) {
             ranks.unranked += width;
         } else {
+            // Others beside it would be as well.
             ranks.found.push(Verdict::Undecided([held[0].0[0][0], middle]));
+            break;
         }
     }
     ranks
@@ -168,38 +170,46 @@ fn walls(
     any.then_some(walls)
 }
 
-/// The extremes of the distance along the first segment at a length of the second one, about, in order.
-fn extremes(segments: &Segments<'_>, at: Twofold) -> Vec<Extreme> {
+/// The extremes of the distance along the first segment at a length of the second one, about, in order. Where pieces end and between
+/// them, gaps and intervals may be thin, and samples are closer.
+fn extremes(segments: &Segments<'_>, held: &[&([Range; 2], [u8; 2])], at: Twofold) -> Vec<Extreme> {
     let [own, other] = segments.0.map(|body| &body.near);
     let length = segments.0[0].stretch.placed.length.to_f64();
-    let there = other.posture(Ball::of(Ball { mid: at, err: 0.0 }));
-    let distance = |at: f64| {
-        let own = own.posture(Ball::from(at));
-        if meet([&own, &there]).is_certain() { 0.0 } else { nearest([&own, &there]).distance }
-    };
-    let place = |k: usize| length * (k as f64 / SAMPLES as f64);
-    let samples: Vec<f64> = (0..=SAMPLES).map(|k| distance(place(k))).collect();
+    let there = other.sketch(at.to_f64());
+    let distance = |at: f64| sketched([&own.sketch(at), &there]);
+    let mut ends: Vec<f64> = held.iter().flat_map(|(ranges, _)| ranges[0].map(Twofold::to_f64)).collect();
+    ends.extend([0.0, length]);
+    ends.sort_by(f64::total_cmp);
+    ends.dedup();
+    let part = |k: usize| k as f64 / SAMPLES as f64;
+    let between = ends.windows(2).flat_map(|ends| (0..SAMPLES).map(|k| ends[0] + (ends[1] - ends[0]) * part(k)));
+    let mut places: Vec<f64> = between.chain((0..=SAMPLES).map(|k| length * part(k))).collect();
+    places.sort_by(f64::total_cmp);
+    places.dedup();
+    let samples: Vec<f64> = places.iter().map(|&at| distance(at)).collect();
+    let end = places.len() - 1;
     let mut all = Vec::new();
     let mut k = 0;
-    while k <= SAMPLES {
+    while k <= end {
         // A level stretch counts once, by its middle.
         let mut last = k;
-        while last < SAMPLES && samples[last + 1] == samples[k] {
+        while last < end && samples[last + 1] == samples[k] {
             last += 1;
         }
         let before = (k > 0).then(|| samples[k - 1]);
-        let behind = (last < SAMPLES).then(|| samples[last + 1]);
+        let behind = (last < end).then(|| samples[last + 1]);
         for is_least in [true, false] {
             let sign = if is_least { 1.0 } else { -1.0 };
             let beyond = |other: Option<f64>| other.is_none_or(|other| sign * other > sign * samples[k]);
             if !(beyond(before) && beyond(behind)) {
                 continue;
             }
-            let (mut best, mut least) = (0.5 * (place(k) + place(last)), sign * samples[k]);
+            let (mut best, mut least) = (0.5 * (places[k] + places[last]), sign * samples[k]);
             if k == last {
-                let mut step = 0.5 * length / SAMPLES as f64;
+                let (from, to) = (places[k.saturating_sub(1)], places[(k + 1).min(end)]);
+                let mut step = 0.5 * (to - from);
                 while step > 1e-13 * length && step > 0.0 {
-                    let tried = [best - step, best + step].map(|at| at.clamp(0.0, length));
+                    let tried = [best - step, best + step].map(|at| at.clamp(from, to));
                     match tried.map(|at| (sign * distance(at), at)).into_iter().find(|(other, _)| *other < least) {
                         Some(better) => (least, best) = better,
                         None => step *= 0.5,

@@ -158,7 +158,9 @@ pub fn below<R: Real>(bodies: [&Carried<R>; 2], postures: [&Posture<R>; 2], chan
     for direction in directions.into_iter().take(CLOSELY) {
         let other = along(bodies, postures, change, direction);
         found = Some(found.map_or(other, |best| {
-            let better = if surely(other.anywhere) > surely(best.anywhere) { other } else { best };
+            // The direction in which they are farthest apart in the middle: cutting what it loses makes it show the claim, while another one
+            // may lose nothing and be of no use.
+            let better = if surely(other.middle) > surely(best.middle) { other } else { best };
             let (middle, anywhere) = (greater(best.middle, other.middle), greater(best.anywhere, other.anywhere));
             Below { middle, anywhere, ..better }
         }));
@@ -296,9 +298,13 @@ pub struct Nearest {
 /// The nearest points of two polygons that do not meet, about.
 pub fn nearest<R: Real>(postures: [&Posture<R>; 2]) -> Nearest {
     let points = postures.map(|posture| posture.corners.iter().map(rough).collect::<Vec<_>>());
+    nearest_of([&points[0], &points[1]])
+}
+
+fn nearest_of(points: [&[[f64; 2]]; 2]) -> Nearest {
     let mut best = Nearest { frame: 0, corner: 0, edge: 0, part: 0.0, distance: f64::INFINITY };
     for frame in [0, 1] {
-        let (edges, corners) = (&points[frame], &points[1 - frame]);
+        let (edges, corners) = (points[frame], points[1 - frame]);
         for (edge, &[ax, ay]) in edges.iter().enumerate() {
             let [bx, by] = edges[(edge + 1) % edges.len()];
             let [ex, ey] = [bx - ax, by - ay];
@@ -306,7 +312,8 @@ pub fn nearest<R: Real>(postures: [&Posture<R>; 2]) -> Nearest {
             for (corner, &[x, y]) in corners.iter().enumerate() {
                 let foot = if square > 0.0 { ((x - ax) * ex + (y - ay) * ey) / square } else { 0.0 };
                 let part = foot.clamp(0.0, 1.0);
-                let distance = (x - ax - part * ex).hypot(y - ay - part * ey);
+                let [x, y] = [x - ax - part * ex, y - ay - part * ey];
+                let distance = (x * x + y * y).sqrt();
                 if distance < best.distance {
                     best = Nearest { frame, corner, edge, part, distance };
                 }
@@ -314,6 +321,24 @@ pub fn nearest<R: Real>(postures: [&Posture<R>; 2]) -> Nearest {
         }
     }
     best
+}
+
+/// The distance of two polygons, about \[m\]; 0 if they have a point in common. For searches, on which nothing rests.
+pub(crate) fn sketched(points: [&[[f64; 2]]; 2]) -> f64 {
+    let separated = |[own, other]: [&[[f64; 2]]; 2]| {
+        own.len() > 1
+            && (0..own.len()).any(|k| {
+                let ([ax, ay], [bx, by]) = (own[k], own[(k + 1) % own.len()]);
+                let right = |&[x, y]: &[f64; 2]| (bx - ax) * (y - ay) - (by - ay) * (x - ax) < 0.0;
+                other.iter().all(right)
+            })
+    };
+    let [a, b] = points;
+    // Two polygons that do not meet are apart along an edge of one of them; with less than three corners that is no test.
+    if a.len() > 2 && b.len() > 2 && !separated([a, b]) && !separated([b, a]) {
+        return 0.0;
+    }
+    nearest_of(points).distance
 }
 
 impl Nearest {
