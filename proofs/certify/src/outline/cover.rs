@@ -179,23 +179,33 @@ impl<'a> Segments<'a> {
     /// The length of the other body at which it is nearest, about. Nothing rests on it.
     pub(crate) fn guess(&self, of: usize, at: Twofold, range: Range) -> Twofold {
         const PARTS: usize = 24;
+        /// How many of its least values are refined.
+        const NEAREST: usize = 4;
         let own = self.0[of].near.sketch(at.to_f64());
         let span = range[1] - range[0];
         let distance = |part: f64| {
             let other = self.0[1 - of].near.sketch((range[0] + span * part).to_f64());
             sketched([&own, &other])
         };
-        let sampled = (0..=PARTS).map(|k| {
-            let part = k as f64 / PARTS as f64;
-            (distance(part), part)
-        });
-        let (mut best, mut part) = sampled.fold((f64::INFINITY, 0.0), |a, b| if b.0 < a.0 { b } else { a });
-        let mut step = 0.5 / PARTS as f64;
-        while step > 1e-12 && best > 0.0 {
-            let tried = [part - step, part + step].map(|part| part.clamp(0.0, 1.0));
-            match tried.map(|part| (distance(part), part)).into_iter().find(|(distance, _)| *distance < best) {
-                Some(better) => (best, part) = better,
-                None => step *= 0.5,
+        let samples: Vec<f64> = (0..=PARTS).map(|k| distance(k as f64 / PARTS as f64)).collect();
+        let is_least = |k: &usize| {
+            let beside = [k.saturating_sub(1), (k + 1).min(PARTS)];
+            beside.iter().all(|&other| samples[*k] <= samples[other])
+        };
+        let mut places: Vec<usize> = (0..=PARTS).filter(is_least).collect();
+        places.sort_by(|&a, &b| samples[a].total_cmp(&samples[b]));
+        let (mut least, mut part) = (f64::INFINITY, 0.0);
+        for &place in places.iter().take(NEAREST) {
+            let (mut found, mut at, mut step) = (samples[place], place as f64 / PARTS as f64, 0.5 / PARTS as f64);
+            while step > 1e-15 && found > 0.0 {
+                let tried = [at - step, at + step].map(|part| part.clamp(0.0, 1.0));
+                match tried.map(|part| (distance(part), part)).into_iter().find(|(distance, _)| *distance < found) {
+                    Some(better) => (found, at) = better,
+                    None => step *= 0.5,
+                }
+            }
+            if found < least {
+                (least, part) = (found, at);
             }
         }
         (range[0] + span * part).clamp(range[0], range[1])

@@ -325,20 +325,22 @@ fn nearest_of(points: [&[[f64; 2]]; 2]) -> Nearest {
 
 /// The distance of two polygons, about \[m\]; 0 if they have a point in common. For searches, on which nothing rests.
 pub(crate) fn sketched(points: [&[[f64; 2]]; 2]) -> f64 {
-    let separated = |[own, other]: [&[[f64; 2]]; 2]| {
-        own.len() > 1
-            && (0..own.len()).any(|k| {
-                let ([ax, ay], [bx, by]) = (own[k], own[(k + 1) % own.len()]);
-                let right = |&[x, y]: &[f64; 2]| (bx - ax) * (y - ay) - (by - ay) * (x - ax) < 0.0;
-                other.iter().all(right)
-            })
+    let side = |[ax, ay]: [f64; 2], [bx, by]: [f64; 2], [x, y]: [f64; 2]| (bx - ax) * (y - ay) - (by - ay) * (x - ax);
+    let edges = |polygon: &[[f64; 2]]| -> Vec<[[f64; 2]; 2]> {
+        (0..polygon.len()).map(|k| [polygon[k], polygon[(k + 1) % polygon.len()]]).collect()
     };
-    let [a, b] = points;
-    // Two polygons that do not meet are apart along an edge of one of them; with less than three corners that is no test.
-    if a.len() > 2 && b.len() > 2 && !separated([a, b]) && !separated([b, a]) {
-        return 0.0;
-    }
-    nearest_of(points).distance
+    let [a, b] = points.map(edges);
+    let is_inside = |polygon: &[[[f64; 2]; 2]], point: [f64; 2]| {
+        polygon.len() > 2 && polygon.iter().all(|edge| side(edge[0], edge[1], point) >= 0.0)
+    };
+    let cross = |one: &[[f64; 2]; 2], other: &[[f64; 2]; 2]| {
+        side(one[0], one[1], other[0]) * side(one[0], one[1], other[1]) < 0.0
+            && side(other[0], other[1], one[0]) * side(other[0], other[1], one[1]) < 0.0
+    };
+    let meet = is_inside(&a, points[1][0])
+        || is_inside(&b, points[0][0])
+        || a.iter().any(|one| b.iter().any(|other| cross(one, other)));
+    if meet { 0.0 } else { nearest_of(points).distance }
 }
 
 impl Nearest {

@@ -868,15 +868,3 @@ fn who_is_left_out_has_to_be_far() {
     table.bodies[1].start[1] += 20.0;
     assert!(Checker::new(&table).is_ok());
 }
-#[test]
-fn timing() {
-    for excess in [1e-3, 1e-5, 1e-8, 1e-11] {
-        let table = table_beside_a_wall(excess);
-        let t = std::time::Instant::now();
-        let report = checked(&table);
-        eprintln!("{excess} {} {:?}", report.findings.steps, t.elapsed());
-        let t = std::time::Instant::now();
-        Checker::new(&table).unwrap().margin().unwrap();
-        eprintln!("margin {:?}", t.elapsed());
-    }
-}
