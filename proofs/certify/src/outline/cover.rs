@@ -3,8 +3,8 @@
 //!
 //! A box is cut in half where the bounds of [`super::separation`] do not show the claim; the half-lengths of both bodies shrink to what the
 //! bounds need. Where the distance in the middle of a box breaks the claim, it is refuted there, and where rounding leaves that open even
-//! with 106 bits, it is undecided. Two kinds of tables stay undecided on purpose, as their truth is within rounding or takes too many
-//! boxes: those in which the distance equals the bound up to rounding, and those in which it comes nearer to the bound than about 10^-9 m
+//! with 106 bits, it is undecided. Two kinds of claims stay undecided, because their truth is within rounding or takes too many
+//! boxes: those in which the distance equals the bound up to rounding, and those in which it comes nearer to the bound than about 10^-7 m
 //! along a whole curve in the plane of lengths that is parallel to neither axis.
 
 use super::body::{Carried, Placed};
@@ -31,6 +31,8 @@ pub enum Verdict {
 
 /// Boxes that are looked at for one claim at most.
 const MOST: usize = 400_000;
+/// Cells of one range that are looked at for one claim at most; each takes a search.
+const MOST_CELLS: usize = 20_000;
 
 /// Two bodies, each on one segment.
 #[derive(Clone, Copy, Debug)]
@@ -62,6 +64,8 @@ struct Look {
     cut: usize,
     /// How the distance changes with each length, about.
     slopes: [f64; 2],
+    /// Whether the bound on the distance misses the claim by not much more than rounding.
+    is_close: bool,
     /// The longer half of it as a way of the bodies, over what rounding leaves of the distance.
     over: f64,
 }
@@ -84,7 +88,9 @@ fn look<R: Real>(bodies: [&Carried<R>; 2], ranges: [Range; 2], least: Number) ->
     let weights = if seen.weights[0] == seen.weights[1] { ways } else { seen.weights };
     let cut = usize::from(weights[1] > weights[0]);
     let over = ways[0].max(ways[1]) / (seen.middle.err + f64::MIN_POSITIVE);
-    Look { clear, meets, cut, slopes: seen.slopes, over }
+    let missing = least - seen.anywhere;
+    let is_close = missing.to_f64() < 8.0 * missing.err;
+    Look { clear, meets, cut, slopes: seen.slopes, is_close, over }
 }
 
 impl<'a> Segments<'a> {
@@ -97,8 +103,8 @@ impl<'a> Segments<'a> {
         while let Some(ranges) = rest.pop() {
             (taken, *steps) = (taken + 1, *steps + 1);
             let mut seen = look::<f64>(near, ranges, least);
-            // With 106 bits where 53 do not tell, or cannot, as the box is about as small as what they leave.
-            if seen.clear != Tri::Yes && (seen.meets == Tri::Doubt || seen.over < 1024.0) {
+            // With 106 bits where 53 do not tell, or where only what they leave stands in the way.
+            if seen.clear != Tri::Yes && (seen.meets == Tri::Doubt || seen.is_close || seen.over < 1024.0) {
                 seen = look::<Twofold>(exact, ranges, least);
             }
             if seen.clear.is_certain() {
@@ -164,7 +170,7 @@ impl<'a> Segments<'a> {
                     _ => Verdict::Undecided(self.pair(of, at, guess)),
                 };
             }
-            if taken >= MOST || at <= cell[0] || cell[1] <= at {
+            if taken >= MOST_CELLS || at <= cell[0] || cell[1] <= at {
                 return Verdict::Undecided(self.pair(of, at, guess));
             }
             rest.extend([[at, cell[1]], [cell[0], at]]);
@@ -211,10 +217,9 @@ impl<'a> Segments<'a> {
         (range[0] + span * part).clamp(range[0], range[1])
     }
 
-    /// Decides for all lengths of both segments whether those within `least` of each other lie in rectangles, and where they do not.
-    /// Each part of the second segment between ends of rectangles is looked at by itself: there a rectangle holds all of it or nothing
-    /// of it, and what is left of the first segment has to be farther (`docs/certificates.md`, lemma 2).
-    pub fn covered(&self, rectangles: &[[Range; 2]], least: Number, steps: &mut usize) -> Vec<Verdict> {
+    /// The boxes of lengths that rectangles leave free. Each part of the second segment between ends of rectangles is looked at by itself:
+    /// there a rectangle holds all of it or nothing of it (`docs/theory/certificates.md`, lemma 2).
+    pub(crate) fn left_free(&self, rectangles: &[[Range; 2]]) -> Vec<[Range; 2]> {
         let whole = self.0.map(|body| [Twofold::ZERO, body.stretch.placed.length]);
         let mut cuts: Vec<Twofold> = rectangles.iter().flat_map(|rectangle| rectangle[1]).collect();
         cuts.extend(whole[1]);
@@ -224,18 +229,20 @@ impl<'a> Segments<'a> {
         cuts.dedup();
         let cells: Vec<Range> =
             if cuts.len() == 1 { vec![whole[1]] } else { cuts.windows(2).map(|cut| [cut[0], cut[1]]).collect() };
-        let mut found = Vec::new();
+        let mut free = Vec::new();
         for cell in cells {
             let holds = |rectangle: &&[Range; 2]| rectangle[1][0] <= cell[0] && cell[1] <= rectangle[1][1];
             let held = rectangles.iter().filter(holds).map(|rectangle| rectangle[0]).collect();
-            for gap in gaps(held, whole[0]) {
-                match self.farther([gap, cell], least, steps) {
-                    Verdict::Proved => {}
-                    other => found.push(other),
-                }
-            }
+            free.extend(gaps(held, whole[0]).into_iter().map(|gap| [gap, cell]));
         }
-        found
+        free
+    }
+
+    /// Decides whether all lengths of both segments within `least` of each other lie in rectangles. Returns where that is not proved, once
+    /// for each box that they leave free.
+    pub fn covered(&self, rectangles: &[[Range; 2]], least: Number, steps: &mut usize) -> Vec<Verdict> {
+        let free = self.left_free(rectangles).into_iter();
+        free.map(|ranges| self.farther(ranges, least, steps)).filter(|verdict| *verdict != Verdict::Proved).collect()
     }
 }
 

@@ -21,6 +21,8 @@ type Number = Ball<Twofold>;
 
 /// Samples of a slice, and between any two ends of pieces.
 const SAMPLES: usize = 32;
+/// Samples between ends of pieces, all of them together, about.
+const MOST_SAMPLES: usize = 256;
 /// Cells of one pair of segments at most.
 const MOST: usize = 20_000;
 
@@ -181,9 +183,10 @@ fn extremes(segments: &Segments<'_>, held: &[&([Range; 2], [u8; 2])], at: Twofol
     ends.extend([0.0, length]);
     ends.sort_by(f64::total_cmp);
     ends.dedup();
-    let part = |k: usize| k as f64 / SAMPLES as f64;
-    let between = ends.windows(2).flat_map(|ends| (0..SAMPLES).map(|k| ends[0] + (ends[1] - ends[0]) * part(k)));
-    let mut places: Vec<f64> = between.chain((0..=SAMPLES).map(|k| length * part(k))).collect();
+    let count = (MOST_SAMPLES / ends.len()).clamp(2, SAMPLES);
+    let part = |k: usize, count: usize| k as f64 / count as f64;
+    let between = ends.windows(2).flat_map(|ends| (0..count).map(|k| ends[0] + (ends[1] - ends[0]) * part(k, count)));
+    let mut places: Vec<f64> = between.chain((0..=SAMPLES).map(|k| length * part(k, SAMPLES))).collect();
     places.sort_by(f64::total_cmp);
     places.dedup();
     let samples: Vec<f64> = places.iter().map(|&at| distance(at)).collect();

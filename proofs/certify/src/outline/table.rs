@@ -1,11 +1,11 @@
 //! A whole table of bodies: every pair of them, every pair of their segments, and what is told of each region.
 //!
-//! The promises are those of discs (`docs/certificates.md`): C-rect, C-share (the k-th of n intervals), C4 and E_t, with the distance of the
+//! The promises are those of discs (`docs/theory/certificates.md`): C-rect, C-share (the k-th of n intervals), C4 and E_t, with the distance of the
 //! outlines in place of that of the discs. The lag of a motion is what a corner may be off.
 
 use super::body::Body;
 use super::cover::{Segments, Verdict};
-use super::data::{RawPair, RawTable};
+use super::data::{RawPair, RawPiece, RawTable};
 use super::ranks::{self, Bounds};
 use super::separation::above;
 use crate::ball::Ball;
@@ -108,7 +108,7 @@ impl<'a> Checker<'a> {
     pub fn check(&self, margin: Margin) -> Result<Report, String> {
         let mut report = Report::default();
         for pair in self.pairs {
-            self.pair(pair, margin, true, &mut report)?;
+            self.pair(pair, margin, &mut report)?;
         }
         Ok(report)
     }
@@ -120,32 +120,60 @@ impl<'a> Checker<'a> {
     /// A piece that is none.
     pub fn margin(&self) -> Result<Option<f64>, String> {
         const STEPS: u32 = 12;
-        let holds = |pair: &RawPair, part: f64| -> Result<bool, String> {
-            let mut report = Report::default();
-            self.pair(pair, Margin::Epsilons(part), false, &mut report)?;
-            Ok(report.findings.refuted.is_empty() && report.findings.undecided.is_empty())
-        };
         let mut least: Option<f64> = None;
         for pair in self.pairs.iter().filter(|pair| !pair.pieces.is_empty()) {
+            let pieces = self.pieces(pair)?;
+            let holds = |part: f64| self.is_covered(pair, &pieces, part);
             let (mut lo, mut hi) = (-1.0, least.unwrap_or(1.0));
-            if !holds(pair, lo)? {
+            if !holds(lo) {
                 return Ok(Some(f64::NEG_INFINITY));
             }
-            if holds(pair, hi)? {
+            if holds(hi) {
                 lo = hi;
             }
             for _ in 0..STEPS {
                 let middle = 0.5 * (lo + hi);
-                if holds(pair, middle)? { lo = middle } else { hi = middle }
+                if holds(middle) { lo = middle } else { hi = middle }
             }
             least = Some(lo);
         }
         Ok(least)
     }
 
-    fn pair(&self, pair: &RawPair, margin: Margin, tells: bool, report: &mut Report) -> Result<(), String> {
+    /// Whether pieces hold all contacts within R and a part of ε.
+    fn is_covered(&self, pair: &RawPair, pieces: &[(Placed, [u8; 2])], part: f64) -> bool {
+        let [first, second] = pair.bodies.map(|place| &self.bodies[place]);
+        let least = first.radius + second.radius + Ball::from(part * pair.excess);
+        first.segments.iter().enumerate().all(|(i, own)| {
+            second.segments.iter().enumerate().all(|(j, other)| {
+                let those = pieces.iter().filter(|(piece, _)| piece.segments == [i, j]);
+                let rectangles: Vec<_> = those.map(|(piece, _)| piece.lengths).collect();
+                let segments = Segments([own, other]);
+                let mut free = segments.left_free(&rectangles).into_iter();
+                free.all(|ranges| segments.farther(ranges, least, &mut 0) == Verdict::Proved)
+            })
+        })
+    }
+
+    /// The pieces of a pair as lengths along their segments, with their ranks.
+    fn pieces(&self, pair: &RawPair) -> Result<Vec<(Placed, [u8; 2])>, String> {
         let [a, b] = pair.bodies;
         let named = |problem: String| format!("the pair of places {a} and {b}: {problem}");
+        let stretches: [&[Stretch]; 2] = [&self.lines[a].0, &self.lines[b].0];
+        let mut pieces = Vec::with_capacity(pair.pieces.len());
+        for piece in &pair.pieces {
+            let [k, of] = piece.rank;
+            if k >= of {
+                return Err(named(format!("a piece that stands for the interval {k} of {of}")));
+            }
+            let placed = pieces_of(&[unranked(piece)], stretches).map_err(named)?;
+            pieces.extend(placed.into_iter().map(|one| (one, piece.rank)));
+        }
+        Ok(pieces)
+    }
+
+    fn pair(&self, pair: &RawPair, margin: Margin, report: &mut Report) -> Result<(), String> {
+        let [a, b] = pair.bodies;
         let bodies = [&self.bodies[a], &self.bodies[b]];
         let lines = [&self.lines[a], &self.lines[b]];
         let stretches: [&[Stretch]; 2] = lines.map(|(stretches, _)| &stretches[..]);
@@ -155,26 +183,12 @@ impl<'a> Checker<'a> {
         };
         let radius = bodies[0].radius + bodies[1].radius;
         let bounds = Bounds { radius, covered: radius + Ball::from(more), told: radius + Ball::from(pair.excess) };
-        let like = |piece: &super::data::RawPiece| Piece {
-            segments: piece.segments,
-            lengths: piece.lengths,
-            share: Share::Only,
-            region: piece.region,
-        };
-        let mut pieces: Vec<(Placed, [u8; 2])> = Vec::with_capacity(pair.pieces.len());
-        for piece in &pair.pieces {
-            let [k, of] = piece.rank;
-            if k >= of {
-                return Err(named(format!("a piece that stands for the interval {k} of {of}")));
-            }
-            pieces
-                .extend(pieces_of(&[like(piece)], stretches).map_err(named)?.into_iter().map(|one| (one, piece.rank)));
-        }
+        let pieces = self.pieces(pair)?;
         let pair_of_discs = Pair {
             agents: pair.bodies,
             excess: pair.excess,
             regions: pair.regions.clone(),
-            pieces: pair.pieces.iter().map(like).collect(),
+            pieces: pair.pieces.iter().map(unranked).collect(),
         };
         let outlines = Outlines { bodies, pair: &pair_of_discs, radius };
         for (i, own) in bodies[0].segments.iter().enumerate() {
@@ -190,7 +204,7 @@ impl<'a> Checker<'a> {
                 let ranks = ranks::check(&segments, &those, bounds, steps);
                 report.unranked += ranks.unranked;
                 let mut far = Vec::new();
-                for rectangle in rectangles.iter().filter(|_| tells) {
+                for rectangle in &rectangles {
                     far.extend([0, 1].map(|of| segments.within(of, *rectangle, bounds.told, steps)));
                 }
                 for (promise, verdicts) in
@@ -202,14 +216,17 @@ impl<'a> Checker<'a> {
                 }
             }
         }
-        if tells {
-            let agents = lines.map(|(_, agent)| agent);
-            let placed: Vec<Placed> = pieces.iter().map(|(piece, _)| *piece).collect();
-            regions::check(agents, stretches, &pair_of_discs, &placed, &outlines, &mut report.findings)
-                .map_err(named)?;
-        }
-        Ok(())
+        let agents = lines.map(|(_, agent)| agent);
+        let placed: Vec<Placed> = pieces.iter().map(|(piece, _)| *piece).collect();
+        regions::check(agents, stretches, &pair_of_discs, &placed, &outlines, &mut report.findings)
+            .map_err(|problem| format!("the pair of places {a} and {b}: {problem}"))
     }
+}
+
+/// A piece without its rank.
+fn unranked(piece: &RawPiece) -> Piece {
+    let RawPiece { segments, lengths, region, .. } = *piece;
+    Piece { segments, lengths, share: Share::Only, region }
 }
 
 /// Distances of two bodies.
