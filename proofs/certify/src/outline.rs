@@ -12,6 +12,43 @@
 //!
 //! Two bodies are in contact where the distance of their polygons is at most R, the sum of both radii. Everything is derived from the
 //! corners; nothing is shared with what has computed a table.
+//!
+//! ```
+//! use pcr_certify::data::Angle;
+//! use pcr_certify::outline::table::Checker;
+//! use pcr_certify::outline::{RawBody, RawCourse, RawHeading, RawOutline, RawPair, RawSegment, RawTable};
+//! use pcr_certify::table::Margin;
+//!
+//! // Two trucks of 1.2 by 0.8 m on parallel lanes, and a table that says that they never touch.
+//! let truck = |id, y, turns| RawBody {
+//!     id,
+//!     outline: RawOutline { corners: vec![[-0.6, -0.4], [0.6, -0.4], [0.6, 0.4], [-0.6, 0.4]], radius: 0.0 },
+//!     start: [6.0 * turns * 2.0, y],
+//!     direction: Angle::Turns(turns),
+//!     segments: vec![RawSegment {
+//!         course: RawCourse::Line,
+//!         length: 6.0,
+//!         turns: vec![],
+//!         heading: RawHeading::Along(Angle::Turns(0.0)),
+//!         from: 0.0,
+//!         to: 6.0,
+//!     }],
+//!     rounding: 0.0,
+//!     jump: 0.0,
+//!     step: 0.0,
+//!     travel: None,
+//! };
+//! let verdict = |lane: f64| {
+//!     let bodies = vec![truck(1, 0.0, 0.0), truck(2, lane, 0.5)];
+//!     let pairs = vec![RawPair { bodies: [0, 1], excess: 1e-9, regions: vec![], pieces: vec![] }];
+//!     let table = RawTable { bodies, pairs, apart: None };
+//!     Checker::new(&table)?.check(Margin::Needed)
+//! };
+//! let passing = verdict(0.801)?;
+//! assert!(passing.findings.refuted.is_empty() && passing.findings.undecided.is_empty());
+//! assert_eq!(verdict(0.799)?.findings.refuted.len(), 1); // they touch
+//! # Ok::<(), String>(())
+//! ```
 
 pub mod body;
 pub mod cover;
