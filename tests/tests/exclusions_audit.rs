@@ -259,7 +259,8 @@ fn edges_that_the_service_cannot_close_are_refused() {
     let imported = imported(Format::Nav2, &text, &disc(0.4));
     assert!(refused(&imported, Target::Nav2, &text).contains("edge 70000: the service"), "ids of 16 bits");
     let text = text.replace("[70000]", "[1e300]");
-    let expected = "edge 70000, metadata, closed_edges: ids of edges are expected";
+    let column = text.find("[1e300]").unwrap() + 1;
+    let expected = format!("line 1, column {column}: edge 70000, metadata, closed_edges: ids of edges are expected");
     assert_eq!(refused(&imported, Target::Nav2, &text), expected);
 }
 

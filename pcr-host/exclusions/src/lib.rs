@@ -20,7 +20,6 @@
 //! audit     contacts that are not excluded, and exclusions that are not needed          Audit
 //! cover     covers of a graph by cliques, and a lower bound of their number
 //! edit      changes of a text at spans; the rest is kept byte for byte
-//! json      JSON with the span of every value
 //! kept      a written layout is the one before, with its edges cut
 //! selection which edges and nodes an audit is about
 //! settings  options and warnings of writers
@@ -33,7 +32,6 @@
 mod audit;
 mod cover;
 mod edit;
-mod json;
 mod kept;
 mod meetings;
 mod nav2;

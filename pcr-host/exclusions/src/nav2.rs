@@ -7,10 +7,10 @@
 //! which have 16 bits; edges with the same id are closed together.
 
 use crate::edit::{Edits, ending};
-use crate::json::{Spanned, Value as Kind};
 use crate::stamp::{MEMBER, Stamp};
 use crate::{Claim, Group, Rules};
 use pcr_formats::import::{Id, ImportError, Imported, graph_id, parse_json};
+use pcr_formats::json::{self, Data, Json};
 use pcr_planning::locks::Locks;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -45,13 +45,17 @@ fn is_node(feature: &Value) -> Option<bool> {
 
 /// Reads the lists.
 pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
-    let root = parse_json(text)?;
+    let (root, places) = both(text)?;
     let mut lists: [BTreeMap<u64, BTreeSet<u64>>; 2] = Default::default();
     let mut groups = Vec::new();
-    for feature in root["features"].as_array().into_iter().flatten() {
+    for (feature, place) in features(&root, &places) {
         let (Some(node), Some(id)) = (is_node(feature), graph_id(&feature["properties"]["id"])) else { continue };
         let what = if node { "node" } else { "edge" };
-        let problem = || ImportError::new(format!("{what} {id}, metadata, {KEY}: ids of edges are expected"));
+        let problem = || {
+            let list = ["properties", "metadata", KEY].into_iter().try_fold(place, |place, key| place.get(key));
+            let problem = format!("{what} {id}, metadata, {KEY}: ids of edges are expected");
+            ImportError::in_json(list.unwrap_or(place).position, problem)
+        };
         let list: BTreeSet<u64> = match &feature["properties"]["metadata"][KEY] {
             Value::Null => BTreeSet::new(),
             Value::Array(ids) => ids.iter().map(graph_id).collect::<Option<_>>().ok_or_else(problem)?,
@@ -107,17 +111,17 @@ pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks) -> Result<St
     if let Some((large, _)) = closed[0].iter().find(|(id, _)| **id > LARGEST) {
         return Err(unknown(*large));
     }
-    let (root, spans) = both(text)?;
+    let (root, places) = both(text)?;
     let mut edits = Edits::default();
-    for (feature, span) in features(&root, &spans) {
+    for (feature, place) in features(&root, &places) {
         let (Some(node), Some(id)) = (is_node(feature), graph_id(&feature["properties"]["id"])) else { continue };
         let ids: Vec<u64> = closed[usize::from(node)].get(&id).into_iter().flatten().copied().collect();
-        if let Some(properties) = span.get("properties") {
+        if let Some(properties) = place.get("properties") {
             set(&mut edits, properties, &Value::from(ids).to_string());
         }
     }
     let stamp = Stamp::of(imported).text();
-    match (spans.get(MEMBER), spans.end_of_members()) {
+    match (places.get(MEMBER), places.end_of_members()) {
         (Some(old), _) => edits.replace(old.span.clone(), stamp),
         (None, Some((at, comma))) => edits.insert(at, format!("{comma}\"{MEMBER}\": {stamp}")),
         (None, None) => return Err(ImportError::new("graph: an object is expected")),
@@ -126,7 +130,7 @@ pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks) -> Result<St
 }
 
 /// Sets the list in the metadata of a feature.
-fn set(edits: &mut Edits, properties: &Spanned, list: &str) {
+fn set(edits: &mut Edits, properties: &Json<'_>, list: &str) {
     let metadata = properties.get("metadata");
     if let Some(old) = metadata.and_then(|metadata| metadata.get(KEY)) {
         return edits.replace(old.span.clone(), list);
@@ -143,27 +147,30 @@ fn set(edits: &mut Edits, properties: &Spanned, list: &str) {
     }
 }
 
-fn both(text: &str) -> Result<(Value, Spanned), ImportError> {
-    let spans = Spanned::of(text).ok_or_else(|| ImportError::new("not JSON"))?;
-    Ok((parse_json(text)?, spans))
+/// The values of a text, and where they are in it.
+fn both(text: &str) -> Result<(Value, Json<'_>), ImportError> {
+    let root = parse_json(text)?;
+    let places = json::parse(text).map_err(|error| ImportError::in_json(error.position, error.problem))?;
+    Ok((root, places))
 }
 
-fn features<'a>(root: &'a Value, spans: &'a Spanned) -> impl Iterator<Item = (&'a Value, &'a Spanned)> {
+fn features<'a>(root: &'a Value, places: &'a Json<'a>) -> impl Iterator<Item = (&'a Value, &'a Json<'a>)> {
     let values = root["features"].as_array().into_iter().flatten();
-    values.zip(spans.get("features").map_or(&[][..], Spanned::list))
+    values.zip(places.get("features").map_or(&[][..], Json::list))
 }
 
 /// Cuts edges into equal parts no longer than this \[m\]; returns the text, and which edges are left whole, and why.
 pub(crate) fn split(text: &str, most: f64) -> Result<(String, Vec<String>), ImportError> {
-    let (root, spans) = both(text)?;
-    let mut cutter = Cutter::new(&root)?;
+    let (root, places) = both(text)?;
+    let mut cutter = Cutter::new(&root, &places)?;
     let (mut edits, mut whole_ones) = (Edits::default(), Vec::new());
     let end = ending(text);
     let mut nodes = Vec::new();
-    for (feature, span) in features(&root, &spans).filter(|(feature, _)| is_node(feature) == Some(false)) {
+    for (feature, place) in features(&root, &places).filter(|(feature, _)| is_node(feature) == Some(false)) {
         let properties = &feature["properties"];
         let (ends, at) = cutter.ends(properties).ok_or_else(|| {
-            ImportError::new(format!("edge {}: its nodes, or their coordinates, are not in the file", properties["id"]))
+            let problem = format!("edge {}: its nodes, or their coordinates, are not in the file", properties["id"]);
+            ImportError::in_json(place.position, problem)
         })?;
         let length = (at[1][0] - at[0][0]).hypot(at[1][1] - at[0][1]);
         let parts = (length / most - 1e-9).ceil().max(1.0);
@@ -184,17 +191,18 @@ pub(crate) fn split(text: &str, most: f64) -> Result<(String, Vec<String>), Impo
             continue;
         }
         let chain = cutter.chain(ends, at, parts as usize, &mut nodes);
-        let own = &text[span.span.clone()];
+        let own = &text[place.span.clone()];
         let copies = chain.windows(2).enumerate().map(|(k, pair)| {
             let id = if k == 0 { graph_id(id)? } else { cutter.new_edge() };
             copy(own, id, [&pair[0], &pair[1]])
         });
         let copies = copies.collect::<Option<Vec<_>>>();
-        let copies =
-            copies.ok_or_else(|| ImportError::new(format!("edge {id}: a field that an edge needs is missing")))?;
-        edits.replace(span.span.clone(), copies.join(&format!(",{end}")));
+        let copies = copies.ok_or_else(|| {
+            ImportError::in_json(place.position, format!("edge {id}: a field that an edge needs is missing"))
+        })?;
+        edits.replace(place.span.clone(), copies.join(&format!(",{end}")));
     }
-    if let Some(list) = spans.get("features")
+    if let Some(list) = places.get("features")
         && let Some(last) = list.list().last()
     {
         edits.insert(last.span.end, nodes.iter().map(|node| format!(",{end}{node}")).collect::<String>());
@@ -214,15 +222,16 @@ struct Cutter {
 }
 
 impl Cutter {
-    fn new(root: &Value) -> Result<Self, ImportError> {
+    fn new(root: &Value, places: &Json<'_>) -> Result<Self, ImportError> {
         let (mut at, mut frames, mut next) = (BTreeMap::new(), BTreeMap::new(), [0, 0]);
-        for feature in root["features"].as_array().into_iter().flatten() {
+        for (feature, place) in features(root, places) {
+            let refused = |problem| ImportError::in_json(place.position, problem);
             let (Some(node), Some(id)) = (is_node(feature), graph_id(&feature["properties"]["id"])) else { continue };
-            let after = id.checked_add(1).ok_or_else(|| ImportError::new(format!("id {id}: no larger one is left")))?;
+            let after = id.checked_add(1).ok_or_else(|| refused(format!("id {id}: no larger one is left")))?;
             next[usize::from(node)] = next[usize::from(node)].max(after);
             if node {
                 let coordinate = |k: usize| {
-                    let problem = || ImportError::new(format!("node {id}, coordinates: two numbers are expected"));
+                    let problem = || refused(format!("node {id}, coordinates: two numbers are expected"));
                     feature["geometry"]["coordinates"][k].as_f64().ok_or_else(problem)
                 };
                 at.insert(id, [coordinate(0)?, coordinate(1)?]);
@@ -277,7 +286,7 @@ impl Cutter {
 
 /// The text of an edge with another id, other ends, and a line between them.
 fn copy(text: &str, id: u64, [from, to]: [&Link; 2]) -> Option<String> {
-    let spans = Spanned::of(text)?;
+    let spans = json::parse(text).ok()?;
     let properties = spans.get("properties")?;
     let mut edits = Edits::default();
     for (name, value) in [("id", id), ("startid", from.0), ("endid", to.0)] {
@@ -287,7 +296,7 @@ fn copy(text: &str, id: u64, [from, to]: [&Link; 2]) -> Option<String> {
     let (kind, line) = (geometry.get("type")?, json!([from.1, to.1]));
     edits.replace(kind.span.clone(), "\"LineString\"");
     let drawn = geometry.get("coordinates")?;
-    if let Kind::Array(_) = drawn.value {
+    if let Data::Array(_) = drawn.data {
         edits.replace(drawn.span.clone(), line.to_string());
     }
     Some(edits.made(text))

@@ -89,6 +89,7 @@ pub use vehicle::{Facing, HEADING, Options, SizeSource, TOLERANCE, Vehicle};
 pub use warnings::{Warnings, shortened};
 
 use crate::footprint::Footprint;
+use crate::json::Position;
 use crate::mark::unmarked;
 use crate::own;
 use crate::scenario::{Agent, Scenario};
@@ -176,6 +177,11 @@ impl ImportError {
     /// For something at this line and character, both counted from 1.
     pub fn at(line: usize, column: Option<usize>, problem: impl Into<String>) -> Self {
         Self { line: Some(line), column, ..Self::new(problem) }
+    }
+
+    /// For the value at a place of a JSON text.
+    pub fn in_json(at: Position, problem: impl Into<String>) -> Self {
+        Self::at(at.line, Some(at.column), problem)
     }
 
     /// For what is wrong in YAML. (With `From`, the compiler could no longer infer errors of many closures.)

@@ -1,44 +1,91 @@
-//! Parses JSON to a tree that keeps everything that error messages need.
+//! Parses JSON to a tree that keeps the place of every value, and everything else that error messages need.
 //!
 //! A general parser stops at `NaN` (which Python writes) and at `1e999`, and keeps the last of two equal keys. The
 //! error for a scenario with such a fault should name agent, segment and field, which are known only when the tree is
 //! traversed. So numbers keep their text, words for values that are not finite count as numbers, equal keys are kept,
-//! and every value knows its line. Otherwise this is RFC 8259; the tests compare it with `serde_json`.
+//! and every value knows its place, where errors point and edits go. Otherwise this is RFC 8259; the tests compare it with `serde_json`.
 
+use crate::mark::unmarked;
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// A value and where it begins. Words and strings without escapes are parts of the text.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Json<'t> {
-    /// Line of the text, counted from 1.
-    pub(crate) line: usize,
-    pub(crate) data: Data<'t>,
+pub struct Json<'t> {
+    /// Where it begins.
+    pub position: Position,
+    /// The bytes of the text that are this value.
+    pub span: Range<usize>,
+    /// What it is.
+    pub data: Data<'t>,
+}
+
+/// A place in a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Position {
+    /// Counted from 1.
+    pub line: usize,
+    /// Character in the line, counted from 1.
+    pub column: usize,
 }
 
 /// The kinds of values.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Data<'t> {
+pub enum Data<'t> {
+    /// `null`.
     Null,
+    /// `true` or `false`.
     Bool(bool),
     /// As written: a JSON number, or `NaN` or `Infinity` in one of their spellings.
     Number(Cow<'t, str>),
+    /// A string without its escapes.
     Text(Cow<'t, str>),
+    /// A list.
     Array(Vec<Json<'t>>),
     /// In the order of the text, equal keys included.
     Object(Vec<Member<'t>>),
 }
 
 /// A key and its value.
-pub(crate) type Member<'t> = (Cow<'t, str>, Json<'t>);
+pub type Member<'t> = (Cow<'t, str>, Json<'t>);
 
 /// Why a text is not JSON.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct SyntaxError {
-    /// Counted from 1.
-    pub(crate) line: usize,
-    /// Character in the line, counted from 1.
-    pub(crate) column: usize,
-    pub(crate) problem: String,
+pub struct SyntaxError {
+    /// Where it is not.
+    pub position: Position,
+    /// What is wrong there.
+    pub problem: String,
+}
+
+impl Json<'_> {
+    /// Returns the last member of this name, which is the one that counts; `None` where there is none, or this is no object.
+    pub fn get(&self, name: &str) -> Option<&Self> {
+        match &self.data {
+            Data::Object(members) => members.iter().rev().find(|(key, _)| key == name).map(|(_, value)| value),
+            _ => None,
+        }
+    }
+
+    /// Returns the elements of a list; none where this is no list.
+    pub fn list(&self) -> &[Self] {
+        match &self.data {
+            Data::Array(elements) => elements,
+            _ => &[],
+        }
+    }
+
+    /// Returns the byte at which another member can be inserted, and the text that has to precede it; `None` where this is no
+    /// object.
+    pub fn end_of_members(&self) -> Option<(usize, &'static str)> {
+        match &self.data {
+            Data::Object(members) => Some(match members.last() {
+                Some((_, last)) => (last.span.end, ", "),
+                None => (self.span.start + 1, ""),
+            }),
+            _ => None,
+        }
+    }
 }
 
 /// Arrays and objects inside one another; a scenario needs 6. The parser recurses, so this bounds the stack.
@@ -47,9 +94,11 @@ const DEEPEST: usize = 64;
 /// Characters of the text that a message quotes.
 pub(crate) const QUOTED: usize = 40;
 
-/// The value in a text.
-#[cfg(test)]
-pub(crate) fn parse(text: &str) -> Result<Json<'_>, SyntaxError> {
+/// Parses the value in a text; a byte order mark at its start is skipped.
+///
+/// # Errors
+/// [`SyntaxError`] where it is not JSON.
+pub fn parse(text: &str) -> Result<Json<'_>, SyntaxError> {
     parse_listing(text, "", &mut |_| {})
 }
 
@@ -60,7 +109,8 @@ pub(crate) fn parse_listing<'t>(
     list: &str,
     take: &mut dyn FnMut(Json<'t>),
 ) -> Result<Json<'t>, SyntaxError> {
-    let mut parser = Parser { text, at: 0, line: 1, line_start: 0, list, take };
+    let begin = text.len() - unmarked(text).len();
+    let mut parser = Parser { text, at: begin, line: 1, line_start: begin, column: 1, counted: begin, list, take };
     let value = parser.value(0)?;
     match parser.peek() {
         None => Ok(value),
@@ -75,6 +125,9 @@ struct Parser<'t, 'l> {
     line: usize,
     /// First byte of the line.
     line_start: usize,
+    /// Column of the byte `counted`, so that no character is counted twice.
+    column: usize,
+    counted: usize,
     /// The member of the outermost object whose elements go here.
     list: &'l str,
     take: &'l mut dyn FnMut(Json<'t>),
@@ -83,7 +136,7 @@ struct Parser<'t, 'l> {
 impl<'t> Parser<'t, '_> {
     fn value(&mut self, depth: usize) -> Result<Json<'t>, SyntaxError> {
         let next = self.peek();
-        let line = self.line;
+        let (position, begin) = (self.position(), self.at);
         let data = match next {
             Some(b'{' | b'[') if depth == DEEPEST => {
                 return Err(self.error(format!("arrays and objects nested more than {DEEPEST} deep")));
@@ -97,7 +150,7 @@ impl<'t> Parser<'t, '_> {
             Some(b'"') => Data::Text(self.string()?),
             _ => self.word()?,
         };
-        Ok(Json { line, data })
+        Ok(Json { position, span: begin..self.at, data })
     }
 
     fn elements(&mut self, depth: usize, mut take: impl FnMut(&mut Self, Json<'t>)) -> Result<(), SyntaxError> {
@@ -120,9 +173,9 @@ impl<'t> Parser<'t, '_> {
         if depth > 0 || key != self.list || self.peek() != Some(b'[') {
             return self.value(depth + 1);
         }
-        let line = self.line;
+        let (position, begin) = (self.position(), self.at);
         self.elements(depth + 1, |parser, element| (parser.take)(element))?;
-        Ok(Json { line, data: Data::Array(Vec::new()) })
+        Ok(Json { position, span: begin..self.at, data: Data::Array(Vec::new()) })
     }
 
     fn members(&mut self, depth: usize) -> Result<Vec<Member<'t>>, SyntaxError> {
@@ -246,11 +299,19 @@ impl<'t> Parser<'t, '_> {
                     self.at += 1;
                     self.line += 1;
                     self.line_start = self.at;
+                    (self.column, self.counted) = (1, self.at);
                 }
                 Some(b' ' | b'\t' | b'\r') => self.at += 1,
                 _ => return next,
             }
         }
+    }
+
+    /// The place of the byte that is read next.
+    fn position(&mut self) -> Position {
+        self.column += self.text.get(self.counted..self.at).unwrap_or_default().chars().count();
+        self.counted = self.at;
+        Position { line: self.line, column: self.column }
     }
 
     fn accept(&mut self, mark: u8) -> bool {
@@ -276,7 +337,8 @@ impl<'t> Parser<'t, '_> {
 
     fn error(&self, problem: impl Into<String>) -> SyntaxError {
         let line = self.text.get(self.line_start..self.at).unwrap_or_default();
-        SyntaxError { line: self.line, column: line.chars().count() + 1, problem: problem.into() }
+        let position = Position { line: self.line, column: line.chars().count() + 1 };
+        SyntaxError { position, problem: problem.into() }
     }
 }
 
@@ -298,6 +360,7 @@ fn is_not_finite(word: &str) -> bool {
     ["nan", "inf", "infinity"].iter().any(|name| word.eq_ignore_ascii_case(name))
 }
 
+/// A value that is in no text: its place is the start of one.
 impl<'t> From<&'t serde_json::Value> for Json<'t> {
     fn from(value: &'t serde_json::Value) -> Self {
         use serde_json::Value;
@@ -311,7 +374,7 @@ impl<'t> From<&'t serde_json::Value> for Json<'t> {
                 Data::Object(members.iter().map(|(key, value)| (key.into(), value.into())).collect())
             }
         };
-        Self { line: 1, data }
+        Self { position: Position { line: 1, column: 1 }, span: 0..0, data }
     }
 }
 
@@ -394,10 +457,27 @@ mod tests {
         let json = parse("[\n 1,\n\n {\"a\":\n2}]").unwrap();
         let Data::Array(elements) = &json.data else { panic!() };
         let Data::Object(members) = &elements[1].data else { panic!() };
-        assert_eq!((json.line, elements[0].line, elements[1].line, members[0].1.line), (1, 2, 4, 5));
+        let places = [&json, &elements[0], &elements[1], &members[0].1].map(|json| json.position);
+        assert_eq!(places.map(|at| [at.line, at.column]), [[1, 1], [2, 2], [4, 2], [5, 1]]);
         let error = parse("{\n  \"é\": nonsense}").unwrap_err();
-        assert_eq!((error.line, error.column), (2, 8));
+        assert_eq!(error.position, Position { line: 2, column: 8 });
         assert_eq!(error.problem, "nonsense where a value is expected");
+    }
+
+    #[test]
+    fn spans_are_those_of_the_values() {
+        let text = "\u{feff} {\"a\": [1, -2.5e3 , \"x\\\"]\\u00e9é\"], \"b\" :{ } ,\"c\":null}\n";
+        let whole = parse(text).unwrap();
+        let at = |value: &Json<'_>| &text[value.span.clone()];
+        assert!(at(&whole).starts_with('{') && at(&whole).ends_with('}'));
+        let list: Vec<&str> = whole.get("a").unwrap().list().iter().map(at).collect();
+        assert_eq!(list, ["1", "-2.5e3", "\"x\\\"]\\u00e9é\""]);
+        assert_eq!((at(whole.get("b").unwrap()), at(whole.get("c").unwrap())), ("{ }", "null"));
+        assert_eq!(whole.get("b").unwrap().end_of_members().unwrap().1, "");
+        assert_eq!(whole.get("d"), None);
+        // Columns are characters, and the mark is none.
+        let columns = ["a", "b", "c"].map(|key| whole.get(key).unwrap().position.column);
+        assert_eq!(columns, [8, 42, 51]);
     }
 
     #[test]

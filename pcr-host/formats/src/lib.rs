@@ -5,6 +5,7 @@
 //! footprint  outlines other than discs, covered by discs        Footprint
 //! import     layouts, orders and plans in other formats         Format, Layout
 //! input      files and JSON Lines, errors with their places
+//! json       JSON with the place of every value                 Json
 //! once       JSON without repeated names                        Once
 //! output     files that are written completely or not at all
 //! paper      the embedded scenario and the paper's numbers
@@ -18,7 +19,7 @@
 pub mod footprint;
 pub mod import;
 pub mod input;
-mod json;
+pub mod json;
 mod mark;
 pub mod once;
 pub mod output;

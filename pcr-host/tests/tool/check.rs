@@ -1,6 +1,6 @@
 //! `pcr check`: verdicts, exit statuses, refusals.
 
-use crate::fixture::{PAPER, Run, crossing, file, run, run_with, straight};
+use crate::fixture::{PAPER, Run, column, crossing, file, run, run_with, straight};
 use serde_json::{Value, json};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -130,7 +130,8 @@ fn lines_are_answered_in_their_place() {
     let answers: Vec<Value> = run.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     let counts: Vec<usize> = answers.iter().map(|answer| answer["conflicts"].as_array().unwrap().len()).collect();
     assert_eq!(counts, [1, 0, 0]);
-    assert!(answers[1]["error"].as_str().unwrap().starts_with("line 2: agent 1, radius: -1 is out of range"));
+    let expected = format!("line 2, column {}: agent 1, radius: -1 is out of range", column(&bad, "/agents/0/radius"));
+    assert!(answers[1]["error"].as_str().unwrap().starts_with(&expected));
     let run = run_with(&["check", "-", "--format", "json"], format!("{}\n{}", free(), crossing()).as_bytes());
     assert_eq!(run.status, 1);
 }

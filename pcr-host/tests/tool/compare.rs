@@ -1,6 +1,6 @@
 //! `pcr compare`: its forms.
 
-use crate::fixture::{crossing, directory, file, run};
+use crate::fixture::{column, crossing, directory, file, run};
 
 #[test]
 fn two_scenarios_in_every_form() {
@@ -64,6 +64,8 @@ fn a_scenario_that_is_refused_is_named() {
     let mut scenario = crossing();
     scenario["agents"][0]["radius"] = serde_json::json!(0);
     let name = file("compare", "wrong.json", scenario.to_string());
-    let expected = format!("pcr: {name}:1: agent 1, radius: 0 is out of range; allowed is above 0, up to 1e10\n");
+    let column = column(&scenario, "/agents/0/radius");
+    let expected =
+        format!("pcr: {name}:1:{column}: agent 1, radius: 0 is out of range; allowed is above 0, up to 1e10\n");
     assert_eq!(run(&["compare", &name]).failed(2), expected);
 }

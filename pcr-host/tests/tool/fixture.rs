@@ -97,3 +97,10 @@ pub(crate) fn crossing() -> Value {
     let north = std::f64::consts::FRAC_PI_2;
     json!({ "name": "crossing", "agents": [straight(1, [-2.0, 0.0, 0.0], 4.0), straight(2, [0.0, -2.0, north], 4.0)] })
 }
+
+/// The column of the value with this pointer in the text of a scenario on one line.
+pub(crate) fn column(scenario: &Value, pointer: &str) -> usize {
+    let mut marked = scenario.clone();
+    *marked.pointer_mut(pointer).unwrap() = Value::from("this one");
+    marked.to_string().find("\"this one\"").unwrap() + 1
+}

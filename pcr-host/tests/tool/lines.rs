@@ -1,6 +1,6 @@
 //! JSON Lines: a scenario a line in, a line a scenario out, whatever is wrong with one of them.
 
-use crate::fixture::{crossing, pcr, run_with};
+use crate::fixture::{column, crossing, pcr, run_with};
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
 use std::process::Stdio;
@@ -30,7 +30,9 @@ fn a_bad_line_is_answered_in_its_place_and_the_run_goes_on() {
     for good in [&answers[0], &answers[3]] {
         assert_eq!((good["regions"].as_array().unwrap().len(), &good["error"]), (2, &Value::Null));
     }
-    let message = "line 3: agent 2, segment 1, length: -4 is out of range; allowed is 0 to 1e10";
+    let column = column(&bad, "/agents/1/path/0/length");
+    let message =
+        format!("line 3, column {column}: agent 2, segment 1, length: -4 is out of range; allowed is 0 to 1e10");
     assert_eq!(
         answers[1],
         json!({ "format": "pcr-regions", "version": 1, "name": "bad", "scalar": "f64", "regions": [], "error": message, "warnings": [] })

@@ -1,6 +1,6 @@
 //! What is printed: every format against the documented form and against the core's own numbers.
 
-use crate::fixture::{PAPER, crossing, directory, file, run, straight};
+use crate::fixture::{PAPER, column, crossing, directory, file, run, straight};
 use pcr_core::{Motion, RegionRef};
 use pcr_formats::paper;
 use pcr_formats::scenario::Scenario;
@@ -216,7 +216,8 @@ fn names_are_harmless_in_csv_and_tables() {
         scenario["name"] = json!(format!("a{control}b"));
         let named = file("names", "controls.json", scenario.to_string());
         let expected = format!(
-            "pcr: {named}:1: name: has the control character {}; allowed is printable text\n",
+            "pcr: {named}:1:{}: name: has the control character {}; allowed is printable text\n",
+            column(&scenario, "/name"),
             control.escape_default()
         );
         assert_eq!(run(&["regions", &named]).failed(2), expected);

@@ -1,6 +1,6 @@
 //! Bad arguments and bad files: one message that says where and what, the exit status, and nothing else.
 
-use crate::fixture::{PAPER, crossing, directory, file, run, run_with};
+use crate::fixture::{PAPER, column, crossing, directory, file, run, run_with};
 use serde_json::{Value, json};
 
 /// The message about a file, without its name.
@@ -16,7 +16,8 @@ fn message(content: impl AsRef<[u8]>, arguments: &[&str]) -> String {
 fn refused(pointer: &str, value: Value, expected: &str) {
     let mut scenario = crossing();
     *scenario.pointer_mut(pointer).unwrap() = value;
-    assert_eq!(message(scenario.to_string(), &["--format", "json"]), format!("1: {expected}"));
+    let expected = format!("1:{}: {expected}", column(&scenario, pointer));
+    assert_eq!(message(scenario.to_string(), &["--format", "json"]), expected);
 }
 
 #[test]
@@ -59,7 +60,8 @@ fn numbers_that_are_not_numbers() {
     for word in ["NaN", "Infinity", "-inf", "1e999"] {
         let text = crossing().to_string().replacen("0.25", word, 1);
         assert!(text.contains(word));
-        let expected = format!("1: agent 1, radius: {word} is out of range; allowed is above 0, up to 1e10");
+        let column = text.find(word).unwrap() + 1;
+        let expected = format!("1:{column}: agent 1, radius: {word} is out of range; allowed is above 0, up to 1e10");
         assert_eq!(message(text, &[]), expected);
     }
 }
@@ -69,7 +71,8 @@ fn lines_of_the_file_are_named() {
     let text = serde_json::to_string_pretty(&crossing()).unwrap().replacen("\"heading\": 0.0", "\"heading\": true", 1);
     let line = 1 + text.lines().position(|line| line.contains("true")).unwrap();
     assert!(line > 5);
-    let expected = format!("{line}: agent 1, start.heading: true where a number is expected");
+    let column = 1 + text.lines().nth(line - 1).unwrap().find("true").unwrap();
+    let expected = format!("{line}:{column}: agent 1, start.heading: true where a number is expected");
     assert_eq!(message(&text, &[]), expected);
     assert_eq!(message(text.replace('\n', "\r\n"), &[]), expected);
     let broken = text.replacen("true", "true false", 1);
@@ -81,10 +84,10 @@ fn lines_of_the_file_are_named() {
 fn texts_that_are_no_scenario() {
     assert_eq!(message("", &[]), "empty; a scenario is expected");
     assert_eq!(message("\u{feff}", &[]), "empty; a scenario is expected");
-    assert_eq!(message("[]", &[]), "1: an array where an object is expected");
-    assert_eq!(message("{}", &[]), "1: agents: missing");
+    assert_eq!(message("[]", &[]), "1:1: an array where an object is expected");
+    assert_eq!(message("{}", &[]), "1:1: agents: missing");
     assert_eq!(message("{\"agents\": [", &[]), "1:13: the text ends where a value is expected");
-    assert_eq!(message("{\"agents\": [], \"agents\": []}", &[]), "1: agents: given twice");
+    assert_eq!(message("{\"agents\": [], \"agents\": []}", &[]), "1:26: agents: given twice");
     assert_eq!(message("[".repeat(1_000_000), &[]), "1:65: arrays and objects nested more than 64 deep");
     assert_eq!(message(b"{\"agents\": \xff}", &[]), "not text in UTF-8");
     let unknown = "no scenario, which is a JSON object, nor another format that is known by its name or content; say what it is with --from";
@@ -97,18 +100,22 @@ fn texts_that_are_no_scenario() {
 
 #[test]
 fn profiles_that_do_not_fit() {
-    let profile = |pieces: Value| {
+    let refused = |accel: f64, pointer: &str, expected: &str| {
         let mut scenario = crossing();
+        let pieces = json!([{ "duration": 3.0, "accel": accel }]);
         scenario["agents"][1]["profile"] = json!({ "v0": 1.0, "pieces": pieces });
-        message(scenario.to_string(), &[])
+        let expected = format!("1:{}: agent 2, {expected}", column(&scenario, pointer));
+        assert_eq!(message(scenario.to_string(), &[]), expected);
     };
-    assert_eq!(
-        profile(json!([{ "duration": 3.0, "accel": 0.0 }])),
-        "1: agent 2, profile: travels 3 m on a path of 4 m; allowed is a relative difference of 9.54e-7"
+    refused(
+        0.0,
+        "/agents/1/profile",
+        "profile: travels 3 m on a path of 4 m; allowed is a relative difference of 9.54e-7",
     );
-    assert_eq!(
-        profile(json!([{ "duration": 3.0, "accel": -1.0 }])),
-        "1: agent 2, profile piece 1, accel: -1 brings the speed to -2 m/s; allowed is 0 and above"
+    refused(
+        -1.0,
+        "/agents/1/profile/pieces/0/accel",
+        "profile piece 1, accel: -1 brings the speed to -2 m/s; allowed is 0 and above",
     );
 }
 

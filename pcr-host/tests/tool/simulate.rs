@@ -1,6 +1,6 @@
 //! `pcr simulate`: outputs, the page, refusals.
 
-use crate::fixture::{crossing, directory, file, run};
+use crate::fixture::{column, crossing, directory, file, run};
 use serde_json::json;
 
 /// The controllers, in the order of their runs.
@@ -70,7 +70,9 @@ fn what_is_wrong_with_a_scenario_is_said_as_elsewhere() {
     let mut scenario = crossing();
     scenario["agents"][1]["radius"] = json!(-1);
     let name = file("simulate", "wrong.json", scenario.to_string());
-    let expected = format!("pcr: {name}:1: agent 2, radius: -1 is out of range; allowed is above 0, up to 1e10\n");
+    let column = column(&scenario, "/agents/1/radius");
+    let expected =
+        format!("pcr: {name}:1:{column}: agent 2, radius: -1 is out of range; allowed is above 0, up to 1e10\n");
     assert_eq!(run(&["simulate", &name]).failed(2), expected);
     scenario["agents"][1]["radius"] = json!(0.2);
     scenario["agents"][1]["t_start"] = json!(1e6);

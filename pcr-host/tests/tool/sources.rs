@@ -94,7 +94,7 @@ fn several_files_are_answered_one_after_the_other() {
     let run = run(&["check", &bad, &b, "--json"]);
     assert_eq!(run.status, 2);
     let answers: Vec<Value> = run.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-    assert!(answers[0]["error"].as_str().unwrap().contains("bad.json:1: agents: missing"), "{}", run.out);
+    assert!(answers[0]["error"].as_str().unwrap().contains("bad.json:1:1: agents: missing"), "{}", run.out);
     assert_eq!(
         (&answers[0]["name"], &answers[1]["name"], &answers[1]["error"]),
         (&json!("bad"), &json!("two"), &Value::Null)

@@ -154,12 +154,12 @@ fn scenario(number: usize, bytes: Vec<u8>) -> Result<Scenario, (String, String)>
     };
     Scenario::from_json(&text).map_err(|error| {
         let line = number + error.line() - 1;
-        let problem = match Format::of(Path::new("-"), &text) {
-            Some(format) => format!("no scenario; it looks like {format}, which is read with --from {format}"),
-            None => error.to_string(),
-        };
         let column = error.column().map_or_else(String::new, |column| format!(", column {column}"));
-        (error.scenario().to_owned(), format!("line {line}{column}: {problem}"))
+        let problem = match Format::of(Path::new("-"), &text) {
+            Some(format) => format!(": no scenario; it looks like {format}, which is read with --from {format}"),
+            None => format!("{column}: {error}"),
+        };
+        (error.scenario().to_owned(), format!("line {line}{problem}"))
     })
 }
 
@@ -219,9 +219,10 @@ mod tests {
         let lines = read("{\"agents\": [],\n \"units\": 5 }\n{\"agents\": 1}");
         assert_eq!(
             lines[0].1,
-            Err("line 2: units: unknown key; known are format, version, name, angles, agents, warnings".to_owned())
+            Err("line 2, column 11: units: unknown key; known are format, version, name, angles, agents, warnings"
+                .to_owned())
         );
-        assert_eq!(lines[1], (3, Err("line 3: agents: 1 where an array is expected".to_owned())));
+        assert_eq!(lines[1], (3, Err("line 3, column 12: agents: 1 where an array is expected".to_owned())));
     }
 
     #[test]

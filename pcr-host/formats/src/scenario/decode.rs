@@ -8,7 +8,7 @@ use super::outline::{loads, outline};
 use super::settled::Settled;
 use super::turns;
 use super::{Agent, MotionSpec, PathSegment, Scenario, TURN};
-use crate::json::{self, Data, Json};
+use crate::json::{self, Data, Json, Position};
 use crate::mark::unmarked;
 use crate::own;
 use crate::warning::WarningCode;
@@ -33,16 +33,20 @@ impl Scenario {
     /// The scenario in a JSON text; a byte order mark at its start is skipped.
     ///
     /// # Errors
-    /// [`ScenarioError`], naming agent, segment, field, value and what is allowed there; the column where the text is not JSON.
+    /// [`ScenarioError`], naming agent, segment, field, value and what is allowed there, with line and column.
     pub fn from_json(text: &str) -> Result<Self, ScenarioError> {
         let text = unmarked(text);
         if text.trim().is_empty() {
-            return Err(Place::default().error(1, "", "empty; a scenario is an object with a list of agents"));
+            return Err(Place::default().error(
+                Position { line: 1, column: 1 },
+                "",
+                "empty; a scenario is an object with a list of agents",
+            ));
         }
         // Agent by agent: the tree of a large fleet would take many times the memory of its text.
         let mut agents = Agents::default();
         let json = json::parse_listing(text, "agents", &mut |agent| agents.add(&agent))
-            .map_err(|error| Place::default().error(error.line, "", error.problem).at_column(error.column))?;
+            .map_err(|error| Place::default().error(error.position, "", error.problem))?;
         Self::decode(&json, agents)
     }
 
@@ -57,7 +61,7 @@ impl Scenario {
         {
             list.iter().for_each(|agent| agents.add(agent));
         }
-        Self::decode(&json, agents)
+        Self::decode(&json, agents).map_err(ScenarioError::in_no_text)
     }
 
     /// The content of a file beside its agents, with the agents.
@@ -118,7 +122,7 @@ impl Scenario {
             None => {}
             Some((given, Data::Text(name))) => {
                 if let Some(fault) = labels::fault(name) {
-                    return Err(fields.error(given.line, "name", fault));
+                    return Err(fields.error(given.position, "name", fault));
                 }
             }
             Some((name, _)) => return Err(fields.unexpected("name", name, "a string")),
@@ -138,17 +142,17 @@ fn is_scenario(json: &Json<'_>) -> Result<(), ScenarioError> {
         Some((given, format)) => {
             let answer = if let Data::Text(format) = format { own::described(format) } else { None };
             return Err(match answer {
-                Some(answer) => Place::default().error(given.line, "", format!("{answer}; a scenario is expected")),
+                Some(answer) => Place::default().error(given.position, "", format!("{answer}; a scenario is expected")),
                 None => {
                     let problem = format!("{} where \"{FORMAT}\" is expected", brief(given));
-                    Place::default().error(given.line, "format", problem)
+                    Place::default().error(given.position, "format", problem)
                 }
             });
         }
     }
     match (member("agents"), member("error"), member("name")) {
         (None, Some((given, Data::Text(why))), Some((_, Data::Text(name)))) => {
-            Err(Place::default().error(given.line, "", format!("{name}: {why}")))
+            Err(Place::default().error(given.position, "", format!("{name}: {why}")))
         }
         _ => Ok(()),
     }
@@ -180,7 +184,8 @@ impl Agents {
         let (agent, text) = Agent::decode(json, self.all.len(), &mut self.doubts)?;
         let refused = |problem: &dyn fmt::Display| {
             let called = format!("agent {}", agent.called());
-            Err(Place { agent: Some(&called), part: None }.error(json.line, "id", problem))
+            let at = json.get("id").map_or(json.position, |id| id.position);
+            Err(Place { agent: Some(&called), part: None }.error(at, "id", problem))
         };
         if text && !self.texts.insert(agent.label.clone()) {
             return refused(&format_args!("{:?} is given to two agents", agent.label));
@@ -319,7 +324,7 @@ impl PathSegment {
                 let fields = place.fields(json, &["kind", "length", "radius", "sweep", "sweep_deg"])?;
                 let kind = fields.required("kind")?;
                 Err(fields.error(
-                    kind.line,
+                    kind.position,
                     "kind",
                     format!("{}; allowed is \"line\", \"arc\" or \"turn\"", brief(kind)),
                 ))
@@ -333,21 +338,21 @@ impl MotionSpec {
     fn decode(agent: &Fields<'_>, length: f64) -> Result<Self, ScenarioError> {
         let fields = agent.object("profile", "profile.", &["v0", "pieces"])?;
         let v0 = fields.number("v0", Range::NotNegative)?;
-        let (mut given, mut lines) = (Vec::new(), Vec::new());
+        let (mut given, mut pieces) = (Vec::new(), Vec::new());
         for (index, json) in fields.array("pieces")?.iter().enumerate() {
             let place = agent.place.part("profile piece", index);
             let fields = place.fields(json, &["duration", "accel"])?;
             let duration = fields.number("duration", Range::NotNegative)?;
             let accel = fields.number("accel", Range::Any)?;
             given.push((duration, accel));
-            lines.push((fields, json.line));
+            pieces.push(fields);
         }
         let mut profile = Settled::new(v0, given).map_err(|(index, after, accel)| {
             let problem =
                 format!("{} brings the speed to {} m/s; allowed is 0 and above", figure(accel), figure(after));
-            match lines.get(index) {
-                Some((fields, line)) => fields.error(*line, "accel", problem),
-                None => agent.error(fields.line, "profile", problem),
+            match pieces.get(index) {
+                Some(fields) => fields.refused("accel", problem),
+                None => agent.error(fields.position, "profile", problem),
             }
         })?;
         let travelled = profile.travelled;
@@ -361,7 +366,7 @@ impl MotionSpec {
                     figure(length)
                 )
             };
-            return Err(agent.error(fields.line, "profile", problem));
+            return Err(agent.error(fields.position, "profile", problem));
         }
         // A difference that is rounding is kept, so that a written profile is read unchanged.
         if travelled > 0.0 && (travelled - length).abs() > profile.rounding {

@@ -1,6 +1,6 @@
 //! Fields of a scenario, and errors that name them.
 
-use crate::json::{Data, Json, Member, QUOTED};
+use crate::json::{Data, Json, Member, Position, QUOTED};
 use std::fmt;
 
 /// Largest magnitude of a number in a scenario, in its unit, and of the length and the duration of a path.
@@ -14,6 +14,7 @@ pub const LIMIT: f64 = 1e10;
 pub struct ScenarioError {
     pub(super) scenario: String,
     line: usize,
+    /// `None` where the scenario is in no text.
     column: Option<usize>,
     /// Boxed, because errors are returned by value everywhere.
     about: Box<About>,
@@ -49,14 +50,14 @@ impl ScenarioError {
         self.line
     }
 
-    /// Character in the line, counted from 1, where the text is not JSON. It is not part of the message.
+    /// Character in the line, counted from 1; `None` where the scenario was no text. It is not part of the message.
     pub fn column(&self) -> Option<usize> {
         self.column
     }
 
-    /// The same with a column.
-    pub(super) fn at_column(self, column: usize) -> Self {
-        Self { column: Some(column), ..self }
+    /// The same about a value that is in no text.
+    pub(super) fn in_no_text(self) -> Self {
+        Self { column: None, ..self }
     }
 
     /// Name of the scenario, empty if it was not readable or not given.
@@ -84,13 +85,19 @@ pub(super) struct Place<'n> {
 
 impl<'n> Place<'n> {
     /// The error at this place; `field` is empty where the place as a whole is meant.
-    pub(super) fn error(self, line: usize, field: &str, problem: impl fmt::Display) -> ScenarioError {
+    pub(super) fn error(self, at: Position, field: &str, problem: impl fmt::Display) -> ScenarioError {
         let place = self.called(field);
         let colon = if place.is_empty() { "" } else { ": " };
         let message = format!("{place}{colon}{problem}");
         let field = Some(field.to_owned()).filter(|field| !field.is_empty());
         let about = About { agent: self.agent.map(str::to_owned), part: self.part, field };
-        ScenarioError { scenario: String::new(), line, column: None, about: Box::new(about), message }
+        ScenarioError {
+            scenario: String::new(),
+            line: at.line,
+            column: Some(at.column),
+            about: Box::new(about),
+            message,
+        }
     }
 
     /// Agent, part and field, as far as there are any.
@@ -118,17 +125,17 @@ impl<'n> Place<'n> {
         known: &[&str],
     ) -> Result<Fields<'n>, ScenarioError> {
         let Data::Object(members) = &json.data else {
-            return Err(self.error(json.line, "", format!("{} where an object is expected", brief(json))));
+            return Err(self.error(json.position, "", format!("{} where an object is expected", brief(json))));
         };
-        let fields = Fields { place: self, inside, line: json.line, members };
+        let fields = Fields { place: self, inside, position: json.position, members };
         for (index, (key, value)) in members.iter().enumerate() {
             if !known.contains(&&**key) {
                 let problem = format!("unknown key; known are {}", known.join(", "));
-                return Err(fields.error(value.line, &shortened(key), problem));
+                return Err(fields.error(value.position, &shortened(key), problem));
             }
             // At most as many steps as there are known keys before one of them is given twice.
             if members.iter().take(index).any(|(before, _)| before == key) {
-                return Err(fields.error(value.line, key, "given twice"));
+                return Err(fields.error(value.position, key, "given twice"));
             }
         }
         Ok(fields)
@@ -140,18 +147,18 @@ pub(super) struct Fields<'j> {
     pub(super) place: Place<'j>,
     /// Text that precedes its fields in messages.
     inside: &'static str,
-    pub(super) line: usize,
+    pub(super) position: Position,
     members: &'j [Member<'j>],
 }
 
 impl<'j> Fields<'j> {
-    pub(super) fn error(&self, line: usize, field: &str, problem: impl fmt::Display) -> ScenarioError {
-        self.place.error(line, &format!("{}{field}", self.inside), problem)
+    pub(super) fn error(&self, at: Position, field: &str, problem: impl fmt::Display) -> ScenarioError {
+        self.place.error(at, &format!("{}{field}", self.inside), problem)
     }
 
-    /// The error about a field, at its line if it is given.
+    /// The error about a field, at its place if it is given.
     pub(super) fn refused(&self, field: &str, problem: impl fmt::Display) -> ScenarioError {
-        self.error(self.get(field).map_or(self.line, |json| json.line), field, problem)
+        self.error(self.get(field).map_or(self.position, |json| json.position), field, problem)
     }
 
     /// A field as messages name it, with its agent and its part.
@@ -164,11 +171,11 @@ impl<'j> Fields<'j> {
     }
 
     pub(super) fn required(&self, field: &str) -> Result<&'j Json<'j>, ScenarioError> {
-        self.get(field).ok_or_else(|| self.error(self.line, field, "missing"))
+        self.get(field).ok_or_else(|| self.error(self.position, field, "missing"))
     }
 
     pub(super) fn unexpected(&self, field: &str, found: &Json<'_>, expected: &str) -> ScenarioError {
-        self.error(found.line, field, format!("{} where {expected} is expected", brief(found)))
+        self.error(found.position, field, format!("{} where {expected} is expected", brief(found)))
     }
 
     pub(super) fn array(&self, field: &str) -> Result<&'j [Json<'j>], ScenarioError> {
@@ -202,7 +209,7 @@ impl<'j> Fields<'j> {
             Ok(number) if range.allows(number) => Ok(number),
             _ => {
                 let problem = format!("{} is out of range; allowed is {range}", shortened(text));
-                Err(self.error(found.line, field, problem))
+                Err(self.error(found.position, field, problem))
             }
         }
     }

@@ -46,18 +46,18 @@ impl Name {
         let given = fields.required("id")?;
         let Some(id) = self.id else {
             return Err(match &given.data {
-                Data::Text(text) => fields.error(given.line, "id", no_name(text)),
+                Data::Text(text) => fields.error(given.position, "id", no_name(text)),
                 _ => fields.unexpected("id", given, "a whole number from 0 or a name"),
             });
         };
         match fields.get("label").map(|label| (label, &label.data)) {
             None => {}
             Some((label, _)) if self.is_text => {
-                return Err(fields.error(label.line, "label", "given, and the id is a text"));
+                return Err(fields.error(label.position, "label", "given, and the id is a text"));
             }
             Some((given, Data::Text(text))) => {
                 if let Some(fault) = labels::fault(text) {
-                    return Err(fields.error(given.line, "label", fault));
+                    return Err(fields.error(given.position, "label", fault));
                 }
             }
             Some((given, _)) => return Err(fields.unexpected("label", given, "a string")),

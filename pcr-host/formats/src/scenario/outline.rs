@@ -11,7 +11,7 @@ pub(super) fn outline(fields: &Fields<'_>, place: Place<'_>) -> Result<(f64, Opt
         return Ok((fields.number("radius", Range::Positive)?, None));
     }
     if let Some(radius) = fields.get("radius") {
-        return Err(fields.error(radius.line, "radius", "there is a radius or a footprint, not both"));
+        return Err(fields.error(radius.position, "radius", "there is a radius or a footprint, not both"));
     }
     let footprint = footprint(fields, place)?;
     Ok((footprint.reach(), Some(footprint)))
@@ -27,7 +27,7 @@ fn footprint(outer: &Fields<'_>, place: Place<'_>) -> Result<Footprint, Scenario
     let overhang = fields.get("overhang").map(|_| fields.number("overhang", Range::Positive)).transpose()?;
     let growth = fields.get("growth").map_or(Ok(0.0), |_| fields.number("growth", Range::NotNegative))?;
     let footprint = Footprint::new(corners, overhang);
-    footprint.map(|it| it.grown(growth)).map_err(|problem| outer.error(fields.line, "footprint", problem))
+    footprint.map(|it| it.grown(growth)).map_err(|problem| outer.error(fields.position, "footprint", problem))
 }
 
 /// The loads of an agent with this many segments.
@@ -42,14 +42,14 @@ pub(super) fn loads(agent: &Fields<'_>, segments: usize) -> Result<Vec<Load>, Sc
         let (radius, footprint) = outline(&fields, place)?;
         let range = fields.array("segments")?;
         let ends: Vec<usize> = range.iter().map(|end| segment(&fields, end, segments)).collect::<Result<_, _>>()?;
-        let line = fields.required("segments")?.line;
+        let position = fields.required("segments")?.position;
         let &[first, last] = ends.as_slice() else {
             let problem = format!("{} numbers; allowed are the first and the last segment", ends.len());
-            return Err(fields.error(line, "segments", problem));
+            return Err(fields.error(position, "segments", problem));
         };
         if last < first || loads.last().is_some_and(|before| first <= before.segments[1]) {
             let problem = format!("{} to {}; allowed are segments after one another", first + 1, last + 1);
-            return Err(fields.error(line, "segments", problem));
+            return Err(fields.error(position, "segments", problem));
         }
         loads.push(Load { segments: [first, last], radius, footprint });
     }
@@ -64,6 +64,6 @@ fn segment(fields: &Fields<'_>, json: &Json<'_>, segments: usize) -> Result<usiz
     };
     number.and_then(|number| number.checked_sub(1)).filter(|place| *place < segments).ok_or_else(|| {
         let problem = format!("{} where a segment from 1 to {} is expected", brief(json), figure(segments as f64));
-        fields.error(json.line, "segments", problem)
+        fields.error(json.position, "segments", problem)
     })
 }

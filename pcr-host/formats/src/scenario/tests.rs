@@ -286,6 +286,12 @@ fn faults_of_the_text_come_with_line_and_column() {
         [2, 1],
         "more text after the end of the scenario (pcr check and pcr regions read several on standard input, each on a line of its own)",
     );
+    refused_at("{\"name\": \"é\", \"agents\": 1}", [1, 25], "agents: 1 where an array is expected");
+    refused_at(
+        "{\"agents\": [{\"id\":\n 1, \"radius\": \"a\"}]}",
+        [2, 15],
+        "agent 1, radius: \"a\" where a number is expected",
+    );
     refused_at(&"[".repeat(100_000), [1, 65], "arrays and objects nested more than 64 deep");
 }
 
