@@ -147,18 +147,15 @@ fn answer_lines<W: Work>(
                 let answered = match lost {
                     Ok(lost) => {
                         say(Path::new("-"), lost.map(|warning| format!("line {number}: {warning}")));
-                        work.print(&scenario, &|_, _| {}, out).map_err(|unprinted| match unprinted {
-                            Unprinted::Failure(failure) => Ok(failure.to_string()),
-                            Unprinted::Output(error) => Err(error),
-                        })
+                        match work.print(&scenario, &|_, _| {}, out) {
+                            Ok(found) => Ok(found),
+                            Err(Unprinted::Failure(failure)) => Err(failure.to_string()),
+                            Err(Unprinted::Output(error)) => return Err(error.into()),
+                        }
                     }
-                    Err(why) => Err(Ok(why)),
+                    Err(why) => Err(why),
                 };
-                match answered {
-                    Ok(found) => Ok(found),
-                    Err(Ok(why)) => Err((scenario.name, format!("line {number}: {why}"))),
-                    Err(Err(error)) => return Err(error.into()),
-                }
+                answered.map_err(|why| (scenario.name, format!("line {number}: {why}")))
             }
             Err(refused) => Err(refused),
         };

@@ -73,7 +73,7 @@ impl<'m> Planner<'_, 'm> {
                     }
                     Ok((plan, solved))
                 };
-                match speeds::plan(self, known.clone(), &mut pool)? {
+                match speeds::plan(self, &self.ecm()?, self.orders()?, known.clone(), &mut pool) {
                     Ok(found) => {
                         let answer = told(found)?;
                         // If no other speeds are found, the delays are the plan.

@@ -5,7 +5,6 @@ mod branching;
 
 use super::Priority;
 use super::task::Planner;
-use crate::failure::Failure;
 use crate::fleet::HostEcm;
 use pcr_core::{
     Drive, Motion, Profile, RegionRef, SpeedPlan, Station, Unsolved as Never, earliest_start, plan_speed,
@@ -47,13 +46,14 @@ type Best<'m> = Result<Ordered<'m>, Option<Never>>;
 
 type Room<'m> = std::slice::IterMut<'m, Speeds>;
 
-/// The best motions found, beginning with known ones, and their order.
+/// The best motions found in these orders, beginning with known ones, and their order.
 pub(super) fn plan<'m>(
     planner: &Planner<'_, 'm>,
+    ecm: &HostEcm<f64>,
+    mut orders: Vec<Vec<usize>>,
     known: Option<Ordered<'m>>,
     pool: &'m mut [Speeds],
-) -> Result<Result<Ordered<'m>, Never>, Failure> {
-    let ecm = &planner.ecm()?;
+) -> Result<Ordered<'m>, Never> {
     // A part of the storage is kept for the last step.
     let (kept_back, pool) = pool.split_at_mut(AGAIN * planner.motions.len());
     let (mut room, mut last) = (pool.iter_mut(), kept_back.iter_mut());
@@ -63,7 +63,6 @@ pub(super) fn plan<'m>(
         order.sort_by(|&a, &b| plan[a].time().lo.total_cmp(&plan[b].time().lo));
         order
     };
-    let mut orders = planner.orders()?;
     if planner.request.priority == Priority::Best {
         orders.extend(known.as_ref().map(|(plan, _)| by_start(plan)));
     }
@@ -93,7 +92,7 @@ pub(super) fn plan<'m>(
             again(planner, ecm, plan, &mut last, &mut stations);
         }
     }
-    Ok(best.map_err(|never| never.expect("there is an order at least, which was tried")))
+    best.map_err(|never| never.expect("there is an order at least, which was tried"))
 }
 
 /// The earliest arrival of one agent while the others keep their motions: with other speeds, or, if its own motion is slower

@@ -82,7 +82,8 @@ impl Vehicle {
     fn new(vehicle: roxmltree::Node<'_, '_>) -> Result<Self, ImportError> {
         let name = named(vehicle);
         let speed = metres(vehicle, &name, "maxVelocity")?.filter(|speed| *speed > 0.0);
-        let half = only(vehicle, "boundingBox")?.map(|outline| half(outline, &name)).transpose()?;
+        let sizes = only(vehicle, "boundingBox")?.map(|outline| Sizes::new(outline, &name)).transpose()?;
+        let half = sizes.map(|sizes| sizes.half(&name));
         let length = optional(vehicle, &name, "length")?.map(|length| length * MILLI);
         let offsets = ["referenceOffsetX", "referenceOffsetY"];
         let is_placed = only(vehicle, "boundingBox")?.is_none_or(|own| offsets.iter().all(|at| own.has_attribute(*at)));
@@ -90,20 +91,35 @@ impl Vehicle {
     }
 }
 
-/// Half of the rectangle around a box, or what is wrong with that.
-fn half(outline: roxmltree::Node<'_, '_>, name: &str) -> Result<Result<Half, String>, ImportError> {
-    let name = format!("{name}, boundingBox");
-    let mut half = [0.0; 2];
-    for (half, [size, offset]) in half.iter_mut().zip([["length", "referenceOffsetX"], ["width", "referenceOffsetY"]]) {
-        match optional(outline, &name, size)? {
-            None => return Ok(Err(format!("{name}, {size}: missing"))),
-            Some(own) if own <= 0.0 => {
-                return Ok(Err(format!("{name}, {size}: {own} where a number above 0 is expected")));
-            }
-            Some(own) => *half = MILLI * (0.5 * own + optional(outline, &name, offset)?.unwrap_or(0.0).abs()),
+/// A box as the file has it: along and across, its size, and how far its middle is from the reference point \[mm\].
+struct Sizes([[Option<f64>; 2]; 2]);
+
+impl Sizes {
+    const NAMES: [[&str; 2]; 2] = [["length", "referenceOffsetX"], ["width", "referenceOffsetY"]];
+
+    fn new(outline: roxmltree::Node<'_, '_>, name: &str) -> Result<Self, ImportError> {
+        let name = format!("{name}, boundingBox");
+        let mut sizes = [[None; 2]; 2];
+        for (size, field) in sizes.as_flattened_mut().iter_mut().zip(Self::NAMES.as_flattened()) {
+            *size = optional(outline, &name, field)?;
         }
+        Ok(Self(sizes))
     }
-    Ok(Ok(half))
+
+    /// Half of the rectangle around the box, or what is wrong with that.
+    fn half(&self, name: &str) -> Result<Half, String> {
+        let mut half = [0.0; 2];
+        for (half, ([size, offset], [field, _])) in half.iter_mut().zip(self.0.into_iter().zip(Self::NAMES)) {
+            *half = match size {
+                None => return Err(format!("{name}, boundingBox, {field}: missing")),
+                Some(size) if size <= 0.0 => {
+                    return Err(format!("{name}, boundingBox, {field}: {size} where a number above 0 is expected"));
+                }
+                Some(size) => MILLI * (0.5 * size + offset.unwrap_or(0.0).abs()),
+            };
+        }
+        Ok(half)
+    }
 }
 
 /// The least of the speeds.
