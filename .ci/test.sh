@@ -71,6 +71,8 @@ quick() {
 }
 
 docs() {
+  step "documents: sizes and links"
+  .ci/documents.py
   step "documentation"
   peer_libraries
   RUSTDOCFLAGS="-D warnings" cargo doc "${everything_in[@]}" --profile "$profile" --no-deps

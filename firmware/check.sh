@@ -4,7 +4,7 @@
 #   check.sh                     what continuous integration has time for: two of six targets and formats, of a third one the demo, one board
 #   check.sh all                 everything
 #   check.sh TARGET:FORMAT...    some
-#   check.sh examples            those for all boards; continuous integration builds that for an STM32F4, which is in README.md
+#   check.sh examples            those for all boards; continuous integration builds that for an STM32F4, which is in docs/guide/languages.md
 #   UPDATE=1 check.sh ...        writes the files in expected/ instead of comparing with them; budgets hold all the same
 # Installs what is missing as root on Debian, and says so; elsewhere it says what to install.
 set -euo pipefail
@@ -47,7 +47,7 @@ tools() {
   cc -shared -fPIC -O2 -Wall -Wextra -o "$scratch/mcount.so" tools/mcount.c
   cargo build --locked --quiet --target "$host" -p pcr-link
   cargo test --locked --quiet --target "$host" -p pcr-supervisor --features micromath,fixed
-  step "random fleets on a bad line: no two discs touch (docs/guide/firmware.md has the long one)"
+  step "random fleets on a bad line: no two discs touch (docs/maintain/firmware.md has the long one)"
   link passing f32 300
   link passing q16 300
 }
@@ -238,7 +238,7 @@ budgets() {
       ;;
   esac
 }
-# docs/guide/firmware.md says what is bought with it, and what stands in the way of 16 KiB, which was the aim.
+# docs/maintain/firmware.md says what is bought with it, and what stands in the way of 16 KiB, which was the aim.
 thumb_budget=20992
 # 32-bit instructions where Thumb has 16-bit ones.
 riscv_budget=24832
@@ -327,7 +327,7 @@ else
   step "what the examples for boards share, in fixed point"
   (cd examples && ../cross.sh thumbv7em-none-eabihf check --locked --release --quiet -p example-fleet --features q16)
   # It builds the one for an STM32F4.
-  step "what README.md says to paste"
+  step "what docs/guide/languages.md says to paste"
   ../.ci/readme.py "On your board"
 fi
 step "firmware: all passed"

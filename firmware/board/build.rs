@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let aliases = aliases.map(|(name, region)| format!("REGION_ALIAS(\"REGION_{name}\", {region});\n"));
             regions(0x8000_0000, 4096, 0x8040_0000, 4096) + &aliases.collect::<String>()
         }
-        _ => return Err(format!("no machine for {target}: docs/guide/firmware.md lists the targets").into()),
+        _ => return Err(format!("no machine for {target}: docs/maintain/firmware.md lists the targets").into()),
     };
     let out = PathBuf::from(env::var("OUT_DIR")?);
     fs::write(out.join("memory.x"), memory)?;

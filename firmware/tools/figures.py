@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""figures.py [--write]: the tables in README.md and docs/guide/firmware.md are those of the figures in expected/; with --write it
+"""figures.py [--write]: the tables in docs/guide/firmware.md and docs/maintain/firmware.md are those of the figures in expected/; with --write it
 makes them so. `check.sh` compares expected/ with what it measures."""
 import pathlib
 import re
@@ -15,7 +15,7 @@ COLUMNS = [
     ("thumbv6m-none-eabi", "q16", "Cortex-M0"),
     ("riscv32imc-unknown-none-elf", "q16", "RV32IMC"),
 ]
-# In README.md; docs/guide/firmware.md has all.
+# In docs/guide/firmware.md; docs/maintain/firmware.md has all.
 SHOWN = [COLUMNS[0], COLUMNS[4], COLUMNS[5]]
 FORMATS = {"f32": "`f32`", "micro": "`Micro`", "q16": "`Q16`"}
 
@@ -26,10 +26,10 @@ def figures(target, form):
 
 
 def excesses():
-    """ε of each format for two agents at M = VT = 10 m, as docs/theory/errors.md has it (held by `tests/tests/outward.rs`,
+    """ε of each format for two agents at M = VT = 10 m, as docs/reference/bounds.md has it (held by `tests/tests/outward.rs`,
     the_excess_is_as_documented)."""
     found = {}
-    for line in (ROOT / "docs/theory/errors.md").read_text().splitlines():
+    for line in (ROOT / "docs/reference/bounds.md").read_text().splitlines():
         if m := re.match(r'\| <a id="e-\w+"></a>(.*?) \|.*\| (.*) \|$', line):
             for name, value in zip(m[1].split(", "), m[2].split(", ")):
                 found[name.strip("`").lower()] = value
@@ -45,7 +45,7 @@ def number(found, what, unit=""):
 
 
 def overview():
-    """README: a line for each of some targets and formats."""
+    """docs/guide/firmware.md: a line for each of some targets and formats."""
     yield row(["target, format", "ε at M = VT = 10 m", "library code", "table in RAM", "stack", "instructions: the whole table, per region"])
     yield "|---" * 6 + "|"
     excess = excesses()
@@ -59,7 +59,7 @@ def overview():
 
 
 def details():
-    """docs/guide/firmware.md: a line for each figure."""
+    """docs/maintain/firmware.md: a line for each figure."""
     found = [figures(target, form) for target, form, _ in COLUMNS]
     yield row(["12 agents"] + [f"{core}, {FORMATS[form]}" for _, form, core in COLUMNS])
     yield "|---" * (len(COLUMNS) + 1) + "|"
@@ -70,7 +70,7 @@ def details():
 def main():
     write = sys.argv[1:] == ["--write"]
     stale = []
-    for name, table in (("README.md", overview), ("docs/guide/firmware.md", details)):
+    for name, table in (("docs/guide/firmware.md", overview), ("docs/maintain/firmware.md", details)):
         path = ROOT / name
         text = path.read_text()
         head, rest = text.split("<!-- figures: firmware/tools/figures.py --write -->\n", 1)

@@ -29,15 +29,10 @@ pub mod shadow;
 pub mod velocity;
 pub mod written;
 
-/// The example of the README runs.
+/// The programs of the guide for Rust run.
 #[cfg(doctest)]
-#[doc = include_str!("../../README.md")]
-pub struct Readme;
-
-/// The programs of the cookbook run.
-#[cfg(doctest)]
-#[doc = include_str!("../../docs/guide/cookbook.md")]
-pub struct Cookbook;
+#[doc = include_str!("../../docs/guide/rust.md")]
+pub struct RustGuide;
 
 /// The example of the core's package runs.
 #[cfg(doctest)]

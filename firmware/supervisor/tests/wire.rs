@@ -41,7 +41,7 @@ fn piece<S: Number>(number: impl Fn(f64) -> S) -> PieceRecord<S> {
     PieceRecord { segments: [1, 2], length: range(4.125, 5.0625), other_length: range(0.75, 2.375) }
 }
 
-/// The bytes that docs/guide/firmware.md tells: header, check and delimiters included.
+/// The bytes that firmware/README.md tells: header, check and delimiters included.
 #[test]
 fn a_region_takes_so_many_bytes_on_the_wire() {
     let float = |value: f64| value as f32;

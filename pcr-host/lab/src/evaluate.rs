@@ -150,14 +150,13 @@ pub fn write(
 ) -> Result<Vec<PathBuf>, Problem> {
     let document = directory.join("evaluation.md");
     // Also one that is no text.
-    if let Ok(there) = fs::read(&document)
-        && !String::from_utf8_lossy(&there).contains(machine::OWN)
-    {
+    let there = fs::read(&document).map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).ok();
+    if there.as_ref().is_some_and(|there| !there.contains(machine::OWN)) {
         let why = "is there and not of this command: give another folder, or another name to it";
         return Err(Problem::Document(document, why.to_owned()));
     }
     let mut text = match only {
-        [] => machine::preamble(extent),
+        [] => machine::preamble(extent, there.as_deref().map_or("", machine::summary)),
         _ => fs::read_to_string(&document)
             .map_err(|error| Problem::Document(document.clone(), format!("cannot be read: {error}")))?,
     };

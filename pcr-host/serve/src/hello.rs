@@ -50,7 +50,7 @@ impl Refusal {
             Self::Late => "its first line did not come in time".into(),
             Self::Crowded => "its first line did not come before too many others connected".into(),
             Self::Hello(Fault::NoHello, _) => {
-                "its first line is no hello: a client of an earlier version, or of something else (docs/guide/serve.md)".into()
+                "its first line is no hello: a client of an earlier version, or of something else (docs/reference/serve.md)".into()
             }
             Self::Hello(Fault::Unauthorized { why }, _) => (*why).into(),
             Self::Hello(Fault::Version { .. }, _) => "its hello has another version, or none".into(),
@@ -68,7 +68,7 @@ impl Refusal {
             Self::TooLong(_) => return lines::too_long(),
             Self::Late | Self::Crowded => "the first line did not come in time",
         };
-        lines::refusal(&Fault::Malformed { why: format!("{why}; the first line is a hello (docs/guide/serve.md)") })
+        lines::refusal(&Fault::Malformed { why: format!("{why}; the first line is a hello (docs/reference/serve.md)") })
     }
 
     /// Returns what kind of refusal it is: of each kind, the log has few lines.

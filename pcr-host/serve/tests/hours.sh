@@ -4,7 +4,7 @@
 # steps with locks on whole routes and on edges. The same vehicles, missions drawn from the same numbers, and the same delays: hold-ups of
 # up to 2 s about every 20 s, up to 5 % slower, 1 % of the messages lost, 1 % twice, 1 % up to 3 s late, no connection for 1 % of the time.
 # (NO_BROKER=1, METHODS="supervisor ...": some of the columns.)
-# Then no more missions, and all have to come to their ends. Prints the table of docs/guide/serve.md; where vehicles were is in FOLDER.
+# Then no more missions, and all have to come to their ends. Prints the table of docs/maintain/serve.md; where vehicles were is in FOLDER.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 pcr=$1 out=$2 time=${3:-3600}

@@ -46,7 +46,7 @@ fn near(a: &Value, b: &Value) -> bool {
 #[test]
 fn the_example_of_the_document() {
     let schema: Value = serde_json::from_str(&document("reference/schema/pcr-serve.schema.json")).unwrap();
-    let text = document("guide/serve.md");
+    let text = document("reference/serve.md");
     let mut supervisor = supervisor();
     let (mut said, mut now, mut requests): (Vec<Value>, f64, u32) = (Vec::new(), 0.0, 0);
     for line in text.lines() {

@@ -103,14 +103,21 @@ fn follow(document: &str) -> usize {
 
 #[test]
 fn the_readme_shows_what_the_tool_prints() {
-    assert!(follow("README.md") >= 6);
+    assert!(follow("README.md") >= 5);
 }
 
 #[test]
 fn the_other_documents_show_what_the_tool_prints() {
-    assert!(follow("docs/guide/using.md") >= 1);
-    assert!(follow("docs/guide/cookbook.md") >= 5);
-    assert!(follow("docs/reference/layouts.md") >= 6);
+    let mut commands = 0;
+    for folder in ["docs/guide", "docs/reference"] {
+        for entry in fs::read_dir(top().join(folder)).unwrap() {
+            let name = entry.unwrap().file_name().into_string().unwrap();
+            if name.ends_with(".md") {
+                commands += follow(&format!("{folder}/{name}"));
+            }
+        }
+    }
+    assert!(commands >= 24, "{commands}");
 }
 
 #[test]

@@ -23,7 +23,7 @@ pub type Supervisor = Session<Number, AGENTS, ROOM, REGIONS, PIECES, Table>;
 static SUPERVISOR: ConstStaticCell<Supervisor> =
     ConstStaticCell::new(Session::of(Service::with(Traffic::new(), &BUILT_IN)));
 
-/// The watchdog's time \[ms\]: more than any board here takes from one feeding to the next (`docs/guide/firmware.md`, "Work between two feedings").
+/// The watchdog's time \[ms\]: more than any board here takes from one feeding to the next (`docs/guide/firmware.md`, "The watchdog").
 pub const WATCHDOG_MS: u32 = 500;
 
 /// The supervisor, once.

@@ -11,8 +11,18 @@ pub(super) const QUICK: &str = " Written with `--quick`: small fleets, without t
 /// What only such a document says.
 pub(super) const OWN: &str = "evaluate` writes this document with all numbers and pictures";
 
-/// Title, command, machine and how to read the numbers.
-pub(super) fn preamble(extent: Extent) -> String {
+/// Where the summary begins and ends, which people write: it stays when the numbers are measured anew.
+const SUMMARY: [&str; 2] = ["<!-- summary, written by hand -->\n", "<!-- end of summary -->\n\n"];
+
+/// Returns the summary of a document, with its marks; nothing of a document without one.
+pub(super) fn summary(document: &str) -> &str {
+    let [begins, ends] = SUMMARY;
+    let Some(begin) = document.find(begins) else { return "" };
+    document[begin..].find(ends).map_or("", |end| &document[begin..begin + end + ends.len()])
+}
+
+/// Returns title, summary, command, machine and how to read the numbers.
+pub(super) fn preamble(extent: Extent, summary: &str) -> String {
     let cores = available_parallelism().map_or(1, usize::from);
     let cpu = line("/proc/cpuinfo", "model name").unwrap_or_else(|| "an unnamed processor".into());
     let kilobytes = line("/proc/meminfo", "MemTotal").and_then(|total| total.split(' ').next()?.parse::<f64>().ok());
@@ -27,9 +37,9 @@ pub(super) fn preamble(extent: Extent) -> String {
     };
     let (os, architecture) = (std::env::consts::OS, std::env::consts::ARCH);
     format!(
-        "# Evaluation\n\n\
+        "# Evaluation\n\n{summary}\
         `cargo run --release -p pcr-lab -- {OWN}, and with \
-        `--only PART` one part of it anew; nothing is edited by hand.{quick}\n\n\
+        `--only PART` one part of it anew; only the summary is written by hand.{quick}\n\n\
         **Machine**: {cpu}, {cores} cores, {memory} of memory, {os} on {architecture}; load at the beginning {load} ({cores} would keep all cores \
         busy). **Libraries in C++**: {libraries}. Times are medians. The results are the *ratios*: in each round all methods run one after the \
         other, and a ratio is the median of the ratios of the rounds. Every method starts from the same placed paths and motions; the time for \
@@ -44,4 +54,20 @@ pub(super) fn line(file: &str, key: &str) -> Option<String> {
     let text = fs::read_to_string(file).ok()?;
     let (_, value) = text.lines().find(|line| line.starts_with(key))?.split_once(':')?;
     Some(value.trim().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_summary_stays_when_a_document_is_written_anew() {
+        let [begins, ends] = SUMMARY;
+        let words = format!("{begins}What it comes to.\n{ends}");
+        let first = preamble(Extent::Full, &words);
+        assert!(first.starts_with(&format!("# Evaluation\n\n{words}`cargo run")), "{first}");
+        assert_eq!(summary(&first), words);
+        assert_eq!(summary(&preamble(Extent::Full, "")), "");
+        assert_eq!(summary(begins), "");
+    }
 }

@@ -36,7 +36,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     row("`pcr regions --format json`", json(serde_json::to_string(&answer)));
     row("the scenario, from which any receiver computes them", fleet.scenario.to_json().len());
     text.push_str(
-        "\nA region is stored once for both directions of a pair and counts twice here. docs/guide/firmware.md has the bytes of single \
+        "\nA region is stored once for both directions of a pair and counts twice here. firmware/README.md has the bytes of single \
         regions and pieces in the serial protocol.\n",
     );
     Ok(Section { text, pictures: Vec::new() })

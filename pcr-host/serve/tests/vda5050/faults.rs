@@ -144,7 +144,7 @@ impl Tally {
 fn faults_one_after_the_other() {
     /// Messages are as late as this at most \[s\], of ours; ten of the vehicles go by in one.
     const LATE: f64 = 30.0;
-    // The numbers of docs/guide/serve.md: PCR_FAULTS=20, half an hour and more.
+    // The numbers of docs/maintain/serve.md: PCR_FAULTS=20, half an hour and more.
     let rounds: u64 = std::env::var("PCR_FAULTS").ok().map_or(1, |rounds| rounds.parse().unwrap());
     let mut broker = Mosquitto::start("faults");
     let (mut site, profiles) = Site::open(&broker, SCENE);
