@@ -31,6 +31,12 @@ pub enum Invalid {
     },
     /// The fixed capacity is used up.
     Full(&'static str),
+    /// The corners of an outline are not those of a convex polygon, counter-clockwise.
+    NotConvex,
+    /// The path has a turn in place. It has no length, but an outline that is no disc sweeps an area while it turns.
+    TurnInPlace,
+    /// The arc is so tight beside the outline that rounding a length would move its corners too far. Give it a larger radius.
+    Lever,
 }
 
 impl fmt::Display for Invalid {
@@ -52,6 +58,9 @@ impl fmt::Display for Invalid {
                 write!(f, "the profile travels {metres}.{rest:03} m, the path has {own}.{own_rest:03} m")
             }
             Self::Full(what) => write!(f, "there is no room for another {what}"),
+            Self::NotConvex => f.write_str("the corners of the outline do not turn left around a convex polygon"),
+            Self::TurnInPlace => f.write_str("the outline sweeps an area while it turns in place, which has no length"),
+            Self::Lever => f.write_str("an arc of the path is too tight for the size of the outline"),
         }
     }
 }
@@ -79,6 +88,8 @@ pub enum Full {
     Orders,
     /// A check of [`Orders`](crate::Orders) needs one [`Reach`](crate::Reach) for each agent.
     Reaches,
+    /// Two outlines touch at more lengths of a pair of segments than the kernel has room for; more storage does not help.
+    Contacts,
 }
 
 impl fmt::Display for Full {
@@ -91,6 +102,7 @@ impl fmt::Display for Full {
             Self::Boxes => f.write_str("there is room for less than two boxes an agent"),
             Self::Orders => f.write_str("there is no room for another order"),
             Self::Reaches => f.write_str("there is room to check the orders of fewer agents"),
+            Self::Contacts => f.write_str("two outlines touch at too many lengths of a pair of segments"),
         }
     }
 }

@@ -25,6 +25,15 @@ impl<T: Copy, const N: usize> Few<T, N> {
         }
     }
 
+    /// Adds a value if there is room, and returns whether there was.
+    pub(crate) fn push(&mut self, thing: T) -> bool {
+        let Some(place) = self.places.get_mut(self.count) else { return false };
+        *place = thing;
+        // The index was in range, so this does not overflow.
+        self.count = self.count.wrapping_add(1);
+        true
+    }
+
     /// The values that were added.
     pub(crate) fn as_slice(&self) -> &[T] {
         self.places.get(..self.count).unwrap_or_default()

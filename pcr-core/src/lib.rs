@@ -13,6 +13,7 @@
 //! geometry   points, directions, intervals, boxes           Point, Pose, Interval
 //! intervals  unions and gaps of intervals, without storage  union, gaps
 //! segment    lines and arcs placed in the plane             Segment, Curve, Turn
+//! outline    convex polygons, rounded by a radius           Outline
 //! path       chains of segments, turns in place (ρ, Eq. 1)  Path, PathRef
 //! profile    length over time (λ, Eq. 1-3) and its inverse  Profile, ProfileRef, Limits
 //! motion     disc + path + profile + start time (Eq. 2)     Motion
@@ -53,6 +54,7 @@ mod intervals;
 mod lap;
 mod motion;
 mod orders;
+mod outline;
 mod overlaps;
 mod pair;
 mod path;
@@ -71,6 +73,7 @@ pub use intervals::{Gaps, Union, gaps, union};
 pub use lap::Share;
 pub use motion::{LENGTH_TOLERANCE_LOG2, Motion};
 pub use orders::{Brakes, Decision, Hold, Mission, Order, Orders, Pass, Progress, Reach, Refused, Tolerances};
+pub use outline::{Corner, Outline, OutlineRef};
 pub use overlaps::overlaps;
 pub use path::{Path, PathRef};
 pub use pieces::Piece;
