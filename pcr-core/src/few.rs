@@ -4,6 +4,7 @@
 //! is valid, which needs no branch.
 
 /// A list of at most `N` values.
+#[derive(Clone, Copy)]
 pub(crate) struct Few<T, const N: usize> {
     places: [T; N],
     count: usize,
@@ -32,6 +33,11 @@ impl<T: Copy, const N: usize> Few<T, N> {
         // The index was in range, so this does not overflow.
         self.count = self.count.wrapping_add(1);
         true
+    }
+
+    /// Whether another value can be added.
+    pub(crate) fn has_room(&self) -> bool {
+        self.count < N
     }
 
     /// The values that were added.

@@ -3,6 +3,7 @@
 use crate::bits::digest;
 use crate::error::{self, Invalid, in_range, not_negative};
 use crate::geometry::{Bounds, Interval, Point};
+use crate::outline::{Corner, OutlineRef};
 use crate::path::PathRef;
 use crate::profile::ProfileRef;
 use crate::scalar::{Scalar, Wide};
@@ -21,7 +22,14 @@ pub const LENGTH_TOLERANCE_LOG2: i32 = -20;
 pub struct Motion<'a, S: Scalar> {
     path: PathRef<'a, S>,
     profile: ProfileRef<'a, S>,
+    /// Radius of the disc, or of the rounding of the outline.
     radius: S,
+    /// Corners of the outline; none for a disc.
+    corners: &'a [Corner<S>],
+    /// Largest distance of a corner from the reference point.
+    spread: S,
+    /// How much farther a corner moves at most than the reference point, as a factor.
+    lever: S,
     margin: S,
     time: Interval<S>,
     lateness: S,
@@ -45,6 +53,46 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// ([`excess`](crate::excess)).
     pub fn new(path: PathRef<'a, S>, profile: ProfileRef<'a, S>, radius: S, start: S) -> Result<Self, Invalid> {
         error::radius(radius)?;
+        Self::of(path, profile, OutlineRef::disc(radius), start)
+    }
+
+    /// The motion of an outline whose reference point follows the path, with its `x` axis along the direction of travel, and that sets off at the time
+    /// `start` \[s\]. An agent that drives backwards has an [`Outline::reversed`](crate::Outline::reversed) outline. An outline that is a disc about its reference point makes the motion of
+    /// [`Motion::new`].
+    ///
+    /// # Errors
+    /// As [`Motion::new`]; [`Invalid::TurnInPlace`] if the path turns in place, which sweeps an area but has no length; [`Invalid::Lever`] if an
+    /// arc is so tight that rounding a length could move a corner by a sixteenth of the size of the outline.
+    ///
+    /// ```
+    /// use pcr_core::{Ecm, Limits, Motion, Outline, Path, Piece, Point, Pose, Profile, Radians, Region};
+    /// // Two pallet trucks, 1.2 m long and 0.8 m wide, pass each other 1 mm apart.
+    /// let pose = |x, y, heading| Pose { position: Point::new(x, y), heading: Radians(heading) };
+    /// let east = Path::<f64, 1>::starting_at(pose(0.0, 0.0, 0.0))?.line(6.0)?;
+    /// let west = Path::<f64, 1>::starting_at(pose(6.0, 0.801, core::f64::consts::PI))?.line(6.0)?;
+    /// let truck = Outline::<f64, 4>::rectangle(0.6, 0.6, 0.4, 0.4, 0.0)?;
+    /// let profile = Profile::rest_to_rest(6.0, Limits { speed: 1.0, acceleration: 1.0 })?;
+    /// let motion = |path| Motion::with_outline(path, profile.as_profile(), &truck, 0.0);
+    /// let fleet = [motion(east.as_path())?, motion(west.as_path())?];
+    /// assert!(Ecm::build([Region::EMPTY; 1], [Piece::EMPTY; 4], &fleet)?.is_empty());
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
+    /// ```
+    pub fn with_outline(
+        path: PathRef<'a, S>,
+        profile: ProfileRef<'a, S>,
+        outline: impl Into<OutlineRef<'a, S>>,
+        start: S,
+    ) -> Result<Self, Invalid> {
+        Self::of(path, profile, outline.into(), start)
+    }
+
+    fn of(
+        path: PathRef<'a, S>,
+        profile: ProfileRef<'a, S>,
+        outline: OutlineRef<'a, S>,
+        start: S,
+    ) -> Result<Self, Invalid> {
+        let (radius, corners, spread) = (outline.radius(), outline.corners(), outline.spread());
         let time = travel_time(profile, start)?;
         let bounds = path.bounds();
         let extent = bounds.extent().max(path.length()) + radius.double();
@@ -63,9 +111,52 @@ impl<'a, S: Scalar> Motion<'a, S> {
         let drift = S::drift(arcs, extent + diameter);
         let top_speed = profile.top_speed();
         let allowance = S::lag(top_speed, profile.duration()) + gap;
-        let (margin, lateness) = (S::ZERO, S::ZERO);
+        let (margin, lateness, lever) = (S::ZERO, S::ZERO, S::ZERO);
         let digest = path.digest();
-        Ok(Self { path, profile, radius, margin, time, lateness, bounds, extent, drift, allowance, top_speed, digest })
+        let disc = Self {
+            path,
+            profile,
+            radius,
+            corners,
+            spread,
+            lever,
+            margin,
+            time,
+            lateness,
+            bounds,
+            extent,
+            drift,
+            allowance,
+            top_speed,
+            digest,
+        };
+        if corners.is_empty() { Ok(disc) } else { disc.extended(diameter) }
+    }
+
+    /// Completes the motion of an outline: what rounding does to its corners, and its checksum.
+    fn extended(self, diameter: S) -> Result<Self, Invalid> {
+        // Corners are placed by their vectors from the centre of an arc.
+        let extent = in_range(self.extent + self.spread.double() + diameter, "extent of the motion")?;
+        let arcs = self.path.segments().iter().filter_map(|segment| match segment.curve() {
+            Curve::Line => None,
+            Curve::Arc { radius, .. } => Some(self.spread.quotient(radius)),
+        });
+        let lever = arcs.fold(S::ZERO, S::max);
+        let levered = |length: S| length + length.times(lever).narrow();
+        let drift = levered(self.drift) + S::slack(extent).times(lever).narrow();
+        let allowance = levered(self.allowance);
+        let rounding = S::slack(extent) + drift + allowance;
+        if rounding.double().double().double().double() > self.spread + self.radius {
+            return Err(Invalid::Lever);
+        }
+        // A turn that moves no corner by more than rounding does is none.
+        let fine = S::slack(extent).half().half();
+        if self.path.segments().iter().any(|segment| segment.turns_in_place(self.spread, fine)) {
+            return Err(Invalid::TurnInPlace);
+        }
+        let corners = self.corners.iter().flat_map(|corner| [corner.at.x, corner.at.y]);
+        let digest = corners.fold(self.digest, |sum, coordinate| digest(sum, coordinate.digest()));
+        Ok(Self { extent, lever, drift, allowance, digest, ..self })
     }
 
     /// The same motion with a margin \[m\] around the disc, for localization errors, latency or comfort. Margins do not
@@ -126,7 +217,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// # Errors
     /// As [`Motion::new`].
     pub fn with_profile(self, profile: ProfileRef<'a, S>, start: S) -> Result<Self, Invalid> {
-        let motion = Self::new(self.path, profile, self.radius, start)?;
+        let motion = Self::of(self.path, profile, self.outline(), start)?;
         let allowance = self.allowance.max(motion.allowance);
         Self { allowance, ..motion }.with_margin(self.margin)?.with_lateness(self.lateness)
     }
@@ -139,7 +230,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`].
     pub fn with_longest(self, longest: S) -> Result<Self, Invalid> {
         not_negative(longest, "longest duration")?;
-        let lag = S::lag(self.top_speed, longest) + gap(self.path, self.profile);
+        let lag = self.levered(S::lag(self.top_speed, longest) + gap(self.path, self.profile));
         in_range(lag, "lag")?;
         Ok(Self { allowance: self.allowance.max(lag), ..self })
     }
@@ -181,8 +272,23 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.profile
     }
 
-    /// Radius of the disc \[m\].
+    /// Radius of the disc, or of the disc about the reference point that contains the outline \[m\].
     pub fn radius(&self) -> S {
+        if self.has_outline() { self.radius + self.spread } else { self.radius }
+    }
+
+    /// Returns the outline. It has no corners if it is a disc about the reference point.
+    pub fn outline(&self) -> OutlineRef<'a, S> {
+        OutlineRef::of(self.corners, self.radius, self.spread)
+    }
+
+    /// Whether the agent is not a disc about its reference point.
+    pub(crate) fn has_outline(&self) -> bool {
+        !self.corners.is_empty()
+    }
+
+    /// Radius of the disc, or of the rounding of the outline \[m\].
+    pub(crate) fn rounding_radius(&self) -> S {
         self.radius
     }
 
@@ -224,7 +330,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// boxes do not meet have no region.
     pub(crate) fn swept(&self) -> Bounds<S> {
         let slack = S::slack(self.extent) + self.drift + self.allowance;
-        self.bounds.expanded(self.radius + slack.double())
+        self.bounds.expanded(self.radius() + slack.double())
     }
 
     /// Largest coordinate or length of the motion, plus the diameter of the disc \[m\]. Rounding errors grow with it.
@@ -240,7 +346,12 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// Largest distance of the agent from its exact place at a time \[m\], because of the rounding of times and the
     /// difference between the lengths of profile and path.
     pub fn lag(&self) -> S {
-        S::lag(self.top_speed, self.profile.duration()) + gap(self.path, self.profile)
+        self.levered(S::lag(self.top_speed, self.profile.duration()) + gap(self.path, self.profile))
+    }
+
+    /// How far a corner moves at most while the reference point moves by a length \[m\].
+    pub(crate) fn levered(&self, length: S) -> S {
+        if self.has_outline() { length + length.times(self.lever).narrow() } else { length }
     }
 
     /// Largest lag for which the regions of the motion hold \[m\], at least its own.

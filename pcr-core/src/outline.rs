@@ -174,6 +174,16 @@ pub struct OutlineRef<'a, S: Scalar> {
 }
 
 impl<'a, S: Scalar> OutlineRef<'a, S> {
+    /// The outline with these corners, which were checked.
+    pub(crate) const fn of(corners: &'a [Corner<S>], radius: S, spread: S) -> Self {
+        Self { corners, radius, spread }
+    }
+
+    /// The disc of this radius about the reference point, which was checked.
+    pub(crate) const fn disc(radius: S) -> Self {
+        Self { corners: &[], radius, spread: S::ZERO }
+    }
+
     /// Returns the corners of the polygon, counter-clockwise; none for a disc about the reference point.
     pub fn corners(self) -> &'a [Corner<S>] {
         self.corners
@@ -246,11 +256,17 @@ mod tests {
         let star: [_; 5] = core::array::from_fn(|k| libm::sincos(core::f64::consts::TAU * 0.4 * k as f64));
         assert_eq!(polygon(star.map(|(y, x)| (x, y))).err(), Some(Invalid::NotConvex));
         assert_eq!(polygon([(0.0, 0.0), (0.0, 0.0)]).err(), Some(Invalid::TooSmall("edge of the outline")));
-        assert_eq!(polygon([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 0.0)]).err(), Some(Invalid::TooSmall("edge of the outline")));
+        assert_eq!(
+            polygon([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 0.0)]).err(),
+            Some(Invalid::TooSmall("edge of the outline"))
+        );
         assert_eq!(polygon([]).err(), Some(Invalid::NonPositive("number of corners")));
         assert_eq!(polygon([(f64::NAN, 0.0)]).err(), Some(Invalid::NonFinite("x of a corner")));
         assert_eq!(Outline::<f64, 3>::polygon(vectors(square), 0.1).err(), Some(Invalid::Full("corner")));
-        assert_eq!(Outline::<f64, 4>::polygon(vectors(square), -0.1).err(), Some(Invalid::Negative("radius of the outline")));
+        assert_eq!(
+            Outline::<f64, 4>::polygon(vectors(square), -0.1).err(),
+            Some(Invalid::Negative("radius of the outline"))
+        );
         assert_eq!(Outline::<f64, 1>::polygon(vectors([(1.0, 0.0)]), 0.0).err(), Some(Invalid::NonPositive("radius")));
         assert_eq!(Outline::<f64, 4>::disc(0.0).err(), Some(Invalid::NonPositive("radius")));
     }

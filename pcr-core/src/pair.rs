@@ -4,6 +4,9 @@
 //! A point (l₁, l₂) of coordination space holds the lengths along both paths. The set of points at which the agents
 //! collide depends only on the paths and the combined radius. So it serves both directions of the pair and all motions
 //! on the paths (except that the rounding of times adds to the radius).
+//!
+//! Two discs have kernels of their own. Pairs with an outline that is no disc have those in [`outline`], behind the same
+//! door: [`Pair::find`], and the slices of pieces.
 
 pub(crate) mod cells;
 pub(crate) mod events;
@@ -11,6 +14,7 @@ pub(crate) mod footprint;
 mod laps;
 pub(crate) mod lengths;
 pub(crate) mod offset;
+pub(crate) mod outline;
 
 use crate::bits::Ones;
 use crate::error::Full;
@@ -23,6 +27,7 @@ use cells::SegmentPair;
 use core::hint::select_unpredictable as select;
 use events::wraps;
 use footprint::Footprint;
+use outline::events::Carriers;
 
 /// Two agents as an unordered pair.
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +44,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
     pub(crate) fn new(first: &'a Motion<'a, S>, second: &'a Motion<'a, S>) -> Self {
         let slack = S::slack(first.extent().max(second.extent())) + first.drift() + second.drift();
         let slack = slack + first.allowance().max(second.allowance());
-        Self { first, second, slack, radius: first.radius() + second.radius() + slack }
+        Self { first, second, slack, radius: first.rounding_radius() + second.rounding_radius() + slack }
     }
 
     /// Error bound of the regions \[m\]: they are computed with a radius that is larger by one slack, and distances are
@@ -53,7 +58,11 @@ impl<'a, S: Scalar> Pair<'a, S> {
     ///
     /// Cost: a box test for each pair of segments, and a few hundred operations for each pair of segments that meet.
     pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) -> Result<(), Full> {
-        let reach = self.radius + self.slack;
+        let outlines = self.has_outline();
+        let mut reach = self.radius + self.slack;
+        if outlines {
+            reach = reach + self.first.outline().spread() + self.second.outline().spread();
+        }
         let first = self.first.bounds().expanded(reach);
         for (j, other) in (0..u16::MAX).zip(self.second.path().segments()) {
             if !first.meets(other.bounds) {
@@ -65,6 +74,10 @@ impl<'a, S: Scalar> Pair<'a, S> {
                     let Some(own) = row.get(place as usize) else { break };
                     if own.near(other, reach) {
                         let indices = [begin.wrapping_add(place as u16), j];
+                        if outlines {
+                            Carriers::new(self, own, other).find(indices, pieces)?;
+                            continue;
+                        }
                         let (radius, slack) = (self.radius, self.slack);
                         SegmentPair { first: own, second: other, indices, radius, slack }.find(pieces)?;
                     }
@@ -122,6 +135,9 @@ impl<'a, S: Scalar> Pair<'a, S> {
         if before.second.hi != other.length {
             return false;
         }
+        if self.has_outline() {
+            return self.outlines_meet_at_joint_of_second(before, after);
+        }
         // If at most one interval is covered, both pieces contain it.
         if !wraps(own, self.radius, self.slack) {
             return true;
@@ -148,6 +164,9 @@ impl<'a, S: Scalar> Pair<'a, S> {
         };
         if before.first.hi != own.length {
             return false;
+        }
+        if self.has_outline() {
+            return self.outlines_meet_at_joint_of_first(before, after);
         }
         // At most one interval of the second segment is within reach of the joint, so both pieces contain it.
         if !wraps(other, self.radius, self.slack) {
@@ -188,7 +207,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
             return [None; 2];
         }
         let covered = Footprint::of(other.point_at(s - other.from), own).reach(own, self.radius).intervals(own);
-        let slices = piece.share.of(covered, own, self.hull(piece, own));
+        let slices = piece.share().of(covered, own, self.hull(piece, own));
         slices.map(|slice| slice.map(|slice| along_path(slice, own)))
     }
 
@@ -214,7 +233,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
             // With a slack: a part of the second segment that is barely covered may seem uncovered when computed from
             // here.
             let laps = footprint.reach(own, self.radius + self.slack).intervals(own);
-            piece.share.holds(l - own.from, laps, own, self.hull(piece, own)).then_some(part)
+            piece.share().holds(l - own.from, laps, own, self.hull(piece, own)).then_some(part)
         })
     }
 
@@ -223,7 +242,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         Interval::new(piece.first.lo - own.from - self.slack, piece.first.hi - own.from + self.slack)
     }
 
-    fn segments(&self, piece: &Piece<S>) -> (Option<&'a Segment<S>>, Option<&'a Segment<S>>) {
+    pub(crate) fn segments(&self, piece: &Piece<S>) -> (Option<&'a Segment<S>>, Option<&'a Segment<S>>) {
         (segment(self.first, piece.first_segment), segment(self.second, piece.second_segment))
     }
 }
@@ -231,7 +250,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
 /// Converts a part of a segment to lengths of the path. An end of the segment becomes exactly an end in the path, so
 /// that neighbours meet.
 #[cfg_attr(not(feature = "std"), inline(never))]
-fn along_path<S: Scalar>(part: Interval<S>, segment: &Segment<S>) -> Interval<S> {
+pub(crate) fn along_path<S: Scalar>(part: Interval<S>, segment: &Segment<S>) -> Interval<S> {
     let at = |u: S| select(u < segment.length, (u + segment.from).min(segment.to), segment.to);
     Interval::new(at(part.lo), at(part.hi))
 }

@@ -33,9 +33,9 @@ pub struct Piece<S> {
     pub(crate) second: Interval<S>,
     pub(crate) first_segment: u16,
     pub(crate) second_segment: u16,
-    /// Lap of the first segment; it connects neighbouring slabs.
-    pub(crate) lap: Lap,
-    pub(crate) share: Share,
+    /// Which of the intervals of a slice of the first segment belongs to the piece. For two discs, the lap of the first segment, which connects
+    /// neighbouring slabs, and the share; for outlines, k and n of the k-th of n intervals.
+    rank: [u8; 2],
     group: u16,
     pub(crate) next: u32,
 }
@@ -50,23 +50,46 @@ impl<S: Scalar> Piece<S> {
         second: Interval::new(S::ZERO, S::ZERO),
         first_segment: 0,
         second_segment: 0,
-        lap: Lap::Same,
-        share: Share::Only,
+        rank: [0; 2],
         group: 0,
         next: NONE,
     };
 
     pub(crate) fn new(segments: [u16; 2], lap: Lap, share: Share, first: Interval<S>, second: Interval<S>) -> Self {
+        Self::ranked(segments, [lap as u8, share as u8], first, second)
+    }
+
+    /// The piece of two outlines that is the k-th of n intervals, counted from 0.
+    pub(crate) fn ranked(segments: [u16; 2], rank: [u8; 2], first: Interval<S>, second: Interval<S>) -> Self {
         let [first_segment, second_segment] = segments;
-        Self { first, second, first_segment, second_segment, lap, share, group: 0, next: NONE }
+        Self { first, second, first_segment, second_segment, rank, group: 0, next: NONE }
+    }
+
+    /// Lap of the first segment of a piece of two discs.
+    pub(crate) fn lap(&self) -> Lap {
+        Lap::ALL.get(usize::from(self.rank[0])).copied().unwrap_or(Lap::Whole)
+    }
+
+    /// Share of the first segment of a piece of two discs.
+    pub(crate) fn share(&self) -> Share {
+        match self.rank[1] {
+            0 => Share::Only,
+            1 => Share::Start,
+            _ => Share::End,
+        }
+    }
+
+    /// For a piece of two outlines, k and n: it is the k-th of n intervals, counted from 0.
+    pub(crate) fn rank(&self) -> [u8; 2] {
+        self.rank
     }
 
     /// The intervals at a joint that belong to this piece, as lengths along segments. Of two, only the longer one: the
     /// shorter one is thin and due to rounding. If the whole circle is covered, both, because rounding may cut the
     /// circle anywhere.
     pub(crate) fn at_joint(&self, covered: [Option<Interval<S>>; 2], segment: &Segment<S>) -> [Option<Interval<S>>; 2] {
-        match self.share.of(covered, segment, self.first) {
-            [Some(a), Some(b)] if self.lap != Lap::Whole => [Some(if a.length() < b.length() { b } else { a }), None],
+        match self.share().of(covered, segment, self.first) {
+            [Some(a), Some(b)] if self.lap() != Lap::Whole => [Some(if a.length() < b.length() { b } else { a }), None],
             intervals => intervals,
         }
     }

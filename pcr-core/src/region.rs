@@ -6,7 +6,7 @@ use crate::intervals::union;
 use crate::lap::Share;
 use crate::motion::Motion;
 use crate::pair::Pair;
-use crate::pieces::List;
+use crate::pieces::{List, Piece};
 use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
 
@@ -41,8 +41,11 @@ pub struct PieceRef<'a, S: Scalar> {
     /// Range of lengths along the other agent's path \[m\].
     pub other_length: Interval<S>,
     /// The other disc can cover two intervals of a segment at once; this says which of them belongs to the piece. It
-    /// refers to the segment of the agent with the lower index.
+    /// refers to the segment of the agent with the lower index. It has no meaning for outlines.
     pub share: Share,
+    /// k and n: of the n intervals that the other outline covers at once of the segment of the agent with the lower index, the piece is the
+    /// k-th, counted from 0. `None` for two discs.
+    pub rank: Option<[u8; 2]>,
 }
 
 /// Types of pieces (paper, Section 3.3); the first letter stands for the ego's segment.
@@ -202,10 +205,12 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
             let indices = [usize::from(piece.first_segment), usize::from(piece.second_segment)];
             let first = pair.first.path().segments().get(indices[0])?;
             let second = pair.second.path().segments().get(indices[1])?;
+            let (share, rank) =
+                if pair.has_outline() { (Share::Only, Some(piece.rank())) } else { (piece.share(), None) };
             Some(if transposed {
                 let segments = [indices[1], indices[0]];
-                let share = piece.share;
-                PieceRef { ego: second, other: first, segments, length: piece.second, other_length: piece.first, share }
+                let (length, other_length) = (piece.second, piece.first);
+                PieceRef { ego: second, other: first, segments, length, other_length, share, rank }
             } else {
                 PieceRef {
                     ego: first,
@@ -213,7 +218,8 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
                     segments: indices,
                     length: piece.first,
                     other_length: piece.second,
-                    share: piece.share,
+                    share,
+                    rank,
                 }
             })
         })
@@ -241,7 +247,8 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         let Self { pair, ref pieces, transposed, .. } = *self;
         let range = self.length();
         // For NaN the whole range of the region is returned.
-        Slices { pair, pieces: pieces.clone(), transposed, at, range, rest: is_no_number(at).then_some(range) }
+        let (rest, open) = (is_no_number(at).then_some(range), None);
+        Slices { pair, pieces: pieces.clone(), transposed, at, range, rest, open, outlines: pair.has_outline() }
     }
 }
 
@@ -256,6 +263,9 @@ struct Slices<'a, S: Scalar> {
     range: Interval<S>,
     /// The second interval of the last piece; at NaN the whole range.
     rest: Option<Interval<S>>,
+    /// The last piece of a pair of outlines, and how many of its intervals were returned, if there are more.
+    open: Option<(&'a Piece<S>, usize)>,
+    outlines: bool,
 }
 
 impl<S: Scalar> Iterator for Slices<'_, S> {
@@ -267,6 +277,15 @@ impl<S: Scalar> Iterator for Slices<'_, S> {
         loop {
             let slice = match self.rest.take() {
                 Some(slice) => slice,
+                None if self.outlines => {
+                    let Some((piece, index)) = self.open.take().or_else(|| Some((self.pieces.next()?, 0))) else {
+                        return None;
+                    };
+                    let (slice, more) = self.pair.part_at(piece, self.transposed, self.at, index);
+                    self.open = more.then_some((piece, index.wrapping_add(1)));
+                    let Some(slice) = slice else { continue };
+                    slice
+                }
                 None => {
                     let (piece, at) = (self.pieces.next()?, self.at);
                     let slices = if self.transposed {

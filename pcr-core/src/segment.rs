@@ -176,6 +176,12 @@ impl<S: Scalar> Segment<S> {
         Ok(self)
     }
 
+    /// Whether a turn in place at the end of the segment moves a point at the distance `reach` by more than `by` \[m\].
+    pub(crate) fn turns_in_place(&self, reach: S, by: S) -> bool {
+        let turn = Direction::<S>::at(self.heading_at_end - self.heading_before_turn(self.length));
+        turn.cos < S::Unit::ZERO || reach.scale(turn.sin).abs() > by
+    }
+
     /// A segment of this shape at the end of `self`; its end is not valid yet.
     fn then(&self, curve: Curve<S>, circumference: S, length: S) -> Self {
         let (to, rounding) = self.to.sum(length);

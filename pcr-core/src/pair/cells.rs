@@ -171,7 +171,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
                 // that no piece has yet is added.
                 [reach, self.radius + self.slack].into_iter().all(|radius| {
                     let laps = footprint.reach(self.first, radius).intervals(self.first);
-                    piece.share.holds(l, laps, self.first, piece.first)
+                    piece.share().holds(l, laps, self.first, piece.first)
                 })
             });
             if belongs {

@@ -101,7 +101,7 @@ impl<S: Scalar> SegmentPair<'_, S> {
             let covered = covered.hull(self.limit(begin, middle.foot(self.first), lap));
             let ongoing = lap.less(laps_lost).map_or(NONE, |lap| before[lap as usize]);
             let index = match pieces.get_mut(ongoing) {
-                Some(piece) if piece.lap == lap && piece.share == share => {
+                Some(piece) if piece.lap() == lap && piece.share() == share => {
                     piece.first = piece.first.hull(covered);
                     piece.second.hi = range.hi;
                     ongoing

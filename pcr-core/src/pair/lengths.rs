@@ -10,7 +10,7 @@ const MOST: usize = 12;
 /// At most [`MOST`] lengths \[m\].
 pub(crate) type Lengths<S> = Few<S, MOST>;
 
-impl<S: Scalar> Lengths<S> {
+impl<S: Scalar, const N: usize> Few<S, N> {
     /// Sorts the lengths in increasing order.
     pub(crate) fn sort(&mut self) {
         let places = Cell::from_mut(self.as_mut_slice()).as_slice_of_cells();

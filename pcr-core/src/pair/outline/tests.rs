@@ -1,0 +1,416 @@
+//! Tests of regions of outlines against an independent distance ([`oracle`]).
+
+extern crate std;
+
+use super::distance::tests::{Random, oracle};
+use super::events::Carriers;
+use super::placed::Carried;
+use crate::outline::{Outline, OutlineRef};
+use crate::pieces::{Piece, Pieces};
+use crate::scalar::Scalar;
+use crate::{
+    Curve, Ecm, Interval, Motion, Path, Point, Pose, Profile, Radians, Region, RegionRef, Segment, Turn, Vector, excess,
+};
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::vec::Vec;
+
+fn standing(x: f64, y: f64, heading: f64) -> Segment<f64> {
+    Segment::standing(Pose { position: Point::new(x, y), heading: Radians(heading) }).unwrap()
+}
+
+fn close(found: &[f64], expected: &[f64]) {
+    assert_eq!(found.len(), expected.len(), "{found:?} {expected:?}");
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-11, "{found} {expected}");
+    }
+}
+
+/// A rectangle of 1.2 m x 0.8 m turns about its centre beside a wall that comes nearer.
+#[test]
+fn a_rectangle_that_turns_beside_a_wall_has_pinches() {
+    let first = standing(0.0, -1.0, 0.0).then_arc(1.0, Turn::Left, TAU).unwrap();
+    let second = standing(0.0, 1.5, -FRAC_PI_2).then_line(1.2).unwrap();
+    let own = Outline::<f64, 4>::rectangle(0.6, 0.6, 1.4, -0.6, 0.0).unwrap();
+    let wall = Outline::<f64, 4>::rectangle(0.1, 0.1, 2.0, 2.0, 0.0).unwrap();
+    let (radius, slack) = (0.05, 1e-13);
+    let carriers = Carriers {
+        first: Carried::new(&first, own.as_outline()),
+        second: Carried::new(&second, wall.as_outline()),
+        radius,
+        slack,
+    };
+    let slices = [
+        (
+            0.7,
+            &[
+                0.534961326318396,
+                1.43062612017626,
+                1.71096653341353,
+                2.6066313272714,
+                3.67655397990819,
+                4.57221877376606,
+                4.85255918700332,
+                5.74822398086119,
+            ][..],
+        ),
+        (0.8, &[0.279494746222193, 2.8620979073676, 3.42108739981199, 6.00369056095739]),
+        (0.9, &[0.0858968327951782, 3.05569582079461, 3.22748948638497, 6.19728847438441]),
+        (1.0, &[0.0, TAU]),
+        (0.6, &[]),
+    ];
+    for (at, expected) in slices {
+        let slice = carriers.slice_of_first(at).unwrap();
+        let ends: Vec<f64> = slice.as_slice().iter().flat_map(|part| [part.lo, part.hi]).collect();
+        close(&ends, expected);
+    }
+    let events = carriers.events().unwrap();
+    for event in [0.0, 0.628889744907202, 0.75, 0.95, 1.2] {
+        assert!(
+            events.as_slice().iter().any(|found| (found - event).abs() < 1e-11),
+            "{event}: {:?}",
+            events.as_slice()
+        );
+    }
+    let mut pieces = Pieces::new([Piece::EMPTY; 16]);
+    carriers.find([0; 2], &mut pieces).unwrap();
+    let mut found = Vec::new();
+    let mut index = pieces.first_pending();
+    while let Some(piece) = pieces.get_mut(index) {
+        found.push((piece.rank(), piece.second));
+        index = piece.next;
+    }
+    let expected = [
+        ([0, 4], 0.628889744907202, 0.75),
+        ([1, 4], 0.628889744907202, 0.75),
+        ([2, 4], 0.628889744907202, 0.75),
+        ([3, 4], 0.628889744907202, 0.75),
+        ([0, 2], 0.75, 0.95),
+        ([1, 2], 0.75, 0.95),
+        ([0, 1], 0.95, 1.2),
+    ];
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    for (rank, lo, hi) in expected {
+        assert!(
+            found
+                .iter()
+                .any(|(of, second)| *of == rank && (second.lo - lo).abs() < 1e-11 && (second.hi - hi).abs() < 1e-11),
+            "{found:?}"
+        );
+    }
+    let all = pieces.take_region().unwrap();
+    assert_eq!(crate::pieces::List::new(pieces.slots(), all).count(), 7, "one region");
+}
+
+#[test]
+fn a_rectangle_on_a_line_beside_a_wall_covers_one_interval() {
+    let first = standing(0.0, 0.0, PI / 6.0).then_line(4.0).unwrap();
+    let second = standing(0.0, 1.5, -FRAC_PI_2).then_line(1.2).unwrap();
+    // Its heading stays that of the x-axis while it moves at 30 degrees: a body turned by -30 degrees.
+    let (cos, sin) = (0.75_f64.sqrt(), -0.5);
+    let corners = [(-0.6, -0.4), (0.6, -0.4), (0.6, 0.4), (-0.6, 0.4)];
+    let corners = corners.map(|(x, y)| Vector { x: x * cos - y * sin, y: x * sin + y * cos });
+    let own = Outline::<f64, 4>::polygon(corners, 0.0).unwrap();
+    let wall = Outline::<f64, 4>::rectangle(0.1, 0.1, 2.0, 2.0, 0.0).unwrap();
+    let carriers = Carriers {
+        first: Carried::new(&first, own.as_outline()),
+        second: Carried::new(&second, wall.as_outline()),
+        radius: 0.05,
+        slack: 1e-13,
+    };
+    for (at, lo, hi) in [(0.2, 1.5, 3.05995642670502), (0.7, 0.5, 2.7)] {
+        let slice = carriers.slice_of_first(at).unwrap();
+        close(&slice.as_slice().iter().flat_map(|part| [part.lo, part.hi]).collect::<Vec<_>>(), &[lo, hi]);
+    }
+}
+
+/// A pair of motions in the format `S`, made of numbers in `f64`.
+struct Case {
+    /// Start, heading, radius of an arc (0 for a line) or its negative for one to the right, and length, of both.
+    segments: [Vec<(f64, f64)>; 2],
+    poses: [[f64; 3]; 2],
+    outlines: [Outline<f64, 16>; 2],
+}
+
+impl Case {
+    fn random(random: &mut Random, segments: usize) -> Self {
+        let grid = random.below(3) == 0;
+        let on_grid = |x: f64| if grid { (8.0 * x).round() / 8.0 } else { x };
+        let radii = [on_grid(random.within(0.0, 0.4)), on_grid(random.within(0.05, 0.4))];
+        let outlines = radii.map(|radius| {
+            let sharp = random.below(3) == 0;
+            random.outline(if sharp { 0.0 } else { radius })
+        });
+        let poses = [(); 2].map(|()| {
+            let heading = if grid { FRAC_PI_2 * random.below(4) as f64 } else { random.within(-3.0, 3.0) };
+            [on_grid(random.within(-1.5, 1.5)), on_grid(random.within(-1.5, 1.5)), heading]
+        });
+        let parts = [(); 2].map(|()| {
+            (0..segments)
+                .map(|_| {
+                    if random.below(3) == 0 {
+                        (0.0, 0.1 + on_grid(random.within(0.1, 2.0)))
+                    } else {
+                        let radius = 0.125 + on_grid(random.within(0.0, 1.5) * random.unit());
+                        let sweep = match random.below(6) {
+                            0 => TAU,
+                            1 if grid => FRAC_PI_2,
+                            _ => {
+                                let most = if random.below(3) == 0 { TAU } else { 2.0 };
+                                random.within(0.1, most)
+                            }
+                        };
+                        (if random.below(2) == 0 { radius } else { -radius }, radius * sweep)
+                    }
+                })
+                .collect()
+        });
+        Self { segments: parts, poses, outlines }
+    }
+
+    fn paths<S: Number>(&self) -> [Path<S, 4>; 2] {
+        [0, 1].map(|k| {
+            let [x, y, heading] = self.poses[k].map(S::of);
+            let path = Path::starting_at(Pose { position: Point::new(x, y), heading: S::angle(heading) }).unwrap();
+            self.segments[k].iter().fold(path, |path, &(radius, length)| {
+                let turn = if radius < 0.0 { Turn::Right } else { Turn::Left };
+                let length = S::of(length);
+                if radius == 0.0 {
+                    path.line(length).unwrap()
+                } else {
+                    path.arc(S::of(radius.abs()), turn, length).unwrap()
+                }
+            })
+        })
+    }
+
+    fn outlines<S: Number>(&self) -> [Outline<S, 16>; 2] {
+        self.outlines.each_ref().map(|outline| {
+            let outline = outline.as_outline();
+            let corners =
+                outline.corners().iter().map(|corner| Vector { x: S::of(corner.at().x), y: S::of(corner.at().y) });
+            if outline.corners().is_empty() {
+                return Outline::disc(S::of(outline.radius())).unwrap();
+            }
+            Outline::polygon(corners, S::of(outline.radius())).unwrap()
+        })
+    }
+}
+
+/// A number format with conversions from and to `f64`.
+trait Number: Scalar {
+    fn of(number: f64) -> Self;
+    fn float(self) -> f64;
+    fn angle(number: Self) -> Self::Angle;
+}
+
+impl Number for f64 {
+    fn of(number: f64) -> Self {
+        number
+    }
+    fn float(self) -> f64 {
+        self
+    }
+    fn angle(number: Self) -> Radians<f64> {
+        Radians(number)
+    }
+}
+
+impl Number for f32 {
+    fn of(number: f64) -> Self {
+        number as f32
+    }
+    fn float(self) -> f64 {
+        f64::from(self)
+    }
+    fn angle(number: Self) -> Radians<f32> {
+        Radians(number)
+    }
+}
+
+#[cfg(feature = "micromath")]
+impl Number for crate::scalar::Micro {
+    fn of(number: f64) -> Self {
+        Self(number as f32)
+    }
+    fn float(self) -> f64 {
+        f64::from(self.0)
+    }
+    fn angle(number: Self) -> Radians<Self> {
+        Radians(number)
+    }
+}
+
+/// The exact corners in `f64` of an outline at a length of a path whose numbers are those of another format.
+struct Exact {
+    pose: [f64; 3],
+    segments: Vec<(f64, f64)>,
+    corners: Vec<[f64; 2]>,
+    radius: f64,
+    length: f64,
+}
+
+impl Exact {
+    fn of<S: Number>(path: &Path<S, 4>, heading: f64, outline: OutlineRef<'_, S>) -> Self {
+        let path = path.as_path();
+        let start = path.segments()[0].point_at(S::ZERO);
+        let segments = path.segments().iter().map(|segment| {
+            let radius = match segment.curve() {
+                Curve::Line => 0.0,
+                Curve::Arc { radius, turn: Turn::Left } => radius.float(),
+                Curve::Arc { radius, turn: Turn::Right } => -radius.float(),
+            };
+            (radius, segment.length().float())
+        });
+        let corners = outline.corners().iter().map(|corner| [corner.at().x.float(), corner.at().y.float()]);
+        let corners: Vec<_> = if outline.corners().is_empty() { Vec::from([[0.0; 2]]) } else { corners.collect() };
+        let pose = [start.x.float(), start.y.float(), heading];
+        Self {
+            pose,
+            segments: segments.collect(),
+            corners,
+            radius: outline.radius().float(),
+            length: path.length().float(),
+        }
+    }
+
+    fn at(&self, length: f64) -> Vec<[f64; 2]> {
+        let ([mut x, mut y, mut heading], mut rest) = (self.pose, length);
+        for &(radius, length) in &self.segments {
+            let way = rest.min(length);
+            if radius == 0.0 {
+                (x, y) = (x + way * heading.cos(), y + way * heading.sin());
+            } else {
+                let next = heading + way / radius;
+                (x, y) = (x + radius * (next.sin() - heading.sin()), y - radius * (next.cos() - heading.cos()));
+                heading = next;
+            }
+            rest -= way;
+            if rest <= 0.0 {
+                break;
+            }
+        }
+        let (sin, cos) = heading.sin_cos();
+        self.corners.iter().map(|[a, b]| [x + a * cos - b * sin, y + a * sin + b * cos]).collect()
+    }
+}
+
+/// What was compared.
+#[derive(Default, Debug)]
+struct Tally {
+    pairs: u32,
+    regions: u32,
+    points: u32,
+    inside: u32,
+    intervals: usize,
+    refused: u32,
+}
+
+/// Compares the regions of a case with the oracle, at random points and beside the ends of slices.
+fn compare<S: Number>(case: &Case, random: &mut Random, tally: &mut Tally, seed: u64) {
+    let (paths, outlines) = (case.paths::<S>(), case.outlines::<S>());
+    let profiles = paths
+        .each_ref()
+        .map(|path| Profile::<S, 1>::from_pieces(S::of(1.0), [(path.as_path().length(), S::ZERO)]).unwrap());
+    let motion = |k: usize| {
+        let path: &Path<S, 4> = &paths[k];
+        Motion::with_outline(path.as_path(), profiles[k].as_profile(), &outlines[k], S::ZERO)
+    };
+    let (Ok(first), Ok(second)) = (motion(0), motion(1)) else {
+        tally.refused += 1;
+        return;
+    };
+    let fleet = [first, second];
+    let exact = [0, 1].map(|k| Exact::of(&paths[k], S::of(case.poses[k][2]).float(), outlines[k].as_outline()));
+    let radius = exact[0].radius + exact[1].radius;
+    let eps = excess(&fleet[0], &fleet[1]).float();
+    let ecm = Ecm::build([Region::EMPTY; 64], [Piece::EMPTY; 256], &fleet).unwrap();
+    let regions: Vec<RegionRef<'_, S>> = ecm.pair(&fleet, 0, 1).unwrap().collect();
+    tally.pairs += 1;
+    tally.regions += regions.len() as u32;
+    let [l, s] = exact.each_ref().map(|exact| exact.length);
+    let mut check = |a: f64, b: f64| {
+        let (a, b) = (S::of(a.clamp(0.0, l)), S::of(b.clamp(0.0, s)));
+        let f = oracle(&exact[0].at(a.float()), &exact[1].at(b.float()));
+        // The oracle itself rounds.
+        let fine = 1e-14;
+        let holds = regions.iter().filter(|region| region.covers(a, b)).count();
+        let back = regions.iter().filter(|region| (*region).clone().swapped().covers(b, a)).count();
+        let message = || {
+            std::format!(
+                "seed {seed}: f - R = {:e}, eps {eps:e}, at {a:?} {b:?}, {:?} {:?}",
+                f - radius,
+                case.poses,
+                case.segments
+            )
+        };
+        if f < radius - fine {
+            assert!(holds > 0, "lost: {}", message());
+            assert!(back > 0, "lost in the other direction: {}", message());
+            tally.inside += 1;
+        }
+        if f > radius + eps + fine {
+            assert!(holds == 0, "invented: {}", message());
+            assert!(back == 0, "invented in the other direction: {}", message());
+        }
+        tally.points += 1;
+    };
+    for _ in 0..24 {
+        check(random.within(0.0, l), random.within(0.0, s));
+    }
+    let mut ends = Vec::new();
+    for region in &regions {
+        for _ in 0..3 {
+            let range = region.other_length();
+            let b = random.within(range.lo.float(), range.hi.float());
+            let slice: Vec<Interval<S>> = region.slice_at(S::of(b)).collect();
+            tally.intervals = tally.intervals.max(slice.len());
+            for part in slice {
+                ends.extend([(part.lo.float(), b), (part.hi.float(), b)]);
+            }
+            ends.push((random.within(region.length().lo.float(), region.length().hi.float()), b));
+        }
+        let (first, second) = (region.length(), region.other_length());
+        for corner in [first.lo, first.hi] {
+            ends.extend([(corner.float(), second.lo.float()), (corner.float(), second.hi.float())]);
+        }
+    }
+    for (a, b) in ends {
+        for by in [0.0, 1e-6, -1e-6, 1e-3, -1e-3] {
+            check(a + by, b);
+            check(a, b + by);
+        }
+    }
+}
+
+fn campaign<S: Number>(seeds: core::ops::Range<u64>, segments: usize) -> Tally {
+    let mut tally = Tally::default();
+    for seed in seeds {
+        let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+        (0..4).for_each(|_| {
+            random.unit();
+        });
+        let case = Case::random(&mut random, segments);
+        compare::<S>(&case, &mut random, &mut tally, seed);
+    }
+    tally
+}
+
+#[test]
+fn regions_of_single_segments_hold_what_the_oracle_says() {
+    let tally = campaign::<f64>(0..4000, 1);
+    assert!(tally.pairs == 4000 && tally.inside > 10_000, "{tally:?}");
+}
+
+#[test]
+fn regions_of_paths_hold_what_the_oracle_says() {
+    let tally = campaign::<f64>(10_000..11_000, 4);
+    assert!(tally.pairs == 1000 && tally.inside > 10_000, "{tally:?}");
+}
+
+#[test]
+fn regions_in_single_precision_hold_what_the_oracle_says() {
+    for segments in [1, 4] {
+        let tally = campaign::<f32>(20_000..22_000, segments);
+        assert!(tally.pairs > 1900 && tally.inside > 5_000, "{tally:?}");
+    }
+}
