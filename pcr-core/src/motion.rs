@@ -4,6 +4,7 @@ use crate::bits::digest;
 use crate::error::{self, Invalid, in_range, not_negative};
 use crate::geometry::{Bounds, Interval, Point};
 use crate::outline::{Corner, OutlineRef};
+use crate::pair::outline::placed::{Carried, Corners};
 use crate::path::PathRef;
 use crate::profile::ProfileRef;
 use crate::scalar::{Scalar, Wide};
@@ -363,7 +364,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// the distance that it goes at top speed in the rounding error of a time. 0 in a format of relative precision,
     /// where `reach` covers the error of times.
     pub(crate) fn leap(&self) -> S {
-        self.top_speed.times(S::slack(S::ZERO)).narrow().half().half()
+        self.levered(self.top_speed.times(S::slack(S::ZERO)).narrow().half().half())
     }
 
     /// Distance that the agent goes at its top speed during a time that contains its motion and the time 0 \[m\].
@@ -373,7 +374,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
 
     /// Distance that the agent goes at its top speed during such a time \[s\] \[m\].
     pub(crate) fn way_until(&self, latest: S) -> S {
-        self.top_speed.times(latest).narrow()
+        self.levered(self.top_speed.times(latest).narrow())
     }
 
     /// The same motion of a disc that is larger by a few rounding errors \[m\], for a search that has to leave room for them.
@@ -397,6 +398,14 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// Position of the centre at a time.
     pub fn position_at(&self, time: S) -> Point<S> {
         self.path.point_at(self.length_at(time))
+    }
+
+    /// The corners of the outline at a time, relative to a point.
+    pub(crate) fn corners_at(&self, time: S, from: Point<S>) -> Corners<S> {
+        match self.path.locate(self.length_at(time)) {
+            Some((segment, length)) => Carried::new(segment, self.outline()).at(length, from),
+            None => Corners::new(Corner::CENTRE),
+        }
     }
 
     /// The times \[s\] at which the travelled length is in the interval `length`. They are rounded outward by at most

@@ -194,7 +194,7 @@ impl<'a, S: Scalar> PathRef<'a, S> {
     }
 
     /// The segment at a travelled length, and the length along it. It always exists, because every path has a segment.
-    fn locate(self, length: S) -> Option<(&'a Segment<S>, S)> {
+    pub(crate) fn locate(self, length: S) -> Option<(&'a Segment<S>, S)> {
         let after = self.segments.partition_point(|segment| segment.from <= length);
         let segment = self.segments.get(after.saturating_sub(1))?;
         let u = if length >= self.length() { segment.length } else { length.max(S::ZERO) - segment.from };

@@ -5,8 +5,9 @@
 //! legs        a motion, split where its formula changes          (internal)
 //! windows     pairs of legs, while the agents may be near        (internal)
 //! chord       the relative motion between two instants           (internal)
-//! contact     when two discs are in contact                      Encounter, Contacts
-//! clearance   the closest approach of two discs                  Approach
+//! bodies      outlines at an instant, and how long nothing changes (internal)
+//! contact     when two agents are in contact                     Encounter, Contacts
+//! clearance   the closest approach of two agents                 Approach
 //! conflict    contacts with their place and depth                Conflict, Conflicts, first_conflict, first_overlap
 //! broad_phase which pairs of a fleet can be in contact, and when BroadPhase
 //! safe        when a part of a path is free, and the dual        safe_intervals, safe_lengths
@@ -16,6 +17,7 @@
 //! stretch     speed scale factors                                least_duration
 //! ```
 
+mod bodies;
 mod bracket;
 mod broad_phase;
 mod chord;

@@ -1,10 +1,11 @@
-//! The closest approach of two discs: the least separation over time.
+//! The closest approach of two agents: the least separation over time.
 //!
 //! The separation is bounded from below by the chord of a step (see `contact`) minus its error, and from above by the
 //! motion itself at the nearest point of the chord. A step is finished when its lower bound is not below the least
 //! separation known.
 
 use crate::geometry::Interval;
+use crate::pair::outline::distance::separation_along;
 use crate::query::chord::Chord;
 use crate::query::contact::Encounter;
 use crate::query::windows::{Window, Windows};
@@ -17,7 +18,8 @@ use crate::scalar::{Scalar, Wide};
 pub struct Approach<S> {
     /// The first time of the closest approach, within the tolerance \[s\].
     pub time: S,
-    /// Distance of the centres \[m\].
+    /// Distance of the centres \[m\]. For outlines, the distance of the polygons without their rounding; if these overlap, minus the length of the least translation
+    /// that separates them.
     pub separation: S,
 }
 
@@ -30,6 +32,9 @@ impl<S: Scalar> Encounter<'_, S> {
     /// those before. Only where the distance stays the same although the agents do not go alike, on a circle around a
     /// stand for instance, steps are as short as √(ε / c) with c = Σ |a| + v²/ϱ.
     pub fn closest(&self, during: Interval<S>) -> Approach<S> {
+        if self.has_outline() {
+            return self.closest_of_outlines(during.limited());
+        }
         let separation = |time: S| (self.other.position_at(time) - self.ego.position_at(time)).norm_squared().sqrt();
         let during = during.limited();
         let mut best = Approach { time: during.lo, separation: separation(during.lo) };
@@ -43,6 +48,45 @@ impl<S: Scalar> Encounter<'_, S> {
         let mut windows = Windows::new([self.ego, self.other], during, self.pad());
         while let Some(window) = windows.next(best.separation.min(bound) + self.pad()) {
             self.closest_in(&window, bound, &mut best);
+        }
+        best
+    }
+
+    /// The same for outlines. A step is finished when the lower bound of the separation around its middle (`Bodies::least_within`) is not
+    /// below the least separation known; if not, it is halved.
+    fn closest_of_outlines(&self, during: Interval<S>) -> Approach<S> {
+        let fine = self.tolerance().half().half();
+        let separation = |time: S| {
+            let from = self.ego.position_at(time);
+            let [own, their] = [self.ego, self.other].map(|motion| motion.corners_at(time, from));
+            separation_along(own.as_slice(), their.as_slice()).0
+        };
+        let mut best = Approach { time: during.lo, separation: separation(during.lo) };
+        let mut windows = Windows::new([self.ego, self.other], during, self.pad());
+        while let Some(window) = windows.next(self.spread(best.separation.max(S::ZERO)) + self.pad()) {
+            let mut now = window.time.lo;
+            let mut step = window.time.length();
+            loop {
+                let left = window.time.hi - now;
+                let duration = step.min(left);
+                let instant = window.at(now + duration.half());
+                let during = Interval::new(now, now + duration);
+                let bodies = window.bodies([self.ego, self.other], &instant, during);
+                if bodies.separation < best.separation {
+                    best = Approach { time: instant.time, separation: bodies.separation };
+                }
+                // The middle is rounded.
+                let rounding = S::rounding(instant.time.abs());
+                let least = bodies.least_within(duration.half() + rounding);
+                if least < best.separation - fine && duration.half() > rounding.double() {
+                    step = duration.half();
+                } else if duration >= left {
+                    break;
+                } else {
+                    now = now + duration;
+                    step = duration.double();
+                }
+            }
         }
         best
     }

@@ -20,9 +20,9 @@ pub struct Conflict<S> {
     pub length: Interval<S>,
     /// Lengths of the other's path during the contact \[m\].
     pub other_length: Interval<S>,
-    /// The closest approach of the centres during the contact.
+    /// The closest approach during the contact.
     pub deepest: Approach<S>,
-    /// Largest overlap \[m\]: sum of the radii minus the least separation, within half of [`Encounter::tolerance`]; 0 if the discs only touch.
+    /// Largest overlap \[m\], the length of the least translation that separates the two: sum of the radii minus the least separation, within half of [`Encounter::tolerance`]; 0 if they only touch.
     pub depth: S,
     /// Whether the depth is at most half of [`Encounter::tolerance`]: it may then be no contact. A touch is in truth no deeper than the tolerance.
     pub touching: bool,

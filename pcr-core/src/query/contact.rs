@@ -1,4 +1,5 @@
-//! Finds when two discs are in contact, in steps that cannot miss a contact.
+//! Finds when two agents are in contact, in steps that cannot miss a contact. For outlines `bodies` has the steps; for
+//! discs they are these.
 //!
 //! Over a step of length h, let the relative position of the two centres be Δ(t). It deviates by at most
 //!
@@ -70,9 +71,19 @@ impl<'a, S: Scalar> Encounter<'a, S> {
         self.ego.time().hull(self.other.time())
     }
 
-    /// Sum of the radii \[m\].
+    /// Sum of the radii \[m\]: those of discs, or those by which outlines are rounded.
     pub fn radius(&self) -> S {
-        self.ego.radius() + self.other.radius()
+        self.ego.rounding_radius() + self.other.rounding_radius()
+    }
+
+    /// Whether any of the two is not a disc about its reference point.
+    pub(crate) fn has_outline(&self) -> bool {
+        self.ego.has_outline() | self.other.has_outline()
+    }
+
+    /// Distance of the reference points at which the agents may be as near as a distance of their polygons \[m\].
+    pub(crate) fn spread(&self, distance: S) -> S {
+        if self.has_outline() { distance + self.ego.outline().spread() + self.other.outline().spread() } else { distance }
     }
 
     /// Tolerance ε \[m\]: clearances above it are never reported as contacts, and touches ([`Conflict::touching`](crate::Conflict::touching)) are no
@@ -95,7 +106,7 @@ impl<'a, S: Scalar> Encounter<'a, S> {
     #[cfg_attr(feature = "std", inline(always))]
     pub fn contacts(&self, during: Interval<S>) -> Contacts<'a, S> {
         let reach = self.radius() + self.pad;
-        let apart = !self.ego.bounds().expanded(reach).meets(self.other.bounds());
+        let apart = !self.ego.bounds().expanded(self.spread(reach)).meets(self.other.bounds());
         let windows = (!apart).then(|| Windows::new([self.ego, self.other], during.limited(), self.pad));
         Contacts { encounter: *self, radius: reach, windows, scan: None, since: None, last: None, steps: 0 }
     }
@@ -193,7 +204,7 @@ impl<S: Scalar> Contacts<'_, S> {
 impl<'a, S: Scalar> Contacts<'a, S> {
     /// The next window in which the two agents may come near enough for a contact.
     fn next_scan(&mut self) -> Option<Scan<'a, S>> {
-        let reach = self.radius + self.encounter.tolerance;
+        let reach = self.encounter.spread(self.radius + self.encounter.tolerance);
         let window = self.windows.as_mut()?.next(reach)?;
         let now = self.last.filter(|last| last.time == window.time.lo).unwrap_or_else(|| window.at(window.time.lo));
         Some(Scan { window, now, step: window.time.length() })
@@ -223,6 +234,9 @@ impl<'a, S: Scalar> Contacts<'a, S> {
     /// One step of the search; returns an event if something changes.
     fn step(&mut self, scan: &mut Scan<'_, S>) -> Option<Event<S>> {
         self.steps = self.steps.saturating_add(1);
+        if self.encounter.has_outline() {
+            return self.step_of_outlines(scan);
+        }
         let Scan { window, now, step } = *scan;
         let left = window.time.hi - now.time;
         let (duration, to) = if step < left { (step, now.time + step) } else { (left, window.time.hi) };
@@ -254,6 +268,41 @@ impl<'a, S: Scalar> Contacts<'a, S> {
         };
         scan.step = next.step;
         next.event
+    }
+}
+
+impl<S: Scalar> Contacts<'_, S> {
+    /// One step of the search for outlines: as long as they certainly stay apart, or in contact (`bodies`).
+    fn step_of_outlines(&self, scan: &mut Scan<'_, S>) -> Option<Event<S>> {
+        let Scan { window, now, .. } = *scan;
+        let Encounter { ego, other, tolerance, .. } = self.encounter;
+        let bodies = window.bodies([ego, other], &now, Interval::new(now.time, window.time.hi));
+        let half = tolerance.half();
+        let step = if self.since.is_some() {
+            // The hysteresis avoids many short contacts of outlines that hover at a distance of R.
+            if bodies.separation > self.radius + half {
+                return Some(Event::End(now.time));
+            }
+            bodies.stay_near(self.radius + tolerance)
+        } else {
+            if bodies.separation <= self.radius + half.half() {
+                return Some(Event::Begin(now.time));
+            }
+            bodies.stay_apart(self.radius)
+        };
+        let to = now.time + step.min(window.time.length());
+        if to >= window.time.hi {
+            scan.now = window.at(window.time.hi);
+            return None;
+        }
+        if to <= now.time {
+            // A step below the last digit of the time: what cannot be excluded counts as contact.
+            let next = now.time + S::rounding(now.time.abs().max(window.time.length())).double();
+            scan.now = window.at(next.min(window.time.hi));
+            return self.since.is_none().then_some(Event::Begin(now.time));
+        }
+        scan.now = window.at(to);
+        None
     }
 }
 

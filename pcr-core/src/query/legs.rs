@@ -21,7 +21,19 @@ pub(crate) struct Leg<'a, S: Scalar> {
     stand: S,
 }
 
-impl<S: Scalar> Leg<'_, S> {
+impl<'a, S: Scalar> Leg<'a, S> {
+    /// The segment of the leg.
+    pub(crate) fn segment(&self) -> &'a Segment<S> {
+        self.segment
+    }
+
+    /// The speeds at some times of the leg \[m/s\], and the magnitude of the acceleration in between \[m/s²\].
+    pub(crate) fn speeds<const N: usize>(&self, times: [S; N]) -> ([S; N], S) {
+        let Some(phase) = self.phase else { return ([S::ZERO; N], S::ZERO) };
+        let at = |time: S| phase.speed_at((time - self.start).clamp(phase.time().lo, phase.time().hi));
+        (times.map(at), phase.acceleration().abs())
+    }
+
     /// Length along the path at a time of the leg \[m\].
     pub(crate) fn length_at(&self, time: S) -> S {
         match self.phase {

@@ -6,6 +6,7 @@
 
 use crate::geometry::{Interval, Vector};
 use crate::motion::Motion;
+use crate::query::bodies::Bodies;
 use crate::query::legs::{Leg, Stage, places};
 use crate::scalar::{Scalar, Wide};
 
@@ -38,6 +39,12 @@ impl<S: Scalar> Window<'_, S> {
         let [a, b] = &self.legs;
         let lengths = [a.length_at(time), b.length_at(time)];
         Instant { time, lengths, apart: b.point_at(lengths[1]) - a.point_at(lengths[0]) }
+    }
+
+    /// The two outlines at an instant, with bounds that hold during an interval around it \[s\].
+    pub(crate) fn bodies(&self, motions: [&Motion<'_, S>; 2], at: &Instant<S>, during: Interval<S>) -> Bodies<S> {
+        let [ego, other] = &self.legs;
+        Bodies::new(motions, [ego, other], at.lengths, at.time, during)
     }
 
     /// Largest deviation of the relative position from the chord between two instants \[m\].
