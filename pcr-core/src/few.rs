@@ -35,6 +35,11 @@ impl<T: Copy, const N: usize> Few<T, N> {
         true
     }
 
+    /// Removes the last value.
+    pub(crate) fn pop(&mut self) {
+        self.count = self.count.saturating_sub(1);
+    }
+
     /// Whether another value can be added.
     pub(crate) fn has_room(&self) -> bool {
         self.count < N

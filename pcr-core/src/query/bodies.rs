@@ -14,7 +14,7 @@
 
 use crate::geometry::{Direction, Interval, Point, Vector};
 use crate::motion::Motion;
-use crate::outline::Corner;
+use crate::outline::{Corner, opposite};
 use crate::pair::outline::distance::separation_along;
 use crate::pair::outline::placed::{Carried, Corners};
 use crate::query::legs::Leg;
@@ -90,8 +90,10 @@ pub(crate) struct Bodies<S: Scalar> {
     duration: S,
     /// Signed distance of the polygons \[m\].
     pub(crate) separation: S,
-    /// Direction from the first body to the second along which they are as far apart.
+    /// Direction along which they are as far apart, from one body to the one that it belongs to: that with the edge of the contact.
     normal: Direction<S>,
+    /// Whether the normal belongs to the first body.
+    is_of_first: bool,
 }
 
 impl<S: Scalar> Bodies<S> {
@@ -107,14 +109,14 @@ impl<S: Scalar> Bodies<S> {
         let times = [at, during.hi];
         let ego = Body::new(ego, own, length, times, during.lo, from);
         let other = Body::new(other, their, other_length, times, during.lo, from);
-        let (separation, normal) = separation_along(ego.corners.as_slice(), other.corners.as_slice());
-        Self { bodies: [ego, other], duration: during.length(), separation, normal }
+        let (separation, normal, is_of_first) = separation_along(ego.corners.as_slice(), other.corners.as_slice());
+        let normal = if is_of_first { opposite(normal) } else { normal };
+        Self { bodies: [ego, other], duration: during.length(), separation, normal, is_of_first }
     }
 
     /// A time for which the polygons stay farther apart than `radius`, which they are now \[s\].
     pub(crate) fn stay_apart(&self, radius: S) -> S {
-        let [ego, other] = &self.bodies;
-        let level = self.level();
+        let (ego, other, level) = self.apart();
         let lasts = ego.corners.as_slice().iter().map(|corner| {
             let room = level - corner.at.along(self.normal) - radius;
             let rate = self.relative(ego, other, corner.at).along(self.normal);
@@ -125,8 +127,7 @@ impl<S: Scalar> Bodies<S> {
 
     /// A lower bound of the separation within `time` before and after \[m\].
     pub(crate) fn least_within(&self, time: S) -> S {
-        let [ego, other] = &self.bodies;
-        let level = self.level();
+        let (ego, other, level) = self.apart();
         let least = ego.corners.as_slice().iter().map(|corner| {
             let gap = level - corner.at.along(self.normal);
             let rate = self.relative(ego, other, corner.at).along(self.normal).abs();
@@ -146,10 +147,13 @@ impl<S: Scalar> Bodies<S> {
         least.max(one).max(two)
     }
 
-    /// The least component of the second body along the normal.
-    fn level(&self) -> S {
-        let along = self.bodies[1].corners.as_slice().iter().map(|corner| corner.at.along(self.normal));
-        along.reduce(S::min).unwrap_or(S::ZERO)
+    /// A body, the body that carries the normal, and the least component of that one along the normal. The normal is kept in the frame of its
+    /// body: as seen from there the corners of the other one go nowhere if it slides along an edge.
+    fn apart(&self) -> (&Body<S>, &Body<S>, S) {
+        let [ego, other] = &self.bodies;
+        let [body, carrier] = if self.is_of_first { [other, ego] } else { [ego, other] };
+        let along = carrier.corners.as_slice().iter().map(|corner| corner.at.along(self.normal));
+        (body, carrier, along.reduce(S::min).unwrap_or(S::ZERO))
     }
 
     /// Velocity of a point of a body as seen from another one, which may turn \[m/s\].
@@ -198,30 +202,19 @@ fn stays_at_edge<S: Scalar>(
 ) -> S {
     let way = between(edge.at, point);
     let (out, along) = (way.along(edge.outward), way.across(edge.outward));
-    // The nearest edge of a point inside is one that it is least behind.
     if out > radius || along < S::ZERO || along > edge.length {
         return S::ZERO;
     }
     let speed = velocity.across(edge.outward);
     let mut least = lasts(radius - out, velocity.along(edge.outward), change);
     least = least.min(lasts(along, -speed, change)).min(lasts(edge.length - along, speed, change));
-    for other in edges {
-        if other.length <= S::ZERO || other.at == edge.at {
-            continue;
-        }
-        let room = -between(other.at, point).along(other.outward);
-        // The other side of a capsule is no limit: its edges are one line.
-        if edges.len() == 2 {
-            continue;
-        }
+    for other in edges.iter().filter(|other| other.length > S::ZERO && other.at != edge.at) {
+        // The other side of a capsule has no inner side: the point stays within reach of its line on that side, too.
+        let room = if edges.len() == 2 { radius } else { S::ZERO } - between(other.at, point).along(other.outward);
         if room < S::ZERO {
             return S::ZERO;
         }
         least = least.min(lasts(room, velocity.along(other.outward), change));
-    }
-    if edges.len() == 2 {
-        // Beyond the line of a capsule, the point may be as far on its other side.
-        least = least.min(lasts((radius + out).max(S::ZERO), -velocity.along(edge.outward), change));
     }
     least
 }

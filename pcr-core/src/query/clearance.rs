@@ -4,6 +4,7 @@
 //! motion itself at the nearest point of the chord. A step is finished when its lower bound is not below the least
 //! separation known.
 
+use crate::few::Few;
 use crate::geometry::Interval;
 use crate::pair::outline::distance::separation_along;
 use crate::query::chord::Chord;
@@ -64,27 +65,22 @@ impl<S: Scalar> Encounter<'_, S> {
         let mut best = Approach { time: during.lo, separation: separation(during.lo) };
         let mut windows = Windows::new([self.ego, self.other], during, self.pad());
         while let Some(window) = windows.next(self.spread(best.separation.max(S::ZERO)) + self.pad()) {
-            let mut now = window.time.lo;
-            let mut step = window.time.length();
-            loop {
-                let left = window.time.hi - now;
-                let duration = step.min(left);
-                let instant = window.at(now + duration.half());
-                let during = Interval::new(now, now + duration);
+            // Halves of halves: so what lies ahead is known in steps that double, and a descent is not followed step by step.
+            let (mut now, mut ends) = (window.time.lo, Few::<S, 64>::new(S::ZERO));
+            ends.push(window.time.hi);
+            while let Some(&end) = ends.as_slice().last() {
+                let during = Interval::new(now, end);
+                let instant = window.at(during.middle());
                 let bodies = window.bodies([self.ego, self.other], &instant, during);
                 if bodies.separation < best.separation {
                     best = Approach { time: instant.time, separation: bodies.separation };
                 }
                 // The middle is rounded.
-                let rounding = S::rounding(instant.time.abs());
-                let least = bodies.least_within(duration.half() + rounding);
-                if least < best.separation - fine && duration.half() > rounding.double() {
-                    step = duration.half();
-                } else if duration >= left {
-                    break;
-                } else {
-                    now = now + duration;
-                    step = duration.double();
+                let (half, rounding) = (during.length().half(), S::rounding(instant.time.abs()));
+                let least = bodies.least_within(half + rounding);
+                if least >= best.separation - fine || half <= rounding.double() || !ends.push(instant.time) {
+                    now = end;
+                    ends.pop();
                 }
             }
         }

@@ -83,7 +83,11 @@ impl<'a, S: Scalar> Encounter<'a, S> {
 
     /// Distance of the reference points at which the agents may be as near as a distance of their polygons \[m\].
     pub(crate) fn spread(&self, distance: S) -> S {
-        if self.has_outline() { distance + self.ego.outline().spread() + self.other.outline().spread() } else { distance }
+        if self.has_outline() {
+            distance + self.ego.outline().spread() + self.other.outline().spread()
+        } else {
+            distance
+        }
     }
 
     /// Tolerance ε \[m\]: clearances above it are never reported as contacts, and touches ([`Conflict::touching`](crate::Conflict::touching)) are no

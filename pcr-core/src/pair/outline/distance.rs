@@ -15,28 +15,30 @@ struct Nearest<S: Scalar> {
 }
 
 /// Returns the signed distance of two polygons \[m\], if they overlap minus the length of the least translation that
-/// separates them; and the direction from the first to the second along which they are as far apart.
+/// separates them; the direction from the first to the second along which they are as far apart; and whether it is the normal of an
+/// edge of the first one, or else of the second or of none.
 ///
 /// Cost: twice the product of the numbers of corners, and a root.
-pub(crate) fn separation_along<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>]) -> (S, Direction<S>) {
+pub(crate) fn separation_along<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>]) -> (S, Direction<S>, bool) {
     match outside(a, b) {
         Some(apart) => apart,
         None => {
-            let (depth, normal) = overlap(a, b);
-            (depth.min(S::ZERO), normal)
+            let (depth, normal, is_of_first) = overlap(a, b);
+            (depth.min(S::ZERO), normal, is_of_first)
         }
     }
 }
 
 /// Returns the distance of two polygons \[m\], 0 if they overlap. Less work than [`separation_along`].
 pub(crate) fn distance<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>]) -> S {
-    outside(a, b).map_or(S::ZERO, |(distance, _)| distance)
+    outside(a, b).map_or(S::ZERO, |(distance, ..)| distance)
 }
 
 /// The least distance of corners from edges, and its direction; `None` if the polygons overlap.
-fn outside<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>]) -> Option<(S, Direction<S>)> {
+fn outside<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>]) -> Option<(S, Direction<S>, bool)> {
     let (there, back) = (nearest(a, b), nearest(b, a));
-    let found = if there.square <= back.square {
+    let is_of_first = back.square < there.square;
+    let found = if !is_of_first {
         there
     } else {
         Nearest { square: back.square, way: Vector { x: -back.way.x, y: -back.way.y } }
@@ -47,7 +49,7 @@ fn outside<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>]) -> Option<(S, Direction<
     }
     let [cos, sin] = S::unit_vector(found.way.x, found.way.y, length);
     let direction = Direction { cos, sin };
-    (gap(a, b, direction).double() > length).then_some((length, direction))
+    (gap(a, b, direction).double() > length).then_some((length, direction, is_of_first))
 }
 
 /// How far apart two polygons are along a direction from the first to the second \[m\].
@@ -58,17 +60,17 @@ pub(crate) fn gap<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>], direction: Direct
 }
 
 /// The largest gap along a normal of an edge \[m\], minus the depth if the polygons overlap, and the direction from the first to the second.
-fn overlap<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>]) -> (S, Direction<S>) {
-    let mut most: Option<(S, Direction<S>)> = None;
+fn overlap<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>]) -> (S, Direction<S>, bool) {
+    let mut most: Option<(S, Direction<S>, bool)> = None;
     for (own, their, back) in [(a, b, false), (b, a, true)] {
         for edge in own.iter().filter(|edge| edge.length > S::ZERO) {
             let gap = beyond(edge, their);
-            if most.is_none_or(|(most, _)| gap > most) {
-                most = Some((gap, if back { opposite(edge.outward) } else { edge.outward }));
+            if most.is_none_or(|(most, ..)| gap > most) {
+                most = Some((gap, if back { opposite(edge.outward) } else { edge.outward }, !back));
             }
         }
     }
-    most.unwrap_or((S::ZERO, Direction::X))
+    most.unwrap_or((S::ZERO, Direction::X, false))
 }
 
 /// The least signed distance of the corners of a polygon from the line of an edge, positive outside \[m\].
@@ -238,7 +240,7 @@ pub(crate) mod tests {
                 own
             });
             let exact = oracle(&points(&placed[0]), &points(&placed[1]));
-            let (signed, normal) = separation_along(&placed[0], &placed[1]);
+            let (signed, normal, _) = separation_along(&placed[0], &placed[1]);
             assert!((gap(&placed[0], &placed[1], normal) - signed).abs() < 1e-14, "{placed:?}");
             assert!((distance(&placed[0], &placed[1]) - exact).abs() < 1e-14, "{placed:?}");
             assert!((signed.max(0.0) - exact).abs() < 1e-14, "{placed:?}");

@@ -9,7 +9,8 @@ use crate::outline::{Outline, OutlineRef};
 use crate::pieces::{Piece, Pieces};
 use crate::scalar::Scalar;
 use crate::{
-    Curve, Ecm, Encounter, Interval, Limits, Motion, Path, Point, Pose, Profile, Radians, Region, RegionRef, Segment, Turn, Vector, excess,
+    Curve, Ecm, Encounter, Interval, Limits, Motion, Path, Point, Pose, Profile, Radians, Region, RegionRef, Segment,
+    Turn, Vector, excess,
 };
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::vec::Vec;
@@ -423,7 +424,8 @@ fn compare_in_time<S: Number>(case: &Case, random: &mut Random, seed: u64, sampl
         if random.below(2) == 0 {
             Profile::<S, 3>::from_pieces(S::of(1.0), [(length, S::ZERO)]).unwrap()
         } else {
-            Profile::rest_to_rest(length, Limits { speed: S::of(1.5), acceleration: S::of(random.within(0.5, 3.0)) }).unwrap()
+            Profile::rest_to_rest(length, Limits { speed: S::of(1.5), acceleration: S::of(random.within(0.5, 3.0)) })
+                .unwrap()
         }
     });
     let starts = [(); 2].map(|()| S::of(if random.below(2) == 0 { 0.0 } else { random.within(0.0, 1.0) }));
@@ -445,12 +447,14 @@ fn compare_in_time<S: Number>(case: &Case, random: &mut Random, seed: u64, sampl
     let found: Vec<Interval<S>> = contacts.by_ref().collect();
     let steps = contacts.steps();
     let closest = encounter.closest(span);
-    let message = || std::format!("seed {seed}, {found:?} {closest:?} {:?} {:?} tolerance {tolerance:e}", case.poses, case.segments);
+    let message = || {
+        std::format!("seed {seed}, {found:?} {closest:?} {:?} {:?} tolerance {tolerance:e}", case.poses, case.segments)
+    };
     let sep = closest.separation.float();
     assert!((distance(closest.time) - sep.max(0.0)).abs() <= 0.5 * tolerance, "{}", message());
     for k in 0..=samples {
         let part = f64::from(k) / f64::from(samples);
-        let time = S::of(span.lo.float() + part * (span.hi.float() - span.lo.float()));
+        let time = S::of(span.lo.float() + part * (span.hi.float() - span.lo.float())).min(span.hi);
         let f = distance(time);
         let inside = found.iter().any(|contact| contact.contains(time));
         assert!(f >= radius - 1e-14 || inside, "missed: {} at {time:?} by {:e}", message(), radius - f);
@@ -482,10 +486,11 @@ fn campaign_in_time<S: Number>(seeds: core::ops::Range<u64>, segments: usize) ->
 
 #[test]
 fn contacts_in_time_are_those_that_the_oracle_says() {
-    let (most, mean) = campaign_in_time::<f64>(30_000..31_000, 1);
-    std::println!("most {most}, mean {mean}");
-    let (most, mean) = campaign_in_time::<f64>(32_000..32_500, 4);
-    std::println!("most {most}, mean {mean}");
-    let (most, mean) = campaign_in_time::<f32>(34_000..35_000, 2);
-    std::println!("most {most}, mean {mean}");
+    for (most, mean) in [
+        campaign_in_time::<f64>(30_000..30_300, 1),
+        campaign_in_time::<f64>(32_000..32_100, 4),
+        campaign_in_time::<f32>(34_000..34_300, 2),
+    ] {
+        assert!(most < 1000 && mean < 40.0, "{most} {mean}");
+    }
 }
