@@ -36,7 +36,7 @@ pub struct Crossing<S: Scalar> {
     pub length: S,
     /// Length along the other's path \[m\].
     pub other_length: S,
-    /// r̂: sum of the radii \[m\].
+    /// r̂: sum of the radii \[m\]; of an outline, that of the disc about its reference point that contains it.
     pub combined_radius: S,
     /// v: speed of the other agent as it passes \[m/s\].
     pub speed: S,

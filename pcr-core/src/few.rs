@@ -40,6 +40,11 @@ impl<T: Copy, const N: usize> Few<T, N> {
         self.count = self.count.saturating_sub(1);
     }
 
+    /// Returns the values that were added, one by one.
+    pub(crate) fn into_values(self) -> impl Iterator<Item = T> + Clone {
+        self.places.into_iter().take(self.count)
+    }
+
     /// Whether another value can be added.
     pub(crate) fn has_room(&self) -> bool {
         self.count < N

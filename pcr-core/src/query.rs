@@ -37,6 +37,6 @@ pub use conflict::{Conflict, Conflicts, Met, first_conflict, first_overlap};
 pub use contact::{Contacts, Encounter};
 pub use delay::earliest_start;
 pub use depart::earliest_departure;
-pub(crate) use safe::{covered, cut, times};
+pub(crate) use safe::{covered_by, cut, times};
 pub use safe::{safe_intervals, safe_lengths};
 pub use stretch::least_duration;

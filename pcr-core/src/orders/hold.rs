@@ -6,7 +6,7 @@
 //! is still ahead.
 
 use crate::geometry::Interval;
-use crate::query::{covered, cut};
+use crate::query::{covered_by, cut};
 use crate::region::{PieceRef, RegionRef};
 use crate::scalar::Scalar;
 
@@ -125,10 +125,11 @@ impl<S: Scalar> RegionRef<'_, S> {
         }
         let slack = self.slack();
         // Cutting a segment adds rounding errors of its own.
-        let radius = self.ego_motion().radius() + self.other_motion().radius() + slack.double();
+        let (ego, other) = (self.ego_motion(), self.other_motion());
+        let radius = ego.rounding_radius() + other.rounding_radius() + slack.double();
         let ahead = Interval::new(other_from.max(piece.other_length.lo), piece.other_length.hi);
         let Some(their) = cut(piece.other, ahead) else { return Hold::Free };
-        let parts = covered(&their, piece.ego, radius, slack).into_iter().flatten();
+        let parts = covered_by(other, ego, &their, piece.ego, radius, slack);
         let parts = parts.map(|part| Interval::new(part.lo + piece.ego.from, part.hi + piece.ego.from));
         let parts = parts.filter(|part| part.meets(piece.length)).map(|part| part.widen(slack, piece.length));
         parts.filter(|part| part.hi >= from).fold(Hold::Free, |hold, part| hold.min(at(part.lo, from)))

@@ -8,6 +8,7 @@
 //! events    where slices can change their structure, and where they are extreme
 //! walk      from events to pieces
 //! part      what a piece covers
+//! shadow    where on the second segment some of the first is covered
 //! ```
 //!
 //! `docs/outlines.md` has the definitions and proofs; comments name its lemmas and theorems.
@@ -17,6 +18,7 @@ pub(crate) mod distance;
 pub(crate) mod events;
 pub(crate) mod part;
 pub(crate) mod placed;
+pub(crate) mod shadow;
 pub(crate) mod slice;
 pub(crate) mod walk;
 

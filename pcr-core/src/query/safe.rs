@@ -6,6 +6,7 @@
 //! into times; an agent that stands before its start or after its arrival blocks all of that time.
 
 use crate::error::Mismatch;
+use crate::few::Few;
 use crate::geometry::Interval;
 use crate::intervals::{Lowest, gaps};
 use crate::motion::Motion;
@@ -13,6 +14,8 @@ use crate::pair::Pair;
 use crate::pair::events::add_events;
 use crate::pair::footprint::Footprint;
 use crate::pair::lengths::Lengths;
+use crate::pair::outline::events::Carriers;
+use crate::pair::outline::placed::Carried;
 use crate::query::contact::Encounter;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
@@ -89,14 +92,19 @@ struct Reach<'a, S: Scalar> {
 }
 
 impl<S: Scalar> Reach<'_, S> {
+    /// Distance of the reference points at which the agents may be within the radius \[m\].
+    fn near(&self) -> S {
+        self.radius + self.by.outline().spread() + self.on.outline().spread()
+    }
+
     /// What is blocked on a segment, in no order.
     fn on_segment(&self, second: &Segment<S>) -> impl Iterator<Item = Interval<S>> {
         let (part, all) = (self.part, Interval::new(S::ZERO, self.on.path().length()));
         let segments = self.by.path().segments();
         let first = segments.partition_point(|segment| segment.to < part.lo);
         let own = segments.get(first..).unwrap_or_default().iter().map_while(move |first| cut(first, part));
-        let near = own.filter(|first| first.bounds().expanded(self.radius).meets(second.bounds()));
-        let covered = near.flat_map(|first| covered(&first, second, self.radius, self.slack)).flatten();
+        let near = own.filter(|first| first.bounds().expanded(self.near()).meets(second.bounds()));
+        let covered = near.flat_map(|first| covered_by(self.by, self.on, &first, second, self.radius, self.slack));
         covered.filter_map(move |covered| {
             let lengths = Interval::new(covered.lo + second.from, covered.hi + second.from).widen(self.slack, all);
             match self.during {
@@ -122,7 +130,7 @@ impl<S: Scalar> Reach<'_, S> {
         let segments = self.on.path().segments();
         let known = |segment: &Segment<S>, after: S| self.bounds(segment).is_some_and(|bounds| bounds.hi < after);
         let first = lowest.after.map_or(0, |after| segments.partition_point(|segment| known(segment, after)));
-        let near = self.by.bounds().expanded(self.radius + self.slack);
+        let near = self.by.bounds().expanded(self.near() + self.slack);
         let rest = segments.get(first..).unwrap_or_default().iter();
         for segment in rest.filter(|segment| near.meets(segment.bounds())) {
             if self.bounds(segment).is_some_and(|bounds| lowest.is_below(bounds.lo)) {
@@ -163,12 +171,12 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         let (ego, other, slack) = (self.ego_motion(), self.other_motion(), self.slack());
         let (length, during) = (on_path(ego, length), in_order(during));
         // Cutting a segment adds rounding errors of its own.
-        let radius = ego.radius() + other.radius() + slack.double();
+        let radius = ego.rounding_radius() + other.rounding_radius() + slack.double();
         let all = Interval::new(S::ZERO, other.path().length());
         let pieces = self.pieces().filter(move |piece| piece.length.meets(length));
         let parts = pieces.filter_map(move |piece| Some((cut(piece.ego, length)?, piece.other)));
         parts.flat_map(move |(own, their)| {
-            let lengths = covered(&own, their, radius, slack).into_iter().flatten();
+            let lengths = covered_by(ego, other, &own, their, radius, slack);
             let along = lengths.map(move |part| Interval::new(part.lo + their.from, part.hi + their.from));
             along.filter_map(move |part| kept_from(ego, other, part.widen(slack, all), during))
         })
@@ -268,13 +276,25 @@ pub(crate) fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<
     Some(segment.part(from, to))
 }
 
-/// The lengths of the second segment that are within the radius of the first one. Distances are right within `slack`.
-pub(crate) fn covered<S: Scalar>(
+/// The parts of a segment of the path of `on` at which it comes within the radius of `by`, somewhere on the segment `first`.
+pub(crate) fn covered_by<S: Scalar>(
+    by: &Motion<'_, S>,
+    on: &Motion<'_, S>,
     first: &Segment<S>,
     second: &Segment<S>,
     radius: S,
     slack: S,
-) -> [Option<Interval<S>>; PARTS] {
+) -> impl Iterator<Item = Interval<S>> + Clone + use<S> {
+    let outlines = (by.has_outline() | on.has_outline()).then(|| {
+        let (first, second) = (Carried::new(first, by.outline()), Carried::new(second, on.outline()));
+        Carriers { first, second, radius, slack }.shadow()
+    });
+    let discs = outlines.is_none().then(|| covered(first, second, radius, slack));
+    discs.into_iter().flatten().flatten().chain(outlines.into_iter().flat_map(Few::into_values))
+}
+
+/// The lengths of the second segment that are within the radius of the first one. Distances are right within `slack`.
+fn covered<S: Scalar>(first: &Segment<S>, second: &Segment<S>, radius: S, slack: S) -> [Option<Interval<S>>; PARTS] {
     let mut events = Lengths::new(S::ZERO);
     add_events(first, second, radius, slack, &mut events);
     events.sort();

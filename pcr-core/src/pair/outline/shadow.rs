@@ -1,0 +1,44 @@
+//! The lengths of the second segment at which some of the first one is covered.
+
+use super::events::Carriers;
+use super::slice::MOST_PARTS;
+use crate::few::Few;
+use crate::geometry::Interval;
+use crate::scalar::Scalar;
+
+impl<S: Scalar> Carriers<'_, S> {
+    /// Returns the lengths of the second segment at which some of the first one is covered, as intervals in increasing order \[m\]; all
+    /// of it, if there are too many contacts.
+    ///
+    /// Cost: up to three slices for each event.
+    pub(crate) fn shadow(&self) -> Few<Interval<S>, MOST_PARTS> {
+        let all = Interval::new(S::ZERO, self.second.segment.length);
+        let mut parts = Few::new(all);
+        let Some(events) = self.events() else {
+            parts.add(all, true);
+            return parts;
+        };
+        let beside = self.second.within(self.slack.half().half());
+        let events = events.as_slice();
+        let slabs = events.iter().zip(events.iter().skip(1)).map(|(&lo, &hi)| Interval::new(lo, hi));
+        let mut open = false;
+        for slab in slabs.filter(|slab| slab.lo < slab.hi || self.second.segment.length == S::ZERO) {
+            let middle = slab.middle();
+            let places = if slab.length() > beside.double() {
+                [middle, slab.lo + beside, slab.hi - beside]
+            } else {
+                [middle; 3]
+            };
+            // A slab is covered or not, but for rounding.
+            let covered =
+                places.into_iter().any(|at| self.slice_of_first(at).is_none_or(|slice| !slice.as_slice().is_empty()));
+            if covered && (open || !parts.has_room()) {
+                parts.as_mut_slice().last_mut().into_iter().for_each(|last| last.hi = slab.hi);
+            } else {
+                parts.add(slab, covered);
+            }
+            open = covered;
+        }
+        parts
+    }
+}
