@@ -278,9 +278,7 @@ impl<S: Scalar> Iterator for Slices<'_, S> {
             let slice = match self.rest.take() {
                 Some(slice) => slice,
                 None if self.outlines => {
-                    let Some((piece, index)) = self.open.take().or_else(|| Some((self.pieces.next()?, 0))) else {
-                        return None;
-                    };
+                    let (piece, index) = self.open.take().or_else(|| Some((self.pieces.next()?, 0)))?;
                     let (slice, more) = self.pair.part_at(piece, self.transposed, self.at, index);
                     self.open = more.then_some((piece, index.wrapping_add(1)));
                     let Some(slice) = slice else { continue };

@@ -565,3 +565,86 @@ fn blocked_times_lengths_and_holds_are_those_that_the_oracle_says() {
     }
     assert!(blocked > 500, "{blocked}");
 }
+
+/// The components of a set of points of a grid, connected along its lines: the deepest point of each, with its depth.
+fn components(count: usize, depth: impl Fn(usize, usize) -> f64) -> Vec<(f64, usize, usize)> {
+    let depths: Vec<f64> = (0..count * count).map(|k| depth(k / count, k % count)).collect();
+    let (mut seen, mut found, mut open) = (std::vec![false; count * count], Vec::new(), Vec::new());
+    for start in 0..count * count {
+        if seen[start] || depths[start] < 0.0 {
+            continue;
+        }
+        let mut deepest = start;
+        seen[start] = true;
+        open.push(start);
+        while let Some(k) = open.pop() {
+            if depths[k] > depths[deepest] {
+                deepest = k;
+            }
+            let (i, j) = (k / count, k % count);
+            for (i, j) in [(i + 1, j), (i.wrapping_sub(1), j), (i, j + 1), (i, j.wrapping_sub(1))] {
+                if i < count && j < count && !seen[i * count + j] && depths[i * count + j] >= 0.0 {
+                    seen[i * count + j] = true;
+                    open.push(i * count + j);
+                }
+            }
+        }
+        found.push((depths[deepest], deepest / count, deepest % count));
+    }
+    found
+}
+
+/// Fills the region of each component of a grid: it has to be a region of its own. A gap or a neck that is thinner than the grid needs a
+/// finer one.
+#[test]
+fn regions_are_the_components_of_a_flood_fill() {
+    let (mut compared, mut several, mut finer) = (0, 0, 0);
+    for seed in 50_000..50_240_u64 {
+        let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+        (0..4).for_each(|_| {
+            random.unit();
+        });
+        let case = Case::random(&mut random, 1);
+        let (paths, outlines) = (case.paths::<f64>(), case.outlines::<f64>());
+        let profiles =
+            paths.each_ref().map(|path| Profile::<f64, 1>::from_pieces(1.0, [(path.as_path().length(), 0.0)]).unwrap());
+        let fleet = [0, 1].map(|k| {
+            let path: &Path<f64, 4> = &paths[k];
+            Motion::with_outline(path.as_path(), profiles[k].as_profile(), &outlines[k], 0.0).unwrap()
+        });
+        let exact = [0, 1].map(|k| Exact::of(&paths[k], case.poses[k][2], outlines[k].as_outline()));
+        let radius = exact[0].radius + exact[1].radius;
+        if radius == 0.0 {
+            // The oracle does not tell how deep polygons overlap.
+            continue;
+        }
+        let [l, s] = exact.each_ref().map(|exact| exact.length);
+        let ecm = Ecm::build([Region::EMPTY; 64], [Piece::EMPTY; 256], &fleet).unwrap();
+        let regions: Vec<_> = ecm.pair(&fleet, 0, 1).unwrap().collect();
+        let agrees = |count: usize| {
+            let at = |k: usize, length: f64| length * k as f64 / (count - 1) as f64;
+            let bodies = [0, 1].map(|k| (0..count).map(|i| exact[k].at(at(i, [l, s][k]))).collect::<Vec<_>>());
+            // What is hardly covered may be seen or not.
+            let found = components(count, |i, j| radius - oracle(&bodies[0][i], &bodies[1][j]));
+            let deep = found.iter().filter(|(depth, ..)| *depth > 1e-9);
+            let of = |i, j| regions.iter().position(|region| region.covers(at(i, l), at(j, s)));
+            let mut owners: Vec<_> = deep.map(|&(_, i, j)| of(i, j).expect("a deep point is in a region")).collect();
+            let all = owners.len();
+            owners.sort_unstable();
+            owners.dedup();
+            // Each component has a region of its own, and each region that is wider than the grid has a component.
+            let wide = |region: &&RegionRef<'_, f64>| {
+                let (first, second) = (region.length(), region.other_length());
+                first.length() > 4.0 * l / count as f64 && second.length() > 4.0 * s / count as f64
+            };
+            owners.len() == all && regions.iter().filter(wide).count() <= all
+        };
+        compared += 1;
+        several += u32::from(regions.len() > 1);
+        if !agrees(64) {
+            finer += 1;
+            assert!(agrees(256) || agrees(1024), "seed {seed}: {:?} {:?}", case.poses, case.segments);
+        }
+    }
+    assert!(compared > 180 && several > 10 && finer < 40, "{compared} {several} {finer}");
+}
