@@ -279,17 +279,18 @@ impl<S: Scalar> Contacts<'_, S> {
     /// One step of the search for outlines: as long as they certainly stay apart, or in contact (`bodies`).
     fn step_of_outlines(&self, scan: &mut Scan<'_, S>) -> Option<Event<S>> {
         let Scan { window, now, .. } = *scan;
-        let Encounter { ego, other, tolerance, .. } = self.encounter;
+        let Encounter { ego, other, tolerance, pad } = self.encounter;
         let bodies = window.bodies([ego, other], &now, Interval::new(now.time, window.time.hi));
-        let half = tolerance.half();
+        let quarter = tolerance.half().half();
         let step = if self.since.is_some() {
-            // The hysteresis avoids many short contacts of outlines that hover at a distance of R.
-            if bodies.separation > self.radius + half {
+            // The hysteresis avoids many short contacts of outlines that hover at a distance of R. The pad is a quarter of the tolerance at most, so
+            // another quarter remains for a step.
+            if bodies.separation > self.radius + quarter {
                 return Some(Event::End(now.time));
             }
-            bodies.stay_near(self.radius + tolerance)
+            bodies.stay_near(self.radius + (tolerance - pad.double()))
         } else {
-            if bodies.separation <= self.radius + half.half() {
+            if bodies.separation <= self.radius + quarter.half() {
                 return Some(Event::Begin(now.time));
             }
             bodies.stay_apart(self.radius)
