@@ -1,7 +1,7 @@
-//! Exact collision regions of discs that move on lines and arcs: `no_std`, no allocation, no panics.
+//! Exact collision regions of discs and convex outlines that move on lines and arcs: `no_std`, no allocation, no panics.
 //!
-//! Agents are discs that move along given paths. For every ordered pair of agents, the set of (time, travelled length)
-//! at which the two discs overlap is a union of *collision regions*, whose boundary has a closed form. This crate
+//! Agents are discs, or convex polygons rounded by a radius ([`Outline`]), that move along given paths. For every ordered pair of agents, the set of (time, travelled length)
+//! at which the two overlap is a union of *collision regions*, whose boundary has a closed form. This crate
 //! computes the regions from these closed forms, without sampling, iteration or meshes. Speeds may be anything that is
 //! not negative. Degenerate positions, such as tangent or concentric segments, are covered by the same bounds
 //! (`tests/tests/degenerate.rs`).
@@ -16,7 +16,7 @@
 //! outline    convex polygons, rounded by a radius           Outline
 //! path       chains of segments, turns in place (ρ, Eq. 1)  Path, PathRef
 //! profile    length over time (λ, Eq. 1-3) and its inverse  Profile, ProfileRef, Limits
-//! motion     disc + path + profile + start time (Eq. 2)     Motion
+//! motion     disc or outline + path + profile + start       Motion
 //! pair       closed forms in coordination space (l₁, l₂)    (internal: P1, P3, events, cells)
 //! pieces     storage of region pieces, fixed capacity       Piece
 //! region     connected regions in path-time space (t, l)    RegionRef

@@ -11,7 +11,7 @@
 //! shadow    where on the second segment some of the first is covered
 //! ```
 //!
-//! `docs/outlines.md` has the definitions and proofs; comments name its lemmas and theorems.
+//! `docs/theory/outlines.md` has the definitions and proofs; comments name its lemmas and theorems.
 
 pub(crate) mod contacts;
 pub(crate) mod distance;

@@ -1,5 +1,5 @@
 //! Contacts of an outline that moves along a segment with one that stands: the lengths at which they are at a distance of
-//! R, in three forms (Lemma 1 of `docs/outlines.md`):
+//! R, in three forms (Lemma 1 of `docs/theory/outlines.md`):
 //!
 //! ```text
 //! VE  a corner of the moving one at the distance R from an edge of the other
@@ -200,7 +200,7 @@ fn corners_at_corners<S: Scalar>(
 }
 
 /// The lengths between which an outline on a line is within the radius of the other, with the normals there: the hull of the chords that the line
-/// cuts out of the capsules of all edges and corners of the difference of both (theorem 1 of `docs/outlines.md`). All
+/// cuts out of the capsules of all edges and corners of the difference of both (theorem 1 of `docs/theory/outlines.md`). All
 /// of these belong to the difference, so none has to be left out.
 fn chord<S: Scalar>(moving: &Carried<'_, S>, other: Standing<'_, S>) -> Option<[(S, Direction<S>); 2]> {
     let (along, radius, slack) = (moving.segment.direction, other.radius, other.slack);

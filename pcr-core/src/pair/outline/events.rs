@@ -1,7 +1,7 @@
 //! Events: where, along the second segment, slices of the first can change their structure, and where the ends of slices
 //! can be extreme.
 //!
-//! The structure can change (Theorem 1 of `docs/outlines.md`) at a contact with the first outline at an end of its segment, and at a critical contact:
+//! The structure can change (Theorem 1 of `docs/theory/outlines.md`) at a contact with the first outline at an end of its segment, and at a critical contact:
 //! one that the first outline neither enters nor leaves. On a line that is a contact whose normal is normal to the line. On an arc the line of the contact passes
 //! through the centre c, and the contact is an end of a slice about c (Theorem 2): the second outline at the distance s + R from c, where
 //! s is one of the critical radii of the first outline, which do not change while it turns.
