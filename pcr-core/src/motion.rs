@@ -135,6 +135,8 @@ impl<'a, S: Scalar> Motion<'a, S> {
     }
 
     /// Completes the motion of an outline: what rounding does to its corners, and its checksum.
+    // Not inlined: discs do not need it.
+    #[inline(never)]
     fn extended(self, diameter: S) -> Result<Self, Invalid> {
         // Corners are placed by their vectors from the centre of an arc.
         let extent = in_range(self.extent + self.spread.double() + diameter, "extent of the motion")?;

@@ -27,7 +27,6 @@ use cells::SegmentPair;
 use core::hint::select_unpredictable as select;
 use events::wraps;
 use footprint::Footprint;
-use outline::events::Carriers;
 
 /// Two agents as an unordered pair.
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +74,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
                     if own.near(other, reach) {
                         let indices = [begin.wrapping_add(place as u16), j];
                         if outlines {
-                            Carriers::new(self, own, other).find(indices, pieces)?;
+                            self.find_of_outlines([own, other], indices, pieces)?;
                             continue;
                         }
                         let (radius, slack) = (self.radius, self.slack);

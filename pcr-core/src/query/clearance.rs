@@ -55,6 +55,8 @@ impl<S: Scalar> Encounter<'_, S> {
 
     /// The same for outlines. A step is finished when the lower bound of the separation around its middle (`Bodies::least_within`) is not
     /// below the least separation known; if not, it is halved.
+    // Not inlined: pairs of discs would need the stack of it.
+    #[inline(never)]
     fn closest_of_outlines(&self, during: Interval<S>) -> Approach<S> {
         let fine = self.tolerance().half().half();
         let separation = |time: S| {

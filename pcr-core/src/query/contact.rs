@@ -277,6 +277,8 @@ impl<'a, S: Scalar> Contacts<'a, S> {
 
 impl<S: Scalar> Contacts<'_, S> {
     /// One step of the search for outlines: as long as they certainly stay apart, or in contact (`bodies`).
+    // Not inlined: pairs of discs would need the stack of it.
+    #[inline(never)]
     fn step_of_outlines(&self, scan: &mut Scan<'_, S>) -> Option<Event<S>> {
         let Scan { window, now, .. } = *scan;
         let Encounter { ego, other, tolerance, pad } = self.encounter;

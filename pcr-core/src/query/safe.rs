@@ -16,6 +16,7 @@ use crate::pair::footprint::Footprint;
 use crate::pair::lengths::Lengths;
 use crate::pair::outline::events::Carriers;
 use crate::pair::outline::placed::Carried;
+use crate::pair::outline::shadow::MOST_SHADOWS;
 use crate::query::contact::Encounter;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
@@ -276,6 +277,17 @@ pub(crate) fn cut<S: Scalar>(segment: &Segment<S>, part: Interval<S>) -> Option<
     Some(segment.part(from, to))
 }
 
+// Not inlined: discs would need the stack of it.
+#[inline(never)]
+fn shadow<S: Scalar>(
+    [by, on]: [&Motion<'_, S>; 2],
+    [first, second]: [&Segment<S>; 2],
+    [radius, slack]: [S; 2],
+) -> Few<Interval<S>, MOST_SHADOWS> {
+    let (first, second) = (Carried::new(first, by.outline()), Carried::new(second, on.outline()));
+    Carriers { first, second, radius, slack }.shadow()
+}
+
 /// The parts of a segment of the path of `on` at which it comes within the radius of `by`, somewhere on the segment `first`.
 pub(crate) fn covered_by<S: Scalar>(
     by: &Motion<'_, S>,
@@ -285,10 +297,7 @@ pub(crate) fn covered_by<S: Scalar>(
     radius: S,
     slack: S,
 ) -> impl Iterator<Item = Interval<S>> + Clone + use<S> {
-    let outlines = (by.has_outline() | on.has_outline()).then(|| {
-        let (first, second) = (Carried::new(first, by.outline()), Carried::new(second, on.outline()));
-        Carriers { first, second, radius, slack }.shadow()
-    });
+    let outlines = (by.has_outline() | on.has_outline()).then(|| shadow([by, on], [first, second], [radius, slack]));
     let discs = outlines.is_none().then(|| covered(first, second, radius, slack));
     discs.into_iter().flatten().flatten().chain(outlines.into_iter().flat_map(Few::into_values))
 }

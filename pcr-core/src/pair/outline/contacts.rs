@@ -16,8 +16,9 @@
 //! at a distance of less than R, which do no harm: they are cuts, not ends. Without it, rounding might reject a contact in two forms.
 
 use super::placed::Carried;
+use crate::few::Few;
 use crate::geometry::{Direction, Interval, Vector};
-use crate::outline::{Corner, opposite, supports, turned_back};
+use crate::outline::{Corner, MOST_CORNERS, opposite, supports, turned_back};
 use crate::scalar::{Scalar, Wide};
 
 /// An outline that stands, and how near another one comes.
@@ -172,10 +173,11 @@ fn corners_at_corners<S: Scalar>(
     found: &mut impl FnMut(S, Direction<S>),
 ) {
     let (corners, radius) = (moving.corners.as_slice(), other.radius);
+    let mut distances = Few::<S, MOST_CORNERS>::new(S::ZERO);
+    other.corners.iter().for_each(|point| distances.add(point.at.norm_squared().sqrt(), true));
     for (index, corner) in corners.iter().enumerate() {
         let own = corner.at.norm_squared().sqrt();
-        for (place, point) in other.corners.iter().enumerate() {
-            let their = point.at.norm_squared().sqrt();
+        for ((place, point), &their) in other.corners.iter().enumerate().zip(distances.as_slice()) {
             let (less, sum) = (own - their, own + their);
             if less.abs() > radius || radius > sum || own <= S::ZERO || their <= S::ZERO {
                 continue;

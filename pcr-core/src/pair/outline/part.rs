@@ -6,11 +6,12 @@
 use super::events::Carriers;
 use super::placed::Carried;
 use super::slice::Parts;
+use crate::error::Full;
 use crate::few::Few;
 use crate::geometry::Interval;
 use crate::motion::Motion;
 use crate::pair::Pair;
-use crate::pieces::Piece;
+use crate::pieces::{Piece, Pieces};
 use crate::scalar::Scalar;
 use crate::segment::Segment;
 
@@ -19,6 +20,20 @@ impl<'a, S: Scalar> Carriers<'a, S> {
         let carried = |segment, motion: &Motion<'_, S>| Carried::new(segment, motion.outline());
         let (first, second) = (carried(first, pair.first), carried(second, pair.second));
         Self { first, second, radius: pair.radius, slack: pair.slack }
+    }
+}
+
+impl<'a, S: Scalar> Pair<'a, S> {
+    /// Adds the pieces of a pair of segments and joins those that are connected. Lengths are along the segments.
+    // Not inlined: pairs of discs would need the stack of it.
+    #[inline(never)]
+    pub(crate) fn find_of_outlines<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
+        &self,
+        [first, second]: [&'a Segment<S>; 2],
+        indices: [u16; 2],
+        pieces: &mut Pieces<S, P>,
+    ) -> Result<(), Full> {
+        Carriers::new(self, first, second).find(indices, pieces)
     }
 }
 
@@ -87,6 +102,8 @@ impl<S: Scalar> Pair<'_, S> {
     }
 
     /// The same as [`Pair::slices_of_first`] or [`Pair::slices_of_second`] for a pair of outlines: the part at this index, and whether there may be more.
+    // Not inlined: pairs of discs would need the stack of it.
+    #[inline(never)]
     pub(crate) fn part_at(
         &self,
         piece: &Piece<S>,
@@ -112,6 +129,8 @@ impl<S: Scalar> Pair<'_, S> {
     }
 
     /// Whether two pieces of neighbouring segments of the second path, and of one segment of the first, share a length at the joint.
+    // Not inlined: pairs of discs would need the stack of it.
+    #[inline(never)]
     pub(crate) fn outlines_meet_at_joint_of_second(&self, before: &Piece<S>, after: &Piece<S>) -> bool {
         let ((Some(own), Some(other)), (_, Some(next))) = (self.segments(before), self.segments(after)) else {
             return false;
@@ -124,6 +143,8 @@ impl<S: Scalar> Pair<'_, S> {
     }
 
     /// Whether two pieces of neighbouring segments of the first path, and of one segment of the second, share a length at the joint.
+    // Not inlined: pairs of discs would need the stack of it.
+    #[inline(never)]
     pub(crate) fn outlines_meet_at_joint_of_first(&self, before: &Piece<S>, after: &Piece<S>) -> bool {
         let ((Some(own), Some(other)), (Some(next), _)) = (self.segments(before), self.segments(after)) else {
             return false;

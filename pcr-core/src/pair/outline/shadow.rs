@@ -1,17 +1,21 @@
 //! The lengths of the second segment at which some of the first one is covered.
 
 use super::events::Carriers;
-use super::slice::MOST_PARTS;
 use crate::few::Few;
 use crate::geometry::Interval;
 use crate::scalar::Scalar;
+
+/// Largest number of intervals of a shadow. If there were more, the last one would cover the rest: what is not covered would count as covered.
+pub(crate) const MOST_SHADOWS: usize = 12;
 
 impl<S: Scalar> Carriers<'_, S> {
     /// Returns the lengths of the second segment at which some of the first one is covered, as intervals in increasing order \[m\]; all
     /// of it, if there are too many contacts.
     ///
     /// Cost: up to three slices for each event.
-    pub(crate) fn shadow(&self) -> Few<Interval<S>, MOST_PARTS> {
+    // Not inlined: pairs of discs would need the stack of it.
+    #[inline(never)]
+    pub(crate) fn shadow(&self) -> Few<Interval<S>, MOST_SHADOWS> {
         let all = Interval::new(S::ZERO, self.second.segment.length);
         let mut parts = Few::new(all);
         let Some(events) = self.events() else {

@@ -33,13 +33,15 @@ impl<S: Scalar> Carriers<'_, S> {
     ///
     /// # Errors
     /// [`Full::Pieces`]; [`Full::Contacts`] if a list of contacts is too short.
+    // Not inlined: pairs of discs would need the stack of it.
+    #[inline(never)]
     pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
         &self,
         indices: [u16; 2],
         pieces: &mut Pieces<S, P>,
     ) -> Result<(), Full> {
         let events = self.events().ok_or(Full::Contacts)?;
-        let turning = self.turning().ok_or(Full::Contacts)?;
+        let mut turning = None;
         let beside = self.second.within(self.slack.half().half());
         let mut front = Front { parts: Parts::new(Interval::new(S::ZERO, S::ZERO)), pieces: [NONE; MOST_PARTS] };
         let events = events.as_slice();
@@ -49,7 +51,13 @@ impl<S: Scalar> Carriers<'_, S> {
             let [lo, hi] = if wide { [slab.lo + beside, slab.hi - beside] } else { [slab.middle(); 2] };
             let slice = self.slice(lo)?;
             front = self.cross(&front, slice, slab, indices, pieces)?;
-            let between = turning.as_slice().iter().copied().filter(|&place| lo < place && place < hi);
+            // Most slabs are empty; nothing can be extreme there.
+            let covered = !front.parts.as_slice().is_empty();
+            if covered && turning.is_none() {
+                turning = Some(self.turning().ok_or(Full::Contacts)?);
+            }
+            let places = turning.as_ref().filter(|_| covered).map(|turning| turning.as_slice()).unwrap_or_default();
+            let between = places.iter().copied().filter(|&place| lo < place && place < hi);
             let mut from = lo;
             for to in between.chain(wide.then_some(hi)) {
                 let slice = self.slice(to)?;
