@@ -398,8 +398,8 @@ fn campaign<S: Number>(seeds: core::ops::Range<u64>, segments: usize) -> Tally {
 
 #[test]
 fn regions_of_single_segments_hold_what_the_oracle_says() {
-    let tally = campaign::<f64>(0..1000, 1);
-    assert!(tally.pairs == 1000 && tally.inside > 5_000, "{tally:?}");
+    let tally = campaign::<f64>(0..600, 1);
+    assert!(tally.pairs == 600 && tally.inside > 3_000, "{tally:?}");
 }
 
 #[test]
@@ -708,4 +708,74 @@ fn a_contact_at_the_end_of_a_segment_leaves_what_is_covered_covered() {
             assert_eq!(slice.as_slice(), [Interval::new(0.0, first.length())], "{turns} {k}");
         }
     }
+}
+
+/// The same with the numbers with which a first version lost a collision, 0.25 m deep.
+#[test]
+fn squares_at_a_common_corner_are_covered_throughout() {
+    let c = [0.35355339059327384, 0.85355339059327373];
+    let about = |corners: [[f64; 2]; 4], radius: f64| {
+        let corners = corners.map(|[x, y]| Vector { x: x - c[0], y: y - c[1] + radius });
+        Outline::<f64, 4>::polygon(corners, 0.125).unwrap()
+    };
+    let own = about(
+        [
+            [0.35355339059327373, 0.42928932188134483],
+            [-0.070710678118654363, 0.85355339059327395],
+            [-0.35355339059327373, 0.57071067811865517],
+            [0.070710678118654363, 0.1464466094067261],
+        ],
+        0.5,
+    );
+    let other = about(
+        [
+            [0.40355339059327366, 0.55355339059327346],
+            [0.40355339059327411, 1.1535533905932738],
+            [-0.19644660940672609, 1.1535533905932738],
+            [-0.19644660940672631, 0.55355339059327391],
+        ],
+        0.25,
+    );
+    let first = standing(c[0], c[1] - 0.5, 0.0).then_arc(0.5, Turn::Left, 1.9634954084936207).unwrap();
+    let second = standing(c[0], c[1] - 0.25, 0.0).then_arc(0.25, Turn::Left, 0.5).unwrap();
+    let carriers = Carriers {
+        first: Carried::new(&first, own.as_outline()),
+        second: Carried::new(&second, other.as_outline()),
+        radius: 0.25,
+        slack: 1e-13,
+    };
+    let slice = carriers.slice_of_first(0.39269908169872414).unwrap();
+    assert_eq!(slice.as_slice(), [Interval::new(0.0, first.length())]);
+}
+
+/// Who starts at the earliest start touches nobody, and a little earlier it does.
+#[test]
+fn delayed_outlines_do_not_touch() {
+    let mut delayed = 0;
+    for seed in 70_000..72_000_u64 {
+        let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+        (0..4).for_each(|_| {
+            random.unit();
+        });
+        let case = Case::random(&mut random, 1);
+        let (paths, outlines) = (case.paths::<f64>(), case.outlines::<f64>());
+        let profiles =
+            paths.each_ref().map(|path| Profile::<f64, 1>::from_pieces(1.0, [(path.as_path().length(), 0.0)]).unwrap());
+        let fleet = [0, 1].map(|k| {
+            let path: &Path<f64, 4> = &paths[k];
+            Motion::with_outline(path.as_path(), profiles[k].as_profile(), &outlines[k], 0.0).unwrap()
+        });
+        let ecm = Ecm::build([Region::EMPTY; 64], [Piece::EMPTY; 256], &fleet).unwrap();
+        let delay = crate::earliest_start(ecm.pair(&fleet, 0, 1).unwrap(), 0.0);
+        let Some(delay) = delay.filter(|delay| *delay > 0.0) else { continue };
+        let clear = |delay: f64| {
+            let later = fleet[0].delayed(delay).unwrap();
+            let encounter = Encounter::new(&later, &fleet[1]);
+            encounter.closest(encounter.time()).separation - encounter.radius()
+        };
+        assert!(clear(delay) > -1e-9, "seed {seed}: {delay} {}", clear(delay));
+        assert!(clear(delay - 1e-3) < 1e-6, "seed {seed}: {delay} {}", clear(delay - 1e-3));
+        delayed += 1;
+    }
+    assert!(delayed > 20, "{delayed}");
 }
