@@ -745,7 +745,7 @@ fn squares_at_a_common_corner_are_covered_throughout() {
         radius: 0.25,
         slack: 1e-13,
     };
-    let slice = carriers.slice_of_first(0.39269908169872414).unwrap();
+    let slice = carriers.slice_of_first(core::f64::consts::FRAC_PI_8).unwrap();
     assert_eq!(slice.as_slice(), [Interval::new(0.0, first.length())]);
 }
 

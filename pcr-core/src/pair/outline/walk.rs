@@ -2,7 +2,7 @@
 //!
 //! Between two events the number of intervals of a slice of the first segment is constant, and they move continuously in their order
 //! (Theorem 1). A piece is the k-th of n intervals, as long as it is that. Slices are taken a little beside each event, on both sides, and where
-//! an end may be extreme; the range of a piece is their hull.
+//! an end may be extreme, and in the middle; the range of a piece is their hull.
 //!
 //! A little means that no corner moves farther than a quarter of the slack σ. Regions are computed for R + σ. So whatever is
 //! within R at the event, or between it and the slice, is also in the slice: no range misses it, although the limit at a tangential event moves
@@ -12,7 +12,7 @@
 //! If the number of intervals changes without an event, which only rounding can cause, the place is found by bisection and taken as an event.
 
 use super::contacts::Standing;
-use super::events::Carriers;
+use super::events::{Carriers, Events};
 use super::slice::{MOST_PARTS, Parts, parts, parts_beside};
 use crate::error::Full;
 use crate::geometry::Interval;
@@ -51,15 +51,23 @@ impl<S: Scalar> Carriers<'_, S> {
             let [lo, hi] = if wide { [slab.lo + beside, slab.hi - beside] } else { [slab.middle(); 2] };
             let slice = self.slice(lo)?;
             front = self.cross(&front, slice, slab, indices, pieces)?;
-            // Most slabs are empty; nothing can be extreme there.
-            let covered = !front.parts.as_slice().is_empty();
-            if covered && turning.is_none() {
-                turning = Some(self.turning().ok_or(Full::Contacts)?);
+            // An event is off by more than a little where the outlines touch at a small angle, and both ends of a slab may be empty although its
+            // middle is not.
+            let (middle, mut all) = (slab.middle(), Events::new(S::ZERO));
+            let covered = !front.parts.as_slice().is_empty() || wide && !self.slice(middle)?.as_slice().is_empty();
+            if covered && wide {
+                if turning.is_none() {
+                    turning = Some(self.turning().ok_or(Full::Contacts)?);
+                }
+                let places = turning.as_ref().map(|turning| turning.as_slice()).unwrap_or_default();
+                let inside = places.iter().copied().filter(|&place| lo < place && place < hi && place != middle);
+                if !inside.chain([middle]).all(|place| all.push(place)) {
+                    return Err(Full::Contacts);
+                }
+                all.sort();
             }
-            let places = turning.as_ref().filter(|_| covered).map(|turning| turning.as_slice()).unwrap_or_default();
-            let between = places.iter().copied().filter(|&place| lo < place && place < hi);
             let mut from = lo;
-            for to in between.chain(wide.then_some(hi)) {
+            for to in all.as_slice().iter().copied().chain(wide.then_some(hi)) {
                 let slice = self.slice(to)?;
                 front = self.follow(front, slice, Interval::new(from, to), slab.hi, indices, pieces)?;
                 from = to;
