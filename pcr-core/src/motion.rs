@@ -61,6 +61,8 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// `start` \[s\]. An agent that drives backwards has an [`Outline::reversed`](crate::Outline::reversed) outline. An outline that is a disc about its reference point makes the motion of
     /// [`Motion::new`].
     ///
+    /// In fixed point, slices of outlines may in rare cases exceed the bound [`excess`](crate::excess) (`docs/theory/outlines.md`).
+    ///
     /// # Errors
     /// As [`Motion::new`]; [`Invalid::TurnInPlace`] if the path turns in place, which sweeps an area but has no length; [`Invalid::Lever`] if an
     /// arc is so tight that rounding a length could move a corner by a sixteenth of the size of the outline.
