@@ -1,186 +1,553 @@
-//! Delays with which two discs do not touch, all of an interval of them.
+//! Start delays with which two discs never touch: all delays of an interval at once.
 //!
-//! Let the second agent set off later by τ. While it is anywhere between τ - h and τ + h, it is never farther than `V h` from where it is
-//! with τ, V being its top speed: before it sets off and after its arrival it stands. So if two discs do not touch with the delay τ while
-//! the second one is larger by `V h`, and there for longer by h before and after its motion, they touch with none of the delays from τ - h
-//! to τ + h. Intervals are halved until that is shown, or a contact.
+//! Each agent has a clock of its own, which runs from 0, when it departs, until it arrives; outside of that it does not count. If the
+//! second agent departs later by d, the clocks show t and t - d. So a pair of clock times is a point of a plane, each delay is a line of
+//! it, and the claim is about all points of a band. The band is cut into *cells*: one clock within k of a time, the delay within h of
+//! a delay, each agent on one leg of its motion. With r, v, w, a, b the relative position, both velocities and both accelerations in the
+//! centre of a cell, u = v - w and c = a - b, the squared distance at the clock times +t and +(t + s), |t| <= k, |s| <= h, is at least
+//!
+//! ```text
+//! |r|² + 2 r·u t - 2 r·w s + (u·u + r·c) t² - 2 (u·w + r·b) t s + (w·w - r·b) s²                        (quadratic)
+//!   - |u·c| k³ - (2 |u·b| + |w·c|) k² h - (|u·b| + 2 |w·b|) k h² - |w·b| h³                             (cubic)
+//! ```
+//!
+//! for motions without a third derivative; with bounds J and K on these derivatives the distance is less by J k³/6 + K (k + h)³/6 at
+//! most. The least value of the quadratic is found in closed form, first over t, then over s, so that the bound knows that the distance
+//! of closest approach changes with the delay by the speed at which either disc then comes nearer to the other one, and not by the
+//! largest speed of a motion. Cells that this does not settle are cut in two, along the sides of the rectangle of both legs where they
+//! reach beyond it.
 
-use crate::data::{Agent, Travel};
-use crate::motion::meetings;
-use crate::mover::Mover;
+use crate::ball::{Ball, Real, Tri};
+use crate::data::Agent;
+use crate::motion::least;
+use crate::mover::{Course, Leg, Mover};
+use crate::near::Near;
+use crate::twofold::Twofold;
+use std::cmp::Ordering;
+use std::collections::VecDeque;
 
-/// What is shown of the delays of an interval.
+/// Cells of one pair at most.
+const MOST: usize = 200_000;
+
+/// The answer about the delays of two agents.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shown {
-    /// With none of them the discs touch.
+pub enum Verdict {
+    /// With none of the delays the discs touch.
     Free,
-    /// With this delay they do \[s\].
-    Contact(f64),
-    /// With this delay they come so near that rounding leaves it open \[s\].
-    Undecided(f64),
+    /// With a delay they touch.
+    Contact(Approach),
+    /// Near a delay they come so near that rounding leaves it open, or the search has reached its limit.
+    Undecided(Approach),
 }
 
-/// Intervals of one gap at most.
-const MOST: usize = 10_000;
+/// Two agents at one time with one delay.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approach {
+    /// How much later the second agent departs \[s\].
+    pub delay: f64,
+    /// Time since the departure of the first agent \[s\].
+    pub time: f64,
+    /// Distance of the centres less the radii \[m\]; NaN where it is not known.
+    pub clearance: f64,
+}
 
-/// Two agents, each of which is there from its start until it arrives only.
+/// A motion on a clock of its own.
 #[derive(Clone, Debug)]
-pub struct Later {
-    first: Mover,
-    second: Agent,
-    start: f64,
-    /// Largest speed of the second agent \[m/s\].
-    speed: f64,
-    /// Duration of the motion of each agent \[s\].
-    durations: [f64; 2],
+pub struct Traversal {
+    mover: Mover,
+    duration: f64,
 }
 
-impl Later {
-    /// The two agents, of which the first sets off at 0 and the second at a delay.
+impl Traversal {
+    /// The motion of an agent, whose start does not count.
     ///
     /// # Errors
-    /// What is wrong with an agent.
-    pub fn new(first: &Agent, second: &Agent) -> Result<Self, String> {
-        let travel = |agent: &Agent| agent.travel.clone().ok_or_else(|| format!("agent {}: no motion", agent.id));
-        let (own, their) = (travel(first)?, travel(second)?);
-        let [of_own, of_their] = [&own, &their].map(|travel| travel.phases.last().map_or(0.0, |last| last.time[1]));
-        let speed = their.phases.iter().flat_map(|phase| phase.speed).fold(0.0, f64::max);
-        // The speed at the faster end of a phase follows from its way, too.
-        let mean = their.phases.iter().filter(|phase| phase.time[1] > phase.time[0]).map(|phase| {
-            let [way, time] = [phase.length, phase.time].map(|[from, to]| to - from);
-            2.0 * way / time - phase.speed[0].min(phase.speed[1])
-        });
-        let speed = mean.fold(speed, f64::max) * (1.0 + 1e-9);
-        if !speed.is_finite() || own.start != 0.0 || their.start != 0.0 {
-            return Err(format!("agents {} and {}: starts at 0 and speeds are expected", first.id, second.id));
-        }
-        let (first, second, start) = (Mover::new(first, [0.0, of_own])?, second.clone(), their.start);
-        Ok(Self { first, second, start, speed, durations: [of_own, of_their] })
+    /// What is wrong with its path, or that it has no motion.
+    pub fn new(agent: &Agent) -> Result<Self, String> {
+        let mut agent = agent.clone();
+        let travel = agent.travel.as_mut().ok_or_else(|| format!("agent {}: no motion", agent.id))?;
+        travel.start = 0.0;
+        let duration = travel.phases.last().map_or(0.0, |last| last.time[1]);
+        Ok(Self { mover: Mover::new(&agent, [0.0, duration])?, duration })
     }
 
-    /// The delays with which both are there at one time \[s\].
-    pub fn together(&self) -> [f64; 2] {
-        [-self.durations[1], self.durations[0]]
-    }
-
-    /// Whether the discs touch with any delay from `from` to `to`, both included, and the number of intervals that this took.
+    /// A disc that goes from one point straight to another \[m\] at a speed \[m/s\], with the exact direction and length.
     ///
     /// # Errors
-    /// What is wrong with an agent, such as a start beyond all that is checked.
-    pub fn between(&self, [from, to]: [f64; 2]) -> Result<(Shown, usize), String> {
-        let [least, most] = self.together();
-        let mut rest = vec![[from.max(least), to.min(most)]];
-        let mut taken = 0;
-        if from > to || !rest.iter().all(|[lo, hi]| lo <= hi) {
-            return Ok((Shown::Free, taken));
+    /// Numbers that are none or out of range.
+    pub fn straight(radius: f64, ends: [[f64; 2]; 2], speed: f64) -> Result<Self, String> {
+        let mover = Mover::straight(radius, ends, speed)?;
+        Ok(Self { duration: mover.moves[1], mover })
+    }
+
+    /// How long it takes \[s\].
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// The legs and the clock times of each. Of a motion that takes no time, its end.
+    fn legs(&self) -> Vec<([f64; 2], &Leg)> {
+        let all = &self.mover.legs;
+        let own = all.windows(2).skip(1).map(|pair| ([pair[0].0, pair[1].0], &pair[0].1));
+        let own: Vec<_> = own.filter(|([from, to], _)| from < to).collect();
+        match (own.is_empty(), all.last()) {
+            (true, Some((_, last))) => vec![([0.0, self.duration], last)],
+            _ => own,
         }
-        // The ends themselves first: they are what is told.
-        for end in [from, to].into_iter().filter(|end| (least..=most).contains(end)) {
-            match self.at(end, 0.0)? {
-                Shown::Free => {}
-                other => return Ok((other, taken)),
-            }
-        }
-        while let Some([lo, hi]) = rest.pop() {
-            taken += 1;
-            let middle = lo + 0.5 * (hi - lo);
-            let half = (hi - middle).max(middle - lo) * (1.0 + f64::EPSILON);
-            if self.at(middle, half)? == Shown::Free {
-                continue;
-            }
-            match self.at(middle, 0.0)? {
-                Shown::Free => {}
-                other => return Ok((other, taken)),
-            }
-            if middle <= lo || middle >= hi || taken >= MOST {
-                // Between two numbers there is no delay; what is left after so many is not decided.
-                match taken >= MOST {
-                    true => return Ok((Shown::Undecided(middle), taken)),
-                    false => continue,
+    }
+
+    /// Whether two discs touch with any delay outside of closed intervals that are disjoint and in increasing order \[s\], while both
+    /// agents are under way. Returns the number of cells, too.
+    pub fn outside(&self, second: &Self, forbidden: &[[f64; 2]]) -> (Verdict, usize) {
+        let mut cells = 0;
+        let mut from = -second.duration;
+        let last = [self.duration, self.duration];
+        for [lo, hi] in forbidden.iter().chain([&last]) {
+            if from < *lo {
+                let verdict = self.between(second, [from, *lo], &mut cells);
+                if verdict != Verdict::Free {
+                    return (verdict, cells);
                 }
             }
-            rest.extend([[middle, hi], [lo, middle]]);
+            // What is no number forbids nothing.
+            from = from.max(*hi);
         }
-        Ok((Shown::Free, taken))
+        (Verdict::Free, cells)
     }
 
-    /// With all delays within `half` of this one.
-    fn at(&self, delay: f64, half: f64) -> Result<Shown, String> {
-        let travel = self.second.travel.clone().map(|travel| Travel { start: self.start + delay, ..travel });
-        let radius =
-            (self.second.radius + self.speed * half) * (1.0 + if half > 0.0 { 4.0 * f64::EPSILON } else { 0.0 });
-        let second = Agent { radius, travel, ..self.second.clone() };
-        let time = if half > 0.0 {
-            let (begin, end) = (delay - half, delay + self.durations[1] + half);
-            [begin - f64::EPSILON * begin.abs(), end + 2.0 * f64::EPSILON * end.abs()]
-        } else {
-            [delay, arrival(delay, self.durations[1])]
-        };
-        let found = meetings(&[self.first.clone(), Mover::new(&second, time)?]);
-        Ok(match (found.contacts.is_empty(), found.undecided.is_empty()) {
-            (false, _) => Shown::Contact(delay),
-            (true, false) => Shown::Undecided(delay),
-            (true, true) => Shown::Free,
-        })
+    fn between(&self, second: &Self, delay: [f64; 2], cells: &mut usize) -> Verdict {
+        let radius = [self.mover.radius, second.mover.radius];
+        let (own, their) = (self.legs(), second.legs());
+        let mut rest = VecDeque::new();
+        for (first_time, first) in &own {
+            for (second_time, second) in &their {
+                let legs = LegPair { legs: [first, second], times: [*first_time, *second_time], radius };
+                // On the clock of the shorter leg: a motion may change fast within it, and then no bound on it holds for long.
+                let times = [*first_time, *second_time];
+                let [own, their] = times.map(|[from, to]| to - from);
+                let clock = usize::from(their < own);
+                let cell = Cell { clock, time: times[clock], delay };
+                rest.extend(legs.within(cell).map(|cell| (legs, cell)));
+            }
+        }
+        // In the order of their sizes: where a contact is, a large cell shows it.
+        while let Some((legs, cell)) = rest.pop_front() {
+            *cells += 1;
+            let seen = legs.look(&cell);
+            if seen.clear {
+                continue;
+            }
+            let approach = cell.approach(seen.clearance);
+            if seen.meets.is_certain() && legs.has(&cell) {
+                return Verdict::Contact(approach);
+            }
+            let halves = legs.cut(&cell, seen.by_delay);
+            if halves.is_empty() || *cells >= MOST {
+                return Verdict::Undecided(approach);
+            }
+            rest.extend(halves.into_iter().filter_map(|half| legs.within(half)).map(|half| (legs, half)));
+        }
+        Verdict::Free
     }
 }
 
-/// The sum, rounded up.
-fn arrival(start: f64, duration: f64) -> f64 {
-    let sum = start + duration;
-    let rest = (start - (sum - duration)) + (duration - (sum - (sum - duration)));
-    if rest > 0.0 { sum.next_up() } else { sum }
+/// Which of some motions may come near one another.
+pub struct Neighbours(Near);
+
+impl Neighbours {
+    /// An index of them.
+    pub fn new(traversals: &[Traversal]) -> Self {
+        Self(Near::new(traversals.iter().map(|traversal| traversal.mover.area).collect()))
+    }
+
+    /// The indices behind this one of those whose boxes meet its own, in order.
+    pub fn after(&self, index: usize) -> Vec<usize> {
+        self.0.after(index)
+    }
+}
+
+/// Times of one of the clocks, and delays.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    /// Of the first agent 0, of the second one 1.
+    clock: usize,
+    time: [f64; 2],
+    delay: [f64; 2],
+}
+
+fn middle([lo, hi]: [f64; 2]) -> f64 {
+    lo + 0.5 * (hi - lo)
+}
+
+/// The distance from the middle to the farther end, rounded up.
+fn half([lo, hi]: [f64; 2]) -> f64 {
+    let middle = middle([lo, hi]);
+    (hi - middle).max(middle - lo) * (1.0 + 4.0 * f64::EPSILON) + f64::MIN_POSITIVE
+}
+
+impl Cell {
+    /// What the other clock shows less what this one shows, of each delay.
+    fn shift(&self) -> [f64; 2] {
+        let [lo, hi] = self.delay;
+        if self.clock == 0 { [-hi, -lo] } else { [lo, hi] }
+    }
+
+    fn approach(&self, clearance: f64) -> Approach {
+        let (time, delay) = (middle(self.time), middle(self.delay));
+        Approach { delay, time: if self.clock == 0 { time } else { time + delay }, clearance }
+    }
+}
+
+/// What one look at a cell shows.
+struct Seen {
+    clear: bool,
+    meets: Tri,
+    clearance: f64,
+    /// Whether half of the delays would do more for the bound than half of the times, if that is known.
+    by_delay: Option<bool>,
+}
+
+/// A leg of each agent.
+#[derive(Clone, Copy)]
+struct LegPair<'a> {
+    legs: [&'a Leg; 2],
+    times: [[f64; 2]; 2],
+    radius: [f64; 2],
+}
+
+impl LegPair<'_> {
+    /// The part of a cell in which both agents may be on these legs, but for rounding; `None` if there is none.
+    fn within(&self, cell: Cell) -> Option<Cell> {
+        let [[from, to], [first, last]] = [self.times[cell.clock], self.times[1 - cell.clock]];
+        let [lo, hi] = cell.shift();
+        // The other clock shows `time + shift`, which is between `first` and `last`.
+        let time =
+            [cell.time[0].max(from).max((first - hi).next_down()), cell.time[1].min(to).min((last - lo).next_up())];
+        let ([a, b], [c, d]) = (self.times.into(), cell.delay.into());
+        let delay = [f64::max(c, (a[0] - b[1]).next_down()), f64::min(d, (a[1] - b[0]).next_up())];
+        (time[0] <= time[1] && delay[0] <= delay[1]).then_some(Cell { time, delay, ..cell })
+    }
+
+    /// Whether the centre of a cell is certain to be a time of both legs.
+    fn has(&self, cell: &Cell) -> bool {
+        let time = middle(cell.time);
+        let [from, to] = self.times[cell.clock];
+        let delay = Twofold::from(middle(cell.delay));
+        let other = Twofold::from(time) + if cell.clock == 0 { -delay } else { delay };
+        let [first, last] = self.times[1 - cell.clock].map(Twofold::from);
+        from <= time && time <= to && first <= other && other <= last
+    }
+
+    /// Two cells that hold all of a cell in which both agents are on these legs; none, if there is no number in between.
+    fn cut(&self, cell: &Cell, by_delay: Option<bool>) -> Vec<Cell> {
+        let (time, delay) = (middle(cell.time), middle(cell.delay));
+        let [k, h] = [cell.time, cell.delay].map(|[lo, hi]| hi - lo);
+        let inside = |at: f64, [lo, hi]: [f64; 2]| lo < at && at < hi;
+        let [may_time, may_delay] = [inside(time, cell.time), inside(delay, cell.delay)];
+        // Where the leg of the other agent begins or ends within the cell, it is to be cut there, and not by what the bound says.
+        let [first, last] = self.times[1 - cell.clock];
+        let [lo, hi] = cell.shift();
+        let beyond = [cell.time[0] + lo < first, cell.time[1] + hi > last];
+        let is_wide = 4.0 * h > k;
+        let of_delay = by_delay.filter(|_| beyond == [false; 2]).unwrap_or(is_wide);
+        if may_delay && (of_delay || !may_time) {
+            return [[cell.delay[0], delay], [delay, cell.delay[1]]].map(|delay| Cell { delay, ..*cell }).into();
+        }
+        if !may_time {
+            return Vec::new();
+        }
+        let mut halves = [[cell.time[0], time], [time, cell.time[1]]].map(|time| Cell { time, ..*cell });
+        // Times of the other clock are those that begin or end with its leg.
+        let turned = |time| Cell { clock: 1 - cell.clock, time, delay: cell.delay };
+        if beyond[0] && !is_wide {
+            halves[0] = turned([first, (time + hi).next_up()]);
+        }
+        if beyond[1] && !is_wide {
+            halves[1] = turned([(time + lo).next_down(), last]);
+        }
+        halves.into()
+    }
+
+    fn look(&self, cell: &Cell) -> Seen {
+        let near = self.look_with::<f64>(cell, |leg| &leg.near);
+        match near.0 {
+            Tri::Yes => near.1,
+            Tri::No if near.1.meets != Tri::Doubt => near.1,
+            _ => self.look_with::<Twofold>(cell, |leg| &leg.exact).1,
+        }
+    }
+
+    fn look_with<R: Real>(&self, cell: &Cell, course: impl Fn(&Leg) -> &Course<R>) -> (Tri, Seen) {
+        let number = Ball::<R>::from;
+        let legs = [self.legs[cell.clock], self.legs[1 - cell.clock]];
+        let courses = legs.map(&course);
+        let delay = number(middle(cell.delay));
+        let time = number(middle(cell.time));
+        let times = [time, if cell.clock == 0 { time - delay } else { time + delay }];
+        let [k, h] = [cell.time, cell.delay].map(half).map(number);
+        let spans = [k, k + h];
+        let [[p, v, a], [q, w, b]] = [0, 1].map(|one| courses[one].at(times[one]));
+        let [r, u, c] = [p - q, v - w, a - b];
+        let off = number(legs[0].off) + number(legs[1].off);
+        let radius = number(self.radius[0]) + number(self.radius[1]);
+        let distance = r.norm();
+        let between = distance - radius;
+        let clearance = Ball { err: between.err + off.to_f64(), ..between }.told();
+        // Largest speeds within the cell, and what they allow.
+        let gains = courses.map(|course| course.ramp.acceleration.abs());
+        let speeds = [0, 1].map(|one| courses[one].ramp.speed_at(times[one]).abs() + gains[one] * spans[one]);
+        let mut clear = distance.above(radius + off + speeds[0] * spans[0] + speeds[1] * spans[1]);
+        let mut by_delay = None;
+        if !clear.is_certain() {
+            let two = number(2.0);
+            let third = [0, 1].map(|one| {
+                let (bend, speed) = (number(legs[one].curvature), speeds[one]);
+                bend * speed * (bend * speed * speed + number(3.0) * gains[one])
+            });
+            let quadratic = Quadratic {
+                one: r.dot(r),
+                t: two * r.dot(u),
+                s: -two * r.dot(w),
+                tt: u.dot(u) + r.dot(c),
+                ts: -two * (u.dot(w) + r.dot(b)),
+                ss: w.dot(w) - r.dot(b),
+            };
+            let [uc, ub, wc, wb] = [u.dot(c), u.dot(b), w.dot(c), w.dot(b)].map(Ball::abs);
+            // The squared distance of the motions without a third derivative, and what the distance is less by.
+            let bound = |k: Ball<R>, h: Ball<R>| {
+                let cubic = uc * k * k * k + ((two * ub + wc) * k * k + (ub + two * wb) * k * h + wb * h * h) * h;
+                let other = k + h;
+                let lost = (third[0] * k * k * k + third[1] * other * other * other) / number(6.0);
+                [quadratic.least(k, h) - cubic, lost]
+            };
+            let [square, lost] = bound(k, h);
+            clear = clear.or((square.max(number(0.0)).sqrt() - lost - off).above(radius));
+            if !clear.is_certain() {
+                // What helps more: half of the delays, or of the times.
+                let [of_delay, of_time] = [bound(k, h.half()), bound(k.half(), h)]
+                    .map(|[square, lost]| (square - two * radius * lost).to_f64());
+                by_delay = of_delay.partial_cmp(&of_time).filter(|order| order.is_ne()).map(Ordering::is_gt);
+            }
+        }
+        let meets = radius.above(distance + off);
+        (clear, Seen { clear: clear.is_certain(), meets, clearance, by_delay })
+    }
+}
+
+/// A polynomial of second order of two numbers.
+struct Quadratic<R> {
+    one: Ball<R>,
+    t: Ball<R>,
+    s: Ball<R>,
+    tt: Ball<R>,
+    ts: Ball<R>,
+    ss: Ball<R>,
+}
+
+impl<R: Real> Quadratic<R> {
+    /// A lower bound for `|t| <= k` and `|s| <= h`.
+    fn least(&self, k: Ball<R>, h: Ball<R>) -> Ball<R> {
+        let Self { one, t, s, tt, ts, ss } = *self;
+        // Without what bends it upward it is least at an end.
+        let bend = tt.min(Ball::from(0.0));
+        let end = |k: Ball<R>, bend: Ball<R>| least(one + t * k + bend * k * k, s + ts * k, ss, h);
+        let ends = end(k, bend).min(end(-k, bend));
+        if !tt.is_positive().is_certain() {
+            return ends;
+        }
+        // The vertex is at -(t + ts s) / 2 tt.
+        let two = Ball::from(2.0);
+        if (t.abs() - ts.abs() * h).above(two * tt * k).is_certain() {
+            return end(if t.to_f64() > 0.0 { -k } else { k }, tt);
+        }
+        let part = ts / (two * tt);
+        let all = least(one - t * t / (two * two * tt), s - t * part, ss - ts * part.half(), h);
+        ends.max(all)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Angle, Path, Phase, Segment};
+    use crate::data::{Angle, Path, Phase, Segment, Travel};
+    use std::f64::consts::FRAC_1_SQRT_2;
 
     /// A disc of 0.25 m that goes a line of 4 m at 1 m/s.
-    fn line(id: u64, start: [f64; 2], turns: f64) -> Agent {
-        let segments = vec![Segment { length: 4.0, radius: None, turns: Vec::new(), from: 0.0, to: 4.0 }];
+    fn line(start: [f64; 2], turns: f64) -> Traversal {
+        let (sin, cos) = (turns * std::f64::consts::TAU).sin_cos();
+        let end = [start[0] + (4.0 * cos).round(), start[1] + (4.0 * sin).round()];
+        Traversal::straight(0.25, [start, end], 1.0).expect("a line")
+    }
+
+    /// From rest to rest on a line, with 1 m/s at most and accelerations of 0.5 m/s².
+    fn rest_to_rest(radius: f64, start: [f64; 2], turns: f64, length: f64) -> Traversal {
+        let segments = vec![Segment { length, radius: None, turns: Vec::new(), from: 0.0, to: length }];
         let path = Path { start, heading: Angle::Turns(turns), segments, rounding: 0.0, step: 0.0 };
-        let phases = vec![Phase { time: [0.0, 4.0], length: [0.0, 4.0], speed: [1.0; 2] }];
-        Agent { id, radius: 0.25, path, travel: Some(Travel { start: 0.0, phases, lag: 0.0, time_excess: 0.0 }) }
+        let cruise = 2.0 + (length - 2.0);
+        let phases = vec![
+            Phase { time: [0.0, 2.0], length: [0.0, 1.0], speed: [0.0, 1.0] },
+            Phase { time: [2.0, cruise], length: [1.0, length - 1.0], speed: [1.0, 1.0] },
+            Phase { time: [cruise, cruise + 2.0], length: [length - 1.0, length], speed: [1.0, 0.0] },
+        ];
+        let travel = Some(Travel { start: 0.0, phases, lag: 0.0, time_excess: 0.0 });
+        Traversal::new(&Agent { id: 1, radius, path, travel }).expect("a motion")
     }
 
-    fn crossing() -> Later {
-        Later::new(&line(1, [-2.0, 0.0], 0.0), &line(2, [0.0, -2.0], 0.25)).expect("two agents")
+    fn crossing() -> [Traversal; 2] {
+        [line([-2.0, 0.0], 0.0), line([0.0, -2.0], 0.25)]
     }
-
-    /// At right angles discs of 0.25 m touch with delays of up to 0.5 √2 s.
-    const END: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
     #[test]
-    fn the_delays_outside_of_what_is_forbidden_are_free() {
-        let all = crossing();
-        assert_eq!(all.together(), [-4.0, 4.0]);
-        for beyond in [1e-12, 1e-9, 1e-3] {
-            for gap in [[END + beyond, 4.0], [-4.0, -END - beyond], [END + beyond, 1e9], [4.1, 9.0], [1.0, 1.0]] {
-                let (shown, taken) = all.between(gap).expect("numbers");
-                assert!(shown == Shown::Free && taken < 500, "{gap:?}: {shown:?} after {taken}");
+    fn outside_of_the_exact_delays_a_crossing_is_free() {
+        let [first, second] = crossing();
+        // At right angles discs of 0.25 m touch with delays of up to 0.5 √2 s.
+        for beyond in [1e-15, 1e-12, 1e-9, 1e-3, 1.0] {
+            let end = FRAC_1_SQRT_2 + beyond;
+            let (verdict, cells) = first.outside(&second, &[[-end, end]]);
+            assert!(verdict == Verdict::Free && cells < 1000, "{beyond}: {verdict:?} after {cells}");
+        }
+    }
+
+    #[test]
+    fn an_interval_that_ends_too_early_shows_a_contact() {
+        let [first, second] = crossing();
+        let end = FRAC_1_SQRT_2 + 1e-9;
+        for missing in [1e-12, 1e-9, 1e-3, 0.1, 1.0] {
+            let short = FRAC_1_SQRT_2 - missing;
+            for (forbidden, at) in [([-end, short], 1.0), ([-short, end], -1.0)] {
+                let (verdict, _) = first.outside(&second, &[forbidden]);
+                let Verdict::Contact(found) = verdict else { panic!("{missing}: {verdict:?}") };
+                assert!((short..FRAC_1_SQRT_2).contains(&(found.delay * at)) && found.clearance < 0.0, "{found:?}");
+                // Told with the time at which it is.
+                let [own, their] = [found.time - 2.0, found.time - found.delay - 2.0];
+                assert!(own.hypot(their) < 0.5, "{found:?}");
+            }
+        }
+        assert!(matches!(first.outside(&second, &[]).0, Verdict::Contact(_)));
+        // Two intervals with a gap.
+        let gap = [[-end, 0.1], [0.1 + 1e-9, end]];
+        assert!(matches!(first.outside(&second, &gap).0, Verdict::Contact(found) if found.delay > 0.1));
+        assert_eq!(first.outside(&second, &[[-end, 0.1], [0.1, end]]).0, Verdict::Free);
+    }
+
+    #[test]
+    fn who_has_arrived_is_in_nobodys_way() {
+        // The second one begins where the first one ends: they touch as long as both are there, and 0.5 s before that.
+        let (first, second) = (line([-4.0, 0.0], 0.0), line([0.0, 0.0], 0.0));
+        assert_eq!(first.outside(&second, &[[3.5 - 1e-9, 4.0 + 1e-9]]).0, Verdict::Free);
+        let verdict = first.outside(&second, &[[3.5 - 1e-9, 4.0 - 1e-9]]).0;
+        assert!(matches!(verdict, Verdict::Contact(found) if found.delay > 4.0 - 1e-9), "{verdict:?}");
+    }
+
+    #[test]
+    fn who_stands_just_beside_the_other_one_is_decided() {
+        for origin in [[0.0, 0.0], [500_000.0, 5_400_000.0]] {
+            let at = |x: f64, y: f64| [origin[0] + x, origin[1] + y];
+            // The end of the first one is 1 m beside the line of the second one, and the other way round. They touch until the first one
+            // has arrived, where the second one passes after 4 s: up to a delay of 6 s - 4 s.
+            let (first, second) =
+                (rest_to_rest(0.5, at(0.0, 0.0), 0.0, 4.0), rest_to_rest(0.5, at(3.0, -3.0), 0.25, 4.0));
+            assert_eq!((first.duration(), second.duration()), (6.0, 6.0));
+            let [least, most] = [-2.0, 2.0];
+            for beyond in [1e-9, 1e-6, 1e-3] {
+                let (verdict, cells) = first.outside(&second, &[[least - beyond, most + beyond]]);
+                assert!(verdict == Verdict::Free && cells < 20_000, "{beyond}: {verdict:?} after {cells}");
+                let verdict = first.outside(&second, &[[least - beyond, most - beyond]]).0;
+                assert!(beyond < 1e-3 || matches!(verdict, Verdict::Contact(_)), "{beyond}: {verdict:?}");
+                assert!(verdict != Verdict::Free, "{beyond}");
             }
         }
     }
 
     #[test]
-    fn a_contact_is_found_at_an_end_and_in_between() {
-        let all = crossing();
-        assert!(matches!(all.between([END - 1e-9, 4.0]), Ok((Shown::Contact(delay), _)) if delay == END - 1e-9));
-        assert!(matches!(all.between([-4.0, -END + 1e-9]), Ok((Shown::Contact(delay), _)) if delay == -END + 1e-9));
-        // Both ends are free.
-        let (shown, _) = all.between([-3.0, 3.0]).expect("numbers");
-        assert!(matches!(shown, Shown::Contact(delay) if delay.abs() < END), "{shown:?}");
-        // Just at contact: neither.
-        assert!(!matches!(all.between([END, END]), Ok((Shown::Contact(_), _))));
+    fn neighbours_have_boxes_that_meet() {
+        let all = [line([0.0, 0.0], 0.0), line([0.0, 0.5], 0.0), line([0.0, 1.2], 0.0), line([4.4, 0.0], 0.25)];
+        let near = Neighbours::new(&all);
+        assert_eq!([0, 1, 2, 3].map(|one| near.after(one)), [vec![1, 3], vec![3], vec![3], vec![]]);
+    }
+
+    fn dice(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*state >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Lines and arcs near the origin, from rest to rest, with a phase that lasts no longer than a rounding.
+    fn bent(state: &mut u64, id: u64) -> Agent {
+        let (mut from, mut segments) = (0.0, Vec::new());
+        for _ in 0..3 {
+            let (length, bend) = (0.2 + 2.0 * dice(state), dice(state) - 0.5);
+            let radius = Some((0.4 + dice(state)).copysign(bend)).filter(|_| dice(state) < 0.6);
+            segments.push(Segment { length, radius, turns: Vec::new(), from, to: from + length });
+            from += length;
+        }
+        let (half, middle) = (1.0 + 3.0 * dice(state), 0.5 * from);
+        let top = from / half;
+        let next = [half.next_up(), middle.next_up()];
+        let phases = vec![
+            Phase { time: [0.0, half], length: [0.0, middle], speed: [0.0, top] },
+            Phase { time: [half, next[0]], length: [middle, next[1]], speed: [top; 2] },
+            Phase { time: [next[0], 2.0 * half], length: [next[1], from], speed: [top, 0.0] },
+        ];
+        let start = [4.0 * dice(state) - 2.0, 4.0 * dice(state) - 2.0];
+        let path = Path { start, heading: Angle::Turns(dice(state)), segments, rounding: 1e-15, step: 0.0 };
+        let travel = Some(Travel { start: 0.0, phases, lag: 0.0, time_excess: 0.0 });
+        Agent { id, radius: 0.2, path, travel }
+    }
+
+    /// What is found at one delay, by the proof of motions.
+    fn touch(first: &Agent, second: &Agent, delay: f64) -> bool {
+        let mover = |agent: &Agent, start: f64| {
+            let mut agent = agent.clone();
+            let travel = agent.travel.as_mut().expect("a motion");
+            travel.start = start;
+            let end = start + travel.phases.last().expect("a phase").time[1];
+            Mover::new(&agent, [start, end]).expect("a motion")
+        };
+        !crate::motion::meetings(&[mover(first, 0.0), mover(second, delay)]).contacts.is_empty()
     }
 
     #[test]
-    fn who_has_arrived_is_in_nobodys_way() {
-        // One behind the other on the same line: the end of the first is the start of the second.
-        let all = Later::new(&line(1, [-4.0, 0.0], 0.0), &line(2, [0.0, 0.0], 0.0)).expect("two agents");
-        assert!(matches!(all.between([4.0, 5.0]), Ok((Shown::Contact(_), _))));
-        assert_eq!(all.between([4.0_f64.next_up(), 5.0]).expect("numbers").0, Shown::Free);
+    fn arcs_are_free_just_where_no_motion_touches() {
+        let (mut state, mut free, mut refuted) = (1, 0, 0);
+        for _ in 0..60 {
+            let agents = [bent(&mut state, 1), bent(&mut state, 2)];
+            let [first, second] = [0, 1].map(|one| Traversal::new(&agents[one]).expect("a motion"));
+            let (least, most) = (-second.duration(), first.duration());
+            let at = |k: i32| least + (most - least) * f64::from(k) / 200.0;
+            let hits: Vec<i32> = (0..=200).filter(|&k| touch(&agents[0], &agents[1], at(k))).collect();
+            let mut intervals: Vec<[f64; 2]> = Vec::new();
+            for &k in &hits {
+                match intervals.last_mut() {
+                    Some(last) if at(k - 1) <= last[1] => last[1] = at(k),
+                    _ => intervals.push([at(k), at(k)]),
+                }
+            }
+            // Samples miss up to a step at each end.
+            let step = at(1) - at(0);
+            let wide: Vec<[f64; 2]> = intervals.iter().map(|[lo, hi]| [lo - step, hi + step]).collect();
+            let (verdict, cells) = first.outside(&second, &wide);
+            assert!(cells < 20_000, "{verdict:?} after {cells}");
+            match verdict {
+                Verdict::Free => free += 1,
+                // Shorter than a step, and therefore not sampled: a contact all the same.
+                Verdict::Contact(found) => assert!(touch(&agents[0], &agents[1], found.delay), "{found:?}"),
+                Verdict::Undecided(found) => panic!("{found:?}"),
+            }
+            // A sample less at an end, and none of an interval.
+            for cut in 0..intervals.len() {
+                let mut short = wide.clone();
+                short[cut] = [intervals[cut][0] + 1e-7, short[cut][1]];
+                let mut none = wide.clone();
+                none.remove(cut);
+                for table in [short, none] {
+                    let (verdict, _) = first.outside(&second, &table);
+                    let Verdict::Contact(found) = verdict else { panic!("{verdict:?}") };
+                    assert!(touch(&agents[0], &agents[1], found.delay) && found.clearance < 0.0, "{found:?}");
+                    assert!(!table.iter().any(|[lo, hi]| (lo..hi).contains(&&found.delay)), "{found:?} {table:?}");
+                    refuted += 1;
+                }
+            }
+        }
+        assert!(free > 50 && refuted > 30, "{free} {refuted}");
     }
 }

@@ -176,7 +176,7 @@ impl Both<'_> {
 }
 
 /// A lower bound on `a + b τ + c τ²` for `|τ| <= k`, the least value unless that is in doubt.
-fn least<R: Real>(a: Ball<R>, b: Ball<R>, c: Ball<R>, k: Ball<R>) -> Ball<R> {
+pub(crate) fn least<R: Real>(a: Ball<R>, b: Ball<R>, c: Ball<R>, k: Ball<R>) -> Ball<R> {
     let ends = a - b.abs() * k + c * k * k;
     let bends = c.is_positive();
     if bends == Tri::No {

@@ -138,6 +138,43 @@ impl Mover {
         Ok(Self { id: agent.id, radius: agent.radius, legs, speed, off, area, time, moves: [travel.start, arrival] })
     }
 
+    /// A disc that goes from one point straight to another \[m\] at a speed \[m/s\], from the time 0 on. The last time is rounded up.
+    ///
+    /// # Errors
+    /// Numbers that are out of range.
+    pub(crate) fn straight(radius: f64, [from, to]: [[f64; 2]; 2], speed: f64) -> Result<Self, String> {
+        const MOST: f64 = 1e15;
+        let numbers = [from[0], from[1], to[0], to[1], radius, speed];
+        if !numbers.iter().all(|number| number.abs() <= MOST) || radius < 0.0 || speed <= 0.0 {
+            return Err(format!("a disc of {radius} m from {from:?} to {to:?} m at {speed} m/s is out of range"));
+        }
+        let number = Ball::<Twofold>::from;
+        let point = |[x, y]: [f64; 2]| Vector { x: number(x), y: number(y) };
+        let way = point(to) - point(from);
+        let length = if from == to { number(0.0) } else { way.norm() };
+        let along = if from == to { point([1.0, 0.0]) } else { way.times(number(1.0) / length) };
+        let carrier = Carrier::Line { start: point(from), along };
+        let duration = length / number(speed);
+        let duration = if from == to { 0.0 } else { (duration.to_f64() + duration.err).next_up() };
+        if !(duration <= MOST) {
+            return Err(format!("from {from:?} to {to:?} m at {speed} m/s takes too long"));
+        }
+        let standing = Ramp::standing(Twofold::ZERO);
+        let leg = |ramp: Ramp<Twofold>, speed: f64| {
+            let exact = Course { carrier, ramp };
+            Leg { exact, near: Course::of(&exact), place: 0, speed, curvature: 0.0, off: 0.0 }
+        };
+        let legs = vec![
+            (f64::NEG_INFINITY, leg(standing, 0.0)),
+            (0.0, leg(Ramp { speed: number(speed), ..standing }, speed)),
+            (duration, leg(Ramp { length, ..standing }, 0.0)),
+        ];
+        let lo = [0, 1].map(|axis| (from[axis].min(to[axis]) - radius).next_down());
+        let hi = [0, 1].map(|axis| (from[axis].max(to[axis]) + radius).next_up());
+        let (area, moves) = ([lo[0], lo[1], hi[0], hi[1]], [0.0, duration]);
+        Ok(Self { id: 0, radius, legs, speed, off: 0.0, area, time: moves, moves })
+    }
+
     pub(crate) fn leg(&self, time: f64) -> usize {
         self.legs.partition_point(|(from, _)| *from <= time).saturating_sub(1)
     }
