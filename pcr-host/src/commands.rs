@@ -50,6 +50,8 @@ const CONFLICTS: u8 = 1;
 const WRONG_INPUT: u8 = 2;
 /// Exit status: the output could not be written.
 const NOT_WRITTEN: u8 = 3;
+/// Exit status: the checker's own rounding does not tell.
+const UNDECIDED: u8 = 4;
 
 const STATUSES: &str = "\
 Exit status:
@@ -127,7 +129,7 @@ impl Command {
         match self {
             Self::Certify(_) | Self::Check(_) | Self::Plan(_) => true,
             Self::Simulate(_) | Self::Traffic(_) | Self::Fleet(_) => true,
-            Self::Locks(arguments) => arguments.is_audit(),
+            Self::Locks(arguments) => arguments.is_answered_by_status(),
             _ => false,
         }
     }

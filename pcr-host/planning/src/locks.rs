@@ -20,7 +20,8 @@ mod sweep;
 mod table;
 
 use crate::memory;
-pub use delays::{Delays, Driving, Unsafe, Way};
+pub(crate) use delays::ForbiddenDelays;
+pub use delays::{DelayApproach, DelayProof, Delays, Driving, Unsafe, Way};
 pub use index::{Index, IndexError, Partner, write_index};
 pub use origin::origin;
 pub use pass::{Found, Told};

@@ -4,7 +4,7 @@ use super::help::STANDING;
 use super::number::{Number, with_scalar};
 use super::sources::{layout_from, scenario_from, source, text};
 use super::work::tell_rounding;
-use super::{CONFLICTS, Form, Printed, Stop, WRONG_INPUT, acknowledge, say};
+use super::{CONFLICTS, Form, Printed, Stop, UNDECIDED, WRONG_INPUT, acknowledge, say};
 use crate::progress::Progress;
 use clap::Args;
 use pcr_formats::import::{Kind, Options};
@@ -17,9 +17,6 @@ use pcr_planning::{locks, report};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-
-/// Exit status: the checker's own rounding does not tell.
-const UNDECIDED: u8 = 4;
 
 const STATUSES: &str = "\
 Exit status:

@@ -4,7 +4,7 @@ use super::exclusions::Asked;
 use super::help::{DRIVING, STANDING};
 use super::printed::notes;
 use super::sources::{layout, layout_source};
-use super::{Form, NO_FOLDER, NO_STREAM, Printed, Stop, acknowledge, is_standard, warn_of_boxes};
+use super::{CONFLICTS, Form, NO_FOLDER, NO_STREAM, Printed, Stop, UNDECIDED, acknowledge, is_standard, warn_of_boxes};
 use crate::progress::Progress;
 use clap::Args;
 use pcr_drawing as picture;
@@ -20,14 +20,14 @@ use std::process::ExitCode;
 
 const STATUSES: &str = "\
 Exit status:
-  0  done; with --audit: no two vehicles can touch
-  1  with --audit: two vehicles can touch
+  0  done; with --audit: no two vehicles can touch; with --certify: proved
+  1  with --audit: two vehicles can touch; with --certify: refuted
   2  wrong arguments, or a layout that cannot be read or was refused
-  3  the output could not be written";
+  3  the output could not be written
+  4  with --certify: not decided, as of discs that just touch";
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr locks depot.geojson --radius 0.4               of a nav2 route graph
   pcr locks depot.geojson --radius 0.4 -o locks      and a page that shows them
   pcr locks map.xml --radius 0.5 --index map.locks   of any size, in a file
   pcr locks map.locks --edge e17                     of an edge, from that file
@@ -49,6 +49,9 @@ pub(super) struct Arguments {
     /// Print the start delays with which vehicles touch; at --speed, with --acceleration from rest to rest
     #[arg(long)]
     delays: bool,
+    /// With --delays: prove that all other delays are free
+    #[arg(long)]
+    certify: bool,
     /// JSON Lines, one lock per line, for tables of any size
     #[arg(long, hide_short_help = true)]
     lines: bool,
@@ -68,9 +71,9 @@ pub(super) struct Arguments {
 }
 
 impl Arguments {
-    /// Whether the exit status tells what is asked for.
-    pub(super) fn is_audit(&self) -> bool {
-        self.asked.is_audit()
+    /// Whether the exit status answers what is asked.
+    pub(super) fn is_answered_by_status(&self) -> bool {
+        self.asked.is_audit() || self.certify
     }
 
     pub(super) fn run(self) -> Result<ExitCode, Stop> {
@@ -155,6 +158,9 @@ impl Arguments {
 
     /// Delays of starts instead of lengths.
     fn unsafe_delays(&self, file: &Path) -> Result<ExitCode, Stop> {
+        if self.certify && self.printed.form() == Form::Csv {
+            return Err(Stop::arguments("--certify is for --format json and table"));
+        }
         let Some(speed) = self.import.speed else {
             return Err(Stop::arguments("--delays are of one speed: say which, --speed"));
         };
@@ -174,12 +180,22 @@ impl Arguments {
         let delays = Delays::new(&imported, driving, self.nodes).map_err(wrong)?;
         let head = self::head(&imported, self.nodes);
         let mut out = self.out();
+        let mut status = ExitCode::SUCCESS;
         let printed = match self.printed.form() {
             _ if self.lines => report::delays_lines(&head, driving, &delays, told, &mut out),
             Form::Csv => report::delays_csv(&delays, told, &mut out),
             form => {
-                let table = DelayTable::of(head, driving, &delays, told).map_err(wrong)?;
+                let mut table = DelayTable::of(head, driving, &delays, told).map_err(wrong)?;
                 drop(progress);
+                if self.certify {
+                    let progress = Progress::new(format!("{}: proofs of edges", file.display()));
+                    table.certify(&delays, &|done, total| progress.set(done, total)).map_err(wrong)?;
+                }
+                status = match table.certificate.as_ref().map(|proof| proof.verdict) {
+                    None | Some("proved") => ExitCode::SUCCESS,
+                    Some("refuted") => ExitCode::from(CONFLICTS),
+                    Some(_) => ExitCode::from(UNDECIDED),
+                };
                 if form == Form::Json {
                     report::json(&table, &mut out)?;
                 } else {
@@ -191,7 +207,7 @@ impl Arguments {
         };
         printed.map_err(|unprinted| unprinted_of(file, unprinted))?;
         out.flush()?;
-        Ok(ExitCode::SUCCESS)
+        Ok(status)
     }
 
     /// Where the answer goes. Lines are for programs: they are not what --quiet leaves out.

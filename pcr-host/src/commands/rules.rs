@@ -21,7 +21,7 @@ pub(crate) enum Rule {
 pub(crate) type Ruled = (&'static str, &'static [&'static str], Rule, &'static [&'static str], &'static str);
 
 /// All of them.
-pub(crate) const RULES: [Ruled; 29] = [
+pub(crate) const RULES: [Ruled; 31] = [
     ("", &["json"], Excludes, &["format"], "--json is --format json; give one of them"),
     ("demo", &["scenario"], Excludes, &["output"], "--scenario prints the scenario and draws no pictures"),
     (
@@ -94,6 +94,14 @@ pub(crate) const RULES: [Ruled; 29] = [
         Excludes,
         &["edge", "index", "output"],
         "--delays prints start delays instead of locks; --edge, --index and --output are for locks",
+    ),
+    ("locks", &["certify"], Needs, &["delays"], "start delays are proved here; pcr certify proves locks; add --delays"),
+    (
+        "locks",
+        &["certify"],
+        Excludes,
+        &["lines", "nodes"],
+        "--certify proves the delays of pairs of edges; --lines and --nodes print other tables, in a run of their own",
     ),
     ("locks", &["lines"], Excludes, &["format", "json"], "--lines is a format of its own, JSON Lines"),
     (

@@ -370,6 +370,32 @@ delays: 3 intervals of unsafe delays, radius 0.25 m, at 1 m/s
 }
 
 #[test]
+fn all_other_delays_are_proved_on_request() {
+    let name = file("locks", "proved.geojson", cross());
+    let arguments = ["locks", &name, "--radius", "0.25", "--delays", "--speed", "1"];
+    let counts =
+        |table: &Value| ["pairs", "proved", "refuted", "undecided"].map(|of| table["certificate"][of].as_u64());
+    for driving in [&[][..], &["--acceleration", "0.5", "--rotation", "1", "--rotation-acceleration", "1"]] {
+        let all = [&arguments[..], driving, &["--certify"]].concat();
+        let proved = run(&[&all[..], &["--json", "-q"]].concat());
+        assert_eq!(proved.status, 0, "{}", proved.err);
+        let table = proved.json();
+        assert_eq!((&table["certificate"]["verdict"], counts(&table)), (&json!("proved"), [3, 3, 0, 0].map(Some)));
+        assert!(table["certificate"].get("open").is_none(), "{table}");
+        // Nothing else changes, and nothing is proved without the option.
+        let mut plain = run(&[&arguments[..], driving, &["--json", "-q"]].concat()).json();
+        assert!(plain.get("certificate").is_none());
+        plain["certificate"] = table["certificate"].clone();
+        assert_eq!(plain, table);
+        let text = run(&all).ok();
+        let line = "certificate: no contact at any other delay, proved (3 pairs of edges)";
+        assert_eq!(text.lines().last(), Some(line), "{text}");
+    }
+    let csv = run(&[&arguments[..], &["--certify", "--format", "csv"]].concat()).failed(2);
+    assert!(csv.contains("--certify is for --format json and table"), "{csv}");
+}
+
+#[test]
 fn delays_need_a_speed_and_locks_none() {
     let name = file("locks", "speedless.geojson", cross());
     let none = run(&["locks", &name, "--radius", "0.25", "--delays"]).failed(2);

@@ -78,6 +78,7 @@ fn every_output_fits_its_schema() {
         &["locks", &lif, "--radius", "0.3"],
         &["locks", &layout, "--radius", "0.3", "--nodes", "--edge", "26"],
         &["locks", &layout, "--radius", "0.3", "--nodes", "--delays", "--speed", "1"],
+        &["locks", &layout, "--radius", "0.3", "--delays", "--speed", "1", "--certify"],
         &["locks", &plant, "--radius", "0.9", "--write", "opentcs", "--split", "2", "-o", &blocks],
         &["locks", &plant, "--radius", "0.9", "--audit"],
         &["traffic", &layout, "--radius", "0.3", "--agents", "5"],

@@ -8,11 +8,14 @@
 //!
 //! Straight ways at constant speed have a closed form (`straight`); for all others the library brackets the ends.
 
+mod proof;
+
 use super::pass::{PIECES, Told, in_stretches};
 use super::rides::Rides;
 use super::straight::Straight;
 use super::sweep::straight_ends;
 use super::{edges_by_id, nodes_by_id};
+use crate::certificate;
 use crate::cores;
 use crate::fleet::Fleet;
 use crate::memory;
@@ -20,6 +23,8 @@ use crate::rows::{Grid, area};
 use pcr_core::{Full, Interval, Motion, Piece, RegionRef, overlaps, union};
 use pcr_formats::import::{self, Edge, Id, ImportError, Imported, Step, Vehicle};
 use pcr_formats::scenario::{Agent, MotionSpec, Scenario, label};
+pub(crate) use proof::ForbiddenDelays;
+pub use proof::{DelayApproach, DelayProof};
 use serde::Serialize;
 
 /// Number of agents that are built at a time.
@@ -133,7 +138,13 @@ impl Delays {
                 let units = parts[part];
                 let agents = units.iter().map(|&unit| Agent { id: unit as u64, ..agent(unit) });
                 let scenario = import::checked(&Scenario::new("", agents.collect()))?;
-                Fleet::<f64>::new(&scenario).map_err(|refused| ImportError::new(refused.to_string()))
+                let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| ImportError::new(refused.to_string()))?;
+                // What is computed, and proved, is about these motions.
+                let ids: Vec<u64> = units.iter().map(|&unit| unit as u64).collect();
+                let held = certificate::agents(&fleet, &fleet.motions(), &ids);
+                certificate::as_given::<f64>(&scenario, &held)
+                    .map_err(|misread| ImportError::new(misread.to_string()))?;
+                Ok(fleet)
             });
             for fleet in fleets {
                 let fleet = fleet?;
@@ -171,8 +182,10 @@ impl Delays {
             let (mut near, mut found) = (Vec::new(), Vec::new());
             grid.after(unit, &mut near);
             let own = (unit < self.ways.len()).then_some(unit);
-            let shares = |other: &usize| self.levels[*other].iter().any(|level| self.levels[unit].contains(level));
-            for other in own.into_iter().chain(near.iter().map(|&other| other as usize)).filter(shares) {
+            for other in own.into_iter().chain(near.iter().map(|&other| other as usize)) {
+                if !self.share_a_level([unit, other]) {
+                    continue;
+                }
                 self.pair([unit, other], &motions, &mut found)?;
             }
             Ok(make(&found))
@@ -253,6 +266,10 @@ impl Delays {
             pieces.resize(2 * pieces.len(), Piece::EMPTY);
         }
         Ok(())
+    }
+
+    fn share_a_level(&self, [a, b]: [usize; 2]) -> bool {
+        self.levels[b].iter().any(|level| self.levels[a].contains(level))
     }
 
     fn name(&self, unit: usize) -> String {

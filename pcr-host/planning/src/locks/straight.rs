@@ -11,6 +11,7 @@ const ROUNDINGS: f64 = 32.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Straight {
     start: [f64; 2],
+    end: [f64; 2],
     /// Unit vector.
     direction: [f64; 2],
     /// \[m\]
@@ -54,6 +55,7 @@ impl Straight {
         let is_valid = from.iter().all(|x| x.abs() <= 1e9) && speed > 0.0 && speed <= 1e9;
         (is_valid && length <= 1e9 && duration <= 1e9).then_some(Self {
             start: from,
+            end: to,
             direction,
             length,
             speed,
@@ -63,7 +65,12 @@ impl Straight {
 
     /// Its two ends.
     pub fn ends(&self) -> [[f64; 2]; 2] {
-        [self.start, moved(self.start, self.direction, self.length)]
+        [self.start, self.end]
+    }
+
+    /// Its speed \[m/s\].
+    pub fn speed(&self) -> f64 {
+        self.speed
     }
 
     /// How long it takes \[s\].

@@ -3,11 +3,12 @@
 use super::columns::Columns;
 use super::locks::LocksUnprinted;
 use super::{Document, counted, json, printable, quoted};
-use crate::figures::{given, outward_but_for_rounding};
-use crate::locks::{Delays, Driving, LockVehicle, Locks, Told, Unsafe};
+use crate::figures::{given, outward_but_for_rounding, small, thousandths};
+use crate::locks::{DelayProof, Delays, Driving, ForbiddenDelays, LockVehicle, Locks, Told, Unsafe};
 use crate::memory;
 use pcr_formats::import::{Id, ImportError};
 use serde::Serialize;
+use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -32,6 +33,9 @@ pub struct DelayTable {
     /// Nodes at which vehicles cannot stand at the same time, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node_pairs: Option<Vec<[Id; 2]>>,
+    /// The proof that all other delays are free, if requested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<DelayProof>,
     /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
@@ -79,7 +83,9 @@ impl DelayTable {
     pub fn of(head: Locks, driving: Driving, delays: &Delays, told: Told<'_>) -> Result<Self, ImportError> {
         let Locks { layout, vehicle, nodes, node_pairs, warnings, .. } = head;
         let (nodes, node_pairs) = (nodes.map(|_| Vec::new()), node_pairs.map(|_| Vec::new()));
-        let mut table = Self { layout, vehicle, driving, delays: Vec::new(), nodes, node_pairs, warnings };
+        let delays_found = Vec::new();
+        let mut table =
+            Self { layout, vehicle, driving, delays: delays_found, nodes, node_pairs, certificate: None, warnings };
         let mut held = 0;
         delays.each(told, &<[Unsafe]>::to_vec, |found| {
             held += found.len() as u64 * (size_of::<Delay>() + 64) as u64;
@@ -95,6 +101,30 @@ impl DelayTable {
             Ok::<(), ImportError>(())
         })?;
         Ok(table)
+    }
+
+    /// Adds the proof that with no delay but those of the table two vehicles touch, as far as there is one.
+    ///
+    /// # Errors
+    /// [`ImportError`] for a row whose edge `delays` does not have, for a motion that the checker refuses, and for what does not fit in
+    /// memory.
+    pub fn certify(&mut self, delays: &Delays, told: Told<'_>) -> Result<(), ImportError> {
+        let ways: HashMap<(&Id, bool), usize> =
+            delays.ways().iter().enumerate().map(|(place, way)| ((&way.edge, way.backward), place)).collect();
+        let way = |edge: &Id, backward: bool| {
+            let found = ways.get(&(edge, backward)).copied();
+            found.ok_or_else(|| ImportError::new(format!("there is no edge {edge} in this direction")))
+        };
+        let mut forbidden = ForbiddenDelays::new();
+        for row in &self.delays {
+            let [a, b] = [way(&row.a, row.a_backward)?, way(&row.b, row.b_backward)?];
+            let [from, to] = row.delay;
+            let (ways, interval) = if a <= b { ([a, b], [from, to]) } else { ([b, a], [-to, -from]) };
+            forbidden.entry(ways).or_default().push(interval);
+        }
+        forbidden.values_mut().for_each(|intervals| intervals.sort_by(|a, b| a[0].total_cmp(&b[0])));
+        self.certificate = Some(delays.proof(&forbidden, told)?);
+        Ok(())
     }
 
     fn add(&mut self, of: &Delays, found: Unsafe) {
@@ -234,5 +264,27 @@ pub fn delays_table(table: &DelayTable, out: &mut dyn Write) -> io::Result<()> {
     for [a, b] in table.node_pairs.iter().flatten() {
         writeln!(out, "  nodes {} and {}", text(a, false), text(b, false))?;
     }
+    if let Some(proof) = &table.certificate {
+        writeln!(out, "{}", delay_proof_line(proof))?;
+    }
     Ok(())
+}
+
+/// A line about a proof of delays.
+fn delay_proof_line(proof: &DelayProof) -> String {
+    let pairs = counted(proof.pairs, "pair");
+    let (count, kind) = match proof.verdict {
+        "proved" => return format!("certificate: no contact at any other delay, proved ({pairs} of edges)"),
+        "refuted" => (proof.refuted, "contact"),
+        _ => (proof.undecided, "not decided"),
+    };
+    let first = proof.open.first().map_or(String::new(), |first| {
+        let name = |id: &Id, backward: bool| printable(&format!("{id}{}", if backward { " backward" } else { "" }));
+        let (a, b) = (name(&first.a, first.a_backward), name(&first.b, first.b_backward));
+        let clearance =
+            if first.clearance.is_nan() { "unknown".into() } else { format!("{} m", small(first.clearance)) };
+        let (delay, time) = (thousandths(first.delay), thousandths(first.time));
+        format!(", such as {a} and {b}, {delay} s later: clearance {clearance} at {time} s")
+    });
+    format!("certificate: {kind}, {count} of {pairs} of edges{first}")
 }
