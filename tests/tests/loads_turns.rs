@@ -3,7 +3,7 @@
 use pcr_core::Motion;
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::{Agent, Scenario};
-use pcr_planning::bodies::Bodies;
+use pcr_planning::bodies::{Bodies, Form};
 use pcr_planning::check::Verdict;
 use pcr_planning::fleet::{Fleet, Format};
 use pcr_tests::generators::Dice;
@@ -80,7 +80,7 @@ fn loaded(agent: &Value, segments: [usize; 2], polygon: &[Point]) -> Value {
 /// How near the agents come, and how much larger their discs are than the covers \[m\].
 fn nearest<S: Format>(scenario: &Scenario) -> [f64; 2] {
     let verdict = Verdict::of::<S>(scenario, true).unwrap_or_else(|problem| panic!("{}: {problem}", S::NAME));
-    let discs = Bodies::<S>::new(scenario).unwrap().discs;
+    let discs = Bodies::<S>::new(scenario, Form::Covers).unwrap().discs;
     [verdict.closest.unwrap()[0].clearance, discs.iter().map(|disc| disc.growth).fold(0.0, f64::max)]
 }
 
@@ -140,7 +140,7 @@ fn polygons<'p>(agent: &Agent, loads: [usize; 2], [own, load]: [&'p [Point]; 2],
 fn compare<S: Format>(scenario: &Scenario, loads: [usize; 2], shapes: [&[Point]; 3], name: &str) -> usize {
     let fleet = Fleet::<f64>::new(scenario).unwrap();
     let motions = fleet.motions();
-    let bodies = Bodies::<S>::new(scenario).unwrap();
+    let bodies = Bodies::<S>::new(scenario, Form::Covers).unwrap();
     let growth: f64 = [0, 1]
         .iter()
         .map(|agent| {

@@ -147,6 +147,30 @@ impl Footprint {
         Self::new(hull(both), self.allowed).ok().map(|outline| outline.grown(self.growth))
     }
 
+    /// The corners without those that are no farther than `near` \[m\] from the line between their neighbours, counter-clockwise,
+    /// without growth; `None` if the polygon is not convex. [`Footprint::beyond`] tells how far the polygon reaches out of what is left.
+    pub fn convex(&self, near: f64) -> Option<Vec<[f64; 2]>> {
+        let mut corners = hull(self.polygon.clone());
+        let rounding = ROUNDING * corners.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+        // A simple polygon whose corners all lie on its convex hull has them in the same order.
+        if self.polygon.iter().any(|&corner| depth(&corners, corner) > rounding) {
+            return None;
+        }
+        while corners.len() > 3 {
+            let count = corners.len();
+            let off = |k: usize| from_segment(corners[k], [corners[(k + count - 1) % count], corners[(k + 1) % count]]);
+            let least = (0..count).min_by(|&a, &b| off(a).total_cmp(&off(b))).filter(|&k| off(k) <= near);
+            let Some(needless) = least else { break };
+            corners.remove(needless);
+        }
+        Some(corners)
+    }
+
+    /// How far the polygon, without growth, reaches out of a convex one at most \[m\]; 0 if it does not.
+    pub fn beyond(&self, convex: &[[f64; 2]]) -> f64 {
+        self.polygon.iter().map(|&corner| -depth(convex, corner)).fold(0.0, f64::max)
+    }
+
     /// Radius of the disc around the reference point that is in the outline \[m\]; below 0 where that point is outside of it.
     pub fn inner_radius(&self) -> f64 {
         depth(&self.polygon, [0.0; 2]) + self.growth
@@ -305,6 +329,46 @@ mod tests {
         for allowed in [None, Some(10.0)] {
             check(&Footprint::new(longer.clone(), allowed).unwrap());
         }
+    }
+
+    #[test]
+    fn a_convex_polygon_keeps_the_corners_that_it_needs() {
+        let needless = vec![
+            [0.5, -0.4], [0.8, -0.4], [0.8, 0.4], [0.8, 0.4], [0.8, 0.4], [-0.4, 0.4], [-0.4, 0.1], [-0.4, -0.4], [0.5, -0.4],
+        ];
+        let rectangle = [[-0.4, -0.4], [0.8, -0.4], [0.8, 0.4], [-0.4, 0.4]];
+        for polygon in [needless.clone(), needless.into_iter().rev().collect()] {
+            let footprint = Footprint::new(polygon, None).unwrap();
+            assert_eq!(footprint.convex(1e-15).unwrap(), rectangle);
+            assert_eq!(footprint.beyond(&rectangle), 0.0);
+        }
+        // Middles of the sides of a rectangle that is turned are on them but for rounding, on either side.
+        for k in 1..90 {
+            let (sin, cos) = f64::from(k).to_radians().sin_cos();
+            let sides = rectangle.iter().zip(rectangle.iter().cycle().skip(1));
+            let points = sides.flat_map(|(a, b)| [*a, [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]]);
+            let turned: Vec<[f64; 2]> = points.map(|[x, y]| [x * cos - y * sin, x * sin + y * cos]).collect();
+            let footprint = Footprint::new(turned, None).unwrap();
+            let corners = footprint.convex(2e-15).unwrap();
+            assert_eq!(corners.len(), 4, "{k}");
+            assert!((0.0..=2e-15).contains(&footprint.beyond(&corners)), "{k}");
+        }
+        // What is left out within an allowance sticks out by no more than is told; a smaller one keeps it.
+        let blunt = vec![[-0.4, -0.4], [0.8, -0.4], [0.801, 0.0], [0.8, 0.4], [-0.4, 0.4]];
+        let footprint = Footprint::new(blunt.clone(), None).unwrap();
+        let corners = footprint.convex(2e-3).unwrap();
+        assert_eq!(corners.len(), 4);
+        assert!((footprint.beyond(&corners) - 1e-3).abs() < 1e-9);
+        assert_eq!(footprint.convex(1e-4).unwrap(), blunt);
+    }
+
+    #[test]
+    fn a_concave_polygon_is_told() {
+        let notched = vec![[-0.4, -0.4], [0.8, -0.4], [0.8 - 1e-9, 0.0], [0.8, 0.4], [-0.4, 0.4]];
+        assert_eq!(Footprint::new(notched, None).unwrap().convex(1e-3), None);
+        let fork =
+            vec![[0.0, -0.5], [1.5, -0.5], [1.5, -0.3], [0.3, -0.3], [0.3, 0.3], [1.5, 0.3], [1.5, 0.5], [0.0, 0.5]];
+        assert_eq!(Footprint::new(fork, None).unwrap().convex(1e-15), None);
     }
 
     #[test]

@@ -1,5 +1,5 @@
-//! The agents of a scenario as discs: the discs of a footprint, or a single one. With loads there is one set of discs
-//! for each stretch of the path on which the outline does not change.
+//! The agents of a scenario as motions of the core: a disc or a convex outline is one; any other footprint is covered by discs. With
+//! loads there is one set of discs for each stretch of the path on which the outline does not change.
 
 mod joints;
 mod offset;
@@ -14,23 +14,33 @@ use std::convert::Infallible;
 /// Rounding of lengths along a path, relative.
 const ROUNDING: f64 = 1e-12;
 
-/// A scenario whose agents are the discs of another one's.
+/// What outlines are computed as.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Form {
+    /// As they are, where the core computes with them; the others are covered.
+    Exact,
+    /// Covers of discs, for what only knows discs.
+    Covers,
+}
+
+/// A scenario whose agents are the bodies of another one's: discs, and outlines that are computed as they are.
 pub struct Bodies<S: Format> {
-    /// The discs as agents.
+    /// The bodies as agents.
     pub scenario: Scenario,
     /// Their motions.
     pub fleet: Fleet<S>,
-    /// For each disc the agent to which it belongs.
+    /// For each of them the agent to which it belongs.
     pub discs: Vec<Disced>,
 }
 
-/// A disc of an agent.
+/// A disc of an agent, or all of it.
 pub struct Disced {
     /// Index of the agent in its scenario.
     pub agent: usize,
-    /// `None` if the agent is the disc.
+    /// `None` if it moves with the reference point.
     offset: Option<Box<Offset>>,
-    stretch: Range,
+    /// `None` if it is there all the way.
+    stretch: Option<Range>,
     /// Difference of its radius to that in the cover \[m\].
     pub growth: f64,
 }
@@ -49,10 +59,14 @@ struct Range {
 }
 
 impl Disced {
-    /// An agent that is a disc.
-    fn whole(agent: &Agent, place: usize) -> Self {
-        let stretch = Range { from: 0.0, length: agent.length(), first: 0, ends: [true, true] };
-        Self { agent: place, offset: None, stretch, growth: 0.0 }
+    /// An agent that is a disc, or an outline that is computed as it is.
+    fn whole(place: usize) -> Self {
+        Self { agent: place, offset: None, stretch: None, growth: 0.0 }
+    }
+
+    /// Whether it is all of its agent, and moves with the reference point.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.offset.is_none() && self.stretch.is_none()
     }
 
     /// The same disc, of the agent whose index is higher by `places`.
@@ -63,10 +77,7 @@ impl Disced {
     /// Lengths on the path of the agent, outward, of lengths on that of the disc.
     pub fn on_agent(&self, lengths: [f64; 2]) -> [f64; 2] {
         let [lo, hi] = self.offset.as_ref().map_or(lengths, |offset| offset.on_reference(lengths));
-        let Range { from, length, ends, .. } = self.stretch;
-        if from == 0.0 && ends == [true, true] {
-            return [lo, hi];
-        }
+        let Some(Range { from, length, .. }) = self.stretch else { return [lo, hi] };
         // The rounding of the sums.
         let slack = ROUNDING * (1.0 + length);
         [(lo + from - slack).max(0.0), (hi + from + slack).min(length)]
@@ -74,66 +85,76 @@ impl Disced {
 
     /// Its first segment in the scenario (from 0).
     pub fn first(&self) -> usize {
-        self.stretch.first
+        self.stretch.map_or(0, |stretch| stretch.first)
     }
 
     /// Segment in the scenario (from 0) of a segment of the disc.
     pub fn segment(&self, segment: usize) -> Option<usize> {
         let segment = self.offset.as_ref().map_or(Some(segment), |offset| offset.source(segment))?;
-        segment.checked_add(self.stretch.first)
+        segment.checked_add(self.first())
     }
 
     /// Whether it is there before the agent sets off.
     pub fn is_at_start(&self) -> bool {
-        self.stretch.ends[0]
+        self.stands()[0]
     }
 
     /// Whether it is there after the arrival of the agent.
     pub fn is_at_end(&self) -> bool {
-        self.stretch.ends[1]
+        self.stands()[1]
     }
 
     /// Whether it is there before the agent sets off, and after its arrival.
     pub(crate) fn stands(&self) -> [bool; 2] {
-        self.stretch.ends
+        self.stretch.map_or([true; 2], |stretch| stretch.ends)
     }
 
     /// When it is there, in a time that holds all motions \[s\].
     pub fn time<S: Format>(&self, motion: &Motion<'_, S>, all: Interval<S>) -> Interval<S> {
         let own = motion.time();
-        let [start, end] = self.stretch.ends;
+        let [start, end] = self.stands();
         Interval { lo: if start { all.lo } else { own.lo }, hi: if end { all.hi } else { own.hi } }
     }
 }
 
-/// The fleet of the discs, the discs, and their scenario.
+/// The fleet of the bodies, the bodies, and their scenario.
 pub type Moving<'a, S> = (Fleet<S>, Vec<Disced>, Cow<'a, Scenario>);
 
 impl<S: Format> Bodies<S> {
-    /// The discs of a scenario.
+    /// The bodies of a scenario.
     ///
     /// # Errors
     /// [`Refused`] where a value does not fit the number format.
-    pub fn new(scenario: &Scenario) -> Result<Self, Refused> {
-        let mut bodies = (Vec::new(), Vec::new());
+    pub fn new(scenario: &Scenario, form: Form) -> Result<Self, Refused> {
+        let (mut agents, mut discs) = (Vec::new(), Vec::new());
+        let mut fleet = Fleet::new(&Scenario::default())?;
         for (place, agent) in scenario.agents.iter().enumerate() {
-            discs::<S, _>(agent, place, &mut bodies, rounded::<S>)?;
+            if form == Form::Exact && let Some(outlined) = Fleet::outlined(agent) {
+                fleet.append(outlined);
+                agents.push(agent.clone());
+                discs.push(Disced::whole(place));
+                continue;
+            }
+            let mut covers = (Vec::new(), Vec::new());
+            self::discs::<S, _>(agent, place, &mut covers, rounded::<S>)?;
+            let own = Scenario::new("", covers.0);
+            fleet.append(Fleet::new(&own)?);
+            agents.extend(own.agents);
+            discs.extend(covers.1);
         }
-        let (agents, discs) = bodies;
-        let scenario = Scenario::new(scenario.name.clone(), agents);
-        Ok(Self { fleet: Fleet::new(&scenario)?, scenario, discs })
+        Ok(Self { fleet, scenario: Scenario::new(scenario.name.clone(), agents), discs })
     }
 
     /// The same with the scenario itself where all agents are discs: of a large fleet, a copy of it would be large.
     ///
     /// # Errors
     /// As [`Bodies::new`].
-    pub fn moving(scenario: &Scenario) -> Result<Moving<'_, S>, Refused> {
+    pub fn moving(scenario: &Scenario, form: Form) -> Result<Moving<'_, S>, Refused> {
         if scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty()) {
-            let Self { fleet, discs, scenario } = Self::new(scenario)?;
+            let Self { fleet, discs, scenario } = Self::new(scenario, form)?;
             return Ok((fleet, discs, Cow::Owned(scenario)));
         }
-        let discs = scenario.agents.iter().enumerate().map(|(place, agent)| Disced::whole(agent, place)).collect();
+        let discs = (0..scenario.agents.len()).map(Disced::whole).collect();
         Ok((Fleet::new(scenario)?, discs, Cow::Borrowed(scenario)))
     }
 }
@@ -166,22 +187,21 @@ fn discs<S: Format, E>(
     let outlines = agent.outlines();
     for outline in &outlines {
         let [first, last] = outline.segments;
-        let (part, parts, from) = if outlines.len() > 1 {
-            let Stretch { agent, parts, from } = agent.stretch(first, last);
-            (agent, parts, from)
+        let (part, parts, stretch) = if outlines.len() > 1 {
+            let Stretch { agent: part, parts, from } = agent.stretch(first, last);
+            // An agent that stands where the outline changes has both outlines. At its start or end that is so if the segments in
+            // between have no length.
+            let length = agent.length();
+            let rest: f64 = agent.path.iter().skip(last + 1).map(PathSegment::length).sum();
+            let ends = [from, rest].map(|way| way <= ROUNDING * (1.0 + length));
+            (part, parts, Some(Range { from, length, first, ends }))
         } else {
-            (agent.clone(), agent.parts(), 0.0)
+            (agent.clone(), agent.parts(), None)
         };
         let part = Agent { radius: outline.radius, footprint: None, loads: Vec::new(), ..part };
-        // An agent that stands where the outline changes has both outlines. At its start or end that is so if the segments in between
-        // have no length.
-        let length = agent.length();
-        let rest: f64 = agent.path.iter().skip(last + 1).map(PathSegment::length).sum();
-        let ends = [from, rest].map(|way| way <= ROUNDING * (1.0 + length));
-        let stretch = Range { from, length, first, ends };
         let Some(footprint) = outline.footprint else {
             discs.push(Disced { agent: place, offset: None, stretch, growth: 0.0 });
-            agents.push(if outlines.len() > 1 { settled::<S>(part) } else { part });
+            agents.push(if stretch.is_some() { settled::<S>(part) } else { part });
             continue;
         };
         let precision = Precision::of::<S>(&part);

@@ -3,7 +3,7 @@
 //! The types match the JSON output, field by field in this order. All motions run from the earliest start to the latest
 //! arrival; every agent stands at its start before its motion and at its end afterwards.
 
-use crate::bodies::{Bodies, Disced};
+use crate::bodies::{Bodies, Disced, Form};
 use crate::certify::Proof;
 use crate::cores;
 use crate::failure::Failure;
@@ -97,7 +97,7 @@ impl Verdict {
     /// # Errors
     /// As [`Verdict::of`].
     pub fn watched<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
-        let (fleet, discs, _) = Bodies::<S>::moving(scenario)?;
+        let (fleet, discs, _) = Bodies::<S>::moving(scenario, Form::Covers)?;
         Self::between(scenario, &discs, &fleet.motions(), closest, told)
     }
 
@@ -106,7 +106,7 @@ impl Verdict {
     /// # Errors
     /// [`Failure`] where a value does not fit the format.
     pub fn any<S: Format>(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure> {
-        let (fleet, discs, _) = Bodies::<S>::moving(scenario)?;
+        let (fleet, discs, _) = Bodies::<S>::moving(scenario, Form::Covers)?;
         let motions = fleet.motions();
         let pairs = Pairs::new(scenario, &discs, &motions);
         let count = pairs.ids.len();
@@ -125,7 +125,7 @@ impl Verdict {
     /// # Errors
     /// As [`Verdict::of`].
     pub(crate) fn of_margins<S: Format>(scenario: &Scenario) -> Result<Self, Failure> {
-        let (fleet, discs, _) = Bodies::<S>::moving(scenario)?;
+        let (fleet, discs, _) = Bodies::<S>::moving(scenario, Form::Covers)?;
         let motions: Vec<Motion<'_, S>> = fleet.motions().into_iter().map(Motion::inflated).collect();
         Self::between(scenario, &discs, &motions, false, &|_, _| {})
     }

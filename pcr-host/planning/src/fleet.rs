@@ -3,6 +3,7 @@
 mod fixed;
 #[cfg(feature = "micromath")]
 mod micro;
+mod outline;
 pub(crate) mod rounding;
 pub mod speed;
 #[cfg(test)]
@@ -11,7 +12,7 @@ mod tests;
 use crate::memory;
 use pcr_certify::data::Angle;
 use pcr_core::{
-    Ecm, Full, Invalid, Limits, Motion, Order, Orders, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef,
+    Ecm, Full, Invalid, Limits, Motion, Order, Orders, Outline, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef,
     Radians, Region, Scalar, Segment, TableError, Turn,
 };
 use pcr_formats::scenario::TURN;
@@ -186,22 +187,38 @@ struct Parts<S: Scalar> {
     /// Turns in place, each before the segment with this index.
     turns: Vec<(usize, S::Angle)>,
     phases: Vec<Phase<S>>,
-    radius: S,
+    shape: Shape<S>,
     margin: S,
     start: S,
 }
 
+/// What moves along a path. Outlines are large, and most fleets have none.
+#[derive(Clone, Debug)]
+enum Shape<S: Scalar> {
+    /// A disc of this radius.
+    Disc(S),
+    Outline(Box<Outline<S, { outline::CORNERS }>>),
+}
+
 impl<S: Format> Fleet<S> {
-    /// All agents of a scenario.
+    /// All agents of a scenario, each as the disc about its reference point that contains it.
     ///
     /// # Errors
     /// [`Refused`] if a value does not fit the number format.
     pub fn new(scenario: &Scenario) -> Result<Self, Refused> {
         let agents = scenario.agents.iter().map(|agent| {
             let refused = |(part, problem)| Refused { agent: agent.called(), part, format: S::NAME, problem };
-            Parts::new(agent).map_err(refused)
+            let disc = number("radius", agent.reach()).map_err(|problem| refused(of_agent(problem)))?;
+            Parts::new(agent, Shape::Disc(disc)).map_err(refused)
         });
         Ok(Self { agents: agents.collect::<Result<_, _>>()? })
+    }
+
+    /// One agent with its outline; `None` where the core does not compute with it: it is a disc, is concave, changes on the way,
+    /// or turns in place, or the format cannot hold it or its motion.
+    pub(crate) fn outlined(agent: &Agent) -> Option<Self> {
+        let outline = outline::of(agent)?;
+        Some(Self { agents: vec![Parts::new(agent, Shape::Outline(Box::new(outline))).ok()?] })
     }
 
     /// The motions, in the order of the scenario.
@@ -243,15 +260,14 @@ fn of_agent(problem: String) -> Fault {
 }
 
 impl<S: Format> Parts<S> {
-    fn new(agent: &Agent) -> Result<Self, Fault> {
+    fn new(agent: &Agent, shape: Shape<S>) -> Result<Self, Fault> {
         let Route { segments, sources, turns } = place(agent)?;
         let path = PathRef::new(&segments).map_err(|reason| of_agent(derived::<S>(reason)))?;
         let phases = phases(agent, path.length())?;
-        let radius = number("radius", agent.reach()).map_err(of_agent)?;
         let start = number("t_start", agent.t_start).map_err(of_agent)?;
         let margin = number("margin", agent.margin).map_err(of_agent)?;
         let heading = angle::<S>("start.heading", agent.start[2]).map_err(of_agent)?;
-        let parts = Self { segments, sources, heading, turns, phases, radius, margin, start };
+        let parts = Self { segments, sources, heading, turns, phases, shape, margin, start };
         match parts.motion() {
             Ok(_) => Ok(parts),
             Err(reason) => Err(of_agent(derived::<S>(reason))),
@@ -259,8 +275,12 @@ impl<S: Format> Parts<S> {
     }
 
     fn motion(&self) -> Result<Motion<'_, S>, Invalid> {
-        Motion::new(PathRef::new(&self.segments)?, ProfileRef::new(&self.phases)?, self.radius, self.start)?
-            .with_margin(self.margin)
+        let (path, profile) = (PathRef::new(&self.segments)?, ProfileRef::new(&self.phases)?);
+        let motion = match &self.shape {
+            Shape::Disc(radius) => Motion::new(path, profile, *radius, self.start),
+            Shape::Outline(outline) => Motion::with_outline(path, profile, outline.as_ref(), self.start),
+        };
+        motion?.with_margin(self.margin)
     }
 }
 

@@ -39,7 +39,8 @@ pub struct Answer {
     /// The same for the discs with their margins, if any agent has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub margin_regions: Option<Vec<Region>>,
-    /// The covers of the agents that have footprints, if any has; of an agent with loads those of all its stretches.
+    /// The covers of the agents whose outlines are not computed as they are, if there are any; of an agent with loads those of all its
+    /// stretches.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub footprints: Vec<Cover>,
     /// The tables as they are held, of contact and of margins, for `pcr certify`; if asked for.
@@ -153,8 +154,12 @@ impl Answer {
 }
 
 impl Cover {
-    /// The covers of an agent: one for each stretch of its path with another outline, with the resulting discs.
+    /// The covers of an agent: one for each stretch of its path with another outline, with the resulting discs; none of one that is
+    /// computed as it is.
     fn of(agent: &Agent, own: &[Disced]) -> Vec<Self> {
+        if agent.loads.is_empty() && own.iter().all(Disced::is_whole) {
+            return Vec::new();
+        }
         let covers = agent.outlines().into_iter().filter_map(|outline| {
             let segments = (!agent.loads.is_empty()).then(|| outline.segments.map(|segment| segment + 1));
             let own = own.iter().filter(|disc| disc.first() == outline.segments[0]);

@@ -5,7 +5,7 @@
 
 use pcr_core::Motion;
 use pcr_formats::scenario::{Agent, Scenario};
-use pcr_planning::bodies::Bodies;
+use pcr_planning::bodies::{Bodies, Form};
 use pcr_planning::fleet::build_ecm_of;
 use pcr_planning::plan::sides;
 
@@ -24,7 +24,7 @@ impl Crowd {
     pub(super) fn add(&mut self, agent: &Agent) -> Result<(), String> {
         const NONE: &str = "no order of starts lets it through with those before it";
         let alone = Scenario::new("", vec![agent.clone()]);
-        let bodies = Bodies::<f64>::new(&alone).map_err(|refused| refused.to_string())?;
+        let bodies = Bodies::<f64>::new(&alone, Form::Covers).map_err(|refused| refused.to_string())?;
         // Most that fail do so by one disc of each already.
         self.order(&bodies, true)?.ok_or(NONE)?;
         let [before, after] = self.order(&bodies, false)?.ok_or(NONE)?;

@@ -5,6 +5,7 @@ use pcr_comparing::compare::stopwatch::{Stopwatch, steady};
 use pcr_drawing::{Ground, overview};
 use pcr_execution::traffic::{Request, Traffic, schedule};
 use pcr_formats::footprint::Footprint;
+use pcr_planning::bodies::{Bodies, Form};
 use pcr_formats::import::Imported;
 use pcr_planning::check::Verdict;
 use pcr_planning::figures::{digits, time};
@@ -78,7 +79,7 @@ fn row(
     let request = Request { agents, seed: 1 };
     let (traffic, scenarios) = Traffic::of(imported, request)?;
     let [missions, plan] = &scenarios;
-    let bodies = pcr_planning::bodies::Bodies::<f64>::new(missions)?;
+    let bodies = Bodies::<f64>::new(missions, Form::Covers)?;
     let motions = bodies.fleet.motions();
     let table = timed(|| build_ecm(&motions).map(drop))?;
     let planned = timed(|| schedule(missions, request.seed).map(drop))?;

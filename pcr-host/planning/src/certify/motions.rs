@@ -1,6 +1,6 @@
 //! Proofs by [`pcr_certify`] that motions have no contact at any time.
 
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Form};
 use crate::certificate;
 use crate::failure::Failure;
 use crate::fleet::{Format, Refused};
@@ -48,7 +48,7 @@ impl Proof {
     /// # Errors
     /// [`Refused`] if a value does not fit the format.
     pub fn of<S: Format>(scenario: &Scenario) -> Result<Self, Refused> {
-        let (fleet, discs, given) = Bodies::<S>::moving(scenario)?;
+        let (fleet, discs, given) = Bodies::<S>::moving(scenario, Form::Covers)?;
         let motions = fleet.motions();
         let all = Motion::span(&motions);
         let ids: Vec<u64> = discs.iter().map(|disc| scenario.agents[disc.agent].id).collect();

@@ -5,7 +5,7 @@
 
 use super::rides::{Lengths, Ride, Rides, reversed};
 use super::{edges_by_id, nodes_by_id};
-use crate::bodies::{Bodies, Disced};
+use crate::bodies::{Bodies, Disced, Form};
 use crate::cores;
 use crate::fleet::Fleet;
 use crate::rows::area;
@@ -149,7 +149,7 @@ pub(super) fn bodies(plan: &Plan, ids: &[Id]) -> Result<Bodies<f64>, ImportError
         ..ride.agent.clone()
     });
     let scenario = import::checked(&Scenario::new("", agents.collect()))?;
-    Bodies::new(&scenario).map_err(|refused| ImportError::new(refused.to_string()))
+    Bodies::new(&scenario, Form::Covers).map_err(|refused| ImportError::new(refused.to_string()))
 }
 
 /// The ends of an edge, if it is the straight line between its nodes.

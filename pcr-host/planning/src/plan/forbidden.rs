@@ -15,7 +15,7 @@
 
 use super::delays::{self, NEVER, Objective, Pair, Problem, Ticks, earliest};
 use super::{grown, sides_of as sides};
-use crate::bodies::{Bodies, Disced};
+use crate::bodies::{Bodies, Disced, Form};
 use crate::failure::Failure;
 use crate::memory;
 use crate::rows;
@@ -108,7 +108,7 @@ impl Forbidden {
     /// # Errors
     /// [`Failure`] if a value does not fit, or the table cannot hold the fleet.
     pub fn of(scenario: &Scenario) -> Result<Self, Failure> {
-        let bodies = Bodies::<f64>::new(scenario)?;
+        let bodies = Bodies::<f64>::new(scenario, Form::Covers)?;
         let motions = grown(&bodies.fleet);
         let owners: Vec<Owner> = bodies.discs.iter().map(Owner::of).collect();
         Self::between(&motions, &owners, scenario.agents.len()).map_err(|failure| failure.named(&bodies.scenario))

@@ -2,7 +2,7 @@
 //! what lengths.
 
 use super::{grown, sides_of};
-use crate::bodies::{Bodies, Disced};
+use crate::bodies::{Bodies, Disced, Form};
 use crate::figures::outward;
 use crate::fleet::Fleet;
 use crate::rows::Row;
@@ -65,7 +65,7 @@ fn found(scenario: &Scenario, ids: [u64; 2], always: bool, general: &str) -> Opt
     let fleet = Fleet::<f64>::new(&scenario).ok()?;
     let references = fleet.motions();
     let references = [references.first()?, references.get(1)?];
-    let bodies = Bodies::<f64>::new(&scenario).ok()?;
+    let bodies = Bodies::<f64>::new(&scenario, Form::Covers).ok()?;
     let (grown, exact) = (grown(&bodies.fleet), bodies.fleet.motions());
     let pair = Pair { references, discs: &bodies.discs, grown: &grown, exact: &exact };
     let others: Vec<u32> = pair.of(1).map(|disc| disc as u32).collect();

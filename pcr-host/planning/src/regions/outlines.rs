@@ -1,4 +1,5 @@
-//! Regions of agents with footprints: the unions of the regions of their discs.
+//! Regions of agents: those of the table, where both agents are one body; the unions of the regions of their discs, where either is
+//! covered.
 //!
 //! The discs of an agent share one motion, so the regions of all pairs of discs lie in the same plane of time and
 //! length, once lengths are converted to those of the reference point. A region of two agents is a connected union of
@@ -54,7 +55,23 @@ struct Part<'a> {
     length: [f64; 2],
 }
 
-impl Part<'_> {
+impl<'a> Part<'a> {
+    fn of<S: Format>(
+        work: &'a Work<'a, S>,
+        places: [usize; 2],
+        [own, other]: [&'a Disced; 2],
+        region: RegionRef<'a, S>,
+    ) -> Self {
+        let (time, length) = (region.time(), region.length());
+        Self {
+            discs: [own, other],
+            open: [region.is_open_at_start() && other.is_at_start(), region.is_open_at_end() && other.is_at_end()],
+            time: [time.lo.to_f64(), time.hi.to_f64()],
+            length: own.on_agent([length.lo.to_f64(), length.hi.to_f64()]),
+            region: Box::new(InRow { work, places, region }),
+        }
+    }
+
     fn slice(&self, time: f64) -> Vec<[f64; 2]> {
         if time < self.time[0] - NEAR || time > self.time[1] + NEAR {
             return Vec::new();
@@ -82,25 +99,24 @@ fn hull(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 
 /// The regions of an agent, from the rows of its discs, by the other agent.
 pub(super) fn regions<S: Format>(rows: &[(Work<'_, S>, usize)], discs: &[Disced], ids: &[u64]) -> Vec<Region> {
-    let mut pairs: Pairs<'_> = BTreeMap::new();
+    let (mut all, mut pairs): (Vec<Region>, Pairs<'_>) = (Vec::new(), BTreeMap::new());
     for (work, place) in rows {
         let Some(own) = discs.get(work.in_fleet(*place)) else { continue };
-        for region in work.ecm.row(work.motions, *place).expect("the table of the row") {
-            let other = discs.get(work.in_fleet(region.other()));
+        for (there, regions) in work.pairs(*place) {
+            let other = discs.get(work.in_fleet(there));
             let Some(other) = other.filter(|other| other.agent != own.agent) else { continue };
-            let (time, length) = (region.time(), region.length());
-            let part = Part {
-                discs: [own, other],
-                open: [region.is_open_at_start() && other.is_at_start(), region.is_open_at_end() && other.is_at_end()],
-                time: [time.lo.to_f64(), time.hi.to_f64()],
-                length: own.on_agent([length.lo.to_f64(), length.hi.to_f64()]),
-                region: Box::new(InRow { work, places: [*place, region.other()], region }),
-            };
-            pairs.entry([own.agent, other.agent]).or_default().push(part);
+            let (places, agents) = ([*place, there], [own.agent, other.agent]);
+            if own.is_whole() && other.is_whole() {
+                all.extend(work.pair(places, agents.map(|agent| ids[agent]), &regions));
+            } else {
+                let parts = regions.into_iter().map(|region| Part::of(work, places, [own, other], region));
+                pairs.entry(agents).or_default().extend(parts);
+            }
         }
     }
     let slices = rows.first().and_then(|(work, _)| work.slices);
-    pairs.iter().flat_map(|(&[ego, other], parts)| unions([ids[ego], ids[other]], parts, slices)).collect()
+    all.extend(pairs.iter().flat_map(|(&agents, parts)| unions(agents.map(|agent| ids[agent]), parts, slices)));
+    all
 }
 
 /// The regions of the discs, by the two agents.

@@ -122,8 +122,6 @@ impl Region {
 
 /// A row of a table, and what its regions are described with.
 pub(super) struct Work<'a, S: Format> {
-    /// Numbers of the agents of the fleet.
-    pub(super) ids: &'a [u64],
     pub(super) fleet: &'a Fleet<S>,
     /// Places in the fleet of the agents of the row, which the table numbers from 0.
     pub(super) agents: &'a [u32],
@@ -133,25 +131,29 @@ pub(super) struct Work<'a, S: Format> {
 }
 
 impl<S: Format> Work<'_, S> {
-    /// The regions of one ego.
-    pub(super) fn row(&self, ego: usize) -> Vec<Region> {
-        let mut row = Vec::new();
-        let mut regions = self.ecm.row(self.motions, ego).expect("the table of the fleet").peekable();
-        while let Some(first) = regions.next() {
-            let other = first.other();
-            let mut pair = vec![first];
-            while let Some(next) = regions.next_if(|next| next.other() == other) {
-                pair.push(next);
+    /// The regions of one ego, by the other.
+    pub(super) fn pairs(&self, ego: usize) -> Vec<(usize, Vec<RegionRef<'_, S>>)> {
+        let mut pairs: Vec<(usize, Vec<RegionRef<'_, S>>)> = Vec::new();
+        for region in self.ecm.row(self.motions, ego).expect("the table of the row") {
+            match pairs.last_mut() {
+                Some((other, pair)) if *other == region.other() => pair.push(region),
+                _ => pairs.push((region.other(), vec![region])),
             }
-            row.extend(self.pair(ego, other, &pair));
         }
-        row
+        pairs
     }
 
-    /// The regions of one ordered pair, each crossing of the paths in the piece that holds it.
-    fn pair(&self, ego: usize, other: usize, pair: &[RegionRef<'_, S>]) -> Vec<Region> {
-        let mut records: Vec<Region> = pair.iter().map(|region| self.region(ego, other, region)).collect();
-        let (Some(own), Some(their)) = (self.motions.get(ego), self.motions.get(other)) else {
+    /// The regions of one ordered pair of agents with these numbers. Each crossing of the paths of two discs is in the piece that holds it.
+    pub(super) fn pair(
+        &self,
+        [ego, other]: [usize; 2],
+        numbers: [u64; 2],
+        pair: &[RegionRef<'_, S>],
+    ) -> Vec<Region> {
+        let mut records: Vec<Region> =
+            pair.iter().map(|region| self.region([ego, other], numbers, region)).collect();
+        let motions = [ego, other].map(|place| self.motions.get(place));
+        let [Some(own), Some(their)] = motions.map(|motion| motion.filter(|it| it.outline().corners().is_empty())) else {
             return records;
         };
         let held = by_segments(&records);
@@ -214,17 +216,16 @@ impl<S: Format> Work<'_, S> {
         pieces
     }
 
-    fn region(&self, ego: usize, other: usize, region: &RegionRef<'_, S>) -> Region {
+    fn region(&self, [ego, other]: [usize; 2], [i, j]: [u64; 2], region: &RegionRef<'_, S>) -> Region {
         let (time, length) = (region.time(), region.length());
         let t = [time.lo.to_f64(), time.hi.to_f64()];
         let slices = self.slices.map(|slices| {
             let times = (1..=slices).map(|k| t[0] + (t[1] - t[0]) * (k as f64 / (slices + 1) as f64));
             times.map(|time| slice(region, S::from_f64(time))).collect()
         });
-        let id = |agent: usize| self.ids[self.in_fleet(agent)];
         Region {
-            i: id(ego),
-            j: id(other),
+            i,
+            j,
             t,
             l: [length.lo.to_f64(), length.hi.to_f64()],
             open_start: region.is_open_at_start(),

@@ -4,7 +4,7 @@
 use super::record::Work;
 use super::tables::table_of;
 use super::{Answer, Cover, Region, Request, outlines};
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Form};
 use crate::cores;
 use crate::failure::Failure;
 use crate::fleet::Format;
@@ -38,8 +38,6 @@ pub struct Sheet<'s, S: Format> {
     discs: Vec<Range<usize>>,
     /// The agents that are asked for, by their numbers.
     egos: Vec<usize>,
-    /// Whether any agent is more than one disc.
-    outlined: bool,
 }
 
 impl<'s, S: Format> Sheet<'s, S> {
@@ -52,7 +50,9 @@ impl<'s, S: Format> Sheet<'s, S> {
         if let Some(asked) = request.agent.filter(|asked| !ids.contains(asked)) {
             return Err(Failure::NoSuchAgent(asked, ids));
         }
-        let bodies = Bodies::<S>::new(scenario)?;
+        // The regions are those of the tables, and these have discs only.
+        let form = if request.certificate { Form::Covers } else { Form::Exact };
+        let bodies = Bodies::<S>::new(scenario, form)?;
         let mut discs = vec![0..0; ids.len()];
         for (place, disc) in bodies.discs.iter().enumerate() {
             if let Some(own) = discs.get_mut(disc.agent) {
@@ -60,8 +60,7 @@ impl<'s, S: Format> Sheet<'s, S> {
             }
         }
         let egos = asked_for(&ids, request.agent);
-        let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty());
-        Ok(Self { scenario, request, labels: Labels::of(scenario), bodies, ids, discs, egos, outlined })
+        Ok(Self { scenario, request, labels: Labels::of(scenario), bodies, ids, discs, egos })
     }
 
     /// Pairs of discs that come near one another, each counted from both sides: what a pass looks at.
@@ -123,15 +122,12 @@ impl<'s, S: Format> Sheet<'s, S> {
         let rows =
             rows.collect::<Result<Vec<_>, _>>().map_err(|full| Failure::Full(full).named(&self.bodies.scenario))?;
         let works = rows.iter().map(|row| {
-            let (ids, fleet, slices) = (&self.ids[..], &self.bodies.fleet, self.request.slices);
+            let (fleet, slices) = (&self.bodies.fleet, self.request.slices);
             let (agents, motions, ecm) = (row.agents(), row.motions(), row.table());
-            (Work { ids, fleet, agents, motions, ecm, slices }, row.place())
+            (Work { fleet, agents, motions, ecm, slices }, row.place())
         });
         let works: Vec<(Work<'_, S>, usize)> = works.collect();
-        let mut regions = match &works[..] {
-            [(work, place)] if !self.outlined => work.row(*place),
-            works => outlines::regions(works, &self.bodies.discs, &self.ids),
-        };
+        let mut regions = outlines::regions(&works, &self.bodies.discs, &self.ids);
         regions.sort_by(Region::by_other);
         Ok(regions)
     }

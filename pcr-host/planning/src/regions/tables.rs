@@ -1,6 +1,6 @@
 //! The tables of a scenario in the form that the checker takes, for fleets of any size.
 
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Form};
 use crate::failure::Failure;
 use crate::fleet::Format;
 use crate::{certificate, memory, rows};
@@ -12,14 +12,15 @@ use pcr_formats::scenario::Scenario;
 /// Memory of a segment in a table and in the checker \[bytes\].
 const SEGMENT_BYTES: u64 = 800;
 
-/// The tables of a scenario, to be certified: that of contact, and that in which margins overlap, if any agent has one.
+/// The tables of a scenario, to be certified: that of contact, and that in which margins overlap, if any agent has one. The checker knows
+/// discs, so all footprints are covered.
 ///
 /// # Errors
 /// [`Failure`] where a value does not fit the format, or memory does not hold the tables.
 pub fn table_of<S: Format>(scenario: &Scenario) -> Result<Vec<Table>, Failure> {
     let segments: usize = scenario.agents.iter().map(|agent| agent.path.len()).sum();
     memory::ask(segments as u64 * SEGMENT_BYTES, || format!("the proof for {segments} segments"))?;
-    let Bodies { scenario: discs, fleet, discs: owners } = Bodies::<S>::new(scenario)?;
+    let Bodies { scenario: discs, fleet, discs: owners } = Bodies::<S>::new(scenario, Form::Covers)?;
     let motions = fleet.motions();
     let ids: Vec<u64> = owners.iter().map(|disc| scenario.agents[disc.agent].id).collect();
     certificate::as_given::<S>(&discs, &certificate::agents(&fleet, &motions, &ids)).map_err(Failure::Misread)?;
