@@ -129,7 +129,9 @@ impl<S: Format> Bodies<S> {
         let (mut agents, mut discs) = (Vec::new(), Vec::new());
         let mut fleet = Fleet::new(&Scenario::default())?;
         for (place, agent) in scenario.agents.iter().enumerate() {
-            if form == Form::Exact && let Some(outlined) = Fleet::outlined(agent) {
+            if form == Form::Exact
+                && let Some(outlined) = Fleet::outlined(agent)
+            {
                 fleet.append(outlined);
                 agents.push(agent.clone());
                 discs.push(Disced::whole(place));

@@ -9,9 +9,10 @@ use crate::cores;
 use crate::failure::Failure;
 use crate::fleet::Format;
 use crate::memory::{self, Held};
-use crate::regions::Told;
+use crate::regions::{Cover, Told};
 use crate::rows::{Grid, grown};
-use pcr_core::{Encounter, Interval, Motion};
+use pcr_core::{Approach, Encounter, Interval, Motion};
+use pcr_formats::plane::distance;
 use pcr_formats::scenario::{Labels, Scenario};
 use serde::Serialize;
 use std::cmp::Ordering;
@@ -32,6 +33,9 @@ pub struct Verdict {
     /// Every pair, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub closest: Option<Vec<Closest>>,
+    /// The covers of the agents whose outlines are not computed as they are, as in [`crate::regions::Answer`].
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub footprints: Vec<Cover>,
     /// Result of the independent checker, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Proof>,
@@ -41,7 +45,7 @@ pub struct Verdict {
     pub warnings: Vec<String>,
 }
 
-/// Two discs in contact, from begin to end. Contacts deeper than [`Encounter::tolerance`] are always reported, discs that stay farther
+/// Two agents in contact, from begin to end. Contacts deeper than [`Encounter::tolerance`] are always reported, agents that stay farther
 /// apart than that never.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Conflict {
@@ -51,7 +55,7 @@ pub struct Conflict {
     pub j: u64,
     /// Begin and end \[s\].
     pub t: [f64; 2],
-    /// Largest overlap: sum of the radii less the separation \[m\].
+    /// Largest overlap: the length of the least translation that separates the two, or of two of their discs \[m\].
     pub depth: f64,
     /// Lengths along the path of `i` meanwhile \[m\].
     pub l_i: [f64; 2],
@@ -77,9 +81,9 @@ pub struct Closest {
     pub j: u64,
     /// First time of the closest approach \[s\].
     pub t: f64,
-    /// Distance of the centres \[m\].
+    /// Distance of the reference points, for covers that of the centres of the nearest discs \[m\].
     pub separation: f64,
-    /// Separation less the radii \[m\].
+    /// Distance of the outlines, below 0 that of the least translation that separates them \[m\].
     pub clearance: f64,
 }
 
@@ -97,7 +101,11 @@ impl Verdict {
     /// # Errors
     /// As [`Verdict::of`].
     pub fn watched<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
-        let (fleet, discs, _) = Bodies::<S>::moving(scenario, Form::Covers)?;
+        Self::in_form::<S>(scenario, Form::Exact, closest, told)
+    }
+
+    fn in_form<S: Format>(scenario: &Scenario, form: Form, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
+        let (fleet, discs, _) = Bodies::<S>::moving(scenario, form)?;
         Self::between(scenario, &discs, &fleet.motions(), closest, told)
     }
 
@@ -106,7 +114,7 @@ impl Verdict {
     /// # Errors
     /// [`Failure`] where a value does not fit the format.
     pub fn any<S: Format>(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure> {
-        let (fleet, discs, _) = Bodies::<S>::moving(scenario, Form::Covers)?;
+        let (fleet, discs, _) = Bodies::<S>::moving(scenario, Form::Exact)?;
         let motions = fleet.motions();
         let pairs = Pairs::new(scenario, &discs, &motions);
         let count = pairs.ids.len();
@@ -125,7 +133,7 @@ impl Verdict {
     /// # Errors
     /// As [`Verdict::of`].
     pub(crate) fn of_margins<S: Format>(scenario: &Scenario) -> Result<Self, Failure> {
-        let (fleet, discs, _) = Bodies::<S>::moving(scenario, Form::Covers)?;
+        let (fleet, discs, _) = Bodies::<S>::moving(scenario, Form::Exact)?;
         let motions: Vec<Motion<'_, S>> = fleet.motions().into_iter().map(Motion::inflated).collect();
         Self::between(scenario, &discs, &motions, false, &|_, _| {})
     }
@@ -166,18 +174,20 @@ impl Verdict {
             agents: scenario.agents.len(),
             conflicts,
             closest: closest.then_some(nearest),
+            footprints: Cover::all(scenario, discs),
             certificate: None,
             warnings: scenario.warnings.clone(),
             error: None,
         })
     }
 
-    /// The same with a certificate.
+    /// The same with a certificate. The checker knows discs only, so all outlines are covered, also for the conflicts.
     ///
     /// # Errors
     /// As [`Verdict::of`], and [`Failure::NoPair`].
     pub fn certified<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
-        let verdict = Self::watched::<S>(scenario, closest, told)?;
+        // The proof is of the same bodies.
+        let verdict = Self::in_form::<S>(scenario, Form::Covers, closest, told)?;
         // The checker has a list of its own.
         let count = verdict.conflicts.len();
         memory::ask(count as u64 * PROOF_BYTES, || format!("the proof of {count} conflicts"))?;
@@ -192,6 +202,7 @@ impl Verdict {
             agents: 0,
             conflicts: Vec::new(),
             closest: None,
+            footprints: Vec::new(),
             certificate: None,
             warnings: Vec::new(),
             error: Some(error),
@@ -329,12 +340,21 @@ fn encounters<S: Format>(
             let approach = encounter.closest(time);
             let clearance = (approach.separation - encounter.radius()).to_f64();
             if closest_of.is_none_or(|closest| clearance < closest.clearance) {
-                let (t, separation) = (approach.time.to_f64(), approach.separation.to_f64());
-                closest_of = Some(Closest { i, j, t, separation, clearance });
+                let t = approach.time.to_f64();
+                closest_of = Some(Closest { i, j, t, separation: separation([own.1, other.1], &approach), clearance });
             }
         }
     }
     (if first.len() * second.len() > 1 { joined(found) } else { found }, closest_of)
+}
+
+/// Distance of the centres at the closest approach \[m\].
+fn separation<S: Format>(motions: [&Motion<'_, S>; 2], approach: &Approach<S>) -> f64 {
+    if motions.iter().all(|motion| motion.outline().corners().is_empty()) {
+        return approach.separation.to_f64();
+    }
+    let [a, b] = motions.map(|motion| motion.position_at(approach.time)).map(|at| [at.x.to_f64(), at.y.to_f64()]);
+    distance(a, b)
 }
 
 /// Times that differ by less are equal, for rounding \[s\].

@@ -12,8 +12,8 @@ mod tests;
 use crate::memory;
 use pcr_certify::data::Angle;
 use pcr_core::{
-    Ecm, Full, Invalid, Limits, Motion, Order, Orders, Outline, PathRef, Phase, Piece, Point, Pose, Profile, ProfileRef,
-    Radians, Region, Scalar, Segment, TableError, Turn,
+    Ecm, Full, Invalid, Limits, Motion, Order, Orders, Outline, PathRef, Phase, Piece, Point, Pose, Profile,
+    ProfileRef, Radians, Region, Scalar, Segment, TableError, Turn,
 };
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};

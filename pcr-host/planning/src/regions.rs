@@ -7,6 +7,8 @@ mod outlines;
 mod record;
 mod sheet;
 pub(crate) mod tables;
+#[cfg(test)]
+mod tests;
 
 use crate::bodies::Disced;
 use crate::failure::Failure;
@@ -154,6 +156,12 @@ impl Answer {
 }
 
 impl Cover {
+    /// The covers of all agents of a scenario with these bodies, which are in the order of the agents.
+    pub(crate) fn all(scenario: &Scenario, bodies: &[Disced]) -> Vec<Self> {
+        let own = bodies.chunk_by(|a, b| a.agent == b.agent);
+        own.flat_map(|own| Self::of(&scenario.agents[own[0].agent], own)).collect()
+    }
+
     /// The covers of an agent: one for each stretch of its path with another outline, with the resulting discs; none of one that is
     /// computed as it is.
     fn of(agent: &Agent, own: &[Disced]) -> Vec<Self> {

@@ -12,8 +12,7 @@ pub(super) fn of<S: Format>(agent: &Agent) -> Option<Outline<S, CORNERS>> {
     let footprint = agent.footprint.as_ref().filter(|_| agent.loads.is_empty() && !turns_in_place(agent))?;
     let size = footprint.polygon().iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
     let corners = footprint.convex(4.0 * S::STEP + 8.0 * S::EPSILON * size)?;
-    let held: Vec<Vector<S>> =
-        corners.iter().map(|&[x, y]| Vector { x: S::from_f64(x), y: S::from_f64(y) }).collect();
+    let held: Vec<Vector<S>> = corners.iter().map(|&[x, y]| Vector { x: S::from_f64(x), y: S::from_f64(y) }).collect();
     let polygon: Vec<[f64; 2]> = held.iter().map(|corner| [corner.x.to_f64(), corner.y.to_f64()]).collect();
     // What the polygon has lost, the radius makes up for.
     let radius = rounded_up(footprint.growth() + footprint.beyond(&polygon))?;

@@ -144,16 +144,11 @@ impl<S: Format> Work<'_, S> {
     }
 
     /// The regions of one ordered pair of agents with these numbers. Each crossing of the paths of two discs is in the piece that holds it.
-    pub(super) fn pair(
-        &self,
-        [ego, other]: [usize; 2],
-        numbers: [u64; 2],
-        pair: &[RegionRef<'_, S>],
-    ) -> Vec<Region> {
-        let mut records: Vec<Region> =
-            pair.iter().map(|region| self.region([ego, other], numbers, region)).collect();
+    pub(super) fn pair(&self, [ego, other]: [usize; 2], numbers: [u64; 2], pair: &[RegionRef<'_, S>]) -> Vec<Region> {
+        let mut records: Vec<Region> = pair.iter().map(|region| self.region([ego, other], numbers, region)).collect();
         let motions = [ego, other].map(|place| self.motions.get(place));
-        let [Some(own), Some(their)] = motions.map(|motion| motion.filter(|it| it.outline().corners().is_empty())) else {
+        let [Some(own), Some(their)] = motions.map(|motion| motion.filter(|it| it.outline().corners().is_empty()))
+        else {
             return records;
         };
         let held = by_segments(&records);

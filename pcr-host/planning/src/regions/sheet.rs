@@ -138,7 +138,6 @@ impl<'s, S: Format> Sheet<'s, S> {
     /// [`Failure`] where a value does not fit the format.
     pub fn head(&self) -> Result<Answer, Failure> {
         let certificate = || table_of::<S>(self.scenario);
-        let agents = self.scenario.agents.iter().zip(&self.discs);
         Ok(Answer {
             name: self.scenario.name.clone(),
             labels: self.labels.clone(),
@@ -146,7 +145,7 @@ impl<'s, S: Format> Sheet<'s, S> {
             agent: self.request.agent,
             regions: Vec::new(),
             margin_regions: self.has_margins().then(Vec::new),
-            footprints: agents.flat_map(|(agent, own)| Cover::of(agent, &self.bodies.discs[own.clone()])).collect(),
+            footprints: Cover::all(self.scenario, &self.bodies.discs),
             warnings: self.scenario.warnings.clone(),
             certificate: self.request.certificate.then(certificate).transpose()?,
             error: None,
