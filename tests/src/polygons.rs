@@ -18,6 +18,13 @@ fn from_side(p: Point, a: Point, b: Point) -> f64 {
     (a[0] + share * dx - p[0]).hypot(a[1] + share * dy - p[1])
 }
 
+/// A convex polygon that is smaller by a distance all around, at least.
+pub fn smaller(polygon: &[Point], by: f64) -> Polygon {
+    let middle = [0, 1].map(|axis| polygon.iter().map(|corner| corner[axis]).sum::<f64>() / polygon.len() as f64);
+    let inner = sides(&polygon.to_vec()).map(|(a, b)| from_side(middle, a, b)).fold(f64::INFINITY, f64::min);
+    polygon.iter().map(|corner| [0, 1].map(|k| corner[k] + (middle[k] - corner[k]) * (by / inner))).collect()
+}
+
 fn sides(polygon: &Polygon) -> impl Iterator<Item = (Point, Point)> {
     polygon.iter().copied().zip(polygon.iter().copied().cycle().skip(1))
 }

@@ -2,7 +2,8 @@
 
 use super::{Fleet, Format, Refused, turn_in_place};
 use pcr_core::Motion;
-use pcr_formats::scenario::{Agent, PathSegment, Placed, Scenario};
+use pcr_formats::footprint::Footprint;
+use pcr_formats::scenario::{Agent, PathSegment, Placed, Scenario, TURN};
 use pcr_formats::warning::WarningCode;
 use std::f64::consts::{PI, TAU};
 
@@ -30,7 +31,13 @@ impl Rounding {
     /// The same of the numbers alone, without what sums of them lose.
     fn of_numbers<S: Format>(agent: &Agent, motion: &Motion<'_, S>) -> Self {
         let Self { distance, length } = of_path::<S>(agent);
-        Self { distance: distance + 2.0 * length + of_times(agent, motion), length }
+        // On an arc corners of an outline go farther than its reference point.
+        let curvatures = agent.path.iter().map(|segment| match *segment {
+            PathSegment::Arc { radius, .. } if radius > TURN => 1.0 / radius,
+            _ => 0.0,
+        });
+        let lever = 1.0 + spread(agent) * curvatures.fold(0.0, f64::max);
+        Self { distance: distance + lever * (2.0 * length + of_times(agent, motion)), length }
     }
 }
 
@@ -58,6 +65,11 @@ pub(super) fn warning<S: Format>(scenario: &Scenario) -> Result<Option<String>, 
              the file has it"
         ))
     }))
+}
+
+/// Largest distance of a point of the outline from the reference point \[m\]; 0 for a disc, which does not turn.
+fn spread(agent: &Agent) -> f64 {
+    agent.footprint.as_ref().map_or(0.0, Footprint::reach)
 }
 
 /// The number that the format holds.
@@ -102,7 +114,8 @@ fn of_path<S: Format>(agent: &Agent) -> Rounding {
         let differs = next.shape.length() - length;
         longer += differs;
         rounding.length = rounding.length.max(longer.abs());
-        rounding.distance = rounding.distance.max(apart + length * (turned + bent) + differs.abs());
+        let way = apart + (length + spread(agent)) * (turned + bent) + differs.abs();
+        rounding.distance = rounding.distance.max(way);
         exact = Placed { at: from, heading: exact.heading_at_end(), shape: segment };
         rounded = next;
     }
