@@ -223,7 +223,7 @@ impl LegPair<'_> {
         // The other clock shows `time + shift`, which is between `first` and `last`.
         let time =
             [cell.time[0].max(from).max((first - hi).next_down()), cell.time[1].min(to).min((last - lo).next_up())];
-        let ([a, b], [c, d]) = (self.times.into(), cell.delay.into());
+        let ([a, b], [c, d]) = (self.times, cell.delay);
         let delay = [f64::max(c, (a[0] - b[1]).next_down()), f64::min(d, (a[1] - b[0]).next_up())];
         (time[0] <= time[1] && delay[0] <= delay[1]).then_some(Cell { time, delay, ..cell })
     }

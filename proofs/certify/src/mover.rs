@@ -156,7 +156,7 @@ impl Mover {
         let carrier = Carrier::Line { start: point(from), along };
         let duration = length / number(speed);
         let duration = if from == to { 0.0 } else { (duration.to_f64() + duration.err).next_up() };
-        if !(duration <= MOST) {
+        if duration.is_nan() || duration > MOST {
             return Err(format!("from {from:?} to {to:?} m at {speed} m/s takes too long"));
         }
         let standing = Ramp::standing(Twofold::ZERO);
