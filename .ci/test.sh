@@ -59,6 +59,9 @@ style() {
   .ci/circles_test.py
   .ci/circles.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,planning,execution,exclusions,drawing,comparing,lab,serve}/src \
     bindings/{c,python,web}/src proofs/certify/src tests/src
+  .ci/names_test.py
+  .ci/names.py pcr-core/src pcr-fixed/src pcr-host/src pcr-host/{formats,planning,execution,exclusions,drawing,comparing,lab,serve}/src \
+    bindings/{c,python,web}/src proofs/certify/src firmware/{supervisor,host,board}/src
   # A file that main.rs does not name would not be run.
   diff <(sed -n 's/^mod \(.*\);/\1/p' tests/tests/main.rs) <(LC_ALL=C ls tests/tests | sed -n 's/\.rs$//p' | grep -vx main)
 }
