@@ -74,9 +74,16 @@ fn rust_of(format: &Format, shared: &[String]) -> String {
     let mut text = String::new();
     for file in ["types", "table", "plans", "orders"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/format").join(file).with_extension("rs");
+        let mut importing = false;
         for line in std::fs::read_to_string(path).expect("a source").lines() {
+            // A list of imports may go on for several lines.
+            importing |= line.starts_with("use ");
+            if importing {
+                importing = !line.ends_with(';');
+                continue;
+            }
             let line = if line.starts_with("#[unsafe(export_name") { "#[unsafe(no_mangle)]" } else { line };
-            if !line.starts_with("use ") && !line.starts_with("//!") {
+            if !line.starts_with("//!") {
                 words(line, |word| text.push_str(&name(word, format, shared)));
                 text.push('\n');
             }
