@@ -5,11 +5,11 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pcr_benches::{Storage, fleet, scattered};
-use pcr_planning::fleet::{Fleet, Format};
+use pcr_planning::fleet::{Fleet, HostScalar};
 use std::hint::black_box;
 
 /// Twice the pieces that are stored: each serves both directions.
-fn bench<S: Format>(c: &mut Criterion, name: &str, fleet: &Fleet<S>, throughput: impl Fn(usize, usize) -> usize) {
+fn bench<S: HostScalar>(c: &mut Criterion, name: &str, fleet: &Fleet<S>, throughput: impl Fn(usize, usize) -> usize) {
     let motions = fleet.motions();
     let mut storage = Storage::of(&motions);
     let elements = throughput(motions.len(), storage.pieces.len());

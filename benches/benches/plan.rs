@@ -5,7 +5,9 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pcr_benches::{Storage, fleet, lanes};
-use pcr_core::{Drive, Motion, Profile, Station, earliest_start, first_conflict, plan_delays, plan_speed, plan_speeds};
+use pcr_core::{
+    Motion, Profile, SearchNode, SpeedPlanLimits, earliest_start, first_conflict, plan_delays, plan_speed, plan_speeds,
+};
 use pcr_planning::fleet::Fleet;
 use std::hint::black_box;
 
@@ -40,14 +42,14 @@ fn agents(c: &mut Criterion) {
             });
         });
         group.sample_size(10);
-        let mut stations = vec![Station::EMPTY; STATIONS];
+        let mut stations = vec![SearchNode::EMPTY; STATIONS];
         group.bench_function("speed plan", |b| {
             b.iter(|| {
                 let planned = (0..motions.len()).filter(|&k| {
                     let regions = ecm.row(black_box(&motions), k).expect("its table");
                     plan_speed::<f64, PHASES>(
                         &motions[k],
-                        Drive::of(&motions[k]).expect("from rest to rest"),
+                        SpeedPlanLimits::of(&motions[k]).expect("from rest to rest"),
                         regions,
                         &[],
                         &mut stations,
@@ -80,7 +82,7 @@ fn by_speeds(c: &mut Criterion, name: &str, fleet: &Fleet<f64>) {
     let motions = fleet.motions();
     let mut storage = Storage::of(&motions);
     let ecm = storage.table(&motions);
-    let mut stations = vec![Station::EMPTY; STATIONS];
+    let mut stations = vec![SearchNode::EMPTY; STATIONS];
     let mut group = c.benchmark_group("fleet plan by speeds");
     group.sample_size(10);
     group.bench_function(BenchmarkId::from_parameter(name), |b| {

@@ -5,15 +5,15 @@
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pcr_benches::{boxes, fleet, scattered};
 use pcr_core::{BroadPhase, Encounter, Motion};
-use pcr_planning::fleet::{Fleet, Format};
+use pcr_planning::fleet::{Fleet, HostScalar};
 use std::hint::black_box;
 
-fn pairs<'a, S: Format>(motions: &'a [Motion<'a, S>]) -> impl Iterator<Item = Encounter<'a, S>> {
+fn pairs<'a, S: HostScalar>(motions: &'a [Motion<'a, S>]) -> impl Iterator<Item = Encounter<'a, S>> {
     let pairs = (0..motions.len()).flat_map(|i| (i + 1..motions.len()).map(move |j| [i, j]));
     pairs.map(|[i, j]| Encounter::new(&motions[i], &motions[j]))
 }
 
-fn bench<S: Format>(c: &mut Criterion, name: &str, fleet: &Fleet<S>) {
+fn bench<S: HostScalar>(c: &mut Criterion, name: &str, fleet: &Fleet<S>) {
     let motions = fleet.motions();
     let time = Motion::span(&motions);
     let mut group = c.benchmark_group("conflicts");

@@ -1,15 +1,15 @@
 //! Fleets and tables that the benchmarks share.
 
-use pcr_core::{Bounds, Ecm, Motion, Piece, Region, Scalar};
+use pcr_core::{Aabb, Ecm, EcmEntry, Motion, Piece, Scalar};
 use pcr_formats::scenario::Scenario;
-use pcr_planning::fleet::{Fleet, Format, build_ecm};
+use pcr_planning::fleet::{Fleet, HostScalar, build_ecm};
 use std::path::Path;
 
 /// A fleet of the test data, by the name of its file.
 ///
 /// # Panics
 /// If the file is not there or is refused.
-pub fn fleet<S: Format>(name: &str) -> Fleet<S> {
+pub fn fleet<S: HostScalar>(name: &str) -> Fleet<S> {
     from_json(&text(name))
 }
 
@@ -40,7 +40,7 @@ pub fn lanes(blocks: u32) -> Fleet<f64> {
 ///
 /// # Panics
 /// If it is refused.
-pub fn from_json<S: Format>(json: &str) -> Fleet<S> {
+pub fn from_json<S: HostScalar>(json: &str) -> Fleet<S> {
     Fleet::new(&scenario(json)).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -52,7 +52,7 @@ fn scenario(json: &str) -> Scenario {
 ///
 /// # Panics
 /// Never: the scenario is valid.
-pub fn scattered<S: Format>(columns: u32) -> Fleet<S> {
+pub fn scattered<S: HostScalar>(columns: u32) -> Fleet<S> {
     let agents = (0..columns * columns).map(|k| {
         let (x, y) = (10 * (k % columns), 10 * (k / columns));
         format!(
@@ -81,34 +81,34 @@ pub fn serpentine() -> Fleet<f64> {
 }
 
 /// Room for a broad phase of 16 parts.
-pub fn boxes<S: Scalar>(fleet: &[Motion<'_, S>]) -> Vec<Bounds<S>> {
-    vec![Bounds::default(); fleet.len() * (1 + 16)]
+pub fn boxes<S: Scalar>(fleet: &[Motion<'_, S>]) -> Vec<Aabb<S>> {
+    vec![Aabb::default(); fleet.len() * (1 + 16)]
 }
 
 /// Storage that holds exactly the table of a fleet.
 #[derive(Clone, Debug)]
 pub struct Storage<S: Scalar> {
     /// Entries.
-    pub regions: Vec<Region>,
+    pub regions: Vec<EcmEntry>,
     /// Pieces.
     pub pieces: Vec<Piece<S>>,
 }
 
-impl<S: Format> Storage<S> {
+impl<S: HostScalar> Storage<S> {
     /// As large as the table of this fleet.
     ///
     /// # Panics
     /// If the fleet has more than 65536 agents.
     pub fn of(fleet: &[Motion<'_, S>]) -> Self {
         let ecm = build_ecm(fleet).unwrap_or_else(|full| panic!("{full}"));
-        Self { regions: vec![Region::EMPTY; ecm.len()], pieces: vec![Piece::EMPTY; ecm.pieces()] }
+        Self { regions: vec![EcmEntry::EMPTY; ecm.len()], pieces: vec![Piece::EMPTY; ecm.pieces()] }
     }
 
     /// The table of the fleet, in this storage.
     ///
     /// # Panics
     /// If the storage is that of a smaller table.
-    pub fn table(&mut self, fleet: &[Motion<'_, S>]) -> Ecm<S, &mut [Region], &mut [Piece<S>]> {
+    pub fn table(&mut self, fleet: &[Motion<'_, S>]) -> Ecm<S, &mut [EcmEntry], &mut [Piece<S>]> {
         Ecm::build(&mut self.regions[..], &mut self.pieces[..], fleet).unwrap_or_else(|full| panic!("{full}"))
     }
 }

@@ -2,8 +2,8 @@
 //! message, or a table whose proof ends, counts all pieces, and needs all pairs.
 #![no_main]
 
-use pcr_certify::dump::decode;
-use pcr_certify::table::{Checker, Margin};
+use pcr_certify::device_dump::decode;
+use pcr_certify::table::{Checker, CoverageMargin};
 
 /// Segments and pieces up to which a table is checked: a run stays short.
 const MOST: usize = 16;
@@ -29,7 +29,7 @@ fn survives(text: &str) {
     if segments.max(pieces) > MOST {
         return;
     }
-    let check = |table| Checker::new(table).and_then(|checker| checker.check(Margin::Needed));
+    let check = |table| Checker::new(table).and_then(|checker| checker.check(CoverageMargin::Needed));
     match check(&table) {
         Ok(found) if found.refuted.is_empty() && found.undecided.is_empty() => {
             // All of it was looked at.

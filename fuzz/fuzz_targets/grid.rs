@@ -1,6 +1,6 @@
 //! Any bytes as a plan on a grid.
 #![no_main]
 
-use pcr_formats::import::Format;
+use pcr_formats::import::InputFormat;
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| pcr_fuzz::import(Format::Grid, bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| pcr_fuzz::import(InputFormat::Grid, bytes));

@@ -1,12 +1,12 @@
 //! Any bytes as a journal: refused with a message, or entries that are a supervisor or no.
 #![no_main]
 
-use pcr_serve::entry::{Entry, Nowhere};
 use pcr_serve::journal::{ANEW, FIRST, HEADER, frame, read};
-use pcr_serve::supervisor::{Settings, Supervisor};
+use pcr_serve::journal_entry::{JournalEntry, NullStore};
+use pcr_serve::supervisor::{Supervisor, SupervisorConfig};
 
-fn restored(entries: Vec<Entry>) {
-    match Supervisor::restored(Settings::default(), entries, Box::new(Nowhere)) {
+fn restored(entries: Vec<JournalEntry>) {
+    match Supervisor::restored(SupervisorConfig::default(), entries, Box::new(NullStore)) {
         Ok(mut supervisor) => {
             supervisor.settle(0.0).expect("a journal that is nowhere");
         }
@@ -26,7 +26,7 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
         }
     }
     // Past the checksums.
-    if let Ok(entries) = serde_json::from_slice::<Vec<Entry>>(bytes) {
+    if let Ok(entries) = serde_json::from_slice::<Vec<JournalEntry>>(bytes) {
         if let Ok((frame, _)) = frame(&entries, FIRST) {
             let whole = [&HEADER[..], &frame].concat();
             assert_eq!(read(&whole).map(|found| found.end), Ok(whole.len()));

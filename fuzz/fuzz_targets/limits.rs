@@ -4,11 +4,11 @@
 use libfuzzer_sys::fuzz_target;
 use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use pcr_tests::limits::{GARBAGE, NUMBERS, number, survives};
 
 /// Three bytes a number: which kind, and two for its value.
-fn numbers<S: Format>(bytes: &[u8]) -> Vec<f64> {
+fn numbers<S: HostScalar>(bytes: &[u8]) -> Vec<f64> {
     let number = |bytes: &[u8]| {
         let value = f64::from(i16::from_le_bytes([bytes[1], bytes[2]]));
         match bytes[0] % 8 {

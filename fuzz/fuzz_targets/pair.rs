@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use pcr_fixed::Q16;
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use pcr_tests::audit::{Audit, Seen};
 use pcr_tests::disc::Disc;
 use pcr_tests::generators::{Dice, FACES, pair};
@@ -11,7 +11,7 @@ use pcr_tests::oracle::plane::Effort;
 
 const EFFORT: Effort = Effort { resolution: 5e-2, boxes: 500, range: 1e-3 };
 
-fn audit<S: Format>(ego: &Disc, other: &Disc) {
+fn audit<S: HostScalar>(ego: &Disc, other: &Disc) {
     let (ego, other) = (ego.rounded::<S>(), other.rounded::<S>());
     match Audit::<S>::new(&ego, &other) {
         Err(refused) => assert!(refused.starts_with("refused"), "{refused}"),

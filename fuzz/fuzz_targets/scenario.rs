@@ -4,11 +4,11 @@
 use libfuzzer_sys::fuzz_target;
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::{Agent, MotionSpec, Scenario};
-use pcr_planning::fleet::Format;
-use pcr_planning::regions::{Answer, Request};
+use pcr_planning::fleet::HostScalar;
+use pcr_planning::regions::{RegionOptions, RegionsReport};
 
-fn answer<S: Format>(scenario: &Scenario) {
-    match Answer::of::<S>(scenario, Request { slices: Some(3), ..Request::default() }) {
+fn answer<S: HostScalar>(scenario: &Scenario) {
+    match RegionsReport::compute::<S>(scenario, RegionOptions { slices: Some(3), ..RegionOptions::default() }) {
         Ok(answer) => {
             for region in &answer.regions {
                 assert!(region.t[0] <= region.t[1] && region.l[0] <= region.l[1], "{region:?}");

@@ -1,9 +1,9 @@
 //! Any bytes as lines to a supervisor: answered or refused, never a panic, and what is told of a robot only grows.
 #![no_main]
 
-use pcr_serve::entry::Nowhere;
+use pcr_serve::journal_entry::NullStore;
 use pcr_serve::lines::handle;
-use pcr_serve::supervisor::{Settings, Supervisor};
+use pcr_serve::supervisor::{Supervisor, SupervisorConfig};
 
 const FLEET: [&str; 4] = [
     r#"{"verb":"add","robot":"a","start":{"x":-3,"y":0,"heading":0},"abilities":{"radius":0.25,"speed":1,"acceleration":0.5}}"#,
@@ -13,7 +13,7 @@ const FLEET: [&str; 4] = [
 ];
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
-    let mut supervisor = Supervisor::new(Settings::default(), Box::new(Nowhere));
+    let mut supervisor = Supervisor::new(SupervisorConfig::default(), Box::new(NullStore));
     let lines = FLEET.iter().map(|line| line.as_bytes()).chain(bytes.split(|byte| *byte == b'\n').take(64));
     for (line, tick) in lines.zip(0_u32..) {
         let now = f64::from(tick) * 0.1;
@@ -25,7 +25,7 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
         for (name, path, granted) in told {
             let Ok(robot) = supervisor.robot(&name) else { continue };
             assert!(robot.path > path || robot.granted >= granted || robot.path == 1);
-            assert!(robot.at <= robot.told && robot.granted <= robot.told);
+            assert!(robot.arc_length <= robot.notified_limit && robot.granted <= robot.notified_limit);
         }
     }
 });

@@ -1,9 +1,9 @@
 //! What the targets of the importers share.
 
-use pcr_formats::import::{Format, Imported, Options, Warnings, layout, scenario, vehicle};
+use pcr_formats::import::{ImportOptions, ImportedLayout, InputFormat, Warnings, layout, scenario, vehicle};
 use pcr_formats::scenario::Scenario;
+use pcr_planning::exclusion_table::ExclusionTable;
 use pcr_planning::fleet::Fleet;
-use pcr_planning::locks::Locks;
 
 /// Agents, edges and segments up to which what a file becomes is computed with: a run stays short.
 const MOST: usize = 24;
@@ -17,10 +17,10 @@ fn usable(scenario: &Scenario) {
     }
 }
 
-fn locks(imported: &Imported) {
+fn locks(imported: &ImportedLayout) {
     let pieces: usize = imported.layout.edges.iter().map(|edge| 1 + edge.curve.len()).sum();
     if pieces <= MOST
-        && let Ok(locks) = Locks::of(imported, true)
+        && let Ok(locks) = ExclusionTable::compute(imported, true)
     {
         for lock in &locks.locks {
             assert!(lock.a_length[0] <= lock.a_length[1] && lock.b_length[0] <= lock.b_length[1], "{lock:?}");
@@ -29,10 +29,10 @@ fn locks(imported: &Imported) {
 }
 
 /// Any bytes as a file of a format: refused with a message, or read as a layout with routes, or as agents.
-pub fn import(format: Format, bytes: &[u8]) {
+pub fn import(format: InputFormat, bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let mut warnings = Warnings::default();
-    let mut options = Options::default();
+    let mut options = ImportOptions::default();
     match layout(format, text, &options, &mut warnings) {
         Ok(imported) => {
             locks(&imported);
@@ -52,11 +52,11 @@ pub fn import(format: Format, bytes: &[u8]) {
 /// Any bytes as what describes a vehicle: refused with a message, or discs that cover it.
 pub fn fleet(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
-    match vehicle(text, &Options::default(), &mut Warnings::default()) {
+    match vehicle(text, &ImportOptions::default(), &mut Warnings::default()) {
         Ok(vehicle) => {
             assert!(vehicle.radius > 0.0 && vehicle.speed > 0.0 && vehicle.acceleration > 0.0);
             if let Some(footprint) = &vehicle.footprint {
-                assert!(footprint.overhang() >= 0.0 && footprint.reach() == vehicle.radius);
+                assert!(footprint.overhang() >= 0.0 && footprint.circumscribed_radius() == vehicle.radius);
             }
         }
         Err(error) => assert!(!error.to_string().is_empty()),

@@ -5,7 +5,9 @@
 //! cargo run -p pcr-core --features std --example fleet_server
 //! ```
 
-use pcr_core::{Ecm, Full, Invalid, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, TableError};
+use pcr_core::{
+    CapacityError, Ecm, EcmEntry, EcmError, InvalidInput, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians,
+};
 use pcr_core::{earliest_start, first_overlap};
 use std::error::Error;
 
@@ -22,12 +24,12 @@ const RADIUS: f64 = 0.4;
 
 impl Robot {
     /// A robot that drives from rest to rest along a path, starting at a time \[s\].
-    fn new(path: Path<f64, 16>, start: f64) -> Result<Self, Invalid> {
+    fn new(path: Path<f64, 16>, start: f64) -> Result<Self, InvalidInput> {
         let profile = Profile::rest_to_rest(path.as_path().length(), LIMITS)?;
         Ok(Self { path, profile: Profile::copied(profile.as_profile())?, start })
     }
 
-    fn motion(&self) -> Result<Motion<'_, f64>, Invalid> {
+    fn motion(&self) -> Result<Motion<'_, f64>, InvalidInput> {
         // The disc is larger by the tolerance of a check, so that robots that touch in the plan do not touch in fact.
         Motion::new(self.path.as_path(), self.profile.as_profile(), RADIUS, self.start)?.for_plan()
     }
@@ -36,21 +38,21 @@ impl Robot {
 /// The robots and the table of their regions; both are always changed together.
 struct Server {
     robots: Vec<Robot>,
-    table: Ecm<f64, Vec<Region>, Vec<Piece<f64>>>,
+    table: Ecm<f64, Vec<EcmEntry>, Vec<Piece<f64>>>,
 }
 
-fn motions(robots: &[Robot]) -> Result<Vec<Motion<'_, f64>>, Invalid> {
+fn motions(robots: &[Robot]) -> Result<Vec<Motion<'_, f64>>, InvalidInput> {
     robots.iter().map(Robot::motion).collect()
 }
 
 /// Repeats a call, with more room each time, until the result fits.
 fn with_room<T>(
-    table: &mut Ecm<f64, Vec<Region>, Vec<Piece<f64>>>,
-    mut act: impl FnMut(&mut Ecm<f64, Vec<Region>, Vec<Piece<f64>>>) -> Result<T, TableError>,
+    table: &mut Ecm<f64, Vec<EcmEntry>, Vec<Piece<f64>>>,
+    mut act: impl FnMut(&mut Ecm<f64, Vec<EcmEntry>, Vec<Piece<f64>>>) -> Result<T, EcmError>,
 ) -> Result<T, Box<dyn Error>> {
     loop {
         match act(table) {
-            Err(TableError::Full(full @ (Full::Regions | Full::Pieces))) => table.grow(full)?,
+            Err(EcmError::Full(full @ (CapacityError::Regions | CapacityError::Pieces))) => table.grow(full)?,
             done => return Ok(done?),
         }
     }

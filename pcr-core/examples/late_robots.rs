@@ -4,8 +4,11 @@
 //! cargo run -p pcr-core --features std --example late_robots
 //! ```
 
-use pcr_core::{Brakes, Hold, Interval, Limits, Motion, Order, Orders, Path, Piece, Point, Pose, Profile, Progress};
-use pcr_core::{Radians, Reach, Region, Tolerances};
+use pcr_core::{
+    BrakingModel, Interval, Limits, Motion, MovementAuthority, Path, Piece, Point, Pose, PrecedenceTable, Profile,
+    Progress, RegionPrecedence,
+};
+use pcr_core::{CheckState, CheckTolerances, EcmEntry, Radians};
 
 /// Seconds between two control steps, in which robots report where they are.
 const STEP: f64 = 0.1;
@@ -20,13 +23,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let motion = |path, start| Motion::new(path, profile.as_profile(), 0.25, start);
     // A plan without conflicts, as from `plan_delays`. Its orders are used, its times are not.
     let fleet = [motion(paths[0].as_path(), 0.0)?, motion(paths[1].as_path(), 2.0)?];
-    let mut orders = Orders::build([Region::EMPTY; 4], [Piece::EMPTY; 4], [Order::EMPTY; 4], &fleet)?;
+    let mut orders =
+        PrecedenceTable::build([EcmEntry::EMPTY; 4], [Piece::EMPTY; 4], [RegionPrecedence::EMPTY; 4], &fleet)?;
     orders.as_planned(&fleet)?;
     // Whatever the delays, all robots arrive.
     let start = [Progress::at_rest(0.0); 2];
-    orders.check(&fleet, &start, Tolerances { width: 0.01, gain: 0.001 }, &mut [Reach::EMPTY; 2])?;
+    orders.check(&fleet, &start, CheckTolerances { width: 0.01, gain: 0.001 }, &mut [CheckState::EMPTY; 2])?;
 
-    let brakes = Brakes::new(1.0, 0.0)?;
+    let brakes = BrakingModel::new(1.0, 0.0)?;
     let (mut at, mut speed, mut nearest) = ([0.0_f64; 2], [0.0_f64; 2], f64::INFINITY);
     for step in 0..600 {
         let places = [0, 1].map(|robot| Progress {
@@ -36,9 +40,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for robot in 0..2 {
             let end = paths[robot].as_path().length();
             let hold = match orders.hold(&fleet, robot, &places)? {
-                Hold::Free => end,
-                Hold::At(length) => length.min(end),
-                Hold::Inside => at[robot],
+                MovementAuthority::Free => end,
+                MovementAuthority::At(length) => length.min(end),
+                MovementAuthority::Inside => at[robot],
             };
             // Something holds up robot 0 for 20 seconds.
             let held_up = robot == 0 && (10..210).contains(&step);

@@ -5,10 +5,10 @@
 
 use crate::geometry::Direction;
 use crate::motion::Motion;
-use crate::pair::Pair;
-use crate::pair::footprint::Footprint;
-use crate::pair::lengths::Lengths;
-use crate::pair::offset::{Carrier, Relative};
+use crate::pair::AgentPair;
+use crate::pair::disc_on_segment::CarrierCoordinates;
+use crate::pair::lateral_offset::{Carrier, RelativeCarrier};
+use crate::pair::lengths::LengthList;
 use crate::region::PieceType;
 use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
@@ -66,9 +66,9 @@ pub fn crossings<'a, S: Scalar>(
         let own = numbered(ego);
         let near = own.filter(move |(_, own)| own.bounds.expanded(margin).meets(their.bounds));
         near.flat_map(move |(i, own)| {
-            let start = Footprint::of(own.start, their);
-            let mut roots = Lengths::new(S::ZERO);
-            Relative::new(their, Carrier::from(own), &start).lengths_at(&[S::ZERO], margin, S::ZERO, &mut roots);
+            let start = CarrierCoordinates::of(own.start, their);
+            let mut roots = LengthList::new(S::ZERO);
+            RelativeCarrier::new(their, Carrier::from(own), &start).lengths_at(&[S::ZERO], margin, S::ZERO, &mut roots);
             let [a, b] = [0, 1].map(|place| roots.as_slice().get(place).copied());
             // A double root is one crossing.
             let roots = a.into_iter().chain(b.filter(|_| a != b));
@@ -86,7 +86,7 @@ fn numbered<'a, S: Scalar>(motion: &'a Motion<'_, S>) -> impl Iterator<Item = (u
 /// How far rounding may move a crossing along a segment: the error of a distance divided by the sine of the angle,
 /// taken as 1/4 at least.
 fn margin<S: Scalar>(ego: &Motion<'_, S>, other: &Motion<'_, S>) -> S {
-    Pair::new(ego, other).slack.double().double()
+    AgentPair::new(ego, other).slack.double().double()
 }
 
 impl<S: Scalar> Crossing<S> {
@@ -104,7 +104,7 @@ impl<S: Scalar> Crossing<S> {
         let on = |segment: &Segment<S>, u: S, last: bool| {
             u >= -margin && u <= segment.length + margin && (last || u < segment.length - margin)
         };
-        let l = Footprint::of(their.point_at(s), own).foot(own);
+        let l = CarrierCoordinates::of(their.point_at(s), own).foot(own);
         if !on(their, s, last(other, j)) || !on(own, l, last(ego, i)) {
             return None;
         }
@@ -131,7 +131,7 @@ impl<S: Scalar> Crossing<S> {
 #[cfg(all(test, feature = "libm"))]
 mod tests {
     use super::crossings;
-    use crate::{Limits, Motion, Path, Point, Pose, Profile, Radians, Turn};
+    use crate::{Limits, Motion, Path, Point, Pose, Profile, Radians, TurnSide};
 
     fn count(ego: &Path<f64, 2>, other: &Path<f64, 2>) -> usize {
         let limits = Limits { speed: 1.0, acceleration: 1.0 };
@@ -157,8 +157,8 @@ mod tests {
     }
 
     /// Two arcs that meet at the origin with this heading, after 1.7 m.
-    fn arcs(heading: f64, turn: Turn) -> Path<f64, 2> {
-        let side = if turn == Turn::Left { 1.0 } else { -1.0 };
+    fn arcs(heading: f64, turn: TurnSide) -> Path<f64, 2> {
+        let side = if turn == TurnSide::Left { 1.0 } else { -1.0 };
         let begin = heading - side * 1.7 / 2.0;
         let (x, y) = (2.0 * side * (begin.sin() - heading.sin()), 2.0 * side * (heading.cos() - begin.cos()));
         from(x, y, begin).arc(2.0, turn, 1.7).unwrap().arc(2.0, turn, 1.0).unwrap()
@@ -169,7 +169,7 @@ mod tests {
         for k in 0..1000 {
             let k = f64::from(k);
             let (own, their) = (0.1 + 0.001 * k, 0.4 + 0.003 * k);
-            for turn in [Turn::Left, Turn::Right] {
+            for turn in [TurnSide::Left, TurnSide::Right] {
                 let line = from(-0.2 * own.cos(), -0.2 * own.sin(), own).line(0.2).unwrap().line(0.1).unwrap();
                 let other = arcs(their, turn);
                 assert_eq!(count(&line, &other), 1, "headings {own} and {their}, {turn:?}");
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn a_line_crosses_a_circle_twice_and_touches_it_not_at_all() {
-        let circle = from(0.0, -1.0, 0.0).arc(1.0, Turn::Left, core::f64::consts::TAU).unwrap();
+        let circle = from(0.0, -1.0, 0.0).arc(1.0, TurnSide::Left, core::f64::consts::TAU).unwrap();
         assert_eq!(count(&from(-2.0, 0.5, 0.0).line(4.0).unwrap(), &circle), 2);
         assert_eq!(count(&from(-2.0, 1.0, 0.0).line(4.0).unwrap(), &circle), 0);
         assert_eq!(count(&from(-2.0, 1.5, 0.0).line(4.0).unwrap(), &circle), 0);

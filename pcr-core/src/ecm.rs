@@ -1,31 +1,31 @@
 //! The extended collision map: the table of all collision regions of a fleet, for both directions of every pair.
 
 mod fill;
+mod fleet_checksum;
 #[cfg(feature = "std")]
-mod grow;
-mod known;
+mod vec_storage;
 
-use crate::error::{Full, Mismatch, TableError};
+use crate::error::{CapacityError, EcmError, MismatchError};
 use crate::motion::Motion;
-use crate::pair::Pair;
-use crate::pieces::{List, NONE, Piece, Pieces};
+use crate::pair::AgentPair;
+use crate::piece_store::{NONE, Piece, PieceList, PieceStore};
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
-use known::Known;
+use fleet_checksum::FleetChecksum;
 
 /// An entry of the table [`Ecm`]: one region of an unordered pair of agents. 8 bytes.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Region {
+pub struct EcmEntry {
     /// The pair, lower index first.
     agents: [u16; 2],
     /// Index of the first piece of the region.
     head: u32,
 }
 
-const _: () = assert!(size_of::<Region>() == 8, "the documented size of an entry");
+const _: () = assert!(size_of::<EcmEntry>() == 8, "the documented size of an entry");
 
-impl Region {
+impl EcmEntry {
     /// An unused entry, to fill the storage of a table with.
     pub const EMPTY: Self = Self { agents: [0; 2], head: NONE };
 
@@ -36,7 +36,7 @@ impl Region {
     }
 }
 
-impl Default for Region {
+impl Default for EcmEntry {
     fn default() -> Self {
         Self::EMPTY
     }
@@ -45,7 +45,7 @@ impl Default for Region {
 /// Table of the collision regions of a fleet, of fixed capacity: the paper's extended collision map (Section 3.1). It
 /// has the regions of every agent with every other one, also those of the agent with the highest priority.
 ///
-/// The caller provides the storage: arrays (`[Region; R]`, `[Piece<S>; P]`), mutable slices or, on a host, vectors. A
+/// The caller provides the storage: arrays (`[EcmEntry; R]`, `[Piece<S>; P]`), mutable slices or, on a host, vectors. A
 /// region is stored once for both directions of a pair, in coordination space; its times are computed from the motions
 /// at each query. Hence the table does not change when an agent starts later: pass its delayed [`Motion`] to the next
 /// query.
@@ -65,7 +65,7 @@ impl Default for Region {
 /// see `Ecm::grown`.
 ///
 /// ```
-/// use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region};
+/// use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, EcmEntry};
 /// let east = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
 /// let north = Pose { position: Point::new(0.0, -2.0), heading: Radians(core::f64::consts::FRAC_PI_2) };
 /// let paths = [Path::<f64, 1>::starting_at(east)?.line(4.0)?, Path::starting_at(north)?.line(4.0)?];
@@ -73,7 +73,7 @@ impl Default for Region {
 /// let motion = |path| Motion::new(path, profile.as_profile(), 0.25, 0.0);
 /// let fleet = [motion(paths[0].as_path())?, motion(paths[1].as_path())?];
 ///
-/// let ecm = Ecm::build([Region::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
+/// let ecm = Ecm::build([EcmEntry::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
 /// let region = ecm.row(&fleet, 0)?.next().unwrap();
 /// assert_eq!(region.other(), 1);
 /// let (time, length) = (region.time(), region.length());
@@ -87,8 +87,8 @@ pub struct Ecm<S, R, P> {
     /// Sorted by pair; regions of the same pair are in the order of their first pieces along the second path.
     regions: R,
     len: usize,
-    pieces: Pieces<S, P>,
-    fleet: Known,
+    pieces: PieceStore<S, P>,
+    fleet: FleetChecksum,
     /// The agent of a table that holds one row only ([`Ecm::fill_row`]).
     only: Option<usize>,
 }
@@ -103,13 +103,13 @@ impl<S: Scalar, R, P> defmt::Format for Ecm<S, R, P> {
 impl<S: Scalar, R, P> Ecm<S, R, P> {
     /// An empty table, for a fleet without agents.
     pub const fn new(regions: R, pieces: P) -> Self {
-        Self { regions, len: 0, pieces: Pieces::new(pieces), fleet: Known::NOBODY, only: None }
+        Self { regions, len: 0, pieces: PieceStore::new(pieces), fleet: FleetChecksum::NOBODY, only: None }
     }
 
     /// Removes all regions; the table is then that of a fleet without agents.
     pub fn clear(&mut self) {
         self.pieces.clear();
-        (self.len, self.fleet, self.only) = (0, Known::NOBODY, None);
+        (self.len, self.fleet, self.only) = (0, FleetChecksum::NOBODY, None);
     }
 
     /// Number of regions stored; each one serves both directions of its pair.
@@ -128,7 +128,7 @@ impl<S: Scalar, R, P> Ecm<S, R, P> {
     }
 }
 
-impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
+impl<S: Scalar, R: AsRef<[EcmEntry]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
     /// The regions of all ordered pairs, sorted by the ego, then by the other agent. O(agents × regions).
     ///
     /// # Errors
@@ -136,7 +136,7 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
     pub fn regions<'a>(
         &'a self,
         fleet: &'a [Motion<'a, S>],
-    ) -> Result<impl Iterator<Item = RegionRef<'a, S>>, Mismatch> {
+    ) -> Result<impl Iterator<Item = RegionRef<'a, S>>, MismatchError> {
         self.holds_all(fleet)?;
         Ok((0..fleet.len()).flat_map(move |ego| self.of(fleet, ego)))
     }
@@ -149,7 +149,7 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
     pub fn regions_once<'a>(
         &'a self,
         fleet: &'a [Motion<'a, S>],
-    ) -> Result<impl Iterator<Item = RegionRef<'a, S>> + Clone, Mismatch> {
+    ) -> Result<impl Iterator<Item = RegionRef<'a, S>> + Clone, MismatchError> {
         self.holds_all(fleet)?;
         Ok(self.entries().iter().filter_map(move |region| self.view(fleet, region, region.agents()[0])))
     }
@@ -157,12 +157,12 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
     /// The regions of one agent, which it has to keep out of, sorted by the other agent. O(agents + regions).
     ///
     /// # Errors
-    /// [`Mismatch`]. If there is no error, an empty iterator means that the agent has no regions.
+    /// [`MismatchError`]. If there is no error, an empty iterator means that the agent has no regions.
     pub fn row<'a>(
         &'a self,
         fleet: &'a [Motion<'a, S>],
         ego: usize,
-    ) -> Result<impl Iterator<Item = RegionRef<'a, S>> + Clone, Mismatch> {
+    ) -> Result<impl Iterator<Item = RegionRef<'a, S>> + Clone, MismatchError> {
         self.holds(fleet, [ego, ego])?;
         Ok(self.of(fleet, ego))
     }
@@ -175,11 +175,11 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
         fleet: &[Motion<'_, S>],
         plan: &'a [Motion<'a, S>],
         ego: usize,
-    ) -> Result<impl Iterator<Item = RegionRef<'a, S>> + Clone, Mismatch> {
+    ) -> Result<impl Iterator<Item = RegionRef<'a, S>> + Clone, MismatchError> {
         self.holds(fleet, [ego, ego])?;
         let mut both = fleet.iter().zip(plan);
         let is_same = fleet.len() == plan.len() && both.all(|(given, planned)| planned.is_same_disc(given));
-        if is_same { Ok(self.of(plan, ego)) } else { Err(Mismatch::OtherFleet) }
+        if is_same { Ok(self.of(plan, ego)) } else { Err(MismatchError::OtherFleet) }
     }
 
     /// The regions of the agent `ego` with the agent `other`. O(agents + log regions).
@@ -191,7 +191,7 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
         fleet: &'a [Motion<'a, S>],
         ego: usize,
         other: usize,
-    ) -> Result<impl Iterator<Item = RegionRef<'a, S>> + Clone, Mismatch> {
+    ) -> Result<impl Iterator<Item = RegionRef<'a, S>> + Clone, MismatchError> {
         self.holds(fleet, [ego, other])?;
         let agents = [ego.min(other), ego.max(other)];
         let begin = self.entries().partition_point(|region| region.agents() < agents);
@@ -200,25 +200,25 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
     }
 
     /// Checks that this is the table of the fleet.
-    fn check(&self, fleet: &[Motion<'_, S>]) -> Result<(), Mismatch> {
-        if self.fleet == Known::all(fleet) { Ok(()) } else { Err(Mismatch::OtherFleet) }
+    fn check(&self, fleet: &[Motion<'_, S>]) -> Result<(), MismatchError> {
+        if self.fleet == FleetChecksum::all(fleet) { Ok(()) } else { Err(MismatchError::OtherFleet) }
     }
 
     /// Checks that the table holds the regions of all agents of the fleet.
-    pub(crate) fn holds_all(&self, fleet: &[Motion<'_, S>]) -> Result<(), Mismatch> {
+    pub(crate) fn holds_all(&self, fleet: &[Motion<'_, S>]) -> Result<(), MismatchError> {
         self.check(fleet)?;
-        self.only.map_or(Ok(()), |only| Err(Mismatch::OnlyRow(only)))
+        self.only.map_or(Ok(()), |only| Err(MismatchError::OnlyRow(only)))
     }
 
     /// Checks that the table holds the regions of these two agents, or, if both are the same, all regions of that
     /// agent.
-    pub(crate) fn holds(&self, fleet: &[Motion<'_, S>], agents: [usize; 2]) -> Result<(), Mismatch> {
+    pub(crate) fn holds(&self, fleet: &[Motion<'_, S>], agents: [usize; 2]) -> Result<(), MismatchError> {
         self.check(fleet)?;
         if let Some(agent) = agents.into_iter().find(|&agent| agent >= fleet.len()) {
-            return Err(Mismatch::NoSuchAgent(agent));
+            return Err(MismatchError::NoSuchAgent(agent));
         }
         match self.only {
-            Some(only) if !agents.contains(&only) => Err(Mismatch::OnlyRow(only)),
+            Some(only) if !agents.contains(&only) => Err(MismatchError::OnlyRow(only)),
             _ => Ok(()),
         }
     }
@@ -239,13 +239,13 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
         self.view(fleet, self.entries().get(place)?, ego)
     }
 
-    fn view<'a>(&'a self, fleet: &'a [Motion<'a, S>], region: &Region, ego: usize) -> Option<RegionRef<'a, S>> {
+    fn view<'a>(&'a self, fleet: &'a [Motion<'a, S>], region: &EcmEntry, ego: usize) -> Option<RegionRef<'a, S>> {
         let agents = region.agents();
-        let pair = Pair::new(fleet.get(agents[0])?, fleet.get(agents[1])?);
-        Some(RegionRef::new(pair, List::new(self.pieces.slots(), region.head), agents, agents[1] == ego))
+        let pair = AgentPair::new(fleet.get(agents[0])?, fleet.get(agents[1])?);
+        Some(RegionRef::new(pair, PieceList::new(self.pieces.slots(), region.head), agents, agents[1] == ego))
     }
 
-    fn entries(&self) -> &[Region] {
+    fn entries(&self) -> &[EcmEntry] {
         self.regions.as_ref().get(..self.len).unwrap_or_default()
     }
 }
@@ -253,7 +253,7 @@ impl<S: Scalar, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
 impl<S, R, P> Ecm<S, R, P>
 where
     S: Scalar,
-    R: AsRef<[Region]> + AsMut<[Region]>,
+    R: AsRef<[EcmEntry]> + AsMut<[EcmEntry]>,
     P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
 {
     /// Computes the table of a whole fleet of at most 65536 agents.
@@ -261,8 +261,8 @@ where
     /// Cost: a box test for each pair of agents, and a few hundred operations for each pair of segments that meet.
     ///
     /// # Errors
-    /// [`Full`] if the storage is too small.
-    pub fn build(regions: R, pieces: P, fleet: &[Motion<'_, S>]) -> Result<Self, Full> {
+    /// [`CapacityError`] if the storage is too small.
+    pub fn build(regions: R, pieces: P, fleet: &[Motion<'_, S>]) -> Result<Self, CapacityError> {
         let mut ecm = Self::new(regions, pieces);
         ecm.fill(fleet).map(|()| ecm)
     }
@@ -270,8 +270,8 @@ where
     /// Computes the table of a whole fleet, like [`Ecm::build`], in the existing storage.
     ///
     /// # Errors
-    /// [`Full`] if the storage is too small; the table is then empty, as after [`Ecm::clear`].
-    pub fn fill(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), Full> {
+    /// [`CapacityError`] if the storage is too small; the table is then empty, as after [`Ecm::clear`].
+    pub fn fill(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), CapacityError> {
         self.compute(fleet, |ecm| {
             (0..fleet.len()).try_for_each(|agent| ecm.add_pairs(fleet, agent, agent.saturating_add(1)..fleet.len()))
         })
@@ -281,11 +281,11 @@ where
     /// that agent only.
     ///
     /// # Errors
-    /// [`Full`] if the storage is too small; the table is then empty, as after [`Ecm::clear`].
+    /// [`CapacityError`] if the storage is too small; the table is then empty, as after [`Ecm::clear`].
     /// [`Mismatch::NoSuchAgent`]; the table is then unchanged.
-    pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), TableError> {
+    pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), EcmError> {
         if agent >= fleet.len() {
-            return Err(Mismatch::NoSuchAgent(agent).into());
+            return Err(MismatchError::NoSuchAgent(agent).into());
         }
         self.compute(fleet, |ecm| ecm.add_row(fleet, agent))?;
         self.only = Some(agent);
@@ -296,16 +296,16 @@ where
     /// this agent: either the agent is new, at the end of the fleet, or it was taken out by [`Ecm::remove`].
     ///
     /// # Errors
-    /// [`Full`] if the storage is too small, and [`Mismatch`], also if the table has the agent already; the table is
+    /// [`CapacityError`] if the storage is too small, and [`MismatchError`], also if the table has the agent already; the table is
     /// then unchanged.
-    pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), TableError> {
-        let own = fleet.get(agent).ok_or(Mismatch::NoSuchAgent(agent))?;
-        let known = Known::all(fleet);
+    pub fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), EcmError> {
+        let own = fleet.get(agent).ok_or(MismatchError::NoSuchAgent(agent))?;
+        let known = FleetChecksum::all(fleet);
         if let Some(only) = self.only {
-            return Err(Mismatch::OnlyRow(only).into());
+            return Err(MismatchError::OnlyRow(only).into());
         }
         if self.fleet != known.without(agent, own) {
-            return Err(Mismatch::OtherFleet.into());
+            return Err(MismatchError::OtherFleet.into());
         }
         self.add_row(fleet, agent)?;
         self.fleet = known;
@@ -316,10 +316,10 @@ where
     /// or, if it was the last one of the fleet, for the fleet without it. O(agents + regions).
     ///
     /// # Errors
-    /// [`Mismatch`].
-    pub fn remove(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch> {
+    /// [`MismatchError`].
+    pub fn remove(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), MismatchError> {
         self.holds_all(fleet)?;
-        let own = fleet.get(agent).ok_or(Mismatch::NoSuchAgent(agent))?;
+        let own = fleet.get(agent).ok_or(MismatchError::NoSuchAgent(agent))?;
         self.take_out(agent);
         self.fleet = self.fleet.without(agent, own);
         Ok(())
@@ -330,13 +330,13 @@ where
     ///
     /// # Errors
     /// As [`Ecm::remove`].
-    pub fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch> {
+    pub fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), MismatchError> {
         self.remove(fleet, agent)?;
         for region in self.regions.as_mut().iter_mut().take(self.len) {
             region.agents = region.agents.map(|other| other.wrapping_sub(u16::from(usize::from(other) > agent)));
         }
         let rest = [fleet.get(..agent), fleet.get(agent.saturating_add(1)..)];
-        self.fleet = Known::all(rest.into_iter().flatten().flatten());
+        self.fleet = FleetChecksum::all(rest.into_iter().flatten().flatten());
         Ok(())
     }
 
@@ -344,16 +344,16 @@ where
     /// touched.
     ///
     /// # Errors
-    /// [`Full`] if the storage is too small, and [`Mismatch`]; the fleet and the table are then unchanged.
+    /// [`CapacityError`] if the storage is too small, and [`MismatchError`]; the fleet and the table are then unchanged.
     pub fn replace<'m>(
         &mut self,
         fleet: &mut [Motion<'m, S>],
         agent: usize,
         motion: Motion<'m, S>,
-    ) -> Result<(), TableError> {
+    ) -> Result<(), EcmError> {
         self.holds(fleet, [agent, agent])?;
         let Some(place) = fleet.get_mut(agent) else {
-            return Err(Mismatch::NoSuchAgent(agent).into());
+            return Err(MismatchError::NoSuchAgent(agent).into());
         };
         let before = core::mem::replace(place, motion);
         self.take_out(agent);
@@ -368,7 +368,7 @@ where
                 return Ok(outcome?);
             }
         }
-        self.fleet = Known::all(&*fleet);
+        self.fleet = FleetChecksum::all(&*fleet);
         Ok(outcome?)
     }
 }

@@ -7,7 +7,7 @@ use core::fmt;
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum Invalid {
+pub enum InvalidInput {
     /// The quantity is NaN or infinite.
     NonFinite(&'static str),
     /// The quantity is below zero.
@@ -39,7 +39,7 @@ pub enum Invalid {
     Lever,
 }
 
-impl fmt::Display for Invalid {
+impl fmt::Display for InvalidInput {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NonFinite(what) => write!(f, "{what} is not a finite number"),
@@ -65,14 +65,14 @@ impl fmt::Display for Invalid {
     }
 }
 
-impl core::error::Error for Invalid {}
+impl core::error::Error for InvalidInput {}
 
 /// There is not enough room for the result. What was stored before is intact, unless the function says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum Full {
+pub enum CapacityError {
     /// The table needs more pieces.
     Pieces,
     /// The table needs more regions.
@@ -83,16 +83,16 @@ pub enum Full {
     Agents,
     /// A [`BroadPhase`](crate::BroadPhase) needs at least two boxes for each agent.
     Boxes,
-    /// [`Orders`](crate::Orders) needs one order for each region, and, to admit an agent, as many more as that agent
+    /// [`PrecedenceTable`](crate::PrecedenceTable) needs one order for each region, and, to admit an agent, as many more as that agent
     /// has regions.
     Orders,
-    /// A check of [`Orders`](crate::Orders) needs one [`Reach`](crate::Reach) for each agent.
+    /// A check of [`PrecedenceTable`](crate::PrecedenceTable) needs one [`CheckState`](crate::CheckState) for each agent.
     Reaches,
     /// Two outlines touch at more lengths of a pair of segments than the kernel has room for; more storage does not help.
     Contacts,
 }
 
-impl fmt::Display for Full {
+impl fmt::Display for CapacityError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Pieces => f.write_str("there is no room for another piece"),
@@ -107,14 +107,14 @@ impl fmt::Display for Full {
     }
 }
 
-impl core::error::Error for Full {}
+impl core::error::Error for CapacityError {}
 
 /// The arguments do not belong together: agent and fleet, or fleet and table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum Mismatch {
+pub enum MismatchError {
     /// The fleet has no such agent.
     NoSuchAgent(usize),
     /// The table was computed for another fleet: the number of agents, their paths, radii, order or
@@ -127,7 +127,7 @@ pub enum Mismatch {
     NoSuchRegion(usize),
 }
 
-impl fmt::Display for Mismatch {
+impl fmt::Display for MismatchError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoSuchAgent(agent) => write!(f, "the fleet has no agent {agent}"),
@@ -140,32 +140,32 @@ impl fmt::Display for Mismatch {
     }
 }
 
-impl core::error::Error for Mismatch {}
+impl core::error::Error for MismatchError {}
 
 /// Why a table was not filled or changed. Every method that returns it says what is then in the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum TableError {
+pub enum EcmError {
     /// There is not enough room.
-    Full(Full),
+    Full(CapacityError),
     /// The fleet or the agent is not that of the table.
-    Mismatch(Mismatch),
+    Mismatch(MismatchError),
 }
 
-impl From<Full> for TableError {
-    fn from(full: Full) -> Self {
+impl From<CapacityError> for EcmError {
+    fn from(full: CapacityError) -> Self {
         Self::Full(full)
     }
 }
 
-impl From<Mismatch> for TableError {
-    fn from(mismatch: Mismatch) -> Self {
+impl From<MismatchError> for EcmError {
+    fn from(mismatch: MismatchError) -> Self {
         Self::Mismatch(mismatch)
     }
 }
 
-impl fmt::Display for TableError {
+impl fmt::Display for EcmError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Full(full) => full.fmt(f),
@@ -174,16 +174,16 @@ impl fmt::Display for TableError {
     }
 }
 
-impl core::error::Error for TableError {}
+impl core::error::Error for EcmError {}
 
 /// Returns `value` if it is finite and within the limits of its format.
-pub(crate) fn in_range<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, Invalid> {
+pub(crate) fn in_range<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, InvalidInput> {
     if !value.is_finite() {
-        return Err(Invalid::NonFinite(what));
+        return Err(InvalidInput::NonFinite(what));
     }
     // Compared without `abs`, because the least number of a fixed-point format has no magnitude.
     if value > S::LIMIT || value < -S::LIMIT {
-        return Err(Invalid::OutOfRange(what));
+        return Err(InvalidInput::OutOfRange(what));
     }
     Ok(value)
 }
@@ -194,31 +194,31 @@ pub(crate) fn is_no_number<S: crate::Scalar>(value: S) -> bool {
 }
 
 /// Returns `value` if it is in range and not negative.
-pub(crate) fn not_negative<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, Invalid> {
-    if in_range(value, what)? < S::ZERO { Err(Invalid::Negative(what)) } else { Ok(value) }
+pub(crate) fn not_negative<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, InvalidInput> {
+    if in_range(value, what)? < S::ZERO { Err(InvalidInput::Negative(what)) } else { Ok(value) }
 }
 
 /// A length, in range and not negative. Below the square of [`Scalar::LEAST`](crate::Scalar::LEAST) it is taken as 0: the
 /// product of a length with an acceleration would lose its digits to underflow, and a segment without any length could
 /// then get the time of a whole ramp.
-pub(crate) fn length<S: crate::Scalar>(value: S) -> Result<S, Invalid> {
+pub(crate) fn length<S: crate::Scalar>(value: S) -> Result<S, InvalidInput> {
     let least = crate::scalar::Wide::narrow(S::LEAST.times(S::LEAST));
     Ok(if not_negative(value, "length")? < least { S::ZERO } else { value })
 }
 
 /// Checks the radius of a disc or an arc.
-pub(crate) fn radius<S: crate::Scalar>(value: S) -> Result<S, Invalid> {
-    if positive(value, "radius")? < S::LEAST { Err(Invalid::TooSmall("radius")) } else { Ok(value) }
+pub(crate) fn radius<S: crate::Scalar>(value: S) -> Result<S, InvalidInput> {
+    if positive(value, "radius")? < S::LEAST { Err(InvalidInput::TooSmall("radius")) } else { Ok(value) }
 }
 
 /// Returns `value` if it is in range and above zero.
-pub(crate) fn positive<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, Invalid> {
-    if in_range(value, what)? > S::ZERO { Ok(value) } else { Err(Invalid::NonPositive(what)) }
+pub(crate) fn positive<S: crate::Scalar>(value: S, what: &'static str) -> Result<S, InvalidInput> {
+    if in_range(value, what)? > S::ZERO { Ok(value) } else { Err(InvalidInput::NonPositive(what)) }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Full, Invalid, Mismatch, TableError};
+    use super::{CapacityError, EcmError, InvalidInput, MismatchError};
     use core::fmt::Write;
     use heapless::String;
 
@@ -228,14 +228,14 @@ mod tests {
             let mut text = String::<80>::new();
             write!(text, "{value}").map(|()| text)
         };
-        let pair = text(&Full::Pair([3, 17])).unwrap();
+        let pair = text(&CapacityError::Pair([3, 17])).unwrap();
         assert_eq!(pair, "agents 3 and 17 of the fleet have more than 32767 pieces");
-        let lengths = |path, profile| text(&Invalid::LengthMismatch { path, profile }).unwrap();
+        let lengths = |path, profile| text(&InvalidInput::LengthMismatch { path, profile }).unwrap();
         assert_eq!(lengths(10_004, 7_500), "the profile travels 7.500 m, the path has 10.004 m");
         assert_eq!(lengths(1_050, 1_050), "the profile misses the end of the path, 1.050 m, by less than 1 mm");
-        assert_eq!(text(&TableError::from(Mismatch::NoSuchAgent(5))).unwrap(), "the fleet has no agent 5");
+        assert_eq!(text(&EcmError::from(MismatchError::NoSuchAgent(5))).unwrap(), "the fleet has no agent 5");
         assert_eq!(
-            text(&TableError::from(Mismatch::OnlyRow(4))).unwrap(),
+            text(&EcmError::from(MismatchError::OnlyRow(4))).unwrap(),
             "the table holds the regions of agent 4 only"
         );
     }

@@ -215,14 +215,14 @@ impl<S: Scalar> Interval<S> {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Bounds<S> {
+pub struct Aabb<S> {
     /// Range of x-coordinates.
     pub x: Interval<S>,
     /// Range of y-coordinates.
     pub y: Interval<S>,
 }
 
-impl<S: Scalar> Bounds<S> {
+impl<S: Scalar> Aabb<S> {
     /// The smallest box around two points.
     pub fn around(a: Point<S>, b: Point<S>) -> Self {
         Self { x: Interval::new(a.x.min(b.x), a.x.max(b.x)), y: Interval::new(a.y.min(b.y), a.y.max(b.y)) }

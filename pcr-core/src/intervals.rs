@@ -42,7 +42,7 @@ impl<S: Scalar, I: Iterator<Item = Interval<S>> + Clone> Iterator for Union<S, I
     type Item = Interval<S>;
 
     fn next(&mut self) -> Option<Interval<S>> {
-        Lowest::next(&mut self.after, |lowest| {
+        LowestInterval::next(&mut self.after, |lowest| {
             self.intervals.clone().map(whole).for_each(|interval| lowest.add(interval));
         })
     }
@@ -55,7 +55,7 @@ fn whole<S: Scalar>(interval: Interval<S>) -> Interval<S> {
 }
 
 /// The lowest interval of a union, while its intervals come one by one in any order.
-pub(crate) struct Lowest<S> {
+pub(crate) struct LowestInterval<S> {
     /// End of the part of the union that is known already.
     pub(crate) after: Option<S>,
     pub(crate) found: Option<Interval<S>>,
@@ -63,7 +63,7 @@ pub(crate) struct Lowest<S> {
     above: Option<S>,
 }
 
-impl<S: Scalar> Lowest<S> {
+impl<S: Scalar> LowestInterval<S> {
     /// The next interval of a union, of which all is known up to `after`. Each call of `pass` adds all intervals,
     /// or at least those from `after` to the end of what has been found.
     pub(crate) fn next(after: &mut Option<S>, mut pass: impl FnMut(&mut Self)) -> Option<Interval<S>> {

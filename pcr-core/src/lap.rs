@@ -8,7 +8,7 @@ use crate::segment::Segment;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
-pub(crate) enum Lap {
+pub(crate) enum Winding {
     /// The foot minus one circumference.
     Previous,
     /// The foot that is nearest to the middle of the segment; the only lap on a line.
@@ -19,7 +19,7 @@ pub(crate) enum Lap {
     Whole,
 }
 
-impl Lap {
+impl Winding {
     pub(crate) const ALL: [Self; 4] = [Self::Previous, Self::Same, Self::Next, Self::Whole];
 
     /// This lap, counted from a foot that has passed backwards through a number of laps.
@@ -38,7 +38,7 @@ impl Lap {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
-pub enum Share {
+pub enum Branch {
     /// The only interval.
     Only,
     /// The first of two, at the start of the segment. There are two if the gap between them lies inside the segment.
@@ -47,7 +47,7 @@ pub enum Share {
     End,
 }
 
-impl Share {
+impl Branch {
     /// The covered intervals that belong to the piece. Near an end of the piece rounding may turn one interval into
     /// two, or two into one, a little away from the end of the segment; then those intervals are returned that reach
     /// into `hull`, the range of the piece.
@@ -90,10 +90,10 @@ impl Share {
     }
 }
 
-pub(crate) fn shift<S: Scalar>(foot: S, segment: &Segment<S>, lap: Lap) -> S {
+pub(crate) fn shift<S: Scalar>(foot: S, segment: &Segment<S>, lap: Winding) -> S {
     match lap {
-        Lap::Previous => foot - segment.circumference,
-        Lap::Next => foot + segment.circumference,
-        Lap::Same | Lap::Whole => foot,
+        Winding::Previous => foot - segment.circumference,
+        Winding::Next => foot + segment.circumference,
+        Winding::Same | Winding::Whole => foot,
     }
 }

@@ -41,11 +41,11 @@
 
 pub mod scalar;
 
-mod bits;
+mod array_vec;
+mod bit_rows;
 mod crossing;
 mod ecm;
 mod error;
-mod few;
 mod geometry;
 #[cfg(feature = "internals")]
 #[doc(hidden)]
@@ -53,44 +53,47 @@ pub mod internals;
 mod intervals;
 mod lap;
 mod motion;
-mod orders;
 mod outline;
 mod overlaps;
 mod pair;
 mod path;
-mod pieces;
+mod piece_store;
 mod plan;
+mod precedence;
 mod profile;
 mod query;
 mod region;
 mod segment;
 
 pub use crossing::{Crossing, crossings};
-pub use ecm::{Ecm, Region};
-pub use error::{Full, Invalid, Mismatch, TableError};
-pub use geometry::{Bounds, Direction, Interval, Point, Pose, Vector};
+pub use ecm::{Ecm, EcmEntry};
+pub use error::{CapacityError, EcmError, InvalidInput, MismatchError};
+pub use geometry::{Aabb, Direction, Interval, Point, Pose, Vector};
 pub use intervals::{Gaps, Union, gaps, union};
-pub use lap::Share;
+pub use lap::Branch;
 pub use motion::{LENGTH_TOLERANCE_LOG2, Motion};
-pub use orders::{Brakes, Decision, Hold, Mission, Order, Orders, Pass, Progress, Reach, Refused, Tolerances};
 pub use outline::{Corner, Outline, OutlineRef};
 pub use overlaps::overlaps;
 pub use path::{Path, PathRef};
-pub use pieces::Piece;
+pub use piece_store::Piece;
 pub use plan::{
-    Constraint, Drive, NoSpeedPlan, SpeedPlan, Station, Unsolved, plan_delays, plan_speed, plan_speed_below,
-    plan_speeds,
+    Constraint, PlanError, SearchNode, SpeedPlan, SpeedPlanError, SpeedPlanLimits, plan_delays, plan_speed,
+    plan_speed_below, plan_speeds,
+};
+pub use precedence::{
+    AdmissionError, BrakingModel, CheckState, CheckTolerances, MovementAuthority, PassingState, PathProposal,
+    PrecedenceDecision, PrecedenceTable, Progress, RegionPrecedence,
 };
 pub use profile::{Limits, Phase, Profile, ProfileRef};
 pub use query::{
-    Approach, BroadPhase, Conflict, Conflicts, Contacts, Encounter, Met, earliest_departure, earliest_start,
-    first_conflict, first_overlap, least_duration, safe_intervals, safe_lengths,
+    AgentConflict, BroadPhase, ClosestApproach, Conflict, Conflicts, Contacts, Encounter, earliest_departure,
+    earliest_start, first_conflict, first_overlap, least_duration, safe_intervals, safe_lengths,
 };
 pub use region::{PieceRef, PieceType, RegionRef, excess};
 #[cfg(feature = "libm")]
 pub use scalar::Radians;
 pub use scalar::Scalar;
-pub use segment::{Curve, Segment, Turn};
+pub use segment::{Curve, Segment, TurnSide};
 
 #[cfg(all(test, feature = "libm"))]
 mod recorded;

@@ -1,8 +1,8 @@
 //! An agent in motion: a disc, its path, and its travelled length over time (Eq. 2, ρ ∘ λ).
 
-use crate::bits::digest;
-use crate::error::{self, Invalid, in_range, not_negative};
-use crate::geometry::{Bounds, Interval, Point};
+use crate::bit_rows::digest;
+use crate::error::{self, InvalidInput, in_range, not_negative};
+use crate::geometry::{Aabb, Interval, Point};
 use crate::outline::{Corner, OutlineRef};
 use crate::pair::outline::placed::{Carried, Corners};
 use crate::path::PathRef;
@@ -34,7 +34,7 @@ pub struct Motion<'a, S: Scalar> {
     margin: S,
     time: Interval<S>,
     lateness: S,
-    bounds: Bounds<S>,
+    bounds: Aabb<S>,
     extent: S,
     drift: S,
     /// Largest lag for which its regions hold.
@@ -52,7 +52,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// [`Invalid::LengthMismatch`] if the lengths of profile and path differ by more than [`LENGTH_TOLERANCE_LOG2`] and
     /// rounding allow. A smaller difference is added to [`Motion::lag`], and twice the difference to ε
     /// ([`excess`](crate::excess)).
-    pub fn new(path: PathRef<'a, S>, profile: ProfileRef<'a, S>, radius: S, start: S) -> Result<Self, Invalid> {
+    pub fn new(path: PathRef<'a, S>, profile: ProfileRef<'a, S>, radius: S, start: S) -> Result<Self, InvalidInput> {
         error::radius(radius)?;
         Self::of(path, profile, OutlineRef::disc(radius), start)
     }
@@ -68,7 +68,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// arc is so tight that rounding a length could move a corner by a sixteenth of the size of the outline.
     ///
     /// ```
-    /// use pcr_core::{Ecm, Limits, Motion, Outline, Path, Piece, Point, Pose, Profile, Radians, Region};
+    /// use pcr_core::{Ecm, Limits, Motion, Outline, Path, Piece, Point, Pose, Profile, Radians, EcmEntry};
     /// // Two pallet trucks, 1.2 m long and 0.8 m wide, pass each other 1 mm apart.
     /// let pose = |x, y, heading| Pose { position: Point::new(x, y), heading: Radians(heading) };
     /// let east = Path::<f64, 1>::starting_at(pose(0.0, 0.0, 0.0))?.line(6.0)?;
@@ -77,7 +77,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// let profile = Profile::rest_to_rest(6.0, Limits { speed: 1.0, acceleration: 1.0 })?;
     /// let motion = |path| Motion::with_outline(path, profile.as_profile(), &truck, 0.0);
     /// let fleet = [motion(east.as_path())?, motion(west.as_path())?];
-    /// assert!(Ecm::build([Region::EMPTY; 1], [Piece::EMPTY; 4], &fleet)?.is_empty());
+    /// assert!(Ecm::build([EcmEntry::EMPTY; 1], [Piece::EMPTY; 4], &fleet)?.is_empty());
     /// # Ok::<(), Box<dyn core::error::Error>>(())
     /// ```
     pub fn with_outline(
@@ -85,7 +85,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
         profile: ProfileRef<'a, S>,
         outline: impl Into<OutlineRef<'a, S>>,
         start: S,
-    ) -> Result<Self, Invalid> {
+    ) -> Result<Self, InvalidInput> {
         Self::of(path, profile, outline.into(), start)
     }
 
@@ -94,7 +94,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
         profile: ProfileRef<'a, S>,
         outline: OutlineRef<'a, S>,
         start: S,
-    ) -> Result<Self, Invalid> {
+    ) -> Result<Self, InvalidInput> {
         let (radius, corners, spread) = (outline.radius(), outline.corners(), outline.spread());
         let time = travel_time(profile, start)?;
         let bounds = path.bounds();
@@ -103,7 +103,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
         let share = (LENGTH_TOLERANCE_LOG2..0).fold(path.length(), |length, _| length.half());
         if gap > S::slack(extent).max(share) {
             let [path, profile] = [path.length(), profile.length()].map(S::millimetres);
-            return Err(Invalid::LengthMismatch { path, profile });
+            return Err(InvalidInput::LengthMismatch { path, profile });
         }
         // `fold`, because `Iterator::count` contains an overflow check, which can panic.
         let (arcs, diameter) =
@@ -139,7 +139,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// Completes the motion of an outline: what rounding does to its corners, and its checksum.
     // Not inlined: discs do not need it.
     #[inline(never)]
-    fn extended(self, diameter: S) -> Result<Self, Invalid> {
+    fn extended(self, diameter: S) -> Result<Self, InvalidInput> {
         // Corners are placed by their vectors from the centre of an arc.
         let extent = in_range(self.extent + self.spread.double() + diameter, "extent of the motion")?;
         let arcs = self.path.segments().iter().filter_map(|segment| match segment.curve() {
@@ -152,12 +152,12 @@ impl<'a, S: Scalar> Motion<'a, S> {
         let allowance = levered(self.allowance);
         let rounding = S::slack(extent) + drift + allowance;
         if rounding.double().double().double().double() > self.spread + self.radius {
-            return Err(Invalid::Lever);
+            return Err(InvalidInput::Lever);
         }
         // A turn that moves no corner by more than rounding does is none.
         let fine = S::slack(extent).half().half();
         if self.path.segments().iter().any(|segment| segment.turns_in_place(self.spread, fine)) {
-            return Err(Invalid::TurnInPlace);
+            return Err(InvalidInput::TurnInPlace);
         }
         let corners = self.corners.iter().flat_map(|corner| [corner.at.x, corner.at.y]);
         let digest = corners.fold(self.digest, |sum, coordinate| digest(sum, coordinate.digest()));
@@ -169,7 +169,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`] (also for radius and margin together), [`Invalid::Negative`].
-    pub fn with_margin(self, margin: S) -> Result<Self, Invalid> {
+    pub fn with_margin(self, margin: S) -> Result<Self, InvalidInput> {
         not_negative(margin, "margin")?;
         in_range(self.radius + margin, "radius with its margin")?;
         Ok(Self { margin, ..self })
@@ -182,7 +182,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`].
-    pub fn with_lateness(self, lateness: S) -> Result<Self, Invalid> {
+    pub fn with_lateness(self, lateness: S) -> Result<Self, InvalidInput> {
         not_negative(lateness, "lateness")?;
         Ok(Self { lateness, ..self })
     }
@@ -196,17 +196,17 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// regions in which margins overlap; keep it beside the table of contacts.
     ///
     /// ```
-    /// # use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region};
+    /// # use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, EcmEntry};
     /// # let pose = |y, heading| Pose { position: Point::new(-2.0, y), heading: Radians(heading) };
     /// let lanes = [Path::<f64, 1>::starting_at(pose(0.0, 0.0))?.line(4.0)?, Path::starting_at(pose(0.6, 0.0))?.line(4.0)?];
     /// # let profile = Profile::rest_to_rest(4.0, Limits { speed: 1.0, acceleration: 1.0 })?;
     /// # let motion = |path| Motion::new(path, profile.as_profile(), 0.25, 0.0)?.with_margin(0.1);
     /// let fleet = [motion(lanes[0].as_path())?, motion(lanes[1].as_path())?]; // radius 0.25 m, margin 0.1 m
-    /// let contact = Ecm::build([Region::EMPTY; 1], [Piece::EMPTY; 1], &fleet)?;
+    /// let contact = Ecm::build([EcmEntry::EMPTY; 1], [Piece::EMPTY; 1], &fleet)?;
     /// assert!(contact.is_empty()); // they pass, 0.1 m apart
     ///
     /// let inflated = fleet.map(|motion| motion.inflated());
-    /// let margin = Ecm::build([Region::EMPTY; 1], [Piece::EMPTY; 1], &inflated)?;
+    /// let margin = Ecm::build([EcmEntry::EMPTY; 1], [Piece::EMPTY; 1], &inflated)?;
     /// assert_eq!(margin.len(), 1); // but not 0.2 m
     /// # Ok::<(), Box<dyn core::error::Error>>(())
     /// ```
@@ -221,7 +221,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     ///
     /// # Errors
     /// As [`Motion::new`].
-    pub fn with_profile(self, profile: ProfileRef<'a, S>, start: S) -> Result<Self, Invalid> {
+    pub fn with_profile(self, profile: ProfileRef<'a, S>, start: S) -> Result<Self, InvalidInput> {
         let motion = Self::of(self.path, profile, self.outline(), start)?;
         let allowance = self.allowance.max(motion.allowance);
         Self { allowance, ..motion }.with_margin(self.margin)?.with_lateness(self.lateness)
@@ -233,7 +233,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`].
-    pub fn with_longest(self, longest: S) -> Result<Self, Invalid> {
+    pub fn with_longest(self, longest: S) -> Result<Self, InvalidInput> {
         not_negative(longest, "longest duration")?;
         let lag = self.levered(S::lag(self.top_speed, longest) + gap(self.path, self.profile));
         in_range(lag, "lag")?;
@@ -244,7 +244,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`].
-    pub fn delayed(self, delay: S) -> Result<Self, Invalid> {
+    pub fn delayed(self, delay: S) -> Result<Self, InvalidInput> {
         in_range(delay, "delay")?;
         Ok(Self { time: travel_time(self.profile, self.time.lo + delay)?, ..self })
     }
@@ -260,7 +260,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// # let motion = |start| Motion::new(path.as_path(), profile.as_profile(), 0.25, start);
     /// let fleet = [motion(1.0)?, motion(6.5)?]; // four seconds each
     /// assert_eq!(Motion::span(&fleet), Interval::new(1.0, 10.5));
-    /// # Ok::<(), pcr_core::Invalid>(())
+    /// # Ok::<(), pcr_core::InvalidInput>(())
     /// ```
     pub fn span(fleet: &[Self]) -> Interval<S> {
         let times = fleet.iter().map(Self::time);
@@ -308,7 +308,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     }
 
     /// Box around the path \[m\], without the radius.
-    pub fn bounds(&self) -> Bounds<S> {
+    pub fn bounds(&self) -> Aabb<S> {
         self.bounds
     }
 
@@ -333,7 +333,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
 
     /// Box around the area that the disc sweeps, expanded by twice the rounding error of a distance \[m\]. Agents whose
     /// boxes do not meet have no region.
-    pub(crate) fn swept(&self) -> Bounds<S> {
+    pub(crate) fn swept(&self) -> Aabb<S> {
         let slack = S::slack(self.extent) + self.drift + self.allowance;
         self.bounds.expanded(self.radius() + slack.double())
     }
@@ -445,7 +445,7 @@ fn gap<S: Scalar>(path: PathRef<'_, S>, profile: ProfileRef<'_, S>) -> S {
 }
 
 /// The interval from the start to the arrival; the arrival is rounded up.
-fn travel_time<S: Scalar>(profile: ProfileRef<'_, S>, start: S) -> Result<Interval<S>, Invalid> {
+fn travel_time<S: Scalar>(profile: ProfileRef<'_, S>, start: S) -> Result<Interval<S>, InvalidInput> {
     in_range(start, "start time")?;
     in_range(start + profile.duration(), "end time")?;
     Ok(Interval::new(start, start.sum_up(profile.duration())))

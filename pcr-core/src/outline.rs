@@ -3,7 +3,7 @@
 //! An outline is given in the frame of the agent: the reference point, which follows the path, is the origin; `x` points
 //! in the direction of travel and `y` to its left. It is the set of all points within `radius` of the polygon of its corners.
 
-use crate::error::{self, Invalid, in_range, not_negative};
+use crate::error::{self, InvalidInput, in_range, not_negative};
 use crate::geometry::{Direction, Vector};
 use crate::scalar::{Scalar, Unit, Wide};
 use heapless::Vec;
@@ -43,7 +43,7 @@ impl<S: Scalar> Corner<S> {
 /// let rounded = Outline::<f64, 2>::capsule(Vector { x: -0.2, y: 0.0 }, Vector { x: 0.9, y: 0.0 }, 0.4)?;
 /// assert!((rectangle.as_outline().reach() - 1.6_f64.sqrt()).abs() < 1e-12);
 /// assert!((rounded.as_outline().reach() - 1.3).abs() < 1e-12);
-/// # Ok::<(), pcr_core::Invalid>(())
+/// # Ok::<(), pcr_core::InvalidInput>(())
 /// ```
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -59,7 +59,7 @@ impl<S: Scalar, const N: usize> Outline<S, N> {
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::NonPositive`], [`Invalid::TooSmall`].
-    pub fn disc(radius: S) -> Result<Self, Invalid> {
+    pub fn disc(radius: S) -> Result<Self, InvalidInput> {
         error::radius(radius)?;
         Ok(Self { corners: Vec::new(), radius, spread: S::ZERO })
     }
@@ -68,7 +68,7 @@ impl<S: Scalar, const N: usize> Outline<S, N> {
     ///
     /// # Errors
     /// As [`Outline::polygon`].
-    pub fn capsule(from: Vector<S>, to: Vector<S>, radius: S) -> Result<Self, Invalid> {
+    pub fn capsule(from: Vector<S>, to: Vector<S>, radius: S) -> Result<Self, InvalidInput> {
         Self::polygon([from, to], radius)
     }
 
@@ -77,7 +77,7 @@ impl<S: Scalar, const N: usize> Outline<S, N> {
     ///
     /// # Errors
     /// As [`Outline::polygon`].
-    pub fn rectangle(ahead: S, behind: S, left: S, right: S, radius: S) -> Result<Self, Invalid> {
+    pub fn rectangle(ahead: S, behind: S, left: S, right: S, radius: S) -> Result<Self, InvalidInput> {
         let corners = [(-behind, -right), (ahead, -right), (ahead, left), (-behind, left)];
         Self::polygon(corners.map(|(x, y)| Vector { x, y }), radius)
     }
@@ -92,7 +92,7 @@ impl<S: Scalar, const N: usize> Outline<S, N> {
     /// `N` corners; [`Invalid::NonPositive`] without corners, or for a single corner without a radius;
     /// [`Invalid::TooSmall`] for corners that are not distinct; [`Invalid::NotConvex`] if the corners do not turn left,
     /// once around a polygon without straight angles.
-    pub fn polygon(corners: impl IntoIterator<Item = Vector<S>>, radius: S) -> Result<Self, Invalid> {
+    pub fn polygon(corners: impl IntoIterator<Item = Vector<S>>, radius: S) -> Result<Self, InvalidInput> {
         const { assert!(N <= MOST_CORNERS, "an outline has at most 16 corners") };
         not_negative(radius, "radius of the outline")?;
         let mut all: Vec<Corner<S>, N> = Vec::new();
@@ -100,14 +100,14 @@ impl<S: Scalar, const N: usize> Outline<S, N> {
         for at in corners {
             in_range(at.x, "x of a corner")?;
             in_range(at.y, "y of a corner")?;
-            all.push(Corner { at, ..Corner::CENTRE }).map_err(|_| Invalid::Full("corner"))?;
+            all.push(Corner { at, ..Corner::CENTRE }).map_err(|_| InvalidInput::Full("corner"))?;
             spread = spread.max(at.norm_squared().sqrt());
         }
         in_range(spread.double() + radius.double(), "size of the outline")?;
         // The root and its square are rounded, and turning a corner rounds it again.
         spread = if spread > S::ZERO { spread + S::rounding(spread) } else { spread };
         match all.as_slice() {
-            [] => return Err(Invalid::NonPositive("number of corners")),
+            [] => return Err(InvalidInput::NonPositive("number of corners")),
             [_] => error::radius(radius).map(|_| ())?,
             _ => lay(&mut all, S::rounding(spread).double())?,
         }
@@ -137,7 +137,7 @@ impl<S: Scalar, const N: usize> Outline<S, N> {
 
 /// Computes the edges of a polygon, and checks that it is convex: every other corner lies on the inner side of every
 /// edge, by more than `least` \[m\]. This also excludes polygons that wind around twice.
-fn lay<S: Scalar>(corners: &mut [Corner<S>], least: S) -> Result<(), Invalid> {
+fn lay<S: Scalar>(corners: &mut [Corner<S>], least: S) -> Result<(), InvalidInput> {
     let count = corners.len();
     for k in 0..count {
         let next = (if k.wrapping_add(1) == count { corners.first() } else { corners.get(k.wrapping_add(1)) })
@@ -146,7 +146,7 @@ fn lay<S: Scalar>(corners: &mut [Corner<S>], least: S) -> Result<(), Invalid> {
         let edge = Vector { x: next.x - corner.at.x, y: next.y - corner.at.y };
         corner.length = edge.norm_squared().sqrt();
         if corner.length <= least {
-            return Err(Invalid::TooSmall("edge of the outline"));
+            return Err(InvalidInput::TooSmall("edge of the outline"));
         }
         let [cos, sin] = S::unit_vector(edge.x, edge.y, corner.length);
         corner.outward = Direction { cos: sin, sin: -cos };
@@ -156,7 +156,7 @@ fn lay<S: Scalar>(corners: &mut [Corner<S>], least: S) -> Result<(), Invalid> {
         for (_, other) in corners.iter().enumerate().filter(|(j, _)| !ends.contains(j)) {
             let apart = Vector { x: other.at.x - edge.at.x, y: other.at.y - edge.at.y };
             if apart.along(edge.outward) >= -least {
-                return Err(Invalid::NotConvex);
+                return Err(InvalidInput::NotConvex);
             }
         }
     }
@@ -239,7 +239,7 @@ mod tests {
         corners.map(|(x, y)| Vector { x, y })
     }
 
-    fn polygon<const N: usize>(corners: [(f64, f64); N]) -> Result<Outline<f64, 16>, Invalid> {
+    fn polygon<const N: usize>(corners: [(f64, f64); N]) -> Result<Outline<f64, 16>, InvalidInput> {
         Outline::polygon(vectors(corners), 0.1)
     }
 
@@ -249,26 +249,29 @@ mod tests {
         assert!(polygon(square).is_ok());
         let mut clockwise = square;
         clockwise.reverse();
-        assert_eq!(polygon(clockwise).err(), Some(Invalid::NotConvex));
-        assert_eq!(polygon([(0.0, 0.0), (1.0, 0.0), (0.2, 0.2), (0.0, 1.0)]).err(), Some(Invalid::NotConvex));
-        assert_eq!(polygon([(0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (0.0, 1.0)]).err(), Some(Invalid::NotConvex));
+        assert_eq!(polygon(clockwise).err(), Some(InvalidInput::NotConvex));
+        assert_eq!(polygon([(0.0, 0.0), (1.0, 0.0), (0.2, 0.2), (0.0, 1.0)]).err(), Some(InvalidInput::NotConvex));
+        assert_eq!(polygon([(0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (0.0, 1.0)]).err(), Some(InvalidInput::NotConvex));
         // A pentagram only turns left, but winds around twice.
         let star: [_; 5] = core::array::from_fn(|k| libm::sincos(core::f64::consts::TAU * 0.4 * k as f64));
-        assert_eq!(polygon(star.map(|(y, x)| (x, y))).err(), Some(Invalid::NotConvex));
-        assert_eq!(polygon([(0.0, 0.0), (0.0, 0.0)]).err(), Some(Invalid::TooSmall("edge of the outline")));
+        assert_eq!(polygon(star.map(|(y, x)| (x, y))).err(), Some(InvalidInput::NotConvex));
+        assert_eq!(polygon([(0.0, 0.0), (0.0, 0.0)]).err(), Some(InvalidInput::TooSmall("edge of the outline")));
         assert_eq!(
             polygon([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 0.0)]).err(),
-            Some(Invalid::TooSmall("edge of the outline"))
+            Some(InvalidInput::TooSmall("edge of the outline"))
         );
-        assert_eq!(polygon([]).err(), Some(Invalid::NonPositive("number of corners")));
-        assert_eq!(polygon([(f64::NAN, 0.0)]).err(), Some(Invalid::NonFinite("x of a corner")));
-        assert_eq!(Outline::<f64, 3>::polygon(vectors(square), 0.1).err(), Some(Invalid::Full("corner")));
+        assert_eq!(polygon([]).err(), Some(InvalidInput::NonPositive("number of corners")));
+        assert_eq!(polygon([(f64::NAN, 0.0)]).err(), Some(InvalidInput::NonFinite("x of a corner")));
+        assert_eq!(Outline::<f64, 3>::polygon(vectors(square), 0.1).err(), Some(InvalidInput::Full("corner")));
         assert_eq!(
             Outline::<f64, 4>::polygon(vectors(square), -0.1).err(),
-            Some(Invalid::Negative("radius of the outline"))
+            Some(InvalidInput::Negative("radius of the outline"))
         );
-        assert_eq!(Outline::<f64, 1>::polygon(vectors([(1.0, 0.0)]), 0.0).err(), Some(Invalid::NonPositive("radius")));
-        assert_eq!(Outline::<f64, 4>::disc(0.0).err(), Some(Invalid::NonPositive("radius")));
+        assert_eq!(
+            Outline::<f64, 1>::polygon(vectors([(1.0, 0.0)]), 0.0).err(),
+            Some(InvalidInput::NonPositive("radius"))
+        );
+        assert_eq!(Outline::<f64, 4>::disc(0.0).err(), Some(InvalidInput::NonPositive("radius")));
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! The regions of two agents, without a table.
 
-use crate::error::Full;
+use crate::error::CapacityError;
 use crate::motion::Motion;
-use crate::pair::Pair;
-use crate::pieces::{List, Piece, Pieces};
+use crate::pair::AgentPair;
+use crate::piece_store::{Piece, PieceList, PieceStore};
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 
@@ -38,14 +38,14 @@ pub fn overlaps<S: Scalar>(
     second: &Motion<'_, S>,
     storage: &mut [Piece<S>],
     mut found: impl FnMut(&RegionRef<'_, S>),
-) -> Result<(), Full> {
+) -> Result<(), CapacityError> {
     if !first.swept().meets(second.swept()) {
         return Ok(());
     }
-    let (pair, mut pieces) = (Pair::new(first, second), Pieces::new(storage));
-    pair.find(&mut pieces).map_err(|full| if pieces.pair_is_full() { Full::Pair([0, 1]) } else { full })?;
+    let (pair, mut pieces) = (AgentPair::new(first, second), PieceStore::new(storage));
+    pair.find(&mut pieces).map_err(|full| if pieces.pair_is_full() { CapacityError::Pair([0, 1]) } else { full })?;
     while let Some(head) = pieces.take_region() {
-        found(&RegionRef::new(pair, List::new(pieces.slots(), head), [0, 1], false));
+        found(&RegionRef::new(pair, PieceList::new(pieces.slots(), head), [0, 1], false));
     }
     Ok(())
 }

@@ -8,29 +8,29 @@
 //! Two discs have kernels of their own. Pairs with an outline that is no disc have those in [`outline`], behind the same
 //! door: [`Pair::find`], and the slices of pieces.
 
-pub(crate) mod cells;
+pub(crate) mod disc_on_segment;
 pub(crate) mod events;
-pub(crate) mod footprint;
-mod laps;
+pub(crate) mod lateral_offset;
 pub(crate) mod lengths;
-pub(crate) mod offset;
 pub(crate) mod outline;
+pub(crate) mod slabs;
+mod windings;
 
-use crate::bits::Ones;
-use crate::error::Full;
+use crate::bit_rows::SetBits;
+use crate::error::CapacityError;
 use crate::geometry::Interval;
 use crate::motion::Motion;
-use crate::pieces::{Piece, Pieces};
+use crate::piece_store::{Piece, PieceStore};
 use crate::scalar::Scalar;
 use crate::segment::{ROW, Segment, in_box};
-use cells::SegmentPair;
 use core::hint::select_unpredictable as select;
+use disc_on_segment::CarrierCoordinates;
 use events::wraps;
-use footprint::Footprint;
+use slabs::SegmentPair;
 
 /// Two agents as an unordered pair.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pair<'a, S: Scalar> {
+pub(crate) struct AgentPair<'a, S: Scalar> {
     pub(crate) first: &'a Motion<'a, S>,
     pub(crate) second: &'a Motion<'a, S>,
     /// Bound on the rounding error of a distance \[m\].
@@ -39,7 +39,7 @@ pub(crate) struct Pair<'a, S: Scalar> {
     pub(crate) radius: S,
 }
 
-impl<'a, S: Scalar> Pair<'a, S> {
+impl<'a, S: Scalar> AgentPair<'a, S> {
     pub(crate) fn new(first: &'a Motion<'a, S>, second: &'a Motion<'a, S>) -> Self {
         let slack = S::slack(first.extent().max(second.extent())) + first.drift() + second.drift();
         let slack = slack + first.allowance().max(second.allowance());
@@ -56,7 +56,10 @@ impl<'a, S: Scalar> Pair<'a, S> {
     /// The caller has checked that the boxes of both paths meet ([`Motion::swept`]).
     ///
     /// Cost: a box test for each pair of segments, and a few hundred operations for each pair of segments that meet.
-    pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) -> Result<(), Full> {
+    pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
+        &self,
+        pieces: &mut PieceStore<S, P>,
+    ) -> Result<(), CapacityError> {
         let outlines = self.has_outline();
         let mut reach = self.radius + self.slack;
         if outlines {
@@ -69,7 +72,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
             }
             let around = other.bounds.expanded(reach);
             for (row, begin) in self.first.path().segments().chunks(ROW).zip((0..u16::MAX).step_by(ROW)) {
-                for place in Ones(in_box(row, around)) {
+                for place in SetBits(in_box(row, around)) {
                     let Some(own) = row.get(place as usize) else { break };
                     if own.near(other, reach) {
                         let indices = [begin.wrapping_add(place as u16), j];
@@ -92,7 +95,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
     ///
     /// Pieces are sorted by the second segment, then by the first. So the neighbours across a joint of the first path
     /// follow at once, and those across a joint of the second path begin at an index that never goes back.
-    fn join<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) {
+    fn join<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut PieceStore<S, P>) {
         let place = |piece: &Piece<S>| (u32::from(piece.second_segment) << 16) | u32::from(piece.first_segment);
         let mut a = pieces.first_pending();
         let mut next_row = a;
@@ -141,7 +144,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
         if !wraps(own, self.radius, self.slack) {
             return true;
         }
-        let slices = Footprint::of(other.end, own).reach(own, self.radius).intervals(own);
+        let slices = CarrierCoordinates::of(other.end, own).reach(own, self.radius).intervals(own);
         let [before, after] = [before, after].map(|piece| piece.at_joint(slices, own));
         before.into_iter().flatten().any(|slice| after.contains(&Some(slice)))
     }
@@ -172,11 +175,12 @@ impl<'a, S: Scalar> Pair<'a, S> {
             return true;
         }
         let belongs = |piece: &Piece<S>, segment, s: S, l: S| {
-            let slices = Footprint::of(other.point_at(s), segment).reach(segment, self.radius).intervals(segment);
+            let slices =
+                CarrierCoordinates::of(other.point_at(s), segment).reach(segment, self.radius).intervals(segment);
             let near = |slice: Interval<S>| slice.lo - self.slack <= l && l <= slice.hi + self.slack;
             piece.second.contains(s) && piece.at_joint(slices, segment).into_iter().flatten().any(near)
         };
-        let shared = Footprint::of(own.end, other).reach(other, self.radius).intervals(other);
+        let shared = CarrierCoordinates::of(own.end, other).reach(other, self.radius).intervals(other);
         shared.into_iter().flatten().any(|shared| {
             let s = shared.middle();
             belongs(before, own, s, own.length) && belongs(after, next, s, S::ZERO)
@@ -184,7 +188,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
     }
 
     /// Converts lengths along segments into lengths along paths.
-    fn place<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut Pieces<S, P>) {
+    fn place<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(&self, pieces: &mut PieceStore<S, P>) {
         let mut index = pieces.first_pending();
         while let Some(piece) = pieces.get_mut(index) {
             if let Some(own) = segment(self.first, piece.first_segment) {
@@ -205,7 +209,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
         if !piece.second.contains(s) {
             return [None; 2];
         }
-        let covered = Footprint::of(other.point_at(s - other.from), own).reach(own, self.radius).intervals(own);
+        let covered =
+            CarrierCoordinates::of(other.point_at(s - other.from), own).reach(own, self.radius).intervals(own);
         let slices = piece.share().of(covered, own, self.hull(piece, own));
         slices.map(|slice| slice.map(|slice| along_path(slice, own)))
     }
@@ -218,7 +223,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
         if !piece.first.contains(l) {
             return [None; 2];
         }
-        let covered = Footprint::of(own.point_at(l - own.from), other).reach(other, self.radius).intervals(other);
+        let covered =
+            CarrierCoordinates::of(own.point_at(l - own.from), other).reach(other, self.radius).intervals(other);
         // An interval is connected, hence belongs to one region, that of every piece that it meets. But if two laps of
         // the first segment may be covered, the neighbouring part of the interval may belong to the other lap; then
         // each piece has its own part.
@@ -228,7 +234,7 @@ impl<'a, S: Scalar> Pair<'a, S> {
                 return Some(slice);
             }
             let part = slice.common(piece.second);
-            let footprint = Footprint::of(other.point_at(part.middle() - other.from), own);
+            let footprint = CarrierCoordinates::of(other.point_at(part.middle() - other.from), own);
             // With a slack: a part of the second segment that is barely covered may seem uncovered when computed from
             // here.
             let laps = footprint.reach(own, self.radius + self.slack).intervals(own);

@@ -1,11 +1,11 @@
 //! Paths: chains of lines and arcs (the map ρ from travelled length to position, Eq. 1). The heading is continuous,
 //! except at turns in place.
 
-use crate::bits::digest;
-use crate::error::{Invalid, in_range};
-use crate::geometry::{Bounds, Point, Pose};
+use crate::bit_rows::digest;
+use crate::error::{InvalidInput, in_range};
+use crate::geometry::{Aabb, Point, Pose};
 use crate::scalar::{Angle, Scalar, Wide};
-use crate::segment::{Curve, Segment, Turn};
+use crate::segment::{Curve, Segment, TurnSide};
 use heapless::Vec;
 
 /// Largest number of segments of a path: pieces store their indices in 16 bits.
@@ -15,13 +15,13 @@ const MOST_SEGMENTS: usize = u16::MAX as usize;
 /// with the same heading unless the agent turns in place there.
 ///
 /// ```
-/// use pcr_core::{Path, Point, Pose, Radians, Turn};
+/// use pcr_core::{Path, Point, Pose, Radians, TurnSide};
 /// let start = Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) };
 /// let quarter = core::f64::consts::FRAC_PI_2;
-/// let path = Path::<f64, 2>::starting_at(start)?.line(3.0)?.arc(1.0, Turn::Left, quarter)?;
+/// let path = Path::<f64, 2>::starting_at(start)?.line(3.0)?.arc(1.0, TurnSide::Left, quarter)?;
 /// let end = path.as_path().pose_at(3.0 + quarter).position;
 /// assert!((end.x - 4.0).abs() < 1e-15 && (end.y - 1.0).abs() < 1e-15);
-/// # Ok::<(), pcr_core::Invalid>(())
+/// # Ok::<(), pcr_core::InvalidInput>(())
 /// ```
 /// The compiler refuses more segments than a table can number:
 /// ```compile_fail,E0080
@@ -40,7 +40,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`].
-    pub fn starting_at(pose: Pose<S>) -> Result<Self, Invalid> {
+    pub fn starting_at(pose: Pose<S>) -> Result<Self, InvalidInput> {
         // Pieces store indices of segments in 16 bits.
         const { assert!(N <= MOST_SEGMENTS, "a path has at most 65535 segments") };
         Ok(Self { origin: Segment::standing(pose)?, segments: Vec::new() })
@@ -50,7 +50,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     ///
     /// # Errors
     /// As [`Segment::then_line`], and [`Invalid::Full`] if there are `N` segments already.
-    pub fn line(self, length: S) -> Result<Self, Invalid> {
+    pub fn line(self, length: S) -> Result<Self, InvalidInput> {
         let next = self.last().then_line(length)?;
         self.with(next)
     }
@@ -59,7 +59,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     ///
     /// # Errors
     /// As [`Segment::then_arc`], and [`Invalid::Full`] if there are `N` segments already.
-    pub fn arc(self, radius: S, turn: Turn, length: S) -> Result<Self, Invalid> {
+    pub fn arc(self, radius: S, turn: TurnSide, length: S) -> Result<Self, InvalidInput> {
         let next = self.last().then_arc(radius, turn, length)?;
         self.with(next)
     }
@@ -77,11 +77,11 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     /// let right = Path::<f64, 1>::starting_at(start)?.arc_by(2.0, -core::f64::consts::FRAC_PI_2)?;
     /// let end = right.as_path().pose_at(4.0).position;
     /// assert!((end.x - 2.0).abs() < 1e-15 && (end.y + 2.0).abs() < 1e-15);
-    /// # Ok::<(), pcr_core::Invalid>(())
+    /// # Ok::<(), pcr_core::InvalidInput>(())
     /// ```
-    pub fn arc_by(self, radius: S, sweep: S) -> Result<Self, Invalid> {
+    pub fn arc_by(self, radius: S, sweep: S) -> Result<Self, InvalidInput> {
         let sweep = in_range(sweep, "sweep")?;
-        let turn = if sweep < S::ZERO { Turn::Right } else { Turn::Left };
+        let turn = if sweep < S::ZERO { TurnSide::Right } else { TurnSide::Left };
         self.arc(radius, turn, sweep.abs().times(radius).narrow())
     }
 
@@ -89,7 +89,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     ///
     /// # Errors
     /// As [`Segment::turned`].
-    pub fn turn(mut self, by: S::Angle) -> Result<Self, Invalid> {
+    pub fn turn(mut self, by: S::Angle) -> Result<Self, InvalidInput> {
         let last = self.segments.last_mut().unwrap_or(&mut self.origin);
         *last = last.turned(by)?;
         Ok(self)
@@ -105,9 +105,9 @@ impl<S: Scalar, const N: usize> Path<S, N> {
         self.segments.last().unwrap_or(&self.origin)
     }
 
-    fn with(mut self, next: Segment<S>) -> Result<Self, Invalid> {
+    fn with(mut self, next: Segment<S>) -> Result<Self, InvalidInput> {
         if next.length > S::ZERO {
-            self.segments.push(next).map_err(|_| Invalid::Full("segment"))?;
+            self.segments.push(next).map_err(|_| InvalidInput::Full("segment"))?;
         }
         Ok(self)
     }
@@ -125,20 +125,20 @@ impl<'a, S: Scalar> PathRef<'a, S> {
     ///
     /// # Errors
     /// [`Invalid::Disconnected`] if they were not, or if there are no segments; [`Invalid::Full`] above 65535 segments.
-    pub fn new(segments: &'a [Segment<S>]) -> Result<Self, Invalid> {
+    pub fn new(segments: &'a [Segment<S>]) -> Result<Self, InvalidInput> {
         if segments.len() > MOST_SEGMENTS {
-            return Err(Invalid::Full("segment"));
+            return Err(InvalidInput::Full("segment"));
         }
-        let first = segments.first().ok_or(Invalid::Disconnected("path"))?;
+        let first = segments.first().ok_or(InvalidInput::Disconnected("path"))?;
         if first.from != S::ZERO {
-            return Err(Invalid::Disconnected("path"));
+            return Err(InvalidInput::Disconnected("path"));
         }
         for (before, after) in segments.iter().zip(segments.iter().skip(1)) {
             let joined = after.start == before.end
                 && after.from == before.to
                 && after.heading_at(S::ZERO) == before.heading_at(before.length);
             if !joined {
-                return Err(Invalid::Disconnected("segment"));
+                return Err(InvalidInput::Disconnected("segment"));
             }
         }
         Ok(Self { segments })
@@ -173,10 +173,10 @@ impl<'a, S: Scalar> PathRef<'a, S> {
     }
 
     /// Box around the path \[m\].
-    pub fn bounds(self) -> Bounds<S> {
+    pub fn bounds(self) -> Aabb<S> {
         let mut rest = self.segments.iter().map(|segment| segment.bounds);
         let first = rest.next().unwrap_or_default();
-        rest.fold(first, Bounds::hull)
+        rest.fold(first, Aabb::hull)
     }
 
     /// A checksum of all that defines the path: where it begins, and heading, curvature and length of each segment.
@@ -186,8 +186,8 @@ impl<'a, S: Scalar> PathRef<'a, S> {
         self.segments.iter().fold(begin, |sum, segment| {
             let bend = match segment.curve {
                 Curve::Line => S::ZERO,
-                Curve::Arc { radius, turn: Turn::Left } => radius,
-                Curve::Arc { radius, turn: Turn::Right } => -radius,
+                Curve::Arc { radius, turn: TurnSide::Left } => radius,
+                Curve::Arc { radius, turn: TurnSide::Right } => -radius,
             };
             [segment.heading.digest(), segment.length.digest(), bend.digest()].into_iter().fold(sum, digest)
         })

@@ -17,26 +17,26 @@
 //! speeds      speed plans of a fleet                             plan_speeds
 //! ```
 
-mod below;
 mod constraint;
 mod delays;
-mod drive;
 mod lattice;
-mod order;
-mod outcome;
-mod ramps;
+mod limits;
+mod prioritized;
+mod result;
 mod search;
+mod search_node;
+mod shorten_waits;
 mod speed;
+mod speed_limit;
 mod speeds;
-mod station;
-mod tighten;
-mod times;
+mod time_set;
+mod uniform_lattice;
 
 pub use constraint::Constraint;
 pub use delays::plan_delays;
-pub use drive::Drive;
-pub use order::Unsolved;
-pub use outcome::{NoSpeedPlan, SpeedPlan};
+pub use limits::SpeedPlanLimits;
+pub use prioritized::PlanError;
+pub use result::{SpeedPlan, SpeedPlanError};
+pub use search_node::SearchNode;
 pub use speed::{plan_speed, plan_speed_below};
 pub use speeds::plan_speeds;
-pub use station::Station;

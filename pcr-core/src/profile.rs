@@ -4,9 +4,9 @@
 //! the motion, so a delay does not change a profile. Both maps are evaluated from the slow end of a phase, where the
 //! square root of the inverse does not cancel (docs/theory/equations.md, time map).
 
-use crate::error::{self, Invalid, in_range, not_negative, positive};
+use crate::error::{self, InvalidInput, in_range, not_negative, positive};
 use crate::geometry::Interval;
-use crate::scalar::{Ramp, Scalar, Wide};
+use crate::scalar::{AccelerationRamp, Scalar, Wide};
 use heapless::Vec;
 
 /// A phase of a motion at constant acceleration.
@@ -29,7 +29,7 @@ impl<S: Scalar> Phase<S> {
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`] for the duration and either speed. A
     /// final speed that is negative only because of rounding is set to 0.
-    pub fn starting_at(speed: S, duration: S, acceleration: S) -> Result<Self, Invalid> {
+    pub fn starting_at(speed: S, duration: S, acceleration: S) -> Result<Self, InvalidInput> {
         not_negative(speed, "initial speed")?;
         Self::origin(speed).then(duration, acceleration)
     }
@@ -73,7 +73,7 @@ impl<S: Scalar> Phase<S> {
     ///
     /// # Errors
     /// As [`Phase::starting_at`].
-    pub fn then(&self, duration: S, acceleration: S) -> Result<Self, Invalid> {
+    pub fn then(&self, duration: S, acceleration: S) -> Result<Self, InvalidInput> {
         not_negative(duration, "duration")?;
         in_range(acceleration, "acceleration")?;
         let [_, before] = self.speed;
@@ -82,7 +82,7 @@ impl<S: Scalar> Phase<S> {
         if after < S::ZERO {
             // The rounding error of the acceleration is multiplied by the duration.
             if after < -(S::slack(before) + S::slack(acceleration.abs()).times(duration).narrow()) {
-                return Err(Invalid::Negative("speed"));
+                return Err(InvalidInput::Negative("speed"));
             }
             after = S::ZERO;
         }
@@ -103,9 +103,9 @@ impl<S: Scalar> Phase<S> {
     /// let begin = Phase::starting_at(0.0, 0.0, 0.0)?;
     /// let phase = begin.then_to(4.0, 2.0)?;
     /// assert_eq!((phase.speed(), phase.acceleration(), phase.length().hi), ([0.0, 2.0], 0.5, 4.0));
-    /// # Ok::<(), pcr_core::Invalid>(())
+    /// # Ok::<(), pcr_core::InvalidInput>(())
     /// ```
-    pub fn then_to(&self, duration: S, after: S) -> Result<Self, Invalid> {
+    pub fn then_to(&self, duration: S, after: S) -> Result<Self, InvalidInput> {
         positive(duration, "duration")?;
         not_negative(after, "speed")?;
         let [_, before] = self.speed;
@@ -160,11 +160,11 @@ impl<S: Scalar> Phase<S> {
     }
 
     /// The ramp that begins at the start of a phase that speeds up, or at the end of one that slows down.
-    fn ramp(&self) -> Ramp<S> {
+    fn ramp(&self) -> AccelerationRamp<S> {
         let [before, after] = self.speed;
         let (slow, fast) = if self.slows() { (after, before) } else { (before, after) };
         let acceleration = self.acceleration.abs();
-        Ramp { slow, fast, acceleration, duration: self.time.length(), length: self.length.length() }
+        AccelerationRamp { slow, fast, acceleration, duration: self.time.length(), length: self.length.length() }
     }
 
     pub(crate) fn length_at(&self, time: S) -> S {
@@ -183,7 +183,7 @@ impl<S: Scalar> Phase<S> {
 }
 
 /// The acceleration of a change of speed. Its sign tells which end is the slow one, so none is rounded to 0.
-fn acceleration<S: Scalar>(change: S, duration: S) -> Result<S, Invalid> {
+fn acceleration<S: Scalar>(change: S, duration: S) -> Result<S, InvalidInput> {
     let rounded = in_range(change.quotient(duration), "acceleration")?;
     Ok(match rounded == S::ZERO {
         true if change > S::ZERO => S::LEAST,
@@ -213,7 +213,7 @@ pub struct Limits<S> {
 /// assert_eq!(profile.duration(), 7.0); // 2 s to speed up, 3 s of cruise, 2 s to stop
 /// assert_eq!(profile.length_at(3.5), 2.5);
 /// assert_eq!(profile.first_time_at(2.5), 3.5);
-/// # Ok::<(), pcr_core::Invalid>(())
+/// # Ok::<(), pcr_core::InvalidInput>(())
 /// ```
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -227,7 +227,7 @@ impl<S: Scalar> Profile<S, 3> {
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`] (length), [`Invalid::NonPositive`] (limits).
-    pub fn rest_to_rest(length: S, limits: Limits<S>) -> Result<Self, Invalid> {
+    pub fn rest_to_rest(length: S, limits: Limits<S>) -> Result<Self, InvalidInput> {
         let length = error::length(length)?;
         positive(limits.speed, "largest speed")?;
         positive(limits.acceleration, "largest acceleration")?;
@@ -254,7 +254,7 @@ impl<S: Scalar> Profile<S, 3> {
                 };
                 // The length of a phase without duration is added to a neighbour, so that the agent does not jump.
                 if phase.time.lo < phase.time.hi {
-                    phases.push(phase).map_err(|_| Invalid::Full("phase"))?;
+                    phases.push(phase).map_err(|_| InvalidInput::Full("phase"))?;
                     from = lengths[k + 1];
                 }
             }
@@ -271,14 +271,14 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
     ///
     /// # Errors
     /// As [`Phase::starting_at`], and [`Invalid::Full`] for more than `N` pieces.
-    pub fn from_pieces(speed: S, pieces: impl IntoIterator<Item = (S, S)>) -> Result<Self, Invalid> {
+    pub fn from_pieces(speed: S, pieces: impl IntoIterator<Item = (S, S)>) -> Result<Self, InvalidInput> {
         let mut phases: Vec<Phase<S>, N> = Vec::new();
         for (duration, acceleration) in pieces {
             let phase = match phases.last() {
                 None => Phase::starting_at(speed, duration, acceleration)?,
                 Some(last) => last.then(duration, acceleration)?,
             };
-            phases.push(phase).map_err(|_| Invalid::Full("phase"))?;
+            phases.push(phase).map_err(|_| InvalidInput::Full("phase"))?;
         }
         Ok(Self { phases })
     }
@@ -290,7 +290,7 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`] (also for speeds and accelerations), [`Invalid::NonPositive`]
     /// (duration), and [`Invalid::Full`] for more than `N` phases.
-    pub fn stretched(profile: ProfileRef<'_, S>, duration: S) -> Result<Self, Invalid> {
+    pub fn stretched(profile: ProfileRef<'_, S>, duration: S) -> Result<Self, InvalidInput> {
         positive(duration, "duration")?;
         let whole = profile.duration();
         let speed = |speed: S| in_range(speed.portion(whole, duration), "speed");
@@ -307,7 +307,7 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
                     time: Interval::new(last.time.hi, to),
                     ..last.until(time, phase.length.hi, after, acceleration)
                 };
-                phases.push(last).map_err(|_| Invalid::Full("phase"))?;
+                phases.push(last).map_err(|_| InvalidInput::Full("phase"))?;
             }
         }
         if let Some(last) = phases.last_mut() {
@@ -328,10 +328,10 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
     ///     Profile::copied(Profile::rest_to_rest(4.0, limits)?.as_profile())?,
     ///     Profile::from_pieces(0.5, [(8.0, 0.0)])?,
     /// ];
-    /// # Ok::<(), pcr_core::Invalid>(())
+    /// # Ok::<(), pcr_core::InvalidInput>(())
     /// ```
-    pub fn copied(profile: ProfileRef<'_, S>) -> Result<Self, Invalid> {
-        Ok(Self { phases: Vec::from_slice(profile.phases()).map_err(|_| Invalid::Full("phase"))? })
+    pub fn copied(profile: ProfileRef<'_, S>) -> Result<Self, InvalidInput> {
+        Ok(Self { phases: Vec::from_slice(profile.phases()).map_err(|_| InvalidInput::Full("phase"))? })
     }
 
     /// The profile of an agent that stands: it has no phases.
@@ -341,14 +341,14 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
 
     /// Appends `next`, which follows `phase`, and sets `phase` to it. If the last phase has the same acceleration, the
     /// two are merged. A phase without duration adds nothing; its length is added to the phase that follows.
-    pub(crate) fn extend(&mut self, phase: &mut Phase<S>, next: Phase<S>) -> Result<(), Invalid> {
+    pub(crate) fn extend(&mut self, phase: &mut Phase<S>, next: Phase<S>) -> Result<(), InvalidInput> {
         if next.time.length() <= S::ZERO {
             return Ok(());
         }
         *phase = next;
         match self.phases.last_mut().and_then(|last| Some((last.joined(&next)?, last))) {
             Some((joined, last)) => *last = joined,
-            None => self.phases.push(next).map_err(|_| Invalid::Full("phase"))?,
+            None => self.phases.push(next).map_err(|_| InvalidInput::Full("phase"))?,
         }
         Ok(())
     }
@@ -371,11 +371,11 @@ impl<'a, S: Scalar> ProfileRef<'a, S> {
     ///
     /// # Errors
     /// [`Invalid::Disconnected`] if they were not.
-    pub fn new(phases: &'a [Phase<S>]) -> Result<Self, Invalid> {
+    pub fn new(phases: &'a [Phase<S>]) -> Result<Self, InvalidInput> {
         let mut end = (S::ZERO, S::ZERO, phases.first().map_or(S::ZERO, |first| first.speed[0]));
         for phase in phases {
             if (phase.time.lo, phase.length.lo, phase.speed[0]) != end {
-                return Err(Invalid::Disconnected("phase"));
+                return Err(InvalidInput::Disconnected("phase"));
             }
             end = (phase.time.hi, phase.length.hi, phase.speed[1]);
         }

@@ -18,25 +18,25 @@
 //! ```
 
 mod bodies;
-mod bracket;
+mod boundary_search;
 mod broad_phase;
-mod chord;
 mod clearance;
 mod conflict;
 mod contact;
-mod delay;
-mod depart;
+mod departure;
+mod leg_windows;
 mod legs;
+mod relative_motion;
 mod safe;
-mod stretch;
-mod windows;
+mod start_delay;
+mod time_scaling;
 
 pub use broad_phase::BroadPhase;
-pub use clearance::Approach;
-pub use conflict::{Conflict, Conflicts, Met, first_conflict, first_overlap};
+pub use clearance::ClosestApproach;
+pub use conflict::{AgentConflict, Conflict, Conflicts, first_conflict, first_overlap};
 pub use contact::{Contacts, Encounter};
-pub use delay::earliest_start;
-pub use depart::earliest_departure;
+pub use departure::earliest_departure;
 pub(crate) use safe::{covered_by, cut, times};
 pub use safe::{safe_intervals, safe_lengths};
-pub use stretch::least_duration;
+pub use start_delay::earliest_start;
+pub use time_scaling::least_duration;

@@ -7,9 +7,9 @@
 
 extern crate std;
 
-use crate::pair::footprint::Footprint;
-use crate::scalar::{Angle, Ramp, Scalar, Sector, Unit, Wide};
-use crate::segment::{Curve, Segment, Turn};
+use crate::pair::disc_on_segment::CarrierCoordinates;
+use crate::scalar::{AccelerationRamp, Angle, AngleSector, Scalar, Unit, Wide};
+use crate::segment::{Curve, Segment, TurnSide};
 use crate::{Point, Pose};
 use core::ops::{Add, Neg, Sub};
 use std::cell::RefCell;
@@ -19,22 +19,22 @@ use std::{eprintln, format, fs, path::Path};
 
 /// A value, which decides branches, and the index of its name.
 #[derive(Clone, Copy, Debug, Default)]
-struct N(f64, usize);
+struct TracedScalar(f64, usize);
 
 /// Names of numbers and of their exact twins, and the lines so far. The first name is that of 0.
 #[derive(Default)]
-struct Tape {
+struct GappaTape {
     names: Vec<[String; 2]>,
     lines: Vec<String>,
 }
 
-std::thread_local! { static TAPE: RefCell<Tape> = RefCell::default(); }
+std::thread_local! { static TAPE: RefCell<GappaTape> = RefCell::default(); }
 
-fn on_tape<T>(act: impl FnOnce(&mut Tape) -> T) -> T {
+fn on_tape<T>(act: impl FnOnce(&mut GappaTape) -> T) -> T {
     TAPE.with(|tape| act(&mut tape.borrow_mut()))
 }
 
-impl Tape {
+impl GappaTape {
     fn name(&mut self, rounded: &str, exact: &str) -> usize {
         self.names.push([rounded.to_string(), exact.to_string()]);
         self.names.len() - 1
@@ -48,17 +48,17 @@ impl Tape {
 }
 
 /// An exact input with this value.
-fn input(name: &str, value: f64) -> N {
-    N(value, on_tape(|tape| tape.name(name, name)))
+fn input(name: &str, value: f64) -> TracedScalar {
+    TracedScalar(value, on_tape(|tape| tape.name(name, name)))
 }
 
 /// A rounded input.
-fn rounded(name: &str, value: f64) -> N {
-    N(value, on_tape(|tape| tape.name(name, &name.to_uppercase())))
+fn rounded(name: &str, value: f64) -> TracedScalar {
+    TracedScalar(value, on_tape(|tape| tape.name(name, &name.to_uppercase())))
 }
 
 /// An operation: its result, and its text with `{0}` and `{1}` in place of the operands.
-fn operation(value: f64, text: &str, of: &[N], rounds: bool) -> N {
+fn operation(value: f64, text: &str, of: &[TracedScalar], rounds: bool) -> TracedScalar {
     on_tape(|tape| {
         let written = |twin: usize| {
             let numbered = of.iter().enumerate();
@@ -68,7 +68,7 @@ fn operation(value: f64, text: &str, of: &[N], rounds: bool) -> N {
         let place = tape.lines.len() + 1;
         let equals = if rounds { "rnd=" } else { "=" };
         tape.lines.push(format!("t{place} {equals} {lower}; T{place} = {upper};"));
-        N(value, tape.name(&format!("t{place}"), &format!("T{place}")))
+        TracedScalar(value, tape.name(&format!("t{place}"), &format!("T{place}")))
     })
 }
 
@@ -77,12 +77,12 @@ fn left_out() -> ! {
     panic!("not recorded")
 }
 
-impl PartialEq for N {
+impl PartialEq for TracedScalar {
     fn eq(&self, other: &Self) -> bool {
         self.0 == other.0
     }
 }
-impl PartialOrd for N {
+impl PartialOrd for TracedScalar {
     /// Comparisons that decide branches are recorded, because they are part of the proof.
     fn partial_cmp(&self, other: &Self) -> Option<core::cmp::Ordering> {
         let order = self.0.partial_cmp(&other.0);
@@ -93,19 +93,19 @@ impl PartialOrd for N {
         order
     }
 }
-impl Add for N {
+impl Add for TracedScalar {
     type Output = Self;
     fn add(self, rhs: Self) -> Self {
         operation(self.0 + rhs.0, "{0} + {1}", &[self, rhs], true)
     }
 }
-impl Sub for N {
+impl Sub for TracedScalar {
     type Output = Self;
     fn sub(self, rhs: Self) -> Self {
         operation(self.0 - rhs.0, "{0} - {1}", &[self, rhs], true)
     }
 }
-impl Neg for N {
+impl Neg for TracedScalar {
     type Output = Self;
     fn neg(self) -> Self {
         operation(-self.0, "- {0}", &[self], false)
@@ -113,13 +113,13 @@ impl Neg for N {
 }
 
 /// The function bodies of `float.rs`.
-impl Scalar for N {
-    type Wide = N;
-    type Unit = N;
-    type Angle = N;
-    const ZERO: Self = N(0.0, 0);
-    const LIMIT: Self = N(1e12, 0);
-    const LEAST: Self = N(1e-75, 0);
+impl Scalar for TracedScalar {
+    type Wide = TracedScalar;
+    type Unit = TracedScalar;
+    type Angle = TracedScalar;
+    const ZERO: Self = TracedScalar(0.0, 0);
+    const LIMIT: Self = TracedScalar(1e12, 0);
+    const LEAST: Self = TracedScalar(1e-75, 0);
     fn is_finite(self) -> bool {
         true
     }
@@ -132,10 +132,10 @@ impl Scalar for N {
     fn portion(self, _: Self, _: Self) -> Self {
         left_out()
     }
-    fn times(self, rhs: Self) -> N {
+    fn times(self, rhs: Self) -> TracedScalar {
         operation(self.0 * rhs.0, "{0} * {1}", &[self, rhs], true)
     }
-    fn scale(self, by: N) -> Self {
+    fn scale(self, by: TracedScalar) -> Self {
         Scalar::times(self, by)
     }
     fn half(self) -> Self {
@@ -150,26 +150,30 @@ impl Scalar for N {
     fn quotient(self, _: Self) -> Self {
         left_out()
     }
-    fn quotient_unit(self, _: N) -> Option<Self> {
+    fn quotient_unit(self, _: TracedScalar) -> Option<Self> {
         left_out()
     }
-    fn unit_vector(_: Self, _: Self, _: Self) -> [N; 2] {
+    fn unit_vector(_: Self, _: Self, _: Self) -> [TracedScalar; 2] {
         left_out()
     }
-    fn difference(a: Self, b: Self, squares: N) -> Self {
+    fn difference(a: Self, b: Self, squares: TracedScalar) -> Self {
         let sum = a + b;
         operation(squares.0 / sum.0, "{0} / {1}", &[squares, sum], true)
     }
-    fn quadratic_roots(_: Self, _: N, _: N) -> Option<[Self; 2]> {
+    fn quadratic_roots(_: Self, _: TracedScalar, _: TracedScalar) -> Option<[Self; 2]> {
         left_out()
     }
-    fn half_tangent_roots(_: impl Iterator<Item = [N; 4]>, _: Sector<N>, _: impl FnMut(N)) {
+    fn half_tangent_roots(
+        _: impl Iterator<Item = [TracedScalar; 4]>,
+        _: AngleSector<TracedScalar>,
+        _: impl FnMut(TracedScalar),
+    ) {
         left_out()
     }
-    fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self {
+    fn ramp_length(ramp: AccelerationRamp<Self>, elapsed: Self) -> Self {
         Scalar::times(ramp.slow + Scalar::times(Scalar::half(ramp.acceleration), elapsed), elapsed)
     }
-    fn ramp_time(_: Ramp<Self>, _: Self) -> Self {
+    fn ramp_time(_: AccelerationRamp<Self>, _: Self) -> Self {
         left_out()
     }
     // Used by constructors, not by a kernel.
@@ -180,64 +184,64 @@ impl Scalar for N {
         <Self as Scalar>::ZERO
     }
 }
-impl Wide<N> for N {
-    const ZERO: Self = N(0.0, 0);
-    fn sqrt(self) -> N {
+impl Wide<TracedScalar> for TracedScalar {
+    const ZERO: Self = TracedScalar(0.0, 0);
+    fn sqrt(self) -> TracedScalar {
         operation(libm::sqrt(self.0), "sqrt({0})", &[self], true)
     }
-    fn narrow(self) -> N {
+    fn narrow(self) -> TracedScalar {
         self
     }
     fn half(self) -> Self {
         Scalar::half(self)
     }
 }
-impl Unit for N {
-    const ZERO: Self = N(0.0, 0);
-    const ONE: Self = N(1.0, 0);
-    const COARSE: Self = N(0.0, 0);
+impl Unit for TracedScalar {
+    const ZERO: Self = TracedScalar(0.0, 0);
+    const ONE: Self = TracedScalar(1.0, 0);
+    const COARSE: Self = TracedScalar(0.0, 0);
     fn times(self, rhs: Self) -> Self {
         Scalar::times(self, rhs)
     }
 }
-impl Angle<N> for N {
-    const ZERO: Self = N(0.0, 0);
+impl Angle<TracedScalar> for TracedScalar {
+    const ZERO: Self = TracedScalar(0.0, 0);
     fn is_finite(self) -> bool {
         true
     }
     fn digest(self) -> u32 {
         Scalar::digest(self)
     }
-    fn subtended(length: N, radius: N) -> Self {
+    fn subtended(length: TracedScalar, radius: TracedScalar) -> Self {
         operation(length.0 / radius.0, "{0} / {1}", &[length, radius], true)
     }
-    fn half_subtended(length: N, radius: N) -> Self {
+    fn half_subtended(length: TracedScalar, radius: TracedScalar) -> Self {
         Scalar::half(Self::subtended(length, radius))
     }
-    fn sin_cos(self) -> (N, N) {
+    fn sin_cos(self) -> (TracedScalar, TracedScalar) {
         (rounded("s", libm::sin(self.0)), rounded("c", libm::cos(self.0)))
     }
-    fn atan2(y: N, x: N) -> Self {
+    fn atan2(y: TracedScalar, x: TracedScalar) -> Self {
         rounded("angle", libm::atan2(y.0, x.0))
     }
-    fn arc_length(self, radius: N) -> N {
+    fn arc_length(self, radius: TracedScalar) -> TracedScalar {
         Scalar::times(self, radius)
     }
-    fn circumference(radius: N) -> N {
+    fn circumference(radius: TracedScalar) -> TracedScalar {
         rounded("circumference", core::f64::consts::TAU * radius.0)
     }
 }
 
 /// An arc of a few metres whose start, direction and radius are inputs.
-fn arc() -> Segment<N> {
-    on_tape(Tape::clear);
-    let zero = <N as Scalar>::ZERO;
+fn arc() -> Segment<TracedScalar> {
+    on_tape(GappaTape::clear);
+    let zero = <TracedScalar as Scalar>::ZERO;
     let start = Segment::standing(Pose { position: Point::new(zero, zero), heading: zero }).expect("a pose");
-    let mut arc = start.then_arc(input("radius", 3.0), Turn::Left, input("length", 2.0)).expect("an arc");
-    on_tape(Tape::clear);
+    let mut arc = start.then_arc(input("radius", 3.0), TurnSide::Left, input("length", 2.0)).expect("an arc");
+    on_tape(GappaTape::clear);
     arc.start = Point::new(input("sx", 0.25), input("sy", 0.5));
     (arc.direction.cos, arc.direction.sin) = (rounded("c", 0.8), rounded("s", 0.6));
-    arc.curve = Curve::Arc { radius: input("radius", 3.0), turn: Turn::Left };
+    arc.curve = Curve::Arc { radius: input("radius", 3.0), turn: TurnSide::Left };
     arc
 }
 
@@ -273,7 +277,7 @@ fn assert_recorded(name: &str, text: &str) {
 }
 
 /// Index of the line of the tape that computes this number.
-fn place(of: N) -> usize {
+fn place(of: TracedScalar) -> usize {
     on_tape(|tape| tape.names[of.1][0].trim_start_matches('t').parse().expect("a number that was computed"))
 }
 
@@ -281,7 +285,7 @@ fn place(of: N) -> usize {
 fn the_kernels_are_those_that_were_proved() {
     let arc = arc();
     let point = Point::new(input("px", 1.0), input("py", 1.5));
-    let footprint = Footprint::of(point, &arc);
+    let footprint = CarrierCoordinates::of(point, &arc);
     let all = length();
     // The local coordinates end where `y` is computed.
     let from_start = point - arc.start;
@@ -301,23 +305,23 @@ fn the_kernels_are_those_that_were_proved() {
     let distance = on_tape(|tape| tape.lines.iter().position(|line| line.contains("sqrt")).expect("a root")) + 1;
     assert_recorded("reach", &lines(before, roots, &[(offset, "n"), (distance, "d")]));
 
-    on_tape(Tape::clear);
-    let ramp = Ramp {
+    on_tape(GappaTape::clear);
+    let ramp = AccelerationRamp {
         slow: input("v", 1.1),
         fast: input("w", 2.0),
         acceleration: input("a", 0.3),
         duration: input("t", 2.0),
         length: input("l", 3.0),
     };
-    let way = N::ramp_length(ramp, input("e", 1.25));
+    let way = TracedScalar::ramp_length(ramp, input("e", 1.25));
     assert_recorded("ramp", &lines(0, length(), &[]));
 
     // Checks that the bodies of `float.rs` above are still the same: the same operations give the same bits.
-    let floats = Ramp { slow: 1.1, fast: 2.0, acceleration: 0.3, duration: 2.0, length: 3.0 };
+    let floats = AccelerationRamp { slow: 1.1, fast: 2.0, acceleration: 0.3, duration: 2.0, length: 3.0 };
     assert_eq!(way.0.to_bits(), f64::ramp_length(floats, 1.25).to_bits());
     let below: f64 = 3.1 - footprint_y;
     assert_eq!(
         f64::difference(3.1, below, 0.7).to_bits(),
-        N::difference(N(3.1, 0), N(below, 0), N(0.7, 0)).0.to_bits()
+        TracedScalar::difference(TracedScalar(3.1, 0), TracedScalar(below, 0), TracedScalar(0.7, 0)).0.to_bits()
     );
 }

@@ -3,10 +3,10 @@
 use crate::error::is_no_number;
 use crate::geometry::Interval;
 use crate::intervals::union;
-use crate::lap::Share;
+use crate::lap::Branch;
 use crate::motion::Motion;
-use crate::pair::Pair;
-use crate::pieces::{List, Piece};
+use crate::pair::AgentPair;
+use crate::piece_store::{Piece, PieceList};
 use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
 
@@ -18,8 +18,8 @@ use crate::segment::{Curve, Segment};
 /// hides a collision, in any number format. `docs/theory/errors.md` derives the bounds and names the tests.
 #[derive(Clone, Debug)]
 pub struct RegionRef<'a, S: Scalar> {
-    pair: Pair<'a, S>,
-    pieces: List<'a, S>,
+    pair: AgentPair<'a, S>,
+    pieces: PieceList<'a, S>,
     agents: [usize; 2],
     /// Whether the ego is the second agent of the stored pair.
     transposed: bool,
@@ -42,7 +42,7 @@ pub struct PieceRef<'a, S: Scalar> {
     pub other_length: Interval<S>,
     /// The other disc can cover two intervals of a segment at once; this says which of them belongs to the piece. It
     /// refers to the segment of the agent with the lower index. It has no meaning for outlines.
-    pub share: Share,
+    pub share: Branch,
     /// k and n: of the n intervals that the other outline covers at once of the segment of the agent with the lower index, the piece is the
     /// k-th, counted from 0. `None` for two discs.
     pub rank: Option<[u8; 2]>,
@@ -101,7 +101,7 @@ impl<S: Scalar + defmt::Format> defmt::Format for RegionRef<'_, S> {
 }
 
 impl<'a, S: Scalar> RegionRef<'a, S> {
-    pub(crate) fn new(pair: Pair<'a, S>, pieces: List<'a, S>, agents: [usize; 2], transposed: bool) -> Self {
+    pub(crate) fn new(pair: AgentPair<'a, S>, pieces: PieceList<'a, S>, agents: [usize; 2], transposed: bool) -> Self {
         Self { pair, pieces, agents, transposed }
     }
 
@@ -206,7 +206,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
             let first = pair.first.path().segments().get(indices[0])?;
             let second = pair.second.path().segments().get(indices[1])?;
             let (share, rank) =
-                if pair.has_outline() { (Share::Only, Some(piece.rank())) } else { (piece.share(), None) };
+                if pair.has_outline() { (Branch::Only, Some(piece.rank())) } else { (piece.share(), None) };
             Some(if transposed {
                 let segments = [indices[1], indices[0]];
                 let (length, other_length) = (piece.second, piece.first);
@@ -243,20 +243,20 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
     }
 
     /// The intervals of all pieces at a length of the other's path: unordered, and overlapping where pieces overlap.
-    fn intervals(&self, at: S) -> Slices<'a, S> {
+    fn intervals(&self, at: S) -> CrossSections<'a, S> {
         let Self { pair, ref pieces, transposed, .. } = *self;
         let range = self.length();
         // For NaN the whole range of the region is returned.
         let (rest, open) = (is_no_number(at).then_some(range), None);
-        Slices { pair, pieces: pieces.clone(), transposed, at, range, rest, open, outlines: pair.has_outline() }
+        CrossSections { pair, pieces: pieces.clone(), transposed, at, range, rest, open, outlines: pair.has_outline() }
     }
 }
 
 /// Iterator of [`RegionRef::intervals`].
 #[derive(Clone, Debug)]
-struct Slices<'a, S: Scalar> {
-    pair: Pair<'a, S>,
-    pieces: List<'a, S>,
+struct CrossSections<'a, S: Scalar> {
+    pair: AgentPair<'a, S>,
+    pieces: PieceList<'a, S>,
     transposed: bool,
     at: S,
     /// Range of lengths of the region.
@@ -268,7 +268,7 @@ struct Slices<'a, S: Scalar> {
     outlines: bool,
 }
 
-impl<S: Scalar> Iterator for Slices<'_, S> {
+impl<S: Scalar> Iterator for CrossSections<'_, S> {
     type Item = Interval<S>;
 
     // Not inlined: iterator adaptors would copy this large function many times.
@@ -312,5 +312,5 @@ impl<S: Scalar> Iterator for Slices<'_, S> {
 /// distance that an agent would go at its top speed during its whole motion, in fixed point on the number of arcs. It
 /// does not depend on the number of lines or phases, or on start times.
 pub fn excess<S: Scalar>(first: &Motion<'_, S>, second: &Motion<'_, S>) -> S {
-    Pair::new(first, second).excess()
+    AgentPair::new(first, second).excess()
 }

@@ -148,7 +148,7 @@ pub trait Scalar:
     /// angles are in `[-π, π]`.
     fn half_tangent_roots(
         equations: impl Iterator<Item = [Self::Wide; 4]>,
-        sector: Sector<Self::Unit>,
+        sector: AngleSector<Self::Unit>,
         found: impl FnMut(Self::Angle),
     );
     /// The vector from the start of an arc to its point after twice the angle `half`: `2ϱ sin(h) e(ϑ ± h)`. `direction`
@@ -162,17 +162,17 @@ pub trait Scalar:
         [Self::combine(along, cos, across, -sin), Self::combine(along, sin, across, cos)]
     }
     /// Length travelled in the time `elapsed` since the slow end of a ramp.
-    fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self;
+    fn ramp_length(ramp: AccelerationRamp<Self>, elapsed: Self) -> Self;
     /// Time since the slow end of a ramp after which `length` is travelled: the inverse of [`Scalar::ramp_length`].
-    fn ramp_time(ramp: Ramp<Self>, length: Self) -> Self;
+    fn ramp_time(ramp: AccelerationRamp<Self>, length: Self) -> Self;
     /// Largest distance \[m\] of the map from time to length on a ramp from a line, over a part of the ramp that takes `duration`: h²/8 times
     /// its second derivative. It is that of the map as it is computed; fixed point rounds it to nearest.
-    fn ramp_bulge(ramp: Ramp<Self>, duration: Self) -> Self {
+    fn ramp_bulge(ramp: AccelerationRamp<Self>, duration: Self) -> Self {
         let gain = ramp.acceleration.times(duration).narrow();
         gain.times(duration).narrow().half().half().half()
     }
     /// Whether two ramps have the same second derivative, so that lengths on them differ by a linear function of the time.
-    fn ramps_alike(one: Ramp<Self>, other: Ramp<Self>) -> bool {
+    fn ramps_alike(one: AccelerationRamp<Self>, other: AccelerationRamp<Self>) -> bool {
         one.acceleration == other.acceleration
     }
     /// Bound on the rounding error of every distance that the kernels compare with a radius, in a configuration of the
@@ -207,7 +207,7 @@ pub trait Scalar:
 /// instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Ramp<S> {
+pub struct AccelerationRamp<S> {
     /// Speed at the slow end \[m/s\].
     pub slow: S,
     /// Speed at the fast end \[m/s\].
@@ -225,7 +225,7 @@ pub struct Ramp<S> {
 /// arctangent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Sector<U> {
+pub struct AngleSector<U> {
     /// Cosine and sine of the angle that is the origin.
     pub from: [U; 2],
     /// Cosine and sine of the middle of the range.
@@ -234,7 +234,7 @@ pub struct Sector<U> {
     pub least: U,
 }
 
-impl<U: Unit> Sector<U> {
+impl<U: Unit> AngleSector<U> {
     /// The range of all angles.
     pub fn all(from: [U; 2]) -> Self {
         Self { from, middle: [U::ONE, U::ZERO], least: -U::ONE - U::COARSE }

@@ -9,20 +9,20 @@
 //!
 //! which keeps its relative accuracy for every radius, also for almost straight arcs.
 
-mod boxes;
-mod near;
+mod aabb;
+mod proximity;
 
-pub(crate) use near::{ROW, in_box};
+pub(crate) use proximity::{ROW, in_box};
 
-use crate::error::{self, Invalid, in_range};
-use crate::geometry::{Bounds, Direction, Point, Pose, Vector};
-use crate::scalar::{Angle, Scalar, Sector, Unit};
+use crate::error::{self, InvalidInput, in_range};
+use crate::geometry::{Aabb, Direction, Point, Pose, Vector};
+use crate::scalar::{Angle, AngleSector, Scalar, Unit};
 
 /// Side to which an arc bends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Turn {
+pub enum TurnSide {
     /// Counter-clockwise.
     Left,
     /// Clockwise.
@@ -41,7 +41,7 @@ pub enum Curve<S> {
         /// Radius of curvature \[m\], positive.
         radius: S,
         /// Side to which it bends.
-        turn: Turn,
+        turn: TurnSide,
     },
 }
 
@@ -63,8 +63,8 @@ pub struct Segment<S: Scalar> {
     /// Lengths of the path at the start and at the end of this segment \[m\].
     pub(crate) from: S,
     pub(crate) to: S,
-    rest: Rest<S>,
-    pub(crate) bounds: Bounds<S>,
+    rest: SegmentRounding<S>,
+    pub(crate) bounds: Aabb<S>,
     /// The smallest box along the chord: direction of the chord, middle of the box, and its half extents along and
     /// across \[m\].
     axis: Direction<S>,
@@ -76,13 +76,13 @@ pub struct Segment<S: Scalar> {
 /// a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-struct Rest<S: Scalar> {
+struct SegmentRounding<S: Scalar> {
     position: Vector<S>,
     heading: S::Angle,
     length: S,
 }
 
-impl<S: Scalar> Rest<S> {
+impl<S: Scalar> SegmentRounding<S> {
     const NOTHING: Self =
         Self { position: Vector { x: S::ZERO, y: S::ZERO }, heading: S::Angle::ZERO, length: S::ZERO };
 }
@@ -93,11 +93,11 @@ impl<S: Scalar> Segment<S> {
     /// # Errors
     /// [`Invalid::NonFinite`]; [`Invalid::OutOfRange`], also for a heading of so many turns that its direction is
     /// inaccurate: beyond 1024 rad in `f32`, 2²⁴ rad in `f64`.
-    pub fn standing(pose: Pose<S>) -> Result<Self, Invalid> {
+    pub fn standing(pose: Pose<S>) -> Result<Self, InvalidInput> {
         in_range(pose.position.x, "x")?;
         in_range(pose.position.y, "y")?;
         if !pose.heading.is_finite() {
-            return Err(Invalid::NonFinite("heading"));
+            return Err(InvalidInput::NonFinite("heading"));
         }
         heading_in_range::<S>(pose.heading)?;
         Ok(Self {
@@ -112,8 +112,8 @@ impl<S: Scalar> Segment<S> {
             half_turn: Direction::X,
             from: S::ZERO,
             to: S::ZERO,
-            rest: Rest::NOTHING,
-            bounds: Bounds::around(pose.position, pose.position),
+            rest: SegmentRounding::NOTHING,
+            bounds: Aabb::around(pose.position, pose.position),
             axis: Direction::X,
             middle: pose.position,
             half: [S::ZERO; 2],
@@ -125,7 +125,7 @@ impl<S: Scalar> Segment<S> {
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::Negative`], [`Invalid::OutOfRange`] (also for the end point and the
     /// length of the path).
-    pub fn then_line(&self, length: S) -> Result<Self, Invalid> {
+    pub fn then_line(&self, length: S) -> Result<Self, InvalidInput> {
         let length = error::length(length)?;
         let mut line = self.then(Curve::Line, S::ZERO, length);
         line.lay();
@@ -138,22 +138,22 @@ impl<S: Scalar> Segment<S> {
     /// As [`Segment::then_line`]; [`Invalid::OutOfRange`] also for the diameter, the box of the arc (from half a turn
     /// on that of its circle) and the heading at its end, as in [`Segment::standing`]; [`Invalid::NonPositive`] and
     /// [`Invalid::TooSmall`] for the radius; [`Invalid::SweepOverOneTurn`].
-    pub fn then_arc(&self, radius: S, turn: Turn, length: S) -> Result<Self, Invalid> {
+    pub fn then_arc(&self, radius: S, turn: TurnSide, length: S) -> Result<Self, InvalidInput> {
         error::radius(radius)?;
         in_range(radius.double(), "diameter of the arc")?;
         let length = error::length(length)?;
         let circumference = S::Angle::circumference(radius);
         // The length of a full turn may be a product `sweep * radius` with a rounding error.
         if length > circumference + S::slack(circumference) {
-            return Err(Invalid::SweepOverOneTurn);
+            return Err(InvalidInput::SweepOverOneTurn);
         }
         let length = length.min(circumference);
         let sweep = S::Angle::subtended(length, radius);
         let mut arc = self.then(Curve::Arc { radius, turn }, circumference, length);
         let rest = sweep.subtended_rest(length, radius);
         let (sweep, rest) = match turn {
-            Turn::Left => (sweep, rest),
-            Turn::Right => (-sweep, -rest),
+            TurnSide::Left => (sweep, rest),
+            TurnSide::Right => (-sweep, -rest),
         };
         let (heading, rounding) = arc.heading.sum(sweep);
         (arc.heading_at_end, arc.rest.heading) = heading.sum(rounding + (rest + arc.rest.heading));
@@ -166,9 +166,9 @@ impl<S: Scalar> Segment<S> {
     ///
     /// # Errors
     /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`] for the heading after the turn, as in [`Segment::standing`].
-    pub fn turned(mut self, by: S::Angle) -> Result<Self, Invalid> {
+    pub fn turned(mut self, by: S::Angle) -> Result<Self, InvalidInput> {
         if !by.is_finite() {
-            return Err(Invalid::NonFinite("turn"));
+            return Err(InvalidInput::NonFinite("turn"));
         }
         let (heading, rounding) = self.heading_at_end.sum(by);
         (self.heading_at_end, self.rest.heading) = heading.sum(rounding + self.rest.heading);
@@ -199,8 +199,8 @@ impl<S: Scalar> Segment<S> {
             half_turn: Direction::X,
             from: self.to,
             to,
-            rest: Rest { length: rest, ..self.rest },
-            bounds: Bounds::default(),
+            rest: SegmentRounding { length: rest, ..self.rest },
+            bounds: Aabb::default(),
             axis: direction,
             middle: self.end,
             half: [S::ZERO; 2],
@@ -219,7 +219,7 @@ impl<S: Scalar> Segment<S> {
             length,
             from: S::ZERO,
             to: length,
-            rest: Rest::NOTHING,
+            rest: SegmentRounding::NOTHING,
             ..*self
         };
         if let Curve::Arc { radius, .. } = self.curve {
@@ -237,7 +237,7 @@ impl<S: Scalar> Segment<S> {
         self.advance();
         match self.curve {
             Curve::Line => {
-                self.bounds = Bounds::around(self.start, self.end);
+                self.bounds = Aabb::around(self.start, self.end);
                 self.middle = self.start + self.axis.vector(self.length.half(), S::ZERO);
                 self.half = [self.length.half(), S::ZERO];
             }
@@ -261,7 +261,7 @@ impl<S: Scalar> Segment<S> {
         (self.end.y, self.rest.position.y) = self.start.y.advance(rest.y, length, self.axis.sin);
     }
 
-    fn checked(self) -> Result<Self, Invalid> {
+    fn checked(self) -> Result<Self, InvalidInput> {
         // The whole arc is checked, not only its end, because an arc may leave the range and come back.
         in_range(self.bounds.x.lo.min(-self.bounds.x.hi), "x")?;
         in_range(self.bounds.y.lo.min(-self.bounds.y.hi), "y")?;
@@ -286,7 +286,7 @@ impl<S: Scalar> Segment<S> {
     }
 
     /// Box around the segment \[m\].
-    pub fn bounds(&self) -> Bounds<S> {
+    pub fn bounds(&self) -> Aabb<S> {
         self.bounds
     }
 
@@ -311,8 +311,8 @@ impl<S: Scalar> Segment<S> {
     /// The same without the turn at the end.
     fn heading_before_turn(&self, u: S) -> S::Angle {
         match self.curve {
-            Curve::Arc { radius, turn: Turn::Left } => self.heading + S::Angle::subtended(u, radius),
-            Curve::Arc { radius, turn: Turn::Right } => self.heading - S::Angle::subtended(u, radius),
+            Curve::Arc { radius, turn: TurnSide::Left } => self.heading + S::Angle::subtended(u, radius),
+            Curve::Arc { radius, turn: TurnSide::Right } => self.heading - S::Angle::subtended(u, radius),
             Curve::Line => self.heading,
         }
     }
@@ -333,7 +333,7 @@ impl<S: Scalar> Segment<S> {
 
     /// Whether the segment bends to the right. Coordinates along it are then mirrored, so that all arcs turn left.
     pub(crate) fn mirrored(&self) -> bool {
-        matches!(self.curve, Curve::Arc { turn: Turn::Right, .. })
+        matches!(self.curve, Curve::Arc { turn: TurnSide::Right, .. })
     }
 
     /// Angle from the start to the end of an arc, as a direction; counted to the left.
@@ -342,9 +342,9 @@ impl<S: Scalar> Segment<S> {
     }
 
     /// The angles at which an arc lies, seen from its centre and counted from the (mirrored) direction `from`.
-    pub(crate) fn sector(&self, from: Direction<S>) -> Sector<S::Unit> {
+    pub(crate) fn sector(&self, from: Direction<S>) -> AngleSector<S::Unit> {
         let least = self.half_turn.cos - S::Unit::COARSE;
-        Sector { from: [from.cos, from.sin], middle: [self.half_turn.cos, self.half_turn.sin], least }
+        AngleSector { from: [from.cos, from.sin], middle: [self.half_turn.cos, self.half_turn.sin], least }
     }
 
     /// Vector from the start to the point after `u` metres.
@@ -358,8 +358,8 @@ impl<S: Scalar> Segment<S> {
     }
 }
 
-fn heading_in_range<S: Scalar>(heading: S::Angle) -> Result<(), Invalid> {
-    if heading.is_in_range() { Ok(()) } else { Err(Invalid::OutOfRange("heading")) }
+fn heading_in_range<S: Scalar>(heading: S::Angle) -> Result<(), InvalidInput> {
+    if heading.is_in_range() { Ok(()) } else { Err(InvalidInput::OutOfRange("heading")) }
 }
 
 #[cfg(all(test, feature = "libm"))]
@@ -374,7 +374,7 @@ mod tests {
 
     #[test]
     fn quarter_circles_end_where_they_should() {
-        for (turn, y, heading) in [(Turn::Left, 2.0, FRAC_PI_2), (Turn::Right, -2.0, -FRAC_PI_2)] {
+        for (turn, y, heading) in [(TurnSide::Left, 2.0, FRAC_PI_2), (TurnSide::Right, -2.0, -FRAC_PI_2)] {
             let arc = origin(0.0).then_arc(2.0, turn, PI).unwrap();
             assert!((arc.end.x - 2.0).abs() < 1e-15 && (arc.end.y - y).abs() < 1e-15);
             assert_eq!(arc.heading_at(PI), Radians(heading));
@@ -390,7 +390,7 @@ mod tests {
         let next = turned.then_line(3.0).unwrap();
         assert_eq!((next.start, next.from), (line.end, 2.0));
         assert!((next.end.x - 2.0).abs() < 1e-15 && (next.end.y - 3.0).abs() < 1e-15);
-        assert_eq!(line.turned(Radians(f64::NAN)), Err(Invalid::NonFinite("turn")));
+        assert_eq!(line.turned(Radians(f64::NAN)), Err(InvalidInput::NonFinite("turn")));
     }
 
     #[test]
@@ -398,26 +398,26 @@ mod tests {
         let at =
             |heading: f32| Segment::standing(Pose { position: Point::new(0.0_f32, 0.0), heading: Radians(heading) });
         assert!(at(-1_024.0).is_ok());
-        assert_eq!(at(1_024.1), Err(Invalid::OutOfRange("heading")));
+        assert_eq!(at(1_024.1), Err(InvalidInput::OutOfRange("heading")));
         let last = at(1_023.0).unwrap();
-        assert_eq!(last.turned(Radians(2.0)), Err(Invalid::OutOfRange("heading")));
+        assert_eq!(last.turned(Radians(2.0)), Err(InvalidInput::OutOfRange("heading")));
         assert!(last.turned(Radians(-2.0)).is_ok());
-        assert_eq!(last.then_arc(1.0, Turn::Left, 2.0), Err(Invalid::OutOfRange("heading")));
-        assert!(last.then_arc(1.0, Turn::Right, 2.0).is_ok());
+        assert_eq!(last.then_arc(1.0, TurnSide::Left, 2.0), Err(InvalidInput::OutOfRange("heading")));
+        assert!(last.then_arc(1.0, TurnSide::Right, 2.0).is_ok());
         let pose = Pose { position: Point::new(0.0, 0.0), heading: Radians(1.7e7) };
-        assert_eq!(Segment::<f64>::standing(pose), Err(Invalid::OutOfRange("heading")));
+        assert_eq!(Segment::<f64>::standing(pose), Err(InvalidInput::OutOfRange("heading")));
     }
 
     #[test]
     fn what_does_not_fit_is_refused_by_name() {
         let start = origin(0.0);
-        assert_eq!(start.then_line(-1.0), Err(Invalid::Negative("length")));
-        assert_eq!(start.then_line(f64::NAN), Err(Invalid::NonFinite("length")));
-        assert_eq!(start.then_line(2e12), Err(Invalid::OutOfRange("length")));
-        assert_eq!(start.then_arc(0.0, Turn::Left, 1.0), Err(Invalid::NonPositive("radius")));
-        assert_eq!(start.then_arc(1.0, Turn::Left, TAU + 1e-9), Err(Invalid::SweepOverOneTurn));
-        assert_eq!(start.then_arc(1.0, Turn::Left, TAU).map(|arc| arc.length), Ok(TAU));
+        assert_eq!(start.then_line(-1.0), Err(InvalidInput::Negative("length")));
+        assert_eq!(start.then_line(f64::NAN), Err(InvalidInput::NonFinite("length")));
+        assert_eq!(start.then_line(2e12), Err(InvalidInput::OutOfRange("length")));
+        assert_eq!(start.then_arc(0.0, TurnSide::Left, 1.0), Err(InvalidInput::NonPositive("radius")));
+        assert_eq!(start.then_arc(1.0, TurnSide::Left, TAU + 1e-9), Err(InvalidInput::SweepOverOneTurn));
+        assert_eq!(start.then_arc(1.0, TurnSide::Left, TAU).map(|arc| arc.length), Ok(TAU));
         let far = start.then_line(9e11).unwrap();
-        assert_eq!(far.then_line(9e11), Err(Invalid::OutOfRange("x")));
+        assert_eq!(far.then_line(9e11), Err(InvalidInput::OutOfRange("x")));
     }
 }

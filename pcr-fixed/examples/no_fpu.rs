@@ -5,7 +5,9 @@
 //! cargo run -p pcr-fixed --example no_fpu
 //! ```
 
-use pcr_core::{Ecm, Invalid, Limits, Motion, Path, Piece, Point, Pose, Profile, Region, Turn, earliest_start};
+use pcr_core::{
+    Ecm, EcmEntry, InvalidInput, Limits, Motion, Path, Piece, Point, Pose, Profile, TurnSide, earliest_start,
+};
 use pcr_fixed::{Q16, Turns};
 
 /// The decision of the controller; it outputs nothing else.
@@ -24,12 +26,12 @@ fn q(metres: f64) -> Q16 {
     Q16::from_f64(metres).expect("within 32768 m")
 }
 
-fn path(x: f64, y: f64, heading: Turns) -> Result<Path<Q16, 2>, Invalid> {
+fn path(x: f64, y: f64, heading: Turns) -> Result<Path<Q16, 2>, InvalidInput> {
     let start = Pose { position: Point::new(q(x), q(y)), heading };
-    Path::starting_at(start)?.line(q(3.0))?.arc(q(2.0), Turn::Right, q(2.5))
+    Path::starting_at(start)?.line(q(3.0))?.arc(q(2.0), TurnSide::Right, q(2.5))
 }
 
-fn decide(table: &mut Ecm<Q16, [Region; 8], [Piece<Q16>; 16]>) -> Result<Decision, Invalid> {
+fn decide(table: &mut Ecm<Q16, [EcmEntry; 8], [Piece<Q16>; 16]>) -> Result<Decision, InvalidInput> {
     let quarter = Turns::from_bits(1 << 30);
     let paths = [path(-4.0, 0.0, Turns::from_bits(0))?, path(0.0, -4.0, quarter)?];
     let limits = Limits { speed: q(1.0), acceleration: q(0.5) };
@@ -48,7 +50,7 @@ fn decide(table: &mut Ecm<Q16, [Region; 8], [Piece<Q16>; 16]>) -> Result<Decisio
 
 fn main() {
     // On a controller this would be a `static`, to keep it off the stack.
-    let mut table = Ecm::new([Region::EMPTY; 8], [Piece::EMPTY; 16]);
+    let mut table = Ecm::new([EcmEntry::EMPTY; 8], [Piece::EMPTY; 16]);
     match decide(&mut table).unwrap_or(Decision::Fault) {
         Decision::Start(delay) => {
             println!("set off {:.3} s later ({} bytes of table)", delay.to_f64(), size_of_val(&table))

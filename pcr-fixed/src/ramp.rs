@@ -6,7 +6,7 @@
 
 use crate::q::Q;
 use crate::scaled::Scaled;
-use pcr_core::scalar::Ramp;
+use pcr_core::scalar::AccelerationRamp;
 
 fn scaled<const F: u32>(number: Q<F>) -> Scaled {
     Scaled::new(i64::from(number.to_bits()), -(F as i32))
@@ -18,24 +18,24 @@ fn rounded<const F: u32>(number: Scaled) -> Q<F> {
 }
 
 /// Mean speed of the ramp minus the speed at its slow end.
-fn gain<const F: u32>(ramp: Ramp<Q<F>>) -> Scaled {
+fn gain<const F: u32>(ramp: AccelerationRamp<Q<F>>) -> Scaled {
     scaled(ramp.length).over(scaled(ramp.duration)).plus(scaled(ramp.slow).minus())
 }
 
 /// L - v T, exact, in squares of the last digit: how far the ramp is from a uniform motion at its slow end. It has 63 bits, as both
 /// products have 62 at most; no check of that is left in the code.
-fn rest<const F: u32>(ramp: Ramp<Q<F>>) -> i64 {
+fn rest<const F: u32>(ramp: AccelerationRamp<Q<F>>) -> i64 {
     let [length, slow, duration] = [ramp.length, ramp.slow, ramp.duration].map(|number| i64::from(number.to_bits()));
     (length << F).wrapping_sub(slow.wrapping_mul(duration))
 }
 
 /// Whether the map is off a line by half a last digit at most: a uniform motion, but for rounding.
-fn is_uniform<const F: u32>(ramp: Ramp<Q<F>>) -> bool {
+fn is_uniform<const F: u32>(ramp: AccelerationRamp<Q<F>>) -> bool {
     rest(ramp).unsigned_abs() <= 2 << F
 }
 
 /// `|L - v T| (h/T)² / 4`, to nearest. Cost: a division.
-pub(crate) fn bulge<const F: u32>(ramp: Ramp<Q<F>>, duration: Q<F>) -> Q<F> {
+pub(crate) fn bulge<const F: u32>(ramp: AccelerationRamp<Q<F>>, duration: Q<F>) -> Q<F> {
     if is_uniform(ramp) {
         return Q::from_bits(0);
     }
@@ -45,13 +45,13 @@ pub(crate) fn bulge<const F: u32>(ramp: Ramp<Q<F>>, duration: Q<F>) -> Q<F> {
 }
 
 /// Whether lengths on both differ by a linear function of the time: on the same ramp, or on two that are uniform.
-pub(crate) fn alike<const F: u32>(one: Ramp<Q<F>>, other: Ramp<Q<F>>) -> bool {
-    let ends = |ramp: Ramp<Q<F>>| (ramp.slow, ramp.duration, ramp.length);
+pub(crate) fn alike<const F: u32>(one: AccelerationRamp<Q<F>>, other: AccelerationRamp<Q<F>>) -> bool {
+    let ends = |ramp: AccelerationRamp<Q<F>>| (ramp.slow, ramp.duration, ramp.length);
     ends(one) == ends(other) || is_uniform(one) && is_uniform(other)
 }
 
 /// `(v + (L/T - v) t/T) t`. Cost: two divisions.
-pub(crate) fn length<const F: u32>(ramp: Ramp<Q<F>>, elapsed: Q<F>) -> Q<F> {
+pub(crate) fn length<const F: u32>(ramp: AccelerationRamp<Q<F>>, elapsed: Q<F>) -> Q<F> {
     if elapsed.to_bits() <= 0 {
         return Q::from_bits(0);
     }
@@ -61,7 +61,7 @@ pub(crate) fn length<const F: u32>(ramp: Ramp<Q<F>>, elapsed: Q<F>) -> Q<F> {
 }
 
 /// `2 s / (v + √(v² + 4 (L/T - v) s/T))` for a length `s` of `L`. Cost: a root and three divisions.
-pub(crate) fn time<const F: u32>(ramp: Ramp<Q<F>>, length: Q<F>) -> Q<F> {
+pub(crate) fn time<const F: u32>(ramp: AccelerationRamp<Q<F>>, length: Q<F>) -> Q<F> {
     if length.to_bits() <= 0 {
         return Q::from_bits(0);
     }
@@ -80,10 +80,10 @@ mod tests {
         Q16::from_f64(metres).expect("a number")
     }
 
-    fn ramp(slow: f64, fast: f64, duration: f64) -> Ramp<Q16> {
+    fn ramp(slow: f64, fast: f64, duration: f64) -> AccelerationRamp<Q16> {
         // The acceleration is not used.
         let length = q((slow + fast) / 2.0 * duration);
-        Ramp { slow: q(slow), fast: q(fast), acceleration: q(0.0), duration: q(duration), length }
+        AccelerationRamp { slow: q(slow), fast: q(fast), acceleration: q(0.0), duration: q(duration), length }
     }
 
     #[test]
@@ -137,9 +137,9 @@ mod tests {
     #[test]
     fn a_ramp_that_falls_by_rounding_has_an_end() {
         let digit = Q16::LAST_DIGIT.to_f64();
-        let falling = Ramp { length: q(1.0 - digit), ..ramp(1.0, 1.0, 1.0) };
+        let falling = AccelerationRamp { length: q(1.0 - digit), ..ramp(1.0, 1.0, 1.0) };
         assert_eq!(time(falling, falling.length), falling.duration);
-        let stopping = Ramp { length: Q16::LAST_DIGIT, ..ramp(1.0, 1.0, 1.0) };
+        let stopping = AccelerationRamp { length: Q16::LAST_DIGIT, ..ramp(1.0, 1.0, 1.0) };
         // v² + 4 (L/T - v) s/T is below 0 and counts as 0; the result is that of a constant speed of v/2.
         assert_eq!(time(stopping, q(0.5)), q(1.0));
     }

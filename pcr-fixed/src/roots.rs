@@ -4,7 +4,7 @@ use crate::scaled::Scaled;
 use crate::sine::Sine;
 use crate::trigonometry::atan2;
 use crate::turns::Turns;
-use pcr_core::scalar::Sector;
+use pcr_core::scalar::AngleSector;
 
 /// The angles `φ + 2 atan τ` with `a τ² + 2 b τ + g = 0`, for equations `[a, b, g, doubt]`; φ is the angle from which
 /// the sector counts. Roots that would be real with an error of up to `doubt` in `a` and `g` are included.
@@ -15,7 +15,7 @@ use pcr_core::scalar::Sector;
 /// division for each angle.
 pub(crate) fn half_tangent(
     equations: impl Iterator<Item = [i64; 4]>,
-    sector: Sector<Sine>,
+    sector: AngleSector<Sine>,
     mut found: impl FnMut(Turns),
 ) {
     let mut from = None;
@@ -51,7 +51,7 @@ fn half_tangents(equation: [i64; 4]) -> [Option<[Scaled; 2]>; 2] {
 
 /// Whether the angle may lie in the sector. Uses so few bits that no product has more than 32; cosines are off by less
 /// than 2⁻⁹.
-fn may_lie_in(sector: Sector<Sine>, n: i32, m: i32) -> bool {
+fn may_lie_in(sector: AngleSector<Sine>, n: i32, m: i32) -> bool {
     let [n, m] = [n, m].map(|term| term >> 16);
     let unit = |sine: Sine| sine.to_bits() >> (Sine::FRACTION_BITS - 14);
     // The cosine and sine of 2 atan(n / m), and their common denominator.
@@ -76,7 +76,7 @@ mod tests {
         for (a, b, g) in [(unit, unit, unit + off), (unit + off, -unit, unit), (-unit - off, unit, -unit)] {
             let roots = |doubt| {
                 let mut roots = Vec::new();
-                half_tangent([[a, b, g, doubt]].into_iter(), Sector::all([Sine::ONE, Sine::ZERO]), |root| {
+                half_tangent([[a, b, g, doubt]].into_iter(), AngleSector::all([Sine::ONE, Sine::ZERO]), |root| {
                     roots.push(root)
                 });
                 roots
@@ -96,7 +96,9 @@ mod tests {
         let one = f64::from(1 << 30);
         let roots = |equation: [f64; 4], from: [Sine; 2]| {
             let mut roots = Vec::new();
-            half_tangent([equation.map(|x| (x * one) as i64)].into_iter(), Sector::all(from), |root| roots.push(root));
+            half_tangent([equation.map(|x| (x * one) as i64)].into_iter(), AngleSector::all(from), |root| {
+                roots.push(root)
+            });
             roots
         };
         let (east, north) = ([Sine::ONE, Sine::ZERO], [Sine::ZERO, Sine::ONE]);
@@ -126,14 +128,14 @@ mod tests {
     fn a_denominator_is_positive_so_that_squares_fit() {
         let (a, b) = ((1 << 31) - 2, 1 - (1 << 30));
         let mut roots = Vec::new();
-        half_tangent([[a, b, 0, 0]].into_iter(), Sector::all([Sine::ONE, Sine::ZERO]), |root| roots.push(root));
+        half_tangent([[a, b, 0, 0]].into_iter(), AngleSector::all([Sine::ONE, Sine::ZERO]), |root| roots.push(root));
         assert_eq!(roots, [Turns::QUARTER, Turns::ZERO]);
     }
 
     #[test]
     fn the_ends_of_a_sector_are_in_it() {
         let east = [Sine::ONE, Sine::ZERO];
-        let half_circle = Sector { least: Sine::ZERO, ..Sector::all(east) };
+        let half_circle = AngleSector { least: Sine::ZERO, ..AngleSector::all(east) };
         assert!(may_lie_in(half_circle, 1 << 30, 1 << 30) && may_lie_in(half_circle, -1 << 30, 1 << 30));
         assert!(!may_lie_in(half_circle, (1 << 30) + (1 << 22), 1 << 30));
     }
@@ -149,7 +151,7 @@ mod tests {
             let [n, m] = [n, m].map(|x| (x * 2_147_483_000.0) as i32);
             for middle in (0..360).step_by(7).map(|degree| f64::from(degree).to_radians()) {
                 for half in (0..180).step_by(5).map(|degree| f64::from(degree).to_radians()) {
-                    let sector = Sector {
+                    let sector = AngleSector {
                         from: [sine(from.cos()), sine(from.sin())],
                         middle: [sine((from + middle).cos()), sine((from + middle).sin())],
                         least: sine(half.cos()) - Sine::COARSE,

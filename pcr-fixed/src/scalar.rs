@@ -7,7 +7,7 @@ use crate::sine::Sine;
 use crate::turns::Turns;
 use crate::{ramp, roots};
 use pcr_core::Scalar;
-use pcr_core::scalar::{Angle, Ramp, Sector, Unit, Wide};
+use pcr_core::scalar::{AccelerationRamp, Angle, AngleSector, Unit, Wide};
 
 /// Largest bits that constructors accept: the kernels need eight times as much (docs/theory/errors-fixed.md).
 const LIMIT: i32 = 1 << 28;
@@ -98,7 +98,7 @@ impl<const F: u32> Scalar for Q<F> {
     }
     fn half_tangent_roots(
         equations: impl Iterator<Item = [Product<F>; 4]>,
-        sector: Sector<Sine>,
+        sector: AngleSector<Sine>,
         found: impl FnMut(Turns),
     ) {
         roots::half_tangent(equations.map(|equation| equation.map(Product::to_bits)), sector, found);
@@ -110,16 +110,16 @@ impl<const F: u32> Scalar for Q<F> {
         let unit = [Unit::combine(along, cos, across, -sin), Unit::combine(along, sin, across, cos)];
         unit.map(|unit| radius.double().scale(unit))
     }
-    fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self {
+    fn ramp_length(ramp: AccelerationRamp<Self>, elapsed: Self) -> Self {
         ramp::length(ramp, elapsed)
     }
-    fn ramp_time(ramp: Ramp<Self>, length: Self) -> Self {
+    fn ramp_time(ramp: AccelerationRamp<Self>, length: Self) -> Self {
         ramp::time(ramp, length)
     }
-    fn ramp_bulge(ramp: Ramp<Self>, duration: Self) -> Self {
+    fn ramp_bulge(ramp: AccelerationRamp<Self>, duration: Self) -> Self {
         ramp::bulge(ramp, duration)
     }
-    fn ramps_alike(one: Ramp<Self>, other: Ramp<Self>) -> bool {
+    fn ramps_alike(one: AccelerationRamp<Self>, other: AccelerationRamp<Self>) -> bool {
         ramp::alike(one, other)
     }
     fn slack(extent: Self) -> Self {

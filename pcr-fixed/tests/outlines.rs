@@ -2,7 +2,7 @@
 //! beyond R + ε is invented.
 
 use pcr_core::{
-    Ecm, Encounter, Motion, Outline, Path, Piece, Point, Pose, Profile, Region, RegionRef, Turn, Vector, excess,
+    Ecm, EcmEntry, Encounter, Motion, Outline, Path, Piece, Point, Pose, Profile, RegionRef, TurnSide, Vector, excess,
 };
 use pcr_fixed::{Q, Turns};
 
@@ -85,9 +85,9 @@ impl<const F: u32> Agent<F> {
             } else {
                 let radius = q::<F>(0.25 + on(random.within(0.0, 1.5)));
                 let length = q::<F>(radius.to_f64() * random.within(0.1, 5.0));
-                let turn = if random.below(2) == 0 { Turn::Left } else { Turn::Right };
+                let turn = if random.below(2) == 0 { TurnSide::Left } else { TurnSide::Right };
                 path = path.arc(radius, turn, length).unwrap();
-                let sign = if turn == Turn::Left { 1.0 } else { -1.0 };
+                let sign = if turn == TurnSide::Left { 1.0 } else { -1.0 };
                 segments.push((sign * radius.to_f64(), length.to_f64()));
             }
         }
@@ -150,7 +150,7 @@ fn campaign<const F: u32>(seeds: std::ops::Range<u64>) {
         };
         let fleet = [first, second];
         let (radius, eps) = (agents[0].radius + agents[1].radius, excess(&fleet[0], &fleet[1]).to_f64());
-        let ecm = Ecm::build([Region::EMPTY; 64], [Piece::EMPTY; 256], &fleet).unwrap();
+        let ecm = Ecm::build([EcmEntry::EMPTY; 64], [Piece::EMPTY; 256], &fleet).unwrap();
         let regions: Vec<RegionRef<'_, Q<F>>> = ecm.pair(&fleet, 0, 1).unwrap().collect();
         let [l, s] = agents.each_ref().map(|agent| agent.path.as_path().length().to_f64());
         let mut check = |a: f64, b: f64| {

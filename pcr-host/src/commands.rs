@@ -1,12 +1,14 @@
 //! The commands of the tool, one file each: their arguments, their work, and their exit statuses.
 
+mod argument_rules;
 mod brokers;
 mod certify;
 mod check;
 mod compare;
 mod completions;
 mod demo;
-mod exclusions;
+mod error_hints;
+mod exclusion_args;
 mod fleet;
 mod help;
 mod import;
@@ -17,26 +19,24 @@ mod number;
 mod plan;
 mod printed;
 mod regions;
-mod rules;
+mod scenario_command;
+mod scenario_sources;
 mod serve;
 mod simulate;
-mod sources;
-mod tips;
 mod traffic;
-mod work;
 
 use crate::{abort, progress};
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use pcr_formats::import::{ImportError, Warnings};
 use pcr_formats::input::InputError;
-use pcr_formats::output::{self, Kept};
+use pcr_formats::output::{self, OverwriteError};
 use pcr_formats::warning::WarningCode;
-use pcr_planning::failure::Failure;
-use pcr_planning::memory;
+use pcr_planning::failure::ComputationError;
+use pcr_planning::memory_budget;
 pub(crate) use printed::complain;
-use printed::{Form, Printed, acknowledge, caution, quiet};
-use sources::scenario;
+use printed::{OutputArgs, OutputFormat, acknowledge, caution, quiet};
+use scenario_sources::scenario;
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -90,7 +90,7 @@ Examples:
 /// when. It computes this in closed form and does not sample. Without a command it shows the paper's 12 agents and draws them to pcr-out/.
 #[derive(Parser)]
 #[command(name = "pcr", version, after_help = format!("{EXAMPLES}\n\n{UNITS}\n\n{STATUSES}"))]
-pub(crate) struct Arguments {
+pub(crate) struct Cli {
     /// Only errors, JSON and CSV; no tables or warnings
     #[arg(short, long, global = true, overrides_with = "quiet")]
     quiet: bool,
@@ -105,22 +105,22 @@ pub(crate) struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    Regions(regions::Arguments),
-    Certify(certify::Arguments),
-    Check(check::Arguments),
-    Plan(plan::Arguments),
-    Map(map::Arguments),
-    Simulate(Box<simulate::Arguments>),
-    Locks(locks::Arguments),
-    Traffic(traffic::Arguments),
-    Nodes(nodes::Arguments),
-    Import(import::Arguments),
-    Serve(serve::Arguments),
-    Compare(compare::Arguments),
-    Fleet(fleet::Arguments),
-    Demo(demo::Arguments),
-    Completions(completions::Shells),
-    Man(completions::Manual),
+    Regions(regions::RegionsArgs),
+    Certify(certify::CertifyArgs),
+    Check(check::CheckArgs),
+    Plan(plan::PlanArgs),
+    Map(map::MapArgs),
+    Simulate(Box<simulate::SimulateArgs>),
+    Locks(locks::LocksArgs),
+    Traffic(traffic::TrafficArgs),
+    Nodes(nodes::NodesArgs),
+    Import(import::ImportArgs),
+    Serve(serve::ServeArgs),
+    Compare(compare::CompareArgs),
+    Fleet(fleet::FleetArgs),
+    Demo(demo::DemoArgs),
+    Completions(completions::CompletionsArgs),
+    Man(completions::ManArgs),
 }
 
 impl Command {
@@ -136,10 +136,10 @@ impl Command {
 }
 
 /// Does what the words of the command line ask for.
-pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, Stop> {
+pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, CliError> {
     survive_limits();
     let Some(arguments) = help::parse(words)? else { return Ok(ExitCode::SUCCESS) };
-    let left = memory::left();
+    let left = memory_budget::available_bytes();
     abort::watch(left);
     arguments.warnings.apply();
     if arguments.progress {
@@ -161,13 +161,13 @@ pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, Stop> {
         printed::go_to_the_end();
     }
     let status = run_command(arguments.command)?;
-    printed::refuse_denied().map_err(Stop::arguments)?;
+    printed::refuse_denied().map_err(CliError::arguments)?;
     Ok(status)
 }
 
-fn run_command(command: Option<Command>) -> Result<ExitCode, Stop> {
+fn run_command(command: Option<Command>) -> Result<ExitCode, CliError> {
     match command {
-        None => demo::Arguments::default().run(),
+        None => demo::DemoArgs::default().run(),
         Some(Command::Regions(arguments)) => arguments.run(),
         Some(Command::Certify(arguments)) => arguments.run(),
         Some(Command::Check(arguments)) => arguments.run(),
@@ -229,7 +229,7 @@ fn spread() {
 }
 
 /// Why the tool stops.
-pub(crate) enum Stop {
+pub(crate) enum CliError {
     /// With a message and an exit status.
     Error(String, u8),
     /// The arguments are wrong.
@@ -238,20 +238,20 @@ pub(crate) enum Stop {
     Closed,
 }
 
-impl From<InputError> for Stop {
+impl From<InputError> for CliError {
     fn from(error: InputError) -> Self {
         Self::Error(error.to_string(), WRONG_INPUT)
     }
 }
 
-impl From<Failure> for Stop {
-    fn from(failure: Failure) -> Self {
+impl From<ComputationError> for CliError {
+    fn from(failure: ComputationError) -> Self {
         Self::Error(failure.to_string(), WRONG_INPUT)
     }
 }
 
 /// Errors of the output; those of the input are [`InputError`]s.
-impl From<io::Error> for Stop {
+impl From<io::Error> for CliError {
     fn from(error: io::Error) -> Self {
         match error.kind() {
             // Where the status is an answer, a reader of the output who goes is no error: this is of something else.
@@ -261,7 +261,7 @@ impl From<io::Error> for Stop {
     }
 }
 
-impl Stop {
+impl CliError {
     /// Wrong arguments that only the command itself can tell.
     fn arguments(problem: impl Into<String>) -> Self {
         Self::Error(problem.into(), WRONG_INPUT)
@@ -281,7 +281,7 @@ impl Stop {
 
     /// A file or directory that could not be written.
     fn not_written(output: &Path, error: &io::Error) -> Self {
-        if let Some(kept) = Kept::of(error) {
+        if let Some(kept) = OverwriteError::from_io_error(error) {
             return Self::Error(kept.to_string(), WRONG_INPUT);
         }
         Self::Error(format!("{}: cannot be written: {error}", output.display()), NOT_WRITTEN)
@@ -306,7 +306,7 @@ fn say(file: &Path, lines: impl IntoIterator<Item = String>) {
 }
 
 /// Tells which letters are boxes in the pictures of a folder.
-fn warn_of_boxes(folder: &Path, written: &pcr_drawing::Written) {
+fn warn_of_boxes(folder: &Path, written: &pcr_drawing::WrittenFiles) {
     /// Letters that are named; who writes in a script knows the others.
     const NAMED: usize = 8;
     let letters = &written.boxes;
@@ -323,7 +323,7 @@ fn warn_of_boxes(folder: &Path, written: &pcr_drawing::Written) {
 }
 
 /// A whole number from 0, such as a seed.
-fn whole<T: FromStr>(text: &str) -> Result<T, String> {
+fn parse_integer<T: FromStr>(text: &str) -> Result<T, String> {
     text.parse().map_err(|_| "a whole number from 0 is expected".to_owned())
 }
 
@@ -372,20 +372,20 @@ fn write_over(
     output: &Path,
     content: &str,
     input: &Path,
-    is_alike: impl FnOnce() -> Result<bool, Stop>,
-) -> Result<(), Stop> {
+    is_alike: impl FnOnce() -> Result<bool, CliError>,
+) -> Result<(), CliError> {
     if !is_stdout(output) && output::is_same(output, input) && is_alike()? {
-        return output::write_over(output, content).map_err(|error| Stop::not_written(output, &error));
+        return output::write_over(output, content).map_err(|error| CliError::not_written(output, &error));
     }
     write_to(output, content)
 }
 
 /// Writes a file, or standard output for `-`; none that was read.
-fn write_to(output: &Path, content: &str) -> Result<(), Stop> {
+fn write_to(output: &Path, content: &str) -> Result<(), CliError> {
     if is_stdout(output) {
         let mut out = printed::stdout();
         out.write_all(content.as_bytes())?;
         return Ok(out.flush()?);
     }
-    output::write(output, content).map_err(|error| Stop::not_written(output, &error))
+    output::write(output, content).map_err(|error| CliError::not_written(output, &error))
 }

@@ -32,13 +32,13 @@ pub(crate) fn request() {
 /// Tells what goes on, on standard error, if that is a terminal or it is requested, and the work takes more than a second; with a percentage and the remaining
 /// time where these are known. The line is wiped when the value is dropped.
 #[derive(Debug)]
-pub(crate) struct Progress {
-    counts: Arc<Counts>,
+pub(crate) struct ProgressLine {
+    counts: Arc<ProgressCounters>,
     running: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
 #[derive(Debug, Default)]
-pub(crate) struct Counts {
+pub(crate) struct ProgressCounters {
     pub(crate) done: AtomicUsize,
     /// 0 where it is not known.
     pub(crate) total: AtomicUsize,
@@ -46,10 +46,10 @@ pub(crate) struct Counts {
     pub(crate) limit: AtomicU64,
 }
 
-impl Progress {
+impl ProgressLine {
     /// Begins to watch over some work.
     pub(crate) fn new(what: impl Into<String>) -> Self {
-        let counts = Arc::<Counts>::default();
+        let counts = Arc::<ProgressCounters>::default();
         let is_terminal = io::stderr().is_terminal();
         let told = (is_terminal || REQUESTED.load(Ordering::Relaxed)) && !SILENT.load(Ordering::Relaxed);
         let running = if told { watch(what.into(), Arc::clone(&counts), is_terminal) } else { None };
@@ -71,7 +71,7 @@ impl Progress {
 }
 
 /// A thread that tells until the sender is dropped. Where the system has no thread for it, nothing is told.
-fn watch(what: String, counts: Arc<Counts>, is_terminal: bool) -> Option<(Sender<()>, JoinHandle<()>)> {
+fn watch(what: String, counts: Arc<ProgressCounters>, is_terminal: bool) -> Option<(Sender<()>, JoinHandle<()>)> {
     let (stop, stopped) = mpsc::channel::<()>();
     let tell = move || {
         let begin = Instant::now();
@@ -95,7 +95,7 @@ fn watch(what: String, counts: Arc<Counts>, is_terminal: bool) -> Option<(Sender
 }
 
 /// What is told after some time.
-pub(crate) fn line(what: &str, counts: &Counts, elapsed: Duration) -> String {
+pub(crate) fn line(what: &str, counts: &ProgressCounters, elapsed: Duration) -> String {
     let seconds = elapsed.as_secs();
     match (counts.done.load(Ordering::Relaxed), counts.total.load(Ordering::Relaxed)) {
         (0, 0) if counts.limit.load(Ordering::Relaxed) > 0 => {
@@ -120,7 +120,7 @@ pub(crate) fn remaining(done: usize, total: usize, elapsed: Duration) -> Option<
     (done >= total / 100 && done > 0).then(|| (elapsed.as_secs_f64() * left / done as f64).ceil() as u64)
 }
 
-impl Drop for Progress {
+impl Drop for ProgressLine {
     fn drop(&mut self) {
         if let Some((stop, watch)) = self.running.take() {
             drop(stop);

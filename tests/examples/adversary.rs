@@ -2,10 +2,10 @@
 
 use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use pcr_tests::adversary::{Tally, Way, run};
 
-fn campaign<S: Format>(first: u64, count: u64) {
+fn campaign<S: HostScalar>(first: u64, count: u64) {
     let mut tally = Tally::default();
     let mut failed = 0;
     for seed in first..first + count {

@@ -4,7 +4,7 @@
 //! Prints every violation with its seed, which `pcr_tests::generators` turns into the pair again.
 
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use pcr_tests::audit::{Audit, Seen, Violation};
 use pcr_tests::disc::Disc;
 use pcr_tests::generators::{Dice, RELATIONS, related};
@@ -27,7 +27,7 @@ fn main() {
 }
 
 /// The campaign in one format, if it is asked for.
-fn run<S: Format>(names: &[String], seeds: Range<usize>, effort: Effort) {
+fn run<S: HostScalar>(names: &[String], seeds: Range<usize>, effort: Effort) {
     if !names.is_empty() && !names.iter().any(|name| name == S::NAME) {
         return;
     }
@@ -53,7 +53,7 @@ fn run<S: Format>(names: &[String], seeds: Range<usize>, effort: Effort) {
     println!("{}: {count} pairs, {refused} out of range, {failures} violations, {seen:?}", S::NAME);
 }
 
-fn audit<S: Format>(ego: &Disc, other: &Disc, effort: Effort, seen: &mut Seen) -> Result<(), Violation> {
+fn audit<S: HostScalar>(ego: &Disc, other: &Disc, effort: Effort, seen: &mut Seen) -> Result<(), Violation> {
     const SAMPLES: usize = 24;
     let (ego, other) = (ego.rounded::<S>(), other.rounded::<S>());
     let run = AssertUnwindSafe(|| Audit::<S>::new(&ego, &other)?.all(effort, SAMPLES, seen));
@@ -61,7 +61,7 @@ fn audit<S: Format>(ego: &Disc, other: &Disc, effort: Effort, seen: &mut Seen) -
 }
 
 /// Prints a failing pair without the legs that do not matter.
-fn shortened<S: Format>(ego: &Disc, other: &Disc, effort: Effort) {
+fn shortened<S: HostScalar>(ego: &Disc, other: &Disc, effort: Effort) {
     let fails = |ego: &Disc, other: &Disc| audit::<S>(ego, other, effort, &mut Seen::default()).err();
     let mut pair = [ego.clone(), other.clone()];
     if fails(ego, other).is_none() {

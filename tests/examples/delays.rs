@@ -5,7 +5,7 @@
 
 use pcr_formats::import::ImportError;
 use pcr_lab::roadmap;
-use pcr_planning::locks::{Delays, Driving, Straight, Unsafe};
+use pcr_planning::exclusion_table::{EdgeDriving, StraightEdge, UnsafeDelayModel, UnsafeRelation};
 use pcr_tests::delays::published::cut_conic;
 use pcr_tests::delays::{Exact, ends_of};
 use serde_json::Value;
@@ -34,25 +34,25 @@ fn main() -> ExitCode {
         let set = name.split('_').next().unwrap_or_default().replace("set", "set_");
         let (imported, _) = roadmap::read(&read_to_string(file).expect("a roadmap")).expect("a roadmap");
         let (layout, speed) = (&imported.layout, imported.vehicle.speed);
-        let driving = Driving { speed, acceleration: None };
+        let driving = EdgeDriving { speed, acceleration: None };
         let mut least = f64::INFINITY;
         let mut found: HashMap<[usize; 2], [f64; 2]> = HashMap::new();
         for _ in 0..TIMES {
             let start = Instant::now();
-            let delays = Delays::new(&imported, driving, true).expect("a roadmap");
-            let mut rows: Vec<Vec<Unsafe>> = Vec::new();
+            let delays = UnsafeDelayModel::new(&imported, driving, true).expect("a roadmap");
+            let mut rows: Vec<Vec<UnsafeRelation>> = Vec::new();
             let take = |row| {
                 rows.push(row);
                 Ok::<(), ImportError>(())
             };
-            delays.each(&|_, _| {}, &<[Unsafe]>::to_vec, take).expect("a roadmap");
+            delays.each(&|_, _| {}, &<[UnsafeRelation]>::to_vec, take).expect("a roadmap");
             black_box(&rows);
             least = least.min(start.elapsed().as_secs_f64());
             found = rows
                 .concat()
                 .into_iter()
                 .filter_map(|found| match found {
-                    Unsafe::Delays(pair, interval) => Some((pair, interval)),
+                    UnsafeRelation::Delays(pair, interval) => Some((pair, interval)),
                     _ => None,
                 })
                 .collect();
@@ -61,13 +61,13 @@ fn main() -> ExitCode {
         let (mut pairs, mut missing, mut wide, mut wrong) = (0, 0, 0, 0);
         let ends = layout.edges.iter().map(|edge| ends_of(layout, edge));
         let all: Vec<_> = ends
-            .map(|[a, b]| (Exact::new(a, b, speed), Straight::new(a, b, speed).expect("an edge"), [a, b]))
+            .map(|[a, b]| (Exact::new(a, b, speed), StraightEdge::new(a, b, speed).expect("an edge"), [a, b]))
             .collect();
         for (a, (exact, straight, ends)) in all.iter().enumerate() {
             for (b, (other_exact, other, other_ends)) in all.iter().enumerate().skip(a) {
                 pairs += 1;
                 let interval = found.get(&[a, b]).copied();
-                match exact.judge(other_exact, reach, interval, straight.excess(other, reach)) {
+                match exact.judge(other_exact, reach, interval, straight.error_bound(other, reach)) {
                     Err(problem) if problem.contains("missing") => {
                         missing += 1;
                         eprintln!("{name} {a} {b}: {problem}");

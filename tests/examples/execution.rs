@@ -4,7 +4,7 @@
 //! `NAME_sit_0.json`, if that is there, and random ones.
 
 use pcr_formats::import::GridPlan;
-use pcr_lab::grid_plans::{By, Stops, carried_out, random_stops, situation};
+use pcr_lab::grid_plans::{ExecutionMethod, RandomStops, carried_out, random_stops, situation};
 use std::error::Error;
 use std::path::Path;
 
@@ -22,10 +22,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         let plan = GridPlan::read(&std::fs::read_to_string(&file)?)?;
         let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         for (kind, stops) in all_stops(&file, &plan, rate)? {
-            let cells = carried_out(&plan, radii[0], By::Cells, &stops)?;
+            let cells = carried_out(&plan, radii[0], ExecutionMethod::Cells, &stops)?;
             for &radius in &radii {
-                let orders = carried_out(&plan, radius, By::Orders, &stops)?;
-                let switched = carried_out(&plan, radius, By::Switching, &stops)?;
+                let orders = carried_out(&plan, radius, ExecutionMethod::Orders, &stops)?;
+                let switched = carried_out(&plan, radius, ExecutionMethod::Switching, &stops)?;
                 println!(
                     "{name} {kind} radius {radius}: switching {:.2} s, {:.3} of cells; stuck {}; {}; orders in {:.2?}, run {:.2?}",
                     switched.travel,
@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn all_stops(file: &Path, plan: &GridPlan, rate: f64) -> Result<Vec<(&'static str, Stops)>, Box<dyn Error>> {
+fn all_stops(file: &Path, plan: &GridPlan, rate: f64) -> Result<Vec<(&'static str, RandomStops)>, Box<dyn Error>> {
     let robots = plan.cells().len();
     let mut all = vec![("random", random_stops(robots, 2000, rate, 1))];
     let published =

@@ -5,14 +5,14 @@
 
 use pcr_comparing::compare::crowd;
 use pcr_formats::scenario::Scenario;
-use pcr_planning::plan::{Effort, Forbidden, Objective, Plan, Request};
+use pcr_planning::plan::{DelaySearchOptions, ForbiddenDelays, Objective, PlanOptions, PlanReport};
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
 
 fn main() {
     let mut arguments = std::env::args().skip(1);
     let seconds: f64 = arguments.next().and_then(|seconds| seconds.parse().ok()).expect("a time limit");
-    let effort = Effort { time: (seconds > 0.0).then(|| Duration::from_secs_f64(seconds)), prove: false };
+    let effort = DelaySearchOptions { time: (seconds > 0.0).then(|| Duration::from_secs_f64(seconds)), prove: false };
     let arguments: Vec<String> = arguments.collect();
     let numbers: Vec<u64> = arguments.iter().map_while(|argument| argument.parse().ok()).collect();
     if let &[first, count, least, largest] = &numbers[..] {
@@ -28,8 +28,8 @@ fn main() {
     }
 }
 
-fn answered(name: &str, scenario: &Scenario, effort: Effort) -> Value {
-    let forbidden = Forbidden::of(scenario).expect("a fleet");
+fn answered(name: &str, scenario: &Scenario, effort: DelaySearchOptions) -> Value {
+    let forbidden = ForbiddenDelays::compute(scenario).expect("a fleet");
     let count = forbidden.len();
     let pairs = (0..count).flat_map(|i| (0..i).map(move |j| [i, j])).filter_map(|[i, j]| {
         let intervals: Vec<[Value; 2]> = forbidden.intervals(i, j).map(|ends| ends.map(number)).collect();
@@ -40,8 +40,8 @@ fn answered(name: &str, scenario: &Scenario, effort: Effort) -> Value {
     let pairs: Vec<Value> = pairs.collect();
     let plans = [Objective::Sum, Objective::Makespan].map(|objective| {
         let begin = Instant::now();
-        let request = Request { objective, leave_out: true, effort, ..Request::default() };
-        let (plan, _) = Plan::of(scenario, &request).expect("an answer");
+        let request = PlanOptions { objective, leave_out: true, effort, ..PlanOptions::default() };
+        let (plan, _) = PlanReport::compute(scenario, &request).expect("an answer");
         let taken = begin.elapsed().as_secs_f64();
         let delays: Vec<Value> = plan.agents.iter().map(|planned| json!([planned.id, planned.delay])).collect();
         json!({
@@ -61,7 +61,7 @@ fn forbidden_end(scenario: &Scenario, id: u64) -> f64 {
         agents: scenario.agents.iter().filter(|agent| agent.id == id).cloned().collect(),
         ..scenario.clone()
     };
-    Plan::of(&alone, &Request::default()).expect("one agent").0.costs.expect("a plan").makespan
+    PlanReport::compute(&alone, &PlanOptions::default()).expect("one agent").0.costs.expect("a plan").makespan
 }
 
 /// An end of an interval, none where it is infinite.

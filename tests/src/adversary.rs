@@ -9,9 +9,10 @@ use crate::generators::{Dice, leg, pair};
 use crate::oracle::Pair;
 use crate::oracle::line::below;
 use pcr_core::{
-    Hold, Interval, Mission, Motion, Order, Pass, Piece, Progress, Reach, Refused, Region, Tolerances, excess,
+    AdmissionError, CheckState, CheckTolerances, EcmEntry, Interval, Motion, MovementAuthority, PassingState,
+    PathProposal, Piece, Progress, RegionPrecedence, excess,
 };
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 
 /// What became of the fleets.
 #[derive(Clone, Copy, Debug, Default)]
@@ -32,7 +33,7 @@ pub struct Tally {
     pub arrived: u32,
 }
 
-struct Agent<S: Format> {
+struct Agent<S: HostScalar> {
     disc: Disc,
     course: &'static Course<S>,
     /// What is known of it.
@@ -45,7 +46,7 @@ struct Agent<S: Format> {
     allowed: S,
 }
 
-impl<S: Format> Agent<S> {
+impl<S: HostScalar> Agent<S> {
     fn new(disc: &Disc, width: S) -> Option<Self> {
         let disc = disc.rounded::<S>();
         // Tests are short.
@@ -90,7 +91,7 @@ pub enum Way {
 /// # Panics
 /// With the seed, where two discs touch, a hold falls below where an agent may be already, a refusal has no reason, or one that was
 /// admitted does not arrive.
-pub fn run<S: Format>(seed: u64, way: Way, tally: &mut Tally) {
+pub fn run<S: HostScalar>(seed: u64, way: Way, tally: &mut Tally) {
     let mut state = seed ^ 0x0a5e;
     let mut dice = move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -99,12 +100,12 @@ pub fn run<S: Format>(seed: u64, way: Way, tally: &mut Tally) {
     let Some(mut fleet) = placed::<S>(&mut dice(), way) else { return };
     tally.fleets += 1;
     let mut motions: Vec<Motion<'static, S>> = fleet.iter().map(|agent| agent.course.motion()).collect();
-    let storage = (vec![Region::EMPTY; 400], vec![Piece::EMPTY; 2000], vec![Order::EMPTY; 800]);
+    let storage = (vec![EcmEntry::EMPTY; 400], vec![Piece::EMPTY; 2000], vec![RegionPrecedence::EMPTY; 800]);
     let Ok(mut orders) = Table::<S>::build(storage.0, storage.1, storage.2, &motions) else { return };
     let mut known: Vec<Progress<S>> = fleet.iter().map(|agent| agent.known).collect();
     // What each has heard of each other one.
     let mut heard = vec![known.clone(); fleet.len()];
-    let mut reaches = vec![Reach::EMPTY; fleet.len()];
+    let mut reaches = vec![CheckState::EMPTY; fleet.len()];
     let rounding = |motions: &[Motion<'_, S>]| {
         let all = motions.iter().flat_map(|a| motions.iter().map(move |b| excess(a, b).to_f64()));
         all.fold(0.0, f64::max)
@@ -123,10 +124,10 @@ pub fn run<S: Format>(seed: u64, way: Way, tally: &mut Tally) {
             let Some(next) = proposal(&fleet[agent], &mut dice) else { continue };
             let width = fleet.iter().map(|agent| agent.width.to_f64()).fold(0.0, f64::max);
             let width = S::from_f64(width + 8.0 * rounding(&motions) + 1e-9);
-            let tolerances = Tolerances { width, gain: S::from_f64(1e-3) };
-            let mission = Mission { agent, motion: next.course.motion(), progress: next.known };
+            let tolerances = CheckTolerances { width, gain: S::from_f64(1e-3) };
+            let mission = PathProposal { agent, motion: next.course.motion(), progress: next.known };
             let prefer = |region: &pcr_core::RegionRef<'_, S>| {
-                if (random >> (region.other() % 60)) & 1 == 1 { Pass::First } else { Pass::Second }
+                if (random >> (region.other() % 60)) & 1 == 1 { PassingState::First } else { PassingState::Second }
             };
             match orders.admit(&mut motions, &mut known, mission, tolerances, &mut reaches, prefer) {
                 Ok(()) => {
@@ -140,9 +141,11 @@ pub fn run<S: Format>(seed: u64, way: Way, tally: &mut Tally) {
                     let found = orders.check(&motions, &known, tolerances, &mut reaches);
                     assert_eq!(found, Ok(()), "seed {seed}: what is admitted passes the check");
                 }
-                Err(Refused::Stuck { .. } | Refused::Blocked { .. } | Refused::Late { .. }) => tally.refused += 1,
+                Err(AdmissionError::Stuck { .. } | AdmissionError::Blocked { .. } | AdmissionError::Late { .. }) => {
+                    tally.refused += 1
+                }
                 // There is no more room.
-                Err(Refused::Full(_)) => {}
+                Err(AdmissionError::Full(_)) => {}
                 Err(refused) => panic!("seed {seed}: {refused}"),
             }
         }
@@ -165,7 +168,7 @@ pub fn run<S: Format>(seed: u64, way: Way, tally: &mut Tally) {
 }
 
 /// Two to four agents that are apart at the beginning; before an admission they stand.
-fn placed<S: Format>(dice: &mut Dice, way: Way) -> Option<Vec<Agent<S>>> {
+fn placed<S: HostScalar>(dice: &mut Dice, way: Way) -> Option<Vec<Agent<S>>> {
     let (a, b) = pair(dice);
     let mut discs = vec![a, b];
     if dice.chance(0.4) {
@@ -189,7 +192,7 @@ fn placed<S: Format>(dice: &mut Dice, way: Way) -> Option<Vec<Agent<S>>> {
 }
 
 /// One of the sides that are possible for each region, if there is one.
-fn decide<S: Format>(orders: &mut Table<S>, motions: &[Motion<'_, S>], known: &[Progress<S>], dice: &mut Dice) {
+fn decide<S: HostScalar>(orders: &mut Table<S>, motions: &[Motion<'_, S>], known: &[Progress<S>], dice: &mut Dice) {
     for agent in 0..motions.len() {
         let row: Vec<_> = orders
             .row(motions, agent)
@@ -200,10 +203,10 @@ fn decide<S: Format>(orders: &mut Table<S>, motions: &[Motion<'_, S>], known: &[
                 let second = region.hold(own.at.lo, their.at.lo).allows(own.stop);
                 let first = region.swapped().hold(their.at.lo, own.at.lo).allows(their.stop);
                 let pass = match (first, second) {
-                    (true, true) if dice.chance(0.5) => Pass::First,
-                    (true, false) => Pass::First,
-                    (_, true) => Pass::Second,
-                    (false, false) => Pass::Undecided,
+                    (true, true) if dice.chance(0.5) => PassingState::First,
+                    (true, false) => PassingState::First,
+                    (_, true) => PassingState::Second,
+                    (false, false) => PassingState::Undecided,
                 };
                 (place, pass)
             })
@@ -215,7 +218,7 @@ fn decide<S: Format>(orders: &mut Table<S>, motions: &[Motion<'_, S>], known: &[
 }
 
 /// Another path for an agent: that of its disc where it stands yet, or one with another end.
-fn proposal<S: Format>(agent: &Agent<S>, dice: &mut Dice) -> Option<Agent<S>> {
+fn proposal<S: HostScalar>(agent: &Agent<S>, dice: &mut Dice) -> Option<Agent<S>> {
     let legs = |dice: &mut Dice| (0..1 + dice.below(2)).map(|_| leg(dice)).collect::<Vec<_>>();
     if agent.end() == S::ZERO {
         return Agent::new(&agent.disc, agent.width);
@@ -231,10 +234,10 @@ fn proposal<S: Format>(agent: &Agent<S>, dice: &mut Dice) -> Option<Agent<S>> {
 }
 
 /// Takes an agent on as far as it may go, or less far.
-fn advance<S: Format>(
+fn advance<S: HostScalar>(
     fleet: &mut [Agent<S>],
     agent: usize,
-    hold: Hold<S>,
+    hold: MovementAuthority<S>,
     dice: &mut Dice,
     tolerance: f64,
     tally: &mut Tally,
@@ -269,7 +272,7 @@ fn advance<S: Format>(
 }
 
 /// Everybody goes on as far as it may until all are at their ends.
-fn finish<S: Format>(
+fn finish<S: HostScalar>(
     fleet: &mut [Agent<S>],
     orders: &Table<S>,
     motions: &[Motion<'_, S>],

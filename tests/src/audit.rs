@@ -6,14 +6,14 @@
 use crate::disc::{Course, Disc};
 use crate::oracle::{Pair, line, plane};
 use pcr_core::{Interval, Motion, RegionRef, excess};
-use pcr_planning::fleet::{Format, HostEcm, build_ecm};
+use pcr_planning::fleet::{HostEcm, HostScalar, build_ecm};
 
 /// What the oracle's own positions may be off, in units in the last place of the extent in `f64`: a dozen rounded
 /// operations a segment. Contacts that are less deep prove nothing.
 pub const ORACLE_ULPS: f64 = 16.0;
 
 /// A pair of discs, in the library and in the oracle.
-pub struct Audit<S: Format> {
+pub struct Audit<S: HostScalar> {
     courses: [Course<S>; 2],
     oracle: Pair,
     /// The stated bound of the pair \[m\].
@@ -45,7 +45,7 @@ macro_rules! ensure {
     };
 }
 
-impl<S: Format> Audit<S> {
+impl<S: HostScalar> Audit<S> {
     /// The pair; its numbers have to be numbers of the format ([`Disc::rounded`]).
     ///
     /// # Errors

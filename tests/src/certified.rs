@@ -3,12 +3,12 @@
 use crate::disc::{Course, Disc, Drive};
 use crate::generators::certifiable;
 use crate::outward::Total;
-use pcr_certify::data::Table;
-use pcr_certify::table::{Checker, Margin};
+use pcr_certify::raw::RawTable;
+use pcr_certify::table::{Checker, CoverageMargin};
 use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::certificate;
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::checker_input;
+use pcr_planning::fleet::{HostScalar, build_ecm};
 use std::fmt;
 
 /// What has come of many tables.
@@ -81,7 +81,7 @@ impl fmt::Display for Proofs {
 }
 
 /// The table of a pair in motion, as plain numbers; none where the format or a table cannot hold it.
-pub fn table<S: Format>(pair: &(Disc, Disc), drives: &[(Drive, f64); 2]) -> Option<Table> {
+pub fn table<S: HostScalar>(pair: &(Disc, Disc), drives: &[(Drive, f64); 2]) -> Option<RawTable> {
     let driven =
         [(pair.0.clone(), drives[0].0.clone(), drives[0].1), (pair.1.clone(), drives[1].0.clone(), drives[1].1)];
     let [first, second] = driven.each_ref().map(Course::<S>::rounded);
@@ -89,13 +89,13 @@ pub fn table<S: Format>(pair: &(Disc, Disc), drives: &[(Drive, f64); 2]) -> Opti
     let motions = courses.each_ref().map(|(course, _)| course.motion());
     let ecm = build_ecm(&motions).ok()?;
     let agents = courses.iter().zip(&motions).enumerate().map(|(place, ((_, (disc, ..)), motion))| {
-        certificate::agent(place as u64, motion, S::angle(disc.start[2]).expect("an angle"), &[])
+        checker_input::agent(place as u64, motion, S::angle(disc.start[2]).expect("an angle"), &[])
     });
-    Some(certificate::table(agents.collect(), &motions, &ecm))
+    Some(checker_input::table(agents.collect(), &motions, &ecm))
 }
 
 /// Certifies the tables of the cases `first`, `first + 1`, ... of [`certifiable`].
-pub fn run<S: Format>(first: u64, count: u64) -> Proofs {
+pub fn run<S: HostScalar>(first: u64, count: u64) -> Proofs {
     let mut proofs = Proofs::default();
     for seed in first..first + count {
         let (pair, drives) = certifiable::<S>(seed);
@@ -103,12 +103,12 @@ pub fn run<S: Format>(first: u64, count: u64) -> Proofs {
             proofs.refused += 1;
             continue;
         };
-        let found = Checker::new(&table).and_then(|checker| checker.check(Margin::Needed));
+        let found = Checker::new(&table).and_then(|checker| checker.check(CoverageMargin::Needed));
         let found = found.unwrap_or_else(|wrong| panic!("{seed} in {}: {wrong}", S::NAME));
         proofs.pieces += found.pieces as u64;
         proofs.steps += found.steps as u64;
-        let one_of_two = |pair: &pcr_certify::data::Pair| {
-            pair.pieces.iter().any(|piece| piece.share != pcr_certify::data::Share::Only)
+        let one_of_two = |pair: &pcr_certify::raw::RawPair| {
+            pair.pieces.iter().any(|piece| piece.share != pcr_certify::raw::RawBranch::Only)
         };
         proofs.shared += u64::from(table.pairs.iter().any(one_of_two));
         if found.segments == 1 {

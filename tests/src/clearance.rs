@@ -4,19 +4,19 @@
 //! segment is to be above R, or what lies beyond is lost, and below R + ε. In the middle of both it is ½ of the excess.
 
 use crate::disc::{Course, Disc};
-use crate::exact::{Route, Twofold};
+use crate::exact::{DoubleDouble, Route};
 use crate::generators::Pair;
 use pcr_core::{Interval, Motion, RegionRef, excess};
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{HostScalar, build_ecm};
 
 /// The least and the largest clearance of ends of pieces inside segments, as parts of the excess. None where the format does
 /// not hold the pair, or no piece ends inside a segment.
-pub fn of_ends<S: Format>(pair: &Pair) -> Option<[f64; 2]> {
+pub fn of_ends<S: HostScalar>(pair: &Pair) -> Option<[f64; 2]> {
     let discs: [Disc; 2] = [pair.0.rounded::<S>(), pair.1.rounded::<S>()];
     let [first, second] = [Course::<S>::new(&discs[0]).ok()?, Course::new(&discs[1]).ok()?];
     let motions = [first.motion(), second.motion()];
     let routes = discs.each_ref().map(Route::new::<S>);
-    let radius = Twofold::from(discs[0].radius) + Twofold::from(discs[1].radius);
+    let radius = DoubleDouble::from(discs[0].radius) + DoubleDouble::from(discs[1].radius);
     let ecm = build_ecm(&motions).ok()?;
     let regions: Vec<_> = ecm.pair(&motions, 0, 1).expect("the table of both").collect();
     let mut found: Option<[f64; 2]> = None;
@@ -34,7 +34,7 @@ pub fn of_ends<S: Format>(pair: &Pair) -> Option<[f64; 2]> {
 /// The segments of a piece, and its ranges, those of the path `own` first.
 type Ranges<S> = ([usize; 2], [Interval<S>; 2]);
 
-fn ranges<S: Format>(regions: &[RegionRef<'_, S>], own: usize) -> Vec<Ranges<S>> {
+fn ranges<S: HostScalar>(regions: &[RegionRef<'_, S>], own: usize) -> Vec<Ranges<S>> {
     let pieces = regions.iter().flat_map(|region| region.pieces());
     let turned = |piece: pcr_core::PieceRef<'_, S>| match own {
         0 => (piece.segments, [piece.length, piece.other_length]),
@@ -44,12 +44,12 @@ fn ranges<S: Format>(regions: &[RegionRef<'_, S>], own: usize) -> Vec<Ranges<S>>
 }
 
 /// Of the ends of the ranges along the path `own`: how far they are from contact \[m\].
-fn clearances<S: Format>(
+fn clearances<S: HostScalar>(
     regions: &[RegionRef<'_, S>],
     motions: &[Motion<'_, S>; 2],
     routes: &[Route; 2],
     own: usize,
-    radius: Twofold,
+    radius: DoubleDouble,
 ) -> Vec<f64> {
     let pieces = ranges(regions, own);
     let mut found = Vec::new();

@@ -3,9 +3,12 @@
 use crate::generators::Dice;
 use pcr_comparing::compare::crowd;
 use pcr_core::{Point, Pose, Radians};
-use pcr_execution::simulate::{Controller, Course, Disturbance, FRAME, Mission, Run, Settings, Task, run};
-use pcr_formats::scenario::{Agent, PathSegment, Placed};
-use pcr_planning::plan::{Plan, Request};
+use pcr_execution::simulate::{
+    ClosedLoopOptions, ControllerKind, ControllerRunEntry, Disturbance, FRAME, ReleasedMission, SimulationTask,
+    SpeedLimitedPath, run,
+};
+use pcr_formats::scenario::{Agent, PathSegment, PlacedSegment};
+use pcr_planning::plan::{PlanOptions, PlanReport};
 use std::f64::consts::PI;
 use std::fmt;
 use std::time::Instant;
@@ -82,23 +85,23 @@ pub fn fleet(seed: u64, largest: usize, missions: Missions, tally: &mut Tally) -
     for agent in scenario.agents.iter_mut().filter(|_| missions.latest > 0.0) {
         agent.t_start = dice.range(0.0, missions.latest);
     }
-    let planned = Plan::of(&scenario, &Request::default()).is_ok_and(|(_, solved)| solved.is_some());
+    let planned = PlanReport::compute(&scenario, &PlanOptions::default()).is_ok_and(|(_, solved)| solved.is_some());
     if !planned {
         tally.unplanned += 1;
         return None;
     }
-    let mut task = Task::of(&scenario).expect("a fleet with a plan");
+    let mut task = SimulationTask::from_scenario(&scenario).expect("a fleet with a plan");
     for (robot, agent) in task.robots.iter_mut().zip(&scenario.agents) {
         let there = robot.missions.clone();
-        let back = Mission { release: 0.0, course: back(agent) };
-        let trip = [back].into_iter().chain(there.into_iter().map(|there| Mission { release: 0.0, ..there }));
+        let back = ReleasedMission { release: 0.0, course: back(agent) };
+        let trip = [back].into_iter().chain(there.into_iter().map(|there| ReleasedMission { release: 0.0, ..there }));
         robot.missions.extend((0..missions.trips).flat_map(|_| trip.clone()));
     }
     let begin = Instant::now();
-    let settings = Settings { seed, replan: 2.0, disturbance: USUAL };
-    let outcome = run(&task, Controller::Pcr, settings).expect("a fleet with a plan");
+    let settings = ClosedLoopOptions { seed, replan: 2.0, disturbance: USUAL };
+    let outcome = run(&task, ControllerKind::Pcr, settings).expect("a fleet with a plan");
     let taken = begin.elapsed().as_secs_f64();
-    let Run { done, not_done, collisions, planning, duration, waiting_for, .. } = &outcome.run;
+    let ControllerRunEntry { done, not_done, collisions, planning, duration, waiting_for, .. } = &outcome.run;
     let planning = planning.expect("a supervisor plans");
     for (agent, drive) in outcome.snapshots.iter().flat_map(|plan| scenario.agents.iter().zip(&plan.drives)) {
         let motion = drive.motion(agent.radius).expect("a planned motion");
@@ -106,11 +109,11 @@ pub fn fleet(seed: u64, largest: usize, missions: Missions, tally: &mut Tally) -
         assert!(stands || motion.time().lo >= agent.t_start, "agent {} of seed {seed} is planned too early", agent.id);
     }
     tally.contacts += collisions.len();
-    tally.breaches += planning.breaches;
+    tally.breaches += planning.authority_overruns;
     tally.planning.push(planning.longest_ms);
     tally.replanning.extend(outcome.planned.iter().skip(1).map(|time| 1e3 * time));
     tally.speeds.push(duration.max(FRAME) / taken);
-    if *not_done == 0 && collisions.is_empty() && planning.breaches == 0 {
+    if *not_done == 0 && collisions.is_empty() && planning.authority_overruns == 0 {
         tally.carried_out += 1;
         return None;
     }
@@ -120,23 +123,23 @@ pub fn fleet(seed: u64, largest: usize, missions: Missions, tally: &mut Tally) -
         |id: u64| outcome.run.missions.iter().filter(|mission| mission.id == id && mission.end.is_some()).count();
     let unfinished = task.robots.iter().filter(|robot| done_by(robot.id) < all).count();
     let never_begun = waiting_for.iter().filter(|waiting| !waiting.begun).count();
-    let is_told = unfinished == never_begun && collisions.is_empty() && planning.breaches == 0;
+    let is_told = unfinished == never_begun && collisions.is_empty() && planning.authority_overruns == 0;
     *if is_told { &mut tally.told } else { &mut tally.failed } += 1;
     Some(format!(
         "{}, seed {seed}, {agents} robots: {done} done, {not_done} not, {} contacts, {} breaches, planned {} times, {} kept, {duration:.0} s in {taken:.2} s",
         if is_told { "told" } else { "failed" },
         collisions.len(),
-        planning.breaches,
+        planning.authority_overruns,
         planning.count,
         planning.kept
     ))
 }
 
 /// The same path from its end to its beginning.
-fn back(agent: &Agent) -> Course {
+fn back(agent: &Agent) -> SpeedLimitedPath {
     let mut pose = agent.start;
     for segment in &agent.path {
-        let placed = Placed { at: [pose[0], pose[1]], heading: pose[2], shape: *segment };
+        let placed = PlacedSegment { start: [pose[0], pose[1]], heading: pose[2], shape: *segment };
         let [x, y] = placed.end();
         pose = [x, y, placed.heading_at_end()];
     }
@@ -145,5 +148,5 @@ fn back(agent: &Agent) -> Course {
         line => line,
     });
     let start = Pose { position: Point::new(pose[0], pose[1]), heading: Radians(pose[2] + PI) };
-    Course::new(start, &turned.collect::<Vec<_>>()).expect("a path that is in range")
+    SpeedLimitedPath::new(start, &turned.collect::<Vec<_>>()).expect("a path that is in range")
 }

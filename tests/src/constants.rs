@@ -1,7 +1,7 @@
 //! The scenario of the firmware, as Rust source.
 
-use pcr_core::Turn;
-use pcr_formats::paper;
+use pcr_core::TurnSide;
+use pcr_formats::paper_example;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario};
 use std::fmt::{self, Write};
 
@@ -11,7 +11,7 @@ use std::fmt::{self, Write};
 /// # Panics
 /// Where the embedded scenario has what the firmware has no constants for.
 pub fn source() -> String {
-    let scenario = Scenario::from_json(paper::SCENARIO).expect("the embedded scenario");
+    let scenario = Scenario::from_json(paper_example::SCENARIO).expect("the embedded scenario");
     let mut text = String::from("// Generated: `cargo run -p pcr-tests --example constants`.\n");
     let count = scenario.agents.len();
     text +=
@@ -38,8 +38,8 @@ fn write_agent(text: &mut String, agent: &Agent) -> fmt::Result {
         let curve = match *segment {
             PathSegment::Line { .. } => "Curve::Line".to_owned(),
             PathSegment::Arc { radius, sweep } => {
-                let turn = if sweep > 0.0 { Turn::Left } else { Turn::Right };
-                format!("Curve::Arc {{ radius: number({radius:?}), turn: Turn::{turn:?} }}")
+                let turn = if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right };
+                format!("Curve::Arc {{ radius: number({radius:?}), turn: TurnSide::{turn:?} }}")
             }
         };
         writeln!(text, "            Step {{ curve: {curve}, length: number({:?}) }},", segment.length())?;

@@ -6,59 +6,59 @@
 
 pub mod published;
 
-use pcr_certify::twofold::Twofold;
-use pcr_formats::import::{Edge, Layout};
+use pcr_certify::double_double::DoubleDouble;
+use pcr_formats::import::{Layout, LayoutEdge};
 
 /// Where an edge begins and ends.
-pub fn ends_of(layout: &Layout, edge: &Edge) -> [[f64; 2]; 2] {
-    edge.ends.map(|node| layout.nodes[node].at)
+pub fn ends_of(layout: &Layout, edge: &LayoutEdge) -> [[f64; 2]; 2] {
+    edge.ends.map(|node| layout.nodes[node].point)
 }
 
 /// A straight edge with 106 bits.
 #[derive(Clone, Copy, Debug)]
 pub struct Exact {
-    start: [Twofold; 2],
-    end: [Twofold; 2],
+    start: [DoubleDouble; 2],
+    end: [DoubleDouble; 2],
     /// \[m/s\]
-    velocity: [Twofold; 2],
+    velocity: [DoubleDouble; 2],
     /// \[s\]
-    duration: Twofold,
+    duration: DoubleDouble,
 }
 
-fn less([a, b]: [Twofold; 2], [c, d]: [Twofold; 2]) -> [Twofold; 2] {
+fn less([a, b]: [DoubleDouble; 2], [c, d]: [DoubleDouble; 2]) -> [DoubleDouble; 2] {
     [a - c, b - d]
 }
 
-fn dot([a, b]: [Twofold; 2], [c, d]: [Twofold; 2]) -> Twofold {
+fn dot([a, b]: [DoubleDouble; 2], [c, d]: [DoubleDouble; 2]) -> DoubleDouble {
     a * c + b * d
 }
 
-fn by([a, b]: [Twofold; 2], factor: Twofold) -> [Twofold; 2] {
+fn by([a, b]: [DoubleDouble; 2], factor: DoubleDouble) -> [DoubleDouble; 2] {
     [a * factor, b * factor]
 }
 
-fn cross([a, b]: [Twofold; 2], [c, d]: [Twofold; 2]) -> Twofold {
+fn cross([a, b]: [DoubleDouble; 2], [c, d]: [DoubleDouble; 2]) -> DoubleDouble {
     a * d - b * c
 }
 
-fn larger(a: Twofold, b: Twofold) -> Twofold {
+fn larger(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
     if a < b { b } else { a }
 }
 
-fn smaller(a: Twofold, b: Twofold) -> Twofold {
+fn smaller(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
     if b < a { b } else { a }
 }
 
 impl Exact {
     /// From one point to another at a speed.
     pub fn new(from: [f64; 2], to: [f64; 2], speed: f64) -> Self {
-        let (start, end) = (from.map(Twofold::from), to.map(Twofold::from));
+        let (start, end) = (from.map(DoubleDouble::from), to.map(DoubleDouble::from));
         let way = less(end, start);
         let length = dot(way, way).sqrt();
-        let speed = Twofold::from(speed);
-        let still = length == Twofold::ZERO;
-        let velocity = if still { [Twofold::ZERO; 2] } else { by(way, speed / length) };
-        Self { start, end, velocity, duration: if still { Twofold::ZERO } else { length / speed } }
+        let speed = DoubleDouble::from(speed);
+        let still = length == DoubleDouble::ZERO;
+        let velocity = if still { [DoubleDouble::ZERO; 2] } else { by(way, speed / length) };
+        Self { start, end, velocity, duration: if still { DoubleDouble::ZERO } else { length / speed } }
     }
 
     /// How long it takes \[s\].
@@ -67,56 +67,57 @@ impl Exact {
     }
 
     /// The square of the least distance if the other one sets off later by `delay`, while both are under way; `None` where they never are.
-    pub fn nearest(&self, other: &Self, delay: Twofold) -> Option<Twofold> {
-        let (from, to) = (larger(Twofold::ZERO, delay), smaller(self.duration, other.duration + delay));
+    pub fn nearest(&self, other: &Self, delay: DoubleDouble) -> Option<DoubleDouble> {
+        let (from, to) = (larger(DoubleDouble::ZERO, delay), smaller(self.duration, other.duration + delay));
         if to < from {
             return None;
         }
         let passing = less(self.velocity, other.velocity);
         let at_zero = less(self.start, less(other.start, by(other.velocity, delay)));
         let square = dot(passing, passing);
-        let time = if square == Twofold::ZERO { from } else { (-dot(at_zero, passing) / square).clamp(from, to) };
+        let time = if square == DoubleDouble::ZERO { from } else { (-dot(at_zero, passing) / square).clamp(from, to) };
         let apart = less(at_zero, by(passing, -time));
         Some(dot(apart, apart))
     }
 
     /// The square of the distance of the two edges: that of the vehicles at the best of all delays.
-    pub fn apart(&self, other: &Self) -> Twofold {
-        let side = |of: &Self, point: [Twofold; 2]| cross(less(of.end, of.start), less(point, of.start));
+    pub fn apart(&self, other: &Self) -> DoubleDouble {
+        let side = |of: &Self, point: [DoubleDouble; 2]| cross(less(of.end, of.start), less(point, of.start));
         let split = |of: &Self, by: &Self| {
             let [a, b] = [side(by, of.start), side(by, of.end)];
-            (a < Twofold::ZERO && Twofold::ZERO < b) || (b < Twofold::ZERO && Twofold::ZERO < a)
+            (a < DoubleDouble::ZERO && DoubleDouble::ZERO < b) || (b < DoubleDouble::ZERO && DoubleDouble::ZERO < a)
         };
         if split(self, other) && split(other, self) {
-            return Twofold::ZERO;
+            return DoubleDouble::ZERO;
         }
         let ends = [(self, other.start), (self, other.end), (other, self.start), (other, self.end)];
         let all = ends.map(|(edge, point)| edge.apart_from(point));
-        all.into_iter().reduce(smaller).unwrap_or(Twofold::ZERO)
+        all.into_iter().reduce(smaller).unwrap_or(DoubleDouble::ZERO)
     }
 
     /// The square of the distance of a point.
-    fn apart_from(&self, point: [Twofold; 2]) -> Twofold {
+    fn apart_from(&self, point: [DoubleDouble; 2]) -> DoubleDouble {
         let (way, to) = (less(self.end, self.start), less(point, self.start));
         let square = dot(way, way);
-        let one = Twofold::from(1.0);
-        let share = if square == Twofold::ZERO { one } else { (dot(to, way) / square).clamp(Twofold::ZERO, one) };
+        let one = DoubleDouble::from(1.0);
+        let share =
+            if square == DoubleDouble::ZERO { one } else { (dot(to, way) / square).clamp(DoubleDouble::ZERO, one) };
         let apart = less(to, by(way, share));
         dot(apart, apart)
     }
 
     /// The square of the distance of a point from where the vehicle is at a time.
-    pub fn apart_from_at(&self, point: [f64; 2], time: f64) -> Twofold {
-        let time = Twofold::from(time).clamp(Twofold::ZERO, self.duration);
-        let apart = less(less(point.map(Twofold::from), self.start), by(self.velocity, time));
+    pub fn apart_from_at(&self, point: [f64; 2], time: f64) -> DoubleDouble {
+        let time = DoubleDouble::from(time).clamp(DoubleDouble::ZERO, self.duration);
+        let apart = less(less(point.map(DoubleDouble::from), self.start), by(self.velocity, time));
         dot(apart, apart)
     }
 
     /// What is wrong with an interval of delays that was found for this edge and another one: a contact outside of it, or an end
     /// that is further out than the excess allows (of lengths, and of times).
     pub fn judge(&self, other: &Self, reach: f64, found: Option<[f64; 2]>, excess: [f64; 2]) -> Result<(), String> {
-        let square = |reach: Twofold| reach * reach;
-        let (reach, wide) = (Twofold::from(reach), Twofold::from(reach) + Twofold::from(excess[0]));
+        let square = |reach: DoubleDouble| reach * reach;
+        let (reach, wide) = (DoubleDouble::from(reach), DoubleDouble::from(reach) + DoubleDouble::from(excess[0]));
         let Some([lo, hi]) = found else {
             return match self.apart(other) {
                 apart if apart > square(reach) => Ok(()),
@@ -127,12 +128,12 @@ impl Exact {
             return Err(format!("no interval: {lo} {hi}"));
         }
         // Rounding may lead to where nobody is.
-        let there = |delay: f64| Twofold::from(delay).clamp(-other.duration, self.duration);
+        let there = |delay: f64| DoubleDouble::from(delay).clamp(-other.duration, self.duration);
         let middle = there(0.5 * (lo + hi));
         let inside = self.nearest(other, middle).ok_or("both are never under way in the middle")?;
         for (end, beyond, inward) in [(lo, lo.next_down(), excess[1]), (hi, hi.next_up(), -excess[1])] {
             // Beyond the end nobody is there any more, or they are apart and the farther the more: f is convex.
-            if let Some(apart) = self.nearest(other, Twofold::from(beyond))
+            if let Some(apart) = self.nearest(other, DoubleDouble::from(beyond))
                 && (apart <= square(reach) || apart <= inside)
             {
                 return Err(format!("contacts beyond {end} s are missing: {} m", apart.sqrt().to_f64()));

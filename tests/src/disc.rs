@@ -2,9 +2,9 @@
 //!
 //! The oracle and the library are both built from this description, which is why it holds no geometry.
 
-use pcr_core::{Invalid, Limits, Motion, PathRef, Phase, Point, Pose, Profile, ProfileRef, Segment, Turn};
+use pcr_core::{InvalidInput, Limits, Motion, PathRef, Phase, Point, Pose, Profile, ProfileRef, Segment, TurnSide};
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use std::f64::consts::TAU;
 
 /// A line or an arc of a path, by its length \[m\].
@@ -112,7 +112,7 @@ impl Disc {
 
     /// The numbers that are left of it in the format `S`. The library sees exactly these, and so must whoever checks
     /// it: the rounding of the input is not an error of the algorithm.
-    pub fn rounded<S: Format>(&self) -> Self {
+    pub fn rounded<S: HostScalar>(&self) -> Self {
         let round = |value: f64| S::from_f64(value).to_f64();
         let legs = self.legs.iter().map(|leg| match *leg {
             Leg::Line(length) => Leg::Line(round(length)),
@@ -175,7 +175,7 @@ impl Drive {
     }
 
     /// The numbers that are left of it in the format `S`.
-    pub fn rounded<S: Format>(&self) -> Self {
+    pub fn rounded<S: HostScalar>(&self) -> Self {
         let round = |value: f64| S::from_f64(value).to_f64();
         match self {
             Self::Unit => Self::Unit,
@@ -193,19 +193,19 @@ pub type Driven = (Disc, Drive, f64);
 
 /// What a motion of the library borrows.
 #[derive(Clone, Debug)]
-pub struct Course<S: Format> {
+pub struct Course<S: HostScalar> {
     segments: Vec<Segment<S>>,
     phases: Vec<Phase<S>>,
     radius: S,
     start: S,
 }
 
-impl<S: Format> Course<S> {
+impl<S: HostScalar> Course<S> {
     /// The disc with speed 1 m/s from the time 0 on.
     ///
     /// # Errors
     /// As the library's constructors.
-    pub fn new(disc: &Disc) -> Result<Self, Invalid> {
+    pub fn new(disc: &Disc) -> Result<Self, InvalidInput> {
         Self::driven(disc, &Drive::Unit, 0.0)
     }
 
@@ -213,7 +213,7 @@ impl<S: Format> Course<S> {
     ///
     /// # Errors
     /// As the library's constructors.
-    pub fn driven(disc: &Disc, drive: &Drive, start: f64) -> Result<Self, Invalid> {
+    pub fn driven(disc: &Disc, drive: &Drive, start: f64) -> Result<Self, InvalidInput> {
         let [x, y, heading] = disc.start;
         let position = Point::new(S::from_f64(x), S::from_f64(y));
         let origin = Segment::standing(Pose { position, heading: S::angle(heading).expect("an angle") })?;
@@ -223,8 +223,8 @@ impl<S: Format> Course<S> {
             let length = S::from_f64(leg.length());
             let next = match *leg {
                 Leg::Line(_) => last.then_line(length)?,
-                Leg::Left { radius, .. } => last.then_arc(S::from_f64(radius), Turn::Left, length)?,
-                Leg::Right { radius, .. } => last.then_arc(S::from_f64(radius), Turn::Right, length)?,
+                Leg::Left { radius, .. } => last.then_arc(S::from_f64(radius), TurnSide::Left, length)?,
+                Leg::Right { radius, .. } => last.then_arc(S::from_f64(radius), TurnSide::Right, length)?,
             };
             if next.length() > S::ZERO {
                 segments.push(next);
@@ -268,7 +268,7 @@ impl<S: Format> Course<S> {
         self.try_motion().expect("checked by the constructor")
     }
 
-    fn try_motion(&self) -> Result<Motion<'_, S>, Invalid> {
+    fn try_motion(&self) -> Result<Motion<'_, S>, InvalidInput> {
         Motion::new(PathRef::new(&self.segments)?, ProfileRef::new(&self.phases)?, self.radius, self.start)
     }
 }

@@ -13,8 +13,8 @@ use pcr_certify::motion::{Mover, meetings};
 use pcr_core::scalar::Micro;
 use pcr_core::{Encounter, Interval, Motion, Profile, RegionRef, earliest_start, excess, least_duration, union};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::certificate;
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::checker_input;
+use pcr_planning::fleet::{HostScalar, build_ecm};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Phases of a profile, at most.
@@ -75,10 +75,10 @@ impl Ends {
 ///
 /// # Panics
 /// If the checker does not take a motion of the library.
-pub fn apart<S: Format>(motions: [&Motion<'_, S>; 2], headings: [f64; 2], time: [f64; 2], more: f64) -> bool {
+pub fn apart<S: HostScalar>(motions: [&Motion<'_, S>; 2], headings: [f64; 2], time: [f64; 2], more: f64) -> bool {
     let mover = |place: usize| {
         let heading = S::angle(headings[place]).expect("an angle");
-        let mut agent = certificate::agent(place as u64, motions[place], heading, &[]);
+        let mut agent = checker_input::agent(place as u64, motions[place], heading, &[]);
         // Less than the radius of one disc may be taken from both.
         let [own, their] = motions.map(|motion| motion.radius().to_f64());
         agent.radius +=
@@ -90,12 +90,12 @@ pub fn apart<S: Format>(motions: [&Motion<'_, S>; 2], headings: [f64; 2], time: 
 }
 
 /// Two motions, and the headings at their starts.
-struct Both<'a, S: Format> {
+struct Both<'a, S: HostScalar> {
     fleet: [Motion<'a, S>; 2],
     headings: [f64; 2],
 }
 
-impl<S: Format> Both<'_, S> {
+impl<S: HostScalar> Both<'_, S> {
     /// Whether the other agent and the ego in another motion along its path are proved to be apart.
     fn apart(&self, ego: &Motion<'_, S>, time: [f64; 2], more: f64) -> bool {
         apart([ego, &self.fleet[1]], self.headings, time, more)
@@ -131,7 +131,7 @@ impl<S: Format> Both<'_, S> {
     }
 }
 
-impl<S: Format> Both<'_, S> {
+impl<S: HostScalar> Both<'_, S> {
     /// Compares the ends of what deep regions forbid: just inside of an end, discs that are larger by what the bound allows meet.
     fn compare<'r>(&self, row: impl Iterator<Item = RegionRef<'r, S>>, discs: [&Disc; 2], found: &mut Ends)
     where
@@ -180,7 +180,7 @@ impl<S: Format> Both<'_, S> {
 const ALWAYS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// The finite ends of disjoint intervals, and free values beyond them.
-fn free_values<S: Format>(forbidden: &[Interval<S>], beyond: bool, dice: &mut Dice) -> Vec<(S, bool)> {
+fn free_values<S: HostScalar>(forbidden: &[Interval<S>], beyond: bool, dice: &mut Dice) -> Vec<(S, bool)> {
     let mut values = Vec::new();
     for interval in forbidden {
         for (end, sign) in [(interval.lo, -1.0), (interval.hi, 1.0)].into_iter().filter(|(end, _)| end.abs() < S::LIMIT)
@@ -204,7 +204,7 @@ fn free_values<S: Format>(forbidden: &[Interval<S>], beyond: bool, dice: &mut Di
 }
 
 /// The course of a disc whose path ends where its profile does: the judge takes the difference for a place that is not known.
-fn fitted<S: Format>(driven: &Driven) -> Option<(Course<S>, Driven)> {
+fn fitted<S: HostScalar>(driven: &Driven) -> Option<(Course<S>, Driven)> {
     let mut driven = driven.clone();
     for _ in 0..3 {
         let (course, rounded) = Course::<S>::rounded(&driven)?;
@@ -222,7 +222,7 @@ fn fitted<S: Format>(driven: &Driven) -> Option<(Course<S>, Driven)> {
 
 /// Judges what the queries call free in a scene; `None` if it does not fit the format or has no region. With `beyond`, also values next to the ends of
 /// intervals and far from them.
-pub fn judged<S: Format>(scene: &Scene, beyond: bool, seed: u64) -> Option<Ends> {
+pub fn judged<S: HostScalar>(scene: &Scene, beyond: bool, seed: u64) -> Option<Ends> {
     let dice = &mut Dice::seeded(seed ^ 0x5eed);
     let courses = scene.each_ref().map(fitted::<S>);
     let [Some((own, (disc, ..))), Some((their, (other, ..)))] = courses else { return None };
@@ -283,7 +283,7 @@ pub fn judged<S: Format>(scene: &Scene, beyond: bool, seed: u64) -> Option<Ends>
 }
 
 /// The scene of this number.
-pub fn scene<S: Format>(seed: u64) -> Scene {
+pub fn scene<S: HostScalar>(seed: u64) -> Scene {
     let dice = &mut Dice::seeded(seed);
     let limit = S::LIMIT.to_f64();
     // 0.9 of the farthest that the format has, or coordinates of UTM.
@@ -347,7 +347,7 @@ pub fn scene<S: Format>(seed: u64) -> Scene {
 }
 
 /// The scenes of these numbers.
-pub fn scenes<S: Format>(first: u64, count: u64) -> Ends {
+pub fn scenes<S: HostScalar>(first: u64, count: u64) -> Ends {
     let mut all = Ends::default();
     for seed in first..first + count {
         if let Some(found) = judged::<S>(&scene::<S>(seed), true, seed) {
@@ -364,7 +364,7 @@ fn numbered(mut found: Ends, seed: u64) -> Ends {
 }
 
 /// Directed search from the scenes of these numbers: each step changes one number, and is kept unless it leaves more clearance.
-pub fn searches<S: Format>(first: u64, count: u64, steps: u64) -> Ends {
+pub fn searches<S: HostScalar>(first: u64, count: u64, steps: u64) -> Ends {
     let mut all = scenes::<S>(first, count);
     for seed in first..first + count {
         let mut at = scene::<S>(seed);

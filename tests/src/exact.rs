@@ -4,6 +4,6 @@
 mod route;
 mod travel;
 
-pub use pcr_certify::twofold::Twofold;
+pub use pcr_certify::double_double::DoubleDouble;
 pub use route::{Place, Route};
 pub use travel::Travel;

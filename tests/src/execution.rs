@@ -5,10 +5,10 @@ use crate::disc::{Course, Disc, Leg};
 use crate::generators::{Dice, leg};
 use crate::oracle::Route;
 use pcr_core::{
-    Brakes, Full, Hold, Interval, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region,
-    Tolerances,
+    AdmissionError, BrakingModel, CapacityError, CheckState, CheckTolerances, EcmEntry, Interval, Motion,
+    MovementAuthority, PassingState, PathProposal, Piece, PrecedenceTable, Progress, RegionPrecedence,
 };
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Time between two controls \[s\].
@@ -28,7 +28,7 @@ const REGIONS: usize = 1000;
 const PIECES: usize = 4000;
 
 /// The table of the fleets here.
-pub type Table<S> = Orders<S, Vec<Region>, Vec<Piece<S>>, Vec<Order<S>>>;
+pub type Table<S> = PrecedenceTable<S, Vec<EcmEntry>, Vec<Piece<S>>, Vec<RegionPrecedence<S>>>;
 
 /// What became of a fleet.
 #[derive(Clone, Copy, Debug, Default)]
@@ -49,7 +49,7 @@ pub struct Tally {
     pub time: f64,
 }
 
-struct Robot<S: Format> {
+struct Robot<S: HostScalar> {
     disc: Disc,
     route: Route,
     course: &'static Course<S>,
@@ -64,7 +64,7 @@ struct Robot<S: Format> {
     other: Option<(Disc, f64)>,
 }
 
-impl<S: Format> Robot<S> {
+impl<S: HostScalar> Robot<S> {
     fn new(disc: Disc, doubt: [f64; 2]) -> Option<Self> {
         let disc = disc.rounded::<S>();
         // Tests are short.
@@ -89,16 +89,16 @@ impl<S: Format> Robot<S> {
     }
 
     /// Goes on for a step, so that it can stop before the hold; returns whether it has to wait.
-    fn drive(&mut self, hold: Hold<S>, stops: bool) -> bool {
+    fn drive(&mut self, hold: MovementAuthority<S>, stops: bool) -> bool {
         let end = self.length();
         let thought = (self.at + self.doubt[1]).min(end);
         let limit = match hold {
-            Hold::Free => end,
-            Hold::At(hold) => hold.to_f64().min(end),
-            Hold::Inside => thought,
+            MovementAuthority::Free => end,
+            MovementAuthority::At(hold) => hold.to_f64().min(end),
+            MovementAuthority::Inside => thought,
         };
         let left = limit - thought;
-        let brakes = Brakes::new(BRAKE, 0.5 * STEP).expect("brakes");
+        let brakes = BrakingModel::new(BRAKE, 0.5 * STEP).expect("brakes");
         let wanted = if stops { 0.0 } else { brakes.speed(left - 0.5 * self.speed * STEP).min(SPEED) };
         let change = BRAKE * STEP;
         let speed = wanted.clamp((self.speed - change).max(0.0), self.speed + change);
@@ -153,7 +153,7 @@ impl<S: Format> Robot<S> {
 /// # Panics
 /// With the seed, where two discs touch, a robot has to brake harder than it can, one does not arrive, or a refusal leaves
 /// traces.
-pub fn run<S: Format>(seed: u64, robots: usize, missions_until: f64) -> Tally {
+pub fn run<S: HostScalar>(seed: u64, robots: usize, missions_until: f64) -> Tally {
     let mut state = seed;
     let mut dice = move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -164,11 +164,12 @@ pub fn run<S: Format>(seed: u64, robots: usize, missions_until: f64) -> Tally {
     let tolerance = 8.0 * pcr_core::excess(&fleet[0].course.motion(), &fleet[0].course.motion()).to_f64() + 1e-9;
     let mut motions: Vec<Motion<'static, S>> = fleet.iter().map(|robot| robot.course.motion()).collect();
     let mut progress: Vec<Progress<S>> = fleet.iter().map(Robot::progress).collect();
-    let storage = (vec![Region::EMPTY; REGIONS], vec![Piece::EMPTY; PIECES], vec![Order::EMPTY; 2 * REGIONS]);
+    let storage =
+        (vec![EcmEntry::EMPTY; REGIONS], vec![Piece::EMPTY; PIECES], vec![RegionPrecedence::EMPTY; 2 * REGIONS]);
     let mut orders = Table::build(storage.0, storage.1, storage.2, &motions).expect("room for a small fleet");
-    let mut reaches = vec![Reach::EMPTY; robots];
+    let mut reaches = vec![CheckState::EMPTY; robots];
     let width = S::from_f64(if exact { 0.05 } else { 0.06 });
-    let tolerances = Tolerances { width, gain: S::from_f64(1e-3) };
+    let tolerances = CheckTolerances { width, gain: S::from_f64(1e-3) };
     let mut tally = Tally { clearance: f64::INFINITY, ..Tally::default() };
     // What each robot has heard of each other one.
     let mut heard: Vec<Vec<Progress<S>>> = vec![progress.clone(); robots];
@@ -182,12 +183,12 @@ pub fn run<S: Format>(seed: u64, robots: usize, missions_until: f64) -> Tally {
             let agent = dice.below(fleet.len());
             let (next, changes) = proposal(&fleet[agent], &mut dice);
             if let Some(next) = next {
-                let mission = Mission { agent, motion: next.course.motion(), progress: next.progress() };
+                let mission = PathProposal { agent, motion: next.course.motion(), progress: next.progress() };
                 let before = trace(&orders, &motions, &progress);
                 let random = seed.wrapping_add(tick as u64);
                 let prefer = |region: &pcr_core::RegionRef<'_, S>| {
                     let odd = (region.other() as u64 + random).is_multiple_of(2);
-                    if odd { Pass::First } else { Pass::Second }
+                    if odd { PassingState::First } else { PassingState::Second }
                 };
                 match orders.admit(&mut motions, &mut progress, mission, tolerances, &mut reaches, prefer) {
                     Ok(()) => {
@@ -200,9 +201,11 @@ pub fn run<S: Format>(seed: u64, robots: usize, missions_until: f64) -> Tally {
                         let after = trace(&orders, &motions, &progress);
                         assert_eq!(before, after, "seed {seed}: {refused} leaves traces");
                         match refused {
-                            Refused::Stuck { .. } => tally.stuck += 1,
-                            Refused::Blocked { .. } => tally.blocked += 1,
-                            Refused::Full(Full::Pieces | Full::Regions) => panic!("seed {seed}: no room"),
+                            AdmissionError::Stuck { .. } => tally.stuck += 1,
+                            AdmissionError::Blocked { .. } => tally.blocked += 1,
+                            AdmissionError::Full(CapacityError::Pieces | CapacityError::Regions) => {
+                                panic!("seed {seed}: no room")
+                            }
                             _ => panic!("seed {seed}: {refused}"),
                         }
                     }
@@ -247,7 +250,7 @@ pub fn run<S: Format>(seed: u64, robots: usize, missions_until: f64) -> Tally {
 }
 
 /// Robots at rest at the ends of short paths, apart from one another.
-fn placed<S: Format>(dice: &mut Dice, robots: usize, exact: bool) -> Vec<Robot<S>> {
+fn placed<S: HostScalar>(dice: &mut Dice, robots: usize, exact: bool) -> Vec<Robot<S>> {
     let mut fleet: Vec<Robot<S>> = Vec::new();
     let mut k = 0;
     while fleet.len() < robots {
@@ -275,7 +278,7 @@ fn placed<S: Format>(dice: &mut Dice, robots: usize, exact: bool) -> Vec<Robot<S
 }
 
 /// A new mission, or another end of the present one on the way, with whether it is that.
-fn proposal<S: Format>(robot: &Robot<S>, dice: &mut Dice) -> (Option<Robot<S>>, bool) {
+fn proposal<S: HostScalar>(robot: &Robot<S>, dice: &mut Dice) -> (Option<Robot<S>>, bool) {
     match &robot.other {
         Some((other, until)) if robot.progress().stop.to_f64() < *until && dice.chance(0.2) => {
             let changed = Robot::new(other.clone(), robot.doubt).map(|next| Robot {
@@ -293,7 +296,7 @@ fn proposal<S: Format>(robot: &Robot<S>, dice: &mut Dice) -> (Option<Robot<S>>, 
 }
 
 /// All that a refusal must not change.
-fn trace<S: Format>(orders: &Table<S>, motions: &[Motion<'_, S>], progress: &[Progress<S>]) -> String {
+fn trace<S: HostScalar>(orders: &Table<S>, motions: &[Motion<'_, S>], progress: &[Progress<S>]) -> String {
     let row = |agent: usize| {
         let passes = orders
             .row(motions, agent)
@@ -305,7 +308,7 @@ fn trace<S: Format>(orders: &Table<S>, motions: &[Motion<'_, S>], progress: &[Pr
 }
 
 /// Least distance between two discs \[m\].
-fn clearance<S: Format>(fleet: &[Robot<S>]) -> f64 {
+fn clearance<S: HostScalar>(fleet: &[Robot<S>]) -> f64 {
     let pairs = (0..fleet.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
     let apart = |(a, b): (usize, usize)| {
         let (p, q) = (fleet[a].position(), fleet[b].position());

@@ -14,7 +14,7 @@ pub use tangencies::{behind, inner_tangent};
 
 use crate::disc::{Disc, Drive, Leg};
 use crate::neighbour::neighbour;
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -132,7 +132,7 @@ pub fn moved(disc: &Disc, [dx, dy, turn]: [f64; 3]) -> Disc {
 
 /// A pair in motion for the checker of tables, in the format `S`: those of [`case`], others whose numbers are multiples of a few, that
 /// touch from inside an arc or are related to one another, each number of these a few last digits off now and then.
-pub fn certifiable<S: Format>(seed: u64) -> Case {
+pub fn certifiable<S: HostScalar>(seed: u64) -> Case {
     let (kind, seed) = (seed % 8, seed / 8);
     if kind < 3 {
         return case(seed.wrapping_mul(3).wrapping_add(kind)).0;
@@ -157,7 +157,7 @@ pub fn certifiable<S: Format>(seed: u64) -> Case {
 }
 
 /// The disc with some of its numbers one to three last digits off.
-fn nudged<S: Format>(mut disc: Disc, often: f64, dice: &mut Dice) -> Disc {
+fn nudged<S: HostScalar>(mut disc: Disc, often: f64, dice: &mut Dice) -> Disc {
     let mut nudge = |value: f64| {
         // Beyond the limit there may be no other number; the library refuses it.
         if !dice.chance(often) || value.abs() >= S::LIMIT.to_f64() {

@@ -1,12 +1,12 @@
 //! Everything that the library can be asked, with numbers that are no numbers, or at the limits of their format.
 
 use pcr_core::{
-    Bounds, BroadPhase, Curve, Drive, Encounter, Interval, Limits, Motion, PathRef, Point, Pose, Profile, Region,
-    Segment, Station, Turn, crossings, earliest_departure, earliest_start, first_conflict, first_overlap,
+    Aabb, BroadPhase, Curve, EcmEntry, Encounter, Interval, Limits, Motion, PathRef, Point, Pose, Profile, SearchNode,
+    Segment, SpeedPlanLimits, TurnSide, crossings, earliest_departure, earliest_start, first_conflict, first_overlap,
     least_duration, plan_delays, plan_speed, plan_speeds, safe_intervals, safe_lengths,
 };
 use pcr_core::{Ecm, Piece, RegionRef};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 
 /// Numbers that are no numbers, or hardly.
 pub const GARBAGE: [f64; 22] = [
@@ -42,25 +42,26 @@ const PATIENCE: f64 = 300.0;
 const PHASES: usize = 16;
 
 /// A number of the format: one of any size, or a part of its limit.
-pub fn number<S: Format>(value: f64, of_limit: bool) -> f64 {
+pub fn number<S: HostScalar>(value: f64, of_limit: bool) -> f64 {
     if of_limit { value * S::LIMIT.to_f64() } else { value }
 }
 
 /// A motion, and what it borrows.
-struct Parts<S: Format> {
+struct Parts<S: HostScalar> {
     segments: Vec<Segment<S>>,
     profile: Profile<S, PHASES>,
     radius: S,
     start: S,
 }
 
-impl<S: Format> Parts<S> {
+impl<S: HostScalar> Parts<S> {
     fn new(mut number: impl FnMut() -> S) -> Option<Self> {
         let (x, y, heading) = (number(), number(), number().to_f64());
         let mut last = Segment::standing(Pose { position: Point::new(x, y), heading: S::angle(heading)? }).ok()?;
         let mut segments = vec![];
         for _ in 0..3 {
-            let arc = last.then_arc(number(), if number() > S::ZERO { Turn::Left } else { Turn::Right }, number());
+            let arc =
+                last.then_arc(number(), if number() > S::ZERO { TurnSide::Left } else { TurnSide::Right }, number());
             if let Some(next) = arc.or_else(|_| last.then_line(number())).ok().filter(|next| next.length() > S::ZERO) {
                 segments.push(next);
                 last = next;
@@ -94,7 +95,7 @@ impl<S: Format> Parts<S> {
     }
 }
 
-fn finite<S: Format>(interval: Interval<S>) {
+fn finite<S: HostScalar>(interval: Interval<S>) {
     let Interval { lo, hi } = interval;
     assert!(lo.is_finite() && hi.is_finite() && lo <= hi, "{interval:?}");
 }
@@ -104,7 +105,7 @@ fn finite<S: Format>(interval: Interval<S>) {
 ///
 /// # Panics
 /// Where something does, or where an answer denies what is known: that an agent is in contact with its own copy.
-pub fn survives<S: Format>(numbers: &[f64]) -> bool {
+pub fn survives<S: HostScalar>(numbers: &[f64]) -> bool {
     let mut next = numbers.iter().copied().cycle();
     let mut number = || S::from_f64(next.next().unwrap_or_default());
     let parts: Vec<_> = (0..3).filter_map(|_| Parts::new(&mut number)).collect();
@@ -117,7 +118,7 @@ pub fn survives<S: Format>(numbers: &[f64]) -> bool {
     for motion in &fleet {
         alone(motion, interval);
     }
-    let ecm = Ecm::build(vec![Region::EMPTY; 256], vec![Piece::EMPTY; 1024], &fleet).expect("enough room");
+    let ecm = Ecm::build(vec![EcmEntry::EMPTY; 256], vec![Piece::EMPTY; 1024], &fleet).expect("enough room");
     for region in ecm.regions(&fleet).expect("the table of the fleet") {
         of_region(&region, numbers, interval);
     }
@@ -129,7 +130,7 @@ pub fn survives<S: Format>(numbers: &[f64]) -> bool {
 }
 
 /// What one motion is asked.
-fn alone<S: Format>(motion: &Motion<'_, S>, interval: Interval<S>) {
+fn alone<S: HostScalar>(motion: &Motion<'_, S>, interval: Interval<S>) {
     for time in [interval.lo, interval.hi] {
         let length = motion.length_at(motion.time().lo.max(time));
         assert!(length >= S::ZERO && length <= motion.path().length());
@@ -153,7 +154,7 @@ fn alone<S: Format>(motion: &Motion<'_, S>, interval: Interval<S>) {
 
 /// Whether a search for the contacts of two does not take all day, by the bound for discs that hover near contact all the time:
 /// T √(c / 2 ε) steps, c the accelerations and the squares of speeds by radii.
-fn is_quick<S: Format>(ego: &Motion<'_, S>, other: &Motion<'_, S>) -> bool {
+fn is_quick<S: HostScalar>(ego: &Motion<'_, S>, other: &Motion<'_, S>) -> bool {
     let pair = Encounter::new(ego, other);
     let bend = |motion: &Motion<'_, S>| {
         let speed = motion.profile().top_speed().to_f64();
@@ -169,7 +170,7 @@ fn is_quick<S: Format>(ego: &Motion<'_, S>, other: &Motion<'_, S>) -> bool {
 }
 
 /// What a region is asked.
-fn of_region<S: Format>(region: &RegionRef<'_, S>, numbers: &[f64], interval: Interval<S>) {
+fn of_region<S: HostScalar>(region: &RegionRef<'_, S>, numbers: &[f64], interval: Interval<S>) {
     finite(region.time());
     finite(region.length());
     finite(region.other_length());
@@ -184,7 +185,7 @@ fn of_region<S: Format>(region: &RegionRef<'_, S>, numbers: &[f64], interval: In
 }
 
 /// What agents are asked together.
-fn together<S: Format>(fleet: &[Motion<'_, S>], ecm: &Ecm<S, Vec<Region>, Vec<Piece<S>>>, interval: Interval<S>) {
+fn together<S: HostScalar>(fleet: &[Motion<'_, S>], ecm: &Ecm<S, Vec<EcmEntry>, Vec<Piece<S>>>, interval: Interval<S>) {
     let always = Interval::new(-S::LIMIT, S::LIMIT);
     for (k, ego) in fleet.iter().enumerate() {
         for other in fleet {
@@ -213,28 +214,28 @@ fn together<S: Format>(fleet: &[Motion<'_, S>], ecm: &Ecm<S, Vec<Region>, Vec<Pi
         let overlap = first_overlap(ego, row.clone(), interval).expect("its own row");
         assert!(overlap.is_none_or(|met| !met.conflict.touching));
         assert!(met.is_none_or(|met| met.other != k));
-        let mut stations = vec![Station::EMPTY; 24];
+        let mut stations = vec![SearchNode::EMPTY; 24];
         let limits = Limits { speed: ego.profile().top_speed(), acceleration: interval.hi };
-        for drive in [Drive::of(ego), Some(Drive::rest_to_rest(limits))].into_iter().flatten() {
+        for drive in [SpeedPlanLimits::of(ego), Some(SpeedPlanLimits::rest_to_rest(limits))].into_iter().flatten() {
             let _ = plan_speed::<S, PHASES>(ego, drive, row.clone(), &[], &mut stations);
         }
         safe_intervals(fleet, k, interval, interval).expect("an agent of the fleet").for_each(drop);
         safe_lengths(fleet, k, interval).expect("an agent of the fleet").for_each(finite);
         itself(ego, interval);
     }
-    if let Ok(boxes) = BroadPhase::new(vec![Bounds::default(); 9 * fleet.len()], fleet, interval) {
+    if let Ok(boxes) = BroadPhase::new(vec![Aabb::default(); 9 * fleet.len()], fleet, interval) {
         boxes.contacts().take(8).for_each(|(_, time)| finite(time));
     }
     let (mut plan, mut order) = (fleet.to_vec(), (0..fleet.len()).collect::<Vec<_>>());
     let _ = plan_delays(ecm, fleet, &mut plan, &mut order);
     let mut profiles = vec![Profile::<S, PHASES>::standing(); 2 * fleet.len()];
-    let mut stations = vec![Station::EMPTY; 24];
+    let mut stations = vec![SearchNode::EMPTY; 24];
     let mut plan = fleet.to_vec();
     let _ = plan_speeds(ecm, fleet, &mut plan, &mut order, &mut profiles, &mut stations);
 }
 
 /// An agent and its own copy are in the same place at all times.
-fn itself<S: Format>(motion: &Motion<'_, S>, interval: Interval<S>) {
+fn itself<S: HostScalar>(motion: &Motion<'_, S>, interval: Interval<S>) {
     let pair = Encounter::new(motion, motion);
     for during in [motion.time(), Interval::new(interval.lo, interval.lo), Interval::new(-S::LIMIT, S::LIMIT)] {
         let conflict = pair.conflicts(during).next().expect("the same place");

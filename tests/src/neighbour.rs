@@ -1,9 +1,9 @@
 //! Numbers beside a number.
 
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 
 /// Next number of the format above `x`, or below it.
-pub fn neighbour<S: Format>(x: S, above: bool) -> S {
+pub fn neighbour<S: HostScalar>(x: S, above: bool) -> S {
     let value = x.to_f64();
     let mut step = (value.abs() * f64::EPSILON).max(f64::MIN_POSITIVE.sqrt());
     loop {

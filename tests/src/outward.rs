@@ -9,12 +9,12 @@ mod search;
 mod view;
 
 use crate::disc::{Course, Disc, Drive};
-use crate::exact::{Route, Travel, Twofold};
+use crate::exact::{DoubleDouble, Route, Travel};
 use crate::generators::{Dice, case};
 use pcr_core::scalar::Micro;
-use pcr_core::{Full, excess};
+use pcr_core::{CapacityError, excess};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{HostScalar, build_ecm};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::{fmt, thread};
@@ -115,7 +115,7 @@ pub const FORMATS: &[(&str, Run)] = &[
 ];
 
 /// Checks the cases `first`, `first + 1`, ... of [`crate::generators::case`].
-pub fn run<S: Format>(first: u64, count: u64) -> Tally {
+pub fn run<S: HostScalar>(first: u64, count: u64) -> Tally {
     let mut tally = Tally::default();
     for seed in first..first + count {
         let ((pair, drives), mut dice) = case(seed);
@@ -174,12 +174,12 @@ pub fn run_on_all_processors<T: Total>(
 }
 
 /// A disc in motion, in the library and exactly.
-struct Agent<S: Format> {
+struct Agent<S: HostScalar> {
     course: Course<S>,
     route: Route,
 }
 
-impl<S: Format> Agent<S> {
+impl<S: HostScalar> Agent<S> {
     fn new(disc: &Disc, drive: &Drive, start: f64) -> Result<Self, Violation> {
         let disc = disc.rounded::<S>();
         let start = S::from_f64(start).to_f64();
@@ -189,15 +189,15 @@ impl<S: Format> Agent<S> {
 }
 
 /// A pair that the format can hold.
-pub struct Checked<S: Format> {
+pub struct Checked<S: HostScalar> {
     agents: [Agent<S>; 2],
     /// Sum of the radii \[m\].
-    radius: Twofold,
+    radius: DoubleDouble,
     /// What a clearance in `f64` may be off \[m\].
     doubt: f64,
 }
 
-impl<S: Format> Checked<S> {
+impl<S: HostScalar> Checked<S> {
     /// The pair, with a drive and a start time for each.
     ///
     /// # Errors
@@ -206,7 +206,7 @@ impl<S: Format> Checked<S> {
     pub fn new(pair: &(Disc, Disc), drives: &[(Drive, f64); 2]) -> Result<Self, Violation> {
         let [(first, start), (second, other_start)] = drives;
         let agents = [Agent::<S>::new(&pair.0, first, *start)?, Agent::new(&pair.1, second, *other_start)?];
-        let radii = agents.each_ref().map(|agent| Twofold::from(agent.course.motion().radius().to_f64()));
+        let radii = agents.each_ref().map(|agent| DoubleDouble::from(agent.course.motion().radius().to_f64()));
         let extents = agents.each_ref().map(|agent| agent.course.motion().extent().to_f64());
         // A dozen operations on numbers of this size, rounded to 53 bits.
         let doubt = 16.0 * f64::EPSILON * (extents[0] + extents[1]);
@@ -223,7 +223,7 @@ impl<S: Format> Checked<S> {
         let ecm = match build_ecm(&motions) {
             Ok(ecm) => ecm,
             // Long paths that meet all along, most of their segments in a piece or two: what no storage can hold.
-            Err(Full::Pair(_)) if 2 * pairs_of_segments > (1 << 15) => return Ok(false),
+            Err(CapacityError::Pair(_)) if 2 * pairs_of_segments > (1 << 15) => return Ok(false),
             Err(full) => return Err(full.to_string()),
         };
         let excess = excess(&motions[0], &motions[1]).to_f64();

@@ -3,8 +3,8 @@
 use crate::disc::{Course, Disc, Drive, Driven};
 use crate::generators::{Dice, drive, leg};
 use crate::oracle::contact::Meeting;
-use pcr_core::{Encounter, Interval, Motion, Profile, Station, Unsolved, plan_delays, plan_speeds};
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_core::{Encounter, Interval, Motion, PlanError, Profile, SearchNode, plan_delays, plan_speeds};
+use pcr_planning::fleet::{HostScalar, build_ecm};
 use std::f64::consts::PI;
 
 /// How a fleet is planned.
@@ -65,7 +65,7 @@ pub fn audit(seed: u64, method: Method, tally: &mut Tally) {
     let (mut plan, mut order) = (motions.clone(), (0..motions.len()).collect::<Vec<_>>());
     let given = order.clone();
     let mut profiles = vec![Profile::<f64, 64>::standing(); 40];
-    let mut stations = vec![Station::EMPTY; 160];
+    let mut stations = vec![SearchNode::EMPTY; 160];
     let outcome = match method {
         Method::Delay => plan_delays(&ecm, &motions, &mut plan, &mut order),
         Method::Speed => plan_speeds(&ecm, &motions, &mut plan, &mut order, &mut profiles, &mut stations),
@@ -83,7 +83,7 @@ pub fn audit(seed: u64, method: Method, tally: &mut Tally) {
             tally.faster += u32::from(plan.iter().zip(&motions).any(differs));
             solved(seed, &driven, &motions, &plan, &order);
         }
-        Err(Unsolved::Starts([a, b]) | Unsolved::Ends([a, b]) | Unsolved::Always([a, b])) => {
+        Err(PlanError::Starts([a, b]) | PlanError::Ends([a, b]) | PlanError::Always([a, b])) => {
             tally.never += 1;
             // With no delay at all do they get by.
             for k in -8..=8 {
@@ -95,8 +95,8 @@ pub fn audit(seed: u64, method: Method, tally: &mut Tally) {
                 assert!(meeting.comes_within(margin, during), "seed {seed}: {a} and {b} at {k}");
             }
         }
-        Err(Unsolved::Priorities(_)) => tally.not_found += 1,
-        Err(Unsolved::Full(_) | Unsolved::Invalid { .. }) => tally.full += 1,
+        Err(PlanError::Priorities(_)) => tally.not_found += 1,
+        Err(PlanError::Full(_) | PlanError::Invalid { .. }) => tally.full += 1,
         Err(other) => panic!("seed {seed}: {other}"),
     }
 }
@@ -148,7 +148,7 @@ fn limits(motion: &Motion<'_, f64>) -> [f64; 2] {
 }
 
 /// The motion as the oracle takes it.
-pub fn drive_of<S: Format>(motion: &Motion<'_, S>) -> Drive {
+pub fn drive_of<S: HostScalar>(motion: &Motion<'_, S>) -> Drive {
     let phases = motion.profile().phases();
     let speed = phases.first().map_or(0.0, |first| first.speed()[0].to_f64());
     let pieces = phases.iter().map(|phase| (phase.time().length().to_f64(), phase.acceleration().to_f64()));

@@ -4,12 +4,12 @@
 //! edge or onto the next edge, it asks whether the rules let it; if not, it waits where it is. One that has waited for long goes another way,
 //! or is taken out and put in elsewhere. Where they were at all times is proved to be without contact by `pcr_certify`, which knows no rules.
 
-use pcr_certify::data::{Agent, Angle, Path, Phase, Segment, Travel};
-use pcr_certify::motion::{Meeting, Mover, meetings};
-use pcr_exclusions::{Claim, Rules, Section};
-use pcr_formats::import::Imported;
-use pcr_formats::random::Random;
-use pcr_formats::scenario::{PathSegment, Placed};
+use pcr_certify::motion::{ContactWitness, Mover, meetings};
+use pcr_certify::raw::{RawAgent, RawAngle, RawMotion, RawPath, RawPhase, RawSegment};
+use pcr_exclusions::{ClaimSpan, ExclusionRules, ResourceClaim};
+use pcr_formats::import::ImportedLayout;
+use pcr_formats::scenario::{PathSegment, PlacedSegment};
+use pcr_formats::splitmix64::SplitMix64;
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 
@@ -37,7 +37,7 @@ pub struct Run {
     /// Pairs of edges at one time whose distance was proved, or not.
     pub pairs: usize,
     /// Contacts, and what is not decided.
-    pub contacts: Vec<Meeting>,
+    pub contacts: Vec<ContactWitness>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,15 +50,15 @@ enum Place {
 struct Vehicle {
     id: u64,
     place: Place,
-    claim: Claim,
+    claim: ResourceClaim,
     goal: usize,
     refused: usize,
     /// Since when it is on its path, and what it does there.
     since: f64,
     /// Floor or map of its path.
     level: usize,
-    curve: Vec<Placed>,
-    phases: Vec<Phase>,
+    curve: Vec<PlacedSegment>,
+    phases: Vec<RawPhase>,
 }
 
 /// What a vehicle was on, and when.
@@ -72,11 +72,11 @@ struct Trip {
 
 /// Fleet, layout and rules.
 pub struct World<'a> {
-    imported: &'a Imported,
-    rules: &'a Rules,
+    imported: &'a ImportedLayout,
+    rules: &'a ExclusionRules,
     /// Of each edge, forward and backward.
-    sections: Vec<[Vec<Section>; 2]>,
-    random: Random,
+    sections: Vec<[Vec<ClaimSpan>; 2]>,
+    random: SplitMix64,
     vehicles: Vec<Vehicle>,
     /// Edges that leave each node, and whether backward.
     leaving: Vec<Vec<(usize, bool)>>,
@@ -86,12 +86,12 @@ pub struct World<'a> {
 }
 
 /// Runs until so many missions are done, with a few vehicles.
-pub fn run(imported: &Imported, rules: &Rules, missions: usize, seed: u64) -> Run {
+pub fn run(imported: &ImportedLayout, rules: &ExclusionRules, missions: usize, seed: u64) -> Run {
     let layout = &imported.layout;
     let mut leaving = vec![Vec::new(); layout.nodes.len()];
     for (k, edge) in layout.edges.iter().enumerate() {
-        let at = edge.ends.map(|node| layout.nodes[node].at);
-        let ends = edge.curve.first().zip(edge.curve.last()).map_or(at, |(first, last)| [first.at, last.end()]);
+        let at = edge.ends.map(|node| layout.nodes[node].point);
+        let ends = edge.curve.first().zip(edge.curve.last()).map_or(at, |(first, last)| [first.start, last.end()]);
         let reaches = (0..2).all(|k| (ends[k][0] - at[k][0]).hypot(ends[k][1] - at[k][1]) <= OFF);
         if reaches && layout.nodes[edge.ends[0]].level == layout.nodes[edge.ends[1]].level {
             edge.steps().for_each(|step| leaving[step.origin()].push((k, step.backward)));
@@ -101,7 +101,7 @@ pub fn run(imported: &Imported, rules: &Rules, missions: usize, seed: u64) -> Ru
     let vehicles = (0..count).map(|_| Vehicle {
         id: 0,
         place: Place::Out,
-        claim: Claim::default(),
+        claim: ResourceClaim::default(),
         goal: 0,
         refused: 0,
         since: 0.0,
@@ -114,7 +114,7 @@ pub fn run(imported: &Imported, rules: &Rules, missions: usize, seed: u64) -> Ru
         imported,
         rules,
         sections: rules.edges.iter().map(|ways| [0, 1].map(|k: usize| ways[k].sections())).collect(),
-        random: Random(seed),
+        random: SplitMix64(seed),
         vehicles,
         leaving,
         next_id: 1,
@@ -151,7 +151,7 @@ impl World<'_> {
 
     /// Lets a vehicle go on at a time; returns when it does so again.
     fn step(&mut self, k: usize, now: f64) -> f64 {
-        let wait = now + self.random.within(0.3, 2.0);
+        let wait = now + self.random.uniform(0.3, 2.0);
         match self.vehicles[k].place {
             Place::Out => {
                 self.enter(k, now);
@@ -187,17 +187,17 @@ impl World<'_> {
                 let vehicle = &mut self.vehicles[k];
                 vehicle.claim = self.rules.nodes[node].clone();
                 (vehicle.place, vehicle.refused) = (Place::Node(node), 0);
-                now + self.random.within(0.0, 3.0)
+                now + self.random.uniform(0.0, 3.0)
             }
         }
     }
 
-    fn claim_of(&self, edge: usize, back: bool, section: usize) -> &Claim {
+    fn claim_of(&self, edge: usize, back: bool, section: usize) -> &ResourceClaim {
         &self.sections[edge][usize::from(back)][section].claim
     }
 
     /// Whether the others let a vehicle have a claim.
-    fn is_free(&self, k: usize, claim: &Claim) -> bool {
+    fn is_free(&self, k: usize, claim: &ResourceClaim) -> bool {
         let mut others =
             self.vehicles.iter().enumerate().filter(|(other, vehicle)| *other != k && vehicle.place != Place::Out);
         !claim.closed && others.all(|(_, vehicle)| !vehicle.claim.keeps_out(claim))
@@ -231,7 +231,7 @@ impl World<'_> {
         if !self.is_free(k, &last.claim) || !mutual || !self.is_free(k, &self.rules.nodes[node]) {
             return;
         }
-        let at = self.imported.layout.nodes[node].at;
+        let at = self.imported.layout.nodes[node].point;
         let goal = self.random.below(self.leaving.len());
         self.vehicles[k] = Vehicle {
             id: self.next_id,
@@ -241,7 +241,7 @@ impl World<'_> {
             refused: 0,
             since: now,
             level: self.imported.layout.nodes[node].level,
-            curve: vec![Placed::line(at, at)],
+            curve: vec![PlacedSegment::line(at, at)],
             phases: Vec::new(),
         };
         self.next_id += 1;
@@ -279,11 +279,11 @@ impl World<'_> {
     fn set_off(&mut self, k: usize, edge: usize, back: bool, now: f64) -> f64 {
         let layout = &self.imported.layout;
         let ways = &layout.edges[edge].curve;
-        let mut curve: Vec<Placed> =
-            if back { ways.iter().rev().map(Placed::reversed).collect() } else { ways.clone() };
+        let mut curve: Vec<PlacedSegment> =
+            if back { ways.iter().rev().map(PlacedSegment::reversed).collect() } else { ways.clone() };
         if curve.is_empty() {
-            let at = layout.nodes[layout.edges[edge].ends[0]].at;
-            curve.push(Placed::line(at, at));
+            let at = layout.nodes[layout.edges[edge].ends[0]].point;
+            curve.push(PlacedSegment::line(at, at));
         }
         let claim = self.claim_of(edge, back, 0).clone();
         let vehicle = &mut self.vehicles[k];
@@ -312,15 +312,15 @@ impl World<'_> {
         let begin = self.travelled(k);
         let end = end.max(begin);
         let mut time = now;
-        let stop = if self.random.unit() < 0.2 { Some(self.random.within(begin, end)) } else { None };
+        let stop = if self.random.unit() < 0.2 { Some(self.random.uniform(begin, end)) } else { None };
         for to in stop.into_iter().chain([end]) {
             let here = self.travelled(k);
-            let speed = self.random.within(0.2, 2.0);
+            let speed = self.random.uniform(0.2, 2.0);
             let duration = (to - here) / speed + 1e-3;
             self.phase(k, time, time + duration, to);
             time += duration;
             if to < end {
-                let pause = self.random.within(0.1, 8.0);
+                let pause = self.random.uniform(0.1, 8.0);
                 self.phase(k, time, time + pause, to);
                 time += pause;
             }
@@ -344,12 +344,12 @@ impl World<'_> {
         let (mut time, here) = vehicle.phases.last().map_or((0.0, 0.0), |phase| (phase.time[1], phase.length[1]));
         let [from, to] = [from - vehicle.since, to - vehicle.since];
         if from > time {
-            vehicle.phases.push(Phase { time: [time, from], length: [here; 2], speed: [0.0; 2] });
+            vehicle.phases.push(RawPhase { time: [time, from], length: [here; 2], speed: [0.0; 2] });
             time = from;
         }
         if to > time {
             let speed = (length - here) / (to - time);
-            vehicle.phases.push(Phase { time: [time, to], length: [here, length], speed: [speed; 2] });
+            vehicle.phases.push(RawPhase { time: [time, to], length: [here, length], speed: [speed; 2] });
         }
     }
 
@@ -401,7 +401,7 @@ impl World<'_> {
 }
 
 /// The disc on its path, as the checker reads it.
-fn agent(vehicle: &Vehicle, radius: f64) -> Agent {
+fn agent(vehicle: &Vehicle, radius: f64) -> RawAgent {
     let (mut segments, mut total) = (Vec::new(), 0.0);
     let mut heading: Option<f64> = None;
     for piece in &vehicle.curve {
@@ -411,20 +411,25 @@ fn agent(vehicle: &Vehicle, radius: f64) -> Agent {
             PathSegment::Line { .. } => None,
             PathSegment::Arc { radius, sweep } => Some(radius * sweep.signum()),
         };
-        let turns = turn.map(Angle::Radians).into_iter().collect();
-        segments.push(Segment { length, radius: bend, turns, from: total, to: total + length });
+        let turns = turn.map(RawAngle::Radians).into_iter().collect();
+        segments.push(RawSegment { length, radius: bend, turns, from: total, to: total + length });
         total += length;
         heading = Some(piece.heading_at_end());
     }
     let first = vehicle.curve[0];
-    let path =
-        Path { start: first.at, heading: Angle::Radians(first.heading), segments, rounding: 1e-15 * total, step: 0.0 };
-    let travel = Travel { start: vehicle.since, phases: vehicle.phases.clone(), lag: 0.0, time_excess: 0.0 };
-    Agent { id: vehicle.id, radius, path, travel: Some(travel) }
+    let path = RawPath {
+        start: first.start,
+        heading: RawAngle::Radians(first.heading),
+        segments,
+        rounding: 1e-15 * total,
+        step: 0.0,
+    };
+    let travel = RawMotion { start: vehicle.since, phases: vehicle.phases.clone(), lag: 0.0, time_excess: 0.0 };
+    RawAgent { id: vehicle.id, radius, path, travel: Some(travel) }
 }
 
 /// A box around all discs on a curve.
-fn bounds(curve: &[Placed], radius: f64) -> [[f64; 2]; 2] {
+fn bounds(curve: &[PlacedSegment], radius: f64) -> [[f64; 2]; 2] {
     let mut all = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for piece in curve {
         // No point of a piece is farther from where it begins than its length.
@@ -432,7 +437,7 @@ fn bounds(curve: &[Placed], radius: f64) -> [[f64; 2]; 2] {
             PathSegment::Line { .. } => 0.0,
             PathSegment::Arc { .. } => piece.shape.length(),
         };
-        for point in [piece.at, piece.end()] {
+        for point in [piece.start, piece.end()] {
             for x in 0..2 {
                 all[0][x] = all[0][x].min(point[x] - room - radius - 1e-6);
                 all[1][x] = all[1][x].max(point[x] + room + radius + 1e-6);

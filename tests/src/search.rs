@@ -8,10 +8,10 @@ use crate::certified::table;
 use crate::disc::{Disc, Drive, Leg};
 use crate::generators::{Dice, Pair, RELATIONS, inner_tangent, related};
 use crate::outward::Total;
-use pcr_certify::data::Table;
 use pcr_certify::pair::Findings;
-use pcr_certify::table::{Checker, Margin};
-use pcr_planning::fleet::Format;
+use pcr_certify::raw::RawTable;
+use pcr_certify::table::{Checker, CoverageMargin};
+use pcr_planning::fleet::HostScalar;
 
 /// What a search has come to.
 #[derive(Clone, Debug)]
@@ -67,7 +67,7 @@ impl Searches {
 }
 
 /// The searches from `count` starts.
-pub fn searches<S: Format>(first: u64, count: u64, steps: u64) -> Searches {
+pub fn searches<S: HostScalar>(first: u64, count: u64, steps: u64) -> Searches {
     let mut all = Searches::default();
     for worst in (first..first + count).filter_map(|seed| search::<S>(seed, steps)) {
         let refuted = if worst.findings.refuted.is_empty() { Vec::new() } else { vec![worst.clone()] };
@@ -77,7 +77,7 @@ pub fn searches<S: Format>(first: u64, count: u64, steps: u64) -> Searches {
 }
 
 /// The pair of this number to start from, of a size that leaves the format some digits; two of three are tangent from inside.
-pub fn start<S: Format>(seed: u64) -> Pair {
+pub fn start<S: HostScalar>(seed: u64) -> Pair {
     let mut dice = Dice::seeded(seed);
     let size = size::<S>();
     let slack = S::slack(S::from_f64(10.0 * size)).to_f64();
@@ -89,7 +89,7 @@ pub fn start<S: Format>(seed: u64) -> Pair {
 }
 
 /// A metre, or what has as many digits as one of `Q16`.
-fn size<S: Format>() -> f64 {
+fn size<S: HostScalar>() -> f64 {
     (S::slack(S::ZERO).to_f64() * 13_000.0).max(1.0)
 }
 
@@ -104,7 +104,7 @@ fn scaled(disc: &Disc, by: f64) -> Disc {
 }
 
 /// The worst pair within so many steps of the one of this number; none if that has no region.
-pub fn search<S: Format>(seed: u64, steps: u64) -> Option<Worst> {
+pub fn search<S: HostScalar>(seed: u64, steps: u64) -> Option<Worst> {
     let mut pair = start::<S>(seed);
     let mut worst = (margin_below(&held::<S>(&pair)?, f64::INFINITY)?, pair.clone());
     for step in 0..steps {
@@ -118,7 +118,7 @@ pub fn search<S: Format>(seed: u64, steps: u64) -> Option<Worst> {
         }
     }
     let (margin, pair) = worst;
-    let findings = Checker::new(&held::<S>(&pair)?).and_then(|checker| checker.check(Margin::Needed));
+    let findings = Checker::new(&held::<S>(&pair)?).and_then(|checker| checker.check(CoverageMargin::Needed));
     let findings = findings.unwrap_or_else(|wrong| panic!("{seed} in {}: {wrong}", S::NAME));
     Some(Worst { margin, findings, seed, pair })
 }
@@ -126,11 +126,11 @@ pub fn search<S: Format>(seed: u64, steps: u64) -> Option<Worst> {
 /// How much worse than the worst one a pair may be from which the search goes on: margins are found to 2^-12 only.
 const PLATEAU: f64 = 1.0 / 4096.0;
 
-fn held<S: Format>(pair: &Pair) -> Option<Table> {
+fn held<S: HostScalar>(pair: &Pair) -> Option<RawTable> {
     table::<S>(pair, &[(Drive::Unit, 0.0), (Drive::Unit, 0.0)])
 }
 
-fn margin_below(table: &Table, known: f64) -> Option<f64> {
+fn margin_below(table: &RawTable, known: f64) -> Option<f64> {
     let found = Checker::new(table).and_then(|checker| checker.margin_below(known));
     found.expect("a table of the library").map(|(margin, _)| margin)
 }

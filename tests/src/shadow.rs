@@ -11,7 +11,7 @@ mod formats;
 
 pub use enclosure::Enclosure;
 use pcr_core::Scalar;
-use pcr_core::scalar::{Angle, Ramp, Sector, Unit, Wide};
+use pcr_core::scalar::{AccelerationRamp, Angle, AngleSector, Unit, Wide};
 use std::cmp::Ordering;
 use std::fmt::Debug;
 use std::ops::{Add, Neg, Sub};
@@ -174,14 +174,14 @@ impl<X: Shadowed> Scalar for Number<X> {
     }
     fn half_tangent_roots(
         equations: impl Iterator<Item = [Product<X>; 4]>,
-        sector: Sector<Sine<X>>,
+        sector: AngleSector<Sine<X>>,
         mut found: impl FnMut(Turned<X>),
     ) {
         let [from, middle] = [sector.from, sector.middle].map(|direction| direction.map(|sine| sine.value));
-        let sector = Sector { from, middle, least: sector.least.value };
+        let sector = AngleSector { from, middle, least: sector.least.value };
         for [a, b, g, doubt] in equations.map(|equation| equation.map(|coefficient| coefficient.value)) {
             let mut real = 0;
-            X::S::half_tangent_roots([[a, b, g, Wide::ZERO]].into_iter(), Sector::all(sector.from), |_| real += 1);
+            X::S::half_tangent_roots([[a, b, g, Wide::ZERO]].into_iter(), AngleSector::all(sector.from), |_| real += 1);
             X::S::half_tangent_roots([[a, b, g, doubt]].into_iter(), sector, |value| {
                 found(if real > 0 { Turned::exact(value) } else { Turned { value, exact: Enclosure::ALL } });
             });
@@ -196,16 +196,16 @@ impl<X: Shadowed> Scalar for Number<X> {
         let exact = [along * c - across * s, along * s + across * c];
         [Self { value: values[0], exact: exact[0] }, Self { value: values[1], exact: exact[1] }]
     }
-    fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self {
+    fn ramp_length(ramp: AccelerationRamp<Self>, elapsed: Self) -> Self {
         Self::exact(X::S::ramp_length(plain(ramp), elapsed.value))
     }
-    fn ramp_time(ramp: Ramp<Self>, length: Self) -> Self {
+    fn ramp_time(ramp: AccelerationRamp<Self>, length: Self) -> Self {
         Self::exact(X::S::ramp_time(plain(ramp), length.value))
     }
-    fn ramp_bulge(ramp: Ramp<Self>, duration: Self) -> Self {
+    fn ramp_bulge(ramp: AccelerationRamp<Self>, duration: Self) -> Self {
         Self::exact(X::S::ramp_bulge(plain(ramp), duration.value))
     }
-    fn ramps_alike(one: Ramp<Self>, other: Ramp<Self>) -> bool {
+    fn ramps_alike(one: AccelerationRamp<Self>, other: AccelerationRamp<Self>) -> bool {
         X::S::ramps_alike(plain(one), plain(other))
     }
     fn slack(extent: Self) -> Self {
@@ -222,10 +222,10 @@ impl<X: Shadowed> Scalar for Number<X> {
     }
 }
 
-fn plain<X: Shadowed>(ramp: Ramp<N<X>>) -> Ramp<X::S> {
-    let Ramp { slow, fast, acceleration, duration, length } = ramp;
+fn plain<X: Shadowed>(ramp: AccelerationRamp<N<X>>) -> AccelerationRamp<X::S> {
+    let AccelerationRamp { slow, fast, acceleration, duration, length } = ramp;
     let [slow, fast, acceleration] = [slow, fast, acceleration].map(|number| number.value);
-    Ramp { slow, fast, acceleration, duration: duration.value, length: length.value }
+    AccelerationRamp { slow, fast, acceleration, duration: duration.value, length: length.value }
 }
 
 impl<X: Shadowed> Wide<N<X>> for Product<X> {

@@ -1,8 +1,8 @@
 //! Files with exclusions that are written from the layouts in `tests/data/real`, and vehicles that obey nothing else.
 
 use crate::rules::{Run, run};
-use pcr_exclusions::{self as exclusions, Settings, Target, read, write};
-use pcr_formats::import::{Format, Options, Warnings, layout};
+use pcr_exclusions::{self as exclusions, ExclusionFormat, WriteOptions, read, write};
+use pcr_formats::import::{ImportOptions, InputFormat, Warnings, layout};
 use std::error::Error;
 use std::fmt;
 use std::path::Path;
@@ -15,7 +15,7 @@ pub struct Written {
     /// Of the discs \[m\].
     pub radius: f64,
     /// What is written.
-    pub target: Target,
+    pub target: ExclusionFormat,
     /// Envelopes instead of blocks.
     pub envelopes: bool,
     /// Edges are cut to no more than this \[m\].
@@ -36,56 +36,56 @@ const TOWN_1: &str = "opendrive/Town01.planview.xodr";
 const TOWN_2: &str = "opendrive/Town02.planview.xodr";
 const ROADMAP: &str = "ccbs/sparse_map.xml";
 
-const fn whole(file: &'static str, radius: f64, target: Target) -> Written {
+const fn whole(file: &'static str, radius: f64, target: ExclusionFormat) -> Written {
     Written { file, radius, target, envelopes: false, split: None }
 }
 
-const fn cut(file: &'static str, radius: f64, target: Target, to: f64) -> Written {
+const fn cut(file: &'static str, radius: f64, target: ExclusionFormat, to: f64) -> Written {
     Written { split: Some(to), ..whole(file, radius, target) }
 }
 
 /// All of them.
 pub const ALL: [Written; 40] = [
-    whole(WAREHOUSE, 0.4, Target::Nav2),
-    whole(AWS, 0.3, Target::Nav2),
-    whole(SAMPLE, 0.3, Target::Nav2),
-    cut(WAREHOUSE, 0.4, Target::Nav2, 1.5),
-    whole(OFFICE, 0.45, Target::Rmf),
-    whole(TRIPLE_H, 0.45, Target::Rmf),
-    whole(BATTLE_ROYALE, 0.45, Target::Rmf),
-    whole(HOTEL, 0.45, Target::Rmf),
-    cut(OFFICE, 0.3, Target::Rmf, 1.0),
-    whole(DEMO, 0.9, Target::OpenTcs),
-    cut(DEMO, 0.9, Target::OpenTcs, 2.0),
-    Written { envelopes: true, ..whole(DEMO, 0.9, Target::OpenTcs) },
-    Written { envelopes: true, ..cut(DEMO, 0.9, Target::OpenTcs, 2.0) },
-    whole(WAREHOUSE, 0.4, Target::Vda5050),
-    whole(SAMPLE, 0.3, Target::Vda5050),
-    cut(SAMPLE, 0.3, Target::Vda5050, 0.8),
-    whole(AWS, 0.3, Target::Vda5050),
-    whole(OFFICE, 0.3, Target::Vda5050),
-    whole(TRIPLE_H, 0.45, Target::Vda5050),
-    whole(BATTLE_ROYALE, 0.45, Target::Vda5050),
-    whole(HOTEL, 0.45, Target::Vda5050),
-    whole(DEMO, 0.9, Target::Vda5050),
-    whole(TRIANGLE, 0.4, Target::Vda5050),
-    whole(CROSSING, 0.4, Target::Vda5050),
-    whole(TOWN_1, 1.0, Target::Vda5050),
-    whole(TOWN_2, 1.0, Target::Vda5050),
-    whole(ROADMAP, 0.5, Target::Vda5050),
-    whole(WAREHOUSE, 0.4, Target::Pcr),
-    whole(AWS, 0.3, Target::Pcr),
-    whole(SAMPLE, 0.3, Target::Pcr),
-    whole(OFFICE, 0.45, Target::Pcr),
-    whole(TRIPLE_H, 0.45, Target::Pcr),
-    whole(BATTLE_ROYALE, 0.45, Target::Pcr),
-    whole(HOTEL, 0.45, Target::Pcr),
-    whole(DEMO, 0.9, Target::Pcr),
-    whole(TRIANGLE, 0.4, Target::Pcr),
-    whole(CROSSING, 0.4, Target::Pcr),
-    whole(TOWN_1, 1.0, Target::Pcr),
-    whole(TOWN_2, 1.0, Target::Pcr),
-    whole(ROADMAP, 0.5, Target::Pcr),
+    whole(WAREHOUSE, 0.4, ExclusionFormat::Nav2),
+    whole(AWS, 0.3, ExclusionFormat::Nav2),
+    whole(SAMPLE, 0.3, ExclusionFormat::Nav2),
+    cut(WAREHOUSE, 0.4, ExclusionFormat::Nav2, 1.5),
+    whole(OFFICE, 0.45, ExclusionFormat::Rmf),
+    whole(TRIPLE_H, 0.45, ExclusionFormat::Rmf),
+    whole(BATTLE_ROYALE, 0.45, ExclusionFormat::Rmf),
+    whole(HOTEL, 0.45, ExclusionFormat::Rmf),
+    cut(OFFICE, 0.3, ExclusionFormat::Rmf, 1.0),
+    whole(DEMO, 0.9, ExclusionFormat::OpenTcs),
+    cut(DEMO, 0.9, ExclusionFormat::OpenTcs, 2.0),
+    Written { envelopes: true, ..whole(DEMO, 0.9, ExclusionFormat::OpenTcs) },
+    Written { envelopes: true, ..cut(DEMO, 0.9, ExclusionFormat::OpenTcs, 2.0) },
+    whole(WAREHOUSE, 0.4, ExclusionFormat::Vda5050),
+    whole(SAMPLE, 0.3, ExclusionFormat::Vda5050),
+    cut(SAMPLE, 0.3, ExclusionFormat::Vda5050, 0.8),
+    whole(AWS, 0.3, ExclusionFormat::Vda5050),
+    whole(OFFICE, 0.3, ExclusionFormat::Vda5050),
+    whole(TRIPLE_H, 0.45, ExclusionFormat::Vda5050),
+    whole(BATTLE_ROYALE, 0.45, ExclusionFormat::Vda5050),
+    whole(HOTEL, 0.45, ExclusionFormat::Vda5050),
+    whole(DEMO, 0.9, ExclusionFormat::Vda5050),
+    whole(TRIANGLE, 0.4, ExclusionFormat::Vda5050),
+    whole(CROSSING, 0.4, ExclusionFormat::Vda5050),
+    whole(TOWN_1, 1.0, ExclusionFormat::Vda5050),
+    whole(TOWN_2, 1.0, ExclusionFormat::Vda5050),
+    whole(ROADMAP, 0.5, ExclusionFormat::Vda5050),
+    whole(WAREHOUSE, 0.4, ExclusionFormat::Pcr),
+    whole(AWS, 0.3, ExclusionFormat::Pcr),
+    whole(SAMPLE, 0.3, ExclusionFormat::Pcr),
+    whole(OFFICE, 0.45, ExclusionFormat::Pcr),
+    whole(TRIPLE_H, 0.45, ExclusionFormat::Pcr),
+    whole(BATTLE_ROYALE, 0.45, ExclusionFormat::Pcr),
+    whole(HOTEL, 0.45, ExclusionFormat::Pcr),
+    whole(DEMO, 0.9, ExclusionFormat::Pcr),
+    whole(TRIANGLE, 0.4, ExclusionFormat::Pcr),
+    whole(CROSSING, 0.4, ExclusionFormat::Pcr),
+    whole(TOWN_1, 1.0, ExclusionFormat::Pcr),
+    whole(TOWN_2, 1.0, ExclusionFormat::Pcr),
+    whole(ROADMAP, 0.5, ExclusionFormat::Pcr),
 ];
 
 impl fmt::Display for Written {
@@ -100,13 +100,13 @@ impl Written {
     ///
     /// # Errors
     /// Why it cannot be read or written.
-    pub fn obeyed(&self, missions: usize, seed: u64) -> Result<(exclusions::Written, Run), Box<dyn Error>> {
+    pub fn obeyed(&self, missions: usize, seed: u64) -> Result<(exclusions::WriteReport, Run), Box<dyn Error>> {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/real").join(self.file);
         let text = std::fs::read_to_string(&path)?;
-        let format = Format::of(&path, &text).ok_or("no layout")?;
-        let options = Options { radius: Some(self.radius), ..Options::default() };
+        let format = InputFormat::detect(&path, &text).ok_or("no layout")?;
+        let options = ImportOptions { radius: Some(self.radius), ..ImportOptions::default() };
         let envelopes = self.envelopes.then(|| "pcr".to_owned());
-        let settings = Settings { target: self.target, split: self.split, envelopes };
+        let settings = WriteOptions { target: self.target, split: self.split, envelopes };
         let (written, report, _) = write(format, &text, &options, "site", &settings)?;
         let geometry = if self.target.layout().is_some() { &written } else { &text };
         let mut imported = layout(format, geometry, &options, &mut Warnings::default())?;

@@ -2,21 +2,21 @@
 //! `conflicts.rs` holds its contacts to the oracle.
 
 use pcr_core::scalar::Micro;
-use pcr_core::{Bounds, BroadPhase, Encounter, Full, Interval, Mismatch, Motion};
+use pcr_core::{Aabb, BroadPhase, CapacityError, Encounter, Interval, MismatchError, Motion};
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::Scenario;
-use pcr_planning::fleet::{Fleet, Format};
+use pcr_planning::fleet::{Fleet, HostScalar};
 use pcr_tests::disc::Course;
 use pcr_tests::generators::Dice;
 use pcr_tests::oracle::contact::Meeting;
 use pcr_tests::plans::fleet;
 
-fn boxes<S: Format>(fleet: &[Motion<'_, S>], parts: usize) -> Vec<Bounds<S>> {
-    vec![Bounds::default(); fleet.len() * (1 + parts)]
+fn boxes<S: HostScalar>(fleet: &[Motion<'_, S>], parts: usize) -> Vec<Aabb<S>> {
+    vec![Aabb::default(); fleet.len() * (1 + parts)]
 }
 
 /// At no time at which two discs overlap their pair is left out, nor as long as both stand before and after.
-fn leaves_out_no_contact<S: Format>(seeds: u64) {
+fn leaves_out_no_contact<S: HostScalar>(seeds: u64) {
     let (mut overlaps, mut left_out) = (0, 0);
     for seed in 0..seeds {
         let dice = &mut Dice::seeded(seed);
@@ -111,7 +111,7 @@ fn a_fleet_has_the_contacts_of_its_pairs_however_many_the_parts() {
             shared.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.lo.total_cmp(&b.1.lo)));
             assert_eq!(shared, found);
             let stranger = broad_phase.contacts_of([0, motions.len()], time).err();
-            assert_eq!(stranger, Some(Mismatch::NoSuchAgent(motions.len())));
+            assert_eq!(stranger, Some(MismatchError::NoSuchAgent(motions.len())));
             // The more parts, the fewer pairs are left.
             let before = std::mem::replace(&mut candidates, pairs_of(&broad_phase));
             assert!(candidates <= before && (parts < 16 || candidates < most / 2), "{candidates} of {most} at {parts}");
@@ -120,7 +120,7 @@ fn a_fleet_has_the_contacts_of_its_pairs_however_many_the_parts() {
 }
 
 /// Pairs that may be in contact.
-fn pairs_of<B: AsRef<[Bounds<f64>]>>(broad_phase: &BroadPhase<'_, f64, B>) -> usize {
+fn pairs_of<B: AsRef<[Aabb<f64>]>>(broad_phase: &BroadPhase<'_, f64, B>) -> usize {
     let mut pairs: Vec<_> = broad_phase.candidates().map(|(agents, _)| agents).collect();
     pairs.dedup();
     pairs.len()
@@ -142,11 +142,11 @@ fn a_moment_has_the_contacts_of_that_moment() {
 fn room_for_less_than_two_boxes_an_agent_is_refused() {
     let fleet = Fleet::<f64>::new(&Scenario::from_json(include_str!("../data/paper12.json")).unwrap()).unwrap();
     let motions = fleet.motions();
-    let refused = BroadPhase::new(vec![Bounds::default(); 23], &motions, Motion::span(&motions));
-    assert_eq!(refused.err(), Some(Full::Boxes));
-    assert_eq!(BroadPhase::new(vec![Bounds::default(); 24], &motions, Motion::span(&motions)).unwrap().parts(), 1);
+    let refused = BroadPhase::new(vec![Aabb::default(); 23], &motions, Motion::span(&motions));
+    assert_eq!(refused.err(), Some(CapacityError::Boxes));
+    assert_eq!(BroadPhase::new(vec![Aabb::default(); 24], &motions, Motion::span(&motions)).unwrap().parts(), 1);
     let nobody = BroadPhase::<f64, _>::new([], &[], Interval::default()).unwrap();
     assert_eq!((nobody.candidates().count(), nobody.contacts().count()), (0, 0));
-    let alone = BroadPhase::new(vec![Bounds::default(); 2], &motions[..1], Motion::span(&motions)).unwrap();
+    let alone = BroadPhase::new(vec![Aabb::default(); 2], &motions[..1], Motion::span(&motions)).unwrap();
     assert_eq!(alone.candidates().count(), 0);
 }

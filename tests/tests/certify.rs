@@ -2,23 +2,23 @@
 //!
 //! The long command is `cargo run --release -p pcr-tests --example certify -- --pairs 10000000 --seed 1`.
 
-use pcr_certify::data::{Pair, Table};
+use pcr_certify::arc_length_motion;
 use pcr_certify::pair::Findings;
-use pcr_certify::table::{Checker, Margin};
-use pcr_certify::travel;
+use pcr_certify::raw::{RawPair, RawTable};
+use pcr_certify::table::{Checker, CoverageMargin};
 use pcr_core::scalar::Micro;
 use pcr_core::{Limits, Motion, Path as CorePath, Point, Pose, Profile};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_formats::import::{self, Options, Warnings};
+use pcr_formats::import::{self, ImportOptions, Warnings};
 use pcr_formats::scenario::Scenario;
-use pcr_planning::certificate;
-use pcr_planning::certify::{Certified, Dump};
-use pcr_planning::check::Verdict;
-use pcr_planning::fleet::Format;
-use pcr_planning::locks;
-use pcr_planning::plan::{self, Method, Plan};
+use pcr_planning::certify::{CertifyInput, CertifyReport};
+use pcr_planning::check::CheckReport;
+use pcr_planning::checker_input;
+use pcr_planning::exclusion_table;
+use pcr_planning::fleet::HostScalar;
+use pcr_planning::plan::{self, PlanMethod, PlanReport};
 use pcr_planning::regions::table_of;
-use pcr_planning::regions::{Answer, Request};
+use pcr_planning::regions::{RegionOptions, RegionsReport};
 use pcr_tests::certified::{run, table};
 use pcr_tests::disc::Drive;
 use pcr_tests::generators::{Dice, behind};
@@ -32,7 +32,7 @@ const LAYOUTS: usize = 15;
 /// Pairs of a format that are certified: 20,000 in an optimized run.
 const PAIRS: u64 = if cfg!(optimized) { 10_000 } else { 1_000 };
 
-fn holds<S: Format>(held: f64) {
+fn holds<S: HostScalar>(held: f64) {
     let proofs = run_on_all_processors(run::<S>, 0, PAIRS, |_, _| ());
     println!("{}: {proofs}", S::NAME);
     assert_eq!(proofs.refuted, Vec::<String>::new(), "{}", S::NAME);
@@ -75,7 +75,7 @@ fn tables_of_random_pairs_are_proved_in_q12() {
 
 /// Pairs of which one passes an arc as large as the disc behind its centre, where one end is left for the other. What is told of them
 /// once was 1.3 mm from any contact in `f32`, 38 ε.
-fn behind_the_centre<S: Format>() {
+fn behind_the_centre<S: HostScalar>() {
     let (mut proved, mut refused) = (0, 0);
     for seed in 0..PAIRS / 5 {
         let size = [1.0, 10.0][(seed % 2) as usize];
@@ -107,7 +107,7 @@ fn what_lies_opposite_a_centre_is_not_told() {
 }
 
 /// Profiles from rest to rest and stretched ones, twice over: what is rounded most often.
-fn motions_pass<S: Format>() {
+fn motions_pass<S: HostScalar>() {
     let number = |x: f64| S::from_f64(x);
     let mut dice = Dice::seeded(7);
     let mut passed = 0;
@@ -119,9 +119,9 @@ fn motions_pass<S: Format>() {
         let Ok(mut profile) = Profile::<S, 3>::rest_to_rest(length, limits) else { continue };
         for _ in 0..3 {
             let motion = Motion::new(path.as_path(), profile.as_profile(), number(0.5), S::ZERO).unwrap();
-            let agent = certificate::agent(1, &motion, S::angle(0.0).expect("an angle"), &[]);
+            let agent = checker_input::agent(1, &motion, S::angle(0.0).expect("an angle"), &[]);
             assert_eq!(
-                travel::checked(&agent).and_then(|()| travel::arrives(&agent)),
+                arc_length_motion::checked(&agent).and_then(|()| arc_length_motion::arrives(&agent)),
                 Ok(()),
                 "{}: {agent:?}",
                 S::NAME
@@ -153,13 +153,13 @@ fn fleet(name: &str) -> Scenario {
     Scenario::from_json(&std::fs::read_to_string(data(name)).unwrap()).unwrap()
 }
 
-fn findings(table: &Table) -> Findings {
-    Checker::new(table).unwrap().check(Margin::Needed).unwrap()
+fn findings(table: &RawTable) -> Findings {
+    Checker::new(table).unwrap().check(CoverageMargin::Needed).unwrap()
 }
 
-fn is_proved<S: Format>(name: &str, scenario: &Scenario) {
+fn is_proved<S: HostScalar>(name: &str, scenario: &Scenario) {
     for table in table_of::<S>(scenario).unwrap_or_else(|refused| panic!("{name}: {refused}")) {
-        let certified = Certified::of(name, &table, false);
+        let certified = CertifyReport::prove(name, &table, false);
         assert_eq!(certified.verdict, Some("proved"), "{name} in {}: {certified:?}", S::NAME);
         let regions: usize = table.pairs.iter().map(|pair| pair.regions.len()).sum();
         assert_eq!(certified.times, regions, "{name} in {}", S::NAME);
@@ -195,7 +195,7 @@ fn tables_of_inner_tangencies_are_proved() {
 }
 
 /// All layouts in the test data.
-fn layouts() -> Vec<(PathBuf, import::Format, String)> {
+fn layouts() -> Vec<(PathBuf, import::InputFormat, String)> {
     let (mut found, mut folders) = (Vec::new(), vec![data("")]);
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).unwrap() {
@@ -203,7 +203,7 @@ fn layouts() -> Vec<(PathBuf, import::Format, String)> {
             if file.is_dir() {
                 folders.push(file);
             } else if let Ok(text) = std::fs::read_to_string(&file)
-                && let Some(format) = import::Format::of(&file, &text)
+                && let Some(format) = import::InputFormat::detect(&file, &text)
             {
                 found.push((file, format, text));
             }
@@ -220,14 +220,14 @@ struct Layouts {
     refused: Vec<String>,
 }
 
-fn are_proved<S: Format>(layouts: &[(String, Vec<Scenario>)]) -> Layouts {
+fn are_proved<S: HostScalar>(layouts: &[(String, Vec<Scenario>)]) -> Layouts {
     let mut found = Layouts::default();
     for (name, levels) in layouts {
         let tables = levels.iter().map(|level| table_of::<S>(level)).collect::<Result<Vec<_>, _>>();
         match tables {
             Ok(tables) => {
                 for table in tables.iter().flatten() {
-                    let certified = Certified::of(name, table, false);
+                    let certified = CertifyReport::prove(name, table, false);
                     assert_eq!(certified.verdict, Some("proved"), "{name} in {}: {certified:?}", S::NAME);
                 }
                 found.proved.push(name.clone());
@@ -243,10 +243,13 @@ fn are_proved<S: Format>(layouts: &[(String, Vec<Scenario>)]) -> Layouts {
 #[test]
 fn locks_of_all_layouts_are_proved_in_all_formats() {
     let mut layouts = self::layouts().into_iter().filter_map(|(file, format, text)| {
-        let options = Options { radius: Some(0.4), ..Options::default() };
+        let options = ImportOptions { radius: Some(0.4), ..ImportOptions::default() };
         // Routes and plans have no layout in them.
         let imported = import::layout(format, &text, &options, &mut Warnings::default()).ok()?;
-        Some((file.strip_prefix(data("")).unwrap().display().to_string(), locks::scenarios(&imported).unwrap()))
+        Some((
+            file.strip_prefix(data("")).unwrap().display().to_string(),
+            exclusion_table::scenarios(&imported).unwrap(),
+        ))
     });
     let mut layouts: Vec<(String, Vec<Scenario>)> = layouts.by_ref().collect();
     assert!(layouts.len() >= LAYOUTS, "{} layouts", layouts.len());
@@ -278,10 +281,10 @@ fn locks_of_all_layouts_are_proved_in_all_formats() {
 #[test]
 fn a_dump_reads_back_exactly() {
     for name in ["paper12.json", "small/outlines.json"] {
-        let request = Request { certificate: true, ..Request::default() };
-        let answer = Answer::of::<Q16>(&fleet(name), request).unwrap();
+        let request = RegionOptions { certificate: true, ..RegionOptions::default() };
+        let answer = RegionsReport::compute::<Q16>(&fleet(name), request).unwrap();
         let text = serde_json::to_string(&answer).unwrap();
-        let dump = Dump::of_json(&text).unwrap();
+        let dump = CertifyInput::of_json(&text).unwrap();
         assert_eq!(Some(&dump.certificate), answer.certificate.as_ref());
         assert!(findings(&dump.certificate[0]).refuted.is_empty());
     }
@@ -290,18 +293,18 @@ fn a_dump_reads_back_exactly() {
 /// What the firmware has printed (`firmware/supervisor/tests/dump.rs` compares it with what it prints) is the table of the tool.
 #[test]
 fn a_table_that_a_microcontroller_printed_is_that_of_the_tool() {
-    fn is_the_same<S: Format>(file: &str) {
-        let dump = Dump::of(&std::fs::read_to_string(data(file)).unwrap(), file).unwrap();
+    fn is_the_same<S: HostScalar>(file: &str) {
+        let dump = CertifyInput::of(&std::fs::read_to_string(data(file)).unwrap(), file).unwrap();
         let mut table = table_of::<S>(&fleet("paper12.json")).unwrap().remove(0);
         // The firmware numbers them from 0.
         (0..).zip(&mut table.agents).for_each(|(place, agent)| agent.id = place);
         // The firmware prints all pairs; those that the tool leaves out have no region.
         let [whole] = dump.certificate.as_slice() else { panic!("{file}: one table") };
-        let is_there = |pair: &Pair| table.pairs.iter().any(|there| there.agents == pair.agents);
-        let (pairs, far): (Vec<Pair>, Vec<Pair>) = whole.pairs.iter().cloned().partition(is_there);
+        let is_there = |pair: &RawPair| table.pairs.iter().any(|there| there.agents == pair.agents);
+        let (pairs, far): (Vec<RawPair>, Vec<RawPair>) = whole.pairs.iter().cloned().partition(is_there);
         assert!(far.iter().all(|pair| pair.regions.is_empty() && pair.pieces.is_empty()), "{file}");
-        assert_eq!(Table { agents: whole.agents.clone(), pairs, apart: table.apart }, table, "{file}");
-        assert_eq!(Certified::of(file, &dump.certificate[0], true).verdict, Some("proved"));
+        assert_eq!(RawTable { agents: whole.agents.clone(), pairs, apart: table.apart }, table, "{file}");
+        assert_eq!(CertifyReport::prove(file, &dump.certificate[0], true).verdict, Some("proved"));
     }
     is_the_same::<f32>("dumps/paper12-f32.txt");
     is_the_same::<Q16>("dumps/paper12-q16.txt");
@@ -318,13 +321,13 @@ fn scattered(pairs: usize) -> Scenario {
     Scenario::from_value(&serde_json::json!({ "agents": (0..2 * pairs).map(agent).collect::<Vec<_>>() })).unwrap()
 }
 
-fn pairs_that_are_far_apart_are_left_out<S: Format>() {
+fn pairs_that_are_far_apart_are_left_out<S: HostScalar>() {
     let table = table_of::<S>(&scattered(50)).unwrap().remove(0);
     let named: Vec<[usize; 2]> = table.pairs.iter().map(|pair| pair.agents).collect();
     assert_eq!(named, (0..50).map(|k| [2 * k, 2 * k + 1]).collect::<Vec<_>>(), "{}", S::NAME);
-    let found = Checker::new(&table).unwrap().check(Margin::Needed).unwrap();
+    let found = Checker::new(&table).unwrap().check(CoverageMargin::Needed).unwrap();
     assert!(found.refuted.is_empty() && found.undecided.is_empty(), "{}", S::NAME);
-    let refused = |change: &dyn Fn(&mut Table)| {
+    let refused = |change: &dyn Fn(&mut RawTable)| {
         let mut other = table.clone();
         change(&mut other);
         Checker::new(&other).map(drop).unwrap_err()
@@ -354,10 +357,10 @@ fn far_pairs_are_left_out_in_every_format() {
 #[test]
 fn what_is_no_table_is_refused() {
     let table = table_of::<f64>(&fleet("paper12.json")).unwrap().remove(0);
-    let wrong = |change: &dyn Fn(&mut Table)| {
+    let wrong = |change: &dyn Fn(&mut RawTable)| {
         let mut other = table.clone();
         change(&mut other);
-        Checker::new(&other).and_then(|checker| checker.check(Margin::Needed)).unwrap_err()
+        Checker::new(&other).and_then(|checker| checker.check(CoverageMargin::Needed)).unwrap_err()
     };
     let with = table.pairs.iter().position(|pair| !pair.pieces.is_empty()).unwrap();
     assert!(wrong(&|table| drop(table.pairs.pop())).contains("missing"));
@@ -398,8 +401,8 @@ fn the_margin_is_where_a_proof_ends() {
     let (margin, place) = checker.margin().unwrap().unwrap();
     // An exact table with a slack of half the bound would have 0.5.
     assert!((0.3..0.52).contains(&margin), "{margin}");
-    assert!(checker.check(Margin::Epsilons(margin)).unwrap().refuted.is_empty());
-    let beyond = checker.check(Margin::Epsilons(margin + 0.001)).unwrap();
+    assert!(checker.check(CoverageMargin::Epsilons(margin)).unwrap().refuted.is_empty());
+    let beyond = checker.check(CoverageMargin::Epsilons(margin + 0.001)).unwrap();
     let agents = table.pairs[place].agents;
     let there = beyond.refuted.iter().chain(&beyond.undecided).any(|witness| witness.agents == agents);
     assert!(there, "{beyond:?}");
@@ -407,8 +410,8 @@ fn the_margin_is_where_a_proof_ends() {
 
 #[test]
 fn plans_are_proved_to_be_without_contact() {
-    for (name, method) in [("paper12.json", Method::Delay), ("paper12.json", Method::Speed)] {
-        let (plan, solved) = Plan::of(&fleet(name), &plan::Request::of(method)).unwrap();
+    for (name, method) in [("paper12.json", PlanMethod::Delay), ("paper12.json", PlanMethod::Speed)] {
+        let (plan, solved) = PlanReport::compute(&fleet(name), &plan::PlanOptions::new(method)).unwrap();
         let proof = plan.certificate.expect("a plan");
         assert_eq!((proof.verdict, solved.is_some()), ("proved", true), "{name}: {proof:?}");
         assert!(proof.pairs > 0 && proof.steps >= proof.pairs);
@@ -419,7 +422,7 @@ fn plans_are_proved_to_be_without_contact() {
 fn motions_are_proved_or_refuted_as_conflicts_say() {
     // All set off as the file says: some collide.
     let scenario = fleet("paper12.json");
-    let verdict = Verdict::certified::<f64>(&scenario, true, &|_, _| {}).unwrap();
+    let verdict = CheckReport::certified::<f64>(&scenario, true, &|_, _| {}).unwrap();
     let proof = verdict.certificate.unwrap();
     let pairs = |those: Vec<[u64; 2]>| those.into_iter().collect::<std::collections::BTreeSet<_>>();
     let deep = verdict.conflicts.iter().filter(|conflict| !conflict.touching).map(|conflict| [conflict.i, conflict.j]);
@@ -433,20 +436,23 @@ fn motions_are_proved_or_refuted_as_conflicts_say() {
     let mut few = scenario;
     for left in [1, 0] {
         few.agents.truncate(left);
-        let refused = Verdict::certified::<f64>(&few, false, &|_, _| {}).unwrap_err();
+        let refused = CheckReport::certified::<f64>(&few, false, &|_, _| {}).unwrap_err();
         assert!(refused.to_string().contains("no two discs of different agents"), "{refused}");
     }
 }
 
 #[test]
 fn regions_of_an_agent_that_is_not_there_are_none() {
-    let answer =
-        Answer::of::<f64>(&fleet("paper12.json"), Request { certificate: true, ..Request::default() }).unwrap();
+    let answer = RegionsReport::compute::<f64>(
+        &fleet("paper12.json"),
+        RegionOptions { certificate: true, ..RegionOptions::default() },
+    )
+    .unwrap();
     let text = serde_json::to_value(&answer).unwrap();
     let read = |agent: u64, regions: serde_json::Value| {
         let mut other = text.clone();
         (other["agent"], other["regions"]) = (agent.into(), regions);
-        Dump::of_json(&other.to_string()).map(drop)
+        CertifyInput::of_json(&other.to_string()).map(drop)
     };
     let own = text["regions"].as_array().unwrap().iter().filter(|region| region["i"] == 3).cloned();
     assert_eq!(read(3, own.collect()), Ok(()));
@@ -459,7 +465,7 @@ fn regions_of_an_agent_that_is_not_there_are_none() {
 fn what_is_left_out_of_a_file_is_an_error() {
     let table = table_of::<Q16>(&fleet("paper12.json")).unwrap().remove(0);
     let text = serde_json::to_string(&table).unwrap();
-    let read = |text: &str| serde_json::from_str::<Table>(text).map_err(|error| error.to_string());
+    let read = |text: &str| serde_json::from_str::<RawTable>(text).map_err(|error| error.to_string());
     assert_eq!(read(&text), Ok(table));
     let without = |field: &str| {
         let begin = text.find(field).unwrap_or_else(|| panic!("{field}"));

@@ -1,15 +1,15 @@
 //! Tables of random pairs that the checker has not proved once, by their seeds: those of the long command of `certify.rs`.
 
-use pcr_certify::data::Table;
-use pcr_certify::pair::Promise;
-use pcr_certify::table::{Checker, Margin};
+use pcr_certify::pair::TableProperty;
+use pcr_certify::raw::RawTable;
+use pcr_certify::table::{Checker, CoverageMargin};
 use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use pcr_tests::certified::{run, table};
 use pcr_tests::generators::certifiable;
 
-fn is_proved_of<S: Format>(seeds: &[u64]) {
+fn is_proved_of<S: HostScalar>(seeds: &[u64]) {
     for &seed in seeds {
         let proofs = run::<S>(seed, 1);
         assert_eq!(proofs.proved, 1, "{} of {}: {proofs:?}", seed, S::NAME);
@@ -36,7 +36,7 @@ fn tables_that_were_not_proved_once_are() {
 }
 
 /// The seeds of one format at which a table is proved, but would be refuted if a query could ask at any real length.
-fn is_proved_of_lengths_of_the_format<S: Format>(seeds: &[u64]) {
+fn is_proved_of_lengths_of_the_format<S: HostScalar>(seeds: &[u64]) {
     is_proved_of::<S>(seeds);
     for &seed in seeds {
         let (pair, drives) = certifiable::<S>(seed);
@@ -44,8 +44,8 @@ fn is_proved_of_lengths_of_the_format<S: Format>(seeds: &[u64]) {
         // Of the paths alone: motions that are rounded as in fixed point are none of floating point.
         table.agents.iter_mut().for_each(|agent| (agent.path.step, agent.travel) = (0.0, None));
         table.pairs[0].regions.iter_mut().for_each(|region| region.times = None);
-        let found = Checker::new(&table).and_then(|checker| checker.check(Margin::Needed)).expect("a table");
-        let is_about_shares = found.refuted.iter().all(|witness| witness.promise == Promise::Shared);
+        let found = Checker::new(&table).and_then(|checker| checker.check(CoverageMargin::Needed)).expect("a table");
+        let is_about_shares = found.refuted.iter().all(|witness| witness.promise == TableProperty::Shared);
         assert!(!found.refuted.is_empty() && is_about_shares, "{seed} of {}: {found:?}", S::NAME);
     }
 }
@@ -71,10 +71,10 @@ fn lengths_that_the_format_does_not_have_do_not_count() {
 fn numbers_that_the_format_does_not_have_are_refused() {
     let (pair, drives) = certifiable::<Q16>(478_853);
     let table = table::<Q16>(&pair, &drives).expect("it fits");
-    let wrong = |change: &dyn Fn(&mut Table)| {
+    let wrong = |change: &dyn Fn(&mut RawTable)| {
         let mut other = table.clone();
         change(&mut other);
-        Checker::new(&other).and_then(|checker| checker.check(Margin::Needed)).expect_err("is refused")
+        Checker::new(&other).and_then(|checker| checker.check(CoverageMargin::Needed)).expect_err("is refused")
     };
     let finer = 2.0_f64.powi(-17);
     assert!(wrong(&|it| it.pairs[0].pieces[0].lengths[0][1] -= finer).contains("ends that its number format has not"));

@@ -2,7 +2,7 @@
 //!
 //! That the library computes them is what the tests of regions show; here it is the derivation that is tested.
 
-use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region};
+use pcr_core::{Ecm, EcmEntry, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians};
 use pcr_tests::paper::{Vec2, norm};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -180,7 +180,7 @@ fn coordination_space_does_not_know_the_motion() {
         let [p, q] = profiles.map(|profile| &*Box::leak(Box::new(profile)));
         let [a, b] = [&east, &north].map(|path| &*Box::leak(Box::new(path.clone())));
         let fleet = [motion(a, p), motion(b, q)];
-        let ecm = Ecm::build([Region::EMPTY; 2], [Piece::EMPTY; 4], &fleet).unwrap();
+        let ecm = Ecm::build([EcmEntry::EMPTY; 2], [Piece::EMPTY; 4], &fleet).unwrap();
         let region = ecm.pair(&fleet, 0, 1).expect("the table of the fleet").next().unwrap();
         let transposed = ecm.pair(&fleet, 1, 0).expect("the table of the fleet").next().unwrap();
         assert_eq!((region.length(), region.other_length()), (transposed.other_length(), transposed.length()));

@@ -1,20 +1,23 @@
 //! Methods side by side: what errors are measured by agrees with the oracle, the methods keep what they promise, and the
 //! measure of errors sees a wrong answer.
 
-use pcr_comparing::compare::{Absent, Comparison, Effort, Errors, Question, Row, Track, crowd, reference};
+use pcr_comparing::compare::{
+    Accuracy, Comparison, DiscTrack, MeasurementBudget, MethodMeasurement, MethodQuestion, UnavailableMethod, crowd,
+    reference,
+};
 use pcr_formats::scenario::Scenario;
 use pcr_lab::methods::methods;
+use pcr_planning::agent_regions::{AgentRegions as FleetRow, AgentRegionsWalk, each, grid, rows};
 use pcr_planning::fleet::{Fleet, build_ecm};
-use pcr_planning::rows::{Row as FleetRow, Walk, each, grid, rows};
 use pcr_tests::disc::{Disc, Drive};
 use pcr_tests::oracle::contact::Meeting;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 const FLEETS: u64 = if cfg!(optimized) { 15 } else { 3 };
 
-const EFFORT: Effort = Effort { rounds: 2, budget: 0.01, slices: 5_000 };
+const EFFORT: MeasurementBudget = MeasurementBudget { rounds: 2, budget: 0.01, slices: 5_000 };
 
-fn compared(scenario: &Scenario, filters: &[&str]) -> Vec<Row> {
+fn compared(scenario: &Scenario, filters: &[&str]) -> Vec<MethodMeasurement> {
     let filters: Vec<String> = filters.iter().map(|filter| (*filter).to_owned()).collect();
     Comparison::new(scenario, methods(), EFFORT, &filters, &mut |_, _| {}).expect("it fits").rows
 }
@@ -28,7 +31,7 @@ fn the_reference_agrees_with_the_oracle() {
         let scenario = crowd(12, seed);
         let driven: Vec<_> =
             scenario.agents.iter().map(|agent| (Disc::of_agent(agent), Drive::of_agent(agent), 0.0)).collect();
-        let tracks: Vec<Track> = scenario.agents.iter().map(Track::new).collect();
+        let tracks: Vec<DiscTrack> = scenario.agents.iter().map(DiscTrack::new).collect();
         let during = [0.0, 60.0];
         for first in 0..12 {
             for second in first + 1..12 {
@@ -56,11 +59,11 @@ fn every_method_keeps_what_it_promises() {
         let scenario = crowd(12, seed);
         let rows = compared(&scenario, &["pcr", "polyline", "sampled map 0.1 s"]);
         assert_eq!(rows.len(), 12);
-        let area = |row: &Row| match row.errors {
-            Errors::Regions { area, difference } => difference / area,
-            Errors::Conflicts { .. } => panic!("{}", row.method),
+        let area = |row: &MethodMeasurement| match row.errors {
+            Accuracy::Regions { area, difference } => difference / area,
+            Accuracy::Conflicts { .. } => panic!("{}", row.method),
         };
-        for row in rows.iter().filter(|row| row.question == Question::Regions) {
+        for row in rows.iter().filter(|row| row.question == MethodQuestion::Regions) {
             let largest = match row.method.as_str() {
                 "pcr f64" | "pcr f64, all cores" => 1e-8,
                 "pcr f32" => 1e-3,
@@ -69,8 +72,8 @@ fn every_method_keeps_what_it_promises() {
             };
             assert!(area(row) < largest, "seed {seed}, {}: {}", row.method, area(row));
         }
-        for row in rows.iter().filter(|row| row.question == Question::Conflicts) {
-            let Errors::Conflicts { missed, invented, time, .. } = row.errors else { panic!("{}", row.method) };
+        for row in rows.iter().filter(|row| row.question == MethodQuestion::Conflicts) {
+            let Accuracy::Conflicts { missed, invented, time, .. } = row.errors else { panic!("{}", row.method) };
             assert_eq!(missed, 0, "seed {seed}, {}", row.method);
             if row.method.starts_with("pcr f64") {
                 assert!(invented == 0 && time < 1e-6, "seed {seed}, {}: {invented}, {time}", row.method);
@@ -88,8 +91,8 @@ fn every_method_keeps_what_it_promises() {
 fn finer_methods_are_less_wrong() {
     let rows = compared(&crowd(12, 7), &["polyline", "sampled"]);
     let error = |method: &str| match rows.iter().find(|row| row.method == method).expect("it is there").errors {
-        Errors::Regions { area, difference } => difference / area,
-        Errors::Conflicts { time, .. } => time,
+        Accuracy::Regions { area, difference } => difference / area,
+        Accuracy::Conflicts { time, .. } => time,
     };
     assert!(error("sampled map 0.01 s, boxes") < 0.3 * error("sampled map 0.1 s, boxes"));
     assert!(error("polyline 1 mm") < error("polyline 10 mm"));
@@ -144,7 +147,7 @@ fn rows_in_the_storage_of_others_are_the_same() {
         }
     };
     let grid = grid(&motions);
-    let mut walk = Walk::new(&motions, &grid);
+    let mut walk = AgentRegionsWalk::new(&motions, &grid);
     // Twice: the second time all storage is there, and nothing of the rows before.
     for ego in grid.order().into_iter().chain(grid.order()) {
         same(walk.row(ego as usize).expect("it fits"));
@@ -164,7 +167,7 @@ fn the_grid_finds_the_boxes_that_meet() {
         let scenario = crowd(300, seed);
         let fleet = Fleet::<f64>::new(&scenario).expect("it fits");
         let motions = fleet.motions();
-        let areas: Vec<[f64; 4]> = motions.iter().map(pcr_planning::rows::area).collect();
+        let areas: Vec<[f64; 4]> = motions.iter().map(pcr_planning::agent_regions::area).collect();
         let grid = grid(&motions);
         let meet = |a: &[f64; 4], b: &[f64; 4]| a[0] <= b[2] && b[0] <= a[2] && a[1] <= b[3] && b[1] <= a[3];
         let mut order = grid.order();
@@ -187,17 +190,18 @@ fn other_libraries_find_what_is_no_graze() {
         let filters = ["parry", "FCL", "Box2D"].map(str::to_owned);
         let comparison =
             Comparison::new(&crowd(12, seed), methods(), EFFORT, &filters, &mut |_, _| {}).expect("it fits");
-        for Absent { method, reason } in &comparison.absent {
+        for UnavailableMethod { method, reason } in &comparison.absent {
             assert!(!method.starts_with("parry"), "parry is a crate");
             assert!(reason.contains("was not installed"), "{method}: {reason}");
             // The build fails there if a library is missing.
             assert!(std::env::var("CI").as_deref() != Ok("true"), "{method}: {reason}");
             println!("left out: {method}: {reason}");
         }
-        let others: Vec<&Row> = comparison.rows.iter().filter(|row| !row.method.starts_with("pcr")).collect();
+        let others: Vec<&MethodMeasurement> =
+            comparison.rows.iter().filter(|row| !row.method.starts_with("pcr")).collect();
         assert_eq!(others.len() + comparison.absent.len(), 4);
         for row in others {
-            let Errors::Conflicts { missed, invented, time, .. } = row.errors else { panic!("{}", row.method) };
+            let Accuracy::Conflicts { missed, invented, time, .. } = row.errors else { panic!("{}", row.method) };
             assert_eq!((missed, invented), (0, 0), "seed {seed}, {}", row.method);
             assert!(time < LATE, "seed {seed}, {}: {time}", row.method);
         }

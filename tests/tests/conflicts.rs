@@ -1,8 +1,8 @@
 //! Conflicts of two given motions against an oracle that halves time until the way travelled decides.
 
-use pcr_core::{Approach, Bounds, BroadPhase, Conflict, Encounter, Interval};
+use pcr_core::{Aabb, BroadPhase, ClosestApproach, Conflict, Encounter, Interval};
 use pcr_fixed::Q16;
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::driven_pairs;
 use pcr_tests::oracle::contact::Meeting;
@@ -14,7 +14,7 @@ fn within(inner: [f64; 2], outer: &[[f64; 2]], slip: f64) -> bool {
     outer.iter().any(|outer| outer[0] - slip <= inner[0] && inner[1] <= outer[1] + slip)
 }
 
-fn audited<S: Format>(driven: &[Driven; 2]) -> Result<(), TestCaseError> {
+fn audited<S: HostScalar>(driven: &[Driven; 2]) -> Result<(), TestCaseError> {
     let [Some((ego, own)), Some((other, their))] = driven.each_ref().map(Course::<S>::rounded) else {
         return Err(TestCaseError::reject("does not fit"));
     };
@@ -39,7 +39,7 @@ fn audited<S: Format>(driven: &[Driven; 2]) -> Result<(), TestCaseError> {
     // In parts of the time, and with room for boxes to spare.
     let fleet = [ego, other];
     for (room, parts) in [(2 * 2, 1), (2 * 6, 4), (2 * 17 + 1, 16), (99, 32)] {
-        let broad_phase = BroadPhase::new(vec![Bounds::default(); room], &fleet, time).unwrap();
+        let broad_phase = BroadPhase::new(vec![Aabb::default(); room], &fleet, time).unwrap();
         prop_assert_eq!(broad_phase.parts(), parts);
         let found: Vec<_> = broad_phase.contacts().collect();
         prop_assert!(found.iter().all(|&(agents, _)| agents == [0, 1]));
@@ -86,9 +86,9 @@ fn audited_contacts(
 }
 
 /// The depth at an approach, which has to be the greatest.
-fn audited_approach<S: Format>(
+fn audited_approach<S: HostScalar>(
     truth: &Meeting,
-    approach: &Approach<S>,
+    approach: &ClosestApproach<S>,
     during: [f64; 2],
     tolerance: f64,
 ) -> Result<f64, TestCaseError> {

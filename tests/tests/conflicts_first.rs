@@ -2,14 +2,14 @@
 
 use pcr_core::{Encounter, Interval, Motion, first_conflict};
 use pcr_fixed::Q16;
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{HostScalar, build_ecm};
 use pcr_tests::disc::{Course, Disc, Driven};
 use pcr_tests::generators::{Dice, drive, leg};
 use pcr_tests::oracle::contact::Meeting;
 use std::f64::consts::PI;
 
 /// The earliest conflict of the first agent of random fleets with its row of the table is that of the definition.
-fn first_of_rows<S: Format>(cases: u64) {
+fn first_of_rows<S: HostScalar>(cases: u64) {
     let (mut met, mut free) = (0, 0);
     for seed in 0..cases {
         let dice = &mut Dice::seeded(seed);

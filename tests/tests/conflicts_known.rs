@@ -1,8 +1,8 @@
 //! Conflicts of given motions whose answers are known.
 
-use pcr_core::{Conflict, Encounter, Interval, Mismatch, Motion, first_conflict, first_overlap};
+use pcr_core::{Conflict, Encounter, Interval, MismatchError, Motion, first_conflict, first_overlap};
 use pcr_fixed::Q16;
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{HostScalar, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -114,7 +114,7 @@ fn discs_that_follow_each_other_in_contact_on_a_circle_cost_the_stated_steps() {
 /// Side by side at the distance of a contact, nothing of the geometry decides; that they go alike does.
 #[test]
 fn discs_that_go_alike_cost_a_few_steps() {
-    fn steps<S: Format>(legs: &[Leg]) -> u32 {
+    fn steps<S: HostScalar>(legs: &[Leg]) -> u32 {
         let beside = |y: f64| {
             let disc = Disc { radius: 0.25, start: [0.0, y, 0.0], legs: legs.to_vec() };
             Course::<S>::driven(&disc, &Drive::Limits(1.0, 0.5), 0.0).expect("a valid disc")
@@ -196,6 +196,6 @@ fn a_row_answers_for_its_own_path_and_no_larger_disc() {
     assert_eq!(ask(&near[0]), Ok(true));
     assert_eq!(ask(&near[0].delayed(1.0).expect("a delay")), Ok(true));
     assert_eq!(ask(&smaller.motion()), Ok(true));
-    assert_eq!(ask(&larger.motion()), Err(Mismatch::OtherFleet));
-    assert_eq!(ask(&elsewhere.motion()), Err(Mismatch::OtherFleet));
+    assert_eq!(ask(&larger.motion()), Err(MismatchError::OtherFleet));
+    assert_eq!(ask(&elsewhere.motion()), Err(MismatchError::OtherFleet));
 }

@@ -1,59 +1,59 @@
 //! What the constructors refuse. That nothing gets past them that could do harm later is in `limits.rs`.
 
 use pcr_core::{
-    Brakes, Encounter, Invalid, Limits, Motion, Path, PathRef, Phase, Point, Pose, Profile, ProfileRef, Radians,
-    Segment, Turn,
+    BrakingModel, Encounter, InvalidInput, Limits, Motion, Path, PathRef, Phase, Point, Pose, Profile, ProfileRef,
+    Radians, Segment, TurnSide,
 };
 use pcr_formats::scenario::{LENGTH_TOLERANCE, Scenario};
-use pcr_planning::fleet::{Fleet, Format};
+use pcr_planning::fleet::{Fleet, HostScalar};
 
-fn at<S: Format>(x: f64, y: f64, heading: f64) -> Pose<S> {
+fn at<S: HostScalar>(x: f64, y: f64, heading: f64) -> Pose<S> {
     Pose { position: Point::new(S::from_f64(x), S::from_f64(y)), heading: S::angle(heading).expect("an angle") }
 }
 
-fn origin<S: Format>() -> Segment<S> {
+fn origin<S: HostScalar>() -> Segment<S> {
     Segment::standing(at(0.0, 0.0, 0.0)).expect("a finite pose")
 }
 
 /// A value, and how a constructor refuses it.
-type Refusal = (f64, fn(&'static str) -> Invalid);
+type Refusal = (f64, fn(&'static str) -> InvalidInput);
 
 /// Values that are refused wherever a number of any sign is taken, and how.
-fn refused_anywhere<S: Format>() -> Vec<Refusal> {
+fn refused_anywhere<S: HostScalar>() -> Vec<Refusal> {
     let beyond = S::LIMIT.to_f64() * 1.01;
     vec![
-        (f64::NAN, Invalid::NonFinite as fn(_) -> _),
-        (f64::INFINITY, Invalid::NonFinite),
-        (f64::NEG_INFINITY, Invalid::NonFinite),
-        (beyond, Invalid::OutOfRange),
-        (-beyond, Invalid::OutOfRange),
+        (f64::NAN, InvalidInput::NonFinite as fn(_) -> _),
+        (f64::INFINITY, InvalidInput::NonFinite),
+        (f64::NEG_INFINITY, InvalidInput::NonFinite),
+        (beyond, InvalidInput::OutOfRange),
+        (-beyond, InvalidInput::OutOfRange),
     ]
 }
 
-fn refused_unless_positive<S: Format>() -> Vec<Refusal> {
+fn refused_unless_positive<S: HostScalar>() -> Vec<Refusal> {
     let mut values = refused_anywhere::<S>();
     values.extend([
-        (0.0, Invalid::NonPositive as fn(_) -> _),
-        (-0.0, Invalid::NonPositive),
-        (-1.0, Invalid::NonPositive),
-        (-1e-30, Invalid::NonPositive),
+        (0.0, InvalidInput::NonPositive as fn(_) -> _),
+        (-0.0, InvalidInput::NonPositive),
+        (-1.0, InvalidInput::NonPositive),
+        (-1e-30, InvalidInput::NonPositive),
     ]);
     values
 }
 
-fn refused_if_negative<S: Format>() -> Vec<Refusal> {
+fn refused_if_negative<S: HostScalar>() -> Vec<Refusal> {
     let mut values = refused_anywhere::<S>();
-    values.extend([(-1.0, Invalid::Negative as fn(_) -> _), (-1e-30, Invalid::Negative)]);
+    values.extend([(-1.0, InvalidInput::Negative as fn(_) -> _), (-1e-30, InvalidInput::Negative)]);
     values
 }
 
-fn each<S: Format, T>(values: Vec<Refusal>, what: &'static str, make: impl Fn(S) -> Result<T, Invalid>) {
+fn each<S: HostScalar, T>(values: Vec<Refusal>, what: &'static str, make: impl Fn(S) -> Result<T, InvalidInput>) {
     for (value, error) in values {
         assert_eq!(make(S::from_f64(value)).err(), Some(error(what)), "{value} as {what}");
     }
 }
 
-fn poses<S: Format<Angle = Radians<S>>>() {
+fn poses<S: HostScalar<Angle = Radians<S>>>() {
     each::<S, _>(refused_anywhere::<S>(), "x", |x| {
         Segment::standing(Pose { position: Point::new(x, S::ZERO), ..at(0.0, 0.0, 0.0) })
     });
@@ -62,54 +62,58 @@ fn poses<S: Format<Angle = Radians<S>>>() {
     });
     for heading in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let pose = Pose { heading: Radians(S::from_f64(heading)), ..at(0.0, 0.0, 0.0) };
-        assert_eq!(Path::<S, 1>::starting_at(pose).err(), Some(Invalid::NonFinite("heading")));
+        assert_eq!(Path::<S, 1>::starting_at(pose).err(), Some(InvalidInput::NonFinite("heading")));
     }
 }
 
-fn segments<S: Format>() {
+fn segments<S: HostScalar>() {
     let one = S::from_f64(1.0);
     each::<S, _>(refused_if_negative::<S>(), "length", |length| origin().then_line(length));
-    each::<S, _>(refused_if_negative::<S>(), "length", |length| origin().then_arc(one, Turn::Left, length));
-    each::<S, _>(refused_unless_positive::<S>(), "radius", |radius| origin().then_arc(radius, Turn::Right, one));
+    each::<S, _>(refused_if_negative::<S>(), "length", |length| origin().then_arc(one, TurnSide::Left, length));
+    each::<S, _>(refused_unless_positive::<S>(), "radius", |radius| origin().then_arc(radius, TurnSide::Right, one));
     let below = S::from_f64(0.9 * S::LEAST.to_f64());
     if below < S::LEAST {
-        assert_eq!(origin().then_arc(below, Turn::Left, S::ZERO).err(), Some(Invalid::TooSmall("radius")));
+        assert_eq!(origin().then_arc(below, TurnSide::Left, S::ZERO).err(), Some(InvalidInput::TooSmall("radius")));
     }
-    assert!(origin().then_arc(S::LEAST, Turn::Left, S::ZERO).is_ok());
+    assert!(origin().then_arc(S::LEAST, TurnSide::Left, S::ZERO).is_ok());
     // Lengths are not multiplied with one another.
     assert!(origin().then_line(S::from_f64(f64::MIN_POSITIVE)).is_ok());
     for sweep in [6.284, 7.0, 100.0] {
-        let long = origin().then_arc(one, Turn::Left, S::from_f64(sweep));
-        assert_eq!(long.err(), Some(Invalid::SweepOverOneTurn), "{sweep} rad");
+        let long = origin().then_arc(one, TurnSide::Left, S::from_f64(sweep));
+        assert_eq!(long.err(), Some(InvalidInput::SweepOverOneTurn), "{sweep} rad");
     }
     // A path that leaves the range, in space or in length.
     let far = S::from_f64(0.6 * S::LIMIT.to_f64());
     let east = Path::<S, 4>::starting_at(at(0.0, 0.0, 0.0)).expect("a finite pose");
-    assert_eq!(east.clone().line(far).and_then(|path| path.line(far)).err(), Some(Invalid::OutOfRange("x")));
+    assert_eq!(east.clone().line(far).and_then(|path| path.line(far)).err(), Some(InvalidInput::OutOfRange("x")));
     let north = Path::<S, 4>::starting_at(at(0.0, 0.0, std::f64::consts::FRAC_PI_2)).expect("a finite pose");
-    assert_eq!(north.line(far).and_then(|path| path.line(far)).err(), Some(Invalid::OutOfRange("y")));
+    assert_eq!(north.line(far).and_then(|path| path.line(far)).err(), Some(InvalidInput::OutOfRange("y")));
     let back = Path::<S, 4>::starting_at(at(-0.6 * S::LIMIT.to_f64(), 0.0, 0.0)).expect("a finite pose");
-    assert_eq!(back.line(far).and_then(|path| path.line(far)).err(), Some(Invalid::OutOfRange("length of the path")));
+    assert_eq!(
+        back.line(far).and_then(|path| path.line(far)).err(),
+        Some(InvalidInput::OutOfRange("length of the path"))
+    );
 }
 
-fn capacities<S: Format>() {
+fn capacities<S: HostScalar>() {
     let one = S::from_f64(1.0);
-    let full = Path::<S, 2>::starting_at(at(0.0, 0.0, 0.0)).and_then(|path| path.line(one)?.arc(one, Turn::Left, one));
+    let full =
+        Path::<S, 2>::starting_at(at(0.0, 0.0, 0.0)).and_then(|path| path.line(one)?.arc(one, TurnSide::Left, one));
     let full = full.expect("two segments");
-    assert_eq!(full.clone().line(one).err(), Some(Invalid::Full("segment")));
+    assert_eq!(full.clone().line(one).err(), Some(InvalidInput::Full("segment")));
     assert!(full.line(S::ZERO).is_ok(), "a length of 0 needs no room");
     let pieces = [(one, S::ZERO); 3];
-    assert_eq!(Profile::<S, 2>::from_pieces(one, pieces).err(), Some(Invalid::Full("phase")));
+    assert_eq!(Profile::<S, 2>::from_pieces(one, pieces).err(), Some(InvalidInput::Full("phase")));
     assert!(Profile::<S, 3>::from_pieces(one, pieces).is_ok());
 }
 
-fn chains<S: Format>() {
+fn chains<S: HostScalar>() {
     let one = S::from_f64(1.0);
     let first = origin::<S>().then_line(one).expect("a line");
-    let second = first.then_arc(one, Turn::Left, one).expect("an arc");
-    assert_eq!(PathRef::<S>::new(&[]).err(), Some(Invalid::Disconnected("path")));
-    assert_eq!(PathRef::new(&[second]).err(), Some(Invalid::Disconnected("path")), "does not begin at length 0");
-    assert_eq!(PathRef::new(&[first, first]).err(), Some(Invalid::Disconnected("segment")));
+    let second = first.then_arc(one, TurnSide::Left, one).expect("an arc");
+    assert_eq!(PathRef::<S>::new(&[]).err(), Some(InvalidInput::Disconnected("path")));
+    assert_eq!(PathRef::new(&[second]).err(), Some(InvalidInput::Disconnected("path")), "does not begin at length 0");
+    assert_eq!(PathRef::new(&[first, first]).err(), Some(InvalidInput::Disconnected("segment")));
     assert!(PathRef::new(&[first, second]).is_ok());
     // One begins where the other ends, or after as long a way; not both.
     let after = |x: f64, y: f64, length: f64| {
@@ -118,20 +122,20 @@ fn chains<S: Format>() {
     };
     assert!(PathRef::new(&[first, after(0.0, 0.0, 1.0)]).is_ok());
     for next in [after(-1.0, 0.0, 2.0), after(0.0, 5.0, 1.0)] {
-        assert_eq!(PathRef::new(&[first, next]).err(), Some(Invalid::Disconnected("segment")));
+        assert_eq!(PathRef::new(&[first, next]).err(), Some(InvalidInput::Disconnected("segment")));
     }
     let turned = Segment::standing(at::<S>(0.0, 0.0, 1.0)).and_then(|turned| turned.then_line(one)).expect("a line");
-    assert_eq!(PathRef::new(&[turned, second]).err(), Some(Invalid::Disconnected("segment")));
+    assert_eq!(PathRef::new(&[turned, second]).err(), Some(InvalidInput::Disconnected("segment")));
 
     let start = Phase::starting_at(S::ZERO, one, one).expect("a phase");
     let next = start.then(one, S::ZERO).expect("a phase");
-    assert_eq!(ProfileRef::new(&[next]).err(), Some(Invalid::Disconnected("phase")));
-    assert_eq!(ProfileRef::new(&[start, start]).err(), Some(Invalid::Disconnected("phase")));
+    assert_eq!(ProfileRef::new(&[next]).err(), Some(InvalidInput::Disconnected("phase")));
+    assert_eq!(ProfileRef::new(&[start, start]).err(), Some(InvalidInput::Disconnected("phase")));
     assert!(ProfileRef::new(&[start, next]).is_ok());
     assert!(ProfileRef::<S>::new(&[]).is_ok(), "an agent that stands");
 }
 
-fn profiles<S: Format>() {
+fn profiles<S: HostScalar>() {
     let one = S::from_f64(1.0);
     let limits = Limits { speed: one, acceleration: one };
     each::<S, _>(refused_if_negative::<S>(), "length", |length| Profile::rest_to_rest(length, limits));
@@ -146,34 +150,34 @@ fn profiles<S: Format>() {
     each::<S, _>(refused_anywhere::<S>(), "acceleration", |acceleration| Phase::starting_at(one, one, acceleration));
     // To a speed below 0.
     let two = S::from_f64(2.0);
-    assert_eq!(Phase::starting_at(one, two, -one).err(), Some(Invalid::Negative("speed")));
+    assert_eq!(Phase::starting_at(one, two, -one).err(), Some(InvalidInput::Negative("speed")));
     // To a speed, a time, a length beyond the range.
     let large = S::from_f64(0.9 * S::LIMIT.to_f64());
-    assert_eq!(Phase::starting_at(one, large, two).err(), Some(Invalid::OutOfRange("speed")));
-    assert_eq!(Phase::starting_at(two, large, S::ZERO).err(), Some(Invalid::OutOfRange("length of the profile")));
+    assert_eq!(Phase::starting_at(one, large, two).err(), Some(InvalidInput::OutOfRange("speed")));
+    assert_eq!(Phase::starting_at(two, large, S::ZERO).err(), Some(InvalidInput::OutOfRange("length of the profile")));
     let wait = Phase::starting_at(S::ZERO, large, S::ZERO).expect("a long wait");
-    assert_eq!(wait.then(large, S::ZERO).err(), Some(Invalid::OutOfRange("duration of the profile")));
+    assert_eq!(wait.then(large, S::ZERO).err(), Some(InvalidInput::OutOfRange("duration of the profile")));
     let crawl = Limits { speed: S::from_f64(1e-3), acceleration: one };
-    assert_eq!(Profile::rest_to_rest(large, crawl).err(), Some(Invalid::OutOfRange("duration of the profile")));
+    assert_eq!(Profile::rest_to_rest(large, crawl).err(), Some(InvalidInput::OutOfRange("duration of the profile")));
     let profile = Profile::rest_to_rest(one, limits).expect("a profile");
     each::<S, _>(refused_unless_positive::<S>(), "duration", |duration| {
         Profile::<S, 3>::stretched(profile.as_profile(), duration)
     });
-    each::<S, _>(refused_unless_positive::<S>(), "deceleration", |deceleration| Brakes::new(deceleration, one));
-    each::<S, _>(refused_if_negative::<S>(), "reaction time", |reaction| Brakes::new(one, reaction));
+    each::<S, _>(refused_unless_positive::<S>(), "deceleration", |deceleration| BrakingModel::new(deceleration, one));
+    each::<S, _>(refused_if_negative::<S>(), "reaction time", |reaction| BrakingModel::new(one, reaction));
 }
 
-fn motions<S: Format>() {
+fn motions<S: HostScalar>() {
     let one = S::from_f64(1.0);
     let path = Path::<S, 1>::starting_at(at(0.0, 0.0, 0.0)).and_then(|path| path.line(one)).expect("a path");
     let profile = Profile::rest_to_rest(one, Limits { speed: one, acceleration: one }).expect("a profile");
     let make = |radius, start| Motion::new(path.as_path(), profile.as_profile(), radius, start);
     each::<S, _>(refused_unless_positive::<S>(), "radius", |radius| make(radius, S::ZERO));
     each::<S, _>(refused_anywhere::<S>(), "start time", |start| make(one, start));
-    assert_eq!(make(one, S::LIMIT).err(), Some(Invalid::OutOfRange("end time")));
+    assert_eq!(make(one, S::LIMIT).err(), Some(InvalidInput::OutOfRange("end time")));
     let motion = make(one, S::ZERO).expect("a motion");
     each::<S, _>(refused_if_negative::<S>(), "margin", |margin| motion.with_margin(margin));
-    assert_eq!(motion.with_margin(S::LIMIT).err(), Some(Invalid::OutOfRange("radius with its margin")));
+    assert_eq!(motion.with_margin(S::LIMIT).err(), Some(InvalidInput::OutOfRange("radius with its margin")));
     let inflated = motion.with_margin(one).expect("a margin").inflated();
     assert_eq!((inflated.radius(), inflated.margin()), (motion.radius() + one, S::ZERO));
     assert_eq!(inflated.extent(), motion.extent() + (one + one));
@@ -183,13 +187,13 @@ fn motions<S: Format>() {
     assert_eq!((planned.radius(), planned.margin()), (one + (one + tolerance), S::ZERO));
     each::<S, _>(refused_if_negative::<S>(), "lateness", |lateness| motion.with_lateness(lateness));
     each::<S, _>(refused_anywhere::<S>(), "delay", |delay| motion.delayed(delay));
-    assert_eq!(motion.delayed(S::LIMIT).err(), Some(Invalid::OutOfRange("end time")));
+    assert_eq!(motion.delayed(S::LIMIT).err(), Some(InvalidInput::OutOfRange("end time")));
     for length in [0.0, 0.5, 0.999, 1.001, 2.0] {
         let limits = Limits { speed: one, acceleration: one };
         let other = Profile::rest_to_rest(S::from_f64(length), limits).expect("a profile");
         let outcome = Motion::new(path.as_path(), other.as_profile(), one, S::ZERO);
         let refused = outcome.err();
-        let Some(Invalid::LengthMismatch { path: 1000, profile }) = refused else {
+        let Some(InvalidInput::LengthMismatch { path: 1000, profile }) = refused else {
             panic!("{length} m on 1 m: {refused:?}")
         };
         // Rounded down, and before that to the format.
@@ -198,7 +202,7 @@ fn motions<S: Format>() {
 }
 
 /// A profile of 8 m, and a few digits more or less, on a path of so many metres: what a file is read with is what the library takes.
-fn files_and_motions_take_the_same<S: Format>() {
+fn files_and_motions_take_the_same<S: HostScalar>() {
     let (length, speed) = (8.0, 0.5);
     let path = Path::<S, 1>::starting_at(at(0.0, 0.0, 0.0)).and_then(|path| path.line(S::from_f64(length)));
     let path = path.expect("a line");
@@ -227,7 +231,7 @@ fn files_and_motions_take_the_same<S: Format>() {
     ] {
         let scenario = read(travelled);
         assert_eq!(scenario.is_ok(), fits, "a file, {travelled} m");
-        let refused = |outcome: Result<(), Invalid>| matches!(outcome, Err(Invalid::LengthMismatch { .. }));
+        let refused = |outcome: Result<(), InvalidInput>| matches!(outcome, Err(InvalidInput::LengthMismatch { .. }));
         if let Ok(scenario) = scenario {
             assert!(Fleet::<S>::new(&scenario).is_ok(), "scaled, {travelled} m");
             assert_eq!(motion(travelled), Ok(()), "{travelled} m");

@@ -3,9 +3,9 @@
 use pcr_core::scalar::Micro;
 use pcr_core::{crossings, excess};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use pcr_tests::disc::{Course, Disc, Leg};
-use pcr_tests::exact::{Route, Twofold};
+use pcr_tests::exact::{DoubleDouble, Route};
 use pcr_tests::generators::Dice;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -26,7 +26,7 @@ fn disc(size: f64, dice: &mut Dice) -> Disc {
 
 /// How far both paths are apart at these lengths \[m\].
 fn apart(routes: &[Route; 2], at: [f64; 2]) -> f64 {
-    let [a, b] = [0, 1].map(|k| routes[k].at(Twofold::from(at[k])));
+    let [a, b] = [0, 1].map(|k| routes[k].at(DoubleDouble::from(at[k])));
     (a[0] - b[0]).to_f64().hypot((a[1] - b[1]).to_f64())
 }
 
@@ -50,7 +50,7 @@ struct Found {
     at_joint: f64,
 }
 
-fn found<S: Format>(pair: [&Disc; 2]) -> Option<Found> {
+fn found<S: HostScalar>(pair: [&Disc; 2]) -> Option<Found> {
     let rounded = pair.map(Disc::rounded::<S>);
     let [first, second] = [Course::<S>::new(&rounded[0]).ok()?, Course::<S>::new(&rounded[1]).ok()?];
     let (first, second) = (first.motion(), second.motion());
@@ -69,7 +69,7 @@ fn found<S: Format>(pair: [&Disc; 2]) -> Option<Found> {
     Some(Found { lengths, worst, at_joint: apart(&routes, joints) / sigma })
 }
 
-fn both_paths_are_there<S: Format>(size: f64) {
+fn both_paths_are_there<S: HostScalar>(size: f64) {
     let pairs = if cfg!(optimized) { 20_000 } else { 1_000 };
     let (mut count, mut worst) = (0, 0.0_f64);
     for seed in 0..pairs {
@@ -116,7 +116,7 @@ fn through_a_joint(size: f64, [own, their]: [f64; 2], dice: &mut Dice) -> [Disc;
     })
 }
 
-fn joints_count_once<S: Format>(size: f64) {
+fn joints_count_once<S: HostScalar>(size: f64) {
     let pairs = if cfg!(optimized) { 20_000 } else { 1_000 };
     let mut seen = 0;
     for seed in 0..pairs {

@@ -2,7 +2,7 @@
 
 use pcr_core::{Encounter, Interval, RegionRef, earliest_start, union};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{HostScalar, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::generators::{Dice, drive, driven_pairs, leg};
 use pcr_tests::oracle::Pair;
@@ -14,7 +14,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 const SAMPLES: u32 = 60;
 
 /// Contacts as `tests/conflicts.rs` certifies them, at delays inside and outside of what the regions forbid.
-fn audited<S: Format>(discs: [&Disc; 2], drives: &[(Drive, f64); 2]) -> Result<(), TestCaseError> {
+fn audited<S: HostScalar>(discs: [&Disc; 2], drives: &[(Drive, f64); 2]) -> Result<(), TestCaseError> {
     let course = |k: usize| {
         let (drive, start) = &drives[k];
         Course::<S>::driven(&discs[k].rounded::<S>(), &drive.rounded::<S>(), S::from_f64(*start).to_f64())
@@ -99,7 +99,7 @@ fn audited<S: Format>(discs: [&Disc; 2], drives: &[(Drive, f64); 2]) -> Result<(
 }
 
 /// What is forbidden is met in the first interval of time, what is not is free in the second.
-fn compared<S: Format>(
+fn compared<S: HostScalar>(
     encounter: &Encounter<'_, S>,
     fleet: [&pcr_core::Motion<'_, S>; 2],
     forbidden: &[Interval<S>],
@@ -122,13 +122,13 @@ fn compared<S: Format>(
 }
 
 /// What the bracket of a delay may be off as a time.
-fn bracket<S: Format>(ego: &pcr_core::Motion<'_, S>, other: &pcr_core::Motion<'_, S>) -> S {
+fn bracket<S: HostScalar>(ego: &pcr_core::Motion<'_, S>, other: &pcr_core::Motion<'_, S>) -> S {
     let latest = |time: Interval<S>| time.lo.abs().max(time.hi.abs());
     S::tolerance(latest(ego.time()).max(latest(other.time())))
 }
 
 /// What the bracket of a delay may be off, as a distance at top speed and as a time.
-fn slip<S: Format>(
+fn slip<S: HostScalar>(
     encounter: &Encounter<'_, S>,
     ego: &pcr_core::Motion<'_, S>,
     other: &pcr_core::Motion<'_, S>,
@@ -161,7 +161,7 @@ proptest! {
 
 /// A contact counts for the region that covers its middle or its deepest point. One that none covers is a touch: what is
 /// in contact for sure belongs to a region (docs/theory/errors.md).
-fn contacts_have_a_region<S: Format>(cases: u64) {
+fn contacts_have_a_region<S: HostScalar>(cases: u64) {
     let (mut contacts, mut touches) = (0_u32, 0_u32);
     for seed in 0..cases {
         let dice = &mut Dice::seeded(seed);

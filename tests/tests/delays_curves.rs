@@ -1,34 +1,36 @@
 //! Unsafe delays of arcs and of accelerations against sampled motions.
 
 use pcr_core::{Interval, Motion};
-use pcr_formats::import::{Edge, Format, Id, ImportError, Imported, Options, Warnings, layout, ride};
-use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Placed, Scenario};
+use pcr_formats::import::{
+    ElementId, ImportError, ImportOptions, ImportedLayout, InputFormat, LayoutEdge, Warnings, layout, ride,
+};
+use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, PlacedSegment, Scenario};
+use pcr_planning::exclusion_table::{EdgeDriving, UnsafeDelayModel, UnsafeRelation};
 use pcr_planning::fleet::Fleet;
-use pcr_planning::locks::{Delays, Driving, Unsafe};
 use std::collections::HashMap;
 
 const CURVES: &str = include_str!("../data/real/lif/example_17.lif.json");
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
 const SAMPLES: u32 = 400;
 
-fn read(format: Format, text: &str, radius: f64) -> Imported {
-    let options = Options { radius: Some(radius), ..Options::default() };
+fn read(format: InputFormat, text: &str, radius: f64) -> ImportedLayout {
+    let options = ImportOptions { radius: Some(radius), ..ImportOptions::default() };
     layout(format, text, &options, &mut Warnings::default()).unwrap()
 }
 
 type Intervals = HashMap<[usize; 2], Vec<[f64; 2]>>;
 
-fn found(delays: &Delays) -> Intervals {
+fn found(delays: &UnsafeDelayModel) -> Intervals {
     let mut all = Intervals::new();
-    let take = |row: Vec<Unsafe>| {
+    let take = |row: Vec<UnsafeRelation>| {
         for found in row {
-            if let Unsafe::Delays(ways, interval) = found {
+            if let UnsafeRelation::Delays(ways, interval) = found {
                 all.entry(ways).or_default().push(interval);
             }
         }
         Ok::<(), ImportError>(())
     };
-    delays.each(&|_, _| {}, &<[Unsafe]>::to_vec, take).unwrap();
+    delays.each(&|_, _| {}, &<[UnsafeRelation]>::to_vec, take).unwrap();
     all
 }
 
@@ -48,7 +50,7 @@ fn sampled(a: &Motion<'_, f64>, b: &Motion<'_, f64>, delay: f64) -> Option<[f64;
 }
 
 /// Every way of a layout as it is driven, in the order of the table.
-fn fleet(imported: &Imported, driving: Driving) -> Fleet<f64> {
+fn fleet(imported: &ImportedLayout, driving: EdgeDriving) -> Fleet<f64> {
     let mut vehicle = imported.vehicle.clone();
     vehicle.radius += vehicle.margin;
     vehicle.margin = 0.0;
@@ -79,8 +81,8 @@ fn fleet(imported: &Imported, driving: Driving) -> Fleet<f64> {
     Fleet::new(&Scenario::new("", agents)).unwrap()
 }
 
-fn audited(imported: &Imported, driving: Driving) {
-    let delays = Delays::new(imported, driving, false).unwrap();
+fn audited(imported: &ImportedLayout, driving: EdgeDriving) {
+    let delays = UnsafeDelayModel::new(imported, driving, false).unwrap();
     let (found, fleet) = (found(&delays), fleet(imported, driving));
     let motions = fleet.motions();
     assert_eq!(motions.len(), delays.ways().len());
@@ -121,45 +123,46 @@ fn audited(imported: &Imported, driving: Driving) {
 
 #[test]
 fn arcs_at_constant_speed() {
-    audited(&read(Format::Lif, CURVES, 0.3), Driving { speed: 0.8, acceleration: None });
+    audited(&read(InputFormat::Lif, CURVES, 0.3), EdgeDriving { speed: 0.8, acceleration: None });
 }
 
 #[test]
 fn arcs_from_rest_to_rest() {
-    audited(&read(Format::Lif, CURVES, 0.3), Driving { speed: 1.5, acceleration: Some(0.4) });
+    audited(&read(InputFormat::Lif, CURVES, 0.3), EdgeDriving { speed: 1.5, acceleration: Some(0.4) });
 }
 
 #[test]
 fn lines_from_rest_to_rest() {
-    audited(&read(Format::Nav2, WAREHOUSE, 0.4), Driving { speed: 1.0, acceleration: Some(0.5) });
+    audited(&read(InputFormat::Nav2, WAREHOUSE, 0.4), EdgeDriving { speed: 1.0, acceleration: Some(0.5) });
 }
 
 #[test]
 fn limits_of_edges_hold_from_rest_to_rest() {
-    let mut imported = read(Format::Nav2, WAREHOUSE, 0.4);
+    let mut imported = read(InputFormat::Nav2, WAREHOUSE, 0.4);
     let limits = [None, Some(0.25), Some(2.0), Some(0.6)];
     for (edge, limit) in imported.layout.edges.iter_mut().zip(limits.into_iter().cycle()) {
         edge.speed = [limit; 2];
     }
     for acceleration in [None, Some(0.5)] {
-        audited(&imported, Driving { speed: 1.0, acceleration });
+        audited(&imported, EdgeDriving { speed: 1.0, acceleration });
     }
 }
 
 #[test]
 fn limits_of_rotation_hold_at_constant_speed() {
-    let mut imported = read(Format::Lif, CURVES, 0.3);
+    let mut imported = read(InputFormat::Lif, CURVES, 0.3);
     for (edge, limit) in imported.layout.edges.iter_mut().zip([None, Some(0.1), Some(0.4)].into_iter().cycle()) {
         edge.rotation = limit;
     }
-    audited(&imported, Driving { speed: 0.8, acceleration: None });
+    audited(&imported, EdgeDriving { speed: 0.8, acceleration: None });
 }
 
 #[test]
 fn limits_of_rotation_hold_from_rest_to_rest() {
-    let vehicle = read(Format::Lif, CURVES, 0.3).vehicle;
+    let vehicle = read(InputFormat::Lif, CURVES, 0.3).vehicle;
     let shape = PathSegment::Arc { radius: 2.0, sweep: 1.5 };
-    let mut edge = Edge::new(Id::Number(1), [0, 1], vec![Placed { at: [0.0; 2], heading: 0.0, shape }]);
+    let mut edge =
+        LayoutEdge::new(ElementId::Number(1), [0, 1], vec![PlacedSegment { start: [0.0; 2], heading: 0.0, shape }]);
     edge.rotation = Some(0.1);
     // 1.5 rad at 0.1 rad/s, and what it takes to speed up to 0.2 m/s, and to stop.
     let least = 15.0 + 0.2 / vehicle.acceleration;
@@ -170,11 +173,12 @@ fn limits_of_rotation_hold_from_rest_to_rest() {
 /// Straight edges by the closed form and, with no more than the rounding of a deviation, by the library.
 #[test]
 fn both_ways_agree() {
-    let imported = read(Format::Nav2, WAREHOUSE, 0.4);
-    let driving = Driving { speed: 1.3, acceleration: None };
+    let imported = read(InputFormat::Nav2, WAREHOUSE, 0.4);
+    let driving = EdgeDriving { speed: 1.3, acceleration: None };
     let mut bent = imported.clone();
     bent.layout.edges.iter_mut().for_each(|edge| edge.deviation = 1e-12);
-    let [closed, general] = [&imported, &bent].map(|imported| found(&Delays::new(imported, driving, false).unwrap()));
+    let [closed, general] =
+        [&imported, &bent].map(|imported| found(&UnsafeDelayModel::new(imported, driving, false).unwrap()));
     assert!(closed.len() > 500);
     for (ways, intervals) in &closed {
         let [interval] = intervals[..] else { panic!("{ways:?} {intervals:?}") };
@@ -210,18 +214,18 @@ fn a_vehicle_that_stands_beside_its_node_is_in_the_way_there() {
         let edges = [edge("curve", ["A", "N"], curve), edge("line", ["P", "Q"], serde_json::Value::Null)];
         let file = serde_json::json!({ "metaInformation": { "projectIdentification": "beside", "lifVersion": "1.0.0" },
             "layouts": [{ "layoutId": "L", "nodes": nodes, "stations": [], "edges": edges }] });
-        let imported = read(Format::Lif, &file.to_string(), 0.4);
+        let imported = read(InputFormat::Lif, &file.to_string(), 0.4);
         let (mut times, mut pairs) = (0, 0);
-        let take = |row: Vec<Unsafe>| {
+        let take = |row: Vec<UnsafeRelation>| {
             for found in row {
                 // N is the second of the nodes, the line the second of the ways.
-                times += usize::from(matches!(found, Unsafe::Times(1, 1, _)));
-                pairs += usize::from(matches!(found, Unsafe::Nodes([1, 4])));
+                times += usize::from(matches!(found, UnsafeRelation::Times(1, 1, _)));
+                pairs += usize::from(matches!(found, UnsafeRelation::Nodes([1, 4])));
             }
             Ok::<(), ImportError>(())
         };
-        let delays = Delays::new(&imported, Driving { speed: 1.0, acceleration: None }, true).unwrap();
-        delays.each(&|_, _| {}, &<[Unsafe]>::to_vec, take).unwrap();
+        let delays = UnsafeDelayModel::new(&imported, EdgeDriving { speed: 1.0, acceleration: None }, true).unwrap();
+        delays.each(&|_, _| {}, &<[UnsafeRelation]>::to_vec, take).unwrap();
         [times, pairs]
     };
     assert_eq!([table(0.0), table(0.049)], [[0, 0], [1, 1]]);

@@ -1,8 +1,8 @@
 //! Equations for unsafe delays that others use, and where they are wrong (docs/theory/equations.md). What is true is told by the definition
 //! with 106 bits.
 
-use pcr_certify::twofold::Twofold;
-use pcr_planning::locks::Straight;
+use pcr_certify::double_double::DoubleDouble;
+use pcr_planning::exclusion_table::StraightEdge;
 use pcr_tests::delays::Exact;
 use pcr_tests::delays::published::{Line, cut_conic, whole_conic};
 
@@ -12,11 +12,11 @@ fn exact([from, to]: Line) -> Exact {
 
 /// The least distance if `b` sets off so much later than `a`.
 fn distance(a: Line, b: Line, delay: f64) -> f64 {
-    exact(a).nearest(&exact(b), Twofold::from(delay)).map_or(f64::INFINITY, |square| square.sqrt().to_f64())
+    exact(a).nearest(&exact(b), DoubleDouble::from(delay)).map_or(f64::INFINITY, |square| square.sqrt().to_f64())
 }
 
 fn ours(a: Line, b: Line, reach: f64) -> Option<[f64; 2]> {
-    let [a, b] = [a, b].map(|[from, to]| Straight::new(from, to, 1.0).unwrap());
+    let [a, b] = [a, b].map(|[from, to]| StraightEdge::new(from, to, 1.0).unwrap());
     a.delays(&b, reach)
 }
 

@@ -1,14 +1,14 @@
 //! Unsafe delays of straight edges at constant speed against their definition with 106 bits.
 
-use pcr_formats::import::{Imported, Node};
+use pcr_formats::import::{ImportedLayout, LayoutNode};
 use pcr_lab::roadmap;
-use pcr_planning::locks::{Delays, Driving, Straight, Unsafe};
+use pcr_planning::exclusion_table::{EdgeDriving, StraightEdge, UnsafeDelayModel, UnsafeRelation};
 use pcr_tests::delays::{Exact, ends_of};
 use pcr_tests::generators::Dice;
 use std::collections::HashMap;
 
 /// Discs of radius 1 at speed 1.
-fn published() -> Imported {
+fn published() -> ImportedLayout {
     roadmap::read(include_str!("../data/real/cplp/set0_301c854d.json")).unwrap().0
 }
 
@@ -19,20 +19,20 @@ fn every_interval_of_a_roadmap_is_that_of_the_definition() {
     let layout = &imported.layout;
     let (count, reach) = (layout.edges.len(), 2.0);
     let place = |name: String| {
-        let is_called = |node: &&Node| node.id.to_string() == name;
-        layout.nodes.iter().find(is_called).unwrap().at
+        let is_called = |node: &&LayoutNode| node.id.to_string() == name;
+        layout.nodes.iter().find(is_called).unwrap().point
     };
     let ends = layout.edges.iter().map(|edge| ends_of(layout, edge));
-    let (exact, straight): (Vec<Exact>, Vec<Straight>) =
-        ends.map(|[a, b]| (Exact::new(a, b, 1.0), Straight::new(a, b, 1.0).unwrap())).unzip();
-    let driving = Driving { speed: 1.0, acceleration: None };
-    let delays = Delays::new(&imported, driving, true).unwrap();
+    let (exact, straight): (Vec<Exact>, Vec<StraightEdge>) =
+        ends.map(|[a, b]| (Exact::new(a, b, 1.0), StraightEdge::new(a, b, 1.0).unwrap())).unzip();
+    let driving = EdgeDriving { speed: 1.0, acceleration: None };
+    let delays = UnsafeDelayModel::new(&imported, driving, true).unwrap();
     let (mut found, mut times, mut pairs) = (HashMap::new(), 0, 0);
-    let all = delays.each::<_, pcr_formats::import::ImportError>(&|_, _| {}, &<[Unsafe]>::to_vec, |row| {
+    let all = delays.each::<_, pcr_formats::import::ImportError>(&|_, _| {}, &<[UnsafeRelation]>::to_vec, |row| {
         for unsafe_ in row {
             match unsafe_ {
-                Unsafe::Delays(pair, interval) => assert_eq!(found.insert(pair, interval), None),
-                Unsafe::Times(node, way, interval) => {
+                UnsafeRelation::Delays(pair, interval) => assert_eq!(found.insert(pair, interval), None),
+                UnsafeRelation::Times(node, way, interval) => {
                     times += 1;
                     let at = place(delays.nodes()[node].to_string());
                     let apart = interval.map(|time| exact[way].apart_from_at(at, time).sqrt().to_f64());
@@ -41,7 +41,7 @@ fn every_interval_of_a_roadmap_is_that_of_the_definition() {
                         assert!((apart - reach).abs() < 1e-12 || (time - end).abs() < 1e-12 && apart < reach);
                     }
                 }
-                Unsafe::Nodes([a, b]) => {
+                UnsafeRelation::Nodes([a, b]) => {
                     let [[x, y], [u, v]] = [a, b].map(|node| place(delays.nodes()[node].to_string()));
                     assert!((x - u).hypot(y - v) <= reach + 1e-12);
                     pairs += 1;
@@ -54,7 +54,7 @@ fn every_interval_of_a_roadmap_is_that_of_the_definition() {
     for a in 0..count {
         for b in a..count {
             let interval = found.remove(&[a, b]);
-            let judged = exact[a].judge(&exact[b], reach, interval, straight[a].excess(&straight[b], reach));
+            let judged = exact[a].judge(&exact[b], reach, interval, straight[a].error_bound(&straight[b], reach));
             assert!(judged.is_ok(), "{a} {b}: {interval:?} {judged:?}");
         }
     }
@@ -69,8 +69,8 @@ fn what_is_told_of_no_node_is_out_of_its_reach() {
     let mut free = 0;
     for edge in &layout.edges {
         let [from, to] = ends_of(&layout, edge);
-        let (exact, straight) = (Exact::new(from, to, 1.0), Straight::new(from, to, 1.0).unwrap());
-        for at in layout.nodes.iter().map(|node| node.at) {
+        let (exact, straight) = (Exact::new(from, to, 1.0), StraightEdge::new(from, to, 1.0).unwrap());
+        for at in layout.nodes.iter().map(|node| node.point) {
             let apart = exact.apart(&Exact::new(at, at, 1.0)).sqrt().to_f64();
             match straight.times_at(at, reach) {
                 None => {
@@ -114,13 +114,13 @@ fn drawn_edges_have_the_intervals_of_the_definition() {
                 from = from.map(|x| x + 1e6);
                 to = to.map(|x| x + 1e6);
             }
-            (Exact::new(from, to, speed), Straight::new(from, to, speed).unwrap(), [from, to])
+            (Exact::new(from, to, speed), StraightEdge::new(from, to, speed).unwrap(), [from, to])
         };
         let speeds = [[1.0, 1.0], [1.0, 1.0 + 1e-9], [0.5, 2.0], [1.0, 3.0]][case % 4];
         let ((exact, straight, a), (other_exact, other, b)) = (edge(speeds[0]), edge(speeds[1]));
         let reach = [1.0, 0.5, 2.0_f64.sqrt(), 0.3][(case / 4) % 4];
         let found = straight.delays(&other, reach);
-        let judged = exact.judge(&other_exact, reach, found, straight.excess(&other, reach));
+        let judged = exact.judge(&other_exact, reach, found, straight.error_bound(&other, reach));
         assert!(judged.is_ok(), "{a:?} {b:?} {speeds:?} {reach}: {found:?} {judged:?}");
         if found.is_some() { met += 1 } else { free += 1 }
     }
@@ -158,10 +158,10 @@ fn edges_that_hardly_turn_have_the_intervals_of_the_definition() {
     });
     for [[a, b], [c, d]] in published.into_iter().chain(drawn) {
         for [[a, b], [c, d]] in [[[a, b], [c, d]], [[b, a], [c, d]], [[c, d], [a, b]], [[d, c], [b, a]]] {
-            let (exact, straight) = (Exact::new(a, b, 1.0), Straight::new(a, b, 1.0).unwrap());
-            let (other_exact, other) = (Exact::new(c, d, 1.0), Straight::new(c, d, 1.0).unwrap());
+            let (exact, straight) = (Exact::new(a, b, 1.0), StraightEdge::new(a, b, 1.0).unwrap());
+            let (other_exact, other) = (Exact::new(c, d, 1.0), StraightEdge::new(c, d, 1.0).unwrap());
             let found = straight.delays(&other, 2.0);
-            let judged = exact.judge(&other_exact, 2.0, found, straight.excess(&other, 2.0));
+            let judged = exact.judge(&other_exact, 2.0, found, straight.error_bound(&other, 2.0));
             assert!(judged.is_ok(), "{a:?} {b:?} {c:?} {d:?}: {found:?} {judged:?}");
             met += usize::from(found.is_some());
         }

@@ -112,7 +112,7 @@ fn functions_and_tests_that_documents_name_are_there() {
 
 #[test]
 fn names_of_earlier_days_are_noticed() {
-    let document = "**Code:** `pair/events.rs` → `turning_lengths`, `add_events`; `pair/offset.rs` → `Relative::roots`. \
+    let document = "**Code:** `pair/events.rs` → `turning_lengths`, `add_events`; `pair/lateral_offset.rs` → `Relative::roots`. \
                     **Tests:** `golden.rs::not_there`, `::nor_there`.";
     let (missing, names) = missing(document);
     assert_eq!(missing, ["turning_lengths", "Relative::roots", "golden.rs::not_there", "::nor_there"]);

@@ -2,31 +2,31 @@
 
 use pcr_core::scalar::Micro;
 use pcr_core::{
-    Encounter, Interval, Invalid, Limits, Motion, Path, Point, Pose, Profile, Radians, Scalar, Turn,
+    Encounter, Interval, InvalidInput, Limits, Motion, Path, Point, Pose, Profile, Radians, Scalar, TurnSide,
     earliest_departure, earliest_start, least_duration, safe_intervals,
 };
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{HostScalar, build_ecm};
 use pcr_tests::generators::Dice;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-fn at<S: Format>(x: f64, y: f64, heading: f64) -> Pose<S> {
+fn at<S: HostScalar>(x: f64, y: f64, heading: f64) -> Pose<S> {
     Pose { position: Point::new(S::from_f64(x), S::from_f64(y)), heading: S::angle(heading).expect("an angle") }
 }
 
-fn unit_speed<S: Format>(length: S) -> Profile<S, 1> {
+fn unit_speed<S: HostScalar>(length: S) -> Profile<S, 1> {
     Profile::from_pieces(S::from_f64(1.0), [(length, S::ZERO)]).expect("small")
 }
 
 /// A path of five lines and arcs, and another agent that passes over each of its joints and its end.
-fn joints<S: Format>(cases: u64) {
+fn joints<S: HostScalar>(cases: u64) {
     for seed in 0..cases {
         let dice = &mut Dice::seeded(seed);
         let mut path = Path::<S, 5>::starting_at(at(dice.range(-3.0, 3.0), dice.range(-3.0, 3.0), dice.range(-PI, PI)));
         for _ in 0..5 {
             let (length, bends) = (S::from_f64(dice.range(0.3, 2.0)), dice.chance(0.4));
             path = path.and_then(|path| {
-                if bends { path.arc(S::from_f64(1.0), pcr_core::Turn::Left, length) } else { path.line(length) }
+                if bends { path.arc(S::from_f64(1.0), pcr_core::TurnSide::Left, length) } else { path.line(length) }
             });
         }
         let path = path.expect("small");
@@ -88,7 +88,7 @@ struct Crossing {
 }
 
 impl Crossing {
-    fn paths<S: Format>(&self) -> [Path<S, 1>; 2] {
+    fn paths<S: HostScalar>(&self) -> [Path<S, 1>; 2] {
         [0, 1].map(|k| {
             let (half, heading) = (0.5 * self.lengths[k], self.headings[k]);
             let start = at(-half * heading.cos(), -half * heading.sin(), heading);
@@ -97,7 +97,7 @@ impl Crossing {
     }
 
     /// The least duration from one on; nothing is met then.
-    fn least<S: Format>(&self, from: f64) -> Option<(f64, Option<[f64; 2]>)> {
+    fn least<S: HostScalar>(&self, from: f64) -> Option<(f64, Option<[f64; 2]>)> {
         let paths = self.paths::<S>();
         let profiles = [0, 1].map(|k| unit_speed(S::from_f64(self.lengths[k])));
         let radius = S::from_f64(self.radius);
@@ -142,7 +142,7 @@ fn durations_are_forbidden_as_far_as_the_format_goes() {
 
 #[test]
 fn least_durations_meet_nobody_up_to_the_limits_of_times() {
-    fn all<S: Format>(cases: u64) {
+    fn all<S: HostScalar>(cases: u64) {
         let (limit, mut found) = (S::LIMIT.to_f64(), 0);
         for seed in 0..cases {
             let dice = &mut Dice::seeded(seed);
@@ -182,11 +182,11 @@ fn the_corner_of_a_region_is_forbidden() {
 
 /// After many turns a heading is rounded by more than a direction: what is missing is passed on along the path, and has to
 /// reach the parts of a segment as well.
-fn after_many_turns<S: Format<Angle = Radians<S>>>(heading: f64, missing: f64, bends: bool) {
+fn after_many_turns<S: HostScalar<Angle = Radians<S>>>(heading: f64, missing: f64, bends: bool) {
     let (length, bend) = (S::from_f64(90.0), S::from_f64(100.0));
     let start = Pose { position: Point::new(S::ZERO, S::ZERO), heading: Radians(S::from_f64(heading)) };
     let path = Path::<S, 1>::starting_at(start).and_then(|path| path.turn(Radians(S::from_f64(missing))));
-    let path = path.and_then(|path| if bends { path.arc(bend, Turn::Left, length) } else { path.line(length) });
+    let path = path.and_then(|path| if bends { path.arc(bend, TurnSide::Left, length) } else { path.line(length) });
     let path = path.expect("in range");
     let end = path.as_path().point_at(length);
     let (sin, cos) = (heading + missing + if bends { 0.9 } else { 0.0 }).sin_cos();
@@ -219,8 +219,8 @@ fn parts_of_a_path_are_blocked_as_the_whole_after_many_turns() {
 }
 
 /// The box of a part of an arc is that of the arc, and not of the turn in place that follows.
-fn part_before_a_turn<S: Format>(left: bool) {
-    let (side, turn) = if left { (1.0, Turn::Left) } else { (-1.0, Turn::Right) };
+fn part_before_a_turn<S: HostScalar>(left: bool) {
+    let (side, turn) = if left { (1.0, TurnSide::Left) } else { (-1.0, TurnSide::Right) };
     let length = S::from_f64(0.75 * PI);
     let path = Path::<S, 1>::starting_at(at(0.0, 0.0, 0.0)).and_then(|path| path.arc(S::from_f64(1.0), turn, length));
     let path = path.and_then(|path| path.turn(S::angle(-side * FRAC_PI_2).expect("an angle"))).expect("small");
@@ -253,7 +253,7 @@ fn parts_of_arcs_before_a_turn_in_place_are_blocked_as_the_whole() {
 /// A crossing that the ego passes so early that only durations beyond the format lead into the other's way.
 #[test]
 fn no_duration_is_forbidden_if_all_of_them_are_beyond_the_format() {
-    fn forbidden<S: Format>() -> Option<Interval<S>> {
+    fn forbidden<S: HostScalar>() -> Option<Interval<S>> {
         let paths = [(at(0.0, 0.0, 0.0), 100.0), (at(2.0, -2.0, FRAC_PI_2), 4.0)].map(|(start, length)| {
             Path::<S, 1>::starting_at(start).and_then(|path| path.line(S::from_f64(length))).expect("in range")
         });
@@ -273,7 +273,7 @@ fn no_duration_is_forbidden_if_all_of_them_are_beyond_the_format() {
 }
 
 /// Another one that passes at a distance of R, or a last digit less, blocks the place.
-fn grazed<S: Format>(cases: u64) {
+fn grazed<S: HostScalar>(cases: u64) {
     for seed in 0..cases {
         let dice = &mut Dice::seeded(seed);
         let place = Path::<S, 1>::starting_at(at(dice.range(-9.0, 9.0), dice.range(-9.0, 9.0), 0.0)).expect("small");
@@ -331,11 +331,11 @@ fn searches_from_beyond_the_format_find_nothing() {
         assert_eq!((earliest_start(row(), from), earliest_departure(row(), 1.0, from)), (None, None));
         let refused = least_duration::<f64, 1>(row(), from);
         assert!(
-            matches!(refused, Err(Invalid::NonFinite("duration") | Invalid::OutOfRange("duration"))),
+            matches!(refused, Err(InvalidInput::NonFinite("duration") | InvalidInput::OutOfRange("duration"))),
             "{refused:?}"
         );
     }
-    assert_eq!(least_duration::<f64, 1>(row(), 0.0), Err(Invalid::NonPositive("duration")));
+    assert_eq!(least_duration::<f64, 1>(row(), 0.0), Err(InvalidInput::NonPositive("duration")));
     // A wait beyond the end of the path is one at the end; one at no length is none.
     assert_eq!(earliest_departure(row(), 5.0, 0.0), earliest_departure(row(), 4.0, 0.0));
     assert!(earliest_departure(row(), 4.0, 0.0).is_some());
@@ -346,11 +346,11 @@ fn searches_from_beyond_the_format_find_nothing() {
 /// overlap by 0.4 m. By the acceleration, rounded to the format, the ramp was straighter, and nobody met.
 #[test]
 fn a_slow_ramp_in_fixed_point_is_no_line() {
-    let n = <Q12 as Format>::from_f64;
+    let n = <Q12 as HostScalar>::from_f64;
     let path = |x: f64, length: f64| {
         let pose = Pose {
             position: Point::new(n(x), <Q12 as Scalar>::ZERO),
-            heading: <Q12 as Format>::angle(0.0).expect("an angle"),
+            heading: <Q12 as HostScalar>::angle(0.0).expect("an angle"),
         };
         Path::<Q12, 1>::starting_at(pose).and_then(|path| path.line(n(length))).expect("within the format")
     };
@@ -377,7 +377,7 @@ fn a_slow_ramp_in_fixed_point_is_no_line() {
 /// Stretched to 2,400 s, a ramp has less than half a last digit of acceleration. It was a line then.
 #[test]
 fn a_motion_that_is_stretched_is_not_straightened() {
-    fn meets<S: Format>() {
+    fn meets<S: HostScalar>() {
         let n = S::from_f64;
         let limits = Limits { speed: n(1.0), acceleration: n(0.5) };
         let quick = Profile::<S, 3>::rest_to_rest(n(4.0), limits).expect("small");

@@ -3,9 +3,11 @@
 //! The long command is `cargo run --release -p pcr-tests --example ends -- --scenes 1000 --steps 1000 [--format q16]`.
 
 use pcr_core::scalar::Micro;
-use pcr_core::{Interval, Invalid, Motion, PathRef, Phase, Profile, ProfileRef, earliest_departure, least_duration};
+use pcr_core::{
+    Interval, InvalidInput, Motion, PathRef, Phase, Profile, ProfileRef, earliest_departure, least_duration,
+};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{HostScalar, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::ends::{apart, judged, scene, scenes, searches};
 use pcr_tests::generators::Dice;
@@ -16,7 +18,7 @@ const fn count(release: u64, debug: u64) -> u64 {
     if cfg!(optimized) { release } else { debug }
 }
 
-fn free_is_apart<S: Format>() {
+fn free_is_apart<S: HostScalar>() {
     let found = scenes::<S>(0, count(1_000, 120));
     assert_eq!(found.lost, [""; 0], "{}", S::NAME);
     println!("{}: {} of {} ends too far out: {:?}", S::NAME, found.wide.len(), found.compared, found.wide);
@@ -39,7 +41,7 @@ fn what_is_called_free_is_apart_in_fixed_point() {
     free_is_apart::<Q12>();
 }
 
-fn directed<S: Format>() {
+fn directed<S: HostScalar>() {
     let found = searches::<S>(0, count(40, 8), count(200, 10));
     println!("{}", found.row(S::NAME));
     assert_eq!(found.lost, [""; 0], "{}", S::NAME);
@@ -57,7 +59,7 @@ fn directed_search_finds_no_free_value_that_is_not_apart() {
 
 /// The other agent passes near the end of the ego's path, so long after the start that a stretched profile has speeds of few digits. The two
 /// overlapped by up to 0.18 m in `Q12`.
-fn long_times<S: Format>(least: f64, most: f64) {
+fn long_times<S: HostScalar>(least: f64, most: f64) {
     let (mut found, mut longer) = (0, 0);
     let dice = &mut Dice::seeded(1);
     for draw in 0..400 {
@@ -74,7 +76,7 @@ fn long_times<S: Format>(least: f64, most: f64) {
             Ok(duration) => duration,
             // All that the format has are too near to contact.
             Err(refused) => {
-                assert_eq!(refused, Invalid::OutOfRange("duration"), "{}, {draw}", S::NAME);
+                assert_eq!(refused, InvalidInput::OutOfRange("duration"), "{}, {draw}", S::NAME);
                 continue;
             }
         };
@@ -100,7 +102,7 @@ fn the_least_duration_is_free_far_above_the_own_one() {
 }
 
 /// The same scenes in every query.
-fn long_intervals<S: Format>() {
+fn long_intervals<S: HostScalar>() {
     let mut judged_scenes = 0;
     for seed in (0..count(2_000, 200)).step_by(5) {
         let Some(found) = judged::<S>(&scene::<S>(seed), true, seed) else { continue };
@@ -121,7 +123,7 @@ fn intervals_of_long_times_lose_nothing() {
 }
 
 /// Phases that stop on the way, and stand there for so long.
-fn with_a_wait<S: Format>(speed: f64, ramp: f64, cruise: f64, wait: S) -> Vec<Phase<S>> {
+fn with_a_wait<S: HostScalar>(speed: f64, ramp: f64, cruise: f64, wait: S) -> Vec<Phase<S>> {
     let (q, mut phases) = (S::from_f64, Vec::<Phase<S>>::new());
     for _ in 0..2 {
         let mut next = |duration: S, after: f64| {
@@ -142,7 +144,7 @@ fn with_a_wait<S: Format>(speed: f64, ramp: f64, cruise: f64, wait: S) -> Vec<Ph
     phases
 }
 
-fn waits<S: Format>() {
+fn waits<S: HostScalar>() {
     let (mut waited, mut none) = (0, 0);
     for seed in 0..count(2_000, 300) {
         let dice = &mut Dice::seeded(seed);

@@ -1,11 +1,11 @@
 //! Exclusions in the files of fleets: vehicles that obey nothing but a written file never touch, no lock is needless, and what
 //! is not asked to change does not change.
 
-use pcr_certify::data::{Agent, Angle, Path, Segment, Travel};
 use pcr_certify::motion::{Mover, meetings};
-use pcr_exclusions::{Audit, Settings, Spot, Target, read, stretch, write};
-use pcr_formats::import::{Format, Id, Imported, Options, Warnings, layout};
-use pcr_planning::locks::Locks;
+use pcr_certify::raw::{RawAgent, RawAngle, RawMotion, RawPath, RawSegment};
+use pcr_exclusions::{ExclusionAudit, ExclusionFormat, LayoutElementId, WriteOptions, read, stretch, write};
+use pcr_formats::import::{ElementId, ImportOptions, ImportedLayout, InputFormat, Warnings, layout};
+use pcr_planning::exclusion_table::ExclusionTable;
 use pcr_tests::rules::run;
 use pcr_tests::written::{self, Written};
 use serde_json::Value;
@@ -18,19 +18,19 @@ const OFFICE: &str = include_str!("../data/real/rmf/office.building.yaml");
 /// What is driven by each file.
 const MISSIONS: usize = 300;
 
-fn options(radius: f64) -> Options {
-    Options { radius: Some(radius), ..Options::default() }
+fn options(radius: f64) -> ImportOptions {
+    ImportOptions { radius: Some(radius), ..ImportOptions::default() }
 }
 
-fn imported(format: Format, text: &str, radius: f64) -> Imported {
+fn imported(format: InputFormat, text: &str, radius: f64) -> ImportedLayout {
     layout(format, text, &options(radius), &mut Warnings::default()).unwrap()
 }
 
-fn settings(target: Target) -> Settings {
-    Settings { target, split: None, envelopes: None }
+fn settings(target: ExclusionFormat) -> WriteOptions {
+    WriteOptions { target, split: None, envelopes: None }
 }
 
-fn written(format: Format, text: &str, radius: f64, settings: &Settings) -> String {
+fn written(format: InputFormat, text: &str, radius: f64, settings: &WriteOptions) -> String {
     write(format, text, &options(radius), "site", settings).unwrap().0
 }
 
@@ -45,33 +45,33 @@ fn suffice(is_asked: impl Fn(&Written) -> bool) {
 
 #[test]
 fn vehicles_that_obey_nav2_lists_never_touch() {
-    suffice(|file| file.target == Target::Nav2);
+    suffice(|file| file.target == ExclusionFormat::Nav2);
 }
 
 #[test]
 fn vehicles_that_obey_mutex_groups_never_touch() {
-    suffice(|file| file.target == Target::Rmf);
+    suffice(|file| file.target == ExclusionFormat::Rmf);
 }
 
 #[test]
 fn vehicles_that_obey_blocks_or_envelopes_never_touch() {
-    suffice(|file| file.target == Target::OpenTcs);
+    suffice(|file| file.target == ExclusionFormat::OpenTcs);
 }
 
 #[test]
 fn vehicles_that_obey_release_zones_never_touch() {
-    suffice(|file| file.target == Target::Vda5050);
+    suffice(|file| file.target == ExclusionFormat::Vda5050);
 }
 
 #[test]
 fn vehicles_that_obey_lock_files_never_touch() {
-    suffice(|file| file.target == Target::Pcr);
+    suffice(|file| file.target == ExclusionFormat::Pcr);
 }
 
 #[test]
 fn vehicles_without_rules_touch() {
-    let imported = imported(Format::Nav2, WAREHOUSE, 0.4);
-    let none = read(Target::Nav2, WAREHOUSE, &imported).unwrap();
+    let imported = imported(InputFormat::Nav2, WAREHOUSE, 0.4);
+    let none = read(ExclusionFormat::Nav2, WAREHOUSE, &imported).unwrap();
     let run = run(&imported, &none, 200, 7);
     assert!(run.contacts.len() > 20, "{run:?}");
 }
@@ -79,10 +79,11 @@ fn vehicles_without_rules_touch() {
 /// Two discs that stand, as the checker sees them.
 fn touch(radius: f64, points: [[f64; 2]; 2]) -> bool {
     let mover = |(k, start): (usize, [f64; 2])| {
-        let segment = Segment { length: 0.0, radius: None, turns: Vec::new(), from: 0.0, to: 0.0 };
-        let path = Path { start, heading: Angle::Radians(0.0), segments: vec![segment], rounding: 0.0, step: 0.0 };
-        let travel = Travel { start: 0.0, phases: Vec::new(), lag: 0.0, time_excess: 0.0 };
-        Mover::new(&Agent { id: k as u64, radius, path, travel: Some(travel) }, [0.0, 1.0]).unwrap()
+        let segment = RawSegment { length: 0.0, radius: None, turns: Vec::new(), from: 0.0, to: 0.0 };
+        let path =
+            RawPath { start, heading: RawAngle::Radians(0.0), segments: vec![segment], rounding: 0.0, step: 0.0 };
+        let travel = RawMotion { start: 0.0, phases: Vec::new(), lag: 0.0, time_excess: 0.0 };
+        Mover::new(&RawAgent { id: k as u64, radius, path, travel: Some(travel) }, [0.0, 1.0]).unwrap()
     };
     let movers: Vec<Mover> = points.into_iter().enumerate().map(mover).collect();
     !meetings(&movers).contacts.is_empty()
@@ -102,11 +103,11 @@ fn without(file: &str, a: &Value, b: &Value, own: &Value) -> String {
 }
 
 /// Leaves out locks of a table, every `step`th; each leaves a contact that the audit shows and the checker confirms.
-fn needed(format: Format, text: &str, radius: f64, step: usize) {
-    let file = written(format, text, radius, &settings(Target::Pcr));
+fn needed(format: InputFormat, text: &str, radius: f64, step: usize) {
+    let file = written(format, text, radius, &settings(ExclusionFormat::Pcr));
     let mut imported = imported(format, text, radius);
     imported.layout.name = "site".into();
-    let locks = Locks::of(&imported, true).unwrap();
+    let locks = ExclusionTable::compute(&imported, true).unwrap();
     let root: Value = serde_json::from_str(&file).unwrap();
     let mut pairs = Vec::new();
     for entry in root["edges"].as_array().unwrap() {
@@ -114,21 +115,24 @@ fn needed(format: Format, text: &str, radius: f64, step: usize) {
             pairs.push((entry["edge"].clone(), lock["edge"].clone(), lock["own"].clone()));
         }
     }
-    let id = |value: &Value| value.as_u64().map_or_else(|| Id::Text(value.as_str().unwrap().into()), Id::Number);
+    let id = |value: &Value| {
+        value.as_u64().map_or_else(|| ElementId::Text(value.as_str().unwrap().into()), ElementId::Number)
+    };
     let (mut shown, mut left_out) = (0, 0);
     for (a, b, own) in pairs.iter().step_by(step) {
         left_out += 1;
-        let rules = read(Target::Pcr, &without(&file, a, b, own), &imported).unwrap();
-        let audit = Audit::of(&imported, &locks, &rules, Target::Pcr).unwrap();
-        let ends = [Spot::Edge(id(a).min(id(b))), Spot::Edge(id(a).max(id(b)))];
+        let rules = read(ExclusionFormat::Pcr, &without(&file, a, b, own), &imported).unwrap();
+        let audit = ExclusionAudit::run(&imported, &locks, &rules, ExclusionFormat::Pcr).unwrap();
+        let ends = [LayoutElementId::Edge(id(a).min(id(b))), LayoutElementId::Edge(id(a).max(id(b)))];
         let gap = audit.gaps.iter().find(|gap| {
             let mut both = [gap.a.clone(), gap.b.clone()];
             both.sort();
             both == ends
         });
         let gap = gap.unwrap_or_else(|| panic!("{a} {b}: nothing touches without it"));
-        let curve = |spot: &Spot, lengths: [f64; 2]| {
-            let edge = imported.layout.edges.iter().find(|edge| Spot::Edge(edge.id.clone()) == *spot).unwrap();
+        let curve = |spot: &LayoutElementId, lengths: [f64; 2]| {
+            let edge =
+                imported.layout.edges.iter().find(|edge| LayoutElementId::Edge(edge.id.clone()) == *spot).unwrap();
             stretch(&edge.curve, lengths)
         };
         let found = pcr_exclusions::nearest(&curve(&gap.a, gap.a_length.unwrap()), &curve(&gap.b, gap.b_length));
@@ -140,15 +144,15 @@ fn needed(format: Format, text: &str, radius: f64, step: usize) {
 
 #[test]
 fn every_lock_that_is_left_out_leaves_a_contact() {
-    needed(Format::Nav2, SAMPLE, 0.3, 1);
-    needed(Format::Nav2, WAREHOUSE, 0.4, 40);
-    needed(Format::OpenTcs, DEMO, 0.9, 15);
+    needed(InputFormat::Nav2, SAMPLE, 0.3, 1);
+    needed(InputFormat::Nav2, WAREHOUSE, 0.4, 40);
+    needed(InputFormat::OpenTcs, DEMO, 0.9, 15);
 }
 
 /// What is left of a text without the lists, the blocks, or the groups that were written.
 #[test]
 fn all_else_is_kept_byte_for_byte() {
-    let nav2 = written(Format::Nav2, SAMPLE, 0.3, &settings(Target::Nav2));
+    let nav2 = written(InputFormat::Nav2, SAMPLE, 0.3, &settings(ExclusionFormat::Nav2));
     let mut rest = nav2.clone();
     while let Some(at) = rest.find("\"closed_edges\": [") {
         let end = at + rest[at..].find(']').unwrap() + 1;
@@ -164,9 +168,9 @@ fn all_else_is_kept_byte_for_byte() {
     rest.replace_range(stamp..end, "");
     assert_eq!(rest, SAMPLE);
     // Written again, nothing changes.
-    assert_eq!(written(Format::Nav2, &nav2, 0.3, &settings(Target::Nav2)), nav2);
+    assert_eq!(written(InputFormat::Nav2, &nav2, 0.3, &settings(ExclusionFormat::Nav2)), nav2);
 
-    let blocks = written(Format::OpenTcs, DEMO, 0.9, &settings(Target::OpenTcs));
+    let blocks = written(InputFormat::OpenTcs, DEMO, 0.9, &settings(ExclusionFormat::OpenTcs));
     let first = blocks.find("\n    <block name=\"pcr-block-").unwrap();
     let last = blocks.rfind("</block>").unwrap() + "</block>".len();
     let mut rest = [&blocks[..first], &blocks[last..]].concat();
@@ -174,10 +178,10 @@ fn all_else_is_kept_byte_for_byte() {
     let end = stamp + rest[stamp..].find("/>").unwrap() + 2;
     rest.replace_range(stamp..end, "");
     assert_eq!(rest, DEMO);
-    assert_eq!(written(Format::OpenTcs, &blocks, 0.9, &settings(Target::OpenTcs)), blocks);
+    assert_eq!(written(InputFormat::OpenTcs, &blocks, 0.9, &settings(ExclusionFormat::OpenTcs)), blocks);
 
-    let groups = written(Format::Rmf, OFFICE, 0.3, &settings(Target::Rmf));
-    assert_eq!(written(Format::Rmf, &groups, 0.3, &settings(Target::Rmf)), groups);
+    let groups = written(InputFormat::Rmf, OFFICE, 0.3, &settings(ExclusionFormat::Rmf));
+    assert_eq!(written(InputFormat::Rmf, &groups, 0.3, &settings(ExclusionFormat::Rmf)), groups);
     let other = |text: &str| {
         let is_other = |line: &&str| !line.starts_with("      - [") && !line.starts_with("pcr_vehicle: ");
         let lines = text.lines().filter(is_other);
@@ -205,8 +209,8 @@ const PLANT: &str = r#"<model version="7.0.0" name="plant">
 fn paths_of_a_plant_are_cut_where_nothing_belongs_to_all_of_them() {
     let plant = |content: &str, more: &str| PLANT.replace("CONTENT", content).replace("MORE", more);
     let cut = |text: &str, split| {
-        let settings = Settings { split: Some(split), ..settings(Target::OpenTcs) };
-        write(Format::OpenTcs, text, &options(0.5), "site", &settings).unwrap()
+        let settings = WriteOptions { split: Some(split), ..settings(ExclusionFormat::OpenTcs) };
+        write(InputFormat::OpenTcs, text, &options(0.5), "site", &settings).unwrap()
     };
     let (text, report, _) = cut(&plant("", ""), 2.0);
     // Each path has points of its own; the first part keeps the name.
@@ -277,30 +281,35 @@ fn a_byte_order_mark_before_a_plant_moves_nothing() {
     let marked = |text: &str| format!("\u{feff}{text}");
     let envelopes = Some("k".to_owned());
     for settings in [
-        settings(Target::OpenTcs),
-        Settings { split: Some(2.0), ..settings(Target::OpenTcs) },
-        Settings { envelopes: envelopes.clone(), ..settings(Target::OpenTcs) },
-        Settings { envelopes, split: Some(2.0), ..settings(Target::OpenTcs) },
+        settings(ExclusionFormat::OpenTcs),
+        WriteOptions { split: Some(2.0), ..settings(ExclusionFormat::OpenTcs) },
+        WriteOptions { envelopes: envelopes.clone(), ..settings(ExclusionFormat::OpenTcs) },
+        WriteOptions { envelopes, split: Some(2.0), ..settings(ExclusionFormat::OpenTcs) },
     ] {
-        let plain = written(Format::OpenTcs, &plant(LAYOUT), 2.5, &settings);
+        let plain = written(InputFormat::OpenTcs, &plant(LAYOUT), 2.5, &settings);
         assert_ne!(plain, plant(LAYOUT));
-        assert_eq!(written(Format::OpenTcs, &marked(&plant(LAYOUT)), 2.5, &settings), marked(&plain), "{settings:?}");
+        assert_eq!(
+            written(InputFormat::OpenTcs, &marked(&plant(LAYOUT)), 2.5, &settings),
+            marked(&plain),
+            "{settings:?}"
+        );
         // There are blocks or envelopes that are replaced.
-        assert_eq!(written(Format::OpenTcs, &marked(&plain), 2.5, &settings), marked(&plain), "{settings:?}");
+        assert_eq!(written(InputFormat::OpenTcs, &marked(&plain), 2.5, &settings), marked(&plain), "{settings:?}");
     }
     // Envelopes that are written anew do not belong to the whole path.
     let envelope = r#"<vehicleEnvelope key="k"><vertex x="0" y="0"/></vehicleEnvelope>"#;
-    let settings = Settings { envelopes: Some("k".into()), split: Some(2.0), ..settings(Target::OpenTcs) };
-    assert!(written(Format::OpenTcs, &plant(envelope), 0.5, &settings).contains("c-d part 3"));
+    let settings = WriteOptions { envelopes: Some("k".into()), split: Some(2.0), ..settings(ExclusionFormat::OpenTcs) };
+    assert!(written(InputFormat::OpenTcs, &plant(envelope), 0.5, &settings).contains("c-d part 3"));
 }
 
 #[test]
 fn audits_name_what_is_left_out_and_what_is_in_vain() {
-    let (radius, target) = (0.3, Target::Nav2);
-    let file = written(Format::Nav2, SAMPLE, radius, &settings(target));
-    let imported = imported(Format::Nav2, SAMPLE, radius);
-    let locks = Locks::of(&imported, true).unwrap();
-    let audit = |text: &str| Audit::of(&imported, &locks, &read(target, text, &imported).unwrap(), target).unwrap();
+    let (radius, target) = (0.3, ExclusionFormat::Nav2);
+    let file = written(InputFormat::Nav2, SAMPLE, radius, &settings(target));
+    let imported = imported(InputFormat::Nav2, SAMPLE, radius);
+    let locks = ExclusionTable::compute(&imported, true).unwrap();
+    let audit =
+        |text: &str| ExclusionAudit::run(&imported, &locks, &read(target, text, &imported).unwrap(), target).unwrap();
     let whole = audit(&file);
     assert!(whole.suffices() && whole.needless.is_empty(), "{whole:?}");
     // An edge more in one list only excludes nothing; in both it is in vain.
@@ -343,18 +352,18 @@ fn audits_name_what_is_left_out_and_what_is_in_vain() {
 
 #[test]
 fn what_cannot_be_written_is_refused() {
-    let refused = |format, text: &str, settings: &Settings, partial: bool| {
-        let options = Options { partial, ..options(0.4) };
+    let refused = |format, text: &str, settings: &WriteOptions, partial: bool| {
+        let options = ImportOptions { partial, ..options(0.4) };
         write(format, text, &options, "site", settings).unwrap_err().to_string()
     };
-    let nav2 = settings(Target::Nav2);
-    assert!(refused(Format::OpenTcs, DEMO, &nav2, false).contains("written into files of nav2"));
-    assert!(refused(Format::Nav2, WAREHOUSE, &nav2, true).contains("--partial"));
+    let nav2 = settings(ExclusionFormat::Nav2);
+    assert!(refused(InputFormat::OpenTcs, DEMO, &nav2, false).contains("written into files of nav2"));
+    assert!(refused(InputFormat::Nav2, WAREHOUSE, &nav2, true).contains("--partial"));
     let large = WAREHOUSE.replace("10000", "70000");
-    assert!(refused(Format::Nav2, &large, &nav2, false).contains("edge 70000"), "ids of 16 bits");
-    let split = Settings { split: Some(0.2), ..settings(Target::OpenTcs) };
-    assert!(refused(Format::OpenTcs, DEMO, &split, false).contains("whole millimetres"));
+    assert!(refused(InputFormat::Nav2, &large, &nav2, false).contains("edge 70000"), "ids of 16 bits");
+    let split = WriteOptions { split: Some(0.2), ..settings(ExclusionFormat::OpenTcs) };
+    assert!(refused(InputFormat::OpenTcs, DEMO, &split, false).contains("whole millimetres"));
     let unknown = WAREHOUSE.replacen("\"id\": 0  }", "\"id\": 0, \"metadata\": { \"closed_edges\": [7] } }", 1);
-    let imported = imported(Format::Nav2, WAREHOUSE, 0.4);
-    assert!(read(Target::Nav2, &unknown, &imported).unwrap_err().to_string().contains("there is no edge 7"));
+    let imported = imported(InputFormat::Nav2, WAREHOUSE, 0.4);
+    assert!(read(ExclusionFormat::Nav2, &unknown, &imported).unwrap_err().to_string().contains("there is no edge 7"));
 }

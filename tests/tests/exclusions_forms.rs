@@ -1,37 +1,47 @@
 //! Exclusions written into files that have the same things in other forms: what is there is kept, and what cannot be is refused.
 
-use pcr_exclusions::{Audit, Settings, Target, Written, read, write};
-use pcr_formats::import::{Format, Imported, Options, Warnings, layout};
-use pcr_planning::locks::Locks;
+use pcr_exclusions::{ExclusionAudit, ExclusionFormat, WriteOptions, WriteReport, read, write};
+use pcr_formats::import::{ImportOptions, ImportedLayout, InputFormat, Warnings, layout};
+use pcr_planning::exclusion_table::ExclusionTable;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
-fn options(radius: f64) -> Options {
-    Options { radius: Some(radius), ..Options::default() }
+fn options(radius: f64) -> ImportOptions {
+    ImportOptions { radius: Some(radius), ..ImportOptions::default() }
 }
 
-fn imported(format: Format, text: &str, radius: f64) -> Imported {
+fn imported(format: InputFormat, text: &str, radius: f64) -> ImportedLayout {
     layout(format, text, &options(radius), &mut Warnings::default()).unwrap()
 }
 
-fn written(format: Format, text: &str, radius: f64, target: Target, split: Option<f64>) -> (String, Written) {
-    let settings = Settings { target, split, envelopes: None };
+fn written(
+    format: InputFormat,
+    text: &str,
+    radius: f64,
+    target: ExclusionFormat,
+    split: Option<f64>,
+) -> (String, WriteReport) {
+    let settings = WriteOptions { target, split, envelopes: None };
     let (written, report, audit) = write(format, text, &options(radius), "site", &settings).unwrap();
     assert!(audit.suffices());
     if target.layout().is_some() {
         let again = imported(format, &written, radius);
         let rules = read(target, &written, &again).unwrap();
-        assert!(Audit::of(&again, &Locks::of(&again, true).unwrap(), &rules, target).unwrap().suffices());
+        assert!(
+            ExclusionAudit::run(&again, &ExclusionTable::compute(&again, true).unwrap(), &rules, target)
+                .unwrap()
+                .suffices()
+        );
         assert_eq!(
-            write(format, &written, &options(radius), "site", &Settings { split: None, ..settings }).unwrap().0,
+            write(format, &written, &options(radius), "site", &WriteOptions { split: None, ..settings }).unwrap().0,
             written
         );
     }
     (written, report)
 }
 
-fn refused(format: Format, text: &str, target: Target, split: Option<f64>) -> String {
-    let settings = Settings { target, split, envelopes: None };
+fn refused(format: InputFormat, text: &str, target: ExclusionFormat, split: Option<f64>) -> String {
+    let settings = WriteOptions { target, split, envelopes: None };
     write(format, text, &options(0.4), "site", &settings).unwrap_err().to_string()
 }
 
@@ -124,13 +134,13 @@ fn lanes(text: &str) -> Value {
 
 #[test]
 fn buildings_in_all_forms_of_yaml_get_the_same_groups() {
-    let expected = written(Format::Rmf, BUILDING, 0.4, Target::Rmf, None);
-    let cut = written(Format::Rmf, BUILDING, 0.4, Target::Rmf, Some(1.5));
+    let expected = written(InputFormat::Rmf, BUILDING, 0.4, ExclusionFormat::Rmf, None);
+    let cut = written(InputFormat::Rmf, BUILDING, 0.4, ExclusionFormat::Rmf, Some(1.5));
     assert!(expected.1.warnings.contains(&"groups of the file are replaced: mine [replaced-exclusions]".to_owned()));
     assert_eq!((expected.1.edges, cut.1.edges), (5, 14));
     for text in forms() {
         for (expected, split) in [(&expected, None), (&cut, Some(1.5))] {
-            let (written, report) = written(Format::Rmf, &text, 0.4, Target::Rmf, split);
+            let (written, report) = written(InputFormat::Rmf, &text, 0.4, ExclusionFormat::Rmf, split);
             assert_eq!(lanes(&written), lanes(&expected.0), "{written}");
             assert_eq!(&report, &expected.1);
             let ends = |text: &str| [text.matches("\r\n").count(), text.matches('\n').count()];
@@ -166,19 +176,19 @@ fn what_is_shared_in_a_building_is_refused() {
     ] {
         let text = format!("more: &x {{}}\n{}", BUILDING.replace(from, to));
         assert_ne!(text.len(), BUILDING.len() + 12);
-        let why = refused(Format::Rmf, &text, Target::Rmf, None);
+        let why = refused(InputFormat::Rmf, &text, ExclusionFormat::Rmf, None);
         assert!(why.contains("anchor or an alias"), "{why}");
     }
     // What is merged would be in the parts and in both directions.
     for split in [None, Some(1.5)] {
         let merged = BUILDING.replacen("{bidirectional: [4, true], ", "{<<: {bidirectional: [4, true]}, ", 1);
         assert_ne!(merged, BUILDING);
-        let why = refused(Format::Rmf, &merged, Target::Rmf, split);
+        let why = refused(InputFormat::Rmf, &merged, ExclusionFormat::Rmf, split);
         assert!(why.contains("lanes L1/0: its parameters have a merge key (<<)"), "{why}");
     }
     // Elsewhere they do no harm.
     let text = format!("more: &x {{}}\nagain: *x\n{BUILDING}");
-    let (text, _) = written(Format::Rmf, &text, 0.4, Target::Rmf, None);
+    let (text, _) = written(InputFormat::Rmf, &text, 0.4, ExclusionFormat::Rmf, None);
     let (stamp, rest) = text.split_once('\n').unwrap();
     assert!(stamp.starts_with("pcr_vehicle: {") && rest.starts_with("more: &x {}\nagain: *x\n"), "{text}");
 }
@@ -224,11 +234,11 @@ lifts: {}
 
 #[test]
 fn navigation_graphs_are_read_and_written() {
-    let there = imported(Format::Rmf, GRAPH, 0.4).layout;
+    let there = imported(InputFormat::Rmf, GRAPH, 0.4).layout;
     assert_eq!((there.name.as_str(), there.nodes.len(), there.edges.len()), ("site", 5, 4));
-    assert_eq!((there.nodes[0].at, there.nodes[0].name.as_deref()), ([1.0, -2.0], Some("home")));
+    assert_eq!((there.nodes[0].point, there.nodes[0].name.as_deref()), ([1.0, -2.0], Some("home")));
     assert!(there.edges.iter().all(|edge| !edge.is_two_way()));
-    let (text, _) = written(Format::Rmf, GRAPH, 0.4, Target::Rmf, None);
+    let (text, _) = written(InputFormat::Rmf, GRAPH, 0.4, ExclusionFormat::Rmf, None);
     let plain: String = text
         .replace(", mutex: \"pcr/L1/0\"", "")
         .replace(", mutex: \"pcr/L1/1\"", "")
@@ -248,7 +258,7 @@ fn navigation_graphs_are_read_and_written() {
     ] {
         assert!(text.contains(expected), "{text}");
     }
-    let (text, report) = written(Format::Rmf, GRAPH, 0.4, Target::Rmf, Some(2.0));
+    let (text, report) = written(InputFormat::Rmf, GRAPH, 0.4, ExclusionFormat::Rmf, Some(2.0));
     assert_eq!(report.edges, 7, "{text}");
     assert!(report.warnings.iter().any(|said| said.contains("L1/2 is left whole: a robot docks")), "{report:?}");
     for expected in [
@@ -260,7 +270,7 @@ fn navigation_graphs_are_read_and_written() {
     // Lanes of one way only, whatever they say.
     let both = GRAPH.replace("speed_limit: 0.5", "is_bidirectional: true");
     let mut warnings = Warnings::default();
-    let there = layout(Format::Rmf, &both, &options(0.4), &mut warnings).unwrap().layout;
+    let there = layout(InputFormat::Rmf, &both, &options(0.4), &mut warnings).unwrap().layout;
     assert!(
         !there.edges[1].is_two_way() && warnings.lines().iter().any(|said| said.contains("taken one way")),
         "{warnings:?}"
@@ -301,8 +311,13 @@ fn operations_of_route_graphs_stay_with_a_whole_edge_in_both_forms() {
         ("[]".to_owned(), false),
         ("null".to_owned(), false),
     ] {
-        let (text, report) =
-            written(Format::Nav2, &graph(&format!(",\"operations\":{operations}")), 0.4, Target::Nav2, Some(2.0));
+        let (text, report) = written(
+            InputFormat::Nav2,
+            &graph(&format!(",\"operations\":{operations}")),
+            0.4,
+            ExclusionFormat::Nav2,
+            Some(2.0),
+        );
         assert_eq!(report.edges, if is_whole { 6 } else { 7 }, "{operations}");
         assert_eq!(text.matches("open_door").count(), usize::from(is_whole), "{text}");
         // The first part keeps the number.
@@ -329,12 +344,12 @@ fn lists_stand_in_metadata_whatever_it_was() {
             ",\"metadata\":{\"closed_edges\":[10,11,12],\"\\u00e9\\\"}\":\"]\"}",
         ),
     ] {
-        let (text, _) = written(Format::Nav2, &graph(given), 0.4, Target::Nav2, None);
+        let (text, _) = written(InputFormat::Nav2, &graph(given), 0.4, ExclusionFormat::Nav2, None);
         assert!(text.contains(expected), "{given}: {text}");
     }
     // Which of two members of one name counts depends on who reads them.
     let twice = graph(",\"metadata\":{\"closed_edges\":[7]},\"metadata\":{}");
-    assert!(refused(Format::Nav2, &twice, Target::Nav2, None).contains("\"metadata\" is there twice"));
+    assert!(refused(InputFormat::Nav2, &twice, ExclusionFormat::Nav2, None).contains("\"metadata\" is there twice"));
 }
 
 /// Zones as the standard asks for them: names of their own, and what a RELEASE zone needs.
@@ -363,24 +378,24 @@ fn zone_sets(text: &str) -> Vec<String> {
 
 #[test]
 fn of_zones_the_report_tells_what_they_are_for_and_their_level() {
-    let settings = Settings { target: Target::Vda5050, split: None, envelopes: None };
-    let (text, disc, _) = write(Format::Rmf, GRAPH, &options(0.4), "site", &settings).unwrap();
-    let around = |report: &Written| report.warnings.iter().any(|said| said.contains("the disc around the outline"));
+    let settings = WriteOptions { target: ExclusionFormat::Vda5050, split: None, envelopes: None };
+    let (text, disc, _) = write(InputFormat::Rmf, GRAPH, &options(0.4), "site", &settings).unwrap();
+    let around = |report: &WriteReport| report.warnings.iter().any(|said| said.contains("the disc around the outline"));
     assert!(!around(&disc), "{:?}", disc.warnings);
     let fleet = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
-    let options = Options { fleet: Some(fleet.into()), ..Options::default() };
+    let options = ImportOptions { fleet: Some(fleet.into()), ..ImportOptions::default() };
     let ahead = GRAPH.replace("orientation_constraint: backward", "orientation_constraint: forward");
-    let outline = write(Format::Rmf, &ahead, &options, "site", &settings).unwrap().1;
+    let outline = write(InputFormat::Rmf, &ahead, &options, "site", &settings).unwrap().1;
     assert!(around(&outline), "{:?}", outline.warnings);
     // On which level a zone is drawn; a zone that slows vehicles down does not keep them apart.
-    let imported = imported(Format::Rmf, GRAPH, 0.4);
+    let imported = imported(InputFormat::Rmf, GRAPH, 0.4);
     let levels = |text: &str| -> Vec<usize> {
-        read(Target::Vda5050, text, &imported).unwrap().groups.iter().map(|group| group.level).collect()
+        read(ExclusionFormat::Vda5050, text, &imported).unwrap().groups.iter().map(|group| group.level).collect()
     };
     assert_eq!(levels(&text).iter().copied().collect::<BTreeSet<_>>().len(), 2, "{:?}", levels(&text));
     let slow = text.replacen("\"RELEASE\"", "\"SPEED_LIMIT\"", 1);
     assert_eq!(levels(&slow)[..], levels(&text)[1..]);
-    let warnings = read(Target::Vda5050, &slow, &imported).unwrap().warnings;
+    let warnings = read(ExclusionFormat::Vda5050, &slow, &imported).unwrap().warnings;
     assert!(warnings.iter().any(|said| said.contains("SPEED_LIMIT keeps no vehicles apart")), "{warnings:?}");
 }
 
@@ -400,7 +415,7 @@ levels:
       - [4, 4, 0, \"\"]
 name: site
 ";
-    let (text, report) = written(Format::Rmf, building, 0.4, Target::Rmf, None);
+    let (text, report) = written(InputFormat::Rmf, building, 0.4, ExclusionFormat::Rmf, None);
     // Lanes have the groups of vertices, and two vertices one in common: two lanes and two vertices name it.
     assert_eq!((report.groups, text.matches("\"pcr/L1/1\"").count()), (3, 4), "{text}");
 }
@@ -408,9 +423,9 @@ name: site
 #[test]
 fn that_lanes_of_other_graphs_stay_is_said() {
     let said = |graph| {
-        let options = Options { graph, ..options(0.4) };
-        let settings = Settings { target: Target::Rmf, split: None, envelopes: None };
-        let report = write(Format::Rmf, BUILDING, &options, "site", &settings).unwrap().1;
+        let options = ImportOptions { graph, ..options(0.4) };
+        let settings = WriteOptions { target: ExclusionFormat::Rmf, split: None, envelopes: None };
+        let report = write(InputFormat::Rmf, BUILDING, &options, "site", &settings).unwrap().1;
         report.warnings.iter().any(|said| said.contains("lanes of other graphs than 0"))
     };
     assert_eq!([said(None), said(Some(0))], [false, true]);
@@ -418,7 +433,7 @@ fn that_lanes_of_other_graphs_stay_is_said() {
 
 #[test]
 fn zones_and_zone_sets_have_names_of_their_own() {
-    let of = |radius, split| zone_sets(&written(Format::Rmf, GRAPH, radius, Target::Vda5050, split).0);
+    let of = |radius, split| zone_sets(&written(InputFormat::Rmf, GRAPH, radius, ExclusionFormat::Vda5050, split).0);
     let sets = [of(0.4, None), of(0.4, Some(1.0)), of(0.5, None)].concat();
     assert_eq!(sets.len(), 6);
     assert_eq!(sets.iter().collect::<BTreeSet<_>>().len(), 6, "other zones, another set: {sets:?}");
@@ -433,7 +448,7 @@ fn zones_and_zone_sets_have_names_of_their_own() {
         let points = [point("a", 0, 0), point("b", 4000, 0), point("c", 0, 4000), point("d", 2000, 4000)].concat();
         format!("<model name=\"m\">{points}{}{}</model>", path("p", "a", "b"), path(name, "c", "d"))
     };
-    let (text, report) = written(Format::OpenTcs, &plant("p (2)"), 0.4, Target::Vda5050, Some(2.0));
+    let (text, report) = written(InputFormat::OpenTcs, &plant("p (2)"), 0.4, ExclusionFormat::Vda5050, Some(2.0));
     assert_eq!((zone_sets(&text).len(), report.groups), (1, 3));
 }
 
@@ -446,22 +461,23 @@ fn blocks_of_a_model_have_names_of_their_own() {
         .replacen("<block ", &format!("{mine}\n    <block "), 1)
         .replace("\"Fire door 01\"", "\"pcr-block-0002\"")
         .replace('\n', "\r\n");
-    let (text, report) = written(Format::OpenTcs, &text, 0.9, Target::OpenTcs, None);
+    let (text, report) = written(InputFormat::OpenTcs, &text, 0.9, ExclusionFormat::OpenTcs, None);
     assert!(text.contains(mine) && report.groups > 1);
     assert_eq!(text.matches("<block name=\"\"pcr-block-0002\"").count(), 0);
     assert_eq!(text.matches("<block name=\"pcr-block-0").count(), report.groups);
     assert_eq!(text.matches('\n').count(), text.matches("\r\n").count());
     let prefixed = "<m:model xmlns:m=\"urn:m\" name=\"m\"><m:point name=\"a\" positionX=\"0\" positionY=\"0\"/>\
         <m:point name=\"b\" positionX=\"2000\" positionY=\"0\"/><m:path name=\"p\" sourcePoint=\"a\" destinationPoint=\"b\"/></m:model>";
-    let why = refused(Format::OpenTcs, prefixed, Target::OpenTcs, None);
+    let why = refused(InputFormat::OpenTcs, prefixed, ExclusionFormat::OpenTcs, None);
     assert!(why.contains("prefix"), "{why}");
 }
 
 #[test]
 fn parts_that_no_memory_holds_are_refused_before_they_are_made() {
-    for (format, text, target) in
-        [(Format::Nav2, graph(""), Target::Nav2), (Format::Rmf, BUILDING.to_owned(), Target::Vda5050)]
-    {
+    for (format, text, target) in [
+        (InputFormat::Nav2, graph(""), ExclusionFormat::Nav2),
+        (InputFormat::Rmf, BUILDING.to_owned(), ExclusionFormat::Vda5050),
+    ] {
         let why = refused(format, &text, target, Some(1e-12));
         assert!(why.contains("parts"), "{why}");
     }

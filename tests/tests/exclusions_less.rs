@@ -1,9 +1,9 @@
 //! Files from which one exclusion is taken out: the audit names what can touch then, and vehicles that obey what is left do touch. So
 //! the tests that nothing touches can fail, for every format.
 
-use pcr_exclusions::{Audit, Rules, Settings, Target, read, write};
-use pcr_formats::import::{Format, Imported, Options, Warnings, layout};
-use pcr_planning::locks::Locks;
+use pcr_exclusions::{ExclusionAudit, ExclusionFormat, ExclusionRules, WriteOptions, read, write};
+use pcr_formats::import::{ImportOptions, ImportedLayout, InputFormat, Warnings, layout};
+use pcr_planning::exclusion_table::ExclusionTable;
 use pcr_tests::rules::run;
 use serde_json::Value;
 
@@ -13,16 +13,16 @@ const OFFICE: &str = include_str!("../data/real/rmf/office.building.yaml");
 
 /// A written file, its layout, and how it is read.
 struct File {
-    target: Target,
+    target: ExclusionFormat,
     text: String,
-    imported: Imported,
-    locks: Locks,
+    imported: ImportedLayout,
+    locks: ExclusionTable,
 }
 
 impl File {
-    fn of(format: Format, text: &str, radius: f64, target: Target, envelopes: Option<&str>) -> Self {
-        let options = Options { radius: Some(radius), ..Options::default() };
-        let settings = Settings { target, split: None, envelopes: envelopes.map(str::to_owned) };
+    fn of(format: InputFormat, text: &str, radius: f64, target: ExclusionFormat, envelopes: Option<&str>) -> Self {
+        let options = ImportOptions { radius: Some(radius), ..ImportOptions::default() };
+        let settings = WriteOptions { target, split: None, envelopes: envelopes.map(str::to_owned) };
         let (written, _, audit) = write(format, text, &options, "site", &settings).unwrap();
         assert!(audit.suffices());
         let geometry = if target.layout().is_some() { &written } else { text };
@@ -30,11 +30,11 @@ impl File {
         if imported.layout.name.is_empty() {
             imported.layout.name = "site".into();
         }
-        let locks = Locks::of(&imported, true).unwrap();
+        let locks = ExclusionTable::compute(&imported, true).unwrap();
         Self { target, text: written, imported, locks }
     }
 
-    fn rules(&self, text: &str) -> Rules {
+    fn rules(&self, text: &str) -> ExclusionRules {
         read(self.target, text, &self.imported).unwrap()
     }
 
@@ -42,7 +42,7 @@ impl File {
     fn missed(&self, less: &[String], step: usize) -> usize {
         let found = |text: &&String| {
             assert_ne!(**text, self.text);
-            !Audit::of(&self.imported, &self.locks, &self.rules(text), self.target).unwrap().suffices()
+            !ExclusionAudit::run(&self.imported, &self.locks, &self.rules(text), self.target).unwrap().suffices()
         };
         let open: Vec<&String> = less.iter().filter(found).collect();
         let touch =
@@ -54,7 +54,7 @@ impl File {
 
 #[test]
 fn every_entry_of_a_list_of_closed_edges_is_missed() {
-    let file = File::of(Format::Nav2, SAMPLE, 0.3, Target::Nav2, None);
+    let file = File::of(InputFormat::Nav2, SAMPLE, 0.3, ExclusionFormat::Nav2, None);
     let root: Value = serde_json::from_str(&file.text).unwrap();
     let mut less = Vec::new();
     for (k, feature) in root["features"].as_array().unwrap().iter().enumerate() {
@@ -71,7 +71,7 @@ fn every_entry_of_a_list_of_closed_edges_is_missed() {
 
 #[test]
 fn the_group_of_every_lane_and_vertex_is_missed() {
-    let file = File::of(Format::Rmf, OFFICE, 0.45, Target::Rmf, None);
+    let file = File::of(InputFormat::Rmf, OFFICE, 0.45, ExclusionFormat::Rmf, None);
     let groups: Vec<(usize, &str)> = file.text.match_indices("mutex: [1, \"pcr/").collect();
     let less: Vec<String> = groups
         .iter()
@@ -87,7 +87,7 @@ fn the_group_of_every_lane_and_vertex_is_missed() {
 
 #[test]
 fn every_block_is_missed() {
-    let file = File::of(Format::OpenTcs, DEMO, 0.9, Target::OpenTcs, None);
+    let file = File::of(InputFormat::OpenTcs, DEMO, 0.9, ExclusionFormat::OpenTcs, None);
     let blocks: Vec<(usize, &str)> = file.text.match_indices("<block name=\"pcr-block-").collect();
     let less: Vec<String> = blocks
         .iter()
@@ -110,7 +110,7 @@ fn every_block_is_missed() {
 
 #[test]
 fn envelopes_and_zones_are_missed() {
-    let file = File::of(Format::OpenTcs, DEMO, 0.9, Target::OpenTcs, Some("pcr"));
+    let file = File::of(InputFormat::OpenTcs, DEMO, 0.9, ExclusionFormat::OpenTcs, Some("pcr"));
     // Envelopes of points and paths do for one another where they overlap; without the key nobody has one.
     let envelopes: Vec<(usize, &str)> = file.text.match_indices("<vehicleEnvelope key=\"pcr\">").collect();
     let cut = |at: usize| {
@@ -126,7 +126,7 @@ fn envelopes_and_zones_are_missed() {
         file.text.replace(" envelopeKey=\"pcr\"", "").replace("<vehicleEnvelope key=\"pcr\">", "<vehicleEnvelope>");
     assert_eq!(file.missed(&[nameless], 1), 1);
 
-    let file = File::of(Format::Nav2, SAMPLE, 0.3, Target::Vda5050, None);
+    let file = File::of(InputFormat::Nav2, SAMPLE, 0.3, ExclusionFormat::Vda5050, None);
     let root: Value = serde_json::from_str(&file.text).unwrap();
     let without = |k: usize| {
         let mut root = root.clone();

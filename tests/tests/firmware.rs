@@ -1,6 +1,6 @@
 //! The firmware's scenario is that of the tool, and its documents tell what fleets take.
 
-use pcr_core::{Order, Piece, Region, Segment};
+use pcr_core::{EcmEntry, Piece, RegionPrecedence, Segment};
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::{Fleet, build_ecm};
 
@@ -33,9 +33,9 @@ fn the_sizes_of_larger_fleets_are_as_documented() {
         let motions = fleet.motions();
         let ecm = build_ecm(&motions).expect("a table");
         let segments: usize = motions.iter().map(|motion| motion.path().segments().len()).sum();
-        let table = ecm.len() * size_of::<Region>() + ecm.pieces() * size_of::<Piece<f32>>();
+        let table = ecm.len() * size_of::<EcmEntry>() + ecm.pieces() * size_of::<Piece<f32>>();
         let placed = segments * size_of::<Segment<f32>>() + agents * bytes_an_agent();
-        let orders = ecm.len() * size_of::<Order<f32>>();
+        let orders = ecm.len() * size_of::<RegionPrecedence<f32>>();
         let numbers = [agents, segments, ecm.len(), ecm.pieces(), table, placed, orders].map(written);
         let row = format!("| {} |", numbers.join(" | "));
         if !document.contains(&row) {

@@ -4,9 +4,9 @@
 use pcr_core::Motion;
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::Scenario;
-use pcr_planning::check::Verdict;
-use pcr_planning::fleet::{Fleet, Format};
-use pcr_planning::regions::{Answer, Region, Request};
+use pcr_planning::check::CheckReport;
+use pcr_planning::fleet::{Fleet, HostScalar};
+use pcr_planning::regions::{RegionEntry, RegionOptions, RegionsReport};
 use pcr_tests::generators::Dice;
 use pcr_tests::polygons::{self, Point, Polygon, apart};
 use serde_json::{Value, json};
@@ -62,7 +62,7 @@ fn compare(agents: &[Value], polygons: [&[Point]; 2]) -> [usize; 2] {
 }
 
 /// The same in a number format, in which discs may grow by up to `slack` \[m\]; the polygons are where the scenario has them.
-fn compare_in<S: Format>(agents: &[Value], polygons: [&[Point]; 2], slack: f64) -> [usize; 2] {
+fn compare_in<S: HostScalar>(agents: &[Value], polygons: [&[Point]; 2], slack: f64) -> [usize; 2] {
     const SLICES: usize = 12;
     const LENGTHS: usize = 80;
     let scenario = read(agents);
@@ -71,14 +71,16 @@ fn compare_in<S: Format>(agents: &[Value], polygons: [&[Point]; 2], slack: f64) 
     let smaller = polygons.map(|polygon| polygons::smaller(polygon, lost));
     let fleet = references(&scenario);
     let motions = fleet.motions();
-    let answer = Answer::of::<S>(&scenario, Request { agent: None, slices: Some(SLICES), certificate: false }).unwrap();
+    let answer =
+        RegionsReport::compute::<S>(&scenario, RegionOptions { agent: None, slices: Some(SLICES), certificate: false })
+            .unwrap();
     assert!(answer.footprints.iter().all(|cover| (0.0..=slack).contains(&cover.growth)), "{:?}", answer.footprints);
     let overhang: f64 = answer.footprints.iter().map(|cover| cover.overhang).sum();
     let mut counts = [0, 0];
     for (own, other) in [(0, 1), (1, 0)] {
         let (ego, them): (&Motion<'_, f64>, &Motion<'_, f64>) = (&motions[own], &motions[other]);
         let id = scenario.agents[own].id;
-        let regions: Vec<Region> = answer.regions.iter().filter(|region| region.i == id).cloned().collect();
+        let regions: Vec<RegionEntry> = answer.regions.iter().filter(|region| region.i == id).cloned().collect();
         // At the times of the slices of each region, that of all regions then.
         for region in &regions {
             for slice in region.slices.iter().flatten() {
@@ -108,7 +110,7 @@ fn compare_in<S: Format>(agents: &[Value], polygons: [&[Point]; 2], slack: f64) 
                 let length = scenario.agents[own].length() * (step as f64 / LENGTHS as f64);
                 if apart(&placed(&smaller[own], ego.path().pose_at(length)), &far) == 0.0 {
                     // With fewer digits the other agent may arrive a little earlier.
-                    let there = |region: &Region| within(region.t, t) || (region.open_end && t > region.t[1]);
+                    let there = |region: &RegionEntry| within(region.t, t) || (region.open_end && t > region.t[1]);
                     let inside = regions
                         .iter()
                         .any(|region| there(region) && within([region.l[0] - lost, region.l[1] + lost], length));
@@ -122,13 +124,13 @@ fn compare_in<S: Format>(agents: &[Value], polygons: [&[Point]; 2], slack: f64) 
 }
 
 /// Where the smaller polygons overlap there is a conflict, and in a conflict the polygons are near somewhere.
-fn conflicts<S: Format>(
+fn conflicts<S: HostScalar>(
     scenario: &Scenario,
     motions: &[Motion<'_, f64>],
     [polygons, smaller]: [[&[Point]; 2]; 2],
     [most, lost]: [f64; 2],
 ) {
-    let verdict = Verdict::of::<S>(scenario, true).unwrap();
+    let verdict = CheckReport::compute::<S>(scenario, true).unwrap();
     let between = |polygons: [&[Point]; 2], t: f64| {
         let [a, b] = [0, 1].map(|k| placed(polygons[k], motions[k].path().pose_at(motions[k].length_at(t))));
         apart(&a, &b)
@@ -172,7 +174,9 @@ fn a_vehicle_that_turns_in_place_sweeps_what_is_beside_it() {
     // The discs of its turn: while the reference point stands.
     let scenario = read(&agents);
     let regions =
-        Answer::of::<f64>(&scenario, Request { agent: Some(1), slices: None, certificate: false }).unwrap().regions;
+        RegionsReport::compute::<f64>(&scenario, RegionOptions { agent: Some(1), slices: None, certificate: false })
+            .unwrap()
+            .regions;
     assert!(regions.iter().any(|region| region.pieces.iter().any(|piece| piece.i_segment == Some(2))));
 }
 
@@ -232,8 +236,8 @@ fn a_disc_is_what_it_was_and_the_cover_of_a_square_has_four() {
     let disc = json!({ "id": 7, "radius": 0.3, "v_max": 1.0, "a_max": 0.5, "path": [line(4.0)],
         "start": { "x": 0.0, "y": 0.0, "heading": 0.0 } });
     let scenario = read(&[disc.clone(), agent(2, &SQUARE, [2.0, -3.0, FRAC_PI_2], &json!([line(6.0)]))]);
-    let request = Request { certificate: true, ..Request::default() };
-    let answer = Answer::of::<f64>(&scenario, request).unwrap();
+    let request = RegionOptions { certificate: true, ..RegionOptions::default() };
+    let answer = RegionsReport::compute::<f64>(&scenario, request).unwrap();
     assert!(!answer.regions.is_empty());
     let [cover] = answer.footprints.as_slice() else { panic!("one cover") };
     assert_eq!((cover.id, cover.discs.len()), (2, 4));

@@ -5,7 +5,7 @@
 
 use pcr_core::{Interval, RegionRef, excess};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use pcr_tests::audit::{Audit, Seen};
 use pcr_tests::disc::{Disc, Leg};
 use pcr_tests::oracle::plane::Effort;
@@ -20,7 +20,7 @@ const F32_EXCESS: f64 = 9.6e-6;
 const SAMPLES: u32 = if cfg!(optimized) { 32 } else { 8 };
 
 /// The pairs, in numbers of the format.
-fn pairs<S: Format>() -> impl Iterator<Item = (String, Disc, Disc)> {
+fn pairs<S: HostScalar>() -> impl Iterator<Item = (String, Disc, Disc)> {
     cases().into_iter().map(|case| {
         let [ego, other] = [0, 1].map(|k| Disc::of_agent(&case.scenario.agents[k]).rounded::<S>());
         (case.name, ego, other)
@@ -40,7 +40,7 @@ fn clipped(disc: &Disc) -> Disc {
 }
 
 /// The slices of all regions at a length of the other's path.
-fn slices<S: Format>(regions: &[RegionRef<'_, S>], s: f64) -> Vec<[f64; 2]> {
+fn slices<S: HostScalar>(regions: &[RegionRef<'_, S>], s: f64) -> Vec<[f64; 2]> {
     let interval = |interval: Interval<S>| [interval.lo.to_f64(), interval.hi.to_f64()];
     regions.iter().flat_map(|region| region.slice_at(S::from_f64(s)).map(interval)).collect()
 }
@@ -71,7 +71,7 @@ fn f32_contains_the_f64_regions_and_is_within_those_of_a_larger_radius() {
 
 #[test]
 fn fixed_point_contains_the_f64_regions_and_is_within_those_of_a_larger_radius() {
-    fn refused<S: Format>(digit: f64) -> usize {
+    fn refused<S: HostScalar>(digit: f64) -> usize {
         // Ends of slices are numbers of the format: within half a digit of where they are.
         contains_and_is_within::<S>(|_| (0.0, digit))
     }
@@ -83,7 +83,7 @@ fn fixed_point_contains_the_f64_regions_and_is_within_those_of_a_larger_radius()
 
 /// Compares slices with those of `f64`, for the radius and for one that is larger by an excess, that of the library at least,
 /// with a tolerance of lengths, both by the extent. How many pairs the format cannot hold.
-fn contains_and_is_within<S: Format>(allowed: impl Fn(f64) -> (f64, f64)) -> usize {
+fn contains_and_is_within<S: HostScalar>(allowed: impl Fn(f64) -> (f64, f64)) -> usize {
     let mut refused = 0;
     // A debug run takes some of them.
     for (name, ego, other) in pairs::<S>().step_by(if cfg!(optimized) { 1 } else { 5 }) {

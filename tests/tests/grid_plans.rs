@@ -1,9 +1,9 @@
 //! Plans on grids, read and carried out while robots are late: nobody touches anybody, everybody arrives, later than planned and no later than
 //! by cells.
 
-use pcr_formats::import::{Format, GridPlan, Options, Warnings, scenario};
-use pcr_lab::grid_plans::{By, Outcome, carried_out, random_stops, situation};
-use pcr_planning::certify::Proof;
+use pcr_formats::import::{GridPlan, ImportOptions, InputFormat, Warnings, scenario};
+use pcr_lab::grid_plans::{ExecutionMethod, GridRunResult, carried_out, random_stops, situation};
+use pcr_planning::certify::MotionCertificate;
 
 const NAMES: [&str; 3] = ["11_an_60", "17_an_95", "24_an_95"];
 const PLANS: [&str; 3] = [
@@ -27,7 +27,7 @@ fn planned(plan: &GridPlan) -> f64 {
 }
 
 #[track_caller]
-fn assert_sound(outcome: &Outcome, case: &str) {
+fn assert_sound(outcome: &GridRunResult, case: &str) {
     assert_eq!((outcome.proof.verdict, outcome.stuck), ("proved", 0), "{case}: {:?}", outcome.proof);
     assert!(outcome.travel >= outcome.alone, "{case}");
 }
@@ -36,18 +36,19 @@ fn assert_sound(outcome: &Outcome, case: &str) {
 fn plans_are_what_was_published_for_discs_of_half_a_cell() {
     for (name, text) in NAMES.into_iter().zip(PLANS) {
         let file = format!("{name}.path");
-        assert_eq!(Format::of(file.as_ref(), text), Some(Format::Grid), "{name}");
+        assert_eq!(InputFormat::detect(file.as_ref(), text), Some(InputFormat::Grid), "{name}");
         let mut warnings = Warnings::default();
-        let options = Options { radius: Some(0.499), ..Options::default() };
-        let read = scenario(Format::Grid, text, &options, &mut warnings).expect("a plan");
+        let options = ImportOptions { radius: Some(0.499), ..ImportOptions::default() };
+        let read = scenario(InputFormat::Grid, text, &options, &mut warnings).expect("a plan");
         assert_eq!(read.agents.len(), plan(text).cells().len());
-        assert_eq!(Proof::of::<f64>(&read).expect("a scenario").verdict, "proved", "{name}");
+        assert_eq!(MotionCertificate::prove::<f64>(&read).expect("a scenario").verdict, "proved", "{name}");
         assert!(warnings.lines().is_empty(), "{:?}", warnings.lines());
         // A plan with a contact of discs is none for orders.
-        let wide = carried_out(&plan(text), 0.51, By::Orders, &Vec::new());
+        let wide = carried_out(&plan(text), 0.51, ExecutionMethod::Orders, &Vec::new());
         assert!(wide.is_err(), "{name}");
     }
-    let radius = scenario(Format::Grid, PLANS[0], &Options::default(), &mut Warnings::default()).expect("a plan");
+    let radius =
+        scenario(InputFormat::Grid, PLANS[0], &ImportOptions::default(), &mut Warnings::default()).expect("a plan");
     // And what turns in place displace.
     assert!((radius.agents[0].radius - 0.35).abs() < 1e-6);
 }
@@ -56,7 +57,7 @@ fn plans_are_what_was_published_for_discs_of_half_a_cell() {
 fn without_stops_plans_are_carried_out_as_planned() {
     for (name, text) in NAMES.into_iter().zip(PLANS) {
         let plan = plan(text);
-        for by in [By::Orders, By::Switching, By::Cells] {
+        for by in [ExecutionMethod::Orders, ExecutionMethod::Switching, ExecutionMethod::Cells] {
             let outcome = carried_out(&plan, 0.45, by, &Vec::new()).expect("a plan");
             assert_sound(&outcome, name);
             // Nobody waits for a time: who can go on does.
@@ -77,14 +78,14 @@ fn late_robots_touch_nobody_and_arrive() {
         }
         for stops in stops {
             assert!(stops.iter().any(|stops| !stops.is_empty()));
-            let cells = carried_out(&plan, 0.45, By::Cells, &stops).expect("a plan");
+            let cells = carried_out(&plan, 0.45, ExecutionMethod::Cells, &stops).expect("a plan");
             assert_sound(&cells, name);
             let mut last = 0.0;
             for (radius, earlier) in RADII.into_iter().zip(&mut earlier) {
-                let orders = carried_out(&plan, radius, By::Orders, &stops).expect("a plan");
+                let orders = carried_out(&plan, radius, ExecutionMethod::Orders, &stops).expect("a plan");
                 assert_sound(&orders, name);
                 assert_eq!(orders.alone, cells.alone);
-                let switching = carried_out(&plan, radius, By::Switching, &stops).expect("a plan");
+                let switching = carried_out(&plan, radius, ExecutionMethod::Switching, &stops).expect("a plan");
                 assert_sound(&switching, name);
                 assert!(switching.travel < orders.travel, "{name}, {radius}: {}", switching.travel);
                 // Smaller discs wait for less.
@@ -104,10 +105,10 @@ fn who_never_goes_on_keeps_only_those_behind() {
     );
     // Whoever has not come to the crossing lets the other one go first.
     let stops = vec![vec![[1.0, 100.0]], Vec::new()];
-    let outcome = carried_out(&plan, 0.4, By::Switching, &stops).expect("a plan");
+    let outcome = carried_out(&plan, 0.4, ExecutionMethod::Switching, &stops).expect("a plan");
     assert_sound(&outcome, "switching");
     assert!((outcome.travel - outcome.alone).abs() < 1e-9, "{outcome:?}");
-    for by in [By::Orders, By::Cells] {
+    for by in [ExecutionMethod::Orders, ExecutionMethod::Cells] {
         let stops = vec![vec![[1.0, 100.0]], Vec::new()];
         let outcome = carried_out(&plan, 0.4, by, &stops).expect("a plan");
         assert_sound(&outcome, by.name());

@@ -1,7 +1,7 @@
 //! Edges that are travelled backward: lengths count from the other end, vehicles may be slower, and listings say so.
 
-use pcr_formats::import::{Format, Options, Warnings, layout, ride, scenario};
-use pcr_planning::nodes::Listing;
+use pcr_formats::import::{ImportOptions, InputFormat, Warnings, layout, ride, scenario};
+use pcr_planning::nodes::LayoutReport;
 
 /// A road of lines of 1 m. They overlap by 4.9 cm at 40 joints, and are apart by as much at 80 more.
 struct Road {
@@ -36,9 +36,10 @@ impl Road {
 #[test]
 fn the_deviation_of_a_road_is_that_of_the_direction_of_travel() {
     let road = Road::new();
-    let options = |route: &str| Options { radius: Some(0.1), routes: vec![route.into()], ..Options::default() };
+    let options =
+        |route: &str| ImportOptions { radius: Some(0.1), routes: vec![route.into()], ..ImportOptions::default() };
     for (route, backward) in [("1/start:1/end", false), ("1/end:1/start", true)] {
-        let read = scenario(Format::OpenDrive, &road.text(), &options(route), &mut Warnings::default()).unwrap();
+        let read = scenario(InputFormat::OpenDrive, &road.text(), &options(route), &mut Warnings::default()).unwrap();
         let agent = &read.agents[0];
         let farthest = (0..=1200).map(|k| {
             let length = f64::from(k) * 0.1;
@@ -50,9 +51,9 @@ fn the_deviation_of_a_road_is_that_of_the_direction_of_travel() {
         assert!(farthest <= grown + 1e-9 && farthest > 0.9 * grown, "{route}: {farthest} m, counted {grown}");
         // Alone, as for unsafe delays.
         let imported = layout(
-            Format::OpenDrive,
+            InputFormat::OpenDrive,
             &road.text(),
-            &Options { routes: Vec::new(), ..options(route) },
+            &ImportOptions { routes: Vec::new(), ..options(route) },
             &mut Warnings::default(),
         )
         .unwrap();
@@ -72,19 +73,19 @@ fn plant(vehicles: &str) -> String {
 #[test]
 fn vehicles_of_opentcs_are_as_slow_backward_as_they_are_said_to_be() {
     let vehicle = |name: &str, back: &str| format!("<vehicle name=\"{name}\" maxVelocity=\"1000\" {back}/>");
-    let speed = |vehicles: &str, options: Options| {
+    let speed = |vehicles: &str, options: ImportOptions| {
         let mut warnings = Warnings::default();
-        let read = layout(Format::OpenTcs, &plant(vehicles), &options, &mut warnings);
+        let read = layout(InputFormat::OpenTcs, &plant(vehicles), &options, &mut warnings);
         read.map(|read| (read.layout.edges[0].speed[1], warnings.lines())).map_err(|error| error.to_string())
     };
-    let disc = || Options { radius: Some(0.5), ..Options::default() };
+    let disc = || ImportOptions { radius: Some(0.5), ..ImportOptions::default() };
     let of = |vehicles: &str| speed(vehicles, disc()).unwrap().0;
     let [slow, slower] = ["maxReverseVelocity=\"300\"", "maxReverseVelocity=\"200\""];
     assert_eq!((of(""), of(&vehicle("a", "")), of(&vehicle("a", slow))), (Some(0.8), Some(0.8), Some(0.3)));
     assert_eq!(of(&(vehicle("a", slow) + &vehicle("b", slower))), Some(0.2));
     assert_eq!(of(&vehicle("a", "maxReverseVelocity=\"2000\"")), Some(0.8));
     // Another vehicle drives.
-    assert_eq!(speed(&vehicle("a", slow), Options { speed: Some(1.0), ..disc() }).unwrap().0, Some(0.8));
+    assert_eq!(speed(&vehicle("a", slow), ImportOptions { speed: Some(1.0), ..disc() }).unwrap().0, Some(0.8));
     let (_, warnings) = speed(&vehicle("a", "maxReverseVelocity=\"0\""), disc()).unwrap();
     assert!(warnings.iter().any(|line| line.starts_with("vehicle a: its maxReverseVelocity is 0")), "{warnings:?}");
     for field in ["maxVelocity", "maxReverseVelocity"] {
@@ -96,9 +97,9 @@ fn vehicles_of_opentcs_are_as_slow_backward_as_they_are_said_to_be() {
 /// It was listed as if it began where it ends, and its locks, which count from the other end, were taken to be elsewhere.
 #[test]
 fn an_edge_that_is_open_backward_only_is_listed_as_it_is_in_locks() {
-    let options = Options { radius: Some(0.5), ..Options::default() };
-    let read = layout(Format::OpenTcs, &plant(""), &options, &mut Warnings::default()).unwrap().layout;
-    let listing = Listing::of(&read);
+    let options = ImportOptions { radius: Some(0.5), ..ImportOptions::default() };
+    let read = layout(InputFormat::OpenTcs, &plant(""), &options, &mut Warnings::default()).unwrap().layout;
+    let listing = LayoutReport::new(&read);
     let edge = &listing.edges[0];
     assert_eq!((edge.from.to_string(), edge.to.to_string()), ("A".to_owned(), "B".to_owned()));
     assert_eq!((edge.two_way, edge.backward, edge.speed, edge.speed_back), (false, true, Some(0.8), None));

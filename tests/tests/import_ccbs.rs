@@ -1,8 +1,8 @@
 //! Continuous-CBS: plans of others, checked against separations that are computed here from their sections.
 
-use pcr_formats::import::{Format, Options, Warnings, layout, scenario};
+use pcr_formats::import::{ImportOptions, InputFormat, Warnings, layout, scenario};
 use pcr_formats::scenario::Scenario;
-use pcr_planning::check::Verdict;
+use pcr_planning::check::CheckReport;
 use pcr_planning::fleet::Fleet;
 
 const GRID: &str = include_str!("../data/real/ccbs/example_grid_task_log.xml");
@@ -13,8 +13,8 @@ const MAP: &str = include_str!("../data/real/ccbs/sparse_map.xml");
 const RADIUS: f64 = 0.353_553;
 
 fn read(text: &str, radius: f64) -> Scenario {
-    let options = Options { radius: Some(radius), ..Options::default() };
-    scenario(Format::Ccbs, text, &options, &mut Warnings::default()).unwrap()
+    let options = ImportOptions { radius: Some(radius), ..ImportOptions::default() };
+    scenario(InputFormat::Ccbs, text, &options, &mut Warnings::default()).unwrap()
 }
 
 /// A section: begin and end in time, and in space.
@@ -101,7 +101,7 @@ fn separations_are_those_of_the_sections() {
         let agents = sections(text);
         let scenario = read(text, RADIUS);
         assert_eq!(scenario.agents.len(), agents.len());
-        let verdict = Verdict::of::<f64>(&scenario, true).unwrap();
+        let verdict = CheckReport::compute::<f64>(&scenario, true).unwrap();
         let mut least = f64::INFINITY;
         for pair in verdict.closest.as_ref().unwrap() {
             let (separation, time) = closest(&agents[pair.i as usize], &agents[pair.j as usize]);
@@ -122,7 +122,7 @@ fn separations_are_those_of_the_sections() {
 #[test]
 fn the_published_plan_collides_and_the_solved_ones_only_touch() {
     let radius = std::f64::consts::SQRT_2 / 4.0;
-    let verdict = Verdict::of::<f64>(&read(PUBLISHED, radius), true).unwrap();
+    let verdict = CheckReport::compute::<f64>(&read(PUBLISHED, radius), true).unwrap();
     let deep: Vec<_> = verdict.conflicts.iter().filter(|conflict| conflict.depth > 1e-5).collect();
     assert_eq!(deep.len(), 1, "{deep:?}");
     assert_eq!((deep[0].i, deep[0].j), (0, 3));
@@ -130,25 +130,25 @@ fn the_published_plan_collides_and_the_solved_ones_only_touch() {
     let pair = verdict.closest.unwrap().into_iter().find(|pair| (pair.i, pair.j) == (0, 3)).unwrap();
     assert!((pair.separation - 0.641329).abs() < 1e-6 && (pair.t - 76.829).abs() < 1e-3, "{pair:?}");
     // Exact tangency: free for a radius that is a millionth smaller.
-    let touching = Verdict::of::<f64>(&read(GRID, radius), true).unwrap();
+    let touching = CheckReport::compute::<f64>(&read(GRID, radius), true).unwrap();
     assert!(touching.conflicts.iter().all(|conflict| conflict.depth < 1e-7));
     assert!(!touching.conflicts.is_empty());
-    assert!(Verdict::of::<f64>(&read(GRID, RADIUS), false).unwrap().conflicts.is_empty());
+    assert!(CheckReport::compute::<f64>(&read(GRID, RADIUS), false).unwrap().conflicts.is_empty());
 }
 
 #[test]
 fn a_roadmap_is_a_layout() {
-    let options = Options { radius: Some(RADIUS), ..Options::default() };
-    let imported = layout(Format::Ccbs, MAP, &options, &mut Warnings::default()).unwrap();
+    let options = ImportOptions { radius: Some(RADIUS), ..ImportOptions::default() };
+    let imported = layout(InputFormat::Ccbs, MAP, &options, &mut Warnings::default()).unwrap();
     assert_eq!((imported.layout.nodes.len(), imported.layout.edges.len()), (170, 698));
-    let locks = pcr_planning::locks::Locks::of(&imported, false).unwrap();
+    let locks = pcr_planning::exclusion_table::ExclusionTable::compute(&imported, false).unwrap();
     assert!(locks.locks.len() > 698 / 2, "at least every edge with the one back");
 }
 
 #[test]
 fn what_is_no_plan_is_refused_by_name() {
     let failed = |text: &str| {
-        scenario(Format::Ccbs, text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string()
+        scenario(InputFormat::Ccbs, text, &ImportOptions::default(), &mut Warnings::default()).unwrap_err().to_string()
     };
     for (text, expected) in [
         (
@@ -188,8 +188,8 @@ fn a_roadmap_is_read_whole_or_refused() {
         format!("<graphml><graph {attributes}>{}</graph></graphml>", parts.concat())
     };
     let read = |text: &str, partial: bool| {
-        let options = Options { radius: Some(0.3), partial, ..Options::default() };
-        layout(Format::Ccbs, text, &options, &mut Warnings::default()).map_err(|error| error.to_string())
+        let options = ImportOptions { radius: Some(0.3), partial, ..ImportOptions::default() };
+        layout(InputFormat::Ccbs, text, &options, &mut Warnings::default()).map_err(|error| error.to_string())
     };
     let square = [node("a", "0,0"), node("b", "4,0"), node("c", "2,-2"), node("d", "2,2")];
     // One name for two edges that cross.
@@ -197,7 +197,7 @@ fn a_roadmap_is_read_whole_or_refused() {
     let imported = read(&twice, false).unwrap();
     let ids: Vec<String> = imported.layout.edges.iter().map(|edge| edge.id.to_string()).collect();
     assert_eq!(ids, ["e", "e#2"]);
-    assert_eq!(pcr_planning::locks::Locks::of(&imported, false).unwrap().locks.len(), 1);
+    assert_eq!(pcr_planning::exclusion_table::ExclusionTable::compute(&imported, false).unwrap().locks.len(), 1);
     let lost = graph("", &[square.concat(), edge("e", "a", "b"), edge("f", "a", "z"), node("g", "x")]);
     let error = read(&lost, false).unwrap_err();
     assert_eq!(
@@ -271,7 +271,7 @@ fn every_point_is_reached_when_it_has_to_be() {
 fn a_plan_that_was_cut_is_refused() {
     let failed = |text: &str| {
         assert_ne!(text, GRID);
-        scenario(Format::Ccbs, text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string()
+        scenario(InputFormat::Ccbs, text, &ImportOptions::default(), &mut Warnings::default()).unwrap_err().to_string()
     };
     let section = |number: usize| {
         let log = GRID.find("<log").unwrap();
@@ -297,7 +297,10 @@ fn a_plan_that_was_cut_is_refused() {
     let error = failed(&hidden);
     assert!(error.contains("12 agents"), "{error}");
     let log = "<root><log><agent><path><section start_i=\"0\" start_j=\"0\" goal_i=\"1\" goal_j=\"0\" duration=\"1\"/></path></agent>MORE</log></root>";
-    assert!(scenario(Format::Ccbs, &log.replace("MORE", ""), &Options::default(), &mut Warnings::default()).is_ok());
+    assert!(
+        scenario(InputFormat::Ccbs, &log.replace("MORE", ""), &ImportOptions::default(), &mut Warnings::default())
+            .is_ok()
+    );
     let nested = failed(&log.replace("MORE", "<group><agent number=\"4\"/></group>"));
     assert_eq!(nested, "agent 4, in group: what is read is agent in log");
     let again = failed(&log.replace("MORE", "<agent number=\"0\"><path><section start_i=\"0\" start_j=\"0\" goal_i=\"1\" goal_j=\"0\" duration=\"1\"/></path></agent>"));
@@ -313,8 +316,9 @@ fn edges_of_other_kinds_are_refused() {
             "<graphml><graph {attributes}>{nodes}<edge id=\"e\" source=\"a\" target=\"b\"/>{more}</graph></graphml>"
         )
     };
-    let failed =
-        |text: &str| layout(Format::Ccbs, text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string();
+    let failed = |text: &str| {
+        layout(InputFormat::Ccbs, text, &ImportOptions::default(), &mut Warnings::default()).unwrap_err().to_string()
+    };
     let hyper = failed(&graph("", "<hyperedge id=\"h\"/>"));
     assert!(hyper.starts_with("hyperedge h: it joins any number of nodes, and an edge joins two"), "{hyper}");
     let nested = failed(&graph(
@@ -355,15 +359,16 @@ fn coordinates_are_read_past_comments() {
     };
     let at = |place: &str| {
         let text = graph(place).replace("<!DOCTYPE graphml>", "");
-        let read = layout(Format::Ccbs, &text, &Options::default(), &mut Warnings::default()).unwrap();
-        read.layout.nodes[0].at
+        let read = layout(InputFormat::Ccbs, &text, &ImportOptions::default(), &mut Warnings::default()).unwrap();
+        read.layout.nodes[0].point
     };
     for place in ["0,15", "0,1<!-- c -->5", "0,1<?p i?>5", "0,1<![CDATA[5]]>"] {
         assert_eq!(at(place), [0.0, 15.0], "{place}");
     }
     // What it is, is known also where it is refused.
     let text = graph("0,15");
-    assert_eq!(Format::of(std::path::Path::new("g"), &text), Some(Format::Ccbs));
-    let refused = layout(Format::Ccbs, &text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string();
+    assert_eq!(InputFormat::detect(std::path::Path::new("g"), &text), Some(InputFormat::Ccbs));
+    let refused =
+        layout(InputFormat::Ccbs, &text, &ImportOptions::default(), &mut Warnings::default()).unwrap_err().to_string();
     assert!(refused.contains("DTD"), "{refused}");
 }

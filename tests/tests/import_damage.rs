@@ -1,37 +1,37 @@
 //! Damaged files: every importer gives an error or a result, and never panics or hangs.
 
-use pcr_formats::import::{Format, Options, Warnings, layout, scenario};
+use pcr_formats::import::{ImportOptions, InputFormat, Warnings, layout, scenario};
+use pcr_planning::exclusion_table::ExclusionTable;
 use pcr_planning::fleet::Fleet;
-use pcr_planning::locks::Locks;
 use serde_json::{Value, json};
 
 /// One file of every kind.
-const FILES: [(Format, &str); 13] = [
-    (Format::Nav2, include_str!("../data/real/nav2/sample_graph.geojson")),
-    (Format::Nav2, include_str!("../data/real/nav2/aws_graph.geojson")),
-    (Format::Lif, include_str!("../data/real/lif/example_17.lif.json")),
-    (Format::Lif, include_str!("../data/real/lif/example_10.lif.json")),
-    (Format::Vda5050, include_str!("../data/real/vda5050/order_v2_flywei.json")),
-    (Format::Vda5050, include_str!("../data/small/state.json")),
-    (Format::Ccbs, include_str!("../data/real/ccbs/example_grid_task_log.xml")),
-    (Format::Ccbs, include_str!("../data/small/roadmap.xml")),
-    (Format::OpenDrive, include_str!("../data/small/track.xodr")),
-    (Format::OpenTcs, include_str!("../data/small/plant.xml")),
-    (Format::Grid, include_str!("../data/small/grid.path")),
-    (Format::Path, include_str!("../data/small/points.path")),
-    (Format::Rmf, include_str!("../data/real/rmf/triple_H.building.yaml")),
+const FILES: [(InputFormat, &str); 13] = [
+    (InputFormat::Nav2, include_str!("../data/real/nav2/sample_graph.geojson")),
+    (InputFormat::Nav2, include_str!("../data/real/nav2/aws_graph.geojson")),
+    (InputFormat::Lif, include_str!("../data/real/lif/example_17.lif.json")),
+    (InputFormat::Lif, include_str!("../data/real/lif/example_10.lif.json")),
+    (InputFormat::Vda5050, include_str!("../data/real/vda5050/order_v2_flywei.json")),
+    (InputFormat::Vda5050, include_str!("../data/small/state.json")),
+    (InputFormat::Ccbs, include_str!("../data/real/ccbs/example_grid_task_log.xml")),
+    (InputFormat::Ccbs, include_str!("../data/small/roadmap.xml")),
+    (InputFormat::OpenDrive, include_str!("../data/small/track.xodr")),
+    (InputFormat::OpenTcs, include_str!("../data/small/plant.xml")),
+    (InputFormat::Grid, include_str!("../data/small/grid.path")),
+    (InputFormat::Path, include_str!("../data/small/points.path")),
+    (InputFormat::Rmf, include_str!("../data/real/rmf/triple_H.building.yaml")),
 ];
 
 /// Reads the text in every way. What it becomes has to be fit for use.
-fn read(format: Format, text: &str) {
-    let options = |routes: &[&str]| Options {
+fn read(format: InputFormat, text: &str) {
+    let options = |routes: &[&str]| ImportOptions {
         routes: routes.iter().map(ToString::to_string).collect(),
         partial: true,
-        ..Options::default()
+        ..ImportOptions::default()
     };
     let mut warnings = Warnings::default();
     if let Ok(imported) = layout(format, text, &options(&[]), &mut warnings) {
-        let _ = Locks::of(&imported, true);
+        let _ = ExclusionTable::compute(&imported, true);
         let ids: Vec<String> = imported.layout.nodes.iter().map(|node| node.id.to_string()).collect();
         for pair in ids.windows(2).take(4) {
             let route = format!("{}:{}", pair[0], pair[1]);
@@ -162,11 +162,11 @@ fn texts_of_another_kind() {
     for (format, _) in FILES {
         for text in texts {
             assert!(
-                layout(format, text, &Options::default(), &mut Warnings::default()).is_err(),
+                layout(format, text, &ImportOptions::default(), &mut Warnings::default()).is_err(),
                 "{format} {text:.20}"
             );
             assert!(
-                scenario(format, text, &Options::default(), &mut Warnings::default()).is_err(),
+                scenario(format, text, &ImportOptions::default(), &mut Warnings::default()).is_err(),
                 "{format} {text:.20}"
             );
         }

@@ -1,7 +1,7 @@
 //! Vehicles with outlines that are driven backward: layouts were read as if they turned round. One whose outline is the same backward
 //! may do so.
 
-use pcr_formats::import::{Facing, Format, Options, Warnings, layout, scenario};
+use pcr_formats::import::{Facing, ImportOptions, InputFormat, Warnings, layout, scenario};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -24,11 +24,11 @@ impl Drop for Centred {
 }
 
 /// Reads a layout for a vehicle whose reference point is not in its middle, or says why it is refused.
-fn read(format: Format, text: &str, centred: &Centred) -> Result<(), String> {
+fn read(format: InputFormat, text: &str, centred: &Centred) -> Result<(), String> {
     let aside = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json"));
     let of = |fleet: Option<&Path>| {
         let radius = fleet.is_none().then_some(0.5);
-        let options = Options { radius, fleet: fleet.map(Path::to_path_buf), ..Options::default() };
+        let options = ImportOptions { radius, fleet: fleet.map(Path::to_path_buf), ..ImportOptions::default() };
         let read = layout(format, text, &options, &mut Warnings::default());
         read.map(|it| assert_eq!(it.vehicle.footprint.is_some(), fleet.is_some())).map_err(|error| error.to_string())
     };
@@ -50,15 +50,15 @@ fn paths_of_opentcs_are_driven_backward_in_their_other_direction() {
         )
     };
     for limit in ["", "maxReverseVelocity=\"0\""] {
-        assert_eq!(read(Format::OpenTcs, &plant(limit), &centred), Ok(()));
+        assert_eq!(read(InputFormat::OpenTcs, &plant(limit), &centred), Ok(()));
     }
-    let error = read(Format::OpenTcs, &plant("maxReverseVelocity=\"500\""), &centred).unwrap_err();
+    let error = read(InputFormat::OpenTcs, &plant("maxReverseVelocity=\"500\""), &centred).unwrap_err();
     assert!(error.starts_with("path p, maxReverseVelocity: it is driven backward, and outlines"), "{error}");
     // What is left out is the other direction.
     let fleet = Some(concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json").into());
-    let partial = Options { fleet, partial: true, ..Options::default() };
+    let partial = ImportOptions { fleet, partial: true, ..ImportOptions::default() };
     let text = plant("maxReverseVelocity=\"500\"");
-    let read = layout(Format::OpenTcs, &text, &partial, &mut Warnings::default()).unwrap().layout;
+    let read = layout(InputFormat::OpenTcs, &text, &partial, &mut Warnings::default()).unwrap().layout;
     assert_eq!(read.edges.iter().map(|edge| edge.is_two_way()).collect::<Vec<_>>(), [false]);
 }
 
@@ -88,13 +88,13 @@ fn lanes_of_open_rmf_say_which_way_vehicles_face() {
         // What a building says is not what a graph says.
         (graph("orientation: backward"), [Ahead, Ahead]),
     ] {
-        assert_eq!(read(Format::Rmf, &text, &centred), Ok(()), "{text}");
+        assert_eq!(read(InputFormat::Rmf, &text, &centred), Ok(()), "{text}");
         let fleet = Some(concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json").into());
-        let options = Options { fleet, ..Options::default() };
-        let read = layout(Format::Rmf, &text, &options, &mut Warnings::default()).unwrap().layout;
+        let options = ImportOptions { fleet, ..ImportOptions::default() };
+        let read = layout(InputFormat::Rmf, &text, &options, &mut Warnings::default()).unwrap().layout;
         assert_eq!(read.edges[0].facing, facing, "{text}");
     }
-    let error = read(Format::Rmf, &building("orientation: [1, sideways]"), &centred).unwrap_err();
+    let error = read(InputFormat::Rmf, &building("orientation: [1, sideways]"), &centred).unwrap_err();
     assert!(error.starts_with("lane L1/0: orientation: sideways is not read"), "{error}");
 }
 
@@ -118,25 +118,25 @@ fn half_turns_of_outlines_are_told() {
         });
         let layout = json!({ "layoutId": "l", "nodes": places, "edges": [edge(1, true), edge(2, true)] });
         for (format, text, name) in [
-            (Format::Path, format!("0 0\n5 0\n0 {y}\n"), "path 1"),
-            (Format::Vda5050, order.to_string(), "order o"),
+            (InputFormat::Path, format!("0 0\n5 0\n0 {y}\n"), "path 1"),
+            (InputFormat::Vda5050, order.to_string(), "order o"),
             (
-                Format::Lif,
+                InputFormat::Lif,
                 json!({ "metaInformation": { "lifVersion": "1.0.0" }, "layouts": [layout] }).to_string(),
                 "route 0:2",
             ),
         ] {
             for (fleet, radius) in [(Some(aside), None), (Some(&centred.0), None), (None, Some(0.5))] {
                 let one = Some(1.0);
-                let options = Options {
+                let options = ImportOptions {
                     radius,
                     fleet: fleet.map(Path::to_path_buf),
                     speed: one,
                     acceleration: one,
                     rotation: one,
                     rotation_acceleration: one,
-                    routes: if format == Format::Lif { vec!["0:2".to_owned()] } else { Vec::new() },
-                    ..Options::default()
+                    routes: if format == InputFormat::Lif { vec!["0:2".to_owned()] } else { Vec::new() },
+                    ..ImportOptions::default()
                 };
                 let mut warnings = Warnings::default();
                 scenario(format, &text, &options, &mut warnings).unwrap();

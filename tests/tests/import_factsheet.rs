@@ -1,7 +1,7 @@
 //! Factsheets of VDA 5050: contours and limits, and what they become on layouts.
 
-use pcr_formats::import::{Format, Options, Warnings, scenario, vehicle};
-use pcr_planning::regions::{Answer, Request};
+use pcr_formats::import::{ImportOptions, InputFormat, Warnings, scenario, vehicle};
+use pcr_planning::regions::{RegionOptions, RegionsReport};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
@@ -9,18 +9,18 @@ const SHEET: &str = include_str!("../data/small/factsheet.json");
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
 const CURVES: &str = include_str!("../data/small/plant.xml");
 
-fn options(routes: &[&str]) -> Options {
+fn options(routes: &[&str]) -> ImportOptions {
     let fleet = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json"));
-    Options {
+    ImportOptions {
         fleet: Some(fleet),
         routes: routes.iter().map(|route| (*route).to_owned()).collect(),
-        ..Options::default()
+        ..ImportOptions::default()
     }
 }
 
-fn lines(sheet: &Value) -> (Result<pcr_formats::import::Vehicle, String>, String) {
+fn lines(sheet: &Value) -> (Result<pcr_formats::import::VehicleTraits, String>, String) {
     let mut warnings = Warnings::default();
-    let read = vehicle(&sheet.to_string(), &Options::default(), &mut warnings);
+    let read = vehicle(&sheet.to_string(), &ImportOptions::default(), &mut warnings);
     (read.map_err(|error| error.to_string()), warnings.lines().join("\n"))
 }
 
@@ -93,21 +93,21 @@ fn what_is_wrong_is_named() {
     assert_eq!(wrong(second, two), "factsheet, envelopes2d 2: 0 corners");
     assert!(wrong("/physicalParameters/speedMax", json!(-1)).contains("physicalParameters, speedMax: -1"));
     assert!(wrong("/agvGeometry", json!([])).contains("agvGeometry: a list where an object"));
-    let neither = vehicle("{}", &Options::default(), &mut Warnings::default()).unwrap_err().to_string();
+    let neither = vehicle("{}", &ImportOptions::default(), &mut Warnings::default()).unwrap_err().to_string();
     assert!(neither.contains("rmf_fleet: missing"), "{neither}");
 }
 
 #[test]
 fn agents_on_routes_have_the_contour() {
     let mut warnings = Warnings::default();
-    let fleet = scenario(Format::Nav2, WAREHOUSE, &options(&["0:3", "3:0"]), &mut warnings).unwrap();
+    let fleet = scenario(InputFormat::Nav2, WAREHOUSE, &options(&["0:3", "3:0"]), &mut warnings).unwrap();
     assert!(fleet.agents.iter().all(|agent| agent.footprint.as_ref().unwrap().polygon().len() == 4));
-    let answer = Answer::of::<f64>(&fleet, Request::default()).unwrap();
+    let answer = RegionsReport::compute::<f64>(&fleet, RegionOptions::default()).unwrap();
     assert!(!answer.regions.is_empty());
     assert_eq!(answer.footprints.len(), 2);
     // With a radius it is a disc.
-    let disc = Options { radius: Some(0.4), ..options(&["0:50"]) };
-    let disc = scenario(Format::Nav2, WAREHOUSE, &disc, &mut warnings).unwrap();
+    let disc = ImportOptions { radius: Some(0.4), ..options(&["0:50"]) };
+    let disc = scenario(InputFormat::Nav2, WAREHOUSE, &disc, &mut warnings).unwrap();
     assert!(disc.agents[0].footprint.is_none());
     // Turns in place at corners deviate from their node by nanometres.
     let growth = disc.agents[0].radius - 0.4;
@@ -118,12 +118,12 @@ fn agents_on_routes_have_the_contour() {
 fn contours_grow_by_what_curves_are_off() {
     let mut warnings = Warnings::default();
     // The other direction of its paths, which is driven backward, is left out.
-    let coarse = Options { tolerance: Some(0.02), partial: true, ..options(&["A:B"]) };
-    let fleet = scenario(Format::OpenTcs, CURVES, &coarse, &mut warnings).unwrap();
+    let coarse = ImportOptions { tolerance: Some(0.02), partial: true, ..options(&["A:B"]) };
+    let fleet = scenario(InputFormat::OpenTcs, CURVES, &coarse, &mut warnings).unwrap();
     let footprint = fleet.agents[0].footprint.as_ref().unwrap();
     // And what headings are off, by 0.05 rad at most.
-    let most = 0.02 + 0.05 * footprint.reach();
+    let most = 0.02 + 0.05 * footprint.circumscribed_radius();
     assert!(footprint.growth() > 1e-3 && footprint.growth() <= most, "{}", footprint.growth());
-    let bare = footprint.grown(-footprint.growth());
+    let bare = footprint.inflated(-footprint.growth());
     assert!(footprint.discs().iter().zip(bare.discs()).all(|(own, bare)| own.radius > bare.radius));
 }

@@ -3,8 +3,8 @@
 //! Small readers that share nothing with the importers say what each file means. What the importers make of it has to be that, or they
 //! refuse it, or they say which key they do not know.
 
-use pcr_formats::import::{Format, Options, Warnings, layout, scenario};
-use pcr_formats::scenario::{PathSegment, Placed};
+use pcr_formats::import::{ImportOptions, InputFormat, Warnings, layout, scenario};
+use pcr_formats::scenario::{PathSegment, PlacedSegment};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
@@ -267,20 +267,20 @@ fn order(root: &Value) -> Option<Meaning> {
 
 // What the importers make of it.
 
-fn options() -> Options {
+fn options() -> ImportOptions {
     let one = Some(1.0);
-    Options {
+    ImportOptions {
         radius: Some(0.4),
         speed: one,
         acceleration: one,
         rotation: one,
         rotation_acceleration: one,
-        ..Options::default()
+        ..ImportOptions::default()
     }
 }
 
-fn points(pieces: &[Placed]) -> Vec<Point> {
-    let mut corners: Vec<Point> = pieces.first().map(|first| first.at).into_iter().collect();
+fn points(pieces: &[PlacedSegment]) -> Vec<Point> {
+    let mut corners: Vec<Point> = pieces.first().map(|first| first.start).into_iter().collect();
     for piece in pieces {
         let count = match piece.shape {
             PathSegment::Line { .. } => 1,
@@ -292,23 +292,23 @@ fn points(pieces: &[Placed]) -> Vec<Point> {
     corners
 }
 
-fn imported(format: Format, root: &Value) -> Result<(Meaning, Vec<String>), String> {
+fn imported(format: InputFormat, root: &Value) -> Result<(Meaning, Vec<String>), String> {
     let (text, mut warnings) = (root.to_string(), Warnings::default());
     let mut ways = Meaning::new();
-    if format == Format::Vda5050 {
+    if format == InputFormat::Vda5050 {
         let read = scenario(format, &text, &options(), &mut warnings).map_err(|error| error.to_string())?;
         let agent = &read.agents[0];
         let mut pieces = Vec::new();
-        let mut at = Placed {
-            at: [agent.start[0], agent.start[1]],
+        let mut at = PlacedSegment {
+            start: [agent.start[0], agent.start[1]],
             heading: agent.start[2],
             shape: PathSegment::Line { length: 0.0 },
         };
         for shape in &agent.path {
-            at = Placed { at: at.end(), heading: at.heading_at_end(), shape: *shape };
+            at = PlacedSegment { start: at.end(), heading: at.heading_at_end(), shape: *shape };
             pieces.push(at);
         }
-        let corners = if pieces.is_empty() { vec![at.at; 2] } else { points(&pieces) };
+        let corners = if pieces.is_empty() { vec![at.start; 2] } else { points(&pieces) };
         // What curves are off is less than 1 mm.
         let room = ((agent.radius - 0.4) * 100.0).floor() / 100.0;
         ways.insert("agent".to_owned(), Way::along(&corners, room, None));
@@ -362,7 +362,7 @@ struct Tally {
 }
 
 /// Changes a file in all ways at all places, and compares.
-fn change(format: Format, base: &Value, read: fn(&Value) -> Option<Meaning>, tally: &mut Tally) {
+fn change(format: InputFormat, base: &Value, read: fn(&Value) -> Option<Meaning>, tally: &mut Tally) {
     let meant = read(base).expect("the file says what it has to");
     let (own, _) = imported(format, base).unwrap();
     assert!(is_same(&own, &meant), "{base}\n{own:?}\n{meant:?}");
@@ -413,7 +413,7 @@ fn change(format: Format, base: &Value, read: fn(&Value) -> Option<Meaning>, tal
                 (Ok((ways, warnings)), Some(expected)) => {
                     assert!(is_same(&ways, &expected), "{path}, {key} ({new:?}): {warnings:?}\n{ways:?}\n{expected:?}");
                     let is_told = new.is_none_or(|new| warnings.iter().any(|line| line.contains(new)));
-                    let is_free = format == Format::Nav2 || is_same(&expected, &meant);
+                    let is_free = format == InputFormat::Nav2 || is_same(&expected, &meant);
                     assert!(is_told || is_free, "{path}: {key} is not told: {warnings:?}");
                     if new.is_none() { tally.same += 1 } else { tally.told += 1 }
                 }
@@ -444,7 +444,9 @@ fn change(format: Format, base: &Value, read: fn(&Value) -> Option<Meaning>, tal
                 Ok((_, warnings)) if warnings.iter().any(|line| line.contains(&format!("key {key}"))) => {
                     tally.told += 1
                 }
-                Ok((ways, _)) if format == Format::Nav2 && read(&removed).is_some_and(|it| is_same(&ways, &it)) => {
+                Ok((ways, _))
+                    if format == InputFormat::Nav2 && read(&removed).is_some_and(|it| is_same(&ways, &it)) =>
+                {
                     tally.told += 1;
                 }
                 Ok((_, warnings)) => panic!("{key} from {path} to {around}: {warnings:?}"),
@@ -461,7 +463,7 @@ fn change(format: Format, base: &Value, read: fn(&Value) -> Option<Meaning>, tal
         let (ways, warnings) = imported(format, &value).unwrap_or_else(|error| panic!("{path}: {error}"));
         assert!(is_same(&ways, &meant), "{path}");
         let is_told = warnings.iter().any(|line| line.contains("its key zzzzzz is not known, and not read"));
-        assert!(is_told || !matches!(format, Format::Lif | Format::Vda5050), "{path}: {warnings:?}");
+        assert!(is_told || !matches!(format, InputFormat::Lif | InputFormat::Vda5050), "{path}: {warnings:?}");
         tally.same += 1;
     });
 }
@@ -585,14 +587,14 @@ fn order_file(version: &str) -> Value {
 fn what_was_changed_is_read_as_it_stands_or_refused_or_told() {
     let mut tally = Tally::default();
     for version in ["0.11.0", "1.0.0", "2.0.0"] {
-        change(Format::Lif, &lif_file(version), lif, &mut tally);
+        change(InputFormat::Lif, &lif_file(version), lif, &mut tally);
     }
-    change(Format::Nav2, &nav2_file(), nav2, &mut tally);
+    change(InputFormat::Nav2, &nav2_file(), nav2, &mut tally);
     for graph in [false, true] {
-        change(Format::Rmf, &rmf_file(graph), rmf, &mut tally);
+        change(InputFormat::Rmf, &rmf_file(graph), rmf, &mut tally);
     }
     for version in ["2.0.0", "2.1.0", "3.0.0"] {
-        change(Format::Vda5050, &order_file(version), order, &mut tally);
+        change(InputFormat::Vda5050, &order_file(version), order, &mut tally);
     }
     let Tally { same, told, refused } = tally;
     assert!(same > 300 && told > 50 && refused > 300, "{same} the same, {told} told, {refused} refused");
@@ -603,7 +605,7 @@ fn a_file_in_the_names_of_another_version_is_refused() {
     for (own, other) in [("1.0.0", "2.0.0"), ("0.11.0", "2.0.0"), ("2.0.0", "1.0.0"), ("2.0.0", "0.11.0")] {
         let mut file = lif_file(own);
         file["metaInformation"]["lifVersion"] = json!(other);
-        let error = imported(Format::Lif, &file).unwrap_err();
+        let error = imported(InputFormat::Lif, &file).unwrap_err();
         assert!(error.starts_with(&format!("LIF, lifVersion: the file says {other}, but ")), "{error}");
     }
 }

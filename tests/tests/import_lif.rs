@@ -1,6 +1,6 @@
 //! Layouts of the VDMA: the published examples, trajectories within their tolerance, vehicle types, levels.
 
-use pcr_formats::import::{Facing, Format, Id, Layout, Options, Warnings, layout, scenario};
+use pcr_formats::import::{ElementId, Facing, ImportOptions, InputFormat, Layout, Warnings, layout, scenario};
 use pcr_formats::scenario::PathSegment;
 use serde_json::{Value, json};
 
@@ -8,20 +8,20 @@ const CURVES: &str = include_str!("../data/real/lif/example_17.lif.json");
 const TYPES: &str = include_str!("../data/real/lif/example_10.lif.json");
 const LEVELS: &str = include_str!("../data/real/lif/example_05.lif.json");
 
-fn options() -> Options {
-    Options {
+fn options() -> ImportOptions {
+    ImportOptions {
         radius: Some(0.4),
         speed: Some(1.0),
         acceleration: Some(0.5),
         rotation: Some(1.0),
         rotation_acceleration: Some(1.0),
-        ..Options::default()
+        ..ImportOptions::default()
     }
 }
 
-fn read(text: &str, options: &Options) -> (Layout, Vec<String>) {
+fn read(text: &str, options: &ImportOptions) -> (Layout, Vec<String>) {
     let mut warnings = Warnings::default();
-    let imported = layout(Format::Lif, text, options, &mut warnings).unwrap();
+    let imported = layout(InputFormat::Lif, text, options, &mut warnings).unwrap();
     (imported.layout, warnings.lines())
 }
 
@@ -37,8 +37,8 @@ fn every_example_is_read() {
             let lists = value["layouts"].as_array().unwrap().iter().filter_map(|layout| layout[list].as_array());
             lists.map(Vec::len).sum::<usize>()
         };
-        assert_eq!(Format::of(&path, &text), Some(Format::Lif));
-        assert_eq!(Format::of("a.json".as_ref(), &text), Some(Format::Lif));
+        assert_eq!(InputFormat::detect(&path, &text), Some(InputFormat::Lif));
+        assert_eq!(InputFormat::detect("a.json".as_ref(), &text), Some(InputFormat::Lif));
         let (layout, _) = read(&text, &options());
         assert_eq!((layout.nodes.len(), layout.edges.len()), (count("nodes"), count("edges")), "{path:?}");
         read_files += 1;
@@ -61,7 +61,7 @@ fn first_trajectory(u: f64) -> [f64; 2] {
 #[test]
 fn trajectories_become_arcs_within_the_tolerance() {
     for tolerance in [1e-2, 1e-4, 1e-6] {
-        let (layout, warnings) = read(CURVES, &Options { tolerance: Some(tolerance), ..options() });
+        let (layout, warnings) = read(CURVES, &ImportOptions { tolerance: Some(tolerance), ..options() });
         let edge = &layout.edges[0];
         assert!(edge.deviation > 0.0 && edge.deviation <= tolerance);
         let radii = edge.curve.iter().filter_map(|piece| match piece.shape {
@@ -96,9 +96,9 @@ fn a_route_keeps_the_deviation_of_its_curves_as_margin() {
     let mut value: Value = serde_json::from_str(CURVES).unwrap();
     value["layouts"][0]["nodes"][0]["nodePosition"] = json!({ "x": 0.0, "y": 0.0 });
     value["layouts"][0]["nodes"][1]["nodePosition"] = json!({ "x": 3.6, "y": 0.0 });
-    let options = Options { routes: vec!["N1:N2".into()], margin: Some(0.05), ..options() };
+    let options = ImportOptions { routes: vec!["N1:N2".into()], margin: Some(0.05), ..options() };
     let mut warnings = Warnings::default();
-    let scenario = scenario(Format::Lif, &value.to_string(), &options, &mut warnings).unwrap();
+    let scenario = scenario(InputFormat::Lif, &value.to_string(), &options, &mut warnings).unwrap();
     let [said] = &warnings.lines()[..] else { panic!("one warning") };
     assert!(said.contains("its lines and arcs are up to") && said.contains("by which the vehicle is larger"), "{said}");
     let (layout, _) = read(&value.to_string(), &options);
@@ -114,11 +114,11 @@ fn edges_are_those_of_the_vehicle_type() {
     assert_eq!(all.edges.len(), 6);
     assert!(warnings[0].starts_with("Vehicle_Type_1, Vehicle_Type_2, Vehicle_Type_3: several vehicle types"));
     for (vehicle, edges) in [("Vehicle_Type_1", 4), ("Vehicle_Type_2", 2), ("Vehicle_Type_3", 2)] {
-        let (layout, warnings) = read(TYPES, &Options { vehicle: Some(vehicle.into()), ..options() });
+        let (layout, warnings) = read(TYPES, &ImportOptions { vehicle: Some(vehicle.into()), ..options() });
         assert_eq!((layout.edges.len(), warnings.len()), (edges, 0), "{vehicle}");
     }
-    let unknown = Options { vehicle: Some("truck".into()), ..options() };
-    let error = layout(Format::Lif, TYPES, &unknown, &mut Warnings::default()).unwrap_err().to_string();
+    let unknown = ImportOptions { vehicle: Some("truck".into()), ..options() };
+    let error = layout(InputFormat::Lif, TYPES, &unknown, &mut Warnings::default()).unwrap_err().to_string();
     assert_eq!(error, "vehicle truck: no edge is for it; there are Vehicle_Type_1, Vehicle_Type_2, Vehicle_Type_3");
 }
 
@@ -190,8 +190,8 @@ fn nodes_without_a_map_are_on_one_level_unless_the_file_tells_them_apart() {
 /// What the reader refuses, and what it reads and warns about if that is left out.
 fn partly(value: &Value) -> (String, Layout, Vec<String>) {
     let text = value.to_string();
-    let error = layout(Format::Lif, &text, &options(), &mut Warnings::default()).unwrap_err().to_string();
-    let (layout, warnings) = read(&text, &Options { partial: true, ..options() });
+    let error = layout(InputFormat::Lif, &text, &options(), &mut Warnings::default()).unwrap_err().to_string();
+    let (layout, warnings) = read(&text, &ImportOptions { partial: true, ..options() });
     (error, layout, warnings)
 }
 
@@ -203,7 +203,7 @@ fn what_is_wrong_is_refused_by_name_and_left_out_if_asked_for() {
     let (error, layout, warnings) = partly(&value);
     assert_eq!(error, "edge N2-N1, trajectory: a knot that is not a number; --partial leaves that out");
     // Seven knots say that degree 3 is meant as the order.
-    assert_eq!(layout.edges.iter().map(|edge| edge.id.clone()).collect::<Vec<_>>(), [Id::Text("N1-N2".into())]);
+    assert_eq!(layout.edges.iter().map(|edge| edge.id.clone()).collect::<Vec<_>>(), [ElementId::Text("N1-N2".into())]);
     assert!(
         warnings.contains(
             &"edge N1-N2, trajectory: its degree is one more than its knots say; it is taken as the order of the curve"
@@ -254,7 +254,7 @@ fn one_name_for_several_things_loses_none_of_them() {
 }
 
 fn layout_error(text: &str) -> String {
-    layout(Format::Lif, text, &options(), &mut Warnings::default()).unwrap_err().to_string()
+    layout(InputFormat::Lif, text, &options(), &mut Warnings::default()).unwrap_err().to_string()
 }
 
 #[test]
@@ -269,7 +269,7 @@ fn every_type_keeps_its_own_way() {
     let (all, _) = read(&text, &options());
     assert_eq!(all.edges.iter().map(|edge| edge.id.to_string()).collect::<Vec<_>>(), ["N1-N2", "N1-N2#2", "N2-N1"]);
     assert_ne!(all.edges[0].curve, all.edges[1].curve);
-    let (one, _) = read(&text, &Options { vehicle: Some("straight".into()), ..options() });
+    let (one, _) = read(&text, &ImportOptions { vehicle: Some("straight".into()), ..options() });
     assert_eq!((one.edges.len(), &one.edges[0].curve), (1, &all.edges[1].curve));
 }
 
@@ -321,7 +321,7 @@ fn outlines_face_as_edges_say() {
             .to_string()
     };
     let fleet = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
-    let outlined = Options { fleet: Some(fleet.into()), radius: None, ..options() };
+    let outlined = ImportOptions { fleet: Some(fleet.into()), radius: None, ..options() };
     let (quarter, half) = (std::f64::consts::FRAC_PI_2, std::f64::consts::PI);
     for (orientation, kind, facing) in [
         (0.0, Value::Null, Facing::Ahead),
@@ -338,7 +338,8 @@ fn outlines_face_as_edges_say() {
         assert_eq!(read(&text, &outlined).0.edges[0].facing[0], facing, "{orientation}");
         assert_eq!(read(&text, &options()).0.edges[0].facing[0], Facing::Ahead, "it does not matter how a disc faces");
     }
-    let error = |text: &str| layout(Format::Lif, text, &outlined, &mut Warnings::default()).unwrap_err().to_string();
+    let error =
+        |text: &str| layout(InputFormat::Lif, text, &outlined, &mut Warnings::default()).unwrap_err().to_string();
     let degrees = error(&lif(180.0, Value::Null));
     assert!(degrees.contains("vehicleOrientation: 180 is more than one turn; the format has radians"), "{degrees}");
     let odd = error(&lif(0.0, json!("SIDEWAYS")));
@@ -355,14 +356,14 @@ fn times_are_of_one_speed() {
         value.to_string()
     };
     let of = |kind: &str, speed: f64| json!({ "of": kind, "is": speed });
-    let driving = pcr_planning::locks::Driving { speed: 2.0, acceleration: None };
+    let driving = pcr_planning::exclusion_table::EdgeDriving { speed: 2.0, acceleration: None };
     let asked = |text: &str, vehicle: Option<&str>| {
-        let options = Options { vehicle: vehicle.map(str::to_owned), ..options() };
-        let imported = layout(Format::Lif, text, &options, &mut Warnings::default()).unwrap();
-        let delays = pcr_planning::locks::Delays::new(&imported, driving, false);
-        let roads = pcr_formats::import::roads(Format::Lif, text, &options, &mut Warnings::default());
+        let options = ImportOptions { vehicle: vehicle.map(str::to_owned), ..options() };
+        let imported = layout(InputFormat::Lif, text, &options, &mut Warnings::default()).unwrap();
+        let delays = pcr_planning::exclusion_table::UnsafeDelayModel::new(&imported, driving, false);
+        let roads = pcr_formats::import::roads(InputFormat::Lif, text, &options, &mut Warnings::default());
         assert_eq!(delays.is_ok(), roads.is_ok());
-        assert!(pcr_planning::locks::Locks::of(&imported, false).is_ok());
+        assert!(pcr_planning::exclusion_table::ExclusionTable::compute(&imported, false).is_ok());
         roads.map(drop).map_err(|error| error.to_string())
     };
     let (same, other) = (
@@ -384,12 +385,12 @@ fn edges_that_name_no_type_are_for_all() {
     let mut value: Value = serde_json::from_str(TYPES).unwrap();
     value["layouts"][0]["edges"][0]["vehicleTypeEdgeProperties"] = json!([]);
     let count = |vehicle: Option<&str>| {
-        read(&value.to_string(), &Options { vehicle: vehicle.map(str::to_owned), ..options() }).0.edges.len()
+        read(&value.to_string(), &ImportOptions { vehicle: vehicle.map(str::to_owned), ..options() }).0.edges.len()
     };
     let id = value["layouts"][0]["edges"][0]["edgeId"].as_str().unwrap().to_owned();
     assert!(count(None) > 0);
     for vehicle in ["Vehicle_Type_1", "Vehicle_Type_2", "Vehicle_Type_3"] {
-        let (layout, _) = read(&value.to_string(), &Options { vehicle: Some(vehicle.into()), ..options() });
+        let (layout, _) = read(&value.to_string(), &ImportOptions { vehicle: Some(vehicle.into()), ..options() });
         assert!(layout.edges.iter().any(|edge| edge.id.to_string() == id), "{vehicle}");
     }
 }
@@ -412,12 +413,13 @@ fn edge(id: &str, from: &str, to: &str, property: Value) -> Value {
 /// With a vehicle they disappeared where a property was there that named no type.
 #[test]
 fn properties_that_name_no_type_are_for_all() {
-    let options = Options { vehicle: Some("t".into()), ..options() };
+    let options = ImportOptions { vehicle: Some("t".into()), ..options() };
     for unnamed in [json!({}), json!({ "vehicleTypeId": "" }), json!({ "vehicleTypeId": null })] {
         let edges = json!([edge("ab", "a", "b", json!({ "vehicleTypeId": "t" })), edge("cd", "c", "d", unnamed)]);
         let mut warnings = Warnings::default();
-        let imported = layout(Format::Lif, &cross(edges, Value::Null).to_string(), &options, &mut warnings).unwrap();
-        let locks = pcr_planning::locks::Locks::of(&imported, false).unwrap().locks;
+        let imported =
+            layout(InputFormat::Lif, &cross(edges, Value::Null).to_string(), &options, &mut warnings).unwrap();
+        let locks = pcr_planning::exclusion_table::ExclusionTable::compute(&imported, false).unwrap().locks;
         assert_eq!((locks.len(), &imported.layout.vehicle_types), (1, &vec!["t".to_owned()]));
     }
 }
@@ -449,8 +451,8 @@ fn a_trajectory_that_is_a_point_is_no_way_to_a_node_elsewhere() {
 #[test]
 fn thetas_and_turns_of_an_outline_are_covered() {
     let fleet = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
-    let outlined = Options { fleet: Some(fleet.into()), radius: None, ..options() };
-    let facing = |theta: Value, options: &Options| {
+    let outlined = ImportOptions { fleet: Some(fleet.into()), radius: None, ..options() };
+    let facing = |theta: Value, options: &ImportOptions| {
         let turns = json!({ "vehicleTypeId": "t", "rotationAllowed": true });
         let edges = json!([edge("ab", "a", "b", json!({ "vehicleTypeId": "t" })), edge("cd", "c", "d", turns)]);
         let (layout, _) = read(&cross(edges, theta).to_string(), options);
@@ -459,14 +461,14 @@ fn thetas_and_turns_of_an_outline_are_covered() {
     assert_eq!(facing(json!(0.0), &outlined), [Facing::Ahead, Facing::Any]);
     assert_eq!(facing(json!(1.57), &outlined), [Facing::Either, Facing::Any]);
     assert_eq!(facing(json!(1.57), &options()), [Facing::Ahead, Facing::Ahead]);
-    let other = Options { vehicle: Some("other".into()), ..outlined.clone() };
+    let other = ImportOptions { vehicle: Some("other".into()), ..outlined.clone() };
     let edges = json!([edge("ab", "a", "b", json!({ "vehicleTypeId": "other" }))]);
     let (layout_of_other, _) = read(&cross(edges, json!(1.57)).to_string(), &other);
     assert_eq!(layout_of_other.edges[0].facing[0], Facing::Ahead, "it is the theta of another type");
     let curve = json!({ "controlPoints": [{ "x": 0, "y": 0, "orientation": 1.57 }, { "x": 10, "y": 0 }] });
     let sideways = json!([edge("ab", "a", "b", json!({ "vehicleTypeId": "t", "trajectory": curve }))]);
     let text = cross(sideways, Value::Null).to_string();
-    let error = layout(Format::Lif, &text, &outlined, &mut Warnings::default()).unwrap_err().to_string();
+    let error = layout(InputFormat::Lif, &text, &outlined, &mut Warnings::default()).unwrap_err().to_string();
     assert!(error.starts_with("edge ab, trajectory, control point 1: its orientation 1.57, as outlines"), "{error}");
 }
 

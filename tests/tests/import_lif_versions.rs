@@ -1,23 +1,24 @@
 //! Versions of LIF: each with its own names, and none with those of another one.
 
-use pcr_formats::import::{Facing, Format, Layout, Options, Warnings, layout};
-use pcr_planning::locks::Locks;
+use pcr_formats::import::{Facing, ImportOptions, InputFormat, Layout, Warnings, layout};
+use pcr_planning::exclusion_table::ExclusionTable;
 use serde_json::{Value, json};
 
-fn options() -> Options {
-    Options { radius: Some(0.4), ..Options::default() }
+fn options() -> ImportOptions {
+    ImportOptions { radius: Some(0.4), ..ImportOptions::default() }
 }
 
-fn outlined() -> Options {
-    Options {
+fn outlined() -> ImportOptions {
+    ImportOptions {
         fleet: Some(concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json").into()),
-        ..Options::default()
+        ..ImportOptions::default()
     }
 }
 
-fn read(value: &Value, options: &Options) -> Result<(Layout, Vec<String>), String> {
+fn read(value: &Value, options: &ImportOptions) -> Result<(Layout, Vec<String>), String> {
     let mut warnings = Warnings::default();
-    let read = layout(Format::Lif, &value.to_string(), options, &mut warnings).map_err(|error| error.to_string())?;
+    let read =
+        layout(InputFormat::Lif, &value.to_string(), options, &mut warnings).map_err(|error| error.to_string())?;
     Ok((read.layout, warnings.lines()))
 }
 
@@ -55,9 +56,9 @@ fn second(property: Value) -> Value {
 }
 
 /// The pairs of edges that exclude one another.
-fn locks(value: &Value, options: &Options) -> usize {
-    let imported = layout(Format::Lif, &value.to_string(), options, &mut Warnings::default()).unwrap();
-    Locks::of(&imported, false).unwrap().locks.len()
+fn locks(value: &Value, options: &ImportOptions) -> usize {
+    let imported = layout(InputFormat::Lif, &value.to_string(), options, &mut Warnings::default()).unwrap();
+    ExclusionTable::compute(&imported, false).unwrap().locks.len()
 }
 
 /// The edge was straight, and its lock was gone.
@@ -199,7 +200,7 @@ fn a_property_of_several_types_is_for_each_of_them() {
     let both = json!([{ "manufacturer": "M", "seriesName": "S" }, { "manufacturer": "M", "seriesName": "T" }]);
     let value = second(json!({ "mobileRobotTypes": both, "trajectory": arc(), "maximumSpeed": 0.7 }));
     for (vehicle, known) in [("M.S", true), ("M.T", true), ("M.U", false)] {
-        let read = read(&value, &Options { vehicle: Some(vehicle.into()), ..options() });
+        let read = read(&value, &ImportOptions { vehicle: Some(vehicle.into()), ..options() });
         assert_eq!(read.is_ok(), known, "{vehicle}");
         assert!(read.is_err() || read.unwrap().0.edges[0].speed[0] == Some(0.7));
     }
@@ -237,7 +238,7 @@ fn corridor(left: f64, of: Option<&str>) -> Value {
 /// Its vehicles were taken to keep to the middle.
 #[test]
 fn a_corridor_is_room_that_a_vehicle_uses() {
-    let room = |of: Option<&str>, options: &Options| {
+    let room = |of: Option<&str>, options: &ImportOptions| {
         let property = json!({ "mobileRobotTypes": robots(), "corridor": corridor(1.0, of) });
         let (read, _) = read(&second(property), options).unwrap();
         assert_eq!(read.edges[0].deviation, read.edges[0].room);

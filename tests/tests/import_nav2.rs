@@ -1,19 +1,19 @@
 //! Route graphs of nav2: routes against an independent shortest path, the paths against the polygons they round.
 
 use pcr_core::{Curve, Motion};
-use pcr_formats::import::{Format, Imported, Layout, Options, Warnings, layout, scenario};
+use pcr_formats::import::{ImportOptions, ImportedLayout, InputFormat, Layout, Warnings, layout, scenario};
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{MotionSpec, PathSegment, Scenario};
+use pcr_planning::exclusion_table::ExclusionTable;
 use pcr_planning::fleet::Fleet;
-use pcr_planning::locks::Locks;
 use serde_json::{Value, json};
 
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
 const AWS: &str = include_str!("../data/real/nav2/aws_graph.geojson");
 const SAMPLE: &str = include_str!("../data/real/nav2/sample_graph.geojson");
 
-fn options(routes: &[&str], corner_radius: f64) -> Options {
-    Options {
+fn options(routes: &[&str], corner_radius: f64) -> ImportOptions {
+    ImportOptions {
         routes: routes.iter().map(ToString::to_string).collect(),
         radius: Some(0.4),
         speed: Some(1.0),
@@ -21,18 +21,18 @@ fn options(routes: &[&str], corner_radius: f64) -> Options {
         rotation: Some(0.8),
         rotation_acceleration: Some(1.5),
         corner_radius: Some(corner_radius),
-        ..Options::default()
+        ..ImportOptions::default()
     }
 }
 
 fn read(text: &str) -> (Layout, Vec<String>) {
     let mut warnings = Warnings::default();
-    let Imported { layout, .. } = layout(Format::Nav2, text, &options(&[], 1.0), &mut warnings).unwrap();
+    let ImportedLayout { layout, .. } = layout(InputFormat::Nav2, text, &options(&[], 1.0), &mut warnings).unwrap();
     (layout, warnings.lines())
 }
 
 fn route(text: &str, routes: &[&str], corner_radius: f64) -> Scenario {
-    scenario(Format::Nav2, text, &options(routes, corner_radius), &mut Warnings::default()).unwrap()
+    scenario(InputFormat::Nav2, text, &options(routes, corner_radius), &mut Warnings::default()).unwrap()
 }
 
 /// "Nothing excludes anything" would be said of it, although robots at its nodes touch.
@@ -40,7 +40,7 @@ fn route(text: &str, routes: &[&str], corner_radius: f64) -> Scenario {
 fn a_layout_without_an_edge_is_refused() {
     let node = |id: u32, x: f64| json!({ "type": "Feature", "properties": { "id": id }, "geometry": { "type": "Point", "coordinates": [x, 0.0] } });
     let text = json!({ "type": "FeatureCollection", "features": [node(0, 0.0), node(1, 0.3)] }).to_string();
-    let error = layout(Format::Nav2, &text, &options(&[], 1.0), &mut Warnings::default()).unwrap_err();
+    let error = layout(InputFormat::Nav2, &text, &options(&[], 1.0), &mut Warnings::default()).unwrap_err();
     assert_eq!(error.to_string(), "there is no edge in it, on which anything could drive");
 }
 
@@ -67,7 +67,7 @@ fn all_pairs(layout: &Layout) -> Vec<Vec<f64>> {
     let mut lengths = vec![vec![f64::INFINITY; count]; count];
     for edge in &layout.edges {
         let [from, to] = edge.ends;
-        let [a, b] = edge.ends.map(|node| layout.nodes[node].at);
+        let [a, b] = edge.ends.map(|node| layout.nodes[node].point);
         lengths[from][to] = lengths[from][to].min((a[0] - b[0]).hypot(a[1] - b[1]));
     }
     for (node, row) in lengths.iter_mut().enumerate() {
@@ -92,7 +92,7 @@ fn routes_are_shortest_ways() {
         for from in (0..layout.nodes.len()).step_by(7) {
             for to in (0..layout.nodes.len()).step_by(5) {
                 let name = format!("{}:{}", layout.nodes[from].id, layout.nodes[to].id);
-                let outcome = scenario(Format::Nav2, text, &options(&[&name], 0.0), &mut Warnings::default());
+                let outcome = scenario(InputFormat::Nav2, text, &options(&[&name], 0.0), &mut Warnings::default());
                 if lengths[from][to].is_infinite() {
                     assert_eq!(
                         outcome.unwrap_err().to_string(),
@@ -125,7 +125,7 @@ fn a_route_cuts_its_corners_by_what_the_radius_allows() {
         assert_eq!((read.start, &read.path, read.radius), (written.start, &written.path, written.radius));
     }
     for (agent, name) in routes.iter().enumerate() {
-        let ends = name.split(':').map(|node| layout.nodes[layout.node(node).unwrap()].at).collect::<Vec<_>>();
+        let ends = name.split(':').map(|node| layout.nodes[layout.node(node).unwrap()].point).collect::<Vec<_>>();
         with_motion(&scenario, agent, |motion| {
             let path = motion.path();
             let (first, last) = (path.point_at(0.0), path.point_at(path.length()));
@@ -142,8 +142,8 @@ fn a_route_cuts_its_corners_by_what_the_radius_allows() {
             // No point of it is farther from the edges than the middle of the arc in a right angle, the sharpest corner.
             for k in 0..=1000 {
                 let point = path.point_at(path.length() * f64::from(k) / 1000.0);
-                let distance = |edge: &pcr_formats::import::Edge| {
-                    let [a, b] = edge.ends.map(|node| layout.nodes[node].at);
+                let distance = |edge: &pcr_formats::import::LayoutEdge| {
+                    let [a, b] = edge.ends.map(|node| layout.nodes[node].point);
                     let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
                     let along = ((point.x - a[0]) * dx + (point.y - a[1]) * dy) / (dx * dx + dy * dy).max(1e-300);
                     let along = along.clamp(0.0, 1.0);
@@ -199,7 +199,7 @@ fn speed_limits_are_fractions_or_percentages() {
 #[test]
 fn wrong_routes_are_named() {
     let failed = |routes: &[&str]| {
-        scenario(Format::Nav2, WAREHOUSE, &options(routes, 1.0), &mut Warnings::default()).unwrap_err().to_string()
+        scenario(InputFormat::Nav2, WAREHOUSE, &options(routes, 1.0), &mut Warnings::default()).unwrap_err().to_string()
     };
     assert_eq!(failed(&["0:999"]), "route 0:999: there is no node 999");
     assert_eq!(failed(&["x:1@3"]), "route x:1@3: there is no node x");
@@ -213,19 +213,19 @@ fn wrong_routes_are_named() {
 const ONE_ID: &str = include_str!("../data/cases/one-id-two-edges.geojson");
 
 fn failed(graph: &Value) -> String {
-    layout(Format::Nav2, &graph.to_string(), &options(&[], 1.0), &mut Warnings::default()).unwrap_err().to_string()
+    layout(InputFormat::Nav2, &graph.to_string(), &options(&[], 1.0), &mut Warnings::default()).unwrap_err().to_string()
 }
 
 #[test]
 fn two_edges_of_one_id_are_both_there() {
     let mut warnings = Warnings::default();
-    let imported = layout(Format::Nav2, ONE_ID, &options(&[], 1.0), &mut warnings).unwrap();
+    let imported = layout(InputFormat::Nav2, ONE_ID, &options(&[], 1.0), &mut warnings).unwrap();
     let ids: Vec<String> = imported.layout.edges.iter().map(|edge| edge.id.to_string()).collect();
     assert_eq!(ids, ["101", "100", "101#2"]);
     assert!(
         warnings.lines().contains(&"edge 101: several have this name; one of them is called 101#2 here".to_owned())
     );
-    let table = Locks::of(&imported, false).unwrap();
+    let table = ExclusionTable::compute(&imported, false).unwrap();
     let [lock] = &table.locks[..] else { panic!("{:?}", table.locks) };
     assert_eq!((lock.a.to_string(), lock.b.to_string()), ("100".into(), "101#2".into()));
     // Where it came from is told with the answer.
@@ -257,14 +257,14 @@ fn copies_are_there_once_and_edges_join_the_last_node_of_an_id() {
         ["0", "1", "2", "3", "4", "5", "0#2"]
     );
     let edge = whole.edges.iter().find(|edge| edge.id.to_string() == "100").unwrap();
-    assert_eq!(whole.nodes[edge.ends[0]].at, [0.0, 1.0]);
+    assert_eq!(whole.nodes[edge.ends[0]].point, [0.0, 1.0]);
     assert!((edge.length() - 101.0_f64.sqrt()).abs() < 1e-12);
     // Which is a copy of the first one here.
     let first = graph["features"][0].clone();
     graph["features"].as_array_mut().unwrap().push(first);
     let (whole, _) = read(&graph.to_string());
     let edge = whole.edges.iter().find(|edge| edge.id.to_string() == "100").unwrap();
-    assert_eq!((whole.nodes[edge.ends[0]].at, edge.length()), ([0.0, 0.0], 10.0));
+    assert_eq!((whole.nodes[edge.ends[0]].point, edge.length()), ([0.0, 0.0], 10.0));
 }
 
 #[test]
@@ -277,9 +277,9 @@ fn what_cannot_be_read_is_refused_by_name() {
     let lost = "; --partial leaves that out";
     let unknown = changed("/features/7/properties/endid", json!(44));
     assert_eq!(failed(&unknown), format!("edge 100, endid: there is no node 44{lost}"));
-    let partial = Options { partial: true, ..options(&[], 1.0) };
+    let partial = ImportOptions { partial: true, ..options(&[], 1.0) };
     let mut warnings = Warnings::default();
-    let rest = layout(Format::Nav2, &unknown.to_string(), &partial, &mut warnings).unwrap().layout;
+    let rest = layout(InputFormat::Nav2, &unknown.to_string(), &partial, &mut warnings).unwrap().layout;
     assert_eq!(rest.edges.iter().map(|edge| edge.id.to_string()).collect::<Vec<_>>(), ["101", "101#2"]);
     assert_eq!(rest.warnings, warnings.all());
     assert!(
@@ -330,7 +330,7 @@ fn a_route_that_can_be_read_in_two_ways_is_refused() {
     }
     let failed = |route: &str| {
         let options = options(&[route], 1.0);
-        scenario(Format::Nav2, &graph.to_string(), &options, &mut Warnings::default()).unwrap_err().to_string()
+        scenario(InputFormat::Nav2, &graph.to_string(), &options, &mut Warnings::default()).unwrap_err().to_string()
     };
     assert_eq!(failed("a:b:c"), "route a:b:c: there are nodes for more than one reading of it");
     assert_eq!(failed("twin:a"), "route twin:a: 2 nodes have the name twin");
@@ -339,15 +339,15 @@ fn a_route_that_can_be_read_in_two_ways_is_refused() {
 
 #[test]
 fn ids_speeds_and_directions_are_those_of_the_file() {
-    assert_eq!(Format::of("graph.json".as_ref(), ONE_ID), Some(Format::Nav2));
-    assert_eq!(Format::of("graph.json".as_ref(), r#"{ "type": "Feature" }"#), None);
+    assert_eq!(InputFormat::detect("graph.json".as_ref(), ONE_ID), Some(InputFormat::Nav2));
+    assert_eq!(InputFormat::detect("graph.json".as_ref(), r#"{ "type": "Feature" }"#), None);
     let mut graph: Value = serde_json::from_str(ONE_ID).unwrap();
     // Whole numbers, as texts or with a decimal point as well.
     (graph["features"][0]["properties"]["id"], graph["features"][1]["properties"]["id"]) = (json!("0"), json!(1.0));
     graph["features"][7]["properties"]["metadata"] = json!({ "speed_limit": 0.5 });
     graph["features"][8]["properties"]["metadata"] = json!({ "speed_limit": 50 });
-    let fast = Options { speed: Some(3.0), ..options(&[], 1.0) };
-    let whole = layout(Format::Nav2, &graph.to_string(), &fast, &mut Warnings::default()).unwrap().layout;
+    let fast = ImportOptions { speed: Some(3.0), ..options(&[], 1.0) };
+    let whole = layout(InputFormat::Nav2, &graph.to_string(), &fast, &mut Warnings::default()).unwrap().layout;
     let speeds: Vec<Option<f64>> = whole.edges.iter().map(|edge| edge.speed[0]).collect();
     assert_eq!(speeds, [None, Some(1.5), Some(1.5)]);
     assert!(whole.edges.iter().all(|edge| !edge.is_two_way() && edge.curve.len() == 1));
@@ -367,7 +367,7 @@ fn nodes_are_in_one_frame() {
     let read = |frames: [Value; 2]| {
         let [a, b] = frames;
         let graph = json!({ "type": "FeatureCollection", "features": [node(0, 0.0, a), node(1, 5.0, b), edge] });
-        let read = layout(Format::Nav2, &graph.to_string(), &options(&[], 1.0), &mut Warnings::default());
+        let read = layout(InputFormat::Nav2, &graph.to_string(), &options(&[], 1.0), &mut Warnings::default());
         read.map(|imported| imported.layout.edges.len()).map_err(|error| error.to_string())
     };
     for frames in [
@@ -388,8 +388,8 @@ fn nodes_are_in_one_frame() {
 fn corners_are_rounded_only_if_that_is_asked_for() {
     let arcs = |corner_radius: Option<f64>| {
         let mut warnings = Warnings::default();
-        let options = Options { corner_radius, ..options(&["0:50"], 1.0) };
-        let scenario = scenario(Format::Nav2, WAREHOUSE, &options, &mut warnings).unwrap();
+        let options = ImportOptions { corner_radius, ..options(&["0:50"], 1.0) };
+        let scenario = scenario(InputFormat::Nav2, WAREHOUSE, &options, &mut warnings).unwrap();
         assert!(warnings.lines().iter().all(|line| !line.starts_with("corners")), "{:?}", warnings.lines());
         let is_arc = |segment: &&PathSegment| matches!(segment, PathSegment::Arc { radius, .. } if *radius == 1.0);
         scenario.agents[0].path.iter().filter(is_arc).count()
@@ -405,18 +405,18 @@ fn a_corner_radius_is_of_use_where_a_corner_is_rounded_with_it() {
     let slight = two_edges([[0.0, 0.0], [10.0, 0.0], [20.0, 0.05]], [100, 100]);
     let other = include_str!("../data/small/roadmap.xml");
     for (format, text, route, radius, is_used) in [
-        (Format::Nav2, AWS, "11:13", 0.0, true),
-        (Format::Nav2, AWS, "11:13", 0.5, true),
-        (Format::Nav2, AWS, "11:13", 1.0, true),
-        (Format::Nav2, AWS, "11:13", 2.0, true),
-        (Format::Nav2, AWS, "11:12", 0.0, true),
-        (Format::Nav2, AWS, "11:12", 2.0, false),
-        (Format::Nav2, &slight, "0:2", 0.0, true),
-        (Format::Nav2, &slight, "0:2", 1000.0, true),
-        (Format::Nav2, &slight, "0:2", 10000.0, false),
-        (Format::Ccbs, other, "n0:n2", 0.0, true),
-        (Format::Ccbs, other, "n0:n2", 0.5, true),
-        (Format::Ccbs, other, "n0:n2", 1000.0, false),
+        (InputFormat::Nav2, AWS, "11:13", 0.0, true),
+        (InputFormat::Nav2, AWS, "11:13", 0.5, true),
+        (InputFormat::Nav2, AWS, "11:13", 1.0, true),
+        (InputFormat::Nav2, AWS, "11:13", 2.0, true),
+        (InputFormat::Nav2, AWS, "11:12", 0.0, true),
+        (InputFormat::Nav2, AWS, "11:12", 2.0, false),
+        (InputFormat::Nav2, &slight, "0:2", 0.0, true),
+        (InputFormat::Nav2, &slight, "0:2", 1000.0, true),
+        (InputFormat::Nav2, &slight, "0:2", 10000.0, false),
+        (InputFormat::Ccbs, other, "n0:n2", 0.0, true),
+        (InputFormat::Ccbs, other, "n0:n2", 0.5, true),
+        (InputFormat::Ccbs, other, "n0:n2", 1000.0, false),
     ] {
         let mut warnings = Warnings::default();
         let options = options(&[route], radius);

@@ -1,23 +1,23 @@
 //! OpenDRIVE: lines and arcs as they are, joints closed, roads joined at shared nodes.
 
-use pcr_formats::import::{Edge, Format, Id, Layout, Options, Warnings, layout, scenario};
-use pcr_formats::scenario::{PathSegment, Placed};
-use pcr_planning::locks::Locks;
+use pcr_formats::import::{ElementId, ImportOptions, InputFormat, Layout, LayoutEdge, Warnings, layout, scenario};
+use pcr_formats::scenario::{PathSegment, PlacedSegment};
+use pcr_planning::exclusion_table::ExclusionTable;
 
 const TOWN_1: &str = include_str!("../data/real/opendrive/Town01.planview.xodr");
 const TOWN_2: &str = include_str!("../data/real/opendrive/Town02.planview.xodr");
 
 fn read(text: &str) -> (Layout, Vec<String>) {
     let mut warnings = Warnings::default();
-    let options = Options { radius: Some(0.9), ..Options::default() };
-    let imported = layout(Format::OpenDrive, text, &options, &mut warnings).unwrap();
+    let options = ImportOptions { radius: Some(0.9), ..ImportOptions::default() };
+    let imported = layout(InputFormat::OpenDrive, text, &options, &mut warnings).unwrap();
     (imported.layout, warnings.lines())
 }
 
 #[test]
 fn every_record_is_a_line_or_an_arc() {
     for (text, roads, lines, arcs, kilometres) in [(TOWN_1, 98, 240, 112, 3.92), (TOWN_2, 68, 329, 81, 1.76)] {
-        assert_eq!(Format::of("town".as_ref(), text), Some(Format::OpenDrive));
+        assert_eq!(InputFormat::detect("town".as_ref(), text), Some(InputFormat::OpenDrive));
         let (layout, warnings) = read(text);
         let pieces = || layout.edges.iter().flat_map(|edge| &edge.curve);
         let is_line = |shape: &PathSegment| matches!(shape, PathSegment::Line { .. });
@@ -29,7 +29,7 @@ fn every_record_is_a_line_or_an_arc() {
             pieces().filter(|piece| !is_line(&piece.shape)).count(),
         ];
         assert!(found[0] + found[1] + empty == lines + arcs && found[1] <= arcs, "{found:?} {empty}");
-        let length: f64 = layout.edges.iter().map(Edge::length).sum();
+        let length: f64 = layout.edges.iter().map(LayoutEdge::length).sum();
         assert!((length / 1000.0 - kilometres).abs() < 0.005, "{length}");
         for piece in pieces() {
             if let PathSegment::Arc { radius, .. } = piece.shape {
@@ -49,8 +49,8 @@ fn linked_roads_share_nodes() {
         assert!(layout.nodes.len() < 2 * layout.edges.len());
         for edge in &layout.edges {
             let (first, last) = (edge.curve.first().unwrap(), edge.curve.last().unwrap());
-            for (node, at) in edge.ends.into_iter().zip([first.at, last.end()]) {
-                let [x, y] = layout.nodes[node].at;
+            for (node, at) in edge.ends.into_iter().zip([first.start, last.end()]) {
+                let [x, y] = layout.nodes[node].point;
                 assert!((x - at[0]).hypot(y - at[1]) < 0.05, "road {}: {x} {y} {at:?}", edge.id);
             }
         }
@@ -62,11 +62,11 @@ fn paths_keep_to_the_records() {
     let (layout, _) = read(TOWN_1);
     let options = |k: usize| {
         let [from, to] = layout.edges[k].ends.map(|node| &layout.nodes[node].id);
-        Options { radius: Some(0.9), routes: vec![format!("{from}:{to}")], ..Options::default() }
+        ImportOptions { radius: Some(0.9), routes: vec![format!("{from}:{to}")], ..ImportOptions::default() }
     };
     let mut driven = 0;
     for (k, edge) in layout.edges.iter().enumerate().step_by(9) {
-        let Ok(scenario) = scenario(Format::OpenDrive, TOWN_1, &options(k), &mut Warnings::default()) else {
+        let Ok(scenario) = scenario(InputFormat::OpenDrive, TOWN_1, &options(k), &mut Warnings::default()) else {
             panic!("road {}", edge.id);
         };
         let agent = &scenario.agents[0];
@@ -80,9 +80,10 @@ fn paths_keep_to_the_records() {
 #[test]
 fn roads_that_start_together_lock_each_other() {
     let (layout, _) = read(TOWN_1);
-    let options = Options { radius: Some(0.9), ..Options::default() };
-    let imported = pcr_formats::import::layout(Format::OpenDrive, TOWN_1, &options, &mut Warnings::default()).unwrap();
-    let table = Locks::of(&imported, false).unwrap();
+    let options = ImportOptions { radius: Some(0.9), ..ImportOptions::default() };
+    let imported =
+        pcr_formats::import::layout(InputFormat::OpenDrive, TOWN_1, &options, &mut Warnings::default()).unwrap();
+    let table = ExclusionTable::compute(&imported, false).unwrap();
     for (k, a) in layout.edges.iter().enumerate() {
         for b in layout.edges.iter().skip(k + 1).filter(|b| b.ends[0] == a.ends[0]) {
             let (first, second) = if a.id < b.id { (a, b) } else { (b, a) };
@@ -112,8 +113,8 @@ fn what_is_wrong_is_refused_by_name_and_left_out_if_asked_for() {
     ]);
     let error = layout_error(&text);
     let mut warnings = Warnings::default();
-    let partial = Options { partial: true, ..Options::default() };
-    let read = layout(Format::OpenDrive, &text, &partial, &mut warnings).unwrap().layout;
+    let partial = ImportOptions { partial: true, ..ImportOptions::default() };
+    let read = layout(InputFormat::OpenDrive, &text, &partial, &mut warnings).unwrap().layout;
     assert_eq!((read.edges.len(), read.nodes.len()), (1, 2));
     let warnings = warnings.lines().join("\n");
     for expected in [
@@ -187,7 +188,7 @@ fn an_arc_that_is_nearly_straight_counts_as_deviation() {
 }
 
 /// Where a curve is at a length.
-fn place(curve: &[Placed], length: f64) -> [f64; 2] {
+fn place(curve: &[PlacedSegment], length: f64) -> [f64; 2] {
     let mut rest = length;
     for piece in curve {
         if rest < piece.shape.length() {
@@ -197,7 +198,7 @@ fn place(curve: &[Placed], length: f64) -> [f64; 2] {
                     PathSegment::Arc { radius, sweep: (rest / radius).copysign(sweep) }
                 }
             };
-            return Placed { shape, ..*piece }.end();
+            return PlacedSegment { shape, ..*piece }.end();
         }
         rest -= piece.shape.length();
     }
@@ -211,13 +212,13 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 #[test]
 fn open_joints_are_closed_and_count_as_deviation_along_and_across() {
     let records = [
-        Placed::line([0.0, 0.0], [5.0, 0.0]),
-        Placed::line([5.04, 0.0], [10.0, 0.0]),
-        Placed { at: [10.03, 0.03], heading: 0.0, shape: PathSegment::Arc { radius: 4.0, sweep: 1.5 } },
-        Placed { at: [14.0, 3.73], heading: 1.5, shape: PathSegment::Arc { radius: 2.0, sweep: -1.0 } },
-        Placed::line([15.01, 5.37], [18.0, 6.9]),
+        PlacedSegment::line([0.0, 0.0], [5.0, 0.0]),
+        PlacedSegment::line([5.04, 0.0], [10.0, 0.0]),
+        PlacedSegment { start: [10.03, 0.03], heading: 0.0, shape: PathSegment::Arc { radius: 4.0, sweep: 1.5 } },
+        PlacedSegment { start: [14.0, 3.73], heading: 1.5, shape: PathSegment::Arc { radius: 2.0, sweep: -1.0 } },
+        PlacedSegment::line([15.01, 5.37], [18.0, 6.9]),
     ];
-    let written = records.map(|Placed { at: [x, y], heading, shape }| {
+    let written = records.map(|PlacedSegment { start: [x, y], heading, shape }| {
         let length = shape.length();
         let shape = match shape {
             PathSegment::Line { .. } => "<line/>".to_owned(),
@@ -230,7 +231,7 @@ fn open_joints_are_closed_and_count_as_deviation_along_and_across() {
     assert!(warnings[0].contains("joints are open, by "), "{warnings:?}");
     let edge = &layout.edges[0];
     for pair in edge.curve.windows(2) {
-        assert!(distance(pair[0].end(), pair[1].at) < 1e-12, "{pair:?}");
+        assert!(distance(pair[0].end(), pair[1].start) < 1e-12, "{pair:?}");
     }
     let all: f64 = records.iter().map(|record| record.shape.length()).sum();
     assert!((edge.length() - all).abs() > 0.02, "the gaps do not show in the length");
@@ -255,18 +256,19 @@ fn locks_hold_what_is_between_a_road_and_its_node() {
     let next = "<successor elementType=\"road\" elementId=\"2\" contactPoint=\"start\"/>";
     let roads = [road(1, [0.0, 0.0, 0.0], next), road(2, [5.0, 0.04, -1.57], ""), road(3, [2.5, 1.83, 0.0], "")];
     let text = format!("<OpenDRIVE>{}</OpenDRIVE>", roads.concat());
-    let options = Options { radius: Some(0.9), ..Options::default() };
-    let imported = layout(Format::OpenDrive, &text, &options, &mut Warnings::default()).unwrap();
+    let options = ImportOptions { radius: Some(0.9), ..ImportOptions::default() };
+    let imported = layout(InputFormat::OpenDrive, &text, &options, &mut Warnings::default()).unwrap();
     assert_eq!(imported.layout.nodes.len(), 5);
     let deviations: Vec<f64> = imported.layout.edges.iter().map(|edge| edge.deviation).collect();
     assert!(deviations[0] == 0.0 && (deviations[1] - 0.04).abs() < 1e-12 && deviations[2] == 0.0, "{deviations:?}");
-    let table = Locks::of(&imported, true).unwrap();
+    let table = ExclusionTable::compute(&imported, true).unwrap();
     let has = |a: u64, b: u64| {
-        table.locks.iter().any(|lock| (lock.a.clone(), lock.b.clone()) == (Id::Number(a), Id::Number(b)))
+        table.locks.iter().any(|lock| (lock.a.clone(), lock.b.clone()) == (ElementId::Number(a), ElementId::Number(b)))
     };
     assert!(has(2, 3) && !has(1, 3), "{:?}", table.locks);
     let nodes = table.nodes.unwrap();
-    let at_node = nodes.iter().any(|lock| lock.node == Id::Text("1/end".into()) && lock.edge == Id::Number(3));
+    let at_node =
+        nodes.iter().any(|lock| lock.node == ElementId::Text("1/end".into()) && lock.edge == ElementId::Number(3));
     assert!(at_node, "{nodes:?}");
     // A road that is linked to the second one, 4 cm further: 8 cm from the node, where no route passes.
     let third = "<predecessor elementType=\"road\" elementId=\"2\" contactPoint=\"start\"/>";
@@ -314,7 +316,7 @@ fn roads_whose_geometry_has_holes_are_refused() {
 }
 
 fn layout_error(text: &str) -> String {
-    layout(Format::OpenDrive, text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string()
+    layout(InputFormat::OpenDrive, text, &ImportOptions::default(), &mut Warnings::default()).unwrap_err().to_string()
 }
 
 /// Two roads, one after the other, and a third on another lane; the first road is linked to both.
@@ -352,8 +354,9 @@ fn routes_take_every_end_of_every_road() {
     let expected = "links of roads: 1 of 2 are between reference lines up to 3.500 m apart; no route passes there from road to road";
     assert_eq!(warnings, [expected]);
     let route = |route: &str| {
-        let options = Options { radius: Some(0.9), routes: vec![route.into()], ..Options::default() };
-        scenario(Format::OpenDrive, &lanes(), &options, &mut Warnings::default()).map_err(|error| error.to_string())
+        let options = ImportOptions { radius: Some(0.9), routes: vec![route.into()], ..ImportOptions::default() };
+        scenario(InputFormat::OpenDrive, &lanes(), &options, &mut Warnings::default())
+            .map_err(|error| error.to_string())
     };
     assert_eq!(route("1/start:2/end").unwrap().agents[0].length(), 20.0);
     assert_eq!(route("1/end:2/end").unwrap(), route("2/start:2/end").unwrap());
@@ -382,9 +385,9 @@ fn joints_without_gaps_are_preferred() {
         road("9", [30.0, 0.0], 10.0, ""),
     ];
     let text = format!("<OpenDRIVE>{}</OpenDRIVE>", text.concat());
-    let options = Options { radius: Some(0.9), routes: vec!["1/start:9/end".into()], ..Options::default() };
+    let options = ImportOptions { radius: Some(0.9), routes: vec!["1/start:9/end".into()], ..ImportOptions::default() };
     let mut warnings = Warnings::default();
-    let scenario = scenario(Format::OpenDrive, &text, &options, &mut warnings).unwrap();
+    let scenario = scenario(InputFormat::OpenDrive, &text, &options, &mut warnings).unwrap();
     assert_eq!(scenario.agents[0].length(), 40.0);
     assert!(
         warnings.lines().iter().any(|line| line.contains("2 of 5 are between reference lines up to 4.000 m apart"))
@@ -435,12 +438,13 @@ fn roads_that_are_elsewhere_are_refused() {
         assert!(error.starts_with(&format!("{name} 2, in {parent}: what is read is road in OpenDRIVE")), "{error}");
     }
     let mut warnings = Warnings::default();
-    layout(Format::OpenDrive, &file("<junction id=\"9\"/><way/>"), &Options::default(), &mut warnings).unwrap();
+    layout(InputFormat::OpenDrive, &file("<junction id=\"9\"/><way/>"), &ImportOptions::default(), &mut warnings)
+        .unwrap();
     // What others add is called as they like.
     layout(
-        Format::OpenDrive,
+        InputFormat::OpenDrive,
         &file("<userData><Road a=\"1\"/></userData>"),
-        &Options::default(),
+        &ImportOptions::default(),
         &mut Warnings::default(),
     )
     .unwrap();
@@ -458,7 +462,8 @@ fn names_are_as_they_are_written_and_speeds_no_less_than_0() {
     };
     let file = |roads: &[String]| format!("<OpenDRIVE>{}</OpenDRIVE>", roads.concat());
     let text = file(&[road("1", 0.0, ""), road("01", 9.0, ""), road("+2", 18.0, "")]);
-    let read = layout(Format::OpenDrive, &text, &Options::default(), &mut Warnings::default()).unwrap().layout;
+    let read =
+        layout(InputFormat::OpenDrive, &text, &ImportOptions::default(), &mut Warnings::default()).unwrap().layout;
     assert_eq!(read.edges.iter().map(|edge| edge.id.to_string()).collect::<Vec<_>>(), ["1", "01", "+2"]);
     let error = layout_error(&file(&[road("1", 0.0, "<type><speed max=\"-3\"/></type>")]));
     assert!(error.starts_with("road 1, speed, max: -3 where a number from 0 is expected"), "{error}");

@@ -1,20 +1,24 @@
 //! The demo plant of openTCS: its Bézier paths become arcs, and its lengths are warned about.
 
-use pcr_formats::import::{Edge, Format, Options, Warnings, layout, scenario};
+use pcr_formats::import::{ImportOptions, InputFormat, LayoutEdge, Warnings, layout, scenario};
 use pcr_formats::scenario::PathSegment;
 
 const DEMO: &str = include_str!("../data/real/opentcs/Demo-01.xml");
 
-fn options(routes: &[&str]) -> Options {
-    Options { radius: Some(0.6), routes: routes.iter().map(ToString::to_string).collect(), ..Options::default() }
+fn options(routes: &[&str]) -> ImportOptions {
+    ImportOptions {
+        radius: Some(0.6),
+        routes: routes.iter().map(ToString::to_string).collect(),
+        ..ImportOptions::default()
+    }
 }
 
 #[test]
 fn the_demo_is_read_with_warnings_about_its_lengths() {
     let mut warnings = Warnings::default();
-    let plant = layout(Format::OpenTcs, DEMO, &options(&[]), &mut warnings).unwrap().layout;
+    let plant = layout(InputFormat::OpenTcs, DEMO, &options(&[]), &mut warnings).unwrap().layout;
     assert_eq!((plant.name.as_str(), plant.edges.len()), ("Demo-01", 75));
-    let is_curved = |edge: &&Edge| edge.deviation > 0.0;
+    let is_curved = |edge: &&LayoutEdge| edge.deviation > 0.0;
     assert_eq!(plant.edges.iter().filter(is_curved).count(), 35);
     assert!(plant.edges.iter().all(|edge| edge.deviation <= 1e-3));
     let listed =
@@ -25,8 +29,8 @@ fn the_demo_is_read_with_warnings_about_its_lengths() {
     assert!((30..=34).contains(&straight.count()), "{listed:?}");
     assert!(listed.len() >= 34 + 24, "{}", listed.len());
     for edge in &plant.edges {
-        let [from, to] = edge.ends.map(|node| plant.nodes[node].at);
-        let (begin, end) = (edge.curve[0].at, edge.curve.last().unwrap().end());
+        let [from, to] = edge.ends.map(|node| plant.nodes[node].point);
+        let (begin, end) = (edge.curve[0].start, edge.curve.last().unwrap().end());
         assert!((from[0] - begin[0]).hypot(from[1] - begin[1]) < 1e-9);
         assert!((to[0] - end[0]).hypot(to[1] - end[1]) < 1e-9);
     }
@@ -35,7 +39,7 @@ fn the_demo_is_read_with_warnings_about_its_lengths() {
 #[test]
 fn a_curve_is_the_cubic_of_its_control_points() {
     // Point-0001 to Point-0002 over (610, -180) twice, in units of 50 mm.
-    let plant = layout(Format::OpenTcs, DEMO, &options(&[]), &mut Warnings::default()).unwrap().layout;
+    let plant = layout(InputFormat::OpenTcs, DEMO, &options(&[]), &mut Warnings::default()).unwrap().layout;
     let edge = plant.edges.iter().find(|edge| edge.id.to_string() == "Point-0001 --- Point-0002").unwrap();
     let points = [[31.0, 11.0], [30.5, 9.0], [30.5, 9.0], [25.0, 9.0]];
     let mut pieces = 0;
@@ -45,7 +49,7 @@ fn a_curve_is_the_cubic_of_its_control_points() {
             PathSegment::Line { length } => PathSegment::Line { length: length / 2.0 },
             PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: sweep / 2.0 },
         };
-        let middle = pcr_formats::scenario::Placed { shape: half, ..*piece }.end();
+        let middle = pcr_formats::scenario::PlacedSegment { shape: half, ..*piece }.end();
         let distance = |k: u32| {
             let t = f64::from(k) / 20_000.0;
             let weights = [(1.0 - t).powi(3), 3.0 * t * (1.0 - t).powi(2), 3.0 * t * t * (1.0 - t), t.powi(3)];
@@ -65,14 +69,14 @@ fn a_curve_is_the_cubic_of_its_control_points() {
 fn straight_paths_with_control_points_are_refused() {
     let from = DEMO.find("connectionType=\"BEZIER\"").unwrap();
     let text = format!("{}{}", &DEMO[..from], DEMO[from..].replacen("\"BEZIER\"", "\"DIRECT\"", 1));
-    let error = layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default()).unwrap_err().to_string();
+    let error = layout(InputFormat::OpenTcs, &text, &options(&[]), &mut Warnings::default()).unwrap_err().to_string();
     assert!(error.contains(": DIRECT with 2 control points is not read"), "{error}");
 }
 
 #[test]
 fn vehicles_keep_the_velocity_of_a_path() {
     let mut warnings = Warnings::default();
-    let scenario = scenario(Format::OpenTcs, DEMO, &options(&["Point-0001:Point-0003"]), &mut warnings).unwrap();
+    let scenario = scenario(InputFormat::OpenTcs, DEMO, &options(&["Point-0001:Point-0003"]), &mut warnings).unwrap();
     assert!((scenario.agents[0].length() - 6.0).abs() < 1e-12);
 }
 
@@ -84,14 +88,14 @@ fn a_plant_is_read_whole_or_refused() {
     };
     let points = [point("a", 0, 0), point("b", 4000, 0), point("c", 2000, -2000), point("d", 2000, 2000)].concat();
     let read = |parts: &str, partial: bool| {
-        let options = Options { radius: Some(0.3), partial, ..Options::default() };
+        let options = ImportOptions { radius: Some(0.3), partial, ..ImportOptions::default() };
         let text = format!("<model>{points}{parts}</model>");
-        layout(Format::OpenTcs, &text, &options, &mut Warnings::default()).map_err(|error| error.to_string())
+        layout(InputFormat::OpenTcs, &text, &options, &mut Warnings::default()).map_err(|error| error.to_string())
     };
     let twice = [path("p", "a", "b", ""), path("p", "c", "d", ""), path("p", "c", "d", "")].concat();
     let imported = read(&twice, false).unwrap();
     assert_eq!(imported.layout.edges.iter().map(|edge| edge.id.to_string()).collect::<Vec<_>>(), ["p", "p#2"]);
-    assert_eq!(pcr_planning::locks::Locks::of(&imported, false).unwrap().locks.len(), 1);
+    assert_eq!(pcr_planning::exclusion_table::ExclusionTable::compute(&imported, false).unwrap().locks.len(), 1);
     let curved = "<path name=\"q\" sourcePoint=\"a\" destinationPoint=\"b\" length=\"1\"><pathLayout connectionType=\"BEZIER\"/></path>";
     let lost = [path("p", "a", "z", ""), curved.to_owned(), path("r", "a", "b", "maxVelocity=\"fast\"")].concat();
     let expected = "path p, destinationPoint: there is no node z; path q: BEZIER with 0 control points is not read; \
@@ -126,7 +130,7 @@ fn paths_have_the_limits_and_the_shape_of_the_file() {
             <vehicleEnvelope key=\"k\"/></point><path name=\"p\" sourcePoint=\"a\" destinationPoint=\"b\" {path}>\
             <pathLayout connectionType=\"{kind}\">{controls}</pathLayout></path></model>"
         );
-        let imported = layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default());
+        let imported = layout(InputFormat::OpenTcs, &text, &options(&[]), &mut Warnings::default());
         imported.map(|imported| imported.layout).map_err(|error| error.to_string())
     };
     let stands = read("length=\"4000\" maxVelocity=\"0\" maxReverseVelocity=\"0\"", &[], "DIRECT").unwrap();
@@ -164,7 +168,7 @@ fn paths_have_the_limits_and_the_shape_of_the_file() {
 
 #[test]
 fn xml_is_known_by_its_first_element_and_not_nested_without_end() {
-    let format = |text: &str| Format::of("x.xml".as_ref(), text);
+    let format = |text: &str| InputFormat::detect("x.xml".as_ref(), text);
     for text in [
         "<model>",
         "<model/>",
@@ -172,15 +176,15 @@ fn xml_is_known_by_its_first_element_and_not_nested_without_end() {
         "<?xml version=\"1.0\"?>\n<!-- > -->\n <model>",
         "\u{feff}<model>",
     ] {
-        assert_eq!(format(text), Some(Format::OpenTcs), "{text}");
+        assert_eq!(format(text), Some(InputFormat::OpenTcs), "{text}");
     }
-    assert_eq!((format("<models>"), format("<graphml>"), format("model")), (None, Some(Format::Ccbs), None));
+    assert_eq!((format("<models>"), format("<graphml>"), format("model")), (None, Some(InputFormat::Ccbs), None));
     let read = |inner: &str| {
         let points =
             ["a", "b"].map(|name| format!("<point name=\"{name}\" positionX=\"0\" positionY=\"0\"/>")).concat();
         let way = "<path name=\"w\" sourcePoint=\"a\" destinationPoint=\"b\" length=\"1\"/>";
         let text = format!("<model>{points}{way}{inner}</model>");
-        layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default()).map_err(|error| error.to_string())
+        layout(InputFormat::OpenTcs, &text, &options(&[]), &mut Warnings::default()).map_err(|error| error.to_string())
     };
     let nested = |depth: usize| format!("{}{}", "<a>".repeat(depth), "</a>".repeat(depth));
     assert!(read(&nested(190)).is_ok());
@@ -211,7 +215,7 @@ fn routes_go_where_the_plant_model_lets_vehicles_go() {
     ]
     .concat();
     let route = |ends: &str| {
-        let read = scenario(Format::OpenTcs, &text, &options(&[ends]), &mut Warnings::default());
+        let read = scenario(InputFormat::OpenTcs, &text, &options(&[ends]), &mut Warnings::default());
         read.map(|scenario| (scenario.agents[0].length(), scenario.agents[0].duration()))
             .map_err(|error| error.to_string())
     };
@@ -223,7 +227,7 @@ fn routes_go_where_the_plant_model_lets_vehicles_go() {
     let (length, duration) = route("c:a").expect("straight");
     assert!((length - 3.0).abs() < 1e-9 && duration < 6.0, "{length} m, {duration} s");
     assert!(route("b:a").is_err_and(|error| error.contains("no way") || error.contains("no route")));
-    let imported = layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default()).expect("a layout");
+    let imported = layout(InputFormat::OpenTcs, &text, &options(&[]), &mut Warnings::default()).expect("a layout");
     // The path that is locked has locks all the same.
     let steps: Vec<usize> = imported.layout.edges.iter().map(|edge| edge.steps().count()).collect();
     assert_eq!(steps, [2, 1, 2]);
@@ -252,25 +256,25 @@ fn vehicles_have_the_boxes_and_speeds_of_the_file() {
     let large = vehicle("large", 2000, "length=\"3000\" width=\"1600\" height=\"1000\"");
     let aside =
         vehicle("aside", 1500, "length=\"1000\" width=\"400\" referenceOffsetX=\"-300\" referenceOffsetY=\"650\"");
-    let read = |vehicles: &str, options: &Options| {
+    let read = |vehicles: &str, options: &ImportOptions| {
         let mut warnings = Warnings::default();
-        let imported = layout(Format::OpenTcs, &plant(vehicles), options, &mut warnings).unwrap();
-        let locks = pcr_planning::locks::Locks::of(&imported, false).unwrap().locks.len();
+        let imported = layout(InputFormat::OpenTcs, &plant(vehicles), options, &mut warnings).unwrap();
+        let locks = pcr_planning::exclusion_table::ExclusionTable::compute(&imported, false).unwrap().locks.len();
         (imported.vehicle, locks, warnings.lines())
     };
-    let (vehicle, locks, warnings) = read(&large, &Options::default());
+    let (vehicle, locks, warnings) = read(&large, &ImportOptions::default());
     let corners = vehicle.footprint.as_ref().map(|outline| outline.polygon().to_vec());
     assert_eq!(corners, Some(vec![[1.5, 0.8], [-1.5, 0.8], [-1.5, -0.8], [1.5, -0.8]]));
     assert_eq!((vehicle.speed, locks), (2.0, 1));
     assert!(warnings.iter().all(|line| !line.contains("radius")), "{warnings:?}");
     // A reference point off the middle counts to both sides, and of speeds the least.
-    let (vehicle, _, warnings) = read(&format!("{large}{aside}"), &Options::default());
+    let (vehicle, _, warnings) = read(&format!("{large}{aside}"), &ImportOptions::default());
     let corners = vehicle.footprint.as_ref().map(|outline| outline.polygon()[0]);
     let [ahead, left] = corners.expect("an outline");
     assert!((ahead, vehicle.speed) == (1.5, 1.5) && (left - 0.85).abs() < 1e-12, "{left}");
     assert!(warnings.contains(&"vehicles: their maxVelocity differs; the least of 1.5 m/s is taken".to_owned()));
     // What is asked for counts, and is told where the boxes reach further.
-    let asked = Options { radius: Some(0.5), speed: Some(1.0), ..Options::default() };
+    let asked = ImportOptions { radius: Some(0.5), speed: Some(1.0), ..ImportOptions::default() };
     let (vehicle, locks, warnings) = read(&large, &asked);
     assert_eq!((vehicle.radius, vehicle.speed, vehicle.footprint.is_none(), locks), (0.5, 1.0, true, 0));
     assert!(
@@ -279,26 +283,26 @@ fn vehicles_have_the_boxes_and_speeds_of_the_file() {
         ),
         "{warnings:?}"
     );
-    let (_, _, warnings) = read(&large, &Options { radius: Some(1.8), ..asked });
+    let (_, _, warnings) = read(&large, &ImportOptions { radius: Some(1.8), ..asked });
     assert!(warnings.iter().all(|line| !line.contains("radius")), "{warnings:?}");
-    let (vehicle, ..) = read("", &Options::default());
+    let (vehicle, ..) = read("", &ImportOptions::default());
     assert_eq!((vehicle.radius, vehicle.speed), (0.5, 1.0));
 }
 
 #[test]
 fn directions_at_points_that_an_outline_does_not_have_are_told() {
     let large = "<vehicle name=\"large\" maxVelocity=\"2000\"><boundingBox length=\"3000\" width=\"1600\"/></vehicle>";
-    let told = |angle: &str, options: &Options| {
+    let told = |angle: &str, options: &ImportOptions| {
         let text = plant(large).replacen("<point ", &format!("<point vehicleOrientationAngle=\"{angle}\" "), 1);
         let mut warnings = Warnings::default();
-        layout(Format::OpenTcs, &text, options, &mut warnings).map(|_| {
+        layout(InputFormat::OpenTcs, &text, options, &mut warnings).map(|_| {
             warnings
                 .lines()
                 .iter()
                 .any(|line| line.starts_with("point A->: its vehicleOrientationAngle is that of none"))
         })
     };
-    let told_of_box = |angle: &str| told(angle, &Options::default());
+    let told_of_box = |angle: &str| told(angle, &ImportOptions::default());
     // Along its path, turned by half a turn, which is the same for a box, or any.
     for angle in ["0.0", "360", "-180.0", "NaN"] {
         assert_eq!(told_of_box(angle), Ok(false), "{angle}");
@@ -317,18 +321,20 @@ fn names_with_angles_and_models_before_version_7_are_read() {
         plant(&format!("{names}<property name='a \">\"' value=\"<![CDATA[<b>]]&gt;\"/>").replace("<![CDATA[<b>]]", ""));
     let old = deep.replace("positionX", "xPosition").replace("positionY", "yPosition");
     for text in [deep, old] {
-        let plant = layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default()).unwrap().layout;
+        let plant = layout(InputFormat::OpenTcs, &text, &options(&[]), &mut Warnings::default()).unwrap().layout;
         let places = [[0.0, 0.0], [20.0, 0.0], [0.0, 1.4], [20.0, 1.4]];
-        let apart = |(node, at): (&pcr_formats::import::Node, [f64; 2])| (node.at[0] - at[0]).hypot(node.at[1] - at[1]);
+        let apart = |(node, at): (&pcr_formats::import::LayoutNode, [f64; 2])| {
+            (node.point[0] - at[0]).hypot(node.point[1] - at[1])
+        };
         assert!(plant.nodes.iter().zip(places).map(apart).all(|apart| apart < 1e-12), "{:?}", plant.nodes);
     }
     let nested = plant(&format!("{}{}", "<a b=\">\">".repeat(300), "</a>".repeat(300)));
-    let error = layout(Format::OpenTcs, &nested, &options(&[]), &mut Warnings::default()).unwrap_err().to_string();
+    let error = layout(InputFormat::OpenTcs, &nested, &options(&[]), &mut Warnings::default()).unwrap_err().to_string();
     assert!(error.contains("nested deeper than 200 elements"), "{error}");
 }
 
 fn failed(text: &str) -> String {
-    layout(Format::OpenTcs, text, &Options::default(), &mut Warnings::default()).unwrap_err().to_string()
+    layout(InputFormat::OpenTcs, text, &ImportOptions::default(), &mut Warnings::default()).unwrap_err().to_string()
 }
 
 /// Vehicles without a box silently had that of the others.
@@ -347,10 +353,11 @@ fn each_vehicle_has_a_box_if_any_has() {
         let text = plant(&format!("{small}<vehicle name=\"B\">{other}</vehicle>"));
         assert!(failed(&text).starts_with(expected), "{}", failed(&text));
         // A radius that is given is that of all, and so is what can be read, if that is asked for.
-        let given = layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default()).unwrap();
+        let given = layout(InputFormat::OpenTcs, &text, &options(&[]), &mut Warnings::default()).unwrap();
         assert_eq!(given.vehicle.radius, 0.6);
-        let (partial, mut warnings) = (Options { partial: true, ..Options::default() }, Warnings::default());
-        let read = layout(Format::OpenTcs, &text, &partial, &mut warnings).unwrap();
+        let (partial, mut warnings) =
+            (ImportOptions { partial: true, ..ImportOptions::default() }, Warnings::default());
+        let read = layout(InputFormat::OpenTcs, &text, &partial, &mut warnings).unwrap();
         assert!(
             read.vehicle.footprint.is_some() && warnings.lines()[0].starts_with(expected),
             "{:?}",
@@ -361,7 +368,8 @@ fn each_vehicle_has_a_box_if_any_has() {
     let told = |radius: Option<f64>| {
         let text = plant("<vehicle name=\"A\" length=\"3000\"/><vehicle name=\"B\" length=\"900\"/>");
         let mut warnings = Warnings::default();
-        layout(Format::OpenTcs, &text, &Options { radius, ..Options::default() }, &mut warnings).unwrap();
+        layout(InputFormat::OpenTcs, &text, &ImportOptions { radius, ..ImportOptions::default() }, &mut warnings)
+            .unwrap();
         warnings.lines().into_iter().filter(|line| line.contains("m long")).collect::<Vec<_>>()
     };
     let [a, b] = [("A", 3.0), ("B", 0.9)].map(|(name, long)| {
@@ -392,7 +400,7 @@ fn curves_are_where_the_layout_has_their_points() {
     };
     let deviation = |drawn: &str| {
         let text = curved(drawn, "BEZIER");
-        layout(Format::OpenTcs, &text, &options(&[]), &mut Warnings::default())
+        layout(InputFormat::OpenTcs, &text, &options(&[]), &mut Warnings::default())
             .map(|read| read.layout.edges[0].deviation)
     };
     let there = deviation("labelOffsetX=\"-10\"").unwrap();
@@ -409,7 +417,7 @@ fn curves_are_where_the_layout_has_their_points() {
         "positionZ=\"0\"><pointLayout positionX=\"9000\" positionY=\"9\"/></point>",
         1,
     );
-    assert!(layout(Format::OpenTcs, &straight, &options(&[]), &mut Warnings::default()).is_ok());
+    assert!(layout(InputFormat::OpenTcs, &straight, &options(&[]), &mut Warnings::default()).is_ok());
 }
 
 /// Curves of models up to version 0.0.3 are in the visual layout, and were straight.
@@ -431,7 +439,7 @@ fn curves_of_the_first_models_are_those_of_the_later_ones() {
     let placed = [at("A->", "0", "0"), at("B", "20000", "0")].concat();
     let read = |elements: &str| {
         let mut warnings = Warnings::default();
-        let read = layout(Format::OpenTcs, &model(elements), &options(&[]), &mut warnings);
+        let read = layout(InputFormat::OpenTcs, &model(elements), &options(&[]), &mut warnings);
         read.map(|read| (read.layout.edges[0].clone(), warnings.lines()))
     };
     let later = plant("").replacen(
@@ -441,7 +449,7 @@ fn curves_of_the_first_models_are_those_of_the_later_ones() {
         1,
     );
     let later =
-        layout(Format::OpenTcs, &later, &options(&[]), &mut Warnings::default()).unwrap().layout.edges[0].clone();
+        layout(InputFormat::OpenTcs, &later, &options(&[]), &mut Warnings::default()).unwrap().layout.edges[0].clone();
     // Releases differ in the case of the names.
     for kind in ["BEZIER", "Bezier"] {
         let (edge, warnings) = read(&[&placed, path(kind, "100,-10;300,-10").as_str()].concat()).unwrap();
@@ -490,7 +498,7 @@ fn paths_that_are_elsewhere_in_a_model_are_refused() {
     let more =
         format!("<block name=\"b\"/><group name=\"g\"/><lane name=\"l\"/>{}", path.replace("/>", "><curve/></path>"));
     let text = plant(&more);
-    layout(Format::OpenTcs, &text, &options(&[]), &mut warnings).unwrap();
+    layout(InputFormat::OpenTcs, &text, &options(&[]), &mut warnings).unwrap();
     for expected in ["lane: not known in model, and not read", "curve: not known in path, and not read"] {
         assert!(warnings.lines().contains(&expected.to_owned()), "{:?}", warnings.lines());
     }

@@ -1,15 +1,20 @@
 //! Paths by their points: an agent each, whose speed in bends is what it may turn by.
 
-use pcr_formats::import::{Format, Options, Warnings, scenario};
+use pcr_formats::import::{ImportOptions, InputFormat, Warnings, scenario};
 use pcr_formats::scenario::{MotionSpec, Scenario};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write;
 
 fn read(text: &str, rotation: f64) -> Scenario {
     let rotation = Some(rotation);
-    let options =
-        Options { radius: Some(0.3), speed: Some(1.0), acceleration: Some(1.0), rotation, ..Options::default() };
-    scenario(Format::Path, text, &options, &mut Warnings::default()).expect("paths")
+    let options = ImportOptions {
+        radius: Some(0.3),
+        speed: Some(1.0),
+        acceleration: Some(1.0),
+        rotation,
+        ..ImportOptions::default()
+    };
+    scenario(InputFormat::Path, text, &options, &mut Warnings::default()).expect("paths")
 }
 
 /// 2 m to the east, a quarter of a circle of 2 m to the left, 2 m to the north.
@@ -43,7 +48,7 @@ fn every_path_of_a_file_is_an_agent() {
         found.agents.iter().map(|agent| agent.path.iter().map(|segment| segment.length()).sum()).collect();
     assert_eq!(lengths, [3.0, 3.0]);
     for nothing in ["# nothing\n", "\n\n"] {
-        assert!(scenario(Format::Path, nothing, &Options::default(), &mut Warnings::default()).is_err());
+        assert!(scenario(InputFormat::Path, nothing, &ImportOptions::default(), &mut Warnings::default()).is_err());
     }
 }
 

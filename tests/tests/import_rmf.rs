@@ -1,9 +1,9 @@
 //! Buildings of Open-RMF: scales, levels, lanes and the limits of the fleets.
 
-use pcr_formats::import::{Format, Imported, Layout, Options, Warnings, layout, scenario};
+use pcr_formats::import::{ImportOptions, ImportedLayout, InputFormat, Layout, Warnings, layout, scenario};
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{MotionSpec, Scenario};
-use pcr_planning::locks::Locks;
+use pcr_planning::exclusion_table::ExclusionTable;
 use std::path::PathBuf;
 
 const OFFICE: &str = include_str!("../data/real/rmf/office.building.yaml");
@@ -15,22 +15,22 @@ fn fleet(name: &str) -> Option<PathBuf> {
     Some(PathBuf::from(format!("{}/data/real/rmf/config/{name}_config.yaml", env!("CARGO_MANIFEST_DIR"))))
 }
 
-fn read(text: &str, options: &Options) -> (Imported, Vec<String>) {
+fn read(text: &str, options: &ImportOptions) -> (ImportedLayout, Vec<String>) {
     let mut warnings = Warnings::default();
-    let imported = layout(Format::Rmf, text, options, &mut warnings).unwrap();
+    let imported = layout(InputFormat::Rmf, text, options, &mut warnings).unwrap();
     (imported, warnings.lines())
 }
 
-fn tiny(routes: &[&str]) -> Options {
-    Options {
+fn tiny(routes: &[&str]) -> ImportOptions {
+    ImportOptions {
         fleet: fleet("office_tinyRobot"),
         routes: routes.iter().map(ToString::to_string).collect(),
-        ..Options::default()
+        ..ImportOptions::default()
     }
 }
 
 fn node(layout: &Layout, name: &str) -> [f64; 2] {
-    layout.nodes[layout.node(name).unwrap()].at
+    layout.nodes[layout.node(name).unwrap()].point
 }
 
 #[test]
@@ -77,25 +77,25 @@ fn scales_are_the_mean_of_the_measurements() {
 
 #[test]
 fn fleets_have_their_limits() {
-    let (Imported { vehicle, .. }, _) = read(OFFICE, &tiny(&[]));
+    let (ImportedLayout { vehicle, .. }, _) = read(OFFICE, &tiny(&[]));
     assert_eq!(
         (vehicle.name.as_deref(), vehicle.radius, vehicle.speed, vehicle.acceleration),
         (Some("tinyRobot"), 0.3, 0.5, 0.75)
     );
     assert_eq!((vehicle.margin * 1e9).round(), 0.2 * 1e9);
     assert_eq!((vehicle.rotation, vehicle.rotation_acceleration), (0.6, 2.0));
-    let options = Options { radius: Some(1.5), fleet: fleet("hotel_cleanerBotA"), ..Options::default() };
-    let (Imported { vehicle, .. }, warnings) = read(TRIPLE_H, &options);
+    let options = ImportOptions { radius: Some(1.5), fleet: fleet("hotel_cleanerBotA"), ..ImportOptions::default() };
+    let (ImportedLayout { vehicle, .. }, warnings) = read(TRIPLE_H, &options);
     assert_eq!((vehicle.radius, vehicle.speed, warnings.len()), (1.5, 0.7, 0));
-    let wrong = Options { fleet: Some("nowhere.yaml".into()), ..Options::default() };
-    let error = layout(Format::Rmf, OFFICE, &wrong, &mut Warnings::default()).unwrap_err().to_string();
+    let wrong = ImportOptions { fleet: Some("nowhere.yaml".into()), ..ImportOptions::default() };
+    let error = layout(InputFormat::Rmf, OFFICE, &wrong, &mut Warnings::default()).unwrap_err().to_string();
     assert!(error.starts_with("nowhere.yaml: cannot be read"), "{error}");
 }
 
 #[test]
 fn vehicles_stop_and_turn_at_corners() {
     let mut warnings = Warnings::default();
-    let scenario = scenario(Format::Rmf, TRIPLE_H, &tiny(&["TopLeft:TopCenterLeft"]), &mut warnings).unwrap();
+    let scenario = scenario(InputFormat::Rmf, TRIPLE_H, &tiny(&["TopLeft:TopCenterLeft"]), &mut warnings).unwrap();
     let agent = &scenario.agents[0];
     let turns: Vec<f64> =
         agent.path.iter().filter(|segment| segment.letter() == 'A').map(|arc| arc.length() / TURN).collect();
@@ -124,10 +124,10 @@ fn levels_are_apart_and_lifts_are_not_read() {
         warnings.contains(&"graphs 0, 1, 2: the lanes of all of them are taken (--graph N)".to_owned()),
         "{warnings:?}"
     );
-    let (one, _) = read(HOTEL, &Options { graph: Some(1), ..tiny(&[]) });
+    let (one, _) = read(HOTEL, &ImportOptions { graph: Some(1), ..tiny(&[]) });
     assert!(one.layout.edges.len() < 122 && !one.layout.edges.is_empty());
-    let table = Locks::of(&imported, false).unwrap();
-    let level = |id: &pcr_formats::import::Id| id.to_string().split('/').next().map(str::to_owned);
+    let table = ExclusionTable::compute(&imported, false).unwrap();
+    let level = |id: &pcr_formats::import::ElementId| id.to_string().split('/').next().map(str::to_owned);
     assert!(!table.locks.is_empty() && table.locks.iter().all(|lock| level(&lock.a) == level(&lock.b)));
 }
 
@@ -181,7 +181,8 @@ fn levels_are_laid_upon_the_reference_level_by_their_fiducials() {
         warnings,
         ["level lower: no two fiducials place it upon level upper; it has the scale of its own measurements"]
     );
-    let failed = |text: &str| layout(Format::Rmf, text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();
+    let failed =
+        |text: &str| layout(InputFormat::Rmf, text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();
     let unscaled = |name: &str| format!("level {name}, measurements: none that gives the scale of its pixels");
     assert_eq!(failed(&two_levels("", one, [own, none])), unscaled("lower"));
     assert_eq!(failed(&two_levels("", fiducials, [none, none])), unscaled("lower"));
@@ -202,15 +203,15 @@ fn levels_are_laid_upon_the_reference_level_by_their_fiducials() {
     ] {
         // A level has no other scale if parts may be left out.
         for partial in [false, true] {
-            let options = Options { partial, ..tiny(&[]) };
+            let options = ImportOptions { partial, ..tiny(&[]) };
             let text = two_levels("", [fiducials[0], wrong], [own, none]);
-            let refused = layout(Format::Rmf, &text, &options, &mut Warnings::default()).unwrap_err().to_string();
+            let refused = layout(InputFormat::Rmf, &text, &options, &mut Warnings::default()).unwrap_err().to_string();
             assert_eq!(refused, problem);
         }
     }
     // A real one: by its fiducials L2 has 0.056199 m a pixel, by its own measurements 0.055452 m.
     let upper = |text: &str| {
-        let (Imported { layout, .. }, _) = read(text, &tiny(&[]));
+        let (ImportedLayout { layout, .. }, _) = read(text, &tiny(&[]));
         let of_level = layout.edges.iter().filter(|edge| layout.levels[layout.level(edge)] == "L2");
         of_level.map(|edge| edge.length()).sum::<f64>()
     };
@@ -222,7 +223,8 @@ fn levels_are_laid_upon_the_reference_level_by_their_fiducials() {
 
 #[test]
 fn what_is_wrong_is_named() {
-    let failed = |text: &str| layout(Format::Rmf, text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();
+    let failed =
+        |text: &str| layout(InputFormat::Rmf, text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();
     let start = TRIPLE_H.find("measurements:").unwrap();
     let end = start + TRIPLE_H[start..].find("vertices:").unwrap();
     let unmeasured = format!("{}{}", &TRIPLE_H[..start], &TRIPLE_H[end..]);
@@ -237,7 +239,7 @@ fn what_is_wrong_is_named() {
     assert!(failed("a: [").starts_with("line 1, column 4: not YAML: "));
     let broken = TRIPLE_H.replacen("- [0, 1, {", "- [0, 999, {", 1);
     assert_eq!(failed(&broken), "lane L1/0: there is no vertex 999; --partial leaves that out");
-    let (rest, warnings) = read(&broken, &Options { partial: true, ..tiny(&[]) });
+    let (rest, warnings) = read(&broken, &ImportOptions { partial: true, ..tiny(&[]) });
     assert_eq!(rest.layout.edges.len(), 21);
     assert_eq!(warnings, ["lane L1/0: there is no vertex 999: left out"]);
     let typed = TRIPLE_H.replacen("bidirectional: [4, ", "bidirectional: [4, perhaps ", 1);
@@ -272,7 +274,7 @@ fn lanes_have_the_parameters_of_the_file() {
     // A lift of one level leads nowhere.
     assert_eq!(warnings, ["lane L1/3: its length is 0", "graphs 0, 1: the lanes of all of them are taken (--graph N)"]);
     for (graph, count) in [(0, 2), (1, 2)] {
-        let (one, _) = read(&text, &Options { graph: Some(graph), ..tiny(&[]) });
+        let (one, _) = read(&text, &ImportOptions { graph: Some(graph), ..tiny(&[]) });
         let all: Vec<_> = one.layout.edges.iter().map(|edge| edge.id.to_string()).collect();
         assert_eq!((all.len(), all.contains(&"L1/1".to_owned())), (count, graph == 1), "{all:?}");
     }
@@ -285,8 +287,9 @@ fn lanes_have_the_parameters_of_the_file() {
         let text = building(&format!("[[0, 1, {{distance: [3, 20]}}], {other}]"), &lanes[..1], "");
         let problem = "level L1, measurement 1: it gives no scale";
         for partial in [false, true] {
-            let options = Options { partial, ..tiny(&[]) };
-            let refused = layout(Format::Rmf, &text, &options, &mut Warnings::default()).expect_err(other).to_string();
+            let options = ImportOptions { partial, ..tiny(&[]) };
+            let refused =
+                layout(InputFormat::Rmf, &text, &options, &mut Warnings::default()).expect_err(other).to_string();
             assert_eq!(refused, problem);
         }
     }
@@ -296,7 +299,7 @@ fn lanes_have_the_parameters_of_the_file() {
 fn limits_of_a_fleet_are_two_numbers_above_zero() {
     let read = |linear: &str| {
         let text = format!("rmf_fleet:\n  name: f\n  limits: {{linear: {linear}, angular: [1, 2]}}\n");
-        pcr_formats::import::vehicle(&text, &Options::default(), &mut Warnings::default())
+        pcr_formats::import::vehicle(&text, &ImportOptions::default(), &mut Warnings::default())
     };
     assert_eq!(read("[0.5, 0.75]").map(|vehicle| [vehicle.speed, vehicle.acceleration]), Ok([0.5, 0.75]));
     for wrong in ["[0, 1]", "[1, 0]", "[-1, 1]", "[1]", "[1, 2, 3]", "[2e6, 1]", "[1, 2e6]", "[x, 1]"] {
@@ -315,7 +318,7 @@ fn parameters_without_a_value_are_refused() {
         ("[bidirectional]", "its parameters [\"bidirectional\"] are not read"),
     ] {
         let text = building("[[0, 1, {distance: [3, 20.0]}]]", &[&format!("[0, 1, {parameters}]")], "");
-        let error = layout(Format::Rmf, &text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();
+        let error = layout(InputFormat::Rmf, &text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();
         assert!(error.starts_with(&format!("lane L1/0: {expected}")), "{error}");
     }
 }
@@ -347,7 +350,7 @@ fn names_are_any_scalars() {
         ("2026-11-28", "2026-11-28"),
     ] {
         for partial in [false, true] {
-            let options = Options { radius: Some(0.4), partial, ..Options::default() };
+            let options = ImportOptions { radius: Some(0.4), partial, ..ImportOptions::default() };
             let (imported, warnings) = read(&building(written), &options);
             let layout = &imported.layout;
             let is_named = name != "null";
@@ -366,18 +369,18 @@ fn names_are_any_scalars() {
     for [here, there] in [["1", "\"1\""], ["1", "1.0"], ["1", "true"]] {
         let text = building("9").replace("[0, 0, 9]", &format!("[0, 0, {here}]"));
         let text = text.replace("[50, 50, 9]", &format!("[50, 50, {there}]"));
-        let options = Options { partial: true, ..tiny(&[]) };
-        let error = layout(Format::Rmf, &text, &options, &mut Warnings::default()).unwrap_err().to_string();
+        let options = ImportOptions { partial: true, ..tiny(&[]) };
+        let error = layout(InputFormat::Rmf, &text, &options, &mut Warnings::default()).unwrap_err().to_string();
         assert!(error.contains("the programs of Open-RMF differ"), "{error}");
     }
     // Navigation graphs, and fleets.
     let graph = "building_name: 12\nlevels:\n  3:\n    vertices: [[0, 0, {name: 04}], [5, 0, {name: true}]]\n    lanes: [[0, 1, {}]]\n";
-    let (imported, _) = read(graph, &Options { radius: Some(0.4), ..Options::default() });
+    let (imported, _) = read(graph, &ImportOptions { radius: Some(0.4), ..ImportOptions::default() });
     assert_eq!((imported.layout.name.as_str(), imported.layout.levels), ("12", vec!["3".to_owned()]));
     let names: Vec<_> = imported.layout.nodes.iter().map(|node| node.name.as_deref().unwrap()).collect();
     assert_eq!(names, ["04", "true"]);
     let fleet = "rmf_fleet:\n  name: 042\n  profile: {footprint: 0.3}\n";
-    let vehicle = pcr_formats::import::vehicle(fleet, &Options::default(), &mut Warnings::default()).unwrap();
+    let vehicle = pcr_formats::import::vehicle(fleet, &ImportOptions::default(), &mut Warnings::default()).unwrap();
     assert_eq!((vehicle.name.as_deref(), vehicle.radius), (Some("042"), 0.3));
 }
 
@@ -402,7 +405,8 @@ fn longitudes_and_latitudes_are_projected() {
         }
         assert_eq!(warnings.iter().any(|line| line.contains("easting for a northing")), is_mirrored, "{warnings:?}");
     }
-    let failed = |text: &str| layout(Format::Rmf, text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();
+    let failed =
+        |text: &str| layout(InputFormat::Rmf, text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();
     let unknown = failed(&campus("EPSG:4326"));
     assert!(unknown.starts_with("building, parameters, generate_crs: EPSG:4326 is not read; EPSG:326xx"), "{unknown}");
     let none = campus("EPSG:3414").replace("generate_crs", "other");
@@ -411,10 +415,10 @@ fn longitudes_and_latitudes_are_projected() {
     assert!(far.starts_with("lane L1/0: longitude 999, latitude 0: out of range"), "{far}");
     // Left and right would be exchanged.
     let factsheet = PathBuf::from(format!("{}/data/small/factsheet.json", env!("CARGO_MANIFEST_DIR")));
-    let options = Options { fleet: Some(factsheet), ..Options::default() };
-    let mirrored = layout(Format::Rmf, &campus("EPSG:32648"), &options, &mut Warnings::default()).unwrap_err();
+    let options = ImportOptions { fleet: Some(factsheet), ..ImportOptions::default() };
+    let mirrored = layout(InputFormat::Rmf, &campus("EPSG:32648"), &options, &mut Warnings::default()).unwrap_err();
     assert!(mirrored.to_string().contains("a contour is refused"), "{mirrored}");
-    assert!(layout(Format::Rmf, &campus("EPSG:3414"), &options, &mut Warnings::default()).is_ok());
+    assert!(layout(InputFormat::Rmf, &campus("EPSG:3414"), &options, &mut Warnings::default()).is_ok());
 }
 
 /// YAML does not tell where it ends: the rest of a building could be missing without a word.
@@ -423,7 +427,7 @@ fn a_building_that_may_be_cut_is_told() {
     let end = HOTEL.find("\nname:").expect("its name is behind its levels");
     for (text, is_told) in [(HOTEL, false), (&HOTEL[..end], true)] {
         let mut warnings = Warnings::default();
-        layout(Format::Rmf, text, &Options::default(), &mut warnings).unwrap();
+        layout(InputFormat::Rmf, text, &ImportOptions::default(), &mut warnings).unwrap();
         assert_eq!(warnings.lines().iter().any(|line| line.contains("may be cut")), is_told);
     }
 }

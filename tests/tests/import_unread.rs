@@ -1,11 +1,11 @@
 //! What readers of layouts do not read is refused or told: an answer without it would be one about another layout.
 
-use pcr_formats::import::{Format, Options, Warnings, layout};
+use pcr_formats::import::{ImportOptions, InputFormat, Warnings, layout};
 
 /// The warnings about a layout, or why it is refused.
-fn read(format: Format, text: &str) -> Result<Vec<String>, String> {
+fn read(format: InputFormat, text: &str) -> Result<Vec<String>, String> {
     let mut warnings = Warnings::default();
-    let options = Options { radius: Some(0.5), ..Options::default() };
+    let options = ImportOptions { radius: Some(0.5), ..ImportOptions::default() };
     let read = layout(format, text, &options, &mut warnings);
     read.map(|_| warnings.lines()).map_err(|error| error.to_string())
 }
@@ -25,11 +25,13 @@ fn road(links: &str, view: &str, more: &str) -> String {
 fn parts_of_opendrive_in_other_files_are_refused() {
     let include = "<include file=\"more.xodr\"/>";
     for (text, parent) in [(road("", "", include), "OpenDRIVE"), (road("", include, ""), "planView")] {
-        let error = read(Format::OpenDrive, &text).unwrap_err();
+        let error = read(InputFormat::OpenDrive, &text).unwrap_err();
         assert!(error.contains(&format!("include of more.xodr, in {parent}")), "{error}");
     }
-    let error =
-        read(Format::OpenDrive, &road("", "<Geometry x=\"5\" y=\"0\" hdg=\"0\" length=\"5\"><line/></Geometry>", ""));
+    let error = read(
+        InputFormat::OpenDrive,
+        &road("", "<Geometry x=\"5\" y=\"0\" hdg=\"0\" length=\"5\"><line/></Geometry>", ""),
+    );
     assert!(error.clone().is_err_and(|error| error.starts_with("road 1, planView: Geometry is not read")), "{error:?}");
 }
 
@@ -38,15 +40,15 @@ fn parts_of_opendrive_in_other_files_are_refused() {
 fn links_of_opendrive_that_are_not_understood_are_told() {
     let link =
         |kind: &str| road(&format!("<link><successor {kind} elementId=\"2\" contactPoint=\"start\"/></link>"), "", "");
-    assert_eq!(read(Format::OpenDrive, &link("elementType=\"road\"")), Ok(Vec::new()));
-    assert_eq!(read(Format::OpenDrive, &link("elementType=\"junction\"")), Ok(Vec::new()));
+    assert_eq!(read(InputFormat::OpenDrive, &link("elementType=\"road\"")), Ok(Vec::new()));
+    assert_eq!(read(InputFormat::OpenDrive, &link("elementType=\"junction\"")), Ok(Vec::new()));
     for kind in ["", "elementType=\"Road\""] {
-        let warnings = read(Format::OpenDrive, &link(kind)).unwrap();
+        let warnings = read(InputFormat::OpenDrive, &link(kind)).unwrap();
         let expected = "road 1, successor: its elementType is not road and not junction; no route leads over it";
         assert_eq!(warnings, [expected], "{kind}");
     }
     let twice = road("<link/><link/>", "", "");
-    assert!(read(Format::OpenDrive, &twice).is_err_and(|error| error.contains("road, link: there are several")));
+    assert!(read(InputFormat::OpenDrive, &twice).is_err_and(|error| error.contains("road, link: there are several")));
 }
 
 /// A model of openTCS with two points and a path between them.
@@ -60,7 +62,7 @@ fn model(path: &str, point: &str, more: &str) -> String {
 #[test]
 fn attributes_of_opentcs_that_are_not_understood_are_refused() {
     for (locked, closed) in [("true", true), ("1", true), ("false", false), (" 0 ", false)] {
-        let warnings = read(Format::OpenTcs, &model(&format!("locked=\"{locked}\""), "", "")).unwrap();
+        let warnings = read(InputFormat::OpenTcs, &model(&format!("locked=\"{locked}\""), "", "")).unwrap();
         assert_eq!(warnings.iter().any(|line| line.contains("it is locked")), closed, "{locked}");
     }
     for (path, expected) in [
@@ -69,7 +71,7 @@ fn attributes_of_opentcs_that_are_not_understood_are_refused() {
         ("maxVelocity=\"-1\"", "path p, maxVelocity: -1 where a number from 0 is expected"),
         ("maxReverseVelocity=\"-1\"", "path p, maxReverseVelocity: -1 where a number from 0 is expected"),
     ] {
-        let error = read(Format::OpenTcs, &model(path, "", "")).unwrap_err();
+        let error = read(InputFormat::OpenTcs, &model(path, "", "")).unwrap_err();
         assert!(error.starts_with(expected), "{error}");
     }
 }
@@ -82,9 +84,9 @@ fn elements_of_opentcs_that_are_not_known_are_told() {
         (model("", "", &vehicle("BoundingBox")), "BoundingBox: not known in vehicle, and not read"),
         (model("", "<pointlayout/>", ""), "pointlayout, pointlayout: not known in point, and not read"),
     ] {
-        let warnings = read(Format::OpenTcs, &text).unwrap();
+        let warnings = read(InputFormat::OpenTcs, &text).unwrap();
         assert!(warnings.contains(&expected.to_owned()), "{warnings:?}");
     }
     let known = model("maxVelocity=\"1000\"", "<maxVehicleBoundingBox/><property/>", &vehicle("vehicleLayout"));
-    assert_eq!(read(Format::OpenTcs, &known), Ok(Vec::new()));
+    assert_eq!(read(InputFormat::OpenTcs, &known), Ok(Vec::new()));
 }

@@ -1,7 +1,7 @@
 //! Messages of VDA 5050 about one vehicle, vehicles of which it is not said where they face, and gaps that count.
 
 use crate::import_vda5050::{options, read};
-use pcr_formats::import::Options;
+use pcr_formats::import::ImportOptions;
 use serde_json::{Value, json};
 
 /// Nodes n0, n1, … every 5 m along the x axis, those from `from` up to `to`, released up to `base`.
@@ -103,7 +103,7 @@ fn an_update_that_a_vehicle_refuses_is_refused_and_the_base_stays() {
         horizon[part[0]][part[1].parse::<usize>().unwrap()]["released"] = json!(false);
     }
     let ahead = way(1, 2, &[("C", [10.0, 10.0]), ("D", [0.0, 10.0])]);
-    let partial = Options { partial: true, ..options() };
+    let partial = ImportOptions { partial: true, ..options() };
     for (first, update, length, problem) in [
         (&base, &leaves, 20.0, "nodes[0]: it begins at A (0), but the base ends at C (4) and cannot be changed"),
         (&base, &moved, 20.0, "nodes[0].nodePosition: node C is 14.142 m from where it was"),
@@ -162,11 +162,11 @@ fn a_trajectory_without_points_is_refused_by_what_is_missing() {
 /// It faced east.
 #[test]
 fn an_outline_that_faces_nobody_knows_where_to_is_the_disc_around_it() {
-    let outlined = Options {
+    let outlined = ImportOptions {
         fleet: Some(concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json").into()),
         rotation: Some(1.0),
         rotation_acceleration: Some(1.0),
-        ..Options::default()
+        ..ImportOptions::default()
     };
     let place = |theta: Value| json!({ "x": 1.0, "y": 2.0, "theta": theta, "mapId": "m" });
     let stands = |theta: Value| {
@@ -271,7 +271,8 @@ fn vehicles_that_meet_on_long_curves_are_told() {
     order["edges"] = json!([{ "edgeId": "e", "sequenceId": 1, "released": true, "actions": [],
         "trajectory": { "degree": 3, "controlPoints": wave } }]);
     let radius = |tolerance: f64| {
-        let (scenario, _) = read(&order.to_string(), &Options { tolerance: Some(tolerance), ..options() }).unwrap();
+        let (scenario, _) =
+            read(&order.to_string(), &ImportOptions { tolerance: Some(tolerance), ..options() }).unwrap();
         (scenario.agents[0].radius - 0.4, scenario.agents[0].length())
     };
     let (fine, whole) = radius(1e-6);

@@ -1,6 +1,6 @@
 //! Orders of VDA 5050: published ones, and what the specification allows.
 
-use pcr_formats::import::{Format, Options, Warnings, scenario};
+use pcr_formats::import::{ImportOptions, InputFormat, Warnings, scenario};
 use pcr_formats::scenario::{MotionSpec, Scenario};
 use pcr_planning::fleet::Fleet;
 use serde_json::{Value, json};
@@ -8,20 +8,20 @@ use serde_json::{Value, json};
 const FLYWEI: &str = include_str!("../data/real/vda5050/order_v2_flywei.json");
 const NULLS: &str = include_str!("../data/real/vda5050/order_v2_nulls_opentcs.json");
 
-pub(crate) fn options() -> Options {
-    Options {
+pub(crate) fn options() -> ImportOptions {
+    ImportOptions {
         radius: Some(0.4),
         speed: Some(2.0),
         acceleration: Some(0.5),
         rotation: Some(1.0),
         rotation_acceleration: Some(1.0),
-        ..Options::default()
+        ..ImportOptions::default()
     }
 }
 
-pub(crate) fn read(text: &str, options: &Options) -> Result<(Scenario, Vec<String>), String> {
+pub(crate) fn read(text: &str, options: &ImportOptions) -> Result<(Scenario, Vec<String>), String> {
     let mut warnings = Warnings::default();
-    let scenario = scenario(Format::Vda5050, text, options, &mut warnings).map_err(|error| error.to_string())?;
+    let scenario = scenario(InputFormat::Vda5050, text, options, &mut warnings).map_err(|error| error.to_string())?;
     Ok((scenario, warnings.lines()))
 }
 
@@ -48,7 +48,7 @@ fn action(name: &str) -> Value {
 #[test]
 fn published_orders() {
     for name in ["order.json", "x"] {
-        assert_eq!(Format::of(name.as_ref(), FLYWEI), Some(Format::Vda5050));
+        assert_eq!(InputFormat::detect(name.as_ref(), FLYWEI), Some(InputFormat::Vda5050));
     }
     let (scenario, warnings) = read(FLYWEI, &options()).unwrap();
     let agent = &scenario.agents[0];
@@ -80,7 +80,7 @@ fn the_base_is_travelled_and_the_horizon_if_asked_for() {
     let (scenario, warnings) = read(&text, &options()).unwrap();
     assert_eq!(scenario.agents[0].structure(), "SAS");
     assert_eq!(warnings, ["order square: 1 of 3 edges are not released and left out (--horizon)"]);
-    let (scenario, warnings) = read(&text, &Options { horizon: true, ..options() }).unwrap();
+    let (scenario, warnings) = read(&text, &ImportOptions { horizon: true, ..options() }).unwrap();
     assert_eq!((scenario.agents[0].structure().as_str(), warnings.len()), ("SASAS", 0));
     // The base ends at the first node or edge that is not released.
     let mut order = square();
@@ -230,7 +230,7 @@ fn what_is_wrong_is_named() {
     let broken = |pointer: &str, value: Value| {
         let mut order = square();
         *order.pointer_mut(pointer).unwrap() = value;
-        read(&order.to_string(), &Options { horizon: true, ..options() }).unwrap_err()
+        read(&order.to_string(), &ImportOptions { horizon: true, ..options() }).unwrap_err()
     };
     assert_eq!(broken("/edges", json!([])), "order square, nodes: 4 nodes and 0 edges are no way");
     assert_eq!(
@@ -338,9 +338,14 @@ fn orders_stay_on_a_map_and_stand_where_they_have_no_edges() {
 }
 
 /// Options of a vehicle of 1 m by 0.8 m, of which the back is nearer than the front.
-pub(crate) fn outlined() -> Options {
+pub(crate) fn outlined() -> ImportOptions {
     let fleet = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
-    Options { fleet: Some(fleet.into()), rotation: Some(1.0), rotation_acceleration: Some(1.0), ..Options::default() }
+    ImportOptions {
+        fleet: Some(fleet.into()),
+        rotation: Some(1.0),
+        rotation_acceleration: Some(1.0),
+        ..ImportOptions::default()
+    }
 }
 
 /// What it did after the first node was left aside, and it stood as there.
@@ -475,7 +480,7 @@ fn what_an_outline_may_do_is_told() {
     order["nodes"][3]["nodePosition"]["allowedDeviationXy"] = json!(0.5);
     order["nodes"][3]["nodePosition"]["allowedDeviationTheta"] = json!(3.0);
     order["edges"][2]["rotationAllowed"] = json!(true);
-    let told = |options: &Options| {
+    let told = |options: &ImportOptions| {
         let (_, warnings) = read(&order.to_string(), options).unwrap();
         let said = ["allowedDeviationXy is not", "allowedDeviationTheta is not"];
         said.map(|said| warnings.iter().any(|line| line.contains(said)))

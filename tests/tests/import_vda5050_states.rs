@@ -1,7 +1,7 @@
 //! States of VDA 5050: where vehicles say that they are, and where to.
 
 use crate::import_vda5050::{options, outlined, quarter, read, square};
-use pcr_formats::import::Options;
+use pcr_formats::import::ImportOptions;
 use pcr_planning::fleet::Fleet;
 use serde_json::{Value, json};
 
@@ -21,7 +21,7 @@ fn states_tell_paths_with_or_without_times() {
     // Where it goes is told by nodes only: it does not stand.
     let lost = "state of r7: its way is told by nodeStates only, give its order instead";
     assert_eq!(read(&state(json!({})), &options()).unwrap_err(), format!("{lost}; --partial leaves that out"));
-    let partial = Options { partial: true, ..options() };
+    let partial = ImportOptions { partial: true, ..options() };
     let (scenario, warnings) = read(&state(json!({})), &partial).unwrap();
     assert_eq!((scenario.agents[0].path.len(), scenario.agents[0].start), (0, [4.0, 0.0, 0.0]));
     assert_eq!(warnings, [format!("{lost}: left out")]);
@@ -182,7 +182,7 @@ fn loads_of_a_state_make_its_vehicle_larger() {
 
     // A contour becomes the hull of both.
     let fleet = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
-    let options = Options { fleet: Some(fleet.into()), ..Options::default() };
+    let options = ImportOptions { fleet: Some(fleet.into()), ..ImportOptions::default() };
     let (scenario, _) = read(&state(json!([load(1.0, 1.2, [0.9, 0.0, 0.0])])), &options).unwrap();
     let outline = scenario.agents[0].footprint.as_ref().unwrap();
     let corners = [[-0.6, -0.4], [0.4, -0.6], [1.4, -0.6], [1.4, 0.6], [0.4, 0.6], [-0.6, 0.4]];
@@ -190,7 +190,7 @@ fn loads_of_a_state_make_its_vehicle_larger() {
     for (corner, expected) in outline.polygon().iter().zip(corners) {
         assert!((corner[0] - expected[0]).hypot(corner[1] - expected[1]) < 1e-12, "{corner:?}");
     }
-    assert_eq!(scenario.agents[0].radius, outline.reach());
+    assert_eq!(scenario.agents[0].radius, outline.circumscribed_radius());
 }
 
 /// Its planned path was travelled ahead, however the vehicle faced where it was.

@@ -2,9 +2,9 @@
 //! offered. Numbers are compared with `f64` on the same numbers; a length may be off by [`pcr_core::Scalar::slack`] of what it was made
 //! from, which is what regions allow for.
 
-use pcr_core::scalar::{Angle, Micro, Ramp, Sector, Unit, Wide};
+use pcr_core::scalar::{AccelerationRamp, Angle, AngleSector, Micro, Unit, Wide};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use pcr_tests::generators::Dice;
 use std::f64::consts::{PI, TAU};
 
@@ -16,27 +16,27 @@ fn samples() -> impl Iterator<Item = Dice> {
 }
 
 /// A number of either sign whose magnitude is up to `most`, and what it is exactly.
-fn any<S: Format>(dice: &mut Dice, most: f64) -> (S, f64) {
+fn any<S: HostScalar>(dice: &mut Dice, most: f64) -> (S, f64) {
     let number = S::from_f64(dice.sign() * dice.magnitude(0.02, most));
     (number, number.to_f64())
 }
 
-fn slack<S: Format>(extent: f64) -> f64 {
+fn slack<S: HostScalar>(extent: f64) -> f64 {
     S::slack(S::from_f64(extent)).to_f64()
 }
 
 /// A sine or cosine.
-fn unit<S: Format>(unit: S::Unit) -> f64 {
+fn unit<S: HostScalar>(unit: S::Unit) -> f64 {
     S::from_f64(64.0).scale(unit).to_f64() / 64.0
 }
 
 /// `found` is a length made from numbers up to `extent`.
 #[track_caller]
-fn near<S: Format>(found: f64, exact: f64, extent: f64) {
+fn near<S: HostScalar>(found: f64, exact: f64, extent: f64) {
     assert!((found - exact).abs() <= slack::<S>(extent), "{}: {found} for {exact}", S::NAME);
 }
 
-fn sums_and_order<S: Format>() {
+fn sums_and_order<S: HostScalar>() {
     for mut dice in samples() {
         let ((a, x), (b, y)) = (any::<S>(&mut dice, 50.0), any::<S>(&mut dice, 50.0));
         near::<S>((a + b).to_f64(), x + y, x.abs() + y.abs());
@@ -52,7 +52,7 @@ fn sums_and_order<S: Format>() {
     }
 }
 
-fn products_and_roots<S: Format>() {
+fn products_and_roots<S: HostScalar>() {
     for mut dice in samples() {
         let ((a, x), (b, y)) = (any::<S>(&mut dice, 14.0), any::<S>(&mut dice, 14.0));
         near::<S>(a.times(b).narrow().to_f64(), x * y, x.abs().max(y.abs()).max((x * y).abs()));
@@ -79,7 +79,7 @@ fn products_and_roots<S: Format>() {
     assert!(S::from_f64(1.0).quotient_unit(S::Unit::ZERO).is_none());
 }
 
-fn angles<S: Format>() {
+fn angles<S: HostScalar>() {
     for (quarters, sin, cos) in [(0.0, 0.0, 1.0), (1.0, 1.0, 0.0), (-1.0, -1.0, 0.0), (2.0, 0.0, -1.0)] {
         let found = S::angle(quarters * PI / 2.0).expect("an angle").sin_cos();
         near::<S>(unit::<S>(found.0), sin, 1.0);
@@ -117,7 +117,7 @@ fn angles<S: Format>() {
     assert_eq!(S::radians(S::Angle::atan2(S::ZERO, S::ZERO)), 0.0);
 }
 
-fn quadratics<S: Format>() {
+fn quadratics<S: HostScalar>() {
     let mut seen = 0;
     for mut dice in samples() {
         // Even numbers of last digits: the mean of two is a number of the format.
@@ -142,7 +142,7 @@ fn quadratics<S: Format>() {
 }
 
 /// `(m τ - n) (k τ - l) = 0`, and the angles `2 atan τ`.
-fn half_tangents<S: Format>(dice: &mut Dice) {
+fn half_tangents<S: HostScalar>(dice: &mut Dice) {
     let mut number = || any::<S>(dice, 8.0);
     let [(n, nx), (m, mx), (l, lx), (k, kx)] = [number(), number(), number(), number()];
     let (apart, size) = ((nx * kx - lx * mx).abs(), (nx * kx).abs() + (lx * mx).abs());
@@ -156,7 +156,7 @@ fn half_tangents<S: Format>(dice: &mut Dice) {
     let ((sin, cos), from) = (from.sin_cos(), S::radians(from));
     let mut found = Vec::new();
     let equation = [a, b, g, S::Wide::ZERO];
-    S::half_tangent_roots([equation].into_iter(), Sector::all([cos, sin]), |angle| found.push(S::radians(angle)));
+    S::half_tangent_roots([equation].into_iter(), AngleSector::all([cos, sin]), |angle| found.push(S::radians(angle)));
     assert_eq!(found.len(), 2, "in the sector of all angles");
     for exact in [from + 2.0 * nx.atan2(mx), from + 2.0 * lx.atan2(kx)] {
         let off = |angle: f64| (angle - exact - TAU * ((angle - exact) / TAU).round()).abs();
@@ -164,13 +164,13 @@ fn half_tangents<S: Format>(dice: &mut Dice) {
     }
 }
 
-fn ramps<S: Format>() {
+fn ramps<S: HostScalar>() {
     for mut dice in samples() {
         let [slow, acceleration, duration] =
             [dice.range(0.1, 1.5), dice.range(0.05, 2.0), dice.range(0.1, 6.0)].map(S::from_f64);
         let [v, a, t] = [slow, acceleration, duration].map(S::to_f64);
         let [fast, length] = [v + a * t, v * t + 0.5 * a * t * t].map(S::from_f64);
-        let ramp = Ramp { slow, fast, acceleration, duration, length };
+        let ramp = AccelerationRamp { slow, fast, acceleration, duration, length };
         let elapsed = S::from_f64(t * dice.range(0.0, 1.0));
         let (at, e) = (S::ramp_length(ramp, elapsed), elapsed.to_f64());
         // Its phases say what a profile is; that of these limits is within a slack of it (docs/theory/errors.md, e-profiles).
@@ -183,7 +183,7 @@ fn ramps<S: Format>() {
     }
 }
 
-fn bounds<S: Format>() {
+fn bounds<S: HostScalar>() {
     let at = |extent: f64| S::slack(S::from_f64(extent));
     assert!(S::ZERO <= at(0.0) && at(0.0) <= at(1.0) && at(1.0) <= at(200.0) && S::ZERO < at(1.0));
     for extent in [0.0, 1.0, 200.0].map(S::from_f64) {
@@ -194,7 +194,7 @@ fn bounds<S: Format>() {
     assert!(S::ZERO <= lag(0.0) && lag(1.0) <= lag(100.0));
 }
 
-fn laws<S: Format>() {
+fn laws<S: HostScalar>() {
     sums_and_order::<S>();
     products_and_roots::<S>();
     angles::<S>();

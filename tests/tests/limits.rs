@@ -2,10 +2,10 @@
 //! is there is denied.
 
 use pcr_core::scalar::Micro;
-use pcr_core::{Encounter, Interval, Invalid, Limits, Motion, Path, Point, Pose, Profile, excess};
+use pcr_core::{Encounter, Interval, InvalidInput, Limits, Motion, Path, Point, Pose, Profile, excess};
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::{LENGTH_TOLERANCE, Scenario};
-use pcr_planning::fleet::{Fleet, Format};
+use pcr_planning::fleet::{Fleet, HostScalar};
 use pcr_tests::limits::{GARBAGE, NUMBERS, number, survives};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed, TestRunner};
@@ -14,7 +14,7 @@ use std::cell::Cell;
 /// Parts of the limit of a format: the limit itself, a last digit less and more, and others.
 const PARTS: [f64; 10] = [1.0, -1.0, 0.999_999_996, -0.999_999_996, 1.000_000_004, 0.5, -0.5, 0.7, 1.5, 7.5];
 
-fn garbage<S: Format>() -> impl Strategy<Value = f64> {
+fn garbage<S: HostScalar>() -> impl Strategy<Value = f64> {
     prop_oneof![
         3 => (0..GARBAGE.len()).prop_map(|k| GARBAGE[k]),
         2 => any::<f64>(),
@@ -27,7 +27,7 @@ fn garbage<S: Format>() -> impl Strategy<Value = f64> {
 }
 
 /// More than one case in twenty has a region.
-fn harmless<S: Format>() {
+fn harmless<S: HostScalar>() {
     let cases = if cfg!(optimized) { 4_000 } else { 300 };
     let mut runner = TestRunner::new(Config {
         cases,
@@ -47,7 +47,7 @@ fn harmless<S: Format>() {
 }
 
 /// A line of this length from x = `x` to the east, at one speed.
-fn driven<S: Format>(x: S, length: S, speed: S) -> Option<(Path<S, 1>, Profile<S, 1>)> {
+fn driven<S: HostScalar>(x: S, length: S, speed: S) -> Option<(Path<S, 1>, Profile<S, 1>)> {
     let start = Pose { position: Point::new(x, S::ZERO), heading: S::angle(0.0).expect("an angle") };
     let path = Path::starting_at(start).and_then(|path| path.line(length)).ok()?;
     let profile = Profile::from_pieces(speed, [(length.quotient(speed), S::ZERO)]).ok()?;
@@ -56,7 +56,7 @@ fn driven<S: Format>(x: S, length: S, speed: S) -> Option<(Path<S, 1>, Profile<S
 
 /// Speeds, starts and places up to the limit: an encounter of an agent with its copy has a tolerance, and is in contact at all
 /// times.
-fn encounters<S: Format>() {
+fn encounters<S: HostScalar>() {
     let part = |part: f64| S::from_f64(part * S::LIMIT.to_f64());
     let speeds = [S::from_f64(1e-2), S::from_f64(1.0), part(1e-4), part(0.01), part(0.5), S::LIMIT];
     let places = [(S::ZERO, S::from_f64(1.0)), (-S::LIMIT, part(0.9)), (part(0.5), part(0.499)), (-S::LIMIT, S::LIMIT)];
@@ -87,7 +87,7 @@ fn encounters<S: Format>() {
 
 /// The tolerance is what it is said to be: 16 slacks of the extent and both ways since the time 0, and four times what the path,
 /// the gap of the profile and the last digits of times add.
-fn tolerances<S: Format>() {
+fn tolerances<S: HostScalar>() {
     let one = S::from_f64(1.0);
     for (length, start) in [(10.0, 0.0), (100.0, 50.0), (30.0, -90.0)] {
         let (path, profile) = driven(S::ZERO, S::from_f64(length), one).expect("small");
@@ -106,7 +106,7 @@ fn tolerances<S: Format>() {
 }
 
 /// A profile that is longer or shorter than the path by so many last digits: what it is off counts for the bound of regions.
-fn gaps_count<S: Format>() {
+fn gaps_count<S: HostScalar>() {
     let (path, profile) = driven(S::ZERO, S::from_f64(10.0), S::from_f64(1.0)).expect("small");
     let exact = Motion::new(path.as_path(), profile.as_profile(), S::from_f64(0.5), S::ZERO).expect("small");
     let slack = S::slack(exact.extent()).max(S::from_f64(10.0 * LENGTH_TOLERANCE));
@@ -124,7 +124,7 @@ fn gaps_count<S: Format>() {
             }
             Err(refusal) => {
                 refused += 1;
-                assert!(matches!(refusal, Invalid::LengthMismatch { .. }) && gap > slack, "{k}: {gap:?} m");
+                assert!(matches!(refusal, InvalidInput::LengthMismatch { .. }) && gap > slack, "{k}: {gap:?} m");
             }
         }
     }
@@ -132,7 +132,7 @@ fn gaps_count<S: Format>() {
 }
 
 /// Phases that take less than a last digit of time leave their lengths to their neighbours: nobody jumps.
-fn nobody_jumps<S: Format>() {
+fn nobody_jumps<S: HostScalar>() {
     let mut short = 0;
     for k in 1..400 {
         // A cruise of less than a last digit of time, at a high speed; and of more.
@@ -149,7 +149,7 @@ fn nobody_jumps<S: Format>() {
     assert!(S::slack(S::ZERO) == S::ZERO || short > 0, "no phase takes no time");
 }
 
-fn connected<S: Format, const N: usize>(profile: &Profile<S, N>) {
+fn connected<S: HostScalar, const N: usize>(profile: &Profile<S, N>) {
     let (phases, mut end) = (profile.as_profile().phases(), (S::ZERO, S::ZERO));
     for phase in phases {
         assert!((phase.time().lo, phase.length().lo) == end && phase.time().lo < phase.time().hi, "{phases:?}");
@@ -200,7 +200,7 @@ in_format!(in_q20, Q20);
 /// Found by an audit: speeds and times of which the product is beyond the format.
 #[test]
 fn discs_that_drive_through_each_other_late_are_in_conflict() {
-    fn depth<S: Format>(text: &str) -> f64 {
+    fn depth<S: HostScalar>(text: &str) -> f64 {
         let fleet = Fleet::<S>::new(&Scenario::from_json(text).expect("a scenario")).expect("a fleet");
         let motions = fleet.motions();
         let pair = Encounter::new(&motions[0], &motions[1]);

@@ -3,9 +3,9 @@
 use pcr_core::Motion;
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::{Agent, Scenario};
-use pcr_planning::check::Verdict;
-use pcr_planning::fleet::{Fleet, Format};
-use pcr_planning::regions::{Answer, Region, Request};
+use pcr_planning::check::CheckReport;
+use pcr_planning::fleet::{Fleet, HostScalar};
+use pcr_planning::regions::{RegionEntry, RegionOptions, RegionsReport};
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -63,7 +63,9 @@ fn compare(scenario: &Scenario) -> usize {
     const STEPS: usize = 200;
     let fleet = Fleet::<f64>::new(scenario).unwrap();
     let motions = fleet.motions();
-    let answer = Answer::of::<f64>(scenario, Request { agent: None, slices: Some(15), certificate: false }).unwrap();
+    let answer =
+        RegionsReport::compute::<f64>(scenario, RegionOptions { agent: None, slices: Some(15), certificate: false })
+            .unwrap();
     let mut inside = 0;
     for [own, other] in [[0, 1], [1, 0]] {
         let (agents, motions) = ([own, other].map(|k| &scenario.agents[k]), [own, other].map(|k| &motions[k]));
@@ -101,7 +103,7 @@ fn compare(scenario: &Scenario) -> usize {
 }
 
 fn conflicts(scenario: &Scenario, motions: &[Motion<'_, f64>]) {
-    let verdict = Verdict::of::<f64>(scenario, true).unwrap();
+    let verdict = CheckReport::compute::<f64>(scenario, true).unwrap();
     let ends = motions.iter().map(|motion| motion.time().hi).fold(0.0, f64::max);
     let pair = [&scenario.agents[0], &scenario.agents[1]];
     let mut deepest = f64::NEG_INFINITY;
@@ -133,7 +135,7 @@ fn a_loaded_vehicle_is_wide_where_it_is_loaded() {
         [with_loads(agent(1, 0.3, [0.0, 0.0, 0.0], &path), loads), agent(2, 0.3, [8.0, 0.7, PI], &json!([line(8.0)]))];
     let scenario = read(&agents);
     assert!(compare(&scenario) > 100);
-    let answer = Answer::of::<f64>(&scenario, Request::default()).unwrap();
+    let answer = RegionsReport::compute::<f64>(&scenario, RegionOptions::default()).unwrap();
     let [region] = answer.regions.iter().filter(|region| region.i == 1).collect::<Vec<_>>()[..] else {
         panic!("one region of the first agent: {:?}", answer.regions)
     };
@@ -190,18 +192,21 @@ fn loads_at_the_ends_of_a_path_stay() {
             let before = agent(2, 0.1, [-1.0, 0.4, 0.0], &json!([line(6.0)]));
             for (agents, end) in [([ended, passing], 1), ([starts, before], 0)] {
                 let scenario = read(&agents);
-                let verdict = Verdict::of::<f64>(&scenario, false).unwrap();
+                let verdict = CheckReport::compute::<f64>(&scenario, false).unwrap();
                 assert!(verdict.conflicts.iter().any(|conflict| conflict.depth > 0.199), "{verdict:?}");
-                let answer = Answer::of::<f64>(&scenario, Request::default()).unwrap();
-                let open = |region: &Region| region.i == 2 && [region.open_start, region.open_end][end];
+                let answer = RegionsReport::compute::<f64>(&scenario, RegionOptions::default()).unwrap();
+                let open = |region: &RegionEntry| region.i == 2 && [region.open_start, region.open_end][end];
                 assert!(answer.regions.iter().any(open), "{:?}", answer.regions);
-                assert_eq!(Verdict::of::<Q16>(&scenario, false).unwrap().conflicts.len(), verdict.conflicts.len());
+                assert_eq!(
+                    CheckReport::compute::<Q16>(&scenario, false).unwrap().conflicts.len(),
+                    verdict.conflicts.len()
+                );
             }
         }
         // The load is set down before a way, however short: then it is not there.
         let gone = with_loads(agent(1, 0.1, [0.0; 3], &json!([line(1.0), nothing, line(0.001)])), load(1));
         let passing = late(agent(2, 0.1, [-2.0, 0.4, 0.0], &json!([line(6.0)])));
-        assert!(Verdict::of::<f64>(&read(&[gone, passing]), false).unwrap().conflicts.is_empty());
+        assert!(CheckReport::compute::<f64>(&read(&[gone, passing]), false).unwrap().conflicts.is_empty());
     }
 }
 
@@ -232,7 +237,7 @@ fn a_turn_in_place_takes_its_time_and_no_way() {
     let ramp =
         |length: f64, v: f64, a: f64| if length > v * v / a { length / v + v / a } else { 2.0 * (length / a).sqrt() };
     let duration = ramp(2.0, 1.0, 0.7) + ramp(FRAC_PI_2, 1.5, 2.0) + ramp(3.0, 1.0, 0.7);
-    fn check<S: Format>(scenario: &Scenario, duration: f64, slack: f64) {
+    fn check<S: HostScalar>(scenario: &Scenario, duration: f64, slack: f64) {
         let fleet = Fleet::<S>::new(scenario).unwrap();
         let motion = fleet.motions()[0];
         let time = motion.time();
@@ -261,9 +266,9 @@ fn corners_are_passed_in_every_format() {
     ];
     let scenario = read(&agents);
     assert!(compare(&scenario) > 100);
-    let exact = Answer::of::<f64>(&scenario, Request::default()).unwrap().regions;
-    fn check<S: Format>(scenario: &Scenario, exact: &[pcr_planning::regions::Region], slack: f64) {
-        let regions = Answer::of::<S>(scenario, Request::default()).unwrap().regions;
+    let exact = RegionsReport::compute::<f64>(&scenario, RegionOptions::default()).unwrap().regions;
+    fn check<S: HostScalar>(scenario: &Scenario, exact: &[pcr_planning::regions::RegionEntry], slack: f64) {
+        let regions = RegionsReport::compute::<S>(scenario, RegionOptions::default()).unwrap().regions;
         assert_eq!(regions.len(), exact.len(), "{}", S::NAME);
         for (own, exact) in regions.iter().zip(exact) {
             let ends = [own.t[0] - exact.t[0], own.t[1] - exact.t[1], own.l[0] - exact.l[0], own.l[1] - exact.l[1]];

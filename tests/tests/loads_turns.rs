@@ -3,9 +3,9 @@
 use pcr_core::Motion;
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::{Agent, Scenario};
-use pcr_planning::bodies::{Bodies, Form};
-use pcr_planning::check::Verdict;
-use pcr_planning::fleet::{Fleet, Format};
+use pcr_planning::check::CheckReport;
+use pcr_planning::disc_fleet::{DiscFleet, Form};
+use pcr_planning::fleet::{Fleet, HostScalar};
 use pcr_tests::generators::Dice;
 use pcr_tests::polygons::{Point, Polygon, apart, placed};
 use serde_json::{Value, json};
@@ -78,9 +78,9 @@ fn loaded(agent: &Value, segments: [usize; 2], polygon: &[Point]) -> Value {
 }
 
 /// How near the agents come, and how much larger their discs are than the covers \[m\].
-fn nearest<S: Format>(scenario: &Scenario) -> [f64; 2] {
-    let verdict = Verdict::of::<S>(scenario, true).unwrap_or_else(|problem| panic!("{}: {problem}", S::NAME));
-    let discs = Bodies::<S>::new(scenario, Form::Covers).unwrap().discs;
+fn nearest<S: HostScalar>(scenario: &Scenario) -> [f64; 2] {
+    let verdict = CheckReport::compute::<S>(scenario, true).unwrap_or_else(|problem| panic!("{}: {problem}", S::NAME));
+    let discs = DiscFleet::<S>::new(scenario, Form::Covers).unwrap().discs;
     [verdict.closest.unwrap()[0].clearance, discs.iter().map(|disc| disc.growth).fold(0.0, f64::max)]
 }
 
@@ -100,7 +100,7 @@ fn a_load_of_the_outline_of_the_vehicle_changes_nothing() {
         let [[exact, _], [clearance, growth]] = [&plain, &with].map(nearest::<f64>);
         assert!((clearance - exact).abs() < SLACK && growth < SLACK, "seed {seed}: {clearance} {exact} {growth}");
         let [conflicts, others] =
-            [&plain, &with].map(|scenario| Verdict::of::<f64>(scenario, false).unwrap().conflicts);
+            [&plain, &with].map(|scenario| CheckReport::compute::<f64>(scenario, false).unwrap().conflicts);
         if exact.abs() > SLACK && conflicts.len() == others.len() {
             for (a, b) in conflicts.iter().zip(&others) {
                 assert!((a.depth - b.depth).abs() < SLACK, "seed {seed}: {a:?} {b:?}");
@@ -139,10 +139,10 @@ fn polygons<'p>(agent: &Agent, loads: [usize; 2], [own, load]: [&'p [Point]; 2],
 }
 
 /// Conflicts are where the polygons are, and nowhere else, at many times.
-fn compare<S: Format>(scenario: &Scenario, loads: [usize; 2], shapes: [&[Point]; 3], name: &str) -> usize {
+fn compare<S: HostScalar>(scenario: &Scenario, loads: [usize; 2], shapes: [&[Point]; 3], name: &str) -> usize {
     let fleet = Fleet::<f64>::new(scenario).unwrap();
     let motions = fleet.motions();
-    let bodies = Bodies::<S>::new(scenario, Form::Covers).unwrap();
+    let bodies = DiscFleet::<S>::new(scenario, Form::Covers).unwrap();
     let growth: f64 = [0, 1]
         .iter()
         .map(|agent| {
@@ -154,7 +154,7 @@ fn compare<S: Format>(scenario: &Scenario, loads: [usize; 2], shapes: [&[Point];
         all.map(|footprint| footprint.overhang()).fold(0.0, f64::max)
     };
     let most = scenario.agents.iter().map(overhang).sum::<f64>() + growth + 1e-6;
-    let verdict = Verdict::of::<S>(scenario, false).unwrap();
+    let verdict = CheckReport::compute::<S>(scenario, false).unwrap();
     let at = |motion: &Motion<'_, f64>, polygon: &[Point], t: f64| -> Polygon {
         let pose = motion.path().pose_at(motion.length_at(t));
         placed(polygon, [pose.position.x, pose.position.y], pose.heading.0)
@@ -211,8 +211,8 @@ fn a_turn_takes_its_time_with_a_load_as_without() {
         "path": [line(0.5), turn(PI), line(1.0)], "footprint": outline(&pole) });
     let second = json!({ "id": 2, "radius": 0.1, "v_max": 1, "a_max": 1, "t_start": 0.7,
         "start": { "x": 2.21, "y": 0.96, "heading": PI }, "path": [line(4.0)] });
-    fn check<S: Format>(scenario: &Scenario, slack: f64) {
-        let conflicts = Verdict::of::<S>(scenario, false).unwrap().conflicts;
+    fn check<S: HostScalar>(scenario: &Scenario, slack: f64) {
+        let conflicts = CheckReport::compute::<S>(scenario, false).unwrap().conflicts;
         let [only] = conflicts.as_slice() else { panic!("{}: {conflicts:?}", S::NAME) };
         assert!((only.depth - 0.169).abs() < slack, "{}: {only:?}", S::NAME);
         assert!((only.t[0] - 2.155).abs() < 5.0 * slack && (only.t[1] - 3.623).abs() < 5.0 * slack, "{only:?}");

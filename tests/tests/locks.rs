@@ -1,8 +1,10 @@
 //! Tables of locks against geometry that is written out here: distances of segments, sampled curves.
 
-use pcr_formats::import::{Edge, Format, Id, Imported, Layout, Options, Warnings, layout};
+use pcr_formats::import::{
+    ElementId, ImportOptions, ImportedLayout, InputFormat, Layout, LayoutEdge, Warnings, layout,
+};
 use pcr_formats::scenario::PathSegment;
-use pcr_planning::locks::Locks;
+use pcr_planning::exclusion_table::ExclusionTable;
 use serde_json::{Value, json};
 
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
@@ -10,8 +12,8 @@ const AWS: &str = include_str!("../data/real/nav2/aws_graph.geojson");
 const CURVES: &str = include_str!("../data/real/lif/example_17.lif.json");
 const LEVELS: &str = include_str!("../data/real/lif/example_05.lif.json");
 
-fn read(format: Format, text: &str, radius: f64) -> Imported {
-    let options = Options { radius: Some(radius), ..Options::default() };
+fn read(format: InputFormat, text: &str, radius: f64) -> ImportedLayout {
+    let options = ImportOptions { radius: Some(radius), ..ImportOptions::default() };
     layout(format, text, &options, &mut Warnings::default()).unwrap()
 }
 
@@ -57,17 +59,17 @@ fn within(own: [Point; 2], other: [Point; 2], reach: f64) -> Option<[f64; 2]> {
     Some([end(0.0), end(1.0)])
 }
 
-fn ends(layout: &Layout, edge: &Edge) -> [Point; 2] {
-    edge.ends.map(|node| layout.nodes[node].at)
+fn ends(layout: &Layout, edge: &LayoutEdge) -> [Point; 2] {
+    edge.ends.map(|node| layout.nodes[node].point)
 }
 
 #[test]
 fn locks_of_straight_edges_are_those_of_their_distances() {
     for (text, radius) in [(WAREHOUSE, 0.4), (WAREHOUSE, 0.75), (AWS, 0.3)] {
-        let imported = read(Format::Nav2, text, radius);
-        let table = Locks::of(&imported, false).unwrap();
+        let imported = read(InputFormat::Nav2, text, radius);
+        let table = ExclusionTable::compute(&imported, false).unwrap();
         let layout = &imported.layout;
-        let mut edges: Vec<&Edge> = layout.edges.iter().collect();
+        let mut edges: Vec<&LayoutEdge> = layout.edges.iter().collect();
         edges.sort_by(|a, b| a.id.cmp(&b.id));
         let mut locks = table.locks.iter().peekable();
         for (k, a) in edges.iter().enumerate() {
@@ -98,14 +100,14 @@ fn locks_of_straight_edges_are_those_of_their_distances() {
 
 #[test]
 fn what_a_node_blocks_is_within_reach_of_it() {
-    let imported = read(Format::Nav2, WAREHOUSE, 0.4);
-    let table = Locks::of(&imported, true).unwrap();
+    let imported = read(InputFormat::Nav2, WAREHOUSE, 0.4);
+    let table = ExclusionTable::compute(&imported, true).unwrap();
     let layout = &imported.layout;
     let nodes = table.nodes.unwrap();
     let mut expected = 0;
     for node in &layout.nodes {
         for edge in &layout.edges {
-            let share = within(ends(layout, edge), [node.at; 2], 0.8);
+            let share = within(ends(layout, edge), [node.point; 2], 0.8);
             expected += usize::from(share.is_some());
             let lock = nodes.iter().find(|lock| (&lock.node, &lock.edge) == (&node.id, &edge.id));
             match (share, lock) {
@@ -120,19 +122,19 @@ fn what_a_node_blocks_is_within_reach_of_it() {
     assert_eq!(nodes.len(), expected);
     let near = |a: Point, b: Point| (a[0] - b[0]).hypot(a[1] - b[1]) <= 0.8;
     let pairs = layout.nodes.iter().enumerate();
-    let pairs = pairs.map(|(k, a)| layout.nodes.iter().skip(k + 1).filter(|b| near(a.at, b.at)).count());
+    let pairs = pairs.map(|(k, a)| layout.nodes.iter().skip(k + 1).filter(|b| near(a.point, b.point)).count());
     assert_eq!(table.node_pairs.unwrap().len(), pairs.sum::<usize>());
 }
 
 /// Points of an edge with their lengths, from its lines and arcs.
-fn samples(edge: &Edge) -> Vec<(f64, Point)> {
+fn samples(edge: &LayoutEdge) -> Vec<(f64, Point)> {
     let mut from = 0.0;
     let mut points = Vec::new();
     for piece in &edge.curve {
         let length = piece.shape.length();
         for k in 0..=60 {
             let u = length * f64::from(k) / 60.0;
-            let ([x, y], (sin, cos)) = (piece.at, piece.heading.sin_cos());
+            let ([x, y], (sin, cos)) = (piece.start, piece.heading.sin_cos());
             let (along, across) = match piece.shape {
                 PathSegment::Line { .. } => (u, 0.0),
                 PathSegment::Arc { radius, sweep } => {
@@ -150,9 +152,9 @@ fn samples(edge: &Edge) -> Vec<(f64, Point)> {
 #[test]
 fn locks_of_curves_hold_every_contact() {
     for radius in [0.2, 0.5, 1.0, 3.0] {
-        let imported = read(Format::Lif, CURVES, radius);
+        let imported = read(InputFormat::Lif, CURVES, radius);
         let [a, b] = [&imported.layout.edges[0], &imported.layout.edges[1]];
-        let table = Locks::of(&imported, false).unwrap();
+        let table = ExclusionTable::compute(&imported, false).unwrap();
         let reach = 2.0 * radius + a.deviation + b.deviation;
         // `a` comes first in order.
         for (own, at) in samples(a) {
@@ -166,7 +168,7 @@ fn locks_of_curves_hold_every_contact() {
             }
         }
         for lock in &table.locks {
-            let nearest = |length: f64, own: &Edge, other: &Edge| {
+            let nearest = |length: f64, own: &LayoutEdge, other: &LayoutEdge| {
                 let (_, at) = samples(own)
                     .into_iter()
                     .min_by(|(x, _), (y, _)| (x - length).abs().total_cmp(&(y - length).abs()))
@@ -191,13 +193,16 @@ fn edges_of_different_levels_do_not_lock() {
     for k in 0..2 {
         value["layouts"][1]["nodes"][k]["nodePosition"] = value["layouts"][0]["nodes"][k]["nodePosition"].clone();
     }
-    assert_eq!(Locks::of(&read(Format::Lif, &value.to_string(), 0.5), false).unwrap().locks, []);
+    assert_eq!(ExclusionTable::compute(&read(InputFormat::Lif, &value.to_string(), 0.5), false).unwrap().locks, []);
     for k in 0..2 {
         value["layouts"][1]["nodes"][k]["mapId"] = json!("Map_Z-Level_1");
     }
-    let table = Locks::of(&read(Format::Lif, &value.to_string(), 0.5), false).unwrap();
+    let table = ExclusionTable::compute(&read(InputFormat::Lif, &value.to_string(), 0.5), false).unwrap();
     assert_eq!(table.locks.len(), 1);
-    assert_eq!((&table.locks[0].a, &table.locks[0].b), (&Id::Text("N1-N2".into()), &Id::Text("N101-N102".into())));
+    assert_eq!(
+        (&table.locks[0].a, &table.locks[0].b),
+        (&ElementId::Text("N1-N2".into()), &ElementId::Text("N101-N102".into()))
+    );
 }
 
 #[test]
@@ -209,7 +214,7 @@ fn an_edge_from_level_to_level_locks_those_of_both() {
         "nodes": [node("a", "low", 0.0, 0.0), node("b", "high", 10.0, 0.0), node("c", "high", 9.0, -3.0), node("d", "high", 9.0, 3.0),
             node("e", "low", 1.0, -3.0), node("f", "low", 1.0, 3.0)],
         "edges": [edge("ramp", "a", "b"), edge("back", "b", "a"), edge("upper", "c", "d"), edge("lower", "e", "f")] }] });
-    let table = Locks::of(&read(Format::Lif, &lif.to_string(), 0.3), false).unwrap();
+    let table = ExclusionTable::compute(&read(InputFormat::Lif, &lif.to_string(), 0.3), false).unwrap();
     let pairs: Vec<_> = table.locks.iter().map(|lock| [lock.a.to_string(), lock.b.to_string()]).collect();
     // Both of the ramp are on both levels, and lock each other once.
     let expected = [["back", "lower"], ["back", "ramp"], ["back", "upper"], ["lower", "ramp"], ["ramp", "upper"]];

@@ -1,8 +1,8 @@
 //! Locks of vehicles that drive backward, or that leave the middle of their edges: against poses that they can have.
 
-use pcr_formats::import::{Format, Imported, Options, Warnings, layout};
-use pcr_formats::scenario::Placed;
-use pcr_planning::locks::Locks;
+use pcr_formats::import::{ImportOptions, ImportedLayout, InputFormat, Warnings, layout};
+use pcr_formats::scenario::PlacedSegment;
+use pcr_planning::exclusion_table::ExclusionTable;
 use pcr_tests::polygons::{Point, apart, placed};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
@@ -24,8 +24,8 @@ impl Fleet {
         Self(file)
     }
 
-    fn read(&self, format: Format, text: &str) -> Imported {
-        let options = Options { fleet: Some(self.0.clone()), ..Options::default() };
+    fn read(&self, format: InputFormat, text: &str) -> ImportedLayout {
+        let options = ImportOptions { fleet: Some(self.0.clone()), ..ImportOptions::default() };
         layout(format, text, &options, &mut Warnings::default()).unwrap()
     }
 }
@@ -37,7 +37,7 @@ impl Drop for Fleet {
 }
 
 /// Places along lines and arcs: lengths, points and headings.
-fn poses(curve: &[Placed]) -> Vec<(f64, Point, f64)> {
+fn poses(curve: &[PlacedSegment]) -> Vec<(f64, Point, f64)> {
     let mut poses = Vec::new();
     let mut before = 0.0;
     for piece in curve {
@@ -54,8 +54,8 @@ fn poses(curve: &[Placed]) -> Vec<(f64, Point, f64)> {
 }
 
 /// Checks that two edges are locked wherever the outline overlaps, turned by these angles from its way; returns the number of overlaps.
-fn overlaps(imported: &Imported, turned: [&[f64]; 2]) -> usize {
-    let locks = Locks::of(imported, false).unwrap().locks;
+fn overlaps(imported: &ImportedLayout, turned: [&[f64]; 2]) -> usize {
+    let locks = ExclusionTable::compute(imported, false).unwrap().locks;
     let [a, b] = [0, 1].map(|place| {
         let edge = &imported.layout.edges[place];
         let own = poses(&edge.curve).into_iter().flat_map(|(length, at, heading)| {
@@ -98,7 +98,7 @@ fn a_vehicle_may_reverse_where_its_edge_turns_back() {
     let curve = json!({ "degree": 2, "knotVector": [0, 0, 0, 0.5, 0.5, 1, 1, 1], "controlPoints": points });
     let ends = [[0.0, 0.0], [20.0, 0.0], [10.0, 8.0], [14.0, 8.0]];
     let text = lif(json!({ "vehicleTypeId": "f", "rotationAllowed": false, "trajectory": curve }), ends);
-    let imported = fleet.read(Format::Lif, &text);
+    let imported = fleet.read(InputFormat::Lif, &text);
     let [forward, either] = [&[0.0][..], &[0.0, PI]].map(|turned| overlaps(&imported, [turned, &[0.0]]));
     assert!(either > forward && forward > 100, "{either} {forward}");
 }
@@ -114,7 +114,7 @@ fn a_vehicle_that_drives_backward_has_its_nose_behind_it() {
     let lanes = json!([[0, 1, { "orientation": [1, "backward"] }], [2, 3, { "orientation": [1, "forward"] }]]);
     let level = json!({ "vertices": vertices, "lanes": lanes, "measurements": [[0, 1, { "distance": [3, 5.0] }]] });
     let building = json!({ "name": "b", "levels": { "L1": level } }).to_string();
-    for (format, text) in [(Format::Lif, lif), (Format::Rmf, building)] {
+    for (format, text) in [(InputFormat::Lif, lif), (InputFormat::Rmf, building)] {
         let imported = fleet.read(format, &text);
         assert_eq!(overlaps(&imported, [&[0.0], &[0.0]]), 0, "its back does not reach the other edge");
         assert!(overlaps(&imported, [&[PI], &[0.0]]) > 100, "{format}");
@@ -130,7 +130,7 @@ fn a_vehicle_that_rotates_on_its_edge_has_any_heading() {
     for property in
         [json!({ "rotationAllowed": true, "vehicleOrientation": 0.0 }), json!({ "vehicleOrientation": 1.0 })]
     {
-        let imported = fleet.read(Format::Lif, &lif(property, ends));
+        let imported = fleet.read(InputFormat::Lif, &lif(property, ends));
         assert!(overlaps(&imported, [&turned, &[0.0]]) > 100);
     }
 }
@@ -141,8 +141,9 @@ fn a_vehicle_leaves_the_middle_of_its_corridor_in_any_heading() {
     let fleet = Fleet::new("corridor");
     let ends = [[0.0, 0.0], [5.0, 0.0], [1.0, 4.5], [4.0, 4.5]];
     let turned: Vec<f64> = (0..24).map(|k| f64::from(k) * PI / 12.0).collect();
-    let imported = fleet.read(Format::Lif, &lif(json!({ "corridor": { "leftWidth": 1.5, "rightWidth": 0.2 } }), ends));
-    let locks = Locks::of(&imported, false).unwrap().locks;
+    let imported =
+        fleet.read(InputFormat::Lif, &lif(json!({ "corridor": { "leftWidth": 1.5, "rightWidth": 0.2 } }), ends));
+    let locks = ExclusionTable::compute(&imported, false).unwrap().locks;
     let other = poses(&imported.layout.edges[1].curve);
     let mut count = 0;
     for (length, [x, y], heading) in poses(&imported.layout.edges[0].curve) {

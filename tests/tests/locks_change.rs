@@ -1,34 +1,34 @@
 //! Layouts that change edge by edge: the locks are those of a table that is made anew, and few pairs are looked at.
 
-use pcr_formats::import::{Edge, Format, Id, Imported, Options, Warnings, layout};
-use pcr_formats::scenario::Placed;
-use pcr_planning::locks::{Change, Lock, Locks, Table};
+use pcr_formats::import::{ElementId, ImportOptions, ImportedLayout, InputFormat, LayoutEdge, Warnings, layout};
+use pcr_formats::scenario::PlacedSegment;
+use pcr_planning::exclusion_table::{EdgeExclusion, ExclusionChange, ExclusionTable, IncrementalExclusions};
 use std::collections::HashSet;
 
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
 const FACTSHEET: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/small/factsheet.json");
 
-fn warehouse(options: Options) -> Imported {
-    layout(Format::Nav2, WAREHOUSE, &options, &mut Warnings::default()).unwrap()
+fn warehouse(options: ImportOptions) -> ImportedLayout {
+    layout(InputFormat::Nav2, WAREHOUSE, &options, &mut Warnings::default()).unwrap()
 }
 
-fn disc() -> Imported {
-    warehouse(Options { radius: Some(0.4), ..Options::default() })
+fn disc() -> ImportedLayout {
+    warehouse(ImportOptions { radius: Some(0.4), ..ImportOptions::default() })
 }
 
 /// The table after a change.
-fn changed(mut locks: Vec<Lock>, change: &Change) -> Vec<Lock> {
-    let void: HashSet<&Id> = change.edges.iter().collect();
+fn changed(mut locks: Vec<EdgeExclusion>, change: &ExclusionChange) -> Vec<EdgeExclusion> {
+    let void: HashSet<&ElementId> = change.edges.iter().collect();
     locks.retain(|lock| !void.contains(&lock.a) && !void.contains(&lock.b));
     locks.extend(change.locks.iter().cloned());
-    let lengths = |lock: &Lock| [lock.a_length, lock.b_length].map(|[from, _]| from);
+    let lengths = |lock: &EdgeExclusion| [lock.a_length, lock.b_length].map(|[from, _]| from);
     locks.sort_by(|a, b| (&a.a, &a.b, lengths(a)).partial_cmp(&(&b.a, &b.b, lengths(b))).expect("no NaN"));
     locks
 }
 
 #[track_caller]
-fn same(ours: &[Lock], imported: &Imported) {
-    let anew = Locks::of(imported, false).unwrap().locks;
+fn same(ours: &[EdgeExclusion], imported: &ImportedLayout) {
+    let anew = ExclusionTable::compute(imported, false).unwrap().locks;
     assert_eq!(ours.len(), anew.len());
     for (a, b) in ours.iter().zip(&anew) {
         let near = |a: [f64; 2], b: [f64; 2]| (0..2).all(|end| (a[end] - b[end]).abs() < 1e-9);
@@ -38,23 +38,24 @@ fn same(ours: &[Lock], imported: &Imported) {
 }
 
 /// The edge, with its end moved.
-fn moved(imported: &Imported, edge: &Edge) -> Edge {
-    let [from, _] = edge.ends.map(|node| imported.layout.nodes[node].at);
-    let far = imported.layout.nodes.iter().position(|node| (node.at[0] - from[0]).hypot(node.at[1] - from[1]) > 3.0);
+fn moved(imported: &ImportedLayout, edge: &LayoutEdge) -> LayoutEdge {
+    let [from, _] = edge.ends.map(|node| imported.layout.nodes[node].point);
+    let far =
+        imported.layout.nodes.iter().position(|node| (node.point[0] - from[0]).hypot(node.point[1] - from[1]) > 3.0);
     let to = far.unwrap();
-    Edge {
+    LayoutEdge {
         ends: [edge.ends[0], to],
-        curve: vec![Placed::line(from, imported.layout.nodes[to].at)],
+        curve: vec![PlacedSegment::line(from, imported.layout.nodes[to].point)],
         deviation: 0.0,
         ..edge.clone()
     }
 }
 
 /// Of every so many-th edge.
-fn runs_through_changes(imported: Imported, step_by: usize) {
-    let mut locks = Locks::of(&imported, false).unwrap().locks;
+fn runs_through_changes(imported: ImportedLayout, step_by: usize) {
+    let mut locks = ExclusionTable::compute(&imported, false).unwrap().locks;
     let edges = imported.layout.edges.clone();
-    let mut table = Table::new(imported).unwrap();
+    let mut table = IncrementalExclusions::new(imported).unwrap();
     for edge in edges.iter().step_by(step_by) {
         for step in 0..3 {
             let change = match step {
@@ -75,19 +76,19 @@ fn changes_of_discs_are_those_of_a_new_table() {
 
 #[test]
 fn changes_of_outlines_renew_the_turns_at_both_ends() {
-    runs_through_changes(warehouse(Options { fleet: Some(FACTSHEET.into()), ..Options::default() }), 172);
+    runs_through_changes(warehouse(ImportOptions { fleet: Some(FACTSHEET.into()), ..ImportOptions::default() }), 172);
 }
 
 #[test]
 fn what_is_no_edge_changes_nothing() {
     let imported = disc();
-    let locks = Locks::of(&imported, false).unwrap().locks;
+    let locks = ExclusionTable::compute(&imported, false).unwrap().locks;
     let edge = imported.layout.edges[5].clone();
-    let mut table = Table::new(imported).unwrap();
-    assert!(table.remove(&Id::Text("nowhere".into())).is_err());
-    assert!(table.insert(Edge { ends: [0, usize::MAX], ..edge.clone() }).is_err());
-    let far = Placed::line([0.0, 0.0], [1e11, 0.0]);
-    assert!(table.insert(Edge { curve: vec![far], ..edge }).is_err());
+    let mut table = IncrementalExclusions::new(imported).unwrap();
+    assert!(table.remove(&ElementId::Text("nowhere".into())).is_err());
+    assert!(table.insert(LayoutEdge { ends: [0, usize::MAX], ..edge.clone() }).is_err());
+    let far = PlacedSegment::line([0.0, 0.0], [1e11, 0.0]);
+    assert!(table.insert(LayoutEdge { curve: vec![far], ..edge }).is_err());
     same(&locks, table.imported());
 }
 
@@ -106,11 +107,11 @@ fn a_change_looks_at_what_is_near_alone() {
                 text += &format!("<edge id=\"e{k}-{way}\" source=\"n{k}\" target=\"n{to}\"/>");
             }
         }
-        let options = Options { radius: Some(0.3), ..Options::default() };
+        let options = ImportOptions { radius: Some(0.3), ..ImportOptions::default() };
         let imported =
-            layout(Format::Ccbs, &(text + "</graph></graphml>"), &options, &mut Warnings::default()).unwrap();
+            layout(InputFormat::Ccbs, &(text + "</graph></graphml>"), &options, &mut Warnings::default()).unwrap();
         let edge = imported.layout.edges[imported.layout.edges.len() / 2].clone();
-        Table::new(imported).unwrap().insert(edge).unwrap().looked
+        IncrementalExclusions::new(imported).unwrap().insert(edge).unwrap().looked
     });
     assert!(looked[0] > 5 && looked[0] == looked[1], "{looked:?}");
 }

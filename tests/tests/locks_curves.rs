@@ -1,9 +1,9 @@
 //! Locks on curves that lines and arcs stand for, and on ways that are a point: as far as the file has them.
 
 use pcr_formats::footprint::Footprint;
-use pcr_formats::import::{Format, Imported, Options, Vehicle, Warnings, layout, ride};
-use pcr_formats::scenario::Placed;
-use pcr_planning::locks::Locks;
+use pcr_formats::import::{ImportOptions, ImportedLayout, InputFormat, VehicleTraits, Warnings, layout, ride};
+use pcr_formats::scenario::PlacedSegment;
+use pcr_planning::exclusion_table::ExclusionTable;
 use serde_json::{Value, json};
 
 type Point = [f64; 2];
@@ -27,10 +27,10 @@ fn edge(id: &str, ends: [&str; 2], types: &[(&str, &[Point])]) -> Value {
     json!({ "edgeId": id, "startNodeId": ends[0], "endNodeId": ends[1], "vehicleTypeEdgeProperties": properties })
 }
 
-fn read(nodes: Vec<Value>, edges: Vec<Value>, options: &Options) -> Imported {
+fn read(nodes: Vec<Value>, edges: Vec<Value>, options: &ImportOptions) -> ImportedLayout {
     let meta = json!({ "projectIdentification": "", "creator": "", "exportTimestamp": "2030-01-01T00:00:00Z", "lifVersion": "1.0.0" });
     let file = json!({ "metaInformation": meta, "layouts": [{ "layoutId": "l", "layoutVersion": "1", "nodes": nodes, "edges": edges }] });
-    layout(Format::Lif, &file.to_string(), options, &mut Warnings::default()).unwrap()
+    layout(InputFormat::Lif, &file.to_string(), options, &mut Warnings::default()).unwrap()
 }
 
 fn at([a, b, c, d]: [Point; 4], t: f64) -> Point {
@@ -39,7 +39,7 @@ fn at([a, b, c, d]: [Point; 4], t: f64) -> Point {
 }
 
 /// The pose of lines and arcs at a length.
-fn pose(pieces: &[Placed], length: f64) -> (Point, f64) {
+fn pose(pieces: &[PlacedSegment], length: f64) -> (Point, f64) {
     let mut rest = length;
     for piece in pieces {
         let whole = piece.shape.length();
@@ -63,11 +63,15 @@ fn an_outline_covers_itself_on_the_curve_of_the_file() {
         [[0.0, 0.0], [0.3, 0.0], [3.0, 0.5], [3.0, 2.0]],
     ];
     for (bend, tolerance) in bends.into_iter().flat_map(|bend| [1e-1, 1e-2, 1e-3, 1e-4].map(|it| (bend, it))) {
-        let options = Options { radius: Some(5.0), tolerance: Some(tolerance), ..Options::default() };
+        let options = ImportOptions { radius: Some(5.0), tolerance: Some(tolerance), ..ImportOptions::default() };
         let nodes = vec![node("A", bend[0]), node("B", bend[3])];
         let imported = read(nodes, vec![edge("e", ["A", "B"], &[("V", &bend)])], &options);
         let outline = Footprint::new(TRUCK.to_vec(), None).unwrap();
-        let vehicle = Vehicle { radius: outline.reach(), footprint: Some(outline), ..imported.vehicle.clone() };
+        let vehicle = VehicleTraits {
+            radius: outline.circumscribed_radius(),
+            footprint: Some(outline),
+            ..imported.vehicle.clone()
+        };
         let edge = &imported.layout.edges[0];
         let agent = ride(&vehicle, edge.steps().next().unwrap());
         let discs: Vec<_> = agent.footprint.as_ref().unwrap().discs().to_vec();
@@ -94,7 +98,7 @@ fn an_outline_covers_itself_on_the_curve_of_the_file() {
         }
         assert!(worst <= 1e-5, "{bend:?}, {tolerance}: {worst} m outside");
         // 5 mrad are accepted at 1 mm, and what differs at equal lengths is a little more.
-        let off = edge.off(&vehicle);
+        let off = edge.position_error(&vehicle);
         assert!(tolerance > 1e-3 || off < 0.025, "{bend:?}, {tolerance}: {off} m larger");
     }
 }
@@ -108,11 +112,11 @@ fn a_lock_of_a_turn_within_an_edge_has_its_length() {
         <path name="e" sourcePoint="A" destinationPoint="B" length="4000">
           <pathLayout connectionType="POLYPATH"><controlPoint x="40" y="0"/></pathLayout></path>
         <path name="x" sourcePoint="C" destinationPoint="D" length="1414"/></model>"#;
-    let options = Options { radius: Some(2.0), ..Options::default() };
-    let mut imported = layout(Format::OpenTcs, text, &options, &mut Warnings::default()).unwrap();
+    let options = ImportOptions { radius: Some(2.0), ..ImportOptions::default() };
+    let mut imported = layout(InputFormat::OpenTcs, text, &options, &mut Warnings::default()).unwrap();
     let outline = Footprint::new(vec![[1.0, 0.2], [-1.0, 0.2], [-1.0, -0.2], [1.0, -0.2]], None).unwrap();
-    (imported.vehicle.radius, imported.vehicle.footprint) = (outline.reach(), Some(outline));
-    let locks = Locks::of(&imported, false).unwrap().locks;
+    (imported.vehicle.radius, imported.vehicle.footprint) = (outline.circumscribed_radius(), Some(outline));
+    let locks = ExclusionTable::compute(&imported, false).unwrap().locks;
     // While it turns to the left at 2 m, its front comes to the other way.
     let at_the_corner = locks.iter().any(|lock| lock.a_length[0] <= 2.0 && lock.a_length[1] >= 2.0);
     assert!(at_the_corner, "{locks:?}");
@@ -125,10 +129,10 @@ fn a_way_that_is_a_point_reaches_to_both_of_its_nodes() {
     let nodes =
         || vec![node("A", [0.0, 0.0]), node("B", [0.099, 0.0]), node("C", [0.65, 0.0]), node("D", [0.65, -3.0])];
     let far = edge("x", ["C", "D"], &[("V", &[[0.65, 0.0], [0.65, -3.0]])]);
-    let options = Options { radius: Some(0.28), ..Options::default() };
+    let options = ImportOptions { radius: Some(0.28), ..ImportOptions::default() };
     let point: [Point; 2] = [[0.0495, 0.0]; 2];
     let imported = read(nodes(), vec![edge("e", ["A", "B"], &[("V", &point)]), far.clone()], &options);
-    assert_eq!(Locks::of(&imported, false).unwrap().locks.len(), 1);
+    assert_eq!(ExclusionTable::compute(&imported, false).unwrap().locks.len(), 1);
     let nodes = vec![node("A", [0.0, 0.0]), node("B", [0.02, 0.0]), node("C", [0.65, 0.0]), node("D", [0.65, -3.0])];
     let (near, wide): ([Point; 2], [Point; 2]) = ([[0.01, 0.0]; 2], [[0.045, 0.0]; 2]);
     for types in [[("V", &near[..]), ("W", &wide[..])], [("W", &wide[..]), ("V", &near[..])]] {

@@ -1,9 +1,11 @@
 //! Locks of vehicles with outlines, against their polygons in many poses on the edges and in the turns at their ends.
 
 use pcr_formats::footprint::Footprint;
-use pcr_formats::import::{Edge, Format, Id, Imported, Layout, Options, Warnings, layout};
-use pcr_formats::scenario::{KINK, PathSegment, Placed};
-use pcr_planning::locks::{Lock, Locks};
+use pcr_formats::import::{
+    ElementId, ImportOptions, ImportedLayout, InputFormat, Layout, LayoutEdge, Warnings, layout,
+};
+use pcr_formats::scenario::{KINK, PathSegment, PlacedSegment};
+use pcr_planning::exclusion_table::{EdgeExclusion, ExclusionTable};
 use pcr_tests::polygons::{Point, Polygon, apart, placed};
 use serde_json::json;
 use std::f64::consts::PI;
@@ -22,9 +24,9 @@ const GRAPH: &str = if cfg!(optimized) { WAREHOUSE } else { SAMPLE };
 /// Poses of each edge, and of each turn.
 const POSES: usize = if cfg!(optimized) { 16 } else { 6 };
 
-fn read(format: Format, text: &str, footprint: Option<Footprint>) -> Imported {
-    let radius = footprint.as_ref().map_or(0.5, Footprint::reach);
-    let options = Options { radius: Some(radius), ..Options::default() };
+fn read(format: InputFormat, text: &str, footprint: Option<Footprint>) -> ImportedLayout {
+    let radius = footprint.as_ref().map_or(0.5, Footprint::circumscribed_radius);
+    let options = ImportOptions { radius: Some(radius), ..ImportOptions::default() };
     let mut imported = layout(format, text, &options, &mut Warnings::default()).unwrap();
     imported.vehicle.footprint = footprint;
     imported
@@ -35,12 +37,12 @@ fn read(format: Format, text: &str, footprint: Option<Footprint>) -> Imported {
 struct Pose(f64, Point, f64);
 
 /// On an edge at a length, travelled forward.
-fn on(edge: &Edge, length: f64) -> Pose {
+fn on(edge: &LayoutEdge, length: f64) -> Pose {
     let mut rest = length;
     let mut last = Pose(0.0, [0.0; 2], 0.0);
     for piece in &edge.curve {
         let u = rest.clamp(0.0, piece.shape.length());
-        let ([x, y], (sin, cos)) = (piece.at, piece.heading.sin_cos());
+        let ([x, y], (sin, cos)) = (piece.start, piece.heading.sin_cos());
         let (along, across, turned) = match piece.shape {
             PathSegment::Line { .. } => (u, 0.0, 0.0),
             PathSegment::Arc { radius, sweep } => {
@@ -58,7 +60,7 @@ fn on(edge: &Edge, length: f64) -> Pose {
 }
 
 /// The directions in which an edge may be travelled: the nodes from and to which, and the headings there.
-fn ways(edge: &Edge) -> Vec<([usize; 2], [f64; 2])> {
+fn ways(edge: &LayoutEdge) -> Vec<([usize; 2], [f64; 2])> {
     let [start, end] = [on(edge, 0.0).2, on(edge, edge.length()).2];
     let [from, to] = edge.ends;
     let back = edge.is_two_way().then_some(([to, from], [end + PI, start + PI]));
@@ -70,7 +72,7 @@ fn within_half_turn(angle: f64) -> f64 {
 }
 
 /// Poses on an edge, those of both directions, and those of the turns from and to the edges at its ends.
-fn poses(layout: &Layout, edge: &Edge) -> Vec<Pose> {
+fn poses(layout: &Layout, edge: &LayoutEdge) -> Vec<Pose> {
     let length = edge.length();
     let steps = || (0..=POSES).map(|k| k as f64 / POSES as f64);
     let mut poses = Vec::new();
@@ -120,11 +122,11 @@ fn within([lo, hi]: [f64; 2], x: f64) -> bool {
 }
 
 /// Compares the locks of a layout with polygons in many poses; returns how many pairs of poses overlap.
-fn compare(imported: &Imported) -> usize {
+fn compare(imported: &ImportedLayout) -> usize {
     let layout = &imported.layout;
-    let locks = Locks::of(imported, false).unwrap().locks;
+    let locks = ExclusionTable::compute(imported, false).unwrap().locks;
     let footprint = imported.vehicle.footprint.as_ref().unwrap();
-    let mut edges: Vec<&Edge> = layout.edges.iter().filter(|edge| edge.length() > 0.0).collect();
+    let mut edges: Vec<&LayoutEdge> = layout.edges.iter().filter(|edge| edge.length() > 0.0).collect();
     edges.sort_by(|a, b| a.id.cmp(&b.id));
     let swept: Vec<_> = edges.iter().map(|edge| outlines(&poses(layout, edge))).collect();
     let mut overlaps = 0;
@@ -133,12 +135,12 @@ fn compare(imported: &Imported) -> usize {
             if layout.level(a) != layout.level(b) {
                 continue;
             }
-            let own: Vec<&Lock> = locks.iter().filter(|lock| (&lock.a, &lock.b) == (&a.id, &b.id)).collect();
+            let own: Vec<&EdgeExclusion> = locks.iter().filter(|lock| (&lock.a, &lock.b) == (&a.id, &b.id)).collect();
             let deviation = a.deviation + b.deviation;
             for (length, at, outline) in &swept[k] {
                 for (other, there, other_outline) in &swept[m] {
                     let distance = (at[0] - there[0]).hypot(at[1] - there[1]);
-                    if distance > 2.0 * footprint.reach() || apart(outline, other_outline) > 0.0 {
+                    if distance > 2.0 * footprint.circumscribed_radius() || apart(outline, other_outline) > 0.0 {
                         continue;
                     }
                     overlaps += 1;
@@ -147,7 +149,7 @@ fn compare(imported: &Imported) -> usize {
                 }
             }
             // Half the way between two poses of the other edge, and what the cover and the curves are off.
-            let coarse = 0.5 * (b.length() + PI * footprint.reach()) / POSES as f64;
+            let coarse = 0.5 * (b.length() + PI * footprint.circumscribed_radius()) / POSES as f64;
             for lock in own {
                 for end in lock.a_length.into_iter().filter(|end| *end > 1e-6 && *end < a.length() - 1e-6) {
                     let ways = ways(a).len();
@@ -170,14 +172,14 @@ fn fork() -> Footprint {
 
 #[test]
 fn no_overlap_of_polygons_is_without_a_lock() {
-    for (format, text) in [(Format::Nav2, GRAPH), (Format::Lif, CURVES), (Format::Rmf, OFFICE)] {
+    for (format, text) in [(InputFormat::Nav2, GRAPH), (InputFormat::Lif, CURVES), (InputFormat::Rmf, OFFICE)] {
         let overlaps = compare(&read(format, text, Some(fork())));
         assert!(overlaps > 100, "{format}: {overlaps}");
     }
 }
 
 /// A graph of these nodes and edges, numbered from 0 and from 10.
-fn graph(places: &[Point], edges: &[[usize; 2]]) -> Imported {
+fn graph(places: &[Point], edges: &[[usize; 2]]) -> ImportedLayout {
     let node = |(id, at): (usize, &Point)| {
         json!({ "type": "Feature", "properties": { "id": id, "frame": "map" },
             "geometry": { "type": "Point", "coordinates": at } })
@@ -187,14 +189,14 @@ fn graph(places: &[Point], edges: &[[usize; 2]]) -> Imported {
             "geometry": { "type": "MultiLineString", "coordinates": [[places[*from], places[*to]]] } })
     };
     let features: Vec<_> = places.iter().enumerate().map(node).chain((10..).zip(edges).map(edge)).collect();
-    read(Format::Nav2, &json!({ "type": "FeatureCollection", "features": features }).to_string(), Some(fork()))
+    read(InputFormat::Nav2, &json!({ "type": "FeatureCollection", "features": features }).to_string(), Some(fork()))
 }
 
 #[track_caller]
-fn locked(imported: &Imported, pairs: &[[u64; 2]]) {
-    let locks = Locks::of(imported, false).unwrap().locks;
+fn locked(imported: &ImportedLayout, pairs: &[[u64; 2]]) {
+    let locks = ExclusionTable::compute(imported, false).unwrap().locks;
     for pair in pairs {
-        let is_locked = locks.iter().any(|lock| [&lock.a, &lock.b] == pair.map(Id::Number).each_ref());
+        let is_locked = locks.iter().any(|lock| [&lock.a, &lock.b] == pair.map(ElementId::Number).each_ref());
         assert!(is_locked, "{pair:?}: {locks:?}");
     }
 }
@@ -216,7 +218,8 @@ fn half_a_turn_within_an_edge_goes_to_either_side() {
     let mut imported = graph(&places, &[[0, 1], [2, 3], [4, 5]]);
     for off in [0.0, 1e-6, -1e-6] {
         let tip = [5.0, off];
-        imported.layout.edges[0].curve = vec![Placed::line([0.0, 0.0], tip), Placed::line(tip, [2.0, 0.0])];
+        imported.layout.edges[0].curve =
+            vec![PlacedSegment::line([0.0, 0.0], tip), PlacedSegment::line(tip, [2.0, 0.0])];
         locked(&imported, &[[10, 11], [10, 12]]);
     }
 }
@@ -239,8 +242,8 @@ fn whether_it_turns_back_is_decided_by_the_edges_that_leave() {
     locked(&comes, &[[11, 13]]);
     let leads_on = to([0, 2]);
     compare(&leads_on);
-    let locks = Locks::of(&leads_on, false).unwrap().locks;
-    assert!(!locks.iter().any(|lock| [&lock.a, &lock.b] == [11, 13].map(Id::Number).each_ref()), "{locks:?}");
+    let locks = ExclusionTable::compute(&leads_on, false).unwrap().locks;
+    assert!(!locks.iter().any(|lock| [&lock.a, &lock.b] == [11, 13].map(ElementId::Number).each_ref()), "{locks:?}");
 }
 
 /// Another way back, that is beside the line between two places where both are the same.
@@ -249,7 +252,7 @@ fn a_way_that_bends_off_is_no_way_back() {
     let places = [[0.0, 0.0], [5.0, 0.0], [8.0, 0.0], [5.0, 0.85], [7.0, 0.85]];
     let mut imported = graph(&places, &[[0, 1], [1, 0], [1, 2], [2, 1], [3, 4]]);
     let corners = [[5.0, 0.0], [4.375, 0.0], [4.0, 0.3], [3.75, 0.0], [0.0, 0.0]];
-    imported.layout.edges[1].curve = corners.windows(2).map(|ends| Placed::line(ends[0], ends[1])).collect();
+    imported.layout.edges[1].curve = corners.windows(2).map(|ends| PlacedSegment::line(ends[0], ends[1])).collect();
     locked(&imported, &[[10, 14], [11, 14]]);
 }
 
@@ -257,13 +260,13 @@ fn a_way_that_bends_off_is_no_way_back() {
 #[test]
 fn an_outline_blocks_less_than_the_disc_around_it() {
     let locks = |footprint: Option<Footprint>| {
-        let mut imported = read(Format::Nav2, GRAPH, footprint);
-        imported.vehicle.radius = fork().reach();
-        Locks::of(&imported, false).unwrap().locks
+        let mut imported = read(InputFormat::Nav2, GRAPH, footprint);
+        imported.vehicle.radius = fork().circumscribed_radius();
+        ExclusionTable::compute(&imported, false).unwrap().locks
     };
     let (outline, disc) = (locks(Some(fork())), locks(None));
     for lock in &outline {
-        let holds = |other: &&Lock| {
+        let holds = |other: &&EdgeExclusion| {
             let around = |[lo, hi]: [f64; 2], [from, to]: [f64; 2]| lo - 1e-6 <= from && to <= hi + 1e-6;
             (&other.a, &other.b) == (&lock.a, &lock.b)
                 && around(other.a_length, lock.a_length)
@@ -271,8 +274,9 @@ fn an_outline_blocks_less_than_the_disc_around_it() {
         };
         assert!(disc.iter().any(|other| holds(&other)), "{lock:?}");
     }
-    let blocked = |locks: &[Lock]| {
-        let area = |lock: &Lock| [lock.a_length, lock.b_length].map(|[lo, hi]| hi - lo).iter().product::<f64>();
+    let blocked = |locks: &[EdgeExclusion]| {
+        let area =
+            |lock: &EdgeExclusion| [lock.a_length, lock.b_length].map(|[lo, hi]| hi - lo).iter().product::<f64>();
         locks.iter().map(area).sum::<f64>()
     };
     let share = blocked(&outline) / blocked(&disc);
@@ -283,20 +287,20 @@ fn an_outline_blocks_less_than_the_disc_around_it() {
 /// A vehicle at a node may have any heading: it blocks what the disc around it does, but for the overhang.
 #[test]
 fn a_vehicle_at_a_node_may_have_any_heading() {
-    let imported = read(Format::Nav2, GRAPH, Some(fork()));
-    let table = Locks::of(&imported, true).unwrap();
+    let imported = read(InputFormat::Nav2, GRAPH, Some(fork()));
+    let table = ExclusionTable::compute(&imported, true).unwrap();
     let layout = &imported.layout;
-    let (nodes, reach) = (table.nodes.unwrap(), fork().reach());
+    let (nodes, reach) = (table.nodes.unwrap(), fork().circumscribed_radius());
     for node in &layout.nodes {
         for edge in layout.edges.iter().filter(|edge| edge.length() > 0.0) {
             let lengths: Vec<_> = nodes.iter().filter(|lock| lock.node == node.id && lock.edge == edge.id).collect();
             for share in 0..=20 {
                 let Pose(length, at, heading) = on(edge, edge.length() * f64::from(share) / 20.0);
-                if (at[0] - node.at[0]).hypot(at[1] - node.at[1]) > 2.0 * reach {
+                if (at[0] - node.point[0]).hypot(at[1] - node.point[1]) > 2.0 * reach {
                     continue;
                 }
                 let outline = placed(&FORK, at, heading);
-                let headings = (0..36).map(|k| placed(&FORK, node.at, f64::from(k) * PI / 18.0));
+                let headings = (0..36).map(|k| placed(&FORK, node.point, f64::from(k) * PI / 18.0));
                 let meets = headings.into_iter().any(|there| apart(&there, &outline) == 0.0);
                 assert!(
                     !meets || lengths.iter().any(|lock| within(lock.edge_length, length)),

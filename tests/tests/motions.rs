@@ -1,7 +1,7 @@
 //! Properties of what depends on time: profiles and their inverses, strips of standing agents, delays.
 
 use pcr_core::{Motion, RegionRef, excess};
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{HostScalar, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive};
 use pcr_tests::generators::driven_pairs;
 use pcr_tests::oracle::{Pair, Travel};
@@ -16,7 +16,7 @@ const MOTION: f64 = 4.0;
 type Driven = ((Disc, Disc), [(Drive, f64); 2]);
 
 /// Both discs in a format, where it can hold them: rounded accelerations may miss the end of a path by too much.
-fn courses<S: Format>(((ego, other), drives): &Driven) -> Result<[(Course<S>, Travel); 2], TestCaseError> {
+fn courses<S: HostScalar>(((ego, other), drives): &Driven) -> Result<[(Course<S>, Travel); 2], TestCaseError> {
     let course = |disc: &Disc, (drive, start): &(Drive, f64)| -> Result<_, TestCaseError> {
         let disc = disc.rounded::<S>();
         let drive = drive.rounded::<S>();
@@ -28,18 +28,18 @@ fn courses<S: Format>(((ego, other), drives): &Driven) -> Result<[(Course<S>, Tr
 }
 
 /// How far a travelled length may be off \[m\], at speeds up to `speed`.
-fn length_bound<S: Format>(motion: &Motion<'_, S>, speed: f64) -> f64 {
+fn length_bound<S: HostScalar>(motion: &Motion<'_, S>, speed: f64) -> f64 {
     let time = motion.time();
     let span = motion.path().length().to_f64() + speed * time.lo.abs().max(time.hi.abs()).to_f64();
     MOTION * S::slack(S::from_f64(span)).to_f64()
 }
 
-fn top_speed<S: Format>(motion: &Motion<'_, S>) -> f64 {
+fn top_speed<S: HostScalar>(motion: &Motion<'_, S>) -> f64 {
     let speeds = motion.profile().phases().iter().map(|phase| phase.speed_at(phase.time().hi).to_f64());
     speeds.fold(0.0, f64::max)
 }
 
-fn travels<S: Format>(driven: &Driven) -> Result<(), TestCaseError> {
+fn travels<S: HostScalar>(driven: &Driven) -> Result<(), TestCaseError> {
     const STEPS: u32 = 64;
     for (course, travel) in courses::<S>(driven)? {
         let motion = course.motion();
@@ -68,7 +68,7 @@ fn travels<S: Format>(driven: &Driven) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-fn inverts<S: Format>(driven: &Driven) -> Result<(), TestCaseError> {
+fn inverts<S: HostScalar>(driven: &Driven) -> Result<(), TestCaseError> {
     const STEPS: u32 = 64;
     for (course, _) in courses::<S>(driven)? {
         let motion = course.motion();
@@ -94,7 +94,7 @@ fn inverts<S: Format>(driven: &Driven) -> Result<(), TestCaseError> {
 }
 
 /// Time and region belong together: a region is where the other agent is within its lengths, and nowhere else.
-fn regions_follow_the_other<S: Format>(driven: &Driven) -> Result<(), TestCaseError> {
+fn regions_follow_the_other<S: HostScalar>(driven: &Driven) -> Result<(), TestCaseError> {
     let [(ego, _), (other, _)] = courses::<S>(driven)?;
     let ((ego_disc, other_disc), _) = driven;
     let oracle = Pair::new(&ego_disc.rounded::<S>(), &other_disc.rounded::<S>());
@@ -135,7 +135,7 @@ fn regions_follow_the_other<S: Format>(driven: &Driven) -> Result<(), TestCaseEr
 }
 
 /// The time range is that of the lengths, and strips are open where the other agent stands in the region.
-fn ranges_of_time<S: Format>(region: &RegionRef<'_, S>, other: &Motion<'_, S>) -> Result<(), TestCaseError> {
+fn ranges_of_time<S: HostScalar>(region: &RegionRef<'_, S>, other: &Motion<'_, S>) -> Result<(), TestCaseError> {
     let bound = length_bound(other, top_speed(other));
     let (time, length, travel) = (region.time(), region.other_length(), other.time());
     prop_assert!(travel.lo <= time.lo && time.lo <= time.hi && time.hi <= travel.hi);
@@ -154,7 +154,7 @@ fn ranges_of_time<S: Format>(region: &RegionRef<'_, S>, other: &Motion<'_, S>) -
 }
 
 /// A delay of the other agent shifts the times of a region, and nothing else of it; a delay of the ego shifts nothing.
-fn delays_shift<S: Format>(driven: &Driven) -> Result<(), TestCaseError> {
+fn delays_shift<S: HostScalar>(driven: &Driven) -> Result<(), TestCaseError> {
     // An integer below 2^10 added to the start time: the sum rounds, the regions do not.
     const DELAY: f64 = 37.0;
     let [(ego, _), (other, _)] = courses::<S>(driven)?;

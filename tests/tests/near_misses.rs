@@ -1,9 +1,9 @@
 //! What only just does not touch: events and turning points of contacts that are missed by parts of the slack, as derived in
 //! docs/theory/errors.md, and of none that is missed by more. The slack is far above rounding here, so that each rule shows alone.
 
-use pcr_core::{Point, Pose, Segment, Turn, internals};
+use pcr_core::{Point, Pose, Segment, TurnSide, internals};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// The combined radius \[m\], and the slack that is played with.
@@ -11,21 +11,21 @@ const RADIUS: f64 = 1.0;
 const SLACK: f64 = 1.0 / 32.0;
 
 /// A line, or an arc of this radius to the left, from a place.
-fn segment<S: Format>([x, y, heading]: [f64; 3], length: f64, bend: Option<f64>) -> Segment<S> {
+fn segment<S: HostScalar>([x, y, heading]: [f64; 3], length: f64, bend: Option<f64>) -> Segment<S> {
     let position = Point::new(S::from_f64(x), S::from_f64(y));
     let start = Segment::standing(Pose { position, heading: S::angle(heading).expect("an angle") }).expect("small");
     let length = S::from_f64(length);
     let next = match bend {
         None => start.then_line(length),
-        Some(radius) => start.then_arc(S::from_f64(radius), Turn::Left, length),
+        Some(radius) => start.then_arc(S::from_f64(radius), TurnSide::Left, length),
     };
     next.expect("small")
 }
 
 /// Two radians of the upper half of a circle about the origin, to the left or to the right, whose middle is on top: one lap, with
 /// no change of it.
-fn upper<S: Format>(bend: f64, turn: Turn) -> Segment<S> {
-    let side = if turn == Turn::Left { 1.0 } else { -1.0 };
+fn upper<S: HostScalar>(bend: f64, turn: TurnSide) -> Segment<S> {
+    let side = if turn == TurnSide::Left { 1.0 } else { -1.0 };
     let from = FRAC_PI_2 - side;
     let position = Point::new(S::from_f64(bend * from.cos()), S::from_f64(bend * from.sin()));
     let start = Segment::standing(Pose { position, heading: S::angle(from + side * FRAC_PI_2).expect("an angle") })
@@ -34,7 +34,7 @@ fn upper<S: Format>(bend: f64, turn: Turn) -> Segment<S> {
 }
 
 /// Events along the second, and turning lengths of the first \[m\].
-fn found<S: Format>(first: &Segment<S>, second: &Segment<S>, radius: f64) -> [Vec<f64>; 2] {
+fn found<S: HostScalar>(first: &Segment<S>, second: &Segment<S>, radius: f64) -> [Vec<f64>; 2] {
     let mut found = [Vec::new(), Vec::new()];
     let [events, turns] = &mut found;
     let sizes = [S::from_f64(radius), S::from_f64(SLACK)];
@@ -47,7 +47,7 @@ fn has(lengths: &[f64], at: f64) -> bool {
 }
 
 /// The end of a line over the middle of another one: two events where it is in reach, the foot up to a slack further out.
-fn ends_of_lines<S: Format>() {
+fn ends_of_lines<S: HostScalar>() {
     let second = segment::<S>([-3.0, 0.0, 0.0], 6.0, None);
     for side in [1.0, -1.0] {
         for (missed, foot) in [(-0.5, false), (0.1, true), (0.9, true), (1.1, false), (3.0, false)] {
@@ -75,7 +75,7 @@ fn ends_of_lines<S: Format>() {
 }
 
 /// A path that turns back short of a line, or passes an arc outside: one event where half a slack is missed at most.
-fn normals<S: Format>() {
+fn normals<S: HostScalar>() {
     for (missed, there) in [(0.4, true), (0.6, false)] {
         // An arc of 2 m whose lowest point is as far above the line.
         let line = segment::<S>([-4.0, 0.0, 0.0], 8.0, None);
@@ -85,7 +85,9 @@ fn normals<S: Format>() {
         let [_, turns] = found(&arc, &line, RADIUS);
         assert_eq!(has(&turns, PI), there, "turning point of an arc, {missed} slacks: {turns:?}");
         // A line that passes an arc of 2 m about the origin outside, and a smaller one.
-        for (bend, turn) in [(2.0, Turn::Left), (2.0, Turn::Right), (1.75, Turn::Left), (1.75, Turn::Right)] {
+        for (bend, turn) in
+            [(2.0, TurnSide::Left), (2.0, TurnSide::Right), (1.75, TurnSide::Left), (1.75, TurnSide::Right)]
+        {
             let own = upper::<S>(bend, turn);
             let passing = segment::<S>([-3.0, bend + RADIUS + missed * SLACK, 0.0], 6.0, None);
             let [events, _] = found(&own, &passing, RADIUS);
@@ -94,7 +96,7 @@ fn normals<S: Format>() {
             assert_eq!(has(&turns, 3.0), there, "turning point outside {bend} m, {missed} slacks: {turns:?}");
         }
         // Two arcs of 2 m whose circles are as far apart.
-        for turn in [Turn::Left, Turn::Right] {
+        for turn in [TurnSide::Left, TurnSide::Right] {
             let own = upper::<S>(2.0, turn);
             let other = segment::<S>([-2.0, 4.0 + RADIUS + missed * SLACK, -FRAC_PI_2], 2.0 * PI, Some(2.0));
             let [events, turns] = found(&own, &other, RADIUS);
@@ -106,9 +108,11 @@ fn normals<S: Format>() {
 
 /// From inside an arc: P1 about the centre below twice the radius, right to a slack; P3 beyond, which takes (ϱ + R) / (ϱ - R) times
 /// half a slack for touching.
-fn inside<S: Format>() {
+fn inside<S: HostScalar>() {
     let cases = [(1.75, 0.9, true), (1.75, 1.2, false), (4.0, 0.7, true), (4.0, 1.0, false)];
-    for ((bend, missed, there), turn) in cases.into_iter().flat_map(|case| [(case, Turn::Left), (case, Turn::Right)]) {
+    for ((bend, missed, there), turn) in
+        cases.into_iter().flat_map(|case| [(case, TurnSide::Left), (case, TurnSide::Right)])
+    {
         let own = upper::<S>(bend, turn);
         // A line through the circle that stays off the ring inside which nothing is in contact.
         let passing = segment::<S>([-1.0, bend - RADIUS + missed * SLACK, 0.0], 2.0, None);
@@ -119,9 +123,9 @@ fn inside<S: Format>() {
 
 /// An arc is followed lap by lap up to a radius of sixteen slacks more than the disc: where the foot leaves one lap for another, behind
 /// the centre, is an event.
-fn laps<S: Format>() {
+fn laps<S: HostScalar>() {
     for (slacks, there) in [(1.0, true), (15.5, true), (16.0, true), (16.5, false), (20.0, false)] {
-        for turn in [Turn::Left, Turn::Right] {
+        for turn in [TurnSide::Left, TurnSide::Right] {
             let own = upper::<S>(RADIUS + slacks * SLACK, turn);
             // Out of reach of its ends, and off the ring inside which nothing is in contact.
             let behind = segment::<S>([-1.0, -0.7, 0.0], 2.0, None);
@@ -132,7 +136,7 @@ fn laps<S: Format>() {
 }
 
 /// A disc that holds all of a circle about any point near its centre: the two ends of the diameter are events.
-fn whole_circles<S: Format>() {
+fn whole_circles<S: HostScalar>() {
     let circle = segment::<S>([1.0, 0.0, FRAC_PI_2], TAU, Some(1.0));
     for off in [0.2, 0.45] {
         let first = segment::<S>([off, 5.0, -FRAC_PI_2], 5.0, None);
@@ -144,7 +148,7 @@ fn whole_circles<S: Format>() {
 /// An arc that bulges away from a line by so many slacks more than it may: its two ends are within reach, its middle is not. By half a
 /// slack at most that is no gap, as rounding makes those, and there is one piece; else there are two, and both reach to where the
 /// line comes nearest to the circle from inside, beyond the points at which they end on the arc.
-fn gaps<S: Format>() {
+fn gaps<S: HostScalar>() {
     let line = segment::<S>([0.0, 0.0, 0.0], 8.0, None);
     let (half, radius) = (0.5_f64, 2.0);
     for (missed, count) in [(-0.5, 1), (0.3, 1), (0.7, 2), (2.0, 2)] {
@@ -153,7 +157,8 @@ fn gaps<S: Format>() {
         let (sin, cos) = half.sin_cos();
         let position = Point::new(S::from_f64(4.0 - radius * sin), S::from_f64(above - radius + radius * cos));
         let start = Segment::standing(Pose { position, heading: S::angle(half).expect("an angle") }).expect("small");
-        let arc = start.then_arc(S::from_f64(radius), Turn::Right, S::from_f64(2.0 * half * radius)).expect("small");
+        let arc =
+            start.then_arc(S::from_f64(radius), TurnSide::Right, S::from_f64(2.0 * half * radius)).expect("small");
         let mut found = Vec::new();
         let sizes = [S::from_f64(RADIUS), S::from_f64(SLACK)];
         let to_f64 = |interval: pcr_core::Interval<S>| [interval.lo.to_f64(), interval.hi.to_f64()];
@@ -209,7 +214,7 @@ in_format!(near_misses_are_events_up_to_the_slack_in_q12, Q12);
 /// after: two pieces, and what lies before the first and after the last is part of neither.
 #[test]
 fn gaps_lie_between_two_contacts() {
-    for turn in [Turn::Left, Turn::Right] {
+    for turn in [TurnSide::Left, TurnSide::Right] {
         let own = upper::<f64>(4.0, turn);
         let [outer, inner] = [5.0, 3.0].map(|distance: f64| (distance * distance - 2.8 * 2.8).sqrt());
         let more = SLACK / 3.0;

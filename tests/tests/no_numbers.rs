@@ -2,15 +2,16 @@
 
 use pcr_core::scalar::Micro;
 use pcr_core::{
-    Bounds, Brakes, BroadPhase, Encounter, Hold, Interval, Limits, Motion, Order, Orders, Pass, Path, Piece, Point,
-    Pose, Profile, Progress, Reach, Region, Tolerances, earliest_departure, earliest_start, first_conflict,
-    first_overlap, gaps, least_duration, safe_intervals, safe_lengths, union,
+    Aabb, BrakingModel, BroadPhase, CheckState, CheckTolerances, EcmEntry, Encounter, Interval, Limits, Motion,
+    MovementAuthority, PassingState, Path, Piece, Point, Pose, PrecedenceTable, Profile, Progress, RegionPrecedence,
+    earliest_departure, earliest_start, first_conflict, first_overlap, gaps, least_duration, safe_intervals,
+    safe_lengths, union,
 };
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{HostScalar, build_ecm};
 use std::f64::consts::FRAC_PI_2;
 
 /// Two agents that collide in the middle of two lines of 4 m after 2 s.
-fn crossing<S: Format>() -> ([Path<S, 1>; 2], Profile<S, 1>) {
+fn crossing<S: HostScalar>() -> ([Path<S, 1>; 2], Profile<S, 1>) {
     let number = S::from_f64;
     let path = |x: f64, y: f64, heading: f64| {
         let pose = Pose { position: Point::new(number(x), number(y)), heading: S::angle(heading).expect("an angle") };
@@ -20,7 +21,7 @@ fn crossing<S: Format>() -> ([Path<S, 1>; 2], Profile<S, 1>) {
     ([path(-2.0, 0.0, 0.0), path(0.0, -2.0, FRAC_PI_2)], profile)
 }
 
-fn none_is_free<S: Format>() {
+fn none_is_free<S: HostScalar>() {
     let (paths, profile) = crossing::<S>();
     let at = |start: f64| {
         [0, 1].map(|k| {
@@ -67,7 +68,7 @@ fn none_is_free<S: Format>() {
             !safe_lengths(&fleet, 0, during).expect("an agent").any(|part| part.contains(number(2.0))),
             "{during:?}"
         );
-        let boxes = BroadPhase::new(vec![Bounds::default(); 18], &fleet, during).expect("room");
+        let boxes = BroadPhase::new(vec![Aabb::default(); 18], &fleet, during).expect("room");
         assert!(boxes.contacts().next().is_some(), "{during:?}");
     }
 
@@ -97,28 +98,28 @@ fn none_is_free<S: Format>() {
 }
 
 /// Of an agent whose place is no number nothing is known: it has passed nothing.
-fn holds<S: Format>(fleet: &[Motion<'_, S>; 2], nan: S) {
+fn holds<S: HostScalar>(fleet: &[Motion<'_, S>; 2], nan: S) {
     let number = S::from_f64;
     let ecm = build_ecm(fleet).expect("a small table");
     let region = ecm.row(fleet, 0).expect("the table of the fleet").next().expect("they meet");
     for (own, other) in [(nan, S::ZERO), (S::ZERO, nan), (nan, nan), (number(-1.0), number(-1.0))] {
         assert_eq!(region.hold(own, other), region.hold(S::ZERO, S::ZERO));
     }
-    let storage = (vec![Region::EMPTY; 4], vec![Piece::EMPTY; 4], vec![Order::EMPTY; 4]);
-    let mut orders = Orders::build(storage.0, storage.1, storage.2, fleet).expect("room");
+    let storage = (vec![EcmEntry::EMPTY; 4], vec![Piece::EMPTY; 4], vec![RegionPrecedence::EMPTY; 4]);
+    let mut orders = PrecedenceTable::build(storage.0, storage.1, storage.2, fleet).expect("room");
     let unknown = Progress { at: Interval::new(nan, nan), stop: nan };
-    let tolerances = Tolerances { gain: number(1e-3), width: number(1e-3) };
-    let mut reaches = vec![Reach::EMPTY; 2];
+    let tolerances = CheckTolerances { gain: number(1e-3), width: number(1e-3) };
+    let mut reaches = vec![CheckState::EMPTY; 2];
     assert!(orders.check(fleet, &[unknown; 2], tolerances, &mut reaches).is_err(), "nobody may pass yet");
-    orders.decide(fleet, 0, 1, Pass::Second, S::ZERO).expect("a pair that meets");
+    orders.decide(fleet, 0, 1, PassingState::Second, S::ZERO).expect("a pair that meets");
     let known = orders.hold(fleet, 0, &[Progress::default(); 2]).expect("an agent");
-    assert!(matches!(known, Hold::At(hold) if hold < number(2.0)), "{known:?}");
+    assert!(matches!(known, MovementAuthority::At(hold) if hold < number(2.0)), "{known:?}");
     assert_eq!(orders.hold(fleet, 0, &[unknown; 2]), Ok(known));
     assert_eq!(orders.check(fleet, &[unknown; 2], tolerances, &mut reaches), Ok(()));
 }
 
 /// A robot that parks on the crossing: no place frees the other one, and no tolerance lets a check go on for ever.
-fn parked<S: Format>() {
+fn parked<S: HostScalar>() {
     let (paths, _) = crossing::<S>();
     let number = S::from_f64;
     let limits = Limits { speed: number(1.0), acceleration: number(1.0) };
@@ -131,21 +132,24 @@ fn parked<S: Format>() {
     let fleet = [(&short, &profiles[0]), (&paths[1], &profiles[1])].map(|(path, profile)| {
         Motion::new(path.as_path(), profile.as_profile(), number(0.25), S::ZERO).expect("small")
     });
-    let mut orders = Orders::build([Region::EMPTY; 2], [Piece::EMPTY; 8], [Order::EMPTY; 4], &fleet).expect("room");
-    orders.decide(&fleet, 0, 1, Pass::First, S::ZERO).expect("the fleet");
+    let mut orders =
+        PrecedenceTable::build([EcmEntry::EMPTY; 2], [Piece::EMPTY; 8], [RegionPrecedence::EMPTY; 4], &fleet)
+            .expect("room");
+    orders.decide(&fleet, 0, 1, PassingState::First, S::ZERO).expect("the fleet");
     for place in [number(f64::INFINITY), number(1e9), S::LIMIT, number(2.0)] {
         let progress = [Progress::at_rest(place), Progress::at_rest(S::ZERO)];
-        assert!(matches!(orders.hold(&fleet, 1, &progress), Ok(Hold::At(_))), "{place:?}");
+        assert!(matches!(orders.hold(&fleet, 1, &progress), Ok(MovementAuthority::At(_))), "{place:?}");
         for width in [number(f64::NEG_INFINITY), number(-1e9), S::ZERO] {
             for gain in [number(-1.0), S::ZERO, number(f64::NAN), number(0.001)] {
-                let found = orders.check(&fleet, &progress, Tolerances { width, gain }, &mut [Reach::EMPTY; 2]);
+                let found =
+                    orders.check(&fleet, &progress, CheckTolerances { width, gain }, &mut [CheckState::EMPTY; 2]);
                 assert!(found.is_err(), "{place:?}, {width:?}, {gain:?}");
             }
         }
         orders.passed(&progress);
-        assert!(matches!(orders.hold(&fleet, 1, &progress), Ok(Hold::At(_))), "{place:?}");
+        assert!(matches!(orders.hold(&fleet, 1, &progress), Ok(MovementAuthority::At(_))), "{place:?}");
     }
-    let brakes = Brakes::new(number(0.5), number(0.125)).expect("brakes");
+    let brakes = BrakingModel::new(number(0.5), number(0.125)).expect("brakes");
     if S::NAME == f64::NAME {
         assert_eq!(brakes.speed(number(f64::NAN)), S::ZERO);
         assert_eq!(brakes.distance(number(f64::NAN)), brakes.distance(S::LIMIT));
@@ -183,7 +187,7 @@ fn what_is_no_number_is_not_free() {
 
 /// An agent of 17 turns and a third, and one of more than the format knows the direction of.
 /// A window of which one end was no number was dropped where the other agent stands.
-fn who_stands_blocks<S: Format>() {
+fn who_stands_blocks<S: HostScalar>() {
     let (paths, profile) = crossing::<S>();
     let motion = |k: usize| Motion::new(paths[k].as_path(), profile.as_profile(), S::from_f64(0.25), S::ZERO);
     let fleet = [motion(0).expect("small"), motion(1).expect("small")];
@@ -220,7 +224,7 @@ fn headings_of_many_turns_are_right_or_refused() {
     // A path that turns the same way for ever.
     let mut path = Path::<f32, 200>::starting_at(pose(0.0)).expect("small");
     let circles = (0..200).take_while(|_| {
-        let next = path.clone().arc(1.0, pcr_core::Turn::Left, std::f32::consts::TAU);
+        let next = path.clone().arc(1.0, pcr_core::TurnSide::Left, std::f32::consts::TAU);
         next.map(|next| path = next).is_ok()
     });
     assert_eq!(circles.count(), 162);

@@ -3,12 +3,12 @@
 
 use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use pcr_tests::adversary::{Tally, Way, run};
 
 const SEEDS: u64 = if cfg!(optimized) { 200 } else { 40 };
 
-fn audited<S: Format>() {
+fn audited<S: HostScalar>() {
     let mut all = Tally::default();
     for seed in 0..SEEDS {
         for way in [Way::Decided, Way::Admitted] {

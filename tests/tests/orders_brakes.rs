@@ -1,14 +1,14 @@
 //! Stopping distances against exact fractions, over all numbers of each format.
 
-use pcr_core::{Brakes, Invalid, Limits, Scalar};
+use pcr_core::{BrakingModel, InvalidInput, Limits, Scalar};
 use pcr_fixed::{Q, Q12, Q16, Q20};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use pcr_tests::generators::Dice;
 
 #[test]
 fn brakes_are_enough() {
     let limits = Limits { speed: 2.0, acceleration: 0.7 };
-    let brakes = Brakes::new(limits.acceleration, 0.2).expect("brakes");
+    let brakes = BrakingModel::new(limits.acceleration, 0.2).expect("brakes");
     for k in 0..2000 {
         let way = f64::from(k) * 1e-3;
         let speed = brakes.speed(way);
@@ -22,11 +22,11 @@ fn brakes_are_enough() {
 }
 
 /// Of formats that are coarser than f64: rounding never takes away from a way, or adds to a speed.
-fn stopping_ways_are_no_shorter_than_exact<S: Format>() {
+fn stopping_ways_are_no_shorter_than_exact<S: HostScalar>() {
     let digit = S::slack(S::from_f64(8.0)).to_f64();
     for (deceleration, reaction) in [(0.7, 0.2), (2.3, 0.0), (0.11, 1.3)] {
         let [a, r] = [deceleration, reaction].map(|number| S::from_f64(number));
-        let brakes = Brakes::new(a, r).expect("brakes");
+        let brakes = BrakingModel::new(a, r).expect("brakes");
         let [a, r] = [a, r].map(S::to_f64);
         for k in 1..400 {
             let number = S::from_f64(f64::from(k) * 0.005);
@@ -54,7 +54,7 @@ fn exact<const F: u32>() {
     let known = [[631_112, 102_892, 6_536_561], [1, 0, 1 << 28], [1 << 28, 1 << F, 1 << 28], [1, 1 << 24, 1]];
     for bits in known.into_iter().chain(cases) {
         let [deceleration, reaction, number] = bits.map(Q::<F>::from_bits);
-        let Ok(brakes) = Brakes::new(deceleration, reaction) else { continue };
+        let Ok(brakes) = BrakingModel::new(deceleration, reaction) else { continue };
         let [a, tau, _] = bits.map(i128::from);
         // Times 2 a 2^F, everything is an integer.
         let whole = 2 * (a << F);
@@ -83,7 +83,7 @@ fn stopping_distances_of_f32_are_no_shorter_than_exact() {
     let size = |dice: &mut Dice, most: f64| dice.range(-10.0, most).exp2() as f32;
     for _ in 0..200_000 {
         let (a, tau, v) = (size(&mut dice, 16.0), size(&mut dice, 4.0), size(&mut dice, 19.0));
-        let Ok(brakes) = Brakes::new(a, tau) else { continue };
+        let Ok(brakes) = BrakingModel::new(a, tau) else { continue };
         let [wide_a, wide_tau, wide_v] = [a, tau, v].map(f64::from);
         let exact = wide_v * wide_tau + wide_v * wide_v / (2.0 * wide_a);
         let way = f64::from(brakes.distance(v));
@@ -92,15 +92,15 @@ fn stopping_distances_of_f32_are_no_shorter_than_exact() {
 }
 
 #[test]
-fn speeds_beyond_the_limit_are_taken_as_the_limit() -> Result<(), Invalid> {
-    let brakes = Brakes::new(Q16::from_bits(1 << 16), Q16::from_bits(1 << 16))?;
+fn speeds_beyond_the_limit_are_taken_as_the_limit() -> Result<(), InvalidInput> {
+    let brakes = BrakingModel::new(Q16::from_bits(1 << 16), Q16::from_bits(1 << 16))?;
     let most = brakes.distance(Q16::LIMIT);
     assert!(most > Q16::LIMIT);
     for bits in [1 << 29, 1 << 30, i32::MAX] {
         assert_eq!(brakes.distance(Q16::from_bits(bits)), most);
     }
     assert_eq!(brakes.distance(Q16::from_bits(i32::MIN)), Q16::ZERO);
-    let brakes = Brakes::new(1.0, 1.0)?;
+    let brakes = BrakingModel::new(1.0, 1.0)?;
     assert_eq!([f64::INFINITY, f64::NAN].map(|speed| brakes.distance(speed)), [brakes.distance(f64::LIMIT); 2]);
     Ok(())
 }

@@ -2,7 +2,8 @@
 //! alone, and by agents that go on one at a time.
 
 use pcr_core::{
-    Encounter, Full, Hold, Order, Orders, Pass, Piece, Progress, Reach, Refused, Region, Tolerances, plan_delays,
+    AdmissionError, CapacityError, CheckState, CheckTolerances, EcmEntry, Encounter, MovementAuthority, PassingState,
+    Piece, PrecedenceTable, Progress, RegionPrecedence, plan_delays,
 };
 use pcr_planning::fleet::build_ecm;
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
@@ -12,11 +13,11 @@ use pcr_tests::oracle::{Pair, Route};
 use pcr_tests::plans::fleet;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-const EXACT: Tolerances<f64> = Tolerances { width: 0.0, gain: 1e-4 };
+const EXACT: CheckTolerances<f64> = CheckTolerances { width: 0.0, gain: 1e-4 };
 
 fn table(motions: &[pcr_core::Motion<'_, f64>]) -> Table<f64> {
-    let (regions, pieces) = (vec![Region::EMPTY; 400], vec![Piece::EMPTY; 2000]);
-    Orders::build(regions, pieces, vec![Order::EMPTY; 800], motions).expect("room")
+    let (regions, pieces) = (vec![EcmEntry::EMPTY; 400], vec![Piece::EMPTY; 2000]);
+    PrecedenceTable::build(regions, pieces, vec![RegionPrecedence::EMPTY; 800], motions).expect("room")
 }
 
 /// Whether there is a way of both from their starts to their ends that never goes back and keeps this clearance \[m\], over
@@ -56,11 +57,11 @@ fn orders_can_be_kept_if_and_only_if_there_is_a_way() {
             continue;
         }
         let progress = [Progress::at_rest(0.0); 2];
-        let mut reaches = [Reach::EMPTY; 2];
+        let mut reaches = [CheckState::EMPTY; 2];
         let mut passes = 0_u32;
         for choice in 0..1_u32 << count {
             for place in 0..count {
-                let pass = if choice >> place & 1 == 1 { Pass::First } else { Pass::Second };
+                let pass = if choice >> place & 1 == 1 { PassingState::First } else { PassingState::Second };
                 orders.decide_at(&motions, place, 0, pass, 0.0).expect("the table of the fleet");
             }
             passes += u32::from(orders.check(&motions, &progress, EXACT, &mut reaches).is_ok());
@@ -93,11 +94,11 @@ fn agents_that_go_on_one_at_a_time_get_as_far_as_the_check_says() {
             let ego = (0..motions.len()).find(|&agent| {
                 orders.row(&motions, agent).expect("the table of the fleet").any(|(at, ..)| at == place)
             });
-            let pass = if dice.chance(0.5) { Pass::First } else { Pass::Second };
+            let pass = if dice.chance(0.5) { PassingState::First } else { PassingState::Second };
             orders.decide_at(&motions, place, ego.expect("its agent"), pass, 0.0).expect("the table of the fleet");
         }
         let start = vec![Progress::at_rest(0.0); motions.len()];
-        let mut reaches = vec![Reach::EMPTY; motions.len()];
+        let mut reaches = vec![CheckState::EMPTY; motions.len()];
         let found = orders.check(&motions, &start, EXACT, &mut reaches);
         let mut progress = start.clone();
         let gain = |progress: &mut Vec<Progress<f64>>, agent: usize| {
@@ -118,20 +119,20 @@ fn agents_that_go_on_one_at_a_time_get_as_far_as_the_check_says() {
                 finished += 1;
                 assert!(unfinished.is_empty(), "seed {seed}: {unfinished:?} stuck");
             }
-            Err(Refused::Stuck { agent, by, place }) => {
+            Err(AdmissionError::Stuck { agent, by, place }) => {
                 stuck += 1;
                 assert!(unfinished.contains(&agent), "seed {seed}: {agent} is not stuck");
                 let row = orders.row(&motions, agent).expect("the table of the fleet").find(|(at, ..)| *at == place);
                 assert_eq!(
                     row.map(|(_, region, pass)| (region.other(), pass)),
-                    Some((by, Pass::Second)),
+                    Some((by, PassingState::Second)),
                     "seed {seed}"
                 );
                 let again = orders.check(&motions, &progress, EXACT, &mut reaches);
                 assert!(again.is_err(), "seed {seed}: stuck and yet not");
             }
             // Such that overlap at their starts.
-            Err(Refused::Late { .. }) => {}
+            Err(AdmissionError::Late { .. }) => {}
             Err(refused) => panic!("seed {seed}: {refused}"),
         }
     }
@@ -164,7 +165,7 @@ fn the_orders_of_a_plan_are_kept_by_the_plan() {
             .collect();
         let mut orders = table(&timed);
         orders.as_planned(&timed).unwrap_or_else(|refused| panic!("seed {seed}: {refused}"));
-        let mut reaches = vec![Reach::EMPTY; timed.len()];
+        let mut reaches = vec![CheckState::EMPTY; timed.len()];
         let start = vec![Progress::at_rest(0.0); timed.len()];
         assert_eq!(orders.check(&timed, &start, EXACT, &mut reaches), Ok(()), "seed {seed}");
         let [begin, end] = [f64::min, f64::max]
@@ -196,7 +197,7 @@ fn motions_that_collide_have_no_orders() {
             pair.conflicts(pair.time()).any(|conflict| !conflict.touching)
         };
         match table(&motions).as_planned(&motions) {
-            Err(Refused::Meeting(agents)) => {
+            Err(AdmissionError::Meeting(agents)) => {
                 collide += 1;
                 assert!(deep(agents), "seed {seed}: {agents:?} do not meet");
             }
@@ -228,20 +229,20 @@ fn all_that_wait_for_the_next_one_around_a_square_are_stuck_and_one_that_goes_fi
     let mut orders = table(&motions);
     assert_eq!(orders.ecm().len(), 4);
     let progress = [Progress::at_rest(0.0); 4];
-    let mut reaches = [Reach::EMPTY; 4];
+    let mut reaches = [CheckState::EMPTY; 4];
     let undecided = orders.check(&motions, &progress, EXACT, &mut reaches);
-    assert!(matches!(undecided, Err(Refused::Stuck { .. })), "{undecided:?}");
+    assert!(matches!(undecided, Err(AdmissionError::Stuck { .. })), "{undecided:?}");
     // Everybody is held before where it could meet anybody.
     assert!(
-        matches!(orders.hold(&motions, 0, &progress).expect("the table of the fleet"), Hold::At(hold) if (hold - 1.4).abs() < 1e-9)
+        matches!(orders.hold(&motions, 0, &progress).expect("the table of the fleet"), MovementAuthority::At(hold) if (hold - 1.4).abs() < 1e-9)
     );
     // On each lane the first crossing is with the one before it, who has come that far already.
     for k in 0..4 {
-        orders.decide(&motions, k, (k + 3) % 4, Pass::Second, 0.0).expect("the table of the fleet");
+        orders.decide(&motions, k, (k + 3) % 4, PassingState::Second, 0.0).expect("the table of the fleet");
     }
     let all_wait = orders.check(&motions, &progress, EXACT, &mut reaches);
     match all_wait {
-        Err(Refused::Stuck { agent, by, .. }) => assert_eq!(by, (agent + 3) % 4),
+        Err(AdmissionError::Stuck { agent, by, .. }) => assert_eq!(by, (agent + 3) % 4),
         other => panic!("{other:?}"),
     }
     let place = orders
@@ -250,9 +251,9 @@ fn all_that_wait_for_the_next_one_around_a_square_are_stuck_and_one_that_goes_fi
         .find(|(_, region, _)| region.other() == 3)
         .expect("a crossing")
         .0;
-    orders.decide_at(&motions, place, 0, Pass::First, 0.0).expect("the table of the fleet");
+    orders.decide_at(&motions, place, 0, PassingState::First, 0.0).expect("the table of the fleet");
     assert_eq!(orders.check(&motions, &progress, EXACT, &mut reaches), Ok(()));
-    assert_eq!(orders.check(&motions, &progress, EXACT, &mut []), Err(Refused::Full(Full::Reaches)));
+    assert_eq!(orders.check(&motions, &progress, EXACT, &mut []), Err(AdmissionError::Full(CapacityError::Reaches)));
 }
 
 #[test]
@@ -271,12 +272,12 @@ fn priorities_may_go_round_in_a_circle_where_all_follow_one_another() {
         let ahead = orders
             .row(&motions, k)
             .expect("the table of the fleet")
-            .filter(|(_, region, _)| region.hold(0.0, 0.0) != Hold::Inside);
+            .filter(|(_, region, _)| region.hold(0.0, 0.0) != MovementAuthority::Inside);
         for place in ahead.map(|(place, ..)| place).collect::<Vec<_>>() {
-            orders.decide_at(&motions, place, k, Pass::Second, 0.0).expect("the table of the fleet");
+            orders.decide_at(&motions, place, k, PassingState::Second, 0.0).expect("the table of the fleet");
         }
     }
-    let mut reaches = [Reach::EMPTY; 4];
+    let mut reaches = [CheckState::EMPTY; 4];
     assert_eq!(orders.check(&motions, &progress, EXACT, &mut reaches), Ok(()));
 }
 
@@ -288,15 +289,15 @@ fn who_stands_at_the_end_of_its_path_is_not_past_it_by_the_rounding_of_its_place
     let end = fleet[1].path().length();
     let mut progress = [Progress::at_rest(0.0), Progress::at_rest(end + 1e-12)];
     let mut orders = table(&fleet);
-    orders.decide(&fleet, 0, 1, Pass::Second, 0.0).expect("the table of the fleet");
+    orders.decide(&fleet, 0, 1, PassingState::Second, 0.0).expect("the table of the fleet");
     let region = orders.row(&fleet, 0).expect("the table of the fleet").next().expect("a region").1;
     assert!(!region.hold(0.0, end + 1e-12).allows(3.0));
-    assert_eq!(region.clone().swapped().hold(end + 1e-12, 0.0), Hold::Inside);
+    assert_eq!(region.clone().swapped().hold(end + 1e-12, 0.0), MovementAuthority::Inside);
     orders.passed(&progress);
     assert!(!orders.hold(&fleet, 0, &progress).expect("the table of the fleet").allows(3.0), "it is driven into");
-    let mut reaches = [Reach::EMPTY; 2];
+    let mut reaches = [CheckState::EMPTY; 2];
     assert!(orders.check(&fleet, &progress, EXACT, &mut reaches).is_err());
-    let mission = pcr_core::Mission { agent: 0, motion: fleet[0], progress: progress[0] };
-    let refused = orders.admit(&mut fleet, &mut progress, mission, EXACT, &mut reaches, |_| Pass::First);
-    assert_eq!(refused, Err(Refused::Blocked { agent: 0, by: 1 }));
+    let mission = pcr_core::PathProposal { agent: 0, motion: fleet[0], progress: progress[0] };
+    let refused = orders.admit(&mut fleet, &mut progress, mission, EXACT, &mut reaches, |_| PassingState::First);
+    assert_eq!(refused, Err(AdmissionError::Blocked { agent: 0, by: 1 }));
 }

@@ -2,9 +2,9 @@
 //! rest of the region, and at the hold something of it is within reach.
 
 use pcr_core::scalar::Micro;
-use pcr_core::{Hold, Interval, RegionRef};
+use pcr_core::{Interval, MovementAuthority, RegionRef};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{HostScalar, build_ecm};
 use pcr_tests::disc::{Course, Disc, Leg};
 use pcr_tests::generators::pairs;
 use pcr_tests::oracle::Pair;
@@ -19,7 +19,7 @@ fn lengths_below(from: f64, hold: f64) -> impl Iterator<Item = f64> {
     even.chain((5..40).step_by(5).map(move |k| hold - (hold - from) * 0.5_f64.powi(k)))
 }
 
-fn audited<S: Format>(discs: [Disc; 2], [at, other_at]: [f64; 2]) -> Result<(), TestCaseError> {
+fn audited<S: HostScalar>(discs: [Disc; 2], [at, other_at]: [f64; 2]) -> Result<(), TestCaseError> {
     let discs = discs.map(|disc| disc.rounded::<S>());
     let (Ok(ego), Ok(other)) = (Course::<S>::new(&discs[0]), Course::<S>::new(&discs[1])) else {
         return Err(TestCaseError::reject("does not fit"));
@@ -37,12 +37,12 @@ fn audited<S: Format>(discs: [Disc; 2], [at, other_at]: [f64; 2]) -> Result<(), 
             }
         }
         let left = region.other_length().hi < other_end;
-        prop_assert!(!left || region.hold(from, other_end) == Hold::Free, "it has left {region:?}");
+        prop_assert!(!left || region.hold(from, other_end) == MovementAuthority::Free, "it has left {region:?}");
     }
     Ok(())
 }
 
-fn hold_is_that_of_the_definition<S: Format>(
+fn hold_is_that_of_the_definition<S: HostScalar>(
     pair: &Pair,
     region: &RegionRef<'_, S>,
     from: S,
@@ -54,9 +54,9 @@ fn hold_is_that_of_the_definition<S: Format>(
     let context = || format!("{hold:?} from {from:?}, other from {other_from:?}, {region:?}");
     // Nothing is hidden below it. Of several regions of a pair the table tells which one it is.
     let until = match hold {
-        Hold::Free => Some(all),
-        Hold::At(hold) => Some(hold.to_f64()),
-        Hold::Inside => None,
+        MovementAuthority::Free => Some(all),
+        MovementAuthority::At(hold) => Some(hold.to_f64()),
+        MovementAuthority::Inside => None,
     };
     for l in until.into_iter().flat_map(|until| lengths_below(from.to_f64(), until)) {
         let deep = below(|s| pair.clearance(s, l) + 1e-12, lo, hi, 0.0, 1e-9).inner;
@@ -68,12 +68,12 @@ fn hold_is_that_of_the_definition<S: Format>(
     }
     // What it is held by is there.
     let at = match hold {
-        Hold::Free => return Ok(()),
-        Hold::At(hold) => {
+        MovementAuthority::Free => return Ok(()),
+        MovementAuthority::At(hold) => {
             prop_assert!(from <= hold && hold.to_f64() <= all, "{}", context());
             hold
         }
-        Hold::Inside => from,
+        MovementAuthority::Inside => from,
     };
     let near = 2.0 * region.excess().to_f64() + 1e-12;
     let touches = region.pieces().any(|piece| {
@@ -108,15 +108,15 @@ fn course(start: [f64; 3], legs: &[Leg]) -> Course<f64> {
     Course::new(&Disc { radius: 0.5, start, legs: legs.to_vec() }).expect("a valid disc")
 }
 
-fn holds(ego: &Course<f64>, other: &Course<f64>, at: &[(f64, f64)]) -> Vec<Vec<Hold<f64>>> {
+fn holds(ego: &Course<f64>, other: &Course<f64>, at: &[(f64, f64)]) -> Vec<Vec<MovementAuthority<f64>>> {
     let fleet = [ego.motion(), other.motion()];
     let ecm = build_ecm(&fleet).expect("two agents");
     let regions: Vec<_> = ecm.pair(&fleet, 0, 1).expect("the table of the fleet").collect();
     regions.iter().map(|region| at.iter().map(|&(from, other)| region.hold(from, other)).collect()).collect()
 }
 
-fn close(found: Hold<f64>, length: f64) -> bool {
-    matches!(found, Hold::At(hold) if (hold - length).abs() < 1e-12)
+fn close(found: MovementAuthority<f64>, length: f64) -> bool {
+    matches!(found, MovementAuthority::At(hold) if (hold - length).abs() < 1e-12)
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn a_crossing_opens_when_the_first_is_through() {
     assert!(close(row[0], 4.0) && close(row[1], 4.0), "{row:?}");
     assert!(close(row[2], 5.0 - 0.8), "{row:?}");
     // 4.5 m is inside what the other one has still to pass: 0.8 m before the crossing begins the contact.
-    assert_eq!(row[3..], [Hold::Free, Hold::Inside]);
+    assert_eq!(row[3..], [MovementAuthority::Free, MovementAuthority::Inside]);
 }
 
 #[test]
@@ -140,9 +140,9 @@ fn what_holds_the_end_of_the_first_is_never_left_and_a_start_is_no_boundary() {
     assert!(close(found[0], 4.0) && close(found[1], 4.0), "nobody is beyond its end: {found:?}");
     let leaves = course([-4.5, 0.0, FRAC_PI_2], &[Leg::Line(5.0)]);
     let found = &holds(&east, &leaves, &[(0.0, 0.0), (0.0, 0.8), (0.0, 1.1)])[0];
-    assert_eq!(found[..], [Hold::Inside, Hold::Inside, Hold::Free]);
+    assert_eq!(found[..], [MovementAuthority::Inside, MovementAuthority::Inside, MovementAuthority::Free]);
     let found = &holds(&leaves, &east, &[(0.0, 0.0)])[0];
-    assert_eq!(found[..], [Hold::Inside], "neither can be second: they overlap at their starts");
+    assert_eq!(found[..], [MovementAuthority::Inside], "neither can be second: they overlap at their starts");
 }
 
 #[test]
@@ -152,7 +152,7 @@ fn both_passes_of_the_seam_of_a_circle_are_regions_of_their_own() {
     let found = holds(&south, &round, &[(0.0, 0.0), (0.0, 2.0), (0.0, TAU * 3.0 - 2.0), (0.0, TAU * 3.0)]);
     assert_eq!(found.len(), 2, "{found:?}");
     // Seen from the one that crosses: at the start of the circle, and at its end where the other one stays.
-    assert!(found.iter().any(|row| close(row[0], 3.0) && row[1] == Hold::Free), "{found:?}");
+    assert!(found.iter().any(|row| close(row[0], 3.0) && row[1] == MovementAuthority::Free), "{found:?}");
     assert!(found.iter().any(|row| close(row[3], 3.0)), "{found:?}");
 }
 

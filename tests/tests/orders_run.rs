@@ -1,11 +1,11 @@
 //! Fleets that keep passing orders, whatever the delays: nobody touches anybody, and everybody arrives.
 
 use pcr_fixed::Q16;
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use pcr_tests::execution::{Tally, run};
 
 /// Random fleets of 2 to 9 robots.
-fn fleets<S: Format>(seeds: u64) -> Tally {
+fn fleets<S: HostScalar>(seeds: u64) -> Tally {
     let mut all = Tally { clearance: f64::INFINITY, ..Tally::default() };
     for seed in 0..seeds {
         let tally = run::<S>(seed, 2 + (seed % 8) as usize, 60.0);
@@ -23,7 +23,7 @@ fn fleets<S: Format>(seeds: u64) -> Tally {
 
 const SEEDS: u64 = if cfg!(optimized) { 200 } else { 40 };
 
-fn audited<S: Format>() {
+fn audited<S: HostScalar>() {
     let all = fleets::<S>(SEEDS);
     let seeds = SEEDS as u32;
     // What the robots have to do is not easy.

@@ -7,9 +7,9 @@
 use pcr_core::scalar::Micro;
 use pcr_core::{Motion, excess};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
-use pcr_tests::exact::{Route, Twofold};
+use pcr_tests::exact::{DoubleDouble, Route};
 use pcr_tests::generators::{Dice, RELATIONS, drive, related};
 use pcr_tests::outward::{Checked, Seen, run, run_on_all_processors};
 
@@ -19,7 +19,7 @@ const fn cases(release: u64) -> u64 {
     if cfg!(optimized) { release } else { 1_000 }
 }
 
-fn holds<S: Format>(first: u64, cases: u64, held: f64) {
+fn holds<S: HostScalar>(first: u64, cases: u64, held: f64) {
     let tally = run_on_all_processors(run::<S>, first, cases, |_, _| ());
     println!("{}: {tally}", S::NAME);
     assert!(tally.violations.is_empty(), "{}: {:#?}", S::NAME, tally.violations);
@@ -65,7 +65,7 @@ fn regions_are_outward_in_q12() {
 }
 
 /// The pairs that found faults, by the seeds they had in an earlier order of the cases.
-fn held_once<S: Format>(seeds: &[u64]) {
+fn held_once<S: HostScalar>(seeds: &[u64]) {
     for &seed in seeds {
         let mut dice = Dice::seeded(seed);
         let relation = RELATIONS[dice.below(RELATIONS.len())];
@@ -97,7 +97,7 @@ fn a_slab_ends_where_contact_only_just_does() {
 }
 
 /// Cases of the long command that were violations once.
-fn case_holds<S: Format>(seeds: &[u64]) {
+fn case_holds<S: HostScalar>(seeds: &[u64]) {
     for &seed in seeds {
         let tally = run::<S>(seed, 1);
         assert_eq!(tally.violations, Vec::<String>::new(), "{seed} in {}", S::NAME);
@@ -186,7 +186,7 @@ fn a_pair_that_no_table_can_hold_is_none_that_was_checked() {
 }
 
 /// Largest distance of a point of the path from where it should be \[m\], and half the excess of a pair of it.
-fn drift<S: Format>(disc: &Disc) -> (f64, f64) {
+fn drift<S: HostScalar>(disc: &Disc) -> (f64, f64) {
     let disc = disc.rounded::<S>();
     let course = Course::<S>::new(&disc).expect("a path that the format can hold");
     let (motion, route) = (course.motion(), Route::new::<S>(&disc));
@@ -194,11 +194,11 @@ fn drift<S: Format>(disc: &Disc) -> (f64, f64) {
         let length = motion.path().length();
         let at = S::from_f64(length.to_f64() * f64::from(k) / 4000.0).min(length);
         let (point, exact) = (motion.path().point_at(at), route.at(at.to_f64().into()));
-        let [x, y] = [exact[0] - point.x.to_f64().into(), exact[1] - point.y.to_f64().into()].map(Twofold::to_f64);
+        let [x, y] = [exact[0] - point.x.to_f64().into(), exact[1] - point.y.to_f64().into()].map(DoubleDouble::to_f64);
         x.hypot(y)
     };
     // Sums of lengths are compensated: rounded once.
-    let rounded = (Twofold::from(motion.path().length().to_f64()) - route.length()).abs().to_f64();
+    let rounded = (DoubleDouble::from(motion.path().length().to_f64()) - route.length()).abs().to_f64();
     assert!(rounded <= S::EPSILON * route.length().to_f64(), "{}: lengths are off by {rounded:e}", S::NAME);
     let slack = 0.5 * excess(&motion, &motion).to_f64();
     ((0..=4000).map(distance).fold(0.0, f64::max), slack)
@@ -226,7 +226,7 @@ fn a_path_of_a_thousand_legs_is_as_exact_as_one_of_two() {
 }
 
 /// Excess of a motion from rest to rest over two lines and two arcs with another one, in units of `of`.
-fn stated<S: Format>(of: impl Fn(&Motion<'_, S>) -> f64) -> f64 {
+fn stated<S: HostScalar>(of: impl Fn(&Motion<'_, S>) -> f64) -> f64 {
     let legs = vec![Leg::Line(4.0), Leg::arc(1.0, 1.5), Leg::Line(2.0), Leg::arc(0.8, -1.0)];
     let disc = Disc { radius: 0.25, start: [1.0, 2.0, 0.3], legs };
     let course = Course::<S>::driven(&disc.rounded::<S>(), &Drive::Limits(1.0, 0.5), 3.0).expect("a motion");

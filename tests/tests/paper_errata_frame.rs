@@ -3,7 +3,9 @@
 //!
 //! `docs/theory/equations.md` has an entry for each.
 
-use pcr_core::{Crossing, Ecm, Motion, Path, Piece, PieceType, Point, Pose, Profile, Radians, Region, Turn, crossings};
+use pcr_core::{
+    Crossing, Ecm, EcmEntry, Motion, Path, Piece, PieceType, Point, Pose, Profile, Radians, TurnSide, crossings,
+};
 use pcr_tests::paper::global::eq_39;
 use pcr_tests::paper::truth::{RIGHT, SAME, arc, assert_range, example, true_length, within};
 use pcr_tests::paper::{Arc, Pcr, Range, cases, kernels, norm};
@@ -25,13 +27,13 @@ fn eq_38_a_region_may_have_two_intervals_at_one_time() {
     // goes north at x = 2.82. Its disc of R = 0.7 comes within reach of the way back (at y = 0.3) before it
     // reaches the apex of the turn (at y = 0.5 - √(0.7² - 0.68²) = 0.334).
     let way_out = Path::starting_at(pose(0.0, 0.0, 0.0)).and_then(|path| path.line(3.0));
-    let ego = way_out.and_then(|path| path.arc(0.5, Turn::Left, 0.5 * PI)).and_then(|path| path.line(3.0));
+    let ego = way_out.and_then(|path| path.arc(0.5, TurnSide::Left, 0.5 * PI)).and_then(|path| path.line(3.0));
     let other = Path::starting_at(pose(2.82, -2.0, FRAC_PI_2)).and_then(|path| path.line(5.0));
     let paths = [ego.expect("a path"), other.expect("a path")];
     let constant = |length: f64| Profile::from_pieces(1.0, [(length, 0.0)]).expect("a profile");
     let profiles = [constant(6.0 + 0.5 * PI), constant(5.0)];
     let fleet = motions_of(&paths, &profiles, 0.7);
-    let ecm = Ecm::build([Region::EMPTY; 8], [Piece::EMPTY; 32], &fleet).expect("room");
+    let ecm = Ecm::build([EcmEntry::EMPTY; 8], [Piece::EMPTY; 32], &fleet).expect("room");
     let regions: Vec<_> = ecm.pair(&fleet, 0, 1).expect("the table of the fleet").collect();
     assert_eq!(regions.len(), 1);
     let slices_at = |y: f64| regions[0].slice_at(y + 2.0).map(|slice| [slice.lo, slice.hi]).collect::<Vec<Range>>();
@@ -59,7 +61,7 @@ fn eq_39_takes_the_length_along_the_wrong_path() {
     assert_eq!(all.len(), 1);
     assert_range(eq_39::as_printed(&all[0]), [6.0, 3.0], SAME);
     assert_range(eq_39::corrected(&all[0]), [6.0, 1.0], SAME);
-    let ecm = Ecm::build([Region::EMPTY; 2], [Piece::EMPTY; 4], &fleet).expect("room");
+    let ecm = Ecm::build([EcmEntry::EMPTY; 2], [Piece::EMPTY; 4], &fleet).expect("room");
     let holds =
         |[t, l]: [f64; 2]| ecm.pair(&fleet, 0, 1).expect("the table of the fleet").any(|region| region.contains(t, l));
     assert!(holds(eq_39::corrected(&all[0])) && !holds(eq_39::as_printed(&all[0])));

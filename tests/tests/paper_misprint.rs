@@ -5,7 +5,7 @@
 //! and the line are thus given, but for their lengths; the second arc has to turn by what is missing. Every such
 //! path is tried: with a counter-clockwise first arc none comes near the place of row 1.
 
-use pcr_core::{Path, Point, Pose, Radians, Turn};
+use pcr_core::{Path, Point, Pose, Radians, TurnSide};
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::Fleet;
 
@@ -25,10 +25,10 @@ fn agent_3_at(length: f64) -> (f64, f64, f64) {
 
 /// How far the best AAS path with this first turn ends from the place of row 1 \[m\], over the roundings of the lengths L,
 /// of θ, of T and of the radius.
-fn least_miss(first_turn: Turn) -> f64 {
+fn least_miss(first_turn: TurnSide) -> f64 {
     let mut least = f64::INFINITY;
     let ends = [-HALF_DIGIT, 0.0, HALF_DIGIT];
-    let sign = if first_turn == Turn::Left { 1.0 } else { -1.0 };
+    let sign = if first_turn == TurnSide::Left { 1.0 } else { -1.0 };
     let (from, to) = (agent_3_at(10.0), agent_3_at(0.9));
     for (turned, longer, wider) in ends.iter().flat_map(|a| ends.iter().flat_map(move |b| ends.map(|c| (*a, *b, c)))) {
         let (length, radius) = ((19.3 - 6.3) * 0.40 + 2.0 * 0.40 * longer, 1.6 + wider);
@@ -40,7 +40,7 @@ fn least_miss(first_turn: Turn) -> f64 {
             if line < 0.0 || missing == 0.0 {
                 continue;
             }
-            let turn = if missing > 0.0 { Turn::Left } else { Turn::Right };
+            let turn = if missing > 0.0 { TurnSide::Left } else { TurnSide::Right };
             let start = Pose { position: Point::new(from.0, from.1), heading: Radians(begin) };
             let path = Path::<f64, 3>::starting_at(start).and_then(|path| path.arc(radius, first_turn, first));
             let path = path.and_then(|path| path.arc(second / missing.abs(), turn, second));
@@ -57,7 +57,7 @@ fn least_miss(first_turn: Turn) -> f64 {
 
 #[test]
 fn agent_10_cannot_reach_row_1_from_a_counter_clockwise_row_17() {
-    let (left, right) = (least_miss(Turn::Left), least_miss(Turn::Right));
+    let (left, right) = (least_miss(TurnSide::Left), least_miss(TurnSide::Right));
     // L is rounded as well: two half digits along the two straight parts of agent 3.
     assert!(right < 2.0 * HALF_DIGIT, "clockwise: {right} m");
     assert!(left > 10.0 * HALF_DIGIT, "counter-clockwise: {left} m");

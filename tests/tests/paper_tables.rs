@@ -7,7 +7,7 @@
 //! The paper counts *crossings* of paths, each once for either agent. The library finds *connected regions*: paths
 //! that only come near each other have one as well (paper Fig. 14a), and two crossings may share one (Fig. 14b).
 
-use pcr_core::{Crossing, Curve, Motion, PieceType, Radians, Turn, crossings};
+use pcr_core::{Crossing, Curve, Motion, PieceType, Radians, TurnSide, crossings};
 use pcr_formats::scenario::{MotionSpec, Scenario};
 use pcr_planning::fleet::{Fleet, build_ecm};
 
@@ -190,7 +190,7 @@ const OWN_RADIUS: f64 = 1.15;
 fn arc(curve: Curve<f64>) -> Option<(f64, i64)> {
     match curve {
         Curve::Line => None,
-        Curve::Arc { radius, turn } => Some((radius, if turn == Turn::Left { 1 } else { -1 })),
+        Curve::Arc { radius, turn } => Some((radius, if turn == TurnSide::Left { 1 } else { -1 })),
     }
 }
 

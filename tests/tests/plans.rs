@@ -1,8 +1,8 @@
 //! Fleet plans: no two discs come nearer than their radii, by the oracle; and nobody waits longer than for all others.
 
-use pcr_core::{Invalid, Motion, Profile, Scalar, Station, Unsolved, plan_delays, plan_speeds};
+use pcr_core::{InvalidInput, Motion, PlanError, Profile, Scalar, SearchNode, plan_delays, plan_speeds};
 use pcr_fixed::Q16;
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{HostScalar, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::Dice;
 use pcr_tests::oracle::contact::Meeting;
@@ -35,7 +35,7 @@ fn random_fleets_are_given_speeds_without_collisions_and_without_idle_waits() {
 }
 
 /// Plans in another format, for what is left of the numbers in it: discs that are smaller by `slip` \[m\] are apart.
-fn audited_in<S: Format>(slip: f64) {
+fn audited_in<S: HostScalar>(slip: f64) {
     const PHASES: usize = 64;
     let mut solved = [0_u64; 2];
     for seed in 0..FLEETS {
@@ -45,7 +45,7 @@ fn audited_in<S: Format>(slip: f64) {
         };
         let motions: Vec<Motion<'_, S>> = courses.iter().map(Course::motion).collect();
         let ecm = build_ecm(&motions).expect("a small table");
-        let mut stations = vec![Station::EMPTY; 160];
+        let mut stations = vec![SearchNode::EMPTY; 160];
         for (way, solved) in solved.iter_mut().enumerate() {
             let mut profiles = vec![Profile::<S, PHASES>::standing(); 40];
             let (mut plan, mut order) = (motions.clone(), (0..motions.len()).collect::<Vec<_>>());
@@ -54,7 +54,7 @@ fn audited_in<S: Format>(slip: f64) {
                 _ => plan_speeds(&ecm, &motions, &mut plan, &mut order, &mut profiles, &mut stations),
             };
             if let Err(unsolved) = outcome {
-                assert!(!matches!(unsolved, Unsolved::Overlap(_)), "seed {seed}: {unsolved}");
+                assert!(!matches!(unsolved, PlanError::Overlap(_)), "seed {seed}: {unsolved}");
                 continue;
             }
             *solved += 1;
@@ -85,7 +85,7 @@ fn line(start: [f64; 3], length: f64) -> Course<f64> {
     Course::driven(&disc, &Drive::Unit, 0.0).expect("a valid disc")
 }
 
-fn delays(courses: &[Course<f64>], order: &mut [usize]) -> Result<Vec<f64>, Unsolved> {
+fn delays(courses: &[Course<f64>], order: &mut [usize]) -> Result<Vec<f64>, PlanError> {
     let fleet: Vec<_> = courses.iter().map(Course::motion).collect();
     let ecm = build_ecm(&fleet).expect("a small table");
     let mut plan = fleet.clone();
@@ -105,8 +105,8 @@ fn the_lower_priority_waits_at_a_crossing() {
 #[test]
 fn head_on_agents_are_named() {
     let found = delays(&[line([0.0, 0.0, 0.0], 4.0), line([4.0, 0.0, PI], 4.0)], &mut [0, 1]);
-    assert_eq!(found, Err(Unsolved::Always([1, 0])));
-    assert_eq!(delays(&[line([0.0, 0.0, 0.0], 4.0)], &mut [3]), Err(Unsolved::NoSuchAgent(3)));
+    assert_eq!(found, Err(PlanError::Always([1, 0])));
+    assert_eq!(delays(&[line([0.0, 0.0, 0.0], 4.0)], &mut [3]), Err(PlanError::NoSuchAgent(3)));
 }
 
 /// Nobody would look out for an agent that is left out.
@@ -116,22 +116,22 @@ fn an_order_lists_every_agent_once() {
     let fleet: Vec<_> = courses.iter().map(Course::motion).collect();
     let ecm = build_ecm(&fleet).expect("a small table");
     let orders: [(&[usize], _); 6] = [
-        (&[], Unsolved::NotOnce(0)),
-        (&[0, 1], Unsolved::NotOnce(2)),
-        (&[2, 0], Unsolved::NotOnce(1)),
-        (&[0, 1, 1], Unsolved::NotOnce(1)),
-        (&[0, 1, 2, 0], Unsolved::NotOnce(0)),
-        (&[0, 1, 3], Unsolved::NoSuchAgent(3)),
+        (&[], PlanError::NotOnce(0)),
+        (&[0, 1], PlanError::NotOnce(2)),
+        (&[2, 0], PlanError::NotOnce(1)),
+        (&[0, 1, 1], PlanError::NotOnce(1)),
+        (&[0, 1, 2, 0], PlanError::NotOnce(0)),
+        (&[0, 1, 3], PlanError::NoSuchAgent(3)),
     ];
     for (order, refused) in orders {
         let mut plan = fleet.clone();
         assert_eq!(delays(&courses, &mut order.to_vec()), Err(refused), "{order:?}");
         let mut profiles = vec![Profile::<f64, 16>::standing(); 3];
-        let (mut order, mut stations) = (order.to_vec(), vec![Station::EMPTY; 100]);
+        let (mut order, mut stations) = (order.to_vec(), vec![SearchNode::EMPTY; 100]);
         let speeds = plan_speeds(&ecm, &fleet, &mut plan, &mut order, &mut profiles, &mut stations);
         assert_eq!(speeds, Err(refused), "{order:?}");
     }
-    let text = Unsolved::NotOnce(2).to_string();
+    let text = PlanError::NotOnce(2).to_string();
     assert_eq!(text, "the order of priorities does not list agent 2 of the fleet once");
 }
 
@@ -170,7 +170,7 @@ fn speeds_go_where_delays_cannot() {
     let mut order = [1, 2, 0];
     let mut profiles = vec![Profile::<f64, 16>::standing(); 3];
     let mut plan = fleet.clone();
-    plan_speeds(&ecm, &fleet, &mut plan, &mut order, &mut profiles, &mut vec![Station::EMPTY; 100]).expect("a plan");
+    plan_speeds(&ecm, &fleet, &mut plan, &mut order, &mut profiles, &mut vec![SearchNode::EMPTY; 100]).expect("a plan");
     assert_eq!(order, [1, 2, 0]);
     assert!(plan[0].profile().phases().len() > 3, "it slows down on the way: {:?}", plan[0].profile());
 }
@@ -184,9 +184,9 @@ fn a_plan_that_would_be_too_late_is_out_of_range() {
             let disc = Disc { radius: 0.5, start, legs: vec![Leg::Line(4.0)] };
             Course::driven(&disc, &drive, late).expect("a valid disc")
         });
-        let is_too_late = |found: Result<(), Unsolved>| {
+        let is_too_late = |found: Result<(), PlanError>| {
             assert!(
-                matches!(found, Err(Unsolved::Invalid { agent: 1, reason: Invalid::OutOfRange(_) })),
+                matches!(found, Err(PlanError::Invalid { agent: 1, reason: InvalidInput::OutOfRange(_) })),
                 "{drive:?}: {found:?}"
             );
         };
@@ -194,7 +194,7 @@ fn a_plan_that_would_be_too_late_is_out_of_range() {
         let fleet: Vec<_> = crossing.iter().map(Course::motion).collect();
         let ecm = build_ecm(&fleet).expect("a small table");
         let mut profiles = vec![Profile::<f64, 32>::standing(); 4];
-        let (mut plan, mut stations) = (fleet.clone(), vec![Station::EMPTY; 100]);
+        let (mut plan, mut stations) = (fleet.clone(), vec![SearchNode::EMPTY; 100]);
         is_too_late(plan_speeds(&ecm, &fleet, &mut plan, &mut [0, 1], &mut profiles, &mut stations));
     }
 }
@@ -202,7 +202,7 @@ fn a_plan_that_would_be_too_late_is_out_of_range() {
 #[test]
 fn overlaps_at_the_ends_are_named() {
     let ends = [line([0.0, 0.0, 0.0], 4.0), line([4.0, 4.3, -PI / 2.0], 4.0)];
-    assert!(matches!(delays(&ends, &mut [0, 1]), Err(Unsolved::Ends([1, 0]))));
+    assert!(matches!(delays(&ends, &mut [0, 1]), Err(PlanError::Ends([1, 0]))));
     let starts = [line([0.0, 0.0, 0.0], 4.0), line([0.0, 0.3, PI / 2.0], 4.0)];
-    assert!(matches!(delays(&starts, &mut [0, 1]), Err(Unsolved::Starts([1, 0]))));
+    assert!(matches!(delays(&starts, &mut [0, 1]), Err(PlanError::Starts([1, 0]))));
 }

@@ -1,7 +1,7 @@
 //! No plan costs less than its lower bound.
 
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario};
-use pcr_planning::plan::{Method, Plan, Request};
+use pcr_planning::plan::{PlanMethod, PlanOptions, PlanReport};
 use pcr_tests::generators::Dice;
 
 const OPEN: &str = include_str!("../data/cases/lower-bound-open-2.json");
@@ -10,8 +10,8 @@ const FLEETS: u64 = if cfg!(optimized) { 250 } else { 60 };
 
 /// The cost and the bound of a plan, where there is one.
 #[track_caller]
-fn planned(scenario: &Scenario, method: Method) -> Option<[f64; 2]> {
-    let (plan, solved) = Plan::of(scenario, &Request::of(method)).unwrap();
+fn planned(scenario: &Scenario, method: PlanMethod) -> Option<[f64; 2]> {
+    let (plan, solved) = PlanReport::compute(scenario, &PlanOptions::new(method)).unwrap();
     assert_eq!(solved.is_some(), plan.costs.is_some());
     plan.costs.map(|costs| [costs.sum_of_costs, costs.lower_bound])
 }
@@ -19,9 +19,9 @@ fn planned(scenario: &Scenario, method: Method) -> Option<[f64; 2]> {
 #[test]
 fn a_wait_in_the_file_is_not_in_the_bound_of_speeds() {
     let scenario = Scenario::from_json(OPEN).unwrap();
-    let [cost, bound] = planned(&scenario, Method::Speed).unwrap();
+    let [cost, bound] = planned(&scenario, PlanMethod::Speed).unwrap();
     assert!(bound <= cost && bound > 0.95 * cost, "{cost} {bound}");
-    let [cost, bound] = planned(&scenario, Method::Delay).unwrap();
+    let [cost, bound] = planned(&scenario, PlanMethod::Delay).unwrap();
     assert!((cost - bound).abs() < 1e-9, "{cost} {bound}");
 }
 
@@ -62,7 +62,7 @@ fn plans_of_random_fleets_cost_at_least_their_bound() {
         let mut dice = Dice::seeded(seed);
         let agents = (1..2 + seed % 5).map(|id| agent(id, &mut dice)).collect::<Vec<_>>();
         let Ok(scenario) = Scenario::from_json(&Scenario::new("", agents).to_json()) else { panic!("seed {seed}") };
-        for (way, method) in [Method::Delay, Method::Speed].into_iter().enumerate() {
+        for (way, method) in [PlanMethod::Delay, PlanMethod::Speed].into_iter().enumerate() {
             let Some([cost, bound]) = planned(&scenario, method) else { continue };
             assert!(bound > 0.0 && cost >= bound - 1e-9 * bound, "seed {seed}, {method:?}: {cost} {bound}");
             solved[way] += 1;

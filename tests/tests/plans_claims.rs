@@ -1,8 +1,8 @@
 //! What a plan says of itself is so: margins are kept, bounds hold, what is proved was, and reasons are true.
 
 use pcr_formats::scenario::Scenario;
-use pcr_planning::check::Verdict;
-use pcr_planning::plan::{Effort, Method, Objective, Plan, Priority, Request};
+use pcr_planning::check::CheckReport;
+use pcr_planning::plan::{DelaySearchOptions, Objective, PlanMethod, PlanOptions, PlanReport, PriorityRule};
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::time::Duration;
@@ -28,7 +28,7 @@ fn read(agents: &[Value]) -> Scenario {
 }
 
 fn clearance(scenario: &Scenario) -> f64 {
-    let closest = Verdict::of::<f64>(scenario, true).unwrap().closest.unwrap();
+    let closest = CheckReport::compute::<f64>(scenario, true).unwrap().closest.unwrap();
     closest.iter().map(|pair| pair.clearance).fold(f64::INFINITY, f64::min)
 }
 
@@ -40,8 +40,8 @@ fn who_keeps_its_own_motion_keeps_its_margin() {
     for x in [-2.3, -2.1] {
         let slow = agent(2, [x, 3.0, 0.0], &json!([line(8.0)]), &json!({ "v_max": 0.5 }));
         let scenario = read(&[agent(1, [0.0; 3], &path, &turns), slow]);
-        let [later, faster] =
-            [Method::Delay, Method::Speed].map(|method| Plan::of(&scenario, &Request::of(method)).unwrap());
+        let [later, faster] = [PlanMethod::Delay, PlanMethod::Speed]
+            .map(|method| PlanReport::compute(&scenario, &PlanOptions::new(method)).unwrap());
         let solved = faster.1.unwrap_or_else(|| panic!("{x}: {:?}", faster.0.unsolved));
         let [cost, of_delays] = [&faster.0, &later.0].map(|plan| plan.costs.unwrap().sum_of_costs);
         assert!(cost <= of_delays + 1e-9, "{x}: {:?}", faster.0);
@@ -74,11 +74,11 @@ fn late_starts_have_the_plans_of_early_ones() {
     };
     let both: [&dyn Fn(f64) -> [Value; 2]; 2] = [&crossing, &rounds];
     for agents in both {
-        for method in [Method::Delay, Method::Speed] {
+        for method in [PlanMethod::Delay, PlanMethod::Speed] {
             let costs = |t: f64| {
-                let (plan, solved) = Plan::of(&read(&agents(t)), &Request::of(method)).unwrap();
+                let (plan, solved) = PlanReport::compute(&read(&agents(t)), &PlanOptions::new(method)).unwrap();
                 let costs = plan.costs.unwrap_or_else(|| panic!("{t}: {:?}", plan.unsolved));
-                assert!(solved.is_some() && (costs.proved || method == Method::Speed));
+                assert!(solved.is_some() && (costs.proved || method == PlanMethod::Speed));
                 [costs.sum_of_costs, costs.lower_bound, costs.makespan]
             };
             let early = costs(3.0);
@@ -102,9 +102,9 @@ fn a_last_arrival_before_0_has_its_bound() {
             agent(2, [0.0, -4.0, FRAC_PI_2], &json!([line(8.0)]), &early),
         ])
     };
-    for priority in [Priority::Best, Priority::Longest] {
-        let request = Request { objective: Objective::Makespan, priority, ..Request::default() };
-        let [late, early] = [0.0, -100.0].map(|t| Plan::of(&starts(t), &request).unwrap().0.costs.unwrap());
+    for priority in [PriorityRule::Best, PriorityRule::Longest] {
+        let request = PlanOptions { objective: Objective::Makespan, priority, ..PlanOptions::default() };
+        let [late, early] = [0.0, -100.0].map(|t| PlanReport::compute(&starts(t), &request).unwrap().0.costs.unwrap());
         assert!((late.makespan - early.makespan).abs() < 1e-6, "{early:?}");
         assert!((late.lower_bound - early.lower_bound).abs() < 1e-6 && late.proved == early.proved, "{early:?}");
         assert!(early.lower_bound <= early.makespan, "{early:?}");
@@ -119,21 +119,21 @@ fn a_load_counts_where_it_is_carried() {
         agent(1, [-4.0, 0.0, 0.0], &json!([line(8.0), line(20.0)]), &load(1.5)),
         agent(2, [0.0, -4.0, FRAC_PI_2], &json!([line(8.0)]), &json!({})),
     ]);
-    let (plan, solved) = Plan::of(&crossing, &Request::default()).unwrap();
+    let (plan, solved) = PlanReport::compute(&crossing, &PlanOptions::default()).unwrap();
     let costs = plan.costs.unwrap();
     assert!(costs.proved && costs.sum_of_costs < 38.9 && costs.lower_bound <= costs.sum_of_costs, "{plan:?}");
     // A little less of a delay, and they meet.
     let mut sooner = solved.unwrap();
     let delayed = plan.agents.iter().position(|agent| agent.delay > 0.0).unwrap();
     sooner.agents[delayed].t_start -= 1e-4;
-    assert_ne!(Verdict::of::<f64>(&sooner, false).unwrap().conflicts, []);
+    assert_ne!(CheckReport::compute::<f64>(&sooner, false).unwrap().conflicts, []);
     // Back to back, and the load is as far away as that.
     let apart = read(&[
         agent(1, [0.0; 3], &json!([line(5.0), line(5.0)]), &load(2.0)),
         agent(2, [-1.0, 0.0, PI], &json!([line(5.0)]), &json!({})),
     ]);
-    for method in [Method::Delay, Method::Speed] {
-        let (plan, solved) = Plan::of(&apart, &Request::of(method)).unwrap();
+    for method in [PlanMethod::Delay, PlanMethod::Speed] {
+        let (plan, solved) = PlanReport::compute(&apart, &PlanOptions::new(method)).unwrap();
         assert!(solved.is_some() && plan.agents.iter().all(|agent| agent.delay == 0.0), "{plan:?}");
     }
     // In the way of the load for good.
@@ -141,7 +141,7 @@ fn a_load_counts_where_it_is_carried() {
         agent(1, [0.0; 3], &json!([line(5.0), line(5.0)]), &load(2.0)),
         agent(2, [7.0, 1.0, 0.0], &json!([]), &json!({})),
     ]);
-    let (plan, solved) = Plan::of(&blocked, &Request::default()).unwrap();
+    let (plan, solved) = PlanReport::compute(&blocked, &PlanOptions::default()).unwrap();
     assert!(solved.is_none() && plan.unsolved.len() == 1 && !plan.unsolved[0].why.contains("starts,"), "{plan:?}");
 }
 
@@ -162,8 +162,8 @@ fn reasons_for_no_speeds_are_those_of_outlines() {
         agent(4, [5.0, 6.0, -FRAC_PI_2], &json!([line(10.0)]), &json!({})),
     ]);
     for leave_out in [false, true] {
-        let request = Request { leave_out, ..Request::of(Method::Speed) };
-        let (plan, solved) = Plan::of(&scenario, &request).unwrap();
+        let request = PlanOptions { leave_out, ..PlanOptions::new(PlanMethod::Speed) };
+        let (plan, solved) = PlanReport::compute(&scenario, &request).unwrap();
         assert_eq!(solved.is_some(), leave_out, "{plan:?}");
         let mut named: Vec<u64> = plan.unsolved.iter().flat_map(|unsolved| unsolved.ids.clone()).collect();
         named.sort_unstable();
@@ -186,9 +186,14 @@ fn a_long_plan_is_not_proved_by_its_length() {
         agent(2, [0.0, -4.0, FRAC_PI_2], &turns, &json!({})),
         slow,
     ]);
-    let best = Plan::of(&scenario, &Request::default()).unwrap().0.costs.unwrap();
+    let best = PlanReport::compute(&scenario, &PlanOptions::default()).unwrap().0.costs.unwrap();
     let worst = [vec![1, 2], vec![2, 1]].map(|order| {
-        let plan = Plan::of(&scenario, &Request { priority: Priority::Given(order), ..Request::default() }).unwrap().0;
+        let plan = PlanReport::compute(
+            &scenario,
+            &PlanOptions { priority: PriorityRule::Given(order), ..PlanOptions::default() },
+        )
+        .unwrap()
+        .0;
         let costs = plan.costs.unwrap();
         assert!(!costs.proved || costs.sum_of_costs < best.sum_of_costs + 1e-3, "{plan:?}");
         costs.sum_of_costs
@@ -206,8 +211,8 @@ fn who_is_left_out_does_not_begin_the_makespan() {
         agent(3, [0.0, -0.4, 0.0], &json!([]), &json!({})),
         agent(4, [20.0, 0.0, 0.0], &json!([line(5.0)]), &json!({})),
     ]);
-    let request = Request { leave_out: true, ..Request::default() };
-    let plan = Plan::of(&scenario, &request).unwrap().0;
+    let request = PlanOptions { leave_out: true, ..PlanOptions::default() };
+    let plan = PlanReport::compute(&scenario, &request).unwrap().0;
     assert!(plan.left_out == [1] && (plan.costs.unwrap().makespan - 6.0).abs() < 1e-9, "{plan:?}");
 }
 
@@ -219,8 +224,8 @@ fn large_fleets_with_a_limit_of_time_are_answered() {
     let agents: Vec<Value> =
         (0..SIDE * SIDE).map(|k| agent(k as u64 + 1, place(k), &json!([line(8.0)]), &json!({}))).collect();
     let scenario = read(&agents);
-    let effort = Effort { time: Some(Duration::from_millis(500)), ..Effort::default() };
-    let (plan, solved) = Plan::of(&scenario, &Request { effort, ..Request::default() }).unwrap();
+    let effort = DelaySearchOptions { time: Some(Duration::from_millis(500)), ..DelaySearchOptions::default() };
+    let (plan, solved) = PlanReport::compute(&scenario, &PlanOptions { effort, ..PlanOptions::default() }).unwrap();
     assert!(solved.is_none() && !plan.unsolved.is_empty());
 }
 
@@ -235,14 +240,16 @@ fn head_on_and_one_apart() -> Scenario {
 /// Who is left out may have been given a priority.
 #[test]
 fn an_order_may_name_who_is_left_out() {
-    for method in [Method::Delay, Method::Speed] {
+    for method in [PlanMethod::Delay, PlanMethod::Speed] {
         for order in [vec![2, 1], vec![1, 2], vec![3, 2, 1]] {
-            let request = Request { leave_out: true, priority: Priority::Given(order), ..Request::of(method) };
-            let (plan, solved) = Plan::of(&head_on_and_one_apart(), &request).unwrap();
+            let request =
+                PlanOptions { leave_out: true, priority: PriorityRule::Given(order), ..PlanOptions::new(method) };
+            let (plan, solved) = PlanReport::compute(&head_on_and_one_apart(), &request).unwrap();
             assert!(solved.is_some() && plan.left_out.len() == 1 && plan.agents.len() == 2, "{plan:?}");
         }
-        let request = Request { priority: Priority::Given(vec![4]), leave_out: true, ..Request::of(method) };
-        assert!(Plan::of(&head_on_and_one_apart(), &request).is_err());
+        let request =
+            PlanOptions { priority: PriorityRule::Given(vec![4]), leave_out: true, ..PlanOptions::new(method) };
+        assert!(PlanReport::compute(&head_on_and_one_apart(), &request).is_err());
     }
 }
 
@@ -254,7 +261,7 @@ fn what_is_too_near_is_said_as_it_is() {
             agent(1, [0.0; 3], &json!([line(5.0)]), &json!({})),
             agent(2, [0.0, y, 0.0], &json!([line(5.0)]), &more),
         ]);
-        Plan::of(&scenario, &Request::default()).unwrap().0.unsolved[0].why.clone()
+        PlanReport::compute(&scenario, &PlanOptions::default()).unwrap().0.unsolved[0].why.clone()
     };
     assert!(why(0.5, json!({})).starts_with("they overlap at their starts"));
     assert!(why(0.6, json!({})).starts_with("they touch at their starts"));
@@ -268,17 +275,17 @@ fn all_pairs_that_meet_however_they_move_are_named() {
     let scenario = read(
         &(0..6).map(|k| agent(k, [0.0, 0.0, k as f64 / 10.0], &json!([line(3.0)]), &json!({}))).collect::<Vec<_>>(),
     );
-    let ids = |plan: &Plan| {
+    let ids = |plan: &PlanReport| {
         let mut ids: Vec<Vec<u64>> = plan.unsolved.iter().map(|unsolved| unsolved.ids.clone()).collect();
         ids.iter_mut().for_each(|ids| ids.sort_unstable());
         ids.sort_unstable();
         ids
     };
-    let [delay, speed] =
-        [Method::Delay, Method::Speed].map(|method| Plan::of(&scenario, &Request::of(method)).unwrap().0);
+    let [delay, speed] = [PlanMethod::Delay, PlanMethod::Speed]
+        .map(|method| PlanReport::compute(&scenario, &PlanOptions::new(method)).unwrap().0);
     assert_eq!((ids(&delay).len(), ids(&delay)), (15, ids(&speed)), "{speed:?}");
     // A pair without a plan is no reason against others.
-    let speed = Plan::of(&head_on_and_one_apart(), &Request::of(Method::Speed)).unwrap().0;
+    let speed = PlanReport::compute(&head_on_and_one_apart(), &PlanOptions::new(PlanMethod::Speed)).unwrap().0;
     assert_eq!(ids(&speed), [[1, 2]]);
 }
 
@@ -288,8 +295,8 @@ fn turns_far_along_a_path_take_their_time() {
     for far in [40.0, 129.3, 1300.0, 1e5] {
         let path = json!([line(far), turn(FRAC_PI_2), line(5.4), turn(-FRAC_PI_2), line(1.3), turn(0.3), line(7.0)]);
         let scenario = read(&[agent(1, [0.0; 3], &path, &json!({ "turn_v_max": 0.52, "turn_a_max": 1.23 }))]);
-        let [later, faster] = [Method::Delay, Method::Speed]
-            .map(|method| Plan::of(&scenario, &Request::of(method)).unwrap().0.costs.unwrap().makespan);
+        let [later, faster] = [PlanMethod::Delay, PlanMethod::Speed]
+            .map(|method| PlanReport::compute(&scenario, &PlanOptions::new(method)).unwrap().0.costs.unwrap().makespan);
         assert!((later - faster).abs() < 1e-9 * later, "{far}: {later} {faster}");
     }
 }

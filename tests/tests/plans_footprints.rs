@@ -2,9 +2,9 @@
 //! would touch.
 
 use pcr_formats::scenario::Scenario;
-use pcr_planning::check::Verdict;
+use pcr_planning::check::CheckReport;
 use pcr_planning::fleet::Fleet;
-use pcr_planning::plan::{Method, Plan, Request};
+use pcr_planning::plan::{PlanMethod, PlanOptions, PlanReport};
 use pcr_tests::polygons::{Point, apart, placed};
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -21,9 +21,9 @@ fn line(length: f64) -> Value {
     json!({ "kind": "line", "length": length })
 }
 
-fn planned(agents: &[Value], method: Method) -> (Plan, Option<Scenario>) {
+fn planned(agents: &[Value], method: PlanMethod) -> (PlanReport, Option<Scenario>) {
     let scenario = Scenario::from_json(&json!({ "name": "trucks", "agents": agents }).to_string()).unwrap();
-    Plan::of(&scenario, &Request::of(method)).unwrap()
+    PlanReport::compute(&scenario, &PlanOptions::new(method)).unwrap()
 }
 
 /// The least distance of the outlines of a scenario.
@@ -46,11 +46,11 @@ fn clearance(scenario: &Scenario) -> f64 {
 #[test]
 fn trucks_on_lanes_beside_one_another_need_not_wait() {
     let agents = [truck(1, [-4.0, 0.0, 0.0], &json!([line(8.0)])), truck(2, [4.0, 0.9, PI], &json!([line(8.0)]))];
-    let (plan, solved) = planned(&agents, Method::Delay);
+    let (plan, solved) = planned(&agents, PlanMethod::Delay);
     assert!(plan.agents.iter().all(|agent| agent.delay == 0.0), "{plan:?}");
     assert!(clearance(&solved.unwrap()) > 0.29);
     // A speed plan takes the discs around them, which meet head-on; but the delays are a plan.
-    let (plan, solved) = planned(&agents, Method::Speed);
+    let (plan, solved) = planned(&agents, PlanMethod::Speed);
     assert!(
         solved.is_some() && plan.costs.unwrap().proved && plan.agents.iter().all(|agent| agent.delay == 0.0),
         "{plan:?}"
@@ -65,24 +65,24 @@ fn trucks_that_cross_wait_as_long_as_their_outlines_do() {
         truck(2, [-2.0, -4.0, FRAC_PI_2], &json!([line(8.0)])),
         truck(3, [4.0, 1.3, PI], &json!([line(9.0)])),
     ];
-    let (plan, solved) = planned(&agents, Method::Delay);
+    let (plan, solved) = planned(&agents, PlanMethod::Delay);
     let solved = solved.unwrap();
     assert!(plan.unsolved.is_empty() && clearance(&solved) > 0.0, "{plan:?}");
-    assert_eq!(Verdict::of::<f64>(&solved, false).unwrap().conflicts, []);
+    assert_eq!(CheckReport::compute::<f64>(&solved, false).unwrap().conflicts, []);
     let waits: Vec<f64> = plan.agents.iter().map(|agent| agent.delay).collect();
     assert!(waits.iter().any(|wait| *wait > 0.1), "{waits:?}");
     // Any of them a little earlier, and the discs touch: no wait is longer than it has to be, but for the growth of plans.
     for (place, wait) in waits.iter().enumerate().filter(|(_, wait)| **wait > 0.0) {
         let mut earlier = solved.clone();
         earlier.agents[place].t_start -= 1e-5 * (1.0 + wait);
-        assert_ne!(Verdict::of::<f64>(&earlier, false).unwrap().conflicts, [], "{place}");
+        assert_ne!(CheckReport::compute::<f64>(&earlier, false).unwrap().conflicts, [], "{place}");
     }
 }
 
 #[test]
 fn trucks_that_meet_head_on_have_no_plan() {
     let agents = [truck(7, [-4.0, 0.0, 0.0], &json!([line(8.0)])), truck(3, [4.0, 0.1, PI], &json!([line(8.0)]))];
-    let (plan, solved) = planned(&agents, Method::Delay);
+    let (plan, solved) = planned(&agents, PlanMethod::Delay);
     assert!(solved.is_none());
     assert!(plan.unsolved[0].why.contains("head-on"), "{plan:?}");
     assert_eq!(plan.unsolved[0].ids.iter().sum::<u64>(), 10);

@@ -4,8 +4,8 @@
 use pcr_core::scalar::Micro;
 use pcr_core::{Limits, Motion, PathRef, Point, Pose, Profile, ProfileRef, Segment};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::Format;
-use pcr_tests::exact::{Travel, Twofold};
+use pcr_planning::fleet::HostScalar;
+use pcr_tests::exact::{DoubleDouble, Travel};
 use pcr_tests::generators::Dice;
 
 const SAMPLES: u32 = 64;
@@ -16,7 +16,7 @@ fn query(length: f64, digit: f64) -> f64 {
 }
 
 /// The largest difference between a profile and a law of motion, as a part of its bound, both in last digits.
-fn worst<S: Format>(profile: ProfileRef<'_, S>, law: impl Fn(f64) -> f64, bound: f64, digit: f64) -> f64 {
+fn worst<S: HostScalar>(profile: ProfileRef<'_, S>, law: impl Fn(f64) -> f64, bound: f64, digit: f64) -> f64 {
     let duration = profile.duration().to_f64();
     let off = |k: u32| {
         let time = S::from_f64(duration * f64::from(k) / f64::from(SAMPLES));
@@ -41,7 +41,7 @@ fn trapezoid(length: f64, v: f64, a: f64) -> impl Fn(f64) -> f64 {
     }
 }
 
-fn rest_to_rest<S: Format>(digit: f64) {
+fn rest_to_rest<S: HostScalar>(digit: f64) {
     let mut most = 0.0_f64;
     for seed in 0..4_000 {
         let mut dice = Dice::seeded(seed);
@@ -62,7 +62,7 @@ fn rest_to_rest<S: Format>(digit: f64) {
     assert!(most > 0.2, "{}: too good to be measured: {most}", S::NAME);
 }
 
-fn chains<S: Format>(digit: f64) {
+fn chains<S: HostScalar>(digit: f64) {
     let mut most = 0.0_f64;
     for seed in 0..4_000 {
         let mut dice = Dice::seeded(seed);
@@ -114,7 +114,7 @@ fn chains_of_phases_are_those_of_their_accelerations() {
 }
 
 /// The largest error of a length at a time, as a part of its bound.
-fn travelled<S: Format>(digit: f64) {
+fn travelled<S: HostScalar>(digit: f64) {
     let mut most = 0.0_f64;
     for seed in 0..2_000 {
         let mut dice = Dice::seeded(seed);
@@ -129,15 +129,15 @@ fn travelled<S: Format>(digit: f64) {
         let Ok(profile) = Profile::rest_to_rest(length, limits) else { continue };
         let path = PathRef::new(&line).unwrap();
         let Ok(motion) = Motion::new(path, profile.as_profile(), S::from_f64(0.5), start) else { continue };
-        let travel = Travel::new(&motion, Twofold::from(length.to_f64()));
+        let travel = Travel::new(&motion, DoubleDouble::from(length.to_f64()));
         let (top, duration) = (profile.as_profile().top_speed().to_f64(), profile.as_profile().duration().to_f64());
         let (length, u) = (length.to_f64(), 0.5 * S::EPSILON);
         let bound =
             if S::EPSILON == 0.0 { query(length, digit) * digit } else { u * (8.0 * top * duration + 19.0 * length) };
         for k in 0..=SAMPLES {
             let time = S::from_f64(start.to_f64() + duration * f64::from(k) / f64::from(SAMPLES));
-            let exact = travel.length_at(Twofold::from(time.to_f64()));
-            let part = (Twofold::from(motion.length_at(time).to_f64()) - exact).abs().to_f64() / bound;
+            let exact = travel.length_at(DoubleDouble::from(time.to_f64()));
+            let part = (DoubleDouble::from(motion.length_at(time).to_f64()) - exact).abs().to_f64() / bound;
             assert!(part <= 1.0, "{}, seed {seed}: {part} of {bound} m", S::NAME);
             most = most.max(part);
         }

@@ -4,7 +4,7 @@
 //! by `cargo run --release -p pcr-tests --example campaign`.
 
 use pcr_core::{Motion, RegionRef};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use pcr_tests::audit::{Audit, Seen, Violation};
 use pcr_tests::disc::Disc;
 use pcr_tests::generators::{Dice, moved, pairs, reversed, split};
@@ -21,7 +21,7 @@ const EFFORT: Effort = Effort { resolution: 2e-2, boxes: if cfg!(optimized) { 20
 /// What it may spend on finding out whether the number of components is critical.
 const GLANCE: Effort = Effort { resolution: 3e-2, boxes: 3_000, range: f64::INFINITY };
 
-fn audit<S: Format>((ego, other): &(Disc, Disc)) -> Option<Audit<S>> {
+fn audit<S: HostScalar>((ego, other): &(Disc, Disc)) -> Option<Audit<S>> {
     let (ego, other) = (ego.rounded::<S>(), other.rounded::<S>());
     // Diameters of 2e7 m are above the limit of `f32`.
     let limit = S::LIMIT.to_f64();
@@ -120,7 +120,7 @@ proptest! {
 }
 
 /// The number of the region at a point, from 1; 0 outside all of them.
-fn label<S: Format>(motions: &[Motion<'_, S>; 2], regions: &[RegionRef<'_, S>], s: f64, l: f64) -> usize {
+fn label<S: HostScalar>(motions: &[Motion<'_, S>; 2], regions: &[RegionRef<'_, S>], s: f64, l: f64) -> usize {
     // Mapped lengths may be a rounding beyond the end.
     let on_path = |length: f64, agent: usize| S::from_f64(length).clamp(S::ZERO, motions[agent].path().length());
     let (s, l) = (on_path(s, 1), on_path(l, 0));
@@ -128,7 +128,7 @@ fn label<S: Format>(motions: &[Motion<'_, S>; 2], regions: &[RegionRef<'_, S>], 
 }
 
 /// Growing the combined radius by more than the bounds of both keeps every region inside one region.
-fn grows<S: Format>(pair: &(Disc, Disc), by: f64) -> Result<(), TestCaseError> {
+fn grows<S: HostScalar>(pair: &(Disc, Disc), by: f64) -> Result<(), TestCaseError> {
     let large = (pair.0.grown(by), pair.1.clone());
     let (Some(small), Some(large)) = (audit::<S>(pair), audit::<S>(&large)) else {
         return Ok(());
@@ -155,7 +155,7 @@ fn grows<S: Format>(pair: &(Disc, Disc), by: f64) -> Result<(), TestCaseError> {
 
 /// Both pairs have the same regions, points of the first one mapped by `map`. Points about in contact are left out, and
 /// where the number of components is critical only what is covered is compared.
-fn same_regions<S: Format>(
+fn same_regions<S: HostScalar>(
     pair: &(Disc, Disc),
     image: &(Disc, Disc),
     map: impl Fn(f64, f64) -> (f64, f64),

@@ -1,6 +1,9 @@
 //! Tables that are filled again, exchanged, or full: nothing of before stays, and nothing of what does not fit.
 
-use pcr_core::{Ecm, Full, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region, TableError};
+use pcr_core::{
+    CapacityError, Ecm, EcmEntry, EcmError, MismatchError, Motion, PassingState, Piece, PrecedenceTable, Progress,
+    RegionPrecedence,
+};
 use pcr_tests::disc::{Course, Disc, Leg};
 use pcr_tests::execution::Table;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -17,12 +20,16 @@ fn motions(courses: &[Course<f64>]) -> Vec<Motion<'_, f64>> {
     courses.iter().map(Course::motion).collect()
 }
 
-fn passes(orders: &Table<f64>, fleet: &[Motion<'_, f64>]) -> Vec<(usize, Pass)> {
+fn passes(orders: &Table<f64>, fleet: &[Motion<'_, f64>]) -> Vec<(usize, PassingState)> {
     orders.row(fleet, 0).expect("its fleet").map(|(_, region, pass)| (region.other(), pass)).collect()
 }
 
 fn empty(regions: usize, pieces: usize) -> Table<f64> {
-    Orders::new(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces], vec![Order::EMPTY; 2 * regions])
+    PrecedenceTable::new(
+        vec![EcmEntry::EMPTY; regions],
+        vec![Piece::EMPTY; pieces],
+        vec![RegionPrecedence::EMPTY; 2 * regions],
+    )
 }
 
 #[test]
@@ -31,15 +38,15 @@ fn what_is_filled_again_has_nothing_of_before() {
     let fleet = motions(&courses);
     for _ in 0..3 {
         orders.fill(&fleet).expect("room for one table");
-        assert_eq!(passes(&orders, &fleet), [1, 2, 3].map(|other| (other, Pass::Undecided)));
+        assert_eq!(passes(&orders, &fleet), [1, 2, 3].map(|other| (other, PassingState::Undecided)));
         assert_eq!((orders.ecm().len(), orders.ecm().pieces()), (3, 3));
         for other in 1..=3 {
-            orders.decide(&fleet, 0, other, Pass::First, 0.0).expect("its fleet");
+            orders.decide(&fleet, 0, other, PassingState::First, 0.0).expect("its fleet");
         }
         orders.fill_row(&fleet, 0).expect("room for one row");
-        assert_eq!(passes(&orders, &fleet), [1, 2, 3].map(|other| (other, Pass::Undecided)));
+        assert_eq!(passes(&orders, &fleet), [1, 2, 3].map(|other| (other, PassingState::Undecided)));
         for other in 1..=3 {
-            orders.decide(&fleet, 0, other, Pass::Second, 0.0).expect("its row");
+            orders.decide(&fleet, 0, other, PassingState::Second, 0.0).expect("its row");
         }
     }
 }
@@ -49,22 +56,37 @@ fn what_is_decided_stays_so_and_decides_nothing_else() {
     let (courses, mut orders) = (ways(3), empty(3, 3));
     let fleet = motions(&courses);
     orders.fill(&fleet).expect("room");
-    orders.decide(&fleet, 0, 2, Pass::First, 0.0).expect("its fleet");
-    assert_eq!(passes(&orders, &fleet), [(1, Pass::Undecided), (2, Pass::First), (3, Pass::Undecided)]);
-    orders.decide(&fleet, 2, 0, Pass::First, 0.0).expect("its fleet");
-    orders.decide(&fleet, 0, 3, Pass::Second, 0.0).expect("its fleet");
-    assert_eq!(passes(&orders, &fleet), [(1, Pass::Undecided), (2, Pass::First), (3, Pass::Second)]);
+    orders.decide(&fleet, 0, 2, PassingState::First, 0.0).expect("its fleet");
+    assert_eq!(
+        passes(&orders, &fleet),
+        [(1, PassingState::Undecided), (2, PassingState::First), (3, PassingState::Undecided)]
+    );
+    orders.decide(&fleet, 2, 0, PassingState::First, 0.0).expect("its fleet");
+    orders.decide(&fleet, 0, 3, PassingState::Second, 0.0).expect("its fleet");
+    assert_eq!(
+        passes(&orders, &fleet),
+        [(1, PassingState::Undecided), (2, PassingState::First), (3, PassingState::Second)]
+    );
     // Who goes first is through: 5 m and 0.6 m of its path for the first, 3.6 m of that of agent 3.
     let mut progress = vec![Progress::at_rest(0.0); 4];
     (progress[0], progress[3]) = (Progress::at_rest(5.5), Progress::at_rest(3.5));
     orders.passed(&progress);
-    assert_eq!(passes(&orders, &fleet), [(1, Pass::Undecided), (2, Pass::First), (3, Pass::Second)]);
+    assert_eq!(
+        passes(&orders, &fleet),
+        [(1, PassingState::Undecided), (2, PassingState::First), (3, PassingState::Second)]
+    );
     (progress[0], progress[3]) = (Progress::at_rest(5.7), Progress::at_rest(3.5));
     orders.passed(&progress);
-    assert_eq!(passes(&orders, &fleet), [(1, Pass::Undecided), (2, Pass::Over), (3, Pass::Second)]);
+    assert_eq!(
+        passes(&orders, &fleet),
+        [(1, PassingState::Undecided), (2, PassingState::Over), (3, PassingState::Second)]
+    );
     progress[3] = Progress::at_rest(3.7);
     orders.passed(&progress);
-    assert_eq!(passes(&orders, &fleet), [(1, Pass::Undecided), (2, Pass::Over), (3, Pass::Over)]);
+    assert_eq!(
+        passes(&orders, &fleet),
+        [(1, PassingState::Undecided), (2, PassingState::Over), (3, PassingState::Over)]
+    );
 }
 
 #[test]
@@ -74,13 +96,13 @@ fn an_agent_that_does_not_fit_leaves_no_pieces() {
     let without = motions(&courses[1..]);
     // The last agent of this fleet crosses four others: room for three regions.
     let fleet = [&without[..], &fleet[..1]].concat();
-    let mut ecm = Ecm::new(vec![Region::EMPTY; 3], vec![Piece::EMPTY; 8]);
+    let mut ecm = Ecm::new(vec![EcmEntry::EMPTY; 3], vec![Piece::EMPTY; 8]);
     ecm.fill(&without).expect("no regions");
     for _ in 0..5 {
-        assert_eq!(ecm.insert(&fleet, 4), Err(TableError::Full(Full::Regions)));
+        assert_eq!(ecm.insert(&fleet, 4), Err(EcmError::Full(CapacityError::Regions)));
         assert_eq!((ecm.len(), ecm.pieces()), (0, 0));
     }
-    let mut ecm = Ecm::new(vec![Region::EMPTY; 4], vec![Piece::EMPTY; 4]);
+    let mut ecm = Ecm::new(vec![EcmEntry::EMPTY; 4], vec![Piece::EMPTY; 4]);
     ecm.fill(&without).expect("no regions");
     ecm.insert(&fleet, 4).expect("room");
     assert_eq!((ecm.len(), ecm.pieces()), (4, 4));
@@ -90,8 +112,8 @@ fn an_agent_that_does_not_fit_leaves_no_pieces() {
 fn a_table_that_is_not_filled_is_empty() {
     let courses = ways(4);
     let fleet = motions(&courses);
-    for (regions, pieces, full) in [(3, 8, Full::Regions), (8, 3, Full::Pieces)] {
-        let mut ecm = Ecm::new(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]);
+    for (regions, pieces, full) in [(3, 8, CapacityError::Regions), (8, 3, CapacityError::Pieces)] {
+        let mut ecm = Ecm::new(vec![EcmEntry::EMPTY; regions], vec![Piece::EMPTY; pieces]);
         assert_eq!(ecm.fill(&fleet), Err(full));
         assert_eq!((ecm.len(), ecm.pieces(), ecm.is_empty()), (0, 0, true));
         // Nothing of it is found by those who come one after the other.
@@ -107,16 +129,19 @@ fn no_path_of_another_fleet_or_of_another_row_is_exchanged() {
     stranger[3] = others[0].motion();
     let mut ecm = Ecm::grown(&fleet).expect("memory");
     let motion = fleet[1];
-    assert_eq!(ecm.replace(&mut stranger, 1, motion), Err(Mismatch::OtherFleet.into()));
-    assert_eq!(ecm.replace(&mut fleet, 4, motion), Err(Mismatch::NoSuchAgent(4).into()));
+    assert_eq!(ecm.replace(&mut stranger, 1, motion), Err(MismatchError::OtherFleet.into()));
+    assert_eq!(ecm.replace(&mut fleet, 4, motion), Err(MismatchError::NoSuchAgent(4).into()));
     assert_eq!(ecm.row(&fleet, 0).expect("its fleet").count(), 3);
     let mut orders = empty(6, 6);
     orders.fill_row(&fleet, 0).expect("room");
-    orders.decide(&fleet, 0, 2, Pass::First, 0.0).expect("its row");
-    assert_eq!(orders.replace(&mut fleet, 0, motion), Err(Mismatch::OnlyRow(0).into()));
-    assert_eq!(orders.erase(&fleet, 2), Err(Mismatch::OnlyRow(0)));
-    assert_eq!(orders.remove(&fleet, 2), Err(Mismatch::OnlyRow(0)));
-    assert_eq!(passes(&orders, &fleet), [(1, Pass::Undecided), (2, Pass::First), (3, Pass::Undecided)]);
+    orders.decide(&fleet, 0, 2, PassingState::First, 0.0).expect("its row");
+    assert_eq!(orders.replace(&mut fleet, 0, motion), Err(MismatchError::OnlyRow(0).into()));
+    assert_eq!(orders.erase(&fleet, 2), Err(MismatchError::OnlyRow(0)));
+    assert_eq!(orders.remove(&fleet, 2), Err(MismatchError::OnlyRow(0)));
+    assert_eq!(
+        passes(&orders, &fleet),
+        [(1, PassingState::Undecided), (2, PassingState::First), (3, PassingState::Undecided)]
+    );
 }
 
 #[test]
@@ -129,7 +154,7 @@ fn a_circle_to_the_other_side_is_another_path() {
     let (left, right, courses) = (circle(TAU), circle(-TAU), ways(1));
     let table = Ecm::grown(&[left.motion(), courses[0].motion()]).expect("memory");
     assert_eq!(table.row(&[left.motion(), courses[0].motion()], 0).map(drop), Ok(()));
-    assert_eq!(table.row(&[right.motion(), courses[0].motion()], 0).map(drop), Err(Mismatch::OtherFleet));
+    assert_eq!(table.row(&[right.motion(), courses[0].motion()], 0).map(drop), Err(MismatchError::OtherFleet));
 }
 
 /// The lag of one motion grew, and a region that was none of the table's is one now, for which there is no room. Once the table lost all
@@ -149,27 +174,27 @@ fn a_table_without_room_for_a_larger_lag_stays_as_it_was() {
     let mut fleet = [0, 1, 2].map(|k| courses[k].motion());
     let longer = pcr_core::Profile::<f64, 1>::from_pieces(1.0, [(1000.0009, 0.0)]).expect("small");
     let across = courses[3].motion();
-    let mut orders = Orders::new([Region::EMPTY; 1], [Piece::EMPTY; 1], [Order::EMPTY; 4]);
+    let mut orders = PrecedenceTable::new([EcmEntry::EMPTY; 1], [Piece::EMPTY; 1], [RegionPrecedence::EMPTY; 4]);
     orders.fill(&fleet).expect("room for the one region");
-    let mut ecm = Ecm::new([Region::EMPTY; 1], [Piece::EMPTY; 1]);
+    let mut ecm = Ecm::new([EcmEntry::EMPTY; 1], [Piece::EMPTY; 1]);
     ecm.fill(&fleet).expect("room for the one region");
     let drifts = Motion::new(fleet[1].path(), longer.as_profile(), 0.3, 0.0).expect("a millimetre is allowed");
     assert!(drifts.lag() > 0.8e-3);
     let before = fleet;
     for is_table in [true, false] {
-        let rows = |ecm: &Ecm<_, _, _>, orders: &Orders<_, _, _, _>, fleet: &[Motion<'_, f64>]| {
+        let rows = |ecm: &Ecm<_, _, _>, orders: &PrecedenceTable<_, _, _, _>, fleet: &[Motion<'_, f64>]| {
             if is_table { ecm.row(fleet, 0).map(Iterator::count) } else { orders.row(fleet, 0).map(Iterator::count) }
         };
         // Of a motion that the table does not hold for, nothing is told.
         fleet[1] = drifts;
-        assert_eq!(rows(&ecm, &orders, &fleet), Err(Mismatch::OtherFleet));
+        assert_eq!(rows(&ecm, &orders, &fleet), Err(MismatchError::OtherFleet));
         let refused = if is_table { ecm.replace(&mut fleet, 0, across) } else { orders.replace(&mut fleet, 0, across) };
-        assert_eq!(refused, Err(Mismatch::OtherFleet.into()));
+        assert_eq!(refused, Err(MismatchError::OtherFleet.into()));
         assert_eq!(fleet[0].path().length(), before[0].path().length(), "the fleet is as it was");
         // Given to the table, it needs room, and without it all is as it was.
         fleet = before;
         let refused = if is_table { ecm.replace(&mut fleet, 1, drifts) } else { orders.replace(&mut fleet, 1, drifts) };
-        assert!(matches!(refused, Err(TableError::Full(_))), "{refused:?}");
+        assert!(matches!(refused, Err(EcmError::Full(_))), "{refused:?}");
         assert_eq!((rows(&ecm, &orders, &fleet), fleet[1].lag()), (Ok(1), before[1].lag()));
     }
 }

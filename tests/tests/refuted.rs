@@ -1,17 +1,17 @@
 //! Tables that were changed are refuted by the checker, or have lost nothing: what it proves is tried by points, and every place that it
 //! shows is looked at, with exact arithmetic that shares nothing with it.
 
-use pcr_certify::data::{Pair, Phase, Share, Table};
-use pcr_certify::pair::{Findings, Promise, Witness};
-use pcr_certify::table::{Checker, Margin};
+use pcr_certify::pair::{Findings, TableProperty, Witness};
+use pcr_certify::raw::{RawBranch, RawPair, RawPhase, RawTable};
+use pcr_certify::table::{Checker, CoverageMargin};
 use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::Scenario;
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use pcr_planning::regions::table_of;
 use pcr_tests::certified::table;
 use pcr_tests::disc::{Disc, Drive, Leg};
-use pcr_tests::exact::{Route, Twofold};
+use pcr_tests::exact::{DoubleDouble, Route};
 use pcr_tests::generators::{Dice, certifiable};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -24,19 +24,19 @@ fn fleet() -> Scenario {
     Scenario::from_json(include_str!("../data/paper12.json")).unwrap()
 }
 
-fn findings(table: &Table) -> Findings {
-    Checker::new(table).unwrap().check(Margin::Needed).unwrap()
+fn findings(table: &RawTable) -> Findings {
+    Checker::new(table).unwrap().check(CoverageMargin::Needed).unwrap()
 }
 
 /// The table of paths alone.
-fn of_paths(mut table: Table) -> Table {
+fn of_paths(mut table: RawTable) -> RawTable {
     table.agents.iter_mut().for_each(|agent| agent.travel = None);
     table.pairs.iter_mut().flat_map(|pair| &mut pair.regions).for_each(|region| region.times = None);
     table
 }
 
 /// Makes what is told of regions that of their pieces again; those that have none any more are gone.
-fn tell(pair: &mut Pair) {
+fn tell(pair: &mut RawPair) {
     let mut regions = Vec::new();
     for (place, mut region) in std::mem::take(&mut pair.regions).into_iter().enumerate() {
         let those = pair.pieces.iter_mut().filter(|piece| piece.region == place);
@@ -62,7 +62,7 @@ fn touches(routes: &[Route; 2], lengths: [[f64; 2]; 2], radius: f64, steps: u32)
         (0..=steps).any(|j| {
             let [p, q] = [routes[0].at(at(lengths[0], i).into()), routes[1].at(at(lengths[1], j).into())];
             let [x, y] = [p[0] - q[0], p[1] - q[1]];
-            (x * x + y * y).sqrt() <= Twofold::from(radius)
+            (x * x + y * y).sqrt() <= DoubleDouble::from(radius)
         })
     })
 }
@@ -77,7 +77,7 @@ struct Changes {
 
 impl Changes {
     /// Certifies the changed pair alone. Where it is proved, `lost` has no contact.
-    fn look(&mut self, table: &Table, mut changed: Pair, lost: impl FnOnce() -> bool) {
+    fn look(&mut self, table: &RawTable, mut changed: RawPair, lost: impl FnOnce() -> bool) {
         tell(&mut changed);
         let mut agents = table.agents.clone();
         for (place, agent) in agents.iter_mut().enumerate() {
@@ -86,11 +86,11 @@ impl Changes {
         }
         let pairs = changed.agents;
         let others = (0..agents.len()).filter(|place| !pairs.contains(place));
-        let far: Vec<Pair> = others
+        let far: Vec<RawPair> = others
             .flat_map(|other| pairs.map(|one| [one.min(other), one.max(other)]))
             .filter_map(|pair| table.pairs.iter().find(|there| there.agents == pair).cloned())
             .collect();
-        let small = Table { agents, pairs: far.into_iter().chain([changed]).collect(), apart: table.apart };
+        let small = RawTable { agents, pairs: far.into_iter().chain([changed]).collect(), apart: table.apart };
         let found = findings(&small);
         if !found.refuted.is_empty() {
             self.refuted += 1;
@@ -103,7 +103,7 @@ impl Changes {
     }
 }
 
-fn changed_tables_are_refuted<S: Format>(scenario: &Scenario) {
+fn changed_tables_are_refuted<S: HostScalar>(scenario: &Scenario) {
     let table = of_paths(table_of::<S>(scenario).unwrap().remove(0));
     let routes: Vec<Route> =
         scenario.agents.iter().map(|agent| Route::new::<S>(&Disc::of_agent(agent).rounded::<S>())).collect();
@@ -158,21 +158,21 @@ fn changed_tables_are_refuted_unless_they_are_right() {
     changed_tables_are_refuted::<Q12>(&scenario);
 }
 
-fn exchanged_shares_are_not_proved<S: Format>() {
+fn exchanged_shares_are_not_proved<S: HostScalar>() {
     let (mut exchanged, mut refuted, mut proved) = (0, 0, 0);
     for seed in 0..count(1_500, 400) {
         let (pair, drives) = certifiable::<S>(seed);
         let Some(mut table) = table::<S>(&pair, &drives) else { continue };
         // One interval each at every length: else each may hold all there is of the other.
         let pieces = &mut table.pairs[0].pieces;
-        if pieces.len() > 12 || !pieces.iter().any(|piece| piece.share != Share::Only) {
+        if pieces.len() > 12 || !pieces.iter().any(|piece| piece.share != RawBranch::Only) {
             continue;
         }
         for piece in pieces {
             piece.share = match piece.share {
-                Share::Only => Share::Only,
-                Share::Start => Share::End,
-                Share::End => Share::Start,
+                RawBranch::Only => RawBranch::Only,
+                RawBranch::Start => RawBranch::End,
+                RawBranch::End => RawBranch::Start,
             };
         }
         exchanged += 1;
@@ -194,25 +194,25 @@ fn tables_with_their_shares_exchanged_are_refuted() {
     exchanged_shares_are_not_proved::<Q12>();
 }
 
-fn falsified_tables_are_refuted<S: Format>() {
+fn falsified_tables_are_refuted<S: HostScalar>() {
     let table = table_of::<S>(&fleet()).unwrap().remove(0);
     let full: Vec<usize> = (0..table.pairs.len()).filter(|&place| !table.pairs[place].pieces.is_empty()).collect();
-    let refuted = |change: &dyn Fn(&mut Table)| {
+    let refuted = |change: &dyn Fn(&mut RawTable)| {
         let mut other = table.clone();
         change(&mut other);
-        Checker::new(&other).and_then(|checker| checker.check(Margin::Needed)).map(|found| found.refuted)
+        Checker::new(&other).and_then(|checker| checker.check(CoverageMargin::Needed)).map(|found| found.refuted)
     };
     let breaks = |found: &[Witness], promise| found.iter().any(|witness| witness.promise == promise);
     for &place in &full {
         // ε: less is not kept, of more a quarter is not covered.
         let less = refuted(&|table| table.pairs[place].excess *= 0.25).unwrap();
-        assert!(breaks(&less, Promise::Near), "{}: {place}", S::NAME);
+        assert!(breaks(&less, TableProperty::Near), "{}: {place}", S::NAME);
         let more = refuted(&|table| table.pairs[place].excess *= 8.0).unwrap();
-        assert!(breaks(&more, Promise::Covered), "{}: {place}", S::NAME);
+        assert!(breaks(&more, TableProperty::Covered), "{}: {place}", S::NAME);
         // The pieces of another pair, with their regions.
         let next = full[(full.iter().position(|&other| other == place).unwrap() + 1) % full.len()];
         let exchanged = refuted(&|table| {
-            let Pair { regions, pieces, .. } = table.pairs[next].clone();
+            let RawPair { regions, pieces, .. } = table.pairs[next].clone();
             let own = &mut table.pairs[place];
             (own.regions, own.pieces) = (regions, pieces);
         });
@@ -225,7 +225,7 @@ fn falsified_tables_are_refuted<S: Format>() {
         assert!(by > 0.0 && by < 0.5 * agent.radius, "{}: {place}", S::NAME);
         let larger = refuted(&|table| table.agents[place].radius += by).unwrap();
         let smaller = refuted(&|table| table.agents[place].radius -= by).unwrap();
-        let found = [breaks(&larger, Promise::Covered), breaks(&smaller, Promise::Near)];
+        let found = [breaks(&larger, TableProperty::Covered), breaks(&smaller, TableProperty::Near)];
         assert_eq!(found, [true; 2], "{}: {place}", S::NAME);
     }
     // Times: shorter ones leave contacts out, longer ones are farther out than stated.
@@ -243,9 +243,9 @@ fn falsified_tables_are_refuted<S: Format>() {
                     })
                 };
                 let less = moved(0.5 * (to - from).min(1.0)).unwrap();
-                shorter = [shorter[0] + 1, shorter[1] + usize::from(breaks(&less, Promise::Timed))];
+                shorter = [shorter[0] + 1, shorter[1] + usize::from(breaks(&less, TableProperty::Timed))];
                 let more = moved(-3.0 * travel.time_excess).unwrap();
-                longer = [longer[0] + 1, longer[1] + usize::from(breaks(&more, Promise::Prompt))];
+                longer = [longer[0] + 1, longer[1] + usize::from(breaks(&more, TableProperty::Prompt))];
                 let crossed = moved(1.5 * (to - from) + travel.time_excess);
                 assert!(crossed.is_err(), "{}: {place}", S::NAME);
             }
@@ -266,9 +266,9 @@ fn tables_with_a_number_falsified_are_refuted() {
 }
 
 /// Motions that go back, jump, or end before their path does: a region may then be left and come to again at a time that nobody tells.
-fn motions_that_are_none_are_refused<S: Format>() {
+fn motions_that_are_none_are_refused<S: HostScalar>() {
     let table = table_of::<S>(&fleet()).unwrap().remove(0);
-    let refused = |why: &str, change: &dyn Fn(&mut Vec<Phase>)| {
+    let refused = |why: &str, change: &dyn Fn(&mut Vec<RawPhase>)| {
         for place in 0..table.agents.len() {
             let mut other = table.clone();
             change(&mut other.agents[place].travel.as_mut().unwrap().phases);
@@ -276,21 +276,21 @@ fn motions_that_are_none_are_refused<S: Format>() {
             assert!(found.contains(why), "{}: {place}: {found}", S::NAME);
         }
     };
-    let ends = |phases: &[Phase]| phases.last().map(|last| (last.time[1], last.length[1])).unwrap();
+    let ends = |phases: &[RawPhase]| phases.last().map(|last| (last.time[1], last.length[1])).unwrap();
     refused("its phases end at 0 m", &|phases| phases.clear());
     refused("its phases end at", &|phases| phases.truncate(1));
     refused("too short a way", &|phases| {
         let (time, length) = ends(phases);
-        *phases = vec![Phase { time: [0.0, time], length: [0.0, length], speed: [5.0 * length / time; 2] }];
+        *phases = vec![RawPhase { time: [0.0, time], length: [0.0, length], speed: [5.0 * length / time; 2] }];
     });
     // A tenth faster than it goes.
     refused("too short a way", &|phases| {
         let (time, length) = ends(phases);
-        *phases = vec![Phase { time: [0.0, time], length: [0.0, length], speed: [1.1 * length / time, 9.0] }];
+        *phases = vec![RawPhase { time: [0.0, time], length: [0.0, length], speed: [1.1 * length / time, 9.0] }];
     });
     refused("takes no time", &|phases| {
         let (time, length) = ends(phases);
-        let phase = |time, length| Phase { time, length, speed: [0.0; 2] };
+        let phase = |time, length| RawPhase { time, length, speed: [0.0; 2] };
         *phases = vec![phase([0.0, time], [0.0; 2]), phase([time; 2], [0.0, length])];
     });
 }
@@ -340,14 +340,14 @@ fn special(seed: u64, largest: f64) -> (Disc, Disc) {
 }
 
 /// A change of one piece: its ends, its place, its share, or that it is there.
-fn changed(pair: &mut Pair, ends: [f64; 2], dice: &mut Dice) {
+fn changed(pair: &mut RawPair, ends: [f64; 2], dice: &mut Dice) {
     let place = dice.below(pair.pieces.len());
     let mut copy = pair.pieces[place];
     match dice.below(8) {
         0 => drop(pair.pieces.remove(place)),
         1 => pair.pieces[place].lengths.swap(0, 1),
         2 => pair.pieces[place].segments.swap(0, 1),
-        3 => pair.pieces[place].share = [Share::Only, Share::Start, Share::End][dice.below(3)],
+        3 => pair.pieces[place].share = [RawBranch::Only, RawBranch::Start, RawBranch::End][dice.below(3)],
         4 => {
             // Two pieces with a gap between them.
             let k = dice.below(2);
@@ -367,29 +367,29 @@ fn changed(pair: &mut Pair, ends: [f64; 2], dice: &mut Dice) {
 }
 
 /// The squared distance of the centres at two lengths, exactly but for 2^-100.
-fn distance(routes: &[Route; 2], lengths: [f64; 2]) -> Twofold {
-    distance_at(routes, lengths.map(Twofold::from))
+fn distance(routes: &[Route; 2], lengths: [f64; 2]) -> DoubleDouble {
+    distance_at(routes, lengths.map(DoubleDouble::from))
 }
 
-fn distance_at(routes: &[Route; 2], lengths: [Twofold; 2]) -> Twofold {
+fn distance_at(routes: &[Route; 2], lengths: [DoubleDouble; 2]) -> DoubleDouble {
     let [[a, b], [c, d]] = [0, 1].map(|k| routes[k].at(lengths[k]));
     let [x, y] = [a - c, b - d];
     (x * x + y * y).sqrt()
 }
 
-fn holds(pair: &Pair, lengths: [f64; 2]) -> bool {
+fn holds(pair: &RawPair, lengths: [f64; 2]) -> bool {
     pair.pieces
         .iter()
         .any(|piece| (0..2).all(|k| piece.lengths[k][0] <= lengths[k] && lengths[k] <= piece.lengths[k][1]))
 }
 
 /// The lengths of both paths, as the format sums them up.
-fn ends(table: &Table) -> [f64; 2] {
+fn ends(table: &RawTable) -> [f64; 2] {
     [0, 1].map(|k| table.agents[k].path.segments.last().map_or(0.0, |last| last.to))
 }
 
 /// A contact that no piece holds, if points show one: on a lattice of the whole paths, and about the ends of pieces.
-fn left_out(routes: &[Route; 2], table: &Table, radius: Twofold, dice: &mut Dice) -> Option<[f64; 2]> {
+fn left_out(routes: &[Route; 2], table: &RawTable, radius: DoubleDouble, dice: &mut Dice) -> Option<[f64; 2]> {
     let (pair, ends) = (&table.pairs[0], ends(table));
     let mut places: [Vec<f64>; 2] = ends.map(|end| (0..=12).map(|k| end.min(end * f64::from(k) / 12.0)).collect());
     for piece in &pair.pieces {
@@ -402,16 +402,20 @@ fn left_out(routes: &[Route; 2], table: &Table, radius: Twofold, dice: &mut Dice
         }
     }
     // A told length is that of a place on each segment that holds it, off by what the sum of lengths was rounded by.
-    let exact = |k: usize, told: f64| -> Vec<Twofold> {
-        let mut before = Twofold::ZERO;
+    let exact = |k: usize, told: f64| -> Vec<DoubleDouble> {
+        let mut before = DoubleDouble::ZERO;
         let mut found = Vec::new();
         for segment in &table.agents[k].path.segments {
             if segment.from <= told && told <= segment.to {
-                let length = Twofold::from(segment.length);
-                let on = if told == segment.to { length } else { Twofold::from(told) - Twofold::from(segment.from) };
-                found.push(before + on.clamp(Twofold::ZERO, length));
+                let length = DoubleDouble::from(segment.length);
+                let on = if told == segment.to {
+                    length
+                } else {
+                    DoubleDouble::from(told) - DoubleDouble::from(segment.from)
+                };
+                found.push(before + on.clamp(DoubleDouble::ZERO, length));
             }
-            before = before + Twofold::from(segment.length);
+            before = before + DoubleDouble::from(segment.length);
         }
         found
     };
@@ -436,15 +440,15 @@ struct Tried {
 
 /// The verdict about a table of two agents is that of points: where it is proved no contact is left out, and a place that is shown is
 /// one, or is told without a contact.
-fn is_right(table: &Table, routes: &[Route; 2], what: &str, dice: &mut Dice, tried: &mut Tried) {
+fn is_right(table: &RawTable, routes: &[Route; 2], what: &str, dice: &mut Dice, tried: &mut Tried) {
     tried.tables += 1;
     let pair = &table.pairs[0];
-    let found = match Checker::new(table).and_then(|checker| checker.check(Margin::Needed)) {
+    let found = match Checker::new(table).and_then(|checker| checker.check(CoverageMargin::Needed)) {
         Ok(found) => found,
         Err(_) => return tried.refused += 1,
     };
-    let radius = Twofold::from(table.agents[0].radius) + Twofold::from(table.agents[1].radius);
-    for witness in found.refuted.iter().filter(|witness| witness.promise != Promise::Shared) {
+    let radius = DoubleDouble::from(table.agents[0].radius) + DoubleDouble::from(table.agents[1].radius);
+    for witness in found.refuted.iter().filter(|witness| witness.promise != TableProperty::Shared) {
         let clearance = (distance(routes, witness.lengths) - radius).to_f64();
         // Lengths are rounded for messages, and those along a path are what the format sums up.
         let near = |k: usize| 1e-15 * routes[k].length().to_f64() + table.agents[k].path.rounding;
@@ -453,7 +457,7 @@ fn is_right(table: &Table, routes: &[Route; 2], what: &str, dice: &mut Dice, tri
             "{what}: {witness:?}, {clearance:e}"
         );
         match witness.promise {
-            Promise::Covered => assert!(witness.clearance < pair.excess, "{what}: {witness:?}"),
+            TableProperty::Covered => assert!(witness.clearance < pair.excess, "{what}: {witness:?}"),
             _ => assert!(witness.clearance > 0.0, "{what}: {witness:?}"),
         }
     }
@@ -469,14 +473,14 @@ fn is_right(table: &Table, routes: &[Route; 2], what: &str, dice: &mut Dice, tri
 }
 
 /// Ends that the format has.
-fn round(pair: &mut Pair, step: f64) {
+fn round(pair: &mut RawPair, step: f64) {
     if step > 0.0 {
         let ends = pair.pieces.iter_mut().flat_map(|piece| piece.lengths.iter_mut().flatten());
         ends.for_each(|end| *end = (*end / step).round() * step);
     }
 }
 
-fn attacked<S: Format>(pairs: u64) -> [Tried; 2] {
+fn attacked<S: HostScalar>(pairs: u64) -> [Tried; 2] {
     let [mut right, mut wrong] = [Tried::default(), Tried::default()];
     for seed in 0..pairs {
         let mut dice = Dice::seeded(seed ^ 0x5eed);

@@ -1,6 +1,8 @@
 //! Tasks of others on roadmaps: all are done without a contact, however late robots are, and at least as many a second as published.
 
-use pcr_execution::lifelong::{Delays, Method, Report, Request, Tasks, run_tasks};
+use pcr_execution::lifelong::{
+    CoordinationMethod, DelayModel, LifelongOptions, MeasuredLifelongRun, TaskStream, run_tasks,
+};
 use pcr_lab::roadmap::read;
 
 /// Roadmaps, and the published tasks a second.
@@ -16,16 +18,26 @@ const SETS: [(&str, f64); 9] = [
     (include_str!("../data/real/cplp/set8_15ee252a.json"), 1.511),
 ];
 
-const ON_TIME: Delays = Delays { stopped: 0.0, stop: 5.0, slip: 0.0 };
+const ON_TIME: DelayModel = DelayModel { stopped: 0.0, stop: 5.0, slip: 0.0 };
 
-fn done(set: &str, count: usize, delays: Delays) -> (Report, Tasks) {
+fn done(set: &str, count: usize, delays: DelayModel) -> (MeasuredLifelongRun, TaskStream) {
     let (imported, mut all) = read(set).expect("a roadmap");
     all.tasks.truncate(count);
-    let request = Request { agents: all.starts.len(), duration: 3000.0, delays, seed: 1, method: Method::Orders };
+    let request = LifelongOptions {
+        agents: all.starts.len(),
+        duration: 3000.0,
+        delays,
+        seed: 1,
+        method: CoordinationMethod::Orders,
+    };
     let report = run_tasks(&imported, request, &all).expect("a run");
     let outcome = &report.outcome;
     assert_eq!((outcome.missions, outcome.robots), (all.tasks.len(), all.starts.len()));
-    assert_eq!((outcome.certificate.verdict, outcome.breaches, outcome.stuck), ("proved", 0, 0), "{outcome:?}");
+    assert_eq!(
+        (outcome.certificate.verdict, outcome.authority_overruns, outcome.stuck),
+        ("proved", 0, 0),
+        "{outcome:?}"
+    );
     // Nothing is done before it comes.
     assert!(report.last_arrival >= all.tasks.iter().map(|(_, time)| *time).fold(0.0, f64::max));
     (report, all)
@@ -44,7 +56,7 @@ fn all_tasks_are_done_and_nobody_touches_anybody() {
 #[test]
 fn late_robots_do_all_tasks() {
     let (sets, count) = if cfg!(optimized) { (&SETS[..3], usize::MAX) } else { (&SETS[..1], 10) };
-    sets.iter().for_each(|(set, _)| drop(done(set, count, Delays::default())));
+    sets.iter().for_each(|(set, _)| drop(done(set, count, DelayModel::default())));
 }
 
 /// A robot that stands at the node of a task when it comes, or passes it on its way to another one, does it.
@@ -52,10 +64,16 @@ fn late_robots_do_all_tasks() {
 fn tasks_are_done_by_whoever_is_there() {
     let set = SETS[0].0;
     let (_, all) = read(set).expect("a roadmap");
-    let tasks = |tasks: &[(usize, f64)]| Tasks { tasks: tasks.to_vec(), ..all.clone() };
-    let run = |tasks: &Tasks| {
+    let tasks = |tasks: &[(usize, f64)]| TaskStream { tasks: tasks.to_vec(), ..all.clone() };
+    let run = |tasks: &TaskStream| {
         let (imported, _) = read(set).expect("a roadmap");
-        let request = Request { agents: 10, duration: 300.0, delays: ON_TIME, seed: 1, method: Method::Orders };
+        let request = LifelongOptions {
+            agents: 10,
+            duration: 300.0,
+            delays: ON_TIME,
+            seed: 1,
+            method: CoordinationMethod::Orders,
+        };
         run_tasks(&imported, request, tasks).expect("a run")
     };
     let stands = run(&tasks(&[(all.starts[3], 5.0), (all.starts[3], 5.0)]));
@@ -70,10 +88,16 @@ fn tasks_are_done_by_whoever_is_there() {
 #[test]
 fn places_that_are_none_are_refused() {
     let (imported, tasks) = read(SETS[0].0).expect("a roadmap");
-    let request = Request { agents: 10, duration: 10.0, delays: Delays::default(), seed: 1, method: Method::Orders };
-    let wrong = |tasks: Tasks| run_tasks(&imported, request, &tasks).expect_err("a wrong place");
-    let node = wrong(Tasks { starts: vec![0, 50], ..tasks.clone() });
+    let request = LifelongOptions {
+        agents: 10,
+        duration: 10.0,
+        delays: DelayModel::default(),
+        seed: 1,
+        method: CoordinationMethod::Orders,
+    };
+    let wrong = |tasks: TaskStream| run_tasks(&imported, request, &tasks).expect_err("a wrong place");
+    let node = wrong(TaskStream { starts: vec![0, 50], ..tasks.clone() });
     assert_eq!(node, "node 50 is none of the 50 of the layout");
-    assert!(wrong(Tasks { tasks: vec![(51, 0.0)], ..tasks.clone() }).contains("node 51"));
-    assert_eq!(wrong(Tasks { starts: vec![3, 3], ..tasks }), "robots 0 and 1 touch where they begin");
+    assert!(wrong(TaskStream { tasks: vec![(51, 0.0)], ..tasks.clone() }).contains("node 51"));
+    assert_eq!(wrong(TaskStream { starts: vec![3, 3], ..tasks }), "robots 0 and 1 touch where they begin");
 }

@@ -1,10 +1,10 @@
 //! Safe intervals against the definition: a window is blocked where some point of the part is within reach of the other
 //! agent, wherever that stands.
 
-use pcr_core::{Encounter, Interval, Mismatch, Motion, gaps, safe_intervals, safe_lengths, union};
+use pcr_core::{Encounter, Interval, MismatchError, Motion, gaps, safe_intervals, safe_lengths, union};
 use pcr_fixed::Q16;
-use pcr_planning::fleet::{Format, build_ecm};
-use pcr_planning::safe;
+use pcr_planning::fleet::{HostScalar, build_ecm};
+use pcr_planning::safe_windows;
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::generators::{Dice, driven_pairs};
 use pcr_tests::oracle::line::{below, reaches};
@@ -21,7 +21,11 @@ fn samples([lo, hi]: [f64; 2]) -> impl Iterator<Item = f64> {
     (0..=SAMPLES).map(move |k| lo + (hi - lo) * f64::from(k) / f64::from(SAMPLES))
 }
 
-fn audited<S: Format>(discs: [Disc; 2], drives: [(Drive, f64); 2], [from, to]: [f64; 2]) -> Result<(), TestCaseError> {
+fn audited<S: HostScalar>(
+    discs: [Disc; 2],
+    drives: [(Drive, f64); 2],
+    [from, to]: [f64; 2],
+) -> Result<(), TestCaseError> {
     let discs = discs.map(|disc| disc.rounded::<S>());
     let [ego, other] = [0, 1].map(|k| (&discs[k], drives[k].0.rounded::<S>(), S::from_f64(drives[k].1)));
     let course = |(disc, drive, start): &(&Disc, Drive, S)| Course::<S>::driven(disc, drive, start.to_f64());
@@ -121,13 +125,13 @@ proptest! {
 }
 
 /// The motion of an agent that may be late by so much \[s\].
-fn late<S: Format>(course: &Course<S>, late: f64) -> Motion<'_, S> {
+fn late<S: HostScalar>(course: &Course<S>, late: f64) -> Motion<'_, S> {
     course.motion().with_lateness(S::from_f64(late)).expect("a lateness")
 }
 
 /// Whether the library finds the same without storage, where it looks for each interval in the windows of all agents, as
 /// where all windows are stored, sorted and merged.
-fn same<S: Format>() {
+fn same<S: HostScalar>() {
     let (mut several, mut free) = (0, 0);
     for seed in 0..400 {
         let dice = &mut Dice::seeded(seed);
@@ -142,7 +146,8 @@ fn same<S: Format>() {
                 for (from, to) in [(from, from), (from, to), (S::from_f64(-100.0), S::from_f64(500.0))] {
                     let [part, during] = [Interval::new(lo, hi), Interval::new(from, to)];
                     let one_by_one = safe_intervals(&fleet, ego, part, during).expect("an agent of the fleet");
-                    let stored = safe::safe_intervals(&fleet, ego, part, during).expect("an agent of the fleet");
+                    let stored =
+                        safe_windows::safe_intervals(&fleet, ego, part, during).expect("an agent of the fleet");
                     several += u32::from(stored.len() > 1);
                     free += u32::from(from == to && stored == [during]);
                     assert!(one_by_one.eq(stored), "fleet {seed}, agent {ego}: {part:?} {during:?}");
@@ -158,8 +163,8 @@ fn fleets_are_safe_at_the_same_times_with_and_without_storage() {
     same::<f64>();
     same::<f32>();
     same::<Q16>();
-    let found = safe::safe_intervals::<f64>(&[], 0, Interval::new(0.0, 0.0), Interval::new(0.0, 1.0));
-    assert_eq!(found, Err(Mismatch::NoSuchAgent(0)));
+    let found = safe_windows::safe_intervals::<f64>(&[], 0, Interval::new(0.0, 0.0), Interval::new(0.0, 1.0));
+    assert_eq!(found, Err(MismatchError::NoSuchAgent(0)));
 }
 
 fn line(start: [f64; 3], length: f64, at: f64) -> Course<f64> {

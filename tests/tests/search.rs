@@ -6,7 +6,7 @@
 use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::Scenario;
-use pcr_planning::fleet::{Fleet, Format};
+use pcr_planning::fleet::{Fleet, HostScalar};
 use pcr_tests::audit::Audit;
 use pcr_tests::clearance::of_ends;
 use pcr_tests::disc::Disc;
@@ -19,7 +19,7 @@ const fn count(release: u64, debug: u64) -> u64 {
 }
 
 /// Pairs of a size \[m\] that touch from inside an arc.
-fn tangents_hold<S: Format>(size: f64) {
+fn tangents_hold<S: HostScalar>(size: f64) {
     let slack = S::slack(S::from_f64(10.0 * size)).to_f64();
     let (mut seen, mut least, mut most) = (0, f64::INFINITY, f64::NEG_INFINITY);
     let pairs = count(10_000, 500);
@@ -86,7 +86,7 @@ fn radii_below_the_least_are_refused_by_name() {
     assert!(Fleet::<f64>::new(&tiny).is_ok_and(|fleet| fleet.motions().len() == 2));
 }
 
-fn both_directions_hold<S: Format>(size: f64) {
+fn both_directions_hold<S: HostScalar>(size: f64) {
     let slack = S::slack(S::from_f64(10.0 * size)).to_f64();
     for seed in 0..count(1_000, 30) {
         let (ego, other) = inner_tangent(size, slack, &mut Dice::seeded(seed));
@@ -105,7 +105,7 @@ fn nothing_that_a_disc_covers_is_left_over() {
     both_directions_hold::<Q12>(20.0);
 }
 
-fn withstands<S: Format>() {
+fn withstands<S: HostScalar>() {
     let starts = count(8, 3);
     let found = searches::<S>(0, starts, count(200, 30));
     println!("{}", found.row(S::NAME));

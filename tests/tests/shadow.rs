@@ -2,9 +2,9 @@
 //! the format's own numbers take.
 
 use pcr_core::scalar::{Angle, Micro};
-use pcr_core::{Point, Pose, Scalar, Segment, Turn, internals};
+use pcr_core::{Point, Pose, Scalar, Segment, TurnSide, internals};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use pcr_tests::disc::{Disc, Leg};
 use pcr_tests::generators::{Dice, Pair, inner_tangent};
 use pcr_tests::shadow::{Enclosure, Number, Shadowed, Turned};
@@ -34,12 +34,12 @@ fn exactly<X: Shadowed>(point: Point<Number<X>>) -> Place {
     [point.x.exact, point.y.exact]
 }
 
-impl<X: Shadowed<S = X> + Format> Placed<X> {
+impl<X: Shadowed<S = X> + HostScalar> Placed<X> {
     fn new(disc: &Disc) -> Option<Self> {
         let number = |value: f64| Number::<X>::exact(X::from_f64(value));
         let [x, y, heading] = disc.start;
         let (x, y, heading) =
-            (number(x), number(y), Turned::<X>::exact(<X as Format>::angle(heading).expect("an angle")));
+            (number(x), number(y), Turned::<X>::exact(<X as HostScalar>::angle(heading).expect("an angle")));
         let standing = Segment::standing(Pose { position: Point::new(x, y), heading }).ok()?;
         // A full turn has the length of the circle as the format holds it.
         let round = |radius: f64, length: f64| {
@@ -47,11 +47,12 @@ impl<X: Shadowed<S = X> + Format> Placed<X> {
         };
         let (segment, bend) = match disc.legs[0] {
             Leg::Line(length) => (standing.then_line(number(length)).ok()?, None),
-            Leg::Left { radius, length } => {
-                (standing.then_arc(number(radius), Turn::Left, round(radius, length)).ok()?, Some(number(radius).exact))
-            }
+            Leg::Left { radius, length } => (
+                standing.then_arc(number(radius), TurnSide::Left, round(radius, length)).ok()?,
+                Some(number(radius).exact),
+            ),
             Leg::Right { radius, length } => (
-                standing.then_arc(number(radius), Turn::Right, round(radius, length)).ok()?,
+                standing.then_arc(number(radius), TurnSide::Right, round(radius, length)).ok()?,
                 Some(-number(radius).exact),
             ),
         };
@@ -106,7 +107,7 @@ struct Rows {
 }
 
 impl Rows {
-    fn of<X: Shadowed<S = X> + Format>() -> Self {
+    fn of<X: Shadowed<S = X> + HostScalar>() -> Self {
         let fixed = X::EPSILON == 0.0;
         let digit = if fixed { X::number(X::slack(X::from_f64(0.0))) / 8.0 } else { 0.0 };
         let eta = if fixed { 1.0 / 1_073_741_824.0 } else { 0.0 };
@@ -166,7 +167,7 @@ fn ordinary(size: f64, dice: &mut Dice) -> Pair {
     (disc(0.3 * size), disc(0.5 * size))
 }
 
-fn measure<X: Shadowed<S = X> + Format>(pair: &Pair, dice: &mut Dice, errors: &mut Errors) -> Option<()> {
+fn measure<X: Shadowed<S = X> + HostScalar>(pair: &Pair, dice: &mut Dice, errors: &mut Errors) -> Option<()> {
     let [first, second] = [Placed::<X>::new(&pair.0)?, Placed::<X>::new(&pair.1)?];
     let radii = X::from_f64(pair.0.radius) + X::from_f64(pair.1.radius);
     let extent = [&first, &second].map(|placed| {
@@ -232,7 +233,7 @@ fn measure<X: Shadowed<S = X> + Format>(pair: &Pair, dice: &mut Dice, errors: &m
     Some(())
 }
 
-fn held<X: Shadowed<S = X> + Format>(size: f64) {
+fn held<X: Shadowed<S = X> + HostScalar>(size: f64) {
     let mut errors = Errors::default();
     let pairs = if cfg!(optimized) { 50_000 } else { 1_000 };
     let mut seen = 0;

@@ -1,12 +1,12 @@
 //! Boxes, intervals and paths by hand: what they hold, to each side.
 
-use pcr_core::{Bounds, Interval, Invalid, Path, Point, Pose, Profile, Turn, gaps, union};
+use pcr_core::{Aabb, Interval, InvalidInput, Path, Point, Pose, Profile, TurnSide, gaps, union};
 use pcr_fixed::Q16;
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-fn bounds([x, y, to_x, to_y]: [f64; 4]) -> Bounds<f64> {
-    Bounds::around(Point::new(x, y), Point::new(to_x, to_y))
+fn bounds([x, y, to_x, to_y]: [f64; 4]) -> Aabb<f64> {
+    Aabb::around(Point::new(x, y), Point::new(to_x, to_y))
 }
 
 #[test]
@@ -52,12 +52,12 @@ fn gaps_and_unions_of_intervals_that_touch_are_none_and_one() {
     assert_eq!(between(1.5, 2.0), [interval((1.5, 2.0))]);
 }
 
-fn start<S: Format>() -> Path<S, 2> {
+fn start<S: HostScalar>() -> Path<S, 2> {
     Path::starting_at(Pose { position: Point::new(S::ZERO, S::ZERO), heading: S::angle(0.0).expect("an angle") })
         .expect("a pose")
 }
 
-fn sweeps<S: Format>() {
+fn sweeps<S: HostScalar>() {
     let number = S::from_f64;
     for (sweep, side) in [(FRAC_PI_2, 1.0), (-FRAC_PI_2, -1.0)] {
         let path = start::<S>().arc_by(number(2.0), number(sweep)).expect("a quarter");
@@ -68,10 +68,10 @@ fn sweeps<S: Format>() {
     let none = start::<S>().arc_by(number(2.0), S::ZERO).expect("no arc");
     assert_eq!(none.as_path().length(), S::ZERO);
     // A diameter is a number of the format, too.
-    let wide = start::<S>().arc(S::LIMIT.half() + S::LIMIT.half().half(), Turn::Left, number(1.0));
-    assert!(matches!(wide, Err(Invalid::OutOfRange("diameter of the arc"))));
+    let wide = start::<S>().arc(S::LIMIT.half() + S::LIMIT.half().half(), TurnSide::Left, number(1.0));
+    assert!(matches!(wide, Err(InvalidInput::OutOfRange("diameter of the arc"))));
     let beyond = start::<S>().arc_by(number(2.0), S::LIMIT.double());
-    assert!(matches!(beyond, Err(Invalid::OutOfRange("sweep"))));
+    assert!(matches!(beyond, Err(InvalidInput::OutOfRange("sweep"))));
     // A turn in place between two lines, and one before the first.
     for first in [0.0, 1.0] {
         let path = start::<S>()

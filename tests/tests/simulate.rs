@@ -2,10 +2,11 @@
 //! its record; the same seed gives the same run.
 
 use pcr_execution::simulate::{
-    Controller, Disturbance, Ended, FRAME, Outcome, Run, Settings, Simulation, Task, Trace, forage, run,
+    ClosedLoopOptions, ControllerKind, ControllerRunEntry, Disturbance, FRAME, MotionTrace, RunEnd, SimulationReport,
+    SimulationRun, SimulationTask, forage, run,
 };
 use pcr_formats::scenario::Scenario;
-use pcr_planning::plan::{Plan, Request};
+use pcr_planning::plan::{PlanOptions, PlanReport};
 use pcr_tests::generators::Dice;
 use std::f64::consts::{PI, TAU};
 
@@ -18,8 +19,8 @@ const USUAL: Disturbance = Disturbance { noise: 0.015, slip: 0.05, delay: 1.0, d
 
 const NONE: Disturbance = Disturbance { noise: 0.0, slip: 0.0, delay: 0.0, drift: 0.0 };
 
-fn settings(seed: u64, disturbance: Disturbance) -> Settings {
-    Settings { seed, replan: 2.0, disturbance }
+fn settings(seed: u64, disturbance: Disturbance) -> ClosedLoopOptions {
+    ClosedLoopOptions { seed, replan: 2.0, disturbance }
 }
 
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -50,7 +51,7 @@ fn overlaps(a: &[[f64; 2]], b: &[[f64; 2]], radius: f64, depth: f64) -> Vec<usiz
 
 /// Every pair with a robot: numbers, tracks and the sum of the radii.
 type Track = Vec<[f64; 2]>;
-fn pairs(task: &Task, trace: &Trace) -> Vec<([Option<u64>; 2], [Track; 2], f64)> {
+fn pairs(task: &SimulationTask, trace: &MotionTrace) -> Vec<([Option<u64>; 2], [Track; 2], f64)> {
     let robots: Vec<_> = task.robots.iter().zip(&trace.positions).collect();
     let mut pairs = Vec::new();
     for (place, (robot, track)) in robots.iter().enumerate() {
@@ -68,14 +69,14 @@ fn pairs(task: &Task, trace: &Trace) -> Vec<([Option<u64>; 2], [Track; 2], f64)>
 
 /// No disc meets another one, everything is done, and the run says so.
 #[track_caller]
-fn assert_safe(task: &Task, outcome: &Outcome, case: &str) {
+fn assert_safe(task: &SimulationTask, outcome: &SimulationRun, case: &str) {
     for (ids, [a, b], radius) in pairs(task, &outcome.trace) {
         assert_eq!(overlaps(&a, &b, radius, ROUNDING), [0_usize; 0], "{case}: {ids:?}");
     }
-    let Run { done, not_done, collisions, planning, .. } = &outcome.run;
+    let ControllerRunEntry { done, not_done, collisions, planning, .. } = &outcome.run;
     let missions: usize = task.robots.iter().map(|robot| robot.missions.len()).sum();
     assert_eq!((*done, *not_done, collisions.len()), (missions, 0, 0), "{case}");
-    assert_eq!(planning.expect("a supervisor plans").breaches, 0, "{case}");
+    assert_eq!(planning.expect("a supervisor plans").authority_overruns, 0, "{case}");
 }
 
 /// One that turns twice, one with a slow middle of its path, and one that only turns.
@@ -95,10 +96,10 @@ const SLOWER: &str = r#"{ "agents": [
 #[test]
 fn robots_turn_in_place_and_are_slow_where_their_own_motion_is() {
     let scenario = Scenario::from_json(SLOWER).expect("a scenario");
-    let task = Task::of(&scenario).expect("a task");
+    let task = SimulationTask::from_scenario(&scenario).expect("a task");
     assert_eq!(task.warnings, [""; 0]);
     for seed in 0..SEEDS {
-        let outcome = run(&task, Controller::Pcr, settings(seed, USUAL)).expect("a run");
+        let outcome = run(&task, ControllerKind::Pcr, settings(seed, USUAL)).expect("a run");
         assert_safe(&task, &outcome, &format!("seed {seed}"));
         let duration = |place: usize| {
             let journey = outcome.trace.journeys.iter().find(|journey| journey.robot == place).expect("its mission");
@@ -112,7 +113,7 @@ fn robots_turn_in_place_and_are_slow_where_their_own_motion_is() {
     }
     // Without disturbances, as fast as by their own motions.
     let exact = settings(0, NONE);
-    let outcome = run(&task, Controller::Pcr, exact).expect("a run");
+    let outcome = run(&task, ControllerKind::Pcr, exact).expect("a run");
     for journey in &outcome.trace.journeys {
         let took = (journey.end.expect("an end") - journey.begin) as f64 * FRAME;
         assert!((took - journey.unimpeded).abs() < 0.2, "{took} {}", journey.unimpeded);
@@ -127,7 +128,7 @@ fn robots_turn_in_place_and_are_slow_where_their_own_motion_is() {
 fn own_motions_that_wait_are_simulated_without_their_waits_and_that_is_told() {
     let waits = SLOWER.replace(r#"{ "duration": 4, "accel": 0 }"#, r#"{ "duration": 3, "accel": 0 },
         { "duration": 0.25, "accel": -1 }, { "duration": 9, "accel": 0 }, { "duration": 0.25, "accel": 1 }, { "duration": 0.75, "accel": 0 }"#);
-    let task = Task::of(&Scenario::from_json(&waits).expect("a scenario")).expect("a task");
+    let task = SimulationTask::from_scenario(&Scenario::from_json(&waits).expect("a scenario")).expect("a task");
     assert_eq!(task.warnings.len(), 1, "{:?}", task.warnings);
     assert!(task.warnings[0].starts_with("agent 2: its own motion takes 18.81"), "{:?}", task.warnings);
 }
@@ -136,7 +137,7 @@ fn own_motions_that_wait_are_simulated_without_their_waits_and_that_is_told() {
 fn foraging_robots_do_not_collide_under_the_supervisor() {
     for seed in 0..SEEDS {
         let task = forage::task(seed, 2);
-        let outcome = run(&task, Controller::Pcr, settings(seed, USUAL)).expect("a run");
+        let outcome = run(&task, ControllerKind::Pcr, settings(seed, USUAL)).expect("a run");
         assert_safe(&task, &outcome, &format!("seed {seed}"));
     }
 }
@@ -148,8 +149,8 @@ fn late_and_lost_robots_do_not_collide_under_the_supervisor() {
         let part = (seed % 7) as f64 / 6.0;
         let disturbance = Disturbance { noise: 0.03 * (1.0 - part), slip: 0.5 * part, delay: 6.0, drift: 0.01 };
         let task = forage::task(seed, 1);
-        let settings = Settings { seed, replan: 0.5 + 4.0 * part, disturbance };
-        let outcome = run(&task, Controller::Pcr, settings).expect("a run");
+        let settings = ClosedLoopOptions { seed, replan: 0.5 + 4.0 * part, disturbance };
+        let outcome = run(&task, ControllerKind::Pcr, settings).expect("a run");
         assert_safe(&task, &outcome, &format!("seed {seed}"));
     }
 }
@@ -180,8 +181,8 @@ fn star(seed: u64) -> Scenario {
 #[test]
 fn robots_that_all_want_to_the_middle_get_past_one_another() {
     for seed in 0..SEEDS {
-        let task = Task::of(&star(seed)).expect("a task");
-        let outcome = run(&task, Controller::Pcr, settings(seed, USUAL)).expect("a run");
+        let task = SimulationTask::from_scenario(&star(seed)).expect("a task");
+        let outcome = run(&task, ControllerKind::Pcr, settings(seed, USUAL)).expect("a run");
         assert_safe(&task, &outcome, &format!("seed {seed}"));
     }
 }
@@ -190,7 +191,7 @@ fn robots_that_all_want_to_the_middle_get_past_one_another() {
 fn nothing_is_lost_without_disturbances_and_without_others() {
     let mut task = forage::task(5, 1);
     task.robots.truncate(1);
-    let outcome = run(&task, Controller::Pcr, settings(5, NONE)).expect("a run");
+    let outcome = run(&task, ControllerKind::Pcr, settings(5, NONE)).expect("a run");
     assert_safe(&task, &outcome, "alone");
     // A few frames: commands are a frame late, and speeds change from frame to frame.
     assert!(outcome.run.travel - outcome.run.unimpeded < 10.0 * FRAME, "{:?}", outcome.run);
@@ -198,10 +199,10 @@ fn nothing_is_lost_without_disturbances_and_without_others() {
 
 #[test]
 fn the_figures_follow_from_the_record() {
-    for &controller in Controller::ALL {
+    for &controller in ControllerKind::ALL {
         let task = forage::task(2, 1);
         let outcome = run(&task, controller, settings(2, USUAL)).expect("a run");
-        let Outcome { run, trace, .. } = &outcome;
+        let SimulationRun { run, trace, .. } = &outcome;
         let frames = trace.positions[0].len();
         assert_eq!(run.missions.len(), trace.journeys.len());
         let (mut travel, mut waiting) = (0.0, 0.0);
@@ -236,7 +237,7 @@ fn the_figures_follow_from_the_record() {
 }
 
 /// Two robots head-on, on one line.
-fn head_on() -> Task {
+fn head_on() -> SimulationTask {
     let agent = |id: u64, x: f64, heading: f64| {
         format!(
             r#"{{ "id": {id}, "radius": 0.2, "v_max": 0.5, "a_max": 1.0, "start": {{ "x": {x}, "y": 0, "heading": {heading} }},
@@ -244,7 +245,7 @@ fn head_on() -> Task {
         )
     };
     let text = format!(r#"{{ "agents": [{}, {}] }}"#, agent(4, -2.0, 0.0), agent(9, 2.0, PI));
-    Task::of(&Scenario::from_json(&text).expect("a scenario")).expect("a task")
+    SimulationTask::from_scenario(&Scenario::from_json(&text).expect("a scenario")).expect("a task")
 }
 
 #[test]
@@ -254,7 +255,7 @@ fn collisions_are_found_and_reported() {
     let task = head_on();
     let mut found = 0;
     for seed in 0..4 {
-        let outcome = run(&task, Controller::Potential, settings(seed, disturbance)).expect("a run");
+        let outcome = run(&task, ControllerKind::Potential, settings(seed, disturbance)).expect("a run");
         let [a, b] = [0, 1].map(|robot| &outcome.trace.positions[robot][..]);
         let frames = overlaps(a, b, 0.4, ROUNDING);
         let reported = outcome.run.collisions.iter().flat_map(|collision| {
@@ -272,13 +273,13 @@ fn collisions_are_found_and_reported() {
 
 #[test]
 fn who_cannot_get_past_stays_where_it_is() {
-    let outcome = run(&head_on(), Controller::Pcr, settings(1, USUAL)).expect("a run");
+    let outcome = run(&head_on(), ControllerKind::Pcr, settings(1, USUAL)).expect("a run");
     assert_eq!((outcome.run.done, outcome.run.not_done, outcome.run.collisions.len()), (0, 2, 0));
     assert!(outcome.trace.positions.iter().all(|track| track.iter().all(|&at| at == track[0])));
     // Nothing changes, so that no other try is made.
     let planning = outcome.run.planning.expect("a supervisor plans");
     assert_eq!((planning.count, planning.kept), (1, 1));
-    let simulation = Simulation::of(&head_on(), settings(1, USUAL), &[outcome]);
+    let simulation = SimulationReport::from_runs(&head_on(), settings(1, USUAL), &[outcome]);
     assert!(!simulation.is_as_promised());
 }
 
@@ -289,18 +290,18 @@ fn who_never_sets_off_has_not_gone_round() {
         { "id": 1, "radius": 0.5, "v_max": 0.5, "a_max": 1, "start": { "x": 996, "y": 997, "heading": -1.5707963267948966 },
           "path": [ { "kind": "arc", "radius": 2, "sweep": 6.283185307179586 } ] },
         { "id": 2, "radius": 0.00001, "v_max": 0.5, "a_max": 1, "start": { "x": 1000, "y": 998, "heading": 0 }, "path": [] } ] }"#;
-    let task = Task::of(&Scenario::from_json(text).expect("a scenario")).expect("a task");
-    let outcome = run(&task, Controller::Pcr, settings(1, USUAL)).expect("a run");
+    let task = SimulationTask::from_scenario(&Scenario::from_json(text).expect("a scenario")).expect("a task");
+    let outcome = run(&task, ControllerKind::Pcr, settings(1, USUAL)).expect("a run");
     assert_eq!((outcome.run.done, outcome.run.not_done), (0, 1), "{:?}", outcome.run);
 }
 
 #[test]
 fn the_same_seed_gives_the_same_run() {
     let once = |seed, controller| run(&forage::task(3, 1), controller, settings(seed, USUAL)).expect("a run");
-    for &controller in Controller::ALL {
+    for &controller in ControllerKind::ALL {
         let (first, second, other) = (once(3, controller), once(3, controller), once(4, controller));
         assert_eq!(first.trace, second.trace, "{controller:?}");
-        let without_times = |mut run: Run| {
+        let without_times = |mut run: ControllerRunEntry| {
             if let Some(planning) = &mut run.planning {
                 (planning.mean_ms, planning.longest_ms) = (0.0, 0.0);
             }
@@ -315,8 +316,8 @@ fn the_same_seed_gives_the_same_run() {
 fn robots_with_turns_in_place_get_where_they_go() {
     let scenario =
         Scenario::from_json(include_str!("../data/cases/simulate-two-robots-never-move.json")).expect("a scenario");
-    let task = Task::of(&scenario).expect("a task");
-    let outcome = run(&task, Controller::Pcr, settings(1, USUAL)).expect("a run");
+    let task = SimulationTask::from_scenario(&scenario).expect("a task");
+    let outcome = run(&task, ControllerKind::Pcr, settings(1, USUAL)).expect("a run");
     assert_safe(&task, &outcome, "4.5 m apart");
     // They go round a square, turning in place, across the ways of two others.
     let agent = |id: u64, [x, y]: [f64; 2], path: &str, t: f64| {
@@ -336,8 +337,8 @@ fn robots_with_turns_in_place_get_where_they_go() {
             agent(3, [2.0, -3.0], &[turn(PI / 2.0), line(9.0)].join(", "), 2.0 * late),
         ];
         let scenario = Scenario::from_json(&format!(r#"{{ "agents": [{}] }}"#, agents.join(","))).expect("a scenario");
-        let task = Task::of(&scenario).expect("a task");
-        let outcome = run(&task, Controller::Pcr, settings(seed, USUAL)).expect("a run");
+        let task = SimulationTask::from_scenario(&scenario).expect("a task");
+        let outcome = run(&task, ControllerKind::Pcr, settings(seed, USUAL)).expect("a run");
         assert_safe(&task, &outcome, &format!("seed {seed}"));
     }
 }
@@ -382,14 +383,14 @@ fn robots_whose_paths_cross_several_times_get_past_one_another() {
     let mut solved = 0;
     for seed in 0..if cfg!(optimized) { 30 } else { 3 } {
         let scenario = if seed == 0 { two.clone() } else { loops(seed) };
-        if !Plan::of(&scenario, &Request::default()).is_ok_and(|(_, solved)| solved.is_some()) {
+        if !PlanReport::compute(&scenario, &PlanOptions::default()).is_ok_and(|(_, solved)| solved.is_some()) {
             continue;
         }
         solved += 1;
-        let task = Task::of(&scenario).expect("a task");
+        let task = SimulationTask::from_scenario(&scenario).expect("a task");
         for disturbance in [USUAL, NONE] {
-            let outcome = run(&task, Controller::Pcr, settings(seed, disturbance)).expect("a run");
-            assert_eq!(outcome.run.ended, Ended::Done, "{seed}: {:?}", outcome.run);
+            let outcome = run(&task, ControllerKind::Pcr, settings(seed, disturbance)).expect("a run");
+            assert_eq!(outcome.run.ended, RunEnd::Done, "{seed}: {:?}", outcome.run);
             assert_safe(&task, &outcome, &format!("loops {seed}"));
         }
     }
@@ -408,12 +409,12 @@ fn lane(id: u64, y: f64) -> String {
 #[test]
 fn robots_that_are_held_up_for_long_arrive_all_the_same() {
     let text = format!(r#"{{ "agents": [{}, {}] }}"#, lane(1, 0.0), lane(2, 3.0));
-    let task = Task::of(&Scenario::from_json(&text).expect("a scenario")).expect("a task");
-    let outcome = run(&task, Controller::Pcr, settings(1, Disturbance { delay: 600.0, ..USUAL })).expect("a run");
+    let task = SimulationTask::from_scenario(&Scenario::from_json(&text).expect("a scenario")).expect("a task");
+    let outcome = run(&task, ControllerKind::Pcr, settings(1, Disturbance { delay: 600.0, ..USUAL })).expect("a run");
     assert_safe(&task, &outcome, "held up");
     // Two head-on are in each other's way for good.
-    let outcome = run(&head_on(), Controller::Pcr, settings(1, USUAL)).expect("a run");
-    assert_eq!(outcome.run.ended, Ended::Standstill);
+    let outcome = run(&head_on(), ControllerKind::Pcr, settings(1, USUAL)).expect("a run");
+    assert_eq!(outcome.run.ended, RunEnd::Standstill);
 }
 
 /// A controller that does not know that its goal is taken is stopped at the limit.
@@ -424,9 +425,9 @@ fn who_waits_for_a_place_that_never_gets_free_is_stopped_at_the_limit() {
                                "path": [] }}] }}"#,
         lane(1, 0.0)
     );
-    let task = Task::of(&Scenario::from_json(&text).expect("a scenario")).expect("a task");
-    let outcome = run(&task, Controller::Orca, settings(1, NONE)).expect("a run");
-    assert_eq!(outcome.run.ended, Ended::TimeLimit);
+    let task = SimulationTask::from_scenario(&Scenario::from_json(&text).expect("a scenario")).expect("a task");
+    let outcome = run(&task, ControllerKind::Orca, settings(1, NONE)).expect("a run");
+    assert_eq!(outcome.run.ended, RunEnd::TimeLimit);
 }
 
 /// More of them than are planned by priority: lanes that cross everybody else's.
@@ -444,8 +445,8 @@ fn a_larger_fleet_sets_off_one_after_the_other_and_arrives() {
     let north = (0..LANES).map(|k| agent(LANES + k, [1.5 * k as f64, -2.0, PI / 2.0]));
     let agents: Vec<String> = east.chain(north).collect();
     let scenario = Scenario::from_json(&format!(r#"{{ "agents": [{}] }}"#, agents.join(","))).expect("a scenario");
-    let task = Task::of(&scenario).expect("a task");
-    let outcome = run(&task, Controller::Pcr, settings(1, USUAL)).expect("a run");
+    let task = SimulationTask::from_scenario(&scenario).expect("a task");
+    let outcome = run(&task, ControllerKind::Pcr, settings(1, USUAL)).expect("a run");
     assert_safe(&task, &outcome, "lanes");
     // One plan is enough: its orders are kept.
     assert_eq!(outcome.run.planning.map(|planning| planning.count), Some(1));
@@ -461,7 +462,7 @@ fn loads_take_their_room() {
     };
     let radius = |loads: &str| {
         let scenario = Scenario::from_json(&agent(loads)).expect("a scenario");
-        Task::of(&scenario).expect("a task").robots[0].radius
+        SimulationTask::from_scenario(&scenario).expect("a task").robots[0].radius
     };
     assert_eq!((radius(""), radius(r#""loads": [ { "segments": [1, 1], "radius": 0.7 } ],"#)), (0.2, 0.7));
 }

@@ -1,11 +1,11 @@
 //! Speed plans: against a fine dynamic program and the definition, in every format, and known answers.
 
 use pcr_core::{
-    Constraint, Drive as Speeds, Interval, Invalid, Limits, Mismatch, Motion, NoSpeedPlan, Profile, SpeedPlan, Station,
-    plan_speed, plan_speeds, scalar::Micro,
+    Constraint, Interval, InvalidInput, Limits, MismatchError, Motion, Profile, SearchNode, SpeedPlan, SpeedPlanError,
+    SpeedPlanLimits as Speeds, plan_speed, plan_speeds, scalar::Micro,
 };
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{HostScalar, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::{Dice, leg};
 use pcr_tests::oracle::contact::Meeting;
@@ -16,23 +16,23 @@ pub(crate) const CASES: u64 = if cfg!(optimized) { 400 } else { 40 };
 pub(crate) const GRID: Grid = Grid { step: 0.05, acceleration: 1.0, speeds: 20, lengths: 3200 };
 
 /// The plan of the first of the courses against the others.
-fn planned<S: Format>(courses: &[Course<S>], drive: Speeds<S>) -> Result<SpeedPlan<S, 48>, NoSpeedPlan<S>> {
+fn planned<S: HostScalar>(courses: &[Course<S>], drive: Speeds<S>) -> Result<SpeedPlan<S, 48>, SpeedPlanError<S>> {
     constrained(courses, drive, &[])
 }
 
 /// The same under constraints.
-fn constrained<S: Format>(
+fn constrained<S: HostScalar>(
     courses: &[Course<S>],
     drive: Speeds<S>,
     constraints: &[Constraint<S>],
-) -> Result<SpeedPlan<S, 48>, NoSpeedPlan<S>> {
+) -> Result<SpeedPlan<S, 48>, SpeedPlanError<S>> {
     let fleet: Vec<Motion<'_, S>> = courses.iter().map(Course::motion).collect();
     let ecm = build_ecm(&fleet).expect("a small table");
-    let mut stations = vec![Station::EMPTY; 40];
+    let mut stations = vec![SearchNode::EMPTY; 40];
     plan_speed(&fleet[0], drive, ecm.row(&fleet, 0).expect("the table of the fleet"), constraints, &mut stations)
 }
 
-fn limits<S: Format>() -> Limits<S> {
+fn limits<S: HostScalar>() -> Limits<S> {
     Limits { speed: S::from_f64(1.0), acceleration: S::from_f64(1.0) }
 }
 
@@ -63,14 +63,14 @@ fn regions_of_another_agent_or_of_a_smaller_disc_are_refused() {
     let fleet: Vec<_> = courses.iter().map(Course::motion).collect();
     let ecm = build_ecm(&fleet).expect("a small table");
     let larger = Course::driven(&larger, &Drive::Limits(1.0, 1.0), 0.0).expect("small");
-    let mut stations = vec![Station::EMPTY; 40];
+    let mut stations = vec![SearchNode::EMPTY; 40];
     let mut plan = |ego: &Motion<'_, f64>, agent| {
         let drive = Speeds::rest_to_rest(limits());
         let regions = ecm.row(&fleet, agent).expect("the table of the fleet");
         plan_speed::<_, 48>(ego, drive, regions, &[], &mut stations).err()
     };
     let agent = (1..fleet.len()).find(|&agent| ecm.row(&fleet, agent).expect("the table").next().is_some());
-    let refused = Some(NoSpeedPlan::Mismatch(Mismatch::OtherFleet));
+    let refused = Some(SpeedPlanError::Mismatch(MismatchError::OtherFleet));
     assert_eq!(plan(&fleet[0], agent.expect("regions")), refused);
     assert!(ecm.row(&fleet, 0).expect("the table").next().is_some());
     assert_eq!(plan(&larger.motion(), 0), refused);
@@ -78,7 +78,7 @@ fn regions_of_another_agent_or_of_a_smaller_disc_are_refused() {
 }
 
 /// The motion of a plan as the oracle takes it.
-fn driven<S: Format>(ego: &Disc, plan: &SpeedPlan<S, 48>) -> Driven {
+fn driven<S: HostScalar>(ego: &Disc, plan: &SpeedPlan<S, 48>) -> Driven {
     let phases = plan.profile.as_profile().phases();
     let pieces = phases.iter().map(|phase| (phase.time().length().to_f64(), phase.acceleration().to_f64()));
     let speed = phases.first().map_or(0.0, |first| first.speed()[0].to_f64());
@@ -86,7 +86,7 @@ fn driven<S: Format>(ego: &Disc, plan: &SpeedPlan<S, 48>) -> Driven {
 }
 
 /// Limits are kept and nobody is met, by the definition; all within `slip` \[m\].
-fn audited<S: Format>(ego: &Disc, others: &[Driven], plan: &SpeedPlan<S, 48>, slip: f64) {
+fn audited<S: HostScalar>(ego: &Disc, others: &[Driven], plan: &SpeedPlan<S, 48>, slip: f64) {
     let ego = driven(ego, plan);
     let Drive::Pieces(mut speed, pieces) = ego.1.clone() else { unreachable!("pieces") };
     for (duration, acceleration) in &pieces {
@@ -136,7 +136,7 @@ fn plans_arrive_when_a_fine_dynamic_program_does_and_meet_nobody() {
 }
 
 /// Plans in another format, for what is left of the numbers in it.
-fn audited_in<S: Format>(slip: f64) {
+fn audited_in<S: HostScalar>(slip: f64) {
     let mut solved = 0;
     for seed in 0..CASES / 4 {
         let (ego, others) = scene(&mut Dice::seeded(seed));
@@ -166,7 +166,7 @@ fn ego() -> Course<f64> {
     line([-2.0, 0.0, 0.0], 4.0, Drive::Limits(1.0, 1.0), 0.0)
 }
 
-fn arrival(courses: &[Course<f64>]) -> Result<f64, NoSpeedPlan<f64>> {
+fn arrival(courses: &[Course<f64>]) -> Result<f64, SpeedPlanError<f64>> {
     let plan = planned(courses, Speeds::rest_to_rest(limits()))?;
     Ok(plan.start + plan.profile.as_profile().duration())
 }
@@ -197,13 +197,15 @@ fn a_leader_is_followed_at_the_distance_of_the_radii() {
 fn who_is_in_the_way_is_named() {
     let met = |other| arrival(&[ego(), other]);
     let head_on = line([2.0, 0.0, PI], 4.0, Drive::Limits(1.0, 1.0), 0.0);
-    assert!(matches!(met(head_on), Err(NoSpeedPlan::AtStart(1) | NoSpeedPlan::Beyond { other: 1, .. })));
+    assert!(matches!(met(head_on), Err(SpeedPlanError::AtStart(1) | SpeedPlanError::Beyond { other: 1, .. })));
     let on_the_goal = line([2.0, -3.0, PI / 2.0], 3.0, Drive::Limits(1.0, 1.0), 0.0);
-    assert_eq!(met(on_the_goal), Err(NoSpeedPlan::AtGoal(1)));
+    assert_eq!(met(on_the_goal), Err(SpeedPlanError::AtGoal(1)));
     let at_the_start = line([-2.0, 0.3, PI / 2.0], 3.0, Drive::Limits(1.0, 1.0), 1.0);
-    assert_eq!(met(at_the_start), Err(NoSpeedPlan::AtStart(1)));
+    assert_eq!(met(at_the_start), Err(SpeedPlanError::AtStart(1)));
     let on_the_way = line([0.0, -3.0, PI / 2.0], 3.0, Drive::Limits(1.0, 1.0), -9.0);
-    assert!(matches!(met(on_the_way), Err(NoSpeedPlan::Beyond { other: 1, length }) if (1.2..=1.5).contains(&length)));
+    assert!(
+        matches!(met(on_the_way), Err(SpeedPlanError::Beyond { other: 1, length }) if (1.2..=1.5).contains(&length))
+    );
 }
 
 #[test]
@@ -223,13 +225,13 @@ fn limits_and_speeds_out_of_range_are_refused() {
     let with = |speed, acceleration, start, goal| {
         planned(&[ego()], Speeds { limits: Limits { speed, acceleration }, start, goal }).map(drop)
     };
-    let refused = |invalid| Err(NoSpeedPlan::Invalid(invalid));
+    let refused = |invalid| Err(SpeedPlanError::Invalid(invalid));
     assert_eq!(with(1.0, 1.0, 1.0, 1.0), Ok(()));
-    assert_eq!(with(1.0, 1.0, 1.5, 0.0), refused(Invalid::OutOfRange("speed at the start")));
-    assert_eq!(with(1.0, 1.0, 0.0, 1.5), refused(Invalid::OutOfRange("speed at the goal")));
-    assert_eq!(with(1.0, 1.0, -0.1, 0.0), refused(Invalid::Negative("speed at the start")));
-    assert_eq!(with(0.0, 1.0, 0.0, 0.0), refused(Invalid::NonPositive("largest speed")));
-    assert_eq!(with(1.0, 0.0, 0.0, 0.0), refused(Invalid::NonPositive("largest acceleration")));
+    assert_eq!(with(1.0, 1.0, 1.5, 0.0), refused(InvalidInput::OutOfRange("speed at the start")));
+    assert_eq!(with(1.0, 1.0, 0.0, 1.5), refused(InvalidInput::OutOfRange("speed at the goal")));
+    assert_eq!(with(1.0, 1.0, -0.1, 0.0), refused(InvalidInput::Negative("speed at the start")));
+    assert_eq!(with(0.0, 1.0, 0.0, 0.0), refused(InvalidInput::NonPositive("largest speed")));
+    assert_eq!(with(1.0, 0.0, 0.0, 0.0), refused(InvalidInput::NonPositive("largest acceleration")));
 }
 
 #[test]
@@ -241,7 +243,7 @@ fn who_stands_all_the_time_is_in_the_way_at_any_time() {
     // It passes 9 s before, or after.
     for at in [-9.0, 9.0] {
         let passes = line([0.0, -2.0, PI / 2.0], 4.0, Drive::Limits(1.0, 1.0), at);
-        assert_eq!(arrival(&[stands(), passes]), Err(NoSpeedPlan::AtStart(1)));
+        assert_eq!(arrival(&[stands(), passes]), Err(SpeedPlanError::AtStart(1)));
     }
     let elsewhere = line([2.0, -2.0, PI / 2.0], 4.0, Drive::Limits(1.0, 1.0), 0.0);
     assert_eq!(arrival(&[stands(), elsewhere]), Ok(0.0));
@@ -268,7 +270,7 @@ fn an_agent_in_motion_slows_down_for_one_that_crosses() {
 }
 
 /// Random constraints on the ego: they are kept by the profile, at times of its own phases, and cost time only.
-fn constrained_in<S: Format>(slip: f64) {
+fn constrained_in<S: HostScalar>(slip: f64) {
     let (mut kept, mut later) = (0, 0);
     for seed in 0..CASES / 4 {
         let dice = &mut Dice::seeded(seed);
@@ -310,7 +312,7 @@ fn constraints_are_kept_in_every_format() {
 
 /// Motions from rest to rest have a drive in every format; with a slower edge, a stop or a gentler brake they have none, and no plan makes
 /// them faster.
-fn driven_in<S: Format>() {
+fn driven_in<S: HostScalar>() {
     let dice = &mut Dice::seeded(7);
     for _ in 0..400 {
         let (speed, acceleration) = (dice.range(0.05, 4.0), dice.range(0.05, 4.0));
@@ -339,7 +341,7 @@ fn driven_in<S: Format>() {
         let fleet = [slow.motion()];
         let (ecm, mut plan) = (build_ecm(&fleet).expect("a small table"), fleet.to_vec());
         let mut profiles = [Profile::<S, 16>::standing()];
-        plan_speeds(&ecm, &fleet, &mut plan, &mut [0], &mut profiles, &mut [Station::EMPTY; 100]).expect("a plan");
+        plan_speeds(&ecm, &fleet, &mut plan, &mut [0], &mut profiles, &mut [SearchNode::EMPTY; 100]).expect("a plan");
         assert_eq!(plan[0].time(), fleet[0].time(), "{pieces:?}");
     }
     assert!(Speeds::of(&course(&[(1.0, 1.0), (7.0, 0.0), (1.0, -1.0)]).motion()).is_some());
@@ -381,17 +383,17 @@ fn a_constraint_is_passed_behind_or_before() {
     // What is over when it sets off does not count, at its start neither.
     assert!((end([0.0, 1.0], [-9.0, 0.0]) - 5.0).abs() < 1e-9);
     assert!((end([0.0, 0.0], [0.5, 0.6]) - 5.0).abs() < 1e-9);
-    assert_eq!(plan([0.0, 1.0], [-1.0, 0.5]).err(), Some(NoSpeedPlan::Constrained { length: 0.0 }));
-    assert_eq!(plan([3.5, 5.0], [0.0, f64::MAX]).err(), Some(NoSpeedPlan::Constrained { length: 4.0 }));
-    assert!(matches!(plan([1.0, 2.0], [0.0, f64::MAX]), Err(NoSpeedPlan::Constrained { length }) if length <= 1.0));
+    assert_eq!(plan([0.0, 1.0], [-1.0, 0.5]).err(), Some(SpeedPlanError::Constrained { length: 0.0 }));
+    assert_eq!(plan([3.5, 5.0], [0.0, f64::MAX]).err(), Some(SpeedPlanError::Constrained { length: 4.0 }));
+    assert!(matches!(plan([1.0, 2.0], [0.0, f64::MAX]), Err(SpeedPlanError::Constrained { length }) if length <= 1.0));
     for wrong in [[2.0, 1.0], [f64::NAN, 1.0], [0.0, f64::NAN]] {
-        assert!(matches!(plan(wrong, [0.0, 1.0]), Err(NoSpeedPlan::Invalid(_))));
-        assert!(matches!(plan([0.0, 1.0], wrong), Err(NoSpeedPlan::Invalid(_))));
+        assert!(matches!(plan(wrong, [0.0, 1.0]), Err(SpeedPlanError::Invalid(_))));
+        assert!(matches!(plan([0.0, 1.0], wrong), Err(SpeedPlanError::Invalid(_))));
     }
 }
 
 /// An interval of time may be as long as the format allows, and longer than the times of motions.
-fn forbidden_for_ever_in<S: Format>(least: S, most: S) {
+fn forbidden_for_ever_in<S: HostScalar>(least: S, most: S) {
     let ego = Disc { radius: 0.2, start: [0.0; 3], legs: vec![Leg::Line(4.0)] };
     let course = [Course::<S>::driven(&ego, &Drive::Limits(1.0, 1.0), 0.0).expect("a valid disc")];
     let plan = |lo: S, hi: S| {
@@ -402,7 +404,7 @@ fn forbidden_for_ever_in<S: Format>(least: S, most: S) {
     let (free, late) = (S::from_f64(5.0), S::from_f64(6.0));
     for lo in [least, -S::LIMIT, -S::from_f64(9.0)] {
         for hi in [most, S::LIMIT] {
-            assert!(matches!(plan(lo, hi), Err(NoSpeedPlan::Constrained { .. })), "{}: {lo:?} to {hi:?}", S::NAME);
+            assert!(matches!(plan(lo, hi), Err(SpeedPlanError::Constrained { .. })), "{}: {lo:?} to {hi:?}", S::NAME);
         }
         let slow = plan(lo, late).expect("a plan").end();
         assert!(slow > late + S::from_f64(1.0), "{}: {lo:?} to 6 s: {slow:?}", S::NAME);

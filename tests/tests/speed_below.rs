@@ -2,9 +2,9 @@
 //! known answers.
 
 use crate::speed::{CASES, GRID, line, scene};
-use pcr_core::{Invalid, Motion, NoSpeedPlan, SpeedPlan, Station, earliest_start, plan_speed_below};
+use pcr_core::{InvalidInput, Motion, SearchNode, SpeedPlan, SpeedPlanError, earliest_start, plan_speed_below};
 use pcr_fixed::Q16;
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{HostScalar, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::Dice;
 use pcr_tests::oracle::contact::Meeting;
@@ -28,16 +28,22 @@ fn two_speeds(dice: &mut Dice) -> Vec<(f64, f64)> {
 }
 
 /// The plan of the first of the courses that is nowhere faster than its motion.
-fn planned_below<S: Format>(courses: &[Course<S>]) -> Result<SpeedPlan<S, 96>, NoSpeedPlan<S>> {
+fn planned_below<S: HostScalar>(courses: &[Course<S>]) -> Result<SpeedPlan<S, 96>, SpeedPlanError<S>> {
     let fleet: Vec<Motion<'_, S>> = courses.iter().map(Course::motion).collect();
     let ecm = build_ecm(&fleet).expect("a small table");
-    let mut stations = vec![Station::EMPTY; 80];
+    let mut stations = vec![SearchNode::EMPTY; 80];
     plan_speed_below(&fleet[0], ecm.row(&fleet, 0).expect("the table of the fleet"), &[], &mut stations)
 }
 
 /// A plan is nowhere faster than the motion `own`, speeds up and slows down no more than by 1 m/s², stands where that stands at least as
 /// long, and meets nobody; all within `slip` \[m\].
-fn audited_below<S: Format>(ego: &Disc, own: &Motion<'_, S>, others: &[Driven], plan: &SpeedPlan<S, 96>, slip: f64) {
+fn audited_below<S: HostScalar>(
+    ego: &Disc,
+    own: &Motion<'_, S>,
+    others: &[Driven],
+    plan: &SpeedPlan<S, 96>,
+    slip: f64,
+) {
     let (own, profile) = (own.profile(), plan.profile.as_profile());
     for phase in profile.phases() {
         assert!(phase.acceleration().to_f64().abs() <= 1.0 + slip, "{phase:?}");
@@ -111,7 +117,7 @@ fn plans_below_a_motion_arrive_when_a_fine_dynamic_program_does() {
 }
 
 /// Plans below a motion in another format, for what is left of the numbers in it.
-fn audited_below_in<S: Format>(slip: f64) {
+fn audited_below_in<S: HostScalar>(slip: f64) {
     let mut solved = 0;
     for seed in 0..CASES / 2 {
         let dice = &mut Dice::seeded(seed);
@@ -170,11 +176,11 @@ fn alone_the_plan_below_a_motion_is_that_motion() {
     // One speed without any acceleration cannot be changed.
     let steady = || line([-2.0, 0.0, 0.0], 4.0, Drive::Pieces(0.5, vec![(8.0, 0.0)]), 0.0);
     let crosses = line([0.0, -2.0, PI / 2.0], 4.0, Drive::Pieces(0.5, vec![(8.0, 0.0)]), 0.0);
-    assert!(matches!(planned_below(&[steady(), crosses]), Err(NoSpeedPlan::Beyond { other: 1, .. })));
+    assert!(matches!(planned_below(&[steady(), crosses]), Err(SpeedPlanError::Beyond { other: 1, .. })));
     // More phases than cells.
     let many: Vec<_> = (0..100).flat_map(|_| [(0.1, 1.0), (0.3, 0.0), (0.1, -1.0)]).collect();
     let many = line([-2.0, 0.0, 0.0], 4.0, Drive::Pieces(0.0, many), 0.0);
-    assert_eq!(planned_below(&[many]).err(), Some(NoSpeedPlan::Invalid(Invalid::Full("station"))));
+    assert_eq!(planned_below(&[many]).err(), Some(SpeedPlanError::Invalid(InvalidInput::Full("station"))));
 }
 
 /// An agent with a lower limit on a part of its path, which has to leave its start early and to let somebody pass on the way, for which no
@@ -201,7 +207,10 @@ fn a_last_phase_beyond_the_path_is_refused() {
     // The path ends 3 µm before the profile, which is within its tolerance; the last phase begins 1 µm before its own end.
     let pieces = vec![(1.0, 1.0), (3.000_002, 0.0), (0.999, -1.0), (0.001, -1.0)];
     let ego = line([-2.0, 0.0, 0.0], 4.0 - 1e-6, Drive::Pieces(0.0, pieces), 0.0);
-    assert_eq!(planned_below(&[ego]).err(), Some(NoSpeedPlan::Invalid(Invalid::OutOfRange("length of a phase"))));
+    assert_eq!(
+        planned_below(&[ego]).err(),
+        Some(SpeedPlanError::Invalid(InvalidInput::OutOfRange("length of a phase")))
+    );
 }
 
 /// It had one cell, a quarter of which is the least that can be blocked.

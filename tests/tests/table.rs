@@ -2,12 +2,12 @@
 
 use pcr_core::scalar::Angle;
 use pcr_core::{
-    Ecm, Full, Interval, Limits, Mismatch, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, RegionRef,
-    TableError, Turn, Unsolved, first_conflict, plan_delays,
+    CapacityError, Ecm, EcmEntry, EcmError, Interval, Limits, MismatchError, Motion, Path, Piece, PlanError, Point,
+    Pose, Profile, Radians, RegionRef, TurnSide, first_conflict, plan_delays,
 };
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::Scenario;
-use pcr_planning::fleet::{Fleet, Format, HostEcm, build_ecm};
+use pcr_planning::fleet::{Fleet, HostEcm, HostScalar, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Leg};
 use pcr_tests::generators::Dice;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -22,7 +22,7 @@ fn entry(region: &RegionRef<'_, f64>) -> Entry {
 
 fn entries<R, P>(ecm: &Ecm<f64, R, P>, motions: &[Motion<'_, f64>]) -> Vec<Entry>
 where
-    R: AsRef<[Region]>,
+    R: AsRef<[EcmEntry]>,
     P: AsRef<[Piece<f64>]>,
 {
     ecm.regions(motions).expect("the table of the fleet").map(|region| entry(&region)).collect()
@@ -43,7 +43,7 @@ fn detour(k: usize) -> Course<f64> {
 fn exact(motions: &[Motion<'_, f64>]) -> (HostEcm<f64>, usize, usize) {
     let roomy = build_ecm(motions).expect("a small fleet");
     let (regions, pieces) = (roomy.len(), roomy.pieces());
-    let tight = Ecm::build(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces], motions);
+    let tight = Ecm::build(vec![EcmEntry::EMPTY; regions], vec![Piece::EMPTY; pieces], motions);
     (tight.expect("as much room as is used"), regions, pieces)
 }
 
@@ -111,14 +111,14 @@ fn agents_that_are_not_there_are_refused() {
     let mut motions = fleet.motions();
     let mut ecm = build_ecm(&motions).expect("a small fleet");
     let before = entries(&ecm, &motions);
-    assert_eq!(ecm.row(&motions, 12).err(), Some(Mismatch::NoSuchAgent(12)));
-    assert_eq!(ecm.pair(&motions, 0, 12).err(), Some(Mismatch::NoSuchAgent(12)));
-    assert_eq!(ecm.pair(&motions, usize::MAX, 0).err(), Some(Mismatch::NoSuchAgent(usize::MAX)));
+    assert_eq!(ecm.row(&motions, 12).err(), Some(MismatchError::NoSuchAgent(12)));
+    assert_eq!(ecm.pair(&motions, 0, 12).err(), Some(MismatchError::NoSuchAgent(12)));
+    assert_eq!(ecm.pair(&motions, usize::MAX, 0).err(), Some(MismatchError::NoSuchAgent(usize::MAX)));
     assert_eq!(ecm.pair(&motions, 3, 3).map(Iterator::count), Ok(0), "nobody meets itself");
-    assert_eq!(ecm.remove(&motions, 12), Err(Mismatch::NoSuchAgent(12)));
-    assert_eq!(ecm.insert(&motions, 99), Err(TableError::Mismatch(Mismatch::NoSuchAgent(99))));
+    assert_eq!(ecm.remove(&motions, 12), Err(MismatchError::NoSuchAgent(12)));
+    assert_eq!(ecm.insert(&motions, 99), Err(EcmError::Mismatch(MismatchError::NoSuchAgent(99))));
     let motion = motions[0];
-    assert_eq!(ecm.replace(&mut motions, 12, motion), Err(TableError::Mismatch(Mismatch::NoSuchAgent(12))));
+    assert_eq!(ecm.replace(&mut motions, 12, motion), Err(EcmError::Mismatch(MismatchError::NoSuchAgent(12))));
     assert_eq!(entries(&ecm, &motions), before);
     let nobody: [Motion<'_, f64>; 0] = [];
     let empty = Ecm::<f64, _, _>::build([], [], &nobody).expect("nothing to store");
@@ -132,12 +132,12 @@ fn the_table_of_another_fleet_is_refused() {
     let motions = fleet.motions();
     let ecm = build_ecm(&motions).expect("a small fleet");
     let refused = |fleet: &[Motion<'_, f64>], why: &str| {
-        assert_eq!(ecm.row(fleet, 0).err(), Some(Mismatch::OtherFleet), "{why}");
-        assert_eq!(ecm.pair(fleet, 0, 1).err(), Some(Mismatch::OtherFleet), "{why}");
-        assert_eq!(ecm.regions(fleet).err(), Some(Mismatch::OtherFleet), "{why}");
-        assert_eq!(ecm.regions_once(fleet).err(), Some(Mismatch::OtherFleet), "{why}");
+        assert_eq!(ecm.row(fleet, 0).err(), Some(MismatchError::OtherFleet), "{why}");
+        assert_eq!(ecm.pair(fleet, 0, 1).err(), Some(MismatchError::OtherFleet), "{why}");
+        assert_eq!(ecm.regions(fleet).err(), Some(MismatchError::OtherFleet), "{why}");
+        assert_eq!(ecm.regions_once(fleet).err(), Some(MismatchError::OtherFleet), "{why}");
         let (mut plan, mut order) = (fleet.to_vec(), (0..fleet.len()).collect::<Vec<_>>());
-        let refused = Err(Unsolved::Table(Mismatch::OtherFleet));
+        let refused = Err(PlanError::Table(MismatchError::OtherFleet));
         assert_eq!(plan_delays(&ecm, fleet, &mut plan, &mut order), refused, "{why}");
     };
     refused(&motions[..11], "a shorter fleet");
@@ -161,7 +161,8 @@ fn the_table_of_another_fleet_is_refused() {
     let path = |numbers: [f64; 6]| {
         let [x, y, heading, line, radius, arc] = numbers;
         let start = Pose { position: Point::new(x, y), heading: Radians(heading) };
-        let path = Path::<f64, 2>::starting_at(start).and_then(|path| path.line(line)?.arc(radius, Turn::Left, arc));
+        let path =
+            Path::<f64, 2>::starting_at(start).and_then(|path| path.line(line)?.arc(radius, TurnSide::Left, arc));
         path.expect("a path")
     };
     let numbers = [1.0, 2.0, 0.5, 3.0, 1.5, 2.0];
@@ -178,7 +179,7 @@ fn the_table_of_another_fleet_is_refused() {
         other[place] = other[place].next_up();
         let (_, path, profile) = standing(&path(other));
         let motion = Motion::new(path.as_path(), profile.as_profile(), 0.5, 0.0).expect("a motion");
-        assert_eq!(table.row(&[motion], 0).err(), Some(Mismatch::OtherFleet), "number {place}");
+        assert_eq!(table.row(&[motion], 0).err(), Some(MismatchError::OtherFleet), "number {place}");
     }
     // What may change: start, profile, margin and lateness; and the same path in another place of memory.
     let again = twelve();
@@ -188,7 +189,7 @@ fn the_table_of_another_fleet_is_refused() {
 }
 
 /// Numbers that two agents exchange do not cancel, nor does what begins and ends at the same points hide another path.
-fn exchanged<S: Format>() {
+fn exchanged<S: HostScalar>() {
     const FLEETS: usize = 2000;
     let mut dice = Dice::seeded(7);
     let limits = Limits { speed: S::from_f64(1.0), acceleration: S::from_f64(1.0) };
@@ -209,7 +210,7 @@ fn exchanged<S: Format>() {
         for [a, b] in [[0.25, 0.5], [0.2, 0.4], [0.25, 0.3]] {
             let (right, wrong) = (fleet([a, b, a]), fleet([b, a, a]));
             let ecm = build_ecm(&right).expect("a small fleet");
-            assert_eq!(ecm.row(&wrong, 0).err(), Some(Mismatch::OtherFleet), "{a} and {b} m");
+            assert_eq!(ecm.row(&wrong, 0).err(), Some(MismatchError::OtherFleet), "{a} and {b} m");
         }
     }
     // A whole circle begins and ends at the same point whatever its heading.
@@ -220,7 +221,7 @@ fn exchanged<S: Format>() {
         };
         let radius = S::from_f64(2.0);
         let path = Path::<S, 1>::starting_at(start)
-            .and_then(|path| path.arc(radius, Turn::Left, S::Angle::circumference(radius)))
+            .and_then(|path| path.arc(radius, TurnSide::Left, S::Angle::circumference(radius)))
             .expect("a circle");
         let profile = Profile::<S, 3>::rest_to_rest(path.as_path().length(), limits).expect("a profile");
         (path, profile)
@@ -235,7 +236,11 @@ fn exchanged<S: Format>() {
         let fleet = [*motion, other.motion()];
         let ecm = build_ecm(&fleet).expect("a small fleet");
         for (l, stranger) in motions.iter().enumerate().filter(|&(l, _)| l != k) {
-            assert_eq!(ecm.row(&[*stranger, fleet[1]], 0).err(), Some(Mismatch::OtherFleet), "circles {k} and {l}");
+            assert_eq!(
+                ecm.row(&[*stranger, fleet[1]], 0).err(),
+                Some(MismatchError::OtherFleet),
+                "circles {k} and {l}"
+            );
             let always = Interval::new(-S::LIMIT, S::LIMIT);
             let found = first_conflict(stranger, ecm.row(&fleet, 0).expect("its fleet"), always);
             assert!(found.is_err() || ecm.is_empty(), "circles {k} and {l}: {found:?}");
@@ -257,7 +262,7 @@ fn the_row_of_one_agent_answers_for_that_one_only() {
     let fleet = twelve();
     let motions = fleet.motions();
     let full = build_ecm(&motions).expect("a small fleet");
-    let mut row = Ecm::new(vec![Region::EMPTY; full.len()], vec![Piece::EMPTY; full.pieces()]);
+    let mut row = Ecm::new(vec![EcmEntry::EMPTY; full.len()], vec![Piece::EMPTY; full.pieces()]);
     for agent in 0..12 {
         row.fill_row(&motions, agent).expect("enough room");
         let all = |ecm: &HostEcm<f64>| -> Vec<Entry> {
@@ -265,16 +270,16 @@ fn the_row_of_one_agent_answers_for_that_one_only() {
         };
         assert_eq!(all(&row), all(&full));
         for other in (0..12).filter(|&other| other != agent) {
-            assert_eq!(row.row(&motions, other).err(), Some(Mismatch::OnlyRow(agent)));
+            assert_eq!(row.row(&motions, other).err(), Some(MismatchError::OnlyRow(agent)));
             let pairs = [[agent, other], [other, agent]].map(|[a, b]| row.pair(&motions, a, b).map(Iterator::count));
             let expected = full.pair(&motions, agent, other).map(Iterator::count);
             assert_eq!(pairs, [expected; 2]);
             let third = (0..12).find(|&third| third != agent && third != other).expect("twelve");
-            assert_eq!(row.pair(&motions, other, third).err(), Some(Mismatch::OnlyRow(agent)));
+            assert_eq!(row.pair(&motions, other, third).err(), Some(MismatchError::OnlyRow(agent)));
         }
-        assert_eq!(row.regions(&motions).err(), Some(Mismatch::OnlyRow(agent)));
-        assert_eq!(row.regions_once(&motions).err(), Some(Mismatch::OnlyRow(agent)));
-        assert_eq!(row.insert(&motions, agent), Err(Mismatch::OnlyRow(agent).into()));
+        assert_eq!(row.regions(&motions).err(), Some(MismatchError::OnlyRow(agent)));
+        assert_eq!(row.regions_once(&motions).err(), Some(MismatchError::OnlyRow(agent)));
+        assert_eq!(row.insert(&motions, agent), Err(MismatchError::OnlyRow(agent).into()));
         assert!(row.remove(&motions, agent).is_err());
     }
     row.fill(&motions).expect("enough room");
@@ -289,12 +294,12 @@ fn an_agent_is_removed_and_inserted_once() {
     for agent in 0..motions.len() {
         let mut ecm = build_ecm(&motions).expect("a small fleet");
         let all = (ecm.len(), ecm.pieces());
-        let twice = Err(TableError::Mismatch(Mismatch::OtherFleet));
+        let twice = Err(EcmError::Mismatch(MismatchError::OtherFleet));
         assert_eq!(ecm.insert(&motions, agent), twice, "it is there");
         ecm.remove(&motions, agent).expect("it is there");
         // A fleet of which it does not know an agent.
-        assert_eq!(ecm.row(&motions, (agent + 1) % 12).err(), Some(Mismatch::OtherFleet));
-        assert_eq!(ecm.remove(&motions, agent), Err(Mismatch::OtherFleet));
+        assert_eq!(ecm.row(&motions, (agent + 1) % 12).err(), Some(MismatchError::OtherFleet));
+        assert_eq!(ecm.remove(&motions, agent), Err(MismatchError::OtherFleet));
         let lost = full.iter().filter(|entry| entry.0[0] == agent).count();
         assert_eq!(ecm.len(), all.0 - lost);
         if agent == 11 {
@@ -331,7 +336,8 @@ fn replacing_agents_equals_building_anew_without_losing_room() {
     let first = build_ecm(&originals).expect("a small fleet");
     (regions, pieces) = (regions.max(first.len()), pieces.max(first.pieces()));
     let mut motions = originals.clone();
-    let mut ecm = Ecm::build(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces], &motions).expect("enough room");
+    let mut ecm =
+        Ecm::build(vec![EcmEntry::EMPTY; regions], vec![Piece::EMPTY; pieces], &motions).expect("enough room");
     for round in 0..ROUNDS {
         let (agent, motion) = choose(round);
         ecm.replace(&mut motions, agent, motion).expect("enough room");
@@ -352,12 +358,12 @@ fn a_table_that_is_exactly_full_is_built_and_a_smaller_one_is_refused() {
     let roomy = build_ecm(motions).expect("a small fleet");
     assert_eq!(entries(&tight, motions), entries(&roomy, motions));
     for room in 0..regions {
-        let outcome = Ecm::build(vec![Region::EMPTY; room], vec![Piece::EMPTY; pieces], motions);
-        assert_eq!(outcome.err(), Some(Full::Regions), "{room} of {regions} regions");
+        let outcome = Ecm::build(vec![EcmEntry::EMPTY; room], vec![Piece::EMPTY; pieces], motions);
+        assert_eq!(outcome.err(), Some(CapacityError::Regions), "{room} of {regions} regions");
     }
     for room in 0..pieces {
-        let outcome = Ecm::build(vec![Region::EMPTY; regions], vec![Piece::EMPTY; room], motions);
-        assert_eq!(outcome.err(), Some(Full::Pieces), "{room} of {pieces} pieces");
+        let outcome = Ecm::build(vec![EcmEntry::EMPTY; regions], vec![Piece::EMPTY; room], motions);
+        assert_eq!(outcome.err(), Some(CapacityError::Pieces), "{room} of {pieces} pieces");
     }
 }
 
@@ -372,7 +378,7 @@ fn an_agent_that_does_not_fit_leaves_the_table_as_it_was() {
         .map(|room| (room, pieces))
         .chain((least_pieces..=pieces).map(|space| (regions, space)))
     {
-        let storage = (vec![Region::EMPTY; room], vec![Piece::EMPTY; space]);
+        let storage = (vec![EcmEntry::EMPTY; room], vec![Piece::EMPTY; space]);
         let mut ecm = Ecm::build(storage.0, storage.1, others).expect("room for the others");
         let before = entries(&ecm, others);
         let outcome = ecm.insert(motions, 5);
@@ -380,7 +386,10 @@ fn an_agent_that_does_not_fit_leaves_the_table_as_it_was() {
             assert_eq!(outcome, Ok(()));
             continue;
         }
-        assert_eq!(outcome, Err(TableError::Full(if room < regions { Full::Regions } else { Full::Pieces })));
+        assert_eq!(
+            outcome,
+            Err(EcmError::Full(if room < regions { CapacityError::Regions } else { CapacityError::Pieces }))
+        );
         assert_eq!(entries(&ecm, others), before, "{room} regions, {space} pieces");
         // And it still works: what was given back is free again.
         ecm.remove(others, 4).expect("it is there");
@@ -439,8 +448,8 @@ fn storage_may_be_arrays_slices_or_vectors() {
     let fleet = twelve();
     let motions = &fleet.motions()[..2];
     let on_heap = build_ecm(motions).expect("a small fleet");
-    let in_arrays = Ecm::build([Region::EMPTY; 16], [Piece::EMPTY; 32], motions).expect("enough room");
-    let (mut regions, mut pieces) = ([Region::EMPTY; 16], [Piece::EMPTY; 32]);
+    let in_arrays = Ecm::build([EcmEntry::EMPTY; 16], [Piece::EMPTY; 32], motions).expect("enough room");
+    let (mut regions, mut pieces) = ([EcmEntry::EMPTY; 16], [Piece::EMPTY; 32]);
     let borrowed = Ecm::build(&mut regions[..], &mut pieces[..], motions).expect("enough room");
     assert_eq!(entries(&on_heap, motions), entries(&in_arrays, motions));
     assert_eq!(entries(&on_heap, motions), entries(&borrowed, motions));
@@ -454,12 +463,12 @@ fn a_table_that_grows_agent_by_agent_is_that_of_the_fleet() {
     for agent in 0..motions.len() {
         let known = &motions[..=agent];
         while let Err(error) = table.insert(known, agent) {
-            let TableError::Full(full) = error else { panic!("{error}") };
+            let EcmError::Full(full) = error else { panic!("{error}") };
             table.grow(full).expect("more room helps");
         }
     }
     assert_eq!(entries(&table, &motions), entries(&build_ecm(&motions).expect("a small fleet"), &motions));
     // What no storage helps comes back as it was.
-    assert_eq!(table.grow(Full::Pair([3, 4])), Err(Full::Pair([3, 4])));
+    assert_eq!(table.grow(CapacityError::Pair([3, 4])), Err(CapacityError::Pair([3, 4])));
     assert_eq!(entries(&table, &motions).len(), 2 * table.len());
 }

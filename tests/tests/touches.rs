@@ -5,14 +5,14 @@ use pcr_core::scalar::Micro;
 use pcr_core::{Conflict, Encounter, Interval, Motion, earliest_start, first_conflict, first_overlap};
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::Scenario;
-use pcr_planning::fleet::{Fleet, Format, build_ecm};
+use pcr_planning::fleet::{Fleet, HostScalar, build_ecm};
 use pcr_tests::disc::{Course, Disc, Driven};
 use pcr_tests::ends::{apart, scene};
 use pcr_tests::generators::{Dice, drive, leg};
 use std::f64::consts::PI;
 
 /// The earliest of the conflicts with anybody that are deeper than so many tolerances.
-fn earliest<S: Format>(
+fn earliest<S: HostScalar>(
     fleet: &[Motion<'_, S>],
     ego: &Motion<'_, S>,
     all: Interval<S>,
@@ -28,7 +28,7 @@ fn earliest<S: Format>(
 }
 
 /// The row of agent 0, which touches one of the others, against the least over all pairs.
-fn rows<S: Format>(cases: u64) {
+fn rows<S: HostScalar>(cases: u64) {
     let (mut touching, mut hidden) = (0, 0);
     for seed in 0..cases {
         let dice = &mut Dice::seeded(seed);
@@ -120,7 +120,7 @@ fn a_touch_does_not_hide_a_collision() {
 }
 
 /// A touch is no deeper than the tolerance: discs that are smaller by it are apart. In `Q12` it was deeper by a fifth.
-fn touches_are_slight<S: Format>(cases: u64) {
+fn touches_are_slight<S: HostScalar>(cases: u64) {
     let mut touches = 0;
     for seed in 0..cases {
         let [own, their] = scene::<S>(seed).each_ref().map(Course::<S>::rounded);

@@ -1,9 +1,9 @@
 //! Random traffic: missions are what they say, and no two agents of a plan come nearer than their radii, by positions
 //! at many times.
 
-use pcr_execution::traffic::{Request, Traffic};
+use pcr_execution::traffic::{TrafficOptions, TrafficReport};
 use pcr_formats::footprint::Footprint;
-use pcr_formats::import::{Format, Imported, Options, Warnings, roads};
+use pcr_formats::import::{ImportOptions, ImportedLayout, InputFormat, Warnings, roads};
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::Fleet;
 use pcr_tests::polygons::{apart, placed};
@@ -15,10 +15,10 @@ const LEVELS: &str = include_str!("../data/real/rmf/office.building.yaml");
 /// Between two times that are looked at \[s\].
 const STEP: f64 = 0.05;
 
-fn read(format: Format, text: &str, radius: f64) -> Imported {
+fn read(format: InputFormat, text: &str, radius: f64) -> ImportedLayout {
     // Routes of nav2 round corners where smooth_corners is set.
-    let corner_radius = (format == Format::Nav2).then_some(1.0);
-    let options = Options { radius: Some(radius), corner_radius, ..Options::default() };
+    let corner_radius = (format == InputFormat::Nav2).then_some(1.0);
+    let options = ImportOptions { radius: Some(radius), corner_radius, ..ImportOptions::default() };
     roads(format, text, &options, &mut Warnings::default()).unwrap()
 }
 
@@ -46,8 +46,8 @@ fn clearance(scenario: &Scenario) -> f64 {
 
 #[test]
 fn agents_of_a_plan_keep_clear_and_those_at_once_do_not() {
-    let imported = read(Format::Nav2, WAREHOUSE, 0.4);
-    let (traffic, [missions, plan]) = Traffic::of(&imported, Request { agents: 12, seed: 1 }).unwrap();
+    let imported = read(InputFormat::Nav2, WAREHOUSE, 0.4);
+    let (traffic, [missions, plan]) = TrafficReport::plan(&imported, TrafficOptions { agents: 12, seed: 1 }).unwrap();
     assert_eq!((traffic.placed, missions.agents.len()), (12, 12));
     assert_eq!((traffic.planned + traffic.unsolved.len(), plan.agents.len()), (12, traffic.planned));
     assert_eq!(traffic.planned, 12);
@@ -59,8 +59,8 @@ fn agents_of_a_plan_keep_clear_and_those_at_once_do_not() {
 #[test]
 fn every_mission_that_is_placed_is_planned() {
     const AGENTS: usize = if cfg!(optimized) { 50 } else { 20 };
-    let imported = read(Format::Nav2, WAREHOUSE, 0.4);
-    let (traffic, [_, plan]) = Traffic::of(&imported, Request { agents: AGENTS, seed: 1 }).unwrap();
+    let imported = read(InputFormat::Nav2, WAREHOUSE, 0.4);
+    let (traffic, [_, plan]) = TrafficReport::plan(&imported, TrafficOptions { agents: AGENTS, seed: 1 }).unwrap();
     assert_eq!(traffic.placed, AGENTS);
     assert_eq!((traffic.planned, traffic.conflicts_after), (traffic.placed, 0), "{:?}", traffic.unsolved);
     assert!(traffic.passed_over > 0 && clearance(&plan) > 0.0);
@@ -70,10 +70,10 @@ fn every_mission_that_is_placed_is_planned() {
 #[test]
 fn vehicles_with_outlines_keep_clear() {
     const FORK: [[f64; 2]; 4] = [[-0.4, -0.25], [0.8, -0.25], [0.8, 0.25], [-0.4, 0.25]];
-    let mut imported = read(Format::Nav2, WAREHOUSE, 0.4);
+    let mut imported = read(InputFormat::Nav2, WAREHOUSE, 0.4);
     let footprint = Footprint::new(FORK.to_vec(), Some(0.15)).unwrap();
-    (imported.vehicle.radius, imported.vehicle.footprint) = (footprint.reach(), Some(footprint));
-    let (traffic, [_, plan]) = Traffic::of(&imported, Request { agents: 8, seed: 2 }).unwrap();
+    (imported.vehicle.radius, imported.vehicle.footprint) = (footprint.circumscribed_radius(), Some(footprint));
+    let (traffic, [_, plan]) = TrafficReport::plan(&imported, TrafficOptions { agents: 8, seed: 2 }).unwrap();
     assert_eq!((traffic.planned, traffic.conflicts_after), (8, 0), "{:?}", traffic.unsolved);
     assert!(clearance(&plan) < 0.0, "the discs around them overlap");
     let fleet = Fleet::<f64>::new(&plan).unwrap();
@@ -95,10 +95,10 @@ fn vehicles_with_outlines_keep_clear() {
 
 #[test]
 fn missions_join_their_nodes_and_keep_apart_at_both_ends() {
-    let imported = read(Format::Nav2, WAREHOUSE, 0.4);
-    let (traffic, [missions, _]) = Traffic::of(&imported, Request { agents: 14, seed: 7 }).unwrap();
+    let imported = read(InputFormat::Nav2, WAREHOUSE, 0.4);
+    let (traffic, [missions, _]) = TrafficReport::plan(&imported, TrafficOptions { agents: 14, seed: 7 }).unwrap();
     let fleet = Fleet::<f64>::new(&missions).unwrap();
-    let node = |id| imported.layout.nodes.iter().find(|node| node.id == id).unwrap().at;
+    let node = |id| imported.layout.nodes.iter().find(|node| node.id == id).unwrap().point;
     let mut ends: [Vec<[f64; 2]>; 2] = Default::default();
     for (motion, mission) in fleet.motions().iter().zip(&traffic.missions) {
         let path = motion.path();
@@ -114,11 +114,11 @@ fn missions_join_their_nodes_and_keep_apart_at_both_ends() {
 
 #[test]
 fn what_is_counted_is_what_the_missions_say() {
-    let imported = read(Format::Rmf, LEVELS, 0.2);
-    let request = Request { agents: 8, seed: 3 };
-    let (traffic, [_, plan]) = Traffic::of(&imported, request).unwrap();
-    assert_eq!(Traffic::of(&imported, request).unwrap().0, traffic, "the same seed, the same traffic");
-    let other = Traffic::of(&imported, Request { seed: 4, ..request }).unwrap().0;
+    let imported = read(InputFormat::Rmf, LEVELS, 0.2);
+    let request = TrafficOptions { agents: 8, seed: 3 };
+    let (traffic, [_, plan]) = TrafficReport::plan(&imported, request).unwrap();
+    assert_eq!(TrafficReport::plan(&imported, request).unwrap().0, traffic, "the same seed, the same traffic");
+    let other = TrafficReport::plan(&imported, TrafficOptions { seed: 4, ..request }).unwrap().0;
     assert_ne!(other.missions, traffic.missions);
     let planned: Vec<_> = traffic.missions.iter().filter(|mission| mission.delay.is_some()).collect();
     assert_eq!(planned.len(), traffic.planned);
@@ -137,24 +137,24 @@ fn what_is_counted_is_what_the_missions_say() {
 
 #[test]
 fn where_there_is_no_room_fewer_are_placed() {
-    let imported = read(Format::Nav2, WAREHOUSE, 3.0);
-    let (traffic, _) = Traffic::of(&imported, Request { agents: 96, seed: 1 }).unwrap();
+    let imported = read(InputFormat::Nav2, WAREHOUSE, 3.0);
+    let (traffic, _) = TrafficReport::plan(&imported, TrafficOptions { agents: 96, seed: 1 }).unwrap();
     assert!(traffic.placed < 30 && traffic.placed > 0, "{}", traffic.placed);
     assert_eq!(traffic.asked, 96);
 }
 
 #[test]
 fn missions_that_are_passed_over_are_told_with_their_reasons() {
-    let imported = read(Format::Nav2, WAREHOUSE, 0.4);
-    let (traffic, _) = Traffic::of(&imported, Request { agents: 16, seed: 1 }).unwrap();
+    let imported = read(InputFormat::Nav2, WAREHOUSE, 0.4);
+    let (traffic, _) = TrafficReport::plan(&imported, TrafficOptions { agents: 16, seed: 1 }).unwrap();
     let because: Vec<_> =
         traffic.passed_over_because.iter().map(|reason| (reason.why.as_str(), reason.missions)).collect();
     assert!(traffic.passed_over > 0, "{traffic:?}");
     assert_eq!(because, [("no order of starts lets it through with those before it", traffic.passed_over)]);
     // Its trajectories are metres from its nodes: no way is a path.
     let apart = include_str!("../data/real/lif/example_17.lif.json");
-    let imported = read(Format::Lif, apart, 0.4);
-    let (traffic, _) = Traffic::of(&imported, Request { agents: 1, seed: 1 }).unwrap();
+    let imported = read(InputFormat::Lif, apart, 0.4);
+    let (traffic, _) = TrafficReport::plan(&imported, TrafficOptions { agents: 1, seed: 1 }).unwrap();
     assert_eq!((traffic.placed, traffic.passed_over), (0, 8), "two ways in four draws");
     let mut reasons = traffic.passed_over_because.iter();
     assert!(reasons.all(|reason| reason.why.starts_with("the way is no path: edge N") && reason.missions == 4));
@@ -174,8 +174,8 @@ fn missions_that_are_passed_over_are_told_with_their_reasons() {
 
 #[test]
 fn levels_without_missions_are_told() {
-    let hotel = read(Format::Rmf, include_str!("../data/real/rmf/hotel.building.yaml"), 0.3);
-    let (traffic, [missions, plan]) = Traffic::of(&hotel, Request { agents: 2, seed: 1 }).unwrap();
+    let hotel = read(InputFormat::Rmf, include_str!("../data/real/rmf/hotel.building.yaml"), 0.3);
+    let (traffic, [missions, plan]) = TrafficReport::plan(&hotel, TrafficOptions { agents: 2, seed: 1 }).unwrap();
     let told = "levels: missions are drawn on L1 only, of 3 [one-level]".to_owned();
     assert!([&traffic.warnings, &missions.warnings, &plan.warnings].iter().all(|warnings| warnings.contains(&told)));
 }

@@ -1,11 +1,11 @@
 //! Waits on the way, stretched profiles and agents that may be late: against the definition, and known answers.
 
 use pcr_core::{
-    Drive as Speeds, Interval, Limits, Motion, Profile, RegionRef, Station, earliest_departure, earliest_start,
-    least_duration, plan_speed, safe_intervals,
+    Interval, Limits, Motion, Profile, RegionRef, SearchNode, SpeedPlanLimits as Speeds, earliest_departure,
+    earliest_start, least_duration, plan_speed, safe_intervals,
 };
 use pcr_fixed::Q16;
-use pcr_planning::fleet::{Format, build_ecm};
+use pcr_planning::fleet::{HostScalar, build_ecm};
 use pcr_tests::disc::{Course, Disc, Drive, Driven, Leg};
 use pcr_tests::generators::{Dice, drive, leg};
 use pcr_tests::oracle::contact::Meeting;
@@ -18,7 +18,7 @@ const CASES: u64 = if cfg!(optimized) { 400 } else { 40 };
 const PHASES: usize = 16;
 
 /// Two discs whose paths lead about the same place, and their courses.
-fn scene<S: Format>(seed: u64) -> Option<([Driven; 2], [Course<S>; 2])> {
+fn scene<S: HostScalar>(seed: u64) -> Option<([Driven; 2], [Course<S>; 2])> {
     let dice = &mut Dice::seeded(seed);
     let mut driven = || {
         let start = [dice.range(-2.0, 2.0), dice.range(-2.0, 2.0), dice.range(-PI, PI)];
@@ -33,7 +33,7 @@ fn scene<S: Format>(seed: u64) -> Option<([Driven; 2], [Course<S>; 2])> {
 }
 
 /// What the format may be off, as a distance \[m\].
-fn slip<S: Format>() -> f64 {
+fn slip<S: HostScalar>() -> f64 {
     S::tolerance(S::from_f64(20.0)).to_f64().max(1e-7) * 8.0
 }
 
@@ -53,7 +53,7 @@ fn span(pair: &[Driven; 2], more: f64) -> [f64; 2] {
     [times[0].0.min(times[1].0) - 1.0, times[0].1.max(times[1].1) + more + 1.0]
 }
 
-fn waits<S: Format>() {
+fn waits<S: HostScalar>() {
     let (mut found, mut waited, mut never) = (0_u32, 0_u32, 0_u32);
     for seed in 0..CASES {
         let Some((pair, courses)) = scene::<S>(seed) else { continue };
@@ -113,7 +113,7 @@ fn after_the_least_wait_nobody_is_met_and_after_less_somebody_is_q16() {
     waits::<Q16>();
 }
 
-fn durations<S: Format>() {
+fn durations<S: HostScalar>() {
     const SAMPLES: i32 = 24;
     let (mut inside, mut outside, mut coarse) = (0, 0, 0);
     for seed in 0..CASES {
@@ -218,7 +218,7 @@ fn plans_with_lateness_hold_for_all_delays_in_it() {
             .map(|(course, late)| course.motion().with_lateness(late).expect("valid"))
             .collect();
         let ecm = build_ecm(&fleet).expect("a small table");
-        let mut stations = vec![Station::EMPTY; 80];
+        let mut stations = vec![SearchNode::EMPTY; 80];
         let by_delay = earliest_start(ecm.row(&fleet, 0).expect("the table of the fleet"), 0.0)
             .map(|delay| (pair[0].1.clone(), pair[0].2 + delay));
         // One that is slower for a reason as well: only whom it meets counts here.

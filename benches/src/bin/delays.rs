@@ -2,7 +2,7 @@
 //! shortest of so many rounds), how many pairs have an interval, and the sum of their lengths. `benches/delays.sh` compares it with the
 //! published equations.
 
-use pcr_planning::locks::Straight;
+use pcr_planning::exclusion_table::StraightEdge;
 use std::hint::black_box;
 use std::io::{Read, stdin};
 use std::time::Instant;
@@ -13,9 +13,9 @@ fn main() {
     let mut text = String::new();
     stdin().read_to_string(&mut text).expect("edges");
     let numbers: Vec<f64> = text.split_whitespace().map(|number| number.parse().expect("a number")).collect();
-    let edges: Vec<Straight> = numbers
+    let edges: Vec<StraightEdge> = numbers
         .chunks_exact(4)
-        .map(|edge| Straight::new([edge[0], edge[1]], [edge[2], edge[3]], 1.0).expect("an edge"))
+        .map(|edge| StraightEdge::new([edge[0], edge[1]], [edge[2], edge[3]], 1.0).expect("an edge"))
         .collect();
     let pairs = 0.5 * edges.len() as f64 * (edges.len() + 1) as f64;
     let (mut least, mut met, mut sum) = (f64::INFINITY, 0, 0.0);

@@ -7,9 +7,9 @@
 
 use pcr_benches::{Storage, boxes, fleet, scattered, serpentine};
 use pcr_certify::motion::{Mover, meetings};
-use pcr_certify::table::{Checker, Margin};
+use pcr_certify::table::{Checker, CoverageMargin};
 use pcr_core::{BroadPhase, Encounter, Motion};
-use pcr_planning::certificate;
+use pcr_planning::checker_input;
 use pcr_planning::fleet::build_ecm;
 use std::hint::black_box;
 use std::process::ExitCode;
@@ -39,8 +39,8 @@ fn main() -> ExitCode {
     let mut exchanged = storage.clone();
     let mut exchanged = exchanged.table(&motions);
     let ids: Vec<u64> = (0..motions.len() as u64).collect();
-    let agents = certificate::agents(&fleet, &motions, &ids);
-    let certified = build_ecm(&motions).map(|ecm| certificate::table(agents.clone(), &motions, &ecm));
+    let agents = checker_input::agents(&fleet, &motions, &ids);
+    let certified = build_ecm(&motions).map(|ecm| checker_input::table(agents.clone(), &motions, &ecm));
     let certified = certified.expect("the table of the fleet");
     for _ in 0..times {
         black_box(match job {
@@ -52,7 +52,8 @@ fn main() -> ExitCode {
                 pairs.map(|(a, b)| Encounter::new(a, b).contacts(time).count()).sum()
             }
             "certify" => {
-                let found = Checker::new(black_box(&certified)).and_then(|checker| checker.check(Margin::Needed));
+                let found =
+                    Checker::new(black_box(&certified)).and_then(|checker| checker.check(CoverageMargin::Needed));
                 found.map_or(0, |found| found.steps)
             }
             "motions" => {

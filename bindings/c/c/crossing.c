@@ -3,16 +3,16 @@
 #include <stdio.h>
 
 /* Room for 2 agents of up to 2 legs, and for the table. All of it belongs to the fleet from pcr_fleet_init on. */
-static PcrSegment segments[4];
-static PcrPhase phases[6];
-static PcrMotion motions[2];
-static PcrEntry entries[4];
-static PcrPiece pieces[8];
+static PcrSegmentStorage segments[4];
+static PcrPhaseStorage phases[6];
+static PcrMotionStorage motions[2];
+static PcrRegionStorage entries[4];
+static PcrPieceStorage pieces[8];
 static PcrFleet fleet;
 
-static const PcrLeg east[] = {{PCR_LINE, 4.0f, 0.0f}};
+static const PcrPathSegment east[] = {{PCR_LINE, 4.0f, 0.0f}};
 /* A quarter circle to the left, then straight on. */
-static const PcrLeg north[] = {{PCR_LEFT, 1.5707963f, 1.0f}, {PCR_LINE, 3.0f, 0.0f}};
+static const PcrPathSegment north[] = {{PCR_LEFT, 1.5707963f, 1.0f}, {PCR_LINE, 3.0f, 0.0f}};
 
 static int failed(const char *what, PcrStatus status) {
   if (status == PCR_STATUS_OK) return 0;

@@ -4,17 +4,17 @@
 #include <stdio.h>
 
 /* Room for 3 agents of one leg and one more while an agent is replaced; orders for all regions, and as many again. */
-static PcrSegment segments[4];
-static PcrPhase phases[12];
-static PcrMotion motions[3];
-static PcrEntry entries[8];
-static PcrPiece pieces[8];
-static PcrOrder orders[8];
-static PcrRobot robots[3];
+static PcrSegmentStorage segments[4];
+static PcrPhaseStorage phases[12];
+static PcrMotionStorage motions[3];
+static PcrRegionStorage entries[8];
+static PcrPieceStorage pieces[8];
+static PcrPrecedenceStorage orders[8];
+static PcrCheckStorage robots[3];
 static PcrFleet fleet;
 
-static const PcrLeg line[] = {{PCR_LINE, 4.0f, 0.0f}};
-static const PcrBrakes brakes = {0.5f, 0.1f};
+static const PcrPathSegment line[] = {{PCR_LINE, 4.0f, 0.0f}};
+static const PcrBrakingModel brakes = {0.5f, 0.1f};
 
 static int failed(const char *what, PcrStatus status) {
   if (status == PCR_STATUS_OK) return 0;
@@ -25,13 +25,13 @@ static int failed(const char *what, PcrStatus status) {
 /* Prints how far each robot may go now, and how fast it may be at its start. */
 static int holds(void) {
   for (size_t agent = 0; agent < pcr_fleet_agents(&fleet); agent++) {
-    PcrHold hold;
+    PcrMovementAuthority hold;
     float speed = 0.0f;
     if (failed("hold", pcr_fleet_hold(&fleet, agent, &hold))) return 1;
-    if (hold.kind == PCR_HOLD_KIND_INSIDE) return 1;
+    if (hold.kind == PCR_AUTHORITY_KIND_INSIDE) return 1;
     if (failed("speed", pcr_stopping_speed(&brakes, hold.length, &speed))) return 1;
     printf("agent %u may go to %.3f m%s, at %.3f m/s\n", (unsigned)agent, hold.length,
-           hold.kind == PCR_HOLD_KIND_FREE ? ", the end" : "", speed);
+           hold.kind == PCR_AUTHORITY_KIND_FREE ? ", the end" : "", speed);
   }
   return 0;
 }
@@ -47,12 +47,12 @@ int main(void) {
       {0.0f, -2.0f, 1.5707963f, 0.25f, 3.0f, line, 1, 1.0f, 1.0f, NULL, 0},
       {1.0f, 2.0f, -1.5707963f, 0.25f, 0.0f, NULL, 0, 1.0f, 1.0f, NULL, 0},
   };
-  const PcrTolerances tolerances = {0.01f, 0.001f};
+  const PcrCheckTolerances tolerances = {0.01f, 0.001f};
   const PcrProgress start = at(0.0f);
   PcrAgent mission = agents[2];
   PcrProgress progress;
-  PcrRefused why;
-  PcrHold own;
+  PcrAdmissionError why;
+  PcrMovementAuthority own;
 
   if (failed("init", pcr_fleet_init(&fleet, &memory))) return 1;
   for (size_t k = 0; k < 3; k++)
@@ -83,7 +83,7 @@ int main(void) {
   if (failed("row", pcr_fleet_build_row(&fleet, 1))) return 1;
   if (failed("decide", pcr_fleet_decide(&fleet, 1, 0, PCR_SECOND))) return 1;
   if (failed("hold", pcr_fleet_hold(&fleet, 1, &own))) return 1;
-  printf("agent 1 by itself: %s\n", own.kind == PCR_HOLD_KIND_FREE ? "free" : "held");
+  printf("agent 1 by itself: %s\n", own.kind == PCR_AUTHORITY_KIND_FREE ? "free" : "held");
   if (pcr_fleet_hold(&fleet, 0, &own) != PCR_STATUS_ONLY_ROW) return 1;
 
   if (failed("remove", pcr_fleet_remove(&fleet, 0))) return 1;

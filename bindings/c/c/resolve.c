@@ -4,14 +4,14 @@
 #include <stdio.h>
 
 /* Room for 3 agents of one leg, for one more leg and three phases while an agent is replaced, and for the table. */
-static PcrSegment segments[4];
-static PcrPhase phases[12];
-static PcrMotion motions[3], room[3];
-static PcrEntry entries[8];
-static PcrPiece pieces[8];
+static PcrSegmentStorage segments[4];
+static PcrPhaseStorage phases[12];
+static PcrMotionStorage motions[3], room[3];
+static PcrRegionStorage entries[8];
+static PcrPieceStorage pieces[8];
 static PcrFleet fleet;
 
-static const PcrLeg line[] = {{PCR_LINE, 4.0f, 0.0f}};
+static const PcrPathSegment line[] = {{PCR_LINE, 4.0f, 0.0f}};
 
 static int failed(const char *what, PcrStatus status) {
   if (status == PCR_STATUS_OK) return 0;
@@ -23,7 +23,7 @@ static int failed(const char *what, PcrStatus status) {
 static int conflicts(void) {
   int meeting = 0;
   for (size_t ego = 0; ego < pcr_fleet_agents(&fleet); ego++) {
-    PcrMet met;
+    PcrAgentConflict met;
     bool found = false;
     if (failed("first conflict", pcr_fleet_first_conflict(&fleet, ego, false, &met, &found))) return -1;
     if (!found) continue;
@@ -43,7 +43,7 @@ int main(void) {
   };
   const PcrInterval place = {2.0f, 2.0f}, times = {0.0f, 9.0f};
   PcrInterval safe[4];
-  PcrUnsolved why;
+  PcrPlanError why;
   size_t count = 0, order[] = {0, 1, 2};
   float delay = 0.0f;
 

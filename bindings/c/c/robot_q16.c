@@ -3,25 +3,25 @@
 #include "pcr_q16.h"
 #include <stdio.h>
 
-static PcrQ16Segment segments[3];
-static PcrQ16Phase phases[6];
-static PcrQ16Motion motions[2];
-static PcrQ16Entry entries[2];
-static PcrQ16Piece pieces[4];
-static PcrQ16Order orders[2];
-static PcrQ16Robot robots[2];
+static PcrQ16SegmentStorage segments[3];
+static PcrQ16PhaseStorage phases[6];
+static PcrQ16MotionStorage motions[2];
+static PcrQ16RegionStorage entries[2];
+static PcrQ16PieceStorage pieces[4];
+static PcrQ16PrecedenceStorage orders[2];
+static PcrQ16CheckStorage robots[2];
 static PcrQ16Fleet fleet;
 
-static const PcrQ16Leg east[] = {{PCR_LINE, PCR_Q16(4.0), 0}};
-static const PcrQ16Leg north[] = {{PCR_LEFT, PCR_Q16(1.5707963), PCR_Q16(1.0)}, {PCR_LINE, PCR_Q16(3.0), 0}};
+static const PcrQ16PathSegment east[] = {{PCR_LINE, PCR_Q16(4.0), 0}};
+static const PcrQ16PathSegment north[] = {{PCR_LEFT, PCR_Q16(1.5707963), PCR_Q16(1.0)}, {PCR_LINE, PCR_Q16(3.0), 0}};
 
 static double metres(int32_t number) { return number / 65536.0; }
 
 static int hold(void) {
-  PcrQ16Hold found;
+  PcrQ16MovementAuthority found;
   PcrStatus status = pcr_q16_fleet_hold(&fleet, 1, &found);
   if (status != PCR_STATUS_OK) return 1;
-  printf("robot 1 may go to %.3f m%s\n", metres(found.length), found.kind == PCR_HOLD_KIND_FREE ? ", the end" : "");
+  printf("robot 1 may go to %.3f m%s\n", metres(found.length), found.kind == PCR_AUTHORITY_KIND_FREE ? ", the end" : "");
   return 0;
 }
 

@@ -47,7 +47,7 @@ void crossing(const char *name, Make real, Back back, typename F::Agent quarter)
   try {
     fleet.orders_as_planned();
     EXPECT(!"two that meet are no plan");
-  } catch (const pcr::Refused &refused) { EXPECT(refused.why.reason == PCR_REFUSAL_MEETING && refused.why.agents[1] == 1); }
+  } catch (const pcr::Refused &refused) { EXPECT(refused.why.reason == PCR_ADMISSION_ERROR_KIND_MEETING && refused.why.agents[1] == 1); }
   EXPECT(std::abs(back(fleet.earliest_start(1)) - std::sqrt(0.5)) < 1e-2);
   EXPECT(fleet.plan_delays({1, 0, 2}).size() == 3);
   fleet.delay(0, real(1.0)); // well apart: a plan lets them touch
@@ -55,16 +55,16 @@ void crossing(const char *name, Make real, Back back, typename F::Agent quarter)
   fleet.check({real(0.01), real(0.001)});
   const auto passings = fleet.passings(0);
   EXPECT(passings.size() == 1 && passings[0].pass == PCR_SECOND && passings[0].other == 1);
-  EXPECT(fleet.hold(0).kind == PCR_HOLD_KIND_AT && fleet.hold(1).kind == PCR_HOLD_KIND_FREE);
+  EXPECT(fleet.hold(0).kind == PCR_AUTHORITY_KIND_AT && fleet.hold(1).kind == PCR_AUTHORITY_KIND_FREE);
   fleet.report(1, {{real(2.75), real(2.75)}, real(2.75)});
-  EXPECT(fleet.hold(0).kind == PCR_HOLD_KIND_FREE);
+  EXPECT(fleet.hold(0).kind == PCR_AUTHORITY_KIND_FREE);
   fleet.passed();
   fleet.decide_at(passings[0].place, 0, PCR_FIRST);
   // One that would stand on the path of the first for good.
   try {
     fleet.admit(2, agent(0.5, 0.0, 0, nullptr, 0), {}, {real(0.01), real(0.001)});
     EXPECT(!"it is in the way");
-  } catch (const pcr::Refused &refused) { EXPECT(refused.why.reason == PCR_REFUSAL_BLOCKED); }
+  } catch (const pcr::Refused &refused) { EXPECT(refused.why.reason == PCR_ADMISSION_ERROR_KIND_BLOCKED); }
   fleet.replace(2, agent(1.0, -2.0, quarter.heading, line, 1));
   fleet.decide(2, 0, PCR_SECOND);
   fleet.remove(1);

@@ -24,52 +24,52 @@ typedef struct PcrFleet {
 /*
  Memory for a segment of a path: one for each leg, or one for an agent that stands.
  */
-typedef struct PcrSegment {
+typedef struct PcrSegmentStorage {
   float opaque[30];
-} PcrSegment;
+} PcrSegmentStorage;
 
 /*
  Memory for a phase of a profile: three for each agent, or one for each stretch.
  */
-typedef struct PcrPhase {
+typedef struct PcrPhaseStorage {
   float opaque[7];
-} PcrPhase;
+} PcrPhaseStorage;
 
 /*
  Memory for the motion of an agent.
  */
-typedef struct PcrMotion {
+typedef struct PcrMotionStorage {
   size_t pointers[4];
   float opaque[14];
-} PcrMotion;
+} PcrMotionStorage;
 
 /*
  Memory for a region in the table; each one serves both agents of its pair.
  */
-typedef struct PcrEntry {
+typedef struct PcrRegionStorage {
   uint32_t opaque[2];
-} PcrEntry;
+} PcrRegionStorage;
 
 /*
  Memory for a piece of a region: the part that belongs to one segment of each path.
  */
-typedef struct PcrPiece {
+typedef struct PcrPieceStorage {
   float opaque[7];
-} PcrPiece;
+} PcrPieceStorage;
 
 /*
  Memory for the order of a region.
  */
-typedef struct PcrOrder {
+typedef struct PcrPrecedenceStorage {
   float opaque[5];
-} PcrOrder;
+} PcrPrecedenceStorage;
 
 /*
  Memory for the progress of an agent, and for a check.
  */
-typedef struct PcrRobot {
+typedef struct PcrCheckStorage {
   float opaque[7];
-} PcrRobot;
+} PcrCheckStorage;
 
 /*
  Memory for a fleet. It belongs to the fleet from `pcr_fleet_init` on.
@@ -78,7 +78,7 @@ typedef struct PcrMemory {
   /*
    Memory for the paths.
    */
-  struct PcrSegment *segments;
+  struct PcrSegmentStorage *segments;
   /*
    Number of segments.
    */
@@ -86,7 +86,7 @@ typedef struct PcrMemory {
   /*
    Memory for the profiles.
    */
-  struct PcrPhase *phases;
+  struct PcrPhaseStorage *phases;
   /*
    Number of phases.
    */
@@ -94,7 +94,7 @@ typedef struct PcrMemory {
   /*
    Memory for the agents.
    */
-  struct PcrMotion *motions;
+  struct PcrMotionStorage *motions;
   /*
    Number of motions, which limits the number of agents.
    */
@@ -102,7 +102,7 @@ typedef struct PcrMemory {
   /*
    Memory for the regions.
    */
-  struct PcrEntry *entries;
+  struct PcrRegionStorage *entries;
   /*
    Number of entries.
    */
@@ -110,7 +110,7 @@ typedef struct PcrMemory {
   /*
    Memory for the pieces of the regions.
    */
-  struct PcrPiece *pieces;
+  struct PcrPieceStorage *pieces;
   /*
    Number of pieces.
    */
@@ -119,7 +119,7 @@ typedef struct PcrMemory {
    Memory for passing orders: one for each region, and as many more as an agent has that is admitted or replaced.
    Null if no orders are used.
    */
-  struct PcrOrder *orders;
+  struct PcrPrecedenceStorage *orders;
   /*
    Number of orders; 0 if no orders are used.
    */
@@ -127,13 +127,13 @@ typedef struct PcrMemory {
   /*
    Memory for the progress of the agents, as many as `motions`; null if no orders are used.
    */
-  struct PcrRobot *robots;
+  struct PcrCheckStorage *robots;
 } PcrMemory;
 
 /*
  A line or an arc of a path. It begins where the one before it ends, with the same heading.
  */
-typedef struct PcrLeg {
+typedef struct PcrPathSegment {
   /*
    PCR_LINE, PCR_LEFT or PCR_RIGHT.
    */
@@ -146,12 +146,12 @@ typedef struct PcrLeg {
    Radius of an arc (m), above 0; ignored for a line.
    */
   float radius;
-} PcrLeg;
+} PcrPathSegment;
 
 /*
  A part of a profile with constant acceleration.
  */
-typedef struct PcrStretch {
+typedef struct PcrProfilePhase {
   /*
    Duration (s).
    */
@@ -160,7 +160,7 @@ typedef struct PcrStretch {
    Acceleration (m/s²).
    */
   float acceleration;
-} PcrStretch;
+} PcrProfilePhase;
 
 /*
  A disc, its path and its motion along the path.
@@ -189,7 +189,7 @@ typedef struct PcrAgent {
   /*
    Legs of the path; none for an agent that stands.
    */
-  const struct PcrLeg *legs;
+  const struct PcrPathSegment *legs;
   /*
    Number of legs.
    */
@@ -205,7 +205,7 @@ typedef struct PcrAgent {
   /*
    Profile, which must have the length of the path; none for the fastest motion from rest to rest.
    */
-  const struct PcrStretch *stretches;
+  const struct PcrProfilePhase *stretches;
   /*
    Number of stretches.
    */
@@ -287,7 +287,7 @@ typedef struct PcrConflict {
 /*
  A conflict with another agent.
  */
-typedef struct PcrMet {
+typedef struct PcrAgentConflict {
   /*
    The other agent.
    */
@@ -296,12 +296,12 @@ typedef struct PcrMet {
    The conflict.
    */
   struct PcrConflict conflict;
-} PcrMet;
+} PcrAgentConflict;
 
 /*
  A region of an agent, and the order in which the agent passes it.
  */
-typedef struct PcrPassing {
+typedef struct PcrRegionPrecedence {
   /*
    Index of the region in the table, for `pcr_fleet_decide_at`.
    */
@@ -322,7 +322,7 @@ typedef struct PcrPassing {
    Range of lengths along the path of the other agent (m).
    */
   struct PcrInterval other_length;
-} PcrPassing;
+} PcrRegionPrecedence;
 
 /*
  What is known about the progress of an agent.
@@ -342,21 +342,21 @@ typedef struct PcrProgress {
 /*
  How far an agent may go; it may stand there.
  */
-typedef struct PcrHold {
+typedef struct PcrMovementAuthority {
   /*
    Kind of the limit.
    */
-  PcrHoldKind kind;
+  PcrAuthorityKind kind;
   /*
-   The limit (m): for PCR_HOLD_KIND_AT a length along the path, for PCR_HOLD_KIND_FREE the end of the path.
+   The limit (m): for PCR_AUTHORITY_KIND_AT a length along the path, for PCR_AUTHORITY_KIND_FREE the end of the path.
    */
   float length;
-} PcrHold;
+} PcrMovementAuthority;
 
 /*
  Parameters of a check of orders.
  */
-typedef struct PcrTolerances {
+typedef struct PcrCheckTolerances {
   /*
    When an agent stands, the known lower end of its place may be behind it by up to this (m).
    */
@@ -365,12 +365,12 @@ typedef struct PcrTolerances {
    A gain below this (m) does not count as progress; above 0.
    */
   float gain;
-} PcrTolerances;
+} PcrCheckTolerances;
 
 /*
  How an agent brakes.
  */
-typedef struct PcrBrakes {
+typedef struct PcrBrakingModel {
   /*
    Deceleration (m/s²), above 0.
    */
@@ -380,7 +380,7 @@ typedef struct PcrBrakes {
    delay until a command takes effect.
    */
   float reaction;
-} PcrBrakes;
+} PcrBrakingModel;
 
 #ifdef __cplusplus
 extern "C" {
@@ -480,7 +480,7 @@ PcrStatus pcr_fleet_conflicts(const struct PcrFleet *place,
 PcrStatus pcr_fleet_first_conflict(const struct PcrFleet *place,
                                    size_t ego,
                                    bool touches,
-                                   struct PcrMet *out,
+                                   struct PcrAgentConflict *out,
                                    bool *found);
 
 /*
@@ -514,16 +514,16 @@ PcrStatus pcr_fleet_safe_intervals(const struct PcrFleet *place,
 PcrStatus pcr_fleet_plan_delays(struct PcrFleet *place,
                                 size_t *order,
                                 size_t count,
-                                struct PcrMotion *room,
+                                struct PcrMotionStorage *room,
                                 size_t room_count,
-                                PcrUnsolved *why);
+                                PcrPlanError *why);
 
 /*
  The regions of an agent, the order in which it passes them, and their count.
  */
 PcrStatus pcr_fleet_passings(const struct PcrFleet *place,
                              size_t agent,
-                             struct PcrPassing *out,
+                             struct PcrRegionPrecedence *out,
                              size_t capacity,
                              size_t *count);
 
@@ -533,7 +533,7 @@ PcrStatus pcr_fleet_passings(const struct PcrFleet *place,
  first; `why` then names them. `why` may be null.
  */
 PcrStatus pcr_fleet_orders_as_planned(struct PcrFleet *place,
-                                      PcrRefused *why);
+                                      PcrAdmissionError *why);
 
 /*
  Decides the order of all undecided regions of two agents: whether the ego passes them first (PCR_FIRST) or second
@@ -546,7 +546,7 @@ PcrStatus pcr_fleet_decide(struct PcrFleet *place,
                            uint8_t pass);
 
 /*
- Decides the order of the region at one index of the table (`PcrPassing.place`). An order that exists is overwritten.
+ Decides the order of the region at one index of the table (`PcrRegionPrecedence.place`). An order that exists is overwritten.
  PCR_STATUS_NO_SUCH_REGION if the agent has no region there.
  */
 PcrStatus pcr_fleet_decide_at(struct PcrFleet *place,
@@ -569,7 +569,7 @@ PcrStatus pcr_fleet_report(struct PcrFleet *place,
  */
 PcrStatus pcr_fleet_hold(const struct PcrFleet *place,
                          size_t agent,
-                         struct PcrHold *out);
+                         struct PcrMovementAuthority *out);
 
 /*
  Checks that every agent can reach the end of its path, from the place that was reported last, without breaking an
@@ -577,8 +577,8 @@ PcrStatus pcr_fleet_hold(const struct PcrFleet *place,
  `why` may be null.
  */
 PcrStatus pcr_fleet_check(struct PcrFleet *place,
-                          const struct PcrTolerances *accepted,
-                          PcrRefused *why);
+                          const struct PcrCheckTolerances *accepted,
+                          PcrAdmissionError *why);
 
 /*
  Gives an agent a new path and orders for all its regions, with which it can finish, and so can every agent that could
@@ -597,9 +597,9 @@ PcrStatus pcr_fleet_admit(struct PcrFleet *place,
                           size_t agent,
                           const struct PcrAgent *by,
                           const struct PcrProgress *report,
-                          const struct PcrTolerances *accepted,
+                          const struct PcrCheckTolerances *accepted,
                           const uint8_t *prefer,
-                          PcrRefused *why);
+                          PcrAdmissionError *why);
 
 /*
  Drops the orders of regions that the first agent has left, so that they are not evaluated any more.
@@ -610,7 +610,7 @@ PcrStatus pcr_fleet_passed(struct PcrFleet *place);
  The stopping distance from a speed (m/s), rounded up (m). PCR_STATUS_OUT_OF_RANGE if it is beyond the range of the
  format.
  */
-PcrStatus pcr_stopping_way(const struct PcrBrakes *how,
+PcrStatus pcr_stopping_way(const struct PcrBrakingModel *how,
                            float speed,
                            float *way);
 
@@ -618,7 +618,7 @@ PcrStatus pcr_stopping_way(const struct PcrBrakes *how,
  The largest speed from which this distance (m) is enough to stop, rounded down (m/s); 0 if the distance is not above
  0.
  */
-PcrStatus pcr_stopping_speed(const struct PcrBrakes *how,
+PcrStatus pcr_stopping_speed(const struct PcrBrakingModel *how,
                              float way,
                              float *speed);
 

@@ -25,14 +25,14 @@ struct Error : std::runtime_error {
 
 // PCR_STATUS_REFUSED, with the reason and the agents concerned.
 struct Refused : Error {
-  Refused(const char *call, PcrRefused why) : Error(call, PCR_STATUS_REFUSED), why(why) {}
-  const PcrRefused why;
+  Refused(const char *call, PcrAdmissionError why) : Error(call, PCR_STATUS_REFUSED), why(why) {}
+  const PcrAdmissionError why;
 };
 
 // PCR_STATUS_NO_PLAN, with the reason and the agents concerned.
 struct Unsolved : Error {
-  Unsolved(const char *call, PcrUnsolved why) : Error(call, PCR_STATUS_NO_PLAN), why(why) {}
-  const PcrUnsolved why;
+  Unsolved(const char *call, PcrPlanError why) : Error(call, PCR_STATUS_NO_PLAN), why(why) {}
+  const PcrPlanError why;
 };
 
 inline void check(const char *call, PcrStatus status) {
@@ -102,7 +102,7 @@ template <class F> class BasicFleet {
     if (count > 0) pcr::check(call, ask(all.data(), all.size(), &count));
     return all;
   }
-  static void settle(const char *call, PcrStatus status, const PcrRefused &why) {
+  static void settle(const char *call, PcrStatus status, const PcrAdmissionError &why) {
     if (status == PCR_STATUS_REFUSED) throw Refused(call, why);
     pcr::check(call, status);
   }
@@ -155,7 +155,7 @@ public:
   // Returns the order in which the agents were planned.
   std::vector<std::size_t> plan_delays(std::vector<std::size_t> order) {
     if (!own) throw Error("plan_delays", PCR_STATUS_NULL);
-    PcrUnsolved why{};
+    PcrPlanError why{};
     const auto status = F::plan_delays(at(), order.data(), order.size(), own->room.data(), own->room.size(), &why);
     if (status == PCR_STATUS_NO_PLAN) throw Unsolved("plan_delays", why);
     return pcr::check("plan_delays", status), order;
@@ -165,7 +165,7 @@ public:
     return list<typename F::Passing>("passings", [&](auto... out) { return F::passings(at(), agent, out...); });
   }
   void orders_as_planned() {
-    PcrRefused why{};
+    PcrAdmissionError why{};
     settle("orders_as_planned", F::orders_as_planned(at(), &why), why);
   }
   void decide(std::size_t ego, std::size_t by, std::uint8_t to) { pcr::check("decide", F::decide(at(), ego, by, to)); }
@@ -178,14 +178,14 @@ public:
     return pcr::check("hold", F::hold(at(), agent, &found)), found;
   }
   void check(const Tolerances &accepted) {
-    PcrRefused why{};
+    PcrAdmissionError why{};
     settle("check", F::check(at(), &accepted, &why), why);
   }
   // `prefer` is empty, or has a value for every agent: PCR_FIRST or PCR_SECOND, but for `agent` itself.
   void admit(std::size_t agent, const Agent &by, const Progress &where, const Tolerances &accepted,
              const std::vector<std::uint8_t> &prefer = {}) {
     if (!prefer.empty() && prefer.size() != size()) throw Error("admit", PCR_STATUS_BAD_ORDER);
-    PcrRefused why{};
+    PcrAdmissionError why{};
     const auto wanted = prefer.empty() ? nullptr : prefer.data();
     settle("admit", F::admit(at(), agent, &by, &where, &accepted, wanted, &why), why);
   }

@@ -9,22 +9,22 @@
 #include <stdint.h>
 
 /*
- `PcrLeg.curve` of a straight line.
+ `PcrPathSegment.curve` of a straight line.
  */
 #define PCR_LINE 0
 
 /*
- `PcrLeg.curve` of an arc that turns left, counter-clockwise.
+ `PcrPathSegment.curve` of an arc that turns left, counter-clockwise.
  */
 #define PCR_LEFT 1
 
 /*
- `PcrLeg.curve` of an arc that turns right, clockwise.
+ `PcrPathSegment.curve` of an arc that turns right, clockwise.
  */
 #define PCR_RIGHT 2
 
 /*
- `PcrPassing.pass` of a region that is undecided: neither agent may enter it.
+ `PcrRegionPrecedence.pass` of a region that is undecided: neither agent may enter it.
  */
 #define PCR_UNDECIDED 0
 
@@ -148,99 +148,99 @@ typedef enum PcrStatus {
 /*
  Kind of a limit on how far an agent may go.
  */
-typedef enum PcrHoldKind {
+typedef enum PcrAuthorityKind {
   /*
    The agent stands where the other agent will pass. It can only go first.
    */
-  PCR_HOLD_KIND_INSIDE,
+  PCR_AUTHORITY_KIND_INSIDE,
   /*
    The agent may go up to a length of its path, and may stand there.
    */
-  PCR_HOLD_KIND_AT,
+  PCR_AUTHORITY_KIND_AT,
   /*
    The agent may go to the end of its path.
    */
-  PCR_HOLD_KIND_FREE,
-} PcrHoldKind;
+  PCR_AUTHORITY_KIND_FREE,
+} PcrAuthorityKind;
 
 /*
  Why there is no plan.
  */
-typedef enum PcrReason {
+typedef enum PcrPlanErrorKind {
   /*
    The two agents overlap at the starts of their paths.
    */
-  PCR_REASON_STARTS,
+  PCR_PLAN_ERROR_KIND_STARTS,
   /*
    The two agents overlap at the ends of their paths.
    */
-  PCR_REASON_ENDS,
+  PCR_PLAN_ERROR_KIND_ENDS,
   /*
    The two agents meet however late either of them starts.
    */
-  PCR_REASON_ALWAYS,
+  PCR_PLAN_ERROR_KIND_ALWAYS,
   /*
    The first agent cannot go because of the second, with the priorities that were tried.
    */
-  PCR_REASON_ORDER,
+  PCR_PLAN_ERROR_KIND_ORDER,
   /*
    The check of the plan found that the two agents overlap.
    */
-  PCR_REASON_OVERLAP,
+  PCR_PLAN_ERROR_KIND_OVERLAP,
   /*
    The times of the first agent are out of range.
    */
-  PCR_REASON_TIMES,
-} PcrReason;
+  PCR_PLAN_ERROR_KIND_TIMES,
+} PcrPlanErrorKind;
 
 /*
  Why orders are refused.
  */
-typedef enum PcrRefusal {
+typedef enum PcrAdmissionErrorKind {
   /*
    The first agent would wait for the second for ever.
    */
-  PCR_REFUSAL_STUCK,
+  PCR_ADMISSION_ERROR_KIND_STUCK,
   /*
    The first agent is where it should have waited for the second.
    */
-  PCR_REFUSAL_LATE,
+  PCR_ADMISSION_ERROR_KIND_LATE,
   /*
    The second agent is in the way of the first, whichever of them goes first.
    */
-  PCR_REFUSAL_BLOCKED,
+  PCR_ADMISSION_ERROR_KIND_BLOCKED,
   /*
    According to their motions the two agents meet, or pass so close that it cannot be decided which one is first.
    */
-  PCR_REFUSAL_MEETING,
-} PcrRefusal;
+  PCR_ADMISSION_ERROR_KIND_MEETING,
+} PcrAdmissionErrorKind;
 
 /*
  Why there is no plan, and the agents concerned.
  */
-typedef struct PcrUnsolved {
+typedef struct PcrPlanError {
   /*
    The reason.
    */
-  enum PcrReason reason;
+  enum PcrPlanErrorKind reason;
   /*
    The agents; twice the same number if only one is concerned.
    */
   size_t agents[2];
-} PcrUnsolved;
+} PcrPlanError;
 
 /*
  Why orders are refused, and the agents concerned.
  */
-typedef struct PcrRefused {
+typedef struct PcrAdmissionError {
   /*
    The reason.
    */
-  enum PcrRefusal reason;
+  enum PcrAdmissionErrorKind reason;
   /*
    The agents.
    */
   size_t agents[2];
-} PcrRefused;
+} PcrAdmissionError;
 
 #endif  /* PCR_COMMON_H */

@@ -24,52 +24,52 @@ typedef struct PcrF64Fleet {
 /*
  Memory for a segment of a path: one for each leg, or one for an agent that stands.
  */
-typedef struct PcrF64Segment {
+typedef struct PcrF64SegmentStorage {
   double opaque[30];
-} PcrF64Segment;
+} PcrF64SegmentStorage;
 
 /*
  Memory for a phase of a profile: three for each agent, or one for each stretch.
  */
-typedef struct PcrF64Phase {
+typedef struct PcrF64PhaseStorage {
   double opaque[7];
-} PcrF64Phase;
+} PcrF64PhaseStorage;
 
 /*
  Memory for the motion of an agent.
  */
-typedef struct PcrF64Motion {
+typedef struct PcrF64MotionStorage {
   size_t pointers[4];
   double opaque[14];
-} PcrF64Motion;
+} PcrF64MotionStorage;
 
 /*
  Memory for a region in the table; each one serves both agents of its pair.
  */
-typedef struct PcrF64Entry {
+typedef struct PcrF64RegionStorage {
   uint32_t opaque[2];
-} PcrF64Entry;
+} PcrF64RegionStorage;
 
 /*
  Memory for a piece of a region: the part that belongs to one segment of each path.
  */
-typedef struct PcrF64Piece {
+typedef struct PcrF64PieceStorage {
   double opaque[6];
-} PcrF64Piece;
+} PcrF64PieceStorage;
 
 /*
  Memory for the order of a region.
  */
-typedef struct PcrF64Order {
+typedef struct PcrF64PrecedenceStorage {
   double opaque[5];
-} PcrF64Order;
+} PcrF64PrecedenceStorage;
 
 /*
  Memory for the progress of an agent, and for a check.
  */
-typedef struct PcrF64Robot {
+typedef struct PcrF64CheckStorage {
   double opaque[7];
-} PcrF64Robot;
+} PcrF64CheckStorage;
 
 /*
  Memory for a fleet. It belongs to the fleet from `pcr_f64_fleet_init` on.
@@ -78,7 +78,7 @@ typedef struct PcrF64Memory {
   /*
    Memory for the paths.
    */
-  struct PcrF64Segment *segments;
+  struct PcrF64SegmentStorage *segments;
   /*
    Number of segments.
    */
@@ -86,7 +86,7 @@ typedef struct PcrF64Memory {
   /*
    Memory for the profiles.
    */
-  struct PcrF64Phase *phases;
+  struct PcrF64PhaseStorage *phases;
   /*
    Number of phases.
    */
@@ -94,7 +94,7 @@ typedef struct PcrF64Memory {
   /*
    Memory for the agents.
    */
-  struct PcrF64Motion *motions;
+  struct PcrF64MotionStorage *motions;
   /*
    Number of motions, which limits the number of agents.
    */
@@ -102,7 +102,7 @@ typedef struct PcrF64Memory {
   /*
    Memory for the regions.
    */
-  struct PcrF64Entry *entries;
+  struct PcrF64RegionStorage *entries;
   /*
    Number of entries.
    */
@@ -110,7 +110,7 @@ typedef struct PcrF64Memory {
   /*
    Memory for the pieces of the regions.
    */
-  struct PcrF64Piece *pieces;
+  struct PcrF64PieceStorage *pieces;
   /*
    Number of pieces.
    */
@@ -119,7 +119,7 @@ typedef struct PcrF64Memory {
    Memory for passing orders: one for each region, and as many more as an agent has that is admitted or replaced.
    Null if no orders are used.
    */
-  struct PcrF64Order *orders;
+  struct PcrF64PrecedenceStorage *orders;
   /*
    Number of orders; 0 if no orders are used.
    */
@@ -127,13 +127,13 @@ typedef struct PcrF64Memory {
   /*
    Memory for the progress of the agents, as many as `motions`; null if no orders are used.
    */
-  struct PcrF64Robot *robots;
+  struct PcrF64CheckStorage *robots;
 } PcrF64Memory;
 
 /*
  A line or an arc of a path. It begins where the one before it ends, with the same heading.
  */
-typedef struct PcrF64Leg {
+typedef struct PcrF64PathSegment {
   /*
    PCR_LINE, PCR_LEFT or PCR_RIGHT.
    */
@@ -146,12 +146,12 @@ typedef struct PcrF64Leg {
    Radius of an arc (m), above 0; ignored for a line.
    */
   double radius;
-} PcrF64Leg;
+} PcrF64PathSegment;
 
 /*
  A part of a profile with constant acceleration.
  */
-typedef struct PcrF64Stretch {
+typedef struct PcrF64ProfilePhase {
   /*
    Duration (s).
    */
@@ -160,7 +160,7 @@ typedef struct PcrF64Stretch {
    Acceleration (m/s²).
    */
   double acceleration;
-} PcrF64Stretch;
+} PcrF64ProfilePhase;
 
 /*
  A disc, its path and its motion along the path.
@@ -189,7 +189,7 @@ typedef struct PcrF64Agent {
   /*
    Legs of the path; none for an agent that stands.
    */
-  const struct PcrF64Leg *legs;
+  const struct PcrF64PathSegment *legs;
   /*
    Number of legs.
    */
@@ -205,7 +205,7 @@ typedef struct PcrF64Agent {
   /*
    Profile, which must have the length of the path; none for the fastest motion from rest to rest.
    */
-  const struct PcrF64Stretch *stretches;
+  const struct PcrF64ProfilePhase *stretches;
   /*
    Number of stretches.
    */
@@ -287,7 +287,7 @@ typedef struct PcrF64Conflict {
 /*
  A conflict with another agent.
  */
-typedef struct PcrF64Met {
+typedef struct PcrF64AgentConflict {
   /*
    The other agent.
    */
@@ -296,12 +296,12 @@ typedef struct PcrF64Met {
    The conflict.
    */
   struct PcrF64Conflict conflict;
-} PcrF64Met;
+} PcrF64AgentConflict;
 
 /*
  A region of an agent, and the order in which the agent passes it.
  */
-typedef struct PcrF64Passing {
+typedef struct PcrF64RegionPrecedence {
   /*
    Index of the region in the table, for `pcr_f64_fleet_decide_at`.
    */
@@ -322,7 +322,7 @@ typedef struct PcrF64Passing {
    Range of lengths along the path of the other agent (m).
    */
   struct PcrF64Interval other_length;
-} PcrF64Passing;
+} PcrF64RegionPrecedence;
 
 /*
  What is known about the progress of an agent.
@@ -342,21 +342,21 @@ typedef struct PcrF64Progress {
 /*
  How far an agent may go; it may stand there.
  */
-typedef struct PcrF64Hold {
+typedef struct PcrF64MovementAuthority {
   /*
    Kind of the limit.
    */
-  PcrHoldKind kind;
+  PcrAuthorityKind kind;
   /*
-   The limit (m): for PCR_HOLD_KIND_AT a length along the path, for PCR_HOLD_KIND_FREE the end of the path.
+   The limit (m): for PCR_AUTHORITY_KIND_AT a length along the path, for PCR_AUTHORITY_KIND_FREE the end of the path.
    */
   double length;
-} PcrF64Hold;
+} PcrF64MovementAuthority;
 
 /*
  Parameters of a check of orders.
  */
-typedef struct PcrF64Tolerances {
+typedef struct PcrF64CheckTolerances {
   /*
    When an agent stands, the known lower end of its place may be behind it by up to this (m).
    */
@@ -365,12 +365,12 @@ typedef struct PcrF64Tolerances {
    A gain below this (m) does not count as progress; above 0.
    */
   double gain;
-} PcrF64Tolerances;
+} PcrF64CheckTolerances;
 
 /*
  How an agent brakes.
  */
-typedef struct PcrF64Brakes {
+typedef struct PcrF64BrakingModel {
   /*
    Deceleration (m/s²), above 0.
    */
@@ -380,7 +380,7 @@ typedef struct PcrF64Brakes {
    delay until a command takes effect.
    */
   double reaction;
-} PcrF64Brakes;
+} PcrF64BrakingModel;
 
 #ifdef __cplusplus
 extern "C" {
@@ -481,7 +481,7 @@ PcrStatus pcr_f64_fleet_conflicts(const struct PcrF64Fleet *place,
 PcrStatus pcr_f64_fleet_first_conflict(const struct PcrF64Fleet *place,
                                        size_t ego,
                                        bool touches,
-                                       struct PcrF64Met *out,
+                                       struct PcrF64AgentConflict *out,
                                        bool *found);
 
 /*
@@ -515,16 +515,16 @@ PcrStatus pcr_f64_fleet_safe_intervals(const struct PcrF64Fleet *place,
 PcrStatus pcr_f64_fleet_plan_delays(struct PcrF64Fleet *place,
                                     size_t *order,
                                     size_t count,
-                                    struct PcrF64Motion *room,
+                                    struct PcrF64MotionStorage *room,
                                     size_t room_count,
-                                    PcrUnsolved *why);
+                                    PcrPlanError *why);
 
 /*
  The regions of an agent, the order in which it passes them, and their count.
  */
 PcrStatus pcr_f64_fleet_passings(const struct PcrF64Fleet *place,
                                  size_t agent,
-                                 struct PcrF64Passing *out,
+                                 struct PcrF64RegionPrecedence *out,
                                  size_t capacity,
                                  size_t *count);
 
@@ -534,7 +534,7 @@ PcrStatus pcr_f64_fleet_passings(const struct PcrF64Fleet *place,
  first; `why` then names them. `why` may be null.
  */
 PcrStatus pcr_f64_fleet_orders_as_planned(struct PcrF64Fleet *place,
-                                          PcrRefused *why);
+                                          PcrAdmissionError *why);
 
 /*
  Decides the order of all undecided regions of two agents: whether the ego passes them first (PCR_FIRST) or second
@@ -547,7 +547,7 @@ PcrStatus pcr_f64_fleet_decide(struct PcrF64Fleet *place,
                                uint8_t pass);
 
 /*
- Decides the order of the region at one index of the table (`PcrF64Passing.place`). An order that exists is overwritten.
+ Decides the order of the region at one index of the table (`PcrF64RegionPrecedence.place`). An order that exists is overwritten.
  PCR_STATUS_NO_SUCH_REGION if the agent has no region there.
  */
 PcrStatus pcr_f64_fleet_decide_at(struct PcrF64Fleet *place,
@@ -570,7 +570,7 @@ PcrStatus pcr_f64_fleet_report(struct PcrF64Fleet *place,
  */
 PcrStatus pcr_f64_fleet_hold(const struct PcrF64Fleet *place,
                              size_t agent,
-                             struct PcrF64Hold *out);
+                             struct PcrF64MovementAuthority *out);
 
 /*
  Checks that every agent can reach the end of its path, from the place that was reported last, without breaking an
@@ -578,8 +578,8 @@ PcrStatus pcr_f64_fleet_hold(const struct PcrF64Fleet *place,
  `why` may be null.
  */
 PcrStatus pcr_f64_fleet_check(struct PcrF64Fleet *place,
-                              const struct PcrF64Tolerances *accepted,
-                              PcrRefused *why);
+                              const struct PcrF64CheckTolerances *accepted,
+                              PcrAdmissionError *why);
 
 /*
  Gives an agent a new path and orders for all its regions, with which it can finish, and so can every agent that could
@@ -598,9 +598,9 @@ PcrStatus pcr_f64_fleet_admit(struct PcrF64Fleet *place,
                               size_t agent,
                               const struct PcrF64Agent *by,
                               const struct PcrF64Progress *report,
-                              const struct PcrF64Tolerances *accepted,
+                              const struct PcrF64CheckTolerances *accepted,
                               const uint8_t *prefer,
-                              PcrRefused *why);
+                              PcrAdmissionError *why);
 
 /*
  Drops the orders of regions that the first agent has left, so that they are not evaluated any more.
@@ -611,7 +611,7 @@ PcrStatus pcr_f64_fleet_passed(struct PcrF64Fleet *place);
  The stopping distance from a speed (m/s), rounded up (m). PCR_STATUS_OUT_OF_RANGE if it is beyond the range of the
  format.
  */
-PcrStatus pcr_f64_stopping_way(const struct PcrF64Brakes *how,
+PcrStatus pcr_f64_stopping_way(const struct PcrF64BrakingModel *how,
                                double speed,
                                double *way);
 
@@ -619,7 +619,7 @@ PcrStatus pcr_f64_stopping_way(const struct PcrF64Brakes *how,
  The largest speed from which this distance (m) is enough to stop, rounded down (m/s); 0 if the distance is not above
  0.
  */
-PcrStatus pcr_f64_stopping_speed(const struct PcrF64Brakes *how,
+PcrStatus pcr_f64_stopping_speed(const struct PcrF64BrakingModel *how,
                                  double way,
                                  double *speed);
 

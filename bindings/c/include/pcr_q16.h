@@ -27,52 +27,52 @@ typedef struct PcrQ16Fleet {
 /*
  Memory for a segment of a path: one for each leg, or one for an agent that stands.
  */
-typedef struct PcrQ16Segment {
+typedef struct PcrQ16SegmentStorage {
   int32_t opaque[30];
-} PcrQ16Segment;
+} PcrQ16SegmentStorage;
 
 /*
  Memory for a phase of a profile: three for each agent, or one for each stretch.
  */
-typedef struct PcrQ16Phase {
+typedef struct PcrQ16PhaseStorage {
   int32_t opaque[7];
-} PcrQ16Phase;
+} PcrQ16PhaseStorage;
 
 /*
  Memory for the motion of an agent.
  */
-typedef struct PcrQ16Motion {
+typedef struct PcrQ16MotionStorage {
   size_t pointers[4];
   int32_t opaque[14];
-} PcrQ16Motion;
+} PcrQ16MotionStorage;
 
 /*
  Memory for a region in the table; each one serves both agents of its pair.
  */
-typedef struct PcrQ16Entry {
+typedef struct PcrQ16RegionStorage {
   uint32_t opaque[2];
-} PcrQ16Entry;
+} PcrQ16RegionStorage;
 
 /*
  Memory for a piece of a region: the part that belongs to one segment of each path.
  */
-typedef struct PcrQ16Piece {
+typedef struct PcrQ16PieceStorage {
   int32_t opaque[7];
-} PcrQ16Piece;
+} PcrQ16PieceStorage;
 
 /*
  Memory for the order of a region.
  */
-typedef struct PcrQ16Order {
+typedef struct PcrQ16PrecedenceStorage {
   int32_t opaque[5];
-} PcrQ16Order;
+} PcrQ16PrecedenceStorage;
 
 /*
  Memory for the progress of an agent, and for a check.
  */
-typedef struct PcrQ16Robot {
+typedef struct PcrQ16CheckStorage {
   int32_t opaque[7];
-} PcrQ16Robot;
+} PcrQ16CheckStorage;
 
 /*
  Memory for a fleet. It belongs to the fleet from `pcr_q16_fleet_init` on.
@@ -81,7 +81,7 @@ typedef struct PcrQ16Memory {
   /*
    Memory for the paths.
    */
-  struct PcrQ16Segment *segments;
+  struct PcrQ16SegmentStorage *segments;
   /*
    Number of segments.
    */
@@ -89,7 +89,7 @@ typedef struct PcrQ16Memory {
   /*
    Memory for the profiles.
    */
-  struct PcrQ16Phase *phases;
+  struct PcrQ16PhaseStorage *phases;
   /*
    Number of phases.
    */
@@ -97,7 +97,7 @@ typedef struct PcrQ16Memory {
   /*
    Memory for the agents.
    */
-  struct PcrQ16Motion *motions;
+  struct PcrQ16MotionStorage *motions;
   /*
    Number of motions, which limits the number of agents.
    */
@@ -105,7 +105,7 @@ typedef struct PcrQ16Memory {
   /*
    Memory for the regions.
    */
-  struct PcrQ16Entry *entries;
+  struct PcrQ16RegionStorage *entries;
   /*
    Number of entries.
    */
@@ -113,7 +113,7 @@ typedef struct PcrQ16Memory {
   /*
    Memory for the pieces of the regions.
    */
-  struct PcrQ16Piece *pieces;
+  struct PcrQ16PieceStorage *pieces;
   /*
    Number of pieces.
    */
@@ -122,7 +122,7 @@ typedef struct PcrQ16Memory {
    Memory for passing orders: one for each region, and as many more as an agent has that is admitted or replaced.
    Null if no orders are used.
    */
-  struct PcrQ16Order *orders;
+  struct PcrQ16PrecedenceStorage *orders;
   /*
    Number of orders; 0 if no orders are used.
    */
@@ -130,13 +130,13 @@ typedef struct PcrQ16Memory {
   /*
    Memory for the progress of the agents, as many as `motions`; null if no orders are used.
    */
-  struct PcrQ16Robot *robots;
+  struct PcrQ16CheckStorage *robots;
 } PcrQ16Memory;
 
 /*
  A line or an arc of a path. It begins where the one before it ends, with the same heading.
  */
-typedef struct PcrQ16Leg {
+typedef struct PcrQ16PathSegment {
   /*
    PCR_LINE, PCR_LEFT or PCR_RIGHT.
    */
@@ -149,12 +149,12 @@ typedef struct PcrQ16Leg {
    Radius of an arc (m), above 0; ignored for a line.
    */
   int32_t radius;
-} PcrQ16Leg;
+} PcrQ16PathSegment;
 
 /*
  A part of a profile with constant acceleration.
  */
-typedef struct PcrQ16Stretch {
+typedef struct PcrQ16ProfilePhase {
   /*
    Duration (s).
    */
@@ -163,7 +163,7 @@ typedef struct PcrQ16Stretch {
    Acceleration (m/s²).
    */
   int32_t acceleration;
-} PcrQ16Stretch;
+} PcrQ16ProfilePhase;
 
 /*
  A disc, its path and its motion along the path.
@@ -192,7 +192,7 @@ typedef struct PcrQ16Agent {
   /*
    Legs of the path; none for an agent that stands.
    */
-  const struct PcrQ16Leg *legs;
+  const struct PcrQ16PathSegment *legs;
   /*
    Number of legs.
    */
@@ -208,7 +208,7 @@ typedef struct PcrQ16Agent {
   /*
    Profile, which must have the length of the path; none for the fastest motion from rest to rest.
    */
-  const struct PcrQ16Stretch *stretches;
+  const struct PcrQ16ProfilePhase *stretches;
   /*
    Number of stretches.
    */
@@ -290,7 +290,7 @@ typedef struct PcrQ16Conflict {
 /*
  A conflict with another agent.
  */
-typedef struct PcrQ16Met {
+typedef struct PcrQ16AgentConflict {
   /*
    The other agent.
    */
@@ -299,12 +299,12 @@ typedef struct PcrQ16Met {
    The conflict.
    */
   struct PcrQ16Conflict conflict;
-} PcrQ16Met;
+} PcrQ16AgentConflict;
 
 /*
  A region of an agent, and the order in which the agent passes it.
  */
-typedef struct PcrQ16Passing {
+typedef struct PcrQ16RegionPrecedence {
   /*
    Index of the region in the table, for `pcr_q16_fleet_decide_at`.
    */
@@ -325,7 +325,7 @@ typedef struct PcrQ16Passing {
    Range of lengths along the path of the other agent (m).
    */
   struct PcrQ16Interval other_length;
-} PcrQ16Passing;
+} PcrQ16RegionPrecedence;
 
 /*
  What is known about the progress of an agent.
@@ -345,21 +345,21 @@ typedef struct PcrQ16Progress {
 /*
  How far an agent may go; it may stand there.
  */
-typedef struct PcrQ16Hold {
+typedef struct PcrQ16MovementAuthority {
   /*
    Kind of the limit.
    */
-  PcrHoldKind kind;
+  PcrAuthorityKind kind;
   /*
-   The limit (m): for PCR_HOLD_KIND_AT a length along the path, for PCR_HOLD_KIND_FREE the end of the path.
+   The limit (m): for PCR_AUTHORITY_KIND_AT a length along the path, for PCR_AUTHORITY_KIND_FREE the end of the path.
    */
   int32_t length;
-} PcrQ16Hold;
+} PcrQ16MovementAuthority;
 
 /*
  Parameters of a check of orders.
  */
-typedef struct PcrQ16Tolerances {
+typedef struct PcrQ16CheckTolerances {
   /*
    When an agent stands, the known lower end of its place may be behind it by up to this (m).
    */
@@ -368,12 +368,12 @@ typedef struct PcrQ16Tolerances {
    A gain below this (m) does not count as progress; above 0.
    */
   int32_t gain;
-} PcrQ16Tolerances;
+} PcrQ16CheckTolerances;
 
 /*
  How an agent brakes.
  */
-typedef struct PcrQ16Brakes {
+typedef struct PcrQ16BrakingModel {
   /*
    Deceleration (m/s²), above 0.
    */
@@ -383,7 +383,7 @@ typedef struct PcrQ16Brakes {
    delay until a command takes effect.
    */
   int32_t reaction;
-} PcrQ16Brakes;
+} PcrQ16BrakingModel;
 
 #ifdef __cplusplus
 extern "C" {
@@ -484,7 +484,7 @@ PcrStatus pcr_q16_fleet_conflicts(const struct PcrQ16Fleet *place,
 PcrStatus pcr_q16_fleet_first_conflict(const struct PcrQ16Fleet *place,
                                        size_t ego,
                                        bool touches,
-                                       struct PcrQ16Met *out,
+                                       struct PcrQ16AgentConflict *out,
                                        bool *found);
 
 /*
@@ -518,16 +518,16 @@ PcrStatus pcr_q16_fleet_safe_intervals(const struct PcrQ16Fleet *place,
 PcrStatus pcr_q16_fleet_plan_delays(struct PcrQ16Fleet *place,
                                     size_t *order,
                                     size_t count,
-                                    struct PcrQ16Motion *room,
+                                    struct PcrQ16MotionStorage *room,
                                     size_t room_count,
-                                    PcrUnsolved *why);
+                                    PcrPlanError *why);
 
 /*
  The regions of an agent, the order in which it passes them, and their count.
  */
 PcrStatus pcr_q16_fleet_passings(const struct PcrQ16Fleet *place,
                                  size_t agent,
-                                 struct PcrQ16Passing *out,
+                                 struct PcrQ16RegionPrecedence *out,
                                  size_t capacity,
                                  size_t *count);
 
@@ -537,7 +537,7 @@ PcrStatus pcr_q16_fleet_passings(const struct PcrQ16Fleet *place,
  first; `why` then names them. `why` may be null.
  */
 PcrStatus pcr_q16_fleet_orders_as_planned(struct PcrQ16Fleet *place,
-                                          PcrRefused *why);
+                                          PcrAdmissionError *why);
 
 /*
  Decides the order of all undecided regions of two agents: whether the ego passes them first (PCR_FIRST) or second
@@ -550,7 +550,7 @@ PcrStatus pcr_q16_fleet_decide(struct PcrQ16Fleet *place,
                                uint8_t pass);
 
 /*
- Decides the order of the region at one index of the table (`PcrQ16Passing.place`). An order that exists is overwritten.
+ Decides the order of the region at one index of the table (`PcrQ16RegionPrecedence.place`). An order that exists is overwritten.
  PCR_STATUS_NO_SUCH_REGION if the agent has no region there.
  */
 PcrStatus pcr_q16_fleet_decide_at(struct PcrQ16Fleet *place,
@@ -573,7 +573,7 @@ PcrStatus pcr_q16_fleet_report(struct PcrQ16Fleet *place,
  */
 PcrStatus pcr_q16_fleet_hold(const struct PcrQ16Fleet *place,
                              size_t agent,
-                             struct PcrQ16Hold *out);
+                             struct PcrQ16MovementAuthority *out);
 
 /*
  Checks that every agent can reach the end of its path, from the place that was reported last, without breaking an
@@ -581,8 +581,8 @@ PcrStatus pcr_q16_fleet_hold(const struct PcrQ16Fleet *place,
  `why` may be null.
  */
 PcrStatus pcr_q16_fleet_check(struct PcrQ16Fleet *place,
-                              const struct PcrQ16Tolerances *accepted,
-                              PcrRefused *why);
+                              const struct PcrQ16CheckTolerances *accepted,
+                              PcrAdmissionError *why);
 
 /*
  Gives an agent a new path and orders for all its regions, with which it can finish, and so can every agent that could
@@ -601,9 +601,9 @@ PcrStatus pcr_q16_fleet_admit(struct PcrQ16Fleet *place,
                               size_t agent,
                               const struct PcrQ16Agent *by,
                               const struct PcrQ16Progress *report,
-                              const struct PcrQ16Tolerances *accepted,
+                              const struct PcrQ16CheckTolerances *accepted,
                               const uint8_t *prefer,
-                              PcrRefused *why);
+                              PcrAdmissionError *why);
 
 /*
  Drops the orders of regions that the first agent has left, so that they are not evaluated any more.
@@ -614,7 +614,7 @@ PcrStatus pcr_q16_fleet_passed(struct PcrQ16Fleet *place);
  The stopping distance from a speed (m/s), rounded up (m). PCR_STATUS_OUT_OF_RANGE if it is beyond the range of the
  format.
  */
-PcrStatus pcr_q16_stopping_way(const struct PcrQ16Brakes *how,
+PcrStatus pcr_q16_stopping_way(const struct PcrQ16BrakingModel *how,
                                int32_t speed,
                                int32_t *way);
 
@@ -622,7 +622,7 @@ PcrStatus pcr_q16_stopping_way(const struct PcrQ16Brakes *how,
  The largest speed from which this distance (m) is enough to stop, rounded down (m/s); 0 if the distance is not above
  0.
  */
-PcrStatus pcr_q16_stopping_speed(const struct PcrQ16Brakes *how,
+PcrStatus pcr_q16_stopping_speed(const struct PcrQ16BrakingModel *how,
                                  int32_t way,
                                  int32_t *speed);
 

@@ -10,8 +10,8 @@
 //! The headers are generated from this crate; `c/crossing.c` is an example to begin with. In short:
 //!
 //! ```c
-//! static PcrSegment segments[16]; static PcrPhase phases[12]; static PcrMotion motions[4];
-//! static PcrEntry entries[16]; static PcrPiece pieces[32]; static PcrFleet fleet;
+//! static PcrSegmentStorage segments[16]; static PcrPhaseStorage phases[12]; static PcrMotionStorage motions[4];
+//! static PcrRegionStorage entries[16]; static PcrPieceStorage pieces[32]; static PcrFleet fleet;
 //!
 //! PcrMemory memory = { segments, 16, phases, 12, motions, 4, entries, 16, pieces, 32, NULL, 0, NULL }; /* no orders */
 //! pcr_fleet_init(&fleet, &memory);

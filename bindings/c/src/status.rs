@@ -1,6 +1,6 @@
 //! What is the same in all number formats: C types, and the check for null pointers.
 
-use pcr_core::{Full, Invalid, Mismatch, Pass, Refused, TableError, Unsolved};
+use pcr_core::{AdmissionError, CapacityError, EcmError, InvalidInput, MismatchError, PassingState, PlanError};
 
 /// Result of a call. A call that fails leaves the fleet unchanged, except that a table which became full when it was
 /// built is empty.
@@ -63,68 +63,68 @@ pub(crate) fn given<T>(pointer: Option<T>) -> Result<T, PcrStatus> {
     pointer.ok_or(PcrStatus::Null)
 }
 
-impl From<Invalid> for PcrStatus {
-    fn from(invalid: Invalid) -> Self {
+impl From<InvalidInput> for PcrStatus {
+    fn from(invalid: InvalidInput) -> Self {
         match invalid {
-            Invalid::NonFinite(_) => Self::NonFinite,
-            Invalid::Negative(_) => Self::Negative,
-            Invalid::NonPositive(_) => Self::NonPositive,
-            Invalid::TooSmall(_) => Self::TooSmall,
-            Invalid::SweepOverOneTurn => Self::SweepOverOneTurn,
-            Invalid::LengthMismatch { .. } => Self::LengthMismatch,
-            Invalid::Full(_) => Self::NoRoom,
+            InvalidInput::NonFinite(_) => Self::NonFinite,
+            InvalidInput::Negative(_) => Self::Negative,
+            InvalidInput::NonPositive(_) => Self::NonPositive,
+            InvalidInput::TooSmall(_) => Self::TooSmall,
+            InvalidInput::SweepOverOneTurn => Self::SweepOverOneTurn,
+            InvalidInput::LengthMismatch { .. } => Self::LengthMismatch,
+            InvalidInput::Full(_) => Self::NoRoom,
             _ => Self::OutOfRange,
         }
     }
 }
 
-impl From<Full> for PcrStatus {
-    fn from(full: Full) -> Self {
+impl From<CapacityError> for PcrStatus {
+    fn from(full: CapacityError) -> Self {
         match full {
-            Full::Pair(_) | Full::Agents => Self::TooLarge,
+            CapacityError::Pair(_) | CapacityError::Agents => Self::TooLarge,
             _ => Self::TableFull,
         }
     }
 }
 
-impl From<Mismatch> for PcrStatus {
-    fn from(mismatch: Mismatch) -> Self {
+impl From<MismatchError> for PcrStatus {
+    fn from(mismatch: MismatchError) -> Self {
         match mismatch {
-            Mismatch::NoSuchAgent(_) => Self::NoSuchAgent,
-            Mismatch::OnlyRow(_) => Self::OnlyRow,
-            Mismatch::NoSuchRegion(_) => Self::NoSuchRegion,
+            MismatchError::NoSuchAgent(_) => Self::NoSuchAgent,
+            MismatchError::OnlyRow(_) => Self::OnlyRow,
+            MismatchError::NoSuchRegion(_) => Self::NoSuchRegion,
             _ => Self::NotBuilt,
         }
     }
 }
 
-impl From<TableError> for PcrStatus {
-    fn from(error: TableError) -> Self {
+impl From<EcmError> for PcrStatus {
+    fn from(error: EcmError) -> Self {
         match error {
-            TableError::Full(full) => full.into(),
-            TableError::Mismatch(mismatch) => mismatch.into(),
+            EcmError::Full(full) => full.into(),
+            EcmError::Mismatch(mismatch) => mismatch.into(),
         }
     }
 }
 
-impl From<Refused> for PcrStatus {
-    fn from(refused: Refused) -> Self {
+impl From<AdmissionError> for PcrStatus {
+    fn from(refused: AdmissionError) -> Self {
         match refused {
-            Refused::Mismatch(mismatch) => mismatch.into(),
-            Refused::Full(full) => full.into(),
+            AdmissionError::Mismatch(mismatch) => mismatch.into(),
+            AdmissionError::Full(full) => full.into(),
             _ => Self::Refused,
         }
     }
 }
 
-/// `PcrLeg.curve` of a straight line.
+/// `PcrPathSegment.curve` of a straight line.
 pub const PCR_LINE: u8 = 0;
-/// `PcrLeg.curve` of an arc that turns left, counter-clockwise.
+/// `PcrPathSegment.curve` of an arc that turns left, counter-clockwise.
 pub const PCR_LEFT: u8 = 1;
-/// `PcrLeg.curve` of an arc that turns right, clockwise.
+/// `PcrPathSegment.curve` of an arc that turns right, clockwise.
 pub const PCR_RIGHT: u8 = 2;
 
-/// `PcrPassing.pass` of a region that is undecided: neither agent may enter it.
+/// `PcrRegionPrecedence.pass` of a region that is undecided: neither agent may enter it.
 pub const PCR_UNDECIDED: u8 = 0;
 /// The agent passes the region first.
 pub const PCR_FIRST: u8 = 1;
@@ -134,20 +134,20 @@ pub const PCR_SECOND: u8 = 2;
 pub const PCR_OVER: u8 = 3;
 
 /// Converts a pass to C.
-pub(crate) fn pass(pass: Pass) -> u8 {
+pub(crate) fn pass(pass: PassingState) -> u8 {
     match pass {
-        Pass::Undecided => PCR_UNDECIDED,
-        Pass::First => PCR_FIRST,
-        Pass::Second => PCR_SECOND,
-        Pass::Over => PCR_OVER,
+        PassingState::Undecided => PCR_UNDECIDED,
+        PassingState::First => PCR_FIRST,
+        PassingState::Second => PCR_SECOND,
+        PassingState::Over => PCR_OVER,
     }
 }
 
 /// Converts a decision from C.
-pub(crate) fn decision(pass: u8) -> Result<Pass, PcrStatus> {
+pub(crate) fn decision(pass: u8) -> Result<PassingState, PcrStatus> {
     match pass {
-        PCR_FIRST => Ok(Pass::First),
-        PCR_SECOND => Ok(Pass::Second),
+        PCR_FIRST => Ok(PassingState::First),
+        PCR_SECOND => Ok(PassingState::Second),
         _ => Err(PcrStatus::NoSuchPass),
     }
 }
@@ -155,7 +155,7 @@ pub(crate) fn decision(pass: u8) -> Result<Pass, PcrStatus> {
 /// Kind of a limit on how far an agent may go.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PcrHoldKind {
+pub enum PcrAuthorityKind {
     /// The agent stands where the other agent will pass. It can only go first.
     #[default]
     Inside,
@@ -168,7 +168,7 @@ pub enum PcrHoldKind {
 /// Why there is no plan.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PcrReason {
+pub enum PcrPlanErrorKind {
     /// The two agents overlap at the starts of their paths.
     Starts,
     /// The two agents overlap at the ends of their paths.
@@ -186,23 +186,23 @@ pub enum PcrReason {
 /// Why there is no plan, and the agents concerned.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PcrUnsolved {
+pub struct PcrPlanError {
     /// The reason.
-    pub reason: PcrReason,
+    pub reason: PcrPlanErrorKind,
     /// The agents; twice the same number if only one is concerned.
     pub agents: [usize; 2],
 }
 
-impl From<Unsolved> for PcrUnsolved {
-    fn from(unsolved: Unsolved) -> Self {
+impl From<PlanError> for PcrPlanError {
+    fn from(unsolved: PlanError) -> Self {
         let (reason, agents) = match unsolved {
-            Unsolved::Starts(agents) => (PcrReason::Starts, agents),
-            Unsolved::Ends(agents) => (PcrReason::Ends, agents),
-            Unsolved::Always(agents) => (PcrReason::Always, agents),
-            Unsolved::Priorities(agents) => (PcrReason::Order, agents),
-            Unsolved::Overlap(agents) => (PcrReason::Overlap, agents),
-            Unsolved::Invalid { agent, .. } => (PcrReason::Times, [agent; 2]),
-            _ => (PcrReason::Times, [usize::MAX; 2]),
+            PlanError::Starts(agents) => (PcrPlanErrorKind::Starts, agents),
+            PlanError::Ends(agents) => (PcrPlanErrorKind::Ends, agents),
+            PlanError::Always(agents) => (PcrPlanErrorKind::Always, agents),
+            PlanError::Priorities(agents) => (PcrPlanErrorKind::Order, agents),
+            PlanError::Overlap(agents) => (PcrPlanErrorKind::Overlap, agents),
+            PlanError::Invalid { agent, .. } => (PcrPlanErrorKind::Times, [agent; 2]),
+            _ => (PcrPlanErrorKind::Times, [usize::MAX; 2]),
         };
         Self { reason, agents }
     }
@@ -211,7 +211,7 @@ impl From<Unsolved> for PcrUnsolved {
 /// Why orders are refused.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PcrRefusal {
+pub enum PcrAdmissionErrorKind {
     /// The first agent would wait for the second for ever.
     Stuck,
     /// The first agent is where it should have waited for the second.
@@ -225,21 +225,21 @@ pub enum PcrRefusal {
 /// Why orders are refused, and the agents concerned.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PcrRefused {
+pub struct PcrAdmissionError {
     /// The reason.
-    pub reason: PcrRefusal,
+    pub reason: PcrAdmissionErrorKind,
     /// The agents.
     pub agents: [usize; 2],
 }
 
-impl PcrRefused {
+impl PcrAdmissionError {
     /// The reason for C; `None` if the status alone says it.
-    pub(crate) fn of(refused: Refused) -> Option<Self> {
+    pub(crate) fn of(refused: AdmissionError) -> Option<Self> {
         let (reason, agents) = match refused {
-            Refused::Stuck { agent, by, .. } => (PcrRefusal::Stuck, [agent, by]),
-            Refused::Late { agent, by, .. } => (PcrRefusal::Late, [agent, by]),
-            Refused::Blocked { agent, by } => (PcrRefusal::Blocked, [agent, by]),
-            Refused::Meeting(agents) => (PcrRefusal::Meeting, agents),
+            AdmissionError::Stuck { agent, by, .. } => (PcrAdmissionErrorKind::Stuck, [agent, by]),
+            AdmissionError::Late { agent, by, .. } => (PcrAdmissionErrorKind::Late, [agent, by]),
+            AdmissionError::Blocked { agent, by } => (PcrAdmissionErrorKind::Blocked, [agent, by]),
+            AdmissionError::Meeting(agents) => (PcrAdmissionErrorKind::Meeting, agents),
             _ => return None,
         };
         Some(Self { reason, agents })

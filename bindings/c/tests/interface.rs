@@ -10,15 +10,15 @@ fn memory(agents: usize, entries: usize, pieces: usize) -> PcrMemory {
         Box::leak(vec![empty; count].into_boxed_slice()).as_mut_ptr()
     }
     PcrMemory {
-        segments: slots(PcrSegment::EMPTY, 2 * agents),
+        segments: slots(PcrSegmentStorage::EMPTY, 2 * agents),
         segment_count: 2 * agents,
-        phases: slots(PcrPhase::EMPTY, 3 * agents),
+        phases: slots(PcrPhaseStorage::EMPTY, 3 * agents),
         phase_count: 3 * agents,
-        motions: slots(PcrMotion::EMPTY, agents),
+        motions: slots(PcrMotionStorage::EMPTY, agents),
         motion_count: agents,
-        entries: slots(PcrEntry::EMPTY, entries),
+        entries: slots(PcrRegionStorage::EMPTY, entries),
         entry_count: entries,
-        pieces: slots(PcrPiece::EMPTY, pieces),
+        pieces: slots(PcrPieceStorage::EMPTY, pieces),
         piece_count: pieces,
         orders: null_mut(),
         order_count: 0,
@@ -26,7 +26,7 @@ fn memory(agents: usize, entries: usize, pieces: usize) -> PcrMemory {
     }
 }
 
-const LEGS: [PcrLeg; 1] = [PcrLeg { curve: PCR_LINE, length: 4.0, radius: 0.0 }];
+const LEGS: [PcrPathSegment; 1] = [PcrPathSegment { curve: PCR_LINE, length: 4.0, radius: 0.0 }];
 
 /// On a line of 4 m through the origin in its middle.
 fn agent(heading: f32) -> PcrAgent {
@@ -62,14 +62,14 @@ fn regions(fleet: &PcrFleet, ego: usize) -> Vec<PcrRegion> {
 
 /// What is said of agent 0 without its table.
 fn not_built(fleet: &PcrFleet) -> [PcrStatus; 4] {
-    let (mut count, mut delay, mut met, mut found) = (7, 7.0, PcrMet::default(), true);
+    let (mut count, mut delay, mut met, mut found) = (7, 7.0, PcrAgentConflict::default(), true);
     let seen = [
         pcr_fleet_regions(Some(fleet), 0, null_mut(), 0, Some(&mut count)),
         pcr_fleet_slices(Some(fleet), 0, 0, 1.0, null_mut(), 0, Some(&mut count)),
         pcr_fleet_first_conflict(Some(fleet), 0, true, Some(&mut met), Some(&mut found)),
         pcr_fleet_earliest_start(Some(fleet), 0, 0.0, Some(&mut delay)),
     ];
-    assert_eq!((count, delay, met, found), (7, 7.0, PcrMet::default(), true), "nothing is told");
+    assert_eq!((count, delay, met, found), (7, 7.0, PcrAgentConflict::default(), true), "nothing is told");
     seen
 }
 
@@ -111,7 +111,8 @@ fn a_crossing_at_right_angles_has_the_numbers_of_the_hand_calculation() {
 #[test]
 fn an_agent_that_stands_and_a_profile_are_taken() {
     let standing = PcrAgent { x: 0.0, y: 0.3, legs: null(), leg_count: 0, ..agent(0.0) };
-    let stretches = [PcrStretch { duration: 1.0, acceleration: 0.0 }, PcrStretch { duration: 2.0, acceleration: 0.0 }];
+    let stretches =
+        [PcrProfilePhase { duration: 1.0, acceleration: 0.0 }, PcrProfilePhase { duration: 2.0, acceleration: 0.0 }];
     let steady =
         PcrAgent { speed: 4.0 / 3.0, stretches: stretches.as_ptr(), stretch_count: stretches.len(), ..agent(0.0) };
     let mut fleet = fleet(&memory(2, 4, 4), &[steady, standing]);
@@ -126,7 +127,7 @@ fn an_agent_that_stands_and_a_profile_are_taken() {
 fn what_is_wrong_is_told_and_changes_nothing() {
     let good = agent(0.0);
     let mut fleet = fleet(&memory(2, 4, 4), &[good]);
-    let legs = |curve, length, radius| [PcrLeg { curve, length, radius }];
+    let legs = |curve, length, radius| [PcrPathSegment { curve, length, radius }];
     let cases = [
         (legs(3, 4.0, 0.0), PcrStatus::NoSuchCurve),
         (legs(PCR_LINE, -1.0, 0.0), PcrStatus::Negative),
@@ -140,7 +141,7 @@ fn what_is_wrong_is_told_and_changes_nothing() {
         assert_eq!(pcr_fleet_add(Some(&mut fleet), Some(&bad)), *expected);
     }
     let long = [LEGS[0]; 5];
-    let stretch = [PcrStretch { duration: 1.0, acceleration: 0.0 }];
+    let stretch = [PcrProfilePhase { duration: 1.0, acceleration: 0.0 }];
     let cases = [
         (PcrAgent { radius: 0.0, ..good }, PcrStatus::NonPositive),
         (PcrAgent { x: f32::INFINITY, ..good }, PcrStatus::NonFinite),
@@ -272,7 +273,7 @@ fn table(fleet: &PcrFleet) -> Vec<PcrRegion> {
 
 #[test]
 fn replaced_agents_have_the_table_of_a_fleet_that_was_added_so() {
-    let legs = [LEGS[0], PcrLeg { curve: PCR_LEFT, length: 1.0, radius: 1.0 }];
+    let legs = [LEGS[0], PcrPathSegment { curve: PCR_LEFT, length: 1.0, radius: 1.0 }];
     let bent = |heading| PcrAgent { legs: legs.as_ptr(), leg_count: 2, ..agent(heading) };
     let mut agents = [agent(0.0), agent(0.7), agent(1.4), agent(2.1)];
     let mut fleet = star(&agents);
@@ -309,7 +310,7 @@ fn a_replaced_agent_that_fills_the_table_changes_nothing() {
 fn an_agent_gets_out_of_the_way_by_the_least_delay() {
     let mut fleet = star(&[agent(0.0), agent(std::f32::consts::FRAC_PI_2)]);
     let first = |fleet: &PcrFleet, touches| {
-        let (mut met, mut found) = (PcrMet::default(), false);
+        let (mut met, mut found) = (PcrAgentConflict::default(), false);
         let asked = pcr_fleet_first_conflict(Some(fleet), 1, touches, Some(&mut met), Some(&mut found));
         assert_eq!(asked, PcrStatus::Ok);
         found.then_some(met)
@@ -360,19 +361,20 @@ fn the_times_that_are_safe_leave_out_those_of_the_other() {
 #[test]
 fn a_plan_delays_the_fleet_and_none_leaves_it() {
     let mut fleet = star(&[agent(0.0), agent(0.7), agent(1.4)]);
-    let mut room = [PcrMotion::EMPTY; 3];
-    let mut plan = |fleet: &mut PcrFleet, order: &mut [usize], rooms, why: &mut PcrUnsolved| {
+    let mut room = [PcrMotionStorage::EMPTY; 3];
+    let mut plan = |fleet: &mut PcrFleet, order: &mut [usize], rooms, why: &mut PcrPlanError| {
         pcr_fleet_plan_delays(Some(fleet), order.as_mut_ptr(), order.len(), room.as_mut_ptr(), rooms, Some(why))
     };
     let conflicts = |fleet: &PcrFleet| {
         let mut found = [false; 3];
         for (ego, found) in found.iter_mut().enumerate() {
-            let asked = pcr_fleet_first_conflict(Some(fleet), ego, false, Some(&mut PcrMet::default()), Some(found));
+            let asked =
+                pcr_fleet_first_conflict(Some(fleet), ego, false, Some(&mut PcrAgentConflict::default()), Some(found));
             assert_eq!(asked, PcrStatus::Ok);
         }
         found
     };
-    let mut why = PcrUnsolved { reason: PcrReason::Times, agents: [7; 2] };
+    let mut why = PcrPlanError { reason: PcrPlanErrorKind::Times, agents: [7; 2] };
     assert_eq!(conflicts(&fleet), [true; 3]);
     for order in [&mut [0, 1][..], &mut [0, 1, 1], &mut [0, 1, 3], &mut [0, 1, 2, 2]] {
         assert_eq!(plan(&mut fleet, order, 3, &mut why), PcrStatus::BadOrder, "{order:?}");
@@ -386,13 +388,13 @@ fn a_plan_delays_the_fleet_and_none_leaves_it() {
     let mut blocked = star(&[agent(0.0), standing]);
     let before = table(&blocked);
     assert_eq!(plan(&mut blocked, &mut [0, 1], 2, &mut why), PcrStatus::NoPlan);
-    assert_eq!(why, PcrUnsolved { reason: PcrReason::Always, agents: [1, 0] });
+    assert_eq!(why, PcrPlanError { reason: PcrPlanErrorKind::Always, agents: [1, 0] });
     assert_eq!(table(&blocked), before);
     // The second would have to end later than the format can tell.
     let mut late = star(&[agent(0.0), agent(0.7)]);
     assert_eq!([0, 1].map(|place| pcr_fleet_delay(Some(&mut late), place, 999_994.5)), [PcrStatus::Ok; 2]);
     assert_eq!(plan(&mut late, &mut [0, 1], 2, &mut why), PcrStatus::NoPlan);
-    assert_eq!(why, PcrUnsolved { reason: PcrReason::Times, agents: [1; 2] });
+    assert_eq!(why, PcrPlanError { reason: PcrPlanErrorKind::Times, agents: [1; 2] });
     let mut unbuilt = star(&[agent(0.0)]);
     assert_eq!(pcr_fleet_add(Some(&mut unbuilt), Some(&agent(0.7))), PcrStatus::Ok);
     assert_eq!(plan(&mut unbuilt, &mut [0, 1], 2, &mut why), PcrStatus::NotBuilt);

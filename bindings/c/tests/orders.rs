@@ -24,26 +24,26 @@ macro_rules! formats {
 
             fn memory(agents: usize, orders: usize) -> PcrMemory {
                 PcrMemory {
-                    segments: slots(PcrSegment::EMPTY, 2 * agents),
+                    segments: slots(PcrSegmentStorage::EMPTY, 2 * agents),
                     segment_count: 2 * agents,
-                    phases: slots(PcrPhase::EMPTY, 4 * agents),
+                    phases: slots(PcrPhaseStorage::EMPTY, 4 * agents),
                     phase_count: 4 * agents,
-                    motions: slots(PcrMotion::EMPTY, agents),
+                    motions: slots(PcrMotionStorage::EMPTY, agents),
                     motion_count: agents,
-                    entries: slots(PcrEntry::EMPTY, 8),
+                    entries: slots(PcrRegionStorage::EMPTY, 8),
                     entry_count: 8,
-                    pieces: slots(PcrPiece::EMPTY, 8),
+                    pieces: slots(PcrPieceStorage::EMPTY, 8),
                     piece_count: 8,
-                    orders: if orders == 0 { null_mut() } else { slots(PcrOrder::EMPTY, orders) },
+                    orders: if orders == 0 { null_mut() } else { slots(PcrPrecedenceStorage::EMPTY, orders) },
                     order_count: orders,
-                    robots: if orders == 0 { null_mut() } else { slots(PcrRobot::EMPTY, agents) },
+                    robots: if orders == 0 { null_mut() } else { slots(PcrCheckStorage::EMPTY, agents) },
                 }
             }
 
             /// 4 m east, or north, through the origin; `at` moves it along its own left.
             fn agent(north: bool, start: f64, at: f64) -> PcrAgent {
-                let legs: &'static [PcrLeg] =
-                    Box::leak(Box::new([PcrLeg { curve: PCR_LINE, length: real(4.0), radius: real(0.0) }]));
+                let legs: &'static [PcrPathSegment] =
+                    Box::leak(Box::new([PcrPathSegment { curve: PCR_LINE, length: real(4.0), radius: real(0.0) }]));
                 let (x, y) = if north { (-at, -2.0) } else { (-2.0, at) };
                 PcrAgent {
                     x: real(x),
@@ -70,14 +70,14 @@ macro_rules! formats {
                 fleet
             }
 
-            fn hold(fleet: &PcrFleet, agent: usize) -> (PcrHoldKind, f64) {
-                let mut hold = PcrHold::default();
+            fn hold(fleet: &PcrFleet, agent: usize) -> (PcrAuthorityKind, f64) {
+                let mut hold = PcrMovementAuthority::default();
                 assert_eq!(pcr_fleet_hold(Some(fleet), agent, Some(&mut hold)), PcrStatus::Ok);
                 (hold.kind, value(hold.length))
             }
 
             fn passes(fleet: &PcrFleet, agent: usize) -> Vec<(u16, u8)> {
-                let (mut out, mut count) = ([PcrPassing::default(); 8], 0);
+                let (mut out, mut count) = ([PcrRegionPrecedence::default(); 8], 0);
                 let asked = pcr_fleet_passings(Some(fleet), agent, out.as_mut_ptr(), out.len(), Some(&mut count));
                 assert_eq!(asked, PcrStatus::Ok);
                 out[..count].iter().map(|passing| (passing.other, passing.pass)).collect()
@@ -88,12 +88,12 @@ macro_rules! formats {
                 pcr_fleet_report(Some(fleet), agent, Some(&PcrProgress { at, stop: at.hi }))
             }
 
-            fn near(hold: (PcrHoldKind, f64), length: f64) -> bool {
-                hold.0 == PcrHoldKind::At && hold.1 <= length && hold.1 > length - 1e-3
+            fn near(hold: (PcrAuthorityKind, f64), length: f64) -> bool {
+                hold.0 == PcrAuthorityKind::At && hold.1 <= length && hold.1 > length - 1e-3
             }
 
-            fn tolerances() -> PcrTolerances {
-                PcrTolerances { width: real(0.01), gain: real(0.01) }
+            fn tolerances() -> PcrCheckTolerances {
+                PcrCheckTolerances { width: real(0.01), gain: real(0.01) }
             }
 
             /// What comes of a mission of agent 1.
@@ -101,8 +101,8 @@ macro_rules! formats {
                 fleet: &mut PcrFleet,
                 by: &PcrAgent,
                 prefer: Option<&[u8; 3]>,
-                why: &mut PcrRefused,
-            ) -> (PcrStatus, Vec<(u16, u8)>, (PcrHoldKind, f64)) {
+                why: &mut PcrAdmissionError,
+            ) -> (PcrStatus, Vec<(u16, u8)>, (PcrAuthorityKind, f64)) {
                 let prefer = prefer.map_or(null(), |prefer| prefer.as_ptr());
                 let (start, tolerances) = (PcrProgress::default(), tolerances());
                 let status =
@@ -110,7 +110,7 @@ macro_rules! formats {
                 (status, passes(fleet, 1), hold(fleet, 1))
             }
 
-            const WHY: PcrRefused = PcrRefused { reason: PcrRefusal::Late, agents: [7; 2] };
+            const WHY: PcrAdmissionError = PcrAdmissionError { reason: PcrAdmissionErrorKind::Late, agents: [7; 2] };
 
             /// What replaces an agent may have the path of the one before: its table belongs to it, its orders do not.
             #[test]
@@ -120,10 +120,10 @@ macro_rules! formats {
                     assert_eq!(pcr_fleet_decide(Some(fleet), 1, 0, PCR_SECOND), PcrStatus::Ok);
                     assert_eq!(report(fleet, 0, 2.6), PcrStatus::Ok);
                     assert_eq!(pcr_fleet_passed(Some(fleet)), PcrStatus::Ok);
-                    assert_eq!(hold(fleet, 1), (PcrHoldKind::Free, 4.0));
+                    assert_eq!(hold(fleet, 1), (PcrAuthorityKind::Free, 4.0));
                 };
                 let not_built = |fleet: &PcrFleet| {
-                    let held = pcr_fleet_hold(Some(fleet), 1, Some(&mut PcrHold::default()));
+                    let held = pcr_fleet_hold(Some(fleet), 1, Some(&mut PcrMovementAuthority::default()));
                     assert_eq!(held, PcrStatus::NotBuilt);
                 };
                 // A row, and the other agent begins anew.
@@ -175,7 +175,7 @@ macro_rules! formats {
                     assert_eq!((status, why), (PcrStatus::OutOfRange, WHY));
                 }
                 assert_eq!(report(&mut fleet, 0, 4.0), PcrStatus::Ok);
-                assert_eq!(hold(&fleet, 1), (PcrHoldKind::Free, 4.0));
+                assert_eq!(hold(&fleet, 1), (PcrAuthorityKind::Free, 4.0));
             }
 
             #[test]
@@ -202,7 +202,7 @@ macro_rules! formats {
             #[test]
             fn a_stopping_distance_beyond_the_format_is_no_answer() {
                 let way = |deceleration: f64, reaction: f64, speed: f64| {
-                    let brakes = PcrBrakes { deceleration: real(deceleration), reaction: real(reaction) };
+                    let brakes = PcrBrakingModel { deceleration: real(deceleration), reaction: real(reaction) };
                     let mut way = real(7.0);
                     (pcr_stopping_way(Some(&brakes), real(speed), Some(&mut way)), value(way))
                 };
@@ -222,12 +222,12 @@ macro_rules! formats {
                 let mut why = WHY;
                 assert_eq!(pcr_fleet_orders_as_planned(Some(&mut fleet), Some(&mut why)), PcrStatus::Ok);
                 assert_eq!((passes(&fleet, 0), passes(&fleet, 1)), (vec![(1, PCR_FIRST)], vec![(0, PCR_SECOND)]));
-                assert_eq!(hold(&fleet, 0), (PcrHoldKind::Free, 4.0));
+                assert_eq!(hold(&fleet, 0), (PcrAuthorityKind::Free, 4.0));
                 assert!(near(hold(&fleet, 1), 1.5));
                 assert_eq!(pcr_fleet_check(Some(&mut fleet), Some(&tolerances()), Some(&mut why)), PcrStatus::Ok);
                 // Late reports change nothing.
                 assert_eq!((report(&mut fleet, 0, 2.75), report(&mut fleet, 0, 1.0)), (PcrStatus::Ok, PcrStatus::Ok));
-                assert_eq!(hold(&fleet, 1), (PcrHoldKind::Free, 4.0));
+                assert_eq!(hold(&fleet, 1), (PcrAuthorityKind::Free, 4.0));
                 assert_eq!(pcr_fleet_passed(Some(&mut fleet)), PcrStatus::Ok);
                 assert_eq!(passes(&fleet, 1), [(0, PCR_OVER)]);
                 assert_eq!(why, WHY);
@@ -238,9 +238,9 @@ macro_rules! formats {
                 let mut fleet = fleet(4, &[agent(false, 0.0, 0.0), agent(true, 0.0, 0.0)]);
                 let mut why = WHY;
                 assert_eq!(pcr_fleet_orders_as_planned(Some(&mut fleet), Some(&mut why)), PcrStatus::Refused);
-                assert_eq!(why, PcrRefused { reason: PcrRefusal::Meeting, agents: [0, 1] });
+                assert_eq!(why, PcrAdmissionError { reason: PcrAdmissionErrorKind::Meeting, agents: [0, 1] });
                 assert_eq!(pcr_fleet_check(Some(&mut fleet), Some(&tolerances()), Some(&mut why)), PcrStatus::Refused);
-                assert_eq!(why.reason, PcrRefusal::Stuck);
+                assert_eq!(why.reason, PcrAdmissionErrorKind::Stuck);
                 assert_eq!(pcr_fleet_decide(Some(&mut fleet), 1, 0, 9), PcrStatus::NoSuchPass);
                 assert_eq!(pcr_fleet_decide(Some(&mut fleet), 1, 5, PCR_FIRST), PcrStatus::NoSuchAgent);
                 assert_eq!(pcr_fleet_decide(Some(&mut fleet), 1, 0, PCR_FIRST), PcrStatus::Ok);
@@ -248,7 +248,7 @@ macro_rules! formats {
                 assert_eq!(pcr_fleet_decide_at(Some(&mut fleet), 1, 0, PCR_FIRST), PcrStatus::NoSuchRegion);
                 assert_eq!(pcr_fleet_decide_at(Some(&mut fleet), 0, 0, PCR_FIRST), PcrStatus::Ok);
                 assert_eq!(passes(&fleet, 0), [(1, PCR_FIRST)]);
-                let bad = PcrTolerances { gain: real(0.0), ..tolerances() };
+                let bad = PcrCheckTolerances { gain: real(0.0), ..tolerances() };
                 assert_eq!(pcr_fleet_check(Some(&mut fleet), Some(&bad), None), PcrStatus::NonPositive);
                 assert_eq!(pcr_fleet_check(Some(&mut fleet), Some(&tolerances()), None), PcrStatus::Ok);
             }
@@ -264,7 +264,7 @@ macro_rules! formats {
                 // ever anyway: it goes first, whatever is preferred.
                 assert_eq!((second.0, second.1), (PcrStatus::Ok, vec![(0, PCR_FIRST)]), "0 and 2 are undecided");
                 assert_eq!(pcr_fleet_check(Some(&mut fleet), Some(&tolerances()), Some(&mut why)), PcrStatus::Refused);
-                assert_eq!(why.reason, PcrRefusal::Stuck);
+                assert_eq!(why.reason, PcrAdmissionErrorKind::Stuck);
                 assert_eq!(pcr_fleet_decide(Some(&mut fleet), 0, 2, PCR_FIRST), PcrStatus::Ok);
                 let second = admit(&mut fleet, &agent(true, 0.0, 0.0), None, &mut why);
                 assert_eq!((second.0, second.1), (PcrStatus::Ok, vec![(0, PCR_SECOND)]));
@@ -276,7 +276,7 @@ macro_rules! formats {
                 let before = (passes(&fleet, 1), hold(&fleet, 1));
                 let refused = admit(&mut fleet, &stands, None, &mut why);
                 assert_eq!((refused.0, (refused.1, refused.2)), (PcrStatus::Refused, before));
-                assert_eq!(why, PcrRefused { reason: PcrRefusal::Blocked, agents: [1, 0] });
+                assert_eq!(why, PcrAdmissionError { reason: PcrAdmissionErrorKind::Blocked, agents: [1, 0] });
             }
 
             #[test]
@@ -288,7 +288,7 @@ macro_rules! formats {
                 assert_eq!(pcr_fleet_remove(Some(&mut fleet), 0), PcrStatus::Ok);
                 assert_eq!(pcr_fleet_agents(Some(&fleet)), 2);
                 assert_eq!(passes(&fleet, 1), [(0, PCR_SECOND)]);
-                assert_eq!(hold(&fleet, 1), (PcrHoldKind::Free, 4.0), "what was reported moves up, too");
+                assert_eq!(hold(&fleet, 1), (PcrAuthorityKind::Free, 4.0), "what was reported moves up, too");
                 // What is free again is enough for another one.
                 assert_eq!(pcr_fleet_add(Some(&mut fleet), Some(&agent(false, 0.0, -1.0))), PcrStatus::Ok);
                 assert_eq!(pcr_fleet_add(Some(&mut fleet), Some(&agent(false, 0.0, 1.0))), PcrStatus::Ok);
@@ -297,7 +297,7 @@ macro_rules! formats {
                 assert_eq!(asked, PcrStatus::NotBuilt);
                 assert_eq!(pcr_fleet_remove(Some(&mut fleet), 3), PcrStatus::Ok);
                 assert_eq!(pcr_fleet_remove(Some(&mut fleet), 2), PcrStatus::Ok);
-                let mut held = PcrHold::default();
+                let mut held = PcrMovementAuthority::default();
                 assert_eq!(pcr_fleet_hold(Some(&fleet), 1, Some(&mut held)), PcrStatus::NotBuilt, "nor is it then");
             }
 
@@ -309,7 +309,7 @@ macro_rules! formats {
                 assert_eq!(pcr_fleet_build_row(Some(&mut fleet), 1), PcrStatus::Ok);
                 assert_eq!(pcr_fleet_decide(Some(&mut fleet), 1, 0, PCR_SECOND), PcrStatus::Ok);
                 assert!(near(hold(&fleet, 1), 1.5));
-                let mut other = PcrHold::default();
+                let mut other = PcrMovementAuthority::default();
                 assert_eq!(pcr_fleet_hold(Some(&fleet), 0, Some(&mut other)), PcrStatus::OnlyRow);
                 assert_eq!(pcr_fleet_hold(Some(&fleet), 1, None), PcrStatus::Null);
                 let mut replaced = self::fleet(4, &agents);
@@ -330,13 +330,13 @@ macro_rules! formats {
 
             #[test]
             fn stopping_ways_are_those_of_the_hand_calculation() {
-                let brakes = PcrBrakes { deceleration: real(0.5), reaction: real(0.5) };
+                let brakes = PcrBrakingModel { deceleration: real(0.5), reaction: real(0.5) };
                 let mut found = real(0.0);
                 assert_eq!(pcr_stopping_way(Some(&brakes), real(1.0), Some(&mut found)), PcrStatus::Ok);
                 assert!((value(found) - 1.5).abs() < 1e-3);
                 assert_eq!(pcr_stopping_speed(Some(&brakes), real(1.5), Some(&mut found)), PcrStatus::Ok);
                 assert!((value(found) - 1.0).abs() < 1e-3);
-                let none = PcrBrakes { deceleration: real(0.0), ..brakes };
+                let none = PcrBrakingModel { deceleration: real(0.0), ..brakes };
                 assert_eq!(pcr_stopping_way(Some(&none), real(1.0), Some(&mut found)), PcrStatus::NonPositive);
                 assert_eq!(pcr_stopping_way(None, real(1.0), Some(&mut found)), PcrStatus::Null);
             }

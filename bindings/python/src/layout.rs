@@ -1,10 +1,10 @@
 //! Layouts, and the options with which files of others are read.
 
 use crate::{json, refused};
-use pcr_formats::import::{Format, Imported, Options};
+use pcr_formats::import::{ImportOptions, ImportedLayout, InputFormat};
 use pcr_formats::input;
-use pcr_planning::locks::{Delays, Driving, Locks};
-use pcr_planning::report::DelayTable;
+use pcr_planning::exclusion_table::{EdgeDriving, ExclusionTable, UnsafeDelayModel};
+use pcr_planning::report::UnsafeDelayReport;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
@@ -44,20 +44,20 @@ pub(crate) struct Choices {
 }
 
 impl Choices {
-    pub(crate) fn options(self) -> PyResult<Options> {
+    pub(crate) fn options(self) -> PyResult<ImportOptions> {
         let from = match self.format {
             None => None,
-            Some(name) => match Format::ALL.into_iter().find(|format| format.to_string() == name) {
+            Some(name) => match InputFormat::ALL.into_iter().find(|format| format.to_string() == name) {
                 Some(format) => Some(format),
                 None => {
-                    let known: Vec<_> = Format::ALL.iter().map(Format::to_string).collect();
+                    let known: Vec<_> = InputFormat::ALL.iter().map(InputFormat::to_string).collect();
                     return Err(refused(format!("format {name}: there are {}", known.join(", "))));
                 }
             },
         };
         let Self { format: _, routes, radius, margin, speed, acceleration, rotation, rotation_acceleration, .. } = self;
         let Self { vehicle, fleet, corner_radius, tolerance, graph, horizon, partial, .. } = self;
-        Ok(Options {
+        Ok(ImportOptions {
             from,
             routes,
             radius,
@@ -79,7 +79,7 @@ impl Choices {
 
 /// A layout, for a vehicle.
 #[pyclass(frozen, module = "pcr._pcr")]
-pub(crate) struct Layout(Imported);
+pub(crate) struct Layout(ImportedLayout);
 
 #[pymethods]
 impl Layout {
@@ -98,17 +98,19 @@ impl Layout {
     }
 
     fn locks_json(&self, py: Python<'_>, nodes: bool) -> PyResult<String> {
-        py.detach(|| Locks::of(&self.0, nodes).map_err(refused).and_then(|locks| json(&locks)))
+        py.detach(|| ExclusionTable::compute(&self.0, nodes).map_err(refused).and_then(|locks| json(&locks)))
     }
 
     /// For a layout that was read with this speed and acceleration, on which the limits of edges depend.
     #[pyo3(signature = (speed, acceleration))]
     fn delays_json(&self, py: Python<'_>, speed: f64, acceleration: Option<f64>) -> PyResult<String> {
-        let driving = Driving { speed, acceleration };
+        let driving = EdgeDriving { speed, acceleration };
         py.detach(|| {
-            let delays = Delays::new(&self.0, driving, false).map_err(refused)?;
-            let head = Locks::head(&self.0, false);
-            DelayTable::of(head, driving, &delays, &|_, _| {}).map_err(refused).and_then(|table| json(&table))
+            let delays = UnsafeDelayModel::new(&self.0, driving, false).map_err(refused)?;
+            let head = ExclusionTable::head(&self.0, false);
+            UnsafeDelayReport::collect(head, driving, &delays, &|_, _| {})
+                .map_err(refused)
+                .and_then(|table| json(&table))
         })
     }
 

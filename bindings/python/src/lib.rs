@@ -7,15 +7,15 @@
 mod layout;
 
 use layout::{Choices, Layout};
-use pcr_core::{Encounter, Hold, Interval, Motion, Pass, Progress, Refused};
+use pcr_core::{AdmissionError, Encounter, Interval, Motion, MovementAuthority, PassingState, Progress};
 use pcr_formats::input::{self, InputError};
 use pcr_formats::scenario::{Scenario, ScenarioError};
-use pcr_planning::check::Verdict;
-use pcr_planning::fleet::{Fleet as Parts, HostOrders, build_ecm_of};
-use pcr_planning::plan::{self, Method, Plan};
-use pcr_planning::regions::{Answer, Request, orders, table};
-use pcr_planning::report::{self, Document};
-use pcr_planning::safe::safe_intervals;
+use pcr_planning::check::CheckReport;
+use pcr_planning::fleet::{Fleet as Parts, HostPrecedenceTable, build_ecm_of};
+use pcr_planning::plan::{self, PlanMethod, PlanReport};
+use pcr_planning::regions::{RegionOptions, RegionsReport, orders, table};
+use pcr_planning::report::{self, VersionedReport};
+use pcr_planning::safe_windows::safe_intervals;
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -37,7 +37,7 @@ fn misread(error: &ScenarioError) -> PyErr {
 }
 
 /// The output of the tool with `--json`.
-fn json(answer: &impl Document) -> PyResult<String> {
+fn json(answer: &impl VersionedReport) -> PyResult<String> {
     let mut text = Vec::new();
     report::json(answer, &mut text)?;
     Ok(String::from_utf8(text)?)
@@ -72,7 +72,9 @@ impl Fleet {
     /// Refuses fleets with footprints, whose agents consist of several discs.
     fn discs(&self) -> PyResult<()> {
         match self.scenario.agents.iter().find(|agent| agent.footprint.is_some() || !agent.loads.is_empty()) {
-            Some(agent) => Err(refused(format!("agent {}: it has a footprint; this is for discs", agent.called()))),
+            Some(agent) => {
+                Err(refused(format!("agent {}: it has a footprint; this is for discs", agent.display_name())))
+            }
             None => Ok(()),
         }
     }
@@ -124,11 +126,11 @@ impl Fleet {
     }
 
     /// Who passes first, as the motions do.
-    fn orders(&self, motions: &[Motion<'_, f64>]) -> PyResult<HostOrders> {
+    fn orders(&self, motions: &[Motion<'_, f64>]) -> PyResult<HostPrecedenceTable> {
         let mut orders = orders(&self.scenario, motions).map_err(refused)?;
         orders.as_planned(motions).map_err(|refusal| match refusal {
             // The library counts places.
-            Refused::Meeting([i, j]) => match (self.id(i), self.id(j)) {
+            AdmissionError::Meeting([i, j]) => match (self.id(i), self.id(j)) {
                 (Ok(i), Ok(j)) => refused(format!("agents {i} and {j} meet: there is no order in which they pass")),
                 _ => refused(refusal),
             },
@@ -191,14 +193,16 @@ impl Fleet {
     #[pyo3(signature = (slices = None, agent = None))]
     fn regions_json(&self, py: Python<'_>, slices: Option<usize>, agent: Option<u64>) -> PyResult<String> {
         py.detach(|| {
-            Answer::of::<f64>(&self.scenario, Request { agent, slices, certificate: false })
+            RegionsReport::compute::<f64>(&self.scenario, RegionOptions { agent, slices, certificate: false })
                 .map_err(refused)
                 .and_then(|answer| json(&answer))
         })
     }
 
     fn check_json(&self, py: Python<'_>) -> PyResult<String> {
-        py.detach(|| Verdict::of::<f64>(&self.scenario, false).map_err(refused).and_then(|verdict| json(&verdict)))
+        py.detach(|| {
+            CheckReport::compute::<f64>(&self.scenario, false).map_err(refused).and_then(|verdict| json(&verdict))
+        })
     }
 
     /// The forbidden lengths of an agent at these times: index of the time, other agent, from, to.
@@ -290,8 +294,9 @@ impl Fleet {
     /// The plan as JSON, and the planned fleet if there is one.
     fn plan(&self, py: Python<'_>, speeds: bool) -> PyResult<(String, Option<Self>)> {
         py.detach(|| {
-            let method = if speeds { Method::Speed } else { Method::Delay };
-            let (plan, scenario) = Plan::of(&self.scenario, &plan::Request::of(method)).map_err(refused)?;
+            let method = if speeds { PlanMethod::Speed } else { PlanMethod::Delay };
+            let (plan, scenario) =
+                PlanReport::compute(&self.scenario, &plan::PlanOptions::new(method)).map_err(refused)?;
             // As a file of it is read: the same bits as the tool's.
             let read = |scenario: Scenario| Scenario::from_json(&scenario.to_json()).map_err(|error| misread(&error));
             Ok((json(&plan)?, scenario.map(|scenario| Self::new(read(scenario)?)).transpose()?))
@@ -308,9 +313,9 @@ impl Fleet {
             let mut rows = Vec::new();
             for (_, region, pass) in orders.row(&motions, ego).map_err(refused)? {
                 let first = match pass {
-                    Pass::First => true,
-                    Pass::Second => false,
-                    Pass::Undecided | Pass::Over => return Err(refused("a region without an order")),
+                    PassingState::First => true,
+                    PassingState::Second => false,
+                    PassingState::Undecided | PassingState::Over => return Err(refused("a region without an order")),
                 };
                 let (l, s) = (region.length(), region.other_length());
                 row(&mut rows, [agent, self.id(region.other())?], [l.lo, l.hi, s.lo, s.hi], [first]);
@@ -336,9 +341,9 @@ impl Fleet {
             let progress: Vec<_> =
                 places.iter().map(|&(lo, hi)| Progress { at: Interval::new(lo, hi), stop: hi }).collect();
             let hold = |agent: usize| match orders.hold(&motions, agent, &progress) {
-                Ok(Hold::Free) => Ok(f64::INFINITY),
-                Ok(Hold::At(length)) => Ok(length),
-                Ok(Hold::Inside) => Ok(f64::NEG_INFINITY),
+                Ok(MovementAuthority::Free) => Ok(f64::INFINITY),
+                Ok(MovementAuthority::At(length)) => Ok(length),
+                Ok(MovementAuthority::Inside) => Ok(f64::NEG_INFINITY),
                 Err(mismatch) => Err(refused(mismatch)),
             };
             (0..motions.len()).map(hold).collect()

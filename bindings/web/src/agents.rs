@@ -42,7 +42,7 @@ impl Agent {
         Ok(Self { path, profile, radius, start })
     }
 
-    fn motion(&self) -> Result<Motion<'_, f64>, pcr_core::Invalid> {
+    fn motion(&self) -> Result<Motion<'_, f64>, pcr_core::InvalidInput> {
         Motion::new(self.path.as_path(), self.profile.as_profile(), self.radius, self.start)
     }
 }

@@ -4,7 +4,10 @@ use crate::agents::{Agents, Input};
 use crate::limits::AGENTS;
 use crate::message::Fault;
 use heapless::Vec;
-use pcr_core::{Ecm, Encounter, Hold, Interval, Mismatch, Motion, Order, Orders, Piece, Progress, Region, plan_delays};
+use pcr_core::{
+    Ecm, EcmEntry, Encounter, Interval, MismatchError, Motion, MovementAuthority, Piece, PrecedenceTable, Progress,
+    RegionPrecedence, plan_delays,
+};
 
 /// Largest number of `f64` in an answer.
 pub const ROOM: usize = 1 << 16;
@@ -39,9 +42,9 @@ impl Rows {
 #[derive(Debug)]
 pub struct Memory {
     agents: Agents,
-    regions: [Vec<Region, REGIONS>; 2],
+    regions: [Vec<EcmEntry, REGIONS>; 2],
     pieces: [Vec<Piece<f64>, PIECES>; 2],
-    orders: Vec<Order<f64>, REGIONS>,
+    orders: Vec<RegionPrecedence<f64>, REGIONS>,
 }
 
 impl Memory {
@@ -72,22 +75,22 @@ fn steps(from: f64, step: f64, times: usize) -> Result<impl Fn(usize) -> f64, Fa
 }
 
 /// Passing orders, with memory of their own.
-type Passing<'s> = Orders<f64, &'s mut [Region], &'s mut [Piece<f64>], &'s mut [Order<f64>]>;
+type Passing<'s> = PrecedenceTable<f64, &'s mut [EcmEntry], &'s mut [Piece<f64>], &'s mut [RegionPrecedence<f64>]>;
 
 /// A fleet with its tables.
 #[derive(Debug)]
 pub struct Fleet<'s> {
     agents: &'s mut Agents,
-    table: Ecm<f64, &'s mut [Region], &'s mut [Piece<f64>]>,
+    table: Ecm<f64, &'s mut [EcmEntry], &'s mut [Piece<f64>]>,
     orders: Passing<'s>,
 }
 
 impl<'s> Fleet<'s> {
     /// A fleet without agents.
     pub fn new(memory: &'s mut Memory) -> Self {
-        let [regions, others] = memory.regions.each_mut().map(|room| filled(room, Region::EMPTY));
+        let [regions, others] = memory.regions.each_mut().map(|room| filled(room, EcmEntry::EMPTY));
         let [pieces, parts] = memory.pieces.each_mut().map(|room| filled(room, Piece::EMPTY));
-        let orders = Orders::new(others, parts, filled(&mut memory.orders, Order::EMPTY));
+        let orders = PrecedenceTable::new(others, parts, filled(&mut memory.orders, RegionPrecedence::EMPTY));
         Self { agents: &mut memory.agents, table: Ecm::new(regions, pieces), orders }
     }
 
@@ -213,7 +216,7 @@ impl<'s> Fleet<'s> {
     pub fn track(&mut self, rows: &mut Rows, ego: usize, from: f64, step: f64, times: usize) -> Result<usize, Fault> {
         let time_of = steps(from, step, times)?;
         let motions = self.agents.motions()?;
-        let motion = motions.get(ego).ok_or(Fault::Mismatch(Mismatch::NoSuchAgent(ego)))?;
+        let motion = motions.get(ego).ok_or(Fault::Mismatch(MismatchError::NoSuchAgent(ego)))?;
         rows.used = 0;
         for place in 0..times {
             rows.push([motion.length_at(time_of(place))])?;
@@ -264,9 +267,9 @@ impl<'s> Fleet<'s> {
         rows.used = 0;
         for agent in 0..motions.len() {
             let hold = match self.orders.hold(&motions, agent, &places)? {
-                Hold::Free => f64::INFINITY,
-                Hold::At(length) => length,
-                Hold::Inside => places.get_mut(agent).map_or(0.0, |place| place.at.lo),
+                MovementAuthority::Free => f64::INFINITY,
+                MovementAuthority::At(length) => length,
+                MovementAuthority::Inside => places.get_mut(agent).map_or(0.0, |place| place.at.lo),
             };
             rows.push([hold])?;
         }

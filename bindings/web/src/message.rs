@@ -2,7 +2,7 @@
 
 use crate::limits::{AGENTS, LEGS};
 use core::fmt;
-use pcr_core::{Full, Invalid, Mismatch, Refused, Unsolved};
+use pcr_core::{AdmissionError, CapacityError, InvalidInput, MismatchError, PlanError};
 
 /// Why there is no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,17 +12,17 @@ pub enum Fault {
     /// The number of legs of this agent is invalid.
     Legs(usize),
     /// This agent, or its leg, is invalid.
-    Invalid(usize, Option<usize>, Invalid),
+    Invalid(usize, Option<usize>, InvalidInput),
     /// No fleet was built, or the last one was refused.
     NotBuilt,
     /// The table is full.
-    Full(Full),
+    Full(CapacityError),
     /// The fleet has no such agent.
-    Mismatch(Mismatch),
+    Mismatch(MismatchError),
     /// There is no plan.
-    Unsolved(Unsolved),
+    Unsolved(PlanError),
     /// The motions collide, so they have no order.
-    Refused(Refused),
+    Refused(AdmissionError),
     /// The answer has more rows than the output can hold.
     Rows,
     /// An argument is not a time, or not a whole number.
@@ -30,35 +30,35 @@ pub enum Fault {
 }
 
 impl Fault {
-    pub(crate) fn of_agent(agent: usize) -> impl Fn(Invalid) -> Self + Copy {
+    pub(crate) fn of_agent(agent: usize) -> impl Fn(InvalidInput) -> Self + Copy {
         move |invalid| Self::Invalid(agent, None, invalid)
     }
 
-    pub(crate) fn of_leg(agent: usize, leg: usize) -> impl Fn(Invalid) -> Self + Copy {
+    pub(crate) fn of_leg(agent: usize, leg: usize) -> impl Fn(InvalidInput) -> Self + Copy {
         move |invalid| Self::Invalid(agent, Some(leg), invalid)
     }
 }
 
-impl From<Full> for Fault {
-    fn from(full: Full) -> Self {
+impl From<CapacityError> for Fault {
+    fn from(full: CapacityError) -> Self {
         Self::Full(full)
     }
 }
 
-impl From<Mismatch> for Fault {
-    fn from(mismatch: Mismatch) -> Self {
+impl From<MismatchError> for Fault {
+    fn from(mismatch: MismatchError) -> Self {
         Self::Mismatch(mismatch)
     }
 }
 
-impl From<Unsolved> for Fault {
-    fn from(unsolved: Unsolved) -> Self {
+impl From<PlanError> for Fault {
+    fn from(unsolved: PlanError) -> Self {
         Self::Unsolved(unsolved)
     }
 }
 
-impl From<Refused> for Fault {
-    fn from(refused: Refused) -> Self {
+impl From<AdmissionError> for Fault {
+    fn from(refused: AdmissionError) -> Self {
         Self::Refused(refused)
     }
 }
@@ -78,23 +78,23 @@ impl fmt::Display for Fault {
             Self::NotBuilt => f.write_str("there is no fleet: none was built, or the last one was refused"),
             Self::Full(full) => full.fmt(f),
             Self::Mismatch(mismatch) => mismatch.fmt(f),
-            Self::Unsolved(Unsolved::Starts([a, b])) => {
+            Self::Unsolved(PlanError::Starts([a, b])) => {
                 write!(f, "no plan: agents {} and {} overlap at their starts", number(a), number(b))
             }
-            Self::Unsolved(Unsolved::Ends([a, b])) => {
+            Self::Unsolved(PlanError::Ends([a, b])) => {
                 write!(f, "no plan: agents {} and {} overlap at the ends of their paths", number(a), number(b))
             }
-            Self::Unsolved(Unsolved::Always([a, b])) => {
+            Self::Unsolved(PlanError::Always([a, b])) => {
                 write!(f, "no plan: agents {} and {} meet however they move", number(a), number(b))
             }
-            Self::Unsolved(Unsolved::Priorities([a, b])) => {
+            Self::Unsolved(PlanError::Priorities([a, b])) => {
                 write!(f, "no plan found: agent {} cannot go because of agent {}", number(a), number(b))
             }
-            Self::Unsolved(Unsolved::Invalid { agent, reason }) => {
+            Self::Unsolved(PlanError::Invalid { agent, reason }) => {
                 write!(f, "no plan of agent {}: {reason}", number(agent))
             }
             Self::Unsolved(unsolved) => write!(f, "no plan: {unsolved}"),
-            Self::Refused(Refused::Meeting([a, b])) => {
+            Self::Refused(AdmissionError::Meeting([a, b])) => {
                 write!(f, "agents {} and {} meet: there is no order in which they pass", number(a), number(b))
             }
             Self::Refused(refused) => refused.fmt(f),

@@ -35,7 +35,7 @@ fn a_crossing_has_a_region_a_conflict_and_a_plan() {
         assert_eq!(fleet.build(&crossing(), 2), Ok(1));
         assert_eq!(fleet.regions(rows), Ok(2));
         assert_eq!(fleet.conflicts(rows), Ok(1));
-        assert_eq!(fleet.holds(rows, 0.0), Err(Fault::Refused(pcr_core::Refused::Meeting([0, 1]))));
+        assert_eq!(fleet.holds(rows, 0.0), Err(Fault::Refused(pcr_core::AdmissionError::Meeting([0, 1]))));
         assert_eq!(fleet.plan(rows), Ok(2));
         let delays = rows.numbers().to_vec();
         assert!(delays.iter().any(|&delay| delay > 0.5));
@@ -78,10 +78,10 @@ fn what_is_no_fleet_is_refused_and_leaves_nobody() {
         }
         assert_eq!(fleet.build(&crossing(), AGENTS + 1), Err(Fault::Agents(AGENTS + 1)));
         assert!(fleet.build(&crossing(), 2).is_ok());
-        assert_eq!(fleet.map(rows, 2, 0.0, 1.0, 10), Err(Fault::Mismatch(pcr_core::Mismatch::NoSuchAgent(2))));
+        assert_eq!(fleet.map(rows, 2, 0.0, 1.0, 10), Err(Fault::Mismatch(pcr_core::MismatchError::NoSuchAgent(2))));
         assert_eq!(fleet.map(rows, 0, f64::NAN, 1.0, 10), Err(Fault::Question("the time")));
         assert_eq!(fleet.map(rows, 0, 5.0, 0.0, usize::MAX >> 40), Err(Fault::Rows));
-        assert_eq!(fleet.track(rows, 2, 0.0, 1.0, 10), Err(Fault::Mismatch(pcr_core::Mismatch::NoSuchAgent(2))));
+        assert_eq!(fleet.track(rows, 2, 0.0, 1.0, 10), Err(Fault::Mismatch(pcr_core::MismatchError::NoSuchAgent(2))));
         assert_eq!(fleet.track(rows, 0, 0.0, f64::INFINITY, 10), Err(Fault::Question("the time")));
         assert_eq!(fleet.track(rows, 0, 0.0, 1.0, usize::MAX >> 40), Err(Fault::Rows));
         // The last time is not finite although both numbers are.

@@ -15,8 +15,8 @@ mod passing;
 mod robot;
 mod serial;
 
-use pcr_certify::table::{Checker, Margin};
-use pcr_core::{Ecm, Piece, Region};
+use pcr_certify::table::{Checker, CoverageMargin};
+use pcr_core::{Ecm, EcmEntry, Piece};
 use pcr_supervisor::scenario::{self, AGENTS, PIECES, REGIONS, SEGMENTS};
 use pcr_supervisor::{Agent, Number, Step, Store, dump};
 use std::error::Error;
@@ -90,7 +90,7 @@ fn store<S: Number>(agents: BuiltIn<S>) -> Result<Store<S, AGENTS, SEGMENTS>, Bo
 fn table<S: Number>(agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let store = store(agents)?;
     let fleet = store.motions()?;
-    let ecm = Ecm::build([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
+    let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
     let mut out = io::stdout().lock();
     out.write_all(dump::HEADING)?;
     for region in ecm.regions(&fleet)? {
@@ -108,8 +108,8 @@ fn table<S: Number>(agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
 
 /// Proves that no contact is missing from the table in a text, as `pcr certify --table` does.
 fn certify(text: &str) -> Result<(), Box<dyn Error>> {
-    let table = pcr_certify::dump::decode(text)?;
-    let found = Checker::new(&table)?.check(Margin::Needed)?;
+    let table = pcr_certify::device_dump::decode(text)?;
+    let found = Checker::new(&table)?.check(CoverageMargin::Needed)?;
     match found.refuted.first().or(found.undecided.first()) {
         Some(witness) => Err(format!("not proved: {witness:?}").into()),
         None if found.pieces == 0 => Err("there is nothing in the table".into()),

@@ -3,7 +3,7 @@
 
 use crate::passing::{Rounded, motions};
 use pcr_core::scalar::Angle;
-use pcr_core::{Curve, Limits, Point, Pose, Turn};
+use pcr_core::{Curve, Limits, Point, Pose, TurnSide};
 use pcr_supervisor::frame::{Reads, Receiver};
 use pcr_supervisor::message::{Edition, Terms};
 use pcr_supervisor::scenario::crowd::{OWN, PIECES, REGIONS, ROBOTS, SEGMENTS};
@@ -22,7 +22,7 @@ fn agent<S: Rounded>(index: usize) -> Agent<S> {
     let at = |x: f64, y: f64, heading: S::Angle| Pose { position: Point::new(number(x), number(y)), heading };
     let line = |length| Step { curve: Curve::Line, length: number(length) };
     // A quarter of a metre beside the line between its ends.
-    let bend = Step { curve: Curve::Arc { radius: number(8.0), turn: Turn::Left }, length: number(4.0) };
+    let bend = Step { curve: Curve::Arc { radius: number(8.0), turn: TurnSide::Left }, length: number(4.0) };
     let x = index as f64 + 1.0;
     let (start, step, start_time) = match index {
         _ if index == usize::from(OWN) => (at(0.0, 0.0, heading(1.0, 0.0)), line(31.0), 600.0),

@@ -2,7 +2,7 @@
 
 use crate::passing::Supervisor;
 use crate::{BuiltIn, store};
-use pcr_core::{Ecm, Limits, Motion, Piece, Region, earliest_start};
+use pcr_core::{Ecm, EcmEntry, Limits, Motion, Piece, earliest_start};
 use pcr_supervisor::frame::{self, Damage, Reads, Receiver, Tag, VERSION};
 use pcr_supervisor::message::{ConflictRecord, PieceRecord, Reason, Refusal, RegionRecord, text};
 use pcr_supervisor::scenario::{AGENTS, PIECES, REGIONS};
@@ -295,7 +295,7 @@ fn exchange<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dy
 fn table<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let store = store(agents)?;
     let fleet = store.motions()?;
-    let ecm = Ecm::build([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
+    let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
     let computed = Answer::Computed { regions: u16::try_from(ecm.len())?, pieces: u16::try_from(ecm.pieces())? };
     link.expect(&Request::<S>::Compute, &computed)?;
     let before = link.bytes;
@@ -345,7 +345,7 @@ fn conflicts<S: Number>(link: &mut Link, fleet: &[Motion<'_, S>]) -> Result<u16,
 fn replan<S: Number>(link: &mut Link, agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
     let store = store(agents)?;
     let mut fleet = store.motions()?;
-    let ecm = Ecm::build([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
+    let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet)?;
     let before = conflicts(link, &fleet)?;
     let mut planned = 0;
     for agent in 0..fleet.len() {

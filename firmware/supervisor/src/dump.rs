@@ -6,7 +6,9 @@
 use crate::frame::CRC;
 use crate::number::Number;
 use heapless::Vec;
-use pcr_core::{Curve, Ecm, Interval, Mismatch, Motion, Piece, PieceRef, Region, RegionRef, Share, Turn, excess};
+use pcr_core::{
+    Branch, Curve, Ecm, EcmEntry, Interval, MismatchError, Motion, Piece, PieceRef, RegionRef, TurnSide, excess,
+};
 
 /// Length of the longest line in bytes.
 const WIDTH: usize = 120;
@@ -109,12 +111,12 @@ pub fn region<S: Number>(region: &RegionRef<'_, S>) -> Line {
 /// Writes a whole table in bits, line by line.
 ///
 /// # Errors
-/// [`Mismatch`] if it is not the table of the fleet.
-pub fn table<S: Number, R: AsRef<[Region]>, P: AsRef<[Piece<S>]>>(
+/// [`MismatchError`] if it is not the table of the fleet.
+pub fn table<S: Number, R: AsRef<[EcmEntry]>, P: AsRef<[Piece<S>]>>(
     fleet: &[Motion<'_, S>],
     table: &Ecm<S, R, P>,
     mut print: impl FnMut(&[u8]),
-) -> Result<(), Mismatch> {
+) -> Result<(), MismatchError> {
     let mut check = CRC.digest();
     let mut send = |line: Line| {
         let line = line.text(b"\n");
@@ -154,8 +156,8 @@ fn agent<S: Number>(motion: &Motion<'_, S>, send: &mut impl FnMut(Line)) {
     for (segment, to) in segments.iter().zip(ends) {
         let line = match segment.curve() {
             Curve::Line => Line::default().text(b"line"),
-            Curve::Arc { radius, turn: Turn::Left } => Line::default().text(b"left").numbers(&[radius]),
-            Curve::Arc { radius, turn: Turn::Right } => Line::default().text(b"right").numbers(&[radius]),
+            Curve::Arc { radius, turn: TurnSide::Left } => Line::default().text(b"left").numbers(&[radius]),
+            Curve::Arc { radius, turn: TurnSide::Right } => Line::default().text(b"right").numbers(&[radius]),
         };
         send(line.numbers(&[segment.length(), segment.from(), to]));
     }
@@ -167,9 +169,9 @@ fn agent<S: Number>(motion: &Motion<'_, S>, send: &mut impl FnMut(Line)) {
 fn piece<S: Number>(piece: &PieceRef<'_, S>) -> Line {
     let line = piece.segments.iter().fold(Line::default().text(b"piece"), |line, segment| line.count(*segment));
     let share: &[u8] = match piece.share {
-        Share::Only => b" only",
-        Share::Start => b" start",
-        Share::End => b" end",
+        Branch::Only => b" only",
+        Branch::Start => b" start",
+        Branch::End => b" end",
     };
     line.text(share).ranges(&[piece.length, piece.other_length])
 }

@@ -2,7 +2,9 @@
 
 use crate::agent::{Agent, Step};
 use heapless::Vec;
-use pcr_core::{Curve, Interval, Invalid, Limits, Motion, PathRef, Phase, Pose, Profile, ProfileRef, Scalar, Segment};
+use pcr_core::{
+    Curve, Interval, InvalidInput, Limits, Motion, PathRef, Phase, Pose, Profile, ProfileRef, Scalar, Segment,
+};
 
 /// The motions of up to `A` agents.
 pub type Motions<'a, S, const A: usize> = Vec<Motion<'a, S>, A>;
@@ -33,11 +35,11 @@ pub enum Rejected {
     /// There is no agent with this index.
     NoSuchAgent(usize),
     /// The new agent or motion is invalid.
-    Invalid(Invalid),
+    Invalid(InvalidInput),
 }
 
-impl From<Invalid> for Rejected {
-    fn from(invalid: Invalid) -> Self {
+impl From<InvalidInput> for Rejected {
+    fn from(invalid: InvalidInput) -> Self {
         Self::Invalid(invalid)
     }
 }
@@ -75,9 +77,10 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
     ///
     /// # Errors
     /// The errors of the constructors of its path, its profile and its motion; [`Invalid::Full`] if there is no room.
-    pub fn add<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>) -> Result<usize, Invalid> {
+    pub fn add<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>) -> Result<usize, InvalidInput> {
         let (index, begin) = (self.agents.len(), self.segments.len());
-        let added = self.parts(agent).and_then(|parts| self.agents.push(parts).map_err(|_| Invalid::Full("agent")));
+        let added =
+            self.parts(agent).and_then(|parts| self.agents.push(parts).map_err(|_| InvalidInput::Full("agent")));
         if added.is_err() {
             self.segments.truncate(begin);
         }
@@ -95,7 +98,7 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
 
     /// Stores an agent beside all others. It becomes part of the fleet by [`Store::settle`]; [`Store::unstage`] removes
     /// it.
-    pub(crate) fn stage<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>) -> Result<Parts<S>, Invalid> {
+    pub(crate) fn stage<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>) -> Result<Parts<S>, InvalidInput> {
         let begin = self.segments.len();
         self.parts(agent).inspect_err(|_| self.segments.truncate(begin))
     }
@@ -105,7 +108,7 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
     }
 
     /// The motion of a staged agent.
-    pub(crate) fn staged<'a>(&'a self, staged: &'a Parts<S>) -> Result<Motion<'a, S>, Invalid> {
+    pub(crate) fn staged<'a>(&'a self, staged: &'a Parts<S>) -> Result<Motion<'a, S>, InvalidInput> {
         staged.motion(&self.segments)
     }
 
@@ -145,7 +148,7 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
     }
 
     /// Stores an agent's segments behind all others. A caller that does not keep them has to remove them again.
-    fn parts<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>) -> Result<Parts<S>, Invalid> {
+    fn parts<P: AsRef<[Step<S>]>>(&mut self, agent: &Agent<S, P>) -> Result<Parts<S>, InvalidInput> {
         let begin = self.segments.len();
         let origin = Segment::standing(agent.start)?;
         for step in agent.path.as_ref() {
@@ -154,17 +157,17 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
                 Curve::Line => last.then_line(step.length),
                 Curve::Arc { radius, turn } => last.then_arc(radius, turn, step.length),
             }?;
-            self.segments.push(next).map_err(|_| Invalid::Full("segment"))?;
+            self.segments.push(next).map_err(|_| InvalidInput::Full("segment"))?;
         }
         if self.segments.len() == begin {
-            self.segments.push(origin).map_err(|_| Invalid::Full("segment"))?;
+            self.segments.push(origin).map_err(|_| InvalidInput::Full("segment"))?;
         }
         let path = PathRef::new(self.segments.get(begin..).unwrap_or_default())?;
         let profile = Profile::rest_to_rest(path.length(), agent.limits)?;
         Motion::new(path, profile.as_profile(), agent.radius, agent.start_time)?;
         let mut phases = Vec::new();
         for phase in profile.as_profile().phases() {
-            phases.push(*phase).map_err(|_| Invalid::Full("phase"))?;
+            phases.push(*phase).map_err(|_| InvalidInput::Full("phase"))?;
         }
         // There are at most 65535 segments.
         let [begin, end] = [begin, self.segments.len()].map(|place| place as u16);
@@ -194,12 +197,12 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
         let parts = self.agents.get(index).ok_or(Rejected::NoSuchAgent(index))?;
         let [begin, count] = [parts.begin, parts.segments].map(usize::from);
         let segments = self.segments.get(begin..begin.saturating_add(count)).unwrap_or_default();
-        let first = segments.first().ok_or(Invalid::Full("segment"))?;
+        let first = segments.first().ok_or(InvalidInput::Full("segment"))?;
         let start = Pose { position: first.point_at(S::ZERO), heading: first.heading_at(S::ZERO) };
         let mut path = Vec::new();
         for segment in segments {
             let step = Step { curve: segment.curve(), length: segment.length() };
-            path.push(step).map_err(|_| Invalid::Full("step"))?;
+            path.push(step).map_err(|_| InvalidInput::Full("step"))?;
         }
         Ok(Agent { radius: parts.radius, start_time: parts.start, limits: parts.limits, start, path })
     }
@@ -210,7 +213,7 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
     /// As [`Store::put_motions`].
     // Not inlined: its copies of the motions would stay on the stack while the caller works with them.
     #[inline(never)]
-    pub fn motions(&self) -> Result<Motions<'_, S, A>, Invalid> {
+    pub fn motions(&self) -> Result<Motions<'_, S, A>, InvalidInput> {
         let mut motions = Vec::new();
         self.put_motions(&mut motions)?;
         Ok(motions)
@@ -221,18 +224,18 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
     /// # Errors
     /// [`Invalid::Full`] if there is no room for all of them. A motion itself cannot be refused, because it was
     /// accepted when its agent was added.
-    pub fn put_motions<'a>(&'a self, motions: &mut Motions<'a, S, A>) -> Result<(), Invalid> {
+    pub fn put_motions<'a>(&'a self, motions: &mut Motions<'a, S, A>) -> Result<(), InvalidInput> {
         for parts in &self.agents {
-            motions.push(parts.motion(&self.segments)?).map_err(|_| Invalid::Full("agent"))?;
+            motions.push(parts.motion(&self.segments)?).map_err(|_| InvalidInput::Full("agent"))?;
         }
         Ok(())
     }
 }
 
 impl<S: Scalar> Parts<S> {
-    fn motion<'a>(&'a self, segments: &'a [Segment<S>]) -> Result<Motion<'a, S>, Invalid> {
+    fn motion<'a>(&'a self, segments: &'a [Segment<S>]) -> Result<Motion<'a, S>, InvalidInput> {
         let [begin, count] = [self.begin, self.segments].map(usize::from);
-        let own = segments.get(begin..begin.saturating_add(count)).ok_or(Invalid::Full("segment"))?;
+        let own = segments.get(begin..begin.saturating_add(count)).ok_or(InvalidInput::Full("segment"))?;
         Motion::new(PathRef::new(own)?, ProfileRef::new(&self.phases)?, self.radius, self.start)
     }
 }

@@ -7,7 +7,7 @@ mod refusal;
 use crate::agent::{Agent, MAX_STEPS, Step};
 use crate::number::Number;
 use heapless::Vec;
-use pcr_core::{Interval, Limits, Pass};
+use pcr_core::{Interval, Limits, PassingState};
 pub use record::{ConflictRecord, PieceRecord, RegionRecord};
 pub use refusal::{Reason, Refusal, Room, text};
 use serde::{Deserialize, Serialize};
@@ -226,7 +226,7 @@ pub enum Answer<S: Number> {
         /// Edition of these orders.
         edition: Edition,
         /// The order seen by the robot that asks.
-        pass: Pass,
+        pass: PassingState,
         /// Length on its path at which the region begins \[m\]; both ends of the line compute the same value.
         from: S,
     },

@@ -26,7 +26,8 @@ use crate::number::Number;
 use crate::table::Ordered;
 use heapless::Vec;
 use pcr_core::{
-    Full, Hold, Interval, Invalid, Mismatch, Motion, Order, Orders, Pass, Piece, Progress, Region, Scalar, TableError,
+    CapacityError, EcmEntry, EcmError, Interval, InvalidInput, MismatchError, Motion, MovementAuthority, PassingState,
+    Piece, PrecedenceTable, Progress, RegionPrecedence, Scalar,
 };
 
 /// The orders of one robot as they are received: the paths of at most `A` robots, including its own, with `N` segments
@@ -47,7 +48,7 @@ pub struct Briefing<S: Number, const A: usize, const N: usize, const R: usize> {
 #[derive(Clone, Copy, Debug)]
 struct Passing<S> {
     other: u16,
-    pass: Pass,
+    pass: PassingState,
     from: S,
 }
 
@@ -76,12 +77,12 @@ impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N
             Answer::Member { agent, edition, ref with } => {
                 self.is_of(edition)?;
                 self.paths.add(with)?;
-                self.members.push(agent).map_err(|_| Invalid::Full("agent"))?;
+                self.members.push(agent).map_err(|_| InvalidInput::Full("agent"))?;
             }
             Answer::Passing { other, edition, pass, from } => {
                 self.is_of(edition)?;
                 let passing = Passing { other, pass, from };
-                self.passings.push(passing).map_err(|_| Invalid::Full("order"))?;
+                self.passings.push(passing).map_err(|_| InvalidInput::Full("order"))?;
             }
             Answer::Orders { agent, edition, path, at } if agent == self.agent => {
                 self.is_of(edition)?;
@@ -102,7 +103,7 @@ impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N
     /// # Errors
     /// As [`Store::put_motions`].
     #[inline(never)]
-    pub fn put_motions<'a>(&'a self, motions: &mut Motions<'a, S, A>) -> Result<(), Invalid> {
+    pub fn put_motions<'a>(&'a self, motions: &mut Motions<'a, S, A>) -> Result<(), InvalidInput> {
         self.paths.put_motions(motions)
     }
 
@@ -121,36 +122,36 @@ impl<S: Number, const A: usize, const N: usize, const R: usize> Briefing<S, A, N
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unclear {
     /// There is no room for its regions.
-    Full(Full),
+    Full(CapacityError),
     /// The paths are not those of the briefing, or its own path is not among them.
-    Mismatch(Mismatch),
+    Mismatch(MismatchError),
     /// The answers belong to different editions or are not complete, or the robot computes other regions than those that
     /// were sent.
     Disagreement,
     /// There are too many robots or orders, or a path is invalid.
-    Invalid(Invalid),
+    Invalid(InvalidInput),
     /// The path of the orders was begun, but not by this robot as far as it knows: it was restarted since then, or
     /// another one has its index. [`Robot::resume`].
     Begun,
 }
 
-impl From<Invalid> for Unclear {
-    fn from(invalid: Invalid) -> Self {
+impl From<InvalidInput> for Unclear {
+    fn from(invalid: InvalidInput) -> Self {
         Self::Invalid(invalid)
     }
 }
 
-impl From<TableError> for Unclear {
-    fn from(error: TableError) -> Self {
+impl From<EcmError> for Unclear {
+    fn from(error: EcmError) -> Self {
         match error {
-            TableError::Full(full) => Self::Full(full),
-            TableError::Mismatch(mismatch) => Self::Mismatch(mismatch),
+            EcmError::Full(full) => Self::Full(full),
+            EcmError::Mismatch(mismatch) => Self::Mismatch(mismatch),
         }
     }
 }
 
-impl From<Mismatch> for Unclear {
-    fn from(mismatch: Mismatch) -> Self {
+impl From<MismatchError> for Unclear {
+    fn from(mismatch: MismatchError) -> Self {
         Self::Mismatch(mismatch)
     }
 }
@@ -180,7 +181,7 @@ impl<S: Number, const A: usize, const R: usize, const P: usize> Default for Robo
 impl<S: Number, const A: usize, const R: usize, const P: usize> Robot<S, A, R, P> {
     /// A robot without orders, which stays where it is.
     pub const fn new() -> Self {
-        let orders = Orders::new([Region::EMPTY; R], [Piece::EMPTY; P], [Order::EMPTY; R]);
+        let orders = PrecedenceTable::new([EcmEntry::EMPTY; R], [Piece::EMPTY; P], [RegionPrecedence::EMPTY; R]);
         let nowhere = Progress { at: Interval { lo: S::ZERO, hi: S::ZERO }, stop: S::ZERO };
         let edition = Edition { run: 0, number: 0 };
         Self { orders, progress: [nowhere; A], own: 0, edition, path: edition, sent: S::ZERO, hold: S::ZERO }
@@ -230,7 +231,7 @@ impl<S: Number, const A: usize, const R: usize, const P: usize> Robot<S, A, R, P
         }
         // 0 on a path that was not begun.
         let at = Scalar::min(Scalar::max(S::ZERO, at), known.hi);
-        self.own = briefing.place_of(briefing.agent).ok_or(Mismatch::NoSuchAgent(usize::from(briefing.agent)))?;
+        self.own = briefing.place_of(briefing.agent).ok_or(MismatchError::NoSuchAgent(usize::from(briefing.agent)))?;
         self.orders.fill_row(fleet, self.own)?;
         let mut told = briefing.passings.iter();
         for place in 0..self.orders.ecm().len() {
@@ -281,8 +282,8 @@ impl<S: Number, const A: usize, const R: usize, const P: usize> Robot<S, A, R, P
     /// path.
     #[inline(never)]
     pub fn hold(&mut self, fleet: &[Motion<'_, S>]) -> S {
-        let hold = self.orders.hold_before(fleet, self.own, &self.progress, Hold::At(self.sent));
-        if let Ok(Hold::At(hold)) = hold
+        let hold = self.orders.hold_before(fleet, self.own, &self.progress, MovementAuthority::At(self.sent));
+        if let Ok(MovementAuthority::At(hold)) = hold
             && self.edition != Edition::default()
             && hold > self.hold
         {

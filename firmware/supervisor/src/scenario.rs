@@ -26,7 +26,7 @@ macro_rules! scenario {
         $(#[$attribute])*
         pub mod $module {
             use crate::agent::{Agent, Step};
-            use pcr_core::{Curve, Limits, Point, Pose, Turn};
+            use pcr_core::{Curve, Limits, Point, Pose, TurnSide};
 
             /// The number format.
             pub type Number = $number;

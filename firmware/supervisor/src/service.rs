@@ -9,7 +9,7 @@ use crate::number::Number;
 use crate::table::Table;
 use core::cell::RefCell;
 use heapless::Vec;
-use pcr_core::{Ecm, Interval, Limits, Motion, Piece, Pose, Region, TableError, earliest_start};
+use pcr_core::{Ecm, EcmEntry, EcmError, Interval, Limits, Motion, Piece, Pose, earliest_start};
 
 pub use crate::table::Regions;
 
@@ -43,7 +43,7 @@ pub struct Service<S: Number, const A: usize, const N: usize, const R: usize, co
 impl<S: Number, const A: usize, const N: usize, const R: usize, const P: usize> Service<S, A, N, R, P> {
     /// A supervisor without agents and orders, and a fleet that can be loaded.
     pub const fn new(built_in: &'static [Agent<S, &'static [Step<S>]>]) -> Self {
-        Self::with(Ecm::new([Region::EMPTY; R], [Piece::EMPTY; P]), built_in)
+        Self::with(Ecm::new([EcmEntry::EMPTY; R], [Piece::EMPTY; P]), built_in)
     }
 }
 
@@ -316,7 +316,7 @@ fn build<S: Number, const R: usize, const P: usize>(
     table: &mut impl Table<S, R, P>,
     fleet: &[Motion<'_, S>],
     replies: &mut impl Replies<S>,
-) -> Result<(), TableError> {
+) -> Result<(), EcmError> {
     table.clear();
     for agent in 0..fleet.len() {
         let inserted = table.insert(fleet.get(..=agent).unwrap_or_default(), agent);
@@ -335,7 +335,7 @@ fn build<S: Number, const R: usize, const P: usize>(
 fn needed<S: Number, const R: usize, const P: usize>(
     table: &mut impl Table<S, R, P>,
     fleet: &[Motion<'_, S>],
-    error: TableError,
+    error: EcmError,
     replies: &mut impl Replies<S>,
 ) -> Refusal {
     let [mut regions, mut pieces] = [0_usize; 2];

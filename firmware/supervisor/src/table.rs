@@ -3,14 +3,14 @@
 use crate::agent::Agent;
 use crate::message::{Answer, Edition, Refusal, Terms};
 use crate::number::Number;
-use pcr_core::{Ecm, Interval, Mismatch, Motion, Order, Orders, Piece, Region, TableError};
+use pcr_core::{Ecm, EcmEntry, EcmError, Interval, MismatchError, Motion, Piece, PrecedenceTable, RegionPrecedence};
 
 /// A table of at most `R` regions in `P` pieces.
-pub type Regions<S, const R: usize, const P: usize> = Ecm<S, [Region; R], [Piece<S>; P]>;
+pub type Regions<S, const R: usize, const P: usize> = Ecm<S, [EcmEntry; R], [Piece<S>; P]>;
 
 /// A table of at most `R` regions in `P` pieces, and `O` orders.
 pub type Ordered<S, const R: usize, const P: usize, const O: usize> =
-    Orders<S, [Region; R], [Piece<S>; P], [Order<S>; O]>;
+    PrecedenceTable<S, [EcmEntry; R], [Piece<S>; P], [RegionPrecedence<S>; O]>;
 
 /// A table that a [`Service`](crate::Service) keeps. A table without orders refuses requests about orders.
 pub trait Table<S: Number, const R: usize, const P: usize> {
@@ -20,25 +20,21 @@ pub trait Table<S: Number, const R: usize, const P: usize> {
     /// Adds the last agent of a fleet. The table must be that of the fleet without this agent.
     ///
     /// # Errors
-    /// [`TableError`].
-    fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), TableError>;
+    /// [`EcmError`].
+    fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), EcmError>;
 
     /// Replaces an agent, and computes only its regions.
     ///
     /// # Errors
-    /// [`TableError`]; the new fleet then has no table.
-    fn replace<'m>(
-        &mut self,
-        fleet: &mut [Motion<'m, S>],
-        agent: usize,
-        motion: Motion<'m, S>,
-    ) -> Result<(), TableError>;
+    /// [`EcmError`]; the new fleet then has no table.
+    fn replace<'m>(&mut self, fleet: &mut [Motion<'m, S>], agent: usize, motion: Motion<'m, S>)
+    -> Result<(), EcmError>;
 
     /// Removes an agent; the index of every agent behind it decreases by one.
     ///
     /// # Errors
-    /// [`Mismatch`].
-    fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch>;
+    /// [`MismatchError`].
+    fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), MismatchError>;
 
     /// Removes the fleet.
     fn clear(&mut self);
@@ -114,7 +110,7 @@ impl<S: Number, const R: usize, const P: usize> Table<S, R, P> for Regions<S, R,
 
     // Separate functions, with stacks of their own; so are those below.
     #[inline(never)]
-    fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), TableError> {
+    fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), EcmError> {
         Ecm::insert(self, fleet, agent)
     }
 
@@ -124,12 +120,12 @@ impl<S: Number, const R: usize, const P: usize> Table<S, R, P> for Regions<S, R,
         fleet: &mut [Motion<'m, S>],
         agent: usize,
         motion: Motion<'m, S>,
-    ) -> Result<(), TableError> {
+    ) -> Result<(), EcmError> {
         Ecm::replace(self, fleet, agent, motion)
     }
 
     #[inline(never)]
-    fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch> {
+    fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), MismatchError> {
         Ecm::erase(self, fleet, agent)
     }
 

@@ -16,8 +16,8 @@ use crate::message::{Answer, Edition, Refusal, Terms, short};
 use crate::number::Number;
 use crate::table::{Ordered, Regions, Table};
 use pcr_core::{
-    Interval, Mismatch, Mission, Motion, Order, Orders, Pass, Piece, Progress, Reach, Region, Scalar, TableError,
-    Tolerances,
+    CheckState, CheckTolerances, EcmEntry, EcmError, Interval, MismatchError, Motion, PassingState, PathProposal,
+    Piece, PrecedenceTable, Progress, RegionPrecedence, Scalar,
 };
 
 /// A table for at most `A` robots, with at most `R` regions in `P` pieces and `O` orders. It needs as many orders as
@@ -43,7 +43,7 @@ struct Robot<S> {
 impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> Traffic<S, A, R, P, O> {
     /// A table without a fleet.
     pub const fn new() -> Self {
-        let orders = Orders::new([Region::EMPTY; R], [Piece::EMPTY; P], [Order::EMPTY; O]);
+        let orders = PrecedenceTable::new([EcmEntry::EMPTY; R], [Piece::EMPTY; P], [RegionPrecedence::EMPTY; O]);
         let at = Interval { lo: S::ZERO, hi: S::ZERO };
         let terms = Terms { run: 0, horizon: S::ZERO, width: S::ZERO };
         let edition = Edition { run: 0, number: 0 };
@@ -63,10 +63,10 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
         self.robots.map(|robot| Progress { at: robot.at, stop: robot.at.hi })
     }
 
-    fn tolerances(&self) -> Tolerances<S> {
+    fn tolerances(&self) -> CheckTolerances<S> {
         // About a millimetre.
         let gain = (0..10).fold(S::ONE, |gain, _| gain.half());
-        Tolerances { width: self.terms.width, gain }
+        CheckTolerances { width: self.terms.width, gain }
     }
 }
 
@@ -84,7 +84,7 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
     }
 
     #[inline(never)]
-    fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), TableError> {
+    fn insert(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), EcmError> {
         self.orders.insert(fleet, agent)
     }
 
@@ -94,7 +94,7 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
         fleet: &mut [Motion<'m, S>],
         agent: usize,
         motion: Motion<'m, S>,
-    ) -> Result<(), TableError> {
+    ) -> Result<(), EcmError> {
         // Robots are not under way: there are no orders to be kept, and so no room for them is needed.
         self.orders.remove(fleet, agent)?;
         if let Some(place) = fleet.get_mut(agent) {
@@ -104,7 +104,7 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
     }
 
     #[inline(never)]
-    fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Mismatch> {
+    fn erase(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), MismatchError> {
         self.orders.erase(fleet, agent)
     }
 
@@ -128,7 +128,7 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
         let at = Interval::new(S::ZERO, S::ZERO);
         (self.robots, self.terms) = ([Robot { at, path: 1 }; A], terms);
         let (progress, tolerances) = (self.progress(), self.tolerances());
-        self.orders.check(fleet, &progress, tolerances, &mut [Reach::EMPTY; A])?;
+        self.orders.check(fleet, &progress, tolerances, &mut [CheckState::EMPTY; A])?;
         (self.edition, self.running) = (Edition { run: terms.run, number: 1 }, true);
         Ok(self.edition)
     }
@@ -163,7 +163,7 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
         let mut last = None;
         for (_, region, pass) in self.orders.row(fleet, agent)? {
             let other = region.other();
-            if pass == Pass::Second && last != Some(other) {
+            if pass == PassingState::Second && last != Some(other) {
                 let at = self.robot(other)?.at.lo;
                 send(Answer::Place { agent: short(other), edition, at });
                 last = Some(other);
@@ -216,8 +216,9 @@ impl<S: Number, const A: usize, const R: usize, const P: usize, const O: usize> 
         let number = self.edition.number.checked_add(1).ok_or(Refusal::Terms)?;
         let (mut progress, tolerances) = (self.progress(), self.tolerances());
         let zero = Progress::at_rest(S::ZERO);
-        let mission = Mission { agent, motion, progress: zero };
-        self.orders.admit(fleet, &mut progress, mission, tolerances, &mut [Reach::EMPTY; A], |_| Pass::Second)?;
+        let mission = PathProposal { agent, motion, progress: zero };
+        self.orders
+            .admit(fleet, &mut progress, mission, tolerances, &mut [CheckState::EMPTY; A], |_| PassingState::Second)?;
         if let Some(robot) = self.robots.get_mut(agent) {
             *robot = Robot { at: zero.at, path: number };
         }

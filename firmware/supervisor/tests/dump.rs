@@ -1,9 +1,9 @@
 //! What is printed of a table is proved by the checker that shares nothing with it, and what is damaged is no table.
 
-use pcr_certify::data::Table;
-use pcr_certify::dump::decode;
-use pcr_certify::table::{Checker, Margin};
-use pcr_core::{Ecm, Mismatch, Piece, Region};
+use pcr_certify::device_dump::decode;
+use pcr_certify::raw::RawTable;
+use pcr_certify::table::{Checker, CoverageMargin};
+use pcr_core::{Ecm, EcmEntry, MismatchError, Piece};
 use pcr_supervisor::scenario::{self, AGENTS, PIECES, REGIONS, SEGMENTS};
 use pcr_supervisor::{Agent, Number, Step, Store, dump};
 
@@ -13,14 +13,14 @@ fn printed<S: Number>(agents: BuiltIn<S>) -> String {
     let mut store = Store::<S, AGENTS, SEGMENTS>::new();
     agents.iter().for_each(|agent| assert!(store.add(agent).is_ok()));
     let fleet = store.motions().unwrap();
-    let ecm = Ecm::build([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet).unwrap();
+    let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet).unwrap();
     let mut bytes = Vec::new();
     dump::table(&fleet, &ecm, |line| bytes.extend_from_slice(line)).unwrap();
     String::from_utf8(bytes).unwrap()
 }
 
-fn verdict(table: &Table) -> Result<[usize; 4], String> {
-    let found = Checker::new(table)?.check(Margin::Needed)?;
+fn verdict(table: &RawTable) -> Result<[usize; 4], String> {
+    let found = Checker::new(table)?.check(CoverageMargin::Needed)?;
     Ok([found.refuted.len(), found.undecided.len(), found.pieces, found.times])
 }
 
@@ -115,7 +115,7 @@ fn a_table_of_another_fleet_is_not_printed() {
         store.add(agent).unwrap();
     }
     let fleet = store.motions().unwrap();
-    let ecm = Ecm::build([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet[..1]).unwrap();
+    let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES], &fleet[..1]).unwrap();
     let said = dump::table(&fleet, &ecm, |line| assert!(!line.starts_with(b"end")));
-    assert!(matches!(said, Err(Mismatch::OtherFleet)), "{said:?}");
+    assert!(matches!(said, Err(MismatchError::OtherFleet)), "{said:?}");
 }

@@ -1,7 +1,7 @@
 //! What is not known is refused, and it is said why: before the table is computed, after the fleet has changed, of agents
 //! that there are not.
 
-use pcr_core::{Curve, Invalid, Limits, Point, Pose, Radians, Turn};
+use pcr_core::{Curve, InvalidInput, Limits, Point, Pose, Radians, TurnSide};
 use pcr_supervisor::fleet::Rejected;
 use pcr_supervisor::message::{Reason, Refusal, Room, text};
 use pcr_supervisor::{Agent, Answer, Replies, Request, Service, Step, Store};
@@ -250,7 +250,7 @@ fn a_touch_does_not_hide_the_overlap_behind_it() {
     let standing = Agent { radius: 0.5, path: [].into_iter().collect(), ..agent(0.0) };
     let standing = Agent { start: Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) }, ..standing };
     let line = Step { curve: Curve::Line, length: 6.0 };
-    let back = Step { curve: Curve::Arc { radius: 0.5, turn: Turn::Right }, length: 0.5 * PI };
+    let back = Step { curve: Curve::Arc { radius: 0.5, turn: TurnSide::Right }, length: 0.5 * PI };
     let start = Pose { position: Point::new(-3.0, 1.0), heading: Radians(0.0) };
     let passing = Agent { radius: 0.5, start, path: [line, back, line].into_iter().collect(), ..agent(0.0) };
     let once = Agent { path: [line].into_iter().collect(), ..passing.clone() };
@@ -274,13 +274,13 @@ fn a_delay_that_the_motion_does_not_allow_changes_nothing() {
     let time = |store: &Store<f32, 2, 4>| store.motions().expect("motions")[0].time();
     let before = time(&store);
     assert_eq!(store.delay(1, 1.0), Err(Rejected::NoSuchAgent(1)));
-    assert_eq!(store.delay(0, f32::NAN), Err(Rejected::Invalid(Invalid::NonFinite("delay"))));
-    assert_eq!(store.delay(0, 1e9), Err(Rejected::Invalid(Invalid::OutOfRange("delay"))));
+    assert_eq!(store.delay(0, f32::NAN), Err(Rejected::Invalid(InvalidInput::NonFinite("delay"))));
+    assert_eq!(store.delay(0, 1e9), Err(Rejected::Invalid(InvalidInput::OutOfRange("delay"))));
     assert_eq!(time(&store), before);
     assert_eq!(store.delay(0, 1.0).expect("a delay"), time(&store));
     assert_eq!(time(&store).lo, before.lo + 1.0);
     // A list with too little room is not a shorter fleet.
     let mut motions = store.motions().expect("motions");
     motions.extend_from_slice(&store.motions().expect("motions")).expect("room for two");
-    assert_eq!(store.put_motions(&mut motions), Err(Invalid::Full("agent")));
+    assert_eq!(store.put_motions(&mut motions), Err(InvalidInput::Full("agent")));
 }

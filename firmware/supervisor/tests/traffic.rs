@@ -1,6 +1,6 @@
 //! Orders are handed out once, go on as robots do, and whatever belongs to other orders is refused.
 
-use pcr_core::{Curve, Interval, Limits, Pass, Point, Pose, Radians};
+use pcr_core::{Curve, Interval, Limits, PassingState, Point, Pose, Radians};
 use pcr_supervisor::frame::{self, Reads, Receiver, Tag};
 use pcr_supervisor::message::{Edition, Refusal, Terms};
 use pcr_supervisor::robot::Unclear;
@@ -71,7 +71,7 @@ fn robots_get_their_orders_and_go_by_them() {
             |answer| if let Answer::Passing { other, pass, .. } = answer { Some((*other, *pass)) } else { None },
         )
         .collect();
-    assert_eq!(passes, [(0, Pass::Second), (2, Pass::First)]);
+    assert_eq!(passes, [(0, PassingState::Second), (2, PassingState::First)]);
     assert_eq!(told.last(), Some(&Answer::Orders { agent: 1, edition: FIRST, path: 1, at: Interval::new(0.0, 0.0) }));
 
     let mut briefing = Briefing::<f32, 3, 4, 4>::new(1);
@@ -326,7 +326,8 @@ fn a_new_path_begins_where_the_old_one_ends_and_yields_to_whoever_may_be_on_the_
     };
     assert_eq!(answers(&mut service, back), [Answer::Edition(Edition { number: 3, ..FIRST })]);
     let told = answers(&mut service, Request::Orders { agent: 0 });
-    let passing = |answer: &&Answer<f32>| matches!(answer, Answer::Passing { other: 1, pass: Pass::Second, .. });
+    let passing =
+        |answer: &&Answer<f32>| matches!(answer, Answer::Passing { other: 1, pass: PassingState::Second, .. });
     assert_eq!(told.iter().filter(passing).count(), 1, "{told:?}");
 }
 
@@ -338,7 +339,7 @@ fn a_list_that_has_become_shorter_while_it_was_sent_is_asked_for_anew() {
         let frame = frame::encode(Tag { who: 2, sequence: 1, place }, answer).expect("a short answer");
         frame.iter().filter_map(|&byte| client.take::<f32>(byte)).collect::<Vec<_>>()
     };
-    let passing = Answer::Passing { other: 0, edition: FIRST, pass: Pass::First, from: 1.0 };
+    let passing = Answer::Passing { other: 0, edition: FIRST, pass: PassingState::First, from: 1.0 };
     let end =
         Answer::Orders { agent: 1, edition: Edition { number: 2, ..FIRST }, path: 1, at: Interval::new(0.0, 0.0) };
     for place in 0..3 {

@@ -1,6 +1,6 @@
 //! What goes over the line: every kind of message comes back as it was, and so many bytes does a region take.
 
-use pcr_core::{Curve, Interval, Limits, Pass, Point, Pose, Turn};
+use pcr_core::{Curve, Interval, Limits, PassingState, Point, Pose, TurnSide};
 use pcr_supervisor::agent::MAX_STEPS;
 use pcr_supervisor::frame::{self, Damage, Frame, Reads, Receiver, Tag};
 use pcr_supervisor::message::{ConflictRecord, Edition, PieceRecord, Reason, Refusal, RegionRecord, Room, Terms, text};
@@ -60,7 +60,7 @@ fn every_message_comes_back_as_it_was() {
         limits: Limits { speed: 0.58, acceleration: 0.3 },
         start: Pose { position: Point::new(5.9, -6.5), heading: pcr_core::Radians(-2.97) },
         path: (0..8)
-            .map(|k| Step { curve: Curve::Arc { radius: 0.5, turn: Turn::Right }, length: 1.0 + k as f32 })
+            .map(|k| Step { curve: Curve::Arc { radius: 0.5, turn: TurnSide::Right }, length: 1.0 + k as f32 })
             .collect(),
     };
     there_and_back(Request::Add(agent.clone()));
@@ -80,7 +80,7 @@ fn every_message_comes_back_as_it_was() {
         Answer::Edition(edition),
         Answer::Place { agent: 65535, edition, at: 2.5_f32 },
         Answer::Go { agent: 65535, edition, to: 2.5 },
-        Answer::Passing { other: 65535, edition, pass: Pass::Second, from: 2.5 },
+        Answer::Passing { other: 65535, edition, pass: PassingState::Second, from: 2.5 },
         Answer::Orders { agent: 65535, edition, path: 65535, at: Interval::new(0.5, 1.5) },
     ] {
         there_and_back(answer);
@@ -128,7 +128,7 @@ fn every_message_comes_back_as_it_was() {
 /// The request that takes most bytes: every number of fixed point its five.
 fn largest_agent() {
     let most = pcr_fixed::Q16::from_bits(i32::MIN);
-    let step = Step { curve: Curve::Arc { radius: most, turn: Turn::Right }, length: most };
+    let step = Step { curve: Curve::Arc { radius: most, turn: TurnSide::Right }, length: most };
     let agent: Agent<pcr_fixed::Q16> = Agent {
         radius: most,
         start_time: most,

@@ -1,12 +1,12 @@
 //! Adds the regions of an agent to a table, or removes them; entries stay sorted by pair.
 
-use super::known::Known;
-use super::{Ecm, Region};
-use crate::bits::{self, Ones};
-use crate::error::Full;
+use super::fleet_checksum::FleetChecksum;
+use super::{Ecm, EcmEntry};
+use crate::bit_rows::{self, SetBits};
+use crate::error::CapacityError;
 use crate::motion::Motion;
-use crate::pair::Pair;
-use crate::pieces::{NONE, Piece};
+use crate::pair::AgentPair;
+use crate::piece_store::{NONE, Piece};
 use crate::scalar::Scalar;
 use crate::segment::ROW;
 use core::cell::Cell;
@@ -15,18 +15,18 @@ use core::ops::Range;
 impl<S, R, P> Ecm<S, R, P>
 where
     S: Scalar,
-    R: AsRef<[Region]> + AsMut<[Region]>,
+    R: AsRef<[EcmEntry]> + AsMut<[EcmEntry]>,
     P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>,
 {
     /// Computes all regions of a fleet, or those of one row.
     pub(super) fn compute(
         &mut self,
         fleet: &[Motion<'_, S>],
-        add: impl Fn(&mut Self) -> Result<(), Full>,
-    ) -> Result<(), Full> {
+        add: impl Fn(&mut Self) -> Result<(), CapacityError>,
+    ) -> Result<(), CapacityError> {
         self.clear();
         match add(self) {
-            Ok(()) => self.fleet = Known::all(fleet),
+            Ok(()) => self.fleet = FleetChecksum::all(fleet),
             Err(full) => {
                 self.clear();
                 return Err(full);
@@ -36,7 +36,7 @@ where
     }
 
     /// Adds the regions of an agent with all others. If they do not fit, none is added.
-    pub(super) fn add_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), Full> {
+    pub(super) fn add_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), CapacityError> {
         let mut partners = [0..agent, agent.saturating_add(1)..fleet.len()].into_iter();
         let added = partners.try_for_each(|partners| self.add_pairs(fleet, agent, partners));
         if added.is_err() {
@@ -51,31 +51,31 @@ where
         fleet: &[Motion<'_, S>],
         agent: usize,
         partners: Range<usize>,
-    ) -> Result<(), Full> {
+    ) -> Result<(), CapacityError> {
         let (Some(own), Some(others)) = (fleet.get(agent), fleet.get(partners.clone())) else {
             return Ok(());
         };
         let swept = own.swept();
         for (row, begin) in others.chunks(ROW).zip(partners.step_by(ROW)) {
-            for place in Ones(bits::row(row.iter().map(|other| swept.meets(other.swept())))) {
+            for place in SetBits(bit_rows::row(row.iter().map(|other| swept.meets(other.swept())))) {
                 let (Some(other), partner) = (row.get(place as usize), begin.wrapping_add(place as usize)) else {
                     break;
                 };
                 let lower = partner < agent;
                 let (agents, first, second) =
                     if lower { ([partner, agent], other, own) } else { ([agent, partner], own, other) };
-                self.add_pair(agents, Pair::new(first, second))?;
+                self.add_pair(agents, AgentPair::new(first, second))?;
             }
         }
         Ok(())
     }
 
     /// If there is no room, some regions of the pair may remain: the caller then removes one of the agents, or all.
-    fn add_pair(&mut self, agents: [usize; 2], pair: Pair<'_, S>) -> Result<(), Full> {
+    fn add_pair(&mut self, agents: [usize; 2], pair: AgentPair<'_, S>) -> Result<(), CapacityError> {
         if let Err(full) = pair.find(&mut self.pieces) {
             let no_storage_helps = self.pieces.pair_is_full();
             self.pieces.take_back();
-            return Err(if no_storage_helps { Full::Pair(agents) } else { full });
+            return Err(if no_storage_helps { CapacityError::Pair(agents) } else { full });
         }
         if self.pieces.first_pending() == NONE {
             return Ok(());
@@ -96,12 +96,12 @@ where
         Ok(())
     }
 
-    fn insert_entry(&mut self, index: usize, agents: [usize; 2], head: u32) -> Result<(), Full> {
+    fn insert_entry(&mut self, index: usize, agents: [usize; 2], head: u32) -> Result<(), CapacityError> {
         let [Ok(first), Ok(second)] = agents.map(u16::try_from) else {
-            return Err(Full::Agents);
+            return Err(CapacityError::Agents);
         };
         let len = self.len.saturating_add(1);
-        let behind = self.regions.as_mut().get_mut(index..len).ok_or(Full::Regions)?;
+        let behind = self.regions.as_mut().get_mut(index..len).ok_or(CapacityError::Regions)?;
         // Every entry from here on moves back by one place.
         let places = Cell::from_mut(behind).as_slice_of_cells();
         for neighbours in places.windows(2).rev() {
@@ -110,7 +110,7 @@ where
             }
         }
         if let Some(place) = places.first() {
-            place.set(Region { agents: [first, second], head });
+            place.set(EcmEntry { agents: [first, second], head });
         }
         self.len = len;
         Ok(())

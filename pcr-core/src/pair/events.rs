@@ -13,9 +13,9 @@
 //! An end of a covered interval reverses its direction only where the contact is normal to the second segment
 //! ([`add_turning_lengths`]), or at an event. Additional events cost time but do not change the result.
 
-use super::footprint::{Footprint, Reach};
-use super::lengths::Lengths;
-use super::offset::{Carrier, Relative, on_first_lap};
+use super::disc_on_segment::{CarrierCoordinates, CarrierCover};
+use super::lateral_offset::{Carrier, RelativeCarrier, on_first_lap};
+use super::lengths::LengthList;
 use crate::geometry::Direction;
 use crate::scalar::Scalar;
 use crate::segment::{Curve, Segment};
@@ -27,9 +27,9 @@ pub(crate) fn add_events<S: Scalar>(
     second: &Segment<S>,
     radius: S,
     slack: S,
-    events: &mut Lengths<S>,
+    events: &mut LengthList<S>,
 ) -> [S; 2] {
-    let (start, end) = (Footprint::of(first.start, second), Footprint::of(first.end, second));
+    let (start, end) = (CarrierCoordinates::of(first.start, second), CarrierCoordinates::of(first.end, second));
     events.add(S::ZERO, true);
     add_ends(&start, second, radius, slack, events);
     if first.length > S::ZERO {
@@ -38,8 +38,8 @@ pub(crate) fn add_events<S: Scalar>(
     add_normals(first, &start, second, radius, slack, events);
     if let (Curve::Arc { radius: own, .. }, true) = (first.curve, wraps(first, radius, slack)) {
         let diameter = middle_diameter(first, own);
-        let centre = Footprint::of(diameter.start, second);
-        Relative::new(second, diameter, &centre).lengths_at(&[S::ZERO], S::ZERO, S::ZERO, events);
+        let centre = CarrierCoordinates::of(diameter.start, second);
+        RelativeCarrier::new(second, diameter, &centre).lengths_at(&[S::ZERO], S::ZERO, S::ZERO, events);
     }
     // Added last, because it is the largest: then fewer events are out of order.
     events.add(second.length, true);
@@ -54,13 +54,13 @@ pub(crate) fn add_turning_lengths<S: Scalar>(
     [start, end]: [S; 2],
     radius: S,
     slack: S,
-    lengths: &mut Lengths<S>,
+    lengths: &mut LengthList<S>,
 ) {
     // At larger distances the contact is beyond the segment, and not because of rounding.
     let touches = |offset: S| (radius - slack <= offset) & (offset <= radius + slack.half());
     lengths.add(S::ZERO, touches(start.abs()));
     lengths.add(first.length, touches(end.abs()));
-    add_normals(second, &Footprint::of(second.start, first), first, radius, slack, lengths);
+    add_normals(second, &CarrierCoordinates::of(second.start, first), first, radius, slack, lengths);
 }
 
 /// Adds the lengths of `segment` at which a contact may be normal to `other`, whose start has this footprint on it: by
@@ -72,17 +72,17 @@ pub(crate) fn add_turning_lengths<S: Scalar>(
 /// than its start.)
 fn add_normals<S: Scalar>(
     other: &Segment<S>,
-    start: &Footprint<S>,
+    start: &CarrierCoordinates<S>,
     segment: &Segment<S>,
     radius: S,
     slack: S,
-    lengths: &mut Lengths<S>,
+    lengths: &mut LengthList<S>,
 ) {
-    let relative = Relative::new(segment, Carrier::from(other), start);
+    let relative = RelativeCarrier::new(segment, Carrier::from(other), start);
     match other.curve {
         Curve::Arc { radius: own, .. } if own < radius.double() => {
             relative.lengths_at(&[relative.outward(radius)], S::ZERO, slack.half(), lengths);
-            let centre = Footprint::of(other.centre(own), segment);
+            let centre = CarrierCoordinates::of(other.centre(own), segment);
             add_ends(&centre, segment, (own - radius).abs(), slack, lengths);
         }
         _ => relative.lengths_at(&[radius, -radius], S::ZERO, slack.half(), lengths),
@@ -92,12 +92,18 @@ fn add_normals<S: Scalar>(
 /// Adds the lengths of a segment at the distance `radius` from a point. If only rounding may keep the point from being
 /// that near, the foot is added; if the whole circle is nearer, the other end of the diameter. So a slab that is barely
 /// covered, perhaps only because of rounding, ends there.
-fn add_ends<S: Scalar>(footprint: &Footprint<S>, segment: &Segment<S>, radius: S, slack: S, lengths: &mut Lengths<S>) {
+fn add_ends<S: Scalar>(
+    footprint: &CarrierCoordinates<S>,
+    segment: &Segment<S>,
+    radius: S,
+    slack: S,
+    lengths: &mut LengthList<S>,
+) {
     let (foot, half) = match footprint.reach(segment, radius) {
-        Reach::Around { foot, half } => (foot, half),
-        Reach::Nothing if footprint.offset.abs() <= radius + slack => (footprint.foot(segment), S::ZERO),
-        Reach::Whole => (footprint.foot(segment), segment.circumference.half()),
-        Reach::Nothing => return,
+        CarrierCover::Around { foot, half } => (foot, half),
+        CarrierCover::Nothing if footprint.offset.abs() <= radius + slack => (footprint.foot(segment), S::ZERO),
+        CarrierCover::Whole => (footprint.foot(segment), segment.circumference.half()),
+        CarrierCover::Nothing => return,
     };
     for u in [foot - half, foot + half] {
         let u = on_first_lap(u, segment, S::ZERO);

@@ -1,6 +1,6 @@
 //! A short list of lengths along a segment.
 
-use crate::few::Few;
+use crate::array_vec::ArrayVec;
 use crate::scalar::Scalar;
 use core::cell::Cell;
 
@@ -8,9 +8,9 @@ use core::cell::Cell;
 const MOST: usize = 12;
 
 /// At most [`MOST`] lengths \[m\].
-pub(crate) type Lengths<S> = Few<S, MOST>;
+pub(crate) type LengthList<S> = ArrayVec<S, MOST>;
 
-impl<S: Scalar, const N: usize> Few<S, N> {
+impl<S: Scalar, const N: usize> ArrayVec<S, N> {
     /// Sorts the lengths in increasing order.
     pub(crate) fn sort(&mut self) {
         let places = Cell::from_mut(self.as_mut_slice()).as_slice_of_cells();
@@ -32,7 +32,7 @@ mod tests {
 
     #[test]
     fn lengths_are_put_in_order() {
-        let mut lengths = Lengths::new(0.0);
+        let mut lengths = LengthList::new(0.0);
         (0..12_u8).for_each(|k| lengths.add(f64::from(7 * k % 12), true));
         lengths.sort();
         assert_eq!(lengths.as_slice().len(), MOST);

@@ -1,7 +1,7 @@
 //! Constraints on one agent, as a search over a fleet adds them: lengths that it must avoid during a time, or which
 //! agent passes a region first.
 
-use crate::error::Invalid;
+use crate::error::InvalidInput;
 use crate::geometry::Interval;
 use crate::motion::Motion;
 use crate::query::times;
@@ -38,9 +38,9 @@ impl<S: Scalar> Constraint<S> {
     }
 
     /// Checks that both are valid intervals.
-    pub(super) fn checked(&self) -> Result<(), Invalid> {
+    pub(super) fn checked(&self) -> Result<(), InvalidInput> {
         let is_one = |all: Interval<S>| all.lo <= all.hi;
-        if is_one(self.length) && is_one(self.time) { Ok(()) } else { Err(Invalid::OutOfRange("constraint")) }
+        if is_one(self.length) && is_one(self.time) { Ok(()) } else { Err(InvalidInput::OutOfRange("constraint")) }
     }
 
     /// The times, within those that motions have.

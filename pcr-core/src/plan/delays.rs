@@ -1,10 +1,10 @@
 //! Fleet plans by start delays: each agent starts as early as the agents before it in the order allow.
 
-use crate::ecm::{Ecm, Region};
-use crate::error::Invalid;
+use crate::ecm::{Ecm, EcmEntry};
+use crate::error::InvalidInput;
 use crate::motion::Motion;
-use crate::pieces::Piece;
-use crate::plan::order::{Blocked, Unsolved, complete, in_order, separated, verified};
+use crate::piece_store::Piece;
+use crate::plan::prioritized::{AgentPlanError, PlanError, complete, in_order, separated, verified};
 use crate::query::earliest_start;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
@@ -23,28 +23,28 @@ use crate::scalar::Scalar;
 /// The whole plan is checked before the function returns: no overlap is deeper than the tolerance.
 ///
 /// # Errors
-/// [`Unsolved`], with the agents that cannot be planned; `plan` then holds the agents before them in `order`.
+/// [`PlanError`], with the agents that cannot be planned; `plan` then holds the agents before them in `order`.
 pub fn plan_delays<'m, S, R, P>(
     ecm: &Ecm<S, R, P>,
     fleet: &[Motion<'m, S>],
     plan: &mut [Motion<'m, S>],
     order: &mut [usize],
-) -> Result<(), Unsolved>
+) -> Result<(), PlanError>
 where
     S: Scalar,
-    R: AsRef<[Region]>,
+    R: AsRef<[EcmEntry]>,
     P: AsRef<[Piece<S>]>,
 {
     complete(order, fleet.len())?;
     in_order(order, |before, agent| {
         let (Some(&motion), Some(planned)) = (fleet.get(agent), plan.get_mut(agent)) else {
-            return Err(Blocked::Never(Unsolved::NoSuchAgent(agent)));
+            return Err(AgentPlanError::Never(PlanError::NoSuchAgent(agent)));
         };
         *planned = motion;
         let regions = ecm.row_of_plan(fleet, plan, agent)?.filter(|region| before.contains(&region.other()));
         let delayed = match earliest(motion, regions.clone()) {
             Ok(delayed) => delayed.ok_or_else(|| blocking(agent, regions, before))?,
-            Err(reason) => return Err(Blocked::Never(Unsolved::Invalid { agent, reason })),
+            Err(reason) => return Err(AgentPlanError::Never(PlanError::Invalid { agent, reason })),
         };
         if let Some(planned) = plan.get_mut(agent) {
             *planned = delayed;
@@ -61,7 +61,7 @@ where
 pub(super) fn earliest<'a, 'm, S: Scalar>(
     motion: Motion<'m, S>,
     regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
-) -> Result<Option<Motion<'m, S>>, Invalid> {
+) -> Result<Option<Motion<'m, S>>, InvalidInput> {
     earliest_start(regions, S::ZERO).map(|delay| motion.delayed(delay)).transpose()
 }
 
@@ -70,16 +70,16 @@ pub(super) fn blocking<'a, S: Scalar>(
     agent: usize,
     regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
     before: &[usize],
-) -> Blocked {
+) -> AgentPlanError {
     let forever = |region: &RegionRef<'_, S>| region.forbidden_delays().hi >= S::LIMIT;
     let place = |region: &RegionRef<'_, S>| before.iter().position(|&other| other == region.other());
     let blocking = regions.filter(forever);
     // Whether a region forbids all early starts as well.
     let always = |region: &RegionRef<'_, S>| region.forbidden_delays().lo <= -S::LIMIT;
     if let Some(unsolved) = blocking.clone().filter(always).find_map(|region| separated(&region)) {
-        return Blocked::Never(unsolved);
+        return AgentPlanError::Never(unsolved);
     }
     // None is forbidden for good, so that what is free is out of range.
-    let invalid = Blocked::Never(Unsolved::Invalid { agent, reason: Invalid::OutOfRange("delay") });
-    blocking.min_by_key(place).map_or(invalid, |region| Blocked::By(region.other()))
+    let invalid = AgentPlanError::Never(PlanError::Invalid { agent, reason: InvalidInput::OutOfRange("delay") });
+    blocking.min_by_key(place).map_or(invalid, |region| AgentPlanError::By(region.other()))
 }

@@ -21,7 +21,7 @@ pub(super) const LEVELS: usize = 5;
 pub(super) const SLABS: usize = 4;
 
 /// Cells, and the motions between speeds at their borders. Speeds are given by index; 0 is rest.
-pub(super) trait Lattice<S: Scalar> {
+pub(super) trait SpeedLattice<S: Scalar> {
     /// A cell of the path.
     type Cell: Copy;
 
@@ -30,7 +30,7 @@ pub(super) trait Lattice<S: Scalar> {
     /// End of a cell that begins at a length \[m\].
     fn end(&self, cell: Self::Cell, from: S) -> S;
     /// The motion over a cell from one speed to another.
-    fn edge(&self, cell: Self::Cell, from: usize, to: usize) -> Option<impl Borrow<Edge<S>>>;
+    fn edge(&self, cell: Self::Cell, from: usize, to: usize) -> Option<impl Borrow<LatticeEdge<S>>>;
     /// Indices of the speeds at the start and at the goal.
     fn ends(&self) -> [usize; 2];
     /// Speed at the start \[m/s\].
@@ -44,13 +44,13 @@ pub(super) trait Lattice<S: Scalar> {
 
 /// A motion over a cell from one speed to another, nowhere faster than the higher one.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edge<S> {
+pub(super) struct LatticeEdge<S> {
     phases: [Phase<S>; 2],
     /// Times at which each slab is entered and the last one is left, from the begin of the cell on \[s\].
     pub(super) passes: [S; SLABS + 1],
 }
 
-impl<S: Scalar> Edge<S> {
+impl<S: Scalar> LatticeEdge<S> {
     /// The motion that changes its speed at this acceleration, and otherwise has the higher speed. `None` if the speeds
     /// are too far apart for the cell.
     pub(super) fn new(from: S, to: S, length: S, acceleration: S) -> Option<Self> {

@@ -1,19 +1,19 @@
 //! The search behind a speed plan: a forward pass computes the times at every station, a backward pass the motion.
 
-use crate::error::Invalid;
+use crate::error::InvalidInput;
 use crate::geometry::Interval;
 use crate::plan::constraint::Constraint;
-use crate::plan::lattice::{Edge, LEVELS, Lattice, SLABS, parts};
-use crate::plan::outcome::{NoSpeedPlan, SpeedPlan};
-use crate::plan::station::Station;
-use crate::plan::times::Times;
+use crate::plan::lattice::{LEVELS, LatticeEdge, SLABS, SpeedLattice, parts};
+use crate::plan::result::{SpeedPlan, SpeedPlanError};
+use crate::plan::search_node::SearchNode;
+use crate::plan::time_set::TimeSet;
 use crate::profile::{Phase, Profile};
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
 use core::borrow::Borrow;
 
 /// The regions that an agent on a path of this length has to avoid, and the motions to choose from.
-pub(super) struct Search<'c, S: Scalar, L, I> {
+pub(super) struct SpeedSearch<'c, S: Scalar, L, I> {
     pub(super) lattice: L,
     pub(super) regions: I,
     pub(super) constraints: &'c [Constraint<S>],
@@ -24,11 +24,11 @@ pub(super) struct Search<'c, S: Scalar, L, I> {
 }
 
 /// The times at which the [`parts`] of a cell are blocked.
-type Blocked<S> = [Times<S>; SLABS + 1];
+type BlockedTimes<S> = [TimeSet<S>; SLABS + 1];
 
-impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone> Search<'_, S, L, I> {
+impl<'a, S: Scalar, L: SpeedLattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone> SpeedSearch<'_, S, L, I> {
     /// Initializes the stations, with the times at which the agent may set off from the first one.
-    pub(super) fn begin(&self, from: S, stations: &mut [Station<S>]) -> Result<(), NoSpeedPlan<S>> {
+    pub(super) fn begin(&self, from: S, stations: &mut [SearchNode<S>]) -> Result<(), SpeedPlanError<S>> {
         let cells = self.lattice.cells().map(Some);
         let mut length = S::ZERO;
         for (station, cell) in stations.iter_mut().zip(core::iter::once(None).chain(cells)) {
@@ -46,12 +46,12 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
         let from = begin + self.lattice.stands_at(S::ZERO);
         let before = if at_rest { Interval::new(-S::LIMIT, from) } else { Interval::new(from, from) };
         stands(&self.regions, S::ZERO, before)?;
-        let mut blocked = Times::NONE;
+        let mut blocked = TimeSet::NONE;
         self.cover(&[Interval::new(S::ZERO, S::ZERO)], core::slice::from_mut(&mut blocked));
         // No other agent is there before, and constraints on the time before do not count.
         let until = blocked.iter().find(|window| window.hi > begin).map_or(S::LIMIT, |window| window.lo);
         if until < from {
-            return Err(NoSpeedPlan::Constrained { length: S::ZERO });
+            return Err(SpeedPlanError::Constrained { length: S::ZERO });
         }
         if let Some(times) = stations.first_mut().and_then(|station| station.reached_mut(start)) {
             times.add(Interval::new(from, if at_rest { until } else { from }));
@@ -60,9 +60,9 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
     }
 
     /// Adds the times at which each of some parts of the path, one after the other, is blocked.
-    fn cover(&self, parts: &[Interval<S>], blocked: &mut [Times<S>]) {
+    fn cover(&self, parts: &[Interval<S>], blocked: &mut [TimeSet<S>]) {
         let (Some(first), Some(last)) = (parts.first(), parts.last()) else { return };
-        let add = |times: &mut Times<S>, window: Interval<S>| {
+        let add = |times: &mut TimeSet<S>, window: Interval<S>| {
             // What ended before the agent sets off would only take room.
             if window.hi > self.from {
                 times.cover(window);
@@ -91,14 +91,14 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
         self.regions.clone().filter(move |region| region.length().meets(part))
     }
 
-    fn blocked(&self, cell: Interval<S>) -> Blocked<S> {
-        let mut blocked = [const { Times::NONE }; SLABS + 1];
+    fn blocked(&self, cell: Interval<S>) -> BlockedTimes<S> {
+        let mut blocked = [const { TimeSet::NONE }; SLABS + 1];
         self.cover(&parts(cell), &mut blocked);
         blocked
     }
 
     /// The times at which the agent may leave a station so that it passes the cell after it without contact.
-    fn departures(&self, reached: &Times<S>, passes: &[S], blocked: &Blocked<S>) -> Times<S> {
+    fn departures(&self, reached: &TimeSet<S>, passes: &[S], blocked: &BlockedTimes<S>) -> TimeSet<S> {
         let mut departures = reached.clone();
         // The end of the cell, the last part, has no borders.
         for ((slab, &enters), &leaves) in blocked.iter().zip(passes).zip(passes.iter().skip(1)) {
@@ -123,7 +123,7 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
     }
 
     /// Computes the times at which the agent can be at each station with each speed.
-    pub(super) fn reach(&self, stations: &mut [Station<S>]) -> Result<(), NoSpeedPlan<S>> {
+    pub(super) fn reach(&self, stations: &mut [SearchNode<S>]) -> Result<(), SpeedPlanError<S>> {
         let (mut rest, mut is_first) = (stations, true);
         for cell in self.lattice.cells() {
             let Some((here, after)) = rest.split_first_mut() else { break };
@@ -135,7 +135,7 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
                     let (Some(reached), Some(edge)) = (here.reached(from), self.lattice.edge(cell, from, to)) else {
                         continue;
                     };
-                    let edge: &Edge<S> = edge.borrow();
+                    let edge: &LatticeEdge<S> = edge.borrow();
                     let departures = self.departures(reached, &edge.passes, &blocked);
                     let Some(arrivals) = next.reached_mut(to) else { continue };
                     departures
@@ -148,7 +148,7 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
             if let Some(times) = next.reached.first_mut().filter(|_| self.levels(false, is_last).contains(&0)) {
                 stand(times, self.lattice.stands_at(next.length), end);
             }
-            if next.reached.iter().all(Times::is_empty) {
+            if next.reached.iter().all(TimeSet::is_empty) {
                 return Err(self.stopped(Interval::new(here.length, next.length)));
             }
             (rest, is_first) = (after, false);
@@ -157,47 +157,47 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
     }
 
     /// The error if no motion passes a cell.
-    fn stopped(&self, cell: Interval<S>) -> NoSpeedPlan<S> {
+    fn stopped(&self, cell: Interval<S>) -> SpeedPlanError<S> {
         let until = |region: &RegionRef<'a, S>| if region.is_open_at_end() { S::LIMIT } else { region.time().hi };
         let later = |a: RegionRef<'a, S>, b: RegionRef<'a, S>| if until(&b) > until(&a) { b } else { a };
         let constrained = self.constrained(cell).map(|window| window.hi).reduce(S::max);
         let most = self.near(cell).reduce(later).filter(|region| constrained.is_none_or(|hi| hi < until(region)));
         match (most, constrained) {
-            (Some(region), _) => NoSpeedPlan::Beyond { length: cell.lo, other: region.other() },
-            (None, Some(_)) => NoSpeedPlan::Constrained { length: cell.lo },
+            (Some(region), _) => SpeedPlanError::Beyond { length: cell.lo, other: region.other() },
+            (None, Some(_)) => SpeedPlanError::Constrained { length: cell.lo },
             // No agent is the cause: the speeds are too far apart, or the times exceed the format.
-            (None, None) => NoSpeedPlan::Invalid(Invalid::OutOfRange("speed or time")),
+            (None, None) => SpeedPlanError::Invalid(InvalidInput::OutOfRange("speed or time")),
         }
     }
 
     /// The time from which on the goal stays free.
-    pub(super) fn free_from(&self) -> Result<S, NoSpeedPlan<S>> {
+    pub(super) fn free_from(&self) -> Result<S, SpeedPlanError<S>> {
         let place = Interval::new(self.length, self.length);
         let always = Interval::new(-S::LIMIT, S::LIMIT);
         let mut free = -S::LIMIT;
         for region in self.near(place) {
             let until = region.blocked(place, always).map(|window| window.hi).fold(-S::LIMIT, S::max);
             if until >= S::LIMIT {
-                return Err(NoSpeedPlan::AtGoal(region.other()));
+                return Err(SpeedPlanError::AtGoal(region.other()));
             }
             free = free.max(until);
         }
         let free = self.constrained(place).map(|window| window.hi).fold(free, S::max);
-        if free >= S::LIMIT { Err(NoSpeedPlan::Constrained { length: self.length }) } else { Ok(free) }
+        if free >= S::LIMIT { Err(SpeedPlanError::Constrained { length: self.length }) } else { Ok(free) }
     }
 
     /// The earliest arrival at the goal, which stays free from the time `free` on.
-    pub(super) fn arrive(&self, stations: &[Station<S>], free: S) -> Result<S, NoSpeedPlan<S>> {
+    pub(super) fn arrive(&self, stations: &[SearchNode<S>], free: S) -> Result<S, SpeedPlanError<S>> {
         let [_, goal] = self.lattice.ends();
         let times = stations.last().and_then(|station| station.reached(goal));
-        let arrival = times.into_iter().flat_map(Times::iter).find(|times| times.hi >= free);
+        let arrival = times.into_iter().flat_map(TimeSet::iter).find(|times| times.hi >= free);
         let place = Interval::new(self.length, self.length);
         arrival.map(|times| times.lo.max(free)).ok_or_else(|| self.stopped(place))
     }
 
     /// Goes back from the goal to the start, and chooses the speed at each station and the time at which the agent
     /// leaves it.
-    pub(super) fn trace(&self, arrival: S, stations: &mut [Station<S>]) -> Result<(), NoSpeedPlan<S>> {
+    pub(super) fn trace(&self, arrival: S, stations: &mut [SearchNode<S>]) -> Result<(), SpeedPlanError<S>> {
         let [_, goal] = self.lattice.ends();
         if let Some(last) = stations.last_mut() {
             (last.level, last.leaves) = (goal, arrival);
@@ -220,7 +220,7 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
                 else {
                     continue;
                 };
-                let edge: &Edge<S> = edge.borrow();
+                let edge: &LatticeEdge<S> = edge.borrow();
                 for times in self.departures(reached, &edge.passes, &blocked).iter() {
                     let Some(arrivals) = later(times, edge.duration()) else { continue };
                     let at = arrivals.hi.min(until);
@@ -239,7 +239,10 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
     }
 
     /// The motion that was chosen.
-    pub(super) fn profile<const N: usize>(&self, stations: &[Station<S>]) -> Result<SpeedPlan<S, N>, NoSpeedPlan<S>> {
+    pub(super) fn profile<const N: usize>(
+        &self,
+        stations: &[SearchNode<S>],
+    ) -> Result<SpeedPlan<S, N>, SpeedPlanError<S>> {
         let first = stations.first().map_or(S::ZERO, |station| station.leaves - self.lattice.stands_at(S::ZERO));
         let mut phase = Phase::origin(self.lattice.speed());
         let mut profile = Profile::standing();
@@ -251,8 +254,8 @@ impl<'a, S: Scalar, L: Lattice<S>, I: Iterator<Item = RegionRef<'a, S>> + Clone>
                 let stand = phase.until(wait, phase.length().hi, S::ZERO, S::ZERO);
                 profile.extend(&mut phase, stand)?;
             }
-            let edge = self.lattice.edge(cell, here.level, next.level).ok_or(Invalid::Disconnected("phase"))?;
-            let edge: &Edge<S> = edge.borrow();
+            let edge = self.lattice.edge(cell, here.level, next.level).ok_or(InvalidInput::Disconnected("phase"))?;
+            let edge: &LatticeEdge<S> = edge.borrow();
             let mut parts = edge.phases().peekable();
             while let Some((duration, way, speed, acceleration)) = parts.next() {
                 let to = if parts.peek().is_some() { phase.length().hi + way } else { next.length };
@@ -272,10 +275,10 @@ pub(super) fn stands<'a, S: Scalar>(
     regions: &(impl Iterator<Item = RegionRef<'a, S>> + Clone),
     length: S,
     during: Interval<S>,
-) -> Result<(), NoSpeedPlan<S>> {
+) -> Result<(), SpeedPlanError<S>> {
     let place = Interval::new(length, length);
     let met = regions.clone().find(|region| region.blocked(place, during).next().is_some());
-    met.map_or(Ok(()), |region| Err(NoSpeedPlan::AtStart(region.other())))
+    met.map_or(Ok(()), |region| Err(SpeedPlanError::AtStart(region.other())))
 }
 
 /// Shifts an interval of times by a duration, limited to the range of the format.
@@ -286,8 +289,8 @@ fn later<S: Scalar>(times: Interval<S>, duration: S) -> Option<Interval<S>> {
 
 /// The times at which an agent may go on that arrives at these and stands for a duration at least. It may wait until its
 /// place is blocked.
-fn stand<S: Scalar>(times: &mut Times<S>, least: S, blocked: &Times<S>) {
-    let mut arrivals = core::mem::replace(times, Times::NONE);
+fn stand<S: Scalar>(times: &mut TimeSet<S>, least: S, blocked: &TimeSet<S>) {
+    let mut arrivals = core::mem::replace(times, TimeSet::NONE);
     if least > S::ZERO {
         for window in blocked.iter() {
             arrivals.remove(Interval::new(window.lo - least, window.hi));
@@ -303,8 +306,8 @@ fn stand<S: Scalar>(times: &mut Times<S>, least: S, blocked: &Times<S>) {
 mod tests {
     use super::*;
 
-    fn set(intervals: &[[f64; 2]]) -> Times<f64> {
-        let mut times = Times::NONE;
+    fn set(intervals: &[[f64; 2]]) -> TimeSet<f64> {
+        let mut times = TimeSet::NONE;
         intervals.iter().for_each(|&[lo, hi]| times.add(Interval::new(lo, hi)));
         times
     }

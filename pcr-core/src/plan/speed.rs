@@ -11,17 +11,17 @@
 //! cells, and because a slab is blocked as a whole. The last step regains some of the latter: it shifts everything
 //! after a wait to an earlier time, until there is a contact.
 
-use crate::error::{Invalid, Mismatch};
+use crate::error::{InvalidInput, MismatchError};
 use crate::geometry::Interval;
 use crate::motion::Motion;
-use crate::plan::below::Below;
 use crate::plan::constraint::Constraint;
-use crate::plan::drive::Drive;
-use crate::plan::lattice::Lattice;
-use crate::plan::outcome::{NoSpeedPlan, SpeedPlan};
-use crate::plan::ramps::Ramps;
-use crate::plan::search::{Search, stands};
-use crate::plan::station::Station;
+use crate::plan::lattice::SpeedLattice;
+use crate::plan::limits::SpeedPlanLimits;
+use crate::plan::result::{SpeedPlan, SpeedPlanError};
+use crate::plan::search::{SpeedSearch, stands};
+use crate::plan::search_node::SearchNode;
+use crate::plan::speed_limit::CappedLattice;
+use crate::plan::uniform_lattice::UniformLattice;
 use crate::profile::Profile;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
@@ -45,10 +45,10 @@ use crate::scalar::Scalar;
 /// of speeds, and about 20 searches for contacts for each wait.
 ///
 /// # Errors
-/// [`NoSpeedPlan`].
+/// [`SpeedPlanError`].
 ///
 /// ```
-/// use pcr_core::{Drive, Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, SpeedPlan, Station};
+/// use pcr_core::{SpeedPlanLimits, Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, EcmEntry, SpeedPlan, SearchNode};
 /// let east = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
 /// let north = Pose { position: Point::new(0.0, -2.0), heading: Radians(core::f64::consts::FRAC_PI_2) };
 /// let paths = [Path::<f64, 1>::starting_at(east)?.line(4.0)?, Path::starting_at(north)?.line(4.0)?];
@@ -56,10 +56,10 @@ use crate::scalar::Scalar;
 /// let profile = Profile::rest_to_rest(4.0, limits)?;
 /// let motion = |path| Motion::new(path, profile.as_profile(), 0.25, 0.0);
 /// let fleet = [motion(paths[0].as_path())?, motion(paths[1].as_path())?];
-/// let ecm = Ecm::build([Region::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
+/// let ecm = Ecm::build([EcmEntry::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
 ///
-/// let mut stations = [const { Station::EMPTY }; 32];
-/// let drive = Drive::rest_to_rest(limits);
+/// let mut stations = [const { SearchNode::EMPTY }; 32];
+/// let drive = SpeedPlanLimits::rest_to_rest(limits);
 /// let plan: SpeedPlan<f64, 8> = pcr_core::plan_speed(&fleet[0], drive, ecm.row(&fleet, 0)?, &[], &mut stations)?;
 /// let planned = Motion::new(paths[0].as_path(), plan.profile.as_profile(), 0.25, plan.start)?;
 /// // It passes behind the other one, R √2 / v later.
@@ -68,12 +68,12 @@ use crate::scalar::Scalar;
 /// ```
 pub fn plan_speed<'a, S: Scalar, const N: usize>(
     ego: &Motion<'_, S>,
-    drive: Drive<S>,
+    drive: SpeedPlanLimits<S>,
     regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
     constraints: &[Constraint<S>],
-    stations: &mut [Station<S>],
-) -> Result<SpeedPlan<S, N>, NoSpeedPlan<S>> {
-    let lattice = |most| Ramps::new(ego.path().length(), drive, most);
+    stations: &mut [SearchNode<S>],
+) -> Result<SpeedPlan<S, N>, SpeedPlanError<S>> {
+    let lattice = |most| UniformLattice::new(ego.path().length(), drive, most);
     plan(ego, lattice, regions, constraints, stations)
 }
 
@@ -89,10 +89,10 @@ pub fn plan_speed<'a, S: Scalar, const N: usize>(
 /// is as for [`plan_speed`].
 ///
 /// # Errors
-/// [`NoSpeedPlan`].
+/// [`SpeedPlanError`].
 ///
 /// ```
-/// use pcr_core::{Ecm, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, SpeedPlan, Station};
+/// use pcr_core::{Ecm, Motion, Path, Piece, Point, Pose, Profile, Radians, EcmEntry, SpeedPlan, SearchNode};
 /// let east = Pose { position: Point::new(-4.0, 0.0), heading: Radians(0.0) };
 /// let north = Pose { position: Point::new(2.0, -2.0), heading: Radians(core::f64::consts::FRAC_PI_2) };
 /// let paths = [Path::<f64, 1>::starting_at(east)?.line(8.0)?, Path::starting_at(north)?.line(4.0)?];
@@ -104,9 +104,9 @@ pub fn plan_speed<'a, S: Scalar, const N: usize>(
 ///     motion(paths[0].as_path(), slower.as_profile())?,
 ///     motion(paths[1].as_path(), crosses.as_profile())?,
 /// ];
-/// let ecm = Ecm::build([Region::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
+/// let ecm = Ecm::build([EcmEntry::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
 ///
-/// let mut stations = [const { Station::EMPTY }; 65];
+/// let mut stations = [const { SearchNode::EMPTY }; 65];
 /// let plan: SpeedPlan<f64, 32> = pcr_core::plan_speed_below(&fleet[0], ecm.row(&fleet, 0)?, &[], &mut stations)?;
 /// let speeds = plan.profile.as_profile();
 /// assert!(speeds.top_speed() <= 1.0 && speeds.speed_at(speeds.first_time_at(5.0)) <= 0.5);
@@ -116,36 +116,36 @@ pub fn plan_speed_below<'a, S: Scalar, const N: usize>(
     ego: &Motion<'_, S>,
     regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
     constraints: &[Constraint<S>],
-    stations: &mut [Station<S>],
-) -> Result<SpeedPlan<S, N>, NoSpeedPlan<S>> {
-    let lattice = |most| Below::new(ego.profile(), ego.path().length(), most);
+    stations: &mut [SearchNode<S>],
+) -> Result<SpeedPlan<S, N>, SpeedPlanError<S>> {
+    let lattice = |most| CappedLattice::new(ego.profile(), ego.path().length(), most);
     plan(ego, lattice, regions, constraints, stations)
 }
 
 /// The earliest of the motions of a lattice, which is made for a largest number of cells.
-fn plan<'a, S: Scalar, L: Lattice<S>, const N: usize>(
+fn plan<'a, S: Scalar, L: SpeedLattice<S>, const N: usize>(
     ego: &Motion<'_, S>,
-    lattice: impl FnOnce(usize) -> Result<L, Invalid>,
+    lattice: impl FnOnce(usize) -> Result<L, InvalidInput>,
     regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
     constraints: &[Constraint<S>],
-    stations: &mut [Station<S>],
-) -> Result<SpeedPlan<S, N>, NoSpeedPlan<S>> {
+    stations: &mut [SearchNode<S>],
+) -> Result<SpeedPlan<S, N>, SpeedPlanError<S>> {
     let (from, length) = (ego.time().lo, ego.path().length());
     constraints.iter().try_for_each(Constraint::checked)?;
     if regions.clone().any(|region| !ego.is_within(region.ego_motion())) {
-        return Err(Mismatch::OtherFleet.into());
+        return Err(MismatchError::OtherFleet.into());
     }
     if length <= S::ZERO {
         stands(&regions, S::ZERO, Interval::new(-S::LIMIT, S::LIMIT))?;
         if constraints.iter().any(|constraint| constraint.is_broken_by(ego, from)) {
-            return Err(NoSpeedPlan::Constrained { length: S::ZERO });
+            return Err(SpeedPlanError::Constrained { length: S::ZERO });
         }
         return Ok(SpeedPlan { start: from, profile: Profile::standing() });
     }
     let lattice = lattice(stations.len().saturating_sub(1))?;
-    let search = Search { lattice, regions, constraints, from, length };
+    let search = SpeedSearch { lattice, regions, constraints, from, length };
     let used = search.lattice.cells().fold(1_usize, |count, _| count.saturating_add(1));
-    let stations = stations.get_mut(..used).ok_or(Invalid::Full("station"))?;
+    let stations = stations.get_mut(..used).ok_or(InvalidInput::Full("station"))?;
     search.begin(from, stations)?;
     let free = search.free_from()?;
     search.reach(stations)?;

@@ -1,16 +1,16 @@
 //! Fleet plans by speeds: each agent arrives as early as the agents before it in the order allow.
 
-use crate::ecm::{Ecm, Region};
-use crate::error::Invalid;
+use crate::ecm::{Ecm, EcmEntry};
+use crate::error::InvalidInput;
 use crate::geometry::Interval;
 use crate::motion::Motion;
-use crate::pieces::Piece;
+use crate::piece_store::Piece;
 use crate::plan::delays::{self, earliest};
-use crate::plan::drive::Drive;
-use crate::plan::order::{Blocked, Unsolved, complete, in_order, separated, verified};
-use crate::plan::outcome::{NoSpeedPlan, SpeedPlan};
+use crate::plan::limits::SpeedPlanLimits;
+use crate::plan::prioritized::{AgentPlanError, PlanError, complete, in_order, separated, verified};
+use crate::plan::result::{SpeedPlan, SpeedPlanError};
+use crate::plan::search_node::SearchNode;
 use crate::plan::speed::{plan_speed, plan_speed_below};
-use crate::plan::station::Station;
 use crate::profile::Profile;
 use crate::region::RegionRef;
 use crate::scalar::Scalar;
@@ -31,30 +31,30 @@ use crate::scalar::Scalar;
 /// The whole plan is checked before the function returns: no overlap is deeper than the tolerance.
 ///
 /// # Errors
-/// [`Unsolved`], with the agents that cannot be planned; `plan` then holds the agents before them in `order`.
+/// [`PlanError`], with the agents that cannot be planned; `plan` then holds the agents before them in `order`.
 pub fn plan_speeds<'m, S, R, P, const N: usize>(
     ecm: &Ecm<S, R, P>,
     fleet: &[Motion<'m, S>],
     plan: &mut [Motion<'m, S>],
     order: &mut [usize],
     profiles: impl IntoIterator<Item = &'m mut Profile<S, N>>,
-    stations: &mut [Station<S>],
-) -> Result<(), Unsolved>
+    stations: &mut [SearchNode<S>],
+) -> Result<(), PlanError>
 where
     S: Scalar,
-    R: AsRef<[Region]>,
+    R: AsRef<[EcmEntry]>,
     P: AsRef<[Piece<S>]>,
 {
     let mut profiles = profiles.into_iter();
     complete(order, fleet.len())?;
     in_order(order, |before, agent| {
         let (Some(&motion), Some(planned)) = (fleet.get(agent), plan.get_mut(agent)) else {
-            return Err(Blocked::Never(Unsolved::NoSuchAgent(agent)));
+            return Err(AgentPlanError::Never(PlanError::NoSuchAgent(agent)));
         };
         *planned = motion;
         let chosen = {
             let regions = ecm.row_of_plan(fleet, plan, agent)?.filter(|region| before.contains(&region.other()));
-            let invalid = |reason| Blocked::Never(Unsolved::Invalid { agent, reason });
+            let invalid = |reason| AgentPlanError::Never(PlanError::Invalid { agent, reason });
             let (later, late) = match earliest(motion, regions.clone()) {
                 Ok(later) => (later, None),
                 Err(reason) => (None, Some(reason)),
@@ -63,19 +63,19 @@ where
             let earlier = |end: S| {
                 later.is_none_or(|later| end < later.time().hi - Interval::new(motion.time().lo, end).resolution())
             };
-            let drive = Drive::of(&motion);
+            let drive = SpeedPlanLimits::of(&motion);
             let speeds: Result<SpeedPlan<S, N>, _> = match drive {
                 Some(drive) => plan_speed(&motion, drive, regions.clone(), &[], stations),
                 None => plan_speed_below(&motion, regions.clone(), &[], stations),
             };
             match speeds {
                 Ok(speeds) if earlier(speeds.end()) => {
-                    let profile = profiles.next().ok_or(Blocked::Never(Unsolved::Full(agent)))?;
+                    let profile = profiles.next().ok_or(AgentPlanError::Never(PlanError::Full(agent)))?;
                     *profile = speeds.profile;
                     motion.with_profile(profile.as_profile(), speeds.start).map_err(invalid)
                 }
                 // There is no room for other speeds, or there are none, as without acceleration: what is left are start delays.
-                Err(NoSpeedPlan::Invalid(reason)) if drive.is_none() || !matches!(reason, Invalid::Full(_)) => {
+                Err(SpeedPlanError::Invalid(reason)) if drive.is_none() || !matches!(reason, InvalidInput::Full(_)) => {
                     later.ok_or_else(|| late.map_or_else(|| delays::blocking(agent, regions, before), invalid))
                 }
                 speeds => later.ok_or_else(|| late.map_or_else(|| blocking(agent, regions, speeds.err()), invalid)),
@@ -93,14 +93,14 @@ where
 fn blocking<'a, S: Scalar>(
     agent: usize,
     mut regions: impl Iterator<Item = RegionRef<'a, S>>,
-    reason: Option<NoSpeedPlan<S>>,
-) -> Blocked {
+    reason: Option<SpeedPlanError<S>>,
+) -> AgentPlanError {
     match reason {
-        Some(NoSpeedPlan::AtStart(other) | NoSpeedPlan::AtGoal(other) | NoSpeedPlan::Beyond { other, .. }) => {
+        Some(SpeedPlanError::AtStart(other) | SpeedPlanError::AtGoal(other) | SpeedPlanError::Beyond { other, .. }) => {
             // Another region than the first that was found may have no remedy.
             let never = regions.find_map(|region| separated(&region));
-            never.map_or(Blocked::By(other), Blocked::Never)
+            never.map_or(AgentPlanError::By(other), AgentPlanError::Never)
         }
-        _ => Blocked::Never(Unsolved::Full(agent)),
+        _ => AgentPlanError::Never(PlanError::Full(agent)),
     }
 }

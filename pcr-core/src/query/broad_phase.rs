@@ -7,9 +7,9 @@
 //! do not meet are not in contact. The parts in which the boxes of a pair meet are bits of a word;
 //! [`Encounter::contacts`] then examines runs of such parts.
 
-use crate::bits::{self, Runs};
-use crate::error::{Full, Mismatch};
-use crate::geometry::{Bounds, Interval, Point};
+use crate::bit_rows::{self, BitRuns};
+use crate::error::{CapacityError, MismatchError};
+use crate::geometry::{Aabb, Interval, Point};
 use crate::motion::Motion;
 use crate::query::contact::{Contacts, Encounter};
 use crate::scalar::Scalar;
@@ -23,7 +23,7 @@ const MOST_PARTS: usize = u32::BITS as usize;
 /// A fleet during an interval of time, as boxes in space and time.
 ///
 /// ```
-/// use pcr_core::{Bounds, BroadPhase, Interval, Motion, Path, Point, Pose, Profile, Radians};
+/// use pcr_core::{Aabb, BroadPhase, Interval, Motion, Path, Point, Pose, Profile, Radians};
 /// let east = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
 /// let north = Pose { position: Point::new(0.0, -2.0), heading: Radians(core::f64::consts::FRAC_PI_2) };
 /// let far = Pose { position: Point::new(9.0, 0.0), heading: Radians(0.0) };
@@ -32,7 +32,7 @@ const MOST_PARTS: usize = u32::BITS as usize;
 /// let motion = |path| Motion::new(path, profile.as_profile(), 0.25, 0.0);
 /// let fleet = [motion(paths[0].as_path())?, motion(paths[1].as_path())?, motion(paths[2].as_path())?];
 ///
-/// let boxes = [Bounds::default(); 3 * (1 + 16)];
+/// let boxes = [Aabb::default(); 3 * (1 + 16)];
 /// let broad_phase = BroadPhase::new(boxes, &fleet, Interval::new(0.0, 4.0))?;
 /// let (agents, time) = broad_phase.contacts().next().unwrap();
 /// assert_eq!(agents, [0, 1]);
@@ -57,7 +57,7 @@ impl<S: Scalar + defmt::Format, B> defmt::Format for BroadPhase<'_, S, B> {
     }
 }
 
-impl<'a, S: Scalar, B: AsRef<[Bounds<S>]> + AsMut<[Bounds<S>]>> BroadPhase<'a, S, B> {
+impl<'a, S: Scalar, B: AsRef<[Aabb<S>]> + AsMut<[Aabb<S>]>> BroadPhase<'a, S, B> {
     /// Computes the boxes of a fleet for an interval of time \[s\], in 32, 16, 8, 4, 2 parts or 1: as many as the
     /// storage has room for. Each agent needs one box more than there are parts. More parts exclude more pairs, but
     /// take more time themselves; about 16 are best for a fleet that crosses its floor once. The interval is limited in
@@ -67,10 +67,10 @@ impl<'a, S: Scalar, B: AsRef<[Bounds<S>]> + AsMut<[Bounds<S>]>> BroadPhase<'a, S
     ///
     /// # Errors
     /// [`Full::Boxes`] if there is room for less than two boxes for each agent.
-    pub fn new(mut boxes: B, fleet: &'a [Motion<'a, S>], during: Interval<S>) -> Result<Self, Full> {
+    pub fn new(mut boxes: B, fleet: &'a [Motion<'a, S>], during: Interval<S>) -> Result<Self, CapacityError> {
         let during = during.limited();
         let room = boxes.as_ref().len().checked_div(fleet.len()).unwrap_or(usize::MAX);
-        let halvings = room.saturating_sub(1).checked_ilog2().ok_or(Full::Boxes)?.min(MOST_PARTS.ilog2());
+        let halvings = room.saturating_sub(1).checked_ilog2().ok_or(CapacityError::Boxes)?.min(MOST_PARTS.ilog2());
         let parts = 1_u32.wrapping_shl(halvings);
         let mut ends = [during.hi; MOST_PARTS];
         for (part, end) in (1..parts).zip(&mut ends) {
@@ -80,8 +80,8 @@ impl<'a, S: Scalar, B: AsRef<[Bounds<S>]> + AsMut<[Bounds<S>]>> BroadPhase<'a, S
         for (motion, row) in fleet.iter().zip(boxes.as_mut().chunks_exact_mut(row)) {
             let [all, row @ ..] = row else { break };
             let margin = motion.radius() + Encounter::new(motion, motion).tolerance();
-            let mut way = Way::starting(motion, during.lo);
-            *all = Bounds::around(way.point, way.point);
+            let mut way = PathCursor::starting(motion, during.lo);
+            *all = Aabb::around(way.point, way.point);
             for (place, &end) in row.iter_mut().zip(&ends) {
                 *place = way.until(end, margin);
                 *all = all.hull(*place);
@@ -98,7 +98,7 @@ impl<S: Scalar, B> BroadPhase<'_, S, B> {
     }
 }
 
-impl<S: Scalar, B: AsRef<[Bounds<S>]>> BroadPhase<'_, S, B> {
+impl<S: Scalar, B: AsRef<[Aabb<S>]>> BroadPhase<'_, S, B> {
     /// The pairs of agents that may be in contact, the lower index first, with the interval of time \[s\]: in
     /// increasing order of the agents, then of the time. At all other times they are not in contact.
     ///
@@ -107,13 +107,13 @@ impl<S: Scalar, B: AsRef<[Bounds<S>]>> BroadPhase<'_, S, B> {
     pub fn candidates(&self) -> impl Iterator<Item = ([usize; 2], Interval<S>)> {
         let rows = self.boxes.as_ref().chunks_exact((self.parts() as usize).wrapping_add(1));
         let rows = rows.take(self.fleet.len());
-        Meetings {
+        CandidatePairs {
             during: self.during,
             halvings: self.halvings,
             own: &[],
             others: [].chunks_exact(1).take(0),
             agents: [0; 2],
-            runs: Runs(0),
+            runs: BitRuns(0),
             rows,
             next: 0,
         }
@@ -150,35 +150,35 @@ impl<S: Scalar, B: AsRef<[Bounds<S>]>> BroadPhase<'_, S, B> {
         &self,
         agents: [usize; 2],
         during: Interval<S>,
-    ) -> Result<impl Iterator<Item = ([usize; 2], Interval<S>)> + use<'_, S, B>, Mismatch> {
+    ) -> Result<impl Iterator<Item = ([usize; 2], Interval<S>)> + use<'_, S, B>, MismatchError> {
         let contacts = self.encounter(agents)?.contacts(during);
         Ok(contacts.map(move |time| (agents, time)))
     }
 }
 
 impl<'a, S: Scalar, B> BroadPhase<'a, S, B> {
-    fn encounter(&self, agents: [usize; 2]) -> Result<Encounter<'a, S>, Mismatch> {
-        let [first, second] = agents.map(|agent| self.fleet.get(agent).ok_or(Mismatch::NoSuchAgent(agent)));
+    fn encounter(&self, agents: [usize; 2]) -> Result<Encounter<'a, S>, MismatchError> {
+        let [first, second] = agents.map(|agent| self.fleet.get(agent).ok_or(MismatchError::NoSuchAgent(agent)));
         Ok(Encounter::new(first?, second?))
     }
 }
 
 /// The pairs of agents whose boxes meet.
-struct Meetings<'a, S: Scalar> {
+struct CandidatePairs<'a, S: Scalar> {
     during: Interval<S>,
     halvings: u32,
     /// Boxes of the agents from index `next` on.
-    rows: Take<ChunksExact<'a, Bounds<S>>>,
+    rows: Take<ChunksExact<'a, Aabb<S>>>,
     next: usize,
     /// Boxes of the first agent of the pair, and of those that come after the second one.
-    own: &'a [Bounds<S>],
-    others: Take<ChunksExact<'a, Bounds<S>>>,
+    own: &'a [Aabb<S>],
+    others: Take<ChunksExact<'a, Aabb<S>>>,
     agents: [usize; 2],
     /// The parts in which their boxes meet and which have not been returned yet.
-    runs: Runs,
+    runs: BitRuns,
 }
 
-impl<S: Scalar> Iterator for Meetings<'_, S> {
+impl<S: Scalar> Iterator for CandidatePairs<'_, S> {
     type Item = ([usize; 2], Interval<S>);
 
     fn next(&mut self) -> Option<Self::Item> {
@@ -190,7 +190,7 @@ impl<S: Scalar> Iterator for Meetings<'_, S> {
             }
             if let Some(other) = self.others.next() {
                 self.agents[1] = self.agents[1].wrapping_add(1);
-                self.runs = Runs(meeting(self.own, other));
+                self.runs = BitRuns(meeting(self.own, other));
             } else {
                 self.own = self.rows.next()?;
                 self.others = self.rows.clone();
@@ -217,16 +217,16 @@ fn place_in<S: Scalar>(interval: Interval<S>, part: u32, halvings: u32) -> S {
 }
 
 /// The parts in which the boxes of two rows meet, one bit each.
-fn meeting<S: Scalar>(own: &[Bounds<S>], other: &[Bounds<S>]) -> u32 {
+fn meeting<S: Scalar>(own: &[Aabb<S>], other: &[Aabb<S>]) -> u32 {
     let ([all, own @ ..], [their, other @ ..]) = (own, other) else { return 0 };
     if !all.meets(*their) {
         return 0;
     }
-    bits::row(own.iter().zip(other).map(|(own, other)| own.meets(*other)))
+    bit_rows::row(own.iter().zip(other).map(|(own, other)| own.meets(*other)))
 }
 
 /// Follows an agent along its path from one time to the next.
-struct Way<'a, S: Scalar> {
+struct PathCursor<'a, S: Scalar> {
     motion: &'a Motion<'a, S>,
     /// The place that was reached: index of the segment, length along the path, and the point there.
     place: usize,
@@ -234,7 +234,7 @@ struct Way<'a, S: Scalar> {
     point: Point<S>,
 }
 
-impl<'a, S: Scalar> Way<'a, S> {
+impl<'a, S: Scalar> PathCursor<'a, S> {
     fn starting(motion: &'a Motion<'a, S>, time: S) -> Self {
         let length = motion.length_at(time);
         let place = motion.path().segments().partition_point(|segment| segment.to < length);
@@ -242,13 +242,13 @@ impl<'a, S: Scalar> Way<'a, S> {
     }
 
     /// A box around the path from the last place to that at `time`, expanded by `margin`.
-    fn until(&mut self, time: S, margin: S) -> Bounds<S> {
+    fn until(&mut self, time: S, margin: S) -> Aabb<S> {
         let (path, from) = (self.motion.path(), self.length);
         let to = self.motion.length_at(time).max(from);
-        let (mut bounds, mut bulge) = (Bounds::around(self.point, self.point), S::ZERO);
+        let (mut bounds, mut bulge) = (Aabb::around(self.point, self.point), S::ZERO);
         for segment in path.segments().get(self.place..).unwrap_or_default() {
             self.point = segment.point_at(to - segment.from);
-            bounds = bounds.hull(Bounds::around(self.point, self.point));
+            bounds = bounds.hull(Aabb::around(self.point, self.point));
             bulge = bulge.max(segment.bulge(to.min(segment.to) - from.max(segment.from)));
             if to <= segment.to {
                 break;

@@ -4,19 +4,19 @@
 //! motion itself at the nearest point of the chord. A step is finished when its lower bound is not below the least
 //! separation known.
 
-use crate::few::Few;
+use crate::array_vec::ArrayVec;
 use crate::geometry::Interval;
 use crate::pair::outline::distance::separation_along;
-use crate::query::chord::Chord;
 use crate::query::contact::Encounter;
-use crate::query::windows::{Window, Windows};
+use crate::query::leg_windows::{LegWindow, LegWindows};
+use crate::query::relative_motion::LinearRelativeMotion;
 use crate::scalar::{Scalar, Wide};
 
 /// The closest approach of two agents: its time and the distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Approach<S> {
+pub struct ClosestApproach<S> {
     /// The first time of the closest approach, within the tolerance \[s\].
     pub time: S,
     /// Distance of the centres \[m\]. For outlines, the distance of the polygons without their rounding; if these overlap, minus the length of the least translation
@@ -32,13 +32,13 @@ impl<S: Scalar> Encounter<'_, S> {
     /// Cost: a comparison of boxes for each pair of segments, and a few steps for each pair that comes nearer than
     /// those before. Only where the distance stays the same although the agents do not go alike, on a circle around a
     /// stand for instance, steps are as short as √(ε / c) with c = Σ |a| + v²/ϱ.
-    pub fn closest(&self, during: Interval<S>) -> Approach<S> {
+    pub fn closest(&self, during: Interval<S>) -> ClosestApproach<S> {
         if self.has_outline() {
             return self.closest_of_outlines(during.limited());
         }
         let separation = |time: S| (self.other.position_at(time) - self.ego.position_at(time)).norm_squared().sqrt();
         let during = during.limited();
-        let mut best = Approach { time: during.lo, separation: separation(during.lo) };
+        let mut best = ClosestApproach { time: during.lo, separation: separation(during.lo) };
         // An upper bound that the search can use from the first window on.
         let eighth = during.length().half().half().half();
         let places = [(); 8].iter().scan(during.lo, |place, ()| {
@@ -46,7 +46,7 @@ impl<S: Scalar> Encounter<'_, S> {
             Some(separation(*place))
         });
         let bound = places.fold(best.separation, S::min) + self.tolerance().half();
-        let mut windows = Windows::new([self.ego, self.other], during, self.pad());
+        let mut windows = LegWindows::new([self.ego, self.other], during, self.pad());
         while let Some(window) = windows.next(best.separation.min(bound) + self.pad()) {
             self.closest_in(&window, bound, &mut best);
         }
@@ -57,25 +57,25 @@ impl<S: Scalar> Encounter<'_, S> {
     /// below the least separation known; if not, it is halved.
     // Not inlined: pairs of discs would need the stack of it.
     #[inline(never)]
-    fn closest_of_outlines(&self, during: Interval<S>) -> Approach<S> {
+    fn closest_of_outlines(&self, during: Interval<S>) -> ClosestApproach<S> {
         let fine = self.tolerance().half().half();
         let separation = |time: S| {
             let from = self.ego.position_at(time);
             let [own, their] = [self.ego, self.other].map(|motion| motion.corners_at(time, from));
             separation_along(own.as_slice(), their.as_slice()).0
         };
-        let mut best = Approach { time: during.lo, separation: separation(during.lo) };
-        let mut windows = Windows::new([self.ego, self.other], during, self.pad());
+        let mut best = ClosestApproach { time: during.lo, separation: separation(during.lo) };
+        let mut windows = LegWindows::new([self.ego, self.other], during, self.pad());
         while let Some(window) = windows.next(self.spread(best.separation.max(S::ZERO)) + self.pad()) {
             // Halves of halves: so what lies ahead is known in steps that double, and a descent is not followed step by step.
-            let (mut now, mut ends) = (window.time.lo, Few::<S, 64>::new(S::ZERO));
+            let (mut now, mut ends) = (window.time.lo, ArrayVec::<S, 64>::new(S::ZERO));
             ends.push(window.time.hi);
             while let Some(&end) = ends.as_slice().last() {
                 let during = Interval::new(now, end);
                 let instant = window.at(during.middle());
                 let bodies = window.bodies([self.ego, self.other], &instant, during);
                 if bodies.separation < best.separation {
-                    best = Approach { time: instant.time, separation: bodies.separation };
+                    best = ClosestApproach { time: instant.time, separation: bodies.separation };
                 }
                 // The middle is rounded.
                 let (half, rounding) = (during.length().half(), S::rounding(instant.time.abs()));
@@ -90,7 +90,7 @@ impl<S: Scalar> Encounter<'_, S> {
     }
 
     /// Searches a window for a separation that is less than `best` and `bound`.
-    fn closest_in(&self, window: &Window<'_, S>, bound: S, best: &mut Approach<S>) {
+    fn closest_in(&self, window: &LegWindow<'_, S>, bound: S, best: &mut ClosestApproach<S>) {
         // The nearest place of the chord and that of the motion are each off by the error of the chord, and the distance by the pad, a quarter
         // of the tolerance at most: half of the tolerance in all.
         let fine = self.tolerance().half().half().half();
@@ -100,7 +100,7 @@ impl<S: Scalar> Encounter<'_, S> {
             let left = window.time.hi - now.time;
             let (duration, to) = if step < left { (step, now.time + step) } else { (left, window.time.hi) };
             let ahead = window.at(to);
-            let chord = Chord::between(now.apart, ahead.apart);
+            let chord = LinearRelativeMotion::between(now.apart, ahead.apart);
             // The distance of agents that go alike often stays the same: then no lower bound would end the search early.
             let uniform = window.is_uniform(&now, &ahead);
             let error = if uniform { S::ZERO } else { window.deviation(&now, &ahead) };
@@ -111,7 +111,7 @@ impl<S: Scalar> Encounter<'_, S> {
                 let time = (now.time + elapsed).min(to);
                 let separation = window.at(time).separation();
                 if separation < best.separation {
-                    *best = Approach { time, separation };
+                    *best = ClosestApproach { time, separation };
                 }
                 let half = duration.half();
                 done = error <= fine || distance - error + fine >= best.separation || now.time + half <= now.time;

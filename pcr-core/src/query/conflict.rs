@@ -1,9 +1,9 @@
 //! Conflicts: contacts with their place and depth.
 
-use crate::error::Mismatch;
+use crate::error::MismatchError;
 use crate::geometry::Interval;
 use crate::motion::Motion;
-use crate::query::clearance::Approach;
+use crate::query::clearance::ClosestApproach;
 use crate::query::contact::{Contacts, Encounter};
 use crate::query::safe::times;
 use crate::region::RegionRef;
@@ -21,7 +21,7 @@ pub struct Conflict<S> {
     /// Lengths of the other's path during the contact \[m\].
     pub other_length: Interval<S>,
     /// The closest approach during the contact.
-    pub deepest: Approach<S>,
+    pub deepest: ClosestApproach<S>,
     /// Largest overlap \[m\], the length of the least translation that separates the two: sum of the radii minus the least separation, within half of [`Encounter::tolerance`]; 0 if they only touch.
     pub depth: S,
     /// Whether the depth is at most half of [`Encounter::tolerance`]: it may then be no contact. A touch is in truth no deeper than the tolerance.
@@ -54,7 +54,7 @@ impl<'a, S: Scalar> Encounter<'a, S> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Met<S> {
+pub struct AgentConflict<S> {
     /// Index of the other agent in the fleet.
     pub other: usize,
     /// The conflict.
@@ -73,14 +73,14 @@ pub struct Met<S> {
 /// [`Mismatch::OtherFleet`] for another path or a larger disc than that of the regions' ego.
 ///
 /// ```
-/// use pcr_core::{Ecm, Interval, Motion, Path, Piece, Point, Pose, Profile, Radians, Region, first_conflict};
+/// use pcr_core::{Ecm, Interval, Motion, Path, Piece, Point, Pose, Profile, Radians, EcmEntry, first_conflict};
 /// let east = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
 /// let north = Pose { position: Point::new(0.0, -2.0), heading: Radians(core::f64::consts::FRAC_PI_2) };
 /// let paths = [Path::<f64, 1>::starting_at(east)?.line(4.0)?, Path::starting_at(north)?.line(4.0)?];
 /// let profile = Profile::<f64, 1>::from_pieces(1.0, [(4.0, 0.0)])?;
 /// let motion = |path| Motion::new(path, profile.as_profile(), 0.25, 0.0);
 /// let fleet = [motion(paths[0].as_path())?, motion(paths[1].as_path())?];
-/// let ecm = Ecm::build([Region::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
+/// let ecm = Ecm::build([EcmEntry::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
 ///
 /// let met = first_conflict(&fleet[0], ecm.row(&fleet, 0)?, Interval::new(0.0, 9.0))?.unwrap();
 /// assert!(met.other == 1 && (met.conflict.depth - 0.5).abs() < 1e-9);
@@ -92,7 +92,7 @@ pub fn first_conflict<'a, S: Scalar>(
     ego: &Motion<'_, S>,
     regions: impl Iterator<Item = RegionRef<'a, S>>,
     during: Interval<S>,
-) -> Result<Option<Met<S>>, Mismatch> {
+) -> Result<Option<AgentConflict<S>>, MismatchError> {
     first(ego, regions, during, |_, _| true)
 }
 
@@ -106,7 +106,7 @@ pub fn first_overlap<'a, S: Scalar>(
     ego: &Motion<'_, S>,
     regions: impl Iterator<Item = RegionRef<'a, S>>,
     during: Interval<S>,
-) -> Result<Option<Met<S>>, Mismatch> {
+) -> Result<Option<AgentConflict<S>>, MismatchError> {
     first(ego, regions, during, |encounter, contact| !encounter.conflict(encounter.whole(contact, during)).touching)
 }
 
@@ -116,12 +116,12 @@ fn first<'a, S: Scalar>(
     regions: impl Iterator<Item = RegionRef<'a, S>>,
     during: Interval<S>,
     counts: impl Fn(&Encounter<'_, S>, Interval<S>) -> bool,
-) -> Result<Option<Met<S>>, Mismatch> {
+) -> Result<Option<AgentConflict<S>>, MismatchError> {
     let during = during.limited();
     let (mut first, mut until) = (None, during.hi);
     for region in regions {
         if !ego.is_within(region.ego_motion()) {
-            return Err(Mismatch::OtherFleet);
+            return Err(MismatchError::OtherFleet);
         }
         let Some(window) = region.window(ego, Interval::new(during.lo, until)) else { continue };
         let encounter = Encounter::new(ego, region.other_motion());
@@ -133,7 +133,7 @@ fn first<'a, S: Scalar>(
     }
     Ok(first.map(|(other, encounter, contact)| {
         let conflict = encounter.conflict(encounter.whole(contact, during));
-        Met { other, conflict }
+        AgentConflict { other, conflict }
     }))
 }
 

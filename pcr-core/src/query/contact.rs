@@ -9,19 +9,19 @@
 //!
 //! from the chord between its values at both ends (linear interpolation). So the chord decides: if it is outside a
 //! circle of R + e there is no contact, if it is inside one of R - e there is. The deviation is 0 at both ends, so
-//! weaker conditions are enough to decide that nothing changes in the whole step (`chord::clears`, `chord::keeps`,
-//! `Chord::dives`), also if the step begins at a distance of R. Otherwise the step is shortened to the part in doubt: e
+//! weaker conditions are enough to decide that nothing changes in the whole step (`relative_motion::clears`, `relative_motion::keeps`,
+//! `LinearRelativeMotion::dives`), also if the step begins at a distance of R. Otherwise the step is shortened to the part in doubt: e
 //! falls with the square of the step, and the part in doubt with e. On lines at constant speeds e is 0 and one step is
 //! exact; elsewhere an end of a contact takes about four. The worst case is discs that stay at a distance of R within
 //! the tolerance for a time T. Since e <= ε / 4 always decides, every step there is longer than h / 2 for
 //! h = √(2 ε / c), c = Σ |a| + v²/ϱ; hence a leg takes at most a few T / h + 1 steps. `Contacts::steps` counts them. Agents that go alike
 //! (`Leg::goes_like`) move uniformly as seen from each other, and e is 0.
 
-use crate::error::Invalid;
+use crate::error::InvalidInput;
 use crate::geometry::Interval;
 use crate::motion::Motion;
-use crate::query::chord::{Chord, clears, keeps};
-use crate::query::windows::{Instant, Window, Windows};
+use crate::query::leg_windows::{LegWindow, LegWindows, PairInstant};
+use crate::query::relative_motion::{LinearRelativeMotion, clears, keeps};
 use crate::scalar::Scalar;
 
 /// A pair of agents in motion: whether and when they are in contact, and how near they come.
@@ -111,7 +111,7 @@ impl<'a, S: Scalar> Encounter<'a, S> {
     pub fn contacts(&self, during: Interval<S>) -> Contacts<'a, S> {
         let reach = self.radius() + self.pad;
         let apart = !self.ego.bounds().expanded(self.spread(reach)).meets(self.other.bounds());
-        let windows = (!apart).then(|| Windows::new([self.ego, self.other], during.limited(), self.pad));
+        let windows = (!apart).then(|| LegWindows::new([self.ego, self.other], during.limited(), self.pad));
         Contacts { encounter: *self, radius: reach, windows, scan: None, since: None, last: None, steps: 0 }
     }
 }
@@ -141,9 +141,9 @@ impl<S: Scalar> Motion<'_, S> {
     /// let motion = Motion::new(east.as_path(), profile.as_profile(), 0.25, 0.0)?.with_margin(0.05)?;
     /// let planned = motion.for_plan()?;
     /// assert!(planned.radius() > 0.3 && planned.radius() < 0.3 + 1e-8 && planned.margin() == 0.0);
-    /// # Ok::<(), pcr_core::Invalid>(())
+    /// # Ok::<(), pcr_core::InvalidInput>(())
     /// ```
-    pub fn for_plan(self) -> Result<Self, Invalid> {
+    pub fn for_plan(self) -> Result<Self, InvalidInput> {
         let tolerance = Encounter::new(&self, &self).tolerance();
         Ok(self.with_margin(self.margin() + tolerance)?.inflated())
     }
@@ -163,13 +163,13 @@ pub struct Contacts<'a, S: Scalar> {
     /// Discs are in contact if their centres are within this distance \[m\].
     radius: S,
     /// `None` for paths that are never near each other.
-    windows: Option<Windows<'a, S>>,
+    windows: Option<LegWindows<'a, S>>,
     /// The window that is being searched.
-    scan: Option<Scan<'a, S>>,
+    scan: Option<WindowScan<'a, S>>,
     /// Begin of the current contact.
     since: Option<S>,
     /// The end of the window that was searched last.
-    last: Option<Instant<S>>,
+    last: Option<PairInstant<S>>,
     steps: u32,
 }
 
@@ -182,15 +182,15 @@ impl<S: Scalar + defmt::Format> defmt::Format for Contacts<'_, S> {
 
 /// State of the search in a window.
 #[derive(Clone, Copy, Debug)]
-struct Scan<'a, S: Scalar> {
-    window: Window<'a, S>,
-    now: Instant<S>,
+struct WindowScan<'a, S: Scalar> {
+    window: LegWindow<'a, S>,
+    now: PairInstant<S>,
     /// Length of the next step \[s\].
     step: S,
 }
 
 /// A change at the end of a step.
-enum Event<S> {
+enum ContactEvent<S> {
     /// Contact begins at this time.
     Begin(S),
     /// Contact has ended at this time.
@@ -207,24 +207,24 @@ impl<S: Scalar> Contacts<'_, S> {
 
 impl<'a, S: Scalar> Contacts<'a, S> {
     /// The next window in which the two agents may come near enough for a contact.
-    fn next_scan(&mut self) -> Option<Scan<'a, S>> {
+    fn next_scan(&mut self) -> Option<WindowScan<'a, S>> {
         let reach = self.encounter.spread(self.radius + self.encounter.tolerance);
         let window = self.windows.as_mut()?.next(reach)?;
         let now = self.last.filter(|last| last.time == window.time.lo).unwrap_or_else(|| window.at(window.time.lo));
-        Some(Scan { window, now, step: window.time.length() })
+        Some(WindowScan { window, now, step: window.time.length() })
     }
 
     /// Searches the rest of a window, up to the end of a contact.
-    fn rest_of(&mut self, mut scan: Scan<'a, S>) -> Option<Interval<S>> {
+    fn rest_of(&mut self, mut scan: WindowScan<'a, S>) -> Option<Interval<S>> {
         loop {
             let event = self.step(&mut scan);
             let over = scan.now.time >= scan.window.time.hi;
             let ended = match event {
-                Some(Event::Begin(time)) => {
+                Some(ContactEvent::Begin(time)) => {
                     self.since = Some(time);
                     None
                 }
-                Some(Event::End(time)) => self.since.take().map(|since| Interval::new(since, time)),
+                Some(ContactEvent::End(time)) => self.since.take().map(|since| Interval::new(since, time)),
                 None => None,
             };
             if over || ended.is_some() {
@@ -236,12 +236,12 @@ impl<'a, S: Scalar> Contacts<'a, S> {
     }
 
     /// One step of the search; returns an event if something changes.
-    fn step(&mut self, scan: &mut Scan<'_, S>) -> Option<Event<S>> {
+    fn step(&mut self, scan: &mut WindowScan<'_, S>) -> Option<ContactEvent<S>> {
         self.steps = self.steps.saturating_add(1);
         if self.encounter.has_outline() {
             return self.step_of_outlines(scan);
         }
-        let Scan { window, now, step } = *scan;
+        let WindowScan { window, now, step } = *scan;
         let left = window.time.hi - now.time;
         let (duration, to) = if step < left { (step, now.time + step) } else { (left, window.time.hi) };
         let ahead = window.at(to);
@@ -254,13 +254,13 @@ impl<'a, S: Scalar> Contacts<'a, S> {
             clears(ends, self.radius + pad, error, pad)
         };
         let next = if goes_on {
-            Next { from: to, step: duration.double(), event: None }
+            NextScan { from: to, step: duration.double(), event: None }
         } else {
-            let chord = Chord::between(now.apart, ahead.apart);
+            let chord = LinearRelativeMotion::between(now.apart, ahead.apart);
             // If the relative velocity is constant the chord is exact. Two agents with equal velocities can stay at a
             // distance of R; with an error above 0 every step would then be as short as possible.
             let error = if window.is_uniform(&now, &ahead) { S::ZERO } else { error };
-            let stretch = Stretch { now, ahead, chord, error, duration, radius: self.radius, tolerance, pad };
+            let stretch = ScanStep { now, ahead, chord, error, duration, radius: self.radius, tolerance, pad };
             if inside { stretch.follow() } else { stretch.search() }
         };
         scan.now = if next.from >= to {
@@ -279,8 +279,8 @@ impl<S: Scalar> Contacts<'_, S> {
     /// One step of the search for outlines: as long as they certainly stay apart, or in contact (`bodies`).
     // Not inlined: pairs of discs would need the stack of it.
     #[inline(never)]
-    fn step_of_outlines(&self, scan: &mut Scan<'_, S>) -> Option<Event<S>> {
-        let Scan { window, now, .. } = *scan;
+    fn step_of_outlines(&self, scan: &mut WindowScan<'_, S>) -> Option<ContactEvent<S>> {
+        let WindowScan { window, now, .. } = *scan;
         let Encounter { ego, other, tolerance, pad } = self.encounter;
         let bodies = window.bodies([ego, other], &now, Interval::new(now.time, window.time.hi));
         let quarter = tolerance.half().half();
@@ -288,12 +288,12 @@ impl<S: Scalar> Contacts<'_, S> {
             // The hysteresis avoids many short contacts of outlines that hover at a distance of R. The pad is a quarter of the tolerance at most, so
             // another quarter remains for a step.
             if bodies.separation > self.radius + quarter {
-                return Some(Event::End(now.time));
+                return Some(ContactEvent::End(now.time));
             }
             bodies.stay_near(self.radius + (tolerance - pad.double()))
         } else {
             if bodies.separation <= self.radius + quarter.half() {
-                return Some(Event::Begin(now.time));
+                return Some(ContactEvent::Begin(now.time));
             }
             bodies.stay_apart(self.radius)
         };
@@ -306,7 +306,7 @@ impl<S: Scalar> Contacts<'_, S> {
             // A step below the last digit of the time: what cannot be excluded counts as contact.
             let next = now.time + S::rounding(now.time.abs().max(window.time.length())).double();
             scan.now = window.at(next.min(window.time.hi));
-            return self.since.is_none().then_some(Event::Begin(now.time));
+            return self.since.is_none().then_some(ContactEvent::Begin(now.time));
         }
         scan.now = window.at(to);
         None
@@ -314,10 +314,10 @@ impl<S: Scalar> Contacts<'_, S> {
 }
 
 /// A step: both its ends, and the chord between them.
-struct Stretch<S> {
-    now: Instant<S>,
-    ahead: Instant<S>,
-    chord: Chord<S>,
+struct ScanStep<S> {
+    now: PairInstant<S>,
+    ahead: PairInstant<S>,
+    chord: LinearRelativeMotion<S>,
     /// Largest deviation of the relative position from the chord.
     error: S,
     duration: S,
@@ -327,15 +327,15 @@ struct Stretch<S> {
 }
 
 /// Where the search continues, the length of the next step, and an event before that.
-struct Next<S> {
+struct NextScan<S> {
     from: S,
     step: S,
-    event: Option<Event<S>>,
+    event: Option<ContactEvent<S>>,
 }
 
-impl<S: Scalar> Stretch<S> {
+impl<S: Scalar> ScanStep<S> {
     /// Without contact: looks for the begin of one.
-    fn search(&self) -> Next<S> {
+    fn search(&self) -> NextScan<S> {
         let Some(near) = self.chord.within(self.radius + self.error) else {
             return self.advance();
         };
@@ -348,14 +348,14 @@ impl<S: Scalar> Stretch<S> {
                 let kept = self.chord.within(self.radius + self.tolerance - self.error);
                 let lasts = kept.is_some_and(|kept| kept.hi >= self.chord.length);
                 let from = if lasts { self.ahead.time } else { begin };
-                Next { from, step: S::LIMIT, event: Some(Event::Begin(begin)) }
+                NextScan { from, step: S::LIMIT, event: Some(ContactEvent::Begin(begin)) }
             }
         }
     }
 
     /// In contact: looks for its end, where the discs are apart by the tolerance. This hysteresis avoids many short
     /// contacts of discs that hover at a distance of R.
-    fn follow(&self) -> Next<S> {
+    fn follow(&self) -> NextScan<S> {
         let outer = self.radius + self.tolerance;
         let kept = self.chord.within(outer - self.error);
         let kept = kept.filter(|kept| kept.lo <= S::ZERO || self.chord.dives(outer, self.error));
@@ -372,10 +372,10 @@ impl<S: Scalar> Stretch<S> {
         let doubt = gone.map(|all| self.time_at(all.hi) - from);
         match self.refined(from, doubt) {
             _ if self.decides(doubt) => {
-                let event = Some(Event::End(left_at(self.radius + self.error)));
+                let event = Some(ContactEvent::End(left_at(self.radius + self.error)));
                 // A chord that has left the circle does not come back.
                 let from = if kept.is_some() { self.ahead.time } else { self.now.time };
-                Next { from, step: S::LIMIT, event }
+                NextScan { from, step: S::LIMIT, event }
             }
             Some(next) => next,
             // The step is down to the last digit of the time: what cannot be excluded counts as contact.
@@ -384,15 +384,15 @@ impl<S: Scalar> Stretch<S> {
     }
 
     /// Nothing changes during the whole step.
-    fn advance(&self) -> Next<S> {
-        Next { from: self.ahead.time, step: self.duration.double(), event: None }
+    fn advance(&self) -> NextScan<S> {
+        NextScan { from: self.ahead.time, step: self.duration.double(), event: None }
     }
 
     /// A shorter step: the part in doubt, at most half of this step; `None` if the time would not change.
-    fn refined(&self, from: S, doubt: Option<S>) -> Option<Next<S>> {
+    fn refined(&self, from: S, doubt: Option<S>) -> Option<NextScan<S>> {
         let half = self.duration.half();
         let step = doubt.map_or(half, |doubt| doubt.min(half));
-        (from + step > from).then_some(Next { from, step, event: None })
+        (from + step > from).then_some(NextScan { from, step, event: None })
     }
 
     /// Whether the chord is as good as the motion: its error is within the tolerance, and either within a few roundings

@@ -3,7 +3,7 @@
 //! A motion has a stage before it sets off, one on each segment, and one after its arrival. The position of a stage is
 //! known at no cost; each end of its time needs an inversion of the profile. Legs are the phases of a stage.
 
-use crate::geometry::{Bounds, Interval, Point};
+use crate::geometry::{Aabb, Interval, Point};
 use crate::motion::Motion;
 use crate::profile::Phase;
 use crate::scalar::Scalar;
@@ -72,7 +72,7 @@ impl<'a, S: Scalar> Leg<'a, S> {
 
 /// The part of a motion on one segment, or one of its two stands.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stage<'a, S: Scalar> {
+pub(crate) struct MotionStage<'a, S: Scalar> {
     motion: &'a Motion<'a, S>,
     /// 0 for the stand before the motion, then the index of the segment plus 1, finally the stand after the motion.
     place: usize,
@@ -105,9 +105,9 @@ pub(crate) fn places<S: Scalar>(motion: &Motion<'_, S>, during: Interval<S>, sla
     [first, last]
 }
 
-impl<'a, S: Scalar> Stage<'a, S> {
+impl<'a, S: Scalar> MotionStage<'a, S> {
     /// The first stage from `place` on, up to the `last` one, whose box meets `around`.
-    pub(crate) fn in_box(motion: &'a Motion<'a, S>, [place, last]: [usize; 2], around: &Bounds<S>) -> Option<Self> {
+    pub(crate) fn in_box(motion: &'a Motion<'a, S>, [place, last]: [usize; 2], around: &Aabb<S>) -> Option<Self> {
         let segments = motion.path().segments();
         let stands_in = |point: Point<S>| around.x.contains(point.x) && around.y.contains(point.y);
         let stage = |place, segment, stand| Some(Self { motion, place, segment, stand });
@@ -127,12 +127,12 @@ impl<'a, S: Scalar> Stage<'a, S> {
     }
 
     /// Box around the stage \[m\].
-    pub(crate) fn bounds(&self) -> Bounds<S> {
+    pub(crate) fn bounds(&self) -> Aabb<S> {
         match self.stand {
             None => self.segment.bounds,
             Some(_) => {
                 let point = if self.place == 0 { self.segment.start } else { self.segment.end };
-                Bounds::around(point, point)
+                Aabb::around(point, point)
             }
         }
     }

@@ -5,15 +5,15 @@
 //! middle of which some of the part is covered; this has a closed form. The motion of the other agent turns lengths
 //! into times; an agent that stands before its start or after its arrival blocks all of that time.
 
-use crate::error::Mismatch;
-use crate::few::Few;
+use crate::array_vec::ArrayVec;
+use crate::error::MismatchError;
 use crate::geometry::Interval;
-use crate::intervals::{Lowest, gaps};
+use crate::intervals::{LowestInterval, gaps};
 use crate::motion::Motion;
-use crate::pair::Pair;
+use crate::pair::AgentPair;
+use crate::pair::disc_on_segment::CarrierCoordinates;
 use crate::pair::events::add_events;
-use crate::pair::footprint::Footprint;
-use crate::pair::lengths::Lengths;
+use crate::pair::lengths::LengthList;
 use crate::pair::outline::events::Carriers;
 use crate::pair::outline::placed::Carried;
 use crate::pair::outline::shadow::MOST_SHADOWS;
@@ -22,7 +22,7 @@ use crate::region::RegionRef;
 use crate::scalar::Scalar;
 use crate::segment::Segment;
 
-/// Largest number of parts of one segment that another one blocks: of the slabs between 12 events ([`Lengths`]), no two
+/// Largest number of parts of one segment that another one blocks: of the slabs between 12 events ([`LengthList`]), no two
 /// parts are neighbours.
 const PARTS: usize = 6;
 
@@ -39,22 +39,22 @@ impl<'a, S: Scalar> Encounter<'a, S> {
         length: Interval<S>,
         during: Interval<S>,
     ) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
-        Blocked { reaches: core::iter::once(self.reach(length, during)), after: None }
+        BlockedUnion { reaches: core::iter::once(self.reach(length, during)), after: None }
     }
 
     /// The lengths of the ego's path \[m\] that the other agent blocks at some time of an interval \[s\]: disjoint
     /// intervals in increasing order, rounded outward. Cost as for [`Encounter::blocked`].
     pub fn blocked_lengths(&self, during: Interval<S>) -> impl Iterator<Item = Interval<S>> + Clone + use<'a, S> {
-        Blocked { reaches: core::iter::once(self.reach_during(during)), after: None }
+        BlockedUnion { reaches: core::iter::once(self.reach_during(during)), after: None }
     }
 
     /// The windows in which the other agent blocks a part of the ego's path.
-    fn reach(&self, length: Interval<S>, during: Interval<S>) -> Reach<'a, S> {
+    fn reach(&self, length: Interval<S>, during: Interval<S>) -> ProximityWindows<'a, S> {
         self.reach_of(self.ego, length, self.other, Some(in_order(during)))
     }
 
     /// The lengths of the ego's path that the other agent blocks during an interval of time.
-    fn reach_during(&self, during: Interval<S>) -> Reach<'a, S> {
+    fn reach_during(&self, during: Interval<S>) -> ProximityWindows<'a, S> {
         let during = during.limited();
         let times = [during.lo - self.other.lateness(), during.hi + self.ego.lateness()];
         let lengths = times.map(|time| self.other.length_at(time));
@@ -70,17 +70,17 @@ impl<'a, S: Scalar> Encounter<'a, S> {
         part: Interval<S>,
         on: &'a Motion<'a, S>,
         during: Option<Interval<S>>,
-    ) -> Reach<'a, S> {
-        let slack = Pair::new(by, on).slack;
+    ) -> ProximityWindows<'a, S> {
+        let slack = AgentPair::new(by, on).slack;
         // Cutting a segment adds rounding errors of its own.
         let radius = self.radius() + slack.double();
-        Reach { by, part: on_path(by, part), on, during, radius, slack, pad: self.pad() }
+        ProximityWindows { by, part: on_path(by, part), on, during, radius, slack, pad: self.pad() }
     }
 }
 
 /// The lengths of one path that are within reach of a part of another one, or the times that belong to them.
 #[derive(Clone)]
-struct Reach<'a, S: Scalar> {
+struct ProximityWindows<'a, S: Scalar> {
     by: &'a Motion<'a, S>,
     part: Interval<S>,
     on: &'a Motion<'a, S>,
@@ -92,7 +92,7 @@ struct Reach<'a, S: Scalar> {
     pad: S,
 }
 
-impl<S: Scalar> Reach<'_, S> {
+impl<S: Scalar> ProximityWindows<'_, S> {
     /// Distance of the reference points at which the agents may be within the radius \[m\].
     fn near(&self) -> S {
         self.radius + self.by.outline().spread() + self.on.outline().spread()
@@ -127,7 +127,7 @@ impl<S: Scalar> Reach<'_, S> {
     }
 
     /// Adds what is blocked, except for what can neither be nor belong to the lowest interval.
-    fn add_to(&self, lowest: &mut Lowest<S>) {
+    fn add_to(&self, lowest: &mut LowestInterval<S>) {
         let segments = self.on.path().segments();
         let known = |segment: &Segment<S>, after: S| self.bounds(segment).is_some_and(|bounds| bounds.hi < after);
         let first = lowest.after.map_or(0, |after| segments.partition_point(|segment| known(segment, after)));
@@ -145,16 +145,16 @@ impl<S: Scalar> Reach<'_, S> {
 /// The union of what is blocked, as disjoint intervals in increasing order. Each one is looked for from the end of the
 /// one before it on.
 #[derive(Clone)]
-struct Blocked<S, R> {
+struct BlockedUnion<S, R> {
     reaches: R,
     after: Option<S>,
 }
 
-impl<'a, S: Scalar, R: Iterator<Item = Reach<'a, S>> + Clone> Iterator for Blocked<S, R> {
+impl<'a, S: Scalar, R: Iterator<Item = ProximityWindows<'a, S>> + Clone> Iterator for BlockedUnion<S, R> {
     type Item = Interval<S>;
 
     fn next(&mut self) -> Option<Interval<S>> {
-        Lowest::next(&mut self.after, |lowest| self.reaches.clone().for_each(|reach| reach.add_to(lowest)))
+        LowestInterval::next(&mut self.after, |lowest| self.reaches.clone().for_each(|reach| reach.add_to(lowest)))
     }
 }
 
@@ -220,10 +220,10 @@ pub fn safe_intervals<'a, S: Scalar>(
     ego: usize,
     length: Interval<S>,
     during: Interval<S>,
-) -> Result<impl Iterator<Item = Interval<S>> + Clone, Mismatch> {
+) -> Result<impl Iterator<Item = Interval<S>> + Clone, MismatchError> {
     let pairs = encounters(fleet, ego)?;
     let reaches = pairs.map(move |pair| pair.reach(length, during));
-    Ok(gaps(Blocked { reaches, after: None }, in_order(during)))
+    Ok(gaps(BlockedUnion { reaches, after: None }, in_order(during)))
 }
 
 /// The lengths of an agent's path \[m\] that no other agent of the fleet blocks at any time of an interval \[s\]: the
@@ -235,19 +235,19 @@ pub fn safe_lengths<'a, S: Scalar>(
     fleet: &'a [Motion<'a, S>],
     ego: usize,
     during: Interval<S>,
-) -> Result<impl Iterator<Item = Interval<S>> + Clone, Mismatch> {
+) -> Result<impl Iterator<Item = Interval<S>> + Clone, MismatchError> {
     let pairs = encounters(fleet, ego)?;
     let length = fleet.get(ego).map_or(S::ZERO, |ego| ego.path().length());
     let reaches = pairs.map(move |pair| pair.reach_during(during));
-    Ok(gaps(Blocked { reaches, after: None }, Interval::new(S::ZERO, length)))
+    Ok(gaps(BlockedUnion { reaches, after: None }, Interval::new(S::ZERO, length)))
 }
 
 /// The encounters of the ego with every other agent.
 fn encounters<'a, S: Scalar>(
     fleet: &'a [Motion<'a, S>],
     ego: usize,
-) -> Result<impl Iterator<Item = Encounter<'a, S>> + Clone, Mismatch> {
-    let own = fleet.get(ego).ok_or(Mismatch::NoSuchAgent(ego))?;
+) -> Result<impl Iterator<Item = Encounter<'a, S>> + Clone, MismatchError> {
+    let own = fleet.get(ego).ok_or(MismatchError::NoSuchAgent(ego))?;
     // `enumerate` would check its counter for overflow.
     let others = (0..fleet.len()).zip(fleet).filter(move |&(other, _)| other != ego);
     Ok(others.map(move |(_, other)| Encounter::new(own, other)))
@@ -283,7 +283,7 @@ fn shadow<S: Scalar>(
     [by, on]: [&Motion<'_, S>; 2],
     [first, second]: [&Segment<S>; 2],
     [radius, slack]: [S; 2],
-) -> Few<Interval<S>, MOST_SHADOWS> {
+) -> ArrayVec<Interval<S>, MOST_SHADOWS> {
     let (first, second) = (Carried::new(first, by.outline()), Carried::new(second, on.outline()));
     Carriers { first, second, radius, slack }.shadow()
 }
@@ -299,12 +299,12 @@ pub(crate) fn covered_by<S: Scalar>(
 ) -> impl Iterator<Item = Interval<S>> + Clone + use<S> {
     let outlines = (by.has_outline() | on.has_outline()).then(|| shadow([by, on], [first, second], [radius, slack]));
     let discs = outlines.is_none().then(|| covered(first, second, radius, slack));
-    discs.into_iter().flatten().flatten().chain(outlines.into_iter().flat_map(Few::into_values))
+    discs.into_iter().flatten().flatten().chain(outlines.into_iter().flat_map(ArrayVec::into_values))
 }
 
 /// The lengths of the second segment that are within the radius of the first one. Distances are right within `slack`.
 fn covered<S: Scalar>(first: &Segment<S>, second: &Segment<S>, radius: S, slack: S) -> [Option<Interval<S>>; PARTS] {
-    let mut events = Lengths::new(S::ZERO);
+    let mut events = LengthList::new(S::ZERO);
     add_events(first, second, radius, slack, &mut events);
     events.sort();
     let events = events.as_slice();
@@ -317,7 +317,7 @@ fn covered<S: Scalar>(first: &Segment<S>, second: &Segment<S>, radius: S, slack:
             continue;
         }
         let slab = Interval::new(lo, hi);
-        let reach = Footprint::of(second.point_at(slab.middle()), first).reach(first, radius);
+        let reach = CarrierCoordinates::of(second.point_at(slab.middle()), first).reach(first, radius);
         if reach.intervals(first)[0].is_none() {
             place = None;
             continue;
@@ -372,14 +372,14 @@ pub(crate) fn times<S: Scalar>(
 #[cfg(all(test, feature = "libm"))]
 mod tests {
     use super::*;
-    use crate::{Limits, Path, Point, Pose, Profile, Radians, Turn, union};
+    use crate::{Limits, Path, Point, Pose, Profile, Radians, TurnSide, union};
     use heapless::Vec;
 
     /// Rounds on a track of two lines and two half circles.
     fn rounds<const N: usize>(start: [f64; 3], rounds: usize) -> Path<f64, N> {
         let pose = Pose { position: Point::new(start[0], start[1]), heading: Radians(start[2]) };
         let half = |path: Path<f64, N>| {
-            path.line(2.0).and_then(|path| path.arc(0.5, Turn::Left, 0.5 * core::f64::consts::PI)).expect("a path")
+            path.line(2.0).and_then(|path| path.arc(0.5, TurnSide::Left, 0.5 * core::f64::consts::PI)).expect("a path")
         };
         (0..2 * rounds).fold(Path::starting_at(pose).expect("a pose"), |path, _| half(path))
     }
@@ -392,7 +392,7 @@ mod tests {
     }
 
     /// The union of all that is blocked on any segment.
-    fn all<'a>(reaches: impl Iterator<Item = Reach<'a, f64>>) -> Vec<Interval<f64>, 64> {
+    fn all<'a>(reaches: impl Iterator<Item = ProximityWindows<'a, f64>>) -> Vec<Interval<f64>, 64> {
         let mut found: Vec<_, 2048> = Vec::new();
         for reach in reaches {
             let segments = reach.on.path().segments().iter();

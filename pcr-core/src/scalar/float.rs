@@ -5,8 +5,8 @@
 //! `f64`.
 
 use super::trig::Trig;
-use super::{Angle, Ramp, Scalar, Sector, Unit, Wide};
-use crate::few::Few;
+use super::{AccelerationRamp, Angle, AngleSector, Scalar, Unit, Wide};
+use crate::array_vec::ArrayVec;
 use core::ops::{Add, Neg, Sub};
 
 /// Angle in radians.
@@ -114,10 +114,10 @@ macro_rules! impl_float {
             }
             fn half_tangent_roots(
                 equations: impl Iterator<Item = [$t; 4]>,
-                sector: Sector<$t>,
+                sector: AngleSector<$t>,
                 mut found: impl FnMut(Radians<$t>),
             ) {
-                let mut vectors = Few::<_, 4>::new([0.0; 2]);
+                let mut vectors = ArrayVec::<_, 4>::new([0.0; 2]);
                 let ([base_cos, base_sin], [middle_cos, middle_sin]) = (sector.from, sector.middle);
                 for [a, b, g, doubt] in equations {
                     let discriminant = b * b - a * g;
@@ -138,10 +138,10 @@ macro_rules! impl_float {
                 }
                 Trig::angles(vectors.as_slice(), |angle| found(Radians(angle)));
             }
-            fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self {
+            fn ramp_length(ramp: AccelerationRamp<Self>, elapsed: Self) -> Self {
                 (ramp.slow + 0.5 * ramp.acceleration * elapsed) * elapsed
             }
-            fn ramp_time(ramp: Ramp<Self>, length: Self) -> Self {
+            fn ramp_time(ramp: AccelerationRamp<Self>, length: Self) -> Self {
                 if ramp.acceleration == 0.0 {
                     return length.quotient(ramp.slow);
                 }

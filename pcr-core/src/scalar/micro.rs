@@ -10,7 +10,7 @@
 //! guaranteed accuracy.
 
 use super::trig::Trig;
-use super::{Angle, Radians, Ramp, Scalar, Sector, Wide};
+use super::{AccelerationRamp, Angle, AngleSector, Radians, Scalar, Wide};
 use core::ops::{Add, Neg, Sub};
 use micromath::F32Ext;
 
@@ -103,7 +103,7 @@ impl Scalar for Micro {
     }
     fn half_tangent_roots(
         equations: impl Iterator<Item = [Self; 4]>,
-        sector: Sector<f32>,
+        sector: AngleSector<f32>,
         mut found: impl FnMut(Radians<Self>),
     ) {
         let ([base_cos, base_sin], [middle_cos, middle_sin]) = (sector.from, sector.middle);
@@ -123,10 +123,10 @@ impl Scalar for Micro {
             }
         }
     }
-    fn ramp_length(ramp: Ramp<Self>, elapsed: Self) -> Self {
+    fn ramp_length(ramp: AccelerationRamp<Self>, elapsed: Self) -> Self {
         Self((ramp.slow.0 + 0.5 * ramp.acceleration.0 * elapsed.0) * elapsed.0)
     }
-    fn ramp_time(ramp: Ramp<Self>, length: Self) -> Self {
+    fn ramp_time(ramp: AccelerationRamp<Self>, length: Self) -> Self {
         let fast = sqrt(ramp.slow.0 * ramp.slow.0 + 2.0 * (ramp.acceleration.0 * length.0));
         Self((2.0 * length.0).quotient(ramp.slow.0 + fast))
     }

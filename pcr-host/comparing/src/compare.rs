@@ -18,45 +18,45 @@
 //! All methods start from the same paths and motions, already placed in the plane. Sampling, flattening and the
 //! construction of meshes are part of a method, and of its time.
 
-mod chart;
 mod crowd;
+pub mod disc_track;
+mod error_chart;
 mod errors;
 mod measure;
-pub mod mesh;
+pub mod mesh_proximity;
 mod pcr;
 pub mod polyline;
 pub mod reference;
 pub mod sampled;
 pub mod stopwatch;
-pub mod track;
 
 pub use crowd::crowd;
-pub use errors::Errors;
-pub use measure::{Absent, Comparison, Effort, Row, median};
-pub use track::Track;
+pub use disc_track::DiscTrack;
+pub use errors::Accuracy;
+pub use measure::{Comparison, MeasurementBudget, MethodMeasurement, UnavailableMethod, median};
 
 use pcr_core::Motion;
 use pcr_fixed::Q16;
 use pcr_formats::scenario::Scenario;
-use pcr_planning::fleet::{Fleet, Format, Refused};
+use pcr_planning::fleet::{Fleet, FormatRangeError, HostScalar};
 use serde::Serialize;
 use std::hint::black_box;
 use stopwatch::{Stopwatch, steady};
 
 /// A fleet, in every form that a method starts from.
 #[derive(Debug)]
-pub struct Input {
-    tracks: Vec<Track>,
+pub struct ComparisonInput {
+    tracks: Vec<DiscTrack>,
     double: Fleet<f64>,
     single: Fleet<f32>,
-    fixed: Result<Fleet<Q16>, Refused>,
+    fixed: Result<Fleet<Q16>, FormatRangeError>,
 }
 
 /// The same, ready to use.
 #[derive(Debug)]
-pub struct Field<'a> {
+pub struct ComparisonFleet<'a> {
     /// As plain numbers.
-    pub tracks: &'a [Track],
+    pub tracks: &'a [DiscTrack],
     double: Vec<Motion<'a, f64>>,
     single: Vec<Motion<'a, f32>>,
     /// None where the fleet is beyond the format.
@@ -65,14 +65,14 @@ pub struct Field<'a> {
     pub horizon: [f64; 2],
 }
 
-impl Input {
+impl ComparisonInput {
     /// The agents of a scenario.
     ///
     /// # Errors
-    /// [`Refused`] where a value does not fit floating point.
-    pub fn new(scenario: &Scenario) -> Result<Self, Refused> {
+    /// [`FormatRangeError`] where a value does not fit floating point.
+    pub fn new(scenario: &Scenario) -> Result<Self, FormatRangeError> {
         Ok(Self {
-            tracks: scenario.agents.iter().map(Track::new).collect(),
+            tracks: scenario.agents.iter().map(DiscTrack::new).collect(),
             double: Fleet::new(scenario)?,
             single: Fleet::new(scenario)?,
             fixed: Fleet::new(scenario),
@@ -80,10 +80,10 @@ impl Input {
     }
 
     /// Ready to use.
-    pub fn field(&self) -> Field<'_> {
+    pub fn field(&self) -> ComparisonFleet<'_> {
         let double = self.double.motions();
         let time = Motion::span(&double);
-        Field {
+        ComparisonFleet {
             tracks: &self.tracks,
             double,
             single: self.single.motions(),
@@ -96,7 +96,7 @@ impl Input {
 /// What a method is asked for, and what it can answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Question {
+pub enum MethodQuestion {
     /// All collision regions: where an agent must not be at what time, whatever its motion.
     Regions,
     /// Whether agents collide in the given motions.
@@ -105,7 +105,7 @@ pub enum Question {
 
 /// A contact that a method found: two agents, the lower one first, and when \[s\]; no end where it tells none.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Found {
+pub struct MethodContact {
     /// Places of the agents in the fleet.
     pub agents: [usize; 2],
     /// Its first time \[s\].
@@ -115,7 +115,7 @@ pub struct Found {
 }
 
 /// The collision regions that a method found.
-pub trait Regions {
+pub trait RegionSet {
     /// Both directions of every pair.
     fn count(&self) -> usize;
     /// What is kept of them.
@@ -125,27 +125,27 @@ pub trait Regions {
 }
 
 /// What a method found.
-pub enum Answer<'a> {
+pub enum MethodAnswer<'a> {
     /// Collision regions.
-    Regions(Box<dyn Regions + 'a>),
+    Regions(Box<dyn RegionSet + 'a>),
     /// By the agents, then by the begin.
-    Conflicts(Vec<Found>),
+    Conflicts(Vec<MethodContact>),
 }
 
 /// An answer, or why there is none.
-pub type Outcome<'f> = Result<Answer<'f>, String>;
+pub type MethodResult<'f> = Result<MethodAnswer<'f>, String>;
 
 /// Why a method has no answer that can have one for other fleets.
 const BEYOND: &str = "this fleet is beyond what it can hold";
 
 /// A way to find collisions.
-pub trait Method: Sync {
+pub trait CollisionMethod: Sync {
     /// With resolution or format.
     fn name(&self) -> String;
     /// What it is asked for.
-    fn question(&self) -> Question;
+    fn question(&self) -> MethodQuestion;
     /// What it tells, in words.
-    fn tells(&self) -> &'static str;
+    fn output_description(&self) -> &'static str;
     /// Whether it works on all cores.
     fn is_parallel(&self) -> bool {
         false
@@ -155,48 +155,48 @@ pub trait Method: Sync {
         None
     }
     /// The answer, or why there is none: a fleet beyond its limits, or a program that failed.
-    fn answer<'f>(&self, field: &'f Field<'_>) -> Outcome<'f>;
+    fn answer<'f>(&self, field: &'f ComparisonFleet<'_>) -> MethodResult<'f>;
     /// The time that the answer takes \[s\], and the answer.
-    fn timed<'f>(&self, field: &'f Field<'_>) -> (f64, Outcome<'f>) {
+    fn timed<'f>(&self, field: &'f ComparisonFleet<'_>) -> (f64, MethodResult<'f>) {
         let clock = if self.is_parallel() { Stopwatch::wall } else { Stopwatch::elapsed };
         steady(clock, || self.answer(black_box(field)))
     }
 }
 
 /// Returns the methods of `pcr compare`; pcr on one core first for each question: what the others are compared with.
-pub fn methods() -> Vec<Box<dyn Method>> {
+pub fn methods() -> Vec<Box<dyn CollisionMethod>> {
     let mut methods = pcr::regions();
     methods.extend(sampled::methods());
     methods.extend(pcr::conflicts());
     methods.extend(polyline::methods());
-    methods.extend(mesh::methods());
+    methods.extend(mesh_proximity::methods());
     methods
 }
 
 /// Returns the names of methods, each once, in alphabetic order.
-pub fn names(methods: &[Box<dyn Method>]) -> Vec<String> {
+pub fn names(methods: &[Box<dyn CollisionMethod>]) -> Vec<String> {
     methods.iter().map(|method| method.name()).collect::<std::collections::BTreeSet<_>>().into_iter().collect()
 }
 
 /// A number format with a fleet in it.
-trait Number: Format {
-    fn motions<'f, 'a>(field: &'f Field<'a>) -> Option<&'f [Motion<'a, Self>]>;
+trait ComparedScalar: HostScalar {
+    fn motions<'f, 'a>(field: &'f ComparisonFleet<'a>) -> Option<&'f [Motion<'a, Self>]>;
 }
 
-impl Number for f64 {
-    fn motions<'f, 'a>(field: &'f Field<'a>) -> Option<&'f [Motion<'a, Self>]> {
+impl ComparedScalar for f64 {
+    fn motions<'f, 'a>(field: &'f ComparisonFleet<'a>) -> Option<&'f [Motion<'a, Self>]> {
         Some(&field.double)
     }
 }
 
-impl Number for f32 {
-    fn motions<'f, 'a>(field: &'f Field<'a>) -> Option<&'f [Motion<'a, Self>]> {
+impl ComparedScalar for f32 {
+    fn motions<'f, 'a>(field: &'f ComparisonFleet<'a>) -> Option<&'f [Motion<'a, Self>]> {
         Some(&field.single)
     }
 }
 
-impl Number for Q16 {
-    fn motions<'f, 'a>(field: &'f Field<'a>) -> Option<&'f [Motion<'a, Self>]> {
+impl ComparedScalar for Q16 {
+    fn motions<'f, 'a>(field: &'f ComparisonFleet<'a>) -> Option<&'f [Motion<'a, Self>]> {
         field.fixed.as_deref()
     }
 }

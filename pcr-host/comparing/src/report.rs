@@ -1,12 +1,12 @@
 //! Comparisons as text.
 
-use crate::compare::{Absent, Comparison, Errors, Question, Row};
+use crate::compare::{Accuracy, Comparison, MethodMeasurement, MethodQuestion, UnavailableMethod};
 use pcr_planning::figures::{bytes, seconds, share, time, times};
-use pcr_planning::report::columns::Columns;
-use pcr_planning::report::{Document, counted, heading, quoted};
+use pcr_planning::report::text_table::TextTable;
+use pcr_planning::report::{VersionedReport, counted, heading, quoted};
 use std::io::{self, Write};
 
-impl Document for Comparison {
+impl VersionedReport for Comparison {
     const FORMAT: &'static str = "pcr-comparison";
 }
 
@@ -21,16 +21,16 @@ pub const COMPARISON_CSV_HEADER: &str =
 pub fn comparison_csv(comparison: &Comparison, out: &mut dyn Write) -> io::Result<()> {
     let (name, agents) = (quoted(&comparison.name), comparison.agents);
     for row in &comparison.rows {
-        let Row { method, ms, ratio, rounds, count, bytes, .. } = row;
+        let MethodMeasurement { method, ms, ratio, rounds, count, bytes, .. } = row;
         let question = match row.question {
-            Question::Regions => "regions",
-            Question::Conflicts => "conflicts",
+            MethodQuestion::Regions => "regions",
+            MethodQuestion::Conflicts => "conflicts",
         };
         let errors = match row.errors {
-            Errors::Conflicts { conflicts, missed, invented, time } => {
+            Accuracy::Conflicts { conflicts, missed, invented, time } => {
                 format!("{conflicts},{missed},{invented},{time},,")
             }
-            Errors::Regions { area, difference } => format!(",,,,{area},{difference}"),
+            Accuracy::Regions { area, difference } => format!(",,,,{area},{difference}"),
         };
         let method = quoted(method);
         writeln!(out, "{name},{agents},{method},{question},{ms},{ratio},{rounds},{count},{bytes},{errors}")?;
@@ -47,14 +47,14 @@ pub fn comparison_table(comparison: &Comparison, markdown: bool, out: &mut dyn W
     if !markdown {
         writeln!(out, "{}: {}\n", heading(&comparison.name), counted(*agents, "agent"))?;
     }
-    for (place, question) in [Question::Regions, Question::Conflicts].into_iter().enumerate() {
+    for (place, question) in [MethodQuestion::Regions, MethodQuestion::Conflicts].into_iter().enumerate() {
         let titles = match question {
-            Question::Regions => ["pairs or regions", "kept", "area off"].as_slice(),
-            Question::Conflicts => &["found", "missed", "invented", "time off"],
+            MethodQuestion::Regions => ["pairs or regions", "kept", "area off"].as_slice(),
+            MethodQuestion::Conflicts => &["found", "missed", "invented", "time off"],
         };
         let mut all = vec!["<method", "<tells", "time", "of pcr's"];
         all.extend(titles);
-        let mut columns = Columns::new(&all);
+        let mut columns = TextTable::new(&all);
         for row in rows.iter().filter(|row| row.question == question) {
             columns.row(cells(row));
         }
@@ -64,19 +64,20 @@ pub fn comparison_table(comparison: &Comparison, markdown: bool, out: &mut dyn W
         if markdown { columns.write_markdown(out)? } else { columns.write(out)? }
     }
     if !absent.is_empty() {
-        let absent: Vec<_> = absent.iter().map(|Absent { method, reason }| format!("{method}: {reason}")).collect();
+        let absent: Vec<_> =
+            absent.iter().map(|UnavailableMethod { method, reason }| format!("{method}: {reason}")).collect();
         writeln!(out, "\nLeft out: {}.", absent.join("; "))?;
     }
     Ok(())
 }
 
-fn cells(row: &Row) -> Vec<String> {
+fn cells(row: &MethodMeasurement) -> Vec<String> {
     let mut cells = vec![row.method.clone(), row.tells.to_owned(), time(row.ms), times(row.ratio)];
     match row.errors {
-        Errors::Regions { area, difference } => {
+        Accuracy::Regions { area, difference } => {
             cells.extend([row.count.to_string(), bytes(row.bytes), share(difference / area)]);
         }
-        Errors::Conflicts { conflicts, missed, invented, time } => cells.extend([
+        Accuracy::Conflicts { conflicts, missed, invented, time } => cells.extend([
             format!("{} of {conflicts}", conflicts - missed),
             missed.to_string(),
             invented.to_string(),

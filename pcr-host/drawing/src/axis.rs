@@ -1,6 +1,6 @@
 //! Axes: from metres and seconds to pixels, with ticks at round numbers.
 
-use super::svg::{PathData, Pixels, Svg, cut_name, text_width};
+use super::svg::{PathData, PixelCoordinate, SvgWriter, cut_name, text_width};
 use pcr_core::Interval;
 
 /// Smallest span of an axis relative to the magnitude of its values: below it, neighbouring pixels would be the
@@ -92,7 +92,7 @@ impl Axis {
 
 /// The area of a plot with its two axes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
+pub(super) struct PlotArea {
     /// To the right.
     pub(super) x: Axis,
     /// Upward.
@@ -124,7 +124,7 @@ pub(super) fn room_at_left(values: Interval<f64>, height: f64) -> f64 {
     Axis::new(values, [height, 0.0]).widest(GAPS[1]) + 14.0 + AXIS_SIZE
 }
 
-impl Frame {
+impl PlotArea {
     /// The frame that shows these values within these edges: left, top, right, bottom \[px\].
     pub(super) fn new(x: Interval<f64>, y: Interval<f64>, edges: [f64; 4]) -> Self {
         let [left, top, right, bottom] = edges;
@@ -137,15 +137,15 @@ impl Frame {
     }
 
     /// What is written above the plot: a name with what stands before and after it. It stays within the plot's width.
-    pub(super) fn draw_title(&self, svg: &mut Svg, title: [&str; 3]) {
+    pub(super) fn draw_title(&self, svg: &mut SvgWriter, title: [&str; 3]) {
         let [left, top, right, _] = self.edges;
         let size = AXIS_SIZE + 0.5;
         let title = cut_name(title, size, right - left + 2.0 * BEYOND);
-        svg.label([(left + right) / 2.0, top - 9.0], "middle", &[("font-size", &Pixels(size))], &title);
+        svg.label([(left + right) / 2.0, top - 9.0], "middle", &[("font-size", &PixelCoordinate(size))], &title);
     }
 
     /// The frame with grid lines, ticks and titles.
-    pub(super) fn draw(&self, svg: &mut Svg, titles: [&str; 2]) {
+    pub(super) fn draw(&self, svg: &mut SvgWriter, titles: [&str; 2]) {
         let [left, top, right, bottom] = self.edges;
         let middle = [(left + right) / 2.0, (top + bottom) / 2.0];
         let gap = f64::max(GAPS[0], self.x.widest(GAPS[0]) + TICK_SIZE);
@@ -160,7 +160,7 @@ impl Frame {
             grid.line_to([right, y]);
         }
         svg.empty("path", &[("d", &grid), ("stroke", &"#e4e7ea"), ("stroke-width", &"0.6"), ("fill", &"none")]);
-        svg.start("g", &[("font-size", &Pixels(TICK_SIZE)), ("fill", &"#3a3f45")]);
+        svg.start("g", &[("font-size", &PixelCoordinate(TICK_SIZE)), ("fill", &"#3a3f45")]);
         for tick in &ticks.0 {
             svg.label([self.x.at(tick.value), bottom + 13.0], "middle", &[], &tick.label);
         }
@@ -168,24 +168,24 @@ impl Frame {
             svg.label([left - 5.0, self.y.at(tick.value) + 3.5], "end", &[], &tick.label);
         }
         svg.end();
-        svg.start("g", &[("font-size", &Pixels(AXIS_SIZE)), ("fill", &"#1d2125")]);
+        svg.start("g", &[("font-size", &PixelCoordinate(AXIS_SIZE)), ("fill", &"#1d2125")]);
         svg.label([middle[0], bottom + 29.0], "middle", &[], titles[0]);
         let at = [left - 12.0 - self.y.widest(GAPS[1]), middle[1]];
-        let turned = format!("rotate(-90 {} {})", Pixels(at[0]), Pixels(at[1]));
+        let turned = format!("rotate(-90 {} {})", PixelCoordinate(at[0]), PixelCoordinate(at[1]));
         svg.label(at, "middle", &[("transform", &turned)], titles[1]);
         svg.end();
     }
 
     /// The border of the plot, to be drawn over its content.
-    pub(super) fn draw_border(&self, svg: &mut Svg) {
+    pub(super) fn draw_border(&self, svg: &mut SvgWriter) {
         let [left, top, right, bottom] = self.edges;
         svg.empty(
             "rect",
             &[
-                ("x", &Pixels(left)),
-                ("y", &Pixels(top)),
-                ("width", &Pixels(right - left)),
-                ("height", &Pixels(bottom - top)),
+                ("x", &PixelCoordinate(left)),
+                ("y", &PixelCoordinate(top)),
+                ("width", &PixelCoordinate(right - left)),
+                ("height", &PixelCoordinate(bottom - top)),
                 ("fill", &"none"),
                 ("stroke", &"#3a3f45"),
                 ("stroke-width", &"0.8"),

@@ -10,9 +10,9 @@
 mod events;
 mod outline;
 
-pub(crate) use outline::Outline;
+pub(crate) use outline::RegionOutline;
 pub(super) use outline::is_thin;
-use outline::{Column, correspond, outline, scaled};
+use outline::{OutlineColumn, correspond, outline, scaled};
 use pcr_core::{Interval, Motion, RegionRef, excess};
 use std::f64::consts::PI;
 
@@ -29,10 +29,10 @@ const HALVINGS: u32 = 26;
 const MOST_COLUMNS: usize = 20_000;
 
 /// The outline of a region while the other agent is on its way; `pixel` is the size of a pixel \[s\], \[m\].
-pub(crate) fn trace(region: &RegionRef<'_, f64>, ego: &Motion<'_, f64>, pixel: [f64; 2]) -> Outline {
+pub(crate) fn trace(region: &RegionRef<'_, f64>, ego: &Motion<'_, f64>, pixel: [f64; 2]) -> RegionOutline {
     let other = region.other_motion();
     let radius = ego.radius() + other.radius() + 0.5 * excess(ego, other);
-    let mut tracer = Tracer { region, pixel, columns: Vec::new() };
+    let mut tracer = OutlineTracer { region, pixel, columns: Vec::new() };
     let times = event_times(region, radius);
     for (k, pair) in times.windows(2).enumerate() {
         tracer.add_slab(pair[0], pair[1], k == 0);
@@ -60,15 +60,15 @@ fn event_times(region: &RegionRef<'_, f64>, radius: f64) -> Vec<f64> {
     times
 }
 
-struct Tracer<'r, 'a> {
+struct OutlineTracer<'r, 'a> {
     region: &'r RegionRef<'a, f64>,
     pixel: [f64; 2],
-    columns: Vec<Column>,
+    columns: Vec<OutlineColumn>,
 }
 
-impl Tracer<'_, '_> {
-    fn column(&self, time: f64) -> Column {
-        Column { time, intervals: self.region.slice_at(time).collect() }
+impl OutlineTracer<'_, '_> {
+    fn column(&self, time: f64) -> OutlineColumn {
+        OutlineColumn { time, intervals: self.region.slice_at(time).collect() }
     }
 
     /// Adds the columns from one event to the next, the first only on demand.
@@ -91,7 +91,13 @@ impl Tracer<'_, '_> {
     }
 
     /// Adds the columns that are needed between two others.
-    fn refine(&mut self, time_at: &dyn Fn(f64) -> f64, a: &(f64, Column), b: &(f64, Column), halvings: u32) {
+    fn refine(
+        &mut self,
+        time_at: &dyn Fn(f64) -> f64,
+        a: &(f64, OutlineColumn),
+        b: &(f64, OutlineColumn),
+        halvings: u32,
+    ) {
         let angle = (a.0 + b.0) / 2.0;
         let time = time_at(angle);
         if halvings == 0 || time <= a.1.time || time >= b.1.time || self.columns.len() >= MOST_COLUMNS {
@@ -110,7 +116,7 @@ impl Tracer<'_, '_> {
         self.refine(time_at, &middle, b, halvings - 1);
     }
 
-    fn is_straight(&self, a: &Column, middle: &Column, b: &Column) -> bool {
+    fn is_straight(&self, a: &OutlineColumn, middle: &OutlineColumn, b: &OutlineColumn) -> bool {
         let near = |a: [f64; 2], middle: [f64; 2], b: [f64; 2]| {
             distance_to_chord(self.scaled(a), self.scaled(middle), self.scaled(b)) <= TOLERANCE
         };

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 /// A box: left, top, right, bottom \[px\].
-type Area = [f64; 4];
+type LabelBox = [f64; 4];
 
 /// What may lie on another label or outside of the picture, by rounding \[px²\].
 const SLACK: f64 = 1e-6;
@@ -19,8 +19,8 @@ const CELL: f64 = 16.0;
 
 /// The labels of a picture, and what they should keep off.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Labels {
-    taken: Vec<Area>,
+pub(super) struct LabelPlacer {
+    taken: Vec<LabelBox>,
     /// Points of lines, by their cells.
     lines: HashMap<[i64; 2], Vec<(f64, [f64; 2])>>,
 }
@@ -29,9 +29,9 @@ fn cell([x, y]: [f64; 2]) -> [i64; 2] {
     [x, y].map(|value| (value / CELL).floor() as i64)
 }
 
-impl Labels {
+impl LabelPlacer {
     /// Keeps labels off an area.
-    pub(super) fn block(&mut self, area: Area) {
+    pub(super) fn block(&mut self, area: LabelBox) {
         self.taken.push(area);
     }
 
@@ -43,21 +43,21 @@ impl Labels {
     }
 
     /// The weights of the points in an area.
-    fn crossed(&self, area: Area) -> f64 {
+    fn crossed(&self, area: LabelBox) -> f64 {
         let [from, to] = [cell([area[0], area[1]]), cell([area[2], area[3]])];
         let cells = (from[0]..=to[0]).flat_map(|column| (from[1]..=to[1]).map(move |row| [column, row]));
         let points = cells.filter_map(|cell| self.lines.get(&cell)).flatten();
-        points.filter(|(_, point)| holds(area, *point)).map(|(weight, _)| weight).sum()
+        points.filter(|(_, point)| contains(area, *point)).map(|(weight, _)| weight).sum()
     }
 
     /// Place of the middle of a label of this width and height: the best of the candidates, which is then taken. A
     /// candidate comes with what speaks against it by itself; earlier ones are preferred. `None` if each of them would
     /// lie on what is taken, or reach out of the picture: a label there could not be read, nor what it lies on.
-    pub(super) fn place(
+    pub(super) fn best_position(
         &mut self,
         size: [f64; 2],
         candidates: impl IntoIterator<Item = (f64, [f64; 2])>,
-        within: Area,
+        within: LabelBox,
     ) -> Option<[f64; 2]> {
         let mut best: Option<(f64, [f64; 2])> = None;
         for (rank, (weight, candidate)) in candidates.into_iter().enumerate() {
@@ -95,17 +95,17 @@ impl Labels {
 }
 
 /// The box of a label about its middle.
-pub(super) fn around([x, y]: [f64; 2], [width, height]: [f64; 2]) -> Area {
+pub(super) fn around([x, y]: [f64; 2], [width, height]: [f64; 2]) -> LabelBox {
     [x - width / 2.0, y - height / 2.0, x + width / 2.0, y + height / 2.0]
 }
 
-fn overlap(a: Area, b: Area) -> f64 {
+fn overlap(a: LabelBox, b: LabelBox) -> f64 {
     let width = a[2].min(b[2]) - a[0].max(b[0]);
     let height = a[3].min(b[3]) - a[1].max(b[1]);
     width.max(0.0) * height.max(0.0)
 }
 
-fn holds(area: Area, [x, y]: [f64; 2]) -> bool {
+fn contains(area: LabelBox, [x, y]: [f64; 2]) -> bool {
     area[0] <= x && x <= area[2] && area[1] <= y && y <= area[3]
 }
 
@@ -113,29 +113,32 @@ fn holds(area: Area, [x, y]: [f64; 2]) -> bool {
 mod tests {
     use super::*;
 
-    const ALL: Area = [0.0, 0.0, 100.0, 100.0];
+    const ALL: LabelBox = [0.0, 0.0, 100.0, 100.0];
 
     #[test]
     fn labels_avoid_one_another_and_the_edge() {
-        let mut labels = Labels::default();
+        let mut labels = LabelPlacer::default();
         let places = [(0.0, [50.0, 50.0]), (0.0, [98.0, 50.0]), (0.0, [50.0, 70.0])];
-        assert_eq!(labels.place([20.0, 10.0], places, ALL), Some([50.0, 50.0]));
-        assert_eq!(labels.place([20.0, 10.0], places, ALL), Some([50.0, 70.0]));
+        assert_eq!(labels.best_position([20.0, 10.0], places, ALL), Some([50.0, 50.0]));
+        assert_eq!(labels.best_position([20.0, 10.0], places, ALL), Some([50.0, 70.0]));
         // The third one would lie on one of them, or reach out of the picture.
-        assert_eq!(labels.place([20.0, 10.0], places, ALL), None);
+        assert_eq!(labels.best_position([20.0, 10.0], places, ALL), None);
         labels.free([50.0, 50.0], [20.0, 10.0]);
-        assert_eq!(labels.place([20.0, 10.0], places, ALL), Some([50.0, 50.0]));
+        assert_eq!(labels.best_position([20.0, 10.0], places, ALL), Some([50.0, 50.0]));
     }
 
     #[test]
     fn labels_avoid_lines() {
-        let mut labels = Labels::default();
+        let mut labels = LabelPlacer::default();
         labels.avoid(1.0, (0..10).map(|k| [45.0 + f64::from(k), 50.0]));
-        assert_eq!(labels.place([20.0, 10.0], [(0.0, [50.0, 50.0]), (0.0, [50.0, 60.0])], ALL), Some([50.0, 60.0]));
+        assert_eq!(
+            labels.best_position([20.0, 10.0], [(0.0, [50.0, 50.0]), (0.0, [50.0, 60.0])], ALL),
+            Some([50.0, 60.0])
+        );
     }
 
     #[test]
     fn a_label_without_candidates_has_no_place() {
-        assert_eq!(Labels::default().place([1.0, 1.0], [], ALL), None);
+        assert_eq!(LabelPlacer::default().best_position([1.0, 1.0], [], ALL), None);
     }
 }

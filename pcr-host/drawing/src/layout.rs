@@ -3,13 +3,13 @@
 //! The corridor that a disc sweeps is the stroke of its path, as wide as the disc and with round ends; SVG draws this
 //! exactly. The corridor of a footprint is the union of the corridors of its discs.
 
-use super::axis::{Frame, ROOM_ABOVE, ROOM_BELOW, at_least_visible, room_at_left};
-use super::svg::{PathData, Pixels, Svg};
+use super::axis::{PlotArea, ROOM_ABOVE, ROOM_BELOW, at_least_visible, room_at_left};
+use super::svg::{PathData, PixelCoordinate, SvgWriter};
 use pcr_core::Interval;
-use pcr_formats::import::{Edge, Imported, Layout, Node};
+use pcr_formats::import::{ImportedLayout, Layout, LayoutEdge, LayoutNode};
 use pcr_formats::scenario::PathSegment;
-use pcr_formats::scenario::Placed;
-use pcr_planning::locks::{Rides, corridor};
+use pcr_formats::scenario::PlacedSegment;
+use pcr_planning::exclusion_table::{EdgeTraversals, corridor};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 use std::fmt::Display;
@@ -28,9 +28,9 @@ const NAME_SIZE: f64 = 9.0;
 
 /// A level of a layout that a vehicle travels.
 #[derive(Clone, Copy, Debug)]
-pub struct Ground<'a> {
+pub struct LayoutLevelView<'a> {
     /// The layout and the vehicle.
-    pub imported: &'a Imported,
+    pub imported: &'a ImportedLayout,
     /// Place of the level in [`Layout::levels`].
     pub level: usize,
 }
@@ -42,11 +42,11 @@ const POINT: f64 = 1e-6;
 pub(super) const STEPS: f64 = 1000.0;
 
 /// Lines and true arcs one after the other, by a map from metres to the picture; `flipped` where its y-axis points down.
-pub(super) fn path(curve: &[Placed], scale: f64, flipped: bool, at: impl Fn([f64; 2]) -> [f64; 2]) -> PathData {
+pub(super) fn path(curve: &[PlacedSegment], scale: f64, flipped: bool, at: impl Fn([f64; 2]) -> [f64; 2]) -> PathData {
     let mut data = PathData::default();
     for (k, piece) in curve.iter().enumerate() {
         if k == 0 {
-            data.move_to(at(piece.at));
+            data.move_to(at(piece.start));
         }
         match piece.shape {
             PathSegment::Line { .. } => data.line_to(at(piece.end())),
@@ -56,7 +56,7 @@ pub(super) fn path(curve: &[Placed], scale: f64, flipped: bool, at: impl Fn([f64
                 let parts = (sweep.abs() / (0.75 * PI)).ceil().max(1.0) as usize;
                 for part in 1..=parts {
                     let sweep = sweep * part as f64 / parts as f64;
-                    let end = Placed { shape: PathSegment::Arc { radius, sweep }, ..*piece }.end();
+                    let end = PlacedSegment { shape: PathSegment::Arc { radius, sweep }, ..*piece }.end();
                     data.arc_to(radius * scale, (sweep > 0.0) != flipped, at(end));
                 }
             }
@@ -66,23 +66,23 @@ pub(super) fn path(curve: &[Placed], scale: f64, flipped: bool, at: impl Fn([f64
 }
 
 /// The same for a page, in [`STEPS`], y up.
-pub(super) fn line(curve: &[Placed]) -> String {
+pub(super) fn line(curve: &[PlacedSegment]) -> String {
     path(curve, STEPS, false, |point| point.map(|x| x * STEPS)).to_string()
 }
 
 /// Box around what is on a level, with room for discs of this radius \[m\].
 pub(super) fn bounds(layout: &Layout, level: Option<usize>, radius: f64) -> [Interval<f64>; 2] {
     let on = |other: usize| level.is_none_or(|level| level == other);
-    let nodes = layout.nodes.iter().filter(|node| on(node.level)).map(|node| node.at);
+    let nodes = layout.nodes.iter().filter(|node| on(node.level)).map(|node| node.point);
     let pieces = layout.edges.iter().filter(|edge| on(layout.level(edge))).flat_map(|edge| &edge.curve);
     let points = pieces.flat_map(|piece| {
         // Arcs by points of which none is farther than an eighth of a turn from the next.
         (0..=8).map(|k| match piece.shape {
-            PathSegment::Line { .. } if k < 8 => piece.at,
+            PathSegment::Line { .. } if k < 8 => piece.start,
             PathSegment::Line { .. } => piece.end(),
             PathSegment::Arc { radius, sweep } => {
                 let sweep = sweep * f64::from(k) / 8.0;
-                Placed { shape: PathSegment::Arc { radius, sweep }, ..*piece }.end()
+                PlacedSegment { shape: PathSegment::Arc { radius, sweep }, ..*piece }.end()
             }
         })
     });
@@ -96,23 +96,23 @@ pub(super) fn bounds(layout: &Layout, level: Option<usize>, radius: f64) -> [Int
     range.map(room).map(|(lo, hi)| at_least_visible(Interval::new(lo, hi)))
 }
 
-impl Ground<'_> {
+impl LayoutLevelView<'_> {
     /// Box around what is on the level \[m\].
     pub(super) fn bounds(&self) -> [Interval<f64>; 2] {
-        bounds(&self.imported.layout, Some(self.level), self.reach())
+        bounds(&self.imported.layout, Some(self.level), self.radius_with_margin())
     }
 
     /// Radius of the disc around the vehicle with its margin \[m\].
-    fn reach(&self) -> f64 {
+    fn radius_with_margin(&self) -> f64 {
         self.imported.vehicle.radius + self.imported.vehicle.margin
     }
 
     /// Corridors and edges of the level, y up: what a page draws below the agents.
     pub(super) fn lines(&self) -> Value {
         let layout = &self.imported.layout;
-        let rides = Rides::new(self.imported);
+        let rides = EdgeTraversals::new(self.imported);
         let edges = || layout.edges.iter().filter(|edge| layout.level(edge) == self.level);
-        let corridors = edges().flat_map(|edge| corridor(&rides.on(edge)));
+        let corridors = edges().flat_map(|edge| corridor(&rides.on_edge(edge)));
         json!({
             "steps": STEPS,
             "corridors": corridors.map(|(curve, radius)| json!([line(&curve), 2.0 * radius * STEPS])).collect::<Vec<_>>(),
@@ -121,34 +121,34 @@ impl Ground<'_> {
     }
 
     /// The corridors, the edges and the nodes, these with their names if they are few.
-    pub(super) fn draw(&self, svg: &mut Svg, frame: &Frame, names: bool) {
+    pub(super) fn draw(&self, svg: &mut SvgWriter, frame: &PlotArea, names: bool) {
         let metre = 1.0 / frame.x.units_per_pixel();
         let layout = &self.imported.layout;
-        let edges: Vec<&Edge> = layout.edges.iter().filter(|edge| layout.level(edge) == self.level).collect();
+        let edges: Vec<&LayoutEdge> = layout.edges.iter().filter(|edge| layout.level(edge) == self.level).collect();
         let round: [(&str, &dyn Display); 3] =
             [("fill", &"none"), ("stroke-linecap", &"round"), ("stroke-linejoin", &"round")];
-        let stroke = |svg: &mut Svg, curve: &[Placed], width: f64| {
+        let stroke = |svg: &mut SvgWriter, curve: &[PlacedSegment], width: f64| {
             let data = path(curve, metre, true, |point| frame.at(point));
             if !data.is_empty() {
-                svg.empty("path", &[("d", &data), ("stroke-width", &Pixels(width))]);
+                svg.empty("path", &[("d", &data), ("stroke-width", &PixelCoordinate(width))]);
             }
         };
-        let rides = Rides::new(self.imported);
+        let rides = EdgeTraversals::new(self.imported);
         // One colour for all of them, however many lie on one another.
         svg.start("g", &[&round[..], &[("stroke", &"#2078bf"), ("opacity", &"0.18")]].concat());
-        for (curve, radius) in edges.iter().flat_map(|edge| corridor(&rides.on(edge))) {
+        for (curve, radius) in edges.iter().flat_map(|edge| corridor(&rides.on_edge(edge))) {
             stroke(svg, &curve, 2.0 * radius * metre);
         }
         svg.end();
         svg.start("g", &[&round[..], &[("stroke", &"#1d2125")]].concat());
         edges.iter().for_each(|edge| stroke(svg, &edge.curve, 1.1));
         svg.end();
-        let nodes: Vec<&Node> = layout.nodes.iter().filter(|node| node.level == self.level).collect();
-        let radius = Pixels(if names { 2.0 } else { 1.2 });
-        svg.start("g", &[("fill", &"#a94022"), ("font-size", &Pixels(NAME_SIZE))]);
+        let nodes: Vec<&LayoutNode> = layout.nodes.iter().filter(|node| node.level == self.level).collect();
+        let radius = PixelCoordinate(if names { 2.0 } else { 1.2 });
+        svg.start("g", &[("fill", &"#a94022"), ("font-size", &PixelCoordinate(NAME_SIZE))]);
         for node in &nodes {
-            let [x, y] = frame.at(node.at);
-            svg.empty("circle", &[("cx", &Pixels(x)), ("cy", &Pixels(y)), ("r", &radius)]);
+            let [x, y] = frame.at(node.point);
+            svg.empty("circle", &[("cx", &PixelCoordinate(x)), ("cy", &PixelCoordinate(y)), ("r", &radius)]);
             if names && nodes.len() <= NAMED {
                 let name = node.id.to_string();
                 // At the right edge names are on the other side, as far as their width is known.
@@ -166,7 +166,12 @@ impl Ground<'_> {
     }
 
     /// The same under another title, with more on it and room below, in pixels.
-    pub(super) fn picture_with(&self, title: &[String; 3], room: f64, more: impl FnOnce(&mut Svg, &Frame)) -> String {
+    pub(super) fn picture_with(
+        &self,
+        title: &[String; 3],
+        room: f64,
+        more: impl FnOnce(&mut SvgWriter, &PlotArea),
+    ) -> String {
         let [x, y] = self.bounds();
         let metre = SIDE / x.length().max(y.length());
         let fit = |values: Interval<f64>| {
@@ -176,9 +181,9 @@ impl Ground<'_> {
         };
         let ((width, x), (height, y)) = (fit(x), fit(y));
         let left = room_at_left(y, height);
-        let frame = Frame::new(x, y, [left, ROOM_ABOVE, left + width, ROOM_ABOVE + height]);
+        let frame = PlotArea::new(x, y, [left, ROOM_ABOVE, left + width, ROOM_ABOVE + height]);
         let [_, _, right, bottom] = frame.edges;
-        let mut svg = Svg::new(right + 12.0, bottom + ROOM_BELOW + room, &title.concat());
+        let mut svg = SvgWriter::new(right + 12.0, bottom + ROOM_BELOW + room, &title.concat());
         frame.draw_title(&mut svg, title.each_ref().map(String::as_str));
         frame.draw(&mut svg, ["x [m]", "y [m]"]);
         self.draw(&mut svg, &frame, true);
@@ -189,7 +194,7 @@ impl Ground<'_> {
 
     /// The name, with what stands before and after it.
     pub(super) fn title(&self) -> [String; 3] {
-        let Imported { layout, vehicle } = self.imported;
+        let ImportedLayout { layout, vehicle } = self.imported;
         let name = if layout.name.is_empty() { "Layout" } else { &layout.name };
         let level = match layout.levels.get(self.level).filter(|_| layout.levels.len() > 1) {
             Some(level) => format!(", {level}"),
@@ -197,7 +202,7 @@ impl Ground<'_> {
         };
         let of = match &vehicle.footprint {
             Some(footprint) => format!("a footprint of {} corners", footprint.polygon().len()),
-            None => format!("a disc of {} m", self.reach()),
+            None => format!("a disc of {} m", self.radius_with_margin()),
         };
         [String::new(), format!("{name}{level}"), format!(": corridors of {of}")]
     }

@@ -23,10 +23,10 @@
 mod audit;
 mod axis;
 mod contour;
+mod exclusion_page;
+pub mod fleet_page;
 mod labels;
 mod layout;
-pub mod live;
-mod locks;
 mod map;
 mod overlay;
 mod overview;
@@ -35,21 +35,21 @@ mod palette;
 pub mod plot;
 #[cfg(feature = "png")]
 mod png;
+mod region_scene;
 pub mod replay;
-mod scene;
 mod svg;
 mod template;
 mod workspace;
 
-pub use layout::Ground;
-pub use overlay::{Bar, Overlay};
-use pcr_exclusions::{Audit, Rules};
-use pcr_formats::import::Imported;
-use pcr_formats::output::{self, Kept};
+pub use layout::LayoutLevelView;
+pub use overlay::{BlockedBar, Overlay};
+use pcr_exclusions::{ExclusionAudit, ExclusionRules};
+use pcr_formats::import::ImportedLayout;
+use pcr_formats::output::{self, OverwriteError};
 use pcr_formats::scenario::Scenario;
+use pcr_planning::exclusion_table::ExclusionTable;
 use pcr_planning::fleet::{Fleet, build_ecm};
-use pcr_planning::locks::Locks;
-use scene::Scene;
+use region_scene::RegionScene;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -58,20 +58,20 @@ use std::{io, thread};
 
 /// What was written into a directory.
 #[derive(Clone, Debug, Default)]
-pub struct Written {
+pub struct WrittenFiles {
     /// The files.
     pub files: Vec<PathBuf>,
     /// Letters that are boxes as PNG, for want of a font of all languages; as SVG they are what they are.
     pub boxes: BTreeSet<char>,
 }
 
-impl Written {
-    fn add(&mut self, directory: &Path, drawn: Drawn) -> io::Result<()> {
+impl WrittenFiles {
+    fn add(&mut self, directory: &Path, drawn: PendingFiles) -> io::Result<()> {
         self.boxes.extend(drawn.boxes);
         for (name, content) in drawn.files {
             let file = directory.join(&name);
             // The folder is named by who writes into it.
-            output::write(&file, content).map_err(|error| match Kept::of(&error) {
+            output::write(&file, content).map_err(|error| match OverwriteError::from_io_error(&error) {
                 Some(_) => error,
                 None => io::Error::new(error.kind(), format!("{name}: {error}")),
             })?;
@@ -100,16 +100,16 @@ impl Written {
 pub fn write(
     scenario: &Scenario,
     egos: Option<&[usize]>,
-    ground: Option<Ground<'_>>,
+    ground: Option<LayoutLevelView<'_>>,
     directory: &Path,
     progress: &mut dyn FnMut(usize, usize),
-) -> io::Result<Written> {
+) -> io::Result<WrittenFiles> {
     with_scene(scenario, egos, ground, |scene| {
         output::folder(directory)?;
         let mut pictures = vec![Picture::Page, Picture::Overview, Picture::Workspace];
         pictures.extend(scene.egos().map(Picture::Map));
-        let mut written = vec![Written::default(); pictures.len()];
-        let (mut done, mut page) = (0, Drawn::default());
+        let mut written = vec![WrittenFiles::default(); pictures.len()];
+        let (mut done, mut page) = (0, PendingFiles::default());
         progress(done, pictures.len());
         draw_all(scene, &pictures, &mut |place, drawn| {
             match pictures[place] {
@@ -121,8 +121,8 @@ pub fn write(
             Ok(())
         })?;
         written[0].add(directory, page)?;
-        let mut all = Written::default();
-        for Written { files, boxes } in written {
+        let mut all = WrittenFiles::default();
+        for WrittenFiles { files, boxes } in written {
             all.files.extend(files);
             all.boxes.extend(boxes);
         }
@@ -136,9 +136,9 @@ pub fn write(
 ///
 /// # Errors
 /// Those of writing files.
-pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::Result<Written> {
-    let picture = |level: usize| Ground { imported, level }.picture();
-    write_levels(imported, directory, "layout", picture, ("locks.html", locks::page(imported, locks)))
+pub fn write_locks(imported: &ImportedLayout, locks: &ExclusionTable, directory: &Path) -> io::Result<WrittenFiles> {
+    let picture = |level: usize| LayoutLevelView { imported, level }.picture();
+    write_levels(imported, directory, "layout", picture, ("locks.html", exclusion_page::page(imported, locks)))
 }
 
 /// Writes the audit of a layout: a page with groups and gaps as layers, and a picture of each level. Returns the files.
@@ -146,31 +146,31 @@ pub fn write_locks(imported: &Imported, locks: &Locks, directory: &Path) -> io::
 /// # Errors
 /// Those of writing files.
 pub fn write_audit(
-    imported: &Imported,
-    locks: &Locks,
-    rules: &Rules,
-    audit: &Audit,
+    imported: &ImportedLayout,
+    locks: &ExclusionTable,
+    rules: &ExclusionRules,
+    audit: &ExclusionAudit,
     directory: &Path,
-) -> io::Result<Written> {
-    let picture = |level: usize| audit::picture(Ground { imported, level }, rules, audit);
+) -> io::Result<WrittenFiles> {
+    let picture = |level: usize| audit::picture(LayoutLevelView { imported, level }, rules, audit);
     write_levels(
         imported,
         directory,
         "audit",
         picture,
-        ("audit.html", locks::page_of_audit(imported, locks, rules, audit)),
+        ("audit.html", exclusion_page::page_of_audit(imported, locks, rules, audit)),
     )
 }
 
 /// Writes a picture of each level, from the second level on with its number, and a page with its name.
 fn write_levels(
-    imported: &Imported,
+    imported: &ImportedLayout,
     directory: &Path,
     name: &str,
     picture: impl Fn(usize) -> String,
     (page, content): (&str, String),
-) -> io::Result<Written> {
-    let mut drawn = Drawn::default();
+) -> io::Result<WrittenFiles> {
+    let mut drawn = PendingFiles::default();
     for level in 0..imported.layout.levels.len() {
         let name = if level > 0 { format!("{name}-{}", level + 1) } else { name.to_owned() };
         drawn.add_picture(&name, picture(level))?;
@@ -178,7 +178,7 @@ fn write_levels(
     // The page is last: before it is there, nobody looks at the pictures.
     drawn.files.push((page.to_owned(), content.into_bytes()));
     output::folder(directory)?;
-    let mut written = Written::default();
+    let mut written = WrittenFiles::default();
     written.add(directory, drawn)?;
     Ok(written)
 }
@@ -195,21 +195,21 @@ pub fn over(scenario: &Scenario, ego: usize, overlay: &Overlay<'_>) -> io::Resul
 ///
 /// # Errors
 /// As [`write()`].
-pub fn overview(scenario: &Scenario, ground: Option<Ground<'_>>) -> io::Result<String> {
+pub fn overview(scenario: &Scenario, ground: Option<LayoutLevelView<'_>>) -> io::Result<String> {
     with_scene(scenario, None, ground, |scene| Ok(overview::picture(scene)))
 }
 
 fn with_scene<T>(
     scenario: &Scenario,
     egos: Option<&[usize]>,
-    ground: Option<Ground<'_>>,
-    draw: impl FnOnce(&Scene<'_>) -> io::Result<T>,
+    ground: Option<LayoutLevelView<'_>>,
+    draw: impl FnOnce(&RegionScene<'_>) -> io::Result<T>,
 ) -> io::Result<T> {
     let invalid = |why: String| io::Error::new(io::ErrorKind::InvalidInput, why);
     let fleet = Fleet::<f64>::new(scenario).map_err(|refused| invalid(refused.to_string()))?;
     let motions = fleet.motions();
     let ecm = build_ecm(&motions).map_err(|full| invalid(full.to_string()))?;
-    draw(&Scene { scenario, motions: &motions, ecm: &ecm, egos, ground })
+    draw(&RegionScene { scenario, motions: &motions, ecm: &ecm, egos, ground })
 }
 
 /// One picture of a scenario.
@@ -224,14 +224,14 @@ enum Picture {
 
 /// Contents of files that are not written yet.
 #[derive(Clone, Debug, Default)]
-struct Drawn {
+struct PendingFiles {
     /// Names and contents.
     files: Vec<(String, Vec<u8>)>,
     /// Letters that the PNG pictures show as boxes.
     boxes: BTreeSet<char>,
 }
 
-impl Drawn {
+impl PendingFiles {
     /// Adds a picture as SVG, with the feature `png` also as PNG.
     fn add_picture(&mut self, name: &str, svg: String) -> io::Result<()> {
         #[cfg(feature = "png")]
@@ -247,8 +247,8 @@ impl Drawn {
 }
 
 impl Picture {
-    fn draw(self, scene: &Scene<'_>) -> io::Result<Drawn> {
-        let mut drawn = Drawn::default();
+    fn draw(self, scene: &RegionScene<'_>) -> io::Result<PendingFiles> {
+        let mut drawn = PendingFiles::default();
         match self {
             Self::Page => drawn.files.push(("index.html".to_owned(), page::page(scene).into_bytes())),
             Self::Overview => drawn.add_picture("overview", overview::picture(scene))?,
@@ -261,9 +261,9 @@ impl Picture {
 
 /// Draws on all cores; hands over each picture with its place in the list, in the order in which they are done.
 fn draw_all(
-    scene: &Scene<'_>,
+    scene: &RegionScene<'_>,
     pictures: &[Picture],
-    take: &mut dyn FnMut(usize, io::Result<Drawn>) -> io::Result<()>,
+    take: &mut dyn FnMut(usize, io::Result<PendingFiles>) -> io::Result<()>,
 ) -> io::Result<()> {
     let workers = thread::available_parallelism().map_or(1, usize::from).min(pictures.len());
     let next = AtomicUsize::new(0);

@@ -2,15 +2,15 @@
 //! trajectory between them.
 
 mod legend;
-mod names;
+mod region_labels;
 
-use super::axis::{Frame, ROOM_ABOVE, ROOM_BELOW, room_at_left};
+use super::axis::{PlotArea, ROOM_ABOVE, ROOM_BELOW, room_at_left};
 use super::contour::is_thin;
-use super::scene::{Scene, Shape};
-use super::svg::{PathData, Pixels, Svg};
+use super::region_scene::{DrawnRegion, RegionScene};
+use super::svg::{PathData, PixelCoordinate, SvgWriter};
 pub(super) use legend::Legend;
-pub(super) use names::Names;
 use pcr_core::Interval;
+pub(super) use region_labels::RegionLabels;
 
 /// Part of the time span that is shown before the first start and after the last arrival, for strips.
 const MARGIN: f64 = 0.045;
@@ -25,7 +25,7 @@ pub(super) const LABEL_SIZE: f64 = 9.5;
 const HATCHING: f64 = 5.0;
 
 /// What the map of an agent shows: times \[s\] and lengths \[m\].
-pub(super) fn spans(scene: &Scene<'_>, ego: usize) -> [Interval<f64>; 2] {
+pub(super) fn spans(scene: &RegionScene<'_>, ego: usize) -> [Interval<f64>; 2] {
     let widen = |values: Interval<f64>, part: f64| {
         // Of what has no extent something is to be seen all the same: a second, or a metre.
         let by = if values.length() > 0.0 { part * values.length() } else { 0.5 };
@@ -36,34 +36,41 @@ pub(super) fn spans(scene: &Scene<'_>, ego: usize) -> [Interval<f64>; 2] {
 }
 
 /// The map as a picture of its own.
-pub(super) fn picture(scene: &Scene<'_>, ego: usize) -> String {
+pub(super) fn picture(scene: &RegionScene<'_>, ego: usize) -> String {
     // A crowded map gets more room.
     let side = (300.0 + 8.0 * scene.count(ego) as f64).clamp(400.0, 800.0);
     let [time, length] = spans(scene, ego);
     let left = room_at_left(length, 0.8 * side);
     let edges = [left, ROOM_ABOVE, left + side, ROOM_ABOVE + 0.8 * side];
-    let frame = Frame::new(time, length, edges);
+    let frame = PlotArea::new(time, length, edges);
     let shapes = scene.shapes(ego, [frame.x.units_per_pixel(), frame.y.units_per_pixel()]);
-    let names = Names::new(scene, ego, &shapes, &frame, LABEL_SIZE);
+    let names = RegionLabels::new(scene, ego, &shapes, &frame, LABEL_SIZE);
     let legend = Legend::new(scene, ego, &shapes, names.left_out(), [8.0, edges[2]]);
     let (width, height) = (edges[2] + 12.0, edges[3] + ROOM_BELOW + legend.height() + 6.0);
-    let mut svg = Svg::new(width, height, &title(scene, ego, &shapes).concat());
+    let mut svg = SvgWriter::new(width, height, &title(scene, ego, &shapes).concat());
     draw(&mut svg, scene, ego, &shapes, &names, &frame);
     legend.draw(&mut svg, edges[3] + ROOM_BELOW);
     svg.finish()
 }
 
 /// The name of the agent, with what stands before and after it.
-fn title(scene: &Scene<'_>, ego: usize, shapes: &[Shape]) -> [String; 3] {
+fn title(scene: &RegionScene<'_>, ego: usize, shapes: &[DrawnRegion]) -> [String; 3] {
     let regions = match shapes.len() {
         1 => ": 1 region".to_owned(),
         count => format!(": {count} regions"),
     };
-    ["Extended collision map of agent ".to_owned(), scene.called(ego), regions]
+    ["Extended collision map of agent ".to_owned(), scene.display_name(ego), regions]
 }
 
 /// The map in a frame.
-pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, ego: usize, shapes: &[Shape], names: &Names, frame: &Frame) {
+pub(super) fn draw(
+    svg: &mut SvgWriter,
+    scene: &RegionScene<'_>,
+    ego: usize,
+    shapes: &[DrawnRegion],
+    names: &RegionLabels,
+    frame: &PlotArea,
+) {
     frame.draw_title(svg, title(scene, ego, shapes).each_ref().map(String::as_str));
     frame.draw(svg, ["time t [s]", "travelled length l [m]"]);
     hatchings(svg, scene, shapes.iter().filter(|shape| !shape.before.is_empty() || !shape.after.is_empty()));
@@ -79,7 +86,7 @@ pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, ego: usize, shapes: &[Shape
 }
 
 /// One hatching for each colour in use.
-fn hatchings<'s>(svg: &mut Svg, scene: &Scene<'_>, shapes: impl Iterator<Item = &'s Shape>) {
+fn hatchings<'s>(svg: &mut SvgWriter, scene: &RegionScene<'_>, shapes: impl Iterator<Item = &'s DrawnRegion>) {
     let mut others: Vec<usize> = shapes.map(|shape| shape.other).collect();
     others.sort_unstable();
     others.dedup();
@@ -89,7 +96,7 @@ fn hatchings<'s>(svg: &mut Svg, scene: &Scene<'_>, shapes: impl Iterator<Item = 
     svg.start("defs", &[]);
     for other in others {
         let colour = scene.colour(other);
-        let side = Pixels(HATCHING);
+        let side = PixelCoordinate(HATCHING);
         svg.start(
             "pattern",
             &[
@@ -108,7 +115,7 @@ fn hatchings<'s>(svg: &mut Svg, scene: &Scene<'_>, shapes: impl Iterator<Item = 
 }
 
 /// What is taken for ever by another agent that stands at its start or end.
-fn draw_strips(svg: &mut Svg, scene: &Scene<'_>, shape: &Shape, frame: &Frame) {
+fn draw_strips(svg: &mut SvgWriter, scene: &RegionScene<'_>, shape: &DrawnRegion, frame: &PlotArea) {
     let Some(motion) = scene.motions.get(shape.other) else {
         return;
     };
@@ -124,10 +131,10 @@ fn draw_strips(svg: &mut Svg, scene: &Scene<'_>, shape: &Shape, frame: &Frame) {
             svg.empty(
                 "rect",
                 &[
-                    ("x", &Pixels(from)),
-                    ("y", &Pixels(middle - height / 2.0)),
-                    ("width", &Pixels((to - from).max(0.0))),
-                    ("height", &Pixels(height)),
+                    ("x", &PixelCoordinate(from)),
+                    ("y", &PixelCoordinate(middle - height / 2.0)),
+                    ("width", &PixelCoordinate((to - from).max(0.0))),
+                    ("height", &PixelCoordinate(height)),
                     ("fill", &format_args!("url(#stands-{})", shape.other)),
                     ("stroke", &colour),
                     ("stroke-width", &"0.5"),
@@ -138,7 +145,7 @@ fn draw_strips(svg: &mut Svg, scene: &Scene<'_>, shape: &Shape, frame: &Frame) {
     }
 }
 
-fn draw_region(svg: &mut Svg, scene: &Scene<'_>, shape: &Shape, frame: &Frame) {
+fn draw_region(svg: &mut SvgWriter, scene: &RegionScene<'_>, shape: &DrawnRegion, frame: &PlotArea) {
     let colour = scene.colour(shape.other);
     let (mut areas, mut lines) = (PathData::default(), PathData::default());
     for contour in &shape.outline {
@@ -157,7 +164,7 @@ fn draw_region(svg: &mut Svg, scene: &Scene<'_>, shape: &Shape, frame: &Frame) {
 }
 
 /// The ego's own motion: parabolas, and lines where it stands.
-fn draw_trajectory(svg: &mut Svg, scene: &Scene<'_>, ego: usize, frame: &Frame) {
+fn draw_trajectory(svg: &mut SvgWriter, scene: &RegionScene<'_>, ego: usize, frame: &PlotArea) {
     let Some(motion) = scene.motions.get(ego) else {
         return;
     };

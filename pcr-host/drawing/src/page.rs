@@ -4,17 +4,17 @@
 //! discs are exactly at their places at every time of the slider. Outlines of regions are computed by this module and
 //! drawn by the page.
 
-use super::axis::Frame;
-use super::contour::{Outline, is_thin};
-use super::map::{Names, THIN, spans};
-use super::scene::{Scene, Shape};
-use super::template::Page;
-use pcr_core::{Bounds, Crossing, Curve, Interval, Motion, Turn};
+use super::axis::PlotArea;
+use super::contour::{RegionOutline, is_thin};
+use super::map::{RegionLabels, THIN, spans};
+use super::region_scene::{DrawnRegion, RegionScene};
+use super::template::PageTemplate;
+use pcr_core::{Aabb, Crossing, Curve, Interval, Motion, TurnSide};
 use pcr_formats::scenario::Agent;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
-const PAGE: Page = Page {
+const PAGE: PageTemplate = PageTemplate {
     kind: "collision regions",
     connect: "",
     body: include_str!("page/page.html"),
@@ -32,13 +32,13 @@ const PIXELS: f64 = 700.0;
 const LABEL_SIZE: f64 = 14.0;
 
 /// The page.
-pub(super) fn page(scene: &Scene<'_>) -> String {
+pub(super) fn page(scene: &RegionScene<'_>) -> String {
     let name = if scene.scenario.name.is_empty() { "Collision regions" } else { &scene.scenario.name };
     PAGE.fill(name, &data(scene))
 }
 
-fn data(scene: &Scene<'_>) -> Value {
-    let Bounds { x, y } = scene.bounds();
+fn data(scene: &RegionScene<'_>) -> Value {
+    let Aabb { x, y } = scene.bounds();
     let agents = scene.motions.iter().enumerate().map(|(place, motion)| agent(scene, place, motion));
     let mut maps = vec![Value::Null; scene.motions.len()];
     for ego in scene.egos() {
@@ -64,13 +64,13 @@ fn interval(interval: Interval<f64>) -> Value {
 
 /// The closed forms of a motion: segments as \[from, length, x, y, heading, bend\] with the radius of an arc as bend,
 /// positive to the left, 0 on a line; phases as \[time, duration, length, speed before, speed after, acceleration\].
-fn agent(scene: &Scene<'_>, place: usize, motion: &Motion<'_, f64>) -> Value {
+fn agent(scene: &RegionScene<'_>, place: usize, motion: &Motion<'_, f64>) -> Value {
     let segments = motion.path().segments().iter().map(|segment| {
         let start = segment.point_at(0.0);
         let bend = match segment.curve() {
             Curve::Line => 0.0,
-            Curve::Arc { radius, turn: Turn::Left } => radius,
-            Curve::Arc { radius, turn: Turn::Right } => -radius,
+            Curve::Arc { radius, turn: TurnSide::Left } => radius,
+            Curve::Arc { radius, turn: TurnSide::Right } => -radius,
         };
         json!([segment.from(), segment.length(), start.x, start.y, segment.heading_at(0.0).0, bend])
     });
@@ -85,7 +85,7 @@ fn agent(scene: &Scene<'_>, place: usize, motion: &Motion<'_, f64>) -> Value {
     json!({
         // Beyond 2⁵³ a number would lose its last digits in the browser.
         "id": scene.id(place).to_string(),
-        "name": scene.called(place),
+        "name": scene.display_name(place),
         "radius": motion.radius(),
         "discs": discs,
         "outline": footprint.map_or(&[][..], |footprint| footprint.polygon()),
@@ -121,11 +121,11 @@ fn covering(agent: &Agent) -> Vec<[f64; 5]> {
     all
 }
 
-fn map(scene: &Scene<'_>, ego: usize) -> Value {
+fn map(scene: &RegionScene<'_>, ego: usize) -> Value {
     let [time, length] = spans(scene, ego);
-    let frame = Frame::new(time, length, [0.0, 0.0, PIXELS, PIXELS]);
+    let frame = PlotArea::new(time, length, [0.0, 0.0, PIXELS, PIXELS]);
     let shapes = scene.shapes(ego, [frame.x.units_per_pixel(), frame.y.units_per_pixel()]);
-    let names = Names::new(scene, ego, &shapes, &frame, LABEL_SIZE);
+    let names = RegionLabels::new(scene, ego, &shapes, &frame, LABEL_SIZE);
     let regions = shapes.iter().zip(&names.places).map(|(shape, place)| region(shape, *place, &frame));
     json!({
         "time": interval(frame.x.values()),
@@ -134,7 +134,7 @@ fn map(scene: &Scene<'_>, ego: usize) -> Value {
     })
 }
 
-fn region(shape: &Shape, place: Option<[f64; 2]>, frame: &Frame) -> Value {
+fn region(shape: &DrawnRegion, place: Option<[f64; 2]>, frame: &PlotArea) -> Value {
     let strips = |strips: &[Interval<f64>]| strips.iter().copied().map(interval).collect::<Vec<_>>();
     let thin =
         |contour: &Vec<[f64; 2]>| is_thin(&contour.iter().map(|point| frame.at(*point)).collect::<Vec<_>>(), THIN);
@@ -157,8 +157,8 @@ fn region(shape: &Shape, place: Option<[f64; 2]>, frame: &Frame) -> Value {
 fn crossing(crossing: &Crossing<f64>) -> Value {
     let bend = |curve: Curve<f64>| match curve {
         Curve::Line => None,
-        Curve::Arc { radius, turn: Turn::Left } => Some(radius),
-        Curve::Arc { radius, turn: Turn::Right } => Some(-radius),
+        Curve::Arc { radius, turn: TurnSide::Left } => Some(radius),
+        Curve::Arc { radius, turn: TurnSide::Right } => Some(-radius),
     };
     json!({
         "type": crossing.piece_type.to_string(),
@@ -173,7 +173,7 @@ fn crossing(crossing: &Crossing<f64>) -> Value {
 }
 
 /// SVG path data of an outline on the grid: steps from point to point, which are short numbers.
-fn path(outline: &Outline, frame: &Frame) -> String {
+fn path(outline: &RegionOutline, frame: &PlotArea) -> String {
     let on_grid = |pixel: f64| (pixel / PIXELS * GRID).round() as i64;
     let mut data = String::new();
     for contour in outline {
@@ -205,7 +205,7 @@ mod tests {
         let fleet = Fleet::<f64>::new(&scenario).unwrap();
         let motions = fleet.motions();
         let ecm = build_ecm(&motions).unwrap();
-        page(&Scene { scenario: &scenario, motions: &motions, ecm: &ecm, egos: None, ground: None })
+        page(&RegionScene { scenario: &scenario, motions: &motions, ecm: &ecm, egos: None, ground: None })
     }
 
     fn data_of(page: &str) -> Value {
@@ -225,7 +225,7 @@ mod tests {
 
     #[test]
     fn the_page_asks_for_nothing() {
-        let page = page_of(pcr_formats::paper::SCENARIO);
+        let page = page_of(pcr_formats::paper_example::SCENARIO);
         let namespace = "http://www.w3.org/2000/svg";
         assert_eq!(page.matches("http").count(), page.matches(namespace).count() + page.matches("http-equiv").count());
         for request in ["src=", "href=", "@import", "url(", "fetch(", "import("] {
@@ -236,7 +236,7 @@ mod tests {
 
     #[test]
     fn the_page_holds_all_regions_with_descriptors() {
-        let data = data_of(&page_of(pcr_formats::paper::SCENARIO));
+        let data = data_of(&page_of(pcr_formats::paper_example::SCENARIO));
         let maps = data["maps"].as_array().unwrap();
         let regions = |map: &Value| map["regions"].as_array().unwrap().len();
         assert_eq!(maps.iter().map(regions).sum::<usize>(), 136);
@@ -266,7 +266,7 @@ mod tests {
     #[test]
     fn outlines_are_steps_on_the_grid() {
         let unit = Interval::new(0.0, 1.0);
-        let frame = Frame::new(unit, unit, [0.0, 0.0, PIXELS, PIXELS]);
+        let frame = PlotArea::new(unit, unit, [0.0, 0.0, PIXELS, PIXELS]);
         let outline = vec![vec![[0.0, 1.0], [0.5, 1.0], [0.5, 0.5]], vec![[1.0, 0.0]]];
         assert_eq!(path(&outline, &frame), "M0 0l10000 0 0 10000 0 0zM20000 20000l0 0z");
     }

@@ -2,11 +2,11 @@
 
 use super::axis::{AXIS_SIZE, TICK_SIZE};
 use super::palette::{Colour, colour};
-use super::svg::{PathData, Pixels, Svg, text_width};
+use super::svg::{PathData, PixelCoordinate, SvgWriter, text_width};
 
 /// Some points, and whether a line goes through them.
 #[derive(Clone, Debug)]
-pub struct Series {
+pub struct DataSeries {
     /// As in the legend.
     pub name: String,
     /// What is drawn.
@@ -23,7 +23,7 @@ pub struct Chart<'a> {
     /// Titles of the axes.
     pub axes: [&'a str; 2],
     /// What is drawn.
-    pub series: Vec<Series>,
+    pub series: Vec<DataSeries>,
 }
 
 /// Size of the plot \[px\].
@@ -39,13 +39,13 @@ const LEGEND: [f64; 2] = [14.0, 15.0];
 const MARGIN: f64 = 0.15;
 
 /// Whole powers of ten, as exponents, and where they lie \[px\].
-struct Decades {
+struct LogAxis {
     lo: f64,
     hi: f64,
     pixels: [f64; 2],
 }
 
-impl Decades {
+impl LogAxis {
     fn new(values: impl Iterator<Item = f64> + Clone, pixels: [f64; 2]) -> Self {
         let exponents = values.filter(|value| *value > 0.0).map(f64::log10);
         let lo = exponents.clone().fold(f64::INFINITY, f64::min);
@@ -88,11 +88,11 @@ impl Chart<'_> {
         let [left, top] = ROOM;
         let (right, bottom) = (left + SIZE[0], top + SIZE[1]);
         let values = |axis: usize| self.series.iter().flat_map(move |s| s.points.iter().map(move |point| point[axis]));
-        let (x, y) = (Decades::new(values(0), [left, right]), Decades::new(values(1), [bottom, top]));
+        let (x, y) = (LogAxis::new(values(0), [left, right]), LogAxis::new(values(1), [bottom, top]));
         let widest = self.series.iter().map(|series| text_width(&series.name, TICK_SIZE)).fold(0.0, f64::max);
         let height = (bottom + 40.0).max(top + LEGEND[1] * self.series.len() as f64 + 10.0);
-        let mut svg = Svg::new(right + 2.0 * LEGEND[0] + 8.0 + widest, height, self.title);
-        let title_size = Pixels(AXIS_SIZE + 0.5);
+        let mut svg = SvgWriter::new(right + 2.0 * LEGEND[0] + 8.0 + widest, height, self.title);
+        let title_size = PixelCoordinate(AXIS_SIZE + 0.5);
         svg.label([(left + right) / 2.0, top - 10.0], "middle", &[("font-size", &title_size)], self.title);
         self.frame(&mut svg, &x, &y);
         for (place, series) in self.series.iter().enumerate() {
@@ -100,15 +100,20 @@ impl Chart<'_> {
             draw_series(&mut svg, &points, series.line, place);
             let at = [right + LEGEND[0], top + LEGEND[1] * (place as f64 + 0.5)];
             mark(&mut svg, at, place);
-            svg.label([at[0] + 10.0, at[1] + 3.5], "start", &[("font-size", &Pixels(TICK_SIZE))], &series.name);
+            svg.label(
+                [at[0] + 10.0, at[1] + 3.5],
+                "start",
+                &[("font-size", &PixelCoordinate(TICK_SIZE))],
+                &series.name,
+            );
         }
         svg.finish()
     }
 
-    fn frame(&self, svg: &mut Svg, x: &Decades, y: &Decades) {
+    fn frame(&self, svg: &mut SvgWriter, x: &LogAxis, y: &LogAxis) {
         let ([left, right], [bottom, top]) = (x.pixels, y.pixels);
         let mut grid = PathData::default();
-        svg.start("g", &[("font-size", &Pixels(TICK_SIZE)), ("fill", &"#3a3f45")]);
+        svg.start("g", &[("font-size", &PixelCoordinate(TICK_SIZE)), ("fill", &"#3a3f45")]);
         for (value, label) in x.ticks(8.0) {
             grid.move_to([x.at(value), top]);
             grid.line_to([x.at(value), bottom]);
@@ -121,8 +126,8 @@ impl Chart<'_> {
         }
         svg.end();
         svg.empty("path", &[("d", &grid), ("stroke", &"#dfe3e6"), ("stroke-width", &"0.6"), ("fill", &"none")]);
-        let (width, height) = (Pixels(right - left), Pixels(bottom - top));
-        let corner = (Pixels(left), Pixels(top));
+        let (width, height) = (PixelCoordinate(right - left), PixelCoordinate(bottom - top));
+        let corner = (PixelCoordinate(left), PixelCoordinate(top));
         svg.empty(
             "rect",
             &[
@@ -136,15 +141,15 @@ impl Chart<'_> {
             ],
         );
         let middle = [(left + right) / 2.0, (top + bottom) / 2.0];
-        svg.start("g", &[("font-size", &Pixels(AXIS_SIZE)), ("fill", &"#1d2125")]);
+        svg.start("g", &[("font-size", &PixelCoordinate(AXIS_SIZE)), ("fill", &"#1d2125")]);
         svg.label([middle[0], bottom + 31.0], "middle", &[], self.axes[0]);
-        let turned = format!("rotate(-90 {} {})", Pixels(16.0), Pixels(middle[1]));
+        let turned = format!("rotate(-90 {} {})", PixelCoordinate(16.0), PixelCoordinate(middle[1]));
         svg.label([16.0, middle[1]], "middle", &[("transform", &turned)], self.axes[1]);
         svg.end();
     }
 }
 
-fn draw_series(svg: &mut Svg, points: &[[f64; 2]], line: bool, place: usize) {
+fn draw_series(svg: &mut SvgWriter, points: &[[f64; 2]], line: bool, place: usize) {
     if line {
         let mut path = PathData::default();
         for (k, point) in points.iter().enumerate() {
@@ -159,15 +164,15 @@ fn draw_series(svg: &mut Svg, points: &[[f64; 2]], line: bool, place: usize) {
 }
 
 /// A disc, a square, a triangle or a rhomb, so that nobody has to tell colours apart.
-fn mark(svg: &mut Svg, [x, y]: [f64; 2], place: usize) {
+fn mark(svg: &mut SvgWriter, [x, y]: [f64; 2], place: usize) {
     const R: f64 = 4.0;
     let corners: &[[f64; 2]] = match place % 4 {
         1 => &[[-0.85, -0.85], [0.85, -0.85], [0.85, 0.85], [-0.85, 0.85]],
         2 => &[[0.0, -1.1], [1.0, 0.8], [-1.0, 0.8]],
         3 => &[[0.0, -1.2], [1.2, 0.0], [0.0, 1.2], [-1.2, 0.0]],
         _ => {
-            let (cx, cy) = (Pixels(x), Pixels(y));
-            svg.empty("circle", &[("cx", &cx), ("cy", &cy), ("r", &Pixels(R)), ("fill", &colour(place))]);
+            let (cx, cy) = (PixelCoordinate(x), PixelCoordinate(y));
+            svg.empty("circle", &[("cx", &cx), ("cy", &cy), ("r", &PixelCoordinate(R)), ("fill", &colour(place))]);
             return;
         }
     };
@@ -188,7 +193,7 @@ mod tests {
 
     #[test]
     fn decades_hold_all_values_and_zero_is_on_the_border() {
-        let decades = Decades::new([0.3, 50.0, 0.0].into_iter(), [0.0, 300.0]);
+        let decades = LogAxis::new([0.3, 50.0, 0.0].into_iter(), [0.0, 300.0]);
         assert_eq!((decades.lo, decades.hi), (-1.0, 2.0));
         assert_eq!((decades.at(0.1), decades.at(100.0), decades.at(0.0)), (0.0, 300.0, 0.0));
     }

@@ -70,7 +70,7 @@ fn encode(pixmap: &Pixmap) -> io::Result<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::svg::Svg;
+    use crate::svg::SvgWriter;
 
     /// The rows of a picture, in red, green and blue.
     fn pixels(svg: &str) -> Vec<Vec<[u8; 3]>> {
@@ -82,7 +82,7 @@ mod tests {
 
     /// A picture of 20 by 10 pixels with this text in the middle.
     fn text(text: &str, anchor: &'static str) -> String {
-        let mut svg = Svg::new(20.0, 10.0, "");
+        let mut svg = SvgWriter::new(20.0, 10.0, "");
         svg.label([10.0, 10.0], anchor, &[("font-size", &"10")], text);
         svg.finish()
     }
@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn pictures_are_on_white_and_large_ones_are_scaled() {
-        let pixels = pixels(&Svg::new(8192.0, 10.0, "").finish());
+        let pixels = pixels(&SvgWriter::new(8192.0, 10.0, "").finish());
         assert_eq!((pixels.len(), pixels[0].len()), (10, 8192));
         assert!(pixels.concat().iter().all(|pixel| *pixel == [255; 3]));
     }

@@ -5,14 +5,16 @@
 
 use crate::contour::trace;
 use crate::palette::colour;
-use crate::template::Page;
+use crate::template::PageTemplate;
 use pcr_core::{Motion, RegionRef};
-use pcr_execution::simulate::{Controller, FRAME, Journey, Outcome, Snapshot, Task, Vector};
-use pcr_planning::failure::Failure;
+use pcr_execution::simulate::{
+    ControllerKind, FRAME, MissionRecord, PlanSnapshot, PlaneVector, SimulationRun, SimulationTask,
+};
+use pcr_planning::failure::ComputationError;
 use pcr_planning::fleet::build_ecm;
 use serde_json::{Value, json};
 
-const PAGE: Page = Page {
+const PAGE: PageTemplate = PageTemplate {
     kind: "replay",
     connect: "",
     body: include_str!("replay/replay.html"),
@@ -33,7 +35,7 @@ const PIXELS: f64 = 500.0;
 ///
 /// # Errors
 /// [`Failure::Robot`] and [`Failure::Full`] where there is no map of a plan.
-pub fn page(task: &Task, outcomes: &[Outcome]) -> Result<String, Failure> {
+pub fn page(task: &SimulationTask, outcomes: &[SimulationRun]) -> Result<String, ComputationError> {
     let name = if task.name.is_empty() { "Simulation" } else { &task.name };
     Ok(PAGE.fill(name, &data(task, outcomes)?))
 }
@@ -43,7 +45,7 @@ fn rounded(length: f64) -> i64 {
 }
 
 /// x, y, x, y, ... in units.
-fn flat(points: impl IntoIterator<Item = Vector>) -> Vec<i64> {
+fn flat(points: impl IntoIterator<Item = PlaneVector>) -> Vec<i64> {
     points.into_iter().flatten().map(rounded).collect()
 }
 
@@ -52,10 +54,10 @@ fn short(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }
 
-fn data(task: &Task, outcomes: &[Outcome]) -> Result<Value, Failure> {
+fn data(task: &SimulationTask, outcomes: &[SimulationRun]) -> Result<Value, ComputationError> {
     let robots = task.robots.iter().enumerate().map(|(place, robot)| {
         // Beyond 2⁵³ a number would lose its last digits in the browser.
-        let (id, name) = (robot.id.to_string(), task.labels.called(robot.id));
+        let (id, name) = (robot.id.to_string(), task.labels.display_name(robot.id));
         let ways = robot.missions.iter().map(|mission| {
             let course = &mission.course;
             flat((0..=POINTS).map(|k| course.point_at(course.length() * k as f64 / POINTS as f64)))
@@ -75,11 +77,11 @@ fn data(task: &Task, outcomes: &[Outcome]) -> Result<Value, Failure> {
     }))
 }
 
-fn run(task: &Task, outcome: &Outcome) -> Result<Value, Failure> {
+fn run(task: &SimulationTask, outcome: &SimulationRun) -> Result<Value, ComputationError> {
     let plans = outcome.snapshots.iter().map(|snapshot| plan(task, snapshot)).collect::<Result<Vec<_>, _>>()?;
     let tracks = outcome.trace.positions.iter().map(|track| flat(track.iter().copied()));
     let travelled = outcome.trace.travelled.iter().map(|track| track.iter().map(|l| rounded(*l)).collect::<Vec<_>>());
-    let bound = outcome.run.controller == Controller::Pcr;
+    let bound = outcome.run.controller == ControllerKind::Pcr;
     let collisions = outcome
         .run
         .collisions
@@ -97,9 +99,9 @@ fn run(task: &Task, outcome: &Outcome) -> Result<Value, Failure> {
 }
 
 /// Each with the number of its way among those of its robot, whose missions follow one another.
-fn journeys(task: &Task, journeys: &[Journey]) -> Vec<Value> {
+fn journeys(task: &SimulationTask, journeys: &[MissionRecord]) -> Vec<Value> {
     let mut begun = vec![0_usize; task.robots.len()];
-    let journey = |journey: &Journey| {
+    let journey = |journey: &MissionRecord| {
         let (robot, number) = (task.robots.get(journey.robot)?, begun.get_mut(journey.robot)?);
         let way = *number;
         *number += 1;
@@ -110,9 +112,9 @@ fn journeys(task: &Task, journeys: &[Journey]) -> Vec<Value> {
 }
 
 /// The map of every robot that moves.
-fn plan(task: &Task, snapshot: &Snapshot) -> Result<Value, Failure> {
+fn plan(task: &SimulationTask, snapshot: &PlanSnapshot) -> Result<Value, ComputationError> {
     let robots = task.robots.iter().zip(snapshot.drives.iter().zip(&snapshot.radii));
-    let motions = robots.map(|(robot, (drive, &radius))| drive.motion(radius).ok_or(Failure::Robot(robot.id)));
+    let motions = robots.map(|(robot, (drive, &radius))| drive.motion(radius).ok_or(ComputationError::Robot(robot.id)));
     let motions = motions.collect::<Result<Vec<Motion<'_, f64>>, _>>()?;
     let ecm = build_ecm(&motions)?;
     let end = motions.iter().map(|motion| motion.time().hi).fold(snapshot.time, f64::max);
@@ -149,7 +151,7 @@ fn region(region: &RegionRef<'_, f64>, ego: &Motion<'_, f64>, pixel: [f64; 2], o
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pcr_execution::simulate::{Disturbance, Settings, run};
+    use pcr_execution::simulate::{ClosedLoopOptions, Disturbance, run};
     use pcr_formats::scenario::Scenario;
 
     #[test]
@@ -157,12 +159,12 @@ mod tests {
         let agents = r#"{"agents":[
             {"id":3,"radius":0.3,"v_max":1,"a_max":1,"start":{"x":-2,"y":0,"heading":0},"path":[{"kind":"line","length":4}]},
             {"id":8,"radius":0.3,"v_max":1,"a_max":1,"start":{"x":0,"y":-2,"heading":1.57},"path":[{"kind":"line","length":4}]}]}"#;
-        let task = Task::of(&Scenario::from_json(agents).expect("a scenario")).expect("a task");
+        let task = SimulationTask::from_scenario(&Scenario::from_json(agents).expect("a scenario")).expect("a task");
         let disturbance = Disturbance { noise: 0.0, slip: 0.0, delay: 0.0, drift: 0.0 };
-        let settings = Settings { seed: 1, replan: 2.0, disturbance };
-        let mut outcome = run(&task, Controller::Pcr, settings).expect("a run");
+        let settings = ClosedLoopOptions { seed: 1, replan: 2.0, disturbance };
+        let mut outcome = run(&task, ControllerKind::Pcr, settings).expect("a run");
         assert!(page(&task, std::slice::from_ref(&outcome)).is_ok_and(|page| page.contains("outline")));
         outcome.snapshots[0].radii[1] = f64::NAN;
-        assert_eq!(page(&task, &[outcome]), Err(Failure::Robot(8)));
+        assert_eq!(page(&task, &[outcome]), Err(ComputationError::Robot(8)));
     }
 }

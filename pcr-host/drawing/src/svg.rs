@@ -10,9 +10,9 @@ const DECIMALS: usize = 2;
 pub(super) const FONT: &str = "DejaVu Sans, Verdana, sans-serif";
 
 /// A text as XML writes it. Characters that XML 1.0 does not know, or that would change the direction of text, become U+FFFD.
-pub(crate) struct Escaped<'a>(pub(crate) &'a str);
+pub(crate) struct XmlEscaped<'a>(pub(crate) &'a str);
 
-impl Display for Escaped<'_> {
+impl Display for XmlEscaped<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for character in self.0.chars() {
             match character {
@@ -33,9 +33,9 @@ impl Display for Escaped<'_> {
 
 /// A coordinate \[px\] with [`DECIMALS`] decimals at most. What is not finite is written as 0.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pixels(pub(super) f64);
+pub(super) struct PixelCoordinate(pub(super) f64);
 
-impl Display for Pixels {
+impl Display for PixelCoordinate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let value = if self.0.is_finite() { self.0 } else { 0.0 };
         let text = format!("{value:.DECIMALS$}");
@@ -49,12 +49,12 @@ pub(super) type Attribute<'a> = (&'a str, &'a dyn Display);
 
 /// A picture in the making.
 #[derive(Debug)]
-pub(super) struct Svg {
+pub(super) struct SvgWriter {
     text: String,
     open: Vec<&'static str>,
 }
 
-impl Svg {
+impl SvgWriter {
     /// An empty picture of this size \[px\], rounded up to whole pixels, on white.
     pub(super) fn new(width: f64, height: f64, title: &str) -> Self {
         let (width, height) = (width.ceil(), height.ceil());
@@ -63,9 +63,9 @@ impl Svg {
             "svg",
             &[
                 ("xmlns", &"http://www.w3.org/2000/svg"),
-                ("width", &Pixels(width)),
-                ("height", &Pixels(height)),
-                ("viewBox", &format_args!("0 0 {} {}", Pixels(width), Pixels(height))),
+                ("width", &PixelCoordinate(width)),
+                ("height", &PixelCoordinate(height)),
+                ("viewBox", &format_args!("0 0 {} {}", PixelCoordinate(width), PixelCoordinate(height))),
                 ("font-family", &FONT),
                 ("role", &"img"),
             ],
@@ -97,7 +97,7 @@ impl Svg {
 
     /// A text that starts, is centred or ends at a point of its base line, as `anchor` says.
     pub(super) fn label(&mut self, [x, y]: [f64; 2], anchor: &str, more: &[Attribute<'_>], content: &str) {
-        let (x, y) = (Pixels(x), Pixels(y));
+        let (x, y) = (PixelCoordinate(x), PixelCoordinate(y));
         let mut attributes: Vec<Attribute<'_>> = vec![("x", &x), ("y", &y)];
         if anchor != "start" {
             attributes.push(("text-anchor", &anchor));
@@ -110,7 +110,7 @@ impl Svg {
 
     /// The text of the open element.
     pub(super) fn characters(&mut self, content: &str) {
-        self.text.push_str(&Escaped(content).to_string());
+        self.text.push_str(&XmlEscaped(content).to_string());
     }
 
     /// The finished picture.
@@ -124,7 +124,7 @@ impl Svg {
     fn tag(&mut self, name: &str, attributes: &[Attribute<'_>], end: &str) {
         self.text.extend(["<", name]);
         for (name, value) in attributes {
-            self.text.extend([" ", name, "=\"", &Escaped(&value.to_string()).to_string(), "\""]);
+            self.text.extend([" ", name, "=\"", &XmlEscaped(&value.to_string()).to_string(), "\""]);
         }
         self.text.push_str(end);
     }
@@ -146,7 +146,7 @@ impl PathData {
             if k > 0 {
                 self.0.push(' ');
             }
-            self.0.push_str(&Pixels(*number).to_string());
+            self.0.push_str(&PixelCoordinate(*number).to_string());
         }
     }
 
@@ -237,7 +237,7 @@ mod tests {
 
     #[test]
     fn texts_and_attributes_are_escaped() {
-        let mut svg = Svg::new(10.0, 10.0, "a < b & \"c\" \u{1} ]]>");
+        let mut svg = SvgWriter::new(10.0, 10.0, "a < b & \"c\" \u{1} ]]>");
         svg.label([1.0, 2.0], "middle", &[("class", &"\"<'&")], "1 < 2 & 3 > 2");
         let text = svg.finish();
         let document = roxmltree::Document::parse(&text).unwrap();
@@ -249,7 +249,7 @@ mod tests {
 
     #[test]
     fn elements_that_were_left_open_are_closed() {
-        let mut svg = Svg::new(10.0, 10.0, "");
+        let mut svg = SvgWriter::new(10.0, 10.0, "");
         svg.start("g", &[]);
         assert!(roxmltree::Document::parse(&svg.finish()).is_ok());
     }
@@ -277,7 +277,8 @@ mod tests {
 
     #[test]
     fn numbers_are_short_and_finite() {
-        let written = [1.0, -0.001, 0.125, 1e6, f64::NAN, f64::INFINITY, -12.5].map(|value| Pixels(value).to_string());
+        let written =
+            [1.0, -0.001, 0.125, 1e6, f64::NAN, f64::INFINITY, -12.5].map(|value| PixelCoordinate(value).to_string());
         assert_eq!(written, ["1", "0", "0.12", "1000000", "0", "0", "-12.5"]);
     }
 }

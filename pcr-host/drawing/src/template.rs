@@ -1,6 +1,6 @@
 //! Pages as single HTML files that contain everything and send no requests.
 
-use super::svg::Escaped;
+use super::svg::XmlEscaped;
 use serde_json::Value;
 
 /// What all pages have in common.
@@ -8,7 +8,7 @@ const FRAME: &str = include_str!("template.html");
 const STYLE: &str = include_str!("template.css");
 
 /// A kind of page.
-pub(crate) struct Page {
+pub(crate) struct PageTemplate {
     /// What the page shows, after the title of the window.
     pub(crate) kind: &'static str,
     /// What it may ask its server for, as a continuation of its Content-Security-Policy; nothing for a page that is a file.
@@ -21,10 +21,10 @@ pub(crate) struct Page {
     pub(crate) script: &'static str,
 }
 
-impl Page {
+impl PageTemplate {
     /// The page with a title and data.
     pub(crate) fn fill(&self, title: &str, data: &Value) -> String {
-        let title = Escaped(title).to_string();
+        let title = XmlEscaped(title).to_string();
         // A text in the data cannot end the element that holds it.
         let data = data.to_string().replace('<', "\\u003c");
         replaced(FRAME, &|key| match key {

@@ -1,11 +1,11 @@
 //! The workspace (paper Fig. 10): all paths with the discs at their starts and ends, in metres.
 
-use super::axis::{Frame, ROOM_ABOVE, ROOM_BELOW, at_least_visible, room_at_left};
-use super::labels::{Labels, SPACING, around};
+use super::axis::{PlotArea, ROOM_ABOVE, ROOM_BELOW, at_least_visible, room_at_left};
+use super::labels::{LabelPlacer, SPACING, around};
 use super::map::Legend;
-use super::scene::Scene;
-use super::svg::{PathData, Pixels, Svg, text_width};
-use pcr_core::{Bounds, Curve, Interval, Motion, Pose, Segment, Turn};
+use super::region_scene::RegionScene;
+use super::svg::{PathData, PixelCoordinate, SvgWriter, text_width};
+use pcr_core::{Aabb, Curve, Interval, Motion, Pose, Segment, TurnSide};
 use std::f64::consts::PI;
 
 /// Size of the numbers of agents \[px\].
@@ -27,8 +27,8 @@ const CROSSED: f64 = 2.0;
 const MOST_CROSSED: f64 = 24.0;
 
 /// The frame of a workspace that is at most `side` pixels wide and high, at this left top corner; equal scales.
-pub(super) fn frame(scene: &Scene<'_>, side: f64, [left, top]: [f64; 2]) -> Frame {
-    let Bounds { x, y } = scene.bounds();
+pub(super) fn frame(scene: &RegionScene<'_>, side: f64, [left, top]: [f64; 2]) -> PlotArea {
+    let Aabb { x, y } = scene.bounds();
     let [x, y] = [x, y].map(|values| {
         let margin = 0.03 * x.length().max(y.length());
         at_least_visible(Interval::new(values.lo - margin, values.hi + margin))
@@ -41,24 +41,24 @@ pub(super) fn frame(scene: &Scene<'_>, side: f64, [left, top]: [f64; 2]) -> Fram
     };
     let ((width, x), (height, y)) = (fit(x, LEAST[0]), fit(y, LEAST[1]));
     let left = left + room_at_left(y, height);
-    Frame::new(x, y, [left, top + ROOM_ABOVE, left + width, top + ROOM_ABOVE + height])
+    PlotArea::new(x, y, [left, top + ROOM_ABOVE, left + width, top + ROOM_ABOVE + height])
 }
 
 /// The workspace as a picture of its own.
-pub(super) fn picture(scene: &Scene<'_>) -> String {
+pub(super) fn picture(scene: &RegionScene<'_>) -> String {
     let side = (340.0 + 5.0 * scene.motions.len() as f64).clamp(400.0, 800.0);
     let frame = frame(scene, side, [0.0, 0.0]);
     let [left, _, right, bottom] = frame.edges;
-    let names = Names::new(scene, &frame);
+    let names = DiscLabels::new(scene, &frame);
     let legend = Legend::of_notes(names.left_out(), [left, right]);
-    let mut svg = Svg::new(right + 12.0, bottom + ROOM_BELOW + legend.height(), &title(scene).concat());
+    let mut svg = SvgWriter::new(right + 12.0, bottom + ROOM_BELOW + legend.height(), &title(scene).concat());
     draw(&mut svg, scene, &frame, &names);
     legend.draw(&mut svg, bottom + ROOM_BELOW);
     svg.finish()
 }
 
 /// The name of the scenario, with what stands before and after it.
-fn title(scene: &Scene<'_>) -> [String; 3] {
+fn title(scene: &RegionScene<'_>) -> [String; 3] {
     let agents = match scene.motions.len() {
         1 => "1 agent".to_owned(),
         count => format!("{count} agents"),
@@ -69,7 +69,7 @@ fn title(scene: &Scene<'_>) -> [String; 3] {
 }
 
 /// The workspace in a frame.
-pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, frame: &Frame, names: &Names) {
+pub(super) fn draw(svg: &mut SvgWriter, scene: &RegionScene<'_>, frame: &PlotArea, names: &DiscLabels) {
     frame.draw_title(svg, title(scene).each_ref().map(String::as_str));
     frame.draw(svg, ["x [m]", "y [m]"]);
     if let Some(ground) = &scene.ground {
@@ -85,7 +85,7 @@ pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, frame: &Frame, names: &Name
         }
         let length = motion.path().length();
         if length > 0.0 {
-            let dashed: Style<'_> = &[("stroke-dasharray", &"2.5 2"), ("stroke-width", &"0.9")];
+            let dashed: SvgAttributes<'_> = &[("stroke-dasharray", &"2.5 2"), ("stroke-width", &"0.9")];
             body(svg, scene, place, motion.path().pose_at(length), frame, dashed);
         }
         body(svg, scene, place, motion.path().pose_at(0.0), frame, &[("fill", &colour), ("fill-opacity", &"0.35")]);
@@ -96,10 +96,17 @@ pub(super) fn draw(svg: &mut Svg, scene: &Scene<'_>, frame: &Frame, names: &Name
 }
 
 /// Attributes.
-type Style<'a> = &'a [(&'a str, &'a dyn std::fmt::Display)];
+type SvgAttributes<'a> = &'a [(&'a str, &'a dyn std::fmt::Display)];
 
 /// The disc or the outline of an agent in a pose.
-fn body(svg: &mut Svg, scene: &Scene<'_>, place: usize, pose: Pose<f64>, frame: &Frame, style: Style<'_>) {
+fn body(
+    svg: &mut SvgWriter,
+    scene: &RegionScene<'_>,
+    place: usize,
+    pose: Pose<f64>,
+    frame: &PlotArea,
+    style: SvgAttributes<'_>,
+) {
     let at = |ahead: f64, left: f64| {
         let (sin, cos) = pose.heading.0.sin_cos();
         frame.at([pose.position.x + ahead * cos - left * sin, pose.position.y + ahead * sin + left * cos])
@@ -110,19 +117,19 @@ fn body(svg: &mut Svg, scene: &Scene<'_>, place: usize, pose: Pose<f64>, frame: 
         svg.empty("path", &[&[("d", &data as &dyn std::fmt::Display)], style].concat());
     } else if let Some(motion) = scene.motions.get(place) {
         let [x, y] = at(0.0, 0.0);
-        let (x, y, radius) = (Pixels(x), Pixels(y), Pixels(radius(motion, frame)));
-        let circle: Style<'_> = &[("cx", &x), ("cy", &y), ("r", &radius)];
+        let (x, y, radius) = (PixelCoordinate(x), PixelCoordinate(y), PixelCoordinate(radius(motion, frame)));
+        let circle: SvgAttributes<'_> = &[("cx", &x), ("cy", &y), ("r", &radius)];
         svg.empty("circle", &[circle, style].concat());
     }
 }
 
 /// Radius of a disc \[px\]; one that would not be seen is shown as a dot.
-fn radius(motion: &Motion<'_, f64>, frame: &Frame) -> f64 {
+fn radius(motion: &Motion<'_, f64>, frame: &PlotArea) -> f64 {
     (motion.radius() / frame.x.units_per_pixel()).max(1.2)
 }
 
 /// A path by lines and true arcs.
-fn path(motion: &Motion<'_, f64>, frame: &Frame) -> PathData {
+fn path(motion: &Motion<'_, f64>, frame: &PlotArea) -> PathData {
     let at = |segment: &Segment<f64>, u: f64| {
         let point = segment.point_at(u);
         frame.at([point.x, point.y])
@@ -139,7 +146,7 @@ fn path(motion: &Motion<'_, f64>, frame: &Frame) -> PathData {
                 let parts = (segment.length() / radius / (0.75 * PI)).ceil().max(1.0) as usize;
                 for part in 1..=parts {
                     let end = at(segment, segment.length() * part as f64 / parts as f64);
-                    data.arc_to(radius / frame.x.units_per_pixel(), turn == Turn::Right, end);
+                    data.arc_to(radius / frame.x.units_per_pixel(), turn == TurnSide::Right, end);
                 }
             }
         }
@@ -148,7 +155,7 @@ fn path(motion: &Motion<'_, f64>, frame: &Frame) -> PathData {
 }
 
 /// Arrow heads in the direction of travel.
-fn arrows(motion: &Motion<'_, f64>, frame: &Frame) -> PathData {
+fn arrows(motion: &Motion<'_, f64>, frame: &PlotArea) -> PathData {
     let length = motion.path().length();
     let mut data = PathData::default();
     let pixels = length / frame.x.units_per_pixel();
@@ -168,17 +175,17 @@ fn arrows(motion: &Motion<'_, f64>, frame: &Frame) -> PathData {
 
 /// What the agents are called, in their discs at the start or beside them.
 #[derive(Debug)]
-pub(super) struct Names {
+pub(super) struct DiscLabels {
     /// Texts with their middles \[px\], by the places of the agents; none where there is no room for any.
     texts: Vec<Option<([f64; 2], String)>>,
     /// How many labels had to give way to a number.
     shortened: usize,
 }
 
-impl Names {
+impl DiscLabels {
     /// Finds a place for the number of each agent, and then, where there is room left, for its label instead.
-    pub(super) fn new(scene: &Scene<'_>, frame: &Frame) -> Self {
-        let mut labels = Labels::default();
+    pub(super) fn new(scene: &RegionScene<'_>, frame: &PlotArea) -> Self {
+        let mut labels = LabelPlacer::default();
         for (place, motion) in scene.motions.iter().enumerate() {
             if !fits(&scene.id(place).to_string(), motion, frame) {
                 labels.block(disc(motion, frame));
@@ -195,7 +202,7 @@ impl Names {
         }
         let number = |(place, motion): (usize, &Motion<'_, f64>)| {
             let text = scene.id(place).to_string();
-            labels.place(extent(&text), candidates(&text, motion, frame), frame.edges).map(|at| (at, text))
+            labels.best_position(extent(&text), candidates(&text, motion, frame), frame.edges).map(|at| (at, text))
         };
         let texts = scene.motions.iter().enumerate().map(number).collect();
         let mut names = Self { texts, shortened: 0 };
@@ -204,21 +211,21 @@ impl Names {
     }
 
     /// Labels instead of numbers.
-    fn lengthen(&mut self, scene: &Scene<'_>, frame: &Frame, labels: &mut Labels) {
-        let labelled = |place: usize| scene.called(place) != scene.id(place).to_string();
+    fn lengthen(&mut self, scene: &RegionScene<'_>, frame: &PlotArea, labels: &mut LabelPlacer) {
+        let labelled = |place: usize| scene.display_name(place) != scene.id(place).to_string();
         for (place, motion) in scene.motions.iter().enumerate().filter(|(place, _)| labelled(*place)) {
-            if fits(&scene.id(place).to_string(), motion, frame) && !fits(&scene.called(place), motion, frame) {
+            if fits(&scene.id(place).to_string(), motion, frame) && !fits(&scene.display_name(place), motion, frame) {
                 labels.block(disc(motion, frame));
             }
         }
         for (place, motion) in scene.motions.iter().enumerate().filter(|(place, _)| labelled(*place)) {
             let Some(Some((at, text))) = self.texts.get_mut(place) else { continue };
-            let (size, called) = (extent(text), scene.called(place));
+            let (size, called) = (extent(text), scene.display_name(place));
             labels.free(*at, size);
             let longer = extent(&called);
             let seen = |(_, at): &(f64, [f64; 2])| labels.covers(*at, longer) <= MOST_CROSSED;
             let candidates: Vec<_> = candidates(&called, motion, frame).filter(seen).collect();
-            match labels.place(longer, candidates, frame.edges) {
+            match labels.best_position(longer, candidates, frame.edges) {
                 Some(found) => (*at, *text) = (found, called),
                 None => {
                     labels.block(around(*at, size));
@@ -244,11 +251,11 @@ impl Names {
         }
     }
 
-    fn draw(&self, svg: &mut Svg, scene: &Scene<'_>) {
+    fn draw(&self, svg: &mut SvgWriter, scene: &RegionScene<'_>) {
         svg.start(
             "g",
             &[
-                ("font-size", &Pixels(LABEL_SIZE)),
+                ("font-size", &PixelCoordinate(LABEL_SIZE)),
                 ("stroke", &"#fff"),
                 ("stroke-width", &"2"),
                 ("paint-order", &"stroke"),
@@ -264,13 +271,13 @@ impl Names {
 }
 
 /// The box around the disc of an agent at its start \[px\].
-fn disc(motion: &Motion<'_, f64>, frame: &Frame) -> [f64; 4] {
+fn disc(motion: &Motion<'_, f64>, frame: &PlotArea) -> [f64; 4] {
     let r = radius(motion, frame);
     around(start(motion, frame), [2.0 * r, 2.0 * r])
 }
 
 /// Where an agent starts \[px\].
-fn start(motion: &Motion<'_, f64>, frame: &Frame) -> [f64; 2] {
+fn start(motion: &Motion<'_, f64>, frame: &PlotArea) -> [f64; 2] {
     let point = motion.path().point_at(0.0);
     frame.at([point.x, point.y])
 }
@@ -281,12 +288,12 @@ fn extent(text: &str) -> [f64; 2] {
 }
 
 /// Whether a text fits into the disc.
-fn fits(text: &str, motion: &Motion<'_, f64>, frame: &Frame) -> bool {
+fn fits(text: &str, motion: &Motion<'_, f64>, frame: &PlotArea) -> bool {
     text_width(text, LABEL_SIZE) / 2.0 <= radius(motion, frame)
 }
 
 /// Where the text of an agent may go: into its disc, if it fits there, or about it.
-fn candidates(text: &str, motion: &Motion<'_, f64>, frame: &Frame) -> impl Iterator<Item = (f64, [f64; 2])> {
+fn candidates(text: &str, motion: &Motion<'_, f64>, frame: &PlotArea) -> impl Iterator<Item = (f64, [f64; 2])> {
     let ([x, y], size, radius) = (start(motion, frame), extent(text), radius(motion, frame));
     // Behind the start, where the path does not pass.
     let behind = (radius - text_width(text, LABEL_SIZE).hypot(LABEL_SIZE) / 2.0).max(0.0);
@@ -322,19 +329,19 @@ mod tests {
         json!({ "name": name, "agents": (0..count).map(agent).collect::<Vec<_>>() })
     }
 
-    fn with_scene<T>(scenario: &Value, look: impl FnOnce(&Scene<'_>) -> T) -> T {
+    fn with_scene<T>(scenario: &Value, look: impl FnOnce(&RegionScene<'_>) -> T) -> T {
         let scenario = Scenario::from_json(&scenario.to_string()).unwrap();
         let fleet = Fleet::<f64>::new(&scenario).unwrap();
         let motions = fleet.motions();
         let ecm = build_ecm(&motions).unwrap();
-        look(&Scene { scenario: &scenario, motions: &motions, ecm: &ecm, egos: None, ground: None })
+        look(&RegionScene { scenario: &scenario, motions: &motions, ecm: &ecm, egos: None, ground: None })
     }
 
     /// The texts of all agents, after a check that they lie in the frame and apart, and what is said about those left out.
     fn texts(scenario: &Value) -> (Vec<Option<String>>, Option<String>) {
         with_scene(scenario, |scene| {
             let frame = frame(scene, 500.0, [0.0, 0.0]);
-            let names = Names::new(scene, &frame);
+            let names = DiscLabels::new(scene, &frame);
             let boxes: Vec<[f64; 4]> =
                 names.texts.iter().flatten().map(|(at, text)| around(*at, extent(text))).collect();
             let [left, top, right, bottom] = frame.edges;

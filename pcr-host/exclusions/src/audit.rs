@@ -5,11 +5,15 @@
 //! an edge that ends there, and the corridor of that edge contains the node. Hence for a node and an edge it is enough
 //! that a vehicle at the node keeps others off the edge, and two nodes need nothing more.
 
-use crate::meetings::Meetings;
-use crate::{Group, Rules, Selection, Stamp, Target, Way, nearest, stretch};
-use pcr_formats::import::{Edge, Id, ImportError, Imported, Layout};
-use pcr_formats::scenario::Placed;
-use pcr_planning::locks::{Lock, LockVehicle, Locks, NodeLock, Rides, corridor};
+use crate::token_conflicts::TokenConflicts;
+use crate::{
+    DirectedEdgeRules, ExclusionFormat, ExclusionGroup, ExclusionRules, Selection, VehicleStamp, nearest, stretch,
+};
+use pcr_formats::import::{ElementId, ImportError, ImportedLayout, Layout, LayoutEdge};
+use pcr_formats::scenario::PlacedSegment;
+use pcr_planning::exclusion_table::{
+    EdgeExclusion, EdgeTraversals, ExclusionTable, ExclusionVehicle, NodeExclusion, corridor,
+};
 use serde::Serialize;
 use std::cell::LazyCell;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -17,27 +21,27 @@ use std::fmt;
 
 /// The result of an audit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Audit {
+pub struct ExclusionAudit {
     /// Name of the layout.
     pub layout: String,
     /// The vehicle.
-    pub vehicle: LockVehicle,
+    pub vehicle: ExclusionVehicle,
     /// Format of the exclusions.
     pub exclusions: String,
     /// For which vehicle the file was written, where it says so.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub written_for: Option<Stamp>,
+    pub written_for: Option<VehicleStamp>,
     /// The edges and nodes that were asked about; nothing if all were.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub selected: Vec<Spot>,
+    pub selected: Vec<LayoutElementId>,
     /// Number of groups, blocks, zones or lists of the file.
     pub groups: usize,
     /// Number of pairs of edges, or of a node and an edge, on which two vehicles can touch; each edge and itself is a pair.
     pub can_touch: usize,
     /// Pairs that can touch and that the rules do not exclude.
-    pub gaps: Vec<Gap>,
+    pub gaps: Vec<MissingExclusion>,
     /// Pairs of edges that cannot touch but are excluded.
-    pub needless: Vec<Needless>,
+    pub needless: Vec<NeedlessExclusion>,
     /// Area of the pairs of lengths, over all pairs of edges, at which the rules do not let two vehicles be at the same time \[m²\].
     pub excluded: f64,
     /// The same area, excluded by the table of locks \[m²\].
@@ -52,14 +56,14 @@ pub struct Audit {
 /// An edge or a node.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Spot {
+pub enum LayoutElementId {
     /// Id of an edge in the layout.
-    Edge(Id),
+    Edge(ElementId),
     /// Id of a node in the layout.
-    Node(Id),
+    Node(ElementId),
 }
 
-impl fmt::Display for Spot {
+impl fmt::Display for LayoutElementId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Edge(id) => write!(f, "edge {id}"),
@@ -70,11 +74,11 @@ impl fmt::Display for Spot {
 
 /// Two places at which two vehicles can touch although they keep the rules.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Gap {
+pub struct MissingExclusion {
     /// The first place.
-    pub a: Spot,
+    pub a: LayoutElementId,
     /// The second place; the same edge for two vehicles on one edge.
-    pub b: Spot,
+    pub b: LayoutElementId,
     /// Relation of the two: `same`, `adjacent` (they share a node) or `apart`.
     pub relation: &'static str,
     /// Lengths on the first one \[m\]; `None` for a node.
@@ -92,34 +96,39 @@ pub struct Gap {
 
 /// Two edges that are excluded and cannot touch.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Needless {
+pub struct NeedlessExclusion {
     /// Id of the first edge.
-    pub a: Id,
+    pub a: ElementId,
     /// Id of the second edge.
-    pub b: Id,
+    pub b: ElementId,
 }
 
-impl Audit {
+impl ExclusionAudit {
     /// What rules leave out, and what they exclude in vain.
     ///
     /// # Errors
     /// [`ImportError`] for locks without those of nodes, and for locks and rules of another layout: they would seem to suffice.
-    pub fn of(imported: &Imported, locks: &Locks, rules: &Rules, target: Target) -> Result<Self, ImportError> {
+    pub fn run(
+        imported: &ImportedLayout,
+        locks: &ExclusionTable,
+        rules: &ExclusionRules,
+        target: ExclusionFormat,
+    ) -> Result<Self, ImportError> {
         Self::of_some(imported, locks, rules, target, &Selection::default())
     }
 
     /// Audits only the pairs of which at least one side is selected.
     ///
     /// # Errors
-    /// Those of [`Audit::of`].
+    /// Those of [`Audit::run`].
     pub fn of_some(
-        imported: &Imported,
-        locks: &Locks,
-        rules: &Rules,
-        target: Target,
+        imported: &ImportedLayout,
+        locks: &ExclusionTable,
+        rules: &ExclusionRules,
+        target: ExclusionFormat,
         selection: &Selection,
     ) -> Result<Self, ImportError> {
-        let places = Places::of(&imported.layout);
+        let places = ElementIndex::of(&imported.layout);
         let mut nodes = places.nodes(locks)?;
         nodes.retain(|([node, edge], _)| selection.has_either(*node, *edge));
         let mut edges = places.edges(locks)?;
@@ -162,15 +171,15 @@ impl Audit {
             audit.excluded += auditor.area([a, b]);
             if !pairs.contains_key(&[a, b]) && !pairs.contains_key(&[b, a]) {
                 let id = |place: usize| imported.layout.edges[place].id.clone();
-                audit.needless.push(Needless { a: id(a), b: id(b) });
+                audit.needless.push(NeedlessExclusion { a: id(a), b: id(b) });
             }
         }
         audit.needless.sort_by(|x, y| (&x.a, &x.b).cmp(&(&y.a, &y.b)));
         Ok(audit)
     }
 
-    fn add_nodes(&mut self, auditor: &Auditor<'_>, locks: Vec<AtNode>) {
-        let mut done: BTreeMap<[usize; 2], Option<Gap>> = BTreeMap::new();
+    fn add_nodes(&mut self, auditor: &Auditor<'_>, locks: Vec<TouchingEdgeAndNode>) {
+        let mut done: BTreeMap<[usize; 2], Option<MissingExclusion>> = BTreeMap::new();
         for ([node, edge], length) in locks {
             let gap = auditor.gap_at(node, edge, length);
             let known = done.entry([node, edge]).or_default();
@@ -191,47 +200,48 @@ impl Audit {
 }
 
 /// Two edges and their lengths that lock each other, and a node with an edge and its lengths.
-type Pair = ([usize; 2], [[f64; 2]; 2]);
-type AtNode = ([usize; 2], [f64; 2]);
+type TouchingEdges = ([usize; 2], [[f64; 2]; 2]);
+type TouchingEdgeAndNode = ([usize; 2], [f64; 2]);
 
 /// Where edges and nodes are in a layout, by their names.
-struct Places<'a> {
-    edges: HashMap<&'a Id, usize>,
-    nodes: HashMap<&'a Id, usize>,
+struct ElementIndex<'a> {
+    edges: HashMap<&'a ElementId, usize>,
+    nodes: HashMap<&'a ElementId, usize>,
 }
 
-impl<'a> Places<'a> {
+impl<'a> ElementIndex<'a> {
     fn of(layout: &'a Layout) -> Self {
         let edges = layout.edges.iter().enumerate().map(|(k, edge)| (&edge.id, k)).collect();
         Self { edges, nodes: layout.nodes.iter().enumerate().map(|(k, node)| (&node.id, k)).collect() }
     }
 
-    fn edge(&self, id: &Id) -> Result<usize, ImportError> {
+    fn edge(&self, id: &ElementId) -> Result<usize, ImportError> {
         let place = self.edges.get(id).copied();
         place.ok_or_else(|| ImportError::new(format!("locks of edge {id}, which the layout does not have")))
     }
 
-    fn node(&self, id: &Id) -> Result<usize, ImportError> {
+    fn node(&self, id: &ElementId) -> Result<usize, ImportError> {
         let place = self.nodes.get(id).copied();
         place.ok_or_else(|| ImportError::new(format!("locks of node {id}, which the layout does not have")))
     }
 
     /// The locks of edges by their places.
-    fn edges(&self, locks: &Locks) -> Result<Vec<Pair>, ImportError> {
-        let place = |lock: &Lock| Ok(([self.edge(&lock.a)?, self.edge(&lock.b)?], [lock.a_length, lock.b_length]));
+    fn edges(&self, locks: &ExclusionTable) -> Result<Vec<TouchingEdges>, ImportError> {
+        let place =
+            |lock: &EdgeExclusion| Ok(([self.edge(&lock.a)?, self.edge(&lock.b)?], [lock.a_length, lock.b_length]));
         locks.locks.iter().map(place).collect()
     }
 
     /// The locks of nodes by their places.
-    fn nodes(&self, locks: &Locks) -> Result<Vec<AtNode>, ImportError> {
+    fn nodes(&self, locks: &ExclusionTable) -> Result<Vec<TouchingEdgeAndNode>, ImportError> {
         let none = || ImportError::new("an audit takes the locks of nodes as well");
-        let place = |lock: &NodeLock| Ok(([self.node(&lock.node)?, self.edge(&lock.edge)?], lock.edge_length));
+        let place = |lock: &NodeExclusion| Ok(([self.node(&lock.node)?, self.edge(&lock.edge)?], lock.edge_length));
         locks.nodes.as_ref().ok_or_else(none)?.iter().map(place).collect()
     }
 }
 
 /// Checks that rules are of a layout: there is something about each edge and each node.
-fn fit(layout: &Layout, rules: &Rules) -> Result<(), ImportError> {
+fn fit(layout: &Layout, rules: &ExclusionRules) -> Result<(), ImportError> {
     if (rules.edges.len(), rules.nodes.len()) == (layout.edges.len(), layout.nodes.len()) {
         return Ok(());
     }
@@ -239,11 +249,11 @@ fn fit(layout: &Layout, rules: &Rules) -> Result<(), ImportError> {
 }
 
 struct Auditor<'a> {
-    imported: &'a Imported,
-    rules: &'a Rules,
-    rides: Rides<'a>,
+    imported: &'a ImportedLayout,
+    rules: &'a ExclusionRules,
+    rides: EdgeTraversals<'a>,
     radius: f64,
-    meetings: Meetings,
+    meetings: TokenConflicts,
 }
 
 /// The two ranges' common part.
@@ -253,10 +263,10 @@ fn common(a: [f64; 2], b: [f64; 2]) -> Option<[f64; 2]> {
 }
 
 impl<'a> Auditor<'a> {
-    fn new(imported: &'a Imported, rules: &'a Rules) -> Self {
-        let rides = Rides::new(imported);
+    fn new(imported: &'a ImportedLayout, rules: &'a ExclusionRules) -> Self {
+        let rides = EdgeTraversals::new(imported);
         let radius = rides.vehicle().radius;
-        Self { imported, rules, rides, radius, meetings: Meetings::of(rules) }
+        Self { imported, rules, rides, radius, meetings: TokenConflicts::of(rules) }
     }
 
     fn layout(&self) -> &'a Layout {
@@ -264,14 +274,14 @@ impl<'a> Auditor<'a> {
     }
 
     /// An edge in the directions in which it may be travelled.
-    fn ways(&self, edge: usize) -> impl Iterator<Item = &'a Way> {
+    fn ways(&self, edge: usize) -> impl Iterator<Item = &'a DirectedEdgeRules> {
         let ways = self.rules.edges.get(edge);
         self.layout().edges[edge].steps().filter_map(move |step| ways?.get(usize::from(step.backward)))
     }
 
     /// Both edges in all directions in which they may be travelled.
-    fn both_ways(&self, [a, b]: [usize; 2]) -> impl Iterator<Item = [&'a Way; 2]> {
-        let of_b: Vec<&Way> = self.ways(b).collect();
+    fn both_ways(&self, [a, b]: [usize; 2]) -> impl Iterator<Item = [&'a DirectedEdgeRules; 2]> {
+        let of_b: Vec<&DirectedEdgeRules> = self.ways(b).collect();
         self.ways(a).flat_map(move |own| of_b.clone().into_iter().map(move |other| [own, other]))
     }
 
@@ -293,8 +303,8 @@ impl<'a> Auditor<'a> {
     }
 
     /// The place on two edges, within the lengths of a lock, at which vehicles overlap most.
-    fn gap(&self, pair: [usize; 2], [a_length, b_length]: [[f64; 2]; 2]) -> Option<Gap> {
-        let mut worst: Option<Gap> = None;
+    fn gap(&self, pair: [usize; 2], [a_length, b_length]: [[f64; 2]; 2]) -> Option<MissingExclusion> {
+        let mut worst: Option<MissingExclusion> = None;
         let mut seen = BTreeSet::new();
         let tokens = self.tokens(pair);
         // The same for all lengths; computed only if needed, because it is slow.
@@ -302,7 +312,7 @@ impl<'a> Auditor<'a> {
         for ([own, other], tokens) in
             self.both_ways(pair).flat_map(|ways| tokens.iter().map(move |tokens| (ways, tokens)))
         {
-            let [sections, others] = Way::between(own, other, tokens.iter().copied());
+            let [sections, others] = DirectedEdgeRules::between(own, other, tokens.iter().copied());
             for own in &sections {
                 let Some(own_length) = common(own.length, a_length) else { continue };
                 for other in others.iter().filter(|other| !own.claim.excludes(&other.claim)) {
@@ -325,7 +335,7 @@ impl<'a> Auditor<'a> {
         [a, b]: [usize; 2],
         lengths: [[f64; 2]; 2],
         discs: &dyn Fn() -> Option<(f64, [f64; 2])>,
-    ) -> Option<Gap> {
+    ) -> Option<MissingExclusion> {
         let edges = [a, b].map(|place| &self.layout().edges[place]);
         let near = if self.imported.vehicle.footprint.is_none() {
             let curves = [0, 1].map(|k| self.stretch(edges[k], lengths[k]));
@@ -337,11 +347,11 @@ impl<'a> Auditor<'a> {
             discs()
         };
         // If the depth cannot be determined, the largest possible one is reported.
-        let (depth, at) = near.unwrap_or((2.0 * self.radius, self.place(edges[0])));
+        let (depth, at) = near.unwrap_or((2.0 * self.radius, self.start_point(edges[0])));
         let shared = edges[0].ends.iter().any(|end| edges[1].ends.contains(end));
-        (depth >= 0.0).then(|| Gap {
-            a: Spot::Edge(edges[0].id.clone()),
-            b: Spot::Edge(edges[1].id.clone()),
+        (depth >= 0.0).then(|| MissingExclusion {
+            a: LayoutElementId::Edge(edges[0].id.clone()),
+            b: LayoutElementId::Edge(edges[1].id.clone()),
             relation: if a == b {
                 "same"
             } else if shared {
@@ -358,21 +368,21 @@ impl<'a> Auditor<'a> {
     }
 
     fn discs(&self, pair: [usize; 2]) -> Option<(f64, [f64; 2])> {
-        let tracks = pair.map(|place| corridor(&self.rides.on(&self.layout().edges[place])));
+        let tracks = pair.map(|place| corridor(&self.rides.on_edge(&self.layout().edges[place])));
         let pairs = tracks[0].iter().flat_map(|own| tracks[1].iter().map(move |other| (own, other)));
         let all = pairs.filter_map(|((own, r), (other, s))| near(own, other, r + s));
         all.max_by(|x, y| x.0.total_cmp(&y.0)).map(|(depth, at)| (depth.max(0.0), at))
     }
 
     /// The start of an edge.
-    fn place(&self, edge: &Edge) -> [f64; 2] {
+    fn start_point(&self, edge: &LayoutEdge) -> [f64; 2] {
         self.layout().position(edge.ends[0])
     }
 
     /// A part of an edge; an edge without length is a point.
-    fn stretch(&self, edge: &Edge, lengths: [f64; 2]) -> Vec<Placed> {
-        let at = self.place(edge);
-        if edge.curve.is_empty() { vec![Placed::line(at, at)] } else { stretch(&edge.curve, lengths) }
+    fn stretch(&self, edge: &LayoutEdge, lengths: [f64; 2]) -> Vec<PlacedSegment> {
+        let at = self.start_point(edge);
+        if edge.curve.is_empty() { vec![PlacedSegment::line(at, at)] } else { stretch(&edge.curve, lengths) }
     }
 
     fn level(&self, level: usize) -> String {
@@ -380,23 +390,23 @@ impl<'a> Auditor<'a> {
     }
 
     /// The place where a vehicle on an edge can touch one that stands at a node and does not keep it off. Nobody stands where nobody may be.
-    fn gap_at(&self, node: usize, edge: usize, length: [f64; 2]) -> Option<Gap> {
+    fn gap_at(&self, node: usize, edge: usize, length: [f64; 2]) -> Option<MissingExclusion> {
         let (claim, there) = (&self.rules.nodes[node], &self.layout().nodes[node]);
         if claim.closed {
             return None;
         }
-        let (own, stands) = (&self.layout().edges[edge], [Placed::line(there.at, there.at)]);
-        let sections = self.ways(edge).flat_map(|way| way.beside(claim));
+        let (own, stands) = (&self.layout().edges[edge], [PlacedSegment::line(there.point, there.point)]);
+        let sections = self.ways(edge).flat_map(|way| way.excluded_spans(claim));
         let open = sections.filter(|section| !claim.keeps_out(&section.claim));
         let ranges = open.filter_map(|section| common(section.length, length));
         let gaps = ranges.filter_map(|range| {
             let near = near(&stands, &self.stretch(own, range), 2.0 * self.radius + own.deviation);
-            let (depth, at) = near.unwrap_or((2.0 * self.radius, there.at));
+            let (depth, at) = near.unwrap_or((2.0 * self.radius, there.point));
             // For an outline, the lock shows that there is contact.
             let depth = if self.imported.vehicle.footprint.is_some() { depth.max(0.0) } else { depth };
-            (depth >= 0.0).then(|| Gap {
-                a: Spot::Node(there.id.clone()),
-                b: Spot::Edge(own.id.clone()),
+            (depth >= 0.0).then(|| MissingExclusion {
+                a: LayoutElementId::Node(there.id.clone()),
+                b: LayoutElementId::Edge(own.id.clone()),
                 relation: if own.ends.contains(&node) { "adjacent" } else { "apart" },
                 a_length: None,
                 b_length: range,
@@ -415,7 +425,7 @@ impl<'a> Auditor<'a> {
 
     fn excludes(&self, pair: [usize; 2]) -> bool {
         self.both_ways(pair).any(|[own, other]| {
-            let [own, other] = Way::between(own, other, self.meetings.tokens(pair));
+            let [own, other] = DirectedEdgeRules::between(own, other, self.meetings.tokens(pair));
             own.iter().any(|own| other.iter().any(|other| own.claim.excludes(&other.claim)))
         })
     }
@@ -423,8 +433,8 @@ impl<'a> Auditor<'a> {
     /// Area of the lengths of two edges at which they exclude each other, in the directions with the least area \[m²\].
     fn area(&self, pair: [usize; 2]) -> f64 {
         let size = |length: [f64; 2]| length[1] - length[0];
-        let area = |[own, other]: [&Way; 2]| {
-            let [own, other] = Way::between(own, other, self.meetings.tokens(pair));
+        let area = |[own, other]: [&DirectedEdgeRules; 2]| {
+            let [own, other] = DirectedEdgeRules::between(own, other, self.meetings.tokens(pair));
             let pairs = own.iter().flat_map(|own| other.iter().map(move |other| (own, other)));
             let excluded = pairs.filter(|(own, other)| own.claim.excludes(&other.claim));
             excluded.map(|(own, other)| size(own.length) * size(other.length)).sum::<f64>()
@@ -434,7 +444,7 @@ impl<'a> Auditor<'a> {
 }
 
 /// Overlap of discs with this sum of radii where two curves come nearest, and the place; negative if they do not touch.
-fn near(a: &[Placed], b: &[Placed], reach: f64) -> Option<(f64, [f64; 2])> {
+fn near(a: &[PlacedSegment], b: &[PlacedSegment], reach: f64) -> Option<(f64, [f64; 2])> {
     let found = nearest(a, b)?;
     let [p, q] = found.points;
     let depth = reach - found.distance;
@@ -444,9 +454,14 @@ fn near(a: &[Placed], b: &[Placed], reach: f64) -> Option<(f64, [f64; 2])> {
 }
 
 /// The groups of tokens that several places have, by name.
-pub(crate) fn groups(layout: &Layout, names: &[String], edges: &[Vec<usize>], nodes: &[Vec<usize>]) -> Vec<Group> {
-    let empty = |name: &String| Group { name: name.clone(), ..Group::default() };
-    let mut groups: Vec<Group> = names.iter().map(empty).collect();
+pub(crate) fn groups(
+    layout: &Layout,
+    names: &[String],
+    edges: &[Vec<usize>],
+    nodes: &[Vec<usize>],
+) -> Vec<ExclusionGroup> {
+    let empty = |name: &String| ExclusionGroup { name: name.clone(), ..ExclusionGroup::default() };
+    let mut groups: Vec<ExclusionGroup> = names.iter().map(empty).collect();
     for (tokens, edge) in edges.iter().zip(&layout.edges) {
         for token in tokens {
             if let Some(group) = groups.get_mut(*token) {

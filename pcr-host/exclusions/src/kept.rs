@@ -3,8 +3,8 @@
 //!
 //! It shares nothing with the writers, which may not have written what they meant to.
 
-use pcr_formats::import::{Edge, Id, ImportError, Imported, Layout};
-use pcr_formats::scenario::{PathSegment, Placed};
+use pcr_formats::import::{ElementId, ImportError, ImportedLayout, Layout, LayoutEdge};
+use pcr_formats::scenario::{PathSegment, PlacedSegment};
 use std::collections::HashMap;
 
 /// Rounding of coordinates, relative to them: far more than that of a few sums, and less than what anybody measures.
@@ -23,7 +23,7 @@ pub(crate) struct Cut {
 ///
 /// # Errors
 /// The first node or edge that is not where it was, or was not there.
-pub(crate) fn compare(before: &Imported, after: &Imported, cut: Cut) -> Result<(), ImportError> {
+pub(crate) fn compare(before: &ImportedLayout, after: &ImportedLayout, cut: Cut) -> Result<(), ImportError> {
     let refused = |what: String| Err(ImportError::new(format!("what would be written is another layout: {what}")));
     if before.vehicle != after.vehicle {
         return refused("its vehicle is another one".into());
@@ -35,13 +35,14 @@ pub(crate) fn compare(before: &Imported, after: &Imported, cut: Cut) -> Result<(
             old.name, old.levels, new.name, new.levels
         ));
     }
-    let places: HashMap<&Id, usize> = new.nodes.iter().enumerate().map(|(place, node)| (&node.id, place)).collect();
+    let places: HashMap<&ElementId, usize> =
+        new.nodes.iter().enumerate().map(|(place, node)| (&node.id, place)).collect();
     let mut kept = vec![false; new.nodes.len()];
     let mut nodes = Vec::with_capacity(old.nodes.len());
     for node in &old.nodes {
         let Some(&place) = places.get(&node.id) else { return refused(format!("node {} is missing", node.id)) };
         if new.nodes[place] != *node {
-            let (at, other) = (node.at, new.nodes[place].at);
+            let (at, other) = (node.point, new.nodes[place].point);
             return refused(format!("node {} is at {other:?}, and was at {at:?}", node.id));
         }
         kept[place] = true;
@@ -83,7 +84,7 @@ impl Ways {
     }
 
     /// An edge of which a direction is not taken.
-    fn unused<'a>(&self, layout: &'a Layout) -> Option<&'a Edge> {
+    fn unused<'a>(&self, layout: &'a Layout) -> Option<&'a LayoutEdge> {
         let mut edges = layout.edges.iter().zip(&self.taken);
         edges
             .find(|(edge, taken)| edge.ways.iter().zip(*taken).any(|(way, taken)| *way && !taken))
@@ -93,7 +94,7 @@ impl Ways {
 
 /// An edge of the file before in a direction, and where its ends are in the layout after.
 struct Chain<'a> {
-    edge: &'a Edge,
+    edge: &'a LayoutEdge,
     backward: bool,
     ends: [usize; 2],
     cut: Cut,
@@ -148,7 +149,8 @@ impl Chain<'_> {
     ) -> Option<(usize, f64)> {
         let (old, part) = (self.edge, &layout.edges[place]);
         let target = part.ends[usize::from(!backward)];
-        let limits = |edge: &Edge, backward: bool| (edge.speed[usize::from(backward)], edge.closed, edge.rotation);
+        let limits =
+            |edge: &LayoutEdge, backward: bool| (edge.speed[usize::from(backward)], edge.closed, edge.rotation);
         if limits(old, self.backward) != limits(part, backward) {
             return None;
         }
@@ -164,14 +166,14 @@ impl Chain<'_> {
         if !as_it_was || (self.cut.most.is_none() && !(is_last && parts == 0)) || (!is_last && kept[target]) {
             return None;
         }
-        let far = [line.at, line.end()].into_iter().flatten().fold(1.0, |far: f64, x| far.max(x.abs()));
+        let far = [line.start, line.end()].into_iter().flatten().fold(1.0, |far: f64, x| far.max(x.abs()));
         let near = self.cut.rounding + RELATIVE * far;
-        let ends = [part.ends[0], part.ends[1]].map(|end| layout.nodes[end].at);
+        let ends = [part.ends[0], part.ends[1]].map(|end| layout.nodes[end].point);
         let is_there = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) <= RELATIVE * far;
-        if !is_there(drawn.at, ends[0]) || !is_there(drawn.end(), ends[1]) || at == target {
+        if !is_there(drawn.start, ends[0]) || !is_there(drawn.end(), ends[1]) || at == target {
             return None;
         }
-        let (along, beside) = on(line, layout.nodes[target].at);
+        let (along, beside) = on(line, layout.nodes[target].point);
         let reached = if self.backward { length - along } else { along };
         let is_short = self.cut.most.is_none_or(|most| reached - done <= most + 2.0 * near);
         let is_part = beside <= near && reached > done && reached <= length + near && is_short;
@@ -180,8 +182,8 @@ impl Chain<'_> {
 }
 
 /// Where a point is along a line, and how far beside it \[m\].
-fn on(line: &Placed, [x, y]: [f64; 2]) -> (f64, f64) {
-    let [dx, dy] = [x - line.at[0], y - line.at[1]];
+fn on(line: &PlacedSegment, [x, y]: [f64; 2]) -> (f64, f64) {
+    let [dx, dy] = [x - line.start[0], y - line.start[1]];
     let (sin, cos) = line.heading.sin_cos();
     (dx * cos + dy * sin, (dy * cos - dx * sin).abs())
 }
@@ -189,11 +191,11 @@ fn on(line: &Placed, [x, y]: [f64; 2]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pcr_formats::import::{Format, Options, Warnings, layout};
+    use pcr_formats::import::{ImportOptions, InputFormat, Warnings, layout};
     use serde_json::{Value, json};
 
     /// A route graph of nodes and edges with their ids.
-    fn graph(nodes: &[(u64, [f64; 2])], edges: &[(u64, [u64; 2])]) -> Imported {
+    fn graph(nodes: &[(u64, [f64; 2])], edges: &[(u64, [u64; 2])]) -> ImportedLayout {
         let feature = |properties: Value, geometry: Value| json!({ "type": "Feature", "properties": properties, "geometry": geometry });
         let mut features: Vec<Value> = Vec::new();
         features.extend(
@@ -206,8 +208,8 @@ mod tests {
             )
         }));
         let text = json!({ "type": "FeatureCollection", "features": features }).to_string();
-        let options = Options { radius: Some(0.3), ..Options::default() };
-        layout(Format::Nav2, &text, &options, &mut Warnings::default()).unwrap()
+        let options = ImportOptions { radius: Some(0.3), ..ImportOptions::default() };
+        layout(InputFormat::Nav2, &text, &options, &mut Warnings::default()).unwrap()
     }
 
     const NODES: [(u64, [f64; 2]); 3] = [(1, [0.3, 0.1]), (2, [6.3, 8.1]), (3, [20.0, 0.1])];
@@ -266,12 +268,12 @@ mod tests {
     /// A lane both ways became two, and the one back was taken for another lane that leads the same way.
     #[test]
     fn lanes_that_lead_the_same_way_keep_their_names() {
-        let options = Options { radius: Some(0.3), ..Options::default() };
+        let options = ImportOptions { radius: Some(0.3), ..ImportOptions::default() };
         let building = |lanes: &str| {
             let text = format!(
                 "coordinate_system: cartesian_meters\nname: m\nlevels:\n  L:\n    lanes: {lanes}\n    vertices: [[0, 0], [4, 0]]\n"
             );
-            layout(Format::Rmf, &text, &options, &mut Warnings::default()).unwrap()
+            layout(InputFormat::Rmf, &text, &options, &mut Warnings::default()).unwrap()
         };
         let before = building("[[0, 1, {bidirectional: [4, true]}], [1, 0, {}]]");
         let after = building("[[0, 1, {bidirectional: [4, false]}], [1, 0, {}], [1, 0, {bidirectional: [4, false]}]]");

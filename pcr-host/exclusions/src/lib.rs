@@ -1,7 +1,7 @@
 //! Mutual exclusion rules in layout files of fleet software (groups, blocks, zones and lists of closed edges): read,
 //! written and audited.
 //!
-//! Every format is read as [`Rules`]: the resources that a vehicle takes on an edge or at a node, and those that it
+//! Every format is read as [`ExclusionRules`]: the resources that a vehicle takes on an edge or at a node, and those that it
 //! bars for others. The rules follow the program that loads the file:
 //!
 //! | format | a vehicle on an edge from u to v | a vehicle at a node |
@@ -30,37 +30,37 @@
 //! ```
 
 mod audit;
-mod cover;
-mod edit;
+mod clique_cover;
+mod convex_outline;
+mod curve_proximity;
+mod directed_edge;
 mod kept;
-mod meetings;
+mod lock_file;
 mod nav2;
 mod nearest;
 mod opentcs;
-mod outline;
-mod own;
-mod reach;
+mod options;
 pub mod report;
 mod rmf;
 mod selection;
-mod settings;
 mod stamp;
+mod text_edits;
+mod token_conflicts;
 mod vda5050;
-mod way;
 mod write;
 
-pub use audit::{Audit, Gap, Needless, Spot};
-pub use nearest::{Approach, nearest, stretch};
+pub use audit::{ExclusionAudit, LayoutElementId, MissingExclusion, NeedlessExclusion};
+pub use directed_edge::{ClaimSpan, DirectedEdgeRules, TokenSpan};
+pub use nearest::{NearestPoints, nearest, stretch};
+pub use options::WriteOptions;
 pub use selection::Selection;
-pub use settings::Settings;
-pub use stamp::Stamp;
-pub use way::{Mark, Section, Way};
-pub use write::{Written, sized, write};
+pub use stamp::VehicleStamp;
+pub use write::{WriteReport, sized, write};
 
-use pcr_formats::import::{Format, ImportError, Imported};
+use pcr_formats::import::{ImportError, ImportedLayout, InputFormat};
 use pcr_formats::warning::WarningCode;
-use pcr_planning::locks::Locks;
-use pcr_planning::memory;
+use pcr_planning::exclusion_table::ExclusionTable;
+use pcr_planning::memory_budget;
 use std::fmt;
 
 /// Memory for a lock in the rules made of the table: names, and members of groups \[bytes\].
@@ -69,11 +69,11 @@ const LOCK_BYTES: u64 = 256;
 /// The table from which exclusions are made, or against which they are checked: all of it has to fit in memory.
 ///
 /// # Errors
-/// Errors of [`Locks::of`]; and an error in advance for a table whose rules would take more memory than there is.
-pub fn table(imported: &Imported) -> Result<Locks, ImportError> {
-    let locks = Locks::of(imported, true)?;
+/// Errors of [`Locks::compute`]; and an error in advance for a table whose rules would take more memory than there is.
+pub fn table(imported: &ImportedLayout) -> Result<ExclusionTable, ImportError> {
+    let locks = ExclusionTable::compute(imported, true)?;
     let count = locks.locks.len();
-    let asked = memory::ask(count as u64 * LOCK_BYTES, || format!("what is made of a table of {count} locks"));
+    let asked = memory_budget::ask(count as u64 * LOCK_BYTES, || format!("what is made of a table of {count} locks"));
     asked.map_err(|large| ImportError::new(large.to_string()))?;
     Ok(locks)
 }
@@ -81,7 +81,7 @@ pub fn table(imported: &Imported) -> Result<Locks, ImportError> {
 /// Formats of exclusions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum Target {
+pub enum ExclusionFormat {
     /// Route graph of nav2: for each edge and node the edges to be closed while a vehicle is there
     Nav2,
     /// Building of Open-RMF: mutex groups of vertices and lanes
@@ -95,29 +95,29 @@ pub enum Target {
     Pcr,
 }
 
-impl Target {
+impl ExclusionFormat {
     /// The layout format whose files contain such exclusions themselves.
-    pub fn layout(self) -> Option<Format> {
+    pub fn layout(self) -> Option<InputFormat> {
         match self {
-            Self::Nav2 => Some(Format::Nav2),
-            Self::Rmf => Some(Format::Rmf),
-            Self::OpenTcs => Some(Format::OpenTcs),
+            Self::Nav2 => Some(InputFormat::Nav2),
+            Self::Rmf => Some(InputFormat::Rmf),
+            Self::OpenTcs => Some(InputFormat::OpenTcs),
             Self::Vda5050 | Self::Pcr => None,
         }
     }
 
     /// The exclusions in layout files of a format.
-    pub fn of_layout(format: Format) -> Option<Self> {
+    pub fn of_layout(format: InputFormat) -> Option<Self> {
         [Self::Nav2, Self::Rmf, Self::OpenTcs].into_iter().find(|target| target.layout() == Some(format))
     }
 
     /// The exclusions in a file beside a layout, told from its text.
     pub fn of_text(text: &str) -> Option<Self> {
-        if own::is_locks(text) { Some(Self::Pcr) } else { vda5050::is_zones(text).then_some(Self::Vda5050) }
+        if lock_file::is_locks(text) { Some(Self::Pcr) } else { vda5050::is_zones(text).then_some(Self::Vda5050) }
     }
 }
 
-impl fmt::Display for Target {
+impl fmt::Display for ExclusionFormat {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Nav2 => "nav2",
@@ -131,21 +131,21 @@ impl fmt::Display for Target {
 
 /// Tokens that a vehicle takes, and tokens that it bars for all others: indices in ascending order.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Claim {
+pub struct ResourceClaim {
     /// Tokens that no other vehicle may bar while it has them.
-    pub takes: Vec<usize>,
+    pub acquired: Vec<usize>,
     /// Tokens that no other vehicle may take while it is there.
-    pub bars: Vec<usize>,
+    pub blocked: Vec<usize>,
     /// Whether no vehicle may be there at all.
     pub closed: bool,
 }
 
-impl Claim {
+impl ResourceClaim {
     /// The claim of tokens that only one vehicle at a time can have.
     pub(crate) fn exclusive(mut tokens: Vec<usize>) -> Self {
         tokens.sort_unstable();
         tokens.dedup();
-        Self { takes: tokens.clone(), bars: tokens, closed: false }
+        Self { acquired: tokens.clone(), blocked: tokens, closed: false }
     }
 
     /// Whether a vehicle with this claim keeps another one from making `other`.
@@ -153,7 +153,7 @@ impl Claim {
         if other.closed {
             return true;
         }
-        let (mut bars, mut takes) = (self.bars.iter().peekable(), other.takes.iter().peekable());
+        let (mut bars, mut takes) = (self.blocked.iter().peekable(), other.acquired.iter().peekable());
         while let (Some(bar), Some(take)) = (bars.peek(), takes.peek()) {
             match bar.cmp(take) {
                 std::cmp::Ordering::Less => bars.next(),
@@ -172,7 +172,7 @@ impl Claim {
 
 /// A group, block, zone or list of a file.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
-pub struct Group {
+pub struct ExclusionGroup {
     /// Name in the file.
     pub name: String,
     /// Edges of its members.
@@ -187,40 +187,40 @@ pub struct Group {
 
 /// The rules that vehicles have to keep.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Rules {
+pub struct ExclusionRules {
     /// For each edge of the layout the way in its direction, and the way back.
-    pub edges: Vec<[Way; 2]>,
+    pub edges: Vec<[DirectedEdgeRules; 2]>,
     /// For each node of the layout the claim of a vehicle that stands there.
-    pub nodes: Vec<Claim>,
+    pub nodes: Vec<ResourceClaim>,
     /// The groups of the file, with their names there.
-    pub groups: Vec<Group>,
+    pub groups: Vec<ExclusionGroup>,
     /// Parts of the file that have no effect, with the reasons.
     pub warnings: Vec<String>,
     /// For which vehicle the file was written, where it says so.
-    pub stamp: Option<Stamp>,
+    pub stamp: Option<VehicleStamp>,
     /// For each token the level on which it holds, for vehicles that can be on one of several levels; empty if levels do not
     /// matter.
     pub levels: Vec<usize>,
 }
 
-impl Rules {
+impl ExclusionRules {
     /// Rules of whole edges, alike in both directions.
-    pub(crate) fn of_edges(imported: &Imported, edges: Vec<Claim>, nodes: Vec<Claim>) -> Self {
+    pub(crate) fn of_edges(imported: &ImportedLayout, edges: Vec<ResourceClaim>, nodes: Vec<ResourceClaim>) -> Self {
         let ways = edges.into_iter().map(|claim| [claim.clone(), claim]).collect();
         Self::of_ways(imported, ways, nodes)
     }
 
     /// Rules of whole edges, each forward and backward.
-    pub(crate) fn of_ways(imported: &Imported, ways: Vec<[Claim; 2]>, nodes: Vec<Claim>) -> Self {
+    pub(crate) fn of_ways(imported: &ImportedLayout, ways: Vec<[ResourceClaim; 2]>, nodes: Vec<ResourceClaim>) -> Self {
         let edges = imported.layout.edges.iter().zip(ways).map(|(edge, claims)| {
-            [false, true].map(|back| Way::whole(edge.length(), back, &claims[usize::from(back)]))
+            [false, true].map(|back| DirectedEdgeRules::whole(edge.length(), back, &claims[usize::from(back)]))
         });
         Self { edges: edges.collect(), nodes, ..Self::default() }
     }
 
     /// The rules with what their file says of the vehicle that they are for, if it says anything.
     pub(crate) fn stamped(mut self, said: Option<&str>) -> Self {
-        self.stamp = said.and_then(Stamp::read);
+        self.stamp = said.and_then(VehicleStamp::read);
         if let (Some(said), None) = (said, &self.stamp) {
             let text = format_args!("for which vehicle the exclusions were written cannot be read: {said}");
             self.warnings.push(WarningCode::UnreadField.text(text));
@@ -233,12 +233,12 @@ impl Rules {
 ///
 /// # Errors
 /// [`ImportError`] if the file has another format, or names something that is not in the layout.
-pub fn read(target: Target, text: &str, imported: &Imported) -> Result<Rules, ImportError> {
+pub fn read(target: ExclusionFormat, text: &str, imported: &ImportedLayout) -> Result<ExclusionRules, ImportError> {
     match target {
-        Target::Nav2 => nav2::read(text, imported),
-        Target::Rmf => rmf::read(text, imported),
-        Target::OpenTcs => opentcs::read(text, imported),
-        Target::Vda5050 => vda5050::read(text, imported),
-        Target::Pcr => own::read(text, imported),
+        ExclusionFormat::Nav2 => nav2::read(text, imported),
+        ExclusionFormat::Rmf => rmf::read(text, imported),
+        ExclusionFormat::OpenTcs => opentcs::read(text, imported),
+        ExclusionFormat::Vda5050 => vda5050::read(text, imported),
+        ExclusionFormat::Pcr => lock_file::read(text, imported),
     }
 }

@@ -6,12 +6,12 @@
 //! An edge is in its own list, because two vehicles on one edge can touch. The service identifies edges by their ids,
 //! which have 16 bits; edges with the same id are closed together.
 
-use crate::edit::{Edits, ending};
-use crate::stamp::{MEMBER, Stamp};
-use crate::{Claim, Group, Rules};
-use pcr_formats::import::{Id, ImportError, Imported, graph_id, parse_json};
-use pcr_formats::json::{self, Data, Json};
-use pcr_planning::locks::Locks;
+use crate::stamp::{MEMBER, VehicleStamp};
+use crate::text_edits::{TextEdits, ending};
+use crate::{ExclusionGroup, ExclusionRules, ResourceClaim};
+use pcr_formats::import::{ElementId, ImportError, ImportedLayout, graph_id, parse_json};
+use pcr_formats::json::{self, JsonData, JsonNode};
+use pcr_planning::exclusion_table::ExclusionTable;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,10 +22,10 @@ const KEY: &str = "closed_edges";
 const LARGEST: u64 = 65535;
 
 /// The id in the file of an edge or a node of a layout: of several with one id all but the first have a longer name there.
-fn id_in_file(id: &Id) -> Option<u64> {
+fn id_in_file(id: &ElementId) -> Option<u64> {
     match id {
-        Id::Number(number) => Some(*number),
-        Id::Text(text) => text.split('#').next()?.parse().ok(),
+        ElementId::Number(number) => Some(*number),
+        ElementId::Text(text) => text.split('#').next()?.parse().ok(),
     }
 }
 
@@ -44,7 +44,7 @@ fn is_node(feature: &Value) -> Option<bool> {
 }
 
 /// Reads the lists.
-pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
+pub(crate) fn read(text: &str, imported: &ImportedLayout) -> Result<ExclusionRules, ImportError> {
     let (root, places) = both(text)?;
     let mut lists: [BTreeMap<u64, BTreeSet<u64>>; 2] = Default::default();
     let mut groups = Vec::new();
@@ -66,7 +66,7 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         }
         if !list.is_empty() {
             let edges = list.iter().map(ToString::to_string).collect();
-            groups.push(Group { name: format!("{what} {id}"), edges, ..Group::default() });
+            groups.push(ExclusionGroup { name: format!("{what} {id}"), edges, ..ExclusionGroup::default() });
         }
         // Of several features with one id, what all of them close.
         let known = lists[usize::from(node)].entry(id).or_insert_with(|| list.clone());
@@ -83,21 +83,21 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
     let edges = layout.edges.iter().map(|edge| {
         let id = id_in_file(&edge.id);
         let takes = id.and_then(|id| known.binary_search(&id).ok()).into_iter().collect();
-        Ok(Claim { takes, bars: tokens(id.and_then(|id| of_edges.get(&id)))?, closed: false })
+        Ok(ResourceClaim { acquired: takes, blocked: tokens(id.and_then(|id| of_edges.get(&id)))?, closed: false })
     });
     let nodes = layout.nodes.iter().map(|node| {
         let bars = tokens(id_in_file(&node.id).and_then(|id| of_nodes.get(&id)))?;
-        Ok(Claim { bars, ..Claim::default() })
+        Ok(ResourceClaim { blocked: bars, ..ResourceClaim::default() })
     });
     let (edges, nodes) = (edges.collect::<Result<_, ImportError>>()?, nodes.collect::<Result<_, ImportError>>()?);
     let said = root.get(MEMBER).map(Value::to_string);
-    Ok(Rules { groups, ..Rules::of_edges(imported, edges, nodes) }.stamped(said.as_deref()))
+    Ok(ExclusionRules { groups, ..ExclusionRules::of_edges(imported, edges, nodes) }.stamped(said.as_deref()))
 }
 
 /// Writes the lists of a table with nodes.
-pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks) -> Result<String, ImportError> {
+pub(crate) fn write(text: &str, imported: &ImportedLayout, locks: &ExclusionTable) -> Result<String, ImportError> {
     let mut closed: [BTreeMap<u64, BTreeSet<u64>>; 2] = Default::default();
-    let mut close = |node: bool, of: &Id, edge: &Id| {
+    let mut close = |node: bool, of: &ElementId, edge: &ElementId| {
         if let (Some(of), Some(edge)) = (id_in_file(of), id_in_file(edge)) {
             closed[usize::from(node)].entry(of).or_default().insert(edge);
         }
@@ -112,7 +112,7 @@ pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks) -> Result<St
         return Err(unknown(*large));
     }
     let (root, places) = both(text)?;
-    let mut edits = Edits::default();
+    let mut edits = TextEdits::default();
     for (feature, place) in features(&root, &places) {
         let (Some(node), Some(id)) = (is_node(feature), graph_id(&feature["properties"]["id"])) else { continue };
         let ids: Vec<u64> = closed[usize::from(node)].get(&id).into_iter().flatten().copied().collect();
@@ -120,17 +120,17 @@ pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks) -> Result<St
             set(&mut edits, properties, &Value::from(ids).to_string());
         }
     }
-    let stamp = Stamp::of(imported).text();
+    let stamp = VehicleStamp::of(imported).text();
     match (places.get(MEMBER), places.end_of_members()) {
         (Some(old), _) => edits.replace(old.span.clone(), stamp),
         (None, Some((at, comma))) => edits.insert(at, format!("{comma}\"{MEMBER}\": {stamp}")),
         (None, None) => return Err(ImportError::new("graph: an object is expected")),
     }
-    Ok(edits.made(text))
+    Ok(edits.apply(text))
 }
 
 /// Sets the list in the metadata of a feature.
-fn set(edits: &mut Edits, properties: &Json<'_>, list: &str) {
+fn set(edits: &mut TextEdits, properties: &JsonNode<'_>, list: &str) {
     let metadata = properties.get("metadata");
     if let Some(old) = metadata.and_then(|metadata| metadata.get(KEY)) {
         return edits.replace(old.span.clone(), list);
@@ -148,22 +148,22 @@ fn set(edits: &mut Edits, properties: &Json<'_>, list: &str) {
 }
 
 /// The values of a text, and where they are in it.
-fn both(text: &str) -> Result<(Value, Json<'_>), ImportError> {
+fn both(text: &str) -> Result<(Value, JsonNode<'_>), ImportError> {
     let root = parse_json(text)?;
     let places = json::parse(text).map_err(|error| ImportError::in_json(error.position, error.problem))?;
     Ok((root, places))
 }
 
-fn features<'a>(root: &'a Value, places: &'a Json<'a>) -> impl Iterator<Item = (&'a Value, &'a Json<'a>)> {
+fn features<'a>(root: &'a Value, places: &'a JsonNode<'a>) -> impl Iterator<Item = (&'a Value, &'a JsonNode<'a>)> {
     let values = root["features"].as_array().into_iter().flatten();
-    values.zip(places.get("features").map_or(&[][..], Json::list))
+    values.zip(places.get("features").map_or(&[][..], JsonNode::list))
 }
 
 /// Cuts edges into equal parts no longer than this \[m\]; returns the text, and which edges are left whole, and why.
 pub(crate) fn split(text: &str, most: f64) -> Result<(String, Vec<String>), ImportError> {
     let (root, places) = both(text)?;
-    let mut cutter = Cutter::new(&root, &places)?;
-    let (mut edits, mut whole_ones) = (Edits::default(), Vec::new());
+    let mut cutter = Nav2EdgeSplitter::new(&root, &places)?;
+    let (mut edits, mut whole_ones) = (TextEdits::default(), Vec::new());
     let end = ending(text);
     let mut nodes = Vec::new();
     for (feature, place) in features(&root, &places).filter(|(feature, _)| is_node(feature) == Some(false)) {
@@ -207,22 +207,22 @@ pub(crate) fn split(text: &str, most: f64) -> Result<(String, Vec<String>), Impo
     {
         edits.insert(last.span.end, nodes.iter().map(|node| format!(",{end}{node}")).collect::<String>());
     }
-    Ok((edits.made(text), whole_ones))
+    Ok((edits.apply(text), whole_ones))
 }
 
 /// A node of a chain: its id, and where it is \[m\].
-type Link = (u64, [f64; 2]);
+type SplitEdge = (u64, [f64; 2]);
 
-struct Cutter {
+struct Nav2EdgeSplitter {
     at: BTreeMap<u64, [f64; 2]>,
     frames: BTreeMap<u64, Value>,
     next: [u64; 2],
     /// The nodes between two others, from the lower id on.
-    between: BTreeMap<(u64, u64, usize), Vec<Link>>,
+    between: BTreeMap<(u64, u64, usize), Vec<SplitEdge>>,
 }
 
-impl Cutter {
-    fn new(root: &Value, places: &Json<'_>) -> Result<Self, ImportError> {
+impl Nav2EdgeSplitter {
+    fn new(root: &Value, places: &JsonNode<'_>) -> Result<Self, ImportError> {
         let (mut at, mut frames, mut next) = (BTreeMap::new(), BTreeMap::new(), [0, 0]);
         for (feature, place) in features(root, places) {
             let refused = |problem| ImportError::in_json(place.position, problem);
@@ -252,7 +252,7 @@ impl Cutter {
     }
 
     /// The nodes along an edge, new ones where nothing has cut it there before.
-    fn chain(&mut self, ends: [u64; 2], at: [[f64; 2]; 2], parts: usize, features: &mut Vec<Value>) -> Vec<Link> {
+    fn chain(&mut self, ends: [u64; 2], at: [[f64; 2]; 2], parts: usize, features: &mut Vec<Value>) -> Vec<SplitEdge> {
         let turned = ends[0] > ends[1];
         let (low, high) = if turned { (1, 0) } else { (0, 1) };
         let key = (ends[low], ends[high], parts);
@@ -270,7 +270,7 @@ impl Cutter {
                 features.push(json!({ "type": "Feature", "properties": of, "geometry": geometry }));
                 (id, point)
             };
-            let links: Vec<Link> = (1..parts).map(link).collect();
+            let links: Vec<SplitEdge> = (1..parts).map(link).collect();
             self.next[1] += links.len() as u64;
             self.between.insert(key, links);
         }
@@ -285,10 +285,10 @@ impl Cutter {
 }
 
 /// The text of an edge with another id, other ends, and a line between them.
-fn copy(text: &str, id: u64, [from, to]: [&Link; 2]) -> Option<String> {
+fn copy(text: &str, id: u64, [from, to]: [&SplitEdge; 2]) -> Option<String> {
     let spans = json::parse(text).ok()?;
     let properties = spans.get("properties")?;
-    let mut edits = Edits::default();
+    let mut edits = TextEdits::default();
     for (name, value) in [("id", id), ("startid", from.0), ("endid", to.0)] {
         edits.replace(properties.get(name)?.span.clone(), value.to_string());
     }
@@ -296,8 +296,8 @@ fn copy(text: &str, id: u64, [from, to]: [&Link; 2]) -> Option<String> {
     let (kind, line) = (geometry.get("type")?, json!([from.1, to.1]));
     edits.replace(kind.span.clone(), "\"LineString\"");
     let drawn = geometry.get("coordinates")?;
-    if let Data::Array(_) = drawn.data {
+    if let JsonData::Array(_) = drawn.data {
         edits.replace(drawn.span.clone(), line.to_string());
     }
-    Some(edits.made(text))
+    Some(edits.apply(text))
 }

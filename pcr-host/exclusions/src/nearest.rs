@@ -3,7 +3,7 @@
 //! Where two pieces come nearest, one of the points is an end, or their connection is perpendicular to both, or they
 //! cross. For these places there are few candidates.
 
-use pcr_formats::scenario::{PathSegment, Placed, TURN};
+use pcr_formats::scenario::{PathSegment, PlacedSegment, TURN};
 use std::f64::consts::TAU;
 
 /// Bound on the rounding error of a distance, relative to the sum of coordinates, lengths and radii.
@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// The points at which two stretches come nearest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Approach {
+pub struct NearestPoints {
     /// Distance of the two points \[m\].
     pub distance: f64,
     /// Lower bound of the distance of any two points \[m\].
@@ -23,7 +23,7 @@ pub struct Approach {
 }
 
 /// The part of a curve between two lengths along it \[m\].
-pub fn stretch(curve: &[Placed], [from, to]: [f64; 2]) -> Vec<Placed> {
+pub fn stretch(curve: &[PlacedSegment], [from, to]: [f64; 2]) -> Vec<PlacedSegment> {
     let mut before = 0.0;
     let mut parts = Vec::new();
     for piece in curve {
@@ -38,13 +38,13 @@ pub fn stretch(curve: &[Placed], [from, to]: [f64; 2]) -> Vec<Placed> {
     parts
 }
 
-pub(crate) fn point(piece: &Placed, length: f64) -> [f64; 2] {
+pub(crate) fn point(piece: &PlacedSegment, length: f64) -> [f64; 2] {
     piece.part(0.0, length).end()
 }
 
 /// The points at which two curves come nearest; `None` if one of them has no piece.
-pub fn nearest(a: &[Placed], b: &[Placed]) -> Option<Approach> {
-    let mut best: Option<Approach> = None;
+pub fn nearest(a: &[PlacedSegment], b: &[PlacedSegment]) -> Option<NearestPoints> {
+    let mut best: Option<NearestPoints> = None;
     let mut before_a = 0.0;
     for own in a {
         let mut before_b = 0.0;
@@ -53,9 +53,9 @@ pub fn nearest(a: &[Placed], b: &[Placed]) -> Option<Approach> {
             found.lengths = [found.lengths[0] + before_a, found.lengths[1] + before_b];
             best = Some(match best {
                 Some(best) if best.distance <= found.distance => {
-                    Approach { least: best.least.min(found.least), ..best }
+                    NearestPoints { least: best.least.min(found.least), ..best }
                 }
-                Some(best) => Approach { least: best.least.min(found.least), ..found },
+                Some(best) => NearestPoints { least: best.least.min(found.least), ..found },
                 None => found,
             });
             before_b += other.shape.length();
@@ -65,64 +65,65 @@ pub fn nearest(a: &[Placed], b: &[Placed]) -> Option<Approach> {
     best
 }
 
-fn approach(a: &Placed, b: &Placed, lengths: [f64; 2]) -> Approach {
+fn approach(a: &PlacedSegment, b: &PlacedSegment, lengths: [f64; 2]) -> NearestPoints {
     let points = [point(a, lengths[0]), point(b, lengths[1])];
     let distance = (points[0][0] - points[1][0]).hypot(points[0][1] - points[1][1]);
-    Approach { distance, least: distance, lengths, points }
+    NearestPoints { distance, least: distance, lengths, points }
 }
 
 /// The points at which two pieces come nearest.
-fn pieces(a: &Placed, b: &Placed) -> Approach {
-    let mut places = vec![a.at, a.end(), b.at, b.end()];
-    places.extend(between(&Carrier::of(a), &Carrier::of(b)));
+fn pieces(a: &PlacedSegment, b: &PlacedSegment) -> NearestPoints {
+    let mut places = vec![a.start, a.end(), b.start, b.end()];
+    places.extend(between(&SupportCurve::of(a), &SupportCurve::of(b)));
     let all = places.into_iter().map(|at| approach(a, b, [a, b].map(|piece| length_near(piece, at))));
     let best = all.min_by(|x, y| x.distance.total_cmp(&y.distance)).expect("four candidates at least");
-    let reach = |piece: &Placed| match piece.shape {
+    let reach = |piece: &PlacedSegment| match piece.shape {
         PathSegment::Line { length } => length,
         PathSegment::Arc { radius, .. } => radius,
     };
-    let far = [a, b].iter().map(|piece| piece.at[0].abs() + piece.at[1].abs() + reach(piece)).sum::<f64>();
+    let far = [a, b].iter().map(|piece| piece.start[0].abs() + piece.start[1].abs() + reach(piece)).sum::<f64>();
     // On the arc of a turn in place no point has digits.
-    Approach { least: (best.distance - ROUNDING * (1.0 + far) - 4.0 * TURN).max(0.0), ..best }
+    NearestPoints { least: (best.distance - ROUNDING * (1.0 + far) - 4.0 * TURN).max(0.0), ..best }
 }
 
 /// The line or the circle on which a piece lies.
-enum Carrier {
+enum SupportCurve {
     /// A point, and the direction.
     Line([f64; 2], [f64; 2]),
     /// Centre and radius \[m\].
     Circle([f64; 2], f64),
 }
 
-impl Carrier {
-    fn of(piece: &Placed) -> Self {
+impl SupportCurve {
+    fn of(piece: &PlacedSegment) -> Self {
         let (sin, cos) = piece.heading.sin_cos();
         match piece.shape {
-            PathSegment::Line { .. } => Self::Line(piece.at, [cos, sin]),
+            PathSegment::Line { .. } => Self::Line(piece.start, [cos, sin]),
             PathSegment::Arc { radius, sweep } => Self::Circle(centre(piece, radius, sweep), radius),
         }
     }
 }
 
-fn centre(piece: &Placed, radius: f64, sweep: f64) -> [f64; 2] {
+fn centre(piece: &PlacedSegment, radius: f64, sweep: f64) -> [f64; 2] {
     let (sin, cos) = piece.heading.sin_cos();
     let left = radius.copysign(sweep);
-    [piece.at[0] - left * sin, piece.at[1] + left * cos]
+    [piece.start[0] - left * sin, piece.start[1] + left * cos]
 }
 
 /// Points of one of two carriers from which the way to the other is perpendicular to both, and those in which they cross.
-fn between(a: &Carrier, b: &Carrier) -> Vec<[f64; 2]> {
+fn between(a: &SupportCurve, b: &SupportCurve) -> Vec<[f64; 2]> {
     match (a, b) {
-        (Carrier::Line(p, u), Carrier::Line(q, v)) => {
+        (SupportCurve::Line(p, u), SupportCurve::Line(q, v)) => {
             let turn = u[0] * v[1] - u[1] * v[0];
             let along = ((q[0] - p[0]) * v[1] - (q[1] - p[1]) * v[0]) / turn;
-            if turn == 0.0 { Vec::new() } else { vec![on(*p, *u, along)] }
+            if turn == 0.0 { Vec::new() } else { vec![point_at(*p, *u, along)] }
         }
-        (Carrier::Line(p, u), Carrier::Circle(c, r)) | (Carrier::Circle(c, r), Carrier::Line(p, u)) => {
-            let foot = on(*p, *u, (c[0] - p[0]) * u[0] + (c[1] - p[1]) * u[1]);
+        (SupportCurve::Line(p, u), SupportCurve::Circle(c, r))
+        | (SupportCurve::Circle(c, r), SupportCurve::Line(p, u)) => {
+            let foot = point_at(*p, *u, (c[0] - p[0]) * u[0] + (c[1] - p[1]) * u[1]);
             across(foot, *u, r * r - (foot[0] - c[0]).powi(2) - (foot[1] - c[1]).powi(2))
         }
-        (Carrier::Circle(c, r), Carrier::Circle(d, s)) => {
+        (SupportCurve::Circle(c, r), SupportCurve::Circle(d, s)) => {
             // From the smaller one, whose numbers have more digits.
             let [(c, r), (d, s)] = if r <= s { [(c, r), (d, s)] } else { [(d, s), (c, r)] };
             let [x, y] = [d[0] - c[0], d[1] - c[1]];
@@ -133,34 +134,34 @@ fn between(a: &Carrier, b: &Carrier) -> Vec<[f64; 2]> {
             let u = [x / apart, y / apart];
             // Of the chord in which they cross, if they do.
             let foot = ((apart - s) * (apart + s) + r * r) / (2.0 * apart);
-            let mut places = across(on(*c, u, foot), [-u[1], u[0]], (r - foot) * (r + foot));
-            places.extend([on(*c, u, *r), on(*c, u, -*r)]);
+            let mut places = across(point_at(*c, u, foot), [-u[1], u[0]], (r - foot) * (r + foot));
+            places.extend([point_at(*c, u, *r), point_at(*c, u, -*r)]);
             places
         }
     }
 }
 
-fn on(at: [f64; 2], u: [f64; 2], length: f64) -> [f64; 2] {
+fn point_at(at: [f64; 2], u: [f64; 2], length: f64) -> [f64; 2] {
     [at[0] + length * u[0], at[1] + length * u[1]]
 }
 
 /// A point, and those at this squared distance along a direction, if it is not negative.
 fn across(at: [f64; 2], u: [f64; 2], squared: f64) -> Vec<[f64; 2]> {
     let half = squared.max(0.0).sqrt();
-    vec![at, on(at, u, half), on(at, u, -half)]
+    vec![at, point_at(at, u, half), point_at(at, u, -half)]
 }
 
 /// The length along a piece at which it is nearest to a point \[m\].
-fn length_near(piece: &Placed, at: [f64; 2]) -> f64 {
+fn length_near(piece: &PlacedSegment, at: [f64; 2]) -> f64 {
     match piece.shape {
         PathSegment::Line { length } => {
             let (sin, cos) = piece.heading.sin_cos();
-            ((at[0] - piece.at[0]) * cos + (at[1] - piece.at[1]) * sin).clamp(0.0, length)
+            ((at[0] - piece.start[0]) * cos + (at[1] - piece.start[1]) * sin).clamp(0.0, length)
         }
         PathSegment::Arc { radius, sweep } => {
             let centre = centre(piece, radius, sweep);
             let angle = |[x, y]: [f64; 2]| (y - centre[1]).atan2(x - centre[0]);
-            let turned = ((angle(at) - angle(piece.at)) * sweep.signum()).rem_euclid(TAU);
+            let turned = ((angle(at) - angle(piece.start)) * sweep.signum()).rem_euclid(TAU);
             let beyond = turned - sweep.abs();
             // Beyond its end the nearer of both ends.
             let turned = if beyond <= 0.0 {
@@ -181,14 +182,16 @@ mod tests {
 
     #[test]
     fn the_nearest_points_are_those_of_samples() {
-        let line = Placed::line([0.0, 0.0], [4.0, 1.0]);
-        let arc = Placed { at: [3.0, 2.0], heading: 0.5, shape: PathSegment::Arc { radius: 1.5, sweep: -2.5 } };
-        for other in [arc, Placed::line([1.0, 3.0], [2.0, 1.0]), Placed::line([2.0, -1.0], [2.0, 2.0])] {
+        let line = PlacedSegment::line([0.0, 0.0], [4.0, 1.0]);
+        let arc =
+            PlacedSegment { start: [3.0, 2.0], heading: 0.5, shape: PathSegment::Arc { radius: 1.5, sweep: -2.5 } };
+        for other in [arc, PlacedSegment::line([1.0, 3.0], [2.0, 1.0]), PlacedSegment::line([2.0, -1.0], [2.0, 2.0])] {
             let found = nearest(&[line], &[other]).unwrap();
             let mut least = f64::INFINITY;
             for i in 0..=1000 {
                 for j in 0..=1000 {
-                    let share = |k: i32, piece: &Placed| point(piece, piece.shape.length() * f64::from(k) / 1000.0);
+                    let share =
+                        |k: i32, piece: &PlacedSegment| point(piece, piece.shape.length() * f64::from(k) / 1000.0);
                     let (p, q) = (share(i, &line), share(j, &other));
                     least = least.min((p[0] - q[0]).hypot(p[1] - q[1]));
                 }
@@ -202,8 +205,8 @@ mod tests {
 
     #[test]
     fn lines_and_arcs_anywhere_are_nearest_where_samples_are() {
-        let arc = |at: [f64; 2], heading: f64, radius: f64, sweep: f64| Placed {
-            at,
+        let arc = |at: [f64; 2], heading: f64, radius: f64, sweep: f64| PlacedSegment {
+            start: at,
             heading,
             shape: PathSegment::Arc { radius, sweep },
         };
@@ -213,7 +216,7 @@ mod tests {
             (seed >> 11) as f64 / (1_u64 << 53) as f64
         };
         let mut piece = |k: usize| match k % 4 {
-            0 => Placed::line([8.0 * any(), 8.0 * any()], [8.0 * any(), 8.0 * any()]),
+            0 => PlacedSegment::line([8.0 * any(), 8.0 * any()], [8.0 * any(), 8.0 * any()]),
             1 => arc([8.0 * any(), 8.0 * any()], 7.0 * any(), 0.2 + 3.0 * any(), 7.0 * any() - 3.5),
             // More than a turn; and on circles around one centre, which also touch.
             2 => arc([8.0 * any(), 8.0 * any()], 7.0 * any(), 0.2 + any(), 12.0 * any() - 6.0),
@@ -243,11 +246,12 @@ mod tests {
 
     #[test]
     fn a_stretch_is_the_part_between_two_lengths() {
-        let arc = Placed { at: [2.0, 0.0], heading: 0.0, shape: PathSegment::Arc { radius: 1.0, sweep: 2.0 } };
-        let curve = [Placed::line([0.0, 0.0], [2.0, 0.0]), arc];
+        let arc =
+            PlacedSegment { start: [2.0, 0.0], heading: 0.0, shape: PathSegment::Arc { radius: 1.0, sweep: 2.0 } };
+        let curve = [PlacedSegment::line([0.0, 0.0], [2.0, 0.0]), arc];
         let part = stretch(&curve, [1.5, 3.0]);
         assert_eq!(part.len(), 2);
-        assert!((part[0].at[0] - 1.5).abs() < 1e-12 && (part[0].shape.length() - 0.5).abs() < 1e-12);
+        assert!((part[0].start[0] - 1.5).abs() < 1e-12 && (part[0].shape.length() - 0.5).abs() < 1e-12);
         assert!((part[1].shape.length() - 1.0).abs() < 1e-12);
         assert_eq!(stretch(&curve, [4.0, 4.0]).len(), 1);
         assert_eq!(stretch(&curve, [0.0, 0.0]).len(), 1);

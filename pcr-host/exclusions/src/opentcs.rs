@@ -9,32 +9,32 @@
 //! Blocks of points are preferred, because a block of two points applies to all paths that end there.
 //! `SAME_DIRECTION_ONLY` excludes no contact: it lets vehicles in that follow one another.
 
-mod cut;
 mod ids;
+mod path_splitter;
 #[cfg(test)]
 mod tests;
 mod version;
 mod visual;
 
-pub(crate) use cut::split;
+pub(crate) use path_splitter::split;
 
 use crate::audit::groups;
-use crate::cover::cover;
-use crate::edit::{Edits, ending, indent};
-use crate::outline::{around, intersect};
-use crate::settings::{Notes, Settings};
-use crate::stamp::{PROPERTY, Stamp};
-use crate::{Claim, Rules};
+use crate::clique_cover::cover;
+use crate::convex_outline::{around, intersect};
+use crate::options::{WriteNotes, WriteOptions};
+use crate::stamp::{PROPERTY, VehicleStamp};
+use crate::text_edits::{TextEdits, ending, indent};
+use crate::{ExclusionRules, ResourceClaim};
 use ids::Ids;
-use pcr_formats::import::{Id, ImportError, Imported, Layout};
-use pcr_formats::plane::hull;
-use pcr_formats::scenario::Placed;
+use pcr_formats::import::{ElementId, ImportError, ImportedLayout, Layout};
+use pcr_formats::plane_geometry::hull;
+use pcr_formats::scenario::PlacedSegment;
 use pcr_formats::warning::WarningCode;
-use pcr_planning::locks::Locks;
+use pcr_planning::exclusion_table::ExclusionTable;
 use roxmltree::{Document, Node};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fmt::Write as _;
-use version::Version;
+use version::ModelVersion;
 use visual::Visual;
 
 /// Prefix of the names of blocks that are written here; such blocks are replaced when a file is written again.
@@ -67,10 +67,10 @@ fn resources(layout: &Layout) -> HashMap<String, usize> {
 }
 
 /// Reads resources, blocks and envelopes.
-pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
+pub(crate) fn read(text: &str, imported: &ImportedLayout) -> Result<ExclusionRules, ImportError> {
     let document = parse(text)?;
     let layout = &imported.layout;
-    let Held { tokens, names, warnings } = held(document.root_element(), layout, |_| true)?;
+    let ResourceTokens { tokens, names, warnings } = read_resources(document.root_element(), layout, |_| true)?;
     let blocks: Vec<Vec<usize>> = tokens
         .iter()
         .map(|tokens| {
@@ -81,17 +81,18 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         .collect();
     let (of_paths, of_points) = blocks.split_at(layout.edges.len());
     let groups = groups(layout, &names, of_paths, of_points);
-    let nodes: Vec<Claim> = tokens[layout.edges.len()..].iter().cloned().map(Claim::exclusive).collect();
+    let nodes: Vec<ResourceClaim> =
+        tokens[layout.edges.len()..].iter().cloned().map(ResourceClaim::exclusive).collect();
     let edges = layout.edges.iter().enumerate().map(|(place, edge)| {
         let ends = edge.ends.iter().flat_map(|&end| &tokens[layout.edges.len() + end]);
-        Claim::exclusive(tokens[place].iter().chain(ends).copied().collect())
+        ResourceClaim::exclusive(tokens[place].iter().chain(ends).copied().collect())
     });
     let said = stamped(document.root_element()).map(|(_, said)| said);
-    Ok(Rules { groups, warnings, ..Rules::of_edges(imported, edges.collect(), nodes) }.stamped(said))
+    Ok(ExclusionRules { groups, warnings, ..ExclusionRules::of_edges(imported, edges.collect(), nodes) }.stamped(said))
 }
 
 /// What a vehicle has with each resource, paths first: tokens of the resource, of its blocks, and of envelopes that meet.
-struct Held {
+struct ResourceTokens {
     tokens: Vec<Vec<usize>>,
     /// Of the blocks.
     names: Vec<String>,
@@ -99,7 +100,11 @@ struct Held {
 }
 
 /// Reads the blocks that are asked for by their names, and envelopes.
-fn held(root: Node<'_, '_>, layout: &Layout, is_asked: impl Fn(&str) -> bool) -> Result<Held, ImportError> {
+fn read_resources(
+    root: Node<'_, '_>,
+    layout: &Layout,
+    is_asked: impl Fn(&str) -> bool,
+) -> Result<ResourceTokens, ImportError> {
     let places = resources(layout);
     let count = layout.edges.len() + layout.nodes.len();
     // Each resource is a token of its own.
@@ -132,7 +137,7 @@ fn held(root: Node<'_, '_>, layout: &Layout, is_asked: impl Fn(&str) -> bool) ->
         names.push(name(block).to_owned());
     }
     envelopes(root, &places, count + names.len(), &mut tokens, &mut warnings)?;
-    Ok(Held { tokens, names, warnings })
+    Ok(ResourceTokens { tokens, names, warnings })
 }
 
 /// Adds a token for every two resources of which the envelopes with the key of all vehicles meet.
@@ -193,10 +198,10 @@ fn envelopes(
 /// Writes blocks, or envelopes if they are asked for.
 pub(crate) fn write(
     text: &str,
-    imported: &Imported,
-    locks: &Locks,
-    settings: &Settings,
-    notes: &mut Notes,
+    imported: &ImportedLayout,
+    locks: &ExclusionTable,
+    settings: &WriteOptions,
+    notes: &mut WriteNotes,
 ) -> Result<String, ImportError> {
     let document = parse(text)?;
     let offset = text.len() - text.trim_start_matches('\u{feff}').len();
@@ -212,7 +217,7 @@ pub(crate) fn write(
     if let Some(id) = all.into_iter().find(|id| !there.contains(id.to_string().as_str())) {
         return Err(ImportError::new(format!("{id}: the file has several of one name; a block cannot name them")));
     }
-    let mut edits = Edits::default();
+    let mut edits = TextEdits::default();
     let root = document.root_element();
     let prefixed = |child: &Node<'_, '_>| {
         let tag = text[child.range().start + offset..].split([' ', '\t', '\r', '\n', '/', '>']).next();
@@ -222,7 +227,7 @@ pub(crate) fn write(
         let name = child.tag_name().name();
         return Err(ImportError::new(format!("{name}: names of elements with a prefix are not written")));
     }
-    let version = Version::of(root)?;
+    let version = ModelVersion::of(root)?;
     let model = Model { text, offset, root, version };
     if let Some(key) = &settings.envelopes {
         if !version.has_envelopes() {
@@ -234,7 +239,7 @@ pub(crate) fn write(
         write_blocks(&model, layout, locks, notes, &mut edits)?;
     }
     write_stamp(&model, imported, &mut edits)?;
-    Ok(edits.made(text))
+    Ok(edits.apply(text))
 }
 
 /// What says in a model for which vehicle its exclusions were written, and what it says.
@@ -249,9 +254,9 @@ fn stamped<'a, 'i>(model: Node<'a, 'i>) -> Option<(Node<'a, 'i>, &'a str)> {
 }
 
 /// Says in a model for which vehicle its exclusions are: as the last of its properties or, where it has none, in a comment.
-fn write_stamp(model: &Model<'_, '_>, imported: &Imported, edits: &mut Edits) -> Result<(), ImportError> {
+fn write_stamp(model: &Model<'_, '_>, imported: &ImportedLayout, edits: &mut TextEdits) -> Result<(), ImportError> {
     let &Model { text, offset, root, version } = model;
-    let stamp = Stamp::of(imported).text();
+    let stamp = VehicleStamp::of(imported).text();
     let element = match version.has_properties() {
         true => format!("<property name=\"{PROPERTY}\" value=\"{}\"/>", escaped(&stamp)),
         false => format!("<!-- {PROPERTY} {stamp} -->"),
@@ -269,9 +274,9 @@ fn write_stamp(model: &Model<'_, '_>, imported: &Imported, edits: &mut Edits) ->
 
 /// Refuses a written model that has what its version has not, if the model before had not.
 pub(crate) fn check(before: &str, after: &str) -> Result<(), ImportError> {
-    let faults = |text: &str| -> Result<(Version, BTreeSet<String>), ImportError> {
+    let faults = |text: &str| -> Result<(ModelVersion, BTreeSet<String>), ImportError> {
         let document = parse(text)?;
-        let version = Version::of(document.root_element())?;
+        let version = ModelVersion::of(document.root_element())?;
         Ok((version, version::faults(document.root_element(), version)))
     };
     let ((version, known), (_, found)) = (faults(before)?, faults(after)?);
@@ -289,13 +294,13 @@ struct Model<'a, 'i> {
     /// Offset of the document in the text.
     offset: usize,
     root: Node<'a, 'i>,
-    version: Version,
+    version: ModelVersion,
 }
 
 /// What has to be in a block, and what may be: pairs of resources, paths first.
-fn pairs(layout: &Layout, locks: &Locks) -> [Vec<[usize; 2]>; 2] {
-    let paths: HashMap<&Id, usize> = layout.edges.iter().enumerate().map(|(k, edge)| (&edge.id, k)).collect();
-    let points: HashMap<&Id, usize> = layout.nodes.iter().enumerate().map(|(k, node)| (&node.id, k)).collect();
+fn pairs(layout: &Layout, locks: &ExclusionTable) -> [Vec<[usize; 2]>; 2] {
+    let paths: HashMap<&ElementId, usize> = layout.edges.iter().enumerate().map(|(k, edge)| (&edge.id, k)).collect();
+    let points: HashMap<&ElementId, usize> = layout.nodes.iter().enumerate().map(|(k, node)| (&node.id, k)).collect();
     let ends = |path: usize| layout.edges[path].ends;
     let first = layout.edges.len();
     let ordered = |a: usize, b: usize| [a.min(b), a.max(b)];
@@ -333,17 +338,17 @@ fn is_ours(name: &str) -> bool {
 fn write_blocks(
     &Model { text, offset, root, version }: &Model<'_, '_>,
     layout: &Layout,
-    locks: &Locks,
-    notes: &mut Notes,
-    edits: &mut Edits,
+    locks: &ExclusionTable,
+    notes: &mut WriteNotes,
+    edits: &mut TextEdits,
 ) -> Result<(), ImportError> {
     let [mut needed, allowed] = pairs(layout, locks);
     // What blocks and envelopes of the file exclude already needs no other block.
-    let there = held(root, layout, |name| !is_ours(name))?.tokens;
+    let there = read_resources(root, layout, |name| !is_ours(name))?.tokens;
     let of = |place: usize| {
         let ends = layout.edges.get(place).into_iter().flat_map(|edge| edge.ends.map(|end| layout.edges.len() + end));
         let tokens = ends.chain([place]).flat_map(|place| there[place].iter().copied());
-        Claim::exclusive(tokens.collect())
+        ResourceClaim::exclusive(tokens.collect())
     };
     needed.retain(|[a, b]| !of(*a).excludes(&of(*b)));
     let cover = cover(layout.edges.len() + layout.nodes.len(), &allowed, &needed);
@@ -398,19 +403,20 @@ fn escaped(text: &str) -> String {
 
 fn write_envelopes(
     &Model { text, offset, root, .. }: &Model<'_, '_>,
-    imported: &Imported,
+    imported: &ImportedLayout,
     key: &str,
-    edits: &mut Edits,
+    edits: &mut TextEdits,
 ) -> Result<usize, ImportError> {
     let (layout, vehicle) = (&imported.layout, &imported.vehicle);
     if elements(root, "vehicle").next().is_none() {
         return Err(ImportError::new("envelopes: there is no vehicle in the model that could have their key"));
     }
     let radius = vehicle.radius + vehicle.margin;
-    let curves: BTreeMap<String, (Vec<Placed>, f64)> = (layout.nodes.iter())
-        .map(|node| (node.id.to_string(), (vec![Placed::line(node.at, node.at)], 0.0)))
+    let curves: BTreeMap<String, (Vec<PlacedSegment>, f64)> = (layout.nodes.iter())
+        .map(|node| (node.id.to_string(), (vec![PlacedSegment::line(node.point, node.point)], 0.0)))
         .chain(layout.edges.iter().map(|edge| {
-            let place = || vec![Placed::line(layout.nodes[edge.ends[0]].at, layout.nodes[edge.ends[1]].at)];
+            let place =
+                || vec![PlacedSegment::line(layout.nodes[edge.ends[0]].point, layout.nodes[edge.ends[1]].point)];
             let curve = if edge.curve.is_empty() { place() } else { edge.curve.clone() };
             (edge.id.to_string(), (curve, edge.deviation))
         }))

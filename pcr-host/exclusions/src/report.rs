@@ -1,15 +1,15 @@
 //! Reports of written exclusions and of audits, for reading and as CSV.
 
-use crate::{Audit, Gap, Spot, Written};
+use crate::{ExclusionAudit, LayoutElementId, MissingExclusion, WriteReport};
 use pcr_planning::figures::thousandths;
-use pcr_planning::report::columns::Columns;
-use pcr_planning::report::{Document, counted, printable, quoted, vehicle_text};
+use pcr_planning::report::text_table::TextTable;
+use pcr_planning::report::{VersionedReport, counted, printable, quoted, vehicle_text};
 use std::io::{self, Write};
 
-impl Document for Written {
+impl VersionedReport for WriteReport {
     const FORMAT: &'static str = "pcr-written";
 }
-impl Document for Audit {
+impl VersionedReport for ExclusionAudit {
     const FORMAT: &'static str = "pcr-audit";
 }
 
@@ -25,7 +25,7 @@ fn times(excluded: f64, needed: f64) -> String {
 }
 
 /// Prints how much is excluded, and how much is needed.
-fn extent(out: &mut dyn Write, excluded: f64, needed: f64, needless: usize) -> io::Result<()> {
+fn print_excluded_share(out: &mut dyn Write, excluded: f64, needed: f64, needless: usize) -> io::Result<()> {
     let times = times(excluded, needed);
     writeln!(out, "  lengths of two edges: {needed:.1} m² touch, {excluded:.1} m² are excluded{times}")?;
     writeln!(out, "  pairs of edges that cannot touch and are excluded: {needless}")
@@ -35,7 +35,7 @@ fn extent(out: &mut dyn Write, excluded: f64, needed: f64, needless: usize) -> i
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn written_table(written: &Written, out: &mut dyn Write) -> io::Result<()> {
+pub fn written_table(written: &WriteReport, out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,
         "{}: exclusions for {} on {} and {}, {}",
@@ -49,7 +49,7 @@ pub fn written_table(written: &Written, out: &mut dyn Write) -> io::Result<()> {
     let bound = written.at_least.map_or(String::new(), cliques);
     writeln!(out, "  groups: {}{bound}", written.groups)?;
     writeln!(out, "  pairs that can touch: {}, all excluded by what stands in the file", written.can_touch)?;
-    extent(out, written.excluded, written.needed, written.needless)?;
+    print_excluded_share(out, written.excluded, written.needed, written.needless)?;
     if let Some(uncut) = written.uncut {
         writeln!(
             out,
@@ -57,23 +57,23 @@ pub fn written_table(written: &Written, out: &mut dyn Write) -> io::Result<()> {
             times(uncut, written.needed)
         )?;
     }
-    said(out, &written.warnings[written.of_layout..])
+    print_warnings(out, &written.warnings[written.of_layout..])
 }
 
 /// Prints warnings about the exclusions; those about the layout were printed when it was read.
-fn said(out: &mut dyn Write, warnings: &[String]) -> io::Result<()> {
+fn print_warnings(out: &mut dyn Write, warnings: &[String]) -> io::Result<()> {
     warnings.iter().try_for_each(|warning| writeln!(out, "  {}", printable(warning)))
 }
 
-fn spot(spot: &Spot) -> String {
+fn spot(spot: &LayoutElementId) -> String {
     match spot {
-        Spot::Edge(id) => id.to_string(),
-        Spot::Node(id) => format!("node {id}"),
+        LayoutElementId::Edge(id) => id.to_string(),
+        LayoutElementId::Node(id) => format!("node {id}"),
     }
 }
 
 /// Which places an audit is of, where it is not of all.
-fn selected(spots: &[Spot]) -> String {
+fn selected(spots: &[LayoutElementId]) -> String {
     match spots {
         [] => String::new(),
         some => format!(
@@ -87,7 +87,7 @@ fn selected(spots: &[Spot]) -> String {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn audit_table(audit: &Audit, out: &mut dyn Write) -> io::Result<()> {
+pub fn audit_table(audit: &ExclusionAudit, out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,
         "{}: audit of {} of {}, {}{}",
@@ -107,14 +107,15 @@ pub fn audit_table(audit: &Audit, out: &mut dyn Write) -> io::Result<()> {
         count("adjacent"),
         count("apart")
     )?;
-    extent(out, audit.excluded, audit.needed, audit.needless.len())?;
-    let mut gaps: Vec<&Gap> = audit.gaps.iter().collect();
+    print_excluded_share(out, audit.excluded, audit.needed, audit.needless.len())?;
+    let mut gaps: Vec<&MissingExclusion> = audit.gaps.iter().collect();
     // Pairs without a common node come first, because the graph does not show them.
-    let rank = |gap: &Gap| ["apart", "adjacent", "same"].iter().position(|relation| *relation == gap.relation);
+    let rank =
+        |gap: &MissingExclusion| ["apart", "adjacent", "same"].iter().position(|relation| *relation == gap.relation);
     gaps.sort_by(|a, b| rank(a).cmp(&rank(b)).then(b.depth.total_cmp(&a.depth)));
     if !gaps.is_empty() {
         writeln!(out, "  not excluded:")?;
-        let mut columns = Columns::new(&["<a", "<b", "<", "depth [m]", "x [m]", "y [m]"]);
+        let mut columns = TextTable::new(&["<a", "<b", "<", "depth [m]", "x [m]", "y [m]"]);
         for gap in gaps.iter().take(ROWS) {
             let [x, y] = gap.at;
             columns.row(vec![
@@ -131,14 +132,14 @@ pub fn audit_table(audit: &Audit, out: &mut dyn Write) -> io::Result<()> {
     }
     if !audit.needless.is_empty() {
         writeln!(out, "  needless:")?;
-        let mut columns = Columns::new(&["<a", "<b"]);
+        let mut columns = TextTable::new(&["<a", "<b"]);
         for pair in audit.needless.iter().take(ROWS) {
             columns.row([&pair.a, &pair.b].map(|id| printable(&id.to_string())).to_vec());
         }
         columns.write(out)?;
         more(out, audit.needless.len())?;
     }
-    said(out, &audit.warnings[audit.of_layout..])
+    print_warnings(out, &audit.warnings[audit.of_layout..])
 }
 
 fn more(out: &mut dyn Write, count: usize) -> io::Result<()> {
@@ -153,7 +154,7 @@ pub const AUDIT_HEADER: &str = "finding,a,b,relation,a_from,a_to,b_from,b_to,x,y
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn audit_csv(audit: &Audit, out: &mut dyn Write) -> io::Result<()> {
+pub fn audit_csv(audit: &ExclusionAudit, out: &mut dyn Write) -> io::Result<()> {
     out.write_all(AUDIT_HEADER.as_bytes())?;
     for gap in &audit.gaps {
         let [a, b] = [&gap.a, &gap.b].map(|at| quoted(&spot(at)).into_owned());

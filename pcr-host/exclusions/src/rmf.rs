@@ -9,30 +9,30 @@
 //! At first every vertex is a group of its own, so that lanes with a common vertex exclude each other. Other contacts
 //! are excluded by merging the groups of two vertices, repeatedly those that exclude most for their size.
 
-mod cut;
-mod units;
+mod lane_splitter;
+mod mutex_groups;
 
-pub(crate) use cut::prepare;
+pub(crate) use lane_splitter::prepare;
 
 use crate::audit::groups;
-use crate::edit::{Edits, column, ending};
-use crate::settings::Notes;
-use crate::stamp::{MEMBER, Stamp};
-use crate::{Claim, Rules};
-use pcr_formats::import::{Id, ImportError, Imported, is_navigation_graph};
+use crate::options::WriteNotes;
+use crate::stamp::{MEMBER, VehicleStamp};
+use crate::text_edits::{TextEdits, column, ending};
+use crate::{ExclusionRules, ResourceClaim};
+use mutex_groups::united;
+use pcr_formats::import::{ElementId, ImportError, ImportedLayout, is_navigation_graph};
 use pcr_formats::warning::WarningCode;
-use pcr_formats::yaml::{Document, Spanned, Style, Value as Kind};
-use pcr_planning::locks::Locks;
+use pcr_formats::yaml::{CollectionStyle, YamlDocument, YamlNode, YamlValue as Kind};
+use pcr_planning::exclusion_table::ExclusionTable;
 use serde_json::{Value, json};
 use std::collections::{BTreeSet, HashMap};
-use units::united;
 
 /// Prefix of the names of groups that are written here.
 const PREFIX: &str = "pcr/";
 
 /// The form of a file: where its parameters are, and how they are written.
 #[derive(Clone, Copy)]
-struct Form {
+struct RmfDialect {
     /// Index of the parameters in the list of a vertex.
     vertex: usize,
     /// Whether a parameter is a list of its type and its value.
@@ -41,7 +41,7 @@ struct Form {
     quoted: bool,
 }
 
-impl Form {
+impl RmfDialect {
     const LANE: usize = 2;
 
     fn of(text: &str, root: &Value) -> Self {
@@ -66,18 +66,18 @@ impl Form {
 }
 
 /// Level of a vertex or lane, and its index there.
-fn place_of(id: &Id) -> Option<(&str, usize)> {
-    let Id::Text(text) = id else { return None };
+fn place_of(id: &ElementId) -> Option<(&str, usize)> {
+    let ElementId::Text(text) = id else { return None };
     let (level, place) = text.rsplit_once('/')?;
     Some((level, place.parse().ok()?))
 }
 
 /// Reads the groups.
-pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
+pub(crate) fn read(text: &str, imported: &ImportedLayout) -> Result<ExclusionRules, ImportError> {
     let (form, root, _) = opened(text)?;
     let mut names: Vec<String> = Vec::new();
     let mut known: HashMap<String, usize> = HashMap::new();
-    let mut group = |kind: &str, id: &Id, parameters: usize| -> Result<Vec<usize>, ImportError> {
+    let mut group = |kind: &str, id: &ElementId, parameters: usize| -> Result<Vec<usize>, ImportError> {
         let Some((level, place)) = place_of(id) else { return Ok(Vec::new()) };
         let given = &root["levels"][level][kind][place][parameters]["mutex"];
         let value = if let Value::Array(typed) = given { typed.get(1).unwrap_or(&Value::Null) } else { given };
@@ -96,31 +96,32 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         })])
     };
     let layout = &imported.layout;
-    let lanes = layout.edges.iter().map(|edge| group("lanes", &edge.id, Form::LANE)).collect::<Result<Vec<_>, _>>()?;
+    let lanes =
+        layout.edges.iter().map(|edge| group("lanes", &edge.id, RmfDialect::LANE)).collect::<Result<Vec<_>, _>>()?;
     let vertices =
         layout.nodes.iter().map(|node| group("vertices", &node.id, form.vertex)).collect::<Result<Vec<_>, _>>()?;
     let ways = layout.edges.iter().zip(&lanes).map(|(edge, own)| {
         [1, 0].map(|end| {
             let target = edge.ends[end];
-            Claim::exclusive(own.iter().chain(vertices.get(target).into_iter().flatten()).copied().collect())
+            ResourceClaim::exclusive(own.iter().chain(vertices.get(target).into_iter().flatten()).copied().collect())
         })
     });
     let ways = ways.collect();
     let groups = groups(layout, &names, &lanes, &vertices);
-    let nodes = vertices.into_iter().map(Claim::exclusive).collect();
+    let nodes = vertices.into_iter().map(ResourceClaim::exclusive).collect();
     let said = root.get(MEMBER).map(Value::to_string);
-    Ok(Rules { groups, ..Rules::of_ways(imported, ways, nodes) }.stamped(said.as_deref()))
+    Ok(ExclusionRules { groups, ..ExclusionRules::of_ways(imported, ways, nodes) }.stamped(said.as_deref()))
 }
 
 /// A file: its form, all of it, and the same with its places.
-fn opened(text: &str) -> Result<(Form, Value, Document<'_>), ImportError> {
-    let document = Document::read(text).map_err(ImportError::of_yaml)?;
+fn opened(text: &str) -> Result<(RmfDialect, Value, YamlDocument<'_>), ImportError> {
+    let document = YamlDocument::read(text).map_err(ImportError::of_yaml)?;
     let root = document.value().map_err(ImportError::of_yaml)?;
-    Ok((Form::of(text, &root), root, document))
+    Ok((RmfDialect::of(text, &root), root, document))
 }
 
 /// A file to change: its form, and its values with their places.
-fn placed(text: &str) -> Result<(Form, Spanned<'_>), ImportError> {
+fn placed(text: &str) -> Result<(RmfDialect, YamlNode<'_>), ImportError> {
     let (form, _, document) = opened(text)?;
     if document.is_placed {
         Ok((form, document.root))
@@ -130,20 +131,25 @@ fn placed(text: &str) -> Result<(Form, Spanned<'_>), ImportError> {
 }
 
 /// The value of a parameter; in buildings a parameter is a list of type and value.
-fn typed<'a>(parameters: Option<&'a Spanned<'_>>, name: &str) -> Option<&'a str> {
+fn typed<'a>(parameters: Option<&'a YamlNode<'_>>, name: &str) -> Option<&'a str> {
     let given = parameters?.get(name)?;
     given.list().get(1).unwrap_or(given).text()
 }
 
 /// Refuses to change an element whose text also stands for another one.
-fn own(element: &Spanned<'_>, kind: &str, id: &Id) -> Result<(), ImportError> {
+fn own(element: &YamlNode<'_>, kind: &str, id: &ElementId) -> Result<(), ImportError> {
     let problem =
         || format!("{kind} {id}: there is an anchor or an alias in it; what is shared cannot be changed for one");
     if element.shared { Err(ImportError::new(problem())) } else { Ok(()) }
 }
 
 /// Writes the groups for a table that includes nodes; all lanes lead in one direction.
-pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks, notes: &mut Notes) -> Result<String, ImportError> {
+pub(crate) fn write(
+    text: &str,
+    imported: &ImportedLayout,
+    locks: &ExclusionTable,
+    notes: &mut WriteNotes,
+) -> Result<String, ImportError> {
     let layout = &imported.layout;
     let group = united(layout, locks);
     let (form, root) = placed(text)?;
@@ -152,13 +158,13 @@ pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks, notes: &mut 
         if form.typed { format!("[1, {name}]") } else { name.to_string() }
     };
     notes.groups = group.iter().collect::<BTreeSet<_>>().len();
-    let mut edits = Edits::default();
+    let mut edits = TextEdits::default();
     let mut replaced = BTreeSet::new();
-    let element = |kind: &str, id: &Id| -> Option<&Spanned<'_>> {
+    let element = |kind: &str, id: &ElementId| -> Option<&YamlNode<'_>> {
         let (level, place) = place_of(id)?;
         root.get("levels")?.get(level)?.get(kind)?.list().get(place)
     };
-    let things = (layout.edges.iter().map(|edge| ("lanes", &edge.id, Form::LANE, edge.ends[0])))
+    let things = (layout.edges.iter().map(|edge| ("lanes", &edge.id, RmfDialect::LANE, edge.ends[0])))
         .chain(layout.nodes.iter().enumerate().map(|(k, node)| ("vertices", &node.id, form.vertex, k)));
     for (kind, id, place, node) in things {
         let found = element(kind, id)
@@ -175,31 +181,31 @@ pub(crate) fn write(text: &str, imported: &Imported, locks: &Locks, notes: &mut 
     if !replaced.is_empty() {
         let names: Vec<String> = replaced.into_iter().collect();
         let text = format_args!("groups of the file are replaced: {}", names.join(", "));
-        notes.said.push(WarningCode::ReplacedExclusions.text(text));
+        notes.warnings.push(WarningCode::ReplacedExclusions.text(text));
     }
     stamp(&mut edits, text, form, &root, imported)?;
-    Ok(edits.made(text))
+    Ok(edits.apply(text))
 }
 
 /// Says for which vehicle the groups are.
 fn stamp(
-    edits: &mut Edits,
+    edits: &mut TextEdits,
     text: &str,
-    form: Form,
-    root: &Spanned<'_>,
-    imported: &Imported,
+    form: RmfDialect,
+    root: &YamlNode<'_>,
+    imported: &ImportedLayout,
 ) -> Result<(), ImportError> {
-    let stamp = Stamp::of(imported).text();
+    let stamp = VehicleStamp::of(imported).text();
     if let Some(old) = root.get(MEMBER) {
         edits.replace(old.span.clone(), old.instead(&stamp));
         return Ok(());
     }
     let whole = form.parameter(MEMBER, &stamp);
     match &root.value {
-        Kind::Mapping(Style::Flow, members) if !members.is_empty() => {
+        Kind::Mapping(CollectionStyle::Flow, members) if !members.is_empty() => {
             edits.insert(root.span.start + 1, format!("{whole}, "));
         }
-        Kind::Mapping(Style::Block, members) if !members.is_empty() => {
+        Kind::Mapping(CollectionStyle::Block, members) if !members.is_empty() => {
             let at = members[0].key.span.start;
             edits.insert(at, format!("{whole}{}{}", ending(text), " ".repeat(column(text, at))));
         }
@@ -209,20 +215,27 @@ fn stamp(
 }
 
 /// Sets the group in the parameters of a lane or a vertex.
-fn set(edits: &mut Edits, text: &str, form: Form, element: &Spanned<'_>, place: usize, group: &str) -> Option<()> {
+fn set(
+    edits: &mut TextEdits,
+    text: &str,
+    form: RmfDialect,
+    element: &YamlNode<'_>,
+    place: usize,
+    group: &str,
+) -> Option<()> {
     let whole = form.parameter("mutex", group);
     let Kind::Sequence(style, list) = &element.value else { return None };
     if let Some(parameters) = list.get(place) {
         let Kind::Mapping(style, members) = &parameters.value else { return None };
         match (parameters.get("mutex"), style, members.first(), members.last()) {
             (Some(old), ..) => edits.replace(old.span.clone(), old.instead(group)),
-            (None, Style::Flow, _, Some(last)) => edits.insert(last.value.span.end, format!(", {whole}")),
-            (None, Style::Flow, ..) => edits.insert(parameters.span.start + 1, whole),
-            (None, Style::Block, Some(first), _) => {
+            (None, CollectionStyle::Flow, _, Some(last)) => edits.insert(last.value.span.end, format!(", {whole}")),
+            (None, CollectionStyle::Flow, ..) => edits.insert(parameters.span.start + 1, whole),
+            (None, CollectionStyle::Block, Some(first), _) => {
                 let at = first.key.span.start;
                 edits.insert(at, format!("{whole}{}{}", ending(text), " ".repeat(column(text, at))));
             }
-            (None, Style::Block, ..) => return None,
+            (None, CollectionStyle::Block, ..) => return None,
         }
         return Some(());
     }
@@ -237,8 +250,8 @@ fn set(edits: &mut Edits, text: &str, form: Form, element: &Spanned<'_>, place: 
     let elements = missing.iter().copied().chain([parameters.as_str()]);
     let margin = " ".repeat(column(text, element.span.start));
     let before = match style {
-        Style::Flow => ", ".to_owned(),
-        Style::Block => format!("{}{margin}- ", ending(text)),
+        CollectionStyle::Flow => ", ".to_owned(),
+        CollectionStyle::Block => format!("{}{margin}- ", ending(text)),
     };
     edits.insert(last.span.end, elements.map(|element| format!("{before}{element}")).collect::<String>());
     Some(())

@@ -1,7 +1,7 @@
 //! Which edges and nodes an audit is about.
 
-use crate::Spot;
-use pcr_formats::import::{ImportError, Imported};
+use crate::LayoutElementId;
+use pcr_formats::import::{ImportError, ImportedLayout};
 use std::collections::BTreeSet;
 
 /// Some edges and nodes of a layout, by their places; all of them if none is named.
@@ -16,7 +16,7 @@ impl Selection {
     ///
     /// # Errors
     /// A name that the layout does not have; a name that several of its nodes have.
-    pub fn of(imported: &Imported, edges: &[String], nodes: &[String]) -> Result<Self, ImportError> {
+    pub fn of(imported: &ImportedLayout, edges: &[String], nodes: &[String]) -> Result<Self, ImportError> {
         let layout = &imported.layout;
         let edge = |name: &String| {
             let place = layout.edges.iter().position(|edge| edge.id.to_string() == *name);
@@ -51,9 +51,9 @@ impl Selection {
     }
 
     /// Returns the selected edges and nodes; none if everything is selected.
-    pub(crate) fn spots(&self, imported: &Imported) -> Vec<Spot> {
+    pub(crate) fn spots(&self, imported: &ImportedLayout) -> Vec<LayoutElementId> {
         let layout = &imported.layout;
-        let edges = self.edges.iter().map(|&edge| Spot::Edge(layout.edges[edge].id.clone()));
-        edges.chain(self.nodes.iter().map(|&node| Spot::Node(layout.nodes[node].id.clone()))).collect()
+        let edges = self.edges.iter().map(|&edge| LayoutElementId::Edge(layout.edges[edge].id.clone()));
+        edges.chain(self.nodes.iter().map(|&node| LayoutElementId::Node(layout.nodes[node].id.clone()))).collect()
     }
 }

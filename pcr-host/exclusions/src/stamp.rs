@@ -7,7 +7,7 @@
 //! | VDA 5050 | `zoneSetDescriptor`, a text for readers |
 //! | pcr | `written` |
 
-use pcr_formats::import::{Imported, SizeSource};
+use pcr_formats::import::{ImportedLayout, SizeSource};
 use pcr_formats::warning::WarningCode;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -23,7 +23,7 @@ const SAME: f64 = 1e-9;
 
 /// The vehicle for which exclusions were written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Stamp {
+pub struct VehicleStamp {
     /// The program that wrote them, with its version.
     pub by: String,
     /// Radius of the disc \[m\]; of an outline that of the disc around all of it.
@@ -37,9 +37,9 @@ pub struct Stamp {
     pub outline: Vec<[f64; 2]>,
 }
 
-impl Stamp {
+impl VehicleStamp {
     /// That of what is written for a layout and its vehicle.
-    pub fn of(imported: &Imported) -> Self {
+    pub fn of(imported: &ImportedLayout) -> Self {
         let vehicle = &imported.vehicle;
         let source = match vehicle.size {
             SizeSource::Option => "option",
@@ -75,7 +75,7 @@ impl Stamp {
     }
 
     /// Says for what it was written, where that is another vehicle than the one of an audit.
-    pub(crate) fn difference(&self, audited: &Imported) -> Option<String> {
+    pub(crate) fn difference(&self, audited: &ImportedLayout) -> Option<String> {
         let now = Self::of(audited);
         let is_near = |a: f64, b: f64| (a - b).abs() <= SAME;
         let has_same_outline = self.outline.len() == now.outline.len()
@@ -86,7 +86,7 @@ impl Stamp {
     }
 }
 
-impl fmt::Display for Stamp {
+impl fmt::Display for VehicleStamp {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { radius, margin, outline, .. } = self;
         match outline.len() {

@@ -10,14 +10,14 @@
 //! is kept off by whoever can reach into the zone at all: where they touch, both are in it. By the second rule the
 //! zones that are written here suffice, whatever the deviations and the outlines.
 
-use crate::outline::{around, depth};
-use crate::reach::within;
-use crate::settings::{Notes, Settings};
-use crate::stamp::Stamp;
-use crate::{Claim, Group, Mark, Rules, Way, stretch};
-use pcr_formats::import::{ImportError, Imported, Layout, parse_json};
-use pcr_formats::plane::hull;
-use pcr_formats::scenario::Placed;
+use crate::convex_outline::{around, depth};
+use crate::curve_proximity::lengths_near_polygon;
+use crate::options::{WriteNotes, WriteOptions};
+use crate::stamp::VehicleStamp;
+use crate::{DirectedEdgeRules, ExclusionGroup, ExclusionRules, ResourceClaim, TokenSpan, stretch};
+use pcr_formats::import::{ImportError, ImportedLayout, Layout, parse_json};
+use pcr_formats::plane_geometry::hull;
+use pcr_formats::scenario::PlacedSegment;
 use pcr_formats::scenario::{LIMIT, PathSegment};
 use pcr_formats::warning::WarningCode;
 use pcr_planning::checksum::crc32;
@@ -61,7 +61,7 @@ fn map(layout: &Layout, level: usize) -> &str {
     }
 }
 
-struct Zone {
+struct ReleaseZone {
     map: String,
     blocked: bool,
     polygon: Vec<[f64; 2]>,
@@ -71,9 +71,9 @@ struct Zone {
 
 /// Lengths of an edge at which a vehicle is in a zone.
 #[derive(Default)]
-struct Entered {
+struct ZoneIntervals {
     /// The vehicle is certainly in the zone, at least in part.
-    sure: Vec<[f64; 2]>,
+    certain: Vec<[f64; 2]>,
     /// The vehicle is certainly in the zone entirely.
     whole: Vec<[f64; 2]>,
     /// The vehicle may be in the zone in part.
@@ -81,40 +81,40 @@ struct Entered {
 }
 
 /// Bounds on how far vehicles reach from their centres.
-struct Reach {
+struct OutlineRadii {
     /// All points at most this far from the centre are in the contour \[m\]; `None` if the centre is outside, because then
     /// nothing is known.
     inner: Option<f64>,
     /// Bound on the distance of the points of the contour from the centre \[m\].
     outer: f64,
     /// Bound on the distance of the centre from its edge \[m\].
-    off: f64,
+    position_error: f64,
 }
 
-impl Reach {
-    fn of(imported: &Imported) -> Self {
+impl OutlineRadii {
+    fn of(imported: &ImportedLayout) -> Self {
         let vehicle = &imported.vehicle;
         let inner = match &vehicle.footprint {
             None => Some(vehicle.radius),
             Some(footprint) => Some(depth(footprint.polygon(), [0.0; 2])).filter(|depth| *depth >= 0.0),
         };
         // A margin is for how far vehicles are off their edges: their contours are no larger for it.
-        Self { inner, outer: vehicle.radius, off: vehicle.margin }
+        Self { inner, outer: vehicle.radius, position_error: vehicle.margin }
     }
 
     /// Lengths of a curve at which a vehicle is in a zone; `deviation` bounds the distance of the true curve from this one
     /// \[m\].
-    fn entered(&self, curve: &[Placed], deviation: f64, zone: &Zone) -> Entered {
-        let off = self.off + deviation;
+    fn entered(&self, curve: &[PlacedSegment], deviation: f64, zone: &ReleaseZone) -> ZoneIntervals {
+        let off = self.position_error + deviation;
         let far = self.outer + off + POSSIBLE;
         if !near(curve, far, zone.bounds) {
-            return Entered::default();
+            return ZoneIntervals::default();
         }
-        let within = |reach| within(curve, &zone.polygon, reach);
-        Entered {
+        let within = |reach| lengths_near_polygon(curve, &zone.polygon, reach);
+        ZoneIntervals {
             // If the centre is outside the contour, only a zone that contains the whole contour is certain to contain a part of
             // it.
-            sure: within(self.inner.unwrap_or(-self.outer) - off - SURE),
+            certain: within(self.inner.unwrap_or(-self.outer) - off - SURE),
             whole: within(-(self.outer + off + SURE)),
             possible: within(far),
         }
@@ -122,9 +122,9 @@ impl Reach {
 }
 
 /// Whether a curve can come so near a box.
-fn near(curve: &[Placed], far: f64, [lo, hi]: [[f64; 2]; 2]) -> bool {
+fn near(curve: &[PlacedSegment], far: f64, [lo, hi]: [[f64; 2]; 2]) -> bool {
     curve.iter().any(|piece| {
-        let ends = [piece.at, piece.end()];
+        let ends = [piece.start, piece.end()];
         // No point of a piece is farther from both ends than half its length.
         let room = match piece.shape {
             PathSegment::Line { .. } => 0.0,
@@ -184,9 +184,9 @@ fn text_of<'j>(object: &'j Value, field: &str) -> Result<&'j str, String> {
 }
 
 /// The zones of all messages with their groups, and warnings of zones that are none of these.
-type Zones = (Vec<Zone>, Vec<Group>, Vec<String>);
+type ZoneSet = (Vec<ReleaseZone>, Vec<ExclusionGroup>, Vec<String>);
 
-fn zones_of(root: &Value, layout: &Layout) -> Result<Zones, ImportError> {
+fn zones_of(root: &Value, layout: &Layout) -> Result<ZoneSet, ImportError> {
     let mut maps: BTreeMap<&str, usize> = BTreeMap::new();
     for level in 0..layout.levels.len() {
         maps.entry(map(layout, level)).or_insert(level);
@@ -226,8 +226,18 @@ fn zones_of(root: &Value, layout: &Layout) -> Result<Zones, ImportError> {
                 continue;
             }
             let polygon = polygon(&zone["vertices"]).map_err(|wrong| problem(&format!("vertices: {wrong}")))?;
-            groups.push(Group { name: name.to_owned(), outline: polygon.clone(), level, ..Group::default() });
-            zones.push(Zone { map: id.to_owned(), blocked: kind == "BLOCKED", bounds: bounds(&polygon), polygon });
+            groups.push(ExclusionGroup {
+                name: name.to_owned(),
+                outline: polygon.clone(),
+                level,
+                ..ExclusionGroup::default()
+            });
+            zones.push(ReleaseZone {
+                map: id.to_owned(),
+                blocked: kind == "BLOCKED",
+                bounds: bounds(&polygon),
+                polygon,
+            });
         }
     }
     Ok((zones, groups, warnings))
@@ -235,30 +245,34 @@ fn zones_of(root: &Value, layout: &Layout) -> Result<Zones, ImportError> {
 
 /// What a vehicle takes and bars in one of so many zones: three tokens for each zone, 0 for certain presence, 1 and 2 for the others. A
 /// vehicle that is entirely inside takes token 2 and bars token 1; one that is possibly inside takes token 1 and bars token 2.
-fn tokens(zone: usize, count: usize, Entered { sure, whole, possible }: Entered) -> impl Iterator<Item = Mark> {
+fn tokens(
+    zone: usize,
+    count: usize,
+    ZoneIntervals { certain: sure, whole, possible }: ZoneIntervals,
+) -> impl Iterator<Item = TokenSpan> {
     let of = move |ranges: Vec<[f64; 2]>, takes: usize, bars: usize| {
         ranges.into_iter().flat_map(move |range| {
-            [(takes, false), (bars, true)].map(|(kind, bars)| Mark { token: kind * count + zone, bars, range })
+            [(takes, false), (bars, true)].map(|(kind, bars)| TokenSpan { token: kind * count + zone, bars, range })
         })
     };
     of(sure, 0, 0).chain(of(whole, 2, 1)).chain(of(possible, 1, 2))
 }
 
 /// Reads the zones.
-pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError> {
+pub(crate) fn read(text: &str, imported: &ImportedLayout) -> Result<ExclusionRules, ImportError> {
     let layout = &imported.layout;
     let root = parse_json(text)?;
     let (zones, mut groups, warnings) = zones_of(&root, layout)?;
     let said = messages(&root).into_iter().filter_map(|message| message["zoneSet"]["zoneSetDescriptor"].as_str());
     // A descriptor may be anybody's.
-    let stamp = said.filter_map(Stamp::read).next();
-    let (reach, count) = (Reach::of(imported), zones.len());
-    let there = |zone: &Zone, level: usize| map(layout, level) == zone.map;
+    let stamp = said.filter_map(VehicleStamp::read).next();
+    let (reach, count) = (OutlineRadii::of(imported), zones.len());
+    let there = |zone: &ReleaseZone, level: usize| map(layout, level) == zone.map;
     let edges = layout.edges.iter().map(|edge| {
         let ends = edge.ends.map(|end| layout.level_of(end));
         let curve = match &edge.curve[..] {
             // Without a length an edge is a point.
-            [] => &[layout.position(edge.ends[0])].map(|at| Placed::line(at, at)),
+            [] => &[layout.position(edge.ends[0])].map(|at| PlacedSegment::line(at, at)),
             curve => curve,
         };
         let mut marks = Vec::new();
@@ -268,28 +282,28 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
             let entered = reach.entered(curve, edge.deviation, zone);
             if zone.blocked {
                 let on = (0..2).filter(|&end| there(zone, ends[end]));
-                on.for_each(|end| closed[end].extend_from_slice(&entered.sure));
+                on.for_each(|end| closed[end].extend_from_slice(&entered.certain));
             } else {
                 marks.extend(tokens(k, count, entered));
             }
         }
-        Way::both(edge.length(), marks, both(&closed[0], &closed[1]))
+        DirectedEdgeRules::both(edge.length(), marks, both(&closed[0], &closed[1]))
     });
-    let edges: Vec<[Way; 2]> = edges.collect();
+    let edges: Vec<[DirectedEdgeRules; 2]> = edges.collect();
     let nodes = layout.nodes.iter().map(|node| {
-        let mut claim = Claim::default();
+        let mut claim = ResourceClaim::default();
         for (k, zone) in zones.iter().enumerate().filter(|(_, zone)| there(zone, node.level)) {
-            let entered = reach.entered(&[Placed::line(node.at, node.at)], 0.0, zone);
+            let entered = reach.entered(&[PlacedSegment::line(node.point, node.point)], 0.0, zone);
             if zone.blocked {
-                claim.closed |= !entered.sure.is_empty();
+                claim.closed |= !entered.certain.is_empty();
                 continue;
             }
             for mark in tokens(k, count, entered) {
-                if mark.bars { claim.bars.push(mark.token) } else { claim.takes.push(mark.token) }
+                if mark.bars { claim.blocked.push(mark.token) } else { claim.acquired.push(mark.token) }
             }
         }
-        claim.takes.sort_unstable();
-        claim.bars.sort_unstable();
+        claim.acquired.sort_unstable();
+        claim.blocked.sort_unstable();
         claim
     });
     let nodes = nodes.collect();
@@ -304,11 +318,15 @@ pub(crate) fn read(text: &str, imported: &Imported) -> Result<Rules, ImportError
         groups[token].edges = edges.into_iter().collect();
     }
     let levels = (0..3 * count).map(|token| groups[token % count].level).collect();
-    Ok(Rules { edges, nodes, groups, warnings, stamp, levels })
+    Ok(ExclusionRules { edges, nodes, groups, warnings, stamp, levels })
 }
 
 /// Writes the zone set of each map: one message, or a list of them.
-pub(crate) fn write(imported: &Imported, settings: &Settings, notes: &mut Notes) -> Result<String, ImportError> {
+pub(crate) fn write(
+    imported: &ImportedLayout,
+    settings: &WriteOptions,
+    notes: &mut WriteNotes,
+) -> Result<String, ImportError> {
     let layout = &imported.layout;
     let mut messages = Vec::new();
     for level in 0..layout.levels.len() {
@@ -328,7 +346,7 @@ pub(crate) fn write(imported: &Imported, settings: &Settings, notes: &mut Notes)
         let zones = Value::Array(zones);
         let sum = crc32(zones.to_string().as_bytes());
         let set = json!({
-            "mapId": map, "zoneSetId": format!("{map}-pcr-{sum:08x}"), "zoneSetDescriptor": Stamp::of(imported).text(), "zones": zones
+            "mapId": map, "zoneSetId": format!("{map}-pcr-{sum:08x}"), "zoneSetDescriptor": VehicleStamp::of(imported).text(), "zones": zones
         });
         messages.push(json!({
             "headerId": 0, "timestamp": "1970-01-01T00:00:00.000Z", "version": "3.0.0", "manufacturer": "", "serialNumber": "",
@@ -340,21 +358,21 @@ pub(crate) fn write(imported: &Imported, settings: &Settings, notes: &mut Notes)
     Ok(text + "\n")
 }
 
-type Outline = (String, Vec<[f64; 2]>);
+type ZoneOutline = (String, Vec<[f64; 2]>);
 
 /// The zones of the edges of a level, by the name of the first edge that they are of.
-fn zones(imported: &Imported, level: usize, split: Option<f64>) -> Vec<Outline> {
+fn zones(imported: &ImportedLayout, level: usize, split: Option<f64>) -> Vec<ZoneOutline> {
     let layout = &imported.layout;
     let radius = imported.vehicle.radius + imported.vehicle.margin;
-    let mut zones: Vec<Outline> = Vec::new();
+    let mut zones: Vec<ZoneOutline> = Vec::new();
     let mut known = BTreeSet::new();
     for edge in layout.edges.iter().filter(|edge| layout.is_on(edge, level)) {
         let parts = parts(&edge.curve, split);
         for (k, part) in parts.iter().enumerate() {
             // The way back is the same zone, and so is another edge on the same line.
             let steps = |point: [f64; 2]| point.map(|x| (x * 1e6).round() as i64);
-            let middle = stretch(std::slice::from_ref(part), [part.shape.length() / 2.0; 2])[0].at;
-            let mut ends = [steps(part.at), steps(part.end())];
+            let middle = stretch(std::slice::from_ref(part), [part.shape.length() / 2.0; 2])[0].start;
+            let mut ends = [steps(part.start), steps(part.end())];
             ends.sort_unstable();
             if known.insert((ends, steps(middle), edge.deviation.to_bits())) {
                 let name = if parts.len() == 1 { edge.id.to_string() } else { format!("{} ({})", edge.id, k + 1) };
@@ -366,7 +384,7 @@ fn zones(imported: &Imported, level: usize, split: Option<f64>) -> Vec<Outline> 
 }
 
 /// Gives zones of one name different ones.
-fn distinguish(zones: &mut [Outline]) {
+fn distinguish(zones: &mut [ZoneOutline]) {
     let mut taken = BTreeSet::new();
     for (name, _) in zones {
         let given = name.clone();
@@ -379,18 +397,20 @@ fn distinguish(zones: &mut [Outline]) {
 }
 
 /// Zones of nodes at which no edge ends: a vehicle there is on no corridor.
-fn lone_nodes(imported: &Imported, level: usize) -> Vec<Outline> {
+fn lone_nodes(imported: &ImportedLayout, level: usize) -> Vec<ZoneOutline> {
     let layout = &imported.layout;
     let used: BTreeSet<usize> =
         layout.edges.iter().filter(|edge| !edge.curve.is_empty()).flat_map(|edge| edge.ends).collect();
     let radius = imported.vehicle.radius + imported.vehicle.margin;
     let lone = layout.nodes.iter().enumerate().filter(|(k, node)| node.level == level && !used.contains(k));
-    lone.map(|(_, node)| (format!("node {}", node.id), around(&[Placed::line(node.at, node.at)], radius + BEYOND)))
-        .collect()
+    lone.map(|(_, node)| {
+        (format!("node {}", node.id), around(&[PlacedSegment::line(node.point, node.point)], radius + BEYOND))
+    })
+    .collect()
 }
 
 /// Lines and arcs, cut into equal parts no longer than asked for and that turn no farther than [`TURN`].
-fn parts(curve: &[Placed], split: Option<f64>) -> Vec<Placed> {
+fn parts(curve: &[PlacedSegment], split: Option<f64>) -> Vec<PlacedSegment> {
     let mut parts = Vec::new();
     for piece in curve {
         let length = piece.shape.length();

@@ -4,12 +4,12 @@
 //! layout is not the one before with its edges cut, and if it has what its version has not.
 
 use crate::kept::{Cut, compare};
-use crate::settings::{Notes, Settings};
-use crate::{Audit, Stamp, Target, nav2, opentcs, own, read, rmf, table, vda5050};
-use pcr_formats::import::{self, Format, ImportError, Imported, Options, SizeSource, Warnings};
+use crate::options::{WriteNotes, WriteOptions};
+use crate::{ExclusionAudit, ExclusionFormat, VehicleStamp, lock_file, nav2, opentcs, read, rmf, table, vda5050};
+use pcr_formats::import::{self, ImportError, ImportOptions, ImportedLayout, InputFormat, SizeSource, Warnings};
 use pcr_formats::warning::WarningCode;
-use pcr_planning::locks::{LockVehicle, Locks};
-use pcr_planning::memory;
+use pcr_planning::exclusion_table::{ExclusionTable, ExclusionVehicle};
+use pcr_planning::memory_budget;
 use serde::Serialize;
 
 /// What a part of an edge that is cut takes, with a few locks \[bytes\].
@@ -17,11 +17,11 @@ const PART_BYTES: u64 = 4096;
 
 /// What has been written.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Written {
+pub struct WriteReport {
     /// Name of the layout.
     pub layout: String,
     /// The vehicle.
-    pub vehicle: LockVehicle,
+    pub vehicle: ExclusionVehicle,
     /// The format of the exclusions.
     pub exclusions: String,
     /// Edges of the file that is written.
@@ -56,18 +56,18 @@ pub struct Written {
 /// # Errors
 /// [`ImportError`] where the layout cannot be read whole or not be written, or is of another format than asked for.
 pub fn write(
-    format: Format,
+    format: InputFormat,
     text: &str,
-    options: &Options,
+    options: &ImportOptions,
     name: &str,
-    settings: &Settings,
-) -> Result<(String, Written, Audit), ImportError> {
+    settings: &WriteOptions,
+) -> Result<(String, WriteReport, ExclusionAudit), ImportError> {
     refuse(format, options, settings)?;
-    let source = Source { format, options, name };
+    let source = LayoutSource { format, options, name };
     let done = source.write(text, settings)?;
     // What cutting is worth.
     let uncut = match settings.split {
-        Some(_) => Some(source.write(text, &Settings { split: None, ..settings.clone() })?.excluded_of(&done)),
+        Some(_) => Some(source.write(text, &WriteOptions { split: None, ..settings.clone() })?.excluded_of(&done)),
         None => None,
     };
     let report = done.report(settings, uncut);
@@ -78,7 +78,7 @@ pub fn write(
 ///
 /// # Errors
 /// That it is not in the file, and which options say it.
-pub fn sized(imported: &Imported) -> Result<(), ImportError> {
+pub fn sized(imported: &ImportedLayout) -> Result<(), ImportError> {
     match imported.vehicle.size {
         SizeSource::Assumed => Err(ImportError::new(
             "the size of the vehicle is not in the file, and none is assumed for what others rely on; give --radius M, or --fleet FILE",
@@ -89,7 +89,7 @@ pub fn sized(imported: &Imported) -> Result<(), ImportError> {
 
 /// # Errors
 /// The first option that has no place in what is to be written.
-fn refuse(format: Format, options: &Options, settings: &Settings) -> Result<(), ImportError> {
+fn refuse(format: InputFormat, options: &ImportOptions, settings: &WriteOptions) -> Result<(), ImportError> {
     let refused = |problem: String| Err(ImportError::new(problem));
     let target = settings.target;
     if let Some(needed) = target.layout().filter(|needed| *needed != format) {
@@ -100,33 +100,33 @@ fn refuse(format: Format, options: &Options, settings: &Settings) -> Result<(), 
     if options.partial {
         return refused("--partial: what is left out of a layout would be free in the file".into());
     }
-    if settings.split.is_some() && target == Target::Pcr {
+    if settings.split.is_some() && target == ExclusionFormat::Pcr {
         return refused("--split: a lock file has stretches already".into());
     }
-    if settings.envelopes.is_some() && target != Target::OpenTcs {
+    if settings.envelopes.is_some() && target != ExclusionFormat::OpenTcs {
         return refused(format!("--envelopes: {target} has none"));
     }
     Ok(())
 }
 
 /// A layout file, and how it is read.
-struct Source<'a> {
-    format: Format,
-    options: &'a Options,
+struct LayoutSource<'a> {
+    format: InputFormat,
+    options: &'a ImportOptions,
     name: &'a str,
 }
 
 /// What was written, read again.
-struct Done {
+struct WrittenLayout {
     text: String,
-    again: Imported,
-    locks: Locks,
-    audit: Audit,
-    notes: Notes,
+    again: ImportedLayout,
+    locks: ExclusionTable,
+    audit: ExclusionAudit,
+    notes: WriteNotes,
 }
 
-impl Source<'_> {
-    fn layout(&self, text: &str) -> Result<Imported, ImportError> {
+impl LayoutSource<'_> {
+    fn layout(&self, text: &str) -> Result<ImportedLayout, ImportError> {
         let mut imported = import::layout(self.format, text, self.options, &mut Warnings::default())?;
         if imported.layout.name.is_empty() {
             self.name.clone_into(&mut imported.layout.name);
@@ -135,24 +135,24 @@ impl Source<'_> {
         Ok(imported)
     }
 
-    fn write(&self, before: &str, settings: &Settings) -> Result<Done, ImportError> {
+    fn write(&self, before: &str, settings: &WriteOptions) -> Result<WrittenLayout, ImportError> {
         let target = settings.target;
         let original = self.layout(before)?;
         sized(&original)?;
         let (text, imported, mut notes) = self.prepared(before, &original, settings)?;
         let locks = table(&imported)?;
         let text = match target {
-            Target::Nav2 => nav2::write(&text, &imported, &locks)?,
-            Target::Rmf => rmf::write(&text, &imported, &locks, &mut notes)?,
-            Target::OpenTcs => opentcs::write(&text, &imported, &locks, settings, &mut notes)?,
-            Target::Vda5050 => vda5050::write(&imported, settings, &mut notes)?,
-            Target::Pcr => own::write(&imported, &locks)?,
+            ExclusionFormat::Nav2 => nav2::write(&text, &imported, &locks)?,
+            ExclusionFormat::Rmf => rmf::write(&text, &imported, &locks, &mut notes)?,
+            ExclusionFormat::OpenTcs => opentcs::write(&text, &imported, &locks, settings, &mut notes)?,
+            ExclusionFormat::Vda5050 => vda5050::write(&imported, settings, &mut notes)?,
+            ExclusionFormat::Pcr => lock_file::write(&imported, &locks)?,
         };
         let again = if target.layout().is_some() {
             let again = self.layout(&text)?;
-            let rounding = if target == Target::OpenTcs { opentcs::ROUNDING } else { 0.0 };
+            let rounding = if target == ExclusionFormat::OpenTcs { opentcs::ROUNDING } else { 0.0 };
             compare(&original, &again, Cut { most: settings.split, rounding })?;
-            if target == Target::OpenTcs {
+            if target == ExclusionFormat::OpenTcs {
                 opentcs::check(before, &text)?;
             }
             again
@@ -160,50 +160,51 @@ impl Source<'_> {
             imported
         };
         let rules = read(target, &text, &again)?;
-        if rules.stamp.as_ref() != Some(&Stamp::of(&again)) {
+        if rules.stamp.as_ref() != Some(&VehicleStamp::of(&again)) {
             return Err(ImportError::new("what would be written does not say for which vehicle it is"));
         }
-        let audit = Audit::of(&again, &locks, &rules, target)?;
+        let audit = ExclusionAudit::run(&again, &locks, &rules, target)?;
         if let Some(gap) = audit.gaps.first() {
             let (a, b, depth) = (&gap.a, &gap.b, gap.depth);
             let problem = format!("{a} and {b} are not excluded by what would be written ({depth:.3} m deep)");
             return Err(ImportError::new(problem));
         }
-        Ok(Done { text, again, locks, audit, notes })
+        Ok(WrittenLayout { text, again, locks, audit, notes })
     }
 
     /// The file into which is written, with its edges cut, and its layout.
     fn prepared(
         &self,
         text: &str,
-        imported: &Imported,
-        settings: &Settings,
-    ) -> Result<(String, Imported, Notes), ImportError> {
-        let mut notes = Notes::default();
-        if imported.vehicle.footprint.is_some() && settings.target == Target::Vda5050 {
+        imported: &ImportedLayout,
+        settings: &WriteOptions,
+    ) -> Result<(String, ImportedLayout, WriteNotes), ImportError> {
+        let mut notes = WriteNotes::default();
+        if imported.vehicle.footprint.is_some() && settings.target == ExclusionFormat::Vda5050 {
             let text = "zones: they are for the disc around the outline";
-            notes.said.push(WarningCode::DiscAroundOutline.text(text));
+            notes.warnings.push(WarningCode::DiscAroundOutline.text(text));
         }
         if let Some(most) = settings.split {
             let parts = imported.layout.edges.iter().map(|edge| (edge.length() / most).ceil()).sum::<f64>() as u64;
-            let asked = memory::ask(parts.saturating_mul(PART_BYTES), || format!("--split {most}: {parts} parts"));
+            let asked =
+                memory_budget::ask(parts.saturating_mul(PART_BYTES), || format!("--split {most}: {parts} parts"));
             asked.map_err(|large| ImportError::new(large.to_string()))?;
         }
-        if let (Target::Rmf, Some(graph)) = (settings.target, self.options.graph) {
+        if let (ExclusionFormat::Rmf, Some(graph)) = (settings.target, self.options.graph) {
             let text =
                 format_args!("lanes of other graphs than {graph} are left as they are, and nothing is said of them");
-            notes.said.push(WarningCode::OtherGraphs.text(text));
+            notes.warnings.push(WarningCode::OtherGraphs.text(text));
         }
         let cut = match (settings.target, settings.split) {
-            (Target::Nav2, Some(most)) => {
+            (ExclusionFormat::Nav2, Some(most)) => {
                 let (text, whole) = nav2::split(text, most)?;
-                notes.said.extend(whole.into_iter().map(|text| WarningCode::LeftWhole.text(text)));
+                notes.warnings.extend(whole.into_iter().map(|text| WarningCode::LeftWhole.text(text)));
                 text
             }
-            (Target::OpenTcs, Some(most)) => {
+            (ExclusionFormat::OpenTcs, Some(most)) => {
                 opentcs::split(text, imported, most, settings.envelopes.as_deref(), &mut notes)?
             }
-            (Target::Rmf, most) => rmf::prepare(text, imported, most, &mut notes)?,
+            (ExclusionFormat::Rmf, most) => rmf::prepare(text, imported, most, &mut notes)?,
             _ => return Ok((text.to_owned(), imported.clone(), notes)),
         };
         let imported = self.layout(&cut)?;
@@ -211,7 +212,7 @@ impl Source<'_> {
     }
 }
 
-impl Done {
+impl WrittenLayout {
     /// What this one, which is not cut, excludes of the lengths of another one, which is \[m²\].
     fn excluded_of(&self, cut: &Self) -> f64 {
         // An edge excludes itself: two parts of one are lengths that it excludes without cutting, too.
@@ -219,10 +220,10 @@ impl Done {
         self.audit.excluded + (squares(self) - squares(cut)) / 2.0
     }
 
-    fn report(&self, settings: &Settings, uncut: Option<f64>) -> Written {
+    fn report(&self, settings: &WriteOptions, uncut: Option<f64>) -> WriteReport {
         let Self { again, locks, audit, notes, .. } = self;
         let counts = settings.envelopes.is_some() || notes.groups > 0 || notes.at_least.is_some();
-        Written {
+        WriteReport {
             layout: locks.layout.clone(),
             vehicle: locks.vehicle.clone(),
             exclusions: settings.target.to_string(),
@@ -235,7 +236,7 @@ impl Done {
             excluded: audit.excluded,
             needed: audit.needed,
             uncut,
-            warnings: audit.warnings.iter().chain(&notes.said).cloned().collect(),
+            warnings: audit.warnings.iter().chain(&notes.warnings).cloned().collect(),
             of_layout: audit.of_layout,
         }
     }

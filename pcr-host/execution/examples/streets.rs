@@ -1,6 +1,6 @@
 //! A fleet on a generated site: `streets [ROBOTS [HOURS [STREETS]]]`, 1000 robots for 0.1 h on 40 streets each way if left out.
 
-use pcr_execution::lifelong::{Delays, Method, Request, run, streets};
+use pcr_execution::lifelong::{CoordinationMethod, DelayModel, LifelongOptions, run, streets};
 use std::error::Error;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -8,8 +8,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut next = |usual: f64| arguments.next().map_or(Ok(usual), |it| it.parse::<f64>());
     let (agents, hours, count) = (next(1000.0)? as usize, next(0.1)?, next(40.0)? as usize);
     let imported = streets(count);
-    let request =
-        Request { agents, duration: 3600.0 * hours, delays: Delays::default(), seed: 1, method: Method::Orders };
+    let request = LifelongOptions {
+        agents,
+        duration: 3600.0 * hours,
+        delays: DelayModel::default(),
+        seed: 1,
+        method: CoordinationMethod::Orders,
+    };
     let report = run(&imported, request)?;
     let it = &report.outcome;
     println!(
@@ -26,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     println!(
         "refused {}, longest wait {:.1} s, stuck {}, breaches {}",
-        it.refused, it.longest_wait, it.stuck, it.breaches
+        it.refused, it.longest_wait, it.stuck, it.authority_overruns
     );
     let [half, most, worst] = [0.5, 0.99, 1.0].map(|part| 1e3 * report.decided_within(part));
     println!(

@@ -46,65 +46,65 @@
 //! answer     the answer of `pcr traffic --hours`                  Lifelong
 //! ```
 
-mod abilities;
-mod alone;
-mod answer;
-mod assign;
-mod book;
-mod clearing;
-mod decide;
-mod dispatch;
-mod draws;
-mod ends;
+mod endpoints;
 mod forecast;
 mod gates;
-mod locks;
+mod kinematic_limits;
+mod lifelong_report;
+mod motion_record;
 mod outcome;
-mod places;
-mod record;
+mod parking_spots;
+mod planning_context;
+mod precedence_search;
+mod precedence_switching;
+mod random_draws;
+mod region_table;
+mod region_waits;
+mod reservations;
 mod robot;
-mod routes;
+mod route;
+mod route_admission;
+mod route_finder;
+mod route_graph;
 mod run;
-mod scene;
-mod search;
-mod site;
-mod state;
+mod run_state;
+mod scheduling;
+mod starvation;
 mod streets;
-mod switching;
+mod task_assignment;
 mod tasks;
 mod timetable;
-mod turns;
-mod waits;
-mod way;
+mod unblocking;
+mod unimpeded;
 
-pub use answer::{Driven, Lifelong};
-pub use ends::WellFormedness;
-pub use outcome::{Outcome, Report, Shares};
-pub use record::Certificate;
+pub use endpoints::WellFormedness;
+pub use lifelong_report::{LifelongReport, LifelongRunEntry};
+pub use motion_record::RunCertificate;
+pub use outcome::{LifelongResult, MeasuredLifelongRun, TimeShares};
 pub use run::{run, run_tasks, watched};
 pub use streets::streets;
-pub use tasks::Tasks;
+pub use tasks::TaskStream;
 
 pub use gates::{Gate, gates};
 
-use ends::Ends;
-use pcr_formats::import::Imported;
+use endpoints::Endpoints;
+use pcr_formats::import::ImportedLayout;
+use route_graph::RouteGraph;
 use serde::Serialize;
-use site::Site;
 
 /// The nodes between which vehicles like this can carry out missions without end, the safe ends, and obstacles to it.
 ///
 /// # Errors
 /// An edge that is no path.
-pub fn well_formedness(imported: &Imported, seed: u64) -> Result<WellFormedness, String> {
-    let site = Site::new(imported)?;
-    Ok(Ends::of(&site, seed).report(&site, &imported.layout))
+pub fn well_formedness(imported: &ImportedLayout, seed: u64) -> Result<WellFormedness, String> {
+    let site = RouteGraph::new(imported)?;
+    Ok(Endpoints::of(&site, seed).report(&site, &imported.layout))
 }
 
 /// How robots are kept apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Method {
+pub enum CoordinationMethod {
     /// Passing orders.
     Orders,
     /// A robot sets off when no other robot has a lock on any part of its whole route.
@@ -115,7 +115,7 @@ pub enum Method {
     StartDelays,
 }
 
-impl Method {
+impl CoordinationMethod {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Orders, Self::RouteLocks, Self::EdgeLocks, Self::StartDelays];
 
@@ -142,7 +142,7 @@ impl Method {
 
 /// Random delays of robots.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Delays {
+pub struct DelayModel {
     /// Share of the time for which a robot is stopped at random.
     pub stopped: f64,
     /// Mean duration of a stop \[s\].
@@ -151,7 +151,7 @@ pub struct Delays {
     pub slip: f64,
 }
 
-impl Default for Delays {
+impl Default for DelayModel {
     /// Stopped for 2 % of the time, 5 s each; up to 5 % slower.
     fn default() -> Self {
         Self { stopped: 0.02, stop: 5.0, slip: 0.05 }
@@ -160,15 +160,15 @@ impl Default for Delays {
 
 /// The options of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Request {
+pub struct LifelongOptions {
     /// Number of robots.
     pub agents: usize,
     /// Time for which missions come \[s\].
     pub duration: f64,
     /// Random delays.
-    pub delays: Delays,
+    pub delays: DelayModel,
     /// Seed of missions and delays.
     pub seed: u64,
     /// Method that keeps robots apart.
-    pub method: Method,
+    pub method: CoordinationMethod,
 }

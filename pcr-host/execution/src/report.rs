@@ -8,17 +8,17 @@ pub use lifelong::{LIFELONG_CSV_HEADER, lifelong_csv, lifelong_table};
 pub use simulation::{simulation_csv, simulation_table};
 pub use traffic::{TRAFFIC_CSV_HEADER, traffic_csv, traffic_table};
 
-use crate::lifelong::Lifelong;
-use crate::simulate::Simulation;
-use crate::traffic::Traffic;
-use pcr_planning::report::Document;
+use crate::lifelong::LifelongReport;
+use crate::simulate::SimulationReport;
+use crate::traffic::TrafficReport;
+use pcr_planning::report::VersionedReport;
 
-impl Document for Simulation {
+impl VersionedReport for SimulationReport {
     const FORMAT: &'static str = "pcr-simulation";
 }
-impl Document for Traffic {
+impl VersionedReport for TrafficReport {
     const FORMAT: &'static str = "pcr-traffic";
 }
-impl Document for Lifelong {
+impl VersionedReport for LifelongReport {
     const FORMAT: &'static str = "pcr-lifelong";
 }

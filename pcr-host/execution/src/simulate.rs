@@ -25,42 +25,45 @@
 //! Time advances in frames of the camera. The same task, seed and settings give the same run, down to the last digit;
 //! only the time that planning takes differs between machines.
 
-mod agent;
-mod body;
 mod braking;
-mod contact;
-mod course;
 pub mod forage;
-mod guard;
+mod frame_contact;
 mod noise;
 mod observer;
 mod orca;
 mod outcome;
+mod pcr_controller;
 mod potential;
+mod precedence_guard;
 mod replan;
+mod robot_estimate;
+mod shortest_paths;
+mod simulation_task;
+mod speed_limited_path;
 mod steering;
-mod supervisor;
-mod tangents;
-mod task;
+mod true_state;
+mod true_world;
 mod vector;
-mod world;
 
-pub use body::{Disturbance, HELD_EVERY};
-pub use course::{Course, Drive};
-pub use outcome::{Arrival, Collision, Ended, Journey, Outcome, Planning, Run, Simulation, Trace, Waiting};
-pub use task::{Mission, Obstacle, Robot, Task};
-pub use vector::Vector;
+pub use outcome::{
+    BlockedRobotEntry, CollisionEntry, ControllerRunEntry, MissionEntry, MissionRecord, MotionTrace, PlanningEntry,
+    RunEnd, SimulationReport, SimulationRun,
+};
+pub use simulation_task::{DiscObstacle, ReleasedMission, RobotTask, SimulationTask};
+pub use speed_limited_path::{OwnedMotion, SpeedLimitedPath};
+pub use true_state::{Disturbance, HELD_EVERY};
+pub use vector::PlaneVector;
 
-use agent::Errors;
-use body::{Command, Turning};
-use orca::Orca;
-use pcr_planning::failure::Failure;
-use pcr_planning::memory;
-use potential::Potential;
-use replan::Waits;
+use orca::OrcaController;
+use pcr_controller::{PcrController, PlanningStatistics};
+use pcr_planning::failure::ComputationError;
+use pcr_planning::memory_budget;
+use potential::PotentialFieldController;
+use replan::BlockedRobot;
+use robot_estimate::ErrorBounds;
 use serde::Serialize;
-use supervisor::{Statistics, Supervisor};
-use world::World;
+use true_state::{MotionCommand, TurnState};
+use true_world::TrueWorld;
 
 /// Time of a frame \[s\]: the camera of the paper sees 30 a second.
 pub const FRAME: f64 = 1.0 / 30.0;
@@ -74,7 +77,7 @@ const CHECKED: usize = 4096;
 /// Controller of the robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Controller {
+pub enum ControllerKind {
     /// A supervisor with collision regions.
     Pcr,
     /// Each robot by itself in an artificial potential field.
@@ -83,7 +86,7 @@ pub enum Controller {
     Orca,
 }
 
-impl Controller {
+impl ControllerKind {
     /// All controllers.
     pub const ALL: &[Self] = &[Self::Pcr, Self::Potential, Self::Orca];
 
@@ -99,7 +102,7 @@ impl Controller {
 
 /// The settings of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
+pub struct ClosedLoopOptions {
     /// Seed: the same seed gives the same disturbances.
     pub seed: u64,
     /// Time from one plan to the next \[s\].
@@ -109,26 +112,26 @@ pub struct Settings {
 }
 
 /// The input of a controller in a frame.
-struct Frame<'a> {
+struct ControlInput<'a> {
     /// Time \[s\].
     time: f64,
     /// Positions with the errors of the camera \[m\].
-    seen: &'a [Vector],
+    seen: &'a [PlaneVector],
     /// Speeds of the wheels in the last frame \[m/s\].
     speeds: &'a [f64],
     /// For each robot whether it stands at the end of its path, as it knows by itself.
     arrived: &'a [bool],
     /// For each robot the turn in place that it has begun, as it knows by itself.
-    turning: &'a [Option<Turning>],
+    turning: &'a [Option<TurnState>],
 }
 
 /// A plan of the supervisor, for the replay.
 #[derive(Clone, Debug)]
-pub struct Snapshot {
+pub struct PlanSnapshot {
     /// Time at which it was made \[s\].
     pub time: f64,
     /// Planned motions of the robots.
-    pub drives: Vec<Drive>,
+    pub drives: Vec<OwnedMotion>,
     /// Length that each robot had travelled on its course before the plan \[m\].
     pub offsets: Vec<f64>,
     /// Radii with margins \[m\].
@@ -136,16 +139,16 @@ pub struct Snapshot {
 }
 
 /// A controller, which tells robots how to move.
-trait Control {
+trait RobotController {
     /// Announces the first path of a robot, which it will get at a time \[s\].
-    fn announce(&mut self, _robot: usize, _course: &Course, _release: f64) {}
+    fn announce(&mut self, _robot: usize, _course: &SpeedLimitedPath, _release: f64) {}
     /// A robot that stands gets a path.
-    fn assign(&mut self, robot: usize, course: &Course);
+    fn assign(&mut self, robot: usize, course: &SpeedLimitedPath);
     /// A command for each robot.
-    fn commands(&mut self, frame: &Frame<'_>) -> Vec<Command>;
+    fn commands(&mut self, frame: &ControlInput<'_>) -> Vec<MotionCommand>;
     /// Distance from its goal at which a robot has arrived \[m\]; 0 for robots on paths, which know their end, and on the way
     /// to another point.
-    fn reach(&self, _robot: usize) -> f64 {
+    fn goal_tolerance(&self, _robot: usize) -> f64 {
         0.0
     }
     /// Whether no robot will move again without new missions.
@@ -153,15 +156,15 @@ trait Control {
         false
     }
     /// Robots that wait, and for which others.
-    fn waiting(&self) -> Vec<Waits> {
+    fn waiting(&self) -> Vec<BlockedRobot> {
         Vec::new()
     }
     /// Takes the plans that were made.
-    fn take_snapshots(&mut self) -> Vec<Snapshot> {
+    fn take_snapshots(&mut self) -> Vec<PlanSnapshot> {
         Vec::new()
     }
     /// Figures about planning.
-    fn planning(&self) -> Option<&Statistics> {
+    fn planning(&self) -> Option<&PlanningStatistics> {
         None
     }
 }
@@ -169,8 +172,12 @@ trait Control {
 /// Runs a task under a controller until all missions are done, or until [`time_limit`].
 ///
 /// # Errors
-/// [`Failure`] if a value is out of range or the table cannot hold the fleet.
-pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Outcome, Failure> {
+/// [`ComputationError`] if a value is out of range or the table cannot hold the fleet.
+pub fn run(
+    task: &SimulationTask,
+    controller: ControllerKind,
+    settings: ClosedLoopOptions,
+) -> Result<SimulationRun, ComputationError> {
     watched(task, controller, settings, &|_| {})
 }
 
@@ -179,46 +186,48 @@ pub fn run(task: &Task, controller: Controller, settings: Settings) -> Result<Ou
 /// # Errors
 /// Errors of [`run`].
 pub fn watched(
-    task: &Task,
-    controller: Controller,
-    settings: Settings,
+    task: &SimulationTask,
+    controller: ControllerKind,
+    settings: ClosedLoopOptions,
     told: &dyn Fn(f64),
-) -> Result<Outcome, Failure> {
+) -> Result<SimulationRun, ComputationError> {
     let Disturbance { noise, drift, .. } = settings.disturbance;
-    let mut control: Box<dyn Control> = match controller {
-        Controller::Pcr => Box::new(Supervisor::new(task, Errors { noise, drift }, settings.replan)?),
-        Controller::Potential => Box::new(Potential::new(task)),
-        Controller::Orca => Box::new(Orca::new(task, noise + drift)),
+    let mut control: Box<dyn RobotController> = match controller {
+        ControllerKind::Pcr => Box::new(PcrController::new(task, ErrorBounds { noise, drift }, settings.replan)?),
+        ControllerKind::Potential => Box::new(PotentialFieldController::new(task)),
+        ControllerKind::Orca => Box::new(OrcaController::new(task, noise + drift)),
     };
-    let mut world = World::new(task, settings);
+    let mut world = TrueWorld::new(task, settings);
     world.announce(control.as_mut());
     let frames = (time_limit(task, settings.disturbance) / FRAME).ceil() as usize;
-    let mut ended = Ended::TimeLimit;
-    let room = (size_of::<Vector>() + size_of::<f64>()) * task.robots.len();
+    let mut ended = RunEnd::TimeLimit;
+    let room = (size_of::<PlaneVector>() + size_of::<f64>()) * task.robots.len();
     for frame in 0..frames {
         if frame % CHECKED == 0 {
             // The record is kept in lists, which double as they grow.
-            memory::ask((2 * (frame + CHECKED) * room) as u64, || format!("a record of {} frames", frame + CHECKED))?;
+            memory_budget::ask((2 * (frame + CHECKED) * room) as u64, || {
+                format!("a record of {} frames", frame + CHECKED)
+            })?;
         }
         if frame % TOLD == 0 {
             told(world.share());
         }
         world.missions(frame, control.as_mut());
         if world.is_done() {
-            ended = Ended::Done;
+            ended = RunEnd::Done;
             break;
         }
         if control.is_stuck() && world.all_given() {
-            ended = Ended::Standstill;
+            ended = RunEnd::Standstill;
             break;
         }
         world.step(frame, control.as_mut());
     }
     let snapshots = control.take_snapshots();
     let waiting = control.waiting();
-    Ok(Outcome {
+    Ok(SimulationRun {
         planned: control.planning().map_or_else(Vec::new, |planning| planning.times.clone()),
-        run: Run::of(task, (controller, ended), &world.trace, control.planning(), &waiting),
+        run: ControllerRunEntry::of(task, (controller, ended), &world.trace, control.planning(), &waiting),
         trace: world.trace,
         snapshots,
     })
@@ -226,10 +235,10 @@ pub fn watched(
 
 /// Time after which a run is given up \[s\]: eight times the time that a robot's missions take without other robots but with
 /// the slip and the times for which it is held up, for the robot with the longest ones, and a minute.
-pub fn time_limit(task: &Task, disturbance: Disturbance) -> f64 {
+pub fn time_limit(task: &SimulationTask, disturbance: Disturbance) -> f64 {
     /// Slip and delays are taken to slow a robot down by at most this factor: with a slip of 1 it would never arrive.
     const SLOWEST: f64 = 64.0;
-    let robot = |robot: &Robot| {
+    let robot = |robot: &RobotTask| {
         let missions = robot.missions.iter();
         missions.map(|mission| mission.release.max(0.0) + mission.course.unimpeded(robot.limits)).sum::<f64>()
     };

@@ -4,24 +4,24 @@
 //! the plan delays them. Agents for which there is no delay, because they meet others whenever they start, are left out
 //! and counted.
 
-mod crowd;
 mod missions;
 mod schedule;
+mod startable_agents;
 
-use missions::{Drawn, Mission};
-use pcr_formats::import::{Id, Imported};
+use missions::{MissionSample, RandomMission};
+use pcr_formats::import::{ElementId, ImportedLayout};
 use pcr_formats::scenario::{Agent, Scenario};
 use pcr_formats::warning::WarningCode;
-use pcr_planning::certify::Proof;
-use pcr_planning::check::Verdict;
-use pcr_planning::failure::Failure;
-use pcr_planning::plan::{Forbidden, Schedule, Unsolved};
-use pcr_planning::regions::{self, Answer};
+use pcr_planning::certify::MotionCertificate;
+use pcr_planning::check::CheckReport;
+use pcr_planning::failure::ComputationError;
+use pcr_planning::plan::{DelaySchedule, ForbiddenDelays, UnplannedAgents};
+use pcr_planning::regions::{self, RegionsReport};
 use serde::Serialize;
 
 /// The options of a request for missions.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Request {
+pub struct TrafficOptions {
     /// Number of agents that are to have missions.
     pub agents: usize,
     /// Seed of the missions.
@@ -30,7 +30,7 @@ pub struct Request {
 
 /// Missions, and how well they can be carried out. The JSON output, field for field in this order.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Traffic {
+pub struct TrafficReport {
     /// Name of the layout.
     pub layout: String,
     /// Seed of the missions.
@@ -44,7 +44,7 @@ pub struct Traffic {
     /// Number of missions that were drawn and rejected, in all draws.
     pub passed_over: usize,
     /// Reasons for the rejections, with their numbers.
-    pub passed_over_because: Vec<PassedOver>,
+    pub passed_over_because: Vec<SkippedMissions>,
     /// Number of agents with a mission and a plan.
     pub planned: usize,
     /// Number of collision regions of the agents with a mission, both directions of every pair.
@@ -54,7 +54,7 @@ pub struct Traffic {
     /// Number of conflicts with the plan.
     pub conflicts_after: usize,
     /// Result of the independent checker for the plan.
-    pub certificate: Proof,
+    pub certificate: MotionCertificate,
     /// Time from the start of all to the last arrival \[s\].
     pub makespan: f64,
     /// Sum of the times of arrival of all agents \[s\].
@@ -64,16 +64,16 @@ pub struct Traffic {
     /// Missions carried out in the makespan, per hour.
     pub missions_per_hour: f64,
     /// The missions, by the number of their agent.
-    pub missions: Vec<Travel>,
+    pub missions: Vec<TrafficEntry>,
     /// Reasons why agents have no plan; the first of each `ids` has none.
-    pub unsolved: Vec<Unsolved>,
+    pub unsolved: Vec<UnplannedAgents>,
     /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 
 /// Why missions were passed over.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PassedOver {
+pub struct SkippedMissions {
     /// In words.
     pub why: String,
     /// How many.
@@ -82,13 +82,13 @@ pub struct PassedOver {
 
 /// A mission and what became of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Travel {
+pub struct TrafficEntry {
     /// Number of the agent.
     pub id: u64,
     /// Node where it begins, as in the layout.
-    pub from: Id,
+    pub from: ElementId,
     /// Node where it ends.
-    pub to: Id,
+    pub to: ElementId,
     /// Length of the way \[m\].
     pub length: f64,
     /// How long it waits before it starts \[s\]; none without a plan.
@@ -98,17 +98,17 @@ pub struct Travel {
 }
 
 /// Returns an upper bound for the number of agents that a layout has room for at one time, on the level with the most nodes.
-pub fn room(imported: &Imported) -> usize {
+pub fn room(imported: &ImportedLayout) -> usize {
     missions::room(imported)
 }
 
-impl Traffic {
+impl TrafficReport {
     /// The traffic on a layout, the scenario of all missions with all agents setting off at once, and that of the plan.
     ///
     /// # Errors
-    /// [`Failure`] where the missions cannot be computed with.
-    pub fn of(imported: &Imported, request: Request) -> Result<(Self, [Scenario; 2]), Failure> {
-        let Drawn { missions: drawn, passed_over } = missions::draw(imported, request.agents, request.seed);
+    /// [`ComputationError`] where the missions cannot be computed with.
+    pub fn plan(imported: &ImportedLayout, request: TrafficOptions) -> Result<(Self, [Scenario; 2]), ComputationError> {
+        let MissionSample { missions: drawn, passed_over } = missions::draw(imported, request.agents, request.seed);
         let layout = &imported.layout;
         let agents = drawn.iter().map(|mission| mission.agent.clone()).collect();
         let mut missions = Scenario { warnings: layout.warnings.clone(), ..Scenario::new(layout.name.clone(), agents) };
@@ -117,16 +117,17 @@ impl Traffic {
             let problem = format_args!("levels: missions are drawn on {level} only, of {}", layout.levels.len());
             missions.warnings.push(WarningCode::OneLevel.text(problem));
         }
-        let regions = Answer::of::<f64>(&missions, regions::Request::default())?.regions.len();
-        let Schedule { delays, out, .. } = schedule(&missions, request.seed)?;
+        let regions = RegionsReport::compute::<f64>(&missions, regions::RegionOptions::default())?.regions.len();
+        let DelaySchedule { delays, out, .. } = schedule(&missions, request.seed)?;
         let id = |agent: usize| missions.agents[agent].id;
         let kept = missions.agents.iter().zip(&delays).filter_map(|(agent, delay)| Some((agent, (*delay)?)));
         let at_once = Scenario { agents: kept.clone().map(|(agent, _)| agent.clone()).collect(), ..missions.clone() };
         let later = kept.map(|(agent, delay)| Agent { t_start: delay, ..agent.clone() });
         let plan = Scenario { agents: later.collect(), ..missions.clone() };
-        let conflicts = |scenario: &Scenario| Verdict::of::<f64>(scenario, false).map(|found| found.conflicts.len());
-        let travels: Vec<Travel> =
-            drawn.iter().zip(&delays).map(|(mission, delay)| Travel::of(mission, imported, *delay)).collect();
+        let conflicts =
+            |scenario: &Scenario| CheckReport::compute::<f64>(scenario, false).map(|found| found.conflicts.len());
+        let travels: Vec<TrafficEntry> =
+            drawn.iter().zip(&delays).map(|(mission, delay)| TrafficEntry::of(mission, imported, *delay)).collect();
         let ends = || travels.iter().filter_map(|travel| travel.t_end);
         let makespan = ends().fold(0.0, f64::max);
         let traffic = Self {
@@ -136,19 +137,25 @@ impl Traffic {
             asked: request.agents,
             placed: drawn.len(),
             passed_over: passed_over.values().sum(),
-            passed_over_because: passed_over.into_iter().map(|(why, missions)| PassedOver { why, missions }).collect(),
+            passed_over_because: passed_over
+                .into_iter()
+                .map(|(why, missions)| SkippedMissions { why, missions })
+                .collect(),
             planned: plan.agents.len(),
             regions,
             conflicts_before: conflicts(&at_once)?,
             conflicts_after: conflicts(&plan)?,
-            certificate: Proof::of::<f64>(&plan)?,
+            certificate: MotionCertificate::prove::<f64>(&plan)?,
             makespan,
             // A sum of nothing is -0.
             sum_of_costs: ends().sum::<f64>() + 0.0,
             lower_bound: at_once.agents.iter().map(Agent::duration).sum::<f64>() + 0.0,
             missions_per_hour: if makespan > 0.0 { plan.agents.len() as f64 / makespan * 3600.0 } else { 0.0 },
             missions: travels,
-            unsolved: out.iter().map(|out| Unsolved::of(&missions, [id(out.agent), id(out.by)], out.always)).collect(),
+            unsolved: out
+                .iter()
+                .map(|out| UnplannedAgents::of(&missions, [id(out.agent), id(out.blocked_by)], out.always))
+                .collect(),
             warnings: missions.warnings.clone(),
         };
         Ok((traffic, [missions, plan]))
@@ -166,18 +173,18 @@ impl Traffic {
 }
 
 /// Start delays for as many agents of a scenario as can have one, of 2000 orders that are tried.
-pub fn schedule(scenario: &Scenario, seed: u64) -> Result<Schedule, Failure> {
+pub fn schedule(scenario: &Scenario, seed: u64) -> Result<DelaySchedule, ComputationError> {
     let mut longest_first: Vec<usize> = (0..scenario.agents.len()).collect();
     let duration = |agent: usize| scenario.agents[agent].duration();
     longest_first.sort_by(|&a, &b| duration(b).total_cmp(&duration(a)));
-    Ok(schedule::best(&Forbidden::of(scenario)?, longest_first, seed))
+    Ok(schedule::best(&ForbiddenDelays::compute(scenario)?, longest_first, seed))
 }
 
-impl Travel {
-    fn of(mission: &Mission, imported: &Imported, delay: Option<f64>) -> Self {
+impl TrafficEntry {
+    fn of(mission: &RandomMission, imported: &ImportedLayout, delay: Option<f64>) -> Self {
         let node = |place: usize| {
             let node = imported.layout.nodes.get(place);
-            node.map_or_else(|| Id::Text(String::new()), |node| node.id.clone())
+            node.map_or_else(|| ElementId::Text(String::new()), |node| node.id.clone())
         };
         Self {
             id: mission.agent.id,

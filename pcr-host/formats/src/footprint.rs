@@ -4,9 +4,9 @@
 //! around its box. The cells become smaller until no disc reaches further out of the polygon than allowed, the
 //! *overhang*: a disc of radius r whose centre is at the depth d inside the polygon reaches at most r - d out of it.
 
-mod simple;
+mod simple_polygon;
 
-use crate::plane::{distance, from_segment, hull};
+use crate::plane_geometry::{distance, from_segment, hull};
 use serde::Serialize;
 
 /// Discs of a cover at most.
@@ -29,7 +29,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// A disc of a cover, in the frame of the vehicle: the reference point travels the path, its heading is ahead.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Disc {
+pub struct CoverDisc {
     /// Distance of the centre ahead of the reference point, in its heading \[m\].
     pub ahead: f64,
     /// Distance to its left \[m\].
@@ -44,7 +44,7 @@ pub struct Footprint {
     polygon: Vec<[f64; 2]>,
     allowed: Option<f64>,
     growth: f64,
-    discs: Vec<Disc>,
+    discs: Vec<CoverDisc>,
     overhang: f64,
 }
 
@@ -59,7 +59,7 @@ impl Footprint {
         if !(3..=CORNERS).contains(&polygon.len()) {
             return Err(format!("{} corners; allowed are 3 to {CORNERS}", polygon.len()));
         }
-        if let Some(fault) = simple::fault(&polygon) {
+        if let Some(fault) = simple_polygon::fault(&polygon) {
             return Err(fault);
         }
         let [lo, hi] = bounds(&polygon);
@@ -70,7 +70,7 @@ impl Footprint {
         while cover(&polygon, cell).len() > MOST {
             cell /= SMALLER;
         }
-        let mut best: Option<(Vec<Disc>, f64)> = None;
+        let mut best: Option<(Vec<CoverDisc>, f64)> = None;
         loop {
             let discs = cover(&polygon, cell);
             if discs.len() > MOST || cell < side / CELLS {
@@ -102,7 +102,7 @@ impl Footprint {
     }
 
     /// The discs: every point of the polygon is in one of them.
-    pub fn discs(&self) -> &[Disc] {
+    pub fn discs(&self) -> &[CoverDisc] {
         &self.discs
     }
 
@@ -113,8 +113,8 @@ impl Footprint {
 
     /// The same outline, larger by a distance from 0 all around \[m\].
     #[must_use]
-    pub fn grown(&self, by: f64) -> Self {
-        let discs = self.discs.iter().map(|disc| Disc { radius: disc.radius + by, ..*disc });
+    pub fn inflated(&self, by: f64) -> Self {
+        let discs = self.discs.iter().map(|disc| CoverDisc { radius: disc.radius + by, ..*disc });
         Self { growth: self.growth + by, discs: discs.collect(), ..self.clone() }
     }
 
@@ -135,7 +135,7 @@ impl Footprint {
     #[must_use]
     pub fn backward(&self) -> Self {
         let polygon = self.polygon.iter().map(|corner| corner.map(|x| -x)).collect();
-        let discs = self.discs.iter().map(|disc| Disc { ahead: -disc.ahead, left: -disc.left, ..*disc }).collect();
+        let discs = self.discs.iter().map(|disc| CoverDisc { ahead: -disc.ahead, left: -disc.left, ..*disc }).collect();
         Self { polygon, discs, ..self.clone() }
     }
 
@@ -144,7 +144,7 @@ impl Footprint {
     pub fn either_way(&self) -> Option<Self> {
         let both = self.polygon.iter().chain(&self.backward().polygon).copied().collect();
         // No disc may reach farther out than those of the outline are allowed to.
-        Self::new(hull(both), self.allowed).ok().map(|outline| outline.grown(self.growth))
+        Self::new(hull(both), self.allowed).ok().map(|outline| outline.inflated(self.growth))
     }
 
     /// The corners without those that are no farther than `near` \[m\] from the line between their neighbours, counter-clockwise,
@@ -177,7 +177,7 @@ impl Footprint {
     }
 
     /// Radius of the disc around the reference point that holds all discs \[m\].
-    pub fn reach(&self) -> f64 {
+    pub fn circumscribed_radius(&self) -> f64 {
         self.discs.iter().map(|disc| disc.ahead.hypot(disc.left) + disc.radius).fold(0.0, f64::max)
     }
 }
@@ -191,12 +191,12 @@ fn bounds(points: &[[f64; 2]]) -> [[f64; 2]; 2] {
 }
 
 /// How far discs reach out of the polygon \[m\].
-fn overhang(polygon: &[[f64; 2]], discs: &[Disc]) -> f64 {
+fn overhang(polygon: &[[f64; 2]], discs: &[CoverDisc]) -> f64 {
     discs.iter().map(|disc| disc.radius - depth(polygon, [disc.ahead, disc.left])).fold(0.0, f64::max)
 }
 
 /// Discs around the parts of the polygon in cells of at most this size.
-fn cover(polygon: &[[f64; 2]], cell: f64) -> Vec<Disc> {
+fn cover(polygon: &[[f64; 2]], cell: f64) -> Vec<CoverDisc> {
     let [lo, hi] = bounds(polygon);
     let size = [0, 1].map(|axis| hi[axis] - lo[axis]);
     let cells = size.map(|size| (size / cell).ceil().clamp(1.0, CELLS) as usize);
@@ -238,13 +238,13 @@ fn clip(polygon: &[[f64; 2]], axis: usize, border: f64, side: f64) -> Vec<[f64; 
 }
 
 /// The disc around the box of some points that holds them; none where they have no extent.
-fn around(points: &[[f64; 2]]) -> Option<Disc> {
+fn around(points: &[[f64; 2]]) -> Option<CoverDisc> {
     let [lo, hi] = bounds(points);
     let centre = [0, 1].map(|axis| 0.5 * (lo[axis] + hi[axis]));
     let radius = points.iter().map(|point| distance(*point, centre)).fold(0.0, f64::max);
     let radius = radius + ROUNDING * (radius + centre[0].abs() + centre[1].abs());
     // A cell that the outline only touches is covered by its neighbour.
-    (lo[0] < hi[0] && lo[1] < hi[1]).then_some(Disc { ahead: centre[0], left: centre[1], radius })
+    (lo[0] < hi[0] && lo[1] < hi[1]).then_some(CoverDisc { ahead: centre[0], left: centre[1], radius })
 }
 
 /// Distance of a point from the sides of a polygon, negative outside.

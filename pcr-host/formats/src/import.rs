@@ -39,73 +39,73 @@
 //! left out; with [`Options::partial`] these are left out. Parts that are not read exactly as written cause warnings,
 //! which are also in the answers. No input causes a panic.
 
+mod applicable_options;
 mod bernstein;
 mod biarc;
 mod ccbs;
 mod clothoid;
 mod corridor;
-mod facing;
 mod factsheet;
 mod grid;
-mod heading;
+mod heading_error;
+mod json_access;
 mod keys;
 mod layout;
 mod levels;
 mod lif;
-mod loads;
-mod names;
 mod nav2;
 mod nurbs;
 mod opendrive;
 mod opentcs;
+mod order_updates;
+mod path_builder;
 mod polynomial;
 mod projection;
 mod rmf;
 mod route;
-mod samples;
+mod sampled_paths;
 mod speed;
-mod stamp;
-mod timed;
-mod trace;
+mod timed_paths;
+mod timestamp;
 mod trajectory;
-mod updates;
-mod useful;
-mod value;
+mod unique_names;
 mod vda5050;
 mod vehicle;
+mod vehicle_heading;
+mod vehicle_loads;
 mod warnings;
 mod xml;
 
+pub use applicable_options::InputKind;
 pub use grid::GridPlan;
-pub use layout::{Edge, Id, Layout, Node};
+pub use json_access::parse as parse_json;
+pub use layout::{ElementId, Layout, LayoutEdge, LayoutNode};
 pub use nav2::graph_id;
 pub use rmf::is_navigation_graph;
-pub use route::{Step, cheapest, ride, turn};
-pub use stamp::seconds;
-pub use timed::sectioned;
-pub use useful::Kind;
-pub use value::parse as parse_json;
-pub use vehicle::{Facing, HEADING, Options, SizeSource, TOLERANCE, Vehicle};
+pub use route::{RouteStep, cheapest, ride, turn};
+pub use timed_paths::sectioned;
+pub use timestamp::seconds;
+pub use vehicle::{Facing, HEADING, ImportOptions, SizeSource, TOLERANCE, VehicleTraits};
 pub use warnings::{Warnings, shortened};
 
+use crate::answer_files;
+use crate::byte_order_mark::unmarked;
 use crate::footprint::Footprint;
 use crate::json::Position;
-use crate::mark::unmarked;
-use crate::own;
 use crate::scenario::{Agent, Scenario};
 use crate::warning::WarningCode;
-use crate::yaml::{self, Document};
-use names::name_printably;
+use crate::yaml::{self, YamlDocument};
 use serde_json::Value;
 use std::path::Path;
 use std::{fmt, fs};
-use vehicle::Given;
+use unique_names::name_printably;
+use vehicle::FileVehicleTraits;
 use warnings::listed;
 
 /// Formats of files that are not scenarios.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
-pub enum Format {
+pub enum InputFormat {
     /// Route graph of the nav2 route server (.geojson, or by its content)
     Nav2,
     /// Layout Interchange Format of the VDMA (.lif.json, or by its content)
@@ -128,7 +128,7 @@ pub enum Format {
     Vda5050,
 }
 
-impl Format {
+impl InputFormat {
     /// All of them.
     pub const ALL: [Self; 9] = [
         Self::Nav2,
@@ -143,7 +143,7 @@ impl Format {
     ];
 }
 
-impl fmt::Display for Format {
+impl fmt::Display for InputFormat {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Nav2 => "nav2",
@@ -185,7 +185,7 @@ impl ImportError {
     }
 
     /// For what is wrong in YAML. (With `From`, the compiler could no longer infer errors of many closures.)
-    pub fn of_yaml(error: yaml::Error) -> Self {
+    pub fn of_yaml(error: yaml::YamlError) -> Self {
         Self::at(error.line, Some(error.column), error.cause())
     }
 
@@ -238,16 +238,16 @@ impl std::error::Error for ImportError {}
 
 /// A layout and the vehicle that travels it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Imported {
+pub struct ImportedLayout {
     /// Nodes and edges.
     pub layout: Layout,
     /// Who travels them.
-    pub vehicle: Vehicle,
+    pub vehicle: VehicleTraits,
 }
 
-impl Format {
+impl InputFormat {
     /// The format of a file with this name and content, `None` for a scenario.
-    pub fn of(file: &Path, text: &str) -> Option<Self> {
+    pub fn detect(file: &Path, text: &str) -> Option<Self> {
         let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default().to_ascii_lowercase();
         if name.ends_with(".geojson") {
             return Some(Self::Nav2);
@@ -274,11 +274,11 @@ impl Format {
             _ => {}
         }
         // What has agents is a scenario, and said to be wrong as one.
-        if own::has_agents(text) {
+        if answer_files::has_agents(text) {
             return None;
         }
         let root = serde_json::Deserializer::from_str(unmarked(text)).into_iter::<Value>().next()?.ok()?;
-        if root.get("format").and_then(Value::as_str).and_then(own::described).is_some() {
+        if root.get("format").and_then(Value::as_str).and_then(answer_files::described).is_some() {
             return None;
         }
         match () {
@@ -298,7 +298,12 @@ pub(crate) fn is_empty(text: &str) -> bool {
 ///
 /// # Errors
 /// [`ImportError`] where the file is not of the format, or holds no layout.
-pub fn layout(format: Format, text: &str, options: &Options, warnings: &mut Warnings) -> Result<Imported, ImportError> {
+pub fn layout(
+    format: InputFormat,
+    text: &str,
+    options: &ImportOptions,
+    warnings: &mut Warnings,
+) -> Result<ImportedLayout, ImportError> {
     imported(format, text, options, false, warnings)
 }
 
@@ -306,7 +311,12 @@ pub fn layout(format: Format, text: &str, options: &Options, warnings: &mut Warn
 ///
 /// # Errors
 /// As [`layout`].
-pub fn roads(format: Format, text: &str, options: &Options, warnings: &mut Warnings) -> Result<Imported, ImportError> {
+pub fn roads(
+    format: InputFormat,
+    text: &str,
+    options: &ImportOptions,
+    warnings: &mut Warnings,
+) -> Result<ImportedLayout, ImportError> {
     imported(format, text, options, true, warnings)
 }
 
@@ -315,7 +325,7 @@ pub fn roads(format: Format, text: &str, options: &Options, warnings: &mut Warni
 ///
 /// # Errors
 /// [`ImportError`] where the way is not a path: a curve that does not reach its node.
-pub fn mission(imported: &Imported, id: u64, ends: [usize; 2]) -> Result<Option<Agent>, ImportError> {
+pub fn mission(imported: &ImportedLayout, id: u64, ends: [usize; 2]) -> Result<Option<Agent>, ImportError> {
     route::mission(&imported.layout, &imported.vehicle, id, ends)
 }
 
@@ -324,31 +334,31 @@ const NO_NAMES: [&str; 3] = ["graph", "building", "G"];
 
 /// The layout for a vehicle that stands or `moves`.
 fn imported(
-    format: Format,
+    format: InputFormat,
     text: &str,
-    options: &Options,
+    options: &ImportOptions,
     moves: bool,
     warnings: &mut Warnings,
-) -> Result<Imported, ImportError> {
+) -> Result<ImportedLayout, ImportError> {
     if is_empty(text) {
         return Err(ImportError::new("empty"));
     }
     let mut given = given(options, warnings)?;
-    if format == Format::OpenTcs {
-        whole(options, warnings, |warnings| opentcs::vehicles(text, options, &mut given, warnings))?;
+    if format == InputFormat::OpenTcs {
+        read_complete(options, warnings, |warnings| opentcs::vehicles(text, options, &mut given, warnings))?;
     }
     let vehicle = options.vehicle(&given, moves, warnings);
     let outline = vehicle.footprint.as_ref();
-    let mut layout = whole(options, warnings, |warnings| match format {
-        Format::Nav2 => nav2::read(text, vehicle.speed, warnings),
-        Format::Lif => lif::read(text, options, &vehicle, warnings),
-        Format::Rmf => rmf::read(text, options, outline, warnings),
-        Format::OpenDrive => opendrive::read(text, options, warnings),
-        Format::OpenTcs => opentcs::read(text, options, outline, warnings),
-        Format::Ccbs => ccbs::roadmap(text, warnings),
-        Format::Grid => Err(ImportError::new("a plan on a grid is not a layout")),
-        Format::Path => Err(ImportError::new("paths of agents are not a layout")),
-        Format::Vda5050 => Err(ImportError::new("an order or a state is not a layout")),
+    let mut layout = read_complete(options, warnings, |warnings| match format {
+        InputFormat::Nav2 => nav2::read(text, vehicle.speed, warnings),
+        InputFormat::Lif => lif::read(text, options, &vehicle, warnings),
+        InputFormat::Rmf => rmf::read(text, options, outline, warnings),
+        InputFormat::OpenDrive => opendrive::read(text, options, warnings),
+        InputFormat::OpenTcs => opentcs::read(text, options, outline, warnings),
+        InputFormat::Ccbs => ccbs::roadmap(text, warnings),
+        InputFormat::Grid => Err(ImportError::new("a plan on a grid is not a layout")),
+        InputFormat::Path => Err(ImportError::new("paths of agents are not a layout")),
+        InputFormat::Vda5050 => Err(ImportError::new("an order or a state is not a layout")),
     })?;
     // Of what was left out on request it is said.
     if layout.edges.is_empty() && !options.partial {
@@ -358,7 +368,7 @@ fn imported(
         layout.one_speed()?;
     }
     layout.corner_radius = options.corner_radius;
-    let off = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.off(&vehicle) - edge.room));
+    let off = layout.edges.iter().map(|edge| (format!("edge {}", edge.id), edge.position_error(&vehicle) - edge.room));
     let off: Vec<_> = off.collect();
     report(&off, warnings);
     if NO_NAMES.contains(&layout.name.as_str()) {
@@ -366,12 +376,12 @@ fn imported(
     }
     name_printably(&mut layout.name, warnings);
     layout.warnings = warnings.all();
-    Ok(Imported { layout, vehicle })
+    Ok(ImportedLayout { layout, vehicle })
 }
 
 /// What a reader reads, if it leaves out nothing or that is asked for.
-fn whole<T>(
-    options: &Options,
+fn read_complete<T>(
+    options: &ImportOptions,
     warnings: &mut Warnings,
     read: impl FnOnce(&mut Warnings) -> Result<T, ImportError>,
 ) -> Result<T, ImportError> {
@@ -400,14 +410,14 @@ fn report(deviations: &[(String, f64)], warnings: &mut Warnings) {
 }
 
 /// The same for agents, and the radii that their vehicles have.
-fn report_agents(scenario: &Scenario, radii: &[f64], vehicle: &Vehicle, warnings: &mut Warnings) {
+fn report_agents(scenario: &Scenario, radii: &[f64], vehicle: &VehicleTraits, warnings: &mut Warnings) {
     let agents = scenario.agents.iter().zip(radii);
     let off = agents.map(|(agent, radius)| (format!("agent {}", agent.id), grown(agent, *radius, vehicle)));
     report(&off.collect::<Vec<_>>(), warnings);
 }
 
 /// The same for routes that are further off than their edges, which are told already: gaps and differences of lengths are theirs.
-fn report_routes(layout: &Layout, scenario: &Scenario, vehicle: &Vehicle, warnings: &mut Warnings) {
+fn report_routes(layout: &Layout, scenario: &Scenario, vehicle: &VehicleTraits, warnings: &mut Warnings) {
     let told = layout.edges.iter().map(|edge| edge.deviation).fold(0.0, f64::max);
     let agents = scenario.agents.iter();
     let off = agents.map(|agent| (format!("agent {}", agent.id), grown(agent, vehicle.radius, vehicle)));
@@ -415,21 +425,21 @@ fn report_routes(layout: &Layout, scenario: &Scenario, vehicle: &Vehicle, warnin
 }
 
 /// By how much an agent is larger than its vehicle, which has this radius \[m\]. The outline of one that drives backward is another one.
-fn grown(agent: &Agent, radius: f64, vehicle: &Vehicle) -> f64 {
+fn grown(agent: &Agent, radius: f64, vehicle: &VehicleTraits) -> f64 {
     let before = vehicle.footprint.as_ref().map_or(0.0, Footprint::growth);
     agent.footprint.as_ref().map_or(agent.radius - radius, |outline| outline.growth() - before)
 }
 
 /// What the configuration of a fleet or a factsheet says.
-fn of_fleet(text: &str, warnings: &mut Warnings) -> Result<Given, ImportError> {
+fn of_fleet(text: &str, warnings: &mut Warnings) -> Result<FileVehicleTraits, ImportError> {
     // JSON is YAML, too, but says better what is wrong with it.
     let json = unmarked(text).trim_start().starts_with('{');
     let of_yaml = || {
-        let document = Document::read(text)?;
+        let document = YamlDocument::read(text)?;
         Ok((document.value()?, document.texts()?))
     };
     let (value, texts) = if json {
-        let value = value::parse(text)?;
+        let value = json_access::parse(text)?;
         (value.clone(), value)
     } else {
         of_yaml().map_err(ImportError::of_yaml)?
@@ -445,14 +455,14 @@ fn of_fleet(text: &str, warnings: &mut Warnings) -> Result<Given, ImportError> {
 ///
 /// # Errors
 /// [`ImportError`] where the text is neither.
-pub fn vehicle(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Vehicle, ImportError> {
-    let given = Given { is_of_fleet: true, ..of_fleet(text, warnings)? };
+pub fn vehicle(text: &str, options: &ImportOptions, warnings: &mut Warnings) -> Result<VehicleTraits, ImportError> {
+    let given = FileVehicleTraits { is_of_fleet: true, ..of_fleet(text, warnings)? };
     Ok(options.vehicle(&given, true, warnings))
 }
 
 /// What the fleet says about the vehicle, if one is given.
-fn given(options: &Options, warnings: &mut Warnings) -> Result<Given, ImportError> {
-    let mut given = Given::default();
+fn given(options: &ImportOptions, warnings: &mut Warnings) -> Result<FileVehicleTraits, ImportError> {
+    let mut given = FileVehicleTraits::default();
     if let Some(file) = &options.fleet {
         let failed = |problem: &dyn fmt::Display| ImportError::new(format!("{}: {problem}", file.display()));
         let text = fs::read_to_string(file).map_err(|error| failed(&format_args!("cannot be read: {error}")))?;
@@ -474,23 +484,23 @@ fn given(options: &Options, warnings: &mut Warnings) -> Result<Given, ImportErro
 /// # Errors
 /// [`ImportError`] where the file is not of the format, or a route is not possible.
 pub fn scenario(
-    format: Format,
+    format: InputFormat,
     text: &str,
-    options: &Options,
+    options: &ImportOptions,
     warnings: &mut Warnings,
 ) -> Result<Scenario, ImportError> {
     if is_empty(text) {
         return Err(ImportError::new("empty"));
     }
     let mut scenario = match format {
-        Format::Ccbs if xml::root_of(text) != Some("graphml") => {
+        InputFormat::Ccbs if xml::root_of(text) != Some("graphml") => {
             let vehicle = of_plan(options, ccbs::DEFAULT, warnings)?;
             with_margin(ccbs::log(text, &vehicle)?, &vehicle)
         }
-        Format::Grid => {
+        InputFormat::Grid => {
             let default = (grid::RADIUS, "with which no valid plan has a contact");
             let vehicle = of_plan(options, default, warnings)?;
-            if value::is_open(text) {
+            if json_access::is_open(text) {
                 warnings.add(
                     WarningCode::MayBeCut,
                     "last line",
@@ -499,29 +509,34 @@ pub fn scenario(
             }
             with_margin(GridPlan::read(text)?.scenario(vehicle.radius)?, &vehicle)
         }
-        Format::Nav2 | Format::Lif | Format::Rmf | Format::OpenDrive | Format::OpenTcs | Format::Ccbs => {
-            let Imported { layout, vehicle } = imported(format, text, options, true, warnings)?;
+        InputFormat::Nav2
+        | InputFormat::Lif
+        | InputFormat::Rmf
+        | InputFormat::OpenDrive
+        | InputFormat::OpenTcs
+        | InputFormat::Ccbs => {
+            let ImportedLayout { layout, vehicle } = imported(format, text, options, true, warnings)?;
             let scenario = route::scenario(&layout, &vehicle, options, warnings)?;
             report_routes(&layout, &scenario, &vehicle, warnings);
             scenario
         }
-        Format::Path | Format::Vda5050 => {
+        InputFormat::Path | InputFormat::Vda5050 => {
             let vehicle = options.vehicle(&given(options, warnings)?, true, warnings);
-            let (scenario, radii) = if format == Format::Path {
-                if value::is_open(text) {
+            let (scenario, radii) = if format == InputFormat::Path {
+                if json_access::is_open(text) {
                     warnings.add(
                         WarningCode::MayBeCut,
                         "last line",
                         "it does not end; if the file was cut there, digits may be missing",
                     );
                 }
-                let scenario = samples::read(text, options, &vehicle, warnings)?;
+                let scenario = sampled_paths::read(text, options, &vehicle, warnings)?;
                 let names = scenario.agents.iter().map(|agent| format!("path {}", agent.id)).collect::<Vec<_>>();
-                facing::warn_of_half_turns(names.iter().map(String::as_str).zip(&scenario.agents), warnings);
+                vehicle_heading::warn_of_half_turns(names.iter().map(String::as_str).zip(&scenario.agents), warnings);
                 let radii = vec![vehicle.radius; scenario.agents.len()];
                 (scenario, radii)
             } else {
-                whole(options, warnings, |warnings| vda5050::read(text, options, &vehicle, warnings))?
+                read_complete(options, warnings, |warnings| vda5050::read(text, options, &vehicle, warnings))?
             };
             report_agents(&scenario, &radii, &vehicle, warnings);
             scenario
@@ -533,13 +548,17 @@ pub fn scenario(
 }
 
 /// A plan whose agents have the margin of a vehicle.
-fn with_margin(mut scenario: Scenario, vehicle: &Vehicle) -> Scenario {
+fn with_margin(mut scenario: Scenario, vehicle: &VehicleTraits) -> Scenario {
     scenario.agents.iter_mut().for_each(|agent| agent.margin = vehicle.margin);
     scenario
 }
 
 /// The vehicle of a plan, which gives no radius: a default \[m\], and why it is that.
-fn of_plan(options: &Options, default: (f64, &str), warnings: &mut Warnings) -> Result<Vehicle, ImportError> {
+fn of_plan(
+    options: &ImportOptions,
+    default: (f64, &str),
+    warnings: &mut Warnings,
+) -> Result<VehicleTraits, ImportError> {
     let mut given = given(options, warnings)?;
     if options.radius.is_none() && given.radius.is_none() && given.footprint.is_none() {
         let (radius, why) = default;

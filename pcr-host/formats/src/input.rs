@@ -2,11 +2,11 @@
 
 mod lines;
 
-use crate::import::{self, Format, ImportError, Imported, Kind, Options, Warnings};
-use crate::mark::unmarked;
-use crate::own;
+use crate::answer_files;
+use crate::byte_order_mark::unmarked;
+use crate::import::{self, ImportError, ImportOptions, ImportedLayout, InputFormat, InputKind, Warnings};
 use crate::scenario::{self, Scenario, ScenarioError};
-pub use lines::{Line, Lines};
+pub use lines::{InputScenario, ScenarioStream};
 use std::fmt;
 use std::fs;
 use std::io::{self, Read};
@@ -23,7 +23,7 @@ pub enum InputError {
     /// It is not a scenario.
     Refused(Option<PathBuf>, ScenarioError),
     /// It is not of the format that it is read in.
-    Foreign(Option<PathBuf>, Format, ImportError),
+    Foreign(Option<PathBuf>, InputFormat, ImportError),
     /// It is empty, and what is expected.
     Empty(Option<PathBuf>, &'static str),
     /// It is neither JSON, as scenarios are, nor a format that is known by its name or content.
@@ -129,7 +129,7 @@ fn or_stem(name: &mut String, file: &Path) {
 ///
 /// # Errors
 /// [`InputError`], naming the file and, for a refused scenario, the line.
-pub fn read(file: &Path, options: &Options) -> Result<(Scenario, Warnings), InputError> {
+pub fn read(file: &Path, options: &ImportOptions) -> Result<(Scenario, Warnings), InputError> {
     read_from(file, text(file)?.1, options)
 }
 
@@ -137,7 +137,7 @@ pub fn read(file: &Path, options: &Options) -> Result<(Scenario, Warnings), Inpu
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_from(file: &Path, text: String, options: &Options) -> Result<(Scenario, Warnings), InputError> {
+pub fn read_from(file: &Path, text: String, options: &ImportOptions) -> Result<(Scenario, Warnings), InputError> {
     let read = read_one_of(file, text, options)?;
     used(&named(file), options, &read.1)?;
     Ok(read)
@@ -147,10 +147,10 @@ pub fn read_from(file: &Path, text: String, options: &Options) -> Result<(Scenar
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_one_of(file: &Path, text: String, options: &Options) -> Result<(Scenario, Warnings), InputError> {
+pub fn read_one_of(file: &Path, text: String, options: &ImportOptions) -> Result<(Scenario, Warnings), InputError> {
     let name = named(file);
     let mut warnings = Warnings::default();
-    match options.from.or_else(|| Format::of(file, &text)) {
+    match options.from.or_else(|| InputFormat::detect(file, &text)) {
         Some(format) => {
             useful(&name, &text, Some(format), options)?;
             match import::scenario(format, &text, options, &mut warnings) {
@@ -183,20 +183,25 @@ fn is_json(text: &str) -> bool {
 ///
 /// # Errors
 /// [`InputError::Useless`].
-pub fn useful_with_lines(options: &Options) -> Result<(), InputError> {
+pub fn useful_with_lines(options: &ImportOptions) -> Result<(), InputError> {
     useful(&None, "", None, options)
 }
 
 /// Refuses options that do nothing with a file.
-fn useful(file: &Option<PathBuf>, text: &str, format: Option<Format>, options: &Options) -> Result<(), InputError> {
-    match options.useless(Kind::of(format, text)) {
+fn useful(
+    file: &Option<PathBuf>,
+    text: &str,
+    format: Option<InputFormat>,
+    options: &ImportOptions,
+) -> Result<(), InputError> {
+    match options.without_effect(InputKind::detect(format, text)) {
         Some((option, why)) => Err(InputError::Useless(file.clone(), option, why)),
         None => Ok(()),
     }
 }
 
 /// Refuses options that had no effect on what was read.
-fn used(file: &Option<PathBuf>, options: &Options, warnings: &Warnings) -> Result<(), InputError> {
+fn used(file: &Option<PathBuf>, options: &ImportOptions, warnings: &Warnings) -> Result<(), InputError> {
     match options.unused(&[warnings]) {
         Some((option, why)) => Err(InputError::Useless(file.clone(), option, why)),
         None => Ok(()),
@@ -207,29 +212,29 @@ fn used(file: &Option<PathBuf>, options: &Options, warnings: &Warnings) -> Resul
 ///
 /// # Errors
 /// [`InputError`], naming the file.
-pub fn kind(file: &Path, options: &Options) -> Result<Kind, InputError> {
+pub fn kind(file: &Path, options: &ImportOptions) -> Result<InputKind, InputError> {
     if file == Path::new("-") {
-        return Ok(Kind::of(options.from, ""));
+        return Ok(InputKind::detect(options.from, ""));
     }
     Ok(kind_of(file, &text(file)?.1, options))
 }
 
 /// The same of a text that is read already.
-pub fn kind_of(file: &Path, text: &str, options: &Options) -> Kind {
-    Kind::of(options.from.or_else(|| Format::of(file, text)), text)
+pub fn kind_of(file: &Path, text: &str, options: &ImportOptions) -> InputKind {
+    InputKind::detect(options.from.or_else(|| InputFormat::detect(file, text)), text)
 }
 
 /// Whether all files hold orders or states of VDA 5050, or all paths by their points: an agent each, of one fleet.
-pub fn are_of_one_fleet(files: &[PathBuf], options: &Options) -> bool {
+pub fn are_of_one_fleet(files: &[PathBuf], options: &ImportOptions) -> bool {
     let format = |file: &PathBuf| {
         // A pipe would have nothing left for who reads it.
         let is_file = fs::metadata(file).is_ok_and(|file| file.is_file());
         let text = if is_file { fs::read_to_string(file).unwrap_or_default() } else { String::new() };
-        options.from.or_else(|| Format::of(file, &text))
+        options.from.or_else(|| InputFormat::detect(file, &text))
     };
     let mut formats = files.iter().map(format);
     let first = formats.next().flatten();
-    matches!(first, Some(Format::Vda5050 | Format::Path)) && formats.all(|format| format == first)
+    matches!(first, Some(InputFormat::Vda5050 | InputFormat::Path)) && formats.all(|format| format == first)
 }
 
 /// The scenario in several files that have agents of their own, with the warnings about each: messages of VDA 5050, or paths by
@@ -237,13 +242,16 @@ pub fn are_of_one_fleet(files: &[PathBuf], options: &Options) -> bool {
 ///
 /// # Errors
 /// [`InputError`], naming the file.
-pub fn read_all(files: &[PathBuf], options: &Options) -> Result<(Scenario, Vec<(PathBuf, Warnings)>), InputError> {
+pub fn read_all(
+    files: &[PathBuf],
+    options: &ImportOptions,
+) -> Result<(Scenario, Vec<(PathBuf, Warnings)>), InputError> {
     let (mut texts, mut warnings, mut read_as) = (Vec::new(), Vec::new(), None);
     for file in files {
         // Each by itself, so that what is wrong is said of the file in which it is.
         let (name, text) = text(file)?;
-        let format = options.from.or_else(|| Format::of(file, &text));
-        let Some(format @ (Format::Vda5050 | Format::Path)) = format else {
+        let format = options.from.or_else(|| InputFormat::detect(file, &text));
+        let Some(format @ (InputFormat::Vda5050 | InputFormat::Path)) = format else {
             return Err(InputError::Single(name));
         };
         useful(&name, &text, Some(format), options)?;
@@ -264,7 +272,7 @@ pub fn read_all(files: &[PathBuf], options: &Options) -> Result<(Scenario, Vec<(
     match import::scenario(format, &texts.join("\n\n"), options, &mut all) {
         Ok(mut scenario) => {
             used(&name, options, &all)?;
-            Warnings::settle(&mut warnings.iter_mut().map(|(_, own)| own).collect::<Vec<_>>(), &all);
+            Warnings::merge(&mut warnings.iter_mut().map(|(_, own)| own).collect::<Vec<_>>(), &all);
             scenario.warnings = warnings
                 .iter()
                 .flat_map(|(file, own)| own.all().into_iter().map(move |line| format!("{}: {line}", file.display())))
@@ -281,7 +289,11 @@ pub fn read_all(files: &[PathBuf], options: &Options) -> Result<(Scenario, Vec<(
 ///
 /// # Errors
 /// [`InputError`], naming the file.
-pub fn read_layout(file: &Path, options: &Options, moves: bool) -> Result<(Imported, Warnings), InputError> {
+pub fn read_layout(
+    file: &Path,
+    options: &ImportOptions,
+    moves: bool,
+) -> Result<(ImportedLayout, Warnings), InputError> {
     read_layout_from(file, &text(file)?.1, options, moves)
 }
 
@@ -292,16 +304,16 @@ pub fn read_layout(file: &Path, options: &Options, moves: bool) -> Result<(Impor
 pub fn read_layout_from(
     file: &Path,
     text: &str,
-    options: &Options,
+    options: &ImportOptions,
     moves: bool,
-) -> Result<(Imported, Warnings), InputError> {
+) -> Result<(ImportedLayout, Warnings), InputError> {
     let name = named(file);
     let mut warnings = Warnings::default();
-    let Some(format) = options.from.or_else(|| Format::of(file, text)) else {
-        return Err(match own::answer(text) {
+    let Some(format) = options.from.or_else(|| InputFormat::detect(file, text)) else {
+        return Err(match answer_files::answer(text) {
             _ if import::is_empty(text) => InputError::Empty(name, "a layout"),
             Some(answer) => InputError::IsAnswer(name, answer),
-            None if own::has_agents(text) => InputError::IsScenario(name),
+            None if answer_files::has_agents(text) => InputError::IsScenario(name),
             None => InputError::NoLayout(name),
         });
     };

@@ -5,19 +5,19 @@
 //! traversed. So numbers keep their text, words for values that are not finite count as numbers, equal keys are kept,
 //! and every value knows its place, where errors point and edits go. Otherwise this is RFC 8259; the tests compare it with `serde_json`.
 
-use crate::mark::unmarked;
+use crate::byte_order_mark::unmarked;
 use std::borrow::Cow;
 use std::ops::Range;
 
 /// A value and where it begins. Words and strings without escapes are parts of the text.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Json<'t> {
+pub struct JsonNode<'t> {
     /// Where it begins.
     pub position: Position,
     /// The bytes of the text that are this value.
     pub span: Range<usize>,
     /// What it is.
-    pub data: Data<'t>,
+    pub data: JsonData<'t>,
 }
 
 /// A place in a text.
@@ -31,7 +31,7 @@ pub struct Position {
 
 /// The kinds of values.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Data<'t> {
+pub enum JsonData<'t> {
     /// `null`.
     Null,
     /// `true` or `false`.
@@ -41,13 +41,13 @@ pub enum Data<'t> {
     /// A string without its escapes.
     Text(Cow<'t, str>),
     /// A list.
-    Array(Vec<Json<'t>>),
+    Array(Vec<JsonNode<'t>>),
     /// In the order of the text, equal keys included.
-    Object(Vec<Member<'t>>),
+    Object(Vec<JsonMember<'t>>),
 }
 
 /// A key and its value.
-pub type Member<'t> = (Cow<'t, str>, Json<'t>);
+pub type JsonMember<'t> = (Cow<'t, str>, JsonNode<'t>);
 
 /// Why a text is not JSON.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,11 +58,11 @@ pub struct SyntaxError {
     pub problem: String,
 }
 
-impl Json<'_> {
+impl JsonNode<'_> {
     /// Returns the last member of this name, which is the one that counts; `None` where there is none, or this is no object.
     pub fn get(&self, name: &str) -> Option<&Self> {
         match &self.data {
-            Data::Object(members) => members.iter().rev().find(|(key, _)| key == name).map(|(_, value)| value),
+            JsonData::Object(members) => members.iter().rev().find(|(key, _)| key == name).map(|(_, value)| value),
             _ => None,
         }
     }
@@ -70,7 +70,7 @@ impl Json<'_> {
     /// Returns the elements of a list; none where this is no list.
     pub fn list(&self) -> &[Self] {
         match &self.data {
-            Data::Array(elements) => elements,
+            JsonData::Array(elements) => elements,
             _ => &[],
         }
     }
@@ -79,7 +79,7 @@ impl Json<'_> {
     /// object.
     pub fn end_of_members(&self) -> Option<(usize, &'static str)> {
         match &self.data {
-            Data::Object(members) => Some(match members.last() {
+            JsonData::Object(members) => Some(match members.last() {
                 Some((_, last)) => (last.span.end, ", "),
                 None => (self.span.start + 1, ""),
             }),
@@ -98,7 +98,7 @@ pub(crate) const QUOTED: usize = 40;
 ///
 /// # Errors
 /// [`SyntaxError`] where it is not JSON.
-pub fn parse(text: &str) -> Result<Json<'_>, SyntaxError> {
+pub fn parse(text: &str) -> Result<JsonNode<'_>, SyntaxError> {
     parse_listing(text, "", &mut |_| {})
 }
 
@@ -107,10 +107,10 @@ pub fn parse(text: &str) -> Result<Json<'_>, SyntaxError> {
 pub(crate) fn parse_listing<'t>(
     text: &'t str,
     list: &str,
-    take: &mut dyn FnMut(Json<'t>),
-) -> Result<Json<'t>, SyntaxError> {
+    take: &mut dyn FnMut(JsonNode<'t>),
+) -> Result<JsonNode<'t>, SyntaxError> {
     let begin = text.len() - unmarked(text).len();
-    let mut parser = Parser { text, at: begin, line: 1, line_start: begin, column: 1, counted: begin, list, take };
+    let mut parser = JsonParser { text, at: begin, line: 1, line_start: begin, column: 1, counted: begin, list, take };
     let value = parser.value(0)?;
     match parser.peek() {
         None => Ok(value),
@@ -118,7 +118,7 @@ pub(crate) fn parse_listing<'t>(
     }
 }
 
-struct Parser<'t, 'l> {
+struct JsonParser<'t, 'l> {
     text: &'t str,
     /// Byte that is read next; always at the border of a character.
     at: usize,
@@ -130,30 +130,30 @@ struct Parser<'t, 'l> {
     counted: usize,
     /// The member of the outermost object whose elements go here.
     list: &'l str,
-    take: &'l mut dyn FnMut(Json<'t>),
+    take: &'l mut dyn FnMut(JsonNode<'t>),
 }
 
-impl<'t> Parser<'t, '_> {
-    fn value(&mut self, depth: usize) -> Result<Json<'t>, SyntaxError> {
+impl<'t> JsonParser<'t, '_> {
+    fn value(&mut self, depth: usize) -> Result<JsonNode<'t>, SyntaxError> {
         let next = self.peek();
         let (position, begin) = (self.position(), self.at);
         let data = match next {
             Some(b'{' | b'[') if depth == DEEPEST => {
                 return Err(self.error(format!("arrays and objects nested more than {DEEPEST} deep")));
             }
-            Some(b'{') => Data::Object(self.members(depth)?),
+            Some(b'{') => JsonData::Object(self.members(depth)?),
             Some(b'[') => {
                 let mut elements = Vec::new();
                 self.elements(depth, |_, element| elements.push(element))?;
-                Data::Array(elements)
+                JsonData::Array(elements)
             }
-            Some(b'"') => Data::Text(self.string()?),
+            Some(b'"') => JsonData::Text(self.string()?),
             _ => self.word()?,
         };
-        Ok(Json { position, span: begin..self.at, data })
+        Ok(JsonNode { position, span: begin..self.at, data })
     }
 
-    fn elements(&mut self, depth: usize, mut take: impl FnMut(&mut Self, Json<'t>)) -> Result<(), SyntaxError> {
+    fn elements(&mut self, depth: usize, mut take: impl FnMut(&mut Self, JsonNode<'t>)) -> Result<(), SyntaxError> {
         self.at += 1;
         if self.accept(b']') {
             return Ok(());
@@ -169,16 +169,16 @@ impl<'t> Parser<'t, '_> {
     }
 
     /// A member of an object, or an empty array in place of the list whose elements are taken.
-    fn member(&mut self, key: &str, depth: usize) -> Result<Json<'t>, SyntaxError> {
+    fn member(&mut self, key: &str, depth: usize) -> Result<JsonNode<'t>, SyntaxError> {
         if depth > 0 || key != self.list || self.peek() != Some(b'[') {
             return self.value(depth + 1);
         }
         let (position, begin) = (self.position(), self.at);
         self.elements(depth + 1, |parser, element| (parser.take)(element))?;
-        Ok(Json { position, span: begin..self.at, data: Data::Array(Vec::new()) })
+        Ok(JsonNode { position, span: begin..self.at, data: JsonData::Array(Vec::new()) })
     }
 
-    fn members(&mut self, depth: usize) -> Result<Vec<Member<'t>>, SyntaxError> {
+    fn members(&mut self, depth: usize) -> Result<Vec<JsonMember<'t>>, SyntaxError> {
         let mut members = Vec::new();
         self.at += 1;
         if self.accept(b'}') {
@@ -258,14 +258,14 @@ impl<'t> Parser<'t, '_> {
     }
 
     /// A number, or a value that is written as a word.
-    fn word(&mut self) -> Result<Data<'t>, SyntaxError> {
+    fn word(&mut self) -> Result<JsonData<'t>, SyntaxError> {
         let begin = self.at;
         let word = self.taken(|byte| byte.is_ascii_alphanumeric() || matches!(byte, b'+' | b'-' | b'.' | b'_'));
         Ok(match word {
-            "true" => Data::Bool(true),
-            "false" => Data::Bool(false),
-            "null" => Data::Null,
-            number if is_number(number) || is_not_finite(number) => Data::Number(number.into()),
+            "true" => JsonData::Bool(true),
+            "false" => JsonData::Bool(false),
+            "null" => JsonData::Null,
+            number if is_number(number) || is_not_finite(number) => JsonData::Number(number.into()),
             _ => {
                 self.at = begin;
                 return Err(self.expected("a value"));
@@ -361,17 +361,17 @@ fn is_not_finite(word: &str) -> bool {
 }
 
 /// A value that is in no text: its place is the start of one.
-impl<'t> From<&'t serde_json::Value> for Json<'t> {
+impl<'t> From<&'t serde_json::Value> for JsonNode<'t> {
     fn from(value: &'t serde_json::Value) -> Self {
         use serde_json::Value;
         let data = match value {
-            Value::Null => Data::Null,
-            Value::Bool(value) => Data::Bool(*value),
-            Value::Number(number) => Data::Number(number.to_string().into()),
-            Value::String(text) => Data::Text(text.into()),
-            Value::Array(elements) => Data::Array(elements.iter().map(Self::from).collect()),
+            Value::Null => JsonData::Null,
+            Value::Bool(value) => JsonData::Bool(*value),
+            Value::Number(number) => JsonData::Number(number.to_string().into()),
+            Value::String(text) => JsonData::Text(text.into()),
+            Value::Array(elements) => JsonData::Array(elements.iter().map(Self::from).collect()),
             Value::Object(members) => {
-                Data::Object(members.iter().map(|(key, value)| (key.into(), value.into())).collect())
+                JsonData::Object(members.iter().map(|(key, value)| (key.into(), value.into())).collect())
             }
         };
         Self { position: Position { line: 1, column: 1 }, span: 0..0, data }
@@ -384,14 +384,14 @@ mod tests {
     use serde_json::Value;
 
     /// The tree as `serde_json` represents it.
-    fn value(json: &Json<'_>) -> Value {
+    fn value(json: &JsonNode<'_>) -> Value {
         match &json.data {
-            Data::Null => Value::Null,
-            Data::Bool(value) => Value::Bool(*value),
-            Data::Number(text) => serde_json::from_str(text).unwrap(),
-            Data::Text(text) => Value::String(text.to_string()),
-            Data::Array(elements) => elements.iter().map(value).collect(),
-            Data::Object(members) => members.iter().map(|(key, member)| (key.to_string(), value(member))).collect(),
+            JsonData::Null => Value::Null,
+            JsonData::Bool(value) => Value::Bool(*value),
+            JsonData::Number(text) => serde_json::from_str(text).unwrap(),
+            JsonData::Text(text) => Value::String(text.to_string()),
+            JsonData::Array(elements) => elements.iter().map(value).collect(),
+            JsonData::Object(members) => members.iter().map(|(key, member)| (key.to_string(), value(member))).collect(),
         }
     }
 
@@ -442,21 +442,21 @@ mod tests {
     #[test]
     fn numbers_that_are_not_finite_are_kept_as_written() {
         for word in ["NaN", "nan", "Infinity", "-Infinity", "inf", "-inf", "1e999", "-1e99999"] {
-            assert_eq!(parse(word).unwrap().data, Data::Number(word.into()));
+            assert_eq!(parse(word).unwrap().data, JsonData::Number(word.into()));
         }
     }
 
     #[test]
     fn equal_keys_are_kept() {
-        let Data::Object(members) = parse(r#"{"a": 1, "a": 2}"#).unwrap().data else { panic!() };
+        let JsonData::Object(members) = parse(r#"{"a": 1, "a": 2}"#).unwrap().data else { panic!() };
         assert_eq!(members.len(), 2);
     }
 
     #[test]
     fn values_know_their_lines_and_errors_their_columns() {
         let json = parse("[\n 1,\n\n {\"a\":\n2}]").unwrap();
-        let Data::Array(elements) = &json.data else { panic!() };
-        let Data::Object(members) = &elements[1].data else { panic!() };
+        let JsonData::Array(elements) = &json.data else { panic!() };
+        let JsonData::Object(members) = &elements[1].data else { panic!() };
         let places = [&json, &elements[0], &elements[1], &members[0].1].map(|json| json.position);
         assert_eq!(places.map(|at| [at.line, at.column]), [[1, 1], [2, 2], [4, 2], [5, 1]]);
         let error = parse("{\n  \"é\": nonsense}").unwrap_err();
@@ -468,7 +468,7 @@ mod tests {
     fn spans_are_those_of_the_values() {
         let text = "\u{feff} {\"a\": [1, -2.5e3 , \"x\\\"]\\u00e9é\"], \"b\" :{ } ,\"c\":null}\n";
         let whole = parse(text).unwrap();
-        let at = |value: &Json<'_>| &text[value.span.clone()];
+        let at = |value: &JsonNode<'_>| &text[value.span.clone()];
         assert!(at(&whole).starts_with('{') && at(&whole).ends_with('}'));
         let list: Vec<&str> = whole.get("a").unwrap().list().iter().map(at).collect();
         assert_eq!(list, ["1", "-2.5e3", "\"x\\\"]\\u00e9é\""]);

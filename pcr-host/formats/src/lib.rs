@@ -16,18 +16,18 @@
 //! yaml       YAML with the place of every value                 Document
 //! ```
 
+mod answer_files;
+mod byte_order_mark;
 pub mod footprint;
 pub mod import;
 pub mod input;
 pub mod json;
-mod mark;
-pub mod once;
 pub mod output;
-mod own;
-pub mod paper;
-pub mod plane;
-pub mod random;
+pub mod paper_example;
+pub mod plane_geometry;
 pub mod scenario;
+pub mod splitmix64;
+pub mod unique_keys;
 pub mod vda5050;
 pub mod warning;
 pub mod yaml;

@@ -22,20 +22,20 @@ static MADE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Why a file that is read is not written to.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Kept(PathBuf);
+pub struct OverwriteError(PathBuf);
 
-impl fmt::Display for Kept {
+impl fmt::Display for OverwriteError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let file = self.0.display();
         write!(f, "{file}: this is read, and something of another kind would be written over it; give another name")
     }
 }
 
-impl std::error::Error for Kept {}
+impl std::error::Error for OverwriteError {}
 
-impl Kept {
-    /// The [`Kept`] in an error of an output, if it is one.
-    pub fn of(error: &io::Error) -> Option<&Self> {
+impl OverwriteError {
+    /// The [`OverwriteError`] in an error of an output, if it is one.
+    pub fn from_io_error(error: &io::Error) -> Option<&Self> {
         error.get_ref()?.downcast_ref()
     }
 }
@@ -86,7 +86,7 @@ fn of_system(file: &Path) -> &Path {
 
 /// Refuses a file that is kept.
 fn refuse_kept(file: &Path) -> io::Result<()> {
-    if is_kept(file) { Err(io::Error::other(Kept(file.to_owned()))) } else { Ok(()) }
+    if is_kept(file) { Err(io::Error::other(OverwriteError(file.to_owned()))) } else { Ok(()) }
 }
 
 /// Devices and pipes may be read and written.
@@ -421,7 +421,7 @@ mod tests {
         keep(&file);
         for name in [&file, &link, &folder.join("hard"), &folder.join("./file")] {
             let error = write(name, "new").unwrap_err();
-            assert_eq!(Kept::of(&error), Some(&Kept(name.clone())));
+            assert_eq!(OverwriteError::from_io_error(&error), Some(&OverwriteError(name.clone())));
         }
         write(&other, "new").unwrap();
         assert_eq!(fs::read_to_string(&file).unwrap(), "old");

@@ -38,30 +38,30 @@
 //! Whatever is out of range, missing, unknown, repeated or not finite is refused by a [`ScenarioError`] that names the
 //! agent, the segment, the field, the value and what is allowed there. Hence the scenario is decoded by hand.
 
+mod agent_name;
+mod agent_parts;
 mod angles;
 mod decode;
 mod encode;
-mod fields;
+mod json_fields;
 mod labels;
-mod load;
-mod name;
+mod load_outline;
 mod outline;
-mod parts;
-mod placed;
-mod settled;
+mod placed_segment;
+mod round_trip;
 mod turns;
 
 use crate::footprint::Footprint;
+pub use agent_parts::{AgentPart, SegmentPhase};
 pub use decode::LENGTH_TOLERANCE;
 pub(crate) use decode::MOST_SEGMENTS;
-pub use fields::figure;
-pub use fields::{LIMIT, ScenarioError};
+pub use json_fields::figure;
+pub use json_fields::{LIMIT, ScenarioError};
 pub use labels::{LONGEST_LABEL, Labels};
 pub use labels::{controls, label, printable};
-pub use load::Load;
-pub use parts::{Part, Stretch};
-pub use placed::{KINK, Placed, TURN};
-pub use settled::speed_after;
+pub use load_outline::LoadOutline;
+pub use placed_segment::{KINK, PlacedSegment, TURN};
+pub use round_trip::speed_after;
 use std::f64::consts::TAU;
 
 #[cfg(test)]
@@ -90,7 +90,7 @@ pub struct Agent {
     /// Its outline, if it is no disc.
     pub footprint: Option<Footprint>,
     /// Other outlines on some of its segments, in their order.
-    pub loads: Vec<Load>,
+    pub loads: Vec<LoadOutline>,
     /// Margin to be kept around the disc \[m\].
     pub margin: f64,
     /// When it sets off \[s\].

@@ -21,36 +21,36 @@
 mod execution;
 mod figures;
 mod fleets;
-mod grazing;
 mod layouts;
 mod lifelong;
 mod machine;
 mod memory;
+mod near_misses;
 mod plans;
 mod roadmaps;
 mod scale;
-mod shares;
 mod tasks;
+mod time_shares;
 mod traffic;
 
-use pcr_comparing::compare::Effort;
-use pcr_formats::import::{self, Format, Imported, Options, Warnings};
+use pcr_comparing::compare::MeasurementBudget;
+use pcr_formats::import::{self, ImportOptions, ImportedLayout, InputFormat, Warnings};
 use pcr_formats::output;
 use pcr_formats::scenario::Scenario;
-use pcr_planning::failure::Failure;
+use pcr_planning::failure::ComputationError;
 use std::path::{Path, PathBuf};
 use std::{fmt, fs, io};
 
 /// How thoroughly to measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
+pub enum Thoroughness {
     /// Everything.
     Full,
     /// Small fleets only, without the slowest methods: to see that it works.
     Quick,
 }
 
-impl Extent {
+impl Thoroughness {
     /// Words of which the names of methods hold one; none for all methods.
     fn filters(self) -> &'static [&'static str] {
         match self {
@@ -59,28 +59,28 @@ impl Extent {
         }
     }
 
-    fn effort(self) -> Effort {
+    fn effort(self) -> MeasurementBudget {
         match self {
-            Self::Full => Effort { rounds: 31, budget: 0.4, slices: 20_000 },
-            Self::Quick => Effort { rounds: 2, budget: 0.01, slices: 500 },
+            Self::Full => MeasurementBudget { rounds: 31, budget: 0.4, slices: 20_000 },
+            Self::Quick => MeasurementBudget { rounds: 2, budget: 0.01, slices: 500 },
         }
     }
 }
 
 /// Why there is no document.
 #[derive(Debug)]
-pub enum Problem {
+pub enum EvaluationError {
     /// Of a file or directory.
     File(PathBuf, String),
     /// Of the document of which parts were to be written anew.
     Document(PathBuf, String),
     /// Of a fleet.
-    Fleet(Failure),
+    Fleet(ComputationError),
     /// Of a method that has no answer, by its name.
     Method(String, String),
 }
 
-impl fmt::Display for Problem {
+impl fmt::Display for EvaluationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File(path, problem) | Self::Document(path, problem) => write!(f, "{}: {problem}", path.display()),
@@ -90,14 +90,14 @@ impl fmt::Display for Problem {
     }
 }
 
-impl<F: Into<Failure>> From<F> for Problem {
+impl<F: Into<ComputationError>> From<F> for EvaluationError {
     fn from(failure: F) -> Self {
         Self::Fleet(failure.into())
     }
 }
 
 /// A part of the document: Markdown, and SVG pictures with their names.
-struct Section {
+struct DocumentSection {
     text: String,
     pictures: Vec<(&'static str, String)>,
 }
@@ -111,14 +111,14 @@ fn picture(name: &str, what: &str) -> String {
 }
 
 /// One after the other: they take the time of one another otherwise.
-type Part = fn(&Fleets, Extent) -> Result<Section, Problem>;
+type SectionWriter = fn(&PaperFleets, Thoroughness) -> Result<DocumentSection, EvaluationError>;
 
 /// The parts of the document, by their names.
-const PARTS: [(&str, Part); 13] = [
+const PARTS: [(&str, SectionWriter); 13] = [
     ("fleets", fleets::section),
-    ("shares", shares::section),
+    ("shares", time_shares::section),
     ("figures", figures::section),
-    ("grazing", grazing::section),
+    ("grazing", near_misses::section),
     ("memory", memory::section),
     ("traffic", traffic::section),
     ("plans", plans::section),
@@ -140,30 +140,33 @@ pub fn parts() -> impl Iterator<Item = &'static str> {
 /// `begins` is told the name of each part before it is measured, how many are done, and of how many. Returns the files.
 ///
 /// # Errors
-/// [`Problem`] where a fleet cannot be read, or a file cannot be read or written.
+/// [`EvaluationError`] where a fleet cannot be read, or a file cannot be read or written.
 pub fn write(
     data: &Path,
     directory: &Path,
-    extent: Extent,
+    extent: Thoroughness,
     only: &[String],
     begins: &mut dyn FnMut(&str, usize, usize),
-) -> Result<Vec<PathBuf>, Problem> {
+) -> Result<Vec<PathBuf>, EvaluationError> {
     let document = directory.join("evaluation.md");
     // Also one that is no text.
     let there = fs::read(&document).map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).ok();
     if there.as_ref().is_some_and(|there| !there.contains(machine::OWN)) {
         let why = "is there and not of this command: give another folder, or another name to it";
-        return Err(Problem::Document(document, why.to_owned()));
+        return Err(EvaluationError::Document(document, why.to_owned()));
     }
     let mut text = match only {
         [] => machine::preamble(extent, there.as_deref().map_or("", machine::summary)),
         _ => fs::read_to_string(&document)
-            .map_err(|error| Problem::Document(document.clone(), format!("cannot be read: {error}")))?,
+            .map_err(|error| EvaluationError::Document(document.clone(), format!("cannot be read: {error}")))?,
     };
-    if text.contains(machine::QUICK) != (extent == Extent::Quick) {
-        return Err(Problem::Document(document, "was written with --quick, or this is and it was not".to_owned()));
+    if text.contains(machine::QUICK) != (extent == Thoroughness::Quick) {
+        return Err(EvaluationError::Document(
+            document,
+            "was written with --quick, or this is and it was not".to_owned(),
+        ));
     }
-    let fleets = Fleets::read(data, extent)?;
+    let fleets = PaperFleets::read(data, extent)?;
     let wanted = PARTS.iter().filter(|(name, _)| only.is_empty() || only.iter().any(|it| it == name));
     let wanted: Vec<_> = wanted.collect();
     let mut files = Vec::new();
@@ -176,7 +179,7 @@ pub fn write(
         } else {
             text = replaced(&text, &section.text).ok_or_else(|| {
                 let first = section.text.lines().next().unwrap_or_default();
-                Problem::Document(document.clone(), format!("has no section \"{first}\": write all of it"))
+                EvaluationError::Document(document.clone(), format!("has no section \"{first}\": write all of it"))
             })?;
         }
         let pictures = section.pictures.into_iter();
@@ -188,7 +191,8 @@ pub fn write(
             output::folder(path.parent().unwrap_or(directory))?;
             output::write(&path, content)
         };
-        write().map_err(|error: io::Error| Problem::File(path.clone(), format!("cannot be written: {error}")))?;
+        write()
+            .map_err(|error: io::Error| EvaluationError::File(path.clone(), format!("cannot be written: {error}")))?;
         Ok(path)
     });
     written.collect()
@@ -214,7 +218,7 @@ fn replaced(document: &str, section: &str) -> Option<String> {
 }
 
 /// A row of the paper's Table VI, and our fleet for it.
-struct Fleet {
+struct PaperFleet {
     scenario: Scenario,
     /// Agents and collision regions.
     size: [usize; 2],
@@ -225,8 +229,8 @@ struct Fleet {
 }
 
 /// All of them.
-struct Fleets {
-    all: Vec<Fleet>,
+struct PaperFleets {
+    all: Vec<PaperFleet>,
     /// The directory with the data.
     data: PathBuf,
 }
@@ -244,35 +248,37 @@ const TABLE_VI: [(&str, [usize; 2], [f64; 3], &str); 6] = [
 /// Radius with which the missions on layouts round corners \[m\]: that of nav2, if it does.
 const CORNER_RADIUS: f64 = 1.0;
 
-impl Fleets {
-    fn read(data: &Path, extent: Extent) -> Result<Self, Problem> {
+impl PaperFleets {
+    fn read(data: &Path, extent: Thoroughness) -> Result<Self, EvaluationError> {
         let rows = match extent {
-            Extent::Full => &TABLE_VI[..],
-            Extent::Quick => &TABLE_VI[2..3],
+            Thoroughness::Full => &TABLE_VI[..],
+            Thoroughness::Quick => &TABLE_VI[2..3],
         };
         let fleet = |&(name, size, paper, memory): &(&str, _, _, _)| {
             let path = data.join(name);
             let text = fs::read_to_string(&path)
-                .map_err(|error| Problem::File(path.clone(), format!("cannot be read: {error}")))?;
-            let scenario = Scenario::from_json(&text).map_err(|error| Problem::File(path, error.to_string()))?;
-            Ok(Fleet { scenario, size, paper, memory })
+                .map_err(|error| EvaluationError::File(path.clone(), format!("cannot be read: {error}")))?;
+            let scenario =
+                Scenario::from_json(&text).map_err(|error| EvaluationError::File(path, error.to_string()))?;
+            Ok(PaperFleet { scenario, size, paper, memory })
         };
-        Ok(Self { all: rows.iter().map(fleet).collect::<Result<_, Problem>>()?, data: data.to_owned() })
+        Ok(Self { all: rows.iter().map(fleet).collect::<Result<_, EvaluationError>>()?, data: data.to_owned() })
     }
 
     /// The route graph of nav2's warehouse, with discs of this radius \[m\].
-    fn warehouse(&self, radius: f64) -> Result<Imported, Problem> {
+    fn warehouse(&self, radius: f64) -> Result<ImportedLayout, EvaluationError> {
         let path = self.data.join("real/nav2/warehouse_graph.geojson");
-        let problem = |problem: String| Problem::File(path.clone(), problem);
+        let problem = |problem: String| EvaluationError::File(path.clone(), problem);
         let text = fs::read_to_string(&path).map_err(|error| problem(format!("cannot be read: {error}")))?;
-        let options = Options { radius: Some(radius), corner_radius: Some(CORNER_RADIUS), ..Options::default() };
+        let options =
+            ImportOptions { radius: Some(radius), corner_radius: Some(CORNER_RADIUS), ..ImportOptions::default() };
         // What it assumes about speeds goes for all agents alike.
-        let imported = import::roads(Format::Nav2, &text, &options, &mut Warnings::default());
+        let imported = import::roads(InputFormat::Nav2, &text, &options, &mut Warnings::default());
         imported.map_err(|error| problem(error.to_string()))
     }
 
     /// The paper's 12 agents.
-    fn paper12(&self) -> Option<&Fleet> {
+    fn paper12(&self) -> Option<&PaperFleet> {
         self.all.iter().find(|fleet| fleet.size == [12, 126])
     }
 }

@@ -11,21 +11,21 @@
 //! cells      the order in which robots enter each cell: an action dependency graph (Hoenig et al. 2019)
 //! ```
 
-mod cells;
-mod orders;
-mod switching;
+mod cell_dependencies;
+mod fixed_precedences;
+mod switchable_precedences;
 
-use cells::Cells;
-use orders::Kept;
+use cell_dependencies::CellDependencyGraph;
+use fixed_precedences::FixedPrecedences;
 use pcr_core::Motion;
 use pcr_formats::import::{GridPlan, sectioned};
-use pcr_formats::random::Random;
 use pcr_formats::scenario::Scenario;
-use pcr_planning::certify::Proof;
+use pcr_formats::splitmix64::SplitMix64;
+use pcr_planning::certify::MotionCertificate;
 use pcr_planning::fleet::Fleet;
 use serde::Deserialize;
 use std::time::{Duration, Instant};
-use switching::Switching;
+use switchable_precedences::SwitchablePrecedences;
 
 /// Time between two control steps \[s\]: a power of two, so that whole seconds are met exactly.
 const STEP: f64 = 1.0 / 16.0;
@@ -51,11 +51,11 @@ const ROOM: f64 = 1e-6;
 const LEAST: f64 = 1e-9;
 
 /// For each robot the times in which it is stopped, in increasing order \[s\].
-pub type Stops = Vec<Vec<[f64; 2]>>;
+pub type RandomStops = Vec<Vec<[f64; 2]>>;
 
 /// The method that keeps robots apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum By {
+pub enum ExecutionMethod {
     /// By the passing orders of the plan, on the geometry of discs.
     Orders,
     /// By the same orders, but an order is reversed if a late robot holds others up and has not used its right.
@@ -64,7 +64,7 @@ pub enum By {
     Cells,
 }
 
-impl By {
+impl ExecutionMethod {
     /// Its name in tables.
     pub fn name(self) -> &'static str {
         match self {
@@ -77,7 +77,7 @@ impl By {
 
 /// The results of a run.
 #[derive(Clone, Debug)]
-pub struct Outcome {
+pub struct GridRunResult {
     /// Mean time of arrival of the robots that have a way \[s\].
     pub travel: f64,
     /// Mean time of arrival if no robot waited for another one, from the stops alone \[s\].
@@ -89,25 +89,25 @@ pub struct Outcome {
     /// The motions of the run, as a scenario.
     pub done: Scenario,
     /// Result of the independent checker for these motions.
-    pub proof: Proof,
+    pub proof: MotionCertificate,
     /// Computing times until the orders were known, and until all robots had arrived.
     pub times: [Duration; 2],
 }
 
 /// A rule that tells robots how far they may go.
-trait Holds {
+trait ExecutionRule {
     /// Length up to which a robot may go when all are at `at` \[m\]; values above `wanted` are equivalent. It never decreases.
-    fn hold(&mut self, robot: usize, at: &[f64], wanted: f64) -> f64;
+    fn authority(&mut self, robot: usize, at: &[f64], wanted: f64) -> f64;
 
     /// Called once a second with the lengths of all robots, and the expected remaining durations of their stops \[s\].
-    fn look(&mut self, _at: &[f64], _stopped: &[f64]) {}
+    fn on_tick(&mut self, _at: &[f64], _stopped: &[f64]) {}
 }
 
 /// No robot is in another one's way.
-struct Nobody;
+struct UnimpededExecution;
 
-impl Holds for Nobody {
-    fn hold(&mut self, _: usize, _: &[f64], _: f64) -> f64 {
+impl ExecutionRule for UnimpededExecution {
+    fn authority(&mut self, _: usize, _: &[f64], _: f64) -> f64 {
         f64::INFINITY
     }
 }
@@ -116,36 +116,41 @@ impl Holds for Nobody {
 ///
 /// # Errors
 /// A plan with a contact of such discs, or a value out of range.
-pub fn carried_out(plan: &GridPlan, radius: f64, by: By, stops: &Stops) -> Result<Outcome, String> {
+pub fn carried_out(
+    plan: &GridPlan,
+    radius: f64,
+    by: ExecutionMethod,
+    stops: &RandomStops,
+) -> Result<GridRunResult, String> {
     let scenario = plan.scenario(radius + ROOM).map_err(|error| error.to_string())?;
     let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| refused.to_string())?;
     let motions = fleet.motions();
     let begin = Instant::now();
     let (run, known) = match by {
-        By::Orders | By::Switching => {
-            let table = orders::table(&motions)?;
-            let mut kept = Kept::new(&table, &motions)?;
-            if by == By::Switching {
+        ExecutionMethod::Orders | ExecutionMethod::Switching => {
+            let table = fixed_precedences::table(&motions)?;
+            let mut kept = FixedPrecedences::new(&table, &motions)?;
+            if by == ExecutionMethod::Switching {
                 let ends = motions.iter().map(|motion| motion.path().length()).collect();
-                let mut switching = Switching::new(kept, ends);
+                let mut switching = SwitchablePrecedences::new(kept, ends);
                 let known = begin.elapsed();
-                (Run::new(&motions, stops).driven(&mut switching), known)
+                (GridExecution::new(&motions, stops).driven(&mut switching), known)
             } else {
                 let known = begin.elapsed();
-                (Run::new(&motions, stops).driven(&mut kept), known)
+                (GridExecution::new(&motions, stops).driven(&mut kept), known)
             }
         }
-        By::Cells => {
-            let mut cells = Cells::new(plan.cells());
+        ExecutionMethod::Cells => {
+            let mut cells = CellDependencyGraph::new(plan.cells());
             let known = begin.elapsed();
-            (Run::new(&motions, stops).driven(&mut cells), known)
+            (GridExecution::new(&motions, stops).driven(&mut cells), known)
         }
     };
     let times = [known, begin.elapsed() - known];
     let done = run.scenario(plan.scenario(radius).map_err(|error| error.to_string())?);
-    let proof = Proof::of::<f64>(&done).map_err(|refused| refused.to_string())?;
-    let alone = Run::new(&motions, stops).driven(&mut Nobody);
-    Ok(Outcome {
+    let proof = MotionCertificate::prove::<f64>(&done).map_err(|refused| refused.to_string())?;
+    let alone = GridExecution::new(&motions, stops).driven(&mut UnimpededExecution);
+    Ok(GridRunResult {
         travel: run.travel(),
         alone: alone.travel(),
         makespan: run.arrivals.iter().copied().fold(0.0, f64::max),
@@ -158,9 +163,9 @@ pub fn carried_out(plan: &GridPlan, radius: f64, by: By, stops: &Stops) -> Resul
 
 /// Random stops: each second a robot that is not stopped is stopped with this probability, for 10 to 20 s. The times do not
 /// depend on the motions.
-pub fn random_stops(robots: usize, until: u32, rate: f64, seed: u64) -> Stops {
+pub fn random_stops(robots: usize, until: u32, rate: f64, seed: u64) -> RandomStops {
     let stops = |robot: usize| {
-        let mut random = Random(seed ^ (robot as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        let mut random = SplitMix64(seed ^ (robot as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15));
         let (mut stops, mut free) = (Vec::new(), 0);
         for time in 0..until {
             if time >= free && random.unit() < rate {
@@ -179,13 +184,13 @@ pub fn random_stops(robots: usize, until: u32, rate: f64, seed: u64) -> Stops {
 ///
 /// # Errors
 /// An invalid file, or one for another number of robots.
-pub fn situation(text: &str, robots: usize) -> Result<Stops, String> {
+pub fn situation(text: &str, robots: usize) -> Result<RandomStops, String> {
     #[derive(Deserialize)]
-    struct Situation {
+    struct DelaySituation {
         delay_steps: Vec<u32>,
         states: Vec<u32>,
     }
-    let read: Situation = serde_json::from_str(text).map_err(|error| error.to_string())?;
+    let read: DelaySituation = serde_json::from_str(text).map_err(|error| error.to_string())?;
     if [read.delay_steps.len(), read.states.len()] != [robots; 2] {
         return Err(format!("the situation is of {} robots, the plan of {robots}", read.delay_steps.len()));
     }
@@ -195,8 +200,8 @@ pub fn situation(text: &str, robots: usize) -> Result<Stops, String> {
 }
 
 /// Robots under way.
-struct Run<'a> {
-    stops: &'a Stops,
+struct GridExecution<'a> {
+    stops: &'a RandomStops,
     ends: Vec<f64>,
     at: Vec<f64>,
     /// For each robot the number of stops that are over.
@@ -207,8 +212,8 @@ struct Run<'a> {
     done: Vec<Vec<(f64, u32)>>,
 }
 
-impl<'a> Run<'a> {
-    fn new(motions: &[Motion<'_, f64>], stops: &'a Stops) -> Self {
+impl<'a> GridExecution<'a> {
+    fn new(motions: &[Motion<'_, f64>], stops: &'a RandomStops) -> Self {
         let count = motions.len();
         let ends = motions.iter().map(|motion| motion.path().length()).collect();
         let (at, arrivals) = (vec![0.0; count], vec![0.0; count]);
@@ -226,13 +231,13 @@ impl<'a> Run<'a> {
     }
 
     /// Runs until all robots have arrived, or none can go on.
-    fn driven(mut self, holds: &mut dyn Holds) -> Self {
+    fn driven(mut self, holds: &mut dyn ExecutionRule) -> Self {
         for step in 0_u32.. {
             let time = f64::from(step) * STEP;
             let before = self.at.clone();
             if step % LOOK == 0 {
                 let stopped: Vec<f64> = (0..before.len()).map(|robot| self.stopped_for(robot, time)).collect();
-                holds.look(&before, &stopped);
+                holds.on_tick(&before, &stopped);
             }
             let (mut goes, mut waits) = (false, false);
             for robot in 0..before.len() {
@@ -242,7 +247,7 @@ impl<'a> Run<'a> {
                     waits |= left > 0.0;
                 } else if left > 0.0 {
                     let most = if left <= SPEED * STEP + NEAR { left } else { SPEED * STEP };
-                    let hold = holds.hold(robot, &before, before[robot] + most);
+                    let hold = holds.authority(robot, &before, before[robot] + most);
                     way = most.min(hold - before[robot]);
                     way = if way < LEAST && way < left { 0.0 } else { way };
                     goes |= way > 0.0;

@@ -2,11 +2,11 @@
 
 use clap::builder::PossibleValuesParser;
 use clap::{Parser, Subcommand};
-use pcr_comparing::compare::{Comparison, Effort};
+use pcr_comparing::compare::{Comparison, MeasurementBudget};
 use pcr_comparing::report;
 use pcr_formats::output;
 use pcr_formats::scenario::Scenario;
-use pcr_lab::evaluate::{self, Extent};
+use pcr_lab::evaluate::{self, Thoroughness};
 use pcr_lab::methods::methods;
 use std::fmt::Display;
 use std::io::{self, BufWriter, Write};
@@ -17,15 +17,15 @@ use std::time::Instant;
 /// Measure pcr beside the methods of others
 #[derive(Parser)]
 #[command(name = "pcr-lab", version)]
-struct Cli {
+struct LabCli {
     #[command(subcommand)]
-    command: Command,
+    command: LabCommand,
 }
 
 #[derive(Subcommand)]
-enum Command {
+enum LabCommand {
     Evaluate(EvaluateArgs),
-    Compare(CompareArgs),
+    Compare(LabCompareArgs),
 }
 
 /// Measure docs/maintain/evaluation.md anew on this machine (takes minutes)
@@ -47,7 +47,7 @@ struct EvaluateArgs {
 
 /// Compare all methods on scenarios: those of `pcr compare`, and those of other libraries
 #[derive(clap::Args)]
-struct CompareArgs {
+struct LabCompareArgs {
     /// Scenarios (JSON)
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
@@ -66,9 +66,9 @@ const BUDGET: f64 = 0.5;
 const SLICES: usize = 20_000;
 
 fn main() -> ExitCode {
-    let done = match Cli::parse().command {
-        Command::Evaluate(arguments) => arguments.run(),
-        Command::Compare(arguments) => arguments.run(),
+    let done = match LabCli::parse().command {
+        LabCommand::Evaluate(arguments) => arguments.run(),
+        LabCommand::Compare(arguments) => arguments.run(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -82,7 +82,7 @@ fn main() -> ExitCode {
 
 impl EvaluateArgs {
     fn run(self) -> Result<(), String> {
-        let extent = if self.quick { Extent::Quick } else { Extent::Full };
+        let extent = if self.quick { Thoroughness::Quick } else { Thoroughness::Full };
         output::folder(&self.output).map_err(|error| not_written(self.output.display(), &error))?;
         let begin = Instant::now();
         let mut begins = |part: &str, done: usize, parts: usize| {
@@ -96,9 +96,9 @@ impl EvaluateArgs {
     }
 }
 
-impl CompareArgs {
+impl LabCompareArgs {
     fn run(self) -> Result<(), String> {
-        let effort = Effort { rounds: self.rounds.into(), budget: BUDGET, slices: SLICES };
+        let effort = MeasurementBudget { rounds: self.rounds.into(), budget: BUDGET, slices: SLICES };
         let mut out = BufWriter::new(io::stdout().lock());
         for file in &self.files {
             let read = |problem: &dyn Display| format!("{}: {problem}", file.display());

@@ -8,16 +8,16 @@
 //! ```
 
 mod box2d;
-mod casts;
 mod fcl;
-mod program;
+mod peer_program;
+mod shape_casts;
 
-use pcr_comparing::compare::{self, Method};
+use pcr_comparing::compare::{self, CollisionMethod};
 
 /// Returns all methods: those of `pcr compare`, and those of other libraries, also where the library is missing.
-pub fn methods() -> Vec<Box<dyn Method>> {
+pub fn methods() -> Vec<Box<dyn CollisionMethod>> {
     let mut methods = compare::methods();
-    methods.extend(casts::methods());
+    methods.extend(shape_casts::methods());
     methods.extend(box2d::methods());
     methods.extend(fcl::methods());
     methods
@@ -25,5 +25,5 @@ pub fn methods() -> Vec<Box<dyn Method>> {
 
 /// Returns the libraries in C++ that methods use, with their versions, or that they are left out.
 pub(crate) fn libraries() -> Vec<String> {
-    [program::Program::FCL, program::Program::BOX2D].map(program::Program::library).into()
+    [peer_program::PeerProgram::FCL, peer_program::PeerProgram::BOX2D].map(peer_program::PeerProgram::library).into()
 }

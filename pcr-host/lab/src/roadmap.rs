@@ -1,9 +1,9 @@
 //! Roadmaps with tasks that come over time, as Adcombrink/CPLP-LifelongMAPFR (Combrink, Roselli, Fabian, arXiv 2503.13175) writes them
 //! (JSON of networkx).
 
-use pcr_execution::lifelong::Tasks;
-use pcr_formats::import::{Edge, Id, Imported, Layout, Node, SizeSource, Vehicle};
-use pcr_formats::scenario::Placed;
+use pcr_execution::lifelong::TaskStream;
+use pcr_formats::import::{ElementId, ImportedLayout, Layout, LayoutEdge, LayoutNode, SizeSource, VehicleTraits};
+use pcr_formats::scenario::PlacedSegment;
 use serde_json::Value;
 use std::collections::HashMap;
 
@@ -14,7 +14,7 @@ const AT_ONCE: f64 = 1e4;
 ///
 /// # Errors
 /// Where the text is none.
-pub fn read(text: &str) -> Result<(Imported, Tasks), String> {
+pub fn read(text: &str) -> Result<(ImportedLayout, TaskStream), String> {
     let value: Value = serde_json::from_str(text).map_err(|error| error.to_string())?;
     let list = |value: &Value, name: &str| value[name].as_array().cloned().ok_or(format!("{name}: a list is expected"));
     let graph = &value["graph"];
@@ -25,7 +25,7 @@ pub fn read(text: &str) -> Result<(Imported, Tasks), String> {
             return Err(format!("{id}: pos: two numbers are expected"));
         };
         places.insert(id.clone(), place);
-        nodes.push(Node { id: Id::Text(id), name: None, level: 0, at: [x, y] });
+        nodes.push(LayoutNode { id: ElementId::Text(id), name: None, level: 0, point: [x, y] });
     }
     let place = |value: &Value| {
         let id = text_of(value)?;
@@ -34,11 +34,11 @@ pub fn read(text: &str) -> Result<(Imported, Tasks), String> {
     let mut edges = Vec::new();
     for (number, link) in list(graph, "links")?.iter().enumerate() {
         let ends = [place(&link["source"])?, place(&link["target"])?];
-        let [from, to] = ends.map(|node: usize| nodes[node].at);
-        edges.push(Edge::new(Id::Number(number as u64), ends, vec![Placed::line(from, to)]));
+        let [from, to] = ends.map(|node: usize| nodes[node].point);
+        edges.push(LayoutEdge::new(ElementId::Number(number as u64), ends, vec![PlacedSegment::line(from, to)]));
     }
     let layout = Layout { levels: vec![String::new()], nodes, edges, ..Layout::default() };
-    let vehicle = Vehicle {
+    let vehicle = VehicleTraits {
         name: None,
         radius: 1.0,
         footprint: None,
@@ -53,7 +53,7 @@ pub fn read(text: &str) -> Result<(Imported, Tasks), String> {
     let starts = starts.values().map(place).collect::<Result<_, String>>()?;
     let task = |task: &Value| Ok((place(&task[0])?, task[1].as_f64().ok_or("tasks: a time is missing")?));
     let tasks = list(&value, "tasks")?.iter().map(task).collect::<Result<_, String>>()?;
-    Ok((Imported { layout, vehicle }, Tasks { starts, tasks }))
+    Ok((ImportedLayout { layout, vehicle }, TaskStream { starts, tasks }))
 }
 
 fn text_of(value: &Value) -> Result<String, String> {

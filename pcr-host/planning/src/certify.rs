@@ -3,25 +3,25 @@
 //! The types match the JSON output, field by field in this order.
 
 mod motions;
-mod told;
+mod reported;
 
-pub use motions::{Contact, Proof};
+pub use motions::{CertificateContact, MotionCertificate};
 
-use crate::regions::Told;
-pub use pcr_certify::data::Table;
-use pcr_certify::dump;
-use pcr_certify::pair::{Findings, Promise};
-use pcr_certify::table::{Checker, Margin};
+use crate::regions::ProgressFn;
+use pcr_certify::device_dump;
+use pcr_certify::pair::{Findings, TableProperty};
+pub use pcr_certify::raw::RawTable;
+use pcr_certify::table::{Checker, CoverageMargin};
 use pcr_formats::scenario::Labels;
 use pcr_formats::warning::WarningCode;
+use reported::{RegionScope, ReportedDiscCover};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use told::{Asked, Cover};
 
 /// The result of the proof of a table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Certified {
+pub struct CertifyReport {
     /// Name of the scenario.
     pub name: String,
     /// Labels of the agents, by their numbers.
@@ -45,9 +45,9 @@ pub struct Certified {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub margin: Option<f64>,
     /// Points at which a promise is broken.
-    pub refuted: Vec<Point>,
+    pub refuted: Vec<CertifyWitnessEntry>,
     /// Points at which rounding of the checker leaves it open.
-    pub undecided: Vec<Point>,
+    pub undecided: Vec<CertifyWitnessEntry>,
     /// Reason why there is no verdict.
     pub error: Option<String>,
     /// Warnings about input that was changed or left out when it was read.
@@ -56,7 +56,7 @@ pub struct Certified {
 
 /// A point of two paths.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Point {
+pub struct CertifyWitnessEntry {
     /// The promise that is broken, or may be.
     pub promise: &'static str,
     /// Number of the first agent.
@@ -80,7 +80,7 @@ pub(crate) const VERSION: u32 = 1;
 /// The tables in an answer of `pcr regions --certificate`, or the table that a microcontroller prints. Other parts of the
 /// answer may be missing; if present, they have to agree with the tables.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
-pub struct Dump {
+pub struct CertifyInput {
     /// Name of the scenario.
     pub name: String,
     /// Labels of its agents.
@@ -90,20 +90,20 @@ pub struct Dump {
     #[serde(default)]
     pub warnings: Vec<String>,
     /// The table of contacts, and that of overlaps of margins, if there are any.
-    pub certificate: Vec<Table>,
+    pub certificate: Vec<RawTable>,
     #[serde(default)]
     agent: Option<u64>,
     #[serde(default)]
-    regions: Option<Vec<told::Told>>,
+    regions: Option<Vec<reported::ReportedRegion>>,
     #[serde(default)]
-    margin_regions: Option<Vec<told::Told>>,
+    margin_regions: Option<Vec<reported::ReportedRegion>>,
     #[serde(default)]
-    footprints: Vec<Cover>,
+    footprints: Vec<ReportedDiscCover>,
 }
 
 /// What a text is, as far as that is to be known before it is read.
 #[derive(Deserialize)]
-struct Said {
+struct CertifyProbe {
     format: Option<Value>,
     version: Option<Value>,
     error: Option<String>,
@@ -111,7 +111,7 @@ struct Said {
     certificate: Option<IgnoredAny>,
 }
 
-impl Dump {
+impl CertifyInput {
     /// Reads one from the text of a file: JSON, or what a microcontroller prints, which has the name of the file.
     ///
     /// # Errors
@@ -120,7 +120,7 @@ impl Dump {
         if text.trim_start().starts_with('{') {
             return Self::of_json(text);
         }
-        Ok(Self { name: name.to_owned(), certificate: vec![dump::decode(text)?], ..Self::default() })
+        Ok(Self { name: name.to_owned(), certificate: vec![device_dump::decode(text)?], ..Self::default() })
     }
 
     /// Reads the tables from a JSON text.
@@ -129,7 +129,7 @@ impl Dump {
     /// The problem, in words: another format or version, two agents with one number, or regions that differ from those of the
     /// tables.
     pub fn of_json(text: &str) -> Result<Self, String> {
-        let said: Said = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        let said: CertifyProbe = serde_json::from_str(text).map_err(|error| error.to_string())?;
         let (format, version) = (ANSWERS, VERSION);
         if said.format.as_ref().is_none_or(|said| said == "pcr-scenario") && said.agents.is_some() {
             return Err("this is a scenario; without --table, the table that is computed for it is proved".into());
@@ -149,8 +149,8 @@ impl Dump {
         let mut dump: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
         dump.warnings = dump.warnings.into_iter().map(WarningCode::coded).collect();
         for table in &dump.certificate {
-            told::bodies(table, &dump.footprints)?;
-            told::asked(table, dump.agent)?;
+            reported::bodies(table, &dump.footprints)?;
+            reported::asked(table, dump.agent)?;
         }
         dump.compare()?;
         Ok(dump)
@@ -160,7 +160,7 @@ impl Dump {
     fn compare(&self) -> Result<(), String> {
         match &self.certificate[..] {
             [] | [_] => {}
-            [discs, margins] => told::enlarged(discs, margins)?,
+            [discs, margins] => reported::enlarged(discs, margins)?,
             more => {
                 let count = more.len();
                 return Err(format!("certificate: {count} tables; there are at most two, the second with margins"));
@@ -168,10 +168,10 @@ impl Dump {
         }
         let lists = [("regions", &self.regions), ("margin_regions", &self.margin_regions)];
         let is_told = lists.iter().any(|(_, list)| list.is_some());
-        let asked = Asked { agent: self.agent, covers: &self.footprints };
+        let asked = RegionScope { agent: self.agent, covers: &self.footprints };
         for (place, (name, list)) in lists.into_iter().enumerate() {
             match (list, self.certificate.get(place)) {
-                (Some(list), Some(table)) => told::compare(name, list, table, asked)?,
+                (Some(list), Some(table)) => reported::compare(name, list, table, asked)?,
                 (Some(_), None) if place > 0 => return Err(format!("{name}: the certificate has no table of them")),
                 (None, Some(_)) if is_told => {
                     return Err(format!("{name}: missing, and the certificate has a table of them"));
@@ -183,19 +183,19 @@ impl Dump {
     }
 }
 
-impl Certified {
+impl CertifyReport {
     /// Proves a table; also finds its margin, if requested.
-    pub fn of(name: &str, table: &Table, margin: bool) -> Self {
+    pub fn prove(name: &str, table: &RawTable, margin: bool) -> Self {
         Self::watched(name, table, margin, &|_, _| {})
     }
 
-    /// Proves a table as [`Certified::of`], and tells before each pair how many checks of how many are done.
-    pub fn watched(name: &str, table: &Table, margin: bool, told: Told<'_>) -> Self {
+    /// Proves a table as [`Certified::prove`], and tells before each pair how many checks of how many are done.
+    pub fn watched(name: &str, table: &RawTable, margin: bool, told: ProgressFn<'_>) -> Self {
         /// What a margin takes, in times of the check.
         const MARGIN: usize = 12;
         let all = table.pairs.len() * if margin { 1 + MARGIN } else { 1 };
         let checked = Checker::new(table).and_then(|checker| {
-            let findings = checker.watched(Margin::Needed, &|done| told(done, all))?;
+            let findings = checker.watched(CoverageMargin::Needed, &|done| told(done, all))?;
             let margin = if margin { checker.margin()? } else { None };
             Ok((findings, margin))
         });
@@ -211,16 +211,16 @@ impl Certified {
         Self { labels: labels.clone(), warnings: warnings.to_vec(), ..self }
     }
 
-    fn found(name: &str, table: &Table, findings: &Findings, margin: Option<f64>) -> Self {
+    fn found(name: &str, table: &RawTable, findings: &Findings, margin: Option<f64>) -> Self {
         let points = |those: &[pcr_certify::pair::Witness]| {
             let id = |place: usize| table.agents[place].id;
-            let point = those.iter().map(|witness| Point {
+            let point = those.iter().map(|witness| CertifyWitnessEntry {
                 promise: match witness.promise {
-                    Promise::Covered => "contact outside of all pieces",
-                    Promise::Shared => "contact in a piece that does not show it",
-                    Promise::Near => "told, but no contact",
-                    Promise::Timed => "contact outside of the time of its region",
-                    Promise::Prompt => "time told that is too far from the region",
+                    TableProperty::Covered => "contact outside of all pieces",
+                    TableProperty::Shared => "contact in a piece that does not show it",
+                    TableProperty::Near => "told, but no contact",
+                    TableProperty::Timed => "contact outside of the time of its region",
+                    TableProperty::Prompt => "time told that is too far from the region",
                 },
                 i: id(witness.agents[0]),
                 j: id(witness.agents[1]),
@@ -241,7 +241,7 @@ impl Certified {
             labels: Labels::default(),
             verdict: Some(verdict),
             discs: table.agents.len(),
-            pairs: told::pairs(table),
+            pairs: reported::pairs(table),
             segment_pairs: findings.segments,
             pieces: findings.pieces,
             times: findings.times,

@@ -3,23 +3,23 @@
 //! The types match the JSON output, field by field in this order. All motions run from the earliest start to the latest
 //! arrival; every agent stands at its start before its motion and at its end afterwards.
 
-use crate::bodies::{Bodies, Disced, Form};
-use crate::certify::Proof;
-use crate::cores;
-use crate::failure::Failure;
-use crate::fleet::Format;
-use crate::memory::{self, Held};
-use crate::regions::{Cover, Told};
-use crate::rows::{Grid, grown};
-use pcr_core::{Approach, Encounter, Interval, Motion};
-use pcr_formats::plane::distance;
+use crate::agent_regions::{BoxGrid, expanded_box};
+use crate::certify::MotionCertificate;
+use crate::disc_fleet::{BodyDisc, DiscFleet, Form};
+use crate::failure::ComputationError;
+use crate::fleet::HostScalar;
+use crate::memory_budget::{self, MemoryBudget};
+use crate::parallel;
+use crate::regions::{DiscCover, ProgressFn};
+use pcr_core::{ClosestApproach, Encounter, Interval, Motion};
+use pcr_formats::plane_geometry::distance;
 use pcr_formats::scenario::{Labels, Scenario};
 use serde::Serialize;
 use std::cmp::Ordering;
 
 /// Conflicts of one scenario, or why there is no answer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Verdict {
+pub struct CheckReport {
     /// Name of the scenario.
     pub name: String,
     /// Labels of the agents, by their numbers.
@@ -29,16 +29,16 @@ pub struct Verdict {
     #[serde(skip)]
     pub agents: usize,
     /// Sorted by their begin, then by the agents.
-    pub conflicts: Vec<Conflict>,
+    pub conflicts: Vec<ConflictEntry>,
     /// Every pair, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub closest: Option<Vec<Closest>>,
-    /// The covers of the agents whose outlines are not computed as they are, as in [`crate::regions::Answer`].
+    pub closest: Option<Vec<ClosestApproachEntry>>,
+    /// The covers of the agents whose outlines are not computed as they are, as in [`crate::regions::RegionsReport`].
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub footprints: Vec<Cover>,
+    pub footprints: Vec<DiscCover>,
     /// Result of the independent checker, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub certificate: Option<Proof>,
+    pub certificate: Option<MotionCertificate>,
     /// Why the scenario was refused.
     pub error: Option<String>,
     /// Warnings about input that was changed or left out when it was read.
@@ -48,7 +48,7 @@ pub struct Verdict {
 /// Two agents in contact, from begin to end. Contacts deeper than [`Encounter::tolerance`] are always reported, agents that stay farther
 /// apart than that never.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Conflict {
+pub struct ConflictEntry {
     /// Number of an agent.
     pub i: u64,
     /// Number of the other one, larger.
@@ -65,7 +65,7 @@ pub struct Conflict {
     pub touching: bool,
 }
 
-impl Conflict {
+impl ConflictEntry {
     /// By its begin, then by its agents.
     fn by_begin(&self, other: &Self) -> Ordering {
         self.t[0].total_cmp(&other.t[0]).then((self.i, self.j).cmp(&(other.i, other.j)))
@@ -74,7 +74,7 @@ impl Conflict {
 
 /// The closest approach of two agents.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Closest {
+pub struct ClosestApproachEntry {
     /// Number of an agent.
     pub i: u64,
     /// Number of the other one, larger.
@@ -87,40 +87,49 @@ pub struct Closest {
     pub clearance: f64,
 }
 
-impl Verdict {
+impl CheckReport {
     /// The conflicts of a scenario, computed in the format `S`.
     ///
     /// # Errors
-    /// [`Failure`] if a value does not fit the format, or memory does not hold the answer.
-    pub fn of<S: Format>(scenario: &Scenario, closest: bool) -> Result<Self, Failure> {
+    /// [`ComputationError`] if a value does not fit the format, or memory does not hold the answer.
+    pub fn compute<S: HostScalar>(scenario: &Scenario, closest: bool) -> Result<Self, ComputationError> {
         Self::watched::<S>(scenario, closest, &|_, _| {})
     }
 
     /// The same, with reports of progress: done agents, and all agents.
     ///
     /// # Errors
-    /// As [`Verdict::of`].
-    pub fn watched<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
+    /// As [`Verdict::compute`].
+    pub fn watched<S: HostScalar>(
+        scenario: &Scenario,
+        closest: bool,
+        told: ProgressFn<'_>,
+    ) -> Result<Self, ComputationError> {
         Self::in_form::<S>(scenario, Form::Exact, closest, told)
     }
 
-    fn in_form<S: Format>(scenario: &Scenario, form: Form, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
-        let (fleet, discs, _) = Bodies::<S>::moving(scenario, form)?;
+    fn in_form<S: HostScalar>(
+        scenario: &Scenario,
+        form: Form,
+        closest: bool,
+        told: ProgressFn<'_>,
+    ) -> Result<Self, ComputationError> {
+        let (fleet, discs, _) = DiscFleet::<S>::moving(scenario, form)?;
         Self::between(scenario, &discs, &fleet.motions(), closest, told)
     }
 
     /// Whether there is any conflict: the work ends with the first, and nothing is held.
     ///
     /// # Errors
-    /// [`Failure`] where a value does not fit the format.
-    pub fn any<S: Format>(scenario: &Scenario, told: Told<'_>) -> Result<bool, Failure> {
-        let (fleet, discs, _) = Bodies::<S>::moving(scenario, Form::Exact)?;
+    /// [`ComputationError`] where a value does not fit the format.
+    pub fn any<S: HostScalar>(scenario: &Scenario, told: ProgressFn<'_>) -> Result<bool, ComputationError> {
+        let (fleet, discs, _) = DiscFleet::<S>::moving(scenario, Form::Exact)?;
         let motions = fleet.motions();
-        let pairs = Pairs::new(scenario, &discs, &motions);
+        let pairs = PairFinder::new(scenario, &discs, &motions);
         let count = pairs.ids.len();
         for first in (0..count).step_by(STRETCH) {
             let stretch = first..count.min(first + STRETCH);
-            if cores::any(stretch.clone(), &|agent| pairs.any(agent)) {
+            if parallel::any(stretch.clone(), &|agent| pairs.any(agent)) {
                 return Ok(true);
             }
             told(stretch.end, count);
@@ -131,50 +140,50 @@ impl Verdict {
     /// Overlaps of margins: the conflicts of discs enlarged by their margins.
     ///
     /// # Errors
-    /// As [`Verdict::of`].
-    pub(crate) fn of_margins<S: Format>(scenario: &Scenario) -> Result<Self, Failure> {
-        let (fleet, discs, _) = Bodies::<S>::moving(scenario, Form::Exact)?;
+    /// As [`Verdict::compute`].
+    pub(crate) fn of_margins<S: HostScalar>(scenario: &Scenario) -> Result<Self, ComputationError> {
+        let (fleet, discs, _) = DiscFleet::<S>::moving(scenario, Form::Exact)?;
         let motions: Vec<Motion<'_, S>> = fleet.motions().into_iter().map(Motion::inflated).collect();
         Self::between(scenario, &discs, &motions, false, &|_, _| {})
     }
 
-    fn between<S: Format>(
+    fn between<S: HostScalar>(
         scenario: &Scenario,
-        discs: &[Disced],
+        discs: &[BodyDisc],
         motions: &[Motion<'_, S>],
         closest: bool,
-        told: Told<'_>,
-    ) -> Result<Self, Failure> {
-        let pairs = Pairs::new(scenario, discs, motions);
+        told: ProgressFn<'_>,
+    ) -> Result<Self, ComputationError> {
+        let pairs = PairFinder::new(scenario, discs, motions);
         let count = pairs.ids.len();
-        let (mut conflicts, mut nearest, mut held) = (Vec::new(), Vec::new(), Held::default());
+        let (mut conflicts, mut nearest, mut held) = (Vec::new(), Vec::new(), MemoryBudget::default());
         if closest {
             let all = count.saturating_mul(count.saturating_sub(1)) / 2;
             let what = || format!("how near all {all} pairs come");
             // And those of one stretch, before they are with the others.
             let of_stretch = count.min(STRETCH).saturating_mul(count);
-            let bytes = all.saturating_add(of_stretch).saturating_mul(size_of::<Closest>());
-            memory::ask(bytes as u64, what)?;
+            let bytes = all.saturating_add(of_stretch).saturating_mul(size_of::<ClosestApproachEntry>());
+            memory_budget::ask(bytes as u64, what)?;
             // As a whole: a list that grows is there twice.
-            nearest.try_reserve_exact(all).map_err(|_| memory::TooLarge::of(what()))?;
+            nearest.try_reserve_exact(all).map_err(|_| memory_budget::MemoryError::of(what()))?;
         }
         for first in (0..count).step_by(STRETCH) {
             let stretch = first..count.min(first + STRETCH);
-            for (found, near) in cores::made(stretch.clone(), &|agent| pairs.of(agent, closest)) {
+            for (found, near) in parallel::map_parallel(stretch.clone(), &|agent| pairs.of(agent, closest)) {
                 held.extend(&mut conflicts, found, 0, "conflicts")?;
                 nearest.extend(near);
             }
             told(stretch.end, count);
         }
         // No two conflicts of the same agents begin at the same time.
-        conflicts.sort_unstable_by(Conflict::by_begin);
+        conflicts.sort_unstable_by(ConflictEntry::by_begin);
         Ok(Self {
             name: scenario.name.clone(),
-            labels: Labels::of(scenario),
+            labels: Labels::from_scenario(scenario),
             agents: scenario.agents.len(),
             conflicts,
             closest: closest.then_some(nearest),
-            footprints: Cover::all(scenario, discs),
+            footprints: DiscCover::all(scenario, discs),
             certificate: None,
             warnings: scenario.warnings.clone(),
             error: None,
@@ -184,14 +193,18 @@ impl Verdict {
     /// The same with a certificate. The checker knows discs only, so all outlines are covered, also for the conflicts.
     ///
     /// # Errors
-    /// As [`Verdict::of`], and [`Failure::NoPair`].
-    pub fn certified<S: Format>(scenario: &Scenario, closest: bool, told: Told<'_>) -> Result<Self, Failure> {
+    /// As [`Verdict::compute`], and [`Failure::NoPair`].
+    pub fn certified<S: HostScalar>(
+        scenario: &Scenario,
+        closest: bool,
+        told: ProgressFn<'_>,
+    ) -> Result<Self, ComputationError> {
         // The proof is of the same bodies.
         let verdict = Self::in_form::<S>(scenario, Form::Covers, closest, told)?;
         // The checker has a list of its own.
         let count = verdict.conflicts.len();
-        memory::ask(count as u64 * PROOF_BYTES, || format!("the proof of {count} conflicts"))?;
-        Ok(Self { certificate: Some(Proof::of_pairs::<S>(scenario)?), ..verdict })
+        memory_budget::ask(count as u64 * PROOF_BYTES, || format!("the proof of {count} conflicts"))?;
+        Ok(Self { certificate: Some(MotionCertificate::of_pairs::<S>(scenario)?), ..verdict })
     }
 
     /// An answer that says why there are no conflicts.
@@ -211,7 +224,7 @@ impl Verdict {
 }
 
 /// A disc of an agent, and its motion.
-type Body<'a, S> = (&'a Disced, &'a Motion<'a, S>);
+type DiscMotion<'a, S> = (&'a BodyDisc, &'a Motion<'a, S>);
 
 /// Memory of a contact in the checker, while its list grows, and in the answer \[bytes\].
 const PROOF_BYTES: u64 = 128;
@@ -220,22 +233,22 @@ const PROOF_BYTES: u64 = 128;
 const STRETCH: usize = 1024;
 
 /// The agents by their numbers, and the pairs that may come near each other.
-struct Pairs<'a, S: Format> {
+struct PairFinder<'a, S: HostScalar> {
     /// Numbers of the agents.
     ids: Vec<u64>,
     /// The discs of all agents, one agent after the other.
-    bodies: Vec<Body<'a, S>>,
+    bodies: Vec<DiscMotion<'a, S>>,
     /// For each agent the index of its first disc, and the total number of discs.
     begins: Vec<usize>,
     /// For each disc the rank of its agent.
     ranks: Vec<usize>,
-    grid: Grid,
+    grid: BoxGrid,
     /// From the first start to the last arrival \[s\].
     time: Interval<S>,
 }
 
-impl<'a, S: Format> Pairs<'a, S> {
-    fn new(scenario: &Scenario, discs: &'a [Disced], motions: &'a [Motion<'a, S>]) -> Self {
+impl<'a, S: HostScalar> PairFinder<'a, S> {
+    fn new(scenario: &Scenario, discs: &'a [BodyDisc], motions: &'a [Motion<'a, S>]) -> Self {
         let time = Motion::span(motions);
         let order = by_number(scenario);
         let ids = order.iter().map(|&agent| scenario.agents[agent].id).collect();
@@ -247,12 +260,12 @@ impl<'a, S: Format> Pairs<'a, S> {
         ranks.iter().for_each(|rank| begins[rank + 1] += 1);
         (1..begins.len()).for_each(|rank| begins[rank] += begins[rank - 1]);
         let bodies = places.iter().map(|&disc| (&discs[disc], &motions[disc])).collect();
-        let grid = Grid::new(motions.iter().map(area).collect());
+        let grid = BoxGrid::new(motions.iter().map(area).collect());
         Self { ids, bodies, begins, ranks, grid, time }
     }
 
     /// The number of an agent, and its discs.
-    fn agent(&self, rank: usize) -> (u64, &[Body<'a, S>]) {
+    fn agent(&self, rank: usize) -> (u64, &[DiscMotion<'a, S>]) {
         (self.ids[rank], &self.bodies[self.begins[rank]..self.begins[rank + 1]])
     }
 
@@ -279,7 +292,7 @@ impl<'a, S: Format> Pairs<'a, S> {
     }
 
     /// The conflicts of an agent with agents of higher rank; with `closest` also the closest approaches.
-    fn of(&self, agent: usize, closest: bool) -> (Vec<Conflict>, Vec<Closest>) {
+    fn of(&self, agent: usize, closest: bool) -> (Vec<ConflictEntry>, Vec<ClosestApproachEntry>) {
         let others = if closest { (agent + 1..self.ids.len()).collect() } else { self.after(agent) };
         let (mut conflicts, mut nearest) = (Vec::new(), Vec::new());
         for other in others {
@@ -306,20 +319,20 @@ fn by_rank(ranks: &[usize]) -> Vec<usize> {
 }
 
 /// The area outside of which a disc is in no contact.
-fn area<S: Format>(motion: &Motion<'_, S>) -> [f64; 4] {
+fn area<S: HostScalar>(motion: &Motion<'_, S>) -> [f64; 4] {
     let reach = (motion.radius() + Encounter::new(motion, motion).tolerance()).to_f64();
-    grown(motion, reach)
+    expanded_box(motion, reach)
 }
 
 /// The conflicts of two agents, and their closest approach if requested.
-fn encounters<S: Format>(
-    (i, first): (u64, &[Body<'_, S>]),
-    (j, second): (u64, &[Body<'_, S>]),
+fn encounters<S: HostScalar>(
+    (i, first): (u64, &[DiscMotion<'_, S>]),
+    (j, second): (u64, &[DiscMotion<'_, S>]),
     time: Interval<S>,
     closest: bool,
-) -> (Vec<Conflict>, Option<Closest>) {
-    let mut found: Vec<Conflict> = Vec::new();
-    let mut closest_of: Option<Closest> = None;
+) -> (Vec<ConflictEntry>, Option<ClosestApproachEntry>) {
+    let mut found: Vec<ConflictEntry> = Vec::new();
+    let mut closest_of: Option<ClosestApproachEntry> = None;
     for (own, other) in first.iter().flat_map(|own| second.iter().map(move |other| (own, other))) {
         let [own_time, their_time] = [own, other].map(|(disc, motion)| disc.time(motion, time));
         let time = Interval { lo: own_time.lo.max(their_time.lo), hi: own_time.hi.min(their_time.hi) };
@@ -327,7 +340,7 @@ fn encounters<S: Format>(
             continue;
         }
         let encounter = Encounter::new(own.1, other.1);
-        found.extend(encounter.conflicts(time).map(|conflict| Conflict {
+        found.extend(encounter.conflicts(time).map(|conflict| ConflictEntry {
             i,
             j,
             t: ends(conflict.time),
@@ -341,7 +354,13 @@ fn encounters<S: Format>(
             let clearance = (approach.separation - encounter.radius()).to_f64();
             if closest_of.is_none_or(|closest| clearance < closest.clearance) {
                 let t = approach.time.to_f64();
-                closest_of = Some(Closest { i, j, t, separation: separation([own.1, other.1], &approach), clearance });
+                closest_of = Some(ClosestApproachEntry {
+                    i,
+                    j,
+                    t,
+                    separation: separation([own.1, other.1], &approach),
+                    clearance,
+                });
             }
         }
     }
@@ -349,7 +368,7 @@ fn encounters<S: Format>(
 }
 
 /// Distance of the centres at the closest approach \[m\].
-fn separation<S: Format>(motions: [&Motion<'_, S>; 2], approach: &Approach<S>) -> f64 {
+fn separation<S: HostScalar>(motions: [&Motion<'_, S>; 2], approach: &ClosestApproach<S>) -> f64 {
     if motions.iter().all(|motion| motion.outline().corners().is_empty()) {
         return approach.separation.to_f64();
     }
@@ -361,10 +380,10 @@ fn separation<S: Format>(motions: [&Motion<'_, S>; 2], approach: &Approach<S>) -
 const NEAR: f64 = 1e-9;
 
 /// The conflicts of two agents from those of their discs; successive contacts are joined.
-fn joined(mut conflicts: Vec<Conflict>) -> Vec<Conflict> {
+fn joined(mut conflicts: Vec<ConflictEntry>) -> Vec<ConflictEntry> {
     conflicts.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
     let hull = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-    let mut joined: Vec<Conflict> = Vec::new();
+    let mut joined: Vec<ConflictEntry> = Vec::new();
     for next in conflicts {
         match joined.last_mut() {
             Some(last) if next.t[0] <= last.t[1] + NEAR => {
@@ -378,6 +397,6 @@ fn joined(mut conflicts: Vec<Conflict>) -> Vec<Conflict> {
     joined
 }
 
-fn ends<S: Format>(interval: Interval<S>) -> [f64; 2] {
+fn ends<S: HostScalar>(interval: Interval<S>) -> [f64; 2] {
     [interval.lo.to_f64(), interval.hi.to_f64()]
 }

@@ -1,22 +1,22 @@
 //! Why there is no answer for a scenario.
 
-use crate::certificate::Misread;
-use crate::fleet::Refused;
-use crate::memory::TooLarge;
-use pcr_core::Full;
+use crate::checker_input::RoundTripError;
+use crate::fleet::FormatRangeError;
+use crate::memory_budget::MemoryError;
+use pcr_core::CapacityError;
 use pcr_formats::scenario::Scenario;
 use std::fmt;
 
 /// The reason why there is no answer.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Failure {
+pub enum ComputationError {
     /// A value does not fit the number format.
-    Refused(Refused),
+    Refused(FormatRangeError),
     /// The numbers to be certified are not those of the scenario.
-    Misread(Misread),
+    Misread(RoundTripError),
     /// The fleet is beyond a limit of the table.
-    Full(Full),
+    Full(CapacityError),
     /// These two agents have more pieces of regions than the table can number.
     Overfull([u64; 2]),
     /// There is no agent of the number asked for; these are there.
@@ -38,7 +38,7 @@ pub enum Failure {
     /// A proof was requested, but there are no two discs of different agents.
     NoPair,
     /// The answer does not fit in memory.
-    TooLarge(TooLarge),
+    TooLarge(MemoryError),
     /// The task is limited to fewer agents, because it would take too long.
     TooMany {
         /// The task, in words.
@@ -50,7 +50,7 @@ pub enum Failure {
     },
 }
 
-impl fmt::Display for Failure {
+impl fmt::Display for ComputationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         /// Numbers that a message lists.
         const LISTED: usize = 16;
@@ -107,14 +107,14 @@ impl fmt::Display for Failure {
     }
 }
 
-impl std::error::Error for Failure {}
+impl std::error::Error for ComputationError {}
 
-impl Failure {
+impl ComputationError {
     /// With the numbers of the agents that it is about, where it has their places in a scenario.
     pub(crate) fn named(self, scenario: &Scenario) -> Self {
         let id = |agent: usize| scenario.agents.get(agent).map(|agent| agent.id);
         match self {
-            Self::Full(Full::Pair(agents)) => match agents.map(id) {
+            Self::Full(CapacityError::Pair(agents)) => match agents.map(id) {
                 [Some(i), Some(j)] => Self::Overfull([i, j]),
                 _ => self,
             },
@@ -123,20 +123,20 @@ impl Failure {
     }
 }
 
-impl From<Refused> for Failure {
-    fn from(refused: Refused) -> Self {
+impl From<FormatRangeError> for ComputationError {
+    fn from(refused: FormatRangeError) -> Self {
         Self::Refused(refused)
     }
 }
 
-impl From<TooLarge> for Failure {
-    fn from(too_large: TooLarge) -> Self {
+impl From<MemoryError> for ComputationError {
+    fn from(too_large: MemoryError) -> Self {
         Self::TooLarge(too_large)
     }
 }
 
-impl From<Full> for Failure {
-    fn from(full: Full) -> Self {
+impl From<CapacityError> for ComputationError {
+    fn from(full: CapacityError) -> Self {
         Self::Full(full)
     }
 }

@@ -2,30 +2,30 @@
 
 mod fixed;
 #[cfg(feature = "micromath")]
-mod micro;
+mod micro_format;
 mod outline;
 pub(crate) mod rounding;
 pub mod speed;
 #[cfg(test)]
 mod tests;
 
-use crate::memory;
-use pcr_certify::data::Angle;
+use crate::memory_budget;
+use pcr_certify::raw::RawAngle;
 use pcr_core::{
-    Ecm, Full, Invalid, Limits, Motion, Order, Orders, Outline, PathRef, Phase, Piece, Point, Pose, Profile,
-    ProfileRef, Radians, Region, Scalar, Segment, TableError, Turn,
+    CapacityError, Ecm, EcmEntry, EcmError, InvalidInput, Limits, Motion, Outline, PathRef, Phase, Piece, Point, Pose,
+    PrecedenceTable, Profile, ProfileRef, Radians, RegionPrecedence, Scalar, Segment, TurnSide,
 };
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
-pub(crate) use rounding::Rounding;
+pub(crate) use rounding::RoundingBounds;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
 /// A table on the heap.
-pub type HostEcm<S> = Ecm<S, Vec<Region>, Vec<Piece<S>>>;
+pub type HostEcm<S> = Ecm<S, Vec<EcmEntry>, Vec<Piece<S>>>;
 
 /// A table of passing orders on the heap.
-pub type HostOrders = Orders<f64, Vec<Region>, Vec<Piece<f64>>, Vec<Order<f64>>>;
+pub type HostPrecedenceTable = PrecedenceTable<f64, Vec<EcmEntry>, Vec<Piece<f64>>, Vec<RegionPrecedence<f64>>>;
 
 /// Largest magnitude of a heading at the start of a path, or of a turn in place, in a scenario \[rad\]: 2²⁴, the limit of the core
 /// in `f64`. It is the same in every format. Up to this limit, the error of subtracting whole turns in `f64` is below the last
@@ -38,7 +38,7 @@ fn in_angles(radians: f64) -> Option<f64> {
 }
 
 /// A number format that scenario files can be read into.
-pub trait Format: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
+pub trait HostScalar: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
     /// Name on the command line and in the output.
     const NAME: &'static str;
     /// The nearest number of the format.
@@ -50,8 +50,8 @@ pub trait Format: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
     /// The exact angle \[rad\].
     fn radians(angle: Self::Angle) -> f64;
     /// The angle as the format holds it.
-    fn held_angle(angle: Self::Angle) -> Angle {
-        Angle::Radians(Self::radians(angle))
+    fn held_angle(angle: Self::Angle) -> RawAngle {
+        RawAngle::Radians(Self::radians(angle))
     }
     /// Largest magnitude of a heading, accumulated along a path, that the core takes \[rad\]; infinite where whole turns do
     /// not count.
@@ -62,7 +62,7 @@ pub trait Format: Scalar<Angle: Send + Sync, Unit: Send + Sync> + Send + Sync {
     const STEP: f64 = 0.0;
 }
 
-impl Format for f64 {
+impl HostScalar for f64 {
     const NAME: &'static str = "f64";
     const HEADING_LIMIT: f64 = ANGLE_LIMIT;
     const EPSILON: f64 = f64::EPSILON;
@@ -80,7 +80,7 @@ impl Format for f64 {
     }
 }
 
-impl Format for f32 {
+impl HostScalar for f32 {
     const NAME: &'static str = "f32";
     const HEADING_LIMIT: f64 = 1_024.0;
     const EPSILON: f64 = f32::EPSILON as f64;
@@ -102,14 +102,14 @@ impl Format for f32 {
 
 /// The reason why an agent of a scenario does not fit a number format: agent, segment, field, value, and the allowed range.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Refused {
+pub struct FormatRangeError {
     agent: String,
     part: Option<(&'static str, usize)>,
     format: &'static str,
     problem: String,
 }
 
-impl fmt::Display for Refused {
+impl fmt::Display for FormatRangeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "agent {}", self.agent)?;
         if let Some((part, index)) = self.part {
@@ -119,10 +119,10 @@ impl fmt::Display for Refused {
     }
 }
 
-impl std::error::Error for Refused {}
+impl std::error::Error for FormatRangeError {}
 
 /// A field as a number of the format; an overflow, or a value that becomes 0, is refused.
-fn number<S: Format>(field: &str, value: f64) -> Result<S, String> {
+fn number<S: HostScalar>(field: &str, value: f64) -> Result<S, String> {
     let number = S::from_f64(value);
     // Not compared by magnitude, because the least number of a fixed-point format has none.
     if !number.is_finite() || !(-S::LIMIT..=S::LIMIT).contains(&number) {
@@ -136,7 +136,7 @@ fn number<S: Format>(field: &str, value: f64) -> Result<S, String> {
 }
 
 /// A field as an angle of the format.
-fn angle<S: Format>(field: &str, radians: f64) -> Result<S::Angle, String> {
+fn angle<S: HostScalar>(field: &str, radians: f64) -> Result<S::Angle, String> {
     S::angle(radians).ok_or_else(|| {
         let [radians, limit] = [radians, ANGLE_LIMIT].map(figure);
         format!("{field}: {radians} is out of range; allowed is up to {limit} in magnitude")
@@ -144,15 +144,15 @@ fn angle<S: Format>(field: &str, radians: f64) -> Result<S::Angle, String> {
 }
 
 /// The message for a value refused by the core, which follows from several fields.
-fn derived<S: Format>(reason: Invalid) -> String {
+fn derived<S: HostScalar>(reason: InvalidInput) -> String {
     let limit = S::LIMIT.to_f64();
     match reason {
-        Invalid::OutOfRange(what @ "heading") => {
+        InvalidInput::OutOfRange(what @ "heading") => {
             let limit = figure(S::HEADING_LIMIT);
             format!("{what} is out of range; allowed is up to {limit} in magnitude, with all turns of the path")
         }
-        Invalid::OutOfRange(what) => format!("{what} is out of range; allowed is up to {limit:e} in magnitude"),
-        Invalid::TooSmall(what) => {
+        InvalidInput::OutOfRange(what) => format!("{what} is out of range; allowed is up to {limit:e} in magnitude"),
+        InvalidInput::TooSmall(what) => {
             let least = S::LEAST.to_f64();
             // Printed with the digits of `f32` if `f32` can hold it, because most formats have that limit.
             let least = if least as f32 > 0.0 { format!("{:e}", least as f32) } else { format!("{least:e}") };
@@ -166,20 +166,20 @@ fn derived<S: Format>(reason: Invalid) -> String {
 /// scenario.
 ///
 /// # Errors
-/// [`Refused`] if a value does not fit the number format.
-pub fn rounded<S: Format>(scenario: &Scenario) -> Result<Option<String>, Refused> {
+/// [`FormatRangeError`] if a value does not fit the number format.
+pub fn rounded<S: HostScalar>(scenario: &Scenario) -> Result<Option<String>, FormatRangeError> {
     rounding::warning::<S>(scenario)
 }
 
 /// The paths and profiles of a scenario in one number format.
 #[derive(Clone, Debug)]
 pub struct Fleet<S: Scalar> {
-    agents: Vec<Parts<S>>,
+    agents: Vec<MotionParts<S>>,
 }
 
 /// The data that the motion of one agent borrows.
 #[derive(Clone, Debug)]
-struct Parts<S: Scalar> {
+struct MotionParts<S: Scalar> {
     segments: Vec<Segment<S>>,
     /// Index of each segment in the scenario: segments of length 0 are left out, and arcs of more than one turn are split.
     sources: Vec<usize>,
@@ -200,16 +200,17 @@ enum Shape<S: Scalar> {
     Outline(Box<Outline<S, { outline::CORNERS }>>),
 }
 
-impl<S: Format> Fleet<S> {
+impl<S: HostScalar> Fleet<S> {
     /// All agents of a scenario, each as the disc about its reference point that contains it.
     ///
     /// # Errors
-    /// [`Refused`] if a value does not fit the number format.
-    pub fn new(scenario: &Scenario) -> Result<Self, Refused> {
+    /// [`FormatRangeError`] if a value does not fit the number format.
+    pub fn new(scenario: &Scenario) -> Result<Self, FormatRangeError> {
         let agents = scenario.agents.iter().map(|agent| {
-            let refused = |(part, problem)| Refused { agent: agent.called(), part, format: S::NAME, problem };
-            let disc = number("radius", agent.reach()).map_err(|problem| refused(of_agent(problem)))?;
-            Parts::new(agent, Shape::Disc(disc)).map_err(refused)
+            let refused =
+                |(part, problem)| FormatRangeError { agent: agent.display_name(), part, format: S::NAME, problem };
+            let disc = number("radius", agent.circumscribed_radius()).map_err(|problem| refused(of_agent(problem)))?;
+            MotionParts::new(agent, Shape::Disc(disc)).map_err(refused)
         });
         Ok(Self { agents: agents.collect::<Result<_, _>>()? })
     }
@@ -218,7 +219,7 @@ impl<S: Format> Fleet<S> {
     /// or turns in place, or the format cannot hold it or its motion.
     pub(crate) fn outlined(agent: &Agent) -> Option<Self> {
         let outline = outline::of(agent)?;
-        Some(Self { agents: vec![Parts::new(agent, Shape::Outline(Box::new(outline))).ok()?] })
+        Some(Self { agents: vec![MotionParts::new(agent, Shape::Outline(Box::new(outline))).ok()?] })
     }
 
     /// The motions, in the order of the scenario.
@@ -237,7 +238,7 @@ impl<S: Format> Fleet<S> {
     }
 
     /// Heading at the start of an agent's path, and its turns in place, each before the segment with this index.
-    pub(crate) fn headings(&self, agent: usize) -> (S::Angle, &[Turned<S>]) {
+    pub(crate) fn headings(&self, agent: usize) -> (S::Angle, &[TurnAt<S>]) {
         let parts = &self.agents[agent];
         (parts.heading, &parts.turns)
     }
@@ -249,19 +250,19 @@ impl<S: Format> Fleet<S> {
 }
 
 /// Index of the segment before which an agent turns in place, and the angle.
-pub(crate) type Turned<S> = (usize, <S as Scalar>::Angle);
+pub(crate) type TurnAt<S> = (usize, <S as Scalar>::Angle);
 
 /// Index of a segment or piece of a profile, if the fault is there; and the problem in words.
-type Fault = (Option<(&'static str, usize)>, String);
+type FieldFault = (Option<(&'static str, usize)>, String);
 
 /// A fault of the agent as a whole.
-fn of_agent(problem: String) -> Fault {
+fn of_agent(problem: String) -> FieldFault {
     (None, problem)
 }
 
-impl<S: Format> Parts<S> {
-    fn new(agent: &Agent, shape: Shape<S>) -> Result<Self, Fault> {
-        let Route { segments, sources, turns } = place(agent)?;
+impl<S: HostScalar> MotionParts<S> {
+    fn new(agent: &Agent, shape: Shape<S>) -> Result<Self, FieldFault> {
+        let PlacedPath { segments, sources, turns } = place_path(agent)?;
         let path = PathRef::new(&segments).map_err(|reason| of_agent(derived::<S>(reason)))?;
         let phases = phases(agent, path.length())?;
         let start = number("t_start", agent.t_start).map_err(of_agent)?;
@@ -274,7 +275,7 @@ impl<S: Format> Parts<S> {
         }
     }
 
-    fn motion(&self) -> Result<Motion<'_, S>, Invalid> {
+    fn motion(&self) -> Result<Motion<'_, S>, InvalidInput> {
         let (path, profile) = (PathRef::new(&self.segments)?, ProfileRef::new(&self.phases)?);
         let motion = match &self.shape {
             Shape::Disc(radius) => Motion::new(path, profile, *radius, self.start),
@@ -285,13 +286,13 @@ impl<S: Format> Parts<S> {
 }
 
 /// The placed segments of a path, the index of each in the scenario, and turns in place.
-struct Route<S: Scalar> {
+struct PlacedPath<S: Scalar> {
     segments: Vec<Segment<S>>,
     sources: Vec<usize>,
     turns: Vec<(usize, S::Angle)>,
 }
 
-fn place<S: Format>(agent: &Agent) -> Result<Route<S>, Fault> {
+fn place_path<S: HostScalar>(agent: &Agent) -> Result<PlacedPath<S>, FieldFault> {
     let [x, y, heading] = agent.start;
     let position = Point::new(number("start.x", x).map_err(of_agent)?, number("start.y", y).map_err(of_agent)?);
     let pose = Pose { position, heading: angle::<S>("start.heading", heading).map_err(of_agent)? };
@@ -312,9 +313,10 @@ fn place<S: Format>(agent: &Agent) -> Result<Route<S>, Fault> {
         let whole = segment.turns();
         let curve = match *segment {
             PathSegment::Line { .. } => None,
-            PathSegment::Arc { radius, sweep } => {
-                Some((number("radius", radius).map_err(at)?, if sweep > 0.0 { Turn::Left } else { Turn::Right }))
-            }
+            PathSegment::Arc { radius, sweep } => Some((
+                number("radius", radius).map_err(at)?,
+                if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right },
+            )),
         };
         let length = number("length", segment.length() / whole).map_err(at)?;
         for _ in 0..whole as usize {
@@ -333,11 +335,11 @@ fn place<S: Format>(agent: &Agent) -> Result<Route<S>, Fault> {
     if segments.is_empty() {
         segments.push(origin);
     }
-    Ok(Route { segments, sources, turns })
+    Ok(PlacedPath { segments, sources, turns })
 }
 
 /// The angle of a turn in place \[rad\], for a format without lengths as small as its radius.
-pub(crate) fn turn_in_place<S: Format>(segment: &PathSegment) -> Option<f64> {
+pub(crate) fn turn_in_place<S: HostScalar>(segment: &PathSegment) -> Option<f64> {
     match *segment {
         PathSegment::Arc { radius: TURN, sweep } if S::from_f64(TURN) == S::ZERO => Some(sweep),
         _ => None,
@@ -345,7 +347,7 @@ pub(crate) fn turn_in_place<S: Format>(segment: &PathSegment) -> Option<f64> {
 }
 
 /// The phases of the motion over a path of this length.
-fn phases<S: Format>(agent: &Agent, length: S) -> Result<Vec<Phase<S>>, Fault> {
+fn phases<S: HostScalar>(agent: &Agent, length: S) -> Result<Vec<Phase<S>>, FieldFault> {
     let duration = agent.duration();
     // The division of the core saturates, so motions that take too long are detected here.
     if S::from_f64(duration) >= S::LIMIT {
@@ -374,7 +376,7 @@ fn phases<S: Format>(agent: &Agent, length: S) -> Result<Vec<Phase<S>>, Fault> {
 }
 
 /// The motion of an agent that waits while it turns in place. Times and speeds below the last digit of the format are dropped.
-fn waiting<S: Format>(agent: &Agent) -> MotionSpec {
+fn waiting<S: HostScalar>(agent: &Agent) -> MotionSpec {
     let parts = agent.parts();
     let v0 = parts.iter().flatten().next().map_or(0.0, |part| part.before);
     // Duration, and speed after it.
@@ -400,7 +402,7 @@ fn waiting<S: Format>(agent: &Agent) -> MotionSpec {
 ///
 /// # Errors
 /// [`Full::Agents`] for more than 65536 agents, [`Full::Pair`] where two of them have more than 32767 pieces.
-pub fn build_ecm<S: Format>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Full> {
+pub fn build_ecm<S: HostScalar>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, CapacityError> {
     Ecm::grown(motions)
 }
 
@@ -409,8 +411,8 @@ pub fn build_ecm<S: Format>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Ful
 ///
 /// # Errors
 /// As [`build_ecm`].
-pub fn build_orders(motions: &[Motion<'_, f64>]) -> Result<HostOrders, Full> {
-    Orders::grown(motions)
+pub fn build_orders(motions: &[Motion<'_, f64>]) -> Result<HostPrecedenceTable, CapacityError> {
+    PrecedenceTable::grown(motions)
 }
 
 /// The table of the regions of one agent with all others.
@@ -420,7 +422,7 @@ pub fn build_orders(motions: &[Motion<'_, f64>]) -> Result<HostOrders, Full> {
 ///
 /// # Panics
 /// Where there is no such agent.
-pub fn build_ecm_of<S: Format>(motions: &[Motion<'_, S>], agent: usize) -> Result<HostEcm<S>, Full> {
+pub fn build_ecm_of<S: HostScalar>(motions: &[Motion<'_, S>], agent: usize) -> Result<HostEcm<S>, CapacityError> {
     table_of(motions, agent, [16 * motions.len(), 32 * motions.len()])
 }
 
@@ -428,19 +430,19 @@ pub fn build_ecm_of<S: Format>(motions: &[Motion<'_, S>], agent: usize) -> Resul
 ///
 /// # Errors
 /// As [`build_ecm`].
-pub(crate) fn table_of<S: Format>(
+pub(crate) fn table_of<S: HostScalar>(
     motions: &[Motion<'_, S>],
     agent: usize,
     [regions, pieces]: [usize; 2],
-) -> Result<HostEcm<S>, Full> {
-    let room = |full| move |_: memory::TooLarge| full;
-    let [region, piece] = [size_of::<Region>(), size_of::<Piece<S>>()].map(|size| size as u64);
-    memory::for_list(regions, region).map_err(room(Full::Regions))?;
-    memory::for_list(pieces, piece).map_err(room(Full::Pieces))?;
-    let mut ecm = Ecm::new(vec![Region::EMPTY; regions], vec![Piece::EMPTY; pieces]);
+) -> Result<HostEcm<S>, CapacityError> {
+    let room = |full| move |_: memory_budget::MemoryError| full;
+    let [region, piece] = [size_of::<EcmEntry>(), size_of::<Piece<S>>()].map(|size| size as u64);
+    memory_budget::for_list(regions, region).map_err(room(CapacityError::Regions))?;
+    memory_budget::for_list(pieces, piece).map_err(room(CapacityError::Pieces))?;
+    let mut ecm = Ecm::new(vec![EcmEntry::EMPTY; regions], vec![Piece::EMPTY; pieces]);
     loop {
         match ecm.fill_row(motions, agent) {
-            Err(TableError::Full(full)) => ecm.grow(full)?,
+            Err(EcmError::Full(full)) => ecm.grow(full)?,
             done => return Ok(done.map(|()| ecm).expect("an agent of the fleet")),
         }
     }

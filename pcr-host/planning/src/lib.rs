@@ -21,21 +21,21 @@
 //! figures      numbers as text
 //! ```
 
-pub mod bodies;
-pub mod certificate;
+pub mod agent_regions;
 pub mod certify;
 pub mod check;
+pub mod checker_input;
 pub mod checksum;
-mod cores;
+pub mod conflict_queue;
+pub mod disc_fleet;
+pub mod exclusion_table;
 pub mod failure;
 pub mod figures;
 pub mod fleet;
-pub mod locks;
-pub mod memory;
+pub mod memory_budget;
 pub mod nodes;
+mod parallel;
 pub mod plan;
-pub mod queue;
 pub mod regions;
 pub mod report;
-pub mod rows;
-pub mod safe;
+pub mod safe_windows;

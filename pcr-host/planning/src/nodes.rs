@@ -1,12 +1,12 @@
 //! The nodes and edges of a layout: the answer of `pcr nodes`. The types match the JSON output, field by field in this
 //! order.
 
-use pcr_formats::import::{Edge, Id, Layout, Node, Step};
+use pcr_formats::import::{ElementId, Layout, LayoutEdge, LayoutNode, RouteStep};
 use serde::Serialize;
 
 /// The nodes and edges of a layout.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Listing<'a> {
+pub struct LayoutReport<'a> {
     /// Name of the layout.
     pub layout: &'a str,
     /// Floors or maps.
@@ -16,18 +16,18 @@ pub struct Listing<'a> {
     /// Vehicles in the file.
     pub vehicles: &'a [String],
     /// Nodes at which routes may begin and end.
-    pub nodes: Vec<Place<'a>>,
+    pub nodes: Vec<NodeEntry<'a>>,
     /// The edges between them.
-    pub edges: Vec<Way<'a>>,
+    pub edges: Vec<EdgeEntry<'a>>,
     /// Warnings about input that was changed or left out when it was read.
     pub warnings: &'a [String],
 }
 
 /// A node.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Place<'a> {
+pub struct NodeEntry<'a> {
     /// Id in the file, also for `--route`.
-    pub id: &'a Id,
+    pub id: &'a ElementId,
     /// Other names for `--route`: a name, or other ids of the same node.
     pub names: Vec<&'a str>,
     /// Its floor or map.
@@ -38,13 +38,13 @@ pub struct Place<'a> {
 
 /// An edge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Way<'a> {
+pub struct EdgeEntry<'a> {
     /// Id in the file.
-    pub id: &'a Id,
+    pub id: &'a ElementId,
     /// Id of the node where it begins.
-    pub from: &'a Id,
+    pub from: &'a ElementId,
     /// Id of the node where it ends.
-    pub to: &'a Id,
+    pub to: &'a ElementId,
     /// \[m\]
     pub length: f64,
     /// Whether it may be travelled backward as well.
@@ -62,10 +62,10 @@ pub struct Way<'a> {
     pub closed: bool,
 }
 
-impl<'a> Listing<'a> {
+impl<'a> LayoutReport<'a> {
     /// The nodes and edges of a layout, in the order of the file.
-    pub fn of(layout: &'a Layout) -> Self {
-        let mut nodes: Vec<Place<'a>> = layout.nodes.iter().map(|node| Place::of(node, layout)).collect();
+    pub fn new(layout: &'a Layout) -> Self {
+        let mut nodes: Vec<NodeEntry<'a>> = layout.nodes.iter().map(|node| NodeEntry::of(node, layout)).collect();
         for (alias, place) in &layout.aliases {
             if let Some(node) = nodes.get_mut(*place) {
                 node.names.push(alias);
@@ -77,25 +77,25 @@ impl<'a> Listing<'a> {
             vehicle_types: &layout.vehicle_types,
             vehicles: &layout.vehicles,
             nodes,
-            edges: layout.edges.iter().filter_map(|edge| Way::of(edge, layout)).collect(),
+            edges: layout.edges.iter().filter_map(|edge| EdgeEntry::of(edge, layout)).collect(),
             warnings: &layout.warnings,
         }
     }
 }
 
-impl<'a> Place<'a> {
-    fn of(node: &'a Node, layout: &'a Layout) -> Self {
+impl<'a> NodeEntry<'a> {
+    fn of(node: &'a LayoutNode, layout: &'a Layout) -> Self {
         let level = layout.levels.get(node.level).map_or("", String::as_str);
-        Self { id: &node.id, names: node.name.as_deref().into_iter().collect(), level, at: node.at }
+        Self { id: &node.id, names: node.name.as_deref().into_iter().collect(), level, at: node.point }
     }
 }
 
-impl<'a> Way<'a> {
-    fn of(edge: &'a Edge, layout: &'a Layout) -> Option<Self> {
+impl<'a> EdgeEntry<'a> {
+    fn of(edge: &'a LayoutEdge, layout: &'a Layout) -> Option<Self> {
         let id = |place: usize| layout.nodes.get(place).map(|node| &node.id);
         let [from, to] = [id(edge.ends[0])?, id(edge.ends[1])?];
         let backward = edge.ways == [false, true];
-        let [there, back] = [backward, true].map(|backward| Step { edge, backward });
+        let [there, back] = [backward, true].map(|backward| RouteStep { edge, backward });
         let (two_way, speed, closed) = (edge.is_two_way(), there.speed(), edge.closed);
         let speed_back = back.speed().filter(|_| two_way && back.speed() != speed);
         Some(Self { id: &edge.id, from, to, length: edge.length(), two_way, backward, speed, speed_back, closed })

@@ -6,41 +6,41 @@
 //! have the same speed. Every plan is checked like `pcr check` does, and proved by the independent checker, before it
 //! is returned.
 
-mod bound;
-mod circle;
+mod circular_wait;
 mod delays;
-mod forbidden;
+mod failure_reason;
+mod forbidden_delays;
+mod lower_bound;
+mod plan_context;
 mod planner;
-mod reason;
 mod speeds;
 mod starts;
-mod task;
 #[cfg(test)]
 mod tests;
 
-use crate::certify::Proof;
-use crate::failure::Failure;
+use crate::certify::MotionCertificate;
+use crate::failure::ComputationError;
 use crate::fleet::Fleet;
-use crate::memory;
-pub use circle::sides;
-pub(crate) use circle::sides_of;
-pub use delays::{Effort, Objective};
-pub use forbidden::{Forbidden, Out, Schedule};
+use crate::memory_budget;
+pub use circular_wait::sides;
+pub(crate) use circular_wait::sides_of;
+pub use delays::{DelaySearchOptions, Objective};
+pub use forbidden_delays::{AgentWithoutDelay, DelaySchedule, ForbiddenDelays};
 use pcr_core::{Encounter, Motion};
 use pcr_formats::scenario::{Labels, Scenario};
 use pcr_formats::warning::WarningCode;
 
-pub use reason::Spot;
+pub use failure_reason::BlockingLocation;
+use plan_context::Planner;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 pub use starts::some as start_delays;
-use starts::{Known, Starts};
+use starts::{PartialDelayPlan, StartDelayResult};
 use std::time::Instant;
-use task::Planner;
 
 /// How conflicts are avoided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Method {
+pub enum PlanMethod {
     /// Agents start later and then move as the scenario says.
     #[default]
     Delay,
@@ -50,7 +50,7 @@ pub enum Method {
     Speed,
 }
 
-impl Method {
+impl PlanMethod {
     /// Its name in the output.
     pub fn name(self) -> &'static str {
         match self {
@@ -62,7 +62,7 @@ impl Method {
 
 /// How the agents are put in order.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub enum Priority {
+pub enum PriorityRule {
     /// By their numbers in this order; those that are left out come last, as in the file.
     Given(Vec<u64>),
     /// The one that travels longest first; else as in the file.
@@ -76,29 +76,29 @@ pub enum Priority {
 
 /// The options of a plan.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Request {
+pub struct PlanOptions {
     /// How conflicts are avoided.
-    pub method: Method,
+    pub method: PlanMethod,
     /// How the agents are put in order.
-    pub priority: Priority,
+    pub priority: PriorityRule,
     /// The objective to be minimized.
     pub objective: Objective,
     /// Whether agents may be left out, as few as possible, if not all can have a plan.
     pub leave_out: bool,
     /// How long to search.
-    pub effort: Effort,
+    pub effort: DelaySearchOptions,
 }
 
-impl Request {
+impl PlanOptions {
     /// The best plan by a method.
-    pub fn of(method: Method) -> Self {
+    pub fn new(method: PlanMethod) -> Self {
         Self { method, ..Self::default() }
     }
 
     /// The same for some of the agents.
     fn among(&self, rest: &Scenario) -> Self {
         let mut request = self.clone();
-        if let Priority::Given(given) = &mut request.priority {
+        if let PriorityRule::Given(given) = &mut request.priority {
             given.retain(|id| rest.agents.iter().any(|agent| agent.id == *id));
         }
         request
@@ -107,7 +107,7 @@ impl Request {
 
 /// A plan, or why there is none. The JSON output, field for field in this order.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Plan {
+pub struct PlanReport {
     /// Name of the scenario.
     pub name: String,
     /// Labels of the agents, by their numbers.
@@ -118,7 +118,7 @@ pub struct Plan {
     /// The agents by priority, or by their starts if no priority was requested.
     pub order: Vec<u64>,
     /// Agents in the order of the file; empty if there is no plan.
-    pub agents: Vec<Planned>,
+    pub agents: Vec<PlanEntry>,
     /// Agents that were left out; the plan is made as if they were not there.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<u64>,
@@ -126,9 +126,9 @@ pub struct Plan {
     pub objective: &'static str,
     /// What the plan costs; in JSON its fields are those of the plan, and `null` (`proved`: false) if there is no plan.
     #[serde(flatten, serialize_with = "costs")]
-    pub costs: Option<Costs>,
+    pub costs: Option<PlanCosts>,
     /// Sets of agents that cannot be planned; at least one agent of each set has to be left out.
-    pub unsolved: Vec<Unsolved>,
+    pub unsolved: Vec<UnplannedAgents>,
     /// Why the scenario was refused.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
@@ -136,12 +136,12 @@ pub struct Plan {
     pub warnings: Vec<String>,
     /// Result of the independent checker for the plan.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub certificate: Option<Proof>,
+    pub certificate: Option<MotionCertificate>,
 }
 
 /// The costs of a plan, for its agents.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Costs {
+pub struct PlanCosts {
     /// Time from the earliest start in the file to the last arrival \[s\].
     pub makespan: f64,
     /// Sum over the agents from their start in the file to their arrival \[s\].
@@ -154,7 +154,7 @@ pub struct Costs {
     pub proved: bool,
 }
 
-fn costs<W: Serializer>(costs: &Option<Costs>, to: W) -> Result<W::Ok, W::Error> {
+fn costs<W: Serializer>(costs: &Option<PlanCosts>, to: W) -> Result<W::Ok, W::Error> {
     let mut fields = to.serialize_struct("Costs", 5)?;
     fields.serialize_field("makespan", &costs.map(|costs| costs.makespan))?;
     fields.serialize_field("sum_of_costs", &costs.map(|costs| costs.sum_of_costs))?;
@@ -166,7 +166,7 @@ fn costs<W: Serializer>(costs: &Option<Costs>, to: W) -> Result<W::Ok, W::Error>
 
 /// An agent of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Planned {
+pub struct PlanEntry {
     /// Number.
     pub id: u64,
     /// Delay of its start against the file \[s\].
@@ -177,20 +177,20 @@ pub struct Planned {
 
 /// Agents for which there is no plan.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Unsolved {
+pub struct UnplannedAgents {
     /// Their numbers.
     pub ids: Vec<u64>,
     /// Reason, in words.
     pub why: String,
     /// Place, if the reason is about two agents and a place.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
-    pub spot: Option<Spot>,
+    pub spot: Option<BlockingLocation>,
 }
 
-impl Unsolved {
+impl UnplannedAgents {
     /// The reason why the first agent cannot start because of the second; `always`: with all delays.
     pub fn of(scenario: &Scenario, ids: [u64; 2], always: bool) -> Self {
-        let (why, spot) = reason::reason(scenario, ids, always);
+        let (why, spot) = failure_reason::reason(scenario, ids, always);
         Self { ids: ids.to_vec(), why, spot }
     }
 
@@ -207,11 +207,11 @@ const PUT_BACK: usize = 16;
 const AGENT_BYTES: u64 = 3800;
 
 /// A plan, and the scenario that it makes, where there is one.
-type Answer = (Plan, Option<Scenario>);
+type PlanAnswer = (PlanReport, Option<Scenario>);
 
-impl Plan {
+impl PlanReport {
     /// One without agents.
-    fn none(name: &str, method: Method, objective: Objective) -> Self {
+    fn none(name: &str, method: PlanMethod, objective: Objective) -> Self {
         Self {
             name: name.to_owned(),
             labels: Labels::default(),
@@ -229,37 +229,37 @@ impl Plan {
     }
 
     /// No plan, as there is no scenario, and why.
-    pub fn refused(name: &str, method: Method, objective: Objective, error: String) -> Self {
+    pub fn refused(name: &str, method: PlanMethod, objective: Objective, error: String) -> Self {
         Self { error: Some(error), ..Self::none(name, method, objective) }
     }
 
     /// Starts or speeds for the agents of a scenario, and the scenario with them where there are.
     ///
     /// # Errors
-    /// [`Failure`] where a value does not fit, the table cannot hold the fleet, or an agent of the order is not there.
-    pub fn of(scenario: &Scenario, request: &Request) -> Result<Answer, Failure> {
+    /// [`ComputationError`] where a value does not fit, the table cannot hold the fleet, or an agent of the order is not there.
+    pub fn compute(scenario: &Scenario, request: &PlanOptions) -> Result<PlanAnswer, ComputationError> {
         let agents = scenario.agents.len();
-        memory::ask(agents as u64 * AGENT_BYTES, || format!("the plan of {agents} agents"))?;
+        memory_budget::ask(agents as u64 * AGENT_BYTES, || format!("the plan of {agents} agents"))?;
         let begin = Instant::now();
         let fleet = Fleet::<f64>::new(scenario)?;
         let motions = prepared(&fleet, request.method);
         let planner = Planner { scenario, request, motions: &motions, begin };
-        let starts = Starts::of(&planner)?;
+        let starts = StartDelayResult::of(&planner)?;
         let everybody = starts.of_all();
         let (mut plan, solved) = match request.method {
-            Method::Delay if everybody.is_none() => {
+            PlanMethod::Delay if everybody.is_none() => {
                 (Self { unsolved: starts.unsolved(&planner), ..planner.none() }, None)
             }
             _ => planner.plan(everybody)?,
         };
-        if request.method == Method::Speed && solved.is_none() {
+        if request.method == PlanMethod::Speed && solved.is_none() {
             plan.unsolved = starts.added(&planner, plan.unsolved);
         }
         let mut staying = if request.leave_out && solved.is_none() { starts.staying() } else { Vec::new() };
         if staying.is_empty() {
             return Ok((plan, solved));
         }
-        let of_rest = |staying: &[usize], known: Option<Known>| {
+        let of_rest = |staying: &[usize], known: Option<PartialDelayPlan>| {
             let agents = staying.iter().map(|&agent| scenario.agents[agent].clone()).collect();
             let rest = Scenario { agents, ..scenario.clone() };
             let fleet = Fleet::<f64>::new(&rest)?;
@@ -273,7 +273,7 @@ impl Plan {
         let out = |staying: &[usize]| -> Vec<usize> {
             (0..scenario.agents.len()).filter(|agent| staying.binary_search(agent).is_err()).collect()
         };
-        let more = if request.method == Method::Speed { PUT_BACK } else { 0 };
+        let more = if request.method == PlanMethod::Speed { PUT_BACK } else { 0 };
         for agent in out(&staying).into_iter().take(more) {
             let mut with = staying.clone();
             with.insert(with.partition_point(|&other| other < agent), agent);
@@ -289,7 +289,7 @@ impl Plan {
             // Agents that are in the plan have one together, whatever was said of them before.
             let is_open = |ids: &[u64]| ids.is_empty() || ids.iter().any(|id| partial.left_out.contains(id));
             partial.unsolved.retain(|unsolved| !out.is_empty() && is_open(&unsolved.ids));
-            let called: Vec<String> = out.iter().map(|&agent| scenario.agents[agent].called()).collect();
+            let called: Vec<String> = out.iter().map(|&agent| scenario.agents[agent].display_name()).collect();
             if !called.is_empty() {
                 let (count, all) = (called.len(), scenario.agents.len());
                 let who = called.join(", ");
@@ -305,17 +305,17 @@ impl Plan {
 const LONGEST: f64 = 1e5;
 
 /// The motions to plan with. Start delays change no profile.
-fn prepared(fleet: &Fleet<f64>, method: Method) -> Vec<Motion<'_, f64>> {
-    let motions = grown(fleet);
+fn prepared(fleet: &Fleet<f64>, method: PlanMethod) -> Vec<Motion<'_, f64>> {
+    let motions = motions_with_margins(fleet);
     match method {
-        Method::Delay => motions,
-        Method::Speed => motions.into_iter().map(|motion| motion.with_longest(LONGEST).unwrap_or(motion)).collect(),
+        PlanMethod::Delay => motions,
+        PlanMethod::Speed => motions.into_iter().map(|motion| motion.with_longest(LONGEST).unwrap_or(motion)).collect(),
     }
 }
 
 /// The motions with their margins, and with what the check may take for a contact. A radius at the limit of the format
 /// stays as it is, and the check has the last word.
-pub(crate) fn grown(fleet: &Fleet<f64>) -> Vec<Motion<'_, f64>> {
+pub(crate) fn motions_with_margins(fleet: &Fleet<f64>) -> Vec<Motion<'_, f64>> {
     let motions = fleet.motions();
     let tolerance = motions.iter().map(|motion| Encounter::new(motion, motion).tolerance()).fold(0.0, f64::max);
     // The growths of two agents add up: what planning and what the check may be off.

@@ -3,29 +3,29 @@
 //! The types match the JSON output, field by field in this order. All numbers are `f64` and hold the results of the
 //! chosen number format exactly, hence rounded outward.
 
-mod outlines;
-mod record;
-mod sheet;
-pub(crate) mod tables;
+pub(crate) mod certificate_tables;
+mod entries;
+mod footprint_regions;
+mod region_job;
 #[cfg(test)]
 mod tests;
 
-use crate::bodies::Disced;
-use crate::failure::Failure;
-use crate::fleet::{Format, HostEcm, HostOrders, build_ecm, build_orders};
-use crate::memory::TooLarge;
-use pcr_certify::data::Table;
-use pcr_core::{Full, Motion};
-use pcr_formats::footprint::Disc;
+use crate::disc_fleet::BodyDisc;
+use crate::failure::ComputationError;
+use crate::fleet::{HostEcm, HostPrecedenceTable, HostScalar, build_ecm, build_orders};
+use crate::memory_budget::MemoryError;
+pub use certificate_tables::table_of;
+pub use entries::{CrossSectionEntry, CrossingDescriptor, PieceEntry, RegionEntry};
+use pcr_certify::raw::RawTable;
+use pcr_core::{CapacityError, Motion};
+use pcr_formats::footprint::CoverDisc;
 use pcr_formats::scenario::{Agent, Labels, Scenario};
-pub use record::{Descriptor, Piece, Region, Slice};
+pub use region_job::{ProgressFn, RegionJob};
 use serde::Serialize;
-pub use sheet::{Sheet, Told};
-pub use tables::table_of;
 
 /// Regions of one scenario, or why there are none.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Answer {
+pub struct RegionsReport {
     /// Name of the scenario.
     pub name: String,
     /// Labels of the agents, by their numbers.
@@ -37,17 +37,17 @@ pub struct Answer {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub agent: Option<u64>,
     /// Sorted by `i`, `j`, start time and start length.
-    pub regions: Vec<Region>,
+    pub regions: Vec<RegionEntry>,
     /// The same for the discs with their margins, if any agent has one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub margin_regions: Option<Vec<Region>>,
+    pub margin_regions: Option<Vec<RegionEntry>>,
     /// The covers of the agents whose outlines are not computed as they are, if there are any; of an agent with loads those of all its
     /// stretches.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub footprints: Vec<Cover>,
+    pub footprints: Vec<DiscCover>,
     /// The tables as they are held, of contact and of margins, for `pcr certify`; if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub certificate: Option<Vec<Table>>,
+    pub certificate: Option<Vec<RawTable>>,
     /// Why the scenario was refused.
     pub error: Option<String>,
     /// Warnings about input that was changed or left out when it was read.
@@ -56,7 +56,7 @@ pub struct Answer {
 
 /// The discs that an agent with a footprint, or with loads, is computed with.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Cover {
+pub struct DiscCover {
     /// Number of the agent.
     pub id: u64,
     /// First and last segment of its path with this outline, counted from 1; none where it is the same on all of it.
@@ -68,12 +68,12 @@ pub struct Cover {
     /// not have.
     pub growth: f64,
     /// The discs.
-    pub discs: Vec<Disc>,
+    pub discs: Vec<CoverDisc>,
 }
 
 /// The options of a request for regions.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Request {
+pub struct RegionOptions {
     /// Only the regions of the agent of this number.
     pub agent: Option<u64>,
     /// Number of slices for each region.
@@ -86,7 +86,7 @@ pub struct Request {
 ///
 /// # Errors
 /// [`Failure::Overfull`] with the pair that the table cannot hold, [`Failure::Full`] for too many agents.
-pub fn table<S: Format>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, Failure> {
+pub fn table<S: HostScalar>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, ComputationError> {
     build_ecm(motions).map_err(|full| unfit(full, scenario, motions.len()))
 }
 
@@ -94,16 +94,16 @@ pub fn table<S: Format>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Resul
 ///
 /// # Errors
 /// As [`table`].
-pub fn orders(scenario: &Scenario, motions: &[Motion<'_, f64>]) -> Result<HostOrders, Failure> {
+pub fn orders(scenario: &Scenario, motions: &[Motion<'_, f64>]) -> Result<HostPrecedenceTable, ComputationError> {
     build_orders(motions).map_err(|full| unfit(full, scenario, motions.len()))
 }
 
-fn unfit(full: Full, scenario: &Scenario, discs: usize) -> Failure {
+fn unfit(full: CapacityError, scenario: &Scenario, discs: usize) -> ComputationError {
     match full {
-        Full::Regions | Full::Pieces | Full::Orders => {
-            TooLarge::of(format!("the table of all pairs of {discs} discs")).into()
+        CapacityError::Regions | CapacityError::Pieces | CapacityError::Orders => {
+            MemoryError::of(format!("the table of all pairs of {discs} discs")).into()
         }
-        full => Failure::Full(full).named(scenario),
+        full => ComputationError::Full(full).named(scenario),
     }
 }
 
@@ -112,34 +112,37 @@ fn unfit(full: Full, scenario: &Scenario, discs: usize) -> Failure {
 /// # Errors
 /// [`Failure::NoSuchAgent`], [`Failure::Twofold`] for a number that is a label, too, and, for texts, [`Failure::NoSuchLabel`] or,
 /// where several have it, [`Failure::Ambiguous`].
-pub fn find(scenario: &Scenario, asked: &str) -> Result<u64, Failure> {
+pub fn find(scenario: &Scenario, asked: &str) -> Result<u64, ComputationError> {
     let number = asked.parse::<u64>().ok();
     let ids = || scenario.agents.iter().map(|agent| agent.id);
     let labelled: Vec<u64> =
         scenario.agents.iter().filter(|agent| agent.label == asked).map(|agent| agent.id).collect();
     if let Some(id) = number.filter(|number| ids().any(|id| id == *number)) {
         let others: Vec<u64> = labelled.into_iter().filter(|other| *other != id).collect();
-        return if others.is_empty() { Ok(id) } else { Err(Failure::Twofold(id, asked.to_owned(), others)) };
+        return if others.is_empty() { Ok(id) } else { Err(ComputationError::Twofold(id, asked.to_owned(), others)) };
     }
     match (labelled.as_slice(), number) {
         ([id], _) => Ok(*id),
-        ([], Some(number)) => Err(Failure::NoSuchAgent(number, ids().collect())),
-        ([], None) => Err(Failure::NoSuchLabel(asked.to_owned(), scenario.agents.iter().map(Agent::called).collect())),
-        _ => Err(Failure::Ambiguous(asked.to_owned(), labelled)),
+        ([], Some(number)) => Err(ComputationError::NoSuchAgent(number, ids().collect())),
+        ([], None) => Err(ComputationError::NoSuchLabel(
+            asked.to_owned(),
+            scenario.agents.iter().map(Agent::display_name).collect(),
+        )),
+        _ => Err(ComputationError::Ambiguous(asked.to_owned(), labelled)),
     }
 }
 
-impl Answer {
+impl RegionsReport {
     /// The regions of a scenario, computed in the format `S`.
     ///
     /// # Errors
-    /// [`Failure`] where a value does not fit the format, the agent asked for is not there, or memory does not hold all regions.
-    pub fn of<S: Format>(scenario: &Scenario, request: Request) -> Result<Self, Failure> {
-        Sheet::<S>::new(scenario, request)?.answer(&|_, _| {})
+    /// [`ComputationError`] where a value does not fit the format, the agent asked for is not there, or memory does not hold all regions.
+    pub fn compute<S: HostScalar>(scenario: &Scenario, request: RegionOptions) -> Result<Self, ComputationError> {
+        RegionJob::<S>::new(scenario, request)?.answer(&|_, _| {})
     }
 
     /// No regions, and why.
-    pub fn refused<S: Format>(name: &str, error: String) -> Self {
+    pub fn refused<S: HostScalar>(name: &str, error: String) -> Self {
         Self {
             name: name.to_owned(),
             labels: Labels::default(),
@@ -155,17 +158,17 @@ impl Answer {
     }
 }
 
-impl Cover {
+impl DiscCover {
     /// The covers of all agents of a scenario with these bodies, which are in the order of the agents.
-    pub(crate) fn all(scenario: &Scenario, bodies: &[Disced]) -> Vec<Self> {
+    pub(crate) fn all(scenario: &Scenario, bodies: &[BodyDisc]) -> Vec<Self> {
         let own = bodies.chunk_by(|a, b| a.agent == b.agent);
         own.flat_map(|own| Self::of(&scenario.agents[own[0].agent], own)).collect()
     }
 
     /// The covers of an agent: one for each stretch of its path with another outline, with the resulting discs; none of one that is
     /// computed as it is.
-    fn of(agent: &Agent, own: &[Disced]) -> Vec<Self> {
-        if agent.loads.is_empty() && own.iter().all(Disced::is_whole) {
+    fn of(agent: &Agent, own: &[BodyDisc]) -> Vec<Self> {
+        if agent.loads.is_empty() && own.iter().all(BodyDisc::is_whole) {
             return Vec::new();
         }
         let covers = agent.outlines().into_iter().filter_map(|outline| {
@@ -175,7 +178,7 @@ impl Cover {
             let (overhang, discs) = match outline.footprint {
                 Some(footprint) => (footprint.overhang(), footprint.discs().to_vec()),
                 None if agent.loads.is_empty() => return None,
-                None => (0.0, vec![Disc { ahead: 0.0, left: 0.0, radius: outline.radius }]),
+                None => (0.0, vec![CoverDisc { ahead: 0.0, left: 0.0, radius: outline.radius }]),
             };
             Some(Self { id: agent.id, segments, overhang, growth, discs })
         });

@@ -1,7 +1,6 @@
 //! Answers as text: JSON and CSV for programs, tables for people.
 
 mod certified;
-pub mod columns;
 mod conflicts;
 mod delays;
 mod locks;
@@ -9,31 +8,34 @@ mod nodes;
 mod overview;
 mod plans;
 mod proofs;
-mod rows;
+mod streamed_regions;
 mod table;
+pub mod text_table;
 
 pub use certified::{CERTIFIED_CSV_HEADER, certified_csv, certified_table};
-pub use columns::ROW_BYTES;
 pub use conflicts::{CONFLICTS_CSV_HEADER, conflicts_csv, conflicts_table};
-pub use delays::{DELAYS_HEADER, Delay, DelayTable, NodeTimes, delays_csv, delays_lines, delays_table};
+pub use delays::{
+    DELAYS_HEADER, UnsafeDelay, UnsafeDelayReport, UnsafeNodeTimes, delays_csv, delays_lines, delays_table,
+};
 pub use locks::{
-    EDGE_HEADER, EdgeLocks, LOCKS_HEADER, LocksUnprinted, edge_csv, edge_table, kept_locks_csv, locks_csv, locks_lines,
-    locks_table, vehicle_text,
+    EDGE_HEADER, EdgeExclusionsReport, ExclusionOutputError, LOCKS_HEADER, edge_csv, edge_table, kept_locks_csv,
+    locks_csv, locks_lines, locks_table, vehicle_text,
 };
 pub use nodes::{nodes_csv, nodes_table};
 pub use overview::overview;
 pub use pcr_formats::scenario::printable;
 pub use plans::{PLAN_CSV_HEADER, left_open, plan_csv, plan_table, reasons};
 pub use proofs::proof_line;
-pub use rows::{Unprinted, sheet_csv, sheet_json};
+pub use streamed_regions::{OutputError, sheet_csv, sheet_json};
 pub use table::table;
+pub use text_table::ROW_BYTES;
 
-use crate::certify::{self, Certified};
-use crate::check::Verdict;
-use crate::locks::Locks;
-use crate::nodes::Listing;
-use crate::plan::Plan;
-use crate::regions::{Answer, Region};
+use crate::certify::{self, CertifyReport};
+use crate::check::CheckReport;
+use crate::exclusion_table::ExclusionTable;
+use crate::nodes::LayoutReport;
+use crate::plan::PlanReport;
+use crate::regions::{RegionEntry, RegionsReport};
 use pcr_formats::scenario::Labels;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -41,30 +43,30 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 
 /// An answer that is printed as JSON, with its format and version.
-pub trait Document: Serialize {
+pub trait VersionedReport: Serialize {
     /// Name of the format; the schema is `docs/reference/schema/FORMAT.schema.json`.
     const FORMAT: &'static str;
     /// Version: counts changes that affect programs which read it; new fields do not.
     const VERSION: u32 = 1;
 }
 
-impl Document for Answer {
+impl VersionedReport for RegionsReport {
     const FORMAT: &'static str = certify::ANSWERS;
     const VERSION: u32 = certify::VERSION;
 }
-impl Document for Verdict {
+impl VersionedReport for CheckReport {
     const FORMAT: &'static str = "pcr-conflicts";
 }
-impl Document for Certified {
+impl VersionedReport for CertifyReport {
     const FORMAT: &'static str = "pcr-certificate";
 }
-impl Document for Plan {
+impl VersionedReport for PlanReport {
     const FORMAT: &'static str = "pcr-plan";
 }
-impl Document for Locks {
+impl VersionedReport for ExclusionTable {
     const FORMAT: &'static str = "pcr-locks";
 }
-impl Document for Listing<'_> {
+impl VersionedReport for LayoutReport<'_> {
     const FORMAT: &'static str = "pcr-nodes";
 }
 
@@ -72,15 +74,15 @@ impl Document for Listing<'_> {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn json<D: Document>(answer: &D, out: &mut dyn Write) -> io::Result<()> {
+pub fn json<D: VersionedReport>(answer: &D, out: &mut dyn Write) -> io::Result<()> {
     #[derive(Serialize)]
-    struct Versioned<'a, D> {
+    struct ReportEnvelope<'a, D> {
         format: &'static str,
         version: u32,
         #[serde(flatten)]
         answer: &'a D,
     }
-    serde_json::to_writer(&mut *out, &Versioned { format: D::FORMAT, version: D::VERSION, answer })?;
+    serde_json::to_writer(&mut *out, &ReportEnvelope { format: D::FORMAT, version: D::VERSION, answer })?;
     out.write_all(b"\n")
 }
 
@@ -92,16 +94,16 @@ pub const CSV_HEADER: &str = "name,i,j,t_a,t_b,l_a,l_b,open_start,open_end,types
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn csv(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
+pub fn csv(answer: &RegionsReport, out: &mut dyn Write) -> io::Result<()> {
     csv_rows(&answer.name, &answer.labels, &answer.regions, false, out)?;
     csv_rows(&answer.name, &answer.labels, answer.margin_regions.as_deref().unwrap_or_default(), true, out)
 }
 
 /// Some of these lines.
-fn csv_rows(name: &str, labels: &Labels, regions: &[Region], margin: bool, out: &mut dyn Write) -> io::Result<()> {
+fn csv_rows(name: &str, labels: &Labels, regions: &[RegionEntry], margin: bool, out: &mut dyn Write) -> io::Result<()> {
     let (name, margin) = (quoted(name), u8::from(margin));
     for region in regions {
-        let Region { i, j, t: [t_a, t_b], l: [l_a, l_b], .. } = region;
+        let RegionEntry { i, j, t: [t_a, t_b], l: [l_a, l_b], .. } = region;
         let (open_start, open_end) = (u8::from(region.open_start), u8::from(region.open_end));
         let crossings = crossings(region);
         let types = types(region);
@@ -122,12 +124,12 @@ pub fn quoted(name: &str) -> Cow<'_, str> {
 }
 
 /// Number of crossings in a region.
-fn crossings(region: &Region) -> usize {
+fn crossings(region: &RegionEntry) -> usize {
     region.pieces.iter().map(|piece| piece.crossings.len()).sum()
 }
 
 /// The types of the pieces with their numbers, in the order in which they first occur.
-fn types(region: &Region) -> String {
+fn types(region: &RegionEntry) -> String {
     let mut counts: Vec<(&str, usize)> = Vec::new();
     for piece in &region.pieces {
         match counts.iter_mut().find(|(piece_type, _)| *piece_type == piece.piece_type) {
@@ -151,13 +153,13 @@ fn agents(labels: &Labels) -> [&'static str; 2] {
 }
 
 /// An agent in a table.
-pub fn called(labels: &Labels, id: u64) -> String {
-    printable(&labels.called(id))
+pub fn display_name(labels: &Labels, id: u64) -> String {
+    printable(&labels.display_name(id))
 }
 
 /// Some agents in a sentence.
 pub fn all_called(labels: &Labels, ids: &[u64]) -> String {
-    ids.iter().map(|id| called(labels, *id)).collect::<Vec<_>>().join(" and ")
+    ids.iter().map(|id| display_name(labels, *id)).collect::<Vec<_>>().join(" and ")
 }
 
 /// A number with a noun: `1 lock`, `2 locks`.

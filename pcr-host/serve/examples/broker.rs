@@ -5,16 +5,16 @@
 //! `cargo run --release -p pcr-serve --example broker -- PCR VEHICLES RATE SECONDS [CORE]` starts mosquitto and `PCR serve`, which is the
 //! tool, with a journal on the disc; on one core alone if that is named (`taskset`).
 
-use pcr_formats::vda5050::header::Header;
+use pcr_formats::vda5050::header::MessageHeader;
 use pcr_formats::vda5050::order::Order;
-use pcr_formats::vda5050::topics::{Interface, Key, Kind};
-use pcr_formats::vda5050::version::Version;
-use pcr_serve::course::Start;
-use pcr_serve::vda5050::bridge::Publish;
-use pcr_serve::vda5050::mqtt::{Broker, Link, News};
-use pcr_serve::vehicles::drive::Abilities;
-use pcr_serve::vehicles::vehicle::Vehicle;
-use pcr_serve::vehicles::world::profile;
+use pcr_formats::vda5050::topics::{TopicInterface, TopicKind, VehicleId};
+use pcr_formats::vda5050::version::ProtocolVersion;
+use pcr_serve::owned_path::StartPose;
+use pcr_serve::vda5050::bridge::MqttMessage;
+use pcr_serve::vda5050::mqtt::{BrokerAddress, LinkEvent, MqttLink};
+use pcr_serve::vehicles::simulated_site::profile;
+use pcr_serve::vehicles::vehicle::SimulatedVehicle;
+use pcr_serve::vehicles::vehicle_motion::SimulatedTraits;
 use serde_json::{Value, json};
 use std::error::Error;
 use std::f64::consts::FRAC_PI_2;
@@ -28,7 +28,7 @@ const SPACE: f64 = 2.0;
 /// From one node to the next, and between the two on a lane \[m\].
 const EDGE: f64 = 2.0;
 const BEHIND: f64 = 4.0;
-const CAN: Abilities = Abilities {
+const CAN: SimulatedTraits = SimulatedTraits {
     radius: 0.4,
     speed: 1.0,
     acceleration: 0.5,
@@ -58,7 +58,7 @@ impl Drop for Program {
 }
 
 struct Member {
-    vehicle: Vehicle,
+    vehicle: SimulatedVehicle,
     /// Where its lane begins for it, and the direction of it.
     start: [f64; 2],
     along: [f64; 2],
@@ -89,7 +89,8 @@ impl Member {
         };
         let mut order = json!({ "orderId": "through", "orderUpdateId": 0,
             "nodes": (0..=count).map(node).collect::<Vec<_>>(), "edges": (0..count).map(edge).collect::<Vec<_>>() });
-        let header = Header::new(self.vehicle.key(), Version::V2_1, 1, "2030-01-01T00:00:00.000Z".into());
+        let header =
+            MessageHeader::new(self.vehicle.key(), ProtocolVersion::V2_1, 1, "2030-01-01T00:00:00.000Z".into());
         if let (Value::Object(order), Ok(Value::Object(header))) = (&mut order, serde_json::to_value(header)) {
             order.extend(header);
         }
@@ -98,10 +99,10 @@ impl Member {
 }
 
 struct Load {
-    link: Link,
-    news: Receiver<(Instant, News)>,
-    manager: Interface,
-    vehicles: Interface,
+    link: MqttLink,
+    news: Receiver<(Instant, LinkEvent)>,
+    manager: TopicInterface,
+    vehicles: TopicInterface,
     members: Vec<Member>,
     /// What is measured counts \[s\]: from a state to its copy for the manager; and to a release of the one behind, with how far behind
     /// the one in front that ends \[m\].
@@ -115,15 +116,15 @@ impl Load {
     /// Takes what comes until a time.
     fn wait(&mut self, until: Instant) {
         while let Ok((at, news)) = self.news.recv_timeout(until.saturating_duration_since(Instant::now())) {
-            if let News::Message { topic, payload, .. } = news {
+            if let LinkEvent::Message { topic, payload, .. } = news {
                 self.take(at, &topic, &payload);
             }
         }
     }
 
     fn take(&mut self, at: Instant, topic: &str, payload: &[u8]) {
-        let place = |key: &Key| key.serial_number.parse::<usize>().ok().filter(|&k| k < self.members.len());
-        if let Some((_, key, Kind::State)) = self.manager.parse(topic) {
+        let place = |key: &VehicleId| key.serial_number.parse::<usize>().ok().filter(|&k| k < self.members.len());
+        if let Some((_, key, TopicKind::State)) = self.manager.parse(topic) {
             let Some(k) = place(&key) else { return };
             let text = String::from_utf8_lossy(payload.get(..60).unwrap_or(payload));
             let number = text.split("\"headerId\":").nth(1).and_then(|rest| rest.split(',').next()?.parse().ok());
@@ -135,7 +136,7 @@ impl Load {
         } else if let Some((_, key, kind)) = self.vehicles.parse(topic) {
             let Some(k) = place(&key) else { return };
             self.members[k].vehicle.receive(kind, payload);
-            if kind == Kind::Order {
+            if kind == TopicKind::Order {
                 self.release(at, k, payload);
                 self.members[k].orders += 1;
                 self.members[k].came = Some(at);
@@ -166,23 +167,23 @@ impl Load {
         let member = &mut self.members[k];
         member.vehicle.advance(time);
         let mut out = member.vehicle.out();
-        if !out.iter().any(|(kind, _)| *kind == Kind::State) {
+        if !out.iter().any(|(kind, _)| *kind == TopicKind::State) {
             member.vehicle.tell_state();
             out.extend(member.vehicle.out());
         }
         for (kind, payload) in out {
-            let topic = self.vehicles.topic(Version::V2_1, member.vehicle.key(), kind);
-            if kind == Kind::State {
-                member.said = member.length(member.vehicle.place());
+            let topic = self.vehicles.topic(ProtocolVersion::V2_1, member.vehicle.key(), kind);
+            if kind == TopicKind::State {
+                member.said = member.length(member.vehicle.true_position());
                 member.sent.push(Instant::now());
             }
-            publish(&self.link, Publish { topic, payload, assured: false, retain: false });
+            publish(&self.link, MqttMessage { topic, payload, at_least_once: false, retain: false });
         }
     }
 }
 
 /// Sends it, as soon as there is room for it.
-fn publish(link: &Link, message: Publish) {
+fn publish(link: &MqttLink, message: MqttMessage) {
     let begin = Instant::now();
     while !link.publish(message.clone()) {
         assert!(begin.elapsed() < PATIENCE, "it cannot be sent");
@@ -199,9 +200,9 @@ fn members(count: usize) -> Result<Vec<Member>, String> {
         let (start, along) =
             if across { ([x + y, -2.0 - back], [0.0, 1.0]) } else { ([x - 2.0 - back, y], [1.0, 0.0]) };
         let heading = if across { FRAC_PI_2 } else { 0.0 };
-        let key = Key::new("sim", &k.to_string())?;
-        let stands = Start { x: start[0], y: start[1], heading };
-        let vehicle = Vehicle::new(key, Version::V2_1, "map", CAN, stands, k as u64);
+        let key = VehicleId::new("sim", &k.to_string())?;
+        let stands = StartPose { x: start[0], y: start[1], heading };
+        let vehicle = SimulatedVehicle::new(key, ProtocolVersion::V2_1, "map", CAN, stands, k as u64);
         Ok(Member { vehicle, start, along, sent: Vec::new(), said: 0.0, orders: 0, came: None })
     };
     (0..count).map(member).collect()
@@ -268,13 +269,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let known = json!({ "vehicles": known.collect::<Result<Vec<_>, serde_json::Error>>()? });
     std::fs::write(folder.join("fleet.json"), known.to_string())?;
     let (broker, port) = mosquitto(&folder)?;
-    let (manager, vehicles) = (Interface::new("fleet")?, Interface::new("uagv")?);
+    let (manager, vehicles) = (TopicInterface::new("fleet")?, TopicInterface::new("uagv")?);
     let filters = [
-        &[manager.filters(Kind::State)[0].clone()][..],
-        &[Kind::Order, Kind::InstantActions].map(|kind| vehicles.filters(kind)[0].clone()),
+        &[manager.filters(TopicKind::State)[0].clone()][..],
+        &[TopicKind::Order, TopicKind::InstantActions].map(|kind| vehicles.filters(kind)[0].clone()),
     ];
     let (sender, news) = channel();
-    let link = Link::open(&Broker::new("127.0.0.1", port), "load", None, filters.concat(), move |it| {
+    let link = MqttLink::open(&BrokerAddress::new("127.0.0.1", port), "load", None, filters.concat(), move |it| {
         let _ = sender.send((Instant::now(), it));
     })?;
     while !link.is_up() {
@@ -306,9 +307,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         let due = ready.map_or(0.0, |ready: Instant| ready.elapsed().as_secs_f64() / SPREAD * lanes as f64);
         while ordered < lanes.min(due as usize) {
             for member in [ordered, ordered + lanes].map(|k| &own.members[k]) {
-                let topic = own.manager.topic(Version::V2_1, member.vehicle.key(), Kind::Order);
+                let topic = own.manager.topic(ProtocolVersion::V2_1, member.vehicle.key(), TopicKind::Order);
                 let payload = member.order(SPACE * LANES as f64 + 8.0).to_string().into_bytes();
-                publish(&own.link, Publish { topic, payload, assured: false, retain: false });
+                publish(&own.link, MqttMessage { topic, payload, at_least_once: false, retain: false });
             }
             ordered += 1;
         }

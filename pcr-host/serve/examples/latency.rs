@@ -5,12 +5,12 @@
 //! `cargo run --release -p pcr-serve --example latency -- ROBOTS RATE MESSAGES`
 
 use pcr_serve::journal::Journal;
-use pcr_serve::lines::Request;
-use pcr_serve::log::{Level, Log};
-use pcr_serve::outbox::{Lines, outbox};
-use pcr_serve::server::{Handle, Input, queue, serve};
-use pcr_serve::supervisor::{Settings, Supervisor};
-use pcr_serve::writer::Writer;
+use pcr_serve::journal_writer::JournalWriter;
+use pcr_serve::lines::RequestLine;
+use pcr_serve::log::{LogLevel, LogWriter};
+use pcr_serve::outbox::{OutboxReceiver, outbox};
+use pcr_serve::server::{ServerHandle, ServerInput, queue, serve};
+use pcr_serve::supervisor::{Supervisor, SupervisorConfig};
 use serde_json::{Value, json};
 use std::error::Error;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -34,8 +34,8 @@ struct Robot {
 }
 
 struct Driver {
-    handle: Handle,
-    lines: Lines,
+    handle: ServerHandle,
+    lines: OutboxReceiver,
     robots: Vec<Robot>,
     /// When each message was sent, by its number; of missions nothing.
     sent: Vec<Option<Instant>>,
@@ -52,7 +52,7 @@ impl Driver {
         request["id"] = self.sent.len().into();
         self.sent.push(is_position.then(Instant::now));
         self.open += 1;
-        self.handle.send(Input::Line(1, Request::read(request.to_string().as_bytes())));
+        self.handle.send(ServerInput::Line(1, RequestLine::read(request.to_string().as_bytes())));
     }
 
     fn position(&mut self, k: usize) {
@@ -129,15 +129,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (journal, _) = Journal::open(&folder)?;
     let (handle, inputs) = queue();
     let own = handle.clone();
-    let writer = Writer::start(Box::new(journal), move || own.wake())?;
+    let writer = JournalWriter::start(Box::new(journal), move || own.wake())?;
     let kept = writer.kept();
-    let mut supervisor = Supervisor::new(Settings::default(), Box::new(writer));
+    let mut supervisor = Supervisor::new(SupervisorConfig::default(), Box::new(writer));
     let server = std::thread::spawn(move || {
-        let result = serve(&mut supervisor, &inputs, &kept, Log::new(Level::Error));
+        let result = serve(&mut supervisor, &inputs, &kept, LogWriter::new(LogLevel::Error));
         (result, supervisor.counts())
     });
     let (out, lines) = outbox();
-    handle.send(Input::Opened(1, out));
+    handle.send(ServerInput::Opened(1, out));
     let robots = vec![Robot { path: 1, ..Robot::default() }; count];
     // Room that is there from the start: what grows is the supervisor's.
     let room = 2 * messages + 4 * count;
@@ -170,7 +170,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         own.take(&line);
     }
     let (all, last) = (begin.elapsed().as_secs_f64(), memory());
-    own.handle.send(Input::Stop);
+    own.handle.send(ServerInput::Stop);
     let (result, counts) = server.join().map_err(|_| "the server has panicked")?;
     result.map_err(|fault| fault.to_string())?;
     println!("{count} robots, {messages} positions in {all:.1} s, {} missions, {} writes", own.done, counts.writes);

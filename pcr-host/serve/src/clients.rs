@@ -1,13 +1,13 @@
 //! Clients of the line protocol: standard input and output, and sockets.
 
-use crate::accept;
-use crate::fault::Fault;
-use crate::hello::{self, Refusal};
-use crate::lines::{self, LONGEST, Request};
-use crate::log::Log;
-use crate::outbox::{Lines, outbox};
+use crate::connection_limit;
+use crate::hello::{self, ConnectionRefusal};
+use crate::lines::{self, LONGEST, RequestLine};
+use crate::log::LogWriter;
+use crate::outbox::{OutboxReceiver, outbox};
 use crate::refusals::Refusals;
-use crate::server::{Handle, Input};
+use crate::request_error::RequestError;
+use crate::server::{ServerHandle, ServerInput};
 use crate::sockets::{Listener, Stream};
 use crate::token::Token;
 use socket2::{SockRef, TcpKeepalive};
@@ -55,7 +55,7 @@ impl Access {
 /// # Errors
 /// The thread for the answers cannot be started; nothing is read then.
 pub fn serve(
-    handle: &Handle,
+    handle: &ServerHandle,
     input: impl Read,
     output: impl Write + Send + 'static,
     lost: impl FnOnce(io::Error) + Send + 'static,
@@ -64,8 +64,8 @@ pub fn serve(
         // An error of reading counts as the end.
         let _ = read(&mut BufReader::new(input), |_, _, request| {
             handle.send(match request {
-                Some(request) => Input::Line(number, request),
-                None => Input::Answer(number, lines::too_long()),
+                Some(request) => ServerInput::Line(number, request),
+                None => ServerInput::Answer(number, lines::too_long()),
             })
         });
     })
@@ -73,7 +73,7 @@ pub fn serve(
 
 /// Writes answers to `output` while `reads` reads the lines of a client with a number.
 fn converse(
-    handle: &Handle,
+    handle: &ServerHandle,
     output: impl Write + Send + 'static,
     lost: impl FnOnce(io::Error) + Send + 'static,
     reads: impl FnOnce(u64),
@@ -82,16 +82,16 @@ fn converse(
     let (sender, lines) = outbox();
     let work = move || write(&lines, output).unwrap_or_else(lost);
     let writer = thread::Builder::new().name("answers".into()).spawn(work)?;
-    if !handle.send(Input::Opened(number, sender)) {
+    if !handle.send(ServerInput::Opened(number, sender)) {
         return Ok(());
     }
     reads(number);
-    handle.send(Input::Closed(number));
+    handle.send(ServerInput::Closed(number));
     let _ = writer.join();
     Ok(())
 }
 
-fn write(lines: &Lines, mut output: impl Write) -> io::Result<()> {
+fn write(lines: &OutboxReceiver, mut output: impl Write) -> io::Result<()> {
     while let Some(text) = lines.batch() {
         put(lines, &mut output, text.as_bytes()).and_then(|()| output.flush())?;
     }
@@ -99,7 +99,7 @@ fn write(lines: &Lines, mut output: impl Write) -> io::Result<()> {
 }
 
 /// Writes all bytes. Waits for a slow client; if the client is being disconnected, only for [`PATIENCE`].
-fn put(lines: &Lines, output: &mut impl Write, mut bytes: &[u8]) -> io::Result<()> {
+fn put(lines: &OutboxReceiver, output: &mut impl Write, mut bytes: &[u8]) -> io::Result<()> {
     while !bytes.is_empty() {
         match output.write(bytes) {
             Ok(0) => return Err(ErrorKind::WriteZero.into()),
@@ -119,7 +119,7 @@ fn put(lines: &Lines, output: &mut impl Write, mut bytes: &[u8]) -> io::Result<(
 /// `take` returns `false`.
 fn read<R: Read>(
     input: &mut BufReader<R>,
-    mut take: impl FnMut(&[u8], &[u8], Option<Request>) -> bool,
+    mut take: impl FnMut(&[u8], &[u8], Option<RequestLine>) -> bool,
 ) -> io::Result<()> {
     loop {
         let mut line = Vec::new();
@@ -135,7 +135,7 @@ fn read<R: Read>(
             goes_on
         } else {
             let text = line.trim_ascii();
-            text.is_empty() || take(text, input.buffer(), Some(Request::read(text)))
+            text.is_empty() || take(text, input.buffer(), Some(RequestLine::read(text)))
         };
         if !goes_on {
             return Ok(());
@@ -160,10 +160,10 @@ fn skip(input: &mut impl BufRead) -> io::Result<()> {
 
 /// Takes clients at a socket, for ever. The first line of each has to be a hello, and a connection ends at the first line that is no JSON
 /// object.
-pub fn listen(handle: &Handle, listener: &Listener, access: Access, log: Log) {
+pub fn listen(handle: &ServerHandle, listener: &Listener, access: Access, log: LogWriter) {
     let (handle, most) = (handle.clone(), access.clients + 2 * access.strangers);
     let (strangers, clients) = (Strangers::new(access.strangers, Refusals::new(log)), Arc::new(AtomicUsize::new(0)));
-    accept::each(listener, "client", most, log, move |stream, who| {
+    connection_limit::each(listener, "client", most, log, move |stream, who| {
         // An error means that the connection has ended.
         let _ = welcome(&handle, &access, &strangers, &clients, stream, who);
     });
@@ -171,7 +171,7 @@ pub fn listen(handle: &Handle, listener: &Listener, access: Access, log: Log) {
 
 /// Serves a connection until it ends.
 fn welcome(
-    handle: &Handle,
+    handle: &ServerHandle,
     access: &Access,
     strangers: &Strangers,
     clients: &Arc<AtomicUsize>,
@@ -191,9 +191,9 @@ fn welcome(
         Ok(Some(first)) => first,
         Err(refusal) => return refuse(&mut stream, &strangers.refusals, who, &refusal),
     };
-    let Some(_place) = Place::taken(clients, access.clients) else {
-        let fault = Fault::Full { places: access.clients };
-        let refusal = Refusal::Hello(fault.clone(), first.refused(fault));
+    let Some(_place) = ConnectionPermit::taken(clients, access.clients) else {
+        let fault = RequestError::Full { places: access.clients };
+        let refusal = ConnectionRefusal::Hello(fault.clone(), first.refused(fault));
         return refuse(&mut stream, &strangers.refusals, who, &refusal);
     };
     if !stranger.leaves() {
@@ -203,24 +203,24 @@ fn welcome(
     stream.set_read_timeout(None)?;
     // A connection that cannot be written to has ended: then its input ends, too.
     converse(handle, Shut(stream.try_clone()?), drop, |number| {
-        if !handle.send(Input::Line(number, first)) {
+        if !handle.send(ServerInput::Line(number, first)) {
             return;
         }
         let _ = read(&mut input, |line, behind, request| {
             let refusal = match request {
-                Some(request) if request.is_object() => return handle.send(Input::Line(number, request)),
+                Some(request) if request.is_object() => return handle.send(ServerInput::Line(number, request)),
                 Some(request) => hello::no_object(line, behind, &request),
-                None => Refusal::TooLong(LONGEST),
+                None => ConnectionRefusal::TooLong(LONGEST),
             };
             strangers.refusals.note(who, &refusal);
-            handle.send(Input::Answer(number, refusal.answer()));
+            handle.send(ServerInput::Answer(number, refusal.answer()));
             false
         });
     })
 }
 
 /// Writes a last line to a connection and ends it.
-fn refuse(stream: &mut Stream, refusals: &Refusals, who: &str, refusal: &Refusal) -> io::Result<()> {
+fn refuse(stream: &mut Stream, refusals: &Refusals, who: &str, refusal: &ConnectionRefusal) -> io::Result<()> {
     /// Largest size and longest time of what is read after it: an end with bytes that are not read may take the line away from the client.
     const REST: (u64, Duration) = (1 << 16, Duration::from_secs(1));
     refusals.note(who, refusal);
@@ -266,16 +266,16 @@ impl Drop for Shut {
 }
 
 /// One of the places for clients; free again when it is dropped.
-struct Place(Arc<AtomicUsize>);
+struct ConnectionPermit(Arc<AtomicUsize>);
 
-impl Place {
+impl ConnectionPermit {
     fn taken(of: &Arc<AtomicUsize>, most: usize) -> Option<Self> {
         let next = |count: usize| (count < most).then_some(count + 1);
         of.fetch_update(Ordering::Relaxed, Ordering::Relaxed, next).ok().map(|_| Self(of.clone()))
     }
 }
 
-impl Drop for Place {
+impl Drop for ConnectionPermit {
     fn drop(&mut self) {
         self.0.fetch_sub(1, Ordering::Relaxed);
     }
@@ -304,7 +304,7 @@ impl Strangers {
         {
             // Its thread sees the end.
             let _ = oldest.shutdown(Shutdown::Both);
-            self.refusals.note(&who, &Refusal::Crowded);
+            self.refusals.note(&who, &ConnectionRefusal::Crowded);
         }
         Ok(Stranger { number, open: self.open.clone() })
     }

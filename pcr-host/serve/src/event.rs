@@ -6,7 +6,7 @@ use std::fmt;
 
 /// Why a waiting mission was given up.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Cause {
+pub enum CancelCause {
     /// The robot has got another mission.
     Replaced,
     /// Its manager has cancelled it.
@@ -17,7 +17,7 @@ pub enum Cause {
     Impossible(String),
 }
 
-impl fmt::Display for Cause {
+impl fmt::Display for CancelCause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Replaced => "another mission takes its place",
@@ -28,7 +28,7 @@ impl fmt::Display for Cause {
     }
 }
 
-impl Serialize for Cause {
+impl Serialize for CancelCause {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }
@@ -37,7 +37,7 @@ impl Serialize for Cause {
 /// A message to the programs that control robots, and to people. Its content is in the journal already.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
-pub enum Event {
+pub enum SupervisorEvent {
     /// A robot may go this far. The hold never decreases while the robot keeps its path and the supervisor runs. After a restart it may
     /// at first be lower than before: the robot keeps the higher one.
     Hold {
@@ -87,7 +87,7 @@ pub enum Event {
         /// Id of the mission.
         mission: String,
         /// Reason; in words where it is written.
-        why: Cause,
+        why: CancelCause,
     },
     /// No message of a robot has come for a long time: it may be anywhere up to its hold.
     Silent {
@@ -137,7 +137,7 @@ pub enum Event {
     },
 }
 
-impl Event {
+impl SupervisorEvent {
     /// Whether another event, which was decided before this one, must not be told after it: it would let go a robot that has to stop.
     pub fn overtakes(&self, before: &Self) -> bool {
         match (self, before) {

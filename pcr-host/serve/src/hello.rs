@@ -4,8 +4,8 @@
 //! browser send requests of HTTP to any port of its machine, with lines of the page's choice in them: such a request begins with another
 //! line.
 
-use crate::fault::Fault;
-use crate::lines::{self, Request};
+use crate::lines::{self, RequestLine};
+use crate::request_error::RequestError;
 use crate::sockets::Stream;
 use crate::token::Token;
 use serde_json::Value;
@@ -17,7 +17,7 @@ pub const LONGEST: usize = 4096;
 
 /// Why a connection ends that the client has not ended.
 #[derive(Clone, Debug)]
-pub enum Refusal {
+pub enum ConnectionRefusal {
     /// The first line, or a later one, is one of HTTP: a browser, or a program that takes the lines for a web server.
     Http {
         /// The page that had the browser send it, if the browser says so.
@@ -34,10 +34,10 @@ pub enum Refusal {
     /// The first line did not come before too many others connected.
     Crowded,
     /// The first line is refused.
-    Hello(Fault, Value),
+    Hello(RequestError, Value),
 }
 
-impl Refusal {
+impl ConnectionRefusal {
     /// Returns the reason in words, for the log. It has no part of what the client has sent but the origin.
     pub fn reason(&self) -> String {
         match self {
@@ -49,11 +49,11 @@ impl Refusal {
             Self::TooLong(most) => format!("a line is longer than {most} bytes"),
             Self::Late => "its first line did not come in time".into(),
             Self::Crowded => "its first line did not come before too many others connected".into(),
-            Self::Hello(Fault::NoHello, _) => {
+            Self::Hello(RequestError::NoHello, _) => {
                 "its first line is no hello: a client of an earlier version, or of something else (docs/reference/serve.md)".into()
             }
-            Self::Hello(Fault::Unauthorized { why }, _) => (*why).into(),
-            Self::Hello(Fault::Version { .. }, _) => "its hello has another version, or none".into(),
+            Self::Hello(RequestError::Unauthorized { why }, _) => (*why).into(),
+            Self::Hello(RequestError::Version { .. }, _) => "its hello has another version, or none".into(),
             Self::Hello(fault, _) => fault.to_string(),
         }
     }
@@ -68,7 +68,9 @@ impl Refusal {
             Self::TooLong(_) => return lines::too_long(),
             Self::Late | Self::Crowded => "the first line did not come in time",
         };
-        lines::refusal(&Fault::Malformed { why: format!("{why}; the first line is a hello (docs/reference/serve.md)") })
+        lines::refusal(&RequestError::Malformed {
+            why: format!("{why}; the first line is a hello (docs/reference/serve.md)"),
+        })
     }
 
     /// Returns what kind of refusal it is: of each kind, the log has few lines.
@@ -80,9 +82,9 @@ impl Refusal {
             Self::TooLong(_) => "length",
             Self::Late => "time",
             Self::Crowded => "crowd",
-            Self::Hello(Fault::Unauthorized { .. }, _) => "token",
-            Self::Hello(Fault::Version { .. }, _) => "version",
-            Self::Hello(Fault::Full { .. }, _) => "places",
+            Self::Hello(RequestError::Unauthorized { .. }, _) => "token",
+            Self::Hello(RequestError::Version { .. }, _) => "version",
+            Self::Hello(RequestError::Full { .. }, _) => "places",
             Self::Hello(..) => "hello",
         }
     }
@@ -92,45 +94,44 @@ impl Refusal {
 /// from `input`.
 ///
 /// # Errors
-/// [`Refusal`].
+/// [`ConnectionRefusal`].
 pub fn read(
     input: &mut BufReader<Stream>,
     token: Option<&Token>,
     within: Duration,
-) -> Result<Option<Request>, Refusal> {
+) -> Result<Option<RequestLine>, ConnectionRefusal> {
     let Some(line) = first_line(input, Instant::now() + within)? else { return Ok(None) };
-    let request = Request::read(line.trim_ascii());
+    let request = RequestLine::read(line.trim_ascii());
     if !request.is_object() {
         return Err(no_object(&line, input.buffer(), &request));
     }
     let checked = request.hello().and_then(|hello| match (token, &hello.token) {
         (None, _) => Ok(()),
         (Some(token), Some(said)) if token.is(said) => Ok(()),
-        (Some(_), Some(_)) => Err(Fault::Unauthorized { why: "the token is wrong" }),
-        (Some(_), None) => Err(Fault::Unauthorized { why: "hello has no token" }),
+        (Some(_), Some(_)) => Err(RequestError::Unauthorized { why: "the token is wrong" }),
+        (Some(_), None) => Err(RequestError::Unauthorized { why: "hello has no token" }),
     });
     match checked {
         Ok(()) => Ok(Some(request)),
-        Err(fault) => Err(Refusal::Hello(fault.clone(), request.refused(fault))),
+        Err(fault) => Err(ConnectionRefusal::Hello(fault.clone(), request.refused(fault))),
     }
 }
 
 /// What a line is that is no JSON object. `behind` is what has come after it.
-pub fn no_object(line: &[u8], behind: &[u8], request: &Request) -> Refusal {
+pub fn no_object(line: &[u8], behind: &[u8], request: &RequestLine) -> ConnectionRefusal {
     if is_tls(line) {
-        Refusal::Tls
+        ConnectionRefusal::Tls
     } else if is_http(line) {
-        Refusal::Http { origin: origin([line, behind]) }
+        ConnectionRefusal::Http { origin: origin([line, behind]) }
     } else {
-        Refusal::NoObject(
-            request
-                .refused(Fault::Malformed { why: "the line is no JSON object, so this connection ends here".into() }),
-        )
+        ConnectionRefusal::NoObject(request.refused(RequestError::Malformed {
+            why: "the line is no JSON object, so this connection ends here".into(),
+        }))
     }
 }
 
 /// The bytes up to the end of the first line that is not empty, or up to where it is clear that it is no hello.
-fn first_line(input: &mut BufReader<Stream>, until: Instant) -> Result<Option<Vec<u8>>, Refusal> {
+fn first_line(input: &mut BufReader<Stream>, until: Instant) -> Result<Option<Vec<u8>>, ConnectionRefusal> {
     let mut line = Vec::new();
     loop {
         let left = until.saturating_duration_since(Instant::now());
@@ -158,9 +159,9 @@ fn first_line(input: &mut BufReader<Stream>, until: Instant) -> Result<Option<Ve
         input.consume(used);
         if line.len() > LONGEST {
             return Err(match (is_tls(&line), is_http(&line)) {
-                (true, _) => Refusal::Tls,
-                (_, true) => Refusal::Http { origin: origin([&line, &[]]) },
-                _ => Refusal::TooLong(LONGEST),
+                (true, _) => ConnectionRefusal::Tls,
+                (_, true) => ConnectionRefusal::Http { origin: origin([&line, &[]]) },
+                _ => ConnectionRefusal::TooLong(LONGEST),
             });
         }
         let text = line.trim_ascii_start();
@@ -173,8 +174,8 @@ fn first_line(input: &mut BufReader<Stream>, until: Instant) -> Result<Option<Ve
 }
 
 /// What a line is whose end did not come in time.
-fn late(line: &[u8]) -> Refusal {
-    if is_http(line) { Refusal::Http { origin: None } } else { Refusal::Late }
+fn late(line: &[u8]) -> ConnectionRefusal {
+    if is_http(line) { ConnectionRefusal::Http { origin: None } } else { ConnectionRefusal::Late }
 }
 
 /// Whether bytes begin as a connection with TLS: a handshake, and the version.

@@ -1,11 +1,11 @@
 //! A small HTTP/1.1 server for the live page and the metrics. It only answers GET and HEAD, so that nothing can be changed
 //! through it. Pages of others can neither read its answers nor show them.
 
-use crate::accept;
-use crate::log::Log;
+use crate::connection_limit;
+use crate::log::LogWriter;
 use crate::metrics;
-use crate::query::View;
-use crate::server::Handle;
+use crate::query::RobotView;
+use crate::server::ServerHandle;
 use crate::sockets::{Listener, Stream};
 use serde_json::json;
 use std::io::{self, Read, Write};
@@ -19,26 +19,26 @@ const LONGEST: usize = 8192;
 const MOST: usize = 32;
 
 /// A function that draws the regions of a robot in its fleet.
-pub type Draw = fn(&[Drawn], usize) -> Result<String, String>;
+pub type DrawFn = fn(&[RobotDrawing], usize) -> Result<String, String>;
 
 /// A robot, as it is drawn.
 #[derive(Clone, Debug)]
-pub struct Drawn {
+pub struct RobotDrawing {
     /// Name of the robot.
     pub name: String,
     /// Its abilities.
-    pub abilities: crate::robot::Abilities,
+    pub abilities: crate::robot::RobotTraits,
     /// The rest of its path.
-    pub course: crate::course::Course,
+    pub course: crate::owned_path::OwnedPath,
 }
 
 /// The content that is served.
 #[derive(Clone, Debug)]
-pub struct Site {
+pub struct HttpContent {
     /// The page.
     pub page: String,
     /// The function that draws pictures, if there is one.
-    pub draw: Option<Draw>,
+    pub draw: Option<DrawFn>,
     /// Accepted host names: a foreign page whose host name points here gets no answer.
     pub hosts: Vec<String>,
     /// Whether every address is accepted as a host, because the page is at all addresses of the machine. A foreign page needs a name that it
@@ -46,7 +46,7 @@ pub struct Site {
     pub addresses: bool,
 }
 
-impl Site {
+impl HttpContent {
     fn is_here(&self, host: &str) -> bool {
         let address =
             host.rsplit_once(':').filter(|(_, port)| !port.ends_with(']')).map_or(host, |(address, _)| address);
@@ -57,15 +57,15 @@ impl Site {
 }
 
 /// Serves for ever.
-pub fn listen(handle: &Handle, listener: &Listener, site: Site, log: Log) {
+pub fn listen(handle: &ServerHandle, listener: &Listener, site: HttpContent, log: LogWriter) {
     let handle = handle.clone();
-    accept::each(listener, "request", MOST, log, move |stream, _| {
+    connection_limit::each(listener, "request", MOST, log, move |stream, _| {
         // An error means that the client has gone.
         let _ = converse(&handle, &site, stream);
     });
 }
 
-fn converse(handle: &Handle, site: &Site, mut stream: Stream) -> io::Result<()> {
+fn converse(handle: &ServerHandle, site: &HttpContent, mut stream: Stream) -> io::Result<()> {
     let patience = Some(Duration::from_secs(5));
     stream.set_read_timeout(patience)?;
     stream.set_write_timeout(patience)?;
@@ -96,7 +96,7 @@ fn respond(stream: &mut Stream, status: &str, kind: &str, body: &str, has_body: 
 }
 
 /// Status, kind and body of the answer to a request.
-pub fn answer(handle: &Handle, site: &Site, request: &[u8]) -> (&'static str, &'static str, String) {
+pub fn answer(handle: &ServerHandle, site: &HttpContent, request: &[u8]) -> (&'static str, &'static str, String) {
     let plain = |status, text: &str| (status, "text/plain", format!("{text}\n"));
     let text = String::from_utf8_lossy(request);
     let mut lines = text.split("\r\n").take_while(|line| !line.is_empty());
@@ -130,7 +130,7 @@ pub fn answer(handle: &Handle, site: &Site, request: &[u8]) -> (&'static str, &'
         },
         "/state" => match handle.ask(|supervisor, board, now| {
             let robots = supervisor.robots().iter();
-            let views: Vec<View<'_>> = robots.map(|robot| View::of(supervisor, robot, now)).collect();
+            let views: Vec<RobotView<'_>> = robots.map(|robot| RobotView::new(supervisor, robot, now)).collect();
             json!({ "now": now, "counts": supervisor.counts(), "robots": views, "events": board.events() }).to_string()
         }) {
             Some(text) => ("200 OK", "application/json", text),
@@ -149,7 +149,7 @@ fn ended() -> (&'static str, &'static str, String) {
     ("503 Service Unavailable", "text/plain", "the supervisor has ended\n".into())
 }
 
-fn map(handle: &Handle, site: &Site, query: &str) -> (&'static str, &'static str, String) {
+fn map(handle: &ServerHandle, site: &HttpContent, query: &str) -> (&'static str, &'static str, String) {
     let plain = |status, text: &str| (status, "text/plain", format!("{text}\n"));
     let Some(draw) = site.draw else { return plain("404 Not Found", "there are no pictures") };
     // Other parameters, such as a time, are ignored; pages add them to bypass the cache.
@@ -158,9 +158,9 @@ fn map(handle: &Handle, site: &Site, query: &str) -> (&'static str, &'static str
     let fleet = handle.ask(move |supervisor, _, _| {
         let place = supervisor.robots().iter().position(|robot| robot.name == name)?;
         let drawn = supervisor.robots().iter().map(|robot| {
-            let course = robot.course.part(robot.at, robot.course.length());
+            let course = robot.course.part(robot.arc_length, robot.course.length());
             let course = course.map_err(|why| format!("{}: {why}", robot.name))?;
-            Ok(Drawn { name: robot.name.clone(), abilities: robot.abilities, course })
+            Ok(RobotDrawing { name: robot.name.clone(), abilities: robot.abilities, course })
         });
         Some(drawn.collect::<Result<Vec<_>, String>>().map(|fleet| (fleet, place)))
     });

@@ -14,10 +14,10 @@
 //! A journal that was begun anew has the whole state in its first frame, and was on the disk before it replaced the
 //! journal before it. Its last byte of the header says so: if its first frame is incomplete, that is damage.
 
-mod lock;
+mod folder_lock;
 
-use crate::entry::{Entry, Keep};
-use lock::Lock;
+use crate::journal_entry::{JournalEntry, JournalStore};
+use folder_lock::FolderLock;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -49,9 +49,9 @@ const ROOM: u64 = 1 << 18;
 
 /// The content of a journal.
 #[derive(Debug)]
-pub struct Found {
+pub struct JournalContents {
     /// The entries, oldest first.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<JournalEntry>,
     /// Size of an incomplete last frame, which is left out \[bytes\].
     pub torn: u64,
 }
@@ -61,7 +61,7 @@ pub struct Found {
 pub struct Journal {
     folder: PathBuf,
     file: File,
-    _lock: Lock,
+    _lock: FolderLock,
     /// End of its frames \[bytes\].
     len: u64,
     /// End of the state with which it was begun \[bytes\].
@@ -80,9 +80,9 @@ impl Journal {
     /// # Errors
     /// [`ErrorKind::WouldBlock`] if another process has it open, [`ErrorKind::InvalidData`] if it is damaged or of another
     /// version, and other errors of files.
-    pub fn open(folder: &Path) -> io::Result<(Self, Found)> {
+    pub fn open(folder: &Path) -> io::Result<(Self, JournalContents)> {
         fs::create_dir_all(folder).map_err(of(folder))?;
-        let lock = Lock::of(&folder.join("lock"))?;
+        let lock = FolderLock::acquire(&folder.join("lock"))?;
         let path = folder.join("journal");
         if !path.try_exists().map_err(of(&path))? {
             written(folder, HEADER)?;
@@ -90,7 +90,7 @@ impl Journal {
         let mut file = OpenOptions::new().read(true).write(true).open(&path).map_err(of(&path))?;
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(of(&path))?;
-        let Frames { entries, first, end: len, sum } =
+        let ParsedFrames { entries, first, end: len, sum } =
             read(&bytes).map_err(|why| io::Error::new(ErrorKind::InvalidData, why))?;
         let torn = bytes[len..].iter().rposition(|byte| *byte != 0).map_or(0, |last| last as u64 + 1);
         let (first, len) = (first as u64, len as u64);
@@ -98,7 +98,7 @@ impl Journal {
         file.set_len(len).and_then(|()| file.sync_all()).map_err(of(&path))?;
         file.seek(SeekFrom::Start(len))?;
         let own = Self { folder: folder.into(), file, _lock: lock, len, first, sum, end: len, failed: false };
-        Ok((own, Found { entries, torn }))
+        Ok((own, JournalContents { entries, torn }))
     }
 
     /// Adds a frame, and returns when it is on the disk. After an error any part of it may be there.
@@ -119,8 +119,8 @@ impl Journal {
     }
 }
 
-impl Keep for Journal {
-    fn keep(&mut self, entries: &[Entry]) -> io::Result<()> {
+impl JournalStore for Journal {
+    fn keep(&mut self, entries: &[JournalEntry]) -> io::Result<()> {
         if self.failed {
             return Err(io::Error::other("an earlier write has failed"));
         }
@@ -135,7 +135,7 @@ impl Keep for Journal {
         self.len > LONG.0.max(LONG.1 * self.first)
     }
 
-    fn restart(&mut self, entries: &[Entry]) -> io::Result<()> {
+    fn restart(&mut self, entries: &[JournalEntry]) -> io::Result<()> {
         if self.failed {
             return Err(io::Error::other("an earlier write has failed"));
         }
@@ -178,7 +178,7 @@ pub const FIRST: u32 = 0;
 ///
 /// # Errors
 /// [`ErrorKind::InvalidInput`] for a batch that is too long.
-pub fn frame(entries: &[Entry], before: u32) -> io::Result<(Vec<u8>, u32)> {
+pub fn frame(entries: &[JournalEntry], before: u32) -> io::Result<(Vec<u8>, u32)> {
     let text = serde_json::to_vec(entries)?;
     let length = u32::try_from(text.len()).ok().filter(|length| *length as usize <= LONGEST);
     let length = length.ok_or_else(|| io::Error::new(ErrorKind::InvalidInput, "too many entries at once"))?;
@@ -202,9 +202,9 @@ fn sum(begin: &[u8], text: &[u8]) -> u32 {
 
 /// The parsed content of a journal.
 #[derive(Debug)]
-pub struct Frames {
+pub struct ParsedFrames {
     /// The entries, oldest first.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<JournalEntry>,
     /// End of the state with which it was begun: of the first frame, if it was begun anew.
     pub first: usize,
     /// End of the last complete frame.
@@ -217,7 +217,7 @@ pub struct Frames {
 ///
 /// # Errors
 /// The damage, in words.
-pub fn read(bytes: &[u8]) -> Result<Frames, String> {
+pub fn read(bytes: &[u8]) -> Result<ParsedFrames, String> {
     let is_anew = match bytes.get(..HEADER.len()) {
         Some(header) if header == HEADER => false,
         Some(header) if header == ANEW => true,
@@ -231,7 +231,7 @@ pub fn read(bytes: &[u8]) -> Result<Frames, String> {
         }
         _ => return Err("it is no journal".into()),
     };
-    let mut read = Frames { entries: Vec::new(), first: HEADER.len(), end: HEADER.len(), sum: FIRST };
+    let mut read = ParsedFrames { entries: Vec::new(), first: HEADER.len(), end: HEADER.len(), sum: FIRST };
     while let Some(rest) = bytes.get(read.end..).filter(|rest| !rest.is_empty()) {
         let damage = |why: &str| format!("at byte {}: {why}", read.end);
         match text(rest) {
@@ -239,7 +239,8 @@ pub fn read(bytes: &[u8]) -> Result<Frames, String> {
                 if before != read.sum {
                     return Err(damage("entries that do not follow those before them"));
                 }
-                let batch: Vec<Entry> = serde_json::from_slice(text).map_err(|error| damage(&error.to_string()))?;
+                let batch: Vec<JournalEntry> =
+                    serde_json::from_slice(text).map_err(|error| damage(&error.to_string()))?;
                 read.entries.extend(batch);
                 let is_state = is_anew && read.end == HEADER.len();
                 read.end += FRAME + text.len();

@@ -29,27 +29,27 @@
 //! sent. If the journal has a thread of its own, they are sent as soon as it is on the disk, and messages that arrive
 //! meanwhile are processed.
 
-mod accept;
-pub mod board;
 pub mod clients;
-pub mod course;
-pub mod entry;
+mod connection_limit;
 pub mod event;
-pub mod fault;
 pub mod hello;
 pub mod http;
 pub mod journal;
+pub mod journal_entry;
+pub mod journal_writer;
 pub mod lines;
 pub mod log;
 pub mod metrics;
 pub mod outbox;
+pub mod owned_path;
 pub mod query;
 mod refusals;
+pub mod request_error;
 pub mod robot;
 pub mod server;
 pub mod sockets;
 pub mod supervisor;
+pub mod telemetry;
 pub mod token;
 pub mod vda5050;
 pub mod vehicles;
-pub mod writer;

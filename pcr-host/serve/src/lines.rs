@@ -1,15 +1,15 @@
 //! The line protocol: a JSON object on each line, one answer to each request with its `id`, and events for clients that
 //! subscribe. The schema is `docs/reference/schema/pcr-serve.schema.json`.
 
-use crate::course::Start;
-use crate::entry::Layout;
-use crate::event::Event;
-use crate::fault::Fault;
+use crate::event::SupervisorEvent;
+use crate::journal_entry::PageLayout;
 use crate::metrics::Census;
-use crate::query::{self, Question};
-use crate::robot::Abilities;
-use crate::supervisor::{Proposal, Report, Supervisor};
-use pcr_formats::once::Once;
+use crate::owned_path::StartPose;
+use crate::query::{self, Query};
+use crate::request_error::RequestError;
+use crate::robot::RobotTraits;
+use crate::supervisor::{MissionRequest, PositionReport, Supervisor};
+use pcr_formats::unique_keys::UniqueKeysJson;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
@@ -22,27 +22,27 @@ pub const LONGEST: usize = 1 << 20;
 /// What a request asks for. Repeating a request changes nothing.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "verb", rename_all = "snake_case")]
-enum Verb {
+enum Request {
     /// The first line of a connection.
     Hello(Hello),
     /// What the page draws.
-    Layout(Layout),
+    Layout(PageLayout),
     /// A new robot, which stands.
-    Add(Added),
+    Add(AddRobot),
     /// A path that leaves the present one at a length.
-    Replace(Proposal),
+    Replace(MissionRequest),
     /// A path that begins at the end of the present one.
-    Mission(Proposal),
+    Mission(MissionRequest),
     /// A robot is removed.
-    Remove(Named),
+    Remove(RobotRef),
     /// The position of a robot.
-    Position(Report),
+    Position(PositionReport),
     /// A robot is off its path.
-    Off(Off),
+    Off(OffPathReport),
     /// A question about the state.
-    Query(Question),
+    Query(Query),
     /// Whether the client wants events.
-    Watch(Watch),
+    Watch(Subscription),
 }
 
 /// The first line of a connection.
@@ -56,21 +56,21 @@ pub struct Hello {
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Added {
+struct AddRobot {
     robot: String,
-    start: Start,
-    abilities: Abilities,
+    start: StartPose,
+    abilities: RobotTraits,
 }
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Named {
+struct RobotRef {
     robot: String,
 }
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Off {
+struct OffPathReport {
     robot: String,
     x: f64,
     y: f64,
@@ -81,7 +81,7 @@ struct Off {
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Watch {
+struct Subscription {
     #[serde(default = "yes")]
     events: bool,
 }
@@ -92,7 +92,7 @@ fn yes() -> bool {
 
 /// The result of a line.
 #[derive(Clone, Debug)]
-pub struct Reply {
+pub struct LineReply {
     /// The answer. It may be sent after the next [`Supervisor::settle`].
     pub answer: Value,
     /// Whether the client wants events from now on; `None`: no change.
@@ -101,23 +101,23 @@ pub struct Reply {
 
 /// A line, read.
 #[derive(Clone, Debug)]
-pub struct Request {
+pub struct RequestLine {
     id: Value,
-    verb: Result<Verb, Fault>,
+    verb: Result<Request, RequestError>,
     has_version: bool,
     is_object: bool,
 }
 
-impl Request {
+impl RequestLine {
     /// Reads a line. An error in it becomes the answer.
     pub fn read(line: &[u8]) -> Self {
         let mut own = Self { id: Value::Null, verb: Err(malformed("")), has_version: false, is_object: false };
-        let value: Result<Once, _> = serde_json::from_slice(line);
+        let value: Result<UniqueKeysJson, _> = serde_json::from_slice(line);
         // JSON that is an error has a name twice.
-        own.is_object =
-            matches!(&value, Ok(Once(Value::Object(_)))) || value.as_ref().is_err_and(|error| error.is_data());
+        own.is_object = matches!(&value, Ok(UniqueKeysJson(Value::Object(_))))
+            || value.as_ref().is_err_and(|error| error.is_data());
         match value {
-            Ok(Once(Value::Object(object))) => own.verb = own.verb_of(object),
+            Ok(UniqueKeysJson(Value::Object(object))) => own.verb = own.verb_of(object),
             Ok(_) => own.verb = Err(malformed("it is no JSON object")),
             Err(error) => own.verb = Err(malformed(format!("it is no JSON object: {error}"))),
         }
@@ -125,7 +125,7 @@ impl Request {
     }
 
     /// The request of an object, of which it takes id and version.
-    fn verb_of(&mut self, mut object: Map<String, Value>) -> Result<Verb, Fault> {
+    fn verb_of(&mut self, mut object: Map<String, Value>) -> Result<Request, RequestError> {
         let id = object.remove("id").unwrap_or(Value::Null);
         if !(id.is_null() || id.is_string() || id.is_number()) {
             return Err(malformed("id: it has to be a text or a number"));
@@ -139,7 +139,7 @@ impl Request {
             None => {}
             Some(version) if version == VERSION => self.has_version = true,
             Some(version) => {
-                return Err(Fault::Version {
+                return Err(RequestError::Version {
                     why: format!("pcr: the version is {VERSION}, not {version}: use a client of version {VERSION}"),
                 });
             }
@@ -156,79 +156,81 @@ impl Request {
     ///
     /// # Errors
     /// [`Fault::Version`] for another version or none, [`Fault::NoHello`] for another line.
-    pub fn hello(&self) -> Result<&Hello, Fault> {
+    pub fn hello(&self) -> Result<&Hello, RequestError> {
         match &self.verb {
-            Ok(Verb::Hello(_)) if !self.has_version => {
-                Err(Fault::Version { why: format!("hello has to name the version, \"pcr\": {VERSION}") })
+            Ok(Request::Hello(_)) if !self.has_version => {
+                Err(RequestError::Version { why: format!("hello has to name the version, \"pcr\": {VERSION}") })
             }
-            Ok(Verb::Hello(hello)) => Ok(hello),
-            Err(fault @ Fault::Version { .. }) => Err(fault.clone()),
-            _ => Err(Fault::NoHello),
+            Ok(Request::Hello(hello)) => Ok(hello),
+            Err(fault @ RequestError::Version { .. }) => Err(fault.clone()),
+            _ => Err(RequestError::NoHello),
         }
     }
 
     /// Returns the answer that refuses it.
-    pub fn refused(&self, fault: Fault) -> Value {
+    pub fn refused(&self, fault: RequestError) -> Value {
         answer(self.id.clone(), Err(fault))
     }
 }
 
-fn malformed(why: impl Into<String>) -> Fault {
-    Fault::Malformed { why: why.into() }
+fn malformed(why: impl Into<String>) -> RequestError {
+    RequestError::Malformed { why: why.into() }
 }
 
 /// Reads and carries out the request of a line. Ages count from the time `came` \[s\]; the line may have waited since.
-pub fn handle(supervisor: &mut Supervisor, line: &[u8], came: f64, now: f64) -> Reply {
-    carry_out(supervisor, Request::read(line), came, now)
+pub fn handle(supervisor: &mut Supervisor, line: &[u8], came: f64, now: f64) -> LineReply {
+    carry_out(supervisor, RequestLine::read(line), came, now)
 }
 
 /// Carries out a request. Ages count from the time `came` \[s\]; the line may have waited since.
-pub fn carry_out(supervisor: &mut Supervisor, request: Request, came: f64, now: f64) -> Reply {
-    let Request { id, verb, .. } = request;
+pub fn carry_out(supervisor: &mut Supervisor, request: RequestLine, came: f64, now: f64) -> LineReply {
+    let RequestLine { id, verb, .. } = request;
     let mut watches = None;
     let done = verb.and_then(|verb| match verb {
-        Verb::Hello(_) => Ok(json!({ "version": VERSION, "fleet": Census::of(supervisor) })),
-        Verb::Layout(layout) => supervisor.draw(layout).map(|()| json!({})),
-        Verb::Add(Added { robot, start, abilities }) => {
+        Request::Hello(_) => Ok(json!({ "version": VERSION, "fleet": Census::of(supervisor) })),
+        Request::Layout(layout) => supervisor.draw(layout).map(|()| json!({})),
+        Request::Add(AddRobot { robot, start, abilities }) => {
             supervisor.add(&robot, abilities, start)?;
             let robot = supervisor.robot(&robot)?;
             Ok(json!({ "path": robot.path }))
         }
-        Verb::Replace(proposal) if proposal.after.is_none() => {
+        Request::Replace(proposal) if proposal.after.is_none() => {
             Err(malformed("replace needs `after`: the length of the path from which on it is another one"))
         }
-        Verb::Replace(proposal) | Verb::Mission(proposal) => {
+        Request::Replace(proposal) | Request::Mission(proposal) => {
             supervisor.mission(&proposal, now).map(|verdict| json!(verdict))
         }
-        Verb::Remove(Named { robot }) => supervisor.remove(&robot).map(|there| json!({ "removed": there })),
-        Verb::Position(report) => supervisor.position(&report, came).map(|()| json!({})),
-        Verb::Off(Off { robot, x, y, age }) => supervisor.off(&robot, [x, y], age, came).map(|()| json!({})),
-        Verb::Query(question) => query::answer(supervisor, &question, now),
-        Verb::Watch(Watch { events }) => {
+        Request::Remove(RobotRef { robot }) => supervisor.remove(&robot).map(|there| json!({ "removed": there })),
+        Request::Position(report) => supervisor.position(&report, came).map(|()| json!({})),
+        Request::Off(OffPathReport { robot, x, y, age }) => {
+            supervisor.report_off_path(&robot, [x, y], age, came).map(|()| json!({}))
+        }
+        Request::Query(question) => query::answer(supervisor, &question, now),
+        Request::Watch(Subscription { events }) => {
             watches = Some(events);
             Ok(json!({}))
         }
     });
-    Reply { answer: answer(id, done), watches }
+    LineReply { answer: answer(id, done), watches }
 }
 
 /// The answer to a line longer than [`LONGEST`].
 pub fn too_long() -> Value {
-    refusal(&Fault::Malformed { why: format!("a line is {LONGEST} bytes long at most") })
+    refusal(&RequestError::Malformed { why: format!("a line is {LONGEST} bytes long at most") })
 }
 
 /// An error line that answers no particular request.
-pub fn refusal(fault: &Fault) -> Value {
+pub fn refusal(fault: &RequestError) -> Value {
     answer(Value::Null, Err(fault.clone()))
 }
 
 /// Replaces an answer whose changes could not be stored in the journal.
-pub fn withdrawn(answer: &Value, fault: &Fault) -> Value {
+pub fn withdrawn(answer: &Value, fault: &RequestError) -> Value {
     self::answer(answer.get("id").cloned().unwrap_or(Value::Null), Err(fault.clone()))
 }
 
 /// An event as a line.
-pub fn news(event: &Event) -> Value {
+pub fn news(event: &SupervisorEvent) -> Value {
     let mut news = json!(event);
     if let Some(object) = news.as_object_mut() {
         object.insert("pcr".into(), VERSION.into());
@@ -236,7 +238,7 @@ pub fn news(event: &Event) -> Value {
     news
 }
 
-fn answer(id: Value, done: Result<Value, Fault>) -> Value {
+fn answer(id: Value, done: Result<Value, RequestError>) -> Value {
     match done {
         Ok(value) => json!({ "pcr": VERSION, "id": id, "ok": value }),
         Err(fault) => {

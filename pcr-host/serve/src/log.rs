@@ -1,13 +1,13 @@
 //! Log messages, one line each, as `key=value`, from a level on.
 
-use crate::event::Event;
+use crate::event::SupervisorEvent;
 use std::fmt::Display;
 use std::io::Write;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// The importance of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
+pub enum LogLevel {
     /// Holds.
     Debug,
     /// Missions, and robots that are added or removed.
@@ -18,7 +18,7 @@ pub enum Level {
     Error,
 }
 
-impl Level {
+impl LogLevel {
     fn name(self) -> &'static str {
         match self {
             Self::Debug => "debug",
@@ -29,7 +29,7 @@ impl Level {
     }
 }
 
-impl std::str::FromStr for Level {
+impl std::str::FromStr for LogLevel {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -41,18 +41,18 @@ impl std::str::FromStr for Level {
 
 /// Writes the messages of a level or above to standard error.
 #[derive(Clone, Copy, Debug)]
-pub struct Log {
-    least: Level,
+pub struct LogWriter {
+    least: LogLevel,
 }
 
-impl Log {
+impl LogWriter {
     /// Writes messages of this level or above.
-    pub fn new(least: Level) -> Self {
+    pub fn new(least: LogLevel) -> Self {
         Self { least }
     }
 
     /// Writes a message; values are quoted as JSON.
-    pub fn write(self, level: Level, message: &str, values: &[(&str, &dyn Display)]) {
+    pub fn write(self, level: LogLevel, message: &str, values: &[(&str, &dyn Display)]) {
         if level < self.least {
             return;
         }
@@ -67,16 +67,18 @@ impl Log {
     }
 
     /// Writes an event of the supervisor.
-    pub fn event(self, event: &Event) {
+    pub fn event(self, event: &SupervisorEvent) {
         let level = match event {
-            Event::Hold { .. } => Level::Debug,
-            Event::Admitted { .. }
-            | Event::Waiting { .. }
-            | Event::Heard { .. }
-            | Event::Clear { .. }
-            | Event::Go { .. } => Level::Info,
-            Event::Dropped { .. } | Event::Silent { .. } => Level::Warn,
-            Event::Standstill { .. } | Event::Alarm { .. } | Event::Stop { .. } => Level::Error,
+            SupervisorEvent::Hold { .. } => LogLevel::Debug,
+            SupervisorEvent::Admitted { .. }
+            | SupervisorEvent::Waiting { .. }
+            | SupervisorEvent::Heard { .. }
+            | SupervisorEvent::Clear { .. }
+            | SupervisorEvent::Go { .. } => LogLevel::Info,
+            SupervisorEvent::Dropped { .. } | SupervisorEvent::Silent { .. } => LogLevel::Warn,
+            SupervisorEvent::Standstill { .. } | SupervisorEvent::Alarm { .. } | SupervisorEvent::Stop { .. } => {
+                LogLevel::Error
+            }
         };
         if level >= self.least {
             let text = serde_json::to_string(event).unwrap_or_default();

@@ -10,13 +10,13 @@ const CLASSES: [f64; 10] = [0.000_1, 0.000_25, 0.000_5, 0.001, 0.002_5, 0.005, 0
 
 /// Times from the arrival of a request until its answer and all resulting messages were sent.
 #[derive(Clone, Debug, Default)]
-pub struct Latency {
+pub struct LatencyHistogram {
     classes: [u64; CLASSES.len()],
     count: u64,
     sum: f64,
 }
 
-impl Latency {
+impl LatencyHistogram {
     /// Adds a time.
     pub fn add(&mut self, time: Duration) {
         let seconds = time.as_secs_f64();
@@ -45,7 +45,9 @@ impl Census {
     /// Counts the robots of a supervisor.
     pub fn of(supervisor: &Supervisor) -> Self {
         let robots = supervisor.robots();
-        let count = |which: fn(&crate::robot::Robot) -> bool| robots.iter().filter(|robot| which(robot)).count() as u64;
+        let count = |which: fn(&crate::robot::SupervisedRobot) -> bool| {
+            robots.iter().filter(|robot| which(robot)).count() as u64
+        };
         Self {
             robots: robots.len() as u64,
             waiting: count(|robot| robot.waiting.is_some()),
@@ -57,7 +59,7 @@ impl Census {
 }
 
 /// The page `/metrics`.
-pub fn text(supervisor: &Supervisor, latency: &Latency) -> String {
+pub fn text(supervisor: &Supervisor, latency: &LatencyHistogram) -> String {
     let mut text = String::new();
     let counts = supervisor.counts();
     let census = Census::of(supervisor);
@@ -95,7 +97,7 @@ pub fn text(supervisor: &Supervisor, latency: &Latency) -> String {
         sum += class;
         let _ = writeln!(text, "{name}_bucket{{le=\"{end}\"}} {sum}");
     }
-    let Latency { count, sum, .. } = latency;
+    let LatencyHistogram { count, sum, .. } = latency;
     let _ = writeln!(text, "{name}_bucket{{le=\"+Inf\"}} {count}\n{name}_sum {sum}\n{name}_count {count}");
     text
 }

@@ -1,8 +1,8 @@
 //! Lines on their way to a client. So many bytes of them wait at most; a client that reads none is disconnected and told
 //! why in the last line.
 
-use crate::fault::Fault;
 use crate::lines;
+use crate::request_error::RequestError;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvError, RecvTimeoutError, Sender, TryRecvError, channel};
@@ -16,20 +16,20 @@ const BATCH: usize = 1 << 16;
 
 /// The end into which lines are written.
 #[derive(Debug)]
-pub struct Outbox {
+pub struct OutboxSender {
     sender: Sender<String>,
-    shared: Arc<Shared>,
+    shared: Arc<OutboxState>,
 }
 
 /// The end from which lines are read.
 #[derive(Debug)]
-pub struct Lines {
+pub struct OutboxReceiver {
     receiver: Receiver<String>,
-    shared: Arc<Shared>,
+    shared: Arc<OutboxState>,
 }
 
 #[derive(Debug, Default)]
-struct Shared {
+struct OutboxState {
     /// Number of bytes that wait.
     bytes: AtomicUsize,
     /// No more lines will come.
@@ -38,7 +38,7 @@ struct Shared {
 
 /// The reason why a client gets no more lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lost {
+pub enum DisconnectReason {
     /// The client has disconnected.
     Gone,
     /// The client does not read the lines sent to it.
@@ -46,25 +46,25 @@ pub enum Lost {
 }
 
 /// Creates both ends.
-pub fn outbox() -> (Outbox, Lines) {
+pub fn outbox() -> (OutboxSender, OutboxReceiver) {
     let (sender, receiver) = channel();
-    let shared = Arc::<Shared>::default();
-    (Outbox { sender, shared: shared.clone() }, Lines { receiver, shared })
+    let shared = Arc::<OutboxState>::default();
+    (OutboxSender { sender, shared: shared.clone() }, OutboxReceiver { receiver, shared })
 }
 
-impl Outbox {
+impl OutboxSender {
     /// Sends a line. A line that is longer than the backlog is sent if nothing else waits.
     ///
     /// # Errors
     /// [`Lost`]: nothing more may be sent to this client.
-    pub fn send(&self, line: String) -> Result<(), Lost> {
+    pub fn send(&self, line: String) -> Result<(), DisconnectReason> {
         let waiting = self.shared.bytes.load(Ordering::Relaxed);
         if waiting > 0 && waiting.saturating_add(line.len()) > BACKLOG {
             // This may fail if the client has disconnected as well.
-            let _ = self.put(format!("{}\n", lines::refusal(&Fault::Slow { bytes: waiting })));
-            return Err(Lost::Slow);
+            let _ = self.put(format!("{}\n", lines::refusal(&RequestError::Slow { bytes: waiting })));
+            return Err(DisconnectReason::Slow);
         }
-        self.put(line).map_err(|()| Lost::Gone)
+        self.put(line).map_err(|()| DisconnectReason::Gone)
     }
 
     fn put(&self, line: String) -> Result<(), ()> {
@@ -74,13 +74,13 @@ impl Outbox {
     }
 }
 
-impl Drop for Outbox {
+impl Drop for OutboxSender {
     fn drop(&mut self) {
         self.shared.is_closed.store(true, Ordering::Relaxed);
     }
 }
 
-impl Lines {
+impl OutboxReceiver {
     /// The next line; waits for it.
     ///
     /// # Errors

@@ -1,19 +1,19 @@
 //! Queries about a fleet.
 
-use crate::course::{Course, JOINT, Shape, Start};
-use crate::entry::Side;
-use crate::fault::Fault;
-use crate::robot::{Alarm, ROOM, Robot};
+use crate::journal_entry::StoredPassingState;
+use crate::owned_path::{JOINT, OwnedPath, PathElement, StartPose};
+use crate::request_error::RequestError;
+use crate::robot::{Alarm, ROOM, SupervisedRobot};
 use crate::supervisor::Supervisor;
 use pcr_core::{Encounter, Interval, Limits, Motion, Profile};
-use pcr_planning::safe::safe_intervals;
+use pcr_planning::safe_windows::safe_intervals;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 /// A question. Variants without fields have braces, because serde would otherwise accept unknown fields with them.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Question {
+pub enum Query {
     /// The state of all robots, or of one.
     Robots {
         /// Name of the robot; `None`: all robots.
@@ -47,7 +47,7 @@ pub enum Question {
 
 /// The state of a robot, as it is sent in answers.
 #[derive(Clone, Debug, Serialize)]
-pub struct View<'a> {
+pub struct RobotView<'a> {
     robot: &'a str,
     path: u64,
     origin: f64,
@@ -68,14 +68,14 @@ pub struct View<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     stopped_for: Option<&'a str>,
     silent: bool,
-    start: Start,
-    shapes: &'a [Shape],
+    start: StartPose,
+    shapes: &'a [PathElement],
 }
 
-impl<'a> View<'a> {
+impl<'a> RobotView<'a> {
     /// The state of one robot of a fleet at a time \[s\].
-    pub fn of(supervisor: &'a Supervisor, robot: &'a Robot, now: f64) -> Self {
-        let extent = robot.extent(now);
+    pub fn new(supervisor: &'a Supervisor, robot: &'a SupervisedRobot, now: f64) -> Self {
+        let extent = robot.possible_positions(now);
         Self {
             robot: &robot.name,
             path: robot.path,
@@ -84,7 +84,7 @@ impl<'a> View<'a> {
             radius: robot.abilities.radius,
             at: [extent.lo, extent.hi],
             hold: robot.granted,
-            wanted: robot.wanted(supervisor.settings().lookahead, supervisor.settings().width),
+            wanted: robot.wanted(supervisor.settings().lookahead, supervisor.settings().position_uncertainty),
             waits_for: supervisor.waits_for(robot),
             mission: robot.mission.as_deref(),
             waiting: robot.waiting.as_ref().map(|waiting| waiting.mission.as_str()),
@@ -101,19 +101,19 @@ impl<'a> View<'a> {
 ///
 /// # Errors
 /// [`Fault::NoSuchRobot`], [`Fault::Invalid`].
-pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<Value, Fault> {
+pub fn answer(supervisor: &Supervisor, question: &Query, now: f64) -> Result<Value, RequestError> {
     let robots = supervisor.robots();
-    let place = |name: &str| robots.iter().position(|robot| robot.name == *name).ok_or(Fault::NoSuchRobot);
+    let place = |name: &str| robots.iter().position(|robot| robot.name == *name).ok_or(RequestError::NoSuchRobot);
     match question {
-        Question::Robots { robot: Some(name) } => {
-            Ok(json!({ "robots": [View::of(supervisor, supervisor.robot(name)?, now)] }))
+        Query::Robots { robot: Some(name) } => {
+            Ok(json!({ "robots": [RobotView::new(supervisor, supervisor.robot(name)?, now)] }))
         }
-        Question::Robots { robot: None } => {
-            let views: Vec<View<'_>> = robots.iter().map(|robot| View::of(supervisor, robot, now)).collect();
+        Query::Robots { robot: None } => {
+            let views: Vec<RobotView<'_>> = robots.iter().map(|robot| RobotView::new(supervisor, robot, now)).collect();
             Ok(json!({ "robots": views }))
         }
-        Question::Holds {} => {
-            let hold = |robot: &Robot| {
+        Query::Holds {} => {
+            let hold = |robot: &SupervisedRobot| {
                 let waits_for = supervisor.waits_for(robot);
                 let mut told =
                     json!({ "robot": robot.name, "path": robot.path, "hold": robot.granted, "waits_for": waits_for });
@@ -125,25 +125,25 @@ pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<
             };
             Ok(json!({ "holds": robots.iter().map(hold).collect::<Vec<_>>() }))
         }
-        Question::Regions { robot } => {
+        Query::Regions { robot } => {
             let fleet = supervisor.fleet()?;
-            let row = supervisor.orders().row(&fleet, place(robot)?).map_err(Fault::invalid)?;
+            let row = supervisor.orders().row(&fleet, place(robot)?).map_err(RequestError::invalid)?;
             let regions = row.map(|(_, region, pass)| {
                 let [length, other_length] =
                     [region.length(), region.other_length()].map(|length| [length.lo, length.hi]);
                 let with = &robots[region.other()].name;
-                json!({ "with": with, "length": length, "other_length": other_length, "pass": Side::from(pass) })
+                json!({ "with": with, "length": length, "other_length": other_length, "pass": StoredPassingState::from(pass) })
             });
             Ok(json!({ "regions": regions.collect::<Vec<_>>() }))
         }
-        Question::Conflicts { robot } => {
+        Query::Conflicts { robot } => {
             let (ego, ways) = (place(robot)?, ways(robots)?);
             let fleet = motions(&ways)?;
             let mut conflicts = Vec::new();
             for other in (0..fleet.len()).filter(|&other| other != ego) {
                 let pair = Encounter::new(&fleet[ego], &fleet[other]);
                 for conflict in pair.conflicts(pair.time()) {
-                    let at = robots[ego].at;
+                    let at = robots[ego].arc_length;
                     conflicts.push(json!({
                         "with": robots[other].name,
                         "time": [conflict.time.lo, conflict.time.hi],
@@ -153,14 +153,14 @@ pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<
             }
             Ok(json!({ "conflicts": conflicts }))
         }
-        &Question::Safe { ref robot, length: [lo, hi], until } => {
+        &Query::Safe { ref robot, length: [lo, hi], until } => {
             let (ego, ways) = (place(robot)?, ways(robots)?);
-            let (at, end) = (robots[ego].at, robots[ego].course.length());
+            let (at, end) = (robots[ego].arc_length, robots[ego].course.length());
             if !(at - JOINT..=end + JOINT).contains(&lo)
                 || !(lo..=end + JOINT).contains(&hi)
                 || !(0.0..=1e6).contains(&until)
             {
-                return Err(Fault::invalid(format!(
+                return Err(RequestError::invalid(format!(
                     "length: allowed is {at} to {end} m, the part still ahead; until: allowed is 0 to 1000000 s"
                 )));
             }
@@ -171,31 +171,33 @@ pub fn answer(supervisor: &Supervisor, question: &Question, now: f64) -> Result<
                 Interval::new((lo - at).max(0.0), (hi - at).max(0.0)),
                 Interval::new(0.0, until),
             );
-            let safe = safe.map_err(Fault::invalid)?.into_iter().map(|safe| [safe.lo, safe.hi]);
+            let safe = safe.map_err(RequestError::invalid)?.into_iter().map(|safe| [safe.lo, safe.hi]);
             Ok(json!({ "safe": safe.collect::<Vec<_>>() }))
         }
-        Question::Counts {} => Ok(json!(supervisor.counts())),
+        Query::Counts {} => Ok(json!(supervisor.counts())),
     }
 }
 
 /// The rest of a path, at full speed from rest.
-struct Way {
-    course: Course,
+struct RemainingPath {
+    course: OwnedPath,
     profile: Profile<f64, 3>,
     radius: f64,
 }
 
-fn ways(robots: &[Robot]) -> Result<Vec<Way>, Fault> {
-    let way = |robot: &Robot| {
-        let course = robot.course.part(robot.at, robot.course.length())?;
+fn ways(robots: &[SupervisedRobot]) -> Result<Vec<RemainingPath>, RequestError> {
+    let way = |robot: &SupervisedRobot| {
+        let course = robot.course.part(robot.arc_length, robot.course.length())?;
         let limits = Limits { speed: robot.abilities.speed, acceleration: robot.abilities.acceleration };
         let length = course.length();
         let profile = if length > 0.0 { Profile::rest_to_rest(length, limits)? } else { Profile::standing() };
-        Ok(Way { course, profile, radius: robot.abilities.reach() - ROOM })
+        Ok(RemainingPath { course, profile, radius: robot.abilities.radius_with_margin() - ROOM })
     };
-    robots.iter().map(way).collect::<Result<_, pcr_core::Invalid>>().map_err(Fault::invalid)
+    robots.iter().map(way).collect::<Result<_, pcr_core::InvalidInput>>().map_err(RequestError::invalid)
 }
 
-fn motions(ways: &[Way]) -> Result<Vec<Motion<'_, f64>>, Fault> {
-    ways.iter().map(|way| way.course.motion_by(way.profile.as_profile(), way.radius).map_err(Fault::invalid)).collect()
+fn motions(ways: &[RemainingPath]) -> Result<Vec<Motion<'_, f64>>, RequestError> {
+    ways.iter()
+        .map(|way| way.course.motion_by(way.profile.as_profile(), way.radius).map_err(RequestError::invalid))
+        .collect()
 }

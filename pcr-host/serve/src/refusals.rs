@@ -1,7 +1,7 @@
 //! Refused connections in the log: of each kind, one line in a while, with the number of those since the last one.
 
-use crate::hello::Refusal;
-use crate::log::{Level, Log};
+use crate::hello::ConnectionRefusal;
+use crate::log::{LogLevel, LogWriter};
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -13,28 +13,28 @@ const PAUSE: Duration = Duration::from_secs(10);
 /// Writes the refused connections of a listener.
 #[derive(Clone, Debug)]
 pub(crate) struct Refusals {
-    log: Log,
+    log: LogWriter,
     /// Time of the last line of each kind, and number of connections since.
     last: Arc<Mutex<BTreeMap<&'static str, (Instant, u64)>>>,
 }
 
 impl Refusals {
-    pub(crate) fn new(log: Log) -> Self {
+    pub(crate) fn new(log: LogWriter) -> Self {
         Self { log, last: Arc::default() }
     }
 
     /// Writes a refused connection, or counts it.
-    pub(crate) fn note(&self, who: &str, refusal: &Refusal) {
+    pub(crate) fn note(&self, who: &str, refusal: &ConnectionRefusal) {
         let Some(others) = self.counted(refusal.kind(), Instant::now()) else { return };
         let reason = refusal.reason();
         let mut values: Vec<(&str, &dyn Display)> = vec![("from", &who), ("why", &reason)];
-        if let Refusal::Http { origin: Some(origin) } = refusal {
+        if let ConnectionRefusal::Http { origin: Some(origin) } = refusal {
             values.push(("page", origin));
         }
         if others > 0 {
             values.push(("others", &others));
         }
-        self.log.write(Level::Warn, "a connection to the lines is refused", &values);
+        self.log.write(LogLevel::Warn, "a connection to the lines is refused", &values);
     }
 
     /// Number of connections of a kind since the last line, if another line is due.
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn of_each_kind_one_line_in_a_while() {
-        let refusals = Refusals::new(Log::new(Level::Error));
+        let refusals = Refusals::new(LogWriter::new(LogLevel::Error));
         let begin = Instant::now();
         let at = |seconds: u64, kind| refusals.counted(kind, begin + Duration::from_secs(seconds));
         assert_eq!([at(0, "http"), at(1, "http"), at(1, "token"), at(9, "http")], [Some(0), None, Some(0), None]);

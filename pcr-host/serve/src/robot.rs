@@ -1,7 +1,7 @@
 //! The state of a robot: its abilities, its path, its place on the path, and how far it has been allowed to go.
 
-use crate::course::{Course, Rest, Shape};
-use pcr_core::{Hold, Interval, Invalid, Motion, Progress};
+use crate::owned_path::{OwnedPath, PathElement, PathRounding};
+use pcr_core::{Interval, InvalidInput, Motion, MovementAuthority, Progress};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ pub const BACK: f64 = 0.05;
 /// The abilities of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Abilities {
+pub struct RobotTraits {
     /// Radius of the disc that contains it, also while it turns in place \[m\].
     pub radius: f64,
     /// Distance by which it may be off its path; kept free around it \[m\].
@@ -28,7 +28,7 @@ pub struct Abilities {
     pub acceleration: f64,
 }
 
-impl Abilities {
+impl RobotTraits {
     /// # Errors
     /// The first value that is out of range, in words.
     pub fn checked(self) -> Result<Self, String> {
@@ -44,7 +44,7 @@ impl Abilities {
     }
 
     /// Radius with margin, for which orders are made \[m\].
-    pub fn reach(&self) -> f64 {
+    pub fn radius_with_margin(&self) -> f64 {
         self.radius + self.margin + ROOM
     }
 
@@ -61,7 +61,8 @@ pub enum Alarm {
     /// It is beyond its hold.
     Beyond {
         /// Its hold \[m\].
-        told: f64,
+        #[serde(rename = "told")]
+        notified_limit: f64,
         /// Upper end of the reported position \[m\].
         at: f64,
     },
@@ -83,7 +84,7 @@ pub enum Alarm {
 
 /// A mission that waits to be admitted.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Waiting {
+pub struct PendingMission {
     /// Id that the fleet manager gave it.
     pub mission: String,
     /// Length of the present path at which the mission leaves it \[m\].
@@ -91,14 +92,14 @@ pub struct Waiting {
     /// Number of the present path.
     pub path: u64,
     /// Shapes of the mission's path.
-    pub shapes: Vec<Shape>,
+    pub shapes: Vec<PathElement>,
     /// Number in the queue: missions with lower numbers are tried first.
     pub turn: u64,
 }
 
 /// The request of a mission. A second request under the same id has to be equal to it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Asked {
+pub struct MissionFingerprint {
     /// Length of the path before at which the mission begins \[m\].
     pub after: f64,
     /// Number of shapes at the end of the path that belong to the mission.
@@ -107,21 +108,21 @@ pub struct Asked {
 
 /// How far the passing orders allow a robot to go, for the positions of the others at the time of the computation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wait {
+pub struct PrecedenceLimit {
     /// The hold.
-    pub hold: Hold<f64>,
+    pub hold: MovementAuthority<f64>,
     /// The robot that it waits for, by its index, and the length of that robot \[m\]: when that one has gone on, the hold may
     /// be further.
-    pub by: Option<(usize, f64)>,
+    pub waits_for: Option<(usize, f64)>,
     /// Its own length \[m\]: when it has gone on, it may have passed what kept it.
     pub at: f64,
 }
 
 /// Notes that other modules have stored about a robot, by key.
-pub type Notes = BTreeMap<String, Value>;
+pub type RobotNotes = BTreeMap<String, Value>;
 
 /// Appends to a note that is a list; a missing note is an empty list. `false` if the note is not a list.
-pub fn remember(notes: &mut Notes, key: &str, more: &[Value]) -> bool {
+pub fn remember(notes: &mut RobotNotes, key: &str, more: &[Value]) -> bool {
     let Value::Array(list) = notes.entry(key.into()).or_insert_with(|| Value::Array(Vec::new())) else {
         return false;
     };
@@ -131,15 +132,15 @@ pub fn remember(notes: &mut Notes, key: &str, more: &[Value]) -> bool {
 
 /// A robot in the supervisor.
 #[derive(Clone, Debug)]
-pub struct Robot {
+pub struct SupervisedRobot {
     /// Name of the robot.
     pub name: String,
     /// Its abilities.
-    pub abilities: Abilities,
+    pub abilities: RobotTraits,
     /// Its present path.
-    pub course: Course,
+    pub course: OwnedPath,
     /// What is missing from the start of the path.
-    pub rest: Rest,
+    pub rest: PathRounding,
     /// Number of its path. The first one is 1 above the highest number of any removed robot; each new path has the next number.
     pub path: u64,
     /// Where the path begins, as a length of the way since the robot was added \[m\]: the sum of what was cut off from earlier
@@ -148,11 +149,11 @@ pub struct Robot {
     /// Id of the mission that it got last.
     pub mission: Option<String>,
     /// Request of that mission; `None` if it is not known.
-    pub asked: Option<Asked>,
+    pub asked: Option<MissionFingerprint>,
     /// Ids of earlier missions, oldest first: a late repetition of their requests has no effect.
     pub past: Vec<String>,
     /// Length that it has certainly reached \[m\]; never decreases on the same path.
-    pub at: f64,
+    pub arc_length: f64,
     /// Length that it had certainly not passed at the time `heard` \[m\].
     pub up_to: f64,
     /// Time to which `up_to` belongs \[s\]; `None` before the first position since the start.
@@ -163,19 +164,19 @@ pub struct Robot {
     pub granted: f64,
     /// Largest hold that it may have been told \[m\]. It equals `granted`, except after a restart: then it is the hold of the
     /// journal, which the robot may have reached, but which must not be told again before it is computed anew.
-    pub told: f64,
+    pub notified_limit: f64,
     /// The hold in the journal \[m\], at least `told`.
     pub ceiling: f64,
     /// Next length at which it can stop \[m\]: a hold before that is of no use to it. 0 after a restart.
     pub next: f64,
     /// How far its orders allow it to go; `None` if that has to be computed.
-    pub hold: Option<Wait>,
+    pub authority: Option<PrecedenceLimit>,
     /// Its alarm, if there is one.
     pub alarm: Option<Alarm>,
     /// The robot because of which it must stop, as that one may be anywhere near.
     pub stopped: Option<String>,
     /// Its waiting mission, if there is one.
-    pub waiting: Option<Waiting>,
+    pub waiting: Option<PendingMission>,
     /// Whether it has been reported as silent.
     pub silent: bool,
     /// Time at which it was last seen to advance, or got a path \[s\].
@@ -183,44 +184,44 @@ pub struct Robot {
     /// Whether a standstill because of it has been reported since then.
     pub stands: bool,
     /// Notes that other modules have stored about it, by key.
-    pub notes: Notes,
+    pub notes: RobotNotes,
 }
 
-impl Robot {
+impl SupervisedRobot {
     /// A robot that stands at the start of its path. Other robots may still have the right to go there.
-    pub fn new(name: String, abilities: Abilities, course: Course) -> Self {
+    pub fn new(name: String, abilities: RobotTraits, course: OwnedPath) -> Self {
         Self {
             name,
             abilities,
             course,
-            rest: Rest::default(),
+            rest: PathRounding::default(),
             path: 1,
             origin: 0.0,
             mission: None,
             asked: None,
             past: Vec::new(),
-            at: 0.0,
+            arc_length: 0.0,
             up_to: 0.0,
             heard: None,
             alive: None,
             granted: 0.0,
-            told: 0.0,
+            notified_limit: 0.0,
             ceiling: 0.0,
             next: 0.0,
-            hold: None,
+            authority: None,
             alarm: None,
             stopped: None,
             waiting: None,
             silent: false,
             moved: None,
             stands: false,
-            notes: Notes::new(),
+            notes: RobotNotes::new(),
         }
     }
 
     /// Request of its mission: length of the path before, and shapes; `None` if it is not known.
-    pub fn asked(&self) -> Option<(f64, &[Shape])> {
-        let Asked { after, shapes } = self.asked?;
+    pub fn mission_request(&self) -> Option<(f64, &[PathElement])> {
+        let MissionFingerprint { after, shapes } = self.asked?;
         let all = self.course.shapes();
         Some((after, all.get(all.len().checked_sub(shapes)?..)?))
     }
@@ -237,21 +238,21 @@ impl Robot {
     /// The motion of its disc on its path.
     ///
     /// # Errors
-    /// [`Invalid`] for a radius; it was checked when the robot was added.
-    pub fn motion(&self) -> Result<Motion<'_, f64>, Invalid> {
-        self.course.motion(self.abilities.reach())
+    /// [`InvalidInput`] for a radius; it was checked when the robot was added.
+    pub fn motion(&self) -> Result<Motion<'_, f64>, InvalidInput> {
+        self.course.motion(self.abilities.radius_with_margin())
     }
 
     /// Its position, and where it can come to rest: it may go up to `told` without asking again.
     pub fn progress(&self) -> Progress<f64> {
-        Progress { at: Interval::new(self.at, self.told), stop: self.told }
+        Progress { at: Interval::new(self.arc_length, self.notified_limit), stop: self.notified_limit }
     }
 
     /// Where it can be at a time \[m\]: the upper end grows with its speed, up to `told`.
-    pub fn extent(&self, now: f64) -> Interval<f64> {
+    pub fn possible_positions(&self, now: f64) -> Interval<f64> {
         let grown =
             self.heard.map_or(f64::INFINITY, |heard| self.up_to + self.abilities.speed * (now - heard).max(0.0));
-        Interval::new(self.at, grown.min(self.told).max(self.at))
+        Interval::new(self.arc_length, grown.min(self.notified_limit).max(self.arc_length))
     }
 
     /// Hold that it needs so that it does not have to brake within the lookahead \[m\]. It is further on than the width, so that a robot that
@@ -263,6 +264,6 @@ impl Robot {
 
     /// Whether it has reached the end of its path, within a width \[m\].
     pub fn has_arrived(&self, width: f64) -> bool {
-        self.at >= self.course.length() - width
+        self.arc_length >= self.course.length() - width
     }
 }

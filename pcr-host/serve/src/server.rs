@@ -1,14 +1,14 @@
 //! The thread that owns the supervisor. Other threads read input and write output; bounded queues connect them, so that
 //! a client that sends too fast has to wait, and one that reads too slowly is disconnected.
 
-use crate::board::Board;
-use crate::event::Event;
-use crate::fault::Fault;
-use crate::lines::{self, Request};
-use crate::log::{Level, Log};
-use crate::outbox::{Lost, Outbox};
+use crate::event::SupervisorEvent;
+use crate::journal_writer::WriteProgress;
+use crate::lines::{self, RequestLine};
+use crate::log::{LogLevel, LogWriter};
+use crate::outbox::{DisconnectReason, OutboxSender};
+use crate::request_error::RequestError;
 use crate::supervisor::Supervisor;
-use crate::writer::Kept;
+use crate::telemetry::Telemetry;
 use serde_json::Value;
 use std::collections::{BTreeSet, HashMap, VecDeque};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
@@ -30,12 +30,12 @@ const HEAVY: usize = 64 << 20;
 const USUAL: usize = 512;
 
 /// An action for when all earlier decisions are in the journal.
-pub struct Then {
+pub struct AfterCommit {
     bytes: usize,
     act: Box<dyn FnOnce() + Send>,
 }
 
-impl Then {
+impl AfterCommit {
     /// An action that holds so many bytes until then.
     pub fn new(bytes: usize, act: impl FnOnce() + Send + 'static) -> Self {
         Self { bytes, act: Box::new(act) }
@@ -43,22 +43,22 @@ impl Then {
 }
 
 /// A call with the supervisor; it returns the action that sends its results to others.
-pub type Call = Box<dyn FnOnce(&mut Supervisor, &Board, f64) -> Option<Then> + Send>;
+pub type SupervisorCall = Box<dyn FnOnce(&mut Supervisor, &Telemetry, f64) -> Option<AfterCommit> + Send>;
 
 /// Input of the thread that owns the supervisor.
-pub enum Input {
+pub enum ServerInput {
     /// A client has connected; its lines go to this outbox.
-    Opened(u64, Outbox),
+    Opened(u64, OutboxSender),
     /// A line of a client.
-    Line(u64, Request),
+    Line(u64, RequestLine),
     /// An answer to a line of a client that was not read as a request.
     Answer(u64, Value),
     /// A client has disconnected.
     Closed(u64),
     /// A call with the supervisor, such as a query of the page or a message of a vehicle.
-    Call(Call),
+    Call(SupervisorCall),
     /// A subscriber of all events. If its queue is full it is dropped, and sees the end of the queue.
-    Tell(SyncSender<Event>),
+    Tell(SyncSender<SupervisorEvent>),
     /// The journal has written more to the disk.
     Kept,
     /// The server ends.
@@ -67,25 +67,25 @@ pub enum Input {
 
 /// A sender to the thread that owns the supervisor.
 #[derive(Clone, Debug)]
-pub struct Handle {
-    sender: SyncSender<(Instant, Input)>,
+pub struct ServerHandle {
+    sender: SyncSender<(Instant, ServerInput)>,
 }
 
-impl Handle {
+impl ServerHandle {
     /// Sends an input; waits while the queue is full. `false`: the server has ended.
-    pub fn send(&self, input: Input) -> bool {
+    pub fn send(&self, input: ServerInput) -> bool {
         self.sender.send((Instant::now(), input)).is_ok()
     }
 
     /// Notes that the journal has written more to the disk. If the queue is full, the server looks at it anyway.
     pub fn wake(&self) {
-        let _ = self.sender.try_send((Instant::now(), Input::Kept));
+        let _ = self.sender.try_send((Instant::now(), ServerInput::Kept));
     }
 
     /// Makes a call and waits for its answer; `None`: the server has ended.
     pub fn ask<T: Send + 'static>(
         &self,
-        question: impl FnOnce(&mut Supervisor, &Board, f64) -> T + Send + 'static,
+        question: impl FnOnce(&mut Supervisor, &Telemetry, f64) -> T + Send + 'static,
     ) -> Option<T> {
         self.ask_then(move |supervisor, board, now| (question(supervisor, board, now), None))
     }
@@ -93,45 +93,45 @@ impl Handle {
     /// The same, with an action for when all decisions of the call are in the journal. Does not wait for the action.
     pub fn ask_then<T: Send + 'static>(
         &self,
-        question: impl FnOnce(&mut Supervisor, &Board, f64) -> (T, Option<Then>) + Send + 'static,
+        question: impl FnOnce(&mut Supervisor, &Telemetry, f64) -> (T, Option<AfterCommit>) + Send + 'static,
     ) -> Option<T> {
         let (sender, receiver) = sync_channel(1);
-        let call: Call = Box::new(move |supervisor, board, now| {
+        let call: SupervisorCall = Box::new(move |supervisor, board, now| {
             let (answer, then) = question(supervisor, board, now);
             // The caller may have ended.
             let _ = sender.send(answer);
             then
         });
-        self.send(Input::Call(call)).then(|| receiver.recv().ok()).flatten()
+        self.send(ServerInput::Call(call)).then(|| receiver.recv().ok()).flatten()
     }
 }
 
 /// The queue of a server that has not been started yet.
-pub fn queue() -> (Handle, Receiver<(Instant, Input)>) {
+pub fn queue() -> (ServerHandle, Receiver<(Instant, ServerInput)>) {
     let (sender, receiver) = sync_channel(QUEUE);
-    (Handle { sender }, receiver)
+    (ServerHandle { sender }, receiver)
 }
 
-struct Client {
-    out: Outbox,
+struct LineClient {
+    out: OutboxSender,
     watches: bool,
 }
 
 /// Messages that may be sent once this number of batches is on the disk.
 #[derive(Default)]
-struct Told {
+struct PendingBatch {
     batches: u64,
     /// Size of all of it \[bytes\].
     bytes: usize,
     now: f64,
     answers: Vec<(u64, Value)>,
-    events: Vec<Event>,
-    thens: Vec<Then>,
+    events: Vec<SupervisorEvent>,
+    thens: Vec<AfterCommit>,
     closed: Vec<u64>,
     times: Vec<Instant>,
 }
 
-impl Told {
+impl PendingBatch {
     fn size(&self) -> usize {
         let acts: usize = self.thens.iter().map(|then| then.bytes).sum();
         acts + USUAL * (1 + self.answers.len() + self.events.len() + self.thens.len())
@@ -139,14 +139,14 @@ impl Told {
 }
 
 /// The clients, the subscribers and the published data.
-struct Desk {
-    clients: HashMap<u64, Client>,
-    listeners: Vec<SyncSender<Event>>,
-    board: Board,
+struct ClientHub {
+    clients: HashMap<u64, LineClient>,
+    listeners: Vec<SyncSender<SupervisorEvent>>,
+    telemetry: Telemetry,
     /// Number and names of the robots, as they were last logged.
     census: u64,
     names: BTreeSet<String>,
-    log: Log,
+    log: LogWriter,
 }
 
 /// Serves until `Stop`, or until the journal cannot be written. `kept` is the progress of the supervisor's journal.
@@ -155,24 +155,24 @@ struct Desk {
 /// [`Fault::Broken`].
 pub fn serve(
     supervisor: &mut Supervisor,
-    inputs: &Receiver<(Instant, Input)>,
-    kept: &Kept,
-    log: Log,
-) -> Result<(), Fault> {
+    inputs: &Receiver<(Instant, ServerInput)>,
+    kept: &WriteProgress,
+    log: LogWriter,
+) -> Result<(), RequestError> {
     let begin = Instant::now();
-    let mut desk = Desk {
+    let mut desk = ClientHub {
         clients: HashMap::new(),
         listeners: Vec::new(),
-        board: Board::new(begin),
+        telemetry: Telemetry::new(begin),
         census: supervisor.census(),
         names: names(supervisor),
         log,
     };
-    let (mut waiting, mut heavy, mut is_full): (VecDeque<Told>, usize, bool) = Default::default();
+    let (mut waiting, mut heavy, mut is_full): (VecDeque<PendingBatch>, usize, bool) = Default::default();
     loop {
         if heavy > HEAVY {
             if !std::mem::replace(&mut is_full, true) {
-                log.write(Level::Error, "the journal is too slow: nothing is read until it has written", &[]);
+                log.write(LogLevel::Error, "the journal is too slow: nothing is read until it has written", &[]);
             }
             kept.wait_for(Duration::from_millis(TICK));
             // Who has to stop, because a robot may have come nearer meanwhile, is told all the same.
@@ -220,18 +220,25 @@ fn names(supervisor: &Supervisor) -> BTreeSet<String> {
     supervisor.robots().iter().map(|robot| robot.name.clone()).collect()
 }
 
-impl Desk {
+impl ClientHub {
     /// Handles a batch of inputs; returns what to send, and whether the server ends.
-    fn take(&mut self, supervisor: &mut Supervisor, batch: Vec<(Instant, Input)>, now: f64) -> (Told, bool) {
-        let (mut told, mut ends) = (Told { now, ..Told::default() }, false);
+    fn take(
+        &mut self,
+        supervisor: &mut Supervisor,
+        batch: Vec<(Instant, ServerInput)>,
+        now: f64,
+    ) -> (PendingBatch, bool) {
+        let (mut told, mut ends) = (PendingBatch { now, ..PendingBatch::default() }, false);
         for (came, input) in batch {
-            let time = self.board.time(came).min(now);
+            let time = self.telemetry.time(came).min(now);
             match input {
-                Input::Opened(client, out) => drop(self.clients.insert(client, Client { out, watches: false })),
+                ServerInput::Opened(client, out) => {
+                    drop(self.clients.insert(client, LineClient { out, watches: false }))
+                }
                 // Its earlier requests are answered.
-                Input::Closed(client) => told.closed.push(client),
-                Input::Answer(client, answer) => told.answers.push((client, answer)),
-                Input::Line(number, request) => {
+                ServerInput::Closed(client) => told.closed.push(client),
+                ServerInput::Answer(client, answer) => told.answers.push((client, answer)),
+                ServerInput::Line(number, request) => {
                     // One that was let go does not learn what becomes of its requests: those that still wait are not carried out.
                     if let Some(client) = self.clients.get_mut(&number) {
                         let reply = lines::carry_out(supervisor, request, time, now);
@@ -240,10 +247,10 @@ impl Desk {
                         told.times.push(came);
                     }
                 }
-                Input::Call(call) => told.thens.extend(call(supervisor, &self.board, now)),
-                Input::Tell(listener) => self.listeners.push(listener),
-                Input::Kept => {}
-                Input::Stop => ends = true,
+                ServerInput::Call(call) => told.thens.extend(call(supervisor, &self.telemetry, now)),
+                ServerInput::Tell(listener) => self.listeners.push(listener),
+                ServerInput::Kept => {}
+                ServerInput::Stop => ends = true,
             }
             self.count(supervisor);
         }
@@ -257,13 +264,13 @@ impl Desk {
         }
         let before = std::mem::replace(&mut self.names, names(supervisor));
         self.census = supervisor.census();
-        let log = |what: &str, robot: &String| self.log.write(Level::Info, what, &[("robot", robot)]);
+        let log = |what: &str, robot: &String| self.log.write(LogLevel::Info, what, &[("robot", robot)]);
         before.difference(&self.names).for_each(|robot| log("a robot was removed", robot));
         self.names.difference(&before).for_each(|robot| log("a robot was added", robot));
     }
 
     /// Tells robots to stop, at once. What waits and would let them go on is not told any more.
-    fn stop(&mut self, stops: Vec<Event>, waiting: &mut VecDeque<Told>, now: f64) {
+    fn stop(&mut self, stops: Vec<SupervisorEvent>, waiting: &mut VecDeque<PendingBatch>, now: f64) {
         for stop in stops {
             waiting.iter_mut().for_each(|told| told.events.retain(|event| !stop.overtakes(event)));
             self.announce(now, &stop);
@@ -274,26 +281,26 @@ impl Desk {
     ///
     /// # Errors
     /// [`Fault::Broken`]: what waits is withdrawn.
-    fn tell_kept(&mut self, waiting: &mut VecDeque<Told>, kept: &Kept) -> Result<usize, Fault> {
+    fn tell_kept(&mut self, waiting: &mut VecDeque<PendingBatch>, kept: &WriteProgress) -> Result<usize, RequestError> {
         let done = kept.done().map_err(|fault| self.withdraw(std::mem::take(waiting), fault))?;
         let mut bytes = 0;
         while waiting.front().is_some_and(|told| told.batches <= done)
             && let Some(told) = waiting.pop_front()
         {
             bytes += told.bytes;
-            self.tell(told);
+            self.deliver(told);
         }
         Ok(bytes)
     }
 
-    fn tell(&mut self, told: Told) {
+    fn deliver(&mut self, told: PendingBatch) {
         for (client, answer) in told.answers {
             send(&mut self.clients, client, &answer, self.log);
         }
         for event in &told.events {
             match event {
                 // It was told at once, but clients may have ignored it for what they had not been told before.
-                Event::Stop { .. } => self.send_news(event),
+                SupervisorEvent::Stop { .. } => self.send_news(event),
                 event => self.announce(told.now, event),
             }
         }
@@ -301,25 +308,25 @@ impl Desk {
         for client in told.closed {
             self.clients.remove(&client);
         }
-        told.times.into_iter().for_each(|came| self.board.latency.add(came.elapsed()));
+        told.times.into_iter().for_each(|came| self.telemetry.latency.add(came.elapsed()));
     }
 
-    fn announce(&mut self, now: f64, event: &Event) {
+    fn announce(&mut self, now: f64, event: &SupervisorEvent) {
         self.log.event(event);
-        self.board.note(now, event);
+        self.telemetry.note(now, event);
         self.send_news(event);
         let Self { listeners, log, .. } = self;
         listeners.retain(|listener| {
             let sent = listener.try_send(event.clone());
             if let Err(TrySendError::Full(_)) = sent {
-                log.write(Level::Error, "a listener reads too slowly and is let go", &[]);
+                log.write(LogLevel::Error, "a listener reads too slowly and is let go", &[]);
             }
             sent.is_ok()
         });
     }
 
     /// Sends an event to the clients that watch.
-    fn send_news(&mut self, event: &Event) {
+    fn send_news(&mut self, event: &SupervisorEvent) {
         let Self { clients, log, .. } = self;
         let watching: Vec<u64> =
             clients.iter().filter(|(_, client)| client.watches).map(|(number, _)| *number).collect();
@@ -330,23 +337,23 @@ impl Desk {
     }
 
     /// After a failed write of the journal: answers errors in place of the results.
-    fn withdraw(&mut self, waiting: VecDeque<Told>, fault: Fault) -> Fault {
+    fn withdraw(&mut self, waiting: VecDeque<PendingBatch>, fault: RequestError) -> RequestError {
         for (client, answer) in waiting.into_iter().flat_map(|told| told.answers) {
             send(&mut self.clients, client, &lines::withdrawn(&answer, &fault), self.log);
         }
-        self.log.write(Level::Error, "stopped", &[("why", &fault)]);
+        self.log.write(LogLevel::Error, "stopped", &[("why", &fault)]);
         fault
     }
 }
 
-fn send(clients: &mut HashMap<u64, Client>, number: u64, line: &Value, log: Log) {
+fn send(clients: &mut HashMap<u64, LineClient>, number: u64, line: &Value, log: LogWriter) {
     let Some(client) = clients.get(&number) else { return };
     match client.out.send(format!("{line}\n")) {
         // One that has gone may have left requests, which are carried out: it is removed when its input has ended.
-        Ok(()) | Err(Lost::Gone) => {}
-        Err(Lost::Slow) => {
+        Ok(()) | Err(DisconnectReason::Gone) => {}
+        Err(DisconnectReason::Slow) => {
             // A client that misses lines would not notice it.
-            log.write(Level::Warn, "a client reads too slowly and is let go", &[("client", &number)]);
+            log.write(LogLevel::Warn, "a client reads too slowly and is let go", &[("client", &number)]);
             clients.remove(&number);
         }
     }

@@ -5,58 +5,68 @@
 
 mod admission;
 mod alarms;
-mod notes;
-mod places;
-mod release;
+mod authority;
+mod deadlock_report;
+mod positions;
 mod restore;
-mod standstill;
+mod robot_notes;
 
-pub use admission::{Proposal, Verdict};
-pub use places::Report;
-pub use restore::Damaged;
+pub use admission::{AdmissionResult, MissionRequest};
+pub use positions::PositionReport;
+pub use restore::JournalError;
 
-use crate::course::{Course, Start};
-use crate::entry::{Entry, Keep, Layout};
-use crate::event::{Cause, Event};
-use crate::fault::Fault;
-use crate::robot::{Abilities, Robot};
-use pcr_core::{Invalid, Motion, Order, Orders, Piece, Progress, Reach, Refused, Region, Tolerances};
+use crate::event::{CancelCause, SupervisorEvent};
+use crate::journal_entry::{JournalEntry, JournalStore, PageLayout};
+use crate::owned_path::{OwnedPath, StartPose};
+use crate::request_error::RequestError;
+use crate::robot::{RobotTraits, SupervisedRobot};
+use pcr_core::{
+    AdmissionError, CheckState, CheckTolerances, EcmEntry, InvalidInput, Motion, Piece, PrecedenceTable, Progress,
+    RegionPrecedence,
+};
 use pcr_formats::scenario::label;
 use serde::Serialize;
 use std::collections::HashMap;
 
 /// Orders on the heap.
-pub type Table = Orders<f64, Vec<Region>, Vec<Piece<f64>>, Vec<Order<f64>>>;
+pub type FleetPrecedences = PrecedenceTable<f64, Vec<EcmEntry>, Vec<Piece<f64>>, Vec<RegionPrecedence<f64>>>;
 
 /// Settings of a supervisor.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
+pub struct SupervisorConfig {
     /// Distance by which the reported lower end of a position may be behind the stop at which the robot stands \[m\]. Missions are
     /// admitted if all robots can finish in spite of it.
-    pub width: f64,
+    pub position_uncertainty: f64,
     /// How long before braking a robot is told its next hold \[s\]. A hold that was told cannot be withdrawn, so a longer time leaves
     /// fewer decisions open.
     pub lookahead: f64,
     /// The journal gets a hold that is further than the one told by up to this \[m\], so that not every hold needs a write. After a restart
     /// the hold of the journal counts as told.
-    pub spare: f64,
+    pub persisted_reserve: f64,
     /// A robot counts as silent if no message of it came for this long \[s\].
-    pub silence: f64,
+    pub report_timeout: f64,
     /// A hold that advances by less than this \[m\] is not sent, except if it is where the robot has to wait.
     pub step: f64,
     /// If a robot with a task has not advanced for this long, the reason is reported \[s\].
-    pub patience: f64,
+    pub deadlock_timeout: f64,
 }
 
-impl Default for Settings {
+impl Default for SupervisorConfig {
     fn default() -> Self {
-        Self { width: 0.1, lookahead: 2.0, spare: 2.0, silence: 5.0, step: 0.05, patience: 60.0 }
+        Self {
+            position_uncertainty: 0.1,
+            lookahead: 2.0,
+            persisted_reserve: 2.0,
+            report_timeout: 5.0,
+            step: 0.05,
+            deadlock_timeout: 60.0,
+        }
     }
 }
 
 /// Numbers of events since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Counts {
+pub struct SupervisorCounters {
     /// Number of position messages.
     pub positions: u64,
     /// Number of position messages about a path that the robot no longer has.
@@ -81,17 +91,17 @@ pub struct Counts {
 
 /// The supervisor of a fleet.
 pub struct Supervisor {
-    settings: Settings,
-    layout: Layout,
-    robots: Vec<Robot>,
+    settings: SupervisorConfig,
+    layout: PageLayout,
+    robots: Vec<SupervisedRobot>,
     names: HashMap<String, usize>,
-    orders: Table,
-    reaches: Vec<Reach<f64>>,
-    keeper: Box<dyn Keep>,
+    orders: FleetPrecedences,
+    reaches: Vec<CheckState<f64>>,
+    keeper: Box<dyn JournalStore>,
     /// Changes that are not in the journal yet.
-    entries: Vec<Entry>,
+    entries: Vec<JournalEntry>,
     /// Events to be sent once these changes are in the journal.
-    events: Vec<Event>,
+    events: Vec<SupervisorEvent>,
     /// Number of those that tell robots to stop and were taken by [`Supervisor::stops`].
     stops_taken: usize,
     /// For each robot whether its position has changed since it was last written to the journal.
@@ -99,7 +109,7 @@ pub struct Supervisor {
     /// Number of the next mission that has to wait.
     turn: u64,
     /// For each robot with a waiting mission: when it is tried again \[s\], the number of attempts, and what kept it.
-    tries: HashMap<String, admission::Try>,
+    tries: HashMap<String, admission::AdmissionRetry>,
     /// Number of times a robot was added or removed.
     census: u64,
     /// Highest path number of any removed robot. New robots get higher numbers, so late messages of a removed robot with the same name are
@@ -111,7 +121,7 @@ pub struct Supervisor {
     looked: f64,
     /// Whether a robot may be in the way of another one that was allowed to go there.
     hazards: bool,
-    counts: Counts,
+    counts: SupervisorCounters,
     broken: Option<String>,
 }
 
@@ -123,13 +133,13 @@ impl std::fmt::Debug for Supervisor {
 
 impl Supervisor {
     /// A supervisor without robots.
-    pub fn new(settings: Settings, keeper: Box<dyn Keep>) -> Self {
+    pub fn new(settings: SupervisorConfig, keeper: Box<dyn JournalStore>) -> Self {
         Self {
             settings,
-            layout: Layout::default(),
+            layout: PageLayout::default(),
             robots: Vec::new(),
             names: HashMap::new(),
-            orders: Table::new(Vec::new(), Vec::new(), Vec::new()),
+            orders: FleetPrecedences::new(Vec::new(), Vec::new(), Vec::new()),
             reaches: Vec::new(),
             keeper,
             entries: Vec::new(),
@@ -143,23 +153,23 @@ impl Supervisor {
             begun: None,
             looked: f64::NEG_INFINITY,
             hazards: false,
-            counts: Counts::default(),
+            counts: SupervisorCounters::default(),
             broken: None,
         }
     }
 
     /// The settings.
-    pub fn settings(&self) -> &Settings {
+    pub fn settings(&self) -> &SupervisorConfig {
         &self.settings
     }
 
     /// The lanes that the page draws.
-    pub fn layout(&self) -> &Layout {
+    pub fn layout(&self) -> &PageLayout {
         &self.layout
     }
 
     /// All robots, in the order of their indices in the table of orders.
-    pub fn robots(&self) -> &[Robot] {
+    pub fn robots(&self) -> &[SupervisedRobot] {
         &self.robots
     }
 
@@ -167,8 +177,8 @@ impl Supervisor {
     ///
     /// # Errors
     /// [`Fault::NoSuchRobot`].
-    pub fn robot(&self, name: &str) -> Result<&Robot, Fault> {
-        self.place(name).map(|place| &self.robots[place])
+    pub fn robot(&self, name: &str) -> Result<&SupervisedRobot, RequestError> {
+        self.robot_index(name).map(|place| &self.robots[place])
     }
 
     /// A number that changes whenever a robot is added or removed.
@@ -177,16 +187,16 @@ impl Supervisor {
     }
 
     /// The robot for which a robot has to wait at its hold; `None` if the hold is the end of its path.
-    pub fn waits_for(&self, robot: &Robot) -> Option<&str> {
-        let wait = robot.hold?;
+    pub fn waits_for(&self, robot: &SupervisedRobot) -> Option<&str> {
+        let wait = robot.authority?;
         let end = robot.course.length();
         let bound = wait.hold.length(end).unwrap_or(robot.granted);
-        let (by, _) = wait.by.filter(|_| bound < end && robot.granted >= bound)?;
+        let (by, _) = wait.waits_for.filter(|_| bound < end && robot.granted >= bound)?;
         self.robots.get(by).map(|by| by.name.as_str())
     }
 
     /// The passing orders of [`Supervisor::fleet`].
-    pub fn orders(&self) -> &Table {
+    pub fn orders(&self) -> &FleetPrecedences {
         &self.orders
     }
 
@@ -194,12 +204,12 @@ impl Supervisor {
     ///
     /// # Errors
     /// [`Fault::Invalid`] if a robot has none.
-    pub fn fleet(&self) -> Result<Vec<Motion<'_, f64>>, Fault> {
+    pub fn fleet(&self) -> Result<Vec<Motion<'_, f64>>, RequestError> {
         fleet(&self.robots)
     }
 
     /// Numbers of events since the start.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> SupervisorCounters {
         self.counts
     }
 
@@ -207,9 +217,9 @@ impl Supervisor {
     ///
     /// # Errors
     /// [`Fault::Broken`].
-    pub fn draw(&mut self, layout: Layout) -> Result<(), Fault> {
+    pub fn draw(&mut self, layout: PageLayout) -> Result<(), RequestError> {
         self.works()?;
-        self.entries.push(Entry::Layout(layout.clone()));
+        self.entries.push(JournalEntry::Layout(layout.clone()));
         self.layout = layout;
         Ok(())
     }
@@ -218,16 +228,16 @@ impl Supervisor {
     ///
     /// # Errors
     /// [`Fault::RobotExists`], [`Fault::Invalid`]. Adding the same robot twice is no error before it has a mission.
-    pub fn add(&mut self, name: &str, abilities: Abilities, start: Start) -> Result<(), Fault> {
+    pub fn add(&mut self, name: &str, abilities: RobotTraits, start: StartPose) -> Result<(), RequestError> {
         self.works()?;
         if let Ok(robot) = self.robot(name) {
             let same = robot.abilities == abilities && robot.mission.is_none() && robot.course.start() == start;
-            return if same { Ok(()) } else { Err(Fault::RobotExists) };
+            return if same { Ok(()) } else { Err(RequestError::RobotExists) };
         }
         if name.is_empty() || label(name) != name {
-            return Err(Fault::invalid("the name of a robot is 1 to 200 printable characters"));
+            return Err(RequestError::invalid("the name of a robot is 1 to 200 printable characters"));
         }
-        let abilities = abilities.checked().map_err(Fault::invalid)?;
+        let abilities = abilities.checked().map_err(RequestError::invalid)?;
         self.insert(standing(name, abilities, start)?)
     }
 
@@ -236,31 +246,31 @@ impl Supervisor {
     ///
     /// # Errors
     /// [`Fault::NoSuchRobot`], [`Fault::Invalid`]; nothing has changed then. [`Fault::Broken`].
-    pub fn reseat(&mut self, name: &str, start: Start) -> Result<(), Fault> {
+    pub fn reseat(&mut self, name: &str, start: StartPose) -> Result<(), RequestError> {
         self.works()?;
-        let place = self.place(name)?;
+        let place = self.robot_index(name)?;
         let robot = &self.robots[place];
         let mut new = standing(name, robot.abilities, start)?;
         new.path = robot.path + 1;
         new.past.clone_from(&robot.past);
         let waiting = robot.waiting.as_ref().map(|waiting| &waiting.mission);
         for mission in robot.mission.iter().chain(waiting) {
-            Robot::outlives(&mut new.past, mission.clone());
+            SupervisedRobot::outlives(&mut new.past, mission.clone());
         }
-        let motion = new.motion().map_err(Fault::invalid)?;
+        let motion = new.motion().map_err(RequestError::invalid)?;
         let mut fleet = fleet(&self.robots)?;
-        let replaced = grown(&mut self.orders, |orders| Ok(orders.replace(&mut fleet, place, motion)?));
+        let replaced = retry_with_growth(&mut self.orders, |orders| Ok(orders.replace(&mut fleet, place, motion)?));
         drop(fleet);
-        replaced.map_err(Fault::invalid)?;
+        replaced.map_err(RequestError::invalid)?;
         let before = std::mem::replace(&mut self.robots[place], new);
         if let Some(waiting) = before.waiting {
-            self.drops(name, waiting.mission, Cause::Moved);
+            self.drops(name, waiting.mission, CancelCause::Moved);
         }
         if before.alarm.is_some() {
-            self.events.push(Event::Clear { robot: name.into() });
+            self.events.push(SupervisorEvent::Clear { robot: name.into() });
         }
         if before.stopped.is_some() {
-            self.events.push(Event::Go { robot: name.into() });
+            self.events.push(SupervisorEvent::Go { robot: name.into() });
         }
         self.unsaved[place] = false;
         self.tries.remove(name);
@@ -269,9 +279,9 @@ impl Supervisor {
         self.keep_robot(place)
     }
 
-    fn insert(&mut self, robot: Robot) -> Result<(), Fault> {
+    fn insert(&mut self, robot: SupervisedRobot) -> Result<(), RequestError> {
         let name = robot.name.clone();
-        self.robots.push(Robot { path: self.spent + 1, ..robot });
+        self.robots.push(SupervisedRobot { path: self.spent + 1, ..robot });
         let place = self.robots.len() - 1;
         if let Err(fault) = self.inserted(place) {
             self.robots.pop();
@@ -280,21 +290,21 @@ impl Supervisor {
         self.census += 1;
         self.names.insert(name, place);
         self.unsaved.push(false);
-        self.reaches.push(Reach::EMPTY);
+        self.reaches.push(CheckState::EMPTY);
         self.forget_holds();
         self.hazards = true;
         self.keep_robot(place)
     }
 
-    fn inserted(&mut self, place: usize) -> Result<(), Fault> {
+    fn inserted(&mut self, place: usize) -> Result<(), RequestError> {
         let fleet = fleet(&self.robots)?;
-        grown(&mut self.orders, |orders| Ok(orders.insert(&fleet, place)?)).map_err(Fault::invalid)
+        retry_with_growth(&mut self.orders, |orders| Ok(orders.insert(&fleet, place)?)).map_err(RequestError::invalid)
     }
 
     /// Writes a robot with its orders to the journal. Where that is impossible a restart would forget what was decided.
-    fn keep_robot(&mut self, place: usize) -> Result<(), Fault> {
+    fn keep_robot(&mut self, place: usize) -> Result<(), RequestError> {
         let known = self.known(place).map_err(|fault| self.breaks(fault.to_string()))?;
-        self.entries.push(Entry::Robot(Box::new(known)));
+        self.entries.push(JournalEntry::Robot(Box::new(known)));
         Ok(())
     }
 
@@ -302,49 +312,49 @@ impl Supervisor {
     ///
     /// # Errors
     /// [`Fault::Broken`]; [`Fault::Invalid`] if the table of orders is not that of the robots.
-    pub fn remove(&mut self, name: &str) -> Result<bool, Fault> {
+    pub fn remove(&mut self, name: &str) -> Result<bool, RequestError> {
         self.works()?;
-        let Ok(place) = self.place(name) else { return Ok(false) };
-        self.orders.erase(&fleet(&self.robots)?, place).map_err(Fault::invalid)?;
+        let Ok(place) = self.robot_index(name) else { return Ok(false) };
+        self.orders.erase(&fleet(&self.robots)?, place).map_err(RequestError::invalid)?;
         self.census += 1;
         self.spent = self.spent.max(self.robots.remove(place).path);
         self.unsaved.remove(place);
         self.reaches.pop();
         self.tries.remove(name);
         self.names = self.robots.iter().enumerate().map(|(place, robot)| (robot.name.clone(), place)).collect();
-        self.entries.push(Entry::Removed { robot: name.into() });
+        self.entries.push(JournalEntry::Removed { robot: name.into() });
         self.forget_holds();
         self.hazards = true;
         Ok(true)
     }
 
-    fn place(&self, name: &str) -> Result<usize, Fault> {
-        self.names.get(name).copied().ok_or(Fault::NoSuchRobot)
+    fn robot_index(&self, name: &str) -> Result<usize, RequestError> {
+        self.names.get(name).copied().ok_or(RequestError::NoSuchRobot)
     }
 
-    fn works(&self) -> Result<(), Fault> {
-        self.broken.clone().map_or(Ok(()), |why| Err(Fault::Broken { why }))
+    fn works(&self) -> Result<(), RequestError> {
+        self.broken.clone().map_or(Ok(()), |why| Err(RequestError::Broken { why }))
     }
 
     /// From now on nothing is told but stops.
-    fn breaks(&mut self, why: String) -> Fault {
-        self.events.retain(|event| matches!(event, Event::Stop { .. }));
+    fn breaks(&mut self, why: String) -> RequestError {
+        self.events.retain(|event| matches!(event, SupervisorEvent::Stop { .. }));
         self.broken = Some(why.clone());
-        Fault::Broken { why }
+        RequestError::Broken { why }
     }
 
     fn forget_holds(&mut self) {
-        self.robots.iter_mut().for_each(|robot| robot.hold = None);
+        self.robots.iter_mut().for_each(|robot| robot.authority = None);
     }
 
     fn progress(&self) -> Vec<Progress<f64>> {
-        self.robots.iter().map(Robot::progress).collect()
+        self.robots.iter().map(SupervisedRobot::progress).collect()
     }
 
-    fn tolerances(&self) -> Tolerances<f64> {
+    fn tolerances(&self) -> CheckTolerances<f64> {
         /// Smallest advance that counts as progress \[m\].
         const GAIN: f64 = 1e-3;
-        Tolerances { width: self.settings.width, gain: GAIN }
+        CheckTolerances { width: self.settings.position_uncertainty, gain: GAIN }
     }
 
     /// Decides what follows from requests and positions: raises holds, and tries waiting missions again. The results may not be
@@ -364,10 +374,10 @@ impl Supervisor {
     /// The events since the last call that tell robots to stop. They may be sent at once: a stop is not in the journal, because it is decided
     /// again after a restart. They are also among those that [`Supervisor::keep`] returns, in their places; what was decided before them and
     /// would let these robots go on is taken back.
-    pub fn stops(&mut self) -> Vec<Event> {
-        let (mut stops, mut events): (Vec<Event>, Vec<Event>) = Default::default();
+    pub fn stops(&mut self) -> Vec<SupervisorEvent> {
+        let (mut stops, mut events): (Vec<SupervisorEvent>, Vec<SupervisorEvent>) = Default::default();
         for event in std::mem::take(&mut self.events) {
-            if let Event::Stop { .. } = event {
+            if let SupervisorEvent::Stop { .. } = event {
                 events.retain(|before| !event.overtakes(before));
                 stops.push(event.clone());
             }
@@ -381,7 +391,7 @@ impl Supervisor {
     ///
     /// # Errors
     /// [`Fault::Broken`]: the journal could not be written. Nothing may be told then, now or later, but stops.
-    pub fn settle(&mut self, now: f64) -> Result<Vec<Event>, Fault> {
+    pub fn settle(&mut self, now: f64) -> Result<Vec<SupervisorEvent>, RequestError> {
         self.decide(now);
         self.keep()
     }
@@ -390,7 +400,7 @@ impl Supervisor {
     ///
     /// # Errors
     /// As [`Supervisor::settle`].
-    pub fn keep(&mut self) -> Result<Vec<Event>, Fault> {
+    pub fn keep(&mut self) -> Result<Vec<SupervisorEvent>, RequestError> {
         self.save()?;
         self.stops_taken = 0;
         Ok(std::mem::take(&mut self.events))
@@ -400,7 +410,7 @@ impl Supervisor {
     ///
     /// # Errors
     /// As [`Supervisor::settle`].
-    pub fn finish(&mut self, now: f64) -> Result<Vec<Event>, Fault> {
+    pub fn finish(&mut self, now: f64) -> Result<Vec<SupervisorEvent>, RequestError> {
         let events = self.settle(now)?;
         self.lower_ceilings();
         self.write()?;
@@ -408,14 +418,14 @@ impl Supervisor {
     }
 
     /// Writes all changes to the journal, with the ceilings that belong to them.
-    fn save(&mut self) -> Result<(), Fault> {
+    fn save(&mut self) -> Result<(), RequestError> {
         if !self.entries.is_empty() {
             self.set_ceilings();
         }
         self.write()
     }
 
-    fn write(&mut self) -> Result<(), Fault> {
+    fn write(&mut self) -> Result<(), RequestError> {
         self.works()?;
         if self.entries.is_empty() {
             return Ok(());
@@ -424,11 +434,11 @@ impl Supervisor {
         let unsaved = self.unsaved.iter_mut().zip(&self.robots).filter(|(unsaved, _)| **unsaved);
         let places = unsaved.map(|(unsaved, robot)| {
             *unsaved = false;
-            (robot.name.clone(), robot.path, robot.at)
+            (robot.name.clone(), robot.path, robot.arc_length)
         });
         let places: Vec<_> = places.collect();
         if !places.is_empty() {
-            self.entries.push(Entry::Places { places });
+            self.entries.push(JournalEntry::Places { places });
         }
         self.counts.writes += 1;
         let kept = match self.keeper.is_long() {
@@ -444,24 +454,27 @@ impl Supervisor {
 }
 
 /// A robot that stands, without a mission.
-fn standing(name: &str, abilities: Abilities, start: Start) -> Result<Robot, Fault> {
-    let course = Course::new(start, Vec::new()).map_err(Fault::invalid)?;
-    let robot = Robot::new(name.into(), abilities, course);
-    robot.motion().map_err(Fault::invalid)?;
+fn standing(name: &str, abilities: RobotTraits, start: StartPose) -> Result<SupervisedRobot, RequestError> {
+    let course = OwnedPath::new(start, Vec::new()).map_err(RequestError::invalid)?;
+    let robot = SupervisedRobot::new(name.into(), abilities, course);
+    robot.motion().map_err(RequestError::invalid)?;
     Ok(robot)
 }
 
 /// The motions of the robots, each at the index of its robot.
-fn fleet(robots: &[Robot]) -> Result<Vec<Motion<'_, f64>>, Fault> {
-    let named = |robot: &Robot, why: Invalid| Fault::invalid(format!("{}: {why}", robot.name));
+fn fleet(robots: &[SupervisedRobot]) -> Result<Vec<Motion<'_, f64>>, RequestError> {
+    let named = |robot: &SupervisedRobot, why: InvalidInput| RequestError::invalid(format!("{}: {why}", robot.name));
     robots.iter().map(|robot| robot.motion().map_err(|why| named(robot, why))).collect()
 }
 
 /// Changes a table, which grows as long as it is full.
-fn grown(table: &mut Table, mut change: impl FnMut(&mut Table) -> Result<(), Refused>) -> Result<(), Refused> {
+fn retry_with_growth(
+    table: &mut FleetPrecedences,
+    mut change: impl FnMut(&mut FleetPrecedences) -> Result<(), AdmissionError>,
+) -> Result<(), AdmissionError> {
     loop {
         match change(table) {
-            Err(Refused::Full(full)) => table.grow(full)?,
+            Err(AdmissionError::Full(full)) => table.grow(full)?,
             done => return done,
         }
     }

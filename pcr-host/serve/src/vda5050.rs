@@ -12,17 +12,17 @@
 //! station    the bridge at its broker; only one is active           Station
 //! ```
 
-pub mod ahead;
 pub mod bridge;
 #[cfg(feature = "mqtt")]
-mod claim;
+pub mod broker_session;
 #[cfg(feature = "mqtt")]
 mod inbox;
-pub mod lane;
+#[cfg(feature = "mqtt")]
+mod leader_election;
 #[cfg(feature = "mqtt")]
 pub mod mqtt;
-#[cfg(feature = "mqtt")]
-pub mod station;
+pub mod order_path;
+pub mod remaining_elements;
 #[cfg(feature = "tls")]
 mod tls;
-pub mod way;
+pub mod vehicle_adapter;

@@ -15,17 +15,17 @@
 //! yard       all of them with a supervisor, without a broker     Yard
 //! ```
 
-pub mod audit;
-pub mod drive;
-#[cfg(feature = "mqtt")]
-pub mod fleet;
-pub mod locks;
+pub mod edge_reservations;
+pub mod lossy_channel;
 pub mod manager;
 #[cfg(feature = "mqtt")]
-pub mod office;
+pub mod manager_client;
+pub mod offline_simulation;
+mod outgoing_messages;
 pub mod record;
-mod tell;
+pub mod release_audit;
+#[cfg(feature = "mqtt")]
+pub mod simulated_fleet;
+pub mod simulated_site;
 pub mod vehicle;
-pub mod weather;
-pub mod world;
-pub mod yard;
+pub mod vehicle_motion;

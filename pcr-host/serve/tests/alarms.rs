@@ -1,42 +1,42 @@
 //! Robots that are not where they may be, or not heard: everybody who could touch them stops, and nobody gets their right.
 
 use crate::world::Disc;
-use pcr_serve::course::{Shape, Start};
-use pcr_serve::event::Event;
-use pcr_serve::fault::Fault;
-use pcr_serve::robot::{Abilities, Alarm};
-use pcr_serve::supervisor::{Proposal, Report, Settings, Supervisor, Verdict};
+use pcr_serve::event::SupervisorEvent;
+use pcr_serve::owned_path::{PathElement, StartPose};
+use pcr_serve::request_error::RequestError;
+use pcr_serve::robot::{Alarm, RobotTraits};
+use pcr_serve::supervisor::{AdmissionResult, MissionRequest, PositionReport, Supervisor, SupervisorConfig};
 use std::f64::consts::FRAC_PI_2;
 
-const ABILITIES: Abilities = Abilities { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+const ABILITIES: RobotTraits = RobotTraits { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
 
-fn place(x: f64, y: f64, heading: f64) -> Start {
-    Start { x, y, heading }
+fn place(x: f64, y: f64, heading: f64) -> StartPose {
+    StartPose { x, y, heading }
 }
 
-fn mission(robot: &str, name: &str, length: f64) -> Proposal {
-    let path = vec![Shape::Line { length }];
-    Proposal { robot: robot.into(), mission: name.into(), after: None, of: None, start: None, path }
+fn mission(robot: &str, name: &str, length: f64) -> MissionRequest {
+    let path = vec![PathElement::Line { length }];
+    MissionRequest { robot: robot.into(), mission: name.into(), after: None, expected_path: None, start: None, path }
 }
 
-fn report(robot: &str, path: u64, lo: f64, hi: f64) -> Report {
-    Report { robot: robot.into(), path, at: [lo, hi], age: 0.0 }
+fn report(robot: &str, path: u64, lo: f64, hi: f64) -> PositionReport {
+    PositionReport { robot: robot.into(), path, at: [lo, hi], age: 0.0 }
 }
 
 /// One that goes east through the origin, and one that goes north there second.
 fn crossing(disc: &Disc) -> Supervisor {
-    let mut own = Supervisor::new(Settings::default(), Box::new(disc.clone()));
+    let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(disc.clone()));
     own.add("east", ABILITIES, place(-3.0, 0.0, 0.0)).unwrap();
     own.add("north", ABILITIES, place(0.0, -4.0, FRAC_PI_2)).unwrap();
     for (robot, length) in [("east", 6.0), ("north", 8.0)] {
         let verdict = own.mission(&mission(robot, "1", length), 0.0).unwrap();
-        assert!(matches!(verdict, Verdict::Admitted { path: 2, .. }), "{verdict:?}");
+        assert!(matches!(verdict, AdmissionResult::Admitted { path: 2, .. }), "{verdict:?}");
     }
     own.settle(0.0).unwrap();
     own
 }
 
-fn names(events: &[Event]) -> Vec<String> {
+fn names(events: &[SupervisorEvent]) -> Vec<String> {
     let kind = |event| serde_json::to_value(event).unwrap()["event"].as_str().unwrap().to_owned();
     events.iter().map(|event| format!("{} {}", kind(event), event.robot())).collect()
 }
@@ -58,10 +58,10 @@ fn beyond_its_hold() {
     own.position(&report("east", 2, 0.2, 0.3), 3.1).unwrap();
     assert_eq!(own.settle(3.1).unwrap(), []);
     let verdict = own.mission(&mission("north", "2", 1.0), 3.1).unwrap();
-    assert!(matches!(verdict, Verdict::Waiting { .. }), "{verdict:?}");
+    assert!(matches!(verdict, AdmissionResult::Waiting { .. }), "{verdict:?}");
     own.settle(3.1).unwrap();
     // It is so after a restart, wherever it is now.
-    let mut own = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+    let mut own = Supervisor::restored(SupervisorConfig::default(), disc.entries(), Box::new(disc.clone())).unwrap();
     let events = own.settle(0.0).unwrap();
     assert!(names(&events).contains(&"stop east".into()), "{events:?}");
     // Back where it may be: all go on.
@@ -76,14 +76,14 @@ fn off_its_path_further_than_any_path_can_be() {
     let disc = Disc::new();
     let mut own = crossing(&disc);
     // Nobody knows where it is.
-    own.off("north", [5e7, 0.0], 0.0, 1.0).unwrap();
+    own.report_off_path("north", [5e7, 0.0], 0.0, 1.0).unwrap();
     let events = own.settle(1.0).unwrap();
     assert_eq!(names(&events), ["alarm north", "stop east"]);
     // So it is after a restart.
-    let mut own = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+    let mut own = Supervisor::restored(SupervisorConfig::default(), disc.entries(), Box::new(disc.clone())).unwrap();
     let events = own.settle(0.0).unwrap();
     assert!(names(&events).contains(&"stop east".into()), "{events:?}");
-    assert!(matches!(own.off("north", [f64::NAN, 0.0], 0.0, 1.0), Err(Fault::Invalid { .. })));
+    assert!(matches!(own.report_off_path("north", [f64::NAN, 0.0], 0.0, 1.0), Err(RequestError::Invalid { .. })));
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn off_its_path() {
     let disc = Disc::new();
     let mut own = crossing(&disc);
     // Far from where anybody has been allowed to go: nobody stops yet, but nobody may come near.
-    own.off("north", [3.5, -1.0], 0.0, 1.0).unwrap();
+    own.report_off_path("north", [3.5, -1.0], 0.0, 1.0).unwrap();
     let events = own.settle(1.0).unwrap();
     assert_eq!(names(&events), ["alarm north"]);
     own.position(&report("east", 2, 2.5, 2.6), 1.1).unwrap();
@@ -108,7 +108,7 @@ fn off_its_path() {
         }
     }
     assert!(stopped.is_some_and(|now| now < 2.5), "{stopped:?}");
-    own.off("north", [9.0, -9.0], 0.0, 5.0).unwrap();
+    own.report_off_path("north", [9.0, -9.0], 0.0, 5.0).unwrap();
     assert_eq!(names(&own.settle(5.0).unwrap())[0], "go east");
 }
 
@@ -127,14 +127,14 @@ fn added_where_others_may_go() {
     assert_eq!(names(&own.settle(1.2).unwrap()), Vec::<String>::new());
     own.position(&report("east", 2, 2.9, 3.0), 3.0).unwrap();
     let events = own.settle(3.0).unwrap();
-    let told = |event: &Event| matches!(event, Event::Hold { robot, hold, waits_for, .. } if robot == "east" && (hold - 4.1).abs() < 1e-4 && waits_for.as_deref() == Some("new"));
+    let told = |event: &SupervisorEvent| matches!(event, SupervisorEvent::Hold { robot, hold, waits_for, .. } if robot == "east" && (hold - 4.1).abs() < 1e-4 && waits_for.as_deref() == Some("new"));
     assert!(events.iter().any(told), "{events:?}");
 }
 
 /// It stopped the one that had been there for good, and nobody got a mission any more.
 #[test]
 fn added_where_another_one_has_been() {
-    let mut own = Supervisor::new(Settings::default(), Box::new(Disc::new()));
+    let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(Disc::new()));
     own.add("x", ABILITIES, place(0.0, 0.0, 0.0)).unwrap();
     own.add("far", ABILITIES, place(0.0, 50.0, 0.0)).unwrap();
     own.mission(&mission("x", "1", 20.0), 0.0).unwrap();
@@ -153,7 +153,7 @@ fn added_where_another_one_has_been() {
     own.add("ahead", ABILITIES, place(19.5, 0.0, 0.0)).unwrap();
     own.settle(10.1).unwrap();
     let verdict = own.mission(&mission("far", "1", 1.0), 10.2).unwrap();
-    assert!(matches!(verdict, Verdict::Admitted { .. }), "{verdict:?}");
+    assert!(matches!(verdict, AdmissionResult::Admitted { .. }), "{verdict:?}");
     own.settle(10.2).unwrap();
     for tick in 10..=30 {
         let (now, hold) = (f64::from(tick) + 0.5, own.robot("x").unwrap().granted);
@@ -181,13 +181,13 @@ fn silent_robots_keep_their_right() {
     assert_eq!(own.robot("north").unwrap().granted, hold);
     // It may be anywhere up to where it was allowed to go.
     let east = own.robot("east").unwrap();
-    let extent = east.extent(20.0);
-    assert_eq!([extent.lo, extent.hi], [1.0, east.told]);
+    let extent = east.possible_positions(20.0);
+    assert_eq!([extent.lo, extent.hi], [1.0, east.notified_limit]);
     // Old messages, and those of older paths, change nothing.
-    own.position(&Report { age: 19.5, ..report("east", 2, 0.1, 0.2) }, 20.0).unwrap();
+    own.position(&PositionReport { age: 19.5, ..report("east", 2, 0.1, 0.2) }, 20.0).unwrap();
     own.position(&report("east", 1, 5.0, 5.9), 20.0).unwrap();
     assert_eq!(names(&own.settle(20.0).unwrap()), ["heard east"]);
-    assert_eq!(own.robot("east").unwrap().at, 1.0);
+    assert_eq!(own.robot("east").unwrap().arc_length, 1.0);
     assert_eq!(own.robot("north").unwrap().granted, hold);
 }
 
@@ -199,20 +199,23 @@ fn missions_that_are_asked_for_again() {
     own.remove("north").unwrap();
     own.add("stands", ABILITIES, place(5.0, 0.0, 0.0)).unwrap();
     let verdict = own.mission(&mission("east", "2", 4.0), 1.0).unwrap();
-    assert!(matches!(&verdict, Verdict::Waiting { by: Some(by), .. } if by == "stands"), "{verdict:?}");
+    assert!(matches!(&verdict, AdmissionResult::Waiting { by: Some(by), .. } if by == "stands"), "{verdict:?}");
     assert_eq!(own.mission(&mission("east", "2", 4.0), 1.1).unwrap(), verdict);
     let admitted = own.mission(&mission("east", "3", 0.5), 1.2).unwrap();
-    assert!(matches!(admitted, Verdict::Admitted { path: 3, .. }));
+    assert!(matches!(admitted, AdmissionResult::Admitted { path: 3, .. }));
     let events = names(&own.settle(1.2).unwrap());
     assert!(events.contains(&"dropped east".into()) && events.contains(&"admitted east".into()), "{events:?}");
     for _ in 0..2 {
         // Late and repeated: nothing twice, also after a restart.
-        assert_eq!(own.mission(&mission("east", "1", 6.0), 2.0).unwrap(), Verdict::Past);
-        assert_eq!(own.mission(&mission("east", "2", 4.0), 2.0).unwrap(), Verdict::Past);
-        assert!(matches!(own.mission(&mission("east", "3", 0.5), 2.0).unwrap(), Verdict::Admitted { path: 3, .. }));
+        assert_eq!(own.mission(&mission("east", "1", 6.0), 2.0).unwrap(), AdmissionResult::Past);
+        assert_eq!(own.mission(&mission("east", "2", 4.0), 2.0).unwrap(), AdmissionResult::Past);
+        assert!(matches!(
+            own.mission(&mission("east", "3", 0.5), 2.0).unwrap(),
+            AdmissionResult::Admitted { path: 3, .. }
+        ));
         assert!(own.robot("east").unwrap().waiting.is_none());
         own.settle(2.0).unwrap();
-        own = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+        own = Supervisor::restored(SupervisorConfig::default(), disc.entries(), Box::new(disc.clone())).unwrap();
     }
 }
 
@@ -222,9 +225,9 @@ fn late_messages_end_no_alarm() {
     let mut own = crossing(&Disc::new());
     own.position(&report("north", 2, 3.9, 4.0), 3.0).unwrap();
     assert_eq!(names(&own.settle(3.0).unwrap()), ["alarm north", "stop east"]);
-    own.position(&Report { age: 2.0, ..report("north", 2, 2.0, 2.1) }, 3.1).unwrap();
+    own.position(&PositionReport { age: 2.0, ..report("north", 2, 2.0, 2.1) }, 3.1).unwrap();
     assert_eq!(own.settle(3.1).unwrap(), []);
-    own.position(&Report { age: 0.05, ..report("north", 2, 2.5, 2.6) }, 3.2).unwrap();
+    own.position(&PositionReport { age: 0.05, ..report("north", 2, 2.5, 2.6) }, 3.2).unwrap();
     let events = names(&own.settle(3.2).unwrap());
     assert!(events.contains(&"clear north".into()) && events.contains(&"go east".into()), "{events:?}");
 }
@@ -235,13 +238,13 @@ fn late_messages_make_no_alarm_older() {
     for is_off in [true, false] {
         let mut own = crossing(&Disc::new());
         match is_off {
-            true => own.off("north", [0.0, -0.1], 0.0, 3.0).unwrap(),
+            true => own.report_off_path("north", [0.0, -0.1], 0.0, 3.0).unwrap(),
             false => own.position(&report("north", 2, 3.9, 4.0), 3.0).unwrap(),
         }
         assert_eq!(names(&own.settle(3.0).unwrap()), ["alarm north", "stop east"]);
         let alarm = own.robot("north").unwrap().alarm.clone();
-        own.position(&Report { age: 1.5, ..report("north", 2, 5.0, 5.5) }, 3.1).unwrap();
-        own.position(&Report { age: 1.2, ..report("north", 2, 0.0, 0.1) }, 3.2).unwrap();
+        own.position(&PositionReport { age: 1.5, ..report("north", 2, 5.0, 5.5) }, 3.1).unwrap();
+        own.position(&PositionReport { age: 1.2, ..report("north", 2, 0.0, 0.1) }, 3.2).unwrap();
         assert_eq!(own.settle(3.2).unwrap(), []);
         let robot = own.robot("north").unwrap();
         assert_eq!((&robot.alarm, robot.heard), (&alarm, Some(3.0)));
@@ -252,7 +255,7 @@ fn late_messages_make_no_alarm_older() {
     // One from before a newer one, which says that it is where it may be, is none at all.
     let mut own = crossing(&Disc::new());
     own.position(&report("north", 2, 2.0, 2.1), 3.0).unwrap();
-    own.position(&Report { age: 0.5, ..report("north", 2, 5.0, 5.5) }, 3.1).unwrap();
+    own.position(&PositionReport { age: 0.5, ..report("north", 2, 5.0, 5.5) }, 3.1).unwrap();
     assert!(!names(&own.settle(3.1).unwrap()).contains(&"alarm north".into()));
 }
 
@@ -263,21 +266,22 @@ fn after_a_restart_only_what_was_said_since_then_ends_an_alarm() {
         let disc = Disc::new();
         let mut own = crossing(&disc);
         match is_off {
-            true => own.off("north", [0.0, -0.1], 0.0, 3.0).unwrap(),
+            true => own.report_off_path("north", [0.0, -0.1], 0.0, 3.0).unwrap(),
             false => own.position(&report("north", 2, 3.9, 4.0), 3.0).unwrap(),
         }
         own.settle(3.0).unwrap();
-        let mut own = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+        let mut own =
+            Supervisor::restored(SupervisorConfig::default(), disc.entries(), Box::new(disc.clone())).unwrap();
         assert!(names(&own.settle(10.0).unwrap()).contains(&"stop east".into()));
         // They bound no place either: what was known of it may be newer.
-        own.off("north", [50.0, 50.0], 4.0, 10.1).unwrap();
-        own.position(&Report { age: 3.0, ..report("north", 2, 3.9, 4.0) }, 10.15).unwrap();
-        own.position(&Report { age: 0.5, ..report("north", 2, 2.0, 2.1) }, 10.2).unwrap();
-        own.position(&Report { age: 0.4, ..report("north", 2, 2.0, 2.1) }, 10.3).unwrap();
+        own.report_off_path("north", [50.0, 50.0], 4.0, 10.1).unwrap();
+        own.position(&PositionReport { age: 3.0, ..report("north", 2, 3.9, 4.0) }, 10.15).unwrap();
+        own.position(&PositionReport { age: 0.5, ..report("north", 2, 2.0, 2.1) }, 10.2).unwrap();
+        own.position(&PositionReport { age: 0.4, ..report("north", 2, 2.0, 2.1) }, 10.3).unwrap();
         assert_eq!(own.settle(10.3).unwrap(), []);
         let robot = own.robot("north").unwrap();
-        assert!(robot.alarm.is_some() && robot.heard.is_none() && robot.at == 0.0, "{robot:?}");
-        own.position(&Report { age: 0.3, ..report("north", 2, 2.0, 2.1) }, 10.4).unwrap();
+        assert!(robot.alarm.is_some() && robot.heard.is_none() && robot.arc_length == 0.0, "{robot:?}");
+        own.position(&PositionReport { age: 0.3, ..report("north", 2, 2.0, 2.1) }, 10.4).unwrap();
         let events = names(&own.settle(10.4).unwrap());
         assert!(events.contains(&"clear north".into()) && events.contains(&"go east".into()), "{events:?}");
     }
@@ -287,22 +291,22 @@ fn after_a_restart_only_what_was_said_since_then_ends_an_alarm() {
 #[test]
 fn a_place_off_the_path_is_as_old_as_it_says() {
     let mut own = crossing(&Disc::new());
-    own.off("north", [-40.0, 0.0], 0.0, 1.0).unwrap();
+    own.report_off_path("north", [-40.0, 0.0], 0.0, 1.0).unwrap();
     assert_eq!(names(&own.settle(1.0).unwrap()), ["alarm north"]);
-    own.off("north", [-1.0, 0.0], 0.1, 1.2).unwrap();
+    own.report_off_path("north", [-1.0, 0.0], 0.1, 1.2).unwrap();
     assert_eq!(names(&own.settle(1.2).unwrap()), ["stop east"]);
-    own.off("north", [-40.0, 0.0], 0.3, 1.3).unwrap();
+    own.report_off_path("north", [-40.0, 0.0], 0.3, 1.3).unwrap();
     assert_eq!(own.settle(1.3).unwrap(), []);
     // Nor is it one that is older than a place on the path.
     own.position(&report("north", 2, 0.0, 0.1), 1.4).unwrap();
     assert_eq!(names(&own.settle(1.4).unwrap())[0], "clear north");
-    own.off("north", [-1.0, 0.0], 0.2, 1.5).unwrap();
+    own.report_off_path("north", [-1.0, 0.0], 0.2, 1.5).unwrap();
     assert!(own.robot("north").unwrap().alarm.is_none());
     // It can have come nearer since it was there.
-    own.off("north", [-3.0, -2.5], 2.0, 4.0).unwrap();
+    own.report_off_path("north", [-3.0, -2.5], 2.0, 4.0).unwrap();
     assert_eq!(names(&own.settle(4.0).unwrap()), ["alarm north", "stop east"]);
     for age in [-1.0, f64::NAN, 1e7] {
-        assert!(own.off("north", [0.0, 0.0], age, 4.0).is_err());
+        assert!(own.report_off_path("north", [0.0, 0.0], age, 4.0).is_err());
     }
 }
 
@@ -320,14 +324,14 @@ fn a_robot_that_goes_back() {
     let hold = own.robot("north").unwrap().granted;
     // Within what it may be off, and before it was further on, that is no news.
     own.position(&report("east", 2, 3.5, 3.56), 2.1).unwrap();
-    own.position(&Report { age: 0.5, ..report("east", 2, 2.9, 3.0) }, 2.2).unwrap();
+    own.position(&PositionReport { age: 0.5, ..report("east", 2, 2.9, 3.0) }, 2.2).unwrap();
     assert_eq!(own.settle(2.2).unwrap(), []);
     own.position(&report("east", 2, 2.9, 3.0), 2.3).unwrap();
     assert_eq!(names(&own.settle(2.3).unwrap()), ["alarm east", "stop north"]);
     let back = Alarm::Back { passed: 3.6, between: [2.9, 3.0] };
     assert_eq!(own.robot("east").unwrap().alarm, Some(back));
     // It is so after a restart, until it has come as far again, and nobody goes on until then.
-    let mut own = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+    let mut own = Supervisor::restored(SupervisorConfig::default(), disc.entries(), Box::new(disc.clone())).unwrap();
     own.settle(0.0).unwrap();
     own.position(&report("north", 2, 2.0, 2.1), 0.1).unwrap();
     own.position(&report("east", 2, 3.2, 3.3), 0.2).unwrap();
@@ -344,10 +348,10 @@ fn a_robot_that_goes_back() {
 fn a_late_message_does_not_count_if_a_newer_one_says_that_it_is_not_so_far() {
     let mut own = crossing(&Disc::new());
     own.position(&report("east", 2, 2.0, 2.1), 2.0).unwrap();
-    own.position(&Report { age: 1.0, ..report("east", 2, 2.9, 3.0) }, 2.1).unwrap();
-    assert_eq!(own.robot("east").unwrap().at, 2.0);
-    own.position(&Report { age: 1.0, ..report("east", 2, 2.05, 3.0) }, 2.1).unwrap();
-    assert_eq!(own.robot("east").unwrap().at, 2.05);
+    own.position(&PositionReport { age: 1.0, ..report("east", 2, 2.9, 3.0) }, 2.1).unwrap();
+    assert_eq!(own.robot("east").unwrap().arc_length, 2.0);
+    own.position(&PositionReport { age: 1.0, ..report("east", 2, 2.05, 3.0) }, 2.1).unwrap();
+    assert_eq!(own.robot("east").unwrap().arc_length, 2.05);
 }
 
 /// It was answered as the first one: whoever sent it took the path that it had sent for the robot's.
@@ -355,29 +359,32 @@ fn a_late_message_does_not_count_if_a_newer_one_says_that_it_is_not_so_far() {
 fn a_name_of_a_mission_stands_for_one_path() {
     let disc = Disc::new();
     let mut own = crossing(&disc);
-    let line = |length: f64| vec![Shape::Line { length }];
-    let ends_alike = Proposal { path: [line(1.0), line(6.0)].concat(), ..mission("east", "1", 0.0) };
-    let replaced = Proposal { after: Some(5.0), ..mission("east", "2", 2.0) };
+    let line = |length: f64| vec![PathElement::Line { length }];
+    let ends_alike = MissionRequest { path: [line(1.0), line(6.0)].concat(), ..mission("east", "1", 0.0) };
+    let replaced = MissionRequest { after: Some(5.0), ..mission("east", "2", 2.0) };
     for _ in 0..2 {
         for other in [mission("east", "1", 1.0), mission("east", "1", 0.0), ends_alike.clone()] {
-            assert_eq!(own.mission(&other, 1.0), Err(Fault::MissionExists), "{other:?}");
+            assert_eq!(own.mission(&other, 1.0), Err(RequestError::MissionExists), "{other:?}");
         }
-        let none = Proposal { path: Vec::new(), ..mission("east", "1", 0.0) };
-        assert_eq!(own.mission(&none, 1.0), Err(Fault::MissionExists));
-        assert!(matches!(own.mission(&mission("east", "1", 6.0), 1.0).unwrap(), Verdict::Admitted { path: 2, .. }));
+        let none = MissionRequest { path: Vec::new(), ..mission("east", "1", 0.0) };
+        assert_eq!(own.mission(&none, 1.0), Err(RequestError::MissionExists));
+        assert!(matches!(
+            own.mission(&mission("east", "1", 6.0), 1.0).unwrap(),
+            AdmissionResult::Admitted { path: 2, .. }
+        ));
         own.settle(1.0).unwrap();
-        own = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+        own = Supervisor::restored(SupervisorConfig::default(), disc.entries(), Box::new(disc.clone())).unwrap();
     }
     let mut own = crossing(&disc);
-    assert!(matches!(own.mission(&replaced, 1.0).unwrap(), Verdict::Admitted { path: 3, .. }));
-    assert!(matches!(own.mission(&replaced, 1.0).unwrap(), Verdict::Admitted { path: 3, .. }));
-    let elsewhere = Proposal { after: Some(5.5), ..replaced };
-    assert_eq!(own.mission(&elsewhere, 1.0), Err(Fault::MissionExists));
+    assert!(matches!(own.mission(&replaced, 1.0).unwrap(), AdmissionResult::Admitted { path: 3, .. }));
+    assert!(matches!(own.mission(&replaced, 1.0).unwrap(), AdmissionResult::Admitted { path: 3, .. }));
+    let elsewhere = MissionRequest { after: Some(5.5), ..replaced };
+    assert_eq!(own.mission(&elsewhere, 1.0), Err(RequestError::MissionExists));
     // One that waits.
     own.add("stands", ABILITIES, place(6.0, 0.0, 0.0)).unwrap();
     let waiting = own.mission(&mission("east", "3", 4.0), 1.0).unwrap();
-    assert!(matches!(waiting, Verdict::Waiting { .. }), "{waiting:?}");
-    assert_eq!(own.mission(&mission("east", "3", 3.0), 1.0), Err(Fault::MissionExists));
+    assert!(matches!(waiting, AdmissionResult::Waiting { .. }), "{waiting:?}");
+    assert_eq!(own.mission(&mission("east", "3", 3.0), 1.0), Err(RequestError::MissionExists));
     assert_eq!(own.mission(&mission("east", "3", 4.0), 1.0).unwrap(), waiting);
 }
 
@@ -395,7 +402,7 @@ fn late_messages_of_a_robot_that_was_removed_are_about_another_path() {
         own.settle(2.0).unwrap();
         if restarted {
             let entries = own.snapshot().unwrap();
-            own = Supervisor::restored(Settings::default(), entries, Box::new(disc.clone())).unwrap();
+            own = Supervisor::restored(SupervisorConfig::default(), entries, Box::new(disc.clone())).unwrap();
         }
         own.add("east", ABILITIES, place(-3.0, 0.0, 0.0)).unwrap();
         let path = own.robot("east").unwrap().path;
@@ -403,7 +410,7 @@ fn late_messages_of_a_robot_that_was_removed_are_about_another_path() {
         own.mission(&mission("east", "again", 6.0), 2.0).unwrap();
         own.settle(2.0).unwrap();
         own.position(&report("east", before, 5.0, 5.0), 3.0).unwrap();
-        assert_eq!(own.robot("east").unwrap().at, 0.0);
+        assert_eq!(own.robot("east").unwrap().arc_length, 0.0);
         // To add the same one twice is no error, but for one that has had a mission.
         own.add("new", ABILITIES, place(50.0, 0.0, 0.0)).unwrap();
         own.add("new", ABILITIES, place(50.0, 0.0, 0.0)).unwrap();
@@ -414,15 +421,15 @@ fn late_messages_of_a_robot_that_was_removed_are_about_another_path() {
 /// A vehicle off its path was no news where coordinates are those of a map of the earth, and headings grew with each lap.
 #[test]
 fn far_off_and_many_laps() {
-    let mut own = Supervisor::new(Settings::default(), Box::new(Disc::new()));
+    let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(Disc::new()));
     own.add("east", ABILITIES, place(500_000.0, 5_600_000.0, 0.0)).unwrap();
-    own.off("east", [500_003.0, 5_600_000.0], 0.0, 0.0).unwrap();
+    own.report_off_path("east", [500_003.0, 5_600_000.0], 0.0, 0.0).unwrap();
     assert_eq!(names(&own.settle(0.0).unwrap()), ["alarm east"]);
     own.position(&report("east", 1, 0.0, 0.0), 1.0).unwrap();
     assert!(own.add("far", ABILITIES, place(3e7, 0.0, 0.0)).is_err());
     for lap in 0..100 {
-        let path = vec![Shape::Arc { radius: 2.0, sweep: 6.0 }];
-        let proposal = Proposal { path, ..mission("east", &lap.to_string(), 0.0) };
+        let path = vec![PathElement::Arc { radius: 2.0, sweep: 6.0 }];
+        let proposal = MissionRequest { path, ..mission("east", &lap.to_string(), 0.0) };
         let now = 2.0 + 20.0 * f64::from(lap);
         own.mission(&proposal, now).unwrap();
         for step in 1..=16 {
@@ -432,7 +439,7 @@ fn far_off_and_many_laps() {
             own.position(&report("east", number, at, at), now + f64::from(step)).unwrap();
         }
         let robot = own.robot("east").unwrap();
-        assert!(robot.at > 11.9 && robot.course.start().heading.abs() < 3.2, "{lap}: {robot:?}");
+        assert!(robot.arc_length > 11.9 && robot.course.start().heading.abs() < 3.2, "{lap}: {robot:?}");
     }
     assert!(own.mission(&mission("east", "long", 3e7), 9e9).is_err());
 }
@@ -445,14 +452,15 @@ fn a_robot_that_cannot_be_moved_keeps_its_place() {
     own.position(&report("east", 2, 1.0, 1.0), 1.0).unwrap();
     own.settle(1.0).unwrap();
     // So often past one place that no table has the regions of who stands there.
-    let shuttle = Shape::Turn { sweep: std::f64::consts::PI };
+    let shuttle = PathElement::Turn { sweep: std::f64::consts::PI };
     own.add("shuttle", ABILITIES, place(99.0, 99.0, 0.0)).unwrap();
-    let path = (0..40_000).flat_map(|_| [Shape::Line { length: 0.25 }, shuttle]).collect();
-    let verdict = own.mission(&Proposal { path, ..mission("shuttle", "1", 0.0) }, 1.0).unwrap();
-    assert!(matches!(verdict, Verdict::Admitted { .. }), "{verdict:?}");
+    let path = (0..40_000).flat_map(|_| [PathElement::Line { length: 0.25 }, shuttle]).collect();
+    let verdict = own.mission(&MissionRequest { path, ..mission("shuttle", "1", 0.0) }, 1.0).unwrap();
+    assert!(matches!(verdict, AdmissionResult::Admitted { .. }), "{verdict:?}");
     own.settle(1.0).unwrap();
     let known = |own: &Supervisor| {
-        let robots = own.robots().iter().map(|robot| (robot.name.clone(), robot.path, robot.at, robot.told));
+        let robots =
+            own.robots().iter().map(|robot| (robot.name.clone(), robot.path, robot.arc_length, robot.notified_limit));
         (robots.collect::<Vec<_>>(), own.orders().decisions().count())
     };
     let before = known(&own);
@@ -460,15 +468,18 @@ fn a_robot_that_cannot_be_moved_keeps_its_place() {
     assert!(refused.to_string().contains("32767 pieces"), "{refused}");
     assert_eq!(known(&own), before);
     own.settle(1.0).unwrap();
-    let restored = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap();
+    let restored = Supervisor::restored(SupervisorConfig::default(), disc.entries(), Box::new(disc.clone())).unwrap();
     assert!(restored.robot("east").is_ok_and(|robot| robot.path == 2 && robot.course.length() == 6.0));
     // Where it can stand its rights are void, now and after a restart.
     own.reseat("east", place(9.0, 0.0, 0.0)).unwrap();
     own.settle(2.0).unwrap();
-    let restored = Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc)).unwrap();
+    let restored = Supervisor::restored(SupervisorConfig::default(), disc.entries(), Box::new(disc)).unwrap();
     for own in [&own, &restored] {
         let robot = own.robot("east").unwrap();
-        assert_eq!((robot.path, robot.course.length(), robot.told, robot.mission.as_deref()), (3, 0.0, 0.0, None));
+        assert_eq!(
+            (robot.path, robot.course.length(), robot.notified_limit, robot.mission.as_deref()),
+            (3, 0.0, 0.0, None)
+        );
         assert_eq!(robot.past, ["1"]);
     }
 }

@@ -1,8 +1,8 @@
 //! What is asked again, in vain, or with too much.
 
-use pcr_serve::entry::Nowhere;
+use pcr_serve::journal_entry::NullStore;
 use pcr_serve::lines::handle;
-use pcr_serve::supervisor::{Settings, Supervisor};
+use pcr_serve::supervisor::{Supervisor, SupervisorConfig};
 use serde_json::{Value, json};
 
 struct Asks {
@@ -12,7 +12,7 @@ struct Asks {
 
 impl Asks {
     fn new() -> Self {
-        Self { supervisor: Supervisor::new(Settings::default(), Box::new(Nowhere)), now: 0.0 }
+        Self { supervisor: Supervisor::new(SupervisorConfig::default(), Box::new(NullStore)), now: 0.0 }
     }
 
     fn ask(&mut self, line: &Value) -> Value {

@@ -1,13 +1,13 @@
 //! The process ends at any instant: after the restart no right is lost, and none is given to another robot.
 
 use crate::world::{Disc, STEP, Trouble, World};
-use pcr_serve::course::{Shape, Start};
-use pcr_serve::entry::{Entry, Keep, Kept, Nowhere};
-use pcr_serve::event::Event;
-use pcr_serve::fault::Fault;
-use pcr_serve::journal::{self, Frames, Journal};
-use pcr_serve::robot::{Abilities, Robot};
-use pcr_serve::supervisor::{Proposal, Report, Settings, Supervisor, Verdict};
+use pcr_serve::event::SupervisorEvent;
+use pcr_serve::journal::{self, Journal, ParsedFrames};
+use pcr_serve::journal_entry::{JournalEntry, JournalStore, NullStore, StoredPrecedence};
+use pcr_serve::owned_path::{PathElement, StartPose};
+use pcr_serve::request_error::RequestError;
+use pcr_serve::robot::{RobotTraits, SupervisedRobot};
+use pcr_serve::supervisor::{AdmissionResult, MissionRequest, PositionReport, Supervisor, SupervisorConfig};
 use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::io::{BufRead, BufReader, ErrorKind, Seek, SeekFrom, Write};
@@ -24,16 +24,16 @@ fn folder(name: &str) -> PathBuf {
 }
 
 /// All that others rely on: paths, how far who may go, and who goes first where.
-fn rights(supervisor: &Supervisor) -> HashMap<String, (u64, f64, Vec<Kept>)> {
+fn rights(supervisor: &Supervisor) -> HashMap<String, (u64, f64, Vec<StoredPrecedence>)> {
     let robots = supervisor.robots().iter();
-    let mut orders: HashMap<String, Vec<Kept>> = HashMap::new();
+    let mut orders: HashMap<String, Vec<StoredPrecedence>> = HashMap::new();
     let fleet = supervisor.fleet().unwrap();
     for (place, robot) in robots.clone().enumerate() {
         let row = supervisor.orders().row(&fleet, place).unwrap();
-        let row = row.map(|(_, region, pass)| Kept {
+        let row = row.map(|(_, region, pass)| StoredPrecedence {
             with: supervisor.robots()[region.other()].name.clone(),
             pass: pass.into(),
-            since: 0.0,
+            active_from: 0.0,
             lengths: [region.length(), region.other_length()].map(|length| [length.lo, length.hi]),
         });
         orders.insert(robot.name.clone(), row.collect());
@@ -42,25 +42,33 @@ fn rights(supervisor: &Supervisor) -> HashMap<String, (u64, f64, Vec<Kept>)> {
 }
 
 /// Whether what is known after a restart holds all that was told before.
-fn keeps(after: &Supervisor, before: &HashMap<String, (u64, f64, Vec<Kept>)>, context: &str) {
+fn keeps(after: &Supervisor, before: &HashMap<String, (u64, f64, Vec<StoredPrecedence>)>, context: &str) {
     let now = rights(after);
     assert_eq!(now.len(), before.len(), "{context}");
     for (name, (path, granted, orders)) in before {
         let robot = after.robot(name).unwrap();
         assert_eq!(robot.path, *path, "{context}: {name}");
-        assert!(robot.told >= *granted, "{context}: {name} was told {granted}, known is {}", robot.told);
+        assert!(
+            robot.notified_limit >= *granted,
+            "{context}: {name} was told {granted}, known is {}",
+            robot.notified_limit
+        );
         assert!(robot.granted <= *granted, "{context}: {name} gets more than it had");
-        let same = |(a, b): (&Kept, &Kept)| {
+        let same = |(a, b): (&StoredPrecedence, &StoredPrecedence)| {
             // What is over for one of both times was passed: nobody has the right any more.
-            let over = [a.pass, b.pass].contains(&pcr_serve::entry::Side::Over);
+            let over = [a.pass, b.pass].contains(&pcr_serve::journal_entry::StoredPassingState::Over);
             a.with == b.with && a.lengths == b.lengths && (a.pass == b.pass || over)
         };
         // Nobody counts as allowed to go where the orders do not let it go.
         let place = after.robots().iter().position(|other| other.name == *name).unwrap();
-        let progress: Vec<_> = after.robots().iter().map(Robot::progress).collect();
+        let progress: Vec<_> = after.robots().iter().map(SupervisedRobot::progress).collect();
         let (hold, _) = after.orders().wait(&after.fleet().unwrap(), place, &progress).unwrap();
         let bound = hold.length(robot.course.length());
-        assert!(bound.is_some_and(|bound| robot.told <= bound), "{context}: {name}: {} {hold:?}", robot.told);
+        assert!(
+            bound.is_some_and(|bound| robot.notified_limit <= bound),
+            "{context}: {name}: {} {hold:?}",
+            robot.notified_limit
+        );
         let (own, count) = (&now[name].2, orders.len());
         assert!(own.len() == count && own.iter().zip(orders).all(same), "{context}: {name}: {own:?} {orders:?}");
     }
@@ -83,13 +91,13 @@ fn a_journal_that_ends_at_any_byte_keeps_all_that_was_told() {
     assert!(told.len() > 10, "{} writes", told.len());
     let (mut last, mut restarts) = (usize::MAX, 0);
     for end in 16..=bytes.len() {
-        let Frames { entries, end: read, .. } = journal::read(&bytes[..end]).unwrap();
+        let ParsedFrames { entries, end: read, .. } = journal::read(&bytes[..end]).unwrap();
         let Some((_, before)) = told.iter().rev().find(|(written, _)| *written <= end) else { continue };
         let whole =
             told.iter().rev().find(|(written, _)| *written <= end).map_or(16, |(written, _)| (*written).max(16));
         assert_eq!(read, whole, "what was cut off is left out, all else is there");
         if read != last {
-            let after = Supervisor::restored(Settings::default(), entries, Box::new(Nowhere)).unwrap();
+            let after = Supervisor::restored(SupervisorConfig::default(), entries, Box::new(NullStore)).unwrap();
             keeps(&after, before, &format!("byte {end}"));
             (last, restarts) = (read, restarts + 1);
         }
@@ -104,7 +112,7 @@ fn a_journal_that_is_damaged_is_not_gone_on_with() {
         world.step();
     }
     let bytes = world.disc.bytes.lock().unwrap().clone();
-    let Frames { entries, end, .. } = journal::read(&bytes).unwrap();
+    let ParsedFrames { entries, end, .. } = journal::read(&bytes).unwrap();
     assert_eq!(end, bytes.len());
     // Any bit that is another one is noticed. In the last frame it counted as one that is not complete: what had been told was forgotten. (Of
     // those before it not all: reading them takes long.)
@@ -165,9 +173,9 @@ fn frames_that_do_not_follow_one_another_are_damage() {
 #[test]
 fn a_list_that_grows_is_written_once_and_is_there_after_a_restart() {
     let disc = Disc::new();
-    let mut own = Supervisor::new(Settings::default(), Box::new(disc.clone()));
-    let start = Start { x: 0.0, y: 0.0, heading: 0.0 };
-    own.add("a", Abilities { radius: 0.4, margin: 0.0, speed: 1.0, acceleration: 0.5 }, start).unwrap();
+    let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(disc.clone()));
+    let start = StartPose { x: 0.0, y: 0.0, heading: 0.0 };
+    own.add("a", RobotTraits { radius: 0.4, margin: 0.0, speed: 1.0, acceleration: 0.5 }, start).unwrap();
     own.note("a", "list", json!([0])).unwrap();
     own.settle(0.0).unwrap();
     let mut sizes = Vec::new();
@@ -180,15 +188,15 @@ fn a_list_that_grows_is_written_once_and_is_there_after_a_restart() {
     let grown = |frames: &[usize]| frames[frames.len() - 1] - frames[0];
     assert!(grown(&sizes[800..]) < grown(&sizes[..200]) + 500, "{} {}", grown(&sizes[..200]), grown(&sizes[800..]));
     let all = json!((0..=1000).collect::<Vec<_>>());
-    let restored = |entries| Supervisor::restored(Settings::default(), entries, Box::new(Nowhere));
+    let restored = |entries| Supervisor::restored(SupervisorConfig::default(), entries, Box::new(NullStore));
     assert_eq!(restored(disc.entries()).unwrap().robot("a").unwrap().notes["list"], all);
     assert_eq!(restored(own.snapshot().unwrap()).unwrap().robot("a").unwrap().notes["list"], all);
     // More of what is no list, or of a robot that is not there, is damage.
     own.note("a", "text", json!("no list")).unwrap();
     assert!(own.note_more("a", "text", &[1]).is_err() && own.note_more("b", "list", &[1]).is_err());
     for (robot, key) in [("a", "text"), ("b", "list")] {
-        let more = Entry::More { robot: robot.into(), key: key.into(), more: vec![json!(1)] };
-        let entries: Vec<Entry> = own.snapshot().unwrap().into_iter().chain([more]).collect();
+        let more = JournalEntry::More { robot: robot.into(), key: key.into(), more: vec![json!(1)] };
+        let entries: Vec<JournalEntry> = own.snapshot().unwrap().into_iter().chain([more]).collect();
         assert!(restored(entries).is_err(), "{robot} {key}");
     }
 }
@@ -196,12 +204,12 @@ fn a_list_that_grows_is_written_once_and_is_there_after_a_restart() {
 /// An order that could not be written was noted as none.
 #[test]
 fn after_a_note_that_is_no_json_nothing_is_told() {
-    let mut own = Supervisor::new(Settings::default(), Box::new(Nowhere));
-    let start = Start { x: 0.0, y: 0.0, heading: 0.0 };
-    own.add("a", Abilities { radius: 0.4, margin: 0.0, speed: 1.0, acceleration: 0.5 }, start).unwrap();
+    let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(NullStore));
+    let start = StartPose { x: 0.0, y: 0.0, heading: 0.0 };
+    own.add("a", RobotTraits { radius: 0.4, margin: 0.0, speed: 1.0, acceleration: 0.5 }, start).unwrap();
     let note = HashMap::from([([1, 2], 3)]);
-    assert!(matches!(own.note("a", "order", note), Err(Fault::Broken { .. })));
-    assert!(matches!(own.settle(0.0), Err(Fault::Broken { .. })));
+    assert!(matches!(own.note("a", "order", note), Err(RequestError::Broken { .. })));
+    assert!(matches!(own.settle(0.0), Err(RequestError::Broken { .. })));
 }
 
 /// Where the last frame begins.
@@ -218,7 +226,8 @@ fn a_last_frame_of_which_any_sectors_are_missing_is_left_out() {
         world.step();
     }
     let mut bytes = world.disc.bytes.lock().unwrap().clone();
-    pcr_serve::entry::Keep::keep(&mut world.disc.clone(), &world.supervisor.snapshot().unwrap()).unwrap();
+    pcr_serve::journal_entry::JournalStore::keep(&mut world.disc.clone(), &world.supervisor.snapshot().unwrap())
+        .unwrap();
     let whole = world.disc.bytes.lock().unwrap().clone();
     let (before, last) = (journal::read(&bytes).unwrap().entries.len(), bytes.len());
     assert!(whole.len() - last > 4 * SECTOR && last_frame(&whole) == last);
@@ -233,7 +242,7 @@ fn a_last_frame_of_which_any_sectors_are_missing_is_left_out() {
                 torn[last + sector * SECTOR..][..part.len()].copy_from_slice(part);
             }
         }
-        let Frames { entries, end, .. } = journal::read(&torn).unwrap();
+        let ParsedFrames { entries, end, .. } = journal::read(&torn).unwrap();
         assert!(end == last && entries.len() == before, "{missing:b}");
     }
     // A byte that became 0 was another one once, and what the record says may have been told.
@@ -242,7 +251,7 @@ fn a_last_frame_of_which_any_sectors_are_missing_is_left_out() {
         damaged[place] = 0;
         assert!(journal::read(&damaged).is_err(), "{place}");
     }
-    let Frames { entries, end, .. } = journal::read(&[whole.clone(), vec![0; 1000]].concat()).unwrap();
+    let ParsedFrames { entries, end, .. } = journal::read(&[whole.clone(), vec![0; 1000]].concat()).unwrap();
     assert!(end == whole.len() && entries.len() > before);
 }
 
@@ -253,7 +262,7 @@ fn fleets_whose_supervisor_is_killed_in_the_middle_of_writes() {
         let mut world = World::new(seed, 3 + seed as usize, Trouble { lost: 0.1, late: 2.0, stops: 0.002 });
         while world.now < 60.0 {
             if world.disc.fails_at.load(Relaxed) == usize::MAX {
-                let further = world.dice().within(0.0, 6000.0) as usize;
+                let further = world.dice().uniform(0.0, 6000.0) as usize;
                 let written = world.disc.bytes.lock().unwrap().len();
                 world.disc.fails_at.store(written + further, Relaxed);
             }
@@ -277,7 +286,7 @@ fn a_second_supervisor_is_refused_and_a_torn_end_is_told() {
     while world.now < 3.0 {
         world.step();
     }
-    pcr_serve::entry::Keep::keep(&mut journal, &world.supervisor.snapshot().unwrap()).unwrap();
+    pcr_serve::journal_entry::JournalStore::keep(&mut journal, &world.supervisor.snapshot().unwrap()).unwrap();
     drop(journal);
     let path = folder.join("journal");
     let end = journal::read(&std::fs::read(&path).unwrap()).unwrap().end;
@@ -288,12 +297,12 @@ fn a_second_supervisor_is_refused_and_a_torn_end_is_told() {
     let (mut journal, found) = Journal::open(&folder).unwrap();
     assert!(found.torn == 3 && !found.entries.is_empty());
     // Begun anew it holds the same.
-    let before = Supervisor::restored(Settings::default(), found.entries, Box::new(Nowhere)).unwrap();
-    pcr_serve::entry::Keep::restart(&mut journal, &before.snapshot().unwrap()).unwrap();
-    pcr_serve::entry::Keep::keep(&mut journal, &before.snapshot().unwrap()).unwrap();
+    let before = Supervisor::restored(SupervisorConfig::default(), found.entries, Box::new(NullStore)).unwrap();
+    pcr_serve::journal_entry::JournalStore::restart(&mut journal, &before.snapshot().unwrap()).unwrap();
+    pcr_serve::journal_entry::JournalStore::keep(&mut journal, &before.snapshot().unwrap()).unwrap();
     drop(journal);
     let (_journal, found) = Journal::open(&folder).unwrap();
-    let after = Supervisor::restored(Settings::default(), found.entries, Box::new(Nowhere)).unwrap();
+    let after = Supervisor::restored(SupervisorConfig::default(), found.entries, Box::new(NullStore)).unwrap();
     keeps(&after, &rights(&before), "begun anew");
     let _ = std::fs::remove_dir_all(&folder);
 }
@@ -303,7 +312,7 @@ fn a_second_supervisor_is_refused_and_a_torn_end_is_told() {
 fn a_long_journal_is_long_after_each_restart() {
     let folder = folder("long");
     let (mut journal, _) = Journal::open(&folder).unwrap();
-    let note = Entry::Note { robot: "a".into(), key: "k".into(), note: "x".repeat(1 << 20).into() };
+    let note = JournalEntry::Note { robot: "a".into(), key: "k".into(), note: "x".repeat(1 << 20).into() };
     let mut frames = 0;
     while !journal.is_long() {
         journal.keep(std::slice::from_ref(&note)).unwrap();
@@ -343,7 +352,7 @@ fn a_journal_begun_anew_that_was_cut_is_damaged() {
         world.step();
     }
     let (mut journal, _) = Journal::open(&folder).unwrap();
-    pcr_serve::entry::Keep::restart(&mut journal, &world.supervisor.snapshot().unwrap()).unwrap();
+    pcr_serve::journal_entry::JournalStore::restart(&mut journal, &world.supervisor.snapshot().unwrap()).unwrap();
     drop(journal);
     let path = folder.join("journal");
     let whole = std::fs::read(&path).unwrap();
@@ -359,7 +368,7 @@ fn a_journal_begun_anew_that_was_cut_is_damaged() {
     // A later frame was never whole.
     std::fs::write(&path, &whole).unwrap();
     let (mut journal, _) = Journal::open(&folder).unwrap();
-    pcr_serve::entry::Keep::keep(&mut journal, &world.supervisor.snapshot().unwrap()).unwrap();
+    pcr_serve::journal_entry::JournalStore::keep(&mut journal, &world.supervisor.snapshot().unwrap()).unwrap();
     drop(journal);
     let more = journal::read(&std::fs::read(&path).unwrap()).unwrap().end;
     std::fs::OpenOptions::new().write(true).open(&path).unwrap().set_len(more as u64 - 1).unwrap();
@@ -377,11 +386,11 @@ fn a_journal_begun_anew_that_was_cut_is_damaged() {
     let _ = std::fs::remove_dir_all(&folder);
 }
 
-const CAN: Abilities = Abilities { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+const CAN: RobotTraits = RobotTraits { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
 
-fn mission(own: &mut Supervisor, robot: &str, mission: &str, length: f64, now: f64) -> Verdict {
-    let (robot, mission, path) = (robot.into(), mission.into(), vec![Shape::Line { length }]);
-    own.mission(&Proposal { robot, mission, after: None, of: None, start: None, path }, now).unwrap()
+fn mission(own: &mut Supervisor, robot: &str, mission: &str, length: f64, now: f64) -> AdmissionResult {
+    let (robot, mission, path) = (robot.into(), mission.into(), vec![PathElement::Line { length }]);
+    own.mission(&MissionRequest { robot, mission, after: None, expected_path: None, start: None, path }, now).unwrap()
 }
 
 /// Robots go as far as they may, and nobody is stopped.
@@ -390,26 +399,26 @@ fn go(own: &mut Supervisor, now: &mut f64) {
         *now += 0.5;
         for robot in own.robots().to_vec() {
             let at = [robot.granted; 2];
-            own.position(&Report { robot: robot.name, path: robot.path, at, age: 0.0 }, *now).unwrap();
+            own.position(&PositionReport { robot: robot.name, path: robot.path, at, age: 0.0 }, *now).unwrap();
         }
         let events = own.settle(*now).unwrap();
-        assert!(!events.iter().any(|event| matches!(event, Event::Stop { .. })), "{events:?}");
+        assert!(!events.iter().any(|event| matches!(event, SupervisorEvent::Stop { .. })), "{events:?}");
     }
 }
 
 /// The robot `a` has been allowed to go 3 m of 12 m, and the journal had 5 m.
 fn ahead(disc: &Disc) -> Supervisor {
-    let mut own = Supervisor::new(Settings::default(), Box::new(disc.clone()));
-    own.add("a", CAN, Start { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
-    assert!(matches!(mission(&mut own, "a", "A", 12.0, 0.0), Verdict::Admitted { .. }));
+    let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(disc.clone()));
+    own.add("a", CAN, StartPose { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
+    assert!(matches!(mission(&mut own, "a", "A", 12.0, 0.0), AdmissionResult::Admitted { .. }));
     own.settle(0.0).unwrap();
     let a = own.robot("a").unwrap();
-    assert!(a.told == 3.0 && a.ceiling == 5.0, "{a:?}");
+    assert!(a.notified_limit == 3.0 && a.ceiling == 5.0, "{a:?}");
     own
 }
 
 fn restarted(disc: &Disc) -> Supervisor {
-    Supervisor::restored(Settings::default(), disc.entries(), Box::new(disc.clone())).unwrap()
+    Supervisor::restored(SupervisorConfig::default(), disc.entries(), Box::new(disc.clone())).unwrap()
 }
 
 /// What the journal had beyond the hold was where another robot had been added since: after a restart both stood for ever.
@@ -418,7 +427,7 @@ fn a_robot_that_is_added_beyond_a_hold_can_leave_after_a_restart() {
     for drives in [false, true] {
         let (disc, mut now) = (Disc::new(), 1.0);
         let mut own = ahead(&disc);
-        own.add("b", CAN, Start { x: 5.0, y: 0.0, heading: std::f64::consts::FRAC_PI_2 }).unwrap();
+        own.add("b", CAN, StartPose { x: 5.0, y: 0.0, heading: std::f64::consts::FRAC_PI_2 }).unwrap();
         own.settle(now).unwrap();
         if drives {
             go(&mut own, &mut now);
@@ -426,9 +435,9 @@ fn a_robot_that_is_added_beyond_a_hold_can_leave_after_a_restart() {
             assert!((a.granted - 4.5).abs() < 1e-3 && own.waits_for(a) == Some("b"), "{a:?}");
         }
         let mut own = restarted(&disc);
-        assert!(own.robot("a").unwrap().told < 4.5);
+        assert!(own.robot("a").unwrap().notified_limit < 4.5);
         go(&mut own, &mut now);
-        assert!(matches!(mission(&mut own, "b", "B", 6.0, now), Verdict::Admitted { .. }));
+        assert!(matches!(mission(&mut own, "b", "B", 6.0, now), AdmissionResult::Admitted { .. }));
         go(&mut own, &mut now);
         assert!(own.robots().iter().all(|robot| robot.has_arrived(1e-3)), "{:?}", own.robots());
     }
@@ -440,13 +449,13 @@ fn no_ceiling_is_where_another_robot_goes_first() {
     let disc = Disc::new();
     let mut own = ahead(&disc);
     // So near to where the paths cross that it goes first, and it is told so before anybody drives.
-    own.add("b", CAN, Start { x: 4.2, y: -0.7, heading: std::f64::consts::FRAC_PI_2 }).unwrap();
-    assert!(matches!(mission(&mut own, "b", "B", 9.0, 0.0), Verdict::Admitted { .. }));
+    own.add("b", CAN, StartPose { x: 4.2, y: -0.7, heading: std::f64::consts::FRAC_PI_2 }).unwrap();
+    assert!(matches!(mission(&mut own, "b", "B", 9.0, 0.0), AdmissionResult::Admitted { .. }));
     own.settle(0.0).unwrap();
-    let bound = own.robot("a").unwrap().hold.unwrap().hold.length(12.0).unwrap();
+    let bound = own.robot("a").unwrap().authority.unwrap().hold.length(12.0).unwrap();
     assert!(bound > 3.0 && bound < 4.2, "{bound}");
     let after = restarted(&disc);
-    assert!((3.0..=bound).contains(&after.robot("a").unwrap().told), "{:?}", after.robot("a"));
+    assert!((3.0..=bound).contains(&after.robot("a").unwrap().notified_limit), "{:?}", after.robot("a"));
     keeps(&after, &rights(&own), "second");
 }
 
@@ -456,11 +465,11 @@ fn after_an_end_in_order_only_what_was_told_counts_as_told() {
     let mut own = ahead(&disc);
     own.finish(1.0).unwrap();
     let mut own = restarted(&disc);
-    assert_eq!(own.robot("a").unwrap().told, 3.0);
-    own.add("b", CAN, Start { x: 5.0, y: 0.0, heading: std::f64::consts::FRAC_PI_2 }).unwrap();
+    assert_eq!(own.robot("a").unwrap().notified_limit, 3.0);
+    own.add("b", CAN, StartPose { x: 5.0, y: 0.0, heading: std::f64::consts::FRAC_PI_2 }).unwrap();
     let mut now = 2.0;
     go(&mut own, &mut now);
-    assert!(matches!(mission(&mut own, "b", "B", 6.0, now), Verdict::Admitted { .. }));
+    assert!(matches!(mission(&mut own, "b", "B", 6.0, now), AdmissionResult::Admitted { .. }));
     go(&mut own, &mut now);
     assert!(own.robots().iter().all(|robot| robot.has_arrived(1e-3)), "{:?}", own.robots());
 }
@@ -470,11 +479,11 @@ fn after_an_end_in_order_only_what_was_told_counts_as_told() {
 fn late_messages_from_before_a_restart_are_no_alarm() {
     let disc = Disc::new();
     let mut own = ahead(&disc);
-    let at = |at: f64, age: f64| Report { robot: "a".into(), path: 2, at: [at, at], age };
+    let at = |at: f64, age: f64| PositionReport { robot: "a".into(), path: 2, at: [at, at], age };
     own.position(&at(2.5, 0.0), 1.0).unwrap();
     own.settle(1.0).unwrap();
     let mut own = restarted(&disc);
-    assert_eq!(own.robot("a").unwrap().at, 2.5);
+    assert_eq!(own.robot("a").unwrap().arc_length, 2.5);
     own.settle(100.0).unwrap();
     for late in [at(1.5, 3.0), at(1.7, 2.5), at(1.9, 2.0)] {
         own.position(&late, 101.0).unwrap();
@@ -534,11 +543,11 @@ fn a_process_that_is_killed_has_told_nothing_that_is_not_in_its_journal() {
         // What was on its way is told, too.
         lines.map_while(Result::ok).for_each(&mut take);
         let (_journal, found) = Journal::open(&folder).unwrap();
-        let after = Supervisor::restored(Settings::default(), found.entries, Box::new(Nowhere)).unwrap();
+        let after = Supervisor::restored(SupervisorConfig::default(), found.entries, Box::new(NullStore)).unwrap();
         for (name, (path, hold)) in &told {
             let robot = after.robot(name).unwrap();
             assert!(robot.path >= *path, "round {round}: a path of {name} is lost");
-            assert!(robot.path > *path || robot.told >= *hold, "round {round}: {name} was told {hold}");
+            assert!(robot.path > *path || robot.notified_limit >= *hold, "round {round}: {name} was told {hold}");
         }
         most = most.max(told.len());
         let _ = std::fs::remove_dir_all(&folder);

@@ -1,14 +1,14 @@
 //! The line protocol: the example of the document, the schema, and bytes that are no requests.
 
-use pcr_formats::random::Random;
+use pcr_formats::splitmix64::SplitMix64;
 use pcr_serve::clients::Access;
-use pcr_serve::entry::Nowhere;
-use pcr_serve::lines::{Request, handle, news};
-use pcr_serve::log::{Level, Log};
-use pcr_serve::outbox::{BACKLOG, Lost, outbox};
-use pcr_serve::server::{Call, Input, queue, serve};
-use pcr_serve::supervisor::{Settings, Supervisor};
-use pcr_serve::writer::Kept;
+use pcr_serve::journal_entry::NullStore;
+use pcr_serve::journal_writer::WriteProgress;
+use pcr_serve::lines::{RequestLine, handle, news};
+use pcr_serve::log::{LogLevel, LogWriter};
+use pcr_serve::outbox::{BACKLOG, DisconnectReason, outbox};
+use pcr_serve::server::{ServerInput, SupervisorCall, queue, serve};
+use pcr_serve::supervisor::{Supervisor, SupervisorConfig};
 use pcr_serve::{clients, http};
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};
@@ -18,7 +18,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 pub(crate) fn supervisor() -> Supervisor {
-    Supervisor::new(Settings::default(), Box::new(Nowhere))
+    Supervisor::new(SupervisorConfig::default(), Box::new(NullStore))
 }
 
 pub(crate) fn document(name: &str) -> String {
@@ -152,7 +152,7 @@ pub(crate) fn requests() -> Vec<String> {
 fn every_answer_fits_the_schema_and_nothing_panics() {
     let schema: Value = serde_json::from_str(&document("reference/schema/pcr-serve.schema.json")).unwrap();
     let validator = jsonschema::draft202012::new(&schema).unwrap();
-    let (mut dice, mut kinds) = (Random(7), std::collections::BTreeSet::new());
+    let (mut dice, mut kinds) = (SplitMix64(7), std::collections::BTreeSet::new());
     let all = requests();
     let mut supervisor = supervisor();
     for round in 0..4000 {
@@ -332,16 +332,16 @@ fn a_path_ends_where_who_asks_for_it_believes() {
 fn ages_count_from_when_a_line_came() {
     let (sender, inputs) = sync_channel(100);
     let server = thread::spawn(move || {
-        serve(&mut supervisor(), &inputs, &Kept::default(), Log::new(Level::Error)).unwrap();
+        serve(&mut supervisor(), &inputs, &WriteProgress::default(), LogWriter::new(LogLevel::Error)).unwrap();
     });
     let (answer, alarm) = sync_channel(2);
     let ask = |question: fn(&Supervisor) -> bool| {
         let answer = answer.clone();
-        let call: Call = Box::new(move |supervisor, _, _| {
+        let call: SupervisorCall = Box::new(move |supervisor, _, _| {
             answer.send(question(supervisor)).unwrap();
             None
         });
-        sender.send((Instant::now(), Input::Call(call))).unwrap();
+        sender.send((Instant::now(), ServerInput::Call(call))).unwrap();
         alarm.recv().unwrap()
     };
     // It is at work.
@@ -354,10 +354,10 @@ fn ages_count_from_when_a_line_came() {
     };
     assert!(!ask(busy));
     let (out, _lines) = outbox();
-    sender.send((begin, Input::Opened(1, out))).unwrap();
+    sender.send((begin, ServerInput::Opened(1, out))).unwrap();
     let say = |after: u64, request: Value| {
-        let request = Request::read(request.to_string().as_bytes());
-        sender.send((begin + Duration::from_millis(after), Input::Line(1, request))).unwrap();
+        let request = RequestLine::read(request.to_string().as_bytes());
+        sender.send((begin + Duration::from_millis(after), ServerInput::Line(1, request))).unwrap();
     };
     say(0, serde_json::from_str(&requests()[0]).unwrap());
     say(1, json!({ "verb": "mission", "robot": "a", "mission": "1", "path": [{ "kind": "line", "length": 2 }] }));
@@ -369,7 +369,7 @@ fn ages_count_from_when_a_line_came() {
     assert!(ask(|supervisor| supervisor.robots()[0].alarm.is_some()));
     say(60, position(0.03));
     assert!(ask(|supervisor| supervisor.robots()[0].alarm.is_none()));
-    sender.send((Instant::now(), Input::Stop)).unwrap();
+    sender.send((Instant::now(), ServerInput::Stop)).unwrap();
     server.join().unwrap();
 }
 
@@ -379,14 +379,20 @@ fn clients_over_tcp_and_the_page() {
     let (handle, inputs) = queue();
     let (lines, page) = (TcpListener::bind("127.0.0.1:0").unwrap(), TcpListener::bind("127.0.0.1:0").unwrap());
     let (at, shown) = (lines.local_addr().unwrap(), page.local_addr().unwrap());
-    let draw: http::Draw = |fleet, place| Ok(format!("<svg>{}</svg>", fleet[place].name));
-    let site =
-        http::Site { page: "<p>here</p>".into(), draw: Some(draw), hosts: vec![shown.to_string()], addresses: false };
+    let draw: http::DrawFn = |fleet, place| Ok(format!("<svg>{}</svg>", fleet[place].name));
+    let site = http::HttpContent {
+        page: "<p>here</p>".into(),
+        draw: Some(draw),
+        hosts: vec![shown.to_string()],
+        addresses: false,
+    };
     let own = handle.clone();
-    thread::spawn(move || clients::listen(&own, &lines.into(), Access::new(None), Log::new(Level::Error)));
+    thread::spawn(move || clients::listen(&own, &lines.into(), Access::new(None), LogWriter::new(LogLevel::Error)));
     let own = handle.clone();
-    thread::spawn(move || http::listen(&own, &page.into(), site, Log::new(Level::Error)));
-    let server = thread::spawn(move || serve(&mut supervisor, &inputs, &Kept::default(), Log::new(Level::Error)));
+    thread::spawn(move || http::listen(&own, &page.into(), site, LogWriter::new(LogLevel::Error)));
+    let server = thread::spawn(move || {
+        serve(&mut supervisor, &inputs, &WriteProgress::default(), LogWriter::new(LogLevel::Error))
+    });
 
     let (mut out, mut other) = (TcpStream::connect(at).unwrap(), TcpStream::connect(at).unwrap());
     let mut answers = BufReader::new(out.try_clone().unwrap()).lines();
@@ -438,7 +444,7 @@ fn clients_over_tcp_and_the_page() {
     // A page of somebody else whose name leads here.
     assert!(get("GET /state HTTP/1.1\r\nHost: example.org\r\n\r\n").starts_with("HTTP/1.1 403"));
     assert!(get("GET /state HTTP/1.1\r\n\r\n").starts_with("HTTP/1.1 403"));
-    handle.send(Input::Stop);
+    handle.send(ServerInput::Stop);
     server.join().unwrap().unwrap();
     // The picture of a robot said that there was no such robot.
     for path in ["/state", "/metrics", "/layout", "/map?robot=b"] {
@@ -451,8 +457,12 @@ fn clients_over_tcp_and_the_page() {
 fn a_page_at_all_addresses_is_shown_under_any_address_and_no_other_name() {
     let (handle, inputs) = queue();
     drop(inputs);
-    let site =
-        |addresses| http::Site { page: "here".into(), draw: None, hosts: vec!["localhost:8080".into()], addresses };
+    let site = |addresses| http::HttpContent {
+        page: "here".into(),
+        draw: None,
+        hosts: vec!["localhost:8080".into()],
+        addresses,
+    };
     let status = |addresses, host: &str| {
         let request = format!("GET / HTTP/1.1\r\nHost: {host}\r\n\r\n");
         http::answer(&handle, &site(addresses), request.as_bytes()).0[..3].parse::<u16>().unwrap()
@@ -477,7 +487,7 @@ fn no_more_bytes_wait_for_a_client_than_said() {
     let half = "x".repeat(BACKLOG / 2);
     assert_eq!(
         [out.send(half.clone()), out.send(half.clone()), out.send("x".into())],
-        [Ok(()), Ok(()), Err(Lost::Slow)]
+        [Ok(()), Ok(()), Err(DisconnectReason::Slow)]
     );
     assert!(!lines.is_closed());
     drop(out);
@@ -489,7 +499,7 @@ fn no_more_bytes_wait_for_a_client_than_said() {
     assert!(lines.recv().is_err());
     let (out, lines) = outbox();
     drop(lines);
-    assert_eq!(out.send("x".into()), Err(Lost::Gone));
+    assert_eq!(out.send("x".into()), Err(DisconnectReason::Gone));
 }
 
 /// It is told why in the last line, and whoever reads is served as before.
@@ -501,8 +511,10 @@ fn a_client_that_never_reads_is_let_go_and_told_why() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let at = listener.local_addr().unwrap();
     let own = handle.clone();
-    thread::spawn(move || clients::listen(&own, &listener.into(), Access::new(None), Log::new(Level::Error)));
-    let server = thread::spawn(move || serve(&mut supervisor, &inputs, &Kept::default(), Log::new(Level::Error)));
+    thread::spawn(move || clients::listen(&own, &listener.into(), Access::new(None), LogWriter::new(LogLevel::Error)));
+    let server = thread::spawn(move || {
+        serve(&mut supervisor, &inputs, &WriteProgress::default(), LogWriter::new(LogLevel::Error))
+    });
     let (mut slow, mut other) = (TcpStream::connect(at).unwrap(), TcpStream::connect(at).unwrap());
     for client in [&mut slow, &mut other] {
         client.write_all(HELLO.as_bytes()).unwrap();
@@ -523,7 +535,7 @@ fn a_client_that_never_reads_is_let_go_and_told_why() {
     other.write_all(b"{\"id\": 1, \"verb\": \"query\", \"what\": \"counts\"}\n").unwrap();
     let answered: Vec<String> = BufReader::new(other).lines().take(2).map(Result::unwrap).collect();
     assert!(answered.iter().all(|line| line.contains("\"ok\"")), "{answered:?}");
-    handle.send(Input::Stop);
+    handle.send(ServerInput::Stop);
     server.join().unwrap().unwrap();
 }
 
@@ -532,10 +544,12 @@ fn a_client_that_never_reads_is_let_go_and_told_why() {
 fn what_a_client_has_sent_that_was_let_go_is_not_carried_out() {
     let mut supervisor = supervisor();
     let (handle, inputs) = queue();
-    let server = thread::spawn(move || serve(&mut supervisor, &inputs, &Kept::default(), Log::new(Level::Error)));
+    let server = thread::spawn(move || {
+        serve(&mut supervisor, &inputs, &WriteProgress::default(), LogWriter::new(LogLevel::Error))
+    });
     let (out, lines) = outbox();
-    handle.send(Input::Opened(1, out));
-    let say = |line: &str| assert!(handle.send(Input::Line(1, Request::read(line.as_bytes()))));
+    handle.send(ServerInput::Opened(1, out));
+    let say = |line: &str| assert!(handle.send(ServerInput::Line(1, RequestLine::read(line.as_bytes()))));
     let robots = || handle.ask(|supervisor, _, _| supervisor.robots().len()).unwrap();
     let long = format!(r#"{{"id": "{}", "verb": "watch"}}"#, "x".repeat(BACKLOG / 2));
     say(&requests()[0]);
@@ -547,14 +561,14 @@ fn what_a_client_has_sent_that_was_let_go_is_not_carried_out() {
     assert_eq!(robots(), 1);
     // One that has gone does not read what becomes of its requests, and has sent them all the same.
     let (out, lines) = outbox();
-    handle.send(Input::Opened(2, out));
+    handle.send(ServerInput::Opened(2, out));
     drop(lines);
     for line in [&requests()[0], &long, &requests()[1]] {
-        assert!(handle.send(Input::Line(2, Request::read(line.as_bytes()))));
+        assert!(handle.send(ServerInput::Line(2, RequestLine::read(line.as_bytes()))));
         robots();
     }
     assert_eq!(robots(), 2);
-    handle.send(Input::Stop);
+    handle.send(ServerInput::Stop);
     server.join().unwrap().unwrap();
 }
 

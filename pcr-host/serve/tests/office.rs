@@ -1,13 +1,13 @@
 //! A server whose disk takes as long as the test says.
 
 use crate::world::Disc;
-use pcr_serve::entry::{Entry, Keep};
-use pcr_serve::lines::Request;
-use pcr_serve::log::{Level, Log};
-use pcr_serve::outbox::{Lines, outbox};
-use pcr_serve::server::{Handle, Input, queue, serve};
-use pcr_serve::supervisor::{Settings, Supervisor};
-use pcr_serve::writer::Writer;
+use pcr_serve::journal_entry::{JournalEntry, JournalStore};
+use pcr_serve::journal_writer::JournalWriter;
+use pcr_serve::lines::RequestLine;
+use pcr_serve::log::{LogLevel, LogWriter};
+use pcr_serve::outbox::{OutboxReceiver, outbox};
+use pcr_serve::server::{ServerHandle, ServerInput, queue, serve};
+use pcr_serve::supervisor::{Supervisor, SupervisorConfig};
 use serde_json::{Value, json};
 use std::io;
 use std::sync::{Arc, Condvar, Mutex};
@@ -35,8 +35,8 @@ impl Slow {
     }
 }
 
-impl Keep for Slow {
-    fn keep(&mut self, entries: &[Entry]) -> io::Result<()> {
+impl JournalStore for Slow {
+    fn keep(&mut self, entries: &[JournalEntry]) -> io::Result<()> {
         let door = self.door.1.wait_while(self.door.0.lock().unwrap(), |door| *door == Door::Shut).unwrap();
         if *door == Door::Broken {
             return Err(io::Error::other("no more room"));
@@ -47,8 +47,8 @@ impl Keep for Slow {
 
 pub(crate) struct Office {
     pub(crate) slow: Slow,
-    pub(crate) handle: Handle,
-    pub(crate) lines: Lines,
+    pub(crate) handle: ServerHandle,
+    pub(crate) lines: OutboxReceiver,
     pub(crate) server: JoinHandle<Result<(), String>>,
 }
 
@@ -58,13 +58,13 @@ impl Office {
         let slow = Slow { disc: Disc::new(), door: Arc::new((Mutex::new(Door::Open), Condvar::new())) };
         let (handle, inputs) = queue();
         let own = handle.clone();
-        let writer = Writer::start(Box::new(slow.clone()), move || own.wake()).unwrap();
+        let writer = JournalWriter::start(Box::new(slow.clone()), move || own.wake()).unwrap();
         let kept = writer.kept();
-        let mut supervisor = Supervisor::new(Settings::default(), Box::new(writer));
-        let mut serves = move || serve(&mut supervisor, &inputs, &kept, Log::new(Level::Error));
+        let mut supervisor = Supervisor::new(SupervisorConfig::default(), Box::new(writer));
+        let mut serves = move || serve(&mut supervisor, &inputs, &kept, LogWriter::new(LogLevel::Error));
         let server = thread::spawn(move || serves().map_err(|fault| fault.to_string()));
         let (out, lines) = outbox();
-        handle.send(Input::Opened(1, out));
+        handle.send(ServerInput::Opened(1, out));
         let own = Self { slow, handle, lines, server };
         own.ask(&json!({ "verb": "watch" }));
         for (robot, y) in [("a", 0.0), ("b", 9.0)] {
@@ -77,7 +77,7 @@ impl Office {
     }
 
     pub(crate) fn ask(&self, request: &Value) {
-        self.handle.send(Input::Line(1, Request::read(request.to_string().as_bytes())));
+        self.handle.send(ServerInput::Line(1, RequestLine::read(request.to_string().as_bytes())));
     }
 
     pub(crate) fn mission(&self, id: u64, robot: &str) {
@@ -97,6 +97,6 @@ impl Office {
     }
 
     pub(crate) fn at(&self, robot: &'static str) -> f64 {
-        self.handle.ask(move |supervisor, _, _| supervisor.robot(robot).unwrap().at).unwrap()
+        self.handle.ask(move |supervisor, _, _| supervisor.robot(robot).unwrap().arc_length).unwrap()
     }
 }

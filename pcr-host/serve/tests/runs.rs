@@ -15,7 +15,7 @@ fn run(seed: u64, trouble: Trouble, restarts: f64) -> World {
     // Whoever has a path comes to its end.
     world.open = false;
     while !world.vehicles.iter().all(|vehicle| vehicle.has_arrived())
-        || world.supervisor.robots().iter().any(|robot| robot.at < robot.course.length() - 0.1)
+        || world.supervisor.robots().iter().any(|robot| robot.arc_length < robot.course.length() - 0.1)
     {
         world.step();
         let late: Vec<&str> = world

@@ -1,16 +1,16 @@
 //! Who may send lines over a socket, and what becomes of the lines of all others; and the page, which nobody can change anything by.
 
 use crate::lines::{document, fits, requests, supervisor};
-use pcr_formats::random::Random;
+use pcr_formats::splitmix64::SplitMix64;
 use pcr_serve::clients::Access;
-use pcr_serve::fault::Fault;
 use pcr_serve::hello;
+use pcr_serve::journal_writer::WriteProgress;
 use pcr_serve::lines::LONGEST;
-use pcr_serve::log::{Level, Log};
-use pcr_serve::server::{Handle, Input, queue, serve};
+use pcr_serve::log::{LogLevel, LogWriter};
+use pcr_serve::request_error::RequestError;
+use pcr_serve::server::{ServerHandle, ServerInput, queue, serve};
 use pcr_serve::sockets::Listener;
 use pcr_serve::token::Token;
-use pcr_serve::writer::Kept;
 use pcr_serve::{clients, http};
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
@@ -21,9 +21,9 @@ use std::time::Duration;
 
 /// A supervisor with clients over TCP.
 struct Server {
-    handle: Handle,
+    handle: ServerHandle,
     at: SocketAddr,
-    thread: Option<JoinHandle<Result<(), Fault>>>,
+    thread: Option<JoinHandle<Result<(), RequestError>>>,
     folder: PathBuf,
     token: String,
 }
@@ -40,8 +40,10 @@ impl Server {
         let (handle, inputs) = queue();
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let (at, own) = (listener.local_addr().unwrap(), handle.clone());
-        thread::spawn(move || clients::listen(&own, &listener.into(), access, Log::new(Level::Error)));
-        let thread = thread::spawn(move || serve(&mut supervisor(), &inputs, &Kept::default(), Log::new(Level::Error)));
+        thread::spawn(move || clients::listen(&own, &listener.into(), access, LogWriter::new(LogLevel::Error)));
+        let thread = thread::spawn(move || {
+            serve(&mut supervisor(), &inputs, &WriteProgress::default(), LogWriter::new(LogLevel::Error))
+        });
         Self { handle, at, thread: Some(thread), folder, token: said }
     }
 
@@ -81,7 +83,7 @@ impl Server {
 
 impl Drop for Server {
     fn drop(&mut self) {
-        self.handle.send(Input::Stop);
+        self.handle.send(ServerInput::Stop);
         let ended = self.thread.take().unwrap().join();
         assert!(ended.is_ok_and(|served| served.is_ok()) || thread::panicking());
         let _ = std::fs::remove_dir_all(&self.folder);
@@ -298,7 +300,7 @@ fn bytes_that_are_no_hello_change_nothing() {
     let server = Server::new("bytes", |access| access.within = Duration::from_millis(100));
     let mut client = server.client();
     assert!(client.ask(&requests()[0]).get("ok").is_some());
-    let mut dice = Random(54);
+    let mut dice = SplitMix64(54);
     let parts: Vec<Vec<u8>> = [
         server.hello()[..server.hello().len() - 1].into(),
         post(REMOVE).into_bytes(),
@@ -352,8 +354,10 @@ fn clients_at_a_file_need_no_token() {
     let (listener, file) = sockets::SocketFile::bind(&path).unwrap();
     let (handle, inputs) = queue();
     let own = handle.clone();
-    thread::spawn(move || clients::listen(&own, &listener, Access::new(None), Log::new(Level::Error)));
-    let server = thread::spawn(move || serve(&mut supervisor(), &inputs, &Kept::default(), Log::new(Level::Error)));
+    thread::spawn(move || clients::listen(&own, &listener, Access::new(None), LogWriter::new(LogLevel::Error)));
+    let server = thread::spawn(move || {
+        serve(&mut supervisor(), &inputs, &WriteProgress::default(), LogWriter::new(LogLevel::Error))
+    });
     let said = |lines: &str| -> Vec<Value> {
         let mut stream = UnixStream::connect(&path).unwrap();
         let _ = stream.write_all(lines.as_bytes());
@@ -374,19 +378,21 @@ fn clients_at_a_file_need_no_token() {
         let robots = handle.ask(|own, _, _| own.robots().len()).unwrap();
         assert_eq!(robots, 1);
     }
-    handle.send(Input::Stop);
+    handle.send(ServerInput::Stop);
     server.join().unwrap().unwrap();
     drop(file);
     std::fs::remove_dir(&folder).unwrap();
 }
 
 /// What of a supervisor a request could change.
-fn state(handle: &Handle) -> String {
+fn state(handle: &ServerHandle) -> String {
     let told = handle.ask(|own, _, _| {
         let robots: Vec<_> = own
             .robots()
             .iter()
-            .map(|robot| (&robot.name, robot.path, robot.at, robot.told, &robot.mission, &robot.waiting))
+            .map(|robot| {
+                (&robot.name, robot.path, robot.arc_length, robot.notified_limit, &robot.mission, &robot.waiting)
+            })
             .collect();
         format!("{robots:?} {:?} {:?}", own.counts(), own.layout())
     });
@@ -398,12 +404,18 @@ fn the_page_answers_get_and_changes_nothing_by_any_method() {
     let (handle, inputs) = queue();
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let at = listener.local_addr().unwrap();
-    let draw: http::Draw = |fleet, place| Ok(format!("<svg>{}</svg>", fleet[place].name));
-    let site =
-        http::Site { page: "<p>here</p>".into(), draw: Some(draw), hosts: vec![at.to_string()], addresses: false };
+    let draw: http::DrawFn = |fleet, place| Ok(format!("<svg>{}</svg>", fleet[place].name));
+    let site = http::HttpContent {
+        page: "<p>here</p>".into(),
+        draw: Some(draw),
+        hosts: vec![at.to_string()],
+        addresses: false,
+    };
     let own = handle.clone();
-    thread::spawn(move || http::listen(&own, &Listener::from(listener), site, Log::new(Level::Error)));
-    let server = thread::spawn(move || serve(&mut supervisor(), &inputs, &Kept::default(), Log::new(Level::Error)));
+    thread::spawn(move || http::listen(&own, &Listener::from(listener), site, LogWriter::new(LogLevel::Error)));
+    let server = thread::spawn(move || {
+        serve(&mut supervisor(), &inputs, &WriteProgress::default(), LogWriter::new(LogLevel::Error))
+    });
     for line in &requests()[..2] {
         let line = line.clone();
         handle.ask(move |own, _, _| {
@@ -510,6 +522,6 @@ fn the_page_answers_get_and_changes_nothing_by_any_method() {
     }
     assert!(ask(&client_hello()[..]).is_empty() || !state(&handle).is_empty());
     assert_eq!(state(&handle), before);
-    handle.send(Input::Stop);
+    handle.send(ServerInput::Stop);
     server.join().unwrap().unwrap();
 }

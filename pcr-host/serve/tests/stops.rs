@@ -2,17 +2,17 @@
 
 use crate::office::{Door, Office};
 use crate::world::Disc;
-use pcr_serve::course::{Shape, Start};
-use pcr_serve::event::{Cause, Event};
-use pcr_serve::robot::Abilities;
-use pcr_serve::server::{Input, Then};
-use pcr_serve::supervisor::{Proposal, Report, Settings, Supervisor, Verdict};
+use pcr_serve::event::{CancelCause, SupervisorEvent};
+use pcr_serve::owned_path::{PathElement, StartPose};
+use pcr_serve::robot::RobotTraits;
+use pcr_serve::server::{AfterCommit, ServerInput};
+use pcr_serve::supervisor::{AdmissionResult, MissionRequest, PositionReport, Supervisor, SupervisorConfig};
 use serde_json::{Value, json};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-const CAN: Abilities = Abilities { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+const CAN: RobotTraits = RobotTraits { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
 
 /// A robot under way, and a disk that no longer writes.
 fn driving() -> Office {
@@ -45,7 +45,7 @@ fn a_stop_is_told_at_once_also_as_the_disc_fails() {
             let mut told = [own.next(), own.next()].map(|next| next["event"].as_str().unwrap_or_default().to_owned());
             told.sort();
             assert_eq!(told, ["alarm", "stop"]);
-            own.handle.send(Input::Stop);
+            own.handle.send(ServerInput::Stop);
         }
         assert_eq!(own.server.join().unwrap().is_ok(), door == Door::Open);
     }
@@ -61,7 +61,7 @@ fn nothing_that_was_decided_before_a_stop_lets_go_after_it() {
         own.at("a");
     }
     own.slow.set(Door::Open);
-    own.handle.send(Input::Stop);
+    own.handle.send(ServerInput::Stop);
     let told: Vec<Value> = own.rest();
     let of_a = told.iter().filter(|line| line["robot"] == "a").map(|line| line["event"].as_str().unwrap());
     let of_a: Vec<&str> = of_a.filter(|event| ["stop", "go"].contains(event)).collect();
@@ -74,10 +74,10 @@ fn nothing_that_was_decided_before_a_stop_lets_go_after_it() {
 fn while_too_much_waits_for_the_journal_nothing_is_read() {
     let own = driving();
     own.mission(2, "b");
-    own.handle.ask_then(|_, _, _| ((), Some(Then::new(65 << 20, || ())))).unwrap();
+    own.handle.ask_then(|_, _, _| ((), Some(AfterCommit::new(65 << 20, || ())))).unwrap();
     let is_read = Arc::new(AtomicBool::new(false));
     let flag = is_read.clone();
-    own.handle.send(Input::Call(Box::new(move |_, _, _| {
+    own.handle.send(ServerInput::Call(Box::new(move |_, _, _| {
         flag.store(true, Ordering::Relaxed);
         None
     })));
@@ -86,7 +86,7 @@ fn while_too_much_waits_for_the_journal_nothing_is_read() {
     own.slow.set(Door::Open);
     own.at("a");
     assert!(is_read.load(Ordering::Relaxed));
-    own.handle.send(Input::Stop);
+    own.handle.send(ServerInput::Stop);
     assert_eq!(own.server.join().unwrap(), Ok(()));
 }
 
@@ -95,26 +95,26 @@ fn while_too_much_waits_for_the_journal_nothing_is_read() {
 fn robots_are_stopped_while_nothing_is_read() {
     let own = driving();
     beside(&own, 2, 6.0);
-    own.handle.ask_then(|_, _, _| ((), Some(Then::new(65 << 20, || ())))).unwrap();
+    own.handle.ask_then(|_, _, _| ((), Some(AfterCommit::new(65 << 20, || ())))).unwrap();
     assert!(own.lines.try_recv().is_err(), "it is too far away yet");
     let stop = own.next();
     assert_eq!([&stop["event"], &stop["robot"], &stop["by"]], ["stop", "a", "b"], "{stop}");
     own.slow.set(Door::Open);
     own.at("a");
-    own.handle.send(Input::Stop);
+    own.handle.send(ServerInput::Stop);
     assert_eq!(own.server.join().unwrap(), Ok(()));
 }
 
 fn supervisor() -> Supervisor {
-    let mut own = Supervisor::new(Settings::default(), Box::new(Disc::new()));
-    own.add("a", CAN, Start { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
-    own.add("b", CAN, Start { x: 0.0, y: 9.0, heading: 0.0 }).unwrap();
+    let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(Disc::new()));
+    own.add("a", CAN, StartPose { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
+    own.add("b", CAN, StartPose { x: 0.0, y: 9.0, heading: 0.0 }).unwrap();
     own
 }
 
-fn mission(robot: &str, name: &str, length: f64) -> Proposal {
-    let path = vec![Shape::Line { length }];
-    Proposal { robot: robot.into(), mission: name.into(), after: None, of: None, start: None, path }
+fn mission(robot: &str, name: &str, length: f64) -> MissionRequest {
+    let path = vec![PathElement::Line { length }];
+    MissionRequest { robot: robot.into(), mission: name.into(), after: None, expected_path: None, start: None, path }
 }
 
 /// Its length stays a little before the end of its path, so it counted as one that drives.
@@ -123,11 +123,11 @@ fn a_robot_at_the_end_of_its_path_stands() {
     let mut own = supervisor();
     own.mission(&mission("a", "1", 2.0), 0.0).unwrap();
     own.settle(0.0).unwrap();
-    own.position(&Report { robot: "a".into(), path: 2, at: [2.0, 2.0], age: 0.0 }, 1.0).unwrap();
+    own.position(&PositionReport { robot: "a".into(), path: 2, at: [2.0, 2.0], age: 0.0 }, 1.0).unwrap();
     own.settle(1.0).unwrap();
-    own.off("b", [2.0, 0.1], 0.0, 2.0).unwrap();
+    own.report_off_path("b", [2.0, 0.1], 0.0, 2.0).unwrap();
     let events = own.settle(2.0).unwrap();
-    assert!(matches!(events[..], [Event::Alarm { .. }]), "{events:?}");
+    assert!(matches!(events[..], [SupervisorEvent::Alarm { .. }]), "{events:?}");
     assert!(own.robot("a").unwrap().stopped.is_none());
 }
 
@@ -138,28 +138,28 @@ fn a_robot_that_is_moved_tells_what_ends_by_it() {
     own.mission(&mission("a", "1", 5.0), 0.0).unwrap();
     own.settle(0.0).unwrap();
     for (robot, at) in [("b", [1.0, 0.1]), ("a", [0.5, 0.9])] {
-        own.off(robot, at, 0.0, 1.0).unwrap();
+        own.report_off_path(robot, at, 0.0, 1.0).unwrap();
     }
     let waits = own.mission(&mission("a", "2", 5.0), 1.0).unwrap();
-    assert!(matches!(waits, Verdict::Waiting { .. }), "{waits:?}");
+    assert!(matches!(waits, AdmissionResult::Waiting { .. }), "{waits:?}");
     own.settle(1.0).unwrap();
     assert!(own.robot("a").unwrap().stopped.is_some());
-    own.reseat("a", Start { x: 50.0, y: 50.0, heading: 0.0 }).unwrap();
+    own.reseat("a", StartPose { x: 50.0, y: 50.0, heading: 0.0 }).unwrap();
     let robot = || String::from("a");
-    let dropped = Event::Dropped { robot: robot(), mission: "2".into(), why: Cause::Moved };
+    let dropped = SupervisorEvent::Dropped { robot: robot(), mission: "2".into(), why: CancelCause::Moved };
     let events = own.settle(2.0).unwrap();
-    assert_eq!(events, [dropped, Event::Clear { robot: robot() }, Event::Go { robot: robot() }]);
+    assert_eq!(events, [dropped, SupervisorEvent::Clear { robot: robot() }, SupervisorEvent::Go { robot: robot() }]);
 }
 
 /// So did a mission that another one of the same path took the place of.
 #[test]
 fn a_mission_that_waits_is_given_up_for_one_that_is_adopted() {
     let mut own = supervisor();
-    own.add("c", CAN, Start { x: 5.0, y: 0.0, heading: 0.0 }).unwrap();
+    own.add("c", CAN, StartPose { x: 5.0, y: 0.0, heading: 0.0 }).unwrap();
     let waits = own.mission(&mission("a", "1", 9.0), 0.0).unwrap();
-    assert!(matches!(waits, Verdict::Waiting { .. }), "{waits:?}");
+    assert!(matches!(waits, AdmissionResult::Waiting { .. }), "{waits:?}");
     own.settle(0.0).unwrap();
     own.adopt("a", "2".into()).unwrap();
-    let dropped = Event::Dropped { robot: "a".into(), mission: "1".into(), why: Cause::Replaced };
+    let dropped = SupervisorEvent::Dropped { robot: "a".into(), mission: "1".into(), why: CancelCause::Replaced };
     assert_eq!(own.settle(1.0).unwrap(), [dropped]);
 }

@@ -1,17 +1,17 @@
 //! Vehicles that do what the supervisor says, while messages are lost, late and repeated both ways; their true positions go to the
 //! independent checker.
 
-use pcr_certify::data::{self, Agent, Angle, Segment, Travel};
 use pcr_certify::motion::{Mover, meetings};
-use pcr_core::Brakes;
-use pcr_formats::random::Random;
-use pcr_serve::course::{Course, Shape, Start};
-use pcr_serve::entry::{Entry, Keep};
-use pcr_serve::event::Event;
-use pcr_serve::fault::Fault;
-use pcr_serve::journal::{self, Frames, frame};
-use pcr_serve::robot::Abilities;
-use pcr_serve::supervisor::{Proposal, Report, Settings, Supervisor, Verdict};
+use pcr_certify::raw::{self, RawAgent, RawAngle, RawMotion, RawSegment};
+use pcr_core::BrakingModel;
+use pcr_formats::splitmix64::SplitMix64;
+use pcr_serve::event::SupervisorEvent;
+use pcr_serve::journal::{self, ParsedFrames, frame};
+use pcr_serve::journal_entry::{JournalEntry, JournalStore};
+use pcr_serve::owned_path::{OwnedPath, PathElement, StartPose};
+use pcr_serve::request_error::RequestError;
+use pcr_serve::robot::RobotTraits;
+use pcr_serve::supervisor::{AdmissionResult, MissionRequest, PositionReport, Supervisor, SupervisorConfig};
 use std::f64::consts::PI;
 use std::io;
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering::Relaxed};
@@ -39,17 +39,17 @@ impl Disc {
         Self { bytes, fails_at: Arc::new(AtomicUsize::new(usize::MAX)), sum }
     }
 
-    pub(crate) fn entries(&self) -> Vec<Entry> {
+    pub(crate) fn entries(&self) -> Vec<JournalEntry> {
         let mut bytes = self.bytes.lock().unwrap();
-        let Frames { entries, end, sum, .. } = journal::read(&bytes).unwrap();
+        let ParsedFrames { entries, end, sum, .. } = journal::read(&bytes).unwrap();
         bytes.truncate(end);
         self.sum.store(sum, Relaxed);
         entries
     }
 }
 
-impl Keep for Disc {
-    fn keep(&mut self, entries: &[Entry]) -> io::Result<()> {
+impl JournalStore for Disc {
+    fn keep(&mut self, entries: &[JournalEntry]) -> io::Result<()> {
         let mut bytes = self.bytes.lock().unwrap();
         let (frame, sum) = frame(entries, self.sum.load(Relaxed))?;
         let room = self.fails_at.load(Relaxed).saturating_sub(bytes.len());
@@ -65,9 +65,9 @@ impl Keep for Disc {
 
 pub(crate) struct Vehicle {
     pub(crate) name: String,
-    pub(crate) abilities: Abilities,
+    pub(crate) abilities: RobotTraits,
     /// Its paths, with where each begins on all of its way.
-    pieces: Vec<(f64, Course)>,
+    pieces: Vec<(f64, OwnedPath)>,
     pub(crate) path: u64,
     /// Where it is on the last one \[m\], and its speed \[m/s\].
     pub(crate) at: f64,
@@ -83,7 +83,7 @@ pub(crate) struct Vehicle {
 }
 
 impl Vehicle {
-    fn course(&self) -> &Course {
+    fn course(&self) -> &OwnedPath {
         &self.pieces[self.pieces.len() - 1].1
     }
 
@@ -95,13 +95,13 @@ impl Vehicle {
         self.at + self.doubt[1] >= self.course().length() - THERE
     }
 
-    fn report(&self) -> Report {
+    fn report(&self) -> PositionReport {
         let end = self.course().length();
         let at = [(self.at - self.doubt[0]).max(0.0), (self.at + self.doubt[1]).min(end)];
-        Report { robot: self.name.clone(), path: self.path, at, age: 0.0 }
+        PositionReport { robot: self.name.clone(), path: self.path, at, age: 0.0 }
     }
 
-    fn take(&mut self, path: u64, origin: f64, course: Course) {
+    fn take(&mut self, path: u64, origin: f64, course: OwnedPath) {
         if path <= self.path {
             return;
         }
@@ -116,7 +116,7 @@ impl Vehicle {
         let thought = (self.at + self.doubt[1]).min(end);
         let left = self.hold.min(end) - thought;
         let brake = self.abilities.acceleration;
-        let brakes = Brakes::new(brake, 0.5 * STEP).unwrap();
+        let brakes = BrakingModel::new(brake, 0.5 * STEP).unwrap();
         let stands = self.stopped || self.stops_until > now;
         let wanted = if stands { 0.0 } else { brakes.speed(left - 0.5 * self.speed * STEP).min(self.abilities.speed) };
         let change = brake * STEP;
@@ -134,9 +134,9 @@ impl Vehicle {
     }
 
     /// What it has done since the last time.
-    fn agent(&mut self, id: u64, [begin, end]: [f64; 2]) -> Agent {
+    fn agent(&mut self, id: u64, [begin, end]: [f64; 2]) -> RawAgent {
         let (from, to) = (self.since, self.origin() + self.at);
-        let mut pieces: Vec<Course> = Vec::new();
+        let mut pieces: Vec<OwnedPath> = Vec::new();
         for (k, (origin, course)) in self.pieces.iter().enumerate() {
             let last = self.pieces.get(k + 1).map_or(to, |next| next.0.min(to));
             let (lo, hi) = (from.max(*origin), last);
@@ -144,15 +144,15 @@ impl Vehicle {
                 pieces.push(course.part(lo - origin, hi - origin).unwrap());
             }
         }
-        let standing = Course::new(self.course().pose(self.at), Vec::new()).unwrap();
+        let standing = OwnedPath::new(self.course().pose(self.at), Vec::new()).unwrap();
         let path = path(if pieces.is_empty() { std::slice::from_ref(&standing) } else { &pieces }, to - from);
-        let mut phases: Vec<data::Phase> = Vec::new();
+        let mut phases: Vec<raw::RawPhase> = Vec::new();
         let (mut time, mut length) = (0.0, 0.0);
         for (duration, way, speed) in self.done.drain(..) {
             let (later, further) = (time + duration, length + way);
             match phases.last_mut() {
                 Some(last) if last.speed == [0.0; 2] && speed == [0.0; 2] => last.time[1] = later,
-                _ => phases.push(data::Phase { time: [time, later], length: [length, further], speed }),
+                _ => phases.push(raw::RawPhase { time: [time, later], length: [length, further], speed }),
             }
             (time, length) = (later, further);
         }
@@ -160,33 +160,33 @@ impl Vehicle {
         self.since = to;
         let keep = self.pieces.iter().rposition(|(origin, _)| *origin <= to).unwrap_or(0);
         self.pieces.drain(..keep);
-        let travel = Travel { start: begin, phases, lag: 0.0, time_excess: 0.0 };
-        Agent { id, radius: self.abilities.radius, path, travel: Some(travel) }
+        let travel = RawMotion { start: begin, phases, lag: 0.0, time_excess: 0.0 };
+        RawAgent { id, radius: self.abilities.radius, path, travel: Some(travel) }
     }
 }
 
-fn path(pieces: &[Course], length: f64) -> data::Path {
+fn path(pieces: &[OwnedPath], length: f64) -> raw::RawPath {
     let start = pieces[0].start();
     let (mut heading, mut from) = (start.heading, 0.0);
     let mut segments = Vec::new();
     for piece in pieces {
-        let mut turns = vec![Angle::Radians(piece.start().heading - heading)];
+        let mut turns = vec![RawAngle::Radians(piece.start().heading - heading)];
         heading = piece.start().heading;
         for shape in piece.shapes() {
             let (long, radius) = match *shape {
-                Shape::Turn { sweep } => {
-                    turns.push(Angle::Radians(sweep));
+                PathElement::Turn { sweep } => {
+                    turns.push(RawAngle::Radians(sweep));
                     heading += sweep;
                     continue;
                 }
-                Shape::Line { length } => (length, None),
-                Shape::Arc { radius, sweep } => {
+                PathElement::Line { length } => (length, None),
+                PathElement::Arc { radius, sweep } => {
                     heading += sweep;
                     (shape.length(), Some(radius.copysign(sweep)))
                 }
             };
             if long > 0.0 {
-                segments.push(Segment {
+                segments.push(RawSegment {
                     length: long,
                     radius,
                     turns: std::mem::take(&mut turns),
@@ -198,17 +198,17 @@ fn path(pieces: &[Course], length: f64) -> data::Path {
         }
     }
     if segments.is_empty() {
-        segments.push(Segment { length: 0.0, radius: None, turns: Vec::new(), from: 0.0, to: 0.0 });
+        segments.push(RawSegment { length: 0.0, radius: None, turns: Vec::new(), from: 0.0, to: 0.0 });
     }
     assert!((from - length).abs() < 1e-6, "the record is {from} m long, the way {length} m");
     let rounding = 1e-9;
-    data::Path { start: [start.x, start.y], heading: Angle::Radians(start.heading), segments, rounding, step: 0.0 }
+    raw::RawPath { start: [start.x, start.y], heading: RawAngle::Radians(start.heading), segments, rounding, step: 0.0 }
 }
 
 enum Mail {
     /// With the time at which it was so.
-    Report(Report, f64),
-    Event(Event, Option<(f64, Course)>),
+    Report(PositionReport, f64),
+    Event(SupervisorEvent, Option<(f64, OwnedPath)>),
 }
 
 /// How bad the messages are.
@@ -222,12 +222,12 @@ pub(crate) struct Trouble {
 pub(crate) struct World {
     pub(crate) supervisor: Supervisor,
     pub(crate) disc: Disc,
-    pub(crate) settings: Settings,
+    pub(crate) settings: SupervisorConfig,
     pub(crate) vehicles: Vec<Vehicle>,
     pub(crate) now: f64,
     tick: u32,
     certified: u32,
-    dice: Random,
+    dice: SplitMix64,
     mail: Vec<(f64, Mail)>,
     trouble: Trouble,
     half: f64,
@@ -241,22 +241,26 @@ pub(crate) struct World {
 
 impl World {
     pub(crate) fn new(seed: u64, count: usize, trouble: Trouble) -> Self {
-        let (disc, settings) = (Disc::new(), Settings::default());
+        let (disc, settings) = (Disc::new(), SupervisorConfig::default());
         let mut supervisor = Supervisor::new(settings, Box::new(disc.clone()));
-        let mut dice = Random(seed);
+        let mut dice = SplitMix64(seed);
         let side = (count as f64).sqrt().ceil() as usize;
         let half = 1.4 * side as f64;
         let mut vehicles = Vec::new();
         for k in 0..count {
             let cell = |n: usize| -half + 2.8 * (n as f64 + 0.5);
-            let start = Start { x: cell(k % side), y: cell(k / side), heading: dice.within(-PI, PI) };
-            let radius = dice.within(0.15, 0.35);
-            let abilities =
-                Abilities { radius, margin: 0.0, speed: dice.within(0.5, 1.5), acceleration: dice.within(0.4, 1.0) };
+            let start = StartPose { x: cell(k % side), y: cell(k / side), heading: dice.uniform(-PI, PI) };
+            let radius = dice.uniform(0.15, 0.35);
+            let abilities = RobotTraits {
+                radius,
+                margin: 0.0,
+                speed: dice.uniform(0.5, 1.5),
+                acceleration: dice.uniform(0.4, 1.0),
+            };
             let name = format!("robot {k}");
             supervisor.add(&name, abilities, start).unwrap();
-            let course = Course::new(start, Vec::new()).unwrap();
-            let doubt = [dice.within(0.0, 0.03), dice.within(0.0, 0.03)];
+            let course = OwnedPath::new(start, Vec::new()).unwrap();
+            let doubt = [dice.uniform(0.0, 0.03), dice.uniform(0.0, 0.03)];
             vehicles.push(Vehicle {
                 name,
                 abilities,
@@ -294,7 +298,7 @@ impl World {
         }
     }
 
-    pub(crate) fn dice(&mut self) -> &mut Random {
+    pub(crate) fn dice(&mut self) -> &mut SplitMix64 {
         &mut self.dice
     }
 
@@ -307,31 +311,36 @@ impl World {
             let robot = self.supervisor.robot(&vehicle.name).unwrap();
             assert!(robot.path >= path, "a path that was told is lost");
             let hold = hold + vehicle.origin() - robot.origin;
-            assert!(robot.told >= hold - 1e-9, "{}: {hold} was told, {} is known", vehicle.name, robot.told);
+            assert!(
+                robot.notified_limit >= hold - 1e-9,
+                "{}: {hold} was told, {} is known",
+                vehicle.name,
+                robot.notified_limit
+            );
         }
     }
 
     /// From now on what matters goes to another journal, all of it.
-    pub(crate) fn persist(&mut self, mut keeper: Box<dyn Keep>) {
+    pub(crate) fn persist(&mut self, mut keeper: Box<dyn JournalStore>) {
         self.supervisor.settle(self.now).unwrap();
         keeper.keep(&self.supervisor.snapshot().unwrap()).unwrap();
         self.supervisor = Supervisor::restored(self.settings, self.supervisor.snapshot().unwrap(), keeper).unwrap();
     }
 
     fn post(&mut self, mail: Mail) {
-        let late = if self.dice.unit() < 0.3 { self.dice.within(0.0, self.trouble.late) } else { 0.0 };
+        let late = if self.dice.unit() < 0.3 { self.dice.uniform(0.0, self.trouble.late) } else { 0.0 };
         self.mail.push((self.now + late, mail));
     }
 
     /// A way on from a place, that stays in the arena.
-    fn shapes(&mut self, start: Start) -> Option<Vec<Shape>> {
+    fn shapes(&mut self, start: StartPose) -> Option<Vec<PathElement>> {
         let dice = &mut self.dice;
         let shapes = (0..1 + dice.below(4)).map(|_| match dice.below(3) {
-            0 => Shape::Turn { sweep: dice.within(-PI, PI) },
-            1 => Shape::Arc { radius: dice.within(0.3, 1.0), sweep: dice.within(-PI, PI) },
-            _ => Shape::Line { length: dice.within(0.3, 4.0) },
+            0 => PathElement::Turn { sweep: dice.uniform(-PI, PI) },
+            1 => PathElement::Arc { radius: dice.uniform(0.3, 1.0), sweep: dice.uniform(-PI, PI) },
+            _ => PathElement::Line { length: dice.uniform(0.3, 4.0) },
         });
-        let course = Course::new(start, shapes.collect()).unwrap();
+        let course = OwnedPath::new(start, shapes.collect()).unwrap();
         let length = course.length();
         let inside = |k: u32| {
             let pose = course.pose(length * f64::from(k) / 40.0);
@@ -343,21 +352,21 @@ impl World {
     fn propose(&mut self) {
         let k = self.dice.below(self.vehicles.len());
         let robot = self.supervisor.robot(&self.vehicles[k].name).unwrap();
-        let (told, length) = (robot.told, robot.course.length());
-        let arrives = robot.at >= length - self.settings.width;
+        let (told, length) = (robot.notified_limit, robot.course.length());
+        let arrives = robot.arc_length >= length - self.settings.position_uncertainty;
         if !arrives && self.dice.unit() < 0.7 {
             return;
         }
-        let after = if arrives { length } else { self.dice.within(told, length) };
+        let after = if arrives { length } else { self.dice.uniform(told, length) };
         let robot = self.supervisor.robot(&self.vehicles[k].name).unwrap();
         let start = robot.course.arrival(after).unwrap();
         let Some(path) = self.shapes(start) else { return };
         self.proposals += 1;
-        let proposal = Proposal {
+        let proposal = MissionRequest {
             robot: self.vehicles[k].name.clone(),
             mission: format!("mission {}", self.proposals),
             after: (!arrives).then_some(after),
-            of: None,
+            expected_path: None,
             start: Some(start),
             path,
         };
@@ -365,11 +374,11 @@ impl World {
         // To ask again changes nothing.
         let again = self.supervisor.mission(&proposal, self.now).unwrap();
         assert_eq!(verdict, again);
-        self.waits += u32::from(matches!(verdict, Verdict::Waiting { .. }));
+        self.waits += u32::from(matches!(verdict, AdmissionResult::Waiting { .. }));
     }
 
     /// A step of the fleet; returns what was told.
-    pub(crate) fn step(&mut self) -> Vec<Event> {
+    pub(crate) fn step(&mut self) -> Vec<SupervisorEvent> {
         for k in 0..self.vehicles.len() {
             if self.dice.unit() < 0.5 {
                 let report = self.vehicles[k].report();
@@ -391,7 +400,7 @@ impl World {
         for (_, mail) in mail {
             match mail {
                 Mail::Report(report, said) => {
-                    let report = Report { age: self.now - said, ..report };
+                    let report = PositionReport { age: self.now - said, ..report };
                     self.supervisor.position(&report, self.now).unwrap();
                 }
                 Mail::Event(event, course) => news.push((event, course)),
@@ -399,7 +408,7 @@ impl World {
         }
         let events = match self.supervisor.settle(self.now) {
             Ok(events) => events,
-            Err(Fault::Broken { .. }) => {
+            Err(RequestError::Broken { .. }) => {
                 self.kills += 1;
                 assert!(self.supervisor.settle(self.now).is_err(), "no right is given any more");
                 self.disc.fails_at.store(usize::MAX, Relaxed);
@@ -410,11 +419,11 @@ impl World {
         };
         let told = events.clone();
         for event in events {
-            let is_hold = matches!(event, Event::Hold { .. });
+            let is_hold = matches!(event, SupervisorEvent::Hold { .. });
             if is_hold && self.dice.unit() < self.trouble.lost {
                 continue;
             }
-            let admitted = matches!(event, Event::Admitted { .. });
+            let admitted = matches!(event, SupervisorEvent::Admitted { .. });
             let robot = self.supervisor.robot(event.robot()).unwrap();
             let course = admitted.then(|| (robot.origin, robot.course.clone()));
             self.post(Mail::Event(event, course));
@@ -428,7 +437,7 @@ impl World {
         let count = self.vehicles.len();
         let unlucky = (self.dice.unit() < self.trouble.stops * count as f64).then(|| self.dice.below(count));
         if let Some(unlucky) = unlucky.filter(|_| self.open) {
-            self.vehicles[unlucky].stops_until = self.now + self.dice.within(0.0, 20.0);
+            self.vehicles[unlucky].stops_until = self.now + self.dice.uniform(0.0, 20.0);
         }
         for vehicle in &mut self.vehicles {
             vehicle.drive(self.now);
@@ -453,17 +462,17 @@ impl World {
         }
     }
 
-    fn hear(&mut self, event: &Event, course: Option<(f64, Course)>) {
+    fn hear(&mut self, event: &SupervisorEvent, course: Option<(f64, OwnedPath)>) {
         let vehicle = self.vehicles.iter_mut().find(|vehicle| vehicle.name == event.robot()).unwrap();
         match event {
-            Event::Admitted { path, .. } => {
+            SupervisorEvent::Admitted { path, .. } => {
                 let (origin, course) = course.unwrap();
                 vehicle.missions += 1;
                 vehicle.take(*path, origin, course);
             }
-            Event::Hold { path, hold, .. } if *path == vehicle.path => vehicle.hold = vehicle.hold.max(*hold),
-            Event::Stop { .. } => vehicle.stopped = true,
-            Event::Go { .. } => vehicle.stopped = false,
+            SupervisorEvent::Hold { path, hold, .. } if *path == vehicle.path => vehicle.hold = vehicle.hold.max(*hold),
+            SupervisorEvent::Stop { .. } => vehicle.stopped = true,
+            SupervisorEvent::Go { .. } => vehicle.stopped = false,
             _ => {}
         }
     }
@@ -471,7 +480,7 @@ impl World {
     pub(crate) fn certify(&mut self) {
         let window = [f64::from(self.certified) * STEP, self.now];
         self.certified = self.tick;
-        let agents: Vec<Agent> =
+        let agents: Vec<RawAgent> =
             self.vehicles.iter_mut().enumerate().map(|(id, vehicle)| vehicle.agent(id as u64, window)).collect();
         let movers: Vec<Mover> = agents.iter().map(|agent| Mover::new(agent, window).unwrap()).collect();
         let found = meetings(&movers);

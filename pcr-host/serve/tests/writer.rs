@@ -1,8 +1,8 @@
 //! A journal on a thread of its own: nothing is told before it is on the disk, and what comes meanwhile is decided.
 
 use crate::office::{Door, Office};
-use pcr_serve::entry::Entry;
-use pcr_serve::server::Input;
+use pcr_serve::journal_entry::JournalEntry;
+use pcr_serve::server::ServerInput;
 use serde_json::{Value, json};
 use std::thread;
 
@@ -26,7 +26,7 @@ fn nothing_is_told_before_it_is_on_the_disc_and_positions_are_read_meanwhile() {
             .disc
             .entries()
             .iter()
-            .all(|entry| !matches!(entry, Entry::Robot(known) if known.name == "b" && known.path == 2))
+            .all(|entry| !matches!(entry, JournalEntry::Robot(known) if known.name == "b" && known.path == 2))
     );
     own.slow.set(Door::Open);
     let told: Vec<Value> = (0..5).map(|_| own.next()).collect();
@@ -36,11 +36,13 @@ fn nothing_is_told_before_it_is_on_the_disc_and_positions_are_read_meanwhile() {
     let mut holds: Vec<&str> = holds.collect();
     holds.sort_unstable();
     assert_eq!(holds, ["a", "b"], "{told:?}");
-    own.handle.send(Input::Stop);
+    own.handle.send(ServerInput::Stop);
     assert_eq!(own.server.join().unwrap(), Ok(()));
     // What was told is there.
     let entries = own.slow.disc.entries();
-    assert!(entries.iter().any(|entry| matches!(entry, Entry::Robot(known) if known.name == "b" && known.path == 2)));
+    assert!(
+        entries.iter().any(|entry| matches!(entry, JournalEntry::Robot(known) if known.name == "b" && known.path == 2))
+    );
 }
 
 #[test]
@@ -64,7 +66,7 @@ fn the_end_waits_for_the_disc() {
     let own = Office::open();
     own.slow.set(Door::Shut);
     own.mission(1, "a");
-    own.handle.send(Input::Stop);
+    own.handle.send(ServerInput::Stop);
     let slow = own.slow.clone();
     let opens = thread::spawn(move || slow.set(Door::Open));
     assert_eq!(own.server.join().unwrap(), Ok(()));

@@ -1,19 +1,19 @@
 //! `pcr certify`.
 
 use super::help::STANDING;
-use super::number::{Number, with_scalar};
-use super::sources::{layout_from, scenario_from, source, text};
-use super::work::tell_rounding;
-use super::{CONFLICTS, Form, Printed, Stop, UNDECIDED, WRONG_INPUT, acknowledge, say};
-use crate::progress::Progress;
+use super::number::{ScalarArg, with_scalar};
+use super::scenario_command::tell_rounding;
+use super::scenario_sources::{layout_from, scenario_from, source, text};
+use super::{CONFLICTS, CliError, OutputArgs, OutputFormat, UNDECIDED, WRONG_INPUT, acknowledge, say};
+use crate::progress::ProgressLine;
 use clap::Args;
-use pcr_formats::import::{Kind, Options};
+use pcr_formats::import::{ImportOptions, InputKind};
 use pcr_formats::input;
 use pcr_formats::scenario::Labels;
-use pcr_planning::certify::{Certified, Dump, Table};
-use pcr_planning::failure::Failure;
+use pcr_planning::certify::{CertifyInput, CertifyReport, RawTable};
+use pcr_planning::failure::ComputationError;
 use pcr_planning::regions::table_of;
-use pcr_planning::{locks, report};
+use pcr_planning::{exclusion_table, report};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -43,47 +43,47 @@ Examples:
 /// lies in a piece of a region, and that nothing in the table is farther from a contact than the stated bound.
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
-pub(super) struct Arguments {
+pub(super) struct CertifyArgs {
     /// Scenario, or layout, whose locks of edges and nodes are certified; standard input if left out or `-`
     file: Option<PathBuf>,
     /// A table, as `pcr regions --certificate` or the firmware prints it; `-` for standard input
     #[arg(long, value_name = "FILE")]
     table: Option<PathBuf>,
     #[command(flatten)]
-    printed: Printed,
+    printed: OutputArgs,
     /// Add the margin: up to which δ, as a fraction of ε, contacts are proved to be covered (takes 12 times as long)
     #[arg(long)]
     limit: bool,
     /// Numbers: f64, f32, micro (f32 of microcontrollers), or fixed point: q20 (up to ±256 m and s), q16 (±4096), q12 (±65,536)
-    #[arg(long, value_enum, value_name = "NUMBER", default_value_t = Number::F64, hide_possible_values = true)]
-    scalar: Number,
+    #[arg(long, value_enum, value_name = "NUMBER", default_value_t = ScalarArg::F64, hide_possible_values = true)]
+    scalar: ScalarArg,
     #[command(flatten)]
-    import: Options,
+    import: ImportOptions,
 }
 
-impl Arguments {
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        if self.limit && self.printed.form() == Form::Csv {
-            return Err(Stop::arguments("--limit is for --format json and table"));
+impl CertifyArgs {
+    pub(super) fn run(self) -> Result<ExitCode, CliError> {
+        if self.limit && self.printed.form() == OutputFormat::Csv {
+            return Err(CliError::arguments("--limit is for --format json and table"));
         }
         let certified = self.certified()?;
         let file = self.table.as_deref().or(self.file.as_deref()).unwrap_or(Path::new("-"));
         // Nothing would be proved.
         if certified.is_empty() {
-            return Err(Stop::wrong(file, "there is no table to be certified"));
+            return Err(CliError::wrong(file, "there is no table to be certified"));
         }
         if certified.iter().all(|one| one.pairs == 0 && one.error.is_none()) {
-            return Err(Stop::wrong(file, Failure::NoPair));
+            return Err(CliError::wrong(file, ComputationError::NoPair));
         }
         let mut out = self.printed.out(false);
-        if self.printed.form() == Form::Csv {
+        if self.printed.form() == OutputFormat::Csv {
             out.write_all(report::CERTIFIED_CSV_HEADER.as_bytes())?;
         }
         for one in &certified {
             match self.printed.form() {
-                Form::Table => report::certified_table(one, &mut out)?,
-                Form::Json => report::json(one, &mut out)?,
-                Form::Csv => report::certified_csv(one, &mut out)?,
+                OutputFormat::Table => report::certified_table(one, &mut out)?,
+                OutputFormat::Json => report::json(one, &mut out)?,
+                OutputFormat::Csv => report::certified_csv(one, &mut out)?,
             }
         }
         out.flush()?;
@@ -97,18 +97,21 @@ impl Arguments {
     }
 
     /// Proves a table, and shows how far that is.
-    fn proved(&self, file: &Path, name: &str, table: &Table) -> Certified {
-        let progress = Progress::new(format!("{}: checks of pairs", file.display()));
-        Certified::watched(name, table, self.limit, &|done, total| progress.set(done, total))
+    fn proved(&self, file: &Path, name: &str, table: &RawTable) -> CertifyReport {
+        let progress = ProgressLine::new(format!("{}: checks of pairs", file.display()));
+        CertifyReport::watched(name, table, self.limit, &|done, total| progress.set(done, total))
     }
 
-    fn certified(&self) -> Result<Vec<Certified>, Stop> {
+    fn certified(&self) -> Result<Vec<CertifyReport>, CliError> {
         if let Some(file) = &self.table {
             if let Some(option) = self.import.given().first() {
-                return Err(Stop::arguments(format!("{option} has no effect: the table already contains all values")));
+                return Err(CliError::arguments(format!(
+                    "{option} has no effect: the table already contains all values"
+                )));
             }
             let text = input::read_text(file)?;
-            let mut dump = Dump::of(&text, &input::stem(file)).map_err(|problem| Stop::wrong(file, problem))?;
+            let mut dump =
+                CertifyInput::of(&text, &input::stem(file)).map_err(|problem| CliError::wrong(file, problem))?;
             acknowledge(&mut dump.warnings);
             let tables = dump.certificate.iter();
             let certified = tables.map(|table| self.proved(file, &dump.name, table));
@@ -118,24 +121,24 @@ impl Arguments {
         let mut warnings = Vec::new();
         let text = text(file)?;
         let scenarios = match input::kind_of(file, &text, &self.import) {
-            Kind::Layout(_) if self.import.one_of(&["routes"]).is_none() => {
+            InputKind::Layout(_) if self.import.one_of(&["routes"]).is_none() => {
                 let imported = layout_from(file, &text, &self.import, STANDING, false)?;
                 warnings.extend(imported.layout.warnings.iter().cloned());
                 acknowledge(&mut warnings);
-                locks::scenarios(&imported).map_err(|error| Stop::wrong(file, error))?
+                exclusion_table::scenarios(&imported).map_err(|error| CliError::wrong(file, error))?
             }
             _ => vec![scenario_from(file, text, &self.import)?],
         };
         let certified = scenarios.into_iter().map(|mut scenario| {
-            let lost = tell_rounding(self.scalar, &mut scenario).map_err(|refused| Stop::wrong(file, refused))?;
+            let lost = tell_rounding(self.scalar, &mut scenario).map_err(|refused| CliError::wrong(file, refused))?;
             say(file, lost);
             let scenario = &scenario;
             let tables = with_scalar!(self.scalar, S => table_of::<S>(scenario));
-            let tables = tables.map_err(|failure| Stop::wrong(file, failure))?;
-            let (labels, warnings) = (Labels::of(scenario), [&warnings[..], &scenario.warnings].concat());
+            let tables = tables.map_err(|failure| CliError::wrong(file, failure))?;
+            let (labels, warnings) = (Labels::from_scenario(scenario), [&warnings[..], &scenario.warnings].concat());
             let certified = tables.iter().map(|table| self.proved(file, &scenario.name, table));
             Ok(certified.map(|one| one.with(&labels, &warnings)).collect::<Vec<_>>())
         });
-        Ok(certified.collect::<Result<Vec<_>, Stop>>()?.into_iter().flatten().collect())
+        Ok(certified.collect::<Result<Vec<_>, CliError>>()?.into_iter().flatten().collect())
     }
 }

@@ -1,18 +1,18 @@
 //! `pcr check`.
 
-use super::number::{Number, with_scalar};
-use super::sources::without_margin;
-use super::work::{Work, run};
-use super::{CONFLICTS, Form, Printed, Stop};
+use super::number::{ScalarArg, with_scalar};
+use super::scenario_command::{ScenarioCommand, run};
+use super::scenario_sources::without_margin;
+use super::{CONFLICTS, CliError, OutputArgs, OutputFormat};
 use clap::Args;
-use pcr_formats::import::Options;
+use pcr_formats::import::ImportOptions;
 use pcr_formats::scenario::Scenario;
-use pcr_planning::check::Verdict;
-use pcr_planning::failure::Failure;
-use pcr_planning::fleet::Format;
-use pcr_planning::memory;
-use pcr_planning::regions::Told;
-use pcr_planning::report::{self, Unprinted};
+use pcr_planning::check::CheckReport;
+use pcr_planning::failure::ComputationError;
+use pcr_planning::fleet::HostScalar;
+use pcr_planning::memory_budget;
+use pcr_planning::regions::ProgressFn;
+use pcr_planning::report::{self, OutputError};
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -36,12 +36,12 @@ Examples:
 /// Tell whether the agents collide, moving as the scenario says
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
-pub(super) struct Arguments {
+pub(super) struct CheckArgs {
     /// Scenarios (JSON); standard input if left out or `-`, also one after the other
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
     #[command(flatten)]
-    printed: Printed,
+    printed: OutputArgs,
     /// Add how near every two agents come, and when (not in CSV)
     #[arg(long)]
     closest: bool,
@@ -49,81 +49,86 @@ pub(super) struct Arguments {
     #[arg(long)]
     certify: bool,
     /// Numbers: f64, f32, micro (f32 of microcontrollers), or fixed point: q20 (up to ±256 m and s), q16 (±4096), q12 (±65,536)
-    #[arg(long, value_enum, value_name = "NUMBER", default_value_t = Number::F64, hide_possible_values = true)]
-    scalar: Number,
+    #[arg(long, value_enum, value_name = "NUMBER", default_value_t = ScalarArg::F64, hide_possible_values = true)]
+    scalar: ScalarArg,
     #[command(flatten)]
-    import: Options,
+    import: ImportOptions,
 }
 
-impl Arguments {
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        if self.closest && self.printed.form() == Form::Csv {
-            return Err(Stop::arguments("--closest is for --format json and table"));
+impl CheckArgs {
+    pub(super) fn run(self) -> Result<ExitCode, CliError> {
+        if self.closest && self.printed.form() == OutputFormat::Csv {
+            return Err(CliError::arguments("--closest is for --format json and table"));
         }
-        if self.certify && self.printed.form() == Form::Csv {
-            return Err(Stop::arguments("--certify is for --format json and table"));
+        if self.certify && self.printed.form() == OutputFormat::Csv {
+            return Err(CliError::arguments("--certify is for --format json and table"));
         }
         without_margin(&self.import)?;
         let (form, silent) = (self.printed.form(), self.printed.is_silent());
         let closest = self.closest && !silent;
-        let work = Check { form, scalar: self.scalar, closest, certify: self.certify, silent };
+        let work = CheckCommand { form, scalar: self.scalar, closest, certify: self.certify, silent };
         let found = run(&work, self.files, &self.import, &self.printed)?;
         Ok(if found { ExitCode::from(CONFLICTS) } else { ExitCode::SUCCESS })
     }
 }
 
 /// `pcr check`.
-struct Check {
-    form: Form,
-    scalar: Number,
+struct CheckCommand {
+    form: OutputFormat,
+    scalar: ScalarArg,
     closest: bool,
     certify: bool,
     /// Only the exit status tells the answer.
     silent: bool,
 }
 
-impl Check {
-    fn verdict<S: Format>(&self, scenario: &Scenario, told: Told<'_>) -> Result<Verdict, Failure> {
+impl CheckCommand {
+    fn verdict<S: HostScalar>(
+        &self,
+        scenario: &Scenario,
+        told: ProgressFn<'_>,
+    ) -> Result<CheckReport, ComputationError> {
         match self.certify {
-            true => Verdict::certified::<S>(scenario, self.closest, told),
-            false => Verdict::watched::<S>(scenario, self.closest, told),
+            true => CheckReport::certified::<S>(scenario, self.closest, told),
+            false => CheckReport::watched::<S>(scenario, self.closest, told),
         }
     }
 }
 
-impl Work for Check {
+impl ScenarioCommand for CheckCommand {
     const CSV_HEADER: &'static str = report::CONFLICTS_CSV_HEADER;
 
-    fn scalar(&self) -> Number {
+    fn scalar(&self) -> ScalarArg {
         self.scalar
     }
 
-    fn print(&self, scenario: &Scenario, told: Told<'_>, out: &mut impl Write) -> Result<bool, Unprinted> {
-        if self.silent && with_scalar!(self.scalar, S => Verdict::any::<S>(scenario, told))? {
+    fn print(&self, scenario: &Scenario, told: ProgressFn<'_>, out: &mut impl Write) -> Result<bool, OutputError> {
+        if self.silent && with_scalar!(self.scalar, S => CheckReport::any::<S>(scenario, told))? {
             return Ok(true);
         }
         if self.silent && !self.certify {
             return Ok(false);
         }
-        let rows = |count: usize| memory::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} rows"));
-        if self.closest && self.form == Form::Table {
+        let rows =
+            |count: usize| memory_budget::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} rows"));
+        if self.closest && self.form == OutputFormat::Table {
             // All pairs, which is known before they are computed.
             let count = scenario.agents.len();
             rows(count.saturating_mul(count.saturating_sub(1)) / 2)?;
         }
         let verdict = with_scalar!(self.scalar, S => self.verdict::<S>(scenario, told))?;
         match self.form {
-            Form::Table => {
+            OutputFormat::Table => {
                 rows(verdict.conflicts.len() + verdict.closest.as_ref().map_or(0, Vec::len))?;
                 report::conflicts_table(&verdict, out)?;
             }
-            Form::Json => report::json(&verdict, out)?,
-            Form::Csv => report::conflicts_csv(&verdict, out)?,
+            OutputFormat::Json => report::json(&verdict, out)?,
+            OutputFormat::Csv => report::conflicts_csv(&verdict, out)?,
         }
         Ok(!verdict.conflicts.is_empty() || verdict.certificate.is_some_and(|proof| proof.verdict != "proved"))
     }
 
     fn refuse(&self, name: &str, error: String, out: &mut impl Write) -> io::Result<()> {
-        report::json(&Verdict::refused(name, error), out)
+        report::json(&CheckReport::refused(name, error), out)
     }
 }

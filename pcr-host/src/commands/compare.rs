@@ -1,15 +1,15 @@
 //! `pcr compare`.
 
-use super::sources::{gathered, without_margin};
-use super::{SCENARIOS, Stop, folder, quiet, statuses, whole_within};
-use crate::progress::Progress;
+use super::scenario_sources::{gathered, without_margin};
+use super::{CliError, SCENARIOS, folder, quiet, statuses, whole_within};
+use crate::progress::ProgressLine;
 use clap::{Args, ValueEnum};
-use pcr_comparing::compare::{self, Comparison, Effort, Question};
+use pcr_comparing::compare::{self, Comparison, MeasurementBudget, MethodQuestion};
 use pcr_comparing::report;
-use pcr_formats::import::Options;
+use pcr_formats::import::ImportOptions;
 use pcr_formats::output;
-use pcr_planning::failure::Failure;
-use pcr_planning::memory;
+use pcr_planning::failure::ComputationError;
+use pcr_planning::memory_budget;
 use pcr_planning::report::{counted, heading, json};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ Examples:
 /// Run this and other methods side by side: time, memory, errors
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{}", statuses(SCENARIOS)))]
-pub(super) struct Arguments {
+pub(super) struct CompareArgs {
     /// Scenarios (JSON); standard input if left out
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
@@ -36,8 +36,8 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 51, value_parser = |text: &str| whole_within::<u16>(text, 1, 1000))]
     rounds: u16,
     /// table, markdown, json or csv
-    #[arg(long, value_enum, default_value_t = Output::Table, hide_possible_values = true)]
-    format: Output,
+    #[arg(long, value_enum, default_value_t = CompareFormat::Table, hide_possible_values = true)]
+    format: CompareFormat,
     /// The same as --format json
     #[arg(long)]
     json: bool,
@@ -45,11 +45,11 @@ pub(super) struct Arguments {
     #[arg(short, long, value_name = "DIR", value_parser = folder())]
     output: Option<PathBuf>,
     #[command(flatten)]
-    import: Options,
+    import: ImportOptions,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum Output {
+enum CompareFormat {
     Table,
     Markdown,
     Json,
@@ -65,36 +65,38 @@ const AGENT_BYTES: u64 = 2000;
 /// Slices of regions that are compared with the reference.
 const SLICES: usize = 20_000;
 
-impl Arguments {
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+impl CompareArgs {
+    pub(super) fn run(self) -> Result<ExitCode, CliError> {
         without_margin(&self.import)?;
         let names = compare::names(&compare::methods());
         if let Some(word) = self.methods.iter().find(|word| !names.iter().any(|name| name.contains(word.as_str()))) {
             let names = names.join(", ");
-            return Err(Stop::arguments(format!("--method {word}: no method has a name with that; there are {names}")));
+            return Err(CliError::arguments(format!(
+                "--method {word}: no method has a name with that; there are {names}"
+            )));
         }
         let sources = gathered(self.files, &self.import)?;
         if let Some(directory) = &self.output {
             // Before minutes of measurements.
-            output::folder(directory).map_err(|error| Stop::not_written(directory, &error))?;
+            output::folder(directory).map_err(|error| CliError::not_written(directory, &error))?;
         }
-        let format = if self.json { Output::Json } else { self.format };
+        let format = if self.json { CompareFormat::Json } else { self.format };
         let mut out: Box<dyn Write> = match format {
-            Output::Table if quiet() => Box::new(io::sink()),
+            CompareFormat::Table if quiet() => Box::new(io::sink()),
             _ => Box::new(BufWriter::new(io::stdout().lock())),
         };
-        if format == Output::Csv {
+        if format == CompareFormat::Csv {
             out.write_all(report::COMPARISON_CSV_HEADER.as_bytes())?;
         }
-        let effort = Effort { rounds: self.rounds.into(), budget: BUDGET, slices: SLICES };
+        let effort = MeasurementBudget { rounds: self.rounds.into(), budget: BUDGET, slices: SLICES };
         for (place, source) in sources.iter().enumerate() {
             let mut scenario = source.scenario(&self.import)?;
-            scenario.name = source.called(&scenario.name);
+            scenario.name = source.display_name(&scenario.name);
             let agents = scenario.agents.len();
-            memory::ask(agents as u64 * AGENT_BYTES, || format!("the comparison of {agents} agents"))
-                .map_err(|large| Stop::wrong(source.file(), large))?;
-            let progress = Progress::new("methods");
-            let refused = |refused| Stop::wrong(source.file(), Failure::Refused(refused));
+            memory_budget::ask(agents as u64 * AGENT_BYTES, || format!("the comparison of {agents} agents"))
+                .map_err(|large| CliError::wrong(source.file(), large))?;
+            let progress = ProgressLine::new("methods");
+            let refused = |refused| CliError::wrong(source.file(), ComputationError::Refused(refused));
             let comparison =
                 Comparison::new(&scenario, compare::methods(), effort, &self.methods, &mut |done, total| {
                     progress.set(done, total)
@@ -102,18 +104,18 @@ impl Arguments {
                 .map_err(refused)?;
             drop(progress);
             match format {
-                Output::Table | Output::Markdown if place > 0 => writeln!(out)?,
+                CompareFormat::Table | CompareFormat::Markdown if place > 0 => writeln!(out)?,
                 _ => {}
             }
-            if format == Output::Markdown && sources.len() > 1 {
+            if format == CompareFormat::Markdown && sources.len() > 1 {
                 // A table of Markdown has no title of its own.
                 writeln!(out, "{}: {}\n", heading(&comparison.name), counted(agents, "agent"))?;
             }
             match format {
-                Output::Table => report::comparison_table(&comparison, false, &mut out)?,
-                Output::Markdown => report::comparison_table(&comparison, true, &mut out)?,
-                Output::Json => json(&comparison, &mut out)?,
-                Output::Csv => report::comparison_csv(&comparison, &mut out)?,
+                CompareFormat::Table => report::comparison_table(&comparison, false, &mut out)?,
+                CompareFormat::Markdown => report::comparison_table(&comparison, true, &mut out)?,
+                CompareFormat::Json => json(&comparison, &mut out)?,
+                CompareFormat::Csv => report::comparison_csv(&comparison, &mut out)?,
             }
             out.flush()?;
             if let Some(directory) = &self.output {
@@ -124,10 +126,10 @@ impl Arguments {
     }
 }
 
-fn draw(comparison: &Comparison, directory: &Path, number: usize) -> Result<(), Stop> {
-    for (question, name) in [(Question::Regions, "regions"), (Question::Conflicts, "conflicts")] {
+fn draw(comparison: &Comparison, directory: &Path, number: usize) -> Result<(), CliError> {
+    for (question, name) in [(MethodQuestion::Regions, "regions"), (MethodQuestion::Conflicts, "conflicts")] {
         let file = directory.join(format!("{name}-{number}.svg"));
-        output::write(&file, comparison.chart(question)).map_err(|error| Stop::not_written(&file, &error))?;
+        output::write(&file, comparison.chart(question)).map_err(|error| CliError::not_written(&file, &error))?;
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! `pcr completions` and `pcr man`.
 
-use super::{Stop, help, statuses};
+use super::{CliError, help, statuses};
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, Args, Command, CommandFactory};
 use clap_complete::Shell;
@@ -24,7 +24,7 @@ Examples:
 /// Print a completion script for a shell
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{}", statuses("wrong arguments")))]
-pub(super) struct Shells {
+pub(super) struct CompletionsArgs {
     /// The shell
     shell: Shell,
 }
@@ -32,13 +32,13 @@ pub(super) struct Shells {
 /// Print the manual page, of pcr or of one command
 #[derive(Args)]
 #[command(after_help = format!("{PAGES}\n\n{}", statuses("wrong arguments")))]
-pub(super) struct Manual {
+pub(super) struct ManArgs {
     /// Command to describe; pcr itself if left out
     command: Option<String>,
 }
 
-impl Shells {
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+impl CompletionsArgs {
+    pub(super) fn run(self) -> Result<ExitCode, CliError> {
         let (mut text, command) = (Vec::new(), help::command(true));
         let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
         // Only here: what is no command is refused by a reason of its own.
@@ -52,17 +52,17 @@ impl Shells {
     }
 }
 
-impl Manual {
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+impl ManArgs {
+    pub(super) fn run(self) -> Result<ExitCode, CliError> {
         let mut all = help::command(true);
         all.build();
         let command = match &self.command {
             // What it is in one line; the rest is the description.
-            None => all.about(super::Arguments::command().get_about().cloned().unwrap_or_default()),
+            None => all.about(super::Cli::command().get_about().cloned().unwrap_or_default()),
             Some(name) => {
                 let found = all
                     .find_subcommand(name)
-                    .ok_or_else(|| Stop::arguments(format!("there is no command {name}; pcr --help lists them")))?;
+                    .ok_or_else(|| CliError::arguments(format!("there is no command {name}; pcr --help lists them")))?;
                 found.clone().name(format!("pcr-{name}"))
             }
         };
@@ -109,7 +109,7 @@ fn page(mut command: Command) -> io::Result<Vec<u8>> {
     Ok(text)
 }
 
-fn print(text: &[u8]) -> Result<ExitCode, Stop> {
+fn print(text: &[u8]) -> Result<ExitCode, CliError> {
     let mut out = io::stdout().lock();
     out.write_all(text)?;
     out.flush()?;

@@ -2,13 +2,13 @@
 
 use super::map::draw;
 use super::printed::quiet;
-use super::{Stop, WRONG_INPUT, folder, statuses};
+use super::{CliError, WRONG_INPUT, folder, statuses};
 use clap::Args;
 use pcr_formats::scenario::Scenario;
-use pcr_formats::{output, paper};
-use pcr_planning::failure::Failure;
+use pcr_formats::{output, paper_example};
+use pcr_planning::failure::ComputationError;
 use pcr_planning::fleet::Fleet;
-use pcr_planning::regions::{self, Answer, Request};
+use pcr_planning::regions::{self, RegionOptions, RegionsReport};
 use pcr_planning::report;
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -27,7 +27,7 @@ Examples:
 /// Show the paper's simulation of 12 agents, with its tables
 #[derive(Args, Default)]
 #[command(after_help = format!("{EXAMPLES}\n\n{}", statuses("wrong arguments")))]
-pub(super) struct Arguments {
+pub(super) struct DemoArgs {
     /// Directory for the pictures (pcr-out if left out, with --quiet none)
     #[arg(short, long, value_name = "DIR", value_parser = folder())]
     output: Option<PathBuf>,
@@ -36,11 +36,11 @@ pub(super) struct Arguments {
     scenario: bool,
 }
 
-impl Arguments {
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+impl DemoArgs {
+    pub(super) fn run(self) -> Result<ExitCode, CliError> {
         let mut out: Box<dyn Write> = Box::new(io::stdout().lock());
         if self.scenario {
-            out.write_all(paper::SCENARIO.as_bytes())?;
+            out.write_all(paper_example::SCENARIO.as_bytes())?;
             out.flush()?;
             return Ok(ExitCode::SUCCESS);
         }
@@ -48,16 +48,16 @@ impl Arguments {
             out = Box::new(io::sink());
         }
         if let Some(output) = &self.output {
-            output::folder(output).map_err(|error| Stop::not_written(output, &error))?;
+            output::folder(output).map_err(|error| CliError::not_written(output, &error))?;
         }
-        let scenario =
-            Scenario::from_json(paper::SCENARIO).map_err(|error| Stop::Error(error.to_string(), WRONG_INPUT))?;
-        let fleet = Fleet::<f64>::new(&scenario).map_err(Failure::from)?;
+        let scenario = Scenario::from_json(paper_example::SCENARIO)
+            .map_err(|error| CliError::Error(error.to_string(), WRONG_INPUT))?;
+        let fleet = Fleet::<f64>::new(&scenario).map_err(ComputationError::from)?;
         let motions = fleet.motions();
         let begin = Instant::now();
         regions::table(&scenario, &motions)?;
         let took = begin.elapsed();
-        let answer = Answer::of::<f64>(&scenario, Request::default())?;
+        let answer = RegionsReport::compute::<f64>(&scenario, RegionOptions::default())?;
         report::overview(&scenario, &answer, took, &mut out)?;
         // Pictures that nobody asked for are for people, as the tables are.
         if let Some(output) = self.output.or_else(|| (!quiet()).then(|| DIRECTORY.into())) {

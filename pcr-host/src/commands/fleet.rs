@@ -2,9 +2,9 @@
 
 mod run;
 
-pub(super) use run::{Crew, Run, world};
+pub(super) use run::{FleetRun, FleetSimulationOptions, world};
 
-use super::{Stop, number, whole};
+use super::{CliError, number, parse_integer};
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -33,7 +33,7 @@ User and password of the broker: PCR_BROKER_USER and PCR_BROKER_PASSWORD.";
 /// Simulate VDA 5050 vehicles and their fleet manager
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
-pub(super) struct Arguments {
+pub(super) struct FleetArgs {
     /// Layout (goals: its safe ends); standard input if left out or `-`
     layout: Option<PathBuf>,
     /// A site of N streets each way, instead of a layout
@@ -43,7 +43,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "HOST:PORT", default_value = "localhost:1883")]
     broker: String,
     /// Number of vehicles
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = whole::<usize>)]
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = parse_integer::<usize>)]
     vehicles: usize,
     /// Also simulate the manager that gives them missions
     #[arg(long)]
@@ -70,7 +70,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "PART", default_value_t = 0.0, value_parser = |text: &str| number::<f64>(text, "a number from 0 to 0.5"))]
     weather: f64,
     /// The same seed makes the same vehicles
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = parse_integer::<u64>)]
     seed: u64,
     /// Write the true positions to this file, at the end
     #[arg(long, value_name = "FILE")]
@@ -83,8 +83,8 @@ pub(super) struct Arguments {
     profiles: Option<PathBuf>,
 }
 
-impl Arguments {
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+impl FleetArgs {
+    pub(super) fn run(self) -> Result<ExitCode, CliError> {
         run::run(self)
     }
 }

@@ -3,9 +3,9 @@
 //! `-h` shows the common options of a command, one line each; `--help` adds those about layouts and other formats,
 //! examples and exit statuses. Options without effect in a command are not shown.
 
-use super::rules::{ruled, unmet};
-use super::tips::with_tip;
-use super::{Arguments, Stop, UNITS};
+use super::argument_rules::{ruled, unmet};
+use super::error_hints::with_tip;
+use super::{Cli, CliError, UNITS};
 use clap::{Arg, ArgAction, Command, CommandFactory, FromArgMatches};
 use std::ffi::OsString;
 use std::io::{self, IsTerminal, Write};
@@ -14,7 +14,7 @@ use std::io::{self, IsTerminal, Write};
 pub(super) const LAYOUTS: &str = pcr_formats::import::HEADING;
 
 /// What is asked for; nothing where it was help or the version, which are printed.
-pub(super) fn parse(mut words: Vec<OsString>) -> Result<Option<Arguments>, Stop> {
+pub(super) fn parse(mut words: Vec<OsString>) -> Result<Option<Cli>, CliError> {
     if words.get(1).is_some_and(|word| word == "help") {
         words.remove(1);
         // There is no more about it than what it shows.
@@ -24,7 +24,7 @@ pub(super) fn parse(mut words: Vec<OsString>) -> Result<Option<Arguments>, Stop>
         let mut named = words.iter().skip(1).filter(|word| !word.to_string_lossy().starts_with('-'));
         if let (Some(command), Some(more)) = (named.next(), named.next()) {
             let (command, more) = (command.to_string_lossy(), more.to_string_lossy());
-            return Err(Stop::arguments(format!(
+            return Err(CliError::arguments(format!(
                 "{more}: help is of one command at a time, such as pcr help {command}"
             )));
         }
@@ -39,8 +39,8 @@ pub(super) fn parse(mut words: Vec<OsString>) -> Result<Option<Arguments>, Stop>
     let mut commands = command(long);
     let parsed = commands.try_get_matches_from_mut(&words);
     match parsed.and_then(|matches| unmet(&commands, &matches).map_or(Ok(matches), Err)) {
-        Ok(matches) => Arguments::from_arg_matches(&matches).map(Some).map_err(|error| Stop::Usage(Box::new(error))),
-        Err(error) if error.use_stderr() => Err(Stop::Usage(Box::new(with_tip(error, &words)))),
+        Ok(matches) => Cli::from_arg_matches(&matches).map(Some).map_err(|error| CliError::Usage(Box::new(error))),
+        Err(error) if error.use_stderr() => Err(CliError::Usage(Box::new(with_tip(error, &words)))),
         Err(asked) => {
             let (text, mut out) = (asked.render(), io::stdout().lock());
             if out.is_terminal() {
@@ -56,7 +56,7 @@ pub(super) fn parse(mut words: Vec<OsString>) -> Result<Option<Arguments>, Stop>
 
 /// All commands, with what their help shows.
 pub(super) fn command(long: bool) -> Command {
-    let command = Arguments::command();
+    let command = Cli::command();
     let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
     let tailored = names.iter().fold(command, |command, name| command.mut_subcommand(name, |own| tailored(own, long)));
     let tailored = with_help(tailored, long);
@@ -70,7 +70,7 @@ pub(super) fn command(long: bool) -> Command {
 fn tailored(command: Command, long: bool) -> Command {
     let name = command.get_name().to_owned();
     let command = ruled(command);
-    let useless = useless(&name);
+    let useless = options_without_effect(&name);
     let layouts = command.get_arguments().any(|argument| argument.get_help_heading() == Some(LAYOUTS));
     let command = command.mut_args(|argument| {
         // Of use with every file.
@@ -114,7 +114,7 @@ pub(super) const STANDING: &str = "locks without --delays";
 pub(super) const DRIVING: &str = "locks --delays";
 
 /// Options for layouts and other formats that do nothing in a command, by the names of their fields.
-pub(super) fn useless(command: &str) -> &'static [&'static str] {
+pub(super) fn options_without_effect(command: &str) -> &'static [&'static str] {
     match command {
         "import" => &["from"],
         // Rotation is of use for arcs with --acceleration only.

@@ -1,9 +1,9 @@
 //! `pcr import`.
 
-use super::sources::{foreign_sources, together};
-use super::{Stop, scenario, statuses, write_to};
+use super::scenario_sources::{foreign_sources, together};
+use super::{CliError, scenario, statuses, write_to};
 use clap::Args;
-use pcr_formats::import::{Format, Options};
+use pcr_formats::import::{ImportOptions, InputFormat};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -16,10 +16,10 @@ Examples:
 /// Write routes, an order or a plan of other formats as a scenario
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{}", statuses("wrong arguments, or a file that cannot be read or was refused")))]
-pub(super) struct Arguments {
+pub(super) struct ImportArgs {
     /// Format of the file
     #[arg(value_enum)]
-    format: Format,
+    format: InputFormat,
     /// The file; standard input if left out or `-`. Several orders or states (VDA 5050), or paths, become agents of one scenario
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
@@ -27,15 +27,15 @@ pub(super) struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]
-    import: Options,
+    import: ImportOptions,
 }
 
-impl Arguments {
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+impl ImportArgs {
+    pub(super) fn run(self) -> Result<ExitCode, CliError> {
         if self.import.from.is_some() {
-            return Err(Stop::arguments("--from: the format is named already, as the first argument"));
+            return Err(CliError::arguments("--from: the format is named already, as the first argument"));
         }
-        let import = Options { from: Some(self.format), ..self.import };
+        let import = ImportOptions { from: Some(self.format), ..self.import };
         let scenario = match foreign_sources(self.files)?.as_slice() {
             [file] => scenario(file, &import)?,
             files => together(files, &import)?,

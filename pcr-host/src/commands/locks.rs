@@ -1,19 +1,25 @@
 //! `pcr locks`.
 
-use super::exclusions::Asked;
+use super::exclusion_args::ExclusionArgs;
 use super::help::{DRIVING, STANDING};
 use super::printed::notes;
-use super::sources::{layout, layout_source};
-use super::{CONFLICTS, Form, NO_FOLDER, NO_STREAM, Printed, Stop, UNDECIDED, acknowledge, is_standard, warn_of_boxes};
-use crate::progress::Progress;
+use super::scenario_sources::{layout, layout_source};
+use super::{
+    CONFLICTS, CliError, NO_FOLDER, NO_STREAM, OutputArgs, OutputFormat, UNDECIDED, acknowledge, is_standard,
+    warn_of_boxes,
+};
+use crate::progress::ProgressLine;
 use clap::Args;
 use pcr_drawing as picture;
 use pcr_exclusions::sized;
-use pcr_formats::import::{ImportError, Imported, Options};
+use pcr_formats::import::{ImportError, ImportOptions, ImportedLayout};
 use pcr_formats::output;
-use pcr_planning::locks::{Delays, Driving, Index, IndexError, Locks, Sweep, Told, origin, write_index};
-use pcr_planning::memory;
-use pcr_planning::report::{self, DelayTable, EdgeLocks, LocksUnprinted};
+use pcr_planning::exclusion_table::{
+    EdgeDriving, ExclusionIndex, ExclusionIndexError, ExclusionTable, SweptLayout, SyncProgressFn, UnsafeDelayModel,
+    origin, write_index,
+};
+use pcr_planning::memory_budget;
+use pcr_planning::report::{self, EdgeExclusionsReport, ExclusionOutputError, UnsafeDelayReport};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -38,11 +44,11 @@ Examples:
 /// Print which edges exclude one another, and on which lengths
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
-pub(super) struct Arguments {
+pub(super) struct LocksArgs {
     /// The layout; standard input if left out or `-`. With --edge also a file of --index
     layout: Option<PathBuf>,
     #[command(flatten)]
-    printed: Printed,
+    printed: OutputArgs,
     /// Add the lengths that a vehicle at a node blocks
     #[arg(long)]
     nodes: bool,
@@ -65,27 +71,27 @@ pub(super) struct Arguments {
     #[arg(short, long, value_name = "PATH")]
     output: Option<PathBuf>,
     #[command(flatten)]
-    asked: Asked,
+    asked: ExclusionArgs,
     #[command(flatten)]
-    import: Options,
+    import: ImportOptions,
 }
 
-impl Arguments {
+impl LocksArgs {
     /// Whether the exit status answers what is asked.
     pub(super) fn is_answered_by_status(&self) -> bool {
         self.asked.is_audit() || self.certify
     }
 
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+    pub(super) fn run(self) -> Result<ExitCode, CliError> {
         if is_standard(self.output.as_ref()) && !self.asked.is_to_be_written() {
-            return Err(Stop::arguments(format!("--output -: {NO_FOLDER}")));
+            return Err(CliError::arguments(format!("--output -: {NO_FOLDER}")));
         }
         if is_standard(self.index.as_ref()) {
-            return Err(Stop::arguments(format!("--index -: {NO_STREAM}")));
+            return Err(CliError::arguments(format!("--index -: {NO_STREAM}")));
         }
         if let Some(index) = self.index.as_deref().filter(|index| is_stream(index)) {
             let why = "this is written and read at many places, which a pipe or a device is not";
-            return Err(Stop::wrong(index, why));
+            return Err(CliError::wrong(index, why));
         }
         let file = &layout_source(self.layout.clone())?;
         if let Some(done) = self.asked.run(file, &self.import, &self.printed, self.output.as_ref(), &self.edge) {
@@ -95,7 +101,7 @@ impl Arguments {
             [] => {}
             [edge] => return self.of_edge(file, edge),
             _ => {
-                return Err(Stop::arguments(
+                return Err(CliError::arguments(
                     "--edge: locks are listed of one edge; with --audit it may be given several times",
                 ));
             }
@@ -104,21 +110,21 @@ impl Arguments {
             return self.unsafe_delays(file);
         }
         let imported = layout(file, &self.import, STANDING, false)?;
-        let progress = Progress::new(format!("{}: pairs of edges", file.display()));
-        let told: Told<'_> = &|done, total| progress.set(done, total);
-        let wrong = |error: ImportError| Stop::wrong(file, error);
+        let progress = ProgressLine::new(format!("{}: pairs of edges", file.display()));
+        let told: SyncProgressFn<'_> = &|done, total| progress.set(done, total);
+        let wrong = |error: ImportError| CliError::wrong(file, error);
         if let Some(index) = &self.index {
-            if self.printed.form() != Form::Table {
-                return Err(Stop::arguments(
+            if self.printed.form() != OutputFormat::Table {
+                return Err(CliError::arguments(
                     "--format and --json have no effect with --index: the locks go to a file of its own form",
                 ));
             }
-            let sweep = Sweep::new(&imported, self.nodes).map_err(wrong)?;
+            let sweep = SweptLayout::new(&imported, self.nodes).map_err(wrong)?;
             let written = output::stream(index, |out| write_index(&sweep, origin(&imported), out, told));
             let records = written.map_err(|error| match error {
-                IndexError::Import(error) => wrong(error),
-                IndexError::Io(error) => Stop::not_written(index, &error),
-                damaged @ IndexError::Damaged(_) => Stop::wrong(index, damaged),
+                ExclusionIndexError::Import(error) => wrong(error),
+                ExclusionIndexError::Io(error) => CliError::not_written(index, &error),
+                damaged @ ExclusionIndexError::Damaged(_) => CliError::wrong(index, damaged),
             })?;
             drop(progress);
             let names = sweep.ids().len();
@@ -127,8 +133,8 @@ impl Arguments {
         }
         let mut out = self.out();
         let form = self.printed.form();
-        if self.lines || (form == Form::Csv && self.output.is_none()) {
-            let sweep = Sweep::new(&imported, self.nodes).map_err(wrong)?;
+        if self.lines || (form == OutputFormat::Csv && self.output.is_none()) {
+            let sweep = SweptLayout::new(&imported, self.nodes).map_err(wrong)?;
             let printed = match self.lines {
                 true => report::locks_lines(&head(&imported, self.nodes), &sweep, told, &mut out),
                 false => report::locks_csv(&sweep, told, &mut out),
@@ -137,58 +143,58 @@ impl Arguments {
             out.flush()?;
             return Ok(ExitCode::SUCCESS);
         }
-        let mut locks = Locks::watched(&imported, self.nodes, told).map_err(wrong)?;
+        let mut locks = ExclusionTable::watched(&imported, self.nodes, told).map_err(wrong)?;
         acknowledge(&mut locks.warnings);
         drop(progress);
         if let Some(directory) = &self.output {
             let written = picture::write_locks(&imported, &locks, directory);
-            warn_of_boxes(directory, &written.map_err(|error| Stop::not_written(directory, &error))?);
+            warn_of_boxes(directory, &written.map_err(|error| CliError::not_written(directory, &error))?);
         }
         match form {
-            Form::Table => {
+            OutputFormat::Table => {
                 ask_for_rows(locks.locks.len(), "locks")?;
                 report::locks_table(&locks, &mut out)?;
             }
-            Form::Json => report::json(&locks, &mut out)?,
-            Form::Csv => report::kept_locks_csv(&locks, &mut out)?,
+            OutputFormat::Json => report::json(&locks, &mut out)?,
+            OutputFormat::Csv => report::kept_locks_csv(&locks, &mut out)?,
         }
         out.flush()?;
         Ok(ExitCode::SUCCESS)
     }
 
     /// Delays of starts instead of lengths.
-    fn unsafe_delays(&self, file: &Path) -> Result<ExitCode, Stop> {
-        if self.certify && self.printed.form() == Form::Csv {
-            return Err(Stop::arguments("--certify is for --format json and table"));
+    fn unsafe_delays(&self, file: &Path) -> Result<ExitCode, CliError> {
+        if self.certify && self.printed.form() == OutputFormat::Csv {
+            return Err(CliError::arguments("--certify is for --format json and table"));
         }
         let Some(speed) = self.import.speed else {
-            return Err(Stop::arguments("--delays are of one speed: say which, --speed"));
+            return Err(CliError::arguments("--delays are of one speed: say which, --speed"));
         };
         if self.import.acceleration.is_none()
             && let Some(option) = self.import.one_of(&["rotation", "rotation_acceleration"])
         {
-            return Err(Stop::arguments(format!(
+            return Err(CliError::arguments(format!(
                 "{option} has no effect without --acceleration: the speed is constant then, and lower only where the file says so"
             )));
         }
-        let driving = Driving { speed, acceleration: self.import.acceleration };
+        let driving = EdgeDriving { speed, acceleration: self.import.acceleration };
         let imported = layout(file, &self.import, DRIVING, driving.acceleration.is_some())?;
-        let wrong = |error: ImportError| Stop::wrong(file, error);
+        let wrong = |error: ImportError| CliError::wrong(file, error);
         sized(&imported).map_err(wrong)?;
-        let progress = Progress::new(format!("{}: pairs of edges", file.display()));
-        let told: Told<'_> = &|done, total| progress.set(done, total);
-        let delays = Delays::new(&imported, driving, self.nodes).map_err(wrong)?;
+        let progress = ProgressLine::new(format!("{}: pairs of edges", file.display()));
+        let told: SyncProgressFn<'_> = &|done, total| progress.set(done, total);
+        let delays = UnsafeDelayModel::new(&imported, driving, self.nodes).map_err(wrong)?;
         let head = self::head(&imported, self.nodes);
         let mut out = self.out();
         let mut status = ExitCode::SUCCESS;
         let printed = match self.printed.form() {
             _ if self.lines => report::delays_lines(&head, driving, &delays, told, &mut out),
-            Form::Csv => report::delays_csv(&delays, told, &mut out),
+            OutputFormat::Csv => report::delays_csv(&delays, told, &mut out),
             form => {
-                let mut table = DelayTable::of(head, driving, &delays, told).map_err(wrong)?;
+                let mut table = UnsafeDelayReport::collect(head, driving, &delays, told).map_err(wrong)?;
                 drop(progress);
                 if self.certify {
-                    let progress = Progress::new(format!("{}: proofs of edges", file.display()));
+                    let progress = ProgressLine::new(format!("{}: proofs of edges", file.display()));
                     table.certify(&delays, &|done, total| progress.set(done, total)).map_err(wrong)?;
                 }
                 status = match table.certificate.as_ref().map(|proof| proof.verdict) {
@@ -196,7 +202,7 @@ impl Arguments {
                     Some("refuted") => ExitCode::from(CONFLICTS),
                     Some(_) => ExitCode::from(UNDECIDED),
                 };
-                if form == Form::Json {
+                if form == OutputFormat::Json {
                     report::json(&table, &mut out)?;
                 } else {
                     ask_for_rows(table.delays.len(), "delays")?;
@@ -216,33 +222,33 @@ impl Arguments {
     }
 
     /// The locks of one edge, of a layout or from a file that has them.
-    fn of_edge(&self, file: &Path, edge: &str) -> Result<ExitCode, Stop> {
+    fn of_edge(&self, file: &Path, edge: &str) -> Result<ExitCode, CliError> {
         let found = |index: &Path, of: Option<u32>| {
-            let wrong = |error: IndexError| match error {
-                IndexError::Io(missing) if missing.kind() == ErrorKind::NotFound => Stop::wrong(
+            let wrong = |error: ExclusionIndexError| match error {
+                ExclusionIndexError::Io(missing) if missing.kind() == ErrorKind::NotFound => CliError::wrong(
                     index,
                     "there is no such table of locks; pcr locks LAYOUT --index, without --edge, writes one",
                 ),
-                other => Stop::wrong(index, other),
+                other => CliError::wrong(index, other),
             };
-            let mut held = Index::open(index).map_err(wrong)?;
+            let mut held = ExclusionIndex::open(index).map_err(wrong)?;
             if of.is_some_and(|of| of != held.origin()) {
                 let stale = "it has the locks of another layout or vehicle; without --edge it is written anew";
-                return Err(Stop::wrong(index, stale));
+                return Err(CliError::wrong(index, stale));
             }
             if self.nodes && !held.has_nodes() {
                 let problem = "it has no nodes, as it was written without --nodes; without --edge it is written anew";
-                return Err(Stop::wrong(index, problem));
+                return Err(CliError::wrong(index, problem));
             }
-            held.of(edge).map_err(wrong)
+            held.partners(edge).map_err(wrong)
         };
-        let (partners, head) = if Index::is_one(file) {
+        let (partners, head) = if ExclusionIndex::is_one(file) {
             if self.index.is_some() {
-                return Err(Stop::arguments("--index beside a table of locks: the layout is expected there"));
+                return Err(CliError::arguments("--index beside a table of locks: the layout is expected there"));
             }
             let given = self.import.given().first().copied().or(self.nodes.then_some("--nodes"));
             if let Some(option) = given {
-                return Err(Stop::arguments(format!(
+                return Err(CliError::arguments(format!(
                     "{option} has no effect: {} has its locks already",
                     file.display()
                 )));
@@ -253,25 +259,25 @@ impl Arguments {
             (found(index, Some(origin(&imported)))?, Some(head(&imported, self.nodes)))
         } else {
             let imported = layout(file, &self.import, STANDING, false)?;
-            let sweep = Sweep::new(&imported, self.nodes).map_err(|error| Stop::wrong(file, error))?;
-            let partners = sweep.partners(edge).map_err(|error| Stop::wrong(file, error))?;
+            let sweep = SweptLayout::new(&imported, self.nodes).map_err(|error| CliError::wrong(file, error))?;
+            let partners = sweep.partners(edge).map_err(|error| CliError::wrong(file, error))?;
             (partners, Some(head(&imported, self.nodes)))
         };
         let Some(partners) = partners else {
-            return Err(Stop::wrong(file, format!("there is no edge {edge}; pcr nodes lists them")));
+            return Err(CliError::wrong(file, format!("there is no edge {edge}; pcr nodes lists them")));
         };
         let edge = edge.to_owned();
         let locks = match head {
-            Some(Locks { layout, vehicle, warnings, .. }) => {
-                EdgeLocks { layout: Some(layout), vehicle: Some(vehicle), edge, partners, warnings }
+            Some(ExclusionTable { layout, vehicle, warnings, .. }) => {
+                EdgeExclusionsReport { layout: Some(layout), vehicle: Some(vehicle), edge, partners, warnings }
             }
-            None => EdgeLocks { layout: None, vehicle: None, edge, partners, warnings: Vec::new() },
+            None => EdgeExclusionsReport { layout: None, vehicle: None, edge, partners, warnings: Vec::new() },
         };
         let mut out = self.printed.out(false);
         match self.printed.form() {
-            Form::Table => report::edge_table(&locks, &mut out)?,
-            Form::Json => report::json(&locks, &mut out)?,
-            Form::Csv => report::edge_csv(&locks, &mut out)?,
+            OutputFormat::Table => report::edge_table(&locks, &mut out)?,
+            OutputFormat::Json => report::json(&locks, &mut out)?,
+            OutputFormat::Csv => report::edge_csv(&locks, &mut out)?,
         }
         out.flush()?;
         Ok(ExitCode::SUCCESS)
@@ -279,8 +285,8 @@ impl Arguments {
 }
 
 /// What stands before the locks of a layout, without the warnings that are acknowledged.
-fn head(imported: &Imported, nodes: bool) -> Locks {
-    let mut head = Locks::head(imported, nodes);
+fn head(imported: &ImportedLayout, nodes: bool) -> ExclusionTable {
+    let mut head = ExclusionTable::head(imported, nodes);
     acknowledge(&mut head.warnings);
     head
 }
@@ -291,15 +297,15 @@ fn is_stream(file: &Path) -> bool {
 }
 
 /// Asks for what a table for reading takes.
-fn ask_for_rows(count: usize, what: &str) -> Result<(), Stop> {
-    memory::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} {what}")).map_err(|large| {
-        Stop::arguments(format!("{large}; --lines, --format csv and (of locks) --index print tables of any size"))
+fn ask_for_rows(count: usize, what: &str) -> Result<(), CliError> {
+    memory_budget::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} {what}")).map_err(|large| {
+        CliError::arguments(format!("{large}; --lines, --format csv and (of locks) --index print tables of any size"))
     })
 }
 
-fn unprinted_of(file: &Path, unprinted: LocksUnprinted) -> Stop {
+fn unprinted_of(file: &Path, unprinted: ExclusionOutputError) -> CliError {
     match unprinted {
-        LocksUnprinted::Import(error) => Stop::wrong(file, error),
-        LocksUnprinted::Output(error) => error.into(),
+        ExclusionOutputError::Import(error) => CliError::wrong(file, error),
+        ExclusionOutputError::Output(error) => error.into(),
     }
 }

@@ -1,20 +1,20 @@
 //! `pcr map`.
 
-use super::sources::{source, without_margin};
-use super::{SCENARIOS, Stop, folder, quiet, say, scenario, statuses, warn_of_boxes};
-use crate::progress::Progress;
+use super::scenario_sources::{source, without_margin};
+use super::{CliError, SCENARIOS, folder, quiet, say, scenario, statuses, warn_of_boxes};
+use crate::progress::ProgressLine;
 use clap::Args;
 use clap::builder::NonEmptyStringValueParser;
 use pcr_core::Motion;
-use pcr_drawing::{self as picture, Ground};
-use pcr_formats::import::Options;
+use pcr_drawing::{self as picture, LayoutLevelView};
+use pcr_formats::import::ImportOptions;
 use pcr_formats::scenario::Scenario;
 use pcr_formats::warning::WarningCode;
-use pcr_planning::failure::Failure;
+use pcr_planning::failure::ComputationError;
 use pcr_planning::fleet::Fleet;
 use pcr_planning::regions;
 use pcr_planning::report::counted;
-use pcr_planning::{memory, rows};
+use pcr_planning::{agent_regions, memory_budget};
 use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::fs;
@@ -37,7 +37,7 @@ const SHAPE_BYTES: u64 = 4096;
 /// Draw a scenario: its paths, and the collision map of each agent
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{}", statuses(SCENARIOS)))]
-pub(super) struct Arguments {
+pub(super) struct MapArgs {
     /// Scenario (JSON); standard input if left out or `-`
     file: Option<PathBuf>,
     /// Directory for the pictures; created if it does not exist; its files are overwritten
@@ -47,16 +47,16 @@ pub(super) struct Arguments {
     #[arg(long = "agent", value_name = "AGENT", value_parser = NonEmptyStringValueParser::new())]
     agents: Vec<String>,
     #[command(flatten)]
-    import: Options,
+    import: ImportOptions,
 }
 
-impl Arguments {
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+impl MapArgs {
+    pub(super) fn run(self) -> Result<ExitCode, CliError> {
         without_margin(&self.import)?;
         let file = &source(self.file.clone())?;
         let scenario = scenario(file, &self.import)?;
         // What is wrong with the scenario is said before anything is written.
-        let named = |failure: Failure| Stop::wrong(file, failure);
+        let named = |failure: ComputationError| CliError::wrong(file, failure);
         let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| named(refused.into()))?;
         let (scenario, egos) = self.asked(scenario, fleet.motions()).map_err(named)?;
         ask_for_regions(&scenario).map_err(named)?;
@@ -70,12 +70,12 @@ impl Arguments {
         &self,
         mut scenario: Scenario,
         motions: Vec<Motion<'_, f64>>,
-    ) -> Result<(Scenario, Option<Vec<usize>>), Failure> {
+    ) -> Result<(Scenario, Option<Vec<usize>>), ComputationError> {
         if self.agents.is_empty() {
             return are_few(motions.len(), "without --agent, maps are drawn").map(|()| (scenario, None));
         }
         let ids = self.agents.iter().map(|asked| regions::find(&scenario, asked)).collect::<Result<HashSet<_>, _>>()?;
-        let (grid, mut near, mut some) = (rows::grid(&motions), Vec::new(), HashSet::new());
+        let (grid, mut near, mut some) = (agent_regions::grid(&motions), Vec::new(), HashSet::new());
         for (place, _) in scenario.agents.iter().enumerate().filter(|(_, agent)| ids.contains(&agent.id)) {
             grid.around(place, &mut near);
             some.extend(near.iter().map(|&other| other as usize).chain([place]));
@@ -89,30 +89,30 @@ impl Arguments {
 }
 
 /// Refuses more agents than maps are drawn of.
-pub(super) fn are_few(agents: usize, what: &'static str) -> Result<(), Failure> {
-    if agents <= MOST { Ok(()) } else { Err(Failure::TooMany { what, agents, most: MOST }) }
+pub(super) fn are_few(agents: usize, what: &'static str) -> Result<(), ComputationError> {
+    if agents <= MOST { Ok(()) } else { Err(ComputationError::TooMany { what, agents, most: MOST }) }
 }
 
 /// Asks for what the pictures of all regions take.
-pub(super) fn ask_for_regions(scenario: &Scenario) -> Result<(), Failure> {
+pub(super) fn ask_for_regions(scenario: &Scenario) -> Result<(), ComputationError> {
     let fleet = Fleet::<f64>::new(scenario)?;
     // Each region is drawn for both of its agents, in the page and in a picture.
     let shapes = 2 * regions::table(scenario, &fleet.motions())?.len() as u64;
-    Ok(memory::ask(shapes * SHAPE_BYTES, || format!("pictures of {shapes} regions"))?)
+    Ok(memory_budget::ask(shapes * SHAPE_BYTES, || format!("pictures of {shapes} regions"))?)
 }
 
 /// Draws a scenario, on a layout if there is one, to a directory; with the maps of the agents at the places `egos`, or of all.
 pub(super) fn draw(
     scenario: &Scenario,
     egos: Option<&[usize]>,
-    ground: Option<Ground<'_>>,
+    ground: Option<LayoutLevelView<'_>>,
     directory: &Path,
     out: &mut impl Write,
-) -> Result<(), Stop> {
-    let progress = Progress::new("pictures");
+) -> Result<(), CliError> {
+    let progress = ProgressLine::new("pictures");
     let written = picture::write(scenario, egos, ground, directory, &mut |done, total| progress.set(done, total));
     drop(progress);
-    let written = written.map_err(|error| Stop::not_written(directory, &error))?;
+    let written = written.map_err(|error| CliError::not_written(directory, &error))?;
     warn_of_boxes(directory, &written);
     let files = written.files;
     warn_of_earlier(directory, &files);

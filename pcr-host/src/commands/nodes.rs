@@ -1,10 +1,10 @@
 //! `pcr nodes`.
 
-use super::sources::{layout, layout_source};
-use super::{Form, Printed, Stop, statuses};
+use super::scenario_sources::{layout, layout_source};
+use super::{CliError, OutputArgs, OutputFormat, statuses};
 use clap::Args;
-use pcr_formats::import::Options;
-use pcr_planning::nodes::Listing;
+use pcr_formats::import::ImportOptions;
+use pcr_planning::nodes::LayoutReport;
 use pcr_planning::report;
 use std::io::Write;
 use std::path::PathBuf;
@@ -19,24 +19,24 @@ Examples:
 /// List the nodes, edges, levels and vehicle types of a layout
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{}", statuses("wrong arguments, or a layout that cannot be read or was refused")))]
-pub(super) struct Arguments {
+pub(super) struct NodesArgs {
     /// The layout; standard input if left out or `-`
     layout: Option<PathBuf>,
     #[command(flatten)]
-    printed: Printed,
+    printed: OutputArgs,
     #[command(flatten)]
-    import: Options,
+    import: ImportOptions,
 }
 
-impl Arguments {
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+impl NodesArgs {
+    pub(super) fn run(self) -> Result<ExitCode, CliError> {
         let imported = layout(&layout_source(self.layout)?, &self.import, "nodes", false)?;
-        let listing = Listing::of(&imported.layout);
+        let listing = LayoutReport::new(&imported.layout);
         let mut out = self.printed.out(false);
         match self.printed.form() {
-            Form::Table => report::nodes_table(&listing, &mut out)?,
-            Form::Json => report::json(&listing, &mut out)?,
-            Form::Csv => report::nodes_csv(&listing, &mut out)?,
+            OutputFormat::Table => report::nodes_table(&listing, &mut out)?,
+            OutputFormat::Json => report::json(&listing, &mut out)?,
+            OutputFormat::Csv => report::nodes_csv(&listing, &mut out)?,
         }
         out.flush()?;
         Ok(ExitCode::SUCCESS)

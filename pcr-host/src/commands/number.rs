@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 
 #[derive(Clone, Copy, ValueEnum)]
-pub(super) enum Number {
+pub(super) enum ScalarArg {
     F64,
     F32,
     #[cfg(feature = "micromath")]
@@ -13,32 +13,32 @@ pub(super) enum Number {
     Q12,
 }
 
-/// Evaluates an expression with the type `$scalar` of a [`Number`].
+/// Evaluates an expression with the type `$scalar` of a [`ScalarArg`].
 macro_rules! with_scalar {
     ($number:expr, $scalar:ident => $body:expr) => {
         match $number {
-            Number::F64 => {
+            ScalarArg::F64 => {
                 type $scalar = f64;
                 $body
             }
-            Number::F32 => {
+            ScalarArg::F32 => {
                 type $scalar = f32;
                 $body
             }
             #[cfg(feature = "micromath")]
-            Number::Micro => {
+            ScalarArg::Micro => {
                 type $scalar = pcr_core::scalar::Micro;
                 $body
             }
-            Number::Q16 => {
+            ScalarArg::Q16 => {
                 type $scalar = pcr_fixed::Q16;
                 $body
             }
-            Number::Q20 => {
+            ScalarArg::Q20 => {
                 type $scalar = pcr_fixed::Q20;
                 $body
             }
-            Number::Q12 => {
+            ScalarArg::Q12 => {
                 type $scalar = pcr_fixed::Q12;
                 $body
             }

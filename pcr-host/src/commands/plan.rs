@@ -2,18 +2,19 @@
 
 use super::map::{are_few, ask_for_regions, draw};
 use super::printed::notes;
-use super::sources::{Source, gathered};
+use super::scenario_sources::{ScenarioSource, gathered};
 use super::{
-    CONFLICTS, Form, Printed, Stop, WRONG_INPUT, acknowledge, complain, folder, is_standard, say, write_over, write_to,
+    CONFLICTS, CliError, OutputArgs, OutputFormat, WRONG_INPUT, acknowledge, complain, folder, is_standard, say,
+    write_over, write_to,
 };
-use crate::progress::Progress;
+use crate::progress::ProgressLine;
 use clap::{Args, ValueEnum};
-use pcr_formats::import::Options;
+use pcr_formats::import::ImportOptions;
 use pcr_formats::output;
 use pcr_formats::scenario::{Agent, Scenario};
 use pcr_formats::warning::WarningCode;
-use pcr_planning::failure::Failure;
-use pcr_planning::plan::{Effort, Method, Objective, Plan, Priority, Request};
+use pcr_planning::failure::ComputationError;
+use pcr_planning::plan::{DelaySearchOptions, Objective, PlanMethod, PlanOptions, PlanReport, PriorityRule};
 use pcr_planning::regions::find;
 use pcr_planning::report;
 use std::io::Write;
@@ -41,7 +42,7 @@ Examples:
 /// Plan later starts or other speeds, so that nobody collides
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
-pub(super) struct Arguments {
+pub(super) struct PlanArgs {
     /// Scenarios (JSON); standard input if left out or `-`
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
@@ -52,14 +53,14 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", value_parser = folder())]
     pictures: Option<PathBuf>,
     /// delay: later starts; speed: also waits on the way and other speeds
-    #[arg(long, value_enum, default_value_t = Means::Delay, hide_possible_values = true)]
-    method: Means,
+    #[arg(long, value_enum, default_value_t = PlanMethodArg::Delay, hide_possible_values = true)]
+    method: PlanMethodArg,
     /// Who goes first: agents by number or label with commas between them (`\,` for one in a label), or `longest`, `crowded`, `best` [default: best]
     #[arg(long, value_name = "ORDER", value_parser = asked)]
-    priority: Option<Asked>,
+    priority: Option<PriorityArg>,
     /// Minimize the sum of times to arrival, or makespan, the last arrival
-    #[arg(long, value_enum, value_name = "WHAT", default_value_t = Least::Sum, hide_possible_values = true)]
-    objective: Least,
+    #[arg(long, value_enum, value_name = "WHAT", default_value_t = ObjectiveArg::Sum, hide_possible_values = true)]
+    objective: ObjectiveArg,
     /// Leave agents out if need be; with delays, the fewest
     #[arg(long)]
     leave_out: bool,
@@ -70,40 +71,40 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "S", value_parser = seconds)]
     time_limit: Option<Duration>,
     #[command(flatten)]
-    printed: Printed,
+    printed: OutputArgs,
     #[command(flatten)]
-    import: Options,
+    import: ImportOptions,
 }
 
 /// Folders of the maps without and with the plan.
 const PICTURES: [&str; 2] = ["before", "after"];
 
 #[derive(Clone, Copy, ValueEnum)]
-enum Means {
+enum PlanMethodArg {
     Delay,
     Speed,
 }
 
-impl From<Means> for Method {
-    fn from(means: Means) -> Self {
+impl From<PlanMethodArg> for PlanMethod {
+    fn from(means: PlanMethodArg) -> Self {
         match means {
-            Means::Delay => Self::Delay,
-            Means::Speed => Self::Speed,
+            PlanMethodArg::Delay => Self::Delay,
+            PlanMethodArg::Speed => Self::Speed,
         }
     }
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum Least {
+enum ObjectiveArg {
     Sum,
     Makespan,
 }
 
-impl From<Least> for Objective {
-    fn from(least: Least) -> Self {
+impl From<ObjectiveArg> for Objective {
+    fn from(least: ObjectiveArg) -> Self {
         match least {
-            Least::Sum => Self::Sum,
-            Least::Makespan => Self::Makespan,
+            ObjectiveArg::Sum => Self::Sum,
+            ObjectiveArg::Makespan => Self::Makespan,
         }
     }
 }
@@ -115,17 +116,17 @@ fn seconds(text: &str) -> Result<Duration, String> {
 
 /// An order of priority from the command line.
 #[derive(Clone)]
-enum Asked {
-    Known(&'static str, Priority),
+enum PriorityArg {
+    Known(&'static str, PriorityRule),
     /// Agents by number or label.
     Agents(Vec<String>),
 }
 
-fn asked(text: &str) -> Result<Asked, String> {
+fn asked(text: &str) -> Result<PriorityArg, String> {
     match text {
-        "longest" => return Ok(Asked::Known("longest", Priority::Longest)),
-        "crowded" => return Ok(Asked::Known("crowded", Priority::Crowded)),
-        "best" => return Ok(Asked::Known("best", Priority::Best)),
+        "longest" => return Ok(PriorityArg::Known("longest", PriorityRule::Longest)),
+        "crowded" => return Ok(PriorityArg::Known("crowded", PriorityRule::Crowded)),
+        "best" => return Ok(PriorityArg::Known("best", PriorityRule::Best)),
         _ => {}
     }
     // A comma of a label is written with a backslash before it.
@@ -140,11 +141,11 @@ fn asked(text: &str) -> Result<Asked, String> {
             return Err(format!("agent {agent} is there twice"));
         }
     }
-    Ok(Asked::Agents(agents))
+    Ok(PriorityArg::Agents(agents))
 }
 
-impl Asked {
-    fn of(&self, scenario: &Scenario) -> Result<Priority, String> {
+impl PriorityArg {
+    fn of(&self, scenario: &Scenario) -> Result<PriorityRule, String> {
         match self {
             Self::Known(word, priority) => match scenario.agents.iter().find(|agent| agent.label == *word) {
                 Some(Agent { id, .. }) => Err(format!(
@@ -160,63 +161,66 @@ impl Asked {
                         ids.push(id);
                     }
                 }
-                Ok(Priority::Given(ids))
+                Ok(PriorityRule::Given(ids))
             }
         }
     }
 }
 
-impl Arguments {
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        if matches!(self.method, Means::Speed) && (self.prove || self.time_limit.is_some()) {
+impl PlanArgs {
+    pub(super) fn run(self) -> Result<ExitCode, CliError> {
+        if matches!(self.method, PlanMethodArg::Speed) && (self.prove || self.time_limit.is_some()) {
             let option = if self.prove { "--prove" } else { "--time-limit" };
-            return Err(Stop::arguments(format!(
+            return Err(CliError::arguments(format!(
                 "{option} has no effect: only start delays are searched for that long"
             )));
         }
-        if !matches!(self.priority, None | Some(Asked::Known(_, Priority::Best)))
+        if !matches!(self.priority, None | Some(PriorityArg::Known(_, PriorityRule::Best)))
             && (self.prove || self.time_limit.is_some())
         {
             let option = if self.prove { "--prove" } else { "--time-limit" };
-            return Err(Stop::arguments(format!(
+            return Err(CliError::arguments(format!(
                 "{option} has no effect: --priority gives the order, and no better one is searched for"
             )));
         }
         let sources = gathered(self.files.clone(), &self.import)?;
         if sources.len() > 1 {
             if self.output.as_ref().is_some_and(|output| !is_standard(Some(output))) {
-                return Err(Stop::arguments("--output: one file for the plans of several; - takes them all"));
+                return Err(CliError::arguments("--output: one file for the plans of several; - takes them all"));
             }
             if self.pictures.is_some() {
-                return Err(Stop::arguments("--pictures: one folder for the plans of several"));
+                return Err(CliError::arguments("--pictures: one folder for the plans of several"));
             }
         }
         if let (Some(output), Some(directory)) = (&self.output, &self.pictures)
             && !is_standard(Some(output))
             && PICTURES.iter().any(|folder| output::are_at_odds(output, &directory.join(folder)))
         {
-            return Err(Stop::arguments("--output: pictures are written there; give another name"));
+            return Err(CliError::arguments("--output: pictures are written there; give another name"));
         }
         let mut out = self.printed.out(is_standard(self.output.as_ref()));
-        if self.printed.form() == Form::Csv {
+        if self.printed.form() == OutputFormat::Csv {
             out.write_all(report::PLAN_CSV_HEADER.as_bytes())?;
         }
         let (mut refused, mut unsolved) = (0, false);
         for (place, source) in sources.iter().enumerate() {
-            if self.printed.form() == Form::Table && place > 0 {
+            if self.printed.form() == OutputFormat::Table && place > 0 {
                 writeln!(out)?;
             }
             match self.plan(source, sources.len() > 1, &mut out) {
                 Ok(solved) => unsolved |= !solved,
-                Err(Stop::Error(message, WRONG_INPUT)) if sources.len() > 1 => {
+                Err(CliError::Error(message, WRONG_INPUT)) if sources.len() > 1 => {
                     refused += 1;
                     // Nobody would miss it in a stream of plans.
                     if is_standard(self.output.as_ref()) {
                         write_to(Path::new("-"), &Scenario::missing(&source.name(), &message))?;
                     }
-                    if self.printed.form() == Form::Json {
+                    if self.printed.form() == OutputFormat::Json {
                         let (method, objective) = (self.method.into(), self.objective.into());
-                        report::json(&Plan::refused(&source.name(), method, objective, message.clone()), &mut out)?;
+                        report::json(
+                            &PlanReport::refused(&source.name(), method, objective, message.clone()),
+                            &mut out,
+                        )?;
                         out.flush()?;
                     }
                     complain(&message);
@@ -226,24 +230,24 @@ impl Arguments {
         }
         match refused {
             0 => Ok(if unsolved { ExitCode::from(CONFLICTS) } else { ExitCode::SUCCESS }),
-            _ => Err(Stop::Error(format!("{refused} of {} scenarios refused", sources.len()), WRONG_INPUT)),
+            _ => Err(CliError::Error(format!("{refused} of {} scenarios refused", sources.len()), WRONG_INPUT)),
         }
     }
 
     /// Whether there is a plan for all; `several` if this one is not the only one.
-    fn plan(&self, source: &Source, several: bool, out: &mut impl Write) -> Result<bool, Stop> {
+    fn plan(&self, source: &ScenarioSource, several: bool, out: &mut impl Write) -> Result<bool, CliError> {
         let scenario = source.scenario(&self.import)?;
-        let wrong = |failure: Failure| Stop::wrong(source.file(), failure);
+        let wrong = |failure: ComputationError| CliError::wrong(source.file(), failure);
         let priority = match &self.priority {
-            Some(asked) => asked.of(&scenario).map_err(|problem| Stop::wrong(source.file(), problem))?,
-            None => Priority::Best,
+            Some(asked) => asked.of(&scenario).map_err(|problem| CliError::wrong(source.file(), problem))?,
+            None => PriorityRule::Best,
         };
-        let request = Request {
+        let request = PlanOptions {
             method: self.method.into(),
             priority,
             objective: self.objective.into(),
             leave_out: self.leave_out,
-            effort: Effort { prove: self.prove, time: self.time_limit },
+            effort: DelaySearchOptions { prove: self.prove, time: self.time_limit },
         };
         let agents = scenario.agents.len();
         if self.pictures.is_some() {
@@ -252,20 +256,20 @@ impl Arguments {
         // How long it takes nobody knows before.
         let what = format!("{}: planning {agents} agents", source.file().display());
         let progress = match self.time_limit {
-            Some(limit) => Progress::until(what, limit),
-            None => Progress::new(what),
+            Some(limit) => ProgressLine::until(what, limit),
+            None => ProgressLine::new(what),
         };
-        let planned = Plan::of(&scenario, &request);
+        let planned = PlanReport::compute(&scenario, &request);
         drop(progress);
         let (mut plan, mut solved) = planned.map_err(wrong)?;
         acknowledge(&mut plan.warnings);
         solved.iter_mut().for_each(|solved| acknowledge(&mut solved.warnings));
-        plan.name = source.called(&plan.name);
+        plan.name = source.display_name(&plan.name);
         // Those of the scenario are said already.
         say(source.file(), plan.warnings.iter().skip(scenario.warnings.len()).cloned());
         if let Some(directory) = &self.pictures {
             // Where there can be none, there is no file of the plan, either.
-            output::folder(directory).map_err(|error| Stop::not_written(directory, &error))?;
+            output::folder(directory).map_err(|error| CliError::not_written(directory, &error))?;
         }
         match (&self.output, &solved) {
             (Some(output), Some(solved)) => {
@@ -280,9 +284,9 @@ impl Arguments {
             _ => {}
         }
         match self.printed.form() {
-            Form::Table => report::plan_table(&plan, out)?,
-            Form::Json => report::json(&plan, out)?,
-            Form::Csv => {
+            OutputFormat::Table => report::plan_table(&plan, out)?,
+            OutputFormat::Json => report::json(&plan, out)?,
+            OutputFormat::Csv => {
                 report::plan_csv(&plan, out)?;
                 // Its lines are agents.
                 let (file, open) = (source.file().display(), report::left_open(&plan));

@@ -165,12 +165,12 @@ pub(super) fn is_alone() -> bool {
 }
 
 /// An output whose reader may go; what comes after that is dropped where the work goes to its end.
-struct Read<W> {
+struct ClosablePipe<W> {
     out: W,
     gone: bool,
 }
 
-impl<W: Write> Read<W> {
+impl<W: Write> ClosablePipe<W> {
     fn of(out: W) -> Self {
         Self { out, gone: false }
     }
@@ -187,7 +187,7 @@ impl<W: Write> Read<W> {
     }
 }
 
-impl<W: Write> Write for Read<W> {
+impl<W: Write> Write for ClosablePipe<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if self.gone {
             return Ok(bytes.len());
@@ -207,12 +207,12 @@ impl<W: Write> Write for Read<W> {
 
 /// Standard output.
 pub(super) fn stdout() -> impl Write {
-    Read::of(io::stdout().lock())
+    ClosablePipe::of(io::stdout().lock())
 }
 
 /// Not locked: the thread that shows the progress writes to it, too.
 fn stderr() -> impl Write {
-    Read::of(io::stderr())
+    ClosablePipe::of(io::stderr())
 }
 
 /// A message on standard error, a line whatever is in it. Where that is closed, the exit status has to do.
@@ -221,30 +221,30 @@ pub(crate) fn complain(message: &str) {
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
-pub(super) enum Form {
+pub(super) enum OutputFormat {
     Table,
     Json,
     Csv,
 }
 
 #[derive(Args)]
-pub(super) struct Printed {
+pub(super) struct OutputArgs {
     /// table, json or csv
-    #[arg(long, value_enum, default_value_t = Form::Table, hide_possible_values = true)]
-    format: Form,
+    #[arg(long, value_enum, default_value_t = OutputFormat::Table, hide_possible_values = true)]
+    format: OutputFormat,
     /// The same as --format json
     #[arg(long)]
     json: bool,
 }
 
-impl Printed {
-    pub(super) fn form(&self) -> Form {
-        if self.json { Form::Json } else { self.format }
+impl OutputArgs {
+    pub(super) fn form(&self) -> OutputFormat {
+        if self.json { OutputFormat::Json } else { self.format }
     }
 
     /// Whether nothing is printed: what is for people only, where they asked for nothing.
     pub(super) fn is_silent(&self) -> bool {
-        quiet() && self.form() == Form::Table
+        quiet() && self.form() == OutputFormat::Table
     }
 
     /// Where the answer goes: standard output, or standard error if that is `taken` by the scenario itself.

@@ -1,16 +1,16 @@
 //! `pcr regions`.
 
-use super::number::{Number, with_scalar};
-use super::work::{Work, run};
-use super::{Form, Printed, SCENARIOS, Stop, statuses, whole_within};
+use super::number::{ScalarArg, with_scalar};
+use super::scenario_command::{ScenarioCommand, run};
+use super::{CliError, OutputArgs, OutputFormat, SCENARIOS, statuses, whole_within};
 use clap::Args;
 use clap::builder::NonEmptyStringValueParser;
-use pcr_formats::import::Options;
+use pcr_formats::import::ImportOptions;
 use pcr_formats::scenario::Scenario;
-use pcr_planning::fleet::Format;
-use pcr_planning::memory;
-use pcr_planning::regions::{Answer, Request, Sheet, Told, find};
-use pcr_planning::report::{self, Unprinted};
+use pcr_planning::fleet::HostScalar;
+use pcr_planning::memory_budget;
+use pcr_planning::regions::{ProgressFn, RegionJob, RegionOptions, RegionsReport, find};
+use pcr_planning::report::{self, OutputError};
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -30,12 +30,12 @@ const MOST_SLICES: u64 = 10_000;
 /// Print the collision regions of a scenario
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{}", statuses(SCENARIOS)))]
-pub(super) struct Arguments {
+pub(super) struct RegionsArgs {
     /// Scenarios (JSON); standard input if left out or `-`, also one after the other
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
     #[command(flatten)]
-    printed: Printed,
+    printed: OutputArgs,
     /// Only the regions of this agent, by number or label
     #[arg(long, value_name = "ID", value_parser = NonEmptyStringValueParser::new())]
     agent: Option<String>,
@@ -46,23 +46,23 @@ pub(super) struct Arguments {
     #[arg(long)]
     certificate: bool,
     /// Numbers: f64, f32, micro (f32 of microcontrollers), or fixed point: q20 (up to ±256 m and s), q16 (±4096), q12 (±65,536)
-    #[arg(long, value_enum, value_name = "NUMBER", default_value_t = Number::F64, hide_possible_values = true)]
-    scalar: Number,
+    #[arg(long, value_enum, value_name = "NUMBER", default_value_t = ScalarArg::F64, hide_possible_values = true)]
+    scalar: ScalarArg,
     #[command(flatten)]
-    import: Options,
+    import: ImportOptions,
 }
 
-impl Arguments {
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
-        if self.slices.is_some() && self.printed.form() != Form::Json {
-            return Err(Stop::arguments("--slices is for --format json"));
+impl RegionsArgs {
+    pub(super) fn run(self) -> Result<ExitCode, CliError> {
+        if self.slices.is_some() && self.printed.form() != OutputFormat::Json {
+            return Err(CliError::arguments("--slices is for --format json"));
         }
-        if self.certificate && self.printed.form() != Form::Json {
-            return Err(Stop::arguments("--certificate is for --format json"));
+        if self.certificate && self.printed.form() != OutputFormat::Json {
+            return Err(CliError::arguments("--certificate is for --format json"));
         }
         let slices = self.slices.map(|slices| slices as usize);
         let (form, certificate) = (self.printed.form(), self.certificate);
-        let work = Regions { form, scalar: self.scalar, agent: self.agent, slices, certificate };
+        let work = RegionsCommand { form, scalar: self.scalar, agent: self.agent, slices, certificate };
         run(&work, self.files, &self.import, &self.printed).map(|_| ExitCode::SUCCESS)
     }
 }
@@ -71,48 +71,53 @@ impl Arguments {
 const HELD: usize = 100_000;
 
 /// `pcr regions`.
-struct Regions {
-    form: Form,
-    scalar: Number,
+struct RegionsCommand {
+    form: OutputFormat,
+    scalar: ScalarArg,
     agent: Option<String>,
     slices: Option<usize>,
     certificate: bool,
 }
 
-impl Regions {
-    fn print_in<S: Format>(&self, scenario: &Scenario, told: Told<'_>, out: &mut impl Write) -> Result<(), Unprinted> {
+impl RegionsCommand {
+    fn print_in<S: HostScalar>(
+        &self,
+        scenario: &Scenario,
+        told: ProgressFn<'_>,
+        out: &mut impl Write,
+    ) -> Result<(), OutputError> {
         let agent = self.agent.as_deref().map(|asked| find(scenario, asked)).transpose()?;
-        let request = Request { agent, slices: self.slices, certificate: self.certificate };
-        let sheet = Sheet::<S>::new(scenario, request)?;
+        let request = RegionOptions { agent, slices: self.slices, certificate: self.certificate };
+        let sheet = RegionJob::<S>::new(scenario, request)?;
         let large = sheet.near() > HELD;
         match self.form {
-            Form::Csv if large => report::sheet_csv(&sheet, told, out),
-            Form::Json if large => report::sheet_json(&sheet, told, out),
-            Form::Csv => Ok(report::csv(&sheet.answer(told)?, out)?),
-            Form::Json => Ok(report::json(&sheet.answer(told)?, out)?),
-            Form::Table => {
+            OutputFormat::Csv if large => report::sheet_csv(&sheet, told, out),
+            OutputFormat::Json if large => report::sheet_json(&sheet, told, out),
+            OutputFormat::Csv => Ok(report::csv(&sheet.answer(told)?, out)?),
+            OutputFormat::Json => Ok(report::json(&sheet.answer(told)?, out)?),
+            OutputFormat::Table => {
                 let answer = sheet.answer(told)?;
                 let count = answer.regions.len() + answer.margin_regions.as_ref().map_or(0, Vec::len);
-                memory::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} regions"))?;
+                memory_budget::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} regions"))?;
                 Ok(report::table(&answer, out)?)
             }
         }
     }
 }
 
-impl Work for Regions {
+impl ScenarioCommand for RegionsCommand {
     const CSV_HEADER: &'static str = report::CSV_HEADER;
 
-    fn scalar(&self) -> Number {
+    fn scalar(&self) -> ScalarArg {
         self.scalar
     }
 
-    fn print(&self, scenario: &Scenario, told: Told<'_>, out: &mut impl Write) -> Result<bool, Unprinted> {
+    fn print(&self, scenario: &Scenario, told: ProgressFn<'_>, out: &mut impl Write) -> Result<bool, OutputError> {
         with_scalar!(self.scalar, S => self.print_in::<S>(scenario, told, out))?;
         Ok(false)
     }
 
     fn refuse(&self, name: &str, error: String, out: &mut impl Write) -> io::Result<()> {
-        report::json(&with_scalar!(self.scalar, S => Answer::refused::<S>(name, error)), out)
+        report::json(&with_scalar!(self.scalar, S => RegionsReport::refused::<S>(name, error)), out)
     }
 }

@@ -6,9 +6,9 @@ mod listen;
 mod run;
 mod threads;
 
-use super::{Stop, whole, within};
+use super::{CliError, parse_integer, within};
 use clap::Args;
-use pcr_serve::log::{Level, Log};
+use pcr_serve::log::{LogLevel, LogWriter};
 use std::fmt::Display;
 use std::net::{SocketAddr, TcpListener};
 use std::path::PathBuf;
@@ -35,13 +35,13 @@ Examples:
 /// Supervise a fleet: decide how far each robot may go now
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
-pub(super) struct Arguments {
+pub(super) struct ServeArgs {
     /// Directory of the journal; the next start goes on from it
     #[arg(long, value_name = "DIR")]
     journal: Option<PathBuf>,
     /// Clients of the lines: at the socket DIR/socket, at unix:PATH, or over TCP at PORT or ADDRESS:PORT
     #[arg(long, value_name = "PLACE", num_args = 0..=1, default_missing_value = listen::USUAL, value_parser = listen::place)]
-    listen: Vec<listen::Place>,
+    listen: Vec<listen::ListenAddress>,
     /// File with the token of clients over TCP [default: DIR/token]
     #[arg(long, value_name = "FILE", hide_short_help = true)]
     token_file: Option<PathBuf>,
@@ -49,7 +49,7 @@ pub(super) struct Arguments {
     #[arg(long, hide_short_help = true)]
     allow_remote: bool,
     /// The live page and metrics: a port, or ADDRESS:PORT
-    #[arg(long, value_name = "PORT", value_parser = place)]
+    #[arg(long, value_name = "PORT", value_parser = parse_listen_address)]
     page: Option<String>,
     /// Do not end when standard input ends
     #[arg(long)]
@@ -79,7 +79,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "LAYOUT")]
     demo: Option<PathBuf>,
     /// Vehicles of the demo
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = whole::<usize>)]
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = parse_integer::<usize>)]
     vehicles: usize,
     /// debug, info, warn or error [default: info]
     #[arg(long, value_name = "LEVEL")]
@@ -87,7 +87,7 @@ pub(super) struct Arguments {
 }
 
 /// Where to listen, as it is written.
-fn place(text: &str) -> Result<String, String> {
+fn parse_listen_address(text: &str) -> Result<String, String> {
     let port = text.rsplit_once(':').map_or(text, |(_, port)| port);
     match port.parse::<u16>() {
         Ok(_) => Ok(text.to_owned()),
@@ -101,18 +101,18 @@ fn bound(
     place: &str,
     addresses: &[SocketAddr],
     values: &[(&str, &dyn Display)],
-    log: Log,
-) -> Result<TcpListener, Stop> {
-    let wrong = |error: std::io::Error| Stop::arguments(format!("{option}: {place}: {error}"));
+    log: LogWriter,
+) -> Result<TcpListener, CliError> {
+    let wrong = |error: std::io::Error| CliError::arguments(format!("{option}: {place}: {error}"));
     let listener = TcpListener::bind(addresses).map_err(wrong)?;
     let address = listener.local_addr().map_err(wrong)?;
     let first: [(&str, &dyn Display); 2] = [("for", &option), ("address", &address)];
-    log.write(Level::Info, "listening", &[&first[..], values].concat());
+    log.write(LogLevel::Info, "listening", &[&first[..], values].concat());
     Ok(listener)
 }
 
-impl Arguments {
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+impl ServeArgs {
+    pub(super) fn run(self) -> Result<ExitCode, CliError> {
         run::run(self)
     }
 }

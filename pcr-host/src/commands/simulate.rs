@@ -1,16 +1,19 @@
 //! `pcr simulate`.
 
-use super::sources::source;
+use super::scenario_sources::source;
 use super::{
-    CONFLICTS, Form, Printed, Stop, acknowledge, is_standard, say, scenario, whole, whole_within, within, write_to,
+    CONFLICTS, CliError, OutputArgs, OutputFormat, acknowledge, is_standard, parse_integer, say, scenario,
+    whole_within, within, write_to,
 };
-use crate::progress::Progress;
+use crate::progress::ProgressLine;
 use clap::{Args, ValueEnum};
 use pcr_drawing::replay;
 use pcr_execution::report;
-use pcr_execution::simulate::{self, Controller, Disturbance, Settings, Simulation, Task, forage};
-use pcr_formats::import::Options;
-use pcr_planning::failure::Failure;
+use pcr_execution::simulate::{
+    self, ClosedLoopOptions, ControllerKind, Disturbance, SimulationReport, SimulationTask, forage,
+};
+use pcr_formats::import::ImportOptions;
+use pcr_planning::failure::ComputationError;
 use pcr_planning::report::json;
 use std::io::Write;
 use std::path::PathBuf;
@@ -40,7 +43,7 @@ const TRIPS: u32 = 3;
 /// Simulate robots in closed loop, with noise, slip and delays
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
-pub(super) struct Arguments {
+pub(super) struct SimulateArgs {
     /// Scenario (JSON); standard input if left out or `-`
     file: Option<PathBuf>,
     /// Four robots that forage, instead of a scenario
@@ -48,9 +51,9 @@ pub(super) struct Arguments {
     foraging: bool,
     /// Only this controller: pcr, potential or orca
     #[arg(long, value_enum, value_name = "NAME", hide_possible_values = true)]
-    controller: Option<Choice>,
+    controller: Option<ControllerArg>,
     /// The same seed gives the same run
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = parse_integer::<u64>)]
     seed: u64,
     /// Time between plans under pcr, 0.05 to 3600 s [default: 2]
     #[arg(long, value_name = "S", value_parser = |text: &str| within(text, 0.05, 3600.0))]
@@ -74,51 +77,51 @@ pub(super) struct Arguments {
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]
-    printed: Printed,
+    printed: OutputArgs,
     #[command(flatten)]
-    import: Options,
+    import: ImportOptions,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum Choice {
+enum ControllerArg {
     Pcr,
     Potential,
     Orca,
 }
 
-impl Choice {
-    fn controller(self) -> Controller {
+impl ControllerArg {
+    fn controller(self) -> ControllerKind {
         match self {
-            Self::Pcr => Controller::Pcr,
-            Self::Potential => Controller::Potential,
-            Self::Orca => Controller::Orca,
+            Self::Pcr => ControllerKind::Pcr,
+            Self::Potential => ControllerKind::Potential,
+            Self::Orca => ControllerKind::Orca,
         }
     }
 }
 
-impl Arguments {
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+impl SimulateArgs {
+    pub(super) fn run(self) -> Result<ExitCode, CliError> {
         if self.foraging
             && let Some(option) = self.import.given().first()
         {
-            return Err(Stop::arguments(format!("{option} has no effect: the foraging robots are as they are")));
+            return Err(CliError::arguments(format!("{option} has no effect: the foraging robots are as they are")));
         }
         if !self.foraging && self.trips.is_some() {
-            return Err(Stop::arguments("--trips has no effect: only foraging robots go to and fro"));
+            return Err(CliError::arguments("--trips has no effect: only foraging robots go to and fro"));
         }
-        if matches!(self.controller, Some(Choice::Potential | Choice::Orca)) {
+        if matches!(self.controller, Some(ControllerArg::Potential | ControllerArg::Orca)) {
             let margin = self.import.margin.map(|_| "--margin");
             if let Some(option) = self.replan.map(|_| "--replan").or(margin) {
-                return Err(Stop::arguments(format!("{option} has no effect: only pcr plans, and keeps margins")));
+                return Err(CliError::arguments(format!("{option} has no effect: only pcr plans, and keeps margins")));
             }
         }
         let file = if self.foraging { PathBuf::from("--foraging") } else { source(self.file)? };
-        let named = |failure: Failure| Stop::wrong(&file, failure);
+        let named = |failure: ComputationError| CliError::wrong(&file, failure);
         let task = match self.foraging {
             true => forage::task(self.seed, self.trips.unwrap_or(TRIPS)),
             false => {
                 let scenario = scenario(&file, &self.import)?;
-                let mut task = Task::of(&scenario).map_err(named)?;
+                let mut task = SimulationTask::from_scenario(&scenario).map_err(named)?;
                 acknowledge(&mut task.warnings);
                 // Those of the scenario are said already.
                 say(&file, task.warnings.iter().skip(scenario.warnings.len()).cloned());
@@ -127,12 +130,12 @@ impl Arguments {
         };
         let Self { noise, slip, delay, drift, .. } = self;
         let disturbance = Disturbance { noise, slip, delay, drift };
-        let settings = Settings { seed: self.seed, replan: self.replan.unwrap_or(REPLAN), disturbance };
+        let settings = ClosedLoopOptions { seed: self.seed, replan: self.replan.unwrap_or(REPLAN), disturbance };
         let controllers = match self.controller {
             Some(choice) => vec![choice.controller()],
-            None => Controller::ALL.to_vec(),
+            None => ControllerKind::ALL.to_vec(),
         };
-        let progress = Progress::new("hundredths of runs");
+        let progress = ProgressLine::new("hundredths of runs");
         let mut outcomes = Vec::new();
         for (done, &controller) in controllers.iter().enumerate() {
             let told = |share: f64| progress.set(100 * done + (100.0 * share) as usize, 100 * controllers.len());
@@ -142,14 +145,14 @@ impl Arguments {
         if let Some(output) = &self.output {
             write_to(output, &replay::page(&task, &outcomes).map_err(named)?)?;
         }
-        let mut simulation = Simulation::of(&task, settings, &outcomes);
+        let mut simulation = SimulationReport::from_runs(&task, settings, &outcomes);
         acknowledge(&mut simulation.warnings);
         say(&file, simulation.warnings.iter().skip(task.warnings.len()).cloned());
         let mut out = self.printed.out(is_standard(self.output.as_ref()));
         match self.printed.form() {
-            Form::Table => report::simulation_table(&simulation, &mut out)?,
-            Form::Json => json(&simulation, &mut out)?,
-            Form::Csv => report::simulation_csv(&simulation, &mut out)?,
+            OutputFormat::Table => report::simulation_table(&simulation, &mut out)?,
+            OutputFormat::Json => json(&simulation, &mut out)?,
+            OutputFormat::Csv => report::simulation_csv(&simulation, &mut out)?,
         }
         out.flush()?;
         Ok(if simulation.is_as_promised() { ExitCode::SUCCESS } else { ExitCode::from(CONFLICTS) })

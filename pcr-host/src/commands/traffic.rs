@@ -1,15 +1,17 @@
 //! `pcr traffic`.
 
 use super::printed::notes;
-use super::sources::{layout, layout_source};
-use super::{CONFLICTS, Form, Printed, Stop, acknowledge, folder, map, say, whole, whole_within, write_to};
-use crate::progress::Progress;
+use super::scenario_sources::{layout, layout_source};
+use super::{
+    CONFLICTS, CliError, OutputArgs, OutputFormat, acknowledge, folder, map, parse_integer, say, whole_within, write_to,
+};
+use crate::progress::ProgressLine;
 use clap::Args;
-use pcr_drawing::Ground;
-use pcr_execution::lifelong::{self, Delays, Lifelong, Method};
+use pcr_drawing::LayoutLevelView;
+use pcr_execution::lifelong::{self, CoordinationMethod, DelayModel, LifelongReport};
 use pcr_execution::report;
-use pcr_execution::traffic::{Request, Traffic, room};
-use pcr_formats::import::{Imported, Options};
+use pcr_execution::traffic::{TrafficOptions, TrafficReport, room};
+use pcr_formats::import::{ImportOptions, ImportedLayout};
 use pcr_formats::warning::WarningCode;
 use pcr_planning::report::json;
 use std::io::Write;
@@ -36,14 +38,14 @@ Exit status:
 /// Plan random missions on a layout: waits and missions per hour
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
-pub(super) struct Arguments {
+pub(super) struct TrafficArgs {
     /// The layout; standard input if left out or `-`
     layout: Option<PathBuf>,
     /// Agents; a mission each, or many with --hours [default: as many as there is room for, up to 50]
     #[arg(long, value_name = "N", value_parser = |text: &str| whole_within::<u16>(text, 1, u16::MAX.into()))]
     agents: Option<u16>,
     /// The same seed gives the same missions
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole::<u64>)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = parse_integer::<u64>)]
     seed: u64,
     /// Run the fleet for H hours with delays; prove no contact
     #[arg(long, value_name = "H", value_parser = hours)]
@@ -58,20 +60,20 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "PART", value_parser = part)]
     slip: Option<f64>,
     #[command(flatten)]
-    printed: Printed,
+    printed: OutputArgs,
     /// Directory for missions.json, plan.json and pictures
     #[arg(short, long, value_name = "DIR", value_parser = folder())]
     output: Option<PathBuf>,
     #[command(flatten)]
-    import: Options,
+    import: ImportOptions,
 }
 
 /// Agents if no number is asked for, where there is room.
 const AGENTS: usize = 50;
 
-impl Arguments {
+impl TrafficArgs {
     /// The number of agents that missions are drawn for: no more than the layout has room for, of which a warning tells at once.
-    fn room(asked: Option<u16>, file: &Path, imported: &mut Imported) -> usize {
+    fn room(asked: Option<u16>, file: &Path, imported: &mut ImportedLayout) -> usize {
         let room = room(imported);
         let Some(asked) = asked.map(usize::from) else { return AGENTS.min(room) };
         if asked > room {
@@ -86,45 +88,48 @@ impl Arguments {
         asked.min(room)
     }
 
-    pub(super) fn run(self) -> Result<ExitCode, Stop> {
+    pub(super) fn run(self) -> Result<ExitCode, CliError> {
         if self.hours.is_some() && self.import.corner_radius.is_some() {
-            return Err(Stop::arguments("--corner-radius has no effect: with --hours robots turn in place at corners"));
+            return Err(CliError::arguments(
+                "--corner-radius has no effect: with --hours robots turn in place at corners",
+            ));
         }
         let file = &layout_source(self.layout)?;
         let mut imported = layout(file, &self.import, "traffic", true)?;
-        pcr_exclusions::sized(&imported).map_err(|error| Stop::wrong(file, error))?;
+        pcr_exclusions::sized(&imported).map_err(|error| CliError::wrong(file, error))?;
         let agents = Self::room(self.agents, file, &mut imported);
         let asked = self.agents.map_or(agents, usize::from);
         if let Some(hours) = self.hours {
-            let usual = Delays::default();
-            let request = lifelong::Request {
+            let usual = DelayModel::default();
+            let request = lifelong::LifelongOptions {
                 agents,
                 duration: 3600.0 * hours,
-                delays: Delays {
+                delays: DelayModel {
                     stopped: self.stopped.unwrap_or(usual.stopped),
                     slip: self.slip.unwrap_or(usual.slip),
                     ..usual
                 },
                 seed: self.seed,
-                method: Method::Orders,
+                method: CoordinationMethod::Orders,
             };
-            let methods: &[Method] = if self.compare { &Method::ALL } else { &[Method::Orders] };
-            let progress = Progress::new(format!("{}: simulated seconds", file.display()));
+            let methods: &[CoordinationMethod] =
+                if self.compare { &CoordinationMethod::ALL } else { &[CoordinationMethod::Orders] };
+            let progress = ProgressLine::new(format!("{}: simulated seconds", file.display()));
             let all = request.duration * methods.len() as f64;
             let told = |now: f64| progress.set(now as usize, all.ceil() as usize);
-            let answer = Lifelong::watched(&imported, request, methods, &told);
+            let answer = LifelongReport::watched(&imported, request, methods, &told);
             drop(progress);
-            let mut answer = answer.map_err(|problem| Stop::wrong(file, problem))?;
+            let mut answer = answer.map_err(|problem| CliError::wrong(file, problem))?;
             answer.asked = asked;
             let is_complete = self.agents.is_none() || answer.runs.iter().all(|run| run.outcome.robots == asked);
             return print(&self.printed, &answer, is_complete);
         }
-        let wrong = |failure| Stop::wrong(file, failure);
+        let wrong = |failure| CliError::wrong(file, failure);
         if self.output.is_some() {
             map::are_few(asked, "maps are drawn").map_err(wrong)?;
         }
-        let request = Request { agents, seed: self.seed };
-        let (mut traffic, [mut missions, mut plan]) = Traffic::of(&imported, request).map_err(wrong)?;
+        let request = TrafficOptions { agents, seed: self.seed };
+        let (mut traffic, [mut missions, mut plan]) = TrafficReport::plan(&imported, request).map_err(wrong)?;
         traffic.asked = asked;
         [&mut traffic.warnings, &mut missions.warnings, &mut plan.warnings].into_iter().for_each(acknowledge);
         if self.output.is_some() {
@@ -132,13 +137,13 @@ impl Arguments {
         }
         let mut out = self.printed.out(false);
         match self.printed.form() {
-            Form::Table => report::traffic_table(&traffic, &mut out)?,
-            Form::Json => json(&traffic, &mut out)?,
-            Form::Csv => report::traffic_csv(&traffic, &mut out)?,
+            OutputFormat::Table => report::traffic_table(&traffic, &mut out)?,
+            OutputFormat::Json => json(&traffic, &mut out)?,
+            OutputFormat::Csv => report::traffic_csv(&traffic, &mut out)?,
         }
         out.flush()?;
         if let Some(directory) = &self.output {
-            let ground = Ground { imported: &imported, level: imported.layout.largest_level() };
+            let ground = LayoutLevelView { imported: &imported, level: imported.layout.largest_level() };
             map::draw(&plan, None, Some(ground), directory, &mut notes())?;
             write_to(&directory.join("missions.json"), &missions.to_json())?;
             write_to(&directory.join("plan.json"), &plan.to_json())?;
@@ -152,12 +157,12 @@ fn status(sound: bool) -> ExitCode {
     if sound { ExitCode::SUCCESS } else { ExitCode::from(CONFLICTS) }
 }
 
-fn print(printed: &Printed, answer: &Lifelong, is_complete: bool) -> Result<ExitCode, Stop> {
+fn print(printed: &OutputArgs, answer: &LifelongReport, is_complete: bool) -> Result<ExitCode, CliError> {
     let mut out = printed.out(false);
     match printed.form() {
-        Form::Table => report::lifelong_table(answer, &mut out)?,
-        Form::Json => json(answer, &mut out)?,
-        Form::Csv => report::lifelong_csv(answer, &mut out)?,
+        OutputFormat::Table => report::lifelong_table(answer, &mut out)?,
+        OutputFormat::Json => json(answer, &mut out)?,
+        OutputFormat::Csv => report::lifelong_csv(answer, &mut out)?,
     }
     out.flush()?;
     Ok(status(answer.is_sound() && is_complete))

@@ -1,9 +1,9 @@
 //! Plans on grids: those without vertex and edge conflicts have no conflict of discs at the default radius, and others have.
 
 use crate::fixture::{file, run};
-use pcr_formats::import::{Format, Options, Warnings, scenario};
-use pcr_formats::random::Random;
-use pcr_planning::check::{Conflict, Verdict};
+use pcr_formats::import::{ImportOptions, InputFormat, Warnings, scenario};
+use pcr_formats::splitmix64::SplitMix64;
+use pcr_planning::check::{CheckReport, ConflictEntry};
 
 fn real(name: &str) -> String {
     format!("{}/../tests/data/real/{name}", env!("CARGO_MANIFEST_DIR"))
@@ -11,7 +11,7 @@ fn real(name: &str) -> String {
 
 /// A plan without vertex and edge conflicts on a square of cells. Each step is drawn again until it has none; agents may follow one
 /// another into cells that are left.
-fn random_plan(random: &mut Random, agents: usize, side: i32, steps: usize, origin: i32) -> Vec<Vec<[i32; 2]>> {
+fn random_plan(random: &mut SplitMix64, agents: usize, side: i32, steps: usize, origin: i32) -> Vec<Vec<[i32; 2]>> {
     let mut free: Vec<[i32; 2]> = (0..side * side).map(|k| [origin + k % side, origin + k / side]).collect();
     let mut paths: Vec<Vec<[i32; 2]>> = (0..agents).map(|_| vec![free.swap_remove(random.below(free.len()))]).collect();
     'step: for _ in 0..steps {
@@ -49,16 +49,16 @@ fn plan_text(paths: &[Vec<[i32; 2]>]) -> String {
     paths.iter().enumerate().map(line).collect()
 }
 
-fn grid_conflicts(text: &str) -> Vec<Conflict> {
-    let (options, mut warnings) = (Options::default(), Warnings::default());
-    let scenario = scenario(Format::Grid, text, &options, &mut warnings).unwrap();
-    Verdict::of::<f64>(&scenario, false).unwrap().conflicts
+fn grid_conflicts(text: &str) -> Vec<ConflictEntry> {
+    let (options, mut warnings) = (ImportOptions::default(), Warnings::default());
+    let scenario = scenario(InputFormat::Grid, text, &options, &mut warnings).unwrap();
+    CheckReport::compute::<f64>(&scenario, false).unwrap().conflicts
 }
 
 /// At the default radius no valid plan has a conflict, however it is rounded, and a plan that is not valid has one.
 #[test]
 fn valid_plans_on_grids_have_no_conflict() {
-    let mut random = Random(54);
+    let mut random = SplitMix64(54);
     let (mut followed, mut invalid) = (0, 0);
     for k in 0..300 {
         let (agents, side) = (2 + k % 7, 3 + (k % 4) as i32);

@@ -2,9 +2,9 @@
 
 use crate::fixture::{PAPER, column, crossing, directory, file, run, straight};
 use pcr_core::{Motion, RegionRef};
-use pcr_formats::paper;
+use pcr_formats::paper_example;
 use pcr_formats::scenario::Scenario;
-use pcr_planning::fleet::{Fleet, Format, build_ecm};
+use pcr_planning::fleet::{Fleet, HostScalar, build_ecm};
 use serde_json::{Value, json};
 
 /// The text with every number replaced by `N`.
@@ -60,8 +60,8 @@ fn a_crossing_at_right_angles_has_the_numbers_of_the_hand_calculation() {
 }
 
 /// Every number of the JSON output is the core's, bit for bit.
-fn output_is_the_cores<S: Format>() {
-    let scenario = Scenario::from_json(paper::SCENARIO).unwrap();
+fn output_is_the_cores<S: HostScalar>() {
+    let scenario = Scenario::from_json(paper_example::SCENARIO).unwrap();
     let fleet = Fleet::<S>::new(&scenario).unwrap();
     let motions = fleet.motions();
     let ecm = build_ecm(&motions).unwrap();
@@ -134,7 +134,7 @@ const CONTACT: f64 = 1e-12;
 
 #[test]
 fn slices_are_at_the_documented_times_and_end_where_discs_touch() {
-    let scenario = Scenario::from_json(paper::SCENARIO).unwrap();
+    let scenario = Scenario::from_json(paper_example::SCENARIO).unwrap();
     let fleet = Fleet::<f64>::new(&scenario).unwrap();
     let motions = fleet.motions();
     let motion = |id: &Value| -> &Motion<'_, f64> {
@@ -350,7 +350,7 @@ fn a_pair_that_the_table_cannot_hold_is_named() {
 
 #[test]
 fn the_embedded_scenario_is_that_of_the_tests() {
-    assert_eq!(paper::SCENARIO, include_str!("../../../tests/data/paper12.json"));
+    assert_eq!(paper_example::SCENARIO, include_str!("../../../tests/data/paper12.json"));
 }
 
 #[test]

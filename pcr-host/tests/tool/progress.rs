@@ -4,7 +4,7 @@
 #[path = "../../src/progress.rs"]
 mod source;
 
-use source::{Counts, line, remaining};
+use source::{ProgressCounters, line, remaining};
 use std::time::Duration;
 
 #[test]
@@ -16,7 +16,7 @@ fn what_is_left_takes_as_long_as_what_is_done() {
 #[test]
 fn the_line_has_a_percentage_and_the_remaining_time() {
     let line = |done: usize, total: usize, limit: u64| {
-        let counts = Counts { done: done.into(), total: total.into(), limit: limit.into() };
+        let counts = ProgressCounters { done: done.into(), total: total.into(), limit: limit.into() };
         line("planning", &counts, Duration::from_secs(10))
     };
     assert_eq!(line(250, 1000, 0), "planning: 250 of 1000 (25 %, 25 a second, 10 s, 30 s to go)");

@@ -6,9 +6,9 @@ use std::fs;
 use std::path::Path;
 
 #[allow(dead_code)]
-#[path = "../../src/commands/rules.rs"]
+#[path = "../../src/commands/argument_rules.rs"]
 mod declared;
-use declared::{RULES, Rule};
+use declared::{ArgumentRelation, RULES};
 
 /// An argument with some value that it takes.
 fn given(command: &str, name: &str) -> Vec<String> {
@@ -31,7 +31,7 @@ fn given(command: &str, name: &str) -> Vec<String> {
 
 /// The arguments of a command that exclude some of it.
 fn excluders(command: &str, of: &[&str]) -> Vec<&'static str> {
-    let rules = RULES.iter().filter(|(name, _, rule, ..)| *name == command && *rule == Rule::Excludes);
+    let rules = RULES.iter().filter(|(name, _, rule, ..)| *name == command && *rule == ArgumentRelation::Excludes);
     let sides = rules.flat_map(|(_, arguments, _, others, _)| [(arguments, others), (others, arguments)]);
     let hit = sides.filter(|(_, others)| others.iter().any(|other| of.contains(other)));
     hit.flat_map(|(arguments, _)| arguments.iter().copied()).collect()
@@ -39,7 +39,9 @@ fn excluders(command: &str, of: &[&str]) -> Vec<&'static str> {
 
 /// Whether an argument of a command needs others.
 fn needs(command: &str, argument: &str) -> bool {
-    RULES.iter().any(|(name, of, rule, ..)| *name == command && *rule == Rule::Needs && of.contains(&argument))
+    RULES
+        .iter()
+        .any(|(name, of, rule, ..)| *name == command && *rule == ArgumentRelation::Needs && of.contains(&argument))
 }
 
 #[test]
@@ -60,7 +62,7 @@ fn arguments_that_exclude_or_need_one_another_are_refused_with_a_reason() {
         let commands = if command.is_empty() { &["regions", "compare", "traffic"][..] } else { &[command][..] };
         for (command, argument) in commands.iter().flat_map(|command| arguments.iter().map(move |one| (command, one))) {
             match rule {
-                Rule::Needs => {
+                ArgumentRelation::Needs => {
                     refused(command, &[argument], reason);
                     // Also beside what excludes the needed one.
                     let own = excluders(command, &[argument]);
@@ -68,7 +70,7 @@ fn arguments_that_exclude_or_need_one_another_are_refused_with_a_reason() {
                     let beside = excluders(command, others).into_iter().filter(allowed);
                     beside.for_each(|other| refused(command, &[argument, other], reason));
                 }
-                Rule::Excludes => others.iter().for_each(|other| {
+                ArgumentRelation::Excludes => others.iter().for_each(|other| {
                     refused(command, &[argument, other], reason);
                     refused(command, &[other, argument], reason);
                 }),

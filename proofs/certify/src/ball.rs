@@ -2,22 +2,22 @@
 //!
 //! A [`Ball`] stands for a number that is not known but lies within `err` of `mid`. Every operation bounds what it
 //! rounds by, once, here; nothing above this file knows about rounding, and a comparison is answered only if it holds
-//! for all numbers that the balls stand for ([`Tri`]).
+//! for all numbers that the balls stand for ([`Ternary`]).
 //!
-//! The same code runs in `f64`, which settles most, and in [`Twofold`] for what is too close for it. The bounds:
+//! The same code runs in `f64`, which settles most, and in [`DoubleDouble`] for what is too close for it. The bounds:
 //!
 //! | | sum, product, quotient, root (relative) | sine, cosine (absolute) |
 //! |---|---|---|
 //! | `f64` | 2^-53: IEEE 754 rounds to nearest | 2^-50, `sin_cos` |
-//! | `Twofold` | 2^-102, `twofold.rs` | 2^-99, `twofold.rs` |
+//! | `DoubleDouble` | 2^-102, `twofold.rs` | 2^-99, `twofold.rs` |
 //!
 //! The radius itself is computed in `f64`. All its terms are non-negative and there are fewer than ten, so that it is
-//! too small by a factor of 1 - 16 * 2^-53 at most; `UP` makes up for that, and for taking the leading part of a `Twofold`
+//! too small by a factor of 1 - 16 * 2^-53 at most; `UP` makes up for that, and for taking the leading part of a `DoubleDouble`
 //! as its magnitude. `TINY` is more than what underflow can take from a product or quotient, its error term included. Where the result is
 //! divided by a number that may be as small, `LOST` is added before: it is more than underflow takes from any product (2^-1070,
 //! `twofold.rs`), that of the radius, too.
 
-use crate::twofold::Twofold;
+use crate::double_double::DoubleDouble;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -31,7 +31,7 @@ const TINY: f64 = 1.183e-271;
 const LOST: f64 = 9.333e-302;
 
 /// What a ball has in its middle.
-pub trait Real:
+pub trait BallReal:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// Bound on the relative error of a sum, product, quotient or root.
@@ -41,7 +41,7 @@ pub trait Real:
     /// The exact value of an `f64`.
     fn from_f64(value: f64) -> Self;
     /// The nearest number of the type, and what it is off at most.
-    fn from_twofold(value: Twofold) -> (Self, f64);
+    fn from_twofold(value: DoubleDouble) -> (Self, f64);
     /// The nearest `f64`.
     fn to_f64(self) -> f64;
     /// Square root; 0 of what is not positive.
@@ -50,13 +50,13 @@ pub trait Real:
     fn sin_cos(self) -> (Self, Self);
 }
 
-impl Real for f64 {
+impl BallReal for f64 {
     const ROUND: f64 = 0.5 * f64::EPSILON;
     const TRIG: f64 = 4.0 * f64::EPSILON;
     fn from_f64(value: f64) -> Self {
         value
     }
-    fn from_twofold(value: Twofold) -> (Self, f64) {
+    fn from_twofold(value: DoubleDouble) -> (Self, f64) {
         let [hi, lo] = value.parts();
         (hi, lo.abs())
     }
@@ -71,13 +71,13 @@ impl Real for f64 {
     }
 }
 
-impl Real for Twofold {
+impl BallReal for DoubleDouble {
     const ROUND: f64 = 1.972_152_263_052_529_5e-31;
     const TRIG: f64 = 8.0 * Self::ROUND;
     fn from_f64(value: f64) -> Self {
         Self::from(value)
     }
-    fn from_twofold(value: Twofold) -> (Self, f64) {
+    fn from_twofold(value: DoubleDouble) -> (Self, f64) {
         (value, 0.0)
     }
     fn to_f64(self) -> f64 {
@@ -122,7 +122,7 @@ fn sin_cos(angle: f64) -> (f64, f64) {
 
 /// The answer to a question about numbers that are not known exactly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Tri {
+pub enum Ternary {
     /// It is so for all that the balls stand for.
     Yes,
     /// It is not so for any.
@@ -131,7 +131,7 @@ pub enum Tri {
     Doubt,
 }
 
-impl Tri {
+impl Ternary {
     /// Both.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
@@ -167,20 +167,20 @@ pub struct Ball<R> {
     pub err: f64,
 }
 
-impl<R: Real> From<f64> for Ball<R> {
+impl<R: BallReal> From<f64> for Ball<R> {
     fn from(value: f64) -> Self {
         Self { mid: R::from_f64(value), err: 0.0 }
     }
 }
 
-impl<R: Real> Neg for Ball<R> {
+impl<R: BallReal> Neg for Ball<R> {
     type Output = Self;
     fn neg(self) -> Self {
         Self { mid: -self.mid, err: self.err }
     }
 }
 
-impl<R: Real> Add for Ball<R> {
+impl<R: BallReal> Add for Ball<R> {
     type Output = Self;
     fn add(self, rhs: Self) -> Self {
         let mid = self.mid + rhs.mid;
@@ -188,14 +188,14 @@ impl<R: Real> Add for Ball<R> {
     }
 }
 
-impl<R: Real> Sub for Ball<R> {
+impl<R: BallReal> Sub for Ball<R> {
     type Output = Self;
     fn sub(self, rhs: Self) -> Self {
         self + -rhs
     }
 }
 
-impl<R: Real> Mul for Ball<R> {
+impl<R: BallReal> Mul for Ball<R> {
     type Output = Self;
     fn mul(self, rhs: Self) -> Self {
         let mid = self.mid * rhs.mid;
@@ -205,7 +205,7 @@ impl<R: Real> Mul for Ball<R> {
     }
 }
 
-impl<R: Real> Div for Ball<R> {
+impl<R: BallReal> Div for Ball<R> {
     type Output = Self;
     /// `|a'/b' - a/b| <= (|a' - a| + |a/b| |b' - b|) / |b'|`.
     fn div(self, rhs: Self) -> Self {
@@ -220,14 +220,14 @@ impl<R: Real> Div for Ball<R> {
     }
 }
 
-impl<R: Real> Ball<R> {
+impl<R: BallReal> Ball<R> {
     /// Any number.
     fn unknown() -> Self {
         Self { mid: R::from_f64(0.0), err: f64::INFINITY }
     }
 
     /// A number of 106 bits and what it may be off.
-    pub fn of(ball: Ball<Twofold>) -> Self {
+    pub fn from_twofold(ball: Ball<DoubleDouble>) -> Self {
         let (mid, off) = R::from_twofold(ball.mid);
         Self { mid, err: (ball.err + off) * UP }
     }
@@ -269,11 +269,11 @@ impl<R: Real> Ball<R> {
 
     /// The first number if it is certain that the answer is yes, the second one if it is certain that it is no.
     #[must_use]
-    pub fn either(answer: Tri, yes: Self, no: Self) -> Self {
+    pub fn either(answer: Ternary, yes: Self, no: Self) -> Self {
         match answer {
-            Tri::Yes => yes,
-            Tri::No => no,
-            Tri::Doubt => yes.between(no),
+            Ternary::Yes => yes,
+            Ternary::No => no,
+            Ternary::Doubt => yes.between(no),
         }
     }
 
@@ -319,17 +319,17 @@ impl<R: Real> Ball<R> {
     }
 
     /// Whether it is above 0.
-    pub fn is_positive(self) -> Tri {
+    pub fn is_positive(self) -> Ternary {
         let mid = self.mid.to_f64();
         match mid {
-            above if above > self.err * UP => Tri::Yes,
-            below if below < -self.err * UP => Tri::No,
-            _ => Tri::Doubt,
+            above if above > self.err * UP => Ternary::Yes,
+            below if below < -self.err * UP => Ternary::No,
+            _ => Ternary::Doubt,
         }
     }
 
     /// Whether it is above another one.
-    pub fn above(self, other: Self) -> Tri {
+    pub fn above(self, other: Self) -> Ternary {
         (self - other).is_positive()
     }
 
@@ -340,7 +340,7 @@ impl<R: Real> Ball<R> {
 
     /// The same of a length in metres that is told: no number, where neither its sign is certain nor a micrometre of it. The middle of what
     /// may be any number says nothing.
-    pub fn told(self) -> f64 {
+    pub fn display_length(self) -> f64 {
         let mid = self.mid.to_f64();
         if self.err <= mid.abs().max(1e-6) { mid } else { f64::NAN }
     }
@@ -355,8 +355,8 @@ mod tests {
         (*state >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    fn holds(ball: Ball<f64>, exact: Twofold) -> bool {
-        (exact - Twofold::from(ball.mid)).abs().to_f64() <= ball.err
+    fn contains(ball: Ball<f64>, exact: DoubleDouble) -> bool {
+        (exact - DoubleDouble::from(ball.mid)).abs().to_f64() <= ball.err
     }
 
     #[test]
@@ -368,14 +368,14 @@ mod tests {
                 size * part
             });
             let offs = [a, b].map(|x| x * (dice(&mut state) - 0.5) * (-60.0 * dice(&mut state)).exp2());
-            let exact = [0, 1].map(|k| Twofold::from([a, b][k]) + Twofold::from(offs[k]));
+            let exact = [0, 1].map(|k| DoubleDouble::from([a, b][k]) + DoubleDouble::from(offs[k]));
             let balls = [0, 1].map(|k| Ball { mid: [a, b][k], err: offs[k].abs() });
             let [x, y] = balls;
-            assert!(holds(x + y, exact[0] + exact[1]) && holds(x - y, exact[0] - exact[1]));
-            assert!(holds(x * y, exact[0] * exact[1]) && holds(x / y, exact[0] / exact[1]));
-            assert!(holds(x.abs().sqrt(), exact[0].abs().sqrt()));
+            assert!(contains(x + y, exact[0] + exact[1]) && contains(x - y, exact[0] - exact[1]));
+            assert!(contains(x * y, exact[0] * exact[1]) && contains(x / y, exact[0] / exact[1]));
+            assert!(contains(x.abs().sqrt(), exact[0].abs().sqrt()));
             let angle = Ball::angle(x, y);
-            let (sin, cos) = Twofold::from(angle.mid).sin_cos();
+            let (sin, cos) = DoubleDouble::from(angle.mid).sin_cos();
             let norm = (exact[0] * exact[0] + exact[1] * exact[1]).sqrt();
             let off = (exact[1].abs() * cos - exact[0] * sin) / norm;
             // The sine of what it is off, which is less than that by its third power.
@@ -389,9 +389,9 @@ mod tests {
         let mut worst = 0.0_f64;
         for _ in 0..400_000 {
             let x = 16.0 * (2.0 * dice(&mut state) - 1.0);
-            let ((sin, cos), exact) = (sin_cos(x), Twofold::from(x).sin_cos());
+            let ((sin, cos), exact) = (sin_cos(x), DoubleDouble::from(x).sin_cos());
             for (near, exact) in [(sin, exact.0), (cos, exact.1)] {
-                worst = worst.max((exact - Twofold::from(near)).abs().to_f64());
+                worst = worst.max((exact - DoubleDouble::from(near)).abs().to_f64());
             }
         }
         assert!(worst < f64::TRIG, "{worst:e}");
@@ -400,10 +400,10 @@ mod tests {
 
     #[test]
     fn quotients_and_roots_of_what_is_all_but_nothing_are_right() {
-        fn hold<R: Real>(least: i32) {
+        fn hold<R: BallReal>(least: i32) {
             let mut state = 3;
-            let within = |ball: Ball<R>, exact: Twofold| {
-                let mid = Ball::of(Ball { mid: exact, err: 0.0 });
+            let within = |ball: Ball<R>, exact: DoubleDouble| {
+                let mid = Ball::from_twofold(Ball { mid: exact, err: 0.0 });
                 let off = (ball - mid).mid.to_f64().abs();
                 // The exact one is of 106 bits.
                 assert!(off <= ball.err + mid.err + exact.to_f64().abs() * 1e-30, "{off:e}, {:e}", ball.err);
@@ -414,14 +414,14 @@ mod tests {
                 let exponent = least + (2.0 * dice(&mut state) * 100.0) as i32 / 2 * 2;
                 let tiny =
                     |number: f64| Ball::<R>::from(number * 2.0_f64.powi(exponent / 2) * 2.0_f64.powi(exponent / 2));
-                within(tiny(a) / tiny(b), Twofold::from(a) / Twofold::from(b));
-                within(tiny(a).sqrt(), Twofold::from(a).sqrt() * 2.0_f64.powi(exponent / 2));
+                within(tiny(a) / tiny(b), DoubleDouble::from(a) / DoubleDouble::from(b));
+                within(tiny(a).sqrt(), DoubleDouble::from(a).sqrt() * 2.0_f64.powi(exponent / 2));
             }
             let (third, root) = (Ball::<R>::from(1e-200) / Ball::from(3e-200), Ball::<R>::from(2e-200).sqrt());
             assert!(third.err < 1e-15 && root.err < 1e-115, "{:e} {:e}", third.err, root.err);
         }
         hold::<f64>(-1074);
-        hold::<Twofold>(-1074);
+        hold::<DoubleDouble>(-1074);
     }
 
     #[test]
@@ -429,14 +429,14 @@ mod tests {
         for zero in [0.0, -0.0] {
             let angle = Ball::<f64>::angle(Ball::from(-1.0), Ball::from(zero));
             assert!((angle.mid - PI).abs() <= angle.err && angle.err < 1e-14, "{angle:?}");
-            let angle = Ball::<Twofold>::angle(Ball::from(-1.0), Ball::from(zero));
+            let angle = Ball::<DoubleDouble>::angle(Ball::from(-1.0), Ball::from(zero));
             assert!((angle.to_f64() - PI).abs() < 1e-14, "{angle:?}");
         }
     }
 
     #[test]
     fn what_is_not_known_is_not_told() {
-        let told = |mid, err| Ball::<f64> { mid, err }.told();
+        let told = |mid, err| Ball::<f64> { mid, err }.display_length();
         assert_eq!((told(-0.5, 0.4), told(1e-9, 1e-7)), (-0.5, 1e-9));
         for unknown in [told(-0.5, 0.6), told(-0.5, f64::INFINITY), told(0.0, f64::NAN), told(f64::NAN, 0.0)] {
             assert!(unknown.is_nan());
@@ -446,12 +446,12 @@ mod tests {
     #[test]
     fn doubt_is_never_an_answer() {
         let ball = |mid, err| Ball::<f64> { mid, err };
-        assert_eq!(ball(1.0, 0.5).above(ball(0.0, 0.25)), Tri::Yes);
-        assert_eq!(ball(0.0, 0.25).above(ball(1.0, 0.5)), Tri::No);
-        assert_eq!(ball(1.0, 0.5).above(ball(0.0, 0.5)), Tri::Doubt);
-        assert_eq!(ball(f64::NAN, 0.0).is_positive(), Tri::Doubt);
-        assert_eq!((ball(1.0, 0.0) / ball(0.1, 0.2)).is_positive(), Tri::Doubt);
-        assert_eq!(ball(-1.0, f64::INFINITY).sqrt().is_positive(), Tri::Doubt);
-        assert_eq!(ball(1e300, 0.0).sin_cos()[0].is_positive(), Tri::Doubt);
+        assert_eq!(ball(1.0, 0.5).above(ball(0.0, 0.25)), Ternary::Yes);
+        assert_eq!(ball(0.0, 0.25).above(ball(1.0, 0.5)), Ternary::No);
+        assert_eq!(ball(1.0, 0.5).above(ball(0.0, 0.5)), Ternary::Doubt);
+        assert_eq!(ball(f64::NAN, 0.0).is_positive(), Ternary::Doubt);
+        assert_eq!((ball(1.0, 0.0) / ball(0.1, 0.2)).is_positive(), Ternary::Doubt);
+        assert_eq!(ball(-1.0, f64::INFINITY).sqrt().is_positive(), Ternary::Doubt);
+        assert_eq!(ball(1e300, 0.0).sin_cos()[0].is_positive(), Ternary::Doubt);
     }
 }

@@ -17,12 +17,12 @@
 //! largest speed of a motion. Cells that this does not settle are cut in two, along the sides of the rectangle of both legs where they
 //! reach beyond it.
 
-use crate::ball::{Ball, Real, Tri};
-use crate::data::Agent;
+use crate::ball::{Ball, BallReal, Ternary};
+use crate::box_index::BoxIndex;
+use crate::double_double::DoubleDouble;
 use crate::motion::least;
-use crate::mover::{Course, Leg, Mover};
-use crate::near::Near;
-use crate::twofold::Twofold;
+use crate::moving_disc::{LegMotion, Mover, MoverLeg};
+use crate::raw::RawAgent;
 use std::cmp::Ordering;
 use std::collections::VecDeque;
 
@@ -63,7 +63,7 @@ impl Traversal {
     ///
     /// # Errors
     /// What is wrong with its path, or that it has no motion.
-    pub fn new(agent: &Agent) -> Result<Self, String> {
+    pub fn new(agent: &RawAgent) -> Result<Self, String> {
         let mut agent = agent.clone();
         let travel = agent.travel.as_mut().ok_or_else(|| format!("agent {}: no motion", agent.id))?;
         travel.start = 0.0;
@@ -86,7 +86,7 @@ impl Traversal {
     }
 
     /// The legs and the clock times of each. Of a motion that takes no time, its end.
-    fn legs(&self) -> Vec<([f64; 2], &Leg)> {
+    fn legs(&self) -> Vec<([f64; 2], &MoverLeg)> {
         let all = &self.mover.legs;
         let own = all.windows(2).skip(1).map(|pair| ([pair[0].0, pair[1].0], &pair[0].1));
         let own: Vec<_> = own.filter(|([from, to], _)| from < to).collect();
@@ -152,12 +152,12 @@ impl Traversal {
 }
 
 /// Which of some motions may come near one another.
-pub struct Neighbours(Near);
+pub struct Neighbours(BoxIndex);
 
 impl Neighbours {
     /// An index of them.
     pub fn new(traversals: &[Traversal]) -> Self {
-        Self(Near::new(traversals.iter().map(|traversal| traversal.mover.area).collect()))
+        Self(BoxIndex::new(traversals.iter().map(|traversal| traversal.mover.area).collect()))
     }
 
     /// The indices behind this one of those whose boxes meet its own, in order.
@@ -201,7 +201,7 @@ impl Cell {
 /// What one look at a cell shows.
 struct Seen {
     clear: bool,
-    meets: Tri,
+    meets: Ternary,
     clearance: f64,
     /// Whether half of the delays would do more for the bound than half of the times, if that is known.
     by_delay: Option<bool>,
@@ -210,7 +210,7 @@ struct Seen {
 /// A leg of each agent.
 #[derive(Clone, Copy)]
 struct LegPair<'a> {
-    legs: [&'a Leg; 2],
+    legs: [&'a MoverLeg; 2],
     times: [[f64; 2]; 2],
     radius: [f64; 2],
 }
@@ -232,9 +232,9 @@ impl LegPair<'_> {
     fn has(&self, cell: &Cell) -> bool {
         let time = middle(cell.time);
         let [from, to] = self.times[cell.clock];
-        let delay = Twofold::from(middle(cell.delay));
-        let other = Twofold::from(time) + if cell.clock == 0 { -delay } else { delay };
-        let [first, last] = self.times[1 - cell.clock].map(Twofold::from);
+        let delay = DoubleDouble::from(middle(cell.delay));
+        let other = DoubleDouble::from(time) + if cell.clock == 0 { -delay } else { delay };
+        let [first, last] = self.times[1 - cell.clock].map(DoubleDouble::from);
         from <= time && time <= to && first <= other && other <= last
     }
 
@@ -271,13 +271,13 @@ impl LegPair<'_> {
     fn look(&self, cell: &Cell) -> Seen {
         let near = self.look_with::<f64>(cell, |leg| &leg.near);
         match near.0 {
-            Tri::Yes => near.1,
-            Tri::No if near.1.meets != Tri::Doubt => near.1,
-            _ => self.look_with::<Twofold>(cell, |leg| &leg.exact).1,
+            Ternary::Yes => near.1,
+            Ternary::No if near.1.meets != Ternary::Doubt => near.1,
+            _ => self.look_with::<DoubleDouble>(cell, |leg| &leg.exact).1,
         }
     }
 
-    fn look_with<R: Real>(&self, cell: &Cell, course: impl Fn(&Leg) -> &Course<R>) -> (Tri, Seen) {
+    fn look_with<R: BallReal>(&self, cell: &Cell, course: impl Fn(&MoverLeg) -> &LegMotion<R>) -> (Ternary, Seen) {
         let number = Ball::<R>::from;
         let legs = [self.legs[cell.clock], self.legs[1 - cell.clock]];
         let courses = legs.map(&course);
@@ -292,7 +292,7 @@ impl LegPair<'_> {
         let radius = number(self.radius[0]) + number(self.radius[1]);
         let distance = r.norm();
         let between = distance - radius;
-        let clearance = Ball { err: between.err + off.to_f64(), ..between }.told();
+        let clearance = Ball { err: between.err + off.to_f64(), ..between }.display_length();
         // Largest speeds within the cell, and what they allow.
         let gains = courses.map(|course| course.ramp.acceleration.abs());
         let speeds = [0, 1].map(|one| courses[one].ramp.speed_at(times[one]).abs() + gains[one] * spans[one]);
@@ -344,7 +344,7 @@ struct Quadratic<R> {
     ss: Ball<R>,
 }
 
-impl<R: Real> Quadratic<R> {
+impl<R: BallReal> Quadratic<R> {
     /// A lower bound for `|t| <= k` and `|s| <= h`.
     fn least(&self, k: Ball<R>, h: Ball<R>) -> Ball<R> {
         let Self { one, t, s, tt, ts, ss } = *self;
@@ -369,7 +369,7 @@ impl<R: Real> Quadratic<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Angle, Path, Phase, Segment, Travel};
+    use crate::raw::{RawAngle, RawMotion, RawPath, RawPhase, RawSegment};
     use std::f64::consts::FRAC_1_SQRT_2;
 
     /// A disc of 0.25 m that goes a line of 4 m at 1 m/s.
@@ -381,16 +381,16 @@ mod tests {
 
     /// From rest to rest on a line, with 1 m/s at most and accelerations of 0.5 m/s².
     fn rest_to_rest(radius: f64, start: [f64; 2], turns: f64, length: f64) -> Traversal {
-        let segments = vec![Segment { length, radius: None, turns: Vec::new(), from: 0.0, to: length }];
-        let path = Path { start, heading: Angle::Turns(turns), segments, rounding: 0.0, step: 0.0 };
+        let segments = vec![RawSegment { length, radius: None, turns: Vec::new(), from: 0.0, to: length }];
+        let path = RawPath { start, heading: RawAngle::Turns(turns), segments, rounding: 0.0, step: 0.0 };
         let cruise = 2.0 + (length - 2.0);
         let phases = vec![
-            Phase { time: [0.0, 2.0], length: [0.0, 1.0], speed: [0.0, 1.0] },
-            Phase { time: [2.0, cruise], length: [1.0, length - 1.0], speed: [1.0, 1.0] },
-            Phase { time: [cruise, cruise + 2.0], length: [length - 1.0, length], speed: [1.0, 0.0] },
+            RawPhase { time: [0.0, 2.0], length: [0.0, 1.0], speed: [0.0, 1.0] },
+            RawPhase { time: [2.0, cruise], length: [1.0, length - 1.0], speed: [1.0, 1.0] },
+            RawPhase { time: [cruise, cruise + 2.0], length: [length - 1.0, length], speed: [1.0, 0.0] },
         ];
-        let travel = Some(Travel { start: 0.0, phases, lag: 0.0, time_excess: 0.0 });
-        Traversal::new(&Agent { id: 1, radius, path, travel }).expect("a motion")
+        let travel = Some(RawMotion { start: 0.0, phases, lag: 0.0, time_excess: 0.0 });
+        Traversal::new(&RawAgent { id: 1, radius, path, travel }).expect("a motion")
     }
 
     fn crossing() -> [Traversal; 2] {
@@ -472,31 +472,31 @@ mod tests {
     }
 
     /// Lines and arcs near the origin, from rest to rest, with a phase that lasts no longer than a rounding.
-    fn bent(state: &mut u64, id: u64) -> Agent {
+    fn bent(state: &mut u64, id: u64) -> RawAgent {
         let (mut from, mut segments) = (0.0, Vec::new());
         for _ in 0..3 {
             let (length, bend) = (0.2 + 2.0 * dice(state), dice(state) - 0.5);
             let radius = Some((0.4 + dice(state)).copysign(bend)).filter(|_| dice(state) < 0.6);
-            segments.push(Segment { length, radius, turns: Vec::new(), from, to: from + length });
+            segments.push(RawSegment { length, radius, turns: Vec::new(), from, to: from + length });
             from += length;
         }
         let (half, middle) = (1.0 + 3.0 * dice(state), 0.5 * from);
         let top = from / half;
         let next = [half.next_up(), middle.next_up()];
         let phases = vec![
-            Phase { time: [0.0, half], length: [0.0, middle], speed: [0.0, top] },
-            Phase { time: [half, next[0]], length: [middle, next[1]], speed: [top; 2] },
-            Phase { time: [next[0], 2.0 * half], length: [next[1], from], speed: [top, 0.0] },
+            RawPhase { time: [0.0, half], length: [0.0, middle], speed: [0.0, top] },
+            RawPhase { time: [half, next[0]], length: [middle, next[1]], speed: [top; 2] },
+            RawPhase { time: [next[0], 2.0 * half], length: [next[1], from], speed: [top, 0.0] },
         ];
         let start = [4.0 * dice(state) - 2.0, 4.0 * dice(state) - 2.0];
-        let path = Path { start, heading: Angle::Turns(dice(state)), segments, rounding: 1e-15, step: 0.0 };
-        let travel = Some(Travel { start: 0.0, phases, lag: 0.0, time_excess: 0.0 });
-        Agent { id, radius: 0.2, path, travel }
+        let path = RawPath { start, heading: RawAngle::Turns(dice(state)), segments, rounding: 1e-15, step: 0.0 };
+        let travel = Some(RawMotion { start: 0.0, phases, lag: 0.0, time_excess: 0.0 });
+        RawAgent { id, radius: 0.2, path, travel }
     }
 
     /// What is found at one delay, by the proof of motions.
-    fn touch(first: &Agent, second: &Agent, delay: f64) -> bool {
-        let mover = |agent: &Agent, start: f64| {
+    fn touch(first: &RawAgent, second: &RawAgent, delay: f64) -> bool {
+        let mover = |agent: &RawAgent, start: f64| {
             let mut agent = agent.clone();
             let travel = agent.travel.as_mut().expect("a motion");
             travel.start = start;

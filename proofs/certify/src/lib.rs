@@ -28,17 +28,17 @@
 //! Why that proves what it says is in `docs/theory/certificates.md` of the repository, with the lemmas by these numbers.
 //!
 //! ```
-//! use pcr_certify::data::{Agent, Angle, Pair, Path, Piece, Region, Segment, Share, Table};
-//! use pcr_certify::table::{Checker, Margin};
+//! use pcr_certify::raw::{RawAgent, RawAngle, RawPair, RawPath, RawPiece, RawRegion, RawSegment, RawBranch, RawTable};
+//! use pcr_certify::table::{Checker, CoverageMargin};
 //!
 //! // Two lines that cross at right angles, discs of 0.25 m: contact wherever l² + s² <= 0.5², from the crossing.
-//! let line = |id, start, heading| Agent {
+//! let line = |id, start, heading| RawAgent {
 //!     id,
 //!     radius: 0.25,
-//!     path: Path {
+//!     path: RawPath {
 //!         start,
-//!         heading: Angle::Turns(heading),
-//!         segments: vec![Segment { length: 2.0, radius: None, turns: vec![], from: 0.0, to: 2.0 }],
+//!         heading: RawAngle::Turns(heading),
+//!         segments: vec![RawSegment { length: 2.0, radius: None, turns: vec![], from: 0.0, to: 2.0 }],
 //!         rounding: 0.0,
 //!         step: 0.0,
 //!     },
@@ -47,11 +47,11 @@
 //! let agents = vec![line(1, [-1.0, 0.0], 0.0), line(2, [0.0, -1.0], 0.25)];
 //! let verdict = |reach: f64| {
 //!     let lengths = [[1.0 - reach, 1.0 + reach]; 2];
-//!     let pieces = vec![Piece { segments: [0, 0], lengths, share: Share::Only, region: 0 }];
-//!     let regions = vec![Region { lengths, times: None }];
-//!     let pairs = vec![Pair { agents: [0, 1], excess: 1e-3, regions, pieces }];
-//!     let table = Table { agents: agents.clone(), pairs, apart: None };
-//!     Checker::new(&table)?.check(Margin::Needed)
+//!     let pieces = vec![RawPiece { segments: [0, 0], lengths, share: RawBranch::Only, region: 0 }];
+//!     let regions = vec![RawRegion { lengths, times: None }];
+//!     let pairs = vec![RawPair { agents: [0, 1], excess: 1e-3, regions, pieces }];
+//!     let table = RawTable { agents: agents.clone(), pairs, apart: None };
+//!     Checker::new(&table)?.check(CoverageMargin::Needed)
 //! };
 //! let proved = verdict(0.5005)?;
 //! assert!(proved.refuted.is_empty() && proved.undecided.is_empty());
@@ -63,21 +63,21 @@
 //! ```
 #![forbid(unsafe_code)]
 
+pub mod arc_length_motion;
 pub mod ball;
-pub mod cell;
-pub mod data;
+mod box_index;
+pub mod branches;
 pub mod delays;
-pub mod dump;
+pub mod device_dump;
+pub mod distance_claim;
+pub mod double_double;
 pub mod motion;
-pub mod mover;
-mod near;
+pub mod moving_disc;
 pub mod outline;
 pub mod pair;
 pub mod path;
 pub mod plane;
+pub mod raw;
 mod regions;
 pub mod segments;
-pub mod shares;
 pub mod table;
-pub mod travel;
-pub mod twofold;

@@ -10,17 +10,17 @@
 //! (the square of the polynomial of second order, its term |q|²τ⁴/4 left out). Before that, whatever the agents do, `|r| - (v + v') k`.
 //! What neither settles is cut: where a phase or a segment ends, then in half.
 
-use crate::ball::{Ball, Real, Tri};
-use crate::mover::{Course, Leg};
+use crate::ball::{Ball, BallReal, Ternary};
+use crate::moving_disc::{LegMotion, MoverLeg};
 
-pub use crate::mover::Mover;
-use crate::near::Near;
-use crate::twofold::Twofold;
+use crate::box_index::BoxIndex;
+use crate::double_double::DoubleDouble;
+pub use crate::moving_disc::Mover;
 use std::collections::HashMap;
 
 /// Two discs in contact, or so near that rounding does not tell.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Meeting {
+pub struct ContactWitness {
     /// Numbers of the agents.
     pub agents: [u64; 2],
     /// When \[s\].
@@ -31,11 +31,11 @@ pub struct Meeting {
 
 /// What has come of a check of motions.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Meetings {
+pub struct MotionFindings {
     /// Contacts, one of each pair of discs.
-    pub contacts: Vec<Meeting>,
+    pub contacts: Vec<ContactWitness>,
     /// Where it is not decided.
-    pub undecided: Vec<Meeting>,
+    pub undecided: Vec<ContactWitness>,
     /// Intervals that were looked at.
     pub steps: usize,
     /// Pairs of discs.
@@ -46,13 +46,13 @@ pub struct Meetings {
 const MOST: usize = 2_000_000;
 
 /// All pairs of agents with different numbers, at all times. Those whose boxes are apart have no contact.
-pub fn meetings(movers: &[Mover]) -> Meetings {
+pub fn meetings(movers: &[Mover]) -> MotionFindings {
     let pairs_of = |discs: usize| discs * discs.saturating_sub(1) / 2;
     let mut bodies: HashMap<u64, usize> = HashMap::new();
     movers.iter().for_each(|mover| *bodies.entry(mover.id).or_default() += 1);
     let own: usize = bodies.values().map(|&discs| pairs_of(discs)).sum();
-    let mut found = Meetings { pairs: pairs_of(movers.len()) - own, ..Meetings::default() };
-    let near = Near::new(movers.iter().map(|mover| mover.area).collect());
+    let mut found = MotionFindings { pairs: pairs_of(movers.len()) - own, ..MotionFindings::default() };
+    let near = BoxIndex::new(movers.iter().map(|mover| mover.area).collect());
     for (place, own) in movers.iter().enumerate() {
         for other in near.after(place).into_iter().map(|other| &movers[other]).filter(|other| other.id != own.id) {
             pair(own, other, &mut found);
@@ -61,7 +61,7 @@ pub fn meetings(movers: &[Mover]) -> Meetings {
     found
 }
 
-fn pair(own: &Mover, other: &Mover, found: &mut Meetings) {
+fn pair(own: &Mover, other: &Mover, found: &mut MotionFindings) {
     let (from, to) = (own.time[0].max(other.time[0]), own.time[1].min(other.time[1]));
     // Before both set off, and after both have arrived, nothing changes.
     let (first, last) = (own.moves[0].min(other.moves[0]), own.moves[1].max(other.moves[1]));
@@ -74,23 +74,23 @@ fn pair(own: &Mover, other: &Mover, found: &mut Meetings) {
     let mut taken = 0;
     while let Some([lo, hi]) = rest.pop() {
         (taken, found.steps) = (taken + 1, found.steps + 1);
-        let both = Both { own, other, lo, hi };
-        let near = both.look::<f64>(|leg| &leg.near);
+        let both = MoverPair { own, other, lo, hi };
+        let near = both.sample_clearance::<f64>(|leg| &leg.near);
         let seen = match near.clear {
-            Tri::Doubt => both.look::<Twofold>(|leg| &leg.exact),
-            Tri::No if near.meets == Tri::Doubt => both.look::<Twofold>(|leg| &leg.exact),
+            Ternary::Doubt => both.sample_clearance::<DoubleDouble>(|leg| &leg.exact),
+            Ternary::No if near.meets == Ternary::Doubt => both.sample_clearance::<DoubleDouble>(|leg| &leg.exact),
             _ => near,
         };
         if seen.clear.is_certain() {
             continue;
         }
-        let meeting = Meeting { agents, time: both.middle(), clearance: seen.clearance };
+        let meeting = ContactWitness { agents, time: both.middle(), clearance: seen.clearance };
         if seen.meets.is_certain() {
             found.contacts.push(meeting);
             return;
         }
         match both.cut() {
-            Some(cut) if taken < MOST && seen.meets == Tri::No => rest.extend([[cut, hi], [lo, cut]]),
+            Some(cut) if taken < MOST && seen.meets == Ternary::No => rest.extend([[cut, hi], [lo, cut]]),
             _ => {
                 found.undecided.push(meeting);
                 return;
@@ -100,7 +100,7 @@ fn pair(own: &Mover, other: &Mover, found: &mut Meetings) {
 }
 
 /// Two agents in an interval of time.
-struct Both<'a> {
+struct MoverPair<'a> {
     own: &'a Mover,
     other: &'a Mover,
     lo: f64,
@@ -108,13 +108,13 @@ struct Both<'a> {
 }
 
 /// What one look shows.
-struct Seen {
-    clear: Tri,
-    meets: Tri,
+struct ClearanceSample {
+    clear: Ternary,
+    meets: Ternary,
     clearance: f64,
 }
 
-impl Both<'_> {
+impl MoverPair<'_> {
     fn middle(&self) -> f64 {
         self.lo + 0.5 * (self.hi - self.lo)
     }
@@ -133,7 +133,7 @@ impl Both<'_> {
         nearest.or(Some(middle).filter(inside))
     }
 
-    fn look<R: Real>(&self, course: impl Fn(&Leg) -> &Course<R>) -> Seen {
+    fn sample_clearance<R: BallReal>(&self, course: impl Fn(&MoverLeg) -> &LegMotion<R>) -> ClearanceSample {
         let middle = self.middle();
         // No less than the way to either end, whatever was rounded.
         let half =
@@ -148,9 +148,9 @@ impl Both<'_> {
         let distance = r.norm();
         let meets = radius.above(distance + off);
         let between = distance - radius;
-        let clearance = Ball { err: between.err + off.to_f64(), ..between }.told();
+        let clearance = Ball { err: between.err + off.to_f64(), ..between }.display_length();
         let ways = k * (number(self.own.speed) + number(self.other.speed));
-        let all = number(self.own.off.max(self.other.off));
+        let all = number(self.own.position_error.max(self.other.position_error));
         let mut clear = distance.above(radius + ways + all + all);
         // The leg that begins with the end of the interval counts from there on.
         let until = |mover: &Mover, place: usize| {
@@ -171,15 +171,15 @@ impl Both<'_> {
             let bound = least.max(number(0.0)).sqrt() - third * cube / number(6.0) - off;
             clear = clear.or(bound.above(radius));
         }
-        Seen { clear, meets, clearance }
+        ClearanceSample { clear, meets, clearance }
     }
 }
 
 /// A lower bound on `a + b τ + c τ²` for `|τ| <= k`, the least value unless that is in doubt.
-pub(crate) fn least<R: Real>(a: Ball<R>, b: Ball<R>, c: Ball<R>, k: Ball<R>) -> Ball<R> {
+pub(crate) fn least<R: BallReal>(a: Ball<R>, b: Ball<R>, c: Ball<R>, k: Ball<R>) -> Ball<R> {
     let ends = a - b.abs() * k + c * k * k;
     let bends = c.is_positive();
-    if bends == Tri::No {
+    if bends == Ternary::No {
         return ends;
     }
     // The vertex is at -b / 2c.
@@ -196,37 +196,37 @@ pub(crate) fn least<R: Real>(a: Ball<R>, b: Ball<R>, c: Ball<R>, k: Ball<R>) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Agent, Angle, Path, Phase, Segment, Travel};
+    use crate::raw::{RawAgent, RawAngle, RawMotion, RawPath, RawPhase, RawSegment};
     use std::f64::consts::PI;
 
     /// An agent that goes from rest to rest in two ramps.
-    fn agent(id: u64, start: [f64; 2], heading: f64, parts: &[(f64, Option<f64>)], at: f64, top: f64) -> Agent {
+    fn agent(id: u64, start: [f64; 2], heading: f64, parts: &[(f64, Option<f64>)], at: f64, top: f64) -> RawAgent {
         let mut from = 0.0;
-        let segments: Vec<Segment> = parts
+        let segments: Vec<RawSegment> = parts
             .iter()
             .map(|&(length, radius)| {
                 let before = from;
                 from += length;
-                Segment { length, radius, turns: Vec::new(), from: before, to: from }
+                RawSegment { length, radius, turns: Vec::new(), from: before, to: from }
             })
             .collect();
         let half = from / top;
         let phases = vec![
-            Phase { time: [0.0, half], length: [0.0, 0.5 * from], speed: [0.0, top] },
-            Phase { time: [half, 2.0 * half], length: [0.5 * from, from], speed: [top, 0.0] },
+            RawPhase { time: [0.0, half], length: [0.0, 0.5 * from], speed: [0.0, top] },
+            RawPhase { time: [half, 2.0 * half], length: [0.5 * from, from], speed: [top, 0.0] },
         ];
-        let path = Path { start, heading: Angle::Radians(heading), segments, rounding: 1e-14, step: 0.0 };
-        Agent { id, radius: 0.5, path, travel: Some(Travel { start: at, phases, lag: 0.0, time_excess: 0.0 }) }
+        let path = RawPath { start, heading: RawAngle::Radians(heading), segments, rounding: 1e-14, step: 0.0 };
+        RawAgent { id, radius: 0.5, path, travel: Some(RawMotion { start: at, phases, lag: 0.0, time_excess: 0.0 }) }
     }
 
-    fn movers(agents: &[Agent]) -> Vec<Mover> {
+    fn movers(agents: &[RawAgent]) -> Vec<Mover> {
         agents.iter().map(|agent| Mover::new(agent, [-1e12, 1e12]).unwrap()).collect()
     }
 
     #[test]
     fn what_is_no_radius_is_no_disc() {
         for radius in [f64::NAN, f64::INFINITY, -0.1] {
-            let wrong = Agent { radius, ..agent(1, [0.0; 2], 0.0, &[(4.0, None)], 0.0, 1.0) };
+            let wrong = RawAgent { radius, ..agent(1, [0.0; 2], 0.0, &[(4.0, None)], 0.0, 1.0) };
             assert!(Mover::new(&wrong, [0.0, 1.0]).is_err(), "{radius}");
         }
     }
@@ -249,11 +249,11 @@ mod tests {
     const DIGIT: f64 = 1.0 / 524_288.0;
 
     /// A disc of 10 µm on a line, with phases of times, lengths and speeds.
-    fn driven(id: u64, start: [f64; 2], heading: f64, at: f64, phases: &[[[f64; 2]; 3]]) -> Agent {
+    fn driven(id: u64, start: [f64; 2], heading: f64, at: f64, phases: &[[[f64; 2]; 3]]) -> RawAgent {
         let length = phases.last().map_or(0.0, |phase| phase[1][1]);
-        let mut agent = Agent { radius: 1e-5, ..agent(id, start, heading, &[(length, None)], at, 1.0) };
-        let phases = phases.iter().map(|&[time, length, speed]| Phase { time, length, speed }).collect();
-        agent.travel = Some(Travel { start: at, phases, lag: 0.0, time_excess: 0.0 });
+        let mut agent = RawAgent { radius: 1e-5, ..agent(id, start, heading, &[(length, None)], at, 1.0) };
+        let phases = phases.iter().map(|&[time, length, speed]| RawPhase { time, length, speed }).collect();
+        agent.travel = Some(RawMotion { start: at, phases, lag: 0.0, time_excess: 0.0 });
         agent
     }
 
@@ -262,13 +262,13 @@ mod tests {
         [[0.0, until], [0.0, speed * until], [speed; 2]]
     }
 
-    fn is_proved(agents: &[Agent]) -> bool {
+    fn is_proved(agents: &[RawAgent]) -> bool {
         let found = meetings(&movers(agents));
         found.contacts.is_empty() && found.undecided.is_empty()
     }
 
     /// Half a metre to the side there is nobody, whatever is rounded.
-    fn is_proved_beside(agents: [Agent; 2]) -> bool {
+    fn is_proved_beside(agents: [RawAgent; 2]) -> bool {
         let [one, mut other] = agents;
         other.path.start[0] += 0.5;
         is_proved(&[one, other])
@@ -329,7 +329,7 @@ mod tests {
         assert!(is_proved(&[shot, slow(1.0)]));
     }
 
-    fn crossing_pair(later: f64) -> [Agent; 2] {
+    fn crossing_pair(later: f64) -> [RawAgent; 2] {
         let arc = std::f64::consts::FRAC_PI_2 * 2.0;
         [
             agent(1, [0.0, 0.0], 0.0, &[(3.0, None), (arc, Some(2.0)), (2.0, None)], 0.0, 1.25),
@@ -363,8 +363,8 @@ mod tests {
 
     #[test]
     fn agents_that_stand_touch_or_do_not() {
-        let stands = |id, x| Agent {
-            travel: Some(Travel { start: 3.0, phases: Vec::new(), lag: 0.0, time_excess: 0.0 }),
+        let stands = |id, x| RawAgent {
+            travel: Some(RawMotion { start: 3.0, phases: Vec::new(), lag: 0.0, time_excess: 0.0 }),
             ..agent(id, [x, 0.0], 0.3, &[(0.0, None)], 0.0, 1.0)
         };
         let found = |x| meetings(&movers(&[stands(1, 0.0), stands(2, x)]));
@@ -377,7 +377,7 @@ mod tests {
     #[test]
     fn discs_of_one_body_do_not_collide() {
         let one = agent(1, [0.0, 0.0], 0.0, &[(3.0, None)], 0.0, 1.0);
-        let found = meetings(&movers(&[one.clone(), one.clone(), Agent { id: 2, ..one }]));
+        let found = meetings(&movers(&[one.clone(), one.clone(), RawAgent { id: 2, ..one }]));
         assert_eq!((found.pairs, found.contacts.len()), (2, 2));
     }
 }

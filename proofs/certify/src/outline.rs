@@ -14,22 +14,22 @@
 //! corners; nothing is shared with what has computed a table.
 //!
 //! ```
-//! use pcr_certify::data::Angle;
+//! use pcr_certify::raw::RawAngle;
 //! use pcr_certify::outline::table::Checker;
-//! use pcr_certify::outline::{RawBody, RawCourse, RawHeading, RawOutline, RawPair, RawSegment, RawTable};
-//! use pcr_certify::table::Margin;
+//! use pcr_certify::outline::{RawBody, RawCourse, RawHeading, RawOutline, RawOutlinePair, RawBodySegment, RawOutlineTable};
+//! use pcr_certify::table::CoverageMargin;
 //!
 //! // Two trucks of 1.2 by 0.8 m on parallel lanes, and a table that says that they never touch.
 //! let truck = |id, y, turns| RawBody {
 //!     id,
 //!     outline: RawOutline { corners: vec![[-0.6, -0.4], [0.6, -0.4], [0.6, 0.4], [-0.6, 0.4]], radius: 0.0 },
 //!     start: [6.0 * turns * 2.0, y],
-//!     direction: Angle::Turns(turns),
-//!     segments: vec![RawSegment {
+//!     direction: RawAngle::Turns(turns),
+//!     segments: vec![RawBodySegment {
 //!         course: RawCourse::Line,
 //!         length: 6.0,
 //!         turns: vec![],
-//!         heading: RawHeading::Along(Angle::Turns(0.0)),
+//!         heading: RawHeading::Along(RawAngle::Turns(0.0)),
 //!         from: 0.0,
 //!         to: 6.0,
 //!     }],
@@ -40,9 +40,9 @@
 //! };
 //! let verdict = |lane: f64| {
 //!     let bodies = vec![truck(1, 0.0, 0.0), truck(2, lane, 0.5)];
-//!     let pairs = vec![RawPair { bodies: [0, 1], excess: 1e-9, regions: vec![], pieces: vec![] }];
-//!     let table = RawTable { bodies, pairs, apart: None };
-//!     Checker::new(&table)?.check(Margin::Needed)
+//!     let pairs = vec![RawOutlinePair { bodies: [0, 1], excess: 1e-9, regions: vec![], pieces: vec![] }];
+//!     let table = RawOutlineTable { bodies, pairs, apart: None };
+//!     Checker::new(&table)?.check(CoverageMargin::Needed)
 //! };
 //! let passing = verdict(0.801)?;
 //! assert!(passing.findings.refuted.is_empty() && passing.findings.undecided.is_empty());
@@ -59,7 +59,9 @@ pub mod separation;
 pub mod table;
 
 pub use body::Body;
-pub use data::{RawBody, RawCourse, RawHeading, RawOutline, RawPair, RawPiece, RawSegment, RawTable};
+pub use data::{
+    RawBody, RawBodySegment, RawCourse, RawHeading, RawOutline, RawOutlinePair, RawOutlinePiece, RawOutlineTable,
+};
 
 #[cfg(test)]
 mod tests;

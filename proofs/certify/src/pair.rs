@@ -1,14 +1,14 @@
 //! Two agents: the pieces of their regions on their segments, what is asked of them, and what is found.
 
 use crate::ball::Ball;
-use crate::cell::{Both, Outcome};
-use crate::data::{Pair, Piece, Share};
-use crate::path::Stretch;
-use crate::twofold::Twofold;
+use crate::distance_claim::{ClaimVerdict, DualPrecisionPart};
+use crate::double_double::DoubleDouble;
+use crate::path::PreparedSegment;
+use crate::raw::{RawBranch, RawPair, RawPiece};
 
 /// What a table promises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Promise {
+pub enum TableProperty {
     /// Every contact lies in the rectangle of a piece (C-rect).
     Covered,
     /// The piece that holds it stands for the interval that holds it (C-share).
@@ -26,7 +26,7 @@ pub enum Promise {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Witness {
     /// The promise.
-    pub promise: Promise,
+    pub promise: TableProperty,
     /// Places of the agents.
     pub agents: [usize; 2],
     /// Lengths along their paths \[m\].
@@ -68,30 +68,30 @@ impl Findings {
 
 /// What is asked of a pair.
 #[derive(Clone, Copy, Debug)]
-pub struct Radii {
+pub struct PairRadii {
     /// The combined radius R \[m\].
-    pub radius: Ball<Twofold>,
+    pub radius: Ball<DoubleDouble>,
     /// What all contacts are within: R + δ \[m\].
-    pub covered: Ball<Twofold>,
+    pub covered: Ball<DoubleDouble>,
     /// What everything told is within: R + ε \[m\].
-    pub told: Ball<Twofold>,
+    pub reported: Ball<DoubleDouble>,
     /// The same beside an arc that is as large as the disc: R + 3/2 ε \[m\].
-    pub beside: Ball<Twofold>,
+    pub beside_large_arc: Ball<DoubleDouble>,
 }
 
 /// Two segments and the pieces about them.
-pub struct Segments<'a> {
+pub struct SegmentPairPieces<'a> {
     /// Those of the first and of the second agent.
-    pub stretches: [&'a Stretch; 2],
+    pub stretches: [&'a PreparedSegment; 2],
     /// All of them.
-    pub whole: [Both<'a>; 2],
+    pub whole: [DualPrecisionPart<'a>; 2],
     /// Lengths along the segments, and the share.
-    pub pieces: Vec<([[Twofold; 2]; 2], Share)>,
+    pub pieces: Vec<([[DoubleDouble; 2]; 2], RawBranch)>,
 }
 
 /// Lengths of the first segment in `within` that are in none of the ranges, closed. A range with an end that is no number
 /// holds nothing, and of what is within no numbers all is left: neither may pass as held.
-pub fn gaps(mut ranges: Vec<[Twofold; 2]>, within: [Twofold; 2]) -> Vec<[Twofold; 2]> {
+pub fn gaps(mut ranges: Vec<[DoubleDouble; 2]>, within: [DoubleDouble; 2]) -> Vec<[DoubleDouble; 2]> {
     if within.iter().any(|end| end.is_nan()) {
         return vec![within];
     }
@@ -117,23 +117,23 @@ pub fn gaps(mut ranges: Vec<[Twofold; 2]>, within: [Twofold; 2]) -> Vec<[Twofold
     gaps
 }
 
-impl Segments<'_> {
+impl SegmentPairPieces<'_> {
     /// The parts of the second segment between ends of pieces.
-    pub fn cells(&self) -> Vec<[Twofold; 2]> {
+    pub fn cells(&self) -> Vec<[DoubleDouble; 2]> {
         let end = self.stretches[1].placed.length;
-        let mut cuts: Vec<Twofold> = self.pieces.iter().flat_map(|(lengths, _)| lengths[1]).collect();
-        cuts.extend([Twofold::ZERO, end]);
-        cuts.sort_by(Twofold::total_cmp);
+        let mut cuts: Vec<DoubleDouble> = self.pieces.iter().flat_map(|(lengths, _)| lengths[1]).collect();
+        cuts.extend([DoubleDouble::ZERO, end]);
+        cuts.sort_by(DoubleDouble::total_cmp);
         cuts.dedup();
         if cuts.len() == 1 {
-            return vec![[Twofold::ZERO, end]];
+            return vec![[DoubleDouble::ZERO, end]];
         }
         cuts.windows(2).map(|cut| [cut[0], cut[1]]).collect()
     }
 
     /// The lengths of the first segment that pieces with one of these shares hold all along a cell of the second one.
-    pub fn held(&self, cell: [Twofold; 2], shares: &[Share]) -> Vec<[Twofold; 2]> {
-        let holds = |range: [Twofold; 2]| range[0] <= cell[0] && cell[1] <= range[1];
+    pub fn held(&self, cell: [DoubleDouble; 2], shares: &[RawBranch]) -> Vec<[DoubleDouble; 2]> {
+        let holds = |range: [DoubleDouble; 2]| range[0] <= cell[0] && cell[1] <= range[1];
         let those = self.pieces.iter().filter(|(lengths, share)| shares.contains(share) && holds(lengths[1]));
         those.map(|(lengths, _)| lengths[0]).collect()
     }
@@ -141,12 +141,12 @@ impl Segments<'_> {
     /// The point of the cell's middle and the point of a part of the first segment nearest to it, or the other way round.
     pub fn witness(
         &self,
-        promise: Promise,
-        pair: &Pair,
-        radii: &Radii,
-        at: Twofold,
+        promise: TableProperty,
+        pair: &RawPair,
+        radii: &PairRadii,
+        at: DoubleDouble,
         of: usize,
-        near: &mut Both<'_>,
+        near: &mut DualPrecisionPart<'_>,
     ) -> Witness {
         let other = 1 - of;
         let mut here = self.stretches[of].placed.part([at, at]);
@@ -155,7 +155,7 @@ impl Segments<'_> {
         let mut lengths = [0.0; 2];
         lengths[of] = self.stretches[of].on_path(at);
         lengths[other] = self.stretches[other].on_path(foot);
-        let clearance = (distance - radii.radius).told();
+        let clearance = (distance - radii.radius).display_length();
         Witness { promise, agents: pair.agents, lengths, clearance, excess: pair.excess }
     }
 
@@ -163,31 +163,31 @@ impl Segments<'_> {
     #[expect(clippy::too_many_arguments, reason = "what a witness is made of")]
     pub fn note(
         &self,
-        outcome: Outcome,
-        promise: Promise,
-        pair: &Pair,
-        radii: &Radii,
+        outcome: ClaimVerdict,
+        promise: TableProperty,
+        pair: &RawPair,
+        radii: &PairRadii,
         of: usize,
-        near: &mut Both<'_>,
+        near: &mut DualPrecisionPart<'_>,
         findings: &mut Findings,
     ) {
         match outcome {
-            Outcome::Proved => {}
-            Outcome::Refuted(at) => findings.refuted.push(self.witness(promise, pair, radii, at, of, near)),
-            Outcome::Undecided(at) => findings.undecided.push(self.witness(promise, pair, radii, at, of, near)),
+            ClaimVerdict::Proved => {}
+            ClaimVerdict::Refuted(at) => findings.refuted.push(self.witness(promise, pair, radii, at, of, near)),
+            ClaimVerdict::Undecided(at) => findings.undecided.push(self.witness(promise, pair, radii, at, of, near)),
         }
     }
 }
 
 /// A piece on its segments.
 #[derive(Clone, Copy, Debug)]
-pub struct Placed {
+pub struct PieceOnSegments {
     /// Places of the segments in their paths.
     pub segments: [usize; 2],
     /// Lengths along the segments.
-    pub lengths: [[Twofold; 2]; 2],
+    pub lengths: [[DoubleDouble; 2]; 2],
     /// Its share.
-    pub share: Share,
+    pub share: RawBranch,
     /// Place of its region.
     pub region: usize,
 }
@@ -196,14 +196,14 @@ pub struct Placed {
 ///
 /// # Errors
 /// What is wrong with them.
-pub fn pieces_of(pieces: &[Piece], stretches: [&[Stretch]; 2]) -> Result<Vec<Placed>, String> {
+pub fn pieces_of(pieces: &[RawPiece], stretches: [&[PreparedSegment]; 2]) -> Result<Vec<PieceOnSegments>, String> {
     let mut placed = Vec::with_capacity(pieces.len());
     for piece in pieces {
-        let mut lengths = [[Twofold::ZERO; 2]; 2];
+        let mut lengths = [[DoubleDouble::ZERO; 2]; 2];
         for k in [0, 1] {
             let stretch = stretches[k].get(piece.segments[k]).ok_or("a piece of a segment that is not there")?;
             let [lo, hi] = piece.lengths[k];
-            if !(stretch.holds(lo) && stretch.holds(hi) && lo <= hi) {
+            if !(stretch.contains(lo) && stretch.contains(hi) && lo <= hi) {
                 return Err(format!("a piece from {lo} to {hi} m is not on its segment"));
             }
             if !(stretch.is_of_format(lo) && stretch.is_of_format(hi)) {
@@ -211,10 +211,10 @@ pub fn pieces_of(pieces: &[Piece], stretches: [&[Stretch]; 2]) -> Result<Vec<Pla
             }
             lengths[k] = stretch.range([lo, hi]);
         }
-        if piece.share != Share::Only && stretches[0][piece.segments[0]].turns_left().is_none() {
+        if piece.share != RawBranch::Only && stretches[0][piece.segments[0]].turns_left().is_none() {
             return Err("a piece that stands for one of two intervals of a line".into());
         }
-        placed.push(Placed { segments: piece.segments, lengths, share: piece.share, region: piece.region });
+        placed.push(PieceOnSegments { segments: piece.segments, lengths, share: piece.share, region: piece.region });
     }
     placed.sort_by_key(|piece| piece.segments);
     Ok(placed)
@@ -224,19 +224,19 @@ pub fn pieces_of(pieces: &[Piece], stretches: [&[Stretch]; 2]) -> Result<Vec<Pla
 mod tests {
     use super::*;
 
-    fn ranges<const N: usize>(ends: [[f64; 2]; N]) -> Vec<[Twofold; 2]> {
-        ends.map(|range| range.map(Twofold::from)).to_vec()
+    fn ranges<const N: usize>(ends: [[f64; 2]; N]) -> Vec<[DoubleDouble; 2]> {
+        ends.map(|range| range.map(DoubleDouble::from)).to_vec()
     }
 
     #[test]
     fn what_is_no_number_holds_nothing() {
-        let left = |held: Vec<[Twofold; 2]>| gaps(held, [0.0, 9.0].map(Twofold::from));
+        let left = |held: Vec<[DoubleDouble; 2]>| gaps(held, [0.0, 9.0].map(DoubleDouble::from));
         assert_eq!(left(ranges([[6.0, 9.0], [0.0, 2.0], [1.0, 4.0]])), ranges([[4.0, 6.0]]));
         let none = f64::NAN;
         assert_eq!(left(ranges([[none, 9.0], [3.0, none], [2.0, 9.0], [none, none]])), ranges([[0.0, 2.0]]));
         assert_eq!(left(ranges([[8.0, 9.0], [none, 1.0], [0.0, 7.0]])), ranges([[7.0, 8.0]]));
         for within in [[none, 9.0], [0.0, none]] {
-            assert_eq!(gaps(ranges([[0.0, 9.0]]), within.map(Twofold::from)).len(), 1, "{within:?}");
+            assert_eq!(gaps(ranges([[0.0, 9.0]]), within.map(DoubleDouble::from)).len(), 1, "{within:?}");
         }
     }
 }

@@ -1,12 +1,12 @@
 //! From the numbers of a path to its segments in the plane, with 106 bits.
 
 use crate::ball::Ball;
-use crate::cell::Placed;
-use crate::data::{Angle, Path, Segment};
-use crate::plane::{Carrier, Vector};
-use crate::twofold::Twofold;
+use crate::distance_claim::SegmentCarrier;
+use crate::double_double::DoubleDouble;
+use crate::plane::{BallCarrier, BallVector};
+use crate::raw::{RawAngle, RawPath, RawSegment};
 
-type Number = Ball<Twofold>;
+type Real106 = Ball<DoubleDouble>;
 
 /// How far before the end of a segment a length is that rounding would put there, as a part of the segment: 2^-80.
 const BELOW: f64 = 1.0 / (1_u128 << 80) as f64;
@@ -20,27 +20,27 @@ pub(crate) const LEAST: f64 = 1e-200;
 
 /// A segment in the plane, and its lengths along the path.
 #[derive(Clone, Debug)]
-pub struct Stretch {
+pub struct PreparedSegment {
     /// In the plane.
-    pub placed: Placed,
+    pub placed: SegmentCarrier,
     /// Exact length of the path before it \[m\].
-    pub before: Twofold,
+    pub before: DoubleDouble,
     from: f64,
     to: f64,
     step: f64,
 }
 
-impl Stretch {
+impl PreparedSegment {
     /// From the first to the last length of the number format in a part of the segment; none, if there is none.
-    pub fn of_format(&self, [lo, hi]: [Twofold; 2]) -> Option<[Twofold; 2]> {
+    pub fn of_format(&self, [lo, hi]: [DoubleDouble; 2]) -> Option<[DoubleDouble; 2]> {
         if self.step == 0.0 {
             return Some([lo, hi]);
         }
         // A power of two, and lengths below 2^50 digits: nothing of this is rounded but the number that is looked at first.
-        let steps = |length: Twofold| length * (1.0 / self.step);
-        let up = |steps: Twofold| {
-            let near = Twofold::from(steps.to_f64().round());
-            if near < steps { near + Twofold::from(1.0) } else { near }
+        let steps = |length: DoubleDouble| length * (1.0 / self.step);
+        let up = |steps: DoubleDouble| {
+            let near = DoubleDouble::from(steps.to_f64().round());
+            if near < steps { near + DoubleDouble::from(1.0) } else { near }
         };
         let (lo, hi) = (up(steps(lo)), -up(-steps(hi)));
         (lo <= hi).then(|| [lo, hi].map(|steps| steps * self.step))
@@ -52,23 +52,23 @@ impl Stretch {
     }
 
     /// The length along the segment at a length along the path. An end is one if it is the same number as that of the segment.
-    pub fn along(&self, length: f64) -> Twofold {
+    pub fn along(&self, length: f64) -> DoubleDouble {
         if length == self.from {
-            Twofold::ZERO
+            DoubleDouble::ZERO
         } else if length == self.to {
             self.placed.length
         } else {
             // The rounding of `to` may put a length before it at the exact end, or beyond. It is none of the end all the same: what
             // ends there does not hold `to`.
             let below = self.placed.length - self.placed.length * BELOW;
-            (Twofold::from(length) - Twofold::from(self.from)).clamp(Twofold::ZERO, below)
+            (DoubleDouble::from(length) - DoubleDouble::from(self.from)).clamp(DoubleDouble::ZERO, below)
         }
     }
 
     /// What of the segment lies between lengths along the path that need be no numbers of the table; none, if nothing does.
-    pub fn common(&self, [lo, hi]: [Twofold; 2]) -> Option<[Twofold; 2]> {
-        let (from, to) = (Twofold::from(self.from), Twofold::from(self.to));
-        let along = |length: Twofold| (length - from).clamp(Twofold::ZERO, self.placed.length);
+    pub fn common(&self, [lo, hi]: [DoubleDouble; 2]) -> Option<[DoubleDouble; 2]> {
+        let (from, to) = (DoubleDouble::from(self.from), DoubleDouble::from(self.to));
+        let along = |length: DoubleDouble| (length - from).clamp(DoubleDouble::ZERO, self.placed.length);
         if hi < from || to < lo {
             return None;
         }
@@ -77,51 +77,51 @@ impl Stretch {
     }
 
     /// Whether a length along the path is on the segment.
-    pub fn holds(&self, length: f64) -> bool {
+    pub fn contains(&self, length: f64) -> bool {
         self.from <= length && length <= self.to
     }
 
     /// Which way an arc turns, of a line nothing.
     pub fn turns_left(&self) -> Option<bool> {
         match self.placed.exact {
-            Carrier::Line { .. } => None,
-            Carrier::Circle { left, .. } => Some(left),
+            BallCarrier::Line { .. } => None,
+            BallCarrier::Circle { left, .. } => Some(left),
         }
     }
 
     /// Whether it is an arc whose radius is a number, or differs from it by no more than another one does.
-    pub fn turns_within(&self, number: Number, other: Number) -> bool {
+    pub fn turns_within(&self, number: Real106, other: Real106) -> bool {
         match self.placed.exact {
-            Carrier::Line { .. } => false,
-            Carrier::Circle { radius, .. } => (radius - number).abs().mid <= (other - number).abs().mid,
+            BallCarrier::Line { .. } => false,
+            BallCarrier::Circle { radius, .. } => (radius - number).abs().mid <= (other - number).abs().mid,
         }
     }
 
     /// The part of the segment between lengths along the path. Both ends of a segment that is too short for them to differ are
     /// the same number: then it is all of it.
-    pub fn range(&self, [lo, hi]: [f64; 2]) -> [Twofold; 2] {
+    pub fn range(&self, [lo, hi]: [f64; 2]) -> [DoubleDouble; 2] {
         [self.along(lo), if hi == self.to { self.placed.length } else { self.along(hi) }]
     }
 
     /// The length along the path at a length along the segment, rounded.
-    pub fn on_path(&self, length: Twofold) -> f64 {
-        (Twofold::from(self.from) + length).to_f64().clamp(self.from, self.to)
+    pub fn on_path(&self, length: DoubleDouble) -> f64 {
+        (DoubleDouble::from(self.from) + length).to_f64().clamp(self.from, self.to)
     }
 }
 
 /// An angle \[rad\].
-pub(crate) fn radians(angle: Angle) -> Number {
+pub(crate) fn radians(angle: RawAngle) -> Real106 {
     match angle {
-        Angle::Radians(angle) => Ball::from(angle),
+        RawAngle::Radians(angle) => Ball::from(angle),
         // The product is right within 2^-102 of itself, the constant within 2^-108.
-        Angle::Turns(turns) => Ball { mid: Twofold::TURN * (turns - turns.round()), err: 1e-30 },
+        RawAngle::Turns(turns) => Ball { mid: DoubleDouble::TURN * (turns - turns.round()), err: 1e-30 },
     }
 }
 
 /// The unit vector in a direction: up to 2^25 rad the sine and cosine are as right as those of smaller angles (`twofold.rs`).
 ///
 /// Always from the sum of all angles: a vector that is turned again and again has a bound that grows by up to √2 each time.
-pub(crate) fn unit(heading: Number) -> Result<Vector<Twofold>, String> {
+pub(crate) fn unit(heading: Real106) -> Result<BallVector<DoubleDouble>, String> {
     let allowed = 2.0 * MOST_HEADING;
     // What is no number is not within it either.
     if heading.to_f64().abs().partial_cmp(&allowed).is_none_or(std::cmp::Ordering::is_gt) {
@@ -133,7 +133,7 @@ pub(crate) fn unit(heading: Number) -> Result<Vector<Twofold>, String> {
     let (sin, cos) = heading.mid.sin_cos();
     let err = heading.err + 8e-31;
     let [y, x] = [sin, cos].map(|mid| Ball { mid, err });
-    Ok(Vector { x, y })
+    Ok(BallVector { x, y })
 }
 
 fn fits(value: f64, name: &str) -> Result<(), String> {
@@ -144,7 +144,7 @@ fn fits(value: f64, name: &str) -> Result<(), String> {
 ///
 /// # Errors
 /// What is wrong with it.
-pub fn stretches(path: &Path) -> Result<Vec<Stretch>, String> {
+pub fn stretches(path: &RawPath) -> Result<Vec<PreparedSegment>, String> {
     let [x, y] = path.start;
     fits(x, "x")?;
     fits(y, "y")?;
@@ -153,13 +153,13 @@ pub fn stretches(path: &Path) -> Result<Vec<Stretch>, String> {
     if path.step != 0.0 && !is_power {
         return Err(format!("the step {} is none of a fixed-point format", path.step));
     }
-    let (Angle::Radians(heading) | Angle::Turns(heading)) = path.heading;
+    let (RawAngle::Radians(heading) | RawAngle::Turns(heading)) = path.heading;
     if heading.abs() > MOST_HEADING || heading.is_nan() {
         return Err(format!("heading {heading} is out of range; allowed is up to {MOST_HEADING:e} in magnitude"));
     }
     let mut heading = radians(path.heading);
-    let mut at = Vector { x: Ball::from(x), y: Ball::from(y) };
-    let mut before = Twofold::ZERO;
+    let mut at = BallVector { x: Ball::from(x), y: Ball::from(y) };
+    let mut before = DoubleDouble::ZERO;
     let (mut stretches, mut sum) = (Vec::with_capacity(path.segments.len()), 0.0);
     for (place, segment) in path.segments.iter().enumerate() {
         let wrong = |problem: String| format!("segment {place}: {problem}");
@@ -167,22 +167,22 @@ pub fn stretches(path: &Path) -> Result<Vec<Stretch>, String> {
         heading = segment.turns.iter().fold(heading, |heading, &by| heading + radians(by));
         let direction = unit(heading).map_err(wrong)?;
         let carrier = match segment.radius {
-            None => Carrier::Line { start: at, along: direction },
+            None => BallCarrier::Line { start: at, along: direction },
             Some(bend) => {
                 let (left, radius) = (bend > 0.0, Ball::from(bend.abs()));
                 let to_centre = if left { direction.left() } else { direction.left().times(Ball::from(-1.0)) };
                 let start = to_centre.times(Ball::from(-1.0));
-                Carrier::Circle { centre: at + to_centre.times(radius), radius, start, left }
+                BallCarrier::Circle { centre: at + to_centre.times(radius), radius, start, left }
             }
         };
-        let length = Twofold::from(segment.length);
-        let placed = Placed::new(carrier, length);
+        let length = DoubleDouble::from(segment.length);
+        let placed = SegmentCarrier::new(carrier, length);
         at = carrier.point(Ball::from(segment.length));
         if let Some(bend) = segment.radius {
             heading = heading + Ball::from(segment.length) / Ball::from(bend);
         }
         for (end, exact) in [(segment.from, before), (segment.to, before + length)] {
-            let off = (Twofold::from(end) - exact).abs().to_f64();
+            let off = (DoubleDouble::from(end) - exact).abs().to_f64();
             // Whatever is no number is wrong.
             if off.partial_cmp(&path.rounding).is_none_or(std::cmp::Ordering::is_gt) {
                 return Err(wrong(format!("its lengths along the path are off by {off:e} m")));
@@ -192,7 +192,7 @@ pub fn stretches(path: &Path) -> Result<Vec<Stretch>, String> {
         if ![segment.length, segment.from, segment.to].into_iter().all(|length| is_multiple(length, step)) {
             return Err(wrong(format!("its lengths are no multiples of {step:e} m")));
         }
-        stretches.push(Stretch { placed, before, from: segment.from, to: segment.to, step });
+        stretches.push(PreparedSegment { placed, before, from: segment.from, to: segment.to, step });
         (before, sum) = (before + length, segment.to);
     }
     if stretches.is_empty() { Err("no segments".into()) } else { Ok(stretches) }
@@ -202,7 +202,7 @@ fn is_multiple(length: f64, step: f64) -> bool {
     step == 0.0 || (length / step).fract() == 0.0
 }
 
-fn checked(segment: &Segment, sum: f64) -> Result<(), String> {
+fn checked(segment: &RawSegment, sum: f64) -> Result<(), String> {
     fits(segment.length, "length")?;
     fits(segment.radius.unwrap_or(1.0), "radius")?;
     if segment.length < 0.0 || segment.radius == Some(0.0) {
@@ -227,10 +227,10 @@ fn checked(segment: &Segment, sum: f64) -> Result<(), String> {
 mod tests {
     use super::*;
 
-    fn arcs(count: u32, radius: f64, length: f64, sum: impl Fn(u32) -> f64) -> Vec<Stretch> {
-        let segment = |k| Segment { length, radius: Some(radius), turns: vec![], from: sum(k), to: sum(k + 1) };
-        let heading = Angle::Turns(0.1);
-        stretches(&Path {
+    fn arcs(count: u32, radius: f64, length: f64, sum: impl Fn(u32) -> f64) -> Vec<PreparedSegment> {
+        let segment = |k| RawSegment { length, radius: Some(radius), turns: vec![], from: sum(k), to: sum(k + 1) };
+        let heading = RawAngle::Turns(0.1);
+        stretches(&RawPath {
             start: [0.0; 2],
             heading,
             segments: (0..count).map(segment).collect(),
@@ -243,23 +243,28 @@ mod tests {
     #[test]
     fn a_range_holds_all_of_a_segment_whose_ends_are_the_same_number() {
         let tiny = &arcs(1, 1e-9, 1e-16, |_| 0.0)[0];
-        assert_eq!(tiny.range([0.0, 0.0]), [Twofold::ZERO, Twofold::from(1e-16)]);
+        assert_eq!(tiny.range([0.0, 0.0]), [DoubleDouble::ZERO, DoubleDouble::from(1e-16)]);
     }
 
     #[test]
     fn what_is_no_number_is_no_path() {
-        let segment = Segment { length: 1.0, radius: None, turns: vec![], from: 0.0, to: 1.0 };
-        let path =
-            Path { start: [0.0; 2], heading: Angle::Turns(0.0), segments: vec![segment], rounding: 0.0, step: 0.0 };
+        let segment = RawSegment { length: 1.0, radius: None, turns: vec![], from: 0.0, to: 1.0 };
+        let path = RawPath {
+            start: [0.0; 2],
+            heading: RawAngle::Turns(0.0),
+            segments: vec![segment],
+            rounding: 0.0,
+            step: 0.0,
+        };
         assert!(stretches(&path).is_ok());
-        let wrong = |change: &dyn Fn(&mut Path)| {
+        let wrong = |change: &dyn Fn(&mut RawPath)| {
             let mut other = path.clone();
             change(&mut other);
             stretches(&other).is_err()
         };
         for nothing in [f64::NAN, f64::INFINITY, -f64::INFINITY] {
             assert!(wrong(&|path| path.start[1] = nothing));
-            assert!(wrong(&|path| path.heading = Angle::Turns(nothing)));
+            assert!(wrong(&|path| path.heading = RawAngle::Turns(nothing)));
             assert!(wrong(&|path| path.segments[0].length = nothing));
             assert!(wrong(&|path| path.segments[0].radius = Some(nothing)));
             assert!(wrong(&|path| path.segments[0].from = nothing));
@@ -272,9 +277,9 @@ mod tests {
     #[test]
     fn paths_of_many_turns_are_where_they_are() {
         let line = |heading, turns: &[f64]| {
-            let turns = turns.iter().map(|&by| Angle::Radians(by)).collect();
-            let segments = vec![Segment { length: 1.0, radius: None, turns, from: 0.0, to: 1.0 }];
-            let path = Path { start: [0.0; 2], heading, segments, rounding: 0.0, step: 0.0 };
+            let turns = turns.iter().map(|&by| RawAngle::Radians(by)).collect();
+            let segments = vec![RawSegment { length: 1.0, radius: None, turns, from: 0.0, to: 1.0 }];
+            let path = RawPath { start: [0.0; 2], heading, segments, rounding: 0.0, step: 0.0 };
             let stretch = stretches(&path)?.remove(0);
             Ok::<_, String>(stretch.placed.exact.point(Ball::from(1.0)))
         };
@@ -286,30 +291,30 @@ mod tests {
             (5_419_351.0, -3.820_047_507_089_660_5e-8, 3.304_751_899_610_767_4e-24),
         ];
         for (heading, sine, rest) in sines {
-            let there = match line(Angle::Radians(heading), &[]) {
+            let there = match line(RawAngle::Radians(heading), &[]) {
                 Ok(there) => there,
                 Err(refused) => {
                     let allowed = "heading 33554431.5 is out of range; allowed is up to 1.6777216e7 in magnitude";
                     assert_eq!(refused, allowed);
-                    line(Angle::Radians(0.5 * heading), &[0.5 * heading]).unwrap()
+                    line(RawAngle::Radians(0.5 * heading), &[0.5 * heading]).unwrap()
                 }
             };
             let off = there.y - Ball::from(sine) - Ball::from(rest);
             assert!(off.to_f64().abs() <= there.y.err && there.y.err < 1e-23, "{heading}: {there:?}");
         }
         // Nothing is told of what is beyond, and it is named.
-        let refused = line(Angle::Radians(0.0), &[2e7, 2e7]).unwrap_err();
+        let refused = line(RawAngle::Radians(0.0), &[2e7, 2e7]).unwrap_err();
         let allowed = "its direction of 40000000 rad is out of range; allowed is up to 3.3554432e7 in magnitude";
         assert_eq!(refused, format!("segment 0: {allowed}"));
-        assert!(line(Angle::Radians(0.0), &[f64::NAN]).is_err());
+        assert!(line(RawAngle::Radians(0.0), &[f64::NAN]).is_err());
     }
 
     #[test]
     fn what_is_all_but_nothing_is_no_length_and_no_radius() {
-        let path = |length: f64, radius| Path {
+        let path = |length: f64, radius| RawPath {
             start: [0.0; 2],
-            heading: Angle::Turns(0.0),
-            segments: vec![Segment { length, radius, turns: vec![], from: 0.0, to: length }],
+            heading: RawAngle::Turns(0.0),
+            segments: vec![RawSegment { length, radius, turns: vec![], from: 0.0, to: length }],
             rounding: 0.0,
             step: 0.0,
         };
@@ -325,7 +330,7 @@ mod tests {
 
     #[test]
     fn bounds_stay_small_on_paths_of_a_thousand_arcs() {
-        let Carrier::Circle { centre, .. } = arcs(1000, 1.5, 1.0, f64::from)[999].placed.exact else { panic!() };
+        let BallCarrier::Circle { centre, .. } = arcs(1000, 1.5, 1.0, f64::from)[999].placed.exact else { panic!() };
         assert!(centre.x.err.max(centre.y.err) < 1e-22, "{centre:?}");
     }
 }

@@ -4,12 +4,12 @@
 //! last one (`docs/theory/certificates.md`, lemma 7). Where rounding has let it begin later, at the length u, the lengths up to u must be
 //! farther than R from all that the pieces hold of the other path, but for what another region tells: then no contact there is untold.
 
-use crate::cell::{Claim, Outcome};
-use crate::data::{Agent, Pair, Travel};
-use crate::pair::{Findings, Placed, Promise, Radii, Segments, gaps};
-use crate::path::Stretch;
-use crate::travel;
-use crate::twofold::Twofold;
+use crate::arc_length_motion;
+use crate::distance_claim::{ClaimVerdict, DistanceClaim};
+use crate::double_double::DoubleDouble;
+use crate::pair::{Findings, PairRadii, PieceOnSegments, SegmentPairPieces, TableProperty, gaps};
+use crate::path::PreparedSegment;
+use crate::raw::{RawAgent, RawMotion, RawPair};
 
 /// The distances of two agents, be they discs or outlines.
 pub(crate) trait Distances {
@@ -18,19 +18,26 @@ pub(crate) trait Distances {
         &self,
         segments: [usize; 2],
         k: usize,
-        own: [Twofold; 2],
-        other: [Twofold; 2],
+        own: [DoubleDouble; 2],
+        other: [DoubleDouble; 2],
         steps: &mut usize,
-    ) -> Outcome;
+    ) -> ClaimVerdict;
     /// Keeps what is not proved about a length of a piece of the agent `k`.
-    fn note(&self, outcome: Outcome, promise: Promise, piece: &Placed, k: usize, findings: &mut Findings);
+    fn note(
+        &self,
+        outcome: ClaimVerdict,
+        promise: TableProperty,
+        piece: &PieceOnSegments,
+        k: usize,
+        findings: &mut Findings,
+    );
 }
 
 /// Two discs.
 pub(crate) struct Discs<'a> {
-    pub(crate) stretches: [&'a [Stretch]; 2],
-    pub(crate) pair: &'a Pair,
-    pub(crate) radii: &'a Radii,
+    pub(crate) stretches: [&'a [PreparedSegment]; 2],
+    pub(crate) pair: &'a RawPair,
+    pub(crate) radii: &'a PairRadii,
 }
 
 impl Distances for Discs<'_> {
@@ -38,16 +45,23 @@ impl Distances for Discs<'_> {
         &self,
         segments: [usize; 2],
         k: usize,
-        own: [Twofold; 2],
-        other: [Twofold; 2],
+        own: [DoubleDouble; 2],
+        other: [DoubleDouble; 2],
         steps: &mut usize,
-    ) -> Outcome {
+    ) -> ClaimVerdict {
         let part = |side: usize, range| self.stretches[side][segments[side]].placed.part(range);
-        Claim::Above(self.radii.radius).decide(&part(k, own), &mut part(1 - k, other), steps)
+        DistanceClaim::Above(self.radii.radius).decide(&part(k, own), &mut part(1 - k, other), steps)
     }
 
-    fn note(&self, outcome: Outcome, promise: Promise, piece: &Placed, k: usize, findings: &mut Findings) {
-        let segments = Segments {
+    fn note(
+        &self,
+        outcome: ClaimVerdict,
+        promise: TableProperty,
+        piece: &PieceOnSegments,
+        k: usize,
+        findings: &mut Findings,
+    ) {
+        let segments = SegmentPairPieces {
             stretches: [0, 1].map(|side| &self.stretches[side][piece.segments[side]]),
             whole: [0, 1].map(|side| self.stretches[side][piece.segments[side]].placed.whole()),
             pieces: Vec::new(),
@@ -63,10 +77,10 @@ impl Distances for Discs<'_> {
 /// # Errors
 /// A region that is none: without pieces, with lengths that are not those of its pieces, without times where there are motions.
 pub(crate) fn check(
-    agents: [&Agent; 2],
-    stretches: [&[Stretch]; 2],
-    pair: &Pair,
-    pieces: &[Placed],
+    agents: [&RawAgent; 2],
+    stretches: [&[PreparedSegment]; 2],
+    pair: &RawPair,
+    pieces: &[PieceOnSegments],
     distances: &impl Distances,
     findings: &mut Findings,
 ) -> Result<(), String> {
@@ -78,13 +92,13 @@ pub(crate) fn check(
             _ => return Err(format!("region {place}: a time without a motion, or a motion without a time")),
         };
         findings.times += 1;
-        let those: Vec<&Placed> = pieces.iter().filter(|piece| piece.region == place).collect();
+        let those: Vec<&PieceOnSegments> = pieces.iter().filter(|piece| piece.region == place).collect();
         for (k, (time, travel)) in times.into_iter().enumerate() {
             let [from, to] = time;
             if !(from <= to && from.abs() < 1e15 && to.abs() < 1e15) {
                 return Err(format!("region {place}: its time from {from} to {to} s is none"));
             }
-            let told = Told { region: place, k, time, travel, agent: agents[k], lengths: region.lengths[k] };
+            let told = ReportedTime { region: place, k, time, travel, agent: agents[k], lengths: region.lengths[k] };
             for end in [0, 1] {
                 told.check(end, stretches, pair, &those, pieces, distances, findings);
             }
@@ -93,7 +107,7 @@ pub(crate) fn check(
     Ok(())
 }
 
-fn lengths_are_those_of_pieces(pair: &Pair) -> Result<(), String> {
+fn lengths_are_those_of_pieces(pair: &RawPair) -> Result<(), String> {
     let mut hulls: Vec<Option<[[f64; 2]; 2]>> = vec![None; pair.regions.len()];
     for piece in &pair.pieces {
         let hull = hulls.get_mut(piece.region).ok_or("a piece of a region that is not there")?;
@@ -107,40 +121,40 @@ fn lengths_are_those_of_pieces(pair: &Pair) -> Result<(), String> {
 }
 
 /// The time of one agent of a region.
-struct Told<'a> {
+struct ReportedTime<'a> {
     /// Of which region.
     region: usize,
     /// Which agent.
     k: usize,
     time: [f64; 2],
-    travel: &'a Travel,
-    agent: &'a Agent,
+    travel: &'a RawMotion,
+    agent: &'a RawAgent,
     lengths: [f64; 2],
 }
 
-impl Told<'_> {
+impl ReportedTime<'_> {
     /// Checks the beginning, or the end, of a region of these `pieces`.
     #[expect(clippy::too_many_arguments, reason = "what a witness is made of")]
     fn check(
         &self,
         end: usize,
-        stretches: [&[Stretch]; 2],
-        pair: &Pair,
-        pieces: &[&Placed],
-        all: &[Placed],
+        stretches: [&[PreparedSegment]; 2],
+        pair: &RawPair,
+        pieces: &[&PieceOnSegments],
+        all: &[PieceOnSegments],
         distances: &impl Distances,
         findings: &mut Findings,
     ) {
         let path = &self.agent.path;
         let full = path.segments.last().map_or(0.0, |segment| segment.to);
-        let at = |time: Twofold| travel::length_at(self.travel, time, full);
-        let since = |time: Twofold| time - Twofold::from(self.travel.start);
-        let end_of_all = Twofold::from(travel::duration(self.travel));
-        let (told, length) = (Twofold::from(self.time[end]), Twofold::from(self.lengths[end]));
-        let inward = |by: f64| Twofold::from(if end == 0 { by } else { -by });
+        let at = |time: DoubleDouble| arc_length_motion::length_at(self.travel, time, full);
+        let since = |time: DoubleDouble| time - DoubleDouble::from(self.travel.start);
+        let end_of_all = DoubleDouble::from(arc_length_motion::duration(self.travel));
+        let (told, length) = (DoubleDouble::from(self.time[end]), DoubleDouble::from(self.lengths[end]));
+        let inward = |by: f64| DoubleDouble::from(if end == 0 { by } else { -by });
         // Before it sets off an agent stands at 0, after its arrival at the end: there no time is too early or too late.
-        let always = if end == 0 { since(told) <= Twofold::ZERO } else { since(told) >= end_of_all };
-        let note = |outcome, promise, piece: &Placed, findings: &mut Findings| {
+        let always = if end == 0 { since(told) <= DoubleDouble::ZERO } else { since(told) >= end_of_all };
+        let note = |outcome, promise, piece: &PieceOnSegments, findings: &mut Findings| {
             distances.note(outcome, promise, piece, self.k, findings);
         };
         if !always {
@@ -148,85 +162,88 @@ impl Told<'_> {
             let reached = at(told)[1 - end] + inward(path.rounding);
             let strip = if end == 0 { [length, reached] } else { [reached, length] };
             if strip[0] <= strip[1] {
-                let told =
-                    |piece: &&Placed| self.is_told(strip, pair.regions[piece.region].times.map(|times| times[self.k]));
-                let elsewhere: Vec<&Placed> =
+                let told = |piece: &&PieceOnSegments| {
+                    self.is_told(strip, pair.regions[piece.region].times.map(|times| times[self.k]))
+                };
+                let elsewhere: Vec<&PieceOnSegments> =
                     all.iter().filter(|piece| piece.region != self.region).filter(told).collect();
                 for piece in pieces {
                     let outcome = self.strip_is_clear(strip, stretches, piece, &elsewhere, distances, findings);
-                    note(outcome, Promise::Timed, piece, findings);
+                    note(outcome, TableProperty::Timed, piece, findings);
                 }
             }
         }
         // For messages the piece that the end is of.
-        let is_its_end = |piece: &&&Placed| {
+        let is_its_end = |piece: &&&PieceOnSegments| {
             let stretch = &stretches[self.k][piece.segments[self.k]];
-            stretch.holds(self.lengths[end]) && piece.lengths[self.k][end] == stretch.range([self.lengths[end]; 2])[end]
+            stretch.contains(self.lengths[end])
+                && piece.lengths[self.k][end] == stretch.range([self.lengths[end]; 2])[end]
         };
         let Some(piece) = pieces.iter().find(is_its_end).or(pieces.first()) else { return };
         let by_then = told + inward(self.travel.time_excess);
         let [lo, hi] = at(by_then);
-        let latest = end_of_all + Twofold::from(self.travel.time_excess);
+        let latest = end_of_all + DoubleDouble::from(self.travel.time_excess);
         // The phases that it goes through may be off by so much of its way.
-        let lag = Twofold::from(self.travel.lag);
+        let lag = DoubleDouble::from(self.travel.lag);
         // Whether it is certain to have been there by then, or to be there no more; and whether it is certain not to.
         let (passed, not_yet) = match end {
-            0 if self.lengths[0] <= 0.0 => (since(told) >= Twofold::ZERO, since(told) < Twofold::ZERO),
+            0 if self.lengths[0] <= 0.0 => (since(told) >= DoubleDouble::ZERO, since(told) < DoubleDouble::ZERO),
             0 => (lo + lag >= length || since(by_then) >= end_of_all, hi + lag < length),
             _ if self.lengths[1] >= full => (since(told) <= latest, since(told) > latest),
-            _ => (hi - lag <= length || since(by_then) <= Twofold::ZERO, lo - lag > length),
+            _ => (hi - lag <= length || since(by_then) <= DoubleDouble::ZERO, lo - lag > length),
         };
         let place = piece.lengths[self.k][end];
         let outcome = match (passed, not_yet) {
-            (true, _) => Outcome::Proved,
-            (_, true) => Outcome::Refuted(place),
-            _ => Outcome::Undecided(place),
+            (true, _) => ClaimVerdict::Proved,
+            (_, true) => ClaimVerdict::Refuted(place),
+            _ => ClaimVerdict::Undecided(place),
         };
-        note(outcome, Promise::Prompt, piece, findings);
+        note(outcome, TableProperty::Prompt, piece, findings);
     }
 
     /// Whether the agent is within the lengths of a strip at no other times than these.
-    fn is_told(&self, strip: [Twofold; 2], time: Option<[f64; 2]>) -> bool {
+    fn is_told(&self, strip: [DoubleDouble; 2], time: Option<[f64; 2]>) -> bool {
         let Some(time) = time else { return false };
         let [full, rounding] = [self.agent.path.segments.last().map_or(0.0, |last| last.to), self.agent.path.rounding];
         let [begin, end] = time.map(|time| {
-            let since = Twofold::from(time) - Twofold::from(self.travel.start);
-            (since, travel::length_at(self.travel, Twofold::from(time), full))
+            let since = DoubleDouble::from(time) - DoubleDouble::from(self.travel.start);
+            (since, arc_length_motion::length_at(self.travel, DoubleDouble::from(time), full))
         });
-        (begin.0 <= Twofold::ZERO || begin.1[1] + Twofold::from(rounding) < strip[0])
-            && (end.0 >= Twofold::from(travel::duration(self.travel)) || end.1[0] - Twofold::from(rounding) > strip[1])
+        (begin.0 <= DoubleDouble::ZERO || begin.1[1] + DoubleDouble::from(rounding) < strip[0])
+            && (end.0 >= DoubleDouble::from(arc_length_motion::duration(self.travel))
+                || end.1[0] - DoubleDouble::from(rounding) > strip[1])
     }
 
     /// Whether no length of a strip that the piece holds is within R of what it holds of the other path and other pieces do not.
     fn strip_is_clear(
         &self,
-        strip: [Twofold; 2],
-        stretches: [&[Stretch]; 2],
-        piece: &Placed,
-        elsewhere: &[&Placed],
+        strip: [DoubleDouble; 2],
+        stretches: [&[PreparedSegment]; 2],
+        piece: &PieceOnSegments,
+        elsewhere: &[&PieceOnSegments],
         distances: &impl Distances,
         findings: &mut Findings,
-    ) -> Outcome {
+    ) -> ClaimVerdict {
         let other = 1 - self.k;
         let own = &stretches[self.k][piece.segments[self.k]];
         let [from, to] = piece.lengths[self.k];
-        let Some(strip) = own.common(strip) else { return Outcome::Proved };
+        let Some(strip) = own.common(strip) else { return ClaimVerdict::Proved };
         let lo = if from < strip[0] { strip[0] } else { from };
         let hi = if strip[1] < to { strip[1] } else { to };
         if hi < lo {
-            return Outcome::Proved;
+            return ClaimVerdict::Proved;
         }
-        let holds = |it: &&&Placed| {
+        let holds = |it: &&&PieceOnSegments| {
             let [from, to] = it.lengths[self.k];
             it.segments == piece.segments && from <= lo && hi <= to
         };
         let held = elsewhere.iter().filter(holds).map(|it| it.lengths[other]).collect();
         for left in gaps(held, piece.lengths[other]) {
             let outcome = distances.are_clear(piece.segments, self.k, [lo, hi], left, &mut findings.steps);
-            if !matches!(outcome, Outcome::Proved) {
+            if !matches!(outcome, ClaimVerdict::Proved) {
                 return outcome;
             }
         }
-        Outcome::Proved
+        ClaimVerdict::Proved
     }
 }

@@ -1,13 +1,13 @@
 //! A whole table: every pair of agents, every pair of their segments.
 
+use crate::arc_length_motion;
 use crate::ball::Ball;
-use crate::cell::Both;
-use crate::data::{Agent, Pair, Table};
-use crate::near::{Area, Near, area};
-use crate::pair::{Findings, Radii, Segments, pieces_of};
-use crate::path::{LEAST, Stretch, stretches};
-use crate::travel;
-use crate::twofold::Twofold;
+use crate::box_index::{BoxIndex, PlainBox, area};
+use crate::distance_claim::DualPrecisionPart;
+use crate::double_double::DoubleDouble;
+use crate::pair::{Findings, PairRadii, SegmentPairPieces, pieces_of};
+use crate::path::{LEAST, PreparedSegment, stretches};
+use crate::raw::{RawAgent, RawPair, RawTable};
 use crate::{regions, segments};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
@@ -18,7 +18,7 @@ const TOLD_BESIDE: f64 = 1.5;
 
 /// How much farther than R contacts have to be covered.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Margin {
+pub enum CoverageMargin {
     /// As far as all queries of the library need it: it looks up lengths that are off by the lag of the motion and by the rounding
     /// of the path's, and an interval of the second path by its middle, which takes ε/4.
     Needed,
@@ -28,9 +28,9 @@ pub enum Margin {
 
 /// A disc with its path in the plane.
 #[derive(Clone, Debug)]
-pub struct Placed<'a> {
-    agent: &'a Agent,
-    stretches: Vec<Stretch>,
+pub struct PreparedAgent<'a> {
+    agent: &'a RawAgent,
+    stretches: Vec<PreparedSegment>,
     /// By how much an arc is longer than one turn at most \[m\].
     over: f64,
 }
@@ -38,23 +38,23 @@ pub struct Placed<'a> {
 /// A table whose numbers have been looked through.
 #[derive(Clone, Debug)]
 pub struct Checker<'a> {
-    agents: Vec<Placed<'a>>,
-    pairs: &'a [Pair],
+    agents: Vec<PreparedAgent<'a>>,
+    pairs: &'a [RawPair],
     apart: Option<f64>,
 }
 
 /// Who may come near whom: of these a table has to tell the regions.
 #[derive(Clone, Debug)]
-pub struct Close(Near);
+pub struct ProximityIndex(BoxIndex);
 
-impl Close {
+impl ProximityIndex {
     /// Those of a table whose pairs have an ε of this at most \[m\].
     ///
     /// # Errors
     /// A path that is none.
-    pub fn new(agents: &[Agent], excess: f64) -> Result<Self, String> {
-        let area = |agent: &Agent| Ok(reach(agent, &stretches(&agent.path)?, excess));
-        Ok(Self(Near::new(agents.iter().map(area).collect::<Result<_, String>>()?)))
+    pub fn new(agents: &[RawAgent], excess: f64) -> Result<Self, String> {
+        let area = |agent: &RawAgent| Ok(swept_box(agent, &stretches(&agent.path)?, excess));
+        Ok(Self(BoxIndex::new(agents.iter().map(area).collect::<Result<_, String>>()?)))
     }
 
     /// Places behind this one that may come near it, in order.
@@ -65,7 +65,7 @@ impl Close {
 
 /// The box of all that an agent passes. Two agents whose boxes do not meet are nowhere within R and all that has to be covered or may
 /// be told beyond it: that is ε, or what their lengths are off, at most.
-fn reach(agent: &Agent, stretches: &[Stretch], excess: f64) -> Area {
+fn swept_box(agent: &RawAgent, stretches: &[PreparedSegment], excess: f64) -> PlainBox {
     let off = agent.path.rounding + agent.travel.as_ref().map_or(0.0, |travel| travel.lag);
     area(stretches, ((agent.radius + off).next_up() + excess).next_up())
 }
@@ -75,7 +75,7 @@ impl<'a> Checker<'a> {
     ///
     /// # Errors
     /// What is wrong with the table: numbers out of range, a path that is none, a pair that is missing or there twice.
-    pub fn new(table: &'a Table) -> Result<Self, String> {
+    pub fn new(table: &'a RawTable) -> Result<Self, String> {
         let agents = table.agents.iter().enumerate().map(|(place, agent)| {
             let wrong = |problem: String| format!("agent {} (place {place}): {problem}", agent.id);
             let numbers = [agent.radius, agent.path.rounding, agent.travel.as_ref().map_or(0.0, |travel| travel.lag)];
@@ -83,10 +83,10 @@ impl<'a> Checker<'a> {
                 return Err(wrong("a radius, rounding or lag is out of range".into()));
             }
             let stretches = stretches(&agent.path).map_err(wrong)?;
-            travel::checked(agent).and_then(|()| travel::arrives(agent)).map_err(wrong)?;
+            arc_length_motion::checked(agent).and_then(|()| arc_length_motion::arrives(agent)).map_err(wrong)?;
             let arcs = agent.path.segments.iter().filter_map(|segment| Some((segment.length, segment.radius?.abs())));
             let over = arcs.map(|(length, radius)| length - TAU * radius).fold(0.0, f64::max);
-            Ok(Placed { agent, stretches, over })
+            Ok(PreparedAgent { agent, stretches, over })
         });
         let checker = Self { agents: agents.collect::<Result<_, _>>()?, pairs: &table.pairs, apart: table.apart };
         checker.all_pairs_are_there()?;
@@ -129,9 +129,9 @@ impl<'a> Checker<'a> {
         if !(LEAST..1e15).contains(&excess) {
             return Err("the excess of those that are left out is out of range".into());
         }
-        let area = |placed: &Placed<'_>| reach(placed.agent, &placed.stretches, excess);
+        let area = |placed: &PreparedAgent<'_>| swept_box(placed.agent, &placed.stretches, excess);
         let (near, id) =
-            (Near::new(self.agents.iter().map(area).collect()), |place: usize| self.agents[place].agent.id);
+            (BoxIndex::new(self.agents.iter().map(area).collect()), |place: usize| self.agents[place].agent.id);
         let missing = |a: usize| near.after(a).into_iter().find(|&b| id(a) != id(b) && !there.contains(&[a, b]));
         match (0..self.agents.len()).find_map(|a| missing(a).map(|b| (a, b))) {
             Some((a, b)) => Err(format!("the pair of places {a} and {b} is missing, and they come near one another")),
@@ -143,7 +143,7 @@ impl<'a> Checker<'a> {
     ///
     /// # Errors
     /// A piece that is none.
-    pub fn check(&self, margin: Margin) -> Result<Findings, String> {
+    pub fn check(&self, margin: CoverageMargin) -> Result<Findings, String> {
         self.watched(margin, &|_| {})
     }
 
@@ -151,7 +151,7 @@ impl<'a> Checker<'a> {
     ///
     /// # Errors
     /// A piece that is none.
-    pub fn watched(&self, margin: Margin, told: &dyn Fn(usize)) -> Result<Findings, String> {
+    pub fn watched(&self, margin: CoverageMargin, told: &dyn Fn(usize)) -> Result<Findings, String> {
         let wholes = self.wholes();
         let mut findings = Findings::default();
         for (checked, pair) in self.pairs.iter().enumerate() {
@@ -161,29 +161,35 @@ impl<'a> Checker<'a> {
         Ok(findings)
     }
 
-    fn wholes(&self) -> Vec<Vec<Both<'_>>> {
+    fn wholes(&self) -> Vec<Vec<DualPrecisionPart<'_>>> {
         self.agents.iter().map(|agent| agent.stretches.iter().map(|stretch| stretch.placed.whole()).collect()).collect()
     }
 
-    fn radii(&self, pair: &Pair, margin: Margin) -> Radii {
+    fn radii(&self, pair: &RawPair, margin: CoverageMargin) -> PairRadii {
         let [first, second] = pair.agents.map(|place| self.agents[place].agent);
         let rounding =
             [first, second].map(|agent| agent.path.rounding + agent.travel.as_ref().map_or(0.0, |travel| travel.lag));
         let more = match margin {
-            Margin::Needed => rounding[0].max(rounding[1]).max(0.25 * pair.excess),
-            Margin::Epsilons(part) => part * pair.excess,
+            CoverageMargin::Needed => rounding[0].max(rounding[1]).max(0.25 * pair.excess),
+            CoverageMargin::Epsilons(part) => part * pair.excess,
         };
-        let number = Ball::<Twofold>::from;
+        let number = Ball::<DoubleDouble>::from;
         let radius = number(first.radius) + number(second.radius);
-        Radii {
+        PairRadii {
             radius,
             covered: radius + number(more),
-            told: radius + number(pair.excess),
-            beside: radius + number(TOLD_BESIDE * pair.excess),
+            reported: radius + number(pair.excess),
+            beside_large_arc: radius + number(TOLD_BESIDE * pair.excess),
         }
     }
 
-    fn pair(&self, pair: &Pair, wholes: &[Vec<Both<'a>>], radii: Radii, tells: bool) -> Result<Findings, String>
+    fn pair(
+        &self,
+        pair: &RawPair,
+        wholes: &[Vec<DualPrecisionPart<'a>>],
+        radii: PairRadii,
+        tells: bool,
+    ) -> Result<Findings, String>
     where
         Self: 'a,
     {
@@ -196,7 +202,7 @@ impl<'a> Checker<'a> {
             for (j, other) in second.iter().enumerate() {
                 let begin = pieces.partition_point(|piece| piece.segments < [i, j]);
                 let those = pieces[begin..].iter().take_while(|piece| piece.segments == [i, j]);
-                let mut segments = Segments {
+                let mut segments = SegmentPairPieces {
                     stretches: [own, other],
                     whole: [wholes[a][i].clone(), wholes[b][j].clone()],
                     pieces: those.map(|piece| (piece.lengths, piece.share)).collect(),
@@ -229,8 +235,8 @@ impl<'a> Checker<'a> {
     pub fn margin_below(&self, known: f64) -> Result<Option<(f64, usize)>, String> {
         const STEPS: u32 = 12;
         let wholes = self.wholes();
-        let holds = |pair: &Pair, part: f64| {
-            let found = self.pair(pair, &wholes, self.radii(pair, Margin::Epsilons(part)), false);
+        let holds = |pair: &RawPair, part: f64| {
+            let found = self.pair(pair, &wholes, self.radii(pair, CoverageMargin::Epsilons(part)), false);
             found.map(|found| found.refuted.is_empty() && found.undecided.is_empty())
         };
         let (mut least, mut place_of_least) = (known, None);

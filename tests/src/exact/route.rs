@@ -2,25 +2,25 @@
 //!
 //! A point is evaluated in `f64` first. That decides all but what is close to contact; the rest is decided with 106 bits.
 
-use super::Twofold;
+use super::DoubleDouble;
 use crate::disc::{Disc, Leg};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 
 /// Abscissa and ordinate \[m\].
-pub type Place = [Twofold; 2];
+pub type Place = [DoubleDouble; 2];
 
 /// A path.
 #[derive(Clone, Debug)]
 pub struct Route {
     pieces: Vec<Piece>,
     start: Place,
-    length: Twofold,
+    length: DoubleDouble,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Piece {
-    from: Twofold,
-    length: Twofold,
+    from: DoubleDouble,
+    length: DoubleDouble,
     start: Place,
     /// Cosine and sine of the heading at the start.
     heading: Place,
@@ -34,11 +34,11 @@ fn turned([x, y]: Place, [cos, sin]: Place) -> Place {
 
 impl Piece {
     /// The integral of the unit vector of the heading over the first `u` metres: `2ϱ sin(h) e(h)`, `h = u / 2ϱ`.
-    fn at(&self, u: Twofold) -> Place {
+    fn at(&self, u: DoubleDouble) -> Place {
         let way = match self.bend {
-            None => [u, Twofold::ZERO],
+            None => [u, DoubleDouble::ZERO],
             Some(bend) => {
-                let (sin, cos) = (u / Twofold::from(bend)).half().sin_cos();
+                let (sin, cos) = (u / DoubleDouble::from(bend)).half().sin_cos();
                 let chord = sin * (2.0 * bend);
                 [chord * cos, chord * sin]
             }
@@ -56,21 +56,21 @@ impl Piece {
                 [chord * cos, chord * sin]
             }
         };
-        let [cos, sin] = self.heading.map(Twofold::to_f64);
-        let [x0, y0] = self.start.map(Twofold::to_f64);
+        let [cos, sin] = self.heading.map(DoubleDouble::to_f64);
+        let [x0, y0] = self.start.map(DoubleDouble::to_f64);
         [x0 + x * cos - y * sin, y0 + x * sin + y * cos]
     }
 }
 
 impl Route {
     /// The path of a disc whose numbers are numbers of the format, as [`Disc::rounded`] makes them.
-    pub fn new<S: Format>(disc: &Disc) -> Self {
+    pub fn new<S: HostScalar>(disc: &Disc) -> Self {
         let [x, y, heading] = disc.start;
-        let start = [x, y].map(Twofold::from);
-        let mut angle = Twofold::from(S::radians(S::angle(heading).expect("an angle")));
-        let (mut at, mut from, mut pieces) = (start, Twofold::ZERO, Vec::with_capacity(disc.legs.len()));
+        let start = [x, y].map(DoubleDouble::from);
+        let mut angle = DoubleDouble::from(S::radians(S::angle(heading).expect("an angle")));
+        let (mut at, mut from, mut pieces) = (start, DoubleDouble::ZERO, Vec::with_capacity(disc.legs.len()));
         for leg in disc.legs.iter().filter(|leg| leg.length() > 0.0) {
-            let length = Twofold::from(leg.length());
+            let length = DoubleDouble::from(leg.length());
             let bend = match *leg {
                 Leg::Line(_) => None,
                 Leg::Left { radius, .. } => Some(radius),
@@ -80,7 +80,7 @@ impl Route {
             let piece = Piece { from, length, start: at, heading: [cos, sin], bend };
             at = piece.at(length);
             if let Some(bend) = bend {
-                angle = angle + length / Twofold::from(bend);
+                angle = angle + length / DoubleDouble::from(bend);
             }
             from = from + length;
             pieces.push(piece);
@@ -89,23 +89,23 @@ impl Route {
     }
 
     /// Total length \[m\].
-    pub fn length(&self) -> Twofold {
+    pub fn length(&self) -> DoubleDouble {
         self.length
     }
 
-    fn locate(&self, length: Twofold) -> Option<(&Piece, Twofold)> {
+    fn locate(&self, length: DoubleDouble) -> Option<(&Piece, DoubleDouble)> {
         let after = self.pieces.partition_point(|piece| piece.from <= length);
         let piece = self.pieces.get(after.saturating_sub(1))?;
-        Some((piece, (length - piece.from).clamp(Twofold::ZERO, piece.length)))
+        Some((piece, (length - piece.from).clamp(DoubleDouble::ZERO, piece.length)))
     }
 
     /// Position at a travelled length \[m\], limited to the path.
-    pub fn at(&self, length: Twofold) -> Place {
+    pub fn at(&self, length: DoubleDouble) -> Place {
         self.locate(length).map_or(self.start, |(piece, u)| piece.at(u))
     }
 
     /// Distance of a point from the leg of this index, legs of length 0 not counted \[m\].
-    pub fn distance(&self, leg: usize, from: Place) -> Twofold {
+    pub fn distance(&self, leg: usize, from: Place) -> DoubleDouble {
         let norm = |[x, y]: Place| (x * x + y * y).sqrt();
         let apart = |p: Place| norm([from[0] - p[0], from[1] - p[1]]);
         let Some(piece) = self.pieces.get(leg) else {
@@ -113,13 +113,13 @@ impl Route {
         };
         let [cos, sin] = piece.heading;
         let [x, y] = turned([from[0] - piece.start[0], from[1] - piece.start[1]], [cos, -sin]);
-        let ends = [piece.at(Twofold::ZERO), piece.at(piece.length)].map(apart);
+        let ends = [piece.at(DoubleDouble::ZERO), piece.at(piece.length)].map(apart);
         let nearer = if ends[0] < ends[1] { ends[0] } else { ends[1] };
         // A foot misplaced by rounding beside an end is off by the square of that.
         match piece.bend {
-            None if x > Twofold::ZERO && x < piece.length => y.abs(),
+            None if x > DoubleDouble::ZERO && x < piece.length => y.abs(),
             Some(bend) => {
-                let (side, radius) = (bend.signum(), Twofold::from(bend.abs()));
+                let (side, radius) = (bend.signum(), DoubleDouble::from(bend.abs()));
                 let below = radius - y * side;
                 let foot = x.to_f64().atan2(below.to_f64()).rem_euclid(std::f64::consts::TAU) * bend.abs();
                 if foot <= piece.length.to_f64() { (norm([x, below]) - radius).abs() } else { nearer }
@@ -129,8 +129,8 @@ impl Route {
     }
 
     /// A position in `f64`: off by some 2^-53 of the coordinates and of the length of one leg.
-    pub fn near(&self, length: Twofold) -> [f64; 2] {
-        self.locate(length).map_or(self.start.map(Twofold::to_f64), |(piece, u)| piece.near(u.to_f64()))
+    pub fn near(&self, length: DoubleDouble) -> [f64; 2] {
+        self.locate(length).map_or(self.start.map(DoubleDouble::to_f64), |(piece, u)| piece.near(u.to_f64()))
     }
 }
 
@@ -149,7 +149,7 @@ mod tests {
             for k in 0..=20 {
                 let length = disc.length() * f64::from(k) / 20.0;
                 let (exact, near, sum) = (route.at(length.into()), route.near(length.into()), other.at(length));
-                let [x, y] = exact.map(Twofold::to_f64);
+                let [x, y] = exact.map(DoubleDouble::to_f64);
                 assert!((x - near[0]).hypot(y - near[1]) < 4e-15 * scale, "seed {seed}: {exact:?} {near:?}");
                 assert!((x - sum.0).hypot(y - sum.1) < 4e-14 * scale, "seed {seed}: {exact:?} {sum:?}");
             }

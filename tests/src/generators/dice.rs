@@ -1,6 +1,6 @@
 //! Choices from a list of numbers in [0, 1).
 
-use pcr_formats::random::Random;
+use pcr_formats::splitmix64::SplitMix64;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Numbers that a pair uses at most; what is asked beyond is 0.
@@ -21,7 +21,7 @@ impl Dice {
 
     /// Choices from a seed (splitmix64).
     pub fn seeded(seed: u64) -> Self {
-        let mut random = Random(seed);
+        let mut random = SplitMix64(seed);
         Self::new((0..FACES).map(|_| random.unit()).collect())
     }
 

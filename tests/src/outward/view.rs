@@ -2,12 +2,12 @@
 
 use super::search::{bisect, descend, valley};
 use super::{Seen, Violation};
-use crate::exact::{Route, Travel, Twofold};
+use crate::exact::{DoubleDouble, Route, Travel};
 use crate::generators::Dice;
 use crate::neighbour::neighbour;
 use crate::oracle::line;
 use pcr_core::{Interval, Motion, RegionRef};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 
 macro_rules! ensure {
     ($condition:expr, $($message:tt)+) => {
@@ -19,11 +19,11 @@ macro_rules! ensure {
 }
 
 /// An ordered pair: the ego first.
-pub(super) struct View<'a, S: Format> {
+pub(super) struct View<'a, S: HostScalar> {
     pub(super) motions: [&'a Motion<'a, S>; 2],
     pub(super) routes: [&'a Route; 2],
     pub(super) travel: Travel,
-    pub(super) radius: Twofold,
+    pub(super) radius: DoubleDouble,
     pub(super) doubt: f64,
     pub(super) regions: Vec<RegionRef<'a, S>>,
     /// Stated excess of these regions \[m\].
@@ -31,13 +31,13 @@ pub(super) struct View<'a, S: Format> {
 }
 
 /// What 106 bits may be off at this magnitude.
-fn noise(value: Twofold) -> Twofold {
+fn noise(value: DoubleDouble) -> DoubleDouble {
     value.abs() * 1e-28
 }
 
-impl<'a, S: Format> View<'a, S> {
+impl<'a, S: HostScalar> View<'a, S> {
     /// Signed distance from contact at a length of the other's path and one of the ego's \[m\].
-    fn exact(&self, s: Twofold, l: Twofold, seen: &mut Seen) -> f64 {
+    fn exact(&self, s: DoubleDouble, l: DoubleDouble, seen: &mut Seen) -> f64 {
         seen.decided += 1;
         let (p, q) = (self.routes[0].at(l), self.routes[1].at(s));
         let [x, y] = [p[0] - q[0], p[1] - q[1]];
@@ -51,7 +51,7 @@ impl<'a, S: Format> View<'a, S> {
     }
 
     /// The side of `threshold` on which the clearance lies, exactly: whether it is above.
-    fn above(&self, s: Twofold, l: Twofold, threshold: f64, seen: &mut Seen) -> bool {
+    fn above(&self, s: DoubleDouble, l: DoubleDouble, threshold: f64, seen: &mut Seen) -> bool {
         let rough = self.near(s.to_f64(), l.to_f64()) - threshold;
         if rough.abs() > self.doubt { rough > 0.0 } else { self.exact(s, l, seen) > threshold }
     }
@@ -64,7 +64,7 @@ impl<'a, S: Format> View<'a, S> {
     fn point(&self, time: S, length: S, seen: &mut Seen) -> Result<(), Violation> {
         let length = length.clamp(S::ZERO, self.motions[0].path().length());
         let s = self.travel.length_at(time.to_f64().into());
-        let l = Twofold::from(length.to_f64());
+        let l = DoubleDouble::from(length.to_f64());
         let mut holding = self.regions.iter().filter(|region| region.contains(time, length)).peekable();
         if !self.above(s, l, 0.0, seen) {
             seen.inside += 1;
@@ -93,19 +93,19 @@ impl<'a, S: Format> View<'a, S> {
     }
 
     /// Whether the ranges of a region hold a point of it, at the exact length `s` of the other path.
-    fn tells(&self, holder: &RegionRef<'_, S>, length: S, s: Twofold) -> Result<(), Violation> {
+    fn tells(&self, holder: &RegionRef<'_, S>, length: S, s: DoubleDouble) -> Result<(), Violation> {
         ensure!(holder.length().contains(length), "{length:?} is outside the length range {:?}", holder.length());
         let range = holder.other_length();
         let end = self.lengths()[1];
         ensure!(
-            Twofold::from(range.lo.to_f64()) <= s && (s <= range.hi.to_f64().into() || range.hi.to_f64() >= end),
+            DoubleDouble::from(range.lo.to_f64()) <= s && (s <= range.hi.to_f64().into() || range.hi.to_f64() >= end),
             "{s:?} is outside the length range {range:?}"
         );
         let [first, last] = self.travel.times_at(s);
         let range = holder.time();
         ensure!(
-            Twofold::from(range.lo.to_f64()) - noise(first) <= first
-                && last <= Twofold::from(range.hi.to_f64()) + noise(last),
+            DoubleDouble::from(range.lo.to_f64()) - noise(first) <= first
+                && last <= DoubleDouble::from(range.hi.to_f64()) + noise(last),
             "{first:?} to {last:?} is outside the time range {range:?}"
         );
         Ok(())
@@ -132,7 +132,7 @@ impl<'a, S: Format> View<'a, S> {
         &self,
         region: &RegionRef<'a, S>,
         time: S,
-        s: Twofold,
+        s: DoubleDouble,
         slice: Interval<S>,
         seen: &mut Seen,
     ) -> Result<(), Violation> {
@@ -165,7 +165,7 @@ impl<'a, S: Format> View<'a, S> {
         const SAMPLES: usize = 8;
         const WALKS: usize = 2;
         let [ego, other] = self.lengths();
-        let [departure, arrival] = self.travel.time().map(Twofold::to_f64);
+        let [departure, arrival] = self.travel.time().map(DoubleDouble::to_f64);
         let span = arrival - departure;
         // In time, and a little before and after the travel.
         let at = |t: f64| self.travel.length_at(t.into()).to_f64();
@@ -182,7 +182,7 @@ impl<'a, S: Format> View<'a, S> {
         let deepest = points.iter().copied().min_by(|a, b| value(*a).total_cmp(&value(*b))).expect("samples");
         let deepest = if value(deepest) > 0.0 {
             let [s, l] = descend(|[s, l]| self.near(s, l), [at(deepest[0]), deepest[1]], [other, ego]);
-            let [first, last] = self.travel.times_at(s.into()).map(Twofold::to_f64);
+            let [first, last] = self.travel.times_at(s.into()).map(DoubleDouble::to_f64);
             let t = first + 0.5 * (last - first);
             self.around([t, l], seen)?;
             [t, l]
@@ -215,9 +215,9 @@ impl<'a, S: Format> View<'a, S> {
 
     /// The ends of ranges are within the excess of a collision; times are those of the lengths, rounded outward.
     pub(super) fn ranges(&self, dice: &mut Dice, seen: &mut Seen) -> Result<(), Violation> {
-        let exact = |value: S| Twofold::from(value.to_f64());
+        let exact = |value: S| DoubleDouble::from(value.to_f64());
         // A time may be off by its own rounding, and by that of a length: where the agent is slow that is more.
-        let (allowed, half) = (exact(self.motions[1].time_excess()), Twofold::from(0.5 * self.excess));
+        let (allowed, half) = (exact(self.motions[1].time_excess()), DoubleDouble::from(0.5 * self.excess));
         for region in &self.regions {
             let (s, l, time) = (region.other_length(), region.length(), region.time());
             // The end of the path is where the library sums it up to.

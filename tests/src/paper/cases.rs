@@ -4,7 +4,7 @@
 use super::arc_arc::centre_distance;
 use super::{Arc, Pcr};
 use pcr_core::PieceType;
-use pcr_formats::random::Random;
+use pcr_formats::splitmix64::SplitMix64;
 use std::f64::consts::FRAC_PI_2;
 
 /// How far, in radii, a case stays away from contacts that touch without crossing \[1\]. There the ends of a range
@@ -24,7 +24,7 @@ pub fn of_type(piece_type: PieceType, each: usize) -> Vec<Pcr> {
     };
     let turns = |arc: bool| if arc { vec![Some(1.0), Some(-1.0)] } else { vec![None] };
     let sizes = if own_arc || other_arc { [0.0, 0.5, 1.0].as_slice() } else { [0.0].as_slice() };
-    let mut random = Random(0x50c5 + piece_type as u64);
+    let mut random = SplitMix64(0x50c5 + piece_type as u64);
     let mut cases = Vec::new();
     for quadrant in 0..4 {
         for own in turns(own_arc) {
@@ -41,20 +41,20 @@ pub fn of_type(piece_type: PieceType, each: usize) -> Vec<Pcr> {
 }
 
 /// A case of one class, drawn until it is clear of tangency.
-fn clear_case(random: &mut Random, quadrant: i32, own: Option<f64>, other: Option<f64>, size: f64) -> Pcr {
+fn clear_case(random: &mut SplitMix64, quadrant: i32, own: Option<f64>, other: Option<f64>, size: f64) -> Pcr {
     loop {
-        let mut arc = |dir: Option<f64>| dir.map(|dir| Arc { radius: random.within(0.3, 2.5), dir });
+        let mut arc = |dir: Option<f64>| dir.map(|dir| Arc { radius: random.uniform(0.3, 2.5), dir });
         let (own, other) = (arc(own), arc(other));
         let radii: Vec<f64> = [own, other].iter().flatten().map(|arc| arc.radius).collect();
         let smallest = radii.iter().copied().fold(1.0, f64::min);
         let largest = radii.iter().copied().fold(smallest, f64::max);
         let r = match size {
-            0.0 => random.within(0.1, 0.9) * smallest,
-            1.0 => random.within(1.1, 2.5) * largest,
-            _ => random.within(smallest, largest),
+            0.0 => random.uniform(0.1, 0.9) * smallest,
+            1.0 => random.uniform(1.1, 2.5) * largest,
+            _ => random.uniform(smallest, largest),
         };
-        let theta = f64::from(quadrant) * FRAC_PI_2 + random.within(LEAST_ANGLE, FRAC_PI_2 - LEAST_ANGLE);
-        let pcr = Pcr { r, v: random.within(0.2, 1.5), theta, own, other };
+        let theta = f64::from(quadrant) * FRAC_PI_2 + random.uniform(LEAST_ANGLE, FRAC_PI_2 - LEAST_ANGLE);
+        let pcr = Pcr { r, v: random.uniform(0.2, 1.5), theta, own, other };
         if is_clear(&pcr) {
             return pcr;
         }

@@ -3,7 +3,7 @@
 
 use super::{Arc, Pcr, Range};
 use pcr_core::{
-    Crossing, Ecm, Motion, PathRef, Piece, Point, Pose, Profile, Radians, Region, Segment, Turn, crossings,
+    Crossing, Ecm, EcmEntry, Motion, PathRef, Piece, Point, Pose, Profile, Radians, Segment, TurnSide, crossings,
 };
 use std::f64::consts::PI;
 
@@ -35,7 +35,7 @@ impl Track {
             last = match arc {
                 None => last.then_line(LINE),
                 Some(Arc { radius, dir }) => {
-                    last.then_arc(radius, if dir > 0.0 { Turn::Left } else { Turn::Right }, PI * radius)
+                    last.then_arc(radius, if dir > 0.0 { TurnSide::Left } else { TurnSide::Right }, PI * radius)
                 }
             }
             .expect("a valid segment");
@@ -84,7 +84,7 @@ pub fn find(pcr: &Pcr, ego_first: bool, times: &[f64]) -> Found {
     let grown = Motion::new(other_path, other_profile.as_profile(), radius, 0.0).expect("a motion");
     let (fleet, ego_index) = if ego_first { ([ego, grown], 0) } else { ([grown, ego], 1) };
 
-    let ecm = Ecm::build(vec![Region::EMPTY; 256], vec![Piece::EMPTY; 1024], &fleet).expect("enough room");
+    let ecm = Ecm::build(vec![EcmEntry::EMPTY; 256], vec![Piece::EMPTY; 1024], &fleet).expect("enough room");
     let origin = [other.before / pcr.v, own.before];
     let [big_t, big_l] = origin;
     let mut holding = ecm

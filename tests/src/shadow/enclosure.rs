@@ -1,27 +1,27 @@
 //! Numbers of 106 bits with a bound on how far they are off: what a number of any format would be without rounding.
 
 use pcr_certify::ball::Ball;
-use pcr_certify::twofold::Twofold;
+use pcr_certify::double_double::DoubleDouble;
 use std::f64::consts::{PI, TAU};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Holds a number that is not known exactly.
 #[derive(Clone, Copy, Debug)]
-pub struct Enclosure(Ball<Twofold>);
+pub struct Enclosure(Ball<DoubleDouble>);
 
 impl Enclosure {
     /// Any number.
-    pub const ALL: Self = Self(Ball { mid: Twofold::ZERO, err: f64::INFINITY });
-    /// 2π, which `Twofold` has within 2^-106.
-    pub const TURN: Self = Self(Ball { mid: Twofold::TURN, err: 1e-30 });
+    pub const ALL: Self = Self(Ball { mid: DoubleDouble::ZERO, err: f64::INFINITY });
+    /// 2π, which `DoubleDouble` has within 2^-106.
+    pub const TURN: Self = Self(Ball { mid: DoubleDouble::TURN, err: 1e-30 });
 
     /// A number as it is.
     pub const fn at(value: f64) -> Self {
-        Self(Ball { mid: Twofold::new(value), err: 0.0 })
+        Self(Ball { mid: DoubleDouble::new(value), err: 0.0 })
     }
 
     /// What is no number, as a product of nothing and anything, may be any.
-    fn of(ball: Ball<Twofold>) -> Self {
+    fn of(ball: Ball<DoubleDouble>) -> Self {
         if ball.err.is_finite() && ball.mid.to_f64().is_finite() { Self(ball) } else { Self::ALL }
     }
 
@@ -56,7 +56,7 @@ impl Enclosure {
     pub fn atan2(self, x: Self, near: f64) -> Self {
         let upper = Ball::angle(x.0, self.0);
         if upper.err >= 1.0 || upper.err.is_nan() {
-            return Self(Ball { mid: Twofold::new(near), err: 1.001 * PI });
+            return Self(Ball { mid: DoubleDouble::new(near), err: 1.001 * PI });
         }
         let angle = Self(if self.to_f64() < 0.0 { -upper } else { upper });
         angle + Self::TURN * Self::at(((near - angle.to_f64()) / TAU).round())
@@ -103,7 +103,7 @@ mod tests {
     use super::*;
     use crate::generators::Dice;
 
-    fn holds(held: Enclosure, exact: Twofold, by: f64) -> bool {
+    fn holds(held: Enclosure, exact: DoubleDouble, by: f64) -> bool {
         let off = (held.0.mid - exact).abs().to_f64();
         off <= held.0.err + by && held.0.err < 1e-24
     }
@@ -136,7 +136,7 @@ mod tests {
     fn errors_are_carried_along() {
         // A third is off by 2^-102 of itself at most, and three of them by thrice that.
         let third = Enclosure::at(1.0) / Enclosure::at(3.0);
-        assert!(third.0.err > 0.0 && holds(third * Enclosure::at(3.0), Twofold::new(1.0), 0.0));
+        assert!(third.0.err > 0.0 && holds(third * Enclosure::at(3.0), DoubleDouble::new(1.0), 0.0));
         assert!(third.farthest(1.0 / 3.0) > 1e-17, "{third:?}");
     }
 }

@@ -1,23 +1,23 @@
 //! The formats that have a shadow: all.
 
 use super::{Enclosure, Shadowed};
-use pcr_certify::data::Angle;
+use pcr_certify::raw::RawAngle;
 use pcr_core::Scalar;
 use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_planning::fleet::Format;
+use pcr_planning::fleet::HostScalar;
 
 macro_rules! impl_shadowed {
     ($t:ty) => {
         impl Shadowed for $t {
             type S = $t;
             fn number(value: $t) -> f64 {
-                Format::to_f64(value)
+                HostScalar::to_f64(value)
             }
             fn angle(value: <$t as Scalar>::Angle) -> Enclosure {
-                match <$t as Format>::held_angle(value) {
-                    Angle::Radians(angle) => Enclosure::at(angle),
-                    Angle::Turns(turns) => Enclosure::TURN * Enclosure::at(turns),
+                match <$t as HostScalar>::held_angle(value) {
+                    RawAngle::Radians(angle) => Enclosure::at(angle),
+                    RawAngle::Turns(turns) => Enclosure::TURN * Enclosure::at(turns),
                 }
             }
         }

@@ -5,15 +5,16 @@ use super::types::{PcrAgent, PcrMemory};
 use crate::memory::{Arena, Stack, both, values};
 use crate::status::{PCR_LEFT, PCR_LINE, PCR_RIGHT, PcrStatus, given};
 use pcr_core::{
-    Ecm, Full, Interval, Limits, Mismatch, Mission, Motion, Order, Orders, Pass, PathRef, Phase, Piece, Point, Pose,
-    Profile, ProfileRef, Progress, Reach, Refused, Region, RegionRef, Scalar, Segment, TableError, Tolerances, Turn,
-    Unsolved, excess, plan_delays,
+    AdmissionError, CapacityError, CheckState, CheckTolerances, Ecm, EcmEntry, EcmError, Interval, Limits,
+    MismatchError, Motion, PassingState, PathProposal, PathRef, Phase, Piece, PlanError, Point, Pose, PrecedenceTable,
+    Profile, ProfileRef, Progress, RegionPrecedence, RegionRef, Scalar, Segment, TurnSide, excess, plan_delays,
 };
 
 /// The table of regions of a fleet, in the memory of the caller.
-pub(super) type Regions = Ecm<S, &'static mut [Region], &'static mut [Piece<S>]>;
+pub(super) type Regions = Ecm<S, &'static mut [EcmEntry], &'static mut [Piece<S>]>;
 /// The same, with orders.
-pub(super) type Ordered = Orders<S, &'static mut [Region], &'static mut [Piece<S>], &'static mut [Order<S>]>;
+pub(super) type Ordered =
+    PrecedenceTable<S, &'static mut [EcmEntry], &'static mut [Piece<S>], &'static mut [RegionPrecedence<S>]>;
 
 /// The table of a fleet; it has orders if there is memory for them.
 enum Table {
@@ -22,14 +23,14 @@ enum Table {
 }
 
 impl Table {
-    fn fill(&mut self, fleet: &[Motion<'static, S>]) -> Result<(), Full> {
+    fn fill(&mut self, fleet: &[Motion<'static, S>]) -> Result<(), CapacityError> {
         match self {
             Self::Regions(table) => table.fill(fleet),
             Self::Ordered(table) => table.fill(fleet),
         }
     }
 
-    fn fill_row(&mut self, fleet: &[Motion<'static, S>], agent: usize) -> Result<(), TableError> {
+    fn fill_row(&mut self, fleet: &[Motion<'static, S>], agent: usize) -> Result<(), EcmError> {
         match self {
             Self::Regions(table) => table.fill_row(fleet, agent),
             Self::Ordered(table) => table.fill_row(fleet, agent),
@@ -41,14 +42,14 @@ impl Table {
         fleet: &mut [Motion<'static, S>],
         agent: usize,
         motion: Motion<'static, S>,
-    ) -> Result<(), TableError> {
+    ) -> Result<(), EcmError> {
         match self {
             Self::Regions(table) => table.replace(fleet, agent, motion),
             Self::Ordered(table) => table.replace(fleet, agent, motion),
         }
     }
 
-    fn erase(&mut self, fleet: &[Motion<'static, S>], agent: usize) -> Result<(), Mismatch> {
+    fn erase(&mut self, fleet: &[Motion<'static, S>], agent: usize) -> Result<(), MismatchError> {
         match self {
             Self::Regions(table) => table.erase(fleet, agent),
             Self::Ordered(table) => table.erase(fleet, agent),
@@ -74,7 +75,7 @@ pub(crate) struct Fleet {
     table: Table,
     /// Progress of the agents, and room for a check: as many entries as motions, or none without orders.
     progress: Stack<Progress<S>>,
-    reaches: &'static mut [Reach<S>],
+    reaches: &'static mut [CheckState<S>],
 }
 
 impl Fleet {
@@ -91,13 +92,13 @@ impl Fleet {
         let robots = if memory.order_count == 0 { 0 } else { memory.motion_count };
         let (progress, reaches) = given(both(memory.robots, robots))?;
         // Nothing is refused from here on: a fleet that has this memory already is overwritten only now.
-        let (entries, pieces) = (entries.filled(Region::EMPTY), pieces.filled(Piece::EMPTY));
+        let (entries, pieces) = (entries.filled(EcmEntry::EMPTY), pieces.filled(Piece::EMPTY));
         let table = if memory.order_count == 0 {
             Table::Regions(Ecm::new(entries, pieces))
         } else {
-            Table::Ordered(Orders::new(entries, pieces, orders.filled(Order::EMPTY)))
+            Table::Ordered(PrecedenceTable::new(entries, pieces, orders.filled(RegionPrecedence::EMPTY)))
         };
-        let reaches = reaches.filled(Reach::EMPTY);
+        let reaches = reaches.filled(CheckState::EMPTY);
         let (segments, phases) = (Arena::new(segments, origin), Arena::new(phases, rest));
         Ok(Self { segments, phases, motions, table, progress, reaches })
     }
@@ -177,7 +178,7 @@ impl Fleet {
         let before = *self.motion(index)?;
         let motion = self.placed(agent)?;
         match self.table.replace(self.motions.values_mut(), index, motion) {
-            Err(TableError::Full(full)) => return Err(full.into()),
+            Err(EcmError::Full(full)) => return Err(full.into()),
             Ok(()) => {}
             // The table was not built before, or has one row only, which does not belong to the new fleet.
             Err(_) => {
@@ -198,15 +199,15 @@ impl Fleet {
         agent: usize,
         by: &PcrAgent,
         progress: Progress<S>,
-        tolerances: Tolerances<S>,
-        prefer: impl FnMut(&RegionRef<'_, S>) -> Pass,
-    ) -> Result<(), (PcrStatus, Option<Refused>)> {
+        tolerances: CheckTolerances<S>,
+        prefer: impl FnMut(&RegionRef<'_, S>) -> PassingState,
+    ) -> Result<(), (PcrStatus, Option<AdmissionError>)> {
         let silent = |status| (status, None);
         let before = *self.motion(agent).map_err(silent)?;
         let motion = self.placed(by).map_err(silent)?;
         let progress = on_path(progress, &motion).map_err(silent)?;
         let OrderedMut { orders, motions, progress: all, reaches } = self.ordered_mut().map_err(silent)?;
-        let mission = Mission { agent, motion, progress };
+        let mission = PathProposal { agent, motion, progress };
         orders
             .admit(motions, all, mission, tolerances, reaches, prefer)
             .map_err(|refused| (refused.into(), Some(refused)))?;
@@ -274,15 +275,15 @@ impl Fleet {
         &mut self,
         mut room: Stack<Motion<'static, S>>,
         order: &mut [usize],
-    ) -> Result<(), (PcrStatus, Option<Unsolved>)> {
+    ) -> Result<(), (PcrStatus, Option<PlanError>)> {
         if !self.motions().iter().all(|&motion| room.push(motion)) {
             return Err((PcrStatus::NoRoom, None));
         }
         plan_delays(self.table(), self.motions.values(), room.values_mut(), order).map_err(
             |unsolved| match unsolved {
-                Unsolved::Table(mismatch) => (mismatch.into(), None),
-                Unsolved::Full(_) => (PcrStatus::NoRoom, None),
-                Unsolved::NotOnce(_) | Unsolved::NoSuchAgent(_) => (PcrStatus::BadOrder, None),
+                PlanError::Table(mismatch) => (mismatch.into(), None),
+                PlanError::Full(_) => (PcrStatus::NoRoom, None),
+                PlanError::NotOnce(_) | PlanError::NoSuchAgent(_) => (PcrStatus::BadOrder, None),
                 unsolved => (PcrStatus::NoPlan, Some(unsolved)),
             },
         )?;
@@ -296,7 +297,7 @@ pub(super) struct OrderedMut<'a> {
     pub(super) orders: &'a mut Ordered,
     pub(super) motions: &'a mut [Motion<'static, S>],
     pub(super) progress: &'a mut [Progress<S>],
-    pub(super) reaches: &'a mut [Reach<S>],
+    pub(super) reaches: &'a mut [CheckState<S>],
 }
 
 /// Refuses progress beyond the end of the path, which would give way to all others. A length that is off by a rounding
@@ -316,8 +317,8 @@ fn place(agent: &PcrAgent, slots: &mut [Segment<S>]) -> Result<usize, PcrStatus>
     for leg in legs {
         let next = match leg.curve {
             PCR_LINE => last.then_line(inner(leg.length))?,
-            PCR_LEFT => last.then_arc(inner(leg.radius), Turn::Left, inner(leg.length))?,
-            PCR_RIGHT => last.then_arc(inner(leg.radius), Turn::Right, inner(leg.length))?,
+            PCR_LEFT => last.then_arc(inner(leg.radius), TurnSide::Left, inner(leg.length))?,
+            PCR_RIGHT => last.then_arc(inner(leg.radius), TurnSide::Right, inner(leg.length))?,
             _ => return Err(PcrStatus::NoSuchCurve),
         };
         if next.length() > S::ZERO {

@@ -4,14 +4,18 @@
 use super::fleet::{OrderedMut, on_path};
 use super::number::{Real, S, inner, plain};
 use super::points::{Room, ask, change, interval, number, range, short, status};
-use super::types::{PcrAgent, PcrBrakes, PcrFleet, PcrHold, PcrPassing, PcrProgress, PcrTolerances};
+use super::types::{
+    PcrAgent, PcrBrakingModel, PcrCheckTolerances, PcrFleet, PcrMovementAuthority, PcrProgress, PcrRegionPrecedence,
+};
 use crate::memory::values;
-use crate::status::{PcrHoldKind, PcrRefused, PcrStatus, decision, given, pass};
-use pcr_core::{Brakes, Hold, Interval, Pass, Progress, Refused, Scalar, Tolerances};
+use crate::status::{PcrAdmissionError, PcrAuthorityKind, PcrStatus, decision, given, pass};
+use pcr_core::{
+    AdmissionError, BrakingModel, CheckTolerances, Interval, MovementAuthority, PassingState, Progress, Scalar,
+};
 
 /// Converts a refusal, and writes the reason if there is a place for it.
-fn refused(why: Option<&mut PcrRefused>, refused: Refused) -> PcrStatus {
-    if let (Some(why), Some(refused)) = (why, PcrRefused::of(refused)) {
+fn refused(why: Option<&mut PcrAdmissionError>, refused: AdmissionError) -> PcrStatus {
+    if let (Some(why), Some(refused)) = (why, PcrAdmissionError::of(refused)) {
         *why = refused;
     }
     refused.into()
@@ -25,13 +29,13 @@ fn progress(progress: PcrProgress) -> Result<Progress<S>, PcrStatus> {
     if at.hi <= stop { Ok(Progress { at, stop }) } else { Err(PcrStatus::OutOfRange) }
 }
 
-fn tolerances(tolerances: Option<&PcrTolerances>) -> Result<Tolerances<S>, PcrStatus> {
+fn tolerances(tolerances: Option<&PcrCheckTolerances>) -> Result<CheckTolerances<S>, PcrStatus> {
     let tolerances = given(tolerances)?;
     let (width, gain) = (number(tolerances.width)?, number(tolerances.gain)?);
     match () {
         () if width < S::ZERO => Err(PcrStatus::Negative),
         () if gain <= S::ZERO => Err(PcrStatus::NonPositive),
-        () => Ok(Tolerances { width, gain }),
+        () => Ok(CheckTolerances { width, gain }),
     }
 }
 
@@ -40,14 +44,14 @@ fn tolerances(tolerances: Option<&PcrTolerances>) -> Result<Tolerances<S>, PcrSt
 pub extern "C" fn pcr_fleet_passings(
     place: Option<&PcrFleet>,
     agent: usize,
-    out: *mut PcrPassing,
+    out: *mut PcrRegionPrecedence,
     capacity: usize,
     count: Option<&mut usize>,
 ) -> PcrStatus {
     ask(place, |fleet| {
         let room = Room::new(out, capacity, count)?;
         let row = fleet.ordered()?.0.row(fleet.motions(), agent)?;
-        room.fill(row.map(|(place, region, seen)| PcrPassing {
+        room.fill(row.map(|(place, region, seen)| PcrRegionPrecedence {
             place,
             other: short(region.other()),
             pass: pass(seen),
@@ -61,7 +65,10 @@ pub extern "C" fn pcr_fleet_passings(
 /// are overwritten. PCR_STATUS_REFUSED if two agents meet, or pass so close that it cannot be decided which one is
 /// first; `why` then names them. `why` may be null.
 #[unsafe(export_name = name!("fleet_orders_as_planned"))]
-pub extern "C" fn pcr_fleet_orders_as_planned(place: Option<&mut PcrFleet>, why: Option<&mut PcrRefused>) -> PcrStatus {
+pub extern "C" fn pcr_fleet_orders_as_planned(
+    place: Option<&mut PcrFleet>,
+    why: Option<&mut PcrAdmissionError>,
+) -> PcrStatus {
     change(place, |fleet| {
         let OrderedMut { orders, motions, .. } = fleet.ordered_mut()?;
         orders.as_planned(motions).map_err(|refusal| refused(why, refusal))
@@ -77,13 +84,13 @@ pub extern "C" fn pcr_fleet_decide(place: Option<&mut PcrFleet>, ego: usize, oth
         let pass = decision(pass)?;
         fleet.two(ego, other)?;
         let OrderedMut { orders, motions, progress, .. } = fleet.ordered_mut()?;
-        let second = if pass == Pass::First { other } else { ego };
+        let second = if pass == PassingState::First { other } else { ego };
         let since = progress.get(second).ok_or(PcrStatus::NoSuchAgent)?.at.lo;
         Ok(orders.decide(motions, ego, other, pass, since)?)
     })
 }
 
-/// Decides the order of the region at one index of the table (`PcrPassing.place`). An order that exists is overwritten.
+/// Decides the order of the region at one index of the table (`PcrRegionPrecedence.place`). An order that exists is overwritten.
 /// PCR_STATUS_NO_SUCH_REGION if the agent has no region there.
 #[unsafe(export_name = name!("fleet_decide_at"))]
 pub extern "C" fn pcr_fleet_decide_at(place: Option<&mut PcrFleet>, region: usize, ego: usize, pass: u8) -> PcrStatus {
@@ -96,7 +103,7 @@ pub extern "C" fn pcr_fleet_decide_at(place: Option<&mut PcrFleet>, region: usiz
             found.ok_or(PcrStatus::NoSuchRegion)?
         };
         let OrderedMut { orders, motions, progress, .. } = fleet.ordered_mut()?;
-        let second = if pass == Pass::First { other } else { ego };
+        let second = if pass == PassingState::First { other } else { ego };
         let since = progress.get(second).ok_or(PcrStatus::NoSuchAgent)?.at.lo;
         Ok(orders.decide_at(motions, region, ego, pass, since)?)
     })
@@ -124,17 +131,21 @@ pub extern "C" fn pcr_fleet_report(
 /// How far an agent may go, given the reports of the others. The agent has to brake so that it does not exceed this
 /// (`pcr_stopping_speed`). Reports that are out of date give a hold that is too low, never one that is too high.
 #[unsafe(export_name = name!("fleet_hold"))]
-pub extern "C" fn pcr_fleet_hold(place: Option<&PcrFleet>, agent: usize, out: Option<&mut PcrHold>) -> PcrStatus {
+pub extern "C" fn pcr_fleet_hold(
+    place: Option<&PcrFleet>,
+    agent: usize,
+    out: Option<&mut PcrMovementAuthority>,
+) -> PcrStatus {
     ask(place, |fleet| {
         let (out, (orders, progress)) = (given(out)?, fleet.ordered()?);
         let hold = orders.hold(fleet.motions(), agent, progress)?;
         let kind = match hold {
-            Hold::Free => PcrHoldKind::Free,
-            Hold::At(_) => PcrHoldKind::At,
-            Hold::Inside => PcrHoldKind::Inside,
+            MovementAuthority::Free => PcrAuthorityKind::Free,
+            MovementAuthority::At(_) => PcrAuthorityKind::At,
+            MovementAuthority::Inside => PcrAuthorityKind::Inside,
         };
         let length = hold.length(fleet.motion(agent)?.path().length());
-        *out = PcrHold { kind, length: plain(length.unwrap_or(S::ZERO)) };
+        *out = PcrMovementAuthority { kind, length: plain(length.unwrap_or(S::ZERO)) };
         Ok(())
     })
 }
@@ -145,8 +156,8 @@ pub extern "C" fn pcr_fleet_hold(place: Option<&PcrFleet>, agent: usize, out: Op
 #[unsafe(export_name = name!("fleet_check"))]
 pub extern "C" fn pcr_fleet_check(
     place: Option<&mut PcrFleet>,
-    accepted: Option<&PcrTolerances>,
-    why: Option<&mut PcrRefused>,
+    accepted: Option<&PcrCheckTolerances>,
+    why: Option<&mut PcrAdmissionError>,
 ) -> PcrStatus {
     change(place, |fleet| {
         let tolerances = tolerances(accepted)?;
@@ -172,9 +183,9 @@ pub extern "C" fn pcr_fleet_admit(
     agent: usize,
     by: Option<&PcrAgent>,
     report: Option<&PcrProgress>,
-    accepted: Option<&PcrTolerances>,
+    accepted: Option<&PcrCheckTolerances>,
     prefer: *const u8,
-    why: Option<&mut PcrRefused>,
+    why: Option<&mut PcrAdmissionError>,
 ) -> PcrStatus {
     change(place, |fleet| {
         let (by, progress, tolerances) = (given(by)?, progress(*given(report)?)?, tolerances(accepted)?);
@@ -183,8 +194,8 @@ pub extern "C" fn pcr_fleet_admit(
         let others = prefer.iter().enumerate().filter(|(other, _)| *other != agent);
         others.map(|(_, &pass)| decision(pass)).try_for_each(|pass| pass.map(drop))?;
         let wanted = |other: usize| prefer.get(other).and_then(|&pass| decision(pass).ok());
-        let admitted =
-            fleet.admit(agent, by, progress, tolerances, |region| wanted(region.other()).unwrap_or(Pass::Second));
+        let admitted = fleet
+            .admit(agent, by, progress, tolerances, |region| wanted(region.other()).unwrap_or(PassingState::Second));
         admitted.map_err(|(status, refusal)| refusal.map_or(status, |refusal| refused(why, refusal)))
     })
 }
@@ -199,15 +210,15 @@ pub extern "C" fn pcr_fleet_passed(place: Option<&mut PcrFleet>) -> PcrStatus {
     })
 }
 
-fn brakes(brakes: Option<&PcrBrakes>) -> Result<Brakes<S>, PcrStatus> {
+fn brakes(brakes: Option<&PcrBrakingModel>) -> Result<BrakingModel<S>, PcrStatus> {
     let brakes = given(brakes)?;
-    Ok(Brakes::new(inner(brakes.deceleration), inner(brakes.reaction))?)
+    Ok(BrakingModel::new(inner(brakes.deceleration), inner(brakes.reaction))?)
 }
 
 /// The stopping distance from a speed (m/s), rounded up (m). PCR_STATUS_OUT_OF_RANGE if it is beyond the range of the
 /// format.
 #[unsafe(export_name = name!("stopping_way"))]
-pub extern "C" fn pcr_stopping_way(how: Option<&PcrBrakes>, speed: Real, way: Option<&mut Real>) -> PcrStatus {
+pub extern "C" fn pcr_stopping_way(how: Option<&PcrBrakingModel>, speed: Real, way: Option<&mut Real>) -> PcrStatus {
     status(brakes(how).and_then(|brakes| {
         let (way, speed) = (given(way)?, number(speed)?);
         if speed < S::ZERO {
@@ -225,7 +236,7 @@ pub extern "C" fn pcr_stopping_way(how: Option<&PcrBrakes>, speed: Real, way: Op
 /// The largest speed from which this distance (m) is enough to stop, rounded down (m/s); 0 if the distance is not above
 /// 0.
 #[unsafe(export_name = name!("stopping_speed"))]
-pub extern "C" fn pcr_stopping_speed(how: Option<&PcrBrakes>, way: Real, speed: Option<&mut Real>) -> PcrStatus {
+pub extern "C" fn pcr_stopping_speed(how: Option<&PcrBrakingModel>, way: Real, speed: Option<&mut Real>) -> PcrStatus {
     status(brakes(how).and_then(|brakes| {
         *given(speed)? = plain(brakes.speed(number(way)?));
         Ok(())

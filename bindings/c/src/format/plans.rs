@@ -2,9 +2,9 @@
 
 use super::number::{Real, S, plain};
 use super::points::{Room, ask, change, interval, number, range};
-use super::types::{PcrConflict, PcrFleet, PcrInterval, PcrMet, PcrMotion};
+use super::types::{PcrAgentConflict, PcrConflict, PcrFleet, PcrInterval, PcrMotionStorage};
 use crate::memory::{Stack, places};
-use crate::status::{PcrStatus, PcrUnsolved, given};
+use crate::status::{PcrPlanError, PcrStatus, given};
 use pcr_core::{Conflict, Encounter, earliest_start, excess, first_conflict, first_overlap, safe_intervals};
 
 fn record(conflict: &Conflict<S>) -> PcrConflict {
@@ -43,7 +43,7 @@ pub extern "C" fn pcr_fleet_first_conflict(
     place: Option<&PcrFleet>,
     ego: usize,
     touches: bool,
-    out: Option<&mut PcrMet>,
+    out: Option<&mut PcrAgentConflict>,
     found: Option<&mut bool>,
 ) -> PcrStatus {
     ask(place, |fleet| {
@@ -53,7 +53,7 @@ pub extern "C" fn pcr_fleet_first_conflict(
         let met = if touches { first_conflict(motion, row, during)? } else { first_overlap(motion, row, during)? };
         *found = met.is_some();
         if let Some(met) = met {
-            *out = PcrMet { other: met.other, conflict: record(&met.conflict) };
+            *out = PcrAgentConflict { other: met.other, conflict: record(&met.conflict) };
         }
         Ok(())
     })
@@ -111,9 +111,9 @@ pub extern "C" fn pcr_fleet_plan_delays(
     place: Option<&mut PcrFleet>,
     order: *mut usize,
     count: usize,
-    room: *mut PcrMotion,
+    room: *mut PcrMotionStorage,
     room_count: usize,
-    why: Option<&mut PcrUnsolved>,
+    why: Option<&mut PcrPlanError>,
 ) -> PcrStatus {
     change(place, |fleet| {
         let (order, room) = (given(places(order, count))?, given(Stack::new(room, room_count))?);

@@ -2,12 +2,12 @@
 //! and counter-clockwise angles are positive.
 
 use super::number::{Heading, MOTION, PIECE, Real, SEGMENT, ZERO};
-use crate::status::PcrHoldKind;
+use crate::status::PcrAuthorityKind;
 
 /// A line or an arc of a path. It begins where the one before it ends, with the same heading.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
-pub struct PcrLeg {
+pub struct PcrPathSegment {
     /// PCR_LINE, PCR_LEFT or PCR_RIGHT.
     pub curve: u8,
     /// Length (m); of an arc at most one turn. A leg of length 0 adds nothing.
@@ -19,7 +19,7 @@ pub struct PcrLeg {
 /// A part of a profile with constant acceleration.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
-pub struct PcrStretch {
+pub struct PcrProfilePhase {
     /// Duration (s).
     pub duration: Real,
     /// Acceleration (m/s²).
@@ -41,7 +41,7 @@ pub struct PcrAgent {
     /// Time at which the agent sets off (s). It stands before that, and after its arrival.
     pub start: Real,
     /// Legs of the path; none for an agent that stands.
-    pub legs: *const PcrLeg,
+    pub legs: *const PcrPathSegment,
     /// Number of legs.
     pub leg_count: usize,
     /// Largest speed of a motion from rest to rest (m/s). With a profile, the speed at its start.
@@ -49,7 +49,7 @@ pub struct PcrAgent {
     /// Largest acceleration of a motion from rest to rest (m/s²); ignored with a profile.
     pub acceleration: Real,
     /// Profile, which must have the length of the path; none for the fastest motion from rest to rest.
-    pub stretches: *const PcrStretch,
+    pub stretches: *const PcrProfilePhase,
     /// Number of stretches.
     pub stretch_count: usize,
 }
@@ -103,7 +103,7 @@ pub struct PcrConflict {
 /// A conflict with another agent.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PcrMet {
+pub struct PcrAgentConflict {
     /// The other agent.
     pub other: usize,
     /// The conflict.
@@ -113,21 +113,21 @@ pub struct PcrMet {
 /// Memory for a segment of a path: one for each leg, or one for an agent that stands.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
-pub struct PcrSegment {
+pub struct PcrSegmentStorage {
     opaque: [Real; SEGMENT],
 }
 
 /// Memory for a phase of a profile: three for each agent, or one for each stretch.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
-pub struct PcrPhase {
+pub struct PcrPhaseStorage {
     opaque: [Real; 7],
 }
 
 /// Memory for the motion of an agent.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
-pub struct PcrMotion {
+pub struct PcrMotionStorage {
     pointers: [usize; 4],
     opaque: [Real; MOTION],
 }
@@ -135,14 +135,14 @@ pub struct PcrMotion {
 /// Memory for a region in the table; each one serves both agents of its pair.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
-pub struct PcrEntry {
+pub struct PcrRegionStorage {
     opaque: [u32; 2],
 }
 
 /// Memory for a piece of a region: the part that belongs to one segment of each path.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
-pub struct PcrPiece {
+pub struct PcrPieceStorage {
     opaque: [Real; PIECE],
 }
 
@@ -160,17 +160,17 @@ pub struct PcrProgress {
 /// How far an agent may go; it may stand there.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PcrHold {
+pub struct PcrMovementAuthority {
     /// Kind of the limit.
-    pub kind: PcrHoldKind,
-    /// The limit (m): for PCR_HOLD_KIND_AT a length along the path, for PCR_HOLD_KIND_FREE the end of the path.
+    pub kind: PcrAuthorityKind,
+    /// The limit (m): for PCR_AUTHORITY_KIND_AT a length along the path, for PCR_AUTHORITY_KIND_FREE the end of the path.
     pub length: Real,
 }
 
 /// A region of an agent, and the order in which the agent passes it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PcrPassing {
+pub struct PcrRegionPrecedence {
     /// Index of the region in the table, for `pcr_fleet_decide_at`.
     pub place: usize,
     /// The other agent.
@@ -186,7 +186,7 @@ pub struct PcrPassing {
 /// Parameters of a check of orders.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PcrTolerances {
+pub struct PcrCheckTolerances {
     /// When an agent stands, the known lower end of its place may be behind it by up to this (m).
     pub width: Real,
     /// A gain below this (m) does not count as progress; above 0.
@@ -196,7 +196,7 @@ pub struct PcrTolerances {
 /// How an agent brakes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PcrBrakes {
+pub struct PcrBrakingModel {
     /// Deceleration (m/s²), above 0.
     pub deceleration: Real,
     /// Reaction time (s) during which the agent may continue at its speed: the time between two control steps plus the
@@ -207,14 +207,14 @@ pub struct PcrBrakes {
 /// Memory for the order of a region.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
-pub struct PcrOrder {
+pub struct PcrPrecedenceStorage {
     opaque: [Real; 5],
 }
 
 /// Memory for the progress of an agent, and for a check.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
-pub struct PcrRobot {
+pub struct PcrCheckStorage {
     opaque: [Real; 7],
 }
 
@@ -223,32 +223,32 @@ pub struct PcrRobot {
 #[derive(Clone, Copy, Debug)]
 pub struct PcrMemory {
     /// Memory for the paths.
-    pub segments: *mut PcrSegment,
+    pub segments: *mut PcrSegmentStorage,
     /// Number of segments.
     pub segment_count: usize,
     /// Memory for the profiles.
-    pub phases: *mut PcrPhase,
+    pub phases: *mut PcrPhaseStorage,
     /// Number of phases.
     pub phase_count: usize,
     /// Memory for the agents.
-    pub motions: *mut PcrMotion,
+    pub motions: *mut PcrMotionStorage,
     /// Number of motions, which limits the number of agents.
     pub motion_count: usize,
     /// Memory for the regions.
-    pub entries: *mut PcrEntry,
+    pub entries: *mut PcrRegionStorage,
     /// Number of entries.
     pub entry_count: usize,
     /// Memory for the pieces of the regions.
-    pub pieces: *mut PcrPiece,
+    pub pieces: *mut PcrPieceStorage,
     /// Number of pieces.
     pub piece_count: usize,
     /// Memory for passing orders: one for each region, and as many more as an agent has that is admitted or replaced.
     /// Null if no orders are used.
-    pub orders: *mut PcrOrder,
+    pub orders: *mut PcrPrecedenceStorage,
     /// Number of orders; 0 if no orders are used.
     pub order_count: usize,
     /// Memory for the progress of the agents, as many as `motions`; null if no orders are used.
-    pub robots: *mut PcrRobot,
+    pub robots: *mut PcrCheckStorage,
 }
 
 /// A fleet and the table of its regions.
@@ -263,37 +263,37 @@ impl PcrFleet {
     pub const EMPTY: Self = Self { opaque: [0; 32] };
 }
 
-impl PcrSegment {
+impl PcrSegmentStorage {
     /// An unused slot.
     pub const EMPTY: Self = Self { opaque: [ZERO; SEGMENT] };
 }
 
-impl PcrPhase {
+impl PcrPhaseStorage {
     /// An unused slot.
     pub const EMPTY: Self = Self { opaque: [ZERO; 7] };
 }
 
-impl PcrMotion {
+impl PcrMotionStorage {
     /// An unused slot.
     pub const EMPTY: Self = Self { pointers: [0; 4], opaque: [ZERO; MOTION] };
 }
 
-impl PcrEntry {
+impl PcrRegionStorage {
     /// An unused slot.
     pub const EMPTY: Self = Self { opaque: [0; 2] };
 }
 
-impl PcrPiece {
+impl PcrPieceStorage {
     /// An unused slot.
     pub const EMPTY: Self = Self { opaque: [ZERO; PIECE] };
 }
 
-impl PcrOrder {
+impl PcrPrecedenceStorage {
     /// An unused slot.
     pub const EMPTY: Self = Self { opaque: [ZERO; 5] };
 }
 
-impl PcrRobot {
+impl PcrCheckStorage {
     /// An unused slot.
     pub const EMPTY: Self = Self { opaque: [ZERO; 7] };
 }

@@ -4,18 +4,18 @@
 #![no_main]
 
 use pcr_board::{AGENTS, Number, entry, out};
-use pcr_core::{Ecm, Piece, Region};
+use pcr_core::{Ecm, EcmEntry, Piece};
 use pcr_supervisor::dump::{self, Line};
 use pcr_supervisor::{Store, scenario};
 use semihosting::process;
 use static_cell::ConstStaticCell;
 
-type Table = Ecm<Number, [Region; scenario::REGIONS], [Piece<Number>; scenario::PIECES]>;
+type Table = Ecm<Number, [EcmEntry; scenario::REGIONS], [Piece<Number>; scenario::PIECES]>;
 
 static STORE: ConstStaticCell<Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>> =
     ConstStaticCell::new(Store::new());
 static TABLE: ConstStaticCell<Table> =
-    ConstStaticCell::new(Ecm::new([Region::EMPTY; scenario::REGIONS], [Piece::EMPTY; scenario::PIECES]));
+    ConstStaticCell::new(Ecm::new([EcmEntry::EMPTY; scenario::REGIONS], [Piece::EMPTY; scenario::PIECES]));
 
 #[entry]
 fn main() -> ! {

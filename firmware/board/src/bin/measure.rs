@@ -6,7 +6,7 @@ use core::hint::black_box;
 use pcr_board::meter::Meter;
 use pcr_board::{AGENTS, Number, entry, out};
 use pcr_core::scalar::{Angle, Wide};
-use pcr_core::{Ecm, Piece, Region, Scalar, earliest_start, first_conflict};
+use pcr_core::{Ecm, EcmEntry, Piece, Scalar, earliest_start, first_conflict};
 use pcr_supervisor::dump::Line;
 use pcr_supervisor::message::ConflictRecord;
 use pcr_supervisor::{Store, scenario};
@@ -15,8 +15,8 @@ use static_cell::ConstStaticCell;
 
 static STORE: ConstStaticCell<Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>> =
     ConstStaticCell::new(Store::new());
-static TABLE: ConstStaticCell<Ecm<Number, [Region; scenario::REGIONS], [Piece<Number>; scenario::PIECES]>> =
-    ConstStaticCell::new(Ecm::new([Region::EMPTY; scenario::REGIONS], [Piece::EMPTY; scenario::PIECES]));
+static TABLE: ConstStaticCell<Ecm<Number, [EcmEntry; scenario::REGIONS], [Piece<Number>; scenario::PIECES]>> =
+    ConstStaticCell::new(Ecm::new([EcmEntry::EMPTY; scenario::REGIONS], [Piece::EMPTY; scenario::PIECES]));
 
 /// Agent 3, counted from 1: the one whose map the README shows.
 const AGENT: usize = 2;

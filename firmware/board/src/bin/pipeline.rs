@@ -5,20 +5,21 @@
 
 use core::hint::black_box;
 use pcr_board::{AGENTS, Number, entry};
-use pcr_core::{Ecm, Full, Interval, Invalid, Motion, Piece, Region};
+use pcr_core::{CapacityError, Ecm, EcmEntry, Interval, InvalidInput, Motion, Piece};
 use pcr_supervisor::scenario::{self, PIECES, REGIONS};
 use pcr_supervisor::{Agent, Motions, Step, Store};
 use semihosting::process;
 use static_cell::ConstStaticCell;
 
-type Table = Ecm<Number, [Region; REGIONS], [Piece<Number>; PIECES]>;
+type Table = Ecm<Number, [EcmEntry; REGIONS], [Piece<Number>; PIECES]>;
 type Parts = Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>;
 type Fleet<'a> = Motions<'a, Number, { scenario::AGENTS }>;
 type BuiltIn = [Agent<Number, &'static [Step<Number>]>];
 
 static STORE: ConstStaticCell<Parts> = ConstStaticCell::new(Store::new());
 static FLEET: ConstStaticCell<Fleet<'static>> = ConstStaticCell::new(Fleet::new());
-static TABLE: ConstStaticCell<Table> = ConstStaticCell::new(Ecm::new([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES]));
+static TABLE: ConstStaticCell<Table> =
+    ConstStaticCell::new(Ecm::new([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES]));
 
 // The table of the 12 agents, and what it may take (`check.sh` reads this from the build that succeeds).
 const _: () = assert!(size_of::<Table>() <= 6 * 1024, "the budget of the table");
@@ -42,12 +43,12 @@ fn job<'a>(store: &'a mut Parts, fleet: &mut Fleet<'a>, table: &mut Table, agent
 }
 
 #[inline(never)]
-fn construct(store: &mut Parts, agents: &BuiltIn) -> Result<(), Invalid> {
+fn construct(store: &mut Parts, agents: &BuiltIn) -> Result<(), InvalidInput> {
     agents.iter().try_for_each(|agent| store.add(agent).map(|_| ()))
 }
 
 #[inline(never)]
-fn build(table: &mut Table, fleet: &[Motion<'_, Number>]) -> Result<(), Full> {
+fn build(table: &mut Table, fleet: &[Motion<'_, Number>]) -> Result<(), CapacityError> {
     table.fill(fleet)
 }
 

@@ -10,14 +10,16 @@ use core::fmt::{Display, Write};
 use core::hint::black_box as any;
 use core::ops::{Add, Neg, Sub};
 use pcr_board::{Number, entry};
-use pcr_core::scalar::{Angle, Ramp, Sector, Unit, Wide};
+use pcr_core::scalar::{AccelerationRamp, Angle, AngleSector, Unit, Wide};
 use pcr_core::{
-    Bounds, Brakes, BroadPhase, Conflict, Conflicts, Constraint, Contacts, Crossing, Curve, Decision, Direction, Drive,
-    Ecm, Encounter, Full, Gaps, Hold, Interval, Invalid, Limits, Mismatch, Mission, Motion, NoSpeedPlan, Order, Orders,
-    Pass, Path, PathRef, Phase, Piece, PieceRef, PieceType, Point, Pose, Profile, ProfileRef, Progress, Reach, Refused,
-    Region, RegionRef, Scalar, Segment, SpeedPlan, Station, TableError, Tolerances, Turn, Union, Unsolved, Vector,
-    crossings, earliest_departure, earliest_start, excess, first_conflict, first_overlap, gaps, least_duration,
-    overlaps, plan_delays, plan_speed, plan_speed_below, plan_speeds, safe_intervals, safe_lengths, union,
+    Aabb, AdmissionError, BrakingModel, BroadPhase, CapacityError, CheckState, CheckTolerances, Conflict, Conflicts,
+    Constraint, Contacts, Crossing, Curve, Direction, Ecm, EcmEntry, EcmError, Encounter, Gaps, Interval, InvalidInput,
+    Limits, MismatchError, Motion, MovementAuthority, PassingState, Path, PathProposal, PathRef, Phase, Piece,
+    PieceRef, PieceType, PlanError, Point, Pose, PrecedenceDecision, PrecedenceTable, Profile, ProfileRef, Progress,
+    RegionPrecedence, RegionRef, Scalar, SearchNode, Segment, SpeedPlan, SpeedPlanError, SpeedPlanLimits, TurnSide,
+    Union, Vector, crossings, earliest_departure, earliest_start, excess, first_conflict, first_overlap, gaps,
+    least_duration, overlaps, plan_delays, plan_speed, plan_speed_below, plan_speeds, safe_intervals, safe_lengths,
+    union,
 };
 
 #[entry]
@@ -84,15 +86,16 @@ fn arithmetic<S: Scalar>() {
     any(Scalar::negate_if(a, any(true)));
     any((Scalar::quotient_unit(a, unit::<S>()), S::unit_vector(a, b, number()), Scalar::difference(a, b, wide::<S>())));
     any((Scalar::slack(a), Scalar::millimetres(a), S::quadratic_roots(a, wide::<S>(), wide::<S>())));
-    let ramp = Ramp { slow: a, fast: number(), acceleration: number(), duration: number(), length: number() };
+    let ramp =
+        AccelerationRamp { slow: a, fast: number(), acceleration: number(), duration: number(), length: number() };
     any((S::ramp_length(any(ramp), a), S::ramp_time(any(ramp), a)));
     any((S::ramp_bulge(any(ramp), a), S::ramps_alike(any(ramp), any(ramp))));
     let [from, middle] = [[unit::<S>(), unit::<S>()], [unit::<S>(), unit::<S>()]];
     let equations = [[wide::<S>(); 4], [wide::<S>(); 4]];
-    S::half_tangent_roots(equations.into_iter(), any(Sector { from, middle, least: unit::<S>() }), |angle| {
+    S::half_tangent_roots(equations.into_iter(), any(AngleSector { from, middle, least: unit::<S>() }), |angle| {
         any(angle);
     });
-    any(Sector::<S::Unit>::all(from));
+    any(AngleSector::<S::Unit>::all(from));
     any((Scalar::portion(a, b, number()), S::tolerance(a)));
     any((Scalar::sum(a, b), Scalar::advance(a, b, number(), unit::<S>()), Scalar::sum_up(a, b)));
     any((S::drift(any(0), a), S::lag(a, b), Scalar::rounding(a)));
@@ -129,8 +132,8 @@ fn operators<S: Scalar>() {
     any((<S::Unit as Add>::add(a, b), <S::Unit as Sub>::sub(a, b), <S::Unit as Neg>::neg(a)));
     let vector = <Point<S> as Sub>::sub(point(), point());
     any(<Point<S> as Add<Vector<S>>>::add(point(), vector));
-    any((<Piece<S> as Default>::default(), <Region as Default>::default(), <Station<S> as Default>::default()));
-    any((<Order<S> as Default>::default(), <Reach<S> as Default>::default()));
+    any((<Piece<S> as Default>::default(), <EcmEntry as Default>::default(), <SearchNode<S> as Default>::default()));
+    any((<RegionPrecedence<S> as Default>::default(), <CheckState<S> as Default>::default()));
 }
 
 #[inline(never)]
@@ -144,23 +147,23 @@ fn plane<S: Scalar>() {
     let (i, j) = (interval::<S>(), interval::<S>());
     any((Interval::contains(i, number()), Interval::meets(i, j), Interval::hull(i, j), Interval::length(i)));
     any(Interval::middle(i));
-    let (a, b) = (Bounds::around(point::<S>(), point()), any(Bounds::around(point::<S>(), point())));
-    any((Bounds::hull(a, b), Bounds::expanded(a, number()), Bounds::meets(a, b), Bounds::extent(a)));
+    let (a, b) = (Aabb::around(point::<S>(), point()), any(Aabb::around(point::<S>(), point())));
+    any((Aabb::hull(a, b), Aabb::expanded(a, number()), Aabb::meets(a, b), Aabb::extent(a)));
 }
 
 #[inline(never)]
-fn constructors<S: Scalar>() -> Result<(), Invalid> {
+fn constructors<S: Scalar>() -> Result<(), InvalidInput> {
     let pose: Pose<S> = Pose { position: point(), heading: angle::<S>() };
     let path = Path::<S, 2>::starting_at(any(pose))?;
     let path = Path::line(path, number())?;
-    let path = Path::arc(path, number(), any(Turn::Left), number())?;
+    let path = Path::arc(path, number(), any(TurnSide::Left), number())?;
     let path = Path::arc_by(path, number(), number())?;
     let path = Path::turn(any(path), angle::<S>())?;
     any(Path::as_path(&path));
     any(PathRef::<S>::new(any(&[])).is_ok());
     let segment = Segment::standing(any(pose))?;
     let segment = Segment::then_line(&segment, number())?;
-    let segment = any(Segment::then_arc(&segment, number(), any(Turn::Right), number())?);
+    let segment = any(Segment::then_arc(&segment, number(), any(TurnSide::Right), number())?);
     let segment = any(Segment::turned(segment, angle::<S>())?);
     let curve: Curve<S> = Segment::curve(&segment);
     any((curve, Segment::length(&segment), Segment::from(&segment), Segment::bounds(&segment)));
@@ -251,7 +254,7 @@ fn table<S: Scalar>(fleet: &mut [Motion<'_, S>], agents: &[usize]) {
         })
         .is_ok());
     }
-    let mut ecm = any(Ecm::<S, _, _>::new([Region::EMPTY; 4], [Piece::EMPTY; 8]));
+    let mut ecm = any(Ecm::<S, _, _>::new([EcmEntry::EMPTY; 4], [Piece::EMPTY; 8]));
     for &agent in agents {
         any(Ecm::insert(&mut ecm, fleet, agent).is_ok());
         any(Ecm::remove(&mut ecm, fleet, agent).is_ok());
@@ -272,15 +275,15 @@ fn table<S: Scalar>(fleet: &mut [Motion<'_, S>], agents: &[usize]) {
 }
 
 #[inline(never)]
-fn plans<S: Scalar>(ecm: &Ecm<S, [Region; 4], [Piece<S>; 8]>, fleet: &[Motion<'_, S>], agent: usize) {
+fn plans<S: Scalar>(ecm: &Ecm<S, [EcmEntry; 4], [Piece<S>; 8]>, fleet: &[Motion<'_, S>], agent: usize) {
     let Ok(row) = Ecm::row(ecm, fleet, agent) else { return };
     let Some(motion) = any(fleet.first()) else { return };
     any(first_conflict(motion, row.clone(), interval()).is_ok());
     any(first_overlap(motion, row.clone(), interval()).is_ok());
     let limits = Limits { speed: number(), acceleration: number() };
-    let drive = Drive { start: number(), goal: number(), ..Drive::rest_to_rest(limits) };
-    any((drive, Drive::of(motion)));
-    let stations: &mut [Station<S>] = any(&mut [][..]);
+    let drive = SpeedPlanLimits { start: number(), goal: number(), ..SpeedPlanLimits::rest_to_rest(limits) };
+    any((drive, SpeedPlanLimits::of(motion)));
+    let stations: &mut [SearchNode<S>] = any(&mut [][..]);
     let constraints: &[Constraint<S>] = any(&[][..]);
     any(row.clone().map(|region| [Constraint::before(&region), Constraint::after(&region)]).next());
     if let Ok(plan) = any(plan_speed::<S, 8>(motion, any(drive), row.clone(), constraints, stations)) {
@@ -312,46 +315,63 @@ fn regions<S: Scalar>(region: &RegionRef<'_, S>) {
 }
 
 #[inline(never)]
-fn orders<S: Scalar>(fleet: &mut [Motion<'_, S>], progress: &mut [Progress<S>], reaches: &mut [Reach<S>]) {
-    any(Orders::build(any(&mut [][..]), any(&mut [][..]), any(&mut [][..]), fleet).is_ok());
-    let mut orders = any(Orders::<S, _, _, _>::new([Region::EMPTY; 4], [Piece::EMPTY; 8], [Order::EMPTY; 8]));
+fn orders<S: Scalar>(fleet: &mut [Motion<'_, S>], progress: &mut [Progress<S>], reaches: &mut [CheckState<S>]) {
+    any(PrecedenceTable::build(any(&mut [][..]), any(&mut [][..]), any(&mut [][..]), fleet).is_ok());
+    let mut orders =
+        any(PrecedenceTable::<S, _, _, _>::new([EcmEntry::EMPTY; 4], [Piece::EMPTY; 8], [RegionPrecedence::EMPTY; 8]));
     let (agent, other, place) = any((0, 0, 0));
-    any(Orders::fill_row(&mut orders, fleet, agent).is_ok());
-    any(Orders::insert(&mut orders, fleet, agent).is_ok());
-    any(Orders::decide(&mut orders, fleet, agent, other, any(Pass::First), number()).is_ok());
-    any(Orders::decide_at(&mut orders, fleet, place, agent, any(Pass::swapped(Pass::Second)), number()).is_ok());
-    any(Orders::as_planned(&mut orders, fleet).is_ok());
-    let tolerances = Tolerances { width: number(), gain: number() };
-    any(Orders::check(&mut orders, fleet, progress, any(tolerances), reaches).is_ok());
+    any(PrecedenceTable::fill_row(&mut orders, fleet, agent).is_ok());
+    any(PrecedenceTable::insert(&mut orders, fleet, agent).is_ok());
+    any(PrecedenceTable::decide(&mut orders, fleet, agent, other, any(PassingState::First), number()).is_ok());
+    any(PrecedenceTable::decide_at(
+        &mut orders,
+        fleet,
+        place,
+        agent,
+        any(PassingState::swapped(PassingState::Second)),
+        number(),
+    )
+    .is_ok());
+    any(PrecedenceTable::as_planned(&mut orders, fleet).is_ok());
+    let tolerances = CheckTolerances { width: number(), gain: number() };
+    any(PrecedenceTable::check(&mut orders, fleet, progress, any(tolerances), reaches).is_ok());
     if let Some(&motion) = any(fleet.first()) {
-        let mission = Mission { agent, motion, progress: any(Progress::at_rest(number())) };
-        any(Orders::admit(&mut orders, fleet, progress, any(mission), tolerances, reaches, |_| any(Pass::First))
-            .is_ok());
+        let mission = PathProposal { agent, motion, progress: any(Progress::at_rest(number())) };
+        any(PrecedenceTable::admit(&mut orders, fleet, progress, any(mission), tolerances, reaches, |_| {
+            any(PassingState::First)
+        })
+        .is_ok());
     }
-    let Ok::<Hold<S>, Mismatch>(hold) = Orders::hold(&orders, fleet, agent, progress) else { return };
-    any(Orders::hold_before(&orders, fleet, agent, progress, any(hold)).is_ok());
-    any((Hold::allows(hold, number()), Hold::min(hold, any(hold)), Hold::length(hold, number())));
-    any(Orders::row(&orders, fleet, agent)).into_iter().flatten().for_each(|(place, region, pass)| {
+    let Ok::<MovementAuthority<S>, MismatchError>(hold) = PrecedenceTable::hold(&orders, fleet, agent, progress) else {
+        return;
+    };
+    any(PrecedenceTable::hold_before(&orders, fleet, agent, progress, any(hold)).is_ok());
+    any((
+        MovementAuthority::allows(hold, number()),
+        MovementAuthority::min(hold, any(hold)),
+        MovementAuthority::length(hold, number()),
+    ));
+    any(PrecedenceTable::row(&orders, fleet, agent)).into_iter().flatten().for_each(|(place, region, pass)| {
         any((place, pass));
         regions(&region);
     });
-    any(Orders::wait(&orders, fleet, agent, progress).is_ok());
-    any(Orders::decisions(&orders).map(|decision: Decision<S>| decision.since).reduce(S::max));
-    any(Orders::ecm(&orders).len());
-    any(Orders::passed(&mut orders, progress));
-    any(Orders::remove(&mut orders, fleet, agent).is_ok());
-    any(Orders::erase(&mut orders, fleet, agent).is_ok());
-    any(Orders::fill(&mut orders, fleet).is_ok());
+    any(PrecedenceTable::wait(&orders, fleet, agent, progress).is_ok());
+    any(PrecedenceTable::decisions(&orders).map(|decision: PrecedenceDecision<S>| decision.since).reduce(S::max));
+    any(PrecedenceTable::ecm(&orders).len());
+    any(PrecedenceTable::passed(&mut orders, progress));
+    any(PrecedenceTable::remove(&mut orders, fleet, agent).is_ok());
+    any(PrecedenceTable::erase(&mut orders, fleet, agent).is_ok());
+    any(PrecedenceTable::fill(&mut orders, fleet).is_ok());
     if let Some(&motion) = any(fleet.first()) {
-        any(Orders::replace(&mut orders, fleet, agent, motion).is_ok());
+        any(PrecedenceTable::replace(&mut orders, fleet, agent, motion).is_ok());
     }
-    Orders::clear(any(&mut orders));
+    PrecedenceTable::clear(any(&mut orders));
 }
 
 #[inline(never)]
-fn brakes<S: Scalar>() -> Result<(), Invalid> {
-    let brakes = any(Brakes::<S>::new(number(), number())?);
-    any((Brakes::distance(&brakes, number()), Brakes::speed(&brakes, number())));
+fn brakes<S: Scalar>() -> Result<(), InvalidInput> {
+    let brakes = any(BrakingModel::<S>::new(number(), number())?);
+    any((BrakingModel::distance(&brakes, number()), BrakingModel::speed(&brakes, number())));
     Ok(())
 }
 
@@ -380,13 +400,15 @@ impl Write for Nowhere {
 
 #[inline(never)]
 fn messages<S: Scalar>() {
-    shown::<Invalid>(any(Invalid::Full("")));
-    shown::<Full>(any(Full::Pair([0, 0])));
-    shown::<Mismatch>(any(Mismatch::OtherFleet));
-    shown::<TableError>(any(<TableError as From<Full>>::from(any(Full::Agents))));
-    shown::<Unsolved>(any(<Unsolved as From<Mismatch>>::from(any(Mismatch::NoSuchAgent(0)))));
-    shown::<NoSpeedPlan<S>>(any(<NoSpeedPlan<S> as From<Invalid>>::from(any(Invalid::SweepOverOneTurn))));
-    shown::<Refused>(any(<Refused as From<TableError>>::from(any(TableError::Full(Full::Orders)))));
+    shown::<InvalidInput>(any(InvalidInput::Full("")));
+    shown::<CapacityError>(any(CapacityError::Pair([0, 0])));
+    shown::<MismatchError>(any(MismatchError::OtherFleet));
+    shown::<EcmError>(any(<EcmError as From<CapacityError>>::from(any(CapacityError::Agents))));
+    shown::<PlanError>(any(<PlanError as From<MismatchError>>::from(any(MismatchError::NoSuchAgent(0)))));
+    shown::<SpeedPlanError<S>>(any(<SpeedPlanError<S> as From<InvalidInput>>::from(any(
+        InvalidInput::SweepOverOneTurn,
+    ))));
+    shown::<AdmissionError>(any(<AdmissionError as From<EcmError>>::from(any(EcmError::Full(CapacityError::Orders)))));
     shown::<PieceType>(any(PieceType::SS));
 }
 

@@ -5,7 +5,7 @@
 use pcr_board::uart::Uart;
 use pcr_board::{AGENTS, Number, entry};
 #[cfg(armv6m)]
-use pcr_core::{Ecm, Piece, Region};
+use pcr_core::{Ecm, EcmEntry, Piece};
 #[cfg(not(armv6m))]
 use pcr_supervisor::Traffic;
 #[cfg(not(armv6m))]

@@ -7,7 +7,7 @@ use core::hint::black_box;
 use pcr_board::meter::Meter;
 use pcr_board::{AGENTS, Number, entry, out};
 use pcr_core::scalar::Angle;
-use pcr_core::{Curve, Ecm, Limits, Piece, Point, Pose, Region, Scalar, Turn};
+use pcr_core::{Curve, Ecm, EcmEntry, Limits, Piece, Point, Pose, Scalar, TurnSide};
 use pcr_supervisor::dump::Line;
 use pcr_supervisor::{Agent, Step, Store, scenario};
 use semihosting::process;
@@ -18,12 +18,12 @@ const SIZES: [(u32, u32); 4] = [(1, 4096), (2, 1024), (4, 256), (8, 64)];
 const ONE: Number = <Number as pcr_supervisor::Number>::ONE;
 
 type Fleet = Store<Number, { scenario::AGENTS }, { scenario::SEGMENTS }>;
-type Table = Ecm<Number, [Region; scenario::REGIONS], [Piece<Number>; scenario::PIECES]>;
+type Table = Ecm<Number, [EcmEntry; scenario::REGIONS], [Piece<Number>; scenario::PIECES]>;
 
 // The pairs of paths, and then the 12 agents.
 static STORE: ConstStaticCell<Fleet> = ConstStaticCell::new(Store::new());
 static TABLE: ConstStaticCell<Table> =
-    ConstStaticCell::new(Ecm::new([Region::EMPTY; scenario::REGIONS], [Piece::EMPTY; scenario::PIECES]));
+    ConstStaticCell::new(Ecm::new([EcmEntry::EMPTY; scenario::REGIONS], [Piece::EMPTY; scenario::PIECES]));
 
 #[entry]
 fn main() -> ! {
@@ -131,7 +131,8 @@ impl Random {
             *step = match self.below(2) {
                 0 => Step { curve: Curve::Line, length: least + self.part().double() },
                 kind => {
-                    let (radius, turn) = (least + self.part(), if kind == 1 { Turn::Left } else { Turn::Right });
+                    let (radius, turn) =
+                        (least + self.part(), if kind == 1 { TurnSide::Left } else { TurnSide::Right });
                     Step { curve: Curve::Arc { radius, turn }, length: radius.double().double() }
                 }
             };

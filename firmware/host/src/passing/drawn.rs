@@ -3,7 +3,7 @@
 use super::STEPS;
 use super::rounded::Rounded;
 use pcr_core::scalar::Angle;
-use pcr_core::{Curve, Limits, Point, Pose, Turn};
+use pcr_core::{Curve, Limits, Point, Pose, TurnSide};
 use pcr_supervisor::{Agent, Step};
 
 /// Weyl sequence with the finalizer of SplitMix64.
@@ -33,7 +33,7 @@ pub(super) fn path<S: Rounded>(random: &mut Random) -> heapless::Vec<Step<S>, { 
     (0..1 + random.below(STEPS))
         .map(|_| {
             let length = S::from_f64(0.5 + 2.5 * random.unit());
-            let turn = if random.chance(500) { Turn::Left } else { Turn::Right };
+            let turn = if random.chance(500) { TurnSide::Left } else { TurnSide::Right };
             let radius = S::from_f64(0.6 + 2.0 * random.unit());
             let curve = if random.chance(500) { Curve::Line } else { Curve::Arc { radius, turn } };
             Step { curve, length }

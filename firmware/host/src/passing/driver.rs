@@ -6,7 +6,7 @@ use super::rounded::Rounded;
 use super::tally::Tally;
 use super::{PIECES, REGIONS, ROBOTS, SEGMENTS, STEP};
 use pcr_core::scalar::Angle;
-use pcr_core::{Brakes, Curve, Interval, Pass, Turn};
+use pcr_core::{BrakingModel, Curve, Interval, PassingState, TurnSide};
 use pcr_supervisor::message::{Edition, Refusal};
 use pcr_supervisor::robot::Unclear;
 use pcr_supervisor::{Agent, Answer, Briefing, Client, Event, Motions, Number, Request, Robot};
@@ -130,7 +130,7 @@ impl<S: Rounded> Driver<S> {
                     }
                     match answer {
                         Answer::Member { agent, with, .. } if agent == self.index => self.told = Some(with),
-                        Answer::Passing { pass: Pass::Second, .. } => tally.orders += 1,
+                        Answer::Passing { pass: PassingState::Second, .. } => tally.orders += 1,
                         Answer::Orders { .. } if self.asks => self.brief(tally)?,
                         _ => {}
                     }
@@ -188,7 +188,7 @@ impl<S: Rounded> Driver<S> {
             (self.at, self.speed) = (self.at.max(self.hold), 0.0);
             return Ok(());
         }
-        let safe = Brakes::new(1.0, STEP)?.speed(way.clamp(0.0, 1e3));
+        let safe = BrakingModel::new(1.0, STEP)?.speed(way.clamp(0.0, 1e3));
         let wanted = if self.stops > 0 { 0.0 } else { random.unit().max(0.5) };
         self.speed = safe.min(wanted).min(self.speed + STEP);
         Ok(())
@@ -209,7 +209,7 @@ impl<S: Rounded> Driver<S> {
             match step.curve {
                 Curve::Line => (x, y) = (x + length * heading.cos(), y + length * heading.sin()),
                 Curve::Arc { radius, turn } => {
-                    let sign = if turn == Turn::Left { 1.0 } else { -1.0 };
+                    let sign = if turn == TurnSide::Left { 1.0 } else { -1.0 };
                     let (radius, turned) = (sign * radius.to_f64(), sign * length / radius.to_f64());
                     (x, y) = (
                         x + radius * ((heading + turned).sin() - heading.sin()),

@@ -4,7 +4,7 @@ use super::{Edition, short};
 use crate::fleet::Rejected;
 use crate::frame::Damage;
 use heapless::Vec;
-use pcr_core::{Full, Invalid, Mismatch, Refused, TableError};
+use pcr_core::{AdmissionError, CapacityError, EcmError, InvalidInput, MismatchError};
 use serde::{Deserialize, Serialize};
 
 /// Why a request was not executed.
@@ -97,7 +97,7 @@ pub enum Room {
     Other,
 }
 
-/// [`Invalid`] without its text.
+/// [`InvalidInput`] without its text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Reason {
     /// The quantity is NaN or infinite.
@@ -118,14 +118,14 @@ pub enum Reason {
 
 impl Refusal {
     /// The refusal of an agent.
-    pub fn agent(agent: usize, invalid: Invalid) -> Self {
+    pub fn agent(agent: usize, invalid: InvalidInput) -> Self {
         let (why, what) = match invalid {
-            Invalid::NonFinite(what) => (Reason::NonFinite, what),
-            Invalid::Negative(what) => (Reason::Negative, what),
-            Invalid::NonPositive(what) => (Reason::NonPositive, what),
-            Invalid::OutOfRange(what) | Invalid::TooSmall(what) => (Reason::OutOfRange, what),
-            Invalid::SweepOverOneTurn => (Reason::SweepOverOneTurn, ""),
-            Invalid::Full(what) => (Reason::Full, what),
+            InvalidInput::NonFinite(what) => (Reason::NonFinite, what),
+            InvalidInput::Negative(what) => (Reason::Negative, what),
+            InvalidInput::NonPositive(what) => (Reason::NonPositive, what),
+            InvalidInput::OutOfRange(what) | InvalidInput::TooSmall(what) => (Reason::OutOfRange, what),
+            InvalidInput::SweepOverOneTurn => (Reason::SweepOverOneTurn, ""),
+            InvalidInput::Full(what) => (Reason::Full, what),
             _ => (Reason::Other, ""),
         };
         Self::Agent { agent: short(agent), what: text(what), why }
@@ -140,43 +140,45 @@ impl Refusal {
     }
 }
 
-impl From<Refused> for Refusal {
-    fn from(refused: Refused) -> Self {
+impl From<AdmissionError> for Refusal {
+    fn from(refused: AdmissionError) -> Self {
         match refused {
-            Refused::Meeting(agents) => Self::Meeting(agents.map(short)),
-            Refused::Stuck { agent, by, .. } | Refused::Late { agent, by, .. } => Self::Stuck([agent, by].map(short)),
-            Refused::Blocked { agent, by } => Self::Blocked([agent, by].map(short)),
-            Refused::Full(full) => full.into(),
-            Refused::Mismatch(mismatch) => mismatch.into(),
+            AdmissionError::Meeting(agents) => Self::Meeting(agents.map(short)),
+            AdmissionError::Stuck { agent, by, .. } | AdmissionError::Late { agent, by, .. } => {
+                Self::Stuck([agent, by].map(short))
+            }
+            AdmissionError::Blocked { agent, by } => Self::Blocked([agent, by].map(short)),
+            AdmissionError::Full(full) => full.into(),
+            AdmissionError::Mismatch(mismatch) => mismatch.into(),
             _ => Self::TableFull(Room::Other),
         }
     }
 }
 
-impl From<Full> for Refusal {
-    fn from(full: Full) -> Self {
+impl From<CapacityError> for Refusal {
+    fn from(full: CapacityError) -> Self {
         Self::TableFull(match full {
-            Full::Regions => Room::Regions,
-            Full::Pieces => Room::Pieces,
-            Full::Pair(agents) => Room::Pair(agents.map(short)),
+            CapacityError::Regions => Room::Regions,
+            CapacityError::Pieces => Room::Pieces,
+            CapacityError::Pair(agents) => Room::Pair(agents.map(short)),
             _ => Room::Other,
         })
     }
 }
 
-impl From<TableError> for Refusal {
-    fn from(error: TableError) -> Self {
+impl From<EcmError> for Refusal {
+    fn from(error: EcmError) -> Self {
         match error {
-            TableError::Full(full) => full.into(),
-            TableError::Mismatch(mismatch) => mismatch.into(),
+            EcmError::Full(full) => full.into(),
+            EcmError::Mismatch(mismatch) => mismatch.into(),
         }
     }
 }
 
-impl From<Mismatch> for Refusal {
-    fn from(mismatch: Mismatch) -> Self {
+impl From<MismatchError> for Refusal {
+    fn from(mismatch: MismatchError) -> Self {
         match mismatch {
-            Mismatch::NoSuchAgent(agent) => Self::NoSuchAgent { agent: short(agent) },
+            MismatchError::NoSuchAgent(agent) => Self::NoSuchAgent { agent: short(agent) },
             _ => Self::NotComputed,
         }
     }

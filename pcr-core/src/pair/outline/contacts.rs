@@ -16,7 +16,7 @@
 //! at a distance of less than R, which do no harm: they are cuts, not ends. Without it, rounding might reject a contact in two forms.
 
 use super::placed::Carried;
-use crate::few::Few;
+use crate::array_vec::ArrayVec;
 use crate::geometry::{Direction, Interval, Vector};
 use crate::outline::{Corner, MOST_CORNERS, opposite, supports, turned_back};
 use crate::scalar::{Scalar, Wide};
@@ -173,7 +173,7 @@ fn corners_at_corners<S: Scalar>(
     found: &mut impl FnMut(S, Direction<S>),
 ) {
     let (corners, radius) = (moving.corners.as_slice(), other.radius);
-    let mut distances = Few::<S, MOST_CORNERS>::new(S::ZERO);
+    let mut distances = ArrayVec::<S, MOST_CORNERS>::new(S::ZERO);
     other.corners.iter().for_each(|point| distances.add(point.at.norm_squared().sqrt(), true));
     for (index, corner) in corners.iter().enumerate() {
         let own = corner.at.norm_squared().sqrt();

@@ -11,7 +11,7 @@
 
 use super::contacts::{Standing, between, contacts, direction_of, far_contacts, is_within, line_contacts};
 use super::placed::Carried;
-use crate::few::Few;
+use crate::array_vec::ArrayVec;
 use crate::geometry::{Direction, Point, Vector};
 use crate::outline::{Corner, MOST_CORNERS, opposite, supports, turned_back};
 use crate::scalar::{Scalar, Unit, Wide};
@@ -20,7 +20,7 @@ use crate::scalar::{Scalar, Unit, Wide};
 const MOST: usize = 160;
 
 /// Lengths along a segment \[m\].
-pub(crate) type Events<S> = Few<S, MOST>;
+pub(crate) type Events<S> = ArrayVec<S, MOST>;
 
 /// A point of an outline at which its normal passes through the centre of an arc.
 #[derive(Clone, Copy)]
@@ -31,7 +31,7 @@ struct Critical<S: Scalar> {
     normal: Direction<S>,
 }
 
-type Criticals<S> = Few<Critical<S>, { 3 * MOST_CORNERS }>;
+type Criticals<S> = ArrayVec<Critical<S>, { 3 * MOST_CORNERS }>;
 
 /// Two outlines carried along a pair of segments.
 pub(crate) struct Carriers<'a, S: Scalar> {
@@ -63,7 +63,7 @@ impl<S: Scalar> Carriers<'_, S> {
     pub(crate) fn events(&self) -> Option<Events<S>> {
         let Self { first, second, radius, slack } = self;
         let end = second.segment.length;
-        let mut lengths = Few::new(S::ZERO);
+        let mut lengths = ArrayVec::new(S::ZERO);
         let mut found = Found { lengths: &mut lengths, end, fits: true };
         for place in [S::ZERO, first.segment.length] {
             let corners = first.at(place, second.origin);
@@ -79,7 +79,7 @@ impl<S: Scalar> Carriers<'_, S> {
     /// Returns the lengths of the second segment at which an end of a slice may be extreme, in increasing order; `None` if there are too many.
     pub(crate) fn turning(&self) -> Option<Events<S>> {
         let Self { first, second, radius, slack } = self;
-        let mut lengths = Few::new(S::ZERO);
+        let mut lengths = ArrayVec::new(S::ZERO);
         let mut found = Found { lengths: &mut lengths, end: second.segment.length, fits: true };
         let length = first.segment.length;
         critical(second, first, [*radius, *slack], |place, own| {
@@ -158,7 +158,7 @@ fn critical_on_line<S: Scalar>(
 /// The critical radii of an outline about the centre of its arc, and some more due to rounding.
 fn criticals<S: Scalar>(of: &Carried<'_, S>, slack: S) -> Criticals<S> {
     let corners = of.corners.as_slice();
-    let mut all = Few::new(Critical { radius: S::ZERO, normal: Direction::X });
+    let mut all = ArrayVec::new(Critical { radius: S::ZERO, normal: Direction::X });
     for (index, corner) in corners.iter().enumerate() {
         let far = corner.at.norm_squared().sqrt();
         if far > S::ZERO {

@@ -6,24 +6,24 @@
 use super::events::Carriers;
 use super::placed::Carried;
 use super::slice::Parts;
-use crate::error::Full;
-use crate::few::Few;
+use crate::array_vec::ArrayVec;
+use crate::error::CapacityError;
 use crate::geometry::Interval;
 use crate::motion::Motion;
-use crate::pair::Pair;
-use crate::pieces::{Piece, Pieces};
+use crate::pair::AgentPair;
+use crate::piece_store::{Piece, PieceStore};
 use crate::scalar::Scalar;
 use crate::segment::Segment;
 
 impl<'a, S: Scalar> Carriers<'a, S> {
-    pub(crate) fn new(pair: &Pair<'a, S>, first: &'a Segment<S>, second: &'a Segment<S>) -> Self {
+    pub(crate) fn new(pair: &AgentPair<'a, S>, first: &'a Segment<S>, second: &'a Segment<S>) -> Self {
         let carried = |segment, motion: &Motion<'_, S>| Carried::new(segment, motion.outline());
         let (first, second) = (carried(first, pair.first), carried(second, pair.second));
         Self { first, second, radius: pair.radius, slack: pair.slack }
     }
 }
 
-impl<'a, S: Scalar> Pair<'a, S> {
+impl<'a, S: Scalar> AgentPair<'a, S> {
     /// Adds the pieces of a pair of segments and joins those that are connected. Lengths are along the segments.
     // Not inlined: pairs of discs would need the stack of it.
     #[inline(never)]
@@ -31,8 +31,8 @@ impl<'a, S: Scalar> Pair<'a, S> {
         &self,
         [first, second]: [&'a Segment<S>; 2],
         indices: [u16; 2],
-        pieces: &mut Pieces<S, P>,
-    ) -> Result<(), Full> {
+        pieces: &mut PieceStore<S, P>,
+    ) -> Result<(), CapacityError> {
         Carriers::new(self, first, second).find(indices, pieces)
     }
 }
@@ -41,7 +41,7 @@ impl<S: Scalar> Carriers<'_, S> {
     /// The intervals of a slice of the first segment that belong to a piece with this range, as lengths along the segment;
     /// all of its range, if the slice could not be computed.
     pub(crate) fn of_piece(&self, rank: [u8; 2], range: Interval<S>, at: S) -> Parts<S> {
-        let mut own = Few::new(range);
+        let mut own = ArrayVec::new(range);
         let Some(slice) = self.slice_of_first(at) else {
             own.add(range, true);
             return own;
@@ -66,7 +66,7 @@ impl<S: Scalar> Carriers<'_, S> {
     /// An interval is connected, so it belongs to the region of a piece if any place of it does. A place that is in no interval of the
     /// slice of the first segment, which only rounding can cause, may belong to any piece.
     pub(crate) fn of_piece_on_second(&self, rank: [u8; 2], [first, second]: [Interval<S>; 2], at: S) -> Parts<S> {
-        let mut own = Few::new(second);
+        let mut own = ArrayVec::new(second);
         let Some(slice) = self.slice_of_second(at) else {
             own.add(second, true);
             return own;
@@ -95,7 +95,7 @@ impl<S: Scalar> Carriers<'_, S> {
     }
 }
 
-impl<S: Scalar> Pair<'_, S> {
+impl<S: Scalar> AgentPair<'_, S> {
     /// Whether any of the two is not a disc about its reference point.
     pub(crate) fn has_outline(&self) -> bool {
         self.first.has_outline() | self.second.has_outline()

@@ -1,13 +1,13 @@
 //! Outlines carried along a segment, with their heading along it: translated on a line, turned about the centre of an arc.
 
-use crate::few::Few;
+use crate::array_vec::ArrayVec;
 use crate::geometry::{Direction, Point, Vector};
 use crate::outline::{Corner, MOST_CORNERS, OutlineRef};
 use crate::scalar::{Angle, Scalar};
 use crate::segment::{Curve, Segment};
 
 /// The corners of a placed outline, relative to some origin; at least one.
-pub(crate) type Corners<S> = Few<Corner<S>, MOST_CORNERS>;
+pub(crate) type Corners<S> = ArrayVec<Corner<S>, MOST_CORNERS>;
 
 /// An outline carried along a segment.
 pub(crate) struct Carried<'a, S: Scalar> {
@@ -35,7 +35,7 @@ impl<'a, S: Scalar> Carried<'a, S> {
             outward: segment.direction.plus(corner.outward),
             length: corner.length,
         };
-        let mut corners = Few::new(place(&Corner::CENTRE));
+        let mut corners = ArrayVec::new(place(&Corner::CENTRE));
         let own = outline.corners();
         own.iter().for_each(|corner| corners.add(place(corner), true));
         corners.add(place(&Corner::CENTRE), own.is_empty());
@@ -52,7 +52,7 @@ impl<'a, S: Scalar> Carried<'a, S> {
             let way = self.segment.direction.vector(length, S::ZERO);
             (Direction::X, Vector { x: shift.x + way.x, y: shift.y + way.y })
         };
-        let mut corners = Few::new(Corner::CENTRE);
+        let mut corners = ArrayVec::new(Corner::CENTRE);
         for corner in self.corners.as_slice() {
             let (at, outward) = if self.bend.is_some() {
                 (turn.vector(corner.at.x, corner.at.y), turn.plus(corner.outward))

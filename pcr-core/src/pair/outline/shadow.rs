@@ -1,7 +1,7 @@
 //! The lengths of the second segment at which some of the first one is covered.
 
 use super::events::Carriers;
-use crate::few::Few;
+use crate::array_vec::ArrayVec;
 use crate::geometry::Interval;
 use crate::scalar::Scalar;
 
@@ -15,9 +15,9 @@ impl<S: Scalar> Carriers<'_, S> {
     /// Cost: up to three slices for each event.
     // Not inlined: pairs of discs would need the stack of it.
     #[inline(never)]
-    pub(crate) fn shadow(&self) -> Few<Interval<S>, MOST_SHADOWS> {
+    pub(crate) fn shadow(&self) -> ArrayVec<Interval<S>, MOST_SHADOWS> {
         let all = Interval::new(S::ZERO, self.second.segment.length);
-        let mut parts = Few::new(all);
+        let mut parts = ArrayVec::new(all);
         let Some(events) = self.events() else {
             parts.add(all, true);
             return parts;

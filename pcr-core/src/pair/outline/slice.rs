@@ -7,7 +7,7 @@
 use super::contacts::{Standing, contacts, on_segment};
 use super::distance::distance;
 use super::placed::Carried;
-use crate::few::Few;
+use crate::array_vec::ArrayVec;
 use crate::geometry::{Interval, Point};
 use crate::scalar::Scalar;
 
@@ -18,7 +18,7 @@ pub(crate) const MOST_PARTS: usize = 36;
 const MOST_CUTS: usize = 96;
 
 /// Intervals of a slice in increasing order, as lengths along the segment \[m\].
-pub(crate) type Parts<S> = Few<Interval<S>, MOST_PARTS>;
+pub(crate) type Parts<S> = ArrayVec<Interval<S>, MOST_PARTS>;
 
 /// Returns the parts of a segment on which the moving outline is within the radius of the other, which stands. `from` is the origin of
 /// the moving outline. `None` if there were too many contacts.
@@ -26,7 +26,7 @@ pub(crate) type Parts<S> = Few<Interval<S>, MOST_PARTS>;
 /// Cost: a few operations for each pair of a corner and an edge; on an arc a distance for each contact.
 pub(crate) fn parts<S: Scalar>(moving: &Carried<'_, S>, other: Standing<'_, S>) -> Option<Parts<S>> {
     let length = moving.segment.length;
-    let mut parts = Few::new(Interval::new(S::ZERO, S::ZERO));
+    let mut parts = ArrayVec::new(Interval::new(S::ZERO, S::ZERO));
     if moving.bend.is_none() {
         let mut ends = [None; 2];
         contacts(moving, other, |length, _| ends = [ends[1], Some(length)]);
@@ -37,7 +37,7 @@ pub(crate) fn parts<S: Scalar>(moving: &Carried<'_, S>, other: Standing<'_, S>) 
         }
         return Some(parts);
     }
-    let mut cuts = Few::<S, MOST_CUTS>::new(S::ZERO);
+    let mut cuts = ArrayVec::<S, MOST_CUTS>::new(S::ZERO);
     let mut fits = true;
     contacts(moving, other, |cut, _| {
         if S::ZERO < cut && cut < length {

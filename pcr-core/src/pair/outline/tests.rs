@@ -6,11 +6,11 @@ use super::distance::tests::{Random, oracle};
 use super::events::Carriers;
 use super::placed::Carried;
 use crate::outline::{Outline, OutlineRef};
-use crate::pieces::{Piece, Pieces};
+use crate::piece_store::{Piece, PieceStore};
 use crate::scalar::Scalar;
 use crate::{
-    Curve, Ecm, Encounter, Hold, Interval, Limits, Motion, Path, Point, Pose, Profile, Radians, Region, RegionRef,
-    Segment, Turn, Vector, excess,
+    Curve, Ecm, EcmEntry, Encounter, Interval, Limits, Motion, MovementAuthority, Path, Point, Pose, Profile, Radians,
+    RegionRef, Segment, TurnSide, Vector, excess,
 };
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::vec::Vec;
@@ -29,7 +29,7 @@ fn close(found: &[f64], expected: &[f64]) {
 /// A rectangle of 1.2 m x 0.8 m turns about its centre beside a wall that comes nearer.
 #[test]
 fn a_rectangle_that_turns_beside_a_wall_has_pinches() {
-    let first = standing(0.0, -1.0, 0.0).then_arc(1.0, Turn::Left, TAU).unwrap();
+    let first = standing(0.0, -1.0, 0.0).then_arc(1.0, TurnSide::Left, TAU).unwrap();
     let second = standing(0.0, 1.5, -FRAC_PI_2).then_line(1.2).unwrap();
     let own = Outline::<f64, 4>::rectangle(0.6, 0.6, 1.4, -0.6, 0.0).unwrap();
     let wall = Outline::<f64, 4>::rectangle(0.1, 0.1, 2.0, 2.0, 0.0).unwrap();
@@ -72,7 +72,7 @@ fn a_rectangle_that_turns_beside_a_wall_has_pinches() {
             events.as_slice()
         );
     }
-    let mut pieces = Pieces::new([Piece::EMPTY; 16]);
+    let mut pieces = PieceStore::new([Piece::EMPTY; 16]);
     carriers.find([0; 2], &mut pieces).unwrap();
     let mut found = Vec::new();
     let mut index = pieces.first_pending();
@@ -99,7 +99,7 @@ fn a_rectangle_that_turns_beside_a_wall_has_pinches() {
         );
     }
     let all = pieces.take_region().unwrap();
-    assert_eq!(crate::pieces::List::new(pieces.slots(), all).count(), 7, "one region");
+    assert_eq!(crate::piece_store::PieceList::new(pieces.slots(), all).count(), 7, "one region");
 }
 
 #[test]
@@ -173,7 +173,7 @@ impl Case {
             let [x, y, heading] = self.poses[k].map(S::of);
             let path = Path::starting_at(Pose { position: Point::new(x, y), heading: S::angle(heading) }).unwrap();
             self.segments[k].iter().fold(path, |path, &(radius, length)| {
-                let turn = if radius < 0.0 { Turn::Right } else { Turn::Left };
+                let turn = if radius < 0.0 { TurnSide::Right } else { TurnSide::Left };
                 let length = S::of(length);
                 if radius == 0.0 {
                     path.line(length).unwrap()
@@ -257,8 +257,8 @@ impl Exact {
         let segments = path.segments().iter().map(|segment| {
             let radius = match segment.curve() {
                 Curve::Line => 0.0,
-                Curve::Arc { radius, turn: Turn::Left } => radius.float(),
-                Curve::Arc { radius, turn: Turn::Right } => -radius.float(),
+                Curve::Arc { radius, turn: TurnSide::Left } => radius.float(),
+                Curve::Arc { radius, turn: TurnSide::Right } => -radius.float(),
             };
             (radius, segment.length().float())
         });
@@ -324,7 +324,7 @@ fn compare<S: Number>(case: &Case, random: &mut Random, tally: &mut Tally, seed:
     let exact = [0, 1].map(|k| Exact::of(&paths[k], S::of(case.poses[k][2]).float(), outlines[k].as_outline()));
     let radius = exact[0].radius + exact[1].radius;
     let eps = excess(&fleet[0], &fleet[1]).float();
-    let ecm = Ecm::build([Region::EMPTY; 64], [Piece::EMPTY; 256], &fleet).unwrap();
+    let ecm = Ecm::build([EcmEntry::EMPTY; 64], [Piece::EMPTY; 256], &fleet).unwrap();
     let regions: Vec<RegionRef<'_, S>> = ecm.pair(&fleet, 0, 1).unwrap().collect();
     tally.pairs += 1;
     tally.regions += regions.len() as u32;
@@ -536,10 +536,10 @@ fn compare_blocked(case: &Case, random: &mut Random, seed: u64) -> u32 {
         assert!(clear < 24.0 * fine || !holds, "seed {seed}: {a} {at}: {clear} {lengths:?}");
     }
     let fleet = [first, second];
-    let ecm = Ecm::build([Region::EMPTY; 64], [Piece::EMPTY; 256], &fleet).unwrap();
+    let ecm = Ecm::build([EcmEntry::EMPTY; 64], [Piece::EMPTY; 256], &fleet).unwrap();
     for region in ecm.pair(&fleet, 0, 1).unwrap() {
         let from = random.within(0.0, s);
-        let Hold::At(hold) = region.hold(0.0, from) else { continue };
+        let MovementAuthority::At(hold) = region.hold(0.0, from) else { continue };
         // Nothing of the region ahead of the other agent lies before the hold, and something just behind it.
         for _ in 0..20 {
             let (a, b) = (random.within(0.0, hold.max(1e-9)), random.within(from, s));
@@ -619,7 +619,7 @@ fn regions_are_the_components_of_a_flood_fill() {
             continue;
         }
         let [l, s] = exact.each_ref().map(|exact| exact.length);
-        let ecm = Ecm::build([Region::EMPTY; 64], [Piece::EMPTY; 256], &fleet).unwrap();
+        let ecm = Ecm::build([EcmEntry::EMPTY; 64], [Piece::EMPTY; 256], &fleet).unwrap();
         let regions: Vec<_> = ecm.pair(&fleet, 0, 1).unwrap().collect();
         let agrees = |count: usize| {
             let at = |k: usize, length: f64| length * k as f64 / (count - 1) as f64;
@@ -692,8 +692,8 @@ fn a_contact_at_the_end_of_a_segment_leaves_what_is_covered_covered() {
         Outline::<f64, 4>::polygon(corners, 0.125).unwrap()
     };
     for turns in [FRAC_PI_2, PI, 1.25 * PI] {
-        let first = standing(0.0, -0.5, 0.0).then_arc(0.5, Turn::Left, 0.5 * turns).unwrap();
-        let second = standing(0.0, -0.25, 0.0).then_arc(0.25, Turn::Left, 0.25 * turns).unwrap();
+        let first = standing(0.0, -0.5, 0.0).then_arc(0.5, TurnSide::Left, 0.5 * turns).unwrap();
+        let second = standing(0.0, -0.25, 0.0).then_arc(0.25, TurnSide::Left, 0.25 * turns).unwrap();
         let (own, other) = (square(0.0, 0.5), square(-0.3, 0.25));
         let carriers = Carriers {
             first: Carried::new(&first, own.as_outline()),
@@ -737,8 +737,8 @@ fn squares_at_a_common_corner_are_covered_throughout() {
         ],
         0.25,
     );
-    let first = standing(c[0], c[1] - 0.5, 0.0).then_arc(0.5, Turn::Left, 1.9634954084936207).unwrap();
-    let second = standing(c[0], c[1] - 0.25, 0.0).then_arc(0.25, Turn::Left, 0.5).unwrap();
+    let first = standing(c[0], c[1] - 0.5, 0.0).then_arc(0.5, TurnSide::Left, 1.9634954084936207).unwrap();
+    let second = standing(c[0], c[1] - 0.25, 0.0).then_arc(0.25, TurnSide::Left, 0.5).unwrap();
     let carriers = Carriers {
         first: Carried::new(&first, own.as_outline()),
         second: Carried::new(&second, other.as_outline()),
@@ -766,7 +766,7 @@ fn delayed_outlines_do_not_touch() {
             let path: &Path<f64, 4> = &paths[k];
             Motion::with_outline(path.as_path(), profiles[k].as_profile(), &outlines[k], 0.0).unwrap()
         });
-        let ecm = Ecm::build([Region::EMPTY; 64], [Piece::EMPTY; 256], &fleet).unwrap();
+        let ecm = Ecm::build([EcmEntry::EMPTY; 64], [Piece::EMPTY; 256], &fleet).unwrap();
         let delay = crate::earliest_start(ecm.pair(&fleet, 0, 1).unwrap(), 0.0);
         let Some(delay) = delay.filter(|delay| *delay > 0.0) else { continue };
         let clear = |delay: f64| {

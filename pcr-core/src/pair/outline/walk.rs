@@ -14,9 +14,9 @@
 use super::contacts::Standing;
 use super::events::{Carriers, Events};
 use super::slice::{MOST_PARTS, Parts, parts, parts_beside};
-use crate::error::Full;
+use crate::error::CapacityError;
 use crate::geometry::Interval;
-use crate::pieces::{NONE, Piece, Pieces};
+use crate::piece_store::{NONE, Piece, PieceStore};
 use crate::scalar::Scalar;
 
 /// Number of halvings of a gap between two slices of different structure.
@@ -38,9 +38,9 @@ impl<S: Scalar> Carriers<'_, S> {
     pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
         &self,
         indices: [u16; 2],
-        pieces: &mut Pieces<S, P>,
-    ) -> Result<(), Full> {
-        let events = self.events().ok_or(Full::Contacts)?;
+        pieces: &mut PieceStore<S, P>,
+    ) -> Result<(), CapacityError> {
+        let events = self.events().ok_or(CapacityError::Contacts)?;
         let mut turning = None;
         let beside = self.second.within(self.slack.half().half());
         let mut front = Front { parts: Parts::new(Interval::new(S::ZERO, S::ZERO)), pieces: [NONE; MOST_PARTS] };
@@ -57,12 +57,12 @@ impl<S: Scalar> Carriers<'_, S> {
             let covered = !front.parts.as_slice().is_empty() || wide && !self.slice(middle)?.as_slice().is_empty();
             if covered && wide {
                 if turning.is_none() {
-                    turning = Some(self.turning().ok_or(Full::Contacts)?);
+                    turning = Some(self.turning().ok_or(CapacityError::Contacts)?);
                 }
                 let places = turning.as_ref().map(|turning| turning.as_slice()).unwrap_or_default();
                 let inside = places.iter().copied().filter(|&place| lo < place && place < hi && place != middle);
                 if !inside.chain([middle]).all(|place| all.push(place)) {
-                    return Err(Full::Contacts);
+                    return Err(CapacityError::Contacts);
                 }
                 all.sort();
             }
@@ -77,8 +77,8 @@ impl<S: Scalar> Carriers<'_, S> {
     }
 
     /// The parts of the first segment that are covered at a length of the second.
-    fn slice(&self, at: S) -> Result<Parts<S>, Full> {
-        parts_beside(&self.first, &self.second, at, [self.radius, self.slack]).ok_or(Full::Contacts)
+    fn slice(&self, at: S) -> Result<Parts<S>, CapacityError> {
+        parts_beside(&self.first, &self.second, at, [self.radius, self.slack]).ok_or(CapacityError::Contacts)
     }
 
     /// The parts of the second segment that are covered at a length of the first.
@@ -100,8 +100,8 @@ impl<S: Scalar> Carriers<'_, S> {
         step: Interval<S>,
         until: S,
         indices: [u16; 2],
-        pieces: &mut Pieces<S, P>,
-    ) -> Result<Front<S>, Full> {
+        pieces: &mut PieceStore<S, P>,
+    ) -> Result<Front<S>, CapacityError> {
         let mut from = step.lo;
         // A change of structure takes one round; more than a few are not due to rounding, and then one step crosses them all.
         for round in 0..4 {
@@ -142,8 +142,8 @@ impl<S: Scalar> Carriers<'_, S> {
         slice: Parts<S>,
         second: Interval<S>,
         indices: [u16; 2],
-        pieces: &mut Pieces<S, P>,
-    ) -> Result<Front<S>, Full> {
+        pieces: &mut PieceStore<S, P>,
+    ) -> Result<Front<S>, CapacityError> {
         let mut front = Front { parts: slice, pieces: [NONE; MOST_PARTS] };
         let (old, new) = (before.parts.as_slice(), slice.as_slice());
         for (k, &part) in new.iter().enumerate() {
@@ -174,7 +174,7 @@ impl<S: Scalar> Carriers<'_, S> {
 fn extend<S: Scalar, P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
     front: &Front<S>,
     slice: &Parts<S>,
-    pieces: &mut Pieces<S, P>,
+    pieces: &mut PieceStore<S, P>,
 ) {
     for (&part, &piece) in slice.as_slice().iter().zip(&front.pieces) {
         if let Some(piece) = pieces.get_mut(piece) {

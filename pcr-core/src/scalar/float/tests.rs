@@ -1,7 +1,7 @@
 //! Tests with exact results, and at the limits of the documented ranges, in both formats.
 
 use super::*;
-use crate::few::Few;
+use crate::array_vec::ArrayVec;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 extern crate std;
 use std::vec::Vec;
@@ -19,8 +19,8 @@ fn quadratics_keep_the_small_root() {
 fn half_tangent_roots_reach_the_far_end_of_the_diameter() {
     // τ² - 1 = 0: ± a quarter turn; a = 0: τ = ∞ is half a turn.
     let half_tangents = |a, b, g| {
-        let mut angles = Few::<f64, 2>::new(0.0);
-        let sector = Sector::all([1.0, 0.0]);
+        let mut angles = ArrayVec::<f64, 2>::new(0.0);
+        let sector = AngleSector::all([1.0, 0.0]);
         f64::half_tangent_roots([[a, b, g, 0.0]].into_iter(), sector, |angle| angles.add(angle.0, true));
         <[f64; 2]>::try_from(angles.as_slice()).unwrap()
     };
@@ -40,7 +40,7 @@ fn differences_of_close_numbers_do_not_cancel() {
 }
 
 /// Calls the format's function and returns the angles as `f64`.
-fn roots<S>(equations: &[[S; 4]], sector: Sector<S>) -> Vec<f64>
+fn roots<S>(equations: &[[S; 4]], sector: AngleSector<S>) -> Vec<f64>
 where
     S: Scalar<Wide = S, Unit = S, Angle = Radians<S>> + Into<f64>,
 {
@@ -155,7 +155,7 @@ macro_rules! exact {
                     [64.0 * E, 6.0 * E, 60.0 * E]
                 );
                 assert_eq!(<$t as Scalar>::drift(7, 3.0), 0.0);
-                let sector = Sector::<$t>::all([0.0, 1.0]);
+                let sector = AngleSector::<$t>::all([0.0, 1.0]);
                 assert!(sector.least < -1.0 && sector.from == [0.0, 1.0]);
             }
 
@@ -181,10 +181,10 @@ macro_rules! exact {
                 // (τ - 1)(τ + 2), counted from 0 and from a quarter turn.
                 let equation = [1.0, 0.5, -2.0, 0.0];
                 let steep = 2.0 * 2.0_f64.atan();
-                near(roots(&[equation], Sector::<$t>::all([1.0, 0.0])), &[-steep, FRAC_PI_2]);
-                near(roots(&[equation], Sector::<$t>::all([0.0, 1.0])), &[FRAC_PI_2 - steep, PI]);
+                near(roots(&[equation], AngleSector::<$t>::all([1.0, 0.0])), &[-steep, FRAC_PI_2]);
+                near(roots(&[equation], AngleSector::<$t>::all([0.0, 1.0])), &[FRAC_PI_2 - steep, PI]);
                 // Real only because of `doubt`: one root, computed with the larger of two coefficients.
-                let all = Sector::<$t>::all([1.0, 0.0]);
+                let all = AngleSector::<$t>::all([1.0, 0.0]);
                 near(roots(&[[1.0, 1.0, 3.0, 0.5]], all), &[-2.0 * 3.0_f64.atan()]);
                 near(roots(&[[-3.0, 1.0, -1.0, 0.5]], all), &[2.0 * (1.0_f64 / 3.0).atan()]);
                 near(roots(&[[-1.0, 1.0, -3.0, 0.5]], all), &[2.0 * 3.0_f64.atan()]);
@@ -192,7 +192,7 @@ macro_rules! exact {
                 near(roots(&[[1.0, 1.0, 3.0, 0.4], [3.0, 1.0, 1.0, 0.4]], all), &[]);
                 near(roots(&[[1.0, 1.0, 1.0, 0.0]], all), &[-FRAC_PI_2; 2]);
                 // At the very ends of half a circle.
-                near(roots(&[[1.0, 0.0, -1.0, 0.0]], Sector { least: 0.0, ..all }), &[-FRAC_PI_2, FRAC_PI_2]);
+                near(roots(&[[1.0, 0.0, -1.0, 0.0]], AngleSector { least: 0.0, ..all }), &[-FRAC_PI_2, FRAC_PI_2]);
                 // The small root does not cancel.
                 let small = 2.0 * (1.0 / (1e4 + 99_999_999.0_f64.sqrt())).atan();
                 near(roots(&[[1.0, -1e4, 1.0, 0.0]], all), &[PI - small, small]);
@@ -207,7 +207,7 @@ macro_rules! exact {
                     let part = |prime: f64| (f64::from(k) * prime).fract();
                     let [s, t] = [4.0 * part(0.618_034) - 2.0, 4.0 * part(0.414_214) - 2.0];
                     let (from, middle, half) = (TAU * part(0.732_051), TAU * part(0.236_068), PI * part(0.316_625));
-                    let sector = Sector { from: unit(from), middle: unit(middle), least: half.cos() as $t };
+                    let sector = AngleSector { from: unit(from), middle: unit(middle), least: half.cos() as $t };
                     // (τ - s)(2 τ - 2 t)
                     let found = roots(&[[2.0, -(s + t) as $t, (2.0 * s * t) as $t, 0.0]], sector);
                     for root in [s, t].into_iter().filter(|_| (s - t).abs() > 0.1) {
@@ -225,8 +225,13 @@ macro_rules! exact {
 
             #[test]
             fn ramps_there_and_back() {
-                let ramp =
-                    |slow: $t, acceleration: $t| Ramp { slow, fast: 9.0, acceleration, duration: 9.0, length: 9.0 };
+                let ramp = |slow: $t, acceleration: $t| AccelerationRamp {
+                    slow,
+                    fast: 9.0,
+                    acceleration,
+                    duration: 9.0,
+                    length: 9.0,
+                };
                 assert_eq!(
                     [(0.5, 0.25), (0.0, 0.5), (0.5, 0.0)].map(|(v, a)| <$t as Scalar>::ramp_length(ramp(v, a), 2.0)),
                     [1.5, 1.0, 1.0]

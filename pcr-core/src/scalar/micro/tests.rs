@@ -71,7 +71,8 @@ fn all_else_is_that_of_f32() {
         assert_eq!((Scalar::sum(m(x), m(y)), m(x).sum_up(m(y))), ((m(sum), m(rest)), m(x.sum_up(y))));
         assert_eq!((Micro::lag(m(x), m(y)), Micro::rounding(m(x))), (m(f32::lag(x, y)), m(f32::rounding(x))));
         assert_eq!(Micro::slack(m(2.0)), m(70.0 * f32::EPSILON));
-        let ramp = Ramp { slow: m(0.5), fast: m(9.0), acceleration: m(0.25), duration: m(9.0), length: m(9.0) };
+        let ramp =
+            AccelerationRamp { slow: m(0.5), fast: m(9.0), acceleration: m(0.25), duration: m(9.0), length: m(9.0) };
         assert_eq!(Micro::ramp_length(ramp, m(2.0)), m(1.5));
         near(Micro::ramp_time(ramp, m(1.5)).0, 2.0);
     }
@@ -101,8 +102,8 @@ fn quadratics_have_both_roots_or_one_in_doubt() {
 #[test]
 fn half_tangents_are_found_in_their_sector() {
     let roots = |equation: [f32; 4], from: [f32; 2], sector: Option<([f32; 2], f32)>| {
-        let all = Sector::all(from);
-        let sector = sector.map_or(all, |(middle, least)| Sector { middle, least, ..all });
+        let all = AngleSector::all(from);
+        let sector = sector.map_or(all, |(middle, least)| AngleSector { middle, least, ..all });
         let mut found = [9.0; 2];
         let mut count = 0;
         Micro::half_tangent_roots([equation.map(Micro)].into_iter(), sector, |angle| {

@@ -1,15 +1,15 @@
 //! Times, measured in rounds: in each round all methods run, one after the other, so that anything that slows the
 //! machine down for a while affects all of them. A ratio is the median of the ratios of the rounds.
 
-use super::errors::{Errors, Truth, errors};
-use super::{Answer, Field, Input, Method, Question};
+use super::errors::{Accuracy, GroundTruth, errors};
+use super::{CollisionMethod, ComparisonFleet, ComparisonInput, MethodAnswer, MethodQuestion};
 use pcr_formats::scenario::Scenario;
-use pcr_planning::fleet::Refused;
+use pcr_planning::fleet::FormatRangeError;
 use serde::Serialize;
 
 /// How much time a comparison may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Effort {
+pub struct MeasurementBudget {
     /// Rounds at most.
     pub rounds: usize,
     /// Time of a method in all its rounds, about \[s\]; there is always one round.
@@ -26,16 +26,16 @@ pub struct Comparison {
     /// Their number.
     pub agents: usize,
     /// By the question, pcr first.
-    pub rows: Vec<Row>,
+    pub rows: Vec<MethodMeasurement>,
     /// Methods that were asked for and have no row.
-    pub absent: Vec<Absent>,
+    pub absent: Vec<UnavailableMethod>,
     /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 
 /// A method without an answer.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Absent {
+pub struct UnavailableMethod {
     /// With resolution or format.
     pub method: String,
     /// Why.
@@ -44,11 +44,11 @@ pub struct Absent {
 
 /// A method on a scenario.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct MethodMeasurement {
     /// With resolution or format.
     pub method: String,
     /// What it was asked.
-    pub question: Question,
+    pub question: MethodQuestion,
     /// What it tells.
     pub tells: &'static str,
     /// Median of the rounds \[ms\].
@@ -62,7 +62,7 @@ pub struct Row {
     /// What is kept of the answer.
     pub bytes: usize,
     /// How far it is off.
-    pub errors: Errors,
+    pub errors: Accuracy,
 }
 
 impl Comparison {
@@ -70,15 +70,15 @@ impl Comparison {
     /// number of methods that are done, and of all.
     ///
     /// # Errors
-    /// [`Refused`] where a value does not fit floating point.
+    /// [`FormatRangeError`] where a value does not fit floating point.
     pub fn new(
         scenario: &Scenario,
-        mut methods: Vec<Box<dyn Method>>,
-        effort: Effort,
+        mut methods: Vec<Box<dyn CollisionMethod>>,
+        effort: MeasurementBudget,
         filters: &[String],
         progress: &mut dyn FnMut(usize, usize),
-    ) -> Result<Self, Refused> {
-        let input = Input::new(scenario)?;
+    ) -> Result<Self, FormatRangeError> {
+        let input = ComparisonInput::new(scenario)?;
         let field = input.field();
         if !filters.is_empty() {
             methods.retain(|method| {
@@ -93,35 +93,35 @@ impl Comparison {
 }
 
 /// A method while it is measured.
-struct Course<'m> {
-    method: &'m dyn Method,
+struct MethodTimer<'m> {
+    method: &'m dyn CollisionMethod,
     /// Of each round \[s\], and of the baseline in the same round.
     times: Vec<[f64; 2]>,
     rounds: usize,
-    row: Row,
+    row: MethodMeasurement,
 }
 
 fn compare(
-    field: &Field<'_>,
-    methods: &[Box<dyn Method>],
-    effort: Effort,
+    field: &ComparisonFleet<'_>,
+    methods: &[Box<dyn CollisionMethod>],
+    effort: MeasurementBudget,
     progress: &mut dyn FnMut(usize, usize),
-) -> (Vec<Row>, Vec<Absent>) {
-    let truth = Truth::new(field, effort.slices);
+) -> (Vec<MethodMeasurement>, Vec<UnavailableMethod>) {
+    let truth = GroundTruth::new(field, effort.slices);
     let total = methods.len();
     progress(0, total);
     // The first round tells how many more there is time for, and how good the answers are.
-    let mut courses: Vec<Course<'_>> = Vec::new();
+    let mut courses: Vec<MethodTimer<'_>> = Vec::new();
     let mut absent = Vec::new();
     let mut baseline = None;
     for (done, method) in methods.iter().enumerate() {
         let method = method.as_ref();
-        let mut leave_out = |reason: String| absent.push(Absent { method: method.name(), reason });
+        let mut leave_out = |reason: String| absent.push(UnavailableMethod { method: method.name(), reason });
         if let Some(reason) = method.missing() {
             leave_out(reason.to_owned());
             continue;
         }
-        if baseline.is_none_or(|of: &dyn Method| of.question() != method.question()) {
+        if baseline.is_none_or(|of: &dyn CollisionMethod| of.question() != method.question()) {
             baseline = Some(method);
         }
         let base = baseline.map_or(f64::NAN, |baseline| baseline.timed(field).0);
@@ -130,7 +130,7 @@ fn compare(
         match answer {
             Ok(answer) => {
                 let row = row(&truth, method, &answer);
-                courses.push(Course { method, times: vec![[took, base]], rounds, row });
+                courses.push(MethodTimer { method, times: vec![[took, base]], rounds, row });
             }
             Err(reason) => leave_out(reason),
         }
@@ -138,7 +138,7 @@ fn compare(
     }
     let rounds = courses.iter().map(|course| course.rounds).max().unwrap_or(0);
     for round in 1..rounds {
-        let mut baseline: Option<(Question, f64)> = None;
+        let mut baseline: Option<(MethodQuestion, f64)> = None;
         for course in &mut courses {
             let question = course.method.question();
             let known = baseline.filter(|(of, _)| *of == question);
@@ -151,25 +151,25 @@ fn compare(
             course.times.push([took, base]);
         }
     }
-    (courses.into_iter().map(Course::finish).collect(), absent)
+    (courses.into_iter().map(MethodTimer::finish).collect(), absent)
 }
 
-impl Course<'_> {
-    fn finish(self) -> Row {
+impl MethodTimer<'_> {
+    fn finish(self) -> MethodMeasurement {
         let ms = 1e3 * median(self.times.iter().map(|[took, _]| *took).collect());
         let ratio = median(self.times.iter().map(|[took, base]| took / base).collect());
-        Row { ms, ratio, rounds: self.times.len(), ..self.row }
+        MethodMeasurement { ms, ratio, rounds: self.times.len(), ..self.row }
     }
 }
 
-fn row(truth: &Truth, method: &dyn Method, answer: &Answer<'_>) -> Row {
+fn row(truth: &GroundTruth, method: &dyn CollisionMethod, answer: &MethodAnswer<'_>) -> MethodMeasurement {
     let (count, bytes) = match answer {
-        Answer::Regions(regions) => (regions.count(), regions.bytes()),
-        Answer::Conflicts(found) => (found.len(), size_of_val(&found[..])),
+        MethodAnswer::Regions(regions) => (regions.count(), regions.bytes()),
+        MethodAnswer::Conflicts(found) => (found.len(), size_of_val(&found[..])),
     };
-    let (method_name, question, tells) = (method.name(), method.question(), method.tells());
+    let (method_name, question, tells) = (method.name(), method.question(), method.output_description());
     let errors = errors(truth, answer);
-    Row { method: method_name, question, tells, ms: 0.0, ratio: 1.0, rounds: 0, count, bytes, errors }
+    MethodMeasurement { method: method_name, question, tells, ms: 0.0, ratio: 1.0, rounds: 0, count, bytes, errors }
 }
 
 /// Returns the middle one of some values, the lower one of two; NaN of none.

@@ -1,20 +1,23 @@
 //! The method of this library.
 
-use super::{Answer, BEYOND, Field, Found, Method, Number, Outcome, Question, Regions};
-use pcr_core::{Bounds, BroadPhase, Interval, Motion, Piece, Region, RegionRef};
+use super::{
+    BEYOND, CollisionMethod, ComparedScalar, ComparisonFleet, MethodAnswer, MethodContact, MethodQuestion,
+    MethodResult, RegionSet,
+};
+use pcr_core::{Aabb, BroadPhase, EcmEntry, Interval, Motion, Piece, RegionRef};
 use pcr_fixed::Q16;
+use pcr_planning::agent_regions::{AgentRegions, rows};
 use pcr_planning::fleet::{HostEcm, build_ecm};
-use pcr_planning::rows::{Row, rows};
 use rayon::prelude::*;
 use std::marker::PhantomData;
 
 #[derive(Clone, Copy, PartialEq)]
-enum Cores {
+enum Parallelism {
     One,
     All,
 }
 
-impl Cores {
+impl Parallelism {
     fn suffix(self) -> &'static str {
         match self {
             Self::One => "",
@@ -24,81 +27,83 @@ impl Cores {
 }
 
 /// Collision regions in the format `S`.
-struct Map<S>(Cores, PhantomData<S>);
+struct PcrRegionsMethod<S>(Parallelism, PhantomData<S>);
 
 /// Parts of the time in which pairs are sorted out.
 const PARTS: usize = 16;
 
 /// Two agents, and when they are in contact.
-type Contact<S> = ([usize; 2], Interval<S>);
+type FoundInterval<S> = ([usize; 2], Interval<S>);
 
 /// Conflicts in the format `S`.
-struct Conflicts<S>(Cores, PhantomData<S>);
+struct PcrConflictsMethod<S>(Parallelism, PhantomData<S>);
 
-pub(super) fn regions() -> Vec<Box<dyn Method>> {
+pub(super) fn regions() -> Vec<Box<dyn CollisionMethod>> {
     vec![
-        Box::new(Map::<f64>(Cores::One, PhantomData)),
-        Box::new(Map::<f64>(Cores::All, PhantomData)),
-        Box::new(Map::<f32>(Cores::One, PhantomData)),
-        Box::new(Map::<Q16>(Cores::One, PhantomData)),
+        Box::new(PcrRegionsMethod::<f64>(Parallelism::One, PhantomData)),
+        Box::new(PcrRegionsMethod::<f64>(Parallelism::All, PhantomData)),
+        Box::new(PcrRegionsMethod::<f32>(Parallelism::One, PhantomData)),
+        Box::new(PcrRegionsMethod::<Q16>(Parallelism::One, PhantomData)),
     ]
 }
 
-pub(super) fn conflicts() -> Vec<Box<dyn Method>> {
+pub(super) fn conflicts() -> Vec<Box<dyn CollisionMethod>> {
     vec![
-        Box::new(Conflicts::<f64>(Cores::One, PhantomData)),
-        Box::new(Conflicts::<f64>(Cores::All, PhantomData)),
-        Box::new(Conflicts::<f32>(Cores::One, PhantomData)),
-        Box::new(Conflicts::<Q16>(Cores::One, PhantomData)),
+        Box::new(PcrConflictsMethod::<f64>(Parallelism::One, PhantomData)),
+        Box::new(PcrConflictsMethod::<f64>(Parallelism::All, PhantomData)),
+        Box::new(PcrConflictsMethod::<f32>(Parallelism::One, PhantomData)),
+        Box::new(PcrConflictsMethod::<Q16>(Parallelism::One, PhantomData)),
     ]
 }
 
-impl<S: Number> Method for Map<S> {
+impl<S: ComparedScalar> CollisionMethod for PcrRegionsMethod<S> {
     fn name(&self) -> String {
         format!("pcr {}{}", S::NAME, self.0.suffix())
     }
 
-    fn question(&self) -> Question {
-        Question::Regions
+    fn question(&self) -> MethodQuestion {
+        MethodQuestion::Regions
     }
 
-    fn tells(&self) -> &'static str {
+    fn output_description(&self) -> &'static str {
         "regions, rounded outward"
     }
 
     fn is_parallel(&self) -> bool {
-        self.0 == Cores::All
+        self.0 == Parallelism::All
     }
 
-    fn answer<'f>(&self, field: &'f Field<'_>) -> Outcome<'f> {
+    fn answer<'f>(&self, field: &'f ComparisonFleet<'_>) -> MethodResult<'f> {
         let motions = S::motions(field).ok_or(BEYOND)?;
-        Ok(Answer::Regions(match self.0 {
-            Cores::One => Box::new(Whole { motions, table: build_ecm(motions).map_err(|full| full.to_string())? }),
-            Cores::All => Box::new(Rows(rows(motions).map_err(|full| full.to_string())?)),
+        Ok(MethodAnswer::Regions(match self.0 {
+            Parallelism::One => {
+                Box::new(WholeTable { motions, table: build_ecm(motions).map_err(|full| full.to_string())? })
+            }
+            Parallelism::All => Box::new(AgentTables(rows(motions).map_err(|full| full.to_string())?)),
         }))
     }
 }
 
 /// One table.
-struct Whole<'f, 'a, S: Number> {
+struct WholeTable<'f, 'a, S: ComparedScalar> {
     motions: &'f [Motion<'a, S>],
     table: HostEcm<S>,
 }
 
 /// A table an agent, of its regions with those after it.
-struct Rows<'f, S: Number>(Vec<Row<'f, S>>);
+struct AgentTables<'f, S: ComparedScalar>(Vec<AgentRegions<'f, S>>);
 
-fn bytes<S: Number>(table: &HostEcm<S>) -> usize {
-    table.len() * size_of::<Region>() + table.pieces() * size_of::<Piece<S>>()
+fn bytes<S: ComparedScalar>(table: &HostEcm<S>) -> usize {
+    table.len() * size_of::<EcmEntry>() + table.pieces() * size_of::<Piece<S>>()
 }
 
-fn slice<'a, S: Number>(regions: impl Iterator<Item = RegionRef<'a, S>>, time: f64) -> Vec<[f64; 2]> {
+fn slice<'a, S: ComparedScalar>(regions: impl Iterator<Item = RegionRef<'a, S>>, time: f64) -> Vec<[f64; 2]> {
     let time = S::from_f64(time);
     let slices = regions.flat_map(|region| region.slice_at(time).collect::<Vec<_>>());
     slices.map(|slice| [slice.lo.to_f64(), slice.hi.to_f64()]).collect()
 }
 
-impl<S: Number> Regions for Whole<'_, '_, S> {
+impl<S: ComparedScalar> RegionSet for WholeTable<'_, '_, S> {
     fn count(&self) -> usize {
         2 * self.table.len()
     }
@@ -112,7 +117,7 @@ impl<S: Number> Regions for Whole<'_, '_, S> {
     }
 }
 
-impl<S: Number> Regions for Rows<'_, S> {
+impl<S: ComparedScalar> RegionSet for AgentTables<'_, S> {
     fn count(&self) -> usize {
         self.0.iter().map(|row| 2 * row.table().len()).sum()
     }
@@ -127,33 +132,37 @@ impl<S: Number> Regions for Rows<'_, S> {
     }
 }
 
-impl<S: Number> Method for Conflicts<S> {
+impl<S: ComparedScalar> CollisionMethod for PcrConflictsMethod<S> {
     fn name(&self) -> String {
         format!("pcr {}{}", S::NAME, self.0.suffix())
     }
 
-    fn question(&self) -> Question {
-        Question::Conflicts
+    fn question(&self) -> MethodQuestion {
+        MethodQuestion::Conflicts
     }
 
-    fn tells(&self) -> &'static str {
+    fn output_description(&self) -> &'static str {
         "intervals, certified"
     }
 
     fn is_parallel(&self) -> bool {
-        self.0 == Cores::All
+        self.0 == Parallelism::All
     }
 
-    fn answer<'f>(&self, field: &'f Field<'_>) -> Outcome<'f> {
+    fn answer<'f>(&self, field: &'f ComparisonFleet<'_>) -> MethodResult<'f> {
         let motions = S::motions(field).ok_or(BEYOND)?;
         let during = field.horizon.map(S::from_f64);
         let during = Interval::new(during[0], during[1]);
-        let boxes = vec![Bounds::default(); motions.len() * (1 + PARTS)];
+        let boxes = vec![Aabb::default(); motions.len() * (1 + PARTS)];
         let broad_phase = BroadPhase::new(boxes, motions, during).map_err(|full| full.to_string())?;
-        let found = |(agents, time): Contact<S>| Found { agents, begin: time.lo.to_f64(), end: Some(time.hi.to_f64()) };
-        Ok(Answer::Conflicts(match self.0 {
-            Cores::One => broad_phase.contacts().map(found).collect(),
-            Cores::All => {
+        let found = |(agents, time): FoundInterval<S>| MethodContact {
+            agents,
+            begin: time.lo.to_f64(),
+            end: Some(time.hi.to_f64()),
+        };
+        Ok(MethodAnswer::Conflicts(match self.0 {
+            Parallelism::One => broad_phase.contacts().map(found).collect(),
+            Parallelism::All => {
                 let candidates: Vec<_> = broad_phase.candidates().collect();
                 let contacts = candidates.into_par_iter();
                 let of = |(agents, during)| broad_phase.contacts_of(agents, during).expect("agents of the fleet");

@@ -1,7 +1,7 @@
 //! The reference for all answers: contacts and slices by the definition, found by bisection until the distance that can
 //! be travelled in the rest decides. It uses no formula of any method.
 
-use super::track::{Point, Track, near};
+use super::disc_track::{DiscTrack, Xy, near};
 
 /// Ends are known within this way \[m\].
 const TOLERANCE: f64 = 1e-10;
@@ -11,7 +11,7 @@ const BUDGET: usize = 200_000;
 
 /// A contact of two discs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
+pub struct ReferenceContact {
     /// From when to when \[s\].
     pub time: [f64; 2],
     /// Whether it is certain: the others are within 1e-10 m of touching only.
@@ -19,8 +19,8 @@ pub struct Contact {
 }
 
 /// Where a function that changes no faster than its argument is at most 0, in `[lo, hi]`.
-fn below(f: impl Fn(f64) -> f64, [lo, hi]: [f64; 2]) -> Vec<Contact> {
-    let mut found: Vec<Contact> = Vec::new();
+fn below(f: impl Fn(f64) -> f64, [lo, hi]: [f64; 2]) -> Vec<ReferenceContact> {
+    let mut found: Vec<ReferenceContact> = Vec::new();
     let mut stack = vec![[lo, hi]];
     let mut spent = 0;
     while let Some([a, b]) = stack.pop() {
@@ -40,18 +40,18 @@ fn below(f: impl Fn(f64) -> f64, [lo, hi]: [f64; 2]) -> Vec<Contact> {
                 last.time[1] = b;
                 last.certain |= certain;
             }
-            _ => found.push(Contact { time: [a, b], certain }),
+            _ => found.push(ReferenceContact { time: [a, b], certain }),
         }
     }
     found
 }
 
-fn distance(a: Point, b: Point) -> f64 {
+fn distance(a: Xy, b: Xy) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// When two discs are in contact during a time \[s\].
-pub fn contacts(a: &Track, b: &Track, during: [f64; 2]) -> Vec<Contact> {
+pub fn contacts(a: &DiscTrack, b: &DiscTrack, during: [f64; 2]) -> Vec<ReferenceContact> {
     let reach = a.radius + b.radius;
     if !near(a.bounds(), b.bounds(), reach) {
         return Vec::new();
@@ -67,7 +67,7 @@ pub fn contacts(a: &Track, b: &Track, during: [f64; 2]) -> Vec<Contact> {
 }
 
 /// The lengths of a path within `reach` of a point \[m\].
-pub fn slice(path: &Track, point: Point, reach: f64) -> Vec<[f64; 2]> {
+pub fn slice(path: &DiscTrack, point: Xy, reach: f64) -> Vec<[f64; 2]> {
     let clearance = |length: f64| distance(path.at(length), point) - reach;
     below(clearance, [0.0, path.length]).into_iter().map(|part| part.time).collect()
 }

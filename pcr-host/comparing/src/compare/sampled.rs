@@ -2,72 +2,72 @@
 //! radii is a point of a region. This is the computational method that the paper compares with (its reference 34),
 //! here optimized: single precision, sixteen distances at a time, runs of points instead of single points.
 
-use super::track::{EMPTY, Track, hull, near};
-use super::{Answer, Field, Method, Outcome, Question, Regions};
-use pcr_drawing::Bar;
+use super::disc_track::{DiscTrack, EMPTY, hull, near};
+use super::{CollisionMethod, ComparisonFleet, MethodAnswer, MethodQuestion, MethodResult, RegionSet};
+use pcr_drawing::BlockedBar;
 
 /// Distances that are computed together before any of them is looked at.
 const LANES: usize = 16;
 
 /// With a time between samples \[s\], and with boxes around paths and runs of samples or without.
-struct Sampled {
+struct SampledMethod {
     step: f64,
     boxes: bool,
 }
 
-pub(super) fn methods() -> Vec<Box<dyn Method>> {
+pub(super) fn methods() -> Vec<Box<dyn CollisionMethod>> {
     let all = [(0.01, false), (0.01, true), (0.1, false), (0.1, true)];
-    all.into_iter().map(|(step, boxes)| Box::new(Sampled { step, boxes }) as Box<dyn Method>).collect()
+    all.into_iter().map(|(step, boxes)| Box::new(SampledMethod { step, boxes }) as Box<dyn CollisionMethod>).collect()
 }
 
-impl Method for Sampled {
+impl CollisionMethod for SampledMethod {
     fn name(&self) -> String {
         format!("sampled map {} s{}", self.step, if self.boxes { ", boxes" } else { "" })
     }
 
-    fn question(&self) -> Question {
-        Question::Regions
+    fn question(&self) -> MethodQuestion {
+        MethodQuestion::Regions
     }
 
-    fn tells(&self) -> &'static str {
+    fn output_description(&self) -> &'static str {
         "points of regions"
     }
 
-    fn answer<'f>(&self, field: &'f Field<'_>) -> Outcome<'f> {
-        Ok(Answer::Regions(Box::new(self.map(field))))
+    fn answer<'f>(&self, field: &'f ComparisonFleet<'_>) -> MethodResult<'f> {
+        Ok(MethodAnswer::Regions(Box::new(self.map(field))))
     }
 }
 
 /// What the map of an agent says at all samples.
-pub fn bars(field: &Field<'_>, step: f64, ego: usize) -> Vec<Bar> {
-    let map = Sampled { step, boxes: true }.map(field);
+pub fn bars(field: &ComparisonFleet<'_>, step: f64, ego: usize) -> Vec<BlockedBar> {
+    let map = SampledMethod { step, boxes: true }.map(field);
     let mut bars = Vec::new();
     for (other, samples) in map.samples.iter().enumerate().filter(|(other, _)| *other != ego) {
         for time in (0..samples.lengths.len()).map(|k| samples.begin + step * k as f64) {
-            bars.extend(map.slice(ego, other, time).into_iter().map(|part| Bar { other, time, part }));
+            bars.extend(map.slice(ego, other, time).into_iter().map(|part| BlockedBar { other, time, part }));
         }
     }
     bars
 }
 
-impl Sampled {
-    fn map(&self, field: &Field<'_>) -> Map {
-        let samples: Vec<Samples> = field.tracks.iter().map(|track| Samples::new(track, self.step)).collect();
+impl SampledMethod {
+    fn map(&self, field: &ComparisonFleet<'_>) -> SampledCollisionMap {
+        let samples: Vec<TrackSamples> = field.tracks.iter().map(|track| TrackSamples::new(track, self.step)).collect();
         let mut pairs = Vec::new();
         for (first, a) in samples.iter().enumerate() {
             for (second, b) in samples.iter().enumerate().skip(first + 1) {
                 let runs = a.runs(b, self.boxes);
                 if !runs.is_empty() {
-                    pairs.push(Pair { agents: [first, second], runs });
+                    pairs.push(SampledPair { agents: [first, second], runs });
                 }
             }
         }
-        Map { samples, pairs }
+        SampledCollisionMap { samples, pairs }
     }
 }
 
 /// The samples of a track.
-struct Samples {
+struct TrackSamples {
     radius: f32,
     begin: f64,
     step: f64,
@@ -82,25 +82,25 @@ struct Samples {
 }
 
 /// Samples `from..=to` of the first path are near the sample `at` of the second one.
-struct Run {
+struct SampleRun {
     at: u32,
     from: u32,
     to: u32,
 }
 
-struct Pair {
+struct SampledPair {
     agents: [usize; 2],
     /// By `at`.
-    runs: Vec<Run>,
+    runs: Vec<SampleRun>,
 }
 
-struct Map {
-    samples: Vec<Samples>,
-    pairs: Vec<Pair>,
+struct SampledCollisionMap {
+    samples: Vec<TrackSamples>,
+    pairs: Vec<SampledPair>,
 }
 
-impl Samples {
-    fn new(track: &Track, step: f64) -> Self {
+impl TrackSamples {
+    fn new(track: &DiscTrack, step: f64) -> Self {
         let [begin, end] = track.time;
         let count = ((end - begin) / step).ceil() as usize;
         let lengths: Vec<f64> = (0..=count).map(|k| track.length_at(begin + step * k as f64)).collect();
@@ -117,7 +117,7 @@ impl Samples {
     }
 
     /// The samples of this path that are near those of another one.
-    fn runs(&self, other: &Self, boxes: bool) -> Vec<Run> {
+    fn runs(&self, other: &Self, boxes: bool) -> Vec<SampleRun> {
         let reach = self.radius + other.radius;
         let mut runs = Vec::new();
         if boxes && !near(self.bounds, other.bounds, f64::from(reach)) {
@@ -158,23 +158,23 @@ impl Samples {
 }
 
 /// Adds those of some samples that are near, to the run before where they go on.
-fn add(runs: &mut Vec<Run>, at: u32, first: u32, within: &[bool]) {
+fn add(runs: &mut Vec<SampleRun>, at: u32, first: u32, within: &[bool]) {
     for (sample, _) in (first..).zip(within).filter(|(_, within)| **within) {
         match runs.last_mut() {
             Some(run) if run.at == at && run.to + 1 == sample => run.to = sample,
-            _ => runs.push(Run { at, from: sample, to: sample }),
+            _ => runs.push(SampleRun { at, from: sample, to: sample }),
         }
     }
 }
 
-impl Map {
-    fn pair(&self, agents: [usize; 2]) -> &[Run] {
+impl SampledCollisionMap {
+    fn pair(&self, agents: [usize; 2]) -> &[SampleRun] {
         let place = self.pairs.binary_search_by_key(&agents, |pair| pair.agents);
         place.map_or(&[], |place| &self.pairs[place].runs)
     }
 }
 
-impl Regions for Map {
+impl RegionSet for SampledCollisionMap {
     /// Pairs with any: what belongs together is not known.
     fn count(&self) -> usize {
         2 * self.pairs.len()
@@ -195,7 +195,7 @@ impl Regions for Map {
             let runs = runs[begin..].iter().take_while(|run| run.at as usize == at);
             return runs.map(|run| path.part(run.from as usize, run.to as usize)).collect();
         }
-        let holds = |run: &&Run| (run.from..=run.to).contains(&(at as u32));
+        let holds = |run: &&SampleRun| (run.from..=run.to).contains(&(at as u32));
         let mut slices: Vec<[f64; 2]> = Vec::new();
         for run in self.pair([other, ego]).iter().filter(holds) {
             let [from, to] = path.part(run.at as usize, run.at as usize);

@@ -4,7 +4,7 @@
 //! by the ego's radius, touches a segment of the ego from the side (the distance to its carrier is R) or an end of it
 //! (the distance to that point is R), and where a piece of the region ends. Additional events do no harm.
 
-use pcr_core::{Curve, PieceRef, Point, RegionRef, Segment, Turn};
+use pcr_core::{Curve, PieceRef, Point, RegionRef, Segment, TurnSide};
 use std::f64::consts::TAU;
 
 /// The events of a region along the other's path \[m\], in no order.
@@ -17,14 +17,14 @@ pub(super) fn lengths(region: &RegionRef<'_, f64>, radius: f64) -> Vec<f64> {
 }
 
 fn of_piece(piece: &PieceRef<'_, f64>, radius: f64) -> Vec<f64> {
-    let (ego, other) = (piece.ego, Shape::of(piece.other));
+    let (ego, other) = (piece.ego, CentredSegment::of(piece.other));
     let ends = [0.0, ego.length()].map(|end| ego.point_at(end));
     let mut local: Vec<f64> = ends.iter().flat_map(|end| other.at_distance_from(*end, radius)).collect();
-    match Shape::of(ego).curve {
-        Curved::Line => {
+    match CentredSegment::of(ego).curve {
+        CentredCurve::Line => {
             local.extend([-radius, radius].into_iter().flat_map(|offset| other.at_offset_from(ego, offset)))
         }
-        Curved::Arc { centre, radius: bend, .. } => {
+        CentredCurve::Arc { centre, radius: bend, .. } => {
             let rings = [bend + radius, (bend - radius).abs()];
             local.extend(rings.into_iter().flat_map(|ring| other.at_distance_from(centre, ring)));
         }
@@ -36,13 +36,13 @@ fn of_piece(piece: &PieceRef<'_, f64>, radius: f64) -> Vec<f64> {
 }
 
 /// A segment as the textbook has it: an arc by its centre.
-struct Shape {
+struct CentredSegment {
     start: Point<f64>,
     heading: f64,
-    curve: Curved,
+    curve: CentredCurve,
 }
 
-enum Curved {
+enum CentredCurve {
     Line,
     Arc {
         centre: Point<f64>,
@@ -54,16 +54,16 @@ enum Curved {
     },
 }
 
-impl Shape {
+impl CentredSegment {
     fn of(segment: &Segment<f64>) -> Self {
         let (start, heading) = (segment.point_at(0.0), segment.heading_at(0.0).0);
         let curve = match segment.curve() {
-            Curve::Line => Curved::Line,
+            Curve::Line => CentredCurve::Line,
             Curve::Arc { radius, turn } => {
-                let turn = if turn == Turn::Left { 1.0 } else { -1.0 };
+                let turn = if turn == TurnSide::Left { 1.0 } else { -1.0 };
                 let (sin, cos) = heading.sin_cos();
                 let centre = Point::new(start.x - turn * radius * sin, start.y + turn * radius * cos);
-                Curved::Arc { centre, radius, from: heading - turn * TAU / 4.0, turn }
+                CentredCurve::Arc { centre, radius, from: heading - turn * TAU / 4.0, turn }
             }
         };
         Self { start, heading, curve }
@@ -73,14 +73,14 @@ impl Shape {
     /// those of the first lap.
     fn at_distance_from(&self, point: Point<f64>, distance: f64) -> Vec<f64> {
         match self.curve {
-            Curved::Line => {
+            CentredCurve::Line => {
                 let (sin, cos) = self.heading.sin_cos();
                 let (x, y) = (point.x - self.start.x, point.y - self.start.y);
                 let (along, across) = (x * cos + y * sin, y * cos - x * sin);
                 let half = ((distance - across) * (distance + across)).max(0.0).sqrt();
                 vec![along - half, along + half]
             }
-            Curved::Arc { centre, radius, .. } => {
+            CentredCurve::Arc { centre, radius, .. } => {
                 let (x, y) = (point.x - centre.x, point.y - centre.y);
                 let apart = x.hypot(y);
                 let cosine = (radius * radius + (apart - distance) * (apart + distance)) / (2.0 * radius * apart);
@@ -95,11 +95,11 @@ impl Shape {
         let origin = line.point_at(0.0);
         let offset_of = |point: Point<f64>| (point.y - origin.y) * cos - (point.x - origin.x) * sin;
         match self.curve {
-            Curved::Line => {
+            CentredCurve::Line => {
                 let slope = (self.heading - line.heading_at(0.0).0).sin();
                 vec![(offset - offset_of(self.start)) / slope]
             }
-            Curved::Arc { centre, radius, .. } => {
+            CentredCurve::Arc { centre, radius, .. } => {
                 self.at_angles(cos.atan2(-sin), (offset - offset_of(centre)) / radius)
             }
         }
@@ -107,7 +107,7 @@ impl Shape {
 
     /// Lengths at which the angle seen from the centre differs from `middle` by the arc cosine.
     fn at_angles(&self, middle: f64, cosine: f64) -> Vec<f64> {
-        let Curved::Arc { radius, from, turn, .. } = self.curve else {
+        let CentredCurve::Arc { radius, from, turn, .. } = self.curve else {
             return Vec::new();
         };
         // Of a cosine beyond 1 by rounding a touch is left; elsewhere an event too many does no harm.

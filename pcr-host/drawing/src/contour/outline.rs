@@ -5,11 +5,11 @@ use pcr_core::Interval;
 
 /// Closed outlines, region to the left: counter-clockwise about the region, clockwise about its holes.
 /// Points are (time \[s\], length \[m\]).
-pub(crate) type Outline = Vec<Vec<[f64; 2]>>;
+pub(crate) type RegionOutline = Vec<Vec<[f64; 2]>>;
 
 /// The slice of a region at one time.
 #[derive(Clone, Debug)]
-pub(super) struct Column {
+pub(super) struct OutlineColumn {
     pub(super) time: f64,
     pub(super) intervals: Vec<Interval<f64>>,
 }
@@ -21,12 +21,14 @@ pub(super) fn scaled(point: [f64; 2], pixel: [f64; 2]) -> [f64; 2] {
 
 /// Whether the intervals of two columns correspond one to one: each meets the one of the same number, and no
 /// other, or they are as near as no picture can show.
-pub(super) fn correspond(a: &Column, b: &Column, pixel: f64) -> bool {
+pub(super) fn correspond(a: &OutlineColumn, b: &OutlineColumn, pixel: f64) -> bool {
     let near = |a: &Interval<f64>, b: &Interval<f64>| (a.lo - b.lo).abs().max((a.hi - b.hi).abs()) < pixel / 2.0;
     let same = a.intervals.len() == b.intervals.len();
     let pairs = || a.intervals.iter().zip(&b.intervals);
     let own = pairs().all(|(a, b)| a.meets(*b));
-    let next = |a: &Column, b: &Column| a.intervals.iter().zip(b.intervals.iter().skip(1)).any(|(a, b)| a.meets(*b));
+    let next = |a: &OutlineColumn, b: &OutlineColumn| {
+        a.intervals.iter().zip(b.intervals.iter().skip(1)).any(|(a, b)| a.meets(*b))
+    };
     same && (own && !next(a, b) && !next(b, a) || pairs().all(|(a, b)| near(a, b)))
 }
 
@@ -35,7 +37,7 @@ pub(super) fn correspond(a: &Column, b: &Column, pixel: f64) -> bool {
 /// Each end is passed once: a lower end in the direction of time, an upper one against it. `next` says where each
 /// leads to; where two columns do not correspond, a lower end on the left or an upper end on the right leads to its
 /// partner on the vertical line between them.
-pub(super) fn outline(columns: &[Column], pixel: [f64; 2]) -> Outline {
+pub(super) fn outline(columns: &[OutlineColumn], pixel: [f64; 2]) -> RegionOutline {
     let mut firsts = Vec::with_capacity(columns.len());
     let mut points = Vec::new();
     for column in columns {
@@ -47,7 +49,7 @@ pub(super) fn outline(columns: &[Column], pixel: [f64; 2]) -> Outline {
         let first = firsts.get(k).copied().unwrap_or(points.len());
         first..firsts.get(k + 1).copied().unwrap_or(points.len())
     };
-    let empty = Column { time: 0.0, intervals: Vec::new() };
+    let empty = OutlineColumn { time: 0.0, intervals: Vec::new() };
     for k in 0..=columns.len() {
         let left = k.checked_sub(1).and_then(|left| columns.get(left)).unwrap_or(&empty);
         let right = columns.get(k).unwrap_or(&empty);
@@ -72,9 +74,9 @@ pub(super) fn outline(columns: &[Column], pixel: [f64; 2]) -> Outline {
 }
 
 /// The cycles of `next`, without points that no picture can tell from the one before them.
-fn cycles(points: &[[f64; 2]], next: &[usize], pixel: [f64; 2]) -> Outline {
+fn cycles(points: &[[f64; 2]], next: &[usize], pixel: [f64; 2]) -> RegionOutline {
     let mut visited = vec![false; points.len()];
-    let mut outline = Outline::new();
+    let mut outline = RegionOutline::new();
     for start in 0..points.len() {
         let mut contour: Vec<[f64; 2]> = Vec::new();
         let mut at = start;

@@ -24,7 +24,7 @@ fn scenario(agents: &Value) -> Scenario {
 }
 
 /// Calls `check` with every region of the scenario, its ego and its outline.
-fn for_all(scenario: &Scenario, mut check: impl FnMut(&RegionRef<'_, f64>, &Motion<'_, f64>, &Outline)) {
+fn for_all(scenario: &Scenario, mut check: impl FnMut(&RegionRef<'_, f64>, &Motion<'_, f64>, &RegionOutline)) {
     let fleet = Fleet::<f64>::new(scenario).unwrap();
     let motions = fleet.motions();
     let ecm = build_ecm(&motions).unwrap();
@@ -56,7 +56,7 @@ fn golden_scenario(case: &Value) -> Scenario {
 
 #[test]
 fn every_point_is_on_the_contour_or_at_an_end_of_the_path() {
-    let paper = Scenario::from_json(pcr_formats::paper::SCENARIO).unwrap();
+    let paper = Scenario::from_json(pcr_formats::paper_example::SCENARIO).unwrap();
     for scenario in golden().iter().map(golden_scenario).chain([paper]) {
         for_all(&scenario, |region, ego, outline| {
             let (other, whole) = (region.other_motion(), ego.path().length());
@@ -96,7 +96,7 @@ fn outlines_enclose_the_areas_of_the_reference_regions() {
 
 #[test]
 fn a_crossing_is_one_outline_around_a_region_without_holes() {
-    let paper = Scenario::from_json(pcr_formats::paper::SCENARIO).unwrap();
+    let paper = Scenario::from_json(pcr_formats::paper_example::SCENARIO).unwrap();
     for_all(&paper, |region, _, outline| {
         assert_eq!(outline.len(), 1, "{} {}", region.ego(), region.other());
         assert!(area(&outline[0]) > 0.0);

@@ -2,8 +2,8 @@
 
 use super::super::axis::TICK_SIZE;
 use super::super::palette::{Colour, DISTINCT};
-use super::super::scene::{Scene, Shape};
-use super::super::svg::{PathData, Pixels, Svg, lines, text_width};
+use super::super::region_scene::{DrawnRegion, RegionScene};
+use super::super::svg::{PathData, PixelCoordinate, SvgWriter, lines, text_width};
 
 /// Height of a row \[px\].
 const ROW: f64 = 15.0;
@@ -20,21 +20,21 @@ const GAP: f64 = 9.0;
 /// The legend of a map, laid out in rows.
 #[derive(Debug)]
 pub(in super::super) struct Legend {
-    entries: Vec<Entry>,
+    entries: Vec<LegendEntry>,
     rows: usize,
 }
 
 #[derive(Debug)]
-struct Entry {
+struct LegendEntry {
     row: usize,
     /// Left end \[px\].
     x: f64,
-    sample: Sample,
+    sample: LegendSymbol,
     text: String,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Sample {
+enum LegendSymbol {
     Trajectory,
     Region,
     Strip,
@@ -46,23 +46,23 @@ enum Sample {
 impl Legend {
     /// The legend of a map with some notes, between two abscissas \[px\].
     pub(in super::super) fn new(
-        scene: &Scene<'_>,
+        scene: &RegionScene<'_>,
         ego: usize,
-        shapes: &[Shape],
+        shapes: &[DrawnRegion],
         notes: impl IntoIterator<Item = String>,
         [from, to]: [f64; 2],
     ) -> Self {
-        let mut all = vec![(Sample::Trajectory, format!("motion of agent {}", scene.called(ego)))];
+        let mut all = vec![(LegendSymbol::Trajectory, format!("motion of agent {}", scene.display_name(ego)))];
         if !shapes.is_empty() {
             let region = if scene.has_outlines() {
                 "region of the discs around all outlines, labelled by the other agent"
             } else {
                 "collision region, labelled by the other agent"
             };
-            all.push((Sample::Region, region.into()));
+            all.push((LegendSymbol::Region, region.into()));
         }
         if shapes.iter().any(|shape| !shape.before.is_empty() || !shape.after.is_empty()) {
-            all.push((Sample::Strip, "the other agent stands at its start or end".into()));
+            all.push((LegendSymbol::Strip, "the other agent stands at its start or end".into()));
         }
         // More colours than a dozen cannot be told apart: there the labels of the regions alone say whose they are.
         let told_apart = scene.motions.len() <= DISTINCT;
@@ -70,7 +70,7 @@ impl Legend {
         others.sort_unstable();
         others.dedup();
         let explained = all.len();
-        all.extend(others.iter().map(|other| (Sample::Agent(scene.colour(*other)), scene.called(*other))));
+        all.extend(others.iter().map(|other| (LegendSymbol::Agent(scene.colour(*other)), scene.display_name(*other))));
         let (mut row, mut x) = (0, from);
         let mut entries = Vec::new();
         for (k, (sample, text)) in all.into_iter().enumerate() {
@@ -78,7 +78,7 @@ impl Legend {
             if x > from && (k == explained || x + width > to) {
                 (row, x) = (row + 1, from);
             }
-            entries.push(Entry { row, x, sample, text });
+            entries.push(LegendEntry { row, x, sample, text });
             x += width + GAP;
         }
         let mut legend = Self { entries, rows: row + 1 };
@@ -96,7 +96,7 @@ impl Legend {
     /// One more, in rows of its own.
     fn note(&mut self, note: &str, [x, to]: [f64; 2]) {
         for text in lines(note, TICK_SIZE, to - x) {
-            self.entries.push(Entry { row: self.rows, x, sample: Sample::Note, text });
+            self.entries.push(LegendEntry { row: self.rows, x, sample: LegendSymbol::Note, text });
             self.rows += 1;
         }
     }
@@ -107,34 +107,35 @@ impl Legend {
     }
 
     /// Draws it below `top` \[px\].
-    pub(in super::super) fn draw(&self, svg: &mut Svg, top: f64) {
-        svg.start("g", &[("font-size", &Pixels(TICK_SIZE)), ("fill", &"#1d2125")]);
+    pub(in super::super) fn draw(&self, svg: &mut SvgWriter, top: f64) {
+        svg.start("g", &[("font-size", &PixelCoordinate(TICK_SIZE)), ("fill", &"#1d2125")]);
         for entry in &self.entries {
             let y = top + (entry.row as f64 + 0.5) * ROW;
-            let rect = |svg: &mut Svg, fill: &dyn std::fmt::Display, opacity: f64, stroke: &dyn std::fmt::Display| {
-                svg.empty(
-                    "rect",
-                    &[
-                        ("x", &Pixels(entry.x)),
-                        ("y", &Pixels(y - 4.0)),
-                        ("width", &Pixels(WIDTH)),
-                        ("height", &"8"),
-                        ("fill", fill),
-                        ("fill-opacity", &opacity),
-                        ("stroke", stroke),
-                        ("stroke-width", &"0.9"),
-                    ],
-                );
-            };
+            let rect =
+                |svg: &mut SvgWriter, fill: &dyn std::fmt::Display, opacity: f64, stroke: &dyn std::fmt::Display| {
+                    svg.empty(
+                        "rect",
+                        &[
+                            ("x", &PixelCoordinate(entry.x)),
+                            ("y", &PixelCoordinate(y - 4.0)),
+                            ("width", &PixelCoordinate(WIDTH)),
+                            ("height", &"8"),
+                            ("fill", fill),
+                            ("fill-opacity", &opacity),
+                            ("stroke", stroke),
+                            ("stroke-width", &"0.9"),
+                        ],
+                    );
+                };
             match entry.sample {
-                Sample::Trajectory => {
+                LegendSymbol::Trajectory => {
                     let mut line = PathData::default();
                     line.move_to([entry.x, y]);
                     line.line_to([entry.x + WIDTH, y]);
                     svg.empty("path", &[("d", &line), ("stroke", &"#111"), ("stroke-width", &"1.7")]);
                 }
-                Sample::Region => rect(svg, &"#6b7178", 0.3, &"#6b7178"),
-                Sample::Strip => {
+                LegendSymbol::Region => rect(svg, &"#6b7178", 0.3, &"#6b7178"),
+                LegendSymbol::Strip => {
                     rect(svg, &"none", 1.0, &"#6b7178");
                     let mut lines = PathData::default();
                     for x in [0.0, 5.0, 10.0].map(|x| entry.x + x) {
@@ -143,10 +144,10 @@ impl Legend {
                     }
                     svg.empty("path", &[("d", &lines), ("stroke", &"#6b7178"), ("stroke-width", &"0.7")]);
                 }
-                Sample::Agent(colour) => rect(svg, &colour, 0.3, &colour),
-                Sample::Note => {}
+                LegendSymbol::Agent(colour) => rect(svg, &colour, 0.3, &colour),
+                LegendSymbol::Note => {}
             }
-            let sample = if matches!(entry.sample, Sample::Note) { 0.0 } else { SAMPLE };
+            let sample = if matches!(entry.sample, LegendSymbol::Note) { 0.0 } else { SAMPLE };
             svg.label([entry.x + sample, y + 0.35 * TICK_SIZE], "start", &[], &entry.text);
         }
         svg.end();

@@ -1,6 +1,6 @@
 //! Numbers of elements, which models up to version 0.0.2 may have.
 
-use super::version::Version;
+use super::version::ModelVersion;
 use pcr_formats::import::ImportError;
 use roxmltree::Node;
 
@@ -14,10 +14,10 @@ impl Ids {
     /// An `id` that is no whole number.
     pub(super) fn of<'a, 'i>(
         model: Node<'a, 'i>,
-        version: Version,
+        version: ModelVersion,
         goes: impl Fn(Node<'a, 'i>) -> bool,
     ) -> Result<Self, ImportError> {
-        if version > Version::V002 {
+        if version > ModelVersion::V002 {
             return Ok(Self(None));
         }
         let ids = model.descendants().filter(|element| !goes(*element)).filter_map(|element| element.attribute("id"));

@@ -1,9 +1,9 @@
 //! Plant models of every version are cut and get exclusions as their own schema has them.
 
-use super::version::{Version, faults};
+use super::version::{ModelVersion, faults};
 use super::*;
-use crate::{Settings, Target, write};
-use pcr_formats::import::{Format, Options, Warnings, layout};
+use crate::{ExclusionFormat, WriteOptions, write};
+use pcr_formats::import::{ImportOptions, InputFormat, Warnings, layout};
 use std::sync::LazyLock;
 
 const VERSIONS: [&str; 7] = ["0.0.1", "0.0.2", "0.0.3", "0.0.4", "0.0.5", "6.0.0", "7.0.0"];
@@ -16,14 +16,18 @@ static PLANTS: LazyLock<[String; 7]> = LazyLock::new(|| {
     })
 });
 
-fn written(text: &str, split: Option<f64>, envelopes: Option<&str>) -> Result<(String, crate::Written), ImportError> {
-    let options = Options { radius: Some(0.55), ..Options::default() };
-    let settings = Settings { target: Target::OpenTcs, split, envelopes: envelopes.map(str::to_owned) };
-    write(Format::OpenTcs, text, &options, "plant", &settings).map(|(text, report, _)| (text, report))
+fn written(
+    text: &str,
+    split: Option<f64>,
+    envelopes: Option<&str>,
+) -> Result<(String, crate::WriteReport), ImportError> {
+    let options = ImportOptions { radius: Some(0.55), ..ImportOptions::default() };
+    let settings = WriteOptions { target: ExclusionFormat::OpenTcs, split, envelopes: envelopes.map(str::to_owned) };
+    write(InputFormat::OpenTcs, text, &options, "plant", &settings).map(|(text, report, _)| (text, report))
 }
 
-fn version(text: &str) -> Version {
-    Version::of(parse(text).unwrap().root_element()).unwrap()
+fn version(text: &str) -> ModelVersion {
+    ModelVersion::of(parse(text).unwrap().root_element()).unwrap()
 }
 
 fn assert_of_its_version(text: &str) {
@@ -44,7 +48,7 @@ fn new_points_are_where_their_version_has_them() {
         let points: Vec<Node<'_, '_>> = elements(root, "point").collect();
         // Five parts of A --- B and of E --- 5, four of C --- D; what is curved or belongs to a whole path is left. The first version has
         // no curves.
-        let of_straight = usize::from(version == Version::V001);
+        let of_straight = usize::from(version == ModelVersion::V001);
         assert_eq!((points.len(), report.nodes), (7 + 4 + 4 + 3 + of_straight, points.len()), "{version}\n{text}");
         let place = |point: &Node<'_, '_>| {
             version.places()[0].map(|name| point.attribute(name).map(|at| at.parse::<i64>().unwrap()))
@@ -78,7 +82,11 @@ fn new_points_are_where_their_version_has_them() {
                 && !["visualLayout", "staticRoute", "group", "property"].contains(&child.tag_name().name())
         });
         let is_drawn: BTreeSet<bool> = all.map(|child| visual.element(name(child)).is_some()).collect();
-        assert_eq!(is_drawn, BTreeSet::from([[Version::V002, Version::V003].contains(&version)]), "{version}");
+        assert_eq!(
+            is_drawn,
+            BTreeSet::from([[ModelVersion::V002, ModelVersion::V003].contains(&version)]),
+            "{version}"
+        );
         // Groups and blocks have the parts of their paths.
         let members = |kind: &'static str, of: &str| {
             let found =
@@ -125,8 +133,8 @@ fn parts_share_what_their_path_costs() {
 #[test]
 fn curves_are_the_same_in_every_version_that_has_them() {
     let lengths = PLANTS[1..].iter().map(|plant| {
-        let options = Options { radius: Some(0.55), ..Options::default() };
-        let read = layout(Format::OpenTcs, plant, &options, &mut Warnings::default()).unwrap().layout;
+        let options = ImportOptions { radius: Some(0.55), ..ImportOptions::default() };
+        let read = layout(InputFormat::OpenTcs, plant, &options, &mut Warnings::default()).unwrap().layout;
         read.edges.iter().find(|edge| edge.id.to_string() == "17").unwrap().length()
     });
     let lengths: Vec<f64> = lengths.collect();
@@ -145,7 +153,10 @@ fn envelopes_are_written_where_a_version_has_them() {
                 }
                 Err(error) => {
                     let expected = format!("--envelopes: models of version {version} have none");
-                    assert!(version < Version::V004 && error.to_string().starts_with(&expected), "{version}: {error}");
+                    assert!(
+                        version < ModelVersion::V004 && error.to_string().starts_with(&expected),
+                        "{version}: {error}"
+                    );
                 }
             }
         }

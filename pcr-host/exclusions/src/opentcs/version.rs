@@ -10,7 +10,7 @@ use std::fmt;
 
 /// A version of plant models. Up to the last release of openTCS 4, files have 0.0.1 and 0.0.2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Version {
+pub(crate) enum ModelVersion {
     V001,
     V002,
     V003,
@@ -20,9 +20,9 @@ pub(crate) enum Version {
     V700,
 }
 
-use Version::{V001, V002, V003, V004, V005, V600, V700};
+use ModelVersion::{V001, V002, V003, V004, V005, V600, V700};
 
-impl Version {
+impl ModelVersion {
     const ALL: [Self; 7] = [V001, V002, V003, V004, V005, V600, V700];
 
     /// Returns the version of a model.
@@ -84,7 +84,7 @@ impl Version {
     }
 }
 
-impl fmt::Display for Version {
+impl fmt::Display for ModelVersion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             V001 => "0.0.1",
@@ -100,55 +100,55 @@ impl fmt::Display for Version {
 
 /// An attribute or a child of an element, in which versions it may be there, and from which on it has to be.
 #[derive(Clone, Copy)]
-struct Part {
+struct SchemaMember {
     name: &'static str,
-    first: Version,
-    last: Version,
-    needed: Option<Version>,
+    first: ModelVersion,
+    last: ModelVersion,
+    needed: Option<ModelVersion>,
 }
 
-const fn may(name: &'static str) -> Part {
-    Part { name, first: V001, last: V700, needed: None }
+const fn may(name: &'static str) -> SchemaMember {
+    SchemaMember { name, first: V001, last: V700, needed: None }
 }
 
-const fn must(name: &'static str) -> Part {
-    Part { needed: Some(V001), ..may(name) }
+const fn must(name: &'static str) -> SchemaMember {
+    SchemaMember { needed: Some(V001), ..may(name) }
 }
 
-impl Part {
-    const fn since(self, first: Version) -> Self {
+impl SchemaMember {
+    const fn since(self, first: ModelVersion) -> Self {
         Self { first, ..self }
     }
 
-    const fn until(self, last: Version) -> Self {
+    const fn until(self, last: ModelVersion) -> Self {
         Self { last, ..self }
     }
 
-    const fn needed(self, from: Version) -> Self {
+    const fn needed(self, from: ModelVersion) -> Self {
         Self { needed: Some(from), ..self }
     }
 
-    fn is_in(&self, version: Version) -> bool {
+    fn is_in(&self, version: ModelVersion) -> bool {
         (self.first..=self.last).contains(&version)
     }
 
-    fn is_needed(&self, version: Version) -> bool {
+    fn is_needed(&self, version: ModelVersion) -> bool {
         self.is_in(version) && self.needed.is_some_and(|from| from <= version)
     }
 }
 
 /// An element: its attributes, and its children in their sequence.
-struct Element {
+struct SchemaElement {
     name: &'static str,
-    attributes: &'static [Part],
-    children: &'static [Part],
+    attributes: &'static [SchemaMember],
+    children: &'static [SchemaMember],
 }
 
-const PROPERTY: Part = may("property");
-const ID: Part = may("id").until(V002);
+const PROPERTY: SchemaMember = may("property");
+const ID: SchemaMember = may("id").until(V002);
 
-const ELEMENTS: [Element; 14] = [
-    Element {
+const ELEMENTS: [SchemaElement; 14] = [
+    SchemaElement {
         name: "model",
         attributes: &[must("version"), must("name")],
         children: &[
@@ -165,7 +165,7 @@ const ELEMENTS: [Element; 14] = [
             PROPERTY.since(V002),
         ],
     },
-    Element {
+    SchemaElement {
         name: "point",
         attributes: &[
             ID,
@@ -187,7 +187,7 @@ const ELEMENTS: [Element; 14] = [
             may("pointLayout").since(V004),
         ],
     },
-    Element {
+    SchemaElement {
         name: "path",
         attributes: &[
             ID,
@@ -211,7 +211,7 @@ const ELEMENTS: [Element; 14] = [
             may("pathLayout").since(V004),
         ],
     },
-    Element {
+    SchemaElement {
         name: "vehicle",
         attributes: &[
             ID,
@@ -228,12 +228,12 @@ const ELEMENTS: [Element; 14] = [
         ],
         children: &[must("boundingBox").since(V600), PROPERTY, may("vehicleLayout").since(V004)],
     },
-    Element {
+    SchemaElement {
         name: "block",
         attributes: &[ID, must("name"), may("type").since(V002).needed(V600)],
         children: &[may("member"), PROPERTY, may("blockLayout").since(V004)],
     },
-    Element {
+    SchemaElement {
         name: "pointLayout",
         attributes: &[
             must("xPosition").until(V005),
@@ -248,8 +248,8 @@ const ELEMENTS: [Element; 14] = [
         ],
         children: &[],
     },
-    Element { name: "blockLayout", attributes: &[must("color")], children: &[] },
-    Element {
+    SchemaElement { name: "blockLayout", attributes: &[must("color")], children: &[] },
+    SchemaElement {
         name: "visualLayout",
         attributes: &[ID, must("name"), must("scaleX"), must("scaleY")],
         children: &[
@@ -262,20 +262,20 @@ const ELEMENTS: [Element; 14] = [
             PROPERTY,
         ],
     },
-    Element {
+    SchemaElement {
         name: "modelLayoutElement",
         attributes: &[must("visualizedObjectName"), must("layer")],
         children: &[PROPERTY],
     },
-    Element { name: "vehicleEnvelope", attributes: &[must("key")], children: &[must("vertex")] },
-    Element { name: "vertex", attributes: &[must("x"), must("y")], children: &[] },
-    Element { name: "outgoingPath", attributes: &[must("name")], children: &[] },
-    Element { name: "member", attributes: &[must("name")], children: &[] },
-    Element { name: "property", attributes: &[must("name"), must("value")], children: &[] },
+    SchemaElement { name: "vehicleEnvelope", attributes: &[must("key")], children: &[must("vertex")] },
+    SchemaElement { name: "vertex", attributes: &[must("x"), must("y")], children: &[] },
+    SchemaElement { name: "outgoingPath", attributes: &[must("name")], children: &[] },
+    SchemaElement { name: "member", attributes: &[must("name")], children: &[] },
+    SchemaElement { name: "property", attributes: &[must("name"), must("value")], children: &[] },
 ];
 
 /// Returns what of a model its version does not have, or has elsewhere, each kind once.
-pub(super) fn faults(model: Node<'_, '_>, version: Version) -> BTreeSet<String> {
+pub(super) fn faults(model: Node<'_, '_>, version: ModelVersion) -> BTreeSet<String> {
     let mut faults = BTreeSet::new();
     let mut ids = BTreeSet::new();
     for element in model.descendants().filter(Node::is_element) {

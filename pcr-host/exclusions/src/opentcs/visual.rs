@@ -3,7 +3,7 @@
 //! openTCS 5 reads no model of these versions in which one of them lacks such an element while others have one.
 
 use super::{elements, escaped};
-use crate::edit::{Edits, ending, indent};
+use crate::text_edits::{TextEdits, ending, indent};
 use roxmltree::Node;
 use std::collections::HashMap;
 
@@ -40,7 +40,7 @@ impl<'a, 'i> Visual<'a, 'i> {
     }
 
     /// Adds elements behind the others, if there are any.
-    pub(super) fn add(&self, text: &str, offset: usize, added: &[String], edits: &mut Edits) {
+    pub(super) fn add(&self, text: &str, offset: usize, added: &[String], edits: &mut TextEdits) {
         let Some(last) = self.last else { return };
         let margin = indent(text, last.range().start + offset).unwrap_or("        ");
         let end = ending(text);

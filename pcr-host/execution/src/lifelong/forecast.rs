@@ -4,25 +4,25 @@
 //! In a large fleet only robots that are affected by a change are advanced. The others keep to the timetable, which
 //! shows that all can finish.
 
-use super::abilities::Abilities;
-use super::book::Region;
-use super::gates::Timed;
-use super::robot::{Robot, SHORT};
+use super::gates::TimedGate;
+use super::kinematic_limits::KinematicLimits;
+use super::region_table::RouteRegion;
+use super::region_waits::{FleetWaits, RegionWait, sort};
+use super::robot::{LifelongRobot, SHORT};
+use super::route::Route;
 use super::timetable::{Timeline, Timetable};
-use super::waits::{Wait, Waits, sort};
-use super::way::Way;
 use std::borrow::Cow;
 
 /// The input of a forecast: the fleet, with one of its robots on another way.
 #[derive(Clone, Copy)]
-pub(super) struct Trial<'t, 'w> {
-    pub(super) robots: &'t [Robot],
+pub(super) struct ForecastInput<'t, 'w> {
+    pub(super) robots: &'t [LifelongRobot],
     /// The waits of the fleet; those of the changed robot are ignored.
-    pub(super) waits: &'t Waits<'w>,
-    pub(super) abilities: &'t Abilities,
+    pub(super) waits: &'t FleetWaits<'w>,
+    pub(super) abilities: &'t KinematicLimits,
     pub(super) time: f64,
     /// The changed robot: index, new way, place on it \[m\], time at which it sets off, and its new regions.
-    pub(super) changed: Option<(usize, &'t Way, f64, f64, &'t [Region])>,
+    pub(super) changed: Option<(usize, &'t Route, f64, f64, &'t [RouteRegion])>,
     /// Weight of the goals of a way before the last one.
     pub(super) earlier: f64,
     /// The timetable that the other robots keep, and the robots that are advanced in any case; `None`: all robots are advanced.
@@ -42,7 +42,7 @@ pub(super) struct Forecast {
 
 /// A robot that waits for ever.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stuck {
+pub(super) struct DeadlockedRobot {
     /// Index of the region at which it waits, among those of the changed robot.
     pub(super) region: Option<usize>,
 }
@@ -59,8 +59,8 @@ const ROUNDS: usize = 5;
 /// Marks a robot that is not among them.
 const NONE: u32 = u32::MAX;
 
-impl<'t, 'w: 't> Trial<'t, 'w> {
-    fn way(&self, robot: usize) -> (&'t Way, f64) {
+impl<'t, 'w: 't> ForecastInput<'t, 'w> {
+    fn way(&self, robot: usize) -> (&'t Route, f64) {
         match self.changed {
             Some((changed, way, at, ..)) if changed == robot => (way, at),
             _ => (&self.robots[robot].way, self.robots[robot].at),
@@ -72,25 +72,25 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
     }
 
     /// The regions that a robot passes second.
-    fn row(&self, robot: usize) -> Cow<'t, [Wait<'t>]> {
-        let known: &'t [Wait<'t>] = self.waits.row(robot);
+    fn row(&self, robot: usize) -> Cow<'t, [RegionWait<'t>]> {
+        let known: &'t [RegionWait<'t>] = self.waits.row(robot);
         let Some((changed, .., regions)) = self.changed else { return known.into() };
         let is_changed = robot == changed;
-        let is_kept = |wait: &&Wait<'_>| !is_changed && wait.first != changed;
+        let is_kept = |wait: &&RegionWait<'_>| !is_changed && wait.first != changed;
         let mut own = regions.iter().enumerate().filter(|(_, region)| region.second() == robot).peekable();
         if own.peek().is_none() && known.iter().all(|wait| is_kept(&wait)) {
             return known.into();
         }
-        let at = |region: &Region| region.robots.map(|robot| self.way(robot).1);
-        let own = own.filter_map(|(place, region)| Wait::of(region, Some(place), at(region)));
-        let mut row: Vec<Wait<'t>> = known.iter().filter(is_kept).copied().chain(own).collect();
+        let at = |region: &RouteRegion| region.robots.map(|robot| self.way(robot).1);
+        let own = own.filter_map(|(place, region)| RegionWait::of(region, Some(place), at(region)));
+        let mut row: Vec<RegionWait<'t>> = known.iter().filter(is_kept).copied().chain(own).collect();
         sort(&mut row);
         row.into()
     }
 
     /// Expected times of the robots, or the robots that would wait for ever; an empty list if too many robots would have to be
     /// advanced.
-    pub(super) fn forecast(&self) -> Result<Forecast, Vec<Stuck>> {
+    pub(super) fn forecast(&self) -> Result<Forecast, Vec<DeadlockedRobot>> {
         let Some((timetable, some)) = self.kept else { return self.taken((0..self.robots.len()).collect()) };
         let mut taken = some.to_vec();
         for _ in 0..ROUNDS {
@@ -114,7 +114,7 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
         forecast.robots.iter().for_each(|&robot| is_known[robot] = true);
         let mut found = Vec::new();
         for (&robot, line) in forecast.robots.iter().zip(&forecast.lines) {
-            let mut look = |region: &Region| {
+            let mut look = |region: &RouteRegion| {
                 let second = region.second();
                 if is_known[second] || region.robots[region.first] != robot {
                     return;
@@ -128,7 +128,7 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
             match self.changed {
                 Some((changed, .., regions)) if changed == robot => regions.iter().for_each(look),
                 _ if line.is_later(&timetable.lines[robot]) => {
-                    let is_kept = |region: &&Region| self.changed.is_none_or(|it| !region.robots.contains(&it.0));
+                    let is_kept = |region: &&RouteRegion| self.changed.is_none_or(|it| !region.robots.contains(&it.0));
                     self.waits.regions(robot).filter(is_kept).for_each(&mut look);
                 }
                 _ => {}
@@ -138,15 +138,19 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
     }
 
     /// Advances some robots from gate to gate.
-    fn taken(&self, robots: Vec<usize>) -> Result<Forecast, Vec<Stuck>> {
+    fn taken(&self, robots: Vec<usize>) -> Result<Forecast, Vec<DeadlockedRobot>> {
         let mut places = vec![NONE; self.robots.len()];
-        let mut taken: Vec<Taken<'t>> = Vec::with_capacity(robots.len());
+        let mut taken: Vec<AdvancingRobot<'t>> = Vec::with_capacity(robots.len());
         for (place, &robot) in robots.iter().enumerate() {
             places[robot] = place as u32;
             let changed =
                 self.changed.filter(|changed| changed.0 == robot).map(|(_, way, at, departs, _)| (way, at, departs));
             let start = self.robots[robot].progress(changed, self.time, self.abilities);
-            taken.push(Taken::new(Timeline::new(start, self.time), self.row(robot), self.way(robot).0.length()));
+            taken.push(AdvancingRobot::new(
+                Timeline::new(start, self.time),
+                self.row(robot),
+                self.way(robot).0.length(),
+            ));
         }
         let mut waiting: Vec<Vec<usize>> = vec![Vec::new(); robots.len()];
         let mut open: Vec<usize> = (0..robots.len()).collect();
@@ -158,8 +162,8 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
                     (NONE, Some((timetable, _))) => Some(timetable.lines[first].opens(&timed, self.time)),
                     (first, _) => {
                         let first = &taken[first as usize];
-                        let is_known = timed.gate.needs <= first.known();
-                        is_known.then(|| first.line.from(timed.opens, timed.gate.needs, self.time))
+                        let is_known = timed.gate.required_position <= first.known();
+                        is_known.then(|| first.line.from(timed.opening_time, timed.gate.required_position, self.time))
                     }
                 };
                 match (opens, is_left) {
@@ -175,7 +179,7 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
                 open.append(&mut waiting[place]);
             }
         }
-        let stuck: Vec<Stuck> = taken.iter().filter_map(Taken::stuck).collect();
+        let stuck: Vec<DeadlockedRobot> = taken.iter().filter_map(AdvancingRobot::stuck).collect();
         if !stuck.is_empty() {
             return Err(stuck);
         }
@@ -196,13 +200,13 @@ impl<'t, 'w: 't> Trial<'t, 'w> {
 }
 
 /// A robot that is advanced from gate to gate.
-struct Taken<'r> {
+struct AdvancingRobot<'r> {
     line: Timeline,
     /// The regions that it passes second, the nearest first, and the number of these that it has reached.
-    regions: Cow<'r, [Wait<'r>]>,
+    regions: Cow<'r, [RegionWait<'r>]>,
     met: usize,
     /// Reached regions at which it may have to wait, with the gates that are still ahead.
-    open: Vec<Wait<'r>>,
+    open: Vec<RegionWait<'r>>,
     /// Length of the nearest of these gates, infinite if there is none; and the index of its region.
     nearest: (f64, usize),
     length: f64,
@@ -210,36 +214,36 @@ struct Taken<'r> {
     steps: usize,
 }
 
-impl<'r> Taken<'r> {
-    fn new(line: Timeline, regions: Cow<'r, [Wait<'r>]>, length: f64) -> Self {
+impl<'r> AdvancingRobot<'r> {
+    fn new(line: Timeline, regions: Cow<'r, [RegionWait<'r>]>, length: f64) -> Self {
         Self { line, regions, met: 0, open: Vec::new(), nearest: (f64::INFINITY, 0), length, steps: 0 }
     }
 
     /// The nearest region that it has not reached.
     #[inline]
-    fn region(&self) -> Option<&Wait<'r>> {
+    fn region(&self) -> Option<&RegionWait<'r>> {
         self.regions.get(self.met)
     }
 
     /// Whether a region comes before the next gate.
     #[inline]
     fn meets(&self) -> bool {
-        self.region().is_some_and(|wait| wait.ends[0].gate.at < self.nearest.0)
+        self.region().is_some_and(|wait| wait.ends[0].gate.wait_position < self.nearest.0)
     }
 
     /// The nearest gate, and its region.
     #[inline]
-    fn gate(&self) -> Option<(&Wait<'r>, &'r Timed)> {
+    fn gate(&self) -> Option<(&RegionWait<'r>, &'r TimedGate)> {
         let wait = self.open.get(self.nearest.1)?;
         Some((wait, wait.gates.first()?))
     }
 
     /// Finds the nearest gate; of several at the same length that of the region that was reached last.
     #[inline]
-    fn look(&mut self) {
+    fn find_next_gate(&mut self) {
         self.nearest = (f64::INFINITY, 0);
         for (place, wait) in self.open.iter().enumerate() {
-            let at = wait.gates[0].gate.at;
+            let at = wait.gates[0].gate.wait_position;
             if at <= self.nearest.0 {
                 self.nearest = (at, place);
             }
@@ -249,7 +253,7 @@ impl<'r> Taken<'r> {
     /// What is nearest ahead: the first robot there, the gate, and whether it is a region; for a region the gate is its last
     /// one, which tells when the first has left.
     #[inline]
-    fn ahead(&self) -> Option<(usize, Timed, bool)> {
+    fn ahead(&self) -> Option<(usize, TimedGate, bool)> {
         if self.next() >= self.length {
             return None;
         }
@@ -263,7 +267,7 @@ impl<'r> Taken<'r> {
     /// Length of the nearest gate or region ahead.
     #[inline]
     fn next(&self) -> f64 {
-        let region = self.region().map_or(f64::INFINITY, |wait| wait.ends[0].gate.at);
+        let region = self.region().map_or(f64::INFINITY, |wait| wait.ends[0].gate.wait_position);
         self.nearest.0.min(region)
     }
 
@@ -278,11 +282,11 @@ impl<'r> Taken<'r> {
         let Some(&wait) = self.region() else { return };
         self.met += 1;
         self.steps += 1;
-        if left.is_some_and(|left| self.line.comes(wait.ends[0].comes) >= left) {
+        if left.is_some_and(|left| self.line.comes(wait.ends[0].arrival_time) >= left) {
             return;
         }
         self.open.push(wait);
-        self.look();
+        self.find_next_gate();
     }
 
     /// Passes a gate that opens at `opens`.
@@ -290,16 +294,16 @@ impl<'r> Taken<'r> {
         let Some((wait, timed)) = self.gate() else { return };
         let left = &wait.gates[1..];
         self.steps += 1;
-        self.line.wait(timed.gate.at, timed.comes, opens, lost);
+        self.line.wait(timed.gate.wait_position, timed.arrival_time, opens, lost);
         match left {
             [] => drop(self.open.remove(self.nearest.1)),
             _ => self.open[self.nearest.1].gates = left,
         }
-        self.look();
+        self.find_next_gate();
     }
 
-    fn stuck(&self) -> Option<Stuck> {
+    fn stuck(&self) -> Option<DeadlockedRobot> {
         let (_, _, is_left) = self.ahead()?;
-        self.gate().filter(|_| !is_left).map(|(wait, _)| Stuck { region: wait.place })
+        self.gate().filter(|_| !is_left).map(|(wait, _)| DeadlockedRobot { region: wait.changed_region })
     }
 }

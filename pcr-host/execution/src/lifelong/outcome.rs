@@ -1,16 +1,16 @@
 //! Results of a run.
 
-use super::Method;
-use super::ends::WellFormedness;
-use super::record::Certificate;
+use super::CoordinationMethod;
+use super::endpoints::WellFormedness;
+use super::motion_record::RunCertificate;
 use serde::Serialize;
 use std::time::Duration;
 
 /// The results of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Outcome {
+pub struct LifelongResult {
     /// Method that kept robots apart.
-    pub method: Method,
+    pub method: CoordinationMethod,
     /// Number of robots that found a place to start.
     pub robots: usize,
     /// Number of goals reached.
@@ -20,9 +20,10 @@ pub struct Outcome {
     /// Mean time from a mission to its goal, divided by that of a robot alone; `None` without any.
     pub travel_over_unimpeded: Option<f64>,
     /// Result of the independent checker.
-    pub certificate: Certificate,
+    pub certificate: RunCertificate,
     /// Number of control steps at which a robot was beyond its hold.
-    pub breaches: usize,
+    #[serde(rename = "breaches")]
+    pub authority_overruns: usize,
     /// Number of robots that do not reach the end of their way after the last mission, because no robot moves any more:
     /// deadlocks.
     pub stuck: usize,
@@ -44,12 +45,12 @@ pub struct Outcome {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub idle_because: Option<String>,
     /// Shares of the time of the robots while missions came.
-    pub time: Shares,
+    pub time: TimeShares,
 }
 
 /// Shares of the time of all robots; their sum is 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Shares {
+pub struct TimeShares {
     /// On the way to a goal.
     pub driving: f64,
     /// Turning in place.
@@ -57,17 +58,19 @@ pub struct Shares {
     /// Stopped at random.
     pub stopped: f64,
     /// Standing on the way while others go first.
-    pub held: f64,
+    #[serde(rename = "held")]
+    pub waiting: f64,
     /// On the way from a goal to an end, because there is no way for the next mission.
-    pub aside: f64,
+    #[serde(rename = "aside")]
+    pub yielding: f64,
     /// Standing without a way for the next mission.
     pub idle: f64,
 }
 
-impl Shares {
+impl TimeShares {
     /// Divides sums by their total.
     pub(super) fn norm(&mut self) {
-        let Self { driving, turning, stopped, held, aside, idle } = self;
+        let Self { driving, turning, stopped, waiting: held, yielding: aside, idle } = self;
         let parts = [driving, turning, stopped, held, aside, idle];
         let all: f64 = parts.iter().map(|part| **part).sum();
         parts.into_iter().for_each(|part| *part /= all.max(1.0));
@@ -76,9 +79,9 @@ impl Shares {
 
 /// The results of a run, with times measured on the machine.
 #[derive(Clone, Debug)]
-pub struct Report {
+pub struct MeasuredLifelongRun {
     /// The results that are the same on every machine.
-    pub outcome: Outcome,
+    pub outcome: LifelongResult,
     /// Properties of the layout.
     pub layout: WellFormedness,
     /// Missions per hour, after the first tenth of the time, if no robot was in another one's way; 0 if robots share their
@@ -92,7 +95,7 @@ pub struct Report {
     pub last_arrival: f64,
 }
 
-impl Report {
+impl MeasuredLifelongRun {
     /// Time within which this share of the decisions was made \[s\].
     pub fn decided_within(&self, part: f64) -> f64 {
         let mut times = self.decisions.clone();

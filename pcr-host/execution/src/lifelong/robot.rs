@@ -1,7 +1,7 @@
 //! A robot in motion: it stops before its hold, at corners and at goals; it slips, and is stopped at random.
 
-use super::abilities::Abilities;
-use super::way::Way;
+use super::kinematic_limits::KinematicLimits;
+use super::route::Route;
 
 /// Least distance at which a robot stands before its hold, for rounding \[m\].
 pub(super) const SHORT: f64 = 1e-6;
@@ -11,7 +11,7 @@ const NEAR: f64 = 1e-9;
 
 /// A part of a motion with constant acceleration, with the speeds at both its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Phase {
+pub(super) struct RobotPhase {
     /// Time at which it begins \[s\].
     pub(super) time: f64,
     pub(super) duration: f64,
@@ -20,8 +20,8 @@ pub(super) struct Phase {
 
 /// A robot.
 #[derive(Clone, Debug)]
-pub(super) struct Robot {
-    pub(super) way: Way,
+pub(super) struct LifelongRobot {
+    pub(super) way: Route,
     /// Travelled length \[m\] and speed \[m/s\].
     pub(super) at: f64,
     pub(super) speed: f64,
@@ -38,14 +38,14 @@ pub(super) struct Robot {
     /// Time since which it has not moved \[s\].
     pub(super) still_since: f64,
     /// Its motion since the last report, and the atoms on which it was.
-    pub(super) done: Vec<Phase>,
+    pub(super) done: Vec<RobotPhase>,
     pub(super) trail: Vec<usize>,
     /// Number of atoms of its way that are in this list.
     entered: usize,
 }
 
-impl Robot {
-    pub(super) fn new(way: Way) -> Self {
+impl LifelongRobot {
+    pub(super) fn new(way: Route) -> Self {
         Self {
             way,
             at: 0.0,
@@ -63,7 +63,7 @@ impl Robot {
     }
 
     /// Length at which it can come to rest \[m\].
-    pub(super) fn stop(&self, abilities: &Abilities) -> f64 {
+    pub(super) fn stop(&self, abilities: &KinematicLimits) -> f64 {
         if self.speed > 0.0 { (self.at + abilities.braking(self.speed)).min(self.way.length()) } else { self.at }
     }
 
@@ -74,13 +74,13 @@ impl Robot {
     }
 
     /// Length beyond which a hold does not affect the next step \[m\].
-    pub(super) fn horizon(&self, abilities: &Abilities, step: f64) -> f64 {
+    pub(super) fn horizon(&self, abilities: &KinematicLimits, step: f64) -> f64 {
         let speed = (self.speed + abilities.acceleration * step).min(abilities.speed);
         self.at + speed * step + abilities.braking(speed) + 2.0 * SHORT
     }
 
     /// Advances by a step, so that it can still stop before `hold`. Returns whether it has reached its goal.
-    pub(super) fn drive(&mut self, hold: f64, time: f64, step: f64, abilities: &Abilities) -> bool {
+    pub(super) fn drive(&mut self, hold: f64, time: f64, step: f64, abilities: &KinematicLimits) -> bool {
         let next = self.next_stop();
         let waits = self.turning > time || self.departs > time;
         let left = if waits { 0.0 } else { next.min(hold - SHORT) - self.at };
@@ -133,7 +133,7 @@ impl Robot {
 
     /// Time of its way at its place, if it goes on as soon as it can; or the time on another way, with its place there and the
     /// time at which it sets off \[s\].
-    pub(super) fn progress(&self, other: Option<(&Way, f64, f64)>, time: f64, abilities: &Abilities) -> f64 {
+    pub(super) fn progress(&self, other: Option<(&Route, f64, f64)>, time: f64, abilities: &KinematicLimits) -> f64 {
         let corner = self.turned.checked_sub(1).and_then(|last| self.way.corners.get(last));
         let (there, departs) = match other {
             Some((way, at, departs)) if !std::ptr::eq(way, &raw const self.way) => (way.time(at), departs),
@@ -157,7 +157,7 @@ impl Robot {
     }
 
     /// Takes its motion since the last report: phases, atoms, and the length on the first atom at which they begin \[m\].
-    pub(super) fn report(&mut self, since: f64) -> (Vec<Phase>, Vec<usize>, f64) {
+    pub(super) fn report(&mut self, since: f64) -> (Vec<RobotPhase>, Vec<usize>, f64) {
         let last = self.trail.last().copied();
         let told = (std::mem::take(&mut self.done), std::mem::take(&mut self.trail), since);
         // At the start of a new way it is on no atom of that way yet.
@@ -182,11 +182,11 @@ impl Robot {
                 return;
             }
         }
-        self.done.push(Phase { time, duration, speed: [self.speed, to] });
+        self.done.push(RobotPhase { time, duration, speed: [self.speed, to] });
     }
 
     /// Length of the next lower speed limit, and that speed.
-    fn slower_ahead(&self, abilities: &Abilities) -> Option<(f64, f64)> {
+    fn slower_ahead(&self, abilities: &KinematicLimits) -> Option<(f64, f64)> {
         let k = self.way.atom(self.at.max(1e-12));
         let reach = self.at + 2.0 * abilities.braking(abilities.speed);
         let ahead = (k + 1..self.way.atoms.len()).take_while(|&next| self.way.offsets[next] <= reach);
@@ -195,7 +195,7 @@ impl Robot {
     }
 
     /// Takes another way; the first `before` metres of the old way are cut off.
-    pub(super) fn take(&mut self, way: Way, before: f64) {
+    pub(super) fn take(&mut self, way: Route, before: f64) {
         // An atom that was entered by rounding only was not driven, and the new way may leave the node differently.
         if self.entered > 0 && self.along() < NEAR {
             self.trail.pop();
@@ -228,7 +228,7 @@ fn pace(
     left: f64,
     slower: Option<(f64, f64)>,
     step: f64,
-    abilities: &Abilities,
+    abilities: &KinematicLimits,
 ) -> [(f64, f64); 2] {
     let braking = abilities.acceleration;
     let change = braking * step;

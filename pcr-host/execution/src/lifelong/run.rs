@@ -1,13 +1,13 @@
 //! A run: missions, decisions, motions and results.
 
-use super::draws::{STEP, disturb};
-use super::outcome::{Outcome, Report, Shares};
-use super::record::{Certificate, Window};
-use super::robot::Robot;
-use super::state::{Mission, Run};
-use super::tasks::Tasks;
-use super::{Method, Request};
-use pcr_formats::import::Imported;
+use super::motion_record::{CheckWindow, RunCertificate};
+use super::outcome::{LifelongResult, MeasuredLifelongRun, TimeShares};
+use super::random_draws::{STEP, disturb};
+use super::robot::LifelongRobot;
+use super::run_state::{LifelongState, RobotMission};
+use super::tasks::TaskStream;
+use super::{CoordinationMethod, LifelongOptions};
+use pcr_formats::import::ImportedLayout;
 use std::time::{Duration, Instant};
 
 /// Number of control steps after which the motion is certified.
@@ -29,7 +29,7 @@ const QUIET: f64 = 60.0;
 ///
 /// # Errors
 /// An edge that is no path, or a layout without room for any robot.
-pub fn run(imported: &Imported, request: Request) -> Result<Report, String> {
+pub fn run(imported: &ImportedLayout, request: LifelongOptions) -> Result<MeasuredLifelongRun, String> {
     watched(imported, request, &|_| {})
 }
 
@@ -37,8 +37,12 @@ pub fn run(imported: &Imported, request: Request) -> Result<Report, String> {
 ///
 /// # Errors
 /// Errors of [`run`].
-pub fn watched(imported: &Imported, request: Request, told: &dyn Fn(f64)) -> Result<Report, String> {
-    driven(Run::new(imported, request, None)?, imported, request, told)
+pub fn watched(
+    imported: &ImportedLayout,
+    request: LifelongOptions,
+    told: &dyn Fn(f64),
+) -> Result<MeasuredLifelongRun, String> {
+    driven(LifelongState::new(imported, request, None)?, imported, request, told)
 }
 
 /// Runs a fleet on a layout with shared tasks and the starts that belong to them, until all tasks are done or the time of the
@@ -47,20 +51,29 @@ pub fn watched(imported: &Imported, request: Request, told: &dyn Fn(f64)) -> Res
 ///
 /// # Errors
 /// As [`run`], and a node that is not in the layout.
-pub fn run_tasks(imported: &Imported, request: Request, tasks: &Tasks) -> Result<Report, String> {
-    driven(Run::new(imported, request, Some(tasks))?, imported, request, &|_| {})
+pub fn run_tasks(
+    imported: &ImportedLayout,
+    request: LifelongOptions,
+    tasks: &TaskStream,
+) -> Result<MeasuredLifelongRun, String> {
+    driven(LifelongState::new(imported, request, Some(tasks))?, imported, request, &|_| {})
 }
 
-fn driven(mut run: Run, imported: &Imported, request: Request, told: &dyn Fn(f64)) -> Result<Report, String> {
+fn driven(
+    mut run: LifelongState,
+    imported: &ImportedLayout,
+    request: LifelongOptions,
+    told: &dyn Fn(f64),
+) -> Result<MeasuredLifelongRun, String> {
     let steady = if run.tasks.is_none() { run.alone(START * request.duration) } else { 0 };
     let alone = steady as f64 * 3600.0 / ((1.0 - START) * request.duration);
-    let mut certificate = Certificate::new();
-    let mut window = Window::new(&run.site, &run.robots);
+    let mut certificate = RunCertificate::new();
+    let mut window = CheckWindow::new(&run.site, &run.robots);
     let (mut still, mut time) = (0.0, Duration::ZERO);
     for tick in 0.. {
         let now = tick as f64 * STEP;
         let open = now < request.duration && run.has_work();
-        let ended = !open && (still > REST || run.robots.iter().all(Robot::has_arrived));
+        let ended = !open && (still > REST || run.robots.iter().all(LifelongRobot::has_arrived));
         if (tick > 0 && tick % WINDOW == 0) || ended {
             told(now.min(request.duration));
             certificate.window(&run.site, &mut run.robots, &mut window, imported.vehicle.radius, now);
@@ -81,14 +94,14 @@ fn driven(mut run: Run, imported: &Imported, request: Request, told: &dyn Fn(f64
         let moves = run.robots.iter().map(|robot| robot.at).sum::<f64>() > before;
         if open {
             let waits = run.missions.iter().flatten().any(|mission| !mission.admitted);
-            run.quiet = if waits && run.robots.iter().all(Robot::has_arrived) { run.quiet + STEP } else { 0.0 };
+            run.quiet = if waits && run.robots.iter().all(LifelongRobot::has_arrived) { run.quiet + STEP } else { 0.0 };
         }
-        still = if moves || run.robots.iter().all(Robot::has_arrived) { 0.0 } else { still + STEP };
+        still = if moves || run.robots.iter().all(LifelongRobot::has_arrived) { 0.0 } else { still + STEP };
         run.outcome.standstill = f64::max(run.outcome.standstill, still);
         time += begin.elapsed();
     }
     run.outcome.certificate = certificate;
-    Ok(Report {
+    Ok(MeasuredLifelongRun {
         outcome: run.finished(),
         layout: run.layout,
         alone,
@@ -98,22 +111,22 @@ fn driven(mut run: Run, imported: &Imported, request: Request, told: &dyn Fn(f64
     })
 }
 
-impl Run {
+impl LifelongState {
     /// Advances all robots by a step.
     fn step(&mut self, tick: usize, now: f64, open: bool) {
         let fars: Vec<f64> = self.robots.iter().map(|it| it.horizon(&self.abilities, STEP)).collect();
-        if self.request.method == Method::EdgeLocks {
+        if self.request.method == CoordinationMethod::EdgeLocks {
             self.locks.give(&self.site, &self.robots, |robot| fars[robot]);
         }
         let hold = |robot: usize| match self.request.method {
-            Method::EdgeLocks => self.locks.hold(robot, &self.robots[robot].way),
-            _ => self.book.hold(robot, &self.robots, fars[robot]),
+            CoordinationMethod::EdgeLocks => self.locks.reserved_length(robot, &self.robots[robot].way),
+            _ => self.book.authority(robot, &self.robots, fars[robot]),
         };
         let holds: Vec<f64> = (0..self.robots.len()).map(hold).collect();
         for (robot, hold) in holds.into_iter().enumerate() {
             let it = &mut self.robots[robot];
             let stop = it.stop(&self.abilities);
-            self.outcome.breaches += usize::from(stop > hold + 1e-9 && stop > it.at);
+            self.outcome.authority_overruns += usize::from(stop > hold + 1e-9 && stop > it.at);
             disturb(it, robot, tick, now, open, &self.request);
             if open {
                 // A hold that lies beyond the next step and its stopping way holds the robot back from nothing.
@@ -140,14 +153,15 @@ impl Run {
             self.steady += 1;
         }
         if let Some(mission) = self.missions[robot].take() {
-            self.travel.0 += now - mission.since;
-            self.travel.1 += mission.alone;
+            self.travel.0 += now - mission.assigned_at;
+            self.travel.1 += mission.unimpeded_time;
         }
     }
 
-    fn finished(&mut self) -> Outcome {
+    fn finished(&mut self) -> LifelongResult {
         let Self { request, .. } = *self;
-        let waits = |mission: &Mission| if mission.admitted { 0.0 } else { request.duration - mission.since };
+        let waits =
+            |mission: &RobotMission| if mission.admitted { 0.0 } else { request.duration - mission.assigned_at };
         let waits: Vec<f64> = self.missions.iter().flatten().map(waits).collect();
         let mut outcome = self.outcome.clone();
         outcome.time.norm();
@@ -183,7 +197,7 @@ impl Run {
             return format!("the {} robots take up all places where any of them could stand", robots.len());
         }
         let waiting = robots.filter_map(|robot| Some((robot, self.missions[robot]?)));
-        let Some((robot, mission)) = waiting.min_by(|a, b| a.1.since.total_cmp(&b.1.since)) else {
+        let Some((robot, mission)) = waiting.min_by(|a, b| a.1.assigned_at.total_cmp(&b.1.assigned_at)) else {
             return "nobody had a mission".to_owned();
         };
         let refused = self.outcome.refused;
@@ -199,7 +213,7 @@ impl Run {
 }
 
 /// The share to which the present activity of a robot belongs.
-fn share<'s>(shares: &'s mut Shares, robot: &Robot, hold: Option<f64>, now: f64) -> &'s mut f64 {
+fn share<'s>(shares: &'s mut TimeShares, robot: &LifelongRobot, hold: Option<f64>, now: f64) -> &'s mut f64 {
     /// A robot within this distance of its hold waits there \[m\].
     const NEAR: f64 = 0.01;
     if robot.stopped_until > now {
@@ -209,9 +223,9 @@ fn share<'s>(shares: &'s mut Shares, robot: &Robot, hold: Option<f64>, now: f64)
     } else if robot.turning > now {
         &mut shares.turning
     } else if robot.speed == 0.0 && hold.is_some_and(|hold| hold - robot.at < NEAR) {
-        &mut shares.held
+        &mut shares.waiting
     } else if robot.way.goals.is_empty() {
-        &mut shares.aside
+        &mut shares.yielding
     } else {
         &mut shares.driving
     }

@@ -1,7 +1,7 @@
 //! A generated site of any size: crossing one-way streets, with bays on both sides.
 
-use pcr_formats::import::{Edge, Id, Imported, Layout, Node, SizeSource, Vehicle};
-use pcr_formats::scenario::{PathSegment, Placed};
+use pcr_formats::import::{ElementId, ImportedLayout, Layout, LayoutEdge, LayoutNode, SizeSource, VehicleTraits};
+use pcr_formats::scenario::{PathSegment, PlacedSegment};
 
 /// Distance between two crossings \[m\].
 const BLOCK: f64 = 6.0;
@@ -10,7 +10,7 @@ const BLOCK: f64 = 6.0;
 const BAY: f64 = 1.8;
 
 /// Vehicles as in a warehouse.
-const VEHICLE: Vehicle = Vehicle {
+const VEHICLE: VehicleTraits = VehicleTraits {
     name: None,
     radius: 0.4,
     footprint: None,
@@ -24,9 +24,9 @@ const VEHICLE: Vehicle = Vehicle {
 
 /// `count` streets each way, an even number of at least 2, one-way in alternating directions; in the middle of each block a bay
 /// on either side. Each node can be reached from all others, and robots in bays are in no other robot's way.
-pub fn streets(count: usize) -> Imported {
+pub fn streets(count: usize) -> ImportedLayout {
     let count = count.next_multiple_of(2).max(2);
-    let mut plan = Plan::default();
+    let mut plan = StreetLayout::default();
     let crossings: Vec<usize> =
         (0..count * count).map(|k| plan.node([(k % count) as f64 * BLOCK, (k / count) as f64 * BLOCK])).collect();
     for street in 0..count {
@@ -45,32 +45,32 @@ pub fn streets(count: usize) -> Imported {
     let name = format!("{count} streets each way");
     let layout =
         Layout { name, levels: vec![String::new()], nodes: plan.nodes, edges: plan.edges, ..Layout::default() };
-    Imported { layout, vehicle: VEHICLE }
+    ImportedLayout { layout, vehicle: VEHICLE }
 }
 
 #[derive(Default)]
-struct Plan {
-    nodes: Vec<Node>,
-    edges: Vec<Edge>,
+struct StreetLayout {
+    nodes: Vec<LayoutNode>,
+    edges: Vec<LayoutEdge>,
 }
 
-impl Plan {
+impl StreetLayout {
     fn node(&mut self, at: [f64; 2]) -> usize {
-        self.nodes.push(Node { id: Id::Number(self.nodes.len() as u64), name: None, level: 0, at });
+        self.nodes.push(LayoutNode { id: ElementId::Number(self.nodes.len() as u64), name: None, level: 0, point: at });
         self.nodes.len() - 1
     }
 
     fn edge(&mut self, ends: [usize; 2], two_way: bool) {
-        let [[x, y], [u, v]] = ends.map(|node| self.nodes[node].at);
+        let [[x, y], [u, v]] = ends.map(|node| self.nodes[node].point);
         let shape = PathSegment::Line { length: (u - x).hypot(v - y) };
-        let curve = vec![Placed { at: [x, y], heading: (v - y).atan2(u - x), shape }];
-        let id = Id::Number(self.edges.len() as u64);
-        self.edges.push(Edge { ways: [true, two_way], ..Edge::new(id, ends, curve) });
+        let curve = vec![PlacedSegment { start: [x, y], heading: (v - y).atan2(u - x), shape }];
+        let id = ElementId::Number(self.edges.len() as u64);
+        self.edges.push(LayoutEdge { ways: [true, two_way], ..LayoutEdge::new(id, ends, curve) });
     }
 
     /// The part of a street between two crossings, with its bays.
     fn block(&mut self, ends: [usize; 2]) {
-        let [[x, y], [u, v]] = ends.map(|node| self.nodes[node].at);
+        let [[x, y], [u, v]] = ends.map(|node| self.nodes[node].point);
         let (middle, side) = ([0.5 * (x + u), 0.5 * (y + v)], [(v - y) / BLOCK * BAY, (x - u) / BLOCK * BAY]);
         let node = self.node(middle);
         self.edge([ends[0], node], false);

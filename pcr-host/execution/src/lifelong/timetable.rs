@@ -5,11 +5,11 @@
 //!
 //! Every way has times of its own, as if no other robot was in the way ([`Way::time`]). A [`Timeline`] adds the waits.
 
-use super::book::Region;
-use super::gates::Timed;
+use super::gates::TimedGate;
+use super::region_table::RouteRegion;
+use super::region_waits::RegionWait;
 use super::robot::SHORT;
-use super::waits::Wait;
-use super::way::Way;
+use super::route::Route;
 
 /// Weight of the arrival at the end of a way, relative to that at a goal.
 const TAIL: f64 = 0.1;
@@ -40,9 +40,9 @@ impl Timeline {
 
     /// Time at which the robot, as the first one, opens a gate for the second, counted from now \[s\].
     #[inline]
-    pub(super) fn opens(&self, timed: &Timed, now: f64) -> f64 {
+    pub(super) fn opens(&self, timed: &TimedGate, now: f64) -> f64 {
         // A robot that waits stands up to this much before its gate.
-        self.from(timed.opens, timed.gate.needs + 2.0 * SHORT, now)
+        self.from(timed.opening_time, timed.gate.required_position + 2.0 * SHORT, now)
     }
 
     /// Arrival at the place with this time of the way, counted from when the timeline was made \[s\]:
@@ -63,7 +63,7 @@ impl Timeline {
 
     /// Weighted sum of the times until the robot reaches its goals \[s\]: weight 1 for the last goal, `earlier` for the goals before it,
     /// and `TAIL` for the end of the way.
-    pub(super) fn cost(&self, way: &Way, now: f64, earlier: f64) -> f64 {
+    pub(super) fn cost(&self, way: &Route, now: f64, earlier: f64) -> f64 {
         let time = |length: f64| self.from(way.time(length), length, now);
         let goals = way.goals.split_last();
         let goals = goals
@@ -108,16 +108,24 @@ impl Timetable {
 
     /// Whether the second robot of a region would pass one of its gates too early if the first had the timeline `first`. `way` is the way
     /// of the second; `at` has the places of both \[m\].
-    pub(super) fn is_broken(&self, region: &Region, first: &Timeline, now: f64, at: [f64; 2], way: &Way) -> bool {
+    pub(super) fn is_broken(
+        &self,
+        region: &RouteRegion,
+        first: &Timeline,
+        now: f64,
+        at: [f64; 2],
+        way: &Route,
+    ) -> bool {
         let Some(ends) = region.ends() else { return false };
         let second = &self.lines[region.second()];
-        let is_early = |[at, needs]: [Timed; 2]| {
-            at.gate.at < way.length() && first.opens(&needs, now) > second.beyond(at.comes, at.gate.at, now)
+        let is_early = |[at, needs]: [TimedGate; 2]| {
+            at.gate.wait_position < way.length()
+                && first.opens(&needs, now) > second.beyond(at.arrival_time, at.gate.wait_position, now)
         };
         // Only gates at which the second would still find the first matter.
-        let is_met = |wait: Wait<'_>| is_early(wait.ends) && wait.gates.iter().any(|timed| is_early([*timed; 2]));
+        let is_met = |wait: RegionWait<'_>| is_early(wait.ends) && wait.gates.iter().any(|timed| is_early([*timed; 2]));
         // `ends` pairs the nearest gate with the last event, so if this is not too early no gate is.
-        is_early(ends) && Wait::of(region, None, at).is_some_and(is_met)
+        is_early(ends) && RegionWait::of(region, None, at).is_some_and(is_met)
     }
 
     /// Replaces the timelines of some robots.
@@ -126,8 +134,8 @@ impl Timetable {
     }
 
     /// Whether the second robot of a region waits at one of its gates.
-    pub(super) fn waits_at(&self, region: &Region) -> bool {
+    pub(super) fn waits_at(&self, region: &RouteRegion) -> bool {
         let second = &self.lines[region.second()];
-        region.gates().iter().any(|timed| second.delays.iter().any(|delay| delay.0 == timed.gate.at))
+        region.gates().iter().any(|timed| second.delays.iter().any(|delay| delay.0 == timed.gate.wait_position))
     }
 }

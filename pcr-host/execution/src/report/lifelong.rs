@@ -1,8 +1,8 @@
 //! Fleets that run for hours, for reading.
 
-use crate::lifelong::{Driven, Lifelong, Shares, WellFormedness};
-use pcr_formats::import::Id;
-use pcr_planning::report::columns::Columns;
+use crate::lifelong::{LifelongReport, LifelongRunEntry, TimeShares, WellFormedness};
+use pcr_formats::import::ElementId;
+use pcr_planning::report::text_table::TextTable;
 use pcr_planning::report::{counted, heading, printable};
 use std::io::{self, Write};
 
@@ -14,10 +14,10 @@ stuck,standstill,refused,moved,revised,longest_wait,waiting,starved,driving,turn
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn lifelong_csv(lifelong: &Lifelong, out: &mut dyn Write) -> io::Result<()> {
+pub fn lifelong_csv(lifelong: &LifelongReport, out: &mut dyn Write) -> io::Result<()> {
     out.write_all(LIFELONG_CSV_HEADER.as_bytes())?;
     for run in &lifelong.runs {
-        let Driven { outcome: it, decisions, decision_median, decision_p99, .. } = run;
+        let LifelongRunEntry { outcome: it, decisions, decision_median, decision_p99, .. } = run;
         let ratio = it.travel_over_unimpeded.map_or_else(String::new, |ratio| ratio.to_string());
         let because = it.idle_because.as_ref().map_or_else(String::new, |why| format!("\"{why}\""));
         writeln!(
@@ -28,7 +28,7 @@ pub fn lifelong_csv(lifelong: &Lifelong, out: &mut dyn Write) -> io::Result<()> 
             it.missions,
             it.missions_per_hour,
             it.certificate.verdict,
-            it.breaches,
+            it.authority_overruns,
             it.stuck,
             it.standstill,
             it.refused,
@@ -40,8 +40,8 @@ pub fn lifelong_csv(lifelong: &Lifelong, out: &mut dyn Write) -> io::Result<()> 
             it.time.driving,
             it.time.turning,
             it.time.stopped,
-            it.time.held,
-            it.time.aside,
+            it.time.waiting,
+            it.time.yielding,
             it.time.idle
         )?;
     }
@@ -52,8 +52,8 @@ pub fn lifelong_csv(lifelong: &Lifelong, out: &mut dyn Write) -> io::Result<()> 
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn lifelong_table(lifelong: &Lifelong, out: &mut dyn Write) -> io::Result<()> {
-    let Lifelong { layout, seed, asked, hours, delays, well_formedness, alone, runs, .. } = lifelong;
+pub fn lifelong_table(lifelong: &LifelongReport, out: &mut dyn Write) -> io::Result<()> {
+    let LifelongReport { layout, seed, asked, hours, delays, well_formedness, alone, runs, .. } = lifelong;
     let name = if layout.is_empty() { "layout" } else { layout };
     writeln!(out, "{}: {} for {hours} h, seed {seed}", heading(name), counted(*asked, "robot"))?;
     writeln!(
@@ -76,7 +76,7 @@ pub fn lifelong_table(lifelong: &Lifelong, out: &mut dyn Write) -> io::Result<()
         writeln!(out, "{} without a place to start", asked - run.outcome.robots)?;
     }
     writeln!(out, "{alone:.0} missions an hour if nobody was in anybody's way")?;
-    let mut columns = Columns::new(&[
+    let mut columns = TextTable::new(&[
         "<method",
         "robots",
         "missions",
@@ -124,7 +124,7 @@ pub fn lifelong_table(lifelong: &Lifelong, out: &mut dyn Write) -> io::Result<()
         }
     }
     for run in runs {
-        let Shares { driving, turning, stopped, held, aside, idle } = run.outcome.time;
+        let TimeShares { driving, turning, stopped, waiting: held, yielding: aside, idle } = run.outcome.time;
         let [driving, turning, stopped, held, aside, idle] =
             [driving, turning, stopped, held, aside, idle].map(|part| format!("{:.0} %", 100.0 * part));
         writeln!(
@@ -138,7 +138,7 @@ pub fn lifelong_table(lifelong: &Lifelong, out: &mut dyn Write) -> io::Result<()
 }
 
 fn well_formed(it: &WellFormedness, out: &mut dyn Write) -> io::Result<()> {
-    let list = |ids: &[Id]| {
+    let list = |ids: &[ElementId]| {
         /// More are counted only.
         const MOST: usize = 20;
         let shown: Vec<String> = ids.iter().take(MOST).map(|id| printable(&id.to_string())).collect();

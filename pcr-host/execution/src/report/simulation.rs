@@ -1,17 +1,17 @@
 //! Simulated runs as text.
 
-use crate::simulate::{Ended, Run, Simulation};
+use crate::simulate::{ControllerRunEntry, RunEnd, SimulationReport};
 use pcr_formats::scenario::Labels;
 use pcr_planning::figures::small;
-use pcr_planning::report::columns::Columns;
-use pcr_planning::report::{called, counted, heading, quoted};
+use pcr_planning::report::text_table::TextTable;
+use pcr_planning::report::{counted, display_name, heading, quoted};
 use std::io::{self, Write};
 
 /// A line a mission: numbers that read back exactly; no end where it was not done.
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn simulation_csv(simulation: &Simulation, out: &mut dyn Write) -> io::Result<()> {
+pub fn simulation_csv(simulation: &SimulationReport, out: &mut dyn Write) -> io::Result<()> {
     let name = quoted(&simulation.name);
     writeln!(out, "name,controller,id,begin,end,unimpeded,waiting,label")?;
     for run in &simulation.runs {
@@ -29,8 +29,8 @@ pub fn simulation_csv(simulation: &Simulation, out: &mut dyn Write) -> io::Resul
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn simulation_table(simulation: &Simulation, out: &mut dyn Write) -> io::Result<()> {
-    let Simulation { seed, noise, drift, slip, delay, replan, .. } = simulation;
+pub fn simulation_table(simulation: &SimulationReport, out: &mut dyn Write) -> io::Result<()> {
+    let SimulationReport { seed, noise, drift, slip, delay, replan, .. } = simulation;
     let name = heading(&simulation.name);
     writeln!(
         out,
@@ -40,7 +40,7 @@ pub fn simulation_table(simulation: &Simulation, out: &mut dyn Write) -> io::Res
         out,
         "held up for up to {delay} s about every 10 s, a plan every {replan} s; times are means of a mission"
     )?;
-    let mut columns = Columns::new(&[
+    let mut columns = TextTable::new(&[
         "<controller",
         "missions",
         "not done",
@@ -72,9 +72,9 @@ pub fn simulation_table(simulation: &Simulation, out: &mut dyn Write) -> io::Res
     for run in &simulation.runs {
         let (name, duration) = (run.controller.name(), run.duration);
         match run.ended {
-            Ended::Done => {}
-            Ended::Standstill => writeln!(out, "{name}: after {duration:.0} s no robot would ever have moved again")?,
-            Ended::TimeLimit => {
+            RunEnd::Done => {}
+            RunEnd::Standstill => writeln!(out, "{name}: after {duration:.0} s no robot would ever have moved again")?,
+            RunEnd::TimeLimit => {
                 writeln!(out, "{name}: given up after {duration:.0} s, with missions that were not done")?
             }
         }
@@ -83,7 +83,7 @@ pub fn simulation_table(simulation: &Simulation, out: &mut dyn Write) -> io::Res
     Ok(())
 }
 
-fn planning(run: &Run, labels: &Labels, out: &mut dyn Write) -> io::Result<()> {
+fn planning(run: &ControllerRunEntry, labels: &Labels, out: &mut dyn Write) -> io::Result<()> {
     let Some(planning) = run.planning else { return Ok(()) };
     let (count, kept) = (planning.count, planning.kept);
     let (mean, longest) = (planning.mean_ms, planning.longest_ms);
@@ -93,14 +93,14 @@ fn planning(run: &Run, labels: &Labels, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "{name}: no plan was found in {tries}, and nobody moved")?;
     }
     for waiting in &run.waiting_for {
-        let by = waiting.by.map(|by| called(labels, by));
+        let by = waiting.blocked_by.map(|by| display_name(labels, by));
         let why = match (waiting.begun, by) {
             (false, Some(by)) => format!("never set off, as {by} stands in its way or too near it for their margins"),
             (false, None) => "never set off, as no order of passing lets it through with its margin".to_owned(),
             (true, Some(by)) => format!("stands on its way, as {by} passes first"),
             (true, None) => "stands on its way, though no passing order holds it".to_owned(),
         };
-        writeln!(out, "{name}: {} {why}", called(labels, waiting.id))?;
+        writeln!(out, "{name}: {} {why}", display_name(labels, waiting.id))?;
     }
     if kept == count {
         return Ok(());

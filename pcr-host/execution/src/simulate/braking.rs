@@ -24,7 +24,7 @@ pub(super) fn speed_before(length: f64, slow: f64, acceleration: f64, frame: f64
 
 /// A stretch of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stretch {
+pub(super) struct SpeedLimitSpan {
     /// \[m\]
     pub(super) length: f64,
     /// Largest speed on it \[m/s\].
@@ -33,7 +33,7 @@ pub(super) struct Stretch {
 
 /// Largest speeds \[m/s\] at the start of each stretch, and at the end, with which a robot can keep the top speeds of all further
 /// stretches and stop at the end.
-pub(super) fn speeds_to_rest(stretches: &[Stretch], acceleration: f64) -> Vec<f64> {
+pub(super) fn speeds_to_rest(stretches: &[SpeedLimitSpan], acceleration: f64) -> Vec<f64> {
     let mut speeds = vec![0.0_f64; stretches.len() + 1];
     let mut before = 0.0_f64;
     for (k, stretch) in stretches.iter().enumerate().rev() {
@@ -46,7 +46,7 @@ pub(super) fn speeds_to_rest(stretches: &[Stretch], acceleration: f64) -> Vec<f6
 
 /// Pieces (duration \[s\], acceleration \[m/s²\]) of the fastest motion from a speed to rest at the end of some stretches; `None`
 /// where it cannot keep to them.
-pub(super) fn to_rest(speed: f64, stretches: &[Stretch], acceleration: f64) -> Option<Vec<(f64, f64)>> {
+pub(super) fn to_rest(speed: f64, stretches: &[SpeedLimitSpan], acceleration: f64) -> Option<Vec<(f64, f64)>> {
     /// Relative rounding error of the square of a speed.
     const ROUNDING: f64 = 1e-12;
     let most = speeds_to_rest(stretches, acceleration);
@@ -54,7 +54,7 @@ pub(super) fn to_rest(speed: f64, stretches: &[Stretch], acceleration: f64) -> O
         return None;
     }
     let (mut pieces, mut speed) = (Vec::new(), speed);
-    for (&Stretch { length, top }, most) in stretches.iter().zip(&most[1..]) {
+    for (&SpeedLimitSpan { length, top }, most) in stretches.iter().zip(&most[1..]) {
         let after = most.min((speed * speed + 2.0 * acceleration * length).sqrt());
         let squares = speed * speed + after * after;
         let peak = top.min((squares / 2.0 + acceleration * length).sqrt()).max(speed).max(after);
@@ -106,7 +106,7 @@ mod tests {
     #[test]
     fn motions_to_rest_travel_the_length_within_the_limits() {
         let acceleration = 0.2;
-        let stretch = |length, top| Stretch { length, top };
+        let stretch = |length, top| SpeedLimitSpan { length, top };
         let one = |length| vec![stretch(length, 0.5)];
         let three = |a, b, c| vec![stretch(a, 0.5), stretch(b, 0.1), stretch(c, 0.4)];
         for (speed, stretches) in [
@@ -125,7 +125,7 @@ mod tests {
             let (mut now, mut travelled) = (speed, 0.0);
             let top = |at: f64| {
                 let mut end = 0.0;
-                let passed = |stretch: &&Stretch| {
+                let passed = |stretch: &&SpeedLimitSpan| {
                     end += stretch.length;
                     at > end - 1e-12
                 };

@@ -14,11 +14,11 @@
 //! The paper gives neither the plan of its arena nor the data of its robots. Radius and speed are those of the e-puck
 //! (Mondada et al. 2009: 70 mm across, 13 cm/s); the lengths of the paths match the 8.1 s of the paper.
 
-use super::course::Course;
-use super::noise::{Noise, Purpose};
-use super::tangents::{Disc, taut};
-use super::task::{Mission, Obstacle, Robot, Task};
-use super::vector::Vector;
+use super::noise::{NoiseSource, NoiseStream};
+use super::shortest_paths::{RoundObstacle, taut};
+use super::simulation_task::{DiscObstacle, ReleasedMission, RobotTask, SimulationTask};
+use super::speed_limited_path::SpeedLimitedPath;
+use super::vector::PlaneVector;
 use pcr_core::Limits;
 use pcr_formats::scenario::Labels;
 
@@ -35,34 +35,34 @@ const CLEARANCE: f64 = 0.03;
 const OBSTACLE: f64 = 0.055;
 
 /// Starts of the robots, to which they return \[m\].
-pub const NEST: [Vector; 4] = [[0.1, 0.2], [0.1, 0.4], [0.1, 0.6], [0.1, 0.8]];
+pub const NEST: [PlaneVector; 4] = [[0.1, 0.2], [0.1, 0.4], [0.1, 0.6], [0.1, 0.8]];
 
 /// Positions of the resources \[m\].
-pub const RESOURCES: [Vector; 6] = [[1.0, 0.0], [1.0, 0.2], [1.0, 0.4], [1.0, 0.6], [1.0, 0.8], [1.0, 1.0]];
+pub const RESOURCES: [PlaneVector; 6] = [[1.0, 0.0], [1.0, 0.2], [1.0, 0.4], [1.0, 0.6], [1.0, 0.8], [1.0, 1.0]];
 
 /// \[m\]
-const OBSTACLES: [Vector; 5] = [[0.36, 0.34], [0.36, 0.66], [0.55, 0.5], [0.55, 0.18], [0.55, 0.82]];
+const OBSTACLES: [PlaneVector; 5] = [[0.36, 0.34], [0.36, 0.66], [0.55, 0.5], [0.55, 0.18], [0.55, 0.82]];
 
 /// The task for a seed: each robot travels `trips` times from the nest to its resource and back.
-pub fn task(seed: u64, trips: u32) -> Task {
-    let discs = OBSTACLES.map(|centre| Disc { centre, radius: OBSTACLE + RADIUS + CLEARANCE });
-    let mut noise = Noise::new(seed, 0, Purpose::Missions);
+pub fn task(seed: u64, trips: u32) -> SimulationTask {
+    let discs = OBSTACLES.map(|centre| RoundObstacle { centre, radius: OBSTACLE + RADIUS + CLEARANCE });
+    let mut noise = NoiseStream::new(seed, 0, NoiseSource::Missions);
     let mut resources = RESOURCES.to_vec();
     let robots = NEST.iter().enumerate().map(|(place, &home)| {
         let resource = resources.swap_remove(noise.below(resources.len()));
         let course = |from, to| {
             let (pose, path) = taut(from, to, &discs)?;
-            Course::new(pose, &path).ok()
+            SpeedLimitedPath::new(pose, &path).ok()
         };
         let (out, back) = (course(home, resource), course(resource, home));
         // The arena is fixed: a test looks at all ways.
-        let trip = out.into_iter().chain(back).map(|course| Mission { release: 0.0, course });
-        let trip: Vec<Mission> = trip.collect();
+        let trip = out.into_iter().chain(back).map(|course| ReleasedMission { release: 0.0, course });
+        let trip: Vec<ReleasedMission> = trip.collect();
         let missions = (0..trips).flat_map(|_| trip.clone()).collect();
-        Robot { id: place as u64 + 1, radius: RADIUS, margin: 0.0, limits: LIMITS, missions }
+        RobotTask { id: place as u64 + 1, radius: RADIUS, margin: 0.0, limits: LIMITS, missions }
     });
-    let obstacles = OBSTACLES.map(|centre| Obstacle { id: None, centre, radius: OBSTACLE, margin: 0.0 });
-    Task {
+    let obstacles = OBSTACLES.map(|centre| DiscObstacle { id: None, centre, radius: OBSTACLE, margin: 0.0 });
+    SimulationTask {
         name: "foraging".into(),
         labels: Labels::default(),
         robots: robots.collect(),
@@ -78,12 +78,12 @@ mod tests {
 
     #[test]
     fn all_ways_are_clear_of_obstacles_and_of_all_other_places_to_stand() {
-        let discs = OBSTACLES.map(|centre| Disc { centre, radius: OBSTACLE + RADIUS + CLEARANCE });
+        let discs = OBSTACLES.map(|centre| RoundObstacle { centre, radius: OBSTACLE + RADIUS + CLEARANCE });
         for home in NEST {
             for resource in RESOURCES {
                 for [from, to] in [[home, resource], [resource, home]] {
                     let (pose, path) = taut(from, to, &discs).expect("a way");
-                    let course = Course::new(pose, &path).expect("a course");
+                    let course = SpeedLimitedPath::new(pose, &path).expect("a course");
                     let end = course.point_at(course.length());
                     assert!(norm(sub(end, to)) < 1e-9);
                     let mut least = f64::INFINITY;

@@ -1,12 +1,12 @@
 //! Random numbers of a run. Each robot has streams of its own, so that the same seed gives the same disturbances with
 //! every controller.
 
-use super::vector::{Vector, norm, scale};
-use pcr_formats::random::Random;
+use super::vector::{PlaneVector, norm, scale};
+use pcr_formats::splitmix64::SplitMix64;
 
 /// The purpose of a stream of random numbers.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Purpose {
+pub(super) enum NoiseSource {
     Missions,
     Camera,
     Wheels,
@@ -15,14 +15,14 @@ pub(super) enum Purpose {
 
 /// A stream of random numbers for one purpose.
 #[derive(Clone, Debug)]
-pub(super) struct Noise(Random);
+pub(super) struct NoiseStream(SplitMix64);
 
-impl Noise {
-    pub(super) fn new(seed: u64, robot: usize, purpose: Purpose) -> Self {
-        let mut random = Random(seed);
+impl NoiseStream {
+    pub(super) fn new(seed: u64, robot: usize, purpose: NoiseSource) -> Self {
+        let mut random = SplitMix64(seed);
         // Streams of neighbouring numbers are far apart.
         for part in [robot as u64, purpose as u64] {
-            random = Random(random.bits() ^ part);
+            random = SplitMix64(random.bits() ^ part);
         }
         Self(random)
     }
@@ -38,7 +38,7 @@ impl Noise {
     }
 
     /// Evenly spread over a disc of this radius.
-    pub(super) fn in_disc(&mut self, radius: f64) -> Vector {
+    pub(super) fn in_disc(&mut self, radius: f64) -> PlaneVector {
         loop {
             let point = [2.0 * self.unit() - 1.0, 2.0 * self.unit() - 1.0];
             if norm(point) <= 1.0 {

@@ -4,7 +4,7 @@
 //! known distance can see it at its measured position only from a part of its path. That part is the stretch that a
 //! standing disc with this radius blocks, which the collision regions give.
 
-use super::course::{Course, Drive};
+use super::speed_limited_path::{OwnedMotion, SpeedLimitedPath};
 use pcr_core::{Encounter, Interval, Pose, Radians};
 
 /// Distances below this count as this \[m\], because a disc needs a radius.
@@ -12,7 +12,13 @@ const FINEST: f64 = 1e-6;
 
 /// The interval after an observation: the interval before \[m\], extended by the way of the wheels since then \[m\], without
 /// the parts that are farther than `error` \[m\] from the observed position.
-pub(super) fn narrowed(before: Interval<f64>, way: f64, seen: [f64; 2], error: f64, course: &Course) -> Interval<f64> {
+pub(super) fn narrowed(
+    before: Interval<f64>,
+    way: f64,
+    seen: [f64; 2],
+    error: f64,
+    course: &SpeedLimitedPath,
+) -> Interval<f64> {
     let end = course.length();
     let possible = Interval::new(before.lo, (before.hi + way).min(end));
     let within = part_within(seen, error, course);
@@ -22,11 +28,11 @@ pub(super) fn narrowed(before: Interval<f64>, way: f64, seen: [f64; 2], error: f
 }
 
 /// The lengths of the course within a distance of a point.
-fn part_within(point: [f64; 2], distance: f64, course: &Course) -> Vec<Interval<f64>> {
+fn part_within(point: [f64; 2], distance: f64, course: &SpeedLimitedPath) -> Vec<Interval<f64>> {
     let position = pcr_core::Point::new(point[0], point[1]);
-    let probe = Course::standing(Pose { position, heading: Radians(0.0) }).ok();
-    let probe = probe.and_then(|probe| Drive::standing(probe, 0.0));
-    let ego = Drive::at_unit_speed(course.clone());
+    let probe = SpeedLimitedPath::standing(Pose { position, heading: Radians(0.0) }).ok();
+    let probe = probe.and_then(|probe| OwnedMotion::standing(probe, 0.0));
+    let ego = OwnedMotion::at_unit_speed(course.clone());
     let radius = (distance / 2.0).max(FINEST);
     let motions = ego.as_ref().and_then(|ego| Some([ego.motion(radius)?, probe.as_ref()?.motion(radius)?]));
     motions.map_or(Vec::new(), |[ego, probe]| {
@@ -43,7 +49,7 @@ mod tests {
     #[test]
     fn a_robot_is_where_its_wheels_and_the_camera_say() {
         let pose = Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) };
-        let course = Course::new(pose, &[PathSegment::Line { length: 2.0 }]).expect("a course");
+        let course = SpeedLimitedPath::new(pose, &[PathSegment::Line { length: 2.0 }]).expect("a course");
         let start = Interval::new(0.0, 0.0);
         let close = |a: Interval<f64>, lo: f64, hi: f64| (a.lo - lo).abs() < 1e-9 && (a.hi - hi).abs() < 1e-9;
         // Half a metre at most, seen at 0.9 m within 0.5 m: 0.3 m off the path leave 0.4 m.

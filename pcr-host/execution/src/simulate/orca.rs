@@ -4,12 +4,12 @@
 //! ahead. Discs are enlarged by the error of the camera. A robot heads for a point of its path a little ahead, because
 //! ORCA finds no way around obstacles. Obstacles are octagons around their discs.
 
-use super::body::Command;
-use super::course::Course;
-use super::steering::{Steered, reach, steered};
-use super::task::{Obstacle, Task};
-use super::vector::{Vector, add, limited, sub};
-use super::{Control, FRAME, Frame};
+use super::simulation_task::{DiscObstacle, SimulationTask};
+use super::speed_limited_path::SpeedLimitedPath;
+use super::steering::{ReactiveRobot, goal_tolerance, steered};
+use super::true_state::MotionCommand;
+use super::vector::{PlaneVector, add, limited, sub};
+use super::{ControlInput, FRAME, RobotController};
 use dodgy_2d::{Agent, AvoidanceOptions, Obstacle as Polygon, Vec2};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
@@ -23,30 +23,30 @@ const OBSTACLE_HORIZON: f32 = 0.5;
 /// Corners of an obstacle.
 const CORNERS: u32 = 8;
 
-pub(super) struct Orca {
-    robots: Vec<Steered>,
+pub(super) struct OrcaController {
+    robots: Vec<ReactiveRobot>,
     obstacles: Vec<Polygon>,
     /// Commanded velocities for the last frame \[m/s\].
-    velocities: Vec<Vector>,
+    velocities: Vec<PlaneVector>,
     /// Largest error of the camera \[m\].
     error: f64,
     reach: f64,
 }
 
-impl Orca {
-    pub(super) fn new(task: &Task, error: f64) -> Self {
+impl OrcaController {
+    pub(super) fn new(task: &SimulationTask, error: f64) -> Self {
         let velocities = vec![[0.0; 2]; task.robots.len()];
         let obstacles = task.obstacles.iter().map(polygon).collect();
-        Self { robots: steered(task), obstacles, velocities, error, reach: reach(task) }
+        Self { robots: steered(task), obstacles, velocities, error, reach: goal_tolerance(task) }
     }
 }
 
-fn vec2(vector: Vector) -> Vec2 {
+fn vec2(vector: PlaneVector) -> Vec2 {
     Vec2::new(vector[0] as f32, vector[1] as f32)
 }
 
 /// The octagon around a disc, counter-clockwise: its inside is solid.
-fn polygon(obstacle: &Obstacle) -> Polygon {
+fn polygon(obstacle: &DiscObstacle) -> Polygon {
     let reach = obstacle.radius / (TAU / f64::from(2 * CORNERS)).cos();
     let corner = |k: u32| {
         let (sin, cos) = (TAU * f64::from(k) / f64::from(CORNERS)).sin_cos();
@@ -55,16 +55,16 @@ fn polygon(obstacle: &Obstacle) -> Polygon {
     Polygon::Closed { vertices: (0..CORNERS).map(corner).collect() }
 }
 
-impl Control for Orca {
-    fn assign(&mut self, robot: usize, course: &Course) {
+impl RobotController for OrcaController {
+    fn assign(&mut self, robot: usize, course: &SpeedLimitedPath) {
         if let Some(robot) = self.robots.get_mut(robot) {
             robot.assign(course);
         }
     }
 
-    fn commands(&mut self, frame: &Frame<'_>) -> Vec<Command> {
+    fn commands(&mut self, frame: &ControlInput<'_>) -> Vec<MotionCommand> {
         let error = self.error;
-        let agent = |((robot, &seen), &velocity): ((&Steered, &Vector), &Vector)| Agent {
+        let agent = |((robot, &seen), &velocity): ((&ReactiveRobot, &PlaneVector), &PlaneVector)| Agent {
             position: vec2(seen),
             velocity: vec2(velocity),
             radius: (robot.radius + error) as f32,
@@ -92,13 +92,13 @@ impl Control for Orca {
             let wanted = [f64::from(chosen.x), f64::from(chosen.y)];
             if let Some(velocity) = self.velocities.get_mut(place) {
                 *velocity = add(*velocity, limited(sub(wanted, *velocity), robot.limits.acceleration * FRAME));
-                commands.push(Command::Freely(*velocity));
+                commands.push(MotionCommand::Freely(*velocity));
             }
         }
         commands
     }
 
-    fn reach(&self, robot: usize) -> f64 {
-        if self.robots.get(robot).is_some_and(Steered::heads_for_end) { self.reach } else { 0.0 }
+    fn goal_tolerance(&self, robot: usize) -> f64 {
+        if self.robots.get(robot).is_some_and(ReactiveRobot::heads_for_end) { self.reach } else { 0.0 }
     }
 }

@@ -1,12 +1,12 @@
 //! Results of a run: a record of the true positions, and the figures that follow from it.
 
-use super::contact::{contacts, separation};
-use super::replan::{InTheWay, Waits};
+use super::frame_contact::{contacts, separation};
+use super::pcr_controller::PlanningStatistics;
+use super::replan::{BlockedRobot, Blocker};
+use super::simulation_task::SimulationTask;
 use super::steering::closed;
-use super::supervisor::Statistics;
-use super::task::Task;
-use super::vector::{Vector, norm, sub};
-use super::{Controller, Disturbance, FRAME, Settings, Snapshot};
+use super::vector::{PlaneVector, norm, sub};
+use super::{ClosedLoopOptions, ControllerKind, Disturbance, FRAME, PlanSnapshot};
 use pcr_formats::scenario::Labels;
 use pcr_formats::warning::WarningCode;
 use serde::Serialize;
@@ -16,31 +16,31 @@ const WAITS: f64 = 0.1;
 
 /// A run with its record.
 #[derive(Clone, Debug)]
-pub struct Outcome {
+pub struct SimulationRun {
     /// The figures.
-    pub run: Run,
+    pub run: ControllerRunEntry,
     /// The record from which they are computed.
-    pub trace: Trace,
+    pub trace: MotionTrace,
     /// The plans of the supervisor.
-    pub snapshots: Vec<Snapshot>,
+    pub snapshots: Vec<PlanSnapshot>,
     /// Time of each planning of the supervisor \[s\].
     pub planned: Vec<f64>,
 }
 
 /// The record of a run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Trace {
+pub struct MotionTrace {
     /// True positions \[m\] of each robot, at each frame; in between it moves uniformly.
-    pub positions: Vec<Vec<Vector>>,
+    pub positions: Vec<Vec<PlaneVector>>,
     /// Lengths along the paths of their missions \[m\] likewise; 0 for robots that are not bound to a path.
     pub travelled: Vec<Vec<f64>>,
     /// The missions, by their begin.
-    pub journeys: Vec<Journey>,
+    pub journeys: Vec<MissionRecord>,
 }
 
 /// A mission as it was carried out.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Journey {
+pub struct MissionRecord {
     /// Index of the robot in the task.
     pub robot: usize,
     /// Frame in which the robot got its mission.
@@ -48,14 +48,14 @@ pub struct Journey {
     /// Frame in which the robot arrived, if it did.
     pub end: Option<usize>,
     /// Goal \[m\].
-    pub goal: Vector,
+    pub goal: PlaneVector,
     /// Time that the mission takes if no robot is in the way \[s\].
     pub unimpeded: f64,
 }
 
 /// The runs of a task: the JSON output, field for field in this order.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Simulation {
+pub struct SimulationReport {
     /// Name of the scenario.
     pub name: String,
     /// Labels of the agents, by their numbers.
@@ -74,18 +74,18 @@ pub struct Simulation {
     /// Longest time for which a robot is held up \[s\].
     pub delay: f64,
     /// One run for each controller.
-    pub runs: Vec<Run>,
+    pub runs: Vec<ControllerRunEntry>,
     /// Warnings about input that was changed or left out when it was read.
     pub warnings: Vec<String>,
 }
 
-impl Simulation {
+impl SimulationReport {
     /// The results of these runs.
-    pub fn of(task: &Task, settings: Settings, outcomes: &[Outcome]) -> Self {
-        let Settings { seed, replan, disturbance: Disturbance { noise, slip, delay, drift } } = settings;
+    pub fn from_runs(task: &SimulationTask, settings: ClosedLoopOptions, outcomes: &[SimulationRun]) -> Self {
+        let ClosedLoopOptions { seed, replan, disturbance: Disturbance { noise, slip, delay, drift } } = settings;
         let runs = outcomes.iter().map(|outcome| outcome.run.clone()).collect();
         let (name, labels, mut warnings) = (task.name.clone(), task.labels.clone(), task.warnings.clone());
-        if outcomes.iter().any(|outcome| outcome.run.controller == Controller::Potential) {
+        if outcomes.iter().any(|outcome| outcome.run.controller == ControllerKind::Potential) {
             let why = "its path ends where it begins; the controller potential goes straight to the end, and has nothing to do";
             warnings.extend(closed(task).map(|id| WarningCode::ClosedPath.text(format_args!("agent {id}: {why}"))));
         }
@@ -94,15 +94,15 @@ impl Simulation {
 
     /// Whether all missions were done without a collision under [`Controller::Pcr`], if that is among the runs.
     pub fn is_as_promised(&self) -> bool {
-        let failed = |run: &Run| run.not_done > 0 || !run.collisions.is_empty();
-        !self.runs.iter().any(|run| run.controller == Controller::Pcr && failed(run))
+        let failed = |run: &ControllerRunEntry| run.not_done > 0 || !run.collisions.is_empty();
+        !self.runs.iter().any(|run| run.controller == ControllerKind::Pcr && failed(run))
     }
 }
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Ended {
+pub enum RunEnd {
     /// All missions are done.
     Done,
     /// No robot would ever have moved again.
@@ -113,9 +113,9 @@ pub enum Ended {
 
 /// The figures of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Run {
+pub struct ControllerRunEntry {
     /// Controller of the robots.
-    pub controller: Controller,
+    pub controller: ControllerKind,
     /// Number of missions done.
     pub done: usize,
     /// Number of missions not done.
@@ -123,7 +123,7 @@ pub struct Run {
     /// Time until the end of the last mission, or until the run was given up \[s\].
     pub duration: f64,
     /// How the run ended.
-    pub ended: Ended,
+    pub ended: RunEnd,
     /// Mean time of a mission that was done \[s\].
     pub travel: f64,
     /// Mean time that these missions would have taken if no robot was in the way \[s\].
@@ -131,21 +131,21 @@ pub struct Run {
     /// Mean time of such a mission in which the robot moved at less than a tenth of its top speed \[s\].
     pub waiting: f64,
     /// The missions, by their begin.
-    pub missions: Vec<Arrival>,
+    pub missions: Vec<MissionEntry>,
     /// Discs in contact.
-    pub collisions: Vec<Collision>,
+    pub collisions: Vec<CollisionEntry>,
     /// Least distance between two discs \[m\]; negative where they overlap.
     pub clearance: Option<f64>,
     /// Robots that stand with a mission that is not done, and for which others they wait.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub waiting_for: Vec<Waiting>,
+    pub waiting_for: Vec<BlockedRobotEntry>,
     /// Figures about planning; `None` without a supervisor.
-    pub planning: Option<Planning>,
+    pub planning: Option<PlanningEntry>,
 }
 
 /// A mission.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Arrival {
+pub struct MissionEntry {
     /// Number of the robot.
     pub id: u64,
     /// Time at which the robot got the mission \[s\].
@@ -160,19 +160,20 @@ pub struct Arrival {
 
 /// A robot that stands with a mission that is not done.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Waiting {
+pub struct BlockedRobotEntry {
     /// Number of the robot.
     pub id: u64,
     /// Whether it has begun the mission.
     pub begun: bool,
     /// Before the mission is begun: number of the robot or obstacle that stands in its way, within their margins; `None` for an
     /// obstacle without a number, and if no passing order lets it through. Afterwards: number of the robot that passes first.
-    pub by: Option<u64>,
+    #[serde(rename = "by")]
+    pub blocked_by: Option<u64>,
 }
 
 /// Two discs in contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Collision {
+pub struct CollisionEntry {
     /// Number of a robot.
     pub i: u64,
     /// Number of the other robot or obstacle; `None` for an obstacle without a number.
@@ -185,33 +186,34 @@ pub struct Collision {
 
 /// Figures about planning. The times depend on the machine and differ from run to run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Planning {
+pub struct PlanningEntry {
     /// Number of attempts to plan.
     pub count: usize,
     /// Number of attempts that found no plan, or none with earlier arrivals, so that the old passing orders stayed.
     pub kept: usize,
     /// Number of times a robot could not brake in time for its passing order. This should be 0.
-    pub breaches: usize,
+    #[serde(rename = "breaches")]
+    pub authority_overruns: usize,
     /// Mean time \[ms\].
     pub mean_ms: f64,
     /// Longest time \[ms\].
     pub longest_ms: f64,
 }
 
-impl Run {
+impl ControllerRunEntry {
     pub(super) fn of(
-        task: &Task,
-        (controller, ended): (Controller, Ended),
-        trace: &Trace,
-        planning: Option<&Statistics>,
-        waiting: &[Waits],
+        task: &SimulationTask,
+        (controller, ended): (ControllerKind, RunEnd),
+        trace: &MotionTrace,
+        planning: Option<&PlanningStatistics>,
+        waiting: &[BlockedRobot],
     ) -> Self {
-        let missions: Vec<Arrival> =
+        let missions: Vec<MissionEntry> =
             trace.journeys.iter().filter_map(|journey| arrival(task, trace, journey)).collect();
         let all: usize = task.robots.iter().map(|robot| robot.missions.len()).sum();
-        let done: Vec<(&Arrival, f64)> =
+        let done: Vec<(&MissionEntry, f64)> =
             missions.iter().filter_map(|mission| Some((mission, mission.end? - mission.begin))).collect();
-        let mean = |value: &dyn Fn(&(&Arrival, f64)) -> f64| {
+        let mean = |value: &dyn Fn(&(&MissionEntry, f64)) -> f64| {
             if done.is_empty() { 0.0 } else { done.iter().map(value).sum::<f64>() / done.len() as f64 }
         };
         // A place does not tell whether a turn in place at the end is over.
@@ -232,45 +234,45 @@ impl Run {
             waiting: mean(&|(mission, _)| mission.waiting),
             collisions,
             clearance,
-            planning: planning.map(Planning::of),
+            planning: planning.map(PlanningEntry::of),
             waiting_for: waiting
                 .iter()
                 .filter(|waits| !is_done(waits.robot))
-                .map(|waits| Waiting::of(task, *waits))
+                .map(|waits| BlockedRobotEntry::of(task, *waits))
                 .collect(),
             missions,
         }
     }
 }
 
-impl Waiting {
-    fn of(task: &Task, Waits { robot, begun, by }: Waits) -> Self {
+impl BlockedRobotEntry {
+    fn of(task: &SimulationTask, BlockedRobot { robot, begun, blocked_by: by }: BlockedRobot) -> Self {
         let by = match by {
-            Some(InTheWay::Robot(other)) => task.robots.get(other).map(|robot| robot.id),
-            Some(InTheWay::Obstacle(other)) => task.obstacles.get(other).and_then(|obstacle| obstacle.id),
+            Some(Blocker::Robot(other)) => task.robots.get(other).map(|robot| robot.id),
+            Some(Blocker::Obstacle(other)) => task.obstacles.get(other).and_then(|obstacle| obstacle.id),
             None => None,
         };
-        Self { id: task.robots[robot].id, begun, by }
+        Self { id: task.robots[robot].id, begun, blocked_by: by }
     }
 }
 
-impl Planning {
-    fn of(statistics: &Statistics) -> Self {
-        let Statistics { times, kept, breaches } = statistics;
+impl PlanningEntry {
+    fn of(statistics: &PlanningStatistics) -> Self {
+        let PlanningStatistics { times, kept, breaches } = statistics;
         let count = times.len();
         let mean_ms = times.iter().sum::<f64>() / count.max(1) as f64 * 1e3;
         let longest_ms = times.iter().copied().fold(0.0, f64::max) * 1e3;
-        Self { count, kept: *kept, breaches: *breaches, mean_ms, longest_ms }
+        Self { count, kept: *kept, authority_overruns: *breaches, mean_ms, longest_ms }
     }
 }
 
-fn arrival(task: &Task, trace: &Trace, journey: &Journey) -> Option<Arrival> {
+fn arrival(task: &SimulationTask, trace: &MotionTrace, journey: &MissionRecord) -> Option<MissionEntry> {
     let robot = task.robots.get(journey.robot)?;
     let track = trace.positions.get(journey.robot)?;
     let part = track.get(journey.begin..=journey.end.unwrap_or(track.len() - 1))?;
     let slow = WAITS * robot.limits.speed * FRAME;
     let waits = part.windows(2).filter(|pair| norm(sub(pair[1], pair[0])) < slow).count();
-    Some(Arrival {
+    Some(MissionEntry {
         id: robot.id,
         begin: journey.begin as f64 * FRAME,
         end: journey.end.map(|end| end as f64 * FRAME),
@@ -280,15 +282,15 @@ fn arrival(task: &Task, trace: &Trace, journey: &Journey) -> Option<Arrival> {
 }
 
 /// All contacts of robots with one another and with obstacles, by their begin; and the least distance.
-fn collisions(task: &Task, trace: &Trace) -> (Vec<Collision>, Option<f64>) {
+fn collisions(task: &SimulationTask, trace: &MotionTrace) -> (Vec<CollisionEntry>, Option<f64>) {
     let robots: Vec<_> = task.robots.iter().zip(&trace.positions).collect();
     let (mut collisions, mut clearance) = (Vec::new(), None::<f64>);
-    let mut look = |i: u64, j: Option<u64>, tracks: [&[Vector]; 2], radius: f64| {
+    let mut look = |i: u64, j: Option<u64>, tracks: [&[PlaneVector]; 2], radius: f64| {
         let apart = separation(tracks[0], tracks[1]) - radius;
         clearance = Some(clearance.map_or(apart, |least| least.min(apart)));
         collisions.extend(contacts(tracks[0], tracks[1], radius).into_iter().map(|contact| {
             let t = contact.frames.map(|frame| frame as f64 * FRAME);
-            Collision { i, j, t, depth: contact.depth }
+            CollisionEntry { i, j, t, depth: contact.depth }
         }));
     };
     for (place, (robot, track)) in robots.iter().enumerate() {

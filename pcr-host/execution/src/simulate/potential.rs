@@ -9,12 +9,12 @@
 //!
 //! which is the top speed g at the gap q₁.
 
-use super::body::Command;
-use super::course::Course;
-use super::steering::{Steered, reach, steered};
-use super::task::Task;
-use super::vector::{Vector, add, limited, norm, scale, sub};
-use super::{Control, Frame};
+use super::simulation_task::SimulationTask;
+use super::speed_limited_path::SpeedLimitedPath;
+use super::steering::{ReactiveRobot, goal_tolerance, steered};
+use super::true_state::MotionCommand;
+use super::vector::{PlaneVector, add, limited, norm, scale, sub};
+use super::{ControlInput, RobotController};
 
 /// q₀, in radii of the robot.
 const INFLUENCE: f64 = 2.0;
@@ -26,16 +26,16 @@ const BALANCE: f64 = 0.7;
 const LEAST: f64 = 0.1;
 
 #[derive(Debug)]
-pub(super) struct Potential {
-    robots: Vec<Steered>,
-    obstacles: Vec<(Vector, f64)>,
+pub(super) struct PotentialFieldController {
+    robots: Vec<ReactiveRobot>,
+    obstacles: Vec<(PlaneVector, f64)>,
     reach: f64,
 }
 
-impl Potential {
-    pub(super) fn new(task: &Task) -> Self {
+impl PotentialFieldController {
+    pub(super) fn new(task: &SimulationTask) -> Self {
         let obstacles = task.obstacles.iter().map(|obstacle| (obstacle.centre, obstacle.radius)).collect();
-        Self { robots: steered(task), obstacles, reach: reach(task) }
+        Self { robots: steered(task), obstacles, reach: goal_tolerance(task) }
     }
 }
 
@@ -46,15 +46,15 @@ fn repulsion(gap: f64, radius: f64) -> f64 {
     (inverse(gap.max(LEAST * balance)) / inverse(balance)).max(0.0)
 }
 
-impl Control for Potential {
-    fn assign(&mut self, robot: usize, course: &Course) {
+impl RobotController for PotentialFieldController {
+    fn assign(&mut self, robot: usize, course: &SpeedLimitedPath) {
         if let Some(robot) = self.robots.get_mut(robot) {
             robot.assign(course);
         }
     }
 
-    fn commands(&mut self, frame: &Frame<'_>) -> Vec<Command> {
-        let discs: Vec<(Vector, f64)> =
+    fn commands(&mut self, frame: &ControlInput<'_>) -> Vec<MotionCommand> {
+        let discs: Vec<(PlaneVector, f64)> =
             frame.seen.iter().copied().zip(self.robots.iter().map(|robot| robot.radius)).collect();
         let mut commands = Vec::with_capacity(discs.len());
         for (place, (robot, &seen)) in self.robots.iter_mut().zip(frame.seen).enumerate() {
@@ -68,12 +68,12 @@ impl Control for Potential {
                     velocity = add(velocity, scale(away, speed / distance));
                 }
             }
-            commands.push(Command::Freely(limited(velocity, robot.limits.speed)));
+            commands.push(MotionCommand::Freely(limited(velocity, robot.limits.speed)));
         }
         commands
     }
 
-    fn reach(&self, _robot: usize) -> f64 {
+    fn goal_tolerance(&self, _robot: usize) -> f64 {
         self.reach
     }
 }

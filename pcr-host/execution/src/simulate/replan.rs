@@ -5,7 +5,7 @@
 //! rest: as early as it can brake, or just before one of the regions on its way; [`earliest_start`] gives the time that
 //! it has to wait there. The place with the earliest arrival is used.
 
-use super::course::{Course, Drive};
+use super::speed_limited_path::{OwnedMotion, SpeedLimitedPath};
 use pcr_core::{Encounter, Limits, Motion, earliest_start};
 use pcr_planning::fleet::{HostEcm, build_ecm_of};
 use pcr_planning::plan::start_delays;
@@ -25,9 +25,9 @@ pub(super) const SEARCHED: usize = 15;
 
 /// A robot as it is now.
 #[derive(Clone, Debug)]
-pub(super) struct State {
+pub(super) struct RobotState {
     /// The rest of its path.
-    pub(super) rest: Course,
+    pub(super) rest: SpeedLimitedPath,
     /// \[m/s\]
     pub(super) speed: f64,
     pub(super) limits: Limits<f64>,
@@ -39,8 +39,8 @@ pub(super) struct State {
 
 /// A motion of every robot.
 #[derive(Clone, Debug)]
-pub(super) struct Plan {
-    pub(super) drives: Vec<Drive>,
+pub(super) struct FleetMotionPlan {
+    pub(super) drives: Vec<OwnedMotion>,
     /// The robots by priority.
     pub(super) order: Vec<usize>,
     /// Sum of the times until arrival \[s\].
@@ -49,7 +49,7 @@ pub(super) struct Plan {
 
 /// What stands in the way of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum InTheWay {
+pub(super) enum Blocker {
     /// Index in the list of robots.
     Robot(usize),
     /// Index in the list of obstacles.
@@ -58,27 +58,27 @@ pub(super) enum InTheWay {
 
 /// A robot that stands with a mission that is not done.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Waits {
+pub(super) struct BlockedRobot {
     pub(super) robot: usize,
     /// Whether it has begun the mission.
     pub(super) begun: bool,
     /// The robot or obstacle for which it waits.
-    pub(super) by: Option<InTheWay>,
+    pub(super) blocked_by: Option<Blocker>,
 }
 
 /// The input of a plan.
 #[derive(Debug)]
-pub(super) struct Problem<'a> {
+pub(super) struct ReplanProblem<'a> {
     /// Present time \[s\].
     pub(super) now: f64,
-    pub(super) robots: &'a [State],
+    pub(super) robots: &'a [RobotState],
     /// Obstacles, which never move, with their radii \[m\].
-    pub(super) obstacles: &'a [(Drive, f64)],
+    pub(super) obstacles: &'a [(OwnedMotion, f64)],
 }
 
-impl Problem<'_> {
+impl ReplanProblem<'_> {
     /// A plan by start delays, without waits on the way. `None` unless all robots stand.
-    pub(super) fn delayed(&self) -> Option<Plan> {
+    pub(super) fn delayed(&self) -> Option<FleetMotionPlan> {
         if self.robots.iter().any(|robot| robot.speed > 0.0) {
             return None;
         }
@@ -99,25 +99,25 @@ impl Problem<'_> {
     }
 
     /// Robots with these start delays \[s\]; those without one stay where they are.
-    fn later(&self, motions: &[Motion<'_, f64>], delays: &[Option<f64>]) -> Option<Plan> {
-        let drive = |(robot, delay): (&State, &Option<f64>)| match delay {
-            Some(delay) => Problem { now: self.begin(robot) + delay, ..*self }.through(robot),
+    fn later(&self, motions: &[Motion<'_, f64>], delays: &[Option<f64>]) -> Option<FleetMotionPlan> {
+        let drive = |(robot, delay): (&RobotState, &Option<f64>)| match delay {
+            Some(delay) => ReplanProblem { now: self.begin(robot) + delay, ..*self }.through(robot),
             None => self.staying(robot),
         };
-        let drives: Vec<Drive> = self.robots.iter().zip(delays).map(drive).collect::<Option<_>>()?;
+        let drives: Vec<OwnedMotion> = self.robots.iter().zip(delays).map(drive).collect::<Option<_>>()?;
         let costs = delays.iter().zip(motions).map(|(delay, motion)| Some(motion.time().hi + (*delay)? - self.now));
         let cost = costs.flatten().sum();
         let mut order: Vec<usize> = (0..delays.len()).collect();
         order.sort_by(|&a, &b| delays[a].unwrap_or(0.0).total_cmp(&delays[b].unwrap_or(0.0)));
-        Some(Plan { drives, order, cost })
+        Some(FleetMotionPlan { drives, order, cost })
     }
 
     /// A plan by start delays for robots that all stand: as many as possible of the `wanted` robots go, the others stay where they are.
     /// Also returns which robots go. A robot whose path leads past one that stays has to stay as well.
-    pub(super) fn most(&self, wanted: &[bool]) -> Option<(Plan, Vec<bool>)> {
+    pub(super) fn most(&self, wanted: &[bool]) -> Option<(FleetMotionPlan, Vec<bool>)> {
         let through = self.all_through()?;
         let motions = self.motions(&through)?;
-        let stays: Vec<Drive> = self.robots.iter().map(|robot| self.staying(robot)).collect::<Option<_>>()?;
+        let stays: Vec<OwnedMotion> = self.robots.iter().map(|robot| self.staying(robot)).collect::<Option<_>>()?;
         let stays = self.motions(&stays)?;
         let standing = self.standing()?;
         let robots = 0..wanted.len();
@@ -142,7 +142,7 @@ impl Problem<'_> {
     }
 
     /// The motion of one robot among others that go on as they are planned.
-    pub(super) fn beside(&self, robot: usize, drives: &[Drive]) -> Option<Drive> {
+    pub(super) fn plan_one(&self, robot: usize, drives: &[OwnedMotion]) -> Option<OwnedMotion> {
         let mut others: Vec<Motion<'_, f64>> = self.standing()?;
         let planned = self.motions(drives)?.into_iter().enumerate();
         others.extend(planned.filter(|(other, _)| *other != robot).map(|(_, motion)| motion));
@@ -150,20 +150,20 @@ impl Problem<'_> {
     }
 
     /// When a robot goes on \[s\].
-    fn begin(&self, robot: &State) -> f64 {
+    fn begin(&self, robot: &RobotState) -> f64 {
         self.now.max(robot.release)
     }
 
-    fn all_through(&self) -> Option<Vec<Drive>> {
+    fn all_through(&self) -> Option<Vec<OwnedMotion>> {
         self.robots.iter().map(|robot| self.through(robot)).collect()
     }
 
     /// A robot that stays where it is.
-    fn staying(&self, robot: &State) -> Option<Drive> {
-        Drive::standing(robot.rest.beginning(), self.now)
+    fn staying(&self, robot: &RobotState) -> Option<OwnedMotion> {
+        OwnedMotion::standing(robot.rest.beginning(), self.now)
     }
 
-    fn motions<'d>(&self, drives: &'d [Drive]) -> Option<Vec<Motion<'d, f64>>> {
+    fn motions<'d>(&self, drives: &'d [OwnedMotion]) -> Option<Vec<Motion<'d, f64>>> {
         drives.iter().zip(self.robots).map(|(drive, robot)| drive.motion(robot.radius)).collect()
     }
 
@@ -172,7 +172,7 @@ impl Problem<'_> {
     }
 
     /// What stands in the way of a robot under all plans: a robot for which `stay` holds, or else an obstacle.
-    pub(super) fn in_the_way(&self, robot: usize, stay: impl Fn(usize) -> bool) -> Option<InTheWay> {
+    pub(super) fn in_the_way(&self, robot: usize, stay: impl Fn(usize) -> bool) -> Option<Blocker> {
         let through = self.through(self.robots.get(robot)?)?;
         let motion = through.motion(self.robots.get(robot)?.radius)?;
         let meets = |other: &Motion<'_, f64>| !is_clear(&motion, std::slice::from_ref(other));
@@ -184,16 +184,16 @@ impl Problem<'_> {
         others
             .into_iter()
             .find(stands)
-            .map(InTheWay::Robot)
-            .or_else(|| self.standing()?.iter().position(meets).map(InTheWay::Obstacle))
+            .map(Blocker::Robot)
+            .or_else(|| self.standing()?.iter().position(meets).map(Blocker::Obstacle))
     }
 
     /// Plans by several orders of priority, the best one first.
-    pub(super) fn by_priority(&self, last_order: &[usize]) -> Vec<Plan> {
-        let alone = |robot: &State| self.through(robot).and_then(|drive| Some(drive.motion(1.0)?.time().length()));
+    pub(super) fn by_priority(&self, last_order: &[usize]) -> Vec<FleetMotionPlan> {
+        let alone = |robot: &RobotState| self.through(robot).and_then(|drive| Some(drive.motion(1.0)?.time().length()));
         let times: Vec<f64> = self.robots.iter().map(|robot| alone(robot).unwrap_or(0.0)).collect();
         let least: f64 = times.iter().sum();
-        let mut plans: Vec<Plan> = Vec::new();
+        let mut plans: Vec<FleetMotionPlan> = Vec::new();
         for (tried, order) in self.orders(&times, last_order).into_iter().enumerate() {
             let is_best = plans.last().is_some_and(|plan| plan.cost <= least * (1.0 + 1e-12));
             if is_best || (plans.is_empty() && tried == FAILED) {
@@ -222,13 +222,13 @@ impl Problem<'_> {
     }
 
     /// The plan for an order of priority; a robot for which there is no motion is moved to the front, once each.
-    pub(super) fn plan(&self, mut order: Vec<usize>) -> Option<Plan> {
+    pub(super) fn plan(&self, mut order: Vec<usize>) -> Option<FleetMotionPlan> {
         for _ in 0..=order.len() {
-            match self.in_order(&order) {
+            match self.plan_in_order(&order) {
                 Ok(drives) => {
-                    let end = |drive: &Drive| drive.motion(1.0).map_or(0.0, |motion| motion.time().hi);
+                    let end = |drive: &OwnedMotion| drive.motion(1.0).map_or(0.0, |motion| motion.time().hi);
                     let cost = drives.iter().map(|drive| end(drive) - self.now).sum();
-                    return Some(Plan { drives, order, cost });
+                    return Some(FleetMotionPlan { drives, order, cost });
                 }
                 Err(robot) if order.first() == Some(&robot) => return None,
                 Err(robot) => order = first(&order, robot),
@@ -238,8 +238,8 @@ impl Problem<'_> {
     }
 
     /// A motion for each robot, or the first robot for which there is none.
-    fn in_order(&self, order: &[usize]) -> Result<Vec<Drive>, usize> {
-        let mut drives: Vec<Option<Drive>> = vec![None; self.robots.len()];
+    fn plan_in_order(&self, order: &[usize]) -> Result<Vec<OwnedMotion>, usize> {
+        let mut drives: Vec<Option<OwnedMotion>> = vec![None; self.robots.len()];
         for &place in order {
             let robot = self.robots.get(place).ok_or(place)?;
             let planned =
@@ -254,16 +254,21 @@ impl Problem<'_> {
     }
 
     /// The motion without any wait.
-    fn through(&self, robot: &State) -> Option<Drive> {
+    fn through(&self, robot: &RobotState) -> Option<OwnedMotion> {
         let (length, speed) = (robot.rest.length(), speed_that_stops(robot));
         if length <= 0.0 {
-            return Drive::standing(robot.rest.clone(), self.now);
+            return OwnedMotion::standing(robot.rest.clone(), self.now);
         }
-        Drive::new(robot.rest.clone(), speed, &robot.rest.to_rest(speed, length, robot.limits)?, self.begin(robot))
+        OwnedMotion::new(
+            robot.rest.clone(),
+            speed,
+            &robot.rest.to_rest(speed, length, robot.limits)?,
+            self.begin(robot),
+        )
     }
 
     /// The motion that arrives first among those considered.
-    fn best(&self, robot: &State, others: &[Motion<'_, f64>]) -> Option<Drive> {
+    fn best(&self, robot: &RobotState, others: &[Motion<'_, f64>]) -> Option<OwnedMotion> {
         let through = self.through(robot)?;
         let motion = through.motion(robot.radius)?;
         if is_clear(&motion, others) {
@@ -276,12 +281,12 @@ impl Problem<'_> {
         stops.sort_by(f64::total_cmp);
         stops.dedup();
         let drives = stops.into_iter().filter_map(|stop| self.with_stop(robot, stop, others));
-        let end = |drive: &Drive| drive.motion(1.0).map_or(f64::INFINITY, |motion| motion.time().hi);
+        let end = |drive: &OwnedMotion| drive.motion(1.0).map_or(f64::INFINITY, |motion| motion.time().hi);
         drives.min_by(|a, b| end(a).total_cmp(&end(b)))
     }
 
     /// The motion that stops at a length \[m\] for as long as it has to.
-    fn with_stop(&self, robot: &State, stop: f64, others: &[Motion<'_, f64>]) -> Option<Drive> {
+    fn with_stop(&self, robot: &RobotState, stop: f64, others: &[Motion<'_, f64>]) -> Option<OwnedMotion> {
         let length = robot.rest.length();
         let speed = speed_that_stops(robot);
         if stop >= length {
@@ -291,20 +296,20 @@ impl Problem<'_> {
         let stops_at = self.begin(robot) + pieces.iter().map(|(duration, _)| duration).sum::<f64>();
         let onward = robot.rest.from(stop).ok()?;
         let further = onward.to_rest(0.0, onward.length(), robot.limits)?;
-        let onward = Drive::new(onward, 0.0, &further, stops_at)?;
+        let onward = OwnedMotion::new(onward, 0.0, &further, stops_at)?;
         let (fleet, ecm) = row(onward.motion(robot.radius)?, others)?;
         let wait = earliest_start(ecm.row(&fleet, 0).expect("the table of the fleet"), 0.0)?;
         pieces.push((wait, 0.0));
         pieces.extend(further);
         pieces.retain(|(duration, _)| *duration > 0.0);
-        let drive = Drive::new(robot.rest.clone(), speed, &pieces, self.begin(robot))?;
+        let drive = OwnedMotion::new(robot.rest.clone(), speed, &pieces, self.begin(robot))?;
         let clear = is_clear(&drive.motion(robot.radius)?, others);
         clear.then_some(drive)
     }
 }
 
 /// Its speed, as far as it can keep to the rest of its path, and stop at the end.
-fn speed_that_stops(robot: &State) -> f64 {
+fn speed_that_stops(robot: &RobotState) -> f64 {
     robot.speed.min(robot.rest.most(robot.limits))
 }
 

@@ -1,9 +1,9 @@
 //! Common code of the reactive controllers: a robot that heads for a target.
 
 use super::FRAME;
-use super::course::Course;
-use super::task::Task;
-use super::vector::{Vector, norm, scale, sub};
+use super::simulation_task::SimulationTask;
+use super::speed_limited_path::SpeedLimitedPath;
+use super::vector::{PlaneVector, norm, scale, sub};
 use pcr_core::Limits;
 
 /// Distance of the target ahead of a robot, in radii.
@@ -14,30 +14,34 @@ const ARRIVED: f64 = 0.5;
 
 /// A robot that steers by itself.
 #[derive(Clone, Debug)]
-pub(super) struct Steered {
+pub(super) struct ReactiveRobot {
     pub(super) radius: f64,
     pub(super) limits: Limits<f64>,
-    course: Option<Course>,
+    course: Option<SpeedLimitedPath>,
     /// The target as a length of the course \[m\].
     target: f64,
 }
 
 /// The robots of a task.
-pub(super) fn steered(task: &Task) -> Vec<Steered> {
-    let robot =
-        |robot: &super::task::Robot| Steered { radius: robot.radius, limits: robot.limits, course: None, target: 0.0 };
+pub(super) fn steered(task: &SimulationTask) -> Vec<ReactiveRobot> {
+    let robot = |robot: &super::simulation_task::RobotTask| ReactiveRobot {
+        radius: robot.radius,
+        limits: robot.limits,
+        course: None,
+        target: 0.0,
+    };
     task.robots.iter().map(robot).collect()
 }
 
 /// Distance from its goal at which a robot of this task has arrived \[m\].
-pub(super) fn reach(task: &Task) -> f64 {
+pub(super) fn goal_tolerance(task: &SimulationTask) -> f64 {
     ARRIVED * task.robots.iter().map(|robot| robot.radius).fold(f64::INFINITY, f64::min)
 }
 
 /// Robots whose path ends where it begins: a robot that heads straight for the end would have nothing to do.
-pub(super) fn closed(task: &Task) -> impl Iterator<Item = u64> {
-    let reach = reach(task);
-    let is_closed = move |course: &Course| {
+pub(super) fn closed(task: &SimulationTask) -> impl Iterator<Item = u64> {
+    let reach = goal_tolerance(task);
+    let is_closed = move |course: &SpeedLimitedPath| {
         let [begin, end] = [0.0, course.length()].map(|length| course.point_at(length));
         norm(sub(begin, end)) < reach
     };
@@ -46,8 +50,8 @@ pub(super) fn closed(task: &Task) -> impl Iterator<Item = u64> {
     closed.map(|robot| robot.id)
 }
 
-impl Steered {
-    pub(super) fn assign(&mut self, course: &Course) {
+impl ReactiveRobot {
+    pub(super) fn assign(&mut self, course: &SpeedLimitedPath) {
         self.course = Some(course.clone());
         self.target = 0.0;
     }
@@ -58,13 +62,13 @@ impl Steered {
     }
 
     /// The velocity towards the goal from where the robot was seen, slower near it \[m/s\].
-    pub(super) fn towards_goal(&mut self, seen: Vector) -> Vector {
-        self.target = self.course.as_ref().map_or(0.0, Course::length);
+    pub(super) fn towards_goal(&mut self, seen: PlaneVector) -> PlaneVector {
+        self.target = self.course.as_ref().map_or(0.0, SpeedLimitedPath::length);
         self.along_path(seen)
     }
 
     /// The velocity towards a point of the path a little ahead from where the robot was seen, slower near the goal \[m/s\].
-    pub(super) fn along_path(&mut self, seen: Vector) -> Vector {
+    pub(super) fn along_path(&mut self, seen: PlaneVector) -> PlaneVector {
         let Some(course) = &self.course else { return [0.0; 2] };
         let (end, ahead) = (course.length(), AHEAD * self.radius);
         let step = self.limits.speed * FRAME;

@@ -1,11 +1,11 @@
 //! Random missions: pairs of nodes with a way between them, which some order of starts allows.
 
-use super::crowd::Crowd;
-use pcr_formats::import::{Imported, mission};
-use pcr_formats::plane::distance;
-use pcr_formats::random::Random;
+use super::startable_agents::StartableAgents;
+use pcr_formats::import::{ImportedLayout, mission};
+use pcr_formats::plane_geometry::distance;
 use pcr_formats::scenario::Agent;
-use pcr_formats::scenario::Placed;
+use pcr_formats::scenario::PlacedSegment;
+use pcr_formats::splitmix64::SplitMix64;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -15,19 +15,19 @@ const CLEAR: f64 = 1.0 + 1e-6;
 
 /// A way from node to node.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Mission {
+pub(super) struct RandomMission {
     /// Indices of its nodes in the layout.
     pub(super) ends: [usize; 2],
     /// The agent that travels it, from time 0 on.
     pub(super) agent: Agent,
 }
 
-impl Mission {
+impl RandomMission {
     /// Positions of the agent before and after \[m\].
     fn stands(&self) -> [[f64; 2]; 2] {
         let Agent { start: [x, y, heading], ref path, .. } = self.agent;
         let end = path.iter().fold((([x, y]), heading), |(at, heading), &shape| {
-            let placed = Placed { at, heading, shape };
+            let placed = PlacedSegment { start: at, heading, shape };
             (placed.end(), placed.heading_at_end())
         });
         [[x, y], end.0]
@@ -35,7 +35,10 @@ impl Mission {
 
     /// Whether its agent and another one can stand at their starts at the same time, and at their ends.
     fn is_clear_of(&self, other: &Self) -> bool {
-        let reach = [self, other].map(|mission| mission.agent.reach() + mission.agent.margin).iter().sum::<f64>();
+        let reach = [self, other]
+            .map(|mission| mission.agent.circumscribed_radius() + mission.agent.margin)
+            .iter()
+            .sum::<f64>();
         let pairs = self.stands().into_iter().zip(other.stands());
         pairs.into_iter().all(|(own, other)| distance(own, other) > reach * CLEAR)
     }
@@ -43,28 +46,28 @@ impl Mission {
 
 /// Missions that were drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Drawn {
-    pub(super) missions: Vec<Mission>,
+pub(super) struct MissionSample {
+    pub(super) missions: Vec<RandomMission>,
     /// How many were passed over, by the reason.
     pub(super) passed_over: BTreeMap<String, usize>,
 }
 
 /// An upper bound for the number of agents that can stand at nodes of the level with the most nodes at one time: at most one in each
 /// square whose diagonal is the distance that two of them keep.
-pub(super) fn room(imported: &Imported) -> usize {
+pub(super) fn room(imported: &ImportedLayout) -> usize {
     /// Slightly smaller squares, so that rounding joins no two nodes that are far enough from one another.
     const SMALLER: f64 = 1.0 - 1e-6;
     /// Up to so many squares from the origin the rounding is smaller than that.
     const FAR: f64 = 1e9;
-    let Imported { layout, vehicle } = imported;
+    let ImportedLayout { layout, vehicle } = imported;
     let level = layout.largest_level();
     let side = 2.0 * (vehicle.radius + vehicle.margin) * FRAC_1_SQRT_2 * SMALLER;
     let there = || layout.nodes.iter().filter(|node| node.level == level);
     let square = |at: [f64; 2]| at.map(|coordinate| (coordinate / side).floor());
-    if there().any(|node| square(node.at).iter().any(|number| !(0.0..FAR).contains(&number.abs()))) {
+    if there().any(|node| square(node.point).iter().any(|number| !(0.0..FAR).contains(&number.abs()))) {
         return there().count();
     }
-    there().map(|node| square(node.at).map(|number| number as i64)).collect::<HashSet<_>>().len()
+    there().map(|node| square(node.point).map(|number| number as i64)).collect::<HashSet<_>>().len()
 }
 
 /// Draws at most, where not all agents have a mission in the first one.
@@ -73,36 +76,38 @@ const DRAWS: usize = 4;
 /// Missions for up to `count` agents on the level with the most nodes: each from a random node to another one, so that no two
 /// agents overlap at their starts or at their ends, and there is an order in which all can start. The first of some draws with
 /// a mission for every agent, or else the draw with the most missions.
-pub(super) fn draw(imported: &Imported, count: usize, seed: u64) -> Drawn {
-    let mut seeds = Random(seed);
-    let mut best = attempt(imported, count, Random(seed));
+pub(super) fn draw(imported: &ImportedLayout, count: usize, seed: u64) -> MissionSample {
+    let mut seeds = SplitMix64(seed);
+    let mut best = attempt(imported, count, SplitMix64(seed));
     for _ in 1..DRAWS {
         if best.missions.len() == count {
             break;
         }
-        let next = attempt(imported, count, Random(seeds.bits()));
+        let next = attempt(imported, count, SplitMix64(seeds.bits()));
         let mut passed_over = std::mem::take(&mut best.passed_over);
         next.passed_over.iter().for_each(|(why, count)| *passed_over.entry(why.clone()).or_default() += count);
         let more = next.missions.len() > best.missions.len();
-        best = Drawn { passed_over, ..if more { next } else { best } };
+        best = MissionSample { passed_over, ..if more { next } else { best } };
     }
     best
 }
 
 /// One draw, an agent after the other: it ends where there is no pair of nodes with a way between them for the next one.
-fn attempt(imported: &Imported, count: usize, mut random: Random) -> Drawn {
-    let Imported { layout, vehicle } = imported;
+fn attempt(imported: &ImportedLayout, count: usize, mut random: SplitMix64) -> MissionSample {
+    let ImportedLayout { layout, vehicle } = imported;
     let level = layout.largest_level();
     let there: Vec<usize> = (0..layout.nodes.len()).filter(|&node| layout.nodes[node].level == level).collect();
     let reach = 2.0 * (vehicle.radius + vehicle.margin) * CLEAR;
-    let mut drawn = Drawn::default();
-    let mut crowd = Crowd::default();
+    let mut drawn = MissionSample::default();
+    let mut crowd = StartableAgents::default();
     // Pairs that were no mission, and why if that is told: with more agents they are none, either.
     let mut none: HashMap<[usize; 2], Option<String>> = HashMap::new();
     for id in (1..).take(count) {
         let missions = &drawn.missions;
         let free = &|end: usize, node: usize| {
-            let apart = |mission: &Mission| distance(layout.nodes[mission.ends[end]].at, layout.nodes[node].at) > reach;
+            let apart = |mission: &RandomMission| {
+                distance(layout.nodes[mission.ends[end]].point, layout.nodes[node].point) > reach
+            };
             missions.iter().all(apart)
         };
         let (starts, ends) = (random.shuffled(&there), random.shuffled(&there));
@@ -111,12 +116,12 @@ fn attempt(imported: &Imported, count: usize, mut random: Random) -> Drawn {
             ends.map(move |&to| [from, to])
         });
         let clear =
-            |drawn: &Mission| drawn.agent.length() > 0.0 && missions.iter().all(|other| drawn.is_clear_of(other));
+            |drawn: &RandomMission| drawn.agent.length() > 0.0 && missions.iter().all(|other| drawn.is_clear_of(other));
         // Nodes without a way between them, or too near others, are no mission that could be passed over: nothing is told.
         let mut take = |ends| match mission(imported, id, ends) {
             Ok(None) => Err(None),
             Ok(Some(agent)) => {
-                let mission = Mission { ends, agent };
+                let mission = RandomMission { ends, agent };
                 let added = if clear(&mission) { crowd.add(&mission.agent) } else { return Err(None) };
                 added.map(|()| mission).map_err(Some)
             }

@@ -3,8 +3,8 @@
 //! Agents that cannot start because of others go first in the next order that is tried; if all can start, the one that
 //! waits longest goes first.
 
-use pcr_formats::random::Random;
-use pcr_planning::plan::{Forbidden, Schedule};
+use pcr_formats::splitmix64::SplitMix64;
+use pcr_planning::plan::{DelaySchedule, ForbiddenDelays};
 
 /// Orders from which the search sets out at random, beside that of the fleet and the longest motion first.
 const RANDOM: usize = 8;
@@ -13,21 +13,22 @@ const RANDOM: usize = 8;
 const ROUNDS: usize = 200;
 
 /// The schedule of the most agents, and of those the one with the least sum of delays, of all orders that are tried.
-pub(super) fn best(forbidden: &Forbidden, longest_first: Vec<usize>, seed: u64) -> Schedule {
+pub(super) fn best(forbidden: &ForbiddenDelays, longest_first: Vec<usize>, seed: u64) -> DelaySchedule {
     let file: Vec<usize> = (0..forbidden.len()).collect();
-    let mut orders = Random(seed);
+    let mut orders = SplitMix64(seed);
     let random: Vec<_> = (0..RANDOM).map(|_| orders.shuffled(&file)).collect();
     let tried = [file, longest_first].into_iter().chain(random).flat_map(|order| {
-        let first = forbidden.in_order(forbidden.respecting(&order));
-        std::iter::successors(Some(first), |before| again(forbidden, before)).take(ROUNDS)
+        let first = forbidden.plan_in_order(forbidden.respecting(&order));
+        std::iter::successors(Some(first), |before| reprioritize(forbidden, before)).take(ROUNDS)
     });
-    let waits = |schedule: &Schedule| schedule.delays.iter().flatten().sum::<f64>();
-    let better = |a: &Schedule, b: &Schedule| a.out.len().cmp(&b.out.len()).then(waits(a).total_cmp(&waits(b)));
+    let waits = |schedule: &DelaySchedule| schedule.delays.iter().flatten().sum::<f64>();
+    let better =
+        |a: &DelaySchedule, b: &DelaySchedule| a.out.len().cmp(&b.out.len()).then(waits(a).total_cmp(&waits(b)));
     tried.min_by(better).unwrap_or_default()
 }
 
 /// The schedule for the order in which agents without a delay, or the agent with the longest delay, come first.
-fn again(forbidden: &Forbidden, before: &Schedule) -> Option<Schedule> {
+fn reprioritize(forbidden: &ForbiddenDelays, before: &DelaySchedule) -> Option<DelaySchedule> {
     let longest = before.delays.iter().flatten().fold(0.0_f64, |longest, delay| longest.max(*delay));
     let moves_up = |agent: usize| match before.delays.get(agent).copied().flatten() {
         None => true,
@@ -37,5 +38,5 @@ fn again(forbidden: &Forbidden, before: &Schedule) -> Option<Schedule> {
     order.append(&mut later);
     // Agents without a delay are tried before all others, even if that cannot succeed for all.
     let order = if before.out.is_empty() { forbidden.respecting(&order) } else { order };
-    (order != before.order).then(|| forbidden.in_order(order))
+    (order != before.order).then(|| forbidden.plan_in_order(order))
 }

@@ -1,6 +1,6 @@
 //! Polynomials by their Bernstein coefficients, between the least and the largest of which all values lie.
 
-use super::nurbs::Bezier;
+use super::nurbs::RationalBezier;
 
 /// The coefficients of `a + factor · b`, of the same degree.
 pub(super) fn sum(a: &[f64], b: &[f64], factor: f64) -> Vec<f64> {
@@ -34,7 +34,7 @@ fn binomials(degree: usize) -> Vec<f64> {
 }
 
 /// Homogeneous coordinates x, y and w of a curve, in the frame of a pose.
-pub(super) fn framed(curve: &Bezier, at: [f64; 2], heading: f64) -> [Vec<f64>; 3] {
+pub(super) fn framed(curve: &RationalBezier, at: [f64; 2], heading: f64) -> [Vec<f64>; 3] {
     let (sin, cos) = heading.sin_cos();
     let point = |[x, y, w]: &[f64; 3]| {
         let (x, y) = (x - at[0] * w, y - at[1] * w);
@@ -79,7 +79,7 @@ mod tests {
     fn it_is_0_on_the_circle() {
         // A quarter of the circle of radius 2 that begins at the origin.
         let weight = std::f64::consts::FRAC_1_SQRT_2;
-        let quarter = Bezier(vec![[1.0, 1.0, 1.0], [3.0 * weight, weight, weight], [3.0, 3.0, 1.0]]);
+        let quarter = RationalBezier(vec![[1.0, 1.0, 1.0], [3.0 * weight, weight, weight], [3.0, 3.0, 1.0]]);
         let points = framed(&quarter, [1.0, 1.0], 0.0);
         let [g, squares] = circle(&points, 0.5);
         assert!(g.iter().all(|g| g.abs() < 1e-15) && squares.iter().all(|w| *w > 0.4), "{g:?} {squares:?}");

@@ -11,17 +11,17 @@
 //! and on a rational Bézier curve w² g is a polynomial, which the largest of its Bernstein coefficients bounds. The
 //! hull of the control points shows that every point lies between the ends of the arc.
 //!
-//! A vehicle on the curve is not where it would be on the arcs after the same length. [`Along`] bounds how far these two
+//! A vehicle on the curve is not where it would be on the arcs after the same length. [`FitDeviation`] bounds how far these two
 //! places are apart: the curve is cut into parts whose lengths are between those of their chords and their control
 //! polygons.
 
 use super::bernstein::{circle, framed};
-use super::heading;
-use super::nurbs::Bezier;
+use super::heading_error;
+use super::nurbs::RationalBezier;
 use super::{ImportError, UNSAID};
-use crate::plane::{distance as apart_by, wrapped};
+use crate::plane_geometry::{distance as apart_by, wrapped};
 use crate::scenario::PathSegment;
-use crate::scenario::Placed;
+use crate::scenario::PlacedSegment;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Lines and arcs at most that a curve may need.
@@ -44,46 +44,46 @@ pub(super) const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 /// A curve as lines and arcs.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Fit {
-    pub(super) pieces: Vec<Placed>,
+pub(super) struct BiarcFit {
+    pub(super) pieces: Vec<PlacedSegment>,
     /// Bound of the distance of every point of the curve from the point of the lines and arcs at the same length \[m\].
     pub(super) deviation: f64,
     /// Bound of the difference of both lengths \[m\].
-    pub(super) longer: f64,
+    pub(super) length_error: f64,
     /// Bound of the difference of both headings at the same length \[rad\].
-    pub(super) turned: f64,
+    pub(super) heading_error: f64,
     /// Whether it is more than a line, or than lines with corners between them.
     pub(super) bends: bool,
 }
 
-impl Fit {
+impl BiarcFit {
     /// Lines and arcs that are the curve itself.
-    pub(super) fn exact(pieces: Vec<Placed>) -> Self {
+    pub(super) fn exact(pieces: Vec<PlacedSegment>) -> Self {
         Self { pieces, ..Self::default() }
     }
 }
 
 /// A part of a curve.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
+pub(super) struct CurvePart {
     /// End \[m\].
     pub(super) end: [f64; 2],
     /// Its least and its largest length \[m\].
     pub(super) length: [f64; 2],
     /// How far it may be from the line through its ends \[m\].
-    pub(super) aside: f64,
+    pub(super) lateral_deviation: f64,
 }
 
 /// How far a curve is from its lines and arcs at the same length, followed piece by piece.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Along {
+pub(super) struct FitDeviation {
     /// Difference between the length of the curve and that of its pieces up to here: least and largest \[m\].
     longer: [f64; 2],
     /// Largest distance so far \[m\].
     pub(super) deviation: f64,
 }
 
-impl Along {
+impl FitDeviation {
     /// Largest difference of the lengths up to here \[m\].
     pub(super) fn longer(&self) -> f64 {
         self.longer[0].abs().max(self.longer[1].abs())
@@ -91,13 +91,13 @@ impl Along {
 
     /// Follows lines and arcs, and the parts of the curve that these replace.
     ///
-    /// A part of length l and chord c deviates sideways from its chord by at most [`Part::aside`], and along its chord by at most
+    /// A part of length l and chord c deviates sideways from its chord by at most [`Part::lateral_deviation`], and along its chord by at most
     /// l − c from the point at the same fraction. The same holds for lines and arcs of the replacement. For a given length, a
     /// chord is shortest, and the sideways deviation largest, if the curvature is largest everywhere.
-    pub(super) fn follow(&mut self, begin: [f64; 2], pieces: &[Placed], parts: &[Part]) {
+    pub(super) fn follow(&mut self, begin: [f64; 2], pieces: &[PlacedSegment], parts: &[CurvePart]) {
         let mut from = begin;
         let whole: f64 = pieces.iter().map(|piece| piece.shape.length()).sum();
-        let radius = pieces.iter().filter_map(Placed::radius).fold(f64::INFINITY, f64::min);
+        let radius = pieces.iter().filter_map(PlacedSegment::radius).fold(f64::INFINITY, f64::min);
         let (mut travelled, mut apart, mut off) = ([0.0; 2], 0.0_f64, 0.0);
         for part in parts {
             let [least, most] = part.length;
@@ -105,7 +105,7 @@ impl Along {
             let middle = 0.5 * (travelled[0] + travelled[1]);
             let unsure = 0.5 * (travelled[1] - travelled[0]) + (middle - whole).max(0.0);
             let before = std::mem::replace(&mut off, apart_by(part.end, point_at(begin, pieces, middle)) + unsure);
-            let own = part.aside + (most - apart_by(from, part.end)).max(0.0);
+            let own = part.lateral_deviation + (most - apart_by(from, part.end)).max(0.0);
             apart = apart.max(before.max(off) + own + bend(most, radius));
             from = part.end;
         }
@@ -125,7 +125,7 @@ fn bend(length: f64, radius: f64) -> f64 {
 }
 
 /// The point of lines and arcs at a length, the end of them beyond that; where they begin if there are none.
-fn point_at(begin: [f64; 2], pieces: &[Placed], length: f64) -> [f64; 2] {
+fn point_at(begin: [f64; 2], pieces: &[PlacedSegment], length: f64) -> [f64; 2] {
     let mut rest = length;
     for piece in pieces {
         let own = piece.shape.length();
@@ -134,15 +134,15 @@ fn point_at(begin: [f64; 2], pieces: &[Placed], length: f64) -> [f64; 2] {
                 PathSegment::Line { .. } => PathSegment::Line { length: rest.max(0.0) },
                 PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: sweep * rest.max(0.0) / own },
             };
-            return Placed { shape, ..*piece }.end();
+            return PlacedSegment { shape, ..*piece }.end();
         }
         rest -= own;
     }
-    pieces.last().map_or(begin, Placed::end)
+    pieces.last().map_or(begin, PlacedSegment::end)
 }
 
 /// Cuts a curve into parts that are nearly straight.
-pub(super) fn parts(curve: &Bezier, most: f64, halvings: u32, into: &mut Vec<Part>) {
+pub(super) fn parts(curve: &RationalBezier, most: f64, halvings: u32, into: &mut Vec<CurvePart>) {
     let [from, end] = curve.ends();
     let (chord, polygon) = (apart_by(from, end), curve.polygon());
     let side =
@@ -151,7 +151,7 @@ pub(super) fn parts(curve: &Bezier, most: f64, halvings: u32, into: &mut Vec<Par
     // If both ends are one point, there is no line through them.
     let aside = if chord > 0.0 { aside } else { polygon };
     if halvings == 0 || aside + polygon - chord <= most {
-        into.push(Part { end, length: [chord, polygon.max(chord)], aside });
+        into.push(CurvePart { end, length: [chord, polygon.max(chord)], lateral_deviation: aside });
         return;
     }
     for half in curve.split(0.5) {
@@ -160,23 +160,23 @@ pub(super) fn parts(curve: &Bezier, most: f64, halvings: u32, into: &mut Vec<Par
 }
 
 /// The lines and arcs for a chain of curves, within `tolerance` \[m\] of it.
-pub(super) fn fit(curves: &[Bezier], tolerance: f64) -> Result<Fit, ImportError> {
+pub(super) fn fit(curves: &[RationalBezier], tolerance: f64) -> Result<BiarcFit, ImportError> {
     // Whatever is no number is overlooked by every bound below.
-    if curves.iter().flat_map(Bezier::points).flatten().any(|x| !x.is_finite()) {
+    if curves.iter().flat_map(RationalBezier::points).flatten().any(|x| !x.is_finite()) {
         return Err(ImportError::new("its points are out of range"));
     }
-    let extent = curves.iter().flat_map(Bezier::points).flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let extent = curves.iter().flat_map(RationalBezier::points).flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
     let rounding = ROUNDINGS * extent;
     if tolerance <= 2.0 * rounding {
         return Err(ImportError::new(format!(
             "coordinates up to {extent:e} m cannot be fitted within {tolerance:e} m"
         )));
     }
-    let (mut fit, mut fitted) = (Fit::default(), Vec::new());
-    let mut rest: Vec<(Bezier, u32)> = curves.iter().rev().map(|curve| (curve.clone(), HALVINGS)).collect();
+    let (mut fit, mut fitted) = (BiarcFit::default(), Vec::new());
+    let mut rest: Vec<(RationalBezier, u32)> = curves.iter().rev().map(|curve| (curve.clone(), HALVINGS)).collect();
     while let Some((curve, halvings)) = rest.pop() {
         match best(&curve, tolerance - rounding, rounding) {
-            Some(Best { pieces, deviation, turned }) => {
+            Some(FitCandidate { pieces, deviation, turned }) => {
                 fit.deviation = fit.deviation.max(deviation + rounding);
                 let before = fit.pieces.len();
                 fit.pieces.extend(pieces.into_iter().filter(|piece| piece.shape.length() > 0.0));
@@ -193,7 +193,7 @@ pub(super) fn fit(curves: &[Bezier], tolerance: f64) -> Result<Fit, ImportError>
             }
         }
     }
-    let (mut along, mut short) = (Along::default(), Vec::new());
+    let (mut along, mut short) = (FitDeviation::default(), Vec::new());
     let halvings = (PARTS - fitted.len().max(1).ilog2()).min(FINEST);
     for (curve, pieces, [deviation, turned]) in fitted {
         short.clear();
@@ -201,18 +201,18 @@ pub(super) fn fit(curves: &[Bezier], tolerance: f64) -> Result<Fit, ImportError>
         let before = along.longer();
         along.follow(curve.ends()[0], &fit.pieces[pieces.clone()], &short);
         let ahead = before.max(along.longer()) + ahead(&fit.pieces[pieces.clone()], deviation, turned) + rounding;
-        fit.turned = fit.turned.max(turned + turn_within(&fit.pieces, pieces, ahead));
+        fit.heading_error = fit.heading_error.max(turned + turn_within(&fit.pieces, pieces, ahead));
     }
     fit.deviation = fit.deviation.max(along.deviation + rounding);
-    fit.longer = along.longer() + rounding;
+    fit.length_error = along.longer() + rounding;
     // A straight curve is a line within any tolerance.
     fit.bends = fit.deviation > UNSAID || fit.pieces.iter().any(|piece| piece.radius().is_some());
     Ok(fit)
 }
 
 /// What stands for one piece of a curve.
-struct Best {
-    pieces: Vec<Placed>,
+struct FitCandidate {
+    pieces: Vec<PlacedSegment>,
     /// Bound of its distance \[m\].
     deviation: f64,
     /// Bound of the difference of the headings at points beside one another \[rad\].
@@ -227,18 +227,18 @@ pub(super) fn most_turned(tolerance: f64) -> f64 {
 }
 
 /// A line or a biarc for one piece, if it is within the tolerance.
-fn best(curve: &Bezier, tolerance: f64, rounding: f64) -> Option<Best> {
+fn best(curve: &RationalBezier, tolerance: f64, rounding: f64) -> Option<FitCandidate> {
     let [from, to] = curve.ends();
-    let line = Placed::line(from, to);
+    let line = PlacedSegment::line(from, to);
     // A straight or negligibly small curve becomes a line.
     let spread = curve.points().map(|[x, y]| (x - from[0]).hypot(y - from[1])).fold(0.0, f64::max);
     let straight = if spread <= tolerance / 4.0 { spread } else { distance(curve, &line) };
     if straight <= tolerance / 1024.0 || spread <= tolerance / 4.0 {
         // On a curve that is nothing but a point, as at a cusp, the vehicle turns in place.
         let is_point = spread <= 64.0 * rounding;
-        let turned = if is_point { 0.0 } else { heading::between(curve, &line) };
+        let turned = if is_point { 0.0 } else { heading_error::between(curve, &line) };
         if turned <= most_turned(tolerance) {
-            return Some(Best { pieces: vec![line], deviation: straight, turned });
+            return Some(FitCandidate { pieces: vec![line], deviation: straight, turned });
         }
     }
     let [leaving, arriving] = curve.headings()?;
@@ -248,22 +248,22 @@ fn best(curve: &Bezier, tolerance: f64, rounding: f64) -> Option<Best> {
     if deviation > tolerance {
         return None;
     }
-    let turned = heading::between(&before, &arcs[0]).max(heading::between(&after, &arcs[1]));
-    (turned <= most_turned(tolerance)).then(|| Best { pieces: arcs.to_vec(), deviation, turned })
+    let turned = heading_error::between(&before, &arcs[0]).max(heading_error::between(&after, &arcs[1]));
+    (turned <= most_turned(tolerance)).then(|| FitCandidate { pieces: arcs.to_vec(), deviation, turned })
 }
 
 /// Bound of the way between two points of lines and arcs \[m\]: the one beside a point of the curve, and the one at the same length. On a
 /// curve at a distance d and an angle δ from an arc of curvature k, the point beside moves by cos δ / (1 - k d) times the way on it.
-fn ahead(pieces: &[Placed], deviation: f64, turned: f64) -> f64 {
+fn ahead(pieces: &[PlacedSegment], deviation: f64, turned: f64) -> f64 {
     let whole: f64 = pieces.iter().map(|piece| piece.shape.length()).sum();
-    let bend =
-        deviation * pieces.iter().filter_map(Placed::radius).fold(0.0, |most: f64, radius| most.max(radius.recip()));
+    let bend = deviation
+        * pieces.iter().filter_map(PlacedSegment::radius).fold(0.0, |most: f64, radius| most.max(radius.recip()));
     whole * (bend + 0.5 * turned * turned) / (1.0 - bend).max(0.5)
 }
 
 /// Bound of the turn over a way that begins or ends on these pieces and is not longer than `way` \[rad\].
-fn turn_within(all: &[Placed], on: std::ops::Range<usize>, way: f64) -> f64 {
-    let reached = |pieces: &mut dyn Iterator<Item = &Placed>| {
+fn turn_within(all: &[PlacedSegment], on: std::ops::Range<usize>, way: f64) -> f64 {
+    let reached = |pieces: &mut dyn Iterator<Item = &PlacedSegment>| {
         let mut left = way;
         let mut most = 0.0_f64;
         for piece in pieces {
@@ -275,13 +275,16 @@ fn turn_within(all: &[Placed], on: std::ops::Range<usize>, way: f64) -> f64 {
         }
         most
     };
-    let own = all[on.clone()].iter().filter_map(Placed::radius).fold(0.0, |most: f64, radius| most.max(radius.recip()));
+    let own = all[on.clone()]
+        .iter()
+        .filter_map(PlacedSegment::radius)
+        .fold(0.0, |most: f64, radius| most.max(radius.recip()));
     let [before, after] = [reached(&mut all[..on.start].iter().rev()), reached(&mut all[on.end..].iter())];
     (own.max(before).max(after) * way).min(PI)
 }
 
 /// The arcs from a point to another in given directions, with equally long tangents.
-pub(super) fn biarc([from, to]: [[f64; 2]; 2], [leaving, arriving]: [f64; 2]) -> Option<[Placed; 2]> {
+pub(super) fn biarc([from, to]: [[f64; 2]; 2], [leaving, arriving]: [f64; 2]) -> Option<[PlacedSegment; 2]> {
     let (t0, t1) = ([leaving.cos(), leaving.sin()], [arriving.cos(), arriving.sin()]);
     let v = [to[0] - from[0], to[1] - from[1]];
     let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
@@ -299,30 +302,30 @@ pub(super) fn biarc([from, to]: [[f64; 2]; 2], [leaving, arriving]: [f64; 2]) ->
 }
 
 /// The arc from a point in a direction to another point; a line where there is no difference.
-fn arc(at: [f64; 2], heading: f64, to: [f64; 2]) -> Option<Placed> {
-    let chord = Placed::line(at, to);
+fn arc(at: [f64; 2], heading: f64, to: [f64; 2]) -> Option<PlacedSegment> {
+    let chord = PlacedSegment::line(at, to);
     let PathSegment::Line { length } = chord.shape else { return None };
     let half = wrapped(chord.heading - heading);
     // Sagitta of the arc over its chord.
     if length * half.abs() < ROUNDINGS * (at[0].abs() + at[1].abs() + length) {
-        return Some(Placed { heading, ..chord });
+        return Some(PlacedSegment { heading, ..chord });
     }
     let (sweep, radius) = (2.0 * half, length / (2.0 * half.abs().sin()));
-    (sweep.abs() <= SWEEP && radius.is_finite()).then_some(Placed {
-        at,
+    (sweep.abs() <= SWEEP && radius.is_finite()).then_some(PlacedSegment {
+        start: at,
         heading,
         shape: PathSegment::Arc { radius, sweep },
     })
 }
 
 /// Whether a point lies beyond the beginning of a piece.
-pub(super) fn is_beyond([x, y]: [f64; 2], piece: &Placed) -> bool {
+pub(super) fn is_beyond([x, y]: [f64; 2], piece: &PlacedSegment) -> bool {
     let (sin, cos) = piece.heading.sin_cos();
-    (x - piece.at[0]) * cos + (y - piece.at[1]) * sin > 0.0
+    (x - piece.start[0]) * cos + (y - piece.start[1]) * sin > 0.0
 }
 
 /// Parameter of the curve at the start of the second arc of its biarc.
-fn parameter(curve: &Bezier, second: &Placed) -> f64 {
+fn parameter(curve: &RationalBezier, second: &PlacedSegment) -> f64 {
     let (mut lo, mut hi) = (0.0, 1.0);
     for _ in 0..f64::MANTISSA_DIGITS {
         let middle = 0.5 * (lo + hi);
@@ -333,13 +336,13 @@ fn parameter(curve: &Bezier, second: &Placed) -> f64 {
 
 /// Bound of the distance of all points of a curve from a line or an arc of at most a quarter turn \[m\]; infinite where
 /// the curve is too far from it to tell.
-pub(super) fn distance(curve: &Bezier, piece: &Placed) -> f64 {
+pub(super) fn distance(curve: &RationalBezier, piece: &PlacedSegment) -> f64 {
     let curvature = match piece.shape {
         PathSegment::Line { .. } => 0.0,
         PathSegment::Arc { sweep, .. } if sweep.abs() > SWEEP => return f64::INFINITY,
         PathSegment::Arc { radius, sweep } => 1.0_f64.copysign(sweep) / radius,
     };
-    let start = framed(curve, piece.at, piece.heading);
+    let start = framed(curve, piece.start, piece.heading);
     let end = framed(curve, piece.end(), piece.heading_at_end());
     // How far it reaches over the ends.
     let along = |[x, _, w]: &[Vec<f64>; 3], sign: f64| x.iter().zip(w).map(|(x, w)| sign * x / w).fold(0.0, f64::max);
@@ -366,26 +369,26 @@ mod tests {
     use super::super::nurbs::Nurbs;
     use super::*;
 
-    fn curve(points: &[[f64; 2]], weights: &[f64]) -> Vec<Bezier> {
+    fn curve(points: &[[f64; 2]], weights: &[f64]) -> Vec<RationalBezier> {
         let points: Vec<_> =
             points.iter().copied().zip(weights.iter().copied().chain(std::iter::repeat(1.0))).collect();
         Nurbs { degree: points.len().min(4) - 1, knots: Vec::new(), points }.beziers().unwrap()
     }
 
     /// Distance of a point from lines and arcs, by their definition.
-    fn from_pieces(pieces: &[Placed], [x, y]: [f64; 2]) -> f64 {
-        let distance = |piece: &Placed| {
-            let ends = [piece.at, piece.end()].map(|end| (x - end[0]).hypot(y - end[1]));
+    fn from_pieces(pieces: &[PlacedSegment], [x, y]: [f64; 2]) -> f64 {
+        let distance = |piece: &PlacedSegment| {
+            let ends = [piece.start, piece.end()].map(|end| (x - end[0]).hypot(y - end[1]));
             let (sin, cos) = piece.heading.sin_cos();
             let inner = match piece.shape {
                 PathSegment::Line { length } => {
-                    let along = (x - piece.at[0]) * cos + (y - piece.at[1]) * sin;
-                    let across = (y - piece.at[1]) * cos - (x - piece.at[0]) * sin;
+                    let along = (x - piece.start[0]) * cos + (y - piece.start[1]) * sin;
+                    let across = (y - piece.start[1]) * cos - (x - piece.start[0]) * sin;
                     (0.0..=length).contains(&along).then_some(across.abs())
                 }
                 PathSegment::Arc { radius, sweep } => {
                     let side = radius.copysign(sweep);
-                    let from = [x - piece.at[0] + side * sin, y - piece.at[1] - side * cos];
+                    let from = [x - piece.start[0] + side * sin, y - piece.start[1] - side * cos];
                     let angle = (from[1].atan2(from[0]) - piece.heading) * sweep.signum() + FRAC_PI_2;
                     (angle.rem_euclid(2.0 * PI) <= sweep.abs()).then_some((from[0].hypot(from[1]) - radius).abs())
                 }
@@ -396,7 +399,7 @@ mod tests {
     }
 
     /// The heading at a length.
-    fn heading_at(pieces: &[Placed], length: f64) -> f64 {
+    fn heading_at(pieces: &[PlacedSegment], length: f64) -> f64 {
         let mut rest = length;
         let piece = pieces.iter().find(|piece| {
             let is_there = rest < piece.shape.length();
@@ -439,17 +442,21 @@ mod tests {
                     worst = worst.max(apart_by(point_at(pair[0], &fit.pieces, length), pair[1]));
                 }
                 // Of the chord of a fine polygon.
-                assert!(turned <= fit.turned + 2e-3, "{turned} {}", fit.turned);
-                assert!(fit.turned <= 0.1 + 3.0 * turned, "{turned} {}", fit.turned);
+                assert!(turned <= fit.heading_error + 2e-3, "{turned} {}", fit.heading_error);
+                assert!(fit.heading_error <= 0.1 + 3.0 * turned, "{turned} {}", fit.heading_error);
                 let whole: f64 = fit.pieces.iter().map(|piece| piece.shape.length()).sum();
                 // The polygon is off by less than this itself.
                 let slack = 1e-5;
                 assert!(worst <= fit.deviation + slack, "{worst} {}", fit.deviation);
-                assert!((length - whole).abs() <= fit.longer + slack, "{length} {whole} {}", fit.longer);
+                assert!((length - whole).abs() <= fit.length_error + slack, "{length} {whole} {}", fit.length_error);
                 assert!(fit.deviation <= 12.0 * worst + tolerance / 16.0, "{worst} {}", fit.deviation);
-                assert!(fit.longer <= 4.0 * (length - whole).abs() + tolerance / 16.0, "{} {whole}", fit.longer);
+                assert!(
+                    fit.length_error <= 4.0 * (length - whole).abs() + tolerance / 16.0,
+                    "{} {whole}",
+                    fit.length_error
+                );
                 for pair in fit.pieces.windows(2) {
-                    let (end, next) = (pair[0].end(), pair[1].at);
+                    let (end, next) = (pair[0].end(), pair[1].start);
                     assert!((end[0] - next[0]).hypot(end[1] - next[1]) < 1e-12);
                 }
                 // Halving the tolerance a thousand times takes ten times the arcs: the order of biarcs is 3.
@@ -467,13 +474,13 @@ mod tests {
         for piece in &fit.pieces {
             assert!(matches!(piece.shape, PathSegment::Arc { radius, .. } if (radius - 2.0).abs() < 1e-12));
         }
-        assert!(fit.deviation < 1e-8 && fit.longer < 1e-8, "{} {}", fit.deviation, fit.longer);
+        assert!(fit.deviation < 1e-8 && fit.length_error < 1e-8, "{} {}", fit.deviation, fit.length_error);
     }
 
     #[test]
     fn a_straight_curve_is_a_line() {
         let fit = fit(&curve(&[[1.0, 1.0], [2.0, 2.0], [2.5, 2.5], [4.0, 4.0]], &[]), 1e-3).unwrap();
-        assert_eq!(fit.pieces, [Placed::line([1.0, 1.0], [4.0, 4.0])]);
+        assert_eq!(fit.pieces, [PlacedSegment::line([1.0, 1.0], [4.0, 4.0])]);
         assert!(fit.deviation < 1e-12);
     }
 

@@ -4,13 +4,13 @@
 //! their goals.
 
 use super::keys::Keys;
-use super::layout::{Edge, Id, Layout, Node};
-use super::names::Names;
-use super::timed;
+use super::layout::{ElementId, Layout, LayoutEdge, LayoutNode};
+use super::timed_paths;
+use super::unique_names::UniqueNames;
 use super::xml::{astray, child, children, content, lose_astray, number, only, optional, parse, warn_of_unknown};
-use super::{ImportError, Vehicle, WarningCode, Warnings};
-use crate::plane::distance;
-use crate::scenario::{Agent, Placed, Scenario};
+use super::{ImportError, VehicleTraits, WarningCode, Warnings};
+use crate::plane_geometry::distance;
+use crate::scenario::{Agent, PlacedSegment, Scenario};
 
 /// Radius of a log where no other is given \[m\], and why. The program itself takes √2/4 m if its configuration gives none; its agents then
 /// just touch, and the digits of a log would decide whether they do.
@@ -53,7 +53,7 @@ pub(super) fn roadmap(text: &str, warnings: &mut Warnings) -> Result<Layout, Imp
         None | Some("directed") => false,
         Some(other) => return Err(ImportError::new(format!("graph, edgedefault: {other} is not read"))),
     };
-    let mut nodes = Names::new();
+    let mut nodes = UniqueNames::new();
     for (k, node) in children(graph, "node").enumerate() {
         let id = node.attribute("id").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
         let datum = child(node, "data").map(content).unwrap_or_default();
@@ -64,14 +64,14 @@ pub(super) fn roadmap(text: &str, warnings: &mut Warnings) -> Result<Layout, Imp
         match at {
             None => warnings.lose(format_args!("node {id}: its first datum is not x,y")),
             Some(at) => {
-                nodes.add(Node { id: Id::Text(id), name: None, level: 0, at }, warnings);
+                nodes.add(LayoutNode { id: ElementId::Text(id), name: None, level: 0, point: at }, warnings);
             }
         }
     }
     if nodes.list().is_empty() {
         return Err(ImportError::new("graph: there is no node in it"));
     }
-    let mut edges = Names::new();
+    let mut edges = UniqueNames::new();
     for (k, edge) in children(graph, "edge").enumerate() {
         let id = edge.attribute("id").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
         if let Err(error) = EDGE.check_attributes(edge, &format!("edge {id}"), warnings) {
@@ -80,7 +80,7 @@ pub(super) fn roadmap(text: &str, warnings: &mut Warnings) -> Result<Layout, Imp
         }
         let end = |name: &str| {
             let node = edge.attribute(name).ok_or_else(|| format!("edge {id}, {name}: missing"))?;
-            nodes.place(&Id::Text(node.to_owned())).map_err(|unclear| format!("edge {id}, {name}: {unclear}"))
+            nodes.index_of(&ElementId::Text(node.to_owned())).map_err(|unclear| format!("edge {id}, {name}: {unclear}"))
         };
         let ends = match end("source").and_then(|from| Ok([from, end("target")?])) {
             Ok(ends) => ends,
@@ -89,8 +89,8 @@ pub(super) fn roadmap(text: &str, warnings: &mut Warnings) -> Result<Layout, Imp
                 continue;
             }
         };
-        let [from, to] = ends.map(|node| nodes.list()[node].at);
-        let line = Placed::line(from, to);
+        let [from, to] = ends.map(|node| nodes.list()[node].point);
+        let line = PlacedSegment::line(from, to);
         let straight = line.shape.length() > 0.0;
         if !straight {
             warnings.add(WarningCode::ZeroLength, format_args!("edge {id}"), "its length is 0");
@@ -104,8 +104,8 @@ pub(super) fn roadmap(text: &str, warnings: &mut Warnings) -> Result<Layout, Imp
                 continue;
             }
         };
-        let edge = Edge::new(Id::Text(id), ends, if straight { vec![line] } else { Vec::new() });
-        let edge = Edge { ways: [true, back], ..edge };
+        let edge = LayoutEdge::new(ElementId::Text(id), ends, if straight { vec![line] } else { Vec::new() });
+        let edge = LayoutEdge { ways: [true, back], ..edge };
         edges.add(edge, warnings);
     }
     Ok(Layout {
@@ -127,7 +127,7 @@ fn task() -> ImportError {
 }
 
 /// Reads the plan in a log.
-pub(super) fn log(text: &str, vehicle: &Vehicle) -> Result<Scenario, ImportError> {
+pub(super) fn log(text: &str, vehicle: &VehicleTraits) -> Result<Scenario, ImportError> {
     let document = parse(text)?;
     let root = document.root_element();
     if is_task(root) {
@@ -165,7 +165,7 @@ fn complete(root: roxmltree::Node<'_, '_>, log: roxmltree::Node<'_, '_>, agents:
 }
 
 /// The agent on its path.
-fn planned(k: usize, agent: roxmltree::Node<'_, '_>, vehicle: &Vehicle) -> Result<Agent, ImportError> {
+fn planned(k: usize, agent: roxmltree::Node<'_, '_>, vehicle: &VehicleTraits) -> Result<Agent, ImportError> {
     let id = match agent.attribute("number") {
         None => k as u64,
         Some(number) => number.trim().parse().map_err(|_| {
@@ -174,7 +174,7 @@ fn planned(k: usize, agent: roxmltree::Node<'_, '_>, vehicle: &Vehicle) -> Resul
     };
     let name = format!("agent {id}");
     let path = only(agent, "path")?.ok_or_else(|| ImportError::new(format!("{name}, path: missing")))?;
-    let (mut stops, mut widest): (Vec<timed::Stop>, f64) = (Vec::new(), 0.0);
+    let (mut stops, mut widest): (Vec<timed_paths::TimedPoint>, f64) = (Vec::new(), 0.0);
     for (k, section) in children(path, "section").enumerate() {
         let name = format!("{name}, section {k}");
         let field = |attribute: &str| number(section, &name, attribute);
@@ -192,7 +192,7 @@ fn planned(k: usize, agent: roxmltree::Node<'_, '_>, vehicle: &Vehicle) -> Resul
         let before = stops.last().map_or(0.0, |(_, time)| *time);
         stops.push((to, before + field("duration")?));
     }
-    let travels = timed::agent(id, vehicle.radius + widest, &stops);
+    let travels = timed_paths::agent(id, vehicle.radius + widest, &stops);
     let travels = travels.map_err(|error| ImportError::new(format!("{name}: {error}")))?;
     let lasts = stops.last().map_or(0.0, |(_, time)| *time);
     if let Some(whole) = optional(path, &format!("{name}, path"), "duration")?

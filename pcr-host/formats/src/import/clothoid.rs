@@ -19,9 +19,9 @@
 //! part in iδ is iD exp(iθ) + ∫ D κ exp(iθ) ds. So the distance is at most max|D| (1 + Θ) + s max δ²/2, where Θ is the integral of |κ|. Both
 //! curves have the same length, and the same heading at the end.
 
-use super::biarc::{Fit, MOST, most_turned};
+use super::biarc::{BiarcFit, MOST, most_turned};
 use super::{ImportError, UNSAID};
-use crate::scenario::{PathSegment, Placed};
+use crate::scenario::{PathSegment, PlacedSegment};
 use std::f64::consts::SQRT_2;
 
 /// Bound of |D| over κ' h³: (4/162)/(2 √2), rounded up.
@@ -40,7 +40,7 @@ pub(super) fn fit(
     length: f64,
     [begin, end]: [f64; 2],
     tolerance: f64,
-) -> Result<Fit, ImportError> {
+) -> Result<BiarcFit, ImportError> {
     let rate = (end - begin) / length;
     let winding = if begin * end >= 0.0 {
         0.5 * length * (begin + end).abs()
@@ -69,7 +69,7 @@ pub(super) fn fit(
             // Lines in place of arcs that are nearly straight.
             let (deviation, turned) = (deviation + straight * length, turned + straight);
             let bends = deviation > UNSAID || pieces.iter().any(|piece| piece.radius().is_some());
-            return Ok(Fit { pieces, deviation, longer: rounding, turned, bends });
+            return Ok(BiarcFit { pieces, deviation, length_error: rounding, heading_error: turned, bends });
         }
         between += 1 + between / 8;
     }
@@ -83,7 +83,7 @@ fn arcs(
     rate: f64,
     step: f64,
     between: usize,
-) -> (Vec<Placed>, f64) {
+) -> (Vec<PlacedSegment>, f64) {
     let outer = step / SQRT_2;
     let (mut pieces, mut straight) = (Vec::with_capacity(between + 2), 0.0);
     let mut add = |from: f64, length: f64, curvature: f64, heading: f64| {
@@ -93,7 +93,7 @@ fn arcs(
         } else {
             PathSegment::Arc { radius: curvature.abs().recip(), sweep: curvature * length }
         };
-        let piece = Placed { at, heading, shape };
+        let piece = PlacedSegment { start: at, heading, shape };
         at = piece.end();
         pieces.push(piece);
         from + length
@@ -111,7 +111,7 @@ fn arcs(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::{distance, wrapped};
+    use crate::plane_geometry::{distance, wrapped};
 
     /// Points and headings of a clothoid at so many equally long steps, by Gauss and Legendre's quadrature of four points in parts that are
     /// turned by little.
@@ -139,7 +139,7 @@ mod tests {
         all
     }
 
-    fn at(pieces: &[Placed], length: f64) -> Placed {
+    fn at(pieces: &[PlacedSegment], length: f64) -> PlacedSegment {
         let mut rest = length;
         for piece in pieces {
             if rest <= piece.shape.length() {
@@ -182,13 +182,16 @@ mod tests {
                 let case = format!("{length} {curvatures:?} {tolerance}: {worst:e} of {:e}", fit.deviation);
                 // The quadrature rounds as well.
                 assert!(worst <= fit.deviation + 1e-10 && fit.deviation <= tolerance, "{case}");
-                assert!(turned <= fit.turned + 1e-12 && fit.turned <= most_turned(tolerance), "{case}: {turned}");
+                assert!(
+                    turned <= fit.heading_error + 1e-12 && fit.heading_error <= most_turned(tolerance),
+                    "{case}: {turned}"
+                );
                 let sum: f64 = fit.pieces.iter().map(|piece| piece.shape.length()).sum();
                 assert!((sum - length).abs() <= 1e-12 * length, "{case}");
                 let last = fit.pieces.last().unwrap();
                 assert!(wrapped(last.heading_at_end() - all[steps].1).abs() < 1e-9, "{case}");
                 for pair in fit.pieces.windows(2) {
-                    assert!(distance(pair[0].end(), pair[1].at) < 1e-12, "{case}");
+                    assert!(distance(pair[0].end(), pair[1].start) < 1e-12, "{case}");
                     assert!(wrapped(pair[0].heading_at_end() - pair[1].heading).abs() < 1e-9, "{case}");
                 }
                 if fit.pieces.len() > 4 && worst > 1e-8 {

@@ -3,10 +3,10 @@
 //! Anywhere in it the vehicle counts as being: the circle around its reference point that it may be in is as wide as the wider side.
 //! How it turns there is not said, so that an outline has any heading.
 
+use super::json_access::JsonObject;
 use super::keys::Keys;
-use super::value::Object;
-use super::vehicle::{Facing, Vehicle};
-use super::{Edge, ImportError, WarningCode, Warnings};
+use super::vehicle::{Facing, VehicleTraits};
+use super::{ImportError, LayoutEdge, WarningCode, Warnings};
 
 /// Keys in VDA 5050 2.1, in 3.0, and in LIF 2.
 const KEYS: Keys = Keys::new(
@@ -15,7 +15,11 @@ const KEYS: Keys = Keys::new(
 );
 
 /// How far the reference point of a vehicle may be from its edge \[m\]; `None` without a corridor.
-pub(super) fn read(of: &Object<'_>, vehicle: &Vehicle, warnings: &mut Warnings) -> Result<Option<f64>, ImportError> {
+pub(super) fn read(
+    of: &JsonObject<'_>,
+    vehicle: &VehicleTraits,
+    warnings: &mut Warnings,
+) -> Result<Option<f64>, ImportError> {
     let Some(corridor) = of.object("corridor")? else { return Ok(None) };
     KEYS.check(&corridor, warnings)?;
     let width = |names: [&str; 2]| -> Result<f64, ImportError> {
@@ -52,7 +56,7 @@ pub(super) fn read(of: &Object<'_>, vehicle: &Vehicle, warnings: &mut Warnings) 
     Ok(Some((widest - inner).max(0.0)))
 }
 
-impl Edge {
+impl LayoutEdge {
     /// Gives the edge a corridor, in which the vehicle may be as far as this from it \[m\], and face any way.
     pub(super) fn widen(&mut self, room: f64) {
         if room > 0.0 {

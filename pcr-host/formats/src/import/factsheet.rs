@@ -1,15 +1,15 @@
 //! Factsheets of VDA 5050 (2.x and 3.0): the contour of a vehicle and its limits.
 
+use super::json_access::JsonObject;
 use super::keys::Keys;
-use super::value::Object;
-use super::vehicle::Given;
+use super::vehicle::FileVehicleTraits;
 use super::{ImportError, WarningCode, Warnings};
 use crate::footprint::Footprint;
-use crate::plane::hull;
+use crate::plane_geometry::hull;
 use serde_json::Value;
 
 /// Names of a member in versions 3 and 2.
-type Names = [&'static str; 2];
+type FieldNames = [&'static str; 2];
 
 const ROOT: Keys = Keys::new(
     &["typeSpecification", "physicalParameters", "mobileRobotGeometry", "agvGeometry"],
@@ -84,10 +84,10 @@ pub(super) fn is_factsheet(root: &Value) -> bool {
 }
 
 /// Reads one: the contour in it, the hull of several or, if there is none, the rectangle of length and width around the reference point.
-pub(super) fn read(value: &Value, warnings: &mut Warnings) -> Result<Given, ImportError> {
-    let root = Object::new("factsheet", value)?;
+pub(super) fn read(value: &Value, warnings: &mut Warnings) -> Result<FileVehicleTraits, ImportError> {
+    let root = JsonObject::new("factsheet", value)?;
     ROOT.check(&root, warnings)?;
-    let mut given = Given::default();
+    let mut given = FileVehicleTraits::default();
     if let Some(kind) = root.object("typeSpecification")? {
         TYPE.check(&kind, warnings)?;
         given.name = kind.label("seriesName")?;
@@ -132,7 +132,7 @@ pub(super) fn read(value: &Value, warnings: &mut Warnings) -> Result<Given, Impo
 }
 
 /// A number above zero by either of its names, or by both; 0 is what senders write that do not know it.
-fn either(object: &Object<'_>, names: Names) -> Result<Option<f64>, ImportError> {
+fn either(object: &JsonObject<'_>, names: FieldNames) -> Result<Option<f64>, ImportError> {
     let [mut found, mut other] = [None; 2];
     for name in names {
         if object.number(name)?.is_some_and(|number| number != 0.0) {
@@ -147,21 +147,21 @@ fn either(object: &Object<'_>, names: Names) -> Result<Option<f64>, ImportError>
 }
 
 fn polygon(envelope: &Value, warnings: &mut Warnings) -> Result<Vec<[f64; 2]>, ImportError> {
-    let envelope = Object::new("factsheet, envelopes2d", envelope)?;
+    let envelope = JsonObject::new("factsheet, envelopes2d", envelope)?;
     ENVELOPE.check(&envelope, warnings)?;
     let points = match envelope.list("vertices")? {
         [] => envelope.list("polygonPoints")?,
         vertices => vertices,
     };
     let corner = |(k, point)| {
-        let point = Object::new(format!("{}, point {}", envelope.name, k + 1), point)?;
+        let point = JsonObject::new(format!("{}, point {}", envelope.name, k + 1), point)?;
         POINT.check(&point, warnings)?;
         point.point()
     };
     points.iter().enumerate().map(corner).collect()
 }
 
-fn rectangle(physical: &Object<'_>, warnings: &mut Warnings) -> Result<Option<Vec<[f64; 2]>>, ImportError> {
+fn rectangle(physical: &JsonObject<'_>, warnings: &mut Warnings) -> Result<Option<Vec<[f64; 2]>>, ImportError> {
     let (length, width) = match (physical.positive("length")?, physical.positive("width")?) {
         (Some(length), Some(width)) => (length, width),
         (None, None) => return Ok(None),

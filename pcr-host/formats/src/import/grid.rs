@@ -11,9 +11,9 @@
 //! their last cells.
 
 use super::ImportError;
-use super::timed::{self, Stop};
-use super::value::is_open;
-use crate::mark::unmarked;
+use super::json_access::is_open;
+use super::timed_paths::{self, TimedPoint};
+use crate::byte_order_mark::unmarked;
 use crate::scenario::Scenario;
 
 /// Radius where no other is given \[m\]. Two agents of a valid plan come as near as √2/2 m, where one leaves a cell that another one enters
@@ -102,7 +102,7 @@ impl GridPlan {
     /// # Errors
     /// [`ImportError`]; none for plans that were read.
     pub fn scenario(&self, radius: f64) -> Result<Scenario, ImportError> {
-        let agent = |(id, cells): (usize, &Vec<[i32; 2]>)| timed::agent(id as u64, radius, &stops(cells));
+        let agent = |(id, cells): (usize, &Vec<[i32; 2]>)| timed_paths::agent(id as u64, radius, &stops(cells));
         let agents = self.cells.iter().enumerate().map(agent).collect::<Result<_, _>>()?;
         Ok(Scenario::new("", agents))
     }
@@ -133,7 +133,7 @@ fn steps(path: &str) -> Result<Vec<[i32; 2]>, (&str, String)> {
 }
 
 /// The cells where an agent turns, sets off or stops, and the times.
-fn stops(cells: &[[i32; 2]]) -> Vec<Stop> {
+fn stops(cells: &[[i32; 2]]) -> Vec<TimedPoint> {
     let step = |k: usize| cells.get(k + 1).map(|next| [next[0] - cells[k][0], next[1] - cells[k][1]]);
     let way = cells.iter().rposition(|cell| Some(cell) != cells.last()).map_or(0, |last| last + 1);
     let turns = (0..=way).filter(|&k| k == 0 || k == way || step(k) != step(k - 1));

@@ -4,7 +4,7 @@
 //! objects have. An unknown key that is nearly one of those that are read, or that is read in another object of the format, is an error
 //! with the key that was meant. Any other unknown key is a warning, except where the format leaves the keys to its users.
 
-use super::value::Object;
+use super::json_access::JsonObject;
 use super::{ImportError, WarningCode, Warnings};
 
 /// The keys of an object.
@@ -43,7 +43,7 @@ impl Keys {
     ///
     /// # Errors
     /// [`ImportError`] with a key that is nearly one that is read, or that stands in the wrong object.
-    pub(super) fn check(&self, object: &Object<'_>, warnings: &mut Warnings) -> Result<(), ImportError> {
+    pub(super) fn check(&self, object: &JsonObject<'_>, warnings: &mut Warnings) -> Result<(), ImportError> {
         // What is null counts as missing everywhere.
         let keys = object.members().filter(|(_, value)| !value.is_null()).map(|(key, _)| key.as_str());
         self.check_all(&object.name, keys, &|key| object.get(key).is_some(), warnings)
@@ -138,7 +138,7 @@ mod tests {
 
     fn check(value: &serde_json::Value, keys: Keys) -> (Result<(), String>, Vec<String>) {
         let mut warnings = Warnings::default();
-        let object = Object::new("edge e", value).unwrap();
+        let object = JsonObject::new("edge e", value).unwrap();
         let checked = keys.check(&object, &mut warnings).map_err(|error| error.to_string());
         (checked, warnings.lines())
     }

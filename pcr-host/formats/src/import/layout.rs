@@ -1,8 +1,8 @@
 //! A layout: nodes, and edges between them with their exact geometry; the common form of all layout files.
 
 use super::vehicle::Facing;
-use super::{ImportError, Vehicle};
-use crate::scenario::Placed;
+use super::{ImportError, VehicleTraits};
+use crate::scenario::PlacedSegment;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::fmt;
@@ -10,14 +10,14 @@ use std::fmt;
 /// Name of a node or an edge, as in the source file.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum Id {
+pub enum ElementId {
     /// A number.
     Number(u64),
     /// A text.
     Text(String),
 }
 
-impl fmt::Display for Id {
+impl fmt::Display for ElementId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Number(number) => number.fmt(f),
@@ -26,7 +26,7 @@ impl fmt::Display for Id {
     }
 }
 
-impl Ord for Id {
+impl Ord for ElementId {
     fn cmp(&self, other: &Self) -> Ordering {
         match (self, other) {
             (Self::Number(a), Self::Number(b)) => a.cmp(b),
@@ -37,7 +37,7 @@ impl Ord for Id {
     }
 }
 
-impl PartialOrd for Id {
+impl PartialOrd for ElementId {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
@@ -45,26 +45,26 @@ impl PartialOrd for Id {
 
 /// A place where vehicles may stop.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Node {
+pub struct LayoutNode {
     /// As in the file, unique.
-    pub id: Id,
+    pub id: ElementId,
     /// A second name that the file gives it.
     pub name: Option<String>,
     /// Place of its level in [`Layout::levels`].
     pub level: usize,
     /// \[m\]
-    pub at: [f64; 2],
+    pub point: [f64; 2],
 }
 
 /// A way from node to node.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Edge {
+pub struct LayoutEdge {
     /// As in the file, unique.
-    pub id: Id,
+    pub id: ElementId,
     /// Places in [`Layout::nodes`] of the nodes where it begins and ends.
     pub ends: [usize; 2],
     /// Its lines and arcs, each beginning where the one before it ends.
-    pub curve: Vec<Placed>,
+    pub curve: Vec<PlacedSegment>,
     /// Whether it may be travelled from its first end to the other one, and back.
     pub ways: [bool; 2],
     /// Whether the file closes it for all vehicles. Routes avoid it; locks include it, because it may be opened again.
@@ -86,9 +86,9 @@ pub struct Edge {
     pub turned: f64,
 }
 
-impl Edge {
+impl LayoutEdge {
     /// One way along these lines and arcs, open and without limits.
-    pub fn new(id: Id, ends: [usize; 2], curve: Vec<Placed>) -> Self {
+    pub fn new(id: ElementId, ends: [usize; 2], curve: Vec<PlacedSegment>) -> Self {
         let ways = [true, false];
         let (deviation, room, longer, turned) = (0.0, 0.0, 0.0, 0.0);
         let (speed, rotation, facing) = ([None; 2], None, [Facing::Ahead; 2]);
@@ -96,7 +96,7 @@ impl Edge {
     }
 
     /// How far any point of a vehicle may be from where it is on the curve in the file \[m\].
-    pub fn off(&self, vehicle: &Vehicle) -> f64 {
+    pub fn position_error(&self, vehicle: &VehicleTraits) -> f64 {
         self.deviation + vehicle.moved_by(self.turned)
     }
 
@@ -120,15 +120,15 @@ pub struct Layout {
     /// Floors or maps: what lies on different ones cannot collide. At least one if there are nodes.
     pub levels: Vec<String>,
     /// The nodes.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<LayoutNode>,
     /// The edges.
-    pub edges: Vec<Edge>,
+    pub edges: Vec<LayoutEdge>,
     /// Other ids of nodes, with their places: names of ends of edges that are one node.
     pub aliases: Vec<(String, usize)>,
     /// Types of vehicles that the file tells apart.
     pub vehicle_types: Vec<String>,
     /// An edge whose vehicle types have different speeds, of which one was taken.
-    pub of_speeds: Option<Id>,
+    pub of_speeds: Option<ElementId>,
     /// Vehicles that the file names.
     pub vehicles: Vec<String>,
     /// Radius with which routes round corners between straight edges \[m\], if that is asked for.
@@ -180,7 +180,7 @@ impl Layout {
     /// # Panics
     /// If there is no such node: readers give edges only such ends as are places of nodes.
     pub fn position(&self, node: usize) -> [f64; 2] {
-        self.nodes[node].at
+        self.nodes[node].point
     }
 
     /// Level of a node.
@@ -195,7 +195,7 @@ impl Layout {
     ///
     /// # Panics
     /// As [`Layout::position`].
-    pub fn level(&self, edge: &Edge) -> usize {
+    pub fn level(&self, edge: &LayoutEdge) -> usize {
         self.level_of(edge.ends[0])
     }
 
@@ -203,7 +203,7 @@ impl Layout {
     ///
     /// # Panics
     /// As [`Layout::position`].
-    pub fn is_on(&self, edge: &Edge, level: usize) -> bool {
+    pub fn is_on(&self, edge: &LayoutEdge, level: usize) -> bool {
         edge.ends.iter().any(|&node| self.level_of(node) == level)
     }
 }

@@ -5,8 +5,8 @@
 //! other levels are laid upon it by the fiducials that both have: their bearings and distances to one another give the
 //! rotation and the scale, and their places the translation, each as a mean.
 
+use super::json_access::JsonObject;
 use super::projection::Projection;
-use super::value::Object;
 use super::{ImportError, WarningCode, Warnings};
 use serde_json::Value;
 
@@ -15,16 +15,16 @@ const SPREAD: f64 = 0.01;
 
 /// From the coordinates of a file to metres, y up.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Placing {
+pub(super) enum LevelTransform {
     /// From a floor plan, y down; or from metres.
-    Plan(Plan),
+    Plan(FloorPlan),
     /// From longitudes and latitudes.
     Earth(Projection),
 }
 
-impl Placing {
+impl LevelTransform {
     /// From metres, y up.
-    pub(super) const METRES: Self = Self::Plan(Plan::METRES);
+    pub(super) const METRES: Self = Self::Plan(FloorPlan::METRES);
 
     /// The point in metres.
     ///
@@ -40,7 +40,7 @@ impl Placing {
 
 /// From a floor plan, y down, to metres, y up: scaled, rotated and moved.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Plan {
+pub(super) struct FloorPlan {
     /// Metres of a unit of the plan, to the right and down.
     scale: [f64; 2],
     /// Cosine and sine of the rotation.
@@ -49,7 +49,7 @@ pub(super) struct Plan {
     shift: [f64; 2],
 }
 
-impl Plan {
+impl FloorPlan {
     /// Coordinates in metres, y up.
     const METRES: Self = Self { scale: [1.0; 2], turn: [1.0, 0.0], shift: [0.0; 2] };
 
@@ -68,7 +68,7 @@ impl Plan {
 
 /// The level that all others are laid upon.
 #[derive(Default)]
-pub(super) struct Reference<'j> {
+pub(super) struct ReferenceLevel<'j> {
     name: String,
     /// Metres of a pixel; `None` without measurements.
     scale: Option<f64>,
@@ -99,9 +99,13 @@ impl Fiducial<'_> {
     }
 }
 
-impl<'j> Reference<'j> {
+impl<'j> ReferenceLevel<'j> {
     /// The level of this name, which the building gives, or which is the first one of its file.
-    pub(super) fn new(levels: &[Level<'j>], named: Option<&str>, warnings: &mut Warnings) -> Result<Self, ImportError> {
+    pub(super) fn new(
+        levels: &[BuildingLevel<'j>],
+        named: Option<&str>,
+        warnings: &mut Warnings,
+    ) -> Result<Self, ImportError> {
         let level = match named {
             Some(name) => levels
                 .iter()
@@ -114,9 +118,16 @@ impl<'j> Reference<'j> {
     }
 
     /// Where a level is.
-    pub(super) fn place(&self, level: &Level<'_>, warnings: &mut Warnings) -> Result<Placing, ImportError> {
+    pub(super) fn level_transform(
+        &self,
+        level: &BuildingLevel<'_>,
+        warnings: &mut Warnings,
+    ) -> Result<LevelTransform, ImportError> {
         if level.name == self.name {
-            return self.scale.map(|scale| Placing::Plan(Plan::scaled(scale))).ok_or_else(|| no_scale(level));
+            return self
+                .scale
+                .map(|scale| LevelTransform::Plan(FloorPlan::scaled(scale)))
+                .ok_or_else(|| no_scale(level));
         }
         let mut pairs = Vec::new();
         for own in &fiducials(level)? {
@@ -156,7 +167,7 @@ impl<'j> Reference<'j> {
                         format!("{problem}; that of its fiducials counts, as for Open-RMF"),
                     );
                 }
-                Ok(Placing::Plan(placing))
+                Ok(LevelTransform::Plan(placing))
             }
             (None, Some(measured)) => {
                 let problem = match self.scale {
@@ -168,7 +179,7 @@ impl<'j> Reference<'j> {
                     &level.object.name,
                     format!("{problem}; it has the scale of its own measurements"),
                 );
-                Ok(Placing::Plan(Plan::scaled(measured)))
+                Ok(LevelTransform::Plan(FloorPlan::scaled(measured)))
             }
             (None, None) => Err(no_scale(level)),
         }
@@ -176,7 +187,7 @@ impl<'j> Reference<'j> {
 
     /// The scale \[m\] and place of a level by pairs of fiducials, that of the reference level first, and by how much of their mean
     /// the scales of the pairs differ.
-    fn laid_upon(&self, pairs: &[[[f64; 2]; 2]]) -> Option<(f64, Plan, f64)> {
+    fn laid_upon(&self, pairs: &[[[f64; 2]; 2]]) -> Option<(f64, FloorPlan, f64)> {
         // Bearings of plans with y down are mirrored.
         let between = |a: [f64; 2], b: [f64; 2]| [b[0] - a[0], a[1] - b[1]];
         let (mut ratios, mut turn) = (Vec::new(), [0.0; 2]);
@@ -194,23 +205,23 @@ impl<'j> Reference<'j> {
         let of_reference = self.scale?;
         let scale = of_reference / ratio;
         let angle = turn[1].atan2(turn[0]);
-        let turned = Plan { turn: [angle.cos(), angle.sin()], ..Plan::scaled(scale) };
-        let reference = Plan::scaled(of_reference);
+        let turned = FloorPlan { turn: [angle.cos(), angle.sin()], ..FloorPlan::scaled(scale) };
+        let reference = FloorPlan::scaled(of_reference);
         let mut shift = [0.0; 2];
         for pair in pairs {
             let [there, here] = [reference.apply(pair[0]), turned.apply(pair[1])];
             shift = [0, 1].map(|k| shift[k] + (there[k] - here[k]) / pairs.len() as f64);
         }
-        Some((scale, Plan { shift, ..turned }, spread))
+        Some((scale, FloorPlan { shift, ..turned }, spread))
     }
 }
 
-fn no_scale(level: &Level<'_>) -> ImportError {
+fn no_scale(level: &BuildingLevel<'_>) -> ImportError {
     ImportError::new(format!("{}, measurements: none that gives the scale of its pixels", level.object.name))
 }
 
 /// The fiducials of a level. One that cannot be read is an error even if parts may be left out: the level would have another scale.
-fn fiducials<'j>(level: &Level<'j>) -> Result<Vec<Fiducial<'j>>, ImportError> {
+fn fiducials<'j>(level: &BuildingLevel<'j>) -> Result<Vec<Fiducial<'j>>, ImportError> {
     let mut all: Vec<Fiducial<'j>> = Vec::new();
     for (k, value) in level.object.list("fiducials")?.iter().enumerate() {
         let refused =
@@ -229,20 +240,20 @@ fn fiducials<'j>(level: &Level<'j>) -> Result<Vec<Fiducial<'j>>, ImportError> {
 }
 
 /// A level of the file: its values, and its scalars as they are written.
-pub(super) struct Level<'j> {
+pub(super) struct BuildingLevel<'j> {
     pub(super) name: &'j str,
-    pub(super) object: Object<'j>,
+    pub(super) object: JsonObject<'j>,
     texts: &'j Value,
-    pub(super) vertices: Vec<Vertex>,
+    pub(super) vertices: Vec<PlacedVertex>,
 }
 
 /// Position as in the file, and name; `None` for what is no vertex.
-pub(super) type Vertex = Option<([f64; 2], Option<String>)>;
+pub(super) type PlacedVertex = Option<([f64; 2], Option<String>)>;
 
-impl<'j> Level<'j> {
+impl<'j> BuildingLevel<'j> {
     /// A level of a building, or of a `graph` for navigation.
     pub(super) fn new(name: &'j str, value: &'j Value, texts: &'j Value, graph: bool) -> Result<Self, ImportError> {
-        let object = Object::new(format!("level {name}"), value)?;
+        let object = JsonObject::new(format!("level {name}"), value)?;
         let mut level = Self { name, object, texts, vertices: Vec::new() };
         let all = level.object.list("vertices")?.iter().enumerate();
         level.vertices = all.map(|(k, value)| level.vertex(k, value, graph)).collect();
@@ -256,7 +267,7 @@ impl<'j> Level<'j> {
     }
 
     /// A vertex, whose name may be any scalar.
-    fn vertex(&self, k: usize, value: &Value, graph: bool) -> Vertex {
+    fn vertex(&self, k: usize, value: &Value, graph: bool) -> PlacedVertex {
         let list = value.as_array()?;
         let number = |k: usize| list.get(k)?.as_f64().filter(|x| x.abs() <= crate::scenario::LIMIT);
         let name = if graph {
@@ -276,7 +287,7 @@ pub(super) fn parameter<'j>(parameters: Option<&'j Value>, name: &str) -> Option
 }
 
 /// Ends of a lane, a wall or a measurement.
-pub(super) fn ends(value: &Value, vertices: &[Vertex]) -> Result<[(usize, [f64; 2]); 2], String> {
+pub(super) fn ends(value: &Value, vertices: &[PlacedVertex]) -> Result<[(usize, [f64; 2]); 2], String> {
     let list = value.as_array().ok_or("not a list")?;
     let mut ends = [(0, [0.0; 2]); 2];
     for (k, end) in ends.iter_mut().enumerate() {
@@ -289,7 +300,7 @@ pub(super) fn ends(value: &Value, vertices: &[Vertex]) -> Result<[(usize, [f64; 
 }
 
 /// Metres of a pixel: the mean of the measurements of a level; `None` without any.
-fn scale(level: &Level<'_>, warnings: &mut Warnings) -> Result<Option<f64>, ImportError> {
+fn scale(level: &BuildingLevel<'_>, warnings: &mut Warnings) -> Result<Option<f64>, ImportError> {
     let mut scales = Vec::new();
     for (k, value) in level.object.list("measurements")?.iter().enumerate() {
         let metres = parameter(value.get(2), "distance").and_then(Value::as_f64);

@@ -9,19 +9,21 @@
 
 mod version;
 
-use super::layout::{Edge, Id, Layout, Node};
-use super::names::Names;
-use super::trajectory::Trajectory;
-use super::value::Object;
-use super::vehicle::{Facing, Vehicle};
+use super::json_access::JsonObject;
+use super::layout::{ElementId, Layout, LayoutEdge, LayoutNode};
+use super::trajectory::FittedTrajectory;
+use super::unique_names::UniqueNames;
+use super::vehicle::{Facing, VehicleTraits};
 use super::warnings::DIFFERENCE;
-use super::{ImportError, Options, WarningCode, Warnings, corridor, facing, route, trajectory, value};
+use super::{
+    ImportError, ImportOptions, WarningCode, Warnings, corridor, json_access, route, trajectory, vehicle_heading,
+};
 use crate::footprint::Footprint;
-use crate::plane::distance;
-use crate::scenario::Placed;
+use crate::plane_geometry::distance;
+use crate::scenario::PlacedSegment;
 use serde_json::Value;
 use std::collections::BTreeSet;
-use version::Version;
+use version::LifVersion;
 
 /// Largest gap between the end of a trajectory and its node that goes without a warning \[m\].
 const GAP: f64 = 1e-3;
@@ -38,24 +40,24 @@ pub(super) fn is_layout(root: &Value) -> bool {
 /// Reads all layouts of a file as one with several levels, for a vehicle that is a disc or has an outline.
 pub(super) fn read(
     text: &str,
-    options: &Options,
-    vehicle: &Vehicle,
+    options: &ImportOptions,
+    vehicle: &VehicleTraits,
     warnings: &mut Warnings,
 ) -> Result<Layout, ImportError> {
-    let value = value::parse(text)?;
-    let root = Object::new("LIF", &value)?;
-    let version = Version::of(&root, &value, warnings)?;
+    let value = json_access::parse(text)?;
+    let root = JsonObject::new("LIF", &value)?;
+    let version = LifVersion::of(&root, &value, warnings)?;
     let meta = root.object("metaInformation")?;
     let name = meta.map_or(Ok(None), |meta| match version {
-        Version::First => meta.label("projectIdentification"),
-        Version::Second => meta.label("lifId"),
+        LifVersion::First => meta.label("projectIdentification"),
+        LifVersion::Second => meta.label("lifId"),
     });
-    let mut reader = Reader {
+    let mut reader = LifReader {
         version,
         names: version.names(),
         levels: Vec::new(),
-        nodes: Names::new(),
-        edges: Names::new(),
+        nodes: UniqueNames::new(),
+        edges: UniqueNames::new(),
         origins: Vec::new(),
         thetas: Vec::new(),
         types: BTreeSet::new(),
@@ -70,7 +72,7 @@ pub(super) fn read(
     for Origin { id, layouts } in &origins {
         let maps = maps(layouts.iter().filter_map(|layout| layout.get("nodes")));
         for (k, value) in layouts.iter().enumerate() {
-            let layout = Object::new(format!("layout {}", k + 1), value)?;
+            let layout = JsonObject::new(format!("layout {}", k + 1), value)?;
             if let Err(error) = version::LAYOUT.check(&layout, reader.warnings) {
                 reader.warnings.lose(error);
             }
@@ -97,9 +99,9 @@ pub(super) fn read(
             reader.warnings.lose(error);
         }
     }
-    let Reader { levels, nodes, edges, types, thetas, outline, of_speeds, .. } = reader;
+    let LifReader { levels, nodes, edges, types, thetas, outline, of_speeds, .. } = reader;
     let mut edges = edges.into_list();
-    facing::turn_at_nodes(&thetas, &mut edges, outline);
+    vehicle_heading::turn_at_nodes(&thetas, &mut edges, outline);
     let vehicle_types = types.iter().cloned().collect();
     if nodes.list().is_empty() {
         return Err(ImportError::new("LIF, layouts: there is no node in them"));
@@ -138,10 +140,14 @@ struct Origin<'j> {
 }
 
 /// The layouts of a file by their origins.
-fn origins<'j>(root: &Object<'j>, version: Version, warnings: &mut Warnings) -> Result<Vec<Origin<'j>>, ImportError> {
+fn origins<'j>(
+    root: &JsonObject<'j>,
+    version: LifVersion,
+    warnings: &mut Warnings,
+) -> Result<Vec<Origin<'j>>, ImportError> {
     let mut all: Vec<Origin<'j>> = Vec::new();
     let own: Vec<&Value> = root.list("layouts")?.iter().collect();
-    if version == Version::First {
+    if version == LifVersion::First {
         return if root.get("layouts").is_some() {
             Ok(vec![Origin { id: None, layouts: own }])
         } else {
@@ -165,7 +171,7 @@ fn origins<'j>(root: &Object<'j>, version: Version, warnings: &mut Warnings) -> 
         return Err(root.missing("origins"));
     }
     for (k, value) in root.list("origins")?.iter().enumerate() {
-        let origin = Object::new(format!("origin {}", k + 1), value)?;
+        let origin = JsonObject::new(format!("origin {}", k + 1), value)?;
         version::ORIGIN.check(&origin, warnings)?;
         let id = origin.text("originId")?.ok_or_else(|| origin.missing("originId"))?;
         if origin.get("layouts").is_none() {
@@ -180,32 +186,32 @@ fn origins<'j>(root: &Object<'j>, version: Version, warnings: &mut Warnings) -> 
     Ok(all)
 }
 
-struct Reader<'a> {
-    version: Version,
-    names: &'static version::Names,
+struct LifReader<'a> {
+    version: LifVersion,
+    names: &'static version::VersionNames,
     levels: Vec<String>,
-    nodes: Names<Node>,
-    edges: Names<Edge>,
+    nodes: UniqueNames<LayoutNode>,
+    edges: UniqueNames<LayoutEdge>,
     /// For each node the origin of its coordinates, where there are several.
     origins: Vec<Option<String>>,
     /// At which nodes vehicles face which way \[rad\].
     thetas: Vec<(usize, f64)>,
     types: BTreeSet<String>,
-    options: &'a Options,
-    vehicle: &'a Vehicle,
+    options: &'a ImportOptions,
+    vehicle: &'a VehicleTraits,
     /// The outline of the vehicle, if its heading matters.
     outline: Option<&'a Footprint>,
     /// The first edge whose vehicle types have different speeds.
-    of_speeds: Option<Id>,
+    of_speeds: Option<ElementId>,
     warnings: &'a mut Warnings,
 }
 
-impl Reader<'_> {
+impl LifReader<'_> {
     /// The level of the nodes of a layout that name no map, if it can be told; `maps` are those that nodes of the file name. Two levels
     /// instead of one would leave out what can touch, so that it is one where nothing tells them apart.
     fn unnamed(
         &mut self,
-        layout: &Object<'_>,
+        layout: &JsonObject<'_>,
         layouts: &[&Value],
         maps: &BTreeSet<&str>,
     ) -> Result<Option<String>, ImportError> {
@@ -237,14 +243,15 @@ impl Reader<'_> {
     fn node(&mut self, k: usize, value: &Value, unnamed: Option<&str>, origin: Option<&str>) {
         match self.read_node(k, value, unnamed) {
             Err(error) => self.warnings.lose(error),
-            Ok(ReadNode { object, id, name, level, at }) => {
+            Ok(LifNode { object, id, name, level, at }) => {
                 let level = origin.map_or(level.clone(), |origin| format!("{origin} {level}"));
                 let known = self.levels.iter().position(|other| *other == level);
                 let level = known.unwrap_or_else(|| {
                     self.levels.push(level);
                     self.levels.len() - 1
                 });
-                let place = self.nodes.add(Node { id: Id::Text(id), name, level, at }, self.warnings);
+                let place =
+                    self.nodes.add(LayoutNode { id: ElementId::Text(id), name, level, point: at }, self.warnings);
                 self.origins.resize(self.nodes.list().len(), origin.map(str::to_owned));
                 if let Err(error) = self.node_properties(&object, place) {
                     self.warnings.lose(error);
@@ -254,9 +261,9 @@ impl Reader<'_> {
     }
 
     /// Reads what is said of vehicles at a node: which way an outline faces there.
-    fn node_properties(&mut self, node: &Object<'_>, place: usize) -> Result<(), ImportError> {
+    fn node_properties(&mut self, node: &JsonObject<'_>, place: usize) -> Result<(), ImportError> {
         for (k, value) in node.list(self.names.node_properties)?.iter().enumerate() {
-            let property = Object::new(format!("{}, properties {}", node.name, k + 1), value)?;
+            let property = JsonObject::new(format!("{}, properties {}", node.name, k + 1), value)?;
             self.names.node_property.check(&property, self.warnings)?;
             let types = self.types_of(&property)?;
             if !self.is_asked(&types) {
@@ -274,14 +281,14 @@ impl Reader<'_> {
     }
 
     /// The vehicle types that a property is for; none if it is for all of them.
-    fn types_of(&mut self, property: &Object<'_>) -> Result<Vec<String>, ImportError> {
-        if self.version == Version::First {
+    fn types_of(&mut self, property: &JsonObject<'_>) -> Result<Vec<String>, ImportError> {
+        if self.version == LifVersion::First {
             let own = property.text("vehicleTypeId")?.filter(|own| !own.is_empty());
             return Ok(own.map(str::to_owned).into_iter().collect());
         }
         let mut types = Vec::new();
         for (k, value) in property.list("mobileRobotTypes")?.iter().enumerate() {
-            let robot = Object::new(format!("{}, mobileRobotTypes {}", property.name, k + 1), value)?;
+            let robot = JsonObject::new(format!("{}, mobileRobotTypes {}", property.name, k + 1), value)?;
             version::ROBOT_TYPE.check(&robot, self.warnings)?;
             let part = |field: &str| robot.text(field)?.ok_or_else(|| robot.missing(field));
             types.push(format!("{}.{}", part("manufacturer")?, part("seriesName")?));
@@ -295,13 +302,13 @@ impl Reader<'_> {
     }
 
     fn edge(&mut self, k: usize, value: &Value) -> Result<(), ImportError> {
-        let object = Object::new(format!("edge at place {}", k + 1), value)?;
+        let object = JsonObject::new(format!("edge at place {}", k + 1), value)?;
         let id = object.text("edgeId")?.ok_or_else(|| object.missing("edgeId"))?.to_owned();
         let object = object.called(format!("edge {id}"));
         self.names.edge.check(&object, self.warnings)?;
         let place = |field: &str| {
             let node = object.text(field)?.ok_or_else(|| object.missing(field))?;
-            let place = self.nodes.place(&Id::Text(node.to_owned()));
+            let place = self.nodes.index_of(&ElementId::Text(node.to_owned()));
             place.map_err(|unclear| ImportError::new(format!("edge {id}, {field}: {unclear}")))
         };
         let ends = [place("startNodeId")?, place("endNodeId")?];
@@ -309,10 +316,10 @@ impl Reader<'_> {
             let problem = "its nodes have different origins of coordinates, and where it leads is not in the file";
             return Err(ImportError::new(format!("edge {id}: {problem}")));
         }
-        let mut edges: Vec<Edge> = Vec::new();
+        let mut edges: Vec<LayoutEdge> = Vec::new();
         let properties = object.list(self.names.edge_properties)?;
         for (k, value) in properties.iter().enumerate() {
-            let property = Object::new(format!("edge {id}, properties {}", k + 1), value)?;
+            let property = JsonObject::new(format!("edge {id}, properties {}", k + 1), value)?;
             self.names.edge_property.check(&property, self.warnings)?;
             let types = self.types_of(&property)?;
             let asked = self.is_asked(&types);
@@ -346,11 +353,16 @@ impl Reader<'_> {
     }
 
     /// The edge with the properties of a vehicle type.
-    fn along(&mut self, id: &str, ends: [usize; 2], property: Option<&Object<'_>>) -> Result<Edge, ImportError> {
-        let at = ends.map(|node| self.nodes.list()[node].at);
-        let straight = Placed::line(at[0], at[1]);
+    fn along(
+        &mut self,
+        id: &str,
+        ends: [usize; 2],
+        property: Option<&JsonObject<'_>>,
+    ) -> Result<LayoutEdge, ImportError> {
+        let at = ends.map(|node| self.nodes.list()[node].point);
+        let straight = PlacedSegment::line(at[0], at[1]);
         let curve = if straight.shape.length() > 0.0 { vec![straight] } else { Vec::new() };
-        let mut edge = Edge::new(Id::Text(id.to_owned()), ends, curve);
+        let mut edge = LayoutEdge::new(ElementId::Text(id.to_owned()), ends, curve);
         if let Some(property) = property {
             edge.speed = [property.positive(self.names.speed)?; 2];
             edge.rotation = property.positive(self.names.rotation_speed)?;
@@ -363,12 +375,13 @@ impl Reader<'_> {
             }
             if let Some(trajectory) = property.object("trajectory")? {
                 let trajectory = trajectory.called(format!("edge {id}, trajectory"));
-                let Trajectory { fit, ends } = trajectory::read(&trajectory, self.options.tolerance(), self.warnings)?;
+                let FittedTrajectory { fit, ends } =
+                    trajectory::read(&trajectory, self.options.tolerance(), self.warnings)?;
                 if let Some(outline) = self.outline {
-                    facing::along_trajectory(&trajectory, &fit, outline, self.warnings)?;
+                    vehicle_heading::along_trajectory(&trajectory, &fit, outline, self.warnings)?;
                 }
                 let gap = if fit.pieces.is_empty() { point_gap(id, ends, at)? } else { self.gap(id, ends, at) };
-                (edge.deviation, edge.longer, edge.turned) = (fit.deviation + gap, fit.longer, fit.turned);
+                (edge.deviation, edge.longer, edge.turned) = (fit.deviation + gap, fit.length_error, fit.heading_error);
                 edge.curve = fit.pieces;
             } else if let Some(line) = property.object("physicalLineGuidedProperty")? {
                 self.guided(id, &line, straight.shape.length())?;
@@ -389,8 +402,13 @@ impl Reader<'_> {
     }
 
     /// Which way an outline faces on an edge with these properties, which has a heading if it is straight.
-    fn facing(&self, property: &Object<'_>, curve: &[Placed], heading: Option<f64>) -> Result<Facing, ImportError> {
-        let is_first = self.version == Version::First;
+    fn facing(
+        &self,
+        property: &JsonObject<'_>,
+        curve: &[PlacedSegment],
+        heading: Option<f64>,
+    ) -> Result<Facing, ImportError> {
+        let is_first = self.version == LifVersion::First;
         let field = if is_first { "vehicleOrientation" } else { "mobileRobotOrientations" };
         let mut orientations = Vec::new();
         if is_first {
@@ -403,17 +421,17 @@ impl Reader<'_> {
                 orientations.push(orientation);
             }
         }
-        let said = facing::of_edge(property, field, &orientations, heading)?;
+        let said = vehicle_heading::of_edge(property, field, &orientations, heading)?;
         // A vehicle that rotates on the edge has any heading there, and in LIF 2 so has one of which no orientation is said.
         let rotates = match is_first {
             true => property.flag("rotationAllowed")? == Some(true),
             false => property.flag("reachOrientationBeforeEntering")? == Some(false) || said.is_none(),
         };
-        Ok(if rotates { Facing::Any } else { said.unwrap_or_else(|| facing::of_curve(curve)) })
+        Ok(if rotates { Facing::Any } else { said.unwrap_or_else(|| vehicle_heading::of_curve(curve)) })
     }
 
     /// An edge that follows a line on the ground is as long as the line between its nodes, or leads elsewhere.
-    fn guided(&mut self, id: &str, line: &Object<'_>, straight: f64) -> Result<(), ImportError> {
+    fn guided(&mut self, id: &str, line: &JsonObject<'_>, straight: f64) -> Result<(), ImportError> {
         version::LINE.check(line, self.warnings)?;
         let length = line.positive("length")?;
         if let Some(length) = length.filter(|length| (length - straight).abs() > DIFFERENCE * straight + route::GAP) {
@@ -468,23 +486,18 @@ fn point_gap(id: &str, ends: [[f64; 2]; 2], at: [[f64; 2]; 2]) -> Result<f64, Im
 }
 
 /// A node of a file.
-struct ReadNode<'j> {
-    object: Object<'j>,
+struct LifNode<'j> {
+    object: JsonObject<'j>,
     id: String,
     name: Option<String>,
     level: String,
     at: [f64; 2],
 }
 
-impl Reader<'_> {
+impl LifReader<'_> {
     /// Reads a node; `unnamed` is the level if it names no map.
-    fn read_node<'j>(
-        &mut self,
-        k: usize,
-        value: &'j Value,
-        unnamed: Option<&str>,
-    ) -> Result<ReadNode<'j>, ImportError> {
-        let object = Object::new(format!("node at place {}", k + 1), value)?;
+    fn read_node<'j>(&mut self, k: usize, value: &'j Value, unnamed: Option<&str>) -> Result<LifNode<'j>, ImportError> {
+        let object = JsonObject::new(format!("node at place {}", k + 1), value)?;
         let id = object.text("nodeId")?.ok_or_else(|| object.missing("nodeId"))?.to_owned();
         let object = object.called(format!("node {id}"));
         self.names.node.check(&object, self.warnings)?;
@@ -492,7 +505,7 @@ impl Reader<'_> {
         version::POSITION.check(&position, self.warnings)?;
         let level = object.text("mapId")?.or(unnamed).ok_or_else(|| object.missing("mapId"))?.to_owned();
         let name = object.label("nodeName")?;
-        Ok(ReadNode { object, id, name, level, at: position.point()? })
+        Ok(LifNode { object, id, name, level, at: position.point()? })
     }
 }
 

@@ -4,12 +4,12 @@
 //! metadata is a fraction of the full speed if it is at most 1, and a percentage above that. Edges of length 0 are
 //! kept, and so are several edges with the same id.
 
+use super::json_access::JsonObject;
 use super::keys::Keys;
-use super::layout::{Edge, Id, Layout, Node};
-use super::names::Names;
-use super::value::Object;
-use super::{ImportError, WarningCode, Warnings, value};
-use crate::scenario::Placed;
+use super::layout::{ElementId, Layout, LayoutEdge, LayoutNode};
+use super::unique_names::UniqueNames;
+use super::{ImportError, WarningCode, Warnings, json_access};
+use crate::scenario::PlacedSegment;
 use serde_json::Value;
 use std::collections::BTreeSet;
 
@@ -35,17 +35,18 @@ pub(super) fn is_graph(root: &Value) -> bool {
 
 /// Reads a graph. `full_speed` is what fractions in `speed_limit` refer to \[m/s\].
 pub(super) fn read(text: &str, full_speed: f64, warnings: &mut Warnings) -> Result<Layout, ImportError> {
-    let value = value::parse(text)?;
-    let root = Object::new("graph", &value)?;
+    let value = json_access::parse(text)?;
+    let root = JsonObject::new("graph", &value)?;
     ROOT.check(&root, warnings)?;
     if root.get("features").is_none() {
         return Err(root.missing("features"));
     }
-    let mut graph = Graph { nodes: Names::new(), edges: Names::new(), frames: BTreeSet::new(), warnings };
+    let mut graph =
+        Nav2Graph { nodes: UniqueNames::new(), edges: UniqueNames::new(), frames: BTreeSet::new(), warnings };
     let mut lines = Vec::new();
     for (k, feature) in root.list("features")?.iter().enumerate() {
-        match Feature::read(k, feature, graph.warnings) {
-            Ok(Some(Feature { id, properties, geometry: Geometry::Point(at) })) => {
+        match GeoJsonFeature::read(k, feature, graph.warnings) {
+            Ok(Some(GeoJsonFeature { id, properties, geometry: GeoJsonGeometry::Point(at) })) => {
                 if let Err(problem) = graph.node(id, &properties, at) {
                     graph.warnings.lose(problem);
                 }
@@ -59,12 +60,12 @@ pub(super) fn read(text: &str, full_speed: f64, warnings: &mut Warnings) -> Resu
             Err(error) => graph.warnings.lose(error),
         }
     }
-    for Feature { id, properties, geometry } in lines {
+    for GeoJsonFeature { id, properties, geometry } in lines {
         if let Err(problem) = graph.edge(id, &properties, &geometry, full_speed) {
             graph.warnings.lose(problem);
         }
     }
-    let Graph { nodes, edges, frames, .. } = graph;
+    let Nav2Graph { nodes, edges, frames, .. } = graph;
     if nodes.list().is_empty() {
         return Err(ImportError::new("graph, features: no node (a Point with an id in its properties) among them"));
     }
@@ -83,24 +84,24 @@ pub(super) fn read(text: &str, full_speed: f64, warnings: &mut Warnings) -> Resu
     })
 }
 
-struct Graph<'a> {
-    nodes: Names<Node>,
-    edges: Names<Edge>,
+struct Nav2Graph<'a> {
+    nodes: UniqueNames<LayoutNode>,
+    edges: UniqueNames<LayoutEdge>,
     /// Of the nodes.
     frames: BTreeSet<String>,
     warnings: &'a mut Warnings,
 }
 
-enum Geometry {
+enum GeoJsonGeometry {
     Point([f64; 2]),
     /// Ends of a line, where it has any.
     Line(Option<[[f64; 2]; 2]>),
 }
 
-struct Feature<'j> {
+struct GeoJsonFeature<'j> {
     id: u64,
-    properties: Object<'j>,
-    geometry: Geometry,
+    properties: JsonObject<'j>,
+    geometry: GeoJsonGeometry,
 }
 
 /// The id of a node or an edge in a graph: a whole number from 0, also as a text.
@@ -111,7 +112,7 @@ pub fn graph_id(value: &Value) -> Option<u64> {
     number.or_else(whole)
 }
 
-fn id(object: &Object<'_>, field: &str) -> Result<u64, ImportError> {
+fn id(object: &JsonObject<'_>, field: &str) -> Result<u64, ImportError> {
     let value = object.get(field).ok_or_else(|| object.missing(field))?;
     graph_id(value).ok_or_else(|| ImportError::new(format!("{}, {field}: not a whole number from 0", object.name)))
 }
@@ -132,10 +133,10 @@ fn ends(value: &Value) -> Option<[[f64; 2]; 2]> {
     }
 }
 
-impl<'j> Feature<'j> {
+impl<'j> GeoJsonFeature<'j> {
     /// A node or an edge; nothing of another geometry, which the route server passes over as well.
     fn read(k: usize, value: &'j Value, warnings: &mut Warnings) -> Result<Option<Self>, ImportError> {
-        let feature = Object::new(format!("feature {}", k + 1), value)?;
+        let feature = JsonObject::new(format!("feature {}", k + 1), value)?;
         FEATURE.check(&feature, warnings)?;
         let geometry = feature.object("geometry")?.ok_or_else(|| feature.missing("geometry"))?;
         GEOMETRY.check(&geometry, warnings)?;
@@ -148,36 +149,42 @@ impl<'j> Feature<'j> {
         let id = id(&properties, "id")?;
         let coordinates = geometry.get("coordinates").ok_or_else(|| geometry.missing("coordinates"))?;
         let geometry = match kind {
-            "Point" => Geometry::Point(point(coordinates).ok_or_else(|| {
+            "Point" => GeoJsonGeometry::Point(point(coordinates).ok_or_else(|| {
                 ImportError::new(format!("{}, coordinates: two numbers are expected", geometry.name))
             })?),
-            _ => Geometry::Line(ends(coordinates)),
+            _ => GeoJsonGeometry::Line(ends(coordinates)),
         };
         Ok(Some(Self { id, properties, geometry }))
     }
 }
 
-impl Graph<'_> {
+impl Nav2Graph<'_> {
     /// Adds a node; one that names no frame is in that of the map, as for the route server.
-    fn node(&mut self, id: u64, properties: &Object<'_>, at: [f64; 2]) -> Result<(), ImportError> {
+    fn node(&mut self, id: u64, properties: &JsonObject<'_>, at: [f64; 2]) -> Result<(), ImportError> {
         let name = properties.label("name")?;
         let properties = properties.clone().called(format!("node {id}"));
         self.frames.insert(properties.text("frame")?.filter(|frame| !frame.is_empty()).unwrap_or(FRAME).to_owned());
-        self.nodes.add(Node { id: Id::Number(id), name, level: 0, at }, self.warnings);
+        self.nodes.add(LayoutNode { id: ElementId::Number(id), name, level: 0, point: at }, self.warnings);
         Ok(())
     }
 
     /// Adds an edge. Of nodes of one name it joins the last one, as the route server does.
-    fn edge(&mut self, id: u64, properties: &Object<'_>, drawn: &Geometry, speed: f64) -> Result<(), ImportError> {
+    fn edge(
+        &mut self,
+        id: u64,
+        properties: &JsonObject<'_>,
+        drawn: &GeoJsonGeometry,
+        speed: f64,
+    ) -> Result<(), ImportError> {
         let named = format!("edge {id}");
         let place = |field: &str| {
-            let node = Id::Number(self::id(properties, field)?);
+            let node = ElementId::Number(self::id(properties, field)?);
             self.nodes.last_place(&node).map_err(|unclear| ImportError::new(format!("{named}, {field}: {unclear}")))
         };
         let ends = [place("startid")?, place("endid")?];
-        let at = ends.map(|node| self.nodes.list()[node].at);
-        let line = Placed::line(at[0], at[1]);
-        if let Geometry::Line(Some(drawn)) = drawn {
+        let at = ends.map(|node| self.nodes.list()[node].point);
+        let line = PlacedSegment::line(at[0], at[1]);
+        if let GeoJsonGeometry::Line(Some(drawn)) = drawn {
             let off = |k: usize| (drawn[k][0] - at[k][0]).hypot(drawn[k][1] - at[k][1]) > DRAWN;
             if off(0) || off(1) {
                 self.warnings.add(
@@ -193,12 +200,12 @@ impl Graph<'_> {
         }
         let speed = self.speed_limit(&named, properties, speed)?;
         let curve = if straight { vec![line] } else { Vec::new() };
-        let edge = Edge { speed: [speed; 2], ..Edge::new(Id::Number(id), ends, curve) };
+        let edge = LayoutEdge { speed: [speed; 2], ..LayoutEdge::new(ElementId::Number(id), ends, curve) };
         self.edges.add(edge, self.warnings);
         Ok(())
     }
 
-    fn speed_limit(&mut self, edge: &str, properties: &Object<'_>, full: f64) -> Result<Option<f64>, ImportError> {
+    fn speed_limit(&mut self, edge: &str, properties: &JsonObject<'_>, full: f64) -> Result<Option<f64>, ImportError> {
         let Some(metadata) = properties.object("metadata")? else { return Ok(None) };
         METADATA.check(&metadata.clone().called(format!("{edge}, metadata")), self.warnings)?;
         let Some(limit) = metadata.get("speed_limit") else { return Ok(None) };

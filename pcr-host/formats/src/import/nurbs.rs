@@ -17,13 +17,13 @@ const CLOSED: f64 = 1e-9;
 
 /// A rational Bézier curve by its homogeneous control points: one more than its degree, with positive weights.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Bezier(pub(super) Vec<[f64; 3]>);
+pub(super) struct RationalBezier(pub(super) Vec<[f64; 3]>);
 
 fn mix(a: [f64; 3], b: [f64; 3], t: f64) -> [f64; 3] {
     [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * t)
 }
 
-impl Bezier {
+impl RationalBezier {
     /// The curve with these points and weights 1.
     pub(super) fn new(points: &[[f64; 2]]) -> Self {
         Self(points.iter().map(|[x, y]| [*x, *y, 1.0]).collect())
@@ -89,7 +89,7 @@ pub(super) struct Nurbs {
 
 impl Nurbs {
     /// The curve as Bézier curves, one a span of the knots.
-    pub(super) fn beziers(&self) -> Result<Vec<Bezier>, ImportError> {
+    pub(super) fn beziers(&self) -> Result<Vec<RationalBezier>, ImportError> {
         let (degree, count) = (self.degree, self.points.len());
         let refused = |problem: String| Err(ImportError::new(problem));
         if !(1..=MOST_DEGREE).contains(&degree) {
@@ -112,7 +112,7 @@ impl Nurbs {
         }
         let homogeneous: Vec<[f64; 3]> = self.points.iter().map(|([x, y], w)| [x * w, y * w, *w]).collect();
         let spans = (degree..count).filter(|&k| knots[k + 1] > knots[k]);
-        let beziers: Vec<Bezier> = spans.map(|k| span(&knots, &homogeneous, degree, k)).collect();
+        let beziers: Vec<RationalBezier> = spans.map(|k| span(&knots, &homogeneous, degree, k)).collect();
         if beziers.is_empty() {
             return refused("all its knots are the same".into());
         }
@@ -125,9 +125,9 @@ impl Nurbs {
 
 /// How far the curves are apart where one ends and the next one begins \[m\]: more than rounding only where a knot between them is
 /// there more often than the degree.
-fn widest_jump(beziers: &[Bezier]) -> f64 {
-    let extent = beziers.iter().flat_map(Bezier::points).flatten().fold(1.0, |most: f64, x| most.max(x.abs()));
-    let apart = |pair: &[Bezier]| {
+fn widest_jump(beziers: &[RationalBezier]) -> f64 {
+    let extent = beziers.iter().flat_map(RationalBezier::points).flatten().fold(1.0, |most: f64, x| most.max(x.abs()));
+    let apart = |pair: &[RationalBezier]| {
         let [before, after] = pair else { return 0.0 };
         let (end, begin) = (before.ends()[1], after.ends()[0]);
         (end[0] - begin[0]).hypot(end[1] - begin[1])
@@ -143,7 +143,7 @@ fn uniform(degree: usize, count: usize) -> Vec<f64> {
 }
 
 /// The Bézier curve between knots `k` and `k + 1`.
-fn span(knots: &[f64], points: &[[f64; 3]], degree: usize, k: usize) -> Bezier {
+fn span(knots: &[f64], points: &[[f64; 3]], degree: usize, k: usize) -> RationalBezier {
     let (a, b) = (knots[k], knots[k + 1]);
     let control = |last: usize| {
         let mut level: Vec<[f64; 3]> = points[k - degree..=k].to_vec();
@@ -156,7 +156,7 @@ fn span(knots: &[f64], points: &[[f64; 3]], degree: usize, k: usize) -> Bezier {
         }
         level[degree]
     };
-    Bezier((0..=degree).map(control).collect())
+    RationalBezier((0..=degree).map(control).collect())
 }
 
 #[cfg(test)]

@@ -7,17 +7,17 @@
 //! joints within a road, of the size of errors in maps, are closed: the rest of the road keeps its place, and the gap
 //! counts as deviation of its path. So do those between the ends of roads that share a node. Lanes are not read.
 
-use super::biarc::{self, Fit};
+use super::biarc::{self, BiarcFit};
 use super::clothoid;
 use super::keys::Keys;
-use super::layout::{Edge, Id, Layout, Node};
-use super::names::Names;
+use super::layout::{ElementId, Layout, LayoutEdge, LayoutNode};
 use super::polynomial::{self, Cubic};
 use super::route::turn_over;
+use super::unique_names::UniqueNames;
 use super::xml::{child, children, lose_astray, number, only, optional, parse, warn_of_unknown};
-use super::{ImportError, Options, WarningCode, Warnings};
-use crate::plane::{distance, wrapped};
-use crate::scenario::{LIMIT, PathSegment, Placed};
+use super::{ImportError, ImportOptions, WarningCode, Warnings};
+use crate::plane_geometry::{distance, wrapped};
+use crate::scenario::{LIMIT, PathSegment, PlacedSegment};
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
@@ -57,8 +57,8 @@ const ROAD: Keys = Keys::new(&["id", "length"], &[]).free();
 const SPEED: Keys = Keys::new(&["max", "unit"], &[]).free();
 
 /// The reference line of a road.
-struct Curve {
-    pieces: Vec<Placed>,
+struct ReferenceLine {
+    pieces: Vec<PlacedSegment>,
     /// Distance of `pieces` from it at the same length \[m\].
     deviation: f64,
     /// Difference of the headings \[rad\].
@@ -72,7 +72,7 @@ struct Curve {
 }
 
 /// Reads the roads.
-pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Result<Layout, ImportError> {
+pub(super) fn read(text: &str, options: &ImportOptions, warnings: &mut Warnings) -> Result<Layout, ImportError> {
     let document = parse(text)?;
     let root = document.root_element();
     if !root.has_tag_name("OpenDRIVE") {
@@ -86,7 +86,7 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         let parent = include.parent().map_or("", |parent| parent.tag_name().name());
         warnings.lose(format_args!("include of {}, in {parent}", include.attribute("file").unwrap_or("a file")));
     }
-    let mut names = Names::new();
+    let mut names = UniqueNames::new();
     // The first road of each edge: a copy adds no links.
     let mut links = Vec::new();
     let (mut widest, mut open) = ([0.0_f64; 2], Vec::new());
@@ -99,10 +99,10 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         };
         match read(warnings) {
             Err(error) => warnings.lose(error),
-            Ok((Curve { pieces, .. }, ..)) if pieces.is_empty() => {
+            Ok((ReferenceLine { pieces, .. }, ..)) if pieces.is_empty() => {
                 warnings.lose(format_args!("{name}: it has no geometry"))
             }
-            Ok((Curve { pieces, deviation, longer, turned, joint, is_fitted }, speed, link)) => {
+            Ok((ReferenceLine { pieces, deviation, longer, turned, joint, is_fitted }, speed, link)) => {
                 if is_fitted {
                     warnings.use_option("tolerance");
                 }
@@ -111,8 +111,8 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
                     open.push(name);
                 }
                 // The nodes follow when all roads are known.
-                let edge = Edge::new(named(&id), [0; 2], pieces);
-                let edge = Edge { ways: [true; 2], speed: [speed; 2], deviation, longer, turned, ..edge };
+                let edge = LayoutEdge::new(named(&id), [0; 2], pieces);
+                let edge = LayoutEdge { ways: [true; 2], speed: [speed; 2], deviation, longer, turned, ..edge };
                 if names.add(edge, warnings) == links.len() {
                     links.push(link);
                 }
@@ -129,7 +129,7 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
         );
         warnings.add(WarningCode::Gap, road, problem);
     }
-    let (group, Links { count, apart, widest }) = groups(&names, &links, warnings);
+    let (group, RoadLinks { count, apart, widest }) = groups(&names, &links, warnings);
     if apart > 0 {
         let problem = format!(
             "{apart} of {count} are between reference lines up to {widest:.3} m apart; no route passes there from road to road"
@@ -143,13 +143,13 @@ pub(super) fn read(text: &str, options: &Options, warnings: &mut Warnings) -> Re
 }
 
 /// The name of a road, a number where it is one as numbers are written: `01` is another road than `1`.
-fn named(id: &str) -> Id {
+fn named(id: &str) -> ElementId {
     let number = id.parse().ok().filter(|number: &u64| number.to_string() == id);
-    number.map_or_else(|| Id::Text(id.to_owned()), Id::Number)
+    number.map_or_else(|| ElementId::Text(id.to_owned()), ElementId::Number)
 }
 
 /// A record of the geometry of a road.
-struct Record<'r> {
+struct GeometryRecord<'r> {
     /// For messages.
     name: &'r str,
     at: [f64; 2],
@@ -157,28 +157,28 @@ struct Record<'r> {
     length: f64,
 }
 
-impl Record<'_> {
+impl GeometryRecord<'_> {
     /// The lines and arcs of its shape.
-    fn fit(&self, shape: roxmltree::Node<'_, '_>, tolerance: f64) -> Result<Fit, ImportError> {
+    fn fit(&self, shape: roxmltree::Node<'_, '_>, tolerance: f64) -> Result<BiarcFit, ImportError> {
         let Self { name, at, heading, length } = *self;
         let field = |attribute: &str| number(shape, name, attribute);
         let named = |error: ImportError| ImportError::new(format!("{name}: {error}"));
-        let placed = |shape| vec![Placed { at, heading, shape }];
+        let placed = |shape| vec![PlacedSegment { start: at, heading, shape }];
         let cubic = |names: [&str; 4]| -> Result<Cubic, ImportError> {
             Ok([field(names[0])?, field(names[1])?, field(names[2])?, field(names[3])?])
         };
         match shape.tag_name().name() {
-            "line" => Ok(Fit::exact(placed(PathSegment::Line { length }))),
+            "line" => Ok(BiarcFit::exact(placed(PathSegment::Line { length }))),
             "arc" => {
                 let curvature = field("curvature")?;
                 let sweep = length * curvature;
                 Ok(match curvature.abs().recip() {
-                    radius if radius < STRAIGHT => Fit::exact(placed(PathSegment::Arc { radius, sweep })),
-                    _ => Fit {
+                    radius if radius < STRAIGHT => BiarcFit::exact(placed(PathSegment::Arc { radius, sweep })),
+                    _ => BiarcFit {
                         // How far the arc leaves its tangent.
                         deviation: 0.5 * length * sweep.abs(),
-                        turned: sweep.abs(),
-                        ..Fit::exact(placed(PathSegment::Line { length }))
+                        heading_error: sweep.abs(),
+                        ..BiarcFit::exact(placed(PathSegment::Line { length }))
                     },
                 })
             }
@@ -211,13 +211,13 @@ impl Record<'_> {
             }
             "poly3" => {
                 let v = cubic(["a", "b", "c", "d"])?;
-                let placed = Placed { at, heading, shape: PathSegment::Line { length } };
+                let placed = PlacedSegment { start: at, heading, shape: PathSegment::Line { length } };
                 let (curve, unsure) = polynomial::graph(v, length, placed, tolerance).map_err(named)?;
                 if unsure > tolerance {
                     return Err(ImportError::new(format!("{name}: its length is known to {unsure:.1e} m only")));
                 }
                 let fit = biarc::fit(std::slice::from_ref(&curve), tolerance).map_err(named)?;
-                Ok(Fit { deviation: fit.deviation + unsure, longer: fit.longer + unsure, ..fit })
+                Ok(BiarcFit { deviation: fit.deviation + unsure, length_error: fit.length_error + unsure, ..fit })
             }
             other => Err(ImportError::new(format!("{name}: {other} is not read"))),
         }
@@ -225,8 +225,8 @@ impl Record<'_> {
 }
 
 /// The lines and arcs of a road, and its widest joint.
-fn curve(road: roxmltree::Node<'_, '_>, name: &str, tolerance: f64) -> Result<Curve, ImportError> {
-    let mut curve: Vec<Placed> = Vec::new();
+fn curve(road: roxmltree::Node<'_, '_>, name: &str, tolerance: f64) -> Result<ReferenceLine, ImportError> {
+    let mut curve: Vec<PlacedSegment> = Vec::new();
     let (mut joint, mut deviation, mut turned) = ([0.0_f64; 2], 0.0_f64, 0.0_f64);
     let mut along = 0.0_f64;
     // By how much curves and their arcs differ in length up to here, and how far the end of the last one may be from that of its arcs.
@@ -260,12 +260,12 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str, tolerance: f64) -> Result<Cu
         if length == 0.0 {
             continue;
         }
-        let fit = Record { name: &name, at, heading, length }.fit(element, tolerance)?;
+        let fit = GeometryRecord { name: &name, at, heading, length }.fit(element, tolerance)?;
         if fit.pieces.iter().any(|piece| piece.shape.length() > LIMIT || windings(&piece.shape) > WINDINGS) {
             return Err(ImportError::new(format!("{name}: its length, heading or sweep is out of range")));
         }
         if let (Some(before), Some(first)) = (curve.last(), fit.pieces.first()) {
-            let gap = (distance(before.end(), first.at) - off[0]).max(0.0);
+            let gap = (distance(before.end(), first.start) - off[0]).max(0.0);
             if gap > GAP {
                 return Err(ImportError::new(format!("{name}: it begins {gap:.3} m from the end of the one before")));
             }
@@ -273,11 +273,11 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str, tolerance: f64) -> Result<Cu
             joint = [joint[0].max(gap), joint[1].max(turn - off[1])];
         }
         is_fitted |= fit.bends;
-        off = [fit.deviation, fit.turned];
+        off = [fit.deviation, fit.heading_error];
         // A vehicle on the curve is ahead of one on the arcs, or behind it, by the difference of their lengths.
         deviation = deviation.max(fit.deviation + longer);
-        turned = turned.max(fit.turned + turn_over(&fit.pieces, longer));
-        longer += fit.longer;
+        turned = turned.max(fit.heading_error + turn_over(&fit.pieces, longer));
+        longer += fit.length_error;
         curve.extend(fit.pieces);
     }
     if let Some(length) = optional(road, name, "length")?
@@ -287,27 +287,34 @@ fn curve(road: roxmltree::Node<'_, '_>, name: &str, tolerance: f64) -> Result<Cu
     }
     let [closed, closing, askew] = close(&mut curve);
     let turned = turned + askew + turn_over(&curve, closing);
-    Ok(Curve { pieces: curve, deviation: deviation + closed, longer: longer + closing, turned, joint, is_fitted })
+    Ok(ReferenceLine {
+        pieces: curve,
+        deviation: deviation + closed,
+        longer: longer + closing,
+        turned,
+        joint,
+        is_fitted,
+    })
 }
 
 /// Closes the joints that are open: a line goes from where the piece before ends to its own end, an arc is displaced as a whole.
 /// Returns how far a place may then be from that at the same length of the records, by how much the lengths differ \[m\], and by how much
 /// a line is turned \[rad\].
-fn close(curve: &mut Vec<Placed>) -> [f64; 3] {
-    let Some(mut at) = curve.first().map(|first| first.at) else { return [0.0; 3] };
+fn close(curve: &mut Vec<PlacedSegment>) -> [f64; 3] {
+    let Some(mut at) = curve.first().map(|first| first.start) else { return [0.0; 3] };
     let (mut longer, mut deviation, mut turned) = (0.0_f64, 0.0_f64, 0.0_f64);
     for piece in curve.iter_mut() {
         let asked = *piece;
-        if distance(at, asked.at) > CLOSED {
+        if distance(at, asked.start) > CLOSED {
             *piece = match asked.shape {
-                PathSegment::Line { .. } => Placed::line(at, asked.end()),
-                PathSegment::Arc { .. } => Placed { at, ..asked },
+                PathSegment::Line { .. } => PlacedSegment::line(at, asked.end()),
+                PathSegment::Arc { .. } => PlacedSegment { start: at, ..asked },
             };
         }
         turned = turned.max(wrapped(piece.heading - asked.heading).abs());
         let before = longer;
         longer += piece.shape.length() - asked.shape.length();
-        let apart = distance(at, asked.at).max(distance(piece.end(), asked.end()));
+        let apart = distance(at, asked.start).max(distance(piece.end(), asked.end()));
         if apart > CLOSED || longer.abs() > CLOSED {
             deviation = deviation.max(apart + before.abs().max(longer.abs()));
         }
@@ -349,7 +356,7 @@ fn speed(road: roxmltree::Node<'_, '_>, name: &str, warnings: &mut Warnings) -> 
 }
 
 /// Links between the ends of roads.
-struct Links {
+struct RoadLinks {
     count: usize,
     /// Between ends that are apart.
     apart: usize,
@@ -359,10 +366,10 @@ struct Links {
 
 /// For each end of a road, by 2 × road and one more for its end, the end that stands for all that are linked to it and meet it.
 fn groups(
-    roads: &Names<Edge>,
+    roads: &UniqueNames<LayoutEdge>,
     links: &[Option<roxmltree::Node<'_, '_>>],
     warnings: &mut Warnings,
-) -> (Vec<usize>, Links) {
+) -> (Vec<usize>, RoadLinks) {
     let mut gaps = HashMap::new();
     let mut group: Vec<usize> = (0..2 * links.len()).collect();
     fn find(group: &mut [usize], mut end: usize) -> usize {
@@ -380,7 +387,7 @@ fn groups(
                 // Junctions are roads that are linked to the roads that they join.
                 Some("junction") => continue,
                 Some("road") => {
-                    let other = roads.place(&named(linked.attribute("elementId").unwrap_or_default()));
+                    let other = roads.index_of(&named(linked.attribute("elementId").unwrap_or_default()));
                     other.map_err(|unclear| unclear.to_string())
                 }
                 _ => Err("its elementType is not road and not junction".to_owned()),
@@ -409,7 +416,7 @@ fn groups(
             }
         }
     }
-    let links = Links {
+    let links = RoadLinks {
         count: gaps.len(),
         apart: gaps.values().filter(|gap| **gap > GAP).count(),
         widest: gaps.values().fold(0.0, |widest, gap| f64::max(widest, *gap)),
@@ -429,13 +436,13 @@ fn join(layout: &mut Layout, group: &[usize]) {
             let node = *nodes.entry(group[2 * place + side]).or_insert(next);
             let id = format!("{}/{}", layout.edges[place].id, ["start", "end"][side]);
             if node == next {
-                layout.nodes.push(Node { id: Id::Text(id), name: None, level: 0, at });
+                layout.nodes.push(LayoutNode { id: ElementId::Text(id), name: None, level: 0, point: at });
             } else {
                 layout.aliases.push((id, node));
             }
             layout.edges[place].ends[side] = node;
             // Ends that are linked one to the next can be farther apart than [`GAP`]. No route passes there, but locks have to hold.
-            farthest = farthest.max(distance(at, layout.nodes[node].at));
+            farthest = farthest.max(distance(at, layout.nodes[node].point));
         }
         if farthest > CLOSED {
             layout.edges[place].deviation += farthest;
@@ -444,9 +451,13 @@ fn join(layout: &mut Layout, group: &[usize]) {
 }
 
 /// Position of an end of a road \[m\].
-fn end_of(edges: &[Edge], end: usize) -> [f64; 2] {
+fn end_of(edges: &[LayoutEdge], end: usize) -> [f64; 2] {
     let curve = edges.get(end / 2).map_or(&[][..], |edge| &edge.curve);
-    let at = if end.is_multiple_of(2) { curve.first().map(|first| first.at) } else { curve.last().map(Placed::end) };
+    let at = if end.is_multiple_of(2) {
+        curve.first().map(|first| first.start)
+    } else {
+        curve.last().map(PlacedSegment::end)
+    };
     at.unwrap_or_default()
 }
 

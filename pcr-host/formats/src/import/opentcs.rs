@@ -6,17 +6,17 @@
 mod drawn;
 mod vehicles;
 
-use super::biarc::{Fit, fit};
-use super::layout::{Edge, Id, Layout, Node};
-use super::names::Names;
-use super::nurbs::Bezier;
+use super::biarc::{BiarcFit, fit};
+use super::layout::{ElementId, Layout, LayoutEdge, LayoutNode};
+use super::nurbs::RationalBezier;
+use super::unique_names::UniqueNames;
 use super::warnings::{DIFFERENCE, LENGTH};
 use super::xml::{children, lose_astray, number, only, optional, parse, warn_of_unknown};
-use super::{ImportError, Options, WarningCode, Warnings, facing};
+use super::{ImportError, ImportOptions, WarningCode, Warnings, vehicle_heading};
 use crate::footprint::Footprint;
-use crate::plane::distance;
-use crate::scenario::Placed;
-use drawn::{Bend, Drawn};
+use crate::plane_geometry::distance;
+use crate::scenario::PlacedSegment;
+use drawn::{Bend, VisualProperties};
 use std::f64::consts::FRAC_PI_2;
 
 pub(super) use vehicles::vehicles;
@@ -52,7 +52,7 @@ const UNIT: f64 = 50.0;
 /// Reads a model.
 pub(super) fn read(
     text: &str,
-    options: &Options,
+    options: &ImportOptions,
     outline: Option<&Footprint>,
     warnings: &mut Warnings,
 ) -> Result<Layout, ImportError> {
@@ -69,10 +69,10 @@ pub(super) fn read(
         );
     }
     let visual = only(root, "visualLayout")?;
-    let drawn = Drawn::of(visual)?;
+    let drawn = VisualProperties::of(visual)?;
     lose_astray(root, &["point", "path", "vehicle"], warnings);
     warn_of_unknown(root, &KNOWN, warnings);
-    let mut nodes = Names::new();
+    let mut nodes = UniqueNames::new();
     // How far each point is from its place in the visual layout.
     let mut shifts: Vec<Option<f64>> = Vec::new();
     // Which way vehicles face at which nodes, where that is said [rad].
@@ -80,10 +80,11 @@ pub(super) fn read(
     for (k, point) in children(root, "point").enumerate() {
         warn_of_unknown(point, &OF_POINT, warnings);
         let id = point.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
-        match place(point, &id, &drawn) {
+        match point_coordinates(point, &id, &drawn) {
             Err(error) => warnings.lose(error),
             Ok((at, drawn)) => {
-                let place = nodes.add(Node { id: Id::Text(id.clone()), name: None, level: 0, at }, warnings);
+                let place = nodes
+                    .add(LayoutNode { id: ElementId::Text(id.clone()), name: None, level: 0, point: at }, warnings);
                 shifts.resize(shifts.len().max(place + 1), None);
                 let shift = drawn.map(|drawn| distance(at, drawn));
                 shifts[place] = shifts[place].into_iter().chain(shift).reduce(f64::max);
@@ -107,30 +108,30 @@ pub(super) fn read(
         }
     };
     let units = [unit("scaleX")?, unit("scaleY")?.map(|unit| -unit)];
-    let mut edges = Names::new();
+    let mut edges = UniqueNames::new();
     for (k, path) in children(root, "path").enumerate() {
         warn_of_unknown(path, &OF_PATH, warnings);
         let id = path.attribute("name").map_or_else(|| format!("at place {}", k + 1), str::to_owned);
         match edge(
             path,
             id,
-            &Frame { nodes: &nodes, shifts: &shifts, units, drawn: &drawn },
+            &ModelFrame { nodes: &nodes, shifts: &shifts, units, drawn: &drawn },
             options.tolerance(),
             warnings,
         ) {
             Ok(mut edge) => {
                 // In the other direction a vehicle drives backward: it does not turn round.
-                if edge.ways[1] && facing::is_other_backward(outline) {
+                if edge.ways[1] && vehicle_heading::is_other_backward(outline) {
                     edge.ways[1] = false;
                     edge.closed |= !edge.ways[0];
-                    warnings.lose(format_args!("path {}, maxReverseVelocity: {}", edge.id, facing::BACKWARD));
+                    warnings.lose(format_args!("path {}, maxReverseVelocity: {}", edge.id, vehicle_heading::BACKWARD));
                 }
                 edges.add(edge, warnings);
             }
             Err(error) => warnings.lose(error),
         }
     }
-    facing::warn_of_nodes("point", ANGLE, &angles, nodes.list(), edges.list(), outline, warnings);
+    vehicle_heading::warn_of_nodes("point", ANGLE, &angles, nodes.list(), edges.list(), outline, warnings);
     let is_outline = |node: roxmltree::Node<'_, '_>| {
         node.has_tag_name("vehicleEnvelope") && node.children().any(|vertex| vertex.is_element())
     };
@@ -161,21 +162,21 @@ pub(super) fn read(
 }
 
 /// Where points and control points are.
-struct Frame<'a> {
-    nodes: &'a Names<Node>,
+struct ModelFrame<'a> {
+    nodes: &'a UniqueNames<LayoutNode>,
     /// How far each node is from its place in the visual layout, where control points are, if that is said \[m\].
     shifts: &'a [Option<f64>],
     /// Metres of a unit of the visual layout, if it says that.
     units: [Option<f64>; 2],
     /// How the visual layout draws paths, up to version 0.0.3.
-    drawn: &'a Drawn<'a>,
+    drawn: &'a VisualProperties<'a>,
 }
 
 /// Where a point is, and where it is drawn, if that is said \[m\].
-fn place(
+fn point_coordinates(
     point: roxmltree::Node<'_, '_>,
     id: &str,
-    elsewhere: &Drawn<'_>,
+    elsewhere: &VisualProperties<'_>,
 ) -> Result<([f64; 2], Option<[f64; 2]>), ImportError> {
     let name = &format!("point {id}");
     // Models before version 6 have other names.
@@ -232,16 +233,16 @@ fn angle(point: roxmltree::Node<'_, '_>, name: &str) -> Result<Option<f64>, Impo
 fn edge(
     path: roxmltree::Node<'_, '_>,
     id: String,
-    frame: &Frame<'_>,
+    frame: &ModelFrame<'_>,
     tolerance: f64,
     warnings: &mut Warnings,
-) -> Result<Edge, ImportError> {
+) -> Result<LayoutEdge, ImportError> {
     let name = format!("path {id}");
     let nodes = frame.nodes;
     let end = |attribute: &str| {
         let problem = |problem: &dyn std::fmt::Display| ImportError::new(format!("{name}, {attribute}: {problem}"));
         let point = path.attribute(attribute).ok_or_else(|| problem(&"missing"))?;
-        nodes.place(&Id::Text(point.to_owned())).map_err(|unclear| problem(&unclear))
+        nodes.index_of(&ElementId::Text(point.to_owned())).map_err(|unclear| problem(&unclear))
     };
     let ends = [end("sourcePoint")?, end("destinationPoint")?];
     let bend = bend(path, &id, &name, frame)?;
@@ -275,14 +276,14 @@ fn edge(
             format!("{why}: no routes lead over it, and locks count it all the same"),
         );
     }
-    let edge = Edge {
+    let edge = LayoutEdge {
         ways: [ways[0] || closed && !ways[1], ways[1]],
         closed,
         speed: speed.map(|speed| speed.filter(|speed| *speed > 0.0)),
         deviation: fit.deviation,
-        longer: fit.longer,
-        turned: fit.turned,
-        ..Edge::new(Id::Text(id), ends, fit.pieces)
+        longer: fit.length_error,
+        turned: fit.heading_error,
+        ..LayoutEdge::new(ElementId::Text(id), ends, fit.pieces)
     };
     if speed[0].is_none() {
         warnings.add(
@@ -303,7 +304,7 @@ fn edge(
 }
 
 /// How a path is drawn: by its own layout, or by the visual layout.
-fn bend(path: roxmltree::Node<'_, '_>, id: &str, name: &str, frame: &Frame<'_>) -> Result<Bend, ImportError> {
+fn bend(path: roxmltree::Node<'_, '_>, id: &str, name: &str, frame: &ModelFrame<'_>) -> Result<Bend, ImportError> {
     let elsewhere = frame.drawn.path(id)?;
     let Some(layout) = only(path, "pathLayout")? else {
         return Ok(elsewhere.unwrap_or(Bend { kind: "DIRECT".to_owned(), points: Vec::new() }));
@@ -323,8 +324,14 @@ fn bend(path: roxmltree::Node<'_, '_>, id: &str, name: &str, frame: &Frame<'_>) 
 }
 
 /// The lines and arcs of a path.
-fn curve(bend: Bend, name: &str, ends: [usize; 2], frame: &Frame<'_>, tolerance: f64) -> Result<Fit, ImportError> {
-    let [from, to] = ends.map(|node| frame.nodes.list()[node].at);
+fn curve(
+    bend: Bend,
+    name: &str,
+    ends: [usize; 2],
+    frame: &ModelFrame<'_>,
+    tolerance: f64,
+) -> Result<BiarcFit, ImportError> {
+    let [from, to] = ends.map(|node| frame.nodes.list()[node].point);
     let mut points = vec![from];
     if !bend.points.is_empty() {
         let missing = || {
@@ -342,11 +349,16 @@ fn curve(bend: Bend, name: &str, ends: [usize; 2], frame: &Frame<'_>, tolerance:
     let last = points.last().map_or(f64::INFINITY, |from| distance(*from, to));
     let askew = if shift > 0.0 { (shift / first.min(last)).min(1.0) * FRAC_PI_2 } else { 0.0 };
     let fit = shape(&bend.kind, name, points, to, tolerance)?;
-    Ok(Fit { deviation: fit.deviation + shift + legs, longer: fit.longer + legs, turned: fit.turned + askew, ..fit })
+    Ok(BiarcFit {
+        deviation: fit.deviation + shift + legs,
+        length_error: fit.length_error + legs,
+        heading_error: fit.heading_error + askew,
+        ..fit
+    })
 }
 
 /// How far the control points of a path may be from where they are meant to be \[m\].
-fn shift(name: &str, ends: [usize; 2], frame: &Frame<'_>) -> Result<f64, ImportError> {
+fn shift(name: &str, ends: [usize; 2], frame: &ModelFrame<'_>) -> Result<f64, ImportError> {
     let shift = ends.iter().filter_map(|node| *frame.shifts.get(*node)?).fold(0.0, f64::max);
     if shift > SHIFT {
         let problem = "its control points are in the frame of the visual layout, where its end points are";
@@ -358,20 +370,27 @@ fn shift(name: &str, ends: [usize; 2], frame: &Frame<'_>) -> Result<f64, ImportE
 }
 
 /// The lines and arcs through points, or for their curve.
-fn shape(kind: &str, name: &str, mut points: Vec<[f64; 2]>, to: [f64; 2], tolerance: f64) -> Result<Fit, ImportError> {
+fn shape(
+    kind: &str,
+    name: &str,
+    mut points: Vec<[f64; 2]>,
+    to: [f64; 2],
+    tolerance: f64,
+) -> Result<BiarcFit, ImportError> {
     points.push(to);
     let named = |error: ImportError| ImportError::new(format!("{name}: {error}"));
     match kind {
         // Cubic curves, one after the other.
         "BEZIER" | "BEZIER_3" if points.len() > 3 && points.len() % 3 == 1 => {
-            let curves: Vec<Bezier> = (0..points.len() / 3).map(|k| Bezier::new(&points[3 * k..3 * k + 4])).collect();
+            let curves: Vec<RationalBezier> =
+                (0..points.len() / 3).map(|k| RationalBezier::new(&points[3 * k..3 * k + 4])).collect();
             fit(&curves, tolerance).map_err(named)
         }
         // A straight path with control points could be either.
         kind @ ("DIRECT" | "POLYPATH") if kind == "POLYPATH" || points.len() == 2 => {
-            let lines = points.windows(2).map(|pair| Placed::line(pair[0], pair[1]));
+            let lines = points.windows(2).map(|pair| PlacedSegment::line(pair[0], pair[1]));
             let pieces = lines.filter(|line| line.shape.length() > 0.0).collect();
-            Ok(Fit::exact(pieces))
+            Ok(BiarcFit::exact(pieces))
         }
         other => Err(ImportError::new(format!("{name}: {other} with {} control points is not read", points.len() - 2))),
     }

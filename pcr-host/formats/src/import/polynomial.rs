@@ -4,9 +4,9 @@
 //! no arc length. A `poly3` is the graph v(u), and ends where its arc length is that of the record.
 
 use super::ImportError;
-use super::biarc::{Part, parts};
-use super::nurbs::Bezier;
-use crate::scenario::Placed;
+use super::biarc::{CurvePart, parts};
+use super::nurbs::RationalBezier;
+use crate::scenario::PlacedSegment;
 
 /// Coefficients of a polynomial, from the constant one.
 pub(super) type Cubic = [f64; 4];
@@ -27,7 +27,7 @@ const PARTS: u32 = 64;
 const HALVINGS: u32 = 14;
 
 /// The curve (u, v) with p from 0 to `last`, in the frame of a pose.
-pub(super) fn parametric([u, v]: [Cubic; 2], last: f64, at: [f64; 2], heading: f64) -> Bezier {
+pub(super) fn parametric([u, v]: [Cubic; 2], last: f64, at: [f64; 2], heading: f64) -> RationalBezier {
     // Control points of the coordinates over p / last.
     let control = |[a, b, c, d]: Cubic| {
         let [b, c, d] = [b * last, c * last * last, d * last * last * last];
@@ -35,7 +35,7 @@ pub(super) fn parametric([u, v]: [Cubic; 2], last: f64, at: [f64; 2], heading: f
     };
     let (sin, cos) = heading.sin_cos();
     let [u, v] = [control(u), control(v)];
-    Bezier::new(&[0, 1, 2, 3].map(|k| [at[0] + cos * u[k] - sin * v[k], at[1] + sin * u[k] + cos * v[k]]))
+    RationalBezier::new(&[0, 1, 2, 3].map(|k| [at[0] + cos * u[k] - sin * v[k], at[1] + sin * u[k] + cos * v[k]]))
 }
 
 /// The graph v(u) up to this arc length \[m\], in the frame of a pose; and a bound of how far its own length is from that.
@@ -45,9 +45,9 @@ pub(super) fn parametric([u, v]: [Cubic; 2], last: f64, at: [f64; 2], heading: f
 pub(super) fn graph(
     v: Cubic,
     length: f64,
-    Placed { at, heading, .. }: Placed,
+    PlacedSegment { start: at, heading, .. }: PlacedSegment,
     tolerance: f64,
-) -> Result<(Bezier, f64), ImportError> {
+) -> Result<(RationalBezier, f64), ImportError> {
     let out_of_range = || ImportError::new("its polynomial is out of range");
     let [_, b, c, d] = v;
     let way = |last: f64| -> f64 {
@@ -74,8 +74,8 @@ pub(super) fn graph(
 }
 
 /// Bounds of the length of a curve \[m\].
-pub(super) fn length_of(curve: &Bezier, tolerance: f64) -> [f64; 2] {
-    let mut short: Vec<Part> = Vec::new();
+pub(super) fn length_of(curve: &RationalBezier, tolerance: f64) -> [f64; 2] {
+    let mut short: Vec<CurvePart> = Vec::new();
     parts(curve, tolerance / 4096.0, HALVINGS, &mut short);
     short.iter().fold([0.0; 2], |sum, part| [sum[0] + part.length[0], sum[1] + part.length[1]])
 }
@@ -83,7 +83,7 @@ pub(super) fn length_of(curve: &Bezier, tolerance: f64) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plane::distance;
+    use crate::plane_geometry::distance;
 
     #[test]
     fn points_are_those_of_the_polynomials() {
@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn graphs_end_at_their_length() {
-        let placed = Placed::line([0.0, 0.0], [1.0, 0.0]);
+        let placed = PlacedSegment::line([0.0, 0.0], [1.0, 0.0]);
         // A line of slope 3/4, and parabolas, whose length has a closed form.
         let (line, unsure) = graph([0.0, 0.75, 0.0, 0.0], 10.0, placed, 1e-3).unwrap();
         assert!(distance(line.ends()[1], [8.0, 6.0]) < 1e-9 && unsure < 1e-9, "{:?} {unsure}", line.ends());

@@ -33,14 +33,14 @@ pub(super) struct Projection {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Plane {
-    TransverseMercator(Series),
+    TransverseMercator(TransverseMercator),
     /// Pseudo-Mercator of the web: a sphere.
     WebMercator,
 }
 
 /// A transverse Mercator projection: its constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Series {
+struct TransverseMercator {
     /// Longitude of the central meridian \[degrees\].
     meridian: f64,
     eccentricity: f64,
@@ -51,7 +51,7 @@ struct Series {
     shift: [f64; 2],
 }
 
-impl Series {
+impl TransverseMercator {
     /// From the flattening, the origin (longitude and latitude, degrees), the scale there, and the easting and northing of the origin.
     fn new(flattening: f64, [meridian, latitude]: [f64; 2], scale: f64, [easting, northing]: [f64; 2]) -> Self {
         let n = flattening / (2.0 - flattening);
@@ -105,7 +105,9 @@ impl Projection {
         let code = name.trim().to_ascii_uppercase();
         let code: u32 = code.strip_prefix("EPSG:").and_then(|code| code.parse().ok()).ok_or_else(unknown)?;
         let zone = |first: u32| 6.0 * f64::from(code - first) - 183.0;
-        let utm = |flattening, meridian, northing| Series::new(flattening, [meridian, 0.0], 0.9996, [5e5, northing]);
+        let utm = |flattening, meridian, northing| {
+            TransverseMercator::new(flattening, [meridian, 0.0], 0.9996, [5e5, northing])
+        };
         let (series, northing_first) = match code {
             3857 => return Ok(Self { plane: Plane::WebMercator, northing_first: false }),
             32601..=32660 => (utm(WGS_84, zone(32600), 0.0), false),
@@ -114,9 +116,9 @@ impl Projection {
             3414 => {
                 // 103° 50' and 1° 22', with the digits of the database that PROJ uses.
                 let origin = [103.833333333333, 1.36666666666667];
-                (Series::new(WGS_84, origin, 1.0, [28_001.642, 38_744.572]), true)
+                (TransverseMercator::new(WGS_84, origin, 1.0, [28_001.642, 38_744.572]), true)
             }
-            2193 => (Series::new(GRS_80, [173.0, 0.0], 0.9996, [1.6e6, 1e7]), true),
+            2193 => (TransverseMercator::new(GRS_80, [173.0, 0.0], 0.9996, [1.6e6, 1e7]), true),
             _ => return Err(unknown()),
         };
         Ok(Self { plane: Plane::TransverseMercator(series), northing_first })

@@ -7,16 +7,16 @@
 //! stops and turns where two lanes meet at an angle. Lanes and vertices have no names of their own; they are named by
 //! their level and their index in its list, from 0, as in `L1/12`.
 
+use super::json_access::JsonObject;
 use super::keys::Keys;
-use super::layout::{Edge, Id, Layout, Node};
-use super::levels::{self, Placing, Reference, ends, parameter};
+use super::layout::{ElementId, Layout, LayoutEdge, LayoutNode};
+use super::levels::{self, LevelTransform, ReferenceLevel, ends, parameter};
 use super::projection::Projection;
-use super::value::Object;
-use super::vehicle::{Facing, Given};
-use super::{ImportError, Options, WarningCode, Warnings};
+use super::vehicle::{Facing, FileVehicleTraits};
+use super::{ImportError, ImportOptions, WarningCode, Warnings};
 use crate::footprint::Footprint;
-use crate::scenario::Placed;
-use crate::yaml::Document;
+use crate::scenario::PlacedSegment;
+use crate::yaml::YamlDocument;
 use serde_json::Value;
 use std::collections::{BTreeSet, HashMap};
 
@@ -69,8 +69,8 @@ const LIMITS: Keys = Keys::new(&["linear", "angular"], &[]);
 
 /// Reads the vehicles from the configuration of a fleet: the footprint is the radius, and the vicinity beyond it is the margin.
 /// `texts` has its scalars as they are written: a name may be any of them.
-pub(super) fn fleet(value: &Value, texts: &Value, warnings: &mut Warnings) -> Result<Given, ImportError> {
-    let root = Object::new("fleet", value)?;
+pub(super) fn fleet(value: &Value, texts: &Value, warnings: &mut Warnings) -> Result<FileVehicleTraits, ImportError> {
+    let root = JsonObject::new("fleet", value)?;
     let fleet = root.object("rmf_fleet")?.ok_or_else(|| root.missing("rmf_fleet"))?;
     FLEET.check(&fleet, warnings)?;
     let name = match fleet.get("name") {
@@ -80,7 +80,7 @@ pub(super) fn fleet(value: &Value, texts: &Value, warnings: &mut Warnings) -> Re
             Some(text.ok_or_else(|| ImportError::new("fleet, rmf_fleet, name: a name is expected"))?.to_owned())
         }
     };
-    let mut given = Given { name, ..Given::default() };
+    let mut given = FileVehicleTraits { name, ..FileVehicleTraits::default() };
     if let Some(profile) = fleet.object("profile")? {
         PROFILE.check(&profile, warnings)?;
         given.radius = profile.positive("footprint")?;
@@ -119,13 +119,13 @@ pub fn is_navigation_graph(root: &Value) -> bool {
 /// Reads a building, or a navigation graph.
 pub(super) fn read(
     text: &str,
-    options: &Options,
+    options: &ImportOptions,
     outline: Option<&Footprint>,
     warnings: &mut Warnings,
 ) -> Result<Layout, ImportError> {
-    let document = Document::read(text).map_err(ImportError::of_yaml)?;
+    let document = YamlDocument::read(text).map_err(ImportError::of_yaml)?;
     let value = document.value().map_err(ImportError::of_yaml)?;
-    let root = Object::new("building", &value)?;
+    let root = JsonObject::new("building", &value)?;
     if root.get("rmf_fleet").is_some() {
         return Err(ImportError::new("it is the configuration of a fleet; give it beside a building, with --fleet"));
     }
@@ -142,24 +142,24 @@ pub(super) fn read(
     }
     let texts = document.texts().map_err(ImportError::of_yaml)?;
     let text = |field: &str| root.get(field).and_then(|_| texts.get(field)?.as_str());
-    let all: Vec<levels::Level<'_>> = levels
+    let all: Vec<levels::BuildingLevel<'_>> = levels
         .members()
-        .map(|(name, value)| levels::Level::new(name, value, &texts["levels"][name], graph))
+        .map(|(name, value)| levels::BuildingLevel::new(name, value, &texts["levels"][name], graph))
         .collect::<Result<_, _>>()?;
     let frame = match root.text("coordinate_system")? {
-        None if graph => Frame::Metres,
+        None if graph => RmfFrame::Metres,
         None | Some("reference_image") => {
             // The first one of the file, whose order a value of JSON does not have; a level may also be called null.
             let first = document.names("levels").map_err(ImportError::of_yaml)?.into_iter().next();
             let null =
                 || texts.get("reference_level_name")?.as_str().filter(|name| all.iter().any(|it| it.name == *name));
             let named = text("reference_level_name").or_else(null).or(first.as_deref());
-            Frame::Images(Reference::new(&all, named, warnings)?)
+            RmfFrame::Images(ReferenceLevel::new(&all, named, warnings)?)
         }
-        Some("cartesian_meters") => Frame::Metres,
+        Some("cartesian_meters") => RmfFrame::Metres,
         // The building tools write metres into navigation graphs of such buildings, and no name of a system.
-        Some("wgs84") if graph => Frame::Metres,
-        Some("wgs84") => Frame::Earth(earth(&root, outline, warnings)?),
+        Some("wgs84") if graph => RmfFrame::Metres,
+        Some("wgs84") => RmfFrame::Earth(earth(&root, outline, warnings)?),
         Some(other) => return Err(ImportError::new(format!("building, coordinate_system: {other} is not read"))),
     };
     let mut layout = Layout {
@@ -176,11 +176,11 @@ pub(super) fn read(
             continue;
         }
         let placing = match &frame {
-            Frame::Metres => Placing::METRES,
-            Frame::Images(reference) => reference.place(source, warnings)?,
-            Frame::Earth(projection) => Placing::Earth(*projection),
+            RmfFrame::Metres => LevelTransform::METRES,
+            RmfFrame::Images(reference) => reference.level_transform(source, warnings)?,
+            RmfFrame::Earth(projection) => LevelTransform::Earth(*projection),
         };
-        let mut level = Level { source, graph, placing, outline, nodes: HashMap::new(), layout: &mut layout };
+        let mut level = RmfLevel { source, graph, placing, outline, nodes: HashMap::new(), layout: &mut layout };
         for (k, lane) in lanes.iter().enumerate() {
             match level.lane(k, lane, options, &mut graphs, warnings) {
                 Ok(Some((code, problem))) => warnings.add(code, format_args!("lane {name}/{k}"), problem),
@@ -211,17 +211,21 @@ pub(super) fn read(
 }
 
 /// The coordinates of a file.
-enum Frame<'j> {
+enum RmfFrame<'j> {
     /// Metres, y up.
     Metres,
     /// Pixels of floor plans, y down.
-    Images(Reference<'j>),
+    Images(ReferenceLevel<'j>),
     /// Longitudes and latitudes.
     Earth(Projection),
 }
 
 /// The projection of a building with longitudes and latitudes: that of its `generate_crs`, as its building tools use it.
-fn earth(root: &Object<'_>, outline: Option<&Footprint>, warnings: &mut Warnings) -> Result<Projection, ImportError> {
+fn earth(
+    root: &JsonObject<'_>,
+    outline: Option<&Footprint>,
+    warnings: &mut Warnings,
+) -> Result<Projection, ImportError> {
     let refused = |problem: String| ImportError::new(format!("building, parameters, generate_crs: {problem}"));
     let parameters = root.object("parameters")?.ok_or_else(|| root.missing("parameters"))?;
     let value = parameters.get("generate_crs").ok_or_else(|| parameters.missing("generate_crs"))?;
@@ -240,12 +244,12 @@ fn earth(root: &Object<'_>, outline: Option<&Footprint>, warnings: &mut Warnings
     Ok(projection)
 }
 
-struct Level<'a> {
-    source: &'a levels::Level<'a>,
+struct RmfLevel<'a> {
+    source: &'a levels::BuildingLevel<'a>,
     /// Whether the file is a navigation graph.
     graph: bool,
     /// From the coordinates of its vertices to metres.
-    placing: Placing,
+    placing: LevelTransform,
     /// The outline of the vehicle, if its heading matters.
     outline: Option<&'a Footprint>,
     /// Places of the nodes in the layout, by vertex.
@@ -253,13 +257,18 @@ struct Level<'a> {
     layout: &'a mut Layout,
 }
 
-impl Level<'_> {
+impl RmfLevel<'_> {
     /// The node of a vertex, which is at this place \[m\].
     fn node(&mut self, vertex: usize, at: [f64; 2]) -> usize {
         *self.nodes.entry(vertex).or_insert_with(|| {
             let name = self.source.vertices.get(vertex).and_then(|vertex| vertex.as_ref()?.1.clone());
             let level = self.layout.levels.len();
-            self.layout.nodes.push(Node { id: Id::Text(format!("{}/{vertex}", self.source.name)), name, level, at });
+            self.layout.nodes.push(LayoutNode {
+                id: ElementId::Text(format!("{}/{vertex}", self.source.name)),
+                name,
+                level,
+                point: at,
+            });
             self.layout.nodes.len() - 1
         })
     }
@@ -269,7 +278,7 @@ impl Level<'_> {
         &mut self,
         k: usize,
         value: &Value,
-        options: &Options,
+        options: &ImportOptions,
         graphs: &mut BTreeSet<u64>,
         warnings: &mut Warnings,
     ) -> Result<Option<(WarningCode, &'static str)>, String> {
@@ -279,7 +288,7 @@ impl Level<'_> {
         }
         if let Some(parameters) = parameters {
             // A message of a lane names it anyway.
-            let parameters = Object::new("its parameters", parameters).map_err(|error| error.to_string())?;
+            let parameters = JsonObject::new("its parameters", parameters).map_err(|error| error.to_string())?;
             let mut odd = Warnings::default();
             let keys = if self.graph { GRAPH_LANE } else { LANE };
             keys.check(&parameters, &mut odd).map_err(|error| error.to_string())?;
@@ -304,7 +313,7 @@ impl Level<'_> {
         let at = [self.placing.apply(both[0].1)?, self.placing.apply(both[1].1)?];
         graphs.insert(graph);
         let [from, to] = [0, 1].map(|end| self.node(both[end].0, at[end]));
-        let line = Placed::line(at[0], at[1]);
+        let line = PlacedSegment::line(at[0], at[1]);
         let straight = line.shape.length() > 0.0;
         // Fleet adapters take a lane of a navigation graph one way, whatever else it says.
         let two_way = typed(parameters, if self.graph { "is_bidirectional" } else { "bidirectional" }, Value::as_bool)?;
@@ -324,11 +333,11 @@ impl Level<'_> {
         let not_negative = |value: &Value| value.as_f64().filter(|speed| *speed >= 0.0);
         let speed = typed(parameters, "speed_limit", not_negative)?.filter(|speed| *speed > 0.0);
         let curve = if straight { vec![line] } else { Vec::new() };
-        self.layout.edges.push(Edge {
+        self.layout.edges.push(LayoutEdge {
             ways: [true, both_ways && !self.graph],
             facing,
             speed: [speed.filter(|speed| *speed < 1e6); 2],
-            ..Edge::new(Id::Text(format!("{}/{k}", self.source.name)), [from, to], curve)
+            ..LayoutEdge::new(ElementId::Text(format!("{}/{k}", self.source.name)), [from, to], curve)
         });
         Ok(match () {
             () if !straight => Some((WarningCode::ZeroLength, "its length is 0")),

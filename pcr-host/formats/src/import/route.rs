@@ -5,12 +5,12 @@
 //! out if this distance is not less than the rest of the edge before (the arc of the previous corner has taken its
 //! part), or than the edge after. Without an arc the vehicle stops and turns.
 
-use super::layout::{Edge, Layout};
-use super::trace::{Trace, Tracer};
-use super::vehicle::{Asked, Facing};
-use super::{ImportError, Options, Vehicle, WarningCode, Warnings, facing, speed};
-use crate::plane::distance;
-use crate::scenario::Placed;
+use super::layout::{Layout, LayoutEdge};
+use super::path_builder::{LimitedPath, LimitedPathBuilder};
+use super::vehicle::{Facing, RouteRequest};
+use super::{ImportError, ImportOptions, VehicleTraits, WarningCode, Warnings, speed, vehicle_heading};
+use crate::plane_geometry::distance;
+use crate::scenario::PlacedSegment;
 use crate::scenario::{Agent, PathSegment, Scenario, label};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -24,22 +24,22 @@ pub(super) const GAP: f64 = 0.05;
 
 /// An edge, and whether it is travelled from its end to its beginning.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step<'a> {
+pub struct RouteStep<'a> {
     /// The edge.
-    pub edge: &'a Edge,
+    pub edge: &'a LayoutEdge,
     /// From its end to its beginning.
     pub backward: bool,
 }
 
-impl Edge {
+impl LayoutEdge {
     /// The directions in which it may be travelled, also if it is closed.
-    pub fn steps(&self) -> impl Iterator<Item = Step<'_>> {
+    pub fn steps(&self) -> impl Iterator<Item = RouteStep<'_>> {
         let ways = [false, true].into_iter().filter(|&backward| self.ways[usize::from(backward)]);
-        ways.map(|backward| Step { edge: self, backward })
+        ways.map(|backward| RouteStep { edge: self, backward })
     }
 }
 
-impl Step<'_> {
+impl RouteStep<'_> {
     /// The node from which it goes.
     pub fn origin(self) -> usize {
         self.edge.ends[usize::from(self.backward)]
@@ -81,9 +81,9 @@ impl Step<'_> {
     }
 
     /// Its lines and arcs in the direction of travel.
-    pub fn curve(self) -> Vec<Placed> {
+    pub fn curve(self) -> Vec<PlacedSegment> {
         match self.backward {
-            true => self.edge.curve.iter().rev().map(Placed::reversed).collect(),
+            true => self.edge.curve.iter().rev().map(PlacedSegment::reversed).collect(),
             false => self.edge.curve.clone(),
         }
     }
@@ -91,27 +91,27 @@ impl Step<'_> {
 
 /// A node that is reached, the nearest first; among equals the one of the lowest place.
 #[derive(PartialEq)]
-struct Reached {
+struct FrontierNode {
     length: f64,
     node: usize,
 }
 
-impl Eq for Reached {}
+impl Eq for FrontierNode {}
 
-impl Ord for Reached {
+impl Ord for FrontierNode {
     fn cmp(&self, other: &Self) -> Ordering {
         other.length.total_cmp(&self.length).then(other.node.cmp(&self.node))
     }
 }
 
-impl PartialOrd for Reached {
+impl PartialOrd for FrontierNode {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
 /// The edges of the shortest way, by length; of equally long ones that of the edges that come first in the file.
-pub(super) fn shortest(layout: &Layout, ends: [usize; 2]) -> Option<Vec<Step<'_>>> {
+pub(super) fn shortest(layout: &Layout, ends: [usize; 2]) -> Option<Vec<RouteStep<'_>>> {
     cheapest(layout, ends, |step| step.edge.length())
 }
 
@@ -119,18 +119,18 @@ pub(super) fn shortest(layout: &Layout, ends: [usize; 2]) -> Option<Vec<Step<'_>
 pub fn cheapest<'a>(
     layout: &'a Layout,
     [from, to]: [usize; 2],
-    cost: impl Fn(Step<'a>) -> f64,
-) -> Option<Vec<Step<'a>>> {
+    cost: impl Fn(RouteStep<'a>) -> f64,
+) -> Option<Vec<RouteStep<'a>>> {
     let mut leaving = vec![Vec::new(); layout.nodes.len()];
-    for step in layout.edges.iter().filter(|edge| !edge.closed).flat_map(Edge::steps) {
+    for step in layout.edges.iter().filter(|edge| !edge.closed).flat_map(LayoutEdge::steps) {
         if let Some(steps) = leaving.get_mut(step.origin()) {
             steps.push((step.origin(), step));
         }
     }
     let mut best = vec![(f64::INFINITY, None); layout.nodes.len()];
     best.get_mut(from)?.0 = 0.0;
-    let mut heap = BinaryHeap::from([Reached { length: 0.0, node: from }]);
-    while let Some(Reached { length, node }) = heap.pop() {
+    let mut heap = BinaryHeap::from([FrontierNode { length: 0.0, node: from }]);
+    while let Some(FrontierNode { length, node }) = heap.pop() {
         if node == to {
             break;
         }
@@ -142,7 +142,7 @@ pub fn cheapest<'a>(
             let target = best.get_mut(step.target())?;
             if total < target.0 {
                 *target = (total, Some((origin, step)));
-                heap.push(Reached { length: total, node: step.target() });
+                heap.push(FrontierNode { length: total, node: step.target() });
             }
         }
     }
@@ -158,9 +158,14 @@ pub fn cheapest<'a>(
 }
 
 /// The arcs that round the corners at the ends of some edges, where there is one.
-fn corner_arcs(layout: &Layout, from: usize, steps: &[Step<'_>], radius: Option<f64>) -> Vec<Option<Placed>> {
+fn corner_arcs(
+    layout: &Layout,
+    from: usize,
+    steps: &[RouteStep<'_>],
+    radius: Option<f64>,
+) -> Vec<Option<PlacedSegment>> {
     let mut position = layout.position(from);
-    let arc = |(k, step): (usize, &Step<'_>)| {
+    let arc = |(k, step): (usize, &RouteStep<'_>)| {
         let target = layout.position(step.target());
         let next = steps.get(k + 1).filter(|next| step.edge.is_straight() && next.edge.is_straight());
         let arc = next
@@ -175,10 +180,10 @@ fn corner_arcs(layout: &Layout, from: usize, steps: &[Step<'_>], radius: Option<
 }
 
 /// The path along some edges, from the node where it begins.
-pub(super) fn trace(layout: &Layout, from: usize, steps: &[Step<'_>]) -> Result<Trace, ImportError> {
+pub(super) fn trace(layout: &Layout, from: usize, steps: &[RouteStep<'_>]) -> Result<LimitedPath, ImportError> {
     let at = |node: usize| layout.position(node);
     let arcs = corner_arcs(layout, from, steps, layout.corner_radius);
-    let mut tracer = Tracer::default();
+    let mut tracer = LimitedPathBuilder::default();
     let mut position = at(from);
     // If curves and their arcs differ in length, the vehicle is ahead of its path, or behind it, from there on.
     let (mut deviation, mut turned, mut longer) = (0.0_f64, 0.0_f64, 0.0);
@@ -190,7 +195,7 @@ pub(super) fn trace(layout: &Layout, from: usize, steps: &[Step<'_>]) -> Result<
         longer += edge.longer;
         let curve = step.curve();
         if !edge.is_straight() {
-            let ends = curve.first().zip(curve.last()).map(|(first, last)| (first.at, last.end()));
+            let ends = curve.first().zip(curve.last()).map(|(first, last)| (first.start, last.end()));
             let (begin, end) = ends.unwrap_or((position, target));
             for (point, node, place) in [(begin, position, "begins"), (end, target, "ends")] {
                 let gap = distance(point, node);
@@ -205,7 +210,7 @@ pub(super) fn trace(layout: &Layout, from: usize, steps: &[Step<'_>]) -> Result<
         }
         match arc {
             Some(arc) => {
-                tracer.line(position, arc.at);
+                tracer.line(position, arc.start);
                 // It stands for the end of this edge and for the begin of the next one, whose limits may be others.
                 let next = steps.get(k + 1).map(|next| (next.speed(), next.edge.rotation));
                 match next.filter(|next| *next != (step.speed(), edge.rotation)) {
@@ -232,11 +237,11 @@ pub(super) fn trace(layout: &Layout, from: usize, steps: &[Step<'_>]) -> Result<
 }
 
 /// Largest turn of lines and arcs over a length \[rad\].
-pub(super) fn turn_over(pieces: &[Placed], length: f64) -> f64 {
-    length * pieces.iter().filter_map(Placed::radius).fold(0.0, |most: f64, radius| most.max(radius.recip()))
+pub(super) fn turn_over(pieces: &[PlacedSegment], length: f64) -> f64 {
+    length * pieces.iter().filter_map(PlacedSegment::radius).fold(0.0, |most: f64, radius| most.max(radius.recip()))
 }
 
-impl Edge {
+impl LayoutEdge {
     /// Whether it is one line from node to node, or nothing.
     fn is_straight(&self) -> bool {
         match self.curve.as_slice() {
@@ -271,7 +276,7 @@ impl Layout {
             for &(before, from) in incoming {
                 for &(after, to) in outgoing {
                     let [start, corner, end] = [from, node, to].map(|node| self.position(node));
-                    let Some(Placed { shape: PathSegment::Arc { sweep, .. }, .. }) =
+                    let Some(PlacedSegment { shape: PathSegment::Arc { sweep, .. }, .. }) =
                         corner_arc(start, corner, end, radius)
                     else {
                         continue;
@@ -294,7 +299,7 @@ impl Layout {
 }
 
 /// The arc with which nav2 rounds the corner between two edges, `None` where it leaves it out.
-pub(super) fn corner_arc(start: [f64; 2], corner: [f64; 2], end: [f64; 2], radius: f64) -> Option<Placed> {
+pub(super) fn corner_arc(start: [f64; 2], corner: [f64; 2], end: [f64; 2], radius: f64) -> Option<PlacedSegment> {
     let back = [start[0] - corner[0], start[1] - corner[1]];
     let onward = [end[0] - corner[0], end[1] - corner[1]];
     let [before, after] = [back, onward].map(|[x, y]| x.hypot(y));
@@ -315,14 +320,14 @@ pub(super) fn corner_arc(start: [f64; 2], corner: [f64; 2], end: [f64; 2], radiu
     let heading = (-back[1]).atan2(-back[0]);
     // The way on lies to the left where the vector back lies to its left.
     let sweep = (std::f64::consts::PI - angle).copysign(-cross);
-    Some(Placed { at, heading, shape: PathSegment::Arc { radius, sweep } })
+    Some(PlacedSegment { start: at, heading, shape: PathSegment::Arc { radius, sweep } })
 }
 
 /// The routes that the options ask for as a scenario, an agent a route.
 pub(super) fn scenario(
     layout: &Layout,
-    vehicle: &Vehicle,
-    options: &Options,
+    vehicle: &VehicleTraits,
+    options: &ImportOptions,
     warnings: &mut Warnings,
 ) -> Result<Scenario, ImportError> {
     if options.routes.is_empty() {
@@ -337,7 +342,7 @@ pub(super) fn scenario(
     // A radius of 0 asks for what is done anyway.
     let mut rounded = options.corner_radius == Some(0.0);
     for (k, route) in options.routes.iter().enumerate() {
-        let asked = Asked::parse(route, |name| layout.nodes_called(name))?;
+        let asked = RouteRequest::parse(route, |name| layout.nodes_called(name))?;
         let refused = |problem: &dyn fmt::Display| ImportError::new(format!("route {route}: {problem}"));
         let steps = shortest(layout, asked.ends).ok_or_else(|| refused(&"there is no way from node to node"))?;
         let trace = trace(layout, asked.ends[0], &steps).map_err(|error| refused(&error))?;
@@ -354,7 +359,7 @@ pub(super) fn scenario(
         agents.push(Agent { label, ..agent(k as u64 + 1, &trace, &vehicle, asked.time) });
     }
     let names = options.routes.iter().map(|route| format!("route {route}")).collect::<Vec<_>>();
-    facing::warn_of_half_turns(names.iter().map(String::as_str).zip(&agents), warnings);
+    vehicle_heading::warn_of_half_turns(names.iter().map(String::as_str).zip(&agents), warnings);
     if rounded {
         warnings.use_option("corner_radius");
     }
@@ -371,7 +376,7 @@ pub(super) fn scenario(
 /// The agent that travels the shortest way between two nodes from the time 0, if there is one.
 pub(super) fn mission(
     layout: &Layout,
-    vehicle: &Vehicle,
+    vehicle: &VehicleTraits,
     id: u64,
     ends: [usize; 2],
 ) -> Result<Option<Agent>, ImportError> {
@@ -381,44 +386,44 @@ pub(super) fn mission(
 }
 
 /// Which way a vehicle faces on a route.
-fn along(steps: &[Step<'_>]) -> Facing {
+fn along(steps: &[RouteStep<'_>]) -> Facing {
     steps.iter().map(|step| step.facing()).reduce(Facing::then).unwrap_or_default()
 }
 
 /// The vehicle on a single edge, in one direction, with the limits of the edge. It has the outline that it has there, which
 /// [`Vehicle::facing`] gives.
-pub fn ride(vehicle: &Vehicle, step: Step<'_>) -> Agent {
-    let mut tracer = Tracer::default();
+pub fn ride(vehicle: &VehicleTraits, step: RouteStep<'_>) -> Agent {
+    let mut tracer = LimitedPathBuilder::default();
     tracer.limit(step.speed(), step.edge.rotation);
     let curve = step.curve();
     curve.iter().for_each(|piece| tracer.follow(piece));
-    let mut trace = tracer.finish(curve.first().map_or([0.0; 2], |first| first.at));
+    let mut trace = tracer.finish(curve.first().map_or([0.0; 2], |first| first.start));
     trace.deviation += step.deviation();
     trace.turned += step.turned();
     agent(0, &trace, vehicle, 0.0)
 }
 
 /// The vehicle that turns in place from a heading by an angle, or stands there.
-pub fn turn(vehicle: &Vehicle, at: [f64; 2], heading: f64, angle: f64) -> Agent {
-    let mut tracer = Tracer::default();
+pub fn turn(vehicle: &VehicleTraits, at: [f64; 2], heading: f64, angle: f64) -> Agent {
+    let mut tracer = LimitedPathBuilder::default();
     tracer.turn(at, heading, angle);
     agent(0, &tracer.finish(at), vehicle, 0.0)
 }
 
 /// The agent that travels a path. If its heading is not known, it is the disc around its outline.
-pub(super) fn agent(id: u64, trace: &Trace, vehicle: &Vehicle, t_start: f64) -> Agent {
+pub(super) fn agent(id: u64, trace: &LimitedPath, vehicle: &VehicleTraits, t_start: f64) -> Agent {
     let path = trace.stretches.iter().map(|stretch| stretch.shape).collect();
     let motion = speed::motion(&trace.stretches, vehicle);
     let footprint = vehicle.footprint.as_ref().filter(|_| trace.faces);
     let off = trace.deviation + vehicle.moved_by(trace.turned);
-    let footprint = footprint.map(|footprint| footprint.grown(off));
+    let footprint = footprint.map(|footprint| footprint.inflated(off));
     let disc = Agent::disc(id, vehicle.radius + off, trace.start, path, motion);
     Agent { footprint, margin: vehicle.margin, t_start, ..disc }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Format, Id, Node, layout};
+    use super::super::{ElementId, InputFormat, LayoutNode, layout};
     use super::*;
     use std::collections::HashSet;
     use std::f64::consts::{FRAC_PI_2, PI};
@@ -435,19 +440,19 @@ mod tests {
     #[test]
     fn a_corner_is_rounded_as_nav2_does_it() {
         let arc = corner_arc([-3.0, 0.0], [0.0, 0.0], [0.0, 2.0], 1.0).unwrap();
-        assert!((arc.at[0] + 1.0).abs() < 1e-15 && arc.at[1] == 0.0 && arc.heading == 0.0);
+        assert!((arc.start[0] + 1.0).abs() < 1e-15 && arc.start[1] == 0.0 && arc.heading == 0.0);
         assert!(matches!(arc.shape, PathSegment::Arc { radius: 1.0, sweep } if (sweep - FRAC_PI_2).abs() < 1e-15));
         let right = corner_arc([-3.0, 0.0], [0.0, 0.0], [-1.0, -3.0_f64.sqrt()], 0.5).unwrap();
         // Tangent length 0.5 / tan 30°, and 120° to turn.
-        assert!((right.at[0] + 0.5 * 3.0_f64.sqrt()).abs() < 1e-12);
+        assert!((right.start[0] + 0.5 * 3.0_f64.sqrt()).abs() < 1e-12);
         assert!(matches!(right.shape, PathSegment::Arc { sweep, .. } if (sweep + 2.0 * PI / 3.0).abs() < 1e-12));
         let end = right.end();
         assert!((end[0] + 0.25 * 3.0_f64.sqrt()).abs() < 1e-12 && (end[1] + 0.75).abs() < 1e-12);
         // Along no axis: it begins 1 m of 5 m before the corner, and half a metre.
         let askew = corner_arc([-1.0, -1.0], [2.0, 3.0], [-2.0, 6.0], 1.0).unwrap();
-        assert!((askew.at[0] - 1.4).hypot(askew.at[1] - 2.2) < 1e-12, "{askew:?}");
+        assert!((askew.start[0] - 1.4).hypot(askew.start[1] - 2.2) < 1e-12, "{askew:?}");
         let askew = corner_arc([-1.0, -1.0], [2.0, 3.0], [-2.0, 6.0], 0.5).unwrap();
-        assert!((askew.at[0] - 1.7).hypot(askew.at[1] - 2.6) < 1e-12, "{askew:?}");
+        assert!((askew.start[0] - 1.7).hypot(askew.start[1] - 2.6) < 1e-12, "{askew:?}");
         assert_eq!(corner_arc([-3.0, 0.0], [0.0, 0.0], [0.0, 2.0], 0.0), None);
     }
 
@@ -474,10 +479,16 @@ mod tests {
 
     /// A quarter of a circle and two lines beyond it; the last node on this level.
     fn bend(level: usize) -> Layout {
-        let node = |id: u64, at: [f64; 2], level: usize| Node { id: Id::Number(id), name: None, level, at };
-        let edge = |id: u64, ends: [usize; 2], curve: Vec<Placed>| Edge::new(Id::Number(id), ends, curve);
+        let node = |id: u64, at: [f64; 2], level: usize| LayoutNode {
+            id: ElementId::Number(id),
+            name: None,
+            level,
+            point: at,
+        };
+        let edge =
+            |id: u64, ends: [usize; 2], curve: Vec<PlacedSegment>| LayoutEdge::new(ElementId::Number(id), ends, curve);
         let arc = PathSegment::Arc { radius: 1.0, sweep: FRAC_PI_2 };
-        let curve = vec![Placed { at: [0.0, 0.0], heading: 0.0, shape: arc }];
+        let curve = vec![PlacedSegment { start: [0.0, 0.0], heading: 0.0, shape: arc }];
         let nodes = [([0.0, 0.0], 0), ([1.0, 1.0], 0), ([1.0, 3.0], 0), ([4.0, 3.0], level), ([5.0, 3.0], level)];
         Layout {
             nodes: (0..).zip(nodes).map(|(id, (at, level))| node(id, at, level)).collect(),
@@ -505,8 +516,8 @@ mod tests {
     fn routes_on_different_levels_are_told() {
         let told = |level: usize| {
             let routes = vec!["0:2".to_owned(), "3:4".to_owned()];
-            let (options, mut warnings) = (Options { routes, ..Options::default() }, Warnings::default());
-            let vehicle = layout(Format::Nav2, &graphs()[0], &Options::default(), &mut Warnings::default());
+            let (options, mut warnings) = (ImportOptions { routes, ..ImportOptions::default() }, Warnings::default());
+            let vehicle = layout(InputFormat::Nav2, &graphs()[0], &ImportOptions::default(), &mut Warnings::default());
             scenario(&bend(level), &vehicle.expect("a graph").vehicle, &options, &mut warnings).expect("two routes");
             warnings.lines().iter().any(|line| line.contains("they are on different levels"))
         };
@@ -515,7 +526,7 @@ mod tests {
 
     /// Corners of ways from node to node to node that do not turn back, and how many of them have an arc.
     fn corners(text: &str, radius: f64) -> [usize; 2] {
-        let imported = layout(Format::Nav2, text, &Options::default(), &mut Warnings::default()).unwrap();
+        let imported = layout(InputFormat::Nav2, text, &ImportOptions::default(), &mut Warnings::default()).unwrap();
         let Layout { nodes, edges, .. } = &imported.layout;
         let mut ways = HashSet::new();
         for before in edges {
@@ -526,7 +537,7 @@ mod tests {
         }
         let arcs = |radius: f64| {
             let arc = |way: &&[usize; 3]| {
-                let [start, corner, end] = way.map(|node| nodes[node].at);
+                let [start, corner, end] = way.map(|node| nodes[node].point);
                 corner_arc(start, corner, end, radius).is_some()
             };
             ways.iter().filter(arc).count()

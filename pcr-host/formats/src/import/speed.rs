@@ -5,20 +5,20 @@
 //! (from which speeds the vehicle can brake). A turn in place of angle θ(t) is the motion ε θ(t) on its arc of radius
 //! ε.
 
-use super::Vehicle;
-use super::trace::Stretch;
+use super::VehicleTraits;
+use super::path_builder::LimitedSegment;
 use crate::scenario::{MotionSpec, PathSegment, TURN};
 
 /// Limits of one segment.
 #[derive(Clone, Copy, Debug)]
-struct Limited {
+struct SegmentLimits {
     length: f64,
     speed: f64,
     acceleration: f64,
     in_place: bool,
 }
 
-fn limited(stretch: &Stretch, vehicle: &Vehicle) -> Limited {
+fn limited(stretch: &LimitedSegment, vehicle: &VehicleTraits) -> SegmentLimits {
     let length = stretch.shape.length();
     let mut speed = stretch.speed.map_or(vehicle.speed, |limit| limit.min(vehicle.speed));
     let rotation = stretch.rotation.map_or(vehicle.rotation, |limit| limit.min(vehicle.rotation));
@@ -31,12 +31,12 @@ fn limited(stretch: &Stretch, vehicle: &Vehicle) -> Limited {
             speed = speed.min(radius * rotation);
         }
     }
-    Limited { length, speed, acceleration, in_place: stretch.in_place }
+    SegmentLimits { length, speed, acceleration, in_place: stretch.in_place }
 }
 
 /// The motion from rest to rest in the least time.
-pub(super) fn motion(stretches: &[Stretch], vehicle: &Vehicle) -> MotionSpec {
-    let limits: Vec<Limited> = stretches.iter().map(|stretch| limited(stretch, vehicle)).collect();
+pub(super) fn motion(stretches: &[LimitedSegment], vehicle: &VehicleTraits) -> MotionSpec {
+    let limits: Vec<SegmentLimits> = stretches.iter().map(|stretch| limited(stretch, vehicle)).collect();
     if limits.iter().all(|limit| !limit.in_place && limit.speed >= vehicle.speed) {
         return MotionSpec::RestToRest { v_max: vehicle.speed, a_max: vehicle.acceleration };
     }
@@ -54,12 +54,12 @@ pub(super) fn motion(stretches: &[Stretch], vehicle: &Vehicle) -> MotionSpec {
 }
 
 /// Speeds at the beginning and the end of each segment.
-fn speeds(limits: &[Limited]) -> Vec<[f64; 2]> {
+fn speeds(limits: &[SegmentLimits]) -> Vec<[f64; 2]> {
     let joint = |k: usize| match (k.checked_sub(1).and_then(|before| limits.get(before)), limits.get(k)) {
         (Some(before), Some(after)) if !before.in_place && !after.in_place => before.speed.min(after.speed),
         _ => 0.0,
     };
-    let reach = |speed: f64, limit: &Limited| (speed * speed + 2.0 * limit.acceleration * limit.length).sqrt();
+    let reach = |speed: f64, limit: &SegmentLimits| (speed * speed + 2.0 * limit.acceleration * limit.length).sqrt();
     let mut joints: Vec<f64> = (0..=limits.len()).map(joint).collect();
     for (k, limit) in limits.iter().enumerate() {
         joints[k + 1] = joints[k + 1].min(reach(joints[k], limit));
@@ -83,7 +83,7 @@ fn add(pieces: &mut Vec<(f64, f64)>, duration: f64, acceleration: f64) {
 mod tests {
     use super::*;
 
-    const VEHICLE: Vehicle = Vehicle {
+    const VEHICLE: VehicleTraits = VehicleTraits {
         name: None,
         radius: 0.4,
         footprint: None,
@@ -95,16 +95,16 @@ mod tests {
         rotation_acceleration: 0.25,
     };
 
-    fn stretch(shape: PathSegment, speed: Option<f64>, rotation: Option<f64>) -> Stretch {
-        Stretch { shape, speed, rotation, in_place: false }
+    fn stretch(shape: PathSegment, speed: Option<f64>, rotation: Option<f64>) -> LimitedSegment {
+        LimitedSegment { shape, speed, rotation, in_place: false }
     }
 
-    fn line(speed: Option<f64>) -> Stretch {
+    fn line(speed: Option<f64>) -> LimitedSegment {
         stretch(PathSegment::Line { length: 8.0 }, speed, None)
     }
 
-    fn turn(rotation: Option<f64>) -> Stretch {
-        Stretch { in_place: true, ..stretch(PathSegment::Arc { radius: TURN, sweep: 1.0 }, None, rotation) }
+    fn turn(rotation: Option<f64>) -> LimitedSegment {
+        LimitedSegment { in_place: true, ..stretch(PathSegment::Arc { radius: TURN, sweep: 1.0 }, None, rotation) }
     }
 
     #[test]
@@ -125,15 +125,15 @@ mod tests {
             assert_eq!(motion(&free, &VEHICLE), whole);
         }
         // A vehicle as slow as its turns in place.
-        let slow = Vehicle { speed: TURN, ..VEHICLE };
-        let limits = |stretches: &[Stretch]| -> bool { motion(stretches, &VEHICLE) != whole };
+        let slow = VehicleTraits { speed: TURN, ..VEHICLE };
+        let limits = |stretches: &[LimitedSegment]| -> bool { motion(stretches, &VEHICLE) != whole };
         assert!(limits(&[line(None), line(Some(1.5))]) && limits(&[line(None), turn(None)]));
         assert!(matches!(motion(&[turn(None)], &slow), MotionSpec::Profile { .. }));
     }
 
     #[test]
     fn before_and_after_a_turn_in_place_the_vehicle_is_at_rest() {
-        let limits: Vec<Limited> =
+        let limits: Vec<SegmentLimits> =
             [line(None), turn(None), line(Some(1.0)), line(None)].iter().map(|one| limited(one, &VEHICLE)).collect();
         assert_eq!(speeds(&limits), [[0.0, 0.0], [0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]);
     }

@@ -1,9 +1,9 @@
 //! Trajectories of VDA 5050 and LIF: NURBS in the project's coordinates.
 
-use super::biarc::{Fit, fit};
+use super::biarc::{BiarcFit, fit};
+use super::json_access::JsonObject;
 use super::keys::Keys;
 use super::nurbs::Nurbs;
-use super::value::Object;
 use super::{ImportError, WarningCode, Warnings};
 use crate::scenario::LIMIT;
 
@@ -14,8 +14,8 @@ const POINT: Keys = Keys::new(&["x", "y", "weight", "orientation"], &[]);
 
 /// A trajectory as lines and arcs.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Trajectory {
-    pub(super) fit: Fit,
+pub(super) struct FittedTrajectory {
+    pub(super) fit: BiarcFit,
     /// Where it begins and ends, which no line and no arc tells where it has no length \[m\].
     pub(super) ends: [[f64; 2]; 2],
 }
@@ -24,12 +24,16 @@ pub(super) struct Trajectory {
 ///
 /// Degree 1 and even knots where they are missing, weight 1 likewise. Some senders give the order, which is the degree plus 1, as
 /// `degree`: where the number of knots says so, it is taken as that, with a warning.
-pub(super) fn read(object: &Object<'_>, tolerance: f64, warnings: &mut Warnings) -> Result<Trajectory, ImportError> {
+pub(super) fn read(
+    object: &JsonObject<'_>,
+    tolerance: f64,
+    warnings: &mut Warnings,
+) -> Result<FittedTrajectory, ImportError> {
     let named = |error: ImportError| ImportError::new(format!("{}: {error}", object.name));
     KEYS.check(object, warnings)?;
     let mut points = Vec::new();
     for (k, value) in object.list("controlPoints")?.iter().enumerate() {
-        let point = Object::new(format!("{}, control point {}", object.name, k + 1), value)?;
+        let point = JsonObject::new(format!("{}, control point {}", object.name, k + 1), value)?;
         POINT.check(&point, warnings)?;
         points.push((point.point()?, point.number("weight")?.unwrap_or(1.0)));
     }
@@ -67,5 +71,5 @@ pub(super) fn read(object: &Object<'_>, tolerance: f64, warnings: &mut Warnings)
     if fit.bends {
         warnings.use_option("tolerance");
     }
-    Ok(Trajectory { fit, ends: ends.unwrap_or_default() })
+    Ok(FittedTrajectory { fit, ends: ends.unwrap_or_default() })
 }

@@ -11,17 +11,20 @@
 //!   where it is. Loads in a state enlarge the vehicle.
 //! - Orders do not say when they begin: all do at the time 0, and they are not read together with states with paths.
 
-mod begin;
+mod agent_start;
 mod keys;
 mod order;
-mod part;
+mod order_element;
 mod state;
 
-use super::trajectory::Trajectory;
-use super::value::{self, Object};
-use super::{ImportError, Options, Vehicle, WarningCode, Warnings, facing, loads, trajectory, updates};
+use super::json_access::{self, JsonObject};
+use super::trajectory::FittedTrajectory;
+use super::{
+    ImportError, ImportOptions, VehicleTraits, WarningCode, Warnings, order_updates, trajectory, vehicle_heading,
+    vehicle_loads,
+};
 use crate::scenario::{Agent, LONGEST_LABEL, Scenario, label};
-use begin::Begin;
+use agent_start::AgentStart;
 use serde_json::Value;
 use std::collections::BTreeSet;
 
@@ -46,7 +49,7 @@ pub(super) fn is_message(root: &Value) -> bool {
 /// The messages in a text: one, a list of them, or several one after the other.
 fn messages(text: &str, warnings: &mut Warnings) -> Result<Vec<Value>, ImportError> {
     let mut messages = Vec::new();
-    for value in value::several(text) {
+    for value in json_access::several(text) {
         match value? {
             Value::Array(several) => messages.extend(several),
             one => messages.push(one),
@@ -55,22 +58,22 @@ fn messages(text: &str, warnings: &mut Warnings) -> Result<Vec<Value>, ImportErr
     if messages.is_empty() {
         return Err(ImportError::new("there is no order and no state in it"));
     }
-    updates::joined(messages, warnings)
+    order_updates::joined(messages, warnings)
 }
 
 /// Reads orders and states; returns the radii of the vehicles with their loads and corridors as well.
 pub(super) fn read(
     text: &str,
-    options: &Options,
-    vehicle: &Vehicle,
+    options: &ImportOptions,
+    vehicle: &VehicleTraits,
     warnings: &mut Warnings,
 ) -> Result<(Scenario, Vec<f64>), ImportError> {
     let messages = messages(text, warnings)?;
-    let mut reader = Reader { options, vehicle, warnings, begins: Vec::new(), maps: BTreeSet::new() };
+    let mut reader = Vda5050Reader { options, vehicle, warnings, begins: Vec::new(), maps: BTreeSet::new() };
     let mut scenario = Scenario::new("", Vec::new());
     let mut radii = Vec::new();
     for (k, value) in messages.iter().enumerate() {
-        let message = Object::new(format!("message {}", k + 1), value)?;
+        let message = JsonObject::new(format!("message {}", k + 1), value)?;
         let (agent, radius) = reader.message(k as u64 + 1, &message)?;
         scenario.agents.push(agent);
         radii.push(radius);
@@ -79,9 +82,9 @@ pub(super) fn read(
             scenario.name = message.text("orderId")?.unwrap_or_default().to_owned();
         }
     }
-    begin::set(&mut scenario.agents, &reader.begins)?;
+    agent_start::set(&mut scenario.agents, &reader.begins)?;
     let names = reader.begins.iter().map(|(name, _)| name.as_str());
-    facing::warn_of_half_turns(names.zip(&scenario.agents), reader.warnings);
+    vehicle_heading::warn_of_half_turns(names.zip(&scenario.agents), reader.warnings);
     if reader.maps.len() > 1 {
         let maps = reader.maps.into_iter().collect::<Vec<_>>().join(", ");
         warnings.add(
@@ -93,19 +96,19 @@ pub(super) fn read(
     Ok((scenario, radii))
 }
 
-struct Reader<'a> {
-    options: &'a Options,
-    vehicle: &'a Vehicle,
+struct Vda5050Reader<'a> {
+    options: &'a ImportOptions,
+    vehicle: &'a VehicleTraits,
     warnings: &'a mut Warnings,
     /// Names of the agents, and when each begins.
-    begins: Vec<(String, Begin)>,
+    begins: Vec<(String, AgentStart)>,
     /// The maps of all agents.
     maps: BTreeSet<String>,
 }
 
-impl Reader<'_> {
+impl Vda5050Reader<'_> {
     /// The agent of a message, and the radius that its vehicle has with what it carries, and with the room that it has beside its way.
-    fn message(&mut self, id: u64, message: &Object<'_>) -> Result<(Agent, f64), ImportError> {
+    fn message(&mut self, id: u64, message: &JsonObject<'_>) -> Result<(Agent, f64), ImportError> {
         let name = message.text("orderId")?.unwrap_or_default();
         let robot = message.text("serialNumber")?.unwrap_or_default();
         let own = [robot, name].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ");
@@ -119,13 +122,13 @@ impl Reader<'_> {
         let message = message.clone();
         if message.get("nodes").is_some() {
             let order = message.called(format!("order {name}"));
-            self.begins.push((order.name.clone(), Begin::Unsaid));
+            self.begins.push((order.name.clone(), AgentStart::Unsaid));
             let (agent, radius) = self.order(id, &order)?;
             Ok((Agent { label: called, ..agent }, radius))
         } else if state.iter().any(|field| message.get(field).is_some()) {
             let state =
                 message.called(if robot.is_empty() { format!("state {id}") } else { format!("state of {robot}") });
-            let loaded = loads::loaded(&state, self.vehicle, self.warnings)?;
+            let loaded = vehicle_loads::loaded(&state, self.vehicle, self.warnings)?;
             let (agent, begin) = self.state(id, &state, &loaded)?;
             self.begins.push((state.name, begin));
             Ok((Agent { label: called, ..agent }, loaded.radius))
@@ -135,10 +138,14 @@ impl Reader<'_> {
     }
 
     /// Reads a trajectory for the vehicle: with an outline it matters which way that faces there.
-    fn trajectory(&mut self, trajectory: &Object<'_>, vehicle: &Vehicle) -> Result<Trajectory, ImportError> {
+    fn trajectory(
+        &mut self,
+        trajectory: &JsonObject<'_>,
+        vehicle: &VehicleTraits,
+    ) -> Result<FittedTrajectory, ImportError> {
         let read = trajectory::read(trajectory, self.options.tolerance(), self.warnings)?;
         if let Some(outline) = &vehicle.footprint {
-            facing::along_trajectory(trajectory, &read.fit, outline, self.warnings)?;
+            vehicle_heading::along_trajectory(trajectory, &read.fit, outline, self.warnings)?;
         }
         Ok(read)
     }
@@ -146,8 +153,8 @@ impl Reader<'_> {
     /// Keeps the map on which an agent is, which has to be one, as what is on different maps has no common coordinates.
     fn maps<'j>(
         &mut self,
-        of: &Object<'_>,
-        positions: impl Iterator<Item = Result<Option<Object<'j>>, ImportError>>,
+        of: &JsonObject<'_>,
+        positions: impl Iterator<Item = Result<Option<JsonObject<'j>>, ImportError>>,
     ) -> Result<(), ImportError> {
         let mut own: Option<&str> = None;
         for position in positions {
@@ -165,6 +172,6 @@ impl Reader<'_> {
 
 /// How far apart two points are \[m\]: nothing where that is rounding.
 fn gap(a: [f64; 2], b: [f64; 2]) -> f64 {
-    let apart = crate::plane::distance(a, b);
+    let apart = crate::plane_geometry::distance(a, b);
     if apart > CLOSED { apart } else { 0.0 }
 }

@@ -1,6 +1,6 @@
 //! The vehicle that travels a layout, and the options of the command line about it and its routes.
 
-use super::{Format, ImportError, WarningCode, Warnings};
+use super::{ImportError, InputFormat, WarningCode, Warnings};
 use crate::footprint::Footprint;
 use std::path::PathBuf;
 
@@ -20,7 +20,7 @@ pub enum SizeSource {
 
 /// What a vehicle is and can.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Vehicle {
+pub struct VehicleTraits {
     /// Name or type, where it has one.
     pub name: Option<String>,
     /// Radius of its disc \[m\]; with a footprint that of the disc around all of it.
@@ -77,7 +77,7 @@ impl Facing {
     }
 }
 
-impl Vehicle {
+impl VehicleTraits {
     /// The vehicle as if it faced along its path, covering what it covers where it faces so: until a path can be driven backward, an
     /// outline that may face either way is the convex hull of both, and one that may face any way is the disc around it.
     #[must_use]
@@ -90,7 +90,7 @@ impl Vehicle {
             Facing::Either => footprint.either_way(),
             Facing::Any => None,
         };
-        let radius = outline.as_ref().map_or(self.radius, Footprint::reach).max(self.radius);
+        let radius = outline.as_ref().map_or(self.radius, Footprint::circumscribed_radius).max(self.radius);
         Self { radius, footprint: outline, ..self.clone() }
     }
 
@@ -107,7 +107,7 @@ impl Vehicle {
 
 /// What a file says about the vehicle.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Given {
+pub(super) struct FileVehicleTraits {
     pub(super) name: Option<String>,
     pub(super) radius: Option<f64>,
     pub(super) footprint: Option<Footprint>,
@@ -132,10 +132,10 @@ pub const HEADING: &str = "Layouts and other formats";
 /// of margin and corner radius also 0, up to 1e6.
 #[derive(Clone, Debug, Default)]
 #[cfg_attr(feature = "clap", derive(clap::Args), command(next_help_heading = HEADING))]
-pub struct Options {
+pub struct ImportOptions {
     /// Format; pcr import --help lists them
     #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "FORMAT", hide_possible_values = true))]
-    pub from: Option<Format>,
+    pub from: Option<InputFormat>,
     /// Route of an agent; repeat it for more agents
     #[cfg_attr(feature = "clap", arg(long = "route", value_name = "FROM:TO[@TIME]"))]
     pub routes: Vec<String>,
@@ -204,15 +204,15 @@ fn index(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| "a whole number from 0 is expected".to_owned())
 }
 
-impl Options {
+impl ImportOptions {
     pub(super) fn tolerance(&self) -> f64 {
         self.tolerance.unwrap_or(TOLERANCE)
     }
 
     /// Whether anything that a file says about the vehicle counts beside these options.
-    pub(super) fn leave_some_of(&self, given: &Given) -> bool {
+    pub(super) fn leave_some_of(&self, given: &FileVehicleTraits) -> bool {
         let numbers = [
-            (self.radius, given.radius.or(given.footprint.as_ref().map(Footprint::reach))),
+            (self.radius, given.radius.or(given.footprint.as_ref().map(Footprint::circumscribed_radius))),
             (self.margin, given.margin),
             (self.speed, given.speed),
             (self.acceleration, given.acceleration),
@@ -225,7 +225,7 @@ impl Options {
 
     /// The vehicle: what the options say, else the file, else a default that is warned about. If nothing `moves` only the
     /// radius matters.
-    pub(super) fn vehicle(&self, given: &Given, moves: bool, warnings: &mut Warnings) -> Vehicle {
+    pub(super) fn vehicle(&self, given: &FileVehicleTraits, moves: bool, warnings: &mut Warnings) -> VehicleTraits {
         let mut assumed = Vec::new();
         let mut choose = |option: Option<f64>, given: Option<f64>, default: f64, what: &str| {
             option.or(given).unwrap_or_else(|| {
@@ -235,7 +235,7 @@ impl Options {
         };
         // A radius that is asked for is that of a disc.
         let footprint = given.footprint.clone().filter(|_| self.radius.is_none());
-        let reach = footprint.as_ref().map(Footprint::reach);
+        let reach = footprint.as_ref().map(Footprint::circumscribed_radius);
         let outline = given
             .footprint
             .as_ref()
@@ -252,7 +252,7 @@ impl Options {
             (None, Some(_)) => SizeSource::File,
         };
         let radius = choose(self.radius, reach.or(given.radius), 0.5, "radius [m]");
-        let vehicle = Vehicle {
+        let vehicle = VehicleTraits {
             name: given.name.clone(),
             radius,
             footprint,
@@ -284,12 +284,12 @@ impl Options {
 
 /// A route that was asked for.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Asked {
+pub(super) struct RouteRequest {
     pub(super) ends: [usize; 2],
     pub(super) time: f64,
 }
 
-impl Asked {
+impl RouteRequest {
     /// The route in `FROM:TO[@TIME]`; names of nodes may hold colons and `@`, as long as it can be read in one way only.
     pub(super) fn parse(text: &str, nodes: impl Fn(&str) -> Vec<usize>) -> Result<Self, ImportError> {
         let refused = |problem: String| Err(ImportError::new(format!("route {text}: {problem}")));

@@ -16,13 +16,13 @@ const LISTED: usize = 8;
 
 /// A problem, and the names of what has it.
 #[derive(Clone, Debug, PartialEq)]
-struct Problem {
+struct WarningGroup {
     code: WarningCode,
     words: String,
     names: Vec<String>,
 }
 
-impl Problem {
+impl WarningGroup {
     fn key(&self) -> (WarningCode, String) {
         (self.code, self.words.clone())
     }
@@ -31,10 +31,10 @@ impl Problem {
 /// Warnings, each with the names of what it is about.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Warnings {
-    list: Vec<Problem>,
+    list: Vec<WarningGroup>,
     /// Places in the list by the code and the words.
     places: HashMap<(WarningCode, String), usize>,
-    lost: Vec<String>,
+    unread_parts: Vec<String>,
     /// Fields of options that had an effect.
     used: HashSet<&'static str>,
 }
@@ -47,7 +47,7 @@ impl Warnings {
             Some(problem) => problem.names.push(name),
             None => {
                 self.places.insert(key.clone(), self.list.len());
-                self.list.push(Problem { code, words: key.1, names: vec![name] });
+                self.list.push(WarningGroup { code, words: key.1, names: vec![name] });
             }
         }
     }
@@ -55,7 +55,7 @@ impl Warnings {
     /// Adds a warning about something in the file that is not in what is read: the file is refused for it, unless the rest is
     /// asked for.
     pub(crate) fn lose(&mut self, problem: impl fmt::Display) {
-        self.lost.push(problem.to_string());
+        self.unread_parts.push(problem.to_string());
         self.add(WarningCode::LeftOut, problem, "left out");
     }
 
@@ -71,14 +71,15 @@ impl Warnings {
 
     /// Settles the warnings of files that were read each by itself, and then together, with the warnings `all`: what an update releases
     /// is released, an update with its order is not alone, and what is said of all together, and of none by itself, is added to the last one.
-    pub(crate) fn settle(files: &mut [&mut Self], all: &Self) {
-        let names = |of: &Self, problem: &Problem| -> HashSet<String> {
+    pub(crate) fn merge(files: &mut [&mut Self], all: &Self) {
+        let names = |of: &Self, problem: &WarningGroup| -> HashSet<String> {
             let place = of.places.get(&problem.key()).and_then(|place| of.list.get(*place));
             place.map_or_else(HashSet::new, |problem| problem.names.iter().cloned().collect())
         };
         for file in files.iter_mut() {
-            let by_others =
-                |problem: &&mut Problem| [WarningCode::NotReleased, WarningCode::UpdateAlone].contains(&problem.code);
+            let by_others = |problem: &&mut WarningGroup| {
+                [WarningCode::NotReleased, WarningCode::UpdateAlone].contains(&problem.code)
+            };
             for problem in file.list.iter_mut().filter(by_others) {
                 let still = names(all, problem);
                 problem.names.retain(|name| still.contains(name));
@@ -101,7 +102,7 @@ impl Warnings {
 
     /// Parts of the file that were not read.
     pub(super) fn lost(&self) -> &[String] {
-        &self.lost
+        &self.unread_parts
     }
 
     /// Whether there is nothing to warn about.
@@ -116,7 +117,7 @@ impl Warnings {
 
     /// The lines in which they are told to people, who do not read hundreds of names, without their codes.
     pub fn lines(&self) -> Vec<String> {
-        self.list.iter().map(|Problem { words, names, .. }| format!("{}: {words}", listed(names, ", "))).collect()
+        self.list.iter().map(|WarningGroup { words, names, .. }| format!("{}: {words}", listed(names, ", "))).collect()
     }
 
     /// The same lines with their codes.
@@ -126,7 +127,9 @@ impl Warnings {
 
     /// The lines in which programs get them, with all names and their codes.
     pub fn all(&self) -> Vec<String> {
-        let text = |Problem { code, words, names }: &Problem| code.text(format_args!("{}: {words}", names.join(", ")));
+        let text = |WarningGroup { code, words, names }: &WarningGroup| {
+            code.text(format_args!("{}: {words}", names.join(", ")))
+        };
         self.list.iter().map(text).collect()
     }
 

@@ -1,7 +1,7 @@
 //! Lenient reading of XML: attributes as numbers, and messages that name the element.
 
 use super::{ImportError, WarningCode, Warnings};
-use crate::mark::unmarked;
+use crate::byte_order_mark::unmarked;
 use crate::scenario::LIMIT;
 use roxmltree::{Document, Node};
 

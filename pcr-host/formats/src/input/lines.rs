@@ -1,9 +1,9 @@
 //! Scenarios one after the other: one in each line (JSON Lines), or over several lines as in files.
 
 use super::InputError;
-use crate::import::Format;
-use crate::mark::{unmarked, without_mark};
-use crate::own;
+use crate::answer_files;
+use crate::byte_order_mark::{unmarked, without_mark};
+use crate::import::InputFormat;
 use crate::scenario::Scenario;
 use std::collections::VecDeque;
 use std::io::BufRead;
@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// A scenario that came in.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct InputScenario {
     /// Where it begins, counted from 1, blank lines included.
     pub number: usize,
     /// Whether it begins as a scenario does, whatever comes then.
@@ -25,7 +25,7 @@ pub struct Line {
 /// A line that holds a whole JSON value, or what can be none, is answered before the next one is read. Where a value goes on, so does the
 /// reading, up to its end; but not into a line that is a scenario by itself, as what came before it can only be damaged.
 #[derive(Debug)]
-pub struct Lines<R> {
+pub struct ScenarioStream<R> {
     reader: R,
     number: usize,
     /// A line that is read already.
@@ -34,7 +34,7 @@ pub struct Lines<R> {
     seen: VecDeque<(usize, Vec<u8>)>,
 }
 
-impl<R: BufRead> Lines<R> {
+impl<R: BufRead> ScenarioStream<R> {
     /// The scenarios that `reader` gives.
     pub fn new(reader: R) -> Self {
         Self { reader, number: 0, ahead: None, seen: VecDeque::new() }
@@ -56,7 +56,7 @@ impl<R: BufRead> Lines<R> {
             self.seen.push_back(second);
         }
         let is_markup = unmarked(&begin).trim_start().starts_with('<');
-        if !is_markup && Format::of(Path::new("-"), &begin).is_none() {
+        if !is_markup && InputFormat::detect(Path::new("-"), &begin).is_none() {
             return Ok(None);
         }
         let mut text: Vec<u8> = self.seen.drain(..).flat_map(|(_, value)| value).collect();
@@ -89,7 +89,7 @@ impl<R: BufRead> Lines<R> {
             }
         };
         let number = self.number;
-        let mut nesting = Nesting::default();
+        let mut nesting = JsonDepth::default();
         nesting.read(&text);
         while nesting.is_open() {
             let Some(next) = self.line()? else { break };
@@ -107,13 +107,13 @@ impl<R: BufRead> Lines<R> {
 
 /// How deep in arrays and objects a text is.
 #[derive(Debug, Default)]
-struct Nesting {
+struct JsonDepth {
     depth: usize,
     /// An array or object was closed that was not open.
     broken: bool,
 }
 
-impl Nesting {
+impl JsonDepth {
     /// Reads a line on. No string goes beyond its line.
     fn read(&mut self, line: &[u8]) {
         let (mut quoted, mut escaped) = (false, false);
@@ -140,8 +140,8 @@ impl Nesting {
 /// Whether a line is a scenario by itself, as far as that can be seen without reading it.
 fn is_scenario(line: &[u8]) -> bool {
     let text = line.trim_ascii();
-    let mut nesting = Nesting::default();
-    let names_agents = || str::from_utf8(text).is_ok_and(own::has_agents);
+    let mut nesting = JsonDepth::default();
+    let names_agents = || str::from_utf8(text).is_ok_and(answer_files::has_agents);
     text.starts_with(b"{") && text.ends_with(b"}") && names_agents() && {
         nesting.read(text);
         !nesting.is_open()
@@ -155,7 +155,7 @@ fn scenario(number: usize, bytes: Vec<u8>) -> Result<Scenario, (String, String)>
     Scenario::from_json(&text).map_err(|error| {
         let line = number + error.line() - 1;
         let column = error.column().map_or_else(String::new, |column| format!(", column {column}"));
-        let problem = match Format::of(Path::new("-"), &text) {
+        let problem = match InputFormat::detect(Path::new("-"), &text) {
             Some(format) => format!(": no scenario; it looks like {format}, which is read with --from {format}"),
             None => format!("{column}: {error}"),
         };
@@ -163,8 +163,8 @@ fn scenario(number: usize, bytes: Vec<u8>) -> Result<Scenario, (String, String)>
     })
 }
 
-impl<R: BufRead> Iterator for Lines<R> {
-    type Item = Result<Line, InputError>;
+impl<R: BufRead> Iterator for ScenarioStream<R> {
+    type Item = Result<InputScenario, InputError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let value = self.seen.pop_front().map_or_else(|| self.value(), |seen| Ok(Some(seen)));
@@ -172,7 +172,7 @@ impl<R: BufRead> Iterator for Lines<R> {
             Ok(None) => None,
             Ok(Some((number, text))) => {
                 let is_json = without_mark(&text).trim_ascii_start().starts_with(b"{");
-                Some(Ok(Line { number, is_json, scenario: scenario(number, text) }))
+                Some(Ok(InputScenario { number, is_json, scenario: scenario(number, text) }))
             }
             Err(error) => Some(Err(error)),
         }
@@ -185,8 +185,9 @@ mod tests {
 
     /// First lines, and names or problems.
     fn read(text: &str) -> Vec<(usize, Result<String, String>)> {
-        let named = |line: Line| (line.number, line.scenario.map(|it| it.name).map_err(|(_, problem)| problem));
-        Lines::new(text.as_bytes()).map(|line| named(line.unwrap())).collect()
+        let named =
+            |line: InputScenario| (line.number, line.scenario.map(|it| it.name).map_err(|(_, problem)| problem));
+        ScenarioStream::new(text.as_bytes()).map(|line| named(line.unwrap())).collect()
     }
 
     fn ok(number: usize, name: &str) -> (usize, Result<String, String>) {
@@ -234,17 +235,17 @@ mod tests {
             "2\nAgent 0: (1,2)->(1,3)->\nAgent 1: (2,2)->\n",
             "\u{feff}2\nAgent 0: (1,2)->(1,3)->\nAgent 1: (2,2)->\n",
         ] {
-            let mut lines = Lines::new(text.as_bytes());
+            let mut lines = ScenarioStream::new(text.as_bytes());
             let foreign = lines.foreign().unwrap();
             assert_eq!(foreign.as_deref(), Some(text.trim_start_matches('\n')), "{text}");
             assert!(lines.next().is_none());
         }
         // What is looked at is read all the same, and nothing more of it.
         for text in ["{\"agents\": [\n]}\n{\"agents\": []}", "7\n8\n", "nonsense\n{\"agents\": []}\n", "\n"] {
-            let mut lines = Lines::new(text.as_bytes());
+            let mut lines = ScenarioStream::new(text.as_bytes());
             assert_eq!(lines.foreign().unwrap(), None, "{text}");
-            let read: Vec<Line> = lines.map(|line| line.unwrap()).collect();
-            let plain: Vec<Line> = Lines::new(text.as_bytes()).map(|line| line.unwrap()).collect();
+            let read: Vec<InputScenario> = lines.map(|line| line.unwrap()).collect();
+            let plain: Vec<InputScenario> = ScenarioStream::new(text.as_bytes()).map(|line| line.unwrap()).collect();
             assert_eq!(read, plain, "{text}");
         }
     }

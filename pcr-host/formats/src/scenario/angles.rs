@@ -1,6 +1,6 @@
 //! Angles of a scenario, in radians or, by keys of their own, in degrees; and warnings about angles that are probably in the wrong unit.
 
-use super::fields::{Fields, Range, ScenarioError, figure};
+use super::json_fields::{NumberRange, ObjectFields, ScenarioError, figure};
 use super::{PathSegment, Scenario};
 use crate::warning::WarningCode;
 use std::f64::consts::TAU;
@@ -16,7 +16,7 @@ const DOUBTED: f64 = 1.001 * TAU;
 
 /// A field with an angle, an angular speed or an angular acceleration: its key in radians, and its key in degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Angle {
+pub(super) enum AngleField {
     /// Direction of an agent at its start.
     Heading,
     /// Angle of an arc or of a turn in place.
@@ -27,7 +27,7 @@ pub(super) enum Angle {
     TurnAcceleration,
 }
 
-impl Angle {
+impl AngleField {
     const ALL: [Self; 4] = [Self::Heading, Self::Sweep, Self::TurnSpeed, Self::TurnAcceleration];
 
     /// The keys for radians and for degrees.
@@ -49,15 +49,15 @@ impl Angle {
         }
     }
 
-    const fn range(self) -> Range {
+    const fn range(self) -> NumberRange {
         match self {
-            Self::Heading | Self::Sweep => Range::Any,
-            Self::TurnSpeed | Self::TurnAcceleration => Range::Positive,
+            Self::Heading | Self::Sweep => NumberRange::Any,
+            Self::TurnSpeed | Self::TurnAcceleration => NumberRange::Positive,
         }
     }
 
     /// Whether a field has it, in either unit.
-    pub(super) fn is_in(self, fields: &Fields<'_>) -> bool {
+    pub(super) fn is_in(self, fields: &ObjectFields<'_>) -> bool {
         self.keys().iter().any(|key| fields.get(key).is_some())
     }
 }
@@ -68,7 +68,7 @@ pub(super) struct Doubts([Option<(String, f64, usize)>; 4]);
 
 impl Doubts {
     /// Reads an angle \[rad\], and notes it if it is given in radians and above one turn.
-    pub(super) fn angle(&mut self, fields: &Fields<'_>, angle: Angle) -> Result<f64, ScenarioError> {
+    pub(super) fn angle(&mut self, fields: &ObjectFields<'_>, angle: AngleField) -> Result<f64, ScenarioError> {
         let [radians, degrees] = angle.keys();
         if fields.get(degrees).is_some() {
             if fields.get(radians).is_some() {
@@ -77,7 +77,7 @@ impl Doubts {
             }
             // A number above 0 may be none in radians.
             return match fields.number(degrees, angle.range())?.to_radians() {
-                0.0 if matches!(angle.range(), Range::Positive) => Err(fields.refused(degrees, "too small")),
+                0.0 if matches!(angle.range(), NumberRange::Positive) => Err(fields.refused(degrees, "too small")),
                 radians => Ok(radians),
             };
         }
@@ -93,8 +93,8 @@ impl Doubts {
 
     /// The warnings, a line for each kind of field.
     pub(super) fn warnings(&self) -> Vec<String> {
-        let kinds = Angle::ALL.into_iter().filter_map(|angle| Some((angle, self.0[angle as usize].as_ref()?)));
-        let warning = |(angle, (place, value, count)): (Angle, &(String, f64, usize))| {
+        let kinds = AngleField::ALL.into_iter().filter_map(|angle| Some((angle, self.0[angle as usize].as_ref()?)));
+        let warning = |(angle, (place, value, count)): (AngleField, &(String, f64, usize))| {
             let [_, degrees] = angle.keys();
             let more = if *count > 1 { format!(" (and {} more)", count - 1) } else { String::new() };
             let value = figure(*value);
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn keys_are_in_the_order_of_the_table() {
-        for (place, angle) in Angle::ALL.into_iter().enumerate() {
+        for (place, angle) in AngleField::ALL.into_iter().enumerate() {
             assert_eq!(angle as usize, place);
             let [radians, degrees] = angle.keys();
             assert_eq!(format!("{radians}_deg"), degrees);

@@ -1,16 +1,18 @@
 //! Decodes a scenario from JSON: the meaning of each field, and conditions between fields.
 
-use super::angles::{Angle, Doubts, RADIANS, UNIT};
-use super::fields::{Fields, LIMIT, Place, Range, ScenarioError, brief, figure, whole};
+use super::agent_name::AgentName;
+use super::angles::{AngleField, Doubts, RADIANS, UNIT};
+use super::json_fields::{
+    DecodeLocation, LIMIT, NumberRange, ObjectFields, ScenarioError, brief, figure, parse_integer,
+};
 use super::labels;
-use super::name::Name;
 use super::outline::{loads, outline};
-use super::settled::Settled;
+use super::round_trip::RoundTripProfile;
 use super::turns;
 use super::{Agent, MotionSpec, PathSegment, Scenario, TURN};
-use crate::json::{self, Data, Json, Position};
-use crate::mark::unmarked;
-use crate::own;
+use crate::answer_files;
+use crate::byte_order_mark::unmarked;
+use crate::json::{self, JsonData, JsonNode, Position};
 use crate::warning::WarningCode;
 use serde_json::Value;
 use std::collections::HashSet;
@@ -37,16 +39,16 @@ impl Scenario {
     pub fn from_json(text: &str) -> Result<Self, ScenarioError> {
         let text = unmarked(text);
         if text.trim().is_empty() {
-            return Err(Place::default().error(
+            return Err(DecodeLocation::default().error(
                 Position { line: 1, column: 1 },
                 "",
                 "empty; a scenario is an object with a list of agents",
             ));
         }
         // Agent by agent: the tree of a large fleet would take many times the memory of its text.
-        let mut agents = Agents::default();
+        let mut agents = AgentsVisitor::default();
         let json = json::parse_listing(text, "agents", &mut |agent| agents.add(&agent))
-            .map_err(|error| Place::default().error(error.position, "", error.problem))?;
+            .map_err(|error| DecodeLocation::default().error(error.position, "", error.problem))?;
         Self::decode(&json, agents)
     }
 
@@ -55,9 +57,10 @@ impl Scenario {
     /// # Errors
     /// As [`Scenario::from_json`].
     pub fn from_value(value: &Value) -> Result<Self, ScenarioError> {
-        let (json, mut agents) = (Json::from(value), Agents::default());
-        if let Data::Object(members) = &json.data
-            && let Some((_, Json { data: Data::Array(list), .. })) = members.iter().find(|(key, _)| key == "agents")
+        let (json, mut agents) = (JsonNode::from(value), AgentsVisitor::default());
+        if let JsonData::Object(members) = &json.data
+            && let Some((_, JsonNode { data: JsonData::Array(list), .. })) =
+                members.iter().find(|(key, _)| key == "agents")
         {
             list.iter().for_each(|agent| agents.add(agent));
         }
@@ -65,13 +68,13 @@ impl Scenario {
     }
 
     /// The content of a file beside its agents, with the agents.
-    fn decode(json: &Json<'_>, agents: Agents) -> Result<Self, ScenarioError> {
+    fn decode(json: &JsonNode<'_>, agents: AgentsVisitor) -> Result<Self, ScenarioError> {
         let name = match &json.data {
-            Data::Object(members) => members.iter().find(|(key, _)| key == "name"),
+            JsonData::Object(members) => members.iter().find(|(key, _)| key == "name"),
             _ => None,
         };
         let name = match name {
-            Some((_, Json { data: Data::Text(name), .. })) => name.to_string(),
+            Some((_, JsonNode { data: JsonData::Text(name), .. })) => name.to_string(),
             _ => String::new(),
         };
         let doubts = agents.doubts.warnings();
@@ -85,11 +88,11 @@ impl Scenario {
     }
 
     /// The warnings in the file, and those about its angles unless it declares their unit.
-    fn warnings(json: &Json<'_>, doubts: Vec<String>) -> Result<Vec<String>, ScenarioError> {
-        let fields = Place::default().fields(json, &FIELDS)?;
+    fn warnings(json: &JsonNode<'_>, doubts: Vec<String>) -> Result<Vec<String>, ScenarioError> {
+        let fields = DecodeLocation::default().fields(json, &FIELDS)?;
         let doubts = match fields.get(UNIT).map(|unit| (unit, &unit.data)) {
             None => doubts,
-            Some((_, Data::Text(unit))) if unit == RADIANS => Vec::new(),
+            Some((_, JsonData::Text(unit))) if unit == RADIANS => Vec::new(),
             Some((unit, _)) => {
                 let expected = format!("\"{RADIANS}\" (degrees have keys of their own, such as heading_deg)");
                 return Err(fields.unexpected(UNIT, unit, &expected));
@@ -98,8 +101,8 @@ impl Scenario {
         if fields.get("warnings").is_none() {
             return Ok(doubts);
         }
-        let text = |warning: &Json<'_>| match &warning.data {
-            Data::Text(text) => Ok(WarningCode::coded(text.to_string())),
+        let text = |warning: &JsonNode<'_>| match &warning.data {
+            JsonData::Text(text) => Ok(WarningCode::coded(text.to_string())),
             _ => Err(fields.unexpected("warnings", warning, "a list of strings")),
         };
         let mut warnings: Vec<String> = fields.array("warnings")?.iter().map(text).collect::<Result<_, _>>()?;
@@ -108,11 +111,11 @@ impl Scenario {
         Ok(warnings)
     }
 
-    fn agents(json: &Json<'_>, agents: Agents) -> Result<Vec<Agent>, ScenarioError> {
+    fn agents(json: &JsonNode<'_>, agents: AgentsVisitor) -> Result<Vec<Agent>, ScenarioError> {
         is_scenario(json)?;
-        let fields = Place::default().fields(json, &FIELDS)?;
+        let fields = DecodeLocation::default().fields(json, &FIELDS)?;
         match fields.get("version").map(|version| (version, &version.data)) {
-            Some((_, Data::Number(version))) if whole(version) == Some(VERSION) => {}
+            Some((_, JsonData::Number(version))) if parse_integer(version) == Some(VERSION) => {}
             None => {}
             Some((version, _)) => {
                 return Err(fields.unexpected("version", version, &format!("{VERSION}, all that this pcr knows,")));
@@ -120,7 +123,7 @@ impl Scenario {
         }
         match fields.get("name").map(|name| (name, &name.data)) {
             None => {}
-            Some((given, Data::Text(name))) => {
+            Some((given, JsonData::Text(name))) => {
                 if let Some(fault) = labels::fault(name) {
                     return Err(fields.error(given.position, "name", fault));
                 }
@@ -133,26 +136,28 @@ impl Scenario {
 }
 
 /// Refuses files of another format, before one of their keys is refused as unknown, and the line in place of a plan that there is not.
-fn is_scenario(json: &Json<'_>) -> Result<(), ScenarioError> {
-    let Data::Object(members) = &json.data else { return Ok(()) };
+fn is_scenario(json: &JsonNode<'_>) -> Result<(), ScenarioError> {
+    let JsonData::Object(members) = &json.data else { return Ok(()) };
     let member = |key: &str| members.iter().find(|(name, _)| name == key).map(|(_, value)| (value, &value.data));
     match member("format") {
         None => {}
-        Some((_, Data::Text(format))) if format == FORMAT => {}
+        Some((_, JsonData::Text(format))) if format == FORMAT => {}
         Some((given, format)) => {
-            let answer = if let Data::Text(format) = format { own::described(format) } else { None };
+            let answer = if let JsonData::Text(format) = format { answer_files::described(format) } else { None };
             return Err(match answer {
-                Some(answer) => Place::default().error(given.position, "", format!("{answer}; a scenario is expected")),
+                Some(answer) => {
+                    DecodeLocation::default().error(given.position, "", format!("{answer}; a scenario is expected"))
+                }
                 None => {
                     let problem = format!("{} where \"{FORMAT}\" is expected", brief(given));
-                    Place::default().error(given.position, "format", problem)
+                    DecodeLocation::default().error(given.position, "format", problem)
                 }
             });
         }
     }
     match (member("agents"), member("error"), member("name")) {
-        (None, Some((given, Data::Text(why))), Some((_, Data::Text(name)))) => {
-            Err(Place::default().error(given.position, "", format!("{name}: {why}")))
+        (None, Some((given, JsonData::Text(why))), Some((_, JsonData::Text(name)))) => {
+            Err(DecodeLocation::default().error(given.position, "", format!("{name}: {why}")))
         }
         _ => Ok(()),
     }
@@ -160,7 +165,7 @@ fn is_scenario(json: &Json<'_>) -> Result<(), ScenarioError> {
 
 /// The agents of a file, one after the other as they are read.
 #[derive(Default)]
-struct Agents {
+struct AgentsVisitor {
     all: Vec<Agent>,
     ids: HashSet<u64>,
     texts: HashSet<String>,
@@ -171,8 +176,8 @@ struct Agents {
     fault: Option<ScenarioError>,
 }
 
-impl Agents {
-    fn add(&mut self, json: &Json<'_>) {
+impl AgentsVisitor {
+    fn add(&mut self, json: &JsonNode<'_>) {
         if self.fault.is_none()
             && let Err(fault) = self.decode(json)
         {
@@ -180,12 +185,12 @@ impl Agents {
         }
     }
 
-    fn decode(&mut self, json: &Json<'_>) -> Result<(), ScenarioError> {
+    fn decode(&mut self, json: &JsonNode<'_>) -> Result<(), ScenarioError> {
         let (agent, text) = Agent::decode(json, self.all.len(), &mut self.doubts)?;
         let refused = |problem: &dyn fmt::Display| {
-            let called = format!("agent {}", agent.called());
+            let called = format!("agent {}", agent.display_name());
             let at = json.get("id").map_or(json.position, |id| id.position);
-            Err(Place { agent: Some(&called), part: None }.error(at, "id", problem))
+            Err(DecodeLocation { agent: Some(&called), part: None }.error(at, "id", problem))
         };
         if text && !self.texts.insert(agent.label.clone()) {
             return refused(&format_args!("{:?} is given to two agents", agent.label));
@@ -203,7 +208,7 @@ impl Agents {
 
 impl Agent {
     /// The agent at a place, and whether its id is a text.
-    fn decode(json: &Json<'_>, index: usize, doubts: &mut Doubts) -> Result<(Self, bool), ScenarioError> {
+    fn decode(json: &JsonNode<'_>, index: usize, doubts: &mut Doubts) -> Result<(Self, bool), ScenarioError> {
         const KNOWN: [&str; 16] = [
             "id",
             "label",
@@ -222,28 +227,31 @@ impl Agent {
             "path",
             "profile",
         ];
-        let name = Name::of(json, index);
+        let name = AgentName::of(json, index);
         let called = name.called(index);
-        let place = Place { agent: Some(&called), part: None };
+        let place = DecodeLocation { agent: Some(&called), part: None };
         let fields = place.fields(json, &KNOWN)?;
         let id = name.checked(&fields)?;
         let (radius, footprint) = outline(&fields, place)?;
-        let margin = fields.get("margin").map_or(Ok(0.0), |_| fields.number("margin", Range::NotNegative))?;
-        let t_start = fields.get("t_start").map_or(Ok(0.0), |_| fields.number("t_start", Range::Any))?;
+        let margin = fields.get("margin").map_or(Ok(0.0), |_| fields.number("margin", NumberRange::NotNegative))?;
+        let t_start = fields.get("t_start").map_or(Ok(0.0), |_| fields.number("t_start", NumberRange::Any))?;
         let start = fields.object("start", "start.", &["x", "y", "heading", "heading_deg"])?;
-        let start =
-            [start.number("x", Range::Any)?, start.number("y", Range::Any)?, doubts.angle(&start, Angle::Heading)?];
+        let start = [
+            start.number("x", NumberRange::Any)?,
+            start.number("y", NumberRange::Any)?,
+            doubts.angle(&start, AngleField::Heading)?,
+        ];
         let path = path(&fields, place, doubts)?;
         let motion = motion(&fields, &path, doubts)?;
         let loads = loads(&fields, path.len())?;
-        let Name { label, is_text, .. } = name;
+        let AgentName { label, is_text, .. } = name;
         let agent = Self { id, label, radius, footprint, loads, margin, t_start, start, path, motion };
         agent.ends_in_time(&fields)?;
         Ok((agent, is_text))
     }
 
     /// Refuses motions that end too late.
-    fn ends_in_time(&self, fields: &Fields<'_>) -> Result<(), ScenarioError> {
+    fn ends_in_time(&self, fields: &ObjectFields<'_>) -> Result<(), ScenarioError> {
         let (duration, t_start) = (self.duration(), self.t_start);
         if duration <= LIMIT && (t_start + duration).abs() <= LIMIT {
             return Ok(());
@@ -262,7 +270,11 @@ impl Agent {
 }
 
 /// The path of an agent, if it is neither too long nor of too many segments.
-fn path(fields: &Fields<'_>, place: Place<'_>, doubts: &mut Doubts) -> Result<Vec<PathSegment>, ScenarioError> {
+fn path(
+    fields: &ObjectFields<'_>,
+    place: DecodeLocation<'_>,
+    doubts: &mut Doubts,
+) -> Result<Vec<PathSegment>, ScenarioError> {
     let given = fields.array("path")?;
     let mut path = Vec::with_capacity(given.len());
     for (index, json) in given.iter().enumerate() {
@@ -281,18 +293,18 @@ fn path(fields: &Fields<'_>, place: Place<'_>, doubts: &mut Doubts) -> Result<Ve
 }
 
 /// The profile that is given, or from rest to rest, or with turns in place.
-fn motion(fields: &Fields<'_>, path: &[PathSegment], doubts: &mut Doubts) -> Result<MotionSpec, ScenarioError> {
+fn motion(fields: &ObjectFields<'_>, path: &[PathSegment], doubts: &mut Doubts) -> Result<MotionSpec, ScenarioError> {
     let moves = fields.get("profile").is_none();
     let limit = |field| match fields.get(field) {
         None if !moves => Ok(None),
-        _ => fields.number(field, Range::Positive).map(Some),
+        _ => fields.number(field, NumberRange::Positive).map(Some),
     };
     let turns = moves && fields.array("path")?.iter().any(turns::is_given);
-    let mut of_turns = |limit: Angle| match limit.is_in(fields) || turns {
+    let mut of_turns = |limit: AngleField| match limit.is_in(fields) || turns {
         false => Ok(0.0),
         true => doubts.angle(fields, limit),
     };
-    let of_turns = [of_turns(Angle::TurnSpeed)?, of_turns(Angle::TurnAcceleration)?];
+    let of_turns = [of_turns(AngleField::TurnSpeed)?, of_turns(AngleField::TurnAcceleration)?];
     Ok(match (limit("v_max")?, limit("a_max")?) {
         (Some(v_max), Some(a_max)) if turns => turns::motion(path, [v_max, a_max], of_turns),
         (Some(v_max), Some(a_max)) if moves => MotionSpec::RestToRest { v_max, a_max },
@@ -301,24 +313,24 @@ fn motion(fields: &Fields<'_>, path: &[PathSegment], doubts: &mut Doubts) -> Res
 }
 
 impl PathSegment {
-    fn decode(json: &Json<'_>, place: Place<'_>, doubts: &mut Doubts) -> Result<Self, ScenarioError> {
+    fn decode(json: &JsonNode<'_>, place: DecodeLocation<'_>, doubts: &mut Doubts) -> Result<Self, ScenarioError> {
         let kind = match &json.data {
-            Data::Object(members) => members.iter().find(|(key, _)| key == "kind").map(|(_, kind)| kind),
+            JsonData::Object(members) => members.iter().find(|(key, _)| key == "kind").map(|(_, kind)| kind),
             _ => None,
         };
         match kind.map(|kind| &kind.data) {
-            Some(Data::Text(kind)) if kind == "line" => {
+            Some(JsonData::Text(kind)) if kind == "line" => {
                 let fields = place.fields(json, &["kind", "length"])?;
-                Ok(Self::Line { length: fields.number("length", Range::NotNegative)? })
+                Ok(Self::Line { length: fields.number("length", NumberRange::NotNegative)? })
             }
-            Some(Data::Text(kind)) if kind == "arc" => {
+            Some(JsonData::Text(kind)) if kind == "arc" => {
                 let fields = place.fields(json, &["kind", "radius", "sweep", "sweep_deg"])?;
-                let radius = fields.number("radius", Range::Positive)?;
-                Ok(Self::Arc { radius, sweep: doubts.angle(&fields, Angle::Sweep)? })
+                let radius = fields.number("radius", NumberRange::Positive)?;
+                Ok(Self::Arc { radius, sweep: doubts.angle(&fields, AngleField::Sweep)? })
             }
-            Some(Data::Text(kind)) if kind == "turn" => {
+            Some(JsonData::Text(kind)) if kind == "turn" => {
                 let fields = place.fields(json, &["kind", "sweep", "sweep_deg"])?;
-                Ok(Self::Arc { radius: TURN, sweep: doubts.angle(&fields, Angle::Sweep)? })
+                Ok(Self::Arc { radius: TURN, sweep: doubts.angle(&fields, AngleField::Sweep)? })
             }
             _ => {
                 let fields = place.fields(json, &["kind", "length", "radius", "sweep", "sweep_deg"])?;
@@ -335,19 +347,19 @@ impl PathSegment {
 
 impl MotionSpec {
     /// The profile of an agent, scaled onto the length of its path.
-    fn decode(agent: &Fields<'_>, length: f64) -> Result<Self, ScenarioError> {
+    fn decode(agent: &ObjectFields<'_>, length: f64) -> Result<Self, ScenarioError> {
         let fields = agent.object("profile", "profile.", &["v0", "pieces"])?;
-        let v0 = fields.number("v0", Range::NotNegative)?;
+        let v0 = fields.number("v0", NumberRange::NotNegative)?;
         let (mut given, mut pieces) = (Vec::new(), Vec::new());
         for (index, json) in fields.array("pieces")?.iter().enumerate() {
-            let place = agent.place.part("profile piece", index);
+            let place = agent.location.part("profile piece", index);
             let fields = place.fields(json, &["duration", "accel"])?;
-            let duration = fields.number("duration", Range::NotNegative)?;
-            let accel = fields.number("accel", Range::Any)?;
+            let duration = fields.number("duration", NumberRange::NotNegative)?;
+            let accel = fields.number("accel", NumberRange::Any)?;
             given.push((duration, accel));
             pieces.push(fields);
         }
-        let mut profile = Settled::new(v0, given).map_err(|(index, after, accel)| {
+        let mut profile = RoundTripProfile::new(v0, given).map_err(|(index, after, accel)| {
             let problem =
                 format!("{} brings the speed to {} m/s; allowed is 0 and above", figure(accel), figure(after));
             match pieces.get(index) {
@@ -372,7 +384,7 @@ impl MotionSpec {
         if travelled > 0.0 && (travelled - length).abs() > profile.rounding {
             let scale = length / travelled;
             let pieces = profile.pieces.iter().map(|&(duration, accel)| (duration, accel * scale)).collect();
-            profile = Settled::new(profile.v0 * scale, pieces).unwrap_or(profile);
+            profile = RoundTripProfile::new(profile.v0 * scale, pieces).unwrap_or(profile);
         }
         Ok(Self::Profile { v0: profile.v0, pieces: profile.pieces })
     }

@@ -2,7 +2,7 @@
 
 use super::angles::{RADIANS, UNIT};
 use super::decode::{FORMAT, VERSION};
-use super::{Agent, Load, MotionSpec, PathSegment, Scenario, TURN};
+use super::{Agent, LoadOutline, MotionSpec, PathSegment, Scenario, TURN};
 use crate::footprint::Footprint;
 use serde_json::Value;
 use std::fmt::{self, Display};
@@ -11,7 +11,7 @@ impl Scenario {
     /// The file of the scenario, an agent a line. Every number is written with all its digits, so that
     /// [`Scenario::from_json`] reads the same paths back.
     pub fn to_json(&self) -> String {
-        let agents = self.agents.iter().map(|agent| format!("    {}", Json(agent))).collect::<Vec<_>>().join(",\n");
+        let agents = self.agents.iter().map(|agent| format!("    {}", AsJson(agent))).collect::<Vec<_>>().join(",\n");
         let agents = if agents.is_empty() { "[]".to_owned() } else { format!("[\n{agents}\n  ]") };
         let warnings = match self.warnings.is_empty() {
             true => String::new(),
@@ -32,9 +32,9 @@ impl Scenario {
 }
 
 /// Something as JSON writes it.
-struct Json<T>(T);
+struct AsJson<T>(T);
 
-impl Display for Json<&Agent> {
+impl Display for AsJson<&Agent> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Agent { id, label, radius, footprint, loads, margin, t_start, start: [x, y, heading], path, motion } =
             self.0;
@@ -42,10 +42,10 @@ impl Display for Json<&Agent> {
         if !label.is_empty() {
             write!(f, "\"label\": {}, ", Value::from(label.as_str()))?;
         }
-        write!(f, "{}, ", Json((*radius, footprint.as_ref())))?;
+        write!(f, "{}, ", AsJson((*radius, footprint.as_ref())))?;
         if !loads.is_empty() {
-            let loads = loads.iter().map(|Load { segments: [first, last], radius, footprint }| {
-                let outline = Json((*radius, footprint.as_ref()));
+            let loads = loads.iter().map(|LoadOutline { segments: [first, last], radius, footprint }| {
+                let outline = AsJson((*radius, footprint.as_ref()));
                 format!("{{ \"segments\": [{}, {}], {outline} }}", first + 1, last + 1)
             });
             write!(f, "\"loads\": [ {} ], ", loads.collect::<Vec<_>>().join(", "))?;
@@ -83,7 +83,7 @@ impl Display for Json<&Agent> {
 }
 
 /// An outline: the radius of a disc, or a footprint.
-impl Display for Json<(f64, Option<&Footprint>)> {
+impl Display for AsJson<(f64, Option<&Footprint>)> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (radius, footprint) = self.0;
         let Some(footprint) = footprint else {
@@ -113,7 +113,7 @@ mod tests {
             label: "AGV \"7\" → é".into(),
             radius: 1.0 / 3.0,
             footprint: None,
-            loads: vec![Load { segments: [0, 1], radius: 0.7, footprint: None }],
+            loads: vec![LoadOutline { segments: [0, 1], radius: 0.7, footprint: None }],
             margin: 0.1,
             t_start: -1e9,
             start: [1e-300, -7.0, 0.1 + 0.2],
@@ -129,8 +129,9 @@ mod tests {
             ..agent.clone()
         };
         let outline =
-            Footprint::new(vec![[0.1 + 0.2, -1.0], [1.0, 1.0 / 3.0], [-1.0, 0.5]], Some(0.3)).unwrap().grown(0.01);
-        let outlined = Agent { id: 2, radius: outline.reach(), footprint: Some(outline), ..stands.clone() };
+            Footprint::new(vec![[0.1 + 0.2, -1.0], [1.0, 1.0 / 3.0], [-1.0, 0.5]], Some(0.3)).unwrap().inflated(0.01);
+        let outlined =
+            Agent { id: 2, radius: outline.circumscribed_radius(), footprint: Some(outline), ..stands.clone() };
         let scenario = Scenario {
             warnings: vec!["edge \"5\": left out [left-out]".into()],
             ..Scenario::new("a \"name\" \\", vec![agent, stands, moves, outlined])

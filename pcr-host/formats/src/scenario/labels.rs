@@ -14,7 +14,7 @@ pub struct Labels(BTreeMap<u64, String>);
 
 impl Labels {
     /// The labels of a scenario.
-    pub fn of(scenario: &Scenario) -> Self {
+    pub fn from_scenario(scenario: &Scenario) -> Self {
         let labelled = scenario.agents.iter().filter(|agent| !agent.label.is_empty());
         Self(labelled.map(|agent| (agent.id, agent.label.clone())).collect())
     }
@@ -30,20 +30,20 @@ impl Labels {
     }
 
     /// The number of an agent and its label, as in `7 AGV-3`.
-    pub fn called(&self, id: u64) -> String {
-        called(id, self.get(id))
+    pub fn display_name(&self, id: u64) -> String {
+        display_name(id, self.get(id))
     }
 }
 
 impl Agent {
     /// Its number and its label, as in `7 AGV-3`.
-    pub fn called(&self) -> String {
-        called(self.id, &self.label)
+    pub fn display_name(&self) -> String {
+        display_name(self.id, &self.label)
     }
 }
 
 /// A number with a label, if there is one.
-pub(super) fn called(id: u64, label: &str) -> String {
+pub(super) fn display_name(id: u64, label: &str) -> String {
     if label.is_empty() { id.to_string() } else { format!("{id} {label}") }
 }
 

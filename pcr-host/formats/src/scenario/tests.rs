@@ -361,7 +361,10 @@ fn profiles_that_are_written_are_read_as_they_were() {
 
 #[test]
 fn labels_are_printable_text() {
-    assert_eq!(Scenario::from_value(&with("/label", &json!("AGV 7 → Ω"))).unwrap().agents[1].called(), "7 AGV 7 → Ω");
+    assert_eq!(
+        Scenario::from_value(&with("/label", &json!("AGV 7 → Ω"))).unwrap().agents[1].display_name(),
+        "7 AGV 7 → Ω"
+    );
     refused(&with("/label", &json!(5)), "agent 7, label: 5 where a string is expected");
     let control = "agent 7, label: has the control character \\u{1b}; allowed is printable text";
     refused(&with("/label", &json!("\u{1b}[2J")), control);
@@ -391,7 +394,7 @@ fn ids_may_be_texts_if_all_are() {
         json!({ "agents": agents })
     };
     let scenario = Scenario::from_value(&named([json!("AGV-7"), json!("AGV-3")])).unwrap();
-    assert_eq!(scenario.agents.iter().map(Agent::called).collect::<Vec<_>>(), ["1 AGV-7", "2 AGV-3"]);
+    assert_eq!(scenario.agents.iter().map(Agent::display_name).collect::<Vec<_>>(), ["1 AGV-7", "2 AGV-3"]);
     assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));
     refused(&named([json!("a"), json!("a")]), "agent 2 a, id: \"a\" is given to two agents");
     for mixed in [[json!("a"), json!(5)], [json!(5), json!("a")]] {

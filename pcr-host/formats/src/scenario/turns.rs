@@ -2,12 +2,12 @@
 //! angle θ(t) is a motion of the length [`TURN`] θ(t).
 
 use super::{Agent, KINK, MotionSpec, PathSegment, TURN};
-use crate::json::{Data, Json};
+use crate::json::{JsonData, JsonNode};
 
 /// Whether a segment in a file is one.
-pub(super) fn is_given(segment: &Json<'_>) -> bool {
-    let Data::Object(members) = &segment.data else { return false };
-    members.iter().any(|(key, value)| key == "kind" && matches!(&value.data, Data::Text(kind) if kind == "turn"))
+pub(super) fn is_given(segment: &JsonNode<'_>) -> bool {
+    let JsonData::Object(members) = &segment.data else { return false };
+    members.iter().any(|(key, value)| key == "kind" && matches!(&value.data, JsonData::Text(kind) if kind == "turn"))
 }
 
 /// Whether a segment is a turn in place.

@@ -2,30 +2,30 @@
 //! are refused with a reason.
 
 use super::validate::{self, VERBATIM};
-use crate::once::Once;
+use crate::unique_keys::UniqueKeysJson;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use std::fmt;
 
-pub use super::validate::Limits;
+pub use super::validate::MessageLimits;
 
 /// Why a message is refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Refusal {
+pub struct DecodeError {
     /// Field of the message, such as `nodes[2].nodePosition.x`; empty for the whole message.
     pub field: String,
     /// What is wrong there, in words.
     pub why: String,
 }
 
-impl Refusal {
+impl DecodeError {
     /// A refusal because of a field.
     pub fn new(field: impl Into<String>, why: impl fmt::Display) -> Self {
         Self { field: field.into(), why: why.to_string() }
     }
 }
 
-impl fmt::Display for Refusal {
+impl fmt::Display for DecodeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.field.as_str() {
             "" => f.write_str(&self.why),
@@ -34,41 +34,41 @@ impl fmt::Display for Refusal {
     }
 }
 
-impl std::error::Error for Refusal {}
+impl std::error::Error for DecodeError {}
 
 /// Reads a message. `null` counts as a missing field, because some senders write it for unknown values.
 ///
 /// # Errors
-/// [`Refusal`] with the name of the field.
-pub fn read<T: DeserializeOwned>(bytes: &[u8], limits: Limits) -> Result<T, Refusal> {
+/// [`DecodeError`] with the name of the field.
+pub fn read<T: DeserializeOwned>(bytes: &[u8], limits: MessageLimits) -> Result<T, DecodeError> {
     if bytes.len() > limits.bytes {
-        return Err(Refusal::new("", format!("{} bytes; at most {} are read", bytes.len(), limits.bytes)));
+        return Err(DecodeError::new("", format!("{} bytes; at most {} are read", bytes.len(), limits.bytes)));
     }
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    validate::check(bytes, limits).map_err(|(field, why)| Refusal::new(field, why))?;
+    validate::check(bytes, limits).map_err(|(field, why)| DecodeError::new(field, why))?;
     // The fast path: only a message with an error or with `null` is parsed into a tree first.
     let has_null = bytes.windows(4).any(|part| part == b"null");
     if let Some(message) = (!has_null).then(|| serde_json::from_slice(bytes).ok()).flatten() {
         return Ok(message);
     }
-    let Once(value) = serde_json::from_slice(bytes).map_err(|error| Refusal::new("", error))?;
+    let UniqueKeysJson(value) = serde_json::from_slice(bytes).map_err(|error| DecodeError::new("", error))?;
     decoded(value)
 }
 
 /// Reads a message from its tree, as [`read`] does, without limits of its size.
 ///
 /// # Errors
-/// [`Refusal`] with the name of the field.
-pub fn from_value<T: DeserializeOwned>(value: Value) -> Result<T, Refusal> {
-    validate::check_tree(&value, Limits::NONE).map_err(|(field, why)| Refusal::new(field, why))?;
+/// [`DecodeError`] with the name of the field.
+pub fn from_value<T: DeserializeOwned>(value: Value) -> Result<T, DecodeError> {
+    validate::check_tree(&value, MessageLimits::NONE).map_err(|(field, why)| DecodeError::new(field, why))?;
     decoded(value)
 }
 
-fn decoded<T: DeserializeOwned>(mut value: Value) -> Result<T, Refusal> {
+fn decoded<T: DeserializeOwned>(mut value: Value) -> Result<T, DecodeError> {
     drop_null(&mut value);
     serde_path_to_error::deserialize(value).map_err(|error| {
         let path = error.path().to_string();
-        Refusal::new(if path == "." { String::new() } else { path }, error.into_inner())
+        DecodeError::new(if path == "." { String::new() } else { path }, error.into_inner())
     })
 }
 
@@ -91,8 +91,8 @@ mod tests {
 
     /// As bytes, and as a tree if it is one: with the same words.
     fn refused(text: &str) -> String {
-        let refused = read::<Order>(text.as_bytes(), Limits::default()).unwrap_err().to_string();
-        if let Ok(Once(tree)) = serde_json::from_str(text)
+        let refused = read::<Order>(text.as_bytes(), MessageLimits::default()).unwrap_err().to_string();
+        if let Ok(UniqueKeysJson(tree)) = serde_json::from_str(text)
             && !refused.contains("at most")
         {
             assert_eq!(from_value::<Order>(tree).unwrap_err().to_string(), refused);
@@ -110,7 +110,7 @@ mod tests {
                 node.replace("XX", x)
             )
         };
-        assert!(read::<Order>(order("1").as_bytes(), Limits::default()).is_ok());
+        assert!(read::<Order>(order("1").as_bytes(), MessageLimits::default()).is_ok());
         assert!(
             refused(&order("\"1\"")).starts_with("nodes[0].nodePosition.x: invalid type"),
             "{}",
@@ -147,7 +147,7 @@ mod tests {
                 r#"{{"orderId":"","orderUpdateId":0,"lastNodeId":"","lastNodeSequenceId":0,"driving":false,"actionStates":[],"operatingMode":"AUTOMATIC",
                     "errors":[],"edgeStates":[],"nodeStates":[{{"nodeId":"A","sequenceId":2,"released":true,"own":[1]}},{node}]}}"#
             );
-            read::<State>(text.as_bytes(), Limits::default())
+            read::<State>(text.as_bytes(), MessageLimits::default())
         };
         let read = state(r#"{"nodeId":"B","sequenceId":4,"released":false,"nodePosition":null}"#).unwrap();
         assert_eq!((read.base(), read.node_states.len()), (2, 2));

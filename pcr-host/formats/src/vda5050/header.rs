@@ -1,8 +1,8 @@
 //! The header of every message.
 
-use super::decode::Refusal;
-use super::topics::Key;
-use super::version::Version;
+use super::decode::DecodeError;
+use super::topics::VehicleId;
+use super::version::ProtocolVersion;
 use serde::{Deserialize, Serialize};
 
 /// Defines a message: its header, its fields, and a map of all other fields.
@@ -14,7 +14,7 @@ macro_rules! message {
         pub struct $name {
             /// The header.
             #[serde(flatten)]
-            pub header: $crate::vda5050::header::Header,
+            pub header: $crate::vda5050::header::MessageHeader,
             $($(#[$field_meta])* pub $field: $type,)*
             /// All other fields of the message, kept unchanged.
             #[serde(flatten)]
@@ -27,7 +27,7 @@ pub(super) use message;
 /// The header of a message.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", default)]
-pub struct Header {
+pub struct MessageHeader {
     /// Header id: counts the messages of a topic.
     pub header_id: u64,
     /// Time stamp, by the clock of the sender.
@@ -40,10 +40,10 @@ pub struct Header {
     pub serial_number: String,
 }
 
-impl Header {
+impl MessageHeader {
     /// The header of a message of ours.
-    pub fn new(key: &Key, version: Version, header_id: u64, timestamp: String) -> Self {
-        let Key { manufacturer, serial_number } = key.clone();
+    pub fn new(key: &VehicleId, version: ProtocolVersion, header_id: u64, timestamp: String) -> Self {
+        let VehicleId { manufacturer, serial_number } = key.clone();
         Self { header_id, timestamp, version: version.text().into(), manufacturer, serial_number }
     }
 
@@ -51,19 +51,19 @@ impl Header {
     ///
     /// # Errors
     /// The field that does not fit.
-    pub fn check(&self, key: &Key, is_third: bool) -> Result<Version, Refusal> {
+    pub fn check(&self, key: &VehicleId, is_third: bool) -> Result<ProtocolVersion, DecodeError> {
         for (field, said, topic) in [
             ("manufacturer", &self.manufacturer, &key.manufacturer),
             ("serialNumber", &self.serial_number, &key.serial_number),
         ] {
             if said != topic {
-                return Err(Refusal::new(field, format!("{said:?}, but the topic is that of {topic:?}")));
+                return Err(DecodeError::new(field, format!("{said:?}, but the topic is that of {topic:?}")));
             }
         }
         let version = self.edition()?;
-        if (version == Version::V3_0) != is_third {
+        if (version == ProtocolVersion::V3_0) != is_third {
             let why = format!("{version} in a topic of v{}", if is_third { 3 } else { 2 });
-            return Err(Refusal::new("version", why));
+            return Err(DecodeError::new("version", why));
         }
         Ok(version)
     }
@@ -72,8 +72,8 @@ impl Header {
     ///
     /// # Errors
     /// One that is not read.
-    pub fn edition(&self) -> Result<Version, Refusal> {
-        let unknown = || Refusal::new("version", format!("{:?}; 2.0, 2.1 and 3.0 are read", self.version));
-        Version::of(&self.version).ok_or_else(unknown)
+    pub fn edition(&self) -> Result<ProtocolVersion, DecodeError> {
+        let unknown = || DecodeError::new("version", format!("{:?}; 2.0, 2.1 and 3.0 are read", self.version));
+        ProtocolVersion::parse(&self.version).ok_or_else(unknown)
     }
 }

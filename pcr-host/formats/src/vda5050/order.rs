@@ -1,6 +1,6 @@
 //! Orders: nodes and edges to be travelled, of which the first ones are released.
 
-use super::decode::Refusal;
+use super::decode::DecodeError;
 use super::header::message;
 use super::messages::Action;
 use serde::{Deserialize, Serialize};
@@ -14,16 +14,16 @@ message! {
         /// Order update id, from 0.
         order_update_id: u64,
         /// The nodes, in the order of travel after [`Order::check`].
-        nodes: Vec<Node>,
+        nodes: Vec<OrderNode>,
         /// The edges: one less than nodes.
-        edges: Vec<Edge>,
+        edges: Vec<OrderEdge>,
     }
 }
 
 /// A node of an order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub struct Node {
+pub struct OrderNode {
     /// Node id.
     pub node_id: String,
     /// Sequence number; even, because edges have the odd numbers in between.
@@ -38,7 +38,7 @@ pub struct Node {
     pub actions: Vec<Action>,
     /// All other fields of the message, kept unchanged.
     #[serde(flatten)]
-    pub rest: Map<String, Value>,
+    pub extra: Map<String, Value>,
 }
 
 /// Position of a node.
@@ -64,21 +64,21 @@ impl NodePosition {
     ///
     /// # Errors
     /// A value that is not such a deviation.
-    pub fn deviation(&self) -> Result<Option<f64>, Refusal> {
+    pub fn deviation(&self) -> Result<Option<f64>, DecodeError> {
         let Some((name, value)) = DEVIATIONS.iter().find_map(|name| self.rest.get_key_value(*name)) else {
             return Ok(None);
         };
         let number = |value: &Value| value.as_f64().filter(|number| *number >= 0.0);
         // Since 3.0 the deviation is an ellipse.
         let axes = || Some(number(value.get("a")?)?.max(number(value.get("b")?)?));
-        number(value).or_else(axes).map(Some).ok_or_else(|| Refusal::new(name, "no distance from 0"))
+        number(value).or_else(axes).map(Some).ok_or_else(|| DecodeError::new(name, "no distance from 0"))
     }
 }
 
 /// An edge of an order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub struct Edge {
+pub struct OrderEdge {
     /// Edge id.
     pub edge_id: String,
     /// Sequence number; odd.
@@ -106,19 +106,25 @@ impl Order {
     /// Sorts nodes and edges into the order of travel, and checks that they form one way whose first part is released.
     ///
     /// # Errors
-    /// [`Refusal`] with the name of the field.
-    pub fn check(&mut self) -> Result<(), Refusal> {
+    /// [`DecodeError`] with the name of the field.
+    pub fn check(&mut self) -> Result<(), DecodeError> {
         let Self { nodes, edges, .. } = self;
         nodes.sort_by_key(|node| node.sequence_id);
         edges.sort_by_key(|edge| edge.sequence_id);
         if self.order_id.is_empty() {
-            return Err(Refusal::new("orderId", "empty"));
+            return Err(DecodeError::new("orderId", "empty"));
         }
         if nodes.len() != edges.len() + 1 {
-            return Err(Refusal::new("nodes", format!("{} nodes and {} edges are no way", nodes.len(), edges.len())));
+            return Err(DecodeError::new(
+                "nodes",
+                format!("{} nodes and {} edges are no way", nodes.len(), edges.len()),
+            ));
         }
         if let Some(first) = nodes.first().filter(|first| !first.released) {
-            return Err(Refusal::new("nodes[0].released", format!("node {} is where the base begins", first.node_id)));
+            return Err(DecodeError::new(
+                "nodes[0].released",
+                format!("node {} is where the base begins", first.node_id),
+            ));
         }
         let mut released = true;
         for (k, (edge, ends)) in edges.iter().zip(nodes.windows(2)).enumerate() {
@@ -127,7 +133,7 @@ impl Order {
                 || edge.sequence_id.checked_add(1) != Some(to.sequence_id)
             {
                 let numbers = [from.sequence_id, edge.sequence_id, to.sequence_id];
-                return Err(Refusal::new(
+                return Err(DecodeError::new(
                     format!("edges[{k}].sequenceId"),
                     format!("{numbers:?} do not follow one another"),
                 ));
@@ -137,11 +143,11 @@ impl Order {
             {
                 if said.as_ref().is_some_and(|said| *said != node.node_id) {
                     let node = &node.node_id;
-                    return Err(Refusal::new(format!("edges[{k}].{field}"), format!("by sequenceId it is {node}")));
+                    return Err(DecodeError::new(format!("edges[{k}].{field}"), format!("by sequenceId it is {node}")));
                 }
             }
             if edge.released != to.released || (edge.released && !released) {
-                return Err(Refusal::new(format!("edges[{k}].released"), "the base is one way up to a node"));
+                return Err(DecodeError::new(format!("edges[{k}].released"), "the base is one way up to a node"));
             }
             released = edge.released;
         }

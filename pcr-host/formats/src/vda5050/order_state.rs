@@ -1,10 +1,10 @@
 //! An order as its receiver keeps it. Updates are stitched to the end of its base, as the standard says: the base itself cannot be
 //! changed. The importer, the supervisor and simulated vehicles decide by this, and with these words.
 
-use super::decode::Refusal;
-use super::order::{Edge, Node, Order};
-use super::state::{ORDER, StateError};
-use super::version::{Error, Version};
+use super::decode::DecodeError;
+use super::order::{Order, OrderEdge, OrderNode};
+use super::state::{ErrorEntry, ORDER};
+use super::version::{OrderRejection, ProtocolVersion};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -23,9 +23,9 @@ pub struct OrderState {
     /// Order update id of the last update that was taken.
     pub update_id: u64,
     /// Nodes that are kept, in the order of travel.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<OrderNode>,
     /// Edges: one less than nodes.
-    pub edges: Vec<Edge>,
+    pub edges: Vec<OrderEdge>,
     /// Index of the last node of the base.
     pub base: usize,
     /// Sequence number of the first node of the last update that was taken; `None` in journals of earlier versions.
@@ -38,7 +38,7 @@ pub struct OrderState {
 
 /// The result of an update.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Taken {
+pub enum UpdateResult {
     /// The update was known already.
     Repeated,
     /// The nodes after this index are new.
@@ -47,31 +47,31 @@ pub enum Taken {
 
 /// Why an order or an update is not taken.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rejected {
+pub struct RejectedOrder {
     /// Error type of the standard.
-    pub error: Error,
+    pub error: OrderRejection,
     /// What is wrong.
-    pub refusal: Refusal,
+    pub refusal: DecodeError,
 }
 
-impl Rejected {
+impl RejectedOrder {
     /// A rejection with this error type and reason.
-    pub fn new(error: Error, field: &str, why: impl std::fmt::Display) -> Self {
-        Self { error, refusal: Refusal::new(field, why) }
+    pub fn new(error: OrderRejection, field: &str, why: impl std::fmt::Display) -> Self {
+        Self { error, refusal: DecodeError::new(field, why) }
     }
 
     /// The error by which a receiver reports it; with references if the message said which order and update it is.
-    pub fn report(&self, version: Version, order: &str, update: u64) -> StateError {
+    pub fn report(&self, version: ProtocolVersion, order: &str, update: u64) -> ErrorEntry {
         let update = update.to_string();
         let mut references = vec![(ORDER, order), ("orderUpdateId", update.as_str())];
         references.retain(|_| !order.is_empty());
-        StateError::warning(version.error(self.error), self.refusal.to_string(), &references)
+        ErrorEntry::warning(version.error(self.error), self.refusal.to_string(), &references)
     }
 }
 
-impl From<Refusal> for Rejected {
-    fn from(refusal: Refusal) -> Self {
-        Self { error: Error::Malformed, refusal }
+impl From<DecodeError> for RejectedOrder {
+    fn from(refusal: DecodeError) -> Self {
+        Self { error: OrderRejection::Malformed, refusal }
     }
 }
 
@@ -80,12 +80,13 @@ impl OrderState {
     ///
     /// # Errors
     /// As [`Order::check`]; and since edition 3.0 the number of a new order has to be 0.
-    pub fn new(order: Order) -> Result<Self, Rejected> {
-        let (update, is_third) = (order.order_update_id, Version::of(&order.header.version) == Some(Version::V3_0));
+    pub fn new(order: Order) -> Result<Self, RejectedOrder> {
+        let (update, is_third) =
+            (order.order_update_id, ProtocolVersion::parse(&order.header.version) == Some(ProtocolVersion::V3_0));
         let state = Self::recorded(order)?;
         if is_third && update > 0 {
             let why = format!("{update} of an order that the vehicle does not have; a new order has 0");
-            return Err(Rejected::new(Error::Order, "orderUpdateId", why));
+            return Err(RejectedOrder::new(OrderRejection::Order, "orderUpdateId", why));
         }
         Ok(state)
     }
@@ -94,7 +95,7 @@ impl OrderState {
     ///
     /// # Errors
     /// As [`Order::check`].
-    pub fn recorded(mut order: Order) -> Result<Self, Rejected> {
+    pub fn recorded(mut order: Order) -> Result<Self, RejectedOrder> {
         order.check()?;
         let base = order.base();
         let Order { order_id, order_update_id: update_id, nodes, edges, rest, .. } = order;
@@ -106,33 +107,33 @@ impl OrderState {
     /// recognized by its number.
     ///
     /// # Errors
-    /// [`Rejected`] if its number is lower than that of the last one, if it has the number of the last one and says something else, or if
+    /// [`RejectedOrder`] if its number is lower than that of the last one, if it has the number of the last one and says something else, or if
     /// it does not go on at the end of the base: at the same node, with the same sequence number, at the same place. Nothing has
     /// changed then.
-    pub fn update(&mut self, mut order: Order) -> Result<Taken, Rejected> {
+    pub fn update(&mut self, mut order: Order) -> Result<UpdateResult, RejectedOrder> {
         order.check()?;
         if order.order_update_id < self.update_id {
             let why = format!("{}, but {} was taken already", order.order_update_id, self.update_id);
-            return Err(Rejected::new(Error::Outdated, "orderUpdateId", why));
+            return Err(RejectedOrder::new(OrderRejection::Outdated, "orderUpdateId", why));
         }
         if order.order_update_id == self.update_id {
             let why = format!("{} was taken already, with another content", self.update_id);
-            let other = || Rejected::new(Error::SameUpdate, "orderUpdateId", why);
-            return self.has(&order).then_some(Taken::Repeated).ok_or_else(other);
+            let other = || RejectedOrder::new(OrderRejection::SameUpdate, "orderUpdateId", why);
+            return self.has(&order).then_some(UpdateResult::Repeated).ok_or_else(other);
         }
         let (Some(stitch), Some(first)) = (self.nodes.get(self.base), order.nodes.first()) else {
-            return Err(Rejected::new(Error::Update, "nodes", "empty"));
+            return Err(RejectedOrder::new(OrderRejection::Update, "nodes", "empty"));
         };
         if (&stitch.node_id, stitch.sequence_id) != (&first.node_id, first.sequence_id) {
             let [is, was] = [first, stitch].map(|node| format!("{} ({})", node.node_id, node.sequence_id));
             let why = format!("it begins at {is}, but the base ends at {was} and cannot be changed");
-            return Err(Rejected::new(Error::Update, "nodes[0]", why));
+            return Err(RejectedOrder::new(OrderRejection::Update, "nodes[0]", why));
         }
         if let Some(why) = moved(stitch, first) {
-            return Err(Rejected::new(Error::Update, "nodes[0].nodePosition", why));
+            return Err(RejectedOrder::new(OrderRejection::Update, "nodes[0].nodePosition", why));
         }
         if self.base + order.nodes.len() > MOST {
-            return Err(Rejected::new(Error::Order, "nodes", format!("more than {MOST} of one order")));
+            return Err(RejectedOrder::new(OrderRejection::Order, "nodes", format!("more than {MOST} of one order")));
         }
         let after = self.base;
         self.begins = Some(first.sequence_id);
@@ -143,7 +144,7 @@ impl OrderState {
         self.nodes.extend(order.nodes.into_iter().skip(1));
         self.edges.extend(order.edges);
         self.rest = order.rest;
-        Ok(Taken::After(after))
+        Ok(UpdateResult::After(after))
     }
 
     /// Whether an order, which has been checked, says what the last update said. What was passed and dropped is not compared.
@@ -158,7 +159,9 @@ impl OrderState {
         let edges = order.edges.iter().filter(|edge| since(edge.sequence_id));
         let mut pairs = self.nodes.iter().filter(|node| since(node.sequence_id)).zip(nodes).enumerate();
         // Of the first node of an update, that of the base is kept.
-        let same = |(k, (own, other)): (usize, (&Node, &Node))| if k == 0 { is_node(own, other) } else { own == other };
+        let same = |(k, (own, other)): (usize, (&OrderNode, &OrderNode))| {
+            if k == 0 { is_node(own, other) } else { own == other }
+        };
         self.nodes.last().map(|node| node.sequence_id) == order.nodes.last().map(|node| node.sequence_id)
             && pairs.all(same)
             && self.edges.iter().filter(|edge| since(edge.sequence_id)).eq(edges)
@@ -179,12 +182,12 @@ impl OrderState {
 }
 
 /// Whether the first node of an update is this one.
-fn is_node(stitch: &Node, first: &Node) -> bool {
+fn is_node(stitch: &OrderNode, first: &OrderNode) -> bool {
     (&stitch.node_id, stitch.sequence_id) == (&first.node_id, first.sequence_id) && moved(stitch, first).is_none()
 }
 
 /// Says how far the first node of an update is from the end of the base, if it is elsewhere. A node without a position is where it was.
-fn moved(stitch: &Node, first: &Node) -> Option<String> {
+fn moved(stitch: &OrderNode, first: &OrderNode) -> Option<String> {
     let (was, is) = stitch.node_position.as_ref().zip(first.node_position.as_ref())?;
     if was.map_id != is.map_id {
         return Some(format!("node {} is on map {}, but it was on map {}", first.node_id, is.map_id, was.map_id));
@@ -195,7 +198,7 @@ fn moved(stitch: &Node, first: &Node) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::decode::{Limits, read};
+    use super::super::decode::{MessageLimits, read};
     use super::super::order::NodePosition;
     use super::*;
     use serde_json::json;
@@ -209,7 +212,7 @@ mod tests {
             .map(|(k, pair)| json!({ "edgeId": "e", "sequenceId": pair[0].1 + 1, "released": k + 1 < released, "actions": [] }))
             .collect();
         let order = json!({ "orderId": "o", "orderUpdateId": update, "nodes": nodes, "edges": edges });
-        read(order.to_string().as_bytes(), Limits::default()).unwrap()
+        read(order.to_string().as_bytes(), MessageLimits::default()).unwrap()
     }
 
     #[test]
@@ -218,18 +221,18 @@ mod tests {
         let mut held = OrderState::new(order(0, &[("f", 0), ("d", 2), ("g", 4), ("b", 6), ("h", 8)], 3)).unwrap();
         assert_eq!(held.base, 2);
         let update = order(1, &[("g", 4), ("b", 6), ("h", 8), ("i", 10)], 3);
-        assert_eq!(held.update(update.clone()), Ok(Taken::After(2)));
+        assert_eq!(held.update(update.clone()), Ok(UpdateResult::After(2)));
         let names: Vec<_> = held.nodes.iter().map(|node| node.node_id.as_str()).collect();
         assert_eq!((names.concat().as_str(), held.base, held.edges.len()), ("fdgbhi", 4, 5));
-        assert_eq!(held.update(update), Ok(Taken::Repeated));
+        assert_eq!(held.update(update), Ok(UpdateResult::Repeated));
         let before = held.clone();
-        assert_eq!(held.update(order(0, &[("h", 8)], 1)).unwrap_err().error, Error::Outdated);
-        assert_eq!(held.update(order(2, &[("g", 4), ("b", 6)], 2)).unwrap_err().error, Error::Update);
-        assert_eq!(held.update(order(2, &[("h", 9), ("b", 11)], 2)).unwrap_err().error, Error::Update);
-        assert_eq!(held.update(order(2, &[("h", 8), ("b", 11)], 2)).unwrap_err().error, Error::Malformed);
+        assert_eq!(held.update(order(0, &[("h", 8)], 1)).unwrap_err().error, OrderRejection::Outdated);
+        assert_eq!(held.update(order(2, &[("g", 4), ("b", 6)], 2)).unwrap_err().error, OrderRejection::Update);
+        assert_eq!(held.update(order(2, &[("h", 9), ("b", 11)], 2)).unwrap_err().error, OrderRejection::Update);
+        assert_eq!(held.update(order(2, &[("h", 8), ("b", 11)], 2)).unwrap_err().error, OrderRejection::Malformed);
         assert_eq!(held, before);
         // The horizon may be another one, or none.
-        assert_eq!(held.update(order(2, &[("h", 8)], 1)), Ok(Taken::After(4)));
+        assert_eq!(held.update(order(2, &[("h", 8)], 1)), Ok(UpdateResult::After(4)));
         assert_eq!((held.nodes.len(), held.base), (5, 4));
         held.forget(3);
         assert_eq!((held.nodes[0].node_id.as_str(), held.base, held.place_of(8)), ("b", 1, Some(1)));
@@ -238,7 +241,7 @@ mod tests {
     #[test]
     fn the_number_of_an_update_is_taken_once() {
         let mut held = OrderState::new(order(0, &[("a", 0), ("b", 2), ("c", 4)], 2)).unwrap();
-        assert_eq!(held.update(order(0, &[("a", 0), ("b", 2), ("c", 4)], 2)), Ok(Taken::Repeated));
+        assert_eq!(held.update(order(0, &[("a", 0), ("b", 2), ("c", 4)], 2)), Ok(UpdateResult::Repeated));
         for other in [
             order(0, &[("a", 0), ("b", 2), ("c", 4)], 3),
             order(0, &[("a", 0), ("b", 2), ("d", 4)], 2),
@@ -246,19 +249,22 @@ mod tests {
             order(0, &[("a", 0), ("b", 2), ("c", 4), ("d", 6)], 2),
         ] {
             let rejected = held.update(other).unwrap_err();
-            assert_eq!((rejected.error, rejected.refusal.field.as_str()), (Error::SameUpdate, "orderUpdateId"));
+            assert_eq!(
+                (rejected.error, rejected.refusal.field.as_str()),
+                (OrderRejection::SameUpdate, "orderUpdateId")
+            );
         }
         let update = order(1, &[("b", 2), ("c", 4), ("d", 6)], 3);
-        assert_eq!(held.update(update.clone()), Ok(Taken::After(1)));
-        assert_eq!(held.update(update.clone()), Ok(Taken::Repeated));
+        assert_eq!(held.update(update.clone()), Ok(UpdateResult::After(1)));
+        assert_eq!(held.update(update.clone()), Ok(UpdateResult::Repeated));
         // What was passed is not known any more.
         held.forget(2);
-        assert_eq!(held.update(update), Ok(Taken::Repeated));
+        assert_eq!(held.update(update), Ok(UpdateResult::Repeated));
         assert!(held.update(order(1, &[("b", 2), ("c", 4), ("e", 6)], 3)).is_err());
         // A part of it is something else, and so is what says more of a node or of the order.
         assert!(held.update(order(1, &[("c", 4), ("d", 6)], 2)).is_err());
         let mut turned = order(1, &[("b", 2), ("c", 4), ("d", 6)], 3);
-        turned.nodes[2].rest.insert("nodeDescription".into(), "dock".into());
+        turned.nodes[2].extra.insert("nodeDescription".into(), "dock".into());
         assert!(held.update(turned).is_err());
         let mut zoned = order(1, &[("b", 2), ("c", 4), ("d", 6)], 3);
         zoned.rest.insert("zoneSetId".into(), "other".into());
@@ -292,7 +298,7 @@ mod tests {
         ] {
             let taken = OrderState::new(first.clone()).unwrap().update(at(update(), 0, x, map));
             let refused = taken.err().map(|rejected| (rejected.error, rejected.refusal.why));
-            assert_eq!(refused, why.map(|why| (Error::Update, why.to_owned())));
+            assert_eq!(refused, why.map(|why| (OrderRejection::Update, why.to_owned())));
         }
         assert!(OrderState::new(first).unwrap().update(update()).is_ok());
     }

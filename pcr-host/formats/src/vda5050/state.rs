@@ -21,9 +21,9 @@ message! {
         /// Sequence number of that node.
         last_node_sequence_id: u64,
         /// Nodes that are still to be passed.
-        node_states: Listed<NodeState>,
+        node_states: PartialList<NodeState>,
         /// Edges that are still to be travelled.
-        edge_states: Listed<EdgeState>,
+        edge_states: PartialList<EdgeState>,
         /// Whether it drives.
         driving: bool,
         /// Whether it requests more base.
@@ -31,10 +31,10 @@ message! {
         new_base_request: Option<bool>,
         /// Position, in 2.x.
         #[serde(skip_serializing_if = "Option::is_none")]
-        agv_position: Option<Pose>,
+        agv_position: Option<VehiclePosition>,
         /// Position, in 3.0.
         #[serde(skip_serializing_if = "Option::is_none")]
-        mobile_robot_position: Option<Pose>,
+        mobile_robot_position: Option<VehiclePosition>,
         /// Its velocity.
         #[serde(skip_serializing_if = "Option::is_none")]
         velocity: Option<Velocity>,
@@ -46,19 +46,19 @@ message! {
         /// Operating mode.
         operating_mode: String,
         /// Errors that it reports.
-        errors: Vec<StateError>,
+        errors: Vec<ErrorEntry>,
     }
 }
 
 /// A list of which a few fields are read. The text is kept as it was written: it is long, and most of it is passed on or
 /// dropped.
 #[derive(Clone, Debug)]
-pub struct Listed<T> {
+pub struct PartialList<T> {
     text: Arc<RawValue>,
     items: Vec<T>,
 }
 
-impl<T> Listed<T> {
+impl<T> PartialList<T> {
     /// A list to be written; its items are not read.
     pub fn written(all: &[impl Serialize]) -> Self {
         // Lists of numbers and texts can always be written.
@@ -66,7 +66,7 @@ impl<T> Listed<T> {
     }
 }
 
-impl<T> Deref for Listed<T> {
+impl<T> Deref for PartialList<T> {
     type Target = [T];
 
     fn deref(&self) -> &[T] {
@@ -74,19 +74,19 @@ impl<T> Deref for Listed<T> {
     }
 }
 
-impl<T> PartialEq for Listed<T> {
+impl<T> PartialEq for PartialList<T> {
     fn eq(&self, other: &Self) -> bool {
         self.text.get() == other.text.get()
     }
 }
 
-impl<T> Serialize for Listed<T> {
+impl<T> Serialize for PartialList<T> {
     fn serialize<S: Serializer>(&self, writer: S) -> Result<S::Ok, S::Error> {
         self.text.serialize(writer)
     }
 }
 
-impl<'de, T: DeserializeOwned> Deserialize<'de> for Listed<T> {
+impl<'de, T: DeserializeOwned> Deserialize<'de> for PartialList<T> {
     fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<Self, D::Error> {
         let text = Box::<RawValue>::deserialize(reader)?;
         let items = serde_json::from_str(text.get()).or_else(|_| {
@@ -102,7 +102,7 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for Listed<T> {
 #[serde(rename_all = "camelCase")]
 pub struct NodeState {
     /// Node id, only checked to be a text.
-    node_id: Text,
+    node_id: IgnoredText,
     /// Sequence number of the node.
     pub sequence_id: u64,
     /// Whether it belongs to the base.
@@ -114,7 +114,7 @@ pub struct NodeState {
 #[serde(rename_all = "camelCase")]
 pub struct EdgeState {
     /// Edge id, only checked to be a text.
-    edge_id: Text,
+    edge_id: IgnoredText,
     /// Sequence number of the edge.
     pub sequence_id: u64,
     /// Whether it belongs to the base.
@@ -123,30 +123,30 @@ pub struct EdgeState {
 
 /// A text that is not stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Text;
+struct IgnoredText;
 
-impl<'de> Deserialize<'de> for Text {
+impl<'de> Deserialize<'de> for IgnoredText {
     fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<Self, D::Error> {
-        struct Any;
-        impl Visitor<'_> for Any {
-            type Value = Text;
+        struct IgnoredTextVisitor;
+        impl Visitor<'_> for IgnoredTextVisitor {
+            type Value = IgnoredText;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a string")
             }
 
-            fn visit_str<E: Error>(self, _: &str) -> Result<Text, E> {
-                Ok(Text)
+            fn visit_str<E: Error>(self, _: &str) -> Result<IgnoredText, E> {
+                Ok(IgnoredText)
             }
         }
-        reader.deserialize_str(Any)
+        reader.deserialize_str(IgnoredTextVisitor)
     }
 }
 
 /// Position of a vehicle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub struct Pose {
+pub struct VehiclePosition {
     /// \[m\]
     pub x: f64,
     /// \[m\]
@@ -172,7 +172,7 @@ pub struct Pose {
     pub rest: Map<String, Value>,
 }
 
-impl Pose {
+impl VehiclePosition {
     /// Whether the vehicle says that it is localized.
     pub fn is_known(&self) -> bool {
         self.position_initialized.or(self.localized).unwrap_or(false)
@@ -211,7 +211,7 @@ pub struct ActionState {
 /// An error that a vehicle reports.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub struct StateError {
+pub struct ErrorEntry {
     /// Error type.
     pub error_type: String,
     /// Error level.
@@ -223,7 +223,7 @@ pub struct StateError {
 
 impl State {
     /// Position of the vehicle, in any edition.
-    pub fn position(&self) -> Option<&Pose> {
+    pub fn position(&self) -> Option<&VehiclePosition> {
         self.agv_position.as_ref().or(self.mobile_robot_position.as_ref())
     }
 
@@ -253,7 +253,7 @@ impl State {
     }
 }
 
-impl StateError {
+impl ErrorEntry {
     /// A warning with references.
     pub fn warning(kind: &str, why: String, references: &[(&str, &str)]) -> Self {
         let references: Vec<Value> = references

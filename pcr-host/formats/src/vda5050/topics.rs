@@ -1,20 +1,20 @@
 //! Names of topics: `prefix/v2/manufacturer/serialNumber/order`.
 
-use super::version::Version;
+use super::version::ProtocolVersion;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// A vehicle, by manufacturer and serial number.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
-pub struct Key {
+pub struct VehicleId {
     /// Manufacturer.
     pub manufacturer: String,
     /// Serial number.
     pub serial_number: String,
 }
 
-impl Key {
+impl VehicleId {
     /// A key whose parts can be levels of topics.
     ///
     /// # Errors
@@ -27,7 +27,7 @@ impl Key {
     }
 }
 
-impl fmt::Display for Key {
+impl fmt::Display for VehicleId {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}/{}", self.manufacturer, self.serial_number)
     }
@@ -46,7 +46,7 @@ fn level(text: &str) -> Result<(), &'static str> {
 
 /// Kinds of messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Kind {
+pub enum TopicKind {
     /// To a vehicle.
     Order,
     /// To a vehicle.
@@ -65,7 +65,7 @@ pub enum Kind {
     ZoneSet,
 }
 
-impl Kind {
+impl TopicKind {
     /// All kinds.
     pub const ALL: [Self; 8] = [
         Self::Order,
@@ -117,11 +117,11 @@ impl Kind {
 
 /// The topics of one interface, which begin with its prefix.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Interface {
+pub struct TopicInterface {
     prefix: String,
 }
 
-impl Interface {
+impl TopicInterface {
     /// The interface with a prefix, which may have several levels.
     ///
     /// # Errors
@@ -134,17 +134,17 @@ impl Interface {
     }
 
     /// The topic of a message.
-    pub fn topic(&self, version: Version, key: &Key, kind: Kind) -> String {
+    pub fn topic(&self, version: ProtocolVersion, key: &VehicleId, kind: TopicKind) -> String {
         format!("{}/{}/{}/{}/{}", self.prefix, version.major(), key.manufacturer, key.serial_number, kind.text())
     }
 
     /// Topic filters for a kind of messages of all vehicles, 2.x and 3.x.
-    pub fn filters(&self, kind: Kind) -> [String; 2] {
+    pub fn filters(&self, kind: TopicKind) -> [String; 2] {
         ["v2", "v3"].map(|major| format!("{}/{major}/+/+/{}", self.prefix, kind.text()))
     }
 
     /// Whether the major version is 3, the vehicle, and the kind of a topic; `None` if it is no topic of this interface.
-    pub fn parse(&self, topic: &str) -> Option<(bool, Key, Kind)> {
+    pub fn parse(&self, topic: &str) -> Option<(bool, VehicleId, TopicKind)> {
         let rest = topic.strip_prefix(self.prefix.as_str())?.strip_prefix('/')?;
         let mut levels = rest.split('/');
         let is_third = match levels.next()? {
@@ -152,9 +152,9 @@ impl Interface {
             "v3" => true,
             _ => return None,
         };
-        let key = Key::new(levels.next()?, levels.next()?).ok()?;
+        let key = VehicleId::new(levels.next()?, levels.next()?).ok()?;
         let kind = levels.next()?;
-        let kind = Kind::ALL.into_iter().find(|known| known.text() == kind)?;
+        let kind = TopicKind::ALL.into_iter().find(|known| known.text() == kind)?;
         levels.next().is_none().then_some((is_third, key, kind))
     }
 }
@@ -165,15 +165,19 @@ mod tests {
 
     #[test]
     fn topics_are_read_as_they_are_written() {
-        let interface = Interface::new("site/uagv").unwrap();
-        let key = Key::new("KIT", "0001").unwrap();
-        for version in Version::ALL {
-            for kind in Kind::ALL {
+        let interface = TopicInterface::new("site/uagv").unwrap();
+        let key = VehicleId::new("KIT", "0001").unwrap();
+        for version in ProtocolVersion::ALL {
+            for kind in TopicKind::ALL {
                 let topic = interface.topic(version, &key, kind);
-                assert_eq!(interface.parse(&topic), Some((version == Version::V3_0, key.clone(), kind)), "{topic}");
+                assert_eq!(
+                    interface.parse(&topic),
+                    Some((version == ProtocolVersion::V3_0, key.clone(), kind)),
+                    "{topic}"
+                );
             }
         }
-        assert_eq!(interface.topic(Version::V2_1, &key, Kind::Order), "site/uagv/v2/KIT/0001/order");
+        assert_eq!(interface.topic(ProtocolVersion::V2_1, &key, TopicKind::Order), "site/uagv/v2/KIT/0001/order");
         for other in ["uagv/v2/KIT/0001/order", "site/uagvx/v2/KIT/0001/order", "site/uagv/v1/KIT/0001/order"] {
             assert_eq!(interface.parse(other), None, "{other}");
         }
@@ -181,8 +185,12 @@ mod tests {
             assert_eq!(interface.parse(other), None, "{other}");
         }
         for wrong in ["", "a//b", "a/+", "#", "$SYS"] {
-            assert!(Interface::new(wrong).is_err(), "{wrong}");
+            assert!(TopicInterface::new(wrong).is_err(), "{wrong}");
         }
-        assert!(Key::new("a/b", "c").is_err() && Key::new("a", "").is_err() && Key::new("a", "x+").is_err());
+        assert!(
+            VehicleId::new("a/b", "c").is_err()
+                && VehicleId::new("a", "").is_err()
+                && VehicleId::new("a", "x+").is_err()
+        );
     }
 }

@@ -17,7 +17,7 @@ const TEXTS: [&str; 4] = ["timestamp", "version", "manufacturer", "serialNumber"
 
 /// Limits of messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
+pub struct MessageLimits {
     /// Size of a message \[bytes\].
     pub bytes: usize,
     /// Number of elements of a list.
@@ -28,13 +28,13 @@ pub struct Limits {
     pub sent: usize,
 }
 
-impl Default for Limits {
+impl Default for MessageLimits {
     fn default() -> Self {
         Self { bytes: 256 * 1024, list: 2_000, text: 4_096, sent: 16 << 20 }
     }
 }
 
-impl Limits {
+impl MessageLimits {
     /// No limits, for files.
     pub(super) const NONE: Self = Self { bytes: usize::MAX, list: usize::MAX, text: usize::MAX, sent: usize::MAX };
 }
@@ -43,10 +43,10 @@ impl Limits {
 ///
 /// # Errors
 /// Field and reason for the first value beyond a limit; an empty field for invalid JSON.
-pub(super) fn check(bytes: &[u8], limits: Limits) -> Result<(), (String, String)> {
-    let mut fault = Fault::default();
+pub(super) fn check(bytes: &[u8], limits: MessageLimits) -> Result<(), (String, String)> {
+    let mut fault = ValidationError::default();
     let mut reader = serde_json::Deserializer::from_slice(bytes);
-    let read = Check::new(limits, &mut fault).deserialize(&mut reader).and_then(|()| reader.end());
+    let read = LimitsVisitor::new(limits, &mut fault).deserialize(&mut reader).and_then(|()| reader.end());
     read.map_err(|error| fault.or(&error))
 }
 
@@ -54,20 +54,20 @@ pub(super) fn check(bytes: &[u8], limits: Limits) -> Result<(), (String, String)
 ///
 /// # Errors
 /// As [`check`].
-pub(super) fn check_tree(message: &Value, limits: Limits) -> Result<(), (String, String)> {
-    let mut fault = Fault::default();
-    let read = Check::new(limits, &mut fault).deserialize(message);
+pub(super) fn check_tree(message: &Value, limits: MessageLimits) -> Result<(), (String, String)> {
+    let mut fault = ValidationError::default();
+    let read = LimitsVisitor::new(limits, &mut fault).deserialize(message);
     read.map_err(|error| fault.or(&error))
 }
 
 /// The reason for a refusal, and the path of the field, innermost name first.
 #[derive(Default)]
-struct Fault {
+struct ValidationError {
     why: Option<String>,
     path: Vec<String>,
 }
 
-impl Fault {
+impl ValidationError {
     /// The path of the field and the reason; those of the reader where nothing was refused here.
     fn or(mut self, error: &serde_json::Error) -> (String, String) {
         let Some(why) = self.why else { return (String::new(), error.to_string()) };
@@ -78,13 +78,13 @@ impl Fault {
 
 /// The expected type of a value.
 #[derive(Clone, Copy, PartialEq)]
-enum Asked {
+enum ExpectedType {
     Anything,
     Text,
     Count,
 }
 
-impl Asked {
+impl ExpectedType {
     fn of(depth: usize, name: &str) -> Self {
         match name {
             "headerId" if depth == 0 => Self::Count,
@@ -94,28 +94,28 @@ impl Asked {
     }
 }
 
-struct Check<'f> {
-    limits: Limits,
-    fault: &'f mut Fault,
+struct LimitsVisitor<'f> {
+    limits: MessageLimits,
+    fault: &'f mut ValidationError,
     depth: usize,
-    asked: Asked,
+    asked: ExpectedType,
 }
 
-impl<'f> Check<'f> {
-    fn new(limits: Limits, fault: &'f mut Fault) -> Self {
-        Self { limits, fault, depth: 0, asked: Asked::Anything }
+impl<'f> LimitsVisitor<'f> {
+    fn new(limits: MessageLimits, fault: &'f mut ValidationError) -> Self {
+        Self { limits, fault, depth: 0, asked: ExpectedType::Anything }
     }
 }
 
-impl Check<'_> {
+impl LimitsVisitor<'_> {
     fn refused<E: Error>(&mut self, why: impl fmt::Display) -> E {
         self.fault.why = Some(why.to_string());
         E::custom("")
     }
 
     /// The check of a value within this one.
-    fn inner(&mut self, asked: Asked) -> Check<'_> {
-        Check { limits: self.limits, fault: &mut *self.fault, depth: self.depth + 1, asked }
+    fn inner(&mut self, asked: ExpectedType) -> LimitsVisitor<'_> {
+        LimitsVisitor { limits: self.limits, fault: &mut *self.fault, depth: self.depth + 1, asked }
     }
 
     /// Adds the name of a field to an error from within it.
@@ -129,8 +129,8 @@ impl Check<'_> {
     /// Refuses a value where a text is expected, and a value that is no count where a count is expected.
     fn other<E: Error>(&mut self, is_count: bool) -> Result<(), E> {
         match self.asked {
-            Asked::Text => Err(self.refused("not a text")),
-            Asked::Count if !is_count => Err(self.refused("not a number of a message")),
+            ExpectedType::Text => Err(self.refused("not a text")),
+            ExpectedType::Count if !is_count => Err(self.refused("not a number of a message")),
             _ => Ok(()),
         }
     }
@@ -143,7 +143,7 @@ impl Check<'_> {
     }
 }
 
-impl<'de> DeserializeSeed<'de> for Check<'_> {
+impl<'de> DeserializeSeed<'de> for LimitsVisitor<'_> {
     type Value = ();
 
     fn deserialize<D: Deserializer<'de>>(self, reader: D) -> Result<(), D::Error> {
@@ -151,7 +151,7 @@ impl<'de> DeserializeSeed<'de> for Check<'_> {
     }
 }
 
-impl<'de> Visitor<'de> for Check<'_> {
+impl<'de> Visitor<'de> for LimitsVisitor<'_> {
     type Value = ();
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -180,7 +180,7 @@ impl<'de> Visitor<'de> for Check<'_> {
     }
 
     fn visit_str<E: Error>(mut self, text: &str) -> Result<(), E> {
-        if self.asked == Asked::Count {
+        if self.asked == ExpectedType::Count {
             return self.other(false);
         }
         let most = self.limits.text;
@@ -194,7 +194,7 @@ impl<'de> Visitor<'de> for Check<'_> {
         self.other(false)?;
         let most = self.limits.list;
         for k in 0.. {
-            match list.next_element_seed(self.inner(Asked::Anything)) {
+            match list.next_element_seed(self.inner(ExpectedType::Anything)) {
                 Ok(None) => break,
                 Ok(Some(())) if k < most => {}
                 Ok(Some(())) => return Err(self.refused(format!("too long; a list has at most {most} elements"))),
@@ -206,12 +206,12 @@ impl<'de> Visitor<'de> for Check<'_> {
 
     fn visit_map<A: MapAccess<'de>>(mut self, mut members: A) -> Result<(), A::Error> {
         self.other(false)?;
-        while let Some(Name(name)) = members.next_key()? {
+        while let Some(FieldName(name)) = members.next_key()? {
             if name == VERBATIM {
                 members.next_value::<IgnoredAny>()?;
                 continue;
             }
-            let asked = Asked::of(self.depth, &name);
+            let asked = ExpectedType::of(self.depth, &name);
             members.next_value_seed(self.inner(asked)).map_err(|error| self.named(error, format_args!(".{name}")))?;
         }
         Ok(())
@@ -220,4 +220,4 @@ impl<'de> Visitor<'de> for Check<'_> {
 
 /// A field name, borrowed if nothing in it is escaped.
 #[derive(Deserialize)]
-struct Name<'a>(#[serde(borrow)] Cow<'a, str>);
+struct FieldName<'a>(#[serde(borrow)] Cow<'a, str>);

@@ -4,7 +4,7 @@ use std::fmt;
 
 /// An edition of VDA 5050.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Version {
+pub enum ProtocolVersion {
     /// 2.0
     V2_0,
     /// 2.1
@@ -13,12 +13,12 @@ pub enum Version {
     V3_0,
 }
 
-impl Version {
+impl ProtocolVersion {
     /// All editions.
     pub const ALL: [Self; 3] = [Self::V2_0, Self::V2_1, Self::V3_0];
 
     /// The edition of a `version` field: major, minor, and anything after that.
-    pub fn of(text: &str) -> Option<Self> {
+    pub fn parse(text: &str) -> Option<Self> {
         let mut parts = text.trim().split('.');
         match (parts.next()?, parts.next()?) {
             ("2", "0") => Some(Self::V2_0),
@@ -48,27 +48,27 @@ impl Version {
     }
 
     /// Error type of an error in this edition.
-    pub fn error(self, error: Error) -> &'static str {
+    pub fn error(self, error: OrderRejection) -> &'static str {
         match (error, self < Self::V3_0) {
-            (Error::Malformed, true) => "validationError",
-            (Error::Malformed, false) => "VALIDATION_FAILURE",
-            (Error::Order, true) => "orderError",
-            (Error::Order, false) => "INVALID_ORDER",
-            (Error::Outdated, true) => "orderUpdateError",
-            (Error::Outdated, false) => "OUTDATED_ORDER_UPDATE",
-            (Error::Update, true) => "orderUpdateError",
-            (Error::Update, false) => "INVALID_ORDER",
-            (Error::SameUpdate, true) => "orderUpdateError",
-            (Error::SameUpdate, false) => "SAME_ORDER_UPDATE_ID",
-            (Error::Cancelled, true) => "orderUpdateError",
-            (Error::Cancelled, false) => "ORDER_UPDATE_FOLLOWING_CANCEL",
-            (Error::NothingToCancel, true) => "noOrderToCancel",
-            (Error::NothingToCancel, false) => "NO_ORDER_TO_CANCEL",
+            (OrderRejection::Malformed, true) => "validationError",
+            (OrderRejection::Malformed, false) => "VALIDATION_FAILURE",
+            (OrderRejection::Order, true) => "orderError",
+            (OrderRejection::Order, false) => "INVALID_ORDER",
+            (OrderRejection::Outdated, true) => "orderUpdateError",
+            (OrderRejection::Outdated, false) => "OUTDATED_ORDER_UPDATE",
+            (OrderRejection::Update, true) => "orderUpdateError",
+            (OrderRejection::Update, false) => "INVALID_ORDER",
+            (OrderRejection::SameUpdate, true) => "orderUpdateError",
+            (OrderRejection::SameUpdate, false) => "SAME_ORDER_UPDATE_ID",
+            (OrderRejection::Cancelled, true) => "orderUpdateError",
+            (OrderRejection::Cancelled, false) => "ORDER_UPDATE_FOLLOWING_CANCEL",
+            (OrderRejection::NothingToCancel, true) => "noOrderToCancel",
+            (OrderRejection::NothingToCancel, false) => "NO_ORDER_TO_CANCEL",
         }
     }
 }
 
-impl fmt::Display for Version {
+impl fmt::Display for ProtocolVersion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.text())
     }
@@ -76,7 +76,7 @@ impl fmt::Display for Version {
 
 /// The reason why an order is rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Error {
+pub enum OrderRejection {
     /// It is not a valid order.
     Malformed,
     /// It cannot be carried out.

@@ -1,20 +1,20 @@
 //! A document as a value of JSON.
 
 use super::scalar::{self, integer, is_null};
-use super::{Document, Error, Kind, Spanned, Value, deeper, error_at};
+use super::{ScalarTag, YamlDocument, YamlError, YamlNode, YamlValue, deeper, error_at};
 use serde_json::{Map, Number, Value as Json};
 use std::collections::{HashMap, HashSet};
 
 /// How many times the length of the text, in values and bytes of texts, a document may stand for. Without aliases it is less than 3.
 const REPETITION: usize = 10;
 
-impl<'t> Document<'t> {
+impl<'t> YamlDocument<'t> {
     /// All of it, with what aliases and merge keys stand for.
     ///
     /// # Errors
-    /// [`Error`] where a value or a name cannot be one of JSON, a name is there twice, or aliases repeat too much.
-    pub fn value(&self) -> Result<Json, Error> {
-        Resolver::of(self).value(&self.root, 0)
+    /// [`YamlError`] where a value or a name cannot be one of JSON, a name is there twice, or aliases repeat too much.
+    pub fn value(&self) -> Result<Json, YamlError> {
+        AliasResolver::of(self).value(&self.root, 0)
     }
 
     /// The same tree with every scalar as its text, without its quotes: for names, which may be any scalar. What stands for nothing and is
@@ -22,16 +22,16 @@ impl<'t> Document<'t> {
     ///
     /// # Errors
     /// As [`Document::value`].
-    pub fn texts(&self) -> Result<Json, Error> {
-        Resolver { as_texts: true, ..Resolver::of(self) }.value(&self.root, 0)
+    pub fn texts(&self) -> Result<Json, YamlError> {
+        AliasResolver { as_texts: true, ..AliasResolver::of(self) }.value(&self.root, 0)
     }
 
     /// The names of the members of a member, in the order of the text; what is merged comes last.
     ///
     /// # Errors
     /// As [`Document::value`].
-    pub fn names(&self, name: &str) -> Result<Vec<String>, Error> {
-        let mut resolver = Resolver::of(self);
+    pub fn names(&self, name: &str) -> Result<Vec<String>, YamlError> {
+        let mut resolver = AliasResolver::of(self);
         let all = resolver.members(&self.root, 0)?;
         let Some(member) = all.into_iter().find(|member| member.name == name) else { return Ok(Vec::new()) };
         Ok(resolver.members(member.value, 1)?.into_iter().map(|member| member.name.to_owned()).collect())
@@ -39,23 +39,23 @@ impl<'t> Document<'t> {
 }
 
 /// A member of a mapping, or of what is merged into it.
-struct Named<'d, 't> {
+struct ResolvedMember<'d, 't> {
     name: &'d str,
     /// What its name stands for if it is an integer or nothing, as long as there are no quotes: `0x1` and `1` are one name.
     meaning: Option<Option<Number>>,
-    value: &'d Spanned<'t>,
+    value: &'d YamlNode<'t>,
 }
 
 /// The names of a mapping.
 #[derive(Default)]
-struct Known<'d> {
+struct MappingKeys<'d> {
     names: HashSet<&'d str>,
     meanings: HashSet<Option<Number>>,
 }
 
-impl<'d> Known<'d> {
+impl<'d> MappingKeys<'d> {
     /// Adds a name, unless it is known.
-    fn add(&mut self, member: &Named<'d, '_>) -> bool {
+    fn add(&mut self, member: &ResolvedMember<'d, '_>) -> bool {
         let is_new = !self.names.contains(member.name)
             && member.meaning.as_ref().is_none_or(|meaning| !self.meanings.contains(meaning));
         if is_new {
@@ -66,29 +66,29 @@ impl<'d> Known<'d> {
     }
 }
 
-struct Resolver<'d, 't> {
+struct AliasResolver<'d, 't> {
     text: &'t str,
-    anchors: HashMap<usize, &'d Spanned<'t>>,
+    anchors: HashMap<usize, &'d YamlNode<'t>>,
     /// Values and bytes that may still be read.
     left: usize,
     /// Whether scalars are read as their texts.
     as_texts: bool,
 }
 
-impl<'d, 't> Resolver<'d, 't> {
-    fn of(document: &'d Document<'t>) -> Self {
+impl<'d, 't> AliasResolver<'d, 't> {
+    fn of(document: &'d YamlDocument<'t>) -> Self {
         let mut anchors = HashMap::new();
         collect(&document.root, &mut anchors);
         let left = document.text.len().saturating_mul(REPETITION).saturating_add(1024);
         Self { text: document.text, anchors, left, as_texts: false }
     }
 
-    fn error(&self, node: &Spanned<'_>, problem: impl Into<String>) -> Error {
+    fn error(&self, node: &YamlNode<'_>, problem: impl Into<String>) -> YamlError {
         error_at(self.text, node.span.start, problem, false)
     }
 
     /// Counts a value, and the bytes of a text.
-    fn count(&mut self, node: &Spanned<'_>, bytes: usize) -> Result<(), Error> {
+    fn count(&mut self, node: &YamlNode<'_>, bytes: usize) -> Result<(), YamlError> {
         let too_much = || {
             let problem = format!("its aliases make it more than {REPETITION} times as long");
             error_at(self.text, node.span.start, problem, true)
@@ -98,8 +98,8 @@ impl<'d, 't> Resolver<'d, 't> {
     }
 
     /// What a value stands for.
-    fn target(&self, node: &'d Spanned<'t>) -> Result<&'d Spanned<'t>, Error> {
-        let Value::Alias(anchor) = node.value else { return Ok(node) };
+    fn target(&self, node: &'d YamlNode<'t>) -> Result<&'d YamlNode<'t>, YamlError> {
+        let YamlValue::Alias(anchor) = node.value else { return Ok(node) };
         let target = self.anchors.get(&anchor).ok_or_else(|| self.error(node, "there is no anchor for this alias"))?;
         if target.span.start <= node.span.start && node.span.end <= target.span.end {
             return Err(self.error(node, "an alias for what it is in"));
@@ -107,10 +107,10 @@ impl<'d, 't> Resolver<'d, 't> {
         Ok(target)
     }
 
-    fn value(&mut self, node: &'d Spanned<'t>, depth: usize) -> Result<Json, Error> {
+    fn value(&mut self, node: &'d YamlNode<'t>, depth: usize) -> Result<Json, YamlError> {
         let node = self.target(node)?;
         match &node.value {
-            Value::Scalar(text) => {
+            YamlValue::Scalar(text) => {
                 self.count(node, text.len())?;
                 if self.as_texts {
                     let text = if is_nothing(node, text) { NULL } else { &**text };
@@ -118,12 +118,12 @@ impl<'d, 't> Resolver<'d, 't> {
                 }
                 scalar::value(node.kind, text).map_err(|problem| self.error(node, problem))
             }
-            Value::Sequence(_, elements) => {
+            YamlValue::Sequence(_, elements) => {
                 self.count(node, 0)?;
                 let depth = deeper(self.text, node.span.start, depth)?;
                 elements.iter().map(|element| self.value(element, depth)).collect()
             }
-            Value::Mapping(..) => {
+            YamlValue::Mapping(..) => {
                 self.count(node, 0)?;
                 let below = deeper(self.text, node.span.start, depth)?;
                 let mut object = Map::new();
@@ -133,16 +133,16 @@ impl<'d, 't> Resolver<'d, 't> {
                 }
                 Ok(Json::Object(object))
             }
-            Value::Alias(_) => Err(self.error(node, "an alias for an alias")),
+            YamlValue::Alias(_) => Err(self.error(node, "an alias for an alias")),
         }
     }
 
     /// The members of a mapping, then those that are merged into it and have other names; none of anything else.
-    fn members(&mut self, node: &'d Spanned<'t>, depth: usize) -> Result<Vec<Named<'d, 't>>, Error> {
+    fn members(&mut self, node: &'d YamlNode<'t>, depth: usize) -> Result<Vec<ResolvedMember<'d, 't>>, YamlError> {
         let node = self.target(node)?;
         let depth = deeper(self.text, node.span.start, depth)?;
         let mut members = Vec::with_capacity(node.members().len());
-        let mut known = Known::default();
+        let mut known = MappingKeys::default();
         let mut merged = None;
         for member in node.members() {
             let key = self.target(&member.key)?;
@@ -165,12 +165,12 @@ impl<'d, 't> Resolver<'d, 't> {
     }
 
     /// What is merged: the members of a mapping, or of each in a list.
-    fn merged(&mut self, node: &'d Spanned<'t>, depth: usize) -> Result<Vec<Named<'d, 't>>, Error> {
+    fn merged(&mut self, node: &'d YamlNode<'t>, depth: usize) -> Result<Vec<ResolvedMember<'d, 't>>, YamlError> {
         let node = self.target(node)?;
         self.count(node, 0)?;
         match &node.value {
-            Value::Mapping(..) => self.members(node, depth),
-            Value::Sequence(_, elements) => {
+            YamlValue::Mapping(..) => self.members(node, depth),
+            YamlValue::Sequence(_, elements) => {
                 let depth = deeper(self.text, node.span.start, depth)?;
                 let mut all = Vec::new();
                 for element in elements {
@@ -178,37 +178,38 @@ impl<'d, 't> Resolver<'d, 't> {
                 }
                 Ok(all)
             }
-            Value::Scalar(text) if is_nothing(node, text) => Ok(Vec::new()),
+            YamlValue::Scalar(text) if is_nothing(node, text) => Ok(Vec::new()),
             _ => Err(self.error(node, "what is merged (<<) is no mapping")),
         }
     }
 
-    fn named(&mut self, key: &'d Spanned<'t>, value: &'d Spanned<'t>) -> Result<Named<'d, 't>, Error> {
-        let Value::Scalar(name) = &key.value else { return Err(self.error(key, "a name is expected")) };
+    fn named(&mut self, key: &'d YamlNode<'t>, value: &'d YamlNode<'t>) -> Result<ResolvedMember<'d, 't>, YamlError> {
+        let YamlValue::Scalar(name) = &key.value else { return Err(self.error(key, "a name is expected")) };
         self.count(key, name.len())?;
         if key.span.is_empty() {
             return Err(self.error(key, "a name is expected"));
         }
         let is_null = is_nothing(key, name);
-        let number = integer(name).filter(|_| matches!(key.kind, Kind::Any | Kind::Integer));
+        let number = integer(name).filter(|_| matches!(key.kind, ScalarTag::Any | ScalarTag::Integer));
         let meaning = if is_null { Some(None) } else { number.map(Some) };
-        Ok(Named { name: if is_null { NULL } else { name }, meaning, value })
+        Ok(ResolvedMember { name: if is_null { NULL } else { name }, meaning, value })
     }
 }
 
 /// What a name that stands for nothing is called, as programs in C++ read it.
 const NULL: &str = "null";
 
-fn is_merge(key: &Spanned<'_>) -> bool {
-    matches!(key.kind, Kind::Any | Kind::Merge) && key.text() == Some("<<")
+fn is_merge(key: &YamlNode<'_>) -> bool {
+    matches!(key.kind, ScalarTag::Any | ScalarTag::Merge) && key.text() == Some("<<")
 }
 
-fn is_nothing(node: &Spanned<'_>, text: &str) -> bool {
-    node.kind == Kind::Null || matches!(node.kind, Kind::Any | Kind::Unknown | Kind::Merge) && is_null(text)
+fn is_nothing(node: &YamlNode<'_>, text: &str) -> bool {
+    node.kind == ScalarTag::Null
+        || matches!(node.kind, ScalarTag::Any | ScalarTag::Unknown | ScalarTag::Merge) && is_null(text)
 }
 
 /// What has an anchor.
-fn collect<'d, 't>(node: &'d Spanned<'t>, anchors: &mut HashMap<usize, &'d Spanned<'t>>) {
+fn collect<'d, 't>(node: &'d YamlNode<'t>, anchors: &mut HashMap<usize, &'d YamlNode<'t>>) {
     if !node.shared {
         return;
     }
@@ -229,7 +230,7 @@ mod tests {
     use serde_json::json;
 
     fn value(text: &str) -> Result<Json, String> {
-        Document::read(text).and_then(|document| document.value()).map_err(|error| error.to_string())
+        YamlDocument::read(text).and_then(|document| document.value()).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -295,7 +296,7 @@ mod tests {
 
     #[test]
     fn texts_are_those_of_the_scalars() {
-        let texts = |text: &str| Document::read(text).unwrap().texts();
+        let texts = |text: &str| YamlDocument::read(text).unwrap().texts();
         let all = json!({"a": ["007", "1.0", "true", "null", "null", "", "x y", "0x10"], "b": {"c": "1"}});
         assert_eq!(texts("a: [007, 1.0, true, ~, null, '', \"x y\", &n 0x10]\nb: {c: 1}"), Ok(all));
         assert_eq!(texts("a: &x 1.50\nb: *x\n<<: {c: .nan}"), Ok(json!({"a": "1.50", "b": "1.50", "c": ".nan"})));
@@ -303,7 +304,7 @@ mod tests {
 
     #[test]
     fn names_have_the_order_of_the_text() {
-        let names = |text: &str| Document::read(text).unwrap().names("levels");
+        let names = |text: &str| YamlDocument::read(text).unwrap().names("levels");
         assert_eq!(names("levels: {b: 1, a: 2, <<: {c: 3, a: 4}}"), Ok(["b", "a", "c"].map(str::to_owned).to_vec()));
         assert_eq!(names("more: &l {z: 1, a: 2}\nlevels: *l"), Ok(["z", "a"].map(str::to_owned).to_vec()));
         assert_eq!(names("<<: {levels: {z: 1, a: 2}}"), Ok(["z", "a"].map(str::to_owned).to_vec()));

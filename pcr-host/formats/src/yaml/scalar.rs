@@ -4,21 +4,21 @@
 //! (`0o17`) and binary, with single `_` between their digits, decimal numbers, and otherwise a text. Dates are texts. With a zero before
 //! other digits a number is not an integer.
 
-use super::Kind;
+use super::ScalarTag;
 use serde_json::{Number, Value};
 
 /// The value of a scalar, or why it has none.
-pub(super) fn value(kind: Kind, text: &str) -> Result<Value, String> {
+pub(super) fn value(kind: ScalarTag, text: &str) -> Result<Value, String> {
     // Blanks can only be around what is in quotes.
     let inner = text.trim_matches([' ', '\t', '\r', '\n']);
     let read = match kind {
-        Kind::Text => return Ok(Value::String(text.to_owned())),
-        Kind::Any | Kind::Unknown | Kind::Merge => return plain(text),
-        Kind::Null => return Ok(Value::Null),
-        Kind::Flag => flag(inner).map(Value::Bool),
-        Kind::Integer => integer(inner).map(Value::Number),
-        Kind::Float => float(inner)?.map(Value::Number),
-        Kind::Sequence | Kind::Mapping => None,
+        ScalarTag::Text => return Ok(Value::String(text.to_owned())),
+        ScalarTag::Any | ScalarTag::Unknown | ScalarTag::Merge => return plain(text),
+        ScalarTag::Null => return Ok(Value::Null),
+        ScalarTag::Flag => flag(inner).map(Value::Bool),
+        ScalarTag::Integer => integer(inner).map(Value::Number),
+        ScalarTag::Float => float(inner)?.map(Value::Number),
+        ScalarTag::Sequence | ScalarTag::Mapping => None,
     };
     read.ok_or_else(|| format!("{text:?} is not what its tag tells"))
 }
@@ -116,35 +116,37 @@ mod tests {
         ];
         for (expected, texts) in cases {
             for text in texts.split(' ') {
-                assert_eq!(value(Kind::Any, text), Ok(expected.clone()), "{text}");
+                assert_eq!(value(ScalarTag::Any, text), Ok(expected.clone()), "{text}");
             }
         }
         let texts =
             "nan inf -Infinity 1__0 _1 1_ 0x 0b2 0o8 0x_1 1_0.5 1e 2001-01-01 12:30 1,5 -- . + ++1 -+1 1f tru << = ١";
         for text in texts.split(' ') {
-            assert_eq!(value(Kind::Any, text), Ok(json!(text)));
+            assert_eq!(value(ScalarTag::Any, text), Ok(json!(text)));
         }
-        assert_eq!(value(Kind::Any, ""), Ok(Value::Null));
+        assert_eq!(value(ScalarTag::Any, ""), Ok(Value::Null));
         for text in ".inf -.INF +.inf .nan 1e999 -1e999 .1e999".split(' ') {
-            assert_eq!(value(Kind::Any, text), Err(format!("{text} is not a finite number")));
+            assert_eq!(value(ScalarTag::Any, text), Err(format!("{text} is not a finite number")));
         }
     }
 
     #[test]
     fn tags_are_obeyed() {
         for (kind, text, expected) in [
-            (Kind::Text, "0x1F", json!("0x1F")),
-            (Kind::Text, "", json!("")),
-            (Kind::Integer, " 0x1F\n", json!(31)),
-            (Kind::Float, "31", json!(31.0)),
-            (Kind::Flag, "off", json!(false)),
-            (Kind::Null, "7", json!(null)),
+            (ScalarTag::Text, "0x1F", json!("0x1F")),
+            (ScalarTag::Text, "", json!("")),
+            (ScalarTag::Integer, " 0x1F\n", json!(31)),
+            (ScalarTag::Float, "31", json!(31.0)),
+            (ScalarTag::Flag, "off", json!(false)),
+            (ScalarTag::Null, "7", json!(null)),
         ] {
             assert_eq!(value(kind, text), Ok(expected));
         }
-        for (kind, text) in [(Kind::Integer, "1.5"), (Kind::Float, "x"), (Kind::Flag, "1"), (Kind::Integer, "")] {
+        for (kind, text) in
+            [(ScalarTag::Integer, "1.5"), (ScalarTag::Float, "x"), (ScalarTag::Flag, "1"), (ScalarTag::Integer, "")]
+        {
             assert_eq!(value(kind, text), Err(format!("{text:?} is not what its tag tells")));
         }
-        assert!(value(Kind::Float, ".nan").is_err());
+        assert!(value(ScalarTag::Float, ".nan").is_err());
     }
 }

@@ -1,8 +1,8 @@
 //! Executes plans on grids from other planners while robots are late: by passing orders on the geometry of discs, and
 //! by cells.
 
-use super::{Extent, Fleets, Problem, Section};
-use crate::grid_plans::{By, Outcome, Stops, carried_out, random_stops, situation};
+use super::{DocumentSection, EvaluationError, PaperFleets, Thoroughness};
+use crate::grid_plans::{ExecutionMethod, GridRunResult, RandomStops, carried_out, random_stops, situation};
 use pcr_formats::import::GridPlan;
 use pcr_planning::figures::digits;
 use std::fmt::Write as _;
@@ -16,7 +16,7 @@ const RATE: f64 = 0.01;
 /// No plan takes longer than this, with what is late \[s\].
 const LONGEST: u32 = 2000;
 
-pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<DocumentSection, EvaluationError> {
     let mut text = format!(
         "## Plans on grids, carried out\n\nPublished plans for discs of up to half a cell (PBS, `tests/data/real/stpg`) are carried out by robots that drive one \
         cell per second and change their speed at once, as in these plans. Robots are stopped: either as published with the \
@@ -35,27 +35,31 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         100.0 * RATE
     );
     let files = plans(&fleets.data.join("real/stpg"))?;
-    let count = if extent == Extent::Quick { 1 } else { files.len() };
+    let count = if extent == Thoroughness::Quick { 1 } else { files.len() };
     for file in &files[..count] {
-        let problem = |problem: String| Problem::File(file.clone(), problem);
+        let problem = |problem: String| EvaluationError::File(file.clone(), problem);
         let plan = GridPlan::read(&read(file)?).map_err(|error| problem(error.to_string()))?;
         for (kind, stops) in all_stops(file, &plan)? {
-            let cells = carried_out(&plan, RADII[0], By::Cells, &stops).map_err(problem)?;
+            let cells = carried_out(&plan, RADII[0], ExecutionMethod::Cells, &stops).map_err(problem)?;
             for radius in RADII {
-                let orders = carried_out(&plan, radius, By::Orders, &stops).map_err(problem)?;
-                let switching = carried_out(&plan, radius, By::Switching, &stops).map_err(problem)?;
+                let orders = carried_out(&plan, radius, ExecutionMethod::Orders, &stops).map_err(problem)?;
+                let switching = carried_out(&plan, radius, ExecutionMethod::Switching, &stops).map_err(problem)?;
                 let name = file.file_stem().unwrap_or_default().to_string_lossy();
                 let of = (name.trim_start_matches("map_"), plan.cells().len(), kind, radius);
                 text.push_str(&row(of, [&orders, &switching, &cells]));
             }
         }
     }
-    Ok(Section { text, pictures: Vec::new() })
+    Ok(DocumentSection { text, pictures: Vec::new() })
 }
 
-fn row((name, robots, kind, radius): (&str, usize, &str, f64), [orders, switching, cells]: [&Outcome; 3]) -> String {
+fn row(
+    (name, robots, kind, radius): (&str, usize, &str, f64),
+    [orders, switching, cells]: [&GridRunResult; 3],
+) -> String {
     let taken = switching.times.iter().map(std::time::Duration::as_secs_f64).sum::<f64>();
-    let verdict = |outcome: &Outcome| if outcome.proof.verdict == "proved" { "none" } else { outcome.proof.verdict };
+    let verdict =
+        |outcome: &GridRunResult| if outcome.proof.verdict == "proved" { "none" } else { outcome.proof.verdict };
     let mut row = String::new();
     // Writing to memory does not fail.
     let _ = writeln!(
@@ -79,13 +83,14 @@ fn row((name, robots, kind, radius): (&str, usize, &str, f64), [orders, switchin
     row
 }
 
-fn read(path: &Path) -> Result<String, Problem> {
-    fs::read_to_string(path).map_err(|error| Problem::File(path.to_owned(), format!("cannot be read: {error}")))
+fn read(path: &Path) -> Result<String, EvaluationError> {
+    fs::read_to_string(path).map_err(|error| EvaluationError::File(path.to_owned(), format!("cannot be read: {error}")))
 }
 
 /// The plans in a directory, the smallest first.
-fn plans(directory: &Path) -> Result<Vec<PathBuf>, Problem> {
-    let failed = |error: std::io::Error| Problem::File(directory.to_owned(), format!("cannot be read: {error}"));
+fn plans(directory: &Path) -> Result<Vec<PathBuf>, EvaluationError> {
+    let failed =
+        |error: std::io::Error| EvaluationError::File(directory.to_owned(), format!("cannot be read: {error}"));
     let mut plans = Vec::new();
     for entry in fs::read_dir(directory).map_err(failed)? {
         let entry = entry.map_err(failed)?;
@@ -95,20 +100,20 @@ fn plans(directory: &Path) -> Result<Vec<PathBuf>, Problem> {
     }
     plans.sort();
     if plans.is_empty() {
-        return Err(Problem::File(directory.to_owned(), "there is no plan in it".into()));
+        return Err(EvaluationError::File(directory.to_owned(), "there is no plan in it".into()));
     }
     Ok(plans.into_iter().map(|(_, path)| path).collect())
 }
 
 /// The stops that are published with a plan, if there are any, and random ones.
-fn all_stops(file: &Path, plan: &GridPlan) -> Result<Vec<(&'static str, Stops)>, Problem> {
+fn all_stops(file: &Path, plan: &GridPlan) -> Result<Vec<(&'static str, RandomStops)>, EvaluationError> {
     let robots = plan.cells().len();
     let published =
         file.with_file_name(format!("{}_sit_0.json", file.file_stem().unwrap_or_default().to_string_lossy()));
     let mut all = Vec::new();
     if published.exists() {
         let stops = situation(&read(&published)?, robots);
-        all.push(("published", stops.map_err(|problem| Problem::File(published, problem))?));
+        all.push(("published", stops.map_err(|problem| EvaluationError::File(published, problem))?));
     }
     all.push(("random", random_stops(robots, LONGEST, RATE, 1)));
     Ok(all)

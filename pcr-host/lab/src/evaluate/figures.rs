@@ -1,7 +1,7 @@
 //! Fig. 13 and 14 of the paper.
 
-use super::{Extent, Fleets, Problem, Section, picture};
-use pcr_comparing::compare::{Input, sampled};
+use super::{DocumentSection, EvaluationError, PaperFleets, Thoroughness, picture};
+use pcr_comparing::compare::{ComparisonInput, sampled};
 use pcr_core::Interval;
 use pcr_drawing::{self as picture, Overlay};
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario};
@@ -19,21 +19,22 @@ const MAPS: [(f64, bool, &str, &str); 3] = [
 /// Times \[s\] and lengths \[m\] of that part: three regions, two of which overlap.
 const PART: [Interval<f64>; 2] = [Interval::new(5.0, 9.0), Interval::new(8.3, 10.8)];
 
-pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
-    let drawn =
-        |svg: io::Result<String>| svg.map_err(|error| Problem::File(PathBuf::from("picture"), error.to_string()));
+pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<DocumentSection, EvaluationError> {
+    let drawn = |svg: io::Result<String>| {
+        svg.map_err(|error| EvaluationError::File(PathBuf::from("picture"), error.to_string()))
+    };
     let mut text = String::from(
         "## Fig. 13: agent 3\n\nOutlines in closed form, drawn over the sampled maps. Every sample is drawn as the stretch of path and time that it \
         represents.\n\n",
     );
     let mut pictures = Vec::new();
     if let Some(fleet) = fleets.paper12() {
-        let input = Input::new(&fleet.scenario)?;
+        let input = ComparisonInput::new(&fleet.scenario)?;
         let field = input.field();
         /// Place of agent 3.
         const EGO: usize = 2;
         for (step, whole, name, title) in MAPS {
-            if extent == Extent::Quick && step < 0.1 {
+            if extent == Thoroughness::Quick && step < 0.1 {
                 continue;
             }
             let bars = sampled::bars(&field, step, EGO);
@@ -50,7 +51,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         pictures.push((name, drawn(picture::overview(&scenario, None))?));
         text.push_str(&picture(name, title));
     }
-    Ok(Section { text, pictures })
+    Ok(DocumentSection { text, pictures })
 }
 
 fn agent(id: u64, start: [f64; 3], path: Vec<PathSegment>) -> Agent {

@@ -1,13 +1,13 @@
 //! Table VI, and all methods on two of its fleets.
 
-use super::{Extent, Fleets, Problem, Section, picture};
+use super::{DocumentSection, EvaluationError, PaperFleets, Thoroughness, picture};
 use crate::methods::methods;
-use pcr_comparing::compare::{Comparison, Errors, Question, Row};
+use pcr_comparing::compare::{Accuracy, Comparison, MethodMeasurement, MethodQuestion};
 use pcr_comparing::report::comparison_table;
 use pcr_planning::figures::{bytes, digits, time, times};
 use std::fmt::Write as _;
 
-pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<DocumentSection, EvaluationError> {
     let filters: Vec<String> = extent.filters().iter().map(|&filter| filter.to_owned()).collect();
     let mut all = Vec::new();
     for fleet in &fleets.all {
@@ -17,8 +17,8 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     let mut pictures = Vec::new();
     for (fleet, comparison) in fleets.all.iter().zip(&all) {
         let names = match fleet.size {
-            [12, 126] => [(Question::Regions, "regions-12"), (Question::Conflicts, "conflicts-12")],
-            [100, _] => [(Question::Regions, "regions-100"), (Question::Conflicts, "conflicts-100")],
+            [12, 126] => [(MethodQuestion::Regions, "regions-12"), (MethodQuestion::Conflicts, "conflicts-12")],
+            [100, _] => [(MethodQuestion::Regions, "regions-100"), (MethodQuestion::Conflicts, "conflicts-100")],
             _ => continue,
         };
         let agents = comparison.agents;
@@ -34,7 +34,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
             pictures.push((name, comparison.chart(question)));
         }
     }
-    Ok(Section { text, pictures })
+    Ok(DocumentSection { text, pictures })
 }
 
 const WORDS: &str = "The first table is about all collision regions, both directions of every pair. *Area off* is the area of the symmetric \
@@ -44,12 +44,12 @@ about the conflicts of the given motions: missed and invented ones, and the larg
 only find the first time of a pair. All methods exclude distant pairs first: pcr with boxes in space and time, which \
 the others could use as well, the others with boxes of paths and of their pieces.\n";
 
-fn find<'c>(comparison: &'c Comparison, question: Question, name: &str) -> Option<&'c Row> {
+fn find<'c>(comparison: &'c Comparison, question: MethodQuestion, name: &str) -> Option<&'c MethodMeasurement> {
     comparison.rows.iter().find(|row| row.question == question && row.method == name)
 }
 
 /// Ours and the paper's side by side.
-fn table(fleets: &Fleets, all: &[Comparison]) -> String {
+fn table(fleets: &PaperFleets, all: &[Comparison]) -> String {
     let mut text = String::from(
         "## Table VI\n\nThe paper's fleets are not published. Ours have as many agents and regions as the paper's, counted as in the paper, \
         which counts crossings. The table compares the analytic method with the computational one, which samples both paths \
@@ -62,11 +62,11 @@ fn table(fleets: &Fleets, all: &[Comparison]) -> String {
     for (fleet, comparison) in fleets.all.iter().zip(all) {
         let [agents, crossings] = fleet.size;
         let [analytic, sampled, mesh] = fleet.paper;
-        let regions = |name| find(comparison, Question::Regions, name);
-        let ratio = |row: Option<&Row>| row.map_or("–".into(), |row| times(row.ratio));
+        let regions = |name| find(comparison, MethodQuestion::Regions, name);
+        let ratio = |row: Option<&MethodMeasurement>| row.map_or("–".into(), |row| times(row.ratio));
         let own = regions("pcr f64");
         let meshes = ["parry3d meshes 0.01 s", "FCL meshes 0.01 s"].map(|name| {
-            let both = find(comparison, Question::Conflicts, name).zip(own);
+            let both = find(comparison, MethodQuestion::Conflicts, name).zip(own);
             both.map_or("–".into(), |(mesh, own)| times(mesh.ms / own.ms))
         });
         let memory = own.zip(regions("sampled map 0.01 s, boxes"));
@@ -85,14 +85,14 @@ fn table(fleets: &Fleets, all: &[Comparison]) -> String {
             memory.map_or("–".into(), |(own, sampled)| format!("{} / {}", bytes(own.bytes), bytes(sampled.bytes))),
         );
     }
-    let ratios = |fleet: &super::Fleet| fleet.paper[1] / fleet.paper[0];
+    let ratios = |fleet: &super::PaperFleet| fleet.paper[1] / fleet.paper[0];
     let paper = span(fleets.all.iter().map(ratios));
     let plain = span(ratios_of(all, "sampled map 0.01 s"));
     let boxes = span(ratios_of(all, "sampled map 0.01 s, boxes"));
     let area = span(all.iter().filter_map(|comparison| {
-        match find(comparison, Question::Regions, "sampled map 0.01 s, boxes")?.errors {
-            Errors::Regions { area, difference } => Some(100.0 * difference / area),
-            Errors::Conflicts { .. } => None,
+        match find(comparison, MethodQuestion::Regions, "sampled map 0.01 s, boxes")?.errors {
+            Accuracy::Regions { area, difference } => Some(100.0 * difference / area),
+            Accuracy::Conflicts { .. } => None,
         }
     }));
     if let (Some(paper), Some(plain), Some(boxes), Some(area)) = (paper, plain, boxes, area) {
@@ -107,7 +107,7 @@ fn table(fleets: &Fleets, all: &[Comparison]) -> String {
 }
 
 fn ratios_of<'c>(all: &'c [Comparison], name: &'c str) -> impl Iterator<Item = f64> + 'c {
-    all.iter().filter_map(move |comparison| Some(find(comparison, Question::Regions, name)?.ratio))
+    all.iter().filter_map(move |comparison| Some(find(comparison, MethodQuestion::Regions, name)?.ratio))
 }
 
 /// From the least to the largest.

@@ -1,8 +1,8 @@
 //! Fleets that run for a quarter of an hour on all layouts of others in the repository: orders beside locks.
 
-use super::{CORNER_RADIUS, Extent, Fleets, Problem, Section};
-use pcr_execution::lifelong::{Delays, Driven, Lifelong, Method, Request};
-use pcr_formats::import::{self, Format, Imported, Options, Warnings};
+use super::{CORNER_RADIUS, DocumentSection, EvaluationError, PaperFleets, Thoroughness};
+use pcr_execution::lifelong::{CoordinationMethod, DelayModel, LifelongOptions, LifelongReport, LifelongRunEntry};
+use pcr_formats::import::{self, ImportOptions, ImportedLayout, InputFormat, Warnings};
 use pcr_planning::figures::digits;
 use std::fmt::Write as _;
 use std::fs;
@@ -39,10 +39,10 @@ const SIZES: [usize; 2] = [10, 20];
 /// Runs of each of them, with seeds from 1 on: in one alone, chance decides by a tenth.
 const RUNS: u64 = 4;
 
-pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<DocumentSection, EvaluationError> {
     let (layouts, sizes, hours, runs): (&[(&str, f64)], &[usize], f64, u64) = match extent {
-        Extent::Full => (&LAYOUTS, &SIZES, 0.25, RUNS),
-        Extent::Quick => (&LAYOUTS[1..3], &SIZES[..1], 0.002, 2),
+        Thoroughness::Full => (&LAYOUTS, &SIZES, 0.25, RUNS),
+        Thoroughness::Quick => (&LAYOUTS[1..3], &SIZES[..1], 0.002, 2),
     };
     let mut text = format!(
         "## Fleets on other layouts\n\nThe same for {hours} h on all layouts of others in `tests/data/real`, 1 m/s, 0.5 m/s², the largest level of a building, with {} robots where so many find a \
@@ -63,15 +63,19 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
             }
         };
         for &agents in sizes {
-            let request = Request {
+            let request = LifelongOptions {
                 agents,
                 duration: 3600.0 * hours,
-                delays: Delays::default(),
+                delays: DelayModel::default(),
                 seed: 1,
-                method: Method::Orders,
+                method: CoordinationMethod::Orders,
             };
             // Whether there is room is found by what is quick.
-            let tried = Lifelong::of(&imported, Request { duration: 1.0, ..request }, &[Method::RouteLocks]);
+            let tried = LifelongReport::run(
+                &imported,
+                LifelongOptions { duration: 1.0, ..request },
+                &[CoordinationMethod::RouteLocks],
+            );
             let room = tried.map(|it| (it.runs.first().map_or(0, |run| run.outcome.robots), it.well_formedness));
             match room {
                 Ok((robots, _)) if robots == agents => {}
@@ -87,8 +91,11 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
                     break;
                 }
             }
-            let refused = |problem| Problem::Method(format!("{name}, {agents} robots"), problem);
-            let of_seed = |seed| Lifelong::of(&imported, Request { seed, ..request }, &Method::ALL).map_err(refused);
+            let refused = |problem| EvaluationError::Method(format!("{name}, {agents} robots"), problem);
+            let of_seed = |seed| {
+                LifelongReport::run(&imported, LifelongOptions { seed, ..request }, &CoordinationMethod::ALL)
+                    .map_err(refused)
+            };
             let answers = (1..=runs).map(of_seed).collect::<Result<Vec<_>, _>>()?;
             text.push_str(&row(name, radius, agents, &answers));
         }
@@ -97,30 +104,31 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         let _ = writeln!(text, "\nLayouts that cannot take {} robots:\n", SIZES[0]);
         small.iter().for_each(|it| text.push_str(&format!("- {it}\n")));
     }
-    Ok(Section { text, pictures: Vec::new() })
+    Ok(DocumentSection { text, pictures: Vec::new() })
 }
 
-fn read(fleets: &Fleets, name: &str, radius: f64) -> Result<Imported, String> {
+fn read(fleets: &PaperFleets, name: &str, radius: f64) -> Result<ImportedLayout, String> {
     let path = fleets.data.join("real").join(name);
     let text = fs::read_to_string(&path).map_err(|error| format!("cannot be read: {error}"))?;
-    let format = Format::of(&path, &text).ok_or("no layout")?;
-    let options = Options { radius: Some(radius), corner_radius: Some(CORNER_RADIUS), ..Options::default() };
+    let format = InputFormat::detect(&path, &text).ok_or("no layout")?;
+    let options =
+        ImportOptions { radius: Some(radius), corner_radius: Some(CORNER_RADIUS), ..ImportOptions::default() };
     import::roads(format, &text, &options, &mut Warnings::default()).map_err(|error| error.to_string())
 }
 
-fn row(name: &str, radius: f64, agents: usize, answers: &[Lifelong]) -> String {
-    let runs = |method: Method| {
+fn row(name: &str, radius: f64, agents: usize, answers: &[LifelongReport]) -> String {
+    let runs = |method: CoordinationMethod| {
         let runs = answers.iter().flat_map(|answer| &answer.runs);
         runs.filter(move |run| run.outcome.method == method)
     };
     let seeds = answers.len().max(1) as f64;
     let an_hour = |method| runs(method).map(|run| run.outcome.missions_per_hour).sum::<f64>() / seeds;
-    let [orders, routes, edges, delays] = Method::ALL.map(an_hour);
+    let [orders, routes, edges, delays] = CoordinationMethod::ALL.map(an_hour);
     let locks = routes.max(edges);
-    let which = if routes >= edges { Method::RouteLocks } else { Method::EdgeLocks };
+    let which = if routes >= edges { CoordinationMethod::RouteLocks } else { CoordinationMethod::EdgeLocks };
     let alone = answers.iter().map(|answer| answer.alone).sum::<f64>() / seeds;
-    let decision = runs(Method::Orders).map(|run| run.decision_p99).fold(0.0, f64::max);
-    let all = || answers.iter().flat_map(|answer| &answer.runs).map(|run: &Driven| &run.outcome);
+    let decision = runs(CoordinationMethod::Orders).map(|run| run.decision_p99).fold(0.0, f64::max);
+    let all = || answers.iter().flat_map(|answer| &answer.runs).map(|run: &LifelongRunEntry| &run.outcome);
     let stuck: usize = all().map(|outcome| outcome.stuck).sum();
     let verdicts = all().map(|outcome| outcome.certificate.verdict);
     let contact = verdicts.fold("none, proved", |worst, verdict| if verdict == "proved" { worst } else { verdict });

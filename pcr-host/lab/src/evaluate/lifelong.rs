@@ -1,22 +1,24 @@
 //! Fleets that run for an hour in a real warehouse, under orders, locks and start delays, with the same missions and
 //! the same random delays.
 
-use super::{Extent, Fleets, Problem, Section};
-use pcr_execution::lifelong::{Delays, Driven, Lifelong, Method, Request, streets};
-use pcr_formats::import::Imported;
+use super::{DocumentSection, EvaluationError, PaperFleets, Thoroughness};
+use pcr_execution::lifelong::{
+    CoordinationMethod, DelayModel, LifelongOptions, LifelongReport, LifelongRunEntry, streets,
+};
+use pcr_formats::import::ImportedLayout;
 use pcr_planning::figures::digits;
 use std::fmt::Write as _;
 
 /// Radius of the discs \[m\].
 const RADIUS: f64 = 0.4;
 
-pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<DocumentSection, EvaluationError> {
     let (sizes, hours): (&[usize], f64) = match extent {
-        Extent::Full => (&[5, 10, 20, 30, 50], 1.0),
-        Extent::Quick => (&[3], 0.02),
+        Thoroughness::Full => (&[5, 10, 20, 30, 50], 1.0),
+        Thoroughness::Quick => (&[3], 0.02),
     };
     let imported = fleets.warehouse(RADIUS)?;
-    let usual = Delays::default();
+    let usual = DelayModel::default();
     let mut text = format!(
         "## Fleets that run\n\nThe same route graph, discs of {RADIUS} m, turns in place at corners; a robot that has finished a mission gets a new \
         random one, for {hours} h (`pcr traffic --hours {hours} --compare`, seed 1). Robots are stopped for {} % of the time, {} s each, and are up \
@@ -33,7 +35,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     );
     let (mut safe, mut alone) = (0, Vec::new());
     for &agents in sizes {
-        let answer = driven(&imported, agents, hours, &Method::ALL)?;
+        let answer = driven(&imported, agents, hours, &CoordinationMethod::ALL)?;
         safe = answer.well_formedness.safe_ends.len();
         alone.push(format!("{} with {agents}", digits(answer.alone)));
         answer.runs.iter().for_each(|run| text.push_str(&row(agents, run)));
@@ -45,14 +47,14 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         alone.join(", ")
     );
     text.push_str(&large(extent)?);
-    Ok(Section { text, pictures: Vec::new() })
+    Ok(DocumentSection { text, pictures: Vec::new() })
 }
 
 /// Fleets of which each decision looks at some robots only.
-fn large(extent: Extent) -> Result<String, Problem> {
+fn large(extent: Thoroughness) -> Result<String, EvaluationError> {
     let (sizes, hours): (&[[usize; 2]], f64) = match extent {
-        Extent::Full => (&[[100, 14], [300, 22], [1000, 40]], 0.1),
-        Extent::Quick => (&[[70, 10]], 0.005),
+        Thoroughness::Full => (&[[100, 14], [300, 22], [1000, 40]], 0.1),
+        Thoroughness::Quick => (&[[70, 10]], 0.005),
     };
     let mut text = format!(
         "\nLarge fleets, with orders: streets that cross every 6 m, one-way with alternating directions and two bays for each block; the same robots \
@@ -61,7 +63,7 @@ fn large(extent: Extent) -> Result<String, Problem> {
         | nodes | robots | missions | an hour | travel | stuck | decision | faster | contact |\n|---:|---:|---:|---:|---:|---:|---:|---:|---|\n"
     );
     for &[agents, count] in sizes {
-        let answer = driven(&streets(count), agents, hours, &[Method::Orders])?;
+        let answer = driven(&streets(count), agents, hours, &[CoordinationMethod::Orders])?;
         for run in &answer.runs {
             let it = &run.outcome;
             let contact = if it.certificate.verdict == "proved" { "none, proved" } else { it.certificate.verdict };
@@ -82,14 +84,19 @@ fn large(extent: Extent) -> Result<String, Problem> {
     Ok(text)
 }
 
-fn driven(imported: &Imported, agents: usize, hours: f64, methods: &[Method]) -> Result<Lifelong, Problem> {
-    let (duration, delays) = (3600.0 * hours, Delays::default());
-    let request = Request { agents, duration, delays, seed: 1, method: Method::Orders };
-    let refused = |problem| Problem::Method(format!("{agents} robots"), problem);
-    Lifelong::of(imported, request, methods).map_err(refused)
+fn driven(
+    imported: &ImportedLayout,
+    agents: usize,
+    hours: f64,
+    methods: &[CoordinationMethod],
+) -> Result<LifelongReport, EvaluationError> {
+    let (duration, delays) = (3600.0 * hours, DelayModel::default());
+    let request = LifelongOptions { agents, duration, delays, seed: 1, method: CoordinationMethod::Orders };
+    let refused = |problem| EvaluationError::Method(format!("{agents} robots"), problem);
+    LifelongReport::run(imported, request, methods).map_err(refused)
 }
 
-fn row(agents: usize, run: &Driven) -> String {
+fn row(agents: usize, run: &LifelongRunEntry) -> String {
     let it = &run.outcome;
     let count = if it.robots < agents { format!("{} of {agents}", it.robots) } else { agents.to_string() };
     let contact = if it.certificate.verdict == "proved" { "none, proved" } else { it.certificate.verdict };

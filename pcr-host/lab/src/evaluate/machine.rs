@@ -1,6 +1,6 @@
 //! Describes the machine on which the evaluation runs.
 
-use super::Extent;
+use super::Thoroughness;
 use crate::methods::libraries;
 use std::fs;
 use std::thread::available_parallelism;
@@ -22,7 +22,7 @@ pub(super) fn summary(document: &str) -> &str {
 }
 
 /// Returns title, summary, command, machine and how to read the numbers.
-pub(super) fn preamble(extent: Extent, summary: &str) -> String {
+pub(super) fn preamble(extent: Thoroughness, summary: &str) -> String {
     let cores = available_parallelism().map_or(1, usize::from);
     let cpu = line("/proc/cpuinfo", "model name").unwrap_or_else(|| "an unnamed processor".into());
     let kilobytes = line("/proc/meminfo", "MemTotal").and_then(|total| total.split(' ').next()?.parse::<f64>().ok());
@@ -32,8 +32,8 @@ pub(super) fn preamble(extent: Extent, summary: &str) -> String {
     let load = load.split(' ').next().filter(|load| !load.is_empty()).unwrap_or("unknown");
     let libraries = libraries().join("; ");
     let quick = match extent {
-        Extent::Full => "",
-        Extent::Quick => QUICK,
+        Thoroughness::Full => "",
+        Thoroughness::Quick => QUICK,
     };
     let (os, architecture) = (std::env::consts::OS, std::env::consts::ARCH);
     format!(
@@ -64,10 +64,10 @@ mod tests {
     fn a_summary_stays_when_a_document_is_written_anew() {
         let [begins, ends] = SUMMARY;
         let words = format!("{begins}What it comes to.\n{ends}");
-        let first = preamble(Extent::Full, &words);
+        let first = preamble(Thoroughness::Full, &words);
         assert!(first.starts_with(&format!("# Evaluation\n\n{words}`cargo run")), "{first}");
         assert_eq!(summary(&first), words);
-        assert_eq!(summary(&preamble(Extent::Full, "")), "");
+        assert_eq!(summary(&preamble(Thoroughness::Full, "")), "");
         assert_eq!(summary(begins), "");
     }
 }

@@ -1,30 +1,32 @@
 //! The memory that is needed for a collision, and the bytes to transmit it.
 
-use super::{Extent, Fleets, Problem, Section};
+use super::{DocumentSection, EvaluationError, PaperFleets, Thoroughness};
 use crate::methods::methods;
-use pcr_comparing::compare::Answer;
-use pcr_comparing::compare::{Input, Question};
+use pcr_comparing::compare::MethodAnswer;
+use pcr_comparing::compare::{ComparisonInput, MethodQuestion};
 use pcr_planning::figures::bytes;
-use pcr_planning::regions::{self, Request};
+use pcr_planning::regions::{self, RegionOptions};
 use std::fmt::Write as _;
 
-pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<DocumentSection, EvaluationError> {
     let mut text = String::from("## Memory, and bytes on the wire\n\nThe paper's 12 agents.\n\n");
-    let Some(fleet) = fleets.paper12() else { return Ok(Section { text, pictures: Vec::new() }) };
+    let Some(fleet) = fleets.paper12() else { return Ok(DocumentSection { text, pictures: Vec::new() }) };
     text.push_str("| what | all of it | a region |\n|---|---:|---:|\n");
-    let answer = regions::Answer::of::<f64>(&fleet.scenario, Request::default())?;
+    let answer = regions::RegionsReport::compute::<f64>(&fleet.scenario, RegionOptions::default())?;
     let count = answer.regions.len() as f64;
     let mut row = |what: &str, size: usize| {
         let _ = writeln!(text, "| {what} | {} | {} |", bytes(size), bytes((size as f64 / count).round() as usize));
     };
-    let input = Input::new(&fleet.scenario)?;
+    let input = ComparisonInput::new(&fleet.scenario)?;
     let field = input.field();
     let kept = match extent {
-        Extent::Full => &["pcr f64", "pcr f32", "pcr q16", "sampled map 0.1 s, boxes", "sampled map 0.01 s, boxes"][..],
-        Extent::Quick => &["pcr f64", "sampled map 0.1 s, boxes"],
+        Thoroughness::Full => {
+            &["pcr f64", "pcr f32", "pcr q16", "sampled map 0.1 s, boxes", "sampled map 0.01 s, boxes"][..]
+        }
+        Thoroughness::Quick => &["pcr f64", "sampled map 0.1 s, boxes"],
     };
-    for method in methods().iter().filter(|method| method.question() == Question::Regions) {
-        if let (true, Ok(Answer::Regions(regions))) = (kept.contains(&&*method.name()), method.answer(&field)) {
+    for method in methods().iter().filter(|method| method.question() == MethodQuestion::Regions) {
+        if let (true, Ok(MethodAnswer::Regions(regions))) = (kept.contains(&&*method.name()), method.answer(&field)) {
             row(&format!("{}, as kept", method.name()), regions.bytes());
         }
     }
@@ -39,5 +41,5 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         "\nA region is stored once for both directions of a pair and counts twice here. firmware/README.md has the bytes of single \
         regions and pieces in the serial protocol.\n",
     );
-    Ok(Section { text, pictures: Vec::new() })
+    Ok(DocumentSection { text, pictures: Vec::new() })
 }

@@ -1,11 +1,11 @@
 //! The quality of start delays: their cost, the proved bound, and the time to compute them.
 
-use super::{Extent, Fleets, Problem, Section};
+use super::{DocumentSection, EvaluationError, PaperFleets, Thoroughness};
 use pcr_comparing::compare::crowd;
 use pcr_execution::traffic;
 use pcr_formats::scenario::Scenario;
 use pcr_planning::figures::{digits, time};
-use pcr_planning::plan::{Plan, Request};
+use pcr_planning::plan::{PlanOptions, PlanReport};
 use std::fmt::Write as _;
 use std::time::Instant;
 
@@ -20,7 +20,7 @@ const MISSIONS: [usize; 3] = [10, 20, 40];
 
 /// What came of some fleets.
 #[derive(Default)]
-struct Row {
+struct DelayPlanQuality {
     fleets: usize,
     planned: usize,
     left_out: usize,
@@ -33,11 +33,11 @@ struct Row {
     times: Vec<f64>,
 }
 
-impl Row {
-    fn add(&mut self, scenario: &Scenario) -> Result<(), Problem> {
-        let request = Request { leave_out: true, ..Request::default() };
+impl DelayPlanQuality {
+    fn add(&mut self, scenario: &Scenario) -> Result<(), EvaluationError> {
+        let request = PlanOptions { leave_out: true, ..PlanOptions::default() };
         let begin = Instant::now();
-        let (plan, _) = Plan::of(scenario, &request)?;
+        let (plan, _) = PlanReport::compute(scenario, &request)?;
         self.times.push(1e3 * begin.elapsed().as_secs_f64());
         self.fleets += 1;
         self.planned += plan.agents.len();
@@ -68,7 +68,7 @@ impl Row {
     }
 }
 
-pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<DocumentSection, EvaluationError> {
     let mut text = format!(
         "## Plans and their bounds\n\nStart delays with the least sum of costs (`pcr plan --leave-out`). *Left out*: the fewest agents without which the \
         others have a plan. *Proved*: number of fleets whose delays are proved to be the best, except for rounding. *Gap*: by \
@@ -80,25 +80,25 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n",
     );
     let (sizes, seeds, missions): (&[usize], _, &[usize]) = match extent {
-        Extent::Full => (&SIZES, SEEDS, &MISSIONS),
-        Extent::Quick => (&SIZES[..3], 2, &MISSIONS[..1]),
+        Thoroughness::Full => (&SIZES, SEEDS, &MISSIONS),
+        Thoroughness::Quick => (&SIZES[..3], 2, &MISSIONS[..1]),
     };
     for fleet in &fleets.all {
-        let mut row = Row::default();
+        let mut row = DelayPlanQuality::default();
         row.add(&fleet.scenario)?;
         row.write(&format!("Table VI, {} agents, {} crossings", fleet.size[0], fleet.size[1]), &mut text);
     }
     for &agents in sizes {
-        let mut row = Row::default();
+        let mut row = DelayPlanQuality::default();
         (0..seeds).try_for_each(|seed| row.add(&crowd(agents, seed)))?;
         row.write(&format!("random, {agents} agents"), &mut text);
     }
     let warehouse = fleets.warehouse(RADIUS)?;
     for &agents in missions {
-        let (_, [scenario, _]) = traffic::Traffic::of(&warehouse, traffic::Request { agents, seed: 1 })?;
-        let mut row = Row::default();
+        let (_, [scenario, _]) = traffic::TrafficReport::plan(&warehouse, traffic::TrafficOptions { agents, seed: 1 })?;
+        let mut row = DelayPlanQuality::default();
         row.add(&scenario)?;
         row.write(&format!("missions, {agents} agents"), &mut text);
     }
-    Ok(Section { text, pictures: Vec::new() })
+    Ok(DocumentSection { text, pictures: Vec::new() })
 }

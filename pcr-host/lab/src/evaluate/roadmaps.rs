@@ -2,12 +2,14 @@
 //! delays.
 
 use super::scale::exponent;
-use super::{Extent, Fleets, Problem, Section};
-use pcr_formats::import::{Edge, Id, ImportError, Imported, Layout, Node, SizeSource, Vehicle};
-use pcr_formats::random::Random;
-use pcr_formats::scenario::{PathSegment, Placed};
+use super::{DocumentSection, EvaluationError, PaperFleets, Thoroughness};
+use pcr_formats::import::{
+    ElementId, ImportError, ImportedLayout, Layout, LayoutEdge, LayoutNode, SizeSource, VehicleTraits,
+};
+use pcr_formats::scenario::{PathSegment, PlacedSegment};
+use pcr_formats::splitmix64::SplitMix64;
+use pcr_planning::exclusion_table::{EdgeDriving, SweptLayout, TouchingAreas, UnsafeDelayModel, UnsafeRelation};
 use pcr_planning::figures::digits;
-use pcr_planning::locks::{Delays, Driving, Found, Sweep, Unsafe};
 use std::fmt::Write as _;
 use std::time::Instant;
 
@@ -25,16 +27,16 @@ const SWEEP: f64 = 1.0;
 const LARGEST: usize = 1_000;
 
 /// One roadmap: edges, pairs found, and seconds, of locks and of delays.
-struct Measured {
+struct RoadmapMeasurement {
     edges: f64,
     locks: [f64; 2],
     delays: Option<[f64; 2]>,
 }
 
-pub(super) fn section(_: &Fleets, extent: Extent) -> Result<Section, Problem> {
+pub(super) fn section(_: &PaperFleets, extent: Thoroughness) -> Result<DocumentSection, EvaluationError> {
     let sizes: &[usize] = match extent {
-        Extent::Full => &[300, 1_000, 3_000, 10_000, 30_000, 150_000],
-        Extent::Quick => &[20, 40],
+        Thoroughness::Full => &[300, 1_000, 3_000, 10_000, 30_000, 150_000],
+        Thoroughness::Quick => &[20, 40],
     };
     let mut text = format!(
         "## Roadmaps\n\nRandom nodes, one per {} m² on average, each joined with its {NEIGHBOURS} nearest ones in both directions; discs of {RADIUS} \
@@ -46,12 +48,12 @@ pub(super) fn section(_: &Fleets, extent: Extent) -> Result<Section, Problem> {
     for (is_curved, title) in [(false, "All edges straight"), (true, "One way in four an arc that turns by 1 rad")] {
         let all = sizes.iter().map(|&nodes| measured(&roadmap(nodes, 1, is_curved), !is_curved || nodes <= LARGEST));
         let all = all.collect::<Result<Vec<_>, _>>();
-        table(&all.map_err(|error| Problem::Method("locks".into(), error.to_string()))?, title, &mut text);
+        table(&all.map_err(|error| EvaluationError::Method("locks".into(), error.to_string()))?, title, &mut text);
     }
-    Ok(Section { text, pictures: Vec::new() })
+    Ok(DocumentSection { text, pictures: Vec::new() })
 }
 
-fn table(all: &[Measured], title: &str, text: &mut String) {
+fn table(all: &[RoadmapMeasurement], title: &str, text: &mut String) {
     let _ = write!(
         text,
         "\n{title}:\n\n\
@@ -63,7 +65,7 @@ fn table(all: &[Measured], title: &str, text: &mut String) {
         let delays = measured.delays.map_or("– | – | –".to_owned(), each);
         let _ = writeln!(text, "| {} | {} | {delays} |", measured.edges, each(measured.locks));
     }
-    let of = |time: fn(&Measured) -> Option<[f64; 2]>| {
+    let of = |time: fn(&RoadmapMeasurement) -> Option<[f64; 2]>| {
         exponent(&all.iter().filter_map(|measured| Some([measured.edges, time(measured)?[1]])).collect::<Vec<_>>())
     };
     let _ = writeln!(
@@ -74,31 +76,31 @@ fn table(all: &[Measured], title: &str, text: &mut String) {
     );
 }
 
-fn measured(imported: &Imported, with_delays: bool) -> Result<Measured, ImportError> {
+fn measured(imported: &ImportedLayout, with_delays: bool) -> Result<RoadmapMeasurement, ImportError> {
     let count = |found: usize, start: Instant| [found as f64, start.elapsed().as_secs_f64()];
     let (start, mut found) = (Instant::now(), 0);
-    Sweep::new(imported, false)?.each(&|_, _| {}, &<[Found]>::len, |some| {
+    SweptLayout::new(imported, false)?.each(&|_, _| {}, &<[TouchingAreas]>::len, |some| {
         found += some;
         Ok::<(), ImportError>(())
     })?;
     let locks = count(found, start);
     let delays = || {
         let (start, mut found) = (Instant::now(), 0);
-        let driving = Driving { speed: 1.0, acceleration: None };
-        Delays::new(imported, driving, false)?.each(&|_, _| {}, &<[Unsafe]>::len, |some| {
+        let driving = EdgeDriving { speed: 1.0, acceleration: None };
+        UnsafeDelayModel::new(imported, driving, false)?.each(&|_, _| {}, &<[UnsafeRelation]>::len, |some| {
             found += some;
             Ok::<(), ImportError>(())
         })?;
         Ok(count(found, start))
     };
     let delays = with_delays.then(delays).transpose()?;
-    Ok(Measured { edges: imported.layout.edges.len() as f64, locks, delays })
+    Ok(RoadmapMeasurement { edges: imported.layout.edges.len() as f64, locks, delays })
 }
 
 /// A roadmap of so many nodes, with arcs among its ways.
-fn roadmap(count: usize, seed: u64, is_curved: bool) -> Imported {
-    let (side, mut random) = (SPACING * (count as f64).sqrt(), Random(seed));
-    let places: Vec<[f64; 2]> = (0..count).map(|_| [0; 2].map(|_| random.within(0.0, side))).collect();
+fn roadmap(count: usize, seed: u64, is_curved: bool) -> ImportedLayout {
+    let (side, mut random) = (SPACING * (count as f64).sqrt(), SplitMix64(seed));
+    let places: Vec<[f64; 2]> = (0..count).map(|_| [0; 2].map(|_| random.uniform(0.0, side))).collect();
     // Nodes by squares that hold some of them each: neighbours are looked for around their own.
     let cell = 2.0 * SPACING;
     let columns = (side / cell) as usize + 1;
@@ -130,11 +132,16 @@ fn roadmap(count: usize, seed: u64, is_curved: bool) -> Imported {
             0.0 => PathSegment::Line { length },
             _ => PathSegment::Arc { radius: length / (2.0 * (sweep.abs() / 2.0).sin()), sweep },
         };
-        let curve = vec![Placed { at: [x, y], heading, shape }];
-        Edge::new(Id::Number(id as u64), ends, curve)
+        let curve = vec![PlacedSegment { start: [x, y], heading, shape }];
+        LayoutEdge::new(ElementId::Number(id as u64), ends, curve)
     });
-    let node = |(id, &at): (usize, &[f64; 2])| Node { id: Id::Number(id as u64), name: None, level: 0, at };
-    let vehicle = Vehicle {
+    let node = |(id, &at): (usize, &[f64; 2])| LayoutNode {
+        id: ElementId::Number(id as u64),
+        name: None,
+        level: 0,
+        point: at,
+    };
+    let vehicle = VehicleTraits {
         name: None,
         radius: RADIUS,
         footprint: None,
@@ -146,7 +153,7 @@ fn roadmap(count: usize, seed: u64, is_curved: bool) -> Imported {
         rotation_acceleration: 1.0,
     };
     let nodes = places.iter().enumerate().map(node).collect();
-    Imported {
+    ImportedLayout {
         layout: Layout { levels: vec![String::new()], nodes, edges: edges.collect(), ..Layout::default() },
         vehicle,
     }

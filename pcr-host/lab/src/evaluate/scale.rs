@@ -1,25 +1,25 @@
 //! Fleets of up to 100,000 agents.
 
-mod copies;
-mod course;
+mod scale_measurement;
+mod tiled_layout;
 
-use super::{Extent, Fleets, Problem, Section, picture};
-use copies::Copies;
-use course::{Course, TABLE};
+use super::{DocumentSection, EvaluationError, PaperFleets, Thoroughness, picture};
 use pcr_comparing::compare::crowd;
 use pcr_comparing::compare::median;
 use pcr_comparing::compare::stopwatch::Stopwatch;
-use pcr_drawing::plot::{Chart, Series};
+use pcr_drawing::plot::{Chart, DataSeries};
 use pcr_formats::scenario::Scenario;
 use pcr_planning::figures::{digits, time};
 use pcr_planning::fleet::{Fleet, build_ecm};
+use scale_measurement::{ScaleMeasurement, TABLE};
 use std::fmt::Write as _;
+use tiled_layout::TiledLayout;
 
-pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
-    let copies = Copies::new(fleets.warehouse(copies::RADIUS)?);
-    let copies = copies.map_err(|error| Problem::File(fleets.data.clone(), error.to_string()))?;
-    let floor = Kind::run("floor", &|agents, seed| crowd(agents, seed), extent)?;
-    let warehouse = Kind::run("warehouse", &|agents, seed| copies.fleet(agents, seed), extent)?;
+pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<DocumentSection, EvaluationError> {
+    let copies = TiledLayout::new(fleets.warehouse(tiled_layout::RADIUS)?);
+    let copies = copies.map_err(|error| EvaluationError::File(fleets.data.clone(), error.to_string()))?;
+    let floor = FleetSeries::run("floor", &|agents, seed| crowd(agents, seed), extent)?;
+    let warehouse = FleetSeries::run("warehouse", &|agents, seed| copies.fleet(agents, seed), extent)?;
     let kinds = [floor, warehouse];
     let ([width, depth], [nodes, edges]) = copies.size();
     let words = [
@@ -31,8 +31,8 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
             copy. Each agent takes the shortest way from a random node to another one, with rounded corners.",
             digits(width),
             digits(depth),
-            copies::AGENTS,
-            copies::RADIUS
+            tiled_layout::AGENTS,
+            tiled_layout::RADIUS
         ),
     ];
     let mut text = String::from(
@@ -50,7 +50,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         |---|---:|---:|---:|---:|---:|---:|\n",
     );
     kinds.iter().for_each(|kind| text.push_str(&kind.fitted()));
-    let _ = write!(text, "\n{}", exchange(if extent == Extent::Full { TABLE } else { 300 })?);
+    let _ = write!(text, "\n{}", exchange(if extent == Thoroughness::Full { TABLE } else { 300 })?);
     let _ =
         write!(text, "\n{}{}", picture("scale-agents", "Time by agents"), picture("scale-regions", "Time by regions"));
     let by_agents = kinds.iter().flat_map(|kind| {
@@ -66,25 +66,29 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         ("scale-agents", chart("agents", by_agents.collect())),
         ("scale-regions", chart("regions", by_regions.collect())),
     ];
-    Ok(Section { text, pictures })
+    Ok(DocumentSection { text, pictures })
 }
 
 /// Fleets of a kind, in growing sizes.
-struct Kind {
+struct FleetSeries {
     name: &'static str,
-    courses: Vec<Course>,
+    courses: Vec<ScaleMeasurement>,
     /// Of the process with the largest one \[MB\].
     memory: Option<f64>,
 }
 
-impl Kind {
-    fn run(name: &'static str, make: &dyn Fn(usize, u64) -> Scenario, extent: Extent) -> Result<Self, Problem> {
+impl FleetSeries {
+    fn run(
+        name: &'static str,
+        make: &dyn Fn(usize, u64) -> Scenario,
+        extent: Thoroughness,
+    ) -> Result<Self, EvaluationError> {
         let sizes: &[usize] = match extent {
-            Extent::Full => &[100, 1_000, 10_000, 100_000],
-            Extent::Quick => &[100, 300],
+            Thoroughness::Full => &[100, 1_000, 10_000, 100_000],
+            Thoroughness::Quick => &[100, 300],
         };
-        let memory = course::memory(make, sizes.last().copied().unwrap_or(0))?;
-        let courses = sizes.iter().map(|&agents| Course::run(make, agents, extent));
+        let memory = scale_measurement::memory(make, sizes.last().copied().unwrap_or(0))?;
+        let courses = sizes.iter().map(|&agents| ScaleMeasurement::run(make, agents, extent));
         Ok(Self { name, courses: courses.collect::<Result<_, _>>()?, memory })
     }
 
@@ -93,7 +97,7 @@ impl Kind {
             "| agents | regions an agent | rows, an agent | rows, a region | all cores, an agent | table, an agent |\n\
             |---:|---:|---:|---:|---:|---:|\n",
         );
-        for Course { agents, regions, rows, all_cores, table } in &self.courses {
+        for ScaleMeasurement { agents, regions, rows, all_cores, table } in &self.courses {
             let share = |ms: f64| time(ms / *agents as f64);
             let _ = writeln!(
                 text,
@@ -116,16 +120,23 @@ impl Kind {
         text
     }
 
-    fn series(&self, what: &str, x: fn(&Course) -> f64, y: fn(&Course) -> Option<f64>) -> Series {
+    fn series(
+        &self,
+        what: &str,
+        x: fn(&ScaleMeasurement) -> f64,
+        y: fn(&ScaleMeasurement) -> Option<f64>,
+    ) -> DataSeries {
         let points = self.courses.iter().filter_map(|course| Some([x(course), y(course)?])).collect();
-        Series { name: format!("{}, {what}", self.name), points, line: true }
+        DataSeries { name: format!("{}, {what}", self.name), points, line: true }
     }
 
     /// A row of the table of exponents.
     fn fitted(&self) -> String {
-        let of = |x: fn(&Course) -> f64, y: fn(&Course) -> Option<f64>| exponent(&self.series("", x, y).points);
-        let agents = |course: &Course| course.agents as f64;
-        let varies = |each: &dyn Fn(&Course) -> f64| {
+        let of = |x: fn(&ScaleMeasurement) -> f64, y: fn(&ScaleMeasurement) -> Option<f64>| {
+            exponent(&self.series("", x, y).points)
+        };
+        let agents = |course: &ScaleMeasurement| course.agents as f64;
+        let varies = |each: &dyn Fn(&ScaleMeasurement) -> f64| {
             let each = self.courses.iter().map(each);
             let (least, most) =
                 each.fold((f64::INFINITY, 0.0_f64), |(least, most), each| (least.min(each), most.max(each)));
@@ -145,7 +156,7 @@ impl Kind {
 }
 
 /// One agent of a large fleet gets another path, in the table of all.
-fn exchange(agents: usize) -> Result<String, Problem> {
+fn exchange(agents: usize) -> Result<String, EvaluationError> {
     const EXCHANGES: usize = 51;
     let fleets = [1, 2].map(|seed| Fleet::<f64>::new(&crowd(agents, seed)));
     let [first, second] = fleets;

@@ -1,8 +1,8 @@
 //! Lifelong tasks on roadmaps of others, beside the published figures of a method for discrete orders.
 
-use super::{Extent, Fleets, Problem, Section};
+use super::{DocumentSection, EvaluationError, PaperFleets, Thoroughness};
 use crate::roadmap;
-use pcr_execution::lifelong::{Delays, Method, Report, Request, run_tasks};
+use pcr_execution::lifelong::{CoordinationMethod, DelayModel, LifelongOptions, MeasuredLifelongRun, run_tasks};
 use pcr_planning::figures::digits;
 use serde_json::Value;
 use std::fs;
@@ -14,12 +14,12 @@ const SETS: usize = 9;
 /// All tasks are done by then \[s\].
 const LONGEST: f64 = 1200.0;
 
-pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<DocumentSection, EvaluationError> {
     let (sets, count) = match extent {
-        Extent::Full => (SETS, usize::MAX),
-        Extent::Quick => (1, 5),
+        Thoroughness::Full => (SETS, usize::MAX),
+        Thoroughness::Quick => (1, 5),
     };
-    let usual = Delays::default();
+    let usual = DelayModel::default();
     let mut text = format!(
         "## Tasks on roadmaps\n\nTasks that come over time on the roadmaps of CPLP (Combrink, Roselli, Fabian, arXiv 2503.13175; `tests/data/real/cplp`), \
         for discs of 1 m at 1 m/s that start, stop and turn at once, as published. A task is done by the first robot that is at its node after it has \
@@ -36,18 +36,19 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     );
     let folder = fleets.data.join("real/cplp");
     let stats = folder.join("published-stats.json");
-    let published: Value =
-        serde_json::from_str(&read(&stats)?).map_err(|error| Problem::File(stats.clone(), error.to_string()))?;
+    let published: Value = serde_json::from_str(&read(&stats)?)
+        .map_err(|error| EvaluationError::File(stats.clone(), error.to_string()))?;
     for set in 0..sets {
         let file = folder.join(file(set));
-        let problem = |problem: String| Problem::File(file.clone(), problem);
+        let problem = |problem: String| EvaluationError::File(file.clone(), problem);
         let (imported, mut tasks) = roadmap::read(&read(&file)?).map_err(problem)?;
         tasks.tasks.truncate(count);
-        let done = |delays: Delays| {
-            let request = Request { agents: 0, duration: LONGEST, delays, seed: 1, method: Method::Orders };
+        let done = |delays: DelayModel| {
+            let request =
+                LifelongOptions { agents: 0, duration: LONGEST, delays, seed: 1, method: CoordinationMethod::Orders };
             run_tasks(&imported, request, &tasks).map_err(problem)
         };
-        let runs = [done(Delays { stopped: 0.0, slip: 0.0, ..usual })?, done(usual)?];
+        let runs = [done(DelayModel { stopped: 0.0, slip: 0.0, ..usual })?, done(usual)?];
         // The rate of those that are done would be too high.
         if let Some(run) = runs.iter().find(|run| run.outcome.missions < tasks.tasks.len()) {
             let (done, all) = (run.outcome.missions, tasks.tasks.len());
@@ -57,11 +58,14 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
         let [Some(rate), Some(call)] =
             ["Throughput", "Planning Computation Time (per call)"].map(|what| figures[what]["mean"].as_f64())
         else {
-            return Err(Problem::File(stats, format!("set_{set}: its throughput or time of a call is missing")));
+            return Err(EvaluationError::File(
+                stats,
+                format!("set_{set}: its throughput or time of a call is missing"),
+            ));
         };
         text.push_str(&row(set, &runs, [rate, call]));
     }
-    Ok(Section { text, pictures: Vec::new() })
+    Ok(DocumentSection { text, pictures: Vec::new() })
 }
 
 /// The file of a set.
@@ -72,9 +76,9 @@ fn file(set: usize) -> String {
 }
 
 /// A line of the table, beside the published rate \[1/s\] and time of a call \[s\].
-fn row(set: usize, runs: &[Report; 2], [rate, call]: [f64; 2]) -> String {
+fn row(set: usize, runs: &[MeasuredLifelongRun; 2], [rate, call]: [f64; 2]) -> String {
     let [report, late] = runs;
-    let a_second = |report: &Report| report.outcome.missions as f64 / report.last_arrival;
+    let a_second = |report: &MeasuredLifelongRun| report.outcome.missions as f64 / report.last_arrival;
     let decision =
         report.decisions.iter().map(|it| it.as_secs_f64()).sum::<f64>() / report.decisions.len().max(1) as f64;
     let [stuck, late_stuck] = [report, late].map(|report| report.outcome.stuck);
@@ -99,6 +103,6 @@ fn row(set: usize, runs: &[Report; 2], [rate, call]: [f64; 2]) -> String {
     )
 }
 
-fn read(path: &Path) -> Result<String, Problem> {
-    fs::read_to_string(path).map_err(|error| Problem::File(path.to_owned(), format!("cannot be read: {error}")))
+fn read(path: &Path) -> Result<String, EvaluationError> {
+    fs::read_to_string(path).map_err(|error| EvaluationError::File(path.to_owned(), format!("cannot be read: {error}")))
 }

@@ -1,13 +1,13 @@
 //! Random missions on the route graph of a real warehouse: regions, start delays and their check.
 
-use super::{Extent, Fleets, Problem, Section, picture};
+use super::{DocumentSection, EvaluationError, PaperFleets, Thoroughness, picture};
 use pcr_comparing::compare::stopwatch::{Stopwatch, steady};
-use pcr_drawing::{Ground, overview};
-use pcr_execution::traffic::{Request, Traffic, schedule};
+use pcr_drawing::{LayoutLevelView, overview};
+use pcr_execution::traffic::{TrafficOptions, TrafficReport, schedule};
 use pcr_formats::footprint::Footprint;
-use pcr_planning::bodies::{Bodies, Form};
-use pcr_formats::import::Imported;
-use pcr_planning::check::Verdict;
+use pcr_formats::import::ImportedLayout;
+use pcr_planning::check::CheckReport;
+use pcr_planning::disc_fleet::{DiscFleet, Form};
 use pcr_planning::figures::{digits, time};
 use pcr_planning::fleet::build_ecm;
 use std::fmt::Write as _;
@@ -24,12 +24,12 @@ const OUTLINED: usize = 25;
 /// The fleet of the picture.
 const DRAWN: usize = 50;
 
-pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Problem> {
+pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<DocumentSection, EvaluationError> {
     let sizes: &[usize] = match extent {
-        Extent::Full => &[10, 25, 50, 100],
-        Extent::Quick => &[10],
+        Thoroughness::Full => &[10, 25, 50, 100],
+        Thoroughness::Quick => &[10],
     };
-    let refused = |problem: &dyn ToString| Problem::File(fleets.data.clone(), problem.to_string());
+    let refused = |problem: &dyn ToString| EvaluationError::File(fleets.data.clone(), problem.to_string());
     let disc = fleets.warehouse(RADIUS)?;
     let [nodes, edges] = [disc.layout.nodes.len(), disc.layout.edges.len()];
     let [length, width] = SIZE;
@@ -50,7 +50,7 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
             let (row, [_, plan]) = row(imported, &name, agents)?;
             text.push_str(&row);
             if agents == DRAWN && imported.vehicle.footprint.is_none() {
-                let ground = Ground { imported, level: imported.layout.largest_level() };
+                let ground = LayoutLevelView { imported, level: imported.layout.largest_level() };
                 let svg = overview(&plan, Some(ground)).map_err(|error| refused(&error))?;
                 pictures.push(("warehouse", svg));
             }
@@ -59,33 +59,33 @@ pub(super) fn section(fleets: &Fleets, extent: Extent) -> Result<Section, Proble
     if !pictures.is_empty() {
         let _ = write!(text, "\n{}", picture("warehouse", "50 planned agents on the warehouse graph"));
     }
-    Ok(Section { text, pictures })
+    Ok(DocumentSection { text, pictures })
 }
 
 /// The same layout with vehicles that are no discs.
-fn with_outline(disc: &Imported) -> Result<Imported, String> {
+fn with_outline(disc: &ImportedLayout) -> Result<ImportedLayout, String> {
     let [ahead, left] = SIZE.map(|side| 0.5 * side);
     let footprint = Footprint::new(vec![[ahead, left], [-ahead, left], [-ahead, -left], [ahead, -left]], None)?;
     let mut outlined = disc.clone();
-    (outlined.vehicle.radius, outlined.vehicle.footprint) = (footprint.reach(), Some(footprint));
+    (outlined.vehicle.radius, outlined.vehicle.footprint) = (footprint.circumscribed_radius(), Some(footprint));
     Ok(outlined)
 }
 
 fn row(
-    imported: &Imported,
+    imported: &ImportedLayout,
     name: &str,
     agents: usize,
-) -> Result<(String, [pcr_formats::scenario::Scenario; 2]), Problem> {
-    let request = Request { agents, seed: 1 };
-    let (traffic, scenarios) = Traffic::of(imported, request)?;
+) -> Result<(String, [pcr_formats::scenario::Scenario; 2]), EvaluationError> {
+    let request = TrafficOptions { agents, seed: 1 };
+    let (traffic, scenarios) = TrafficReport::plan(imported, request)?;
     let [missions, plan] = &scenarios;
-    let bodies = Bodies::<f64>::new(missions, Form::Covers)?;
+    let bodies = DiscFleet::<f64>::new(missions, Form::Covers)?;
     let motions = bodies.fleet.motions();
     let table = timed(|| build_ecm(&motions).map(drop))?;
     let planned = timed(|| schedule(missions, request.seed).map(drop))?;
-    let check = timed(|| Verdict::of::<f64>(plan, false).map(drop))?;
+    let check = timed(|| CheckReport::compute::<f64>(plan, false).map(drop))?;
     let mut row = String::new();
-    let Traffic { placed, passed_over, regions, conflicts_before, conflicts_after, .. } = traffic;
+    let TrafficReport { placed, passed_over, regions, conflicts_before, conflicts_after, .. } = traffic;
     let count = if placed < agents { format!("{placed} of {agents}") } else { agents.to_string() };
     let [table, planned_in, check] = [table, planned, check].map(time);
     let _ = writeln!(

@@ -1,17 +1,17 @@
 //! Proofs by [`pcr_certify`] that motions have no contact at any time.
 
-use crate::bodies::{Bodies, Form};
-use crate::certificate;
-use crate::failure::Failure;
-use crate::fleet::{Format, Refused};
-use pcr_certify::motion::{Meeting, Mover, meetings};
+use crate::checker_input;
+use crate::disc_fleet::{DiscFleet, Form};
+use crate::failure::ComputationError;
+use crate::fleet::{FormatRangeError, HostScalar};
+use pcr_certify::motion::{ContactWitness, Mover, meetings};
 use pcr_core::Motion;
 use pcr_formats::scenario::Scenario;
 use serde::Serialize;
 
 /// The result of the proof of motions.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Proof {
+pub struct MotionCertificate {
     /// `proved`: no contact at any time. `contact`: there is one. `undecided`: so near that rounding does not tell.
     pub verdict: &'static str,
     /// Number of pairs of discs.
@@ -20,10 +20,10 @@ pub struct Proof {
     pub steps: usize,
     /// A contact of each pair of discs that has one.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub contacts: Vec<Contact>,
+    pub contacts: Vec<CertificateContact>,
     /// Points at which it is not decided.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub undecided: Vec<Contact>,
+    pub undecided: Vec<CertificateContact>,
     /// Reason why there is no verdict.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
@@ -31,7 +31,7 @@ pub struct Proof {
 
 /// A contact of two agents.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Contact {
+pub struct CertificateContact {
     /// Number of an agent.
     pub i: u64,
     /// Number of the other one.
@@ -42,18 +42,18 @@ pub struct Contact {
     pub clearance: f64,
 }
 
-impl Proof {
+impl MotionCertificate {
     /// The proof for a scenario, as the format `S` represents it.
     ///
     /// # Errors
-    /// [`Refused`] if a value does not fit the format.
-    pub fn of<S: Format>(scenario: &Scenario) -> Result<Self, Refused> {
-        let (fleet, discs, given) = Bodies::<S>::moving(scenario, Form::Covers)?;
+    /// [`FormatRangeError`] if a value does not fit the format.
+    pub fn prove<S: HostScalar>(scenario: &Scenario) -> Result<Self, FormatRangeError> {
+        let (fleet, discs, given) = DiscFleet::<S>::moving(scenario, Form::Covers)?;
         let motions = fleet.motions();
         let all = Motion::span(&motions);
         let ids: Vec<u64> = discs.iter().map(|disc| scenario.agents[disc.agent].id).collect();
-        let agents = certificate::agents(&fleet, &motions, &ids);
-        if let Err(misread) = certificate::as_given::<S>(&given, &agents) {
+        let agents = checker_input::agents(&fleet, &motions, &ids);
+        if let Err(misread) = checker_input::as_given::<S>(&given, &agents) {
             return Ok(Self { error: Some(misread.to_string()), ..Self::found(&[]) }.undecided());
         }
         let movers = agents.iter().zip(&motions).zip(&discs).map(|((agent, motion), disc)| {
@@ -71,18 +71,18 @@ impl Proof {
     ///
     /// # Errors
     /// [`Failure::Refused`] where a value does not fit the format, [`Failure::NoPair`].
-    pub fn of_pairs<S: Format>(scenario: &Scenario) -> Result<Self, Failure> {
-        match Self::of::<S>(scenario)? {
-            Self { pairs: 0, error: None, .. } => Err(Failure::NoPair),
+    pub fn of_pairs<S: HostScalar>(scenario: &Scenario) -> Result<Self, ComputationError> {
+        match Self::prove::<S>(scenario)? {
+            Self { pairs: 0, error: None, .. } => Err(ComputationError::NoPair),
             proof => Ok(proof),
         }
     }
 
     fn found(movers: &[Mover]) -> Self {
         let found = meetings(movers);
-        let contact = |meeting: &Meeting| {
+        let contact = |meeting: &ContactWitness| {
             let [i, j] = meeting.agents;
-            Contact { i, j, t: meeting.time, clearance: meeting.clearance }
+            CertificateContact { i, j, t: meeting.time, clearance: meeting.clearance }
         };
         let verdict = match (found.contacts.is_empty(), found.undecided.is_empty()) {
             (false, _) => "contact",

@@ -1,12 +1,12 @@
 //! Fixed point as a format of the tool.
 
-use super::{Format, in_angles};
-use pcr_certify::data::Angle;
+use super::{HostScalar, in_angles};
+use pcr_certify::raw::RawAngle;
 use pcr_fixed::{Q12, Q16, Q20, Turns};
 
 macro_rules! impl_format {
     ($t:ident, $name:literal) => {
-        impl Format for $t {
+        impl HostScalar for $t {
             const NAME: &'static str = $name;
             const HEADING_LIMIT: f64 = f64::INFINITY;
             const EPSILON: f64 = 0.0;
@@ -25,8 +25,8 @@ macro_rules! impl_format {
             fn radians(angle: Turns) -> f64 {
                 angle.to_radians()
             }
-            fn held_angle(angle: Turns) -> Angle {
-                Angle::Turns(f64::from(angle.to_bits()) / 4_294_967_296.0)
+            fn held_angle(angle: Turns) -> RawAngle {
+                RawAngle::Turns(f64::from(angle.to_bits()) / 4_294_967_296.0)
             }
         }
     };

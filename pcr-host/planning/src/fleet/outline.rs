@@ -1,6 +1,6 @@
 //! Outlines of agents in a number format, of which none is smaller than that in the scenario.
 
-use super::Format;
+use super::HostScalar;
 use pcr_core::{Outline, Vector};
 use pcr_formats::scenario::{Agent, PathSegment, TURN};
 
@@ -8,7 +8,7 @@ use pcr_formats::scenario::{Agent, PathSegment, TURN};
 pub(super) const CORNERS: usize = 16;
 
 /// The outline of an agent, if it is convex and the same on all of its path, which does not turn in place.
-pub(super) fn of<S: Format>(agent: &Agent) -> Option<Outline<S, CORNERS>> {
+pub(super) fn of<S: HostScalar>(agent: &Agent) -> Option<Outline<S, CORNERS>> {
     let footprint = agent.footprint.as_ref().filter(|_| agent.loads.is_empty() && !turns_in_place(agent))?;
     let size = footprint.polygon().iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
     let corners = footprint.convex(4.0 * S::STEP + 8.0 * S::EPSILON * size)?;
@@ -25,7 +25,7 @@ fn turns_in_place(agent: &Agent) -> bool {
 }
 
 /// The least number of the format, or the one after it, that is not smaller.
-fn rounded_up<S: Format>(value: f64) -> Option<S> {
+fn rounded_up<S: HostScalar>(value: f64) -> Option<S> {
     let above = S::from_f64(value * (1.0 + S::EPSILON) + S::STEP);
     [S::from_f64(value), above].into_iter().find(|number| number.to_f64() >= value)
 }

@@ -1,35 +1,35 @@
 //! How far a motion in a number format is from that in the scenario: the conversion loses digits.
 
-use super::{Fleet, Format, Refused, turn_in_place};
+use super::{Fleet, FormatRangeError, HostScalar, turn_in_place};
 use pcr_core::Motion;
 use pcr_formats::footprint::Footprint;
-use pcr_formats::scenario::{Agent, PathSegment, Placed, Scenario, TURN};
+use pcr_formats::scenario::{Agent, PathSegment, PlacedSegment, Scenario, TURN};
 use pcr_formats::warning::WarningCode;
 use std::f64::consts::{PI, TAU};
 
 /// What a format makes of a motion, at most.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Rounding {
+pub(crate) struct RoundingBounds {
     /// Distance of the disc from where the scenario has it at the same time \[m\].
     pub(crate) distance: f64,
     /// Difference of lengths along the path \[m\].
     pub(crate) length: f64,
 }
 
-impl Rounding {
+impl RoundingBounds {
     /// That of a motion of an agent.
     ///
     /// Where paths differ: points at the same share of a segment are as far apart as its starts, and along it by the difference
     /// of the headings times its length, and by that of the lengths. Where times differ: a difference of two motions is a
     /// parabola between two times at which one of them changes its acceleration.
-    pub(crate) fn of<S: Format>(agent: &Agent, motion: &Motion<'_, S>) -> Self {
+    pub(crate) fn of<S: HostScalar>(agent: &Agent, motion: &Motion<'_, S>) -> Self {
         let Self { distance, length } = Self::of_numbers(agent, motion);
         let digits = S::slack(motion.extent()).to_f64();
         Self { distance: distance + 2.0 * digits, length: length + digits }
     }
 
     /// The same of the numbers alone, without what sums of them lose.
-    fn of_numbers<S: Format>(agent: &Agent, motion: &Motion<'_, S>) -> Self {
+    fn of_numbers<S: HostScalar>(agent: &Agent, motion: &Motion<'_, S>) -> Self {
         let Self { distance, length } = of_path::<S>(agent);
         // On an arc corners of an outline go farther than its reference point.
         let curvatures = agent.path.iter().map(|segment| match *segment {
@@ -45,7 +45,7 @@ impl Rounding {
 const UNTOLD: f64 = 1e-3;
 
 /// Returns the warning of [`super::rounded`].
-pub(super) fn warning<S: Format>(scenario: &Scenario) -> Result<Option<String>, Refused> {
+pub(super) fn warning<S: HostScalar>(scenario: &Scenario) -> Result<Option<String>, FormatRangeError> {
     if S::NAME == f64::NAME {
         return Ok(None);
     }
@@ -55,11 +55,11 @@ pub(super) fn warning<S: Format>(scenario: &Scenario) -> Result<Option<String>, 
         .agents
         .iter()
         .zip(&motions)
-        .map(|(agent, motion)| (Rounding::of_numbers(agent, motion).distance, agent));
+        .map(|(agent, motion)| (RoundingBounds::of_numbers(agent, motion).distance, agent));
     let told: Vec<(f64, &Agent)> = distances.filter(|(distance, _)| *distance > UNTOLD).collect();
     let worst = told.iter().max_by(|(a, _), (b, _)| a.total_cmp(b));
     Ok(worst.map(|(distance, agent)| {
-        let (format, count, all, called) = (S::NAME, told.len(), motions.len(), agent.called());
+        let (format, count, all, called) = (S::NAME, told.len(), motions.len(), agent.display_name());
         WarningCode::NumberFormat.text(format_args!(
             "rounding to {format} moves {count} of {all} agents by more than 1 mm; agent {called} is up to {distance:.3} m from where \
              the file has it"
@@ -69,42 +69,43 @@ pub(super) fn warning<S: Format>(scenario: &Scenario) -> Result<Option<String>, 
 
 /// Largest distance of a point of the outline from the reference point \[m\]; 0 for a disc, which does not turn.
 fn spread(agent: &Agent) -> f64 {
-    agent.footprint.as_ref().map_or(0.0, Footprint::reach)
+    agent.footprint.as_ref().map_or(0.0, Footprint::circumscribed_radius)
 }
 
 /// The number that the format holds.
-fn held<S: Format>(value: f64) -> f64 {
+fn representable<S: HostScalar>(value: f64) -> f64 {
     S::from_f64(value).to_f64()
 }
 
 /// The angle that the format holds.
-fn held_angle<S: Format>(radians: f64) -> f64 {
+fn held_angle<S: HostScalar>(radians: f64) -> f64 {
     S::radians(S::angle(radians).expect("an agent that has a motion"))
 }
 
-fn of_path<S: Format>(agent: &Agent) -> Rounding {
+fn of_path<S: HostScalar>(agent: &Agent) -> RoundingBounds {
     let [x, y, heading] = agent.start;
-    let stands = |[x, y]: [f64; 2], heading| Placed { at: [x, y], heading, shape: PathSegment::Line { length: 0.0 } };
+    let stands =
+        |[x, y]: [f64; 2], heading| PlacedSegment { start: [x, y], heading, shape: PathSegment::Line { length: 0.0 } };
     let mut exact = stands([x, y], heading);
-    let mut rounded = stands([held::<S>(x), held::<S>(y)], held_angle::<S>(heading));
-    let (mut rounding, mut longer) = (Rounding { distance: 0.0, length: 0.0 }, 0.0_f64);
+    let mut rounded = stands([representable::<S>(x), representable::<S>(y)], held_angle::<S>(heading));
+    let (mut rounding, mut longer) = (RoundingBounds { distance: 0.0, length: 0.0 }, 0.0_f64);
     for &segment in &agent.path {
         let (from, to) = (exact.end(), rounded.end());
         let apart = (from[0] - to[0]).hypot(from[1] - to[1]);
         let turned = (exact.heading_at_end() - rounded.heading_at_end()).rem_euclid(TAU);
         let turned = if turned > PI { TAU - turned } else { turned };
-        let mut next = Placed { at: to, heading: rounded.heading_at_end(), shape: segment };
+        let mut next = PlacedSegment { start: to, heading: rounded.heading_at_end(), shape: segment };
         let (length, mut bent) = (segment.length(), 0.0);
         if let Some(sweep) = turn_in_place::<S>(&segment) {
             next.heading += held_angle::<S>(sweep);
             next.shape = PathSegment::Line { length: 0.0 };
         } else {
             let turns = segment.turns();
-            let kept = held::<S>(length / turns) * turns;
+            let kept = representable::<S>(length / turns) * turns;
             next.shape = match segment {
                 PathSegment::Line { .. } => PathSegment::Line { length: kept },
                 PathSegment::Arc { radius, sweep } => {
-                    let radius = held::<S>(radius);
+                    let radius = representable::<S>(radius);
                     let rounded = if radius > 0.0 { (kept / radius).copysign(sweep) } else { 0.0 };
                     bent = (rounded - sweep).abs();
                     PathSegment::Arc { radius, sweep: rounded }
@@ -116,7 +117,7 @@ fn of_path<S: Format>(agent: &Agent) -> Rounding {
         rounding.length = rounding.length.max(longer.abs());
         let way = apart + (length + spread(agent)) * (turned + bent) + differs.abs();
         rounding.distance = rounding.distance.max(way);
-        exact = Placed { at: from, heading: exact.heading_at_end(), shape: segment };
+        exact = PlacedSegment { start: from, heading: exact.heading_at_end(), shape: segment };
         rounded = next;
     }
     let (from, to) = (exact.end(), rounded.end());
@@ -125,12 +126,12 @@ fn of_path<S: Format>(agent: &Agent) -> Rounding {
 }
 
 /// Time, length, speed and acceleration from then on.
-type Knot = [f64; 4];
+type MotionKnot = [f64; 4];
 
-fn of_times<S: Format>(agent: &Agent, motion: &Motion<'_, S>) -> f64 {
+fn of_times<S: HostScalar>(agent: &Agent, motion: &Motion<'_, S>) -> f64 {
     let (mut speed, pieces) = agent.motion.pieces(agent.length());
     let (mut time, mut length) = (agent.t_start, 0.0);
-    let mut exact: Vec<Knot> = Vec::new();
+    let mut exact: Vec<MotionKnot> = Vec::new();
     for (duration, acceleration) in pieces {
         exact.push([time, length, speed, acceleration]);
         time += duration;
@@ -139,7 +140,7 @@ fn of_times<S: Format>(agent: &Agent, motion: &Motion<'_, S>) -> f64 {
     }
     exact.push([time, length, 0.0, 0.0]);
     let start = motion.time().lo.to_f64();
-    let mut rounded: Vec<Knot> = Vec::new();
+    let mut rounded: Vec<MotionKnot> = Vec::new();
     for phase in motion.profile().phases() {
         let [before, _] = phase.speed().map(S::to_f64);
         let (time, length) = (phase.time().lo.to_f64(), phase.length().lo.to_f64());
@@ -160,7 +161,7 @@ fn of_times<S: Format>(agent: &Agent, motion: &Motion<'_, S>) -> f64 {
 }
 
 /// Length and acceleration at a time by the piece that holds another one.
-fn at(knots: &[Knot], time: f64, within: f64) -> [f64; 2] {
+fn at(knots: &[MotionKnot], time: f64, within: f64) -> [f64; 2] {
     match knots.partition_point(|knot| knot[0] <= within).checked_sub(1).and_then(|place| knots.get(place)) {
         None => [0.0, 0.0],
         Some(&[from, length, speed, acceleration]) => {

@@ -1,6 +1,6 @@
 //! Converts the speed profile of a scenario to phases of the core.
 
-use super::{Format, derived, number};
+use super::{HostScalar, derived, number};
 use pcr_core::Phase;
 use pcr_formats::scenario::speed_after;
 
@@ -12,7 +12,7 @@ const ROUNDS: usize = 3;
 const SHARE: f64 = 0.125;
 
 /// Piece of the profile (from 0) where there is one, and what is wrong.
-type Fault = (Option<usize>, String);
+type PhaseFault = (Option<usize>, String);
 
 /// The phases of `pieces` (durations \[s\] and accelerations \[m/s²\]) from speed `v0` \[m/s\].
 ///
@@ -22,7 +22,7 @@ type Fault = (Option<usize>, String);
 ///
 /// # Errors
 /// The piece (from 0), if it is one, and what is wrong: a number that does not fit the format.
-pub fn phases<S: Format>(v0: f64, pieces: &[(f64, f64)], length: S) -> Result<Vec<Phase<S>>, Fault> {
+pub fn phases<S: HostScalar>(v0: f64, pieces: &[(f64, f64)], length: S) -> Result<Vec<Phase<S>>, PhaseFault> {
     let targets = targets(v0, pieces);
     let mean = |k: usize| 0.5 * (targets.get(k).copied().unwrap_or(v0) + targets.get(k + 1).copied().unwrap_or(0.0));
     let way = |k: usize| pieces.get(k).map_or(0.0, |(duration, _)| duration * mean(k));
@@ -66,7 +66,12 @@ fn targets(v0: f64, pieces: &[(f64, f64)]) -> Vec<f64> {
 
 /// The phase that follows `last` from the speed `before` to the speed `after`, and the speed that it reaches. A phase that the format
 /// takes as one of no duration reaches none.
-fn phase<S: Format>(last: Option<&Phase<S>>, before: S, after: f64, duration: f64) -> Result<(Phase<S>, S), String> {
+fn phase<S: HostScalar>(
+    last: Option<&Phase<S>>,
+    before: S,
+    after: f64,
+    duration: f64,
+) -> Result<(Phase<S>, S), String> {
     // A speed that the format takes as 0 is none, unless a last digit of a length is travelled with it.
     let stands = S::from_f64(after) == S::ZERO && after * duration <= S::slack(S::ZERO).to_f64();
     let after = if stands { S::ZERO } else { number("speed", after)? };

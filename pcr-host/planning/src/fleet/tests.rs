@@ -1,7 +1,7 @@
 //! Tests of what a number format refuses, and that the conversion to it loses nothing else.
 
 use super::*;
-use pcr_core::{Mismatch, first_conflict};
+use pcr_core::{MismatchError, first_conflict};
 use pcr_fixed::{Q12, Q16, Q20};
 use serde_json::{Value, json};
 
@@ -89,7 +89,7 @@ fn stop_and_go(cycles: usize) -> (Vec<Value>, f64) {
     (pieces, length)
 }
 
-fn schedule<S: Format>(cycles: usize) -> (Vec<Phase<S>>, f64, f64) {
+fn schedule<S: HostScalar>(cycles: usize) -> (Vec<Phase<S>>, f64, f64) {
     let (pieces, length) = stop_and_go(cycles);
     let mut agent = agent();
     agent["path"] = json!([{ "kind": "line", "length": length }]);
@@ -100,7 +100,7 @@ fn schedule<S: Format>(cycles: usize) -> (Vec<Phase<S>>, f64, f64) {
 }
 
 #[track_caller]
-fn stops_are_stops<S: Format>(phases: &[Phase<S>]) {
+fn stops_are_stops<S: HostScalar>(phases: &[Phase<S>]) {
     for stop in phases.iter().skip(3).step_by(4) {
         assert!(stop.length().lo == stop.length().hi, "moves while it waits: {stop:?}");
     }
@@ -149,7 +149,7 @@ fn a_pair_of_too_many_pieces_is_an_error_and_does_not_grow_for_ever() {
     still["path"] = json!([]);
     let scenario = Scenario::from_value(&json!({ "agents": [still, spin(1), spin(2)] })).unwrap();
     let fleet = Fleet::<f64>::new(&scenario).unwrap();
-    assert_eq!(build_ecm(&fleet.motions()).unwrap_err(), Full::Pair([1, 2]));
+    assert_eq!(build_ecm(&fleet.motions()).unwrap_err(), CapacityError::Pair([1, 2]));
 }
 
 #[test]
@@ -174,9 +174,9 @@ fn crossing(heading: f64) -> Scenario {
 /// The number of conflicts and the verdict of the checker, or why there is neither.
 type Answers = Result<(usize, &'static str), String>;
 
-fn answers<S: Format>(scenario: &Scenario) -> Answers {
-    let found = crate::check::Verdict::of::<S>(scenario, false).map_err(|failure| failure.to_string())?;
-    let proof = crate::certify::Proof::of::<S>(scenario).map_err(|refused| refused.to_string())?;
+fn answers<S: HostScalar>(scenario: &Scenario) -> Answers {
+    let found = crate::check::CheckReport::compute::<S>(scenario, false).map_err(|failure| failure.to_string())?;
+    let proof = crate::certify::MotionCertificate::prove::<S>(scenario).map_err(|refused| refused.to_string())?;
     // The checker takes as many turns.
     assert_eq!(proof.error, None);
     Ok((found.conflicts.len(), proof.verdict))
@@ -219,17 +219,17 @@ fn headings_along_a_path_are_refused_with_their_own_limit() {
 
 #[test]
 fn the_limits_of_headings_are_those_of_the_core() {
-    fn of_core<S: Format>(heading: impl Fn(f64) -> S::Angle) {
+    fn of_core<S: HostScalar>(heading: impl Fn(f64) -> S::Angle) {
         let stands = |heading| Segment::standing(Pose { position: Point::new(S::ZERO, S::ZERO), heading }).map(|_| ());
         assert_eq!(stands(heading(S::HEADING_LIMIT)), Ok(()), "{}", S::NAME);
-        assert_eq!(stands(heading(1.001 * S::HEADING_LIMIT)), Err(Invalid::OutOfRange("heading")), "{}", S::NAME);
+        assert_eq!(stands(heading(1.001 * S::HEADING_LIMIT)), Err(InvalidInput::OutOfRange("heading")), "{}", S::NAME);
     }
     of_core::<f64>(Radians);
     of_core::<f32>(|heading| Radians(heading as f32));
 }
 
 /// Two agents that pass one another on lanes of 20 m, at 1 m/s.
-fn lanes<S: Format>(apart: f64) -> Fleet<S> {
+fn lanes<S: HostScalar>(apart: f64) -> Fleet<S> {
     let lane = |id: u64, x: f64, y: f64, heading: f64| {
         json!({
             "id": id, "radius": 0.25, "start": { "x": x, "y": y, "heading": heading },
@@ -242,11 +242,11 @@ fn lanes<S: Format>(apart: f64) -> Fleet<S> {
 
 /// A table holds for other profiles of its agents as long as their lag is not larger than what its regions were computed for. It said that
 /// agents were free of one another whose regions it had not.
-fn holds_for_its_lag<S: Format>(other: &Profile<S, 3>, may_wait: bool) {
+fn holds_for_its_lag<S: HostScalar>(other: &Profile<S, 3>, may_wait: bool) {
     let fleet = lanes::<S>(0.4);
     let mut motions = fleet.motions();
     let table = build_ecm(&motions).expect("memory");
-    let refused = Some(Mismatch::OtherFleet);
+    let refused = Some(MismatchError::OtherFleet);
     let asked = |table: &HostEcm<S>, fleet: &[Motion<'_, S>]| {
         [
             table.row(fleet, 0).err(),
@@ -308,7 +308,7 @@ fn a_table_is_not_that_of_motions_with_a_longer_wait() {
 
 #[test]
 fn a_table_is_not_that_of_motions_that_miss_the_end_by_more() {
-    fn misses<S: Format>(by: f64) {
+    fn misses<S: HostScalar>(by: f64) {
         let [one, duration, none] = [1.0, 20.0 + by, 0.0].map(S::from_f64);
         holds_for_its_lag::<S>(&Profile::from_pieces(one, [(duration, none)]).expect("a profile"), false);
     }
@@ -326,5 +326,5 @@ fn passing_orders_are_not_those_of_motions_with_another_lag() {
     assert_eq!(orders.row(&motions, 0).map(drop), Ok(()));
     let longer = Profile::<f64, 1>::from_pieces(1.0, [(20.000_015, 0.0)]).expect("a profile");
     motions[1] = motions[1].with_profile(longer.as_profile(), 0.0).expect("its path");
-    assert_eq!(orders.row(&motions, 0).map(drop), Err(Mismatch::OtherFleet));
+    assert_eq!(orders.row(&motions, 0).map(drop), Err(MismatchError::OtherFleet));
 }

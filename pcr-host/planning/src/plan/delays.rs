@@ -13,28 +13,28 @@
 //! leave     the fewest agents to leave out               (internal)
 //! ```
 
-mod feasible;
-mod improve;
-mod insert;
-mod leave;
-mod lowest;
-mod net;
-mod precedence;
+mod best_first;
+mod branch_and_bound;
+mod difference_network;
+mod feasibility;
+mod large_neighbourhood;
+mod leave_out;
+mod priority_order;
 mod problem;
-mod search;
+mod sequential;
 #[cfg(test)]
 mod tests;
 
-use leave::Left;
-pub(crate) use precedence::respecting;
+use branch_and_bound::{BranchAndBound, SearchLimits};
+use leave_out::LeaveOutResult;
+pub(crate) use priority_order::respecting;
 pub use problem::Objective;
-pub(crate) use problem::{NEVER, Pair, Problem, Ticks, earliest, slack};
-use search::{Search, Stop};
+pub(crate) use problem::{DelayProblem, ForbiddenPairDelays, NEVER, TickScale, earliest, rounding_cost};
 use std::time::{Duration, Instant};
 
 /// How long to search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Effort {
+pub struct DelaySearchOptions {
     /// Whether to search until the delays are proved to be the best. Otherwise the numbers of nodes and rounds are fixed, so the
     /// result is the same in every run.
     pub prove: bool,
@@ -64,7 +64,7 @@ const FEW: u64 = 20;
 
 /// The result of a search.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Outcome {
+pub(crate) struct DelayResult {
     /// Delays of the agents that are not left out \[ticks\]; `None` if the search was stopped before it found any.
     pub(crate) delays: Option<Vec<Option<i64>>>,
     /// Lower bound of the cost of the agents that are not left out \[ticks\], with an allowance for rounding.
@@ -79,23 +79,28 @@ pub(crate) struct Outcome {
 
 /// The best delays. If not all agents can have delays: the conflicts, and with `leave_out` the best delays of the agents that stay.
 /// Where `known` has delays for all agents of a part, the result is at least as good.
-pub(crate) fn best(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort, leave_out: bool) -> Outcome {
+pub(crate) fn best(
+    problem: &DelayProblem,
+    known: &[Vec<Option<i64>>],
+    effort: DelaySearchOptions,
+    leave_out: bool,
+) -> DelayResult {
     let begin = Instant::now();
     let after = |time: Duration| effort.time.is_some() && begin.elapsed() >= time;
     let time = effort.time.unwrap_or_default();
     let mut of_all = known.iter().filter_map(|delays| delays.iter().copied().collect::<Option<Vec<i64>>>());
     let left = match of_all.find(|delays| problem.allows(delays)) {
-        Some(delays) => Left::nobody(delays),
+        Some(delays) => LeaveOutResult::nobody(delays),
         None => {
             let nodes = DECIDING * FEW / FEW.max(problem.len() as u64);
             // The other half of the time is for the delays of the agents that stay.
             let clock = || after(time / 2);
-            leave::left(problem, &alone(problem), Stop { nodes, clock: &clock }, leave_out)
+            leave_out::agents_to_leave_out(problem, &alone(problem), SearchLimits { nodes, clock: &clock }, leave_out)
         }
     };
     let staying: Vec<usize> = (0..problem.len()).filter(|&agent| left.delays[agent].is_some()).collect();
     if !leave_out && staying.len() < problem.len() {
-        return Outcome { delays: None, bound: 0, proved: false, conflicts: left.conflicts, fewest: left.fewest };
+        return DelayResult { delays: None, bound: 0, proved: false, conflicts: left.conflicts, fewest: left.fewest };
     }
     let part = problem.of(&staying);
     let of_part = |delays: &Vec<Option<i64>>| staying.iter().map(|&agent| delays[agent]).collect::<Vec<_>>();
@@ -103,7 +108,7 @@ pub(crate) fn best(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort
     let rest = solved(&part, &known, effort, &|| after(time));
     let mut delays = vec![None; problem.len()];
     staying.iter().zip(rest.delays).for_each(|(&agent, delay)| delays[agent] = Some(delay));
-    Outcome {
+    DelayResult {
         delays: Some(delays),
         bound: rest.bound,
         proved: rest.proved,
@@ -114,32 +119,39 @@ pub(crate) fn best(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort
 
 /// Delays of all agents, or of as many as possible. They are not the best ones, but for dozens of agents they take only milliseconds.
 /// `with` has for each agent the agents that have to be left out with it, itself included.
-pub(crate) fn some(problem: &Problem, with: &[Vec<usize>]) -> Vec<Option<i64>> {
+pub(crate) fn some(problem: &DelayProblem, with: &[Vec<usize>]) -> Vec<Option<i64>> {
     let clock = || false;
-    let found = insert::inserted(problem);
+    let found = sequential::inserted(problem);
     match found.iter().copied().collect::<Option<Vec<i64>>>() {
-        Some(all) => improve::improved(problem, all, SOME, &clock).into_iter().map(Some).collect(),
-        None => leave::left(problem, with, Stop { nodes: NODES, clock: &clock }, true).delays,
+        Some(all) => large_neighbourhood::improved(problem, all, SOME, &clock).into_iter().map(Some).collect(),
+        None => {
+            leave_out::agents_to_leave_out(problem, with, SearchLimits { nodes: NODES, clock: &clock }, true).delays
+        }
     }
 }
 
 /// The value of `with` if each agent can be left out alone.
-fn alone(problem: &Problem) -> Vec<Vec<usize>> {
+fn alone(problem: &DelayProblem) -> Vec<Vec<usize>> {
     (0..problem.len()).map(|agent| vec![agent]).collect()
 }
 
-struct Solved {
+struct DelaySolution {
     delays: Vec<i64>,
     bound: i128,
     proved: bool,
 }
 
 /// Solves the independent parts of the fleet, which forbid one another no delays, one by one, beginning with known delays.
-fn solved(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort, clock: &dyn Fn() -> bool) -> Solved {
+fn solved(
+    problem: &DelayProblem,
+    known: &[Vec<Option<i64>>],
+    effort: DelaySearchOptions,
+    clock: &dyn Fn() -> bool,
+) -> DelaySolution {
     let mut delays = vec![0; problem.len()];
     // The last arrival may be before 0.
     let (mut bound, mut proved): (Option<i128>, _) = (None, true);
-    for (agents, part) in problem.apart() {
+    for (agents, part) in problem.independent_problems() {
         let known = known.iter().filter_map(|known| agents.iter().map(|&agent| known[agent]).collect());
         let found = connected(&part, known, effort, clock);
         agents.iter().zip(found.delays).for_each(|(&agent, delay)| delays[agent] = delay);
@@ -152,25 +164,25 @@ fn solved(problem: &Problem, known: &[Vec<Option<i64>>], effort: Effort, clock: 
     let bound = bound.unwrap_or(0);
     // A part that is not proved does not matter if the last arrival is in another one.
     proved |= problem.objective == Objective::Makespan && problem.cost(&delays) <= bound;
-    Solved { delays, bound: bound - slack(problem), proved }
+    DelaySolution { delays, bound: bound - rounding_cost(problem), proved }
 }
 
 /// Search and improvement in turn, with more and more effort.
 fn connected(
-    problem: &Problem,
+    problem: &DelayProblem,
     known: impl Iterator<Item = Vec<i64>>,
-    effort: Effort,
+    effort: DelaySearchOptions,
     clock: &dyn Fn() -> bool,
-) -> Solved {
-    let inserted = insert::inserted(problem).into_iter().collect::<Option<Vec<i64>>>();
+) -> DelaySolution {
+    let inserted = sequential::inserted(problem).into_iter().collect::<Option<Vec<i64>>>();
     let known = known.filter(|delays| problem.allows(delays)).chain(inserted);
     let mut delays = known.min_by_key(|delays| problem.cost(delays)).expect("delays that were found before");
     let mut bound = problem.cost(&vec![0; problem.len()]);
-    if problem.pairs.len() > SEARCHED && effort == Effort::default() {
+    if problem.pairs.len() > SEARCHED && effort == DelaySearchOptions::default() {
         // The bound of the root node, without a search.
-        let root = Search::new(problem, Stop { nodes: 0, clock }).root();
+        let root = BranchAndBound::new(problem, SearchLimits { nodes: 0, clock }).root();
         bound = root.map_or(bound, |root| bound.max(problem.cost(&root)));
-        return Solved { proved: bound >= problem.cost(&delays), delays, bound };
+        return DelaySolution { proved: bound >= problem.cost(&delays), delays, bound };
     }
     let share = |effort_of_all: u64| match effort.prove {
         true => effort_of_all,
@@ -178,17 +190,17 @@ fn connected(
     };
     let (mut search, mut nodes, mut rounds) = (1, NODES, ROUNDS as u64);
     loop {
-        let next = Search::new(problem, Stop { nodes: share(nodes), clock });
+        let next = BranchAndBound::new(problem, SearchLimits { nodes: share(nodes), clock });
         let limit = problem.cost(&delays);
         // Depth first at first, to find delays; then the least bound first, to raise the bound, unless that takes too much memory.
-        let found = if search == 1 || nodes > lowest::MOST { next.run([], limit) } else { next.lowest(limit) };
+        let found = if search == 1 || nodes > best_first::MOST { next.run([], limit) } else { next.lowest(limit) };
         bound = bound.max(found.bound);
         delays = found.delays.unwrap_or(delays);
         let proved = found.complete || bound >= problem.cost(&delays);
         if proved || clock() || (!effort.prove && search == SEARCHES) {
-            return Solved { bound: if proved { problem.cost(&delays) } else { bound }, delays, proved };
+            return DelaySolution { bound: if proved { problem.cost(&delays) } else { bound }, delays, proved };
         }
-        delays = improve::improved(problem, delays, share(rounds) as usize, clock);
+        delays = large_neighbourhood::improved(problem, delays, share(rounds) as usize, clock);
         nodes = nodes.saturating_mul(FACTOR.into());
         rounds = rounds.saturating_mul(FACTOR.into());
         search += 1;

@@ -1,15 +1,17 @@
 //! One plan of a fleet, from delays or speeds to the printed answer; it is checked and proved.
 
-use super::circle::CIRCULAR_WAIT;
+use super::circular_wait::CIRCULAR_WAIT;
 use super::delays::Objective;
-use super::starts::Known;
-use super::task::Planner;
-use super::{Answer, Costs, Method, Plan, Planned, Priority, Unsolved, bound, sides, speeds};
-use crate::certify::Proof;
-use crate::check::Verdict;
-use crate::cores;
-use crate::failure::Failure;
-use pcr_core::{Drive, Motion, Unsolved as Never};
+use super::plan_context::Planner;
+use super::starts::PartialDelayPlan;
+use super::{
+    PlanAnswer, PlanCosts, PlanEntry, PlanMethod, PlanReport, PriorityRule, UnplannedAgents, lower_bound, sides, speeds,
+};
+use crate::certify::MotionCertificate;
+use crate::check::CheckReport;
+use crate::failure::ComputationError;
+use crate::parallel;
+use pcr_core::{Motion, PlanError as Never, SpeedPlanLimits};
 use pcr_formats::scenario::{Labels, MotionSpec, Scenario};
 use pcr_formats::warning::WarningCode;
 
@@ -22,20 +24,23 @@ const ROUNDED: f64 = 1e-12;
 
 impl<'m> Planner<'_, 'm> {
     /// A plan without agents.
-    pub(super) fn none(&self) -> Plan {
-        Plan {
-            labels: Labels::of(self.scenario),
+    pub(super) fn none(&self) -> PlanReport {
+        PlanReport {
+            labels: Labels::from_scenario(self.scenario),
             warnings: self.warnings(),
-            ..Plan::none(&self.scenario.name, self.request.method, self.request.objective)
+            ..PlanReport::none(&self.scenario.name, self.request.method, self.request.objective)
         }
     }
 
     /// Warnings about input that was changed or left out, and about requests that were planned differently.
     fn warnings(&self) -> Vec<String> {
         let mut warnings = self.scenario.warnings.clone();
-        if self.request.method == Method::Speed {
-            let keeps =
-                self.motions.iter().zip(&self.scenario.agents).filter(|(motion, _)| Drive::of(motion).is_none());
+        if self.request.method == PlanMethod::Speed {
+            let keeps = self
+                .motions
+                .iter()
+                .zip(&self.scenario.agents)
+                .filter(|(motion, _)| SpeedPlanLimits::of(motion).is_none());
             warnings.extend(keeps.map(|(_, agent)| {
                 let why = if agent.turns_in_place() {
                     "it turns in place"
@@ -50,25 +55,28 @@ impl<'m> Planner<'_, 'm> {
     }
 
     /// A plan by the method; `known` delays, if any, are for all agents.
-    pub(super) fn plan(&self, known: Option<Known>) -> Result<Answer, Failure> {
+    pub(super) fn plan(&self, known: Option<PartialDelayPlan>) -> Result<PlanAnswer, ComputationError> {
         let later = known.as_ref().and_then(|known| {
             let delayed = self.motions.iter().zip(&known.delays).map(|(motion, &delay)| motion.delayed(delay).ok());
             delayed.collect::<Option<Vec<_>>>()
         });
         match self.request.method {
-            Method::Delay => {
+            PlanMethod::Delay => {
                 let Some(planned) = later else {
                     let why = "a start is out of range";
-                    return Ok((Plan { unsolved: vec![Unsolved::nowhere(Vec::new(), why)], ..self.none() }, None));
+                    return Ok((
+                        PlanReport { unsolved: vec![UnplannedAgents::nowhere(Vec::new(), why)], ..self.none() },
+                        None,
+                    ));
                 };
                 self.answer(&planned, known)
             }
-            Method::Speed => {
+            PlanMethod::Speed => {
                 let mut pool = speeds::pool(self.motions.len());
                 let known = later.zip(known.map(|known| known.order));
-                let told = |(planned, order): speeds::Ordered<'_>| {
+                let told = |(planned, order): speeds::PlanWithOrder<'_>| {
                     let (mut plan, solved) = self.answer(&planned, None)?;
-                    if self.request.priority != Priority::Best && solved.is_some() {
+                    if self.request.priority != PriorityRule::Best && solved.is_some() {
                         plan.order = order.into_iter().map(|agent| self.id(agent)).collect();
                     }
                     Ok((plan, solved))
@@ -82,20 +90,19 @@ impl<'m> Planner<'_, 'm> {
                             None => Ok(answer),
                         }
                     }
-                    Err(never) => Ok((Plan { unsolved: self.unsolved(never), ..self.none() }, None)),
+                    Err(never) => Ok((PlanReport { unsolved: self.unsolved(never), ..self.none() }, None)),
                 }
             }
         }
     }
 
     /// Lower bound of all plans by the method \[s\].
-    fn bound(&self, known: Option<&Known>) -> f64 {
+    fn bound(&self, known: Option<&PartialDelayPlan>) -> f64 {
         let least = |motion: &Motion<'_, f64>| match self.request.method {
-            Method::Delay => motion.time().length(),
+            PlanMethod::Delay => motion.time().length(),
             // An agent that may not be faster than its own motion takes at least as long.
-            Method::Speed => {
-                Drive::of(motion).map_or(motion.time().length(), |drive| bound::fastest(drive, motion.path().length()))
-            }
+            PlanMethod::Speed => SpeedPlanLimits::of(motion)
+                .map_or(motion.time().length(), |drive| lower_bound::fastest(drive, motion.path().length())),
         };
         let alone = match self.request.objective {
             // An empty sum is -0.
@@ -114,35 +121,40 @@ impl<'m> Planner<'_, 'm> {
     }
 
     /// Motions as a plan. A plan that the check refuses, or that has a contact, is not returned.
-    fn answer(&self, planned: &[Motion<'_, f64>], known: Option<Known>) -> Result<Answer, Failure> {
+    fn answer(
+        &self,
+        planned: &[Motion<'_, f64>],
+        known: Option<PartialDelayPlan>,
+    ) -> Result<PlanAnswer, ComputationError> {
         let mut plan = self.none();
         // As it is read again: ramps shorter than a digit of the time are lost in phases.
         let solved = match Scenario::from_json(&self.solved(planned).to_json()) {
             Ok(solved) => solved,
             Err(why) => {
                 let why = format!("the plan cannot be written as phases: {why}");
-                plan.unsolved.push(Unsolved::nowhere(Vec::new(), why));
+                plan.unsolved.push(UnplannedAgents::nowhere(Vec::new(), why));
                 return Ok((plan, None));
             }
         };
-        let verdict = Verdict::of::<f64>(&solved, false)?;
+        let verdict = CheckReport::compute::<f64>(&solved, false)?;
         if let Some(conflict) = verdict.conflicts.first() {
             let why = format!("the plan has a conflict at {} s", conflict.t[0]);
-            plan.unsolved.push(Unsolved::nowhere(vec![conflict.i, conflict.j], why));
+            plan.unsolved.push(UnplannedAgents::nowhere(vec![conflict.i, conflict.j], why));
             return Ok((plan, None));
         }
         // Agents with margins that only touch are far enough apart.
         if self.scenario.agents.iter().any(|agent| agent.margin > 0.0)
-            && let Some(conflict) = Verdict::of_margins::<f64>(&solved)?.conflicts.iter().find(|found| !found.touching)
+            && let Some(conflict) =
+                CheckReport::of_margins::<f64>(&solved)?.conflicts.iter().find(|found| !found.touching)
         {
             let why = format!("margins of the plan overlap at {} s", conflict.t[0]);
-            plan.unsolved.push(Unsolved::nowhere(vec![conflict.i, conflict.j], why));
+            plan.unsolved.push(UnplannedAgents::nowhere(vec![conflict.i, conflict.j], why));
             return Ok((plan, None));
         }
-        let proof = Proof::of::<f64>(&solved)?;
+        let proof = MotionCertificate::prove::<f64>(&solved)?;
         if let Some(contact) = proof.contacts.first() {
             let why = format!("the plan has a contact at {} s", contact.t);
-            plan.unsolved.push(Unsolved::nowhere(vec![contact.i, contact.j], why));
+            plan.unsolved.push(UnplannedAgents::nowhere(vec![contact.i, contact.j], why));
             plan.certificate = Some(proof);
             return Ok((plan, None));
         }
@@ -151,7 +163,7 @@ impl<'m> Planner<'_, 'm> {
         let [mut makespan, mut sum_of_costs] = [0.0f64; 2];
         for (agent, (motion, planned)) in self.motions.iter().zip(planned).enumerate() {
             let [start, end] = [planned.time().lo, planned.time().hi];
-            plan.agents.push(Planned { id: self.id(agent), delay: start - motion.time().lo, t_end: end });
+            plan.agents.push(PlanEntry { id: self.id(agent), delay: start - motion.time().lo, t_end: end });
             makespan = makespan.max(end - begin);
             sum_of_costs += end - motion.time().lo;
         }
@@ -163,22 +175,26 @@ impl<'m> Planner<'_, 'm> {
         plan.order = order.into_iter().map(|agent| self.id(agent)).collect();
         let cost = self.cost(planned);
         let bound = self.bound(known.as_ref());
-        debug_assert!(bound <= cost + NEAR + bound::ROUNDING * cost, "a bound of {bound} for a plan of {cost}");
+        debug_assert!(bound <= cost + NEAR + lower_bound::ROUNDING * cost, "a bound of {bound} for a plan of {cost}");
         // Sums are rounded.
         let lower_bound = bound.min(cost);
         let difference = cost - lower_bound;
         let gap = if cost > 0.0 { difference / cost } else { 0.0 };
         // For a long plan a small share may be seconds.
-        let proved = known.is_some_and(|known| known.proved) || difference <= NEAR.min(2.0 * bound::ROUNDING * cost);
-        plan.costs = Some(Costs { makespan, sum_of_costs, lower_bound, gap, proved });
+        let proved =
+            known.is_some_and(|known| known.proved) || difference <= NEAR.min(2.0 * lower_bound::ROUNDING * cost);
+        plan.costs = Some(PlanCosts { makespan, sum_of_costs, lower_bound, gap, proved });
         Ok((plan, Some(solved)))
     }
 
-    fn unsolved(&self, never: Never) -> Vec<Unsolved> {
+    fn unsolved(&self, never: Never) -> Vec<UnplannedAgents> {
         let ids = |agents: [usize; 2]| agents.map(|agent| self.id(agent));
         let mut unsolved = Vec::new();
         if let Some(circle) = self.circle() {
-            unsolved.push(Unsolved::nowhere(circle.into_iter().map(|agent| self.id(agent)).collect(), CIRCULAR_WAIT));
+            unsolved.push(UnplannedAgents::nowhere(
+                circle.into_iter().map(|agent| self.id(agent)).collect(),
+                CIRCULAR_WAIT,
+            ));
         }
         let certain = match never {
             Never::Starts(agents) | Never::Ends(agents) | Never::Always(agents) => Some(agents),
@@ -191,27 +207,27 @@ impl<'m> Planner<'_, 'm> {
             Err(failure) => (Vec::from_iter(certain), Some(format!("other pairs were not looked for: {failure}"))),
         };
         let is_certain = !pairs.is_empty();
-        let of_pair = |pair: usize| Unsolved::of(self.scenario, ids(pairs[pair]), true);
-        unsolved.extend(cores::made(0..pairs.len(), &of_pair));
+        let of_pair = |pair: usize| UnplannedAgents::of(self.scenario, ids(pairs[pair]), true);
+        unsolved.extend(parallel::map_parallel(0..pairs.len(), &of_pair));
         if !is_certain {
             unsolved.push(match never {
-                Never::Priorities(agents) => Unsolved::of(self.scenario, ids(agents), false),
+                Never::Priorities(agents) => UnplannedAgents::of(self.scenario, ids(agents), false),
                 Never::Overlap(agents) => {
-                    Unsolved::nowhere(ids(agents).to_vec(), "they overlap by the plan that was found")
+                    UnplannedAgents::nowhere(ids(agents).to_vec(), "they overlap by the plan that was found")
                 }
                 Never::Full(agent) => {
-                    Unsolved::nowhere(vec![self.id(agent)], "its plan takes too many profiles or phases")
+                    UnplannedAgents::nowhere(vec![self.id(agent)], "its plan takes too many profiles or phases")
                 }
-                Never::Invalid { agent, reason } => Unsolved::nowhere(vec![self.id(agent)], reason.to_string()),
-                other => Unsolved::nowhere(Vec::new(), other.to_string()),
+                Never::Invalid { agent, reason } => UnplannedAgents::nowhere(vec![self.id(agent)], reason.to_string()),
+                other => UnplannedAgents::nowhere(Vec::new(), other.to_string()),
             });
         }
-        unsolved.extend(unknown.map(|why| Unsolved::nowhere(Vec::new(), why)));
+        unsolved.extend(unknown.map(|why| UnplannedAgents::nowhere(Vec::new(), why)));
         unsolved
     }
 
     /// All pairs that meet however they move.
-    fn never(&self) -> Result<Vec<[usize; 2]>, Failure> {
+    fn never(&self) -> Result<Vec<[usize; 2]>, ComputationError> {
         let ecm = self.ecm()?;
         let regions = ecm.regions(self.motions).expect("the table of the fleet");
         let pairs = regions.filter(|region| region.ego() > region.other() && sides(region) == [true; 2]);

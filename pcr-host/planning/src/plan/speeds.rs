@@ -3,11 +3,11 @@
 
 mod branching;
 
-use super::Priority;
-use super::task::Planner;
+use super::PriorityRule;
+use super::plan_context::Planner;
 use crate::fleet::HostEcm;
 use pcr_core::{
-    Drive, Motion, Profile, RegionRef, SpeedPlan, Station, Unsolved as Never, earliest_start, plan_speed,
+    Motion, PlanError as Never, Profile, RegionRef, SearchNode, SpeedPlan, SpeedPlanLimits, earliest_start, plan_speed,
     plan_speed_below, plan_speeds,
 };
 
@@ -15,10 +15,10 @@ use pcr_core::{
 const PHASES: usize = 128;
 
 /// A planned profile.
-pub(super) type Speeds = Profile<f64, PHASES>;
+pub(super) type HostSpeedProfile = Profile<f64, PHASES>;
 
 /// The regions that an agent avoids.
-type Regions<'r, 'a> = &'r [RegionRef<'a, f64>];
+type AvoidedRegions<'r, 'a> = &'r [RegionRef<'a, f64>];
 
 /// Number of stations on a path: 256 cells.
 const STATIONS: usize = 257;
@@ -34,45 +34,45 @@ const AGAIN: usize = 4;
 const SOONER: f64 = 1e-6;
 
 /// Storage for the profiles of all attempts.
-pub(super) fn pool(agents: usize) -> Vec<Speeds> {
+pub(super) fn pool(agents: usize) -> Vec<HostSpeedProfile> {
     vec![Profile::standing(); (PROFILES * agents).min(MOST).max(LEAST * agents)]
 }
 
 /// Motions, and the agents by the priority with which they were planned; it counts only if an order was asked for.
-pub(super) type Ordered<'m> = (Vec<Motion<'m, f64>>, Vec<usize>);
+pub(super) type PlanWithOrder<'m> = (Vec<Motion<'m, f64>>, Vec<usize>);
 
 /// The best motions so far, or why the orders that were tried gave none.
-type Best<'m> = Result<Ordered<'m>, Option<Never>>;
+type BestPlan<'m> = Result<PlanWithOrder<'m>, Option<Never>>;
 
-type Room<'m> = std::slice::IterMut<'m, Speeds>;
+type ProfileBuffers<'m> = std::slice::IterMut<'m, HostSpeedProfile>;
 
 /// The best motions found in these orders, beginning with known ones, and their order.
 pub(super) fn plan<'m>(
     planner: &Planner<'_, 'm>,
     ecm: &HostEcm<f64>,
     mut orders: Vec<Vec<usize>>,
-    known: Option<Ordered<'m>>,
-    pool: &'m mut [Speeds],
-) -> Result<Ordered<'m>, Never> {
+    known: Option<PlanWithOrder<'m>>,
+    pool: &'m mut [HostSpeedProfile],
+) -> Result<PlanWithOrder<'m>, Never> {
     // A part of the storage is kept for the last step.
     let (kept_back, pool) = pool.split_at_mut(AGAIN * planner.motions.len());
     let (mut room, mut last) = (pool.iter_mut(), kept_back.iter_mut());
-    let mut stations = vec![Station::EMPTY; STATIONS];
+    let mut stations = vec![SearchNode::EMPTY; STATIONS];
     let by_start = |plan: &[Motion<'_, f64>]| {
         let mut order: Vec<usize> = (0..plan.len()).collect();
         order.sort_by(|&a, &b| plan[a].time().lo.total_cmp(&plan[b].time().lo));
         order
     };
-    if planner.request.priority == Priority::Best {
+    if planner.request.priority == PriorityRule::Best {
         orders.extend(known.as_ref().map(|(plan, _)| by_start(plan)));
     }
     // No reason as long as nothing has been tried.
-    let mut best: Best<'m> = known.ok_or(None);
+    let mut best: BestPlan<'m> = known.ok_or(None);
     let mut kept = Vec::new();
     for order in orders {
         kept = attempt(planner, ecm, order, &mut best, &mut room, &mut stations);
     }
-    if planner.request.priority == Priority::Best {
+    if planner.request.priority == PriorityRule::Best {
         for _ in 0..ROUNDS {
             let Ok((plan, _)) = &best else { break };
             let cost = planner.cost(plan);
@@ -89,7 +89,7 @@ pub(super) fn plan<'m>(
             best = Ok((plan, Vec::new()));
         }
         if let Ok((plan, _)) = &mut best {
-            again(planner, ecm, plan, &mut last, &mut stations);
+            improve_each(planner, ecm, plan, &mut last, &mut stations);
         }
     }
     best.map_err(|never| never.expect("there is an order at least, which was tried"))
@@ -97,15 +97,15 @@ pub(super) fn plan<'m>(
 
 /// The earliest arrival of one agent while the others keep their motions: with other speeds, or, if its own motion is slower
 /// than its limits for a reason, also with that motion and a later start.
-enum Found<'m> {
+enum AgentReplan<'m> {
     Speeds(Box<SpeedPlan<f64, PHASES>>),
     Later(Motion<'m, f64>),
 }
 
-impl<'m> Found<'m> {
+impl<'m> AgentReplan<'m> {
     /// Uses the row of the agent in this motion: a delay counts from the motion of the row.
-    fn of(motion: &Motion<'m, f64>, regions: Regions<'_, '_>, stations: &mut [Station<f64>]) -> Option<Self> {
-        let Some(drive) = Drive::of(motion) else {
+    fn of(motion: &Motion<'m, f64>, regions: AvoidedRegions<'_, '_>, stations: &mut [SearchNode<f64>]) -> Option<Self> {
+        let Some(drive) = SpeedPlanLimits::of(motion) else {
             let later = earliest_start(regions.iter().cloned(), 0.0).and_then(|delay| motion.delayed(delay).ok());
             let plan = plan_speed_below(motion, regions.iter().cloned(), &[], stations).ok();
             let sooner = |end: f64| later.is_none_or(|later| end < later.time().hi - SOONER);
@@ -126,7 +126,7 @@ impl<'m> Found<'m> {
     }
 
     /// The motion, with its profile in `room`; `None` if there is no room.
-    fn motion(self, motion: Motion<'m, f64>, room: &mut Room<'m>) -> Option<Motion<'m, f64>> {
+    fn motion(self, motion: Motion<'m, f64>, room: &mut ProfileBuffers<'m>) -> Option<Motion<'m, f64>> {
         match self {
             Self::Speeds(plan) => {
                 let profile = room.next()?;
@@ -148,23 +148,23 @@ fn attempt<'m>(
     planner: &Planner<'_, 'm>,
     ecm: &HostEcm<f64>,
     mut order: Vec<usize>,
-    best: &mut Best<'m>,
-    room: &mut Room<'m>,
-    stations: &mut [Station<f64>],
+    best: &mut BestPlan<'m>,
+    room: &mut ProfileBuffers<'m>,
+    stations: &mut [SearchNode<f64>],
 ) -> Vec<usize> {
     let mut plan = planner.motions.to_vec();
     let done = plan_speeds(ecm, planner.motions, &mut plan, &mut order, room, stations);
     match (done, &best) {
         (Ok(()), Ok((before, _))) if planner.cost(&plan) >= planner.cost(before) => {}
         (Ok(()), _) => *best = Ok((plan, order.clone())),
-        (Err(never), Err(before)) => *best = Err(Some(told(*before, never))),
+        (Err(never), Err(before)) => *best = Err(Some(more_general_reason(*before, never))),
         (Err(_), Ok(_)) => {}
     }
     order
 }
 
 /// The reason to tell after one more order without a plan: what holds for any order tells more than why the first one failed.
-fn told(before: Option<Never>, now: Never) -> Never {
+fn more_general_reason(before: Option<Never>, now: Never) -> Never {
     match (before, now) {
         (_, Never::Starts(_) | Never::Ends(_) | Never::Always(_)) | (None, _) => now,
         (Some(before), _) => before,
@@ -172,12 +172,12 @@ fn told(before: Option<Never>, now: Never) -> Never {
 }
 
 /// Plans each agent again while the others keep their motions, the agent with the largest loss first.
-fn again<'m>(
+fn improve_each<'m>(
     planner: &Planner<'_, 'm>,
     ecm: &HostEcm<f64>,
     plan: &mut [Motion<'m, f64>],
-    room: &mut Room<'m>,
-    stations: &mut [Station<f64>],
+    room: &mut ProfileBuffers<'m>,
+    stations: &mut [SearchNode<f64>],
 ) {
     for _ in 0..AGAIN {
         let mut order: Vec<usize> = (0..plan.len()).collect();
@@ -189,7 +189,7 @@ fn again<'m>(
             let before = std::mem::replace(&mut plan[agent], motion);
             // The table does not hold for plans that take longer than `LONGEST`.
             let row = ecm.row(plan, agent).map(|row| row.collect::<Vec<RegionRef<'_, f64>>>());
-            let found = row.ok().and_then(|regions| Found::of(&motion, &regions, stations));
+            let found = row.ok().and_then(|regions| AgentReplan::of(&motion, &regions, stations));
             let found = found.filter(|found| found.end() < before.time().hi - SOONER);
             let better = found.and_then(|found| found.motion(motion, room));
             sooner |= better.is_some();
@@ -208,9 +208,9 @@ mod tests {
     #[test]
     fn the_first_reason_stays_unless_another_one_holds_for_any_order() {
         let (full, later) = (Never::Full(0), Never::Priorities([1, 2]));
-        assert_eq!(told(None, full), full);
-        assert_eq!(told(Some(full), later), full, "that there was no room is not forgotten");
-        assert_eq!(told(Some(later), full), later);
-        assert_eq!(told(Some(full), Never::Always([1, 2])), Never::Always([1, 2]));
+        assert_eq!(more_general_reason(None, full), full);
+        assert_eq!(more_general_reason(Some(full), later), full, "that there was no room is not forgotten");
+        assert_eq!(more_general_reason(Some(later), full), later);
+        assert_eq!(more_general_reason(Some(full), Never::Always([1, 2])), Never::Always([1, 2]));
     }
 }

@@ -1,18 +1,18 @@
 //! Start delays of a scenario, for all of its agents or for as many as possible, with their quality.
 
-use super::circle::CIRCULAR_WAIT;
-use super::delays::{self, Objective, Outcome};
-use super::forbidden::{Forbidden, Out, Schedule};
-use super::task::Planner;
-use super::{Priority, Unsolved, reason};
-use crate::cores;
-use crate::failure::Failure;
+use super::circular_wait::CIRCULAR_WAIT;
+use super::delays::{self, DelayResult, Objective};
+use super::forbidden_delays::{AgentWithoutDelay, DelaySchedule, ForbiddenDelays};
+use super::plan_context::Planner;
+use super::{PriorityRule, UnplannedAgents, failure_reason};
+use crate::failure::ComputationError;
+use crate::parallel;
 use pcr_core::Motion;
 use std::collections::HashSet;
 
 /// Delays of some agents of a fleet, in the order of the fleet.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Known {
+pub(super) struct PartialDelayPlan {
     /// \[s\]
     pub(super) delays: Vec<f64>,
     /// The agents by priority, or by their starts if no order was requested.
@@ -26,13 +26,13 @@ pub(super) struct Known {
 /// Start delays of motions \[s\]; as few as possible are left out, with `None`. `with` has for each motion those that have to
 /// be left out with it, itself included. `None` if no delays are found quickly.
 pub fn some(motions: &[Motion<'_, f64>], with: &[Vec<usize>]) -> Option<Vec<Option<f64>>> {
-    let forbidden = Forbidden::of_motions(motions).ok()?;
+    let forbidden = ForbiddenDelays::of_motions(motions).ok()?;
     let ticks = forbidden.ticks();
     let found = delays::some(&forbidden.problem(Objective::Sum), with);
     Some(found.into_iter().map(|delay| delay.map(|delay| ticks.seconds(delay.into()))).collect())
 }
 
-pub(super) struct Starts {
+pub(super) struct StartDelayResult {
     /// Delays by the index of the agent \[s\]; `None` if the search was stopped before it found any.
     delays: Option<Vec<Option<f64>>>,
     order: Vec<usize>,
@@ -43,25 +43,26 @@ pub(super) struct Starts {
     /// Whether it is proved that no larger set of agents has delays.
     fewest: bool,
     /// Agents that cannot start in the requested order.
-    out: Vec<Out>,
+    out: Vec<AgentWithoutDelay>,
     /// Whether discs of footprints or loads were planned.
     pub(super) outlined: bool,
 }
 
-impl Starts {
-    pub(super) fn of(planner: &Planner<'_, '_>) -> Result<Self, Failure> {
+impl StartDelayResult {
+    pub(super) fn of(planner: &Planner<'_, '_>) -> Result<Self, ComputationError> {
         let (scenario, request) = (planner.scenario, planner.request);
-        let forbidden = Forbidden::of(scenario)?;
+        let forbidden = ForbiddenDelays::compute(scenario)?;
         let ticks = forbidden.ticks();
         let problem = forbidden.problem(request.objective);
-        let schedules = planner.orders()?.into_iter().map(|order| forbidden.in_order(forbidden.respecting(&order)));
-        let schedules: Vec<Schedule> = schedules.collect();
-        let is_best = request.priority == Priority::Best;
-        let in_ticks = |schedule: &Schedule| {
+        let schedules =
+            planner.orders()?.into_iter().map(|order| forbidden.plan_in_order(forbidden.respecting(&order)));
+        let schedules: Vec<DelaySchedule> = schedules.collect();
+        let is_best = request.priority == PriorityRule::Best;
+        let in_ticks = |schedule: &DelaySchedule| {
             schedule.delays.iter().map(|delay| delay.map(|delay| ticks.nearest(delay))).collect::<Vec<Option<i64>>>()
         };
         let known: Vec<Vec<Option<i64>>> = schedules.iter().map(in_ticks).collect();
-        let Outcome { delays, bound, proved, conflicts, fewest } =
+        let DelayResult { delays, bound, proved, conflicts, fewest } =
             delays::best(&problem, &known, request.effort, request.leave_out);
         let seconds = |delay: &Option<i64>| delay.map(|delay| ticks.seconds(i128::from(delay)));
         let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty());
@@ -78,17 +79,17 @@ impl Starts {
         if is_best {
             return Ok(found);
         }
-        let Some(Schedule { delays, out, order }) = schedules.into_iter().next() else { return Ok(found) };
+        let Some(DelaySchedule { delays, out, order }) = schedules.into_iter().next() else { return Ok(found) };
         let whole = delays.iter().all(Option::is_some);
         let first: Option<Vec<i64>> = known.first().and_then(|known| known.iter().copied().collect());
-        let reached = first.is_some_and(|known| problem.cost(&known) <= bound + delays::slack(&problem));
+        let reached = first.is_some_and(|known| problem.cost(&known) <= bound + delays::rounding_cost(&problem));
         // A bound for a different set of agents does not apply.
         let bound = if whole { found.bound } else { f64::NEG_INFINITY };
         Ok(Self { delays: Some(delays), order, out, bound, proved: found.proved && whole && reached, ..found })
     }
 
     /// The delays of all agents, if all have one.
-    pub(super) fn of_all(&self) -> Option<Known> {
+    pub(super) fn of_all(&self) -> Option<PartialDelayPlan> {
         let delays = self.delays.as_ref()?;
         delays.iter().all(Option::is_some).then(|| self.known(&(0..delays.len()).collect::<Vec<_>>()))
     }
@@ -100,11 +101,11 @@ impl Starts {
     }
 
     /// The delays of the agents that have one.
-    pub(super) fn known(&self, staying: &[usize]) -> Known {
+    pub(super) fn known(&self, staying: &[usize]) -> PartialDelayPlan {
         let delays = self.delays.as_deref().unwrap_or_default();
         let mut places = vec![None; delays.len()];
         staying.iter().enumerate().for_each(|(place, &agent)| places[agent] = Some(place));
-        Known {
+        PartialDelayPlan {
             delays: staying.iter().filter_map(|&agent| delays[agent]).collect(),
             order: self.order.iter().filter_map(|&agent| places[agent]).collect(),
             bound: self.bound,
@@ -114,30 +115,32 @@ impl Starts {
 
     /// Adds reasons why no speed plan was found. A reason about the discs around outlines is dropped if the outlines themselves
     /// do not have it; with `leave_out` the reasons are for all agents that are left out.
-    pub(super) fn added(&self, planner: &Planner<'_, '_>, found: Vec<Unsolved>) -> Vec<Unsolved> {
+    pub(super) fn added(&self, planner: &Planner<'_, '_>, found: Vec<UnplannedAgents>) -> Vec<UnplannedAgents> {
         if self.of_all().is_some() || !(self.outlined || planner.request.leave_out) {
             return found;
         }
         let mut all = if self.outlined { Vec::new() } else { found };
-        let sorted = |unsolved: &Unsolved| {
+        let sorted = |unsolved: &UnplannedAgents| {
             let mut ids = unsolved.ids.clone();
             ids.sort_unstable();
             ids
         };
         let known: HashSet<Vec<u64>> = all.iter().map(sorted).collect();
         let more = self.unsolved(planner).into_iter().filter(|unsolved| !known.contains(&sorted(unsolved)));
-        all.extend(more.map(|unsolved| Unsolved { why: format!("by start delays: {}", unsolved.why), ..unsolved }));
+        all.extend(
+            more.map(|unsolved| UnplannedAgents { why: format!("by start delays: {}", unsolved.why), ..unsolved }),
+        );
         all
     }
 
     /// The reasons why not all agents have delays.
-    pub(super) fn unsolved(&self, planner: &Planner<'_, '_>) -> Vec<Unsolved> {
+    pub(super) fn unsolved(&self, planner: &Planner<'_, '_>) -> Vec<UnplannedAgents> {
         let ids = |agents: &[usize]| agents.iter().map(|&agent| planner.id(agent)).collect::<Vec<_>>();
-        let mut unsolved: Vec<Unsolved> = Vec::new();
+        let mut unsolved: Vec<UnplannedAgents> = Vec::new();
         // For footprints it would not be a proof: the discs around them may have to wait where the footprints need not.
         let circle = if self.outlined { None } else { planner.circle() };
         if let Some(circle) = &circle {
-            unsolved.push(Unsolved::nowhere(ids(circle), CIRCULAR_WAIT));
+            unsolved.push(UnplannedAgents::nowhere(ids(circle), CIRCULAR_WAIT));
         }
         let of_conflict = |conflict: &Vec<usize>| {
             let is_circle = circle.as_ref().is_some_and(|circle| {
@@ -146,17 +149,17 @@ impl Starts {
             match conflict.as_slice() {
                 _ if is_circle => None,
                 &[i, j] if planner.is_late() => {
-                    Some(Unsolved::nowhere(vec![planner.id(j), planner.id(i)], reason::ALWAYS))
+                    Some(UnplannedAgents::nowhere(vec![planner.id(j), planner.id(i)], failure_reason::ALWAYS))
                 }
-                &[i, j] => Some(Unsolved::of(planner.scenario, [planner.id(j), planner.id(i)], true)),
-                agents => Some(Unsolved::nowhere(
+                &[i, j] => Some(UnplannedAgents::of(planner.scenario, [planner.id(j), planner.id(i)], true)),
+                agents => Some(UnplannedAgents::nowhere(
                     ids(agents),
                     "no start delays keep all of them apart: whatever the delays are, two of them meet",
                 )),
             }
         };
         // Large fleets have thousands of conflicts.
-        let told = cores::made(0..self.conflicts.len(), &|conflict| of_conflict(&self.conflicts[conflict]));
+        let told = parallel::map_parallel(0..self.conflicts.len(), &|conflict| of_conflict(&self.conflicts[conflict]));
         unsolved.extend(told.into_iter().flatten());
         if !self.fewest && planner.request.leave_out {
             let delays = self.delays.as_deref().unwrap_or_default();
@@ -166,18 +169,22 @@ impl Starts {
             if !out.is_empty() {
                 let why = "no start delays were found for them beside all others before the search was stopped; nor was it \
                            proved that there are none";
-                unsolved.push(Unsolved::nowhere(ids(&out), why));
+                unsolved.push(UnplannedAgents::nowhere(ids(&out), why));
             }
         }
         let mut blocked = self.out.iter().filter(|out| !out.always);
         if unsolved.is_empty()
             && let Some(out) = blocked.next()
         {
-            unsolved.push(Unsolved::of(planner.scenario, [planner.id(out.agent), planner.id(out.by)], false));
+            unsolved.push(UnplannedAgents::of(
+                planner.scenario,
+                [planner.id(out.agent), planner.id(out.blocked_by)],
+                false,
+            ));
         }
         if unsolved.is_empty() {
             let why = "no start delays were found before the search was stopped; nor was it proved that there are none";
-            unsolved.push(Unsolved::nowhere(Vec::new(), why));
+            unsolved.push(UnplannedAgents::nowhere(Vec::new(), why));
         }
         unsolved
     }

@@ -7,9 +7,9 @@ use super::*;
 fn most_of_a_hundred_have_a_plan_however_little_time_there_is() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/table6-100.json");
     let scenario = Scenario::from_json(&std::fs::read_to_string(file).expect(file)).expect("a scenario");
-    let effort = Effort { time: Some(std::time::Duration::ZERO), ..Effort::default() };
-    let request = Request { leave_out: true, effort, ..Request::default() };
-    let (plan, solved) = Plan::of(&scenario, &request).expect("an answer");
+    let effort = DelaySearchOptions { time: Some(std::time::Duration::ZERO), ..DelaySearchOptions::default() };
+    let request = PlanOptions { leave_out: true, effort, ..PlanOptions::default() };
+    let (plan, solved) = PlanReport::compute(&scenario, &request).expect("an answer");
     println!("{} planned, {} left out", plan.agents.len(), plan.left_out.len());
     assert!(solved.is_some() && plan.agents.len() + plan.left_out.len() == 100);
     assert!(plan.agents.len() > 50, "{:?}", plan.left_out);
@@ -27,14 +27,14 @@ fn plans_are_what_is_read_from_their_files() {
     let fast = r#"{"agents":[{"id":1,"radius":0.2483831362458482,"start":{"x":0,"y":0,"heading":1.9635447532477395},"path":[{"kind":"arc","radius":1,"sweep":5.556008449174128e-07},{"kind":"turn","sweep":-0.0014974846134741169}],"v_max":4366.455188208114,"a_max":7150397958.556232,"t_start":-9.00005485489812,"turn_v_max":0.009312073909698175,"turn_a_max":1},{"id":2,"radius":0.2483831362458482,"start":{"x":1,"y":13.618341128281351,"heading":-0.8001288909395576},"path":[{"kind":"line","length":0.4967662724916964},{"kind":"line","length":0},{"kind":"arc","radius":0.4967662724916964,"sweep":6.283185307179586},{"kind":"line","length":0.4967662724916964}],"v_max":1,"a_max":1,"t_start":0,"turn_v_max":1,"turn_a_max":1}]}"#;
     let answer = |text: &str, method| {
         let scenario = Scenario::from_json(text).expect("a scenario");
-        Plan::of(&scenario, &Request { method, ..Request::default() }).expect("an answer")
+        PlanReport::compute(&scenario, &PlanOptions { method, ..PlanOptions::default() }).expect("an answer")
     };
     // Its delays can be written, and are the plan then.
-    let (plan, solved) = answer(slow, Method::Speed);
+    let (plan, solved) = answer(slow, PlanMethod::Speed);
     let solved = solved.expect("a plan");
     assert_eq!(Scenario::from_json(&solved.to_json()).as_ref(), Ok(&solved));
     assert_eq!(plan.certificate.map(|proof| proof.verdict), Some("proved"));
-    let (plan, solved) = answer(fast, Method::Delay);
+    let (plan, solved) = answer(fast, PlanMethod::Delay);
     assert!(solved.is_none() && plan.certificate.is_none());
     let why = &plan.unsolved.last().expect("a reason").why;
     assert!(why.starts_with("the plan cannot be written as phases: "), "{why}");

@@ -1,12 +1,12 @@
 //! Regions and conflicts of outlines, compared with polygons at many times and lengths.
 
-use crate::check::Verdict;
-use crate::fleet::Format;
-use crate::regions::{Answer, Region, Request};
+use crate::check::CheckReport;
+use crate::fleet::HostScalar;
+use crate::regions::{RegionEntry, RegionOptions, RegionsReport};
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_formats::plane::distance;
-use pcr_formats::random::Random;
+use pcr_formats::plane_geometry::distance;
 use pcr_formats::scenario::Scenario;
+use pcr_formats::splitmix64::SplitMix64;
 use serde_json::{Value, json};
 use std::f64::consts::{PI, TAU};
 
@@ -186,7 +186,7 @@ impl Case {
         Self { scenario: read(&agents), outlines, courses }
     }
 
-    fn random(dice: &mut Random) -> Self {
+    fn random(dice: &mut SplitMix64) -> Self {
         let mut outline = || match dice.below(5) {
             0 => Outline::polygon(&TRUCK),
             1 => Outline::polygon(&FORK),
@@ -198,14 +198,14 @@ impl Case {
         let mut course = || {
             let count = 1 + dice.below(3);
             let legs = (0..count).map(|_| match dice.below(2) {
-                0 => [dice.within(0.5, 3.0), 0.0],
+                0 => [dice.uniform(0.5, 3.0), 0.0],
                 _ => {
-                    let radius = dice.within(0.3, 2.0);
-                    [radius * dice.within(0.3, 2.5), if dice.below(2) == 0 { 1.0 / radius } else { -1.0 / radius }]
+                    let radius = dice.uniform(0.3, 2.0);
+                    [radius * dice.uniform(0.3, 2.5), if dice.below(2) == 0 { 1.0 / radius } else { -1.0 / radius }]
                 }
             });
             let legs = legs.collect();
-            Course { start: [dice.within(-1.5, 1.5), dice.within(-1.5, 1.5), dice.within(-PI, PI)], legs }
+            Course { start: [dice.uniform(-1.5, 1.5), dice.uniform(-1.5, 1.5), dice.uniform(-PI, PI)], legs }
         };
         let courses = [course(), course()];
         Self::new(outlines, courses)
@@ -219,17 +219,18 @@ impl Case {
 
     /// Compares regions and conflicts with the outlines; numbers of the format, and where agents are because of them, differ by up
     /// to `digits` \[m\]. Returns how many points were in contact, and how many were not.
-    fn compare<S: Format>(&self, digits: f64) -> [usize; 2] {
-        let request = Request { slices: Some(9), ..Request::default() };
-        let answer = Answer::of::<S>(&self.scenario, request).unwrap();
+    fn compare<S: HostScalar>(&self, digits: f64) -> [usize; 2] {
+        let request = RegionOptions { slices: Some(9), ..RegionOptions::default() };
+        let answer = RegionsReport::compute::<S>(&self.scenario, request).unwrap();
         assert!(answer.footprints.is_empty(), "{}: {:?}", S::NAME, answer.footprints);
         let mut counts = [0; 2];
         for own in [0, 1] {
-            let regions: Vec<&Region> = answer.regions.iter().filter(|region| region.i == own as u64 + 1).collect();
+            let regions: Vec<&RegionEntry> =
+                answer.regions.iter().filter(|region| region.i == own as u64 + 1).collect();
             self.compare_slices::<S>(own, &regions, digits, &mut counts);
             let other = &self.courses[1 - own];
             for (t, l) in self.grid(own, 40) {
-                let there = |region: &&Region| {
+                let there = |region: &&RegionEntry| {
                     (region.open_start || t >= region.t[0])
                         && (region.open_end || t <= region.t[1])
                         && within([region.l[0] - digits, region.l[1] + digits], l)
@@ -253,7 +254,13 @@ impl Case {
         (0..=steps).flat_map(move |k| (0..=steps).map(move |l| (at(k, end), at(l, length))))
     }
 
-    fn compare_slices<S: Format>(&self, own: usize, regions: &[&Region], digits: f64, counts: &mut [usize; 2]) {
+    fn compare_slices<S: HostScalar>(
+        &self,
+        own: usize,
+        regions: &[&RegionEntry],
+        digits: f64,
+        counts: &mut [usize; 2],
+    ) {
         let length = self.courses[own].length();
         for region in regions {
             for slice in region.slices.iter().flatten() {
@@ -280,9 +287,9 @@ impl Case {
         }
     }
 
-    fn compare_conflicts<S: Format>(&self, digits: f64) {
+    fn compare_conflicts<S: HostScalar>(&self, digits: f64) {
         const STEPS: u32 = 500;
-        let verdict = Verdict::of::<S>(&self.scenario, true).unwrap();
+        let verdict = CheckReport::compute::<S>(&self.scenario, true).unwrap();
         assert!(verdict.footprints.is_empty());
         let [closest] = verdict.closest.as_deref().unwrap() else { panic!("one pair") };
         let end = self.courses[0].duration().max(self.courses[1].duration());
@@ -315,7 +322,7 @@ impl Case {
 struct Digits;
 
 impl Digits {
-    fn of<S: Format>() -> f64 {
+    fn of<S: HostScalar>() -> f64 {
         match S::NAME {
             "f64" => 1e-9,
             "f32" | "micro" => 2e-4,
@@ -328,7 +335,7 @@ impl Digits {
 
 #[test]
 fn trucks_pass_with_a_millimetre_between_them() {
-    fn pass<S: Format>() {
+    fn pass<S: HostScalar>() {
         // In `q12` a last digit is a quarter of a millimetre.
         let free = if S::NAME == Q12::NAME { 0.82 } else { 0.801 };
         for (apart, is_free) in [(free, true), (0.799, false)] {
@@ -336,9 +343,9 @@ fn trucks_pass_with_a_millimetre_between_them() {
             let agents =
                 [agent(1, &truck, [0.0, 0.0, 0.0], &[line(6.0)]), agent(2, &truck, [6.0, apart, PI], &[line(6.0)])];
             let scenario = read(&agents);
-            let answer = Answer::of::<S>(&scenario, Request::default()).unwrap();
+            let answer = RegionsReport::compute::<S>(&scenario, RegionOptions::default()).unwrap();
             assert!(answer.footprints.is_empty() && answer.regions.is_empty() == is_free, "{} {apart}", S::NAME);
-            let verdict = Verdict::of::<S>(&scenario, true).unwrap();
+            let verdict = CheckReport::compute::<S>(&scenario, true).unwrap();
             assert_eq!(verdict.conflicts.is_empty(), is_free, "{} {apart}", S::NAME);
             let clearance = verdict.closest.unwrap()[0].clearance;
             assert!(
@@ -357,9 +364,9 @@ fn trucks_pass_with_a_millimetre_between_them() {
 
 #[test]
 fn regions_and_conflicts_are_those_of_the_polygons() {
-    fn all<S: Format>() {
+    fn all<S: HostScalar>() {
         const PAIRS: u64 = 24;
-        let (mut dice, mut met) = (Random(56), 0);
+        let (mut dice, mut met) = (SplitMix64(56), 0);
         for _ in 0..PAIRS {
             let [inside, _] = Case::random(&mut dice).compare::<S>(Digits::of::<S>());
             met += usize::from(inside > 0);
@@ -389,7 +396,7 @@ fn margins_are_around_the_outline() {
     let mut agents = [agent(1, &truck, [0.0, 0.0, 0.0], &[line(6.0)]), agent(2, &truck, [6.0, 1.0, PI], &[line(6.0)])];
     for (margin, overlap) in [(0.099, false), (0.101, true)] {
         agents.iter_mut().for_each(|agent| agent["margin"] = json!(margin));
-        let answer = Answer::of::<f64>(&read(&agents), Request::default()).unwrap();
+        let answer = RegionsReport::compute::<f64>(&read(&agents), RegionOptions::default()).unwrap();
         assert!(answer.regions.is_empty() && answer.margin_regions.unwrap().is_empty() != overlap, "{margin}");
     }
 }
@@ -412,7 +419,7 @@ fn what_cannot_be_computed_as_it_is_has_a_cover() {
         agent(7, &Outline { corners: vec![[0.0; 2]], radius: 0.4 }, [3.0, -3.0, 0.5 * PI], &[line(15.0)]),
         agent(8, &Outline::polygon(&HEXAGON), [1.0, -3.0, 0.5 * PI], &[]),
     ];
-    let answer = Answer::of::<f64>(&read(&agents), Request::default()).unwrap();
+    let answer = RegionsReport::compute::<f64>(&read(&agents), RegionOptions::default()).unwrap();
     let covered: Vec<u64> = answer.footprints.iter().map(|cover| cover.id).collect();
     assert_eq!(covered, [1, 2, 4, 4, 5]);
     let pair = |i: u64, j: u64| answer.regions.iter().find(|region| [region.i, region.j] == [i, j]);
@@ -420,8 +427,8 @@ fn what_cannot_be_computed_as_it_is_has_a_cover() {
     assert!([1, 2, 4].iter().all(|&lane| pair(lane, 7).is_some()));
     // They pass a lane apart: 1 m less 0.4 m each, and 0.4 m and half of the width of the hexagon.
     assert!(pair(6, 7).is_none() && pair(6, 8).is_none() && pair(7, 8).is_none());
-    let certified = Request { certificate: true, ..Request::default() };
-    let answer = Answer::of::<f64>(&read(&agents), certified).unwrap();
+    let certified = RegionOptions { certificate: true, ..RegionOptions::default() };
+    let answer = RegionsReport::compute::<f64>(&read(&agents), certified).unwrap();
     let covered: Vec<u64> = answer.footprints.iter().map(|cover| cover.id).collect();
     assert_eq!(covered, [1, 2, 4, 4, 5, 6, 8]);
 }
@@ -436,7 +443,8 @@ fn a_hundred_rectangles_have_few_pieces() {
         agent.as_object_mut().unwrap().remove("radius");
         agent["footprint"] = json!({ "polygon": polygon });
     }
-    let answer = Answer::of::<f64>(&Scenario::from_value(&scenario).unwrap(), Request::default()).unwrap();
+    let answer =
+        RegionsReport::compute::<f64>(&Scenario::from_value(&scenario).unwrap(), RegionOptions::default()).unwrap();
     assert!(answer.footprints.is_empty());
     let pieces: usize = answer.regions.iter().map(|region| region.pieces.len()).sum();
     assert_eq!((answer.regions.len(), pieces), (4274, 14076));

@@ -1,8 +1,8 @@
 //! Results of the checker for tables, as text.
 
-use super::columns::Columns;
-use super::{agents, called, heading, quoted};
-use crate::certify::Certified;
+use super::text_table::TextTable;
+use super::{agents, display_name, heading, quoted};
+use crate::certify::CertifyReport;
 use crate::figures::{small, thousandths};
 use std::io::{self, Write};
 
@@ -13,7 +13,7 @@ pub const CERTIFIED_CSV_HEADER: &str = "name,verdict,promise,i,j,l_i,l_j,clearan
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn certified_csv(certified: &Certified, out: &mut dyn Write) -> io::Result<()> {
+pub fn certified_csv(certified: &CertifyReport, out: &mut dyn Write) -> io::Result<()> {
     let name = quoted(&certified.name);
     for (verdict, points) in [("refuted", &certified.refuted), ("undecided", &certified.undecided)] {
         for point in points {
@@ -34,7 +34,7 @@ pub fn certified_csv(certified: &Certified, out: &mut dyn Write) -> io::Result<(
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn certified_table(certified: &Certified, out: &mut dyn Write) -> io::Result<()> {
+pub fn certified_table(certified: &CertifyReport, out: &mut dyn Write) -> io::Result<()> {
     let name = heading(&certified.name);
     if let Some(error) = &certified.error {
         return writeln!(out, "{name}: {error}");
@@ -58,9 +58,9 @@ pub fn certified_table(certified: &Certified, out: &mut dyn Write) -> io::Result
         }
         writeln!(out, "{title}:")?;
         let [i, j] = agents(&certified.labels);
-        let mut columns = Columns::new(&[i, j, "l_i [m]", "l_j [m]", "clearance [m]", "in ε", "<"]);
+        let mut columns = TextTable::new(&[i, j, "l_i [m]", "l_j [m]", "clearance [m]", "in ε", "<"]);
         for point in points {
-            let mut row = [point.i, point.j].map(|id| called(&certified.labels, id)).to_vec();
+            let mut row = [point.i, point.j].map(|id| display_name(&certified.labels, id)).to_vec();
             row.extend([point.l_i, point.l_j].map(|length| format!("{length:.6}")));
             let known = |text: String| if point.clearance.is_nan() { "unknown".into() } else { text };
             row.extend([small(point.clearance), thousandths(point.in_excess)].map(known));

@@ -1,9 +1,9 @@
 //! Conflicts as text.
 
-use super::columns::Columns;
 use super::proofs::proof_line;
-use super::{agents, called, heading, quoted};
-use crate::check::{Conflict, Verdict};
+use super::text_table::TextTable;
+use super::{agents, display_name, heading, quoted};
+use crate::check::{CheckReport, ConflictEntry};
 use crate::figures::{outward, small, thousandths};
 use std::io::{self, Write};
 
@@ -14,10 +14,10 @@ pub const CONFLICTS_CSV_HEADER: &str = "name,i,j,t_a,t_b,depth,l_i_a,l_i_b,l_j_a
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn conflicts_csv(verdict: &Verdict, out: &mut dyn Write) -> io::Result<()> {
+pub fn conflicts_csv(verdict: &CheckReport, out: &mut dyn Write) -> io::Result<()> {
     let name = quoted(&verdict.name);
     for conflict in &verdict.conflicts {
-        let Conflict { i, j, t: [t_a, t_b], depth, l_i: [l_i_a, l_i_b], l_j: [l_j_a, l_j_b], .. } = conflict;
+        let ConflictEntry { i, j, t: [t_a, t_b], depth, l_i: [l_i_a, l_i_b], l_j: [l_j_a, l_j_b], .. } = conflict;
         let touching = u8::from(conflict.touching);
         let [a, b] = [i, j].map(|id| quoted(verdict.labels.get(*id)));
         writeln!(out, "{name},{i},{j},{t_a},{t_b},{depth},{l_i_a},{l_i_b},{l_j_a},{l_j_b},{touching},{a},{b}")?;
@@ -29,7 +29,7 @@ pub fn conflicts_csv(verdict: &Verdict, out: &mut dyn Write) -> io::Result<()> {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn conflicts_table(verdict: &Verdict, out: &mut dyn Write) -> io::Result<()> {
+pub fn conflicts_table(verdict: &CheckReport, out: &mut dyn Write) -> io::Result<()> {
     let name = heading(&verdict.name);
     match verdict.conflicts.len() {
         0 => match verdict.agents {
@@ -43,10 +43,10 @@ pub fn conflicts_table(verdict: &Verdict, out: &mut dyn Write) -> io::Result<()>
         let [i, j] = agents(&verdict.labels);
         let titles =
             [i, j, "t_a [s]", "t_b [s]", "depth [m]", "l_i from [m]", "to [m]", "l_j from [m]", "to [m]", "<touching"];
-        let mut columns = Columns::new(&titles);
+        let mut columns = TextTable::new(&titles);
         let touching = verdict.conflicts.iter().filter(|conflict| conflict.touching).count();
         for conflict in &verdict.conflicts {
-            let mut row = [conflict.i, conflict.j].map(|id| called(&verdict.labels, id)).to_vec();
+            let mut row = [conflict.i, conflict.j].map(|id| display_name(&verdict.labels, id)).to_vec();
             row.extend(outward(conflict.t));
             row.push(small(conflict.depth));
             row.extend([conflict.l_i, conflict.l_j].into_iter().flat_map(outward));
@@ -64,9 +64,9 @@ pub fn conflicts_table(verdict: &Verdict, out: &mut dyn Write) -> io::Result<()>
     if let Some(closest) = verdict.closest.as_ref().filter(|closest| !closest.is_empty()) {
         writeln!(out, "\nNearest to one another:")?;
         let [i, j] = agents(&verdict.labels);
-        let mut columns = Columns::new(&[i, j, "t [s]", "separation [m]", "clearance [m]"]);
+        let mut columns = TextTable::new(&[i, j, "t [s]", "separation [m]", "clearance [m]"]);
         for pair in closest {
-            let mut row = [pair.i, pair.j].map(|id| called(&verdict.labels, id)).to_vec();
+            let mut row = [pair.i, pair.j].map(|id| display_name(&verdict.labels, id)).to_vec();
             row.extend([thousandths(pair.t), small(pair.separation), small(pair.clearance)]);
             columns.row(row);
         }

@@ -1,12 +1,15 @@
 //! Tables of unsafe delays, for programs and for reading.
 
-use super::columns::Columns;
-use super::locks::LocksUnprinted;
-use super::{Document, counted, json, printable, quoted};
+use super::locks::ExclusionOutputError;
+use super::text_table::TextTable;
+use super::{VersionedReport, counted, json, printable, quoted};
+use crate::exclusion_table::{
+    DelayProof, EdgeDriving, ExclusionTable, ExclusionVehicle, ForbiddenDelays, SyncProgressFn, UnsafeDelayModel,
+    UnsafeRelation,
+};
 use crate::figures::{given, outward_but_for_rounding, small, thousandths};
-use crate::locks::{DelayProof, Delays, Driving, ForbiddenDelays, LockVehicle, Locks, Told, Unsafe};
-use crate::memory;
-use pcr_formats::import::{Id, ImportError};
+use crate::memory_budget;
+use pcr_formats::import::{ElementId, ImportError};
 use serde::Serialize;
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -17,22 +20,22 @@ pub const DELAYS_HEADER: &str = "a,a_direction,b,b_direction,from,to\n";
 
 /// The unsafe delays of a layout.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct DelayTable {
+pub struct UnsafeDelayReport {
     /// Name of the layout.
     pub layout: String,
     /// The vehicle.
-    pub vehicle: LockVehicle,
+    pub vehicle: ExclusionVehicle,
     /// How edges are driven.
     #[serde(flatten)]
-    pub driving: Driving,
+    pub driving: EdgeDriving,
     /// Sorted by `a`, then `b`; intervals of a pair are disjoint.
-    pub delays: Vec<Delay>,
+    pub delays: Vec<UnsafeDelay>,
     /// Times at which no vehicle may stand at a node, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub nodes: Option<Vec<NodeTimes>>,
+    pub nodes: Option<Vec<UnsafeNodeTimes>>,
     /// Nodes at which vehicles cannot stand at the same time, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub node_pairs: Option<Vec<[Id; 2]>>,
+    pub node_pairs: Option<Vec<[ElementId; 2]>>,
     /// The proof that all other delays are free, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certificate: Option<DelayProof>,
@@ -42,14 +45,14 @@ pub struct DelayTable {
 
 /// How much later than on `a` a vehicle may not set off on `b`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Delay {
+pub struct UnsafeDelay {
     /// Edge, as in the layout.
-    pub a: Id,
+    pub a: ElementId,
     /// Whether it is driven from its end.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub a_backward: bool,
     /// Edge, `a` or after it.
-    pub b: Id,
+    pub b: ElementId,
     /// Whether it is driven from its end.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub b_backward: bool,
@@ -59,11 +62,11 @@ pub struct Delay {
 
 /// The times after a start on an edge at which no vehicle may stand at a node.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct NodeTimes {
+pub struct UnsafeNodeTimes {
     /// Id of the node in the layout.
-    pub node: Id,
+    pub node: ElementId,
     /// Edge.
-    pub edge: Id,
+    pub edge: ElementId,
     /// Whether it is driven from its end.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub backward: bool,
@@ -71,27 +74,32 @@ pub struct NodeTimes {
     pub time: [f64; 2],
 }
 
-impl Document for DelayTable {
+impl VersionedReport for UnsafeDelayReport {
     const FORMAT: &'static str = "pcr-delays";
 }
 
-impl DelayTable {
+impl UnsafeDelayReport {
     /// The whole table; `head` is the one of locks without its locks.
     ///
     /// # Errors
     /// Errors of [`Delays::each`], and an error for a table that does not fit in memory.
-    pub fn of(head: Locks, driving: Driving, delays: &Delays, told: Told<'_>) -> Result<Self, ImportError> {
-        let Locks { layout, vehicle, nodes, node_pairs, warnings, .. } = head;
+    pub fn collect(
+        head: ExclusionTable,
+        driving: EdgeDriving,
+        delays: &UnsafeDelayModel,
+        told: SyncProgressFn<'_>,
+    ) -> Result<Self, ImportError> {
+        let ExclusionTable { layout, vehicle, nodes, node_pairs, warnings, .. } = head;
         let (nodes, node_pairs) = (nodes.map(|_| Vec::new()), node_pairs.map(|_| Vec::new()));
         let delays_found = Vec::new();
         let mut table =
             Self { layout, vehicle, driving, delays: delays_found, nodes, node_pairs, certificate: None, warnings };
         let mut held = 0;
-        delays.each(told, &<[Unsafe]>::to_vec, |found| {
-            held += found.len() as u64 * (size_of::<Delay>() + 64) as u64;
-            if held > memory::STEP {
+        delays.each(told, &<[UnsafeRelation]>::to_vec, |found| {
+            held += found.len() as u64 * (size_of::<UnsafeDelay>() + 64) as u64;
+            if held > memory_budget::STEP {
                 let count = table.delays.len();
-                memory::ask(held + 2 * (count * size_of::<Delay>()) as u64, || {
+                memory_budget::ask(held + 2 * (count * size_of::<UnsafeDelay>()) as u64, || {
                     format!("a table of over {count} delays")
                 })
                 .map_err(|large| ImportError::new(large.to_string()))?;
@@ -108,10 +116,10 @@ impl DelayTable {
     /// # Errors
     /// [`ImportError`] for a row whose edge `delays` does not have, for a motion that the checker refuses, and for what does not fit in
     /// memory.
-    pub fn certify(&mut self, delays: &Delays, told: Told<'_>) -> Result<(), ImportError> {
-        let ways: HashMap<(&Id, bool), usize> =
+    pub fn certify(&mut self, delays: &UnsafeDelayModel, told: SyncProgressFn<'_>) -> Result<(), ImportError> {
+        let ways: HashMap<(&ElementId, bool), usize> =
             delays.ways().iter().enumerate().map(|(place, way)| ((&way.edge, way.backward), place)).collect();
-        let way = |edge: &Id, backward: bool| {
+        let way = |edge: &ElementId, backward: bool| {
             let found = ways.get(&(edge, backward)).copied();
             found.ok_or_else(|| ImportError::new(format!("there is no edge {edge} in this direction")))
         };
@@ -127,20 +135,20 @@ impl DelayTable {
         Ok(())
     }
 
-    fn add(&mut self, of: &Delays, found: Unsafe) {
+    fn add(&mut self, of: &UnsafeDelayModel, found: UnsafeRelation) {
         let node = |place: usize| of.nodes()[place].clone();
         match found {
-            Unsafe::Delays(ways, delay) => {
+            UnsafeRelation::Delays(ways, delay) => {
                 let [a, b] = ways.map(|place| of.ways()[place].clone());
                 let (a_backward, b_backward) = (a.backward, b.backward);
-                self.delays.push(Delay { a: a.edge, a_backward, b: b.edge, b_backward, delay });
+                self.delays.push(UnsafeDelay { a: a.edge, a_backward, b: b.edge, b_backward, delay });
             }
-            Unsafe::Times(at, way, time) => {
+            UnsafeRelation::Times(at, way, time) => {
                 let way = of.ways()[way].clone();
-                let times = NodeTimes { node: node(at), edge: way.edge, backward: way.backward, time };
+                let times = UnsafeNodeTimes { node: node(at), edge: way.edge, backward: way.backward, time };
                 self.nodes.get_or_insert_default().push(times);
             }
-            Unsafe::Nodes(pair) => self.node_pairs.get_or_insert_default().push(pair.map(node)),
+            UnsafeRelation::Nodes(pair) => self.node_pairs.get_or_insert_default().push(pair.map(node)),
         }
     }
 }
@@ -149,39 +157,45 @@ impl DelayTable {
 ///
 /// # Errors
 /// Errors of the writer, and of [`Delays::each`].
-pub fn delays_csv(delays: &Delays, told: Told<'_>, out: &mut dyn Write) -> Result<(), LocksUnprinted> {
+pub fn delays_csv(
+    delays: &UnsafeDelayModel,
+    told: SyncProgressFn<'_>,
+    out: &mut dyn Write,
+) -> Result<(), ExclusionOutputError> {
     out.write_all(DELAYS_HEADER.as_bytes())?;
     let direction = |backward| if backward { "backward" } else { "forward" };
-    let way = |way: &crate::locks::Way| format!("{},{}", quoted(&way.edge.to_string()), direction(way.backward));
+    let way = |way: &crate::exclusion_table::DirectedEdge| {
+        format!("{},{}", quoted(&way.edge.to_string()), direction(way.backward))
+    };
     let ways: Vec<String> = delays.ways().iter().map(way).collect();
-    let node = |node: &Id| format!("{},", quoted(&format!("node {node}")));
+    let node = |node: &ElementId| format!("{},", quoted(&format!("node {node}")));
     let nodes: Vec<String> = delays.nodes().iter().map(node).collect();
-    let lines = |found: &[Unsafe]| {
+    let lines = |found: &[UnsafeRelation]| {
         let mut text = String::with_capacity(80 * found.len());
         for found in found {
             // Writing to a `String` does not fail.
             let _ = match *found {
-                Unsafe::Delays([a, b], [from, to]) => writeln!(text, "{},{},{from},{to}", ways[a], ways[b]),
-                Unsafe::Times(at, way, [from, to]) => writeln!(text, "{},{},{from},{to}", nodes[at], ways[way]),
-                Unsafe::Nodes([a, b]) => writeln!(text, "{},{},,", nodes[a], nodes[b]),
+                UnsafeRelation::Delays([a, b], [from, to]) => writeln!(text, "{},{},{from},{to}", ways[a], ways[b]),
+                UnsafeRelation::Times(at, way, [from, to]) => writeln!(text, "{},{},{from},{to}", nodes[at], ways[way]),
+                UnsafeRelation::Nodes([a, b]) => writeln!(text, "{},{},,", nodes[a], nodes[b]),
             };
         }
         text
     };
-    delays.each(told, &lines, |text| Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?))
+    delays.each(told, &lines, |text| Ok::<(), ExclusionOutputError>(out.write_all(text.as_bytes())?))
 }
 
 /// The first line of [`delays_lines`].
 #[derive(Serialize)]
-struct Head<'a> {
+struct DelayReportHeader<'a> {
     layout: &'a str,
-    vehicle: &'a LockVehicle,
+    vehicle: &'a ExclusionVehicle,
     #[serde(flatten)]
-    driving: Driving,
+    driving: EdgeDriving,
     warnings: &'a [String],
 }
 
-impl Document for Head<'_> {
+impl VersionedReport for DelayReportHeader<'_> {
     const FORMAT: &'static str = "pcr-delay-lines";
 }
 
@@ -191,14 +205,14 @@ impl Document for Head<'_> {
 /// # Errors
 /// As [`delays_csv`].
 pub fn delays_lines(
-    head: &Locks,
-    driving: Driving,
-    delays: &Delays,
-    told: Told<'_>,
+    head: &ExclusionTable,
+    driving: EdgeDriving,
+    delays: &UnsafeDelayModel,
+    told: SyncProgressFn<'_>,
     out: &mut dyn Write,
-) -> Result<(), LocksUnprinted> {
-    json(&Head { layout: &head.layout, vehicle: &head.vehicle, driving, warnings: &head.warnings }, out)?;
-    let names = |ids: &mut dyn Iterator<Item = &Id>| {
+) -> Result<(), ExclusionOutputError> {
+    json(&DelayReportHeader { layout: &head.layout, vehicle: &head.vehicle, driving, warnings: &head.warnings }, out)?;
+    let names = |ids: &mut dyn Iterator<Item = &ElementId>| {
         ids.map(serde_json::to_string).collect::<Result<Vec<String>, _>>().map_err(io::Error::from)
     };
     let nodes = names(&mut delays.nodes().iter())?;
@@ -206,20 +220,20 @@ pub fn delays_lines(
     let turned = |way: usize, field: &str| {
         if delays.ways()[way].backward { format!(r#","{field}":true"#) } else { String::new() }
     };
-    let lines = |found: &[Unsafe]| {
+    let lines = |found: &[UnsafeRelation]| {
         let mut text = String::with_capacity(100 * found.len());
         for found in found {
             let _ = match *found {
-                Unsafe::Delays([a, b], [from, to]) => {
+                UnsafeRelation::Delays([a, b], [from, to]) => {
                     let (a_turned, b_turned) = (turned(a, "a_backward"), turned(b, "b_backward"));
                     let (a, b) = (&ways[a], &ways[b]);
                     writeln!(text, r#"{{"a":{a}{a_turned},"b":{b}{b_turned},"delay":[{from:?},{to:?}]}}"#)
                 }
-                Unsafe::Times(at, way, [from, to]) => {
+                UnsafeRelation::Times(at, way, [from, to]) => {
                     let (node, edge, turned) = (&nodes[at], &ways[way], turned(way, "backward"));
                     writeln!(text, r#"{{"node":{node},"edge":{edge}{turned},"time":[{from:?},{to:?}]}}"#)
                 }
-                Unsafe::Nodes([a, b]) => writeln!(text, r#"{{"nodes":[{},{}]}}"#, nodes[a], nodes[b]),
+                UnsafeRelation::Nodes([a, b]) => writeln!(text, r#"{{"nodes":[{},{}]}}"#, nodes[a], nodes[b]),
             };
         }
         (found.len(), text)
@@ -227,7 +241,7 @@ pub fn delays_lines(
     let mut count = 0;
     delays.each(told, &lines, |(lines, text)| {
         count += lines;
-        Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?)
+        Ok::<(), ExclusionOutputError>(out.write_all(text.as_bytes())?)
     })?;
     Ok(writeln!(out, r#"{{"delays":{count}}}"#)?)
 }
@@ -236,27 +250,27 @@ pub fn delays_lines(
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn delays_table(table: &DelayTable, out: &mut dyn Write) -> io::Result<()> {
+pub fn delays_table(table: &UnsafeDelayReport, out: &mut dyn Write) -> io::Result<()> {
     let name = if table.layout.is_empty() { "layout" } else { &table.layout };
-    let (count, Driving { speed, acceleration }) = (table.delays.len(), table.driving);
+    let (count, EdgeDriving { speed, acceleration }) = (table.delays.len(), table.driving);
     let how = match acceleration {
         Some(acceleration) => format!("from rest to rest with {speed} m/s and {acceleration} m/s²"),
         None => format!("at {speed} m/s"),
     };
     let (name, radius) = (printable(name), given(table.vehicle.radius));
     writeln!(out, "{name}: {} of unsafe delays, radius {radius} m, {how}", counted(count, "interval"))?;
-    let text = |id: &Id, backward: bool| printable(&format!("{id}{}", if backward { " backward" } else { "" }));
+    let text = |id: &ElementId, backward: bool| printable(&format!("{id}{}", if backward { " backward" } else { "" }));
     if count > 0 {
-        let mut columns = Columns::new(&["<a", "<b", "b later by [s]", "to"]);
-        for Delay { a, a_backward, b, b_backward, delay } in &table.delays {
+        let mut columns = TextTable::new(&["<a", "<b", "b later by [s]", "to"]);
+        for UnsafeDelay { a, a_backward, b, b_backward, delay } in &table.delays {
             columns.row([[text(a, *a_backward), text(b, *b_backward)], outward_but_for_rounding(*delay)].concat());
         }
         columns.write(out)?;
     }
     if let Some(nodes) = &table.nodes {
         writeln!(out, "{} of times at nodes", counted(nodes.len(), "interval"))?;
-        let mut columns = Columns::new(&["<node", "<edge", "from [s]", "to"]);
-        for NodeTimes { node, edge, backward, time } in nodes {
+        let mut columns = TextTable::new(&["<node", "<edge", "from [s]", "to"]);
+        for UnsafeNodeTimes { node, edge, backward, time } in nodes {
             columns.row([[text(node, false), text(edge, *backward)], outward_but_for_rounding(*time)].concat());
         }
         columns.write(out)?;
@@ -279,7 +293,8 @@ fn delay_proof_line(proof: &DelayProof) -> String {
         _ => (proof.undecided, "not decided"),
     };
     let first = proof.open.first().map_or(String::new(), |first| {
-        let name = |id: &Id, backward: bool| printable(&format!("{id}{}", if backward { " backward" } else { "" }));
+        let name =
+            |id: &ElementId, backward: bool| printable(&format!("{id}{}", if backward { " backward" } else { "" }));
         let (a, b) = (name(&first.a, first.a_backward), name(&first.b, first.b_backward));
         let clearance =
             if first.clearance.is_nan() { "unknown".into() } else { format!("{} m", small(first.clearance)) };

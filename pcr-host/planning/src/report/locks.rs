@@ -1,10 +1,12 @@
 //! Tables of locks, for programs and for reading.
 
-use super::columns::Columns;
-use super::{Document, counted, json, printable, quoted};
+use super::text_table::TextTable;
+use super::{VersionedReport, counted, json, printable, quoted};
+use crate::exclusion_table::{
+    ExclusionPartner, ExclusionTable, ExclusionVehicle, SweptLayout, SyncProgressFn, TouchingAreas,
+};
 use crate::figures::{above, given, outward_but_for_rounding};
-use crate::locks::{Found, LockVehicle, Locks, Partner, Sweep, Told};
-use pcr_formats::import::{Id, ImportError};
+use pcr_formats::import::{ElementId, ImportError};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -14,20 +16,20 @@ pub const LOCKS_HEADER: &str = "a,b,a_from,a_to,b_from,b_to\n";
 
 /// Why locks were not printed, or not to their end.
 #[derive(Debug)]
-pub enum LocksUnprinted {
+pub enum ExclusionOutputError {
     /// There are none.
     Import(ImportError),
     /// The output cannot be written.
     Output(io::Error),
 }
 
-impl From<ImportError> for LocksUnprinted {
+impl From<ImportError> for ExclusionOutputError {
     fn from(error: ImportError) -> Self {
         Self::Import(error)
     }
 }
 
-impl From<io::Error> for LocksUnprinted {
+impl From<io::Error> for ExclusionOutputError {
     fn from(error: io::Error) -> Self {
         Self::Output(error)
     }
@@ -38,16 +40,20 @@ impl From<io::Error> for LocksUnprinted {
 ///
 /// # Errors
 /// Errors of the writer, and of [`Sweep::each`].
-pub fn locks_csv(sweep: &Sweep, told: Told<'_>, out: &mut dyn Write) -> Result<(), LocksUnprinted> {
+pub fn locks_csv(
+    sweep: &SweptLayout,
+    told: SyncProgressFn<'_>,
+    out: &mut dyn Write,
+) -> Result<(), ExclusionOutputError> {
     out.write_all(LOCKS_HEADER.as_bytes())?;
-    let name = |(place, id): (usize, &Id)| {
+    let name = |(place, id): (usize, &ElementId)| {
         let kind = if sweep.is_edge(place) { "" } else { "node " };
         quoted(&format!("{kind}{id}")).into_owned()
     };
     let names: Vec<String> = sweep.ids().iter().enumerate().map(name).collect();
-    let lines = |found: &[Found]| {
+    let lines = |found: &[TouchingAreas]| {
         let mut text = String::with_capacity(100 * found.len());
-        for Found { places: [a, b], lengths: [own, other] } in found {
+        for TouchingAreas { places: [a, b], lengths: [own, other] } in found {
             match (sweep.is_edge(*a), sweep.is_edge(*b)) {
                 (true, true) => csv_row(&mut text, [&names[*a], &names[*b]], Some(*own), Some(*other)),
                 (true, false) => csv_row(&mut text, [&names[*b], &names[*a]], None, Some(*own)),
@@ -56,17 +62,17 @@ pub fn locks_csv(sweep: &Sweep, told: Told<'_>, out: &mut dyn Write) -> Result<(
         }
         text
     };
-    sweep.each(told, &lines, |text| Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?))
+    sweep.each(told, &lines, |text| Ok::<(), ExclusionOutputError>(out.write_all(text.as_bytes())?))
 }
 
 /// The same of a table that is in memory, in its order.
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn kept_locks_csv(locks: &Locks, out: &mut dyn Write) -> io::Result<()> {
+pub fn kept_locks_csv(locks: &ExclusionTable, out: &mut dyn Write) -> io::Result<()> {
     out.write_all(LOCKS_HEADER.as_bytes())?;
-    let name = |id: &Id| quoted(&id.to_string()).into_owned();
-    let node = |id: &Id| quoted(&format!("node {id}")).into_owned();
+    let name = |id: &ElementId| quoted(&id.to_string()).into_owned();
+    let node = |id: &ElementId| quoted(&format!("node {id}")).into_owned();
     let edges = locks.locks.iter();
     let edges = edges.map(|it| ([name(&it.a), name(&it.b)], Some(it.a_length), Some(it.b_length)));
     let nodes = locks.nodes.iter().flatten();
@@ -96,13 +102,13 @@ fn csv_row(text: &mut String, [a, b]: [&str; 2], own: Option<[f64; 2]>, other: O
 
 /// The first line of [`locks_lines`].
 #[derive(Serialize)]
-struct Head<'a> {
+struct ExclusionReportHeader<'a> {
     layout: &'a str,
-    vehicle: &'a LockVehicle,
+    vehicle: &'a ExclusionVehicle,
     warnings: &'a [String],
 }
 
-impl Document for Head<'_> {
+impl VersionedReport for ExclusionReportHeader<'_> {
     const FORMAT: &'static str = "pcr-lock-lines";
 }
 
@@ -111,13 +117,18 @@ impl Document for Head<'_> {
 ///
 /// # Errors
 /// As [`locks_csv`].
-pub fn locks_lines(head: &Locks, sweep: &Sweep, told: Told<'_>, out: &mut dyn Write) -> Result<(), LocksUnprinted> {
-    json(&Head { layout: &head.layout, vehicle: &head.vehicle, warnings: &head.warnings }, out)?;
+pub fn locks_lines(
+    head: &ExclusionTable,
+    sweep: &SweptLayout,
+    told: SyncProgressFn<'_>,
+    out: &mut dyn Write,
+) -> Result<(), ExclusionOutputError> {
+    json(&ExclusionReportHeader { layout: &head.layout, vehicle: &head.vehicle, warnings: &head.warnings }, out)?;
     let names: Vec<String> =
         sweep.ids().iter().map(serde_json::to_string).collect::<Result<_, _>>().map_err(io::Error::from)?;
-    let lines = |found: &[Found]| {
+    let lines = |found: &[TouchingAreas]| {
         let mut text = String::with_capacity(150 * found.len());
-        for Found { places: [a, b], lengths: [[a_from, a_to], [b_from, b_to]] } in found {
+        for TouchingAreas { places: [a, b], lengths: [[a_from, a_to], [b_from, b_to]] } in found {
             let (a_name, b_name) = (&names[*a], &names[*b]);
             let _ = match (sweep.is_edge(*a), sweep.is_edge(*b)) {
                 (true, true) => writeln!(
@@ -135,30 +146,30 @@ pub fn locks_lines(head: &Locks, sweep: &Sweep, told: Told<'_>, out: &mut dyn Wr
     let mut count = 0;
     sweep.each(told, &lines, |(lines, text)| {
         count += lines;
-        Ok::<(), LocksUnprinted>(out.write_all(text.as_bytes())?)
+        Ok::<(), ExclusionOutputError>(out.write_all(text.as_bytes())?)
     })?;
     Ok(writeln!(out, r#"{{"locks":{count}}}"#)?)
 }
 
 /// The locks of an edge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct EdgeLocks {
+pub struct EdgeExclusionsReport {
     /// Name of the layout; a table in a file does not have it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub layout: Option<String>,
     /// The vehicle; a table in a file does not have it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub vehicle: Option<LockVehicle>,
+    pub vehicle: Option<ExclusionVehicle>,
     /// The edge, or the node.
     pub edge: String,
     /// Sorted: edges, then nodes.
-    pub partners: Vec<Partner>,
+    pub partners: Vec<ExclusionPartner>,
     /// Warnings about input that was changed or left out when it was read; for a table in a file they were given when that was
     /// written.
     pub warnings: Vec<String>,
 }
 
-impl Document for EdgeLocks {
+impl VersionedReport for EdgeExclusionsReport {
     const FORMAT: &'static str = "pcr-edge-locks";
 }
 
@@ -169,10 +180,10 @@ pub const EDGE_HEADER: &str = "edge,other,from,to,other_from,other_to\n";
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn edge_csv(locks: &EdgeLocks, out: &mut dyn Write) -> io::Result<()> {
+pub fn edge_csv(locks: &EdgeExclusionsReport, out: &mut dyn Write) -> io::Result<()> {
     out.write_all(EDGE_HEADER.as_bytes())?;
     let edge = quoted(&locks.edge);
-    for Partner { name, node, own: [from, to], other: [other_from, other_to] } in &locks.partners {
+    for ExclusionPartner { name, node, own: [from, to], other: [other_from, other_to] } in &locks.partners {
         let name = format!("{}{name}", if *node { "node " } else { "" });
         writeln!(out, "{edge},{},{from},{to},{other_from},{other_to}", quoted(&name))?;
     }
@@ -183,10 +194,10 @@ pub fn edge_csv(locks: &EdgeLocks, out: &mut dyn Write) -> io::Result<()> {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn edge_table(locks: &EdgeLocks, out: &mut dyn Write) -> io::Result<()> {
+pub fn edge_table(locks: &EdgeExclusionsReport, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "{}: {}", printable(&locks.edge), counted(locks.partners.len(), "lock"))?;
-    let mut columns = Columns::new(&["<other", "from [m]", "to", "other from [m]", "to"]);
-    for Partner { name, node, own, other } in &locks.partners {
+    let mut columns = TextTable::new(&["<other", "from [m]", "to", "other from [m]", "to"]);
+    for ExclusionPartner { name, node, own, other } in &locks.partners {
         let name = format!("{}{name}", if *node { "node " } else { "" });
         columns.row(
             [
@@ -201,7 +212,7 @@ pub fn edge_table(locks: &EdgeLocks, out: &mut dyn Write) -> io::Result<()> {
 }
 
 /// The vehicle of a table of locks, in words.
-pub fn vehicle_text(vehicle: &LockVehicle) -> String {
+pub fn vehicle_text(vehicle: &ExclusionVehicle) -> String {
     let outline = match vehicle.discs.len() {
         0 => format!("radius {} m", given(vehicle.radius)),
         discs => format!("an outline of {discs} discs within {} m", above(vehicle.radius)),
@@ -216,7 +227,7 @@ pub fn vehicle_text(vehicle: &LockVehicle) -> String {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn locks_table(locks: &Locks, out: &mut dyn Write) -> io::Result<()> {
+pub fn locks_table(locks: &ExclusionTable, out: &mut dyn Write) -> io::Result<()> {
     let name = if locks.layout.is_empty() { "layout" } else { &locks.layout };
     let mut pairs: Vec<_> = locks.locks.iter().map(|lock| (&lock.a, &lock.b)).collect();
     pairs.dedup();
@@ -225,7 +236,7 @@ pub fn locks_table(locks: &Locks, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "{}: {count} of {pairs} of edges, {vehicle}", printable(name))?;
     let text = |id: &dyn ToString| printable(&id.to_string());
     if !locks.locks.is_empty() {
-        let mut columns = Columns::new(&["<a", "<b", "a from [m]", "to", "b from [m]", "to"]);
+        let mut columns = TextTable::new(&["<a", "<b", "a from [m]", "to", "b from [m]", "to"]);
         for lock in &locks.locks {
             let cells = [
                 [text(&lock.a), text(&lock.b)],
@@ -238,7 +249,7 @@ pub fn locks_table(locks: &Locks, out: &mut dyn Write) -> io::Result<()> {
     }
     if let Some(nodes) = &locks.nodes {
         writeln!(out, "{} of nodes", counted(nodes.len(), "lock"))?;
-        let mut columns = Columns::new(&["<node", "<edge", "from [m]", "to"]);
+        let mut columns = TextTable::new(&["<node", "<edge", "from [m]", "to"]);
         for lock in nodes {
             columns.row([[text(&lock.node), text(&lock.edge)], outward_but_for_rounding(lock.edge_length)].concat());
         }

@@ -1,16 +1,16 @@
 //! Nodes and edges of a layout as text.
 
-use super::columns::Columns;
+use super::text_table::TextTable;
 use super::{counted, heading, printable, quoted};
 use crate::figures::thousandths;
-use crate::nodes::{Listing, Way};
+use crate::nodes::{EdgeEntry, LayoutReport};
 use std::io::{self, Write};
 
 /// A line a node, then a line an edge: numbers that read back exactly.
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn nodes_csv(listing: &Listing<'_>, out: &mut dyn Write) -> io::Result<()> {
+pub fn nodes_csv(listing: &LayoutReport<'_>, out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "kind,id,names,level,x,y,from,to,length,two_way,speed,speed_back,closed,backward")?;
     let text = |text: &dyn ToString| quoted(&text.to_string()).into_owned();
     for node in &listing.nodes {
@@ -31,7 +31,7 @@ pub fn nodes_csv(listing: &Listing<'_>, out: &mut dyn Write) -> io::Result<()> {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn nodes_table(listing: &Listing<'_>, out: &mut dyn Write) -> io::Result<()> {
+pub fn nodes_table(listing: &LayoutReport<'_>, out: &mut dyn Write) -> io::Result<()> {
     let (nodes, edges) = (counted(listing.nodes.len(), "node"), counted(listing.edges.len(), "edge"));
     writeln!(out, "{}: {nodes}, {edges}", heading(listing.layout))?;
     let lists = [("levels", listing.levels), ("vehicle types", listing.vehicle_types), ("vehicles", listing.vehicles)];
@@ -41,7 +41,7 @@ pub fn nodes_table(listing: &Listing<'_>, out: &mut dyn Write) -> io::Result<()>
             writeln!(out, "{what}: {}", names.join(", "))?;
         }
     }
-    let mut columns = Columns::new(&["<node", "<names", "<level", "x [m]", "y [m]"]);
+    let mut columns = TextTable::new(&["<node", "<names", "<level", "x [m]", "y [m]"]);
     for node in &listing.nodes {
         let [x, y] = node.at.map(thousandths);
         let names = printable(&node.names.join(" "));
@@ -49,7 +49,7 @@ pub fn nodes_table(listing: &Listing<'_>, out: &mut dyn Write) -> io::Result<()>
     }
     columns.write(out)?;
     writeln!(out)?;
-    let mut columns = Columns::new(&["<edge", "<from", "<to", "length [m]", "<ways", "speed [m/s]"]);
+    let mut columns = TextTable::new(&["<edge", "<from", "<to", "length [m]", "<ways", "speed [m/s]"]);
     for edge in &listing.edges {
         let [id, from, to] = [edge.id, edge.from, edge.to].map(|id| printable(&id.to_string()));
         let mut speed = edge.speed.map_or_else(|| "-".to_owned(), thousandths);
@@ -57,9 +57,9 @@ pub fn nodes_table(listing: &Listing<'_>, out: &mut dyn Write) -> io::Result<()>
             speed = format!("{speed}, back {}", thousandths(back));
         }
         let ways = match edge {
-            Way { closed: true, .. } => "none",
-            Way { two_way: true, .. } => "both",
-            Way { backward: true, .. } => "back",
+            EdgeEntry { closed: true, .. } => "none",
+            EdgeEntry { two_way: true, .. } => "both",
+            EdgeEntry { backward: true, .. } => "back",
             _ => "one",
         };
         columns.row(vec![id, from, to, thousandths(edge.length), ways.to_owned(), speed]);

@@ -1,9 +1,9 @@
 //! Our results for the paper's simulation beside the paper's figures.
 
-use super::columns::Columns;
-use super::table::{Numbered, arc, numbered};
-use crate::regions::Answer;
-use pcr_formats::paper::{MISPRINT, ROUNDING, Row, TABLE_V, TABLE_VII, TABLE_VII_AGENT};
+use super::table::{NumberedCrossing, arc, numbered};
+use super::text_table::TextTable;
+use crate::regions::RegionsReport;
+use pcr_formats::paper_example::{MISPRINT, PaperCrossing, ROUNDING, TABLE_V, TABLE_VII, TABLE_VII_AGENT};
 use pcr_formats::scenario::Scenario;
 use std::io::{self, Write};
 use std::time::Duration;
@@ -12,7 +12,7 @@ use std::time::Duration;
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn overview(scenario: &Scenario, answer: &Answer, took: Duration, out: &mut dyn Write) -> io::Result<()> {
+pub fn overview(scenario: &Scenario, answer: &RegionsReport, took: Duration, out: &mut dyn Write) -> io::Result<()> {
     let crossings = numbered(&answer.regions);
     table_v(scenario, answer, &crossings, out)?;
     writeln!(out)?;
@@ -22,11 +22,16 @@ pub fn overview(scenario: &Scenario, answer: &Answer, took: Duration, out: &mut 
     writeln!(out, "\nAll {regions} regions computed in {milliseconds:.3} ms (one run, one core, {}).", answer.scalar)
 }
 
-fn table_v(scenario: &Scenario, answer: &Answer, crossings: &[Numbered<'_>], out: &mut dyn Write) -> io::Result<()> {
+fn table_v(
+    scenario: &Scenario,
+    answer: &RegionsReport,
+    crossings: &[NumberedCrossing<'_>],
+    out: &mut dyn Write,
+) -> io::Result<()> {
     writeln!(out, "Table V: the paper counts crossings of the paths; discs also collide where paths only come near,")?;
     writeln!(out, "and crossings that are close share a region, so the connected regions are counted apart.")?;
     let mut columns =
-        Columns::new(&["agent", "radius [m]", "<path", "length [m]", "time [s]", "crossings", "paper", "regions"]);
+        TextTable::new(&["agent", "radius [m]", "<path", "length [m]", "time [s]", "crossings", "paper", "regions"]);
     let mut sums = [0; 3];
     for (agent, &paper) in scenario.agents.iter().zip(&TABLE_V) {
         let counts = [
@@ -34,7 +39,7 @@ fn table_v(scenario: &Scenario, answer: &Answer, crossings: &[Numbered<'_>], out
             paper,
             answer.regions.iter().filter(|region| region.i == agent.id).count(),
         ];
-        let mut row = vec![agent.id.to_string(), format!("{:.2}", agent.reach()), agent.structure()];
+        let mut row = vec![agent.id.to_string(), format!("{:.2}", agent.circumscribed_radius()), agent.structure()];
         row.extend([agent.length(), agent.duration()].map(|number| format!("{number:.2}")));
         row.extend(counts.map(|count| count.to_string()));
         columns.row(row);
@@ -49,12 +54,12 @@ fn table_v(scenario: &Scenario, answer: &Answer, crossings: &[Numbered<'_>], out
     columns.write(out)
 }
 
-fn table_vii(crossings: &[Numbered<'_>], out: &mut dyn Write) -> io::Result<()> {
+fn table_vii(crossings: &[NumberedCrossing<'_>], out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,
         "Table VII: the crossings of agent {TABLE_VII_AGENT}; under each title ours, then as the paper prints it"
     )?;
-    let mut columns = Columns::new(&[
+    let mut columns = TextTable::new(&[
         "row", "<type", "j", "k", "T [s]", "", "L [m]", "", "r_hat", "", "v_j", "", "theta", "", "arc of 3", "",
         "arc of j", "",
     ]);
@@ -98,7 +103,7 @@ fn table_vii(crossings: &[Numbered<'_>], out: &mut dyn Write) -> io::Result<()> 
 }
 
 /// Whether a crossing is what a row of the paper says, to the digit that it prints.
-fn agrees(ours: &Numbered<'_>, paper: &Row) -> bool {
+fn agrees(ours: &NumberedCrossing<'_>, paper: &PaperCrossing) -> bool {
     let near = |ours: f64, paper: f64| {
         /// The digits beside the printed one are decimal, ours binary.
         const SLIP: f64 = 1e-9;

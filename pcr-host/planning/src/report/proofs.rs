@@ -1,14 +1,14 @@
 //! What has been proved of motions, as text.
 
 use super::{all_called, counted};
-use crate::certify::{Contact, Proof};
+use crate::certify::{CertificateContact, MotionCertificate};
 use crate::figures::{small, thousandths};
 use pcr_formats::scenario::Labels;
 
 /// A line about a proof, in which agents have their labels.
-pub fn proof_line(proof: &Proof, labels: &Labels) -> String {
-    let place = |those: &[Contact]| {
-        those.first().map_or(String::new(), |&Contact { i, j, t, clearance }| {
+pub fn proof_line(proof: &MotionCertificate, labels: &Labels) -> String {
+    let place = |those: &[CertificateContact]| {
+        those.first().map_or(String::new(), |&CertificateContact { i, j, t, clearance }| {
             let (agents, t) = (all_called(labels, &[i, j]), thousandths(t));
             let clearance = if clearance.is_nan() { "unknown".into() } else { format!("{} m", small(clearance)) };
             format!("agents {agents} at {t} s, clearance {clearance}")
@@ -30,9 +30,15 @@ mod tests {
     #[test]
     fn a_distance_that_is_not_known_is_no_clearance() {
         let told = |clearance| {
-            let undecided = vec![Contact { i: 1, j: 2, t: 5.0, clearance }];
-            let proof =
-                Proof { verdict: "undecided", pairs: 1, steps: 1, contacts: Vec::new(), undecided, error: None };
+            let undecided = vec![CertificateContact { i: 1, j: 2, t: 5.0, clearance }];
+            let proof = MotionCertificate {
+                verdict: "undecided",
+                pairs: 1,
+                steps: 1,
+                contacts: Vec::new(),
+                undecided,
+                error: None,
+            };
             (
                 proof_line(&proof, &Labels::default()),
                 serde_json::to_value(proof.undecided[0]).unwrap()["clearance"].clone(),

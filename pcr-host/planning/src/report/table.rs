@@ -1,33 +1,33 @@
 //! Regions and crossings for reading.
 
-use super::columns::Columns;
-use super::{agents, called, counted, crossings, heading, types};
+use super::text_table::TextTable;
+use super::{agents, counted, crossings, display_name, heading, types};
 use crate::figures::{above, outward, thousandths};
-use crate::regions::{Answer, Descriptor, Region};
+use crate::regions::{CrossingDescriptor, RegionEntry, RegionsReport};
 use pcr_formats::scenario::Labels;
 use std::collections::HashMap;
 use std::io::{self, Write};
 
 /// A crossing with its place in the paper's numbering.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Numbered<'a> {
+pub(super) struct NumberedCrossing<'a> {
     pub(super) i: u64,
     pub(super) j: u64,
     /// Counted along the path of `i`, from 1, for each `j`.
     pub(super) k: usize,
     pub(super) piece_type: &'a str,
-    pub(super) crossing: &'a Descriptor,
+    pub(super) crossing: &'a CrossingDescriptor,
     /// Index of its region.
     region: usize,
 }
 
 /// The crossings in the order of Table VII: by ego, then along its path.
-pub(super) fn numbered(regions: &[Region]) -> Vec<Numbered<'_>> {
-    let mut all: Vec<Numbered<'_>> = Vec::new();
+pub(super) fn numbered(regions: &[RegionEntry]) -> Vec<NumberedCrossing<'_>> {
+    let mut all: Vec<NumberedCrossing<'_>> = Vec::new();
     for (index, region) in regions.iter().enumerate() {
         for piece in &region.pieces {
             let crossings = piece.crossings.iter();
-            all.extend(crossings.map(|crossing| Numbered {
+            all.extend(crossings.map(|crossing| NumberedCrossing {
                 i: region.i,
                 j: region.j,
                 k: 0,
@@ -59,7 +59,7 @@ pub(super) fn arc(sigma: Option<f64>, dir: Option<i8>) -> String {
 ///
 /// # Errors
 /// Errors of the writer.
-pub fn table(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
+pub fn table(answer: &RegionsReport, out: &mut dyn Write) -> io::Result<()> {
     let all = numbered(&answer.regions);
     let name = heading(&answer.name);
     let (regions, crossings) = (counted(answer.regions.len(), "collision region"), counted(all.len(), "crossing"));
@@ -69,13 +69,13 @@ pub fn table(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
         let discs = cover.discs.len();
         let stretch = cover.segments.map_or(String::new(), |[a, b]| format!(", segments {a} to {b}"));
         let (id, overhang) = (cover.id, above(cover.overhang + cover.growth));
-        let id = called(&answer.labels, id);
+        let id = display_name(&answer.labels, id);
         writeln!(out, "agent {id}{stretch}: a footprint of {discs} discs that reach {overhang} m out of it")?;
     }
     if !all.is_empty() {
         writeln!(out, "\nCrossings: j passes L on the path of i at T; theta = heading of j - heading of i")?;
         let [i, j] = agents(&answer.labels);
-        let mut columns = Columns::new(&[
+        let mut columns = TextTable::new(&[
             i,
             j,
             "k",
@@ -88,8 +88,8 @@ pub fn table(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
             "arc of i",
             "arc of j",
         ]);
-        for Numbered { i, j, k, piece_type, crossing, .. } in &all {
-            let [i, j] = [i, j].map(|id| called(&answer.labels, *id));
+        for NumberedCrossing { i, j, k, piece_type, crossing, .. } in &all {
+            let [i, j] = [i, j].map(|id| display_name(&answer.labels, *id));
             let mut row = vec![i, j, k.to_string(), (*piece_type).to_owned()];
             let numbers = [crossing.time, crossing.length, crossing.r_hat, crossing.v, crossing.theta];
             row.extend(numbers.map(thousandths));
@@ -110,8 +110,8 @@ pub fn table(answer: &Answer, out: &mut dyn Write) -> io::Result<()> {
 /// The extents of regions, with the numbers of their crossings.
 fn extents(
     labels: &Labels,
-    regions: &[Region],
-    all: &[Numbered<'_>],
+    regions: &[RegionEntry],
+    all: &[NumberedCrossing<'_>],
     title: &str,
     out: &mut dyn Write,
 ) -> io::Result<()> {
@@ -120,13 +120,13 @@ fn extents(
     }
     writeln!(out, "\n{title}: their extents; the lengths inside at a given time: --format json --slices N")?;
     let [i, j] = agents(labels);
-    let mut columns = Columns::new(&[i, j, "t_a [s]", "t_b [s]", "l_a [m]", "l_b [m]", "<open", "<k", "<pieces"]);
+    let mut columns = TextTable::new(&[i, j, "t_a [s]", "t_b [s]", "l_a [m]", "l_b [m]", "<open", "<k", "<pieces"]);
     let mut held: HashMap<usize, Vec<String>> = HashMap::new();
     for crossing in all {
         held.entry(crossing.region).or_default().push(crossing.k.to_string());
     }
     for (index, region) in regions.iter().enumerate() {
-        let mut row = [region.i, region.j].map(|id| called(labels, id)).to_vec();
+        let mut row = [region.i, region.j].map(|id| display_name(labels, id)).to_vec();
         row.extend([region.t, region.l].into_iter().flat_map(outward));
         let open = match (region.open_start, region.open_end) {
             (false, false) => "-",

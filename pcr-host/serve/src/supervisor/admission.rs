@@ -1,13 +1,13 @@
 //! Admission of missions: another path for a robot, with orders with which all robots can finish, or the reason why
 //! there are none.
 
-use super::{Supervisor, fleet, grown};
-use crate::course::{Course, JOINT, Rest, Shape, Start, WORN, extent};
-use crate::entry::{Entry, Kept, Known};
-use crate::event::{Cause, Event};
-use crate::fault::Fault;
-use crate::robot::{Asked, Robot, Waiting};
-use pcr_core::{Interval, Mission, Pass, Progress, Refused, RegionRef};
+use super::{Supervisor, fleet, retry_with_growth};
+use crate::event::{CancelCause, SupervisorEvent};
+use crate::journal_entry::{JournalEntry, StoredPrecedence, StoredRobot};
+use crate::owned_path::{JOINT, OwnedPath, PathElement, PathRounding, StartPose, WORN, extent};
+use crate::request_error::RequestError;
+use crate::robot::{MissionFingerprint, PendingMission, SupervisedRobot};
+use pcr_core::{AdmissionError, Interval, PassingState, PathProposal, Progress, RegionRef};
 use serde::{Deserialize, Serialize};
 
 /// Length of the longest id of a mission \[bytes\].
@@ -16,7 +16,7 @@ const LONGEST: usize = 1000;
 /// A request for a path of a robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Proposal {
+pub struct MissionRequest {
     /// Name of the robot.
     pub robot: String,
     /// Id of the mission. A repeated request gets the same answer; a request for another path under this id is refused.
@@ -26,18 +26,19 @@ pub struct Proposal {
     pub after: Option<f64>,
     /// Expected number of the present path; `None`: not compared.
     #[serde(default)]
-    pub of: Option<u64>,
+    #[serde(rename = "of")]
+    pub expected_path: Option<u64>,
     /// Expected start of the new path; `None`: not compared.
     #[serde(default)]
-    pub start: Option<Start>,
+    pub start: Option<StartPose>,
     /// Shapes of the new path.
-    pub path: Vec<Shape>,
+    pub path: Vec<PathElement>,
 }
 
 /// The result of a request for a mission.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "verdict", rename_all = "snake_case")]
-pub enum Verdict {
+pub enum AdmissionResult {
     /// The mission was admitted.
     Admitted {
         /// Number of the new path.
@@ -61,10 +62,10 @@ pub enum Verdict {
 
 /// The attempts to admit a waiting mission.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Try {
+pub(super) struct AdmissionRetry {
     next: f64,
     pause: f64,
-    pub(super) last: Option<Verdict>,
+    pub(super) last: Option<AdmissionResult>,
 }
 
 /// Pause between two attempts \[s\]: the first one, and the largest.
@@ -73,9 +74,9 @@ const PAUSE: [f64; 2] = [0.25, 2.0];
 /// A path begins where the one before it ends if it is nowhere on its way farther off than this \[m\], and not turned by more \[rad\].
 const JOIN: f64 = 1e-3;
 
-impl Proposal {
+impl MissionRequest {
     /// Whether it is a request for a path that begins at this length of the path before, along these shapes.
-    fn asks_for(&self, after: f64, shapes: &[Shape]) -> bool {
+    fn asks_for(&self, after: f64, shapes: &[PathElement]) -> bool {
         self.path == shapes && self.after.is_none_or(|own| (own - after).abs() <= JOINT)
     }
 }
@@ -85,36 +86,36 @@ impl Supervisor {
     /// it.
     ///
     /// # Errors
-    /// [`Fault`] for a mission that can never be admitted; it does not wait then.
-    pub fn mission(&mut self, proposal: &Proposal, now: f64) -> Result<Verdict, Fault> {
+    /// [`RequestError`] for a mission that can never be admitted; it does not wait then.
+    pub fn mission(&mut self, proposal: &MissionRequest, now: f64) -> Result<AdmissionResult, RequestError> {
         self.works()?;
-        let place = self.place(&proposal.robot)?;
+        let place = self.robot_index(&proposal.robot)?;
         // The last ones of each robot are kept, and the journal has them all in one frame.
         if proposal.mission.len() > LONGEST {
-            return Err(Fault::invalid(format!("mission: longer than {LONGEST} bytes")));
+            return Err(RequestError::invalid(format!("mission: longer than {LONGEST} bytes")));
         }
         let robot = &self.robots[place];
         let waiting = robot.waiting.as_ref().filter(|waiting| waiting.mission == proposal.mission);
         if let Some(waiting) = waiting {
             if !proposal.asks_for(waiting.after, &waiting.shapes) {
-                return Err(Fault::MissionExists);
+                return Err(RequestError::MissionExists);
             }
             let why = "it is tried again".into();
             let last = self.tries.get(&proposal.robot).and_then(|attempt| attempt.last.clone());
-            return Ok(last.unwrap_or(Verdict::Waiting { by: None, why }));
+            return Ok(last.unwrap_or(AdmissionResult::Waiting { by: None, why }));
         }
         if robot.mission.as_ref() == Some(&proposal.mission) {
-            let is_same = |(after, shapes): (f64, &[Shape])| proposal.asks_for(after, shapes);
-            if !robot.asked().is_none_or(is_same) {
-                return Err(Fault::MissionExists);
+            let is_same = |(after, shapes): (f64, &[PathElement])| proposal.asks_for(after, shapes);
+            if !robot.mission_request().is_none_or(is_same) {
+                return Err(RequestError::MissionExists);
             }
             return Ok(admitted(robot));
         }
         if robot.past.contains(&proposal.mission) {
-            return Ok(Verdict::Past);
+            return Ok(AdmissionResult::Past);
         }
         let after = proposal.after.unwrap_or(robot.course.length());
-        let waiting = Waiting {
+        let waiting = PendingMission {
             mission: proposal.mission.clone(),
             after,
             path: robot.path,
@@ -122,8 +123,8 @@ impl Supervisor {
             turn: self.turn,
         };
         // A length of another path means another place.
-        if proposal.of.is_some_and(|path| path != robot.path) {
-            return Err(Fault::NoSuchPath { path: robot.path });
+        if proposal.expected_path.is_some_and(|path| path != robot.path) {
+            return Err(RequestError::NoSuchPath { path: robot.path });
         }
         let joint = joint(robot, after)?;
         if let Some(start) = proposal.start {
@@ -134,7 +135,7 @@ impl Supervisor {
         let robot = &mut self.robots[place];
         let (before, past) = (robot.waiting.take(), robot.past.clone());
         if let Some(before) = &before {
-            Robot::outlives(&mut robot.past, before.mission.clone());
+            SupervisedRobot::outlives(&mut robot.past, before.mission.clone());
         }
         let refused = match self.attempt(place, &waiting, joint, now) {
             Ok(refused) => refused,
@@ -145,14 +146,14 @@ impl Supervisor {
             }
         };
         if let Some(before) = before {
-            self.drops(&proposal.robot, before.mission, Cause::Replaced);
-            self.entries.push(Entry::Waiting { robot: proposal.robot.clone(), waiting: None });
+            self.drops(&proposal.robot, before.mission, CancelCause::Replaced);
+            self.entries.push(JournalEntry::Waiting { robot: proposal.robot.clone(), waiting: None });
         }
         let Some(verdict) = refused else { return Ok(admitted(&self.robots[place])) };
         self.turn += 1;
-        let next = Try { next: now + PAUSE[0], pause: PAUSE[0], last: Some(verdict.clone()) };
+        let next = AdmissionRetry { next: now + PAUSE[0], pause: PAUSE[0], last: Some(verdict.clone()) };
         self.tries.insert(proposal.robot.clone(), next);
-        self.entries.push(Entry::Waiting { robot: proposal.robot.clone(), waiting: Some(waiting.clone()) });
+        self.entries.push(JournalEntry::Waiting { robot: proposal.robot.clone(), waiting: Some(waiting.clone()) });
         self.robots[place].waiting = Some(waiting);
         Ok(verdict)
     }
@@ -161,41 +162,41 @@ impl Supervisor {
     ///
     /// # Errors
     /// [`Fault::NoSuchRobot`], [`Fault::Broken`].
-    pub fn give_up(&mut self, name: &str) -> Result<(), Fault> {
+    pub fn give_up(&mut self, name: &str) -> Result<(), RequestError> {
         self.works()?;
-        let place = self.place(name)?;
+        let place = self.robot_index(name)?;
         let robot = &mut self.robots[place];
-        let Some(Waiting { mission, .. }) = robot.waiting.take() else { return Ok(()) };
-        Robot::outlives(&mut robot.past, mission.clone());
+        let Some(PendingMission { mission, .. }) = robot.waiting.take() else { return Ok(()) };
+        SupervisedRobot::outlives(&mut robot.past, mission.clone());
         self.tries.remove(name);
-        self.entries.push(Entry::Waiting { robot: name.into(), waiting: None });
-        self.drops(name, mission, Cause::Cancelled);
+        self.entries.push(JournalEntry::Waiting { robot: name.into(), waiting: None });
+        self.drops(name, mission, CancelCause::Cancelled);
         Ok(())
     }
 
     /// Tells that a waiting mission was given up.
-    pub(super) fn drops(&mut self, robot: &str, mission: String, why: Cause) {
+    pub(super) fn drops(&mut self, robot: &str, mission: String, why: CancelCause) {
         self.counts.dropped += 1;
-        self.events.push(Event::Dropped { robot: robot.into(), mission, why });
+        self.events.push(SupervisorEvent::Dropped { robot: robot.into(), mission, why });
     }
 
     /// Renames the mission of a robot, if another one has the same path: nothing else changes.
     ///
     /// # Errors
     /// [`Fault::NoSuchRobot`], [`Fault::Broken`].
-    pub fn adopt(&mut self, name: &str, mission: String) -> Result<(), Fault> {
+    pub fn adopt(&mut self, name: &str, mission: String) -> Result<(), RequestError> {
         self.works()?;
-        let place = self.place(name)?;
+        let place = self.robot_index(name)?;
         let robot = &mut self.robots[place];
         let waiting = robot.waiting.take().map(|waiting| waiting.mission);
         for before in robot.mission.replace(mission).into_iter().chain(waiting.clone()) {
-            Robot::outlives(&mut robot.past, before);
+            SupervisedRobot::outlives(&mut robot.past, before);
         }
         // The request of the new mission is not known.
         robot.asked = None;
         self.tries.remove(name);
         if let Some(waiting) = waiting {
-            self.drops(name, waiting, Cause::Replaced);
+            self.drops(name, waiting, CancelCause::Replaced);
         }
         self.keep_robot(place)
     }
@@ -204,34 +205,40 @@ impl Supervisor {
     /// why not.
     ///
     /// # Errors
-    /// [`Fault`] for a mission that can never be admitted.
-    fn attempt(&mut self, place: usize, mission: &Waiting, joint: f64, now: f64) -> Result<Option<Verdict>, Fault> {
+    /// [`RequestError`] for a mission that can never be admitted.
+    fn attempt(
+        &mut self,
+        place: usize,
+        mission: &PendingMission,
+        joint: f64,
+        now: f64,
+    ) -> Result<Option<AdmissionResult>, RequestError> {
         let robot = &self.robots[place];
         if robot.alarm.is_some() {
             let why = "it is not where it may be".into();
-            return Ok(Some(Verdict::Waiting { by: Some(robot.name.clone()), why }));
+            return Ok(Some(AdmissionResult::Waiting { by: Some(robot.name.clone()), why }));
         }
-        let rejoined = robot.course.rejoined(robot.at, joint, &mission.shapes, robot.rest);
-        let (course, dropped, rest) = rejoined.map_err(Fault::invalid)?;
+        let rejoined = robot.course.rejoined(robot.arc_length, joint, &mission.shapes, robot.rest);
+        let (course, dropped, rest) = rejoined.map_err(RequestError::invalid)?;
         if rest.worn(course.length()) > WORN {
             let why = "the rounding of all its missions is more than the discs have room for: remove the robot, and add it anew";
-            return Err(Fault::invalid(why));
+            return Err(RequestError::invalid(why));
         }
         let shifted = |length: f64| (length - dropped).max(0.0).min(course.length());
-        let (at, told) = (shifted(robot.at), shifted(robot.told));
+        let (at, told) = (shifted(robot.arc_length), shifted(robot.notified_limit));
         let own = Progress { at: Interval::new(at, told), stop: told };
-        let motion = course.motion(robot.abilities.reach()).map_err(Fault::invalid)?;
+        let motion = course.motion(robot.abilities.radius_with_margin()).map_err(RequestError::invalid)?;
         let (mut progress, tolerances) = (self.progress(), self.tolerances());
         self.orders.passed(&progress);
         let mut fleet = fleet(&self.robots)?;
         let speeds: Vec<f64> = self.robots.iter().map(|robot| robot.abilities.speed).collect();
         let (known, overtaken) = (progress.clone(), self.overtaken(now));
         let prefer = |region: &RegionRef<'_, f64>| match overtaken.get(region.other()) {
-            Some(true) => Pass::Second,
+            Some(true) => PassingState::Second,
             _ => preferred(region, own.at.lo, &known, &speeds),
         };
-        let asked = Mission { agent: place, motion, progress: own };
-        let admission = grown(&mut self.orders, |orders| {
+        let asked = PathProposal { agent: place, motion, progress: own };
+        let admission = retry_with_growth(&mut self.orders, |orders| {
             orders.admit(&mut fleet, &mut progress, asked, tolerances, &mut self.reaches, prefer)
         });
         drop(fleet);
@@ -241,45 +248,45 @@ impl Supervisor {
         self.counts.refused += 1;
         let name = |agent: usize| self.robots.get(agent).map_or_else(String::new, |robot| robot.name.clone());
         let (by, why) = match refused {
-            Refused::Blocked { by, .. } => (name(by), format!("{} is in the way, whoever goes first", name(by))),
-            Refused::Stuck { agent, by, .. } => {
+            AdmissionError::Blocked { by, .. } => (name(by), format!("{} is in the way, whoever goes first", name(by))),
+            AdmissionError::Stuck { agent, by, .. } => {
                 (name(by), format!("{} would wait for {} for ever", name(agent), name(by)))
             }
-            Refused::Late { agent, by, .. } => {
+            AdmissionError::Late { agent, by, .. } => {
                 (name(by), format!("{} is where {} was to go first", name(agent), name(by)))
             }
-            refused => return Err(Fault::invalid(refused)),
+            refused => return Err(RequestError::invalid(refused)),
         };
-        Ok(Some(Verdict::Waiting { by: Some(by), why }))
+        Ok(Some(AdmissionResult::Waiting { by: Some(by), why }))
     }
 
     /// Makes the admitted path that of the robot.
     fn commit(
         &mut self,
         place: usize,
-        mission: &Waiting,
-        (course, rest): (Course, Rest),
+        mission: &PendingMission,
+        (course, rest): (OwnedPath, PathRounding),
         dropped: f64,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), RequestError> {
         let robot = &mut self.robots[place];
         let length = course.length();
         let shifted = |value: f64| (value - dropped).max(0.0).min(length);
-        robot.at = shifted(robot.at);
-        robot.up_to = shifted(robot.up_to).max(robot.at);
-        (robot.granted, robot.told) = (shifted(robot.granted), shifted(robot.told));
+        robot.arc_length = shifted(robot.arc_length);
+        robot.up_to = shifted(robot.up_to).max(robot.arc_length);
+        (robot.granted, robot.notified_limit) = (shifted(robot.granted), shifted(robot.notified_limit));
         robot.next = 0.0;
         // No hold beyond `told` has been told.
-        robot.ceiling = robot.told;
+        robot.ceiling = robot.notified_limit;
         (robot.moved, robot.stands) = (None, false);
         robot.path += 1;
         robot.origin += dropped;
         (robot.course, robot.rest) = (course, rest);
         if let Some(before) = robot.mission.replace(mission.mission.clone()) {
-            Robot::outlives(&mut robot.past, before);
+            SupervisedRobot::outlives(&mut robot.past, before);
         }
-        robot.asked = Some(Asked { after: mission.after, shapes: mission.shapes.len() });
+        robot.asked = Some(MissionFingerprint { after: mission.after, shapes: mission.shapes.len() });
         robot.waiting = None;
-        let event = Event::Admitted {
+        let event = SupervisorEvent::Admitted {
             robot: robot.name.clone(),
             mission: mission.mission.clone(),
             path: robot.path,
@@ -300,28 +307,28 @@ impl Supervisor {
     fn forget_holds_with(&mut self, place: usize) {
         let pairs = self.orders.decisions().map(|decision| decision.agents).filter(|agents| agents.contains(&place));
         for agents in pairs {
-            agents.into_iter().for_each(|agent| self.robots[agent].hold = None);
+            agents.into_iter().for_each(|agent| self.robots[agent].authority = None);
         }
         for (other, robot) in self.robots.iter_mut().enumerate() {
-            if other == place || robot.hold.is_some_and(|wait| wait.by.is_some_and(|(by, _)| by == place)) {
-                robot.hold = None;
+            if other == place || robot.authority.is_some_and(|wait| wait.waits_for.is_some_and(|(by, _)| by == place)) {
+                robot.authority = None;
             }
         }
     }
 
     /// A robot with its orders, as the journal has it.
-    pub(super) fn known(&self, place: usize) -> Result<Known, Fault> {
+    pub(super) fn known(&self, place: usize) -> Result<StoredRobot, RequestError> {
         let fleet = fleet(&self.robots)?;
         let robot = &self.robots[place];
         let decisions = self.orders.decisions().filter(|decision| decision.agents.contains(&place));
-        let row = self.orders.row(&fleet, place).map_err(Fault::invalid)?;
-        let orders = row.zip(decisions).map(|((_, region, pass), decision)| Kept {
+        let row = self.orders.row(&fleet, place).map_err(RequestError::invalid)?;
+        let orders = row.zip(decisions).map(|((_, region, pass), decision)| StoredPrecedence {
             with: self.robots[region.other()].name.clone(),
             pass: pass.into(),
-            since: decision.since,
+            active_from: decision.since,
             lengths: [region.length(), region.other_length()].map(|length| [length.lo, length.hi]),
         });
-        Ok(Known {
+        Ok(StoredRobot {
             name: robot.name.clone(),
             abilities: robot.abilities,
             course: robot.course.clone(),
@@ -331,7 +338,7 @@ impl Supervisor {
             mission: robot.mission.clone(),
             asked: robot.asked,
             past: robot.past.clone(),
-            at: robot.at,
+            arc_length: robot.arc_length,
             ceiling: robot.ceiling,
             alarm: robot.alarm.clone(),
             waiting: robot.waiting.clone(),
@@ -343,7 +350,7 @@ impl Supervisor {
     /// Tries the mission that has been due for the longest time; of several, the oldest. (Trying the oldest of all due missions
     /// would starve a young one while many wait, even if it was the only one that could be admitted.)
     pub(super) fn retry(&mut self, now: f64) {
-        let time = |robot: &Robot| self.tries.get(&robot.name).map_or(f64::NEG_INFINITY, |last| last.next);
+        let time = |robot: &SupervisedRobot| self.tries.get(&robot.name).map_or(f64::NEG_INFINITY, |last| last.next);
         let waiting = self.robots.iter().enumerate().filter_map(|(place, robot)| {
             let turn = robot.waiting.as_ref()?.turn;
             Some((time(robot), turn, place)).filter(|(time, ..)| *time <= now)
@@ -355,7 +362,7 @@ impl Supervisor {
         let name = robot.name.clone();
         let possible = match waiting.path == robot.path {
             true => joint(robot, waiting.after).and_then(|joint| self.attempt(place, &waiting, joint, now)),
-            false => Err(Fault::NoSuchPath { path: robot.path }),
+            false => Err(RequestError::NoSuchPath { path: robot.path }),
         };
         match possible {
             Ok(None) => {}
@@ -364,18 +371,18 @@ impl Supervisor {
                 last.pause = (2.0 * last.pause).clamp(PAUSE[0], PAUSE[1]);
                 last.next = now + last.pause;
                 if last.last.as_ref() != Some(&verdict)
-                    && let Verdict::Waiting { by, why } = verdict.clone()
+                    && let AdmissionResult::Waiting { by, why } = verdict.clone()
                 {
-                    self.events.push(Event::Waiting { robot: name, mission: waiting.mission, by, why });
+                    self.events.push(SupervisorEvent::Waiting { robot: name, mission: waiting.mission, by, why });
                 }
                 last.last = Some(verdict);
             }
             Err(fault) => {
                 self.robots[place].waiting = None;
-                Robot::outlives(&mut self.robots[place].past, waiting.mission.clone());
+                SupervisedRobot::outlives(&mut self.robots[place].past, waiting.mission.clone());
                 self.tries.remove(&name);
-                self.entries.push(Entry::Waiting { robot: name.clone(), waiting: None });
-                self.drops(&name, waiting.mission, Cause::Impossible(fault.to_string()));
+                self.entries.push(JournalEntry::Waiting { robot: name.clone(), waiting: None });
+                self.drops(&name, waiting.mission, CancelCause::Impossible(fault.to_string()));
             }
         }
     }
@@ -384,35 +391,35 @@ impl Supervisor {
 /// Length of a robot's path at which a new path begins, corrected for rounding.
 ///
 /// # Errors
-/// [`Fault`] if no path can begin there.
-fn joint(robot: &Robot, after: f64) -> Result<f64, Fault> {
+/// [`RequestError`] if no path can begin there.
+fn joint(robot: &SupervisedRobot, after: f64) -> Result<f64, RequestError> {
     let length = robot.course.length();
     if !(-JOINT..=length + JOINT).contains(&after) {
-        return Err(Fault::invalid(format!("after: {after} is out of range; the path is {length} m long")));
+        return Err(RequestError::invalid(format!("after: {after} is out of range; the path is {length} m long")));
     }
-    if after < robot.told - JOINT {
-        return Err(Fault::Released { hold: robot.told });
+    if after < robot.notified_limit - JOINT {
+        return Err(RequestError::Released { hold: robot.notified_limit });
     }
-    Ok(after.max(robot.told).min(length))
+    Ok(after.max(robot.notified_limit).min(length))
 }
 
 /// Checks that a path that leaves that of a robot at a length begins at the stated pose. `extent` bounds the distance of the points
 /// of the path from its start: a wrong heading there becomes a wrong place further on.
-fn is_there(robot: &Robot, after: f64, start: Start, extent: f64) -> Result<(), Fault> {
-    let end = robot.course.arrival(after).map_err(Fault::invalid)?;
+fn is_there(robot: &SupervisedRobot, after: f64, start: StartPose, extent: f64) -> Result<(), RequestError> {
+    let end = robot.course.arrival(after).map_err(RequestError::invalid)?;
     let distance = (start.x - end.x).hypot(start.y - end.y);
     let angle = (start.heading - end.heading).sin().atan2((start.heading - end.heading).cos()).abs();
     // Written so that NaN is not near.
     let is_near = angle <= JOIN && distance + angle * extent <= JOIN;
-    if is_near { Ok(()) } else { Err(Fault::Apart { distance, angle }) }
+    if is_near { Ok(()) } else { Err(RequestError::Apart { distance, angle }) }
 }
 
-fn admitted(robot: &Robot) -> Verdict {
-    Verdict::Admitted { path: robot.path, length: robot.course.length(), hold: robot.granted }
+fn admitted(robot: &SupervisedRobot) -> AdmissionResult {
+    AdmissionResult::Admitted { path: robot.path, length: robot.course.length(), hold: robot.granted }
 }
 
 /// Preferred passing order: first goes the robot that makes the other one wait less, if there were no other robots.
-fn preferred(region: &RegionRef<'_, f64>, at: f64, known: &[Progress<f64>], speeds: &[f64]) -> Pass {
+fn preferred(region: &RegionRef<'_, f64>, at: f64, known: &[Progress<f64>], speeds: &[f64]) -> PassingState {
     let speed = |agent: usize| speeds.get(agent).copied().unwrap_or(1.0);
     let there = known.get(region.other()).map_or(0.0, |progress| progress.at.lo);
     let times = |length: Interval<f64>, at: f64, speed: f64| {
@@ -420,5 +427,5 @@ fn preferred(region: &RegionRef<'_, f64>, at: f64, known: &[Progress<f64>], spee
     };
     let own = times(region.length(), at, speed(region.ego()));
     let their = times(region.other_length(), there, speed(region.other()));
-    if own[1] - their[0] <= their[1] - own[0] { Pass::First } else { Pass::Second }
+    if own[1] - their[0] <= their[1] - own[0] { PassingState::First } else { PassingState::Second }
 }

@@ -1,49 +1,51 @@
 //! Robots that are not where they may be: all others keep away from everywhere that such a robot can have reached.
 
 use super::{Supervisor, fleet};
-use crate::course::{Course, Start};
-use crate::event::Event;
+use crate::event::SupervisorEvent;
+use crate::owned_path::{OwnedPath, StartPose};
 use crate::robot::{Alarm, ROOM};
-use pcr_core::{Ecm, Hold, Pass, RegionRef};
+use pcr_core::{Ecm, MovementAuthority, PassingState, RegionRef};
 
 /// A limit to how far a robot may go, whatever its orders say, because another one is not where it may be.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Limit {
+pub(super) struct AlarmLimit {
     /// Length of the path \[m\]; `None`: no limit.
-    pub(super) at: Option<f64>,
+    pub(super) arc_length: Option<f64>,
     /// Index of the robot that is not where it may be.
     by: usize,
 }
 
-impl Limit {
+impl AlarmLimit {
     fn lower(&mut self, at: f64, by: usize) {
-        if self.at.is_none_or(|before| at < before) {
-            *self = Self { at: Some(at), by };
+        if self.arc_length.is_none_or(|before| at < before) {
+            *self = Self { arc_length: Some(at), by };
         }
     }
 }
 
 impl Supervisor {
     /// The limits of all robots; robots that have been allowed to go beyond are stopped. Empty if there is no alarm.
-    pub(super) fn limits(&mut self, now: f64) -> Vec<Limit> {
+    pub(super) fn limits(&mut self, now: f64) -> Vec<AlarmLimit> {
         if !self.hazards {
             return Vec::new();
         }
-        let mut limits = vec![Limit::default(); self.robots.len()];
+        let mut limits = vec![AlarmLimit::default(); self.robots.len()];
         self.lost(now, &mut limits);
         self.unordered(&mut limits);
         self.hazards = self.robots.iter().any(|robot| robot.alarm.is_some());
         for (place, limit) in limits.iter().enumerate() {
             let robot = &self.robots[place];
             // A robot that stands needs no `stop`. At the end of its path its length stays a little before that.
-            let by = limit.at.filter(|at| *at < robot.told && robot.told > robot.at + 2.0 * ROOM);
+            let by = limit
+                .arc_length
+                .filter(|at| *at < robot.notified_limit && robot.notified_limit > robot.arc_length + 2.0 * ROOM);
             let by = by.map(|_| self.robots[limit.by].name.clone());
             self.hazards |= by.is_some();
             let robot = &mut self.robots[place];
             let name = robot.name.clone();
             match (&robot.stopped, &by) {
-                (None, Some(by)) => self.events.push(Event::Stop { robot: name, by: by.clone() }),
-                (Some(_), None) => self.events.push(Event::Go { robot: name }),
+                (None, Some(by)) => self.events.push(SupervisorEvent::Stop { robot: name, by: by.clone() }),
+                (Some(_), None) => self.events.push(SupervisorEvent::Go { robot: name }),
                 _ => {}
             }
             robot.stopped = by;
@@ -52,14 +54,14 @@ impl Supervisor {
     }
 
     /// Limits because of robots with alarms: such a robot may be anywhere that its speed takes it from its last position.
-    fn lost(&self, now: f64, limits: &mut [Limit]) {
+    fn lost(&self, now: f64, limits: &mut [AlarmLimit]) {
         for (place, robot) in self.robots.iter().enumerate() {
             let (at, spread) = match &robot.alarm {
                 None => continue,
                 Some(Alarm::Off { x, y }) => ([*x, *y], 0.0),
                 Some(Alarm::Beyond { at, .. }) => {
                     let pose = robot.course.pose(*at);
-                    ([pose.x, pose.y], (at - robot.at).max(0.0))
+                    ([pose.x, pose.y], (at - robot.arc_length).max(0.0))
                 }
                 Some(Alarm::Back { between: [lo, hi], .. }) => {
                     let pose = robot.course.pose(*hi);
@@ -68,7 +70,7 @@ impl Supervisor {
             };
             // After a restart it may be anywhere until it sends a message: no disc is that large, so all robots stop.
             let gone = robot.heard.map_or(f64::INFINITY, |heard| robot.abilities.speed * (now - heard).max(0.0));
-            let radius = robot.abilities.reach() + spread + gone;
+            let radius = robot.abilities.radius_with_margin() + spread + gone;
             for (other, limit) in limits.iter_mut().enumerate().filter(|(other, _)| *other != place) {
                 if let Some(at) = self.meets(other, at, radius) {
                     limit.lower(at, place);
@@ -81,21 +83,21 @@ impl Supervisor {
     fn meets(&self, place: usize, [x, y]: [f64; 2], radius: f64) -> Option<f64> {
         let robot = &self.robots[place];
         let found = || -> Option<Option<f64>> {
-            let disc = Course::new(Start { x, y, heading: 0.0 }, Vec::new()).ok()?;
+            let disc = OwnedPath::new(StartPose { x, y, heading: 0.0 }, Vec::new()).ok()?;
             let fleet = [robot.motion().ok()?, disc.motion(radius).ok()?];
             let ecm = Ecm::grown(&fleet).ok()?;
             let regions = ecm.pair(&fleet, 0, 1).ok()?;
-            let ahead = regions.map(|region| region.length()).filter(|length| length.hi >= robot.at);
-            Some(ahead.map(|length| length.lo.max(robot.at) - ROOM).reduce(f64::min))
+            let ahead = regions.map(|region| region.length()).filter(|length| length.hi >= robot.arc_length);
+            Some(ahead.map(|length| length.lo.max(robot.arc_length) - ROOM).reduce(f64::min))
         };
         // If it cannot be computed, the robot counts as near.
-        found().unwrap_or(Some(robot.at - ROOM))
+        found().unwrap_or(Some(robot.arc_length - ROOM))
     }
 
     /// A robot that was added where others may come: nothing is decided with it. Where one of them has been already,
     /// nothing is left to decide.
-    fn unordered(&self, limits: &mut [Limit]) {
-        if !self.orders.decisions().any(|decision| decision.pass == Pass::Undecided) {
+    fn unordered(&self, limits: &mut [AlarmLimit]) {
+        if !self.orders.decisions().any(|decision| decision.pass == PassingState::Undecided) {
             return;
         }
         let fleet = fleet(&self.robots);
@@ -103,19 +105,19 @@ impl Supervisor {
             let row = fleet.as_ref().ok().and_then(|fleet| self.orders.row(fleet, place).ok());
             let Some(row) = row else {
                 // If it cannot be told with whom nothing is decided, it may be with anybody near.
-                limit.lower(self.robots[place].at - ROOM, place);
+                limit.lower(self.robots[place].arc_length - ROOM, place);
                 continue;
             };
-            let undecided = row.filter(|(_, _, pass)| *pass == Pass::Undecided).map(|(_, region, _)| region);
+            let undecided = row.filter(|(_, _, pass)| *pass == PassingState::Undecided).map(|(_, region, _)| region);
             let left = |region: &RegionRef<'_, f64>| {
-                let [own, their] = [place, region.other()].map(|robot| self.robots[robot].at);
+                let [own, their] = [place, region.other()].map(|robot| self.robots[robot].arc_length);
                 own > region.length().hi || their > region.other_length().hi
             };
             for region in undecided.filter(|region| !left(region)) {
                 match region.hold(0.0, 0.0) {
-                    Hold::Free => {}
-                    Hold::At(hold) => limit.lower(hold, region.other()),
-                    Hold::Inside => limit.lower(self.robots[place].at - ROOM, region.other()),
+                    MovementAuthority::Free => {}
+                    MovementAuthority::At(hold) => limit.lower(hold, region.other()),
+                    MovementAuthority::Inside => limit.lower(self.robots[place].arc_length - ROOM, region.other()),
                 }
             }
         }
@@ -125,26 +127,30 @@ impl Supervisor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::course::Shape;
-    use crate::entry::Nowhere;
-    use crate::robot::Abilities;
-    use crate::supervisor::{Proposal, Settings};
+    use crate::journal_entry::NullStore;
+    use crate::owned_path::PathElement;
+    use crate::robot::RobotTraits;
+    use crate::supervisor::{MissionRequest, SupervisorConfig};
 
     #[test]
     fn where_the_table_is_not_that_of_the_robots_nobody_goes_on() {
-        let mut own = Supervisor::new(Settings::default(), Box::new(Nowhere));
-        let can = Abilities { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
-        own.add("east", can, Start { x: -3.0, y: 0.0, heading: 0.0 }).unwrap();
-        let path = vec![Shape::Line { length: 6.0 }];
+        let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(NullStore));
+        let can = RobotTraits { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+        own.add("east", can, StartPose { x: -3.0, y: 0.0, heading: 0.0 }).unwrap();
+        let path = vec![PathElement::Line { length: 6.0 }];
         let (robot, mission) = ("east".into(), "1".into());
-        own.mission(&Proposal { robot, mission, after: None, of: None, start: None, path }, 0.0).unwrap();
+        own.mission(&MissionRequest { robot, mission, after: None, expected_path: None, start: None, path }, 0.0)
+            .unwrap();
         own.settle(0.0).unwrap();
         assert!(own.robots[0].granted > 0.0);
-        own.add("new", can, Start { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
+        own.add("new", can, StartPose { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
         own.robots[1].abilities.radius = 0.3;
         let limits = own.limits(1.0);
         assert!(
-            limits.iter().zip(&own.robots).all(|(limit, robot)| limit.at.is_some_and(|at| at < robot.at)),
+            limits
+                .iter()
+                .zip(&own.robots)
+                .all(|(limit, robot)| limit.arc_length.is_some_and(|at| at < robot.arc_length)),
             "{limits:?}"
         );
         assert!(own.robots[0].stopped.is_some());

@@ -1,49 +1,49 @@
 //! Restores a supervisor from its journal.
 
-use super::{Settings, Supervisor, Table, fleet, grown};
-use crate::entry::{Entry, Keep, Kept, Known, Layout};
-use crate::fault::Fault;
-use crate::robot::{Alarm, Robot, remember};
-use pcr_core::{Mismatch, Pass, Reach};
+use super::{FleetPrecedences, Supervisor, SupervisorConfig, fleet, retry_with_growth};
+use crate::journal_entry::{JournalEntry, JournalStore, PageLayout, StoredPrecedence, StoredRobot};
+use crate::request_error::RequestError;
+use crate::robot::{Alarm, SupervisedRobot, remember};
+use pcr_core::{CheckState, MismatchError, PassingState};
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 
 /// The reason why a journal cannot be continued.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Damaged(pub(crate) String);
+pub struct JournalError(pub(crate) String);
 
-impl fmt::Display for Damaged {
+impl fmt::Display for JournalError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
     }
 }
 
-impl std::error::Error for Damaged {}
+impl std::error::Error for JournalError {}
 
-impl From<Mismatch> for Damaged {
-    fn from(mismatch: Mismatch) -> Self {
+impl From<MismatchError> for JournalError {
+    fn from(mismatch: MismatchError) -> Self {
         Self(mismatch.to_string())
     }
 }
 
 /// The state after a number of entries.
 #[derive(Default)]
-struct State {
-    layout: Layout,
-    robots: Vec<Known>,
+struct RestoredState {
+    layout: PageLayout,
+    robots: Vec<StoredRobot>,
     spent: u64,
 }
 
-impl State {
-    fn robot(&mut self, name: &str) -> Result<&mut Known, Damaged> {
+impl RestoredState {
+    fn robot(&mut self, name: &str) -> Result<&mut StoredRobot, JournalError> {
         let found = self.robots.iter_mut().find(|robot| robot.name == name);
-        found.ok_or_else(|| Damaged(format!("an entry is about the robot {name}, which is not there")))
+        found.ok_or_else(|| JournalError(format!("an entry is about the robot {name}, which is not there")))
     }
 
-    fn take(&mut self, entry: Entry) -> Result<(), Damaged> {
+    fn take(&mut self, entry: JournalEntry) -> Result<(), JournalError> {
         match entry {
-            Entry::Layout(layout) => self.layout = layout,
-            Entry::Robot(known) => {
+            JournalEntry::Layout(layout) => self.layout = layout,
+            JournalEntry::Robot(known) => {
                 // These are its orders with all others, so earlier orders of others with it are removed.
                 for other in &mut self.robots {
                     other.orders.retain(|kept| kept.with != known.name);
@@ -53,45 +53,45 @@ impl State {
                     None => self.robots.push(*known),
                 }
             }
-            Entry::Removed { robot } => {
+            JournalEntry::Removed { robot } => {
                 self.spent = self.spent.max(self.robot(&robot)?.path);
                 self.robots.retain(|other| other.name != robot);
                 for other in &mut self.robots {
                     other.orders.retain(|kept| kept.with != robot);
                 }
             }
-            Entry::Spent { path } => self.spent = self.spent.max(path),
-            Entry::Ceiling { robot, path, ceiling } => {
+            JournalEntry::Spent { path } => self.spent = self.spent.max(path),
+            JournalEntry::Ceiling { robot, path, persisted_limit: ceiling } => {
                 let known = self.robot(&robot)?;
                 if known.path == path {
                     known.ceiling = ceiling;
                 }
             }
-            Entry::Places { places } => {
+            JournalEntry::Places { places } => {
                 for (robot, path, at) in places {
                     // The robot may have been removed in the same batch.
                     if let Ok(known) = self.robot(&robot)
                         && known.path == path
                     {
-                        known.at = known.at.max(at);
+                        known.arc_length = known.arc_length.max(at);
                     }
                 }
             }
-            Entry::Waiting { robot, waiting } => {
+            JournalEntry::Waiting { robot, waiting } => {
                 let known = self.robot(&robot)?;
                 if let Some(before) = std::mem::replace(&mut known.waiting, waiting) {
-                    Robot::outlives(&mut known.past, before.mission);
+                    SupervisedRobot::outlives(&mut known.past, before.mission);
                 }
             }
-            Entry::Note { robot, key, note } => {
+            JournalEntry::Note { robot, key, note } => {
                 self.robot(&robot)?.notes.insert(key, note);
             }
-            Entry::More { robot, key, more } => {
+            JournalEntry::More { robot, key, more } => {
                 if !remember(&mut self.robot(&robot)?.notes, &key, &more) {
-                    return Err(Damaged(format!("{robot}, {key}: more of what is no list")));
+                    return Err(JournalError(format!("{robot}, {key}: more of what is no list")));
                 }
             }
-            Entry::Alarm { robot, alarm } => self.robot(&robot)?.alarm = alarm,
+            JournalEntry::Alarm { robot, alarm } => self.robot(&robot)?.alarm = alarm,
         }
         Ok(())
     }
@@ -101,17 +101,21 @@ impl Supervisor {
     /// The supervisor with the state of these entries. Holds that may have been told count as told.
     ///
     /// # Errors
-    /// [`Damaged`] if the entries contradict one another, or if the regions of the paths differ from those for which the orders
+    /// [`JournalError`] if the entries contradict one another, or if the regions of the paths differ from those for which the orders
     /// were made.
-    pub fn restored(settings: Settings, entries: Vec<Entry>, keeper: Box<dyn Keep>) -> Result<Self, Damaged> {
-        let mut state = State::default();
+    pub fn restored(
+        settings: SupervisorConfig,
+        entries: Vec<JournalEntry>,
+        keeper: Box<dyn JournalStore>,
+    ) -> Result<Self, JournalError> {
+        let mut state = RestoredState::default();
         entries.into_iter().try_for_each(|entry| state.take(entry))?;
         let mut own = Self::new(settings, keeper);
         (own.layout, own.spent) = (state.layout, state.spent);
         if own.spent >= MOST {
-            return Err(Damaged("a number of a path that cannot be".into()));
+            return Err(JournalError("a number of a path that cannot be".into()));
         }
-        let mut kept: HashMap<[String; 2], Vec<Kept>> = HashMap::new();
+        let mut kept: HashMap<[String; 2], Vec<StoredPrecedence>> = HashMap::new();
         for known in state.robots {
             for order in &known.orders {
                 kept.entry([known.name.clone(), order.with.clone()]).or_default().push(order.clone());
@@ -122,16 +126,17 @@ impl Supervisor {
             own.turn = own.turn.max(turn + 1);
         }
         let count = own.robots.len();
-        (own.unsaved, own.reaches, own.hazards) = (vec![false; count], vec![Reach::EMPTY; count], true);
+        (own.unsaved, own.reaches, own.hazards) = (vec![false; count], vec![CheckState::EMPTY; count], true);
         own.order(kept)?;
         Ok(own)
     }
 
     /// Restores the passing orders.
-    fn order(&mut self, mut kept: HashMap<[String; 2], Vec<Kept>>) -> Result<(), Damaged> {
-        let fleet = fleet(&self.robots).map_err(|fault| Damaged(fault.to_string()))?;
-        let mut orders = Table::new(Vec::new(), Vec::new(), Vec::new());
-        grown(&mut orders, |orders| Ok(orders.fill(&fleet)?)).map_err(|refused| Damaged(refused.to_string()))?;
+    fn order(&mut self, mut kept: HashMap<[String; 2], Vec<StoredPrecedence>>) -> Result<(), JournalError> {
+        let fleet = fleet(&self.robots).map_err(|fault| JournalError(fault.to_string()))?;
+        let mut orders = FleetPrecedences::new(Vec::new(), Vec::new(), Vec::new());
+        retry_with_growth(&mut orders, |orders| Ok(orders.fill(&fleet)?))
+            .map_err(|refused| JournalError(refused.to_string()))?;
         let mut missing = HashSet::new();
         for ego in 0..fleet.len() {
             let name = &self.robots[ego].name;
@@ -146,24 +151,26 @@ impl Supervisor {
                     missing.insert([ego, group[0].1]);
                     continue;
                 };
-                let same = |(found, kept): (&(usize, usize, [pcr_core::Interval<f64>; 2]), &Kept)| {
+                let same = |(found, kept): (&(usize, usize, [pcr_core::Interval<f64>; 2]), &StoredPrecedence)| {
                     let ends = found.2.iter().flat_map(|length| [length.lo, length.hi]);
                     ends.zip(kept.lengths.as_flattened()).all(|(a, b)| (a - b).abs() <= 1e-6)
                 };
                 if made.len() != group.len() || !group.iter().zip(&made).all(same) {
-                    return Err(Damaged(format!("the regions of {name} and {other} are not those of the journal")));
+                    return Err(JournalError(format!(
+                        "the regions of {name} and {other} are not those of the journal"
+                    )));
                 }
                 for (&(place, ..), order) in group.iter().zip(&made) {
-                    orders.decide_at(&fleet, place, ego, Pass::from(order.pass), order.since)?;
+                    orders.decide_at(&fleet, place, ego, PassingState::from(order.pass), order.active_from)?;
                 }
             }
         }
         if let Some([robot, other]) = missing.iter().find(|[ego, other]| missing.contains(&[*other, *ego])) {
             let [robot, other] = [robot, other].map(|place| &self.robots[*place].name);
-            return Err(Damaged(format!("the journal has no orders of {robot} and {other}, which meet")));
+            return Err(JournalError(format!("the journal has no orders of {robot} and {other}, which meet")));
         }
         if let Some([robot, other]) = kept.into_keys().next() {
-            return Err(Damaged(format!("the journal has orders of {robot} and {other}, which do not meet")));
+            return Err(JournalError(format!("the journal has orders of {robot} and {other}, which do not meet")));
         }
         drop(fleet);
         self.orders = orders;
@@ -174,16 +181,16 @@ impl Supervisor {
     ///
     /// # Errors
     /// [`Fault::Invalid`] if the table of orders is not that of the robots.
-    pub fn snapshot(&self) -> Result<Vec<Entry>, Fault> {
-        let layout = std::iter::once(Ok(Entry::Layout(self.layout.clone())));
+    pub fn snapshot(&self) -> Result<Vec<JournalEntry>, RequestError> {
+        let layout = std::iter::once(Ok(JournalEntry::Layout(self.layout.clone())));
         let robots = (0..self.robots.len()).map(|place| {
             let mut known = self.known(place)?;
             // Each order once: with robots of lower index.
-            let before = |kept: &Kept| self.names.get(&kept.with).is_some_and(|&other| other < place);
+            let before = |kept: &StoredPrecedence| self.names.get(&kept.with).is_some_and(|&other| other < place);
             known.orders.retain(before);
-            Ok(Entry::Robot(Box::new(known)))
+            Ok(JournalEntry::Robot(Box::new(known)))
         });
-        let spent = (self.spent > 0).then_some(Ok(Entry::Spent { path: self.spent }));
+        let spent = (self.spent > 0).then_some(Ok(JournalEntry::Spent { path: self.spent }));
         layout.chain(spent).chain(robots).collect()
     }
 }
@@ -191,23 +198,26 @@ impl Supervisor {
 /// Numbers of paths and of missions in the queue are below this, so that they can go on counting.
 const MOST: u64 = 1 << 53;
 
-fn robot(known: Known) -> Result<Robot, Damaged> {
-    let abilities = known.abilities.checked().map_err(|why| Damaged(format!("{}: {why}", known.name)))?;
-    let mut robot = Robot::new(known.name, abilities, known.course);
+fn robot(known: StoredRobot) -> Result<SupervisedRobot, JournalError> {
+    let abilities = known.abilities.checked().map_err(|why| JournalError(format!("{}: {why}", known.name)))?;
+    let mut robot = SupervisedRobot::new(known.name, abilities, known.course);
     let end = robot.course.length();
     let counts = known.path < MOST && known.waiting.as_ref().is_none_or(|waiting| waiting.turn < MOST);
-    if !counts || !known.rest.is_valid() || ![known.at, known.ceiling, known.origin].iter().all(|value| *value >= 0.0) {
-        return Err(Damaged(format!("{}: a number that cannot be", robot.name)));
+    if !counts
+        || !known.rest.is_valid()
+        || ![known.arc_length, known.ceiling, known.origin].iter().all(|value| *value >= 0.0)
+    {
+        return Err(JournalError(format!("{}: a number that cannot be", robot.name)));
     }
     (robot.path, robot.origin, robot.rest) = (known.path, known.origin, known.rest);
     (robot.mission, robot.asked, robot.past) = (known.mission, known.asked, known.past);
-    robot.at = known.at.min(end);
-    robot.up_to = robot.at;
-    robot.ceiling = known.ceiling.max(robot.at).min(end);
-    (robot.granted, robot.told) = (robot.at, robot.ceiling);
+    robot.arc_length = known.arc_length.min(end);
+    robot.up_to = robot.arc_length;
+    robot.ceiling = known.ceiling.max(robot.arc_length).min(end);
+    (robot.granted, robot.notified_limit) = (robot.arc_length, robot.ceiling);
     // It has been told nothing further since then.
-    if let Some(Alarm::Beyond { told, .. }) = known.alarm {
-        robot.told = robot.told.min(told.max(robot.at));
+    if let Some(Alarm::Beyond { notified_limit: told, .. }) = known.alarm {
+        robot.notified_limit = robot.notified_limit.min(told.max(robot.arc_length));
     }
     robot.alarm = known.alarm;
     robot.waiting = known.waiting;

@@ -1,53 +1,53 @@
 //! Connects all vehicles of a fleet with their manager and the supervisor. It only converts messages, and does no input
 //! or output itself.
 
-use super::lane::{Due, Lane, Post, Profile, To};
-use crate::event::Event;
-use crate::robot::Robot;
-use crate::supervisor::{Damaged, Supervisor};
-use pcr_formats::vda5050::decode::Limits;
-use pcr_formats::vda5050::topics::{Interface, Key, Kind};
+use super::vehicle_adapter::{OutboundMessage, Recipient, SendCondition, VehicleAdapter, VehicleConfig};
+use crate::event::SupervisorEvent;
+use crate::robot::SupervisedRobot;
+use crate::supervisor::{JournalError, Supervisor};
+use pcr_formats::vda5050::decode::MessageLimits;
+use pcr_formats::vda5050::topics::{TopicInterface, TopicKind, VehicleId};
 use serde::Serialize;
 use std::collections::{BTreeSet, HashMap};
 
 /// Settings of a bridge.
 #[derive(Clone, Debug)]
-pub struct Settings {
+pub struct BridgeConfig {
     /// Topics of the fleet manager.
-    pub manager: Interface,
+    pub manager: TopicInterface,
     /// Topics of the vehicles.
-    pub vehicles: Interface,
+    pub vehicles: TopicInterface,
     /// Limits of the messages that are read.
-    pub limits: Limits,
+    pub limits: MessageLimits,
 }
 
 /// A message to the broker.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Publish {
+pub struct MqttMessage {
     /// Topic.
     pub topic: String,
     /// Content, as JSON.
     pub payload: Vec<u8>,
     /// Whether it is sent with quality of service 1.
-    pub assured: bool,
+    pub at_least_once: bool,
     /// Whether the broker keeps it.
     pub retain: bool,
 }
 
 /// A message to the broker, and when it may be sent.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Out {
+pub struct PendingPublish {
     /// The message.
-    pub message: Publish,
+    pub message: MqttMessage,
     /// When it may be sent.
-    pub due: Due,
+    pub due: SendCondition,
     /// Index of its lane.
-    place: usize,
+    vehicle_index: usize,
 }
 
 /// Numbers of messages since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Counts {
+pub struct BridgeCounters {
     /// Number of messages read.
     pub read: u64,
     /// Number of messages refused.
@@ -59,31 +59,31 @@ pub struct Counts {
 }
 
 /// The state of a robot on which the messages to its vehicle depend: number of its path, hold, whether it is stopped.
-type Rights = (u64, f64, bool);
+type RobotAuthority = (u64, f64, bool);
 
 /// The state of the supervisor when it was last compared.
 #[derive(Debug, Default)]
-struct Seen {
-    census: Option<u64>,
+struct SupervisorSnapshot {
+    fleet_revision: Option<u64>,
     /// For each robot its lane and its rights.
-    rights: Vec<(Option<usize>, Rights)>,
+    authorities: Vec<(Option<usize>, RobotAuthority)>,
     /// Lanes whose vehicles are not in the supervisor yet.
     unknown: Vec<usize>,
 }
 
 /// The fleet.
 #[derive(Debug)]
-pub struct Bridge {
-    settings: Settings,
-    lanes: Vec<Lane>,
-    places: HashMap<Key, usize>,
+pub struct Vda5050Bridge {
+    settings: BridgeConfig,
+    lanes: Vec<VehicleAdapter>,
+    places: HashMap<VehicleId, usize>,
     /// Lanes for which something has come since they were last handled.
     touched: BTreeSet<usize>,
-    seen: Seen,
-    out: Vec<Out>,
+    seen: SupervisorSnapshot,
+    out: Vec<PendingPublish>,
     /// Lanes whose last message to the manager was too large.
     large: BTreeSet<usize>,
-    counts: Counts,
+    counts: BridgeCounters,
     log: Vec<String>,
     /// Time of the last reminder of missing vehicles \[s\].
     said: f64,
@@ -97,24 +97,28 @@ const REMINDER: f64 = 30.0;
 /// Time between two rounds over all lanes, in which lost messages are sent again \[s\].
 const LOOK: f64 = 0.1;
 
-impl Bridge {
+impl Vda5050Bridge {
     /// The bridge of these vehicles, with the notes that the supervisor has stored about them.
     ///
     /// # Errors
-    /// [`Damaged`] if a note cannot be read.
-    pub fn new(settings: Settings, profiles: Vec<Profile>, supervisor: &Supervisor) -> Result<Self, Damaged> {
-        let lanes = profiles.into_iter().map(|profile| Lane::new(profile, supervisor));
-        let lanes: Vec<Lane> = lanes.collect::<Result<_, _>>()?;
+    /// [`JournalError`] if a note cannot be read.
+    pub fn new(
+        settings: BridgeConfig,
+        profiles: Vec<VehicleConfig>,
+        supervisor: &Supervisor,
+    ) -> Result<Self, JournalError> {
+        let lanes = profiles.into_iter().map(|profile| VehicleAdapter::new(profile, supervisor));
+        let lanes: Vec<VehicleAdapter> = lanes.collect::<Result<_, _>>()?;
         let places = lanes.iter().enumerate().map(|(place, lane)| (lane.profile().key.clone(), place)).collect();
         Ok(Self {
             settings,
             touched: (0..lanes.len()).collect(),
             lanes,
             places,
-            seen: Seen::default(),
+            seen: SupervisorSnapshot::default(),
             out: Vec::new(),
             large: BTreeSet::new(),
-            counts: Counts::default(),
+            counts: BridgeCounters::default(),
             log: Vec::new(),
             said: 0.0,
             looked: f64::NEG_INFINITY,
@@ -123,20 +127,20 @@ impl Bridge {
 
     /// The topics to which to subscribe.
     pub fn filters(&self) -> Vec<String> {
-        let Settings { manager, vehicles, .. } = &self.settings;
-        let of = |interface: &Interface, kinds: &[Kind]| {
+        let BridgeConfig { manager, vehicles, .. } = &self.settings;
+        let of = |interface: &TopicInterface, kinds: &[TopicKind]| {
             kinds.iter().flat_map(|kind| interface.filters(*kind)).collect::<Vec<_>>()
         };
-        [of(vehicles, &Kind::OF_VEHICLES), of(manager, &Kind::TO_VEHICLES)].concat()
+        [of(vehicles, &TopicKind::OF_VEHICLES), of(manager, &TopicKind::TO_VEHICLES)].concat()
     }
 
     /// Numbers of messages since the start.
-    pub fn counts(&self) -> Counts {
+    pub fn counts(&self) -> BridgeCounters {
         self.counts
     }
 
     /// The vehicles.
-    pub fn lanes(&self) -> impl Iterator<Item = &Lane> {
+    pub fn lanes(&self) -> impl Iterator<Item = &VehicleAdapter> {
         self.lanes.iter()
     }
 
@@ -156,9 +160,9 @@ impl Bridge {
 
     /// Takes a message that the broker had kept. It may be old, so most kinds are ignored.
     pub fn receive_kept(&mut self, supervisor: &mut Supervisor, topic: &str, payload: &[u8], came: f64) {
-        let Settings { manager, vehicles, .. } = &self.settings;
+        let BridgeConfig { manager, vehicles, .. } = &self.settings;
         let kind = vehicles.parse(topic).or_else(|| manager.parse(topic)).map(|(.., kind)| kind);
-        if kind.is_none_or(Kind::is_lasting) {
+        if kind.is_none_or(TopicKind::is_lasting) {
             return self.receive(supervisor, topic, payload, came);
         }
         self.counts.refused += 1;
@@ -174,8 +178,8 @@ impl Bridge {
     /// follows from requests begins now.
     pub fn receive_late(&mut self, supervisor: &mut Supervisor, topic: &str, payload: &[u8], [came, now]: [f64; 2]) {
         let settings = &self.settings;
-        let from_vehicle = settings.vehicles.parse(topic).filter(|(.., kind)| Kind::OF_VEHICLES.contains(kind));
-        let from_manager = settings.manager.parse(topic).filter(|(.., kind)| Kind::TO_VEHICLES.contains(kind));
+        let from_vehicle = settings.vehicles.parse(topic).filter(|(.., kind)| TopicKind::OF_VEHICLES.contains(kind));
+        let from_manager = settings.manager.parse(topic).filter(|(.., kind)| TopicKind::TO_VEHICLES.contains(kind));
         let Some((is_third, key, kind)) = from_vehicle.or(from_manager) else {
             self.counts.foreign += 1;
             return;
@@ -189,24 +193,24 @@ impl Bridge {
         self.touched.insert(place);
         let lane = &mut self.lanes[place];
         let result = match kind {
-            Kind::State => lane.state(supervisor, payload, limits, is_third, came),
-            Kind::Visualization => lane
+            TopicKind::State => lane.state(supervisor, payload, limits, is_third, came),
+            TopicKind::Visualization => lane
                 .visualization(supervisor, payload, limits, is_third, came)
                 .inspect(|()| lane.pass_on(kind, is_third, payload)),
-            Kind::Connection => {
+            TopicKind::Connection => {
                 lane.connection(payload, limits, is_third, came).inspect(|()| lane.pass_on(kind, is_third, payload))
             }
-            Kind::Factsheet => lane
+            TopicKind::Factsheet => lane
                 .factsheet(supervisor, payload, limits, is_third, came)
                 .inspect(|()| lane.pass_on(kind, is_third, payload)),
-            Kind::InstantActions => lane.instant_actions(supervisor, payload, limits, is_third, now),
-            Kind::Order => {
+            TopicKind::InstantActions => lane.instant_actions(supervisor, payload, limits, is_third, now),
+            TopicKind::Order => {
                 lane.order(supervisor, payload, limits, is_third, now);
                 Ok(())
             }
-            Kind::Responses => lane.responses(payload, limits, is_third),
+            TopicKind::Responses => lane.responses(payload, limits, is_third),
             // Zones are up to the manager.
-            Kind::ZoneSet => lane.untouched(kind, payload, limits, is_third),
+            TopicKind::ZoneSet => lane.untouched(kind, payload, limits, is_third),
         };
         if let Err(refusal) = result {
             self.counts.refused += 1;
@@ -216,16 +220,16 @@ impl Bridge {
 
     /// Handles what the supervisor has decided, and the events since the last call. The resulting messages to vehicles may be
     /// sent once the supervisor has settled.
-    pub fn settled(&mut self, supervisor: &mut Supervisor, events: &[Event], now: f64) {
-        self.told(events);
-        self.look(supervisor);
+    pub fn settled(&mut self, supervisor: &mut Supervisor, events: &[SupervisorEvent], now: f64) {
+        self.on_events(events);
+        self.compare_supervisor(supervisor);
         if now >= self.looked + LOOK {
             self.looked = now;
             self.touched.extend(0..self.lanes.len());
         }
         let touched = std::mem::take(&mut self.touched);
         // A vehicle without a position may stand anywhere, and one that is larger than its disc may be in the way of any other.
-        let is_sure = |lane: &Lane| lane.misfit().is_none() && !lane.is_doubtful();
+        let is_sure = |lane: &VehicleAdapter| lane.misfit().is_none() && !lane.is_doubtful();
         let is_known = self.seen.unknown.is_empty() && self.lanes.iter().all(is_sure);
         for &place in &touched {
             let lane = &mut self.lanes[place];
@@ -239,7 +243,7 @@ impl Bridge {
             self.said = now;
             let doubtful = self.lanes.iter().filter(|lane| lane.is_doubtful());
             let unknown = self.seen.unknown.iter().map(|&place| &self.lanes[place]);
-            let names: Vec<&str> = unknown.chain(doubtful).map(Lane::name).collect();
+            let names: Vec<&str> = unknown.chain(doubtful).map(VehicleAdapter::name).collect();
             if !names.is_empty() {
                 let names = names.join(", ");
                 self.log.push(format!("nobody is released anything until these have said where they stand: {names}"));
@@ -254,16 +258,16 @@ impl Bridge {
     }
 
     /// Compares the rights of all robots with those seen before, and finds the vehicles that are not in the supervisor.
-    fn look(&mut self, supervisor: &Supervisor) {
+    fn compare_supervisor(&mut self, supervisor: &Supervisor) {
         let Self { places, seen, touched, lanes, .. } = self;
         let robots = supervisor.robots();
-        if seen.census != Some(supervisor.census()) {
-            seen.census = Some(supervisor.census());
-            let place = |robot: &Robot| places.get(&key(&robot.name)?).copied();
-            seen.rights = robots.iter().map(|robot| (place(robot), (0, 0.0, false))).collect();
+        if seen.fleet_revision != Some(supervisor.census()) {
+            seen.fleet_revision = Some(supervisor.census());
+            let place = |robot: &SupervisedRobot| places.get(&key(&robot.name)?).copied();
+            seen.authorities = robots.iter().map(|robot| (place(robot), (0, 0.0, false))).collect();
             seen.unknown = (0..lanes.len()).filter(|&k| supervisor.robot(lanes[k].name()).is_err()).collect();
         }
-        for ((place, rights), robot) in seen.rights.iter_mut().zip(robots) {
+        for ((place, rights), robot) in seen.authorities.iter_mut().zip(robots) {
             let own = (robot.path, robot.granted, robot.stopped.is_some());
             if std::mem::replace(rights, own) != own {
                 touched.extend(*place);
@@ -272,11 +276,11 @@ impl Bridge {
     }
 
     /// Takes events of the supervisor, without any messages to vehicles yet.
-    pub fn told(&mut self, events: &[Event]) {
+    pub fn on_events(&mut self, events: &[SupervisorEvent]) {
         for event in events {
             if let Some(&place) = key(event.robot()).and_then(|key| self.places.get(&key)) {
                 self.touched.insert(place);
-                self.lanes[place].told(event);
+                self.lanes[place].on_event(event);
             }
         }
     }
@@ -284,8 +288,8 @@ impl Bridge {
     fn collect(&mut self, places: &BTreeSet<usize>) {
         let Self { settings, lanes, out, large, log, .. } = self;
         let posts = places.iter().flat_map(|&place| lanes[place].posts().into_iter().map(move |post| (place, post)));
-        for (place, Post { to, key, version, kind, payload, due }) in posts {
-            let interface = if to == To::Vehicle { &settings.vehicles } else { &settings.manager };
+        for (place, OutboundMessage { to, key, version, kind, payload, due }) in posts {
+            let interface = if to == Recipient::Vehicle { &settings.vehicles } else { &settings.manager };
             let topic = interface.topic(version, &key, kind);
             let (size, most) = (payload.len(), settings.limits.sent);
             if size > most {
@@ -295,39 +299,43 @@ impl Bridge {
                 }
                 continue;
             }
-            if kind == Kind::State {
+            if kind == TopicKind::State {
                 large.remove(&place);
             }
             let (assured, retain) = (kind.is_assured(), kind.is_retained());
-            out.push(Out { message: Publish { topic, payload, assured, retain }, due, place });
+            out.push(PendingPublish {
+                message: MqttMessage { topic, payload, at_least_once: assured, retain },
+                due,
+                vehicle_index: place,
+            });
         }
     }
 
     /// Takes the messages to be sent: after the changes from which they follow are in the journal.
-    pub fn out(&mut self) -> Vec<Publish> {
+    pub fn out(&mut self) -> Vec<MqttMessage> {
         self.due().into_iter().map(|out| out.message).collect()
     }
 
     /// Takes the messages to be sent, each with the time at which it may be.
-    pub fn due(&mut self) -> Vec<Out> {
+    pub fn due(&mut self) -> Vec<PendingPublish> {
         self.counts.sent += self.out.len() as u64;
         std::mem::take(&mut self.out)
     }
 
     /// Withholds a message that would let a vehicle go on that was told to stop since, and returns whether it does. What the manager has
     /// asked for in it is sent when the vehicle may go.
-    pub fn withholds(&mut self, out: &Out) -> bool {
-        let lane = &mut self.lanes[out.place];
-        let withheld = out.due == Due::Free && lane.has_to_stop();
+    pub fn withholds(&mut self, out: &PendingPublish) -> bool {
+        let lane = &mut self.lanes[out.vehicle_index];
+        let withheld = out.due == SendCondition::Free && lane.has_to_stop();
         if withheld {
-            lane.take_back(&out.message.payload);
+            lane.withhold_stop_pause(&out.message.payload);
         }
         withheld
     }
 }
 
 /// The vehicle with this name in the supervisor.
-fn key(name: &str) -> Option<Key> {
+fn key(name: &str) -> Option<VehicleId> {
     let (manufacturer, serial_number) = name.split_once('/')?;
-    Some(Key { manufacturer: manufacturer.into(), serial_number: serial_number.into() })
+    Some(VehicleId { manufacturer: manufacturer.into(), serial_number: serial_number.into() })
 }

@@ -1,8 +1,8 @@
 //! News of a connection that wait to be handled. If they come faster than that, older positions give way to newer ones of the same
 //! vehicle: a bridge that was kept up then reads what is so now, and needs no more memory.
 
-use super::mqtt::News;
-use pcr_formats::vda5050::topics::Kind;
+use super::mqtt::LinkEvent;
+use pcr_formats::vda5050::topics::TopicKind;
 use std::collections::{HashSet, VecDeque};
 use std::sync::mpsc::RecvTimeoutError;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -16,27 +16,27 @@ const LONG: usize = 4_096;
 const MOST: (usize, usize) = (1 << 16, 512 << 20);
 
 /// The end into which news are put. When it is dropped, no more will come.
-pub(super) struct Feeder(Inbox);
+pub(super) struct InboxSender(InboxReceiver);
 
 /// The end from which news are taken.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Inbox {
-    shared: Arc<(Mutex<Waiting>, Condvar)>,
+pub(super) struct InboxReceiver {
+    shared: Arc<(Mutex<InboxState>, Condvar)>,
 }
 
 #[derive(Debug, Default)]
-struct Waiting {
-    queue: VecDeque<News>,
+struct InboxState {
+    queue: VecDeque<LinkEvent>,
     bytes: usize,
     /// Length of the queue at which older positions give way next.
     next: usize,
-    lost: Lost,
+    lost: DroppedCounters,
     is_over: bool,
 }
 
 /// Numbers of messages that are not handled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Lost {
+pub(super) struct DroppedCounters {
     /// Positions that newer ones have replaced.
     pub(super) old: u64,
     /// Messages for which there was no room.
@@ -44,32 +44,32 @@ pub(super) struct Lost {
 }
 
 /// A queue of news.
-pub(super) fn inbox() -> (Feeder, Inbox) {
-    let inbox = Inbox::default();
-    (Feeder(inbox.clone()), inbox)
+pub(super) fn inbox() -> (InboxSender, InboxReceiver) {
+    let inbox = InboxReceiver::default();
+    (InboxSender(inbox.clone()), inbox)
 }
 
-impl Feeder {
-    pub(super) fn put(&self, news: News) {
+impl InboxSender {
+    pub(super) fn put(&self, news: LinkEvent) {
         self.0.waiting().put(news);
         self.0.shared.1.notify_one();
     }
 }
 
-impl Drop for Feeder {
+impl Drop for InboxSender {
     fn drop(&mut self) {
         self.0.waiting().is_over = true;
         self.0.shared.1.notify_one();
     }
 }
 
-impl Inbox {
+impl InboxReceiver {
     /// The next news; waits for them.
     ///
     /// # Errors
     /// None have come, or none will come.
-    pub(super) fn next(&self, patience: Duration) -> Result<News, RecvTimeoutError> {
-        let is_idle = |waiting: &mut Waiting| waiting.queue.is_empty() && !waiting.is_over;
+    pub(super) fn next(&self, patience: Duration) -> Result<LinkEvent, RecvTimeoutError> {
+        let is_idle = |waiting: &mut InboxState| waiting.queue.is_empty() && !waiting.is_over;
         let waiting = self.shared.1.wait_timeout_while(self.waiting(), patience, is_idle);
         let (mut waiting, _) = waiting.unwrap_or_else(PoisonError::into_inner);
         match waiting.queue.pop_front() {
@@ -83,18 +83,18 @@ impl Inbox {
     }
 
     /// Takes the numbers of messages that are not handled.
-    pub(super) fn lost(&self) -> Lost {
+    pub(super) fn lost(&self) -> DroppedCounters {
         std::mem::take(&mut self.waiting().lost)
     }
 
     /// A thread that panicked leaves it at worst between two news.
-    fn waiting(&self) -> MutexGuard<'_, Waiting> {
+    fn waiting(&self) -> MutexGuard<'_, InboxState> {
         self.shared.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-impl Waiting {
-    fn put(&mut self, news: News) {
+impl InboxState {
+    fn put(&mut self, news: LinkEvent) {
         let bytes = size(&news);
         let is_full = self.queue.len() >= MOST.0 || self.bytes + bytes > MOST.1;
         if self.queue.len() >= self.next.max(LONG) || is_full {
@@ -104,9 +104,9 @@ impl Waiting {
         }
         // Whether it is connected is always told, and there is more room for what must not be missed.
         let is_dropped = match &news {
-            News::Message { topic, .. } if is_urgent(topic) => self.queue.len() >= 2 * MOST.0,
-            News::Message { .. } => self.queue.len() >= MOST.0 || self.bytes + bytes > MOST.1,
-            News::Up | News::Down(_) => false,
+            LinkEvent::Message { topic, .. } if is_urgent(topic) => self.queue.len() >= 2 * MOST.0,
+            LinkEvent::Message { .. } => self.queue.len() >= MOST.0 || self.bytes + bytes > MOST.1,
+            LinkEvent::Up | LinkEvent::Down(_) => false,
         };
         if is_dropped {
             self.lost.dropped += 1;
@@ -130,20 +130,20 @@ impl Waiting {
 /// Whether messages on a topic tell vehicles to stop, or who is there: other supervisors, too.
 fn is_urgent(topic: &str) -> bool {
     let kind = topic.rsplit('/').next();
-    [Kind::InstantActions, Kind::Connection].iter().any(|urgent| kind == Some(urgent.text()))
+    [TopicKind::InstantActions, TopicKind::Connection].iter().any(|urgent| kind == Some(urgent.text()))
 }
 
 /// The topic of a message with a position that is so now.
-fn position(news: &News) -> Option<&str> {
-    let News::Message { topic, kept: false, .. } = news else { return None };
+fn position(news: &LinkEvent) -> Option<&str> {
+    let LinkEvent::Message { topic, kept: false, .. } = news else { return None };
     let kind = topic.rsplit('/').next()?;
-    [Kind::State, Kind::Visualization].iter().any(|with| with.text() == kind).then_some(topic)
+    [TopicKind::State, TopicKind::Visualization].iter().any(|with| with.text() == kind).then_some(topic)
 }
 
-fn size(news: &News) -> usize {
+fn size(news: &LinkEvent) -> usize {
     match news {
-        News::Message { topic, payload, .. } => topic.len() + payload.len(),
-        News::Up | News::Down(_) => 0,
+        LinkEvent::Message { topic, payload, .. } => topic.len() + payload.len(),
+        LinkEvent::Up | LinkEvent::Down(_) => 0,
     }
 }
 
@@ -152,9 +152,9 @@ mod tests {
     use super::*;
     use std::time::Instant;
 
-    fn message(topic: &str, number: usize) -> News {
+    fn message(topic: &str, number: usize) -> LinkEvent {
         let payload = number.to_le_bytes().to_vec();
-        News::Message { topic: topic.into(), payload, kept: false, came: Instant::now() }
+        LinkEvent::Message { topic: topic.into(), payload, kept: false, came: Instant::now() }
     }
 
     #[test]
@@ -166,12 +166,12 @@ mod tests {
                 feeder.put(message("fleet/v2/m/1/order", k));
             }
         }
-        feeder.put(News::Up);
+        feeder.put(LinkEvent::Up);
         drop(feeder);
         let (mut orders, mut last, mut states) = (Vec::new(), [0; 10], 0);
         let ended = loop {
             match inbox.next(Duration::ZERO) {
-                Ok(News::Message { topic, payload, .. }) => {
+                Ok(LinkEvent::Message { topic, payload, .. }) => {
                     let number = usize::from_le_bytes(payload.try_into().unwrap());
                     if topic.ends_with("order") {
                         orders.push(number);
@@ -188,16 +188,16 @@ mod tests {
         assert_eq!(orders, (0..200).map(|k| 100 * k).collect::<Vec<_>>());
         assert_eq!(last, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9].map(|k| 19_990 + k));
         assert!(states < 2 * LONG, "{states}");
-        assert_eq!(inbox.lost(), Lost { old: 20_000 - states as u64, dropped: 0 });
-        assert_eq!(inbox.lost(), Lost::default());
+        assert_eq!(inbox.lost(), DroppedCounters { old: 20_000 - states as u64, dropped: 0 });
+        assert_eq!(inbox.lost(), DroppedCounters::default());
     }
 
     #[test]
     fn there_is_an_end_to_what_waits() {
         let (feeder, inbox) = inbox();
         (0..MOST.0 + 5).for_each(|k| feeder.put(message("fleet/v2/m/1/order", k)));
-        feeder.put(News::Up);
-        assert_eq!(inbox.lost(), Lost { old: 0, dropped: 5 });
+        feeder.put(LinkEvent::Up);
+        assert_eq!(inbox.lost(), DroppedCounters { old: 0, dropped: 5 });
         assert_eq!(inbox.next(Duration::ZERO).map(|news| size(&news)), Ok(18 + 8));
     }
 }

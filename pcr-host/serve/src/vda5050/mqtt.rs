@@ -1,6 +1,6 @@
 //! A connection to a broker that reconnects by itself.
 
-use super::bridge::Publish;
+use super::bridge::MqttMessage;
 use rumqttc::{
     AsyncClient, ConnectionError, Event, EventLoop, LastWill, MqttOptions, NetworkOptions, Packet, QoS,
     SubscribeFilter, SubscribeReasonCode,
@@ -14,7 +14,7 @@ use tokio::sync::Notify;
 
 /// Address and login of a broker.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Broker {
+pub struct BrokerAddress {
     /// Host name or address.
     pub host: String,
     /// Port: usually 1883, with TLS 8883.
@@ -25,7 +25,7 @@ pub struct Broker {
     pub authority: Option<PathBuf>,
 }
 
-impl Broker {
+impl BrokerAddress {
     /// A broker without TLS and login.
     pub fn new(host: &str, port: u16) -> Self {
         Self { host: host.into(), port, login: None, authority: None }
@@ -34,7 +34,7 @@ impl Broker {
 
 /// News from a connection.
 #[derive(Clone, Debug, PartialEq)]
-pub enum News {
+pub enum LinkEvent {
     /// It is connected and subscribed.
     Up,
     /// It is not connected, for this reason.
@@ -66,30 +66,30 @@ const KEEP_ALIVE: Duration = Duration::from_secs(5);
 const AGAIN: Duration = Duration::from_millis(200);
 
 /// A connection. If it is dropped, it breaks as if power was lost: the broker sends the last will.
-pub struct Link {
+pub struct MqttLink {
     client: AsyncClient,
     stop: Arc<Notify>,
     up: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
-impl std::fmt::Debug for Link {
+impl std::fmt::Debug for MqttLink {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Link").field("up", &self.is_up()).finish_non_exhaustive()
     }
 }
 
-impl Link {
+impl MqttLink {
     /// Connects, again after every failure, and subscribes to these topics each time. A thread calls `sink` with the news.
     ///
     /// # Errors
     /// An invalid setting, or a thread that cannot be started.
     pub fn open(
-        broker: &Broker,
+        broker: &BrokerAddress,
         id: &str,
-        will: Option<Publish>,
+        will: Option<MqttMessage>,
         filters: Vec<String>,
-        sink: impl Fn(News) + Send + 'static,
+        sink: impl Fn(LinkEvent) + Send + 'static,
     ) -> Result<Self, String> {
         let mut options = MqttOptions::new(id, &broker.host, broker.port);
         options.set_keep_alive(KEEP_ALIVE).set_max_packet_size(LARGEST, LARGEST).set_clean_session(true);
@@ -97,7 +97,7 @@ impl Link {
             options.set_credentials(user, password);
         }
         if let Some(will) = will {
-            options.set_last_will(LastWill::new(&will.topic, will.payload, qos(will.assured), will.retain));
+            options.set_last_will(LastWill::new(&will.topic, will.payload, qos(will.at_least_once), will.retain));
         }
         secure(&mut options, broker)?;
         let (client, mut events) = AsyncClient::new(options, QUEUE);
@@ -108,7 +108,8 @@ impl Link {
         let (stop, up) = (Arc::new(Notify::new()), Arc::new(AtomicBool::new(false)));
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         let runtime = runtime.map_err(|error| error.to_string())?;
-        let work = Work { client: client.clone(), filters, sink, up: up.clone(), asks: false, why: String::new() };
+        let work =
+            LinkWorker { client: client.clone(), filters, sink, up: up.clone(), asks: false, why: String::new() };
         let stopped = stop.clone();
         let thread = std::thread::Builder::new().name(id.into());
         let thread = thread.spawn(move || runtime.block_on(work.go_on(events, &stopped)));
@@ -122,13 +123,13 @@ impl Link {
 
     /// Sends a message, if it is connected and the queue is not full. Otherwise the message is dropped, because it would be old
     /// later.
-    pub fn publish(&self, message: Publish) -> bool {
+    pub fn publish(&self, message: MqttMessage) -> bool {
         self.mouth().publish(message)
     }
 
     /// A sender for other threads.
-    pub fn mouth(&self) -> Mouth {
-        Mouth { client: self.client.clone(), up: self.up.clone() }
+    pub fn mouth(&self) -> Publisher {
+        Publisher { client: self.client.clone(), up: self.up.clone() }
     }
 
     /// Ends properly: the broker does not send the last will.
@@ -154,27 +155,27 @@ impl Link {
 
 /// Sends messages over a link.
 #[derive(Clone, Debug)]
-pub struct Mouth {
+pub struct Publisher {
     client: AsyncClient,
     up: Arc<AtomicBool>,
 }
 
-impl Mouth {
+impl Publisher {
     /// As [`Link::publish`].
-    pub fn publish(&self, message: Publish) -> bool {
-        let Publish { topic, payload, assured, retain } = message;
+    pub fn publish(&self, message: MqttMessage) -> bool {
+        let MqttMessage { topic, payload, at_least_once: assured, retain } = message;
         self.up.load(Ordering::Relaxed) && self.client.try_publish(topic, qos(assured), retain, payload).is_ok()
     }
 }
 
-impl Drop for Link {
+impl Drop for MqttLink {
     fn drop(&mut self) {
         self.end();
     }
 }
 
 /// The state of the thread of a link.
-struct Work<F> {
+struct LinkWorker<F> {
     client: AsyncClient,
     filters: Vec<String>,
     sink: F,
@@ -185,7 +186,7 @@ struct Work<F> {
     why: String,
 }
 
-impl<F: Fn(News)> Work<F> {
+impl<F: Fn(LinkEvent)> LinkWorker<F> {
     /// Runs until it is stopped. An attempt to connect is never given up after a time: a broker that takes longer than that
     /// would never be reached.
     async fn go_on(mut self, mut events: EventLoop, stop: &Notify) {
@@ -232,7 +233,7 @@ impl<F: Fn(News)> Work<F> {
             }
             Event::Incoming(Packet::Publish(message)) => {
                 let (payload, kept) = (message.payload.to_vec(), message.retain);
-                (self.sink)(News::Message { topic: message.topic, payload, kept, came: Instant::now() });
+                (self.sink)(LinkEvent::Message { topic: message.topic, payload, kept, came: Instant::now() });
             }
             _ => {}
         }
@@ -241,14 +242,14 @@ impl<F: Fn(News)> Work<F> {
     fn is_up(&mut self) {
         self.why.clear();
         self.up.store(true, Ordering::Relaxed);
-        (self.sink)(News::Up);
+        (self.sink)(LinkEvent::Up);
     }
 
     /// Reports a reason if it is new, because attempts are repeated.
     fn is_down(&mut self, why: String) {
         if self.up.swap(false, Ordering::Relaxed) || why != self.why {
             self.why.clone_from(&why);
-            (self.sink)(News::Down(why));
+            (self.sink)(LinkEvent::Down(why));
         }
     }
 }
@@ -258,7 +259,7 @@ fn qos(assured: bool) -> QoS {
 }
 
 #[cfg(feature = "tls")]
-fn secure(options: &mut MqttOptions, broker: &Broker) -> Result<(), String> {
+fn secure(options: &mut MqttOptions, broker: &BrokerAddress) -> Result<(), String> {
     if let Some(file) = &broker.authority {
         options.set_transport(super::tls::transport(file)?);
     }
@@ -266,7 +267,7 @@ fn secure(options: &mut MqttOptions, broker: &Broker) -> Result<(), String> {
 }
 
 #[cfg(not(feature = "tls"))]
-fn secure(_options: &mut MqttOptions, broker: &Broker) -> Result<(), String> {
+fn secure(_options: &mut MqttOptions, broker: &BrokerAddress) -> Result<(), String> {
     match broker.authority {
         Some(_) => Err("this build has no TLS: build it with the feature `tls`".into()),
         None => Ok(()),
@@ -307,7 +308,7 @@ mod tests {
     }
 
     /// A link with two topics, and a broker that says this; its first connection is the one that it keeps.
-    fn linked(says: fn(&mut TcpStream)) -> (Link, JoinHandle<TcpStream>, Receiver<News>) {
+    fn linked(says: fn(&mut TcpStream)) -> (MqttLink, JoinHandle<TcpStream>, Receiver<LinkEvent>) {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let port = listener.local_addr().unwrap().port();
         let broker = std::thread::spawn(move || {
@@ -317,7 +318,9 @@ mod tests {
         });
         let (sender, news) = channel();
         let filters = ["a/b", "c/d"].map(String::from).to_vec();
-        let link = Link::open(&Broker::new("127.0.0.1", port), "id", None, filters, move |it| drop(sender.send(it)));
+        let link = MqttLink::open(&BrokerAddress::new("127.0.0.1", port), "id", None, filters, move |it| {
+            drop(sender.send(it))
+        });
         (link.unwrap(), broker, news)
     }
 
@@ -333,7 +336,7 @@ mod tests {
             stream.write_all(&[0x90, 4, 0, 1, 1, 1]).unwrap();
         });
         let stream = broker.join().unwrap();
-        assert_eq!(news.recv().unwrap(), News::Up);
+        assert_eq!(news.recv().unwrap(), LinkEvent::Up);
         assert!(link.is_up());
         drop((link, stream));
     }
@@ -357,11 +360,11 @@ mod tests {
             let (kind, rest) = long_packet(stream);
             assert_eq!((kind, rest.len()), (0x30, SIZE + 5));
         });
-        assert_eq!(news.recv().unwrap(), News::Up);
-        let News::Message { topic, payload, kept, .. } = news.recv().unwrap() else { panic!("no message") };
+        assert_eq!(news.recv().unwrap(), LinkEvent::Up);
+        let LinkEvent::Message { topic, payload, kept, .. } = news.recv().unwrap() else { panic!("no message") };
         assert_eq!((topic.as_str(), payload.len(), kept), ("a/b", SIZE, true));
         let payload = vec![b' '; SIZE];
-        assert!(link.publish(Publish { topic: "a/b".into(), payload, assured: false, retain: false }));
+        assert!(link.publish(MqttMessage { topic: "a/b".into(), payload, at_least_once: false, retain: false }));
         let stream = broker.join().unwrap();
         drop((link, stream));
     }
@@ -375,7 +378,7 @@ mod tests {
             stream.write_all(&[0x90, 4, 0, 1, 1, 0x80]).unwrap();
         });
         let stream = broker.join().unwrap();
-        assert_eq!(news.recv().unwrap(), News::Down("the broker does not let us read c/d".into()));
+        assert_eq!(news.recv().unwrap(), LinkEvent::Down("the broker does not let us read c/d".into()));
         assert!(!link.is_up());
         drop((link, stream));
     }

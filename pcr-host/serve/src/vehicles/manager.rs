@@ -3,32 +3,32 @@
 //! the others do. A vehicle that has lost its order, or whose order is refused, gets another one, for the rest of the way from where it
 //! stands.
 
-mod again;
+mod reorder;
 
-use super::locks::{Leg, Locks, Method, to_line};
-use crate::course::{Course, Shape, Start};
-use pcr_formats::import::{self, Layout, Step, cheapest};
-use pcr_formats::random::Random;
-use pcr_formats::vda5050::decode::{self, Limits};
-use pcr_formats::vda5050::header::Header;
-use pcr_formats::vda5050::order::{Edge, Node, NodePosition, Order};
-use pcr_formats::vda5050::stamp;
-use pcr_formats::vda5050::state::{Pose, State};
-use pcr_formats::vda5050::topics::Key;
-use pcr_formats::vda5050::version::Version;
+use super::edge_reservations::{EdgeReservations, MissionEdge, VehicleCoordination, to_line};
+use crate::owned_path::{OwnedPath, PathElement, StartPose};
+use pcr_formats::import::{self, Layout, RouteStep, cheapest};
+use pcr_formats::splitmix64::SplitMix64;
+use pcr_formats::vda5050::decode::{self, MessageLimits};
+use pcr_formats::vda5050::header::MessageHeader;
+use pcr_formats::vda5050::order::{NodePosition, Order, OrderEdge, OrderNode};
+use pcr_formats::vda5050::state::{State, VehiclePosition};
+use pcr_formats::vda5050::timestamp;
+use pcr_formats::vda5050::topics::VehicleId;
+use pcr_formats::vda5050::version::ProtocolVersion;
 use serde_json::Map;
 use std::collections::BTreeMap;
 
 /// A vehicle, as the manager knows it.
 #[derive(Clone, Debug)]
-struct Client {
+struct ManagedVehicle {
     /// Index of the vehicle.
     place: usize,
-    version: Version,
+    version: ProtocolVersion,
     /// The node where its last order ends.
     at: usize,
     /// Its present order, or the one that it is to take.
-    order: Option<Given>,
+    order: Option<IssuedOrder>,
     /// Orders of the same mission that were refused. A late copy of one may be taken.
     refused: Vec<Order>,
     orders: u64,
@@ -38,7 +38,7 @@ struct Client {
 
 /// An order.
 #[derive(Clone, Debug)]
-struct Given {
+struct IssuedOrder {
     order: Order,
     /// Whether the vehicle has confirmed it.
     had: bool,
@@ -52,29 +52,29 @@ struct Given {
 
 /// A message for a vehicle.
 #[derive(Clone, Debug)]
-pub struct Sent {
+pub struct OutgoingMessage {
     /// The vehicle.
-    pub key: Key,
+    pub key: VehicleId,
     /// Edition of the standard.
-    pub version: Version,
+    pub version: ProtocolVersion,
     /// Content, as JSON.
     pub payload: Vec<u8>,
 }
 
 /// A fleet manager.
 #[derive(Debug)]
-pub struct Manager {
+pub struct FleetManager {
     layout: Layout,
     map_id: String,
     goals: Vec<usize>,
     /// Distance that ways keep from the goals of others \[m\].
     clearance: f64,
-    clients: BTreeMap<Key, Client>,
-    random: Random,
+    clients: BTreeMap<VehicleId, ManagedVehicle>,
+    random: SplitMix64,
     /// Number of the run, part of the order ids.
     run: u64,
     /// The locks, if there is no supervisor.
-    locks: Option<Locks>,
+    locks: Option<EdgeReservations>,
     /// Whether no more missions are given.
     ends: bool,
     again: u64,
@@ -92,7 +92,7 @@ const NEAR: f64 = 0.3;
 /// With locks: how far ahead of the node that it has reached last a vehicle gets edges \[m\].
 const FAR: f64 = 4.0;
 
-impl Manager {
+impl FleetManager {
     /// The manager of vehicles that stand at nodes of a layout, with missions to some of its nodes.
     ///
     /// # Errors
@@ -102,16 +102,19 @@ impl Manager {
         map_id: &str,
         goals: Vec<usize>,
         clearance: f64,
-        vehicles: Vec<(Key, Version, usize)>,
+        vehicles: Vec<(VehicleId, ProtocolVersion, usize)>,
         seed: u64,
     ) -> Result<Self, String> {
         if let Some(goal) = goals.iter().find(|&&goal| goal >= layout.nodes.len()) {
             return Err(format!("a goal that is no node: {goal}"));
         }
         let clients = vehicles.into_iter().enumerate().map(|(place, (key, version, at))| {
-            (key, Client { place, version, at, order: None, refused: Vec::new(), orders: 0, done: 0, header: 0 })
+            (
+                key,
+                ManagedVehicle { place, version, at, order: None, refused: Vec::new(), orders: 0, done: 0, header: 0 },
+            )
         });
-        let mut random = Random(seed);
+        let mut random = SplitMix64(seed);
         let run = random.bits() & 0xffff_ffff;
         let clients = clients.collect();
         let (map_id, locks) = (map_id.into(), None);
@@ -126,26 +129,26 @@ impl Manager {
     }
 
     /// Chooses the method that keeps vehicles apart. To be called before any order is sent.
-    pub fn by(mut self, method: Method) -> Self {
+    pub fn with_coordination(mut self, method: VehicleCoordination) -> Self {
         let mut places: Vec<(usize, usize)> = self.clients.values().map(|client| (client.place, client.at)).collect();
         places.sort_unstable();
         let standing: Vec<usize> = places.into_iter().map(|(_, at)| at).collect();
-        let locks = |is_whole| Locks::new(&self.layout, self.clearance, FAR, is_whole, &standing);
+        let locks = |is_whole| EdgeReservations::new(&self.layout, self.clearance, FAR, is_whole, &standing);
         self.locks = match method {
-            Method::Supervisor => None,
-            Method::RouteLocks => Some(locks(true)),
-            Method::EdgeLocks => Some(locks(false)),
+            VehicleCoordination::Supervisor => None,
+            VehicleCoordination::RouteLocks => Some(locks(true)),
+            VehicleCoordination::EdgeLocks => Some(locks(false)),
         };
         self
     }
 
     /// The ways that it sends vehicles on.
-    pub fn lanes(&self) -> Vec<Course> {
-        let lane = |edge: &import::Edge| {
+    pub fn lanes(&self) -> Vec<OwnedPath> {
+        let lane = |edge: &import::LayoutEdge| {
             let [[x, y], to] = edge.ends.map(|node| self.layout.position(node));
             let [dx, dy] = [to[0] - x, to[1] - y];
-            let start = Start { x, y, heading: dy.atan2(dx) };
-            Course::new(start, vec![Shape::Line { length: dx.hypot(dy) }]).ok()
+            let start = StartPose { x, y, heading: dy.atan2(dx) };
+            OwnedPath::new(start, vec![PathElement::Line { length: dx.hypot(dy) }]).ok()
         };
         self.layout.edges.iter().filter_map(lane).collect()
     }
@@ -176,20 +179,20 @@ impl Manager {
     }
 
     /// The vehicles with an order that is not done.
-    pub fn busy(&self) -> impl Iterator<Item = &Key> {
+    pub fn busy(&self) -> impl Iterator<Item = &VehicleId> {
         self.clients.iter().filter(|(_, client)| client.order.is_some()).map(|(key, _)| key)
     }
 
     /// For each vehicle its order, and the node where the order ends.
-    pub fn orders(&self) -> impl Iterator<Item = (&Key, Option<&str>, usize)> {
+    pub fn orders(&self) -> impl Iterator<Item = (&VehicleId, Option<&str>, usize)> {
         self.clients
             .iter()
             .map(|(key, client)| (key, client.order.as_ref().map(|given| given.order.order_id.as_str()), client.at))
     }
 
     /// Takes a state; returns the messages to be sent to vehicles.
-    pub fn receive(&mut self, key: &Key, payload: &[u8], now: f64) -> Vec<Sent> {
-        let Ok(state) = decode::read::<State>(payload, Limits::default()) else { return Vec::new() };
+    pub fn receive(&mut self, key: &VehicleId, payload: &[u8], now: f64) -> Vec<OutgoingMessage> {
+        let Ok(state) = decode::read::<State>(payload, MessageLimits::default()) else { return Vec::new() };
         let Some(client) = self.clients.get_mut(key) else { return Vec::new() };
         let mut due = Vec::new();
         client.takes_back(&state, now);
@@ -236,7 +239,7 @@ impl Manager {
     }
 
     /// With locks: releases more edges to all vehicles that can get some.
-    fn give(&mut self, from: &Key, state: &State, now: f64) -> Vec<Sent> {
+    fn give(&mut self, from: &VehicleId, state: &State, now: f64) -> Vec<OutgoingMessage> {
         let Some(locks) = &mut self.locks else { return Vec::new() };
         locks.give();
         let mut due = Vec::new();
@@ -258,7 +261,7 @@ impl Manager {
     }
 
     /// The next mission of a vehicle.
-    fn order(&mut self, key: &Key, now: f64) -> Option<Sent> {
+    fn order(&mut self, key: &VehicleId, now: f64) -> Option<OutgoingMessage> {
         if self.ends {
             return None;
         }
@@ -269,12 +272,12 @@ impl Manager {
         let (place, steps) = (client.place, self.way([client.at, goal])?);
         let legs = steps.iter().map(|step| {
             let edge = self.layout.edges.iter().position(|edge| std::ptr::eq(edge, step.edge));
-            Leg { edge: edge.unwrap_or_default(), length: step.edge.length(), to: step.target() }
+            MissionEdge { edge: edge.unwrap_or_default(), length: step.edge.length(), to: step.target() }
         });
-        let legs: Vec<Leg> = legs.collect();
+        let legs: Vec<MissionEdge> = legs.collect();
         let mut places = vec![client.at];
         places.extend(steps.iter().map(|step| step.target()));
-        let nodes: Option<Vec<Node>> = places.iter().enumerate().map(|(k, &place)| self.node(k, place)).collect();
+        let nodes: Option<Vec<OrderNode>> = places.iter().enumerate().map(|(k, &place)| self.node(k, place)).collect();
         let names = steps.iter().map(|step| step.edge.id.to_string());
         let edges = names.enumerate().map(|(k, id)| self.edge(k, &id, [places[k], places[k + 1]])).collect();
         let nodes = nodes?;
@@ -286,23 +289,30 @@ impl Manager {
     }
 
     /// Begins an order over these nodes; without locks all of it is released at once.
-    fn begin(&mut self, key: &Key, nodes: Vec<Node>, edges: Vec<Edge>, now: f64) -> Option<Sent> {
+    fn begin(
+        &mut self,
+        key: &VehicleId,
+        nodes: Vec<OrderNode>,
+        edges: Vec<OrderEdge>,
+        now: f64,
+    ) -> Option<OutgoingMessage> {
         let client = self.clients.get_mut(key)?;
         let order_id = format!("{:08x}-{}-{}", self.run, key.serial_number, client.orders);
         client.orders += 1;
         let released = if self.locks.is_some() { 0 } else { edges.len() };
-        let order = Order { header: Header::default(), order_id, order_update_id: 0, nodes, edges, rest: Map::new() };
+        let order =
+            Order { header: MessageHeader::default(), order_id, order_update_id: 0, nodes, edges, rest: Map::new() };
         let sent = f64::NEG_INFINITY;
-        client.order = Some(Given { order, had: false, lost: None, from: 0, released, sent });
+        client.order = Some(IssuedOrder { order, had: false, lost: None, from: 0, released, sent });
         if self.locks.is_some() { None } else { client.send(key, now) }
     }
 
     /// The shortest way that keeps clear of all other goals.
-    fn way(&self, ends: [usize; 2]) -> Option<Vec<Step<'_>>> {
+    fn way(&self, ends: [usize; 2]) -> Option<Vec<RouteStep<'_>>> {
         let place = |node: usize| self.layout.position(node);
         let others = self.goals.iter().filter(|goal| !ends.contains(goal));
         let others: Vec<[f64; 2]> = others.map(|&goal| place(goal)).collect();
-        let cost = |step: Step<'_>| {
+        let cost = |step: RouteStep<'_>| {
             let (from, to) = (place(step.origin()), place(step.target()));
             let is_clear = others.iter().all(|&goal| to_line(goal, from, to) >= self.clearance);
             if is_clear { step.edge.length() } else { f64::INFINITY }
@@ -310,22 +320,22 @@ impl Manager {
         cheapest(&self.layout, ends, cost)
     }
 
-    fn position(&self, pose: &Pose) -> NodePosition {
+    fn position(&self, pose: &VehiclePosition) -> NodePosition {
         NodePosition { x: pose.x, y: pose.y, map_id: self.map_id.clone(), rest: Map::new() }
     }
 
-    fn node(&self, k: usize, place: usize) -> Option<Node> {
+    fn node(&self, k: usize, place: usize) -> Option<OrderNode> {
         let node = self.layout.nodes.get(place)?;
-        let [x, y] = node.at;
+        let [x, y] = node.point;
         let position = NodePosition { x, y, map_id: self.map_id.clone(), rest: Map::new() };
         let (node_id, sequence_id) = (node.id.to_string(), 2 * k as u64);
         let (actions, rest) = (Vec::new(), Map::new());
-        Some(Node { node_id, sequence_id, released: true, node_position: Some(position), actions, rest })
+        Some(OrderNode { node_id, sequence_id, released: true, node_position: Some(position), actions, extra: rest })
     }
 
-    fn edge(&self, k: usize, id: &str, ends: [usize; 2]) -> Edge {
+    fn edge(&self, k: usize, id: &str, ends: [usize; 2]) -> OrderEdge {
         let name = |place: usize| self.layout.nodes.get(place).map(|node| node.id.to_string());
-        Edge {
+        OrderEdge {
             edge_id: id.into(),
             sequence_id: 2 * k as u64 + 1,
             released: true,
@@ -338,16 +348,16 @@ impl Manager {
     }
 }
 
-impl Client {
+impl ManagedVehicle {
     /// Sends the present update of its order.
-    fn send(&mut self, key: &Key, now: f64) -> Option<Sent> {
+    fn send(&mut self, key: &VehicleId, now: f64) -> Option<OutgoingMessage> {
         let version = self.version;
         self.header += 1;
         let given = self.order.as_mut()?;
         given.sent = now;
         let Order { order_id, order_update_id, nodes, edges, .. } = &given.order;
         let mut order = Order {
-            header: Header::new(key, version, self.header, stamp::now()),
+            header: MessageHeader::new(key, version, self.header, timestamp::now()),
             order_id: order_id.clone(),
             order_update_id: *order_update_id,
             nodes: nodes.iter().skip(given.from).cloned().collect(),
@@ -359,10 +369,10 @@ impl Client {
         }
         for (k, edge) in order.edges.iter_mut().enumerate() {
             edge.released = given.from + k < given.released;
-            if version == Version::V3_0 {
+            if version == ProtocolVersion::V3_0 {
                 (edge.start_node_id, edge.end_node_id) = (None, None);
             }
         }
-        Some(Sent { key: key.clone(), version, payload: serde_json::to_vec(&order).ok()? })
+        Some(OutgoingMessage { key: key.clone(), version, payload: serde_json::to_vec(&order).ok()? })
     }
 }

@@ -12,7 +12,7 @@ mod read;
 #[cfg(test)]
 mod tests;
 
-pub use certify::{Certificate, Contact, certify};
+pub use certify::{RecordCertificate, VehicleContact, certify};
 use crc32fast::Hasher;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
@@ -23,7 +23,7 @@ const VERSION: u32 = 2;
 /// A vehicle of a record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Recorded {
+pub struct RecordVehicle {
     /// Name of the vehicle.
     pub name: String,
     /// Radius of its disc \[m\].
@@ -32,15 +32,15 @@ pub struct Recorded {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Head {
+struct RecordHeader {
     format: String,
     version: u32,
-    vehicles: Vec<Recorded>,
+    vehicles: Vec<RecordVehicle>,
 }
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct End {
+struct RecordTrailer {
     lines: u64,
     /// Optional, so that other programs can write records without it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -49,7 +49,7 @@ struct End {
 
 /// A record in the making.
 #[derive(Debug)]
-pub struct Record<W: Write> {
+pub struct RecordWriter<W: Write> {
     out: W,
     last: Vec<Option<[f64; 3]>>,
     /// For each vehicle whether its last position repeats an earlier one and is not written yet.
@@ -58,13 +58,13 @@ pub struct Record<W: Write> {
     sum: Hasher,
 }
 
-impl<W: Write> Record<W> {
+impl<W: Write> RecordWriter<W> {
     /// A record of these vehicles.
     ///
     /// # Errors
     /// As the writer.
-    pub fn new(out: W, vehicles: &[Recorded]) -> io::Result<Self> {
-        let head = Head { format: "pcr-record".into(), version: VERSION, vehicles: vehicles.to_vec() };
+    pub fn new(out: W, vehicles: &[RecordVehicle]) -> io::Result<Self> {
+        let head = RecordHeader { format: "pcr-record".into(), version: VERSION, vehicles: vehicles.to_vec() };
         let (last, waits) = (vec![None; vehicles.len()], vec![false; vehicles.len()]);
         let mut own = Self { out, last, waits, lines: 0, sum: Hasher::new() };
         own.line(serde_json::to_string(&head)?)?;
@@ -112,7 +112,7 @@ impl<W: Write> Record<W> {
         {
             self.write(vehicle, point)?;
         }
-        let end = End { lines: self.lines, crc32: Some(self.sum.clone().finalize()) };
+        let end = RecordTrailer { lines: self.lines, crc32: Some(self.sum.clone().finalize()) };
         self.line(serde_json::to_string(&end)?)?;
         self.out.flush()?;
         Ok(self.out)

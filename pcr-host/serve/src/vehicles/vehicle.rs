@@ -1,19 +1,19 @@
 //! A simulated vehicle that follows the standard: it drives on the released base only, stitches updates, and reports
 //! its state.
 
-use super::drive::{Abilities, Drive};
-use crate::course::Start;
-use crate::vda5050::way::Way;
-use pcr_formats::random::Random;
-use pcr_formats::vda5050::decode::{self, Limits};
-use pcr_formats::vda5050::header::Header;
+use super::vehicle_motion::{DriveState, SimulatedTraits};
+use crate::owned_path::StartPose;
+use crate::vda5050::order_path::OrderPath;
+use pcr_formats::splitmix64::SplitMix64;
+use pcr_formats::vda5050::decode::{self, MessageLimits};
+use pcr_formats::vda5050::header::MessageHeader;
 use pcr_formats::vda5050::messages::{Action, InstantActions};
 use pcr_formats::vda5050::order::Order;
-use pcr_formats::vda5050::order_state::{OrderState, Rejected, Taken};
-use pcr_formats::vda5050::stamp;
-use pcr_formats::vda5050::state::{ActionState, StateError};
-use pcr_formats::vda5050::topics::{Key, Kind};
-use pcr_formats::vda5050::version::{Error, Version};
+use pcr_formats::vda5050::order_state::{OrderState, RejectedOrder, UpdateResult};
+use pcr_formats::vda5050::state::{ActionState, ErrorEntry};
+use pcr_formats::vda5050::timestamp;
+use pcr_formats::vda5050::topics::{TopicKind, VehicleId};
+use pcr_formats::vda5050::version::{OrderRejection, ProtocolVersion};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
@@ -25,10 +25,10 @@ const ACTION: f64 = 2.0;
 
 /// An order and its progress.
 #[derive(Clone, Debug)]
-pub(super) struct Task {
+pub(super) struct OrderExecution {
     pub(super) held: OrderState,
-    pub(super) way: Way,
-    pub(super) drive: Drive,
+    pub(super) way: OrderPath,
+    pub(super) drive: DriveState,
     /// The last node that was reached.
     pub(super) done: usize,
     pub(super) cancelled: bool,
@@ -36,18 +36,18 @@ pub(super) struct Task {
 
 /// A vehicle.
 #[derive(Debug)]
-pub struct Vehicle {
-    pub(super) key: Key,
-    pub(super) version: Version,
+pub struct SimulatedVehicle {
+    pub(super) key: VehicleId,
+    pub(super) version: ProtocolVersion,
     pub(super) map_id: String,
-    pub(super) abilities: Abilities,
-    pub(super) random: Random,
-    pub(super) start: Start,
-    pub(super) task: Option<Task>,
+    pub(super) abilities: SimulatedTraits,
+    pub(super) random: SplitMix64,
+    pub(super) start: StartPose,
+    pub(super) task: Option<OrderExecution>,
     /// Ids of earlier orders, oldest first: a message with one of them is late.
     past: Vec<String>,
     /// Sideways error of its path \[m\], and its rate of change.
-    pub(super) off: f64,
+    pub(super) lateral_deviation: f64,
     pub(super) actions: Vec<ActionState>,
     pub(super) instant: Vec<ActionState>,
     /// Remaining time of the action at the node \[s\].
@@ -55,30 +55,37 @@ pub struct Vehicle {
     cancel: Option<String>,
     pub(super) paused: bool,
     frozen: f64,
-    pub(super) errors: Vec<StateError>,
-    pub(super) headers: BTreeMap<Kind, u64>,
+    pub(super) errors: Vec<ErrorEntry>,
+    pub(super) headers: BTreeMap<TopicKind, u64>,
     /// Time since 1970 \[s\], and the error of its clock.
     pub(super) time: f64,
     pub(super) clock: f64,
-    pub(super) out: Vec<(Kind, Vec<u8>)>,
+    pub(super) out: Vec<(TopicKind, Vec<u8>)>,
     news: bool,
     /// Number of orders and updates that it has taken.
     taken: u64,
 }
 
-impl Vehicle {
+impl SimulatedVehicle {
     /// A vehicle that stands at `start`.
-    pub fn new(key: Key, version: Version, map_id: &str, abilities: Abilities, start: Start, seed: u64) -> Self {
+    pub fn new(
+        key: VehicleId,
+        version: ProtocolVersion,
+        map_id: &str,
+        abilities: SimulatedTraits,
+        start: StartPose,
+        seed: u64,
+    ) -> Self {
         Self {
             key,
             version,
             map_id: map_id.into(),
             abilities,
-            random: Random(seed),
+            random: SplitMix64(seed),
             start,
             task: None,
             past: Vec::new(),
-            off: 0.0,
+            lateral_deviation: 0.0,
             actions: Vec::new(),
             instant: Vec::new(),
             acting: 0.0,
@@ -87,7 +94,7 @@ impl Vehicle {
             frozen: 0.0,
             errors: Vec::new(),
             headers: BTreeMap::new(),
-            time: stamp::seconds(),
+            time: timestamp::seconds(),
             clock: 0.0,
             out: Vec::new(),
             news: true,
@@ -96,17 +103,17 @@ impl Vehicle {
     }
 
     /// Manufacturer and serial number.
-    pub fn key(&self) -> &Key {
+    pub fn key(&self) -> &VehicleId {
         &self.key
     }
 
     /// Edition of its messages.
-    pub fn version(&self) -> Version {
+    pub fn version(&self) -> ProtocolVersion {
         self.version
     }
 
     /// Its abilities and errors.
-    pub fn abilities(&self) -> &Abilities {
+    pub fn abilities(&self) -> &SimulatedTraits {
         &self.abilities
     }
 
@@ -117,9 +124,9 @@ impl Vehicle {
 
     /// Switches it off and on again: it stands where it was, and has lost its order.
     pub fn forget(&mut self) {
-        let [x, y] = self.place();
-        self.start = Start { x, y, heading: self.heading() };
-        (self.task, self.off, self.acting, self.cancel, self.paused) = (None, 0.0, 0.0, None, false);
+        let [x, y] = self.true_position();
+        self.start = StartPose { x, y, heading: self.heading() };
+        (self.task, self.lateral_deviation, self.acting, self.cancel, self.paused) = (None, 0.0, 0.0, None, false);
         (self.past, self.actions, self.instant, self.errors) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         // Its message numbers restart.
         self.headers.clear();
@@ -138,7 +145,7 @@ impl Vehicle {
 
     /// Corners of its released way ahead: from its place to the end of its base.
     pub fn released(&self) -> Vec<[f64; 2]> {
-        let Some(task) = self.task.as_ref().filter(|task| !task.cancelled) else { return vec![self.place()] };
+        let Some(task) = self.task.as_ref().filter(|task| !task.cancelled) else { return vec![self.true_position()] };
         let end = task.way.node(task.held.base).unwrap_or(task.drive.at).max(task.drive.at);
         let nodes = (0..=task.held.base).filter_map(|node| task.way.node(node));
         let between = nodes.filter(|length| (task.drive.at..end).contains(length));
@@ -155,7 +162,7 @@ impl Vehicle {
     }
 
     /// The messages to be sent.
-    pub fn out(&mut self) -> Vec<(Kind, Vec<u8>)> {
+    pub fn out(&mut self) -> Vec<(TopicKind, Vec<u8>)> {
         if std::mem::take(&mut self.news) && self.frozen <= 0.0 {
             self.tell_state();
         }
@@ -163,11 +170,11 @@ impl Vehicle {
     }
 
     /// Its true position.
-    pub fn place(&self) -> [f64; 2] {
+    pub fn true_position(&self) -> [f64; 2] {
         let Some(task) = &self.task else { return [self.start.x, self.start.y] };
         let pose = task.way.pose(task.drive.at);
         // The sideways error grows with the length travelled, so that there is no jump at the start.
-        let off = self.off * (task.drive.at / self.abilities.drift.max(1e-9)).min(1.0);
+        let off = self.lateral_deviation * (task.drive.at / self.abilities.drift.max(1e-9)).min(1.0);
         let end = task.way.length() - task.drive.at;
         let off = off * (end / self.abilities.drift.max(1e-9)).min(1.0);
         [pose.x - off * pose.heading.sin(), pose.y + off * pose.heading.cos()]
@@ -179,14 +186,14 @@ impl Vehicle {
     }
 
     /// Takes a message.
-    pub fn receive(&mut self, kind: Kind, payload: &[u8]) {
+    pub fn receive(&mut self, kind: TopicKind, payload: &[u8]) {
         if self.frozen > 0.0 {
             return;
         }
         match kind {
-            Kind::Order => {
+            TopicKind::Order => {
                 let mut named = (String::new(), 0);
-                let order = decode::read::<Order>(payload, Limits::default()).map_err(Rejected::from);
+                let order = decode::read::<Order>(payload, MessageLimits::default()).map_err(RejectedOrder::from);
                 let taken = order.and_then(|order| {
                     named = (order.order_id.clone(), order.order_update_id);
                     self.take(order)
@@ -200,8 +207,8 @@ impl Vehicle {
                     Err(rejected) => self.reject(&rejected, &named),
                 }
             }
-            Kind::InstantActions => {
-                if let Ok(message) = decode::read::<InstantActions>(payload, Limits::default())
+            TopicKind::InstantActions => {
+                if let Ok(message) = decode::read::<InstantActions>(payload, MessageLimits::default())
                     && self.is_ours(&message.header)
                     && let Ok(actions) = message.list()
                 {
@@ -212,11 +219,11 @@ impl Vehicle {
         }
     }
 
-    fn is_ours(&self, header: &Header) -> bool {
-        header.check(&self.key, self.version == Version::V3_0).is_ok()
+    fn is_ours(&self, header: &MessageHeader) -> bool {
+        header.check(&self.key, self.version == ProtocolVersion::V3_0).is_ok()
     }
 
-    fn reject(&mut self, rejected: &Rejected, (order, update): &(String, u64)) {
+    fn reject(&mut self, rejected: &RejectedOrder, (order, update): &(String, u64)) {
         let error = rejected.report(self.version, order, *update);
         if !self.errors.contains(&error) {
             self.errors.push(error);
@@ -224,8 +231,8 @@ impl Vehicle {
         self.news = true;
     }
 
-    fn take(&mut self, order: Order) -> Result<bool, Rejected> {
-        order.header.check(&self.key, self.version == Version::V3_0)?;
+    fn take(&mut self, order: Order) -> Result<bool, RejectedOrder> {
+        order.header.check(&self.key, self.version == ProtocolVersion::V3_0)?;
         let actions = |order: &Order| -> Vec<ActionState> {
             let nodes = order.nodes.iter().flat_map(|node| &node.actions);
             nodes.chain(order.edges.iter().flat_map(|edge| &edge.actions)).map(waiting).collect()
@@ -234,38 +241,41 @@ impl Vehicle {
         match &mut self.task {
             Some(task) if task.held.order_id == order.order_id && !task.cancelled => {
                 let mut held = task.held.clone();
-                let Taken::After(after) = held.update(order)? else { return Ok(false) };
-                task.way.extend(&held, after).map_err(|refusal| Rejected { error: Error::Order, refusal })?;
+                let UpdateResult::After(after) = held.update(order)? else { return Ok(false) };
+                task.way
+                    .extend(&held, after)
+                    .map_err(|refusal| RejectedOrder { error: OrderRejection::Order, refusal })?;
                 task.held = held;
                 let known: Vec<String> = self.actions.iter().map(|action| action.action_id.clone()).collect();
                 self.actions.extend(new.into_iter().filter(|action| !known.contains(&action.action_id)));
             }
             Some(task) if task.held.order_id == order.order_id => {
-                return Err(Rejected::new(Error::Cancelled, "orderId", "it was cancelled"));
+                return Err(RejectedOrder::new(OrderRejection::Cancelled, "orderId", "it was cancelled"));
             }
             task => {
                 if task.as_ref().is_some_and(|task| !task.cancelled && task.done + 1 < task.held.nodes.len())
                     || self.acting > 0.0
                 {
-                    return Err(Rejected::new(Error::Order, "orderId", "another order is not finished"));
+                    return Err(RejectedOrder::new(OrderRejection::Order, "orderId", "another order is not finished"));
                 }
                 if self.past.contains(&order.order_id) {
-                    return Err(Rejected::new(Error::Order, "orderId", "it was there before"));
+                    return Err(RejectedOrder::new(OrderRejection::Order, "orderId", "it was there before"));
                 }
                 let start = task.as_ref().map_or(self.start, |task| task.way.pose(task.drive.at));
                 let held = OrderState::new(order)?;
-                let way = Way::new(start, &held).map_err(|refusal| Rejected { error: Error::Order, refusal })?;
+                let way = OrderPath::new(start, &held)
+                    .map_err(|refusal| RejectedOrder { error: OrderRejection::Order, refusal })?;
                 let begins = way.node(0).unwrap_or(0.0);
                 if begins > BEGINS {
                     let why = format!("{begins:.3} m from the vehicle");
-                    return Err(Rejected::new(Error::Order, "nodes[0].nodePosition", why));
+                    return Err(RejectedOrder::new(OrderRejection::Order, "nodes[0].nodePosition", why));
                 }
                 self.start = start;
                 /// Number of ids that are kept.
                 const MOST: usize = 32;
                 self.past.extend(task.take().map(|task| task.held.order_id));
                 self.past.drain(..self.past.len().saturating_sub(MOST));
-                *task = Some(Task { held, way, drive: Drive::new(), done: 0, cancelled: false });
+                *task = Some(OrderExecution { held, way, drive: DriveState::new(), done: 0, cancelled: false });
                 self.actions = new;
             }
         }
@@ -288,9 +298,9 @@ impl Vehicle {
                 "RUNNING"
             }
             "cancelOrder" => {
-                let kind = self.version.error(Error::NothingToCancel);
+                let kind = self.version.error(OrderRejection::NothingToCancel);
                 let references = [("actionId", action.action_id.as_str())];
-                self.errors.push(StateError::warning(kind, "there is no order".into(), &references));
+                self.errors.push(ErrorEntry::warning(kind, "there is no order".into(), &references));
                 "FAILED"
             }
             "startPause" => (self.paused = true, "FINISHED").1,
@@ -318,7 +328,8 @@ impl Vehicle {
         }
         let can = self.abilities;
         // Slow enough that its sideways speed is at most a tenth of its speed.
-        self.off = (self.off + self.random.within(-1.0, 1.0) * can.drift * time).clamp(-can.drift, can.drift);
+        self.lateral_deviation =
+            (self.lateral_deviation + self.random.uniform(-1.0, 1.0) * can.drift * time).clamp(-can.drift, can.drift);
         let Some(task) = &mut self.task else { return };
         let was = (task.drive.is_driving(), task.done);
         let base = task.way.node(task.held.base).unwrap_or(0.0);
@@ -343,7 +354,8 @@ impl Vehicle {
             let end = stop(task, &self.actions).map_or(base, |stop| stop.min(base));
             task.drive.advance(&task.way, &task.held, end, &can, &mut self.random, time);
         }
-        let reached = |task: &Task| task.way.node(task.done + 1).is_some_and(|next| next <= task.drive.at + 1e-9);
+        let reached =
+            |task: &OrderExecution| task.way.node(task.done + 1).is_some_and(|next| next <= task.drive.at + 1e-9);
         while !task.cancelled && task.done < task.held.base && reached(task) {
             task.done += 1;
         }
@@ -380,7 +392,7 @@ impl Vehicle {
 }
 
 /// Length at which it has to stop for an action \[m\].
-fn stop(task: &Task, actions: &[ActionState]) -> Option<f64> {
+fn stop(task: &OrderExecution, actions: &[ActionState]) -> Option<f64> {
     let is_open = |action: &Action| {
         actions.iter().any(|state| state.action_id == action.action_id && state.action_status != "FINISHED")
     };

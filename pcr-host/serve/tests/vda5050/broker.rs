@@ -1,6 +1,6 @@
 //! A real broker for a test: mosquitto.
 
-use pcr_serve::vda5050::mqtt::Broker;
+use pcr_serve::vda5050::mqtt::BrokerAddress;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -104,9 +104,9 @@ impl Mosquitto {
     }
 
     /// How to reach it, with all that it asks for.
-    pub(crate) fn address(&self) -> Broker {
+    pub(crate) fn address(&self) -> BrokerAddress {
         let (login, authority) = (self.login.clone(), self.authority.clone());
-        Broker { login, authority, ..Broker::new("127.0.0.1", self.port) }
+        BrokerAddress { login, authority, ..BrokerAddress::new("127.0.0.1", self.port) }
     }
 }
 

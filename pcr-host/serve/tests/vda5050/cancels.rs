@@ -2,14 +2,14 @@
 
 use crate::pair::order;
 use crate::puppet::Puppet;
-use pcr_formats::vda5050::topics::Kind;
+use pcr_formats::vda5050::topics::TopicKind;
 
 const WAY: [[f64; 2]; 3] = [[0.0, 0.0], [5.0, 0.0], [10.0, 0.0]];
 
 /// Under way, with all of an order of 10 m.
 fn driving() -> Puppet {
     let mut own = Puppet::new();
-    own.manager(Kind::Order, order("a", 0, 0, &WAY, 3));
+    own.manager(TopicKind::Order, order("a", 0, 0, &WAY, 3));
     own.is_at("a", 0, 0, &[2, 4], 0.0, false);
     own.is_at("a", 0, 0, &[2, 4], 1.0, true);
     assert_eq!(own.orders(), 1);
@@ -19,10 +19,10 @@ fn driving() -> Puppet {
 /// At the end of what it has of an order, of which an update was sent that it has not taken.
 fn waiting() -> Puppet {
     let mut own = Puppet::new();
-    own.manager(Kind::Order, order("a", 0, 0, &WAY[..2], 2));
+    own.manager(TopicKind::Order, order("a", 0, 0, &WAY[..2], 2));
     own.is_at("a", 0, 0, &[2], 0.0, false);
     own.is_at("a", 0, 2, &[], 5.0, false);
-    own.manager(Kind::Order, order("a", 1, 2, &WAY[1..], 2));
+    own.manager(TopicKind::Order, order("a", 1, 2, &WAY[1..], 2));
     own.lasts(0.5);
     assert_eq!(own.got.last().unwrap().1["orderUpdateId"], 1);
     own
@@ -90,7 +90,7 @@ fn a_cancelled_order_of_which_an_update_was_lost_is_over() {
         own.ends(again.last().unwrap(), "FAILED");
         own.lasts(1.0);
         assert!(!own.has_job(), "{is_restarted}");
-        own.manager(Kind::Order, order("b", 0, 0, &[WAY[1], WAY[0]], 2));
+        own.manager(TopicKind::Order, order("b", 0, 0, &[WAY[1], WAY[0]], 2));
         own.lasts(1.0);
         assert_eq!(own.got.last().unwrap().1["orderId"], "b");
     }
@@ -110,7 +110,7 @@ fn a_vehicle_that_drops_its_order_has_lost_it() {
             assert!(!own.has_job());
             assert_eq!(own.asked("cancelOrder").len(), 1, "it may have it all the same");
         }
-        own.manager(Kind::Order, order("b", 0, 0, &[[3.0, 0.0], [0.0, 0.0]], 2));
+        own.manager(TopicKind::Order, order("b", 0, 0, &[[3.0, 0.0], [0.0, 0.0]], 2));
         own.lasts(1.0);
         assert_eq!(own.got.last().unwrap().1["orderId"], "b");
     }
@@ -151,7 +151,7 @@ fn a_pause_that_begins_after_it_was_ended_is_ended_again() {
     for status in ["FAILED", "FINISHED"] {
         let mut own = driving();
         let abilities = own.robot().abilities;
-        let start = pcr_serve::course::Start { x: 6.0, y: 0.0, heading: 0.0 };
+        let start = pcr_serve::owned_path::StartPose { x: 6.0, y: 0.0, heading: 0.0 };
         own.supervisor.add("new", abilities, start).unwrap();
         own.lasts(0.5);
         let pause = own.asked("startPause").pop().unwrap();

@@ -2,17 +2,17 @@
 
 use crate::pair::{CAN, key};
 use crate::site::{interfaces, settings};
-use pcr_formats::random::Random;
-use pcr_formats::vda5050::decode::Limits;
-use pcr_formats::vda5050::stamp::written;
-use pcr_formats::vda5050::topics::Kind;
-use pcr_formats::vda5050::version::Version;
-use pcr_serve::course::Start;
-use pcr_serve::entry::Nowhere;
+use pcr_formats::splitmix64::SplitMix64;
+use pcr_formats::vda5050::decode::MessageLimits;
+use pcr_formats::vda5050::timestamp::written;
+use pcr_formats::vda5050::topics::TopicKind;
+use pcr_formats::vda5050::version::ProtocolVersion;
+use pcr_serve::journal_entry::NullStore;
+use pcr_serve::owned_path::StartPose;
 use pcr_serve::supervisor::Supervisor;
-use pcr_serve::vda5050::bridge::{self, Bridge};
-use pcr_serve::vehicles::vehicle::Vehicle;
-use pcr_serve::vehicles::world::profile;
+use pcr_serve::vda5050::bridge::{self, Vda5050Bridge};
+use pcr_serve::vehicles::simulated_site::profile;
+use pcr_serve::vehicles::vehicle::SimulatedVehicle;
 use serde_json::{Value, json};
 
 /// The time at which a message was written \[s\].
@@ -22,20 +22,20 @@ fn seconds(message: &Value) -> f64 {
 
 /// A vehicle with all of a way of 10 m along the x axis, in two edges.
 struct Lone {
-    vehicle: Vehicle,
+    vehicle: SimulatedVehicle,
     supervisor: Supervisor,
-    bridge: Bridge,
+    bridge: Vda5050Bridge,
     time: f64,
 }
 
 impl Lone {
     fn standing() -> Self {
         let [manager, vehicles] = interfaces();
-        let topics = bridge::Settings { manager, vehicles, limits: Limits::default() };
-        let supervisor = Supervisor::new(settings(), Box::new(Nowhere));
-        let bridge = Bridge::new(topics, vec![profile(key(), &CAN)], &supervisor).unwrap();
-        let start = Start { x: 0.0, y: 0.0, heading: 0.0 };
-        let vehicle = Vehicle::new(key(), Version::V2_1, "map", CAN, start, 1);
+        let topics = bridge::BridgeConfig { manager, vehicles, limits: MessageLimits::default() };
+        let supervisor = Supervisor::new(settings(), Box::new(NullStore));
+        let bridge = Vda5050Bridge::new(topics, vec![profile(key(), &CAN)], &supervisor).unwrap();
+        let start = StartPose { x: 0.0, y: 0.0, heading: 0.0 };
+        let vehicle = SimulatedVehicle::new(key(), ProtocolVersion::V2_1, "map", CAN, start, 1);
         let mut own = Self { vehicle, supervisor, bridge, time: 0.0 };
         own.lasts(1.0);
         own
@@ -55,7 +55,7 @@ impl Lone {
     }
 
     fn robot_at(&self) -> f64 {
-        self.supervisor.robot("sim/001").unwrap().at
+        self.supervisor.robot("sim/001").unwrap().arc_length
     }
 
     fn has_alarm(&self) -> bool {
@@ -74,23 +74,23 @@ impl Lone {
         };
         let order = json!({ "headerId": 1, "timestamp": "2030-01-01T00:00:00.000Z", "version": "2.1.0", "manufacturer": "sim",
             "serialNumber": "001", "orderId": id, "orderUpdateId": 0, "nodes": [node(0), node(1), node(2)], "edges": [edge(0), edge(1)] });
-        self.manager(Kind::Order, &order);
+        self.manager(TopicKind::Order, &order);
     }
 
-    fn manager(&mut self, kind: Kind, message: &Value) {
-        let topic = interfaces()[0].topic(Version::V2_1, &key(), kind);
+    fn manager(&mut self, kind: TopicKind, message: &Value) {
+        let topic = interfaces()[0].topic(ProtocolVersion::V2_1, &key(), kind);
         self.bridge.receive(&mut self.supervisor, &topic, message.to_string().as_bytes(), self.time);
     }
 
     /// What the vehicle says now.
     fn state(&mut self) -> Value {
         self.vehicle.tell_state();
-        let said = self.vehicle.out().into_iter().rev().find(|(kind, _)| *kind == Kind::State).unwrap();
+        let said = self.vehicle.out().into_iter().rev().find(|(kind, _)| *kind == TopicKind::State).unwrap();
         serde_json::from_slice(&said.1).unwrap()
     }
 
-    fn hears(&mut self, kind: Kind, message: &Value) {
-        let topic = interfaces()[1].topic(Version::V2_1, &key(), kind);
+    fn hears(&mut self, kind: TopicKind, message: &Value) {
+        let topic = interfaces()[1].topic(ProtocolVersion::V2_1, &key(), kind);
         self.bridge.receive(&mut self.supervisor, &topic, message.to_string().as_bytes(), self.time);
     }
 
@@ -102,7 +102,7 @@ impl Lone {
         let mut orders = 0;
         for message in out {
             if let Some((_, _, kind)) = interfaces()[1].parse(&message.topic) {
-                orders += usize::from(kind == Kind::Order);
+                orders += usize::from(kind == TopicKind::Order);
                 self.vehicle.receive(kind, &message.payload);
             }
         }
@@ -115,7 +115,7 @@ impl Lone {
             self.time += 0.1;
             self.vehicle.advance(0.1);
             let state = self.state();
-            self.hears(Kind::State, &state);
+            self.hears(TopicKind::State, &state);
             orders += self.turn();
         }
         orders
@@ -128,10 +128,10 @@ fn a_late_state_ends_no_alarm() {
     let before = own.state();
     let mut off = own.state();
     off["agvPosition"]["y"] = json!(2.0);
-    own.hears(Kind::State, &off);
+    own.hears(TopicKind::State, &off);
     assert!(own.has_alarm());
     own.time += 1.0;
-    own.hears(Kind::State, &before);
+    own.hears(TopicKind::State, &before);
     own.turn();
     assert!(own.has_alarm());
     own.lasts(0.2);
@@ -147,12 +147,12 @@ fn late_states_end_no_alarm_one_after_the_other() {
     beyond["agvPosition"]["x"] = json!(4.9);
     let mut off = own.state();
     off["agvPosition"]["y"] = json!(2.0);
-    own.hears(Kind::State, &off);
+    own.hears(TopicKind::State, &off);
     assert!(own.has_alarm());
     own.time += 1.0;
-    own.hears(Kind::State, &beyond);
+    own.hears(TopicKind::State, &beyond);
     own.time += 0.1;
-    own.hears(Kind::State, &before);
+    own.hears(TopicKind::State, &before);
     own.turn();
     assert!(own.has_alarm());
     own.lasts(0.2);
@@ -165,7 +165,7 @@ fn a_position_between_states_that_is_back_ends_no_alarm() {
     let mut own = Lone::driving();
     let mut state = own.state();
     state["agvPosition"]["x"] = json!(own.robot_at() - 1.5);
-    own.hears(Kind::State, &state);
+    own.hears(TopicKind::State, &state);
     assert!(own.has_alarm());
     let (mut header, said) = (0, state.clone());
     let mut between = |own: &Lone, x: f64, stamp: &str| {
@@ -173,7 +173,7 @@ fn a_position_between_states_that_is_back_ends_no_alarm() {
         header += 1;
         (message["headerId"], message["agvPosition"]["x"]) = (json!(header), json!(x));
         message["timestamp"] = json!(stamp);
-        (message.to_string(), interfaces()[1].topic(Version::V2_1, &key(), Kind::Visualization), own.time)
+        (message.to_string(), interfaces()[1].topic(ProtocolVersion::V2_1, &key(), TopicKind::Visualization), own.time)
     };
     // One of the same time may have been written before the state: it ends no alarm either.
     let [same, later] = [0.0, 0.1].map(|later| written(seconds(&state) + later));
@@ -187,10 +187,10 @@ fn a_position_between_states_that_is_back_ends_no_alarm() {
 }
 
 /// A message of the vehicle, written so long after its last state \[s\]; `x` is counted from the place that is known of it \[m\].
-fn says(own: &Lone, state: &Value, kind: Kind, after: f64, [x, y]: [f64; 2]) -> Value {
+fn says(own: &Lone, state: &Value, kind: TopicKind, after: f64, [x, y]: [f64; 2]) -> Value {
     let mut message = state.clone();
     // Each kind has numbers of its own.
-    let number = state["headerId"].as_u64().unwrap() * u64::from(kind == Kind::State);
+    let number = state["headerId"].as_u64().unwrap() * u64::from(kind == TopicKind::State);
     message["headerId"] = json!(number + 1 + (after.max(0.0) * 1e3) as u64);
     message["timestamp"] = json!(written(seconds(state) + after));
     message["agvPosition"]["x"] = json!(own.robot_at() + x);
@@ -205,38 +205,38 @@ fn a_state_that_a_visualization_has_overtaken_neither_begins_nor_ends_an_alarm()
     for written_before in [0.3, 0.6] {
         let mut own = Lone::driving_for(4.5);
         let state = own.state();
-        own.hears(Kind::State, &state);
+        own.hears(TopicKind::State, &state);
         let [ahead, behind, back] = [[0.9, 0.0], [0.1, 0.0], [-0.9, 0.0]];
         let [late, first, second] = [(0.1, behind), (0.6, ahead), (written_before, behind)]
-            .map(|(after, place)| says(&own, &state, Kind::State, after, place));
-        let between = says(&own, &state, Kind::Visualization, 0.6, ahead);
+            .map(|(after, place)| says(&own, &state, TopicKind::State, after, place));
+        let between = says(&own, &state, TopicKind::Visualization, 0.6, ahead);
         let at = own.robot_at();
-        own.hears(Kind::Visualization, &between);
+        own.hears(TopicKind::Visualization, &between);
         assert!((own.robot_at() - at - 0.9).abs() < 0.5, "it counts: {at} {}", own.robot_at());
         for message in [&second, &late, &second] {
             own.time += 0.01;
-            own.hears(Kind::State, message);
+            own.hears(TopicKind::State, message);
             own.turn();
             assert!(!own.has_alarm(), "{written_before}: {:?}", own.bridge.log());
         }
         let mut lost = second.clone();
         (lost["headerId"], lost["lastNodeSequenceId"]) = (json!(1 << 20), json!(1));
-        own.hears(Kind::State, &lost);
+        own.hears(TopicKind::State, &lost);
         assert!(!own.has_alarm(), "on its way, behind where it was said to be");
         // It is off its way by a newer visualization as far as that tells, and then by a state: the older one does not end that.
-        let off = says(&own, &first, Kind::State, 0.1, [0.0, 2.0]);
-        own.hears(Kind::State, &off);
+        let off = says(&own, &first, TopicKind::State, 0.1, [0.0, 2.0]);
+        own.hears(TopicKind::State, &off);
         assert!(own.has_alarm());
-        own.hears(Kind::State, &second);
+        own.hears(TopicKind::State, &second);
         own.turn();
         assert!(own.has_alarm());
         // What is written after the visualization counts at once, also where it is back.
         let mut own = Lone::driving_for(4.5);
         let state = own.state();
-        let between = says(&own, &state, Kind::Visualization, 0.6, ahead);
-        let later = says(&own, &state, Kind::State, 0.7, back);
-        own.hears(Kind::Visualization, &between);
-        own.hears(Kind::State, &later);
+        let between = says(&own, &state, TopicKind::Visualization, 0.6, ahead);
+        let later = says(&own, &state, TopicKind::State, 0.7, back);
+        own.hears(TopicKind::Visualization, &between);
+        own.hears(TopicKind::State, &later);
         assert!(own.has_alarm());
     }
 }
@@ -246,10 +246,10 @@ fn a_state_that_a_visualization_has_overtaken_neither_begins_nor_ends_an_alarm()
 fn a_vehicle_on_its_way_has_no_alarm_in_whatever_order_its_messages_come() {
     let (mut counted, mut overtaken) = (0, 0);
     for seed in 0..60 {
-        let (mut dice, mut own) = (Random(seed), Lone::standing());
+        let (mut dice, mut own) = (SplitMix64(seed), Lone::standing());
         own.order("a", 0.0, 1);
         own.lasts(1.0);
-        let mut waiting: Vec<(f64, Kind, Value)> = Vec::new();
+        let mut waiting: Vec<(f64, TopicKind, Value)> = Vec::new();
         let (mut number, mut newest) = (0, [0.0_f64; 2]);
         for _ in 0..80 {
             own.time += 0.1;
@@ -259,8 +259,8 @@ fn a_vehicle_on_its_way_has_no_alarm_in_whatever_order_its_messages_come() {
                 // Whole seconds, as many vehicles have them.
                 state["timestamp"] = json!(written(seconds(&state).floor()));
             }
-            let kind = if dice.below(3) == 0 { Kind::State } else { Kind::Visualization };
-            if kind == Kind::Visualization {
+            let kind = if dice.below(3) == 0 { TopicKind::State } else { TopicKind::Visualization };
+            if kind == TopicKind::Visualization {
                 number += 1;
                 state["headerId"] = json!(number);
             }
@@ -271,11 +271,11 @@ fn a_vehicle_on_its_way_has_no_alarm_in_whatever_order_its_messages_come() {
                 let (at, stamp) = (own.robot_at(), seconds(&message));
                 own.hears(kind, &message);
                 assert!(!own.has_alarm(), "seed {seed}, at {} s: {message}", own.time);
-                counted += usize::from(kind == Kind::Visualization && own.robot_at() > at);
+                counted += usize::from(kind == TopicKind::Visualization && own.robot_at() > at);
                 let [states, others] = &mut newest;
-                overtaken += usize::from(kind == Kind::State && stamp > *states && stamp < *others);
-                *(if kind == Kind::State { states } else { others }) =
-                    stamp.max(if kind == Kind::State { *states } else { *others });
+                overtaken += usize::from(kind == TopicKind::State && stamp > *states && stamp < *others);
+                *(if kind == TopicKind::State { states } else { others }) =
+                    stamp.max(if kind == TopicKind::State { *states } else { *others });
             }
             own.turn();
         }
@@ -290,8 +290,8 @@ fn a_visualization_from_a_clock_that_is_wrong_hides_no_alarm() {
     for answers in [true, false] {
         let mut own = Lone::driving();
         let state = own.state();
-        let between = says(&own, &state, Kind::Visualization, 3600.0, [0.1, 0.0]);
-        own.hears(Kind::Visualization, &between);
+        let between = says(&own, &state, TopicKind::Visualization, 3600.0, [0.1, 0.0]);
+        own.hears(TopicKind::Visualization, &between);
         let mut said = 0;
         while !own.has_alarm() {
             said += 1;
@@ -304,7 +304,7 @@ fn a_visualization_from_a_clock_that_is_wrong_hides_no_alarm() {
             if !answers {
                 off["actionStates"] = json!([]);
             }
-            own.hears(Kind::State, &off);
+            own.hears(TopicKind::State, &off);
         }
         // With the answer to the request; without one, after the time by which any message comes.
         assert_eq!(said, if answers { 2 } else { 61 }, "{answers}");
@@ -317,14 +317,14 @@ fn a_state_from_before_a_vehicle_counts_anew_ends_no_alarm() {
     let mut own = Lone::driving();
     let mut old = own.state();
     old["headerId"] = json!(1000);
-    own.hears(Kind::State, &old);
+    own.hears(TopicKind::State, &old);
     own.vehicle.advance(0.1);
     let mut off = own.state();
     (off["headerId"], off["agvPosition"]["y"]) = (json!(1), json!(2.0));
-    own.hears(Kind::State, &off);
+    own.hears(TopicKind::State, &off);
     assert!(own.has_alarm());
     own.time += 1.0;
-    own.hears(Kind::State, &old);
+    own.hears(TopicKind::State, &old);
     own.turn();
     assert!(own.has_alarm());
 }
@@ -343,7 +343,7 @@ fn a_vehicle_whose_clock_begins_anew_is_heard() {
         own.vehicle.set_clock(-1e6);
         if is_online {
             let online: Value = serde_json::from_slice(&own.vehicle.connection("ONLINE")).unwrap();
-            own.hears(Kind::Connection, &online);
+            own.hears(TopicKind::Connection, &online);
         }
         // It has rolled away.
         let mut said = 0;
@@ -362,7 +362,7 @@ fn a_vehicle_whose_clock_begins_anew_is_heard() {
                 let state = own.state();
                 off["actionStates"] = state["actionStates"].clone();
             }
-            own.hears(Kind::State, &off);
+            own.hears(TopicKind::State, &off);
         }
         let expected = if is_deaf {
             62
@@ -374,8 +374,8 @@ fn a_vehicle_whose_clock_begins_anew_is_heard() {
         assert_eq!(said, expected, "{is_online} {is_deaf} {has_clock}");
         // Those of before are older, whatever their clock said, and so is what it said between them.
         own.time += 0.1;
-        own.hears(Kind::State, &old);
-        own.hears(Kind::Visualization, &old);
+        own.hears(TopicKind::State, &old);
+        own.hears(TopicKind::Visualization, &old);
         assert!(own.has_alarm() && own.robot_at() == before);
     }
 }
@@ -391,13 +391,13 @@ fn late_states_in_a_row_end_no_alarm() {
     }
     let mut off = own.state();
     off["agvPosition"]["y"] = json!(2.0);
-    own.hears(Kind::State, &off);
+    own.hears(TopicKind::State, &off);
     let online: Value = serde_json::from_slice(&own.vehicle.connection("ONLINE")).unwrap();
-    own.hears(Kind::Connection, &online);
+    own.hears(TopicKind::Connection, &online);
     for state in late {
         own.time += 1.0;
         own.turn();
-        own.hears(Kind::State, &state);
+        own.hears(TopicKind::State, &state);
         assert!(own.has_alarm());
     }
 }
@@ -410,7 +410,7 @@ fn a_vehicle_that_goes_back_is_not_where_it_may_be() {
     for (back, alarm) in [(0.05, false), (1.5, true), (0.0, false)] {
         let mut state = own.state();
         state["agvPosition"]["x"] = json!(at - back);
-        own.hears(Kind::State, &state);
+        own.hears(TopicKind::State, &state);
         assert_eq!(own.has_alarm(), alarm, "{back}");
     }
     assert_eq!(own.robot_at().max(at), own.robot_at());
@@ -427,10 +427,10 @@ fn a_vehicle_that_has_passed_its_base_is_not_where_it_may_be() {
     // A client of others says the number of an order before until it has passed the first node of this one.
     let mut early = state.clone();
     early["agvPosition"]["x"] = json!(own.robot_at());
-    own.hears(Kind::State, &early);
+    own.hears(TopicKind::State, &early);
     assert!(!own.has_alarm());
     state["headerId"] = json!(1 << 20);
-    own.hears(Kind::State, &state);
+    own.hears(TopicKind::State, &state);
     assert!(own.has_alarm());
 }
 
@@ -441,7 +441,7 @@ fn a_vehicle_that_names_no_node_of_its_order_has_to_be_on_its_way() {
     for (y, alarm) in [(0.0, false), (2.0, true)] {
         let mut state = own.state();
         (state["lastNodeSequenceId"], state["agvPosition"]["y"]) = (json!(1), json!(y));
-        own.hears(Kind::State, &state);
+        own.hears(TopicKind::State, &state);
         assert_eq!(own.has_alarm(), alarm, "{y}");
     }
 }
@@ -453,7 +453,7 @@ fn a_place_on_another_map_counts_for_nothing() {
     let at = own.robot_at();
     let mut state = own.state();
     (state["agvPosition"]["mapId"], state["agvPosition"]["x"]) = (json!("upstairs"), json!(4.9));
-    own.hears(Kind::State, &state);
+    own.hears(TopicKind::State, &state);
     assert_eq!(own.robot_at(), at);
     assert!(own.bridge.log()[0].contains("position.mapId: \"upstairs\""));
     // One without an order was taken there.
@@ -462,7 +462,7 @@ fn a_place_on_another_map_counts_for_nothing() {
         own.time += 0.1;
         let mut state = own.state();
         (state["agvPosition"]["mapId"], state["agvPosition"]["x"]) = (json!("upstairs"), json!(40.0));
-        own.hears(Kind::State, &state);
+        own.hears(TopicKind::State, &state);
         own.turn();
     }
     assert_eq!(own.supervisor.robot("sim/001").unwrap().course.start().x, 40.0);
@@ -474,7 +474,7 @@ fn a_vehicle_further_away_than_any_path_can_be_is_not_where_it_may_be() {
     let mut own = Lone::driving();
     let mut state = own.state();
     state["agvPosition"]["x"] = json!(5e7);
-    own.hears(Kind::State, &state);
+    own.hears(TopicKind::State, &state);
     assert!(own.has_alarm());
 }
 
@@ -486,7 +486,7 @@ fn a_deviation_below_zero_is_none() {
     let mut state = own.state();
     (state["agvPosition"]["deviationRange"], state["agvPosition"]["y"]) = (json!(-1.0), json!(0.9));
     state["agvPosition"]["x"] = json!(4.9);
-    own.hears(Kind::State, &state);
+    own.hears(TopicKind::State, &state);
     assert_eq!(own.robot_at(), at);
 }
 
@@ -495,11 +495,11 @@ fn a_deviation_below_zero_is_none() {
 fn a_vehicle_that_is_larger_than_its_disc_is_released_nothing_nor_is_anybody_else() {
     let mut own = Lone::standing();
     own.vehicle.tell_factsheet();
-    let sheet = own.vehicle.out().into_iter().find(|(kind, _)| *kind == Kind::Factsheet).unwrap().1;
+    let sheet = own.vehicle.out().into_iter().find(|(kind, _)| *kind == TopicKind::Factsheet).unwrap().1;
     let sheet: Value = serde_json::from_slice(&sheet).unwrap();
     let mut larger = sheet.clone();
     larger["agvGeometry"]["envelopes2d"][0]["polygonPoints"][0]["x"] = json!(0.9);
-    own.hears(Kind::Factsheet, &larger);
+    own.hears(TopicKind::Factsheet, &larger);
     own.order("a", 0.0, 2);
     assert_eq!(own.lasts(5.0), 0);
     own.time += 31.0;
@@ -509,11 +509,11 @@ fn a_vehicle_that_is_larger_than_its_disc_is_released_nothing_nor_is_anybody_els
     // What was written before is older.
     let mut older = sheet.clone();
     older["timestamp"] = json!("2020-01-01T00:00:00.000Z");
-    own.hears(Kind::Factsheet, &older);
+    own.hears(TopicKind::Factsheet, &older);
     assert_eq!(own.lasts(5.0), 0);
     let mut newer = sheet.clone();
     newer["headerId"] = json!(1 << 20);
-    own.hears(Kind::Factsheet, &newer);
+    own.hears(TopicKind::Factsheet, &newer);
     assert!(own.lasts(5.0) > 0);
 }
 
@@ -527,11 +527,11 @@ fn what_the_broker_has_kept_is_of_another_time() {
     let kept = |own: &mut Lone, topic: String, text: &str| {
         own.bridge.receive_kept(&mut own.supervisor, &topic, text.as_bytes(), own.time);
     };
-    kept(&mut own, vehicles.topic(Version::V2_1, &key(), Kind::State), &state);
+    kept(&mut own, vehicles.topic(ProtocolVersion::V2_1, &key(), TopicKind::State), &state);
     assert!(own.supervisor.robot("sim/001").is_err());
     let online = String::from_utf8(own.vehicle.connection("ONLINE")).unwrap();
-    kept(&mut own, vehicles.topic(Version::V2_1, &key(), Kind::Connection), &online);
-    kept(&mut own, manager.topic(Version::V2_1, &key(), Kind::Order), "{}");
+    kept(&mut own, vehicles.topic(ProtocolVersion::V2_1, &key(), TopicKind::Connection), &online);
+    kept(&mut own, manager.topic(ProtocolVersion::V2_1, &key(), TopicKind::Order), "{}");
     assert_eq!((own.bridge.counts().refused, own.bridge.log().len()), (2, 2));
 }
 
@@ -543,9 +543,9 @@ fn an_order_that_comes_again_after_it_was_cancelled_is_an_old_one() {
     let action = json!({ "actionType": "cancelOrder", "actionId": "c", "blockingType": "NONE" });
     let message = json!({ "headerId": 2, "timestamp": "2030-01-01T00:00:00.000Z", "version": "2.1.0", "manufacturer": "sim",
         "serialNumber": "001", "actions": [action] });
-    own.manager(Kind::InstantActions, &message);
+    own.manager(TopicKind::InstantActions, &message);
     own.lasts(10.0);
-    let [x, _] = own.vehicle.place();
+    let [x, _] = own.vehicle.true_position();
     own.order("a", x, 1);
     own.lasts(2.0);
     let taken = own.vehicle.taken();
@@ -562,7 +562,7 @@ fn a_vehicle_that_was_removed_by_hand_and_comes_back_takes_orders() {
     own.lasts(10.0);
     own.supervisor.remove("sim/001").unwrap();
     own.lasts(1.0);
-    let [x, _] = own.vehicle.place();
+    let [x, _] = own.vehicle.true_position();
     own.vehicle.forget();
     own.lasts(1.0);
     own.order("b", x, 1);

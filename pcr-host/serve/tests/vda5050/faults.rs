@@ -3,20 +3,20 @@
 use crate::broker::{Mosquitto, folder};
 use crate::runs::FAIR;
 use crate::site::{Desk, SAFE, Scene, Site, at_broker, nodes, warehouse};
-use pcr_formats::random::Random;
-use pcr_formats::vda5050::version::Version;
-use pcr_serve::entry::Nowhere;
+use pcr_formats::splitmix64::SplitMix64;
+use pcr_formats::vda5050::version::ProtocolVersion;
 use pcr_serve::journal::Journal;
+use pcr_serve::journal_entry::NullStore;
 use pcr_serve::supervisor::Supervisor;
-use pcr_serve::vda5050::bridge::Publish;
-use pcr_serve::vda5050::mqtt::{Broker, Link};
-use pcr_serve::vehicles::weather::Climate;
-use pcr_serve::vehicles::world::World;
+use pcr_serve::vda5050::bridge::MqttMessage;
+use pcr_serve::vda5050::mqtt::{BrokerAddress, MqttLink};
+use pcr_serve::vehicles::lossy_channel::ChannelFaults;
+use pcr_serve::vehicles::simulated_site::SimulatedSite;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-const SCENE: Scene<'_> = Scene { count: 6, versions: &Version::ALL, drops: 0.01, ..FAIR };
+const SCENE: Scene<'_> = Scene { count: 6, versions: &ProtocolVersion::ALL, drops: 0.01, ..FAIR };
 
 /// A supervisor in a process of its own, so that it can be killed.
 struct Desks {
@@ -27,7 +27,7 @@ struct Desks {
 }
 
 impl Desks {
-    fn open(broker: &Broker, journal: &Path) -> Self {
+    fn open(broker: &BrokerAddress, journal: &Path) -> Self {
         let (port, journal) = (broker.port, journal.to_string_lossy().into_owned());
         let child = Self::spawn(port, &journal, 0);
         Self { port, journal, session: 0, child }
@@ -67,10 +67,10 @@ fn a_supervisor_of_its_own() {
     let (port, session, journal) = (word().parse().unwrap(), word().to_owned(), word().to_owned());
     let layout = warehouse();
     let goals = nodes(&layout, &SAFE);
-    let world = World::new(layout, goals, SCENE.count, SCENE.versions, SCENE.abilities, 1).unwrap();
+    let world = SimulatedSite::new(layout, goals, SCENE.count, SCENE.versions, SCENE.abilities, 1).unwrap();
     let (journal, found) = Journal::open(Path::new(&journal)).unwrap();
     let supervisor = Supervisor::restored(at_broker(), found.entries, Box::new(journal)).unwrap();
-    let desk = Desk::at(&Broker::new("127.0.0.1", port), world.profiles, &session, supervisor);
+    let desk = Desk::at(&BrokerAddress::new("127.0.0.1", port), world.profiles, &session, supervisor);
     while !desk.is_over() {
         std::thread::sleep(Duration::from_millis(20));
     }
@@ -78,8 +78,8 @@ fn a_supervisor_of_its_own() {
 }
 
 /// Sends what nobody should.
-fn nonsense(broker: &Broker) {
-    let link = Link::open(broker, "intruder", None, Vec::new(), drop).unwrap();
+fn nonsense(broker: &BrokerAddress) {
+    let link = MqttLink::open(broker, "intruder", None, Vec::new(), drop).unwrap();
     while !link.is_up() {
         std::thread::sleep(Duration::from_millis(10));
     }
@@ -102,10 +102,10 @@ fn nonsense(broker: &Broker) {
             ] {
                 for (kind, payload) in kinds.iter().flat_map(|kind| payloads.map(|payload| (kind, payload))) {
                     let topic = format!("{prefix}/{version}/sim/{serial}/{kind}");
-                    while !link.publish(Publish {
+                    while !link.publish(MqttMessage {
                         topic: topic.clone(),
                         payload: payload.into(),
-                        assured: false,
+                        at_least_once: false,
                         retain: false,
                     }) {
                         std::thread::sleep(Duration::from_millis(5));
@@ -149,7 +149,7 @@ fn faults_one_after_the_other() {
     let mut broker = Mosquitto::start("faults");
     let (mut site, profiles) = Site::open(&broker, SCENE);
     let mut desks = Desks::open(&broker.address(), &folder("faults-journal"));
-    let (mut tally, mut random) = (Tally::default(), Random(rounds));
+    let (mut tally, mut random) = (Tally::default(), SplitMix64(rounds));
     site.until(3);
     for round in 0..rounds {
         broker.restart();
@@ -176,7 +176,7 @@ fn faults_one_after_the_other() {
         nonsense(&broker.address());
         tally.over(&mut site, "nonsense");
         if round % 10 == 0 {
-            let second = Desk::open(&broker, profiles.clone(), "second", Box::new(Nowhere));
+            let second = Desk::open(&broker, profiles.clone(), "second", Box::new(NullStore));
             while !second.is_over() {
                 site.step();
             }
@@ -185,7 +185,7 @@ fn faults_one_after_the_other() {
             tally.over(&mut site, "a second supervisor was refused");
         }
         // As bad as that it does not go on in peace; what is late has come before it is over.
-        site.fleet.change(Climate { lost: 0.05, twice: 0.2, late: 0.2, delay: LATE });
+        site.fleet.change(ChannelFaults { loss_rate: 0.05, duplicate_rate: 0.2, reorder_rate: 0.2, delay: LATE });
         site.lasts(Duration::from_secs(20));
         site.fleet.change(FAIR.climate);
         site.lasts(Duration::from_secs_f64(LATE));
@@ -215,7 +215,7 @@ fn of_supervisors_that_begin_at_once_one_goes_on() {
     for round in 0..5 {
         let names = ["a", "b", "c"].map(|name| format!("{name}{round}"));
         let mut all: Vec<Desk> =
-            names.iter().map(|name| Desk::open(&broker, Vec::new(), name, Box::new(Nowhere))).collect();
+            names.iter().map(|name| Desk::open(&broker, Vec::new(), name, Box::new(NullStore))).collect();
         while all.iter().filter(|desk| !desk.is_over()).count() > 1 {
             std::thread::sleep(Duration::from_millis(20));
         }
@@ -229,7 +229,7 @@ fn of_supervisors_that_begin_at_once_one_goes_on() {
             std::thread::sleep(Duration::from_millis(20));
         }
         // The message of those who have ended is that they have; whoever comes now is told all the same.
-        let late = Desk::open(&broker, Vec::new(), "late", Box::new(Nowhere));
+        let late = Desk::open(&broker, Vec::new(), "late", Box::new(NullStore));
         while !late.is_over() {
             std::thread::sleep(Duration::from_millis(20));
         }

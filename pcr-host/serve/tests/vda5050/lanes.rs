@@ -2,17 +2,17 @@
 
 use crate::pair::{CAN, FRO, Pair, TO, bridge_of, key, order};
 use crate::site::{interfaces, settings};
-use pcr_formats::vda5050::decode::Limits;
-use pcr_formats::vda5050::topics::Kind;
-use pcr_formats::vda5050::version::Version;
-use pcr_serve::course::Start;
-use pcr_serve::entry::Nowhere;
-use pcr_serve::event::Event;
-use pcr_serve::supervisor::{Proposal, Report, Supervisor};
-use pcr_serve::vda5050::bridge::{self, Bridge};
-use pcr_serve::vehicles::drive::Abilities;
-use pcr_serve::vehicles::vehicle::Vehicle;
-use pcr_serve::vehicles::world::profile;
+use pcr_formats::vda5050::decode::MessageLimits;
+use pcr_formats::vda5050::topics::TopicKind;
+use pcr_formats::vda5050::version::ProtocolVersion;
+use pcr_serve::event::SupervisorEvent;
+use pcr_serve::journal_entry::NullStore;
+use pcr_serve::owned_path::StartPose;
+use pcr_serve::supervisor::{MissionRequest, PositionReport, Supervisor};
+use pcr_serve::vda5050::bridge::{self, Vda5050Bridge};
+use pcr_serve::vehicles::simulated_site::profile;
+use pcr_serve::vehicles::vehicle::SimulatedVehicle;
+use pcr_serve::vehicles::vehicle_motion::SimulatedTraits;
 use serde_json::json;
 
 /// An order was forgotten, and a pause of the manager was ended.
@@ -22,12 +22,12 @@ fn notes_of_the_journal_that_cannot_be_read_are_an_error() {
     own.order("1", &TO);
     own.lasts(1.0);
     let [manager, vehicles] = interfaces();
-    let settings = bridge::Settings { manager, vehicles, limits: Limits::default() };
-    let bridge = |own: &Pair| Bridge::new(settings.clone(), vec![profile(key(), &CAN)], &own.supervisor);
+    let settings = bridge::BridgeConfig { manager, vehicles, limits: MessageLimits::default() };
+    let bridge = |own: &Pair| Vda5050Bridge::new(settings.clone(), vec![profile(key(), &CAN)], &own.supervisor);
     assert!(bridge(&own).is_ok());
     for key in ["order", "stops", "sent", "orders", "cancels", "pauses", "needs", "received", "doubtful"] {
         let entries = own.supervisor.snapshot().unwrap();
-        let mut damaged = Supervisor::restored(self::settings(), entries, Box::new(Nowhere)).unwrap();
+        let mut damaged = Supervisor::restored(self::settings(), entries, Box::new(NullStore)).unwrap();
         damaged.note("sim/001", key, json!({ "held": 5 })).unwrap();
         let own = Pair { supervisor: damaged, ..Pair::new() };
         let why = bridge(&own).err().map(|why| why.to_string()).unwrap_or_default();
@@ -38,7 +38,7 @@ fn notes_of_the_journal_that_cannot_be_read_are_an_error() {
 #[test]
 fn an_order_that_is_lost_is_sent_again() {
     let mut own = Pair::new();
-    own.loses = Some(|kind, _| kind == Kind::Order);
+    own.loses = Some(|kind, _| kind == TopicKind::Order);
     own.order("a", &TO);
     own.lasts(60.0);
     assert!(own.is_done("a"), "{:?}", own.state);
@@ -49,14 +49,14 @@ fn any_update_that_is_lost_is_sent_again() {
     for lost in [1, 2] {
         let mut own = Pair::new();
         own.loses = match lost {
-            1 => Some(|kind, said| kind == Kind::Order && said["orderUpdateId"] == 1),
-            _ => Some(|kind, said| kind == Kind::Order && said["orderUpdateId"] == 2),
+            1 => Some(|kind, said| kind == TopicKind::Order && said["orderUpdateId"] == 1),
+            _ => Some(|kind, said| kind == TopicKind::Order && said["orderUpdateId"] == 2),
         };
-        own.says(Kind::Order, order("a", 0, 0, &TO[..1], 1));
+        own.says(TopicKind::Order, order("a", 0, 0, &TO[..1], 1));
         own.lasts(2.0);
-        own.says(Kind::Order, order("a", 1, 0, &TO[..2], 2));
+        own.says(TopicKind::Order, order("a", 1, 0, &TO[..2], 2));
         own.lasts(2.0);
-        own.says(Kind::Order, order("a", 2, 2, &TO[1..], 2));
+        own.says(TopicKind::Order, order("a", 2, 2, &TO[1..], 2));
         own.lasts(60.0);
         assert!(own.is_done("a") && own.loses.is_none(), "{lost}: {:?}", own.state);
     }
@@ -85,9 +85,9 @@ fn what_cancels_an_order_is_sent_until_it_is_there() {
     for moment in [0.5, 4.0, 60.0] {
         let mut own = Pair::new();
         own.loses =
-            Some(|kind, said| kind == Kind::InstantActions && said["actions"][0]["actionType"] == "cancelOrder");
+            Some(|kind, said| kind == TopicKind::InstantActions && said["actions"][0]["actionType"] == "cancelOrder");
         // The end is not released: it waits there.
-        own.says(Kind::Order, order("a", 0, 0, &TO, 2));
+        own.says(TopicKind::Order, order("a", 0, 0, &TO, 2));
         own.lasts(moment);
         own.cancels("stop");
         own.lasts(30.0);
@@ -112,16 +112,16 @@ fn what_cancelled_an_order_before_cancels_nothing_when_it_comes_again() {
         own.lasts(2.0);
         own.cancels("stop");
         own.lasts(10.0);
-        let [x, y] = own.vehicle.place();
+        let [x, y] = own.vehicle.true_position();
         let places = [[x, y], [x + 4.0, y], [x + 8.0, y]];
-        own.says(Kind::Order, order("b", 0, 0, &places, 2));
+        own.says(TopicKind::Order, order("b", 0, 0, &places, 2));
         own.lasts(30.0);
         assert_eq!(own.state.as_ref().unwrap().action("stop"), Some("FINISHED"));
         if is_restarted {
             own.restart();
         }
-        own.loses = Some(|kind, said| kind == Kind::Order && said["orderId"] == "b");
-        own.says(Kind::Order, order("b", 1, 2, &places[1..], 2));
+        own.loses = Some(|kind, said| kind == TopicKind::Order && said["orderId"] == "b");
+        own.says(TopicKind::Order, order("b", 1, 2, &places[1..], 2));
         own.cancels("stop");
         let log = own.bridge.log();
         assert_eq!(
@@ -147,10 +147,10 @@ fn an_order_is_an_old_one_however_many_updates_came_since() {
     own.lasts(20.0);
     assert!(own.is_done("a"));
     let places: Vec<[f64; 2]> = (0..40).map(|k| [1.0 + 0.2 * f64::from(k), 0.0]).collect();
-    own.says(Kind::Order, order("b", 0, 0, &places[..1], 1));
+    own.says(TopicKind::Order, order("b", 0, 0, &places[..1], 1));
     for update in 1..40 {
         own.lasts(1.5);
-        own.says(Kind::Order, order("b", update as u64, 2 * (update - 1) as u64, &places[update - 1..=update], 2));
+        own.says(TopicKind::Order, order("b", update as u64, 2 * (update - 1) as u64, &places[update - 1..=update], 2));
         own.lasts(0.1);
         assert_eq!(own.errors(), [""; 0], "{update}");
     }
@@ -170,7 +170,7 @@ fn an_order_is_an_old_one_however_many_updates_came_since() {
 #[test]
 fn an_order_that_is_cancelled_before_it_is_there_is_over() {
     let mut own = Pair::new();
-    own.loses = Some(|kind, _| kind == Kind::Order);
+    own.loses = Some(|kind, _| kind == TopicKind::Order);
     own.order("a", &TO);
     own.lasts(0.3);
     assert!(own.loses.is_none());
@@ -187,14 +187,14 @@ fn an_order_that_is_cancelled_before_it_is_there_is_over() {
 #[test]
 fn a_vehicle_that_has_lost_its_order_meanwhile_stands_where_it_says() {
     let mut own = Pair::new();
-    own.says(Kind::Order, order("a", 0, 0, &TO[..2], 2));
+    own.says(TopicKind::Order, order("a", 0, 0, &TO[..2], 2));
     own.lasts(20.0);
-    own.says(Kind::Order, order("a", 1, 2, &TO[1..], 2));
+    own.says(TopicKind::Order, order("a", 1, 2, &TO[1..], 2));
     own.lasts(5.0);
     own.restart();
-    let [x, y] = own.vehicle.place();
+    let [x, y] = own.vehicle.true_position();
     let time = own.time;
-    own.vehicle = Vehicle::new(key(), Version::V2_1, "map", CAN, Start { x, y, heading: 0.0 }, 2);
+    own.vehicle = SimulatedVehicle::new(key(), ProtocolVersion::V2_1, "map", CAN, StartPose { x, y, heading: 0.0 }, 2);
     own.vehicle.set_clock(100.0);
     own.lasts(10.0);
     assert!(own.time > time);
@@ -213,7 +213,7 @@ fn a_vehicle_that_was_paused_by_a_late_message_or_before_a_restart_goes_on() {
     let mut message = json!({ "actions": [pause], "headerId": 1, "timestamp": "2030-01-01T00:00:00.000Z" });
     let header = json!({ "version": "2.1.0", "manufacturer": "sim", "serialNumber": "001" });
     message.as_object_mut().unwrap().extend(header.as_object().unwrap().clone());
-    own.vehicle.receive(Kind::InstantActions, message.to_string().as_bytes());
+    own.vehicle.receive(TopicKind::InstantActions, message.to_string().as_bytes());
     own.restart();
     own.lasts(60.0);
     assert!(own.is_done("a"), "{:?}", own.state);
@@ -221,7 +221,7 @@ fn a_vehicle_that_was_paused_by_a_late_message_or_before_a_restart_goes_on() {
     own.order("b", &FRO);
     own.lasts(3.0);
     message["actions"][0]["actionId"] = "by hand".into();
-    own.vehicle.receive(Kind::InstantActions, message.to_string().as_bytes());
+    own.vehicle.receive(TopicKind::InstantActions, message.to_string().as_bytes());
     own.lasts(60.0);
     assert!(!own.is_done("b"));
 }
@@ -236,10 +236,10 @@ fn paused_and_stopped(before: &[&str], while_stopped: &[&str], restarts: bool) -
         own.acts(kind, &format!("before-{k}"));
         own.lasts(2.0);
     }
-    own.supervisor.add("new", profile(key(), &CAN).abilities, Start { x: 5.0, y: 2.0, heading: 0.0 }).unwrap();
+    own.supervisor.add("new", profile(key(), &CAN).abilities, StartPose { x: 5.0, y: 2.0, heading: 0.0 }).unwrap();
     own.lasts(6.0);
     assert!(own.supervisor.robot("sim/001").unwrap().stopped.is_some() && own.is_paused());
-    let place = own.vehicle.place();
+    let place = own.vehicle.true_position();
     for (k, kind) in while_stopped.iter().enumerate() {
         own.acts(kind, &format!("stopped-{k}"));
         own.lasts(2.0);
@@ -248,7 +248,7 @@ fn paused_and_stopped(before: &[&str], while_stopped: &[&str], restarts: bool) -
             own.lasts(2.0);
         }
         // Not even for a moment.
-        assert!(own.is_paused() && own.vehicle.place() == place, "{kind}");
+        assert!(own.is_paused() && own.vehicle.true_position() == place, "{kind}");
     }
     own.supervisor.remove("new").unwrap();
     own.lasts(5.0);
@@ -296,7 +296,7 @@ fn who_is_paused_as_it_is_let_go_is_paused() {
         let mut own = Pair::new();
         own.order("a", &TO);
         own.lasts(3.0);
-        own.supervisor.add("new", profile(key(), &CAN).abilities, Start { x: 5.0, y: 2.0, heading: 0.0 }).unwrap();
+        own.supervisor.add("new", profile(key(), &CAN).abilities, StartPose { x: 5.0, y: 2.0, heading: 0.0 }).unwrap();
         own.lasts(6.0);
         own.supervisor.remove("new").unwrap();
         own.lasts(wait);
@@ -311,7 +311,7 @@ fn who_is_paused_as_it_is_let_go_is_paused() {
 
 #[test]
 fn who_is_missing_is_said() {
-    let supervisor = Supervisor::new(settings(), Box::new(Nowhere));
+    let supervisor = Supervisor::new(settings(), Box::new(NullStore));
     let mut own = Pair::new();
     own.supervisor = supervisor;
     own.bridge = bridge_of(&own.supervisor);
@@ -319,26 +319,26 @@ fn who_is_missing_is_said() {
     assert_eq!(own.bridge.log(), ["nobody is released anything until these have said where they stand: sim/001"]);
 }
 
-fn standstills(events: Vec<Event>) -> Vec<String> {
-    let why = |event| if let Event::Standstill { why, .. } = event { Some(why) } else { None };
+fn standstills(events: Vec<SupervisorEvent>) -> Vec<String> {
+    let why = |event| if let SupervisorEvent::Standstill { why, .. } = event { Some(why) } else { None };
     events.into_iter().filter_map(why).collect()
 }
 
 #[test]
 fn who_gets_nowhere_is_said_and_why() {
-    use pcr_serve::course::Shape;
-    use pcr_serve::supervisor::Proposal;
+    use pcr_serve::owned_path::PathElement;
+    use pcr_serve::supervisor::MissionRequest;
     let abilities = profile(key(), &CAN).abilities;
-    let line = |robot: &str, length| Proposal {
+    let line = |robot: &str, length| MissionRequest {
         robot: robot.into(),
         mission: "1".into(),
         after: None,
-        of: None,
+        expected_path: None,
         start: None,
-        path: vec![Shape::Line { length }],
+        path: vec![PathElement::Line { length }],
     };
-    let at = |x, heading| Start { x, y: 0.0, heading };
-    let mut own = Supervisor::new(settings(), Box::new(Nowhere));
+    let at = |x, heading| StartPose { x, y: 0.0, heading };
+    let mut own = Supervisor::new(settings(), Box::new(NullStore));
     own.add("a", abilities, at(0.0, 0.0)).unwrap();
     own.add("b", abilities, at(6.0, std::f64::consts::PI)).unwrap();
     let all = |own: &mut Supervisor, times: std::ops::Range<u32>| -> Vec<String> {
@@ -346,7 +346,8 @@ fn who_gets_nowhere_is_said_and_why() {
         for time in times {
             for robot in ["a", "b"] {
                 let known = own.robot(robot).unwrap();
-                let report = Report { robot: robot.into(), path: known.path, at: [known.at; 2], age: 0.0 };
+                let report =
+                    PositionReport { robot: robot.into(), path: known.path, at: [known.arc_length; 2], age: 0.0 };
                 own.position(&report, time.into()).unwrap();
             }
             said.extend(standstills(own.settle(time.into()).unwrap()));
@@ -360,7 +361,7 @@ fn who_gets_nowhere_is_said_and_why() {
     own.mission(&line("b", 10.0), 300.0).unwrap();
     assert_eq!(all(&mut own, 300..500), ["a, b wait for one another"]);
     own.remove("b").unwrap();
-    own.add("b", abilities, Start { x: 0.0, y: 50.0, heading: 0.0 }).unwrap();
+    own.add("b", abilities, StartPose { x: 0.0, y: 50.0, heading: 0.0 }).unwrap();
     assert_eq!(all(&mut own, 500..700), ["a is at 0.00 m, and may go to 10.00 m"]);
 }
 
@@ -368,39 +369,46 @@ fn who_gets_nowhere_is_said_and_why() {
 #[test]
 fn the_way_of_a_cancelled_order_is_its_own_until_it_stands() {
     let mut own = Pair::new();
-    own.says(Kind::Order, order("a", 0, 0, &[[0.0, 0.0], [4.0, 0.0]], 2));
+    own.says(TopicKind::Order, order("a", 0, 0, &[[0.0, 0.0], [4.0, 0.0]], 2));
     // Somebody stands where its order is to go on to.
-    let start = Start { x: 8.0, y: 0.0, heading: 0.0 };
+    let start = StartPose { x: 8.0, y: 0.0, heading: 0.0 };
     let name = own.bridge.lanes().next().unwrap().name().to_owned();
     own.lasts(1.5);
     let abilities = own.supervisor.robot(&name).unwrap().abilities;
     own.supervisor.add("other", abilities, start).unwrap();
-    own.says(Kind::Order, order("a", 1, 2, &[[4.0, 0.0], [8.0, 0.0]], 2));
+    own.says(TopicKind::Order, order("a", 1, 2, &[[4.0, 0.0], [8.0, 0.0]], 2));
     own.lasts(0.1);
     assert!(own.supervisor.robot(&name).unwrap().waiting.is_some());
-    own.loses = Some(|kind, _| kind == Kind::InstantActions);
+    own.loses = Some(|kind, _| kind == TopicKind::InstantActions);
     own.cancels("stop");
     for _ in 0..20 {
         own.lasts(0.1);
         let robot = own.supervisor.robot(&name).unwrap();
-        let [x, _] = own.vehicle.place();
-        assert!(robot.waiting.is_none() && robot.at <= x + 0.5, "{} at {x}", robot.at);
+        let [x, _] = own.vehicle.true_position();
+        assert!(robot.waiting.is_none() && robot.arc_length <= x + 0.5, "{} at {x}", robot.arc_length);
     }
     own.lasts(30.0);
     assert!(own.bridge.lanes().all(|lane| lane.job().is_none()), "{:?}", own.state);
     // Neither did a way that somebody else gave it.
     own.supervisor.remove("other").unwrap();
-    let [x, y] = own.vehicle.place();
+    let [x, y] = own.vehicle.true_position();
     own.order("b", &[[x, y], [x + 4.0, y]]);
     own.lasts(2.0);
-    let path = vec![pcr_serve::course::Shape::Line { length: 0.5 }];
-    let proposal = Proposal { robot: name.clone(), mission: "mine".into(), after: None, of: None, start: None, path };
+    let path = vec![pcr_serve::owned_path::PathElement::Line { length: 0.5 }];
+    let proposal = MissionRequest {
+        robot: name.clone(),
+        mission: "mine".into(),
+        after: None,
+        expected_path: None,
+        start: None,
+        path,
+    };
     own.supervisor.mission(&proposal, own.time).unwrap();
-    let (before, [from, _]) = (own.supervisor.robot(&name).unwrap().at, own.vehicle.place());
+    let (before, [from, _]) = (own.supervisor.robot(&name).unwrap().arc_length, own.vehicle.true_position());
     own.lasts(0.5);
-    assert!(own.vehicle.place()[0] > from + 0.2, "it drives");
+    assert!(own.vehicle.true_position()[0] > from + 0.2, "it drives");
     let robot = own.supervisor.robot(&name).unwrap();
-    assert!(robot.at == before && robot.alarm.is_none(), "{robot:?}");
+    assert!(robot.arc_length == before && robot.alarm.is_none(), "{robot:?}");
 }
 
 /// The order that it had lost was sent again, for ever.
@@ -409,13 +417,13 @@ fn a_vehicle_that_loses_its_order_while_that_is_cancelled_does_not_get_it_again(
     let mut own = Pair::new();
     own.order("a", &TO);
     own.lasts(2.0);
-    let [x, y] = own.vehicle.place();
-    own.vehicle = Vehicle::new(key(), Version::V2_1, "map", CAN, Start { x, y, heading: 0.0 }, 2);
+    let [x, y] = own.vehicle.true_position();
+    own.vehicle = SimulatedVehicle::new(key(), ProtocolVersion::V2_1, "map", CAN, StartPose { x, y, heading: 0.0 }, 2);
     own.vehicle.set_clock(100.0);
     own.cancels("stop");
     own.lasts(20.0);
     assert!(own.bridge.lanes().all(|lane| lane.job().is_none()), "{:?}", own.state);
-    let place = own.vehicle.place();
+    let place = own.vehicle.true_position();
     assert!((place[0] - x).hypot(place[1] - y) < 0.1, "it stands: {place:?}");
 }
 
@@ -431,7 +439,7 @@ fn a_cancelled_vehicle_stands_on_its_way() {
     let said = own.state.as_ref().unwrap().position().unwrap().y;
     let stands = own.supervisor.robots()[0].course.start();
     assert!(
-        said.abs() > 1e-6 && stands.y.abs() < 1e-9 && (stands.x - own.vehicle.place()[0]).abs() < 0.1,
+        said.abs() > 1e-6 && stands.y.abs() < 1e-9 && (stands.x - own.vehicle.true_position()[0]).abs() < 0.1,
         "{said} {stands:?}"
     );
 }
@@ -447,7 +455,7 @@ fn a_last_node_of_another_order_is_none() {
     let state = own.bridge.lanes().next().unwrap().state_of().unwrap().clone();
     assert_eq!((state.order_id.as_str(), own.bridge.lanes().next().unwrap().job().unwrap().stops.len()), ("a", 3));
     let [_, vehicles] = interfaces();
-    let topic = vehicles.topic(Version::V2_1, &key(), Kind::State);
+    let topic = vehicles.topic(ProtocolVersion::V2_1, &key(), TopicKind::State);
     for (id, sequence) in [("", 4), ("old", 4), ("n4", 4)] {
         let mut state = state.clone();
         (state.last_node_id, state.last_node_sequence_id) = (id.into(), sequence);
@@ -456,7 +464,7 @@ fn a_last_node_of_another_order_is_none() {
         let text = serde_json::to_vec(&state).unwrap();
         own.bridge.receive(&mut own.supervisor, &topic, &text, own.time);
         let robot = own.supervisor.robot(&name).unwrap();
-        assert!(robot.at < 1.0, "{id:?}: {}", robot.at);
+        assert!(robot.arc_length < 1.0, "{id:?}: {}", robot.arc_length);
     }
 }
 
@@ -467,10 +475,10 @@ fn a_first_order_that_the_vehicle_refuses_is_over() {
         let mut own = Pair::new();
         // It was there before, as only the vehicle knows.
         for id in ["a", "own"] {
-            own.whispers(Kind::Order, order(id, 0, 0, &TO[..1], 1));
+            own.whispers(TopicKind::Order, order(id, 0, 0, &TO[..1], 1));
         }
         own.lasts(1.0);
-        own.says(Kind::Order, order("a", 7, 0, &TO, 3));
+        own.says(TopicKind::Order, order("a", 7, 0, &TO, 3));
         own.lasts(3.0);
         let errors = own.errors().concat();
         assert!(errors.contains(r#""orderUpdateId","referenceValue":"7""#), "by the manager's number: {errors}");
@@ -495,12 +503,12 @@ fn a_first_order_that_the_vehicle_refuses_is_over() {
 fn an_update_that_the_vehicle_refuses_is_over_when_it_is_cancelled() {
     for is_restarted in [false, true] {
         let mut own = Pair::new();
-        own.says(Kind::Order, order("a", 0, 0, &TO, 2));
+        own.says(TopicKind::Order, order("a", 0, 0, &TO, 2));
         own.lasts(20.0);
         let by_hand = json!({ "actionType": "cancelOrder", "actionId": "by hand", "blockingType": "NONE" });
-        own.whispers(Kind::InstantActions, json!({ "actions": [by_hand] }));
+        own.whispers(TopicKind::InstantActions, json!({ "actions": [by_hand] }));
         own.lasts(2.0);
-        own.says(Kind::Order, order("a", 1, 2, &TO[1..], 2));
+        own.says(TopicKind::Order, order("a", 1, 2, &TO[1..], 2));
         own.lasts(30.0);
         assert!(own.has_job() && own.errors().concat().contains("it was cancelled"), "{:?}", own.errors());
         if is_restarted {
@@ -510,7 +518,7 @@ fn an_update_that_the_vehicle_refuses_is_over_when_it_is_cancelled() {
         own.cancels("stop");
         own.lasts(70.0);
         assert!(!own.has_job(), "{is_restarted}: {:?}", own.state);
-        let [x, y] = own.vehicle.place();
+        let [x, y] = own.vehicle.true_position();
         own.order("b", &[[x, y], [x, y + 3.0]]);
         own.lasts(60.0);
         assert!(own.is_done("b"), "{is_restarted}: {:?}", own.state);
@@ -521,12 +529,13 @@ fn an_update_that_the_vehicle_refuses_is_over_when_it_is_cancelled() {
 #[test]
 fn other_fields_of_an_order_are_passed_on() {
     let mut own = Pair::new();
-    own.loses =
-        Some(|kind, said| kind == Kind::Order && said["zoneSetId"] == "z" && said["orderDescription"] == "to the dock");
+    own.loses = Some(|kind, said| {
+        kind == TopicKind::Order && said["zoneSetId"] == "z" && said["orderDescription"] == "to the dock"
+    });
     let mut message = order("a", 0, 0, &TO, 3);
     message["zoneSetId"] = "z".into();
     message["orderDescription"] = "to the dock".into();
-    own.says(Kind::Order, message);
+    own.says(TopicKind::Order, message);
     own.lasts(1.0);
     assert!(own.loses.is_none(), "as it came");
 }
@@ -535,8 +544,9 @@ fn other_fields_of_an_order_are_passed_on() {
 #[test]
 fn a_vehicle_that_is_too_large_is_remembered() {
     let mut own = Pair::new();
-    let start = Start { x: 0.0, y: 0.0, heading: 0.0 };
-    own.vehicle = Vehicle::new(key(), Version::V2_1, "map", Abilities { radius: 0.6, ..CAN }, start, 1);
+    let start = StartPose { x: 0.0, y: 0.0, heading: 0.0 };
+    own.vehicle =
+        SimulatedVehicle::new(key(), ProtocolVersion::V2_1, "map", SimulatedTraits { radius: 0.6, ..CAN }, start, 1);
     own.vehicle.set_clock(100.0);
     own.acts("factsheetRequest", "how large");
     own.lasts(2.0);

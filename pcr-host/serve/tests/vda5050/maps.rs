@@ -2,32 +2,32 @@
 
 use crate::pair::CAN;
 use crate::site::{interfaces, settings};
-use pcr_formats::vda5050::decode::Limits;
-use pcr_formats::vda5050::topics::{Key, Kind};
-use pcr_formats::vda5050::version::Version;
-use pcr_serve::course::Start;
-use pcr_serve::entry::Nowhere;
+use pcr_formats::vda5050::decode::MessageLimits;
+use pcr_formats::vda5050::topics::{TopicKind, VehicleId};
+use pcr_formats::vda5050::version::ProtocolVersion;
+use pcr_serve::journal_entry::NullStore;
+use pcr_serve::owned_path::StartPose;
 use pcr_serve::supervisor::Supervisor;
-use pcr_serve::vda5050::bridge::{self, Bridge};
-use pcr_serve::vehicles::vehicle::Vehicle;
-use pcr_serve::vehicles::world::profile;
+use pcr_serve::vda5050::bridge::{self, Vda5050Bridge};
+use pcr_serve::vehicles::simulated_site::profile;
+use pcr_serve::vehicles::vehicle::SimulatedVehicle;
 use serde_json::{Value, json};
 
-fn key(name: &str) -> Key {
-    Key::new("sim", name).unwrap()
+fn key(name: &str) -> VehicleId {
+    VehicleId::new("sim", name).unwrap()
 }
 
-fn bridge(supervisor: &Supervisor) -> Bridge {
+fn bridge(supervisor: &Supervisor) -> Vda5050Bridge {
     let [manager, vehicles] = interfaces();
-    let topics = bridge::Settings { manager, vehicles, limits: Limits::default() };
-    Bridge::new(topics, ["a", "b"].map(|name| profile(key(name), &CAN)).into(), supervisor).unwrap()
+    let topics = bridge::BridgeConfig { manager, vehicles, limits: MessageLimits::default() };
+    Vda5050Bridge::new(topics, ["a", "b"].map(|name| profile(key(name), &CAN)).into(), supervisor).unwrap()
 }
 
 /// Two vehicles that stand.
 struct Pair {
-    vehicles: [Vehicle; 2],
+    vehicles: [SimulatedVehicle; 2],
     supervisor: Supervisor,
-    bridge: Bridge,
+    bridge: Vda5050Bridge,
     now: f64,
     /// What their managers were told last.
     states: [Value; 2],
@@ -38,10 +38,18 @@ struct Pair {
 
 impl Pair {
     fn new(xs: [f64; 2]) -> Self {
-        let vehicle =
-            |(name, x)| Vehicle::new(key(name), Version::V2_1, "map", CAN, Start { x, y: 0.0, heading: 0.0 }, 1);
+        let vehicle = |(name, x)| {
+            SimulatedVehicle::new(
+                key(name),
+                ProtocolVersion::V2_1,
+                "map",
+                CAN,
+                StartPose { x, y: 0.0, heading: 0.0 },
+                1,
+            )
+        };
         let vehicles = [("a", xs[0]), ("b", xs[1])].map(vehicle);
-        let supervisor = Supervisor::new(settings(), Box::new(Nowhere));
+        let supervisor = Supervisor::new(settings(), Box::new(NullStore));
         let bridge = bridge(&supervisor);
         Self { vehicles, supervisor, bridge, now: 0.0, states: Default::default(), orders: [0; 2], log: Vec::new() }
     }
@@ -54,20 +62,20 @@ impl Pair {
             self.now += 0.1;
             for (k, vehicle) in self.vehicles.iter_mut().enumerate() {
                 vehicle.tell_state();
-                for (kind, payload) in vehicle.out().into_iter().filter(|(kind, _)| *kind == Kind::State) {
+                for (kind, payload) in vehicle.out().into_iter().filter(|(kind, _)| *kind == TopicKind::State) {
                     let mut state: Value = serde_json::from_slice(&payload).unwrap();
                     state["agvPosition"]["mapId"] = json!(if k == 1 { map } else { "map" });
-                    let topic = to_vehicles.topic(Version::V2_1, vehicle.key(), kind);
+                    let topic = to_vehicles.topic(ProtocolVersion::V2_1, vehicle.key(), kind);
                     self.bridge.receive(&mut self.supervisor, &topic, state.to_string().as_bytes(), self.now);
                 }
             }
             let events = self.supervisor.settle(self.now).unwrap();
             self.bridge.settled(&mut self.supervisor, &events, self.now);
             for message in self.bridge.out() {
-                let is_of = |key: &Key| usize::from(key.serial_number == "b");
-                if let Some((_, key, Kind::State)) = to_manager.parse(&message.topic) {
+                let is_of = |key: &VehicleId| usize::from(key.serial_number == "b");
+                if let Some((_, key, TopicKind::State)) = to_manager.parse(&message.topic) {
                     self.states[is_of(&key)] = serde_json::from_slice(&message.payload).unwrap();
-                } else if let Some((_, key, Kind::Order)) = to_vehicles.parse(&message.topic) {
+                } else if let Some((_, key, TopicKind::Order)) = to_vehicles.parse(&message.topic) {
                     self.orders[is_of(&key)] += 1;
                 } else if let Some((_, key, kind)) = to_vehicles.parse(&message.topic) {
                     self.vehicles[is_of(&key)].receive(kind, &message.payload);
@@ -85,7 +93,7 @@ impl Pair {
         let edge = json!({ "edgeId": "e", "sequenceId": 1, "released": true, "actions": [], "startNodeId": "n0", "endNodeId": "n1" });
         let order = json!({ "headerId": 1, "timestamp": "2030-01-01T00:00:00.000Z", "version": "2.1.0", "manufacturer": "sim",
             "serialNumber": name, "orderId": name, "orderUpdateId": 0, "nodes": [node(0), node(1)], "edges": [edge] });
-        let topic = interfaces()[0].topic(Version::V2_1, &key(name), Kind::Order);
+        let topic = interfaces()[0].topic(ProtocolVersion::V2_1, &key(name), TopicKind::Order);
         self.bridge.receive(&mut self.supervisor, &topic, order.to_string().as_bytes(), self.now);
     }
 
@@ -107,7 +115,14 @@ fn a_vehicle_on_another_map_is_named_and_not_taken() {
     assert!(own.log.iter().any(|line| line.starts_with("nobody is released anything: sim/b: position.mapId")));
     assert_eq!((own.orders, own.errors(0).as_str()), ([0; 2], "[]"));
     // It comes down elsewhere.
-    own.vehicles[1] = Vehicle::new(key("b"), Version::V2_1, "map", CAN, Start { x: 0.0, y: 9.0, heading: 0.0 }, 1);
+    own.vehicles[1] = SimulatedVehicle::new(
+        key("b"),
+        ProtocolVersion::V2_1,
+        "map",
+        CAN,
+        StartPose { x: 0.0, y: 9.0, heading: 0.0 },
+        1,
+    );
     own.lasts(70.0, "map");
     assert_eq!(own.errors(1), "[]");
     assert!(own.supervisor.robot("sim/b").is_ok() && own.orders[0] > 0, "{:?}", own.orders);

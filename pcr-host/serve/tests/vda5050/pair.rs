@@ -1,20 +1,20 @@
 //! One vehicle, its supervisor, and a manager that sends what the test says.
 
 use crate::site::{interfaces, settings};
-use pcr_formats::vda5050::decode::Limits;
+use pcr_formats::vda5050::decode::MessageLimits;
 use pcr_formats::vda5050::state::State;
-use pcr_formats::vda5050::topics::{Key, Kind};
-use pcr_formats::vda5050::version::Version;
-use pcr_serve::course::Start;
-use pcr_serve::entry::Nowhere;
+use pcr_formats::vda5050::topics::{TopicKind, VehicleId};
+use pcr_formats::vda5050::version::ProtocolVersion;
+use pcr_serve::journal_entry::NullStore;
+use pcr_serve::owned_path::StartPose;
 use pcr_serve::supervisor::Supervisor;
-use pcr_serve::vda5050::bridge::{self, Bridge};
-use pcr_serve::vehicles::drive::Abilities;
-use pcr_serve::vehicles::vehicle::Vehicle;
-use pcr_serve::vehicles::world::profile;
+use pcr_serve::vda5050::bridge::{self, Vda5050Bridge};
+use pcr_serve::vehicles::simulated_site::profile;
+use pcr_serve::vehicles::vehicle::SimulatedVehicle;
+use pcr_serve::vehicles::vehicle_motion::SimulatedTraits;
 use serde_json::{Value, json};
 
-pub(crate) const CAN: Abilities = Abilities {
+pub(crate) const CAN: SimulatedTraits = SimulatedTraits {
     radius: 0.4,
     speed: 1.0,
     acceleration: 0.5,
@@ -28,40 +28,40 @@ pub(crate) const CAN: Abilities = Abilities {
 const STEP: f64 = 0.1;
 
 pub(crate) struct Pair {
-    pub(crate) vehicle: Vehicle,
+    pub(crate) vehicle: SimulatedVehicle,
     pub(crate) supervisor: Supervisor,
-    pub(crate) bridge: Bridge,
+    pub(crate) bridge: Vda5050Bridge,
     pub(crate) time: f64,
     /// The newest state that the manager has.
     pub(crate) state: Option<State>,
     /// What is lost on the way to the vehicle: the next message that this is true of.
-    pub(crate) loses: Option<fn(Kind, &Value) -> bool>,
+    pub(crate) loses: Option<fn(TopicKind, &Value) -> bool>,
     pub(crate) header: u64,
 }
 
-pub(crate) fn key() -> Key {
-    Key::new("sim", "001").unwrap()
+pub(crate) fn key() -> VehicleId {
+    VehicleId::new("sim", "001").unwrap()
 }
 
 /// The bridge of the one vehicle.
-pub(crate) fn bridge_of(supervisor: &Supervisor) -> Bridge {
+pub(crate) fn bridge_of(supervisor: &Supervisor) -> Vda5050Bridge {
     let [manager, vehicles] = interfaces();
-    let settings = bridge::Settings { manager, vehicles, limits: Limits::default() };
-    Bridge::new(settings, vec![profile(key(), &CAN)], supervisor).unwrap()
+    let settings = bridge::BridgeConfig { manager, vehicles, limits: MessageLimits::default() };
+    Vda5050Bridge::new(settings, vec![profile(key(), &CAN)], supervisor).unwrap()
 }
 
 /// A supervisor that goes on with the journal of a killed one, and its bridge.
-pub(crate) fn restarted(killed: &mut Supervisor) -> (Supervisor, Bridge) {
-    let supervisor = Supervisor::restored(settings(), killed.snapshot().unwrap(), Box::new(Nowhere)).unwrap();
+pub(crate) fn restarted(killed: &mut Supervisor) -> (Supervisor, Vda5050Bridge) {
+    let supervisor = Supervisor::restored(settings(), killed.snapshot().unwrap(), Box::new(NullStore)).unwrap();
     let bridge = bridge_of(&supervisor);
     (supervisor, bridge)
 }
 
 impl Pair {
     pub(crate) fn new() -> Self {
-        let start = Start { x: 0.0, y: 0.0, heading: 0.0 };
-        let vehicle = Vehicle::new(key(), Version::V2_1, "map", CAN, start, 1);
-        let supervisor = Supervisor::new(settings(), Box::new(Nowhere));
+        let start = StartPose { x: 0.0, y: 0.0, heading: 0.0 };
+        let vehicle = SimulatedVehicle::new(key(), ProtocolVersion::V2_1, "map", CAN, start, 1);
+        let supervisor = Supervisor::new(settings(), Box::new(NullStore));
         let bridge = bridge_of(&supervisor);
         let mut own = Self { vehicle, supervisor, bridge, time: 0.0, state: None, loses: None, header: 0 };
         own.lasts(1.0);
@@ -82,7 +82,7 @@ impl Pair {
             self.vehicle.advance(STEP);
             self.vehicle.tell_state();
             for (kind, payload) in self.vehicle.out() {
-                let topic = vehicles.topic(Version::V2_1, &key(), kind);
+                let topic = vehicles.topic(ProtocolVersion::V2_1, &key(), kind);
                 self.bridge.receive(&mut self.supervisor, &topic, &payload, self.time);
             }
             let events = self.supervisor.settle(self.time).unwrap();
@@ -95,7 +95,7 @@ impl Pair {
                         continue;
                     }
                     self.vehicle.receive(kind, &message.payload);
-                } else if let Some((_, _, Kind::State)) = manager.parse(&message.topic) {
+                } else if let Some((_, _, TopicKind::State)) = manager.parse(&message.topic) {
                     self.state = Some(serde_json::from_slice(&message.payload).unwrap());
                 }
             }
@@ -112,15 +112,15 @@ impl Pair {
     }
 
     /// What the manager says.
-    pub(crate) fn says(&mut self, kind: Kind, message: Value) {
+    pub(crate) fn says(&mut self, kind: TopicKind, message: Value) {
         let (message, [manager, _]) = (self.signed(message), interfaces());
-        let topic = manager.topic(Version::V2_1, &key(), kind);
+        let topic = manager.topic(ProtocolVersion::V2_1, &key(), kind);
         self.bridge.receive(&mut self.supervisor, &topic, message.as_bytes(), self.time);
     }
 
     /// An order over these places.
     pub(crate) fn order(&mut self, id: &str, places: &[[f64; 2]]) {
-        self.says(Kind::Order, order(id, 0, 0, places, places.len()));
+        self.says(TopicKind::Order, order(id, 0, 0, places, places.len()));
     }
 
     pub(crate) fn cancels(&mut self, id: &str) {
@@ -130,7 +130,7 @@ impl Pair {
     /// The manager wants something at once.
     pub(crate) fn acts(&mut self, kind: &str, id: &str) {
         let action = json!({ "actionType": kind, "actionId": id, "blockingType": "NONE" });
-        self.says(Kind::InstantActions, json!({ "actions": [action] }));
+        self.says(TopicKind::InstantActions, json!({ "actions": [action] }));
     }
 
     /// Whether the manager is told that it is paused.
@@ -170,7 +170,7 @@ pub(crate) const FRO: [[f64; 2]; 3] = [[5.0, 5.0], [5.0, 0.0], [0.0, 0.0]];
 
 impl Pair {
     /// Somebody else tells the vehicle something.
-    pub(crate) fn whispers(&mut self, kind: Kind, message: Value) {
+    pub(crate) fn whispers(&mut self, kind: TopicKind, message: Value) {
         let message = self.signed(message);
         self.vehicle.receive(kind, message.as_bytes());
     }

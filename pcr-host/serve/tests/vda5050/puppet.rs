@@ -2,25 +2,25 @@
 
 use crate::pair::{bridge_of, key, restarted};
 use crate::site::{interfaces, settings};
-use pcr_formats::vda5050::stamp;
-use pcr_formats::vda5050::topics::Kind;
-use pcr_formats::vda5050::version::Version;
-use pcr_serve::entry::Nowhere;
-use pcr_serve::robot::Robot;
+use pcr_formats::vda5050::timestamp;
+use pcr_formats::vda5050::topics::TopicKind;
+use pcr_formats::vda5050::version::ProtocolVersion;
+use pcr_serve::journal_entry::NullStore;
+use pcr_serve::robot::SupervisedRobot;
 use pcr_serve::supervisor::Supervisor;
-use pcr_serve::vda5050::bridge::Bridge;
+use pcr_serve::vda5050::bridge::Vda5050Bridge;
 use serde_json::{Value, json};
 
 pub(crate) struct Puppet {
     pub(crate) supervisor: Supervisor,
-    pub(crate) bridge: Bridge,
+    pub(crate) bridge: Vda5050Bridge,
     pub(crate) time: f64,
     /// What it says next; number and time are filled in.
     pub(crate) state: Value,
     /// Whether it lists the actions that it was asked for.
     pub(crate) lists: bool,
     /// What it was sent.
-    pub(crate) got: Vec<(Kind, Value)>,
+    pub(crate) got: Vec<(TopicKind, Value)>,
     /// What the manager was told last.
     pub(crate) told: Value,
     number: u64,
@@ -29,7 +29,7 @@ pub(crate) struct Puppet {
 impl Puppet {
     /// At (0, 0), without an order.
     pub(crate) fn new() -> Self {
-        let supervisor = Supervisor::new(settings(), Box::new(Nowhere));
+        let supervisor = Supervisor::new(settings(), Box::new(NullStore));
         let bridge = bridge_of(&supervisor);
         let pose = json!({ "x": 0.0, "y": 0.0, "theta": 0.0, "mapId": "map", "positionInitialized": true });
         let state = json!({ "version": "2.1.0", "manufacturer": "sim", "serialNumber": "001", "orderId": "",
@@ -49,7 +49,7 @@ impl Puppet {
         self.bridge.greet(self.time);
     }
 
-    pub(crate) fn robot(&self) -> &Robot {
+    pub(crate) fn robot(&self) -> &SupervisedRobot {
         self.supervisor.robot("sim/001").unwrap()
     }
 
@@ -62,12 +62,12 @@ impl Puppet {
         self.number += 1;
         let mut state = self.state.clone();
         state["headerId"] = self.number.into();
-        state["timestamp"] = stamp::written(1.9e9 + self.number as f64).into();
+        state["timestamp"] = timestamp::written(1.9e9 + self.number as f64).into();
         state
     }
 
     pub(crate) fn hears(&mut self, state: &Value) {
-        let topic = interfaces()[1].topic(Version::V2_1, &key(), Kind::State);
+        let topic = interfaces()[1].topic(ProtocolVersion::V2_1, &key(), TopicKind::State);
         self.bridge.receive(&mut self.supervisor, &topic, state.to_string().as_bytes(), self.time);
         self.turn();
     }
@@ -79,7 +79,7 @@ impl Puppet {
         self.bridge.settled(&mut self.supervisor, &events, self.time);
         for message in self.bridge.out() {
             let said: Value = serde_json::from_slice(&message.payload).unwrap();
-            if let Some((.., Kind::State)) = manager.parse(&message.topic) {
+            if let Some((.., TopicKind::State)) = manager.parse(&message.topic) {
                 self.told = said;
             } else if let Some((.., kind)) = vehicles.parse(&message.topic) {
                 for action in said["actions"].as_array().into_iter().flatten() {
@@ -123,13 +123,13 @@ impl Puppet {
 
     /// The number of orders and updates that it was sent.
     pub(crate) fn orders(&self) -> usize {
-        self.got.iter().filter(|(kind, _)| *kind == Kind::Order).count()
+        self.got.iter().filter(|(kind, _)| *kind == TopicKind::Order).count()
     }
 
     /// What the manager says.
-    pub(crate) fn manager(&mut self, kind: Kind, message: Value) {
+    pub(crate) fn manager(&mut self, kind: TopicKind, message: Value) {
         let message = self.signed(message);
-        let topic = interfaces()[0].topic(Version::V2_1, &key(), kind);
+        let topic = interfaces()[0].topic(ProtocolVersion::V2_1, &key(), kind);
         self.bridge.receive(&mut self.supervisor, &topic, message.to_string().as_bytes(), self.time);
         self.turn();
     }
@@ -144,7 +144,7 @@ impl Puppet {
 
     pub(crate) fn cancels(&mut self, id: &str) {
         let action = json!({ "actionType": "cancelOrder", "actionId": id, "blockingType": "NONE" });
-        self.manager(Kind::InstantActions, json!({ "actions": [action] }));
+        self.manager(TopicKind::InstantActions, json!({ "actions": [action] }));
     }
 
     /// It is at a node of its order, with these ahead, all released, and says so.

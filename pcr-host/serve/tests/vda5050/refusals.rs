@@ -2,12 +2,12 @@
 
 use crate::pair::key;
 use crate::site::{SAFE, nodes, warehouse};
-use pcr_formats::vda5050::version::Version;
-use pcr_serve::vehicles::manager::Manager;
+use pcr_formats::vda5050::version::ProtocolVersion;
+use pcr_serve::vehicles::manager::FleetManager;
 use serde_json::{Value, json};
 
 struct Desk {
-    manager: Manager,
+    manager: FleetManager,
     /// Where the vehicle stands.
     place: [f64; 2],
     time: f64,
@@ -18,7 +18,8 @@ impl Desk {
         let layout = warehouse();
         let goals = nodes(&layout, &SAFE);
         let (at, place) = (goals[0], layout.position(goals[0]));
-        let manager = Manager::new(layout, "map", goals, 0.9, vec![(key(), Version::V2_1, at)], 1).unwrap();
+        let manager =
+            FleetManager::new(layout, "map", goals, 0.9, vec![(key(), ProtocolVersion::V2_1, at)], 1).unwrap();
         Self { manager, place, time: 0.0 }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::pair::order;
 use crate::puppet::Puppet;
-use pcr_formats::vda5050::topics::Kind;
+use pcr_formats::vda5050::topics::TopicKind;
 
 const TO: [[f64; 2]; 2] = [[0.0, 0.0], [4.0, 0.0]];
 const ROUND: [[f64; 2]; 3] = [[0.0, 0.0], [4.0, 0.0], [0.0, 0.0]];
@@ -10,20 +10,20 @@ const ROUND: [[f64; 2]; 3] = [[0.0, 0.0], [4.0, 0.0], [0.0, 0.0]];
 /// It has done an order, of one update.
 fn done(places: &[[f64; 2]]) -> Puppet {
     let mut own = Puppet::new();
-    own.manager(Kind::Order, order("a", 0, 0, places, places.len()));
+    own.manager(TopicKind::Order, order("a", 0, 0, places, places.len()));
     let ahead: Vec<u64> = (1..places.len() as u64).map(|k| 2 * k).collect();
     own.is_at("a", 0, 0, &ahead, 0.0, false);
     for (k, place) in places.iter().enumerate().skip(1) {
         own.is_at("a", 0, ahead[k - 1], &ahead[k..], place[0], false);
     }
-    assert!(own.robot().at > own.robot().course.length() - 0.1);
+    assert!(own.robot().arc_length > own.robot().course.length() - 0.1);
     assert_eq!(own.orders(), 1);
     own
 }
 
 /// Length of its way ahead.
 fn left(own: &Puppet) -> f64 {
-    own.robot().course.length() - own.robot().at
+    own.robot().course.length() - own.robot().arc_length
 }
 
 /// The order was sent again, and driven again, while its way was free for others. One without a way back was sent for ever.
@@ -39,7 +39,7 @@ fn an_order_that_was_done_is_not_sent_again_after_a_restart() {
         assert_eq!((own.orders(), own.has_job()), (1, false), "void after half a minute");
         assert_eq!(own.asked("cancelOrder").len(), 1);
         let [x, y] = *places.last().unwrap();
-        own.manager(Kind::Order, order("b", 0, 0, &[[x, y], [x, y + 4.0]], 2));
+        own.manager(TopicKind::Order, order("b", 0, 0, &[[x, y], [x, y + 4.0]], 2));
         own.lasts(1.0);
         assert_eq!(own.got.last().unwrap().1["orderId"], "b");
     }
@@ -87,7 +87,7 @@ fn nobody_is_released_anything_for_a_state_that_may_be_old() {
         own.lists = lists;
         own.restart();
         own.lasts(1.0);
-        own.manager(Kind::Order, order("a", 0, 0, &TO, 2));
+        own.manager(TopicKind::Order, order("a", 0, 0, &TO, 2));
         own.lasts(2.0);
         assert_eq!(own.orders() > 0, lists);
         own.lasts(62.0);
@@ -99,7 +99,7 @@ fn nobody_is_released_anything_for_a_state_that_may_be_old() {
 #[test]
 fn the_last_node_of_the_order_before_is_not_the_end_of_this_one() {
     let mut own = done(&ROUND);
-    own.manager(Kind::Order, order("b", 0, 0, &ROUND, 3));
+    own.manager(TopicKind::Order, order("b", 0, 0, &ROUND, 3));
     own.lasts(0.5);
     own.is_at("b", 0, 4, &[], 0.0, false);
     own.lasts(5.0);
@@ -110,7 +110,7 @@ fn the_last_node_of_the_order_before_is_not_the_end_of_this_one() {
     assert!((6.5..7.5).contains(&left(&own)), "{}", left(&own));
     // The states between were lost: it is believed after a while.
     let mut own = done(&ROUND);
-    own.manager(Kind::Order, order("b", 0, 0, &ROUND, 3));
+    own.manager(TopicKind::Order, order("b", 0, 0, &ROUND, 3));
     own.lasts(0.5);
     own.is_at("b", 0, 4, &[], 0.0, false);
     own.lasts(32.0);
@@ -123,7 +123,7 @@ fn an_order_before_the_first_state_after_a_restart_waits_for_it() {
     for is_cancelled in [false, true] {
         let mut own = done(&TO);
         own.restart();
-        own.manager(Kind::Order, order("b", 0, 0, &[TO[1], TO[0]], 2));
+        own.manager(TopicKind::Order, order("b", 0, 0, &[TO[1], TO[0]], 2));
         if is_cancelled {
             own.cancels("c");
             own.ends("c", "FAILED");
@@ -138,9 +138,9 @@ fn an_order_before_the_first_state_after_a_restart_waits_for_it() {
 #[test]
 fn the_manager_sees_its_own_numbers_after_a_restart() {
     let mut own = Puppet::new();
-    own.manager(Kind::Order, order("a", 7, 0, &TO[..1], 1));
+    own.manager(TopicKind::Order, order("a", 7, 0, &TO[..1], 1));
     own.is_at("a", 0, 0, &[], 0.0, false);
-    own.manager(Kind::Order, order("a", 8, 0, &TO, 2));
+    own.manager(TopicKind::Order, order("a", 8, 0, &TO, 2));
     own.lasts(0.5);
     own.restart();
     own.lasts(1.0);

@@ -4,17 +4,17 @@ use crate::broker::Mosquitto;
 use crate::schemas;
 use crate::site::{Desk, Scene, Site, interfaces};
 use crate::yard::MIXED;
-use pcr_formats::vda5050::version::Version;
-use pcr_serve::entry::Nowhere;
-use pcr_serve::vda5050::mqtt::{Broker, Link, News};
-use pcr_serve::vehicles::drive::Abilities;
-use pcr_serve::vehicles::weather::Climate;
+use pcr_formats::vda5050::version::ProtocolVersion;
+use pcr_serve::journal_entry::NullStore;
+use pcr_serve::vda5050::mqtt::{BrokerAddress, LinkEvent, MqttLink};
+use pcr_serve::vehicles::lossy_channel::ChannelFaults;
+use pcr_serve::vehicles::vehicle_motion::SimulatedTraits;
 use std::sync::mpsc::channel;
 
 pub(crate) const FAIR: Scene<'_> = Scene {
     count: 2,
-    versions: &[Version::V2_1],
-    abilities: &[Abilities {
+    versions: &[ProtocolVersion::V2_1],
+    abilities: &[SimulatedTraits {
         radius: 0.4,
         speed: 1.0,
         acceleration: 0.5,
@@ -24,7 +24,7 @@ pub(crate) const FAIR: Scene<'_> = Scene {
         noise: 0.02,
         delay: 0.0,
     }],
-    climate: Climate { lost: 0.0, twice: 0.0, late: 0.0, delay: 0.0 },
+    climate: ChannelFaults { loss_rate: 0.0, duplicate_rate: 0.0, reorder_rate: 0.0, delay: 0.0 },
     drops: 0.0,
     pace: 10.0,
 };
@@ -34,7 +34,7 @@ pub(crate) const FAIR: Scene<'_> = Scene {
 fn two_vehicles_do_their_missions() {
     let broker = Mosquitto::start("two");
     let (mut site, profiles) = Site::open(&broker, FAIR);
-    let desk = Desk::open(&broker, profiles, "two", Box::new(Nowhere));
+    let desk = Desk::open(&broker, profiles, "two", Box::new(NullStore));
     let told = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| site.until(1)));
     assert!(told.is_ok(), "{}", desk.tell());
     let found = site.close();
@@ -47,13 +47,13 @@ fn two_vehicles_do_their_missions() {
 fn a_fleet_of_all_editions_keeps_apart() {
     let broker = Mosquitto::start("fleet");
     // By seconds of ours: ten of the vehicles go by in one..
-    let scene = Scene { climate: Climate { delay: 1.0, ..MIXED.climate }, drops: 0.02, ..MIXED };
+    let scene = Scene { climate: ChannelFaults { delay: 1.0, ..MIXED.climate }, drops: 0.02, ..MIXED };
     // Who listens to everything that is said.
     let (sender, said) = channel();
     let everything = ["uagv/#".to_owned(), "fleet/#".to_owned()].to_vec();
-    let ear = Link::open(&broker.address(), "ear", None, everything, move |news| drop(sender.send(news))).unwrap();
+    let ear = MqttLink::open(&broker.address(), "ear", None, everything, move |news| drop(sender.send(news))).unwrap();
     let (mut site, profiles) = Site::open(&broker, scene);
-    let desk = Desk::open(&broker, profiles, "fleet", Box::new(Nowhere));
+    let desk = Desk::open(&broker, profiles, "fleet", Box::new(NullStore));
     let told = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| site.until(10)));
     assert!(told.is_ok(), "{}", desk.tell());
     let found = site.close();
@@ -61,12 +61,12 @@ fn a_fleet_of_all_editions_keeps_apart() {
     desk.close().unwrap();
     ear.close();
     let messages = said.try_iter().filter_map(|news| match news {
-        News::Message { topic, payload, .. } => Some((topic, payload)),
+        LinkEvent::Message { topic, payload, .. } => Some((topic, payload)),
         _ => None,
     });
     let seen = schemas::check(&messages.collect::<Vec<_>>(), &interfaces());
     // Every kind of every edition was said.
-    for version in Version::ALL {
+    for version in ProtocolVersion::ALL {
         for kind in ["order", "state", "visualization", "connection", "factsheet", "instantActions"] {
             assert!(seen.contains_key(&format!("{version} {kind}")), "{seen:?}");
         }
@@ -74,9 +74,9 @@ fn a_fleet_of_all_editions_keeps_apart() {
 }
 
 /// What a broker says first to who comes.
-pub(crate) fn first(broker: &Broker) -> News {
+pub(crate) fn first(broker: &BrokerAddress) -> LinkEvent {
     let (sender, news) = channel();
-    let link = Link::open(broker, "who", None, vec!["a/b".into()], move |it| drop(sender.send(it))).unwrap();
+    let link = MqttLink::open(broker, "who", None, vec!["a/b".into()], move |it| drop(sender.send(it))).unwrap();
     let first = news.recv().unwrap();
     link.close();
     first
@@ -88,9 +88,9 @@ pub(crate) fn first(broker: &Broker) -> News {
 fn a_broker_with_passwords_lets_in_who_has_one() {
     let mosquitto = Mosquitto::guarded("guarded", "pcr", "secret");
     let broker = mosquitto.address();
-    let with = |password: &str| Broker { login: Some(("pcr".into(), password.into())), ..broker.clone() };
-    for refused in [first(&Broker { login: None, ..broker.clone() }), first(&with("guess"))] {
-        assert!(matches!(&refused, News::Down(why) if why.contains("NotAuthorized")), "{refused:?}");
+    let with = |password: &str| BrokerAddress { login: Some(("pcr".into(), password.into())), ..broker.clone() };
+    for refused in [first(&BrokerAddress { login: None, ..broker.clone() }), first(&with("guess"))] {
+        assert!(matches!(&refused, LinkEvent::Down(why) if why.contains("NotAuthorized")), "{refused:?}");
     }
-    assert_eq!(first(&with("secret")), News::Up);
+    assert_eq!(first(&with("secret")), LinkEvent::Up);
 }

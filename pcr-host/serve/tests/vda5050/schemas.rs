@@ -1,13 +1,13 @@
 //! The published schemas, against everything that is said.
 
-use pcr_formats::vda5050::topics::{Interface, Kind};
+use pcr_formats::vda5050::topics::{TopicInterface, TopicKind};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// The schema of a kind of messages.
-pub(crate) fn schema(version: &str, kind: Kind) -> jsonschema::Validator {
+pub(crate) fn schema(version: &str, kind: TopicKind) -> jsonschema::Validator {
     let name = match (version, kind) {
-        ("2.0.0", Kind::Factsheet) => "factsheet.json".to_owned(),
+        ("2.0.0", TopicKind::Factsheet) => "factsheet.json".to_owned(),
         _ => format!("{}.schema", kind.text()),
     };
     let file = format!("{}/../../tests/data/real/vda5050/schemas/{version}/{name}", env!("CARGO_MANIFEST_DIR"));
@@ -30,7 +30,7 @@ fn without_trailing_commas(text: &str) -> String {
 }
 
 /// Checks messages by their topics; returns how many there were of each kind and edition.
-pub(crate) fn check(messages: &[(String, Vec<u8>)], interfaces: &[Interface]) -> BTreeMap<String, usize> {
+pub(crate) fn check(messages: &[(String, Vec<u8>)], interfaces: &[TopicInterface]) -> BTreeMap<String, usize> {
     let (mut schemas, mut seen) = (BTreeMap::new(), BTreeMap::new());
     for (topic, payload) in messages {
         let Some((_, key, kind)) = interfaces.iter().find_map(|interface| interface.parse(topic)) else {
@@ -54,7 +54,7 @@ pub(crate) fn check(messages: &[(String, Vec<u8>)], interfaces: &[Interface]) ->
 #[test]
 fn schemas_refuse_what_is_wrong() {
     for version in ["2.0.0", "2.1.0", "3.0.0"] {
-        for kind in [Kind::Order, Kind::State, Kind::Connection, Kind::Factsheet] {
+        for kind in [TopicKind::Order, TopicKind::State, TopicKind::Connection, TopicKind::Factsheet] {
             assert!(!schema(version, kind).is_valid(&serde_json::json!({ "headerId": "one" })), "{version} {kind:?}");
         }
     }

@@ -2,25 +2,25 @@
 
 use crate::broker::Mosquitto;
 use crate::dump;
-use pcr_formats::import::{Format, Imported, Layout, Options, Warnings, layout};
-use pcr_formats::vda5050::decode::Limits;
-use pcr_formats::vda5050::topics::Interface;
-use pcr_formats::vda5050::version::Version;
-use pcr_serve::entry::Keep;
-use pcr_serve::log::{Level, Log};
-use pcr_serve::server::{Input, queue, serve};
-use pcr_serve::supervisor::{Settings, Supervisor};
-use pcr_serve::vda5050::bridge::{self, Bridge};
-use pcr_serve::vda5050::lane::Profile;
-use pcr_serve::vda5050::mqtt::Broker;
-use pcr_serve::vda5050::station::{Station, Stopped};
-use pcr_serve::vehicles::drive::Abilities;
-use pcr_serve::vehicles::fleet::{self, Fleet};
-use pcr_serve::vehicles::office::Office;
-use pcr_serve::vehicles::record::{Certificate, certify};
-use pcr_serve::vehicles::weather::Climate;
-use pcr_serve::vehicles::world::World;
-use pcr_serve::writer::Kept;
+use pcr_formats::import::{ImportOptions, ImportedLayout, InputFormat, Layout, Warnings, layout};
+use pcr_formats::vda5050::decode::MessageLimits;
+use pcr_formats::vda5050::topics::TopicInterface;
+use pcr_formats::vda5050::version::ProtocolVersion;
+use pcr_serve::journal_entry::JournalStore;
+use pcr_serve::journal_writer::WriteProgress;
+use pcr_serve::log::{LogLevel, LogWriter};
+use pcr_serve::server::{ServerInput, queue, serve};
+use pcr_serve::supervisor::{Supervisor, SupervisorConfig};
+use pcr_serve::vda5050::bridge::{self, Vda5050Bridge};
+use pcr_serve::vda5050::broker_session::{BrokerSession, SessionEnd};
+use pcr_serve::vda5050::mqtt::BrokerAddress;
+use pcr_serve::vda5050::vehicle_adapter::VehicleConfig;
+use pcr_serve::vehicles::lossy_channel::ChannelFaults;
+use pcr_serve::vehicles::manager_client::ManagerClient;
+use pcr_serve::vehicles::record::{RecordCertificate, certify};
+use pcr_serve::vehicles::simulated_fleet::{self, SimulatedFleet};
+use pcr_serve::vehicles::simulated_site::SimulatedSite;
+use pcr_serve::vehicles::vehicle_motion::SimulatedTraits;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::sync_channel;
 use std::sync::{Arc, Mutex};
@@ -33,8 +33,9 @@ pub(crate) const SAFE: [u64; 13] = [0, 60, 65, 66, 67, 75, 77, 79, 81, 83, 85, 8
 pub(crate) const WAREHOUSE: &str = include_str!("../../../../tests/data/real/nav2/warehouse_graph.geojson");
 
 pub(crate) fn warehouse() -> Layout {
-    let options = Options { radius: Some(0.4), ..Options::default() };
-    let Imported { layout, .. } = layout(Format::Nav2, WAREHOUSE, &options, &mut Warnings::default()).unwrap();
+    let options = ImportOptions { radius: Some(0.4), ..ImportOptions::default() };
+    let ImportedLayout { layout, .. } =
+        layout(InputFormat::Nav2, WAREHOUSE, &options, &mut Warnings::default()).unwrap();
     layout
 }
 
@@ -44,47 +45,57 @@ pub(crate) fn nodes(layout: &Layout, names: &[u64]) -> Vec<usize> {
 }
 
 /// The part of the topics that is the manager's, and that of the vehicles.
-pub(crate) fn interfaces() -> [Interface; 2] {
-    ["fleet", "uagv"].map(|prefix| Interface::new(prefix).unwrap())
+pub(crate) fn interfaces() -> [TopicInterface; 2] {
+    ["fleet", "uagv"].map(|prefix| TopicInterface::new(prefix).unwrap())
 }
 
-pub(crate) fn settings() -> Settings {
+pub(crate) fn settings() -> SupervisorConfig {
     // Holds as far as the way is free.
-    Settings { lookahead: 1e3, ..at_broker() }
+    SupervisorConfig { lookahead: 1e3, ..at_broker() }
 }
 
 /// As `pcr serve` has them.
-pub(crate) fn at_broker() -> Settings {
-    Settings { lookahead: 8.0, width: 0.3, ..Settings::default() }
+pub(crate) fn at_broker() -> SupervisorConfig {
+    SupervisorConfig { lookahead: 8.0, position_uncertainty: 0.3, ..SupervisorConfig::default() }
 }
 
 /// A supervisor at work.
 pub(crate) struct Desk {
     stop: Arc<AtomicBool>,
     asked: Arc<AtomicBool>,
-    thread: JoinHandle<Result<(), Stopped>>,
+    thread: JoinHandle<Result<(), SessionEnd>>,
     log: Arc<Mutex<Vec<String>>>,
 }
 
 impl Desk {
-    pub(crate) fn open(broker: &Mosquitto, profiles: Vec<Profile>, session: &str, keep: Box<dyn Keep>) -> Self {
+    pub(crate) fn open(
+        broker: &Mosquitto,
+        profiles: Vec<VehicleConfig>,
+        session: &str,
+        keep: Box<dyn JournalStore>,
+    ) -> Self {
         Self::at(&broker.address(), profiles, session, Supervisor::new(at_broker(), keep))
     }
 
-    pub(crate) fn at(broker: &Broker, profiles: Vec<Profile>, session: &str, mut supervisor: Supervisor) -> Self {
+    pub(crate) fn at(
+        broker: &BrokerAddress,
+        profiles: Vec<VehicleConfig>,
+        session: &str,
+        mut supervisor: Supervisor,
+    ) -> Self {
         let [manager, vehicles] = interfaces();
         let stop = Arc::new(AtomicBool::new(false));
-        let settings = bridge::Settings { manager, vehicles: vehicles.clone(), limits: Limits::default() };
-        let bridge = Bridge::new(settings, profiles, &supervisor).unwrap();
-        let mut station = Station::open(broker, &vehicles, &bridge, session).unwrap();
+        let settings = bridge::BridgeConfig { manager, vehicles: vehicles.clone(), limits: MessageLimits::default() };
+        let bridge = Vda5050Bridge::new(settings, profiles, &supervisor).unwrap();
+        let mut station = BrokerSession::open(broker, &vehicles, &bridge, session).unwrap();
         let bridge = Arc::new(Mutex::new(bridge));
         let (handle, inputs) = queue();
         let [(sender, events), (copies, news)] = [(); 2].map(|()| sync_channel(1 << 16));
         let server = std::thread::spawn(move || {
-            let _ = serve(&mut supervisor, &inputs, &Kept::default(), Log::new(Level::Error));
+            let _ = serve(&mut supervisor, &inputs, &WriteProgress::default(), LogWriter::new(LogLevel::Error));
         });
         for listener in [sender, copies] {
-            assert!(handle.send(Input::Tell(listener)));
+            assert!(handle.send(ServerInput::Tell(listener)));
         }
         let (log, asked) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicBool::new(false)));
         let (ended, lines, tells) = (stop.clone(), log.clone(), asked.clone());
@@ -109,7 +120,7 @@ impl Desk {
                     lines.extend(dumped.into_iter().flatten());
                 }
             };
-            handle.send(Input::Stop);
+            handle.send(ServerInput::Stop);
             server.join().unwrap();
             done
         });
@@ -131,7 +142,7 @@ impl Desk {
         self.thread.is_finished()
     }
 
-    pub(crate) fn close(self) -> Result<(), Stopped> {
+    pub(crate) fn close(self) -> Result<(), SessionEnd> {
         self.stop.store(true, Ordering::Relaxed);
         self.thread.join().unwrap()
     }
@@ -139,28 +150,28 @@ impl Desk {
 
 /// Vehicles and their manager.
 pub(crate) struct Site {
-    pub(crate) fleet: Fleet<Vec<u8>>,
-    pub(crate) office: Office,
+    pub(crate) fleet: SimulatedFleet<Vec<u8>>,
+    pub(crate) office: ManagerClient,
 }
 
 #[derive(Clone, Copy)]
 pub(crate) struct Scene<'a> {
     pub(crate) count: usize,
-    pub(crate) versions: &'a [Version],
-    pub(crate) abilities: &'a [Abilities],
-    pub(crate) climate: Climate,
+    pub(crate) versions: &'a [ProtocolVersion],
+    pub(crate) abilities: &'a [SimulatedTraits],
+    pub(crate) climate: ChannelFaults,
     pub(crate) drops: f64,
     pub(crate) pace: f64,
 }
 
 impl Site {
     /// At the safe ends of the warehouse.
-    pub(crate) fn open(broker: &Mosquitto, scene: Scene<'_>) -> (Self, Vec<Profile>) {
+    pub(crate) fn open(broker: &Mosquitto, scene: Scene<'_>) -> (Self, Vec<VehicleConfig>) {
         let layout = warehouse();
         let goals = nodes(&layout, &SAFE);
-        let world = World::new(layout, goals, scene.count, scene.versions, scene.abilities, 1).unwrap();
+        let world = SimulatedSite::new(layout, goals, scene.count, scene.versions, scene.abilities, 1).unwrap();
         let [manager, interface] = interfaces();
-        let settings = fleet::Settings {
+        let settings = simulated_fleet::SimulatedFleetConfig {
             broker: broker.address(),
             interface,
             pace: scene.pace,
@@ -170,8 +181,8 @@ impl Site {
             climate: scene.climate,
             seed: 1,
         };
-        let fleet = Fleet::new(settings, world.vehicles, Vec::new()).unwrap();
-        let office = Office::open(&broker.address(), manager, world.manager).unwrap();
+        let fleet = SimulatedFleet::new(settings, world.vehicles, Vec::new()).unwrap();
+        let office = ManagerClient::open(&broker.address(), manager, world.manager).unwrap();
         (Self { fleet, office }, world.profiles)
     }
 
@@ -208,7 +219,7 @@ impl Site {
     }
 
     /// Ends it, and proves that nobody has touched anybody.
-    pub(crate) fn close(self) -> Certificate {
+    pub(crate) fn close(self) -> RecordCertificate {
         let record = self.fleet.close().unwrap();
         let found = certify(record.as_slice()).unwrap();
         assert_eq!(found.verdict, "proved", "{found:?}");

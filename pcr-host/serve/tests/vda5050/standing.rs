@@ -1,26 +1,28 @@
 //! Who stands at the end of a path is in the way of whoever would end there.
 
 use crate::site::settings;
-use pcr_serve::course::{Shape, Start};
-use pcr_serve::entry::Nowhere;
-use pcr_serve::robot::Abilities;
-use pcr_serve::supervisor::{Proposal, Report, Supervisor, Verdict};
+use pcr_serve::journal_entry::NullStore;
+use pcr_serve::owned_path::{PathElement, StartPose};
+use pcr_serve::robot::RobotTraits;
+use pcr_serve::supervisor::{AdmissionResult, MissionRequest, PositionReport, Supervisor};
 
 #[test]
 fn a_place_that_is_taken_is_nobodys_end() {
-    let abilities = |radius| Abilities { radius, margin: 0.072, speed: 1.0, acceleration: 0.5 };
+    let abilities = |radius| RobotTraits { radius, margin: 0.072, speed: 1.0, acceleration: 0.5 };
     for k in 0..200 {
-        let mut supervisor = Supervisor::new(settings(), Box::new(Nowhere));
+        let mut supervisor = Supervisor::new(settings(), Box::new(NullStore));
         let off = 0.001 * f64::from(k);
         let lengths = [20.35 + off, 3.65, 4.5 + off, 5.5, 7.5, 4.0];
-        supervisor.add("a", abilities(0.3), Start { x: 0.1 * off, y: 30.0, heading: 0.3 * off }).unwrap();
-        let path: Vec<_> =
-            lengths.iter().flat_map(|&length| [Shape::Turn { sweep: 0.7 }, Shape::Line { length }]).collect();
-        let mission = |robot: &str, name: &str, path| Proposal {
+        supervisor.add("a", abilities(0.3), StartPose { x: 0.1 * off, y: 30.0, heading: 0.3 * off }).unwrap();
+        let path: Vec<_> = lengths
+            .iter()
+            .flat_map(|&length| [PathElement::Turn { sweep: 0.7 }, PathElement::Line { length }])
+            .collect();
+        let mission = |robot: &str, name: &str, path| MissionRequest {
             robot: robot.into(),
             mission: name.into(),
             after: None,
-            of: None,
+            expected_path: None,
             start: None,
             path,
         };
@@ -28,32 +30,33 @@ fn a_place_that_is_taken_is_nobodys_end() {
         supervisor.settle(0.0).unwrap();
         let a = supervisor.robot("a").unwrap();
         let (path, end) = (a.path, a.course.length());
-        assert_eq!(a.told, end);
+        assert_eq!(a.notified_limit, end);
         let there = a.course.pose(end);
-        supervisor.position(&Report { robot: "a".into(), path, at: [end; 2], age: 0.0 }, 1.0).unwrap();
+        supervisor.position(&PositionReport { robot: "a".into(), path, at: [end; 2], age: 0.0 }, 1.0).unwrap();
         supervisor.settle(1.0).unwrap();
         // Another one comes from afar, and would end there.
-        let start = Start { x: there.x - 12.0, y: there.y, heading: 0.0 };
+        let start = StartPose { x: there.x - 12.0, y: there.y, heading: 0.0 };
         supervisor.add("b", abilities(0.4), start).unwrap();
         supervisor.settle(1.5).unwrap();
-        let verdict = supervisor.mission(&mission("b", "two", vec![Shape::Line { length: 12.0 }]), 2.0).unwrap();
-        assert!(matches!(verdict, Verdict::Waiting { .. }), "{k}: {verdict:?}");
+        let verdict = supervisor.mission(&mission("b", "two", vec![PathElement::Line { length: 12.0 }]), 2.0).unwrap();
+        assert!(matches!(verdict, AdmissionResult::Waiting { .. }), "{k}: {verdict:?}");
     }
 }
 
 #[test]
 fn a_path_that_goes_on_goes_on_where_it_was() {
     for at in [0.0, 1.0, 4.999_999_999, 5.0, 5.000_000_001, 7.0, 9.9, 10.0, 10.000_000_001, 14.0, 15.0] {
-        let mut supervisor = Supervisor::new(settings(), Box::new(Nowhere));
-        let abilities = Abilities { radius: 0.3, margin: 0.1, speed: 1.0, acceleration: 0.5 };
-        supervisor.add("a", abilities, Start { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
-        let (line, turn) = (Shape::Line { length: 5.0 }, Shape::Turn { sweep: std::f64::consts::FRAC_PI_2 });
+        let mut supervisor = Supervisor::new(settings(), Box::new(NullStore));
+        let abilities = RobotTraits { radius: 0.3, margin: 0.1, speed: 1.0, acceleration: 0.5 };
+        supervisor.add("a", abilities, StartPose { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
+        let (line, turn) =
+            (PathElement::Line { length: 5.0 }, PathElement::Turn { sweep: std::f64::consts::FRAC_PI_2 });
         let path = vec![turn, line, turn, line, turn, line];
-        let mission = |name: &str, path| Proposal {
+        let mission = |name: &str, path| MissionRequest {
             robot: "a".into(),
             mission: name.into(),
             after: None,
-            of: None,
+            expected_path: None,
             start: None,
             path,
         };
@@ -62,7 +65,7 @@ fn a_path_that_goes_on_goes_on_where_it_was() {
         let robot = supervisor.robot("a").unwrap();
         let (path, end) = (robot.path, robot.course.pose(robot.course.length()));
         assert!((end.x + 5.0).hypot(end.y) < 1e-9, "{end:?}");
-        supervisor.position(&Report { robot: "a".into(), path, at: [at; 2], age: 0.0 }, 1.0).unwrap();
+        supervisor.position(&PositionReport { robot: "a".into(), path, at: [at; 2], age: 0.0 }, 1.0).unwrap();
         supervisor.mission(&mission("two", vec![line]), 1.0).unwrap();
         let robot = supervisor.robot("a").unwrap();
         let end = robot.course.pose(robot.course.length());
@@ -71,15 +74,15 @@ fn a_path_that_goes_on_goes_on_where_it_was() {
 }
 
 /// Where a robot is after some more shapes, computed with nothing of the library.
-fn after(mut end: Start, shapes: &[Shape]) -> Start {
+fn after(mut end: StartPose, shapes: &[PathElement]) -> StartPose {
     for shape in shapes {
         match *shape {
-            Shape::Turn { sweep } => end.heading += sweep,
-            Shape::Line { length } => {
+            PathElement::Turn { sweep } => end.heading += sweep,
+            PathElement::Line { length } => {
                 end.x += length * end.heading.cos();
                 end.y += length * end.heading.sin();
             }
-            Shape::Arc { .. } => unreachable!("there are none here"),
+            PathElement::Arc { .. } => unreachable!("there are none here"),
         }
     }
     end
@@ -88,13 +91,13 @@ fn after(mut end: Start, shapes: &[Shape]) -> Start {
 /// Paths were cut before a turn where rounding put their beginning there: robots were believed to be elsewhere.
 #[test]
 fn missions_begin_where_the_one_before_ends_wherever_the_robot_is() {
-    use pcr_formats::random::Random;
+    use pcr_formats::splitmix64::SplitMix64;
     use std::f64::consts::{FRAC_PI_2, PI};
-    let mut random = Random(5);
+    let mut random = SplitMix64(5);
     for run in 0..100 {
-        let mut supervisor = Supervisor::new(settings(), Box::new(Nowhere));
-        let abilities = Abilities { radius: 0.3, margin: 0.1, speed: 1.0, acceleration: 0.5 };
-        let mut end = Start { x: 0.0, y: 0.0, heading: 0.0 };
+        let mut supervisor = Supervisor::new(settings(), Box::new(NullStore));
+        let abilities = RobotTraits { radius: 0.3, margin: 0.1, speed: 1.0, acceleration: 0.5 };
+        let mut end = StartPose { x: 0.0, y: 0.0, heading: 0.0 };
         supervisor.add("a", abilities, end).unwrap();
         for mission in 0..20 {
             let mut one = |of: &[f64]| of[random.below(of.len())];
@@ -102,16 +105,23 @@ fn missions_begin_where_the_one_before_ends_wherever_the_robot_is() {
             let lengths: Vec<f64> = (0..count).map(|_| one(&[5.25, 1.75, 0.02, 3.85, 20.35])).collect();
             let mut path = Vec::new();
             for &length in &lengths {
-                path.push(Shape::Turn { sweep: one(&[0.0, FRAC_PI_2, -FRAC_PI_2, PI, -PI]) });
-                path.push(Shape::Line { length });
+                path.push(PathElement::Turn { sweep: one(&[0.0, FRAC_PI_2, -FRAC_PI_2, PI, -PI]) });
+                path.push(PathElement::Line { length });
             }
             end = after(end, &path);
             let name = mission.to_string();
-            let proposal = Proposal { robot: "a".into(), mission: name, after: None, of: None, start: None, path };
+            let proposal = MissionRequest {
+                robot: "a".into(),
+                mission: name,
+                after: None,
+                expected_path: None,
+                start: None,
+                path,
+            };
             supervisor.mission(&proposal, 0.0).unwrap();
             supervisor.settle(0.0).unwrap();
             let robot = supervisor.robot("a").unwrap();
-            let (number, whole, passed) = (robot.path, robot.course.length(), robot.at);
+            let (number, whole, passed) = (robot.path, robot.course.length(), robot.arc_length);
             let there = robot.course.pose(whole);
             assert!(
                 (there.x - end.x).hypot(there.y - end.y) < 1e-6,
@@ -126,7 +136,9 @@ fn missions_begin_where_the_one_before_ends_wherever_the_robot_is() {
                 _ => whole * random.unit(),
             };
             let at = at.max(passed);
-            supervisor.position(&Report { robot: "a".into(), path: number, at: [at; 2], age: 0.0 }, 1.0).unwrap();
+            supervisor
+                .position(&PositionReport { robot: "a".into(), path: number, at: [at; 2], age: 0.0 }, 1.0)
+                .unwrap();
             supervisor.settle(1.0).unwrap();
         }
     }

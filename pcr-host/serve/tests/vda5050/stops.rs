@@ -3,14 +3,14 @@
 use crate::pair::{CAN, key, order};
 use crate::puppet::Puppet;
 use crate::site::{interfaces, settings};
-use pcr_formats::vda5050::decode::Limits;
-use pcr_formats::vda5050::topics::Kind;
-use pcr_serve::course::Start;
-use pcr_serve::entry::Nowhere;
+use pcr_formats::vda5050::decode::MessageLimits;
+use pcr_formats::vda5050::topics::TopicKind;
+use pcr_serve::journal_entry::NullStore;
+use pcr_serve::owned_path::StartPose;
 use pcr_serve::supervisor::Supervisor;
-use pcr_serve::vda5050::bridge::{self, Bridge, Out};
-use pcr_serve::vda5050::lane::Due;
-use pcr_serve::vehicles::world::profile;
+use pcr_serve::vda5050::bridge::{self, PendingPublish, Vda5050Bridge};
+use pcr_serve::vda5050::vehicle_adapter::SendCondition;
+use pcr_serve::vehicles::simulated_site::profile;
 use serde_json::{Value, json};
 
 const WAY: [[f64; 2]; 3] = [[0.0, 0.0], [5.0, 0.0], [10.0, 0.0]];
@@ -19,11 +19,11 @@ impl Puppet {
     /// Somebody is added on its way.
     fn stops(&mut self) {
         let abilities = self.robot().abilities;
-        self.supervisor.add("new", abilities, Start { x: 6.0, y: 0.0, heading: 0.0 }).unwrap();
+        self.supervisor.add("new", abilities, StartPose { x: 6.0, y: 0.0, heading: 0.0 }).unwrap();
     }
 
     /// What is to be sent with instant actions of a type.
-    fn due(&mut self, kind: &str) -> Vec<Out> {
+    fn due(&mut self, kind: &str) -> Vec<PendingPublish> {
         self.supervisor.decide(self.time);
         self.bridge.settled(&mut self.supervisor, &[], self.time);
         let mut due = self.bridge.due();
@@ -37,7 +37,7 @@ impl Puppet {
 
 fn driving() -> Puppet {
     let mut own = Puppet::new();
-    own.manager(Kind::Order, order("a", 0, 0, &WAY, 3));
+    own.manager(TopicKind::Order, order("a", 0, 0, &WAY, 3));
     own.is_at("a", 0, 0, &[2, 4], 0.0, false);
     own.is_at("a", 0, 0, &[2, 4], 1.0, true);
     own
@@ -49,7 +49,7 @@ fn a_stop_waits_for_no_journal_and_nothing_lets_go_after_it() {
     let mut own = driving();
     own.stops();
     let stops = own.due("startPause");
-    assert!(stops.len() == 1 && stops[0].due == Due::AtOnce, "{stops:?}");
+    assert!(stops.len() == 1 && stops[0].due == SendCondition::AtOnce, "{stops:?}");
     own.state["paused"] = true.into();
     own.lasts(0.5);
     own.supervisor.remove("new").unwrap();
@@ -57,14 +57,18 @@ fn a_stop_waits_for_no_journal_and_nothing_lets_go_after_it() {
     // One of the manager's lets it go, too.
     let action = json!({ "actionType": "stopPause", "actionId": "m", "blockingType": "NONE" });
     let message = own.signed(json!({ "actions": [action] }));
-    let topic = interfaces()[0].topic(pcr_formats::vda5050::version::Version::V2_1, &key(), Kind::InstantActions);
+    let topic =
+        interfaces()[0].topic(pcr_formats::vda5050::version::ProtocolVersion::V2_1, &key(), TopicKind::InstantActions);
     own.bridge.receive(&mut own.supervisor, &topic, message.to_string().as_bytes(), own.time);
     goes.extend(own.due("stopPause"));
-    assert!(goes.len() == 2 && goes.iter().all(|out| out.due == Due::Free && !own.bridge.withholds(out)), "{goes:?}");
+    assert!(
+        goes.len() == 2 && goes.iter().all(|out| out.due == SendCondition::Free && !own.bridge.withholds(out)),
+        "{goes:?}"
+    );
     // They wait for the journal as it has to stop again.
     own.stops();
     let stops = own.due("startPause");
-    assert!(stops.len() == 1 && stops[0].due == Due::AtOnce, "{stops:?}");
+    assert!(stops.len() == 1 && stops[0].due == SendCondition::AtOnce, "{stops:?}");
     assert!(goes.iter().all(|out| own.bridge.withholds(out)));
     assert!(!own.bridge.withholds(&stops[0]));
     // That of the manager is passed on when it may go; it was lost, and the vehicle stood for ever.
@@ -83,7 +87,7 @@ fn so_many_actions_are_held_back_and_no_more() {
     own.lasts(0.5);
     for k in 0..40 {
         let action = json!({ "actionType": "stopPause", "actionId": format!("m{k}"), "blockingType": "NONE" });
-        own.manager(Kind::InstantActions, json!({ "actions": [action] }));
+        own.manager(TopicKind::InstantActions, json!({ "actions": [action] }));
     }
     assert_eq!(own.robot().notes["pauses"]["held"].as_array().unwrap().len(), 16);
     let log = own.bridge.log();
@@ -102,12 +106,12 @@ fn a_vehicle_with_an_alarm_is_not_sent_further() {
         let mut own = Puppet::new();
         own.stops();
         own.lasts(0.5);
-        own.manager(Kind::Order, order("a", 0, 0, &WAY, 3));
+        own.manager(TopicKind::Order, order("a", 0, 0, &WAY, 3));
         own.supervisor.remove("new").unwrap();
         own.lasts(0.5);
         assert!(own.robot().granted > 9.9 && own.orders() == 1, "{:?}", own.got);
         // It confirms the part that it was sent, and is beside it.
-        let ahead: Vec<Value> = own.got.iter().find(|(kind, _)| *kind == Kind::Order).unwrap().1["nodes"]
+        let ahead: Vec<Value> = own.got.iter().find(|(kind, _)| *kind == TopicKind::Order).unwrap().1["nodes"]
             .as_array()
             .unwrap()
             .iter()
@@ -137,7 +141,7 @@ fn the_first_order_is_sent_to_a_vehicle_with_an_alarm() {
     own.state["agvPosition"]["y"] = 3.0.into();
     own.lasts(0.5);
     assert!(own.robot().alarm.is_some() && own.orders() == 0, "{:?}", own.got);
-    own.manager(Kind::Order, order("a", 0, 0, &WAY, 3));
+    own.manager(TopicKind::Order, order("a", 0, 0, &WAY, 3));
     own.lasts(1.0);
     assert!(own.robot().alarm.is_some() && own.orders() > 0, "{:?}", own.got);
 }
@@ -146,11 +150,11 @@ fn the_first_order_is_sent_to_a_vehicle_with_an_alarm() {
 #[test]
 fn what_is_too_large_is_not_sent_and_the_log_says_so_once() {
     let [manager, vehicles] = interfaces();
-    let limits = Limits { sent: 900, ..Limits::default() };
+    let limits = MessageLimits { sent: 900, ..MessageLimits::default() };
     let mut own = driving();
-    own.supervisor = Supervisor::new(settings(), Box::new(Nowhere));
-    let topics = bridge::Settings { manager, vehicles, limits };
-    own.bridge = Bridge::new(topics, vec![profile(key(), &CAN)], &own.supervisor).unwrap();
+    own.supervisor = Supervisor::new(settings(), Box::new(NullStore));
+    let topics = bridge::BridgeConfig { manager, vehicles, limits };
+    own.bridge = Vda5050Bridge::new(topics, vec![profile(key(), &CAN)], &own.supervisor).unwrap();
     let states = |own: &mut Puppet| {
         own.told = Value::Null;
         own.lasts(2.0);

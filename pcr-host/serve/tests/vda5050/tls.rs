@@ -3,8 +3,8 @@
 use crate::broker::{Mosquitto, folder};
 use crate::runs::{FAIR, first};
 use crate::site::{Desk, Site};
-use pcr_serve::entry::Nowhere;
-use pcr_serve::vda5050::mqtt::{Broker, Link, News};
+use pcr_serve::journal_entry::NullStore;
+use pcr_serve::vda5050::mqtt::{BrokerAddress, LinkEvent, MqttLink};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -42,17 +42,17 @@ pub(crate) fn certificate(folder: &Path, authority: &str) -> [PathBuf; 2] {
 fn a_broker_is_believed_only_with_the_certificate_of_its_authority() {
     let mosquitto = Mosquitto::secured("secured", "pcr", "secret");
     let broker = mosquitto.address();
-    assert_eq!(first(&broker), News::Up);
-    let is_down = |broker: &Broker, because: &str| {
+    assert_eq!(first(&broker), LinkEvent::Up);
+    let is_down = |broker: &BrokerAddress, because: &str| {
         let said = first(broker);
-        assert!(matches!(&said, News::Down(why) if why.contains(because)), "{because}: {said:?}");
+        assert!(matches!(&said, LinkEvent::Down(why) if why.contains(because)), "{because}: {said:?}");
     };
     let other = authority(&folder("stranger"), "stranger");
-    is_down(&Broker { authority: Some(other), ..broker.clone() }, "UnknownIssuer");
+    is_down(&BrokerAddress { authority: Some(other), ..broker.clone() }, "UnknownIssuer");
     // The certificate is for the address, not for the name.
-    is_down(&Broker { host: "localhost".into(), ..broker.clone() }, "not valid for name");
-    is_down(&Broker { login: Some(("pcr".into(), "guess".into())), ..broker.clone() }, "NotAuthorized");
-    is_down(&Broker { authority: None, ..broker.clone() }, "");
+    is_down(&BrokerAddress { host: "localhost".into(), ..broker.clone() }, "not valid for name");
+    is_down(&BrokerAddress { login: Some(("pcr".into(), "guess".into())), ..broker.clone() }, "NotAuthorized");
+    is_down(&BrokerAddress { authority: None, ..broker.clone() }, "");
 }
 
 #[test]
@@ -60,8 +60,8 @@ fn a_file_without_a_certificate_is_refused_before_anything_is_sent() {
     let folder = folder("nothing");
     let refused = |name: &str, text: &str| {
         std::fs::write(folder.join(name), text).unwrap();
-        let broker = Broker { authority: Some(folder.join(name)), ..Broker::new("127.0.0.1", 1) };
-        Link::open(&broker, "who", None, Vec::new(), drop).unwrap_err()
+        let broker = BrokerAddress { authority: Some(folder.join(name)), ..BrokerAddress::new("127.0.0.1", 1) };
+        MqttLink::open(&broker, "who", None, Vec::new(), drop).unwrap_err()
     };
     assert!(refused("empty.pem", "").contains("no certificate"));
     assert!(
@@ -78,7 +78,7 @@ fn a_file_without_a_certificate_is_refused_before_anything_is_sent() {
 fn vehicles_do_their_missions_over_tls() {
     let broker = Mosquitto::secured("secured-two", "pcr", "secret");
     let (mut site, profiles) = Site::open(&broker, FAIR);
-    let desk = Desk::open(&broker, profiles, "secured", Box::new(Nowhere));
+    let desk = Desk::open(&broker, profiles, "secured", Box::new(NullStore));
     let told = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| site.until(1)));
     assert!(told.is_ok(), "{}", desk.tell());
     site.close();

@@ -2,20 +2,20 @@
 //! same ones with the same words, and know the same way afterwards.
 
 use crate::pair::{CAN, Pair, key};
-use pcr_formats::import::{Format, Options, Warnings, scenario};
-use pcr_formats::random::Random;
-use pcr_formats::vda5050::state::{State, StateError};
-use pcr_formats::vda5050::topics::Kind;
-use pcr_formats::vda5050::version::Version;
+use pcr_formats::import::{ImportOptions, InputFormat, Warnings, scenario};
+use pcr_formats::splitmix64::SplitMix64;
+use pcr_formats::vda5050::state::{ErrorEntry, State};
+use pcr_formats::vda5050::topics::TopicKind;
+use pcr_formats::vda5050::version::ProtocolVersion;
 use pcr_formats::warning::WarningCode;
-use pcr_serve::course::Start;
-use pcr_serve::vehicles::vehicle::Vehicle;
+use pcr_serve::owned_path::StartPose;
+use pcr_serve::vehicles::vehicle::SimulatedVehicle;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The order as its sender knows it.
 struct Sender {
-    random: Random,
+    random: SplitMix64,
     /// Positions of the nodes; node `k` has the sequence number `2 k`.
     places: Vec<[f64; 2]>,
     /// The last node of the base.
@@ -24,7 +24,7 @@ struct Sender {
 
 impl Sender {
     fn new(seed: u64) -> Self {
-        Self { random: Random(seed), places: vec![[0.0, 0.0]], base: 0 }
+        Self { random: SplitMix64(seed), places: vec![[0.0, 0.0]], base: 0 }
     }
 
     /// The next update, from the end of the base on: with nodes of which some are released, or none.
@@ -76,7 +76,7 @@ const DAMAGES: [&str; 14] = [
 ];
 
 /// Damages a message in one way, where that is possible; `before` are the places of the nodes of the sender.
-fn damage(message: &mut Value, kind: &str, random: &mut Random) {
+fn damage(message: &mut Value, kind: &str, random: &mut SplitMix64) {
     let count = message["nodes"].as_array().unwrap().len();
     let some = random.below(count);
     let fields = ["sequenceId", "released", "nodeId"];
@@ -99,7 +99,7 @@ fn damage(message: &mut Value, kind: &str, random: &mut Random) {
 
 /// Messages of one vehicle in the order of their numbers, and what is wrong with them.
 fn stream(seed: u64) -> (Vec<Value>, Vec<&'static str>) {
-    let (mut sender, mut random) = (Sender::new(seed), Random(seed ^ 0x5eed));
+    let (mut sender, mut random) = (Sender::new(seed), SplitMix64(seed ^ 0x5eed));
     let (mut messages, mut damages) = (Vec::new(), Vec::new());
     for update in 0..1 + random.below(5) as u64 {
         let good = sender.next(update);
@@ -144,7 +144,7 @@ fn stream(seed: u64) -> (Vec<Value>, Vec<&'static str>) {
 }
 
 /// What errors say, with the name of the update if they know it.
-fn said(errors: &[StateError]) -> impl Iterator<Item = String> {
+fn said(errors: &[ErrorEntry]) -> impl Iterator<Item = String> {
     errors.iter().filter_map(|error| {
         let description = error.rest.get("errorDescription").and_then(Value::as_str)?;
         let update = error.reference("orderUpdateId").unwrap_or_default();
@@ -159,18 +159,18 @@ fn name(id: &str, update: &str) -> String {
 
 /// What the importer says is refused, and the length of the base \[m\]; or why it refuses the file.
 fn imported(messages: &[Value]) -> Result<(BTreeSet<String>, f64), String> {
-    let options = Options {
+    let options = ImportOptions {
         radius: Some(0.4),
         speed: Some(1.0),
         acceleration: Some(0.5),
         rotation: Some(1.0),
         rotation_acceleration: Some(1.0),
         partial: true,
-        ..Options::default()
+        ..ImportOptions::default()
     };
     let mut warnings = Warnings::default();
     let text = messages.iter().map(Value::to_string).collect::<Vec<_>>().join("\n");
-    let scenario = scenario(Format::Vda5050, &text, &options, &mut warnings).map_err(|error| error.to_string())?;
+    let scenario = scenario(InputFormat::Vda5050, &text, &options, &mut warnings).map_err(|error| error.to_string())?;
     let left_out = warnings.iter().filter(|(code, ..)| *code == WarningCode::LeftOut);
     let names = left_out.flat_map(|(.., names)| names.iter().cloned()).collect();
     Ok((names, scenario.agents[0].length()))
@@ -181,26 +181,26 @@ fn supervised(messages: &[Value]) -> (BTreeSet<String>, Option<f64>) {
     let (mut pair, mut errors) = (Pair::new(), BTreeSet::new());
     for message in messages {
         let [manager, _] = crate::site::interfaces();
-        let topic = manager.topic(Version::V2_1, &key(), Kind::Order);
+        let topic = manager.topic(ProtocolVersion::V2_1, &key(), TopicKind::Order);
         pair.bridge.receive(&mut pair.supervisor, &topic, message.to_string().as_bytes(), pair.time);
         pair.lasts(0.1);
         errors.extend(said(&pair.state.as_ref().unwrap().errors));
     }
     let job = pair.bridge.lanes().find_map(|lane| lane.job());
-    let length = job.map(|job| job.way.node(job.held.base).unwrap() - job.way.node(0).unwrap());
+    let length = job.map(|job| job.path.node(job.order.base).unwrap() - job.path.node(0).unwrap());
     (errors, length)
 }
 
 /// What the simulated vehicle says.
 fn driven(messages: &[Value]) -> BTreeSet<String> {
-    let start = Start { x: 0.0, y: 0.0, heading: 0.0 };
-    let mut vehicle = Vehicle::new(key(), Version::V2_1, "map", CAN, start, 1);
+    let start = StartPose { x: 0.0, y: 0.0, heading: 0.0 };
+    let mut vehicle = SimulatedVehicle::new(key(), ProtocolVersion::V2_1, "map", CAN, start, 1);
     let mut errors = BTreeSet::new();
     for message in messages {
-        vehicle.receive(Kind::Order, message.to_string().as_bytes());
+        vehicle.receive(TopicKind::Order, message.to_string().as_bytes());
         vehicle.tell_state();
         for (kind, payload) in vehicle.out() {
-            if kind == Kind::State {
+            if kind == TopicKind::State {
                 errors.extend(said(&serde_json::from_slice::<State>(&payload).unwrap().errors));
             }
         }

@@ -3,15 +3,15 @@
 use crate::dump;
 use crate::runs::FAIR;
 use crate::site::{SAFE, Scene, at_broker, interfaces, nodes, warehouse};
-use pcr_formats::vda5050::version::Version;
-use pcr_serve::entry::{Entry, Keep, Nowhere};
+use pcr_formats::vda5050::version::ProtocolVersion;
+use pcr_serve::journal_entry::{JournalEntry, JournalStore, NullStore};
 use pcr_serve::supervisor::Supervisor;
-use pcr_serve::vehicles::drive::Abilities;
-use pcr_serve::vehicles::locks::Method;
+use pcr_serve::vehicles::edge_reservations::VehicleCoordination;
+use pcr_serve::vehicles::lossy_channel::ChannelFaults;
+use pcr_serve::vehicles::offline_simulation::{self, OfflineSimulation};
 use pcr_serve::vehicles::record::certify;
-use pcr_serve::vehicles::weather::Climate;
-use pcr_serve::vehicles::world::World;
-use pcr_serve::vehicles::yard::{self, Yard};
+use pcr_serve::vehicles::simulated_site::SimulatedSite;
+use pcr_serve::vehicles::vehicle_motion::SimulatedTraits;
 use std::io;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -20,16 +20,22 @@ use std::sync::{Arc, Mutex};
 /// Nobody needs longer for a mission, whoever is waited for \[s\].
 const LONGEST: f64 = 1_800.0;
 
-fn open(scene: Scene<'_>, seed: u64, method: Method, keeper: Box<dyn Keep>) -> Yard<Vec<u8>> {
+fn open(
+    scene: Scene<'_>,
+    seed: u64,
+    method: VehicleCoordination,
+    keeper: Box<dyn JournalStore>,
+) -> OfflineSimulation<Vec<u8>> {
     let layout = warehouse();
     let goals = nodes(&layout, &SAFE);
-    let world = World::new(layout, goals, scene.count, scene.versions, scene.abilities, seed).unwrap();
-    let own = yard::Settings { method, climate: scene.climate, drops: scene.drops, step: 0.05, seed };
-    Yard::new(world, interfaces(), own, Supervisor::new(at_broker(), keeper), Vec::new()).unwrap()
+    let world = SimulatedSite::new(layout, goals, scene.count, scene.versions, scene.abilities, seed).unwrap();
+    let own =
+        offline_simulation::OfflineConfig { method, climate: scene.climate, drops: scene.drops, step: 0.05, seed };
+    OfflineSimulation::new(world, interfaces(), own, Supervisor::new(at_broker(), keeper), Vec::new()).unwrap()
 }
 
 /// Goes on until so many missions are done; `fails` is what happens where the journal does.
-fn until(yard: &mut Yard<Vec<u8>>, missions: u64, mut fails: impl FnMut(&mut Yard<Vec<u8>>)) {
+fn until(yard: &mut OfflineSimulation<Vec<u8>>, missions: u64, mut fails: impl FnMut(&mut OfflineSimulation<Vec<u8>>)) {
     let (mut done, mut since) = (yard.manager().done(), yard.time());
     while done < missions {
         if yard.step().is_err() {
@@ -50,27 +56,28 @@ fn until(yard: &mut Yard<Vec<u8>>, missions: u64, mut fails: impl FnMut(&mut Yar
 }
 
 /// The supervisor is killed, and another one goes on with what is in the journal.
-fn restart(yard: &mut Yard<Vec<u8>>) {
+fn restart(yard: &mut OfflineSimulation<Vec<u8>>) {
     let entries = yard.supervised_by().0.snapshot().unwrap();
-    yard.revive(Supervisor::restored(at_broker(), entries, Box::new(Nowhere)).unwrap()).unwrap();
+    yard.revive(Supervisor::restored(at_broker(), entries, Box::new(NullStore)).unwrap()).unwrap();
 }
 
 /// Proves that nobody has touched anybody, and that nobody ever had the right to.
-fn close(yard: Yard<Vec<u8>>) {
+fn close(yard: OfflineSimulation<Vec<u8>>) {
     assert!(yard.audit().looks > 10 && yard.audit().twice == 0, "{:?}", yard.audit());
     let found = certify(yard.close().unwrap().as_slice()).unwrap();
     assert_eq!(found.verdict, "proved", "{found:?}");
 }
 
-pub(crate) const SMALL: Abilities = Abilities { radius: 0.3, speed: 1.5, acceleration: 1.0, ..FAIR.abilities[0] };
-pub(crate) const SLOW: Abilities = Abilities { delay: 3.0, slip: 0.2, speed: 0.7, ..FAIR.abilities[0] };
+pub(crate) const SMALL: SimulatedTraits =
+    SimulatedTraits { radius: 0.3, speed: 1.5, acceleration: 1.0, ..FAIR.abilities[0] };
+pub(crate) const SLOW: SimulatedTraits = SimulatedTraits { delay: 3.0, slip: 0.2, speed: 0.7, ..FAIR.abilities[0] };
 
 /// Eight vehicles, of all editions and three kinds, whose messages are lost, late and repeated.
 pub(crate) const MIXED: Scene<'_> = Scene {
     count: 8,
-    versions: &Version::ALL,
+    versions: &ProtocolVersion::ALL,
     abilities: &[FAIR.abilities[0], SMALL, SLOW],
-    climate: Climate { lost: 0.05, twice: 0.1, late: 0.1, delay: 10.0 },
+    climate: ChannelFaults { loss_rate: 0.05, duplicate_rate: 0.1, reorder_rate: 0.1, delay: 10.0 },
     drops: 0.002,
     ..FAIR
 };
@@ -88,10 +95,15 @@ fn seeds(usual: &str) -> Range<u64> {
 fn work_goes_on_whatever_is_lost() {
     for seed in seeds("0..2") {
         // From bad weather to very bad.
-        let Climate { lost, twice, late, delay } = MIXED.climate;
+        let ChannelFaults { loss_rate: lost, duplicate_rate: twice, reorder_rate: late, delay } = MIXED.climate;
         let times = (1 + 3 * (seed % 2)) as f64;
-        let climate = Climate { lost: times * lost, twice: times * twice, late: times * late, delay: times * delay };
-        let mut yard = open(Scene { climate, ..MIXED }, seed, Method::Supervisor, Box::new(Nowhere));
+        let climate = ChannelFaults {
+            loss_rate: times * lost,
+            duplicate_rate: times * twice,
+            reorder_rate: times * late,
+            delay: times * delay,
+        };
+        let mut yard = open(Scene { climate, ..MIXED }, seed, VehicleCoordination::Supervisor, Box::new(NullStore));
         for k in 1..=6 {
             until(&mut yard, 8 * k, |_| unreachable!());
             if seed % 2 == 1 {
@@ -108,7 +120,7 @@ fn goals_on_the_ways_of_others_are_refused() {
     let layout = warehouse();
     // The only way from 77 leads over 76.
     let goals = nodes(&layout, &[77, 76, 0]);
-    let refused = World::new(layout, goals, 2, &Version::ALL, FAIR.abilities, 1).unwrap_err();
+    let refused = SimulatedSite::new(layout, goals, 2, &ProtocolVersion::ALL, FAIR.abilities, 1).unwrap_err();
     assert_eq!(refused, "no way from 0 to 77 keeps 0.944 m from all other goals");
 }
 
@@ -117,8 +129,8 @@ fn goals_on_the_ways_of_others_are_refused() {
 #[test]
 fn vehicles_that_lose_their_orders_get_others() {
     for seed in seeds("3..5") {
-        let climate = Climate { lost: 0.02, twice: 0.02, late: 0.0, delay: 0.0 };
-        let mut yard = open(Scene { climate, ..MIXED }, seed, Method::Supervisor, Box::new(Nowhere));
+        let climate = ChannelFaults { loss_rate: 0.02, duplicate_rate: 0.02, reorder_rate: 0.0, delay: 0.0 };
+        let mut yard = open(Scene { climate, ..MIXED }, seed, VehicleCoordination::Supervisor, Box::new(NullStore));
         for round in 1..=10 {
             until(&mut yard, 3 * round, |_| unreachable!());
             yard.vehicles_mut().skip(round as usize % 3).step_by(3).for_each(|vehicle| vehicle.forget());
@@ -133,12 +145,12 @@ fn vehicles_that_lose_their_orders_get_others() {
 /// A journal of which every other write is the last one of its supervisor: what it was to hold is there, or not.
 #[derive(Clone, Default)]
 struct Mortal {
-    entries: Arc<Mutex<Vec<Entry>>>,
+    entries: Arc<Mutex<Vec<JournalEntry>>>,
     writes: Arc<AtomicUsize>,
 }
 
-impl Keep for Mortal {
-    fn keep(&mut self, entries: &[Entry]) -> io::Result<()> {
+impl JournalStore for Mortal {
+    fn keep(&mut self, entries: &[JournalEntry]) -> io::Result<()> {
         let write = self.writes.fetch_add(1, Relaxed);
         if write % 4 != 1 {
             self.entries.lock().unwrap().extend_from_slice(entries);
@@ -150,7 +162,12 @@ impl Keep for Mortal {
 #[test]
 fn a_supervisor_that_is_killed_at_every_other_write() {
     let disc = Mortal::default();
-    let mut yard = open(Scene { climate: Climate::default(), ..MIXED }, 4, Method::Supervisor, Box::new(disc.clone()));
+    let mut yard = open(
+        Scene { climate: ChannelFaults::default(), ..MIXED },
+        4,
+        VehicleCoordination::Supervisor,
+        Box::new(disc.clone()),
+    );
     let mut kills = 0;
     until(&mut yard, 6, |yard| {
         let entries = disc.entries.lock().unwrap().clone();
@@ -166,8 +183,8 @@ fn a_supervisor_that_is_killed_at_every_other_write() {
 #[test]
 fn locks_keep_apart_and_let_everybody_finish() {
     let mut done = Vec::new();
-    for method in Method::ALL {
-        let mut yard = open(MIXED, 5, method, Box::new(Nowhere));
+    for method in VehicleCoordination::ALL {
+        let mut yard = open(MIXED, 5, method, Box::new(NullStore));
         while yard.time() < 900.0 {
             yard.step().unwrap();
         }

@@ -1,15 +1,15 @@
 //! A broker, vehicles and their manager, to try a supervisor with.
 
-use super::super::Stop;
+use super::super::CliError;
 use super::super::brokers::interfaces;
-use super::super::fleet::{self, Crew};
-use super::Arguments;
-use super::bridge::Fleet;
-use pcr_formats::vda5050::topics::Interface;
-use pcr_serve::entry::Layout as Drawn;
-use pcr_serve::log::{Level, Log};
-use pcr_serve::vda5050::lane::Profile;
-use pcr_serve::vda5050::mqtt::Broker;
+use super::super::fleet::{self, FleetSimulationOptions};
+use super::ServeArgs;
+use super::bridge::BridgeFleetConfig;
+use pcr_formats::vda5050::topics::TopicInterface;
+use pcr_serve::journal_entry::PageLayout as Drawn;
+use pcr_serve::log::{LogLevel, LogWriter};
+use pcr_serve::vda5050::mqtt::BrokerAddress;
+use pcr_serve::vda5050::vehicle_adapter::VehicleConfig;
 use std::net::{TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -19,32 +19,32 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 /// All of it.
-pub(super) struct Demo {
-    broker: Broker,
+pub(super) struct BrokerDemo {
+    broker: BrokerAddress,
     child: Child,
     folder: PathBuf,
-    interfaces: [Interface; 2],
-    profiles: Vec<Profile>,
+    interfaces: [TopicInterface; 2],
+    profiles: Vec<VehicleConfig>,
     drawn: Drawn,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<Result<(), String>>>,
 }
 
-impl Demo {
-    pub(super) fn start(layout: &Path, arguments: &Arguments, log: Log) -> Result<Self, Stop> {
+impl BrokerDemo {
+    pub(super) fn start(layout: &Path, arguments: &ServeArgs, log: LogWriter) -> Result<Self, CliError> {
         if arguments.vehicles == 0 {
-            return Err(Stop::arguments("--vehicles: allowed is 1 or more"));
+            return Err(CliError::arguments("--vehicles: allowed is 1 or more"));
         }
-        let crew = Crew { vehicles: arguments.vehicles, ..Crew::default() };
+        let crew = FleetSimulationOptions { vehicles: arguments.vehicles, ..FleetSimulationOptions::default() };
         let world = fleet::world(layout, &crew)?;
         let interfaces = interfaces(&arguments.topics)?;
         let (child, broker, folder) = mosquitto()?;
-        log.write(Level::Info, "broker", &[("port", &broker.port)]);
+        log.write(LogLevel::Info, "broker", &[("port", &broker.port)]);
         let profiles = world.profiles.clone();
         let name = layout.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let drawn = Drawn { name, lanes: world.manager.lanes() };
         let mut demo = Self { broker, child, folder, interfaces, profiles, drawn, stop: Arc::default(), thread: None };
-        let mut run = fleet::Run::open(world, &demo.broker, &demo.interfaces, &crew, std::io::sink())?;
+        let mut run = fleet::FleetRun::open(world, &demo.broker, &demo.interfaces, &crew, std::io::sink())?;
         let stop = demo.stop.clone();
         demo.thread = Some(super::threads::thread("vehicles", move || {
             while !stop.load(Ordering::Relaxed) {
@@ -57,9 +57,9 @@ impl Demo {
     }
 
     /// What the supervisor has to know.
-    pub(super) fn fleet(&self) -> Fleet {
+    pub(super) fn fleet(&self) -> BridgeFleetConfig {
         let Self { broker, interfaces, profiles, .. } = self;
-        Fleet { broker: broker.clone(), interfaces: interfaces.clone(), profiles: profiles.clone() }
+        BridgeFleetConfig { broker: broker.clone(), interfaces: interfaces.clone(), profiles: profiles.clone() }
     }
 
     /// What the page draws.
@@ -67,16 +67,16 @@ impl Demo {
         &self.drawn
     }
 
-    pub(super) fn end(mut self) -> Result<(), Stop> {
+    pub(super) fn end(mut self) -> Result<(), CliError> {
         self.stop.store(true, Ordering::Relaxed);
         match self.thread.take().map(JoinHandle::join) {
-            Some(Ok(Err(why))) => Err(Stop::arguments(why)),
+            Some(Ok(Err(why))) => Err(CliError::arguments(why)),
             _ => Ok(()),
         }
     }
 }
 
-impl Drop for Demo {
+impl Drop for BrokerDemo {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
         // What is gone already needs no end.
@@ -87,8 +87,8 @@ impl Drop for Demo {
 }
 
 /// A broker of this machine only, on a port that is free.
-fn mosquitto() -> Result<(Child, Broker, PathBuf), Stop> {
-    let failed = |error: std::io::Error| Stop::arguments(format!("mosquitto: {error}"));
+fn mosquitto() -> Result<(Child, BrokerAddress, PathBuf), CliError> {
+    let failed = |error: std::io::Error| CliError::arguments(format!("mosquitto: {error}"));
     let port = TcpListener::bind("127.0.0.1:0").and_then(|it| it.local_addr()).map_err(failed)?.port();
     let folder = std::env::temp_dir().join(format!("pcr-demo-{}", std::process::id()));
     std::fs::create_dir_all(&folder).map_err(failed)?;
@@ -103,15 +103,15 @@ fn mosquitto() -> Result<(Child, Broker, PathBuf), Stop> {
     let Some(mut child) = started else {
         let _ = std::fs::remove_dir_all(&folder);
         let how = "the demo needs the broker mosquitto: apt-get install mosquitto, or https://mosquitto.org/download";
-        return Err(Stop::arguments(how));
+        return Err(CliError::arguments(how));
     };
     for _ in 0..500 {
         if TcpStream::connect(("127.0.0.1", port)).is_ok() {
-            return Ok((child, Broker::new("127.0.0.1", port), folder));
+            return Ok((child, BrokerAddress::new("127.0.0.1", port), folder));
         }
         thread::sleep(Duration::from_millis(10));
     }
     let _ = child.kill();
     let _ = child.wait();
-    Err(Stop::arguments("mosquitto does not answer"))
+    Err(CliError::arguments("mosquitto does not answer"))
 }

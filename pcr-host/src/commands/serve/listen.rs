@@ -1,11 +1,11 @@
 //! Where clients of the lines connect, and what they have to know.
 
-use super::super::Stop;
+use super::super::CliError;
 use super::threads::thread;
-use super::{Arguments, bound};
+use super::{ServeArgs, bound};
 use pcr_serve::clients::{self, Access};
-use pcr_serve::log::{Level, Log};
-use pcr_serve::server::Handle;
+use pcr_serve::log::{LogLevel, LogWriter};
+use pcr_serve::server::ServerHandle;
 use pcr_serve::sockets::Listener;
 #[cfg(unix)]
 use pcr_serve::sockets::SocketFile;
@@ -18,7 +18,7 @@ pub(super) const USUAL: &str = "unix:";
 
 /// Where to listen.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Place {
+pub(super) enum ListenAddress {
     /// At a Unix socket; `None`: in the folder of the journal.
     Unix(Option<PathBuf>),
     /// At an address, as it is written.
@@ -26,22 +26,22 @@ pub(super) enum Place {
 }
 
 /// Reads a place.
-pub(super) fn place(text: &str) -> Result<Place, String> {
+pub(super) fn place(text: &str) -> Result<ListenAddress, String> {
     match text.strip_prefix(USUAL) {
-        Some("") => Ok(Place::Unix(None)),
-        Some(path) => Ok(Place::Unix(Some(path.into()))),
-        None => super::place(text).map(Place::Tcp).map_err(|why| format!("unix:PATH, {why}")),
+        Some("") => Ok(ListenAddress::Unix(None)),
+        Some(path) => Ok(ListenAddress::Unix(Some(path.into()))),
+        None => super::parse_listen_address(text).map(ListenAddress::Tcp).map_err(|why| format!("unix:PATH, {why}")),
     }
 }
 
 /// Checks the options that belong together.
-pub(super) fn check(arguments: &Arguments) -> Result<(), Stop> {
-    let wrong = |why: &str| Err(Stop::arguments(why));
-    let has = |which: fn(&Place) -> bool| arguments.listen.iter().any(which);
-    if has(|place| *place == Place::Unix(None)) && arguments.journal.is_none() {
+pub(super) fn check(arguments: &ServeArgs) -> Result<(), CliError> {
+    let wrong = |why: &str| Err(CliError::arguments(why));
+    let has = |which: fn(&ListenAddress) -> bool| arguments.listen.iter().any(which);
+    if has(|place| *place == ListenAddress::Unix(None)) && arguments.journal.is_none() {
         return wrong("--listen: the socket is in the folder of --journal, which is not given; or --listen unix:PATH");
     }
-    let has_tcp = has(|place| matches!(place, Place::Tcp(_)));
+    let has_tcp = has(|place| matches!(place, ListenAddress::Tcp(_)));
     if has_tcp && token_file(arguments).is_none() {
         return wrong(
             "--listen: clients over TCP need a token: --journal DIR keeps it in DIR/token, or --token-file FILE says where",
@@ -56,7 +56,7 @@ pub(super) fn check(arguments: &Arguments) -> Result<(), Stop> {
     Ok(())
 }
 
-fn token_file(arguments: &Arguments) -> Option<PathBuf> {
+fn token_file(arguments: &ServeArgs) -> Option<PathBuf> {
     let of_journal = arguments.journal.as_ref().map(|folder| folder.join("token"));
     arguments.token_file.clone().or(of_journal)
 }
@@ -65,15 +65,15 @@ fn token_file(arguments: &Arguments) -> Option<PathBuf> {
 pub(super) struct Sockets(#[cfg(unix)] Vec<SocketFile>);
 
 /// Takes clients at all places, each in a thread of its own.
-pub(super) fn start(arguments: &Arguments, handle: &Handle, log: Log) -> Result<Sockets, Stop> {
+pub(super) fn start(arguments: &ServeArgs, handle: &ServerHandle, log: LogWriter) -> Result<Sockets, CliError> {
     let mut sockets = Sockets(
         #[cfg(unix)]
         Vec::new(),
     );
     for place in &arguments.listen {
         let (listener, access) = match place {
-            Place::Tcp(place) => tcp(arguments, place, log)?,
-            Place::Unix(path) => {
+            ListenAddress::Tcp(place) => tcp(arguments, place, log)?,
+            ListenAddress::Unix(path) => {
                 let of_journal = || arguments.journal.as_ref().map(|folder| folder.join("socket"));
                 let path = path.clone().or_else(of_journal).unwrap_or_default();
                 (sockets.bind(&path, log)?, Access::new(None))
@@ -87,22 +87,25 @@ pub(super) fn start(arguments: &Arguments, handle: &Handle, log: Log) -> Result<
 
 impl Sockets {
     #[cfg(unix)]
-    fn bind(&mut self, path: &Path, log: Log) -> Result<Listener, Stop> {
-        let (listener, file) = SocketFile::bind(path).map_err(|error| Stop::arguments(format!("--listen: {error}")))?;
+    fn bind(&mut self, path: &Path, log: LogWriter) -> Result<Listener, CliError> {
+        let (listener, file) =
+            SocketFile::bind(path).map_err(|error| CliError::arguments(format!("--listen: {error}")))?;
         self.0.push(file);
-        log.write(Level::Info, "listening", &[("for", &"--listen"), ("socket", &path.display())]);
+        log.write(LogLevel::Info, "listening", &[("for", &"--listen"), ("socket", &path.display())]);
         Ok(listener)
     }
 
     #[cfg(not(unix))]
-    fn bind(&mut self, _: &Path, _: Log) -> Result<Listener, Stop> {
-        Err(Stop::arguments("--listen: there are no Unix sockets on this system: --listen PORT takes clients over TCP"))
+    fn bind(&mut self, _: &Path, _: LogWriter) -> Result<Listener, CliError> {
+        Err(CliError::arguments(
+            "--listen: there are no Unix sockets on this system: --listen PORT takes clients over TCP",
+        ))
     }
 }
 
 /// Listens at an address. Others than this machine reach it only where the arguments say so.
-fn tcp(arguments: &Arguments, place: &str, log: Log) -> Result<(Listener, Access), Stop> {
-    let wrong = |why: String| Stop::arguments(format!("--listen: {place}: {why}"));
+fn tcp(arguments: &ServeArgs, place: &str, log: LogWriter) -> Result<(Listener, Access), CliError> {
+    let wrong = |why: String| CliError::arguments(format!("--listen: {place}: {why}"));
     let addresses = addresses(place).map_err(|error| wrong(error.to_string()))?;
     let is_remote = !addresses.iter().all(|address| address.ip().to_canonical().is_loopback());
     if is_remote && !arguments.allow_remote {
@@ -113,10 +116,14 @@ fn tcp(arguments: &Arguments, place: &str, log: Log) -> Result<(Listener, Access
         ));
     }
     let file = token_file(arguments).unwrap_or_default();
-    let token = Token::at(&file).map_err(|error| Stop::arguments(format!("--token-file: {error}")))?;
+    let token = Token::at(&file).map_err(|error| CliError::arguments(format!("--token-file: {error}")))?;
     let listener = bound("--listen", place, &addresses, &[("token", &file.display())], log)?;
     if is_remote {
-        log.write(Level::Warn, "other machines can reach the lines, which are not encrypted", &[("address", &place)]);
+        log.write(
+            LogLevel::Warn,
+            "other machines can reach the lines, which are not encrypted",
+            &[("address", &place)],
+        );
     }
     Ok((listener.into(), Access::new(Some(token))))
 }

@@ -2,20 +2,20 @@
 
 use super::super::brokers::AT_BROKERS;
 use super::super::printed::{notes, quiet};
-use super::super::{NOT_WRITTEN, Stop, WRONG_INPUT};
-use super::demo::Demo;
+use super::super::{CliError, NOT_WRITTEN, WRONG_INPUT};
+use super::demo::BrokerDemo;
 use super::threads::thread;
-use super::{Arguments, bound, bridge, listen};
-use pcr_drawing::live;
+use super::{ServeArgs, bound, bridge, listen};
+use pcr_drawing::fleet_page;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, TURN};
-use pcr_serve::course::Shape;
-use pcr_serve::entry::{Keep, Nowhere};
-use pcr_serve::http::{Drawn, Site};
+use pcr_serve::http::{HttpContent, RobotDrawing};
 use pcr_serve::journal::Journal;
-use pcr_serve::log::{Level, Log};
-use pcr_serve::server::{Handle, Input, queue, serve};
-use pcr_serve::supervisor::{Settings, Supervisor};
-use pcr_serve::writer::{Kept, Writer};
+use pcr_serve::journal_entry::{JournalStore, NullStore};
+use pcr_serve::journal_writer::{JournalWriter, WriteProgress};
+use pcr_serve::log::{LogLevel, LogWriter};
+use pcr_serve::owned_path::PathElement;
+use pcr_serve::server::{ServerHandle, ServerInput, queue, serve};
+use pcr_serve::supervisor::{Supervisor, SupervisorConfig};
 use pcr_serve::{clients, http};
 use std::io::{ErrorKind, Write};
 use std::net::TcpListener;
@@ -23,28 +23,28 @@ use std::process::ExitCode;
 use std::sync::mpsc::{Sender, channel};
 use std::thread;
 
-pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
+pub(super) fn run(arguments: ServeArgs) -> Result<ExitCode, CliError> {
     let settings = settings(&arguments)?;
     listen::check(&arguments)?;
     let log = log_of(&arguments)?;
-    let demo = arguments.demo.as_deref().map(|layout| Demo::start(layout, &arguments, log)).transpose()?;
+    let demo = arguments.demo.as_deref().map(|layout| BrokerDemo::start(layout, &arguments, log)).transpose()?;
     let (handle, inputs) = queue();
     let (mut supervisor, kept) = open(&arguments, settings, &handle, log)?;
     if let Some(demo) = &demo {
-        supervisor.draw(demo.drawn().clone()).map_err(|fault| Stop::Error(fault.to_string(), NOT_WRITTEN))?;
+        supervisor.draw(demo.drawn().clone()).map_err(|fault| CliError::Error(fault.to_string(), NOT_WRITTEN))?;
     }
     let ends = match &demo {
         Some(demo) => Some(bridge::start(&handle, &supervisor, demo.fleet(), log)?),
-        None => {
-            bridge::Fleet::of(&arguments)?.map(|fleet| bridge::start(&handle, &supervisor, fleet, log)).transpose()?
-        }
+        None => bridge::BridgeFleetConfig::of(&arguments)?
+            .map(|fleet| bridge::start(&handle, &supervisor, fleet, log))
+            .transpose()?,
     };
     let _sockets = listen::start(&arguments, &handle, log)?;
     if let Some(listener) = page(&arguments).map(|place| shown(place, log)).transpose()? {
         let url = listener.local_addr().map_or_else(|_| String::new(), |address| format!("http://{address}/"));
         match demo {
             Some(_) => writeln!(notes(), "pcr: open {url} in a browser; Ctrl-C ends the demo")?,
-            None => log.write(Level::Info, "page", &[("url", &url)]),
+            None => log.write(LogLevel::Info, "page", &[("url", &url)]),
         }
         let site = site(&listener);
         let handle = handle.clone();
@@ -52,8 +52,8 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     }
     let stays = arguments.stay || demo.is_some();
     let (failed, failures) = channel();
-    let last = Last { handle: handle.clone(), stays, failed: failed.clone(), log };
-    let unheard = Unheard { handle: handle.clone(), stays, failed, log };
+    let last = StopOnStdinEnd { handle: handle.clone(), stays, failed: failed.clone(), log };
+    let unheard = StopOnStdoutError { handle: handle.clone(), stays, failed, log };
     thread("lines", move || {
         let lost = move |error| unheard.tell(error);
         if let Err(error) = clients::serve(&last.handle, std::io::stdin(), std::io::stdout(), lost) {
@@ -64,9 +64,9 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
     let served = serve(&mut supervisor, &inputs, &kept, log);
     drop(inputs);
     // The bridge and the demo end in order, whatever has ended this.
-    let ended = ends.map_or(Ok(()), bridge::Work::end);
-    let done = demo.map_or(Ok(()), Demo::end);
-    served.map_err(|fault| Stop::Error(fault.to_string(), NOT_WRITTEN))?;
+    let ended = ends.map_or(Ok(()), bridge::BridgeThread::end);
+    let done = demo.map_or(Ok(()), BrokerDemo::end);
+    served.map_err(|fault| CliError::Error(fault.to_string(), NOT_WRITTEN))?;
     ended.and(done)?;
     match failures.try_recv() {
         Ok(stop) => Err(stop),
@@ -75,43 +75,43 @@ pub(super) fn run(arguments: Arguments) -> Result<ExitCode, Stop> {
 }
 
 /// Ends the supervisor when standard input has ended, unless it is to stay, and when it cannot be read. Why is told before.
-struct Last {
-    handle: Handle,
+struct StopOnStdinEnd {
+    handle: ServerHandle,
     stays: bool,
-    failed: Sender<Stop>,
-    log: Log,
+    failed: Sender<CliError>,
+    log: LogWriter,
 }
 
-impl Last {
+impl StopOnStdinEnd {
     fn fails(&self, why: String) {
-        let _ = self.failed.send(Stop::Error(format!("standard input: not read: {why}"), WRONG_INPUT));
-        self.handle.send(Input::Stop);
+        let _ = self.failed.send(CliError::Error(format!("standard input: not read: {why}"), WRONG_INPUT));
+        self.handle.send(ServerInput::Stop);
     }
 }
 
-impl Drop for Last {
+impl Drop for StopOnStdinEnd {
     fn drop(&mut self) {
         if thread::panicking() {
             self.fails("there is no memory for its thread".into());
         } else if !self.stays {
-            self.log.write(Level::Info, "standard input has ended; --stay goes on without it", &[]);
-            self.handle.send(Input::Stop);
+            self.log.write(LogLevel::Info, "standard input has ended; --stay goes on without it", &[]);
+            self.handle.send(ServerInput::Stop);
         }
     }
 }
 
 /// Ends the supervisor when standard output cannot be written, unless it is to stay: robots and other clients still need it then.
-struct Unheard {
-    handle: Handle,
+struct StopOnStdoutError {
+    handle: ServerHandle,
     stays: bool,
-    failed: Sender<Stop>,
-    log: Log,
+    failed: Sender<CliError>,
+    log: LogWriter,
 }
 
-impl Unheard {
+impl StopOnStdoutError {
     fn tell(self, error: std::io::Error) {
         // A reader who goes is no error, as for other commands.
-        let level = if error.kind() == ErrorKind::BrokenPipe { Level::Warn } else { Level::Error };
+        let level = if error.kind() == ErrorKind::BrokenPipe { LogLevel::Warn } else { LogLevel::Error };
         self.log.write(
             level,
             "standard output cannot be written: answers to standard input are lost",
@@ -119,49 +119,51 @@ impl Unheard {
         );
         if !self.stays {
             let _ = self.failed.send(error.into());
-            self.handle.send(Input::Stop);
+            self.handle.send(ServerInput::Stop);
         }
     }
 }
 
 /// What the command line says, and what is usual where it says nothing.
-fn settings(arguments: &Arguments) -> Result<Settings, Stop> {
-    let usual = Settings::default();
+fn settings(arguments: &ServeArgs) -> Result<SupervisorConfig, CliError> {
+    let usual = SupervisorConfig::default();
     let at_broker = arguments.broker.is_some() || arguments.demo.is_some();
-    let (width, lookahead) = if at_broker { AT_BROKERS } else { (usual.width, usual.lookahead) };
+    let (width, lookahead) = if at_broker { AT_BROKERS } else { (usual.position_uncertainty, usual.lookahead) };
     let within = |name: &str, value: f64, lo: f64, hi: f64| match (lo..=hi).contains(&value) {
         true => Ok(value),
         false => {
             let whose = if at_broker { " for vehicles of VDA 5050" } else { "" };
-            Err(Stop::arguments(format!("{name}: allowed is {lo} to {hi}{whose}")))
+            Err(CliError::arguments(format!("{name}: allowed is {lo} to {hi}{whose}")))
         }
     };
     let least = |usual: f64, other: f64| if at_broker { usual } else { other };
-    Ok(Settings {
-        width: within("--width", arguments.width.unwrap_or(width), least(width, 0.001), 10.0)?,
+    Ok(SupervisorConfig {
+        position_uncertainty: within("--width", arguments.width.unwrap_or(width), least(width, 0.001), 10.0)?,
         lookahead: within("--lookahead", arguments.lookahead.unwrap_or(lookahead), least(lookahead, 0.1), 600.0)?,
-        silence: within("--silence", arguments.silence, 0.1, 86400.0)?,
+        report_timeout: within("--silence", arguments.silence, 0.1, 86400.0)?,
         ..usual
     })
 }
 
-fn log_of(arguments: &Arguments) -> Result<Log, Stop> {
+fn log_of(arguments: &ServeArgs) -> Result<LogWriter, CliError> {
     let level = match &arguments.log {
-        Some(_) if quiet() => return Err(Stop::arguments("--log has no effect: with --quiet only errors are told")),
-        Some(level) => level.parse().map_err(|why| Stop::arguments(format!("--log: {why}")))?,
-        None if quiet() => Level::Error,
-        None => Level::Info,
+        Some(_) if quiet() => {
+            return Err(CliError::arguments("--log has no effect: with --quiet only errors are told"));
+        }
+        Some(level) => level.parse().map_err(|why| CliError::arguments(format!("--log: {why}")))?,
+        None if quiet() => LogLevel::Error,
+        None => LogLevel::Info,
     };
-    Ok(Log::new(level))
+    Ok(LogWriter::new(level))
 }
 
 /// Where the page is, if it is wanted.
-fn page(arguments: &Arguments) -> Option<&str> {
+fn page(arguments: &ServeArgs) -> Option<&str> {
     arguments.page.as_deref().or(arguments.demo.is_some().then_some("8080"))
 }
 
 /// Ctrl-C and its like end it in order.
-fn interrupted(handle: Handle) -> Result<(), Stop> {
+fn interrupted(handle: ServerHandle) -> Result<(), CliError> {
     #[cfg(unix)]
     {
         use signal_hook::consts::{SIGINT, SIGTERM};
@@ -174,7 +176,7 @@ fn interrupted(handle: Handle) -> Result<(), Stop> {
             while !flag.load(std::sync::atomic::Ordering::Relaxed) {
                 thread::sleep(std::time::Duration::from_millis(50));
             }
-            handle.send(Input::Stop);
+            handle.send(ServerInput::Stop);
         })?;
     }
     #[cfg(not(unix))]
@@ -182,52 +184,59 @@ fn interrupted(handle: Handle) -> Result<(), Stop> {
     Ok(())
 }
 
-fn open(arguments: &Arguments, settings: Settings, handle: &Handle, log: Log) -> Result<(Supervisor, Kept), Stop> {
+fn open(
+    arguments: &ServeArgs,
+    settings: SupervisorConfig,
+    handle: &ServerHandle,
+    log: LogWriter,
+) -> Result<(Supervisor, WriteProgress), CliError> {
     let Some(folder) = &arguments.journal else {
         log.write(
-            Level::Warn,
+            LogLevel::Warn,
             "no --journal: nothing outlives this program, and robots must stand when it starts",
             &[],
         );
-        let keeper: Box<dyn Keep> = Box::new(Nowhere);
-        return Ok((Supervisor::new(settings, keeper), Kept::default()));
+        let keeper: Box<dyn JournalStore> = Box::new(NullStore);
+        return Ok((Supervisor::new(settings, keeper), WriteProgress::default()));
     };
     let (journal, found) = Journal::open(folder).map_err(|error| match error.kind() {
         // Whoever has it open, or has damaged it, is not the disc.
-        ErrorKind::WouldBlock | ErrorKind::InvalidData => Stop::wrong(folder, error),
-        _ => Stop::Error(
+        ErrorKind::WouldBlock | ErrorKind::InvalidData => CliError::wrong(folder, error),
+        _ => CliError::Error(
             format!("the journal cannot be opened, so no robot gets the right of way: {error}"),
             NOT_WRITTEN,
         ),
     })?;
     if found.torn > 0 {
         log.write(
-            Level::Warn,
+            LogLevel::Warn,
             "the end of the journal was cut off, and is left out: nobody was told of it",
             &[("bytes", &found.torn)],
         );
     }
     let own = handle.clone();
-    let writer = Writer::start(Box::new(journal), move || own.wake()).map_err(|error| Stop::wrong(folder, error))?;
+    let writer =
+        JournalWriter::start(Box::new(journal), move || own.wake()).map_err(|error| CliError::wrong(folder, error))?;
     let kept = writer.kept();
     let supervisor = Supervisor::restored(settings, found.entries, Box::new(writer));
-    let supervisor = supervisor.map_err(|damaged| Stop::wrong(folder, damaged))?;
-    log.write(Level::Info, "ready", &[("robots", &supervisor.robots().len())]);
+    let supervisor = supervisor.map_err(|damaged| CliError::wrong(folder, damaged))?;
+    log.write(LogLevel::Info, "ready", &[("robots", &supervisor.robots().len())]);
     Ok((supervisor, kept))
 }
 
 /// Listens for the page.
-fn shown(place: &str, log: Log) -> Result<TcpListener, Stop> {
-    let addresses = listen::addresses(place).map_err(|error| Stop::arguments(format!("--page: {place}: {error}")))?;
+fn shown(place: &str, log: LogWriter) -> Result<TcpListener, CliError> {
+    let addresses =
+        listen::addresses(place).map_err(|error| CliError::arguments(format!("--page: {place}: {error}")))?;
     let listener = bound("--page", place, &addresses, &[], log)?;
     if listener.local_addr().is_ok_and(|address| !address.ip().is_loopback()) {
         let what = "other machines can reach the page: whoever does sees the fleet, and can change nothing";
-        log.write(Level::Warn, what, &[("address", &place)]);
+        log.write(LogLevel::Warn, what, &[("address", &place)]);
     }
     Ok(listener)
 }
 
-fn site(listener: &TcpListener) -> Site {
+fn site(listener: &TcpListener) -> HttpContent {
     let address = listener.local_addr().ok();
     let port = address.map_or(0, |address| address.port());
     let mut hosts: Vec<String> = ["localhost", "127.0.0.1", "[::1]"].map(|host| format!("{host}:{port}")).into();
@@ -237,16 +246,16 @@ fn site(listener: &TcpListener) -> Site {
     hosts.extend(hosts.iter().filter_map(short).collect::<Vec<_>>());
     // At 0.0.0.0 it is reached by any address of the machine.
     let addresses = address.is_some_and(|address| address.ip().is_unspecified());
-    Site { page: live::page(), draw: Some(draw), hosts, addresses }
+    HttpContent { page: fleet_page::page(), draw: Some(draw), hosts, addresses }
 }
 
 /// The collision map of a robot, if all set off now.
-fn draw(fleet: &[Drawn], ego: usize) -> Result<String, String> {
+fn draw(fleet: &[RobotDrawing], ego: usize) -> Result<String, String> {
     let agents = fleet.iter().zip(1..).map(|(robot, id)| {
         let path = robot.course.shapes().iter().map(|shape| match *shape {
-            Shape::Line { length } => PathSegment::Line { length },
-            Shape::Arc { radius, sweep } => PathSegment::Arc { radius, sweep },
-            Shape::Turn { sweep } => PathSegment::Arc { radius: TURN, sweep },
+            PathElement::Line { length } => PathSegment::Line { length },
+            PathElement::Arc { radius, sweep } => PathSegment::Arc { radius, sweep },
+            PathElement::Turn { sweep } => PathSegment::Arc { radius: TURN, sweep },
         });
         let start = robot.course.start();
         let motion = MotionSpec::RestToRest { v_max: robot.abilities.speed, a_max: robot.abilities.acceleration };
@@ -255,5 +264,5 @@ fn draw(fleet: &[Drawn], ego: usize) -> Result<String, String> {
         Agent { label: robot.name.clone(), ..agent }
     });
     let scenario = Scenario::new("fleet", agents.collect());
-    live::map(&scenario, ego).map_err(|error| error.to_string())
+    fleet_page::map(&scenario, ego).map_err(|error| error.to_string())
 }

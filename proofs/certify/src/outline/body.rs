@@ -6,14 +6,14 @@
 //! corners: a corner of the first and the last kind goes `x(l) = z(l) + Rot(ωl) w` with `w` of constant length.
 
 use super::data::{CORNERS, RawBody, RawCourse, RawHeading, RawOutline};
-use crate::ball::{Ball, Real, Tri};
-use crate::data::{Angle, Path, Segment};
-use crate::near::Area;
-use crate::path::{LEAST, Stretch, radians, stretches, unit};
-use crate::plane::Vector;
-use crate::twofold::Twofold;
+use crate::ball::{Ball, BallReal, Ternary};
+use crate::box_index::PlainBox;
+use crate::double_double::DoubleDouble;
+use crate::path::{LEAST, PreparedSegment, radians, stretches, unit};
+use crate::plane::BallVector;
+use crate::raw::{RawAngle, RawPath, RawSegment};
 
-type Number = Ball<Twofold>;
+type Number = Ball<DoubleDouble>;
 
 /// No corner and no radius of an outline is larger \[m\].
 const MOST: f64 = 1e12;
@@ -48,8 +48,8 @@ pub fn checked(outline: &RawOutline) -> Result<(), String> {
     Ok(())
 }
 
-fn vector([x, y]: [f64; 2]) -> Vector<Twofold> {
-    Vector { x: Ball::from(x), y: Ball::from(y) }
+fn vector([x, y]: [f64; 2]) -> BallVector<DoubleDouble> {
+    BallVector { x: Ball::from(x), y: Ball::from(y) }
 }
 
 /// How a body moves along a segment.
@@ -58,19 +58,19 @@ pub enum Sweep<R> {
     /// Straight on.
     Line {
         /// Unit vector along.
-        along: Vector<R>,
+        along: BallVector<R>,
     },
     /// About a centre.
     Turn {
         /// Centre.
-        centre: Vector<R>,
+        centre: BallVector<R>,
         /// Angle for each metre, positive to the left \[rad/m\].
         rate: Ball<R>,
     },
     /// Along a circle, with a constant heading.
     Circle {
         /// From the centre of the circle to the reference point at its start.
-        arm: Vector<R>,
+        arm: BallVector<R>,
         /// Angle for each metre, positive to the left \[rad/m\].
         rate: Ball<R>,
     },
@@ -82,29 +82,31 @@ pub struct Carried<R> {
     /// How it moves.
     pub sweep: Sweep<R>,
     /// Its corners at the start of the segment: from the centre of a turn, otherwise in the plane.
-    corners: Vec<Vector<R>>,
+    corners: Vec<BallVector<R>>,
     /// Outward unit normals of its edges there.
-    normals: Vec<Vector<R>>,
+    normals: Vec<BallVector<R>>,
     /// What turns of each corner: its distance from the centre, or the radius of the circle \[m\]; nothing on a line.
     pub(crate) arms: Vec<Ball<R>>,
     /// The largest speed of a corner, for a speed of 1 along the path.
     pub lever: Ball<R>,
 }
 
-impl<R: Real> Carried<R> {
-    fn of(body: &Carried<Twofold>) -> Self {
+impl<R: BallReal> Carried<R> {
+    fn of(body: &Carried<DoubleDouble>) -> Self {
         let sweep = match body.sweep {
-            Sweep::Line { along } => Sweep::Line { along: Vector::of(along) },
-            Sweep::Turn { centre, rate } => Sweep::Turn { centre: Vector::of(centre), rate: Ball::of(rate) },
-            Sweep::Circle { arm, rate } => Sweep::Circle { arm: Vector::of(arm), rate: Ball::of(rate) },
+            Sweep::Line { along } => Sweep::Line { along: BallVector::of(along) },
+            Sweep::Turn { centre, rate } => {
+                Sweep::Turn { centre: BallVector::of(centre), rate: Ball::from_twofold(rate) }
+            }
+            Sweep::Circle { arm, rate } => Sweep::Circle { arm: BallVector::of(arm), rate: Ball::from_twofold(rate) },
         };
-        let vectors = |those: &[Vector<Twofold>]| those.iter().map(|&one| Vector::of(one)).collect();
+        let vectors = |those: &[BallVector<DoubleDouble>]| those.iter().map(|&one| BallVector::of(one)).collect();
         Self {
             sweep,
             corners: vectors(&body.corners),
             normals: vectors(&body.normals),
-            arms: body.arms.iter().map(|&one| Ball::of(one)).collect(),
-            lever: Ball::of(body.lever),
+            arms: body.arms.iter().map(|&one| Ball::from_twofold(one)).collect(),
+            lever: Ball::from_twofold(body.lever),
         }
     }
 
@@ -117,7 +119,7 @@ impl<R: Real> Carried<R> {
     }
 
     /// The fixed point about which a corner turns.
-    pub(crate) fn hub(&self, corner: usize) -> Vector<R> {
+    pub(crate) fn hub(&self, corner: usize) -> BallVector<R> {
         match self.sweep {
             Sweep::Line { .. } => self.corners[corner],
             Sweep::Turn { centre, .. } => centre,
@@ -127,7 +129,7 @@ impl<R: Real> Carried<R> {
 
     /// The body at a length along the segment \[m\].
     pub fn posture(&self, length: Ball<R>) -> Posture<R> {
-        let nothing = Vector { x: Ball::from(0.0), y: Ball::from(0.0) };
+        let nothing = BallVector { x: Ball::from(0.0), y: Ball::from(0.0) };
         match self.sweep {
             Sweep::Line { along } => {
                 let by = along.times(length);
@@ -194,19 +196,19 @@ impl Carried<f64> {
 #[derive(Clone, Debug)]
 pub struct Posture<R> {
     /// Corners \[m\].
-    pub corners: Vec<Vector<R>>,
+    pub corners: Vec<BallVector<R>>,
     /// By how much each corner moves for each metre along the path.
-    pub velocities: Vec<Vector<R>>,
+    pub velocities: Vec<BallVector<R>>,
     /// Outward unit normals of the edges, each from a corner to the next one; none of a disc.
-    pub normals: Vec<Vector<R>>,
-    origin: Vector<R>,
-    drift: Vector<R>,
+    pub normals: Vec<BallVector<R>>,
+    origin: BallVector<R>,
+    drift: BallVector<R>,
     rate: Ball<R>,
 }
 
-impl<R: Real> Posture<R> {
+impl<R: BallReal> Posture<R> {
     /// By how much a point that moves with the body moves for each metre along the path.
-    pub fn velocity(&self, point: Vector<R>) -> Vector<R> {
+    pub fn velocity(&self, point: BallVector<R>) -> BallVector<R> {
         self.drift + (point - self.origin).left().times(self.rate)
     }
 }
@@ -215,11 +217,11 @@ impl<R: Real> Posture<R> {
 #[derive(Clone, Debug)]
 pub struct Placed {
     /// With 106 bits.
-    pub exact: Carried<Twofold>,
+    pub exact: Carried<DoubleDouble>,
     /// With 53.
     pub near: Carried<f64>,
     /// Length of the segment, and what lengths along the path are on it.
-    pub stretch: Stretch,
+    pub stretch: PreparedSegment,
     /// Bound on the speed of each point of the body, for a speed of 1 along the path.
     pub(crate) lever: f64,
 }
@@ -236,7 +238,7 @@ pub struct Body<'a> {
     /// How far a corner jumps at most where segments meet, all of them together \[m\].
     pub(crate) jumps: f64,
     /// The path as a line of the same lengths: all that the motion along it depends on.
-    pub(crate) lengths: Path,
+    pub(crate) lengths: RawPath,
 }
 
 impl<'a> Body<'a> {
@@ -319,13 +321,13 @@ impl<'a> Body<'a> {
 
     /// The box around all that the body passes, grown by a reach \[m\]. No corner is farther from where it is at the nearer end of a segment
     /// than half the length, times the lever.
-    pub(crate) fn area(&self, reach: f64) -> Area {
+    pub(crate) fn area(&self, reach: f64) -> PlainBox {
         let mut area = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
         for segment in &self.segments {
             let length = segment.stretch.placed.length;
             let way = (0.5 * segment.lever * length.to_f64()).next_up().next_up();
             let grown = ((way + reach).next_up() + self.raw.outline.radius).next_up();
-            for end in [Twofold::ZERO, length] {
+            for end in [DoubleDouble::ZERO, length] {
                 for corner in segment.exact.posture(Ball { mid: end, err: 0.0 }).corners {
                     for (axis, value) in [corner.x, corner.y].into_iter().enumerate() {
                         let by = (value.err.next_up() + grown).next_up();
@@ -348,25 +350,25 @@ impl<'a> Body<'a> {
 }
 
 /// A bound on a number.
-pub(crate) fn upper<R: Real>(ball: Ball<R>) -> f64 {
+pub(crate) fn upper<R: BallReal>(ball: Ball<R>) -> f64 {
     let most = (ball.to_f64() + ball.err) * (1.0 + 4.0 * f64::EPSILON);
     if most.is_nan() { f64::INFINITY } else { most }
 }
 
 /// The path as a line of the same lengths.
-fn lengths(raw: &RawBody) -> Path {
-    let line = |length, from, to| Segment { length, radius: None, turns: Vec::new(), from, to };
-    Path {
+fn lengths(raw: &RawBody) -> RawPath {
+    let line = |length, from, to| RawSegment { length, radius: None, turns: Vec::new(), from, to };
+    RawPath {
         start: [0.0; 2],
-        heading: Angle::Radians(0.0),
+        heading: RawAngle::Radians(0.0),
         segments: raw.segments.iter().map(|segment| line(segment.length, segment.from, segment.to)).collect(),
         rounding: raw.rounding,
         step: raw.step,
     }
 }
 
-fn angle(angle: Angle) -> Result<Number, String> {
-    let (Angle::Radians(number) | Angle::Turns(number)) = angle;
+fn angle(angle: RawAngle) -> Result<Number, String> {
+    let (RawAngle::Radians(number) | RawAngle::Turns(number)) = angle;
     if number.abs() <= 16_777_216.0 { Ok(radians(angle)) } else { Err(format!("an angle of {number} is out of range")) }
 }
 
@@ -387,25 +389,25 @@ fn rate(course: RawCourse, length: f64) -> Result<Number, String> {
 /// Checks that a heading is another one, but for whole turns and rounding, and returns a bound on how far it is off \[rad\].
 fn goes_on(before: Number, heading: Number, jump: f64) -> Result<f64, String> {
     let apart = heading - before;
-    let turns = (apart.to_f64() / Twofold::TURN.to_f64()).round();
+    let turns = (apart.to_f64() / DoubleDouble::TURN.to_f64()).round();
     // 2π is right within 2^-106 of itself.
-    let whole = Ball { mid: Twofold::TURN * turns, err: 1e-30 * turns.abs() };
+    let whole = Ball { mid: DoubleDouble::TURN * turns, err: 1e-30 * turns.abs() };
     let rest = (apart - whole).abs();
     // Two headings that are the same number may differ by what the sums are not known by.
     let allowed = Ball::from(jump + 1e-20);
     match rest.above(allowed) {
-        Tri::No => Ok(upper(rest)),
+        Ternary::No => Ok(upper(rest)),
         _ => Err(format!("its heading is off by {:e} rad from that before it", rest.to_f64())),
     }
 }
 
-fn carried(sweep: Sweep<Twofold>, corners: Vec<Vector<Twofold>>) -> Carried<Twofold> {
+fn carried(sweep: Sweep<DoubleDouble>, corners: Vec<BallVector<DoubleDouble>>) -> Carried<DoubleDouble> {
     let count = corners.len();
     let normal = |k: usize| {
         let edge = corners[(k + 1) % count] - corners[k];
         let length = edge.norm();
         let right = edge.left().times(Ball::from(-1.0));
-        Vector { x: right.x / length, y: right.y / length }
+        BallVector { x: right.x / length, y: right.y / length }
     };
     let normals = if count > 1 { (0..count).map(normal).collect() } else { Vec::new() };
     let zero = Ball::from(0.0);

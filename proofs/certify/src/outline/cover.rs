@@ -9,14 +9,14 @@
 
 use super::body::{Carried, Placed};
 use super::separation::{Change, above, below, meet, nearest, sketched};
-use crate::ball::{Ball, Real, Tri};
+use crate::ball::{Ball, BallReal, Ternary};
+use crate::double_double::DoubleDouble;
 use crate::pair::gaps;
-use crate::twofold::Twofold;
 
-type Number = Ball<Twofold>;
+type Number = Ball<DoubleDouble>;
 
 /// A range of lengths along a segment \[m\].
-pub type Range = [Twofold; 2];
+pub type Range = [DoubleDouble; 2];
 
 /// What has come of a claim about lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,9 +24,9 @@ pub enum Verdict {
     /// It holds.
     Proved,
     /// It does not hold at these lengths along the segments \[m\].
-    Refuted([Twofold; 2]),
+    Refuted([DoubleDouble; 2]),
     /// At these lengths rounding does not tell, or they take too many steps.
-    Undecided([Twofold; 2]),
+    Undecided([DoubleDouble; 2]),
 }
 
 /// Boxes that are looked at for one claim at most.
@@ -38,28 +38,28 @@ const MOST_CELLS: usize = 20_000;
 #[derive(Clone, Copy, Debug)]
 pub struct Segments<'a>(pub [&'a Placed; 2]);
 
-fn number<R: Real>(value: Twofold) -> Ball<R> {
-    Ball::of(Ball { mid: value, err: 0.0 })
+fn number<R: BallReal>(value: DoubleDouble) -> Ball<R> {
+    Ball::from_twofold(Ball { mid: value, err: 0.0 })
 }
 
-fn middle(range: Range) -> Twofold {
+fn middle(range: Range) -> DoubleDouble {
     (range[0] + range[1]).half()
 }
 
 /// Half the length of a range, and what rounding leaves of its middle.
-fn half<R: Real>(range: Range) -> Ball<R> {
-    let [lo, hi] = range.map(|end| Ball::<Twofold> { mid: end, err: 0.0 });
+fn half<R: BallReal>(range: Range) -> Ball<R> {
+    let [lo, hi] = range.map(|end| Ball::<DoubleDouble> { mid: end, err: 0.0 });
     let middle = (lo + hi).half();
     let half = (hi - lo).half();
-    Ball::of(Ball { mid: half.mid, err: half.err + middle.err })
+    Ball::from_twofold(Ball { mid: half.mid, err: half.err + middle.err })
 }
 
 /// One look at a box.
 struct Look {
     /// Whether all of it is farther than the bound.
-    clear: Tri,
+    clear: Ternary,
     /// Whether its middle is within the bound.
-    meets: Tri,
+    meets: Ternary,
     /// Which length to cut.
     cut: usize,
     /// How the distance changes with each length, about.
@@ -70,19 +70,19 @@ struct Look {
     over: f64,
 }
 
-fn look<R: Real>(bodies: [&Carried<R>; 2], ranges: [Range; 2], least: Number) -> Look {
-    let least = Ball::of(least);
+fn look<R: BallReal>(bodies: [&Carried<R>; 2], ranges: [Range; 2], least: Number) -> Look {
+    let least = Ball::from_twofold(least);
     let halves = ranges.map(half);
     let [a, b] = [0, 1].map(|k| bodies[k].posture(number(middle(ranges[k]))));
     let seen = below(bodies, [&a, &b], &Change::Box(halves));
     let ways = [0, 1].map(|k| (bodies[k].lever * halves[k]).to_f64());
-    let clear = if seen.anywhere.above(least).is_certain() { Tri::Yes } else { Tri::Doubt };
+    let clear = if seen.anywhere.above(least).is_certain() { Ternary::Yes } else { Ternary::Doubt };
     let meets = if seen.middle.above(least).is_certain() {
-        Tri::No
+        Ternary::No
     } else if least.above(above([&a, &b])).is_certain() {
-        Tri::Yes
+        Ternary::Yes
     } else {
-        Tri::Doubt
+        Ternary::Doubt
     };
     // Where nothing tells which length costs more, the longer way.
     let weights = if seen.weights[0] == seen.weights[1] { ways } else { seen.weights };
@@ -104,16 +104,16 @@ impl<'a> Segments<'a> {
             (taken, *steps) = (taken + 1, *steps + 1);
             let mut seen = look::<f64>(near, ranges, least);
             // With 106 bits where 53 do not tell, or where only what they leave stands in the way.
-            if seen.clear != Tri::Yes && (seen.meets == Tri::Doubt || seen.is_close || seen.over < 1024.0) {
-                seen = look::<Twofold>(exact, ranges, least);
+            if seen.clear != Ternary::Yes && (seen.meets == Ternary::Doubt || seen.is_close || seen.over < 1024.0) {
+                seen = look::<DoubleDouble>(exact, ranges, least);
             }
             if seen.clear.is_certain() {
                 continue;
             }
             let at = ranges.map(middle);
             match seen.meets {
-                Tri::Yes => return Verdict::Refuted(at),
-                Tri::No if taken < MOST && seen.over > 8.0 => {}
+                Ternary::Yes => return Verdict::Refuted(at),
+                Ternary::No if taken < MOST && seen.over > 8.0 => {}
                 _ => return Verdict::Undecided(at),
             }
             // A range of one length has no halves.
@@ -136,13 +136,13 @@ impl<'a> Segments<'a> {
     /// Whether one look at a box shows that all of it is farther apart than `least`.
     pub(crate) fn is_farther_at_once(&self, ranges: [Range; 2], least: Number) -> bool {
         look::<f64>(self.0.map(|body| &body.near), ranges, least).clear.is_certain()
-            || look::<Twofold>(self.0.map(|body| &body.exact), ranges, least).clear.is_certain()
+            || look::<DoubleDouble>(self.0.map(|body| &body.exact), ranges, least).clear.is_certain()
     }
 
     /// Whether one look shows that a length of the first segment is within `most` of all of a cell of the second one.
-    pub(crate) fn is_within_at(&self, at: Twofold, cell: Range, most: Number) -> bool {
+    pub(crate) fn is_within_at(&self, at: DoubleDouble, cell: Range, most: Number) -> bool {
         witnessed::<f64>(self.0.map(|body| &body.near), 1, cell, [at, at], at, most)
-            || witnessed::<Twofold>(self.0.map(|body| &body.exact), 1, cell, [at, at], at, most)
+            || witnessed::<DoubleDouble>(self.0.map(|body| &body.exact), 1, cell, [at, at], at, most)
     }
 
     /// Decides whether each length of the range of the body `of` is within `most` of some length of the range of the other one, as a
@@ -157,12 +157,12 @@ impl<'a> Segments<'a> {
             let near = self.0.map(|body| &body.near);
             let exact = self.0.map(|body| &body.exact);
             let shown = witnessed::<f64>(near, of, cell, ranges[1 - of], guess, most)
-                || witnessed::<Twofold>(exact, of, cell, ranges[1 - of], guess, most);
+                || witnessed::<DoubleDouble>(exact, of, cell, ranges[1 - of], guess, most);
             if shown {
                 continue;
             }
             let point = [at, at];
-            if !witnessed::<Twofold>(exact, of, point, ranges[1 - of], guess, most) {
+            if !witnessed::<DoubleDouble>(exact, of, point, ranges[1 - of], guess, most) {
                 let mut strip = ranges;
                 strip[of] = point;
                 return match self.farther(strip, most, steps) {
@@ -178,12 +178,12 @@ impl<'a> Segments<'a> {
         Verdict::Proved
     }
 
-    fn pair(&self, of: usize, at: Twofold, other: Twofold) -> [Twofold; 2] {
+    fn pair(&self, of: usize, at: DoubleDouble, other: DoubleDouble) -> [DoubleDouble; 2] {
         if of == 0 { [at, other] } else { [other, at] }
     }
 
     /// The length of the other body at which it is nearest, about. Nothing rests on it.
-    pub(crate) fn guess(&self, of: usize, at: Twofold, range: Range) -> Twofold {
+    pub(crate) fn guess(&self, of: usize, at: DoubleDouble, range: Range) -> DoubleDouble {
         const PARTS: usize = 24;
         /// How many of its least values are refined.
         const NEAREST: usize = 4;
@@ -220,12 +220,12 @@ impl<'a> Segments<'a> {
     /// The boxes of lengths that rectangles leave free. Each part of the second segment between ends of rectangles is looked at by itself:
     /// there a rectangle holds all of it or nothing of it (`docs/theory/certificates.md`, lemma 2).
     pub(crate) fn left_free(&self, rectangles: &[[Range; 2]]) -> Vec<[Range; 2]> {
-        let whole = self.0.map(|body| [Twofold::ZERO, body.stretch.placed.length]);
-        let mut cuts: Vec<Twofold> = rectangles.iter().flat_map(|rectangle| rectangle[1]).collect();
+        let whole = self.0.map(|body| [DoubleDouble::ZERO, body.stretch.placed.length]);
+        let mut cuts: Vec<DoubleDouble> = rectangles.iter().flat_map(|rectangle| rectangle[1]).collect();
         cuts.extend(whole[1]);
         // An end that is no number, or beyond the segment, holds nothing.
         cuts.retain(|cut| whole[1][0] <= *cut && *cut <= whole[1][1]);
-        cuts.sort_by(Twofold::total_cmp);
+        cuts.sort_by(DoubleDouble::total_cmp);
         cuts.dedup();
         let cells: Vec<Range> =
             if cuts.len() == 1 { vec![whole[1]] } else { cuts.windows(2).map(|cut| [cut[0], cut[1]]).collect() };
@@ -248,18 +248,18 @@ impl<'a> Segments<'a> {
 
 /// Whether a pair of points of the bodies shows that a cell is within a distance of the other range, while the other body goes on at a
 /// constant speed, one at which the two points move as little as possible relative to each other.
-fn witnessed<R: Real>(
+fn witnessed<R: BallReal>(
     bodies: [&Carried<R>; 2],
     of: usize,
     cell: Range,
     range: Range,
-    guess: Twofold,
+    guess: DoubleDouble,
     most: Number,
 ) -> bool {
     let other = 1 - of;
     let half: Ball<R> = half(cell);
     let own = bodies[of].posture(number(middle(cell)));
-    let look = |at: Twofold, speed: f64| {
+    let look = |at: DoubleDouble, speed: f64| {
         let there = bodies[other].posture(number(at));
         let (mut postures, mut speeds) = ([&own, &own], [Ball::from(1.0); 2]);
         (postures[other], speeds[other]) = (&there, Ball::from(speed));
@@ -271,7 +271,7 @@ fn witnessed<R: Real>(
         } else {
             bound
         };
-        Ball::of(most).above(bound).is_certain() || Ball::of(most).above(overlap).is_certain()
+        Ball::from_twofold(most).above(bound).is_certain() || Ball::from_twofold(most).above(overlap).is_certain()
     };
     if look(guess, 0.0) {
         return true;
@@ -281,7 +281,8 @@ fn witnessed<R: Real>(
     postures[other] = &there;
     let speed = nearest(postures).match_speed(postures, of).clamp(-4.0, 4.0);
     // The other body must not leave its range: it begins a bit farther inside.
-    let away = Twofold::from(speed.abs()) * Twofold::from(half.to_f64() + half.err) * Twofold::from(1.0 + 1e-9);
+    let away =
+        DoubleDouble::from(speed.abs()) * DoubleDouble::from(half.to_f64() + half.err) * DoubleDouble::from(1.0 + 1e-9);
     let (lo, hi) = (range[0] + away, range[1] - away);
     speed != 0.0 && speed.is_finite() && lo <= hi && look(guess.clamp(lo, hi), speed)
 }

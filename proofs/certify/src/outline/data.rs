@@ -3,7 +3,7 @@
 #[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
-use crate::data::{Angle, Region, Travel};
+use crate::raw::{RawAngle, RawMotion, RawRegion};
 
 /// The largest number of corners of an outline.
 pub const CORNERS: usize = 16;
@@ -45,23 +45,23 @@ pub enum RawCourse {
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum RawHeading {
     /// At a constant angle to the direction of the path: 0 ahead, half a turn in reverse gear.
-    Along(Angle),
+    Along(RawAngle),
     /// In a constant direction of the plane.
-    Steady(Angle),
+    Steady(RawAngle),
 }
 
 /// A segment of the path of a body.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
-pub struct RawSegment {
+pub struct RawBodySegment {
     /// Where the reference point goes.
     pub course: RawCourse,
     /// Length \[m\].
     pub length: f64,
     /// By how much the direction of the path turns before it, turn by turn. The body does not turn: its heading has to go on.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
-    pub turns: Vec<Angle>,
+    pub turns: Vec<RawAngle>,
     /// Where the body looks.
     pub heading: RawHeading,
     /// Length of the path before the segment, as the library has summed it up \[m\].
@@ -82,9 +82,9 @@ pub struct RawBody {
     /// Abscissa and ordinate of the reference point at the start \[m\].
     pub start: [f64; 2],
     /// Direction of the path at the start.
-    pub direction: Angle,
+    pub direction: RawAngle,
     /// At least one.
-    pub segments: Vec<RawSegment>,
+    pub segments: Vec<RawBodySegment>,
     /// What a length along the path may be off by the rounding of sums \[m\].
     pub rounding: f64,
     /// What the heading may jump by where two segments meet, by the rounding of angles \[rad\].
@@ -92,14 +92,14 @@ pub struct RawBody {
     /// What all lengths of a fixed-point format are multiples of \[m\]; 0 in floating point.
     pub step: f64,
     /// Motion; none where only the path counts.
-    pub travel: Option<Travel>,
+    pub travel: Option<RawMotion>,
 }
 
 /// A part of a collision region of two bodies: a rectangle of lengths along both paths, on one segment of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
-pub struct RawPiece {
+pub struct RawOutlinePiece {
     /// Places of the segments in their paths.
     pub segments: [usize; 2],
     /// From and to, along the path of the first and of the second body \[m\].
@@ -114,26 +114,26 @@ pub struct RawPiece {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
-pub struct RawPair {
+pub struct RawOutlinePair {
     /// Places of the bodies, the first one first.
     pub bodies: [usize; 2],
     /// By how much the radius of the regions may be too large: ε \[m\].
     pub excess: f64,
     /// Regions.
-    pub regions: Vec<Region>,
+    pub regions: Vec<RawRegion>,
     /// Pieces of all regions, in no order.
-    pub pieces: Vec<RawPiece>,
+    pub pieces: Vec<RawOutlinePiece>,
 }
 
 /// A table of collision regions of bodies: every two with different numbers are a pair of it, or far apart.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize, Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
-pub struct RawTable {
+pub struct RawOutlineTable {
     /// The bodies. Discs among them have a single corner, at their reference point.
     pub bodies: Vec<RawBody>,
     /// The pairs.
-    pub pairs: Vec<RawPair>,
+    pub pairs: Vec<RawOutlinePair>,
     /// ε of those that are left out because their paths are far apart \[m\]; none where nobody is left out.
     pub apart: Option<f64>,
 }

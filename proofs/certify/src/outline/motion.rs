@@ -3,18 +3,18 @@
 //!
 //! While both bodies keep phase and segment, the distance in the direction m that moves with one of them is at least its value in the
 //! middle less `|g'| k + ½ max |g''| k²` ([`super::separation`]); whatever they do, it is at least that in the middle less the ways of
-//! both. The travelled length over time, and how far it may be off, is that of [`crate::mover`] on a line of the same lengths; times the
+//! both. The travelled length over time, and how far it may be off, is that of [`crate::moving_disc`] on a line of the same lengths; times the
 //! lever of the body it bounds how far a corner is off.
 
 use super::body::{Body, Carried};
 use super::separation::{Change, above, below};
-use crate::ball::{Ball, Real, Tri};
-use crate::data::Agent;
-use crate::motion::{Meeting, Meetings};
-use crate::mover::{Leg, Mover};
-use crate::near::Near;
-use crate::travel::Ramp;
-use crate::twofold::Twofold;
+use crate::arc_length_motion::BallRamp;
+use crate::ball::{Ball, BallReal, Ternary};
+use crate::box_index::BoxIndex;
+use crate::double_double::DoubleDouble;
+use crate::motion::{ContactWitness, MotionFindings};
+use crate::moving_disc::{Mover, MoverLeg};
+use crate::raw::RawAgent;
 
 /// Intervals of one question at most.
 const MOST: usize = 1_000_000;
@@ -66,7 +66,7 @@ impl<'a> Driven<'a> {
     /// # Errors
     /// A motion that is none, or that goes back or jumps; no motion.
     pub fn new(body: &'a Body<'a>, time: [f64; 2]) -> Result<Self, String> {
-        let agent = Agent {
+        let agent = RawAgent {
             id: body.raw.id,
             radius: body.raw.outline.radius,
             path: body.lengths.clone(),
@@ -77,25 +77,25 @@ impl<'a> Driven<'a> {
 }
 
 /// A type of number that legs are computed in.
-trait Precision: Real {
+trait Precision: BallReal {
     fn carried<'b>(body: &'b Body<'_>, place: usize) -> &'b Carried<Self>;
-    fn ramp(leg: &Leg) -> &Ramp<Self>;
+    fn ramp(leg: &MoverLeg) -> &BallRamp<Self>;
 }
 
 impl Precision for f64 {
     fn carried<'b>(body: &'b Body<'_>, place: usize) -> &'b Carried<Self> {
         &body.segments[place].near
     }
-    fn ramp(leg: &Leg) -> &Ramp<Self> {
+    fn ramp(leg: &MoverLeg) -> &BallRamp<Self> {
         &leg.near.ramp
     }
 }
 
-impl Precision for Twofold {
+impl Precision for DoubleDouble {
     fn carried<'b>(body: &'b Body<'_>, place: usize) -> &'b Carried<Self> {
         &body.segments[place].exact
     }
-    fn ramp(leg: &Leg) -> &Ramp<Self> {
+    fn ramp(leg: &MoverLeg) -> &BallRamp<Self> {
         &leg.exact.ramp
     }
 }
@@ -109,9 +109,9 @@ pub struct Encounter<'a> {
 /// What one look at an interval of time shows.
 struct Look {
     /// Whether all of it is farther than a bound.
-    clear: Tri,
+    clear: Ternary,
     /// Whether its middle is within the bound.
-    meets: Tri,
+    meets: Ternary,
     clearance: f64,
 }
 
@@ -147,8 +147,8 @@ impl<'a> Encounter<'a> {
             (taken, *steps) = (taken + 1, *steps + 1);
             let near = self.look::<f64>([lo, hi], 0.0);
             let seen = match (near.clear, near.meets) {
-                (Tri::Yes, _) => continue,
-                (_, Tri::Doubt) => self.look::<Twofold>([lo, hi], 0.0),
+                (Ternary::Yes, _) => continue,
+                (_, Ternary::Doubt) => self.look::<DoubleDouble>([lo, hi], 0.0),
                 _ => near,
             };
             if seen.clear.is_certain() {
@@ -159,7 +159,7 @@ impl<'a> Encounter<'a> {
                 return Answer::Refuted(moment);
             }
             match self.cut([lo, hi]) {
-                Some(cut) if taken < MOST && seen.meets == Tri::No => rest.extend([[cut, hi], [lo, cut]]),
+                Some(cut) if taken < MOST && seen.meets == Ternary::No => rest.extend([[cut, hi], [lo, cut]]),
                 _ => return Answer::Undecided(moment),
             }
         }
@@ -174,12 +174,12 @@ impl<'a> Encounter<'a> {
         }
         let mut seen = self.look::<f64>([time, time], excess);
         if !seen.meets.is_certain() && !seen.clear.is_certain() {
-            seen = self.look::<Twofold>([time, time], excess);
+            seen = self.look::<DoubleDouble>([time, time], excess);
         }
         let moment = Moment { time, clearance: seen.clearance };
         match (seen.meets, seen.clear) {
-            (Tri::Yes, _) => Answer::Proved,
-            (_, Tri::Yes) => Answer::Refuted(moment),
+            (Ternary::Yes, _) => Answer::Proved,
+            (_, Ternary::Yes) => Answer::Refuted(moment),
             _ => Answer::Undecided(moment),
         }
     }
@@ -251,19 +251,19 @@ impl<'a> Encounter<'a> {
         let accelerations = legs.map(|leg| R::ramp(leg).acceleration);
         let seen = below(carried, [&a, &b], &Change::Line { speeds, accelerations, half });
         let [first, second] = self.bodies;
-        let radius = Ball::of(first.body.radius) + Ball::of(second.body.radius) + number(excess);
+        let radius = Ball::from_twofold(first.body.radius) + Ball::from_twofold(second.body.radius) + number(excess);
         let lever = [number(first.lever), number(second.lever)];
         let off = number(legs[0].off) * lever[0] + number(legs[1].off) * lever[1];
         let most = above([&a, &b]);
         let between = most - radius;
-        let clearance = Ball { err: between.err + off.to_f64(), ..between }.told();
+        let clearance = Ball { err: between.err + off.to_f64(), ..between }.display_length();
         let middle_is_clear = seen.middle.above(radius + off);
         let meets = if middle_is_clear.is_certain() {
-            Tri::No
+            Ternary::No
         } else if radius.above(most + off).is_certain() {
-            Tri::Yes
+            Ternary::Yes
         } else {
-            Tri::Doubt
+            Ternary::Doubt
         };
         // The leg that begins with the end of the interval counts from there on.
         let until = |k: usize| {
@@ -274,11 +274,12 @@ impl<'a> Encounter<'a> {
             seen.anywhere.above(radius + off)
         } else {
             let bound = |k: usize| {
-                lever[k] * (number(movers[k].speed) * half + number(movers[k].off)) + number(self.bodies[k].body.jumps)
+                lever[k] * (number(movers[k].speed) * half + number(movers[k].position_error))
+                    + number(self.bodies[k].body.jumps)
             };
             seen.middle.above(radius + off + bound(0) + bound(1))
         };
-        let clear = if clear.is_certain() { Tri::Yes } else { Tri::Doubt };
+        let clear = if clear.is_certain() { Ternary::Yes } else { Ternary::Doubt };
         Look { clear, meets, clearance }
     }
 }
@@ -288,17 +289,19 @@ fn middle([lo, hi]: [f64; 2]) -> f64 {
 }
 
 /// All pairs of bodies with different numbers, at all times: no contact, or where there is one.
-pub fn meetings(driven: &[Driven<'_>]) -> Meetings {
-    let mut found = Meetings::default();
+pub fn meetings(driven: &[Driven<'_>]) -> MotionFindings {
+    let mut found = MotionFindings::default();
     // Along its path a body may be anywhere: how far off that is does not count, but for an end that differs from that of its motion.
-    let near = Near::new(driven.iter().map(|one| one.body.area((one.mover.off * one.lever).next_up())).collect());
+    let near = BoxIndex::new(
+        driven.iter().map(|one| one.body.area((one.mover.position_error * one.lever).next_up())).collect(),
+    );
     for (place, own) in driven.iter().enumerate() {
         let others = &driven[place + 1..];
         found.pairs += others.iter().filter(|other| other.mover.id != own.mover.id).count();
         let close = near.after(place).into_iter().map(|other| &driven[other]);
         for other in close.filter(|other| other.mover.id != own.mover.id) {
             let agents = [own.mover.id, other.mover.id];
-            let meeting = |moment: Moment| Meeting { agents, time: moment.time, clearance: moment.clearance };
+            let meeting = |moment: Moment| ContactWitness { agents, time: moment.time, clearance: moment.clearance };
             let always = [f64::NEG_INFINITY, f64::INFINITY];
             match Encounter::new(own, other).is_clear(always, &mut found.steps) {
                 Answer::Proved => {}

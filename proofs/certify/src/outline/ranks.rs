@@ -14,10 +14,10 @@
 use super::cover::{Range, Segments, Verdict};
 use super::separation::sketched;
 use crate::ball::Ball;
+use crate::double_double::DoubleDouble;
 use crate::pair::gaps;
-use crate::twofold::Twofold;
 
-type Number = Ball<Twofold>;
+type Number = Ball<DoubleDouble>;
 
 /// Samples of a slice, and between any two ends of pieces.
 const SAMPLES: usize = 32;
@@ -57,8 +57,8 @@ struct Extreme {
 /// Checks the pieces of two segments.
 pub fn check(segments: &Segments<'_>, pieces: &[([Range; 2], [u8; 2])], bounds: Bounds, steps: &mut usize) -> Ranks {
     let mut ranks = Ranks::default();
-    let mut cuts: Vec<Twofold> = pieces.iter().flat_map(|(ranges, _)| ranges[1]).collect();
-    cuts.sort_by(Twofold::total_cmp);
+    let mut cuts: Vec<DoubleDouble> = pieces.iter().flat_map(|(ranges, _)| ranges[1]).collect();
+    cuts.sort_by(DoubleDouble::total_cmp);
     cuts.dedup();
     let mut rest: Vec<Range> = cuts.windows(2).map(|cut| [cut[0], cut[1]]).collect();
     if cuts.len() == 1 {
@@ -102,7 +102,7 @@ pub fn check(segments: &Segments<'_>, pieces: &[([Range; 2], [u8; 2])], bounds: 
 fn unheld(
     segments: &Segments<'_>,
     held: &[&([Range; 2], [u8; 2])],
-    walls: &[Twofold],
+    walls: &[DoubleDouble],
     cell: Range,
     bounds: Bounds,
     steps: &mut usize,
@@ -114,7 +114,7 @@ fn unheld(
             return Some([lo, hi]);
         }
         let k = usize::from(*k);
-        let from = if k == 0 { Twofold::ZERO } else { walls[k - 1] };
+        let from = if k == 0 { DoubleDouble::ZERO } else { walls[k - 1] };
         let to = walls.get(k).copied().unwrap_or(end);
         let (from, to) = (if from < lo { lo } else { from }, if to < hi { to } else { hi });
         (from <= to).then_some([from, to])
@@ -139,7 +139,7 @@ fn walls(
     cell: Range,
     bounds: Bounds,
     steps: &mut usize,
-) -> Option<Vec<Twofold>> {
+) -> Option<Vec<DoubleDouble>> {
     let radius = bounds.radius.to_f64();
     let mut walls = Vec::new();
     let mut wall: Option<Extreme> = None;
@@ -153,14 +153,14 @@ fn walls(
         if extreme.distance > radius {
             continue;
         }
-        let at = Twofold::from(extreme.at);
+        let at = DoubleDouble::from(extreme.at);
         if !segments.is_within_at(at, cell, bounds.radius) {
             return None;
         }
         if let Some(wall) = wall.filter(|_| any)
             && wall.distance > radius
         {
-            let at = Twofold::from(wall.at);
+            let at = DoubleDouble::from(wall.at);
             *steps += 1;
             if !segments.is_farther_at_once([[at, at], cell], bounds.told) {
                 return None;
@@ -174,12 +174,12 @@ fn walls(
 
 /// The extremes of the distance along the first segment at a length of the second one, about, in order. Where pieces end and between
 /// them, gaps and intervals may be thin, and samples are closer.
-fn extremes(segments: &Segments<'_>, held: &[&([Range; 2], [u8; 2])], at: Twofold) -> Vec<Extreme> {
+fn extremes(segments: &Segments<'_>, held: &[&([Range; 2], [u8; 2])], at: DoubleDouble) -> Vec<Extreme> {
     let [own, other] = segments.0.map(|body| &body.near);
     let length = segments.0[0].stretch.placed.length.to_f64();
     let there = other.sketch(at.to_f64());
     let distance = |at: f64| sketched([&own.sketch(at), &there]);
-    let mut ends: Vec<f64> = held.iter().flat_map(|(ranges, _)| ranges[0].map(Twofold::to_f64)).collect();
+    let mut ends: Vec<f64> = held.iter().flat_map(|(ranges, _)| ranges[0].map(DoubleDouble::to_f64)).collect();
     ends.extend([0.0, length]);
     ends.sort_by(f64::total_cmp);
     ends.dedup();

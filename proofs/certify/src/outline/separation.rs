@@ -25,8 +25,8 @@
 //! and in one that only moves, the second derivatives of both add up.
 
 use super::body::{Carried, Posture, Sweep};
-use crate::ball::{Ball, Real, Tri};
-use crate::plane::Vector;
+use crate::ball::{Ball, BallReal, Ternary};
+use crate::plane::BallVector;
 
 /// How lengths change about the middle of what is looked at.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +54,7 @@ struct Rates<R> {
     half: Ball<R>,
 }
 
-impl<R: Real> Change<R> {
+impl<R: BallReal> Change<R> {
     fn rates(&self, bodies: [&Carried<R>; 2], frame: usize) -> Rates<R> {
         let own = 1 - frame;
         match self {
@@ -86,13 +86,13 @@ impl<R: Real> Change<R> {
 }
 
 /// Bound on the second derivative of the way of a corner of one body, seen from the other one, which is the `frame`.
-fn bend<R: Real>(
+fn bend<R: BallReal>(
     change: &Change<R>,
     bodies: [&Carried<R>; 2],
     frame: usize,
     rates: &Rates<R>,
     corner: usize,
-    at: Vector<R>,
+    at: BallVector<R>,
 ) -> Ball<R> {
     let (own, owner) = (bodies[1 - frame], bodies[frame]);
     let turns = |[first, second]: [Ball<R>; 2]| first * first + second;
@@ -126,7 +126,7 @@ fn bend<R: Real>(
 /// A unit vector that moves with one of two bodies, and points away from it.
 #[derive(Clone, Copy, Debug)]
 struct Direction<R> {
-    outward: Vector<R>,
+    outward: BallVector<R>,
     owner: usize,
     /// The corner of the owner that is farthest in this direction, about.
     support: usize,
@@ -151,7 +151,7 @@ pub struct Below<R> {
 const CLOSELY: usize = 4;
 
 /// A lower bound on the distance of two polygons about these postures.
-pub fn below<R: Real>(bodies: [&Carried<R>; 2], postures: [&Posture<R>; 2], change: &Change<R>) -> Below<R> {
+pub fn below<R: BallReal>(bodies: [&Carried<R>; 2], postures: [&Posture<R>; 2], change: &Change<R>) -> Below<R> {
     let mut directions = directions(postures);
     directions.sort_by(|a, b| b.apart.total_cmp(&a.apart));
     let mut found: Option<Below<R>> = None;
@@ -179,21 +179,21 @@ pub fn below<R: Real>(bodies: [&Carried<R>; 2], postures: [&Posture<R>; 2], chan
 }
 
 /// What a lower bound says for sure.
-fn surely<R: Real>(bound: Ball<R>) -> f64 {
+fn surely<R: BallReal>(bound: Ball<R>) -> f64 {
     bound.to_f64() - bound.err
 }
 
 /// The better one of two lower bounds.
-fn greater<R: Real>(a: Ball<R>, b: Ball<R>) -> Ball<R> {
+fn greater<R: BallReal>(a: Ball<R>, b: Ball<R>) -> Ball<R> {
     // What is no number is no bound.
     if surely(b) > surely(a) || surely(a).is_nan() { b } else { a }
 }
 
 /// All directions in which the bodies may be apart: the normals of the edges, and that between the nearest corners.
-fn directions<R: Real>(postures: [&Posture<R>; 2]) -> Vec<Direction<R>> {
+fn directions<R: BallReal>(postures: [&Posture<R>; 2]) -> Vec<Direction<R>> {
     let points = postures.map(|posture| posture.corners.iter().map(rough).collect::<Vec<_>>());
     let mut all = Vec::with_capacity(2 + postures[0].normals.len() + postures[1].normals.len());
-    let mut add = |outward: Vector<R>, owner: usize| {
+    let mut add = |outward: BallVector<R>, owner: usize| {
         let [x, y] = rough(&outward);
         let along = |[a, b]: [f64; 2]| x * a + y * b;
         let farthest = points[owner].iter().enumerate().map(|(k, &corner)| (along(corner), k));
@@ -217,20 +217,20 @@ fn directions<R: Real>(postures: [&Posture<R>; 2]) -> Vec<Direction<R>> {
     let (square, [x, y]) = nearest;
     if square > 0.0 && square.is_finite() {
         let size = square.sqrt();
-        let guess = Vector { x: Ball::from(x / size), y: Ball::from(y / size) };
+        let guess = BallVector { x: Ball::from(x / size), y: Ball::from(y / size) };
         let length = guess.norm();
-        let unit = Vector { x: guess.x / length, y: guess.y / length };
+        let unit = BallVector { x: guess.x / length, y: guess.y / length };
         add(unit, 0);
         add(unit.times(Ball::from(-1.0)), 1);
     }
     all
 }
 
-fn rough<R: Real>(vector: &Vector<R>) -> [f64; 2] {
+fn rough<R: BallReal>(vector: &BallVector<R>) -> [f64; 2] {
     [vector.x.to_f64(), vector.y.to_f64()]
 }
 
-fn along<R: Real>(
+fn along<R: BallReal>(
     bodies: [&Carried<R>; 2],
     postures: [&Posture<R>; 2],
     change: &Change<R>,
@@ -296,7 +296,7 @@ pub struct Nearest {
 }
 
 /// The nearest points of two polygons that do not meet, about.
-pub fn nearest<R: Real>(postures: [&Posture<R>; 2]) -> Nearest {
+pub fn nearest<R: BallReal>(postures: [&Posture<R>; 2]) -> Nearest {
     let points = postures.map(|posture| posture.corners.iter().map(rough).collect::<Vec<_>>());
     nearest_of([&points[0], &points[1]])
 }
@@ -345,19 +345,19 @@ pub(crate) fn sketched(points: [&[[f64; 2]]; 2]) -> f64 {
 
 impl Nearest {
     /// The point of the edge at these postures.
-    fn point<R: Real>(&self, posture: &Posture<R>) -> Vector<R> {
+    fn point<R: BallReal>(&self, posture: &Posture<R>) -> BallVector<R> {
         let (from, to) = (posture.corners[self.edge], posture.corners[(self.edge + 1) % posture.corners.len()]);
         from + (to - from).times(Ball::from(self.part))
     }
 
     /// An upper bound on the distance of the polygons at these postures \[m\].
-    pub fn distance<R: Real>(&self, postures: [&Posture<R>; 2]) -> Ball<R> {
+    pub fn distance<R: BallReal>(&self, postures: [&Posture<R>; 2]) -> Ball<R> {
         (postures[1 - self.frame].corners[self.corner] - self.point(postures[self.frame])).norm()
     }
 
     /// The speed of the other body at which the two points move as little as possible relative to each other while the body `of` has the
     /// speed 1, about.
-    pub fn match_speed<R: Real>(&self, postures: [&Posture<R>; 2], of: usize) -> f64 {
+    pub fn match_speed<R: BallReal>(&self, postures: [&Posture<R>; 2], of: usize) -> f64 {
         let own = 1 - self.frame;
         let at = postures[own].corners[self.corner];
         let speed = |body: usize| {
@@ -369,7 +369,7 @@ impl Nearest {
     }
 
     /// An upper bound on the distance of the polygons wherever the lengths may be \[m\]: the distance of these two points of the bodies.
-    pub fn above<R: Real>(
+    pub fn above<R: BallReal>(
         &self,
         bodies: [&Carried<R>; 2],
         postures: [&Posture<R>; 2],
@@ -393,35 +393,37 @@ impl Nearest {
 }
 
 /// Whether two polygons are certain to have a point in common.
-pub fn meet<R: Real>(postures: [&Posture<R>; 2]) -> Tri {
-    let left = |a: Vector<R>, b: Vector<R>, x: Vector<R>| (b - a).cross(x - a).is_positive();
+pub fn meet<R: BallReal>(postures: [&Posture<R>; 2]) -> Ternary {
+    let left = |a: BallVector<R>, b: BallVector<R>, x: BallVector<R>| (b - a).cross(x - a).is_positive();
     for [own, other] in [[0, 1], [1, 0]] {
         let polygon = &postures[other].corners;
         for &x in &postures[own].corners {
             for k in 1..polygon.len().saturating_sub(1) {
                 let [a, b, c] = [polygon[0], polygon[k], polygon[k + 1]];
                 if left(a, b, x).is_certain() && left(b, c, x).is_certain() && left(c, a, x).is_certain() {
-                    return Tri::Yes;
+                    return Ternary::Yes;
                 }
             }
         }
     }
-    let edges = |polygon: &[Vector<R>]| -> Vec<[Vector<R>; 2]> {
+    let edges = |polygon: &[BallVector<R>]| -> Vec<[BallVector<R>; 2]> {
         let count = polygon.len();
         (0..if count == 2 { 1 } else { count }).map(|k| [polygon[k], polygon[(k + 1) % count]]).collect()
     };
-    let apart = |one: Tri, other: Tri| (one.is_certain() && other == Tri::No) || (one == Tri::No && other.is_certain());
+    let apart = |one: Ternary, other: Ternary| {
+        (one.is_certain() && other == Ternary::No) || (one == Ternary::No && other.is_certain())
+    };
     for [a, b] in edges(&postures[0].corners) {
         for &[c, d] in &edges(&postures[1].corners) {
             if apart(left(a, b, c), left(a, b, d)) && apart(left(c, d, a), left(c, d, b)) {
-                return Tri::Yes;
+                return Ternary::Yes;
             }
         }
     }
-    Tri::Doubt
+    Ternary::Doubt
 }
 
 /// An upper bound on the distance of the polygons \[m\].
-pub fn above<R: Real>(postures: [&Posture<R>; 2]) -> Ball<R> {
+pub fn above<R: BallReal>(postures: [&Posture<R>; 2]) -> Ball<R> {
     if meet(postures).is_certain() { Ball::from(0.0) } else { nearest(postures).distance(postures) }
 }

@@ -5,19 +5,19 @@
 
 use super::body::Body;
 use super::cover::{Segments, Verdict};
-use super::data::{RawPair, RawPiece, RawTable};
+use super::data::{RawOutlinePair, RawOutlinePiece, RawOutlineTable};
 use super::ranks::{self, Bounds};
 use super::separation::above;
+use crate::arc_length_motion;
 use crate::ball::Ball;
-use crate::cell::Outcome;
-use crate::data::{Agent, Pair, Piece, Share};
-use crate::near::{Area, Near};
-use crate::pair::{Findings, Placed, Promise, Witness, pieces_of};
-use crate::path::{LEAST, Stretch};
+use crate::box_index::{BoxIndex, PlainBox};
+use crate::distance_claim::ClaimVerdict;
+use crate::double_double::DoubleDouble;
+use crate::pair::{Findings, PieceOnSegments, TableProperty, Witness, pieces_of};
+use crate::path::{LEAST, PreparedSegment};
+use crate::raw::{RawAgent, RawBranch, RawPair, RawPiece};
 use crate::regions::{self, Distances};
-use crate::table::Margin;
-use crate::travel;
-use crate::twofold::Twofold;
+use crate::table::CoverageMargin;
 use std::collections::HashSet;
 
 /// What has come of a check of a table of bodies.
@@ -35,8 +35,8 @@ pub struct Report {
 pub struct Checker<'a> {
     bodies: Vec<Body<'a>>,
     /// The segments of each as lengths, and its motion.
-    lines: Vec<(Vec<Stretch>, Agent)>,
-    pairs: &'a [RawPair],
+    lines: Vec<(Vec<PreparedSegment>, RawAgent)>,
+    pairs: &'a [RawOutlinePair],
 }
 
 impl<'a> Checker<'a> {
@@ -44,18 +44,18 @@ impl<'a> Checker<'a> {
     ///
     /// # Errors
     /// What is wrong with the table: numbers out of range, a path or an outline that is none, a pair that is missing or there twice.
-    pub fn new(table: &'a RawTable) -> Result<Self, String> {
+    pub fn new(table: &'a RawOutlineTable) -> Result<Self, String> {
         let (mut bodies, mut lines) = (Vec::new(), Vec::new());
         for (place, raw) in table.bodies.iter().enumerate() {
             let wrong = |problem: String| format!("body {} (place {place}): {problem}", raw.id);
             let body = Body::new(raw).map_err(wrong)?;
-            let agent = Agent {
+            let agent = RawAgent {
                 id: raw.id,
                 radius: raw.outline.radius,
                 path: body.lengths.clone(),
                 travel: raw.travel.clone(),
             };
-            travel::checked(&agent).and_then(|()| travel::arrives(&agent)).map_err(wrong)?;
+            arc_length_motion::checked(&agent).and_then(|()| arc_length_motion::arrives(&agent)).map_err(wrong)?;
             lines.push((body.segments.iter().map(|segment| segment.stretch.clone()).collect(), agent));
             bodies.push(body);
         }
@@ -80,7 +80,7 @@ impl<'a> Checker<'a> {
         let is_missing = |a: usize, b: usize| id(a) != id(b) && !there.contains(&[a, b]);
         let missing = match apart {
             Some(excess) if (LEAST..1e15).contains(&excess) => {
-                let near = Near::new((0..count).map(|place| self.area(place, excess)).collect());
+                let near = BoxIndex::new((0..count).map(|place| self.area(place, excess)).collect());
                 (0..count).find_map(|a| near.after(a).into_iter().find(|&b| is_missing(a, b)).map(|b| (a, b)))
             }
             Some(_) => return Err("the excess of those that are left out is out of range".into()),
@@ -90,7 +90,7 @@ impl<'a> Checker<'a> {
     }
 
     /// The box of all that a body passes, with what its lengths are off and ε.
-    fn area(&self, place: usize, excess: f64) -> Area {
+    fn area(&self, place: usize, excess: f64) -> PlainBox {
         self.bodies[place].area((self.off(place) + excess).next_up())
     }
 
@@ -105,7 +105,7 @@ impl<'a> Checker<'a> {
     ///
     /// # Errors
     /// A piece or a region that is none.
-    pub fn check(&self, margin: Margin) -> Result<Report, String> {
+    pub fn check(&self, margin: CoverageMargin) -> Result<Report, String> {
         let mut report = Report::default();
         for pair in self.pairs {
             self.pair(pair, margin, &mut report)?;
@@ -141,7 +141,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Whether pieces hold all contacts within R and a part of ε.
-    fn is_covered(&self, pair: &RawPair, pieces: &[(Placed, [u8; 2])], part: f64) -> bool {
+    fn is_covered(&self, pair: &RawOutlinePair, pieces: &[(PieceOnSegments, [u8; 2])], part: f64) -> bool {
         let [first, second] = pair.bodies.map(|place| &self.bodies[place]);
         let least = first.radius + second.radius + Ball::from(part * pair.excess);
         first.segments.iter().enumerate().all(|(i, own)| {
@@ -156,10 +156,10 @@ impl<'a> Checker<'a> {
     }
 
     /// The pieces of a pair as lengths along their segments, with their ranks.
-    fn pieces(&self, pair: &RawPair) -> Result<Vec<(Placed, [u8; 2])>, String> {
+    fn pieces(&self, pair: &RawOutlinePair) -> Result<Vec<(PieceOnSegments, [u8; 2])>, String> {
         let [a, b] = pair.bodies;
         let named = |problem: String| format!("the pair of places {a} and {b}: {problem}");
-        let stretches: [&[Stretch]; 2] = [&self.lines[a].0, &self.lines[b].0];
+        let stretches: [&[PreparedSegment]; 2] = [&self.lines[a].0, &self.lines[b].0];
         let mut pieces = Vec::with_capacity(pair.pieces.len());
         for piece in &pair.pieces {
             let [k, of] = piece.rank;
@@ -172,19 +172,19 @@ impl<'a> Checker<'a> {
         Ok(pieces)
     }
 
-    fn pair(&self, pair: &RawPair, margin: Margin, report: &mut Report) -> Result<(), String> {
+    fn pair(&self, pair: &RawOutlinePair, margin: CoverageMargin, report: &mut Report) -> Result<(), String> {
         let [a, b] = pair.bodies;
         let bodies = [&self.bodies[a], &self.bodies[b]];
         let lines = [&self.lines[a], &self.lines[b]];
-        let stretches: [&[Stretch]; 2] = lines.map(|(stretches, _)| &stretches[..]);
+        let stretches: [&[PreparedSegment]; 2] = lines.map(|(stretches, _)| &stretches[..]);
         let more = match margin {
-            Margin::Needed => self.off(a).max(self.off(b)).max(0.25 * pair.excess),
-            Margin::Epsilons(part) => part * pair.excess,
+            CoverageMargin::Needed => self.off(a).max(self.off(b)).max(0.25 * pair.excess),
+            CoverageMargin::Epsilons(part) => part * pair.excess,
         };
         let radius = bodies[0].radius + bodies[1].radius;
         let bounds = Bounds { radius, covered: radius + Ball::from(more), told: radius + Ball::from(pair.excess) };
         let pieces = self.pieces(pair)?;
-        let pair_of_discs = Pair {
+        let pair_of_discs = RawPair {
             agents: pair.bodies,
             excess: pair.excess,
             regions: pair.regions.clone(),
@@ -207,9 +207,11 @@ impl<'a> Checker<'a> {
                 for rectangle in &rectangles {
                     far.extend([0, 1].map(|of| segments.within(of, *rectangle, bounds.told, steps)));
                 }
-                for (promise, verdicts) in
-                    [(Promise::Covered, uncovered), (Promise::Shared, ranks.found), (Promise::Near, far)]
-                {
+                for (promise, verdicts) in [
+                    (TableProperty::Covered, uncovered),
+                    (TableProperty::Shared, ranks.found),
+                    (TableProperty::Near, far),
+                ] {
                     for verdict in verdicts {
                         outlines.keep(verdict, promise, [i, j], &mut report.findings);
                     }
@@ -217,23 +219,23 @@ impl<'a> Checker<'a> {
             }
         }
         let agents = lines.map(|(_, agent)| agent);
-        let placed: Vec<Placed> = pieces.iter().map(|(piece, _)| *piece).collect();
+        let placed: Vec<PieceOnSegments> = pieces.iter().map(|(piece, _)| *piece).collect();
         regions::check(agents, stretches, &pair_of_discs, &placed, &outlines, &mut report.findings)
             .map_err(|problem| format!("the pair of places {a} and {b}: {problem}"))
     }
 }
 
 /// A piece without its rank.
-fn unranked(piece: &RawPiece) -> Piece {
-    let RawPiece { segments, lengths, region, .. } = *piece;
-    Piece { segments, lengths, share: Share::Only, region }
+fn unranked(piece: &RawOutlinePiece) -> RawPiece {
+    let RawOutlinePiece { segments, lengths, region, .. } = *piece;
+    RawPiece { segments, lengths, share: RawBranch::Only, region }
 }
 
 /// Distances of two bodies.
 struct Outlines<'a> {
     bodies: [&'a Body<'a>; 2],
-    pair: &'a Pair,
-    radius: Ball<Twofold>,
+    pair: &'a RawPair,
+    radius: Ball<DoubleDouble>,
 }
 
 impl Outlines<'_> {
@@ -241,7 +243,7 @@ impl Outlines<'_> {
         Segments([0, 1].map(|k| &self.bodies[k].segments[places[k]]))
     }
 
-    fn keep(&self, verdict: Verdict, promise: Promise, places: [usize; 2], findings: &mut Findings) {
+    fn keep(&self, verdict: Verdict, promise: TableProperty, places: [usize; 2], findings: &mut Findings) {
         let (refuted, at) = match verdict {
             Verdict::Proved => return,
             Verdict::Refuted(at) => (true, at),
@@ -253,7 +255,7 @@ impl Outlines<'_> {
             promise,
             agents: self.pair.agents,
             lengths: [0, 1].map(|k| segments[k].stretch.on_path(at[k])),
-            clearance: (above([&postures[0], &postures[1]]) - self.radius).told(),
+            clearance: (above([&postures[0], &postures[1]]) - self.radius).display_length(),
             excess: self.pair.excess,
         };
         if refuted { findings.refuted.push(witness) } else { findings.undecided.push(witness) }
@@ -265,29 +267,36 @@ impl Distances for Outlines<'_> {
         &self,
         places: [usize; 2],
         k: usize,
-        own: [Twofold; 2],
-        other: [Twofold; 2],
+        own: [DoubleDouble; 2],
+        other: [DoubleDouble; 2],
         steps: &mut usize,
-    ) -> Outcome {
+    ) -> ClaimVerdict {
         let ranges = if k == 0 { [own, other] } else { [other, own] };
         match self.segments(places).farther(ranges, self.radius, steps) {
-            Verdict::Proved => Outcome::Proved,
-            Verdict::Refuted(at) => Outcome::Refuted(at[k]),
-            Verdict::Undecided(at) => Outcome::Undecided(at[k]),
+            Verdict::Proved => ClaimVerdict::Proved,
+            Verdict::Refuted(at) => ClaimVerdict::Refuted(at[k]),
+            Verdict::Undecided(at) => ClaimVerdict::Undecided(at[k]),
         }
     }
 
-    fn note(&self, outcome: Outcome, promise: Promise, piece: &Placed, k: usize, findings: &mut Findings) {
-        let pair = |at: Twofold| {
+    fn note(
+        &self,
+        outcome: ClaimVerdict,
+        promise: TableProperty,
+        piece: &PieceOnSegments,
+        k: usize,
+        findings: &mut Findings,
+    ) {
+        let pair = |at: DoubleDouble| {
             let mut lengths = piece.lengths.map(|range| range[0]);
             lengths[k] = at;
             lengths[1 - k] = self.segments(piece.segments).guess(k, at, piece.lengths[1 - k]);
             lengths
         };
         let verdict = match outcome {
-            Outcome::Proved => return,
-            Outcome::Refuted(at) => Verdict::Refuted(pair(at)),
-            Outcome::Undecided(at) => Verdict::Undecided(pair(at)),
+            ClaimVerdict::Proved => return,
+            ClaimVerdict::Refuted(at) => Verdict::Refuted(pair(at)),
+            ClaimVerdict::Undecided(at) => Verdict::Undecided(pair(at)),
         };
         self.keep(verdict, promise, piece.segments, findings);
     }

@@ -2,15 +2,17 @@
 
 use super::Body;
 use super::cover::{Segments, Verdict};
-use super::data::{RawBody, RawCourse, RawHeading, RawOutline, RawPair, RawPiece, RawSegment, RawTable};
+use super::data::{
+    RawBody, RawBodySegment, RawCourse, RawHeading, RawOutline, RawOutlinePair, RawOutlinePiece, RawOutlineTable,
+};
 use super::motion::{Driven, Encounter};
 use super::separation::{Change, above, below, nearest, sketched};
 use super::table::{Checker, Report};
 use crate::ball::Ball;
-use crate::data::{Angle, Phase, Region, Travel};
-use crate::pair::Promise;
-use crate::table::Margin;
-use crate::twofold::Twofold;
+use crate::double_double::DoubleDouble;
+use crate::pair::TableProperty;
+use crate::raw::{RawAngle, RawMotion, RawPhase, RawRegion};
+use crate::table::CoverageMargin;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 struct Dice(u64);
@@ -38,16 +40,16 @@ fn rectangle(size: [f64; 2], [x, y]: [f64; 2], radius: f64) -> RawOutline {
     outline(&[[x - a, y - b], [x + a, y - b], [x + a, y + b], [x - a, y + b]], radius)
 }
 
-fn single(course: RawCourse, length: f64, heading: RawHeading) -> RawSegment {
-    RawSegment { course, length, turns: Vec::new(), heading, from: 0.0, to: length }
+fn single(course: RawCourse, length: f64, heading: RawHeading) -> RawBodySegment {
+    RawBodySegment { course, length, turns: Vec::new(), heading, from: 0.0, to: length }
 }
 
 fn ahead() -> RawHeading {
-    RawHeading::Along(Angle::Radians(0.0))
+    RawHeading::Along(RawAngle::Radians(0.0))
 }
 
-fn body(id: u64, outline: RawOutline, start: [f64; 2], direction: f64, segments: Vec<RawSegment>) -> RawBody {
-    let direction = Angle::Radians(direction);
+fn body(id: u64, outline: RawOutline, start: [f64; 2], direction: f64, segments: Vec<RawBodySegment>) -> RawBody {
+    let direction = RawAngle::Radians(direction);
     RawBody { id, outline, start, direction, segments, rounding: 1e-12, jump: 1e-9, step: 0.0, travel: None }
 }
 
@@ -67,9 +69,9 @@ fn random(dice: &mut Dice, id: u64) -> RawBody {
     let side = dice.of(&[-1.0, 1.0]);
     let heading = match dice.of(&[0, 1, 2, 3]) {
         0 => ahead(),
-        1 => RawHeading::Along(Angle::Radians(PI)),
-        2 => RawHeading::Along(Angle::Turns(dice.unit())),
-        _ => RawHeading::Steady(Angle::Radians(dice.between(-4.0, 4.0))),
+        1 => RawHeading::Along(RawAngle::Radians(PI)),
+        2 => RawHeading::Along(RawAngle::Turns(dice.unit())),
+        _ => RawHeading::Steady(RawAngle::Radians(dice.between(-4.0, 4.0))),
     };
     let (course, length, heading) = match dice.of(&[0, 1, 2]) {
         0 => (RawCourse::Line, dice.between(0.5, 3.0), heading),
@@ -87,10 +89,10 @@ fn random(dice: &mut Dice, id: u64) -> RawBody {
     body(id, outline(&corners, radius), start, dice.between(-4.0, 4.0), vec![single(course, length, heading)])
 }
 
-fn radians(angle: Angle) -> f64 {
+fn radians(angle: RawAngle) -> f64 {
     match angle {
-        Angle::Radians(angle) => angle,
-        Angle::Turns(turns) => TAU * turns,
+        RawAngle::Radians(angle) => angle,
+        RawAngle::Turns(turns) => TAU * turns,
     }
 }
 
@@ -306,8 +308,8 @@ fn searches_see_the_distance_that_there_is() {
     assert!(crossing > 100, "{crossing}");
 }
 
-fn number_of(ends: [f64; 2]) -> [Twofold; 2] {
-    ends.map(Twofold::from)
+fn number_of(ends: [f64; 2]) -> [DoubleDouble; 2] {
+    ends.map(DoubleDouble::from)
 }
 
 /// The least distance over a grid, refined about its least points, in plain numbers.
@@ -362,7 +364,7 @@ fn boxes_are_farther_than_a_bit_less_than_their_least_distance_and_not_than_a_bi
         }
         let outcome = segments.farther(boxes, Ball::from(found + 1e-6), &mut steps);
         let Verdict::Refuted(at) = outcome else { panic!("{round} {raw:?} {ranges:?} {found}: {outcome:?}") };
-        assert!(plain([&raw[0], &raw[1]], at.map(Twofold::to_f64)) < found + 1e-6);
+        assert!(plain([&raw[0], &raw[1]], at.map(DoubleDouble::to_f64)) < found + 1e-6);
     }
     assert!(proved > 60 && steps < 150 * 20_000, "{proved} {steps}");
 }
@@ -376,7 +378,7 @@ fn turning_beside_a_wall() -> [RawBody; 2] {
         0.0,
         vec![single(RawCourse::Pivot { lever: 1.0 }, TAU, ahead())],
     );
-    let across = RawHeading::Steady(Angle::Radians(0.0));
+    let across = RawHeading::Steady(RawAngle::Radians(0.0));
     let wall = body(
         2,
         rectangle([4.0, 0.2], [0.0; 2], 0.05),
@@ -402,7 +404,7 @@ fn rectangles_beside_a_wall(radius: f64, by: f64) -> Vec<[[f64; 2]; 2]> {
     all
 }
 
-fn placed(rectangles: &[[[f64; 2]; 2]]) -> Vec<[[Twofold; 2]; 2]> {
+fn placed(rectangles: &[[[f64; 2]; 2]]) -> Vec<[[DoubleDouble; 2]; 2]> {
     rectangles.iter().map(|rectangle| rectangle.map(number_of)).collect()
 }
 
@@ -497,13 +499,13 @@ fn contacts_beside_a_wall_are_covered_and_altered_rectangles_refuted() {
 }
 
 /// From rest to rest, with the top speed in the middle.
-fn travel(start: f64, length: f64, top: f64) -> Travel {
+fn travel(start: f64, length: f64, top: f64) -> RawMotion {
     let half = length / top;
     let phases = vec![
-        Phase { time: [0.0, half], length: [0.0, 0.5 * length], speed: [0.0, top] },
-        Phase { time: [half, 2.0 * half], length: [0.5 * length, length], speed: [top, 0.0] },
+        RawPhase { time: [0.0, half], length: [0.0, 0.5 * length], speed: [0.0, top] },
+        RawPhase { time: [half, 2.0 * half], length: [0.5 * length, length], speed: [top, 0.0] },
     ];
-    Travel { start, phases, lag: 0.0, time_excess: 0.0 }
+    RawMotion { start, phases, lag: 0.0, time_excess: 0.0 }
 }
 
 /// The travelled length, in plain numbers.
@@ -696,15 +698,15 @@ fn special_positions_are_decided_to_a_nanometre() {
     // Corner on corner, exactly at a distance of 5 m, and lines that move away from there.
     let one = line(1, rectangle([1.0, 1.0], [-0.5, -0.5], 0.0), [0.0; 2], PI, 2.0);
     let mut one = one;
-    one.segments[0].heading = RawHeading::Steady(Angle::Radians(0.0));
+    one.segments[0].heading = RawHeading::Steady(RawAngle::Radians(0.0));
     let two = line(2, rectangle([1.0, 1.0], [0.5, 0.5], 0.0), [3.0, 4.0], 0.0, 2.0);
     is_decided("corner on corner", [&one, &two], [[0.0, 2.0]; 2], 5.0);
     // Crab: across its heading along a line, and reverse gear on an arc.
     let mut crab = line(1, truck(), [0.0, 0.0], 0.0, 3.0);
-    crab.segments[0].heading = RawHeading::Along(Angle::Turns(0.25));
+    crab.segments[0].heading = RawHeading::Along(RawAngle::Turns(0.25));
     is_decided("crab", [&crab, &line(2, truck(), [0.0, 1.25], 0.0, 3.0)], [[0.0, 3.0]; 2], 0.25);
     let mut reverse = arc(1, rectangle([1.2, 0.8], [0.4, 0.0], 0.0), [0.0, -2.0], 0.0, 2.0, TAU * 0.999_999);
-    reverse.segments[0].heading = RawHeading::Along(Angle::Radians(PI));
+    reverse.segments[0].heading = RawHeading::Along(RawAngle::Radians(PI));
     let standing = line(2, rectangle([0.2, 0.2], [0.0; 2], 0.0), [0.0, 0.0], 0.0, 0.0);
     is_decided("reverse", [&reverse, &standing], [[0.0, 2.0 * TAU * 0.999_999], [0.0, 0.0]], 1.6 - 0.1_f64.hypot(0.1));
 }
@@ -728,16 +730,16 @@ fn a_distance_that_is_the_same_along_a_curve_is_decided_to_a_micrometre() {
 }
 
 /// A table of the rectangle and the wall, with half of the excess as slack.
-fn table_beside_a_wall(excess: f64) -> RawTable {
+fn table_beside_a_wall(excess: f64) -> RawOutlineTable {
     let ranks = [[0, 4], [1, 4], [2, 4], [3, 4], [0, 2], [1, 2], [0, 1]];
     let pieces: Vec<_> = rectangles_beside_a_wall(0.05 + 0.5 * excess, 0.0)
         .into_iter()
         .zip(ranks)
-        .map(|(lengths, rank)| RawPiece { segments: [0, 0], lengths, rank, region: 0 })
+        .map(|(lengths, rank)| RawOutlinePiece { segments: [0, 0], lengths, rank, region: 0 })
         .collect();
-    let mut table = RawTable {
+    let mut table = RawOutlineTable {
         bodies: turning_beside_a_wall().to_vec(),
-        pairs: vec![RawPair { bodies: [0, 1], excess, regions: Vec::new(), pieces }],
+        pairs: vec![RawOutlinePair { bodies: [0, 1], excess, regions: Vec::new(), pieces }],
         apart: None,
     };
     with_hull(&mut table);
@@ -745,7 +747,7 @@ fn table_beside_a_wall(excess: f64) -> RawTable {
 }
 
 /// The region of all pieces, with the times at which the bodies are at its ends, if they move at 1 m/s from the start.
-fn with_hull(table: &mut RawTable) {
+fn with_hull(table: &mut RawOutlineTable) {
     let moves = table.bodies.iter().all(|body| body.travel.is_some());
     let pieces = &table.pairs[0].pieces;
     let lengths = [0, 1].map(|k| {
@@ -753,17 +755,17 @@ fn with_hull(table: &mut RawTable) {
         let hi = pieces.iter().map(|piece| piece.lengths[k][1]).fold(f64::NEG_INFINITY, f64::max);
         [lo, hi]
     });
-    table.pairs[0].regions = vec![Region { lengths, times: moves.then_some(lengths) }];
+    table.pairs[0].regions = vec![RawRegion { lengths, times: moves.then_some(lengths) }];
 }
 
 fn steady(body: &mut RawBody) {
     let length = body.segments[0].length;
-    let phases = vec![Phase { time: [0.0, length], length: [0.0, length], speed: [1.0; 2] }];
-    body.travel = Some(Travel { start: 0.0, phases, lag: 0.0, time_excess: 1e-9 });
+    let phases = vec![RawPhase { time: [0.0, length], length: [0.0, length], speed: [1.0; 2] }];
+    body.travel = Some(RawMotion { start: 0.0, phases, lag: 0.0, time_excess: 1e-9 });
 }
 
-fn checked(table: &RawTable) -> Report {
-    Checker::new(table).unwrap().check(Margin::Needed).unwrap()
+fn checked(table: &RawOutlineTable) -> Report {
+    Checker::new(table).unwrap().check(CoverageMargin::Needed).unwrap()
 }
 
 #[test]
@@ -786,7 +788,7 @@ fn a_table_is_proved_and_altered_ones_are_refuted() {
         assert!(margin > 0.49 && margin < 0.51, "{margin}");
     }
     let table = table_beside_a_wall(1e-5);
-    let refuted = |name: &str, promise: Promise, change: &dyn Fn(&mut RawTable)| {
+    let refuted = |name: &str, promise: TableProperty, change: &dyn Fn(&mut RawOutlineTable)| {
         let mut altered = table.clone();
         change(&mut altered);
         with_hull(&mut altered);
@@ -794,31 +796,31 @@ fn a_table_is_proved_and_altered_ones_are_refuted() {
         assert!(report.findings.refuted.iter().any(|witness| witness.promise == promise), "{name}: {report:?}");
     };
     for k in 0..7 {
-        refuted("a piece is missing", Promise::Covered, &|table| {
+        refuted("a piece is missing", TableProperty::Covered, &|table| {
             table.pairs[0].pieces.remove(k);
         });
-        refuted("it begins too late", Promise::Covered, &|table| table.pairs[0].pieces[k].lengths[0][0] += 1e-3);
-        refuted("it ends too early", Promise::Covered, &|table| table.pairs[0].pieces[k].lengths[1][1] -= 1e-3);
+        refuted("it begins too late", TableProperty::Covered, &|table| table.pairs[0].pieces[k].lengths[0][0] += 1e-3);
+        refuted("it ends too early", TableProperty::Covered, &|table| table.pairs[0].pieces[k].lengths[1][1] -= 1e-3);
     }
-    refuted("it begins too early", Promise::Near, &|table| table.pairs[0].pieces[0].lengths[0][0] -= 1e-3);
-    refuted("a corner is elsewhere", Promise::Covered, &|table| table.bodies[0].outline.corners[1][0] += 1e-3);
-    refuted("the radius is larger", Promise::Covered, &|table| table.bodies[1].outline.radius += 1e-3);
-    refuted("the radius is less", Promise::Near, &|table| table.bodies[1].outline.radius -= 1e-3);
-    refuted("ranks are exchanged", Promise::Shared, &|table| {
+    refuted("it begins too early", TableProperty::Near, &|table| table.pairs[0].pieces[0].lengths[0][0] -= 1e-3);
+    refuted("a corner is elsewhere", TableProperty::Covered, &|table| table.bodies[0].outline.corners[1][0] += 1e-3);
+    refuted("the radius is larger", TableProperty::Covered, &|table| table.bodies[1].outline.radius += 1e-3);
+    refuted("the radius is less", TableProperty::Near, &|table| table.bodies[1].outline.radius -= 1e-3);
+    refuted("ranks are exchanged", TableProperty::Shared, &|table| {
         for (k, rank) in [[1, 4], [0, 4]].into_iter().enumerate() {
             table.pairs[0].pieces[k].rank = rank;
         }
     });
-    refuted("another one of two", Promise::Shared, &|table| table.pairs[0].pieces[4].rank = [1, 2]);
+    refuted("another one of two", TableProperty::Shared, &|table| table.pairs[0].pieces[4].rank = [1, 2]);
     // Of more intervals than there are nothing is proved.
     let mut altered = table.clone();
     altered.pairs[0].pieces[4].rank = [0, 3];
     let report = checked(&altered);
-    assert!(report.findings.undecided.iter().any(|witness| witness.promise == Promise::Shared), "{report:?}");
+    assert!(report.findings.undecided.iter().any(|witness| witness.promise == TableProperty::Shared), "{report:?}");
     let mut moving = table.clone();
     moving.bodies.iter_mut().for_each(steady);
     with_hull(&mut moving);
-    for (k, end, by, promise) in [(1, 0, 1e-3, Promise::Timed), (1, 0, -1e-3, Promise::Prompt)] {
+    for (k, end, by, promise) in [(1, 0, 1e-3, TableProperty::Timed), (1, 0, -1e-3, TableProperty::Prompt)] {
         let mut altered = moving.clone();
         altered.pairs[0].regions[0].times.as_mut().unwrap()[k][end] += by;
         let report = checked(&altered);
@@ -829,10 +831,10 @@ fn a_table_is_proved_and_altered_ones_are_refuted() {
 #[test]
 fn what_is_no_table_no_outline_and_no_path_is_refused_by_name() {
     let table = table_beside_a_wall(1e-5);
-    let refused = |why: &str, change: &dyn Fn(&mut RawTable)| {
+    let refused = |why: &str, change: &dyn Fn(&mut RawOutlineTable)| {
         let mut altered = table.clone();
         change(&mut altered);
-        let found = Checker::new(&altered).and_then(|checker| checker.check(Margin::Needed)).unwrap_err();
+        let found = Checker::new(&altered).and_then(|checker| checker.check(CoverageMargin::Needed)).unwrap_err();
         assert!(found.contains(why), "{found}");
     };
     refused("is missing", &|table| table.pairs.clear());
@@ -856,13 +858,13 @@ fn what_is_no_table_no_outline_and_no_path_is_refused_by_name() {
     refused("more than one turn", &|table| table.bodies[0].segments[0].course = RawCourse::Pivot { lever: 0.5 });
     refused("out of range", &|table| table.bodies[0].segments[0].course = RawCourse::Arc { radius: 0.0 });
     refused("with a constant heading", &|table| {
-        table.bodies[0].segments[0].heading = RawHeading::Steady(Angle::Turns(0.0));
+        table.bodies[0].segments[0].heading = RawHeading::Steady(RawAngle::Turns(0.0));
     });
     // A heading that jumps where two segments meet, and one that goes on in reverse gear.
     let next = |facing: f64, turn: f64| {
         let mut altered = table.clone();
-        let mut second = single(RawCourse::Line, 1.0, RawHeading::Along(Angle::Turns(facing)));
-        second.turns = vec![Angle::Turns(turn)];
+        let mut second = single(RawCourse::Line, 1.0, RawHeading::Along(RawAngle::Turns(facing)));
+        second.turns = vec![RawAngle::Turns(turn)];
         (second.from, second.to) = (1.2, 2.2);
         altered.bodies[1].segments[0].heading = ahead();
         altered.bodies[1].segments.push(second);

@@ -3,14 +3,14 @@
 //! Names of LIF 1 in a file of LIF 2 mean nothing there, and what they say of curves and directions would be lost; so a file with names of
 //! another version than it says is refused.
 
+use super::super::json_access::JsonObject;
 use super::super::keys::{Keys, nearest};
-use super::super::value::Object;
 use super::super::{ImportError, WarningCode, Warnings};
 use serde_json::Value;
 
 /// A version of the format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Version {
+pub(super) enum LifVersion {
     /// 0.11 to 1.0.
     First,
     /// 2.0.
@@ -142,7 +142,7 @@ const SECOND_EDGE_PROPERTY: Keys = Keys::new(
 
 /// The names of a version.
 #[derive(Debug)]
-pub(super) struct Names {
+pub(super) struct VersionNames {
     pub(super) node_properties: &'static str,
     pub(super) edge_properties: &'static str,
     pub(super) speed: &'static str,
@@ -153,7 +153,7 @@ pub(super) struct Names {
     pub(super) edge_property: Keys,
 }
 
-const FIRST: Names = Names {
+const FIRST: VersionNames = VersionNames {
     node_properties: "vehicleTypeNodeProperties",
     edge_properties: "vehicleTypeEdgeProperties",
     speed: "maxSpeed",
@@ -164,7 +164,7 @@ const FIRST: Names = Names {
     edge_property: FIRST_EDGE_PROPERTY,
 };
 
-const SECOND: Names = Names {
+const SECOND: VersionNames = VersionNames {
     node_properties: "mobileRobotTypeNodeProperties",
     edge_properties: "mobileRobotTypeEdgeProperties",
     speed: "maximumSpeed",
@@ -175,12 +175,12 @@ const SECOND: Names = Names {
     edge_property: SECOND_EDGE_PROPERTY,
 };
 
-impl Version {
+impl LifVersion {
     /// The version of a file: the one that it says, or else the one whose names it has.
     ///
     /// # Errors
     /// [`ImportError`] for a version that is not known, and for names of another version than the file says, or of both.
-    pub(super) fn of(root: &Object<'_>, value: &Value, warnings: &mut Warnings) -> Result<Self, ImportError> {
+    pub(super) fn of(root: &JsonObject<'_>, value: &Value, warnings: &mut Warnings) -> Result<Self, ImportError> {
         let meta = root.object("metaInformation")?;
         let said = meta.as_ref().map_or(Ok(None), |meta| meta.text("lifVersion"))?;
         if let Some(meta) = &meta {
@@ -204,9 +204,9 @@ impl Version {
                 format!("its lifVersion {said} is not known; it is read as {major}.0.0"),
             );
         }
-        let mut found = Found::default();
+        let mut found = VersionEvidence::default();
         found.search(value);
-        let Found { first, second } = found;
+        let VersionEvidence { first, second } = found;
         let version = match (version, first, second) {
             (Some(Self::Second), Some([name, meant]), _) => return Err(contradiction(said, &name, "1", &meant)),
             (Some(Self::First), _, Some([name, meant])) => return Err(contradiction(said, &name, "2", &meant)),
@@ -235,7 +235,7 @@ impl Version {
     }
 
     /// Its names.
-    pub(super) fn names(self) -> &'static Names {
+    pub(super) fn names(self) -> &'static VersionNames {
         match self {
             Self::First => &FIRST,
             Self::Second => &SECOND,
@@ -251,12 +251,12 @@ fn contradiction(said: Option<&str>, name: &str, of: &str, meant: &str) -> Impor
 
 /// The first names in a file that only one of the versions has, with what the other version has instead.
 #[derive(Default)]
-struct Found {
+struct VersionEvidence {
     first: Option<[String; 2]>,
     second: Option<[String; 2]>,
 }
 
-impl Found {
+impl VersionEvidence {
     fn search(&mut self, value: &Value) {
         match value {
             Value::Array(elements) => elements.iter().for_each(|element| self.search(element)),

@@ -1,20 +1,20 @@
 //! Roads with spirals and cubic curves, against dense integration of their definitions.
 
 use super::*;
-use crate::import::{Format, layout};
-use crate::scenario::Placed;
+use crate::import::{InputFormat, layout};
+use crate::scenario::PlacedSegment;
 
-fn read(records: &str, options: &Options) -> Result<(Edge, Warnings), String> {
+fn read(records: &str, options: &ImportOptions) -> Result<(LayoutEdge, Warnings), String> {
     let text = format!("<OpenDRIVE><header/><road id=\"1\"><planView>{records}</planView></road></OpenDRIVE>");
     let mut warnings = Warnings::default();
-    let options = Options { radius: Some(1.0), ..options.clone() };
-    let imported = layout(Format::OpenDrive, &text, &options, &mut warnings).map_err(|error| error.to_string())?;
+    let options = ImportOptions { radius: Some(1.0), ..options.clone() };
+    let imported = layout(InputFormat::OpenDrive, &text, &options, &mut warnings).map_err(|error| error.to_string())?;
     Ok((imported.layout.edges[0].clone(), warnings))
 }
 
 #[track_caller]
 fn refused(records: &str) -> String {
-    read(records, &Options::default()).unwrap_err()
+    read(records, &ImportOptions::default()).unwrap_err()
 }
 
 fn record(s: f64, [x, y]: [f64; 2], heading: f64, length: f64, shape: &str) -> String {
@@ -24,7 +24,7 @@ fn record(s: f64, [x, y]: [f64; 2], heading: f64, length: f64, shape: &str) -> S
 }
 
 /// The point of lines and arcs at a length.
-fn at(pieces: &[Placed], length: f64) -> [f64; 2] {
+fn at(pieces: &[PlacedSegment], length: f64) -> [f64; 2] {
     let mut rest = length;
     for piece in pieces {
         if rest <= piece.shape.length() {
@@ -75,7 +75,7 @@ fn a_road_of_spirals_is_where_its_curvature_leads() {
             s += length;
         }
         for tolerance in [None, Some(0.05), Some(1e-4)] {
-            let (edge, warnings) = read(&records, &Options { tolerance, ..Options::default() }).unwrap();
+            let (edge, warnings) = read(&records, &ImportOptions { tolerance, ..ImportOptions::default() }).unwrap();
             let lines = warnings.lines();
             assert!(lines.iter().all(|line| !line.contains("joints are open")), "{lines:?}");
             assert!(warnings.has_used("tolerance"));
@@ -121,12 +121,12 @@ fn cubic_curves_are_where_their_polynomials_are() {
     let line = record(length, point(1.0), heading, 5.0, "<line/>");
     let whole = |shape: &str| record(0.0, begin, heading, length, shape);
     for shape in [shape(normalized, 1.0), shape("", 1.0), shape(arc_length, length)] {
-        let (edge, _) = read(&whole(&shape), &Options::default()).unwrap();
+        let (edge, _) = read(&whole(&shape), &ImportOptions::default()).unwrap();
         let worst = all.iter().map(|(s, point)| distance(at(&edge.curve, *s), *point)).fold(0.0, f64::max);
         assert!(worst <= edge.deviation && edge.deviation < 4e-3, "{worst} {}", edge.deviation);
         assert!((edge.length() - length).abs() <= edge.longer + 1e-6, "{} {length}", edge.longer);
         // What comes later is reached a little earlier or later.
-        let (longer, _) = read(&format!("{}{line}", whole(&shape)), &Options::default()).unwrap();
+        let (longer, _) = read(&format!("{}{line}", whole(&shape)), &ImportOptions::default()).unwrap();
         assert!(longer.deviation >= edge.longer && longer.longer >= edge.longer);
     }
     // The range of the other kind makes another curve, which has another length.
@@ -136,13 +136,15 @@ fn cubic_curves_are_where_their_polynomials_are() {
     assert!(refused(&whole(&shape(" pRange=\"metres\"", 1.0))).contains("pRange: metres is not known"));
     assert!(refused(&whole("<paramPoly3 aU=\"0\"/>")).contains("bU"));
     // A graph that is a line, and one that is a parabola of a known length.
-    let (straight, _) =
-        read(&record(0.0, [0.0, 0.0], 0.0, 10.0, "<poly3 a=\"0\" b=\"0.75\" c=\"0\" d=\"0\"/>"), &Options::default())
-            .unwrap();
+    let (straight, _) = read(
+        &record(0.0, [0.0, 0.0], 0.0, 10.0, "<poly3 a=\"0\" b=\"0.75\" c=\"0\" d=\"0\"/>"),
+        &ImportOptions::default(),
+    )
+    .unwrap();
     assert!(distance(straight.curve.last().unwrap().end(), [8.0, 6.0]) < 1e-6);
     let half = 0.5 * (2.0 * 5.0_f64.sqrt() + 2.0_f64.asinh());
     let parabola = record(0.0, [0.0, 0.0], 0.0, half, "<poly3 a=\"0\" b=\"0\" c=\"0.5\" d=\"0\"/>");
-    let (edge, _) = read(&parabola, &Options::default()).unwrap();
+    let (edge, _) = read(&parabola, &ImportOptions::default()).unwrap();
     assert!(distance(edge.curve.last().unwrap().end(), [2.0, 2.0]) <= edge.deviation && edge.deviation < 4e-3);
 }
 

@@ -16,9 +16,9 @@ pub(super) struct Bend {
 }
 
 /// The properties of each thing that the visual layout names.
-pub(super) struct Drawn<'a>(HashMap<&'a str, HashMap<&'a str, &'a str>>);
+pub(super) struct VisualProperties<'a>(HashMap<&'a str, HashMap<&'a str, &'a str>>);
 
-impl<'a> Drawn<'a> {
+impl<'a> VisualProperties<'a> {
     /// Reads the `modelLayoutElement`s.
     ///
     /// # Errors

@@ -4,24 +4,24 @@
 //! The reference point of a box may be off its middle; the rectangle is as large to the other side. Each vehicle has to have a box, if
 //! any has: that of the others says nothing about it. Models before version 6 have no boxes, and lengths of vehicles.
 
-use super::super::vehicle::Given;
+use super::super::vehicle::FileVehicleTraits;
 use super::super::xml::{children, only, optional, parse};
-use super::super::{Edge, ImportError, Options, WarningCode, Warnings};
+use super::super::{ImportError, ImportOptions, LayoutEdge, WarningCode, Warnings};
 use super::{MILLI, metres};
 use crate::footprint::Footprint;
 
 /// How far a vehicle reaches ahead and aside of its reference point \[m\].
-type Half = [f64; 2];
+type HalfExtents = [f64; 2];
 
 /// Adds what the model says to what is given.
 pub(in super::super) fn vehicles(
     text: &str,
-    options: &Options,
-    given: &mut Given,
+    options: &ImportOptions,
+    given: &mut FileVehicleTraits,
     warnings: &mut Warnings,
 ) -> Result<(), ImportError> {
     let document = parse(text)?;
-    let all = children(document.root_element(), "vehicle").map(Vehicle::new).collect::<Result<Vec<_>, _>>()?;
+    let all = children(document.root_element(), "vehicle").map(OpenTcsVehicle::new).collect::<Result<Vec<_>, _>>()?;
     slowest(&all, options, given, warnings);
     if given.radius.is_some() || given.footprint.is_some() {
         return Ok(());
@@ -38,10 +38,10 @@ pub(in super::super) fn vehicles(
 /// Limits the speeds backward to the least of the vehicles.
 pub(super) fn limit_backward(
     root: roxmltree::Node<'_, '_>,
-    edges: &mut [Edge],
+    edges: &mut [LayoutEdge],
     warnings: &mut Warnings,
 ) -> Result<(), ImportError> {
-    let mut ways: Vec<&mut Edge> = edges.iter_mut().filter(|edge| edge.ways[1]).collect();
+    let mut ways: Vec<&mut LayoutEdge> = edges.iter_mut().filter(|edge| edge.ways[1]).collect();
     for vehicle in children(root, "vehicle") {
         let name = named(vehicle);
         match metres(vehicle, &name, "maxReverseVelocity")? {
@@ -67,18 +67,18 @@ fn named(vehicle: roxmltree::Node<'_, '_>) -> String {
 }
 
 /// A vehicle of the model.
-struct Vehicle {
+struct OpenTcsVehicle {
     name: String,
     speed: Option<f64>,
     /// Before version 6 \[m\].
     length: Option<f64>,
     /// Its box, or what is wrong with it; `None` where it has none.
-    half: Option<Result<Half, String>>,
+    half: Option<Result<HalfExtents, String>>,
     /// Whether its box says where its reference point is.
     is_placed: bool,
 }
 
-impl Vehicle {
+impl OpenTcsVehicle {
     fn new(vehicle: roxmltree::Node<'_, '_>) -> Result<Self, ImportError> {
         let name = named(vehicle);
         let speed = metres(vehicle, &name, "maxVelocity")?.filter(|speed| *speed > 0.0);
@@ -107,7 +107,7 @@ impl Sizes {
     }
 
     /// Half of the rectangle around the box, or what is wrong with that.
-    fn half(&self, name: &str) -> Result<Half, String> {
+    fn half(&self, name: &str) -> Result<HalfExtents, String> {
         let mut half = [0.0; 2];
         for (half, ([size, offset], [field, _])) in half.iter_mut().zip(self.0.into_iter().zip(Self::NAMES)) {
             *half = match size {
@@ -123,7 +123,7 @@ impl Sizes {
 }
 
 /// The least of the speeds.
-fn slowest(all: &[Vehicle], options: &Options, given: &mut Given, warnings: &mut Warnings) {
+fn slowest(all: &[OpenTcsVehicle], options: &ImportOptions, given: &mut FileVehicleTraits, warnings: &mut Warnings) {
     let speeds = || all.iter().filter_map(|vehicle| vehicle.speed);
     let Some(least) = speeds().reduce(f64::min).filter(|_| given.speed.is_none()) else { return };
     if options.speed.is_none() && speeds().any(|speed| speed != least) {
@@ -137,7 +137,7 @@ fn slowest(all: &[Vehicle], options: &Options, given: &mut Given, warnings: &mut
 }
 
 /// Says which vehicles are longer than the disc that stands for them, if nothing but their length is known.
-fn warn_of_lengths(all: &[Vehicle], options: &Options, warnings: &mut Warnings) {
+fn warn_of_lengths(all: &[OpenTcsVehicle], options: &ImportOptions, warnings: &mut Warnings) {
     for vehicle in all.iter().filter(|vehicle| vehicle.half.is_none()) {
         if let Some(length) = vehicle.length.filter(|length| options.radius.is_none_or(|radius| 2.0 * radius < *length))
         {
@@ -148,9 +148,9 @@ fn warn_of_lengths(all: &[Vehicle], options: &Options, warnings: &mut Warnings) 
 }
 
 /// The half that covers those of all vehicles, if there is any. A radius that is asked for is that of all, whatever their boxes are.
-fn largest(all: &[Vehicle], options: &Options, warnings: &mut Warnings) -> Option<Half> {
+fn largest(all: &[OpenTcsVehicle], options: &ImportOptions, warnings: &mut Warnings) -> Option<HalfExtents> {
     let has_box = all.iter().any(|vehicle| vehicle.half.is_some());
-    let mut largest: Option<Half> = None;
+    let mut largest: Option<HalfExtents> = None;
     for vehicle in all.iter().filter(|_| has_box) {
         match &vehicle.half {
             Some(Ok(half)) => {

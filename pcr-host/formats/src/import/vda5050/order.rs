@@ -1,23 +1,23 @@
 //! The agent of an order: from node to node, along its trajectories or straight.
 
-use super::super::trace::Tracer;
-use super::super::trajectory::Trajectory;
-use super::super::value::Object;
+use super::super::json_access::JsonObject;
+use super::super::path_builder::LimitedPathBuilder;
+use super::super::trajectory::FittedTrajectory;
 use super::super::vehicle::Facing;
 use super::super::warnings::{DIFFERENCE, LENGTH};
-use super::super::{ImportError, WarningCode, corridor, facing, route};
-use super::part::{Part, check, parts};
-use super::{ACTIONS, GAP, Reader, gap, keys};
+use super::super::{ImportError, WarningCode, corridor, route, vehicle_heading};
+use super::order_element::{OrderElement, check, parts};
+use super::{ACTIONS, GAP, Vda5050Reader, gap, keys};
 use crate::footprint::Footprint;
-use crate::scenario::{Agent, Placed};
-use crate::vda5050::version::Version;
+use crate::scenario::{Agent, PlacedSegment};
+use crate::vda5050::version::ProtocolVersion;
 use serde_json::Value;
 use std::f64::consts::PI;
 
 /// How an order is travelled up to some node.
 #[derive(Default)]
-struct Way {
-    tracer: Tracer,
+struct OrderPathBuilder {
+    tracer: LimitedPathBuilder,
     /// Headings of each edge at both ends; none where it has no length.
     headings: Vec<Option<[f64; 2]>>,
     position: Option<[f64; 2]>,
@@ -32,15 +32,15 @@ struct Way {
     facing: Option<Facing>,
 }
 
-impl Reader<'_> {
+impl Vda5050Reader<'_> {
     /// The agent of an order, and the radius of its vehicle with the room that the order gives it.
-    pub(super) fn order(&mut self, id: u64, order: &Object<'_>) -> Result<(Agent, f64), ImportError> {
+    pub(super) fn order(&mut self, id: u64, order: &JsonObject<'_>) -> Result<(Agent, f64), ImportError> {
         keys::ORDER.check(order, self.warnings)?;
         let [nodes, edges] = self.base(order)?;
         let is_third = is_third(order)?;
         self.maps(order, nodes.iter().map(|node| node.object.object("nodePosition")))?;
         self.warn_of_freedom(&nodes)?;
-        let mut way = Way { position: position(nodes.first())?, ..Way::default() };
+        let mut way = OrderPathBuilder { position: position(nodes.first())?, ..OrderPathBuilder::default() };
         if way.position.is_none() && edges.is_empty() {
             return Err(nodes.first().map_or_else(|| order.missing("nodes"), unplaced));
         }
@@ -68,7 +68,7 @@ impl Reader<'_> {
     }
 
     /// Nodes and edges of the base, or all of them if that is asked for; `updates` has checked that they are one way.
-    fn base<'j>(&mut self, order: &Object<'j>) -> Result<[Vec<Part<'j>>; 2], ImportError> {
+    fn base<'j>(&mut self, order: &JsonObject<'j>) -> Result<[Vec<OrderElement<'j>>; 2], ImportError> {
         let mut nodes = parts(order, "nodes", "node", "nodeId")?;
         let mut edges = parts(order, "edges", "edge", "edgeId")?;
         // Also of what is left out below.
@@ -93,7 +93,7 @@ impl Reader<'_> {
     }
 
     /// Says at which nodes the vehicle may pass beside them, which is not read.
-    fn warn_of_freedom(&mut self, nodes: &[Part<'_>]) -> Result<(), ImportError> {
+    fn warn_of_freedom(&mut self, nodes: &[OrderElement<'_>]) -> Result<(), ImportError> {
         let outline = self.vehicle.footprint.is_some();
         for node in nodes {
             let Some(position) = node.object.object("nodePosition")? else { continue };
@@ -114,8 +114,8 @@ impl Reader<'_> {
     /// Says that actions are not read, of nodes or of edges.
     fn warn_of_actions<'p, 'j: 'p>(
         &mut self,
-        order: &Object<'_>,
-        parts: impl Iterator<Item = &'p Part<'j>>,
+        order: &JsonObject<'_>,
+        parts: impl Iterator<Item = &'p OrderElement<'j>>,
     ) -> Result<(), ImportError> {
         let mut acts = false;
         for part in parts {
@@ -130,9 +130,9 @@ impl Reader<'_> {
     /// Goes on along an edge.
     fn edge(
         &mut self,
-        way: &mut Way,
-        edge: &Object<'_>,
-        ends: [&Part<'_>; 2],
+        way: &mut OrderPathBuilder,
+        edge: &JsonObject<'_>,
+        ends: [&OrderElement<'_>; 2],
         is_third: bool,
     ) -> Result<(), ImportError> {
         if let Some(room) = corridor::read(edge, self.vehicle, self.warnings)?.filter(|room| *room > 0.0) {
@@ -159,7 +159,7 @@ impl Reader<'_> {
     }
 
     /// Says where an edge is longer or shorter than its geometry.
-    fn has_length(&mut self, edge: &Object<'_>, drawn: f64) -> Result<(), ImportError> {
+    fn has_length(&mut self, edge: &JsonObject<'_>, drawn: f64) -> Result<(), ImportError> {
         // 0 is what senders write that do not know it.
         let typed = edge.number("length")?.filter(|typed| *typed != 0.0);
         if typed.is_some_and(|typed| (typed - drawn).abs() > DIFFERENCE * drawn + GAP) {
@@ -171,28 +171,28 @@ impl Reader<'_> {
     /// Which way an outline faces on an edge, which has this heading where it is straight.
     fn facing(
         &self,
-        edge: &Object<'_>,
+        edge: &JsonObject<'_>,
         is_third: bool,
         heading: Option<f64>,
-        pieces: &[Placed],
+        pieces: &[PlacedSegment],
     ) -> Result<Facing, ImportError> {
         if self.vehicle.footprint.is_none() {
             return Ok(Facing::Ahead);
         }
         let orientation = edge.number("orientation")?;
-        let said = facing::of_edge(edge, "orientation", orientation.as_slice(), heading)?;
+        let said = vehicle_heading::of_edge(edge, "orientation", orientation.as_slice(), heading)?;
         // One that rotates on the edge has any heading there.
         let reaches = edge.flag("reachOrientationBeforeEntering")?;
         if edge.flag("rotationAllowed")? == Some(true) || reaches == Some(false) || is_third && said.is_none() {
             return Ok(Facing::Any);
         }
-        Ok(said.unwrap_or_else(|| facing::of_curve(pieces)))
+        Ok(said.unwrap_or_else(|| vehicle_heading::of_curve(pieces)))
     }
 
     /// An outline at a node is as the path arrives there, or as it departs; `headings` are those of the edges at both ends.
     fn thetas(
         &mut self,
-        nodes: &[Part<'_>],
+        nodes: &[OrderElement<'_>],
         headings: &[Option<[f64; 2]>],
         outline: &Footprint,
         facing: Facing,
@@ -207,16 +207,16 @@ impl Reader<'_> {
             let arrives = k.checked_sub(1).and_then(|before| headings.get(before).copied().flatten()).map(|way| way[1]);
             let departs = headings.get(k).copied().flatten().map(|way| way[0]);
             let is_there =
-                |heading: f64| turned.iter().any(|turned| facing::is_ahead(outline, theta - heading - turned));
+                |heading: f64| turned.iter().any(|turned| vehicle_heading::is_ahead(outline, theta - heading - turned));
             if !arrives.into_iter().chain(departs).any(is_there) {
-                facing::lose(&node.object.name, "theta", theta, self.warnings);
+                vehicle_heading::lose(&node.object.name, "theta", theta, self.warnings);
             }
         }
         Ok(())
     }
 }
 
-impl Way {
+impl OrderPathBuilder {
     /// The vehicle faces so on the next edge.
     fn faces(&mut self, next: Facing) {
         self.facing = Some(self.facing.map_or(next, |before| before.then(next)));
@@ -229,8 +229,13 @@ impl Way {
     }
 
     /// Follows a trajectory from where the way is to the node at its end, if these have places.
-    fn follow(&mut self, edge: &Object<'_>, read: &Trajectory, target: Option<[f64; 2]>) -> Result<(), ImportError> {
-        let Trajectory { fit, ends: [begin, end] } = read;
+    fn follow(
+        &mut self,
+        edge: &JsonObject<'_>,
+        read: &FittedTrajectory,
+        target: Option<[f64; 2]>,
+    ) -> Result<(), ImportError> {
+        let FittedTrajectory { fit, ends: [begin, end] } = read;
         let mut widest = 0.0_f64;
         for (point, node, place) in [(*begin, self.position, "begins"), (*end, target, "ends")] {
             let gap = node.map_or(0.0, |node| gap(point, node));
@@ -247,31 +252,32 @@ impl Way {
         self.headings.push(ends.map(|(first, last)| [first.heading, last.heading_at_end()]));
         self.position = Some(*end);
         self.deviation = self.deviation.max(fit.deviation + self.longer + widest);
-        self.turned = self.turned.max(fit.turned + route::turn_over(&fit.pieces, self.longer));
-        self.longer += fit.longer;
+        self.turned = self.turned.max(fit.heading_error + route::turn_over(&fit.pieces, self.longer));
+        self.longer += fit.length_error;
         Ok(())
     }
 }
 
 /// Which way a vehicle faces that stays where it is, if that is one way: one that turns there covers the disc around its outline.
-fn rests(nodes: &[Part<'_>], outline: Option<&Footprint>) -> Result<Option<f64>, ImportError> {
-    let thetas = nodes.iter().map(Part::theta).collect::<Result<Vec<_>, _>>()?;
+fn rests(nodes: &[OrderElement<'_>], outline: Option<&Footprint>) -> Result<Option<f64>, ImportError> {
+    let thetas = nodes.iter().map(OrderElement::theta).collect::<Result<Vec<_>, _>>()?;
     let Some(first) = thetas.first().copied().flatten() else { return Ok(None) };
-    let turns = |outline: &Footprint| thetas.iter().flatten().any(|theta| !facing::is_ahead(outline, theta - first));
+    let turns =
+        |outline: &Footprint| thetas.iter().flatten().any(|theta| !vehicle_heading::is_ahead(outline, theta - first));
     Ok(Some(first).filter(|_| !outline.is_some_and(turns)))
 }
 
 /// Position of a node, where it has one.
-fn position(node: Option<&Part<'_>>) -> Result<Option<[f64; 2]>, ImportError> {
-    node.map_or(Ok(None), Part::position)
+fn position(node: Option<&OrderElement<'_>>) -> Result<Option<[f64; 2]>, ImportError> {
+    node.map_or(Ok(None), OrderElement::position)
 }
 
-fn unplaced(node: &Part<'_>) -> ImportError {
+fn unplaced(node: &OrderElement<'_>) -> ImportError {
     node.object.missing("nodePosition")
 }
 
 /// A limit under its name in version 2 or that in version 3; the lower one of both.
-fn either(edge: &Object<'_>, names: [&str; 2]) -> Result<Option<f64>, ImportError> {
+fn either(edge: &JsonObject<'_>, names: [&str; 2]) -> Result<Option<f64>, ImportError> {
     let [second, third] = names.map(|name| edge.positive(name));
     Ok(second?.into_iter().chain(third?).reduce(f64::min))
 }
@@ -284,6 +290,6 @@ fn allows(deviation: &Value) -> bool {
 
 /// Whether an order is of version 3, which leaves it to the vehicle how it faces on an edge that says nothing of it. `updates` has checked
 /// that its version is known.
-fn is_third(order: &Object<'_>) -> Result<bool, ImportError> {
-    Ok(order.text("version")?.and_then(Version::of) == Some(Version::V3_0))
+fn is_third(order: &JsonObject<'_>) -> Result<bool, ImportError> {
+    Ok(order.text("version")?.and_then(ProtocolVersion::parse) == Some(ProtocolVersion::V3_0))
 }

@@ -1,14 +1,14 @@
 //! The agent of a state: on its path with times, on its planned path from rest, or where it stands.
 
-use super::super::trace::{Trace, Tracer};
-use super::super::value::Object;
+use super::super::json_access::JsonObject;
+use super::super::path_builder::{LimitedPath, LimitedPathBuilder};
 use super::super::vehicle::Facing;
-use super::super::{ImportError, Vehicle, WarningCode, facing, route, timed};
-use super::begin::{Begin, stamp};
-use super::part::{Part, check, parts};
-use super::{ACTIONS, GAP, Reader, gap, keys};
+use super::super::{ImportError, VehicleTraits, WarningCode, route, timed_paths, vehicle_heading};
+use super::agent_start::{AgentStart, stamp};
+use super::order_element::{OrderElement, check, parts};
+use super::{ACTIONS, GAP, Vda5050Reader, gap, keys};
 use crate::footprint::Footprint;
-use crate::scenario::{Agent, MotionSpec, Placed};
+use crate::scenario::{Agent, MotionSpec, PlacedSegment};
 use serde_json::Value;
 use std::f64::consts::PI;
 
@@ -16,19 +16,19 @@ use std::f64::consts::PI;
 const SEEN: f64 = 0.15;
 
 /// Where a vehicle says that it is.
-struct Pose {
+struct ReportedPose {
     at: Option<[f64; 2]>,
     heading: Option<f64>,
 }
 
-impl Reader<'_> {
+impl Vda5050Reader<'_> {
     /// The agent of a state, and when it begins.
     pub(super) fn state(
         &mut self,
         id: u64,
-        state: &Object<'_>,
-        vehicle: &Vehicle,
-    ) -> Result<(Agent, Begin), ImportError> {
+        state: &JsonObject<'_>,
+        vehicle: &VehicleTraits,
+    ) -> Result<(Agent, AgentStart), ImportError> {
         keys::STATE.check(state, self.warnings)?;
         let pose = self.pose(state)?;
         let nodes = parts(state, "nodeStates", "node", "nodeId")?;
@@ -51,13 +51,13 @@ impl Reader<'_> {
         }
         match planned {
             Some(path) => self.planned(id, state, &path, &pose, vehicle),
-            None => Ok((self.stands(id, state, &pose, vehicle)?, Begin::Never)),
+            None => Ok((self.stands(id, state, &pose, vehicle)?, AgentStart::Never)),
         }
     }
 
     /// Where the vehicle is; it has to know that.
-    fn pose(&mut self, state: &Object<'_>) -> Result<Pose, ImportError> {
-        let Some(pose) = position(state)? else { return Ok(Pose { at: None, heading: None }) };
+    fn pose(&mut self, state: &JsonObject<'_>) -> Result<ReportedPose, ImportError> {
+        let Some(pose) = position(state)? else { return Ok(ReportedPose { at: None, heading: None }) };
         keys::POSITION.check(&pose, self.warnings)?;
         let unknown =
             |field: &str| Err(ImportError::new(format!("{}, {field}: it does not know where it is", pose.name)));
@@ -69,48 +69,48 @@ impl Reader<'_> {
         if pose.number("localizationScore")?.is_some_and(|score| score <= 0.0) {
             return unknown("localizationScore");
         }
-        Ok(Pose { at: Some(pose.point()?), heading: pose.number("theta")? })
+        Ok(ReportedPose { at: Some(pose.point()?), heading: pose.number("theta")? })
     }
 
     /// The agent on a path with times. It is a disc: how long turns take is not in the file.
     fn timed(
         &mut self,
         id: u64,
-        state: &Object<'_>,
-        path: &Object<'_>,
-        pose: &Pose,
-        vehicle: &Vehicle,
-    ) -> Result<(Agent, Begin), ImportError> {
+        state: &JsonObject<'_>,
+        path: &JsonObject<'_>,
+        pose: &ReportedPose,
+        vehicle: &VehicleTraits,
+    ) -> Result<(Agent, AgentStart), ImportError> {
         keys::INTERMEDIATE.check(path, self.warnings)?;
         let mut stops = Vec::new();
         if let Some(at) = pose.at {
             stops.push((at, stamp(state, "timestamp")?));
         }
         for (k, value) in path.list("polyline")?.iter().enumerate() {
-            let point = Object::new(format!("{}, point {}", path.name, k + 1), value)?;
+            let point = JsonObject::new(format!("{}, point {}", path.name, k + 1), value)?;
             keys::TIMED_POINT.check(&point, self.warnings)?;
             stops.push((point.point()?, stamp(&point, "eta")?));
         }
         let begin = stops.first().map(|(_, time)| *time).unwrap_or_default();
-        let stops: Vec<timed::Stop> = stops.into_iter().map(|(at, time)| (at, time.since(begin))).collect();
+        let stops: Vec<timed_paths::TimedPoint> = stops.into_iter().map(|(at, time)| (at, time.since(begin))).collect();
         let end = stops.last().map_or([0.0; 2], |(end, _)| *end);
         let named = |error| ImportError::new(format!("{}: {error}", path.name));
-        let agent = timed::agent(id, vehicle.radius, &stops).map_err(named)?;
+        let agent = timed_paths::agent(id, vehicle.radius, &stops).map_err(named)?;
         self.leads_somewhere(state, agent.path.is_empty())?;
         self.goes(state)?;
         let radius = agent.radius + self.goes_on(state, end, &[])?;
-        Ok((Agent { radius, margin: vehicle.margin, ..agent }, Begin::At(begin)))
+        Ok((Agent { radius, margin: vehicle.margin, ..agent }, AgentStart::At(begin)))
     }
 
     /// The agent on its planned path, from rest.
     fn planned(
         &mut self,
         id: u64,
-        state: &Object<'_>,
-        path: &Object<'_>,
-        pose: &Pose,
-        vehicle: &Vehicle,
-    ) -> Result<(Agent, Begin), ImportError> {
+        state: &JsonObject<'_>,
+        path: &JsonObject<'_>,
+        pose: &ReportedPose,
+        vehicle: &VehicleTraits,
+    ) -> Result<(Agent, AgentStart), ImportError> {
         keys::PLANNED.check(path, self.warnings)?;
         let trajectory = path.object("trajectory")?.ok_or_else(|| path.missing("trajectory"))?;
         let read = self.trajectory(&trajectory, vehicle)?;
@@ -130,11 +130,11 @@ impl Reader<'_> {
                 "it moves already; its plannedPath is travelled from rest",
             );
         }
-        let mut tracer = Tracer::default();
+        let mut tracer = LimitedPathBuilder::default();
         pieces.iter().for_each(|piece| tracer.follow(piece));
         let mut trace = tracer.finish(pose.at.unwrap_or(begin));
         trace.deviation += read.fit.deviation + before.max(behind);
-        trace.turned += read.fit.turned;
+        trace.turned += read.fit.heading_error;
         let mut facing = Facing::Ahead;
         if let Some(outline) = &vehicle.footprint {
             let askew;
@@ -143,14 +143,20 @@ impl Reader<'_> {
             set_heading(&mut trace, pose, pieces);
         }
         let begin = match state.get("timestamp") {
-            None => Begin::Unsaid,
-            Some(_) => Begin::At(stamp(state, "timestamp")?),
+            None => AgentStart::Unsaid,
+            Some(_) => AgentStart::At(stamp(state, "timestamp")?),
         };
         Ok((route::agent(id, &trace, &vehicle.facing(facing), 0.0), begin))
     }
 
     /// The agent that stands where it is, unless it says that it goes on.
-    fn stands(&mut self, id: u64, state: &Object<'_>, pose: &Pose, vehicle: &Vehicle) -> Result<Agent, ImportError> {
+    fn stands(
+        &mut self,
+        id: u64,
+        state: &JsonObject<'_>,
+        pose: &ReportedPose,
+        vehicle: &VehicleTraits,
+    ) -> Result<Agent, ImportError> {
         let [x, y] = pose.at.ok_or_else(|| state.missing("mobileRobotPosition"))?;
         if !state.list("nodeStates")?.is_empty() {
             self.warnings
@@ -159,7 +165,7 @@ impl Reader<'_> {
             self.lose_way(state);
         }
         let motion = MotionSpec::RestToRest { v_max: vehicle.speed, a_max: vehicle.acceleration };
-        let Vehicle { radius, margin, .. } = *vehicle;
+        let VehicleTraits { radius, margin, .. } = *vehicle;
         let stands = Agent::disc(id, radius, [x, y, pose.heading.unwrap_or(0.0)], Vec::new(), motion);
         // Without a heading it is the disc around its outline.
         let footprint = vehicle.footprint.clone().filter(|_| pose.heading.is_some());
@@ -167,7 +173,7 @@ impl Reader<'_> {
     }
 
     /// What moves does not stay where its path has no length.
-    fn leads_somewhere(&mut self, state: &Object<'_>, is_point: bool) -> Result<(), ImportError> {
+    fn leads_somewhere(&mut self, state: &JsonObject<'_>, is_point: bool) -> Result<(), ImportError> {
         if is_point && moves(state)? {
             self.lose_way(state);
         }
@@ -175,13 +181,13 @@ impl Reader<'_> {
     }
 
     /// What is halted does not say when it goes on along its path; actions may halt it.
-    fn goes(&mut self, state: &Object<'_>) -> Result<(), ImportError> {
+    fn goes(&mut self, state: &JsonObject<'_>) -> Result<(), ImportError> {
         if let Some(halt) = halt(state)? {
             self.warnings.lose(format_args!("{}: when it goes on along its path, as {halt}", state.name));
         }
         let mut acts = false;
         for (k, action) in state.list("actionStates")?.iter().enumerate() {
-            let action = Object::new(format!("{}, actionState {}", state.name, k + 1), action)?;
+            let action = JsonObject::new(format!("{}, actionState {}", state.name, k + 1), action)?;
             acts |= action.text("actionStatus")?.is_some_and(|status| !["FINISHED", "FAILED"].contains(&status));
         }
         if acts {
@@ -190,7 +196,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn lose_way(&mut self, state: &Object<'_>) {
+    fn lose_way(&mut self, state: &JsonObject<'_>) {
         self.warnings.lose(format_args!("{}: its way, as it moves and does not say where to", state.name));
     }
 
@@ -198,16 +204,18 @@ impl Reader<'_> {
     /// is turned from that as well, as far as this is the error of a measurement \[rad\].
     fn faces(
         &mut self,
-        state: &Object<'_>,
-        pose: &Pose,
-        pieces: &[Placed],
+        state: &JsonObject<'_>,
+        pose: &ReportedPose,
+        pieces: &[PlacedSegment],
         outline: &Footprint,
     ) -> Result<(Facing, f64), ImportError> {
         let first = pieces.first().map(|first| first.heading);
         let seen = pose.heading.zip(first);
-        let off = |turned: f64| seen.map_or(0.0, |(theta, heading)| facing::askew(outline, theta - heading - turned));
+        let off = |turned: f64| {
+            seen.map_or(0.0, |(theta, heading)| vehicle_heading::askew(outline, theta - heading - turned))
+        };
         // Where it turns back on its way, it may go on in the other gear.
-        let of_curve = facing::of_curve(pieces);
+        let of_curve = vehicle_heading::of_curve(pieces);
         let (facing, turned) = match (off(PI) < off(0.0), of_curve) {
             (true, Facing::Ahead) => (Facing::Backward, PI),
             (false, _) => (of_curve, 0.0),
@@ -215,21 +223,23 @@ impl Reader<'_> {
         };
         let mut askew = off(turned);
         if askew > SEEN {
-            facing::lose(&state.name, "theta", pose.heading.unwrap_or_default(), self.warnings);
+            vehicle_heading::lose(&state.name, "theta", pose.heading.unwrap_or_default(), self.warnings);
             askew = 0.0;
         }
         for node in parts(state, "nodeStates", "node", "nodeId")?.iter().filter(|node| node.released) {
             let Some((at, theta)) = node.position()?.zip(node.theta()?) else { continue };
             // Which of several passes is meant is not known: any of them may be.
-            let mut passes = pieces.iter().filter_map(|piece| facing::heading_beside(piece, at, GAP)).peekable();
+            let mut passes =
+                pieces.iter().filter_map(|piece| vehicle_heading::heading_beside(piece, at, GAP)).peekable();
             if passes.peek().is_none() && !pieces.is_empty() {
                 let name = &node.object.name;
                 self.warnings.lose(format_args!("{name}: its theta {theta}, as the planned path does not pass it"));
             } else if !passes.any(|heading| {
-                let either = facing == Facing::Either && facing::is_ahead(outline, theta - heading - turned - PI);
-                either || facing::is_ahead(outline, theta - heading - turned)
+                let either =
+                    facing == Facing::Either && vehicle_heading::is_ahead(outline, theta - heading - turned - PI);
+                either || vehicle_heading::is_ahead(outline, theta - heading - turned)
             }) {
-                facing::lose(&node.object.name, "theta", theta, self.warnings);
+                vehicle_heading::lose(&node.object.name, "theta", theta, self.warnings);
             }
         }
         Ok((facing, askew))
@@ -237,7 +247,7 @@ impl Reader<'_> {
 
     /// How far the last node that is released is from the end of a path \[m\], which has to be there: the vehicle does not stand where it
     /// ends else.
-    fn goes_on(&mut self, state: &Object<'_>, end: [f64; 2], traversed: &[Value]) -> Result<f64, ImportError> {
+    fn goes_on(&mut self, state: &JsonObject<'_>, end: [f64; 2], traversed: &[Value]) -> Result<f64, ImportError> {
         let nodes = parts(state, "nodeStates", "node", "nodeId")?;
         let Some(last) = nodes.iter().take_while(|node| node.released).last() else {
             self.no_edge(state, &nodes)?;
@@ -258,7 +268,7 @@ impl Reader<'_> {
     }
 
     /// Without nodes no edge is ahead of which anything is known.
-    fn no_edge(&mut self, state: &Object<'_>, nodes: &[Part<'_>]) -> Result<(), ImportError> {
+    fn no_edge(&mut self, state: &JsonObject<'_>, nodes: &[OrderElement<'_>]) -> Result<(), ImportError> {
         let edges = parts(state, "edgeStates", "edge", "edgeId")?;
         if let Some(edge) = edges.iter().find(|edge| edge.released && nodes.is_empty()) {
             self.warnings.lose(format_args!("{}: where it leads, as there is no node in nodeStates", edge.object.name));
@@ -268,7 +278,7 @@ impl Reader<'_> {
 }
 
 /// Where the vehicle is, in version 3 or 2.
-fn position<'j>(state: &Object<'j>) -> Result<Option<Object<'j>>, ImportError> {
+fn position<'j>(state: &JsonObject<'j>) -> Result<Option<JsonObject<'j>>, ImportError> {
     match state.object("mobileRobotPosition")? {
         None => state.object("agvPosition"),
         pose => Ok(pose),
@@ -276,7 +286,7 @@ fn position<'j>(state: &Object<'j>) -> Result<Option<Object<'j>>, ImportError> {
 }
 
 /// Why the vehicle does not go along its path now, if it says so.
-fn halt(state: &Object<'_>) -> Result<Option<String>, ImportError> {
+fn halt(state: &JsonObject<'_>) -> Result<Option<String>, ImportError> {
     if state.flag("paused")? == Some(true) {
         return Ok(Some("it is paused".into()));
     }
@@ -294,13 +304,13 @@ fn halt(state: &Object<'_>) -> Result<Option<String>, ImportError> {
 }
 
 /// The path with times, if it has a point: without any it says nothing.
-fn timed_path<'j>(state: &Object<'j>) -> Result<Option<Object<'j>>, ImportError> {
+fn timed_path<'j>(state: &JsonObject<'j>) -> Result<Option<JsonObject<'j>>, ImportError> {
     let Some(path) = state.object("intermediatePath")? else { return Ok(None) };
     Ok(if path.list("polyline")?.is_empty() { None } else { Some(path) })
 }
 
 /// An outline of which nobody knows which way it faces is the disc around it; one that does not move faces as it says.
-fn set_heading(trace: &mut Trace, pose: &Pose, pieces: &[Placed]) {
+fn set_heading(trace: &mut LimitedPath, pose: &ReportedPose, pieces: &[PlacedSegment]) {
     match pose.heading {
         None => trace.faces = false,
         Some(theta) if pieces.is_empty() => (trace.start[2], trace.faces) = (theta, true),
@@ -309,7 +319,7 @@ fn set_heading(trace: &mut Trace, pose: &Pose, pieces: &[Placed]) {
 }
 
 /// Whether a vehicle says that it moves.
-fn moves(state: &Object<'_>) -> Result<bool, ImportError> {
+fn moves(state: &JsonObject<'_>) -> Result<bool, ImportError> {
     let mut moves = state.flag("driving")?.unwrap_or(false);
     if let Some(velocity) = state.object("velocity")? {
         for field in ["vx", "vy", "omega"] {

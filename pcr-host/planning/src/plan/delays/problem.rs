@@ -17,11 +17,11 @@ const OUTWARD: i128 = 2;
 
 /// The length of a tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Ticks {
+pub(crate) struct TickScale {
     per_second: f64,
 }
 
-impl Ticks {
+impl TickScale {
     /// The finest ticks for times up to a latest one \[s\].
     pub(crate) fn up_to(latest: f64) -> Self {
         let digits = latest.max(1.0).log2().ceil() as i32 + 1;
@@ -47,7 +47,7 @@ impl Ticks {
 
 /// How much less a plan for intervals that are not rounded can cost, for a fleet \[ticks\]: no chain of constraints is
 /// longer than the fleet, and each is longer by the rounding of one end.
-pub(crate) fn slack(problem: &Problem) -> i128 {
+pub(crate) fn rounding_cost(problem: &DelayProblem) -> i128 {
     let agents = problem.len() as i128;
     let chain = OUTWARD * agents;
     match problem.objective {
@@ -58,13 +58,13 @@ pub(crate) fn slack(problem: &Problem) -> i128 {
 
 /// Forbidden differences of the delays of two agents: the second delay minus the first.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Pair {
+pub(crate) struct ForbiddenPairDelays {
     pub(crate) agents: [usize; 2],
     /// Open intervals, disjoint and in order \[ticks\].
     forbidden: Vec<[i64; 2]>,
 }
 
-impl Pair {
+impl ForbiddenPairDelays {
     /// A pair with intervals that may overlap.
     pub(crate) fn new(agents: [usize; 2], mut forbidden: Vec<[i64; 2]>) -> Self {
         forbidden.sort_unstable();
@@ -107,28 +107,30 @@ impl Pair {
     }
 
     /// The constraints on either side of an interval: the difference is below it, or above it.
-    pub(super) fn beside(&self, [lo, hi]: [i64; 2]) -> [Constraint; 2] {
+    pub(super) fn constraints_around(&self, [lo, hi]: [i64; 2]) -> [DifferenceConstraint; 2] {
         let [first, second] = self.agents;
         [
-            Constraint { from: second, to: first, least: if lo <= -NEVER { NEVER } else { -lo } },
-            Constraint { from: first, to: second, least: hi },
+            DifferenceConstraint { from: second, to: first, least: if lo <= -NEVER { NEVER } else { -lo } },
+            DifferenceConstraint { from: first, to: second, least: hi },
         ]
     }
 
     /// Constraints that hold for all allowed differences: an unbounded interval leaves one side.
-    pub(super) fn forced(&self) -> impl Iterator<Item = Constraint> {
+    pub(super) fn forced(&self) -> impl Iterator<Item = DifferenceConstraint> {
         let sided = |&ends: &[i64; 2]| {
-            let [below, above] = self.beside(ends);
+            let [below, above] = self.constraints_around(ends);
             (ends[0] <= -NEVER).then_some(above).into_iter().chain((ends[1] >= NEVER).then_some(below))
         };
         self.forbidden.iter().flat_map(sided)
     }
 
     /// The constraints of the gap between intervals where the difference of these delays is.
-    pub(super) fn gap(&self, delays: &[i64]) -> impl Iterator<Item = Constraint> + use<> {
+    pub(super) fn gap(&self, delays: &[i64]) -> impl Iterator<Item = DifferenceConstraint> + use<> {
         let difference = self.difference(delays);
-        let last = self.forbidden.iter().rfind(|ends| ends[1] <= difference).map(|&ends| self.beside(ends)[1]);
-        let next = self.forbidden.iter().find(|ends| difference <= ends[0]).map(|&ends| self.beside(ends)[0]);
+        let last =
+            self.forbidden.iter().rfind(|ends| ends[1] <= difference).map(|&ends| self.constraints_around(ends)[1]);
+        let next =
+            self.forbidden.iter().find(|ends| difference <= ends[0]).map(|&ends| self.constraints_around(ends)[0]);
         last.into_iter().chain(next)
     }
 }
@@ -147,7 +149,7 @@ pub(crate) fn earliest(mut forbidden: Vec<[i64; 2]>) -> Option<i64> {
 
 /// The delay of `to` is at least that of `from` plus `least` \[ticks\].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Constraint {
+pub(super) struct DifferenceConstraint {
     pub(super) from: usize,
     pub(super) to: usize,
     pub(super) least: i64,
@@ -175,14 +177,14 @@ impl Objective {
 
 /// Delays to be found.
 #[derive(Clone, Debug)]
-pub(crate) struct Problem {
+pub(crate) struct DelayProblem {
     pub(crate) objective: Objective,
     /// When each agent arrives without a delay \[ticks\].
     pub(crate) ends: Vec<i64>,
-    pub(crate) pairs: Vec<Pair>,
+    pub(crate) pairs: Vec<ForbiddenPairDelays>,
 }
 
-impl Problem {
+impl DelayProblem {
     /// Number of agents.
     pub(crate) fn len(&self) -> usize {
         self.ends.len()
@@ -208,9 +210,9 @@ impl Problem {
     pub(crate) fn of(&self, agents: &[usize]) -> Self {
         let mut places = vec![None; self.len()];
         agents.iter().enumerate().for_each(|(place, &agent)| places[agent] = Some(place));
-        let pair = |pair: &Pair| {
+        let pair = |pair: &ForbiddenPairDelays| {
             let [Some(first), Some(second)] = pair.agents.map(|agent| places[agent]) else { return None };
-            Some(Pair { agents: [first, second], forbidden: pair.forbidden.clone() })
+            Some(ForbiddenPairDelays { agents: [first, second], forbidden: pair.forbidden.clone() })
         };
         let pairs = self.pairs.iter().filter_map(pair).collect();
         Self { objective: self.objective, ends: agents.iter().map(|&agent| self.ends[agent]).collect(), pairs }
@@ -230,7 +232,7 @@ impl Problem {
     }
 
     /// These groups, each with its own problem. O(agents + pairs), nearly.
-    pub(super) fn apart(&self) -> Vec<(Vec<usize>, Self)> {
+    pub(super) fn independent_problems(&self) -> Vec<(Vec<usize>, Self)> {
         let parts = self.parts();
         let mut places = vec![[0; 2]; self.len()];
         for (name, agents) in parts.iter().enumerate() {
@@ -243,7 +245,10 @@ impl Problem {
         let mut apart: Vec<(Vec<usize>, Self)> = parts.into_iter().map(part).collect();
         for pair in &self.pairs {
             let [[name, first], [_, second]] = pair.agents.map(|agent| places[agent]);
-            apart[name].1.pairs.push(Pair { agents: [first, second], forbidden: pair.forbidden.clone() });
+            apart[name]
+                .1
+                .pairs
+                .push(ForbiddenPairDelays { agents: [first, second], forbidden: pair.forbidden.clone() });
         }
         apart
     }

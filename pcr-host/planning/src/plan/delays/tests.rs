@@ -1,19 +1,19 @@
 //! Compares with all choices of sides, for small fleets.
 
-use super::feasible::{Feasible, feasible};
-use super::problem::Constraint;
-use super::search::Found;
+use super::branch_and_bound::DelaySearchResult;
+use super::feasibility::{Feasibility, feasible};
+use super::problem::DifferenceConstraint;
 use super::*;
-use pcr_formats::random::Random;
+use pcr_formats::splitmix64::SplitMix64;
 
 const FLEETS: u64 = 500;
 
 /// Longest paths of constraints by as many rounds as there are agents; none if a round more still raises something.
-fn longest(count: usize, constraints: &[Constraint]) -> Option<Vec<i64>> {
+fn longest(count: usize, constraints: &[DifferenceConstraint]) -> Option<Vec<i64>> {
     let mut delays = vec![0_i64; count];
     for round in 0..=count {
         let before = delays.clone();
-        for &Constraint { from, to, least } in constraints {
+        for &DifferenceConstraint { from, to, least } in constraints {
             delays[to] = delays[to].max(delays[from] + least);
         }
         if before == delays {
@@ -27,7 +27,7 @@ fn longest(count: usize, constraints: &[Constraint]) -> Option<Vec<i64>> {
 }
 
 /// The least cost of all choices of one gap of each pair, if any choice has delays.
-fn by_force(problem: &Problem, place: usize, chosen: &mut Vec<Constraint>) -> Option<i128> {
+fn by_force(problem: &DelayProblem, place: usize, chosen: &mut Vec<DifferenceConstraint>) -> Option<i128> {
     let Some(pair) = problem.pairs.get(place) else {
         return longest(problem.len(), chosen).map(|delays| problem.cost(&delays));
     };
@@ -35,9 +35,9 @@ fn by_force(problem: &Problem, place: usize, chosen: &mut Vec<Constraint>) -> Op
     let mut best: Option<i128> = None;
     for gap in 0..=intervals.len() {
         let before = chosen.len();
-        let above = gap.checked_sub(1).map(|last| pair.beside(intervals[last])[1]);
-        let below = intervals.get(gap).map(|&next| pair.beside(next)[0]);
-        let sides: Vec<Constraint> = above.into_iter().chain(below).collect();
+        let above = gap.checked_sub(1).map(|last| pair.constraints_around(intervals[last])[1]);
+        let below = intervals.get(gap).map(|&next| pair.constraints_around(next)[0]);
+        let sides: Vec<DifferenceConstraint> = above.into_iter().chain(below).collect();
         if sides.iter().all(|side| side.least < NEVER) {
             chosen.extend(sides);
             let cost = by_force(problem, place + 1, chosen);
@@ -49,8 +49,8 @@ fn by_force(problem: &Problem, place: usize, chosen: &mut Vec<Constraint>) -> Op
 }
 
 /// Two to five agents; most pairs forbid one or two intervals, some without an end.
-fn random(seed: u64, objective: Objective) -> Problem {
-    let mut random = Random(seed);
+fn random(seed: u64, objective: Objective) -> DelayProblem {
+    let mut random = SplitMix64(seed);
     let count = 2 + random.below(4);
     let mut pairs = Vec::new();
     for j in 1..count {
@@ -66,11 +66,11 @@ fn random(seed: u64, objective: Objective) -> Problem {
             });
             let intervals: Vec<[i64; 2]> = intervals.collect();
             if !intervals.is_empty() {
-                pairs.push(Pair::new([i, j], intervals));
+                pairs.push(ForbiddenPairDelays::new([i, j], intervals));
             }
         }
     }
-    Problem { objective, ends: (0..count).map(|_| random.below(50) as i64).collect(), pairs }
+    DelayProblem { objective, ends: (0..count).map(|_| random.below(50) as i64).collect(), pairs }
 }
 
 const OBJECTIVES: [Objective; 2] = [Objective::Sum, Objective::Makespan];
@@ -86,7 +86,7 @@ fn small_fleets_have_the_best_delays_of_all_choices() {
         for objective in OBJECTIVES {
             let problem = random(seed, objective);
             let least = by_force(&problem, 0, &mut Vec::new());
-            let found = best(&problem, &[], Effort::default(), true);
+            let found = best(&problem, &[], DelaySearchOptions::default(), true);
             let Some(least) = least else {
                 assert!(!found.conflicts.is_empty() && found.delays.is_none_or(|all| all.contains(&None)), "{seed}");
                 continue;
@@ -95,7 +95,7 @@ fn small_fleets_have_the_best_delays_of_all_choices() {
             let delays: Vec<i64> = found.delays.unwrap().into_iter().map(Option::unwrap).collect();
             assert!(problem.allows(&delays) && found.conflicts.is_empty(), "{seed}: {delays:?}");
             assert_eq!((problem.cost(&delays), found.proved), (least, true), "{seed}");
-            assert_eq!(found.bound, least - slack(&problem), "{seed}");
+            assert_eq!(found.bound, least - rounding_cost(&problem), "{seed}");
         }
     }
     assert!((FLEETS..2 * FLEETS).contains(&possible), "{possible}");
@@ -107,7 +107,7 @@ fn the_fewest_are_left_out_and_every_conflict_is_one() {
     for seed in 0..FLEETS {
         let problem = random(seed, Objective::Sum);
         let possible = |agents: &[usize]| by_force(&problem.of(agents), 0, &mut Vec::new()).is_some();
-        let found = best(&problem, &[], Effort::default(), true);
+        let found = best(&problem, &[], DelaySearchOptions::default(), true);
         let stay = |mask: u32| (0..problem.len()).filter(|agent| mask >> agent & 1 == 1).collect::<Vec<_>>();
         let most =
             (0..1_u32 << problem.len()).map(stay).filter(|agents| possible(agents)).map(|agents| agents.len()).max();
@@ -133,7 +133,7 @@ fn who_is_left_out_takes_others_along() {
     for seed in 0..FLEETS {
         let problem = random(seed, Objective::Sum);
         let count = problem.len();
-        let mut dice = Random(!seed);
+        let mut dice = SplitMix64(!seed);
         let mut with: Vec<Vec<usize>> = (0..count).map(|agent| vec![agent, dice.below(count)]).collect();
         // All that are taken along by those that are, too.
         for _ in 0..count {
@@ -153,7 +153,7 @@ fn who_is_left_out_takes_others_along() {
                 && by_force(&problem.of(agents), 0, &mut Vec::new()).is_some()
         };
         let most = (0..1_u32 << count).map(stay).filter(possible).map(|agents| agents.len()).max().expect("nobody");
-        let left = leave::left(&problem, &with, Stop { nodes: 1_000, clock: &never }, true);
+        let left = leave_out::agents_to_leave_out(&problem, &with, SearchLimits { nodes: 1_000, clock: &never }, true);
         let staying: Vec<usize> = (0..count).filter(|&agent| left.delays[agent].is_some()).collect();
         assert!(left.fewest && possible(&staying) && staying.len() == most, "{seed}: {staying:?} {most}");
         assert!(problem.of(&staying).allows(&left.delays.iter().flatten().copied().collect::<Vec<_>>()), "{seed}");
@@ -169,13 +169,13 @@ fn whether_there_are_delays_is_known_without_the_best_ones() {
         let problem = random(seed, Objective::Sum);
         let least = by_force(&problem, 0, &mut Vec::new());
         for nodes in [0, 1, 1_000] {
-            match (feasible(&problem, Stop { nodes, clock: &never }).0, least) {
-                (Feasible::Delays(found), Some(_)) => {
+            match (feasible(&problem, SearchLimits { nodes, clock: &never }).0, least) {
+                (Feasibility::Delays(found), Some(_)) => {
                     assert!(problem.allows(&found), "{seed}: {found:?}");
                     possible += 1;
                 }
-                (Feasible::Never, None) => {}
-                (Feasible::Stopped, _) if nodes < 1_000 => stopped += 1,
+                (Feasibility::Never, None) => {}
+                (Feasibility::Stopped, _) if nodes < 1_000 => stopped += 1,
                 (found, least) => panic!("{seed}: {found:?} {least:?}"),
             }
         }
@@ -191,11 +191,11 @@ fn bounds_of_stopped_searches_are_below_the_optimum() {
             let problem = random(seed, objective);
             let Some(least) = by_force(&problem, 0, &mut Vec::new()) else { continue };
             for nodes in [0, 1, 2, 4] {
-                let stop = Stop { nodes, clock: &never };
+                let stop = SearchLimits { nodes, clock: &never };
                 let searches = [
-                    Search::new(&problem, stop).run([], i128::MAX),
-                    Search::new(&problem, stop).lowest(i128::MAX),
-                    Search::new(&problem, stop).lowest(least + 1),
+                    BranchAndBound::new(&problem, stop).run([], i128::MAX),
+                    BranchAndBound::new(&problem, stop).lowest(i128::MAX),
+                    BranchAndBound::new(&problem, stop).lowest(least + 1),
                 ];
                 for found in searches {
                     stopped += u64::from(!found.complete);
@@ -205,12 +205,13 @@ fn bounds_of_stopped_searches_are_below_the_optimum() {
                         "{seed}"
                     );
                 }
-                assert!(Search::new(&problem, stop).lowest(least).bound <= least, "{seed}, {nodes} nodes");
+                assert!(BranchAndBound::new(&problem, stop).lowest(least).bound <= least, "{seed}, {nodes} nodes");
             }
-            let (Feasible::Delays(delays), _) = feasible(&problem, Stop { nodes: 1_000, clock: &never }) else {
+            let (Feasibility::Delays(delays), _) = feasible(&problem, SearchLimits { nodes: 1_000, clock: &never })
+            else {
                 panic!("{seed}: there are delays");
             };
-            let better = improve::improved(&problem, delays.clone(), 20, &never);
+            let better = large_neighbourhood::improved(&problem, delays.clone(), 20, &never);
             assert!(
                 problem.allows(&better) && (least..=problem.cost(&delays)).contains(&problem.cost(&better)),
                 "{seed}"
@@ -221,11 +222,11 @@ fn bounds_of_stopped_searches_are_below_the_optimum() {
 }
 
 /// Everybody goes through the same place, one after the other: the shorter the stay the earlier.
-fn queue(stays: &[i64]) -> Problem {
+fn queue(stays: &[i64]) -> DelayProblem {
     let agents = 0..stays.len();
     let pairs = agents.clone().flat_map(|i| (i + 1..stays.len()).map(move |j| (i, j)));
-    let pairs = pairs.map(|(i, j)| Pair::new([i, j], vec![[-stays[j], stays[i]]])).collect();
-    Problem { objective: Objective::Sum, ends: agents.map(|_| 0).collect(), pairs }
+    let pairs = pairs.map(|(i, j)| ForbiddenPairDelays::new([i, j], vec![[-stays[j], stays[i]]])).collect();
+    DelayProblem { objective: Objective::Sum, ends: agents.map(|_| 0).collect(), pairs }
 }
 
 #[test]
@@ -235,30 +236,30 @@ fn a_queue_of_thirty_is_stopped_with_a_bound_and_is_the_same_every_time() {
     let mut sorted = stays.clone();
     sorted.sort_unstable();
     let least: i64 = sorted.iter().zip((0..30).rev()).map(|(stay, after)| stay * after).sum();
-    let found = || Search::new(&problem, Stop { nodes: 600, clock: &never }).run([], i128::MAX);
-    let Found { delays, bound, complete, nodes } = found();
+    let found = || BranchAndBound::new(&problem, SearchLimits { nodes: 600, clock: &never }).run([], i128::MAX);
+    let DelaySearchResult { delays, bound, complete, nodes } = found();
     let delays = delays.unwrap();
     assert!(problem.allows(&delays) && !complete && nodes > 600);
     let cost = problem.cost(&delays);
     assert!(bound <= i128::from(least) && i128::from(least) <= cost, "{bound} {least} {cost}");
-    let bounds =
-        [20, 200, 2_000].map(|nodes| Search::new(&problem, Stop { nodes, clock: &never }).lowest(cost + 1).bound);
+    let bounds = [20, 200, 2_000]
+        .map(|nodes| BranchAndBound::new(&problem, SearchLimits { nodes, clock: &never }).lowest(cost + 1).bound);
     assert!(bounds.is_sorted() && bounds[0] > bound && bounds[2] <= i128::from(least), "{bounds:?} {least}");
     assert_eq!(found().delays, Some(delays.clone()));
-    let improved = || improve::improved(&problem, delays.clone(), 5, &never);
+    let improved = || large_neighbourhood::improved(&problem, delays.clone(), 5, &never);
     assert!(problem.allows(&improved()) && problem.cost(&improved()) <= cost);
     assert_eq!(improved(), improved());
 }
 
 #[test]
 fn times_are_rounded_outward() {
-    let ticks = Ticks::up_to(100.0);
+    let ticks = TickScale::up_to(100.0);
     let [lo, hi] = ticks.outward([-1.0, 0.1], 1e12);
     let [lo, hi] = [lo, hi].map(|end| ticks.seconds(end.into()));
     assert!(lo < -1.0 && hi > 0.1 && hi - 0.1 < 4e-9 && -1.0 - lo < 4e-9, "{lo} {hi}");
     assert_eq!(ticks.outward([-1e12, 1e12], 1e12), [-NEVER, NEVER]);
     // A year: differences of starts are right to less than a tick all the same.
-    let ticks = Ticks::up_to(3.2e7);
+    let ticks = TickScale::up_to(3.2e7);
     let [_, hi] = ticks.outward([0.0, 0.1], 1e12);
     let delay = ticks.seconds(hi.into());
     assert!(3.1e7 + delay - 3.1e7 > 0.1, "{delay}");

@@ -2,17 +2,17 @@
 //! round; the second agent is planned again, and so are those that come after it. Depth first, the cheaper branch
 //! first.
 
-use super::{Found, Room};
+use super::{AgentReplan, ProfileBuffers};
 use crate::fleet::HostEcm;
-use crate::plan::task::Planner;
-use pcr_core::{Mismatch, Motion, RegionRef, Station, first_overlap};
+use crate::plan::plan_context::Planner;
+use pcr_core::{MismatchError, Motion, RegionRef, SearchNode, first_overlap};
 
 /// Nodes at most.
 const NODES: usize = 400;
 
 /// A fleet that moves by some priorities.
 #[derive(Clone)]
-struct Node<'m> {
+struct PriorityNode<'m> {
     plan: Vec<Motion<'m, f64>>,
     /// For each agent those that it gives way to.
     above: Vec<Vec<usize>>,
@@ -24,11 +24,11 @@ pub(super) fn searched<'m>(
     planner: &Planner<'_, 'm>,
     ecm: &HostEcm<f64>,
     mut limit: f64,
-    room: &mut Room<'m>,
-    stations: &mut [Station<f64>],
+    room: &mut ProfileBuffers<'m>,
+    stations: &mut [SearchNode<f64>],
 ) -> Option<Vec<Motion<'m, f64>>> {
     let count = planner.motions.len();
-    let mut root = Node { plan: planner.motions.to_vec(), above: vec![Vec::new(); count], cost: 0.0 };
+    let mut root = PriorityNode { plan: planner.motions.to_vec(), above: vec![Vec::new(); count], cost: 0.0 };
     for agent in 0..count {
         plan_again(planner, ecm, &mut root, agent, room, stations)?;
     }
@@ -46,7 +46,7 @@ pub(super) fn searched<'m>(
             best = Some(node.plan);
             continue;
         };
-        let mut ways: Vec<Node<'m>> = [[i, j], [j, i]]
+        let mut ways: Vec<PriorityNode<'m>> = [[i, j], [j, i]]
             .into_iter()
             .filter_map(|way| put_in_order(planner, ecm, &node, way, room, stations))
             .collect();
@@ -58,7 +58,7 @@ pub(super) fn searched<'m>(
 }
 
 /// Two agents that collide.
-fn collision(ecm: &HostEcm<f64>, plan: &[Motion<'_, f64>]) -> Result<Option<[usize; 2]>, Mismatch> {
+fn collision(ecm: &HostEcm<f64>, plan: &[Motion<'_, f64>]) -> Result<Option<[usize; 2]>, MismatchError> {
     let all = Motion::span(plan);
     for (agent, motion) in plan.iter().enumerate() {
         let after = ecm.row(plan, agent)?.filter(|region| region.other() > agent);
@@ -73,11 +73,11 @@ fn collision(ecm: &HostEcm<f64>, plan: &[Motion<'_, f64>]) -> Result<Option<[usi
 fn put_in_order<'m>(
     planner: &Planner<'_, 'm>,
     ecm: &HostEcm<f64>,
-    node: &Node<'m>,
+    node: &PriorityNode<'m>,
     [first, second]: [usize; 2],
-    room: &mut Room<'m>,
-    stations: &mut [Station<f64>],
-) -> Option<Node<'m>> {
+    room: &mut ProfileBuffers<'m>,
+    stations: &mut [SearchNode<f64>],
+) -> Option<PriorityNode<'m>> {
     if superiors(&node.above, first).contains(&second) {
         return None;
     }
@@ -117,10 +117,10 @@ fn superiors(above: &[Vec<usize>], agent: usize) -> Vec<usize> {
 fn plan_again<'m>(
     planner: &Planner<'_, 'm>,
     ecm: &HostEcm<f64>,
-    node: &mut Node<'m>,
+    node: &mut PriorityNode<'m>,
     agent: usize,
-    room: &mut Room<'m>,
-    stations: &mut [Station<f64>],
+    room: &mut ProfileBuffers<'m>,
+    stations: &mut [SearchNode<f64>],
 ) -> Option<()> {
     let above = superiors(&node.above, agent);
     let motion = planner.motions[agent];
@@ -128,6 +128,6 @@ fn plan_again<'m>(
     node.plan[agent] = motion;
     let regions = ecm.row(&node.plan, agent).ok()?;
     let regions: Vec<RegionRef<'_, f64>> = regions.filter(|region| above.contains(&region.other())).collect();
-    node.plan[agent] = Found::of(&motion, &regions, stations)?.motion(motion, room)?;
+    node.plan[agent] = AgentReplan::of(&motion, &regions, stations)?.motion(motion, room)?;
     Some(())
 }

@@ -1,15 +1,15 @@
 //! The proof that the vehicles of a record never touched: window by window, by the independent checker.
 
-use super::Recorded;
-use super::read::{Read, read};
-use pcr_certify::data::{Agent, Angle, Path, Phase, Segment, Travel};
+use super::RecordVehicle;
+use super::read::{RecordContents, read};
 use pcr_certify::motion::{Mover, meetings};
+use pcr_certify::raw::{RawAgent, RawAngle, RawMotion, RawPath, RawPhase, RawSegment};
 use serde::Serialize;
 use std::io::{self, BufRead};
 
 /// The result of the check of a record.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Certificate {
+pub struct RecordCertificate {
     /// `pcr-contacts`
     pub format: &'static str,
     /// 1
@@ -23,7 +23,7 @@ pub struct Certificate {
     /// Length travelled by all vehicles together \[m\].
     pub travelled: f64,
     /// The first contact of each pair of vehicles in each window of time.
-    pub contacts: Vec<Contact>,
+    pub contacts: Vec<VehicleContact>,
     /// Number of pairs and windows without a decision.
     pub undecided: usize,
     /// Why there is no verdict.
@@ -33,7 +33,7 @@ pub struct Certificate {
 
 /// A contact of two vehicles.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Contact {
+pub struct VehicleContact {
     /// Names of the two vehicles.
     pub vehicles: [String; 2],
     /// Time of the contact \[s\].
@@ -50,16 +50,16 @@ const WINDOW: f64 = 20.0;
 /// # Errors
 /// A line that is not part of a record, or fewer than two vehicles, of which nothing could be proved. A record that ends within a line
 /// after the first one was cut off there: this is no error, and the verdict is `undecided`.
-pub fn certify(text: impl BufRead) -> io::Result<Certificate> {
-    let Read { vehicles, tracks, cut } = read(text)?;
+pub fn certify(text: impl BufRead) -> io::Result<RecordCertificate> {
+    let RecordContents { vehicles, tracks, cut } = read(text)?;
     let count = vehicles.len();
     // In a record that was cut, some vehicles may have no line yet.
     let there = vehicles.into_iter().zip(tracks).filter(|(_, track)| !track.is_empty());
     let (there, tracks): (Vec<_>, Vec<_>) = there.unzip();
-    Ok(Certificate { vehicles: count, ..checked(&there, &tracks, cut) })
+    Ok(RecordCertificate { vehicles: count, ..checked(&there, &tracks, cut) })
 }
 
-fn checked(vehicles: &[Recorded], tracks: &[Vec<[f64; 3]>], error: Option<String>) -> Certificate {
+fn checked(vehicles: &[RecordVehicle], tracks: &[Vec<[f64; 3]>], error: Option<String>) -> RecordCertificate {
     let mut times: Vec<f64> = tracks.iter().flatten().map(|point| point[0]).collect();
     times.sort_by(f64::total_cmp);
     let (begin, end) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
@@ -67,20 +67,21 @@ fn checked(vehicles: &[Recorded], tracks: &[Vec<[f64; 3]>], error: Option<String
     let travelled = legs.map(|leg| (leg[1][1] - leg[0][1]).hypot(leg[1][2] - leg[0][2])).sum();
     let (format, version) = ("pcr-contacts", 1);
     let (count, time) = (vehicles.len(), end - begin);
-    let mut found = Certificate { format, version, vehicles: count, time, travelled, error, ..Certificate::default() };
+    let mut found =
+        RecordCertificate { format, version, vehicles: count, time, travelled, error, ..RecordCertificate::default() };
     let far = |track: &Vec<[f64; 3]>| track.iter().flat_map(|[_, x, y]| [x.abs(), y.abs()]).fold(1.0, f64::max);
     let far: Vec<f64> = tracks.iter().map(far).collect();
     for [from, to] in windows(&times) {
         let movers = vehicles.iter().zip(tracks).zip(&far).enumerate();
         let movers = movers.map(|(id, ((vehicle, track), &far))| {
-            Mover::new(&agent(id as u64, vehicle.radius, &within(track, from, to), far), [from, to])
+            Mover::new(&agent(id as u64, vehicle.radius, &track_between(track, from, to), far), [from, to])
         });
         match movers.collect::<Result<Vec<_>, _>>() {
             Ok(movers) => {
                 let met = meetings(&movers);
                 found.undecided += met.undecided.len();
                 let name = |id: u64| vehicles.get(id as usize).map_or_else(String::new, |vehicle| vehicle.name.clone());
-                found.contacts.extend(met.contacts.iter().map(|meeting| Contact {
+                found.contacts.extend(met.contacts.iter().map(|meeting| VehicleContact {
                     vehicles: meeting.agents.map(name),
                     time: meeting.time,
                     clearance: meeting.clearance,
@@ -115,7 +116,7 @@ pub(super) fn windows(times: &[f64]) -> Vec<[f64; 2]> {
 }
 
 /// The part of a track between two times.
-fn within(track: &[[f64; 3]], from: f64, to: f64) -> Vec<[f64; 3]> {
+fn track_between(track: &[[f64; 3]], from: f64, to: f64) -> Vec<[f64; 3]> {
     let at = |time: f64| {
         let next = track.partition_point(|point| point[0] <= time);
         match (next.checked_sub(1).and_then(|last| track.get(last)), track.get(next)) {
@@ -133,9 +134,9 @@ fn within(track: &[[f64; 3]], from: f64, to: f64) -> Vec<[f64; 3]> {
 }
 
 /// A disc that goes from point to point; `far` is the largest coordinate of those that they were taken from \[m\].
-fn agent(id: u64, radius: f64, points: &[[f64; 3]], far: f64) -> Agent {
+fn agent(id: u64, radius: f64, points: &[[f64; 3]], far: f64) -> RawAgent {
     let [first, last] = [points.first(), points.last()].map(|end| end.copied().unwrap_or_default());
-    let (mut segments, mut phases): (Vec<Segment>, Vec<Phase>) = (Vec::new(), Vec::new());
+    let (mut segments, mut phases): (Vec<RawSegment>, Vec<RawPhase>) = (Vec::new(), Vec::new());
     let (mut length, mut fastest, mut heading, mut initial) = (0.0, 0.0_f64, 0.0, None);
     for pair in points.windows(2) {
         let [a, b] = [pair[0], pair[1]];
@@ -146,26 +147,26 @@ fn agent(id: u64, radius: f64, points: &[[f64; 3]], far: f64) -> Agent {
         if way > 0.0 {
             let direction = (b[2] - a[2]).atan2(b[1] - a[1]);
             let turn = direction - *initial.get_or_insert(direction) - heading;
-            let turns = if turn == 0.0 { Vec::new() } else { vec![Angle::Radians(turn)] };
+            let turns = if turn == 0.0 { Vec::new() } else { vec![RawAngle::Radians(turn)] };
             heading += turn;
-            segments.push(Segment { length: way, radius: None, turns, from: length, to: length + way });
+            segments.push(RawSegment { length: way, radius: None, turns, from: length, to: length + way });
         }
         let speed = way / time;
         fastest = fastest.max(speed);
         let [begin, end] = [a[0] - first[0], b[0] - first[0]];
-        phases.push(Phase { time: [begin, end], length: [length, length + way], speed: [speed, speed] });
+        phases.push(RawPhase { time: [begin, end], length: [length, length + way], speed: [speed, speed] });
         length += way;
     }
     if segments.is_empty() {
-        segments.push(Segment { length: 0.0, radius: None, turns: Vec::new(), from: 0.0, to: 0.0 });
+        segments.push(RawSegment { length: 0.0, radius: None, turns: Vec::new(), from: 0.0, to: 0.0 });
         phases.clear();
     }
     // Each direction and each sum is rounded, along all of the way; and so are the coordinates and the times.
     let late = fastest * (last[0] - first[0]);
     let rounding = f64::EPSILON * (length + late + far) * (64.0 + 4.0 * segments.len() as f64);
     let start = [first[1], first[2]];
-    let path = Path { start, heading: Angle::Radians(initial.unwrap_or(0.0)), segments, rounding, step: 0.0 };
+    let path = RawPath { start, heading: RawAngle::Radians(initial.unwrap_or(0.0)), segments, rounding, step: 0.0 };
     // Discs that are nearer than that are taken for discs that touch.
     let radius = radius + rounding;
-    Agent { id, radius, path, travel: Some(Travel { start: first[0], phases, lag: 0.0, time_excess: 0.0 }) }
+    RawAgent { id, radius, path, travel: Some(RawMotion { start: first[0], phases, lag: 0.0, time_excess: 0.0 }) }
 }

@@ -1,6 +1,6 @@
 //! Reads a record, line by line, and finds out whether it is as it was written.
 
-use super::{End, Head, Recorded, VERSION};
+use super::{RecordHeader, RecordTrailer, RecordVehicle, VERSION};
 use crc32fast::Hasher;
 use serde::de::IgnoredAny;
 use std::io::{self, BufRead};
@@ -11,13 +11,13 @@ const FASTEST: f64 = 1e3;
 const LATEST: f64 = 1e10;
 
 /// Positions of a vehicle: time \[s\], x and y \[m\].
-type Track = Vec<[f64; 3]>;
+type RecordedTrack = Vec<[f64; 3]>;
 
 /// The contents of a record.
-pub(super) struct Read {
-    pub(super) vehicles: Vec<Recorded>,
+pub(super) struct RecordContents {
+    pub(super) vehicles: Vec<RecordVehicle>,
     /// The track of each vehicle.
-    pub(super) tracks: Vec<Track>,
+    pub(super) tracks: Vec<RecordedTrack>,
     /// Why the record is not as it was written, if it is not.
     pub(super) cut: Option<String>,
 }
@@ -26,14 +26,14 @@ pub(super) struct Read {
 ///
 /// # Errors
 /// As [`certify`](super::certify).
-pub(super) fn read(mut text: impl BufRead) -> io::Result<Read> {
+pub(super) fn read(mut text: impl BufRead) -> io::Result<RecordContents> {
     let wrong = |line: usize, why: String| io::Error::new(io::ErrorKind::InvalidData, format!("line {line}: {why}"));
     let mut lines = std::iter::from_fn(|| next(&mut text).transpose()).enumerate();
     let (_, first) = lines.next().ok_or_else(|| wrong(1, "missing".into()))?;
     let (first, _) = first?;
     let vehicles = head(&first).map_err(|why| wrong(1, why))?;
-    let mut tracks: Vec<Track> = vec![Vec::new(); vehicles.len()];
-    let (mut end, mut count, mut sum): (Option<End>, u64, _) = (None, 0, Hasher::new());
+    let mut tracks: Vec<RecordedTrack> = vec![Vec::new(); vehicles.len()];
+    let (mut end, mut count, mut sum): (Option<RecordTrailer>, u64, _) = (None, 0, Hasher::new());
     let add = |sum: &mut Hasher, text: &str| [text, "\n"].iter().for_each(|part| sum.update(part.as_bytes()));
     add(&mut sum, &first);
     for (line, text) in lines {
@@ -57,12 +57,12 @@ pub(super) fn read(mut text: impl BufRead) -> io::Result<Read> {
     if let Some(none) = tracks.iter().position(Vec::is_empty).filter(|_| cut.is_none()) {
         return Err(wrong(1, format!("nothing about {}", vehicles[none].name)));
     }
-    Ok(Read { vehicles, tracks, cut })
+    Ok(RecordContents { vehicles, tracks, cut })
 }
 
 /// The vehicles that the first line names.
-fn head(text: &str) -> Result<Vec<Recorded>, String> {
-    let Head { format, version, vehicles } = serde_json::from_str(text).map_err(|error| error.to_string())?;
+fn head(text: &str) -> Result<Vec<RecordVehicle>, String> {
+    let RecordHeader { format, version, vehicles } = serde_json::from_str(text).map_err(|error| error.to_string())?;
     if (format.as_str(), version) != ("pcr-record", VERSION) {
         return Err(format!("a record of version {VERSION} is expected"));
     }
@@ -79,7 +79,7 @@ fn head(text: &str) -> Result<Vec<Recorded>, String> {
 }
 
 /// Adds a position to its track.
-fn point(text: &str, tracks: &mut [Track]) -> Result<(), String> {
+fn point(text: &str, tracks: &mut [RecordedTrack]) -> Result<(), String> {
     let (vehicle, time, x, y): (usize, f64, f64, f64) = serde_json::from_str(text).map_err(|it| it.to_string())?;
     let track = tracks.get_mut(vehicle).ok_or("no such vehicle")?;
     if let Some(far) = [x, y].into_iter().find(|it| it.abs() > FARTHEST) {
@@ -102,11 +102,11 @@ fn point(text: &str, tracks: &mut [Track]) -> Result<(), String> {
 }
 
 /// Why a record with so many lines and this checksum is not as it was written, if it is not.
-fn cut(end: Option<End>, count: u64, sum: Hasher) -> Option<String> {
+fn cut(end: Option<RecordTrailer>, count: u64, sum: Hasher) -> Option<String> {
     match end {
         None => Some("the record is cut: its last line is missing".to_owned()),
         Some(end) if end.lines != count => Some(format!("the record is cut: it has {count} lines of {}", end.lines)),
-        Some(End { crc32: Some(told), .. }) if told != sum.finalize() => {
+        Some(RecordTrailer { crc32: Some(told), .. }) if told != sum.finalize() => {
             Some("the record is not as it was written: its checksum is another one".to_owned())
         }
         Some(_) => None,

@@ -2,8 +2,8 @@ use super::certify::windows;
 use super::*;
 
 fn record(apart: f64) -> String {
-    let vehicles = ["a", "b"].map(|name| Recorded { name: name.into(), radius: 0.5 });
-    let mut record = Record::new(Vec::new(), &vehicles).unwrap();
+    let vehicles = ["a", "b"].map(|name| RecordVehicle { name: name.into(), radius: 0.5 });
+    let mut record = RecordWriter::new(Vec::new(), &vehicles).unwrap();
     // Past one another with a distance of `apart`, there and back.
     for k in 0..=600 {
         let time = f64::from(k) * 0.1;

@@ -1,0 +1,141 @@
+//! Finds the end of an interval of forbidden values, starting from one value inside, by searching for contacts.
+//!
+//! Towards the end of the forbidden interval a contact gets shorter: its duration D falls with the square root of the
+//! distance to the end, because the discs overlap less and less deeply. So D² falls linearly, and two values inside
+//! give a guess of the end. It is only a guess: the value that is returned has been tried, with no contact, and a value inside is no
+//! further from it than the resolution. Where the guesses do not help, the bracket is bisected.
+
+use crate::scalar::{Scalar, Wide};
+
+/// Largest number of values that are tried; formats with fewer digits need fewer.
+const TRIALS: u32 = 96;
+/// The bracket is bisected once in this number of trials, whatever the guesses say.
+const PATIENCE: u32 = 12;
+
+/// What happens in a region with one value of a delay, a wait or a duration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Trial<S> {
+    /// The agents come nowhere near each other where the region is.
+    Clear,
+    /// They meet where the region is, but at a point that belongs to another region.
+    Elsewhere,
+    /// They touch for this time \[s\], so slightly that the point may or may not belong to the region.
+    Touch(S),
+    /// They are at a point of the region, in a contact of this duration \[s\].
+    Contact(S),
+}
+
+impl<S: Scalar> Trial<S> {
+    /// The duration of what counts as a contact; `strictly`, one in another region counts, too.
+    fn contact(self, strictly: bool) -> Option<S> {
+        match self {
+            Self::Touch(long) | Self::Contact(long) => Some(long),
+            Self::Elsewhere if strictly => Some(S::ZERO),
+            Self::Elsewhere | Self::Clear => None,
+        }
+    }
+
+    /// Whether the agents are in the region for certain.
+    pub(super) fn is_inside(self) -> bool {
+        matches!(self, Self::Contact(_))
+    }
+}
+
+/// A bracket: a value inside the forbidden interval, and one outside that was tried and is clear.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ForbiddenBracket<S> {
+    inside: S,
+    outside: S,
+    /// The bracket is not made narrower than this.
+    resolution: S,
+}
+
+impl<S: Scalar> ForbiddenBracket<S> {
+    /// The bracket from a value inside to the first value that is clear, of `near`, larger steps away from it, and `far`. `None` if there is none.
+    pub(super) fn new(inside: S, [near, far]: [S; 2], resolution: S, trial: &impl Fn(S) -> Trial<S>) -> Option<Self> {
+        let rises = inside <= far;
+        let (mut outside, mut step) = (near, (near - inside).abs().max(resolution));
+        loop {
+            if trial(outside) == Trial::Clear {
+                return Some(Self { inside, outside, resolution });
+            }
+            let next = if rises { (outside + step).min(far) } else { (outside - step).max(far) };
+            // In the far range of floating point a step may change nothing.
+            if next == outside {
+                return None;
+            }
+            // Values and steps are at most twice the limit, so that no sum overflows.
+            (outside, step) = (next, step.double().min(S::LIMIT.double()));
+        }
+    }
+
+    /// The value outside, which is clear.
+    pub(super) fn outside(&self) -> S {
+        self.outside
+    }
+
+    /// A value that is clear, when the bracket has been narrowed down.
+    pub(super) fn shrunk(self, trial: &impl Fn(S) -> Trial<S>) -> S {
+        let (end, clear) = self.narrowed(trial, false);
+        if end == clear {
+            return clear;
+        }
+        // The interval of another region begins before this one ends: a contact there may hide one of this region.
+        Self { inside: end, outside: clear, ..self }.narrowed(trial, true).1
+    }
+
+    /// The value outside when the bracket has been narrowed down, and the nearest one that is clear.
+    fn narrowed(&self, trial: &impl Fn(S) -> Trial<S>, strictly: bool) -> (S, S) {
+        let Self { mut inside, mut outside, resolution } = *self;
+        let mut clear = outside;
+        // The last two values inside, and the previous guess.
+        let (mut near, mut far, mut guess) = (trial(inside).contact(strictly).map(|long| (inside, long)), None, None);
+        for number in 0..TRIALS {
+            if (outside - inside).abs() <= resolution {
+                break;
+            }
+            let between = |place: &S| inside.min(outside) < *place && *place < inside.max(outside);
+            let next = near.zip(far).and_then(|(near, far)| vanishing(near, far)).filter(between);
+            let places =
+                next.filter(|_| number % PATIENCE != 0).map(|next| beside(next, guess, inside, outside, resolution));
+            guess = next;
+            let place = places.and_then(|places| places.into_iter().find(between));
+            let place = place.unwrap_or_else(|| inside + (outside - inside).half());
+            let found = trial(place);
+            match found.contact(strictly) {
+                Some(long) => {
+                    (near, far) = (Some((place, long)), near);
+                    inside = place;
+                }
+                None => {
+                    outside = place;
+                    if found == Trial::Clear {
+                        clear = place;
+                    }
+                }
+            }
+        }
+        (outside, clear)
+    }
+}
+
+/// Extrapolates the squares of the durations at two values linearly, and returns where they vanish.
+fn vanishing<S: Scalar>((near, short): (S, S), (far, long): (S, S)) -> Option<S> {
+    if short >= long {
+        return None;
+    }
+    // (near - far) short² / (long² - short²)
+    let part = (near - far).abs().portion(short, long + short);
+    let left = part.times(short).narrow().quotient(long - short);
+    Some(if near < far { near - left } else { near + left })
+}
+
+/// Values to try next to a guess, at a distance equal to its uncertainty: one short of it, which improves the next
+/// guess, or one beyond it if the bracket is almost closed from inside.
+fn beside<S: Scalar>(guess: S, before: Option<S>, inside: S, outside: S, resolution: S) -> [S; 2] {
+    let fine = resolution.half();
+    let doubt = (guess - before.unwrap_or(inside)).abs().half().half().max(fine.half());
+    let (short, long) = if inside < outside { (guess - doubt, guess + doubt) } else { (guess + doubt, guess - doubt) };
+    let beyond = if inside < outside { guess + fine } else { guess - fine };
+    if doubt <= fine && (guess - inside).abs() <= fine { [beyond, long] } else { [short, long] }
+}

@@ -1,0 +1,113 @@
+//! Waits on the way: how long an agent has to stand at a length of its path so that it meets no region after it.
+//!
+//! After this length the motion is delayed by the wait, so the forbidden waits are found like the forbidden delays
+//! (`delay`). How long the agent may stand there follows from the windows in which its place is blocked.
+
+use crate::error::in_range;
+use crate::geometry::Interval;
+use crate::query::boundary_search::{ForbiddenBracket, Trial};
+use crate::query::start_delay::{earliest_start, settle, whole};
+use crate::region::RegionRef;
+use crate::scalar::Scalar;
+
+impl<S: Scalar> RegionRef<'_, S> {
+    /// The least wait from `wait` on, at a length of the path, with which the ego does not meet the rest of this
+    /// region, and whether the rest is clear then (as `settle` asks).
+    fn next_free_after(&self, at: S, wait: S, strictly: bool) -> Option<(S, bool)> {
+        let (ego, other) = (self.ego_motion(), self.other_motion());
+        let at = ego.path().length().min(at);
+        let part = Interval::new(self.length().lo.max(at), self.length().hi);
+        if part.lo > part.hi {
+            return Some((wait, true));
+        }
+        // Standing at the end of the path belongs to the rest.
+        let leaves = self.leaves(at);
+        // The motion with the wait is made by someone else, who rounds its times again.
+        let allowance = self.allowance();
+        let trial = |wait: S| {
+            let Ok(ego) = ego.delayed(wait) else { return Trial::Contact(S::ZERO) };
+            let Interval { lo, hi } = ego.time().hull(other.time());
+            self.tried(&ego, part, Interval::new(lo.max(leaves + wait).min(hi), hi), allowance)
+        };
+        let is_parked = || self.blocked(part, Interval::new(S::LIMIT, S::LIMIT)).next().is_some();
+        let own = ego.time_in(part.widen(allowance, whole(ego)));
+        let own = Interval::new(own.lo.max(leaves), own.hi.max(leaves));
+        if self.is_uncertain() {
+            // All waits that the bounding box allows count as forbidden.
+            let near = self.with_lateness(self.delays_of(own, allowance));
+            let (parked, stands) = (is_parked(), part.hi >= ego.path().length() || self.is_open_at_start());
+            let apart = wait >= near.hi && !parked || wait < near.lo && !stands;
+            return if apart { Some((wait, true)) } else { (!parked).then_some((near.hi, true)) };
+        }
+        match trial(wait) {
+            Trial::Clear => return Some((wait, true)),
+            Trial::Elsewhere if !strictly => return Some((wait, false)),
+            _ => {}
+        }
+        if is_parked() {
+            return None;
+        }
+        let most = S::LIMIT.min(S::LIMIT - ego.time().hi);
+        let far = (other.time().hi - leaves + self.resolution()).max(wait).min(most);
+        let near = self.delays_of(own, allowance).hi.max(wait).min(far);
+        let bracket = ForbiddenBracket::new(wait, [near, far], self.resolution(), &trial)?;
+        Some((if strictly { bracket.outside() } else { bracket.shrunk(&trial) }, true))
+    }
+
+    /// The time at which the ego's motion leaves a length of its path.
+    fn leaves(&self, at: S) -> S {
+        self.ego_motion().time().lo + self.ego_motion().profile().last_time_at(at)
+    }
+
+    /// How long the ego can stand at a length of its path, counted from when its motion leaves it.
+    fn longest_wait(&self, at: S) -> S {
+        let at = self.ego_motion().path().length().min(at);
+        let leaves = self.leaves(at);
+        let windows = self.blocked(Interval::new(at, at), Interval::new(leaves, S::LIMIT));
+        windows.map(|window| window.lo - leaves).fold(S::LIMIT, S::min)
+    }
+}
+
+/// The least additional wait of the ego at a length of its path \[m\], from `from` \[s\] on, with which it meets none
+/// of the regions when it continues with its motion. Pass the regions of its row in the table, or those with some of
+/// the other agents. The length is clamped to the path; a wait at length 0 is a delay of the start. `None` if no wait
+/// helps, if the agent would be hit while it waits, or for an argument that is NaN or beyond [`Scalar::LIMIT`]. The
+/// function does not check that the agent can stop there; a motion that is at rest at this length can.
+///
+/// A motion that stands at this length longer by the result does not come nearer to the agents of these regions than the sum of the radii from then on, however
+/// its times are rounded when the wait is added to them.
+///
+/// If the motion itself waits at this length, the additional wait comes after that. If the length cuts a region in two,
+/// a wait with which the agent would pass between the parts may be missed. If agents may be late, a wait that is
+/// shorter than all those that the bounding box of a region allows may be missed, too. Cost: that of [`earliest_start`]
+/// for each region that is met, and a few hundred operations for each piece at this length.
+///
+/// ```
+/// use pcr_core::{Ecm, Motion, Path, Piece, Point, Pose, Profile, Radians, EcmEntry, earliest_departure};
+/// let east = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
+/// let north = Pose { position: Point::new(0.0, -2.0), heading: Radians(core::f64::consts::FRAC_PI_2) };
+/// let paths = [Path::<f64, 1>::starting_at(east)?.line(4.0)?, Path::starting_at(north)?.line(4.0)?];
+/// let profile = Profile::<f64, 1>::from_pieces(1.0, [(4.0, 0.0)])?;
+/// let motion = |path| Motion::new(path, profile.as_profile(), 0.25, 0.0);
+/// let fleet = [motion(paths[0].as_path())?, motion(paths[1].as_path())?];
+/// let ecm = Ecm::build([EcmEntry::EMPTY; 4], [Piece::EMPTY; 4], &fleet)?;
+///
+/// // 1 m from the start it waits as long as at the start; 0.4 m before the crossing the other would meet it standing.
+/// let wait = earliest_departure(ecm.row(&fleet, 0)?, 1.0, 0.0).unwrap();
+/// assert!((wait - 0.5 * 2.0_f64.sqrt()).abs() < 1e-8);
+/// assert_eq!(earliest_departure(ecm.row(&fleet, 0)?, 1.6, 0.0), None);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+pub fn earliest_departure<'a, S: Scalar>(
+    regions: impl Iterator<Item = RegionRef<'a, S>> + Clone,
+    length: S,
+    from: S,
+) -> Option<S> {
+    if length <= S::ZERO {
+        return earliest_start(regions, from);
+    }
+    let (length, from) = (in_range(length, "length").ok()?, in_range(from, "wait").ok()?);
+    let wait = settle(regions.clone(), from, |region, wait, strictly| region.next_free_after(length, wait, strictly))?;
+    let longest = regions.map(|region| region.longest_wait(length)).fold(S::LIMIT, S::min);
+    (wait <= S::ZERO || wait <= longest).then_some(wait)
+}

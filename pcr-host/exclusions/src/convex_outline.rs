@@ -1,0 +1,132 @@
+//! Convex polygons that contain corridors.
+
+use pcr_formats::plane_geometry::{hull, turn};
+use pcr_formats::scenario::PathSegment;
+use pcr_formats::scenario::PlacedSegment;
+use std::f64::consts::{PI, TAU};
+
+/// Corners of the polygon around a disc.
+const CORNERS: usize = 16;
+
+/// Arcs are cut into parts that turn by no more than this \[rad\].
+const TURN: f64 = PI / 12.0;
+
+/// The convex polygon around discs of this radius \[m\] everywhere on a curve, counter-clockwise. It contains them all, and reaches no
+/// farther than 2 % of the radius beyond the hull of a straight corridor.
+pub(crate) fn around(curve: &[PlacedSegment], radius: f64) -> Vec<[f64; 2]> {
+    let reach = radius / (PI / CORNERS as f64).cos();
+    let disc = |[x, y]: [f64; 2]| {
+        (0..CORNERS).map(move |k| {
+            let angle = TAU * (k as f64 + 0.5) / CORNERS as f64;
+            [x + reach * angle.cos(), y + reach * angle.sin()]
+        })
+    };
+    hull(curve.iter().flat_map(corners).flat_map(disc).collect())
+}
+
+/// Points whose convex hull contains a piece.
+fn corners(piece: &PlacedSegment) -> Vec<[f64; 2]> {
+    let PathSegment::Arc { radius, sweep } = piece.shape else { return vec![piece.start, piece.end()] };
+    let parts = (sweep.abs() / TURN).ceil().max(1.0);
+    let mut corners = vec![piece.start];
+    for k in 0..parts as usize {
+        let to = |share: f64| PlacedSegment { shape: PathSegment::Arc { radius, sweep: sweep * share }, ..*piece };
+        let begin = to(k as f64 / parts);
+        // An arc lies in the triangle of its ends and the point in which its tangents meet.
+        let tangent = radius * (sweep.abs() / parts / 2.0).tan();
+        let ([x, y], heading) = (begin.end(), begin.heading_at_end());
+        corners.push([x + tangent * heading.cos(), y + tangent * heading.sin()]);
+        corners.push(to((k + 1) as f64 / parts).end());
+    }
+    corners
+}
+
+/// Distance of a point from a polygon, of any shape; 0 inside \[m\].
+pub(crate) fn distance(polygon: &[[f64; 2]], at: [f64; 2]) -> f64 {
+    (-depth(polygon, at)).max(0.0)
+}
+
+/// Distance of a point in a polygon, of any shape, from its sides; below 0 outside \[m\]. Where sides cross, what is inside twice is
+/// outside.
+pub(crate) fn depth(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
+    let mut inside = false;
+    let mut least = f64::INFINITY;
+    for (k, &b) in polygon.iter().enumerate() {
+        let a = polygon[(k + polygon.len() - 1) % polygon.len()];
+        let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+        if (a[1] > y) != (b[1] > y) && x < a[0] + dx * (y - a[1]) / dy {
+            inside = !inside;
+        }
+        let square = dx * dx + dy * dy;
+        let share = if square > 0.0 { (((x - a[0]) * dx + (y - a[1]) * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
+        least = least.min((a[0] + dx * share - x).hypot(a[1] + dy * share - y));
+    }
+    if inside { least } else { -least }
+}
+
+/// Whether two polygons of any shape have a point in common.
+pub(crate) fn intersect(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
+    let (Some(&first_a), Some(&first_b)) = (a.first(), b.first()) else { return false };
+    if distance(a, first_b) <= 0.0 || distance(b, first_a) <= 0.0 {
+        return true;
+    }
+    let sides = |polygon: &'_ [[f64; 2]]| {
+        let last = polygon.len() - 1;
+        (0..polygon.len()).map(|k| [polygon[if k == 0 { last } else { k - 1 }], polygon[k]]).collect::<Vec<_>>()
+    };
+    let crosses = |[a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]| {
+        // A side that begins on another one counts as well.
+        turn(a, b, c) * turn(a, b, d) <= 0.0
+            && turn(c, d, a) * turn(c, d, b) <= 0.0
+            && (0..2).all(|k| a[k].min(b[k]) <= c[k].max(d[k]) && c[k].min(d[k]) <= a[k].max(b[k]))
+    };
+    let others = sides(b);
+    sides(a).into_iter().any(|own| others.iter().any(|&other| crosses(own, other)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stretch;
+
+    #[test]
+    fn the_polygon_contains_all_discs() {
+        let arc =
+            PlacedSegment { start: [1.0, 2.0], heading: 0.3, shape: PathSegment::Arc { radius: 2.0, sweep: -1.9 } };
+        for curve in [
+            vec![PlacedSegment::line([0.0, 0.0], [3.0, 1.0])],
+            vec![arc],
+            vec![PlacedSegment::line([1.0, 1.0], [1.0, 1.0])],
+        ] {
+            let polygon = around(&curve, 0.5);
+            let length: f64 = curve.iter().map(|piece| piece.shape.length()).sum();
+            for k in 0..=50 {
+                let [x, y] = stretch(&curve, [length * f64::from(k) / 50.0; 2])[0].start;
+                for step in 0..100 {
+                    let angle = TAU * f64::from(step) / 100.0;
+                    let rim = [x + 0.5 * angle.cos(), y + 0.5 * angle.sin()];
+                    assert!(distance(&polygon, rim) < 1e-9, "{curve:?} {rim:?}");
+                }
+            }
+            let sides = polygon.iter().enumerate();
+            assert!(sides.clone().all(|(k, &b)| {
+                let n = polygon.len();
+                turn(polygon[(k + n - 1) % n], b, polygon[(k + 1) % n]) > 0.0
+            }));
+        }
+    }
+
+    #[test]
+    fn distances_and_common_points_are_those_of_squares() {
+        let square = |x: f64| vec![[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]];
+        assert_eq!(distance(&square(0.0), [2.0, 0.5]), 1.0);
+        assert_eq!(distance(&square(0.0), [0.5, 0.5]), 0.0);
+        assert!(intersect(&square(0.0), &square(0.5)) && intersect(&square(0.0), &square(1.0)));
+        assert!(!intersect(&square(0.0), &square(1.01)));
+        assert!(intersect(&square(0.0), &[[-1.0, 0.4], [3.0, 0.4], [3.0, 0.6]]));
+        assert!(intersect(&square(0.0), &[[-1.0, -1.0], [3.0, -1.0], [3.0, 3.0], [-1.0, 3.0]]));
+        // Nothing in common but a corner, which is not the first one.
+        let corner = [[2.0, 0.0], [2.0, 1.0], [1.0, 0.5]];
+        assert!(intersect(&square(0.0), &corner) && intersect(&corner, &square(0.0)));
+    }
+}

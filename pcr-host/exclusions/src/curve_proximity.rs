@@ -1,0 +1,209 @@
+//! The lengths of a curve at which its points are near a polygon, or deep in it.
+//!
+//! Whether a point is near enough changes only at a given distance from a side or a corner. All such lengths are roots in
+//! closed form. All points between two successive roots are near enough or none is, which the point in their middle tells. If
+//! rounding misses a pair of roots, the contact between them is shallower than the rounding.
+
+use crate::convex_outline::depth;
+use crate::nearest::point;
+use pcr_formats::scenario::{PathSegment, PlacedSegment};
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// Roots that differ by at most this are equal \[m\].
+const SAME: f64 = 1e-9;
+
+/// Lengths of a curve at which its points are no farther than `reach` from a polygon of any shape; a negative `reach` means
+/// that points are at least that deep inside \[m\]. In ascending order; ranges of successive pieces are joined.
+pub(crate) fn lengths_near_polygon(curve: &[PlacedSegment], polygon: &[[f64; 2]], reach: f64) -> Vec<[f64; 2]> {
+    let mut ranges: Vec<[f64; 2]> = Vec::new();
+    let mut before = 0.0;
+    for piece in curve {
+        let length = piece.shape.length();
+        let mut cuts = roots(piece, polygon, reach.abs());
+        cuts.retain(|cut| *cut > SAME && *cut < length - SAME);
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup_by(|next, last| *next - *last < SAME);
+        cuts.insert(0, 0.0);
+        cuts.push(length);
+        for pair in cuts.windows(2) {
+            if -depth(polygon, point(piece, (pair[0] + pair[1]) / 2.0)) > reach {
+                continue;
+            }
+            let [from, to] = [before + pair[0], before + pair[1]];
+            match ranges.last_mut() {
+                Some(last) if last[1] == from => last[1] = to,
+                _ => ranges.push([from, to]),
+            }
+        }
+        before += length;
+    }
+    ranges
+}
+
+/// Lengths of a piece at which its distance from the line of a side, beside the side, or from a corner is `far`.
+fn roots(piece: &PlacedSegment, polygon: &[[f64; 2]], far: f64) -> Vec<f64> {
+    let mut roots = Vec::new();
+    let count = polygon.len();
+    for (k, &b) in polygon.iter().enumerate() {
+        let (a, c) = (polygon[(k + count - 1) % count], polygon[(k + 1) % count]);
+        let side = [b[0] - a[0], b[1] - a[1]];
+        let long = side[0].hypot(side[1]);
+        if long > 0.0 {
+            let normal = [-side[1] / long, side[0] / long];
+            for off in [far, -far] {
+                let from = [a[0] + off * normal[0], a[1] + off * normal[1]];
+                roots.extend(on_line(piece, from, normal).into_iter().filter(|&at| {
+                    let [x, y] = point(piece, at);
+                    let along = ((x - a[0]) * side[0] + (y - a[1]) * side[1]) / long;
+                    (-SAME..=long + SAME).contains(&along)
+                }));
+            }
+        }
+        // Beside a side, the line of the side is nearer than its ends.
+        let beyond = |[x, y]: [f64; 2], other: [f64; 2]| {
+            (x - b[0]) * (other[0] - b[0]) + (y - b[1]) * (other[1] - b[1]) <= SAME * (1.0 + far)
+        };
+        roots.extend(on_circle(piece, b, far).into_iter().filter(|&at| {
+            let at = point(piece, at);
+            beyond(at, a) && beyond(at, c)
+        }));
+    }
+    roots
+}
+
+/// Lengths at which a piece meets the line through a point with this unit normal.
+fn on_line(piece: &PlacedSegment, through: [f64; 2], normal: [f64; 2]) -> Vec<f64> {
+    let off = |[x, y]: [f64; 2]| normal[0] * (x - through[0]) + normal[1] * (y - through[1]);
+    match piece.shape {
+        PathSegment::Line { length } => {
+            let slope = normal[0] * piece.heading.cos() + normal[1] * piece.heading.sin();
+            let at = -off(piece.start) / slope;
+            // A parallel line does not change sides.
+            if (0.0..=length).contains(&at) { vec![at] } else { Vec::new() }
+        }
+        PathSegment::Arc { radius, .. } => {
+            let cosine = -off(centre(piece)) / radius;
+            if cosine.abs() > 1.0 {
+                return Vec::new();
+            }
+            let (middle, half) = (normal[1].atan2(normal[0]), cosine.acos());
+            on_arc(piece, [middle - half, middle + half])
+        }
+    }
+}
+
+/// Lengths at which a piece meets a circle.
+fn on_circle(piece: &PlacedSegment, [x, y]: [f64; 2], far: f64) -> Vec<f64> {
+    match piece.shape {
+        PathSegment::Line { length } => {
+            let (gap, along) = ([x - piece.start[0], y - piece.start[1]], [piece.heading.cos(), piece.heading.sin()]);
+            let middle = gap[0] * along[0] + gap[1] * along[1];
+            let beside = gap[0] * along[1] - gap[1] * along[0];
+            if beside.abs() > far {
+                return Vec::new();
+            }
+            let half = ((far - beside) * (far + beside)).sqrt();
+            [middle - half, middle + half].into_iter().filter(|at| (0.0..=length).contains(at)).collect()
+        }
+        PathSegment::Arc { radius, .. } => {
+            let from = centre(piece);
+            let gap = [x - from[0], y - from[1]];
+            let apart = gap[0].hypot(gap[1]);
+            let cosine = (apart + (radius - far) * (radius + far) / apart) / (2.0 * radius);
+            // Concentric circles do not cross.
+            if cosine.is_nan() || cosine.abs() > 1.0 {
+                return Vec::new();
+            }
+            let (middle, half) = (gap[1].atan2(gap[0]), cosine.acos());
+            on_arc(piece, [middle - half, middle + half])
+        }
+    }
+}
+
+/// Centre of an arc, or start of a line.
+fn centre(piece: &PlacedSegment) -> [f64; 2] {
+    let PathSegment::Arc { radius, sweep } = piece.shape else { return piece.start };
+    let to = piece.heading + FRAC_PI_2.copysign(sweep);
+    [piece.start[0] + radius * to.cos(), piece.start[1] + radius * to.sin()]
+}
+
+/// Lengths of an arc at these directions from its centre.
+fn on_arc(piece: &PlacedSegment, directions: [f64; 2]) -> Vec<f64> {
+    let PathSegment::Arc { radius, sweep } = piece.shape else { return Vec::new() };
+    let first = piece.heading - FRAC_PI_2.copysign(sweep);
+    let mut lengths = Vec::new();
+    for direction in directions {
+        let mut turned = ((direction - first) * sweep.signum()).rem_euclid(TAU);
+        while turned <= sweep.abs() {
+            lengths.push(radius * turned);
+            turned += TAU;
+        }
+    }
+    lengths
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pcr_formats::splitmix64::SplitMix64;
+
+    /// A star, mostly not convex, around a point.
+    fn star(random: &mut SplitMix64, corners: usize) -> Vec<[f64; 2]> {
+        let corner = |k: usize| {
+            let (angle, far) = (TAU * k as f64 / corners as f64, random.uniform(0.3, 3.0));
+            [far * angle.cos(), far * angle.sin()]
+        };
+        (0..corners).map(corner).collect()
+    }
+
+    #[test]
+    fn lengths_are_those_of_samples() {
+        let mut random = SplitMix64(3);
+        let (mut inside, mut outside) = (0, 0);
+        for case in 0..400 {
+            let polygon = star(&mut random, 3 + case % 6);
+            let at = [random.uniform(-3.0, 3.0), random.uniform(-3.0, 3.0)];
+            let heading = random.uniform(-3.0, 3.0);
+            let (radius, sweep) = (random.uniform(0.2, 4.0), random.uniform(-7.0, 7.0));
+            let line =
+                PlacedSegment { start: at, heading, shape: PathSegment::Line { length: random.uniform(0.0, 6.0) } };
+            let arc = PlacedSegment { start: line.end(), heading, shape: PathSegment::Arc { radius, sweep } };
+            let curve = [line, arc];
+            for reach in [-0.4, -1e-3, 0.0, 0.05, 0.7] {
+                let ranges = lengths_near_polygon(&curve, &polygon, reach);
+                assert!(ranges.windows(2).all(|pair| pair[0][1] < pair[1][0]), "{ranges:?}");
+                let lengths = curve.map(|piece| piece.shape.length());
+                let total = lengths[0] + lengths[1];
+                for k in 0..=500 {
+                    let length = (total * f64::from(k) / 500.0).min(total);
+                    let at = if length <= lengths[0] { point(&line, length) } else { point(&arc, length - lengths[0]) };
+                    let off = -depth(&polygon, at);
+                    if (off - reach).abs() < 1e-7 {
+                        continue;
+                    }
+                    let found = ranges.iter().any(|[from, to]| (*from..=*to).contains(&length));
+                    assert_eq!(found, off < reach, "{curve:?} {polygon:?} {reach} {length}");
+                    if found { inside += 1 } else { outside += 1 }
+                }
+            }
+        }
+        assert!(inside > 50_000 && outside > 50_000, "{inside} {outside}");
+    }
+
+    #[test]
+    fn a_curve_along_the_border_is_within_as_a_whole() {
+        let square = [[-1.0, -0.5], [3.0, -0.5], [3.0, 0.5], [-1.0, 0.5]];
+        let there =
+            |y: f64, reach: f64| lengths_near_polygon(&[PlacedSegment::line([0.0, y], [2.0, y])], &square, reach);
+        assert_eq!(there(0.0, -0.5), [[0.0, 2.0]]);
+        assert_eq!(there(0.0, -0.5 - 1e-9), [] as [[f64; 2]; 0]);
+        assert_eq!(there(0.9, 0.4 + 1e-9), [[0.0, 2.0]]);
+        assert_eq!(there(0.9, 0.4 - 1e-9), [] as [[f64; 2]; 0]);
+        // A point.
+        assert_eq!(lengths_near_polygon(&[PlacedSegment::line([0.0, 0.0], [0.0, 0.0])], &square, 0.0), [[0.0, 0.0]]);
+        assert_eq!(
+            lengths_near_polygon(&[PlacedSegment::line([0.0, 2.0], [0.0, 2.0])], &square, 1.0),
+            [] as [[f64; 2]; 0]
+        );
+    }
+}

@@ -1,0 +1,140 @@
+//! The answer of `pcr traffic --hours`: runs of one fleet with the same missions and random delays.
+
+use super::{
+    CoordinationMethod, DelayModel, LifelongOptions, LifelongResult, MeasuredLifelongRun, WellFormedness, run,
+};
+use pcr_formats::import::ImportedLayout;
+use serde::Serialize;
+
+/// Runs of a fleet. The JSON output, field for field in this order.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LifelongReport {
+    /// Name of the layout.
+    pub layout: String,
+    /// Seed of missions and delays.
+    pub seed: u64,
+    /// Number of robots requested.
+    pub asked: usize,
+    /// Time for which missions come \[h\].
+    pub hours: f64,
+    /// Radius of the discs, without their margin \[m\].
+    pub radius: f64,
+    /// Random delays of the robots.
+    pub delays: DelayModel,
+    /// Where robots may stand, and what makes the layout difficult.
+    pub well_formedness: WellFormedness,
+    /// Missions per hour, after the first tenth of the time, that the robots would do if no robot was in another one's way.
+    pub alone: f64,
+    /// One run for each method.
+    pub runs: Vec<LifelongRunEntry>,
+    /// Warnings about input that was changed or left out when it was read.
+    pub warnings: Vec<String>,
+}
+
+/// A run, with its computing times.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LifelongRunEntry {
+    /// The results of the run.
+    #[serde(flatten)]
+    pub outcome: LifelongResult,
+    /// Number of decisions: searches for a way and orders.
+    pub decisions: usize,
+    /// Time within which half of the decisions was made \[s\].
+    pub decision_median: f64,
+    /// Time within which 99 of 100 decisions were made \[s\].
+    pub decision_p99: f64,
+    /// Computing time of the simulation \[s\].
+    pub computed_in: f64,
+}
+
+impl LifelongReport {
+    /// Runs the same missions with the same delays under some methods.
+    ///
+    /// # Errors
+    /// Errors of [`run`].
+    pub fn run(
+        imported: &ImportedLayout,
+        request: LifelongOptions,
+        methods: &[CoordinationMethod],
+    ) -> Result<Self, String> {
+        Self::watched(imported, request, methods, &|_| {})
+    }
+
+    /// Runs as [`Lifelong::run`], and tells from time to time how much of the time of all runs is simulated \[s\].
+    ///
+    /// # Errors
+    /// Errors of [`super::run`].
+    pub fn watched(
+        imported: &ImportedLayout,
+        request: LifelongOptions,
+        methods: &[CoordinationMethod],
+        told: &dyn Fn(f64),
+    ) -> Result<Self, String> {
+        let mut well_formedness = WellFormedness::default();
+        let (mut runs, mut alone) = (Vec::new(), 0.0);
+        for (before, &method) in methods.iter().enumerate() {
+            let before = before as f64 * request.duration;
+            let report = run::watched(imported, LifelongOptions { method, ..request }, &|now| told(before + now))?;
+            runs.push(LifelongRunEntry::of(&report));
+            alone = report.alone;
+            well_formedness = report.layout;
+        }
+        Ok(Self {
+            layout: imported.layout.name.clone(),
+            seed: request.seed,
+            asked: request.agents,
+            hours: request.duration / 3600.0,
+            radius: imported.vehicle.radius,
+            delays: request.delays,
+            well_formedness,
+            alone,
+            runs,
+            warnings: imported.layout.warnings.clone(),
+        })
+    }
+
+    /// Whether every run is certified free of contact, no robot went beyond its hold, no robot waits for ever, and some goal
+    /// was reached.
+    pub fn is_sound(&self) -> bool {
+        self.runs.iter().all(|run| {
+            let LifelongResult { certificate, authority_overruns: breaches, stuck, idle_because, .. } = &run.outcome;
+            certificate.verdict == "proved" && *breaches == 0 && *stuck == 0 && idle_because.is_none()
+        })
+    }
+}
+
+impl LifelongRunEntry {
+    fn of(report: &MeasuredLifelongRun) -> Self {
+        Self {
+            outcome: report.outcome.clone(),
+            decisions: report.decisions.len(),
+            decision_median: report.decided_within(0.5),
+            decision_p99: report.decided_within(0.99),
+            computed_in: report.time.as_secs_f64(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pcr_formats::import::{ImportOptions, InputFormat, Warnings, roads};
+    use std::cell::RefCell;
+
+    #[test]
+    fn the_time_that_is_simulated_is_told_over_all_runs() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/real/nav2/sample_graph.geojson");
+        let text = std::fs::read_to_string(path).unwrap();
+        let options = ImportOptions { radius: Some(0.3), ..ImportOptions::default() };
+        let imported = roads(InputFormat::Nav2, &text, &options, &mut Warnings::default()).unwrap();
+        let (delays, method) = (DelayModel::default(), CoordinationMethod::Orders);
+        let request = LifelongOptions { agents: 2, duration: 60.0, delays, seed: 1, method };
+        let told = RefCell::new(Vec::new());
+        let methods = [CoordinationMethod::Orders, CoordinationMethod::EdgeLocks];
+        let watched =
+            LifelongReport::watched(&imported, request, &methods, &|now| told.borrow_mut().push(now)).unwrap();
+        let told = told.into_inner();
+        assert!(told.is_sorted() && told.len() >= 2 * methods.len(), "{told:?}");
+        assert_eq!((told.last(), watched.runs.len()), (Some(&120.0), 2));
+    }
+}

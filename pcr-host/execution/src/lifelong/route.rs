@@ -1,0 +1,286 @@
+//! The path of a robot from node to node, its stops, and its times if no other robot is in the way.
+
+use super::kinematic_limits::KinematicLimits;
+use super::route_graph::{DeparturePose, RouteGraph, wrapped};
+
+/// Largest change of direction that is not a corner \[rad\].
+const STRAIGHT: f64 = 1e-6;
+
+/// A place where a robot stops and turns.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RouteCorner {
+    /// \[m\]
+    pub(super) at: f64,
+    /// Time that the turn takes \[s\].
+    pub(super) turn: f64,
+}
+
+/// A path, with the stops and times of a robot on it.
+#[derive(Clone, Debug)]
+pub(super) struct Route {
+    pub(super) atoms: Vec<usize>,
+    /// Length before each atom, and the length of the whole way \[m\].
+    pub(super) offsets: Vec<f64>,
+    /// Largest speed on each atom \[m/s\].
+    pub(super) speeds: Vec<f64>,
+    /// Time at which each atom is entered, and time of arrival at the end \[s\].
+    times: Vec<f64>,
+    pub(super) corners: Vec<RouteCorner>,
+    /// Lengths of the goals that are still ahead \[m\].
+    pub(super) goals: Vec<f64>,
+    end: usize,
+    /// Direction of a robot at its start, if it is known \[rad\].
+    heading: Option<f64>,
+}
+
+impl Route {
+    /// The way of a robot that stands at a node.
+    pub(super) fn standing(site: &RouteGraph, node: usize) -> Self {
+        Self::new(site, DeparturePose { node, heading: None }, &[], &[], &KinematicLimits::NONE)
+    }
+
+    /// A way along these atoms; each goal is after its number of atoms.
+    pub(super) fn new(
+        site: &RouteGraph,
+        from: DeparturePose,
+        atoms: &[usize],
+        goals: &[usize],
+        abilities: &KinematicLimits,
+    ) -> Self {
+        let atoms = if atoms.is_empty() { vec![site.standing(from.node)] } else { atoms.to_vec() };
+        let goals: Vec<usize> = if site.atoms[atoms[0]].edge.is_some() { goals.to_vec() } else { vec![0; goals.len()] };
+        let mut offsets = vec![0.0];
+        let (mut corners, mut times, mut speeds) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut length, mut time) = (0.0, 0.0);
+        let mut heading = from.heading;
+        for (k, &place) in atoms.iter().enumerate() {
+            let atom = &site.atoms[place];
+            let turn = heading.zip(atom.headings).map_or(0.0, |(last, next)| wrapped(next[0] - last));
+            let stops = goals.contains(&k);
+            if f64::abs(turn) > STRAIGHT {
+                corners.push(RouteCorner { at: length, turn: abilities.turn(turn) });
+                time += abilities.turn(turn);
+            }
+            if k > 0 && (f64::abs(turn) > STRAIGHT || stops) {
+                time += abilities.stop();
+            }
+            let mut within = 0.0;
+            for pair in atom.shapes.windows(2) {
+                within += pair[0].shape.length();
+                let turn = wrapped(pair[1].heading - pair[0].heading_at_end());
+                if turn.abs() > STRAIGHT {
+                    corners.push(RouteCorner { at: length + within, turn: abilities.turn(turn) });
+                }
+            }
+            times.push(time);
+            speeds.push(atom.speed);
+            length += atom.length;
+            if atom.length > 0.0 {
+                time += atom.length / atom.speed;
+            }
+            heading = atom.headings.map(|headings| headings[1]).or(heading);
+            offsets.push(length);
+        }
+        times.push(time);
+        let goals = goals.into_iter().map(|goal| offsets[goal]).collect();
+        let end = site.atoms[atoms[atoms.len() - 1]].ends[1];
+        Self { atoms, offsets, speeds, times, corners, goals, end, heading: from.heading }
+    }
+
+    pub(super) fn length(&self) -> f64 {
+        self.offsets[self.atoms.len()]
+    }
+
+    /// Time of a robot alone, from rest to rest, with stops at the corners only \[s\]. It speeds up and brakes so that it is nowhere
+    /// faster than an atom allows.
+    pub(super) fn unimpeded_time(&self, abilities: &KinematicLimits) -> f64 {
+        let acceleration = abilities.acceleration;
+        let mut borders: Vec<f64> = self.offsets.iter().copied().chain(self.corners.iter().map(|it| it.at)).collect();
+        borders.sort_unstable_by(f64::total_cmp);
+        borders.dedup();
+        let pieces: Vec<(f64, f64)> = borders
+            .windows(2)
+            .map(|ends| (ends[1] - ends[0], self.speeds[self.atom(0.5 * (ends[0] + ends[1]))]))
+            .collect();
+        // Largest speed at each border: the limits of both pieces, then braking, then acceleration.
+        let stops = |border: usize| self.corners.iter().any(|corner| corner.at == borders[border]);
+        let mut speeds = vec![0.0; borders.len()];
+        for k in (1..pieces.len()).rev() {
+            let allowed = if stops(k) { 0.0 } else { f64::min(pieces[k - 1].1, pieces[k].1) };
+            speeds[k] = f64::min(allowed, (speeds[k + 1] * speeds[k + 1] + 2.0 * acceleration * pieces[k].0).sqrt());
+        }
+        let mut time: f64 = self.corners.iter().map(|corner| corner.turn).sum();
+        for (k, &(length, fastest)) in pieces.iter().enumerate() {
+            let before: f64 = speeds[k];
+            let after = f64::min(speeds[k + 1], (before * before + 2.0 * acceleration * length).sqrt());
+            speeds[k + 1] = after;
+            let squares = 0.5 * (before * before + after * after);
+            let peak = f64::min(fastest, (squares + acceleration * length).sqrt());
+            time += (2.0 * peak - before - after) / acceleration;
+            time += f64::max(0.0, length - (peak * peak - squares) / acceleration) / peak;
+        }
+        time
+    }
+
+    /// Time at which the robot would be at a length, counted from the start \[s\].
+    pub(super) fn time(&self, length: f64) -> f64 {
+        // At its start the robot still has to turn.
+        if length <= 0.0 {
+            return 0.0;
+        }
+        self.time_on(self.atom(length), length)
+    }
+
+    /// The same, on an atom that contains this length or ends there.
+    #[inline]
+    fn time_on(&self, atom: usize, length: f64) -> f64 {
+        let beyond = length - self.offsets[atom];
+        if beyond > 0.0 { self.times[atom] + beyond / self.speeds[atom] } else { self.times[atom] }
+    }
+
+    /// Time at which it would leave a corner at a length, which may be within an atom, counted from the start \[s\].
+    pub(super) fn left_for(&self, length: f64) -> f64 {
+        let next = self.offsets.partition_point(|&offset| offset <= length).saturating_sub(1);
+        if next < self.atoms.len() { self.time_on(next, length) } else { self.times[next] }
+    }
+
+    /// Index of the atom that contains a length; at a node the earlier one.
+    #[inline]
+    pub(super) fn atom(&self, length: f64) -> usize {
+        self.offsets.partition_point(|&offset| offset < length).saturating_sub(1).min(self.atoms.len() - 1)
+    }
+
+    /// Position of the robot at a length \[m\].
+    pub(super) fn point(&self, site: &RouteGraph, length: f64) -> [f64; 2] {
+        let k = self.atom(length);
+        site.atoms[self.atoms[k]].point(length - self.offsets[k])
+    }
+
+    /// The node at exactly this length, if there is one.
+    pub(super) fn node(&self, site: &RouteGraph, length: f64) -> Option<usize> {
+        let k = self.offsets.iter().position(|&offset| offset == length)?;
+        Some(self.atoms.get(k).map_or(self.end, |&next| site.atoms[next].ends[0]))
+    }
+
+    /// The nodes beyond a length, up to another one.
+    pub(super) fn nodes(&self, site: &RouteGraph, from: f64, to: f64) -> Vec<usize> {
+        let ends = self.atoms.iter().zip(&self.offsets[1..]);
+        ends.filter(|(_, at)| from < **at && **at <= to).map(|(&atom, _)| site.atoms[atom].ends[1]).collect()
+    }
+
+    /// The last node.
+    pub(super) fn end(&self) -> usize {
+        self.end
+    }
+
+    /// Direction in which a robot arrives at the node before an atom \[rad\].
+    fn heading(&self, site: &RouteGraph, atom: usize) -> Option<f64> {
+        let before = self.atoms[..atom].iter().rev().find_map(|&before| site.atoms[before].headings);
+        before.map(|headings| headings[1]).or(self.heading)
+    }
+
+    /// The part that is kept if another way is to begin at the first node from `stop` on. The robot is at `at` \[m\] and has
+    /// done `turned` turns at corners.
+    pub(super) fn committed_part(&self, site: &RouteGraph, at: f64, stop: f64, turned: usize) -> CommittedRoute {
+        let count = self.atoms.len();
+        // If it stands at a node, the new way begins there.
+        if let Some(k) = self.offsets.iter().position(|&offset| offset == at && offset == stop) {
+            let k = k.min(count);
+            let node = if k == count { self.end } else { site.atoms[self.atoms[k]].ends[0] };
+            let corner = turned.checked_sub(1).and_then(|last| self.corners.get(last));
+            let has_turned = corner.is_some_and(|corner| corner.at == at);
+            let next = self.atoms.get(k).and_then(|&next| site.atoms[next].headings).map(|headings| headings[0]);
+            let heading = if has_turned { next } else { self.heading(site, k) };
+            let from = DeparturePose { node, heading };
+            return CommittedRoute { from, atoms: Vec::new(), before: at, end_pose: from };
+        }
+        let first = self.atom(at);
+        let last = self.offsets.iter().position(|&offset| offset >= stop).unwrap_or(count).clamp(first + 1, count);
+        let atoms = self.atoms[first..last].to_vec();
+        let on = DeparturePose { node: site.atoms[self.atoms[last - 1]].ends[1], heading: self.heading(site, last) };
+        let from = DeparturePose { node: site.atoms[self.atoms[first]].ends[0], heading: None };
+        CommittedRoute { from, atoms, before: self.offsets[first], end_pose: on }
+    }
+}
+
+/// The part of a way that cannot be changed any more.
+#[derive(Clone, Debug)]
+pub(super) struct CommittedRoute {
+    /// Where it begins.
+    pub(super) from: DeparturePose,
+    pub(super) atoms: Vec<usize>,
+    /// Length of the old way before it \[m\].
+    pub(super) before: f64,
+    /// Where it ends.
+    pub(super) end_pose: DeparturePose,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lifelong::streets;
+
+    #[test]
+    fn a_robot_alone_takes_the_time_of_its_ramps() {
+        let mut imported = streets(2);
+        (imported.vehicle.speed, imported.vehicle.acceleration) = (2.0, 0.5);
+        imported.layout.edges.iter_mut().for_each(|edge| edge.speed = [Some(1.0); 2]);
+        let site = RouteGraph::new(&imported).expect("a site");
+        let abilities = KinematicLimits::of(&imported.vehicle);
+        let long = (0..site.atoms.len()).max_by(|&a, &b| site.atoms[a].length.total_cmp(&site.atoms[b].length));
+        let long = long.expect("an atom");
+        let length = site.atoms[long].length;
+        let from = DeparturePose { node: site.atoms[long].ends[0], heading: None };
+        let alone = |acceleration: f64| {
+            let mut abilities = abilities;
+            abilities.acceleration = acceleration;
+            Route::new(&site, from, &[long], &[], &abilities).unimpeded_time(&abilities)
+        };
+        // v = 1 m/s: L / v + v / a where that speed is reached, else 2 √(L / a).
+        let long_enough = 1.0 / length;
+        assert!((alone(4.0 * long_enough) - (length + 0.25 * length)).abs() < 1e-12);
+        assert!((alone(0.25 * long_enough) - 2.0 * (length / (0.25 * long_enough)).sqrt()).abs() < 1e-9);
+        assert!((alone(f64::INFINITY) - length).abs() < 1e-12);
+    }
+
+    /// Steps of a millisecond at the largest speed from which all limits ahead can be kept.
+    #[test]
+    fn nobody_is_quicker_alone() {
+        let mut imported = streets(3);
+        let edges = imported.layout.edges.iter_mut().enumerate();
+        edges.for_each(|(k, edge)| edge.speed = [Some([0.3, 1.0, 0.6][k % 3]); 2]);
+        let site = RouteGraph::new(&imported).expect("a site");
+        let abilities = KinematicLimits::of(&imported.vehicle);
+        for start in 0..20 {
+            let mut atoms = vec![start];
+            while atoms.len() < 6 {
+                let end = site.atoms[atoms[atoms.len() - 1]].ends[1];
+                let Some(&next) = site.leaving[end].iter().find(|&&next| !atoms.contains(&next)) else { break };
+                atoms.push(next);
+            }
+            let way = Route::new(
+                &site,
+                DeparturePose { node: site.atoms[start].ends[0], heading: None },
+                &atoms,
+                &[],
+                &abilities,
+            );
+            let (mut at, mut speed, mut time) = (0.0, 0.0, way.corners.iter().map(|corner| corner.turn).sum::<f64>());
+            const STEP: f64 = 1e-3;
+            while at < way.length() - 1e-4 {
+                let limits = (way.atom(at + 1e-9)..atoms.len()).map(|k| (way.offsets[k], way.speeds[k]));
+                let stops = way.corners.iter().map(|corner| corner.at).chain([way.length()]).filter(|&stop| stop > at);
+                let ahead = limits.chain(stops.map(|stop| (stop, 0.0)));
+                let most = ahead.map(|(place, limit)| {
+                    let way: f64 = f64::max(0.0, place - at - speed * STEP);
+                    (limit * limit + 2.0 * abilities.acceleration * way).sqrt()
+                });
+                speed = f64::min(speed + abilities.acceleration * STEP, most.fold(f64::INFINITY, f64::min)).max(1e-3);
+                at += speed * STEP;
+                time += STEP;
+            }
+            let alone = way.unimpeded_time(&abilities);
+            assert!((alone - time).abs() < 0.02 * time, "{start}: {alone} and {time}");
+        }
+    }
+}

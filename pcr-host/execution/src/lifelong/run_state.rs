@@ -1,0 +1,245 @@
+//! The state of a run: the fleet, its missions, and the results so far.
+
+use super::endpoints::{Endpoints, WellFormedness};
+use super::forecast::WHOLE;
+use super::kinematic_limits::KinematicLimits;
+use super::motion_record::RunCertificate;
+use super::outcome::{LifelongResult, TimeShares};
+use super::parking_spots::queued;
+use super::planning_context::PlanningContext;
+use super::random_draws::{self, starts};
+use super::region_table::RegionTable;
+use super::reservations::RouteReservations;
+use super::robot::LifelongRobot;
+use super::route::Route;
+use super::route_admission::AdmittedRoute;
+use super::route_finder::RouteFinder;
+use super::route_graph::RouteGraph;
+use super::tasks::{TaskQueue, TaskStream};
+use super::timetable::Timetable;
+use super::{CoordinationMethod, LifelongOptions};
+use pcr_formats::import::ImportedLayout;
+use std::time::{Duration, Instant};
+
+/// The mission of a robot.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RobotMission {
+    pub(super) goal: usize,
+    pub(super) assigned_at: f64,
+    /// Time that a robot alone would take \[s\].
+    pub(super) unimpeded_time: f64,
+    /// Whether it has a way.
+    pub(super) admitted: bool,
+    /// Number of newer missions that were admitted while it waited.
+    pub(super) passed: usize,
+    pub(super) next_try: f64,
+    /// Computing time of the quickest way before the first decision.
+    pub(super) prepared: Duration,
+}
+
+pub(super) struct LifelongState {
+    pub(super) site: RouteGraph,
+    pub(super) ends: Endpoints,
+    pub(super) layout: WellFormedness,
+    /// Whether there are more robots than safe ends, or as many and additional queue places where robots can make way for one
+    /// another.
+    pub(super) crowded: bool,
+    /// Whether only the mission that has waited longest is admitted.
+    pub(super) is_urgent: bool,
+    /// Reserved routes as (robot, route), where no other robot may come to stand: first that of the mission that has waited
+    /// longest, then those of robots in its way.
+    pub(super) reserved: Vec<(usize, Vec<usize>)>,
+    pub(super) abilities: KinematicLimits,
+    pub(super) network: RouteFinder,
+    pub(super) request: LifelongOptions,
+    pub(super) robots: Vec<LifelongRobot>,
+    pub(super) book: RegionTable,
+    /// The timetable, used for a large fleet.
+    pub(super) timetable: Timetable,
+    pub(super) locks: RouteReservations,
+    /// For each atom the number of robots that stand for good in its way.
+    pub(super) parked: Vec<u16>,
+    pub(super) missions: Vec<Option<RobotMission>>,
+    /// Number of missions given to each robot.
+    pub(super) given: Vec<u64>,
+    pub(super) reviewed: Vec<f64>,
+    /// For each robot the time of the last attempt to reverse its orders.
+    pub(super) switched: Vec<f64>,
+    pub(super) outcome: LifelongResult,
+    pub(super) decisions: Vec<Duration>,
+    pub(super) travel: (f64, f64),
+    pub(super) steady: usize,
+    pub(super) last_arrival: f64,
+    /// Time for which all robots have stood at their ends while missions wait \[s\].
+    pub(super) quiet: f64,
+    /// Tasks that are not done yet, if the robots share them.
+    pub(super) tasks: Option<TaskQueue>,
+}
+
+impl LifelongState {
+    pub(super) fn new(
+        imported: &ImportedLayout,
+        request: LifelongOptions,
+        tasks: Option<&TaskStream>,
+    ) -> Result<Self, String> {
+        let mut site = RouteGraph::new(imported)?;
+        let mut ends = Endpoints::of(&site, request.seed);
+        let layout = ends.report(&site, &imported.layout);
+        let starts = match tasks {
+            Some(tasks) => tasks.starts(&site)?,
+            None => starts(&site, &ends, request.agents, request.seed),
+        };
+        // With fewer robots than safe ends a robot can always make way at a free end.
+        let places = (starts.len() >= ends.safe.len()).then(|| queued(imported, &site));
+        let is_full = |lanes: &[Vec<usize>]| starts.len() > ends.safe.len() || lanes.iter().any(|lane| lane.len() > 1);
+        let places = places.filter(|(_, lanes)| is_full(lanes));
+        let crowded = places.is_some();
+        if let Some((queued, lanes)) = places {
+            site = RouteGraph::new(&queued)?;
+            ends = ends.queued(&site, lanes);
+        }
+        let abilities = KinematicLimits::of(&imported.vehicle);
+        let network = RouteFinder::new(&site, abilities);
+        // Not in unoptimized tests, because it takes long there.
+        if !cfg!(debug_assertions) {
+            site.warm();
+            ends.harm(&site);
+            if tasks.is_some() {
+                network.warm(&site, &ends.nodes);
+            }
+        }
+        if starts.is_empty() {
+            return Err("the layout has no two nodes that can be reached from one another".into());
+        }
+        let robots: Vec<LifelongRobot> =
+            starts.iter().map(|&node| LifelongRobot::new(Route::standing(&site, node))).collect();
+        let mut parked = vec![0; site.atoms.len()];
+        starts.iter().for_each(|&node| site.covers(node).iter().for_each(|&atom| parked[atom] += 1));
+        let count = robots.len();
+        let outcome = LifelongResult {
+            method: request.method,
+            robots: count,
+            missions: 0,
+            missions_per_hour: 0.0,
+            travel_over_unimpeded: None,
+            certificate: RunCertificate::new(),
+            authority_overruns: 0,
+            stuck: 0,
+            standstill: 0.0,
+            refused: 0,
+            moved: 0,
+            revised: 0,
+            longest_wait: 0.0,
+            waiting: 0.0,
+            starved: 0,
+            idle_because: None,
+            time: TimeShares::default(),
+        };
+        Ok(Self {
+            book: RegionTable::new(&site, &robots),
+            locks: RouteReservations::new(count),
+            network,
+            timetable: Timetable::new(count),
+            layout,
+            crowded,
+            is_urgent: false,
+            reserved: Vec::new(),
+            site,
+            ends,
+            abilities,
+            request,
+            robots,
+            parked,
+            missions: vec![None; count],
+            given: vec![0; count],
+            reviewed: vec![0.0; count],
+            switched: vec![0.0; count],
+            outcome,
+            decisions: Vec::new(),
+            travel: (0.0, 0.0),
+            steady: 0,
+            last_arrival: 0.0,
+            quiet: 0.0,
+            tasks: tasks.map(TaskQueue::of),
+        })
+    }
+
+    /// Whether missions remain.
+    pub(super) fn has_work(&self) -> bool {
+        self.tasks.as_ref().is_none_or(|tasks| !tasks.is_empty())
+    }
+
+    /// Gives a mission to each robot without one.
+    pub(super) fn give(&mut self, now: f64) {
+        if self.tasks.is_some() {
+            self.assign(now);
+            return;
+        }
+        for robot in 0..self.robots.len() {
+            if self.missions[robot].is_some() {
+                continue;
+            }
+            let it = &self.robots[robot];
+            let from = it.way.committed_part(&self.site, it.at, it.at, it.turned).end_pose;
+            let place = from.node;
+            let goal = random_draws::goal(&self.site, &self.ends, self.request.seed, robot, self.given[robot], place);
+            self.given[robot] += 1;
+            let begin = Instant::now();
+            let way = self.network.quickest(&self.site, from, |_| 0.0, |node| node == goal, Some(goal), 1);
+            let alone = way.first().map_or(0.0, |atoms| {
+                Route::new(&self.site, from, atoms, &[], &self.abilities).unimpeded_time(&self.abilities)
+            });
+            let admitted = !it.way.goals.is_empty();
+            let prepared = begin.elapsed();
+            self.missions[robot] = Some(RobotMission {
+                goal,
+                assigned_at: now,
+                unimpeded_time: alone,
+                admitted,
+                passed: 0,
+                next_try: now,
+                prepared,
+            });
+        }
+    }
+
+    /// Whether decisions look at some of the robots only: in a large fleet, and if robots share their tasks, because another
+    /// robot then takes over a late task.
+    pub(super) fn is_large(&self) -> bool {
+        self.request.method == CoordinationMethod::Orders && (self.robots.len() > WHOLE || self.tasks.is_some())
+    }
+
+    pub(super) fn scene(&self, now: f64) -> PlanningContext<'_> {
+        PlanningContext {
+            site: &self.site,
+            robots: &self.robots,
+            book: &self.book,
+            locks: &self.locks,
+            abilities: &self.abilities,
+            network: &self.network,
+            ends: &self.ends,
+            crowded: self.crowded,
+            is_urgent: self.is_urgent,
+            reserved: &self.reserved,
+            parked: &self.parked,
+            time: now,
+            timetable: self.is_large().then_some(&self.timetable),
+            method: self.request.method,
+        }
+    }
+
+    pub(super) fn take(&mut self, robot: usize, admitted: AdmittedRoute) {
+        let AdmittedRoute { way, kept, before, regions, departs, lines, .. } = admitted;
+        self.timetable.change(lines);
+        if let Some(level) = self.reserved.iter().position(|route| route.0 == robot) {
+            self.reserved.truncate(level);
+        }
+        let it = &mut self.robots[robot];
+        self.site.covers(it.way.end()).iter().for_each(|&atom| self.parked[atom] -= 1);
+        self.site.covers(way.end()).iter().for_each(|&atom| self.parked[atom] += 1);
+        self.book.exchange(robot, &it.way, &way, regions);
+        self.locks.exchange(robot, kept);
+        it.take(way, before);
+        it.departs = departs;
+    }
+}

@@ -1,0 +1,318 @@
+//! The path of a mission, and the motion of an agent along the rest of it.
+
+use super::FRAME;
+use super::braking::{SpeedLimitSpan, speed_before, speeds_to_rest, to_rest};
+use pcr_core::{Curve, InvalidInput, Limits, Motion, PathRef, Phase, Pose, ProfileRef, Segment, TurnSide};
+use pcr_formats::scenario::{KINK, PathSegment, TURN};
+use pcr_planning::fleet::speed;
+
+/// A path of lines and arcs, with speed limits.
+#[derive(Clone, Debug)]
+pub struct SpeedLimitedPath {
+    segments: Vec<Segment<f64>>,
+    /// Speed limit of each segment; infinite if it has none \[m/s\].
+    tops: Vec<f64>,
+}
+
+/// A turn in place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TurnInPlace {
+    /// Index of its segment.
+    pub(super) segment: usize,
+    /// Length along the course \[m\].
+    pub(super) at: f64,
+    /// \[s\]
+    pub(super) duration: f64,
+}
+
+impl SpeedLimitedPath {
+    /// A course along these segments from a pose.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] if a length or a coordinate is out of range.
+    pub fn new(start: Pose<f64>, path: &[PathSegment]) -> Result<Self, InvalidInput> {
+        let mut course = Self::standing(start)?;
+        for segment in path {
+            match *segment {
+                PathSegment::Line { length } => course.push(Curve::Line, length, f64::INFINITY)?,
+                PathSegment::Arc { radius, sweep } => {
+                    let turn = if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right };
+                    course.push(Curve::Arc { radius, turn }, radius * sweep.abs(), f64::INFINITY)?;
+                }
+            }
+        }
+        course.path()?;
+        Ok(course)
+    }
+
+    /// A course to stand in a pose.
+    ///
+    /// # Errors
+    /// As [`Course::new`].
+    pub fn standing(pose: Pose<f64>) -> Result<Self, InvalidInput> {
+        Ok(Self { segments: vec![Segment::standing(pose)?], tops: vec![f64::INFINITY] })
+    }
+
+    /// A course to stand at its beginning.
+    pub(super) fn beginning(&self) -> Self {
+        // The start of a segment is always a pose in range.
+        let pose = self.path().map(|path| path.pose_at(0.0));
+        Self { segments: pose.and_then(Segment::standing).into_iter().collect(), tops: vec![f64::INFINITY] }
+    }
+
+    /// The path of a motion.
+    pub fn of(motion: &Motion<'_, f64>) -> Self {
+        let segments = motion.path().segments().to_vec();
+        Self { tops: vec![f64::INFINITY; segments.len()], segments }
+    }
+
+    /// Sets the speed limit of each segment \[m/s\], by its index; infinite for none. For a turn in place it is its length
+    /// divided by its duration.
+    #[must_use]
+    pub fn with_speed_limits(self, top: impl Fn(usize) -> f64) -> Self {
+        Self { tops: (0..self.segments.len()).map(top).collect(), ..self }
+    }
+
+    fn push(&mut self, curve: Curve<f64>, length: f64, top: f64) -> Result<(), InvalidInput> {
+        let [.., last] = self.segments.as_slice() else {
+            return Ok(());
+        };
+        let next = match curve {
+            Curve::Line => last.then_line(length)?,
+            Curve::Arc { radius, turn } => last.then_arc(radius, turn, length)?,
+        };
+        if next.length() > 0.0 {
+            if last.length() == 0.0 {
+                self.segments.clear();
+                self.tops.clear();
+            }
+            self.segments.push(next);
+            self.tops.push(top);
+        }
+        Ok(())
+    }
+
+    /// The lines and arcs.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] if they do not form a path.
+    pub fn path(&self) -> Result<PathRef<'_, f64>, InvalidInput> {
+        PathRef::new(&self.segments)
+    }
+
+    /// \[m\]
+    pub fn length(&self) -> f64 {
+        self.segments.iter().map(Segment::length).sum()
+    }
+
+    /// Position at a travelled length \[m\].
+    pub fn point_at(&self, length: f64) -> [f64; 2] {
+        let point = self.path().map(|path| path.point_at(length)).unwrap_or_default();
+        [point.x, point.y]
+    }
+
+    /// The rest after a travelled length \[m\].
+    ///
+    /// # Errors
+    /// As [`Course::new`].
+    pub fn from(&self, length: f64) -> Result<Self, InvalidInput> {
+        let mut rest = Self::standing(self.path()?.pose_at(length))?;
+        for (segment, &top) in self.segments.iter().zip(&self.tops) {
+            let left = segment.from() + segment.length() - length;
+            if left > 0.0 {
+                rest.push(segment.curve(), left.min(segment.length()), top)?;
+            }
+        }
+        Ok(rest)
+    }
+
+    /// Its stretches with equal speed limits up to a length \[m\], for a robot with a largest speed \[m/s\].
+    fn stretches(&self, until: f64, speed: f64) -> Vec<SpeedLimitSpan> {
+        let mut stretches: Vec<SpeedLimitSpan> = Vec::new();
+        for (segment, top) in self.segments.iter().zip(&self.tops) {
+            let (length, top) = (segment.length().min(until - segment.from()).max(0.0), top.min(speed));
+            match stretches.last_mut() {
+                Some(last) if last.top == top => last.length += length,
+                _ => stretches.push(SpeedLimitSpan { length, top }),
+            }
+        }
+        stretches
+    }
+
+    /// The course after a time \[s\] of its first turn in place.
+    #[must_use]
+    pub(super) fn turned(mut self, time: f64) -> Self {
+        if let Some(TurnInPlace { segment, duration, .. }) = self.in_place(0).filter(|_| time > 0.0) {
+            // At least a frame is left.
+            self.tops[segment] *= duration / (duration - time).max(FRAME);
+        }
+        self
+    }
+
+    /// The largest speed at its beginning from which a robot with these limits can keep the speed limits and stop at its end
+    /// \[m/s\].
+    pub(super) fn most(&self, limits: Limits<f64>) -> f64 {
+        speeds_to_rest(&self.stretches(self.length(), limits.speed), limits.acceleration)[0]
+    }
+
+    /// Pieces (duration \[s\], acceleration \[m/s²\]) of the fastest motion from a speed at its beginning to rest at a length
+    /// \[m\]; `None` if there is none.
+    pub(super) fn to_rest(&self, speed: f64, until: f64, limits: Limits<f64>) -> Option<Vec<(f64, f64)>> {
+        to_rest(speed, &self.stretches(until, limits.speed), limits.acceleration)
+    }
+
+    /// Time from rest to rest if no robot is in the way \[s\].
+    pub(super) fn unimpeded(&self, limits: Limits<f64>) -> f64 {
+        self.to_rest(0.0, self.length(), limits).into_iter().flatten().map(|(duration, _)| duration).sum()
+    }
+
+    /// The speed in a frame from a length on \[m\] with which a robot keeps to all that follows; turns in place are left aside \[m/s\].
+    pub(super) fn allowed(&self, length: f64, acceleration: f64, frame: f64) -> f64 {
+        let ahead = self.segments.iter().zip(&self.tops).filter(|(segment, top)| {
+            top.is_finite() && !is_turn(segment) && segment.from() + segment.length() > length
+        });
+        ahead.fold(f64::INFINITY, |allowed: f64, (segment, &top)| {
+            let before = segment.from() - length;
+            allowed.min(if before > 0.0 { speed_before(before, top, acceleration, frame) } else { top })
+        })
+    }
+
+    /// The first turn in place that takes time among its segments from this place on.
+    pub(super) fn in_place(&self, from: usize) -> Option<TurnInPlace> {
+        let turns = self.segments.iter().zip(&self.tops).enumerate().skip(from);
+        turns.filter(|(_, (segment, _))| is_turn(segment)).find_map(|(place, (segment, top))| {
+            let duration = segment.length() / top;
+            (duration > 0.0).then_some(TurnInPlace { segment: place, at: segment.from(), duration })
+        })
+    }
+
+    /// The least radius of an arc that is driven \[m\]; infinite without any.
+    pub(super) fn least_radius(&self) -> f64 {
+        let radius = |segment: &Segment<f64>| match segment.curve() {
+            Curve::Arc { radius, .. } if !is_turn(segment) => radius,
+            _ => f64::INFINITY,
+        };
+        self.segments.iter().map(radius).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Whether a segment is a turn in place, and no joint that is passed without a stop.
+fn is_turn(segment: &Segment<f64>) -> bool {
+    matches!(segment.curve(), Curve::Arc { radius: TURN, .. }) && segment.length() > KINK * TURN
+}
+
+/// A course with the motion of an agent on it.
+#[derive(Clone, Debug)]
+pub struct OwnedMotion {
+    course: SpeedLimitedPath,
+    phases: Vec<Phase<f64>>,
+    start: f64,
+}
+
+impl OwnedMotion {
+    /// A motion that owns what it is made of, without its radius.
+    pub fn of(motion: &Motion<'_, f64>) -> Self {
+        let phases = motion.profile().phases().to_vec();
+        Self { course: SpeedLimitedPath::of(motion), phases, start: motion.time().lo }
+    }
+
+    /// The motion from a time on \[s\]: the remaining path, at the speed reached by then. Before that time the agent counts as
+    /// standing where the rest begins, so the places that it has already left are free. `None` if rounding leaves no motion.
+    ///
+    /// ```
+    /// use pcr_core::{Motion, Path, Point, Pose, Profile, Radians};
+    /// use pcr_execution::simulate::SpeedPlanLimits;
+    /// let pose = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
+    /// let path = Path::<f64, 1>::starting_at(pose)?.line(4.0)?;
+    /// let profile = Profile::<f64, 1>::from_pieces(1.0, [(4.0, 0.0)])?;
+    /// let whole = SpeedPlanLimits::of(&Motion::new(path.as_path(), profile.as_profile(), 0.25, 10.0)?);
+    /// let rest = whole.rest(11.5).unwrap();
+    /// let motion = rest.motion(0.25).unwrap();
+    /// assert!((motion.position_at(12.0).x - 0.0).abs() < 1e-12 && (motion.position_at(0.0).x + 0.5).abs() < 1e-12);
+    /// # Ok::<(), pcr_core::InvalidInput>(())
+    /// ```
+    pub fn rest(&self, time: f64) -> Option<Self> {
+        let motion = self.motion(1.0)?;
+        let passed = time - self.start;
+        let course = self.course.from(motion.length_at(time)).ok()?;
+        if passed <= 0.0 {
+            return Some(self.clone());
+        }
+        let left = self.phases.iter().filter(|phase| phase.time().hi > passed);
+        let pieces = left.map(|phase| (phase.time().hi - phase.time().lo.max(passed), phase.acceleration()));
+        let pieces: Vec<(f64, f64)> = pieces.collect();
+        match course.length() > 0.0 {
+            true => Self::new(course, motion.speed_at(time), &pieces, time),
+            false => Self::standing(course, time),
+        }
+    }
+
+    /// From a speed \[m/s\] with these pieces (duration \[s\], acceleration \[m/s²\]); `None` where they do not travel the
+    /// length of the course.
+    pub(super) fn new(course: SpeedLimitedPath, speed: f64, pieces: &[(f64, f64)], start: f64) -> Option<Self> {
+        let phases = speed::phases(speed, pieces, course.length()).ok()?;
+        let drive = Self { course, phases, start };
+        drive.motion(1.0).is_some().then_some(drive)
+    }
+
+    pub(super) fn standing(course: SpeedLimitedPath, start: f64) -> Option<Self> {
+        let drive = Self { course, phases: Vec::new(), start };
+        drive.motion(1.0).is_some().then_some(drive)
+    }
+
+    /// At 1 m/s from time 0 on: times are lengths.
+    pub(super) fn at_unit_speed(course: SpeedLimitedPath) -> Option<Self> {
+        let length = course.length();
+        let start = 0.0;
+        if length > 0.0 { Self::new(course, 1.0, &[(length, 0.0)], start) } else { Self::standing(course, start) }
+    }
+
+    /// As the motion of a disc of this radius \[m\].
+    pub fn motion(&self, radius: f64) -> Option<Motion<'_, f64>> {
+        Motion::new(self.course.path().ok()?, ProfileRef::new(&self.phases).ok()?, radius, self.start).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pcr_core::{Point, Radians};
+
+    #[test]
+    fn the_rest_of_a_drive_goes_on_as_it_does() {
+        let pose = Pose { position: Point::new(1.0, 2.0), heading: Radians(0.3) };
+        let arc = PathSegment::Arc { radius: 0.5, sweep: -1.0 };
+        let course = SpeedLimitedPath::new(pose, &[PathSegment::Line { length: 1.0 }, arc]).expect("a course");
+        // To 0.5 m/s, on, to rest, a wait, and again.
+        let pieces = [(1.0, 0.5), (0.5, 0.0), (1.0, -0.5), (2.0, 0.0), (1.0, 0.5), (0.5, 0.0), (1.0, -0.5)];
+        let drive = OwnedMotion::new(course, 0.0, &pieces, 3.0).expect("a drive");
+        let whole = drive.motion(0.2).expect("a motion");
+        for time in [0.0, 3.0, 3.4, 4.2, 5.0, 6.0, 7.7, 8.6, 9.9, 10.0, 12.0] {
+            let rest = drive.rest(time).expect("its rest");
+            let rest = rest.motion(0.2).expect("a motion");
+            for later in [0.0, 0.1, 0.9, 2.5, 4.0, 20.0] {
+                let (a, b) = (whole.position_at(time + later), rest.position_at(time + later));
+                assert!((a.x - b.x).hypot(a.y - b.y) < 1e-9, "{time} + {later}: {a:?} {b:?}");
+                assert!((whole.speed_at(time + later) - rest.speed_at(time + later)).abs() < 1e-9, "{time} + {later}");
+            }
+            let stood = rest.position_at(-5.0);
+            let now = whole.position_at(time);
+            assert!((stood.x - now.x).hypot(stood.y - now.y) < 1e-9);
+        }
+    }
+
+    #[test]
+    fn the_rest_of_a_course_is_where_the_course_is() {
+        let pose = Pose { position: Point::new(1.0, 2.0), heading: Radians(0.3) };
+        let arc = PathSegment::Arc { radius: 0.5, sweep: -1.0 };
+        let course = SpeedLimitedPath::new(pose, &[PathSegment::Line { length: 1.0 }, arc, arc]).expect("a course");
+        for from in [0.0, 0.4, 1.0, 1.2, 1.5, 1.9, 2.0] {
+            let rest = course.from(from).expect("its rest");
+            assert!((rest.length() - (course.length() - from)).abs() < 1e-12);
+            for further in [0.0, 0.05, 0.3] {
+                let ([x, y], [u, v]) = (rest.point_at(further), course.point_at(from + further));
+                assert!((x - u).hypot(y - v) < 1e-12, "{from} {further}");
+            }
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Selects agents that can all arrive if they start in some order.
+//!
+//! If a region of two agents contains the start of the first, or the end of the second, the first passes it before the
+//! second, whenever they start. If two agents have to go before one another, or several in a cycle, there is no order.
+
+use pcr_core::Motion;
+use pcr_formats::scenario::{Agent, Scenario};
+use pcr_planning::disc_fleet::{DiscFleet, Form};
+use pcr_planning::fleet::build_ecm_of;
+use pcr_planning::plan::sides;
+
+/// More room than agents have in plans and checks \[m\]: what is decided here holds there.
+const ROOM: f64 = 1e-6;
+
+/// Agents, each with those that have to start after it.
+#[derive(Default)]
+pub(super) struct StartableAgents {
+    agents: Vec<DiscFleet<f64>>,
+    after: Vec<Vec<usize>>,
+}
+
+impl StartableAgents {
+    /// Adds an agent if there still is an order for all, or says why it cannot be added.
+    pub(super) fn add(&mut self, agent: &Agent) -> Result<(), String> {
+        const NONE: &str = "no order of starts lets it through with those before it";
+        let alone = Scenario::new("", vec![agent.clone()]);
+        let bodies = DiscFleet::<f64>::new(&alone, Form::Covers).map_err(|refused| refused.to_string())?;
+        // Most that fail do so by one disc of each already.
+        self.order(&bodies, true)?.ok_or(NONE)?;
+        let [before, after] = self.order(&bodies, false)?.ok_or(NONE)?;
+        before.iter().for_each(|&agent| self.after[agent].push(self.agents.len()));
+        self.agents.push(bodies);
+        self.after.push(after);
+        Ok(())
+    }
+
+    /// The agents that have to start before an agent, and after it, by all discs or by one of each; `None` if there is no
+    /// order.
+    ///
+    /// # Errors
+    /// The limit of the table that is exceeded, in words.
+    fn order(&self, agent: &DiscFleet<f64>, one: bool) -> Result<Option<[Vec<usize>; 2]>, String> {
+        let others: Vec<(usize, Motion<'_, f64>)> = self
+            .agents
+            .iter()
+            .enumerate()
+            .flat_map(|(k, bodies)| grown(bodies, one).into_iter().map(move |motion| (k, motion)))
+            .collect();
+        let mut marks = [vec![false; self.agents.len()], vec![false; self.agents.len()]];
+        for own in grown(agent, one) {
+            let pair: Vec<Motion<'_, f64>> =
+                std::iter::once(own).chain(others.iter().map(|(_, motion)| *motion)).collect();
+            let ecm = build_ecm_of(&pair, 0).map_err(|full| full.to_string())?;
+            for region in ecm.row(&pair, 0).expect("the table of the fleet") {
+                let Some((other, _)) = others.get(region.other().wrapping_sub(1)) else { continue };
+                let [goes_after, goes_before] = sides(&region);
+                marks[0][*other] |= goes_after;
+                marks[1][*other] |= goes_before;
+            }
+        }
+        let places = |marks: &[bool]| -> Vec<usize> { (0..marks.len()).filter(|&agent| marks[agent]).collect() };
+        let [before, after] = marks.map(|marks| places(&marks));
+        // An order exists if no agent that has to come before can be reached from those that come after.
+        let mut reached = vec![false; self.agents.len()];
+        let mut open = after.clone();
+        while let Some(next) = open.pop() {
+            if !std::mem::replace(&mut reached[next], true) {
+                open.extend(&self.after[next]);
+            }
+        }
+        let circle = before.iter().any(|&agent| reached[agent]);
+        Ok((!circle).then_some([before, after]))
+    }
+}
+
+/// The motions of the discs of an agent, or of the one in the middle of its cover, with their margins and a little more.
+fn grown(bodies: &DiscFleet<f64>, one: bool) -> Vec<Motion<'_, f64>> {
+    let motions = bodies.fleet.motions();
+    let middle = motions.len() / 2;
+    let chosen = motions.into_iter().enumerate().filter(|(k, _)| !one || *k == middle);
+    chosen.map(|(_, motion)| motion.with_margin(motion.margin() + ROOM).unwrap_or(motion).inflated()).collect()
+}

@@ -1,0 +1,271 @@
+//! Compares the other contents of an answer of `pcr regions` with its tables.
+
+use pcr_certify::raw::{RawAgent, RawPair, RawRegion, RawTable};
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+
+/// The cover of an outline, of which only the number of discs counts.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub(super) struct ReportedDiscCover {
+    id: u64,
+    discs: Vec<IgnoredAny>,
+}
+
+/// A region as it is printed. Crossings, slices and the numbers of segments are not looked at.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub(super) struct ReportedRegion {
+    i: u64,
+    j: u64,
+    t: [f64; 2],
+    l: [f64; 2],
+    open_start: bool,
+    open_end: bool,
+    pieces: Vec<ReportedPiece>,
+}
+
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+struct ReportedPiece {
+    #[serde(rename = "type")]
+    kind: String,
+    i_length: [f64; 2],
+    j_length: [f64; 2],
+}
+
+/// Two discs with one number are discs of one body: as many as its covers have.
+pub(super) fn bodies(table: &RawTable, covers: &[ReportedDiscCover]) -> Result<(), String> {
+    let mut told: HashMap<u64, usize> = HashMap::new();
+    covers.iter().for_each(|cover| *told.entry(cover.id).or_default() += cover.discs.len());
+    let counts = counts(table);
+    for (&id, &discs) in &counts {
+        match told.get(&id) {
+            None if discs > 1 => {
+                return Err(format!(
+                    "{discs} discs have the number {id}, and footprints tell of no agent of this number"
+                ));
+            }
+            Some(&there) if there != discs => {
+                return Err(format!("{discs} discs have the number {id}, and footprints tell of {there}"));
+            }
+            _ => {}
+        }
+    }
+    // Wherever an agent has an outline, less of the regions is compared: the agent has to be there.
+    match told.keys().find(|id| !counts.contains_key(id)) {
+        Some(id) => Err(format!("footprints: the certificate has no agent {id}")),
+        None => Ok(()),
+    }
+}
+
+/// Checks that two tables are about the same discs on the same paths at the same times, in the second one with margins.
+pub(super) fn enlarged(discs: &RawTable, margins: &RawTable) -> Result<(), String> {
+    let (count, other) = (discs.agents.len(), margins.agents.len());
+    if count != other {
+        return Err(format!("certificate: {count} discs in the first table, and {other} in the second"));
+    }
+    for (place, (disc, margin)) in discs.agents.iter().zip(&margins.agents).enumerate() {
+        let differs = match () {
+            () if disc.id != margin.id => "id",
+            () if disc.path != margin.path => "path",
+            () if disc.travel != margin.travel => "travel",
+            () if margin.radius < disc.radius => "radius, which is smaller with the margin",
+            () => continue,
+        };
+        return Err(format!("certificate: agents[{place}] of the two tables differ: {differs}"));
+    }
+    Ok(())
+}
+
+/// Checks that the requested agent is in the certificate; otherwise nothing would be compared.
+pub(super) fn asked(table: &RawTable, agent: Option<u64>) -> Result<(), String> {
+    match agent {
+        Some(asked) if !table.agents.iter().any(|agent| agent.id == asked) => {
+            Err(format!("agent: {asked} is none of the certificate"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// How many discs have which number.
+fn counts(table: &RawTable) -> BTreeMap<u64, usize> {
+    let mut counts = BTreeMap::new();
+    table.agents.iter().for_each(|agent| *counts.entry(agent.id).or_default() += 1);
+    counts
+}
+
+/// Pairs of discs of different bodies: those whose contacts are looked at.
+pub(super) fn pairs(table: &RawTable) -> usize {
+    let pairs_of = |discs: usize| discs * discs.saturating_sub(1) / 2;
+    pairs_of(table.agents.len()) - counts(table).values().map(|&discs| pairs_of(discs)).sum::<usize>()
+}
+
+/// Regions of two agents with their places in the list.
+type RegionsByPair<R> = BTreeMap<[u64; 2], Vec<(usize, R)>>;
+
+/// The scope of an answer: the requested agent, if there is one, and the covers of outlines.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RegionScope<'a> {
+    pub(super) agent: Option<u64>,
+    pub(super) covers: &'a [ReportedDiscCover],
+}
+
+/// Compares the regions in the list of this name with a table.
+///
+/// # Errors
+/// The first difference, in words.
+pub(super) fn compare(
+    list: &str,
+    told: &[ReportedRegion],
+    table: &RawTable,
+    asked: RegionScope<'_>,
+) -> Result<(), String> {
+    let mut held: RegionsByPair<ReportedRegion> = BTreeMap::new();
+    for pair in &table.pairs {
+        for (place, region) in pair.regions.iter().enumerate() {
+            // Without motions there are no times to be told.
+            let Some(times) = region.times else { continue };
+            for first in [0, 1] {
+                let told = expected_region(table, pair, (place, region), times, first)?;
+                if asked.agent.is_none_or(|agent| agent == told.i) {
+                    let of_pair = held.entry([told.i, told.j]).or_default();
+                    of_pair.push((of_pair.len(), told));
+                }
+            }
+        }
+    }
+    let mut there: RegionsByPair<&ReportedRegion> = BTreeMap::new();
+    for (place, region) in told.iter().enumerate() {
+        there.entry([region.i, region.j]).or_default().push((place, region));
+    }
+    let outlined: HashSet<u64> = asked.covers.iter().map(|cover| cover.id).collect();
+    let pairs: BTreeSet<[u64; 2]> = held.keys().chain(there.keys()).copied().collect();
+    for [i, j] in pairs {
+        let mut own = there.remove(&[i, j]).unwrap_or_default();
+        let mut theirs = held.remove(&[i, j]).unwrap_or_default();
+        if !outlined.is_empty() {
+            unions(list, [i, j], &own, &theirs, ![i, j].iter().any(|id| outlined.contains(id)))?;
+            continue;
+        }
+        if own.len() != theirs.len() {
+            let (own, theirs) = (own.len(), theirs.len());
+            return Err(format!("{list}: {own} of agents {i} and {j}, and {theirs} in the certificate"));
+        }
+        let order = |a: &ReportedRegion, b: &ReportedRegion| a.t[0].total_cmp(&b.t[0]).then(a.l[0].total_cmp(&b.l[0]));
+        own.sort_by(|(_, a), (_, b)| order(a, b));
+        theirs.sort_by(|(_, a), (_, b)| order(a, b));
+        for ((place, own), (_, theirs)) in own.iter().zip(&theirs) {
+            own.same(theirs)
+                .map_err(|why| format!("{list}[{place}], of agents {i} and {j}: {why} in the certificate"))?;
+        }
+    }
+    Ok(())
+}
+
+/// If any agent has an outline, regions are unions of those of its discs: the region of each disc has to lie in a union, and
+/// the ends of a union are ends of some of them. Lengths of outlines are on other paths than those of discs, and are not
+/// compared.
+fn unions(
+    list: &str,
+    [i, j]: [u64; 2],
+    own: &[(usize, &ReportedRegion)],
+    theirs: &[(usize, ReportedRegion)],
+    discs: bool,
+) -> Result<(), String> {
+    let within = |[lo, hi]: [f64; 2], [from, to]: [f64; 2]| from <= lo && hi <= to;
+    let holds =
+        |own: &ReportedRegion, part: &ReportedRegion| within(part.t, own.t) && (!discs || within(part.l, own.l));
+    if let Some((_, none)) = theirs.iter().find(|(_, part)| !own.iter().any(|(_, own)| holds(own, part))) {
+        return Err(format!("{list}: none of agents {i} and {j} holds the times {:?} in the certificate", none.t));
+    }
+    let made = |range: &dyn Fn(&ReportedRegion) -> [f64; 2], own: &ReportedRegion| {
+        (0..2).all(|end| theirs.iter().any(|(_, part)| range(part)[end] == range(own)[end]))
+    };
+    for (k, (place, region)) in own.iter().enumerate() {
+        let wrong = |why: String| format!("{list}[{place}], of agents {i} and {j}: {why}");
+        if !made(&|told| told.t, region) {
+            return Err(wrong(format!("t is {:?}, which no times in the certificate make", region.t)));
+        }
+        if discs && !made(&|told| told.l, region) {
+            return Err(wrong(format!("l is {:?}, which no lengths in the certificate make", region.l)));
+        }
+        if own[..k].iter().any(|(_, before)| before == region) {
+            return Err(wrong("it is there twice".into()));
+        }
+    }
+    Ok(())
+}
+
+/// The expected content for a region of a table, seen from one of its two agents.
+fn expected_region(
+    table: &RawTable,
+    pair: &RawPair,
+    (place, region): (usize, &RawRegion),
+    times: [[f64; 2]; 2],
+    first: usize,
+) -> Result<ReportedRegion, String> {
+    let second = 1 - first;
+    let missing = || format!("the pair of places {} and {} is none", pair.agents[0], pair.agents[1]);
+    let agent = |k: usize| table.agents.get(pair.agents[k]).ok_or_else(missing);
+    let (own, other) = (agent(first)?, agent(second)?);
+    let letter = |agent: &RawAgent, segment: usize| {
+        agent.path.segments.get(segment).map_or('?', |segment| if segment.radius.is_some() { 'A' } else { 'S' })
+    };
+    let pieces = pair.pieces.iter().filter(|piece| piece.region == place).map(|piece| ReportedPiece {
+        kind: [letter(own, piece.segments[first]), letter(other, piece.segments[second])].into_iter().collect(),
+        i_length: piece.lengths[first],
+        j_length: piece.lengths[second],
+    });
+    let [from, to] = region.lengths[second];
+    let end = other.path.segments.last().map_or(0.0, |last| last.to);
+    Ok(ReportedRegion {
+        i: own.id,
+        j: other.id,
+        t: times[second],
+        l: region.lengths[first],
+        open_start: from <= 0.0,
+        open_end: to >= end,
+        pieces: pieces.collect(),
+    })
+}
+
+impl ReportedRegion {
+    /// Whether a region is told as it is held, or what is not.
+    fn same(&self, held: &Self) -> Result<(), String> {
+        for (name, own, held) in [("t", self.t, held.t), ("l", self.l, held.l)] {
+            if own != held {
+                return Err(format!("{name} is {own:?}, and {held:?}"));
+            }
+        }
+        for (name, own, held) in
+            [("open_start", self.open_start, held.open_start), ("open_end", self.open_end, held.open_end)]
+        {
+            if own != held {
+                return Err(format!("{name} is {own}, and {held}"));
+            }
+        }
+        if self.pieces.len() != held.pieces.len() {
+            return Err(format!("it has {} pieces, and {}", self.pieces.len(), held.pieces.len()));
+        }
+        let (own, held) = (sorted(&self.pieces), sorted(&held.pieces));
+        match own.into_iter().zip(held).find(|(own, held)| own != held) {
+            None => Ok(()),
+            Some((own, held)) => Err(format!("a piece is {}, and {}", own.describe(), held.describe())),
+        }
+    }
+}
+
+impl ReportedPiece {
+    fn describe(&self) -> String {
+        format!("{} with the lengths {:?} and {:?}", self.kind, self.i_length, self.j_length)
+    }
+}
+
+fn sorted(pieces: &[ReportedPiece]) -> Vec<&ReportedPiece> {
+    let mut sorted: Vec<&ReportedPiece> = pieces.iter().collect();
+    let key = |part: &ReportedPiece| [part.i_length[0], part.j_length[0], part.i_length[1], part.j_length[1]];
+    sorted.sort_by(|a, b| {
+        let orders = key(a).into_iter().zip(key(b)).map(|(a, b)| a.total_cmp(&b));
+        orders.fold(a.kind.cmp(&b.kind), std::cmp::Ordering::then)
+    });
+    sorted
+}

@@ -1,0 +1,300 @@
+//! The area that a vehicle sweeps on an edge: its motions along the edge, and its turns at both ends.
+//!
+//! A disc is the same in every heading. Any other outline differs on the way back along a two-way edge, and sweeps more
+//! where the vehicle turns. At each end of an edge it turns in place from the edges that lead there, and to those that
+//! continue from it. It turns back along the same line only if no other open way leads on. Half a turn onto another line,
+//! or within an edge, may go to either side.
+
+use crate::disc_fleet::tracks;
+use pcr_formats::import::{Facing, ImportedLayout, Layout, LayoutEdge, RouteStep, VehicleTraits, ride, turn};
+use pcr_formats::plane_geometry::wrapped;
+use pcr_formats::scenario::Agent;
+use pcr_formats::scenario::{KINK, PathSegment, PlacedSegment, TURN};
+use std::collections::{HashMap, HashSet};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Rounding of lengths, relative.
+const ROUNDING: f64 = 1e-12;
+
+/// Two edges between the same nodes are the same line if they are not farther apart than this, where they are compared \[m\].
+const ALIKE: f64 = 0.05;
+
+/// They are compared at lengths that differ by no more than this \[m\].
+const APART: f64 = 0.1;
+
+/// The vehicle somewhere on an edge.
+pub struct EdgeTraversal {
+    /// The agent that travels the edge.
+    pub agent: Agent,
+    pub(crate) lengths: LengthMapping,
+}
+
+/// The meaning of lengths on the path of an agent, as lengths on the edge.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum LengthMapping {
+    /// Those on the edge, and of the turns within it, which add so much \[m\].
+    Along(f64),
+    /// The same from the other end of the edge.
+    Reversed {
+        /// Length of the path \[m\].
+        length: f64,
+        /// What the turns add to it \[m\].
+        turns: f64,
+    },
+    /// The agent turns in place at this length \[m\].
+    At(f64),
+}
+
+impl LengthMapping {
+    /// Lengths on the edge for lengths on the path of the agent, rounded outward.
+    pub(crate) fn on_edge(self, lengths: [f64; 2]) -> [f64; 2] {
+        match self {
+            Self::Along(turns) => [(lengths[0] - turns).max(0.0), lengths[1]],
+            Self::Reversed { length, turns } => {
+                let [lo, hi] = reversed(length, lengths);
+                [(lo - turns).max(0.0), hi]
+            }
+            Self::At(length) => [length; 2],
+        }
+    }
+}
+
+/// Lengths from the other end of an edge of this length \[m\], outward.
+pub(crate) fn reversed(length: f64, [lo, hi]: [f64; 2]) -> [f64; 2] {
+    let slack = ROUNDING * (1.0 + length);
+    [length - hi - slack, length - lo + slack].map(|l| l.clamp(0.0, length))
+}
+
+/// All rides on the edges of a layout.
+pub struct EdgeTraversals<'a> {
+    layout: &'a Layout,
+    vehicle: VehicleTraits,
+    /// The vehicle as it covers what it may cover where it faces otherwise than along its way.
+    outlines: HashMap<Facing, VehicleTraits>,
+    /// For each node the ways on which the vehicle comes to it, and leaves it.
+    sides: Vec<[Vec<EdgeApproach<'a>>; 2]>,
+    /// How far from each node a vehicle may be that has come to the end of an edge there \[m\].
+    beside: Vec<f64>,
+}
+
+impl<'a> EdgeTraversals<'a> {
+    /// The rides of the vehicle with its margin.
+    pub fn new(ImportedLayout { layout, vehicle }: &'a ImportedLayout) -> Self {
+        let vehicle = VehicleTraits { margin: 0.0, ..with_margin(vehicle, vehicle.margin) };
+        // A disc is the same in every heading.
+        let turning = if vehicle.footprint.is_some() { &layout.edges[..] } else { &[] };
+        let mut all =
+            vec![<[Vec<EdgeApproach<'_>>; 2]>::default(); if turning.is_empty() { 0 } else { layout.nodes.len() }];
+        for step in turning.iter().flat_map(|edge| edge.steps()) {
+            let Some([start, end]) = ends(step) else { continue };
+            for (node, side, end) in [(step.target(), 0, end), (step.origin(), 1, start)] {
+                if let Some(sides) = all.get_mut(node) {
+                    sides[side].push(EdgeApproach { step, heading: end.heading });
+                }
+            }
+        }
+        let mut beside = vec![0.0_f64; layout.nodes.len()];
+        for edge in &layout.edges {
+            for &node in &edge.ends {
+                if let Some(farthest) = beside.get_mut(node) {
+                    *farthest = farthest.max(edge.deviation);
+                }
+            }
+        }
+        let facings: HashSet<Facing> = turning.iter().flat_map(|edge| edge.facing).collect();
+        let outlines = facings.into_iter().map(|facing| (facing, vehicle.facing(facing))).collect();
+        Self { layout, vehicle, outlines, sides: all, beside }
+    }
+
+    /// The vehicle, larger by its margin.
+    pub fn vehicle(&self) -> &VehicleTraits {
+        &self.vehicle
+    }
+
+    /// The rides on an edge: one for a disc, else those in each direction.
+    pub fn on_edge(&self, edge: &LayoutEdge) -> Vec<EdgeTraversal> {
+        if self.vehicle.footprint.is_none() {
+            return vec![self.along(RouteStep { edge, backward: false })];
+        }
+        edge.steps().flat_map(|step| self.turning(step)).collect()
+    }
+
+    /// The rides of an outline in one direction.
+    fn turning(&self, step: RouteStep<'_>) -> Vec<EdgeTraversal> {
+        let Some([start, end]) = ends(step) else {
+            // Without a length it has no direction.
+            return vec![self.at_node(step.origin())];
+        };
+        let facing = self.facing(step);
+        let (length, vehicle) = (step.edge.length(), with_margin(facing, step.edge.position_error(facing)));
+        let [from, to] = if step.backward { [length, 0.0] } else { [0.0, length] };
+        let before = self.turns(EdgeApproach { step, heading: start.heading }, 0);
+        let after = self.turns(EdgeApproach { step, heading: end.heading }, 1);
+        // Before a turn to the left the vehicle looks further to the right.
+        let turns =
+            [(from, start, before.map(|turn| -turn)), (to, end, after)].into_iter().filter_map(|(at, end, turns)| {
+                let [right, left] = [turns[0].min(turns[1]), turns[0].max(turns[1])];
+                let agent = (right < left).then(|| turn(&vehicle, end.at, end.heading + right, left - right));
+                Some(EdgeTraversal { agent: agent?, lengths: LengthMapping::At(at) })
+            });
+        // Half a turn within the edge.
+        let mut before: Option<PlacedSegment> = None;
+        let mut travelled = 0.0;
+        let halves = step.curve().into_iter().filter(|piece| piece.shape.length() > 0.0).filter_map(|piece| {
+            // Where it turns back in one gear or the other, it may also turn by less.
+            let least = if step.facing() == Facing::Ahead { PI - KINK } else { FRAC_PI_2 };
+            let is_half = before.is_some_and(|before| wrapped(piece.heading - before.heading_at_end()).abs() > least);
+            let at = if step.backward { length - travelled } else { travelled };
+            (before, travelled) = (Some(piece), travelled + piece.shape.length());
+            is_half
+                .then(|| EdgeTraversal { agent: turn(&vehicle, piece.start, 0.0, TAU), lengths: LengthMapping::At(at) })
+        });
+        std::iter::once(self.along(step)).chain(turns).chain(halves).collect()
+    }
+
+    fn along(&self, step: RouteStep<'_>) -> EdgeTraversal {
+        let agent = self.along_with(self.facing(step), step);
+        let turns = agent.path.iter().filter(|shape| matches!(shape, PathSegment::Arc { radius: TURN, .. }));
+        let turns = turns.map(PathSegment::length).sum::<f64>() + 0.0;
+        let lengths = match step.backward {
+            true => LengthMapping::Reversed { length: agent.length(), turns },
+            false => LengthMapping::Along(turns),
+        };
+        EdgeTraversal { agent, lengths }
+    }
+
+    /// A disc with other limits of its motion, along an edge.
+    pub(super) fn along_with(&self, vehicle: &VehicleTraits, step: RouteStep<'_>) -> Agent {
+        match ends(step) {
+            Some(_) => ride(vehicle, step),
+            None => turn(&with_margin(vehicle, step.edge.deviation), self.node_point(step.origin()), 0.0, 0.0),
+        }
+    }
+
+    /// The vehicle as it is where it faces as on this way.
+    fn facing(&self, step: RouteStep<'_>) -> &VehicleTraits {
+        self.outlines.get(&step.facing()).unwrap_or(&self.vehicle)
+    }
+
+    /// The vehicle that stands at a node, or where an edge ends beside it, in any heading.
+    pub fn at_node(&self, node: usize) -> EdgeTraversal {
+        let angle = if self.vehicle.footprint.is_some() { TAU } else { 0.0 };
+        let vehicle = with_margin(&self.vehicle, self.node_tolerance(node));
+        EdgeTraversal { agent: turn(&vehicle, self.node_point(node), 0.0, angle), lengths: LengthMapping::At(0.0) }
+    }
+
+    /// How far from a node a vehicle may be that stands there \[m\].
+    pub(super) fn node_tolerance(&self, node: usize) -> f64 {
+        self.beside.get(node).copied().unwrap_or_default()
+    }
+
+    fn node_point(&self, node: usize) -> [f64; 2] {
+        self.layout.position(node)
+    }
+
+    /// The farthest turns to the right and to the left from ways that come to the origin of a way onto this one (side 0), or
+    /// from this one onto those that leave its target (side 1).
+    fn turns(&self, own: EdgeApproach<'_>, side: usize) -> [f64; 2] {
+        let node = if side == 0 { own.step.origin() } else { own.step.target() };
+        let Some(sides) = self.sides.get(node) else { return [0.0; 2] };
+        let mut range = [0.0_f64; 2];
+        for other in &sides[side] {
+            let [arrives, leaves] = if side == 0 { [other, &own] } else { [&own, other] };
+            // What faces another way on the next edge turns round in between, to either side.
+            if arrives.step.facing().then(leaves.step.facing()) == Facing::Any {
+                return [-PI, PI];
+            }
+            let turn = arrives.turn(leaves);
+            let leads_on = |way: &EdgeApproach<'_>| !way.step.edge.closed && !arrives.turns_back(way);
+            if arrives.turns_back(leaves) && sides[1].iter().any(leads_on) {
+                continue;
+            }
+            let [lo, hi] = if is_half(turn) { [-PI, PI] } else { [turn; 2] };
+            range = [range[0].min(lo), range[1].max(hi)];
+        }
+        range
+    }
+}
+
+/// The vehicle, larger on all sides.
+fn with_margin(vehicle: &VehicleTraits, by: f64) -> VehicleTraits {
+    let footprint = vehicle.footprint.as_ref().map(|footprint| footprint.inflated(by));
+    VehicleTraits { radius: vehicle.radius + by, footprint, ..vehicle.clone() }
+}
+
+/// A way that ends or begins at a node, and the heading there \[rad\].
+#[derive(Clone)]
+struct EdgeApproach<'a> {
+    step: RouteStep<'a>,
+    heading: f64,
+}
+
+impl EdgeApproach<'_> {
+    /// The turn from this way, which comes to a node, onto one that leaves it \[rad\].
+    fn turn(&self, leaves: &Self) -> f64 {
+        wrapped(leaves.heading - self.heading)
+    }
+
+    /// Whether that is half a turn, back along the same line.
+    fn turns_back(&self, leaves: &Self) -> bool {
+        is_half(self.turn(leaves)) && leads_back(self.step, leaves.step)
+    }
+}
+
+/// Whether it is half a turn, but for what joints of maps are off by.
+fn is_half(turn: f64) -> bool {
+    turn.abs() > PI - KINK
+}
+
+/// Whether a way leads back along the line of another one.
+fn leads_back(step: RouteStep<'_>, other: RouteStep<'_>) -> bool {
+    if std::ptr::eq(step.edge, other.edge) {
+        return step.backward != other.backward;
+    }
+    let back = RouteStep { backward: !other.backward, ..other };
+    if [step.origin(), step.target()] != [back.origin(), back.target()] {
+        return false;
+    }
+    let lengths = [step, back].map(|step| step.edge.length());
+    let curves = [step, back].map(RouteStep::curve);
+    let count = (lengths[0].max(lengths[1]) / APART).ceil().max(8.0);
+    (0..=count as usize)
+        .map(|k| [0, 1].map(|way| point(&curves[way], lengths[way] * k as f64 / count)))
+        .all(|[[x, y], [u, v]]| (x - u).hypot(y - v) <= ALIKE)
+}
+
+/// The point of a curve after a length \[m\].
+fn point(curve: &[PlacedSegment], length: f64) -> [f64; 2] {
+    let mut left = length;
+    for piece in curve {
+        let length = piece.shape.length();
+        if left < length {
+            return piece.part(0.0, left).end();
+        }
+        left -= length;
+    }
+    curve.last().map_or([0.0; 2], PlacedSegment::end)
+}
+
+/// A pose of the vehicle.
+struct TraversalPose {
+    at: [f64; 2],
+    heading: f64,
+}
+
+/// The beginning and the end of an edge, where it has a length.
+fn ends(step: RouteStep<'_>) -> Option<[TraversalPose; 2]> {
+    let curve = step.curve();
+    let mut pieces = curve.iter().filter(|piece| piece.shape.length() > 0.0);
+    let first = pieces.next()?;
+    let last = pieces.next_back().unwrap_or(first);
+    Some([
+        TraversalPose { at: first.start, heading: first.heading },
+        TraversalPose { at: last.end(), heading: last.heading_at_end() },
+    ])
+}
+
+/// The paths of the discs of a vehicle on an edge, and their radii \[m\]: for pictures.
+pub fn corridor(rides: &[EdgeTraversal]) -> Vec<(Vec<PlacedSegment>, f64)> {
+    rides.iter().flat_map(|ride| tracks(&ride.agent)).collect()
+}

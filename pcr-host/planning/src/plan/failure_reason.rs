@@ -1,0 +1,258 @@
+//! Why and where two agents cannot be planned: which of their starts and ends are in the way of the other agent, and on
+//! what lengths.
+
+use super::{motions_with_margins, sides_of};
+use crate::agent_regions::AgentRegions;
+use crate::disc_fleet::{BodyDisc, DiscFleet, Form};
+use crate::figures::outward;
+use crate::fleet::Fleet;
+use pcr_core::{Encounter, Interval, Motion, RegionRef};
+use pcr_formats::scenario::Scenario;
+use serde::Serialize;
+
+/// A place where two agents are in each other's way.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BlockingLocation {
+    /// Lengths on the paths of the first and the second agent \[m\].
+    pub lengths: [[f64; 2]; 2],
+    /// Position in the middle of the lengths of the first, x and y \[m\].
+    #[serde(rename = "at")]
+    pub point: [f64; 2],
+}
+
+/// The reason why a region cannot be passed before the other agent, or after it.
+#[derive(Clone, Copy, PartialEq)]
+enum BlockingCause {
+    /// The first stands at its start, in the way of the second.
+    OwnStart,
+    /// The first stays at its end, in the way of the second.
+    OwnEnd,
+    /// The second stands at its start, in the way of the first.
+    OtherStart,
+    /// The second stays at its end, in the way of the first.
+    OtherEnd,
+}
+
+impl BlockingCause {
+    fn words(self) -> &'static str {
+        match self {
+            Self::OwnStart => "the first stands at its start in the way of the second",
+            Self::OwnEnd => "the first stays at its end in the way of the second",
+            Self::OtherStart => "the second stands at its start in the way of the first",
+            Self::OtherEnd => "the second stays at its end in the way of the first",
+        }
+    }
+}
+
+/// What is said of two agents that meet with all delays, if it is not known where.
+pub(super) const ALWAYS: &str = "they meet whenever they start";
+
+/// Reason why two agents of a scenario meet with all delays (`always`), or why the first finds no start; and the place.
+/// Computed from their discs; without a place if they have no region.
+pub(super) fn reason(scenario: &Scenario, ids: [u64; 2], always: bool) -> (String, Option<BlockingLocation>) {
+    let general = match always {
+        true => ALWAYS,
+        false => "the first cannot start because of the second in any order that was tried",
+    };
+    match found(scenario, ids, always, general) {
+        Some((why, spot)) => (format!("{why}, {}", spot.words()), Some(spot)),
+        None => (general.to_owned(), None),
+    }
+}
+
+fn found(scenario: &Scenario, ids: [u64; 2], always: bool, general: &str) -> Option<(String, BlockingLocation)> {
+    let agent = |id: u64| scenario.agents.iter().find(|agent| agent.id == id).cloned();
+    let scenario = Scenario { agents: ids.into_iter().map(agent).collect::<Option<_>>()?, ..Scenario::default() };
+    let fleet = Fleet::<f64>::new(&scenario).ok()?;
+    let references = fleet.motions();
+    let references = [references.first()?, references.get(1)?];
+    let bodies = DiscFleet::<f64>::new(&scenario, Form::Covers).ok()?;
+    let (grown, exact) = (motions_with_margins(&bodies.fleet), bodies.fleet.motions());
+    let pair = BlockedPair { references, discs: &bodies.discs, grown: &grown, exact: &exact };
+    let others: Vec<u32> = pair.of(1).map(|disc| disc as u32).collect();
+    let rows = pair.of(0).map(|disc| AgentRegions::new(&grown, disc, &others)).collect::<Result<Vec<_>, _>>().ok()?;
+    let all: Vec<DiscPairRegion<'_>> = rows.iter().flat_map(|row| pair.met(row)).collect();
+    let never = all.iter().find(|met| met.sides() == [true; 2]);
+    let last = never.or_else(|| all.iter().find(|met| met.sides()[0]));
+    let first = never.or_else(|| all.iter().find(|met| met.sides()[1]));
+    let longest = || all.iter().max_by(|a, b| a.region.length().length().total_cmp(&b.region.length().length()));
+    let stand = || always.then(|| pair.standing(false).or_else(|| pair.standing(true))).flatten();
+    Some(match (stand(), always, first, last) {
+        (Some(found), ..) => found,
+        (None, true, Some(first), Some(last)) => {
+            let is_contact = pair.has_contact(first) && pair.has_contact(last);
+            let margins = match is_contact {
+                true => "",
+                false if scenario.agents.iter().any(|agent| agent.margin > 0.0) => ", within their margins",
+                // What plans keep for the rounding of numbers.
+                false => ", within rounding",
+            };
+            // Two regions, of which each has an order, are passed by other speeds, maybe.
+            match never {
+                Some(_) => (contradiction(last, first) + margins, last.spot(references[0])),
+                None => (describe_distance(last, first, references[0]) + margins, first.spot(references[0])),
+            }
+        }
+        _ => (general.to_owned(), last.or_else(longest)?.spot(references[0])),
+    })
+}
+
+/// Two agents and their discs.
+struct BlockedPair<'a> {
+    /// Motions of the agents.
+    references: [&'a Motion<'a, f64>; 2],
+    discs: &'a [BodyDisc],
+    /// Motions of the discs, enlarged by margins and rounding.
+    grown: &'a [Motion<'a, f64>],
+    /// The same as they are.
+    exact: &'a [Motion<'a, f64>],
+}
+
+impl<'a> BlockedPair<'a> {
+    /// The discs of an agent.
+    fn of(&self, agent: usize) -> impl Iterator<Item = usize> + 'a {
+        let discs = self.discs;
+        (0..discs.len()).filter(move |&disc| discs[disc].agent == agent)
+    }
+
+    /// The regions of a disc.
+    fn met(&self, row: &'a AgentRegions<'a, f64>) -> impl Iterator<Item = DiscPairRegion<'a>> {
+        let discs = self.discs;
+        let disc = move |place: usize| row.agents()[place] as usize;
+        let regions = row.table().row(row.motions(), row.agent_index()).expect("the table of the row");
+        regions.map(move |region| {
+            let places = [region.ego(), region.other()].map(disc);
+            let [own, other] = places.map(|place| &discs[place]);
+            DiscPairRegion { region, places, own, other }
+        })
+    }
+
+    /// How near the agents are at their starts or at their ends, if they are too near.
+    fn standing(&self, at_end: bool) -> Option<(String, BlockingLocation)> {
+        let Self { references, discs, grown, exact } = *self;
+        let there = |&disc: &usize| discs[disc].stands()[usize::from(at_end)];
+        let at = |disc: usize| grown[disc].path().point_at(if at_end { grown[disc].path().length() } else { 0.0 });
+        let pairs = self.of(0).filter(there).flat_map(|a| self.of(1).filter(there).map(move |b| [a, b]));
+        let near = pairs.filter_map(|[a, b]| {
+            let apart = (at(a).x - at(b).x).hypot(at(a).y - at(b).y);
+            let gap = apart - exact[a].radius() - exact[b].radius();
+            let margin = exact[a].margin() + exact[b].margin();
+            let tolerance = Encounter::new(&exact[a], &exact[b]).tolerance();
+            (apart < grown[a].radius() + grown[b].radius()).then_some((gap, ProximityKind::of(gap, margin, tolerance)))
+        });
+        let (_, nearest) = near.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let place = if at_end { "at the ends of their paths" } else { "at their starts" };
+        Some((format!("{} {place}", nearest.words()), BlockingLocation::standing(references, at_end)))
+    }
+
+    /// Whether the discs themselves meet in a region, and not only their margins.
+    fn has_contact(&self, met: &DiscPairRegion<'_>) -> bool {
+        let [own, other] = met.places;
+        let Ok(row) = AgentRegions::new(self.exact, own, &[other as u32]) else { return true };
+        let mut regions = row.table().row(row.motions(), row.agent_index()).expect("the table of the row");
+        regions.any(|region| region.length().meets(met.region.length()))
+    }
+}
+
+/// How near two agents are that stand too near.
+enum ProximityKind {
+    Overlap,
+    Touch,
+    Margins,
+}
+
+impl ProximityKind {
+    /// The contact for a gap between the discs, margins, and the error of the gap \[m\].
+    fn of(gap: f64, margins: f64, tolerance: f64) -> Self {
+        match () {
+            () if gap < -tolerance => Self::Overlap,
+            () if gap <= tolerance || margins == 0.0 => Self::Touch,
+            () => Self::Margins,
+        }
+    }
+
+    fn words(&self) -> &'static str {
+        match self {
+            Self::Overlap => "they overlap",
+            Self::Touch => "they touch",
+            Self::Margins => "they are nearer than their margins",
+        }
+    }
+}
+
+/// A region of two discs.
+struct DiscPairRegion<'a> {
+    region: RegionRef<'a, f64>,
+    /// Places of the two discs.
+    places: [usize; 2],
+    own: &'a BodyDisc,
+    other: &'a BodyDisc,
+}
+
+impl DiscPairRegion<'_> {
+    /// Whether the first disc has to pass the region after the second, and whether before.
+    fn sides(&self) -> [bool; 2] {
+        sides_of(&self.region, self.own.stands(), self.other.stands())
+    }
+
+    /// The place of the region on the paths of the agents; the first one has this motion.
+    fn spot(&self, first: &Motion<'_, f64>) -> BlockingLocation {
+        let ends = |interval: Interval<f64>| [interval.lo, interval.hi];
+        let lengths =
+            [self.own.on_agent(ends(self.region.length())), self.other.on_agent(ends(self.region.other_length()))];
+        BlockingLocation::at(first, lengths)
+    }
+}
+
+/// Each starts on the way of the other, or each ends there.
+const HEAD_ON: &str = "head-on without a passing place";
+/// One of them starts and ends on the way of the other.
+const NO_ORDER: &str = "no order is possible";
+
+/// The reason in words: a region that has to be passed second, and one that has to be passed first, if it is the same one.
+fn contradiction(second: &DiscPairRegion<'_>, first: &DiscPairRegion<'_>) -> String {
+    let (kind, not_first, not_second) = obstacles(second, first);
+    format!("{kind}: {}, and {}", not_first.words(), not_second.words())
+}
+
+/// The reason in words if they are two; the place of the one to be passed first follows.
+fn describe_distance(second: &DiscPairRegion<'_>, first: &DiscPairRegion<'_>, reference: &Motion<'_, f64>) -> String {
+    let (_, not_first, not_second) = obstacles(second, first);
+    let (second, not_first, not_second) = (second.spot(reference).words(), not_first.words(), not_second.words());
+    format!("no start delays are possible, other speeds may be: {not_first}, {second}; and {not_second}")
+}
+
+/// What is in the way, in short, of passing one region first and the other one second.
+fn obstacles(second: &DiscPairRegion<'_>, first: &DiscPairRegion<'_>) -> (&'static str, BlockingCause, BlockingCause) {
+    let other_start = second.other.is_at_start() && second.region.is_open_at_start();
+    let other_end = first.other.is_at_end() && first.region.is_open_at_end();
+    let own_start = first.own.is_at_start() && first.region.length().lo <= 0.0;
+    let path = second.region.ego_motion().path();
+    let own_end = second.own.is_at_end() && second.region.length().hi >= path.length();
+    match () {
+        () if other_start && own_start => (HEAD_ON, BlockingCause::OtherStart, BlockingCause::OwnStart),
+        () if own_end && other_end => (HEAD_ON, BlockingCause::OwnEnd, BlockingCause::OtherEnd),
+        () if other_start => (NO_ORDER, BlockingCause::OtherStart, BlockingCause::OtherEnd),
+        () => (NO_ORDER, BlockingCause::OwnEnd, BlockingCause::OwnStart),
+    }
+}
+
+impl BlockingLocation {
+    /// The spot at these lengths of two paths.
+    fn at(first: &Motion<'_, f64>, lengths: [[f64; 2]; 2]) -> Self {
+        let point = first.path().point_at((lengths[0][0] + lengths[0][1]) / 2.0);
+        Self { lengths, point: [point.x, point.y] }
+    }
+
+    /// The spot of two agents at their starts or at their ends.
+    pub(super) fn standing([a, b]: [&Motion<'_, f64>; 2], ends: bool) -> Self {
+        let length = |motion: &Motion<'_, f64>| if ends { motion.path().length() } else { 0.0 };
+        Self::at(a, [[length(a); 2], [length(b); 2]])
+    }
+
+    pub(super) fn words(&self) -> String {
+        let [[a, b], [c, d]] = self.lengths.map(outward);
+        let [x, y] = self.point;
+        format!("on lengths {a} to {b} m and {c} to {d} m, around ({x:.3}, {y:.3})")
+    }
+}

@@ -1,0 +1,58 @@
+//! Data that the supervisor's thread publishes for others: its speed, and recent events.
+
+use crate::event::SupervisorEvent;
+use crate::metrics::LatencyHistogram;
+use serde_json::{Value, json};
+use std::collections::VecDeque;
+use std::time::Instant;
+
+/// Number of events that are kept.
+const EVENTS: usize = 100;
+
+/// The published data.
+#[derive(Clone, Debug)]
+pub struct Telemetry {
+    begin: Instant,
+    /// Latency of requests.
+    pub latency: LatencyHistogram,
+    events: VecDeque<(f64, String)>,
+}
+
+impl Telemetry {
+    /// An empty board of a supervisor whose time began then.
+    pub fn new(begin: Instant) -> Self {
+        Self { begin, latency: LatencyHistogram::default(), events: VecDeque::new() }
+    }
+
+    /// The supervisor's time at a moment \[s\]; 0 for one before it began.
+    pub fn time(&self, moment: Instant) -> f64 {
+        moment.saturating_duration_since(self.begin).as_secs_f64()
+    }
+
+    /// Stores an event, unless it is a hold.
+    pub fn note(&mut self, now: f64, event: &SupervisorEvent) {
+        let robot = event.robot();
+        let text = match event {
+            SupervisorEvent::Hold { .. } => return,
+            SupervisorEvent::Admitted { mission, length, .. } => format!("{robot} has {mission}, {length:.1} m"),
+            SupervisorEvent::Waiting { mission, why, .. } => format!("{mission} of {robot} waits: {why}"),
+            SupervisorEvent::Dropped { mission, why, .. } => format!("{mission} of {robot} is given up: {why}"),
+            SupervisorEvent::Silent { since, .. } => format!("{robot} is not heard for {since:.0} s"),
+            SupervisorEvent::Heard { .. } => format!("{robot} is heard again"),
+            SupervisorEvent::Standstill { since, why, .. } => format!("no progress for {since:.0} s: {why}"),
+            SupervisorEvent::Alarm { .. } => format!("{robot} is not where it may be"),
+            SupervisorEvent::Clear { .. } => format!("{robot} is where it may be again"),
+            SupervisorEvent::Stop { by, .. } => format!("{robot} has to stop for {by}"),
+            SupervisorEvent::Go { .. } => format!("{robot} may go on"),
+        };
+        if self.events.len() == EVENTS {
+            self.events.pop_front();
+        }
+        self.events.push_back((now, text));
+    }
+
+    /// The latest events, oldest first.
+    pub fn events(&self) -> Vec<Value> {
+        self.events.iter().map(|(time, text)| json!({ "time": time, "text": text })).collect()
+    }
+}
