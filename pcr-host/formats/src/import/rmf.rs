@@ -22,7 +22,7 @@ use std::collections::{BTreeSet, HashMap};
 
 const ROOT: Keys = Keys::new(
     &["levels", "name", "building_name", "coordinate_system", "reference_level_name", "lifts", "rmf_fleet"],
-    &["graphs", "crowd_sim", "doors", "parameters", "generate_crs", "version", "params", "utm_grid"],
+    &["graphs", "crowd_sim", "doors", "parameters", "generate_crs", "version", "params", "utm_grid", "pcr_vehicle"],
 )
 .not(&["lanes", "vertices", "measurements", "fiducials"]);
 
