@@ -39,8 +39,8 @@ typedef struct PcrPhaseStorage {
  Memory for the motion of an agent.
  */
 typedef struct PcrMotionStorage {
-  size_t pointers[4];
-  float opaque[14];
+  size_t pointers[6];
+  float opaque[16];
 } PcrMotionStorage;
 
 /*

@@ -39,8 +39,8 @@ typedef struct PcrF64PhaseStorage {
  Memory for the motion of an agent.
  */
 typedef struct PcrF64MotionStorage {
-  size_t pointers[4];
-  double opaque[14];
+  size_t pointers[6];
+  double opaque[16];
 } PcrF64MotionStorage;
 
 /*

@@ -42,8 +42,8 @@ typedef struct PcrQ16PhaseStorage {
  Memory for the motion of an agent.
  */
 typedef struct PcrQ16MotionStorage {
-  size_t pointers[4];
-  int32_t opaque[14];
+  size_t pointers[6];
+  int32_t opaque[16];
 } PcrQ16MotionStorage;
 
 /*

@@ -128,7 +128,7 @@ pub struct PcrPhaseStorage {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrMotionStorage {
-    pointers: [usize; 4],
+    pointers: [usize; 6],
     opaque: [Real; MOTION],
 }
 
@@ -275,7 +275,7 @@ impl PcrPhaseStorage {
 
 impl PcrMotionStorage {
     /// An unused slot.
-    pub const EMPTY: Self = Self { pointers: [0; 4], opaque: [ZERO; MOTION] };
+    pub const EMPTY: Self = Self { pointers: [0; 6], opaque: [ZERO; MOTION] };
 }
 
 impl PcrRegionStorage {
