@@ -1,17 +1,21 @@
 //! The distance of two placed convex polygons.
 //!
 //! If the polygons are apart, it is the least distance of a corner of one from an edge or a corner of the other. If they
-//! are not, that value means nothing; whether they are is decided by the line between the two nearest points found: it separates
-//! the polygons if and only if they are apart. (Normals of edges alone would not do for capsules, which are flat.)
+//! are not, that value means nothing. They are apart if all of one lies beyond the line of an edge of the other, or if the line between the two
+//! nearest corners separates them. Normals of edges alone would not do for capsules, which are flat. The line alone would not do either: if it is
+//! short, rounding turns it, and a long edge beside it seems to be crossed.
 
+use super::contacts::{between, direction_of};
 use crate::geometry::{Direction, Vector};
 use crate::outline::{Corner, opposite};
 use crate::scalar::{Scalar, Wide};
 
-/// The vector from a corner of one polygon to the nearest point of the edges of another one, and its squared length.
+/// The way from a corner of one polygon to the nearest point of the edges of another one.
 struct Nearest<S: Scalar> {
     square: S::Wide,
     way: Vector<S>,
+    /// The distance from the line of an edge, positive outside \[m\], and the outward normal of the edge; `None` if the nearest point is a corner.
+    beside: Option<(S, Direction<S>)>,
 }
 
 /// Returns the signed distance of two polygons \[m\], if they overlap minus the length of the least translation that
@@ -36,20 +40,25 @@ pub(crate) fn distance<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>]) -> S {
 
 /// The least distance of corners from edges, and its direction; `None` if the polygons overlap.
 fn outside<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>]) -> Option<(S, Direction<S>, bool)> {
-    let (there, back) = (nearest(a, b), nearest(b, a));
+    let ((there, beyond_b), (back, beyond_a)) = (nearest(a, b), nearest(b, a));
     let is_of_first = back.square < there.square;
-    let found = if !is_of_first {
-        there
-    } else {
-        Nearest { square: back.square, way: Vector { x: -back.way.x, y: -back.way.y } }
+    let found = if is_of_first { back } else { there };
+    // If rounding makes a gap of an overlap, the overlap and the distance found are rounding errors.
+    let is_apart = [beyond_a, beyond_b].into_iter().flatten().any(|gap| gap > S::ZERO);
+    let (length, direction) = match found.beside {
+        // The normal of the edge, which is exact however short the way is.
+        Some((out, outward)) => (out.abs(), if out < S::ZERO { outward } else { opposite(outward) }),
+        None => {
+            let length = found.square.sqrt();
+            if length <= S::ZERO {
+                return None;
+            }
+            (length, direction_of(found.way, length))
+        }
     };
-    let length = found.square.sqrt();
-    if length <= S::ZERO {
-        return None;
-    }
-    let [cos, sin] = S::unit_vector(found.way.x, found.way.y, length);
-    let direction = Direction { cos, sin };
-    (gap(a, b, direction).double() > length).then_some((length, direction, is_of_first))
+    let direction = if is_of_first { opposite(direction) } else { direction };
+    let apart = length > S::ZERO && (is_apart || found.beside.is_none() && gap(a, b, direction).double() > length);
+    apart.then_some((length, direction, is_of_first))
 }
 
 /// How far apart two polygons are along a direction from the first to the second \[m\].
@@ -79,39 +88,40 @@ pub(crate) fn beyond<S: Scalar>(edge: &Corner<S>, corners: &[Corner<S>]) -> S {
     corners.iter().map(apart).reduce(S::min).unwrap_or(S::ZERO)
 }
 
-fn between<S: Scalar>(from: Vector<S>, to: Vector<S>) -> Vector<S> {
-    Vector { x: to.x - from.x, y: to.y - from.y }
-}
-
-/// The corner of `a` that is nearest to an edge or a corner of `b`.
-fn nearest<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>]) -> Nearest<S> {
-    let mut found: Option<Nearest<S>> = None;
-    for corner in a {
-        for edge in b {
+/// The corner of `a` that is nearest to an edge or a corner of `b`, and the largest distance from the line of an edge of `b` beyond which
+/// all of `a` lies \[m\]; `None` if `b` has no edges.
+fn nearest<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>]) -> (Nearest<S>, Option<S>) {
+    let (mut found, mut beyond): (Option<Nearest<S>>, Option<S>) = (None, None);
+    for edge in b {
+        let mut least: Option<S> = None;
+        for corner in a {
             let way = between(corner.at, edge.at);
             // `across` a normal is along the edge. Beyond its end the next corner is nearer.
             let (out, along) = (-way.along(edge.outward), -way.across(edge.outward));
-            let (square, way) = if along <= S::ZERO {
-                (way.norm_squared(), way)
+            least = Some(least.map_or(out, |least| least.min(out)));
+            let (square, beside) = if along <= S::ZERO {
+                (way.norm_squared(), None)
             } else if along <= edge.length {
-                (out.times(out), edge.outward.vector(-out, S::ZERO))
+                (out.times(out), Some((out, edge.outward)))
             } else {
                 continue;
             };
             if found.as_ref().is_none_or(|found| square < found.square) {
-                found = Some(Nearest { square, way });
+                found = Some(Nearest { square, way, beside });
             }
         }
+        let least = least.filter(|_| edge.length > S::ZERO);
+        beyond = least.map_or(beyond, |least| Some(beyond.map_or(least, |most| most.max(least))));
     }
     // A corner is beyond the ends of all edges only by rounding, and is then near a corner.
-    found.unwrap_or_else(|| corners_apart(a, b))
+    (found.unwrap_or_else(|| corners_apart(a, b)), beyond)
 }
 
 /// The least distance of two corners.
 fn corners_apart<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>]) -> Nearest<S> {
     let pairs = a.iter().flat_map(|a| b.iter().map(|b| between(a.at, b.at)));
-    let all = pairs.map(|way| Nearest { square: way.norm_squared(), way });
-    let none = || Nearest { square: S::Wide::ZERO, way: Vector { x: S::ZERO, y: S::ZERO } };
+    let all = pairs.map(|way| Nearest { square: way.norm_squared(), way, beside: None });
+    let none = || Nearest { square: S::Wide::ZERO, way: Vector { x: S::ZERO, y: S::ZERO }, beside: None };
     all.reduce(|one, other| if other.square < one.square { other } else { one }).unwrap_or_else(none)
 }
 

@@ -10,6 +10,7 @@
 //! lengths in common; and if they have, they are connected within R + 2σ.
 //!
 //! If the number of intervals changes without an event, which only rounding can cause, the place is found by bisection and taken as an event.
+//! It is found to within a little, too: a piece that ends there holds no point that is farther.
 
 use super::contacts::Standing;
 use super::events::{Carriers, Events};
@@ -19,8 +20,8 @@ use crate::geometry::Interval;
 use crate::piece_store::{NONE, Piece, PieceStore};
 use crate::scalar::Scalar;
 
-/// Number of halvings of a gap between two slices of different structure.
-const HALVINGS: u32 = 24;
+/// Largest number of halvings of a gap between two slices of different structure: enough for the digits of any format.
+const HALVINGS: u32 = 64;
 
 /// A slice, and the pieces of its intervals.
 struct Front<S> {
@@ -69,7 +70,7 @@ impl<S: Scalar> Carriers<'_, S> {
             let mut from = lo;
             for to in all.as_slice().iter().copied().chain(wide.then_some(hi)) {
                 let slice = self.slice(to)?;
-                front = self.follow(front, slice, Interval::new(from, to), slab.hi, indices, pieces)?;
+                front = self.follow(front, slice, Interval::new(from, to), [slab.hi, beside], indices, pieces)?;
                 from = to;
             }
         }
@@ -92,13 +93,13 @@ impl<S: Scalar> Carriers<'_, S> {
         parts(&self.first, Standing { corners: corners.as_slice(), radius: self.radius, slack: self.slack })
     }
 
-    /// Continues the pieces from one slice to the next one in a slab.
+    /// Continues the pieces from one slice to the next one in a slab, which ends at `until`. Within `beside` no corner moves more than a little.
     fn follow<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(
         &self,
         mut front: Front<S>,
         slice: Parts<S>,
         step: Interval<S>,
-        until: S,
+        [until, beside]: [S; 2],
         indices: [u16; 2],
         pieces: &mut PieceStore<S, P>,
     ) -> Result<Front<S>, CapacityError> {
@@ -111,7 +112,7 @@ impl<S: Scalar> Carriers<'_, S> {
             let (mut near, mut to) = (slice, step.hi);
             for _ in 0..HALVINGS {
                 let middle = Interval::new(from, to).middle();
-                if round == 3 || middle <= from || middle >= to {
+                if round == 3 || to - from <= beside || middle <= from || middle >= to {
                     break;
                 }
                 let between = self.slice(middle)?;
