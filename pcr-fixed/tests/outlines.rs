@@ -202,15 +202,15 @@ fn campaign<const F: u32>(seeds: std::ops::Range<u64>) {
 
 #[test]
 fn regions_of_outlines_in_q20_hold_what_the_oracle_says() {
-    campaign::<20>(0..400);
+    campaign::<20>(0..1200);
 }
 
 #[test]
 fn regions_of_outlines_in_q16_hold_what_the_oracle_says() {
-    campaign::<16>(1000..1400);
+    campaign::<16>(1000..2200);
 }
 
 #[test]
 fn regions_of_outlines_in_q12_hold_what_the_oracle_says() {
-    campaign::<12>(2000..2400);
+    campaign::<12>(2000..3200);
 }

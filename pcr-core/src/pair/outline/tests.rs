@@ -780,3 +780,45 @@ fn delayed_outlines_do_not_touch() {
     }
     assert!(delayed > 20, "{delayed}");
 }
+
+/// A disc on a full circle touches the lane of a square exactly where the circle begins and ends. A first version took all of the circle as one piece.
+#[test]
+fn a_circle_that_touches_a_lane_at_both_ends_leaves_it_between() {
+    let case = Case {
+        segments: [
+            Vec::from([(0.0, 1.25), (0.0, 2.0), (-1.0, TAU)]),
+            Vec::from([(-0.5, FRAC_PI_2), (0.75, 1.1780972450961724), (-2.0, 2.0 * TAU)]),
+        ],
+        poses: [[-1.5, -1.25, PI], [-1.25, -1.25, -FRAC_PI_2]],
+        outlines: [Outline::rectangle(0.5, 0.5, 0.5, 0.5, 0.0).unwrap(), Outline::disc(0.25).unwrap()],
+    };
+    let (paths, outlines) = (case.paths::<f64>(), case.outlines::<f64>());
+    let profiles =
+        paths.each_ref().map(|path| Profile::<f64, 1>::from_pieces(1.0, [(path.as_path().length(), 0.0)]).unwrap());
+    let fleet = [0, 1].map(|k| {
+        let path: &Path<f64, 4> = &paths[k];
+        Motion::with_outline(path.as_path(), profiles[k].as_profile(), &outlines[k], 0.0).unwrap()
+    });
+    let exact = [0, 1].map(|k| Exact::of(&paths[k], case.poses[k][2], outlines[k].as_outline()));
+    let eps = excess(&fleet[0], &fleet[1]);
+    let ecm = Ecm::build([EcmEntry::EMPTY; 64], [Piece::EMPTY; 256], &fleet).unwrap();
+    let mut seen = 0;
+    for region in ecm.pair(&fleet, 0, 1).unwrap() {
+        // On a line the distance is a convex function of the length.
+        for piece in region.pieces().filter(|piece| piece.segments[0] < 2) {
+            for k in 0..=64 {
+                let Interval { lo, hi } = piece.other_length;
+                let other = exact[1].at((lo + (hi - lo) * f64::from(k) / 64.0).clamp(lo, hi));
+                let apart = |length: f64| oracle(&exact[0].at(length), &other);
+                let (mut lo, mut hi) = (piece.length.lo, piece.length.hi);
+                for _ in 0..100 {
+                    let [a, b] = [lo + (hi - lo) / 3.0, hi - (hi - lo) / 3.0];
+                    if apart(a) < apart(b) { hi = b } else { lo = a }
+                }
+                assert!(apart(lo).min(apart(hi)) < 0.25 + eps, "{piece:?} {k}: {:e}", apart(lo) - 0.25);
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 4 * 64, "{seen}");
+}
