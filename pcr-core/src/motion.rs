@@ -29,6 +29,8 @@ pub struct Motion<'a, S: Scalar> {
     corners: &'a [Corner<S>],
     /// Largest distance of a corner from the reference point.
     spread: S,
+    /// Sum of both: radius of the disc about the reference point that contains the outline.
+    reach: S,
     /// How much farther a corner moves at most than the reference point, as a factor.
     lever: S,
     margin: S,
@@ -60,8 +62,6 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// The motion of an outline whose reference point follows the path, with its `x` axis along the direction of travel, and that sets off at the time
     /// `start` \[s\]. An agent that drives backwards has an [`Outline::reversed`](crate::Outline::reversed) outline. An outline that is a disc about its reference point makes the motion of
     /// [`Motion::new`].
-    ///
-    /// In fixed point, slices of outlines may in rare cases exceed the bound [`excess`](crate::excess) (`docs/theory/outlines.md`).
     ///
     /// # Errors
     /// As [`Motion::new`]; [`Invalid::TurnInPlace`] if the path turns in place, which sweeps an area but has no length; [`Invalid::Lever`] if an
@@ -122,6 +122,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
             radius,
             corners,
             spread,
+            reach: outline.reach(),
             lever,
             margin,
             time,
@@ -212,8 +213,8 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// ```
     #[must_use]
     pub fn inflated(self) -> Self {
-        let (radius, extent) = (self.radius + self.margin, self.extent + self.margin.double());
-        Self { radius, extent, margin: S::ZERO, ..self }
+        let [radius, reach] = [self.radius, self.reach].map(|radius| radius + self.margin);
+        Self { radius, reach, extent: self.extent + self.margin.double(), margin: S::ZERO, ..self }
     }
 
     /// The same disc on the same path with another profile and start time \[s\]. A table of the motion holds for it, too, unless its
@@ -279,7 +280,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
 
     /// Radius of the disc, or of the disc about the reference point that contains the outline \[m\].
     pub fn radius(&self) -> S {
-        if self.has_outline() { self.radius + self.spread } else { self.radius }
+        self.reach
     }
 
     /// Returns the outline. It has no corners if it is a disc about the reference point.
@@ -335,7 +336,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// boxes do not meet have no region.
     pub(crate) fn swept(&self) -> Aabb<S> {
         let slack = S::slack(self.extent) + self.drift + self.allowance;
-        self.bounds.expanded(self.radius() + slack.double())
+        self.bounds.expanded(self.reach + slack.double())
     }
 
     /// Largest coordinate or length of the motion, plus the diameter of the disc \[m\]. Rounding errors grow with it.
@@ -383,7 +384,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
 
     /// The same motion of a disc that is larger by a few rounding errors \[m\], for a search that has to leave room for them.
     pub(crate) fn enlarged(&self, by: S) -> Self {
-        Self { radius: self.radius + by, ..*self }
+        Self { radius: self.radius + by, reach: self.reach + by, ..*self }
     }
 
     /// λ: length travelled at a time \[m\], clamped to the length of the path.
