@@ -279,6 +279,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     }
 
     /// Radius of the disc, or of the disc about the reference point that contains the outline \[m\].
+    #[expect(clippy::misnamed_getters, reason = "the field of this name is the radius of the rounding")]
     pub fn radius(&self) -> S {
         self.reach
     }
