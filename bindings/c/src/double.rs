@@ -15,7 +15,7 @@ mod number {
     pub(crate) type Heading = f64;
 
     pub(crate) const SEGMENT: usize = 30;
-    pub(crate) const MOTION: usize = 16;
+    pub(crate) const MOTION: usize = 17;
     pub(crate) const PIECE: usize = 6;
 
     pub(crate) const fn inner(real: Real) -> S {

@@ -15,7 +15,7 @@ mod number {
     pub(crate) type Heading = f32;
 
     pub(crate) const SEGMENT: usize = 30;
-    pub(crate) const MOTION: usize = 16;
+    pub(crate) const MOTION: usize = 17;
     pub(crate) const PIECE: usize = 7;
 
     pub(crate) const fn inner(real: Real) -> S {
