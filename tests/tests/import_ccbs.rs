@@ -185,6 +185,7 @@ fn a_roadmap_is_read_whole_or_refused() {
     let node = |id: &str, at: &str| format!("<node id=\"{id}\"><data>{at}</data></node>");
     let edge = |id: &str, from: &str, to: &str| format!("<edge id=\"{id}\" source=\"{from}\" target=\"{to}\"/>");
     let graph = |attributes: &str, parts: &[String]| {
+        let attributes = if attributes.is_empty() { "edgedefault=\"directed\"" } else { attributes };
         format!("<graphml><graph {attributes}>{}</graph></graphml>", parts.concat())
     };
     let read = |text: &str, partial: bool| {
@@ -312,6 +313,7 @@ fn a_plan_that_was_cut_is_refused() {
 fn edges_of_other_kinds_are_refused() {
     let graph = |attributes: &str, more: &str| {
         let nodes = "<node id=\"a\"><data>0,0</data></node><node id=\"b\"><data>4,0</data></node>";
+        let attributes = if attributes.is_empty() { "edgedefault=\"directed\"" } else { attributes };
         format!(
             "<graphml><graph {attributes}>{nodes}<edge id=\"e\" source=\"a\" target=\"b\"/>{more}</graph></graphml>"
         )
@@ -333,6 +335,11 @@ fn edges_of_other_kinds_are_refused() {
     let odd = failed(&graph("", "<edge id=\"o\" source=\"a\" target=\"b\" directed=\"no\"/>"));
     assert!(odd.starts_with("edge o, directed: no where true or false is expected"), "{odd}");
     assert_eq!(failed(&graph("edgedefault=\"both\"", "")), "graph, edgedefault: both is not read");
+    // The direction has no default.
+    assert_eq!(
+        failed(&graph("id=\"g\"", "")),
+        "edge e: neither it (directed) nor the graph (edgedefault) says whether it leads in both directions"
+    );
 }
 
 /// What is less than 1 µm was closed, and the disc passed where it does not in the file.

@@ -49,8 +49,9 @@ pub(super) fn roadmap(text: &str, warnings: &mut Warnings) -> Result<Layout, Imp
     }
     GRAPH.check_attributes(graph, "graph", warnings)?;
     let undirected = match graph.attribute("edgedefault") {
-        Some("undirected") => true,
-        None | Some("directed") => false,
+        Some("undirected") => Some(true),
+        Some("directed") => Some(false),
+        None => None,
         Some(other) => return Err(ImportError::new(format!("graph, edgedefault: {other} is not read"))),
     };
     let mut nodes = UniqueNames::new();
@@ -96,7 +97,10 @@ pub(super) fn roadmap(text: &str, warnings: &mut Warnings) -> Result<Layout, Imp
             warnings.add(WarningCode::ZeroLength, format_args!("edge {id}"), "its length is 0");
         }
         let back = match edge.attribute("directed").map(str::trim) {
-            None => undirected,
+            None => undirected.ok_or_else(|| {
+                let why = "neither it (directed) nor the graph (edgedefault) says whether it leads in both directions";
+                ImportError::new(format!("edge {id}: {why}"))
+            })?,
             Some("false" | "0") => true,
             Some("true" | "1") => false,
             Some(other) => {
