@@ -132,7 +132,7 @@ impl<S: Scalar, R: AsRef<[EcmEntry]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
     /// The regions of all ordered pairs, sorted by the ego, then by the other agent. O(agents × regions).
     ///
     /// # Errors
-    /// [`Mismatch::OtherFleet`], [`Mismatch::OnlyRow`].
+    /// [`MismatchError::OtherFleet`], [`MismatchError::OnlyRow`].
     pub fn regions<'a>(
         &'a self,
         fleet: &'a [Motion<'a, S>],
@@ -145,7 +145,7 @@ impl<S: Scalar, R: AsRef<[EcmEntry]>, P: AsRef<[Piece<S>]>> Ecm<S, R, P> {
     /// one, which sees it as [`RegionRef::swapped`]. O(agents + regions), less than [`Ecm::regions`].
     ///
     /// # Errors
-    /// [`Mismatch::OtherFleet`], [`Mismatch::OnlyRow`].
+    /// [`MismatchError::OtherFleet`], [`MismatchError::OnlyRow`].
     pub fn regions_once<'a>(
         &'a self,
         fleet: &'a [Motion<'a, S>],
@@ -282,7 +282,7 @@ where
     ///
     /// # Errors
     /// [`CapacityError`] if the storage is too small; the table is then empty, as after [`Ecm::clear`].
-    /// [`Mismatch::NoSuchAgent`]; the table is then unchanged.
+    /// [`MismatchError::NoSuchAgent`]; the table is then unchanged.
     pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), EcmError> {
         if agent >= fleet.len() {
             return Err(MismatchError::NoSuchAgent(agent).into());

@@ -50,8 +50,8 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// The motion of a disc with this radius \[m\] that sets off at the time `start` \[s\].
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::NonPositive`], [`Invalid::TooSmall`] (radius), and
-    /// [`Invalid::LengthMismatch`] if the lengths of profile and path differ by more than [`LENGTH_TOLERANCE_LOG2`] and
+    /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`], [`InvalidInput::NonPositive`], [`InvalidInput::TooSmall`] (radius), and
+    /// [`InvalidInput::LengthMismatch`] if the lengths of profile and path differ by more than [`LENGTH_TOLERANCE_LOG2`] and
     /// rounding allow. A smaller difference is added to [`Motion::lag`], and twice the difference to ε
     /// ([`excess`](crate::excess)).
     pub fn new(path: PathRef<'a, S>, profile: ProfileRef<'a, S>, radius: S, start: S) -> Result<Self, InvalidInput> {
@@ -64,7 +64,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// [`Motion::new`].
     ///
     /// # Errors
-    /// As [`Motion::new`]; [`Invalid::TurnInPlace`] if the path turns in place, which sweeps an area but has no length; [`Invalid::Lever`] if an
+    /// As [`Motion::new`]; [`InvalidInput::TurnInPlace`] if the path turns in place, which sweeps an area but has no length; [`InvalidInput::Lever`] if an
     /// arc is so tight that rounding a length could move a corner by a sixteenth of the size of the outline.
     ///
     /// ```
@@ -169,7 +169,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// change regions of contact; regions in which margins overlap are those of [`Motion::inflated`] motions.
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`] (also for radius and margin together), [`Invalid::Negative`].
+    /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`] (also for radius and margin together), [`InvalidInput::Negative`].
     pub fn with_margin(self, margin: S) -> Result<Self, InvalidInput> {
         not_negative(margin, "margin")?;
         in_range(self.radius + margin, "radius with its margin")?;
@@ -182,7 +182,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// plans. Regions, conflicts and the closest approach are still those of the motion itself.
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`].
+    /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`], [`InvalidInput::Negative`].
     pub fn with_lateness(self, lateness: S) -> Result<Self, InvalidInput> {
         not_negative(lateness, "lateness")?;
         Ok(Self { lateness, ..self })
@@ -233,7 +233,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// agents wait, give it to the motions before the table is made.
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`].
+    /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`], [`InvalidInput::Negative`].
     pub fn with_longest(self, longest: S) -> Result<Self, InvalidInput> {
         not_negative(longest, "longest duration")?;
         let lag = self.levered(S::lag(self.top_speed, longest) + gap(self.path, self.profile));
@@ -244,7 +244,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// The same motion, later by `delay` \[s\].
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`].
+    /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`].
     pub fn delayed(self, delay: S) -> Result<Self, InvalidInput> {
         in_range(delay, "delay")?;
         Ok(Self { time: travel_time(self.profile, self.time.lo + delay)?, ..self })

@@ -58,7 +58,7 @@ impl<S: Scalar, const N: usize> Outline<S, N> {
     /// Returns the disc of this radius \[m\] about the reference point.
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::NonPositive`], [`Invalid::TooSmall`].
+    /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`], [`InvalidInput::NonPositive`], [`InvalidInput::TooSmall`].
     pub fn disc(radius: S) -> Result<Self, InvalidInput> {
         error::radius(radius)?;
         Ok(Self { corners: Vec::new(), radius, spread: S::ZERO })
@@ -88,9 +88,9 @@ impl<S: Scalar, const N: usize> Outline<S, N> {
     /// Cost: the square of the number of corners.
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`] (radius); [`Invalid::Full`] for more than
-    /// `N` corners; [`Invalid::NonPositive`] without corners, or for a single corner without a radius;
-    /// [`Invalid::TooSmall`] for corners that are not distinct; [`Invalid::NotConvex`] if the corners do not turn left,
+    /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`], [`InvalidInput::Negative`] (radius); [`InvalidInput::Full`] for more than
+    /// `N` corners; [`InvalidInput::NonPositive`] without corners, or for a single corner without a radius;
+    /// [`InvalidInput::TooSmall`] for corners that are not distinct; [`InvalidInput::NotConvex`] if the corners do not turn left,
     /// once around a polygon without straight angles.
     pub fn polygon(corners: impl IntoIterator<Item = Vector<S>>, radius: S) -> Result<Self, InvalidInput> {
         const { assert!(N <= MOST_CORNERS, "an outline has at most 16 corners") };

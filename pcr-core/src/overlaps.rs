@@ -31,7 +31,7 @@ use crate::scalar::Scalar;
 /// ```
 ///
 /// # Errors
-/// [`Full::Pieces`] if the storage is too small, [`Full::Pair`] if no storage is large enough; `found` was not called
+/// [`CapacityError::Pieces`] if the storage is too small, [`CapacityError::Pair`] if no storage is large enough; `found` was not called
 /// then.
 pub fn overlaps<S: Scalar>(
     first: &Motion<'_, S>,

@@ -6,7 +6,7 @@
 //! on the paths (except that the rounding of times adds to the radius).
 //!
 //! Two discs have kernels of their own. Pairs with an outline that is no disc have those in [`outline`], behind the same
-//! door: [`Pair::find`], and the slices of pieces.
+//! door: [`AgentPair::find`], and the slices of pieces.
 
 pub(crate) mod disc_on_segment;
 pub(crate) mod events;

@@ -39,7 +39,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     /// The path of length 0 at `pose`, of an agent that stands.
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`].
+    /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`].
     pub fn starting_at(pose: Pose<S>) -> Result<Self, InvalidInput> {
         // Pieces store indices of segments in 16 bits.
         const { assert!(N <= MOST_SEGMENTS, "a path has at most 65535 segments") };
@@ -49,7 +49,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     /// Appends a line of this length \[m\]; a length of 0 adds nothing.
     ///
     /// # Errors
-    /// As [`Segment::then_line`], and [`Invalid::Full`] if there are `N` segments already.
+    /// As [`Segment::then_line`], and [`InvalidInput::Full`] if there are `N` segments already.
     pub fn line(self, length: S) -> Result<Self, InvalidInput> {
         let next = self.last().then_line(length)?;
         self.with(next)
@@ -58,7 +58,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     /// Appends an arc of this radius \[m\] and length \[m\], at most a full turn; a length of 0 adds nothing.
     ///
     /// # Errors
-    /// As [`Segment::then_arc`], and [`Invalid::Full`] if there are `N` segments already.
+    /// As [`Segment::then_arc`], and [`InvalidInput::Full`] if there are `N` segments already.
     pub fn arc(self, radius: S, turn: TurnSide, length: S) -> Result<Self, InvalidInput> {
         let next = self.last().then_arc(radius, turn, length)?;
         self.with(next)
@@ -69,7 +69,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     /// once. `sweep` is a scalar and not an angle of the format, because binary angles only reach half a turn.
     ///
     /// # Errors
-    /// As [`Path::arc`], and [`Invalid::NonFinite`] and [`Invalid::OutOfRange`] for the sweep.
+    /// As [`Path::arc`], and [`InvalidInput::NonFinite`] and [`InvalidInput::OutOfRange`] for the sweep.
     ///
     /// ```
     /// # use pcr_core::{Path, Point, Pose, Radians};
@@ -124,7 +124,7 @@ impl<'a, S: Scalar> PathRef<'a, S> {
     /// A path of segments that were built one from the other.
     ///
     /// # Errors
-    /// [`Invalid::Disconnected`] if they were not, or if there are no segments; [`Invalid::Full`] above 65535 segments.
+    /// [`InvalidInput::Disconnected`] if they were not, or if there are no segments; [`InvalidInput::Full`] above 65535 segments.
     pub fn new(segments: &'a [Segment<S>]) -> Result<Self, InvalidInput> {
         if segments.len() > MOST_SEGMENTS {
             return Err(InvalidInput::Full("segment"));

@@ -211,7 +211,7 @@ impl<S: Scalar, P: AsMut<[Piece<S>]>> PieceStore<S, P> {
         Ok(index)
     }
 
-    /// The pending piece at an index returned by [`Pieces::push`].
+    /// The pending piece at an index returned by [`PieceStore::push`].
     pub(crate) fn get_mut(&mut self, index: u32) -> Option<&mut Piece<S>> {
         self.slots.as_mut().get_mut(index as usize)
     }

@@ -27,7 +27,7 @@ impl<S: Scalar> Phase<S> {
     /// The first phase of a profile: from the speed `speed` \[m/s\], for `duration` \[s\] at `acceleration` \[m/s²\].
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`] for the duration and either speed. A
+    /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`], [`InvalidInput::Negative`] for the duration and either speed. A
     /// final speed that is negative only because of rounding is set to 0.
     pub fn starting_at(speed: S, duration: S, acceleration: S) -> Result<Self, InvalidInput> {
         not_negative(speed, "initial speed")?;
@@ -96,7 +96,7 @@ impl<S: Scalar> Phase<S> {
     /// accurate than [`Phase::then`], where the rounding error of the acceleration counts multiplied by the duration.
     ///
     /// # Errors
-    /// As [`Phase::starting_at`], and [`Invalid::NonPositive`] for the duration.
+    /// As [`Phase::starting_at`], and [`InvalidInput::NonPositive`] for the duration.
     ///
     /// ```
     /// # use pcr_core::Phase;
@@ -226,7 +226,7 @@ impl<S: Scalar> Profile<S, 3> {
     /// speed is not reached.
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`], [`Invalid::Negative`] (length), [`Invalid::NonPositive`] (limits).
+    /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`], [`InvalidInput::Negative`] (length), [`InvalidInput::NonPositive`] (limits).
     pub fn rest_to_rest(length: S, limits: Limits<S>) -> Result<Self, InvalidInput> {
         let length = error::length(length)?;
         positive(limits.speed, "largest speed")?;
@@ -270,7 +270,7 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
     /// A profile that begins with the speed `speed` \[m/s\] and has each acceleration \[m/s²\] for its duration \[s\].
     ///
     /// # Errors
-    /// As [`Phase::starting_at`], and [`Invalid::Full`] for more than `N` pieces.
+    /// As [`Phase::starting_at`], and [`InvalidInput::Full`] for more than `N` pieces.
     pub fn from_pieces(speed: S, pieces: impl IntoIterator<Item = (S, S)>) -> Result<Self, InvalidInput> {
         let mut phases: Vec<Phase<S>, N> = Vec::new();
         for (duration, acceleration) in pieces {
@@ -288,8 +288,8 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
     /// not change.
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`] (also for speeds and accelerations), [`Invalid::NonPositive`]
-    /// (duration), and [`Invalid::Full`] for more than `N` phases.
+    /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`] (also for speeds and accelerations), [`InvalidInput::NonPositive`]
+    /// (duration), and [`InvalidInput::Full`] for more than `N` phases.
     pub fn stretched(profile: ProfileRef<'_, S>, duration: S) -> Result<Self, InvalidInput> {
         positive(duration, "duration")?;
         let whole = profile.duration();
@@ -319,7 +319,7 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
     /// The same profile with another capacity, for example to store the profiles of a fleet as one type.
     ///
     /// # Errors
-    /// [`Invalid::Full`] for more than `N` phases.
+    /// [`InvalidInput::Full`] for more than `N` phases.
     ///
     /// ```
     /// # use pcr_core::{Limits, Profile};
@@ -370,7 +370,7 @@ impl<'a, S: Scalar> ProfileRef<'a, S> {
     /// A profile of phases that were built one from the other.
     ///
     /// # Errors
-    /// [`Invalid::Disconnected`] if they were not.
+    /// [`InvalidInput::Disconnected`] if they were not.
     pub fn new(phases: &'a [Phase<S>]) -> Result<Self, InvalidInput> {
         let mut end = (S::ZERO, S::ZERO, phases.first().map_or(S::ZERO, |first| first.speed[0]));
         for phase in phases {

@@ -91,7 +91,7 @@ impl<S: Scalar> Segment<S> {
     /// The line of length 0 with which a path begins.
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`]; [`Invalid::OutOfRange`], also for a heading of so many turns that its direction is
+    /// [`InvalidInput::NonFinite`]; [`InvalidInput::OutOfRange`], also for a heading of so many turns that its direction is
     /// inaccurate: beyond 1024 rad in `f32`, 2²⁴ rad in `f64`.
     pub fn standing(pose: Pose<S>) -> Result<Self, InvalidInput> {
         in_range(pose.position.x, "x")?;
@@ -123,7 +123,7 @@ impl<S: Scalar> Segment<S> {
     /// The line of this length \[m\] that continues the path at the end of `self`.
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::Negative`], [`Invalid::OutOfRange`] (also for the end point and the
+    /// [`InvalidInput::NonFinite`], [`InvalidInput::Negative`], [`InvalidInput::OutOfRange`] (also for the end point and the
     /// length of the path).
     pub fn then_line(&self, length: S) -> Result<Self, InvalidInput> {
         let length = error::length(length)?;
@@ -135,9 +135,9 @@ impl<S: Scalar> Segment<S> {
     /// The arc of this radius \[m\] and length \[m\] that continues the path at the end of `self`.
     ///
     /// # Errors
-    /// As [`Segment::then_line`]; [`Invalid::OutOfRange`] also for the diameter, the box of the arc (from half a turn
-    /// on that of its circle) and the heading at its end, as in [`Segment::standing`]; [`Invalid::NonPositive`] and
-    /// [`Invalid::TooSmall`] for the radius; [`Invalid::SweepOverOneTurn`].
+    /// As [`Segment::then_line`]; [`InvalidInput::OutOfRange`] also for the diameter, the box of the arc (from half a turn
+    /// on that of its circle) and the heading at its end, as in [`Segment::standing`]; [`InvalidInput::NonPositive`] and
+    /// [`InvalidInput::TooSmall`] for the radius; [`InvalidInput::SweepOverOneTurn`].
     pub fn then_arc(&self, radius: S, turn: TurnSide, length: S) -> Result<Self, InvalidInput> {
         error::radius(radius)?;
         in_range(radius.double(), "diameter of the arc")?;
@@ -165,7 +165,7 @@ impl<S: Scalar> Segment<S> {
     /// begins with the new heading. A disc does not move while it turns, so a turn has no length.
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`] for the heading after the turn, as in [`Segment::standing`].
+    /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`] for the heading after the turn, as in [`Segment::standing`].
     pub fn turned(mut self, by: S::Angle) -> Result<Self, InvalidInput> {
         if !by.is_finite() {
             return Err(InvalidInput::NonFinite("turn"));

@@ -19,7 +19,7 @@ impl<S: Scalar> Ecm<S, Vec<EcmEntry>, Vec<Piece<S>>> {
     /// `docs/maintain/evaluation.md` need.
     ///
     /// # Errors
-    /// [`Full::Pair`] and [`Full::Agents`], which more storage does not help; [`Full::Regions`] and [`Full::Pieces`] if
+    /// [`CapacityError::Pair`] and [`CapacityError::Agents`], which more storage does not help; [`CapacityError::Regions`] and [`CapacityError::Pieces`] if
     /// the allocation of memory fails.
     pub fn grown(fleet: &[Motion<'_, S>]) -> Result<Self, CapacityError> {
         let room = fleet.len().saturating_add(1).saturating_mul(16);
@@ -54,7 +54,7 @@ impl<S: Scalar> Ecm<S, Vec<EcmEntry>, Vec<Piece<S>>> {
     /// ```
     ///
     /// # Errors
-    /// Returns `full` itself if more storage does not help (all variants but [`Full::Regions`] and [`Full::Pieces`]),
+    /// Returns `full` itself if more storage does not help (all variants but [`CapacityError::Regions`] and [`CapacityError::Pieces`]),
     /// or if the allocation of memory fails.
     pub fn grow(&mut self, full: CapacityError) -> Result<(), CapacityError> {
         let twice = |room: usize| room.saturating_add(1).saturating_mul(2);

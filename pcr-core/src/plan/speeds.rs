@@ -19,7 +19,7 @@ use crate::scalar::Scalar;
 /// order of the fleet. On entry `plan` holds motions of the same agents: those of the fleet, or an earlier plan.
 ///
 /// Each agent keeps the largest speed and acceleration of its motion in the fleet, and begins and ends at the same
-/// speeds ([`Drive::of`]). It gets the plan of [`plan_speed`] or its own profile with a later start, whichever arrives
+/// speeds ([`SpeedPlanLimits::of`]). It gets the plan of [`plan_speed`] or its own profile with a later start, whichever arrives
 /// first. If its own motion is slower on its way than these limits allow, for example because it turns in place, it gets
 /// the plan of [`plan_speed_below`], and is nowhere faster than that motion. `order` and the radii are as in
 /// [`plan_delays`](crate::plan_delays). Every plan of an agent takes one of the `profiles`: one for each agent, and one

@@ -79,7 +79,7 @@ impl<S: Scalar> TimeSet<S> {
         }
     }
 
-    /// Removes the interior of an interval from the set; its ends stay. If the set is full, as [`Times::add`].
+    /// Removes the interior of an interval from the set; its ends stay. If the set is full, as [`TimeSet::add`].
     pub(super) fn remove(&mut self, inside: Interval<S>) {
         if !self.iter().any(|interval| interval.lo < inside.hi && inside.lo < interval.hi) {
             return;

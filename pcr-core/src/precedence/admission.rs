@@ -42,8 +42,8 @@ where
     /// could if this one were not there. The orders between the other agents stay as they are. The path in `fleet` and the
     /// entry in `progress` are replaced.
     ///
-    /// `prefer` is called for regions, whose ego is the agent, and says which one should go first: [`Pass::First`] or
-    /// [`Pass::Second`]. Its answer is used if both orders are possible: the second agent must be able to stop before
+    /// `prefer` is called for regions, whose ego is the agent, and says which one should go first: [`PassingState::First`] or
+    /// [`PassingState::Second`]. Its answer is used if both orders are possible: the second agent must be able to stop before
     /// the region, and the first one to leave it. An agent that is in a region, or cannot stop before it, never loses
     /// its right to go on. The new orders can lower the hold of another agent, which must not have set out beyond the
     /// new hold. So places and stopping points (`Progress::stop`) must be current, or lengths that agents have promised
@@ -121,7 +121,7 @@ where
     }
 
     /// Replaces the path of an agent and leaves all its regions undecided. The orders between the other agents stay as
-    /// they are. Like [`Orders::admit`], it needs room for as many additional orders as the agent has regions.
+    /// they are. Like [`PrecedenceTable::admit`], it needs room for as many additional orders as the agent has regions.
     ///
     /// # Errors
     /// [`CapacityError`] and [`MismatchError`]; everything is then unchanged, except in the rare case of

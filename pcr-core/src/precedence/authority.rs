@@ -52,7 +52,7 @@ impl<S: Scalar> MovementAuthority<S> {
         }
     }
 
-    /// The hold as a length of a path that ends at `end` \[m\]; `None` for [`Hold::Inside`].
+    /// The hold as a length of a path that ends at `end` \[m\]; `None` for [`MovementAuthority::Inside`].
     pub fn length(self, end: S) -> Option<S> {
         match self {
             Self::Free => Some(end),
@@ -71,7 +71,7 @@ impl<S: Scalar> RegionRef<'_, S> {
     /// The hold never exceeds the exact infimum of the region for the sum of the radii R, and never falls below that
     /// for R + 2 [`RegionRef::excess`]. It does not decrease as the other agent goes on, except for rounding. It is
     /// free once the other agent has left the region, which never happens if the region contains the end of its path.
-    /// [`Hold::Inside`] means that the region begins before `from`, or at the start of the ego's path.
+    /// [`MovementAuthority::Inside`] means that the region begins before `from`, or at the start of the ego's path.
     ///
     /// If both agents are in the same pair of segments, and one segment is an arc of half a turn or more or fits into
     /// the disc, another region of this pair of segments may count as well: the hold is then lower than necessary.

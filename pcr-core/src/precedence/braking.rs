@@ -26,8 +26,8 @@ impl<S: Scalar> BrakingModel<S> {
     /// command takes effect.
     ///
     /// # Errors
-    /// [`Invalid::NonFinite`], [`Invalid::OutOfRange`] (also for their product), [`Invalid::NonPositive`] (deceleration),
-    /// [`Invalid::Negative`] (reaction time).
+    /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`] (also for their product), [`InvalidInput::NonPositive`] (deceleration),
+    /// [`InvalidInput::Negative`] (reaction time).
     pub fn new(deceleration: S, reaction: S) -> Result<Self, InvalidInput> {
         positive(deceleration, "deceleration")?;
         not_negative(reaction, "reaction time")?;
@@ -47,7 +47,7 @@ impl<S: Scalar> BrakingModel<S> {
     }
 
     /// The largest speed \[m/s\] from which this distance \[m\] is enough to stop, rounded down: its
-    /// [`Brakes::distance`] is at most that distance, except for rounding. 0 if the distance is not above 0, as NaN is
+    /// [`BrakingModel::distance`] is at most that distance, except for rounding. 0 if the distance is not above 0, as NaN is
     /// not.
     pub fn speed(&self, distance: S) -> S {
         let distance = S::ZERO.max(distance).min(S::LIMIT);

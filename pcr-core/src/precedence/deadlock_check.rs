@@ -84,8 +84,8 @@ where
     /// orders ([`RegionRef::hold`](crate::RegionRef::hold)) whose first agent has gained.
     ///
     /// # Errors
-    /// [`Refused::Stuck`] names one agent that would wait for ever. [`Refused::Late`] names one that is beyond its hold
-    /// by more than the least gain. [`Full::Reaches`] if there are too few entries; [`MismatchError`](crate::MismatchError) for
+    /// [`AdmissionError::Stuck`] names one agent that would wait for ever. [`AdmissionError::Late`] names one that is beyond its hold
+    /// by more than the least gain. [`CapacityError::Reaches`] if there are too few entries; [`MismatchError`](crate::MismatchError) for
     /// another fleet or a table of one row only.
     pub fn check(
         &mut self,

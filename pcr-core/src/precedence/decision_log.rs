@@ -10,7 +10,7 @@ use crate::precedence::entry::{PassingState, Progress, RegionPrecedence, other};
 use crate::precedence::table::PrecedenceTable;
 use crate::scalar::Scalar;
 
-/// An order that was decided. [`Orders::decide_at`] restores it in a table of the same fleet.
+/// An order that was decided. [`PrecedenceTable::decide_at`] restores it in a table of the same fleet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PrecedenceDecision<S> {
@@ -31,10 +31,10 @@ where
     P: AsRef<[Piece<S>]>,
     O: AsRef<[RegionPrecedence<S>]>,
 {
-    /// The hold of an agent, as [`Orders::hold`], and the agent for which it waits there; `None` if the hold is free.
+    /// The hold of an agent, as [`PrecedenceTable::hold`], and the agent for which it waits there; `None` if the hold is free.
     ///
     /// # Errors
-    /// As [`Orders::row`].
+    /// As [`PrecedenceTable::row`].
     ///
     /// ```
     /// use pcr_core::{MovementAuthority, Motion, RegionPrecedence, PrecedenceTable, Path, Piece, Point, Pose, Profile, Progress, Radians, EcmEntry};

@@ -14,14 +14,14 @@ use crate::scalar::Scalar;
 
 /// The collision regions of a fleet, and for each of them which agent passes it first.
 ///
-/// Agents that keep their [`Orders::hold`] never touch one another, however late they are. If [`Orders::check`] passes,
+/// Agents that keep their [`PrecedenceTable::hold`] never touch one another, however late they are. If [`PrecedenceTable::check`] passes,
 /// all of them arrive (`docs/theory/precedence.md` has the proofs). Paths and radii matter; the times of the motions are used by
-/// [`Orders::as_planned`] only. As with [`Ecm`], every method that reads paths takes the fleet, and refuses another one.
+/// [`PrecedenceTable::as_planned`] only. As with [`Ecm`], every method that reads paths takes the fleet, and refuses another one.
 ///
-/// The caller provides the storage, as for [`Ecm`]. One [`RegionPrecedence`] is needed for each region; [`Orders::admit`] needs as
+/// The caller provides the storage, as for [`Ecm`]. One [`RegionPrecedence`] is needed for each region; [`PrecedenceTable::admit`] needs as
 /// many more as its agent has regions.
 ///
-/// A robot can compute its hold from its own row alone ([`Orders::fill_row`], then [`Orders::decide`] as it is told).
+/// A robot can compute its hold from its own row alone ([`PrecedenceTable::fill_row`], then [`PrecedenceTable::decide`] as it is told).
 /// For that it has to know how far the robots before it have come, but nothing about clocks or speeds.
 ///
 /// ```
@@ -119,7 +119,7 @@ where
     /// the hold.
     ///
     /// # Errors
-    /// As [`Orders::row`].
+    /// As [`PrecedenceTable::row`].
     pub fn hold(
         &self,
         fleet: &[Motion<'_, S>],
@@ -133,7 +133,7 @@ where
     /// agent that only needs to know whether it may go on for a while.
     ///
     /// # Errors
-    /// As [`Orders::row`].
+    /// As [`PrecedenceTable::row`].
     pub fn hold_before(
         &self,
         fleet: &[Motion<'_, S>],
@@ -191,10 +191,10 @@ where
         table.undecide().map(|()| table)
     }
 
-    /// Computes the table of a whole fleet, like [`Orders::build`], in the existing storage.
+    /// Computes the table of a whole fleet, like [`PrecedenceTable::build`], in the existing storage.
     ///
     /// # Errors
-    /// [`CapacityError`] if the storage is too small; the table is then empty, as after [`Orders::clear`].
+    /// [`CapacityError`] if the storage is too small; the table is then empty, as after [`PrecedenceTable::clear`].
     pub fn fill(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), CapacityError> {
         self.ecm.fill(fleet)?;
         self.undecide()
@@ -204,8 +204,8 @@ where
     /// that agent. Cost: that of [`Ecm::fill_row`].
     ///
     /// # Errors
-    /// [`CapacityError`] if the storage is too small; the table is then empty, as after [`Orders::clear`].
-    /// [`Mismatch::NoSuchAgent`]; the table is then unchanged.
+    /// [`CapacityError`] if the storage is too small; the table is then empty, as after [`PrecedenceTable::clear`].
+    /// [`MismatchError::NoSuchAgent`]; the table is then unchanged.
     pub fn fill_row(&mut self, fleet: &[Motion<'_, S>], agent: usize) -> Result<(), EcmError> {
         self.ecm.fill_row(fleet, agent)?;
         Ok(self.undecide()?)
@@ -264,7 +264,7 @@ where
 
     /// Decides the order of all undecided regions of `ego` and `other`: whether the ego passes them first or second.
     /// `since` is the least length at which the agent that goes second is now \[m\], from 0 to the length of its path;
-    /// parts of a region behind it count as passed. [`Pass::Over`] frees both agents: the caller knows that one of them
+    /// parts of a region behind it count as passed. [`PassingState::Over`] frees both agents: the caller knows that one of them
     /// has left the regions. O(agents + regions).
     ///
     /// # Errors
@@ -290,7 +290,7 @@ where
 
     /// Decides the order of the region at one index of the table, one of `ego`. An existing order is overwritten.
     ///
-    /// It does not check that both agents can still keep the order, nor that all can finish (see [`Orders::check`]).
+    /// It does not check that both agents can still keep the order, nor that all can finish (see [`PrecedenceTable::check`]).
     ///
     /// # Errors
     /// [`MismatchError`], also if the region at this index is not one of `ego`.
@@ -321,8 +321,8 @@ where
     /// region.
     ///
     /// # Errors
-    /// [`Refused::Meeting`] for two agents that do more than touch, or pass so close that it cannot be decided which
-    /// one is first; [`Refused::Mismatch`].
+    /// [`AdmissionError::Meeting`] for two agents that do more than touch, or pass so close that it cannot be decided which
+    /// one is first; [`AdmissionError::Mismatch`].
     pub fn as_planned(&mut self, fleet: &[Motion<'_, S>]) -> Result<(), AdmissionError> {
         self.ecm.holds_all(fleet)?;
         let places = 0..self.ecm.len();

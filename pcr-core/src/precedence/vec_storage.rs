@@ -12,13 +12,13 @@ use crate::scalar::Scalar;
 use std::vec::Vec;
 
 impl<S: Scalar> PrecedenceTable<S, Vec<EcmEntry>, Vec<Piece<S>>, Vec<RegionPrecedence<S>>> {
-    /// Computes the table of a whole fleet, with no order decided, like [`Orders::build`], in vectors that grow until all
+    /// Computes the table of a whole fleet, with no order decided, like [`PrecedenceTable::build`], in vectors that grow until all
     /// regions fit (feature `std`).
     ///
     /// Cost: that of [`Ecm::grown`], and one [`RegionPrecedence`] for each region.
     ///
     /// # Errors
-    /// As [`Ecm::grown`]; [`Full::Orders`] if the allocation of memory fails.
+    /// As [`Ecm::grown`]; [`CapacityError::Orders`] if the allocation of memory fails.
     ///
     /// ```
     /// use pcr_core::{Motion, PrecedenceTable, Path, Point, Pose, Profile, Radians};

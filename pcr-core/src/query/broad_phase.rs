@@ -66,7 +66,7 @@ impl<'a, S: Scalar, B: AsRef<[Aabb<S>]> + AsMut<[Aabb<S>]>> BroadPhase<'a, S, B>
     /// Cost: one evaluation of the path for each part.
     ///
     /// # Errors
-    /// [`Full::Boxes`] if there is room for less than two boxes for each agent.
+    /// [`CapacityError::Boxes`] if there is room for less than two boxes for each agent.
     pub fn new(mut boxes: B, fleet: &'a [Motion<'a, S>], during: Interval<S>) -> Result<Self, CapacityError> {
         let during = during.limited();
         let room = boxes.as_ref().len().checked_div(fleet.len()).unwrap_or(usize::MAX);
@@ -145,7 +145,7 @@ impl<S: Scalar, B: AsRef<[Aabb<S>]>> BroadPhase<'_, S, B> {
     /// Cost: that of [`Encounter::contacts`].
     ///
     /// # Errors
-    /// [`Mismatch::NoSuchAgent`].
+    /// [`MismatchError::NoSuchAgent`].
     pub fn contacts_of(
         &self,
         agents: [usize; 2],

@@ -70,7 +70,7 @@ pub struct AgentConflict<S> {
 /// known so far, for regions in which both agents are at the same time.
 ///
 /// # Errors
-/// [`Mismatch::OtherFleet`] for another path or a larger disc than that of the regions' ego.
+/// [`MismatchError::OtherFleet`] for another path or a larger disc than that of the regions' ego.
 ///
 /// ```
 /// use pcr_core::{Ecm, Interval, Motion, Path, Piece, Point, Pose, Profile, Radians, EcmEntry, first_conflict};

@@ -131,7 +131,7 @@ impl<S: Scalar> Motion<'_, S> {
     /// earlier one.
     ///
     /// # Errors
-    /// [`Invalid::OutOfRange`].
+    /// [`InvalidInput::OutOfRange`].
     ///
     /// ```
     /// # use pcr_core::{Encounter, Interval, Motion, Path, Point, Pose, Profile, Radians};

@@ -198,7 +198,7 @@ fn in_order<S: Scalar>(during: Interval<S>) -> Interval<S> {
 /// follows it.
 ///
 /// # Errors
-/// [`Mismatch::NoSuchAgent`].
+/// [`MismatchError::NoSuchAgent`].
 ///
 /// ```
 /// use pcr_core::{Interval, Motion, Path, Point, Pose, Profile, Radians, safe_intervals};
@@ -230,7 +230,7 @@ pub fn safe_intervals<'a, S: Scalar>(
 /// dual of [`safe_intervals`], with the same cost. Of an agent without a path, its place is the length 0.
 ///
 /// # Errors
-/// [`Mismatch::NoSuchAgent`].
+/// [`MismatchError::NoSuchAgent`].
 pub fn safe_lengths<'a, S: Scalar>(
     fleet: &'a [Motion<'a, S>],
     ego: usize,

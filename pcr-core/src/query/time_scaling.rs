@@ -37,7 +37,7 @@ impl<S: Scalar> RegionRef<'_, S> {
     /// Cost: 10 to 40 searches for contacts for each finite end.
     ///
     /// # Errors
-    /// [`Invalid::Full`] if the motion has more than `N` phases and a duration has to be tried.
+    /// [`InvalidInput::Full`] if the motion has more than `N` phases and a duration has to be tried.
     pub fn forbidden_durations<const N: usize>(&self) -> Result<Option<Interval<S>>, InvalidInput> {
         let whole = self.ego_motion().profile().duration();
         let own = if whole > S::ZERO { self.allowance_in(whole) } else { self.allowance() };
@@ -191,9 +191,9 @@ impl<S: Scalar> RegionRef<'_, S> {
 /// Cost: that of one end of [`RegionRef::forbidden_durations`] for each region that is met.
 ///
 /// # Errors
-/// [`Invalid::Full`] if the motion has more than `N` phases; [`Invalid::OutOfRange`] if a duration would help, but all that the format can
-/// represent are too near to contact; [`Invalid::NonFinite`], [`Invalid::OutOfRange`] and
-/// [`Invalid::Negative`] for `from`, and [`Invalid::NonPositive`] if `from` is 0 and the motion takes time.
+/// [`InvalidInput::Full`] if the motion has more than `N` phases; [`InvalidInput::OutOfRange`] if a duration would help, but all that the format can
+/// represent are too near to contact; [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`] and
+/// [`InvalidInput::Negative`] for `from`, and [`InvalidInput::NonPositive`] if `from` is 0 and the motion takes time.
 ///
 /// ```
 /// use pcr_core::{Ecm, Motion, Path, Piece, Point, Pose, Profile, Radians, EcmEntry, least_duration};

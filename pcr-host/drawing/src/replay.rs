@@ -34,7 +34,7 @@ const PIXELS: f64 = 500.0;
 /// The page for some runs of a task.
 ///
 /// # Errors
-/// [`Failure::Robot`] and [`Failure::Full`] where there is no map of a plan.
+/// [`ComputationError::Robot`] and [`ComputationError::Full`] where there is no map of a plan.
 pub fn page(task: &SimulationTask, outcomes: &[SimulationRun]) -> Result<String, ComputationError> {
     let name = if task.name.is_empty() { "Simulation" } else { &task.name };
     Ok(PAGE.fill(name, &data(task, outcomes)?))

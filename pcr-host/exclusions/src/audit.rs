@@ -120,7 +120,7 @@ impl ExclusionAudit {
     /// Audits only the pairs of which at least one side is selected.
     ///
     /// # Errors
-    /// Those of [`Audit::run`].
+    /// Those of [`ExclusionAudit::run`].
     pub fn of_some(
         imported: &ImportedLayout,
         locks: &ExclusionTable,

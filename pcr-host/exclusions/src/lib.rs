@@ -69,7 +69,7 @@ const LOCK_BYTES: u64 = 256;
 /// The table from which exclusions are made, or against which they are checked: all of it has to fit in memory.
 ///
 /// # Errors
-/// Errors of [`Locks::compute`]; and an error in advance for a table whose rules would take more memory than there is.
+/// Errors of [`ExclusionTable::compute`]; and an error in advance for a table whose rules would take more memory than there is.
 pub fn table(imported: &ImportedLayout) -> Result<ExclusionTable, ImportError> {
     let locks = ExclusionTable::compute(imported, true)?;
     let count = locks.locks.len();

@@ -36,7 +36,7 @@
 //! ```
 //!
 //! A reader either reads everything in a file, or refuses it with an [`ImportError`] that names all parts that would be
-//! left out; with [`Options::partial`] these are left out. Parts that are not read exactly as written cause warnings,
+//! left out; with [`ImportOptions::partial`] these are left out. Parts that are not read exactly as written cause warnings,
 //! which are also in the answers. No input causes a panic.
 
 mod applicable_options;

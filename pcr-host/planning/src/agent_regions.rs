@@ -37,7 +37,7 @@ impl<'a, S: HostScalar> AgentRegions<'a, S> {
     /// The row of `ego` with these agents, which are in increasing order.
     ///
     /// # Errors
-    /// [`Full::Agents`] for more than 65534 others, [`Full::Pair`] where two of them have more than 32767 pieces.
+    /// [`CapacityError::Agents`] for more than 65534 others, [`CapacityError::Pair`] where two of them have more than 32767 pieces.
     ///
     /// # Panics
     /// For an agent that the fleet does not have: without it the row would say that it is free of it.
@@ -78,7 +78,7 @@ impl<'a, S: HostScalar> AgentRegions<'a, S> {
         &self.agents
     }
 
-    /// Index of the agent of the row in [`Row::agents`], which is its index in the table.
+    /// Index of the agent of the row in [`AgentRegions::agents`], which is its index in the table.
     pub fn agent_index(&self) -> usize {
         self.place
     }
@@ -97,7 +97,7 @@ impl<'a, S: HostScalar> AgentRegions<'a, S> {
     /// of this row, which says nothing of those before its agent, and of those after it that they are far away.
     ///
     /// # Errors
-    /// [`Mismatch::OnlyRow`] for two others.
+    /// [`MismatchError::OnlyRow`] for two others.
     pub fn pair(&self, ego: usize, other: usize) -> Result<impl Iterator<Item = RegionRef<'_, S>>, MismatchError> {
         let place = |agent: usize| self.agents.iter().position(|&there| there as usize == agent);
         let places = place(ego).zip(place(other));
@@ -141,7 +141,7 @@ impl<'m, 'a, S: HostScalar> AgentRegionsWalk<'m, 'a, S> {
     /// The row of an agent with those after it.
     ///
     /// # Errors
-    /// As [`Row::new`].
+    /// As [`AgentRegions::new`].
     pub fn row(&mut self, ego: usize) -> Result<&AgentRegions<'a, S>, CapacityError> {
         self.grid.after(ego, &mut self.neighbours);
         self.row.fill(self.motions, ego, &self.neighbours)?;
@@ -151,7 +151,7 @@ impl<'m, 'a, S: HostScalar> AgentRegionsWalk<'m, 'a, S> {
     /// The row of an agent with all others.
     ///
     /// # Errors
-    /// As [`Row::new`].
+    /// As [`AgentRegions::new`].
     pub fn whole(&mut self, ego: usize) -> Result<&AgentRegions<'a, S>, CapacityError> {
         self.grid.around(ego, &mut self.neighbours);
         self.row.fill(self.motions, ego, &self.neighbours)?;
@@ -162,7 +162,7 @@ impl<'m, 'a, S: HostScalar> AgentRegionsWalk<'m, 'a, S> {
 /// All rows to `take`, which is called from several threads, in no order. O(agents + regions) for fleets of constant density.
 ///
 /// # Errors
-/// As [`Row::new`].
+/// As [`AgentRegions::new`].
 pub fn each<'a, S: HostScalar>(
     motions: &[Motion<'a, S>],
     take: impl Fn(&AgentRegions<'a, S>) + Sync,
@@ -184,7 +184,7 @@ const GATHERED: usize = 1024;
 /// What is made of each row, one after the other by their agents; rows are computed on all cores, and none is kept.
 ///
 /// # Errors
-/// As [`Row::new`], and [`MemoryError`](crate::memory_budget::MemoryError) where memory does not hold `what` they make.
+/// As [`AgentRegions::new`], and [`MemoryError`](crate::memory_budget::MemoryError) where memory does not hold `what` they make.
 pub(crate) fn gathered<'a, S: HostScalar, T: Send>(
     motions: &[Motion<'a, S>],
     what: &str,
@@ -212,7 +212,7 @@ pub(crate) fn gathered<'a, S: HostScalar, T: Send>(
 /// All rows, by their agents, computed on all cores.
 ///
 /// # Errors
-/// As [`Row::new`].
+/// As [`AgentRegions::new`].
 pub fn rows<'a, S: HostScalar>(motions: &[Motion<'a, S>]) -> Result<Vec<AgentRegions<'a, S>>, CapacityError> {
     let grid = grid(motions);
     (0..motions.len())

@@ -189,7 +189,7 @@ impl CertifyReport {
         Self::watched(name, table, margin, &|_, _| {})
     }
 
-    /// Proves a table as [`Certified::prove`], and tells before each pair how many checks of how many are done.
+    /// Proves a table as [`CertifyReport::prove`], and tells before each pair how many checks of how many are done.
     pub fn watched(name: &str, table: &RawTable, margin: bool, told: ProgressFn<'_>) -> Self {
         /// What a margin takes, in times of the check.
         const MARGIN: usize = 12;

@@ -99,7 +99,7 @@ impl CheckReport {
     /// The same, with reports of progress: done agents, and all agents.
     ///
     /// # Errors
-    /// As [`Verdict::compute`].
+    /// As [`CheckReport::compute`].
     pub fn watched<S: HostScalar>(
         scenario: &Scenario,
         closest: bool,
@@ -140,7 +140,7 @@ impl CheckReport {
     /// Overlaps of margins: the conflicts of discs enlarged by their margins.
     ///
     /// # Errors
-    /// As [`Verdict::compute`].
+    /// As [`CheckReport::compute`].
     pub(crate) fn of_margins<S: HostScalar>(scenario: &Scenario) -> Result<Self, ComputationError> {
         let (fleet, discs, _) = DiscFleet::<S>::moving(scenario, Form::Exact)?;
         let motions: Vec<Motion<'_, S>> = fleet.motions().into_iter().map(Motion::inflated).collect();
@@ -193,7 +193,7 @@ impl CheckReport {
     /// The same with a certificate. The checker knows discs only, so all outlines are covered, also for the conflicts.
     ///
     /// # Errors
-    /// As [`Verdict::compute`], and [`Failure::NoPair`].
+    /// As [`CheckReport::compute`], and [`ComputationError::NoPair`].
     pub fn certified<S: HostScalar>(
         scenario: &Scenario,
         closest: bool,

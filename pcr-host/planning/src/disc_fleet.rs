@@ -150,7 +150,7 @@ impl<S: HostScalar> DiscFleet<S> {
     /// The same with the scenario itself where all agents are discs: of a large fleet, a copy of it would be large.
     ///
     /// # Errors
-    /// As [`Bodies::new`].
+    /// As [`DiscFleet::new`].
     pub fn moving(scenario: &Scenario, form: Form) -> Result<DiscMotions<'_, S>, FormatRangeError> {
         if scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty()) {
             let Self { fleet, discs, scenario } = Self::new(scenario, form)?;

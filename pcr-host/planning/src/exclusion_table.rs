@@ -113,7 +113,7 @@ impl ExclusionTable {
     /// The same, with reports of progress: examined pairs, and all pairs.
     ///
     /// # Errors
-    /// As [`Locks::compute`].
+    /// As [`ExclusionTable::compute`].
     pub fn watched(imported: &ImportedLayout, nodes: bool, told: SyncProgressFn<'_>) -> Result<Self, ImportError> {
         let sweep = SweptLayout::new(imported, nodes)?;
         let mut locks = Self::head(imported, nodes);
@@ -182,7 +182,7 @@ impl ExclusionTable {
 /// certificate of the locks is about these.
 ///
 /// # Errors
-/// As [`Locks::compute`].
+/// As [`ExclusionTable::compute`].
 pub fn scenarios(imported: &ImportedLayout) -> Result<Vec<Scenario>, ImportError> {
     let (layout, rides) = (&imported.layout, EdgeTraversals::new(imported));
     let (edges, nodes) = (edges_by_id(layout), nodes_by_id(layout));

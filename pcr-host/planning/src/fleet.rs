@@ -401,7 +401,7 @@ fn waiting<S: HostScalar>(agent: &Agent) -> MotionSpec {
 /// The extended collision map of a fleet of any size: the storage grows until it is large enough.
 ///
 /// # Errors
-/// [`Full::Agents`] for more than 65536 agents, [`Full::Pair`] where two of them have more than 32767 pieces.
+/// [`CapacityError::Agents`] for more than 65536 agents, [`CapacityError::Pair`] where two of them have more than 32767 pieces.
 pub fn build_ecm<S: HostScalar>(motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, CapacityError> {
     Ecm::grown(motions)
 }

@@ -85,7 +85,7 @@ pub struct RegionOptions {
 /// The extended collision map of a scenario.
 ///
 /// # Errors
-/// [`Failure::Overfull`] with the pair that the table cannot hold, [`Failure::Full`] for too many agents.
+/// [`ComputationError::Overfull`] with the pair that the table cannot hold, [`ComputationError::Full`] for too many agents.
 pub fn table<S: HostScalar>(scenario: &Scenario, motions: &[Motion<'_, S>]) -> Result<HostEcm<S>, ComputationError> {
     build_ecm(motions).map_err(|full| unfit(full, scenario, motions.len()))
 }
@@ -110,8 +110,8 @@ fn unfit(full: CapacityError, scenario: &Scenario, discs: usize) -> ComputationE
 /// The number of the agent that is asked for by its number or, where there is no such number, by its label.
 ///
 /// # Errors
-/// [`Failure::NoSuchAgent`], [`Failure::Twofold`] for a number that is a label, too, and, for texts, [`Failure::NoSuchLabel`] or,
-/// where several have it, [`Failure::Ambiguous`].
+/// [`ComputationError::NoSuchAgent`], [`ComputationError::Twofold`] for a number that is a label, too, and, for texts, [`ComputationError::NoSuchLabel`] or,
+/// where several have it, [`ComputationError::Ambiguous`].
 pub fn find(scenario: &Scenario, asked: &str) -> Result<u64, ComputationError> {
     let number = asked.parse::<u64>().ok();
     let ids = || scenario.agents.iter().map(|agent| agent.id);

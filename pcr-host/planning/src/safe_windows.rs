@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 /// What [`pcr_core::safe_intervals`] finds, to the bit. That has no storage, and asks all agents for each interval anew.
 ///
 /// # Errors
-/// [`Mismatch::NoSuchAgent`].
+/// [`MismatchError::NoSuchAgent`].
 pub fn safe_intervals<S: Scalar>(
     fleet: &[Motion<'_, S>],
     ego: usize,

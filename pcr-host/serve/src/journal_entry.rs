@@ -189,7 +189,7 @@ pub trait JournalStore: Send {
     /// Begins a new journal with these entries.
     ///
     /// # Errors
-    /// As [`Keep::keep`].
+    /// As [`JournalStore::keep`].
     fn restart(&mut self, _entries: &[JournalEntry]) -> std::io::Result<()> {
         Ok(())
     }

@@ -40,7 +40,7 @@ impl WriteProgress {
     /// Number of batches on the disk.
     ///
     /// # Errors
-    /// [`Fault::Broken`]: no more will be written.
+    /// [`RequestError::Broken`]: no more will be written.
     pub fn done(&self) -> Result<u64, RequestError> {
         let done = self.shared.done.lock().unwrap_or_else(PoisonError::into_inner);
         done.1.clone().map_or(Ok(done.0), |why| Err(RequestError::Broken { why }))
@@ -49,7 +49,7 @@ impl WriteProgress {
     /// Waits until all batches that were handed over are on the disk.
     ///
     /// # Errors
-    /// [`Fault::Broken`].
+    /// [`RequestError::Broken`].
     pub fn wait(&self) -> Result<(), RequestError> {
         let asked = self.asked();
         let done = self.shared.done.lock().unwrap_or_else(PoisonError::into_inner);

@@ -155,7 +155,7 @@ impl RequestLine {
     /// Returns the hello of a client, which names the version.
     ///
     /// # Errors
-    /// [`Fault::Version`] for another version or none, [`Fault::NoHello`] for another line.
+    /// [`RequestError::Version`] for another version or none, [`RequestError::NoHello`] for another line.
     pub fn hello(&self) -> Result<&Hello, RequestError> {
         match &self.verb {
             Ok(Request::Hello(_)) if !self.has_version => {

@@ -56,7 +56,7 @@ impl OutboxSender {
     /// Sends a line. A line that is longer than the backlog is sent if nothing else waits.
     ///
     /// # Errors
-    /// [`Lost`]: nothing more may be sent to this client.
+    /// [`DisconnectReason`]: nothing more may be sent to this client.
     pub fn send(&self, line: String) -> Result<(), DisconnectReason> {
         let waiting = self.shared.bytes.load(Ordering::Relaxed);
         if waiting > 0 && waiting.saturating_add(line.len()) > BACKLOG {

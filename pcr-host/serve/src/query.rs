@@ -100,7 +100,7 @@ impl<'a> RobotView<'a> {
 /// The answer to a question.
 ///
 /// # Errors
-/// [`Fault::NoSuchRobot`], [`Fault::Invalid`].
+/// [`RequestError::NoSuchRobot`], [`RequestError::Invalid`].
 pub fn answer(supervisor: &Supervisor, question: &Query, now: f64) -> Result<Value, RequestError> {
     let robots = supervisor.robots();
     let place = |name: &str| robots.iter().position(|robot| robot.name == *name).ok_or(RequestError::NoSuchRobot);

@@ -152,7 +152,7 @@ struct ClientHub {
 /// Serves until `Stop`, or until the journal cannot be written. `kept` is the progress of the supervisor's journal.
 ///
 /// # Errors
-/// [`Fault::Broken`].
+/// [`RequestError::Broken`].
 pub fn serve(
     supervisor: &mut Supervisor,
     inputs: &Receiver<(Instant, ServerInput)>,
@@ -280,7 +280,7 @@ impl ClientHub {
     /// Tells what is in the journal by now; returns its size \[bytes\].
     ///
     /// # Errors
-    /// [`Fault::Broken`]: what waits is withdrawn.
+    /// [`RequestError::Broken`]: what waits is withdrawn.
     fn tell_kept(&mut self, waiting: &mut VecDeque<PendingBatch>, kept: &WriteProgress) -> Result<usize, RequestError> {
         let done = kept.done().map_err(|fault| self.withdraw(std::mem::take(waiting), fault))?;
         let mut bytes = 0;

@@ -176,7 +176,7 @@ impl Supervisor {
     /// One robot.
     ///
     /// # Errors
-    /// [`Fault::NoSuchRobot`].
+    /// [`RequestError::NoSuchRobot`].
     pub fn robot(&self, name: &str) -> Result<&SupervisedRobot, RequestError> {
         self.robot_index(name).map(|place| &self.robots[place])
     }
@@ -203,7 +203,7 @@ impl Supervisor {
     /// The motions of the robots, as the table of orders has them.
     ///
     /// # Errors
-    /// [`Fault::Invalid`] if a robot has none.
+    /// [`RequestError::Invalid`] if a robot has none.
     pub fn fleet(&self) -> Result<Vec<Motion<'_, f64>>, RequestError> {
         fleet(&self.robots)
     }
@@ -216,7 +216,7 @@ impl Supervisor {
     /// Takes a new layout for the page.
     ///
     /// # Errors
-    /// [`Fault::Broken`].
+    /// [`RequestError::Broken`].
     pub fn draw(&mut self, layout: PageLayout) -> Result<(), RequestError> {
         self.works()?;
         self.entries.push(JournalEntry::Layout(layout.clone()));
@@ -227,7 +227,7 @@ impl Supervisor {
     /// Adds a robot that stands. Robots that have not yet been allowed to pass there wait for it until it has a mission.
     ///
     /// # Errors
-    /// [`Fault::RobotExists`], [`Fault::Invalid`]. Adding the same robot twice is no error before it has a mission.
+    /// [`RequestError::RobotExists`], [`RequestError::Invalid`]. Adding the same robot twice is no error before it has a mission.
     pub fn add(&mut self, name: &str, abilities: RobotTraits, start: StartPose) -> Result<(), RequestError> {
         self.works()?;
         if let Ok(robot) = self.robot(name) {
@@ -245,7 +245,7 @@ impl Supervisor {
     /// its missions stay known.
     ///
     /// # Errors
-    /// [`Fault::NoSuchRobot`], [`Fault::Invalid`]; nothing has changed then. [`Fault::Broken`].
+    /// [`RequestError::NoSuchRobot`], [`RequestError::Invalid`]; nothing has changed then. [`RequestError::Broken`].
     pub fn reseat(&mut self, name: &str, start: StartPose) -> Result<(), RequestError> {
         self.works()?;
         let place = self.robot_index(name)?;
@@ -311,7 +311,7 @@ impl Supervisor {
     /// Removes a robot, which has to be physically gone. Returns `false` if there is no robot of this name.
     ///
     /// # Errors
-    /// [`Fault::Broken`]; [`Fault::Invalid`] if the table of orders is not that of the robots.
+    /// [`RequestError::Broken`]; [`RequestError::Invalid`] if the table of orders is not that of the robots.
     pub fn remove(&mut self, name: &str) -> Result<bool, RequestError> {
         self.works()?;
         let Ok(place) = self.robot_index(name) else { return Ok(false) };
@@ -390,7 +390,7 @@ impl Supervisor {
     /// [Decides](Supervisor::decide), and writes the journal. The returned events may be sent, because they are in the journal.
     ///
     /// # Errors
-    /// [`Fault::Broken`]: the journal could not be written. Nothing may be told then, now or later, but stops.
+    /// [`RequestError::Broken`]: the journal could not be written. Nothing may be told then, now or later, but stops.
     pub fn settle(&mut self, now: f64) -> Result<Vec<SupervisorEvent>, RequestError> {
         self.decide(now);
         self.keep()

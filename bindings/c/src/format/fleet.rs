@@ -193,7 +193,7 @@ impl Fleet {
         self.close(&before)
     }
 
-    /// Gives an agent a new path with orders, like [`Orders::admit`].
+    /// Gives an agent a new path with orders, like [`PrecedenceTable::admit`].
     pub(super) fn admit(
         &mut self,
         agent: usize,

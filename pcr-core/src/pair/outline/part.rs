@@ -101,7 +101,7 @@ impl<S: Scalar> AgentPair<'_, S> {
         self.first.has_outline() | self.second.has_outline()
     }
 
-    /// The same as [`Pair::slices_of_first`] or [`Pair::slices_of_second`] for a pair of outlines: the part at this index, and whether there may be more.
+    /// The same as [`AgentPair::slices_of_first`] or [`AgentPair::slices_of_second`] for a pair of outlines: the part at this index, and whether there may be more.
     // Not inlined: pairs of discs would need the stack of it.
     #[inline(never)]
     pub(crate) fn part_at(

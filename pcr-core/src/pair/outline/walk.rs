@@ -33,7 +33,7 @@ impl<S: Scalar> Carriers<'_, S> {
     /// Adds the pieces of this pair of segments and joins those that are connected. Lengths are along the segments.
     ///
     /// # Errors
-    /// [`Full::Pieces`]; [`Full::Contacts`] if a list of contacts is too short.
+    /// [`CapacityError::Pieces`]; [`CapacityError::Contacts`] if a list of contacts is too short.
     // Not inlined: pairs of discs would need the stack of it.
     #[inline(never)]
     pub(crate) fn find<P: AsRef<[Piece<S>]> + AsMut<[Piece<S>]>>(

@@ -60,7 +60,7 @@ impl LifelongReport {
         Self::watched(imported, request, methods, &|_| {})
     }
 
-    /// Runs as [`Lifelong::run`], and tells from time to time how much of the time of all runs is simulated \[s\].
+    /// Runs as [`LifelongReport::run`], and tells from time to time how much of the time of all runs is simulated \[s\].
     ///
     /// # Errors
     /// Errors of [`super::run`].

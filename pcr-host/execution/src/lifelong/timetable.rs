@@ -3,7 +3,7 @@
 //! A timetable that keeps all orders shows that all robots can finish, however late they really are (`docs/theory/precedence.md`).
 //! Its times need not be right; only their order matters.
 //!
-//! Every way has times of its own, as if no other robot was in the way ([`Way::time`]). A [`Timeline`] adds the waits.
+//! Every way has times of its own, as if no other robot was in the way ([`Route::time`]). A [`Timeline`] adds the waits.
 
 use super::gates::TimedGate;
 use super::region_table::RouteRegion;

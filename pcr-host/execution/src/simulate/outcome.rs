@@ -92,7 +92,7 @@ impl SimulationReport {
         Self { name, labels, seed, replan, noise, drift, slip, delay, runs, warnings }
     }
 
-    /// Whether all missions were done without a collision under [`Controller::Pcr`], if that is among the runs.
+    /// Whether all missions were done without a collision under [`ControllerKind::Pcr`], if that is among the runs.
     pub fn is_as_promised(&self) -> bool {
         let failed = |run: &ControllerRunEntry| run.not_done > 0 || !run.collisions.is_empty();
         !self.runs.iter().any(|run| run.controller == ControllerKind::Pcr && failed(run))

@@ -42,7 +42,7 @@ impl RobotEstimate {
     /// A robot that stands where its first mission begins.
     ///
     /// # Errors
-    /// [`Failure::Robot`] if its path, or its disc with the margins, is out of range.
+    /// [`ComputationError::Robot`] if its path, or its disc with the margins, is out of range.
     pub(super) fn new(robot: &RobotTask, errors: ErrorBounds) -> Result<Self, ComputationError> {
         let course = match robot.missions.first() {
             Some(mission) => Ok(mission.course.beginning()),

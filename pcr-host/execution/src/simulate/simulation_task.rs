@@ -84,7 +84,7 @@ impl SimulationTask {
     /// overlap one another: no run counts them as a collision.
     ///
     /// # Errors
-    /// [`Failure::Refused`] if a value is out of range, [`Failure::Late`] if a robot sets off too late, [`Failure::Long`] if it takes too
+    /// [`ComputationError::Refused`] if a value is out of range, [`ComputationError::Late`] if a robot sets off too late, [`ComputationError::Long`] if it takes too
     /// long.
     pub fn from_scenario(scenario: &Scenario) -> Result<Self, ComputationError> {
         let fleet = Fleet::<f64>::new(scenario)?;

@@ -48,7 +48,7 @@ impl SpeedLimitedPath {
     /// A course to stand in a pose.
     ///
     /// # Errors
-    /// As [`Course::new`].
+    /// As [`SpeedLimitedPath::new`].
     pub fn standing(pose: Pose<f64>) -> Result<Self, InvalidInput> {
         Ok(Self { segments: vec![Segment::standing(pose)?], tops: vec![f64::INFINITY] })
     }
@@ -114,7 +114,7 @@ impl SpeedLimitedPath {
     /// The rest after a travelled length \[m\].
     ///
     /// # Errors
-    /// As [`Course::new`].
+    /// As [`SpeedLimitedPath::new`].
     pub fn from(&self, length: f64) -> Result<Self, InvalidInput> {
         let mut rest = Self::standing(self.path()?.pose_at(length))?;
         for (segment, &top) in self.segments.iter().zip(&self.tops) {

@@ -91,7 +91,7 @@ impl FitDeviation {
 
     /// Follows lines and arcs, and the parts of the curve that these replace.
     ///
-    /// A part of length l and chord c deviates sideways from its chord by at most [`Part::lateral_deviation`], and along its chord by at most
+    /// A part of length l and chord c deviates sideways from its chord by at most [`CurvePart::lateral_deviation`], and along its chord by at most
     /// l − c from the point at the same fraction. The same holds for lines and arcs of the replacement. For a given length, a
     /// chord is shortest, and the sideways deviation largest, if the curvature is largest everywhere.
     pub(super) fn follow(&mut self, begin: [f64; 2], pieces: &[PlacedSegment], parts: &[CurvePart]) {

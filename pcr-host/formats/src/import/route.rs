@@ -391,7 +391,7 @@ fn along(steps: &[RouteStep<'_>]) -> Facing {
 }
 
 /// The vehicle on a single edge, in one direction, with the limits of the edge. It has the outline that it has there, which
-/// [`Vehicle::facing`] gives.
+/// [`VehicleTraits::facing`] gives.
 pub fn ride(vehicle: &VehicleTraits, step: RouteStep<'_>) -> Agent {
     let mut tracer = LimitedPathBuilder::default();
     tracer.limit(step.speed(), step.edge.rotation);

@@ -21,7 +21,7 @@ impl<'t> YamlDocument<'t> {
     /// no empty text is `null`.
     ///
     /// # Errors
-    /// As [`Document::value`].
+    /// As [`YamlDocument::value`].
     pub fn texts(&self) -> Result<Json, YamlError> {
         AliasResolver { as_texts: true, ..AliasResolver::of(self) }.value(&self.root, 0)
     }
@@ -29,7 +29,7 @@ impl<'t> YamlDocument<'t> {
     /// The names of the members of a member, in the order of the text; what is merged comes last.
     ///
     /// # Errors
-    /// As [`Document::value`].
+    /// As [`YamlDocument::value`].
     pub fn names(&self, name: &str) -> Result<Vec<String>, YamlError> {
         let mut resolver = AliasResolver::of(self);
         let all = resolver.members(&self.root, 0)?;

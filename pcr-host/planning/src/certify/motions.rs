@@ -70,7 +70,7 @@ impl MotionCertificate {
     /// The same for who asks whether there is a contact: of one agent alone, or of none, nothing would be proved.
     ///
     /// # Errors
-    /// [`Failure::Refused`] where a value does not fit the format, [`Failure::NoPair`].
+    /// [`ComputationError::Refused`] where a value does not fit the format, [`ComputationError::NoPair`].
     pub fn of_pairs<S: HostScalar>(scenario: &Scenario) -> Result<Self, ComputationError> {
         match Self::prove::<S>(scenario)? {
             Self { pairs: 0, error: None, .. } => Err(ComputationError::NoPair),

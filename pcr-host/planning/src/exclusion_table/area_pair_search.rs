@@ -13,7 +13,7 @@ use rayon::prelude::*;
 /// Largest number of locks that are kept to be sorted; more are passed on in the order of the tracks.
 const HELD: usize = 10_000_000;
 
-/// Two edges or nodes, by their indices in [`Sweep::ids`], the lower one first, and the lengths of both at which vehicles may
+/// Two edges or nodes, by their indices in [`SweptLayout::ids`], the lower one first, and the lengths of both at which vehicles may
 /// touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TouchingAreas {

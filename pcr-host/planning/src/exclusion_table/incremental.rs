@@ -28,10 +28,10 @@ pub struct ExclusionChange {
 }
 
 impl IncrementalExclusions {
-    /// The edges of a layout, which [`Locks::compute`](super::Locks::compute) has the locks of.
+    /// The edges of a layout, which [`Locks::compute`](super::ExclusionTable::compute) has the locks of.
     ///
     /// # Errors
-    /// As [`Sweep::new`].
+    /// As [`SweptLayout::new`].
     pub fn new(imported: ImportedLayout) -> Result<Self, ImportError> {
         let sweep = SweptLayout::new(&imported, false)?;
         let members =

@@ -82,7 +82,7 @@ impl StraightEdge {
     /// on their edges; `reach` is the sum of the radii \[m\]. Negative delays are earlier starts. Touching counts. `None` where they
     /// never touch.
     ///
-    /// Rounded outward: there is no contact outside of the interval, and its ends are within [`Straight::error_bound`] of those for a
+    /// Rounded outward: there is no contact outside of the interval, and its ends are within [`StraightEdge::error_bound`] of those for a
     /// reach that is larger by that of lengths. About 40 ns on a desktop.
     ///
     /// ```
@@ -143,7 +143,7 @@ impl StraightEdge {
         })
     }
 
-    /// When a vehicle on this edge touches one that stands at a point \[s\], from its start; as [`Straight::delays`].
+    /// When a vehicle on this edge touches one that stands at a point \[s\], from its start; as [`StraightEdge::delays`].
     pub fn times_at(&self, point: [f64; 2], reach: f64) -> Option<[f64; 2]> {
         let to = [point[0] - self.start[0], point[1] - self.start[1]];
         if [to[0], to[1], reach].iter().any(|x| x.is_nan()) {
@@ -155,7 +155,7 @@ impl StraightEdge {
         Some([(lo / self.speed - rounding).max(0.0), hi / self.speed + rounding])
     }
 
-    /// ε of [`Straight::delays`]: of lengths \[m\], and of times \[s\].
+    /// ε of [`StraightEdge::delays`]: of lengths \[m\], and of times \[s\].
     pub fn error_bound(&self, other: &Self, reach: f64) -> [f64; 2] {
         let between = [self.start[0] - other.start[0], self.start[1] - other.start[1]];
         [2.0 * self.rounding_bound(other, between, reach), 2.0 * self.time_rounding(other)]

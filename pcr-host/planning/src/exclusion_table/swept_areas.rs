@@ -134,7 +134,7 @@ impl SweptLayout {
         &self.ids
     }
 
-    /// Whether a place in [`Sweep::ids`] is that of an edge.
+    /// Whether a place in [`SweptLayout::ids`] is that of an edge.
     pub fn is_edge(&self, place: usize) -> bool {
         place < self.edges
     }

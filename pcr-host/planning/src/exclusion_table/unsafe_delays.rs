@@ -48,7 +48,7 @@ pub struct DirectedEdge {
     pub backward: bool,
 }
 
-/// What is unsafe. Numbers are indices into [`Delays::ways`] and [`Delays::nodes`].
+/// What is unsafe. Numbers are indices into [`UnsafeDelayModel::ways`] and [`UnsafeDelayModel::nodes`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum UnsafeRelation {
     /// Two ways, in the order of their indices, and the range of start times on the second minus start times on the first at which

@@ -39,7 +39,7 @@ pub fn table_of<S: HostScalar>(scenario: &Scenario) -> Result<Vec<RawTable>, Com
 /// The table of a fleet of any size, row by row: of the pairs that come near one another, by what the checker takes for near.
 ///
 /// # Errors
-/// As [`rows::Row::new`], and [`MemoryError`](memory::MemoryError) where memory does not hold the pairs.
+/// As [`agent_regions::AgentRegions::new`], and [`MemoryError`](memory_budget::MemoryError) where memory does not hold the pairs.
 fn of_rows<S: HostScalar>(agents: Vec<RawAgent>, motions: &[Motion<'_, S>]) -> Result<RawTable, ComputationError> {
     // The excess of a pair has three parts, of the extents, of the lags and of the rounding of arcs of both agents. Each is at most
     // the largest excess of an agent with itself, hence their sum at most three times that.

@@ -187,7 +187,7 @@ impl TimeSweep<'_, '_, '_> {
     }
 
     /// Those of the parts that are not joined with another one that they may meet in this time. A pair that this time is short for has
-    /// been looked at often enough; one with hardly any time in common is left to [`Sweep::at_ends`].
+    /// been looked at often enough; one with hardly any time in common is left to [`TimeSweep::at_ends`].
     fn open(&mut self, [lo, hi]: [f64; 2], parts: &[usize]) -> Vec<usize> {
         let roots: Vec<usize> = parts.iter().map(|&part| self.root(part)).collect();
         let mut is_open = vec![false; parts.len()];

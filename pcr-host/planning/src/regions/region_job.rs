@@ -163,7 +163,7 @@ impl<'s, S: HostScalar> RegionJob<'s, S> {
     /// All regions at once.
     ///
     /// # Errors
-    /// As [`Sheet::each`]; [`Failure::TooLarge`] where memory does not hold them.
+    /// As [`RegionJob::each`]; [`ComputationError::TooLarge`] where memory does not hold them.
     pub fn answer(&self, told: ProgressFn<'_>) -> Result<RegionsReport, ComputationError> {
         let regions = self.all(false, told)?;
         let head = self.head()?;

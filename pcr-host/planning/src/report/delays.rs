@@ -82,7 +82,7 @@ impl UnsafeDelayReport {
     /// The whole table; `head` is the one of locks without its locks.
     ///
     /// # Errors
-    /// Errors of [`Delays::each`], and an error for a table that does not fit in memory.
+    /// Errors of [`UnsafeDelayModel::each`], and an error for a table that does not fit in memory.
     pub fn collect(
         head: ExclusionTable,
         driving: EdgeDriving,
@@ -156,7 +156,7 @@ impl UnsafeDelayReport {
 /// A line a delay. A node is `node` and its name, as `a`; two nodes have no times.
 ///
 /// # Errors
-/// Errors of the writer, and of [`Delays::each`].
+/// Errors of the writer, and of [`UnsafeDelayModel::each`].
 pub fn delays_csv(
     delays: &UnsafeDelayModel,
     told: SyncProgressFn<'_>,

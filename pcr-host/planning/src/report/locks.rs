@@ -36,10 +36,10 @@ impl From<io::Error> for ExclusionOutputError {
 }
 
 /// A line a lock. A node is `node` and its name, as `a`, and has no lengths. More than ten million are in the order of
-/// [`Sweep::each`].
+/// [`SweptLayout::each`].
 ///
 /// # Errors
-/// Errors of the writer, and of [`Sweep::each`].
+/// Errors of the writer, and of [`SweptLayout::each`].
 pub fn locks_csv(
     sweep: &SweptLayout,
     told: SyncProgressFn<'_>,

@@ -161,7 +161,7 @@ impl Supervisor {
     /// Gives up the waiting mission of a robot, if there is one: its way ends where its present path ends.
     ///
     /// # Errors
-    /// [`Fault::NoSuchRobot`], [`Fault::Broken`].
+    /// [`RequestError::NoSuchRobot`], [`RequestError::Broken`].
     pub fn give_up(&mut self, name: &str) -> Result<(), RequestError> {
         self.works()?;
         let place = self.robot_index(name)?;
@@ -183,7 +183,7 @@ impl Supervisor {
     /// Renames the mission of a robot, if another one has the same path: nothing else changes.
     ///
     /// # Errors
-    /// [`Fault::NoSuchRobot`], [`Fault::Broken`].
+    /// [`RequestError::NoSuchRobot`], [`RequestError::Broken`].
     pub fn adopt(&mut self, name: &str, mission: String) -> Result<(), RequestError> {
         self.works()?;
         let place = self.robot_index(name)?;

@@ -13,7 +13,7 @@ impl Supervisor {
     /// Tells the supervisor that a robot cannot stop before this length of its path \[m\]. If it may go there, it is told so at once.
     ///
     /// # Errors
-    /// [`Fault::NoSuchRobot`].
+    /// [`RequestError::NoSuchRobot`].
     pub fn stops_at(&mut self, name: &str, length: f64) -> Result<(), RequestError> {
         let place = self.robot_index(name)?;
         self.robots[place].next = length;

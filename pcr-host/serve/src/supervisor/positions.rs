@@ -29,7 +29,7 @@ impl Supervisor {
     /// Takes a position message. Messages may be lost, late and repeated: the largest of the lower ends counts.
     ///
     /// # Errors
-    /// [`Fault::NoSuchRobot`], [`Fault::NoSuchPath`] for a path that the robot does not have yet, [`Fault::Invalid`].
+    /// [`RequestError::NoSuchRobot`], [`RequestError::NoSuchPath`] for a path that the robot does not have yet, [`RequestError::Invalid`].
     pub fn position(&mut self, report: &PositionReport, now: f64) -> Result<(), RequestError> {
         self.works()?;
         let place = self.robot_index(&report.robot)?;
@@ -92,7 +92,7 @@ impl Supervisor {
     /// stop if they have been allowed to go near these. `age` is the age of the message \[s\]; it is ignored if a newer one is known.
     ///
     /// # Errors
-    /// [`Fault::NoSuchRobot`], [`Fault::Invalid`].
+    /// [`RequestError::NoSuchRobot`], [`RequestError::Invalid`].
     pub fn report_off_path(&mut self, name: &str, at: [f64; 2], age: f64, now: f64) -> Result<(), RequestError> {
         self.works()?;
         let place = self.robot_index(name)?;

@@ -180,7 +180,7 @@ impl Supervisor {
     /// Entries for the whole present state.
     ///
     /// # Errors
-    /// [`Fault::Invalid`] if the table of orders is not that of the robots.
+    /// [`RequestError::Invalid`] if the table of orders is not that of the robots.
     pub fn snapshot(&self) -> Result<Vec<JournalEntry>, RequestError> {
         let layout = std::iter::once(Ok(JournalEntry::Layout(self.layout.clone())));
         let robots = (0..self.robots.len()).map(|place| {

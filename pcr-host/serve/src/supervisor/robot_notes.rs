@@ -11,7 +11,7 @@ impl Supervisor {
     /// Stores a note about a robot, also in the journal, until the robot is removed.
     ///
     /// # Errors
-    /// [`Fault::NoSuchRobot`]; [`Fault::Broken`], also for a note that is no JSON: it would be forgotten, so nothing may be
+    /// [`RequestError::NoSuchRobot`]; [`RequestError::Broken`], also for a note that is no JSON: it would be forgotten, so nothing may be
     /// told any more.
     pub fn note(&mut self, name: &str, key: &str, note: impl Serialize) -> Result<(), RequestError> {
         self.works()?;
@@ -25,7 +25,7 @@ impl Supervisor {
     /// Appends to a note that is a list; a missing note is an empty list. The journal grows by the new elements only.
     ///
     /// # Errors
-    /// As [`Supervisor::note`], and [`Fault::Invalid`] if the note is not a list.
+    /// As [`Supervisor::note`], and [`RequestError::Invalid`] if the note is not a list.
     pub fn note_more(&mut self, name: &str, key: &str, more: &[impl Serialize]) -> Result<(), RequestError> {
         self.works()?;
         let place = self.robot_index(name)?;

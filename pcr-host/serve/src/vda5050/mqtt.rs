@@ -161,7 +161,7 @@ pub struct Publisher {
 }
 
 impl Publisher {
-    /// As [`Link::publish`].
+    /// As [`MqttLink::publish`].
     pub fn publish(&self, message: MqttMessage) -> bool {
         let MqttMessage { topic, payload, at_least_once: assured, retain } = message;
         self.up.load(Ordering::Relaxed) && self.client.try_publish(topic, qos(assured), retain, payload).is_ok()

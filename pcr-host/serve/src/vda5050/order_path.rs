@@ -68,7 +68,7 @@ impl OrderPath {
     /// Replaces the way after a node by that of the updated order.
     ///
     /// # Errors
-    /// As [`Way::new`]; the way must not be used then.
+    /// As [`OrderPath::new`]; the way must not be used then.
     pub fn extend(&mut self, held: &OrderState, after: usize) -> Result<(), DecodeError> {
         self.nodes.truncate(after + 1);
         let (length, shapes) = self.nodes.last().copied().unwrap_or_default();

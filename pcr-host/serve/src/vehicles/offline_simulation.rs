@@ -36,7 +36,7 @@ pub struct OfflineConfig {
 /// The reason why a step failed.
 #[derive(Debug)]
 pub enum StepError {
-    /// The journal could not be written. The results of the step were not sent; [`Yard::revive`] continues.
+    /// The journal could not be written. The results of the step were not sent; [`OfflineSimulation::revive`] continues.
     Journal(RequestError),
     /// The record could not be written.
     Record(io::Error),
@@ -265,7 +265,7 @@ impl<W: Write> OfflineSimulation<W> {
     /// The supervisor is killed, and another one goes on in its place.
     ///
     /// # Errors
-    /// As [`Bridge::new`].
+    /// As [`Vda5050Bridge::new`].
     pub fn revive(&mut self, supervisor: Supervisor) -> Result<(), JournalError> {
         self.bridge = bridge(&self.interfaces, &self.profiles, &supervisor)?;
         self.supervisor = supervisor;
@@ -276,7 +276,7 @@ impl<W: Write> OfflineSimulation<W> {
     /// Simulates without new missions until all are done; returns how many vehicles have not finished after a time \[s\].
     ///
     /// # Errors
-    /// As [`Yard::step`].
+    /// As [`OfflineSimulation::step`].
     pub fn drain(&mut self, time: f64) -> Result<usize, StepError> {
         self.manager.end();
         let until = self.time + time;

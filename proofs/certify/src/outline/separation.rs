@@ -3,7 +3,7 @@
 //! *From below.* For any unit vector m, the distance is at least the least `m·(x - y)` for corners x of one polygon and y of the other one.
 //! Which m is taken does not matter for the proof: the outward normals of all edges, and one direction between the corners that are
 //! nearest to each other, which together attain the distance. m is kept in the frame of one body, the *owner*, and turns with it: there
-//! all m·y are constant, and each x of the other body moves along a curve p. With its derivative and a bound on the second one, [`bend`],
+//! all m·y are constant, and each x of the other body moves along a curve p. With its derivative and a bound on the second one, `bend`,
 //! Taylor's theorem bounds `m·p` (the corners of the owner with their support as zero):
 //!
 //! ```text
