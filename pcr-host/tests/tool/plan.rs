@@ -418,7 +418,7 @@ fn a_scenario_without_a_plan_is_missed_in_no_stream() {
     assert!(stream.status == 1 && stream.out.starts_with(first), "{}", stream.out);
     let checked = run_with(&["check", "-"], stream.out.as_bytes());
     assert_eq!(checked.status, 2);
-    let why = "pcr: standard input: line 1: head-on: no plan: agents ";
+    let why = "pcr: standard input: line 1, column 63: head-on: no plan: agents ";
     assert!(checked.err.starts_with(why) && checked.err.contains("1 of 2 scenarios refused"), "{}", checked.err);
 }
 

@@ -13,13 +13,13 @@ use pcr_board::{Number, entry};
 use pcr_core::scalar::{AccelerationRamp, Angle, AngleSector, Unit, Wide};
 use pcr_core::{
     Aabb, AdmissionError, BrakingModel, BroadPhase, CapacityError, CheckState, CheckTolerances, Conflict, Conflicts,
-    Constraint, Contacts, Crossing, Curve, Direction, Ecm, EcmEntry, EcmError, Encounter, Gaps, Interval, InvalidInput,
-    Limits, MismatchError, Motion, MovementAuthority, PassingState, Path, PathProposal, PathRef, Phase, Piece,
-    PieceRef, PieceType, PlanError, Point, Pose, PrecedenceDecision, PrecedenceTable, Profile, ProfileRef, Progress,
-    RegionPrecedence, RegionRef, Scalar, SearchNode, Segment, SpeedPlan, SpeedPlanError, SpeedPlanLimits, TurnSide,
-    Union, Vector, crossings, earliest_departure, earliest_start, excess, first_conflict, first_overlap, gaps,
-    least_duration, overlaps, plan_delays, plan_speed, plan_speed_below, plan_speeds, safe_intervals, safe_lengths,
-    union,
+    Constraint, Contacts, Corner, Crossing, Curve, Direction, Ecm, EcmEntry, EcmError, Encounter, Gaps, Interval,
+    InvalidInput, Limits, MismatchError, Motion, MovementAuthority, Outline, OutlineRef, PassingState, Path,
+    PathProposal, PathRef, Phase, Piece, PieceRef, PieceType, PlanError, Point, Pose, PrecedenceDecision,
+    PrecedenceTable, Profile, ProfileRef, Progress, RegionPrecedence, RegionRef, Scalar, SearchNode, Segment,
+    SpeedPlan, SpeedPlanError, SpeedPlanLimits, TurnSide, Union, Vector, crossings, earliest_departure, earliest_start,
+    excess, first_conflict, first_overlap, gaps, least_duration, overlaps, plan_delays, plan_speed, plan_speed_below,
+    plan_speeds, safe_intervals, safe_lengths, union,
 };
 
 #[entry]
@@ -28,6 +28,7 @@ fn main() -> ! {
     operators::<Number>();
     plane::<Number>();
     let _ = constructors::<Number>();
+    let _ = outlines::<Number>();
     motions::<Number>(any(&[]));
     queries::<Number>(any(&[]));
     table::<Number>(any(&mut []), any(&[]));
@@ -186,6 +187,24 @@ fn constructors<S: Scalar>() -> Result<(), InvalidInput> {
 }
 
 #[inline(never)]
+fn outlines<S: Scalar>() -> Result<(), InvalidInput> {
+    any(Outline::<S, 0>::disc(number())?);
+    let vector: Vector<S> = any(Vector { x: number(), y: number() });
+    any(Outline::<S, 2>::capsule(vector, vector, number())?);
+    any(Outline::<S, 4>::rectangle(number(), number(), number(), number(), number())?);
+    let corners: &[Vector<S>] = any(&[]);
+    let outline = any(Outline::<S, 16>::polygon(corners.iter().copied(), number())?);
+    let outline = any(Outline::reversed(outline));
+    any(Outline::as_outline(&outline));
+    let outline = any(<OutlineRef<'_, S> as From<&Outline<S, 16>>>::from(&outline));
+    any((OutlineRef::radius(outline), OutlineRef::reach(outline)));
+    if let [corner, ..] = OutlineRef::corners(outline) {
+        any(Corner::at(corner));
+    }
+    Ok(())
+}
+
+#[inline(never)]
 fn motions<S: Scalar>(fleet: &[Motion<'_, S>]) {
     for motion in fleet {
         let path: PathRef<'_, S> = Motion::path(motion);
@@ -197,6 +216,8 @@ fn motions<S: Scalar>(fleet: &[Motion<'_, S>]) {
         any((ProfileRef::length_at(profile, number()), ProfileRef::speed_at(profile, number())));
         any((ProfileRef::first_time_at(profile, number()), ProfileRef::last_time_at(profile, number())));
         any(Motion::new(path, profile, number(), number()).is_ok());
+        let outline: OutlineRef<'_, S> = Motion::outline(motion);
+        any(Motion::with_outline(path, profile, outline, number()).is_ok());
         any(Motion::delayed(*motion, number()).is_ok());
         any(Motion::with_profile(*motion, profile, number()).is_ok());
         any(Motion::with_longest(*motion, number()).is_ok());
