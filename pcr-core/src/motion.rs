@@ -3,8 +3,8 @@
 use crate::bit_rows::digest;
 use crate::error::{self, InvalidInput, in_range, not_negative};
 use crate::geometry::{Aabb, Interval, Point};
+use crate::outline::placed::{Carried, Corners};
 use crate::outline::{Corner, OutlineRef};
-use crate::pair::outline::placed::{Carried, Corners};
 use crate::path::PathRef;
 use crate::profile::ProfileRef;
 use crate::scalar::{Scalar, Wide};
@@ -80,6 +80,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// assert!(Ecm::build([EcmEntry::EMPTY; 1], [Piece::EMPTY; 4], &fleet)?.is_empty());
     /// # Ok::<(), Box<dyn core::error::Error>>(())
     /// ```
+    #[cfg(feature = "outlines")]
     pub fn with_outline(
         path: PathRef<'a, S>,
         profile: ProfileRef<'a, S>,
@@ -134,7 +135,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
             top_speed,
             digest,
         };
-        if corners.is_empty() { Ok(disc) } else { disc.extended(diameter) }
+        if disc.has_outline() { disc.extended(diameter) } else { Ok(disc) }
     }
 
     /// Completes the motion of an outline: what rounding does to its corners, and its checksum.
@@ -291,7 +292,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
 
     /// Whether the agent is not a disc about its reference point.
     pub(crate) fn has_outline(&self) -> bool {
-        !self.corners.is_empty()
+        cfg!(feature = "outlines") && !self.corners.is_empty()
     }
 
     /// Radius of the disc, or of the rounding of the outline \[m\].

@@ -3,6 +3,8 @@
 //! An outline is given in the frame of the agent: the reference point, which follows the path, is the origin; `x` points
 //! in the direction of travel and `y` to its left. It is the set of all points within `radius` of the polygon of its corners.
 
+pub(crate) mod placed;
+
 use crate::error::{self, InvalidInput, in_range, not_negative};
 use crate::geometry::{Direction, Vector};
 use crate::scalar::{Scalar, Unit, Wide};
@@ -151,9 +153,9 @@ fn lay<S: Scalar>(corners: &mut [Corner<S>], least: S) -> Result<(), InvalidInpu
         let [cos, sin] = S::unit_vector(edge.x, edge.y, corner.length);
         corner.outward = Direction { cos: sin, sin: -cos };
     }
-    for (k, edge) in corners.iter().enumerate() {
+    for (k, edge) in (0..corners.len()).zip(corners.iter()) {
         let ends = [k, if k.wrapping_add(1) == count { 0 } else { k.wrapping_add(1) }];
-        for (_, other) in corners.iter().enumerate().filter(|(j, _)| !ends.contains(j)) {
+        for (_, other) in (0..corners.len()).zip(corners.iter()).filter(|(j, _)| !ends.contains(j)) {
             let apart = Vector { x: other.at.x - edge.at.x, y: other.at.y - edge.at.y };
             if apart.along(edge.outward) >= -least {
                 return Err(InvalidInput::NotConvex);

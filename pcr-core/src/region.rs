@@ -248,7 +248,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         let range = self.length();
         // For NaN the whole range of the region is returned.
         let (rest, open) = (is_no_number(at).then_some(range), None);
-        CrossSections { pair, pieces: pieces.clone(), transposed, at, range, rest, open, outlines: pair.has_outline() }
+        CrossSections { pair, pieces: pieces.clone(), transposed, at, range, rest, open }
     }
 }
 
@@ -265,7 +265,6 @@ struct CrossSections<'a, S: Scalar> {
     rest: Option<Interval<S>>,
     /// The last piece of a pair of outlines, and how many of its intervals were returned, if there are more.
     open: Option<(&'a Piece<S>, usize)>,
-    outlines: bool,
 }
 
 impl<S: Scalar> Iterator for CrossSections<'_, S> {
@@ -277,7 +276,7 @@ impl<S: Scalar> Iterator for CrossSections<'_, S> {
         loop {
             let slice = match self.rest.take() {
                 Some(slice) => slice,
-                None if self.outlines => {
+                None if self.pair.has_outline() => {
                     let (piece, index) = self.open.take().or_else(|| Some((self.pieces.next()?, 0)))?;
                     let (slice, more) = self.pair.part_at(piece, self.transposed, self.at, index);
                     self.open = more.then_some((piece, index.wrapping_add(1)));

@@ -65,7 +65,8 @@ fn has_member(text: &str, of: &str, name: &str) -> bool {
 
 /// Names of functions in a document that are in no source file, and how many names it has.
 fn missing(document: &str) -> (Vec<String>, usize) {
-    let library = sources(&["pcr-core/src", "pcr-fixed/src", "proofs/certify/src", "pcr-host/planning/src/exclusion_table"]);
+    let library =
+        sources(&["pcr-core/src", "pcr-fixed/src", "proofs/certify/src", "pcr-host/planning/src/exclusion_table"]);
     let tests = sources(&["tests/tests", "pcr-core/src", "tests/src", "pcr-fixed/src", "proofs/certify/src"]);
     let (mut missing, mut names) = (Vec::new(), 0);
     let mut file = None;

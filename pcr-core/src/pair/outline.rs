@@ -1,7 +1,6 @@
 //! Outlines in coordination space: the kernels for a pair of agents of which at least one is not a disc.
 //!
 //! ```text
-//! placed    outlines carried along a line or an arc              Carried
 //! distance  signed distance of two placed polygons
 //! contacts  where one moving outline touches one that stands: vertex-edge, edge-vertex and vertex-vertex
 //! slice     which lengths of a segment a standing outline covers Parts
@@ -17,10 +16,9 @@ pub(crate) mod contacts;
 pub(crate) mod distance;
 pub(crate) mod events;
 pub(crate) mod part;
-pub(crate) mod placed;
 pub(crate) mod shadow;
 pub(crate) mod slice;
 pub(crate) mod walk;
 
-#[cfg(all(test, feature = "libm"))]
+#[cfg(all(test, feature = "libm", feature = "outlines"))]
 mod tests;

@@ -14,9 +14,9 @@
 
 use crate::geometry::{Direction, Interval, Point, Vector};
 use crate::motion::Motion;
+use crate::outline::placed::{Carried, Corners};
 use crate::outline::{Corner, opposite};
 use crate::pair::outline::distance::separation_along;
-use crate::pair::outline::placed::{Carried, Corners};
 use crate::query::legs::Leg;
 use crate::scalar::{Scalar, Wide};
 

@@ -15,9 +15,9 @@
 //! A candidate counts if its foot is on the edge and its normal is supported, with an allowance. An allowance adds contacts
 //! at a distance of less than R, which do no harm: they are cuts, not ends. Without it, rounding might reject a contact in two forms.
 
-use super::placed::Carried;
 use crate::array_vec::ArrayVec;
 use crate::geometry::{Direction, Interval, Vector};
+use crate::outline::placed::Carried;
 use crate::outline::{Corner, MOST_CORNERS, opposite, supports, turned_back};
 use crate::scalar::{Scalar, Wide};
 

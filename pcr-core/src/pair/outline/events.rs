@@ -10,9 +10,9 @@
 //! closed forms of the normal.
 
 use super::contacts::{Standing, between, contacts, direction_of, far_contacts, is_within, line_contacts};
-use super::placed::Carried;
 use crate::array_vec::ArrayVec;
 use crate::geometry::{Direction, Point, Vector};
+use crate::outline::placed::Carried;
 use crate::outline::{Corner, MOST_CORNERS, opposite, supports, turned_back};
 use crate::scalar::{Scalar, Unit, Wide};
 

@@ -4,12 +4,12 @@
 //! tell which interval belongs to the piece, and all that meet its range do: an interval too many is within R, but one too few would be a lost collision.
 
 use super::events::Carriers;
-use super::placed::Carried;
 use super::slice::Parts;
 use crate::array_vec::ArrayVec;
 use crate::error::CapacityError;
 use crate::geometry::Interval;
 use crate::motion::Motion;
+use crate::outline::placed::Carried;
 use crate::pair::AgentPair;
 use crate::piece_store::{Piece, PieceStore};
 use crate::scalar::Scalar;

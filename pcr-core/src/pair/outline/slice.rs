@@ -6,9 +6,9 @@
 
 use super::contacts::{Standing, contacts, on_segment};
 use super::distance::distance;
-use super::placed::Carried;
 use crate::array_vec::ArrayVec;
 use crate::geometry::{Interval, Point};
+use crate::outline::placed::Carried;
 use crate::scalar::Scalar;
 
 /// Largest number of intervals of a slice. The theorem allows fewer: a gap for each corner, and two more.

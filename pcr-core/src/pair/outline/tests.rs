@@ -4,7 +4,7 @@ extern crate std;
 
 use super::distance::tests::{Random, oracle};
 use super::events::Carriers;
-use super::placed::Carried;
+use crate::outline::placed::Carried;
 use crate::outline::{Outline, OutlineRef};
 use crate::piece_store::{Piece, PieceStore};
 use crate::scalar::Scalar;
