@@ -24,7 +24,7 @@ const TABLE: Table = Traffic::new();
 #[cfg(armv6m)]
 type Table = Regions<Number, REGIONS, PIECES>;
 #[cfg(armv6m)]
-const TABLE: Table = Ecm::new([Region::EMPTY; REGIONS], [Piece::EMPTY; PIECES]);
+const TABLE: Table = Ecm::new([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; PIECES]);
 
 static SESSION: ConstStaticCell<Session<Number, { scenario::AGENTS }, ROOM, REGIONS, PIECES, Table>> =
     ConstStaticCell::new(Session::of(Service::with(TABLE, &AGENTS)));
