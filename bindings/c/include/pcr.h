@@ -40,7 +40,7 @@ typedef struct PcrPhaseStorage {
  */
 typedef struct PcrMotionStorage {
   size_t pointers[6];
-  float opaque[16];
+  float opaque[17];
 } PcrMotionStorage;
 
 /*

@@ -40,7 +40,7 @@ typedef struct PcrF64PhaseStorage {
  */
 typedef struct PcrF64MotionStorage {
   size_t pointers[6];
-  double opaque[16];
+  double opaque[17];
 } PcrF64MotionStorage;
 
 /*

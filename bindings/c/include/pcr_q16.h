@@ -43,7 +43,7 @@ typedef struct PcrQ16PhaseStorage {
  */
 typedef struct PcrQ16MotionStorage {
   size_t pointers[6];
-  int32_t opaque[16];
+  int32_t opaque[17];
 } PcrQ16MotionStorage;
 
 /*

@@ -97,7 +97,7 @@ fn name(word: &str, format: &Format, shared: &[String]) -> String {
         "Real" => format.real.into(),
         "Heading" => format.heading.into(),
         "SEGMENT" => "30".into(),
-        "MOTION" => "16".into(),
+        "MOTION" => "17".into(),
         "PIECE" => format.piece.into(),
         _ if shared.iter().any(|shared| shared == word) => word.into(),
         _ => match (word.strip_prefix("Pcr"), word.strip_prefix("pcr_")) {
