@@ -48,17 +48,18 @@ struct Capacity {
 #define PCR_FORMAT(Format, Types, functions, Number)                                                                   \
   struct Format {                                                                                                      \
     using Real = Number; using Agent = Types##Agent; using Conflict = Types##Conflict; using Handle = Types##Fleet;    \
-    using Hold = Types##Hold; using Interval = Types##Interval; using Met = Types##Met; using Motion = Types##Motion;  \
-    using Passing = Types##Passing; using Progress = Types##Progress; using Region = Types##Region;                    \
-    using Tolerances = Types##Tolerances;                                                                              \
+    using Hold = Types##MovementAuthority; using Interval = Types##Interval; using Met = Types##AgentConflict;         \
+    using Motion = Types##MotionStorage;                                                                               \
+    using Passing = Types##RegionPrecedence; using Progress = Types##Progress; using Region = Types##Region;           \
+    using Tolerances = Types##CheckTolerances;                                                                         \
     struct Storage {                                                                                                   \
-      std::vector<Types##Segment> segments;                                                                            \
-      std::vector<Types##Phase> phases;                                                                                \
+      std::vector<Types##SegmentStorage> segments;                                                                     \
+      std::vector<Types##PhaseStorage> phases;                                                                         \
       std::vector<Motion> motions, room;                                                                               \
-      std::vector<Types##Entry> entries;                                                                               \
-      std::vector<Types##Piece> pieces;                                                                                \
-      std::vector<Types##Order> orders;                                                                                \
-      std::vector<Types##Robot> robots;                                                                                \
+      std::vector<Types##RegionStorage> entries;                                                                       \
+      std::vector<Types##PieceStorage> pieces;                                                                         \
+      std::vector<Types##PrecedenceStorage> orders;                                                                    \
+      std::vector<Types##CheckStorage> robots;                                                                         \
       Handle handle;                                                                                                   \
       Types##Memory memory() {                                                                                         \
         return {segments.data(), segments.size(), phases.data(),  phases.size(),  motions.data(),                      \
