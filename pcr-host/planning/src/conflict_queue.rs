@@ -7,10 +7,10 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The first conflict of each pair of agents that is more than a touch.
 ///
 /// ```
-/// use pcr_core::{Motion, Path, CertifyWitnessEntry, Pose, Profile, Radians};
+/// use pcr_core::{Motion, Path, Point, Pose, Profile, Radians};
 /// use pcr_planning::conflict_queue::ConflictQueue;
-/// let east = Pose { position: CertifyWitnessEntry::new(-2.0, 0.0), heading: Radians(0.0) };
-/// let north = Pose { position: CertifyWitnessEntry::new(0.0, -2.0), heading: Radians(core::f64::consts::FRAC_PI_2) };
+/// let east = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
+/// let north = Pose { position: Point::new(0.0, -2.0), heading: Radians(core::f64::consts::FRAC_PI_2) };
 /// let paths = [Path::<f64, 1>::starting_at(east)?.line(4.0)?, Path::starting_at(north)?.line(4.0)?];
 /// let profile = Profile::<f64, 1>::from_pieces(1.0, [(4.0, 0.0)])?;
 /// let motion = |path| Motion::new(path, profile.as_profile(), 0.25, 0.0);

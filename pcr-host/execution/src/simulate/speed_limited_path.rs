@@ -221,11 +221,11 @@ impl OwnedMotion {
     ///
     /// ```
     /// use pcr_core::{Motion, Path, Point, Pose, Profile, Radians};
-    /// use pcr_execution::simulate::SpeedPlanLimits;
+    /// use pcr_execution::simulate::OwnedMotion;
     /// let pose = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
     /// let path = Path::<f64, 1>::starting_at(pose)?.line(4.0)?;
     /// let profile = Profile::<f64, 1>::from_pieces(1.0, [(4.0, 0.0)])?;
-    /// let whole = SpeedPlanLimits::of(&Motion::new(path.as_path(), profile.as_profile(), 0.25, 10.0)?);
+    /// let whole = OwnedMotion::of(&Motion::new(path.as_path(), profile.as_profile(), 0.25, 10.0)?);
     /// let rest = whole.rest(11.5).unwrap();
     /// let motion = rest.motion(0.25).unwrap();
     /// assert!((motion.position_at(12.0).x - 0.0).abs() < 1e-12 && (motion.position_at(0.0).x + 0.5).abs() < 1e-12);
