@@ -40,7 +40,6 @@ for program in crossing resolve passing robot_q16; do
   cat "$build/target.out"
 done
 echo "bindings/c: the same on the host and on a Cortex-M4F"
-[ "$(wc -l <bindings/c/include/pcr.hpp)" -lt 200 ] || { echo "bindings/c: the wrapper for C++ is no longer small" >&2; exit 1; }
 c++ -std=c++17 "${warnings[@]}" $(flags host --cflags) bindings/c/c/wrapper.cpp $(flags host --libs) -o "$build/wrapper"
 "$build/wrapper"
 cmake -S bindings/c/c/cmake -B "$build/cmake" -DCMAKE_PREFIX_PATH="$build/host" >"$build/cmake.log" || { cat "$build/cmake.log" >&2; exit 1; }
