@@ -9,7 +9,7 @@
 //!
 //! Apart, the quantities are the gaps between the corners of one body and the line that separates it from the other, which moves with
 //! the other. In contact they are the signed distances of a corner of one body from the edges of the other, as long as the corner is
-//! within reach of one edge and on the inner side of all others. A corner beside a corner is treated in `Bodies::stays_at`.
+//! beside one edge, and either outside within reach of it or on the inner side of all others. A corner beside a corner is treated in `Bodies::stays_at`.
 //! Where nothing else helps, the distance changes by at most the sum of the speeds.
 
 use crate::geometry::{Direction, Interval, Point, Vector};
@@ -191,7 +191,7 @@ impl<S: Scalar> Bodies<S> {
     }
 }
 
-/// A time for which a point stays within `radius` of an edge, beside it, and on the inner side of all others.
+/// A time for which a point stays beside an edge, and either outside within `radius` of it or on the inner side of all others.
 fn stays_at_edge<S: Scalar>(
     edges: &[Corner<S>],
     edge: &Corner<S>,
@@ -205,18 +205,18 @@ fn stays_at_edge<S: Scalar>(
     if out > radius || along < S::ZERO || along > edge.length {
         return S::ZERO;
     }
-    let speed = velocity.across(edge.outward);
-    let mut least = lasts(radius - out, velocity.along(edge.outward), change);
-    least = least.min(lasts(along, -speed, change)).min(lasts(edge.length - along, speed, change));
+    let (rate, speed) = (velocity.along(edge.outward), velocity.across(edge.outward));
+    let beside = lasts(along, -speed, change).min(lasts(edge.length - along, speed, change));
+    // Outside of the edge, near its end, a point may be on the outer side of the next edge.
+    let outside = if out < S::ZERO { S::ZERO } else { lasts(out, -rate, change) };
+    let mut inside = S::LIMIT;
     for other in edges.iter().filter(|other| other.length > S::ZERO && other.at != edge.at) {
         // The other side of a capsule has no inner side: the point stays within reach of its line on that side, too.
         let room = if edges.len() == 2 { radius } else { S::ZERO } - between(other.at, point).along(other.outward);
-        if room < S::ZERO {
-            return S::ZERO;
-        }
-        least = least.min(lasts(room, velocity.along(other.outward), change));
+        let stays = if room < S::ZERO { S::ZERO } else { lasts(room, velocity.along(other.outward), change) };
+        inside = inside.min(stays);
     }
-    least
+    beside.min(lasts(radius - out, rate, change)).min(outside.max(inside))
 }
 
 /// A time for which a point stays within `radius` of another one: half of the room for its uniform motion, half for the deviation from that.

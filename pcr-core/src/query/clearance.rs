@@ -77,8 +77,9 @@ impl<S: Scalar> Encounter<'_, S> {
                 if bodies.separation < best.separation {
                     best = ClosestApproach { time: instant.time, separation: bodies.separation };
                 }
-                // The middle is rounded.
-                let (half, rounding) = (during.length().half(), S::rounding(instant.time.abs()));
+                // The middle is rounded, and times of phases are.
+                let (half, rounding) =
+                    (during.length().half(), S::rounding(window.time.lo.abs().max(window.time.hi.abs())));
                 let least = bodies.least_within(half + rounding);
                 if least >= best.separation - fine || half <= rounding.double() || !ends.push(instant.time) {
                     now = end;
