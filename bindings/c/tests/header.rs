@@ -6,44 +6,45 @@ use std::path::{Path, PathBuf};
 
 /// A number format: its header, the prefixes of its names, and its number types.
 struct Format {
+    /// File in `src` with the lengths of storage.
+    source: &'static str,
     header: &'static str,
     types: &'static str,
     functions: &'static str,
     real: &'static str,
     heading: &'static str,
-    piece: &'static str,
     title: &'static str,
     after: &'static str,
 }
 
 const FORMATS: [Format; 3] = [
     Format {
+        source: "single",
         header: "pcr.h",
         types: "Pcr",
         functions: "pcr_",
         real: "f32",
         heading: "f32",
-        piece: "7",
         title: "in single precision: numbers up to a million in magnitude. Units: m, s, m/s, m/s^2, rad",
         after: "",
     },
     Format {
+        source: "double",
         header: "pcr_f64.h",
         types: "PcrF64",
         functions: "pcr_f64_",
         real: "f64",
         heading: "f64",
-        piece: "6",
         title: "in double precision: numbers up to a trillion in magnitude. Units: m, s, m/s, m/s^2, rad",
         after: "",
     },
     Format {
+        source: "fixed",
         header: "pcr_q16.h",
         types: "PcrQ16",
         functions: "pcr_q16_",
         real: "i32",
         heading: "i32",
-        piece: "7",
         title: "in fixed point: numbers are 1/65536 m, s, m/s and m/s^2, up to 4096 in magnitude. Headings are 1/2^32 of a turn",
         after: "/* Constants that a compiler evaluates: a number, and a heading in radians from -pi to pi. */\n\
             #define PCR_Q16(x) ((int32_t)((x) * 65536.0 + ((x) < 0 ? -0.5 : 0.5)))\n\
@@ -96,9 +97,7 @@ fn name(word: &str, format: &Format, shared: &[String]) -> String {
     match word {
         "Real" => format.real.into(),
         "Heading" => format.heading.into(),
-        "SEGMENT" => "30".into(),
-        "MOTION" => "17".into(),
-        "PIECE" => format.piece.into(),
+        "SEGMENT" | "MOTION" | "PIECE" => length_in_source(word, format),
         _ if shared.iter().any(|shared| shared == word) => word.into(),
         _ => match (word.strip_prefix("Pcr"), word.strip_prefix("pcr_")) {
             (Some(rest), _) => format!("{}{rest}", format.types),
@@ -106,6 +105,16 @@ fn name(word: &str, format: &Format, shared: &[String]) -> String {
             _ => word.into(),
         },
     }
+}
+
+/// Returns a length of storage as the source of a format declares it: `const NAME: usize = LENGTH;`.
+fn length_in_source(name: &str, format: &Format) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src").join(format.source).with_extension("rs");
+    let text = std::fs::read_to_string(path).expect("a source");
+    let declared = format!("const {name}: usize = ");
+    let lengths: Vec<_> = text.lines().filter_map(|line| line.split_once(&declared)).collect();
+    let [(_, length)] = lengths[..] else { panic!("{} declarations of {name}", lengths.len()) };
+    length.trim_end_matches(';').to_owned()
 }
 
 /// Splits a line into words and the text between them.
