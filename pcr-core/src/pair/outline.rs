@@ -6,6 +6,7 @@
 //! slice     which lengths of a segment a standing outline covers Parts
 //! events    where slices can change their structure, and where they are extreme
 //! walk      from events to pieces
+//! lines     the piece of two outlines on lines
 //! part      what a piece covers
 //! shadow    where on the second segment some of the first is covered
 //! ```
@@ -15,6 +16,7 @@
 pub(crate) mod contacts;
 pub(crate) mod distance;
 pub(crate) mod events;
+mod lines;
 pub(crate) mod part;
 pub(crate) mod shadow;
 pub(crate) mod slice;

@@ -33,9 +33,22 @@ pub(crate) fn separation_along<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>]) -> (
     }
 }
 
-/// Returns the distance of two polygons \[m\], 0 if they overlap. Less work than [`separation_along`].
-pub(crate) fn distance<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>]) -> S {
-    outside(a, b).map_or(S::ZERO, |(distance, ..)| distance)
+/// Returns how much farther than `radius` two polygons are apart \[m\]. If it is more than `slack` above or below, only the sign counts: edges
+/// tell it, which is less work than a distance.
+pub(crate) fn clearance<S: Scalar>(a: &[Corner<S>], b: &[Corner<S>], radius: S, slack: S) -> S {
+    let mut most: Option<S> = None;
+    for (own, their) in [(a, b), (b, a)] {
+        for edge in own.iter().filter(|edge| edge.length > S::ZERO) {
+            let gap = beyond(edge, their);
+            if gap - radius > slack {
+                return gap - radius;
+            }
+            most = Some(most.map_or(gap, |most| most.max(gap)));
+        }
+    }
+    // If no edge of them separates two polygons, they overlap, unless both are flat.
+    let overlap = most.filter(|gap| *gap < -slack && (a.len() > 2 || b.len() > 2));
+    overlap.unwrap_or_else(|| outside(a, b).map_or(S::ZERO, |(distance, ..)| distance)) - radius
 }
 
 /// The least distance of corners from edges, and its direction; `None` if the polygons overlap.
@@ -269,7 +282,14 @@ pub(crate) mod tests {
             let exact = oracle(&points(&placed[0]), &points(&placed[1]));
             let (signed, normal, _) = separation_along(&placed[0], &placed[1]);
             assert!((gap(&placed[0], &placed[1], normal) - signed).abs() < 1e-14, "{placed:?}");
-            assert!((distance(&placed[0], &placed[1]) - exact).abs() < 1e-14, "{placed:?}");
+            let (radius, slack) = (0.5 * random.below(3) as f64, 1e-9);
+            let [clear, known] = [clearance(&placed[0], &placed[1], radius, slack), exact - radius];
+            assert!(
+                (clear - known).abs() < 1e-14
+                    || clear * known > 0.0 && clear.abs() > slack
+                    || exact == 0.0 && clear < -slack,
+                "{placed:?}"
+            );
             assert!((signed.max(0.0) - exact).abs() < 1e-14, "{placed:?}");
             if signed < -1e-9 {
                 overlaps += 1;

@@ -132,8 +132,9 @@ fn critical<S: Scalar>(
     }
 }
 
-/// The same for an outline on a line: the other touches one of the two lines beside all of its way.
-fn critical_on_line<S: Scalar>(
+/// Calls `found` with the critical contacts of an outline on a line, as [`critical`] does: the other one touches one of the two lines beside all
+/// of its way.
+pub(super) fn critical_on_line<S: Scalar>(
     of: &Carried<'_, S>,
     moving: &Carried<'_, S>,
     [radius, slack]: [S; 2],

@@ -5,7 +5,7 @@
 //! of a gap tells which. So a contact that was found twice, or is none, only cuts an interval into two that are put together again.
 
 use super::contacts::{Standing, contacts, on_segment};
-use super::distance::distance;
+use super::distance::clearance;
 use crate::array_vec::ArrayVec;
 use crate::geometry::{Interval, Point};
 use crate::outline::placed::Carried;
@@ -28,11 +28,7 @@ pub(crate) fn parts<S: Scalar>(moving: &Carried<'_, S>, other: Standing<'_, S>) 
     let length = moving.segment.length;
     let mut parts = ArrayVec::new(Interval::new(S::ZERO, S::ZERO));
     if moving.bend.is_none() {
-        let mut ends = [None; 2];
-        contacts(moving, other, |length, _| ends = [ends[1], Some(length)]);
-        if let [Some(lo), Some(hi)] = ends
-            && let Some(part) = on_segment([lo, hi], length)
-        {
+        if let Some(part) = part_of_line(moving, other) {
             parts.add(part, true);
         }
         return Some(parts);
@@ -64,6 +60,14 @@ pub(crate) fn parts<S: Scalar>(moving: &Carried<'_, S>, other: Standing<'_, S>) 
     Some(parts)
 }
 
+/// Returns the part of a line on which the moving outline is within the radius of the other.
+pub(crate) fn part_of_line<S: Scalar>(moving: &Carried<'_, S>, other: Standing<'_, S>) -> Option<Interval<S>> {
+    let mut ends = [None; 2];
+    contacts(moving, other, |length, _| ends = [ends[1], Some(length)]);
+    let [Some(lo), Some(hi)] = ends else { return None };
+    on_segment([lo, hi], moving.segment.length)
+}
+
 /// Adds an interval to a slice, or extends the last one.
 fn extend<S: Scalar>(parts: &mut Parts<S>, gap: Interval<S>, open: bool) {
     if (open || !parts.has_room())
@@ -80,7 +84,7 @@ fn extend<S: Scalar>(parts: &mut Parts<S>, gap: Interval<S>, open: bool) {
 fn is_covered<S: Scalar>(moving: &Carried<'_, S>, other: Standing<'_, S>, gap: Interval<S>) -> bool {
     let clearance = |length: S| {
         let corners = moving.at(length, moving.origin);
-        distance(corners.as_slice(), other.corners) - other.radius
+        clearance(corners.as_slice(), other.corners, other.radius, other.slack)
     };
     let middle = gap.middle();
     let clear = clearance(middle);

@@ -41,6 +41,9 @@ impl<S: Scalar> Carriers<'_, S> {
         indices: [u16; 2],
         pieces: &mut PieceStore<S, P>,
     ) -> Result<(), CapacityError> {
+        if self.first.bend.is_none() && self.second.bend.is_none() {
+            return self.find_on_lines(indices, pieces);
+        }
         let events = self.events().ok_or(CapacityError::Contacts)?;
         let mut turning = None;
         let beside = self.second.within(self.slack.half().half());
