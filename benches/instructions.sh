@@ -8,15 +8,16 @@ cd "$(dirname "$0")"
 
 command -v valgrind >/dev/null || ../.ci/install.sh valgrind
 # With the profile and the features of the Python package, whose build has the libraries then.
-cargo build --quiet --locked --profile wheel -p pcr-py -p pcr-benches --bin work
-work=$(cargo metadata --format-version 1 --no-deps --locked | sed 's/.*"target_directory":"\([^"]*\)".*/\1/')/wheel/work
+cargo build --quiet --locked --profile wheel -p pcr-py -p pcr-benches --bin work --bin segments
+built=$(cargo metadata --format-version 1 --no-deps --locked | sed 's/.*"target_directory":"\([^"]*\)".*/\1/')/wheel
+work=$built/work
 
-counted() { valgrind --tool=callgrind --callgrind-out-file=/dev/null "$work" "$@" 2>&1 >/dev/null | sed -n 's/.*Collected : //p'; }
+counted() { valgrind --tool=callgrind --callgrind-out-file=/dev/null "$@" 2>&1 >/dev/null | sed -n 's/.*Collected : //p'; }
 
 # figure JOB FLEET WHAT [TIMES]: two runs, whose difference is so many times the job; five times, where none is said.
 figure() {
   local job=$1 fleet=$2 what=$3 times=${4:-5} once pairs pieces
-  once=$((($(counted "$job" "$fleet" $((times + 1))) - $(counted "$job" "$fleet" 1)) / times))
+  once=$((($(counted "$work" "$job" "$fleet" $((times + 1))) - $(counted "$work" "$job" "$fleet" 1)) / times))
   read -r pairs pieces < <("$work" "$job" "$fleet" 0)
   printf '%9d  %s: %s\n' "$once" "$fleet" "$what"
   case $job:$pieces in
@@ -24,6 +25,14 @@ figure() {
     table:0) printf '%9d  ... per pair of agents that cannot meet\n' $((once / pairs)) ;;
     table:*) printf '%9d  ... per piece of either direction\n' $((once / pieces)) ;;
   esac
+}
+
+# segments KINDS BODY: the regions of a pair of segments, the mean of 200 pairs.
+segments() {
+  local kinds=$1 body=$2 more once
+  more=$(counted "$built/segments" "$kinds" "$body" 5)
+  once=$(counted "$built/segments" "$kinds" "$body" 0)
+  printf '%9d  a pair of segments, %s: all regions, %s\n' $(((more - once) / 1000)) "$kinds" "${body}s"
 }
 
 {
@@ -38,6 +47,9 @@ figure() {
   figure certify paper12 "proof of the table"
   figure motions paper12 "proof of the motions, or a contact of each pair"
   figure certify table6-100 "proof of the table" 1
+  for kinds in lines both arcs; do
+    for body in disc rectangle; do segments $kinds $body; done
+  done
 } | tee -a /dev/stderr >instructions.new
 
 if [ "${UPDATE:-}" = 1 ]; then

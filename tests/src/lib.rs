@@ -5,6 +5,7 @@ pub mod adversary;
 pub mod arguments;
 pub mod audit;
 pub mod certified;
+pub mod certified_outlines;
 pub mod clearance;
 pub mod closed_loop;
 pub mod constants;

@@ -34,15 +34,23 @@ fn run(kinds: [bool; 2], rectangle: bool, times: u32) -> Result<(), Box<dyn std:
     let mut random = Random(1);
     let corners = [(-0.6, -0.4), (0.6, -0.4), (0.6, 0.4), (-0.6, 0.4)].map(|(x, y)| Vector { x, y });
     let outline = Outline::<f64, 4>::polygon(corners, 0.0)?;
-    let paths: Result<Vec<_>, _> = (0..PAIRS).map(|_| Ok([random.segment(kinds[0])?, random.segment(kinds[1])?])).collect();
+    let paths: Result<Vec<_>, _> =
+        (0..PAIRS).map(|_| Ok([random.segment(kinds[0])?, random.segment(kinds[1])?])).collect();
     let paths: Vec<[Path<f64, 1>; 2]> = paths.map_err(|error: pcr_core::InvalidInput| error)?;
-    let profiles = paths.iter().map(|pair| pair.each_ref().map(|path| Profile::<f64, 1>::from_pieces(1.0, [(path.as_path().length(), 0.0)])));
+    let profiles = paths
+        .iter()
+        .map(|pair| pair.each_ref().map(|path| Profile::<f64, 1>::from_pieces(1.0, [(path.as_path().length(), 0.0)])));
     let profiles: Vec<_> = profiles.map(|[a, b]| Ok([a?, b?])).collect::<Result<_, pcr_core::InvalidInput>>()?;
     let motion = |k: usize, of: usize| {
         let (path, profile) = (paths[k][of].as_path(), profiles[k][of].as_profile());
-        if rectangle { Motion::with_outline(path, profile, &outline, 0.0) } else { Motion::new(path, profile, 0.36_f64.hypot(0.0).max(0.52_f64.sqrt()), 0.0) }
+        if rectangle {
+            Motion::with_outline(path, profile, &outline, 0.0)
+        } else {
+            Motion::new(path, profile, 0.52_f64.sqrt(), 0.0)
+        }
     };
-    let fleets: Vec<[Motion<'_, f64>; 2]> = (0..PAIRS).map(|k| Ok([motion(k, 0)?, motion(k, 1)?])).collect::<Result<_, pcr_core::InvalidInput>>()?;
+    let fleets: Vec<[Motion<'_, f64>; 2]> =
+        (0..PAIRS).map(|k| Ok([motion(k, 0)?, motion(k, 1)?])).collect::<Result<_, pcr_core::InvalidInput>>()?;
     let mut count = 0;
     for round in 0..=times {
         for fleet in &fleets {

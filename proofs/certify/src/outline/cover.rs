@@ -8,7 +8,7 @@
 //! along a whole curve in the plane of lengths that is parallel to neither axis.
 
 use super::body::{Carried, Placed};
-use super::separation::{Change, above, below, meet, nearest, sketched};
+use super::separation::{Change, above, below, meet, nearest, overlap, sketched};
 use crate::ball::{Ball, BallReal, Ternary};
 use crate::double_double::DoubleDouble;
 use crate::pair::gaps;
@@ -265,9 +265,9 @@ fn witnessed<R: BallReal>(
         (postures[other], speeds[other]) = (&there, Ball::from(speed));
         let pair = nearest(postures);
         let bound = pair.above(bodies, postures, speeds, half);
-        // Polygons that have a point in common in the middle have none that is farther from the other one than the bodies go.
+        // The signed distance changes by no more than the bodies go.
         let overlap = if meet(postures).is_certain() {
-            (bodies[of].lever + bodies[other].lever * Ball::from(speed.abs())) * half
+            overlap(postures) + (bodies[of].lever + bodies[other].lever * Ball::from(speed.abs())) * half
         } else {
             bound
         };

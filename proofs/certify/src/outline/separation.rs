@@ -12,8 +12,9 @@
 //!
 //! or, over large boxes, the distance in the middle less the ways that any point of the two bodies goes: lever times length, for each.
 //!
-//! *From above.* The distance is no more than that of any two points of the polygons; 0 if a corner of one lies in a triangle of
-//! corners of the other one, or if two edges cross.
+//! *From above.* The distance is no more than that of any two points of the polygons. They have a point in common if a corner of one lies in a
+//! triangle of corners of the other one, or if two edges cross. Then the distance counts as negative: minus the length of the least translation that
+//! separates them, which is that along the normal of some edge. It changes no faster than the bodies go, as the distance does.
 //!
 //! *Second derivative.* A corner goes `x = z + Rot(θ) w` ([`super::body`]) or along a line. In a frame that turns by φ about c,
 //!
@@ -323,7 +324,7 @@ fn nearest_of(points: [&[[f64; 2]]; 2]) -> Nearest {
     best
 }
 
-/// The distance of two polygons, about \[m\]; 0 if they have a point in common. For searches, on which nothing rests.
+/// The signed distance of two polygons, about \[m\]. For searches, on which nothing rests.
 pub(crate) fn sketched(points: [&[[f64; 2]]; 2]) -> f64 {
     let side = |[ax, ay]: [f64; 2], [bx, by]: [f64; 2], [x, y]: [f64; 2]| (bx - ax) * (y - ay) - (by - ay) * (x - ax);
     let edges = |polygon: &[[f64; 2]]| -> Vec<[[f64; 2]; 2]> {
@@ -340,7 +341,21 @@ pub(crate) fn sketched(points: [&[[f64; 2]]; 2]) -> f64 {
     let meet = is_inside(&a, points[1][0])
         || is_inside(&b, points[0][0])
         || a.iter().any(|one| b.iter().any(|other| cross(one, other)));
-    if meet { 0.0 } else { nearest_of(points).distance }
+    if !meet {
+        return nearest_of(points).distance;
+    }
+    let mut most: f64 = f64::NEG_INFINITY;
+    for [own, other] in [[0, 1], [1, 0]] {
+        for (k, &[ax, ay]) in points[own].iter().enumerate() {
+            let [bx, by] = points[own][(k + 1) % points[own].len()];
+            let length = (bx - ax).hypot(by - ay);
+            if length > 0.0 {
+                let beyond = |[x, y]: &[f64; 2]| ((x - ax) * (by - ay) - (y - ay) * (bx - ax)) / length;
+                most = most.max(points[other].iter().map(beyond).fold(f64::INFINITY, f64::min));
+            }
+        }
+    }
+    most.min(0.0)
 }
 
 impl Nearest {
@@ -423,7 +438,22 @@ pub fn meet<R: BallReal>(postures: [&Posture<R>; 2]) -> Ternary {
     Ternary::Doubt
 }
 
-/// An upper bound on the distance of the polygons \[m\].
+/// An upper bound on the signed distance of the polygons \[m\].
 pub fn above<R: BallReal>(postures: [&Posture<R>; 2]) -> Ball<R> {
-    if meet(postures).is_certain() { Ball::from(0.0) } else { nearest(postures).distance(postures) }
+    if meet(postures).is_certain() { overlap(postures) } else { nearest(postures).distance(postures) }
+}
+
+/// An upper bound on the signed distance of two polygons that have a point in common \[m\]; at most 0.
+pub fn overlap<R: BallReal>(postures: [&Posture<R>; 2]) -> Ball<R> {
+    let mut most: Option<Ball<R>> = None;
+    for [own, other] in [[0, 1], [1, 0]] {
+        for &normal in &postures[own].normals {
+            let [own, other] = [own, other].map(|k| postures[k].corners.iter().map(move |&corner| normal.dot(corner)));
+            let (Some(far), Some(near)) = (own.reduce(Ball::max), other.reduce(Ball::min)) else { continue };
+            let gap = near - far;
+            most = Some(most.map_or(gap, |most| most.max(gap)));
+        }
+    }
+    let zero = Ball::from(0.0);
+    most.map_or(zero, |most| most.min(zero))
 }

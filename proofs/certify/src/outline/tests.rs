@@ -221,9 +221,13 @@ fn bounds_hold_over_boxes_and_are_of_second_order() {
         let seen = below(near, [&a, &b], &Change::Box(halves.map(number)));
         let there = plain([&raw[0], &raw[1]], middle);
         // Where the polygons meet, every direction says less than nothing.
-        assert!(sure(seen.middle) <= there + 1e-12 && above([&a, &b]).mid >= there - 1e-12, "{round} {raw:?}");
+        assert!(sure(seen.middle) <= there + 1e-12 && above([&a, &b]).mid.max(0.0) >= there - 1e-12, "{round} {raw:?}");
         assert!(there == 0.0 || (seen.middle.mid - there).abs() < 1e-11, "{round}: {} {there}", seen.middle.mid);
-        assert!((above([&a, &b]).mid - there).abs() < 1e-11, "{round}: {:?} {there}", above([&a, &b]));
+        let most = above([&a, &b]);
+        assert!((most.mid.max(0.0) - there).abs() < 1e-11, "{round}: {most:?} {there}");
+        let sketch = [near[0].sketch(middle[0]), near[1].sketch(middle[1])];
+        let signed = sketched([&sketch[0], &sketch[1]]);
+        assert!((signed - most.mid).abs() < 1e-9, "{round}: {most:?} {signed}");
         for k in 0..60 {
             // Corners of the box, too.
             let part = |dice: &mut Dice| if k < 16 { dice.of(&[-1.0, 1.0, 0.0]) } else { dice.between(-1.0, 1.0) };
@@ -293,6 +297,17 @@ fn bounds_hold_along_lines_with_accelerations() {
     assert!(used > 10_000, "{used}");
 }
 
+/// Two squares of 1 m that overlap by 0.25 m along one axis and by 0.5 m along the other: the shorter translation separates them.
+#[test]
+fn an_overlap_is_as_deep_as_the_least_translation_that_ends_it() {
+    let square = |x: f64, y: f64| [[x, y], [x + 1.0, y], [x + 1.0, y + 1.0], [x, y + 1.0]];
+    assert_eq!(sketched([&square(0.0, 0.0), &square(0.75, 0.5)]), -0.25);
+    // A flat outline within a square, 0.125 m from its lower side.
+    assert_eq!(sketched([&square(0.0, 0.0), &[[0.25, 0.125], [0.75, 0.125]]]), -0.125);
+    // Two flat ones that cross: either one gets free along its own normal.
+    assert_eq!(sketched([&[[-1.0, 0.0], [1.0, 0.0]], &[[0.0, -0.5], [0.0, 0.25]]]), -0.25);
+}
+
 #[test]
 fn searches_see_the_distance_that_there_is() {
     let (mut dice, mut crossing) = (Dice(6), 0);
@@ -302,7 +317,7 @@ fn searches_see_the_distance_that_there_is() {
         let at = [0, 1].map(|k| dice.unit() * raw[k].segments[0].length);
         let [a, b] = [0, 1].map(|k| bodies[k].segments[0].near.sketch(at[k]));
         let (found, there) = (sketched([&a, &b]), plain([&raw[0], &raw[1]], at));
-        assert!((found - there).abs() < 1e-12, "{round} {raw:?} {at:?}: {found} {there}");
+        assert!((found.max(0.0) - there).abs() < 1e-12, "{round} {raw:?} {at:?}: {found} {there}");
         crossing += usize::from(there == 0.0 && raw.iter().any(|body| body.outline.corners.len() == 2));
     }
     assert!(crossing > 100, "{crossing}");
