@@ -3,6 +3,7 @@
 
 mod broad_phase;
 mod certify;
+mod certify_outlines;
 mod certify_seeds;
 mod closed_forms;
 mod closed_loop;
