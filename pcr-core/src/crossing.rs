@@ -77,10 +77,11 @@ pub fn crossings<'a, S: Scalar>(
     })
 }
 
-/// The segments of a path with their indices. `enumerate` would check its counter for overflow.
+/// The segments of a path with their indices, without turns in place: nothing crosses a point. `enumerate` would check its counter
+/// for overflow.
 fn numbered<'a, S: Scalar>(motion: &'a Motion<'_, S>) -> impl Iterator<Item = (usize, &'a Segment<S>)> {
     let segments = motion.path().segments();
-    (0..segments.len()).zip(segments)
+    (0..segments.len()).zip(segments).filter(|(_, segment)| !matches!(segment.curve, Curve::Pivot { .. }))
 }
 
 /// How far rounding may move a crossing along a segment: the error of a distance divided by the sine of the angle,

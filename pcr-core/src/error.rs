@@ -33,10 +33,12 @@ pub enum InvalidInput {
     Full(&'static str),
     /// The corners of an outline are not those of a convex polygon, counter-clockwise.
     NotConvex,
-    /// The path has a turn in place. It has no length, but an outline that is no disc sweeps an area while it turns.
+    /// The path has a turn without a length, during which an outline that is no disc sweeps an area. Give it a lever: [`Path::pivot`](crate::Path::pivot).
     TurnInPlace,
-    /// The arc is so tight beside the outline that rounding a length would move its corners too far. Give it a larger radius.
+    /// An arc is so tight beside the outline, or the lever of a turn in place so short, that rounding a length would move its corners too far.
     Lever,
+    /// The path turns in place with a length, for which the crate has to have its feature `outlines`.
+    NeedsOutlines,
 }
 
 impl fmt::Display for InvalidInput {
@@ -59,8 +61,13 @@ impl fmt::Display for InvalidInput {
             }
             Self::Full(what) => write!(f, "there is no room for another {what}"),
             Self::NotConvex => f.write_str("the corners of the outline do not turn left around a convex polygon"),
-            Self::TurnInPlace => f.write_str("the outline sweeps an area while it turns in place, which has no length"),
-            Self::Lever => f.write_str("an arc of the path is too tight for the size of the outline"),
+            Self::TurnInPlace => {
+                f.write_str("the outline sweeps an area in a turn without a length; give the turn a lever")
+            }
+            Self::Lever => {
+                f.write_str("an arc of the path is too tight, or a lever too short, for the size of the outline")
+            }
+            Self::NeedsOutlines => f.write_str("turns in place with a length need the feature `outlines`"),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! An agent in motion: a disc, its path, and its travelled length over time (Eq. 2, ρ ∘ λ).
+//! An agent in motion: a disc or an outline, its path, and its travelled length over time (Eq. 2, ρ ∘ λ).
 
 use crate::bit_rows::digest;
 use crate::error::{self, InvalidInput, in_range, not_negative};
@@ -8,6 +8,7 @@ use crate::outline::{Corner, OutlineRef};
 use crate::path::PathRef;
 use crate::profile::ProfileRef;
 use crate::scalar::{Scalar, Wide};
+#[cfg(feature = "outlines")]
 use crate::segment::Curve;
 
 /// The end of a profile may differ from the end of the path by this fraction of the path's length, given as its
@@ -31,8 +32,11 @@ pub struct Motion<'a, S: Scalar> {
     spread: S,
     /// Sum of both: radius of the disc about the reference point that contains the outline.
     reach: S,
-    /// How much farther a corner moves at most than the reference point, as a factor.
+    /// How much farther a corner moves at most than the travelled length, as a factor.
     lever: S,
+    /// Whether it takes the kernels of outlines.
+    #[cfg(feature = "outlines")]
+    outlined: bool,
     margin: S,
     time: Interval<S>,
     lateness: S,
@@ -64,8 +68,8 @@ impl<'a, S: Scalar> Motion<'a, S> {
     /// [`Motion::new`].
     ///
     /// # Errors
-    /// As [`Motion::new`]; [`InvalidInput::TurnInPlace`] if the path turns in place, which sweeps an area but has no length; [`InvalidInput::Lever`] if an
-    /// arc is so tight that rounding a length could move a corner by a sixteenth of the size of the outline.
+    /// As [`Motion::new`]; [`InvalidInput::TurnInPlace`] if the path turns without a length ([`Path::turn`](crate::Path::turn)) where the outline would sweep an area; [`InvalidInput::Lever`] if an
+    /// arc is so tight, or the lever of a turn in place so short, that rounding a length could move a corner by a sixteenth of the size of the outline.
     ///
     /// ```
     /// use pcr_core::{Ecm, Limits, Motion, Outline, Path, Piece, Point, Pose, Profile, Radians, EcmEntry};
@@ -108,10 +112,13 @@ impl<'a, S: Scalar> Motion<'a, S> {
         }
         // `fold`, because `Iterator::count` contains an overflow check, which can panic.
         let (arcs, diameter) =
-            path.segments().iter().fold((0_usize, S::ZERO), |(arcs, most), segment| match segment.curve() {
-                Curve::Line => (arcs, most),
-                Curve::Arc { radius, .. } => (arcs.saturating_add(1), most.max(radius.double())),
+            path.segments().iter().fold((0_usize, S::ZERO), |(arcs, most), segment| match segment.curve().lever() {
+                None => (arcs, most),
+                Some(lever) => (arcs.saturating_add(1), most.max(lever.double())),
             });
+        #[cfg(feature = "outlines")]
+        let outlined =
+            !corners.is_empty() || path.segments().iter().any(|segment| matches!(segment.curve(), Curve::Pivot { .. }));
         let drift = S::drift(arcs, extent + diameter);
         let top_speed = profile.top_speed();
         let allowance = S::lag(top_speed, profile.duration()) + gap;
@@ -125,6 +132,8 @@ impl<'a, S: Scalar> Motion<'a, S> {
             spread,
             reach: outline.reach(),
             lever,
+            #[cfg(feature = "outlines")]
+            outlined,
             margin,
             time,
             lateness,
@@ -138,27 +147,25 @@ impl<'a, S: Scalar> Motion<'a, S> {
         if disc.has_outline() { disc.extended(diameter) } else { Ok(disc) }
     }
 
-    /// Completes the motion of an outline: what rounding does to its corners, and its checksum.
-    // Not inlined: discs do not need it.
+    /// Completes the motion of an outline, or of a disc that turns in place: what rounding does to its corners, and its checksum.
+    // Not inlined: other discs do not need it.
     #[inline(never)]
     fn extended(self, diameter: S) -> Result<Self, InvalidInput> {
-        // Corners are placed by their vectors from the centre of an arc.
+        // Corners are placed by their vectors from the centre of an arc. The length of a turn is that at its lever.
         let extent = in_range(self.extent + self.spread.double() + diameter, "extent of the motion")?;
-        let arcs = self.path.segments().iter().filter_map(|segment| match segment.curve() {
-            Curve::Line => None,
-            Curve::Arc { radius, .. } => Some(self.spread.quotient(radius)),
-        });
-        let lever = arcs.fold(S::ZERO, S::max);
+        let levers = self.path.segments().iter().filter_map(|segment| segment.curve().lever());
+        let lever = levers.map(|lever| self.spread.quotient(lever)).fold(S::ZERO, S::max);
         let levered = |length: S| length + length.times(lever).narrow();
         let drift = levered(self.drift) + S::slack(extent).times(lever).narrow();
         let allowance = levered(self.allowance);
         let rounding = S::slack(extent) + drift + allowance;
-        if rounding.double().double().double().double() > self.spread + self.radius {
+        let has_corners = !self.corners.is_empty();
+        if has_corners && rounding.double().double().double().double() > self.spread + self.radius {
             return Err(InvalidInput::Lever);
         }
         // A turn that moves no corner by more than rounding does is none.
         let fine = S::slack(extent).half().half();
-        if self.path.segments().iter().any(|segment| segment.turns_in_place(self.spread, fine)) {
+        if has_corners && self.path.segments().iter().any(|segment| segment.turns_in_place(self.spread, fine)) {
             return Err(InvalidInput::TurnInPlace);
         }
         let corners = self.corners.iter().flat_map(|corner| [corner.at.x, corner.at.y]);
@@ -290,9 +297,12 @@ impl<'a, S: Scalar> Motion<'a, S> {
         OutlineRef::of(self.corners, self.radius, self.spread)
     }
 
-    /// Whether the agent is not a disc about its reference point.
+    /// Whether the agent takes the kernels of outlines: it is not a disc about its reference point, or it turns in place.
     pub(crate) fn has_outline(&self) -> bool {
-        cfg!(feature = "outlines") && !self.corners.is_empty()
+        #[cfg(feature = "outlines")]
+        return self.outlined;
+        #[cfg(not(feature = "outlines"))]
+        false
     }
 
     /// Radius of the disc, or of the rounding of the outline \[m\].

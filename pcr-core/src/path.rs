@@ -1,5 +1,5 @@
-//! Paths: chains of lines and arcs (the map ρ from travelled length to position, Eq. 1). The heading is continuous,
-//! except at turns in place.
+//! Paths: chains of lines, arcs and turns in place (the map ρ from travelled length to position, Eq. 1). The heading is continuous,
+//! except at turns without a length.
 
 use crate::bit_rows::digest;
 use crate::error::{InvalidInput, in_range};
@@ -11,8 +11,8 @@ use heapless::Vec;
 /// Largest number of segments of a path: pieces store their indices in 16 bits.
 const MOST_SEGMENTS: usize = u16::MAX as usize;
 
-/// A path of at most `N` lines and arcs; `N` is at most 65535. Each segment begins at the end of the one before it,
-/// with the same heading unless the agent turns in place there.
+/// A path of at most `N` lines, arcs and turns in place; `N` is at most 65535. Each segment begins at the end of the one before it,
+/// with the same heading unless there is a turn without a length ([`Path::turn`]).
 ///
 /// ```
 /// use pcr_core::{Path, Point, Pose, Radians, TurnSide};
@@ -85,7 +85,33 @@ impl<S: Scalar, const N: usize> Path<S, N> {
         self.arc(radius, turn, sweep.abs().times(radius).narrow())
     }
 
-    /// Appends a turn in place, to the left if the angle is positive. It needs no segment and has no length.
+    /// Appends a turn in place by `sweep` \[rad\], to the left if positive, by at most a full turn in either direction. The reference point stays, and
+    /// the travelled length is lever · |sweep|, rounded once: with a lever of 1 m a speed of 1 m/s in the profile is one radian a second. A disc
+    /// stands for as long; any other outline sweeps what its corners pass.
+    ///
+    /// # Errors
+    /// As [`Segment::then_pivot`]; [`InvalidInput::NonFinite`] and [`InvalidInput::OutOfRange`] for the sweep; [`InvalidInput::Full`] if
+    /// there are `N` segments already.
+    ///
+    /// ```
+    /// # use pcr_core::{Path, Point, Pose, Radians};
+    /// # let start = Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) };
+    /// let quarter = core::f64::consts::FRAC_PI_2;
+    /// let path = Path::<f64, 3>::starting_at(start)?.line(2.0)?.pivot(0.5, quarter)?.line(1.0)?;
+    /// let end = path.as_path().pose_at(3.0 + 0.5 * quarter);
+    /// assert!((end.position.x - 2.0).abs() < 1e-15 && (end.position.y - 1.0).abs() < 1e-15);
+    /// assert_eq!(end.heading, Radians(quarter));
+    /// # Ok::<(), pcr_core::InvalidInput>(())
+    /// ```
+    pub fn pivot(self, lever: S, sweep: S) -> Result<Self, InvalidInput> {
+        let sweep = in_range(sweep, "sweep")?;
+        let turn = if sweep < S::ZERO { TurnSide::Right } else { TurnSide::Left };
+        let next = self.last().then_pivot(lever, turn, sweep.abs().times(lever).narrow())?;
+        self.with(next)
+    }
+
+    /// Turns the direction of travel, to the left if the angle is positive. It needs no segment and has no length; an outline that is no
+    /// disc takes [`Path::pivot`].
     ///
     /// # Errors
     /// As [`Segment::turned`].
@@ -144,7 +170,7 @@ impl<'a, S: Scalar> PathRef<'a, S> {
         Ok(Self { segments })
     }
 
-    /// The lines and arcs.
+    /// The lines, arcs and turns in place.
     pub fn segments(self) -> &'a [Segment<S>] {
         self.segments
     }
@@ -167,7 +193,7 @@ impl<'a, S: Scalar> PathRef<'a, S> {
         self.locate(length).map_or_else(Point::default, |(segment, u)| segment.point_at(u))
     }
 
-    /// Shape of the segment at a travelled length \[m\]: its curvature is `± 1 / radius`, or 0 on a line.
+    /// Shape of the segment at a travelled length \[m\]: its curvature is `± 1 / radius` on an arc, 0 on a line, and not finite on a turn in place.
     pub fn curve_at(self, length: S) -> Curve<S> {
         self.locate(length).map_or(Curve::Line, |(segment, _)| segment.curve)
     }
@@ -184,12 +210,9 @@ impl<'a, S: Scalar> PathRef<'a, S> {
         let origin = self.segments.first().map_or_else(Point::default, |first| first.start);
         let begin = [origin.x.digest(), origin.y.digest()].into_iter().fold(0, digest);
         self.segments.iter().fold(begin, |sum, segment| {
-            let bend = match segment.curve {
-                Curve::Line => S::ZERO,
-                Curve::Arc { radius, turn: TurnSide::Left } => radius,
-                Curve::Arc { radius, turn: TurnSide::Right } => -radius,
-            };
-            [segment.heading.digest(), segment.length.digest(), bend.digest()].into_iter().fold(sum, digest)
+            let bend = segment.curve.lever().unwrap_or(S::ZERO).negate_if(segment.mirrored()).digest();
+            let bend = if matches!(segment.curve, Curve::Pivot { .. }) { !bend } else { bend };
+            [segment.heading.digest(), segment.length.digest(), bend].into_iter().fold(sum, digest)
         })
     }
 

@@ -44,11 +44,11 @@ pub struct PieceRef<'a, S: Scalar> {
     /// refers to the segment of the agent with the lower index. It has no meaning for outlines.
     pub share: Branch,
     /// k and n: of the n intervals that the other outline covers at once of the segment of the agent with the lower index, the piece is the
-    /// k-th, counted from 0. `None` for two discs.
+    /// k-th, counted from 0. `None` for two discs that do not turn in place.
     pub rank: Option<[u8; 2]>,
 }
 
-/// Types of pieces (paper, Section 3.3); the first letter stands for the ego's segment.
+/// Types of pieces (paper, Section 3.3); the first letter stands for the ego's segment. A turn in place counts as an arc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -68,9 +68,9 @@ impl PieceType {
     pub fn of<S>(ego: Curve<S>, other: Curve<S>) -> Self {
         match (ego, other) {
             (Curve::Line, Curve::Line) => Self::SS,
-            (Curve::Line, Curve::Arc { .. }) => Self::SA,
-            (Curve::Arc { .. }, Curve::Line) => Self::AS,
-            (Curve::Arc { .. }, Curve::Arc { .. }) => Self::AA,
+            (Curve::Line, _) => Self::SA,
+            (_, Curve::Line) => Self::AS,
+            _ => Self::AA,
         }
     }
 }

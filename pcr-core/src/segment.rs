@@ -1,4 +1,4 @@
-//! Lines and arcs, placed in the plane.
+//! Lines, arcs and turns in place, placed in the plane.
 //!
 //! A segment is defined by its start, the heading there, its curvature and its length; everything else is derived once,
 //! when it is built. A point of an arc is computed from half the chord,
@@ -29,7 +29,7 @@ pub enum TurnSide {
     Right,
 }
 
-/// Shape of a segment: the S and A of the paper's SCC paths.
+/// Shape of a segment: the S and A of the paper's SCC paths, and turns in place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -43,9 +43,27 @@ pub enum Curve<S> {
         /// Side to which it bends.
         turn: TurnSide,
     },
+    /// Turn in place: the reference point stays, and the heading turns by the travelled length divided by the lever \[rad\].
+    Pivot {
+        /// Travelled length for each radian \[m\], positive. Speeds of a profile are those of a point at this distance from the
+        /// reference point.
+        lever: S,
+        /// Side to which it turns.
+        turn: TurnSide,
+    },
 }
 
-/// A line or an arc placed in the plane, part of a path.
+impl<S: Scalar> Curve<S> {
+    /// Travelled length for each radian by which the heading turns \[m\]; `None` on a line.
+    pub(crate) fn lever(self) -> Option<S> {
+        match self {
+            Self::Line => None,
+            Self::Arc { radius: lever, .. } | Self::Pivot { lever, .. } => Some(lever),
+        }
+    }
+}
+
+/// A line, an arc or a turn in place, placed in the plane, part of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Segment<S: Scalar> {
@@ -55,10 +73,10 @@ pub struct Segment<S: Scalar> {
     pub(crate) heading: S::Angle,
     heading_at_end: S::Angle,
     pub(crate) curve: Curve<S>,
-    /// Circumference of the full circle of an arc \[m\].
+    /// Length of a full turn \[m\]: of the circle of an arc, or of a turn in place.
     pub(crate) circumference: S,
     pub(crate) length: S,
-    /// Angle from the start to the middle of an arc, seen from its centre, as a direction; counted to the left.
+    /// Angle by which an arc or a turn in place turns up to its middle, as a direction; counted to the left.
     half_turn: Direction<S>,
     /// Lengths of the path at the start and at the end of this segment \[m\].
     pub(crate) from: S,
@@ -141,24 +159,47 @@ impl<S: Scalar> Segment<S> {
     pub fn then_arc(&self, radius: S, turn: TurnSide, length: S) -> Result<Self, InvalidInput> {
         error::radius(radius)?;
         in_range(radius.double(), "diameter of the arc")?;
+        self.then_turning(Curve::Arc { radius, turn }, [radius, length], turn)
+    }
+
+    /// The turn in place of this length \[m\] that continues the path at the end of `self`: the reference point stays, and the
+    /// heading turns by the length divided by the lever \[rad\]. A disc stands for as long; any other outline sweeps what its corners pass.
+    ///
+    /// # Errors
+    /// As [`Segment::then_line`]; [`InvalidInput::NonPositive`] and [`InvalidInput::TooSmall`] for the lever \[m\], [`InvalidInput::OutOfRange`]
+    /// for twice the lever, and for the heading at its end, as in [`Segment::standing`]; [`InvalidInput::SweepOverOneTurn`];
+    /// [`InvalidInput::NeedsOutlines`].
+    pub fn then_pivot(&self, lever: S, turn: TurnSide, length: S) -> Result<Self, InvalidInput> {
+        if !cfg!(feature = "outlines") {
+            return Err(InvalidInput::NeedsOutlines);
+        }
+        if error::positive(lever, "lever")? < S::LEAST {
+            return Err(InvalidInput::TooSmall("lever"));
+        }
+        in_range(lever.double(), "lever")?;
+        self.then_turning(Curve::Pivot { lever, turn }, [lever, length], turn)
+    }
+
+    /// The arc or turn in place of this length with this length for each radian.
+    fn then_turning(&self, curve: Curve<S>, [lever, length]: [S; 2], turn: TurnSide) -> Result<Self, InvalidInput> {
         let length = error::length(length)?;
-        let circumference = S::Angle::circumference(radius);
+        let circumference = S::Angle::circumference(lever);
         // The length of a full turn may be a product `sweep * radius` with a rounding error.
         if length > circumference + S::slack(circumference) {
             return Err(InvalidInput::SweepOverOneTurn);
         }
         let length = length.min(circumference);
-        let sweep = S::Angle::subtended(length, radius);
-        let mut arc = self.then(Curve::Arc { radius, turn }, circumference, length);
-        let rest = sweep.subtended_rest(length, radius);
+        let sweep = S::Angle::subtended(length, lever);
+        let mut segment = self.then(curve, circumference, length);
+        let rest = sweep.subtended_rest(length, lever);
         let (sweep, rest) = match turn {
             TurnSide::Left => (sweep, rest),
             TurnSide::Right => (-sweep, -rest),
         };
-        let (heading, rounding) = arc.heading.sum(sweep);
-        (arc.heading_at_end, arc.rest.heading) = heading.sum(rounding + (rest + arc.rest.heading));
-        arc.lay();
-        arc.checked()
+        let (heading, rounding) = segment.heading.sum(sweep);
+        (segment.heading_at_end, segment.rest.heading) = heading.sum(rounding + (rest + segment.rest.heading));
+        segment.lay();
+        segment.checked()
     }
 
     /// The same segment, followed by a turn in place by an angle, to the left if it is positive: the next segment
@@ -222,9 +263,9 @@ impl<S: Scalar> Segment<S> {
             rest: SegmentRounding::NOTHING,
             ..*self
         };
-        if let Curve::Arc { radius, .. } = self.curve {
+        if let Some(lever) = self.curve.lever() {
             // Not the direction of the heading, which is rounded: by more than a direction, after many turns.
-            let (sin, cos) = S::Angle::half_subtended(from, radius).sin_cos();
+            let (sin, cos) = S::Angle::half_subtended(from, lever).sin_cos();
             let half = Direction { cos, sin: if self.mirrored() { -sin } else { sin } };
             part.direction = self.direction.plus(half).plus(half);
         }
@@ -242,6 +283,11 @@ impl<S: Scalar> Segment<S> {
                 self.half = [self.length.half(), S::ZERO];
             }
             Curve::Arc { radius, turn } => self.enclose(radius, turn),
+            Curve::Pivot { .. } => {
+                self.bounds = Aabb::around(self.start, self.end);
+                self.middle = self.start;
+                self.half = [S::ZERO; 2];
+            }
         }
     }
 
@@ -254,6 +300,11 @@ impl<S: Scalar> Segment<S> {
                 self.half_turn = Direction { cos, sin };
                 self.axis = self.direction.plus(Direction { cos, sin: if self.mirrored() { -sin } else { sin } });
                 radius.double().scale(sin)
+            }
+            Curve::Pivot { lever, .. } => {
+                let (sin, cos) = S::Angle::half_subtended(self.length, lever).sin_cos();
+                self.half_turn = Direction { cos, sin };
+                return;
             }
         };
         let rest = self.rest.position;
@@ -310,10 +361,10 @@ impl<S: Scalar> Segment<S> {
 
     /// The same without the turn at the end.
     fn heading_before_turn(&self, u: S) -> S::Angle {
-        match self.curve {
-            Curve::Arc { radius, turn: TurnSide::Left } => self.heading + S::Angle::subtended(u, radius),
-            Curve::Arc { radius, turn: TurnSide::Right } => self.heading - S::Angle::subtended(u, radius),
-            Curve::Line => self.heading,
+        match self.curve.lever() {
+            Some(lever) if self.mirrored() => self.heading - S::Angle::subtended(u, lever),
+            Some(lever) => self.heading + S::Angle::subtended(u, lever),
+            None => self.heading,
         }
     }
 
@@ -321,7 +372,7 @@ impl<S: Scalar> Segment<S> {
     /// length.
     pub(crate) fn bulge(&self, way: S) -> S {
         match self.curve {
-            Curve::Line => S::ZERO,
+            Curve::Line | Curve::Pivot { .. } => S::ZERO,
             Curve::Arc { radius, .. } => way.portion(way, radius.double().double().double()),
         }
     }
@@ -331,12 +382,12 @@ impl<S: Scalar> Segment<S> {
         self.start + self.direction.vector(S::ZERO, radius.negate_if(self.mirrored()))
     }
 
-    /// Whether the segment bends to the right. Coordinates along it are then mirrored, so that all arcs turn left.
+    /// Whether the segment turns to the right. Coordinates along it are then mirrored, so that all arcs turn left.
     pub(crate) fn mirrored(&self) -> bool {
-        matches!(self.curve, Curve::Arc { turn: TurnSide::Right, .. })
+        matches!(self.curve, Curve::Arc { turn: TurnSide::Right, .. } | Curve::Pivot { turn: TurnSide::Right, .. })
     }
 
-    /// Angle from the start to the end of an arc, as a direction; counted to the left.
+    /// Angle by which an arc or a turn in place turns, as a direction; counted to the left.
     pub(crate) fn turn_at_end(&self) -> Direction<S> {
         self.half_turn.plus(self.half_turn)
     }
@@ -349,8 +400,10 @@ impl<S: Scalar> Segment<S> {
 
     /// Vector from the start to the point after `u` metres.
     fn chord(&self, u: S) -> Vector<S> {
-        let Curve::Arc { radius, .. } = self.curve else {
-            return self.direction.vector(u, S::ZERO);
+        let radius = match self.curve {
+            Curve::Line => return self.direction.vector(u, S::ZERO),
+            Curve::Pivot { .. } => return Vector { x: S::ZERO, y: S::ZERO },
+            Curve::Arc { radius, .. } => radius,
         };
         let half = S::Angle::half_subtended(u, radius);
         let [x, y] = S::chord(radius, half, self.mirrored(), [self.direction.cos, self.direction.sin]);
@@ -391,6 +444,35 @@ mod tests {
         assert_eq!((next.start, next.from), (line.end, 2.0));
         assert!((next.end.x - 2.0).abs() < 1e-15 && (next.end.y - 3.0).abs() < 1e-15);
         assert_eq!(line.turned(Radians(f64::NAN)), Err(InvalidInput::NonFinite("turn")));
+    }
+
+    #[cfg(feature = "outlines")]
+    #[test]
+    fn a_pivot_turns_the_heading_and_leaves_the_place() {
+        let line = origin(0.0).then_line(2.0).unwrap();
+        for (turn, heading) in [(TurnSide::Left, FRAC_PI_2), (TurnSide::Right, -FRAC_PI_2)] {
+            let pivot = line.then_pivot(0.5, turn, 0.5 * FRAC_PI_2).unwrap();
+            assert_eq!(
+                (pivot.start, pivot.end, pivot.from, pivot.to),
+                (line.end, line.end, 2.0, 2.0 + 0.5 * FRAC_PI_2)
+            );
+            assert_eq!(pivot.bounds, Aabb::around(line.end, line.end));
+            for u in [0.0, 0.1, 0.7] {
+                assert_eq!(pivot.point_at(u), line.end);
+            }
+            assert_eq!(pivot.heading_at(0.25 * FRAC_PI_2), Radians(0.5 * heading));
+            assert_eq!(pivot.heading_at(pivot.length), Radians(heading));
+            let next = pivot.then_line(1.0).unwrap();
+            assert!((next.end.x - 2.0).abs() < 1e-15 && (next.end.y - heading.signum()).abs() < 1e-15);
+        }
+        let refused = |lever, length| line.then_pivot(lever, TurnSide::Left, length).unwrap_err();
+        assert_eq!(refused(0.0, 1.0), InvalidInput::NonPositive("lever"));
+        assert_eq!(refused(-0.5, 1.0), InvalidInput::NonPositive("lever"));
+        assert_eq!(refused(f64::NAN, 1.0), InvalidInput::NonFinite("lever"));
+        assert_eq!(refused(1e-80, 1e-80), InvalidInput::TooSmall("lever"));
+        assert_eq!(refused(9e11, 1.0), InvalidInput::OutOfRange("lever"));
+        assert_eq!(refused(0.5, -1.0), InvalidInput::Negative("length"));
+        assert_eq!(refused(0.5, 0.5 * TAU + 1e-9), InvalidInput::SweepOverOneTurn);
     }
 
     #[test]

@@ -160,7 +160,7 @@ fn is_quick<S: HostScalar>(ego: &Motion<'_, S>, other: &Motion<'_, S>) -> bool {
         let speed = motion.profile().top_speed().to_f64();
         let phases = motion.profile().phases().iter().map(|phase| phase.acceleration().abs().to_f64());
         let arcs = motion.path().segments().iter().filter_map(|segment| match segment.curve() {
-            Curve::Line => None,
+            Curve::Line | Curve::Pivot { .. } => None,
             Curve::Arc { radius, .. } => Some(speed * speed / radius.to_f64()),
         });
         phases.fold(0.0, f64::max) + arcs.fold(0.0, f64::max)

@@ -189,7 +189,7 @@ const OWN_RADIUS: f64 = 1.15;
 /// Radius \[m\] and dir of an arc.
 fn arc(curve: Curve<f64>) -> Option<(f64, i64)> {
     match curve {
-        Curve::Line => None,
+        Curve::Line | Curve::Pivot { .. } => None,
         Curve::Arc { radius, turn } => Some((radius, if turn == TurnSide::Left { 1 } else { -1 })),
     }
 }

@@ -158,6 +158,8 @@ fn agent<S: Number>(motion: &Motion<'_, S>, send: &mut impl FnMut(Line)) {
             Curve::Line => Line::default().text(b"line"),
             Curve::Arc { radius, turn: TurnSide::Left } => Line::default().text(b"left").numbers(&[radius]),
             Curve::Arc { radius, turn: TurnSide::Right } => Line::default().text(b"right").numbers(&[radius]),
+            // The reader of dumps refuses it: it has discs that go on only.
+            Curve::Pivot { lever, .. } => Line::default().text(b"pivot").numbers(&[lever]),
         };
         send(line.numbers(&[segment.length(), segment.from(), to]));
     }

@@ -156,6 +156,7 @@ impl<S: Scalar, const A: usize, const N: usize> Store<S, A, N> {
             let next = match step.curve {
                 Curve::Line => last.then_line(step.length),
                 Curve::Arc { radius, turn } => last.then_arc(radius, turn, step.length),
+                Curve::Pivot { lever, turn } => last.then_pivot(lever, turn, step.length),
             }?;
             self.segments.push(next).map_err(|_| InvalidInput::Full("segment"))?;
         }

@@ -1,4 +1,5 @@
-//! Outlines carried along a segment, with their heading along it: translated on a line, turned about the centre of an arc.
+//! Outlines carried along a segment, with their heading along it: translated on a line, turned about the centre of an arc, or about
+//! the reference point on a turn in place.
 
 use crate::array_vec::ArrayVec;
 use crate::geometry::{Direction, Point, Vector};
@@ -12,24 +13,25 @@ pub(crate) type Corners<S> = ArrayVec<Corner<S>, MOST_CORNERS>;
 /// An outline carried along a segment.
 pub(crate) struct Carried<'a, S: Scalar> {
     pub(crate) segment: &'a Segment<S>,
-    /// The start of a line, the centre of an arc.
+    /// The start of a line, the centre about which the outline turns otherwise.
     pub(crate) origin: Point<S>,
     /// The corners at the start of the segment, relative to the origin.
     pub(crate) corners: Corners<S>,
-    /// Radius of an arc \[m\].
+    /// Length for each radian by which the outline turns \[m\]: the radius of an arc, the lever of a turn in place.
     pub(crate) bend: Option<S>,
-    /// How far a corner moves at most while the reference point moves by a length, as the length and the largest distance.
-    lever: [S; 2],
+    /// How far a corner moves at most during a length, as the length and the largest distance.
+    moves: [S; 2],
 }
 
 impl<'a, S: Scalar> Carried<'a, S> {
     pub(crate) fn new(segment: &'a Segment<S>, outline: OutlineRef<'_, S>) -> Self {
-        let (origin, bend) = match segment.curve {
-            Curve::Line => (segment.start, None),
-            Curve::Arc { radius, .. } => (segment.centre(radius), Some(radius)),
+        let radius = match segment.curve {
+            Curve::Line | Curve::Pivot { .. } => S::ZERO,
+            Curve::Arc { radius, .. } => radius,
         };
+        let (origin, bend) = (segment.centre(radius), segment.curve.lever());
         // The reference point at the start, as seen from the origin along and across the heading there.
-        let across = bend.map_or(S::ZERO, |radius| (-radius).negate_if(segment.mirrored()));
+        let across = (-radius).negate_if(segment.mirrored());
         let place = |corner: &Corner<S>| Corner {
             at: segment.direction.vector(corner.at.x, corner.at.y + across),
             outward: segment.direction.plus(corner.outward),
@@ -39,8 +41,8 @@ impl<'a, S: Scalar> Carried<'a, S> {
         let own = outline.corners();
         own.iter().for_each(|corner| corners.add(place(corner), true));
         corners.add(place(&Corner::CENTRE), own.is_empty());
-        let reach = bend.map_or(S::ZERO, |radius| radius + outline.spread());
-        Self { segment, origin, corners, bend, lever: [bend.unwrap_or(S::ZERO), reach] }
+        let moves = bend.map_or([S::ZERO; 2], |lever| [lever, radius + outline.spread()]);
+        Self { segment, origin, corners, bend, moves }
     }
 
     /// The corners at a length of the segment \[m\], relative to a point.
@@ -65,25 +67,25 @@ impl<'a, S: Scalar> Carried<'a, S> {
         corners
     }
 
-    /// The turn of an arc since its start.
+    /// The turn since the start of the segment.
     fn turn(&self, length: S) -> Direction<S> {
-        let Some(radius) = self.bend else { return Direction::X };
-        let (sin, cos) = S::Angle::half_subtended(length, radius).sin_cos();
+        let Some(lever) = self.bend else { return Direction::X };
+        let (sin, cos) = S::Angle::half_subtended(length, lever).sin_cos();
         let half = Direction { cos, sin: if self.segment.mirrored() { -sin } else { sin } };
         half.plus(half)
     }
 
-    /// The length in `[0, circumference)` after which an arc has turned by the angle of a direction \[m\].
+    /// The length in `[0, circumference)` after which the outline has turned by the angle of a direction \[m\].
     pub(crate) fn length_of(&self, turn: Direction<S>) -> S {
-        let Some(radius) = self.bend else { return S::ZERO };
-        let (along, across) = (radius.scale(turn.cos), radius.scale(turn.sin));
-        let length = S::Angle::atan2(across.negate_if(self.segment.mirrored()), along).arc_length(radius);
+        let Some(lever) = self.bend else { return S::ZERO };
+        let (along, across) = (lever.scale(turn.cos), lever.scale(turn.sin));
+        let length = S::Angle::atan2(across.negate_if(self.segment.mirrored()), along).arc_length(lever);
         if length < S::ZERO { length + self.segment.circumference } else { length }
     }
 
     /// A length along the segment during which no corner moves farther than `by` \[m\].
     pub(crate) fn within(&self, by: S) -> S {
-        let [length, most] = self.lever;
+        let [length, most] = self.moves;
         if most > length { by.portion(length, most) } else { by }
     }
 }

@@ -65,7 +65,7 @@ impl<S: Scalar> CarrierCoordinates<S> {
         let x = from_start.along(segment.direction);
         let y = from_start.across(segment.direction);
         match segment.curve {
-            Curve::Line => Self { x, y, distance: S::ZERO, offset: y },
+            Curve::Line | Curve::Pivot { .. } => Self { x, y, distance: S::ZERO, offset: y },
             Curve::Arc { radius, .. } => {
                 let y = y.negate_if(segment.mirrored());
                 let below = radius - y;
@@ -108,7 +108,7 @@ impl<S: Scalar> CarrierCoordinates<S> {
     /// Whether the foot lies on the segment, which is at most half a turn long.
     fn foot_is_on(&self, segment: &Segment<S>) -> bool {
         match segment.curve {
-            Curve::Line => (S::ZERO <= self.x) & (self.x <= segment.length),
+            Curve::Line | Curve::Pivot { .. } => (S::ZERO <= self.x) & (self.x <= segment.length),
             Curve::Arc { radius, .. } => {
                 let turn = segment.turn_at_end();
                 (S::ZERO <= self.x) & (S::combine(radius - self.y, turn.sin, self.x, -turn.cos) >= S::ZERO)

@@ -116,7 +116,7 @@ fn add_ends<S: Scalar>(
 /// the disc, with a gap between them that may be narrower than a last digit.
 pub(crate) fn wraps<S: Scalar>(segment: &Segment<S>, radius: S, slack: S) -> bool {
     match segment.curve {
-        Curve::Line => false,
+        Curve::Line | Curve::Pivot { .. } => false,
         Curve::Arc { radius: own, .. } => {
             // The factor 16 is derived in docs/theory/equations.md#laps.
             let far = radius + slack.double().double().double().double();

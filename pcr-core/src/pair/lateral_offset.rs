@@ -59,7 +59,7 @@ impl<'a, S: Scalar> RelativeCarrier<'a, S> {
         let towards = Direction::<S> { cos, sin: if mirror { -sin } else { sin } };
         let base = start.direction(segment);
         let bend = match carrier.curve {
-            Curve::Line => None,
+            Curve::Line | Curve::Pivot { .. } => None,
             Curve::Arc { radius, turn } => Some(radius.negate_if(mirror != (turn == TurnSide::Right))),
         };
         Self { segment, start, base, cos: towards.dot(base), sin: towards.cross(base), bend }
@@ -83,7 +83,7 @@ impl<'a, S: Scalar> RelativeCarrier<'a, S> {
         // contact would be lost. An additional event is harmless.
         let doubt = doubt + S::slack(S::ZERO);
         match self.segment.curve {
-            Curve::Line => self.lengths_of_line(offsets, margin, doubt, found),
+            Curve::Line | Curve::Pivot { .. } => self.lengths_of_line(offsets, margin, doubt, found),
             Curve::Arc { radius, .. } => self.lengths_of_arc(radius, offsets, margin, doubt, found),
         }
     }

@@ -46,10 +46,10 @@ impl<S: Scalar> Body<S> {
                 let velocity = carried.segment.direction.vector(now, S::ZERO);
                 Self { corners, velocity, turn: None, rate: most, change: acceleration }
             }
-            Some(radius) => {
-                let (rate, most) = (now.quotient(radius), up(most.quotient(radius)));
+            Some(lever) => {
+                let (rate, most) = (now.quotient(lever), up(most.quotient(lever)));
                 let turn = (carried.origin - from, rate.negate_if(segment.mirrored()));
-                let change = up(most.times(most).narrow() + acceleration.quotient(radius));
+                let change = up(most.times(most).narrow() + acceleration.quotient(lever));
                 let velocity = Vector { x: S::ZERO, y: S::ZERO };
                 Self { corners, velocity, turn: Some(turn), rate: most, change }
             }

@@ -63,16 +63,18 @@ fn interval(interval: Interval<f64>) -> Value {
 }
 
 /// The closed forms of a motion: segments as \[from, length, x, y, heading, bend\] with the radius of an arc as bend,
-/// positive to the left, 0 on a line; phases as \[time, duration, length, speed before, speed after, acceleration\].
+/// positive to the left, 0 on a line, followed by the lever on a turn in place; phases as \[time, duration, length, speed before, speed after, acceleration\].
 fn agent(scene: &RegionScene<'_>, place: usize, motion: &Motion<'_, f64>) -> Value {
     let segments = motion.path().segments().iter().map(|segment| {
         let start = segment.point_at(0.0);
-        let bend = match segment.curve() {
-            Curve::Line => 0.0,
-            Curve::Arc { radius, turn: TurnSide::Left } => radius,
-            Curve::Arc { radius, turn: TurnSide::Right } => -radius,
-        };
-        json!([segment.from(), segment.length(), start.x, start.y, segment.heading_at(0.0).0, bend])
+        let left = |turn, length: f64| if turn == TurnSide::Left { length } else { -length };
+        let mut numbers = vec![segment.from(), segment.length(), start.x, start.y, segment.heading_at(0.0).0];
+        match segment.curve() {
+            Curve::Line => numbers.push(0.0),
+            Curve::Arc { radius, turn } => numbers.push(left(turn, radius)),
+            Curve::Pivot { lever, turn } => numbers.extend([0.0, left(turn, lever)]),
+        }
+        json!(numbers)
     });
     let phases = motion.profile().phases().iter().map(|phase| {
         let (time, length) = (phase.time(), phase.length());
@@ -156,7 +158,8 @@ fn region(shape: &DrawnRegion, place: Option<[f64; 2]>, frame: &PlotArea) -> Val
 /// The descriptor of the paper's Tables III and IV; radii are null on lines, positive to the left.
 fn crossing(crossing: &Crossing<f64>) -> Value {
     let bend = |curve: Curve<f64>| match curve {
-        Curve::Line => None,
+        // Nothing crosses a turn in place.
+        Curve::Line | Curve::Pivot { .. } => None,
         Curve::Arc { radius, turn: TurnSide::Left } => Some(radius),
         Curve::Arc { radius, turn: TurnSide::Right } => Some(-radius),
     };

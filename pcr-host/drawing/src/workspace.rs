@@ -141,6 +141,7 @@ fn path(motion: &Motion<'_, f64>, frame: &PlotArea) -> PathData {
         }
         match segment.curve() {
             Curve::Line => data.line_to(at(segment, segment.length())),
+            Curve::Pivot { .. } => {}
             Curve::Arc { radius, turn } => {
                 // Below half a turn two points and a radius leave no doubt which arc is meant.
                 let parts = (segment.length() / radius / (0.75 * PI)).ceil().max(1.0) as usize;

@@ -31,6 +31,8 @@ pub fn agent<S: HostScalar>(
             Curve::Line => None,
             Curve::Arc { radius, turn: TurnSide::Left } => Some(radius.to_f64()),
             Curve::Arc { radius, turn: TurnSide::Right } => Some(-radius.to_f64()),
+            // The checker of discs has no turns in place with a length: it refuses this radius.
+            Curve::Pivot { .. } => Some(0.0),
         },
         turns: turns.iter().filter(|(before, _)| *before == place).map(|&(_, by)| S::held_angle(by)).collect(),
         from: segment.from().to_f64(),

@@ -159,12 +159,14 @@ fn constructors<S: Scalar>() -> Result<(), InvalidInput> {
     let path = Path::line(path, number())?;
     let path = Path::arc(path, number(), any(TurnSide::Left), number())?;
     let path = Path::arc_by(path, number(), number())?;
+    let path = Path::pivot(path, number(), number())?;
     let path = Path::turn(any(path), angle::<S>())?;
     any(Path::as_path(&path));
     any(PathRef::<S>::new(any(&[])).is_ok());
     let segment = Segment::standing(any(pose))?;
     let segment = Segment::then_line(&segment, number())?;
     let segment = any(Segment::then_arc(&segment, number(), any(TurnSide::Right), number())?);
+    let segment = any(Segment::then_pivot(&segment, number(), any(TurnSide::Right), number())?);
     let segment = any(Segment::turned(segment, angle::<S>())?);
     let curve: Curve<S> = Segment::curve(&segment);
     any((curve, Segment::length(&segment), Segment::from(&segment), Segment::bounds(&segment)));

@@ -217,6 +217,10 @@ impl<S: Rounded> Driver<S> {
                     );
                     heading += turned;
                 }
+                Curve::Pivot { lever, turn } => {
+                    let angle = length / lever.to_f64();
+                    heading += if turn == TurnSide::Left { angle } else { -angle };
+                }
             }
         }
         Some(([x, y], path.radius.to_f64()))

@@ -58,7 +58,8 @@ impl CentredSegment {
     fn of(segment: &Segment<f64>) -> Self {
         let (start, heading) = (segment.point_at(0.0), segment.heading_at(0.0).0);
         let curve = match segment.curve() {
-            Curve::Line => CentredCurve::Line,
+            // Of a turn in place its point counts, as an end.
+            Curve::Line | Curve::Pivot { .. } => CentredCurve::Line,
             Curve::Arc { radius, turn } => {
                 let turn = if turn == TurnSide::Left { 1.0 } else { -1.0 };
                 let (sin, cos) = heading.sin_cos();

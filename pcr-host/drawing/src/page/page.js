@@ -36,8 +36,9 @@ function poseAt(agent, length) {
     const middle = (low + high) >> 1;
     if (agent.segments[middle][0] <= length) low = middle; else high = middle;
   }
-  const [from, whole, x, y, heading, bend] = agent.segments[low];
+  const [from, whole, x, y, heading, bend, lever] = agent.segments[low];
   const u = Math.min(Math.max(length - from, 0), whole);
+  if (lever !== undefined) return [x, y, heading + u / lever];
   if (bend === 0) return [x + u * Math.cos(heading), y + u * Math.sin(heading), heading];
   const half = u / bend / 2;
   const chord = 2 * bend * Math.sin(half);

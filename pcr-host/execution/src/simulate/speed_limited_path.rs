@@ -80,6 +80,7 @@ impl SpeedLimitedPath {
         let next = match curve {
             Curve::Line => last.then_line(length)?,
             Curve::Arc { radius, turn } => last.then_arc(radius, turn, length)?,
+            Curve::Pivot { lever, turn } => last.then_pivot(lever, turn, length)?,
         };
         if next.length() > 0.0 {
             if last.length() == 0.0 {

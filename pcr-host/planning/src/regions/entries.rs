@@ -272,7 +272,8 @@ pub(super) fn slice<S: HostScalar>(region: &RegionRef<'_, S>, time: S) -> CrossS
 impl CrossingDescriptor {
     fn of<S: HostScalar>(crossing: &Crossing<S>) -> Self {
         let arc = |curve: Curve<S>| match curve {
-            Curve::Line => (None, None),
+            // Nothing crosses a turn in place.
+            Curve::Line | Curve::Pivot { .. } => (None, None),
             Curve::Arc { radius, turn: TurnSide::Left } => (Some(radius.to_f64()), Some(1)),
             Curve::Arc { radius, turn: TurnSide::Right } => (Some(radius.to_f64()), Some(-1)),
         };

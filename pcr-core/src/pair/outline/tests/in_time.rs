@@ -13,6 +13,14 @@ use crate::{
 };
 use std::vec::Vec;
 
+/// Cases with turns in place have seeds from here on.
+const PIVOTS: u64 = 100_000;
+
+fn of_seed(seed: u64, random: &mut Random, segments: usize) -> Case {
+    let case = Case::random(random, segments);
+    if seed < PIVOTS { case } else { case.with_pivots(random) }
+}
+
 /// Compares the contacts and the closest approach of a case with the oracle at many times. Returns the largest number of steps.
 fn compare_in_time<S: Number>(case: &Case, random: &mut Random, seed: u64, samples: u32) -> u32 {
     let (paths, outlines) = (case.paths::<S>(), case.outlines::<S>());
@@ -70,7 +78,7 @@ fn campaign_in_time<S: Number>(seeds: core::ops::Range<u64>, segments: usize) ->
     let (mut most, mut sum, count) = (0, 0.0, seeds.end - seeds.start);
     for seed in seeds {
         let mut random = Random::of(seed);
-        let case = Case::random(&mut random, segments);
+        let case = of_seed(seed, &mut random, segments);
         let steps = compare_in_time::<S>(&case, &mut random, seed, 100);
         most = most.max(steps);
         sum += f64::from(steps);
@@ -84,6 +92,9 @@ fn contacts_in_time_are_those_that_the_oracle_says() {
         campaign_in_time::<f64>(30_000..30_300, 1),
         campaign_in_time::<f64>(32_000..32_100, 4),
         campaign_in_time::<f32>(34_000..34_300, 2),
+        campaign_in_time::<f64>(PIVOTS..PIVOTS + 300, 1),
+        campaign_in_time::<f64>(PIVOTS + 1_000..PIVOTS + 1_100, 4),
+        campaign_in_time::<f32>(PIVOTS + 2_000..PIVOTS + 2_300, 2),
     ] {
         assert!(most < 1000 && mean < 80.0, "{most} {mean}");
     }
@@ -149,21 +160,21 @@ fn compare_blocked(case: &Case, random: &mut Random, seed: u64) -> u32 {
 #[test]
 fn blocked_times_lengths_and_holds_are_those_that_the_oracle_says() {
     let mut blocked = 0;
-    for seed in 40_000..40_400_u64 {
+    for seed in (40_000..40_400_u64).chain(PIVOTS + 3_000..PIVOTS + 3_400) {
         let mut random = Random::of(seed);
-        let case = Case::random(&mut random, 1 + (seed % 2) as usize);
+        let case = of_seed(seed, &mut random, 1 + (seed % 2) as usize);
         blocked += compare_blocked(&case, &mut random, seed);
     }
-    assert!(blocked > 500, "{blocked}");
+    assert!(blocked > 1_000, "{blocked}");
 }
 
 /// Who starts at the earliest start touches nobody, and a little earlier it does.
 #[test]
 fn delayed_outlines_do_not_touch() {
     let mut delayed = 0;
-    for seed in 70_000..72_000_u64 {
+    for seed in (70_000..72_000_u64).chain(PIVOTS + 4_000..PIVOTS + 5_000) {
         let mut random = Random::of(seed);
-        let case = Case::random(&mut random, 1);
+        let case = of_seed(seed, &mut random, 1);
         let (paths, outlines) = (case.paths::<f64>(), case.outlines::<f64>());
         let profiles =
             paths.each_ref().map(|path| Profile::<f64, 1>::from_pieces(1.0, [(path.as_path().length(), 0.0)]).unwrap());
@@ -301,7 +312,7 @@ fn compare_values<S: Number>(case: &Case, random: &mut Random, seed: u64) -> [u3
 fn campaign_of_values<S: Number>(seeds: impl Iterator<Item = u64>) -> [u32; 6] {
     seeds.fold([0; 6], |sum, seed| {
         let mut random = Random::of(seed);
-        let case = Case::random(&mut random, 1 + (seed % 2) as usize);
+        let case = of_seed(seed, &mut random, 1 + (seed % 2) as usize);
         let counts = compare_values::<S>(&case, &mut random, seed);
         [0, 1, 2, 3, 4, 5].map(|k| sum[k] + counts[k])
     })
@@ -313,6 +324,14 @@ fn what_is_called_free_is_apart() {
     // an edge that rounding takes it for nearer than the edge.
     let seeds = (80_000..80_800).chain([84_958]);
     for counts in [campaign_of_values::<f64>(seeds), campaign_of_values::<f32>((81_000..81_800).chain([91_424]))] {
+        assert!(counts.iter().all(|count| *count > 8), "{counts:?}");
+    }
+}
+
+#[test]
+fn what_is_called_free_of_turns_in_place_is_apart() {
+    let seeds = PIVOTS + 5_000..PIVOTS + 5_600;
+    for counts in [campaign_of_values::<f64>(seeds.clone()), campaign_of_values::<f32>(seeds)] {
         assert!(counts.iter().all(|count| *count > 8), "{counts:?}");
     }
 }
