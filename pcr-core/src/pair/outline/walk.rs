@@ -21,7 +21,7 @@ use crate::piece_store::{NONE, Piece, PieceStore};
 use crate::scalar::Scalar;
 
 /// Largest number of halvings of a gap between two slices of different structure: enough for the digits of any format.
-const HALVINGS: u32 = 64;
+pub(crate) const HALVINGS: u32 = 64;
 
 /// A slice, and the pieces of its intervals.
 struct Front<S> {
