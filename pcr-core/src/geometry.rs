@@ -97,6 +97,11 @@ impl<S: Scalar> Direction<S> {
         Self { cos, sin: S::Unit::combine(self.sin, by.cos, self.cos, by.sin) }
     }
 
+    /// The direction of the opposite angle.
+    pub(crate) fn mirrored(self) -> Self {
+        Self { cos: self.cos, sin: -self.sin }
+    }
+
     /// The direction after a turn by an angle whose square is negligible.
     pub(crate) fn turned_by(self, angle: S::Angle) -> Self {
         let (sin, _) = angle.sin_cos();

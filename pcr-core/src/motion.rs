@@ -10,6 +10,7 @@ use crate::profile::ProfileRef;
 use crate::scalar::{Scalar, Wide};
 #[cfg(feature = "outlines")]
 use crate::segment::Curve;
+use crate::segment::Segment;
 
 /// The end of a profile may differ from the end of the path by this fraction of the path's length, given as its
 /// logarithm to the base 2: 2⁻²⁰, 1 mm in a kilometre. Profiles that people write with seven digits differ by as much.
@@ -63,12 +64,12 @@ impl<'a, S: Scalar> Motion<'a, S> {
         Self::of(path, profile, OutlineRef::disc(radius), start)
     }
 
-    /// The motion of an outline whose reference point follows the path, with its `x` axis along the direction of travel, and that sets off at the time
-    /// `start` \[s\]. An agent that drives backwards has an [`Outline::reversed`](crate::Outline::reversed) outline. An outline that is a disc about its reference point makes the motion of
+    /// The motion of an outline whose reference point follows the path, with its `x` axis along the direction of travel, or at the angle to it that the path
+    /// states ([`Path::facing`](crate::Path::facing), [`Path::reverse`](crate::Path::reverse)), and that sets off at the time `start` \[s\]. An outline that is a disc about its reference point makes the motion of
     /// [`Motion::new`].
     ///
     /// # Errors
-    /// As [`Motion::new`]; [`InvalidInput::TurnInPlace`] if the path turns without a length ([`Path::turn`](crate::Path::turn)) where the outline would sweep an area; [`InvalidInput::Lever`] if an
+    /// As [`Motion::new`]; [`InvalidInput::TurnInPlace`] if the heading jumps where the path turns without a length ([`Path::turn`](crate::Path::turn)), so that the outline would sweep an area; [`InvalidInput::Lever`] if an
     /// arc is so tight, or the lever of a turn in place so short, that rounding a length could move a corner by a sixteenth of the size of the outline.
     ///
     /// ```
@@ -165,11 +166,17 @@ impl<'a, S: Scalar> Motion<'a, S> {
         }
         // A turn that moves no corner by more than rounding does is none.
         let fine = S::slack(extent).half().half();
-        if has_corners && self.path.segments().iter().any(|segment| segment.turns_in_place(self.spread, fine)) {
+        let segments = self.path.segments();
+        let next = segments.iter().skip(1).map(Some).chain([None]);
+        if has_corners && segments.iter().zip(next).any(|(own, next)| own.jumps_before(next, self.spread, fine)) {
             return Err(InvalidInput::TurnInPlace);
         }
         let corners = self.corners.iter().flat_map(|corner| [corner.at.x, corner.at.y]);
-        let digest = corners.fold(self.digest, |sum, coordinate| digest(sum, coordinate.digest()));
+        let bodies = segments.iter().map(Segment::body).filter(|_| has_corners).flat_map(|body| {
+            let ahead = body.vector(self.spread, S::ZERO);
+            [ahead.x, ahead.y]
+        });
+        let digest = corners.chain(bodies).fold(self.digest, |sum, coordinate| digest(sum, coordinate.digest()));
         Ok(Self { extent, lever, drift, allowance, digest, ..self })
     }
 

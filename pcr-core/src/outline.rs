@@ -1,7 +1,7 @@
 //! Outlines of agents: convex polygons, rounded by a radius. Discs, capsules and rectangles are cases.
 //!
 //! An outline is given in the frame of the agent: the reference point, which follows the path, is the origin; `x` points
-//! in the direction of travel and `y` to its left. It is the set of all points within `radius` of the polygon of its corners.
+//! ahead, along the heading of the agent, and `y` to its left. It is the set of all points within `radius` of the polygon of its corners.
 
 pub(crate) mod placed;
 
@@ -119,16 +119,6 @@ impl<S: Scalar, const N: usize> Outline<S, N> {
             all.clear();
         }
         Ok(Self { corners: all, radius, spread })
-    }
-
-    /// Returns the outline of the same agent that drives backwards: turned by half a turn, exactly.
-    #[must_use]
-    pub fn reversed(mut self) -> Self {
-        for corner in &mut self.corners {
-            corner.at = Vector { x: -corner.at.x, y: -corner.at.y };
-            corner.outward = Direction { cos: -corner.outward.cos, sin: -corner.outward.sin };
-        }
-        self
     }
 
     /// Returns the outline in the form that motions take.
@@ -300,13 +290,5 @@ mod tests {
                 assert_eq!(supports(corners, index, direction, 0.0), corner.at.along(direction) >= most - 1e-12);
             }
         }
-    }
-
-    #[test]
-    fn who_drives_backwards_is_turned_by_half_a_turn() {
-        let reversed = Outline::<f64, 4>::rectangle(1.0, 0.5, 0.25, 0.75, 0.0).unwrap().reversed();
-        let other = Outline::<f64, 4>::rectangle(0.5, 1.0, 0.75, 0.25, 0.0).unwrap();
-        let (own, their) = (reversed.as_outline(), other.as_outline());
-        assert!(own.corners().iter().all(|corner| their.corners().iter().any(|other| other.at == corner.at)));
     }
 }

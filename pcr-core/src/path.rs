@@ -3,7 +3,7 @@
 
 use crate::bit_rows::digest;
 use crate::error::{InvalidInput, in_range};
-use crate::geometry::{Aabb, Point, Pose};
+use crate::geometry::{Aabb, Direction, Point, Pose};
 use crate::scalar::{Angle, Scalar, Wide};
 use crate::segment::{Curve, Segment, TurnSide};
 use heapless::Vec;
@@ -33,6 +33,8 @@ const MOST_SEGMENTS: usize = u16::MAX as usize;
 pub struct Path<S: Scalar, const N: usize> {
     origin: Segment<S>,
     segments: Vec<Segment<S>, N>,
+    /// Angle from the direction of travel to the heading of the body, for the next segments.
+    facing: Option<Direction<S>>,
 }
 
 impl<S: Scalar, const N: usize> Path<S, N> {
@@ -43,7 +45,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
     pub fn starting_at(pose: Pose<S>) -> Result<Self, InvalidInput> {
         // Pieces store indices of segments in 16 bits.
         const { assert!(N <= MOST_SEGMENTS, "a path has at most 65535 segments") };
-        Ok(Self { origin: Segment::standing(pose)?, segments: Vec::new() })
+        Ok(Self { origin: Segment::standing(pose)?, segments: Vec::new(), facing: None })
     }
 
     /// Appends a line of this length \[m\]; a length of 0 adds nothing.
@@ -110,8 +112,9 @@ impl<S: Scalar, const N: usize> Path<S, N> {
         self.with(next)
     }
 
-    /// Turns the direction of travel, to the left if the angle is positive. It needs no segment and has no length; an outline that is no
-    /// disc takes [`Path::pivot`].
+    /// Turns the direction of travel, to the left if the angle is positive. It needs no segment and has no length. A body other than a disc
+    /// that turns with it takes [`Path::pivot`]; one whose heading stays, as that of a vehicle with steered wheels only, also
+    /// [`Path::facing`] with the angle before it less this one.
     ///
     /// # Errors
     /// As [`Segment::turned`].
@@ -119,6 +122,43 @@ impl<S: Scalar, const N: usize> Path<S, N> {
         let last = self.segments.last_mut().unwrap_or(&mut self.origin);
         *last = last.turned(by)?;
         Ok(self)
+    }
+
+    /// Sets the angle from the direction of travel to the heading of the body, counted to the left, for all segments that follow: 0, as at
+    /// the beginning, for a body that looks ahead, half a turn in reverse gear, anything else for vehicles that drive sideways. It adds no
+    /// segment. The heading of an outline must go on at joints: see [`Path::reverse`].
+    ///
+    /// # Errors
+    /// As [`Segment::facing`].
+    pub fn facing(mut self, angle: S::Angle) -> Result<Self, InvalidInput> {
+        self.origin = self.origin.facing(angle)?;
+        self.facing = Some(self.origin.body());
+        Ok(self)
+    }
+
+    /// Changes gear at a cusp: the direction of travel turns by half a turn, and the heading of the body stays. It adds no segment, and
+    /// nothing moves.
+    ///
+    /// # Errors
+    /// As [`Segment::facing`] and [`Segment::turned`].
+    ///
+    /// ```
+    /// use pcr_core::{Motion, Outline, Path, Point, Pose, Profile, Radians};
+    /// // A forklift drives 2 m ahead, and 3 m back with its fork ahead of it all the time.
+    /// let start = Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) };
+    /// let path = Path::<f64, 2>::starting_at(start)?.line(2.0)?.reverse()?.line(3.0)?;
+    /// assert!((path.as_path().point_at(5.0).x + 1.0).abs() < 1e-15);
+    /// let forklift = Outline::<f64, 4>::rectangle(1.2, 0.3, 0.4, 0.4, 0.0)?;
+    /// let profile = Profile::<f64, 1>::from_pieces(1.0, [(5.0, 0.0)])?;
+    /// assert!(Motion::with_outline(path.as_path(), profile.as_profile(), &forklift, 0.0).is_ok());
+    /// # Ok::<(), pcr_core::InvalidInput>(())
+    /// ```
+    pub fn reverse(mut self) -> Result<Self, InvalidInput> {
+        let facing = self.facing.unwrap_or(Direction::X);
+        let facing = Direction { cos: -facing.cos, sin: -facing.sin };
+        self.origin = self.origin.faced(facing)?;
+        self.facing = Some(facing);
+        self.turn(S::Angle::atan2(S::ZERO, -S::LIMIT))
     }
 
     /// The path in the form that algorithms take.
@@ -133,6 +173,7 @@ impl<S: Scalar, const N: usize> Path<S, N> {
 
     fn with(mut self, next: Segment<S>) -> Result<Self, InvalidInput> {
         if next.length > S::ZERO {
+            let next = if let Some(facing) = self.facing { next.faced(facing)? } else { next };
             self.segments.push(next).map_err(|_| InvalidInput::Full("segment"))?;
         }
         Ok(self)

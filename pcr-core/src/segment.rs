@@ -72,6 +72,9 @@ pub struct Segment<S: Scalar> {
     pub(crate) direction: Direction<S>,
     pub(crate) heading: S::Angle,
     heading_at_end: S::Angle,
+    /// Angle from the direction of travel to the heading of the body. Discs have none.
+    #[cfg(feature = "outlines")]
+    facing: Direction<S>,
     pub(crate) curve: Curve<S>,
     /// Length of a full turn \[m\]: of the circle of an arc, or of a turn in place.
     pub(crate) circumference: S,
@@ -124,6 +127,8 @@ impl<S: Scalar> Segment<S> {
             direction: Direction::at(pose.heading),
             heading: pose.heading,
             heading_at_end: pose.heading,
+            #[cfg(feature = "outlines")]
+            facing: Direction::X,
             curve: Curve::Line,
             circumference: S::ZERO,
             length: S::ZERO,
@@ -217,23 +222,70 @@ impl<S: Scalar> Segment<S> {
         Ok(self)
     }
 
-    /// Whether a turn in place at the end of the segment moves a point at the distance `reach` by more than `by` \[m\].
-    pub(crate) fn turns_in_place(&self, reach: S, by: S) -> bool {
-        let turn = Direction::<S>::at(self.heading_at_end - self.heading_before_turn(self.length));
-        turn.cos < S::Unit::ZERO || reach.scale(turn.sin).abs() > by
+    /// The same segment of a body whose heading is at this angle to the direction of travel, counted to the left: 0 along it, half a turn
+    /// against it, in reverse gear, anything else for vehicles that drive sideways. The segments that continue it have the same angle. An
+    /// [`Outline`](crate::Outline) turns by it; to a disc it makes no difference. To change gear, turn the direction of travel as well: then the
+    /// heading goes on ([`Path::reverse`](crate::Path::reverse)).
+    ///
+    /// # Errors
+    /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`] for the angle, as in [`Segment::standing`]; [`InvalidInput::NeedsOutlines`].
+    pub fn facing(self, angle: S::Angle) -> Result<Self, InvalidInput> {
+        if !angle.is_finite() {
+            return Err(InvalidInput::NonFinite("angle of the body"));
+        }
+        heading_in_range::<S>(angle)?;
+        self.faced(Direction::at(angle))
+    }
+
+    /// The same segment with a body at the angle of a direction to the direction of travel.
+    #[cfg(feature = "outlines")]
+    pub(crate) fn faced(self, facing: Direction<S>) -> Result<Self, InvalidInput> {
+        Ok(Self { facing, ..self })
+    }
+
+    #[cfg(not(feature = "outlines"))]
+    pub(crate) fn faced(self, _: Direction<S>) -> Result<Self, InvalidInput> {
+        Err(InvalidInput::NeedsOutlines)
+    }
+
+    /// Angle from the direction of travel to the heading of the body, as a direction.
+    pub(crate) fn body(&self) -> Direction<S> {
+        #[cfg(feature = "outlines")]
+        return self.facing;
+        #[cfg(not(feature = "outlines"))]
+        Direction::X
+    }
+
+    /// Whether the heading of the body jumps at the end of the segment, where another one or nothing follows, so that a point at the distance
+    /// `reach` from the reference point moves by more than `by` \[m\].
+    pub(crate) fn jumps_before(&self, next: Option<&Self>, reach: S, by: S) -> bool {
+        let half = if self.mirrored() { self.half_turn.mirrored() } else { self.half_turn };
+        let before = self.direction.plus(half).plus(half).plus(self.body());
+        let after = match next {
+            Some(next) => next.direction.plus(next.body()),
+            None => self.direction_after().plus(self.body()),
+        };
+        before.dot(after) < S::Unit::ZERO || reach.scale(before.cross(after)).abs() > by
+    }
+
+    /// Direction of travel of the segment that continues this one.
+    fn direction_after(&self) -> Direction<S> {
+        Direction::at(self.heading_at_end).turned_by(self.rest.heading)
     }
 
     /// A segment of this shape at the end of `self`; its end is not valid yet.
     fn then(&self, curve: Curve<S>, circumference: S, length: S) -> Self {
         let (to, rounding) = self.to.sum(length);
         let (to, rest) = to.sum(rounding + self.rest.length);
-        let direction = Direction::at(self.heading_at_end).turned_by(self.rest.heading);
+        let direction = self.direction_after();
         Self {
             start: self.end,
             end: self.end,
             direction,
             heading: self.heading_at_end,
             heading_at_end: self.heading_at_end,
+            #[cfg(feature = "outlines")]
+            facing: self.facing,
             curve,
             circumference,
             length,

@@ -1,4 +1,4 @@
-//! Outlines carried along a segment, with their heading along it: translated on a line, turned about the centre of an arc, or about
+//! Outlines carried along a segment, with their heading at a fixed angle to it: translated on a line, turned about the centre of an arc, or about
 //! the reference point on a turn in place.
 
 use crate::array_vec::ArrayVec;
@@ -32,10 +32,14 @@ impl<'a, S: Scalar> Carried<'a, S> {
         let (origin, bend) = (segment.centre(radius), segment.curve.lever());
         // The reference point at the start, as seen from the origin along and across the heading there.
         let across = (-radius).negate_if(segment.mirrored());
-        let place = |corner: &Corner<S>| Corner {
-            at: segment.direction.vector(corner.at.x, corner.at.y + across),
-            outward: segment.direction.plus(corner.outward),
-            length: corner.length,
+        let body = segment.body();
+        let place = |corner: &Corner<S>| {
+            let at = body.vector(corner.at.x, corner.at.y);
+            Corner {
+                at: segment.direction.vector(at.x, at.y + across),
+                outward: segment.direction.plus(body.plus(corner.outward)),
+                length: corner.length,
+            }
         };
         let mut corners = ArrayVec::new(place(&Corner::CENTRE));
         let own = outline.corners();

@@ -160,6 +160,7 @@ fn constructors<S: Scalar>() -> Result<(), InvalidInput> {
     let path = Path::arc(path, number(), any(TurnSide::Left), number())?;
     let path = Path::arc_by(path, number(), number())?;
     let path = Path::pivot(path, number(), number())?;
+    let path = Path::reverse(Path::facing(path, angle::<S>())?)?;
     let path = Path::turn(any(path), angle::<S>())?;
     any(Path::as_path(&path));
     any(PathRef::<S>::new(any(&[])).is_ok());
@@ -168,6 +169,7 @@ fn constructors<S: Scalar>() -> Result<(), InvalidInput> {
     let segment = any(Segment::then_arc(&segment, number(), any(TurnSide::Right), number())?);
     let segment = any(Segment::then_pivot(&segment, number(), any(TurnSide::Right), number())?);
     let segment = any(Segment::turned(segment, angle::<S>())?);
+    let segment = any(Segment::facing(segment, angle::<S>())?);
     let curve: Curve<S> = Segment::curve(&segment);
     any((curve, Segment::length(&segment), Segment::from(&segment), Segment::bounds(&segment)));
     any((Segment::point_at(&segment, number()), Segment::heading_at(&segment, number())));
@@ -196,7 +198,6 @@ fn outlines<S: Scalar>() -> Result<(), InvalidInput> {
     any(Outline::<S, 4>::rectangle(number(), number(), number(), number(), number())?);
     let corners: &[Vector<S>] = any(&[]);
     let outline = any(Outline::<S, 16>::polygon(corners.iter().copied(), number())?);
-    let outline = any(Outline::reversed(outline));
     any(Outline::as_outline(&outline));
     let outline = any(<OutlineRef<'_, S> as From<&Outline<S, 16>>>::from(&outline));
     any((OutlineRef::radius(outline), OutlineRef::reach(outline)));

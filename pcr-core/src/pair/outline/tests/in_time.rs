@@ -13,12 +13,16 @@ use crate::{
 };
 use std::vec::Vec;
 
-/// Cases with turns in place have seeds from here on.
+/// Cases with turns in place, or in other gears, or both, have seeds from here on.
 const PIVOTS: u64 = 100_000;
 
 fn of_seed(seed: u64, random: &mut Random, segments: usize) -> Case {
     let case = Case::random(random, segments);
-    if seed < PIVOTS { case } else { case.with_pivots(random) }
+    if seed < PIVOTS {
+        return case;
+    }
+    let case = if seed % 3 == 0 { case } else { case.with_pivots(random) };
+    if seed % 3 == 1 { case } else { case.with_gears(random) }
 }
 
 /// Compares the contacts and the closest approach of a case with the oracle at many times. Returns the largest number of steps.
@@ -39,7 +43,7 @@ fn compare_in_time<S: Number>(case: &Case, random: &mut Random, seed: u64, sampl
         Motion::with_outline(path.as_path(), profiles[k].as_profile(), &outlines[k], starts[k])
     };
     let (Ok(first), Ok(second)) = (motion(0), motion(1)) else { return 0 };
-    let exact = [0, 1].map(|k| Exact::of(&paths[k], S::of(case.poses[k][2]).float(), outlines[k].as_outline()));
+    let exact = [0, 1].map(|k| Exact::of(case, k, &paths[k], outlines[k].as_outline()));
     let radius = exact[0].radius + exact[1].radius;
     let encounter = Encounter::new(&first, &second);
     let tolerance = encounter.tolerance().float();
@@ -110,7 +114,7 @@ fn compare_blocked(case: &Case, random: &mut Random, seed: u64) -> u32 {
         Motion::with_outline(path.as_path(), profiles[k].as_profile(), &outlines[k], 0.0)
     };
     let (Ok(first), Ok(second)) = (motion(0), motion(1)) else { return 0 };
-    let exact = [0, 1].map(|k| Exact::of(&paths[k], case.poses[k][2], outlines[k].as_outline()));
+    let exact = [0, 1].map(|k| Exact::of(case, k, &paths[k], outlines[k].as_outline()));
     let radius = exact[0].radius + exact[1].radius;
     let encounter = Encounter::new(&first, &second);
     let fine = 16.0 * excess(&first, &second) + encounter.tolerance();
@@ -160,6 +164,7 @@ fn compare_blocked(case: &Case, random: &mut Random, seed: u64) -> u32 {
 #[test]
 fn blocked_times_lengths_and_holds_are_those_that_the_oracle_says() {
     let mut blocked = 0;
+    // In 103044 a corner leaves an edge so slowly that the outlines still seem to touch a little behind the event.
     for seed in (40_000..40_400_u64).chain(PIVOTS + 3_000..PIVOTS + 3_400) {
         let mut random = Random::of(seed);
         let case = of_seed(seed, &mut random, 1 + (seed % 2) as usize);
@@ -206,7 +211,7 @@ impl Judge {
     const SAMPLES: u32 = 500;
 
     fn new<S: Number>(case: &Case, paths: &[Path<S, 4>; 2], outlines: &[Outline<S, 16>; 2]) -> Self {
-        Self { exact: [0, 1].map(|k| Exact::of(&paths[k], S::of(case.poses[k][2]).float(), outlines[k].as_outline())) }
+        Self { exact: [0, 1].map(|k| Exact::of(case, k, &paths[k], outlines[k].as_outline())) }
     }
 
     fn clearance(&self, lengths: [f64; 2]) -> f64 {
