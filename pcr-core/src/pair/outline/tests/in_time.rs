@@ -21,8 +21,11 @@ fn of_seed(seed: u64, random: &mut Random, segments: usize) -> Case {
     if seed < PIVOTS {
         return case;
     }
-    let case = if seed % 3 == 0 { case } else { case.with_pivots(random) };
-    if seed % 3 == 1 { case } else { case.with_gears(random) }
+    match seed % 3 {
+        0 => case.with_gears(random),
+        1 => case.with_pivots(random),
+        _ => case.with_pivots(random).with_gears(random),
+    }
 }
 
 /// Compares the contacts and the closest approach of a case with the oracle at many times. Returns the largest number of steps.
