@@ -45,7 +45,7 @@ pub struct Checker<'a> {
 
 /// Who may come near whom: of these a table has to tell the regions.
 #[derive(Clone, Debug)]
-pub struct ProximityIndex(BoxIndex);
+pub struct ProximityIndex(pub(crate) BoxIndex);
 
 impl ProximityIndex {
     /// Those of a table whose pairs have an ε of this at most \[m\].

@@ -8,7 +8,7 @@
 //! along a whole curve in the plane of lengths that is parallel to neither axis.
 
 use super::body::{Carried, Placed};
-use super::separation::{Change, above, below, meet, nearest, overlap, sketched};
+use super::separation::{Change, above, above_along, below, meet, nearest, overlap, sketched};
 use crate::ball::{Ball, BallReal, Ternary};
 use crate::double_double::DoubleDouble;
 use crate::pair::gaps;
@@ -203,7 +203,7 @@ impl<'a> Segments<'a> {
         let (mut least, mut part) = (f64::INFINITY, 0.0);
         for &place in places.iter().take(NEAREST) {
             let (mut found, mut at, mut step) = (samples[place], place as f64 / PARTS as f64, 0.5 / PARTS as f64);
-            while step > 1e-15 && found > 0.0 {
+            while step > 1e-15 {
                 let tried = [at - step, at + step].map(|part| part.clamp(0.0, 1.0));
                 match tried.map(|part| (distance(part), part)).into_iter().find(|(distance, _)| *distance < found) {
                     Some(better) => (found, at) = better,
@@ -265,13 +265,19 @@ fn witnessed<R: BallReal>(
         (postures[other], speeds[other]) = (&there, Ball::from(speed));
         let pair = nearest(postures);
         let bound = pair.above(bodies, postures, speeds, half);
-        // The signed distance changes by no more than the bodies go.
-        let overlap = if meet(postures).is_certain() {
-            overlap(postures) + (bodies[of].lever + bodies[other].lever * Ball::from(speed.abs())) * half
-        } else {
-            bound
-        };
-        Ball::from_twofold(most).above(bound).is_certain() || Ball::from_twofold(most).above(overlap).is_certain()
+        let most = Ball::from_twofold(most);
+        let slides = || pair.above_sliding(bodies, postures, speeds, half);
+        if most.above(bound).is_certain() || slides().is_some_and(|bound| most.above(bound).is_certain()) {
+            return true;
+        }
+        if !meet(postures).is_certain() {
+            return false;
+        }
+        // The signed distance changes by no more than the bodies go. It is negative as long as no gap opens.
+        let ways = (bodies[of].lever + bodies[other].lever * Ball::from(speed.abs())) * half;
+        let shows = |gap: Ball<R>| Ball::from(0.0).above(gap).is_certain() && most.above(gap).is_certain();
+        most.above(overlap(postures) + ways).is_certain()
+            || above_along(bodies, postures, speeds, half).is_some_and(shows)
     };
     if look(guess, 0.0) {
         return true;

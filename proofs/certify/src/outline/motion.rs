@@ -56,7 +56,7 @@ impl Answer {
 pub struct Moment {
     /// When \[s\].
     pub time: f64,
-    /// Distance of the polygons there less R \[m\]; NaN where it is not known.
+    /// Distance of the polygons there less R, that of the least translation that parts them, negative, if they overlap \[m\]; NaN where it is not known.
     pub clearance: f64,
 }
 

@@ -407,6 +407,33 @@ impl Nearest {
     }
 }
 
+impl Nearest {
+    /// The same as [`Nearest::above`], of the corner and its foot on the edge, wherever it slides to; none if it may leave the edge. Near
+    /// contact of polygons that are not rounded, two points that slide along one another say nothing.
+    pub fn above_sliding<R: BallReal>(
+        &self,
+        bodies: [&Carried<R>; 2],
+        postures: [&Posture<R>; 2],
+        speeds: [Ball<R>; 2],
+        half: Ball<R>,
+    ) -> Option<Ball<R>> {
+        let (frame, own) = (self.frame, 1 - self.frame);
+        let edge = postures[frame];
+        let (&normal, from) = (edge.normals.get(self.edge)?, edge.corners[self.edge]);
+        let length = (edge.corners[(self.edge + 1) % edge.corners.len()] - from).norm();
+        let change = Change::Line { speeds, accelerations: [Ball::from(0.0); 2], half };
+        let rates = change.rates(bodies, frame);
+        let at = postures[own].corners[self.corner];
+        let slope = postures[own].velocities[self.corner].times(speeds[own]) - edge.velocity(at).times(speeds[frame]);
+        let bent = (bend(&change, bodies, frame, &rates, self.corner, at) * half * half).half();
+        let along = normal.left();
+        let foot = along.dot(at - from);
+        let slides = along.dot(slope).abs() * half + bent;
+        let stays = (foot - slides).is_positive().is_certain() && length.above(foot + slides).is_certain();
+        stays.then(|| normal.dot(at - from).abs() + normal.dot(slope).abs() * half + bent)
+    }
+}
+
 /// Whether two polygons are certain to have a point in common.
 pub fn meet<R: BallReal>(postures: [&Posture<R>; 2]) -> Ternary {
     let left = |a: BallVector<R>, b: BallVector<R>, x: BallVector<R>| (b - a).cross(x - a).is_positive();
@@ -456,4 +483,32 @@ pub fn overlap<R: BallReal>(postures: [&Posture<R>; 2]) -> Ball<R> {
     }
     let zero = Ball::from(0.0);
     most.map_or(zero, |most| most.min(zero))
+}
+
+/// An upper bound on the gap in the direction of every normal while both lengths change at constant speeds: where it is negative, the polygons
+/// overlap all the while, by that at least \[m\]. None for a point beside a point.
+pub fn above_along<R: BallReal>(
+    bodies: [&Carried<R>; 2],
+    postures: [&Posture<R>; 2],
+    speeds: [Ball<R>; 2],
+    half: Ball<R>,
+) -> Option<Ball<R>> {
+    let change = Change::Line { speeds, accelerations: [Ball::from(0.0); 2], half };
+    let mut greatest: Option<Ball<R>> = None;
+    for owner in [0, 1] {
+        let own = 1 - owner;
+        let rates = change.rates(bodies, owner);
+        for (&normal, &from) in postures[owner].normals.iter().zip(&postures[owner].corners) {
+            // Any corner bounds the least gap; that which is the nearest in the middle does so best.
+            let gaps = postures[own].corners.iter().map(|&at| normal.dot(at - from)).enumerate();
+            let (corner, gap) = gaps.reduce(|a, b| if b.1.to_f64() < a.1.to_f64() { b } else { a })?;
+            let at = postures[own].corners[corner];
+            let slope = normal.dot(postures[own].velocities[corner]) * speeds[own]
+                - normal.dot(postures[owner].velocity(at)) * speeds[owner];
+            let second = bend(&change, bodies, owner, &rates, corner, at);
+            let bound = gap + slope.abs() * half + (second * half * half).half();
+            greatest = Some(greatest.map_or(bound, |most| most.max(bound)));
+        }
+    }
+    greatest
 }

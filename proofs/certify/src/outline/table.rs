@@ -5,7 +5,7 @@
 
 use super::body::Body;
 use super::cover::{Segments, Verdict};
-use super::data::{RawOutlinePair, RawOutlinePiece, RawOutlineTable};
+use super::data::{RawBody, RawOutlinePair, RawOutlinePiece, RawOutlineTable};
 use super::ranks::{self, Bounds};
 use super::separation::above;
 use crate::arc_length_motion;
@@ -17,7 +17,7 @@ use crate::pair::{Findings, PieceOnSegments, TableProperty, Witness, pieces_of};
 use crate::path::{LEAST, PreparedSegment};
 use crate::raw::{RawAgent, RawBranch, RawPair, RawPiece};
 use crate::regions::{self, Distances};
-use crate::table::CoverageMargin;
+use crate::table::{CoverageMargin, ProximityIndex};
 use std::collections::HashSet;
 
 /// What has come of a check of a table of bodies.
@@ -28,6 +28,28 @@ pub struct Report {
     /// How much of the second segments of all pairs is so near to an event that of no more than the number of intervals nothing is
     /// proved ([`super::ranks`]) \[m\].
     pub unranked: f64,
+}
+
+/// The box of all that a body passes, with what its lengths are off and ε.
+fn area(body: &Body<'_>, excess: f64) -> PlainBox {
+    body.area((off(body) + excess).next_up())
+}
+
+/// What a corner may be off by the rounding of lengths and times \[m\].
+fn off(body: &Body<'_>) -> f64 {
+    let lag = body.raw.travel.as_ref().map_or(0.0, |travel| travel.lag);
+    (body.raw.rounding * body.lever() + lag).next_up()
+}
+
+impl ProximityIndex {
+    /// Those of a table of bodies whose pairs have an ε of this at most \[m\].
+    ///
+    /// # Errors
+    /// A body that is none.
+    pub fn of_bodies(bodies: &[RawBody], excess: f64) -> Result<Self, String> {
+        let areas = bodies.iter().map(|raw| Ok(area(&Body::new(raw)?, excess)));
+        Ok(Self(BoxIndex::new(areas.collect::<Result<_, String>>()?)))
+    }
 }
 
 /// A table whose numbers have been looked through.
@@ -80,7 +102,7 @@ impl<'a> Checker<'a> {
         let is_missing = |a: usize, b: usize| id(a) != id(b) && !there.contains(&[a, b]);
         let missing = match apart {
             Some(excess) if (LEAST..1e15).contains(&excess) => {
-                let near = BoxIndex::new((0..count).map(|place| self.area(place, excess)).collect());
+                let near = BoxIndex::new(self.bodies.iter().map(|body| area(body, excess)).collect());
                 (0..count).find_map(|a| near.after(a).into_iter().find(|&b| is_missing(a, b)).map(|b| (a, b)))
             }
             Some(_) => return Err("the excess of those that are left out is out of range".into()),
@@ -89,16 +111,9 @@ impl<'a> Checker<'a> {
         missing.map_or(Ok(()), |(a, b)| Err(format!("the pair of places {a} and {b} is missing")))
     }
 
-    /// The box of all that a body passes, with what its lengths are off and ε.
-    fn area(&self, place: usize, excess: f64) -> PlainBox {
-        self.bodies[place].area((self.off(place) + excess).next_up())
-    }
-
     /// What a corner may be off by the rounding of lengths and times \[m\].
     fn off(&self, place: usize) -> f64 {
-        let body = &self.bodies[place];
-        let lag = body.raw.travel.as_ref().map_or(0.0, |travel| travel.lag);
-        (body.raw.rounding * body.lever() + lag).next_up()
+        off(&self.bodies[place])
     }
 
     /// Checks every pair.
@@ -106,8 +121,17 @@ impl<'a> Checker<'a> {
     /// # Errors
     /// A piece or a region that is none.
     pub fn check(&self, margin: CoverageMargin) -> Result<Report, String> {
+        self.watched(margin, &|_| {})
+    }
+
+    /// Checks every pair as [`Checker::check`], and tells before each one how many are checked.
+    ///
+    /// # Errors
+    /// A piece or a region that is none.
+    pub fn watched(&self, margin: CoverageMargin, told: &dyn Fn(usize)) -> Result<Report, String> {
         let mut report = Report::default();
-        for pair in self.pairs {
+        for (checked, pair) in self.pairs.iter().enumerate() {
+            told(checked);
             self.pair(pair, margin, &mut report)?;
         }
         Ok(report)

@@ -6,7 +6,7 @@ use super::data::{
     RawBody, RawBodySegment, RawCourse, RawHeading, RawOutline, RawOutlinePair, RawOutlinePiece, RawOutlineTable,
 };
 use super::motion::{Driven, Encounter};
-use super::separation::{Change, above, below, nearest, sketched};
+use super::separation::{Change, above, above_along, below, nearest, sketched};
 use super::table::{Checker, Report};
 use crate::ball::Ball;
 use crate::double_double::DoubleDouble;
@@ -267,7 +267,7 @@ fn bounds_hold_over_boxes_and_are_of_second_order() {
 #[test]
 fn bounds_hold_along_lines_with_accelerations() {
     let mut dice = Dice(3);
-    let mut used = 0;
+    let [mut used, mut overlapping, mut slid] = [0; 3];
     for round in 0..6000 {
         let raw = [random(&mut dice, 1), random(&mut dice, 2)];
         let bodies = [Body::new(&raw[0]).unwrap(), Body::new(&raw[1]).unwrap()];
@@ -282,6 +282,8 @@ fn bounds_hold_along_lines_with_accelerations() {
         let seen = below(near, [&a, &b], &change);
         let pair = nearest([&a, &b]);
         let most = pair.above(near, [&a, &b], speeds.map(number), number(half));
+        let sliding = pair.above_sliding(near, [&a, &b], speeds.map(number), number(half));
+        let overlap = above_along(near, [&a, &b], speeds.map(number), number(half));
         for _ in 0..30 {
             let t = half * dice.of(&[-1.0, 1.0, dice.0 as f64 / u64::MAX as f64, 0.3, -0.5]);
             let at = |accelerated: f64| {
@@ -291,10 +293,20 @@ fn bounds_hold_along_lines_with_accelerations() {
             assert!(sure(seen.anywhere) <= found + 1e-12, "{round} {raw:?} {middle:?} {change:?}: {seen:?} {found}");
             let steady = plain([&raw[0], &raw[1]], at(0.0));
             assert!(most.mid + most.err >= steady - 1e-12, "{round} {raw:?} {middle:?} {change:?}: {most:?} {steady}");
+            assert!(
+                sliding.is_none_or(|most| most.mid + most.err >= steady - 1e-12),
+                "{round} {raw:?} {middle:?} {change:?}: {sliding:?} {steady}"
+            );
+            slid += usize::from(sliding.is_some());
+            let is_in = overlap.is_some_and(|most| most.mid + most.err < 0.0);
+            let sketches = [0, 1].map(|k| near[k].sketch(at(0.0)[k]));
+            let depth = -sketched([&sketches[0], &sketches[1]]);
+            assert!(!is_in || depth >= -overlap.unwrap().mid - 1e-12, "{round} {raw:?} {middle:?} {change:?}: {depth}");
+            overlapping += usize::from(is_in);
             used += usize::from(seen.anywhere.mid > 0.0);
         }
     }
-    assert!(used > 10_000, "{used}");
+    assert!(used > 10_000 && overlapping > 300 && slid > 300, "{used} {overlapping} {slid}");
 }
 
 /// Two squares of 1 m that overlap by 0.25 m along one axis and by 0.5 m along the other: the shorter translation separates them.
@@ -306,6 +318,41 @@ fn an_overlap_is_as_deep_as_the_least_translation_that_ends_it() {
     assert_eq!(sketched([&square(0.0, 0.0), &[[0.25, 0.125], [0.75, 0.125]]]), -0.125);
     // Two flat ones that cross: either one gets free along its own normal.
     assert_eq!(sketched([&[[-1.0, 0.0], [1.0, 0.0]], &[[0.0, -0.5], [0.0, 0.25]]]), -0.25);
+}
+
+#[test]
+fn polygons_that_overlap_are_parted_by_their_depth_and_by_nothing_less() {
+    const DIRECTIONS: u32 = 90;
+    let (mut dice, mut overlaps) = (Dice(7), 0);
+    for round in 0..6000 {
+        let raw = [random(&mut dice, 1), random(&mut dice, 2)];
+        let bodies = [Body::new(&raw[0]).unwrap(), Body::new(&raw[1]).unwrap()];
+        let at = [0, 1].map(|k| dice.unit() * raw[k].segments[0].length);
+        let [a, b] = [0, 1].map(|k| bodies[k].segments[0].near.posture(number(at[k])));
+        let depth = -above([&a, &b]).mid;
+        if depth < 1e-6 {
+            continue;
+        }
+        overlaps += 1;
+        let [own, other] = [0, 1].map(|k| corners(&raw[k], at[k]));
+        let moved = |[x, y]: [f64; 2], by: f64| {
+            let other: Vec<[f64; 2]> = other.iter().map(|corner| [corner[0] + by * x, corner[1] + by * y]).collect();
+            distance(&own, &other)
+        };
+        let any = (0..DIRECTIONS).map(|k| f64::from(k) * std::f64::consts::TAU / f64::from(DIRECTIONS));
+        let mut directions: Vec<[f64; 2]> = any.map(|angle| [angle.cos(), angle.sin()]).collect();
+        for posture in [&a, &b] {
+            directions.extend(posture.normals.iter().flat_map(|normal| {
+                let [x, y] = [normal.x.mid, normal.y.mid];
+                [[x, y], [-x, -y]]
+            }));
+        }
+        assert!(directions.iter().all(|&one| moved(one, depth - 1e-9) == 0.0), "{round} {raw:?} {at:?}: {depth}");
+        assert!(directions.iter().any(|&one| moved(one, depth + 1e-9) > 0.0), "{round} {raw:?} {at:?}: {depth}");
+        let sketches = [0, 1].map(|k| bodies[k].segments[0].near.sketch(at[k]));
+        assert!((sketched([&sketches[0], &sketches[1]]) + depth).abs() < 1e-11, "{round} {raw:?} {at:?}");
+    }
+    assert!(overlaps > 300, "{overlaps}");
 }
 
 #[test]
