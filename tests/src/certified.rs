@@ -7,8 +7,12 @@ use pcr_certify::raw::RawTable;
 use pcr_certify::table::{Checker, CoverageMargin};
 use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
+use pcr_formats::scenario::Scenario;
+use pcr_planning::certify::CertificateTable;
 use pcr_planning::checker_input;
+use pcr_planning::disc_fleet::Form;
 use pcr_planning::fleet::{HostScalar, build_ecm};
+use pcr_planning::regions::table_of;
 use std::fmt;
 
 /// What has come of many tables.
@@ -148,4 +152,13 @@ mod tests {
         let columns = |line: &str| line.matches('|').count();
         assert!(Proofs::HEADINGS.lines().all(|line| columns(line) == columns(&proofs.row("q16"))));
     }
+}
+
+/// The table of contacts of a fleet of discs.
+///
+/// # Panics
+/// If there is none.
+pub fn discs_of<S: HostScalar>(scenario: &Scenario) -> RawTable {
+    let tables = table_of::<S>(scenario, Form::Covers).expect("tables");
+    tables.into_iter().next().and_then(CertificateTable::discs).expect("a table of discs")
 }

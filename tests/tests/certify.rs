@@ -11,15 +11,16 @@ use pcr_core::{Limits, Motion, Path as CorePath, Point, Pose, Profile};
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::import::{self, ImportOptions, Warnings};
 use pcr_formats::scenario::Scenario;
-use pcr_planning::certify::{CertifyInput, CertifyReport};
+use pcr_planning::certify::{CertificateTable, CertifyInput, CertifyReport};
 use pcr_planning::check::CheckReport;
 use pcr_planning::checker_input;
+use pcr_planning::disc_fleet::Form;
 use pcr_planning::exclusion_table;
 use pcr_planning::fleet::HostScalar;
 use pcr_planning::plan::{self, PlanMethod, PlanReport};
 use pcr_planning::regions::table_of;
 use pcr_planning::regions::{RegionOptions, RegionsReport};
-use pcr_tests::certified::{run, table};
+use pcr_tests::certified::{discs_of, run, table};
 use pcr_tests::disc::Drive;
 use pcr_tests::generators::{Dice, behind};
 use pcr_tests::outward::run_on_all_processors;
@@ -158,10 +159,13 @@ fn findings(table: &RawTable) -> Findings {
 }
 
 fn is_proved<S: HostScalar>(name: &str, scenario: &Scenario) {
-    for table in table_of::<S>(scenario).unwrap_or_else(|refused| panic!("{name}: {refused}")) {
+    for table in table_of::<S>(scenario, Form::Exact).unwrap_or_else(|refused| panic!("{name}: {refused}")) {
         let certified = CertifyReport::prove(name, &table, false);
         assert_eq!(certified.verdict, Some("proved"), "{name} in {}: {certified:?}", S::NAME);
-        let regions: usize = table.pairs.iter().map(|pair| pair.regions.len()).sum();
+        let regions: usize = match &table {
+            CertificateTable::Discs(table) => table.pairs.iter().map(|pair| pair.regions.len()).sum(),
+            CertificateTable::Outlines(table) => table.pairs.iter().map(|pair| pair.regions.len()).sum(),
+        };
         assert_eq!(certified.times, regions, "{name} in {}", S::NAME);
     }
 }
@@ -223,7 +227,7 @@ struct Layouts {
 fn are_proved<S: HostScalar>(layouts: &[(String, Vec<Scenario>)]) -> Layouts {
     let mut found = Layouts::default();
     for (name, levels) in layouts {
-        let tables = levels.iter().map(|level| table_of::<S>(level)).collect::<Result<Vec<_>, _>>();
+        let tables = levels.iter().map(|level| table_of::<S>(level, Form::Covers)).collect::<Result<Vec<_>, _>>();
         match tables {
             Ok(tables) => {
                 for table in tables.iter().flatten() {
@@ -286,7 +290,8 @@ fn a_dump_reads_back_exactly() {
         let text = serde_json::to_string(&answer).unwrap();
         let dump = CertifyInput::of_json(&text).unwrap();
         assert_eq!(Some(&dump.certificate), answer.certificate.as_ref());
-        assert!(findings(&dump.certificate[0]).refuted.is_empty());
+        let certified = CertifyReport::prove(name, &dump.certificate[0], false);
+        assert!(certified.error.is_none() && certified.refuted.is_empty(), "{certified:?}");
     }
 }
 
@@ -295,11 +300,11 @@ fn a_dump_reads_back_exactly() {
 fn a_table_that_a_microcontroller_printed_is_that_of_the_tool() {
     fn is_the_same<S: HostScalar>(file: &str) {
         let dump = CertifyInput::of(&std::fs::read_to_string(data(file)).unwrap(), file).unwrap();
-        let mut table = table_of::<S>(&fleet("paper12.json")).unwrap().remove(0);
+        let mut table = discs_of::<S>(&fleet("paper12.json"));
         // The firmware numbers them from 0.
         (0..).zip(&mut table.agents).for_each(|(place, agent)| agent.id = place);
         // The firmware prints all pairs; those that the tool leaves out have no region.
-        let [whole] = dump.certificate.as_slice() else { panic!("{file}: one table") };
+        let [CertificateTable::Discs(whole)] = dump.certificate.as_slice() else { panic!("{file}: one table") };
         let is_there = |pair: &RawPair| table.pairs.iter().any(|there| there.agents == pair.agents);
         let (pairs, far): (Vec<RawPair>, Vec<RawPair>) = whole.pairs.iter().cloned().partition(is_there);
         assert!(far.iter().all(|pair| pair.regions.is_empty() && pair.pieces.is_empty()), "{file}");
@@ -322,7 +327,7 @@ fn scattered(pairs: usize) -> Scenario {
 }
 
 fn pairs_that_are_far_apart_are_left_out<S: HostScalar>() {
-    let table = table_of::<S>(&scattered(50)).unwrap().remove(0);
+    let table = discs_of::<S>(&scattered(50));
     let named: Vec<[usize; 2]> = table.pairs.iter().map(|pair| pair.agents).collect();
     assert_eq!(named, (0..50).map(|k| [2 * k, 2 * k + 1]).collect::<Vec<_>>(), "{}", S::NAME);
     let found = Checker::new(&table).unwrap().check(CoverageMargin::Needed).unwrap();
@@ -356,7 +361,7 @@ fn far_pairs_are_left_out_in_every_format() {
 
 #[test]
 fn what_is_no_table_is_refused() {
-    let table = table_of::<f64>(&fleet("paper12.json")).unwrap().remove(0);
+    let table = discs_of::<f64>(&fleet("paper12.json"));
     let wrong = |change: &dyn Fn(&mut RawTable)| {
         let mut other = table.clone();
         change(&mut other);
@@ -396,7 +401,7 @@ fn what_is_no_table_is_refused() {
 
 #[test]
 fn the_margin_is_where_a_proof_ends() {
-    let table = table_of::<f64>(&fleet("paper12.json")).unwrap().remove(0);
+    let table = discs_of::<f64>(&fleet("paper12.json"));
     let checker = Checker::new(&table).unwrap();
     let (margin, place) = checker.margin().unwrap().unwrap();
     // An exact table with a slack of half the bound would have 0.5.
@@ -463,7 +468,7 @@ fn regions_of_an_agent_that_is_not_there_are_none() {
 /// A field that is not there is not taken for one that says none, nor is one that nobody knows passed over.
 #[test]
 fn what_is_left_out_of_a_file_is_an_error() {
-    let table = table_of::<Q16>(&fleet("paper12.json")).unwrap().remove(0);
+    let table = discs_of::<Q16>(&fleet("paper12.json"));
     let text = serde_json::to_string(&table).unwrap();
     let read = |text: &str| serde_json::from_str::<RawTable>(text).map_err(|error| error.to_string());
     assert_eq!(read(&text), Ok(table));

@@ -8,8 +8,7 @@ use pcr_core::scalar::Micro;
 use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::HostScalar;
-use pcr_planning::regions::table_of;
-use pcr_tests::certified::table;
+use pcr_tests::certified::{discs_of, table};
 use pcr_tests::disc::{Disc, Drive, Leg};
 use pcr_tests::exact::{DoubleDouble, Route};
 use pcr_tests::generators::{Dice, certifiable};
@@ -104,7 +103,7 @@ impl Changes {
 }
 
 fn changed_tables_are_refuted<S: HostScalar>(scenario: &Scenario) {
-    let table = of_paths(table_of::<S>(scenario).unwrap().remove(0));
+    let table = of_paths(discs_of::<S>(scenario));
     let routes: Vec<Route> =
         scenario.agents.iter().map(|agent| Route::new::<S>(&Disc::of_agent(agent).rounded::<S>())).collect();
     let [mut removed, mut shortened, mut enlarged] = [(); 3].map(|()| Changes::default());
@@ -195,7 +194,7 @@ fn tables_with_their_shares_exchanged_are_refuted() {
 }
 
 fn falsified_tables_are_refuted<S: HostScalar>() {
-    let table = table_of::<S>(&fleet()).unwrap().remove(0);
+    let table = discs_of::<S>(&fleet());
     let full: Vec<usize> = (0..table.pairs.len()).filter(|&place| !table.pairs[place].pieces.is_empty()).collect();
     let refuted = |change: &dyn Fn(&mut RawTable)| {
         let mut other = table.clone();
@@ -267,7 +266,7 @@ fn tables_with_a_number_falsified_are_refuted() {
 
 /// Motions that go back, jump, or end before their path does: a region may then be left and come to again at a time that nobody tells.
 fn motions_that_are_none_are_refused<S: HostScalar>() {
-    let table = table_of::<S>(&fleet()).unwrap().remove(0);
+    let table = discs_of::<S>(&fleet());
     let refused = |why: &str, change: &dyn Fn(&mut Vec<RawPhase>)| {
         for place in 0..table.agents.len() {
             let mut other = table.clone();

@@ -2,20 +2,26 @@
 //!
 //! The types match the JSON output, field by field in this order.
 
+mod certificate_table;
 mod motions;
 mod reported;
+#[cfg(test)]
+mod tests;
 
+pub use certificate_table::CertificateTable;
 pub use motions::{CertificateContact, MotionCertificate};
 
 use crate::regions::ProgressFn;
 use pcr_certify::device_dump;
+use pcr_certify::outline;
+use pcr_certify::outline::RawOutlineTable;
 use pcr_certify::pair::{Findings, TableProperty};
-pub use pcr_certify::raw::RawTable;
+use pcr_certify::raw::RawTable;
 use pcr_certify::table::{Checker, CoverageMargin};
 use pcr_formats::scenario::Labels;
 use pcr_formats::warning::WarningCode;
 use reported::{RegionScope, ReportedDiscCover};
-use serde::de::IgnoredAny;
+use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -31,7 +37,10 @@ pub struct CertifyReport {
     pub verdict: Option<&'static str>,
     /// Number of discs.
     pub discs: usize,
-    /// Number of pairs of discs of different agents, also those far apart: the verdict is about these.
+    /// Number of outlines that were proved as they are, and not as covers.
+    #[serde(skip_serializing_if = "is_none")]
+    pub outlines: usize,
+    /// Number of pairs of discs and outlines of different agents, also those far apart: the verdict is about these.
     pub pairs: usize,
     /// Number of pairs of segments that were examined.
     pub segment_pairs: usize,
@@ -54,6 +63,11 @@ pub struct CertifyReport {
     pub warnings: Vec<String>,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde asks for")]
+fn is_none(outlines: &usize) -> bool {
+    *outlines == 0
+}
+
 /// A point of two paths.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CertifyWitnessEntry {
@@ -67,7 +81,7 @@ pub struct CertifyWitnessEntry {
     pub l_i: f64,
     /// Length along the path of `j` \[m\].
     pub l_j: f64,
-    /// Distance of the centres minus the radii \[m\]; NaN where it is not known, in JSON `null`.
+    /// Distance of the centres minus the radii, or of the outlines \[m\]; NaN where it is not known, in JSON `null`.
     pub clearance: f64,
     /// That distance in ε of the pair; between 0 and 1 a table may count it as contact or not.
     pub in_excess: f64,
@@ -79,18 +93,27 @@ pub(crate) const VERSION: u32 = 1;
 
 /// The tables in an answer of `pcr regions --certificate`, or the table that a microcontroller prints. Other parts of the
 /// answer may be missing; if present, they have to agree with the tables.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct CertifyInput {
     /// Name of the scenario.
     pub name: String,
     /// Labels of its agents.
-    #[serde(default)]
     pub labels: Labels,
     /// Warnings about input that was changed or left out when it was read.
-    #[serde(default)]
     pub warnings: Vec<String>,
     /// The table of contacts, and that of overlaps of margins, if there are any.
-    pub certificate: Vec<RawTable>,
+    pub certificate: Vec<CertificateTable>,
+}
+
+/// The same as it is written, with tables of one kind.
+#[derive(Deserialize)]
+struct RegionsAnswer<T> {
+    name: String,
+    #[serde(default)]
+    labels: Labels,
+    #[serde(default)]
+    warnings: Vec<String>,
+    certificate: Vec<T>,
     #[serde(default)]
     agent: Option<u64>,
     #[serde(default)]
@@ -99,6 +122,17 @@ pub struct CertifyInput {
     margin_regions: Option<Vec<reported::ReportedRegion>>,
     #[serde(default)]
     footprints: Vec<ReportedDiscCover>,
+}
+
+/// Whether tables have bodies, and are of outlines.
+#[derive(Deserialize)]
+struct TableKindProbe {
+    certificate: Vec<TableProbe>,
+}
+
+#[derive(Deserialize)]
+struct TableProbe {
+    bodies: Option<IgnoredAny>,
 }
 
 /// What a text is, as far as that is to be known before it is read.
@@ -120,7 +154,7 @@ impl CertifyInput {
         if text.trim_start().starts_with('{') {
             return Self::of_json(text);
         }
-        Ok(Self { name: name.to_owned(), certificate: vec![device_dump::decode(text)?], ..Self::default() })
+        Ok(Self { name: name.to_owned(), certificate: vec![device_dump::decode(text)?.into()], ..Self::default() })
     }
 
     /// Reads the tables from a JSON text.
@@ -146,31 +180,42 @@ impl CertifyInput {
         if said.certificate.is_none() {
             return Err("there is no certificate in it; pcr regions --json --certificate prints one".into());
         }
-        let mut dump: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
-        dump.warnings = dump.warnings.into_iter().map(WarningCode::coded).collect();
-        for table in &dump.certificate {
-            reported::bodies(table, &dump.footprints)?;
-            reported::asked(table, dump.agent)?;
+        let has_bodies = |probe: TableKindProbe| probe.certificate.iter().any(|table| table.bodies.is_some());
+        if serde_json::from_str(text).is_ok_and(has_bodies) {
+            RegionsAnswer::<RawOutlineTable>::read(text)
+        } else {
+            RegionsAnswer::<RawTable>::read(text)
         }
-        dump.compare()?;
-        Ok(dump)
     }
+}
 
-    /// Compares the tables of the discs and of the discs with their margins with one another, and with the regions that are told.
-    fn compare(&self) -> Result<(), String> {
-        match &self.certificate[..] {
-            [] | [_] => {}
-            [discs, margins] => reported::enlarged(discs, margins)?,
-            more => {
+impl<T: DeserializeOwned + Into<CertificateTable>> RegionsAnswer<T> {
+    /// Reads the tables, and compares them with what is told beside them.
+    fn read(text: &str) -> Result<CertifyInput, String> {
+        let answer: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        let Self { name, labels, warnings, certificate, agent, regions, margin_regions, footprints } = answer;
+        let certificate: Vec<CertificateTable> = certificate.into_iter().map(T::into).collect();
+        let paths: Vec<_> = certificate.iter().map(CertificateTable::paths).collect();
+        for table in &paths {
+            reported::bodies(table, &footprints)?;
+            reported::asked(table, agent)?;
+        }
+        match (&certificate[..], &paths[..]) {
+            ([] | [_], _) => {}
+            ([bodies, enlarged], [discs, margins]) => {
+                reported::enlarged(discs, margins)?;
+                reported::same_corners(bodies, enlarged)?;
+            }
+            (more, _) => {
                 let count = more.len();
                 return Err(format!("certificate: {count} tables; there are at most two, the second with margins"));
             }
         }
-        let lists = [("regions", &self.regions), ("margin_regions", &self.margin_regions)];
+        let lists = [("regions", &regions), ("margin_regions", &margin_regions)];
         let is_told = lists.iter().any(|(_, list)| list.is_some());
-        let asked = RegionScope { agent: self.agent, covers: &self.footprints };
+        let asked = RegionScope { agent, covers: &footprints };
         for (place, (name, list)) in lists.into_iter().enumerate() {
-            match (list, self.certificate.get(place)) {
+            match (list, paths.get(place)) {
                 (Some(list), Some(table)) => reported::compare(name, list, table, asked)?,
                 (Some(_), None) if place > 0 => return Err(format!("{name}: the certificate has no table of them")),
                 (None, Some(_)) if is_told => {
@@ -179,28 +224,29 @@ impl CertifyInput {
                 _ => {}
             }
         }
-        Ok(())
+        let warnings = warnings.into_iter().map(WarningCode::coded).collect();
+        Ok(CertifyInput { name, labels, warnings, certificate })
     }
 }
 
 impl CertifyReport {
     /// Proves a table; also finds its margin, if requested.
-    pub fn prove(name: &str, table: &RawTable, margin: bool) -> Self {
+    pub fn prove(name: &str, table: &CertificateTable, margin: bool) -> Self {
         Self::watched(name, table, margin, &|_, _| {})
     }
 
     /// Proves a table as [`CertifyReport::prove`], and tells before each pair how many checks of how many are done.
-    pub fn watched(name: &str, table: &RawTable, margin: bool, told: ProgressFn<'_>) -> Self {
+    pub fn watched(name: &str, table: &CertificateTable, margin: bool, told: ProgressFn<'_>) -> Self {
         /// What a margin takes, in times of the check.
         const MARGIN: usize = 12;
-        let all = table.pairs.len() * if margin { 1 + MARGIN } else { 1 };
-        let checked = Checker::new(table).and_then(|checker| {
-            let findings = checker.watched(CoverageMargin::Needed, &|done| told(done, all))?;
-            let margin = if margin { checker.margin()? } else { None };
-            Ok((findings, margin))
-        });
+        let all = table.pairs() * if margin { 1 + MARGIN } else { 1 };
+        let told = |done: usize| told(done, all);
+        let checked = match table {
+            CertificateTable::Discs(table) => of_discs(table, margin, &told),
+            CertificateTable::Outlines(table) => of_outlines(table, margin, &told),
+        };
         match checked {
-            Ok((findings, margin)) => Self::found(name, table, &findings, margin.map(|(margin, _)| margin)),
+            Ok((findings, margin)) => Self::found(name, table, &findings, margin),
             Err(problem) => Self::refused(name, problem),
         }
     }
@@ -211,7 +257,8 @@ impl CertifyReport {
         Self { labels: labels.clone(), warnings: warnings.to_vec(), ..self }
     }
 
-    fn found(name: &str, table: &RawTable, findings: &Findings, margin: Option<f64>) -> Self {
+    fn found(name: &str, table: &CertificateTable, findings: &Findings, margin: Option<f64>) -> Self {
+        let (outlines, table) = (table.outline_count(), &*table.paths());
         let points = |those: &[pcr_certify::pair::Witness]| {
             let id = |place: usize| table.agents[place].id;
             let point = those.iter().map(|witness| CertifyWitnessEntry {
@@ -240,7 +287,8 @@ impl CertifyReport {
             name: name.to_owned(),
             labels: Labels::default(),
             verdict: Some(verdict),
-            discs: table.agents.len(),
+            discs: table.agents.len() - outlines,
+            outlines,
             pairs: reported::pairs(table),
             segment_pairs: findings.segments,
             pieces: findings.pieces,
@@ -261,6 +309,7 @@ impl CertifyReport {
             labels: Labels::default(),
             verdict: None,
             discs: 0,
+            outlines: 0,
             pairs: 0,
             segment_pairs: 0,
             pieces: 0,
@@ -273,4 +322,21 @@ impl CertifyReport {
             warnings: Vec::new(),
         }
     }
+}
+
+/// What the checker finds, and the margin if it was asked for.
+type Checked = Result<(Findings, Option<f64>), String>;
+
+fn of_discs(table: &RawTable, margin: bool, told: &dyn Fn(usize)) -> Checked {
+    let checker = Checker::new(table)?;
+    let findings = checker.watched(CoverageMargin::Needed, told)?;
+    let margin = if margin { checker.margin()? } else { None };
+    Ok((findings, margin.map(|(margin, _)| margin)))
+}
+
+fn of_outlines(table: &RawOutlineTable, margin: bool, told: &dyn Fn(usize)) -> Checked {
+    let checker = outline::table::Checker::new(table)?;
+    let findings = checker.watched(CoverageMargin::Needed, told)?.findings;
+    let margin = if margin { checker.margin()? } else { None };
+    Ok((findings, margin))
 }

@@ -105,16 +105,7 @@ impl CheckReport {
         closest: bool,
         told: ProgressFn<'_>,
     ) -> Result<Self, ComputationError> {
-        Self::in_form::<S>(scenario, Form::Exact, closest, told)
-    }
-
-    fn in_form<S: HostScalar>(
-        scenario: &Scenario,
-        form: Form,
-        closest: bool,
-        told: ProgressFn<'_>,
-    ) -> Result<Self, ComputationError> {
-        let (fleet, discs, _) = DiscFleet::<S>::moving(scenario, form)?;
+        let (fleet, discs, _) = DiscFleet::<S>::moving(scenario, Form::Exact)?;
         Self::between(scenario, &discs, &fleet.motions(), closest, told)
     }
 
@@ -190,7 +181,7 @@ impl CheckReport {
         })
     }
 
-    /// The same with a certificate. The checker knows discs only, so all outlines are covered, also for the conflicts.
+    /// The same with a certificate.
     ///
     /// # Errors
     /// As [`CheckReport::compute`], and [`ComputationError::NoPair`].
@@ -199,8 +190,7 @@ impl CheckReport {
         closest: bool,
         told: ProgressFn<'_>,
     ) -> Result<Self, ComputationError> {
-        // The proof is of the same bodies.
-        let verdict = Self::in_form::<S>(scenario, Form::Covers, closest, told)?;
+        let verdict = Self::watched::<S>(scenario, closest, told)?;
         // The checker has a list of its own.
         let count = verdict.conflicts.len();
         memory_budget::ask(count as u64 * PROOF_BYTES, || format!("the proof of {count} conflicts"))?;

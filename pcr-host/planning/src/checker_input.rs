@@ -2,12 +2,14 @@
 //!
 //! All numbers are those that the library holds; this module neither rounds nor computes.
 
+pub mod outlines;
+
 use crate::fleet::{Fleet, HostEcm, HostScalar, turn_in_place};
 use pcr_certify::raw::{
     RawAgent, RawAngle, RawBranch, RawMotion, RawPair, RawPath, RawPhase, RawPiece, RawRegion, RawSegment, RawTable,
 };
 use pcr_core::{Curve, Interval, Motion, RegionRef, TurnSide, excess};
-use pcr_formats::scenario::{PathSegment, Scenario, figure};
+use pcr_formats::scenario::{Agent, PathSegment, Scenario, figure};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
@@ -110,46 +112,60 @@ impl std::error::Error for RoundTripError {}
 /// If `agents` are not as many as the agents of the scenario.
 pub fn as_given<S: HostScalar>(discs: &Scenario, agents: &[RawAgent]) -> Result<(), RoundTripError> {
     assert_eq!(discs.agents.len(), agents.len(), "the discs of the scenario");
-    for (given, held) in discs.agents.iter().zip(agents) {
-        let start = held.travel.as_ref().map_or(given.t_start, |travel| travel.start);
-        let travelled = given.path.iter().filter(|segment| turn_in_place::<S>(segment).is_none());
-        let travelled = travelled.map(PathSegment::length).sum();
-        let length = held.path.segments.last().map_or(0.0, |last| last.to);
-        // A length is rounded for each segment, and for each turn of an arc; the rounding of a radius is in it once for each radian.
-        let bends = given.path.iter().map(|segment| match segment {
-            PathSegment::Arc { sweep, .. } => sweep.abs(),
-            PathSegment::Line { .. } => 0.0,
-        });
-        let parts = (held.path.segments.len() + given.path.len() + 1) as f64 + bends.sum::<f64>();
-        let numbers = [
-            ("radius", held.radius, given.circumscribed_radius(), 1.0),
-            ("start.x", held.path.start[0], given.start[0], 1.0),
-            ("start.y", held.path.start[1], given.start[1], 1.0),
-            ("t_start", start, given.t_start, 1.0),
-            ("length of the path", length, travelled, parts),
-        ];
-        let misread =
-            |field, held, number| RoundTripError { agent: given.display_name(), field, stored: held, given: number };
-        // Lengths below the square of the least radius are taken as 0.
-        let least = S::LEAST.to_f64() * S::LEAST.to_f64();
-        for (field, held, number, parts) in numbers {
-            let digit = S::STEP.max(S::EPSILON * number.abs()).max(least);
-            if !is_within((held - number).abs(), parts * digit) {
-                return Err(misread(field, held, number));
-            }
-        }
-        let heading = match held.path.heading {
-            RawAngle::Radians(radians) => radians,
-            RawAngle::Turns(turns) => turns * TAU,
-        };
-        // Whole turns are subtracted in `f64`, here and when it was read.
-        let digit = PI * S::EPSILON.max(FINEST) + 4.0 * f64::EPSILON * given.start[2].abs();
-        let turned = (heading - given.start[2]).rem_euclid(TAU);
-        if !is_within(turned.min(TAU - turned), digit) {
-            return Err(misread("start.heading", heading, given.start[2]));
+    discs.agents.iter().zip(agents).try_for_each(|(given, held)| {
+        same_disc::<S>(given, held)?;
+        same_motion::<S>(given, held)
+    })
+}
+
+/// Numbers of a field, as they are held and given, and how many roundings there are between them.
+fn same_numbers<S: HostScalar>(given: &Agent, numbers: &[(&'static str, f64, f64, f64)]) -> Result<(), RoundTripError> {
+    // Lengths below the square of the least radius are taken as 0.
+    let least = S::LEAST.to_f64() * S::LEAST.to_f64();
+    for &(field, stored, number, parts) in numbers {
+        let digit = S::STEP.max(S::EPSILON * number.abs()).max(least);
+        if !is_within((stored - number).abs(), parts * digit) {
+            return Err(RoundTripError { agent: given.display_name(), field, stored, given: number });
         }
     }
     Ok(())
+}
+
+fn same_disc<S: HostScalar>(given: &Agent, held: &RawAgent) -> Result<(), RoundTripError> {
+    same_numbers::<S>(given, &[("radius", held.radius, given.circumscribed_radius(), 1.0)])
+}
+
+/// Compares path and times of an agent with those of a scenario.
+fn same_motion<S: HostScalar>(given: &Agent, held: &RawAgent) -> Result<(), RoundTripError> {
+    let start = held.travel.as_ref().map_or(given.t_start, |travel| travel.start);
+    let travelled = given.path.iter().filter(|segment| turn_in_place::<S>(segment).is_none());
+    let travelled = travelled.map(PathSegment::length).sum();
+    let length = held.path.segments.last().map_or(0.0, |last| last.to);
+    // A length is rounded for each segment, and for each turn of an arc; the rounding of a radius is in it once for each radian.
+    let bends = given.path.iter().map(|segment| match segment {
+        PathSegment::Arc { sweep, .. } => sweep.abs(),
+        PathSegment::Line { .. } => 0.0,
+    });
+    let parts = (held.path.segments.len() + given.path.len() + 1) as f64 + bends.sum::<f64>();
+    let numbers = [
+        ("start.x", held.path.start[0], given.start[0], 1.0),
+        ("start.y", held.path.start[1], given.start[1], 1.0),
+        ("t_start", start, given.t_start, 1.0),
+        ("length of the path", length, travelled, parts),
+    ];
+    same_numbers::<S>(given, &numbers)?;
+    let heading = match held.path.heading {
+        RawAngle::Radians(radians) => radians,
+        RawAngle::Turns(turns) => turns * TAU,
+    };
+    // Whole turns are subtracted in `f64`, here and when it was read.
+    let digit = PI * S::EPSILON.max(FINEST) + 4.0 * f64::EPSILON * given.start[2].abs();
+    let turned = (heading - given.start[2]).rem_euclid(TAU);
+    if is_within(turned.min(TAU - turned), digit) {
+        return Ok(());
+    }
+    let agent = given.display_name();
+    Err(RoundTripError { agent, field: "start.heading", stored: heading, given: given.start[2] })
 }
 
 /// A whole table of these discs, pair by pair.
@@ -174,10 +190,7 @@ pub fn pair<'a, S: HostScalar + 'a>(
 ) -> RawPair {
     let (mut regions, mut pieces) = (Vec::new(), Vec::new());
     for (number, region) in all.enumerate() {
-        regions.push(RawRegion {
-            lengths: [ends_of(region.length()), ends_of(region.other_length())],
-            times: Some([ends_of(region.clone().swapped().time()), ends_of(region.time())]),
-        });
+        regions.push(self::region(&region));
         pieces.extend(region.pieces().map(|piece| RawPiece {
             segments: piece.segments,
             lengths: [ends_of(piece.length), ends_of(piece.other_length)],
@@ -190,6 +203,14 @@ pub fn pair<'a, S: HostScalar + 'a>(
         }));
     }
     RawPair { agents, excess: excess(first, second).to_f64(), regions, pieces }
+}
+
+/// What is told of a region.
+fn region<S: HostScalar>(region: &RegionRef<'_, S>) -> RawRegion {
+    RawRegion {
+        lengths: [ends_of(region.length()), ends_of(region.other_length())],
+        times: Some([ends_of(region.clone().swapped().time()), ends_of(region.time())]),
+    }
 }
 
 #[cfg(test)]

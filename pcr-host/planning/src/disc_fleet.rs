@@ -147,6 +147,11 @@ impl<S: HostScalar> DiscFleet<S> {
         Ok(Self { fleet, scenario: Scenario::new(scenario.name.clone(), agents), discs })
     }
 
+    /// Whether an agent is computed as several discs, or as one on a part of its path.
+    pub(crate) fn is_covered(agent: &Agent) -> bool {
+        !agent.loads.is_empty() || (agent.footprint.is_some() && Fleet::<S>::outlined(agent).is_none())
+    }
+
     /// The same with the scenario itself where all agents are discs: of a large fleet, a copy of it would be large.
     ///
     /// # Errors

@@ -215,6 +215,25 @@ impl<S: HostScalar> Fleet<S> {
         Ok(Self { agents: agents.collect::<Result<_, _>>()? })
     }
 
+    /// All agents of a scenario, each as one body: its outline where the core computes with it, otherwise the disc about its reference point
+    /// that contains it.
+    ///
+    /// # Errors
+    /// As [`Fleet::new`].
+    pub fn of_bodies(scenario: &Scenario) -> Result<Self, FormatRangeError> {
+        if scenario.agents.iter().all(|agent| agent.footprint.is_none()) {
+            return Self::new(scenario);
+        }
+        let mut fleet = Self { agents: Vec::with_capacity(scenario.agents.len()) };
+        for agent in &scenario.agents {
+            match Self::outlined(agent) {
+                Some(outlined) => fleet.append(outlined),
+                None => fleet.append(Self::new(&Scenario::new("", vec![agent.clone()]))?),
+            }
+        }
+        Ok(fleet)
+    }
+
     /// One agent with its outline; `None` where the core does not compute with it: it is a disc, is concave, changes on the way,
     /// or turns in place, or the format cannot hold it or its motion.
     pub(crate) fn outlined(agent: &Agent) -> Option<Self> {

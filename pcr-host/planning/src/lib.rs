@@ -34,6 +34,8 @@ pub mod figures;
 pub mod fleet;
 pub mod memory_budget;
 pub mod nodes;
+#[cfg(test)]
+mod outline_judge;
 mod parallel;
 pub mod plan;
 pub mod regions;

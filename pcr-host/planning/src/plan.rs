@@ -11,6 +11,8 @@ mod delays;
 mod failure_reason;
 mod forbidden_delays;
 mod lower_bound;
+#[cfg(test)]
+mod outline_tests;
 mod plan_context;
 mod planner;
 mod speeds;
@@ -241,7 +243,7 @@ impl PlanReport {
         let agents = scenario.agents.len();
         memory_budget::ask(agents as u64 * AGENT_BYTES, || format!("the plan of {agents} agents"))?;
         let begin = Instant::now();
-        let fleet = Fleet::<f64>::new(scenario)?;
+        let fleet = Fleet::<f64>::of_bodies(scenario)?;
         let motions = prepared(&fleet, request.method);
         let planner = Planner { scenario, request, motions: &motions, begin };
         let starts = StartDelayResult::of(&planner)?;
@@ -262,7 +264,7 @@ impl PlanReport {
         let of_rest = |staying: &[usize], known: Option<PartialDelayPlan>| {
             let agents = staying.iter().map(|&agent| scenario.agents[agent].clone()).collect();
             let rest = Scenario { agents, ..scenario.clone() };
-            let fleet = Fleet::<f64>::new(&rest)?;
+            let fleet = Fleet::<f64>::of_bodies(&rest)?;
             let motions = prepared(&fleet, request.method);
             // An order may name those that are left out.
             let request = &request.among(&rest);

@@ -10,13 +10,13 @@ mod region_job;
 #[cfg(test)]
 mod tests;
 
+use crate::certify::CertificateTable;
 use crate::disc_fleet::BodyDisc;
 use crate::failure::ComputationError;
 use crate::fleet::{HostEcm, HostPrecedenceTable, HostScalar, build_ecm, build_orders};
 use crate::memory_budget::MemoryError;
 pub use certificate_tables::table_of;
 pub use entries::{CrossSectionEntry, CrossingDescriptor, PieceEntry, RegionEntry};
-use pcr_certify::raw::RawTable;
 use pcr_core::{CapacityError, Motion};
 use pcr_formats::footprint::CoverDisc;
 use pcr_formats::scenario::{Agent, Labels, Scenario};
@@ -47,7 +47,7 @@ pub struct RegionsReport {
     pub footprints: Vec<DiscCover>,
     /// The tables as they are held, of contact and of margins, for `pcr certify`; if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub certificate: Option<Vec<RawTable>>,
+    pub certificate: Option<Vec<CertificateTable>>,
     /// Why the scenario was refused.
     pub error: Option<String>,
     /// Warnings about input that was changed or left out when it was read.

@@ -10,7 +10,8 @@ use clap::Args;
 use pcr_formats::import::{ImportOptions, InputKind};
 use pcr_formats::input;
 use pcr_formats::scenario::Labels;
-use pcr_planning::certify::{CertifyInput, CertifyReport, RawTable};
+use pcr_planning::certify::{CertificateTable, CertifyInput, CertifyReport};
+use pcr_planning::disc_fleet::Form;
 use pcr_planning::failure::ComputationError;
 use pcr_planning::regions::table_of;
 use pcr_planning::{exclusion_table, report};
@@ -97,7 +98,7 @@ impl CertifyArgs {
     }
 
     /// Proves a table, and shows how far that is.
-    fn proved(&self, file: &Path, name: &str, table: &RawTable) -> CertifyReport {
+    fn proved(&self, file: &Path, name: &str, table: &CertificateTable) -> CertifyReport {
         let progress = ProgressLine::new(format!("{}: checks of pairs", file.display()));
         CertifyReport::watched(name, table, self.limit, &|done, total| progress.set(done, total))
     }
@@ -120,20 +121,22 @@ impl CertifyArgs {
         let file = &source(self.file.clone())?;
         let mut warnings = Vec::new();
         let text = text(file)?;
-        let scenarios = match input::kind_of(file, &text, &self.import) {
+        let (scenarios, form) = match input::kind_of(file, &text, &self.import) {
             InputKind::Layout(_) if self.import.one_of(&["routes"]).is_none() => {
                 let imported = layout_from(file, &text, &self.import, STANDING, false)?;
                 warnings.extend(imported.layout.warnings.iter().cloned());
                 acknowledge(&mut warnings);
-                exclusion_table::scenarios(&imported).map_err(|error| CliError::wrong(file, error))?
+                let levels = exclusion_table::scenarios(&imported).map_err(|error| CliError::wrong(file, error))?;
+                // Locks are those of covers.
+                (levels, Form::Covers)
             }
-            _ => vec![scenario_from(file, text, &self.import)?],
+            _ => (vec![scenario_from(file, text, &self.import)?], Form::Exact),
         };
         let certified = scenarios.into_iter().map(|mut scenario| {
             let lost = tell_rounding(self.scalar, &mut scenario).map_err(|refused| CliError::wrong(file, refused))?;
             say(file, lost);
             let scenario = &scenario;
-            let tables = with_scalar!(self.scalar, S => table_of::<S>(scenario));
+            let tables = with_scalar!(self.scalar, S => table_of::<S>(scenario, form));
             let tables = tables.map_err(|failure| CliError::wrong(file, failure))?;
             let (labels, warnings) = (Labels::from_scenario(scenario), [&warnings[..], &scenario.warnings].concat());
             let certified = tables.iter().map(|table| self.proved(file, &scenario.name, table));

@@ -1,10 +1,13 @@
 //! Proofs by [`pcr_certify`] that motions have no contact at any time.
 
-use crate::checker_input;
+use crate::checker_input::{self, outlines};
 use crate::disc_fleet::{DiscFleet, Form};
 use crate::failure::ComputationError;
 use crate::fleet::{FormatRangeError, HostScalar};
-use pcr_certify::motion::{ContactWitness, Mover, meetings};
+use pcr_certify::motion::{ContactWitness, MotionFindings, Mover, meetings};
+use pcr_certify::outline::motion::{Driven, meetings as outline_meetings};
+use pcr_certify::outline::{Body, RawBody};
+use pcr_certify::raw::RawAgent;
 use pcr_core::Motion;
 use pcr_formats::scenario::Scenario;
 use serde::Serialize;
@@ -14,8 +17,11 @@ use serde::Serialize;
 pub struct MotionCertificate {
     /// `proved`: no contact at any time. `contact`: there is one. `undecided`: so near that rounding does not tell.
     pub verdict: &'static str,
-    /// Number of pairs of discs.
+    /// Number of pairs of discs and outlines of different agents.
     pub pairs: usize,
+    /// Number of outlines that were proved as they are, and not as covers.
+    #[serde(skip_serializing_if = "is_none")]
+    pub outlines: usize,
     /// Number of intervals of time that were examined.
     pub steps: usize,
     /// A contact of each pair of discs that has one.
@@ -38,32 +44,46 @@ pub struct CertificateContact {
     pub j: u64,
     /// Time \[s\].
     pub t: f64,
-    /// Distance of the centres of two of their discs less the radii \[m\]; NaN where it is not known, in JSON `null`.
+    /// Distance of the outlines, or of two of their discs \[m\]; NaN where it is not known, in JSON `null`.
     pub clearance: f64,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde asks for")]
+fn is_none(outlines: &usize) -> bool {
+    *outlines == 0
+}
+
 impl MotionCertificate {
-    /// The proof for a scenario, as the format `S` represents it.
+    /// The proof for a scenario, as the format `S` represents it: of the outlines that the core computes with, and of the discs of all other
+    /// agents.
     ///
     /// # Errors
     /// [`FormatRangeError`] if a value does not fit the format.
     pub fn prove<S: HostScalar>(scenario: &Scenario) -> Result<Self, FormatRangeError> {
-        let (fleet, discs, given) = DiscFleet::<S>::moving(scenario, Form::Covers)?;
+        let (fleet, discs, given) = DiscFleet::<S>::moving(scenario, Form::Exact)?;
         let motions = fleet.motions();
         let all = Motion::span(&motions);
         let ids: Vec<u64> = discs.iter().map(|disc| scenario.agents[disc.agent].id).collect();
         let agents = checker_input::agents(&fleet, &motions, &ids);
-        if let Err(misread) = checker_input::as_given::<S>(&given, &agents) {
-            return Ok(Self { error: Some(misread.to_string()), ..Self::found(&[]) }.undecided());
-        }
-        let movers = agents.iter().zip(&motions).zip(&discs).map(|((agent, motion), disc)| {
+        let times = motions.iter().zip(&discs).map(|(motion, disc)| {
             let time = disc.time(motion, all);
-            let mover = Mover::new(agent, [time.lo.to_f64(), time.hi.to_f64()]);
-            mover.map_err(|problem| format!("agent {}: {problem}", agent.id))
+            [time.lo.to_f64(), time.hi.to_f64()]
         });
-        Ok(match movers.collect::<Result<Vec<_>, _>>() {
-            Ok(movers) => Self::found(&movers),
-            Err(problem) => Self { error: Some(problem), ..Self::found(&[]) }.undecided(),
+        let times: Vec<[f64; 2]> = times.collect();
+        let count = motions.iter().filter(|motion| outlines::is_outline(motion)).count();
+        let found = if count == 0 {
+            checker_input::as_given::<S>(&given, &agents)
+                .map_err(|misread| misread.to_string())
+                .and_then(|()| of_discs(&agents, &times))
+        } else {
+            let bodies = outlines::bodies(agents.clone(), &motions);
+            outlines::as_given::<S>(&given, &agents, &bodies)
+                .map_err(|misread| misread.to_string())
+                .and_then(|()| of_outlines(&bodies, &times))
+        };
+        Ok(match found {
+            Ok(found) => Self { outlines: count, ..Self::found(&found) },
+            Err(problem) => Self { error: Some(problem), ..Self::found(&MotionFindings::default()) }.undecided(),
         })
     }
 
@@ -78,8 +98,7 @@ impl MotionCertificate {
         }
     }
 
-    fn found(movers: &[Mover]) -> Self {
-        let found = meetings(movers);
+    fn found(found: &MotionFindings) -> Self {
         let contact = |meeting: &ContactWitness| {
             let [i, j] = meeting.agents;
             CertificateContact { i, j, t: meeting.time, clearance: meeting.clearance }
@@ -92,6 +111,7 @@ impl MotionCertificate {
         Self {
             verdict,
             pairs: found.pairs,
+            outlines: 0,
             steps: found.steps,
             contacts: found.contacts.iter().map(contact).collect(),
             undecided: found.undecided.iter().map(contact).collect(),
@@ -102,4 +122,22 @@ impl MotionCertificate {
     fn undecided(self) -> Self {
         Self { verdict: "undecided", ..self }
     }
+}
+
+/// What the checker finds of discs that are there at these times.
+fn of_discs(agents: &[RawAgent], times: &[[f64; 2]]) -> Result<MotionFindings, String> {
+    let movers = agents
+        .iter()
+        .zip(times)
+        .map(|(agent, &time)| Mover::new(agent, time).map_err(|problem| format!("agent {}: {problem}", agent.id)));
+    Ok(meetings(&movers.collect::<Result<Vec<_>, _>>()?))
+}
+
+/// What the checker finds of bodies that are there at these times.
+fn of_outlines(bodies: &[RawBody], times: &[[f64; 2]]) -> Result<MotionFindings, String> {
+    let wrong = |id: u64| move |problem: String| format!("agent {id}: {problem}");
+    let placed = bodies.iter().map(|raw| Body::new(raw).map_err(wrong(raw.id)));
+    let placed: Vec<Body<'_>> = placed.collect::<Result<_, _>>()?;
+    let driven = placed.iter().zip(times).map(|(body, &time)| Driven::new(body, time).map_err(wrong(body.raw.id)));
+    Ok(outline_meetings(&driven.collect::<Result<Vec<_>, _>>()?))
 }

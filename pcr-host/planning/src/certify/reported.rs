@@ -1,5 +1,7 @@
 //! Compares the other contents of an answer of `pcr regions` with its tables.
 
+use super::CertificateTable;
+use pcr_certify::outline::RawBody;
 use pcr_certify::raw::{RawAgent, RawPair, RawRegion, RawTable};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -74,6 +76,22 @@ pub(super) fn enlarged(discs: &RawTable, margins: &RawTable) -> Result<(), Strin
         return Err(format!("certificate: agents[{place}] of the two tables differ: {differs}"));
     }
     Ok(())
+}
+
+/// Checks that two tables have the same outlines but for their radii.
+pub(super) fn same_corners(bodies: &CertificateTable, margins: &CertificateTable) -> Result<(), String> {
+    let (CertificateTable::Outlines(bodies), CertificateTable::Outlines(margins)) = (bodies, margins) else {
+        return Ok(());
+    };
+    let pairs = bodies.bodies.iter().zip(&margins.bodies).enumerate();
+    let same = |a: &RawBody, b: &RawBody| {
+        a.outline.corners == b.outline.corners
+            && a.segments.iter().zip(&b.segments).all(|(a, b)| a.heading == b.heading && a.course == b.course)
+    };
+    match pairs.into_iter().find(|(_, (body, margin))| !same(body, margin)) {
+        Some((place, _)) => Err(format!("certificate: bodies[{place}] of the two tables differ: outline")),
+        None => Ok(()),
+    }
 }
 
 /// Checks that the requested agent is in the certificate; otherwise nothing would be compared.

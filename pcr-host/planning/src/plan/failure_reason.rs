@@ -66,7 +66,7 @@ fn found(scenario: &Scenario, ids: [u64; 2], always: bool, general: &str) -> Opt
     let fleet = Fleet::<f64>::new(&scenario).ok()?;
     let references = fleet.motions();
     let references = [references.first()?, references.get(1)?];
-    let bodies = DiscFleet::<f64>::new(&scenario, Form::Covers).ok()?;
+    let bodies = DiscFleet::<f64>::new(&scenario, Form::Exact).ok()?;
     let (grown, exact) = (motions_with_margins(&bodies.fleet), bodies.fleet.motions());
     let pair = BlockedPair { references, discs: &bodies.discs, grown: &grown, exact: &exact };
     let others: Vec<u32> = pair.of(1).map(|disc| disc as u32).collect();
@@ -131,14 +131,18 @@ impl<'a> BlockedPair<'a> {
     fn standing(&self, at_end: bool) -> Option<(String, BlockingLocation)> {
         let Self { references, discs, grown, exact } = *self;
         let there = |&disc: &usize| discs[disc].stands()[usize::from(at_end)];
-        let at = |disc: usize| grown[disc].path().point_at(if at_end { grown[disc].path().length() } else { 0.0 });
+        let all = Motion::span(exact);
+        let time = if at_end { all.hi } else { all.lo };
+        let apart = |motions: [&Motion<'_, f64>; 2]| {
+            let encounter = Encounter::new(motions[0], motions[1]);
+            (encounter.closest(Interval::new(time, time)).separation - encounter.radius(), encounter.tolerance())
+        };
         let pairs = self.of(0).filter(there).flat_map(|a| self.of(1).filter(there).map(move |b| [a, b]));
         let near = pairs.filter_map(|[a, b]| {
-            let apart = (at(a).x - at(b).x).hypot(at(a).y - at(b).y);
-            let gap = apart - exact[a].radius() - exact[b].radius();
+            let (gap, tolerance) = apart([&exact[a], &exact[b]]);
             let margin = exact[a].margin() + exact[b].margin();
-            let tolerance = Encounter::new(&exact[a], &exact[b]).tolerance();
-            (apart < grown[a].radius() + grown[b].radius()).then_some((gap, ProximityKind::of(gap, margin, tolerance)))
+            let (within, _) = apart([&grown[a], &grown[b]]);
+            (within < 0.0).then_some((gap, ProximityKind::of(gap, margin, tolerance)))
         });
         let (_, nearest) = near.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let place = if at_end { "at the ends of their paths" } else { "at their starts" };

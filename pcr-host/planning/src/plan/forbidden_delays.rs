@@ -2,7 +2,7 @@
 //!
 //! The forbidden delays of a region depend only on the difference of two delays: T_other(s) + τ_other = T_ego(l) +
 //! τ_ego. The intervals are computed once for all pairs; a schedule for any order of priority then only compares
-//! numbers. The discs of a footprint are delayed together, so the forbidden delays of two agents are the union of those
+//! numbers. The discs of a footprint that is covered are delayed together, so the forbidden delays of two agents are the union of those
 //! of any two of their discs. A disc of a load is there on some segments only: before its first and after its last it meets nobody.
 //!
 //! An interval without a lower end means that the other agent goes first, one without an upper end that it goes last.
@@ -108,7 +108,7 @@ impl ForbiddenDelays {
     /// # Errors
     /// [`ComputationError`] if a value does not fit, or the table cannot hold the fleet.
     pub fn compute(scenario: &Scenario) -> Result<Self, ComputationError> {
-        let bodies = DiscFleet::<f64>::new(scenario, Form::Covers)?;
+        let bodies = DiscFleet::<f64>::new(scenario, Form::Exact)?;
         let motions = motions_with_margins(&bodies.fleet);
         let owners: Vec<DiscOwner> = bodies.discs.iter().map(DiscOwner::of).collect();
         Self::between(&motions, &owners, scenario.agents.len()).map_err(|failure| failure.named(&bodies.scenario))

@@ -5,6 +5,7 @@ use super::delays::{self, DelayResult, Objective};
 use super::forbidden_delays::{AgentWithoutDelay, DelaySchedule, ForbiddenDelays};
 use super::plan_context::Planner;
 use super::{PriorityRule, UnplannedAgents, failure_reason};
+use crate::disc_fleet::DiscFleet;
 use crate::failure::ComputationError;
 use crate::parallel;
 use pcr_core::Motion;
@@ -44,8 +45,8 @@ pub(super) struct StartDelayResult {
     fewest: bool,
     /// Agents that cannot start in the requested order.
     out: Vec<AgentWithoutDelay>,
-    /// Whether discs of footprints or loads were planned.
-    pub(super) outlined: bool,
+    /// Whether discs of footprints or loads were planned: bodies that are covered.
+    pub(super) covered: bool,
 }
 
 impl StartDelayResult {
@@ -65,7 +66,7 @@ impl StartDelayResult {
         let DelayResult { delays, bound, proved, conflicts, fewest } =
             delays::best(&problem, &known, request.effort, request.leave_out);
         let seconds = |delay: &Option<i64>| delay.map(|delay| ticks.seconds(i128::from(delay)));
-        let outlined = scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty());
+        let covered = scenario.agents.iter().any(DiscFleet::<f64>::is_covered);
         let found = Self {
             delays: delays.map(|delays| delays.iter().map(seconds).collect()),
             order: Vec::new(),
@@ -74,7 +75,7 @@ impl StartDelayResult {
             conflicts,
             fewest,
             out: Vec::new(),
-            outlined,
+            covered,
         };
         if is_best {
             return Ok(found);
@@ -113,13 +114,13 @@ impl StartDelayResult {
         }
     }
 
-    /// Adds reasons why no speed plan was found. A reason about the discs around outlines is dropped if the outlines themselves
+    /// Adds reasons why no speed plan was found. A reason about the discs around footprints is dropped if their covers
     /// do not have it; with `leave_out` the reasons are for all agents that are left out.
     pub(super) fn added(&self, planner: &Planner<'_, '_>, found: Vec<UnplannedAgents>) -> Vec<UnplannedAgents> {
-        if self.of_all().is_some() || !(self.outlined || planner.request.leave_out) {
+        if self.of_all().is_some() || !(self.covered || planner.request.leave_out) {
             return found;
         }
-        let mut all = if self.outlined { Vec::new() } else { found };
+        let mut all = if self.covered { Vec::new() } else { found };
         let sorted = |unsolved: &UnplannedAgents| {
             let mut ids = unsolved.ids.clone();
             ids.sort_unstable();
@@ -137,8 +138,8 @@ impl StartDelayResult {
     pub(super) fn unsolved(&self, planner: &Planner<'_, '_>) -> Vec<UnplannedAgents> {
         let ids = |agents: &[usize]| agents.iter().map(|&agent| planner.id(agent)).collect::<Vec<_>>();
         let mut unsolved: Vec<UnplannedAgents> = Vec::new();
-        // For footprints it would not be a proof: the discs around them may have to wait where the footprints need not.
-        let circle = if self.outlined { None } else { planner.circle() };
+        // For covers it would not be a proof: the discs around footprints may have to wait where the footprints need not.
+        let circle = if self.covered { None } else { planner.circle() };
         if let Some(circle) = &circle {
             unsolved.push(UnplannedAgents::nowhere(ids(circle), CIRCULAR_WAIT));
         }

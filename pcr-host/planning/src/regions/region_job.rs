@@ -50,9 +50,7 @@ impl<'s, S: HostScalar> RegionJob<'s, S> {
         if let Some(asked) = request.agent.filter(|asked| !ids.contains(asked)) {
             return Err(ComputationError::NoSuchAgent(asked, ids));
         }
-        // The regions are those of the tables, and these have discs only.
-        let form = if request.certificate { Form::Covers } else { Form::Exact };
-        let bodies = DiscFleet::<S>::new(scenario, form)?;
+        let bodies = DiscFleet::<S>::new(scenario, Form::Exact)?;
         let mut discs = vec![0..0; ids.len()];
         for (place, disc) in bodies.discs.iter().enumerate() {
             if let Some(own) = discs.get_mut(disc.agent) {
@@ -145,7 +143,7 @@ impl<'s, S: HostScalar> RegionJob<'s, S> {
     /// # Errors
     /// [`ComputationError`] where a value does not fit the format.
     pub fn head(&self) -> Result<RegionsReport, ComputationError> {
-        let certificate = || table_of::<S>(self.scenario);
+        let certificate = || table_of::<S>(self.scenario, Form::Exact);
         Ok(RegionsReport {
             name: self.scenario.name.clone(),
             labels: self.labels.clone(),

@@ -40,14 +40,18 @@ pub fn certified_table(certified: &CertifyReport, out: &mut dyn Write) -> io::Re
         return writeln!(out, "{name}: {error}");
     }
     let counted = |count: usize, one: &str, many: &str| format!("{count} {}", if count == 1 { one } else { many });
+    let bodies = [
+        (certified.discs > 0 || certified.outlines == 0).then(|| counted(certified.discs, "disc", "discs")),
+        (certified.outlines > 0).then(|| counted(certified.outlines, "outline", "outlines") + " as they are"),
+    ];
     let counts = [
-        counted(certified.discs, "disc", "discs"),
         counted(certified.segment_pairs, "pair of segments", "pairs of segments"),
         counted(certified.pieces, "piece", "pieces"),
         counted(certified.times, "region in time", "regions in time"),
         counted(certified.steps, "step", "steps"),
     ];
     let verdict = certified.verdict.unwrap_or("refused");
+    let counts: Vec<String> = bodies.into_iter().flatten().chain(counts).collect();
     writeln!(out, "{name}: {verdict}; {}", counts.join(", "))?;
     if let Some(margin) = certified.margin {
         writeln!(out, "Contacts are covered up to the combined radius and {margin:.3} of the bound ε.")?;

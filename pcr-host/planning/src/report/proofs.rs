@@ -16,7 +16,14 @@ pub fn proof_line(proof: &MotionCertificate, labels: &Labels) -> String {
     };
     let found = match (proof.verdict, &proof.error) {
         (_, Some(problem)) => format!("none, {problem}"),
-        ("proved", _) => format!("no contact at any time, proved ({} of discs)", counted(proof.pairs, "pair")),
+        ("proved", _) => {
+            let pairs = counted(proof.pairs, "pair");
+            let bodies = match proof.outlines {
+                0 => "discs".into(),
+                outlines => format!("bodies; {} as they are", counted(outlines, "outline")),
+            };
+            format!("no contact at any time, proved ({pairs} of {bodies})")
+        }
         ("contact", _) => format!("contact, {}", place(&proof.contacts)),
         _ => format!("not decided, {}", place(&proof.undecided)),
     };
@@ -34,6 +41,7 @@ mod tests {
             let proof = MotionCertificate {
                 verdict: "undecided",
                 pairs: 1,
+                outlines: 0,
                 steps: 1,
                 contacts: Vec::new(),
                 undecided,

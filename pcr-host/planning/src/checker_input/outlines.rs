@@ -1,0 +1,154 @@
+//! Bodies and their tables as plain numbers for [`pcr_certify::outline`]: outlines, and the discs beside them as outlines of one corner.
+
+use super::{RoundTripError, ends_of, same_disc, same_motion};
+use crate::fleet::HostScalar;
+use pcr_certify::outline::{
+    RawBody, RawBodySegment, RawCourse, RawHeading, RawOutline, RawOutlinePair, RawOutlinePiece,
+};
+use pcr_certify::raw::{RawAgent, RawAngle, RawBranch, RawPair};
+use pcr_core::{Motion, RegionRef, excess};
+use pcr_formats::scenario::{Agent, Scenario};
+
+/// What headings on both sides of a joint may differ by: they are one number, but for the rounding of the checker \[rad\].
+const JUMP: f64 = 1e-12;
+
+/// Whether a motion is that of an outline and not of a disc.
+pub fn is_outline<S: HostScalar>(motion: &Motion<'_, S>) -> bool {
+    !motion.outline().corners().is_empty()
+}
+
+/// The bodies of motions whose paths and times are those of these agents.
+pub fn bodies<S: HostScalar>(agents: Vec<RawAgent>, motions: &[Motion<'_, S>]) -> Vec<RawBody> {
+    agents.into_iter().zip(motions).map(|(agent, motion)| body(agent, motion)).collect()
+}
+
+fn body<S: HostScalar>(agent: RawAgent, motion: &Motion<'_, S>) -> RawBody {
+    let outline = motion.outline();
+    let corners = outline.corners().iter().map(|corner| [corner.at().x.to_f64(), corner.at().y.to_f64()]);
+    let corners: Vec<[f64; 2]> = if is_outline(motion) { corners.collect() } else { vec![[0.0; 2]] };
+    let segments = agent.path.segments.into_iter().map(|segment| RawBodySegment {
+        course: segment.radius.map_or(RawCourse::Line, |radius| RawCourse::Arc { radius }),
+        length: segment.length,
+        turns: segment.turns,
+        heading: RawHeading::Along(RawAngle::Turns(0.0)),
+        from: segment.from,
+        to: segment.to,
+    });
+    RawBody {
+        id: agent.id,
+        outline: RawOutline { corners, radius: outline.radius().to_f64() },
+        start: agent.path.start,
+        direction: agent.path.heading,
+        segments: segments.collect(),
+        rounding: agent.path.rounding,
+        jump: JUMP,
+        step: agent.path.step,
+        travel: agent.travel,
+    }
+}
+
+/// Compares what the checker is given, before margins, with the agents of a scenario, as [`super::as_given`] does for discs. Outlines have to
+/// hold those of the file, and be larger by no more than the last digits of the format.
+///
+/// # Errors
+/// [`RoundTripError`], with the first difference.
+///
+/// # Panics
+/// If `agents` or `bodies` are not as many as the agents of the scenario.
+pub fn as_given<S: HostScalar>(
+    given: &Scenario,
+    agents: &[RawAgent],
+    bodies: &[RawBody],
+) -> Result<(), RoundTripError> {
+    assert_eq!([given.agents.len(); 2], [agents.len(), bodies.len()], "the bodies of the scenario");
+    for ((given, agent), body) in given.agents.iter().zip(agents).zip(bodies) {
+        same_motion::<S>(given, agent)?;
+        if body.outline.corners == [[0.0; 2]] { same_disc::<S>(given, agent) } else { same_outline::<S>(given, body) }?;
+    }
+    Ok(())
+}
+
+/// Digits of a coordinate by which an outline may be larger than that of the file: needless corners, rounding of corners and radius.
+const DIGITS: f64 = 16.0;
+
+fn same_outline<S: HostScalar>(given: &Agent, body: &RawBody) -> Result<(), RoundTripError> {
+    let RawOutline { corners, radius } = &body.outline;
+    let misread =
+        |needed| RoundTripError { agent: given.display_name(), field: "footprint", stored: *radius, given: needed };
+    let Some(footprint) = &given.footprint else { return Err(misread(given.circumscribed_radius())) };
+    let size = footprint.polygon().iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+    // The radius makes up for what the polygon has lost.
+    let needed = footprint.growth() + footprint.beyond(corners);
+    let most = footprint.growth() + DIGITS * (S::STEP + S::EPSILON * size);
+    // No corner is one that the file does not have.
+    let nearest = |corner: &[f64; 2]| {
+        let away = footprint.polygon().iter().map(|own| (own[0] - corner[0]).hypot(own[1] - corner[1]));
+        away.fold(f64::INFINITY, f64::min)
+    };
+    let off = corners.iter().map(nearest).fold(0.0, f64::max);
+    let holds = needed <= *radius && *radius <= most && off <= S::STEP + S::EPSILON * size;
+    if holds { Ok(()) } else { Err(misread(needed)) }
+}
+
+/// Two bodies with their regions, in the order of the table.
+pub fn pair<'a, S: HostScalar + 'a>(
+    bodies: [usize; 2],
+    [first, second]: [&Motion<'_, S>; 2],
+    all: impl Iterator<Item = RegionRef<'a, S>>,
+) -> RawOutlinePair {
+    let regions: Vec<RegionRef<'a, S>> = all.collect();
+    let pieces = regions.iter().enumerate().flat_map(|(number, region)| {
+        region.pieces().map(move |piece| RawOutlinePiece {
+            segments: piece.segments,
+            lengths: [ends_of(piece.length), ends_of(piece.other_length)],
+            // Of discs there are one or two intervals.
+            rank: piece.rank.unwrap_or(match piece.share {
+                pcr_core::Branch::Only => [0, 1],
+                pcr_core::Branch::Start => [0, 2],
+                pcr_core::Branch::End => [1, 2],
+            }),
+            region: number,
+        })
+    });
+    let pieces = pieces.collect();
+    let regions = regions.into_iter().map(|region| super::region(&region)).collect();
+    RawOutlinePair { bodies, excess: excess(first, second).to_f64(), regions, pieces }
+}
+
+/// A body as an agent on the same path, of which its outline is forgotten: what of a table does not depend on the outlines.
+pub fn agent(body: &RawBody) -> RawAgent {
+    let segments = body.segments.iter().map(|segment| pcr_certify::raw::RawSegment {
+        length: segment.length,
+        radius: match segment.course {
+            RawCourse::Line => None,
+            RawCourse::Arc { radius } => Some(radius),
+            RawCourse::Pivot { lever } => Some(lever),
+        },
+        turns: segment.turns.clone(),
+        from: segment.from,
+        to: segment.to,
+    });
+    RawAgent {
+        id: body.id,
+        radius: body.outline.radius,
+        path: pcr_certify::raw::RawPath {
+            start: body.start,
+            heading: body.direction,
+            segments: segments.collect(),
+            rounding: body.rounding,
+            step: body.step,
+        },
+        travel: body.travel.clone(),
+    }
+}
+
+/// A pair of bodies as one of agents, without the ranks of its pieces.
+pub fn pair_of_agents(pair: &RawOutlinePair) -> RawPair {
+    let pieces = pair.pieces.iter().map(|piece| pcr_certify::raw::RawPiece {
+        segments: piece.segments,
+        lengths: piece.lengths,
+        share: RawBranch::Only,
+        region: piece.region,
+    });
+    RawPair { agents: pair.bodies, excess: pair.excess, regions: pair.regions.clone(), pieces: pieces.collect() }
+}
