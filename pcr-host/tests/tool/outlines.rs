@@ -1,4 +1,4 @@
-//! Footprints that are convex polygons, which `pcr regions` and `pcr check` compute with as they are.
+//! Footprints that are convex polygons, which `pcr regions`, `pcr check`, `pcr plan` and `pcr certify` compute with as they are.
 
 use crate::fixture::{file, run, straight};
 use serde_json::{Value, json};
@@ -48,20 +48,47 @@ fn the_closest_approach_is_that_of_the_outlines() {
 }
 
 #[test]
-fn what_is_certified_are_covers_and_the_answer_says_so() {
+fn what_is_certified_are_the_outlines_and_the_answer_says_so() {
     // Covers of these trucks are 0.97 m wide.
-    let near = lanes("near.json", 0.9);
-    let ids = |answer: &Value| -> Vec<u64> {
-        answer["footprints"].as_array().unwrap().iter().map(|cover| cover["id"].as_u64().unwrap()).collect()
-    };
-    assert_eq!(run(&["check", &near, "--json"]).json()["conflicts"], json!([]));
-    let certified = run(&["check", &near, "--json", "--certify"]).json_of(1);
-    assert!(ids(&certified) == [1, 2] && certified["certificate"]["verdict"] == "contact", "{certified}");
-    assert!(!certified["conflicts"].as_array().unwrap().is_empty());
-    let table = run(&["regions", &near, "--json", "--certificate"]).json();
-    assert!(ids(&table) == [1, 2] && !table["regions"].as_array().unwrap().is_empty());
-    let name = file("outlines", "table.json", table.to_string());
-    assert_eq!(run(&["certify", "--table", &name, "--json"]).json()["verdict"], "proved");
-    let apart = run(&["check", &lanes("apart.json", 1.0), "--json", "--certify"]).json();
-    assert_eq!((ids(&apart), &apart["certificate"]["verdict"]), (vec![1, 2], &json!("proved")));
+    for (name, apart, is_free) in [("near.json", 0.801, true), ("touch.json", 0.799, false)] {
+        let near = lanes(name, apart);
+        let status = i32::from(!is_free);
+        let certified = run(&["check", &near, "--json", "--certify"]).json_of(status);
+        let proof = &certified["certificate"];
+        assert_eq!(proof["verdict"], if is_free { "proved" } else { "contact" }, "{certified}");
+        assert!(proof["outlines"] == 2 && certified.get("footprints").is_none(), "{certified}");
+        for scalar in FORMATS {
+            let table = run(&["regions", &near, "--json", "--certificate", "--scalar", scalar]).json();
+            assert!(table.get("footprints").is_none());
+            assert_eq!(table["regions"].as_array().unwrap().is_empty(), is_free, "{scalar}");
+            let name = file("outlines", "table.json", table.to_string());
+            let proved = run(&["certify", "--table", &name, "--json"]).json();
+            assert_eq!((&proved["verdict"], &proved["outlines"]), (&json!("proved"), &json!(2)), "{scalar}");
+            if !is_free {
+                // Without its region.
+                let mut other = table;
+                let pair = &mut other["certificate"][0]["pairs"][0];
+                (pair["regions"], pair["pieces"]) = (json!([]), json!([]));
+                other.as_object_mut().unwrap().remove("regions");
+                let name = file("outlines", "without.json", other.to_string());
+                assert_eq!(run(&["certify", "--table", &name, "--json"]).json_of(1)["verdict"], "refuted", "{scalar}");
+            }
+        }
+        let told = run(&["certify", &near]).ok();
+        assert!(told.starts_with("lanes: proved; 2 outlines as they are, 1 pair of segments"), "{told}");
+    }
+}
+
+#[test]
+fn plans_of_outlines_are_planned_and_proved_as_they_are() {
+    let near = lanes("plan.json", 0.801);
+    for method in ["delay", "speed"] {
+        let plan = run(&["plan", &near, "--method", method, "--json"]).json();
+        let delays = plan["agents"].as_array().unwrap().iter().map(|agent| agent["delay"].as_f64().unwrap());
+        assert!(delays.fold(0.0, f64::max) == 0.0 && plan["proved"] == true, "{plan}");
+        assert_eq!(plan["certificate"]["outlines"], 2, "{plan}");
+    }
+    let told = run(&["plan", &near]).ok();
+    let line = "certificate: no contact at any time, proved (1 pair of bodies; 2 outlines as they are)";
+    assert!(told.contains(line), "{told}");
 }
