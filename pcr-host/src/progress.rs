@@ -1,9 +1,9 @@
 //! A line on the terminal that shows the progress of long work.
 
 use std::io::{self, IsTerminal, Write};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -34,6 +34,7 @@ pub(crate) fn request() {
 #[derive(Debug)]
 pub(crate) struct ProgressLine {
     counts: Arc<ProgressCounters>,
+    begin: Instant,
     running: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
@@ -44,6 +45,8 @@ pub(crate) struct ProgressCounters {
     pub(crate) total: AtomicUsize,
     /// When the work ends at the latest, counted from its begin; milliseconds, 0 where it is not known.
     pub(crate) limit: AtomicU64,
+    /// The part of the work that the counts are of, and how many milliseconds from the begin of the work it began.
+    pub(crate) part: Mutex<Option<(&'static str, u64)>>,
 }
 
 impl ProgressLine {
@@ -53,7 +56,7 @@ impl ProgressLine {
         let is_terminal = io::stderr().is_terminal();
         let told = (is_terminal || REQUESTED.load(Ordering::Relaxed)) && !SILENT.load(Ordering::Relaxed);
         let running = if told { watch(what.into(), Arc::clone(&counts), is_terminal) } else { None };
-        Self { counts, running }
+        Self { counts, begin: Instant::now(), running }
     }
 
     /// Begins to watch over some work that takes this long at most.
@@ -61,6 +64,15 @@ impl ProgressLine {
         let progress = Self::new(what);
         progress.counts.limit.store(u64::try_from(limit.as_millis()).unwrap_or(u64::MAX), Ordering::Relaxed);
         progress
+    }
+
+    /// Of a part of the work so many of so many things are done. Its remaining time is counted from its own begin.
+    pub(crate) fn set_part(&self, part: &'static str, done: usize, total: usize) {
+        let mut current = self.counts.part.lock().unwrap_or_else(PoisonError::into_inner);
+        if current.is_none_or(|(name, _)| name != part) {
+            *current = Some((part, u64::try_from(self.begin.elapsed().as_millis()).unwrap_or(u64::MAX)));
+        }
+        self.set(done, total);
     }
 
     /// So many of so many things are done; `total` is 0 where it is not known.
@@ -96,6 +108,11 @@ fn watch(what: String, counts: Arc<ProgressCounters>, is_terminal: bool) -> Opti
 
 /// What is told after some time.
 pub(crate) fn line(what: &str, counts: &ProgressCounters, elapsed: Duration) -> String {
+    let part = *counts.part.lock().unwrap_or_else(PoisonError::into_inner);
+    let (what, elapsed) = match part {
+        Some((part, begin)) => (format!("{what}, {part}"), elapsed.saturating_sub(Duration::from_millis(begin))),
+        None => (what.to_owned(), elapsed),
+    };
     let seconds = elapsed.as_secs();
     match (counts.done.load(Ordering::Relaxed), counts.total.load(Ordering::Relaxed)) {
         (0, 0) if counts.limit.load(Ordering::Relaxed) > 0 => {

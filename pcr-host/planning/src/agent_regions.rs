@@ -188,10 +188,12 @@ const GATHERED: usize = 1024;
 pub(crate) fn gathered<'a, S: HostScalar, T: Send>(
     motions: &[Motion<'a, S>],
     what: &str,
+    told: &dyn Fn(usize, usize),
     make: impl Fn(&AgentRegions<'a, S>) -> Vec<T> + Sync,
 ) -> Result<Vec<T>, ComputationError> {
     let grid = grid(motions);
     let (mut all, mut held) = (Vec::new(), MemoryBudget::default());
+    told(0, motions.len());
     for first in (0..motions.len()).step_by(GATHERED) {
         let end = motions.len().min(first + GATHERED);
         let of_stretch = |stretch: usize| {
@@ -205,6 +207,7 @@ pub(crate) fn gathered<'a, S: HostScalar, T: Send>(
                 held.extend(&mut all, row, 0, what)?;
             }
         }
+        told(end, motions.len());
     }
     Ok(all)
 }

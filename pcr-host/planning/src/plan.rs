@@ -14,6 +14,7 @@ mod lower_bound;
 #[cfg(test)]
 mod outline_tests;
 mod plan_context;
+mod plan_progress;
 mod planner;
 mod speeds;
 mod starts;
@@ -34,6 +35,7 @@ use pcr_formats::warning::WarningCode;
 
 pub use failure_reason::BlockingLocation;
 use plan_context::Planner;
+pub use plan_progress::{PlanProgressFn, PlanStage};
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 pub use starts::some as start_delays;
@@ -240,12 +242,24 @@ impl PlanReport {
     /// # Errors
     /// [`ComputationError`] where a value does not fit, the table cannot hold the fleet, or an agent of the order is not there.
     pub fn compute(scenario: &Scenario, request: &PlanOptions) -> Result<PlanAnswer, ComputationError> {
+        Self::watched(scenario, request, &|_, _, _| {})
+    }
+
+    /// The same; tells meanwhile how far it is.
+    ///
+    /// # Errors
+    /// As [`PlanReport::compute`].
+    pub fn watched(
+        scenario: &Scenario,
+        request: &PlanOptions,
+        told: PlanProgressFn<'_>,
+    ) -> Result<PlanAnswer, ComputationError> {
         let agents = scenario.agents.len();
         memory_budget::ask(agents as u64 * AGENT_BYTES, || format!("the plan of {agents} agents"))?;
         let begin = Instant::now();
         let fleet = Fleet::<f64>::of_bodies(scenario)?;
         let motions = prepared(&fleet, request.method);
-        let planner = Planner { scenario, request, motions: &motions, begin };
+        let planner = Planner { scenario, request, motions: &motions, begin, told };
         let starts = StartDelayResult::of(&planner)?;
         let everybody = starts.of_all();
         let (mut plan, solved) = match request.method {
@@ -268,7 +282,7 @@ impl PlanReport {
             let motions = prepared(&fleet, request.method);
             // An order may name those that are left out.
             let request = &request.among(&rest);
-            Planner { scenario: &rest, request, motions: &motions, begin }.plan(known)
+            Planner { scenario: &rest, request, motions: &motions, begin, told }.plan(known)
         };
         let (mut partial, mut solved) = of_rest(&staying, Some(starts.known(&staying)))?;
         // Other speeds may have a plan for agents that start delays leave out.

@@ -14,7 +14,7 @@ use pcr_formats::output;
 use pcr_formats::scenario::{Agent, Scenario};
 use pcr_formats::warning::WarningCode;
 use pcr_planning::failure::ComputationError;
-use pcr_planning::plan::{DelaySearchOptions, Objective, PlanMethod, PlanOptions, PlanReport, PriorityRule};
+use pcr_planning::plan::{DelaySearchOptions, Objective, PlanMethod, PlanOptions, PlanReport, PlanStage, PriorityRule};
 use pcr_planning::regions::find;
 use pcr_planning::report;
 use std::io::Write;
@@ -253,13 +253,18 @@ impl PlanArgs {
         if self.pictures.is_some() {
             are_few(agents, "maps are drawn").and_then(|()| ask_for_regions(&scenario)).map_err(wrong)?;
         }
-        // How long it takes nobody knows before.
         let what = format!("{}: planning {agents} agents", source.file().display());
         let progress = match self.time_limit {
             Some(limit) => ProgressLine::until(what, limit),
             None => ProgressLine::new(what),
         };
-        let planned = PlanReport::compute(&scenario, &request);
+        // A limit tells more about the remaining time than the parts of the work.
+        let told = |part: PlanStage, done: usize, total: usize| {
+            if self.time_limit.is_none() {
+                progress.set_part(part.name(), done, total);
+            }
+        };
+        let planned = PlanReport::watched(&scenario, &request, &told);
         drop(progress);
         let (mut plan, mut solved) = planned.map_err(wrong)?;
         acknowledge(&mut plan.warnings);

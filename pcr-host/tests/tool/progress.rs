@@ -16,13 +16,26 @@ fn what_is_left_takes_as_long_as_what_is_done() {
 #[test]
 fn the_line_has_a_percentage_and_the_remaining_time() {
     let line = |done: usize, total: usize, limit: u64| {
-        let counts = ProgressCounters { done: done.into(), total: total.into(), limit: limit.into() };
+        let counts =
+            ProgressCounters { done: done.into(), total: total.into(), limit: limit.into(), part: None.into() };
         line("planning", &counts, Duration::from_secs(10))
     };
     assert_eq!(line(250, 1000, 0), "planning: 250 of 1000 (25 %, 25 a second, 10 s, 30 s to go)");
     assert_eq!(line(0, 0, 40_000), "planning (25 % of the time limit, 10 s, 30 s to go)");
     assert_eq!(line(0, 0, 0), "planning (10 s)");
     assert_eq!(line(7, 0, 0), "planning: 7 (10 s)");
+}
+
+#[test]
+fn a_part_of_the_work_has_its_own_time() {
+    let counts = ProgressCounters {
+        done: 250.into(),
+        total: 1000.into(),
+        limit: 0.into(),
+        part: Some(("checks of the plan", 6_000)).into(),
+    };
+    let line = line("planning", &counts, Duration::from_secs(10));
+    assert_eq!(line, "planning, checks of the plan: 250 of 1000 (25 %, 62 a second, 4 s, 12 s to go)");
 }
 
 /// Pictures that took more than a second, after which the progress is shown, were never done where standard error was a terminal.

@@ -11,6 +11,7 @@
 //! precedence  which agents have to start before others   (internal)
 //! insert    one agent after the other                    (internal)
 //! leave     the fewest agents to leave out               (internal)
+//! meter     how far the searches are                     (internal)
 //! ```
 
 mod best_first;
@@ -21,15 +22,20 @@ mod large_neighbourhood;
 mod leave_out;
 mod priority_order;
 mod problem;
+mod search_meter;
 mod sequential;
 #[cfg(test)]
 mod tests;
 
+use super::plan_progress::{PlanProgressFn, PlanStage};
+use crate::regions::ProgressFn;
 use branch_and_bound::{BranchAndBound, SearchLimits};
 use leave_out::LeaveOutResult;
 pub(crate) use priority_order::respecting;
 pub use problem::Objective;
 pub(crate) use problem::{DelayProblem, ForbiddenPairDelays, NEVER, TickScale, earliest, rounding_cost};
+use search_meter::SearchMeter;
+use std::cell::Cell;
 use std::time::{Duration, Instant};
 
 /// How long to search.
@@ -84,6 +90,7 @@ pub(crate) fn best(
     known: &[Vec<Option<i64>>],
     effort: DelaySearchOptions,
     leave_out: bool,
+    told: PlanProgressFn<'_>,
 ) -> DelayResult {
     let begin = Instant::now();
     let after = |time: Duration| effort.time.is_some() && begin.elapsed() >= time;
@@ -94,7 +101,12 @@ pub(crate) fn best(
         None => {
             let nodes = DECIDING * FEW / FEW.max(problem.len() as u64);
             // The other half of the time is for the delays of the agents that stay.
-            let clock = || after(time / 2);
+            let looks = Cell::new(0);
+            let clock = || {
+                looks.set(looks.get() + 1);
+                told(PlanStage::LeftOut, looks.get(), 0);
+                after(time / 2)
+            };
             leave_out::agents_to_leave_out(problem, &alone(problem), SearchLimits { nodes, clock: &clock }, leave_out)
         }
     };
@@ -105,7 +117,8 @@ pub(crate) fn best(
     let part = problem.of(&staying);
     let of_part = |delays: &Vec<Option<i64>>| staying.iter().map(|&agent| delays[agent]).collect::<Vec<_>>();
     let known: Vec<Vec<Option<i64>>> = known.iter().chain([&left.delays]).map(of_part).collect();
-    let rest = solved(&part, &known, effort, &|| after(time));
+    let told = |done, all| told(PlanStage::Delays, done, all);
+    let rest = solved(&part, &known, effort, &|| after(time), &told);
     let mut delays = vec![None; problem.len()];
     staying.iter().zip(rest.delays).for_each(|(&agent, delay)| delays[agent] = Some(delay));
     DelayResult {
@@ -130,6 +143,11 @@ pub(crate) fn some(problem: &DelayProblem, with: &[Vec<usize>]) -> Vec<Option<i6
     }
 }
 
+/// Nodes or rounds of a part of a fleet: fewer of a wide one, unless something has to be proved.
+fn share(problem: &DelayProblem, effort: DelaySearchOptions, of_all: u64) -> u64 {
+    if effort.prove { of_all } else { of_all * WIDE as u64 / problem.pairs.len().max(WIDE) as u64 }
+}
+
 /// The value of `with` if each agent can be left out alone.
 fn alone(problem: &DelayProblem) -> Vec<Vec<usize>> {
     (0..problem.len()).map(|agent| vec![agent]).collect()
@@ -147,13 +165,22 @@ fn solved(
     known: &[Vec<Option<i64>>],
     effort: DelaySearchOptions,
     clock: &dyn Fn() -> bool,
+    told: ProgressFn<'_>,
 ) -> DelaySolution {
     let mut delays = vec![0; problem.len()];
     // The last arrival may be before 0.
     let (mut bound, mut proved): (Option<i128>, _) = (None, true);
-    for (agents, part) in problem.independent_problems() {
+    let parts = problem.independent_problems();
+    let meter = SearchMeter::new(parts.iter().map(|(_, part)| part), effort, told);
+    for (agents, part) in parts {
+        let end = meter.end_of(&part);
+        let clock = || {
+            meter.step(end);
+            clock()
+        };
         let known = known.iter().filter_map(|known| agents.iter().map(|&agent| known[agent]).collect());
-        let found = connected(&part, known, effort, clock);
+        let found = connected(&part, known, effort, &clock);
+        meter.skip_to(end);
         agents.iter().zip(found.delays).for_each(|(&agent, delay)| delays[agent] = delay);
         bound = Some(bound.map_or(found.bound, |bound| match problem.objective {
             Objective::Sum => bound + found.bound,
@@ -184,10 +211,7 @@ fn connected(
         bound = root.map_or(bound, |root| bound.max(problem.cost(&root)));
         return DelaySolution { proved: bound >= problem.cost(&delays), delays, bound };
     }
-    let share = |effort_of_all: u64| match effort.prove {
-        true => effort_of_all,
-        false => effort_of_all * WIDE as u64 / problem.pairs.len().max(WIDE) as u64,
-    };
+    let share = |of_all: u64| share(problem, effort, of_all);
     let (mut search, mut nodes, mut rounds) = (1, NODES, ROUNDS as u64);
     loop {
         let next = BranchAndBound::new(problem, SearchLimits { nodes: share(nodes), clock });

@@ -19,6 +19,7 @@ use crate::agent_regions;
 use crate::disc_fleet::{BodyDisc, DiscFleet, Form};
 use crate::failure::ComputationError;
 use crate::memory_budget;
+use crate::regions::ProgressFn;
 use pcr_core::{Interval, Motion, RegionRef, Scalar};
 use pcr_formats::scenario::Scenario;
 
@@ -108,10 +109,15 @@ impl ForbiddenDelays {
     /// # Errors
     /// [`ComputationError`] if a value does not fit, or the table cannot hold the fleet.
     pub fn compute(scenario: &Scenario) -> Result<Self, ComputationError> {
+        Self::watched(scenario, &|_, _| {})
+    }
+
+    /// The same; tells of how many discs the regions are known, and of how many there are.
+    pub(super) fn watched(scenario: &Scenario, told: ProgressFn<'_>) -> Result<Self, ComputationError> {
         let bodies = DiscFleet::<f64>::new(scenario, Form::Exact)?;
         let motions = motions_with_margins(&bodies.fleet);
         let owners: Vec<DiscOwner> = bodies.discs.iter().map(DiscOwner::of).collect();
-        Self::between(&motions, &owners, scenario.agents.len()).map_err(|failure| failure.named(&bodies.scenario))
+        Self::between(&motions, &owners, scenario.agents.len(), told).map_err(|failure| failure.named(&bodies.scenario))
     }
 
     /// The forbidden delays of some motions, each with its own delay.
@@ -120,13 +126,18 @@ impl ForbiddenDelays {
     /// [`ComputationError`] if the table cannot hold them.
     pub fn of_motions(motions: &[Motion<'_, f64>]) -> Result<Self, ComputationError> {
         let owners: Vec<DiscOwner> = (0..motions.len()).map(|agent| DiscOwner { agent, stands: [true; 2] }).collect();
-        Self::between(motions, &owners, motions.len())
+        Self::between(motions, &owners, motions.len(), &|_, _| {})
     }
 
     /// The forbidden delays of `count` agents with these discs and owners.
-    fn between(motions: &[Motion<'_, f64>], owners: &[DiscOwner], count: usize) -> Result<Self, ComputationError> {
+    fn between(
+        motions: &[Motion<'_, f64>],
+        owners: &[DiscOwner],
+        count: usize,
+        told: ProgressFn<'_>,
+    ) -> Result<Self, ComputationError> {
         // A row has the pairs of its disc with later ones; the other direction of a pair has the opposite sign.
-        let found = agent_regions::gathered(motions, "start delays that regions forbid", |row| {
+        let found = agent_regions::gathered(motions, "start delays that regions forbid", told, |row| {
             let discs = row.agents();
             let owner = |place: usize| discs.get(place).and_then(|&disc| owners.get(disc as usize)).copied();
             let regions = row.table().row(row.motions(), row.agent_index()).expect("the table of the row");

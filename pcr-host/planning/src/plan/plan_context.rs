@@ -2,6 +2,7 @@
 
 use super::circular_wait;
 use super::delays::Objective;
+use super::plan_progress::{PlanProgressFn, PlanStage};
 use super::{PlanOptions, PriorityRule};
 use crate::agent_regions;
 use crate::failure::ComputationError;
@@ -22,12 +23,19 @@ pub(super) struct Planner<'a, 'm> {
     pub(super) motions: &'a [Motion<'m, f64>],
     /// When planning began.
     pub(super) begin: Instant,
+    /// Who waits for the plan.
+    pub(super) told: PlanProgressFn<'a>,
 }
 
 impl Planner<'_, '_> {
     /// Whether the time that planning may take is over.
     pub(super) fn is_late(&self) -> bool {
         self.request.effort.time.is_some_and(|time| self.begin.elapsed() >= time)
+    }
+
+    /// Tells how much of the checks of a plan is done: the check of the discs, that of margins, and the proof count alike.
+    pub(super) fn tell_check(&self, pass: usize, done: usize, all: usize) {
+        (self.told)(PlanStage::Check, pass * all + done, 3 * all);
     }
 
     pub(super) fn id(&self, agent: usize) -> u64 {
@@ -49,7 +57,7 @@ impl Planner<'_, '_> {
 
     /// The number of regions of each agent.
     fn counts(&self) -> Result<Vec<usize>, ComputationError> {
-        let pairs = agent_regions::gathered(self.motions, "regions", |row| {
+        let pairs = agent_regions::gathered(self.motions, "regions", &|_, _| {}, |row| {
             let regions = row.table().row(row.motions(), row.agent_index()).expect("the table of the row");
             regions.map(|region| [row.agents()[row.agent_index()], row.agents()[region.other()]]).collect()
         })?;

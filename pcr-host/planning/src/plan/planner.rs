@@ -136,7 +136,7 @@ impl<'m> Planner<'_, 'm> {
                 return Ok((plan, None));
             }
         };
-        let verdict = CheckReport::compute::<f64>(&solved, false)?;
+        let verdict = CheckReport::watched::<f64>(&solved, false, &|done, all| self.tell_check(0, done, all))?;
         if let Some(conflict) = verdict.conflicts.first() {
             let why = format!("the plan has a conflict at {} s", conflict.t[0]);
             plan.unsolved.push(UnplannedAgents::nowhere(vec![conflict.i, conflict.j], why));
@@ -151,7 +151,10 @@ impl<'m> Planner<'_, 'm> {
             plan.unsolved.push(UnplannedAgents::nowhere(vec![conflict.i, conflict.j], why));
             return Ok((plan, None));
         }
+        let agents = self.motions.len();
+        self.tell_check(1, agents, agents);
         let proof = MotionCertificate::prove::<f64>(&solved)?;
+        self.tell_check(2, agents, agents);
         if let Some(contact) = proof.contacts.first() {
             let why = format!("the plan has a contact at {} s", contact.t);
             plan.unsolved.push(UnplannedAgents::nowhere(vec![contact.i, contact.j], why));

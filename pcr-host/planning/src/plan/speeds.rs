@@ -5,6 +5,7 @@ mod branching;
 
 use super::PriorityRule;
 use super::plan_context::Planner;
+use super::plan_progress::PlanStage;
 use crate::fleet::HostEcm;
 use pcr_core::{
     Motion, PlanError as Never, Profile, RegionRef, SearchNode, SpeedPlan, SpeedPlanLimits, earliest_start, plan_speed,
@@ -66,14 +67,19 @@ pub(super) fn plan<'m>(
     if planner.request.priority == PriorityRule::Best {
         orders.extend(known.as_ref().map(|(plan, _)| by_start(plan)));
     }
+    // At most so many orders, nodes of the search and rounds of replanning.
+    let (tried, all) = (orders.len(), orders.len() + ROUNDS + branching::NODES + AGAIN);
+    let tell = |done: usize| (planner.told)(PlanStage::Speeds, done, all);
     // No reason as long as nothing has been tried.
     let mut best: BestPlan<'m> = known.ok_or(None);
     let mut kept = Vec::new();
-    for order in orders {
+    for (done, order) in orders.into_iter().enumerate() {
+        tell(done);
         kept = attempt(planner, ecm, order, &mut best, &mut room, &mut stations);
     }
     if planner.request.priority == PriorityRule::Best {
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS {
+            tell(tried + round);
             let Ok((plan, _)) = &best else { break };
             let cost = planner.cost(plan);
             let latest = (0..plan.len()).max_by(|&a, &b| late(planner, plan, a).total_cmp(&late(planner, plan, b)));
@@ -85,10 +91,13 @@ pub(super) fn plan<'m>(
             }
         }
         let limit = best.as_ref().map_or(f64::INFINITY, |(plan, _)| planner.cost(plan));
-        if let Some(plan) = branching::searched(planner, ecm, limit, &mut room, &mut stations) {
+        if let Some(plan) =
+            branching::searched(planner, ecm, limit, &mut room, &mut stations, &|nodes| tell(tried + ROUNDS + nodes))
+        {
             best = Ok((plan, Vec::new()));
         }
         if let Ok((plan, _)) = &mut best {
+            tell(all - AGAIN);
             improve_each(planner, ecm, plan, &mut last, &mut stations);
         }
     }

@@ -4,6 +4,7 @@ use super::circular_wait::CIRCULAR_WAIT;
 use super::delays::{self, DelayResult, Objective};
 use super::forbidden_delays::{AgentWithoutDelay, DelaySchedule, ForbiddenDelays};
 use super::plan_context::Planner;
+use super::plan_progress::PlanStage;
 use super::{PriorityRule, UnplannedAgents, failure_reason};
 use crate::disc_fleet::DiscFleet;
 use crate::failure::ComputationError;
@@ -52,7 +53,8 @@ pub(super) struct StartDelayResult {
 impl StartDelayResult {
     pub(super) fn of(planner: &Planner<'_, '_>) -> Result<Self, ComputationError> {
         let (scenario, request) = (planner.scenario, planner.request);
-        let forbidden = ForbiddenDelays::compute(scenario)?;
+        let told = planner.told;
+        let forbidden = ForbiddenDelays::watched(scenario, &|done, all| told(PlanStage::Regions, done, all))?;
         let ticks = forbidden.ticks();
         let problem = forbidden.problem(request.objective);
         let schedules =
@@ -64,7 +66,7 @@ impl StartDelayResult {
         };
         let known: Vec<Vec<Option<i64>>> = schedules.iter().map(in_ticks).collect();
         let DelayResult { delays, bound, proved, conflicts, fewest } =
-            delays::best(&problem, &known, request.effort, request.leave_out);
+            delays::best(&problem, &known, request.effort, request.leave_out, told);
         let seconds = |delay: &Option<i64>| delay.map(|delay| ticks.seconds(i128::from(delay)));
         let covered = scenario.agents.iter().any(DiscFleet::<f64>::is_covered);
         let found = Self {

@@ -39,3 +39,42 @@ fn plans_are_what_is_read_from_their_files() {
     let why = &plan.unsolved.last().expect("a reason").why;
     assert!(why.starts_with("the plan cannot be written as phases: "), "{why}");
 }
+
+/// Who waits for a plan sees a percentage: it only grows within a part of the work, and its end is known and reached at most.
+#[test]
+fn planning_tells_how_far_it_is() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/paper12.json");
+    let scenario = Scenario::from_json(&std::fs::read_to_string(file).expect(file)).expect("a scenario");
+    let stages = |request: &PlanOptions| {
+        let told = std::sync::Mutex::new(Vec::<(PlanStage, Vec<[usize; 2]>)>::new());
+        let tell = |stage: PlanStage, done: usize, all: usize| {
+            let mut told = told.lock().expect("a list");
+            match told.last_mut().filter(|(last, _)| *last == stage) {
+                Some((_, counts)) => counts.push([done, all]),
+                None => told.push((stage, vec![[done, all]])),
+            }
+        };
+        let (_, solved) = PlanReport::watched(&scenario, request, &tell).expect("an answer");
+        assert!(solved.is_some());
+        told.into_inner().expect("a list")
+    };
+    for (method, second) in [(PlanMethod::Delay, PlanStage::Check), (PlanMethod::Speed, PlanStage::Speeds)] {
+        let told = stages(&PlanOptions::new(method));
+        let order: Vec<PlanStage> = told.iter().map(|(stage, _)| *stage).collect();
+        assert_eq!(order[..3], [PlanStage::Regions, PlanStage::Delays, second], "{order:?}");
+        assert_eq!(order.last(), Some(&PlanStage::Check));
+        for (stage, counts) in &told {
+            let all = counts[0][1];
+            assert!(all > 0 && counts.iter().all(|&[done, of]| done <= all && of == all), "{stage:?} {counts:?}");
+            assert!(counts.windows(2).all(|pair| pair[0][0] <= pair[1][0]), "{stage:?} {counts:?}");
+            if *stage != PlanStage::Speeds {
+                assert_eq!(counts.last(), Some(&[all, all]), "{stage:?}");
+            }
+        }
+    }
+    // A search without a limit has no end that is known.
+    let effort = DelaySearchOptions { prove: true, ..DelaySearchOptions::default() };
+    let told = stages(&PlanOptions { effort, ..PlanOptions::default() });
+    let searches = told.iter().find(|(stage, _)| *stage == PlanStage::Delays).expect("searches");
+    assert!(searches.1.iter().all(|[_, all]| *all == 0), "{searches:?}");
+}

@@ -3,7 +3,7 @@
 use super::proofs::proof_line;
 use super::text_table::TextTable;
 use super::{all_called, display_name, heading, quoted};
-use crate::figures::{above, exact};
+use crate::figures::{above, below, exact};
 use crate::plan::{PlanCosts, PlanEntry, PlanReport};
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -86,7 +86,7 @@ fn costs_line(PlanCosts { makespan, sum_of_costs, lower_bound, gap, proved }: Pl
     let what = if objective == "makespan" { "makespan" } else { "sum of costs" };
     let good = match proved {
         true => format!("the {what} is proved to be the least"),
-        false => format!("the {what} is at least {lower_bound:.3} s, gap {:.2} %", 100.0 * gap),
+        false => format!("the {what} is at least {} s, gap {:.2} %", below(lower_bound), 100.0 * gap),
     };
     format!("makespan {makespan:.3} s, sum of costs {sum_of_costs:.3} s; {good}")
 }

@@ -17,6 +17,11 @@ const MOST_WAITING: usize = 2_000;
 const TICK: u64 = 32;
 const LONG: usize = 2_000;
 
+/// Returns how often a search of this many nodes looks at the clock.
+pub(super) fn steps(problem: &DelayProblem, nodes: u64) -> u64 {
+    if problem.pairs.len() > LONG { nodes } else { nodes / TICK }
+}
+
 /// Limits of a search, which answers with the best result so far.
 #[derive(Clone, Copy)]
 pub(crate) struct SearchLimits<'a> {

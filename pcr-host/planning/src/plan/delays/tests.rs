@@ -86,7 +86,7 @@ fn small_fleets_have_the_best_delays_of_all_choices() {
         for objective in OBJECTIVES {
             let problem = random(seed, objective);
             let least = by_force(&problem, 0, &mut Vec::new());
-            let found = best(&problem, &[], DelaySearchOptions::default(), true);
+            let found = best(&problem, &[], DelaySearchOptions::default(), true, &|_, _, _| {});
             let Some(least) = least else {
                 assert!(!found.conflicts.is_empty() && found.delays.is_none_or(|all| all.contains(&None)), "{seed}");
                 continue;
@@ -107,7 +107,7 @@ fn the_fewest_are_left_out_and_every_conflict_is_one() {
     for seed in 0..FLEETS {
         let problem = random(seed, Objective::Sum);
         let possible = |agents: &[usize]| by_force(&problem.of(agents), 0, &mut Vec::new()).is_some();
-        let found = best(&problem, &[], DelaySearchOptions::default(), true);
+        let found = best(&problem, &[], DelaySearchOptions::default(), true, &|_, _, _| {});
         let stay = |mask: u32| (0..problem.len()).filter(|agent| mask >> agent & 1 == 1).collect::<Vec<_>>();
         let most =
             (0..1_u32 << problem.len()).map(stay).filter(|agents| possible(agents)).map(|agents| agents.len()).max();

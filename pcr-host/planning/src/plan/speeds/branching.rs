@@ -8,7 +8,7 @@ use crate::plan::plan_context::Planner;
 use pcr_core::{MismatchError, Motion, RegionRef, SearchNode, first_overlap};
 
 /// Nodes at most.
-const NODES: usize = 400;
+pub(super) const NODES: usize = 400;
 
 /// A fleet that moves by some priorities.
 #[derive(Clone)]
@@ -26,6 +26,7 @@ pub(super) fn searched<'m>(
     mut limit: f64,
     room: &mut ProfileBuffers<'m>,
     stations: &mut [SearchNode<f64>],
+    told: &dyn Fn(usize),
 ) -> Option<Vec<Motion<'m, f64>>> {
     let count = planner.motions.len();
     let mut root = PriorityNode { plan: planner.motions.to_vec(), above: vec![Vec::new(); count], cost: 0.0 };
@@ -34,7 +35,8 @@ pub(super) fn searched<'m>(
     }
     root.cost = planner.cost(&root.plan);
     let (mut open, mut best) = (vec![root], None);
-    for _ in 0..NODES {
+    for nodes in 0..NODES {
+        told(nodes);
         let Some(node) = open.pop() else { break };
         if node.cost >= limit {
             continue;
