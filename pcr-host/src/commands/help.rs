@@ -5,6 +5,7 @@
 
 use super::argument_rules::{ruled, unmet};
 use super::error_hints::with_tip;
+use super::printed::Judgement;
 use super::{Cli, CliError, UNITS};
 use clap::{Arg, ArgAction, Command, CommandFactory, FromArgMatches};
 use std::ffi::OsString;
@@ -39,7 +40,13 @@ pub(super) fn parse(mut words: Vec<OsString>) -> Result<Option<Cli>, CliError> {
     let mut commands = command(long);
     let parsed = commands.try_get_matches_from_mut(&words);
     match parsed.and_then(|matches| unmet(&commands, &matches).map_or(Ok(matches), Err)) {
-        Ok(matches) => Cli::from_arg_matches(&matches).map(Some).map_err(|error| CliError::Usage(Box::new(error))),
+        Ok(matches) => {
+            let mut cli = Cli::from_arg_matches(&matches).map_err(|error| CliError::Usage(Box::new(error)))?;
+            if let Some((_, after)) = matches.subcommand() {
+                cli.warnings.extend(after);
+            }
+            Ok(Some(cli))
+        }
         Err(error) if error.use_stderr() => Err(CliError::Usage(Box::new(with_tip(error, &words)))),
         Err(asked) => {
             let (text, mut out) = (asked.render(), io::stdout().lock());
@@ -58,7 +65,11 @@ pub(super) fn parse(mut words: Vec<OsString>) -> Result<Option<Cli>, CliError> {
 pub(super) fn command(long: bool) -> Command {
     let command = Cli::command();
     let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
-    let tailored = names.iter().fold(command, |command, name| command.mut_subcommand(name, |own| tailored(own, long)));
+    let is_everywhere = |argument: &&Arg| Judgement::EVERYWHERE.contains(&argument.get_id().as_str());
+    let everywhere: Vec<Arg> = command.get_arguments().filter(is_everywhere).cloned().collect();
+    let tailored = names.iter().fold(command, |command, name| {
+        command.mut_subcommand(name, |own| tailored(own, long).args(everywhere.clone()))
+    });
     let tailored = with_help(tailored, long);
     match tailored.get_long_about().cloned() {
         Some(about) if long => tailored.about(about),

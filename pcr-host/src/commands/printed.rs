@@ -1,6 +1,6 @@
 //! The format of printed answers, and where they are printed.
 
-use clap::{ArgAction, Args, ValueEnum};
+use clap::{ArgAction, ArgMatches, Args, ValueEnum};
 use pcr_formats::scenario::printable;
 use pcr_formats::warning::WarningCode;
 use std::collections::BTreeSet;
@@ -22,10 +22,10 @@ const FEW: usize = 4;
 #[derive(Args, Debug, Default)]
 pub(super) struct Judgement {
     /// Acknowledge warnings of these codes: they are not printed and not in the answer. With commas, or several times
-    #[arg(long, value_name = "CODE", global = true, action = ArgAction::Append, value_delimiter = ',', hide_short_help = true, value_parser = code)]
+    #[arg(long, value_name = "CODE", action = ArgAction::Append, value_delimiter = ',', hide_short_help = true, value_parser = code)]
     allow: Vec<WarningCode>,
     /// End with status 2 after the answer if there are warnings of these codes; `warnings` stands for all
-    #[arg(long, value_name = "CODE", global = true, action = ArgAction::Append, value_delimiter = ',', hide_short_help = true, value_parser = denied)]
+    #[arg(long, value_name = "CODE", action = ArgAction::Append, value_delimiter = ',', hide_short_help = true, value_parser = denied)]
     deny: Vec<Denied>,
     /// Print `all` warnings, or only a `few` of each file [default: few]
     #[arg(
@@ -66,6 +66,17 @@ fn denied(name: &str) -> Result<Denied, String> {
 }
 
 impl Judgement {
+    /// The options that may stand before and after the name of a command, and count in both places. (Of options that are `global` for
+    /// `clap`, those after the name replace those before it.)
+    pub(super) const EVERYWHERE: [&'static str; 2] = ["allow", "deny"];
+
+    /// Adds the codes that stand after the name of a command.
+    pub(super) fn extend(&mut self, after: &ArgMatches) {
+        let [allow, deny] = Self::EVERYWHERE;
+        self.allow.extend(after.get_many::<WarningCode>(allow).into_iter().flatten());
+        self.deny.extend(after.get_many::<Denied>(deny).into_iter().flatten());
+    }
+
     /// Holds for all that is printed from now on.
     pub(super) fn apply(self) {
         // Once for each run of the program.

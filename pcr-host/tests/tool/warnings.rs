@@ -122,6 +122,34 @@ fn a_warning_that_is_denied_is_an_error_after_the_answer() {
 }
 
 #[test]
+fn codes_before_and_after_the_command_count_together() {
+    let command = ["import", "nav2", ONE_ID, "--route", "0:1", "--radius", "0.3"];
+    let plain = run(&command);
+    let names: Vec<&str> = answered(&parsed(&plain)).iter().map(|code| code.name()).collect();
+    let [first, rest @ ..] = &names[..] else { panic!("{names:?}") };
+    assert!(!rest.is_empty(), "{names:?}");
+    let with = |before: &[&str], after: &[&str]| run(&[before, &command[..], after].concat());
+    // Some are acknowledged before the command, the rest after it, or one code in both places.
+    let rest = rest.join(",");
+    for [before, after] in [[*first, &rest], [&rest, *first]] {
+        let none = with(&["--allow", before], &["--allow", after]);
+        assert_eq!((answered(&parsed(&none)), printed(&none)), (BTreeSet::new(), BTreeSet::new()), "{before} {after}");
+    }
+    let one = with(&["--allow", first], &["--allow", first]);
+    assert_eq!(answered(&parsed(&one)).len(), names.len() - 1);
+    // Denied before, something else denied after.
+    for [before, after] in [[*first, "closed-edge"], ["closed-edge", *first]] {
+        let denied = with(&["-q", "--deny", before], &["--deny", after]);
+        assert_eq!(denied.status, 2, "{before} {after}: {}", denied.err);
+        assert!(denied.err.contains(first), "{}", denied.err);
+    }
+    // Denied before the command and acknowledged after it: no error, as in one place.
+    let all = names.join(",");
+    assert_eq!(with(&["--deny", "warnings"], &["--allow", &all]).status, 0);
+    assert_eq!(with(&["--allow", &all], &["--deny", "warnings"]).status, 0);
+}
+
+#[test]
 fn no_more_warnings_are_printed_than_people_read() {
     let mut scenario = crossing();
     let warning =
