@@ -7,7 +7,7 @@ use pcr_formats::scenario::{PathSegment, PlacedSegment, TURN};
 use pcr_formats::vda5050::decode::DecodeError;
 use pcr_formats::vda5050::order::{OrderEdge, OrderNode};
 use pcr_formats::vda5050::order_state::OrderState;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::f64::consts::{PI, TAU};
 
 /// Shortest line \[m\]: below this its direction may be rounding.
@@ -23,6 +23,16 @@ pub const TOLERANCE: f64 = 2e-3;
 /// Bound on the sideways distance of lines and arcs from a trajectory \[m\]. At equal lengths the distance grows with the
 /// length of the trajectory.
 const FIT: f64 = 1e-4;
+
+/// Largest degree of a trajectory. Converting takes longer the larger degree and number of control points are, and all vehicles wait
+/// for it.
+const MOST_DEGREE: f64 = 8.0;
+
+/// Most control points of a trajectory.
+const MOST_POINTS: usize = 100;
+
+/// Most control points of all trajectories that are converted together.
+const MOST_POINTS_IN_ALL: usize = 1000;
 
 /// The path of an order, with the lengths of its nodes.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,6 +86,7 @@ impl OrderPath {
         self.pieces.retain(|piece| piece.from < length);
         let StartPose { x, y, heading } = self.end();
         (self.at, self.heading) = ([x, y], heading);
+        check_sizes(&held.edges, after)?;
         for (k, (edge, ends)) in held.edges.iter().zip(held.nodes.windows(2)).enumerate().skip(after) {
             let [from, to] = ends else { continue };
             self.edge(edge, from, to, k)?;
@@ -260,12 +271,40 @@ fn position(node: &OrderNode, place: usize) -> Result<[f64; 2], DecodeError> {
     position.ok_or_else(|| DecodeError::new(format!("nodes[{place}].nodePosition"), "missing"))
 }
 
+/// Refuses trajectories whose conversion would hold up the supervisor, before any is converted. What is no trajectory is left to the
+/// importer.
+fn check_sizes(edges: &[OrderEdge], after: usize) -> Result<(), DecodeError> {
+    let mut all = 0;
+    for (k, trajectory) in
+        edges.iter().enumerate().skip(after).filter_map(|(k, edge)| Some((k, edge.trajectory.as_ref()?)))
+    {
+        let refused = |problem: String| Err(DecodeError::new(format!("edges[{k}].trajectory"), problem));
+        if let Some(degree) = trajectory.get("degree").and_then(Value::as_f64).filter(|degree| *degree > MOST_DEGREE) {
+            return refused(format!("degree {degree}; a trajectory has at most {MOST_DEGREE}"));
+        }
+        let count = |key: &str| trajectory.get(key).and_then(Value::as_array).map_or(0, Vec::len);
+        let (points, knots) = (count("controlPoints"), count("knotVector"));
+        // Knots are as many as control points and degree together, and one more.
+        if points > MOST_POINTS || knots > MOST_POINTS + MOST_DEGREE as usize + 1 {
+            return refused(format!(
+                "{points} control points and {knots} knots; a trajectory has at most {MOST_POINTS} control points"
+            ));
+        }
+        all += points;
+        if all > MOST_POINTS_IN_ALL {
+            return refused(format!(
+                "with it the order has {all} control points; those that are converted together are at most {MOST_POINTS_IN_ALL}"
+            ));
+        }
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use pcr_formats::vda5050::decode::{MessageLimits, read};
     use pcr_formats::vda5050::order::Order;
-    use serde_json::Value;
 
     fn order_with_points(points: &[[f64; 2]], curve: Option<Value>) -> OrderState {
         let nodes: Vec<_> = (points.iter().enumerate())
@@ -323,6 +362,37 @@ mod tests {
         assert!(length(0.001).is_ok());
         let refusal = length(0.01).unwrap_err().to_string();
         assert!(refusal.contains("m off its nodes, or off lines and arcs"), "{refusal}");
+    }
+
+    #[test]
+    fn trajectories_too_large_to_convert_are_refused_by_their_size() {
+        let curve = |degree: usize, points: usize| {
+            let points: Vec<Value> = (0..points).map(|k| json!({ "x": k, "y": 0 })).collect();
+            json!({ "degree": degree, "controlPoints": points })
+        };
+        let read = |curve: Value| {
+            let last = curve["controlPoints"].as_array().map_or(0, |points| points.len() - 1) as f64;
+            OrderPath::new(ORIGIN, &order_with_points(&[[0.0, 0.0], [last, 0.0]], Some(curve)))
+        };
+        let refusal = |curve: Value| {
+            let error = read(curve).unwrap_err();
+            assert_eq!(error.field, "edges[0].trajectory");
+            error.to_string()
+        };
+        assert!(read(curve(8, 100)).is_ok_and(|way| (way.length() - 99.0).abs() < 1e-6));
+        let text = refusal(curve(9, 20));
+        assert!(text.contains("degree 9; a trajectory has at most 8"), "{text}");
+        let text = refusal(curve(1, 101));
+        assert!(text.contains("101 control points and 0 knots; a trajectory has at most 100"), "{text}");
+        // Knots alone, which are no curve, and far too many.
+        let knots = json!({ "degree": 1, "controlPoints": [{ "x": 0, "y": 0 }, { "x": 1, "y": 0 }], "knotVector": vec![0.0; 1500] });
+        let text = refusal(knots);
+        assert!(text.contains("2 control points and 1500 knots"), "{text}");
+        // Each is allowed, all together are not.
+        let ends: Vec<[f64; 2]> = (0..=11).map(|k| [99.0 * f64::from(k % 2), 0.0]).collect();
+        let error = OrderPath::new(ORIGIN, &order_with_points(&ends, Some(curve(3, 100)))).unwrap_err();
+        assert_eq!(error.field, "edges[10].trajectory");
+        assert!(error.to_string().contains("1100 control points"), "{error}");
     }
 
     #[test]
