@@ -12,6 +12,7 @@
 //! supervisor   robots, missions, positions, holds                     Supervisor
 //! query        queries about a fleet                                  Question
 //! lines        the line protocol                                      handle
+//! line_angles  degrees in its requests
 //! metrics      metrics for Prometheus
 //! log          log on standard error                                  Log
 //! board        data that the supervisor's thread publishes            Board
@@ -37,6 +38,7 @@ pub mod http;
 pub mod journal;
 pub mod journal_entry;
 pub mod journal_writer;
+mod line_angles;
 pub mod lines;
 pub mod log;
 pub mod metrics;

@@ -3,6 +3,7 @@
 
 use crate::event::SupervisorEvent;
 use crate::journal_entry::PageLayout;
+use crate::line_angles;
 use crate::metrics::Census;
 use crate::owned_path::StartPose;
 use crate::query::{self, Query};
@@ -144,6 +145,7 @@ impl RequestLine {
                 });
             }
         }
+        line_angles::to_radians(&mut object)?;
         serde_json::from_value(Value::Object(object)).map_err(|error| malformed(error.to_string()))
     }
 

@@ -594,3 +594,77 @@ fn names_are_limited_in_characters_and_ids_come_back_as_they_were() {
         );
     }
 }
+
+#[test]
+fn angles_may_be_in_degrees_and_are_no_more_than_a_turn_in_radians() {
+    let schema: Value = serde_json::from_str(&document("reference/schema/pcr-serve.schema.json")).unwrap();
+    let said = |supervisor: &mut Supervisor, request: &Value| {
+        handle(supervisor, request.to_string().as_bytes(), 0.0, 0.0).answer
+    };
+    let abilities = json!({ "radius": 0.25, "speed": 1, "acceleration": 0.5 });
+    let add = |start: Value| json!({ "verb": "add", "robot": "r", "start": start, "abilities": abilities });
+    let mission = |id: &str, path: Value| json!({ "verb": "mission", "robot": "r", "mission": id, "path": path });
+    // The same robot and path in either unit.
+    let view = |start: Value, path: Value| {
+        let mut supervisor = supervisor();
+        for request in [add(start), mission("m", path)] {
+            fits(&schema, &request);
+            let answer = said(&mut supervisor, &request);
+            assert!(answer["ok"].is_object(), "{answer}");
+        }
+        supervisor.settle(0.0).unwrap();
+        let view = said(&mut supervisor, &json!({ "verb": "query", "what": "robots" }));
+        view["ok"]["robots"][0].clone()
+    };
+    let right_angle = std::f64::consts::FRAC_PI_2;
+    let degrees = view(
+        json!({ "x": 1, "y": 2, "heading_deg": 90 }),
+        json!([{ "kind": "arc", "radius": 1, "sweep_deg": -90 }, { "kind": "turn", "sweep_deg": 45 }, { "kind": "line", "length": 1 }]),
+    );
+    let radians = view(
+        json!({ "x": 1, "y": 2, "heading": right_angle }),
+        json!([{ "kind": "arc", "radius": 1, "sweep": -right_angle }, { "kind": "turn", "sweep": 0.5 * right_angle }, { "kind": "line", "length": 1 }]),
+    );
+    assert_eq!(degrees, radians);
+    assert_eq!(
+        (&degrees["start"]["heading"], degrees["length"].as_f64()),
+        (&json!(right_angle), Some(right_angle + 1.0))
+    );
+
+    let mut supervisor = supervisor();
+    let mut refusal = |request: Value| {
+        let error = said(&mut supervisor, &request)["error"].clone();
+        assert_eq!(error["code"], "malformed", "{request}: {error}");
+        error["message"].as_str().unwrap().to_owned()
+    };
+    for (start, part) in [
+        (
+            json!({ "x": 0, "y": 0, "heading": 90 }),
+            "start.heading: 90 is more than one turn in radians; use heading_deg for degrees",
+        ),
+        (json!({ "x": 0, "y": 0, "heading": -6.5 }), "start.heading: -6.5 is more than one turn in radians"),
+        (json!({ "x": 0, "y": 0, "heading": 1, "heading_deg": 90 }), "start.heading_deg: given beside heading"),
+        (json!({ "x": 0, "y": 0, "heading": null, "heading_deg": 90 }), "start.heading_deg: given beside heading"),
+        (json!({ "x": 0, "y": 0, "heading_deg": "90" }), "start.heading_deg: a number of degrees is expected"),
+        (json!({ "x": 0, "y": 0, "heading_deg": null }), "start.heading_deg: a number of degrees is expected"),
+        (json!({ "x": 0, "y": 0 }), "missing field `heading`"),
+    ] {
+        let text = refusal(add(start));
+        assert!(text.contains(part), "{text}");
+    }
+    for (shape, part) in [
+        (
+            json!({ "kind": "arc", "radius": 1, "sweep": 90 }),
+            "path[1].sweep: 90 is more than one turn in radians; use sweep_deg for degrees",
+        ),
+        (json!({ "kind": "turn", "sweep": -90 }), "path[1].sweep: -90 is more than one turn in radians"),
+        (json!({ "kind": "turn", "sweep": 0, "sweep_deg": 0 }), "path[1].sweep_deg: given beside sweep"),
+        (json!({ "kind": "line", "length": 1, "sweep_deg": 90 }), "unknown field `sweep`"),
+    ] {
+        let text = refusal(mission("m", json!([{ "kind": "line", "length": 1 }, shape])));
+        assert!(text.contains(part), "{text}");
+    }
+    // What is probably a rounding of one turn is one.
+    let turn = add(json!({ "x": 0, "y": 0, "heading": 6.284 }));
+    assert!(said(&mut supervisor, &turn)["ok"].is_object());
+}
