@@ -78,8 +78,8 @@ function draw() {
   drawMap();
   const agent = scenario.agents[chosen], hold = answers.holds?.[chosen];
   $("caption").textContent = agent && answers.valid ? `Collision map of agent ${name(chosen)}: where it must not be, by time and travelled length, in the colour of the other agent; the line is its motion.${
-    hold === undefined ? "" : isFinite(hold) ? ` Now it may go to ${hold.toFixed(3)} m (dashed).` : " Now nobody is in its way."}` : "";
-  const ends = (from, to) => [from.toFixed(3), to.toFixed(3)];
+    hold === undefined ? "" : isFinite(hold) ? ` Now it may go to ${outward([hold, hold])[0]} m (dashed).` : " Now nobody is in its way."}` : "";
+  const ends = (from, to) => outward([from, to]);
   table($("conflicts"), ["i", "j", "from [s]", "to [s]", "depth [m]"],
     answers.conflicts.map(([i, j, from, to, depth, touch]) => [name(i), name(j), ...ends(from, to), touch ? "touching" : depth < 1e-3 ? depth.toExponential(2) : depth.toFixed(3)]));
 }

@@ -11,7 +11,7 @@ const PAGE: PageTemplate = PageTemplate {
     connect: "; connect-src 'self'; img-src 'self'",
     body: include_str!("live/live.html"),
     style: include_str!("live/live.css"),
-    script: concat!(include_str!("live/live.js"), include_str!("scale.js")),
+    script: concat!(include_str!("outward.js"), include_str!("live/live.js"), include_str!("scale.js")),
 };
 
 /// The page, without data: it gets them from `/layout`, `/state` and `/map` of its server.

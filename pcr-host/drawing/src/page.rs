@@ -19,7 +19,7 @@ const PAGE: PageTemplate = PageTemplate {
     connect: "",
     body: include_str!("page/page.html"),
     style: include_str!("page/page.css"),
-    script: concat!(include_str!("crowd.js"), include_str!("page/page.js")),
+    script: concat!(include_str!("outward.js"), include_str!("crowd.js"), include_str!("page/page.js")),
 };
 
 /// Steps of the coordinates of outlines along each axis of a map: a twentieth of a pixel on a large screen.

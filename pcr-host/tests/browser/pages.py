@@ -9,6 +9,7 @@
 - at 1400 by 900 px both pictures of a page are inside the window while it plays, and time goes on;
 - in maps and replays of many agents no number lies on another one or on a disc, and agents are found by their labels;
 - what a replay says below its pictures is what its data say about that time;
+- the texts of intervals contain them;
 - nothing moves by itself for who asked for less motion.
 
 Screenshots of all of it stay in FOLDER. Chromium is spoken to through a pipe in its DevTools protocol: no driver is needed.
@@ -443,6 +444,22 @@ def check_time(browser, name):
     return wrong
 
 
+OUTWARD = [[[1.2344, 3.20049], ["1.234", "3.201"]], [[-3.20049, -1.2344], ["-3.201", "-1.234"]], [[-0.0004, 0.0004], ["-0.001", "0.001"]],
+           [[0.0625, 0.0625], ["0.062", "0.063"]], [[0.1, 3.2], ["0.100", "3.200"]], [[9.9996, 9.9996], ["9.999", "10.000"]]]
+
+
+def check_regions(browser):
+    """What is said of a region contains it."""
+    wrong = [f"{interval} is rounded to {said}" for interval, expected in OUTWARD if (said := browser.value(f"outward({interval})")) != expected]
+    said = browser.value("summary(data.maps[0].regions[0])").replace("\u2212", "-")
+    numbers = [float(word) for word in said.split() if word.replace("-", "").replace(".", "").isdigit() and "." in word]
+    region = browser.value("data.maps[0].regions[0]")
+    ends = [*region["time"], *region["length"]]
+    if len(numbers) != 4 or not all(printed <= end if k % 2 == 0 else printed >= end for k, (printed, end) in enumerate(zip(numbers, ends))):
+        wrong.append(f"{said} of {ends}")
+    return wrong + check_time(browser)
+
+
 def check(browser, name, page, folder):
     wrong = []
     for scheme in ("light", "dark"):
@@ -472,7 +489,7 @@ def check(browser, name, page, folder):
         wrong.append(f"{count} controls only")
     browser.open(page, 1400, "light")
     browser.page = page
-    kinds = {"locks": check_locks, "audit": check_audit, "large": check_large, "live": check_live}
+    kinds = {"map": check_regions, "locks": check_locks, "audit": check_audit, "large": check_large, "live": check_live}
     timed = {"replay": check_replay, "orca": check_crowd, "many": check_many}
     wrong += kinds[name](browser) if name in kinds else timed.get(name, check_time)(browser, name)
     wrong += browser.noise()

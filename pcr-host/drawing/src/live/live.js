@@ -136,7 +136,7 @@ function show() {
   const sorted = [...state.robots].sort((a, b) => a.robot.localeCompare(b.robot, "en", { numeric: true }));
   sorted.forEach((robot, k) => {
     const row = body.rows[k] ?? body.insertRow(), at = robot.at;
-    cells(row, [robot.robot, says(robot), `${at[0].toFixed(1)} – ${at[1].toFixed(1)}`, robot.hold.toFixed(1), robot.length.toFixed(1), robot.mission ?? ""]);
+    cells(row, [robot.robot, says(robot), outward(at, 1).join(" – "), outward([robot.hold, robot.hold], 1)[0], robot.length.toFixed(1), robot.mission ?? ""]);
     row.className = (robot.alarm || robot.stopped_for || robot.silent ? "bad " : "") + (robot.robot === ego ? "chosen" : "");
   });
   while (body.rows.length > state.robots.length) body.deleteRow(-1);

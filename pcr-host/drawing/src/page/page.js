@@ -250,12 +250,15 @@ function drawMap() {
 const size = (region) => (region.time[1] - region.time[0]) * (region.length[1] - region.length[0]);
 
 function summary(region) {
-  return `Region of agents ${agents[state.ego].name} and ${agents[region.other].name}, ${number(region.time[0])} to `
-    + `${number(region.time[1])} seconds, ${number(region.length[0])} to ${number(region.length[1])} metres`;
+  return `Region of agents ${agents[state.ego].name} and ${agents[region.other].name}, ${extent(region.time)} seconds, `
+    + `${extent(region.length)} metres`;
 }
 
 // As the tables of the tool: three decimals, and below a thousandth three digits.
 const number = (value) => (value !== 0 && Math.abs(value) < 1e-3 ? String(Number(value.toPrecision(3))) : value.toFixed(3)).replace("-", "\u2212");
+
+// As those tables: outward.
+const extent = (interval) => outward(interval).map((text) => text.replace("-", "\u2212")).join(" to ");
 
 function describe(region) {
   const about = $("about");
@@ -275,10 +278,9 @@ function describe(region) {
   const line = add(about, "p");
   add(line, "strong", `Agent ${agents[state.ego].name} against agent ${other}`);
   line.append(`, type ${region.types.join(", ")} (${region.pieces} piece${region.pieces === 1 ? "" : "s"})`);
-  const extent = add(about, "p", `time ${number(region.time[0])} to ${number(region.time[1])} s, length `
-    + `${number(region.length[0])} to ${number(region.length[1])} m`);
+  const ends = add(about, "p", `time ${extent(region.time)} s, length ${extent(region.length)} m`);
   const always = open.filter(Boolean).join(" and ");
-  if (always) extent.append(`; also blocked ${always}`);
+  if (always) ends.append(`; also blocked ${always}`);
   if (region.crossings.length === 0) {
     add(about, "p", "The paths come near each other here without a crossing: the paper has no descriptor for it.");
     return;
