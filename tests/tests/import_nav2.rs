@@ -35,6 +35,28 @@ fn route(text: &str, routes: &[&str], corner_radius: f64) -> Scenario {
     scenario(InputFormat::Nav2, text, &options(routes, corner_radius), &mut Warnings::default()).unwrap()
 }
 
+/// They were taken for metres, as nav2 does: no two edges of a hall had anything in common.
+#[test]
+fn longitudes_and_latitudes_are_no_metres() {
+    let with = |crs: Value| {
+        let mut graph: Value = serde_json::from_str(WAREHOUSE).unwrap();
+        graph["crs"] = crs;
+        layout(InputFormat::Nav2, &graph.to_string(), &options(&[], 1.0), &mut Warnings::default())
+            .map(|read| read.layout.edges.len())
+            .map_err(|error| error.to_string())
+    };
+    let named = |name: &str| with(json!({ "type": "name", "properties": { "name": name } }));
+    for name in ["urn:ogc:def:crs:OGC:1.3:CRS84", "urn:ogc:def:crs:EPSG::4326", "EPSG:4326"] {
+        let error = named(name).unwrap_err();
+        assert!(error.contains(name) && error.contains("has degrees"), "{error}");
+    }
+    assert!(with(json!("EPSG:4326")).is_err());
+    for crs in [Value::Null, json!("EPSG:3857"), json!({ "type": "name", "properties": {} })] {
+        assert_eq!(with(crs), named("urn:ogc:def:crs:EPSG::3857"));
+    }
+    assert!(named("urn:ogc:def:crs:EPSG::25832").is_ok_and(|edges| edges > 0));
+}
+
 /// "Nothing excludes anything" would be said of it, although robots at its nodes touch.
 #[test]
 fn a_layout_without_an_edge_is_refused() {

@@ -223,6 +223,13 @@ fn outlines_face_as_orders_say() {
     let standing = json!({ "orderId": "o", "edges": [],
         "nodes": [{ "nodeId": "a", "sequenceId": 0, "released": true, "nodePosition": { "x": 1.0, "y": 2.0, "theta": 0.5 } }] });
     assert_eq!(read(&standing.to_string(), &outlined).unwrap().0.agents[0].start, [1.0, 2.0, 0.5]);
+    // Degrees are refused where a heading counts, never turned fourteen times.
+    let mut degrees = standing;
+    degrees["nodes"][0]["nodePosition"]["theta"] = json!(90);
+    let error = read(&degrees.to_string(), &outlined).unwrap_err();
+    assert!(error.contains("nodePosition, theta: 90 is more than one turn; the format has radians"), "{error}");
+    let error = read(&order(json!({}), [json!(180), Value::Null]), &outlined).unwrap_err();
+    assert!(error.contains("theta: 180 is more than one turn; the format has radians"), "{error}");
 }
 
 #[test]

@@ -269,7 +269,7 @@ impl LifReader<'_> {
             if !self.is_asked(&types) {
                 continue;
             }
-            if let Some(theta) = property.number("theta")?.filter(|_| self.outline.is_some()) {
+            if let Some(theta) = vehicle_heading::theta(&property)?.filter(|_| self.outline.is_some()) {
                 self.thetas.push((place, theta));
             }
             if property.get("allowedDeviationXY").is_some_and(allows) {

@@ -38,6 +38,7 @@ pub(super) fn read(text: &str, full_speed: f64, warnings: &mut Warnings) -> Resu
     let value = json_access::parse(text)?;
     let root = JsonObject::new("graph", &value)?;
     ROOT.check(&root, warnings)?;
+    refuse_degrees(&root)?;
     if root.get("features").is_none() {
         return Err(root.missing("features"));
     }
@@ -82,6 +83,20 @@ pub(super) fn read(text: &str, full_speed: f64, warnings: &mut Warnings) -> Resu
         edges: edges.into_list(),
         ..Layout::default()
     })
+}
+
+/// Refuses coordinates that a file says are longitudes and latitudes: nav2 takes all of them for metres, so that a route of a kilometre
+/// would have the length of a hand.
+fn refuse_degrees(root: &JsonObject<'_>) -> Result<(), ImportError> {
+    let system = root.get("crs");
+    let name = system.and_then(|system| system.as_str().or_else(|| system.pointer("/properties/name")?.as_str()));
+    let of_degrees = ["CRS84", "EPSG::4326", "EPSG:4326", "WGS84", "WGS 84"];
+    match name.filter(|name| of_degrees.iter().any(|system| name.to_ascii_uppercase().contains(system))) {
+        Some(name) => Err(ImportError::new(format!(
+            "graph, crs: {name} has degrees, and nav2 takes all coordinates for metres; project them to metres before"
+        ))),
+        None => Ok(()),
+    }
 }
 
 struct Nav2Graph<'a> {

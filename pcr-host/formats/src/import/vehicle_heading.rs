@@ -115,6 +115,25 @@ pub(super) fn lose(of: &str, field: &str, value: f64, warnings: &mut Warnings) {
     warnings.lose(format_args!("{of}: its {field} {value}, as outlines face along their paths here"));
 }
 
+/// Returns an angle of a file that can be one in radians.
+///
+/// # Errors
+/// [`ImportError`] for more than one turn, which is an angle in degrees.
+fn in_radians(object: &JsonObject<'_>, field: &str, angle: f64) -> Result<f64, ImportError> {
+    if angle.abs() <= TAU + ROUNDING {
+        return Ok(angle);
+    }
+    Err(ImportError::new(format!("{}, {field}: {angle} is more than one turn; the format has radians", object.name)))
+}
+
+/// Returns the heading `theta` of an object, if it has one \[rad\].
+///
+/// # Errors
+/// [`ImportError`] for what is no number, and for more than one turn.
+pub(super) fn theta(object: &JsonObject<'_>) -> Result<Option<f64>, ImportError> {
+    object.number("theta")?.map(|theta| in_radians(object, "theta", theta)).transpose()
+}
+
 /// Which way a vehicle faces on an edge that says so, by orientations \[rad\] of which it takes any one: those on the map, of which only a
 /// straight edge tells which way along it they are, or those with respect to the edge.
 ///
@@ -135,10 +154,7 @@ pub(super) fn of_edge(
             return Err(ImportError::new(problem));
         }
     };
-    if let Some(far) = orientations.iter().find(|orientation| orientation.abs() > TAU + ROUNDING) {
-        let problem = format!("{}, {field}: {far} is more than one turn; the format has radians", edge.name);
-        return Err(ImportError::new(problem));
-    }
+    orientations.iter().try_for_each(|orientation| in_radians(edge, field, *orientation).map(drop))?;
     let ahead = if is_global { heading } else { Some(0.0) };
     let facing = |orientation: &f64| match ahead.map(|ahead| wrapped(orientation - ahead).abs()) {
         Some(off) if off <= ROUNDING => Facing::Ahead,

@@ -5,7 +5,7 @@
 
 use super::json_access::JsonObject;
 use super::keys::Keys;
-use super::{ImportError, VehicleTraits, WarningCode, Warnings};
+use super::{ImportError, VehicleTraits, WarningCode, Warnings, vehicle_heading};
 use crate::footprint::Footprint;
 use crate::plane_geometry::hull;
 
@@ -58,7 +58,7 @@ pub(super) fn loaded(
             );
         }
         let at = reference.as_ref().map_or(Ok([0.0; 2]), JsonObject::point)?;
-        let (sin, cos) = reference.map_or(Ok(None), |it| it.number("theta"))?.unwrap_or(0.0).sin_cos();
+        let (sin, cos) = reference.map_or(Ok(None), |it| vehicle_heading::theta(&it))?.unwrap_or(0.0).sin_cos();
         for [ahead, left] in [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]] {
             let (ahead, left) = (0.5 * length * ahead, 0.5 * width * left);
             corners.push([at[0] + ahead * cos - left * sin, at[1] + ahead * sin + left * cos]);

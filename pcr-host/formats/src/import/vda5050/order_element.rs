@@ -2,7 +2,7 @@
 
 use super::super::json_access::JsonObject;
 use super::super::keys::Keys;
-use super::super::{ImportError, Warnings};
+use super::super::{ImportError, Warnings, vehicle_heading};
 use super::keys::NODE_POSITION;
 use serde_json::Value;
 
@@ -29,7 +29,7 @@ impl<'j> OrderElement<'j> {
 
     /// Which way the vehicle faces at a node, if it says so \[rad\].
     pub(super) fn theta(&self) -> Result<Option<f64>, ImportError> {
-        self.object.object("nodePosition")?.map_or(Ok(None), |position| position.number("theta"))
+        self.object.object("nodePosition")?.map_or(Ok(None), |position| vehicle_heading::theta(&position))
     }
 }
 

@@ -69,7 +69,7 @@ impl Vda5050Reader<'_> {
         if pose.number("localizationScore")?.is_some_and(|score| score <= 0.0) {
             return unknown("localizationScore");
         }
-        Ok(ReportedPose { at: Some(pose.point()?), heading: pose.number("theta")? })
+        Ok(ReportedPose { at: Some(pose.point()?), heading: vehicle_heading::theta(&pose)? })
     }
 
     /// The agent on a path with times. It is a disc: how long turns take is not in the file.
