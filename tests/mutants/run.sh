@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Mutants of pcr-core, of pcr-fixed, of the importers and of the writers of exclusions, run against the tests that reach them.
+# Mutants of pcr-core, of pcr-fixed, of the importers, of the readers of scenarios, of the writers of exclusions and of the proofs
+# of start delays, run against the tests that reach them.
 #   tests/mutants/run.sh FOLDER [SECONDS [JOBS]]     a copy of what is committed is made in FOLDER/copy and built there; a mutant has
 #                                                    SECONDS of tests (4). Again: goes on where it stopped. FOLDER/results
 #                                                    has a line a mutant, `mutants table FOLDER` counts them.
@@ -16,7 +17,9 @@ sorted() { LC_ALL=C sort; }
 kernels() { find pcr-core/src -name '*.rs' | grep -vE 'src/(lib|scalar|recorded|internals)\.rs|src/scalar/' | sorted; }
 floats() { find pcr-core/src/scalar.rs pcr-core/src/scalar -name '*.rs' | grep -vE 'vsqrt|tests' | sorted; }
 fixed() { find pcr-fixed/src -name '*.rs' | grep -v 'src/lib\.rs' | sorted; }
-importers() { find pcr-host/formats/src/import pcr-host/formats/src/import.rs -name '*.rs' | sorted; }
+importers() {
+  find pcr-host/formats/src/{import,import.rs,scenario,scenario.rs} -name '*.rs' | grep -vE 'scenario/(tests|round_trip)' | sorted
+}
 # The audit and what it reports is not here.
 writers() { find pcr-host/exclusions/src -name '*.rs' | grep -vE 'src/(lib|audit|meetings|nearest|report|settings)\.rs' | sorted; }
 # Those that are run, of FOLDER/all.
@@ -25,13 +28,14 @@ chosen() { grep -E "${ONLY:-.}" "$folder/all" | if [ -n "${SAMPLE:-}" ]; then sh
 # Numbers of their own for each crate, as all are in one build. Those in SKIP get no switch.
 # shellcheck disable=SC2046
 put() {
-  git checkout -q -- pcr-core pcr-fixed pcr-host
+  git checkout -q -- pcr-core pcr-fixed pcr-host proofs
   # What converts is `const` for its users, and could not have a switch.
   sed -i 's/const fn/fn/' pcr-fixed/src/convert.rs
   "$tool" put 0 pcr-core/src/lib.rs $(kernels) $(floats)
   "$tool" put 10000 pcr-host/formats/src/lib.rs $(importers)
   "$tool" put 20000 pcr-fixed/src/lib.rs $(fixed)
   "$tool" put 30000 pcr-host/exclusions/src/lib.rs $(writers)
+  "$tool" put 40000 proofs/certify/src/lib.rs proofs/certify/src/delays.rs
 }
 
 if [ ! -e "$copy" ]; then
@@ -47,7 +51,7 @@ if [ ! -e "$folder/binaries" ]; then
   export SKIP
   for ((;;)); do
     put >"$folder/list"
-    if cargo check -q --profile checked --locked -p pcr-exclusions -p pcr-formats -p pcr-fixed -p pcr-core -F pcr-core/micromath \
+    if cargo check -q --profile checked --locked -p pcr-exclusions -p pcr-formats -p pcr-fixed -p pcr-certify -p pcr-core -F pcr-core/micromath \
       --message-format=short 2>"$folder/messages"; then break; fi
     more=$("$tool" broken <"$folder/messages" | tr '\n' ' ')
     [ -n "$more" ] || { cat "$folder/messages" >&2; exit 1; }
@@ -55,7 +59,7 @@ if [ ! -e "$folder/binaries" ]; then
     SKIP+=" $more"
   done
   # Not the tests of the tool `pcr`: the files that they write have one name, and jobs run side by side.
-  cargo test --profile checked --locked -p pcr-core -p pcr-fixed -p pcr-formats -p pcr-exclusions -p pcr-tests --lib --test all --no-run \
+  cargo test --profile checked --locked -p pcr-core -p pcr-fixed -p pcr-formats -p pcr-exclusions -p pcr-certify -p pcr-tests --lib --test all --no-run \
     --message-format=json |
     python3 -c 'import json, os, sys
 for line in sys.stdin:

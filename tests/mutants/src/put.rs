@@ -106,7 +106,8 @@ impl Mutator {
     /// The mutant of an expression, or what became of it by those inside.
     fn or(&mut self, at: proc_macro2::Span, what: &str, mutant: Expr, own: Expr) -> Expr {
         match self.number(at, what) {
-            Some(n) => parse_quote!((if crate::mutant_switch::on(#n) { #mutant } else { #own })),
+            // In parentheses: what begins with `if` would be a statement there, and what follows its block another one.
+            Some(n) => parse_quote!((if crate::mutant_switch::on(#n) { (#mutant) } else { (#own) })),
             None => own,
         }
     }
