@@ -139,3 +139,88 @@ fn beside<S: Scalar>(guess: S, before: Option<S>, inside: S, outside: S, resolut
     let beyond = if inside < outside { guess + fine } else { guess - fine };
     if doubt <= fine && (guess - inside).abs() <= fine { [beyond, long] } else { [short, long] }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::cell::Cell;
+
+    /// Contacts whose squared durations fall linearly to 0 at `end`, behind which another region hides them up to `hidden`.
+    fn trial(at: f64, end: f64, hidden: f64, sign: f64) -> Trial<f64> {
+        match sign * at {
+            at if at <= end => Trial::Contact((end - at).sqrt()),
+            at if at <= hidden => Trial::Elsewhere,
+            _ => Trial::Clear,
+        }
+    }
+
+    #[test]
+    fn brackets_end_at_the_first_step_that_is_clear() {
+        for sign in [1.0, -1.0] {
+            let found = |near: f64, far: f64, end: f64| {
+                let bracket = ForbiddenBracket::new(sign * -1.0, [sign * near, sign * far], 1e-3, &|at| {
+                    trial(at, end, end, sign)
+                });
+                bracket.map(|bracket| sign * bracket.outside())
+            };
+            assert_eq!(found(0.5, 100.0, 0.25), Some(0.5));
+            // Steps of 1.5, 3, 6 from 0.5: never farther than twice the way.
+            assert_eq!(found(0.5, 100.0, 1.0), Some(2.0));
+            assert_eq!(found(0.5, 100.0, 4.5), Some(5.0));
+            assert_eq!(found(0.5, 4.75, 4.5), Some(4.75));
+            assert_eq!(found(0.5, 4.0, 4.5), None);
+        }
+    }
+
+    #[test]
+    fn ends_are_clear_and_within_the_resolution() {
+        for sign in [1.0, -1.0] {
+            // Also around 0, where the sum of both ends is less than any resolution.
+            for (from, to, end, hidden) in
+                [(-1.0, 1.0, 0.3, 0.3), (-8.0, -2.0, -5.0, -5.0), (2.0, 9.0, 3.0, 7.5), (-1.0, 1.0, -0.5, 0.25)]
+            {
+                let count = Cell::new(0);
+                let tried = |at: f64| {
+                    count.set(count.get() + 1);
+                    trial(at, end, hidden, sign)
+                };
+                let bracket = ForbiddenBracket::new(sign * from, [sign * to; 2], 1e-6, &tried).unwrap();
+                let found = bracket.shrunk(&tried);
+                assert_eq!(trial(found, end, hidden, sign), Trial::Clear);
+                let excess = sign * found - hidden;
+                assert!((0.0..=1e-6).contains(&excess), "{sign} {end} {hidden}: {excess}");
+                assert!(count.get() < 2 * TRIALS as usize, "{}", count.get());
+            }
+        }
+    }
+
+    #[test]
+    fn guesses_are_where_the_squares_of_durations_vanish() {
+        let long = |at: f64, end: f64| (at, (end - at).abs().sqrt());
+        for end in [3.0, -3.0, 0.5] {
+            for side in [1.0, -1.0] {
+                let [near, far] = [1.0, 4.0].map(|away| long(end - side * away, end));
+                let guess = vanishing(near, far).unwrap();
+                assert!((guess - end).abs() < 1e-12, "{guess} {end}");
+                assert_eq!(vanishing(far, near), None);
+                assert_eq!(vanishing(near, near), None);
+            }
+        }
+    }
+
+    #[test]
+    fn values_beside_a_guess_are_short_of_it_first_and_beyond_it_at_last() {
+        for sign in [1.0, -1.0] {
+            let places = |guess: f64, before: Option<f64>, inside: f64| {
+                beside(sign * guess, before.map(|before| sign * before), sign * inside, sign * 10.0, 0.5)
+                    .map(|place| sign * place)
+            };
+            // A quarter of the change of the guess, on both sides of it.
+            assert_eq!(places(4.0, Some(8.0), 0.0), [3.0, 5.0]);
+            assert_eq!(places(4.0, None, 0.0), [3.0, 5.0]);
+            // Within half of the resolution from inside: beyond it.
+            assert_eq!(places(4.0, Some(4.25), 3.875), [4.25, 4.125]);
+            assert_eq!(places(4.0, Some(4.25), 3.5), [3.875, 4.125]);
+        }
+    }
+}
