@@ -457,7 +457,7 @@ def check_regions(browser):
     ends = [*region["time"], *region["length"]]
     if len(numbers) != 4 or not all(printed <= end if k % 2 == 0 else printed >= end for k, (printed, end) in enumerate(zip(numbers, ends))):
         wrong.append(f"{said} of {ends}")
-    return wrong + check_time(browser)
+    return wrong + check_time(browser, "map")
 
 
 def check(browser, name, page, folder):
