@@ -106,7 +106,7 @@ fn of_rows<'m, S: HostScalar, T: Send>(
     memory_budget::ask(count * PAIR_BYTES, || {
         format!("the certificate of {count} pairs of bodies that come near one another")
     })?;
-    agent_regions::gathered(motions, "pairs", |row| {
+    agent_regions::gathered(motions, "pairs", &|_, _| {}, |row| {
         let i = row.agents()[row.agent_index()] as usize;
         let told = |j: usize| {
             let mut regions = row.pair(i, j).expect("the row of the agent");
