@@ -60,11 +60,8 @@ pub use write::{WriteReport, sized, write};
 use pcr_formats::import::{ImportError, ImportedLayout, InputFormat};
 use pcr_formats::warning::WarningCode;
 use pcr_planning::exclusion_table::ExclusionTable;
-use pcr_planning::memory_budget;
+use pcr_planning::memory_budget::MemoryDemand;
 use std::fmt;
-
-/// Memory for a lock in the rules made of the table: names, and members of groups \[bytes\].
-const LOCK_BYTES: u64 = 256;
 
 /// The table from which exclusions are made, or against which they are checked: all of it has to fit in memory.
 ///
@@ -72,9 +69,7 @@ const LOCK_BYTES: u64 = 256;
 /// Errors of [`ExclusionTable::compute`]; and an error in advance for a table whose rules would take more memory than there is.
 pub fn table(imported: &ImportedLayout) -> Result<ExclusionTable, ImportError> {
     let locks = ExclusionTable::compute(imported, true)?;
-    let count = locks.locks.len();
-    let asked = memory_budget::ask(count as u64 * LOCK_BYTES, || format!("what is made of a table of {count} locks"));
-    asked.map_err(|large| ImportError::new(large.to_string()))?;
+    MemoryDemand::Exclusions(locks.locks.len()).ask().map_err(|large| ImportError::new(large.to_string()))?;
     Ok(locks)
 }
 

@@ -9,11 +9,8 @@ use crate::{ExclusionAudit, ExclusionFormat, VehicleStamp, lock_file, nav2, open
 use pcr_formats::import::{self, ImportError, ImportOptions, ImportedLayout, InputFormat, SizeSource, Warnings};
 use pcr_formats::warning::WarningCode;
 use pcr_planning::exclusion_table::{ExclusionTable, ExclusionVehicle};
-use pcr_planning::memory_budget;
+use pcr_planning::memory_budget::MemoryDemand;
 use serde::Serialize;
-
-/// What a part of an edge that is cut takes, with a few locks \[bytes\].
-const PART_BYTES: u64 = 4096;
 
 /// What has been written.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -186,9 +183,9 @@ impl LayoutSource<'_> {
         }
         if let Some(most) = settings.split {
             let parts = imported.layout.edges.iter().map(|edge| (edge.length() / most).ceil()).sum::<f64>() as u64;
-            let asked =
-                memory_budget::ask(parts.saturating_mul(PART_BYTES), || format!("--split {most}: {parts} parts"));
-            asked.map_err(|large| ImportError::new(large.to_string()))?;
+            MemoryDemand::EdgeParts { longest: most, parts }
+                .ask()
+                .map_err(|large| ImportError::new(large.to_string()))?;
         }
         if let (ExclusionFormat::Rmf, Some(graph)) = (settings.target, self.options.graph) {
             let text =

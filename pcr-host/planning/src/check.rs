@@ -8,7 +8,7 @@ use crate::certify::MotionCertificate;
 use crate::disc_fleet::{BodyDisc, DiscFleet, Form};
 use crate::failure::ComputationError;
 use crate::fleet::HostScalar;
-use crate::memory_budget::{self, MemoryBudget};
+use crate::memory_budget::{self, MemoryBudget, MemoryDemand};
 use crate::parallel;
 use crate::regions::{DiscCover, ProgressFn};
 use pcr_core::{ClosestApproach, Encounter, Interval, Motion};
@@ -192,8 +192,7 @@ impl CheckReport {
     ) -> Result<Self, ComputationError> {
         let verdict = Self::watched::<S>(scenario, closest, told)?;
         // The checker has a list of its own.
-        let count = verdict.conflicts.len();
-        memory_budget::ask(count as u64 * PROOF_BYTES, || format!("the proof of {count} conflicts"))?;
+        MemoryDemand::ConflictProof(verdict.conflicts.len()).ask()?;
         Ok(Self { certificate: Some(MotionCertificate::of_pairs::<S>(scenario)?), ..verdict })
     }
 
@@ -215,9 +214,6 @@ impl CheckReport {
 
 /// A disc of an agent, and its motion.
 type DiscMotion<'a, S> = (&'a BodyDisc, &'a Motion<'a, S>);
-
-/// Memory of a contact in the checker, while its list grows, and in the answer \[bytes\].
-const PROOF_BYTES: u64 = 128;
 
 /// Number of agents between two reports of progress.
 const STRETCH: usize = 1024;

@@ -46,7 +46,110 @@ impl MemoryError {
     }
 }
 
-/// Asks for some bytes, before they are allocated; what is small need not ask.
+/// A job, with the numbers that decide how much memory it takes. It displays as what the memory is for.
+#[derive(Clone, Copy, Debug)]
+pub enum MemoryDemand<'a> {
+    /// Reading the numbers in a text of so many bytes.
+    Text(u64),
+    /// Reading a text of so many bytes to a tree, as all but scenarios are read.
+    Tree(u64),
+    /// Answering about a scenario, beside the answer.
+    Answer {
+        /// Number of agents.
+        agents: usize,
+        /// Segments of all their paths.
+        segments: usize,
+    },
+    /// A table for reading: all its rows, until the widths of its columns are known.
+    Rows {
+        /// Number of rows.
+        count: usize,
+        /// What is in a row, in the plural.
+        what: &'a str,
+    },
+    /// A plan and its proof, for as many agents that are alone; those that come near one another ask for more.
+    Plan(usize),
+    /// The forms of all methods of a comparison, for as many agents.
+    Comparison(usize),
+    /// The start delays that as many regions forbid.
+    ForbiddenDelays(usize),
+    /// The proof of as many conflicts: in the checker, while its list grows, and in the answer.
+    ConflictProof(usize),
+    /// As many segments in a table and in the checker.
+    SegmentProof(usize),
+    /// As many pairs of discs in a certificate and in the checker.
+    PairProof(u64),
+    /// As many motions along edges in the proof of delays.
+    TraversalProof(usize),
+    /// The rules made of a table of as many locks: names, and members of groups.
+    Exclusions(usize),
+    /// Edges cut into as many parts.
+    EdgeParts {
+        /// Length of the longest part \[m\].
+        longest: f64,
+        /// Number of parts.
+        parts: u64,
+    },
+}
+
+impl MemoryDemand<'_> {
+    /// Returns how many bytes the job takes. These are estimates, which the tests of limits check
+    /// (`pcr-host/tests/tool/large.rs`).
+    pub fn bytes(self) -> u64 {
+        let (count, each) = match self {
+            Self::Text(bytes) => (bytes, 8),
+            Self::Tree(bytes) => (bytes, OF_TREE),
+            Self::Answer { agents, segments } => return 1600 * agents as u64 + 400 * segments as u64,
+            Self::Rows { count, .. } => (count as u64, 800),
+            Self::Plan(agents) => (agents as u64, 3800),
+            Self::Comparison(agents) => (agents as u64, 2000),
+            Self::ForbiddenDelays(regions) => (regions as u64, 256),
+            Self::ConflictProof(conflicts) => (conflicts as u64, 128),
+            Self::SegmentProof(segments) => (segments as u64, 800),
+            Self::PairProof(pairs) => (pairs, 128),
+            Self::TraversalProof(motions) => (motions as u64, 4096),
+            Self::Exclusions(locks) => (locks as u64, 256),
+            Self::EdgeParts { parts, .. } => (parts, 4096),
+        };
+        count.saturating_mul(each)
+    }
+
+    /// Checks that the memory is there, before the job begins; what is small is not checked.
+    ///
+    /// # Errors
+    /// [`MemoryError`], with the number of bytes, if the system reports less free memory.
+    pub fn ask(self) -> Result<(), MemoryError> {
+        let what = || self.to_string();
+        match self {
+            Self::Text(_) | Self::Tree(_) | Self::Answer { .. } => ask_for_all_left(self.bytes(), what),
+            _ => ask(self.bytes(), what),
+        }
+    }
+}
+
+impl fmt::Display for MemoryDemand<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Text(_) => f.write_str("what is read"),
+            Self::Tree(_) => f.write_str("what is made of the file"),
+            Self::Answer { agents, .. } => write!(f, "an answer about {agents} agents"),
+            Self::Rows { count, what } => write!(f, "a table of {count} {what}"),
+            Self::Plan(agents) => write!(f, "the plan of {agents} agents"),
+            Self::Comparison(agents) => write!(f, "the comparison of {agents} agents"),
+            Self::ForbiddenDelays(regions) => write!(f, "start delays that {regions} regions forbid"),
+            Self::ConflictProof(conflicts) => write!(f, "the proof of {conflicts} conflicts"),
+            Self::SegmentProof(segments) => write!(f, "the proof for {segments} segments"),
+            Self::PairProof(pairs) => {
+                write!(f, "the certificate of {pairs} pairs of discs that come near one another")
+            }
+            Self::TraversalProof(_) => f.write_str("the motions to be proved"),
+            Self::Exclusions(locks) => write!(f, "what is made of a table of {locks} locks"),
+            Self::EdgeParts { longest, parts } => write!(f, "--split {longest}: {parts} parts"),
+        }
+    }
+}
+
+/// Checks that some bytes can be allocated, where a list grows or its items have a known size; what is small is not checked.
 ///
 /// # Errors
 /// [`MemoryError`], with the number of bytes, if the system reports less free memory.
@@ -54,33 +157,11 @@ pub fn ask(bytes: u64, what: impl FnOnce() -> String) -> Result<(), MemoryError>
     if bytes < STEP { Ok(()) } else { ask_at_all(bytes, what) }
 }
 
-/// What is made of a text while it is read, as a part of its size: its numbers, and what they are read to.
-const OF_TEXT: u64 = 8;
-
-/// The same where a tree is made of all of it.
-const OF_TREE: u64 = 56;
-
-/// Asks for what is made of a text of so many bytes while it is read.
-///
-/// # Errors
-/// As [`ask`].
-pub fn ask_for_text(bytes: u64) -> Result<(), MemoryError> {
-    ask_for_all_left(OF_TEXT * bytes, || "what is read".into())
-}
-
-/// The same for a text of which a tree is made, as of all but scenarios.
-///
-/// # Errors
-/// As [`ask`].
-pub fn ask_for_tree(bytes: u64) -> Result<(), MemoryError> {
-    ask_for_all_left(OF_TREE * bytes, || "what is made of the file".into())
-}
+/// Bytes of a tree for each byte of its text: `[0,0,` has a node of 48 bytes for every two, in lists that are copied to twice their size.
+const OF_TREE: u64 = 80;
 
 /// Asks for some bytes and keeps no reserve: for estimates that are high, or while no other thread takes addresses.
-///
-/// # Errors
-/// As [`ask`].
-pub fn ask_for_all_left(bytes: u64, what: impl FnOnce() -> String) -> Result<(), MemoryError> {
+fn ask_for_all_left(bytes: u64, what: impl FnOnce() -> String) -> Result<(), MemoryError> {
     let limits = [address_space(), group(), machine()];
     match limits.into_iter().flatten().min() {
         Some(left) if bytes > STEP && bytes > left => {
@@ -203,6 +284,20 @@ mod tests {
             assert!(refused.starts_with("a table would take 1152921504607 MB of memory; "), "{refused}");
         }
         assert_eq!(ask(STEP - 1, String::new), Ok(()));
+    }
+
+    #[test]
+    fn jobs_are_refused_with_what_they_need() {
+        assert_eq!(MemoryDemand::Rows { count: 1000, what: "regions" }.bytes(), 800_000);
+        assert_eq!(MemoryDemand::Answer { agents: 2, segments: 3 }.bytes(), 4400);
+        assert_eq!(MemoryDemand::EdgeParts { longest: 0.5, parts: u64::MAX }.bytes(), u64::MAX);
+        assert_eq!(MemoryDemand::Plan(4).ask(), Ok(()));
+        if available_bytes().is_some() {
+            let refused = MemoryDemand::PairProof(1 << 53).ask().unwrap_err().to_string();
+            let what = "the certificate of 9007199254740992 pairs of discs that come near one another would take ";
+            assert!(refused.starts_with(&format!("{what}1152921504607 MB of memory; ")), "{refused}");
+            assert!(MemoryDemand::Tree(1 << 50).ask().is_err() && MemoryDemand::Text(1 << 50).ask().is_err());
+        }
     }
 
     /// Files that had been read counted as memory in use, and groups within others as if there were none.

@@ -24,7 +24,7 @@ mod tests;
 use crate::certify::MotionCertificate;
 use crate::failure::ComputationError;
 use crate::fleet::Fleet;
-use crate::memory_budget;
+use crate::memory_budget::MemoryDemand;
 pub use circular_wait::sides;
 pub(crate) use circular_wait::sides_of;
 pub use delays::{DelaySearchOptions, Objective};
@@ -207,9 +207,6 @@ impl UnplannedAgents {
 /// Largest number of agents that are tried to be put back into a plan by speeds; each takes a plan of all others.
 const PUT_BACK: usize = 16;
 
-/// What an agent alone takes in a plan and its proof \[bytes\]; those that come near one another ask for more.
-const AGENT_BYTES: u64 = 3800;
-
 /// A plan, and the scenario that it makes, where there is one.
 type PlanAnswer = (PlanReport, Option<Scenario>);
 
@@ -254,8 +251,7 @@ impl PlanReport {
         request: &PlanOptions,
         told: PlanProgressFn<'_>,
     ) -> Result<PlanAnswer, ComputationError> {
-        let agents = scenario.agents.len();
-        memory_budget::ask(agents as u64 * AGENT_BYTES, || format!("the plan of {agents} agents"))?;
+        MemoryDemand::Plan(scenario.agents.len()).ask()?;
         let begin = Instant::now();
         let fleet = Fleet::<f64>::of_bodies(scenario)?;
         let motions = prepared(&fleet, request.method);

@@ -28,7 +28,6 @@ pub use plans::{PLAN_CSV_HEADER, left_open, plan_csv, plan_table, reasons};
 pub use proofs::proof_line;
 pub use streamed_regions::{OutputError, sheet_csv, sheet_json};
 pub use table::table;
-pub use text_table::ROW_BYTES;
 
 use crate::certify::{self, CertifyReport};
 use crate::check::CheckReport;

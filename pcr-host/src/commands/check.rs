@@ -10,7 +10,7 @@ use pcr_formats::scenario::Scenario;
 use pcr_planning::check::CheckReport;
 use pcr_planning::failure::ComputationError;
 use pcr_planning::fleet::HostScalar;
-use pcr_planning::memory_budget;
+use pcr_planning::memory_budget::MemoryDemand;
 use pcr_planning::regions::ProgressFn;
 use pcr_planning::report::{self, OutputError};
 use std::io::{self, Write};
@@ -109,8 +109,7 @@ impl ScenarioCommand for CheckCommand {
         if self.silent && !self.certify {
             return Ok(false);
         }
-        let rows =
-            |count: usize| memory_budget::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} rows"));
+        let rows = |count: usize| MemoryDemand::Rows { count, what: "rows" }.ask();
         if self.closest && self.form == OutputFormat::Table {
             // All pairs, which is known before they are computed.
             let count = scenario.agents.len();

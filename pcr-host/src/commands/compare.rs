@@ -9,7 +9,7 @@ use pcr_comparing::report;
 use pcr_formats::import::ImportOptions;
 use pcr_formats::output;
 use pcr_planning::failure::ComputationError;
-use pcr_planning::memory_budget;
+use pcr_planning::memory_budget::MemoryDemand;
 use pcr_planning::report::{counted, heading, json};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -59,9 +59,6 @@ enum CompareFormat {
 /// Time that a method gets in all rounds \[s\].
 const BUDGET: f64 = 0.5;
 
-/// What an agent takes in the forms of all methods \[bytes\].
-const AGENT_BYTES: u64 = 2000;
-
 /// Slices of regions that are compared with the reference.
 const SLICES: usize = 20_000;
 
@@ -93,8 +90,7 @@ impl CompareArgs {
             let mut scenario = source.scenario(&self.import)?;
             scenario.name = source.display_name(&scenario.name);
             let agents = scenario.agents.len();
-            memory_budget::ask(agents as u64 * AGENT_BYTES, || format!("the comparison of {agents} agents"))
-                .map_err(|large| CliError::wrong(source.file(), large))?;
+            MemoryDemand::Comparison(agents).ask().map_err(|large| CliError::wrong(source.file(), large))?;
             let progress = ProgressLine::new("methods");
             let refused = |refused| CliError::wrong(source.file(), ComputationError::Refused(refused));
             let comparison =

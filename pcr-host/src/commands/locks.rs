@@ -18,7 +18,7 @@ use pcr_planning::exclusion_table::{
     EdgeDriving, ExclusionIndex, ExclusionIndexError, ExclusionTable, SweptLayout, SyncProgressFn, UnsafeDelayModel,
     origin, write_index,
 };
-use pcr_planning::memory_budget;
+use pcr_planning::memory_budget::MemoryDemand;
 use pcr_planning::report::{self, EdgeExclusionsReport, ExclusionOutputError, UnsafeDelayReport};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -298,7 +298,7 @@ fn is_stream(file: &Path) -> bool {
 
 /// Asks for what a table for reading takes.
 fn ask_for_rows(count: usize, what: &str) -> Result<(), CliError> {
-    memory_budget::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} {what}")).map_err(|large| {
+    MemoryDemand::Rows { count, what }.ask().map_err(|large| {
         CliError::arguments(format!("{large}; --lines, --format csv and (of locks) --index print tables of any size"))
     })
 }

@@ -8,7 +8,7 @@ use clap::builder::NonEmptyStringValueParser;
 use pcr_formats::import::ImportOptions;
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::HostScalar;
-use pcr_planning::memory_budget;
+use pcr_planning::memory_budget::MemoryDemand;
 use pcr_planning::regions::{ProgressFn, RegionJob, RegionOptions, RegionsReport, find};
 use pcr_planning::report::{self, OutputError};
 use std::io::{self, Write};
@@ -98,7 +98,7 @@ impl RegionsCommand {
             OutputFormat::Table => {
                 let answer = sheet.answer(told)?;
                 let count = answer.regions.len() + answer.margin_regions.as_ref().map_or(0, Vec::len);
-                memory_budget::ask(count as u64 * report::ROW_BYTES, || format!("a table of {count} regions"))?;
+                MemoryDemand::Rows { count, what: "regions" }.ask()?;
                 Ok(report::table(&answer, out)?)
             }
         }

@@ -7,7 +7,7 @@ use pcr_formats::input::InputError;
 use pcr_formats::scenario::{Agent, Scenario, label, printable};
 use pcr_formats::{input, output};
 use pcr_planning::exclusion_table::ExclusionIndex;
-use pcr_planning::memory_budget;
+use pcr_planning::memory_budget::MemoryDemand;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 
@@ -85,28 +85,22 @@ fn ask_for(file: &Path) -> Result<(), CliError> {
     }
     // What has no size, such as standard input, is not known before.
     let bytes = std::fs::metadata(file).map_or(0, |there| there.len());
-    memory_budget::ask_for_text(bytes).map_err(|large| CliError::wrong(file, large))
+    MemoryDemand::Text(bytes).ask().map_err(|large| CliError::wrong(file, large))
 }
 
 /// Asks for the memory of the tree that is made of a text. Scenarios are read agent by agent.
 fn ask_to_read(file: &Path, text: &str, import: &ImportOptions) -> Result<(), CliError> {
     match input::kind_of(file, text, import) {
         InputKind::Scenario => Ok(()),
-        _ => memory_budget::ask_for_tree(text.len() as u64).map_err(|large| CliError::wrong(file, large)),
+        _ => MemoryDemand::Tree(text.len() as u64).ask().map_err(|large| CliError::wrong(file, large)),
     }
 }
-
-/// What an agent and a segment of its path take in an answer \[bytes\].
-const AGENT_BYTES: usize = 1600;
-const SEGMENT_BYTES: usize = 400;
 
 /// Asks for the memory that it takes to answer about a scenario, beside the answer.
 fn ask_to_answer(file: &Path, scenario: &Scenario) -> Result<(), CliError> {
     let agents = scenario.agents.len();
     let segments: usize = scenario.agents.iter().map(|agent| agent.path.len()).sum();
-    let bytes = agents * AGENT_BYTES + segments * SEGMENT_BYTES;
-    let what = || format!("an answer about {agents} agents");
-    memory_budget::ask_for_all_left(bytes as u64, what).map_err(|large| CliError::wrong(file, large))
+    MemoryDemand::Answer { agents, segments }.ask().map_err(|large| CliError::wrong(file, large))
 }
 
 /// A scenario that was read, with the margin that is asked for; warnings about it are told.

@@ -18,7 +18,7 @@ use super::{motions_with_margins, sides_of as sides};
 use crate::agent_regions;
 use crate::disc_fleet::{BodyDisc, DiscFleet, Form};
 use crate::failure::ComputationError;
-use crate::memory_budget;
+use crate::memory_budget::MemoryDemand;
 use crate::regions::ProgressFn;
 use pcr_core::{Interval, Motion, RegionRef, Scalar};
 use pcr_formats::scenario::Scenario;
@@ -29,9 +29,6 @@ struct ForbiddenInterval {
     other: usize,
     ends: [i64; 2],
 }
-
-/// Memory for a region until its delays are found \[bytes\].
-const BYTES: u64 = 256;
 
 /// The forbidden differences of delays of all pairs of agents that can meet.
 #[derive(Clone, Debug)]
@@ -151,8 +148,7 @@ impl ForbiddenDelays {
             });
             forbidden.collect()
         })?;
-        let many = || format!("start delays that {} regions forbid", found.len());
-        memory_budget::ask(found.len() as u64 * BYTES, many)?;
+        MemoryDemand::ForbiddenDelays(found.len()).ask()?;
         let limit = <f64 as Scalar>::LIMIT;
         let mut ends = vec![f64::NEG_INFINITY; count];
         for (disc, motion) in motions.iter().enumerate() {

@@ -5,15 +5,13 @@ use crate::checker_input::{self, outlines};
 use crate::disc_fleet::{DiscFleet, Form};
 use crate::failure::ComputationError;
 use crate::fleet::HostScalar;
-use crate::{agent_regions, memory_budget};
+use crate::agent_regions;
+use crate::memory_budget::MemoryDemand;
 use pcr_certify::outline::{RawBody, RawOutlineTable};
 use pcr_certify::raw::{RawAgent, RawTable};
 use pcr_certify::table::ProximityIndex;
 use pcr_core::{Motion, RegionRef, excess};
 use pcr_formats::scenario::Scenario;
-
-/// Memory of a segment in a table and in the checker \[bytes\].
-const SEGMENT_BYTES: u64 = 800;
 
 /// The tables of a scenario, to be certified: that of contact, and that in which margins overlap, if any agent has one. They are tables of
 /// discs if all agents are computed as such.
@@ -22,7 +20,7 @@ const SEGMENT_BYTES: u64 = 800;
 /// [`ComputationError`] where a value does not fit the format, or memory does not hold the tables.
 pub fn table_of<S: HostScalar>(scenario: &Scenario, form: Form) -> Result<Vec<CertificateTable>, ComputationError> {
     let segments: usize = scenario.agents.iter().map(|agent| agent.path.len()).sum();
-    memory_budget::ask(segments as u64 * SEGMENT_BYTES, || format!("the proof for {segments} segments"))?;
+    MemoryDemand::SegmentProof(segments).ask()?;
     let DiscFleet { scenario: given, fleet, discs: owners } = DiscFleet::<S>::new(scenario, form)?;
     let motions = fleet.motions();
     let ids: Vec<u64> = owners.iter().map(|disc| scenario.agents[disc.agent].id).collect();
@@ -91,7 +89,7 @@ type PairRegions<'r, 'a, S> = &'r mut dyn Iterator<Item = RegionRef<'a, S>>;
 /// What is `made` of all pairs of bodies with different numbers that come near one another, by what the checker takes for near.
 ///
 /// # Errors
-/// As [`agent_regions::AgentRegions::new`], and [`MemoryError`](memory_budget::MemoryError) where memory does not hold the pairs.
+/// As [`agent_regions::AgentRegions::new`], and [`MemoryError`](crate::memory_budget::MemoryError) where memory does not hold the pairs.
 fn of_rows<'m, S: HostScalar, T: Send>(
     ids: &[u64],
     close: &ProximityIndex,
@@ -103,9 +101,7 @@ fn of_rows<'m, S: HostScalar, T: Send>(
         close.after(i).into_iter().filter(|&j| ids.get(j) != own).collect::<Vec<_>>()
     };
     let count: u64 = (0..ids.len()).map(|i| near(i).len() as u64).sum();
-    memory_budget::ask(count * PAIR_BYTES, || {
-        format!("the certificate of {count} pairs of bodies that come near one another")
-    })?;
+    MemoryDemand::PairProof(count).ask()?;
     agent_regions::gathered(motions, "pairs", &|_, _| {}, |row| {
         let i = row.agents()[row.agent_index()] as usize;
         let told = |j: usize| {
@@ -115,6 +111,3 @@ fn of_rows<'m, S: HostScalar, T: Send>(
         near(i).into_iter().map(told).collect()
     })
 }
-
-/// Memory for a pair of bodies in a certificate and in the checker \[bytes\].
-const PAIR_BYTES: u64 = 128;

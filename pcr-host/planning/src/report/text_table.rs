@@ -3,9 +3,6 @@
 use std::io::{self, Write};
 use unicode_width::UnicodeWidthStr;
 
-/// Memory for a row of a table until the widths of its columns are known \[bytes\]: up to eleven cells, each a text.
-pub const ROW_BYTES: u64 = 800;
-
 /// Rows of cells, each column as wide as its widest cell.
 pub struct TextTable {
     widths: Vec<usize>,

@@ -6,7 +6,7 @@
 use super::UnsafeDelayModel;
 use crate::checker_input;
 use crate::exclusion_table::area_pair_search::{SyncProgressFn, in_stretches};
-use crate::memory_budget;
+use crate::memory_budget::MemoryDemand;
 use crate::parallel;
 use pcr_certify::delays::{Neighbours, Traversal, Verdict};
 use pcr_formats::import::{ElementId, ImportError};
@@ -15,9 +15,6 @@ use std::collections::HashMap;
 
 /// Number of pairs without a proof that are listed, of each kind.
 const LISTED: usize = 10;
-
-/// A bound on the memory for the checker's form of a motion \[bytes\].
-const TRAVERSAL_BYTES: u64 = 4096;
 
 /// The result of the proof of unsafe delays.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -86,9 +83,7 @@ impl UnsafeDelayModel {
         forbidden: &ForbiddenDelays,
         told: SyncProgressFn<'_>,
     ) -> Result<DelayProof, ImportError> {
-        let bytes = 2 * self.ways.len() as u64 * TRAVERSAL_BYTES;
-        memory_budget::ask(bytes, || "the motions to be proved".into())
-            .map_err(|large| ImportError::new(large.to_string()))?;
+        MemoryDemand::TraversalProof(2 * self.ways.len()).ask().map_err(|large| ImportError::new(large.to_string()))?;
         let traversals = self.traversals()?;
         let near = [&traversals.lines, &traversals.motions].map(|all| Neighbours::new(all));
         // Of two lines the lines count, of all others the motions.
