@@ -167,6 +167,9 @@ pub struct Ball<R> {
     pub err: f64,
 }
 
+/// A number of 106 bits and a bound on its error.
+pub(crate) type Real106 = Ball<DoubleDouble>;
+
 impl<R: BallReal> From<f64> for Ball<R> {
     fn from(value: f64) -> Self {
         Self { mid: R::from_f64(value), err: 0.0 }

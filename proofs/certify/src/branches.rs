@@ -6,7 +6,7 @@
 //! `End`. On a cell α has a range; where that is too wide the cell is cut in half. A query is at a length of the number format, so that
 //! of a cell in fixed point what lies between the first and the last one of these counts, down to a single one.
 
-use crate::ball::{Ball, Ternary};
+use crate::ball::{Ball, Real106, Ternary};
 use crate::distance_claim::{DistanceClaim, DualPrecisionPart};
 use crate::double_double::DoubleDouble;
 use crate::pair::{Findings, PairRadii, SegmentPairPieces, TableProperty, gaps};
@@ -16,10 +16,8 @@ use crate::raw::{RawBranch, RawPair};
 /// Cells of one pair of segments at most.
 const MOST: usize = 20_000;
 
-type BranchReal = Ball<DoubleDouble>;
-
 /// The lengths, at most two ranges of them, that lie opposite to the feet of a cell \[m\].
-fn opposite(cell: &SegmentPart<DoubleDouble>, arc: &SegmentPart<DoubleDouble>) -> Vec<[BranchReal; 2]> {
+fn opposite(cell: &SegmentPart<DoubleDouble>, arc: &SegmentPart<DoubleDouble>) -> Vec<[Real106; 2]> {
     let Some(circle) = &arc.circle else { return Vec::new() };
     let at = cell.middle - circle.centre;
     let cross = arc.axis.cross(at);
@@ -105,10 +103,10 @@ pub fn check(segments: &SegmentPairPieces<'_>, pair: &RawPair, radii: &PairRadii
     }
 }
 
-fn below(ball: BranchReal) -> DoubleDouble {
+fn below(ball: Real106) -> DoubleDouble {
     ball.mid - DoubleDouble::from(2.0 * ball.err)
 }
 
-fn above(ball: BranchReal) -> DoubleDouble {
+fn above(ball: Real106) -> DoubleDouble {
     ball.mid + DoubleDouble::from(2.0 * ball.err)
 }

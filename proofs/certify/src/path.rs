@@ -1,12 +1,10 @@
 //! From the numbers of a path to its segments in the plane, with 106 bits.
 
-use crate::ball::Ball;
+use crate::ball::{Ball, Real106};
 use crate::distance_claim::SegmentCarrier;
 use crate::double_double::DoubleDouble;
 use crate::plane::{BallCarrier, BallVector};
 use crate::raw::{RawAngle, RawPath, RawSegment};
-
-type Real106 = Ball<DoubleDouble>;
 
 /// How far before the end of a segment a length is that rounding would put there, as a part of the segment: 2^-80.
 const BELOW: f64 = 1.0 / (1_u128 << 80) as f64;

@@ -6,14 +6,12 @@
 //! corners: a corner of the first and the last kind goes `x(l) = z(l) + Rot(ωl) w` with `w` of constant length.
 
 use super::data::{CORNERS, RawBody, RawCourse, RawHeading, RawOutline};
-use crate::ball::{Ball, BallReal, Ternary};
+use crate::ball::{Ball, BallReal, Real106, Ternary};
 use crate::box_index::PlainBox;
 use crate::double_double::DoubleDouble;
 use crate::path::{LEAST, PreparedSegment, radians, stretches, unit};
 use crate::plane::BallVector;
 use crate::raw::{RawAngle, RawPath, RawSegment};
-
-type Number = Ball<DoubleDouble>;
 
 /// No corner and no radius of an outline is larger \[m\].
 const MOST: f64 = 1e12;
@@ -234,7 +232,7 @@ pub struct Body<'a> {
     /// Its segments.
     pub segments: Vec<Placed>,
     /// Radius of its outline \[m\].
-    pub radius: Number,
+    pub radius: Real106,
     /// How far a corner jumps at most where segments meet, all of them together \[m\].
     pub(crate) jumps: f64,
     /// The path as a line of the same lengths: all that the motion along it depends on.
@@ -261,7 +259,7 @@ impl<'a> Body<'a> {
         let mut jumps = 0.0;
         let mut direction = angle(raw.direction)?;
         let mut at = vector(raw.start);
-        let mut before: Option<Number> = None;
+        let mut before: Option<Real106> = None;
         let mut segments = Vec::with_capacity(along.len());
         for (place, (segment, stretch)) in raw.segments.iter().zip(along).enumerate() {
             let wrong = |problem: String| format!("segment {place}: {problem}");
@@ -367,13 +365,13 @@ fn lengths(raw: &RawBody) -> RawPath {
     }
 }
 
-fn angle(angle: RawAngle) -> Result<Number, String> {
+fn angle(angle: RawAngle) -> Result<Real106, String> {
     let (RawAngle::Radians(number) | RawAngle::Turns(number)) = angle;
     if number.abs() <= 16_777_216.0 { Ok(radians(angle)) } else { Err(format!("an angle of {number} is out of range")) }
 }
 
 /// Angle for each metre along a course \[rad/m\].
-fn rate(course: RawCourse, length: f64) -> Result<Number, String> {
+fn rate(course: RawCourse, length: f64) -> Result<Real106, String> {
     let (RawCourse::Arc { radius: reach } | RawCourse::Pivot { lever: reach }) = course else {
         return Ok(Ball::from(0.0));
     };
@@ -387,7 +385,7 @@ fn rate(course: RawCourse, length: f64) -> Result<Number, String> {
 }
 
 /// Checks that a heading is another one, but for whole turns and rounding, and returns a bound on how far it is off \[rad\].
-fn goes_on(before: Number, heading: Number, jump: f64) -> Result<f64, String> {
+fn goes_on(before: Real106, heading: Real106, jump: f64) -> Result<f64, String> {
     let apart = heading - before;
     let turns = (apart.to_f64() / DoubleDouble::TURN.to_f64()).round();
     // 2π is right within 2^-106 of itself.

@@ -9,11 +9,9 @@
 
 use super::body::{Carried, Placed};
 use super::separation::{Change, above, above_along, below, meet, nearest, overlap, sketched};
-use crate::ball::{Ball, BallReal, Ternary};
+use crate::ball::{Ball, BallReal, Real106, Ternary};
 use crate::double_double::DoubleDouble;
 use crate::pair::gaps;
-
-type Number = Ball<DoubleDouble>;
 
 /// A range of lengths along a segment \[m\].
 pub type Range = [DoubleDouble; 2];
@@ -70,7 +68,7 @@ struct Look {
     over: f64,
 }
 
-fn look<R: BallReal>(bodies: [&Carried<R>; 2], ranges: [Range; 2], least: Number) -> Look {
+fn look<R: BallReal>(bodies: [&Carried<R>; 2], ranges: [Range; 2], least: Real106) -> Look {
     let least = Ball::from_twofold(least);
     let halves = ranges.map(half);
     let [a, b] = [0, 1].map(|k| bodies[k].posture(number(middle(ranges[k]))));
@@ -95,7 +93,7 @@ fn look<R: BallReal>(bodies: [&Carried<R>; 2], ranges: [Range; 2], least: Number
 
 impl<'a> Segments<'a> {
     /// Decides whether all lengths of two ranges are farther apart than `least`, as a distance of the polygons. Counts the boxes.
-    pub fn farther(&self, ranges: [Range; 2], least: Number, steps: &mut usize) -> Verdict {
+    pub fn farther(&self, ranges: [Range; 2], least: Real106, steps: &mut usize) -> Verdict {
         let near = self.0.map(|body| &body.near);
         let exact = self.0.map(|body| &body.exact);
         let mut rest = vec![ranges];
@@ -134,20 +132,20 @@ impl<'a> Segments<'a> {
     }
 
     /// Whether one look at a box shows that all of it is farther apart than `least`.
-    pub(crate) fn is_farther_at_once(&self, ranges: [Range; 2], least: Number) -> bool {
+    pub(crate) fn is_farther_at_once(&self, ranges: [Range; 2], least: Real106) -> bool {
         look::<f64>(self.0.map(|body| &body.near), ranges, least).clear.is_certain()
             || look::<DoubleDouble>(self.0.map(|body| &body.exact), ranges, least).clear.is_certain()
     }
 
     /// Whether one look shows that a length of the first segment is within `most` of all of a cell of the second one.
-    pub(crate) fn is_within_at(&self, at: DoubleDouble, cell: Range, most: Number) -> bool {
+    pub(crate) fn is_within_at(&self, at: DoubleDouble, cell: Range, most: Real106) -> bool {
         witnessed::<f64>(self.0.map(|body| &body.near), 1, cell, [at, at], at, most)
             || witnessed::<DoubleDouble>(self.0.map(|body| &body.exact), 1, cell, [at, at], at, most)
     }
 
     /// Decides whether each length of the range of the body `of` is within `most` of some length of the range of the other one, as a
     /// distance of the polygons. Counts the steps.
-    pub fn within(&self, of: usize, ranges: [Range; 2], most: Number, steps: &mut usize) -> Verdict {
+    pub fn within(&self, of: usize, ranges: [Range; 2], most: Real106, steps: &mut usize) -> Verdict {
         let mut rest = vec![ranges[of]];
         let mut taken = 0;
         while let Some(cell) = rest.pop() {
@@ -240,7 +238,7 @@ impl<'a> Segments<'a> {
 
     /// Decides whether all lengths of both segments within `least` of each other lie in rectangles. Returns where that is not proved, once
     /// for each box that they leave free.
-    pub fn covered(&self, rectangles: &[[Range; 2]], least: Number, steps: &mut usize) -> Vec<Verdict> {
+    pub fn covered(&self, rectangles: &[[Range; 2]], least: Real106, steps: &mut usize) -> Vec<Verdict> {
         let free = self.left_free(rectangles).into_iter();
         free.map(|ranges| self.farther(ranges, least, steps)).filter(|verdict| *verdict != Verdict::Proved).collect()
     }
@@ -254,7 +252,7 @@ fn witnessed<R: BallReal>(
     cell: Range,
     range: Range,
     guess: DoubleDouble,
-    most: Number,
+    most: Real106,
 ) -> bool {
     let other = 1 - of;
     let half: Ball<R> = half(cell);

@@ -13,11 +13,9 @@
 
 use super::cover::{Range, Segments, Verdict};
 use super::separation::sketched;
-use crate::ball::Ball;
+use crate::ball::Real106;
 use crate::double_double::DoubleDouble;
 use crate::pair::gaps;
-
-type Number = Ball<DoubleDouble>;
 
 /// Samples of a slice, and between any two ends of pieces.
 const SAMPLES: usize = 32;
@@ -39,11 +37,11 @@ pub struct Ranks {
 #[derive(Clone, Copy, Debug)]
 pub struct Bounds {
     /// R \[m\].
-    pub radius: Number,
+    pub radius: Real106,
     /// What all contacts are within: R + δ \[m\].
-    pub covered: Number,
+    pub covered: Real106,
     /// R + ε \[m\].
-    pub told: Number,
+    pub told: Real106,
 }
 
 /// An extreme of the distance along the first segment.
