@@ -1,6 +1,6 @@
 //! Clients of the line protocol: standard input and output, and sockets.
 
-use crate::connection_limit;
+use crate::connection_limit::{self, ConnectionPermit};
 use crate::hello::{self, ConnectionRefusal};
 use crate::lines::{self, LONGEST, RequestLine};
 use crate::log::LogWriter;
@@ -191,7 +191,7 @@ fn welcome(
         Ok(Some(first)) => first,
         Err(refusal) => return refuse(&mut stream, &strangers.refusals, who, &refusal),
     };
-    let Some(_place) = ConnectionPermit::taken(clients, access.clients) else {
+    let Some(_permit) = ConnectionPermit::acquire(clients, access.clients) else {
         let fault = RequestError::Full { places: access.clients };
         let refusal = ConnectionRefusal::Hello(fault.clone(), first.refused(fault));
         return refuse(&mut stream, &strangers.refusals, who, &refusal);
@@ -262,22 +262,6 @@ impl Drop for Shut {
     fn drop(&mut self) {
         // It may be closed already.
         let _ = self.0.shutdown(Shutdown::Both);
-    }
-}
-
-/// One of the places for clients; free again when it is dropped.
-struct ConnectionPermit(Arc<AtomicUsize>);
-
-impl ConnectionPermit {
-    fn taken(of: &Arc<AtomicUsize>, most: usize) -> Option<Self> {
-        let next = |count: usize| (count < most).then_some(count + 1);
-        of.fetch_update(Ordering::Relaxed, Ordering::Relaxed, next).ok().map(|_| Self(of.clone()))
-    }
-}
-
-impl Drop for ConnectionPermit {
-    fn drop(&mut self) {
-        self.0.fetch_sub(1, Ordering::Relaxed);
     }
 }
 

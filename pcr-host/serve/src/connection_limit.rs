@@ -32,7 +32,7 @@ pub(crate) fn each(
             }
         };
         fails = false;
-        if open.load(Ordering::Relaxed) >= most {
+        let Some(permit) = ConnectionPermit::acquire(&open, most) else {
             if !std::mem::replace(&mut refuses, true) {
                 log.write(
                     LogLevel::Warn,
@@ -41,11 +41,11 @@ pub(crate) fn each(
                 );
             }
             continue;
-        }
+        };
         refuses = false;
-        let (serve, place) = (serve.clone(), AcceptPermit::taken(&open));
+        let serve = serve.clone();
         let work = move || {
-            let _place = place;
+            let _permit = permit;
             serve(stream, &who);
         };
         if let Err(error) = thread::Builder::new().name(name.into()).spawn(work) {
@@ -54,17 +54,18 @@ pub(crate) fn each(
     }
 }
 
-/// One of the places; free again when it is dropped.
-struct AcceptPermit(Arc<AtomicUsize>);
+/// One of a number of places for connections; free again when it is dropped.
+pub(crate) struct ConnectionPermit(Arc<AtomicUsize>);
 
-impl AcceptPermit {
-    fn taken(of: &Arc<AtomicUsize>) -> Self {
-        of.fetch_add(1, Ordering::Relaxed);
-        Self(of.clone())
+impl ConnectionPermit {
+    /// Takes one of `most` places, of which so many are taken; `None` if all are.
+    pub(crate) fn acquire(taken: &Arc<AtomicUsize>, most: usize) -> Option<Self> {
+        let next = |count: usize| (count < most).then_some(count + 1);
+        taken.fetch_update(Ordering::Relaxed, Ordering::Relaxed, next).ok().map(|_| Self(taken.clone()))
     }
 }
 
-impl Drop for AcceptPermit {
+impl Drop for ConnectionPermit {
     fn drop(&mut self) {
         self.0.fetch_sub(1, Ordering::Relaxed);
     }

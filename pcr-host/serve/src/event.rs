@@ -139,7 +139,7 @@ pub enum SupervisorEvent {
 
 impl SupervisorEvent {
     /// Whether another event, which was decided before this one, must not be told after it: it would let go a robot that has to stop.
-    pub fn overtakes(&self, before: &Self) -> bool {
+    pub(crate) fn overtakes(&self, before: &Self) -> bool {
         match (self, before) {
             (Self::Stop { robot, .. }, Self::Go { robot: other }) => robot == other,
             _ => false,

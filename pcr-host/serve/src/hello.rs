@@ -118,7 +118,7 @@ pub fn read(
 }
 
 /// What a line is that is no JSON object. `behind` is what has come after it.
-pub fn no_object(line: &[u8], behind: &[u8], request: &RequestLine) -> ConnectionRefusal {
+pub(crate) fn no_object(line: &[u8], behind: &[u8], request: &RequestLine) -> ConnectionRefusal {
     if is_tls(line) {
         ConnectionRefusal::Tls
     } else if is_http(line) {

@@ -18,6 +18,7 @@ mod folder_lock;
 
 use crate::journal_entry::{JournalEntry, JournalStore};
 use folder_lock::FolderLock;
+use std::fmt;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -213,11 +214,47 @@ pub struct ParsedFrames {
     pub sum: u32,
 }
 
+/// Why the bytes of a journal cannot be read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum JournalDamage {
+    /// They do not begin as those of a journal.
+    NoJournal,
+    /// They are of another version.
+    Version {
+        /// Version of the journal.
+        own: u32,
+        /// Version that is read.
+        version: u32,
+    },
+    /// A frame is damaged.
+    Frame {
+        /// Where it begins.
+        byte: usize,
+        /// What is wrong with it.
+        why: String,
+    },
+}
+
+impl fmt::Display for JournalDamage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoJournal => f.write_str("it is no journal"),
+            Self::Version { own, version } => write!(
+                f,
+                "it is of version {own}, and {version} is read: begin another journal while all robots stand"
+            ),
+            Self::Frame { byte, why } => write!(f, "at byte {byte}: {why}"),
+        }
+    }
+}
+
+impl std::error::Error for JournalDamage {}
+
 /// Reads the bytes of a journal.
 ///
 /// # Errors
-/// The damage, in words.
-pub fn read(bytes: &[u8]) -> Result<ParsedFrames, String> {
+/// [`JournalDamage`].
+pub fn read(bytes: &[u8]) -> Result<ParsedFrames, JournalDamage> {
     let is_anew = match bytes.get(..HEADER.len()) {
         Some(header) if header == HEADER => false,
         Some(header) if header == ANEW => true,
@@ -225,15 +262,13 @@ pub fn read(bytes: &[u8]) -> Result<ParsedFrames, String> {
             // Without the last byte where it is that of a journal begun anew.
             let of = |word: u32| if word.to_le_bytes()[3] == ANEW[15] { word & 0xff_ffff } else { word };
             let [own, version] = [header, HEADER].map(|header| word(header, VERSION).map_or(0, of));
-            return Err(format!(
-                "it is of version {own}, and {version} is read: begin another journal while all robots stand"
-            ));
+            return Err(JournalDamage::Version { own, version });
         }
-        _ => return Err("it is no journal".into()),
+        _ => return Err(JournalDamage::NoJournal),
     };
     let mut read = ParsedFrames { entries: Vec::new(), first: HEADER.len(), end: HEADER.len(), sum: FIRST };
     while let Some(rest) = bytes.get(read.end..).filter(|rest| !rest.is_empty()) {
-        let damage = |why: &str| format!("at byte {}: {why}", read.end);
+        let damage = |why: &str| JournalDamage::Frame { byte: read.end, why: why.to_owned() };
         match text(rest) {
             Ok((text, before, sum)) => {
                 if before != read.sum {
@@ -257,10 +292,8 @@ pub fn read(bytes: &[u8]) -> Result<ParsedFrames, String> {
         }
     }
     if is_anew && read.end == HEADER.len() {
-        return Err(format!(
-            "at byte {}: no whole frame, though it was whole when the journal was begun anew",
-            read.end
-        ));
+        let why = "no whole frame, though it was whole when the journal was begun anew".to_owned();
+        return Err(JournalDamage::Frame { byte: read.end, why });
     }
     Ok(read)
 }

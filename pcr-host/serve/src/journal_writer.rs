@@ -59,7 +59,7 @@ impl WriteProgress {
     }
 
     /// Waits until more is on the disk, or no more will be written, but no longer than a time.
-    pub fn wait_for(&self, time: Duration) {
+    pub(crate) fn wait_for(&self, time: Duration) {
         let done = self.shared.done.lock().unwrap_or_else(PoisonError::into_inner);
         let before = done.0;
         let more = self.shared.more.wait_timeout_while(done, time, |(done, why)| *done == before && why.is_none());

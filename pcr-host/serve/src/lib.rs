@@ -2,27 +2,28 @@
 //! `docs/guide/serve.md` describes how to use it, and what it guarantees.
 //!
 //! ```text
-//! course       owned paths                                            Course, Shape
-//! robot        state of a robot                                       Robot, Abilities
-//! event        messages that it sends without a request               Event
-//! fault        reasons why it refuses a request                       Fault
-//! entry        data that have to survive the process                  Entry, Keep
-//! journal      a file of entries                                      Journal
-//! writer       a journal on a thread of its own                       Writer, Kept
-//! supervisor   robots, missions, positions, holds                     Supervisor
-//! query        queries about a fleet                                  Question
-//! lines        the line protocol                                      handle
-//! line_angles  degrees in its requests
-//! metrics      metrics for Prometheus
-//! log          log on standard error                                  Log
-//! board        data that the supervisor's thread publishes            Board
-//! outbox       lines that wait for a client                           Outbox
-//! server       the thread that owns the supervisor                    serve, Handle
-//! accept       connections, up to a number at a time
-//! clients      standard input and output, and TCP
-//! http         the live page
-//! vda5050      VDA 5050 between a fleet manager and vehicles          Bridge, Station
-//! vehicles     simulated vehicles and a fleet manager                 Vehicle, Fleet
+//! owned_path        paths that own their segments                      OwnedPath
+//! robot             state of a robot                                   Robot, RobotTraits
+//! event             messages that it sends without a request           Event
+//! request_error     reasons why it refuses a request                   RequestError
+//! setup_error       why a connection cannot be set up                  SetupError
+//! journal_entry     data that have to survive the process              JournalEntry
+//! journal           a file of entries                                  Journal
+//! journal_writer    a journal on a thread of its own                   JournalWriter
+//! supervisor        robots, missions, positions, authorities           Supervisor
+//! query             queries about a fleet                              Query
+//! lines             the line protocol                                  handle
+//! line_angles       degrees in its requests
+//! metrics           metrics for Prometheus
+//! log               log on standard error                              LogWriter
+//! telemetry         data that the supervisor's thread publishes        Telemetry
+//! outbox            lines that wait for a client                       Outbox
+//! server            the thread that owns the supervisor                serve, ServerHandle
+//! connection_limit  connections, up to a number at a time              ConnectionPermit
+//! clients           standard input and output, and TCP
+//! http              the live page
+//! vda5050           VDA 5050 between a fleet manager and vehicles      Vda5050Bridge, BrokerSession
+//! vehicles          simulated vehicles and a fleet manager             SimulatedVehicle, FleetManager
 //! ```
 //!
 //! One thread owns the [`Supervisor`](supervisor::Supervisor). It handles messages of other threads in any number of
@@ -41,7 +42,7 @@ pub mod journal_writer;
 mod line_angles;
 pub mod lines;
 pub mod log;
-pub mod metrics;
+mod metrics;
 pub mod outbox;
 pub mod owned_path;
 pub mod query;
@@ -49,6 +50,7 @@ mod refusals;
 pub mod request_error;
 pub mod robot;
 pub mod server;
+pub mod setup_error;
 pub mod sockets;
 pub mod supervisor;
 pub mod telemetry;

@@ -10,7 +10,7 @@ const CLASSES: [f64; 10] = [0.000_1, 0.000_25, 0.000_5, 0.001, 0.002_5, 0.005, 0
 
 /// Times from the arrival of a request until its answer and all resulting messages were sent.
 #[derive(Clone, Debug, Default)]
-pub struct LatencyHistogram {
+pub(crate) struct LatencyHistogram {
     classes: [u64; CLASSES.len()],
     count: u64,
     sum: f64,
@@ -18,7 +18,7 @@ pub struct LatencyHistogram {
 
 impl LatencyHistogram {
     /// Adds a time.
-    pub fn add(&mut self, time: Duration) {
+    pub(crate) fn add(&mut self, time: Duration) {
         let seconds = time.as_secs_f64();
         if let Some(class) = CLASSES.iter().position(|end| seconds <= *end) {
             self.classes[class] += 1;
@@ -29,7 +29,7 @@ impl LatencyHistogram {
 
 /// Numbers of robots by what they do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Census {
+pub(crate) struct Census {
     robots: u64,
     /// Whose mission is not admitted yet.
     waiting: u64,
@@ -43,7 +43,7 @@ pub struct Census {
 
 impl Census {
     /// Counts the robots of a supervisor.
-    pub fn of(supervisor: &Supervisor) -> Self {
+    pub(crate) fn of(supervisor: &Supervisor) -> Self {
         let robots = supervisor.robots();
         let count = |which: fn(&crate::robot::SupervisedRobot) -> bool| {
             robots.iter().filter(|robot| which(robot)).count() as u64
@@ -59,7 +59,7 @@ impl Census {
 }
 
 /// The page `/metrics`.
-pub fn text(supervisor: &Supervisor, latency: &LatencyHistogram) -> String {
+pub(crate) fn text(supervisor: &Supervisor, latency: &LatencyHistogram) -> String {
     let mut text = String::new();
     let counts = supervisor.counts();
     let census = Census::of(supervisor);

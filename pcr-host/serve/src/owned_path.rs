@@ -283,7 +283,11 @@ impl OwnedPath {
     ///
     /// # Errors
     /// [`InvalidInput`] for the radius, and a profile of another length.
-    pub fn motion_by<'a>(&'a self, profile: ProfileRef<'a, f64>, radius: f64) -> Result<Motion<'a, f64>, InvalidInput> {
+    pub(crate) fn motion_by<'a>(
+        &'a self,
+        profile: ProfileRef<'a, f64>,
+        radius: f64,
+    ) -> Result<Motion<'a, f64>, InvalidInput> {
         Motion::new(PathRef::new(&self.segments)?, profile, radius, 0.0)
     }
 

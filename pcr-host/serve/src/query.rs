@@ -47,7 +47,7 @@ pub enum Query {
 
 /// The state of a robot, as it is sent in answers.
 #[derive(Clone, Debug, Serialize)]
-pub struct RobotView<'a> {
+pub(crate) struct RobotView<'a> {
     robot: &'a str,
     path: u64,
     origin: f64,
@@ -74,7 +74,7 @@ pub struct RobotView<'a> {
 
 impl<'a> RobotView<'a> {
     /// The state of one robot of a fleet at a time \[s\].
-    pub fn new(supervisor: &'a Supervisor, robot: &'a SupervisedRobot, now: f64) -> Self {
+    pub(crate) fn new(supervisor: &'a Supervisor, robot: &'a SupervisedRobot, now: f64) -> Self {
         let extent = robot.possible_positions(now);
         Self {
             robot: &robot.name,

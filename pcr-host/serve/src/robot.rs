@@ -5,6 +5,7 @@ use pcr_core::{Interval, InvalidInput, Motion, MovementAuthority, Progress};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::fmt;
 
 /// Additional radius of all discs \[m\]: for the rounding of paths that are cut and joined, and of lengths in messages.
 pub const ROOM: f64 = 1e-6;
@@ -28,17 +29,44 @@ pub struct RobotTraits {
     pub acceleration: f64,
 }
 
+/// Largest value of each trait, in its unit.
+const MOST: f64 = 1e4;
+
+/// A value of a robot's traits that is out of range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TraitsError {
+    /// Name of the value.
+    pub name: &'static str,
+    /// The value, in its unit.
+    pub value: f64,
+    /// Least value that is allowed.
+    pub least: f64,
+}
+
+impl fmt::Display for TraitsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, value, least } = self;
+        write!(f, "{name}: {value} is out of range; allowed is {least} to {MOST}")
+    }
+}
+
+impl std::error::Error for TraitsError {}
+
 impl RobotTraits {
+    /// Returns the traits if all values are in their ranges.
+    ///
     /// # Errors
-    /// The first value that is out of range, in words.
-    pub fn checked(self) -> Result<Self, String> {
-        for (name, value) in [("radius", self.radius), ("speed", self.speed), ("acceleration", self.acceleration)] {
-            if !(1e-4..=1e4).contains(&value) {
-                return Err(format!("{name}: {value} is out of range; allowed is 0.0001 to 10000"));
+    /// [`TraitsError`] for the first value that is not.
+    pub fn checked(self) -> Result<Self, TraitsError> {
+        for (name, value, least) in [
+            ("radius", self.radius, 1e-4),
+            ("speed", self.speed, 1e-4),
+            ("acceleration", self.acceleration, 1e-4),
+            ("margin", self.margin, 0.0),
+        ] {
+            if !(least..=MOST).contains(&value) {
+                return Err(TraitsError { name, value, least });
             }
-        }
-        if !(0.0..=1e4).contains(&self.margin) {
-            return Err(format!("margin: {} is out of range; allowed is 0 to 10000", self.margin));
         }
         Ok(self)
     }
@@ -119,10 +147,10 @@ pub struct PrecedenceLimit {
 }
 
 /// Notes that other modules have stored about a robot, by key.
-pub type RobotNotes = BTreeMap<String, Value>;
+pub(crate) type RobotNotes = BTreeMap<String, Value>;
 
 /// Appends to a note that is a list; a missing note is an empty list. `false` if the note is not a list.
-pub fn remember(notes: &mut RobotNotes, key: &str, more: &[Value]) -> bool {
+pub(crate) fn remember(notes: &mut RobotNotes, key: &str, more: &[Value]) -> bool {
     let Value::Array(list) = notes.entry(key.into()).or_insert_with(|| Value::Array(Vec::new())) else {
         return false;
     };
@@ -220,7 +248,7 @@ impl SupervisedRobot {
     }
 
     /// Request of its mission: length of the path before, and shapes; `None` if it is not known.
-    pub fn mission_request(&self) -> Option<(f64, &[PathElement])> {
+    pub(crate) fn mission_request(&self) -> Option<(f64, &[PathElement])> {
         let MissionFingerprint { after, shapes } = self.asked?;
         let all = self.course.shapes();
         Some((after, all.get(all.len().checked_sub(shapes)?..)?))

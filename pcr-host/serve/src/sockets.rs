@@ -86,7 +86,7 @@ impl Stream {
     ///
     /// # Errors
     /// A time of zero, and errors of the system.
-    pub fn set_read_timeout(&self, time: Option<Duration>) -> io::Result<()> {
+    pub(crate) fn set_read_timeout(&self, time: Option<Duration>) -> io::Result<()> {
         each!(self, stream => stream.set_read_timeout(time))
     }
 
@@ -94,7 +94,7 @@ impl Stream {
     ///
     /// # Errors
     /// A time of zero, and errors of the system.
-    pub fn set_write_timeout(&self, time: Option<Duration>) -> io::Result<()> {
+    pub(crate) fn set_write_timeout(&self, time: Option<Duration>) -> io::Result<()> {
         each!(self, stream => stream.set_write_timeout(time))
     }
 }

@@ -29,7 +29,7 @@ use serde::Serialize;
 use std::collections::HashMap;
 
 /// Orders on the heap.
-pub type FleetPrecedences = PrecedenceTable<f64, Vec<EcmEntry>, Vec<Piece<f64>>, Vec<RegionPrecedence<f64>>>;
+pub(crate) type FleetPrecedences = PrecedenceTable<f64, Vec<EcmEntry>, Vec<Piece<f64>>, Vec<RegionPrecedence<f64>>>;
 
 /// Settings of a supervisor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,7 +70,7 @@ pub struct SupervisorCounters {
     /// Number of position messages.
     pub positions: u64,
     /// Number of position messages about a path that the robot no longer has.
-    pub outdated: u64,
+    pub(crate) outdated: u64,
     /// Number of missions requested.
     pub missions: u64,
     /// Number of missions admitted.
@@ -182,7 +182,7 @@ impl Supervisor {
     }
 
     /// A number that changes whenever a robot is added or removed.
-    pub fn census(&self) -> u64 {
+    pub(crate) fn census(&self) -> u64 {
         self.census
     }
 

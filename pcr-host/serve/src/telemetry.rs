@@ -14,7 +14,7 @@ const EVENTS: usize = 100;
 pub struct Telemetry {
     begin: Instant,
     /// Latency of requests.
-    pub latency: LatencyHistogram,
+    pub(crate) latency: LatencyHistogram,
     events: VecDeque<(f64, String)>,
 }
 

@@ -162,7 +162,7 @@ impl Supervisor {
     ///
     /// # Errors
     /// [`RequestError::NoSuchRobot`], [`RequestError::Broken`].
-    pub fn give_up(&mut self, name: &str) -> Result<(), RequestError> {
+    pub(crate) fn give_up(&mut self, name: &str) -> Result<(), RequestError> {
         self.works()?;
         let place = self.robot_index(name)?;
         let robot = &mut self.robots[place];

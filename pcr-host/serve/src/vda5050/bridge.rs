@@ -176,7 +176,13 @@ impl Vda5050Bridge {
 
     /// The same of a message that came at the first of two times and is read at the second. What a vehicle says is about the first one; what
     /// follows from requests begins now.
-    pub fn receive_late(&mut self, supervisor: &mut Supervisor, topic: &str, payload: &[u8], [came, now]: [f64; 2]) {
+    pub(crate) fn receive_late(
+        &mut self,
+        supervisor: &mut Supervisor,
+        topic: &str,
+        payload: &[u8],
+        [came, now]: [f64; 2],
+    ) {
         let settings = &self.settings;
         let from_vehicle = settings.vehicles.parse(topic).filter(|(.., kind)| TopicKind::OF_VEHICLES.contains(kind));
         let from_manager = settings.manager.parse(topic).filter(|(.., kind)| TopicKind::TO_VEHICLES.contains(kind));
@@ -276,7 +282,7 @@ impl Vda5050Bridge {
     }
 
     /// Takes events of the supervisor, without any messages to vehicles yet.
-    pub fn on_events(&mut self, events: &[SupervisorEvent]) {
+    pub(crate) fn on_events(&mut self, events: &[SupervisorEvent]) {
         for event in events {
             if let Some(&place) = key(event.robot()).and_then(|key| self.places.get(&key)) {
                 self.touched.insert(place);

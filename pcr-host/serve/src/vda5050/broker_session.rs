@@ -11,6 +11,7 @@ use super::leader_election::{LeaderState, claim};
 use super::mqtt::{BrokerAddress, LinkEvent, MqttLink, Publisher};
 use super::vehicle_adapter::SendCondition;
 use crate::event::SupervisorEvent;
+use crate::setup_error::SetupError;
 use crate::server::{AfterCommit, ServerHandle};
 use crate::supervisor::Supervisor;
 use crate::telemetry::Telemetry;
@@ -93,8 +94,8 @@ impl BrokerSession {
         vehicles: &TopicInterface,
         bridge: &Vda5050Bridge,
         session: &str,
-    ) -> Result<Self, String> {
-        let key = VehicleId::new("pcr", "supervisor")?;
+    ) -> Result<Self, SetupError> {
+        let key = VehicleId::new("pcr", "supervisor").map_err(SetupError::Topic)?;
         let topic = vehicles.topic(ProtocolVersion::V2_1, &key, TopicKind::Connection);
         let mut filters = bridge.filters();
         filters.push(topic.clone());

@@ -1,5 +1,6 @@
 //! A connection to a broker that reconnects by itself.
 
+use crate::setup_error::SetupError;
 use super::bridge::MqttMessage;
 use rumqttc::{
     AsyncClient, ConnectionError, Event, EventLoop, LastWill, MqttOptions, NetworkOptions, Packet, QoS,
@@ -90,7 +91,7 @@ impl MqttLink {
         will: Option<MqttMessage>,
         filters: Vec<String>,
         sink: impl Fn(LinkEvent) + Send + 'static,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, SetupError> {
         let mut options = MqttOptions::new(id, &broker.host, broker.port);
         options.set_keep_alive(KEEP_ALIVE).set_max_packet_size(LARGEST, LARGEST).set_clean_session(true);
         if let Some((user, password)) = &broker.login {
@@ -107,13 +108,13 @@ impl MqttLink {
         events.set_network_options(network);
         let (stop, up) = (Arc::new(Notify::new()), Arc::new(AtomicBool::new(false)));
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-        let runtime = runtime.map_err(|error| error.to_string())?;
+        let runtime = runtime.map_err(SetupError::Thread)?;
         let work =
             LinkWorker { client: client.clone(), filters, sink, up: up.clone(), asks: false, why: String::new() };
         let stopped = stop.clone();
         let thread = std::thread::Builder::new().name(id.into());
         let thread = thread.spawn(move || runtime.block_on(work.go_on(events, &stopped)));
-        Ok(Self { client, stop, up, thread: Some(thread.map_err(|error| error.to_string())?) })
+        Ok(Self { client, stop, up, thread: Some(thread.map_err(SetupError::Thread)?) })
     }
 
     /// Whether it is connected, as far as is known.
@@ -128,7 +129,7 @@ impl MqttLink {
     }
 
     /// A sender for other threads.
-    pub fn mouth(&self) -> Publisher {
+    pub(crate) fn mouth(&self) -> Publisher {
         Publisher { client: self.client.clone(), up: self.up.clone() }
     }
 
@@ -155,14 +156,14 @@ impl MqttLink {
 
 /// Sends messages over a link.
 #[derive(Clone, Debug)]
-pub struct Publisher {
+pub(crate) struct Publisher {
     client: AsyncClient,
     up: Arc<AtomicBool>,
 }
 
 impl Publisher {
     /// As [`MqttLink::publish`].
-    pub fn publish(&self, message: MqttMessage) -> bool {
+    pub(crate) fn publish(&self, message: MqttMessage) -> bool {
         let MqttMessage { topic, payload, at_least_once: assured, retain } = message;
         self.up.load(Ordering::Relaxed) && self.client.try_publish(topic, qos(assured), retain, payload).is_ok()
     }
@@ -259,7 +260,7 @@ fn qos(assured: bool) -> QoS {
 }
 
 #[cfg(feature = "tls")]
-fn secure(options: &mut MqttOptions, broker: &BrokerAddress) -> Result<(), String> {
+fn secure(options: &mut MqttOptions, broker: &BrokerAddress) -> Result<(), SetupError> {
     if let Some(file) = &broker.authority {
         options.set_transport(super::tls::transport(file)?);
     }
@@ -267,9 +268,9 @@ fn secure(options: &mut MqttOptions, broker: &BrokerAddress) -> Result<(), Strin
 }
 
 #[cfg(not(feature = "tls"))]
-fn secure(_options: &mut MqttOptions, broker: &BrokerAddress) -> Result<(), String> {
+fn secure(_options: &mut MqttOptions, broker: &BrokerAddress) -> Result<(), SetupError> {
     match broker.authority {
-        Some(_) => Err("this build has no TLS: build it with the feature `tls`".into()),
+        Some(_) => Err(SetupError::NoTls),
         None => Ok(()),
     }
 }

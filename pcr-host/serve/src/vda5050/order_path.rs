@@ -64,7 +64,7 @@ impl OrderPath {
     ///
     /// # Errors
     /// [`DecodeError`] if a node has no position, or a trajectory cannot be read.
-    pub fn new(start: StartPose, held: &OrderState) -> Result<Self, DecodeError> {
+    pub(crate) fn new(start: StartPose, held: &OrderState) -> Result<Self, DecodeError> {
         let (at, heading) = ([start.x, start.y], start.heading);
         let mut way = Self { start, pieces: Vec::new(), shapes: Vec::new(), nodes: Vec::new(), at, heading };
         if let Some(first) = held.nodes.first() {
@@ -79,7 +79,7 @@ impl OrderPath {
     ///
     /// # Errors
     /// As [`OrderPath::new`]; the way must not be used then.
-    pub fn extend(&mut self, held: &OrderState, after: usize) -> Result<(), DecodeError> {
+    pub(crate) fn extend(&mut self, held: &OrderState, after: usize) -> Result<(), DecodeError> {
         self.nodes.truncate(after + 1);
         let (length, shapes) = self.nodes.last().copied().unwrap_or_default();
         self.shapes.truncate(shapes);
@@ -169,12 +169,12 @@ impl OrderPath {
     }
 
     /// \[m\]
-    pub fn length(&self) -> f64 {
+    pub(crate) fn length(&self) -> f64 {
         self.pieces.last().map_or(0.0, |last| last.from + last.placed.shape.length())
     }
 
     /// Its first pose.
-    pub fn start(&self) -> StartPose {
+    pub(crate) fn start(&self) -> StartPose {
         self.start
     }
 
@@ -184,7 +184,7 @@ impl OrderPath {
     }
 
     /// The pose with which a node is reached.
-    pub fn arrival(&self, place: usize) -> Option<StartPose> {
+    pub(crate) fn arrival(&self, place: usize) -> Option<StartPose> {
         let length = self.node(place)?;
         let before = self.pieces.partition_point(|piece| piece.from < length);
         Some(before.checked_sub(1).and_then(|last| self.pieces.get(last)).map_or(self.start, OrderPathSegment::end))
@@ -196,13 +196,13 @@ impl OrderPath {
     }
 
     /// The shapes from one node, or from the start, up to another node.
-    pub fn shapes(&self, from: Option<usize>, to: usize) -> &[PathElement] {
+    pub(crate) fn shapes(&self, from: Option<usize>, to: usize) -> &[PathElement] {
         let before = |node: usize| self.nodes.get(node).map_or(self.shapes.len(), |(_, shapes)| *shapes);
         self.shapes.get(from.map_or(0, before)..before(to)).unwrap_or_default()
     }
 
     /// The pose at a length \[m, rad\].
-    pub fn pose(&self, length: f64) -> StartPose {
+    pub(crate) fn pose(&self, length: f64) -> StartPose {
         let after = self.pieces.partition_point(|piece| piece.from <= length);
         let Some(piece) = after.checked_sub(1).and_then(|place| self.pieces.get(place)) else { return self.start };
         let along = (length - piece.from).min(piece.placed.shape.length());
@@ -217,7 +217,7 @@ impl OrderPath {
 
     /// The least and the largest length within a window at which a piece of the way is nearest to a point, of the pieces that
     /// come within `reach` of the point \[m\]. `None`: no piece does.
-    pub fn near(&self, point: [f64; 2], window: [f64; 2], reach: f64) -> Option<[f64; 2]> {
+    pub(crate) fn near(&self, point: [f64; 2], window: [f64; 2], reach: f64) -> Option<[f64; 2]> {
         let mut found: Option<[f64; 2]> = None;
         let mut consider = |length: f64, off: f64| {
             if off <= reach {

@@ -7,7 +7,7 @@ use serde_json::Value;
 /// A node still to be passed, to be written.
 #[derive(Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
-pub struct NodeStateOut<'a> {
+pub(crate) struct NodeStateOut<'a> {
     node_id: &'a str,
     sequence_id: u64,
     /// Part of the base.
@@ -42,7 +42,7 @@ impl<'a> From<&'a OrderNode> for NodeStateOut<'a> {
 /// An edge still to be travelled, to be written.
 #[derive(Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
-pub struct EdgeStateOut<'a> {
+pub(crate) struct EdgeStateOut<'a> {
     edge_id: &'a str,
     sequence_id: u64,
     released: bool,

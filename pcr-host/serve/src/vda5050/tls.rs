@@ -1,5 +1,6 @@
 //! Connections to brokers over TLS, 1.2 or 1.3.
 
+use crate::setup_error::SetupError;
 use rumqttc::{TlsConfiguration, Transport};
 use std::path::Path;
 use std::sync::Arc;
@@ -12,8 +13,8 @@ use tokio_rustls::rustls::{ClientConfig, RootCertStore};
 ///
 /// # Errors
 /// The problem with the file.
-pub(super) fn transport(authority: &Path) -> Result<Transport, String> {
-    let wrong = |why: &dyn std::fmt::Display| format!("{}: {why}", authority.display());
+pub(super) fn transport(authority: &Path) -> Result<Transport, SetupError> {
+    let wrong = |why: &dyn std::fmt::Display| SetupError::Authority { file: authority.into(), why: why.to_string() };
     let bytes = std::fs::read(authority).map_err(|error| wrong(&error))?;
     let mut roots = RootCertStore::empty();
     for certificate in CertificateDer::pem_slice_iter(&bytes) {

@@ -20,7 +20,7 @@ mod release;
 mod used_ids;
 mod vehicle_messages;
 
-pub use job::{ActiveOrder, ReleasePoint, SentUpdate, VehicleAcknowledgement};
+pub use job::ActiveOrder;
 
 use crate::robot::RobotTraits;
 use crate::supervisor::{JournalError, Supervisor};
@@ -52,7 +52,7 @@ pub struct VehicleConfig {
 
 /// The receiver of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Recipient {
+pub(crate) enum Recipient {
     /// The vehicle.
     Vehicle,
     /// Its fleet manager.
@@ -72,7 +72,7 @@ pub enum SendCondition {
 
 /// A message to be sent.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OutboundMessage {
+pub(crate) struct OutboundMessage {
     /// Receiver.
     pub to: Recipient,
     /// The vehicle that the message is about.
@@ -198,12 +198,12 @@ impl VehicleAdapter {
     }
 
     /// Whether its place may be one from before the start of the supervisor.
-    pub fn is_doubtful(&self) -> bool {
+    pub(crate) fn is_doubtful(&self) -> bool {
         self.is_doubtful
     }
 
     /// Takes the messages to be sent.
-    pub fn posts(&mut self) -> Vec<OutboundMessage> {
+    pub(crate) fn posts(&mut self) -> Vec<OutboundMessage> {
         std::mem::take(&mut self.posts)
     }
 

@@ -35,7 +35,7 @@ impl VehicleCoordination {
 
 /// An edge of a way.
 #[derive(Clone, Copy, Debug)]
-pub struct MissionEdge {
+pub(crate) struct MissionEdge {
     /// Index of the edge.
     pub edge: usize,
     /// \[m\]
@@ -60,7 +60,7 @@ struct EdgeReservation {
 
 /// The locks of all vehicles. The pieces of a layout are its nodes, at which vehicles stand, and then its edges.
 #[derive(Debug)]
-pub struct EdgeReservations {
+pub(crate) struct EdgeReservations {
     is_whole: bool,
     nodes: usize,
     /// For each piece the pieces on which discs would touch.
@@ -77,7 +77,7 @@ type EdgeEnds = [[f64; 2]; 2];
 
 impl EdgeReservations {
     /// The locks of vehicles that stand at these nodes, with discs that do not touch at this distance \[m\].
-    pub fn new(layout: &Layout, clearance: f64, far: f64, is_whole: bool, standing: &[usize]) -> Self {
+    pub(crate) fn new(layout: &Layout, clearance: f64, far: f64, is_whole: bool, standing: &[usize]) -> Self {
         let nodes = layout.nodes.iter().map(|node| [node.point; 2]);
         let edges = layout.edges.iter().map(|edge| edge.ends.map(|node| layout.position(node)));
         let pieces: Vec<EdgeEnds> = nodes.chain(edges).collect();
@@ -92,7 +92,7 @@ impl EdgeReservations {
     }
 
     /// Requests these edges for a vehicle that stands.
-    pub fn want(&mut self, vehicle: usize, edges: Vec<MissionEdge>, now: f64) {
+    pub(crate) fn want(&mut self, vehicle: usize, edges: Vec<MissionEdge>, now: f64) {
         if let Some(claim) = self.claims.get_mut(vehicle) {
             let from = claim.ends[1];
             let to = edges.last().map_or(from, |last| last.to);
@@ -102,7 +102,7 @@ impl EdgeReservations {
     }
 
     /// Notes that a vehicle has passed this number of edges.
-    pub fn passed(&mut self, vehicle: usize, edges: usize, now: f64) {
+    pub(crate) fn passed(&mut self, vehicle: usize, edges: usize, now: f64) {
         if let Some(claim) = self.claims.get_mut(vehicle)
             && edges > claim.passed
         {
@@ -112,12 +112,12 @@ impl EdgeReservations {
     }
 
     /// Number of edges that a vehicle was given.
-    pub fn given(&self, vehicle: usize) -> usize {
+    pub(crate) fn given(&self, vehicle: usize) -> usize {
         self.claims.get(vehicle).map_or(0, |claim| claim.given)
     }
 
     /// Gives edges to all vehicles that can get some, the one that has waited longest first.
-    pub fn give(&mut self) {
+    pub(crate) fn give(&mut self) {
         if !std::mem::take(&mut self.changed) {
             return;
         }
@@ -205,7 +205,7 @@ pub fn distance([a, b]: EdgeEnds, [c, d]: EdgeEnds) -> f64 {
 }
 
 /// Distance from a point to the segment between two others.
-pub fn to_line(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
+pub(crate) fn to_line(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
     let [x, y] = [point[0] - from[0], point[1] - from[1]];
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     let square = dx * dx + dy * dy;

@@ -22,7 +22,7 @@ pub struct ChannelFaults {
 
 /// Messages on their way.
 #[derive(Debug)]
-pub struct LossyChannel<T> {
+pub(crate) struct LossyChannel<T> {
     climate: ChannelFaults,
     random: SplitMix64,
     underway: Vec<(f64, u64, T)>,
@@ -31,17 +31,17 @@ pub struct LossyChannel<T> {
 
 impl<T: Clone> LossyChannel<T> {
     /// A transport without messages.
-    pub fn new(climate: ChannelFaults, seed: u64) -> Self {
+    pub(crate) fn new(climate: ChannelFaults, seed: u64) -> Self {
         Self { climate, random: SplitMix64(seed), underway: Vec::new(), count: 0 }
     }
 
     /// Changes the rates; messages on their way are not affected.
-    pub fn change(&mut self, climate: ChannelFaults) {
+    pub(crate) fn change(&mut self, climate: ChannelFaults) {
         self.climate = climate;
     }
 
     /// Sends a message at a time \[s\].
-    pub fn send(&mut self, message: T, now: f64) {
+    pub(crate) fn send(&mut self, message: T, now: f64) {
         let ChannelFaults { loss_rate: lost, duplicate_rate: twice, reorder_rate: late, delay } = self.climate;
         if self.random.unit() < lost {
             return;
@@ -55,7 +55,7 @@ impl<T: Clone> LossyChannel<T> {
     }
 
     /// Takes the messages that have arrived.
-    pub fn take_arrived(&mut self, now: f64) -> Vec<T> {
+    pub(crate) fn take_arrived(&mut self, now: f64) -> Vec<T> {
         let (mut come, rest): (Vec<_>, Vec<_>) =
             std::mem::take(&mut self.underway).into_iter().partition(|it| it.0 <= now);
         self.underway = rest;

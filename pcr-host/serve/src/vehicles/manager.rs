@@ -5,6 +5,7 @@
 
 mod reorder;
 
+use crate::setup_error::SetupError;
 use super::edge_reservations::{EdgeReservations, MissionEdge, VehicleCoordination, to_line};
 use crate::owned_path::{OwnedPath, PathElement, StartPose};
 use pcr_formats::import::{self, Layout, RouteStep, cheapest};
@@ -104,9 +105,9 @@ impl FleetManager {
         clearance: f64,
         vehicles: Vec<(VehicleId, ProtocolVersion, usize)>,
         seed: u64,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, SetupError> {
         if let Some(goal) = goals.iter().find(|&&goal| goal >= layout.nodes.len()) {
-            return Err(format!("a goal that is no node: {goal}"));
+            return Err(SetupError::NoNode(*goal));
         }
         let clients = vehicles.into_iter().enumerate().map(|(place, (key, version, at))| {
             (
@@ -121,15 +122,15 @@ impl FleetManager {
         let own = Self { layout, map_id, goals, clearance, clients, random, run, locks, ends: false, again: 0 };
         for (&from, &to) in own.goals.iter().zip(own.goals.iter().cycle().skip(1)) {
             if own.way([from, to]).is_none() {
-                let [from, to] = [from, to].map(|node| &own.layout.nodes[node].id);
-                return Err(format!("no way from {from} to {to} keeps {clearance:.3} m from all other goals"));
+                let ends = [from, to].map(|node| own.layout.nodes[node].id.clone());
+                return Err(SetupError::NoRoute { ends, clearance });
             }
         }
         Ok(own)
     }
 
     /// Chooses the method that keeps vehicles apart. To be called before any order is sent.
-    pub fn with_coordination(mut self, method: VehicleCoordination) -> Self {
+    pub(crate) fn with_coordination(mut self, method: VehicleCoordination) -> Self {
         let mut places: Vec<(usize, usize)> = self.clients.values().map(|client| (client.place, client.at)).collect();
         places.sort_unstable();
         let standing: Vec<usize> = places.into_iter().map(|(_, at)| at).collect();

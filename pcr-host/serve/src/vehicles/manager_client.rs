@@ -1,5 +1,6 @@
 //! The manager at a broker.
 
+use crate::setup_error::SetupError;
 use super::manager::{FleetManager, OutgoingMessage};
 use crate::vda5050::bridge::MqttMessage;
 use crate::vda5050::mqtt::{BrokerAddress, LinkEvent, MqttLink};
@@ -23,7 +24,7 @@ impl ManagerClient {
     ///
     /// # Errors
     /// The invalid setting.
-    pub fn open(broker: &BrokerAddress, interface: TopicInterface, manager: FleetManager) -> Result<Self, String> {
+    pub fn open(broker: &BrokerAddress, interface: TopicInterface, manager: FleetManager) -> Result<Self, SetupError> {
         let (sender, news) = channel();
         let filters = interface.filters(TopicKind::State).to_vec();
         let link = MqttLink::open(broker, "pcr-manager", None, filters, move |it| {

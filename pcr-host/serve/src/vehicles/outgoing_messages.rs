@@ -49,7 +49,7 @@ impl SimulatedVehicle {
     }
 
     /// Sends its position.
-    pub fn tell_position(&mut self) {
+    pub(crate) fn tell_position(&mut self) {
         let (header, pose, velocity) = (self.header(TopicKind::Visualization), self.pose(), Some(self.velocity()));
         let mut rest = Map::new();
         let (agv, robot) = if self.version == ProtocolVersion::V3_0 {
@@ -114,7 +114,7 @@ impl SimulatedVehicle {
     }
 
     /// Says that it is connected.
-    pub fn tell_online(&mut self) {
+    pub(crate) fn tell_online(&mut self) {
         let payload = self.connection("ONLINE");
         self.out.push((TopicKind::Connection, payload));
     }

@@ -23,7 +23,7 @@ const VERSION: u32 = 2;
 /// A vehicle of a record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct RecordVehicle {
+pub(crate) struct RecordVehicle {
     /// Name of the vehicle.
     pub name: String,
     /// Radius of its disc \[m\].
@@ -49,7 +49,7 @@ struct RecordTrailer {
 
 /// A record in the making.
 #[derive(Debug)]
-pub struct RecordWriter<W: Write> {
+pub(crate) struct RecordWriter<W: Write> {
     out: W,
     last: Vec<Option<[f64; 3]>>,
     /// For each vehicle whether its last position repeats an earlier one and is not written yet.
@@ -63,7 +63,7 @@ impl<W: Write> RecordWriter<W> {
     ///
     /// # Errors
     /// As the writer.
-    pub fn new(out: W, vehicles: &[RecordVehicle]) -> io::Result<Self> {
+    pub(crate) fn new(out: W, vehicles: &[RecordVehicle]) -> io::Result<Self> {
         let head = RecordHeader { format: "pcr-record".into(), version: VERSION, vehicles: vehicles.to_vec() };
         let (last, waits) = (vec![None; vehicles.len()], vec![false; vehicles.len()]);
         let mut own = Self { out, last, waits, lines: 0, sum: Hasher::new() };
@@ -75,7 +75,7 @@ impl<W: Write> RecordWriter<W> {
     ///
     /// # Errors
     /// As the writer.
-    pub fn push(&mut self, vehicle: usize, time: f64, [x, y]: [f64; 2]) -> io::Result<()> {
+    pub(crate) fn push(&mut self, vehicle: usize, time: f64, [x, y]: [f64; 2]) -> io::Result<()> {
         let (Some(last), Some(waits)) = (self.last.get_mut(vehicle), self.waits.get_mut(vehicle)) else {
             return Ok(());
         };
@@ -105,7 +105,7 @@ impl<W: Write> RecordWriter<W> {
     ///
     /// # Errors
     /// As the writer.
-    pub fn finish(mut self) -> io::Result<W> {
+    pub(crate) fn finish(mut self) -> io::Result<W> {
         let standing = std::mem::take(&mut self.last).into_iter().zip(std::mem::take(&mut self.waits));
         for (vehicle, point) in
             standing.enumerate().filter_map(|(vehicle, (last, waits))| Some((vehicle, last.filter(|_| waits)?)))

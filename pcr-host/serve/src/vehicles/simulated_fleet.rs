@@ -1,5 +1,6 @@
 //! Simulated vehicles at a broker, each with a connection of its own.
 
+use crate::setup_error::SetupError;
 use super::lossy_channel::{ChannelFaults, LossyChannel};
 use super::record::{RecordVehicle, RecordWriter};
 use super::release_audit::ReleaseAudit;
@@ -248,7 +249,7 @@ fn connected(
     vehicle: &mut SimulatedVehicle,
     k: usize,
     sender: Sender<(usize, LinkEvent)>,
-) -> Result<MqttLink, String> {
+) -> Result<MqttLink, SetupError> {
     let (key, version) = (vehicle.key().clone(), vehicle.version());
     let topic = |kind: TopicKind| settings.interface.topic(version, &key, kind);
     let filters = [TopicKind::Order, TopicKind::InstantActions].map(topic).to_vec();

@@ -1,5 +1,6 @@
 //! A layout with vehicles that stand at some of its nodes, and a manager that sends them from one to another.
 
+use crate::setup_error::SetupError;
 use super::manager::FleetManager;
 use super::vehicle::SimulatedVehicle;
 use super::vehicle_motion::SimulatedTraits;
@@ -40,15 +41,15 @@ impl SimulatedSite {
         versions: &[ProtocolVersion],
         abilities: &[SimulatedTraits],
         seed: u64,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, SetupError> {
         if count >= goals.len() {
-            return Err(format!("{count} vehicles need {} places to stand at; there are {}", count + 1, goals.len()));
+            return Err(SetupError::FewGoals { vehicles: count, goals: goals.len() });
         }
         let (mut profiles, mut vehicles, mut clients) = (Vec::new(), Vec::new(), Vec::new());
         let kinds = versions.iter().cycle().zip(abilities.iter().cycle());
         for ((k, (&version, &can)), &goal) in kinds.enumerate().take(count).zip(&goals) {
-            let key = VehicleId::new(MANUFACTURER, &format!("{:03}", k + 1))?;
-            let [x, y] = layout.nodes.get(goal).map(|node| node.point).ok_or("a goal that is no node")?;
+            let key = VehicleId::new(MANUFACTURER, &format!("{:03}", k + 1)).map_err(SetupError::Topic)?;
+            let [x, y] = layout.nodes.get(goal).map(|node| node.point).ok_or(SetupError::NoNode(goal))?;
             let start = StartPose { x, y, heading: 0.0 };
             profiles.push(profile(key.clone(), &can));
             let seed = seed.wrapping_mul(1_000).wrapping_add(k as u64);

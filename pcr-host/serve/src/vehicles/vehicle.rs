@@ -139,7 +139,7 @@ impl SimulatedVehicle {
     }
 
     /// Length of the way of its order that it has travelled \[m\].
-    pub fn way_done(&self) -> f64 {
+    pub(crate) fn way_done(&self) -> f64 {
         self.task.as_ref().map_or(0.0, |task| task.drive.at)
     }
 

@@ -45,7 +45,7 @@ impl Default for SimulatedTraits {
 
 /// Position and speed of a vehicle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct DriveState {
+pub(crate) struct DriveState {
     /// Length of the way that it has travelled \[m\].
     pub at: f64,
     /// \[m/s\]
@@ -53,7 +53,7 @@ pub struct DriveState {
     /// Remaining time of a turn in place \[s\].
     pub turns: f64,
     /// Remaining time of a hold-up \[s\].
-    pub held_up: f64,
+    pub(crate) held_up: f64,
     /// Length up to which all turns are done \[m\].
     turned: f64,
 }
@@ -63,17 +63,17 @@ const NEAR: f64 = 1e-6;
 
 impl DriveState {
     /// A vehicle at the start of a way.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { turned: -1.0, ..Self::default() }
     }
 
     /// Whether it moves or turns.
-    pub fn is_driving(&self) -> bool {
+    pub(crate) fn is_driving(&self) -> bool {
         self.speed > 0.0 || self.turns > 0.0
     }
 
     /// Moves for a time \[s\], up to an end \[m\].
-    pub fn advance(
+    pub(crate) fn advance(
         &mut self,
         way: &OrderPath,
         held: &OrderState,
@@ -116,7 +116,7 @@ impl DriveState {
     }
 
     /// Brakes within a time \[s\], as hard as necessary or possible.
-    pub fn brake(&mut self, end: f64, can: &SimulatedTraits, time: f64) {
+    pub(crate) fn brake(&mut self, end: f64, can: &SimulatedTraits, time: f64) {
         let after = (self.speed - can.acceleration * time).max(0.0);
         self.at = (self.at + 0.5 * (self.speed + after) * time).min(end);
         self.speed = after;

@@ -61,7 +61,7 @@ fn a_file_without_a_certificate_is_refused_before_anything_is_sent() {
     let refused = |name: &str, text: &str| {
         std::fs::write(folder.join(name), text).unwrap();
         let broker = BrokerAddress { authority: Some(folder.join(name)), ..BrokerAddress::new("127.0.0.1", 1) };
-        MqttLink::open(&broker, "who", None, Vec::new(), drop).unwrap_err()
+        MqttLink::open(&broker, "who", None, Vec::new(), drop).unwrap_err().to_string()
     };
     assert!(refused("empty.pem", "").contains("no certificate"));
     assert!(

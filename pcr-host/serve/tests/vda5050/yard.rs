@@ -121,7 +121,7 @@ fn goals_on_the_ways_of_others_are_refused() {
     // The only way from 77 leads over 76.
     let goals = nodes(&layout, &[77, 76, 0]);
     let refused = SimulatedSite::new(layout, goals, 2, &ProtocolVersion::ALL, FAIR.abilities, 1).unwrap_err();
-    assert_eq!(refused, "no way from 0 to 77 keeps 0.944 m from all other goals");
+    assert_eq!(refused.to_string(), "no way from 0 to 77 keeps 0.944 m from all other goals");
 }
 
 /// Vehicles are switched off and on again, wherever they are, and have lost their orders: their manager sends them on. With the first of

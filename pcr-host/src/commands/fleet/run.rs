@@ -67,6 +67,9 @@ fn generated(count: usize, crew: &FleetSimulationOptions) -> Result<SimulatedSit
 }
 
 /// Of a layout whose vehicle is the largest, with what is kept around it.
+///
+/// # Errors
+/// Why the vehicles have no place, in words.
 fn placed(imported: ImportedLayout, crew: &FleetSimulationOptions) -> Result<SimulatedSite, String> {
     let usual = SimulatedTraits::default();
     let small = SimulatedTraits { radius: 0.3, speed: 1.3, acceleration: 0.8, ..usual };
@@ -74,6 +77,7 @@ fn placed(imported: ImportedLayout, crew: &FleetSimulationOptions) -> Result<Sim
     let place = |id: &import::ElementId| imported.layout.nodes.iter().position(|node| node.id == *id);
     let goals = form.safe_ends.iter().filter_map(place).collect();
     SimulatedSite::new(imported.layout.clone(), goals, crew.vehicles, &ProtocolVersion::ALL, &[usual, small], crew.seed)
+        .map_err(|error| error.to_string())
 }
 
 /// So many messages are lost, come twice and come late.
@@ -112,7 +116,7 @@ impl<W: Write> FleetRun<W> {
         };
         let fleet = SimulatedFleet::new(settings, world.vehicles, record).map_err(CliError::from)?;
         let office = crew.manager.then(|| ManagerClient::open(broker, manager.clone(), world.manager));
-        Ok(Self { fleet, office: office.transpose().map_err(CliError::arguments)? })
+        Ok(Self { fleet, office: office.transpose().map_err(|error| CliError::arguments(error.to_string()))? })
     }
 
     pub(in super::super) fn step(&mut self) -> io::Result<()> {

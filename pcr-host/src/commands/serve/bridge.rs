@@ -93,7 +93,7 @@ fn profile(value: &Value) -> Result<VehicleConfig, String> {
         speed: number("speed")?,
         acceleration: number("acceleration")?,
     };
-    let abilities = abilities.checked()?;
+    let abilities = abilities.checked().map_err(|error| error.to_string())?;
     // As much of the margin is for curves, so nothing would be left for the vehicle: each of its positions would be off its way.
     if abilities.margin <= TOLERANCE {
         return Err(format!(
@@ -150,7 +150,8 @@ pub(super) fn start(
         .map_err(|why| CliError::arguments(format!("the journal: {why}")))?;
     let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos());
     let session = format!("{}-{now:x}", std::process::id());
-    let mut station = BrokerSession::open(&broker, &vehicles, &bridge, &session).map_err(CliError::arguments)?;
+    let mut station = BrokerSession::open(&broker, &vehicles, &bridge, &session)
+        .map_err(|error| CliError::arguments(error.to_string()))?;
     let stop = Arc::new(AtomicBool::new(false));
     let (ended, handle) = (stop.clone(), handle.clone());
     let (sender, events) = sync_channel(EVENTS);

@@ -5,6 +5,7 @@ use super::{Recipient, SendCondition, VehicleAdapter};
 use crate::event::{CancelCause, SupervisorEvent};
 use crate::supervisor::Supervisor;
 use pcr_formats::vda5050::decode::{self, DecodeError, MessageLimits};
+use pcr_formats::vda5050::header::MessageHeader;
 use pcr_formats::vda5050::messages::{Action, InstantActions};
 use pcr_formats::vda5050::order_state::RejectedOrder;
 use pcr_formats::vda5050::state::State;
@@ -38,10 +39,7 @@ impl VehicleAdapter {
             self.early.clear();
         }
         let (cancel, repeated) = self.cancels(supervisor, actions);
-        if let Some((job, cancel)) = self.job.as_mut().zip(cancel) {
-            job.is_cancelled(cancel, now);
-            let given = job.given();
-            self.note(supervisor, "order", given);
+        if cancel.is_some_and(|cancel| self.note_cancel(supervisor, cancel, now)) {
             // Without another mission in its place: lengths that the vehicle reports are those of its order.
             let _ = supervisor.give_up(&self.name);
         }
@@ -101,15 +99,34 @@ impl VehicleAdapter {
             actions.into_iter().partition(|action| action.action_type == "stopPause");
         let is_free = !free.is_empty();
         if is_free {
-            let header = self.header(TopicKind::InstantActions, version);
-            let message = InstantActions { rest: rest.clone(), ..InstantActions::new(header, free) };
-            self.post_when(SendCondition::Free, Recipient::Vehicle, TopicKind::InstantActions, version, &message);
+            let rest = rest.clone();
+            let message = |header| InstantActions { rest, ..InstantActions::new(header, free) };
+            self.post_actions(SendCondition::Free, version, message);
         }
         if !is_free || !others.is_empty() {
-            let header = self.header(TopicKind::InstantActions, version);
-            let message = InstantActions { rest, ..InstantActions::new(header, others) };
-            self.post_when(SendCondition::Kept, Recipient::Vehicle, TopicKind::InstantActions, version, &message);
+            let message = |header| InstantActions { rest, ..InstantActions::new(header, others) };
+            self.post_actions(SendCondition::Kept, version, message);
         }
+    }
+
+    /// Sends instant actions to the vehicle.
+    fn post_actions(
+        &mut self,
+        due: SendCondition,
+        version: ProtocolVersion,
+        message: impl FnOnce(MessageHeader) -> InstantActions,
+    ) {
+        let message = message(self.header(TopicKind::InstantActions, version));
+        self.post_when(due, Recipient::Vehicle, TopicKind::InstantActions, version, &message);
+    }
+
+    /// Notes that an action of this id cancels the order. Without it there is nothing to cancel.
+    fn note_cancel(&mut self, supervisor: &mut Supervisor, id: String, now: f64) -> bool {
+        let Some(job) = &mut self.job else { return false };
+        job.is_cancelled(id, now);
+        let given = job.given();
+        self.note(supervisor, "order", given);
+        true
     }
 
     /// Cancels the order of the vehicle again, with another action id.
@@ -118,11 +135,7 @@ impl VehicleAdapter {
             return;
         }
         let id = self.ask_for("cancelOrder");
-        if let Some(job) = &mut self.job {
-            job.is_cancelled(id, now);
-            let given = job.given();
-            self.note(supervisor, "order", given);
-        }
+        self.note_cancel(supervisor, id, now);
     }
 
     /// The cancellation may be lost: it is sent again until the vehicle says what became of it.
@@ -132,13 +145,8 @@ impl VehicleAdapter {
         let [_, last] = &mut job.cancelled;
         if state.action(&id).is_none() && now - *last >= AGAIN {
             *last = now;
-            let header = self.header(TopicKind::InstantActions, version);
-            self.post(
-                Recipient::Vehicle,
-                TopicKind::InstantActions,
-                version,
-                &InstantActions::one(header, "cancelOrder", id),
-            );
+            let message = |header| InstantActions::one(header, "cancelOrder", id);
+            self.post_actions(SendCondition::Kept, version, message);
         }
     }
 
@@ -156,7 +164,7 @@ impl VehicleAdapter {
     }
 
     /// Handles an event of the supervisor about the vehicle.
-    pub fn on_event(&mut self, event: &SupervisorEvent) {
+    pub(crate) fn on_event(&mut self, event: &SupervisorEvent) {
         // A mission that was replaced by a longer one of the same order is not lost, and one that was cancelled, or whose vehicle was moved,
         // is no error.
         let SupervisorEvent::Dropped { mission, why: CancelCause::Impossible(why), .. } = event else { return };

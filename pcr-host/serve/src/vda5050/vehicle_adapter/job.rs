@@ -66,11 +66,11 @@ pub struct ActiveOrder {
     /// The last update that was sent.
     pub sent: Option<SentUpdate>,
     /// Time at which it was sent \[s\].
-    pub sent_at: f64,
+    pub(crate) sent_at: f64,
     /// What the vehicle has said of it.
     pub received: VehicleAcknowledgement,
     /// Time since which the vehicle says, as the first thing about this order, that it has completed it \[s\].
-    pub reported_complete_at: Option<f64>,
+    pub(crate) reported_complete_at: Option<f64>,
     /// Whether the nodes ahead differ from those that the vehicle knows.
     pub changed: bool,
     /// Id of the action that cancels the order.
@@ -78,7 +78,7 @@ pub struct ActiveOrder {
     /// Times at which the cancellation was sent, for the first and for the last time \[s\].
     pub cancelled: [f64; 2],
     /// Time since which the vehicle has lost the order \[s\].
-    pub lost_at: Option<f64>,
+    pub(crate) lost_at: Option<f64>,
     /// Time since which the vehicle refuses what was sent last \[s\].
     pub refused: Option<f64>,
 }

@@ -47,7 +47,7 @@ impl VehicleAdapter {
     }
 
     /// Passes a message on to the manager unchanged.
-    pub fn pass_on(&mut self, kind: TopicKind, is_third: bool, payload: &[u8]) {
+    pub(crate) fn pass_on(&mut self, kind: TopicKind, is_third: bool, payload: &[u8]) {
         self.forward(Recipient::Manager, kind, is_third, payload);
     }
 

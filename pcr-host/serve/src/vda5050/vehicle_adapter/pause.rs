@@ -168,7 +168,7 @@ impl VehicleAdapter {
     }
 
     /// Holds back the `stopPause` actions of the manager in a message that is not sent, because the vehicle was told to stop since.
-    pub fn withhold_stop_pause(&mut self, payload: &[u8]) {
+    pub(crate) fn withhold_stop_pause(&mut self, payload: &[u8]) {
         let Ok(message) = serde_json::from_slice::<InstantActions>(payload) else { return };
         // One that the manager has overtaken by a pause is void.
         let is_void = matches!(self.pauses.wish, Some((true, _)));
@@ -183,7 +183,7 @@ impl VehicleAdapter {
     }
 
     /// Whether it was told to stop, and not yet to go on.
-    pub fn has_to_stop(&self) -> bool {
+    pub(crate) fn has_to_stop(&self) -> bool {
         self.pauses.asked.as_ref().is_some_and(|asked| asked.stops)
     }
 

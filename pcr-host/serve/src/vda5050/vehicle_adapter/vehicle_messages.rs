@@ -108,7 +108,7 @@ impl VehicleAdapter {
 
     /// Requests a state that is certainly newer than all states so far, if that is in doubt.
     /// Returns the id of the request.
-    pub fn ask_when(&mut self, now: f64) -> String {
+    pub(crate) fn ask_when(&mut self, now: f64) -> String {
         let id = self.ask_for("stateRequest");
         self.newest.entry(TopicKind::State).or_default().asks(id.clone(), now);
         id
