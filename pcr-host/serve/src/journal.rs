@@ -239,10 +239,9 @@ impl fmt::Display for JournalDamage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoJournal => f.write_str("it is no journal"),
-            Self::Version { own, version } => write!(
-                f,
-                "it is of version {own}, and {version} is read: begin another journal while all robots stand"
-            ),
+            Self::Version { own, version } => {
+                write!(f, "it is of version {own}, and {version} is read: begin another journal while all robots stand")
+            }
             Self::Frame { byte, why } => write!(f, "at byte {byte}: {why}"),
         }
     }

@@ -146,7 +146,11 @@ fn damaged_files_are_refused_by_name() {
         ("b.geojson", part("opentcs/Demo-01.xml", 5000), "where a value is expected"),
         ("b.xodr", part("nav2/warehouse_graph.geojson", 3000), "not XML"),
         ("b.building.yaml", "levels: 7".to_owned(), "building, levels: a number where an object is expected"),
-        ("c.geojson", "{\"features\": [{\"properties\": {\"id\": 1e400}}]}".to_owned(), "not JSON: 1e400 is not a finite number"),
+        (
+            "c.geojson",
+            "{\"features\": [{\"properties\": {\"id\": 1e400}}]}".to_owned(),
+            "not JSON: 1e400 is not a finite number",
+        ),
         ("empty.geojson", String::new(), "empty (read as nav2)"),
         ("empty.building.yaml", " \n".to_owned(), "empty (read as rmf)"),
         ("empty.json", "\u{feff}".to_owned(), "empty; a layout is expected"),

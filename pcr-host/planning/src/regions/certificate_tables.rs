@@ -1,11 +1,11 @@
 //! The tables of a scenario in the form that the checker takes, for fleets of any size.
 
+use crate::agent_regions;
 use crate::certify::CertificateTable;
 use crate::checker_input::{self, outlines};
 use crate::disc_fleet::{DiscFleet, Form};
 use crate::failure::ComputationError;
 use crate::fleet::HostScalar;
-use crate::agent_regions;
 use crate::memory_budget::MemoryDemand;
 use pcr_certify::outline::{RawBody, RawOutlineTable};
 use pcr_certify::raw::{RawAgent, RawTable};

@@ -1,7 +1,7 @@
 //! A connection to a broker that reconnects by itself.
 
-use crate::setup_error::SetupError;
 use super::bridge::MqttMessage;
+use crate::setup_error::SetupError;
 use rumqttc::{
     AsyncClient, ConnectionError, Event, EventLoop, LastWill, MqttOptions, NetworkOptions, Packet, QoS,
     SubscribeFilter, SubscribeReasonCode,

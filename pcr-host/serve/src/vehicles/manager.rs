@@ -5,9 +5,9 @@
 
 mod reorder;
 
-use crate::setup_error::SetupError;
 use super::edge_reservations::{EdgeReservations, MissionEdge, VehicleCoordination, to_line};
 use crate::owned_path::{OwnedPath, PathElement, StartPose};
+use crate::setup_error::SetupError;
 use pcr_formats::import::{self, Layout, RouteStep, cheapest};
 use pcr_formats::splitmix64::SplitMix64;
 use pcr_formats::vda5050::decode::{self, MessageLimits};

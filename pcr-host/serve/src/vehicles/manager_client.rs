@@ -1,7 +1,7 @@
 //! The manager at a broker.
 
-use crate::setup_error::SetupError;
 use super::manager::{FleetManager, OutgoingMessage};
+use crate::setup_error::SetupError;
 use crate::vda5050::bridge::MqttMessage;
 use crate::vda5050::mqtt::{BrokerAddress, LinkEvent, MqttLink};
 use pcr_formats::vda5050::topics::{TopicInterface, TopicKind};

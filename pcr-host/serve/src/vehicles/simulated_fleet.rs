@@ -1,10 +1,10 @@
 //! Simulated vehicles at a broker, each with a connection of its own.
 
-use crate::setup_error::SetupError;
 use super::lossy_channel::{ChannelFaults, LossyChannel};
 use super::record::{RecordVehicle, RecordWriter};
 use super::release_audit::ReleaseAudit;
 use super::vehicle::SimulatedVehicle;
+use crate::setup_error::SetupError;
 use crate::vda5050::bridge::MqttMessage;
 use crate::vda5050::mqtt::{BrokerAddress, LinkEvent, MqttLink};
 use pcr_formats::splitmix64::SplitMix64;

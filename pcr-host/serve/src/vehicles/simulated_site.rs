@@ -1,11 +1,11 @@
 //! A layout with vehicles that stand at some of its nodes, and a manager that sends them from one to another.
 
-use crate::setup_error::SetupError;
 use super::manager::FleetManager;
 use super::vehicle::SimulatedVehicle;
 use super::vehicle_motion::SimulatedTraits;
 use crate::owned_path::StartPose;
 use crate::robot;
+use crate::setup_error::SetupError;
 use crate::vda5050::order_path::TOLERANCE;
 use crate::vda5050::vehicle_adapter::VehicleConfig;
 use pcr_formats::import::Layout;
