@@ -140,6 +140,15 @@ pub const FORMATS: &[(&str, Run)] = &[
     (Q12::NAME, run::<Q12>),
 ];
 
+/// The table of contacts of a fleet of discs.
+///
+/// # Panics
+/// If there is none.
+pub fn discs_of<S: HostScalar>(scenario: &Scenario) -> RawTable {
+    let tables = table_of::<S>(scenario, Form::Covers).expect("tables");
+    tables.into_iter().next().and_then(CertificateTable::discs).expect("a table of discs")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -152,13 +161,4 @@ mod tests {
         let columns = |line: &str| line.matches('|').count();
         assert!(Proofs::HEADINGS.lines().all(|line| columns(line) == columns(&proofs.row("q16"))));
     }
-}
-
-/// The table of contacts of a fleet of discs.
-///
-/// # Panics
-/// If there is none.
-pub fn discs_of<S: HostScalar>(scenario: &Scenario) -> RawTable {
-    let tables = table_of::<S>(scenario, Form::Covers).expect("tables");
-    tables.into_iter().next().and_then(CertificateTable::discs).expect("a table of discs")
 }

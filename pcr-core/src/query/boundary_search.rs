@@ -158,9 +158,8 @@ mod tests {
     fn brackets_end_at_the_first_step_that_is_clear() {
         for sign in [1.0, -1.0] {
             let found = |near: f64, far: f64, end: f64| {
-                let bracket = ForbiddenBracket::new(sign * -1.0, [sign * near, sign * far], 1e-3, &|at| {
-                    trial(at, end, end, sign)
-                });
+                let bracket =
+                    ForbiddenBracket::new(-sign, [sign * near, sign * far], 1e-3, &|at| trial(at, end, end, sign));
                 bracket.map(|bracket| sign * bracket.outside())
             };
             assert_eq!(found(0.5, 100.0, 0.25), Some(0.5));

@@ -2,9 +2,7 @@
 
 use super::scalar::{self, integer, is_null};
 use super::{ScalarTag, YamlDocument, YamlError, YamlNode, YamlValue, deeper, error_at};
-use crate::json::{JsonData, JsonNode, Position};
-use serde_json::Number;
-use std::borrow::Cow;
+use serde_json::{Map, Number, Value as Json};
 use std::collections::{HashMap, HashSet};
 
 /// How many times the length of the text, in values and bytes of texts, a document may stand for. Without aliases it is less than 3.
@@ -15,7 +13,7 @@ impl<'t> YamlDocument<'t> {
     ///
     /// # Errors
     /// [`YamlError`] where a value or a name cannot be one of JSON, a name is there twice, or aliases repeat too much.
-    pub fn value(&self) -> Result<JsonNode<'_>, YamlError> {
+    pub fn value(&self) -> Result<Json, YamlError> {
         AliasResolver::of(self).value(&self.root, 0)
     }
 
@@ -24,8 +22,19 @@ impl<'t> YamlDocument<'t> {
     ///
     /// # Errors
     /// As [`YamlDocument::value`].
-    pub fn texts(&self) -> Result<JsonNode<'_>, YamlError> {
+    pub fn texts(&self) -> Result<Json, YamlError> {
         AliasResolver { as_texts: true, ..AliasResolver::of(self) }.value(&self.root, 0)
+    }
+
+    /// The names of the members of a member, in the order of the text; what is merged comes last.
+    ///
+    /// # Errors
+    /// As [`YamlDocument::value`].
+    pub fn names(&self, name: &str) -> Result<Vec<String>, YamlError> {
+        let mut resolver = AliasResolver::of(self);
+        let all = resolver.members(&self.root, 0)?;
+        let Some(member) = all.into_iter().find(|member| member.name == name) else { return Ok(Vec::new()) };
+        Ok(resolver.members(member.value, 1)?.into_iter().map(|member| member.name.to_owned()).collect())
     }
 }
 
@@ -60,8 +69,6 @@ impl<'d> MappingKeys<'d> {
 struct AliasResolver<'d, 't> {
     text: &'t str,
     anchors: HashMap<usize, &'d YamlNode<'t>>,
-    /// The first bytes of its lines.
-    line_starts: Vec<usize>,
     /// Values and bytes that may still be read.
     left: usize,
     /// Whether scalars are read as their texts.
@@ -73,9 +80,7 @@ impl<'d, 't> AliasResolver<'d, 't> {
         let mut anchors = HashMap::new();
         collect(&document.root, &mut anchors);
         let left = document.text.len().saturating_mul(REPETITION).saturating_add(1024);
-        let newlines = document.text.match_indices('\n').map(|(byte, _)| byte + 1);
-        let line_starts = std::iter::once(0).chain(newlines).collect();
-        Self { text: document.text, anchors, line_starts, left, as_texts: false }
+        Self { text: document.text, anchors, left, as_texts: false }
     }
 
     fn error(&self, node: &YamlNode<'_>, problem: impl Into<String>) -> YamlError {
@@ -102,42 +107,34 @@ impl<'d, 't> AliasResolver<'d, 't> {
         Ok(target)
     }
 
-    fn value(&mut self, node: &'d YamlNode<'t>, depth: usize) -> Result<JsonNode<'d>, YamlError> {
+    fn value(&mut self, node: &'d YamlNode<'t>, depth: usize) -> Result<Json, YamlError> {
         let node = self.target(node)?;
-        let data = match &node.value {
+        match &node.value {
             YamlValue::Scalar(text) => {
                 self.count(node, text.len())?;
                 if self.as_texts {
-                    JsonData::Text(if is_nothing(node, text) { NULL } else { &**text }.into())
-                } else {
-                    let value = scalar::value(node.kind, text).map_err(|problem| self.error(node, problem))?;
-                    JsonNode::from_value(value, Position::START).data
+                    let text = if is_nothing(node, text) { NULL } else { &**text };
+                    return Ok(Json::String(text.to_owned()));
                 }
+                scalar::value(node.kind, text).map_err(|problem| self.error(node, problem))
             }
             YamlValue::Sequence(_, elements) => {
                 self.count(node, 0)?;
                 let depth = deeper(self.text, node.span.start, depth)?;
-                let elements = elements.iter().map(|element| self.value(element, depth));
-                JsonData::Array(elements.collect::<Result<_, _>>()?)
+                elements.iter().map(|element| self.value(element, depth)).collect()
             }
             YamlValue::Mapping(..) => {
                 self.count(node, 0)?;
                 let below = deeper(self.text, node.span.start, depth)?;
-                let members = self.members(node, depth)?.into_iter();
-                let members = members.map(|member| Ok((Cow::Borrowed(member.name), self.value(member.value, below)?)));
-                JsonData::Object(members.collect::<Result<_, _>>()?)
+                let mut object = Map::new();
+                for member in self.members(node, depth)? {
+                    let value = self.value(member.value, below)?;
+                    object.insert(member.name.to_owned(), value);
+                }
+                Ok(Json::Object(object))
             }
-            YamlValue::Alias(_) => return Err(self.error(node, "an alias for an alias")),
-        };
-        Ok(JsonNode::new(self.position(node.span.start), node.span.clone(), data))
-    }
-
-    /// The position of a byte of the text.
-    fn position(&self, byte: usize) -> Position {
-        let line = self.line_starts.partition_point(|start| *start <= byte);
-        let start = line.checked_sub(1).and_then(|line| self.line_starts.get(line)).copied().unwrap_or(0);
-        let column = self.text.get(start..byte).unwrap_or_default().chars().count() + 1;
-        Position { line: line as u32, column: column as u32 }
+            YamlValue::Alias(_) => Err(self.error(node, "an alias for an alias")),
+        }
     }
 
     /// The members of a mapping, then those that are merged into it and have other names; none of anything else.
@@ -230,21 +227,10 @@ fn collect<'d, 't>(node: &'d YamlNode<'t>, anchors: &mut HashMap<usize, &'d Yaml
 mod tests {
     use super::super::DEEPEST;
     use super::*;
-    use serde_json::{Value, json};
+    use serde_json::json;
 
-    fn value(text: &str) -> Result<Value, String> {
-        let value = YamlDocument::read(text).and_then(|document| Ok(document.value()?.to_value()));
-        value.map_err(|error| error.to_string())
-    }
-
-    #[test]
-    fn values_know_their_positions() {
-        let document = YamlDocument::read("é: [ä, {b: *x}]\n".replace("ä", "&x ä").leak()).unwrap();
-        let value = document.value().unwrap();
-        let list = value.get("é").unwrap();
-        let alias = list.element(1).unwrap().get("b").unwrap();
-        let positions = [list, &list.list()[0], &list.list()[1], alias].map(|node| node.position);
-        assert_eq!(positions.map(|at| [at.line, at.column]), [[1, 4], [1, 8], [1, 11], [1, 8]]);
+    fn value(text: &str) -> Result<Json, String> {
+        YamlDocument::read(text).and_then(|document| document.value()).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -310,17 +296,19 @@ mod tests {
 
     #[test]
     fn texts_are_those_of_the_scalars() {
-        let texts = |text: &str| YamlDocument::read(text).unwrap().texts().map(|texts| texts.to_value());
+        let texts = |text: &str| YamlDocument::read(text).unwrap().texts();
         let all = json!({"a": ["007", "1.0", "true", "null", "null", "", "x y", "0x10"], "b": {"c": "1"}});
         assert_eq!(texts("a: [007, 1.0, true, ~, null, '', \"x y\", &n 0x10]\nb: {c: 1}"), Ok(all));
         assert_eq!(texts("a: &x 1.50\nb: *x\n<<: {c: .nan}"), Ok(json!({"a": "1.50", "b": "1.50", "c": ".nan"})));
     }
 
     #[test]
-    fn members_have_the_order_of_the_text() {
-        let document = YamlDocument::read("{b: 1, a: 2, <<: {c: 3, a: 4}}").unwrap();
-        let names: Vec<String> = document.value().unwrap().members().iter().map(|(name, _)| name.to_string()).collect();
-        assert_eq!(names, ["b", "a", "c"]);
+    fn names_have_the_order_of_the_text() {
+        let names = |text: &str| YamlDocument::read(text).unwrap().names("levels");
+        assert_eq!(names("levels: {b: 1, a: 2, <<: {c: 3, a: 4}}"), Ok(["b", "a", "c"].map(str::to_owned).to_vec()));
+        assert_eq!(names("more: &l {z: 1, a: 2}\nlevels: *l"), Ok(["z", "a"].map(str::to_owned).to_vec()));
+        assert_eq!(names("<<: {levels: {z: 1, a: 2}}"), Ok(["z", "a"].map(str::to_owned).to_vec()));
+        assert_eq!((names("levels:"), names("[1]"), names("")), (Ok(vec![]), Ok(vec![]), Ok(vec![])));
     }
 
     #[test]
