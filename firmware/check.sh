@@ -242,9 +242,9 @@ budgets() {
   esac
 }
 # docs/maintain/firmware.md says what is bought with it, and what stands in the way of 16 KiB, which was the aim.
-thumb_budget=20992
+thumb_budget=21248
 # 32-bit instructions where Thumb has 16-bit ones.
-riscv_budget=24832
+riscv_budget=25088
 
 # One line of both compilers: figures depend on it.
 compiler() {

@@ -1,6 +1,6 @@
 //! The firmware's scenario is that of the tool, and its documents tell what fleets take.
 
-use pcr_core::{EcmEntry, Piece, RegionPrecedence, Segment};
+use pcr_core::{Direction, EcmEntry, Piece, RegionPrecedence, Segment};
 use pcr_formats::scenario::Scenario;
 use pcr_planning::fleet::{Fleet, build_ecm};
 
@@ -10,12 +10,15 @@ fn the_constants_of_the_firmware_are_generated_from_the_scenario_of_the_tool() {
     assert_eq!(committed, pcr_tests::constants::source(), "run `cargo run -p pcr-tests --example constants`");
 }
 
+/// Bytes of a segment in firmware, which leaves out outlines and with them the direction in which a body looks.
+const SEGMENT_BYTES: usize = size_of::<Segment<f32>>() - size_of::<Direction<f32>>();
+
 /// Bytes that each agent's motion takes beside its segments, on the Cortex-M4F in `f32`, as it was measured for 12 agents.
 fn bytes_an_agent() -> usize {
     let measured = include_str!("../../firmware/expected/thumbv7em-none-eabihf-f32.txt");
     let line = measured.lines().find(|line| line.ends_with("bytes of the motions in RAM")).expect("a figure");
     let bytes: usize = line.split_whitespace().next().expect("a number").parse().expect("a number");
-    (bytes - 36 * size_of::<Segment<f32>>()).div_ceil(12)
+    (bytes - 36 * SEGMENT_BYTES).div_ceil(12)
 }
 
 /// A number as the documents have it.
@@ -34,7 +37,7 @@ fn the_sizes_of_larger_fleets_are_as_documented() {
         let ecm = build_ecm(&motions).expect("a table");
         let segments: usize = motions.iter().map(|motion| motion.path().segments().len()).sum();
         let table = ecm.len() * size_of::<EcmEntry>() + ecm.pieces() * size_of::<Piece<f32>>();
-        let placed = segments * size_of::<Segment<f32>>() + agents * bytes_an_agent();
+        let placed = segments * SEGMENT_BYTES + agents * bytes_an_agent();
         let orders = ecm.len() * size_of::<RegionPrecedence<f32>>();
         let numbers = [agents, segments, ecm.len(), ecm.pieces(), table, placed, orders].map(written);
         let row = format!("| {} |", numbers.join(" | "));
