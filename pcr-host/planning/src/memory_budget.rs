@@ -157,8 +157,8 @@ pub fn ask(bytes: u64, what: impl FnOnce() -> String) -> Result<(), MemoryError>
     if bytes < STEP { Ok(()) } else { ask_at_all(bytes, what) }
 }
 
-/// Bytes of a tree for each byte of its text: `[0,0,` has a node of 48 bytes for every two, in lists that are copied to twice their size.
-const OF_TREE: u64 = 80;
+/// Bytes of a tree for each byte of its text.
+const OF_TREE: u64 = 56;
 
 /// Asks for some bytes and keeps no reserve: for estimates that are high, or while no other thread takes addresses.
 fn ask_for_all_left(bytes: u64, what: impl FnOnce() -> String) -> Result<(), MemoryError> {

@@ -352,7 +352,7 @@ fn completions_and_manual_pages_name_every_command() {
     let bash = run(&["completions", "bash"]).ok();
     assert!(
         bash.contains(
-            "opts=\"-h -q --help --quiet --progress --allow --deny --warnings regions certify check plan map"
+            "opts=\"-q -h -V --quiet --progress --allow --deny --warnings --help --version regions certify check plan map"
         ),
         "{bash}"
     );
