@@ -238,10 +238,15 @@ fn random_vehicles() {
 }
 
 #[test]
-fn a_disc_is_what_it_was_and_the_cover_of_a_square_has_four() {
+fn a_disc_is_what_it_was_and_a_square_that_turns_in_place_has_a_cover_of_four() {
     let disc = json!({ "id": 7, "radius": 0.3, "v_max": 1.0, "a_max": 0.5, "path": [line(4.0)],
         "start": { "x": 0.0, "y": 0.0, "heading": 0.0 } });
-    let scenario = read(&[disc.clone(), agent(2, &SQUARE, [2.0, -3.0, FRAC_PI_2], &json!([line(6.0)]))]);
+    let straight = read(&[disc.clone(), agent(2, &SQUARE, [2.0, -3.0, FRAC_PI_2], &json!([line(6.0)]))]);
+    assert!(RegionsReport::compute::<f64>(&straight, RegionOptions::default()).unwrap().footprints.is_empty());
+    let path = json!([line(6.0), { "kind": "turn", "sweep": 1.0 }]);
+    let mut turning = agent(2, &SQUARE, [2.0, -3.0, FRAC_PI_2], &path);
+    (turning["turn_v_max"], turning["turn_a_max"]) = (json!(1.0), json!(1.5));
+    let scenario = read(&[disc.clone(), turning]);
     let request = RegionOptions { certificate: true, ..RegionOptions::default() };
     let answer = RegionsReport::compute::<f64>(&scenario, request).unwrap();
     assert!(!answer.regions.is_empty());

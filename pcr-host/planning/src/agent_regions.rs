@@ -16,6 +16,9 @@ use crate::parallel;
 use pcr_core::{CapacityError, EcmError, MismatchError, Motion, RegionRef, excess};
 use rayon::prelude::*;
 
+/// Reports progress: what is done, and all.
+pub type ProgressFn<'t> = &'t dyn Fn(usize, usize);
+
 /// The regions of an agent with others, those after it or all.
 #[derive(Debug)]
 pub struct AgentRegions<'a, S: HostScalar> {
@@ -188,7 +191,7 @@ const GATHERED: usize = 1024;
 pub(crate) fn gathered<'a, S: HostScalar, T: Send>(
     motions: &[Motion<'a, S>],
     what: &str,
-    told: &dyn Fn(usize, usize),
+    told: ProgressFn<'_>,
     make: impl Fn(&AgentRegions<'a, S>) -> Vec<T> + Sync,
 ) -> Result<Vec<T>, ComputationError> {
     let grid = grid(motions);

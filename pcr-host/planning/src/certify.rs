@@ -11,7 +11,7 @@ mod tests;
 pub use certificate_table::CertificateTable;
 pub use motions::{CertificateContact, MotionCertificate};
 
-use crate::regions::ProgressFn;
+use crate::agent_regions::ProgressFn;
 use pcr_certify::device_dump;
 use pcr_certify::outline;
 use pcr_certify::outline::RawOutlineTable;

@@ -10,6 +10,7 @@ mod region_job;
 #[cfg(test)]
 mod tests;
 
+pub use crate::agent_regions::ProgressFn;
 use crate::certify::CertificateTable;
 use crate::disc_fleet::BodyDisc;
 use crate::failure::ComputationError;
@@ -20,7 +21,7 @@ pub use entries::{CrossSectionEntry, CrossingDescriptor, PieceEntry, RegionEntry
 use pcr_core::{CapacityError, Motion};
 use pcr_formats::footprint::CoverDisc;
 use pcr_formats::scenario::{Agent, Labels, Scenario};
-pub use region_job::{ProgressFn, RegionJob};
+pub use region_job::RegionJob;
 use serde::Serialize;
 
 /// Regions of one scenario, or why there are none.

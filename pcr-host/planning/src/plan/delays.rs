@@ -28,7 +28,7 @@ mod sequential;
 mod tests;
 
 use super::plan_progress::{PlanProgressFn, PlanStage};
-use crate::regions::ProgressFn;
+use crate::agent_regions::ProgressFn;
 use branch_and_bound::{BranchAndBound, SearchLimits};
 use leave_out::LeaveOutResult;
 pub(crate) use priority_order::respecting;

@@ -16,10 +16,10 @@
 use super::delays::{self, DelayProblem, ForbiddenPairDelays, NEVER, Objective, TickScale, earliest};
 use super::{motions_with_margins, sides_of as sides};
 use crate::agent_regions;
+use crate::agent_regions::ProgressFn;
 use crate::disc_fleet::{BodyDisc, DiscFleet, Form};
 use crate::failure::ComputationError;
 use crate::memory_budget::MemoryDemand;
-use crate::regions::ProgressFn;
 use pcr_core::{Interval, Motion, RegionRef, Scalar};
 use pcr_formats::scenario::Scenario;
 

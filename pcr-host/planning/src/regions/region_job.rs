@@ -4,7 +4,7 @@
 use super::certificate_tables::table_of;
 use super::entries::RegionBuilder;
 use super::{DiscCover, RegionEntry, RegionOptions, RegionsReport, footprint_regions};
-use crate::agent_regions::{self, AgentRegions, BoxGrid};
+use crate::agent_regions::{self, AgentRegions, BoxGrid, ProgressFn};
 use crate::disc_fleet::{DiscFleet, Form};
 use crate::failure::ComputationError;
 use crate::fleet::HostScalar;
@@ -23,9 +23,6 @@ fn asked_for(ids: &[u64], agent: Option<u64>) -> Vec<usize> {
     egos.sort_by_key(|&ego| ids[ego]);
     egos
 }
-
-/// Reports progress: examined pairs, and all pairs.
-pub type ProgressFn<'t> = &'t dyn Fn(usize, usize);
 
 /// All that the regions of a scenario are computed from.
 pub struct RegionJob<'s, S: HostScalar> {

@@ -2,7 +2,7 @@
 
 use super::branch_and_bound::steps;
 use super::{DelayProblem, DelaySearchOptions, FACTOR, NODES, ROUNDS, SEARCHED, SEARCHES, share};
-use crate::regions::ProgressFn;
+use crate::agent_regions::ProgressFn;
 
 /// Counts the steps of all searches that are allowed for all parts of a fleet: looks at the clock in a tree, and rounds of
 /// improvement. A part that is done early skips its other steps.
