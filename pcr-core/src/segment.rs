@@ -222,7 +222,7 @@ impl<S: Scalar> Segment<S> {
         Ok(self)
     }
 
-    /// The same segment of a body whose heading is at this angle to the direction of travel, counted to the left: 0 along it, half a turn
+    /// Returns this segment for a body whose heading is at this angle to the direction of travel, counted to the left: 0 along it, half a turn
     /// against it, in reverse gear, anything else for vehicles that drive sideways. The segments that continue it have the same angle. An
     /// [`Outline`](crate::Outline) turns by it; to a disc it makes no difference. To change gear, turn the direction of travel as well: then the
     /// heading goes on ([`Path::reverse`](crate::Path::reverse)).
@@ -237,7 +237,7 @@ impl<S: Scalar> Segment<S> {
         self.faced(Direction::at(angle))
     }
 
-    /// The same segment with a body at the angle of a direction to the direction of travel.
+    /// Returns this segment for a body whose heading is at the angle of `facing` to the direction of travel.
     #[cfg(feature = "outlines")]
     pub(crate) fn faced(self, facing: Direction<S>) -> Result<Self, InvalidInput> {
         Ok(Self { facing, ..self })

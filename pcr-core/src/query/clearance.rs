@@ -53,7 +53,7 @@ impl<S: Scalar> Encounter<'_, S> {
         best
     }
 
-    /// The same for outlines. A step is finished when the lower bound of the separation around its middle (`Bodies::least_within`) is not
+    /// Returns the closest approach of two outlines, as [`Encounter::closest`]. A step is finished when the lower bound of the separation around its middle (`Bodies::least_within`) is not
     /// below the least separation known; if not, it is halved.
     // Not inlined: pairs of discs would need the stack of it.
     #[inline(never)]

@@ -38,7 +38,7 @@ pub struct CertifyReport {
     /// Number of discs.
     pub discs: usize,
     /// Number of outlines that were proved as they are, and not as covers.
-    #[serde(skip_serializing_if = "is_none")]
+    #[serde(skip_serializing_if = "is_zero")]
     pub outlines: usize,
     /// Number of pairs of discs and outlines of different agents, also those far apart: the verdict is about these.
     pub pairs: usize,
@@ -64,8 +64,8 @@ pub struct CertifyReport {
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde asks for")]
-fn is_none(outlines: &usize) -> bool {
-    *outlines == 0
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// A point of two paths.
@@ -105,7 +105,7 @@ pub struct CertifyInput {
     pub certificate: Vec<CertificateTable>,
 }
 
-/// The same as it is written, with tables of one kind.
+/// An answer of `regions` as it is written, with tables of one kind.
 #[derive(Deserialize)]
 struct RegionsAnswer<T> {
     name: String,

@@ -1,24 +1,24 @@
 //! Everything that the tool computes for a scenario: regions, conflicts, plans, locks, and their output as text.
 //!
 //! ```text
-//! fleet        paths and motions in a number format                Fleet, build_ecm
-//! bodies       agents with footprints as discs                     Bodies
-//! failure      why there is no answer                              Failure
-//! certificate  tables as plain numbers for the checker
-//! certify      proofs by the checker                               Certified, Proof
-//! regions      regions as plain numbers, and their JSON            Answer, Request
-//! rows         regions of fleets of any size, an agent at a time   Row, Grid
-//! check        the conflicts of the given motions                  Verdict
-//! locks        which edges of a layout exclude one another         Locks
-//! memory       refuses what does not fit into memory               TooLarge
-//! checksum     checksums of files that are read in parts
-//! cores        work on all cores
-//! nodes        nodes and edges of a layout                         Listing
-//! plan         delays without conflicts                            Plan
-//! queue        the conflicts of a fleet while its motions change   Queue
-//! safe         when a part of a path is free, in large fleets     safe_intervals
-//! report       JSON, CSV and tables
-//! figures      numbers as text
+//! fleet             paths and motions in a number format                Fleet, build_ecm
+//! disc_fleet        agents with footprints, exact or as discs           DiscFleet, Form
+//! failure           why there is no answer                              ComputationError
+//! checker_input     tables as plain numbers for the checker
+//! certify           proofs by the checker                               CertifyReport, CertificateTable
+//! regions           regions as plain numbers, and their JSON            RegionsReport, RegionOptions
+//! agent_regions     regions of fleets of any size, an agent at a time   AgentRegions, BoxGrid
+//! check             the conflicts of the given motions                  CheckReport
+//! exclusion_table   which edges of a layout exclude one another         ExclusionTable
+//! memory_budget     refuses what does not fit into memory               MemoryDemand, MemoryBudget
+//! checksum          checksums of files that are read in parts
+//! parallel          work on all cores
+//! nodes             nodes and edges of a layout
+//! plan              delays and speeds without conflicts                 PlanReport
+//! conflict_queue    the conflicts of a fleet while its motions change   ConflictQueue
+//! safe_windows      when a part of a path is free, in large fleets      safe_intervals
+//! report            JSON, CSV and tables
+//! figures           numbers as text
 //! ```
 
 pub mod agent_regions;

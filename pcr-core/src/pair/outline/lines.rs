@@ -2,9 +2,8 @@
 //!
 //! Both are translated, so the lengths at which they are within R of each other are a convex set: the inverse image of the difference
 //! of both, rounded by R, under an affine map. Within both segments there is at most one piece, and its ranges are extreme
-//! at an end of a segment or where one outline touches a line beside the way of the other (Lemma 3).
-//!
-//! Regions are computed for R + σ, so a contact beside an end of a segment that rounding takes for one beyond it is also in the slice at that end.
+//! at an end of a segment or where one outline touches a line beside the way of the other (`docs/theory/outlines.md`, "Two lines", which also
+//! says why rounding loses no contact beside an end).
 
 use super::contacts::Standing;
 use super::events::{Carriers, critical_on_line};

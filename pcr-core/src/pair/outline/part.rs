@@ -101,7 +101,8 @@ impl<S: Scalar> AgentPair<'_, S> {
         self.first.has_outline() | self.second.has_outline()
     }
 
-    /// The same as [`AgentPair::slices_of_first`] or [`AgentPair::slices_of_second`] for a pair of outlines: the part at this index, and whether there may be more.
+    /// Returns the interval at this index of a slice of a piece of outlines, along the path of the first agent or of the second one, and whether
+    /// there may be more.
     // Not inlined: pairs of discs would need the stack of it.
     #[inline(never)]
     pub(crate) fn part_at(

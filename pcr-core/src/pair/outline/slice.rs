@@ -96,7 +96,8 @@ fn is_covered<S: Scalar>(moving: &Carried<'_, S>, other: Standing<'_, S>, gap: I
     places.fold(clear, |clear, other| if other.abs() > clear.abs() { other } else { clear }) <= S::ZERO
 }
 
-/// The same for an outline that stands at a place: its corners relative to the origin of the moving one.
+/// Returns the parts of a segment on which the moving outline is within `radius` of another one that stands at a length of its own segment;
+/// `None` if there were too many contacts.
 pub(crate) fn parts_beside<S: Scalar>(
     moving: &Carried<'_, S>,
     standing: &Carried<'_, S>,

@@ -1,5 +1,6 @@
 //! Proofs by [`pcr_certify`] that motions have no contact at any time.
 
+use super::is_zero;
 use crate::checker_input::{self, outlines};
 use crate::disc_fleet::{DiscFleet, Form};
 use crate::failure::ComputationError;
@@ -20,7 +21,7 @@ pub struct MotionCertificate {
     /// Number of pairs of discs and outlines of different agents.
     pub pairs: usize,
     /// Number of outlines that were proved as they are, and not as covers.
-    #[serde(skip_serializing_if = "is_none")]
+    #[serde(skip_serializing_if = "is_zero")]
     pub outlines: usize,
     /// Number of intervals of time that were examined.
     pub steps: usize,
@@ -46,11 +47,6 @@ pub struct CertificateContact {
     pub t: f64,
     /// Distance of the outlines, or of two of their discs \[m\]; NaN where it is not known, in JSON `null`.
     pub clearance: f64,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde asks for")]
-fn is_none(outlines: &usize) -> bool {
-    *outlines == 0
 }
 
 impl MotionCertificate {
