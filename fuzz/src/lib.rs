@@ -49,14 +49,14 @@ pub fn import(format: InputFormat, bytes: &[u8]) {
     assert!(warnings.lines().iter().all(|line| !line.is_empty()));
 }
 
-/// Any bytes as what describes a vehicle: refused with a message, or discs that cover it.
+/// Any bytes as what describes a vehicle: refused with a message, or convex parts.
 pub fn fleet(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     match vehicle(text, &ImportOptions::default(), &mut Warnings::default()) {
         Ok(vehicle) => {
             assert!(vehicle.radius > 0.0 && vehicle.speed > 0.0 && vehicle.acceleration > 0.0);
             if let Some(footprint) = &vehicle.footprint {
-                assert!(footprint.overhang() >= 0.0 && footprint.circumscribed_radius() == vehicle.radius);
+                assert!(footprint.parts().count() > 0 && footprint.circumscribed_radius() == vehicle.radius);
             }
         }
         Err(error) => assert!(!error.to_string().is_empty()),

@@ -10,7 +10,6 @@ use pcr_fixed::{Q12, Q16, Q20};
 use pcr_formats::scenario::Scenario;
 use pcr_planning::certify::CertificateTable;
 use pcr_planning::checker_input;
-use pcr_planning::disc_fleet::Form;
 use pcr_planning::fleet::{HostScalar, build_ecm};
 use pcr_planning::regions::table_of;
 use std::fmt;
@@ -145,7 +144,7 @@ pub const FORMATS: &[(&str, Run)] = &[
 /// # Panics
 /// If there is none.
 pub fn discs_of<S: HostScalar>(scenario: &Scenario) -> RawTable {
-    let tables = table_of::<S>(scenario, Form::Covers).expect("tables");
+    let tables = table_of::<S>(scenario).expect("tables");
     tables.into_iter().next().and_then(CertificateTable::discs).expect("a table of discs")
 }
 

@@ -14,7 +14,6 @@ use pcr_formats::scenario::Scenario;
 use pcr_planning::certify::{CertificateTable, CertifyInput, CertifyReport};
 use pcr_planning::check::CheckReport;
 use pcr_planning::checker_input;
-use pcr_planning::disc_fleet::Form;
 use pcr_planning::exclusion_table;
 use pcr_planning::fleet::HostScalar;
 use pcr_planning::plan::{self, PlanMethod, PlanReport};
@@ -159,7 +158,7 @@ fn findings(table: &RawTable) -> Findings {
 }
 
 fn is_proved<S: HostScalar>(name: &str, scenario: &Scenario) {
-    for table in table_of::<S>(scenario, Form::Exact).unwrap_or_else(|refused| panic!("{name}: {refused}")) {
+    for table in table_of::<S>(scenario).unwrap_or_else(|refused| panic!("{name}: {refused}")) {
         let certified = CertifyReport::prove(name, &table, false);
         assert_eq!(certified.verdict, Some("proved"), "{name} in {}: {certified:?}", S::NAME);
         let regions: usize = match &table {
@@ -227,7 +226,7 @@ struct Layouts {
 fn are_proved<S: HostScalar>(layouts: &[(String, Vec<Scenario>)]) -> Layouts {
     let mut found = Layouts::default();
     for (name, levels) in layouts {
-        let tables = levels.iter().map(|level| table_of::<S>(level, Form::Covers)).collect::<Result<Vec<_>, _>>();
+        let tables = levels.iter().map(|level| table_of::<S>(level)).collect::<Result<Vec<_>, _>>();
         match tables {
             Ok(tables) => {
                 for table in tables.iter().flatten() {
@@ -442,7 +441,7 @@ fn motions_are_proved_or_refuted_as_conflicts_say() {
     for left in [1, 0] {
         few.agents.truncate(left);
         let refused = CheckReport::certified::<f64>(&few, false, &|_, _| {}).unwrap_err();
-        assert!(refused.to_string().contains("no two discs of different agents"), "{refused}");
+        assert!(refused.to_string().contains("no two agents of which contacts"), "{refused}");
     }
 }
 

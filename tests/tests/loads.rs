@@ -275,7 +275,7 @@ fn corners_are_passed_in_every_format() {
             assert!(ends.iter().all(|off| off.abs() < slack), "{}: {ends:?}", S::NAME);
         }
     }
-    check::<f32>(&scenario, &exact, 1e-4);
+    check::<f32>(&scenario, &exact, 2e-4);
     check::<Q20>(&scenario, &exact, 1e-3);
     check::<Q16>(&scenario, &exact, 5e-3);
     check::<Q12>(&scenario, &exact, 5e-2);

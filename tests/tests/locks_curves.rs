@@ -66,7 +66,7 @@ fn an_outline_covers_itself_on_the_curve_of_the_file() {
         let options = ImportOptions { radius: Some(5.0), tolerance: Some(tolerance), ..ImportOptions::default() };
         let nodes = vec![node("A", bend[0]), node("B", bend[3])];
         let imported = read(nodes, vec![edge("e", ["A", "B"], &[("V", &bend)])], &options);
-        let outline = Footprint::new(TRUCK.to_vec(), None).unwrap();
+        let outline = Footprint::new(TRUCK.to_vec()).unwrap();
         let vehicle = VehicleTraits {
             radius: outline.circumscribed_radius(),
             footprint: Some(outline),
@@ -74,7 +74,7 @@ fn an_outline_covers_itself_on_the_curve_of_the_file() {
         };
         let edge = &imported.layout.edges[0];
         let agent = ride(&vehicle, edge.steps().next().unwrap());
-        let discs: Vec<_> = agent.footprint.as_ref().unwrap().discs().to_vec();
+        let footprint = agent.footprint.as_ref().unwrap();
         let (mut length, mut worst) = (0.0, f64::NEG_INFINITY);
         const STEPS: u32 = 2_000;
         for k in 0..STEPS {
@@ -88,12 +88,12 @@ fn an_outline_covers_itself_on_the_curve_of_the_file() {
                 let (sin, cos) = heading.sin_cos();
                 let corner = [place[0] + x * cos - y * sin, place[1] + x * sin + y * cos];
                 let (sin, cos) = turned.sin_cos();
-                let outside = discs.iter().map(|disc| {
-                    let [x, y] =
-                        [there[0] + disc.ahead * cos - disc.left * sin, there[1] + disc.ahead * sin + disc.left * cos];
-                    (corner[0] - x).hypot(corner[1] - y) - disc.radius
-                });
-                worst = worst.max(outside.fold(f64::INFINITY, f64::min));
+                // From where the vehicle is on the curve that it was read as.
+                let [dx, dy] = [corner[0] - there[0], corner[1] - there[1]];
+                let [x, y] = [dx * cos + dy * sin, dy * cos - dx * sin];
+                let around = footprint.polygon().iter().map(|[a, b]| [a - x, b - y]).collect();
+                let depth = Footprint::new(around).unwrap().inner_radius() + footprint.growth();
+                worst = worst.max(-depth);
             }
         }
         assert!(worst <= 1e-5, "{bend:?}, {tolerance}: {worst} m outside");
@@ -114,7 +114,7 @@ fn a_lock_of_a_turn_within_an_edge_has_its_length() {
         <path name="x" sourcePoint="C" destinationPoint="D" length="1414"/></model>"#;
     let options = ImportOptions { radius: Some(2.0), ..ImportOptions::default() };
     let mut imported = layout(InputFormat::OpenTcs, text, &options, &mut Warnings::default()).unwrap();
-    let outline = Footprint::new(vec![[1.0, 0.2], [-1.0, 0.2], [-1.0, -0.2], [1.0, -0.2]], None).unwrap();
+    let outline = Footprint::new(vec![[1.0, 0.2], [-1.0, 0.2], [-1.0, -0.2], [1.0, -0.2]]).unwrap();
     (imported.vehicle.radius, imported.vehicle.footprint) = (outline.circumscribed_radius(), Some(outline));
     let locks = ExclusionTable::compute(&imported, false).unwrap().locks;
     // While it turns to the left at 2 m, its front comes to the other way.

@@ -148,7 +148,7 @@ fn compare(imported: &ImportedLayout) -> usize {
                     assert!(there, "{} at {length}, {} at {other}: no lock", a.id, b.id);
                 }
             }
-            // Half the way between two poses of the other edge, and what the cover and the curves are off.
+            // Half the way between two poses of the other edge, and what the curves are off.
             let coarse = 0.5 * (b.length() + PI * footprint.circumscribed_radius()) / POSES as f64;
             for lock in own {
                 for end in lock.a_length.into_iter().filter(|end| *end > 1e-6 && *end < a.length() - 1e-6) {
@@ -157,7 +157,7 @@ fn compare(imported: &ImportedLayout) -> usize {
                     let nearest = (0..ways).map(|way| placed(&FORK, at, heading + way as f64 * PI));
                     let nearest = nearest.flat_map(|own| swept[m].iter().map(move |(_, _, other)| apart(&own, other)));
                     let nearest = nearest.fold(f64::INFINITY, f64::min);
-                    let most = 2.0 * footprint.overhang() + deviation + coarse + 1e-6;
+                    let most = deviation + coarse + 1e-6;
                     assert!(nearest <= most, "{} at {end}, {}: {nearest} of {most}", a.id, b.id);
                 }
             }
@@ -167,7 +167,7 @@ fn compare(imported: &ImportedLayout) -> usize {
 }
 
 fn fork() -> Footprint {
-    Footprint::new(FORK.to_vec(), None).unwrap()
+    Footprint::new(FORK.to_vec()).unwrap()
 }
 
 #[test]
@@ -284,7 +284,7 @@ fn an_outline_blocks_less_than_the_disc_around_it() {
     assert!((0.3..0.95).contains(&share), "{share}");
 }
 
-/// A vehicle at a node may have any heading: it blocks what the disc around it does, but for the overhang.
+/// A vehicle at a node may have any heading: it blocks what the disc around it does.
 #[test]
 fn a_vehicle_at_a_node_may_have_any_heading() {
     let imported = read(InputFormat::Nav2, GRAPH, Some(fork()));

@@ -13,7 +13,7 @@ const TRUCK: [Point; 4] = [[-0.5, -0.3], [0.9, -0.3], [0.9, 0.3], [-0.5, 0.3]];
 
 fn truck(id: u64, [x, y, heading]: [f64; 3], path: &Value) -> Value {
     let corners = TRUCK.iter().map(|[ahead, left]| json!({ "ahead": ahead, "left": left }));
-    json!({ "id": id, "footprint": { "polygon": corners.collect::<Vec<_>>(), "overhang": 0.1 }, "v_max": 1.0, "a_max": 0.7,
+    json!({ "id": id, "footprint": { "polygon": corners.collect::<Vec<_>>() }, "v_max": 1.0, "a_max": 0.7,
         "path": path, "start": { "x": x, "y": y, "heading": heading } })
 }
 

@@ -71,7 +71,7 @@ fn every_mission_that_is_placed_is_planned() {
 fn vehicles_with_outlines_keep_clear() {
     const FORK: [[f64; 2]; 4] = [[-0.4, -0.25], [0.8, -0.25], [0.8, 0.25], [-0.4, 0.25]];
     let mut imported = read(InputFormat::Nav2, WAREHOUSE, 0.4);
-    let footprint = Footprint::new(FORK.to_vec(), Some(0.15)).unwrap();
+    let footprint = Footprint::new(FORK.to_vec()).unwrap();
     (imported.vehicle.radius, imported.vehicle.footprint) = (footprint.circumscribed_radius(), Some(footprint));
     let (traffic, [_, plan]) = TrafficReport::plan(&imported, TrafficOptions { agents: 8, seed: 2 }).unwrap();
     assert_eq!((traffic.planned, traffic.conflicts_after), (8, 0), "{:?}", traffic.unsolved);

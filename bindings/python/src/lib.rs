@@ -10,6 +10,7 @@ use layout::{Choices, Layout};
 use pcr_core::{AdmissionError, Encounter, Interval, Motion, MovementAuthority, PassingState, Progress};
 use pcr_formats::input::{self, InputError};
 use pcr_formats::scenario::{Scenario, ScenarioError};
+use pcr_planning::bodies::has_parts;
 use pcr_planning::check::CheckReport;
 use pcr_planning::fleet::{Fleet as Parts, HostPrecedenceTable, build_ecm_of};
 use pcr_planning::plan::{self, PlanMethod, PlanReport};
@@ -65,15 +66,18 @@ struct Fleet {
 
 impl Fleet {
     fn new(scenario: Scenario) -> PyResult<Self> {
-        let parts = Parts::new(&scenario).map_err(refused)?;
+        let parts = Parts::of_bodies(&scenario).map_err(refused)?;
         Ok(Self { scenario, parts })
     }
 
-    /// Refuses fleets with footprints, whose agents consist of several discs.
-    fn discs(&self) -> PyResult<()> {
-        match self.scenario.agents.iter().find(|agent| agent.footprint.is_some() || !agent.loads.is_empty()) {
+    /// Refuses fleets with agents that are several bodies: their motions here are those of convex hulls.
+    fn single_bodies(&self) -> PyResult<()> {
+        match self.scenario.agents.iter().find(|agent| has_parts(agent)) {
             Some(agent) => {
-                Err(refused(format!("agent {}: it has a footprint; this is for discs", agent.display_name())))
+                let who = agent.display_name();
+                Err(refused(format!(
+                    "agent {who}: it is concave or has loads; this is for agents of one convex outline"
+                )))
             }
             None => Ok(()),
         }
@@ -184,7 +188,7 @@ impl Fleet {
 
     #[pyo3(signature = (inflated = false))]
     fn regions<'py>(&self, py: Python<'py>, inflated: bool) -> PyResult<Bound<'py, PyBytes>> {
-        self.discs()?;
+        self.single_bodies()?;
         let rows = py.detach(|| self.rows(inflated))?;
         Ok(PyBytes::new(py, &rows))
     }
@@ -214,7 +218,7 @@ impl Fleet {
         step: f64,
         times: usize,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        self.discs()?;
+        self.single_bodies()?;
         let ego = self.place(agent)?;
         let rows = py.detach(|| -> PyResult<Vec<u8>> {
             let motions = self.parts.motions();
@@ -256,7 +260,7 @@ impl Fleet {
         length: (f64, f64),
         during: (f64, f64),
     ) -> PyResult<Vec<(f64, f64)>> {
-        self.discs()?;
+        self.single_bodies()?;
         let ego = self.place(agent)?;
         for (name, (lo, hi)) in [("length", length), ("during", during)] {
             if !(lo.is_finite() && hi.is_finite() && lo <= hi) {
@@ -278,7 +282,7 @@ impl Fleet {
 
     /// The least distance of two agents, its time, and the sum of their radii.
     fn closest(&self, i: u64, j: u64) -> PyResult<(f64, f64, f64)> {
-        self.discs()?;
+        self.single_bodies()?;
         if i == j {
             return Err(refused(format!("agents {i} and {j} are one and the same")));
         }
@@ -305,7 +309,7 @@ impl Fleet {
 
     /// The regions of an agent and who passes them first: ego, other, lengths of both, and whether the ego does.
     fn passings<'py>(&self, py: Python<'py>, agent: u64) -> PyResult<Bound<'py, PyBytes>> {
-        self.discs()?;
+        self.single_bodies()?;
         let ego = self.place(agent)?;
         let rows = py.detach(|| -> PyResult<Vec<u8>> {
             let motions = self.parts.motions();
@@ -328,7 +332,7 @@ impl Fleet {
     /// How far each agent may go in the order in which the motions pass, for places that are known from-to; infinite where nobody is
     /// in the way.
     fn holds(&self, py: Python<'_>, places: Vec<(f64, f64)>) -> PyResult<Vec<f64>> {
-        self.discs()?;
+        self.single_bodies()?;
         let motions = self.parts.motions();
         if places.len() != motions.len() {
             return Err(refused(format!("{} places for {} agents", places.len(), motions.len())));

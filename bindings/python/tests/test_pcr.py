@@ -178,6 +178,31 @@ class Tool(unittest.TestCase):
             self.assertEqual(pcr.Fleet.from_json(fleet.to_json()).regions(), fleet.regions())
 
 
+class Outlines(unittest.TestCase):
+    CORNERS = ((0.6, 0.4), (-0.6, 0.4), (-0.6, -0.4), (0.6, -0.4))
+
+    def lanes(self, apart: float, **more: Any) -> pcr.Fleet:
+        polygon = [{"ahead": ahead, "left": left} for ahead, left in self.CORNERS]
+        truck = {"footprint": {"polygon": polygon}, "v_max": 1.0, "a_max": 1.0, "path": [{"kind": "line", "length": 6}], **more}
+        return pcr.Fleet([{"id": 1, "start": {"x": 0, "y": 0, "heading": 0}, **truck},
+                          {"id": 2, "start": {"x": 6, "y": apart, "heading": math.pi}, **truck}])
+
+    def test_trucks_pass_as_near_as_they_are_wide(self) -> None:
+        free, meets = self.lanes(0.801), self.lanes(0.799)
+        self.assertEqual((len(free.regions()), len(meets.regions())), (0, 2))
+        self.assertEqual((free.conflicts(), len(meets.conflicts())), ([], 1))
+        separation, _, radii = free.closest(1, 2)
+        self.assertAlmostEqual(separation - radii, 0.001, 9)
+        self.assertEqual([region.t for region in meets.regions()], [tuple(region["t"]) for region in meets.report()["regions"]])
+        self.assertTrue(meets.map(1, 0.0, 0.1, 60))
+
+    def test_several_bodies_are_told(self) -> None:
+        loaded = self.lanes(0.9, loads=[{"segments": [1, 1], "radius": 0.9}])
+        self.assertTrue(loaded.report()["regions"])
+        with self.assertRaisesRegex(pcr.Error, "agent 1: it is concave or has loads"):
+            loaded.regions()
+
+
 class Answers(unittest.TestCase):
     def test_maps_are_slices_of_regions(self) -> None:
         fleet = pcr.Fleet.read(TWELVE)

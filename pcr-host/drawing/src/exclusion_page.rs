@@ -1,6 +1,6 @@
 //! The page of a layout and its locks; a selected edge shows the lengths that it blocks.
 
-use super::layout::{STEPS, bounds, line};
+use super::layout::{STEPS, bounds, line, swept_area};
 use super::template::PageTemplate;
 use pcr_exclusions::{ExclusionAudit, ExclusionRules};
 use pcr_formats::import::{ElementId, ImportedLayout};
@@ -50,7 +50,7 @@ fn data(imported: &ImportedLayout, locks: &ExclusionTable) -> Value {
             "ends": ends,
             "level": layout.level(edge),
             "length": edge.length(),
-            "corridor": corridor.map(|(curve, radius)| json!([line(&curve), 2.0 * radius * STEPS])).collect::<Vec<_>>(),
+            "corridor": corridor.map(|shape| swept_area(&shape)).collect::<Vec<_>>(),
             "path": line(&edge.curve),
             "back": line(&back),
         })

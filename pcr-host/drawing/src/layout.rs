@@ -1,7 +1,7 @@
 //! A layout as a picture: the corridors of a vehicle on the edges of a level.
 //!
 //! The corridor that a disc sweeps is the stroke of its path, as wide as the disc and with round ends; SVG draws this
-//! exactly. The corridor of a footprint is the union of the corridors of its discs.
+//! exactly. That of an outline is drawn as the convex hulls of neighbouring poses.
 
 use super::axis::{PlotArea, ROOM_ABOVE, ROOM_BELOW, at_least_visible, room_at_left};
 use super::svg::{PathData, PixelCoordinate, SvgWriter};
@@ -9,7 +9,7 @@ use pcr_core::Interval;
 use pcr_formats::import::{ImportedLayout, Layout, LayoutEdge, LayoutNode};
 use pcr_formats::scenario::PathSegment;
 use pcr_formats::scenario::PlacedSegment;
-use pcr_planning::exclusion_table::{EdgeTraversals, corridor};
+use pcr_planning::exclusion_table::{EdgeTraversals, SweptShape, corridor};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 use std::fmt::Display;
@@ -70,6 +70,18 @@ pub(super) fn line(curve: &[PlacedSegment]) -> String {
     path(curve, STEPS, false, |point| point.map(|x| x * STEPS)).to_string()
 }
 
+/// A swept area for a page: its path, the width of its stroke, both in [`STEPS`], and whether it is filled.
+pub(super) fn swept_area(shape: &SweptShape) -> Value {
+    match shape {
+        SweptShape::Stroke(curve, radius) => json!([line(curve), 2.0 * radius * STEPS, false]),
+        SweptShape::Area(corners, radius) => {
+            let mut data = PathData::default();
+            data.polygon(corners.iter().map(|corner| corner.map(|x| (x * STEPS).round())));
+            json!([data.to_string(), 2.0 * radius * STEPS, true])
+        }
+    }
+}
+
 /// Box around what is on a level, with room for discs of this radius \[m\].
 pub(super) fn bounds(layout: &Layout, level: Option<usize>, radius: f64) -> [Interval<f64>; 2] {
     let on = |other: usize| level.is_none_or(|level| level == other);
@@ -115,7 +127,7 @@ impl LayoutLevelView<'_> {
         let corridors = edges().flat_map(|edge| corridor(&rides.on_edge(edge)));
         json!({
             "steps": STEPS,
-            "corridors": corridors.map(|(curve, radius)| json!([line(&curve), 2.0 * radius * STEPS])).collect::<Vec<_>>(),
+            "corridors": corridors.map(|shape| swept_area(&shape)).collect::<Vec<_>>(),
             "edges": edges().map(|edge| line(&edge.curve)).filter(|line| !line.is_empty()).collect::<Vec<_>>(),
         })
     }
@@ -136,8 +148,16 @@ impl LayoutLevelView<'_> {
         let rides = EdgeTraversals::new(self.imported);
         // One colour for all of them, however many lie on one another.
         svg.start("g", &[&round[..], &[("stroke", &"#2078bf"), ("opacity", &"0.18")]].concat());
-        for (curve, radius) in edges.iter().flat_map(|edge| corridor(&rides.on_edge(edge))) {
-            stroke(svg, &curve, 2.0 * radius * metre);
+        for shape in edges.iter().flat_map(|edge| corridor(&rides.on_edge(edge))) {
+            match shape {
+                SweptShape::Stroke(curve, radius) => stroke(svg, &curve, 2.0 * radius * metre),
+                SweptShape::Area(corners, radius) => {
+                    let mut data = PathData::default();
+                    data.polygon(corners.iter().map(|corner| frame.at(*corner)));
+                    let width = PixelCoordinate(2.0 * radius * metre);
+                    svg.empty("path", &[("d", &data), ("fill", &"#2078bf"), ("stroke-width", &width)]);
+                }
+            }
         }
         svg.end();
         svg.start("g", &[&round[..], &[("stroke", &"#1d2125")]].concat());

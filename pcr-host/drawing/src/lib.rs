@@ -206,7 +206,7 @@ fn with_scene<T>(
     draw: impl FnOnce(&RegionScene<'_>) -> io::Result<T>,
 ) -> io::Result<T> {
     let invalid = |why: String| io::Error::new(io::ErrorKind::InvalidInput, why);
-    let fleet = Fleet::<f64>::new(scenario).map_err(|refused| invalid(refused.to_string()))?;
+    let fleet = Fleet::<f64>::of_bodies(scenario).map_err(|refused| invalid(refused.to_string()))?;
     let motions = fleet.motions();
     let ecm = build_ecm(&motions).map_err(|full| invalid(full.to_string()))?;
     draw(&RegionScene { scenario, motions: &motions, ecm: &ecm, egos, ground })

@@ -49,7 +49,7 @@ fn data(scene: &RegionScene<'_>) -> Value {
     json!({
         "name": scene.scenario.name,
         "grid": GRID,
-        "outlines": scene.has_outlines(),
+        "hulls": scene.has_hulls(),
         "horizon": interval(scene.horizon()),
         "bounds": [x.lo, x.hi, y.lo, y.hi],
         "ground": scene.ground.map(|ground| ground.lines()),
@@ -82,15 +82,14 @@ fn agent(scene: &RegionScene<'_>, place: usize, motion: &Motion<'_, f64>) -> Val
         let acceleration = if time.length() > 0.0 { (speeds[1] - speeds[0]) / time.length() } else { 0.0 };
         json!([time.lo, time.length(), length.lo, speeds[0], speeds[1], acceleration])
     });
-    let footprint = scene.footprint(place);
-    let discs = scene.scenario.agents.get(place).map_or_else(Vec::new, covering);
+    let parts = scene.scenario.agents.get(place).map_or_else(Vec::new, |agent| parts(agent, motion));
     json!({
         // Beyond 2⁵³ a number would lose its last digits in the browser.
         "id": scene.id(place).to_string(),
         "name": scene.display_name(place),
-        "radius": motion.radius(),
-        "discs": discs,
-        "outline": footprint.map_or(&[][..], |footprint| footprint.polygon()),
+        "radius": motion.outline().reach(),
+        "parts": parts,
+        "outline": scene.polygon(place),
         "colour": scene.colour(place).to_string(),
         "time": interval(motion.time()),
         "length": motion.path().length(),
@@ -99,10 +98,17 @@ fn agent(scene: &RegionScene<'_>, place: usize, motion: &Motion<'_, f64>) -> Val
     })
 }
 
-/// The discs by which contacts are told, as \[ahead, left, radius, from, to\]: on which lengths of the path each of them is there. Where a load
-/// begins or ends, both outlines count.
-fn covering(agent: &Agent) -> Vec<[f64; 5]> {
+/// The convex shapes by which contacts are told, as \[corners, radius, from, to\]: on which lengths of the path each of them is there. Where a
+/// load begins or ends, both outlines count.
+fn parts(agent: &Agent, motion: &Motion<'_, f64>) -> Vec<Value> {
     let outlines = agent.outlines();
+    let whole = outlines.len() == 1;
+    if !whole && motion.path().segments().iter().any(|segment| matches!(segment.curve(), Curve::Pivot { .. })) {
+        // Lengths of the path in the scenario are not those of the motion.
+        let outline = motion.outline();
+        let corners = outline.corners().iter().map(|corner| [corner.at().x, corner.at().y]);
+        return vec![json!([corners.collect::<Vec<_>>(), outline.radius(), 0.0, f64::MAX])];
+    }
     let mut before = vec![0.0];
     before.extend(agent.path.iter().scan(0.0, |length, segment| {
         *length += segment.length();
@@ -115,9 +121,10 @@ fn covering(agent: &Agent) -> Vec<[f64; 5]> {
     for ((outline, &from), to) in outlines.iter().zip(&begins).zip(ends) {
         match outline.footprint {
             Some(footprint) => {
-                all.extend(footprint.discs().iter().map(|disc| [disc.ahead, disc.left, disc.radius, from, to]));
+                let parts = footprint.parts().filter_map(|part| part.convex(0.0));
+                all.extend(parts.map(|corners| json!([corners, footprint.growth(), from, to])));
             }
-            None => all.push([0.0, 0.0, outline.radius, from, to]),
+            None => all.push(json!([[[0.0, 0.0]], outline.radius, from, to])),
         }
     }
     all
@@ -254,15 +261,15 @@ mod tests {
     }
 
     #[test]
-    fn contacts_are_those_of_the_discs_on_their_stretches() {
+    fn contacts_are_those_of_the_shapes_on_their_stretches() {
         let line = json!({ "kind": "line", "length": 2.0 });
         let start = json!({ "x": 0.0, "y": 0.0, "heading": 0.0 });
         let agent = json!({ "id": 1, "radius": 0.3, "v_max": 1.0, "a_max": 1.0, "start": start, "path": [line, line, line],
             "loads": [{ "segments": [2, 2], "radius": 0.8 }] });
         let data = data_of(&page_of(&json!({ "agents": [agent] }).to_string()));
-        let discs = data["agents"][0]["discs"].as_array().unwrap();
-        let lengths = |k: usize| [2, 3, 4].map(|column| discs[k][column].as_f64().unwrap());
-        assert_eq!((discs.len(), lengths(0), lengths(1)), (3, [0.3, 0.0, 2.0], [0.8, 2.0, 4.0]));
+        let parts = data["agents"][0]["parts"].as_array().unwrap();
+        let lengths = |k: usize| [1, 2, 3].map(|column| parts[k][column].as_f64().unwrap());
+        assert_eq!((parts.len(), lengths(0), lengths(1)), (3, [0.3, 0.0, 2.0], [0.8, 2.0, 4.0]));
         assert_eq!(lengths(2)[..2], [0.3, 4.0]);
     }
 

@@ -4,8 +4,8 @@ use super::contour::{RegionOutline, trace};
 use super::layout::LayoutLevelView;
 use super::palette::{Colour, colour};
 use pcr_core::{Aabb, Crossing, Interval, Motion, PieceRef, PieceType, RegionRef, crossings};
-use pcr_formats::footprint::Footprint;
 use pcr_formats::scenario::Scenario;
+use pcr_planning::bodies::has_parts;
 use pcr_planning::fleet::HostEcm;
 use std::collections::HashMap;
 
@@ -66,15 +66,21 @@ impl RegionScene<'_> {
         }
     }
 
-    /// The outline of the agent at this place of the scenario, if it is no disc and the same all the way.
-    pub(super) fn footprint(&self, place: usize) -> Option<&Footprint> {
+    /// The polygon of the agent at this place of the scenario, or the convex hull of all outlines of an agent with loads; empty of a disc.
+    pub(super) fn polygon(&self, place: usize) -> Vec<[f64; 2]> {
         let agent = self.scenario.agents.get(place).filter(|agent| agent.loads.is_empty());
-        agent.and_then(|agent| agent.footprint.as_ref())
+        match agent.and_then(|agent| agent.footprint.as_ref()) {
+            Some(footprint) => footprint.polygon().to_vec(),
+            None => {
+                let corners = self.motions.get(place).map_or(&[][..], |motion| motion.outline().corners());
+                corners.iter().map(|corner| [corner.at().x, corner.at().y]).collect()
+            }
+        }
     }
 
-    /// Whether an agent is more than a disc: maps show the discs around all of them.
-    pub(super) fn has_outlines(&self) -> bool {
-        self.scenario.agents.iter().any(|agent| agent.footprint.is_some() || !agent.loads.is_empty())
+    /// Whether an agent is more than one convex outline: maps show the regions of convex hulls.
+    pub(super) fn has_hulls(&self) -> bool {
+        self.scenario.agents.iter().any(has_parts)
     }
 
     /// Colour of the agent at this place of the scenario.
@@ -88,10 +94,10 @@ impl RegionScene<'_> {
         times.reduce(Interval::hull).unwrap_or(Interval::new(0.0, 1.0))
     }
 
-    /// Box around all discs on all paths, and around the ground \[m\].
+    /// Box around all agents on all paths, and around the ground \[m\].
     pub(super) fn bounds(&self) -> Aabb<f64> {
         let grown = self.motions.iter().map(|motion| {
-            let (Aabb { x, y }, r) = (motion.bounds(), motion.radius());
+            let (Aabb { x, y }, r) = (motion.bounds(), motion.outline().reach());
             Aabb { x: Interval::new(x.lo - r, x.hi + r), y: Interval::new(y.lo - r, y.hi + r) }
         });
         let unit = Interval::new(-1.0, 1.0);

@@ -111,9 +111,10 @@ fn body(
         let (sin, cos) = pose.heading.0.sin_cos();
         frame.at([pose.position.x + ahead * cos - left * sin, pose.position.y + ahead * sin + left * cos])
     };
-    if let Some(footprint) = scene.footprint(place) {
+    let polygon = scene.polygon(place);
+    if !polygon.is_empty() {
         let mut data = PathData::default();
-        data.polygon(footprint.polygon().iter().map(|[ahead, left]| at(*ahead, *left)));
+        data.polygon(polygon.iter().map(|[ahead, left]| at(*ahead, *left)));
         svg.empty("path", &[&[("d", &data as &dyn std::fmt::Display)], style].concat());
     } else if let Some(motion) = scene.motions.get(place) {
         let [x, y] = at(0.0, 0.0);
@@ -125,7 +126,7 @@ fn body(
 
 /// Radius of a disc \[px\]; one that would not be seen is shown as a dot.
 fn radius(motion: &Motion<'_, f64>, frame: &PlotArea) -> f64 {
-    (motion.radius() / frame.x.units_per_pixel()).max(1.2)
+    (motion.outline().reach() / frame.x.units_per_pixel()).max(1.2)
 }
 
 /// A path by lines and true arcs.

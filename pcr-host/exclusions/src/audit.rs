@@ -5,6 +5,7 @@
 //! an edge that ends there, and the corridor of that edge contains the node. Hence for a node and an edge it is enough
 //! that a vehicle at the node keeps others off the edge, and two nodes need nothing more.
 
+use crate::convex_outline::overlap;
 use crate::token_conflicts::TokenConflicts;
 use crate::{
     DirectedEdgeRules, ExclusionFormat, ExclusionGroup, ExclusionRules, Selection, VehicleStamp, nearest, stretch,
@@ -12,7 +13,7 @@ use crate::{
 use pcr_formats::import::{ElementId, ImportError, ImportedLayout, Layout, LayoutEdge};
 use pcr_formats::scenario::PlacedSegment;
 use pcr_planning::exclusion_table::{
-    EdgeExclusion, EdgeTraversals, ExclusionTable, ExclusionVehicle, NodeExclusion, corridor,
+    EdgeExclusion, EdgeTraversals, ExclusionTable, ExclusionVehicle, NodeExclusion, SweptShape, corridor,
 };
 use serde::Serialize;
 use std::cell::LazyCell;
@@ -308,7 +309,7 @@ impl<'a> Auditor<'a> {
         let mut seen = BTreeSet::new();
         let tokens = self.tokens(pair);
         // The same for all lengths; computed only if needed, because it is slow.
-        let discs = LazyCell::new(|| self.discs(pair));
+        let discs = LazyCell::new(|| self.overlap(pair));
         for ([own, other], tokens) in
             self.both_ways(pair).flat_map(|ways| tokens.iter().map(move |tokens| (ways, tokens)))
         {
@@ -334,7 +335,7 @@ impl<'a> Auditor<'a> {
         &self,
         [a, b]: [usize; 2],
         lengths: [[f64; 2]; 2],
-        discs: &dyn Fn() -> Option<(f64, [f64; 2])>,
+        overlap: &dyn Fn() -> Option<(f64, [f64; 2])>,
     ) -> Option<MissingExclusion> {
         let edges = [a, b].map(|place| &self.layout().edges[place]);
         let near = if self.imported.vehicle.footprint.is_none() {
@@ -342,9 +343,7 @@ impl<'a> Auditor<'a> {
             let reach = 2.0 * self.radius + edges[0].deviation + edges[1].deviation;
             near(&curves[0], &curves[1], reach)
         } else {
-            // Lengths of a footprint differ from those of its discs: the lock shows that there is contact, the discs bound its
-            // depth.
-            discs()
+            overlap()
         };
         // If the depth cannot be determined, the largest possible one is reported.
         let (depth, at) = near.unwrap_or((2.0 * self.radius, self.start_point(edges[0])));
@@ -367,10 +366,16 @@ impl<'a> Auditor<'a> {
         })
     }
 
-    fn discs(&self, pair: [usize; 2]) -> Option<(f64, [f64; 2])> {
-        let tracks = pair.map(|place| corridor(&self.rides.on_edge(&self.layout().edges[place])));
-        let pairs = tracks[0].iter().flat_map(|own| tracks[1].iter().map(move |other| (own, other)));
-        let all = pairs.filter_map(|((own, r), (other, s))| near(own, other, r + s));
+    /// How deep the corridors of an outline on two edges overlap, and where \[m\].
+    fn overlap(&self, pair: [usize; 2]) -> Option<(f64, [f64; 2])> {
+        let corridors = pair.map(|place| corridor(&self.rides.on_edge(&self.layout().edges[place])));
+        let pairs = corridors[0].iter().flat_map(|own| corridors[1].iter().map(move |other| (own, other)));
+        let all = pairs.filter_map(|pair| match pair {
+            (SweptShape::Area(own, r), SweptShape::Area(other, s)) => overlap([own, other], r + s),
+            (SweptShape::Stroke(own, r), SweptShape::Stroke(other, s)) => near(own, other, r + s),
+            // One vehicle is a disc or an outline on all edges.
+            _ => None,
+        });
         all.max_by(|x, y| x.0.total_cmp(&y.0)).map(|(depth, at)| (depth.max(0.0), at))
     }
 

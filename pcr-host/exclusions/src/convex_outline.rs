@@ -84,6 +84,38 @@ pub(crate) fn intersect(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
     sides(a).into_iter().any(|own| others.iter().any(|&other| crosses(own, other)))
 }
 
+/// How deep two convex polygons overlap, each enlarged so that both together grow by `room`, and a point of both \[m\]: the length of the
+/// least translation across a side of either; `None` if they are apart.
+pub(crate) fn overlap([a, b]: [&[[f64; 2]]; 2], room: f64) -> Option<(f64, [f64; 2])> {
+    let beyond = |own: &[[f64; 2]], other: &[[f64; 2]]| {
+        let sides = own.iter().zip(own.iter().cycle().skip(1));
+        let gaps = sides.filter_map(|(from, to)| {
+            let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+            let length = dx.hypot(dy);
+            // Counter-clockwise, so outward is to the right.
+            let out = |point: &[f64; 2]| ((point[0] - from[0]) * dy - (point[1] - from[1]) * dx) / length;
+            (length > 0.0).then(|| other.iter().map(out).fold(f64::INFINITY, f64::min))
+        });
+        gaps.fold(f64::NEG_INFINITY, f64::max)
+    };
+    let depth = room - beyond(a, b).max(beyond(b, a));
+    let nearer = |polygon: &[[f64; 2]], other: &[[f64; 2]]| {
+        polygon.iter().copied().min_by(|p, q| distance(other, *p).total_cmp(&distance(other, *q)))
+    };
+    let inside = |polygon: &[[f64; 2]], other: &[[f64; 2]]| {
+        let own = polygon.iter().filter(|corner| self::depth(other, **corner) >= 0.0).copied();
+        own.collect::<Vec<_>>()
+    };
+    let mut common = inside(a, b);
+    common.extend(inside(b, a));
+    if common.is_empty() {
+        common.extend([nearer(a, b)?, nearer(b, a)?]);
+    }
+    let count = common.len() as f64;
+    let at = [0, 1].map(|axis| common.iter().map(|point| point[axis]).sum::<f64>() / count);
+    (depth >= 0.0).then_some((depth, at))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -114,6 +146,16 @@ mod tests {
                 turn(polygon[(k + n - 1) % n], b, polygon[(k + 1) % n]) > 0.0
             }));
         }
+    }
+
+    #[test]
+    fn overlaps_are_those_of_squares() {
+        let square = |x: f64, y: f64| [[x, y], [x + 1.0, y], [x + 1.0, y + 1.0], [x, y + 1.0]];
+        let (depth, at) = overlap([&square(0.0, 0.0), &square(0.75, 0.5)], 0.0).unwrap();
+        assert_eq!((depth, at), (0.25, [0.875, 0.75]));
+        assert_eq!(overlap([&square(0.0, 0.0), &square(1.5, 0.0)], 0.0), None);
+        let (depth, at) = overlap([&square(0.0, 0.0), &square(1.5, 0.0)], 0.75).unwrap();
+        assert!((depth - 0.25).abs() < 1e-15 && (0.9..=1.6).contains(&at[0]), "{depth} {at:?}");
     }
 
     #[test]

@@ -8,9 +8,11 @@ use std::io::{self, Write};
 
 impl VersionedReport for WriteReport {
     const FORMAT: &'static str = "pcr-written";
+    const VERSION: u32 = pcr_planning::report::LOCKS_VERSION;
 }
 impl VersionedReport for ExclusionAudit {
     const FORMAT: &'static str = "pcr-audit";
+    const VERSION: u32 = pcr_planning::report::LOCKS_VERSION;
 }
 
 /// Largest number of rows of a printed table; the others are counted, and are in the other formats.

@@ -23,7 +23,7 @@
 //!   accelerations, never below speed 0. It has to travel the length of the path within [`LENGTH_TOLERANCE`] and is
 //!   scaled onto it.
 //! - `name` and `t_start` may be left out, and with a profile `v_max` and `a_max`. An unknown key is refused.
-//! - `"footprint": { "polygon": [ { "ahead": 0.8, "left": 0.4 }, ... ], "overhang": 0.1 }` instead of `radius` is the outline of
+//! - `"footprint": { "polygon": [ { "ahead": 0.8, "left": 0.4 }, ... ] }` instead of `radius` is the outline of
 //!   the vehicle around the point that travels the path; see [`Footprint`].
 //! - `"loads": [ { "segments": [2, 3], "radius": 0.6 } ]`: another radius, or a `footprint`, from segment 2 to segment 3 (counted
 //!   from 1): what the vehicle carries there.

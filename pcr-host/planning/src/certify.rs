@@ -20,7 +20,7 @@ use pcr_certify::raw::RawTable;
 use pcr_certify::table::{Checker, CoverageMargin};
 use pcr_formats::scenario::Labels;
 use pcr_formats::warning::WarningCode;
-use reported::{RegionScope, ReportedDiscCover};
+use reported::{RegionScope, ReportedBodies};
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -89,7 +89,7 @@ pub struct CertifyWitnessEntry {
 
 /// The format of the answers that have a certificate, and its version.
 pub(crate) const ANSWERS: &str = "pcr-regions";
-pub(crate) const VERSION: u32 = 1;
+pub(crate) const VERSION: u32 = 2;
 
 /// The tables in an answer of `pcr regions --certificate`, or the table that a microcontroller prints. Other parts of the
 /// answer may be missing; if present, they have to agree with the tables.
@@ -120,8 +120,8 @@ struct RegionsAnswer<T> {
     regions: Option<Vec<reported::ReportedRegion>>,
     #[serde(default)]
     margin_regions: Option<Vec<reported::ReportedRegion>>,
-    #[serde(default)]
-    footprints: Vec<ReportedDiscCover>,
+    #[serde(default, alias = "footprints")]
+    bodies: Vec<ReportedBodies>,
 }
 
 /// Whether tables have bodies, and are of outlines.
@@ -171,8 +171,9 @@ impl CertifyInput {
         if let Some(other) = said.format.filter(|said| said != format) {
             return Err(format!("format: {other} where \"{format}\" is expected"));
         }
-        if let Some(other) = said.version.filter(|said| said != version) {
-            return Err(format!("version: {other} where {version}, all that this pcr knows, is expected"));
+        // Version 1 had covers of discs.
+        if let Some(other) = said.version.filter(|said| !(1..=version).any(|known| *said == known)) {
+            return Err(format!("version: {other} where {version} or an earlier one is expected"));
         }
         if let Some(error) = said.error {
             return Err(format!("its regions were not computed: {error}"));
@@ -193,11 +194,11 @@ impl<T: DeserializeOwned + Into<CertificateTable>> RegionsAnswer<T> {
     /// Reads the tables, and compares them with what is told beside them.
     fn read(text: &str) -> Result<CertifyInput, String> {
         let answer: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
-        let Self { name, labels, warnings, certificate, agent, regions, margin_regions, footprints } = answer;
+        let Self { name, labels, warnings, certificate, agent, regions, margin_regions, bodies: told } = answer;
         let certificate: Vec<CertificateTable> = certificate.into_iter().map(T::into).collect();
         let paths: Vec<_> = certificate.iter().map(CertificateTable::paths).collect();
         for table in &paths {
-            reported::bodies(table, &footprints)?;
+            reported::bodies(table, &told)?;
             reported::asked(table, agent)?;
         }
         match (&certificate[..], &paths[..]) {
@@ -213,7 +214,7 @@ impl<T: DeserializeOwned + Into<CertificateTable>> RegionsAnswer<T> {
         }
         let lists = [("regions", &regions), ("margin_regions", &margin_regions)];
         let is_told = lists.iter().any(|(_, list)| list.is_some());
-        let asked = RegionScope { agent, covers: &footprints };
+        let asked = RegionScope { agent, covers: &told };
         for (place, (name, list)) in lists.into_iter().enumerate() {
             match (list, paths.get(place)) {
                 (Some(list), Some(table)) => reported::compare(name, list, table, asked)?,

@@ -4,13 +4,13 @@
 //! arrival; every agent stands at its start before its motion and at its end afterwards.
 
 use crate::agent_regions::{BoxGrid, expanded_box};
+use crate::bodies::{Body, BodyFleet};
 use crate::certify::MotionCertificate;
-use crate::disc_fleet::{BodyDisc, DiscFleet, Form};
 use crate::failure::ComputationError;
 use crate::fleet::HostScalar;
 use crate::memory_budget::{self, MemoryBudget, MemoryDemand};
 use crate::parallel;
-use crate::regions::{DiscCover, ProgressFn};
+use crate::regions::{AgentBodies, ProgressFn};
 use pcr_core::{ClosestApproach, Encounter, Interval, Motion};
 use pcr_formats::plane_geometry::distance;
 use pcr_formats::scenario::{Labels, Scenario};
@@ -33,9 +33,9 @@ pub struct CheckReport {
     /// Every pair, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub closest: Option<Vec<ClosestApproachEntry>>,
-    /// The covers of the agents whose outlines are not computed as they are, as in [`crate::regions::RegionsReport`].
+    /// The bodies of agents that are several ones, as in [`crate::regions::RegionsReport`].
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub footprints: Vec<DiscCover>,
+    pub bodies: Vec<AgentBodies>,
     /// Result of the independent checker, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certificate: Option<MotionCertificate>,
@@ -105,8 +105,8 @@ impl CheckReport {
         closest: bool,
         told: ProgressFn<'_>,
     ) -> Result<Self, ComputationError> {
-        let (fleet, discs, _) = DiscFleet::<S>::moving(scenario, Form::Exact)?;
-        Self::between(scenario, &discs, &fleet.motions(), closest, told)
+        let (fleet, bodies, agents) = BodyFleet::<S>::moving(scenario)?;
+        Self::between(scenario, (&bodies, &agents), &fleet.motions(), closest, told)
     }
 
     /// Whether there is any conflict: the work ends with the first, and nothing is held.
@@ -114,9 +114,9 @@ impl CheckReport {
     /// # Errors
     /// [`ComputationError`] where a value does not fit the format.
     pub fn any<S: HostScalar>(scenario: &Scenario, told: ProgressFn<'_>) -> Result<bool, ComputationError> {
-        let (fleet, discs, _) = DiscFleet::<S>::moving(scenario, Form::Exact)?;
+        let (fleet, bodies, _) = BodyFleet::<S>::moving(scenario)?;
         let motions = fleet.motions();
-        let pairs = PairFinder::new(scenario, &discs, &motions);
+        let pairs = PairFinder::new(scenario, &bodies, &motions);
         let count = pairs.ids.len();
         for first in (0..count).step_by(STRETCH) {
             let stretch = first..count.min(first + STRETCH);
@@ -133,19 +133,19 @@ impl CheckReport {
     /// # Errors
     /// As [`CheckReport::compute`].
     pub(crate) fn of_margins<S: HostScalar>(scenario: &Scenario) -> Result<Self, ComputationError> {
-        let (fleet, discs, _) = DiscFleet::<S>::moving(scenario, Form::Exact)?;
+        let (fleet, bodies, agents) = BodyFleet::<S>::moving(scenario)?;
         let motions: Vec<Motion<'_, S>> = fleet.motions().into_iter().map(Motion::inflated).collect();
-        Self::between(scenario, &discs, &motions, false, &|_, _| {})
+        Self::between(scenario, (&bodies, &agents), &motions, false, &|_, _| {})
     }
 
     fn between<S: HostScalar>(
         scenario: &Scenario,
-        discs: &[BodyDisc],
+        (bodies, agents): (&[Body], &Scenario),
         motions: &[Motion<'_, S>],
         closest: bool,
         told: ProgressFn<'_>,
     ) -> Result<Self, ComputationError> {
-        let pairs = PairFinder::new(scenario, discs, motions);
+        let pairs = PairFinder::new(scenario, bodies, motions);
         let count = pairs.ids.len();
         let (mut conflicts, mut nearest, mut held) = (Vec::new(), Vec::new(), MemoryBudget::default());
         if closest {
@@ -174,7 +174,7 @@ impl CheckReport {
             agents: scenario.agents.len(),
             conflicts,
             closest: closest.then_some(nearest),
-            footprints: DiscCover::all(scenario, discs),
+            bodies: AgentBodies::all(scenario, bodies, agents),
             certificate: None,
             warnings: scenario.warnings.clone(),
             error: None,
@@ -204,7 +204,7 @@ impl CheckReport {
             agents: 0,
             conflicts: Vec::new(),
             closest: None,
-            footprints: Vec::new(),
+            bodies: Vec::new(),
             certificate: None,
             warnings: Vec::new(),
             error: Some(error),
@@ -213,7 +213,7 @@ impl CheckReport {
 }
 
 /// A disc of an agent, and its motion.
-type DiscMotion<'a, S> = (&'a BodyDisc, &'a Motion<'a, S>);
+type DiscMotion<'a, S> = (&'a Body, &'a Motion<'a, S>);
 
 /// Number of agents between two reports of progress.
 const STRETCH: usize = 1024;
@@ -234,7 +234,7 @@ struct PairFinder<'a, S: HostScalar> {
 }
 
 impl<'a, S: HostScalar> PairFinder<'a, S> {
-    fn new(scenario: &Scenario, discs: &'a [BodyDisc], motions: &'a [Motion<'a, S>]) -> Self {
+    fn new(scenario: &Scenario, discs: &'a [Body], motions: &'a [Motion<'a, S>]) -> Self {
         let time = Motion::span(motions);
         let order = by_number(scenario);
         let ids = order.iter().map(|&agent| scenario.agents[agent].id).collect();

@@ -4,12 +4,12 @@
 
 pub mod outlines;
 
-use crate::fleet::{Fleet, HostEcm, HostScalar, turn_in_place};
+use crate::fleet::{Fleet, HostEcm, HostScalar, growth_of_turns, turn_in_place};
 use pcr_certify::raw::{
     RawAgent, RawAngle, RawBranch, RawMotion, RawPair, RawPath, RawPhase, RawPiece, RawRegion, RawSegment, RawTable,
 };
 use pcr_core::{Curve, Interval, Motion, RegionRef, TurnSide, excess};
-use pcr_formats::scenario::{Agent, PathSegment, Scenario, figure};
+use pcr_formats::scenario::{Agent, PathSegment, Scenario, TURN, figure};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
@@ -113,8 +113,8 @@ impl std::error::Error for RoundTripError {}
 pub fn as_given<S: HostScalar>(discs: &Scenario, agents: &[RawAgent]) -> Result<(), RoundTripError> {
     assert_eq!(discs.agents.len(), agents.len(), "the discs of the scenario");
     discs.agents.iter().zip(agents).try_for_each(|(given, held)| {
-        same_disc::<S>(given, held)?;
-        same_motion::<S>(given, held)
+        same_disc::<S>(given, held, false)?;
+        same_motion::<S>(given, held, Vec::new())
     })
 }
 
@@ -131,15 +131,19 @@ fn same_numbers<S: HostScalar>(given: &Agent, numbers: &[(&'static str, f64, f64
     Ok(())
 }
 
-fn same_disc<S: HostScalar>(given: &Agent, held: &RawAgent) -> Result<(), RoundTripError> {
-    same_numbers::<S>(given, &[("radius", held.radius, given.circumscribed_radius(), 1.0)])
+fn same_disc<S: HostScalar>(given: &Agent, held: &RawAgent, pivots: bool) -> Result<(), RoundTripError> {
+    let radius = given.circumscribed_radius() + if pivots { growth_of_turns::<S>(given) } else { 0.0 };
+    same_numbers::<S>(given, &[("radius", held.radius, radius, 1.0)])
 }
 
-/// Compares path and times of an agent with those of a scenario.
-fn same_motion<S: HostScalar>(given: &Agent, held: &RawAgent) -> Result<(), RoundTripError> {
+/// Compares path and times of an agent with those of a scenario. `turned` are the lengths of its turns in place, where they have one \[m\].
+fn same_motion<S: HostScalar>(given: &Agent, held: &RawAgent, turned: Vec<f64>) -> Result<(), RoundTripError> {
     let start = held.travel.as_ref().map_or(given.t_start, |travel| travel.start);
-    let travelled = given.path.iter().filter(|segment| turn_in_place::<S>(segment).is_none());
-    let travelled = travelled.map(PathSegment::length).sum();
+    let has_length = |segment: &&PathSegment| {
+        turn_in_place::<S>(segment).is_none()
+            && (turned.is_empty() || !matches!(segment, PathSegment::Arc { radius: TURN, .. }))
+    };
+    let travelled = given.path.iter().filter(has_length).map(PathSegment::length).chain(turned.iter().copied()).sum();
     let length = held.path.segments.last().map_or(0.0, |last| last.to);
     // A length is rounded for each segment, and for each turn of an arc; the rounding of a radius is in it once for each radian.
     let bends = given.path.iter().map(|segment| match segment {

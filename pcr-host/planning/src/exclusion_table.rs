@@ -22,11 +22,11 @@ mod unsafe_delays;
 use crate::memory_budget;
 pub use area_pair_search::{SyncProgressFn, TouchingAreas};
 use edge_traversals::EdgeTraversal;
-pub use edge_traversals::{EdgeTraversals, corridor};
+pub use edge_traversals::{EdgeTraversals, SweptShape, corridor};
 pub use incremental::{ExclusionChange, IncrementalExclusions};
 pub use index::{ExclusionIndex, ExclusionIndexError, ExclusionPartner, write_index};
 pub use origin::origin;
-use pcr_formats::footprint::CoverDisc;
+use pcr_formats::footprint::Footprint;
 use pcr_formats::import::{self, ElementId, ImportError, ImportedLayout, Layout, LayoutEdge};
 use pcr_formats::scenario::{Agent, Scenario};
 use serde::Serialize;
@@ -64,12 +64,9 @@ pub struct ExclusionVehicle {
     /// By how much it is larger on edges at rounded corners, if these are included \[m\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corner_margin: Option<f64>,
-    /// For a footprint: no point of a disc is farther than this from the outline \[m\].
+    /// Its outline, with margin, if it is no disc.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub overhang: Option<f64>,
-    /// For a footprint: the discs used for the computation, with margin.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub discs: Vec<CoverDisc>,
+    pub footprint: Option<Footprint>,
 }
 
 /// Two edges, and the lengths of each within which a vehicle may touch one on the other.
@@ -139,15 +136,13 @@ impl ExclusionTable {
     pub fn head(imported: &ImportedLayout, nodes: bool) -> Self {
         let (layout, rides) = (&imported.layout, EdgeTraversals::new(imported));
         let vehicle = rides.vehicle();
-        let footprint = vehicle.footprint.as_ref();
         Self {
             layout: layout.name.clone(),
             vehicle: ExclusionVehicle {
                 name: vehicle.name.clone(),
                 radius: vehicle.radius,
                 corner_margin: Some(layout.corner_margin).filter(|margin| *margin > 0.0),
-                overhang: footprint.map(|footprint| footprint.overhang()),
-                discs: footprint.map_or_else(Vec::new, |footprint| footprint.discs().to_vec()),
+                footprint: vehicle.footprint.clone(),
             },
             locks: Vec::new(),
             nodes: nodes.then(Vec::new),

@@ -35,7 +35,7 @@ pub enum ComputationError {
     Ambiguous(String, Vec<u64>),
     /// A number that is that of an agent and the label of others.
     Twofold(u64, String, Vec<u64>),
-    /// A proof was requested, but there are no two discs of different agents.
+    /// A proof was requested, but there are no two agents.
     NoPair,
     /// The answer does not fit in memory.
     TooLarge(MemoryError),
@@ -59,9 +59,7 @@ impl fmt::Display for ComputationError {
             Self::Misread(misread) => misread.fmt(f),
             Self::Full(full) => full.fmt(f),
             Self::TooLarge(too_large) => too_large.fmt(f),
-            Self::NoPair => {
-                f.write_str("there are no two discs of different agents, of which contacts could be certified")
-            }
+            Self::NoPair => f.write_str("there are no two agents of which contacts could be certified"),
             Self::TooMany { what, agents, most } => write!(f, "{what} for {most} agents at most; there are {agents}"),
             Self::Overfull([i, j]) => write!(
                 f,

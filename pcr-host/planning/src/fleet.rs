@@ -8,16 +8,16 @@ pub(crate) mod rounding;
 pub mod speed;
 #[cfg(test)]
 mod tests;
+mod turns;
 
 use crate::memory_budget;
 use pcr_certify::raw::RawAngle;
 use pcr_core::{
-    CapacityError, Ecm, EcmEntry, EcmError, InvalidInput, Limits, Motion, Outline, PathRef, Phase, Piece, Point, Pose,
-    PrecedenceTable, Profile, ProfileRef, Radians, RegionPrecedence, Scalar, Segment, TurnSide,
+    CapacityError, Curve, Ecm, EcmEntry, EcmError, Interval, InvalidInput, Limits, Motion, Outline, PathRef, Phase,
+    Piece, Point, Pose, PrecedenceTable, Profile, ProfileRef, Radians, RegionPrecedence, Scalar, Segment, TurnSide,
 };
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
-pub(crate) use rounding::RoundingBounds;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
@@ -190,6 +190,8 @@ struct MotionParts<S: Scalar> {
     shape: Shape<S>,
     margin: S,
     start: S,
+    /// Turns in place with a length, in the order of the path.
+    turned: Vec<LongTurn<S>>,
 }
 
 /// What moves along a path. Outlines are large, and most fleets have none.
@@ -215,30 +217,30 @@ impl<S: HostScalar> Fleet<S> {
         Ok(Self { agents: agents.collect::<Result<_, _>>()? })
     }
 
-    /// All agents of a scenario, each as one body: its outline where the core computes with it, otherwise the disc about its reference point
-    /// that contains it.
+    /// All agents of a scenario, each as one body: a disc, a convex outline, or the convex hull of a concave one, or of all outlines of an
+    /// agent with loads.
     ///
     /// # Errors
     /// As [`Fleet::new`].
     pub fn of_bodies(scenario: &Scenario) -> Result<Self, FormatRangeError> {
-        if scenario.agents.iter().all(|agent| agent.footprint.is_none()) {
-            return Self::new(scenario);
-        }
+        let agents = scenario.agents.iter().map(|agent| match outline::hull(agent) {
+            Some(hull) => Self::body(&Agent { footprint: Some(hull), loads: Vec::new(), ..agent.clone() }),
+            None => Self::body(agent),
+        });
         let mut fleet = Self { agents: Vec::with_capacity(scenario.agents.len()) };
-        for agent in &scenario.agents {
-            match Self::outlined(agent) {
-                Some(outlined) => fleet.append(outlined),
-                None => fleet.append(Self::new(&Scenario::new("", vec![agent.clone()]))?),
-            }
-        }
+        agents.into_iter().try_for_each(|agent| agent.map(|agent| fleet.append(agent)))?;
         Ok(fleet)
     }
 
-    /// One agent with its outline; `None` where the core does not compute with it: it is a disc, is concave, changes on the way,
-    /// or turns in place, or the format cannot hold it or its motion.
-    pub(crate) fn outlined(agent: &Agent) -> Option<Self> {
-        let outline = outline::of(agent)?;
-        Some(Self { agents: vec![MotionParts::new(agent, Shape::Outline(Box::new(outline))).ok()?] })
+    /// One agent without loads whose footprint, if it has one, is convex.
+    ///
+    /// # Errors
+    /// As [`Fleet::new`].
+    pub(crate) fn body(agent: &Agent) -> Result<Self, FormatRangeError> {
+        let refused =
+            |(part, problem)| FormatRangeError { agent: agent.display_name(), part, format: S::NAME, problem };
+        let parts = MotionParts::of_body(agent);
+        Ok(Self { agents: vec![parts.map_err(refused)?] })
     }
 
     /// The motions, in the order of the scenario.
@@ -262,10 +264,24 @@ impl<S: HostScalar> Fleet<S> {
         (parts.heading, &parts.turns)
     }
 
+    /// Turns in place that have a length on the path of an agent's motion.
+    pub(crate) fn turned(&self, agent: usize) -> &[LongTurn<S>] {
+        self.agents.get(agent).map_or(&[], |parts| &parts.turned)
+    }
+
     /// Index in the scenario of a segment of an agent's motion; `None` for the point of an agent that stands.
     pub fn source(&self, agent: usize, segment: usize) -> Option<usize> {
         self.agents.get(agent)?.sources.get(segment).copied()
     }
+}
+
+/// A turn in place that has a length on the path of a motion.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LongTurn<S> {
+    /// Lengths during which it turns \[m\].
+    pub(crate) lengths: Interval<S>,
+    /// Length for each radian \[m\].
+    pub(crate) lever: S,
 }
 
 /// Index of the segment before which an agent turns in place, and the angle.
@@ -281,13 +297,42 @@ fn of_agent(problem: String) -> FieldFault {
 
 impl<S: HostScalar> MotionParts<S> {
     fn new(agent: &Agent, shape: Shape<S>) -> Result<Self, FieldFault> {
-        let PlacedPath { segments, sources, turns } = place_path(agent)?;
+        let path = place_path(agent, None)?;
+        // It waits while it turns in place.
+        let waits = agent.path.iter().any(|segment| turn_in_place::<S>(segment).is_some());
+        let motion = waits.then(|| turns::joined::<S>(&agent.parts().concat()));
+        Self::along(agent, path, motion.as_ref().unwrap_or(&agent.motion), shape)
+    }
+
+    /// A disc or a convex outline whose turns in place have a length.
+    fn of_body(agent: &Agent) -> Result<Self, FieldFault> {
+        let turning = turns::turning::<S>(agent);
+        let (levers, motion, off) = match &turning {
+            None => (None, &agent.motion, 0.0),
+            Some(turning) => (Some(&turning.levers[..]), &turning.motion, turning.off),
+        };
+        let shape = match &agent.footprint {
+            None => Shape::Disc(number("radius", agent.circumscribed_radius() + off).map_err(of_agent)?),
+            Some(footprint) => Shape::Outline(Box::new(outline::of(&footprint.inflated(off)).map_err(of_agent)?)),
+        };
+        Self::along(agent, place_path(agent, levers)?, motion, shape)
+    }
+
+    fn along(agent: &Agent, path: PlacedPath<S>, motion: &MotionSpec, shape: Shape<S>) -> Result<Self, FieldFault> {
+        let PlacedPath { segments, sources, turns } = path;
         let path = PathRef::new(&segments).map_err(|reason| of_agent(derived::<S>(reason)))?;
-        let phases = phases(agent, path.length())?;
+        let phases = phases(agent, motion, path.length())?;
+        let turned = segments.iter().filter_map(|segment| match segment.curve() {
+            Curve::Pivot { lever, .. } => {
+                Some(LongTurn { lengths: Interval::new(segment.from(), segment.from() + segment.length()), lever })
+            }
+            _ => None,
+        });
+        let turned = turned.collect();
         let start = number("t_start", agent.t_start).map_err(of_agent)?;
         let margin = number("margin", agent.margin).map_err(of_agent)?;
         let heading = angle::<S>("start.heading", agent.start[2]).map_err(of_agent)?;
-        let parts = Self { segments, sources, heading, turns, phases, shape, margin, start };
+        let parts = Self { segments, sources, heading, turns, phases, shape, margin, start, turned };
         match parts.motion() {
             Ok(_) => Ok(parts),
             Err(reason) => Err(of_agent(derived::<S>(reason))),
@@ -311,7 +356,8 @@ struct PlacedPath<S: Scalar> {
     turns: Vec<(usize, S::Angle)>,
 }
 
-fn place_path<S: HostScalar>(agent: &Agent) -> Result<PlacedPath<S>, FieldFault> {
+/// The path of an agent. With `levers` \[m\], turns in place have a length where theirs is not 0.
+fn place_path<S: HostScalar>(agent: &Agent, levers: Option<&[f64]>) -> Result<PlacedPath<S>, FieldFault> {
     let [x, y, heading] = agent.start;
     let position = Point::new(number("start.x", x).map_err(of_agent)?, number("start.y", y).map_err(of_agent)?);
     let pose = Pose { position, heading: angle::<S>("start.heading", heading).map_err(of_agent)? };
@@ -322,7 +368,12 @@ fn place_path<S: HostScalar>(agent: &Agent) -> Result<PlacedPath<S>, FieldFault>
     let (mut sources, mut turns) = (Vec::with_capacity(count), Vec::new());
     for (source, segment) in agent.path.iter().enumerate().filter(|(_, segment)| segment.length() > 0.0) {
         let at = |problem| (Some(("segment", source)), problem);
-        if let Some(sweep) = turn_in_place::<S>(segment) {
+        let lever = levers.and_then(|levers| levers.get(source).copied()).filter(|lever| *lever > 0.0);
+        let turn = match *segment {
+            PathSegment::Arc { radius: TURN, sweep } if levers.is_some() => Some(sweep),
+            _ => turn_in_place::<S>(segment),
+        };
+        if let Some(sweep) = turn.filter(|_| lever.is_none()) {
             let by = angle::<S>("sweep", sweep).map_err(at)?;
             let last = segments.last_mut().unwrap_or(&mut origin);
             *last = last.turned(by).map_err(|reason| at(derived::<S>(reason)))?;
@@ -333,15 +384,20 @@ fn place_path<S: HostScalar>(agent: &Agent) -> Result<PlacedPath<S>, FieldFault>
         let curve = match *segment {
             PathSegment::Line { .. } => None,
             PathSegment::Arc { radius, sweep } => Some((
-                number("radius", radius).map_err(at)?,
+                number("radius", lever.unwrap_or(radius)).map_err(at)?,
                 if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right },
             )),
         };
-        let length = number("length", segment.length() / whole).map_err(at)?;
+        let length = match (*segment, lever) {
+            (PathSegment::Arc { sweep, .. }, Some(lever)) => lever * sweep.abs(),
+            _ => segment.length(),
+        };
+        let (length, is_turn) = (number("length", length / whole).map_err(at)?, lever.is_some());
         for _ in 0..whole as usize {
             let last = segments.last().unwrap_or(&origin);
             let next = match curve {
                 None => last.then_line(length),
+                Some((lever, turn)) if is_turn => last.then_pivot(lever, turn, length),
                 Some((radius, turn)) => last.then_arc(radius, turn, length),
             };
             let next = next.map_err(|reason| at(format!("at its end: {}", derived::<S>(reason))))?;
@@ -357,6 +413,11 @@ fn place_path<S: HostScalar>(agent: &Agent) -> Result<PlacedPath<S>, FieldFault>
     Ok(PlacedPath { segments, sources, turns })
 }
 
+/// How much larger an outline is made for turns in place that are passed without a stop \[m\].
+pub(crate) fn growth_of_turns<S: HostScalar>(agent: &Agent) -> f64 {
+    turns::turning::<S>(agent).map_or(0.0, |turning| turning.off)
+}
+
 /// The angle of a turn in place \[rad\], for a format without lengths as small as its radius.
 pub(crate) fn turn_in_place<S: HostScalar>(segment: &PathSegment) -> Option<f64> {
     match *segment {
@@ -365,8 +426,8 @@ pub(crate) fn turn_in_place<S: HostScalar>(segment: &PathSegment) -> Option<f64>
     }
 }
 
-/// The phases of the motion over a path of this length.
-fn phases<S: HostScalar>(agent: &Agent, length: S) -> Result<Vec<Phase<S>>, FieldFault> {
+/// The phases of a motion of the agent over a path of this length.
+fn phases<S: HostScalar>(agent: &Agent, motion: &MotionSpec, length: S) -> Result<Vec<Phase<S>>, FieldFault> {
     let duration = agent.duration();
     // The division of the core saturates, so motions that take too long are detected here.
     if S::from_f64(duration) >= S::LIMIT {
@@ -374,11 +435,6 @@ fn phases<S: HostScalar>(agent: &Agent, length: S) -> Result<Vec<Phase<S>>, Fiel
         let duration = figure(duration);
         return Err(of_agent(format!("the motion takes {duration} s; allowed is below {limit:e} s")));
     }
-    let motion = if agent.path.iter().any(|segment| turn_in_place::<S>(segment).is_some()) {
-        &waiting::<S>(agent)
-    } else {
-        &agent.motion
-    };
     match motion {
         MotionSpec::RestToRest { v_max, a_max } => {
             let speed = number("v_max", *v_max).map_err(of_agent)?;
@@ -392,29 +448,6 @@ fn phases<S: HostScalar>(agent: &Agent, length: S) -> Result<Vec<Phase<S>>, Fiel
             (part, problem)
         }),
     }
-}
-
-/// The motion of an agent that waits while it turns in place. Times and speeds below the last digit of the format are dropped.
-fn waiting<S: HostScalar>(agent: &Agent) -> MotionSpec {
-    let parts = agent.parts();
-    let v0 = parts.iter().flatten().next().map_or(0.0, |part| part.before);
-    // Duration, and speed after it.
-    let mut reached: Vec<(f64, f64)> = Vec::new();
-    for part in parts.into_iter().flatten() {
-        // As for the speed of a turn in place.
-        let lost = |value: f64| S::from_f64(value) == S::ZERO;
-        let after = if lost(part.after) { 0.0 } else { part.after };
-        match reached.last_mut() {
-            Some(last) if lost(part.duration) => last.1 = after,
-            _ => reached.push((part.duration, after)),
-        }
-    }
-    let mut speed = v0;
-    let pieces = reached.into_iter().map(|(duration, after)| {
-        let gain = after - std::mem::replace(&mut speed, after);
-        (duration, if duration > 0.0 { gain / duration } else { 0.0 })
-    });
-    MotionSpec::Profile { v0, pieces: pieces.collect() }
 }
 
 /// The extended collision map of a fleet of any size: the storage grows until it is large enough.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! fleet             paths and motions in a number format                Fleet, build_ecm
-//! disc_fleet        agents with footprints, exact or as discs           DiscFleet, Form
+//! bodies            agents as convex bodies that move together            BodyFleet, Body
 //! failure           why there is no answer                              ComputationError
 //! checker_input     tables as plain numbers for the checker
 //! certify           proofs by the checker                               CertifyReport, CertificateTable
@@ -22,12 +22,13 @@
 //! ```
 
 pub mod agent_regions;
+pub mod bodies;
 pub mod certify;
 pub mod check;
 pub mod checker_input;
 pub mod checksum;
 pub mod conflict_queue;
-pub mod disc_fleet;
+
 pub mod exclusion_table;
 pub mod failure;
 pub mod figures;

@@ -3,23 +3,22 @@
 //! The types match the JSON output, field by field in this order. All numbers are `f64` and hold the results of the
 //! chosen number format exactly, hence rounded outward.
 
+mod body_regions;
 pub(crate) mod certificate_tables;
 mod entries;
-mod footprint_regions;
 mod region_job;
 #[cfg(test)]
 mod tests;
 
 pub use crate::agent_regions::ProgressFn;
+use crate::bodies::{self, Body};
 use crate::certify::CertificateTable;
-use crate::disc_fleet::BodyDisc;
 use crate::failure::ComputationError;
 use crate::fleet::{HostEcm, HostPrecedenceTable, HostScalar, build_ecm, build_orders};
 use crate::memory_budget::MemoryError;
 pub use certificate_tables::table_of;
 pub use entries::{CrossSectionEntry, CrossingDescriptor, PieceEntry, RegionEntry};
 use pcr_core::{CapacityError, Motion};
-use pcr_formats::footprint::CoverDisc;
 use pcr_formats::scenario::{Agent, Labels, Scenario};
 pub use region_job::RegionJob;
 use serde::Serialize;
@@ -42,10 +41,9 @@ pub struct RegionsReport {
     /// The same for the discs with their margins, if any agent has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub margin_regions: Option<Vec<RegionEntry>>,
-    /// The covers of the agents whose outlines are not computed as they are, if there are any; of an agent with loads those of all its
-    /// stretches.
+    /// The bodies of the agents that are several ones, or whose path has lengths for turns in place, if there are any.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub footprints: Vec<DiscCover>,
+    pub bodies: Vec<AgentBodies>,
     /// The tables as they are held, of contact and of margins, for `pcr certify`; if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Vec<CertificateTable>>,
@@ -55,21 +53,26 @@ pub struct RegionsReport {
     pub warnings: Vec<String>,
 }
 
-/// The discs that an agent with a footprint, or with loads, is computed with.
+/// The convex bodies that an agent, or one with its load, is computed as.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct DiscCover {
+pub struct AgentBodies {
     /// Number of the agent.
     pub id: u64,
-    /// First and last segment of its path with this outline, counted from 1; none where it is the same on all of it.
+    /// First and last segment of its path with these bodies, counted from 1; none where they are the same on all of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub segments: Option<[usize; 2]>,
-    /// No point of a disc is farther than this from the outline \[m\]; 0 where the outline is a disc.
-    pub overhang: f64,
-    /// How much larger the discs are in motion at most \[m\]: for turns, changes of speed, and digits that a number format does
-    /// not have.
-    pub growth: f64,
-    /// The discs.
-    pub discs: Vec<CoverDisc>,
+    /// Each of them.
+    pub parts: Vec<BodyShape>,
+}
+
+/// A convex polygon, rounded by a radius.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BodyShape {
+    /// Corners, ahead and left of the reference point \[m\]; none of a disc about that point.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub polygon: Vec<[f64; 2]>,
+    /// \[m\]
+    pub radius: f64,
 }
 
 /// The options of a request for regions.
@@ -151,7 +154,7 @@ impl RegionsReport {
             agent: None,
             regions: Vec::new(),
             margin_regions: None,
-            footprints: Vec::new(),
+            bodies: Vec::new(),
             warnings: Vec::new(),
             certificate: None,
             error: Some(error),
@@ -159,30 +162,40 @@ impl RegionsReport {
     }
 }
 
-impl DiscCover {
-    /// The covers of all agents of a scenario with these bodies, which are in the order of the agents.
-    pub(crate) fn all(scenario: &Scenario, bodies: &[BodyDisc]) -> Vec<Self> {
-        let own = bodies.chunk_by(|a, b| a.agent == b.agent);
-        own.flat_map(|own| Self::of(&scenario.agents[own[0].agent], own)).collect()
-    }
-
-    /// The covers of an agent: one for each stretch of its path with another outline, with the resulting discs; none of one that is
-    /// computed as it is.
-    fn of(agent: &Agent, own: &[BodyDisc]) -> Vec<Self> {
-        if agent.loads.is_empty() && own.iter().all(BodyDisc::is_whole) {
+impl AgentBodies {
+    /// The bodies of all agents of a scenario: `bodies` and `agents` are in the order of its agents.
+    pub(crate) fn all(scenario: &Scenario, bodies: &[Body], agents: &Scenario) -> Vec<Self> {
+        if bodies.iter().all(Body::is_whole) && bodies.len() == scenario.agents.len() {
             return Vec::new();
         }
-        let covers = agent.outlines().into_iter().filter_map(|outline| {
-            let segments = (!agent.loads.is_empty()).then(|| outline.segments.map(|segment| segment + 1));
-            let own = own.iter().filter(|disc| disc.first() == outline.segments[0]);
-            let growth = own.map(|disc| disc.growth).fold(0.0, f64::max);
-            let (overhang, discs) = match outline.footprint {
-                Some(footprint) => (footprint.overhang(), footprint.discs().to_vec()),
-                None if agent.loads.is_empty() => return None,
-                None => (0.0, vec![CoverDisc { ahead: 0.0, left: 0.0, radius: outline.radius }]),
-            };
-            Some(Self { id: agent.id, segments, overhang, growth, discs })
-        });
-        covers.collect()
+        let mut all: Vec<Self> = Vec::new();
+        let mut first = None;
+        for (body, agent) in bodies.iter().zip(&agents.agents) {
+            let own = &scenario.agents[body.agent];
+            if body.is_whole() && !bodies::has_parts(own) {
+                continue;
+            }
+            let shape = BodyShape::of(agent);
+            let place = Some([body.agent, body.first()]);
+            match all.last_mut() {
+                Some(last) if place == first => last.parts.push(shape),
+                _ => {
+                    let stretch = own.outlines().into_iter().find(|outline| outline.segments[0] == body.first());
+                    let segments = stretch.filter(|_| !own.loads.is_empty()).map(|it| it.segments.map(|k| k + 1));
+                    all.push(Self { id: own.id, segments, parts: vec![shape] });
+                }
+            }
+            first = place;
+        }
+        all
+    }
+}
+
+impl BodyShape {
+    fn of(agent: &Agent) -> Self {
+        match &agent.footprint {
+            Some(footprint) => Self { polygon: footprint.polygon().to_vec(), radius: footprint.growth() },
+            None => Self { polygon: Vec::new(), radius: agent.radius },
+        }
     }
 }

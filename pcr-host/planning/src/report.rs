@@ -18,8 +18,8 @@ pub use delays::{
     DELAYS_HEADER, UnsafeDelay, UnsafeDelayReport, UnsafeNodeTimes, delays_csv, delays_lines, delays_table,
 };
 pub use locks::{
-    EDGE_HEADER, EdgeExclusionsReport, ExclusionOutputError, LOCKS_HEADER, edge_csv, edge_table, kept_locks_csv,
-    locks_csv, locks_lines, locks_table, vehicle_text,
+    EDGE_HEADER, EdgeExclusionsReport, ExclusionOutputError, LOCKS_HEADER, LOCKS_VERSION, edge_csv, edge_table,
+    kept_locks_csv, locks_csv, locks_lines, locks_table, vehicle_text,
 };
 pub use nodes::{nodes_csv, nodes_table};
 pub use overview::overview;
@@ -55,6 +55,7 @@ impl VersionedReport for RegionsReport {
 }
 impl VersionedReport for CheckReport {
     const FORMAT: &'static str = "pcr-conflicts";
+    const VERSION: u32 = 2;
 }
 impl VersionedReport for CertifyReport {
     const FORMAT: &'static str = "pcr-certificate";
@@ -64,6 +65,7 @@ impl VersionedReport for PlanReport {
 }
 impl VersionedReport for ExclusionTable {
     const FORMAT: &'static str = "pcr-locks";
+    const VERSION: u32 = LOCKS_VERSION;
 }
 impl VersionedReport for LayoutReport<'_> {
     const FORMAT: &'static str = "pcr-nodes";

@@ -11,7 +11,6 @@ use pcr_formats::import::{ImportOptions, InputKind};
 use pcr_formats::input;
 use pcr_formats::scenario::Labels;
 use pcr_planning::certify::{CertificateTable, CertifyInput, CertifyReport};
-use pcr_planning::disc_fleet::Form;
 use pcr_planning::failure::ComputationError;
 use pcr_planning::regions::table_of;
 use pcr_planning::{exclusion_table, report};
@@ -121,22 +120,21 @@ impl CertifyArgs {
         let file = &source(self.file.clone())?;
         let mut warnings = Vec::new();
         let text = text(file)?;
-        let (scenarios, form) = match input::kind_of(file, &text, &self.import) {
+        let scenarios = match input::kind_of(file, &text, &self.import) {
             InputKind::Layout(_) if self.import.one_of(&["routes"]).is_none() => {
                 let imported = layout_from(file, &text, &self.import, STANDING, false)?;
                 warnings.extend(imported.layout.warnings.iter().cloned());
                 acknowledge(&mut warnings);
                 let levels = exclusion_table::scenarios(&imported).map_err(|error| CliError::wrong(file, error))?;
-                // Locks are those of covers.
-                (levels, Form::Covers)
+                levels
             }
-            _ => (vec![scenario_from(file, text, &self.import)?], Form::Exact),
+            _ => vec![scenario_from(file, text, &self.import)?],
         };
         let certified = scenarios.into_iter().map(|mut scenario| {
             let lost = tell_rounding(self.scalar, &mut scenario).map_err(|refused| CliError::wrong(file, refused))?;
             say(file, lost);
             let scenario = &scenario;
-            let tables = with_scalar!(self.scalar, S => table_of::<S>(scenario, form));
+            let tables = with_scalar!(self.scalar, S => table_of::<S>(scenario));
             let tables = tables.map_err(|failure| CliError::wrong(file, failure))?;
             let (labels, warnings) = (Labels::from_scenario(scenario), [&warnings[..], &scenario.warnings].concat());
             let certified = tables.iter().map(|table| self.proved(file, &scenario.name, table));

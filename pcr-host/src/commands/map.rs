@@ -57,7 +57,7 @@ impl MapArgs {
         let scenario = scenario(file, &self.import)?;
         // What is wrong with the scenario is said before anything is written.
         let named = |failure: ComputationError| CliError::wrong(file, failure);
-        let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| named(refused.into()))?;
+        let fleet = Fleet::<f64>::of_bodies(&scenario).map_err(|refused| named(refused.into()))?;
         let (scenario, egos) = self.asked(scenario, fleet.motions()).map_err(named)?;
         ask_for_regions(&scenario).map_err(named)?;
         let mut out: Box<dyn Write> = if quiet() { Box::new(io::sink()) } else { Box::new(io::stdout().lock()) };
@@ -95,7 +95,7 @@ pub(super) fn are_few(agents: usize, what: &'static str) -> Result<(), Computati
 
 /// Asks for what the pictures of all regions take.
 pub(super) fn ask_for_regions(scenario: &Scenario) -> Result<(), ComputationError> {
-    let fleet = Fleet::<f64>::new(scenario)?;
+    let fleet = Fleet::<f64>::of_bodies(scenario)?;
     // Each region is drawn for both of its agents, in the page and in a picture.
     let shapes = 2 * regions::table(scenario, &fleet.motions())?.len() as u64;
     Ok(memory_budget::ask(shapes * SHAPE_BYTES, || format!("pictures of {shapes} regions"))?)

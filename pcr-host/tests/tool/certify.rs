@@ -57,7 +57,7 @@ fn tables_of_other_formats_and_of_nothing_are_refused() {
         refused("other.json", &other)
     };
     assert_eq!(changed("format", json!("pcr-plan")), "format: \"pcr-plan\" where \"pcr-regions\" is expected");
-    assert_eq!(changed("version", json!(99)), "version: 99 where 1, all that this pcr knows, is expected");
+    assert_eq!(changed("version", json!(99)), "version: 99 where 2 or an earlier one is expected");
     // Whoever makes a table of its own need not say what it is.
     let bare = json!({ "name": told["name"], "certificate": told["certificate"] });
     let bare = file("certify", "bare.json", bare.to_string());
@@ -66,20 +66,23 @@ fn tables_of_other_formats_and_of_nothing_are_refused() {
     let mut same = told.clone();
     same["certificate"][0]["agents"][1]["id"] = json!(1);
     same["certificate"][0]["pairs"] = json!([]);
-    let message = "2 discs have the number 1, and footprints tell of no agent of this number";
+    let message = "2 bodies have the number 1, and bodies tell of no agent of this number";
     assert_eq!(refused("same.json", &same), message);
-    same["footprints"] = json!([{ "id": 1, "discs": [{}, {}, {}] }]);
-    assert_eq!(refused("same.json", &same), "2 discs have the number 1, and footprints tell of 3");
-    // Two discs of one body are no pair.
+    same["bodies"] = json!([{ "id": 1, "parts": [{}, {}, {}] }]);
+    assert_eq!(refused("same.json", &same), "2 bodies have the number 1, and bodies tell of 3");
+    // As version 1 had it.
+    same["version"] = json!(1);
+    let covers = same.as_object_mut().unwrap().remove("bodies");
+    same["footprints"] = json!([{ "id": 1, "discs": covers.unwrap()[0]["parts"] }]);
+    assert_eq!(refused("same.json", &same), "2 bodies have the number 1, and bodies tell of 3");
+    // Two parts of one agent are no pair.
     let outline = json!({ "polygon": [{ "ahead": 1, "left": 0.2 }, { "ahead": -1, "left": 0.2 }, { "ahead": -1, "left": -0.2 },
-        { "ahead": 1, "left": -0.2 }], "overhang": 0.1 });
+        { "ahead": 1, "left": -0.2 }, { "ahead": 0, "left": -0.1 }] });
     let mut alone = straight(1, [0.0, 0.0, 0.0], 4.0);
     alone.as_object_mut().unwrap().remove("radius");
     alone["footprint"] = outline;
     let name = file("certify", "alone.json", json!({ "agents": [alone] }).to_string());
-    let nothing = |name: &str| {
-        format!("pcr: {name}: there are no two discs of different agents, of which contacts could be certified\n")
-    };
+    let nothing = |name: &str| format!("pcr: {name}: there are no two agents of which contacts could be certified\n");
     assert_eq!(run(&["certify", &name]).failed(2), nothing(&name));
     let told = table("alone.json", &json!({ "agents": [alone] }), &[]);
     let name = file("certify", "alone-table.json", told.to_string());
@@ -163,8 +166,8 @@ fn tables_of_margins_are_those_of_the_discs() {
         it["certificate"].as_array_mut().unwrap().push(table);
     });
     assert_eq!(more, "certificate: 3 tables; there are at most two, the second with margins");
-    let covers = changed(&|it| it["footprints"] = json!([{ "id": 77, "discs": [1] }]));
-    assert_eq!(covers, "footprints: the certificate has no agent 77");
+    let covers = changed(&|it| it["bodies"] = json!([{ "id": 77, "parts": [1] }]));
+    assert_eq!(covers, "bodies: the certificate has no agent 77");
 }
 
 /// Of outlines the times are compared.

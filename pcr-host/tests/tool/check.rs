@@ -27,7 +27,7 @@ fn a_crossing_at_the_same_time_is_a_conflict() {
     let verdict: Value = serde_json::from_str(&run.out).unwrap();
     assert!(
         run.out
-            .starts_with(r#"{"format":"pcr-conflicts","version":1,"name":"crossing","conflicts":[{"i":1,"j":2,"t":["#),
+            .starts_with(r#"{"format":"pcr-conflicts","version":2,"name":"crossing","conflicts":[{"i":1,"j":2,"t":["#),
         "{}",
         run.out
     );
@@ -55,7 +55,7 @@ fn a_plan_without_conflicts_is_free() {
     let run = check(&free(), &["--format", "json"]);
     assert_eq!(
         run.json(),
-        json!({ "format": "pcr-conflicts", "version": 1, "name": "crossing", "conflicts": [], "error": null, "warnings": [] })
+        json!({ "format": "pcr-conflicts", "version": 2, "name": "crossing", "conflicts": [], "error": null, "warnings": [] })
     );
     assert_eq!(check(&free(), &[]).ok(), "crossing: no conflicts, 2 agents\n");
     assert_eq!(check(&free(), &["--format", "csv"]).ok().lines().count(), 1);
@@ -149,7 +149,7 @@ fn what_is_refused() {
     assert!(empty["name"].as_str().is_some_and(|name| !name.is_empty()));
     assert_eq!(
         empty,
-        json!({ "format": "pcr-conflicts", "version": 1, "name": empty["name"], "conflicts": [], "closest": [], "error": null, "warnings": [] })
+        json!({ "format": "pcr-conflicts", "version": 2, "name": empty["name"], "conflicts": [], "closest": [], "error": null, "warnings": [] })
     );
 }
 
@@ -169,7 +169,7 @@ fn a_contact_that_was_proved_is_told_as_in_the_table() {
 
 #[test]
 fn nothing_is_proved_of_an_agent_alone() {
-    let nothing = "there are no two discs of different agents, of which contacts could be certified\n";
+    let nothing = "there are no two agents of which contacts could be certified\n";
     for (name, agents) in [("one.json", json!([straight(1, [0.0; 3], 4.0)])), ("none.json", json!([]))] {
         let name = file("check", name, json!({ "agents": agents }).to_string());
         assert!(run(&["check", &name]).ok().contains("no conflicts"));

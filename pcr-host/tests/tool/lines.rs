@@ -35,7 +35,7 @@ fn a_bad_line_is_answered_in_its_place_and_the_run_goes_on() {
         format!("line 3, column {column}: agent 2, segment 1, length: -4 is out of range; allowed is 0 to 1e10");
     assert_eq!(
         answers[1],
-        json!({ "format": "pcr-regions", "version": 1, "name": "bad", "scalar": "f64", "regions": [], "error": message, "warnings": [] })
+        json!({ "format": "pcr-regions", "version": 2, "name": "bad", "scalar": "f64", "regions": [], "error": message, "warnings": [] })
     );
     assert_eq!(answers[2]["error"], json!("line 5, column 2: ] where a key in quotes is expected"));
 }
@@ -95,7 +95,7 @@ fn what_a_number_format_or_a_request_refuses_is_an_error_of_its_line() {
     let message = "line 1: agent 1, start.x: 5e6 is out of range; allowed is up to 1e6 in magnitude (f32)";
     assert_eq!(
         answers[0],
-        json!({ "format": "pcr-regions", "version": 1, "name": "far", "scalar": "f32", "regions": [], "error": message, "warnings": [] })
+        json!({ "format": "pcr-regions", "version": 2, "name": "far", "scalar": "f32", "regions": [], "error": message, "warnings": [] })
     );
     assert_eq!((run.status, answers[1]["regions"].as_array().unwrap().len()), (2, 1));
     let run = run_with(&["regions", "-", "--format", "json", "--agent", "3"], named("near").as_bytes());

@@ -1,4 +1,4 @@
-//! Footprints that are convex polygons, which `pcr regions`, `pcr check`, `pcr plan` and `pcr certify` compute with as they are.
+//! Footprints that are convex polygons.
 
 use crate::fixture::{file, run, straight};
 use serde_json::{Value, json};
@@ -31,7 +31,7 @@ fn trucks_pass_each_other_a_millimetre_apart() {
         let [region, _] = &found["regions"].as_array().unwrap()[..] else { panic!("{scalar}: {found}") };
         assert!(region["slices"][0]["l"].as_array().is_some_and(|slice| !slice.is_empty()), "{scalar}: {found}");
         assert_eq!((&region["pieces"][0]["i_segment"], &region["pieces"][0]["type"]), (&json!(1), &json!("SS")));
-        assert!(found.get("footprints").is_none());
+        assert!(found.get("bodies").is_none());
         assert_eq!(run(&["check", &free, "--scalar", scalar]).status, 0, "{scalar}");
         assert_eq!(run(&["check", &not, "--scalar", scalar]).status, 1, "{scalar}");
     }
@@ -44,22 +44,21 @@ fn the_closest_approach_is_that_of_the_outlines() {
     assert!((clearance - 0.2).abs() < 1e-9, "{clearance}");
     // The trucks are beside one another, their reference points up to 1.2 m apart along the lanes.
     assert!((1.0 - 1e-9..1.2_f64.hypot(1.0) + 1e-6).contains(&separation), "{separation}");
-    assert!(answer.get("footprints").is_none());
+    assert!(answer.get("bodies").is_none());
 }
 
 #[test]
 fn what_is_certified_are_the_outlines_and_the_answer_says_so() {
-    // Covers of these trucks are 0.97 m wide.
     for (name, apart, is_free) in [("near.json", 0.801, true), ("touch.json", 0.799, false)] {
         let near = lanes(name, apart);
         let status = i32::from(!is_free);
         let certified = run(&["check", &near, "--json", "--certify"]).json_of(status);
         let proof = &certified["certificate"];
         assert_eq!(proof["verdict"], if is_free { "proved" } else { "contact" }, "{certified}");
-        assert!(proof["outlines"] == 2 && certified.get("footprints").is_none(), "{certified}");
+        assert!(proof["outlines"] == 2 && certified.get("bodies").is_none(), "{certified}");
         for scalar in FORMATS {
             let table = run(&["regions", &near, "--json", "--certificate", "--scalar", scalar]).json();
-            assert!(table.get("footprints").is_none());
+            assert!(table.get("bodies").is_none());
             assert_eq!(table["regions"].as_array().unwrap().is_empty(), is_free, "{scalar}");
             let name = file("outlines", "table.json", table.to_string());
             let proved = run(&["certify", "--table", &name, "--json"]).json();
@@ -75,7 +74,7 @@ fn what_is_certified_are_the_outlines_and_the_answer_says_so() {
             }
         }
         let told = run(&["certify", &near]).ok();
-        assert!(told.starts_with("lanes: proved; 2 outlines as they are, 1 pair of segments"), "{told}");
+        assert!(told.starts_with("lanes: proved; 2 outlines, 1 pair of segments"), "{told}");
     }
 }
 
@@ -89,6 +88,6 @@ fn plans_of_outlines_are_planned_and_proved_as_they_are() {
         assert_eq!(plan["certificate"]["outlines"], 2, "{plan}");
     }
     let told = run(&["plan", &near]).ok();
-    let line = "certificate: no contact at any time, proved (1 pair of bodies; 2 outlines as they are)";
+    let line = "certificate: no contact at any time, proved (1 pair of bodies; 2 outlines)";
     assert!(told.contains(line), "{told}");
 }

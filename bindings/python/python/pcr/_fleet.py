@@ -22,7 +22,7 @@ TIMES, SLICES = 1_000_000, 100_000
 
 
 class Conflict(NamedTuple):
-    """Two discs in contact: when [s], how deep [m], and where on both paths [m]."""
+    """Two agents in contact: when [s], how deep [m], and where on both paths [m]."""
 
     i: int
     j: int
@@ -119,7 +119,7 @@ class Fleet:
         return Regions(self._fleet.regions(margins), self)
 
     def report(self, *, slices: Optional[SupportsIndex] = None, agent: Optional[SupportsIndex] = None) -> dict[str, Any]:
-        """What ``pcr regions --json`` prints: regions with their pieces and slices; of fleets with footprints, too."""
+        """What ``pcr regions --json`` prints: regions with their pieces and slices; of concave outlines and of loads, too."""
         answer: dict[str, Any] = json.loads(self._fleet.regions_json(
             None if slices is None else whole("slices", slices, SLICES), None if agent is None else whole("agent", agent)))
         return answer
@@ -146,7 +146,7 @@ class Fleet:
         return self._fleet.safe_intervals(whole("agent", agent), span("length", length), span("during", during))
 
     def closest(self, i: SupportsIndex, j: SupportsIndex) -> tuple[float, float, float]:
-        """The least distance of two agents' centres, the first time of it, and the sum of their radii."""
+        """The least distance of two agents' centres, or of the polygons of their outlines, the first time of it, and the sum of their radii."""
         return self._fleet.closest(whole("agent", i), whole("agent", j))
 
     def plan(self, method: str = "delay") -> Plan:

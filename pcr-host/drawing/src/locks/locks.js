@@ -161,19 +161,21 @@ function draw() {
   targets.replaceChildren();
   targets_of.clear();
   nodes.clear();
-  // What is only seen is one path for all edges, and one for corridors of a width.
+  // What is only seen is one path for all edges, and one for corridors of a kind.
   const of_width = new Map(), drawn = new Set();
   data.edges.forEach((edge, k) => {
     if (edge.level !== at) return;
     if (edge.path === "" || line_of[k].some((other) => drawn.has(other))) return;
     drawn.add(k);
-    for (const [d, width] of edge.corridor) {
-      if (!of_width.has(width)) of_width.set(width, []);
-      of_width.get(width).push(d);
+    for (const [d, width, filled] of edge.corridor) {
+      const kind = `${width} ${filled ? "filled" : ""}`;
+      if (!of_width.has(kind)) of_width.set(kind, { width, filled, paths: [] });
+      of_width.get(kind).paths.push(d);
     }
     targets_of.set(make(targets, "path", { d: edge.path, class: "target" }), line_of[k].at(-1));
   });
-  for (const [width, paths] of of_width) make(corridors, "path", { d: paths.join(""), "stroke-width": width });
+  for (const { width, filled, paths } of of_width.values())
+    make(corridors, "path", { d: paths.join(""), "stroke-width": width, class: filled ? "filled" : "" });
   make(lines, "path", { d: [...drawn].map((k) => data.edges[k].path).join(""), class: "edge" });
   for (const node of data.nodes) {
     if (node.level !== at) continue;

@@ -54,8 +54,8 @@ impl Legend {
     ) -> Self {
         let mut all = vec![(LegendSymbol::Trajectory, format!("motion of agent {}", scene.display_name(ego)))];
         if !shapes.is_empty() {
-            let region = if scene.has_outlines() {
-                "region of the discs around all outlines, labelled by the other agent"
+            let region = if scene.has_hulls() {
+                "region of the convex hulls of all outlines, labelled by the other agent"
             } else {
                 "collision region, labelled by the other agent"
             };

@@ -45,14 +45,34 @@ function poseAt(agent, length) {
   return [x + chord * Math.cos(heading + half), y + chord * Math.sin(heading + half), heading + 2 * half];
 }
 
-// Of an outline that is no disc each of its covering discs counts; those of a load on its lengths only.
+// Least distance of a point from the segment between two points.
+function fromSegment([x, y], [ax, ay], [bx, by]) {
+  const dx = bx - ax, dy = by - ay, square = dx * dx + dy * dy;
+  const share = square > 0 ? Math.min(1, Math.max(0, ((x - ax) * dx + (y - ay) * dy) / square)) : 0;
+  return Math.hypot(ax + share * dx - x, ay + share * dy - y);
+}
+
+// Least distance of two convex polygons, counter-clockwise; of one corner they are points. 0 where no side of either has the other beyond it.
+function apart(a, b) {
+  let least = Infinity, separated = a.length < 3 && b.length < 3;
+  for (const [own, other] of [[a, b], [b, a]]) {
+    own.forEach((from, k) => {
+      const to = own[(k + 1) % own.length];
+      for (const point of other) least = Math.min(least, fromSegment(point, from, to));
+      if (own.length > 2 && other.every((point) => (to[0] - from[0]) * (point[1] - from[1]) < (to[1] - from[1]) * (point[0] - from[0]))) separated = true;
+    });
+  }
+  return separated ? least : 0;
+}
+
+// Each convex part of an outline counts; those of a load on its lengths only.
 function touch(a, [x, y, heading, along], b, [u, v, other, beside]) {
   if (Math.hypot(x - u, y - v) > a.radius + b.radius) return false;
-  const placed = (agent, x, y, heading, length) => agent.discs.filter(([, , , from, to]) => from - 1e-9 <= length && length <= to + 1e-9)
-    .map(([ahead, left, radius]) =>
-      [x + ahead * Math.cos(heading) - left * Math.sin(heading), y + ahead * Math.sin(heading) + left * Math.cos(heading), radius]);
+  const placed = (agent, x, y, heading, length) => agent.parts.filter(([, , from, to]) => from - 1e-9 <= length && length <= to + 1e-9)
+    .map(([corners, radius]) => [corners.map(([ahead, left]) =>
+      [x + ahead * Math.cos(heading) - left * Math.sin(heading), y + ahead * Math.sin(heading) + left * Math.cos(heading)]), radius]);
   const others = placed(b, u, v, other, beside);
-  return placed(a, x, y, heading, along).some(([x, y, r]) => others.some(([u, v, s]) => Math.hypot(x - u, y - v) <= r + s));
+  return placed(a, x, y, heading, along).some(([corners, r]) => others.some(([them, s]) => apart(corners, them) <= r + s));
 }
 
 // ---- Drawing ----
@@ -140,7 +160,7 @@ function drawWorkspace() {
     const at = `translate(${view.x.at(0)} ${view.y.at(0)}) scale(${step} ${-step})`;
     const ground = element(view.content, "g", { class: "ground", transform: at });
     const corridors = element(ground, "g", { class: "corridors" });
-    for (const [d, width] of data.ground.corridors) element(corridors, "path", { d, "stroke-width": width });
+    for (const [d, width, filled] of data.ground.corridors) element(corridors, "path", { d, "stroke-width": width, class: filled ? "filled" : "" });
     for (const d of data.ground.edges) element(ground, "path", { class: "edge", d });
   }
   // The outline around the point that travels; y points down.
@@ -243,7 +263,7 @@ function drawMap() {
     span: `${view.top}V${view.bottom}`,
   };
   const count = map.regions.length;
-  $("caption").textContent = `Extended collision map of agent ${ego.name}: ${count} region${count === 1 ? "" : "s"}${data.outlines ? " of the discs around all outlines" : ""}, labelled by the`
+  $("caption").textContent = `Extended collision map of agent ${ego.name}: ${count} region${count === 1 ? "" : "s"}${data.hulls ? " of the convex hulls of all outlines" : ""}, labelled by the`
     + " other agent; dashed strips are agents that stand at their start or end. Point at a region, or press Tab, to read about it.";
 }
 
@@ -456,10 +476,9 @@ function start() {
       if (first !== undefined) selectEgo(first);
     });
   }
-  if (data.outlines) {
-    $("ground").firstChild.data = "Workspace. Agents whose covering discs touch are red: a vehicle with an outline is computed as the discs that cover it, "
-      + "so contact begins a little before the outlines meet. One with loads is drawn as the disc around all its outlines; contacts are told by the discs of the outline that it has at its place. "
-      + "A dashed outline is an agent's end. Select an agent to see its map.";
+  if (data.hulls) {
+    $("ground").firstChild.data = "Workspace. Agents that touch are red. An agent with loads is drawn as the convex hull of all its outlines; contacts are told by the outline "
+      + "that it has at its place. A dashed outline is an agent's end. Select an agent to see its map.";
   }
   drawWorkspace();
   if (agents.length > 0) selectEgo(state.ego); else { drawMap(); describe(); }

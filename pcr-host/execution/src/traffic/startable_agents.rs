@@ -5,7 +5,7 @@
 
 use pcr_core::Motion;
 use pcr_formats::scenario::{Agent, Scenario};
-use pcr_planning::disc_fleet::{DiscFleet, Form};
+use pcr_planning::bodies::BodyFleet;
 use pcr_planning::fleet::build_ecm_of;
 use pcr_planning::plan::sides;
 
@@ -15,7 +15,7 @@ const ROOM: f64 = 1e-6;
 /// Agents, each with those that have to start after it.
 #[derive(Default)]
 pub(super) struct StartableAgents {
-    agents: Vec<DiscFleet<f64>>,
+    agents: Vec<BodyFleet<f64>>,
     after: Vec<Vec<usize>>,
 }
 
@@ -24,30 +24,27 @@ impl StartableAgents {
     pub(super) fn add(&mut self, agent: &Agent) -> Result<(), String> {
         const NONE: &str = "no order of starts lets it through with those before it";
         let alone = Scenario::new("", vec![agent.clone()]);
-        let bodies = DiscFleet::<f64>::new(&alone, Form::Covers).map_err(|refused| refused.to_string())?;
-        // Most that fail do so by one disc of each already.
-        self.order(&bodies, true)?.ok_or(NONE)?;
-        let [before, after] = self.order(&bodies, false)?.ok_or(NONE)?;
+        let bodies = BodyFleet::<f64>::new(&alone).map_err(|refused| refused.to_string())?;
+        let [before, after] = self.order(&bodies)?.ok_or(NONE)?;
         before.iter().for_each(|&agent| self.after[agent].push(self.agents.len()));
         self.agents.push(bodies);
         self.after.push(after);
         Ok(())
     }
 
-    /// The agents that have to start before an agent, and after it, by all discs or by one of each; `None` if there is no
-    /// order.
+    /// The agents that have to start before an agent, and after it; `None` if there is no order.
     ///
     /// # Errors
     /// The limit of the table that is exceeded, in words.
-    fn order(&self, agent: &DiscFleet<f64>, one: bool) -> Result<Option<[Vec<usize>; 2]>, String> {
+    fn order(&self, agent: &BodyFleet<f64>) -> Result<Option<[Vec<usize>; 2]>, String> {
         let others: Vec<(usize, Motion<'_, f64>)> = self
             .agents
             .iter()
             .enumerate()
-            .flat_map(|(k, bodies)| grown(bodies, one).into_iter().map(move |motion| (k, motion)))
+            .flat_map(|(k, bodies)| grown(bodies).into_iter().map(move |motion| (k, motion)))
             .collect();
         let mut marks = [vec![false; self.agents.len()], vec![false; self.agents.len()]];
-        for own in grown(agent, one) {
+        for own in grown(agent) {
             let pair: Vec<Motion<'_, f64>> =
                 std::iter::once(own).chain(others.iter().map(|(_, motion)| *motion)).collect();
             let ecm = build_ecm_of(&pair, 0).map_err(|full| full.to_string())?;
@@ -73,10 +70,8 @@ impl StartableAgents {
     }
 }
 
-/// The motions of the discs of an agent, or of the one in the middle of its cover, with their margins and a little more.
-fn grown(bodies: &DiscFleet<f64>, one: bool) -> Vec<Motion<'_, f64>> {
-    let motions = bodies.fleet.motions();
-    let middle = motions.len() / 2;
-    let chosen = motions.into_iter().enumerate().filter(|(k, _)| !one || *k == middle);
-    chosen.map(|(_, motion)| motion.with_margin(motion.margin() + ROOM).unwrap_or(motion).inflated()).collect()
+/// The motions of the bodies of an agent, with their margins and a little more.
+fn grown(bodies: &BodyFleet<f64>) -> Vec<Motion<'_, f64>> {
+    let motions = bodies.fleet.motions().into_iter();
+    motions.map(|motion| motion.with_margin(motion.margin() + ROOM).unwrap_or(motion).inflated()).collect()
 }

@@ -1,6 +1,6 @@
 //! Whether a polygon is simple: no two of its sides touch or cross, except neighbours at their common corner.
 //!
-//! A part without width, such as a fork drawn as a line there and back, has no area that discs could cover.
+//! A part without width, such as a fork drawn as a line there and back, has no area.
 
 use crate::plane_geometry::{distance, from_segment, turn};
 

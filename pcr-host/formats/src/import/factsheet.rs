@@ -124,7 +124,7 @@ pub(super) fn read(value: &Value, warnings: &mut Warnings) -> Result<FileVehicle
         }
     };
     if let Some(polygon) = polygon {
-        let footprint = Footprint::new(polygon, None);
+        let footprint = Footprint::new(polygon);
         given.footprint =
             Some(footprint.map_err(|problem| ImportError::new(format!("factsheet, envelopes2d: {problem}")))?);
     }

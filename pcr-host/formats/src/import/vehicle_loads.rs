@@ -72,7 +72,7 @@ pub(super) fn loaded(
         return Ok(VehicleTraits { radius: reach, ..vehicle.clone() });
     };
     corners.extend(footprint.polygon());
-    let outline = Footprint::new(hull(corners), footprint.allowed());
+    let outline = Footprint::new(hull(corners));
     let outline = outline.map_err(|problem| ImportError::new(format!("{}, loads: {problem}", state.name)))?;
     let outline = outline.inflated(footprint.growth());
     Ok(VehicleTraits { radius: outline.circumscribed_radius(), footprint: Some(outline), ..vehicle.clone() })

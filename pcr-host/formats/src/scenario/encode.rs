@@ -92,9 +92,6 @@ impl Display for AsJson<(f64, Option<&Footprint>)> {
         let corners = footprint.polygon().iter();
         let corners = corners.map(|[ahead, left]| format!("{{ \"ahead\": {ahead:?}, \"left\": {left:?} }}"));
         write!(f, "\"footprint\": {{ \"polygon\": [ {} ]", corners.collect::<Vec<_>>().join(", "))?;
-        if let Some(overhang) = footprint.allowed() {
-            write!(f, ", \"overhang\": {overhang:?}")?;
-        }
         if footprint.growth() > 0.0 {
             write!(f, ", \"growth\": {:?}", footprint.growth())?;
         }
@@ -128,8 +125,7 @@ mod tests {
             motion: MotionSpec::Profile { v0: length / 2.0, pieces: vec![(2.0, 0.0)] },
             ..agent.clone()
         };
-        let outline =
-            Footprint::new(vec![[0.1 + 0.2, -1.0], [1.0, 1.0 / 3.0], [-1.0, 0.5]], Some(0.3)).unwrap().inflated(0.01);
+        let outline = Footprint::new(vec![[0.1 + 0.2, -1.0], [1.0, 1.0 / 3.0], [-1.0, 0.5]]).unwrap().inflated(0.01);
         let outlined =
             Agent { id: 2, radius: outline.circumscribed_radius(), footprint: Some(outline), ..stands.clone() };
         let scenario = Scenario {

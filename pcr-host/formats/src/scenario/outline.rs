@@ -27,9 +27,10 @@ fn footprint(outer: &ObjectFields<'_>, place: DecodeLocation<'_>) -> Result<Foot
         Ok([corner.number("ahead", NumberRange::Any)?, corner.number("left", NumberRange::Any)?])
     });
     let corners = corners.collect::<Result<_, ScenarioError>>()?;
-    let overhang = fields.get("overhang").map(|_| fields.number("overhang", NumberRange::Positive)).transpose()?;
+    // Once how far discs that covered it were allowed to reach out of it.
+    fields.get("overhang").map(|_| fields.number("overhang", NumberRange::Positive)).transpose()?;
     let growth = fields.get("growth").map_or(Ok(0.0), |_| fields.number("growth", NumberRange::NotNegative))?;
-    let footprint = Footprint::new(corners, overhang);
+    let footprint = Footprint::new(corners);
     footprint.map(|it| it.inflated(growth)).map_err(|problem| outer.error(fields.position, "footprint", problem))
 }
 

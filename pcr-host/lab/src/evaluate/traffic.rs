@@ -6,8 +6,8 @@ use pcr_drawing::{LayoutLevelView, overview};
 use pcr_execution::traffic::{TrafficOptions, TrafficReport, schedule};
 use pcr_formats::footprint::Footprint;
 use pcr_formats::import::ImportedLayout;
+use pcr_planning::bodies::BodyFleet;
 use pcr_planning::check::CheckReport;
-use pcr_planning::disc_fleet::{DiscFleet, Form};
 use pcr_planning::figures::{digits, time};
 use pcr_planning::fleet::build_ecm;
 use std::fmt::Write as _;
@@ -65,7 +65,7 @@ pub(super) fn section(fleets: &PaperFleets, extent: Thoroughness) -> Result<Docu
 /// The same layout with vehicles that are no discs.
 fn with_outline(disc: &ImportedLayout) -> Result<ImportedLayout, String> {
     let [ahead, left] = SIZE.map(|side| 0.5 * side);
-    let footprint = Footprint::new(vec![[ahead, left], [-ahead, left], [-ahead, -left], [ahead, -left]], None)?;
+    let footprint = Footprint::new(vec![[ahead, left], [-ahead, left], [-ahead, -left], [ahead, -left]])?;
     let mut outlined = disc.clone();
     (outlined.vehicle.radius, outlined.vehicle.footprint) = (footprint.circumscribed_radius(), Some(footprint));
     Ok(outlined)
@@ -79,7 +79,7 @@ fn row(
     let request = TrafficOptions { agents, seed: 1 };
     let (traffic, scenarios) = TrafficReport::plan(imported, request)?;
     let [missions, plan] = &scenarios;
-    let bodies = DiscFleet::<f64>::new(missions, Form::Covers)?;
+    let bodies = BodyFleet::<f64>::new(missions)?;
     let motions = bodies.fleet.motions();
     let table = timed(|| build_ecm(&motions).map(drop))?;
     let planned = timed(|| schedule(missions, request.seed).map(drop))?;

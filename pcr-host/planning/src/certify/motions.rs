@@ -1,8 +1,8 @@
 //! Proofs by [`pcr_certify`] that motions have no contact at any time.
 
 use super::is_zero;
+use crate::bodies::BodyFleet;
 use crate::checker_input::{self, outlines};
-use crate::disc_fleet::{DiscFleet, Form};
 use crate::failure::ComputationError;
 use crate::fleet::{FormatRangeError, HostScalar};
 use pcr_certify::motion::{ContactWitness, MotionFindings, Mover, meetings};
@@ -56,7 +56,7 @@ impl MotionCertificate {
     /// # Errors
     /// [`FormatRangeError`] if a value does not fit the format.
     pub fn prove<S: HostScalar>(scenario: &Scenario) -> Result<Self, FormatRangeError> {
-        let (fleet, discs, given) = DiscFleet::<S>::moving(scenario, Form::Exact)?;
+        let (fleet, discs, given) = BodyFleet::<S>::moving(scenario)?;
         let motions = fleet.motions();
         let all = Motion::span(&motions);
         let ids: Vec<u64> = discs.iter().map(|disc| scenario.agents[disc.agent].id).collect();
@@ -67,7 +67,7 @@ impl MotionCertificate {
         });
         let times: Vec<[f64; 2]> = times.collect();
         let count = motions.iter().filter(|motion| outlines::is_outline(motion)).count();
-        let found = if count == 0 {
+        let found = if !motions.iter().any(outlines::is_body) {
             checker_input::as_given::<S>(&given, &agents)
                 .map_err(|misread| misread.to_string())
                 .and_then(|()| of_discs(&agents, &times))

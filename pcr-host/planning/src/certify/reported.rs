@@ -7,11 +7,12 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-/// The cover of an outline, of which only the number of discs counts.
+/// The bodies of an agent, of which only the number counts. Answers of version 1 had discs.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
-pub(super) struct ReportedDiscCover {
+pub(super) struct ReportedBodies {
     id: u64,
-    discs: Vec<IgnoredAny>,
+    #[serde(alias = "discs")]
+    parts: Vec<IgnoredAny>,
 }
 
 /// A region as it is printed. Crossings, slices and the numbers of segments are not looked at.
@@ -34,27 +35,25 @@ struct ReportedPiece {
     j_length: [f64; 2],
 }
 
-/// Two discs with one number are discs of one body: as many as its covers have.
-pub(super) fn bodies(table: &RawTable, covers: &[ReportedDiscCover]) -> Result<(), String> {
+/// Two bodies with one number are parts of one agent: as many as are told of it.
+pub(super) fn bodies(table: &RawTable, covers: &[ReportedBodies]) -> Result<(), String> {
     let mut told: HashMap<u64, usize> = HashMap::new();
-    covers.iter().for_each(|cover| *told.entry(cover.id).or_default() += cover.discs.len());
+    covers.iter().for_each(|cover| *told.entry(cover.id).or_default() += cover.parts.len());
     let counts = counts(table);
     for (&id, &discs) in &counts {
         match told.get(&id) {
             None if discs > 1 => {
-                return Err(format!(
-                    "{discs} discs have the number {id}, and footprints tell of no agent of this number"
-                ));
+                return Err(format!("{discs} bodies have the number {id}, and bodies tell of no agent of this number"));
             }
             Some(&there) if there != discs => {
-                return Err(format!("{discs} discs have the number {id}, and footprints tell of {there}"));
+                return Err(format!("{discs} bodies have the number {id}, and bodies tell of {there}"));
             }
             _ => {}
         }
     }
     // Wherever an agent has an outline, less of the regions is compared: the agent has to be there.
     match told.keys().find(|id| !counts.contains_key(id)) {
-        Some(id) => Err(format!("footprints: the certificate has no agent {id}")),
+        Some(id) => Err(format!("bodies: the certificate has no agent {id}")),
         None => Ok(()),
     }
 }
@@ -120,11 +119,11 @@ pub(super) fn pairs(table: &RawTable) -> usize {
 /// Regions of two agents with their places in the list.
 type RegionsByPair<R> = BTreeMap<[u64; 2], Vec<(usize, R)>>;
 
-/// The scope of an answer: the requested agent, if there is one, and the covers of outlines.
+/// The scope of an answer: the requested agent, if there is one, and the agents that are several bodies.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RegionScope<'a> {
     pub(super) agent: Option<u64>,
-    pub(super) covers: &'a [ReportedDiscCover],
+    pub(super) covers: &'a [ReportedBodies],
 }
 
 /// Compares the regions in the list of this name with a table.

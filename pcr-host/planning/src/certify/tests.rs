@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::check::{CheckReport, ConflictEntry};
-use crate::disc_fleet::Form;
 use crate::fleet::HostScalar;
 use crate::outline_judge::{Course, Outline, TRUCK, agent, line, read};
 use crate::regions::{RegionOptions, RegionsReport, table_of};
@@ -30,12 +29,37 @@ fn crossing() -> Scenario {
 }
 
 fn table<S: HostScalar>(scenario: &Scenario) -> RawOutlineTable {
-    let tables = table_of::<S>(scenario, Form::Exact).expect("tables");
+    let tables = table_of::<S>(scenario).expect("tables");
     tables.into_iter().next().and_then(CertificateTable::outlines).expect("a table of outlines")
 }
 
 fn verdict(table: RawOutlineTable) -> Option<&'static str> {
     CertifyReport::prove("", &table.into(), false).verdict
+}
+
+/// Joints of less than a hundredth of a radian are passed without a stop, some by less than a format can tell.
+#[test]
+fn small_turns_on_the_way_are_proved_in_every_format() {
+    fn all<S: HostScalar>() {
+        let truck = Outline::polygon(&TRUCK);
+        for sweep in [1e-10, 1e-7, 4e-5, 1e-4, -1e-3, 0.01] {
+            let kink = json!({ "kind": "arc", "radius": 1e-9, "sweep": sweep });
+            let path = [line(2.0), kink.clone(), line(1.0), kink, line(2.0)];
+            let mut bent = agent(1, &truck, [-4.0, 0.0, 0.0], &path);
+            let turned = 2.0 * 1e-9 * f64::abs(sweep);
+            bent["profile"] = json!({ "v0": 0.5, "pieces": [{ "duration": (5.0 + turned) / 0.5, "accel": 0.0 }] });
+            let scenario = read(&[bent, agent(2, &truck, [0.0, -4.0, FRAC_PI_2], &[line(8.0)])]);
+            for table in table_of::<S>(&scenario).unwrap_or_else(|refused| panic!("{} {sweep}: {refused}", S::NAME)) {
+                let certified = CertifyReport::prove("bent", &table, false);
+                assert_eq!(certified.verdict, Some("proved"), "{} {sweep}: {certified:?}", S::NAME);
+            }
+        }
+    }
+    all::<f64>();
+    all::<f32>();
+    all::<Q20>();
+    all::<Q16>();
+    all::<Q12>();
 }
 
 #[test]
@@ -44,7 +68,7 @@ fn tables_of_random_outlines_are_proved_in_every_format() {
         let (mut dice, mut pieces, mut outlines, mut undecided) = (SplitMix64(1056), 0, 0, 0);
         for number in 0..10 {
             let scenario = random_fleet(&mut dice);
-            for table in table_of::<S>(&scenario, Form::Exact).expect("tables") {
+            for table in table_of::<S>(&scenario).expect("tables") {
                 let certified = CertifyReport::prove("random", &table, false);
                 // Rounding of the checker may leave open where a region ends.
                 let is_known =
@@ -120,7 +144,7 @@ fn a_table_of_outlines_is_read_as_it_was_written_and_compared_with_its_regions()
     scenario.agents[0].margin = 0.1;
     let request = RegionOptions { certificate: true, ..RegionOptions::default() };
     let answer = RegionsReport::compute::<f64>(&scenario, request).expect("an answer");
-    assert!(answer.footprints.is_empty());
+    assert!(answer.bodies.is_empty());
     let value = serde_json::to_value(&answer).expect("JSON");
     let dump = CertifyInput::of_json(&value.to_string()).expect("a certificate");
     assert_eq!(Some(&dump.certificate), answer.certificate.as_ref());
@@ -154,6 +178,6 @@ fn motions_that_were_changed_have_contacts() {
     let proof = MotionCertificate::prove::<f64>(&scenario).expect("it fits");
     assert_eq!((proof.verdict, proof.contacts.len()), ("contact", 1));
     let certified = CheckReport::certified::<f64>(&scenario, true, &|_, _| {}).expect("an answer");
-    assert!(certified.footprints.is_empty() && certified.conflicts.len() == 1);
+    assert!(certified.bodies.is_empty() && certified.conflicts.len() == 1);
     assert_eq!(certified.certificate.map(|proof| proof.outlines), Some(2));
 }

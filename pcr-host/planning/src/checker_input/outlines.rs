@@ -1,13 +1,14 @@
 //! Bodies and their tables as plain numbers for [`pcr_certify::outline`]: outlines, and the discs beside them as outlines of one corner.
 
 use super::{RoundTripError, ends_of, same_disc, same_motion};
-use crate::fleet::HostScalar;
+use crate::fleet::{HostScalar, growth_of_turns};
 use pcr_certify::outline::{
     RawBody, RawBodySegment, RawCourse, RawHeading, RawOutline, RawOutlinePair, RawOutlinePiece,
 };
 use pcr_certify::raw::{RawAgent, RawAngle, RawBranch, RawPair};
-use pcr_core::{Motion, RegionRef, excess};
+use pcr_core::{Curve, Motion, RegionRef, TurnSide, excess};
 use pcr_formats::scenario::{Agent, Scenario};
+use std::f64::consts::TAU;
 
 /// What headings on both sides of a joint may differ by: they are one number, but for the rounding of the checker \[rad\].
 const JUMP: f64 = 1e-12;
@@ -15,6 +16,11 @@ const JUMP: f64 = 1e-12;
 /// Whether a motion is that of an outline and not of a disc.
 pub fn is_outline<S: HostScalar>(motion: &Motion<'_, S>) -> bool {
     !motion.outline().corners().is_empty()
+}
+
+/// Whether a motion is one for the checker of outlines: that of an outline, or of a disc whose turns in place have a length.
+pub fn is_body<S: HostScalar>(motion: &Motion<'_, S>) -> bool {
+    is_outline(motion) || motion.path().segments().iter().any(|segment| matches!(segment.curve(), Curve::Pivot { .. }))
 }
 
 /// The bodies of motions whose paths and times are those of these agents.
@@ -26,8 +32,19 @@ fn body<S: HostScalar>(agent: RawAgent, motion: &Motion<'_, S>) -> RawBody {
     let outline = motion.outline();
     let corners = outline.corners().iter().map(|corner| [corner.at().x.to_f64(), corner.at().y.to_f64()]);
     let corners: Vec<[f64; 2]> = if is_outline(motion) { corners.collect() } else { vec![[0.0; 2]] };
-    let segments = agent.path.segments.into_iter().map(|segment| RawBodySegment {
-        course: segment.radius.map_or(RawCourse::Line, |radius| RawCourse::Arc { radius }),
+    // Turns without a length are those that move no point by more than rounding does.
+    let turned = agent.path.segments.iter().flat_map(|segment| &segment.turns).map(|turn| match turn {
+        RawAngle::Radians(radians) => radians.abs(),
+        RawAngle::Turns(turns) => turns.abs() * TAU,
+    });
+    let jump = turned.fold(0.0, f64::max) * (1.0 + 1e-9) + JUMP;
+    let curves = motion.path().segments().iter().map(|segment| segment.curve());
+    let segments = agent.path.segments.into_iter().zip(curves).map(|(segment, curve)| RawBodySegment {
+        course: match curve {
+            Curve::Pivot { lever, turn: TurnSide::Left } => RawCourse::Pivot { lever: lever.to_f64() },
+            Curve::Pivot { lever, turn: TurnSide::Right } => RawCourse::Pivot { lever: -lever.to_f64() },
+            _ => segment.radius.map_or(RawCourse::Line, |radius| RawCourse::Arc { radius }),
+        },
         length: segment.length,
         turns: segment.turns,
         heading: RawHeading::Along(RawAngle::Turns(0.0)),
@@ -41,7 +58,7 @@ fn body<S: HostScalar>(agent: RawAgent, motion: &Motion<'_, S>) -> RawBody {
         direction: agent.path.heading,
         segments: segments.collect(),
         rounding: agent.path.rounding,
-        jump: JUMP,
+        jump,
         step: agent.path.step,
         travel: agent.travel,
     }
@@ -62,8 +79,13 @@ pub fn as_given<S: HostScalar>(
 ) -> Result<(), RoundTripError> {
     assert_eq!([given.agents.len(); 2], [agents.len(), bodies.len()], "the bodies of the scenario");
     for ((given, agent), body) in given.agents.iter().zip(agents).zip(bodies) {
-        same_motion::<S>(given, agent)?;
-        if body.outline.corners == [[0.0; 2]] { same_disc::<S>(given, agent) } else { same_outline::<S>(given, body) }?;
+        let turned = body.segments.iter().filter(|segment| matches!(segment.course, RawCourse::Pivot { .. }));
+        same_motion::<S>(given, agent, turned.map(|segment| segment.length).collect())?;
+        if body.outline.corners == [[0.0; 2]] {
+            same_disc::<S>(given, agent, true)
+        } else {
+            same_outline::<S>(given, body)
+        }?;
     }
     Ok(())
 }
@@ -79,7 +101,7 @@ fn same_outline<S: HostScalar>(given: &Agent, body: &RawBody) -> Result<(), Roun
     let size = footprint.polygon().iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
     // The radius makes up for what the polygon has lost.
     let needed = footprint.growth() + footprint.beyond(corners);
-    let most = footprint.growth() + DIGITS * (S::STEP + S::EPSILON * size);
+    let most = footprint.growth() + growth_of_turns::<S>(given) + DIGITS * (S::STEP + S::EPSILON * size);
     // No corner is one that the file does not have.
     let nearest = |corner: &[f64; 2]| {
         let away = footprint.polygon().iter().map(|own| (own[0] - corner[0]).hypot(own[1] - corner[1]));

@@ -5,9 +5,8 @@
 //! continue from it. It turns back along the same line only if no other open way leads on. Half a turn onto another line,
 //! or within an edge, may go to either side.
 
-use crate::disc_fleet::tracks;
 use pcr_formats::import::{Facing, ImportedLayout, Layout, LayoutEdge, RouteStep, VehicleTraits, ride, turn};
-use pcr_formats::plane_geometry::wrapped;
+use pcr_formats::plane_geometry::{hull, wrapped};
 use pcr_formats::scenario::Agent;
 use pcr_formats::scenario::{KINK, PathSegment, PlacedSegment, TURN};
 use std::collections::{HashMap, HashSet};
@@ -178,8 +177,10 @@ impl<'a> EdgeTraversals<'a> {
 
     /// The vehicle that stands at a node, or where an edge ends beside it, in any heading.
     pub fn at_node(&self, node: usize) -> EdgeTraversal {
-        let angle = if self.vehicle.footprint.is_some() { TAU } else { 0.0 };
-        let vehicle = with_margin(&self.vehicle, self.node_tolerance(node));
+        let mut vehicle = with_margin(&self.vehicle, self.node_tolerance(node));
+        // Turned by a whole turn, an outline around its reference point is the disc around it.
+        vehicle.footprint = vehicle.footprint.filter(|footprint| footprint.inner_radius() < 0.0);
+        let angle = if vehicle.footprint.is_some() { TAU } else { 0.0 };
         EdgeTraversal { agent: turn(&vehicle, self.node_point(node), 0.0, angle), lengths: LengthMapping::At(0.0) }
     }
 
@@ -294,7 +295,57 @@ fn ends(step: RouteStep<'_>) -> Option<[TraversalPose; 2]> {
     ])
 }
 
-/// The paths of the discs of a vehicle on an edge, and their radii \[m\]: for pictures.
-pub fn corridor(rides: &[EdgeTraversal]) -> Vec<(Vec<PlacedSegment>, f64)> {
-    rides.iter().flat_map(|ride| tracks(&ride.agent)).collect()
+/// A part of what a vehicle sweeps, for pictures.
+pub enum SweptShape {
+    /// All points within a radius \[m\] of a curve.
+    Stroke(Vec<PlacedSegment>, f64),
+    /// All points within a radius \[m\] of a polygon.
+    Area(Vec<[f64; 2]>, f64),
+}
+
+/// Returns what a vehicle sweeps on an edge, for pictures: of an outline the hulls of neighbouring poses.
+pub fn corridor(rides: &[EdgeTraversal]) -> Vec<SweptShape> {
+    rides.iter().flat_map(|ride| swept(&ride.agent)).collect()
+}
+
+fn swept(agent: &Agent) -> Vec<SweptShape> {
+    /// Turn between two poses at most \[rad\].
+    const STEP: f64 = PI / 24.0;
+    let [x, y, heading] = agent.start;
+    let mut last = PlacedSegment { start: [x, y], heading, shape: PathSegment::Line { length: 0.0 } };
+    let pieces = agent.path.iter().map(|&shape| {
+        last = PlacedSegment { start: last.end(), heading: last.heading_at_end(), shape };
+        last
+    });
+    let pieces: Vec<PlacedSegment> = pieces.collect();
+    let pieces = if pieces.is_empty() { vec![last] } else { pieces };
+    let Some(footprint) = &agent.footprint else {
+        return vec![SweptShape::Stroke(pieces, agent.radius)];
+    };
+    let parts: Vec<_> = footprint.parts().collect();
+    let mut shapes = Vec::new();
+    for piece in &pieces {
+        let steps = match piece.shape {
+            PathSegment::Line { .. } => 1.0,
+            PathSegment::Arc { sweep, .. } => (sweep.abs() / STEP).ceil().max(1.0),
+        };
+        let length = piece.shape.length();
+        let pose = |step: f64| {
+            let part = piece.part(0.0, length * (step / steps));
+            (part.end(), part.heading_at_end())
+        };
+        for step in 0..steps as usize {
+            let ends = [pose(step as f64), pose((step + 1) as f64)];
+            for part in &parts {
+                let corners = ends.iter().flat_map(|&(at, heading)| placed(part.polygon(), at, heading));
+                shapes.push(SweptShape::Area(hull(corners.collect()), footprint.growth()));
+            }
+        }
+    }
+    shapes
+}
+
+fn placed(polygon: &[[f64; 2]], [x, y]: [f64; 2], heading: f64) -> impl Iterator<Item = [f64; 2]> + '_ {
+    let (sin, cos) = heading.sin_cos();
+    polygon.iter().map(move |[ahead, left]| [x + ahead * cos - left * sin, y + ahead * sin + left * cos])
 }

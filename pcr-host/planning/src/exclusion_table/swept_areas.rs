@@ -6,7 +6,7 @@
 use super::edge_traversals::{EdgeTraversal, EdgeTraversals, LengthMapping, reversed};
 use super::{edges_by_id, nodes_by_id};
 use crate::agent_regions::area;
-use crate::disc_fleet::{BodyDisc, DiscFleet, Form};
+use crate::bodies::{Body, BodyFleet};
 use crate::fleet::Fleet;
 use crate::parallel;
 use pcr_formats::import::{self, ElementId, ImportError, ImportedLayout, Layout, LayoutEdge};
@@ -27,7 +27,7 @@ pub struct SweptLayout {
     /// For each ride the meaning of lengths on its path, and its track.
     pub(super) rides: Vec<(LengthMapping, u32)>,
     pub(super) fleet: Fleet<f64>,
-    pub(super) discs: Vec<BodyDisc>,
+    pub(super) discs: Vec<Body>,
     /// For each disc the box of its swept area.
     pub(super) areas: Vec<[f64; 4]>,
 }
@@ -119,12 +119,12 @@ impl SweptLayout {
         Ok(sweep)
     }
 
-    pub(super) fn add(&mut self, plan: CurveTraversals, bodies: DiscFleet<f64>) {
+    pub(super) fn add(&mut self, plan: CurveTraversals, bodies: BodyFleet<f64>) {
         let (first, before, track) = (self.rides.len(), self.discs.len(), self.tracks.len() as u32);
         self.rides.extend(plan.rides.into_iter().map(|ride| (ride.lengths, track)));
         self.areas.extend(bodies.fleet.motions().iter().map(area));
         self.fleet.append(bodies.fleet);
-        self.discs.extend(bodies.discs.into_iter().map(|disc| disc.moved(first)));
+        self.discs.extend(bodies.bodies.into_iter().map(|disc| disc.moved(first)));
         let CurveTraversals { members, length, levels, .. } = plan;
         self.tracks.push(SharedCurve { members, length, levels, discs: before..self.discs.len() });
     }
@@ -141,7 +141,7 @@ impl SweptLayout {
 }
 
 /// The discs of a track.
-pub(super) fn bodies(plan: &CurveTraversals, ids: &[ElementId]) -> Result<DiscFleet<f64>, ImportError> {
+pub(super) fn bodies(plan: &CurveTraversals, ids: &[ElementId]) -> Result<BodyFleet<f64>, ImportError> {
     let name = plan.members.first().and_then(|&(place, _)| ids.get(place)).map(|id| label(&id.to_string()));
     let agents = plan.rides.iter().enumerate().map(|(k, ride)| Agent {
         id: k as u64,
@@ -149,7 +149,7 @@ pub(super) fn bodies(plan: &CurveTraversals, ids: &[ElementId]) -> Result<DiscFl
         ..ride.agent.clone()
     });
     let scenario = import::checked(&Scenario::new("", agents.collect()))?;
-    DiscFleet::new(&scenario, Form::Covers).map_err(|refused| ImportError::new(refused.to_string()))
+    BodyFleet::new(&scenario).map_err(|refused| ImportError::new(refused.to_string()))
 }
 
 /// The ends of an edge, if it is the straight line between its nodes.

@@ -9,11 +9,11 @@ use std::f64::consts::{PI, TAU};
 
 /// What a format makes of a motion, at most.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RoundingBounds {
+struct RoundingBounds {
     /// Distance of the disc from where the scenario has it at the same time \[m\].
-    pub(crate) distance: f64,
+    distance: f64,
     /// Difference of lengths along the path \[m\].
-    pub(crate) length: f64,
+    length: f64,
 }
 
 impl RoundingBounds {
@@ -22,14 +22,7 @@ impl RoundingBounds {
     /// Where paths differ: points at the same share of a segment are as far apart as its starts, and along it by the difference
     /// of the headings times its length, and by that of the lengths. Where times differ: a difference of two motions is a
     /// parabola between two times at which one of them changes its acceleration.
-    pub(crate) fn of<S: HostScalar>(agent: &Agent, motion: &Motion<'_, S>) -> Self {
-        let Self { distance, length } = Self::of_numbers(agent, motion);
-        let digits = S::slack(motion.extent()).to_f64();
-        Self { distance: distance + 2.0 * digits, length: length + digits }
-    }
-
-    /// The same of the numbers alone, without what sums of them lose.
-    fn of_numbers<S: HostScalar>(agent: &Agent, motion: &Motion<'_, S>) -> Self {
+    fn of<S: HostScalar>(agent: &Agent, motion: &Motion<'_, S>) -> Self {
         let Self { distance, length } = of_path::<S>(agent);
         // On an arc corners of an outline go farther than its reference point.
         let curvatures = agent.path.iter().map(|segment| match *segment {
@@ -51,11 +44,8 @@ pub(super) fn warning<S: HostScalar>(scenario: &Scenario) -> Result<Option<Strin
     }
     let fleet = Fleet::<S>::new(scenario)?;
     let motions = fleet.motions();
-    let distances = scenario
-        .agents
-        .iter()
-        .zip(&motions)
-        .map(|(agent, motion)| (RoundingBounds::of_numbers(agent, motion).distance, agent));
+    let distances =
+        scenario.agents.iter().zip(&motions).map(|(agent, motion)| (RoundingBounds::of(agent, motion).distance, agent));
     let told: Vec<(f64, &Agent)> = distances.filter(|(distance, _)| *distance > UNTOLD).collect();
     let worst = told.iter().max_by(|(a, _), (b, _)| a.total_cmp(b));
     Ok(worst.map(|(distance, agent)| {

@@ -3,7 +3,7 @@
 
 use super::{motions_with_margins, sides_of};
 use crate::agent_regions::AgentRegions;
-use crate::disc_fleet::{BodyDisc, DiscFleet, Form};
+use crate::bodies::{Body, BodyFleet};
 use crate::figures::outward;
 use crate::fleet::Fleet;
 use pcr_core::{Encounter, Interval, Motion, RegionRef};
@@ -48,7 +48,7 @@ impl BlockingCause {
 pub(super) const ALWAYS: &str = "they meet whenever they start";
 
 /// Reason why two agents of a scenario meet with all delays (`always`), or why the first finds no start; and the place.
-/// Computed from their discs; without a place if they have no region.
+/// Computed from their bodies; without a place if they have no region.
 pub(super) fn reason(scenario: &Scenario, ids: [u64; 2], always: bool) -> (String, Option<BlockingLocation>) {
     let general = match always {
         true => ALWAYS,
@@ -66,12 +66,12 @@ fn found(scenario: &Scenario, ids: [u64; 2], always: bool, general: &str) -> Opt
     let fleet = Fleet::<f64>::new(&scenario).ok()?;
     let references = fleet.motions();
     let references = [references.first()?, references.get(1)?];
-    let bodies = DiscFleet::<f64>::new(&scenario, Form::Exact).ok()?;
+    let bodies = BodyFleet::<f64>::new(&scenario).ok()?;
     let (grown, exact) = (motions_with_margins(&bodies.fleet), bodies.fleet.motions());
-    let pair = BlockedPair { references, discs: &bodies.discs, grown: &grown, exact: &exact };
-    let others: Vec<u32> = pair.of(1).map(|disc| disc as u32).collect();
-    let rows = pair.of(0).map(|disc| AgentRegions::new(&grown, disc, &others)).collect::<Result<Vec<_>, _>>().ok()?;
-    let all: Vec<DiscPairRegion<'_>> = rows.iter().flat_map(|row| pair.met(row)).collect();
+    let pair = BlockedPair { references, bodies: &bodies.bodies, grown: &grown, exact: &exact };
+    let others: Vec<u32> = pair.of(1).map(|body| body as u32).collect();
+    let rows = pair.of(0).map(|body| AgentRegions::new(&grown, body, &others)).collect::<Result<Vec<_>, _>>().ok()?;
+    let all: Vec<BodyPairRegion<'_>> = rows.iter().flat_map(|row| pair.met(row)).collect();
     let never = all.iter().find(|met| met.sides() == [true; 2]);
     let last = never.or_else(|| all.iter().find(|met| met.sides()[0]));
     let first = never.or_else(|| all.iter().find(|met| met.sides()[1]));
@@ -97,40 +97,40 @@ fn found(scenario: &Scenario, ids: [u64; 2], always: bool, general: &str) -> Opt
     })
 }
 
-/// Two agents and their discs.
+/// Two agents and their bodies.
 struct BlockedPair<'a> {
     /// Motions of the agents.
     references: [&'a Motion<'a, f64>; 2],
-    discs: &'a [BodyDisc],
-    /// Motions of the discs, enlarged by margins and rounding.
+    bodies: &'a [Body],
+    /// Motions of the bodies, enlarged by margins and rounding.
     grown: &'a [Motion<'a, f64>],
     /// The same as they are.
     exact: &'a [Motion<'a, f64>],
 }
 
 impl<'a> BlockedPair<'a> {
-    /// The discs of an agent.
+    /// The bodies of an agent.
     fn of(&self, agent: usize) -> impl Iterator<Item = usize> + 'a {
-        let discs = self.discs;
-        (0..discs.len()).filter(move |&disc| discs[disc].agent == agent)
+        let bodies = self.bodies;
+        (0..bodies.len()).filter(move |&body| bodies[body].agent == agent)
     }
 
-    /// The regions of a disc.
-    fn met(&self, row: &'a AgentRegions<'a, f64>) -> impl Iterator<Item = DiscPairRegion<'a>> {
-        let discs = self.discs;
-        let disc = move |place: usize| row.agents()[place] as usize;
+    /// The regions of a body.
+    fn met(&self, row: &'a AgentRegions<'a, f64>) -> impl Iterator<Item = BodyPairRegion<'a>> {
+        let bodies = self.bodies;
+        let body = move |place: usize| row.agents()[place] as usize;
         let regions = row.table().row(row.motions(), row.agent_index()).expect("the table of the row");
         regions.map(move |region| {
-            let places = [region.ego(), region.other()].map(disc);
-            let [own, other] = places.map(|place| &discs[place]);
-            DiscPairRegion { region, places, own, other }
+            let places = [region.ego(), region.other()].map(body);
+            let [own, other] = places.map(|place| &bodies[place]);
+            BodyPairRegion { region, places, own, other }
         })
     }
 
     /// How near the agents are at their starts or at their ends, if they are too near.
     fn standing(&self, at_end: bool) -> Option<(String, BlockingLocation)> {
-        let Self { references, discs, grown, exact } = *self;
-        let there = |&disc: &usize| discs[disc].stands()[usize::from(at_end)];
+        let Self { references, bodies, grown, exact } = *self;
+        let there = |&body: &usize| bodies[body].stands()[usize::from(at_end)];
         let all = Motion::span(exact);
         let time = if at_end { all.hi } else { all.lo };
         let apart = |motions: [&Motion<'_, f64>; 2]| {
@@ -149,8 +149,8 @@ impl<'a> BlockedPair<'a> {
         Some((format!("{} {place}", nearest.words()), BlockingLocation::standing(references, at_end)))
     }
 
-    /// Whether the discs themselves meet in a region, and not only their margins.
-    fn has_contact(&self, met: &DiscPairRegion<'_>) -> bool {
+    /// Whether the bodies themselves meet in a region, and not only their margins.
+    fn has_contact(&self, met: &BodyPairRegion<'_>) -> bool {
         let [own, other] = met.places;
         let Ok(row) = AgentRegions::new(self.exact, own, &[other as u32]) else { return true };
         let mut regions = row.table().row(row.motions(), row.agent_index()).expect("the table of the row");
@@ -166,7 +166,7 @@ enum ProximityKind {
 }
 
 impl ProximityKind {
-    /// The contact for a gap between the discs, margins, and the error of the gap \[m\].
+    /// The contact for a gap between the bodies, margins, and the error of the gap \[m\].
     fn of(gap: f64, margins: f64, tolerance: f64) -> Self {
         match () {
             () if gap < -tolerance => Self::Overlap,
@@ -184,17 +184,17 @@ impl ProximityKind {
     }
 }
 
-/// A region of two discs.
-struct DiscPairRegion<'a> {
+/// A region of two bodies.
+struct BodyPairRegion<'a> {
     region: RegionRef<'a, f64>,
-    /// Places of the two discs.
+    /// Places of the two bodies.
     places: [usize; 2],
-    own: &'a BodyDisc,
-    other: &'a BodyDisc,
+    own: &'a Body,
+    other: &'a Body,
 }
 
-impl DiscPairRegion<'_> {
-    /// Whether the first disc has to pass the region after the second, and whether before.
+impl BodyPairRegion<'_> {
+    /// Whether the first body has to pass the region after the second, and whether before.
     fn sides(&self) -> [bool; 2] {
         sides_of(&self.region, self.own.stands(), self.other.stands())
     }
@@ -214,20 +214,20 @@ const HEAD_ON: &str = "head-on without a passing place";
 const NO_ORDER: &str = "no order is possible";
 
 /// The reason in words: a region that has to be passed second, and one that has to be passed first, if it is the same one.
-fn contradiction(second: &DiscPairRegion<'_>, first: &DiscPairRegion<'_>) -> String {
+fn contradiction(second: &BodyPairRegion<'_>, first: &BodyPairRegion<'_>) -> String {
     let (kind, not_first, not_second) = obstacles(second, first);
     format!("{kind}: {}, and {}", not_first.words(), not_second.words())
 }
 
 /// The reason in words if they are two; the place of the one to be passed first follows.
-fn describe_distance(second: &DiscPairRegion<'_>, first: &DiscPairRegion<'_>, reference: &Motion<'_, f64>) -> String {
+fn describe_distance(second: &BodyPairRegion<'_>, first: &BodyPairRegion<'_>, reference: &Motion<'_, f64>) -> String {
     let (_, not_first, not_second) = obstacles(second, first);
     let (second, not_first, not_second) = (second.spot(reference).words(), not_first.words(), not_second.words());
     format!("no start delays are possible, other speeds may be: {not_first}, {second}; and {not_second}")
 }
 
 /// What is in the way, in short, of passing one region first and the other one second.
-fn obstacles(second: &DiscPairRegion<'_>, first: &DiscPairRegion<'_>) -> (&'static str, BlockingCause, BlockingCause) {
+fn obstacles(second: &BodyPairRegion<'_>, first: &BodyPairRegion<'_>) -> (&'static str, BlockingCause, BlockingCause) {
     let other_start = second.other.is_at_start() && second.region.is_open_at_start();
     let other_end = first.other.is_at_end() && first.region.is_open_at_end();
     let own_start = first.own.is_at_start() && first.region.length().lo <= 0.0;

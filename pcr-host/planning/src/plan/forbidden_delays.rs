@@ -2,22 +2,22 @@
 //!
 //! The forbidden delays of a region depend only on the difference of two delays: T_other(s) + τ_other = T_ego(l) +
 //! τ_ego. The intervals are computed once for all pairs; a schedule for any order of priority then only compares
-//! numbers. The discs of a footprint that is covered are delayed together, so the forbidden delays of two agents are the union of those
-//! of any two of their discs. A disc of a load is there on some segments only: before its first and after its last it meets nobody.
+//! numbers. The bodies of an agent are delayed together, so the forbidden delays of two agents are the union of those
+//! of any two of their bodies. A body of a load is there on some segments only: before its first and after its last it meets nobody.
 //!
 //! An interval without a lower end means that the other agent goes first, one without an upper end that it goes last.
 //! If no cycle of agents have to go before one another, an order that respects this has a schedule for all of them:
 //! each agent waits until those before it are out of its way, at the latest until they have arrived.
 //!
 //! `plan_delays` of pcr-core needs no heap: it finds delays from contacts, again for every order, and delays each
-//! motion by itself. So it supports neither discs that are delayed together nor searches over thousands of orders. Both
+//! motion by itself. So it supports neither bodies that are delayed together nor searches over thousands of orders. Both
 //! take the forbidden delays of a region from the core (`RegionRef::forbidden_delays`).
 
 use super::delays::{self, DelayProblem, ForbiddenPairDelays, NEVER, Objective, TickScale, earliest};
 use super::{motions_with_margins, sides_of as sides};
 use crate::agent_regions;
 use crate::agent_regions::ProgressFn;
-use crate::disc_fleet::{BodyDisc, DiscFleet, Form};
+use crate::bodies::{Body, BodyFleet};
 use crate::failure::ComputationError;
 use crate::memory_budget::MemoryDemand;
 use pcr_core::{Interval, Motion, RegionRef, Scalar};
@@ -42,20 +42,20 @@ pub struct ForbiddenDelays {
     first: Vec<Vec<usize>>,
 }
 
-/// The agent of a disc, and whether the disc is present before the start of that agent and after its arrival.
+/// The agent of a body, and whether the body is present before the start of that agent and after its arrival.
 #[derive(Clone, Copy, Debug)]
-struct DiscOwner {
+struct BodyOwner {
     agent: usize,
     stands: [bool; 2],
 }
 
-impl DiscOwner {
-    fn of(disc: &BodyDisc) -> Self {
-        Self { agent: disc.agent, stands: disc.stands() }
+impl BodyOwner {
+    fn of(body: &Body) -> Self {
+        Self { agent: body.agent, stands: body.stands() }
     }
 }
 
-/// The delays with which two discs meet. `own` and `other` tell whether a disc is there before its start and after its end.
+/// The delays with which two bodies meet. `own` and `other` tell whether a body is there before its start and after its end.
 fn met_with(region: &RegionRef<'_, f64>, own: [bool; 2], other: [bool; 2]) -> Interval<f64> {
     let delays = region.forbidden_delays();
     let [after, before] = sides(region, own, other);
@@ -63,7 +63,7 @@ fn met_with(region: &RegionRef<'_, f64>, own: [bool; 2], other: [bool; 2]) -> In
     if (after || !early) && (before || !late) {
         return delays;
     }
-    // Forbidden delays are unbounded on a side where a disc stands before its start or after its end. If the disc is not there at that
+    // Forbidden delays are unbounded on a side where a body stands before its start or after its end. If the body is not there at that
     // time, that side ends where the delays end with which the two meet under way.
     let passing = region.passing_delays();
     Interval {
@@ -109,11 +109,11 @@ impl ForbiddenDelays {
         Self::watched(scenario, &|_, _| {})
     }
 
-    /// The same; tells of how many discs the regions are known, and of how many there are.
+    /// The same; tells of how many bodies the regions are known, and of how many there are.
     pub(super) fn watched(scenario: &Scenario, told: ProgressFn<'_>) -> Result<Self, ComputationError> {
-        let bodies = DiscFleet::<f64>::new(scenario, Form::Exact)?;
+        let bodies = BodyFleet::<f64>::new(scenario)?;
         let motions = motions_with_margins(&bodies.fleet);
-        let owners: Vec<DiscOwner> = bodies.discs.iter().map(DiscOwner::of).collect();
+        let owners: Vec<BodyOwner> = bodies.bodies.iter().map(BodyOwner::of).collect();
         Self::between(&motions, &owners, scenario.agents.len(), told).map_err(|failure| failure.named(&bodies.scenario))
     }
 
@@ -122,21 +122,21 @@ impl ForbiddenDelays {
     /// # Errors
     /// [`ComputationError`] if the table cannot hold them.
     pub fn of_motions(motions: &[Motion<'_, f64>]) -> Result<Self, ComputationError> {
-        let owners: Vec<DiscOwner> = (0..motions.len()).map(|agent| DiscOwner { agent, stands: [true; 2] }).collect();
+        let owners: Vec<BodyOwner> = (0..motions.len()).map(|agent| BodyOwner { agent, stands: [true; 2] }).collect();
         Self::between(motions, &owners, motions.len(), &|_, _| {})
     }
 
-    /// The forbidden delays of `count` agents with these discs and owners.
+    /// The forbidden delays of `count` agents with these bodies and owners.
     fn between(
         motions: &[Motion<'_, f64>],
-        owners: &[DiscOwner],
+        owners: &[BodyOwner],
         count: usize,
         told: ProgressFn<'_>,
     ) -> Result<Self, ComputationError> {
-        // A row has the pairs of its disc with later ones; the other direction of a pair has the opposite sign.
+        // A row has the pairs of its body with later ones; the other direction of a pair has the opposite sign.
         let found = agent_regions::gathered(motions, "start delays that regions forbid", told, |row| {
-            let discs = row.agents();
-            let owner = |place: usize| discs.get(place).and_then(|&disc| owners.get(disc as usize)).copied();
+            let bodies = row.agents();
+            let owner = |place: usize| bodies.get(place).and_then(|&body| owners.get(body as usize)).copied();
             let regions = row.table().row(row.motions(), row.agent_index()).expect("the table of the row");
             let forbidden = regions.filter_map(|region| {
                 let (own, other) = (owner(row.agent_index())?, owner(region.other())?);
@@ -151,8 +151,8 @@ impl ForbiddenDelays {
         MemoryDemand::ForbiddenDelays(found.len()).ask()?;
         let limit = <f64 as Scalar>::LIMIT;
         let mut ends = vec![f64::NEG_INFINITY; count];
-        for (disc, motion) in motions.iter().enumerate() {
-            if let Some(end) = owners.get(disc).and_then(|owner| ends.get_mut(owner.agent)) {
+        for (body, motion) in motions.iter().enumerate() {
+            if let Some(end) = owners.get(body).and_then(|owner| ends.get_mut(owner.agent)) {
                 *end = end.max(motion.time().hi);
             }
         }

@@ -6,7 +6,7 @@ use super::forbidden_delays::{AgentWithoutDelay, DelaySchedule, ForbiddenDelays}
 use super::plan_context::Planner;
 use super::plan_progress::PlanStage;
 use super::{PriorityRule, UnplannedAgents, failure_reason};
-use crate::disc_fleet::DiscFleet;
+use crate::bodies;
 use crate::failure::ComputationError;
 use crate::parallel;
 use pcr_core::Motion;
@@ -46,7 +46,7 @@ pub(super) struct StartDelayResult {
     fewest: bool,
     /// Agents that cannot start in the requested order.
     out: Vec<AgentWithoutDelay>,
-    /// Whether discs of footprints or loads were planned: bodies that are covered.
+    /// Whether agents were planned as several bodies, of which speed plans take the convex hull.
     pub(super) covered: bool,
 }
 
@@ -68,7 +68,7 @@ impl StartDelayResult {
         let DelayResult { delays, bound, proved, conflicts, fewest } =
             delays::best(&problem, &known, request.effort, request.leave_out, told);
         let seconds = |delay: &Option<i64>| delay.map(|delay| ticks.seconds(i128::from(delay)));
-        let covered = scenario.agents.iter().any(DiscFleet::<f64>::is_covered);
+        let covered = scenario.agents.iter().any(bodies::has_parts);
         let found = Self {
             delays: delays.map(|delays| delays.iter().map(seconds).collect()),
             order: Vec::new(),
@@ -116,8 +116,8 @@ impl StartDelayResult {
         }
     }
 
-    /// Adds reasons why no speed plan was found. A reason about the discs around footprints is dropped if their covers
-    /// do not have it; with `leave_out` the reasons are for all agents that are left out.
+    /// Adds reasons why no speed plan was found. A reason about convex hulls is dropped if there are start delays for
+    /// the outlines themselves; with `leave_out` the reasons are for all agents that are left out.
     pub(super) fn added(&self, planner: &Planner<'_, '_>, found: Vec<UnplannedAgents>) -> Vec<UnplannedAgents> {
         if self.of_all().is_some() || !(self.covered || planner.request.leave_out) {
             return found;
@@ -140,7 +140,7 @@ impl StartDelayResult {
     pub(super) fn unsolved(&self, planner: &Planner<'_, '_>) -> Vec<UnplannedAgents> {
         let ids = |agents: &[usize]| agents.iter().map(|&agent| planner.id(agent)).collect::<Vec<_>>();
         let mut unsolved: Vec<UnplannedAgents> = Vec::new();
-        // For covers it would not be a proof: the discs around footprints may have to wait where the footprints need not.
+        // For convex hulls it would not be a proof: they may have to wait where the outlines need not.
         let circle = if self.covered { None } else { planner.circle() };
         if let Some(circle) = &circle {
             unsolved.push(UnplannedAgents::nowhere(ids(circle), CIRCULAR_WAIT));

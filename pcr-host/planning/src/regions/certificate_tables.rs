@@ -1,9 +1,9 @@
 //! The tables of a scenario in the form that the checker takes, for fleets of any size.
 
 use crate::agent_regions;
+use crate::bodies::BodyFleet;
 use crate::certify::CertificateTable;
 use crate::checker_input::{self, outlines};
-use crate::disc_fleet::{DiscFleet, Form};
 use crate::failure::ComputationError;
 use crate::fleet::HostScalar;
 use crate::memory_budget::MemoryDemand;
@@ -18,13 +18,13 @@ use pcr_formats::scenario::Scenario;
 ///
 /// # Errors
 /// [`ComputationError`] where a value does not fit the format, or memory does not hold the tables.
-pub fn table_of<S: HostScalar>(scenario: &Scenario, form: Form) -> Result<Vec<CertificateTable>, ComputationError> {
+pub fn table_of<S: HostScalar>(scenario: &Scenario) -> Result<Vec<CertificateTable>, ComputationError> {
     let segments: usize = scenario.agents.iter().map(|agent| agent.path.len()).sum();
     MemoryDemand::SegmentProof(segments).ask()?;
-    let DiscFleet { scenario: given, fleet, discs: owners } = DiscFleet::<S>::new(scenario, form)?;
+    let BodyFleet { scenario: given, fleet, bodies: owners } = BodyFleet::<S>::new(scenario)?;
     let motions = fleet.motions();
     let ids: Vec<u64> = owners.iter().map(|disc| scenario.agents[disc.agent].id).collect();
-    let has_outlines = motions.iter().any(outlines::is_outline);
+    let has_outlines = motions.iter().any(outlines::is_body);
     let agents = checker_input::agents(&fleet, &motions, &ids);
     if has_outlines {
         outlines::as_given::<S>(&given, &agents, &outlines::bodies(agents.clone(), &motions))

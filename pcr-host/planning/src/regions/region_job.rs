@@ -3,9 +3,9 @@
 
 use super::certificate_tables::table_of;
 use super::entries::RegionBuilder;
-use super::{DiscCover, RegionEntry, RegionOptions, RegionsReport, footprint_regions};
+use super::{AgentBodies, RegionEntry, RegionOptions, RegionsReport, body_regions};
 use crate::agent_regions::{self, AgentRegions, BoxGrid, ProgressFn};
-use crate::disc_fleet::{DiscFleet, Form};
+use crate::bodies::BodyFleet;
 use crate::failure::ComputationError;
 use crate::fleet::HostScalar;
 use crate::memory_budget::MemoryBudget;
@@ -14,7 +14,7 @@ use pcr_core::Motion;
 use pcr_formats::scenario::{Labels, Scenario};
 use std::ops::Range;
 
-/// Pairs of discs whose regions are held at once: enough for all cores, and some megabytes.
+/// Pairs of bodies whose regions are held at once: enough for all cores, and some megabytes.
 const STRETCH: u64 = 1 << 15;
 
 /// The agents that are asked for, one or all, by their numbers.
@@ -29,10 +29,10 @@ pub struct RegionJob<'s, S: HostScalar> {
     pub(super) scenario: &'s Scenario,
     pub(super) request: RegionOptions,
     pub(super) labels: Labels,
-    bodies: DiscFleet<S>,
+    bodies: BodyFleet<S>,
     ids: Vec<u64>,
-    /// The discs of each agent.
-    discs: Vec<Range<usize>>,
+    /// For each agent the places of its bodies.
+    places: Vec<Range<usize>>,
     /// The agents that are asked for, by their numbers.
     egos: Vec<usize>,
 }
@@ -47,18 +47,18 @@ impl<'s, S: HostScalar> RegionJob<'s, S> {
         if let Some(asked) = request.agent.filter(|asked| !ids.contains(asked)) {
             return Err(ComputationError::NoSuchAgent(asked, ids));
         }
-        let bodies = DiscFleet::<S>::new(scenario, Form::Exact)?;
-        let mut discs = vec![0..0; ids.len()];
-        for (place, disc) in bodies.discs.iter().enumerate() {
-            if let Some(own) = discs.get_mut(disc.agent) {
+        let bodies = BodyFleet::<S>::new(scenario)?;
+        let mut places = vec![0..0; ids.len()];
+        for (place, body) in bodies.bodies.iter().enumerate() {
+            if let Some(own) = places.get_mut(body.agent) {
                 *own = if own.start < own.end { own.start..place + 1 } else { place..place + 1 };
             }
         }
         let egos = asked_for(&ids, request.agent);
-        Ok(Self { scenario, request, labels: Labels::from_scenario(scenario), bodies, ids, discs, egos })
+        Ok(Self { scenario, request, labels: Labels::from_scenario(scenario), bodies, ids, places, egos })
     }
 
-    /// Pairs of discs that come near one another, each counted from both sides: what a pass looks at.
+    /// Pairs of bodies that come near one another, each counted from both sides: what a pass looks at.
     pub fn near(&self) -> usize {
         agent_regions::grid(&self.bodies.fleet.motions()).counts().iter().map(|&count| count as usize).sum()
     }
@@ -69,7 +69,7 @@ impl<'s, S: HostScalar> RegionJob<'s, S> {
     }
 
     /// Calls `make` for the regions of each agent, on all cores, and passes its values to `take` in the order of the agents'
-    /// numbers. With `margin`, the regions are those of the discs with margins.
+    /// numbers. With `margin`, the regions are those of the bodies with margins.
     ///
     /// # Errors
     /// Errors of `take`, and [`ComputationError`] for a pair that does not fit in a table.
@@ -86,7 +86,7 @@ impl<'s, S: HostScalar> RegionJob<'s, S> {
         }
         let grid = agent_regions::grid(&motions);
         let counts = grid.counts();
-        let work = |ego: usize| self.discs[ego].clone().map(|disc| u64::from(counts[disc])).sum::<u64>();
+        let work = |ego: usize| self.places[ego].clone().map(|body| u64::from(counts[body])).sum::<u64>();
         let total = self.egos.iter().map(|&ego| work(ego) as usize).sum();
         let (mut rest, mut done) = (&self.egos[..], 0);
         while !rest.is_empty() {
@@ -117,9 +117,9 @@ impl<'s, S: HostScalar> RegionJob<'s, S> {
         ego: usize,
     ) -> Result<Vec<RegionEntry>, ComputationError> {
         let mut near = Vec::new();
-        let rows = self.discs[ego].clone().map(|disc| {
-            grid.around(disc, &mut near);
-            AgentRegions::new(motions, disc, &near)
+        let rows = self.places[ego].clone().map(|body| {
+            grid.around(body, &mut near);
+            AgentRegions::new(motions, body, &near)
         });
         let rows = rows
             .collect::<Result<Vec<_>, _>>()
@@ -130,7 +130,7 @@ impl<'s, S: HostScalar> RegionJob<'s, S> {
             (RegionBuilder { fleet, agents, motions, ecm, slices }, row.agent_index())
         });
         let works: Vec<(RegionBuilder<'_, S>, usize)> = works.collect();
-        let mut regions = footprint_regions::regions(&works, &self.bodies.discs, &self.ids);
+        let mut regions = body_regions::regions(&works, &self.bodies.bodies, &self.ids);
         regions.sort_by(RegionEntry::by_other);
         Ok(regions)
     }
@@ -140,7 +140,7 @@ impl<'s, S: HostScalar> RegionJob<'s, S> {
     /// # Errors
     /// [`ComputationError`] where a value does not fit the format.
     pub fn head(&self) -> Result<RegionsReport, ComputationError> {
-        let certificate = || table_of::<S>(self.scenario, Form::Exact);
+        let certificate = || table_of::<S>(self.scenario);
         Ok(RegionsReport {
             name: self.scenario.name.clone(),
             labels: self.labels.clone(),
@@ -148,7 +148,7 @@ impl<'s, S: HostScalar> RegionJob<'s, S> {
             agent: self.request.agent,
             regions: Vec::new(),
             margin_regions: self.has_margins().then(Vec::new),
-            footprints: DiscCover::all(self.scenario, &self.bodies.discs),
+            bodies: AgentBodies::all(self.scenario, &self.bodies.bodies, &self.bodies.scenario),
             warnings: self.scenario.warnings.clone(),
             certificate: self.request.certificate.then(certificate).transpose()?,
             error: None,

@@ -41,7 +41,7 @@ impl Case {
     fn compare<S: HostScalar>(&self, digits: f64) -> [usize; 2] {
         let request = RegionOptions { slices: Some(9), ..RegionOptions::default() };
         let answer = RegionsReport::compute::<S>(&self.scenario, request).unwrap();
-        assert!(answer.footprints.is_empty(), "{}: {:?}", S::NAME, answer.footprints);
+        assert!(answer.bodies.is_empty(), "{}: {:?}", S::NAME, answer.bodies);
         let mut counts = [0; 2];
         for own in [0, 1] {
             let regions: Vec<&RegionEntry> =
@@ -109,7 +109,7 @@ impl Case {
     fn compare_conflicts<S: HostScalar>(&self, digits: f64) {
         const STEPS: u32 = 500;
         let verdict = CheckReport::compute::<S>(&self.scenario, true).unwrap();
-        assert!(verdict.footprints.is_empty());
+        assert!(verdict.bodies.is_empty());
         let [closest] = verdict.closest.as_deref().unwrap() else { panic!("one pair") };
         let end = self.courses[0].duration().max(self.courses[1].duration());
         let mut least = f64::INFINITY;
@@ -163,7 +163,7 @@ fn trucks_pass_with_a_millimetre_between_them() {
                 [agent(1, &truck, [0.0, 0.0, 0.0], &[line(6.0)]), agent(2, &truck, [6.0, apart, PI], &[line(6.0)])];
             let scenario = read(&agents);
             let answer = RegionsReport::compute::<S>(&scenario, RegionOptions::default()).unwrap();
-            assert!(answer.footprints.is_empty() && answer.regions.is_empty() == is_free, "{} {apart}", S::NAME);
+            assert!(answer.bodies.is_empty() && answer.regions.is_empty() == is_free, "{} {apart}", S::NAME);
             let verdict = CheckReport::compute::<S>(&scenario, true).unwrap();
             assert_eq!(verdict.conflicts.is_empty(), is_free, "{} {apart}", S::NAME);
             let clearance = verdict.closest.unwrap()[0].clearance;
@@ -239,7 +239,7 @@ fn what_cannot_be_computed_as_it_is_has_a_cover() {
         agent(8, &Outline::polygon(&HEXAGON), [1.0, -3.0, 0.5 * PI], &[]),
     ];
     let answer = RegionsReport::compute::<f64>(&read(&agents), RegionOptions::default()).unwrap();
-    let covered: Vec<u64> = answer.footprints.iter().map(|cover| cover.id).collect();
+    let covered: Vec<u64> = answer.bodies.iter().map(|bodies| bodies.id).collect();
     assert_eq!(covered, [1, 2, 4, 4, 5]);
     let pair = |i: u64, j: u64| answer.regions.iter().find(|region| [region.i, region.j] == [i, j]);
     assert!([1, 2, 4, 5].iter().all(|&lane| pair(lane, 6).is_some() && pair(6, lane).is_some()));
@@ -249,7 +249,7 @@ fn what_cannot_be_computed_as_it_is_has_a_cover() {
     // Also with a certificate.
     let certified = RegionOptions { certificate: true, ..RegionOptions::default() };
     let answer = RegionsReport::compute::<f64>(&read(&agents), certified).unwrap();
-    let covered: Vec<u64> = answer.footprints.iter().map(|cover| cover.id).collect();
+    let covered: Vec<u64> = answer.bodies.iter().map(|bodies| bodies.id).collect();
     assert_eq!(covered, [1, 2, 4, 4, 5]);
 }
 
@@ -265,7 +265,7 @@ fn a_hundred_rectangles_have_few_pieces() {
     }
     let answer =
         RegionsReport::compute::<f64>(&Scenario::from_value(&scenario).unwrap(), RegionOptions::default()).unwrap();
-    assert!(answer.footprints.is_empty());
+    assert!(answer.bodies.is_empty());
     let pieces: usize = answer.regions.iter().map(|region| region.pieces.len()).sum();
     assert_eq!((answer.regions.len(), pieces), (4328, 14102));
 }

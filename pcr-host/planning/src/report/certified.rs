@@ -42,7 +42,7 @@ pub fn certified_table(certified: &CertifyReport, out: &mut dyn Write) -> io::Re
     let counted = |count: usize, one: &str, many: &str| format!("{count} {}", if count == 1 { one } else { many });
     let bodies = [
         (certified.discs > 0 || certified.outlines == 0).then(|| counted(certified.discs, "disc", "discs")),
-        (certified.outlines > 0).then(|| counted(certified.outlines, "outline", "outlines") + " as they are"),
+        (certified.outlines > 0).then(|| counted(certified.outlines, "outline", "outlines")),
     ];
     let counts = [
         counted(certified.segment_pairs, "pair of segments", "pairs of segments"),

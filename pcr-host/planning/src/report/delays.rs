@@ -76,6 +76,7 @@ pub struct UnsafeNodeTimes {
 
 impl VersionedReport for UnsafeDelayReport {
     const FORMAT: &'static str = "pcr-delays";
+    const VERSION: u32 = super::LOCKS_VERSION;
 }
 
 impl UnsafeDelayReport {
@@ -197,6 +198,7 @@ struct DelayReportHeader<'a> {
 
 impl VersionedReport for DelayReportHeader<'_> {
     const FORMAT: &'static str = "pcr-delay-lines";
+    const VERSION: u32 = super::LOCKS_VERSION;
 }
 
 /// JSON Lines: what the table is, then a line a delay as in the document `pcr-delays`, then how many there were: what has no such

@@ -11,6 +11,9 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
+/// Version of what is printed about locks: version 1 had covers of discs.
+pub const LOCKS_VERSION: u32 = 2;
+
 /// The header line of [`locks_csv`].
 pub const LOCKS_HEADER: &str = "a,b,a_from,a_to,b_from,b_to\n";
 
@@ -110,6 +113,7 @@ struct ExclusionReportHeader<'a> {
 
 impl VersionedReport for ExclusionReportHeader<'_> {
     const FORMAT: &'static str = "pcr-lock-lines";
+    const VERSION: u32 = LOCKS_VERSION;
 }
 
 /// JSON Lines: what the table is, then a line a lock as in the document `pcr-locks`, then how many there were: what has no such
@@ -171,6 +175,7 @@ pub struct EdgeExclusionsReport {
 
 impl VersionedReport for EdgeExclusionsReport {
     const FORMAT: &'static str = "pcr-edge-locks";
+    const VERSION: u32 = LOCKS_VERSION;
 }
 
 /// The header line of [`edge_csv`].
@@ -213,9 +218,11 @@ pub fn edge_table(locks: &EdgeExclusionsReport, out: &mut dyn Write) -> io::Resu
 
 /// The vehicle of a table of locks, in words.
 pub fn vehicle_text(vehicle: &ExclusionVehicle) -> String {
-    let outline = match vehicle.discs.len() {
-        0 => format!("radius {} m", given(vehicle.radius)),
-        discs => format!("an outline of {discs} discs within {} m", above(vehicle.radius)),
+    let outline = match &vehicle.footprint {
+        None => format!("radius {} m", given(vehicle.radius)),
+        Some(footprint) => {
+            format!("an outline of {} corners within {} m", footprint.polygon().len(), above(vehicle.radius))
+        }
     };
     match vehicle.corner_margin {
         None => outline,

@@ -20,7 +20,7 @@ pub fn proof_line(proof: &MotionCertificate, labels: &Labels) -> String {
             let pairs = counted(proof.pairs, "pair");
             let bodies = match proof.outlines {
                 0 => "discs".into(),
-                outlines => format!("bodies; {} as they are", counted(outlines, "outline")),
+                outlines => format!("bodies; {}", counted(outlines, "outline")),
             };
             format!("no contact at any time, proved ({pairs} of {bodies})")
         }

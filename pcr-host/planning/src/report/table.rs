@@ -2,7 +2,7 @@
 
 use super::text_table::TextTable;
 use super::{agents, counted, crossings, display_name, heading, types};
-use crate::figures::{above, outward, thousandths};
+use crate::figures::{outward, thousandths};
 use crate::regions::{CrossingDescriptor, RegionEntry, RegionsReport};
 use pcr_formats::scenario::Labels;
 use std::collections::HashMap;
@@ -64,13 +64,11 @@ pub fn table(answer: &RegionsReport, out: &mut dyn Write) -> io::Result<()> {
     let name = heading(&answer.name);
     let (regions, crossings) = (counted(answer.regions.len(), "collision region"), counted(all.len(), "crossing"));
     writeln!(out, "{name}: {regions}, {crossings} ({})", answer.scalar)?;
-    // Loads that are a disc are none of a footprint.
-    for cover in answer.footprints.iter().filter(|cover| cover.overhang > 0.0) {
-        let discs = cover.discs.len();
-        let stretch = cover.segments.map_or(String::new(), |[a, b]| format!(", segments {a} to {b}"));
-        let (id, overhang) = (cover.id, above(cover.overhang + cover.growth));
-        let id = display_name(&answer.labels, id);
-        writeln!(out, "agent {id}{stretch}: a footprint of {discs} discs that reach {overhang} m out of it")?;
+    for bodies in answer.bodies.iter().filter(|bodies| bodies.parts.len() > 1) {
+        let parts = bodies.parts.len();
+        let stretch = bodies.segments.map_or(String::new(), |[a, b]| format!(", segments {a} to {b}"));
+        let id = display_name(&answer.labels, bodies.id);
+        writeln!(out, "agent {id}{stretch}: a concave outline of {parts} convex parts")?;
     }
     if !all.is_empty() {
         writeln!(out, "\nCrossings: j passes L on the path of i at T; theta = heading of j - heading of i")?;

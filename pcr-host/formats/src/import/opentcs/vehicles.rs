@@ -29,7 +29,7 @@ pub(in super::super) fn vehicles(
     warn_of_lengths(&all, options, warnings);
     let Some([ahead, left]) = largest(&all, options, warnings) else { return Ok(()) };
     let corners = vec![[ahead, left], [-ahead, left], [-ahead, -left], [ahead, -left]];
-    let outline = Footprint::new(corners, None);
+    let outline = Footprint::new(corners);
     let outline = outline.map_err(|problem| ImportError::new(format!("vehicle, boundingBox: {problem}")))?;
     given.footprint = Some(outline);
     Ok(())

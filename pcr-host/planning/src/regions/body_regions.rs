@@ -1,26 +1,26 @@
-//! Regions of agents: those of the table, where both agents are one body; the unions of the regions of their discs, where either is
-//! covered.
+//! Regions of agents: those of the table, where both agents are one body; the unions of the regions of their bodies, where either is
+//! several.
 //!
-//! The discs of an agent share one motion, so the regions of all pairs of discs lie in the same plane of time and
+//! The bodies of an agent share one motion, so the regions of all pairs of bodies lie in the same plane of time and
 //! length, once lengths are converted to those of the reference point. A region of two agents is a connected union of
 //! them.
 
 use super::entries::{CrossSectionEntry, PieceEntry, RegionBuilder, RegionEntry, slice};
-use crate::disc_fleet::BodyDisc;
+use crate::bodies::Body;
 use crate::fleet::HostScalar;
 use pcr_core::RegionRef;
 use std::collections::BTreeMap;
 
-/// Times at which two regions of discs are looked at for a common point, at least, as long as none is found. Those of discs side by side
+/// Times at which two regions of bodies are looked at for a common point, at least, as long as none is found. Those of bodies side by side
 /// overlap over most of their extent.
 const LOOKS: f64 = 64.0;
 
 /// Times and lengths that are one but for rounding \[s\], \[m\]: where one outline gives way to another.
 const NEAR: f64 = 1e-9;
 
-/// A region of two discs in some number format.
+/// A region of two bodies in some number format.
 trait ErasedRegion {
-    /// The lengths inside, along the path of the disc; outside of the region's time those at its begin or end.
+    /// The lengths inside, along the path of the body; outside of the region's time those at its begin or end.
     fn slice(&self, time: f64) -> Vec<[f64; 2]>;
     fn pieces(&self) -> Vec<PieceEntry>;
 }
@@ -29,7 +29,7 @@ trait ErasedRegion {
 struct RowRegion<'a, S: HostScalar> {
     work: &'a RegionBuilder<'a, S>,
     region: RegionRef<'a, S>,
-    /// Places of the discs in the row.
+    /// Places of the bodies in the row.
     places: [usize; 2],
 }
 
@@ -44,27 +44,27 @@ impl<S: HostScalar> ErasedRegion for RowRegion<'_, S> {
     }
 }
 
-/// A region of two discs.
-struct DiscRegion<'a> {
+/// A region of two bodies.
+struct BodyRegion<'a> {
     region: Box<dyn ErasedRegion + 'a>,
-    /// The discs.
-    discs: [&'a BodyDisc; 2],
+    /// The bodies.
+    bodies: [&'a Body; 2],
     /// Whether it goes on before and after the motion of the other agent.
     open: [bool; 2],
     time: [f64; 2],
     length: [f64; 2],
 }
 
-impl<'a> DiscRegion<'a> {
+impl<'a> BodyRegion<'a> {
     fn of<S: HostScalar>(
         work: &'a RegionBuilder<'a, S>,
         places: [usize; 2],
-        [own, other]: [&'a BodyDisc; 2],
+        [own, other]: [&'a Body; 2],
         region: RegionRef<'a, S>,
     ) -> Self {
         let (time, length) = (region.time(), region.length());
         Self {
-            discs: [own, other],
+            bodies: [own, other],
             open: [region.is_open_at_start() && other.is_at_start(), region.is_open_at_end() && other.is_at_end()],
             time: [time.lo.to_f64(), time.hi.to_f64()],
             length: own.on_agent([length.lo.to_f64(), length.hi.to_f64()]),
@@ -76,7 +76,7 @@ impl<'a> DiscRegion<'a> {
         if time < self.time[0] - NEAR || time > self.time[1] + NEAR {
             return Vec::new();
         }
-        self.region.slice(time).into_iter().map(|lengths| self.discs[0].on_agent(lengths)).collect()
+        self.region.slice(time).into_iter().map(|lengths| self.bodies[0].on_agent(lengths)).collect()
     }
 
     /// The times at which both may have a common point; `None` if there are none. Parts whose gap may be due to rounding belong
@@ -97,23 +97,23 @@ fn hull(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
-/// The regions of an agent, from the rows of its discs, by the other agent.
+/// The regions of an agent, from the rows of its bodies, by the other agent.
 pub(super) fn regions<S: HostScalar>(
     rows: &[(RegionBuilder<'_, S>, usize)],
-    discs: &[BodyDisc],
+    bodies: &[Body],
     ids: &[u64],
 ) -> Vec<RegionEntry> {
-    let (mut all, mut pairs): (Vec<RegionEntry>, DiscRegionsByPair<'_>) = (Vec::new(), BTreeMap::new());
+    let (mut all, mut pairs): (Vec<RegionEntry>, BodyRegionsByPair<'_>) = (Vec::new(), BTreeMap::new());
     for (work, place) in rows {
-        let Some(own) = discs.get(work.in_fleet(*place)) else { continue };
+        let Some(own) = bodies.get(work.in_fleet(*place)) else { continue };
         for (there, regions) in work.pairs(*place) {
-            let other = discs.get(work.in_fleet(there));
+            let other = bodies.get(work.in_fleet(there));
             let Some(other) = other.filter(|other| other.agent != own.agent) else { continue };
             let (places, agents) = ([*place, there], [own.agent, other.agent]);
             if own.is_whole() && other.is_whole() {
                 all.extend(work.pair(places, agents.map(|agent| ids[agent]), &regions));
             } else {
-                let parts = regions.into_iter().map(|region| DiscRegion::of(work, places, [own, other], region));
+                let parts = regions.into_iter().map(|region| BodyRegion::of(work, places, [own, other], region));
                 pairs.entry(agents).or_default().extend(parts);
             }
         }
@@ -123,23 +123,23 @@ pub(super) fn regions<S: HostScalar>(
     all
 }
 
-/// The regions of the discs, by the two agents.
-type DiscRegionsByPair<'a> = BTreeMap<[usize; 2], Vec<DiscRegion<'a>>>;
+/// The regions of the bodies, by the two agents.
+type BodyRegionsByPair<'a> = BTreeMap<[usize; 2], Vec<BodyRegion<'a>>>;
 
 /// The regions of two agents, in order of time, with this number of slices.
-fn unions(agents: [u64; 2], parts: &[DiscRegion<'_>], slices: Option<usize>) -> Vec<RegionEntry> {
+fn unions(agents: [u64; 2], parts: &[BodyRegion<'_>], slices: Option<usize>) -> Vec<RegionEntry> {
     components(parts).iter().map(|parts| union(agents, parts, slices)).collect()
 }
 
 /// The parts, those together that are connected.
-fn components<'p, 'a>(parts: &'p [DiscRegion<'a>]) -> Vec<Vec<&'p DiscRegion<'a>>> {
-    let mut sorted: Vec<&DiscRegion<'a>> = parts.iter().collect();
+fn components<'p, 'a>(parts: &'p [BodyRegion<'a>]) -> Vec<Vec<&'p BodyRegion<'a>>> {
+    let mut sorted: Vec<&BodyRegion<'a>> = parts.iter().collect();
     sorted.sort_by(|a, b| a.time[0].total_cmp(&b.time[0]));
     let mut sweep = TimeSweep { group: (0..sorted.len()).collect(), parts: &sorted };
     let all = sorted.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |all, part| hull(all, part.time));
     sweep.between(all, &(0..sorted.len()).collect::<Vec<_>>());
     sweep.at_ends();
-    let mut components: BTreeMap<usize, Vec<&DiscRegion<'a>>> = BTreeMap::new();
+    let mut components: BTreeMap<usize, Vec<&BodyRegion<'a>>> = BTreeMap::new();
     for (place, part) in sorted.iter().enumerate() {
         components.entry(sweep.root(place)).or_default().push(part);
     }
@@ -149,7 +149,7 @@ fn components<'p, 'a>(parts: &'p [DiscRegion<'a>]) -> Vec<Vec<&'p DiscRegion<'a>
 /// A sweep over time that joins parts with common points. At each time the lengths of a part are computed once, for all parts that it may
 /// meet. Parts that are joined already are not looked at again.
 struct TimeSweep<'s, 'p, 'a> {
-    parts: &'s [&'p DiscRegion<'a>],
+    parts: &'s [&'p BodyRegion<'a>],
     /// For each part another one of its component with a lower or the same index; only the first of a component has its own.
     group: Vec<usize>,
 }
@@ -239,7 +239,7 @@ impl TimeSweep<'_, '_, '_> {
     }
 }
 
-fn union([i, j]: [u64; 2], parts: &[&DiscRegion<'_>], slices: Option<usize>) -> RegionEntry {
+fn union([i, j]: [u64; 2], parts: &[&BodyRegion<'_>], slices: Option<usize>) -> RegionEntry {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let t = parts.iter().fold(none, |range, part| hull(range, part.time));
     let l = parts.iter().fold(none, |range, part| hull(range, part.length));
@@ -274,15 +274,14 @@ fn merged(mut intervals: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     merged
 }
 
-/// One for each pair of segments of the agents; the crossings of their discs are none of theirs.
-fn pieces(parts: &[&DiscRegion<'_>]) -> Vec<PieceEntry> {
+/// One for each pair of segments of the agents; the crossings of their bodies are none of theirs.
+fn pieces(parts: &[&BodyRegion<'_>]) -> Vec<PieceEntry> {
     let mut pieces: BTreeMap<[Option<usize>; 2], PieceEntry> = BTreeMap::new();
     for part in parts {
-        let [own, other] = part.discs;
+        let [own, other] = part.bodies;
         for piece in part.region.pieces() {
-            let segment = |disc: &BodyDisc, number: Option<usize>| {
-                disc.segment(number?.checked_sub(1)?).map(|segment| segment + 1)
-            };
+            let segment =
+                |body: &Body, number: Option<usize>| body.segment(number?.checked_sub(1)?).map(|segment| segment + 1);
             let segments = [segment(own, piece.i_segment), segment(other, piece.j_segment)];
             let piece = PieceEntry {
                 i_segment: segments[0],
