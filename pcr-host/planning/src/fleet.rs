@@ -1,6 +1,7 @@
 //! Converts scenarios to motions and tables, in any number format of the tool.
 
 mod fixed;
+mod hull;
 #[cfg(feature = "micromath")]
 mod micro_format;
 mod outline;
@@ -18,6 +19,7 @@ use pcr_core::{
 };
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
+pub use hull::{ConvexBody, HullOutline};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 

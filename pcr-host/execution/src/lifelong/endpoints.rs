@@ -244,7 +244,7 @@ impl RemainingGraph {
 
 /// The nodes at which a robot would touch one that stands at `node`; `node` is one of them.
 fn covered(site: &RouteGraph, node: usize) -> Vec<usize> {
-    site.covers(node).iter().filter_map(|&atom| atom.checked_sub(site.standing(0))).collect()
+    site.covers(node).iter().filter_map(|&atom| site.node_of(atom)).collect()
 }
 
 /// Whether a robot that stands at `node` cuts off other inside nodes: nodes that it covers, or nodes behind it.

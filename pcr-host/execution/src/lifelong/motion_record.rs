@@ -1,10 +1,13 @@
 //! Records the motions of robots for the independent checker, which finds any contact during a run.
 
 use super::robot::{LifelongRobot, RobotPhase};
-use super::route_graph::RouteGraph;
+use super::route_graph::{RouteGraph, STRAIGHT, wrapped};
 
-use pcr_certify::motion::{Mover, meetings};
+use pcr_certify::motion::{MotionFindings, Mover, meetings};
+use pcr_certify::outline::motion::Driven;
+use pcr_certify::outline::{self, Body, RawBody, RawBodySegment, RawCourse, RawHeading, RawOutline};
 use pcr_certify::raw::{self, RawAgent, RawAngle, RawMotion, RawSegment};
+use pcr_core::{Curve, TurnSide};
 use pcr_formats::scenario::{PathSegment, PlacedSegment};
 use serde::Serialize;
 
@@ -35,43 +38,46 @@ impl RunCertificate {
         Self { verdict: "undecided", ..Self::default() }
     }
 
-    /// Checks the motions of robots of this radius \[m\] since the beginning of the window.
+    /// Checks the motions of robots since the beginning of the window.
     pub(super) fn window(
         &mut self,
         site: &RouteGraph,
         robots: &mut [LifelongRobot],
         window: &mut CheckWindow,
-        radius: f64,
         end: f64,
     ) {
         let begin = window.begin;
         let mut widened = false;
-        let movers: Result<Vec<Mover>, String> = robots
+        let records: Result<Vec<RecordedMotion>, String> = robots
             .iter_mut()
             .zip(&mut window.places)
             .enumerate()
             .map(|(id, (robot, place))| {
                 let (phases, trail, since) = robot.report(place.since);
-                let (mut agent, ends, gaps) =
-                    agent(site, id as u64, radius, [begin, end], &phases, (&trail, since), place.at)?;
+                let (mut record, ends, gaps) =
+                    RecordedMotion::of(site, id as u64, [begin, end], &phases, (&trail, since), *place)?;
                 *place = WindowStart::of(site, robot);
                 // The recorded motion has to lead to where the robot is; otherwise nothing is certified. Two edges that meet at a node
                 // may end slightly beside each other.
-                let apart = (ends[0] - place.at[0]).hypot(ends[1] - place.at[1]);
+                let apart = (ends.at[0] - place.at[0]).hypot(ends.at[1] - place.at[1]);
                 if apart > ROUNDING + gaps + 2.0 * site.position_error {
-                    return Err(format!("robot {id}: its record ends at {ends:?}, it is at {:?}", place.at));
+                    return Err(format!("robot {id}: its record ends at {:?}, it is at {:?}", ends.at, place.at));
+                }
+                if site.has_outline() && wrapped(ends.heading - place.heading).abs() > JUMP {
+                    let [recorded, now] = [ends.heading, place.heading];
+                    return Err(format!("robot {id}: its record ends with the heading {recorded}, it has {now}"));
                 }
                 let gaps = if apart > ROUNDING { gaps + apart } else { gaps };
-                agent.radius += gaps;
+                record.grow(gaps);
                 widened |= gaps > 0.0;
-                Mover::new(&agent, [begin, end])
+                Ok(record)
             })
             .collect();
+        let result = records.and_then(|records| found(&records, [begin, end]));
         window.begin = end;
         self.windows += 1;
-        match movers {
-            Ok(movers) => {
-                let found = meetings(&movers);
+        match result {
+            Ok(found) => {
                 self.steps += found.steps;
                 // If the discs were enlarged for such gaps, a contact of the enlarged discs proves nothing.
                 let (contacts, undecided) = (found.contacts.len(), found.undecided.len());
@@ -103,11 +109,14 @@ struct WindowStart {
     since: f64,
     /// Position of the robot \[m\].
     at: [f64; 2],
+    /// Heading of an outline \[rad\].
+    heading: f64,
 }
 
 impl WindowStart {
     fn of(site: &RouteGraph, robot: &LifelongRobot) -> Self {
-        Self { since: robot.along(), at: robot.way.point(site, robot.at) }
+        let heading = robot.way.heading_at(site, robot.at);
+        Self { since: robot.along(), at: robot.way.point(site, robot.at), heading }
     }
 }
 
@@ -117,19 +126,74 @@ impl CheckWindow {
     }
 }
 
-/// The motion of a robot in a window, on these atoms from a length of the first one on. Also returns its last position, and the
-/// sum of the gaps where shapes of the layout do not meet: the path here has no gaps, so it may be off by that sum \[m\].
-fn agent(
-    site: &RouteGraph,
-    id: u64,
-    radius: f64,
-    [begin, end]: [f64; 2],
-    phases: &[RobotPhase],
-    (trail, since): (&[usize], f64),
-    at: [f64; 2],
-) -> Result<(RawAgent, [f64; 2], f64), String> {
-    /// Largest gap that is rounding \[m\].
-    const NO_GAP: f64 = 1e-9;
+/// A motion for the checker.
+enum RecordedMotion {
+    Disc(RawAgent),
+    Outline(RawBody),
+}
+
+/// The contacts of these motions, all of discs or all of outlines.
+fn found(records: &[RecordedMotion], time: [f64; 2]) -> Result<MotionFindings, String> {
+    let (mut discs, mut outlines) = (Vec::new(), Vec::new());
+    for record in records {
+        match record {
+            RecordedMotion::Disc(agent) => discs.push(Mover::new(agent, time)?),
+            RecordedMotion::Outline(body) => outlines.push(Body::new(body)?),
+        }
+    }
+    if outlines.is_empty() {
+        return Ok(meetings(&discs));
+    }
+    let driven: Result<Vec<Driven<'_>>, String> = outlines.iter().map(|body| Driven::new(body, time)).collect();
+    Ok(outline::motion::meetings(&driven?))
+}
+
+impl RecordedMotion {
+    /// The motion of a robot in a window, on these atoms from a length of the first one on. Also returns where it ends, and the
+    /// sum of the gaps where shapes of the layout do not meet: the path here has no gaps, so it may be off by that sum \[m\].
+    fn of(
+        site: &RouteGraph,
+        id: u64,
+        window: [f64; 2],
+        phases: &[RobotPhase],
+        (trail, since): (&[usize], f64),
+        begin: WindowStart,
+    ) -> Result<(Self, WindowStart, f64), String> {
+        let (travel, length) = travel(id, window, phases)?;
+        if site.has_outline() {
+            return Ok(body(site, id, travel, length, (trail, since), begin));
+        }
+        let shapes: Vec<PlacedSegment> =
+            trail.iter().flat_map(|&atom| site.atoms[atom].shapes.iter().copied()).collect();
+        let gap = |pair: &[PlacedSegment]| {
+            let (end, at) = (pair[0].end(), pair[1].start);
+            (end[0] - at[0]).hypot(end[1] - at[1])
+        };
+        let gaps: f64 = shapes.windows(2).map(gap).filter(|gap| *gap > NO_GAP).sum();
+        let parts = cut(&shapes, since, length);
+        let end = parts.last().map_or(begin.at, PlacedSegment::end);
+        let (path, radius) = (path(&parts, begin.at, length), site.shape.reach());
+        let agent = RawAgent { id, radius, path, travel: Some(travel) };
+        Ok((Self::Disc(agent), WindowStart { at: end, ..begin }, gaps))
+    }
+
+    /// Makes the robot larger by so much all around \[m\].
+    fn grow(&mut self, by: f64) {
+        match self {
+            Self::Disc(agent) => agent.radius += by,
+            Self::Outline(body) => body.outline.radius += by,
+        }
+    }
+}
+
+/// Largest gap that is rounding \[m\].
+const NO_GAP: f64 = 1e-9;
+
+/// Largest change of heading where an outline does not turn \[rad\].
+const JUMP: f64 = 2.0 * STRAIGHT;
+
+/// The times of the phases in a window, and the length that is travelled \[m\].
+fn travel(id: u64, [begin, end]: [f64; 2], phases: &[RobotPhase]) -> Result<(RawMotion, f64), String> {
     let mut travel = RawMotion { start: begin, phases: Vec::new(), lag: 0.0, time_excess: 0.0 };
     let (mut time, mut length) = (0.0, 0.0);
     for phase in phases {
@@ -145,15 +209,96 @@ fn agent(
     if (time - (end - begin)).abs() > 1e-6 {
         return Err(format!("robot {id}: what it did ends at {} s", begin + time));
     }
-    let shapes: Vec<PlacedSegment> = trail.iter().flat_map(|&atom| site.atoms[atom].shapes.iter().copied()).collect();
-    let gap = |pair: &[PlacedSegment]| {
-        let (end, at) = (pair[0].end(), pair[1].start);
-        (end[0] - at[0]).hypot(end[1] - at[1])
+    Ok((travel, length))
+}
+
+/// The motion of an outline: the segments of these atoms, with their turns in place.
+fn body(
+    site: &RouteGraph,
+    id: u64,
+    travel: RawMotion,
+    length: f64,
+    (trail, since): (&[usize], f64),
+    begin: WindowStart,
+) -> (RecordedMotion, WindowStart, f64) {
+    let (corners, radius) = site.shape.corners();
+    let (mut before, mut left, mut gaps, mut from) = (since, length, 0.0, 0.0);
+    let mut segments: Vec<RawBodySegment> = Vec::new();
+    let (mut direction, mut heading) = (begin.heading, begin.heading);
+    let (mut at, mut end, mut joint) = (None, None, None::<[f64; 2]>);
+    let all = trail.iter().flat_map(|&atom| {
+        let element = &site.atoms[atom];
+        element.segments.iter().filter(|segment| segment.length() > 0.0).map(|segment| (segment, element.facing))
+    });
+    for (segment, facing) in all {
+        let place = |u: f64| {
+            let point = segment.point_at(u);
+            [point.x, point.y]
+        };
+        let start = place(0.0);
+        let gap = joint.map_or(0.0, |joint| f64::hypot(start[0] - joint[0], start[1] - joint[1]));
+        gaps += if gap > NO_GAP { gap } else { 0.0 };
+        joint = Some(place(segment.length()));
+        let skip = before.min(segment.length());
+        before -= skip;
+        let keep = (segment.length() - skip).min(left);
+        if keep <= 0.0 {
+            continue;
+        }
+        left -= keep;
+        let start = segment.heading_at(skip).0;
+        let turned = if segments.is_empty() { 0.0 } else { wrapped(start - direction) };
+        if segments.is_empty() {
+            (direction, at) = (start, Some((place(skip), start)));
+        }
+        let turns = if turned == 0.0 { Vec::new() } else { vec![RawAngle::Radians(turned)] };
+        let signed = |number: f64, turn: TurnSide| if turn == TurnSide::Left { number } else { -number };
+        let (course, sweep) = match segment.curve() {
+            Curve::Line => (RawCourse::Line, 0.0),
+            Curve::Arc { radius, turn } => {
+                (RawCourse::Arc { radius: signed(radius, turn) }, signed(keep / radius, turn))
+            }
+            Curve::Pivot { lever, turn } => {
+                (RawCourse::Pivot { lever: signed(lever, turn) }, signed(keep / lever, turn))
+            }
+        };
+        let to = from + keep;
+        segments.push(RawBodySegment {
+            course,
+            length: keep,
+            turns,
+            heading: RawHeading::Along(RawAngle::Radians(facing)),
+            from,
+            to,
+        });
+        from = to;
+        direction += turned + sweep;
+        heading = start + sweep + facing;
+        end = Some(place(skip + keep));
+    }
+    let (start, angle) = at.unwrap_or((begin.at, begin.heading));
+    if segments.is_empty() {
+        segments.push(RawBodySegment {
+            course: RawCourse::Line,
+            length: 0.0,
+            turns: Vec::new(),
+            heading: RawHeading::Along(RawAngle::Radians(0.0)),
+            from: 0.0,
+            to: 0.0,
+        });
+    }
+    let body = RawBody {
+        id,
+        outline: RawOutline { corners, radius },
+        start,
+        direction: RawAngle::Radians(angle),
+        segments,
+        rounding: f64::EPSILON * length.max(1.0) * 16.0,
+        jump: JUMP,
+        step: 0.0,
+        travel: Some(travel),
     };
-    let gaps: f64 = shapes.windows(2).map(gap).filter(|gap| *gap > NO_GAP).sum();
-    let parts = cut(&shapes, since, length);
-    let ends = parts.last().map_or(at, PlacedSegment::end);
-    Ok((RawAgent { id, radius, path: path(&parts, at, length), travel: Some(travel) }, ends, gaps))
+    (RecordedMotion::Outline(body), WindowStart { at: end.unwrap_or(begin.at), heading, ..begin }, gaps)
 }
 
 /// The part of some shapes from a length on, with this length.

@@ -85,9 +85,9 @@ impl RouteReservations {
             let it = &robots[robot];
             match other {
                 Some((changed, way, at, given)) if changed == robot => {
-                    ElementReservation::new(site, way, at, given, false)
+                    ElementReservation::new(way, at, given, false)
                 }
-                _ => ElementReservation::new(site, &it.way, it.at, self.0[robot], it.has_arrived()),
+                _ => ElementReservation::new(&it.way, it.at, self.0[robot], it.has_arrived()),
             }
         };
         let claims: Vec<ElementReservation> = (0..robots.len()).map(claim).collect();
@@ -115,13 +115,13 @@ impl RouteReservations {
 }
 
 impl<'w> ElementReservation<'w> {
-    fn new(site: &RouteGraph, way: &'w Route, at: f64, given: usize, arrived: bool) -> Self {
-        let end = site.standing(way.end());
+    fn new(way: &'w Route, at: f64, given: usize, arrived: bool) -> Self {
+        let end = way.poses[1];
         // At the end of what it holds, rounding may have put it beyond.
         let first = way.atom(at - SHORT);
         let held = match (arrived, given) {
             (true, _) => vec![end],
-            (false, 0) => vec![site.standing(site.atoms[way.atoms[0]].ends[0])],
+            (false, 0) => vec![way.poses[0]],
             (false, _) => way.atoms[first..given.max(first + 1)].to_vec(),
         };
         Self { held, left: if arrived { &[] } else { &way.atoms[given..] }, end }

@@ -1,12 +1,10 @@
 //! The path of a robot from node to node, its stops, and its times if no other robot is in the way.
 
 use super::kinematic_limits::KinematicLimits;
-use super::route_graph::{DeparturePose, RouteGraph, wrapped};
+use super::route_graph::{DeparturePose, RouteElement, RouteGraph, STRAIGHT, wrapped};
+use pcr_core::Curve;
 
-/// Largest change of direction that is not a corner \[rad\].
-const STRAIGHT: f64 = 1e-6;
-
-/// A place where a robot stops and turns.
+/// A place where a robot stops, and turns if it is a disc.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RouteCorner {
     /// \[m\]
@@ -29,17 +27,20 @@ pub(super) struct Route {
     /// Lengths of the goals that are still ahead \[m\].
     pub(super) goals: Vec<f64>,
     end: usize,
-    /// Direction of a robot at its start, if it is known \[rad\].
+    /// Heading of a robot at its start, if it is known \[rad\].
     heading: Option<f64>,
+    /// The atoms of a robot that stands at its start, and at its end.
+    pub(super) poses: [usize; 2],
 }
 
 impl Route {
     /// The way of a robot that stands at a node.
     pub(super) fn standing(site: &RouteGraph, node: usize) -> Self {
-        Self::new(site, DeparturePose { node, heading: None }, &[], &[], &KinematicLimits::NONE)
+        let heading = site.first_heading(node);
+        Self::new(site, DeparturePose { node, heading }, &[], &[], &KinematicLimits::NONE)
     }
 
-    /// A way along these atoms; each goal is after its number of atoms.
+    /// A way along these atoms; each goal is after its number of atoms. Turns of outlines at nodes are added.
     pub(super) fn new(
         site: &RouteGraph,
         from: DeparturePose,
@@ -47,44 +48,51 @@ impl Route {
         goals: &[usize],
         abilities: &KinematicLimits,
     ) -> Self {
-        let atoms = if atoms.is_empty() { vec![site.standing(from.node)] } else { atoms.to_vec() };
-        let goals: Vec<usize> = if site.atoms[atoms[0]].edge.is_some() { goals.to_vec() } else { vec![0; goals.len()] };
+        let stands = atoms.is_empty();
+        let asked = if stands { vec![site.pose(from.node, from.heading)] } else { atoms.to_vec() };
+        let mut atoms = Vec::with_capacity(asked.len());
         let mut offsets = vec![0.0];
         let (mut corners, mut times, mut speeds) = (Vec::new(), Vec::new(), Vec::new());
         let (mut length, mut time) = (0.0, 0.0);
         let mut heading = from.heading;
-        for (k, &place) in atoms.iter().enumerate() {
-            let atom = &site.atoms[place];
-            let turn = heading.zip(atom.headings).map_or(0.0, |(last, next)| wrapped(next[0] - last));
-            let stops = goals.contains(&k);
-            if f64::abs(turn) > STRAIGHT {
-                corners.push(RouteCorner { at: length, turn: abilities.turn(turn) });
-                time += abilities.turn(turn);
-            }
-            if k > 0 && (f64::abs(turn) > STRAIGHT || stops) {
-                time += abilities.stop();
-            }
-            let mut within = 0.0;
-            for pair in atom.shapes.windows(2) {
-                within += pair[0].shape.length();
-                let turn = wrapped(pair[1].heading - pair[0].heading_at_end());
-                if turn.abs() > STRAIGHT {
-                    corners.push(RouteCorner { at: length + within, turn: abilities.turn(turn) });
+        // Number of all atoms before each of those that were asked for.
+        let mut before = Vec::with_capacity(asked.len());
+        for (k, &next) in asked.iter().enumerate() {
+            before.push(atoms.len());
+            let ends = heading.zip(site.atoms[next].headings).map(|(last, headings)| [last, headings[0]]);
+            let turn = ends.filter(|ends| f64::abs(wrapped(ends[1] - ends[0])) > STRAIGHT);
+            let turning = turn.and_then(|ends| site.turn(site.atoms[next].ends[0], ends));
+            for place in turning.into_iter().chain([next]) {
+                let atom = &site.atoms[place];
+                let turn = heading.zip(atom.headings).map_or(0.0, |(last, next)| wrapped(next[0] - last));
+                let stops = before.len() > 1 && place != next || (turning.is_none() && goals.contains(&k));
+                if f64::abs(turn) > STRAIGHT && !site.has_outline() {
+                    corners.push(RouteCorner { at: length, turn: abilities.turn(turn) });
+                    time += abilities.turn(turn);
                 }
+                if !atoms.is_empty() && (f64::abs(turn) > STRAIGHT || stops) {
+                    time += abilities.stop();
+                }
+                corners.extend(within(site, atom, length, abilities));
+                times.push(time);
+                speeds.push(atom.speed);
+                length += atom.length;
+                if atom.length > 0.0 {
+                    time += atom.length / atom.speed;
+                }
+                heading = atom.headings.map(|headings| headings[1]).or(heading);
+                offsets.push(length);
+                atoms.push(place);
             }
-            times.push(time);
-            speeds.push(atom.speed);
-            length += atom.length;
-            if atom.length > 0.0 {
-                time += atom.length / atom.speed;
-            }
-            heading = atom.headings.map(|headings| headings[1]).or(heading);
-            offsets.push(length);
         }
         times.push(time);
-        let goals = goals.into_iter().map(|goal| offsets[goal]).collect();
+        before.push(atoms.len());
+        let goals = goals.iter().map(|&goal| if stands { 0.0 } else { offsets[before[goal]] }).collect();
         let end = site.atoms[atoms[atoms.len() - 1]].ends[1];
-        Self { atoms, offsets, speeds, times, corners, goals, end, heading: from.heading }
+        let start = site.atoms[atoms[0]].ends[0];
+        let first = from.heading.or_else(|| site.atoms[atoms[0]].headings.map(|headings| headings[0]));
+        let poses = [site.pose(start, first), site.pose(end, heading)];
+        Self { atoms, offsets, speeds, times, corners, goals, end, heading: from.heading, poses }
     }
 
     pub(super) fn length(&self) -> f64 {
@@ -156,6 +164,12 @@ impl Route {
         site.atoms[self.atoms[k]].point(length - self.offsets[k])
     }
 
+    /// Heading of the robot at a length \[rad\].
+    pub(super) fn heading_at(&self, site: &RouteGraph, length: f64) -> f64 {
+        let k = self.atom(length);
+        site.atoms[self.atoms[k]].heading(length - self.offsets[k])
+    }
+
     /// The node at exactly this length, if there is one.
     pub(super) fn node(&self, site: &RouteGraph, length: f64) -> Option<usize> {
         let k = self.offsets.iter().position(|&offset| offset == length)?;
@@ -201,6 +215,26 @@ impl Route {
         let from = DeparturePose { node: site.atoms[self.atoms[first]].ends[0], heading: None };
         CommittedRoute { from, atoms, before: self.offsets[first], end_pose: on }
     }
+}
+
+/// The corners of an atom that begins at a length \[m\], beyond a turn before it.
+fn within(site: &RouteGraph, atom: &RouteElement, length: f64, abilities: &KinematicLimits) -> Vec<RouteCorner> {
+    if !site.has_outline() {
+        let mut within = 0.0;
+        let corner = |pair: &[pcr_formats::scenario::PlacedSegment]| {
+            within += pair[0].shape.length();
+            let turn = wrapped(pair[1].heading - pair[0].heading_at_end());
+            (turn.abs() > STRAIGHT).then(|| RouteCorner { at: length + within, turn: abilities.turn(turn) })
+        };
+        return atom.shapes.windows(2).filter_map(corner).collect();
+    }
+    // A turn of an outline has a length; the robot stops before and after it.
+    let turns = atom.segments.iter().filter(|segment| match segment.curve() {
+        Curve::Pivot { lever, .. } => segment.length() > STRAIGHT * lever,
+        _ => false,
+    });
+    let ends = turns.flat_map(|turn| [turn.from(), turn.from() + turn.length()]);
+    ends.map(|end| RouteCorner { at: length + end, turn: 0.0 }).collect()
 }
 
 /// The part of a way that cannot be changed any more.

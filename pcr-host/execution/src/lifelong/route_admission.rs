@@ -218,7 +218,7 @@ impl PlanningContext<'_> {
                 let end = self.robots[other].way.end();
                 other != robot && way.atoms.iter().any(|&atom| self.site.passes(atom, end))
             };
-            let mut near = self.site.contacts(self.site.standing(way.end()));
+            let mut near = self.site.contacts(way.poses[1]);
             let is_passed = near.any(|(near, _)| self.book.others_on(near, robot, self.robots).next().is_some());
             let at = self.robots[robot].at - kept.before;
             let is_safe = || self.locks.is_safe(self.site, self.robots, Some((robot, &way, at, kept.atoms.len())));

@@ -62,7 +62,7 @@ pub(super) struct RouteFinder {
 
 impl RouteFinder {
     pub(super) fn new(site: &RouteGraph, abilities: KinematicLimits) -> Self {
-        let edges = site.atoms.len() - site.points.len();
+        let edges = site.edges;
         let (mut after, mut before) = (vec![Vec::new(); edges], vec![Vec::new(); edges]);
         for (atom, it) in site.atoms[..edges].iter().enumerate() {
             let last = it.headings.map(|headings| headings[1]);

@@ -1,10 +1,15 @@
 //! A layout for lifelong runs: pieces of way from node to node, and how robots on two of them touch. Data that depend
-//! only on the layout and the radius are computed once, when they are first needed.
+//! only on the layout and the robot are computed once, when they are first needed.
+//!
+//! A disc stands where it turns. Any other outline sweeps an area: then a turn at a node is an element of its own, and
+//! so is each heading with which a robot stands there.
 
 use super::gates::ElementContact;
+use super::kinematic_limits::KinematicLimits;
 use pcr_core::{InvalidInput, Motion, PathRef, Phase, Point, Pose, ProfileRef, Radians, Segment, TurnSide};
-use pcr_formats::import::{ImportedLayout, Layout, RouteStep};
+use pcr_formats::import::{Facing, ImportedLayout, Layout, RouteStep, VehicleTraits};
 use pcr_formats::scenario::{PathSegment, PlacedSegment};
+use pcr_planning::fleet::ConvexBody;
 use std::cell::{OnceCell, RefCell};
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
@@ -19,7 +24,14 @@ const GAPS: f64 = 4.0;
 /// Step of the first robot between two gates, in radii.
 const PITCH: f64 = 2.0;
 
-/// An edge in one direction, or a node at which a robot can stand.
+/// Largest change of direction that is not a corner \[rad\].
+pub(super) const STRAIGHT: f64 = 1e-6;
+
+/// Travelled length for each radian of a turn at a node \[m\]: so short that ramps of the speed take no time there, and so long that a
+/// rounding of lengths turns nothing.
+const LEVER: f64 = 0.01;
+
+/// An edge in one direction, a node at which a robot can stand, or a turn there.
 #[derive(Clone, Debug)]
 pub(super) struct RouteElement {
     /// Nodes where it begins and ends.
@@ -27,10 +39,12 @@ pub(super) struct RouteElement {
     pub(super) length: f64,
     /// Largest speed on it \[m/s\].
     pub(super) speed: f64,
-    /// Directions at its ends \[rad\]; `None` for a node.
+    /// Headings of the robot at its ends \[rad\]; of a disc its directions of travel, `None` where it stands.
     pub(super) headings: Option<[f64; 2]>,
     pub(super) shapes: Vec<PlacedSegment>,
-    segments: Vec<Segment<f64>>,
+    pub(super) segments: Vec<Segment<f64>>,
+    /// Angle from the direction of travel to the heading of the robot \[rad\].
+    pub(super) facing: f64,
     phases: Vec<Phase<f64>>,
     /// Least and largest x and y \[m\].
     bounds: [[f64; 2]; 2],
@@ -38,12 +52,31 @@ pub(super) struct RouteElement {
     pub(super) edge: Option<usize>,
 }
 
+/// The elements of an outline at a node.
+#[derive(Clone, Debug, Default)]
+struct NodeElements {
+    /// A robot that stands with a heading \[rad\]; the first one is that of [`RouteGraph::standing`].
+    poses: Vec<(f64, usize)>,
+    /// A turn from a heading to another one \[rad\].
+    turns: Vec<([f64; 2], usize)>,
+}
+
+impl NodeElements {
+    fn all(&self) -> impl Iterator<Item = usize> {
+        self.poses.iter().map(|pose| pose.1).chain(self.turns.iter().map(|turn| turn.1))
+    }
+}
+
 /// A layout for robots of one size.
 #[derive(Debug)]
 pub(super) struct RouteGraph {
     pub(super) points: Vec<[f64; 2]>,
-    /// All atoms: edges in their directions, then the nodes.
+    /// All atoms: edges in their directions, then the nodes, then further headings and turns at nodes.
     pub(super) atoms: Vec<RouteElement>,
+    /// Number of edges in their directions.
+    pub(super) edges: usize,
+    /// For each node its elements beyond the edges; none for discs.
+    at_nodes: Vec<NodeElements>,
     /// For each node the atoms that begin there.
     pub(super) leaving: Vec<Vec<usize>>,
     /// For each node the atoms that end there.
@@ -56,18 +89,20 @@ pub(super) struct RouteGraph {
     touching_elements: Vec<Vec<usize>>,
     /// Bound on the error of curves, and on the distance of their ends from nodes \[m\].
     pub(super) position_error: f64,
-    /// Radius of the discs, with margins and the error of curves \[m\].
-    radius: f64,
+    /// The robot, without margins.
+    pub(super) shape: ConvexBody,
+    /// The robot with margins and the error of curves.
+    body: ConvexBody,
     /// The contact of each pair of `near`, at the same indices, computed when it is first needed.
-    contacts: Vec<Vec<OnceCell<Option<ElementContact>>>>,
+    contacts: Vec<Vec<OnceCell<Option<Box<ElementContact>>>>>,
     covers: RefCell<HashMap<usize, Rc<[usize]>>>,
 }
 
-/// A node, and the direction in which a robot stands there.
+/// A node, and the heading with which a robot stands there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DeparturePose {
     pub(super) node: usize,
-    /// Direction of the robot, if it is known \[rad\].
+    /// Heading of the robot, if it is known \[rad\].
     pub(super) heading: Option<f64>,
 }
 
@@ -81,30 +116,39 @@ impl RouteGraph {
         let level = layout.largest_level();
         let points: Vec<[f64; 2]> = layout.nodes.iter().map(|node| node.point).collect();
         let nodes: Vec<usize> = (0..points.len()).filter(|&node| layout.nodes[node].level == level).collect();
+        let steps = || {
+            let open = layout.edges.iter().enumerate().filter(|(_, edge)| !edge.closed);
+            let steps = open.flat_map(|(place, edge)| edge.steps().map(move |step| (place, step)));
+            steps.filter(|(_, step)| {
+                [step.origin(), step.target()].iter().all(|&node| layout.nodes[node].level == level)
+            })
+        };
+        let (vehicle, is_known) = faced(vehicle, steps().map(|(_, step)| step.facing()));
+        let shape = ConvexBody::of_vehicle(vehicle.footprint.as_ref(), vehicle.radius);
+        let shape = shape.map_err(|invalid| format!("the outline of the vehicle: {invalid}"))?;
+        let maker = ElementMaker { layout, vehicle: &vehicle, has_outline: !shape.is_disc(), is_known };
         let mut atoms = Vec::new();
         let mut off = 0.0_f64;
-        for (place, edge) in layout.edges.iter().enumerate().filter(|(_, edge)| !edge.closed) {
-            for step in edge.steps() {
-                let there = [step.origin(), step.target()].iter().all(|&node| layout.nodes[node].level == level);
-                if there {
-                    let atom = RouteElement::along(layout, step, place, vehicle.speed);
-                    let atom = atom.map_err(|invalid| format!("edge {}: {invalid}", edge.id))?;
-                    off = off.max(step.deviation() + atom.gap(&points));
-                    atoms.push(atom);
-                }
-            }
+        for (place, step) in steps() {
+            let atom = maker.along(step, place);
+            let atom = atom.map_err(|invalid| format!("edge {}: {invalid}", layout.edges[place].id))?;
+            off = off.max(step.deviation() + vehicle.moved_by(step.turned()) + atom.gap(&points));
+            atoms.push(atom);
         }
+        let edges = atoms.len();
         let (mut leaving, mut coming) = (vec![Vec::new(); points.len()], vec![Vec::new(); points.len()]);
         for (place, atom) in atoms.iter().enumerate() {
             leaving[atom.ends[0]].push(place);
             coming[atom.ends[1]].push(place);
         }
-        for (node, &at) in points.iter().enumerate() {
-            atoms.push(RouteElement::node(node, at).map_err(|invalid| format!("a node: {invalid}"))?);
-        }
+        let at_nodes = maker.at_nodes(&mut atoms, &points, [&coming, &leaving]);
+        let at_nodes = at_nodes.map_err(|invalid| format!("a node: {invalid}"))?;
         let gaps = atoms.iter().map(|atom| atom.gap(&points)).fold(0.0, f64::max);
-        let radius = vehicle.radius + vehicle.margin + off + GAPS * gaps + 0.5 * ROOM;
-        let near = neighbours(&atoms, 2.0 * radius);
+        // Where the heading changes by less than a corner, nobody turns.
+        let straight = if shape.is_disc() { 0.0 } else { 2.0 * STRAIGHT * shape.reach() };
+        let larger = vehicle.margin + off + GAPS * gaps + 0.5 * ROOM + straight;
+        let body = shape.inflated(larger).map_err(|invalid| invalid.to_string())?;
+        let near = neighbours(&atoms, 2.0 * body.reach());
         let back = |(place, atom): (usize, &RouteElement)| {
             let [a, b] = atom.ends;
             let is_line = |atom: &RouteElement| matches!(&atom.shapes[..], [one] if matches!(one.shape, PathSegment::Line { .. }));
@@ -125,30 +169,71 @@ impl RouteGraph {
             coming,
             nodes,
             back,
+            edges,
+            at_nodes,
             touching_elements: near,
             position_error: off,
-            radius,
+            shape,
+            body,
             contacts,
             covers,
         };
-        site.atoms.iter().try_for_each(|atom| atom.motion(radius).map(drop)).map_err(|invalid| invalid.to_string())?;
+        let motions = site.atoms.iter().try_for_each(|atom| atom.motion(&site.body).map(drop));
+        motions.map_err(|invalid| invalid.to_string())?;
         Ok(site)
+    }
+
+    /// Whether turns are elements of their own.
+    pub(super) fn has_outline(&self) -> bool {
+        !self.body.is_disc()
+    }
+
+    /// The node of an atom on which a robot stands with the first heading of that node.
+    pub(super) fn node_of(&self, atom: usize) -> Option<usize> {
+        atom.checked_sub(self.edges).filter(|&node| node < self.points.len())
+    }
+
+    /// The heading with which a robot first stands at a node \[rad\]; `None` for discs.
+    pub(super) fn first_heading(&self, node: usize) -> Option<f64> {
+        self.at_nodes[node].poses.first().map(|pose| pose.0)
+    }
+
+    /// The atom of a robot that stands at a node with this heading \[rad\].
+    pub(super) fn pose(&self, node: usize, heading: Option<f64>) -> usize {
+        let poses = &self.at_nodes[node].poses;
+        let off = |pose: &(f64, usize)| heading.map_or(0.0, |heading| wrapped(pose.0 - heading).abs());
+        let nearest = poses.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
+        nearest.map_or(self.standing(node), |pose| pose.1)
+    }
+
+    /// The turn at a node between two headings \[rad\] that differ; `None` for discs, which need none.
+    pub(super) fn turn(&self, node: usize, headings: [f64; 2]) -> Option<usize> {
+        let off = |turn: &[f64; 2]| [0, 1].map(|k| wrapped(turn[k] - headings[k]).abs()).iter().sum::<f64>();
+        let turns = self.at_nodes[node].turns.iter();
+        turns.min_by(|a, b| off(&a.0).total_cmp(&off(&b.0))).map(|turn| turn.1)
     }
 
     /// The atom of a robot that stands at a node.
     pub(super) fn standing(&self, node: usize) -> usize {
-        self.atoms.len() - self.points.len() + node
+        self.edges + node
     }
 
-    /// Whether robots that stand at two nodes would touch.
+    /// Whether robots that stand at two nodes would touch; outlines also where one of them turns.
     pub(super) fn collide(&self, a: usize, b: usize) -> bool {
+        if self.has_outline() {
+            let stand = |a: usize, b: usize| {
+                let poses = self.at_nodes[a].poses.iter();
+                a == b || poses.clone().any(|pose| self.at_nodes[b].all().any(|other| self.touch(pose.1, other)))
+            };
+            return stand(a, b) || stand(b, a);
+        }
         let (a, b) = (self.points[a], self.points[b]);
         (a[0] - b[0]).hypot(a[1] - b[1]) < self.width()
     }
 
-    /// Distance at which two standing robots do not touch \[m\].
+    /// Distance at which two robots do not touch while they stand and turn \[m\].
     pub(super) fn width(&self) -> f64 {
-        2.0 * self.radius
+        2.0 * self.body.reach()
     }
 
     /// The atoms that touch an atom, with their contacts.
@@ -165,10 +250,10 @@ impl RouteGraph {
     fn contact_at(&self, atom: usize, place: usize) -> Option<&ElementContact> {
         let found = self.contacts[atom][place].get_or_init(|| {
             let pair = [atom, self.touching_elements[atom][place]];
-            let motions = pair.map(|atom| self.atoms[atom].motion(self.radius).expect("checked by the constructor"));
-            ElementContact::compute(motions, PITCH * self.radius)
+            let motions = pair.map(|atom| self.atoms[atom].motion(&self.body).expect("checked by the constructor"));
+            ElementContact::compute(motions, PITCH * self.body.reach()).map(Box::new)
         });
-        found.as_ref()
+        found.as_deref()
     }
 
     /// Computes all contacts now.
@@ -181,53 +266,198 @@ impl RouteGraph {
         if let Some(known) = self.covers.borrow().get(&node) {
             return known.clone();
         }
-        let near = self.touching_elements[self.standing(node)].iter().copied();
-        let found: Rc<[usize]> = near.filter(|&atom| self.passes(atom, node)).collect();
+        let near = |atom: usize| self.touching_elements[atom].iter().copied();
+        let found: Rc<[usize]> = if self.has_outline() {
+            let mut all: Vec<usize> = self.at_nodes[node].poses.iter().flat_map(|pose| near(pose.1)).collect();
+            all.sort_unstable();
+            all.dedup();
+            let is_covered = |atom: &usize| match self.node_of(*atom) {
+                Some(other) => self.collide(node, other),
+                None => self.passes(*atom, node),
+            };
+            all.into_iter().filter(is_covered).collect()
+        } else {
+            near(self.standing(node)).filter(|&atom| self.passes(atom, node)).collect()
+        };
         self.covers.borrow_mut().insert(node, found.clone());
         found
     }
 
     /// Whether a robot somewhere on an atom would touch one that stands at a node.
     pub(super) fn passes(&self, atom: usize, node: usize) -> bool {
-        self.atoms[atom].ends.contains(&node) || self.touch(atom, self.standing(node))
+        self.atoms[atom].ends.contains(&node) || {
+            let poses = &self.at_nodes[node].poses;
+            if poses.is_empty() {
+                self.touch(atom, self.standing(node))
+            } else {
+                poses.iter().any(|pose| self.touch(atom, pose.1))
+            }
+        }
+    }
+}
+
+/// The vehicle as the edges of a layout let it face, and whether it is known which way it faces on each of them: where it may face one of
+/// two ways it covers what it covers either way, and where it may face any way the disc about it.
+fn faced(vehicle: &VehicleTraits, facings: impl Iterator<Item = Facing>) -> (VehicleTraits, bool) {
+    let any = facings.fold(None, |any, facing| match (any, facing) {
+        (Some(Facing::Any), _) | (_, Facing::Any) => Some(Facing::Any),
+        (Some(Facing::Either), _) | (_, Facing::Either) => Some(Facing::Either),
+        (any, _) => any,
+    });
+    any.map_or_else(|| (vehicle.clone(), true), |facing| (vehicle.facing(facing), false))
+}
+
+/// Makes the elements of a layout.
+struct ElementMaker<'l> {
+    layout: &'l Layout,
+    vehicle: &'l VehicleTraits,
+    /// Whether turns are elements, and the robot is no disc.
+    has_outline: bool,
+    /// Whether a robot that drives backward faces so; otherwise all face along their ways.
+    is_known: bool,
+}
+
+impl ElementMaker<'_> {
+    fn along(&self, step: RouteStep<'_>, edge: usize) -> Result<RouteElement, InvalidInput> {
+        let mut shapes = step.curve();
+        shapes.retain(|placed| placed.shape.length() > 0.0);
+        let from = self.layout.nodes[step.origin()].point;
+        let speed = step.steady(self.vehicle.speed);
+        let facing = if self.has_outline && self.is_known && step.facing() == Facing::Backward { PI } else { 0.0 };
+        let abilities = KinematicLimits::of(self.vehicle);
+        // With this lever the turn takes as long at the speed of the edge as it would by itself.
+        let lever = |turn: f64| {
+            if turn.abs() > STRAIGHT { speed * abilities.turn(turn) / turn.abs() } else { LEVER }
+        };
+        let segments = path(&shapes, (from, 0.0), facing, self.has_outline.then_some(&lever))?;
+        let ends = shapes.first().zip(shapes.last());
+        let headings = ends.map(|(first, last)| [first.heading, last.heading_at_end()].map(|heading| heading + facing));
+        RouteElement {
+            ends: [step.origin(), step.target()],
+            speed,
+            headings,
+            bounds: bounds(&shapes, from),
+            shapes,
+            facing,
+            edge: Some(edge),
+            ..RouteElement::default()
+        }
+        .with(segments)
+    }
+
+    /// Adds a robot that stands at each node, and for outlines all headings with which one can stand there, and all turns.
+    fn at_nodes(
+        &self,
+        atoms: &mut Vec<RouteElement>,
+        points: &[[f64; 2]],
+        [coming, leaving]: [&[Vec<usize>]; 2],
+    ) -> Result<Vec<NodeElements>, InvalidInput> {
+        let mut all = vec![NodeElements::default(); points.len()];
+        if !self.has_outline {
+            for (node, &at) in points.iter().enumerate() {
+                atoms.push(RouteElement::standing(node, at, None)?);
+            }
+            return Ok(all);
+        }
+        let ends = |of: &[usize], end: usize| {
+            let headings = of.iter().filter_map(|&atom| atoms[atom].headings);
+            different(headings.map(|headings| headings[end]))
+        };
+        let headings: Vec<[Vec<f64>; 2]> =
+            coming.iter().zip(leaving).map(|(coming, leaving)| [ends(coming, 1), ends(leaving, 0)]).collect();
+        // Robots begin with the first heading with which one can arrive, or else leave.
+        let poses: Vec<Vec<f64>> = headings
+            .iter()
+            .map(|[arrive, leave]| match (&arrive[..], &leave[..]) {
+                ([], []) => vec![0.0],
+                ([], [first, ..]) => vec![*first],
+                _ => arrive.clone(),
+            })
+            .collect();
+        let further = |list: &Vec<f64>| list.iter().copied().skip(1).collect::<Vec<f64>>();
+        let firsts = poses.iter().map(|list| vec![list[0]]).enumerate();
+        for (node, list) in firsts.chain(poses.iter().map(further).enumerate()) {
+            for heading in list {
+                all[node].poses.push((heading, atoms.len()));
+                atoms.push(RouteElement::standing(node, points[node], Some(heading))?);
+            }
+        }
+        let abilities = KinematicLimits::of(self.vehicle);
+        for (node, [arrive, leave]) in headings.iter().enumerate() {
+            // One that has turned may be sent another way.
+            for from in different(poses[node].iter().chain(arrive).chain(leave).copied()) {
+                for &to in leave {
+                    let turn = wrapped(to - from);
+                    if turn.abs() > STRAIGHT {
+                        all[node].turns.push(([from, to], atoms.len()));
+                        atoms.push(RouteElement::turning(node, points[node], from, turn, abilities.turn(turn))?);
+                    }
+                }
+            }
+        }
+        Ok(all)
+    }
+}
+
+/// The headings without those that are nearly the same as one before \[rad\].
+fn different(headings: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut found: Vec<f64> = Vec::new();
+    for heading in headings {
+        if found.iter().all(|other| wrapped(other - heading).abs() > 0.5 * STRAIGHT) {
+            found.push(heading);
+        }
+    }
+    found
+}
+
+impl Default for RouteElement {
+    fn default() -> Self {
+        Self {
+            ends: [0; 2],
+            length: 0.0,
+            speed: 0.0,
+            headings: None,
+            shapes: Vec::new(),
+            segments: Vec::new(),
+            facing: 0.0,
+            phases: Vec::new(),
+            bounds: [[0.0; 2]; 2],
+            edge: None,
+        }
     }
 }
 
 impl RouteElement {
-    fn along(layout: &Layout, step: RouteStep<'_>, edge: usize, fastest: f64) -> Result<Self, InvalidInput> {
-        let mut shapes = step.curve();
-        shapes.retain(|placed| placed.shape.length() > 0.0);
-        let from = layout.nodes[step.origin()].point;
-        let segments = path(&shapes, from)?;
+    /// With its path, and a motion along it.
+    fn with(self, segments: Vec<Segment<f64>>) -> Result<Self, InvalidInput> {
         let length = PathRef::new(&segments)?.length();
-        let headings = shapes.first().zip(shapes.last()).map(|(first, last)| [first.heading, last.heading_at_end()]);
-        Ok(Self {
-            ends: [step.origin(), step.target()],
-            length,
-            speed: step.steady(fastest),
-            headings,
-            phases: if length > 0.0 { vec![Phase::starting_at(1.0, length, 0.0)?] } else { Vec::new() },
-            bounds: bounds(&shapes, from),
-            shapes,
-            segments,
-            edge: Some(edge),
-        })
+        let phases = if length > 0.0 { vec![Phase::starting_at(1.0, length, 0.0)?] } else { Vec::new() };
+        Ok(Self { length, segments, phases, ..self })
     }
 
-    fn node(node: usize, at: [f64; 2]) -> Result<Self, InvalidInput> {
-        let segments = path(&[], at)?;
-        let (shapes, phases, bounds) = (Vec::new(), Vec::new(), [at, at]);
-        Ok(Self {
-            ends: [node; 2],
-            length: 0.0,
-            speed: 0.0,
-            headings: None,
-            shapes,
-            segments,
-            phases,
-            bounds,
-            edge: None,
-        })
+    fn standing(node: usize, at: [f64; 2], heading: Option<f64>) -> Result<Self, InvalidInput> {
+        let segments = path(&[], (at, heading.unwrap_or(0.0)), 0.0, None)?;
+        let headings = heading.map(|heading| [heading; 2]);
+        Self { ends: [node; 2], headings, bounds: [at, at], ..Self::default() }.with(segments)
+    }
+
+    /// A turn in place that takes this time \[s\].
+    fn turning(node: usize, at: [f64; 2], from: f64, turn: f64, time: f64) -> Result<Self, InvalidInput> {
+        let pose = Pose { position: Point::new(at[0], at[1]), heading: Radians(from) };
+        let segment = Segment::standing(pose)?.then_pivot(LEVER, side(turn), LEVER * turn.abs())?;
+        let headings = Some([from, from + turn]);
+        let element = Self { ends: [node; 2], headings, bounds: [at, at], ..Self::default() }.with(vec![segment])?;
+        Ok(Self { speed: element.length / time, ..element })
+    }
+
+    /// Whether it is a turn at a node.
+    pub(super) fn is_turn(&self) -> bool {
+        self.edge.is_none() && self.length > 0.0
+    }
+
+    /// Heading of a robot at a length \[rad\].
+    pub(super) fn heading(&self, length: f64) -> f64 {
+        PathRef::new(&self.segments).map_or(0.0, |path| path.pose_at(length).heading.0) + self.facing
     }
 
     /// Largest distance between the ends of its curve and its nodes \[m\].
@@ -242,8 +472,8 @@ impl RouteElement {
     }
 
     /// The atom as a motion at 1 m/s.
-    fn motion(&self, radius: f64) -> Result<Motion<'_, f64>, InvalidInput> {
-        Motion::new(PathRef::new(&self.segments)?, ProfileRef::new(&self.phases)?, radius, 0.0)
+    fn motion<'m>(&'m self, body: &'m ConvexBody) -> Result<Motion<'m, f64>, InvalidInput> {
+        body.motion(PathRef::new(&self.segments)?, ProfileRef::new(&self.phases)?, 0.0)
     }
 
     /// Position of a robot at a length \[m\].
@@ -258,26 +488,41 @@ pub(super) fn wrapped(angle: f64) -> f64 {
     (angle + PI).rem_euclid(TAU) - PI
 }
 
-/// The segments, with turns in place where the shapes meet at an angle.
-fn path(shapes: &[PlacedSegment], at: [f64; 2]) -> Result<Vec<Segment<f64>>, InvalidInput> {
-    let heading = shapes.first().map_or(0.0, |first| first.heading);
+fn side(turn: f64) -> TurnSide {
+    if turn > 0.0 { TurnSide::Left } else { TurnSide::Right }
+}
+
+/// The segments, with turns in place where the shapes meet at an angle: without a length, or with the lever of the turn \[m\].
+fn path(
+    shapes: &[PlacedSegment],
+    (at, heading): ([f64; 2], f64),
+    facing: f64,
+    lever: Option<&dyn Fn(f64) -> f64>,
+) -> Result<Vec<Segment<f64>>, InvalidInput> {
+    let mut heading = shapes.first().map_or(heading, |first| first.heading);
     let start = shapes.first().map_or(at, |first| first.start);
     let mut last = Segment::standing(Pose { position: Point::new(start[0], start[1]), heading: Radians(heading) })?;
+    if facing != 0.0 {
+        last = last.facing(Radians(facing))?;
+    }
     let mut segments: Vec<Segment<f64>> = Vec::new();
-    let mut heading = heading;
     for placed in shapes {
         let turn = wrapped(placed.heading - heading);
         if turn != 0.0 {
-            last = last.turned(Radians(turn))?;
-            if let Some(before) = segments.last_mut() {
-                *before = last;
+            if let Some(lever) = lever {
+                let lever = lever(turn);
+                last = last.then_pivot(lever, side(turn), lever * turn.abs())?;
+                segments.push(last);
+            } else {
+                last = last.turned(Radians(turn))?;
+                if let Some(before) = segments.last_mut() {
+                    *before = last;
+                }
             }
         }
         last = match placed.shape {
             PathSegment::Line { length } => last.then_line(length)?,
-            PathSegment::Arc { radius, sweep } => {
-                last.then_arc(radius, if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right }, radius * sweep.abs())?
-            }
+            PathSegment::Arc { radius, sweep } => last.then_arc(radius, side(sweep), radius * sweep.abs())?,
         };
         heading = placed.heading_at_end();
         segments.push(last);
@@ -336,4 +581,56 @@ fn neighbours(atoms: &[RouteElement], reach: f64) -> Vec<Vec<usize>> {
         found
     });
     all.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lifelong::{CoordinationMethod, DelayModel, LifelongOptions, run, streets};
+    use pcr_formats::footprint::Footprint;
+
+    /// A pallet truck of 1.2 by 0.8 m, and the disc around it.
+    fn trucks(imported: &ImportedLayout) -> [ImportedLayout; 2] {
+        let corners = vec![[-0.6, -0.4], [0.6, -0.4], [0.6, 0.4], [-0.6, 0.4]];
+        let footprint = Footprint::new(corners, None).expect("a footprint");
+        [Some(footprint), None].map(|footprint| {
+            let mut imported = imported.clone();
+            (imported.vehicle.radius, imported.vehicle.footprint) = (0.52_f64.sqrt(), footprint);
+            imported
+        })
+    }
+
+    #[test]
+    fn outlines_turn_at_nodes_and_discs_do_not() {
+        let [exact, disc] = trucks(&streets(2)).map(|imported| RouteGraph::new(&imported).expect("a site"));
+        assert_eq!(disc.atoms.len(), disc.edges + disc.points.len());
+        assert!(exact.atoms.len() > disc.atoms.len() && exact.edges == disc.edges);
+        // Wherever outlines touch, so do their discs.
+        for a in 0..disc.atoms.len() {
+            for b in 0..disc.atoms.len() {
+                assert!(!exact.touch(a, b) || disc.touch(a, b), "{a} {b}");
+            }
+        }
+        let turns = exact.atoms.iter().filter(|atom| atom.is_turn());
+        for turn in turns {
+            let [from, to] = turn.headings.expect("headings");
+            assert!((turn.length - LEVER * (to - from).abs()).abs() < 1e-12);
+            assert!(wrapped(turn.heading(turn.length) - to).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn fleets_of_outlines_run_and_are_certified() {
+        for method in [CoordinationMethod::Orders, CoordinationMethod::EdgeLocks] {
+            let request =
+                LifelongOptions { agents: 4, duration: 600.0, delays: DelayModel::default(), seed: 3, method };
+            for imported in trucks(&streets(2)) {
+                let outcome = run(&imported, request).expect("a run").outcome;
+                println!("{outcome:?}");
+                let certificate = &outcome.certificate;
+                assert_eq!((certificate.verdict, outcome.authority_overruns, outcome.stuck), ("proved", 0, 0));
+                assert!(outcome.missions > 10 && certificate.steps > 0, "{outcome:?}");
+            }
+        }
+    }
 }

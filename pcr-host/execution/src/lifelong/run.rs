@@ -4,6 +4,7 @@ use super::motion_record::{CheckWindow, RunCertificate};
 use super::outcome::{LifelongResult, MeasuredLifelongRun, TimeShares};
 use super::random_draws::{STEP, disturb};
 use super::robot::LifelongRobot;
+use super::route_graph::RouteGraph;
 use super::run_state::{LifelongState, RobotMission};
 use super::tasks::TaskStream;
 use super::{CoordinationMethod, LifelongOptions};
@@ -42,7 +43,7 @@ pub fn watched(
     request: LifelongOptions,
     told: &dyn Fn(f64),
 ) -> Result<MeasuredLifelongRun, String> {
-    driven(LifelongState::new(imported, request, None)?, imported, request, told)
+    driven(LifelongState::new(imported, request, None)?, request, told)
 }
 
 /// Runs a fleet on a layout with shared tasks and the starts that belong to them, until all tasks are done or the time of the
@@ -56,12 +57,11 @@ pub fn run_tasks(
     request: LifelongOptions,
     tasks: &TaskStream,
 ) -> Result<MeasuredLifelongRun, String> {
-    driven(LifelongState::new(imported, request, Some(tasks))?, imported, request, &|_| {})
+    driven(LifelongState::new(imported, request, Some(tasks))?, request, &|_| {})
 }
 
 fn driven(
     mut run: LifelongState,
-    imported: &ImportedLayout,
     request: LifelongOptions,
     told: &dyn Fn(f64),
 ) -> Result<MeasuredLifelongRun, String> {
@@ -76,7 +76,7 @@ fn driven(
         let ended = !open && (still > REST || run.robots.iter().all(LifelongRobot::has_arrived));
         if (tick > 0 && tick % WINDOW == 0) || ended {
             told(now.min(request.duration));
-            certificate.window(&run.site, &mut run.robots, &mut window, imported.vehicle.radius, now);
+            certificate.window(&run.site, &mut run.robots, &mut window, now);
         }
         if ended {
             break;
@@ -131,7 +131,7 @@ impl LifelongState {
             if open {
                 // A hold that lies beyond the next step and its stopping way holds the robot back from nothing.
                 let held = hold < fars[robot];
-                *share(&mut self.outcome.time, it, held.then_some(hold), now) += 1.0;
+                *share(&mut self.outcome.time, &self.site, it, held.then_some(hold), now) += 1.0;
             }
             let before = it.at;
             let has_come = it.drive(hold, now, STEP, &self.abilities);
@@ -213,7 +213,13 @@ impl LifelongState {
 }
 
 /// The share to which the present activity of a robot belongs.
-fn share<'s>(shares: &'s mut TimeShares, robot: &LifelongRobot, hold: Option<f64>, now: f64) -> &'s mut f64 {
+fn share<'s>(
+    shares: &'s mut TimeShares,
+    site: &RouteGraph,
+    robot: &LifelongRobot,
+    hold: Option<f64>,
+    now: f64,
+) -> &'s mut f64 {
     /// A robot within this distance of its hold waits there \[m\].
     const NEAR: f64 = 0.01;
     if robot.stopped_until > now {
@@ -224,6 +230,8 @@ fn share<'s>(shares: &'s mut TimeShares, robot: &LifelongRobot, hold: Option<f64
         &mut shares.turning
     } else if robot.speed == 0.0 && hold.is_some_and(|hold| hold - robot.at < NEAR) {
         &mut shares.waiting
+    } else if site.atoms[robot.way.atoms[robot.way.atom(robot.at)]].is_turn() {
+        &mut shares.turning
     } else if robot.way.goals.is_empty() {
         &mut shares.yielding
     } else {

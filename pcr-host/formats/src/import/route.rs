@@ -76,7 +76,7 @@ impl RouteStep<'_> {
     }
 
     /// Largest difference of the headings at the same length of travel \[rad\].
-    pub(super) fn turned(self) -> f64 {
+    pub fn turned(self) -> f64 {
         self.edge.turned + if self.backward { turn_over(&self.edge.curve, self.edge.longer) } else { 0.0 }
     }
 
