@@ -82,7 +82,7 @@ pub use lifelong_report::{LifelongReport, LifelongRunEntry};
 pub use motion_record::RunCertificate;
 pub use outcome::{LifelongResult, MeasuredLifelongRun, TimeShares};
 pub use run::{run, run_tasks, watched};
-pub use streets::streets;
+pub use streets::{aisles, streets};
 pub use tasks::TaskStream;
 
 pub use gates::{Gate, gates};

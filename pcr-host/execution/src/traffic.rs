@@ -196,3 +196,81 @@ impl TrafficEntry {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lifelong::aisles;
+    use pcr_formats::footprint::Footprint;
+    use pcr_formats::scenario::PlacedSegment;
+
+    /// Where an agent is at a time, and how it heads.
+    fn pose(agent: &Agent, time: f64) -> ([f64; 2], f64) {
+        let mut left = time - agent.t_start;
+        let [x, y, heading] = agent.start;
+        let (mut at, mut heading) = ([x, y], heading);
+        for (&shape, parts) in agent.path.iter().zip(agent.parts()) {
+            let placed = PlacedSegment { start: at, heading, shape };
+            let mut length = 0.0;
+            for part in parts {
+                let taken = left.clamp(0.0, part.duration);
+                let gain = (part.after - part.before) / part.duration.max(1e-300);
+                length += part.before * taken + 0.5 * gain * taken * taken;
+                left -= taken;
+            }
+            let here = placed.part(0.0, length.min(shape.length()));
+            (at, heading) = (here.end(), here.heading_at_end());
+            if left <= 0.0 {
+                break;
+            }
+        }
+        (at, heading)
+    }
+
+    /// Distance of two rectangles that are this long and wide \[m\], below 0 if they overlap: the largest gap along the normals of their sides.
+    fn apart(poses: [([f64; 2], f64); 2], [long, wide]: [f64; 2]) -> f64 {
+        let corners = poses.map(|([x, y], heading)| {
+            let (sin, cos) = heading.sin_cos();
+            [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]].map(|[a, b]| {
+                let (ahead, left) = (0.5 * long * a, 0.5 * wide * b);
+                [x + ahead * cos - left * sin, y + ahead * sin + left * cos]
+            })
+        });
+        let normals = poses.iter().flat_map(|(_, heading)| {
+            let (sin, cos) = heading.sin_cos();
+            [[cos, sin], [-sin, cos]]
+        });
+        let gap = |[u, v]: [f64; 2]| {
+            let spans = corners.map(|corners| {
+                let along = corners.map(|[x, y]| x * u + y * v);
+                [along.iter().copied().fold(f64::INFINITY, f64::min), along.iter().copied().fold(f64::MIN, f64::max)]
+            });
+            f64::max(spans[0][0] - spans[1][1], spans[1][0] - spans[0][1])
+        };
+        normals.map(gap).fold(f64::MIN, f64::max)
+    }
+
+    #[test]
+    fn missions_of_outlines_are_planned_as_they_are() {
+        let mut imported = aisles(2);
+        imported.vehicle.radius = 0.52_f64.sqrt();
+        let request = TrafficOptions { agents: 12, seed: 1 };
+        let (discs, _) = TrafficReport::plan(&imported, request).expect("a plan of discs");
+        let corners = vec![[-0.6, -0.4], [0.6, -0.4], [0.6, 0.4], [-0.6, 0.4]];
+        imported.vehicle.footprint = Some(Footprint::new(corners, None).expect("a footprint"));
+        let (exact, [_, plan]) = TrafficReport::plan(&imported, request).expect("a plan");
+        assert!(exact.is_sound() && exact.planned >= discs.planned && exact.planned > 4, "{exact:?}");
+        let ends = exact.missions.iter().filter_map(|mission| mission.t_end).fold(0.0, f64::max);
+        let mut nearest = f64::INFINITY;
+        for k in 0..=4_000 {
+            let poses: Vec<_> = plan.agents.iter().map(|agent| pose(agent, ends * f64::from(k) / 4_000.0)).collect();
+            for (place, own) in poses.iter().enumerate() {
+                for other in &poses[place + 1..] {
+                    nearest = nearest.min(apart([*own, *other], [1.2, 0.8]));
+                }
+            }
+        }
+        // Two discs whose outlines pass each other in an aisle are 0.1 m from one another.
+        assert!((0.0..0.3).contains(&nearest), "{nearest}");
+    }
+}

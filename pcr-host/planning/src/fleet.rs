@@ -12,6 +12,7 @@ mod tests;
 mod turns;
 
 use crate::memory_budget;
+pub use hull::{ConvexBody, HullOutline};
 use pcr_certify::raw::RawAngle;
 use pcr_core::{
     CapacityError, Curve, Ecm, EcmEntry, EcmError, Interval, InvalidInput, Limits, Motion, Outline, PathRef, Phase,
@@ -19,7 +20,6 @@ use pcr_core::{
 };
 use pcr_formats::scenario::TURN;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, figure};
-pub use hull::{ConvexBody, HullOutline};
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 

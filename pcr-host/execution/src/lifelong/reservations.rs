@@ -84,9 +84,7 @@ impl RouteReservations {
         let claim = |robot: usize| {
             let it = &robots[robot];
             match other {
-                Some((changed, way, at, given)) if changed == robot => {
-                    ElementReservation::new(way, at, given, false)
-                }
+                Some((changed, way, at, given)) if changed == robot => ElementReservation::new(way, at, given, false),
                 _ => ElementReservation::new(&it.way, it.at, self.0[robot], it.has_arrived()),
             }
         };

@@ -586,7 +586,7 @@ fn neighbours(atoms: &[RouteElement], reach: f64) -> Vec<Vec<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lifelong::{CoordinationMethod, DelayModel, LifelongOptions, run, streets};
+    use crate::lifelong::{CoordinationMethod, DelayModel, LifelongOptions, aisles, run, streets};
     use pcr_formats::footprint::Footprint;
 
     /// A pallet truck of 1.2 by 0.8 m, and the disc around it.
@@ -626,11 +626,33 @@ mod tests {
                 LifelongOptions { agents: 4, duration: 600.0, delays: DelayModel::default(), seed: 3, method };
             for imported in trucks(&streets(2)) {
                 let outcome = run(&imported, request).expect("a run").outcome;
-                println!("{outcome:?}");
                 let certificate = &outcome.certificate;
                 assert_eq!((certificate.verdict, outcome.authority_overruns, outcome.stuck), ("proved", 0, 0));
                 assert!(outcome.missions > 10 && certificate.steps > 0, "{outcome:?}");
             }
         }
+    }
+
+    #[test]
+    fn trucks_pass_each_other_in_aisles_of_two_lanes() {
+        let (delays, method) = (DelayModel::default(), CoordinationMethod::Orders);
+        let request = LifelongOptions { agents: 12, duration: 600.0, delays, seed: 1, method };
+        let [exact, disc] = trucks(&aisles(4)).map(|imported| run(&imported, request).expect("a run").outcome);
+        for outcome in [&exact, &disc] {
+            assert_eq!((outcome.certificate.verdict, outcome.authority_overruns, outcome.stuck), ("proved", 0, 0));
+        }
+        assert!(exact.missions_per_hour >= 1.3 * disc.missions_per_hour, "{exact:?} {disc:?}");
+    }
+
+    /// What is certified are the outlines, not what the orders were made for.
+    #[test]
+    fn trucks_that_are_larger_than_their_orders_are_found_in_contact() {
+        let (delays, method) = (DelayModel::default(), CoordinationMethod::Orders);
+        let request = LifelongOptions { agents: 12, duration: 600.0, delays, seed: 1, method };
+        let [mut exact, _] = trucks(&aisles(4));
+        let footprint = exact.vehicle.footprint.take().expect("a footprint");
+        (exact.vehicle.footprint, exact.vehicle.margin) = (Some(footprint.inflated(0.2)), -0.19);
+        let outcome = run(&exact, request).expect("a run").outcome;
+        assert!(outcome.certificate.verdict == "contact" && outcome.certificate.contacts > 0, "{outcome:?}");
     }
 }

@@ -60,11 +60,7 @@ pub fn run_tasks(
     driven(LifelongState::new(imported, request, Some(tasks))?, request, &|_| {})
 }
 
-fn driven(
-    mut run: LifelongState,
-    request: LifelongOptions,
-    told: &dyn Fn(f64),
-) -> Result<MeasuredLifelongRun, String> {
+fn driven(mut run: LifelongState, request: LifelongOptions, told: &dyn Fn(f64)) -> Result<MeasuredLifelongRun, String> {
     let steady = if run.tasks.is_none() { run.alone(START * request.duration) } else { 0 };
     let alone = steady as f64 * 3600.0 / ((1.0 - START) * request.duration);
     let mut certificate = RunCertificate::new();

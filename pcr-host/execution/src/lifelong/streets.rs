@@ -48,6 +48,44 @@ pub fn streets(count: usize) -> ImportedLayout {
     ImportedLayout { layout, vehicle: VEHICLE }
 }
 
+/// Distance between the middles of the two lanes of an aisle \[m\].
+const LANES: f64 = 0.9;
+
+/// Distance between two aisles, and length of an aisle between two cross aisles \[m\].
+const AISLES: [f64; 2] = [6.0, 12.0];
+
+/// `count` aisles of a warehouse, at least 2, between two cross aisles, with bays on both sides; all of them have a lane for each direction, so
+/// near each other that vehicles pass each other only if they are narrow.
+pub fn aisles(count: usize) -> ImportedLayout {
+    let count = count.max(2);
+    let mut plan = StreetLayout::default();
+    let half = 0.5 * LANES;
+    // At a crossing, lanes form a ring: those to the east, north, west and south begin at the corners south-east, north-east and so on.
+    let corners = [[half, -half], [half, half], [-half, half], [-half, -half]];
+    let rings: Vec<[usize; 4]> = (0..2 * count)
+        .map(|place| {
+            let at = [(place % count) as f64 * AISLES[0], (place / count) as f64 * AISLES[1]];
+            let ring = corners.map(|corner| plan.node([at[0] + corner[0], at[1] + corner[1]]));
+            (0..4).for_each(|k| plan.edge([ring[(k + 3) % 4], ring[k]], false));
+            ring
+        })
+        .collect();
+    for aisle in 0..count {
+        let [south, north] = [rings[aisle], rings[count + aisle]];
+        plan.lane([south[1], north[0]]);
+        plan.lane([north[3], south[2]]);
+        for row in [0, count].into_iter().filter(|_| aisle > 0) {
+            let [west, east] = [rings[row + aisle - 1], rings[row + aisle]];
+            plan.edge([west[0], east[3]], false);
+            plan.edge([east[2], west[1]], false);
+        }
+    }
+    let name = format!("{count} aisles of two lanes");
+    let layout =
+        Layout { name, levels: vec![String::new()], nodes: plan.nodes, edges: plan.edges, ..Layout::default() };
+    ImportedLayout { layout, vehicle: VEHICLE }
+}
+
 #[derive(Default)]
 struct StreetLayout {
     nodes: Vec<LayoutNode>,
@@ -66,6 +104,26 @@ impl StreetLayout {
         let curve = vec![PlacedSegment { start: [x, y], heading: (v - y).atan2(u - x), shape }];
         let id = ElementId::Number(self.edges.len() as u64);
         self.edges.push(LayoutEdge { ways: [true, two_way], ..LayoutEdge::new(id, ends, curve) });
+    }
+
+    /// The lane of an aisle, with bays to its right.
+    fn lane(&mut self, ends: [usize; 2]) {
+        /// Number of bays.
+        const BAYS: usize = 3;
+        let [[x, y], [u, v]] = ends.map(|node| self.nodes[node].point);
+        let length = (u - x).hypot(v - y);
+        let right = [(v - y) / length * BAY, (x - u) / length * BAY];
+        let mut last = ends[0];
+        for k in 1..=BAYS {
+            let share = k as f64 / (BAYS + 1) as f64;
+            let at = [x + (u - x) * share, y + (v - y) * share];
+            let node = self.node(at);
+            let bay = self.node([at[0] + right[0], at[1] + right[1]]);
+            self.edge([last, node], false);
+            self.edge([node, bay], true);
+            last = node;
+        }
+        self.edge([last, ends[1]], false);
     }
 
     /// The part of a street between two crossings, with its bays.

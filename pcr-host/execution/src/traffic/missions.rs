@@ -1,11 +1,13 @@
 //! Random missions: pairs of nodes with a way between them, which some order of starts allows.
 
 use super::startable_agents::StartableAgents;
-use pcr_formats::import::{ImportedLayout, mission};
-use pcr_formats::plane_geometry::distance;
+use pcr_core::{Path, Point, Pose, ProfileRef, Radians};
+use pcr_formats::import::{ImportedLayout, VehicleTraits, mission};
+use pcr_formats::plane_geometry::{distance, wrapped};
 use pcr_formats::scenario::Agent;
 use pcr_formats::scenario::PlacedSegment;
 use pcr_formats::splitmix64::SplitMix64;
+use pcr_planning::fleet::{ConvexBody, build_ecm};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -23,24 +25,44 @@ pub(super) struct RandomMission {
 }
 
 impl RandomMission {
-    /// Positions of the agent before and after \[m\].
-    fn stands(&self) -> [[f64; 2]; 2] {
+    /// Poses of the agent before and after.
+    fn stands(&self) -> [Pose<f64>; 2] {
         let Agent { start: [x, y, heading], ref path, .. } = self.agent;
         let end = path.iter().fold((([x, y]), heading), |(at, heading), &shape| {
             let placed = PlacedSegment { start: at, heading, shape };
             (placed.end(), placed.heading_at_end())
         });
-        [[x, y], end.0]
+        [([x, y], heading), end]
+            .map(|([x, y], heading)| Pose { position: Point::new(x, y), heading: Radians(wrapped(heading)) })
     }
 
     /// Whether its agent and another one can stand at their starts at the same time, and at their ends.
     fn is_clear_of(&self, other: &Self) -> bool {
-        let reach = [self, other]
-            .map(|mission| mission.agent.circumscribed_radius() + mission.agent.margin)
-            .iter()
-            .sum::<f64>();
-        let pairs = self.stands().into_iter().zip(other.stands());
-        pairs.into_iter().all(|(own, other)| distance(own, other) > reach * CLEAR)
+        let kept = |mission: &Self| mission.agent.circumscribed_radius() + mission.agent.margin;
+        let reach = kept(self) + kept(other);
+        let mut pairs = self.stands().into_iter().zip(other.stands());
+        pairs.all(|(own, its)| {
+            let apart = distance([own.position.x, own.position.y], [its.position.x, its.position.y]);
+            apart > reach * CLEAR || self.has_outline_clear_of(own, other, its)
+        })
+    }
+
+    /// Whether its outline in a pose is clear of that of another one, with their margins; discs are not that are too near one another.
+    fn has_outline_clear_of(&self, own: Pose<f64>, other: &Self, its: Pose<f64>) -> bool {
+        if self.agent.footprint.is_none() && other.agent.footprint.is_none() {
+            return false;
+        }
+        let body = |mission: &Self| {
+            let body = ConvexBody::of_agent(&mission.agent)?;
+            body.inflated(mission.agent.margin + (CLEAR - 1.0) * body.reach())
+        };
+        let bodies = [body(self), body(other)];
+        let paths = [own, its].map(|pose| Path::<f64, 1>::starting_at(pose));
+        let ([Ok(a), Ok(b)], [Ok(first), Ok(second)]) = (bodies, paths) else { return false };
+        let stands = ProfileRef::new(&[]);
+        let motions = stands
+            .and_then(|stands| Ok([a.motion(first.as_path(), stands, 0.0)?, b.motion(second.as_path(), stands, 0.0)?]));
+        motions.is_ok_and(|motions| build_ecm(&motions).is_ok_and(|ecm| ecm.is_empty()))
     }
 }
 
@@ -52,6 +74,12 @@ pub(super) struct MissionSample {
     pub(super) passed_over: BTreeMap<String, usize>,
 }
 
+/// Radius of a disc that a vehicle covers whichever way it faces, with its margin \[m\].
+fn core_radius(vehicle: &VehicleTraits) -> f64 {
+    let inner = vehicle.footprint.as_ref().map_or(vehicle.radius, |footprint| footprint.inner_radius().max(0.0));
+    inner + vehicle.margin
+}
+
 /// An upper bound for the number of agents that can stand at nodes of the level with the most nodes at one time: at most one in each
 /// square whose diagonal is the distance that two of them keep.
 pub(super) fn room(imported: &ImportedLayout) -> usize {
@@ -61,7 +89,7 @@ pub(super) fn room(imported: &ImportedLayout) -> usize {
     const FAR: f64 = 1e9;
     let ImportedLayout { layout, vehicle } = imported;
     let level = layout.largest_level();
-    let side = 2.0 * (vehicle.radius + vehicle.margin) * FRAC_1_SQRT_2 * SMALLER;
+    let side = 2.0 * core_radius(vehicle) * FRAC_1_SQRT_2 * SMALLER;
     let there = || layout.nodes.iter().filter(|node| node.level == level);
     let square = |at: [f64; 2]| at.map(|coordinate| (coordinate / side).floor());
     if there().any(|node| square(node.point).iter().any(|number| !(0.0..FAR).contains(&number.abs()))) {
@@ -97,7 +125,7 @@ fn attempt(imported: &ImportedLayout, count: usize, mut random: SplitMix64) -> M
     let ImportedLayout { layout, vehicle } = imported;
     let level = layout.largest_level();
     let there: Vec<usize> = (0..layout.nodes.len()).filter(|&node| layout.nodes[node].level == level).collect();
-    let reach = 2.0 * (vehicle.radius + vehicle.margin) * CLEAR;
+    let reach = 2.0 * core_radius(vehicle) * CLEAR;
     let mut drawn = MissionSample::default();
     let mut crowd = StartableAgents::default();
     // Pairs that were no mission, and why if that is told: with more agents they are none, either.
