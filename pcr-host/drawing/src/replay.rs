@@ -113,8 +113,8 @@ fn journeys(task: &SimulationTask, journeys: &[MissionRecord]) -> Vec<Value> {
 
 /// The map of every robot that moves.
 fn plan(task: &SimulationTask, snapshot: &PlanSnapshot) -> Result<Value, ComputationError> {
-    let robots = task.robots.iter().zip(snapshot.drives.iter().zip(&snapshot.radii));
-    let motions = robots.map(|(robot, (drive, &radius))| drive.motion(radius).ok_or(ComputationError::Robot(robot.id)));
+    let robots = task.robots.iter().zip(snapshot.drives.iter().zip(&snapshot.bodies));
+    let motions = robots.map(|(robot, (drive, body))| drive.motion_of(body).ok_or(ComputationError::Robot(robot.id)));
     let motions = motions.collect::<Result<Vec<Motion<'_, f64>>, _>>()?;
     let ecm = build_ecm(&motions)?;
     let end = motions.iter().map(|motion| motion.time().hi).fold(snapshot.time, f64::max);
@@ -153,6 +153,7 @@ mod tests {
     use super::*;
     use pcr_execution::simulate::{ClosedLoopOptions, Disturbance, run};
     use pcr_formats::scenario::Scenario;
+    use pcr_planning::fleet::ConvexBody;
 
     #[test]
     fn a_plan_without_a_map_is_no_empty_map() {
@@ -164,7 +165,7 @@ mod tests {
         let settings = ClosedLoopOptions { seed: 1, replan: 2.0, disturbance };
         let mut outcome = run(&task, ControllerKind::Pcr, settings).expect("a run");
         assert!(page(&task, std::slice::from_ref(&outcome)).is_ok_and(|page| page.contains("outline")));
-        outcome.snapshots[0].radii[1] = f64::NAN;
+        outcome.snapshots[0].bodies[1] = ConvexBody::Disc(f64::NAN);
         assert_eq!(page(&task, &[outcome]), Err(ComputationError::Robot(8)));
     }
 }

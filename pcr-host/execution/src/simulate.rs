@@ -18,7 +18,7 @@
 //!   potential   artificial potential field
 //!   orca        optimal reciprocal collision avoidance
 //! world       true positions and missions, frame by frame
-//! contact     collisions on the true positions
+//! contact     collisions on the true positions, of discs and of outlines
 //! outcome     results                                             Outcome, Run, Trace
 //! ```
 //!
@@ -32,6 +32,9 @@ mod noise;
 mod observer;
 mod orca;
 mod outcome;
+mod outline_contact;
+#[cfg(test)]
+mod outline_tests;
 mod pcr_controller;
 mod potential;
 mod precedence_guard;
@@ -49,7 +52,7 @@ pub use outcome::{
     BlockedRobotEntry, CollisionEntry, ControllerRunEntry, MissionEntry, MissionRecord, MotionTrace, PlanningEntry,
     RunEnd, SimulationReport, SimulationRun,
 };
-pub use simulation_task::{DiscObstacle, ReleasedMission, RobotTask, SimulationTask};
+pub use simulation_task::{ReleasedMission, RobotTask, SimulationTask, StandingObstacle};
 pub use speed_limited_path::{OwnedMotion, SpeedLimitedPath};
 pub use true_state::{Disturbance, HELD_EVERY};
 pub use vector::PlaneVector;
@@ -57,6 +60,7 @@ pub use vector::PlaneVector;
 use orca::OrcaController;
 use pcr_controller::{PcrController, PlanningStatistics};
 use pcr_planning::failure::ComputationError;
+use pcr_planning::fleet::ConvexBody;
 use pcr_planning::memory_budget;
 use potential::PotentialFieldController;
 use replan::BlockedRobot;
@@ -134,8 +138,8 @@ pub struct PlanSnapshot {
     pub drives: Vec<OwnedMotion>,
     /// Length that each robot had travelled on its course before the plan \[m\].
     pub offsets: Vec<f64>,
-    /// Radii with margins \[m\].
-    pub radii: Vec<f64>,
+    /// Bodies with margins.
+    pub bodies: Vec<ConvexBody>,
 }
 
 /// A controller, which tells robots how to move.

@@ -115,6 +115,8 @@ codes! {
     OwnMotion = "own-motion",
     /// The motion of an agent is replaced by one from rest to rest in the simulation.
     ReplacedMotion = "replaced-motion",
+    /// An outline is concave, or changes on the way, and its convex hull is used.
+    ConvexHull = "convex-hull",
     /// Times of the simulation count from the first start, not from 0.
     ShiftedTimes = "shifted-times",
     /// Agents without a path touch one another.
@@ -139,7 +141,7 @@ codes! {
     OtherVehicle = "other-vehicle",
     /// Lanes of other graphs are left as they are.
     OtherGraphs = "other-graphs",
-    /// Zones are for the disc around the outline of the vehicle.
+    /// Zones are, or a controller is, for the disc around the outline of the vehicle.
     DiscAroundOutline = "disc-around-outline",
     /// Hardly any memory is left to the process.
     Memory = "memory",

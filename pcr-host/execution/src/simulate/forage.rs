@@ -16,11 +16,12 @@
 
 use super::noise::{NoiseSource, NoiseStream};
 use super::shortest_paths::{RoundObstacle, taut};
-use super::simulation_task::{DiscObstacle, ReleasedMission, RobotTask, SimulationTask};
+use super::simulation_task::{ReleasedMission, RobotTask, SimulationTask, StandingObstacle};
 use super::speed_limited_path::SpeedLimitedPath;
 use super::vector::PlaneVector;
 use pcr_core::Limits;
 use pcr_formats::scenario::Labels;
+use pcr_planning::fleet::ConvexBody;
 
 /// Radius of a robot \[m\].
 const RADIUS: f64 = 0.035;
@@ -59,9 +60,19 @@ pub fn task(seed: u64, trips: u32) -> SimulationTask {
         let trip = out.into_iter().chain(back).map(|course| ReleasedMission { release: 0.0, course });
         let trip: Vec<ReleasedMission> = trip.collect();
         let missions = (0..trips).flat_map(|_| trip.clone()).collect();
-        RobotTask { id: place as u64 + 1, radius: RADIUS, margin: 0.0, limits: LIMITS, missions }
+        RobotTask {
+            id: place as u64 + 1,
+            radius: RADIUS,
+            body: ConvexBody::Disc(RADIUS),
+            margin: 0.0,
+            limits: LIMITS,
+            missions,
+        }
     });
-    let obstacles = OBSTACLES.map(|centre| DiscObstacle { id: None, centre, radius: OBSTACLE, margin: 0.0 });
+    let obstacles = OBSTACLES.map(|centre| {
+        let body = ConvexBody::Disc(OBSTACLE);
+        StandingObstacle { id: None, centre, heading: 0.0, radius: OBSTACLE, body, margin: 0.0 }
+    });
     SimulationTask {
         name: "foraging".into(),
         labels: Labels::default(),

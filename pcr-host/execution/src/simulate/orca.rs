@@ -4,7 +4,7 @@
 //! ahead. Discs are enlarged by the error of the camera. A robot heads for a point of its path a little ahead, because
 //! ORCA finds no way around obstacles. Obstacles are octagons around their discs.
 
-use super::simulation_task::{DiscObstacle, SimulationTask};
+use super::simulation_task::{SimulationTask, StandingObstacle};
 use super::speed_limited_path::SpeedLimitedPath;
 use super::steering::{ReactiveRobot, goal_tolerance, steered};
 use super::true_state::MotionCommand;
@@ -46,7 +46,7 @@ fn vec2(vector: PlaneVector) -> Vec2 {
 }
 
 /// The octagon around a disc, counter-clockwise: its inside is solid.
-fn polygon(obstacle: &DiscObstacle) -> Polygon {
+fn polygon(obstacle: &StandingObstacle) -> Polygon {
     let reach = obstacle.radius / (TAU / f64::from(2 * CORNERS)).cos();
     let corner = |k: u32| {
         let (sin, cos) = (TAU * f64::from(k) / f64::from(CORNERS)).sin_cos();

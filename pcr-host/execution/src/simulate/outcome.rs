@@ -1,6 +1,7 @@
 //! Results of a run: a record of the true positions, and the figures that follow from it.
 
 use super::frame_contact::{contacts, separation};
+use super::outline_contact::{BodyTrack, meetings};
 use super::pcr_controller::PlanningStatistics;
 use super::replan::{BlockedRobot, Blocker};
 use super::simulation_task::SimulationTask;
@@ -32,6 +33,8 @@ pub struct SimulationRun {
 pub struct MotionTrace {
     /// True positions \[m\] of each robot, at each frame; in between it moves uniformly.
     pub positions: Vec<Vec<PlaneVector>>,
+    /// True headings \[rad\] likewise; 0 for discs. In between it turns uniformly.
+    pub headings: Vec<Vec<f64>>,
     /// Lengths along the paths of their missions \[m\] likewise; 0 for robots that are not bound to a path.
     pub travelled: Vec<Vec<f64>>,
     /// The missions, by their begin.
@@ -89,6 +92,19 @@ impl SimulationReport {
             let why = "its path ends where it begins; the controller potential goes straight to the end, and has nothing to do";
             warnings.extend(closed(task).map(|id| WarningCode::ClosedPath.text(format_args!("agent {id}: {why}"))));
         }
+        let knows_discs = |outcome: &&SimulationRun| outcome.run.controller != ControllerKind::Pcr;
+        let outlines = task.robots.iter().map(|robot| (robot.id, &robot.body));
+        let mut outlines = outlines.filter(|(_, body)| !body.is_disc()).map(|(id, _)| id);
+        if let Some(run) = outcomes.iter().find(knows_discs)
+            && let Some(id) = outlines.next()
+        {
+            let others = outlines.count();
+            let which = if others > 0 { format!("agent {id} and {others} more") } else { format!("agent {id}") };
+            let name = run.run.controller.name();
+            warnings.push(WarningCode::DiscAroundOutline.text(format_args!(
+                "{which}: controllers like {name} know discs only; under these each is the disc around its outline"
+            )));
+        }
         Self { name, labels, seed, replan, noise, drift, slip, delay, runs, warnings }
     }
 
@@ -132,9 +148,9 @@ pub struct ControllerRunEntry {
     pub waiting: f64,
     /// The missions, by their begin.
     pub missions: Vec<MissionEntry>,
-    /// Discs in contact.
+    /// Robots in contact.
     pub collisions: Vec<CollisionEntry>,
-    /// Least distance between two discs \[m\]; negative where they overlap.
+    /// Least distance between two robots or obstacles \[m\]; negative where they overlap.
     pub clearance: Option<f64>,
     /// Robots that stand with a mission that is not done, and for which others they wait.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -171,7 +187,7 @@ pub struct BlockedRobotEntry {
     pub blocked_by: Option<u64>,
 }
 
-/// Two discs in contact.
+/// Two robots in contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CollisionEntry {
     /// Number of a robot.
@@ -222,7 +238,7 @@ impl ControllerRunEntry {
             done.count() == task.robots[robot].missions.len()
         };
         let given_up = trace.positions.first().map_or(0.0, |track| (track.len() - 1) as f64 * FRAME);
-        let (collisions, clearance) = collisions(task, trace);
+        let (collisions, clearance) = collisions(task, trace, controller == ControllerKind::Pcr);
         Self {
             controller,
             done: done.len(),
@@ -281,24 +297,33 @@ fn arrival(task: &SimulationTask, trace: &MotionTrace, journey: &MissionRecord) 
     })
 }
 
-/// All contacts of robots with one another and with obstacles, by their begin; and the least distance.
-fn collisions(task: &SimulationTask, trace: &MotionTrace) -> (Vec<CollisionEntry>, Option<f64>) {
+/// All contacts of robots with one another and with obstacles, by their begin; and the least distance. Under controllers of discs, which leave
+/// the paths, only discs have a place, and no heading.
+fn collisions(task: &SimulationTask, trace: &MotionTrace, has_outlines: bool) -> (Vec<CollisionEntry>, Option<f64>) {
     let robots: Vec<_> = task.robots.iter().zip(&trace.positions).collect();
     let (mut collisions, mut clearance) = (Vec::new(), None::<f64>);
-    let mut look = |i: u64, j: Option<u64>, tracks: [&[PlaneVector]; 2], radius: f64| {
-        let apart = separation(tracks[0], tracks[1]) - radius;
+    let mut look = |i: u64, j: Option<u64>, tracks: [&[PlaneVector]; 2], radius: f64, bodies: [BodyTrack<'_>; 2]| {
+        let (found, apart) = if has_outlines && bodies.iter().any(|body| !body.is_disc()) {
+            meetings(&bodies[0], &bodies[1])
+        } else {
+            (contacts(tracks[0], tracks[1], radius), separation(tracks[0], tracks[1]) - radius)
+        };
         clearance = Some(clearance.map_or(apart, |least| least.min(apart)));
-        collisions.extend(contacts(tracks[0], tracks[1], radius).into_iter().map(|contact| {
+        collisions.extend(found.into_iter().map(|contact| {
             let t = contact.frames.map(|frame| frame as f64 * FRAME);
             CollisionEntry { i, j, t, depth: contact.depth }
         }));
     };
+    let body = |place: usize| BodyTrack::new(&task.robots[place].body, &trace.positions[place], &trace.headings[place]);
     for (place, (robot, track)) in robots.iter().enumerate() {
-        for (other, other_track) in robots.iter().skip(place + 1) {
-            look(robot.id, Some(other.id), [track, other_track], robot.radius + other.radius);
+        for (after, (other, other_track)) in robots.iter().skip(place + 1).enumerate() {
+            let bodies = [body(place), body(after + place + 1)];
+            look(robot.id, Some(other.id), [track, other_track], robot.radius + other.radius, bodies);
         }
         for obstacle in &task.obstacles {
-            look(robot.id, obstacle.id, [track, &vec![obstacle.centre; track.len()]], robot.radius + obstacle.radius);
+            let (stands, heading) = (vec![obstacle.centre; track.len()], vec![obstacle.heading; track.len()]);
+            let bodies = [body(place), BodyTrack::new(&obstacle.body, &stands, &heading)];
+            look(robot.id, obstacle.id, [track, &stands], robot.radius + obstacle.radius, bodies);
         }
     }
     collisions.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));

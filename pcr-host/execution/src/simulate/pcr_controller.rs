@@ -13,12 +13,13 @@ use super::observer::narrowed;
 use super::precedence_guard::{GuardError, PrecedenceGuard};
 use super::replan::{BlockedRobot, Blocker, FleetMotionPlan, ReplanProblem, RobotState, SEARCHED};
 use super::robot_estimate::{ErrorBounds, RobotEstimate, standing};
-use super::simulation_task::{DiscObstacle, RobotTask, SimulationTask};
+use super::simulation_task::{RobotTask, SimulationTask, StandingObstacle};
 use super::speed_limited_path::{OwnedMotion, SpeedLimitedPath};
 use super::true_state::{AT_TURN, TurnState};
 use super::{ControlInput, FRAME, MotionCommand, PlanSnapshot, RobotController};
 use pcr_core::{Interval, Limits};
 use pcr_planning::failure::ComputationError;
+use pcr_planning::fleet::ConvexBody;
 use std::time::Instant;
 
 /// If no robot has moved for this long plus two planning periods, the fleet is stuck \[s\].
@@ -34,7 +35,7 @@ const FALLING_BACK: f64 = 2.0;
 #[derive(Debug)]
 pub(super) struct PcrController {
     agents: Vec<RobotEstimate>,
-    obstacles: Vec<(OwnedMotion, f64)>,
+    obstacles: Vec<(OwnedMotion, ConvexBody)>,
     errors: ErrorBounds,
     guard: PrecedenceGuard,
     plan: Option<ActivePlan>,
@@ -65,12 +66,12 @@ struct PlanBackoff {
     until: f64,
 }
 
-/// A plan that can be adopted, which robots then begin a new mission, and the radii for which the plan was made \[m\].
+/// A plan that can be adopted, which robots then begin a new mission, and the bodies for which the plan was made.
 struct PlanCandidate {
     current: ActivePlan,
     guard: PrecedenceGuard,
     taken: Vec<bool>,
-    radii: Vec<f64>,
+    bodies: Vec<ConvexBody>,
 }
 
 /// Figures about planning.
@@ -110,11 +111,12 @@ impl PcrController {
     pub(super) fn new(task: &SimulationTask, errors: ErrorBounds, period: f64) -> Result<Self, ComputationError> {
         let agents =
             task.robots.iter().map(|robot| RobotEstimate::new(robot, errors)).collect::<Result<Vec<_>, _>>()?;
-        let obstacle = |obstacle: &DiscObstacle| {
-            let drive = standing(obstacle.centre).ok().and_then(|course| OwnedMotion::standing(course, 0.0));
-            let radius = obstacle.radius + obstacle.margin;
-            let drive = drive.filter(|drive| drive.motion(radius).is_some());
-            drive.map(|drive| (drive, radius)).ok_or(ComputationError::Obstacle(obstacle.centre))
+        let obstacle = |obstacle: &StandingObstacle| {
+            let course = standing(obstacle.centre, obstacle.heading).ok();
+            let drive = course.and_then(|course| OwnedMotion::standing(course, 0.0));
+            let body = obstacle.body.inflated(obstacle.margin).ok();
+            let both = drive.zip(body).filter(|(drive, body)| drive.motion_of(body).is_some());
+            both.ok_or(ComputationError::Obstacle(obstacle.centre))
         };
         let obstacles = task.obstacles.iter().map(obstacle).collect::<Result<_, _>>()?;
         let guard = guard(&task.robots, &agents)?;
@@ -302,8 +304,8 @@ impl PcrController {
         let current = ActivePlan { plan, offsets };
         let places: Vec<Interval<f64>> = robots().map(|(_, (_, at, _))| at).collect();
         let courses: Vec<SpeedLimitedPath> = robots().map(|(_, (course, ..))| course.clone()).collect();
-        let radii: Vec<f64> = self.agents.iter().map(|agent| agent.radius + agent.margins[0]).collect();
-        let mut guard = PrecedenceGuard::new(&courses, &radii).ok()?;
+        let bodies = |margin: usize| self.agents.iter().map(|agent| agent.bodies[margin].clone()).collect();
+        let mut guard = PrecedenceGuard::new(&courses, bodies(0)).ok()?;
         guard.take_orders(
             &places,
             |agent, length| current.reached(agent, length),
@@ -314,12 +316,11 @@ impl PcrController {
             let slower = (speed - agent.limits.acceleration * FRAME).max(0.0);
             at.hi + stopping_length(slower, agent.limits.acceleration, FRAME) <= hold
         });
-        let radii = self.agents.iter().map(|agent| agent.radius + agent.margins[margin]).collect();
-        can_stop.then(|| PlanCandidate { current, guard, taken: taken.to_vec(), radii })
+        can_stop.then(|| PlanCandidate { current, guard, taken: taken.to_vec(), bodies: bodies(margin) })
     }
 
     fn take_up(&mut self, now: f64, found: PlanCandidate) {
-        let PlanCandidate { current, guard, taken, radii } = found;
+        let PlanCandidate { current, guard, taken, bodies } = found;
         for (agent, _) in self.agents.iter_mut().zip(&taken).filter(|(_, taken)| **taken) {
             if let Some(next) = agent.next.take() {
                 agent.course = next;
@@ -330,7 +331,7 @@ impl PcrController {
         self.guard = guard;
         self.still = 0.0;
         let (drives, offsets) = (current.plan.drives.clone(), current.offsets.clone());
-        self.snapshots.push(PlanSnapshot { time: now, drives, offsets, radii });
+        self.snapshots.push(PlanSnapshot { time: now, drives, offsets, bodies });
         self.plan = Some(current);
     }
 
@@ -358,8 +359,8 @@ impl PcrController {
 
 fn guard(robots: &[RobotTask], agents: &[RobotEstimate]) -> Result<PrecedenceGuard, ComputationError> {
     let courses: Vec<SpeedLimitedPath> = agents.iter().map(|agent| agent.course.clone()).collect();
-    let radii: Vec<f64> = agents.iter().map(|agent| agent.radius + agent.margins[0]).collect();
-    PrecedenceGuard::new(&courses, &radii).map_err(|why| match why {
+    let bodies = agents.iter().map(|agent| agent.bodies[0].clone()).collect();
+    PrecedenceGuard::new(&courses, bodies).map_err(|why| match why {
         GuardError::Agent(place) => ComputationError::Robot(robots[place].id),
         GuardError::Full(full) => ComputationError::Full(full),
     })

@@ -4,7 +4,7 @@
 //! coordination space depend on the paths alone, so robots that keep these orders do not collide, whatever the times. The
 //! orders are those of [`PrecedenceTable`](pcr_core::PrecedenceTable), with the proofs of `docs/theory/precedence.md`.
 //!
-//! The discs are enlarged by the distance that robots may be off their paths. The place of a robot along its path is an
+//! Discs and outlines are enlarged by the distance that robots may be off their paths. The place of a robot along its path is an
 //! interval, of which the worse end is used. A robot drives only as fast as it can brake before the length at which it
 //! is held, so it can still do so in the next frame.
 
@@ -12,7 +12,7 @@ use super::speed_limited_path::{OwnedMotion, SpeedLimitedPath};
 use pcr_core::{
     CapacityError, CheckState, CheckTolerances, Interval, Motion, MovementAuthority, PassingState, Progress,
 };
-use pcr_planning::fleet::{HostPrecedenceTable, build_orders};
+use pcr_planning::fleet::{ConvexBody, HostPrecedenceTable, build_orders};
 
 /// Gains below this are no progress when it is checked whether all robots can finish \[m\].
 const GAIN: f64 = 1e-3;
@@ -20,7 +20,7 @@ const GAIN: f64 = 1e-3;
 /// Why there are no passing orders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum GuardError {
-    /// The disc of the agent at this place cannot move on its course.
+    /// The body of the agent at this place cannot move on its course.
     Agent(usize),
     /// As [`build_orders`].
     Full(CapacityError),
@@ -31,26 +31,26 @@ pub(super) enum GuardError {
 pub(super) struct PrecedenceGuard {
     /// At 1 m/s from time 0 on: orders do not depend on times.
     drives: Vec<OwnedMotion>,
-    radii: Vec<f64>,
+    bodies: Vec<ConvexBody>,
     orders: HostPrecedenceTable,
 }
 
 impl PrecedenceGuard {
-    /// For discs of these radii \[m\] on these courses; no order is decided.
+    /// For these bodies on these courses; no order is decided.
     ///
     /// # Errors
     /// [`GuardError`].
-    pub(super) fn new(courses: &[SpeedLimitedPath], radii: &[f64]) -> Result<Self, GuardError> {
+    pub(super) fn new(courses: &[SpeedLimitedPath], bodies: Vec<ConvexBody>) -> Result<Self, GuardError> {
         let drive = |(place, course): (usize, &SpeedLimitedPath)| {
             OwnedMotion::at_unit_speed(course.clone()).ok_or(GuardError::Agent(place))
         };
         let drives = courses.iter().enumerate().map(drive).collect::<Result<Vec<OwnedMotion>, _>>()?;
-        let orders = build_orders(&motions(&drives, radii)?).map_err(GuardError::Full)?;
-        Ok(Self { drives, radii: radii.to_vec(), orders })
+        let orders = build_orders(&motions(&drives, &bodies)?).map_err(GuardError::Full)?;
+        Ok(Self { drives, bodies, orders })
     }
 
     fn motions(&self) -> Option<Vec<Motion<'_, f64>>> {
-        motions(&self.drives, &self.radii).ok()
+        motions(&self.drives, &self.bodies).ok()
     }
 
     /// Takes the orders of a plan without collisions: `reached(agent, length)` is when an agent reaches a length of its
@@ -62,7 +62,7 @@ impl PrecedenceGuard {
         reached: impl Fn(usize, f64) -> f64,
         length_at: impl Fn(usize, f64) -> f64,
     ) -> Option<()> {
-        let motions = motions(&self.drives, &self.radii).ok()?;
+        let motions = motions(&self.drives, &self.bodies).ok()?;
         let mut decisions = Vec::new();
         for ego in 0..motions.len() {
             for (place, region, _) in self.orders.row(&motions, ego).ok()? {
@@ -125,9 +125,9 @@ fn progress(now: &[Interval<f64>]) -> Vec<Progress<f64>> {
 }
 
 /// A motion for each agent: one that was left out would shift the places of those after it.
-fn motions<'a>(drives: &'a [OwnedMotion], radii: &[f64]) -> Result<Vec<Motion<'a, f64>>, GuardError> {
+fn motions<'a>(drives: &'a [OwnedMotion], bodies: &'a [ConvexBody]) -> Result<Vec<Motion<'a, f64>>, GuardError> {
     let motion = |(place, drive): (usize, &'a OwnedMotion)| {
-        radii.get(place).and_then(|&radius| drive.motion(radius)).ok_or(GuardError::Agent(place))
+        bodies.get(place).and_then(|body| drive.motion_of(body)).ok_or(GuardError::Agent(place))
     };
     drives.iter().enumerate().map(motion).collect()
 }
@@ -145,10 +145,11 @@ mod tests {
             SpeedLimitedPath::new(pose, &[PathSegment::Line { length: 4.0 }]).expect("a course")
         };
         let courses = [course(0.0), course(0.5), course(1.0)];
-        assert_eq!(PrecedenceGuard::new(&courses, &[0.3; 3]).map(|guard| guard.drives.len()), Ok(3));
+        let discs = |radii: &[f64]| radii.iter().map(|&radius| ConvexBody::Disc(radius)).collect::<Vec<_>>();
+        assert_eq!(PrecedenceGuard::new(&courses, discs(&[0.3; 3])).map(|guard| guard.drives.len()), Ok(3));
         for (radii, missing) in [([0.3, f64::NAN, 0.3], 1), ([-1.0, 0.3, 0.3], 0)] {
-            assert_eq!(PrecedenceGuard::new(&courses, &radii).map(|_| ()), Err(GuardError::Agent(missing)));
+            assert_eq!(PrecedenceGuard::new(&courses, discs(&radii)).map(|_| ()), Err(GuardError::Agent(missing)));
         }
-        assert_eq!(PrecedenceGuard::new(&courses, &[0.3; 2]).map(|_| ()), Err(GuardError::Agent(2)));
+        assert_eq!(PrecedenceGuard::new(&courses, discs(&[0.3; 2])).map(|_| ()), Err(GuardError::Agent(2)));
     }
 }

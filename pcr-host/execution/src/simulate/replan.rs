@@ -7,7 +7,7 @@
 
 use super::speed_limited_path::{OwnedMotion, SpeedLimitedPath};
 use pcr_core::{Encounter, Limits, Motion, earliest_start};
-use pcr_planning::fleet::{HostEcm, build_ecm_of};
+use pcr_planning::fleet::{ConvexBody, HostEcm, build_ecm_of};
 use pcr_planning::plan::start_delays;
 
 /// Distance along its path that a robot keeps from a region before which it waits \[m\].
@@ -33,8 +33,8 @@ pub(super) struct RobotState {
     pub(super) limits: Limits<f64>,
     /// Earliest start of the first mission, if the robot has not begun it \[s\]; otherwise 0.
     pub(super) release: f64,
-    /// Radius of the disc with its margin \[m\].
-    pub(super) radius: f64,
+    /// Its body with its margin.
+    pub(super) body: ConvexBody,
 }
 
 /// A motion of every robot.
@@ -72,8 +72,8 @@ pub(super) struct ReplanProblem<'a> {
     /// Present time \[s\].
     pub(super) now: f64,
     pub(super) robots: &'a [RobotState],
-    /// Obstacles, which never move, with their radii \[m\].
-    pub(super) obstacles: &'a [(OwnedMotion, f64)],
+    /// Obstacles, which never move, with their margins.
+    pub(super) obstacles: &'a [(OwnedMotion, ConvexBody)],
 }
 
 impl ReplanProblem<'_> {
@@ -163,23 +163,23 @@ impl ReplanProblem<'_> {
         OwnedMotion::standing(robot.rest.beginning(), self.now)
     }
 
-    fn motions<'d>(&self, drives: &'d [OwnedMotion]) -> Option<Vec<Motion<'d, f64>>> {
-        drives.iter().zip(self.robots).map(|(drive, robot)| drive.motion(robot.radius)).collect()
+    fn motions<'d>(&'d self, drives: &'d [OwnedMotion]) -> Option<Vec<Motion<'d, f64>>> {
+        drives.iter().zip(self.robots).map(|(drive, robot)| drive.motion_of(&robot.body)).collect()
     }
 
     fn standing(&self) -> Option<Vec<Motion<'_, f64>>> {
-        self.obstacles.iter().map(|(drive, radius)| drive.motion(*radius)).collect()
+        self.obstacles.iter().map(|(drive, body)| drive.motion_of(body)).collect()
     }
 
     /// What stands in the way of a robot under all plans: a robot for which `stay` holds, or else an obstacle.
     pub(super) fn in_the_way(&self, robot: usize, stay: impl Fn(usize) -> bool) -> Option<Blocker> {
         let through = self.through(self.robots.get(robot)?)?;
-        let motion = through.motion(self.robots.get(robot)?.radius)?;
+        let motion = through.motion_of(&self.robots.get(robot)?.body)?;
         let meets = |other: &Motion<'_, f64>| !is_clear(&motion, std::slice::from_ref(other));
         let others = (0..self.robots.len()).filter(|&other| other != robot && stay(other));
         let stands = |other: &usize| {
-            let stays = self.robots.get(*other).and_then(|it| Some((self.staying(it)?, it.radius)));
-            stays.is_some_and(|(drive, radius)| drive.motion(radius).is_some_and(|motion| meets(&motion)))
+            let stays = self.robots.get(*other).and_then(|it| Some((self.staying(it)?, &it.body)));
+            stays.is_some_and(|(drive, body)| drive.motion_of(body).is_some_and(|motion| meets(&motion)))
         };
         others
             .into_iter()
@@ -243,9 +243,9 @@ impl ReplanProblem<'_> {
         for &place in order {
             let robot = self.robots.get(place).ok_or(place)?;
             let planned =
-                drives.iter().zip(self.robots).filter_map(|(drive, robot)| Some((drive.as_ref()?, robot.radius)));
-            let standing = self.obstacles.iter().map(|(drive, radius)| (drive, *radius));
-            let others = planned.chain(standing).map(|(drive, radius)| drive.motion(radius));
+                drives.iter().zip(self.robots).filter_map(|(drive, robot)| Some((drive.as_ref()?, &robot.body)));
+            let standing = self.obstacles.iter().map(|(drive, body)| (drive, body));
+            let others = planned.chain(standing).map(|(drive, body)| drive.motion_of(body));
             let others: Vec<Motion<'_, f64>> = others.collect::<Option<_>>().ok_or(place)?;
             let drive = self.best(robot, &others).ok_or(place)?;
             drives[place] = Some(drive);
@@ -270,7 +270,7 @@ impl ReplanProblem<'_> {
     /// The motion that arrives first among those considered.
     fn best(&self, robot: &RobotState, others: &[Motion<'_, f64>]) -> Option<OwnedMotion> {
         let through = self.through(robot)?;
-        let motion = through.motion(robot.radius)?;
+        let motion = through.motion_of(&robot.body)?;
         if is_clear(&motion, others) {
             return Some(through);
         }
@@ -297,13 +297,13 @@ impl ReplanProblem<'_> {
         let onward = robot.rest.from(stop).ok()?;
         let further = onward.to_rest(0.0, onward.length(), robot.limits)?;
         let onward = OwnedMotion::new(onward, 0.0, &further, stops_at)?;
-        let (fleet, ecm) = row(onward.motion(robot.radius)?, others)?;
+        let (fleet, ecm) = row(onward.motion_of(&robot.body)?, others)?;
         let wait = earliest_start(ecm.row(&fleet, 0).expect("the table of the fleet"), 0.0)?;
         pieces.push((wait, 0.0));
         pieces.extend(further);
         pieces.retain(|(duration, _)| *duration > 0.0);
         let drive = OwnedMotion::new(robot.rest.clone(), speed, &pieces, self.begin(robot))?;
-        let clear = is_clear(&drive.motion(robot.radius)?, others);
+        let clear = is_clear(&drive.motion_of(&robot.body)?, others);
         clear.then_some(drive)
     }
 }

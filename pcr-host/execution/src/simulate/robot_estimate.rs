@@ -8,6 +8,7 @@ use super::speed_limited_path::{OwnedMotion, SpeedLimitedPath};
 use super::true_state::AT_TURN;
 use pcr_core::{Interval, InvalidInput, Limits, Point, Pose, Radians};
 use pcr_planning::failure::ComputationError;
+use pcr_planning::fleet::ConvexBody;
 
 /// Bounds on the errors of camera and robots.
 #[derive(Clone, Copy, Debug)]
@@ -22,9 +23,8 @@ pub(super) struct ErrorBounds {
 #[derive(Debug)]
 pub(super) struct RobotEstimate {
     pub(super) limits: Limits<f64>,
-    /// Radius, with the margins for passing orders and for plans \[m\].
-    pub(super) radius: f64,
-    pub(super) margins: [f64; 2],
+    /// The body with the margins for passing orders and for plans.
+    pub(super) bodies: [ConvexBody; 2],
     /// The present path, and the interval of lengths in which the robot is.
     pub(super) course: SpeedLimitedPath,
     pub(super) position_interval: Interval<f64>,
@@ -46,7 +46,7 @@ impl RobotEstimate {
     pub(super) fn new(robot: &RobotTask, errors: ErrorBounds) -> Result<Self, ComputationError> {
         let course = match robot.missions.first() {
             Some(mission) => Ok(mission.course.beginning()),
-            None => standing(robot.home()),
+            None => standing(robot.home(), 0.0),
         };
         let limits = robot.limits;
         // A robot goes straight during a frame, not along the arc: off its middle by the sagitta, and nowhere farther from the path than
@@ -56,11 +56,15 @@ impl RobotEstimate {
         // Where it turns in place, it cuts the corner by how far it may be before it.
         let turns = robot.missions.iter().any(|mission| mission.course.in_place(0).is_some());
         let corner = if turns { AT_TURN } else { 0.0 };
-        let off = errors.drift + (way * way / (8.0 * least)).min(way / 2.0) + corner;
+        // Nor does it turn evenly where its path turns by another radius, or begins to; of a disc that moves nothing.
+        let uneven = robot.missions.iter().map(|mission| mission.course.uneven_turn(limits.speed, FRAME));
+        let turn = if robot.body.is_disc() { 0.0 } else { robot.body.reach() * uneven.fold(0.0, f64::max) };
+        let off = errors.drift + (way * way / (8.0 * least)).min(way / 2.0) + corner + turn;
+        let margins = [robot.margin + off, robot.margin + off + errors.drift + errors.noise];
+        let inflated = |margin: f64| robot.body.inflated(margin).map_err(|_| ComputationError::Robot(robot.id));
         let agent = Self {
             limits,
-            radius: robot.radius,
-            margins: [robot.margin + off, robot.margin + off + errors.drift + errors.noise],
+            bodies: [inflated(margins[0])?, inflated(margins[1])?],
             course: course.map_err(|_| ComputationError::Robot(robot.id))?,
             position_interval: Interval::new(0.0, 0.0),
             speed: 0.0,
@@ -68,9 +72,8 @@ impl RobotEstimate {
             next: None,
             release: 0.0,
         };
-        let largest = agent.radius + agent.margins[1];
         let fits = |course: &SpeedLimitedPath| {
-            OwnedMotion::at_unit_speed(course.clone()).is_some_and(|it| it.motion(largest).is_some())
+            OwnedMotion::at_unit_speed(course.clone()).is_some_and(|it| it.motion_of(&agent.bodies[1]).is_some())
         };
         match fits(&agent.course) && robot.missions.iter().all(|mission| fits(&mission.course)) {
             true => Ok(agent),
@@ -101,18 +104,17 @@ impl RobotEstimate {
     /// The robot as input of a plan, with one of its margins.
     pub(super) fn state(&self, margin: usize, taken: bool) -> Option<RobotState> {
         let (course, at, speed) = self.to_plan(taken);
-        let radius = self.radius + self.margins.get(margin)?;
         Some(RobotState {
             rest: course.from(at.middle()).ok()?.turned(self.turned),
             speed,
             limits: self.limits,
             release: self.release,
-            radius,
+            body: self.bodies.get(margin)?.clone(),
         })
     }
 }
 
-/// A course to stand at a point.
-pub(super) fn standing([x, y]: [f64; 2]) -> Result<SpeedLimitedPath, InvalidInput> {
-    SpeedLimitedPath::standing(Pose { position: Point::new(x, y), heading: Radians(0.0) })
+/// A course to stand at a point with a heading \[rad\].
+pub(super) fn standing([x, y]: [f64; 2], heading: f64) -> Result<SpeedLimitedPath, InvalidInput> {
+    SpeedLimitedPath::standing(Pose { position: Point::new(x, y), heading: Radians(heading) })
 }

@@ -1,13 +1,14 @@
 //! The tasks of the robots, and the obstacles.
 
 use super::frame_contact::ROUNDING;
+use super::outline_contact::{BodyTrack, meetings};
 use super::speed_limited_path::SpeedLimitedPath;
 use super::vector::{PlaneVector, norm, sub};
 use pcr_core::Limits;
 use pcr_formats::scenario::{Agent, Labels, MotionSpec, PathSegment, Scenario, SegmentPhase, TURN};
 use pcr_formats::warning::WarningCode;
 use pcr_planning::failure::ComputationError;
-use pcr_planning::fleet::Fleet;
+use pcr_planning::fleet::{ConvexBody, Fleet};
 
 /// When the last robot may set off \[s\]: every frame until then is simulated and kept.
 const LATEST: f64 = 1e4;
@@ -28,7 +29,7 @@ pub struct SimulationTask {
     /// The robots.
     pub robots: Vec<RobotTask>,
     /// Agents that never move.
-    pub obstacles: Vec<DiscObstacle>,
+    pub obstacles: Vec<StandingObstacle>,
     /// What the simulation changes or leaves out of the scenario.
     pub warnings: Vec<String>,
 }
@@ -38,9 +39,11 @@ pub struct SimulationTask {
 pub struct RobotTask {
     /// Number.
     pub id: u64,
-    /// Radius of the disc \[m\].
+    /// Radius of the disc about its reference point that contains it \[m\], which is all that controllers of discs know.
     pub radius: f64,
-    /// Distance that others keep from the disc \[m\].
+    /// Its body.
+    pub body: ConvexBody,
+    /// Distance that others keep from it \[m\].
     pub margin: f64,
     /// Largest speed \[m/s\] and acceleration \[m/s²\].
     pub limits: Limits<f64>,
@@ -57,16 +60,20 @@ pub struct ReleasedMission {
     pub course: SpeedLimitedPath,
 }
 
-/// A disc that stands.
-#[derive(Clone, Copy, Debug)]
-pub struct DiscObstacle {
+/// A body that stands.
+#[derive(Clone, Debug)]
+pub struct StandingObstacle {
     /// Number, where the scenario gives one.
     pub id: Option<u64>,
-    /// \[m\]
+    /// Its reference point \[m\].
     pub centre: PlaneVector,
-    /// \[m\]
+    /// \[rad\]
+    pub heading: f64,
+    /// Radius of the disc about its reference point that contains it \[m\].
     pub radius: f64,
-    /// Distance that others keep from the disc \[m\].
+    /// Its body.
+    pub body: ConvexBody,
+    /// Distance that others keep from it \[m\].
     pub margin: f64,
 }
 
@@ -78,8 +85,8 @@ impl RobotTask {
 }
 
 impl SimulationTask {
-    /// The agents of a scenario: those with a path have one mission, the others are in the way. Footprints and loads are the disc
-    /// around all of them. Of a profile, the largest speed on each segment, the durations of turns in place and the largest acceleration
+    /// The agents of a scenario: those with a path have one mission, the others are in the way. One that is concave, or that has loads, is the
+    /// convex hull of all that it ever is, which is among the warnings. Of a profile, the largest speed on each segment, the durations of turns in place and the largest acceleration
     /// count; if it takes longer than these allow from rest to rest, or less, that is among the warnings. So are agents in the way that
     /// overlap one another: no run counts them as a collision.
     ///
@@ -88,7 +95,7 @@ impl SimulationTask {
     /// long.
     pub fn from_scenario(scenario: &Scenario) -> Result<Self, ComputationError> {
         let fleet = Fleet::<f64>::new(scenario)?;
-        let (mut robots, mut obstacles, mut standing) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut robots, mut obstacles): (Vec<RobotTask>, Vec<StandingObstacle>) = (Vec::new(), Vec::new());
         let mut warnings = scenario.warnings.clone();
         // A run begins at 0 s, or with the first one before that; with the first one, too, if they set off long after 0 s, as at times
         // since 1970.
@@ -102,8 +109,20 @@ impl SimulationTask {
         for (place, (agent, motion)) in scenario.agents.iter().zip(fleet.motions()).enumerate() {
             let tops = tops(agent);
             let top = |segment| fleet.source(place, segment).and_then(|source| tops.get(source).copied());
-            let course =
-                SpeedLimitedPath::of(&motion).with_speed_limits(|segment| top(segment).unwrap_or(f64::INFINITY));
+            let body = ConvexBody::of_agent(agent).map_err(|_| ComputationError::Robot(agent.id))?;
+            let course = if body.is_disc() {
+                SpeedLimitedPath::of(&motion).with_speed_limits(|segment| top(segment).unwrap_or(f64::INFINITY))
+            } else {
+                SpeedLimitedPath::of_outline(agent, &tops).map_err(|_| ComputationError::Robot(agent.id))?
+            };
+            if body.excess() > 0.0 {
+                warnings.push(WarningCode::ConvexHull.text(format_args!(
+                    "agent {}: its outline is concave, or changes on the way; it is simulated as the convex hull of all of it, which reaches \
+                     up to {:.3} m farther",
+                    agent.id,
+                    body.excess()
+                )));
+            }
             if course.length() > 0.0 {
                 if agent.t_start - begin > LATEST {
                     return Err(ComputationError::Late(agent.id, LATEST));
@@ -121,43 +140,42 @@ impl SimulationTask {
                     )));
                 }
                 let missions = vec![ReleasedMission { release: agent.t_start - begin, course }];
-                robots.push(RobotTask {
-                    id: agent.id,
-                    radius: agent.circumscribed_radius(),
-                    margin: agent.margin,
-                    limits,
-                    missions,
-                });
+                let radius = agent.circumscribed_radius().max(body.reach());
+                robots.push(RobotTask { id: agent.id, radius, body, margin: agent.margin, limits, missions });
             } else {
                 let centre = course.point_at(0.0);
-                standing.push((agent.id, centre, agent.circumscribed_radius()));
-                obstacles.push(DiscObstacle {
+                obstacles.push(StandingObstacle {
                     id: Some(agent.id),
                     centre,
-                    radius: agent.circumscribed_radius(),
+                    heading: agent.start[2],
+                    radius: agent.circumscribed_radius().max(body.reach()),
+                    body,
                     margin: agent.margin,
                 });
             }
         }
-        warnings.extend(overlapping(&standing));
+        warnings.extend(overlapping(&obstacles));
         Ok(Self { name: scenario.name.clone(), labels: Labels::from_scenario(scenario), robots, obstacles, warnings })
     }
 }
 
-/// Warnings about standing agents that overlap, given by their numbers, centres and radii.
-fn overlapping(standing: &[(u64, PlaneVector, f64)]) -> Vec<String> {
+/// Warnings about standing agents that overlap.
+fn overlapping(standing: &[StandingObstacle]) -> Vec<String> {
     /// Largest number of pairs that are named.
     const NAMED: usize = 16;
-    let mut order: Vec<&(u64, PlaneVector, f64)> = standing.iter().collect();
-    order.sort_by(|a, b| (a.1[0] - a.2).total_cmp(&(b.1[0] - b.2)));
+    let left = |it: &StandingObstacle| it.centre[0] - it.radius;
+    let mut order: Vec<&StandingObstacle> = standing.iter().collect();
+    order.sort_by(|a, b| left(a).total_cmp(&left(b)));
     let (mut named, mut count): (Vec<[u64; 2]>, usize) = (Vec::new(), 0);
-    for (place, (id, centre, radius)) in order.iter().enumerate() {
-        let right = centre[0] + radius;
-        let near = order[place + 1..].iter().take_while(|(_, at, its)| at[0] - its <= right);
-        for (other, ..) in near.filter(|(_, at, its)| radius + its - norm(sub(*centre, *at)) > ROUNDING) {
+    for (place, own) in order.iter().enumerate() {
+        let right = own.centre[0] + own.radius;
+        let near = order[place + 1..].iter().take_while(|other| left(other) <= right);
+        for other in near.filter(|other| overlap(own, other) > ROUNDING) {
             count += 1;
-            if named.len() < NAMED {
-                named.push([*id.min(other), *id.max(other)]);
+            if let [Some(id), Some(other)] = [own.id, other.id]
+                && named.len() < NAMED
+            {
+                named.push([id.min(other), id.max(other)]);
             }
         }
     }
@@ -166,6 +184,16 @@ fn overlapping(standing: &[(u64, PlaneVector, f64)]) -> Vec<String> {
     let named = named.into_iter().map(|[i, j]| format!("agents {i} and {j} stand in contact"));
     let all = named.chain((more > 0).then(|| format!("{more} more pairs of agents stand in contact")));
     all.map(|text| WarningCode::StandingContact.text(text)).collect()
+}
+
+/// How deep two standing agents overlap \[m\]; below 0 if they do not.
+fn overlap(own: &StandingObstacle, other: &StandingObstacle) -> f64 {
+    let discs = own.radius + other.radius - norm(sub(own.centre, other.centre));
+    if discs <= ROUNDING || (own.body.is_disc() && other.body.is_disc()) {
+        return discs;
+    }
+    let [(a, at), (b, its)] = [own, other].map(|it| ([it.centre; 2], [it.heading; 2]));
+    -meetings(&BodyTrack::new(&own.body, &a, &at), &BodyTrack::new(&other.body, &b, &its)).1
 }
 
 /// The largest speed of a profile on each segment \[m/s\], and that of a turn in place in the mean, without the waits; infinite without a profile.

@@ -2,9 +2,17 @@
 
 use super::FRAME;
 use super::braking::{SpeedLimitSpan, speed_before, speeds_to_rest, to_rest};
-use pcr_core::{Curve, InvalidInput, Limits, Motion, PathRef, Phase, Pose, ProfileRef, Segment, TurnSide};
-use pcr_formats::scenario::{KINK, PathSegment, TURN};
-use pcr_planning::fleet::speed;
+use pcr_core::{
+    Curve, InvalidInput, Limits, Motion, PathRef, Phase, Point, Pose, ProfileRef, Radians, Segment, TurnSide,
+};
+use pcr_formats::scenario::{Agent, KINK, PathSegment, TURN};
+use pcr_planning::fleet::{ConvexBody, speed};
+
+/// Travelled length for each radian of a turn in place of an outline \[m\]: so short that ramps of the speed take no time there.
+const LEVER: f64 = 1e-3;
+
+/// An outline has turned if less than this is left of a turn \[rad\].
+const TURNED: f64 = 1e-4;
 
 /// A path of lines and arcs, with speed limits.
 #[derive(Clone, Debug)]
@@ -39,6 +47,36 @@ impl SpeedLimitedPath {
                     let turn = if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right };
                     course.push(Curve::Arc { radius, turn }, radius * sweep.abs(), f64::INFINITY)?;
                 }
+            }
+        }
+        course.path()?;
+        Ok(course)
+    }
+
+    /// The course of an agent with an outline, with the speed limits of its segments \[m/s\], infinite where there are no more. Its turns in
+    /// place have a length.
+    ///
+    /// # Errors
+    /// As [`SpeedLimitedPath::new`].
+    pub(super) fn of_outline(agent: &Agent, tops: &[f64]) -> Result<Self, InvalidInput> {
+        let [x, y, heading] = agent.start;
+        let mut course = Self::standing(Pose { position: Point::new(x, y), heading: Radians(heading) })?;
+        for (place, segment) in agent.path.iter().enumerate() {
+            let top = tops.get(place).copied().unwrap_or(f64::INFINITY);
+            let whole = segment.turns();
+            let (curve, length, top) = match *segment {
+                PathSegment::Line { length } => (Curve::Line, length, top),
+                PathSegment::Arc { radius, sweep } => {
+                    let turn = if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right };
+                    if radius <= TURN {
+                        (Curve::Pivot { lever: LEVER, turn }, LEVER * sweep.abs(), top * (LEVER / radius))
+                    } else {
+                        (Curve::Arc { radius, turn }, radius * sweep.abs(), top)
+                    }
+                }
+            };
+            for _ in 0..whole as usize {
+                course.push(curve, length / whole, top)?;
             }
         }
         course.path()?;
@@ -110,6 +148,33 @@ impl SpeedLimitedPath {
     pub fn point_at(&self, length: f64) -> [f64; 2] {
         let point = self.path().map(|path| path.point_at(length)).unwrap_or_default();
         [point.x, point.y]
+    }
+
+    /// Heading at a travelled length \[rad\].
+    pub(super) fn heading_at(&self, length: f64) -> f64 {
+        self.path().map_or(0.0, |path| path.pose_at(length).heading.0)
+    }
+
+    /// How near to its end \[m\] a robot has arrived, of these two: where it drives, and where it turns in place.
+    pub(super) fn end_tolerance(&self, driven: f64) -> f64 {
+        match self.segments.last().map(Segment::curve) {
+            Some(Curve::Pivot { lever, .. }) => TURNED * lever,
+            _ => driven,
+        }
+    }
+
+    /// The difference of the largest rates at which it turns to the left and to the right, for a robot with a largest speed \[m/s\], and
+    /// for how much it turns at such a rate at most in a time \[s\]: how far its heading may be off a uniform turn in that time \[rad\].
+    pub(super) fn uneven_turn(&self, speed: f64, time: f64) -> f64 {
+        let (mut left, mut right) = (0.0_f64, 0.0_f64);
+        for (segment, top) in self.segments.iter().zip(&self.tops) {
+            let (Curve::Arc { radius: lever, turn } | Curve::Pivot { lever, turn }) = segment.curve() else { continue };
+            let rate = (top.min(speed) / lever * time).min(segment.length() / lever);
+            let most = if turn == TurnSide::Left { &mut left } else { &mut right };
+            *most = most.max(rate);
+        }
+        // A function whose slope is within a range is off its chord by a quarter of the range times the length at most.
+        0.25 * (left + right)
     }
 
     /// The rest after a travelled length \[m\].
@@ -266,6 +331,11 @@ impl OwnedMotion {
         let length = course.length();
         let start = 0.0;
         if length > 0.0 { Self::new(course, 1.0, &[(length, 0.0)], start) } else { Self::standing(course, start) }
+    }
+
+    /// As the motion of a body.
+    pub fn motion_of<'m>(&'m self, body: &'m ConvexBody) -> Option<Motion<'m, f64>> {
+        body.motion(self.course.path().ok()?, ProfileRef::new(&self.phases).ok()?, self.start).ok()
     }
 
     /// As the motion of a disc of this radius \[m\].

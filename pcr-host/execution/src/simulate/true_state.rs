@@ -138,7 +138,7 @@ impl TrueRobotState {
     /// Whether it has reached the end of a course: along the path, or within `reach` of the end.
     pub(super) fn has_arrived(&mut self, course: &SpeedLimitedPath, reach: f64) -> bool {
         let end = course.length();
-        if end - self.travelled <= AT_END && course.in_place(self.turned).is_none() {
+        if end - self.travelled <= course.end_tolerance(AT_END) && course.in_place(self.turned).is_none() {
             self.travelled = end;
             self.speed = 0.0;
             return true;

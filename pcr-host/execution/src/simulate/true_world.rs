@@ -18,6 +18,17 @@ struct WorldRobot<'a> {
     travels: bool,
 }
 
+impl WorldRobot<'_> {
+    /// Its heading on its path, from which it is never off \[rad\]; for discs it does not count.
+    fn heading(&self) -> f64 {
+        if self.robot.body.is_disc() {
+            return 0.0;
+        }
+        let first = self.robot.missions.first().map(|mission| &mission.course);
+        self.course.or(first).map_or(0.0, |course| course.heading_at(self.body.travelled()))
+    }
+}
+
 pub(super) struct TrueWorld<'a> {
     agents: Vec<WorldRobot<'a>>,
     pub(super) trace: MotionTrace,
@@ -32,7 +43,8 @@ impl<'a> TrueWorld<'a> {
         let agents: Vec<WorldRobot<'a>> = task.robots.iter().enumerate().map(agent).collect();
         let positions = agents.iter().map(|agent| vec![agent.body.position()]).collect();
         let travelled = vec![vec![0.0]; agents.len()];
-        Self { agents, trace: MotionTrace { positions, travelled, journeys: Vec::new() } }
+        let headings = agents.iter().map(|agent| vec![agent.heading()]).collect();
+        Self { agents, trace: MotionTrace { positions, headings, travelled, journeys: Vec::new() } }
     }
 
     /// Announces the first mission of each robot before it begins.
@@ -119,10 +131,12 @@ impl<'a> TrueWorld<'a> {
             arrived: &arrived,
             turning: &turning,
         });
-        let tracks = self.trace.positions.iter_mut().zip(&mut self.trace.travelled);
-        for ((agent, command), (track, travelled)) in self.agents.iter_mut().zip(commands).zip(tracks) {
+        let MotionTrace { positions, headings, travelled, .. } = &mut self.trace;
+        let tracks = positions.iter_mut().zip(headings).zip(travelled);
+        for ((agent, command), ((track, headings), travelled)) in self.agents.iter_mut().zip(commands).zip(tracks) {
             agent.body.step(time, command, agent.course);
             track.push(agent.body.position());
+            headings.push(agent.heading());
             travelled.push(agent.body.travelled());
         }
     }
