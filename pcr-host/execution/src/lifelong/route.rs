@@ -228,7 +228,10 @@ fn within(site: &RouteGraph, atom: &RouteElement, length: f64, abilities: &Kinem
         };
         return atom.shapes.windows(2).filter_map(corner).collect();
     }
-    // A turn of an outline has a length; the robot stops before and after it.
+    // A turn of an outline has a length; at a node it is so slow that the robot need not stop before and after it.
+    if atom.is_turn() {
+        return Vec::new();
+    }
     let turns = atom.segments.iter().filter(|segment| match segment.curve() {
         Curve::Pivot { lever, .. } => segment.length() > STRAIGHT * lever,
         _ => false,

@@ -655,4 +655,46 @@ mod tests {
         let outcome = run(&exact, request).expect("a run").outcome;
         assert!(outcome.certificate.verdict == "contact" && outcome.certificate.contacts > 0, "{outcome:?}");
     }
+
+    /// Forklifts back out of their bays, and some edges have kinks.
+    #[test]
+    fn robots_that_drive_backward_and_turn_on_edges_are_certified() {
+        let mut imported = streets(2);
+        let corners = vec![[-0.3, -0.3], [0.9, -0.3], [0.9, 0.3], [-0.3, 0.3]];
+        imported.vehicle.footprint = Some(Footprint::new(corners, None).expect("a footprint"));
+        imported.vehicle.radius = 0.9_f64.hypot(0.3);
+        for (k, edge) in imported.layout.edges.iter_mut().enumerate() {
+            if edge.is_two_way() {
+                edge.facing = [Facing::Ahead, Facing::Backward];
+            } else if k % 3 == 0 {
+                let [from, to] = [edge.curve[0].start, edge.curve[0].end()];
+                let aside = [0.5 * (from[0] + to[0]) + 0.2 * (to[1] - from[1]) / 3.0, 0.5 * (from[1] + to[1])];
+                let aside = [aside[0], aside[1] - 0.2 * (to[0] - from[0]) / 3.0];
+                edge.curve = vec![PlacedSegment::line(from, aside), PlacedSegment::line(aside, to)];
+            }
+        }
+        let site = RouteGraph::new(&imported).expect("a site");
+        let back = site.atoms.iter().filter(|atom| atom.facing != 0.0).count();
+        assert_eq!(back, imported.layout.edges.iter().filter(|edge| edge.is_two_way()).count());
+        let pivots = |atom: &&RouteElement| atom.edge.is_some() && atom.segments.len() > atom.shapes.len();
+        assert!(site.atoms.iter().filter(pivots).count() > 2);
+        // Into a bay and out of it again nobody turns.
+        let dead = (0..site.points.len()).filter(|&node| site.leaving[node].len() == 1 && site.coming[node].len() == 1);
+        let ends = dead.filter(|&node| site.back[site.leaving[node][0]].is_some());
+        assert!(ends.into_iter().all(|node| site.at_nodes[node].turns.is_empty()));
+        for method in [CoordinationMethod::Orders, CoordinationMethod::EdgeLocks] {
+            let request =
+                LifelongOptions { agents: 4, duration: 900.0, delays: DelayModel::default(), seed: 2, method };
+            let outcome = run(&imported, request).expect("a run").outcome;
+            assert_eq!((outcome.certificate.verdict, outcome.authority_overruns, outcome.stuck), ("proved", 0, 0));
+            assert!(outcome.missions > 10 && outcome.certificate.steps > 0, "{outcome:?}");
+        }
+        // Where it is not known which way they face, the hull of both ways counts.
+        imported.layout.edges[0].facing = [Facing::Either; 2];
+        let either = RouteGraph::new(&imported).expect("a site");
+        let (corners, _) = either.shape.corners();
+        assert!(corners.iter().all(|&[x, _]| (x.abs() - 0.9).abs() < 1e-12) && !either.body.is_disc());
+        imported.layout.edges[0].facing = [Facing::Any; 2];
+        assert!(RouteGraph::new(&imported).expect("a site").body.is_disc());
+    }
 }
