@@ -636,7 +636,7 @@ mod tests {
     #[test]
     fn trucks_pass_each_other_in_aisles_of_two_lanes() {
         let (delays, method) = (DelayModel::default(), CoordinationMethod::Orders);
-        let request = LifelongOptions { agents: 12, duration: 600.0, delays, seed: 1, method };
+        let request = LifelongOptions { agents: 12, duration: 300.0, delays, seed: 1, method };
         let [exact, disc] = trucks(&aisles(4)).map(|imported| run(&imported, request).expect("a run").outcome);
         for outcome in [&exact, &disc] {
             assert_eq!((outcome.certificate.verdict, outcome.authority_overruns, outcome.stuck), ("proved", 0, 0));

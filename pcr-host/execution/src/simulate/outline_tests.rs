@@ -4,6 +4,7 @@ use super::simulation_task::SimulationTask;
 use super::{ClosedLoopOptions, ControllerKind, Disturbance, SimulationReport, SimulationRun, run};
 use pcr_formats::scenario::Scenario;
 use pcr_formats::splitmix64::SplitMix64;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const USUAL: Disturbance = Disturbance { noise: 0.015, slip: 0.05, delay: 1.0, drift: 0.005 };
 
@@ -74,7 +75,7 @@ fn vehicles_side_by_side_and_on_opposite_lanes_need_no_more_room_than_they_have(
     let abreast = task(&[agent(1, 0.4, [0.0; 3], line), agent(2, 0.4, [0.0, 0.7, 0.0], line)]);
     let opposite = task(&[
         agent(1, 0.4, [0.0; 3], line),
-        agent(2, 0.4, [4.0, 0.7, std::f64::consts::PI], line),
+        agent(2, 0.4, [4.0, 0.7, PI], line),
         r#"{ "id": 3, "radius": 0.2, "v_max": 1, "a_max": 0.5, "start": { "x": 2, "y": -3, "heading": 1.57079633 },
              "path": [ { "kind": "line", "length": 6 } ] }"#
             .to_owned(),
@@ -99,7 +100,7 @@ fn outlines_turn_in_place_and_others_wait_for_what_they_sweep() {
     }
     let outcome = driven(&fleet, 1);
     let (headings, end) = (&outcome.trace.headings[0], outcome.trace.headings[0].len() - 1);
-    assert!((headings[end] - (1.570_796_326_794_896_6 - 3.0)).abs() < 2e-4, "{}", headings[end]);
+    assert!((headings[end] - (FRAC_PI_2 - 3.0)).abs() < 2e-4, "{}", headings[end]);
     let fastest = headings.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
     assert!(fastest <= 0.5 / 30.0 + 1e-9, "{fastest}");
 }
@@ -111,7 +112,7 @@ fn random_fleets_of_rectangles_run_without_a_contact() {
     for seed in 0..12 {
         let widths: Vec<f64> = (0..5).map(|_| 0.3 + 0.5 * random.unit()).collect();
         let agents = widths.iter().enumerate().map(|(k, &width)| {
-            let heading = 6.28 * random.unit();
+            let heading = TAU * random.unit();
             let at = [6.0 * heading.cos() + 2.0 * random.unit(), 6.0 * heading.sin() + 2.0 * random.unit()];
             let path = format!(
                 r#"{{ "kind": "line", "length": {} }}, {{ "kind": "arc", "radius": {}, "sweep": {} }}, {{ "kind": "turn", "sweep": {} }},
@@ -121,7 +122,7 @@ fn random_fleets_of_rectangles_run_without_a_contact() {
                 4.0 * random.unit() - 2.0,
                 3.0 * random.unit() - 1.5
             );
-            agent(k as u64 + 1, width, [at[0], at[1], heading + 3.14], &path)
+            agent(k as u64 + 1, width, [at[0], at[1], heading + PI], &path)
         });
         let fleet = task(&agents.collect::<Vec<_>>());
         let outcome = driven(&fleet, seed);

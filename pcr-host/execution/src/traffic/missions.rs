@@ -57,7 +57,7 @@ impl RandomMission {
             body.inflated(mission.agent.margin + (CLEAR - 1.0) * body.reach())
         };
         let bodies = [body(self), body(other)];
-        let paths = [own, its].map(|pose| Path::<f64, 1>::starting_at(pose));
+        let paths = [own, its].map(Path::<f64, 1>::starting_at);
         let ([Ok(a), Ok(b)], [Ok(first), Ok(second)]) = (bodies, paths) else { return false };
         let stands = ProfileRef::new(&[]);
         let motions = stands
