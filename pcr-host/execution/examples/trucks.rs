@@ -37,7 +37,7 @@ fn fleet(site: &ImportedLayout, agents: usize, hours: f64, exact: bool) -> Resul
     let mut imported = site.clone();
     let corners = vec![[-0.6, -0.4], [0.6, -0.4], [0.6, 0.4], [-0.6, 0.4]];
     imported.vehicle.radius = 0.52_f64.sqrt();
-    imported.vehicle.footprint = if exact { Some(Footprint::new(corners, None)?) } else { None };
+    imported.vehicle.footprint = if exact { Some(Footprint::new(corners)?) } else { None };
     let (delays, method) = (DelayModel::default(), CoordinationMethod::Orders);
     let request = LifelongOptions { agents, duration: 3600.0 * hours, delays, seed: 1, method };
     let report = run(&imported, request)?;

@@ -257,7 +257,7 @@ mod tests {
         let request = TrafficOptions { agents: 12, seed: 1 };
         let (discs, _) = TrafficReport::plan(&imported, request).expect("a plan of discs");
         let corners = vec![[-0.6, -0.4], [0.6, -0.4], [0.6, 0.4], [-0.6, 0.4]];
-        imported.vehicle.footprint = Some(Footprint::new(corners, None).expect("a footprint"));
+        imported.vehicle.footprint = Some(Footprint::new(corners).expect("a footprint"));
         let (exact, [_, plan]) = TrafficReport::plan(&imported, request).expect("a plan");
         assert!(exact.is_sound() && exact.planned >= discs.planned && exact.planned > 4, "{exact:?}");
         let ends = exact.missions.iter().filter_map(|mission| mission.t_end).fold(0.0, f64::max);

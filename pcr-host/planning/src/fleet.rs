@@ -225,12 +225,19 @@ impl<S: HostScalar> Fleet<S> {
     /// # Errors
     /// As [`Fleet::new`].
     pub fn of_bodies(scenario: &Scenario) -> Result<Self, FormatRangeError> {
-        let agents = scenario.agents.iter().map(|agent| match outline::hull(agent) {
-            Some(hull) => Self::body(&Agent { footprint: Some(hull), loads: Vec::new(), ..agent.clone() }),
-            None => Self::body(agent),
-        });
         let mut fleet = Self { agents: Vec::with_capacity(scenario.agents.len()) };
-        agents.into_iter().try_for_each(|agent| agent.map(|agent| fleet.append(agent)))?;
+        for agent in &scenario.agents {
+            let hull = ConvexBody::hull_of(agent).map_err(|reason| FormatRangeError {
+                agent: agent.display_name(),
+                part: None,
+                format: S::NAME,
+                problem: derived::<S>(reason),
+            })?;
+            fleet.append(match hull {
+                Some(hull) => Self::body(&Agent { footprint: Some(hull), loads: Vec::new(), ..agent.clone() })?,
+                None => Self::body(agent)?,
+            });
+        }
         Ok(fleet)
     }
 

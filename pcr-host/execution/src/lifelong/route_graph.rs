@@ -592,7 +592,7 @@ mod tests {
     /// A pallet truck of 1.2 by 0.8 m, and the disc around it.
     fn trucks(imported: &ImportedLayout) -> [ImportedLayout; 2] {
         let corners = vec![[-0.6, -0.4], [0.6, -0.4], [0.6, 0.4], [-0.6, 0.4]];
-        let footprint = Footprint::new(corners, None).expect("a footprint");
+        let footprint = Footprint::new(corners).expect("a footprint");
         [Some(footprint), None].map(|footprint| {
             let mut imported = imported.clone();
             (imported.vehicle.radius, imported.vehicle.footprint) = (0.52_f64.sqrt(), footprint);
@@ -661,7 +661,7 @@ mod tests {
     fn robots_that_drive_backward_and_turn_on_edges_are_certified() {
         let mut imported = streets(2);
         let corners = vec![[-0.3, -0.3], [0.9, -0.3], [0.9, 0.3], [-0.3, 0.3]];
-        imported.vehicle.footprint = Some(Footprint::new(corners, None).expect("a footprint"));
+        imported.vehicle.footprint = Some(Footprint::new(corners).expect("a footprint"));
         imported.vehicle.radius = 0.9_f64.hypot(0.3);
         for (k, edge) in imported.layout.edges.iter_mut().enumerate() {
             if edge.is_two_way() {

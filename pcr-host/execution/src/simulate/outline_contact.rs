@@ -147,7 +147,7 @@ mod tests {
     fn rectangle(half: [f64; 2]) -> ConvexBody {
         let corners = [[1, 1], [-1, 1], [-1, -1], [1, -1]];
         let corners = corners.map(|sides| [0, 1].map(|k| half[k] * f64::from(sides[k])));
-        let footprint = Footprint::new(corners.to_vec(), None).expect("a footprint");
+        let footprint = Footprint::new(corners.to_vec()).expect("a footprint");
         ConvexBody::of_vehicle(Some(&footprint), 0.0).expect("a body")
     }
 

@@ -1,6 +1,7 @@
 //! An agent as one body that never changes: for what moves one body, and not a list of parts that come and go.
 
 use super::outline::CORNERS;
+use crate::bodies::has_parts;
 use pcr_core::{InvalidInput, Motion, Outline, PathRef, ProfileRef, Vector};
 use pcr_formats::footprint::Footprint;
 use pcr_formats::plane_geometry::{from_segment, hull, turn};
@@ -105,6 +106,17 @@ impl ConvexBody {
             }
             disc => disc,
         })
+    }
+
+    /// The convex hull of what an agent is, where that is no disc and more than one convex outline.
+    pub(super) fn hull_of(agent: &Agent) -> Result<Option<Footprint>, InvalidInput> {
+        if !has_parts(agent) {
+            return Ok(None);
+        }
+        match Self::of_agent(agent)? {
+            Self::Disc(_) => Ok(None),
+            Self::Outline(hull) => Ok(Footprint::new(hull.corners).ok().map(|it| it.inflated(hull.radius))),
+        }
     }
 
     fn of_corners(corners: Vec<[f64; 2]>, radius: f64) -> Result<Self, InvalidInput> {
@@ -246,7 +258,7 @@ mod tests {
     }
 
     fn agent(polygon: Vec<[f64; 2]>) -> Agent {
-        let footprint = Footprint::new(polygon, None).expect("a footprint");
+        let footprint = Footprint::new(polygon).expect("a footprint");
         Agent {
             id: 1,
             label: String::new(),
