@@ -30,7 +30,8 @@ fn read(format: InputFormat, text: &str, centred: &Centred) -> Result<(), String
         let radius = fleet.is_none().then_some(0.5);
         let options = ImportOptions { radius, fleet: fleet.map(Path::to_path_buf), ..ImportOptions::default() };
         let read = layout(format, text, &options, &mut Warnings::default());
-        read.map(|it| assert_eq!(it.vehicle.footprint.is_some(), fleet.is_some())).map_err(|error| error.to_string())
+        read.map(|it| assert_eq!(it.vehicle.footprint.is_some(), fleet.is_some()))
+            .map_err(|error| error.problem().to_owned())
     };
     // What is said about backward drives matters to no disc, and to no outline that is the same then.
     if !text.contains("sideways") {

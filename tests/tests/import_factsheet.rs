@@ -21,7 +21,7 @@ fn options(routes: &[&str]) -> ImportOptions {
 fn lines(sheet: &Value) -> (Result<pcr_formats::import::VehicleTraits, String>, String) {
     let mut warnings = Warnings::default();
     let read = vehicle(&sheet.to_string(), &ImportOptions::default(), &mut warnings);
-    (read.map_err(|error| error.to_string()), warnings.lines().join("\n"))
+    (read.map_err(|error| error.problem().to_owned()), warnings.lines().join("\n"))
 }
 
 /// Of two names for one limit the first one counted, whatever the other one said.
@@ -91,7 +91,7 @@ fn what_is_wrong_is_named() {
     assert_eq!(wrong(second, two), "factsheet, envelopes2d 2: 0 corners");
     assert!(wrong("/physicalParameters/speedMax", json!(-1)).contains("physicalParameters, speedMax: -1"));
     assert!(wrong("/agvGeometry", json!([])).contains("agvGeometry: a list where an object"));
-    let neither = vehicle("{}", &ImportOptions::default(), &mut Warnings::default()).unwrap_err().to_string();
+    let neither = vehicle("{}", &ImportOptions::default(), &mut Warnings::default()).unwrap_err().problem().to_owned();
     assert!(neither.contains("rmf_fleet: missing"), "{neither}");
 }
 

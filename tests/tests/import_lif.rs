@@ -118,7 +118,7 @@ fn edges_are_those_of_the_vehicle_type() {
         assert_eq!((layout.edges.len(), warnings.len()), (edges, 0), "{vehicle}");
     }
     let unknown = ImportOptions { vehicle: Some("truck".into()), ..options() };
-    let error = layout(InputFormat::Lif, TYPES, &unknown, &mut Warnings::default()).unwrap_err().to_string();
+    let error = layout(InputFormat::Lif, TYPES, &unknown, &mut Warnings::default()).unwrap_err().problem().to_owned();
     assert_eq!(error, "vehicle truck: no edge is for it; there are Vehicle_Type_1, Vehicle_Type_2, Vehicle_Type_3");
 }
 
@@ -190,7 +190,7 @@ fn nodes_without_a_map_are_on_one_level_unless_the_file_tells_them_apart() {
 /// What the reader refuses, and what it reads and warns about if that is left out.
 fn partly(value: &Value) -> (String, Layout, Vec<String>) {
     let text = value.to_string();
-    let error = layout(InputFormat::Lif, &text, &options(), &mut Warnings::default()).unwrap_err().to_string();
+    let error = layout(InputFormat::Lif, &text, &options(), &mut Warnings::default()).unwrap_err().problem().to_owned();
     let (layout, warnings) = read(&text, &ImportOptions { partial: true, ..options() });
     (error, layout, warnings)
 }
@@ -254,7 +254,7 @@ fn one_name_for_several_things_loses_none_of_them() {
 }
 
 fn layout_error(text: &str) -> String {
-    layout(InputFormat::Lif, text, &options(), &mut Warnings::default()).unwrap_err().to_string()
+    layout(InputFormat::Lif, text, &options(), &mut Warnings::default()).unwrap_err().problem().to_owned()
 }
 
 #[test]
@@ -338,8 +338,9 @@ fn outlines_face_as_edges_say() {
         assert_eq!(read(&text, &outlined).0.edges[0].facing[0], facing, "{orientation}");
         assert_eq!(read(&text, &options()).0.edges[0].facing[0], Facing::Ahead, "it does not matter how a disc faces");
     }
-    let error =
-        |text: &str| layout(InputFormat::Lif, text, &outlined, &mut Warnings::default()).unwrap_err().to_string();
+    let error = |text: &str| {
+        layout(InputFormat::Lif, text, &outlined, &mut Warnings::default()).unwrap_err().problem().to_owned()
+    };
     let degrees = error(&lif(180.0, Value::Null));
     assert!(degrees.contains("vehicleOrientation: 180 is more than one turn; the format has radians"), "{degrees}");
     let odd = error(&lif(0.0, json!("SIDEWAYS")));
@@ -364,7 +365,7 @@ fn times_are_of_one_speed() {
         let roads = pcr_formats::import::roads(InputFormat::Lif, text, &options, &mut Warnings::default());
         assert_eq!(delays.is_ok(), roads.is_ok());
         assert!(pcr_planning::exclusion_table::ExclusionTable::compute(&imported, false).is_ok());
-        roads.map(drop).map_err(|error| error.to_string())
+        roads.map(drop).map_err(|error| error.problem().to_owned())
     };
     let (same, other) = (
         with([of("Vehicle_Type_1", 1.0), of("Vehicle_Type_2", 1.0)]),
@@ -468,7 +469,7 @@ fn thetas_and_turns_of_an_outline_are_covered() {
     let curve = json!({ "controlPoints": [{ "x": 0, "y": 0, "orientation": 1.57 }, { "x": 10, "y": 0 }] });
     let sideways = json!([edge("ab", "a", "b", json!({ "vehicleTypeId": "t", "trajectory": curve }))]);
     let text = cross(sideways, Value::Null).to_string();
-    let error = layout(InputFormat::Lif, &text, &outlined, &mut Warnings::default()).unwrap_err().to_string();
+    let error = layout(InputFormat::Lif, &text, &outlined, &mut Warnings::default()).unwrap_err().problem().to_owned();
     assert!(error.starts_with("edge ab, trajectory, control point 1: its orientation 1.57, as outlines"), "{error}");
 }
 

@@ -17,8 +17,8 @@ fn outlined() -> ImportOptions {
 
 fn read(value: &Value, options: &ImportOptions) -> Result<(Layout, Vec<String>), String> {
     let mut warnings = Warnings::default();
-    let read =
-        layout(InputFormat::Lif, &value.to_string(), options, &mut warnings).map_err(|error| error.to_string())?;
+    let read = layout(InputFormat::Lif, &value.to_string(), options, &mut warnings)
+        .map_err(|error| error.problem().to_owned())?;
     Ok((read.layout, warnings.lines()))
 }
 

@@ -43,7 +43,7 @@ fn longitudes_and_latitudes_are_no_metres() {
         graph["crs"] = crs;
         layout(InputFormat::Nav2, &graph.to_string(), &options(&[], 1.0), &mut Warnings::default())
             .map(|read| read.layout.edges.len())
-            .map_err(|error| error.to_string())
+            .map_err(|error| error.problem().to_owned())
     };
     let named = |name: &str| with(json!({ "type": "name", "properties": { "name": name } }));
     for name in ["urn:ogc:def:crs:OGC:1.3:CRS84", "urn:ogc:def:crs:EPSG::4326", "EPSG:4326"] {
@@ -63,7 +63,7 @@ fn a_layout_without_an_edge_is_refused() {
     let node = |id: u32, x: f64| json!({ "type": "Feature", "properties": { "id": id }, "geometry": { "type": "Point", "coordinates": [x, 0.0] } });
     let text = json!({ "type": "FeatureCollection", "features": [node(0, 0.0), node(1, 0.3)] }).to_string();
     let error = layout(InputFormat::Nav2, &text, &options(&[], 1.0), &mut Warnings::default()).unwrap_err();
-    assert_eq!(error.to_string(), "there is no edge in it, on which anything could drive");
+    assert_eq!(error.problem(), "there is no edge in it, on which anything could drive");
 }
 
 #[test]
@@ -117,7 +117,7 @@ fn routes_are_shortest_ways() {
                 let outcome = scenario(InputFormat::Nav2, text, &options(&[&name], 0.0), &mut Warnings::default());
                 if lengths[from][to].is_infinite() {
                     assert_eq!(
-                        outcome.unwrap_err().to_string(),
+                        outcome.unwrap_err().problem().to_owned(),
                         format!("route {name}: there is no way from node to node")
                     );
                 } else {
@@ -221,7 +221,10 @@ fn speed_limits_are_fractions_or_percentages() {
 #[test]
 fn wrong_routes_are_named() {
     let failed = |routes: &[&str]| {
-        scenario(InputFormat::Nav2, WAREHOUSE, &options(routes, 1.0), &mut Warnings::default()).unwrap_err().to_string()
+        scenario(InputFormat::Nav2, WAREHOUSE, &options(routes, 1.0), &mut Warnings::default())
+            .unwrap_err()
+            .problem()
+            .to_owned()
     };
     assert_eq!(failed(&["0:999"]), "route 0:999: there is no node 999");
     assert_eq!(failed(&["x:1@3"]), "route x:1@3: there is no node x");
@@ -235,7 +238,10 @@ fn wrong_routes_are_named() {
 const ONE_ID: &str = include_str!("../data/cases/one-id-two-edges.geojson");
 
 fn failed(graph: &Value) -> String {
-    layout(InputFormat::Nav2, &graph.to_string(), &options(&[], 1.0), &mut Warnings::default()).unwrap_err().to_string()
+    layout(InputFormat::Nav2, &graph.to_string(), &options(&[], 1.0), &mut Warnings::default())
+        .unwrap_err()
+        .problem()
+        .to_owned()
 }
 
 #[test]
@@ -352,7 +358,10 @@ fn a_route_that_can_be_read_in_two_ways_is_refused() {
     }
     let failed = |route: &str| {
         let options = options(&[route], 1.0);
-        scenario(InputFormat::Nav2, &graph.to_string(), &options, &mut Warnings::default()).unwrap_err().to_string()
+        scenario(InputFormat::Nav2, &graph.to_string(), &options, &mut Warnings::default())
+            .unwrap_err()
+            .problem()
+            .to_owned()
     };
     assert_eq!(failed("a:b:c"), "route a:b:c: there are nodes for more than one reading of it");
     assert_eq!(failed("twin:a"), "route twin:a: 2 nodes have the name twin");
@@ -390,7 +399,7 @@ fn nodes_are_in_one_frame() {
         let [a, b] = frames;
         let graph = json!({ "type": "FeatureCollection", "features": [node(0, 0.0, a), node(1, 5.0, b), edge] });
         let read = layout(InputFormat::Nav2, &graph.to_string(), &options(&[], 1.0), &mut Warnings::default());
-        read.map(|imported| imported.layout.edges.len()).map_err(|error| error.to_string())
+        read.map(|imported| imported.layout.edges.len()).map_err(|error| error.problem().to_owned())
     };
     for frames in [
         [json!("map"), json!("map")],

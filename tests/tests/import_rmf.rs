@@ -88,7 +88,7 @@ fn fleets_have_their_limits() {
     let (ImportedLayout { vehicle, .. }, warnings) = read(TRIPLE_H, &options);
     assert_eq!((vehicle.radius, vehicle.speed, warnings.len()), (1.5, 0.7, 0));
     let wrong = ImportOptions { fleet: Some("nowhere.yaml".into()), ..ImportOptions::default() };
-    let error = layout(InputFormat::Rmf, OFFICE, &wrong, &mut Warnings::default()).unwrap_err().to_string();
+    let error = layout(InputFormat::Rmf, OFFICE, &wrong, &mut Warnings::default()).unwrap_err().problem().to_owned();
     assert!(error.starts_with("nowhere.yaml: cannot be read"), "{error}");
 }
 
@@ -181,8 +181,9 @@ fn levels_are_laid_upon_the_reference_level_by_their_fiducials() {
         warnings,
         ["level lower: no two fiducials place it upon level upper; it has the scale of its own measurements"]
     );
-    let failed =
-        |text: &str| layout(InputFormat::Rmf, text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();
+    let failed = |text: &str| {
+        layout(InputFormat::Rmf, text, &tiny(&[]), &mut Warnings::default()).unwrap_err().problem().to_owned()
+    };
     let unscaled = |name: &str| format!("level {name}, measurements: none that gives the scale of its pixels");
     assert_eq!(failed(&two_levels("", one, [own, none])), unscaled("lower"));
     assert_eq!(failed(&two_levels("", fiducials, [none, none])), unscaled("lower"));
@@ -205,7 +206,8 @@ fn levels_are_laid_upon_the_reference_level_by_their_fiducials() {
         for partial in [false, true] {
             let options = ImportOptions { partial, ..tiny(&[]) };
             let text = two_levels("", [fiducials[0], wrong], [own, none]);
-            let refused = layout(InputFormat::Rmf, &text, &options, &mut Warnings::default()).unwrap_err().to_string();
+            let refused =
+                layout(InputFormat::Rmf, &text, &options, &mut Warnings::default()).unwrap_err().problem().to_owned();
             assert_eq!(refused, problem);
         }
     }
@@ -223,8 +225,9 @@ fn levels_are_laid_upon_the_reference_level_by_their_fiducials() {
 
 #[test]
 fn what_is_wrong_is_named() {
-    let failed =
-        |text: &str| layout(InputFormat::Rmf, text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();
+    let failed = |text: &str| {
+        layout(InputFormat::Rmf, text, &tiny(&[]), &mut Warnings::default()).unwrap_err().problem().to_owned()
+    };
     let start = TRIPLE_H.find("measurements:").unwrap();
     let end = start + TRIPLE_H[start..].find("vertices:").unwrap();
     let unmeasured = format!("{}{}", &TRIPLE_H[..start], &TRIPLE_H[end..]);
@@ -236,7 +239,8 @@ fn what_is_wrong_is_named() {
     assert_eq!(failed("a: b"), "building, levels: missing");
     let config = std::fs::read_to_string(fleet("office_tinyRobot").unwrap()).unwrap();
     assert_eq!(failed(&config), "it is the configuration of a fleet; give it beside a building, with --fleet");
-    assert!(failed("a: [").starts_with("line 1, column 4: not YAML: "));
+    let unread = layout(InputFormat::Rmf, "a: [", &tiny(&[]), &mut Warnings::default()).unwrap_err();
+    assert!(unread.to_string().starts_with("line 1, column 4: not YAML: "), "{unread}");
     let broken = TRIPLE_H.replacen("- [0, 1, {", "- [0, 999, {", 1);
     assert_eq!(failed(&broken), "lane L1/0: there is no vertex 999; --partial leaves that out");
     let (rest, warnings) = read(&broken, &ImportOptions { partial: true, ..tiny(&[]) });
@@ -288,9 +292,8 @@ fn lanes_have_the_parameters_of_the_file() {
         let problem = "level L1, measurement 1: it gives no scale";
         for partial in [false, true] {
             let options = ImportOptions { partial, ..tiny(&[]) };
-            let refused =
-                layout(InputFormat::Rmf, &text, &options, &mut Warnings::default()).expect_err(other).to_string();
-            assert_eq!(refused, problem);
+            let refused = layout(InputFormat::Rmf, &text, &options, &mut Warnings::default()).expect_err(other);
+            assert_eq!(refused.problem(), problem);
         }
     }
 }
@@ -303,7 +306,7 @@ fn limits_of_a_fleet_are_two_numbers_above_zero() {
     };
     assert_eq!(read("[0.5, 0.75]").map(|vehicle| [vehicle.speed, vehicle.acceleration]), Ok([0.5, 0.75]));
     for wrong in ["[0, 1]", "[1, 0]", "[-1, 1]", "[1]", "[1, 2, 3]", "[2e6, 1]", "[1, 2e6]", "[x, 1]"] {
-        assert!(read(wrong).unwrap_err().to_string().contains("speed and acceleration above 0"), "{wrong}");
+        assert!(read(wrong).unwrap_err().problem().to_owned().contains("speed and acceleration above 0"), "{wrong}");
     }
 }
 
@@ -318,7 +321,8 @@ fn parameters_without_a_value_are_refused() {
         ("[bidirectional]", "its parameters [\"bidirectional\"] are not read"),
     ] {
         let text = building("[[0, 1, {distance: [3, 20.0]}]]", &[&format!("[0, 1, {parameters}]")], "");
-        let error = layout(InputFormat::Rmf, &text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();
+        let error =
+            layout(InputFormat::Rmf, &text, &tiny(&[]), &mut Warnings::default()).unwrap_err().problem().to_owned();
         assert!(error.starts_with(&format!("lane L1/0: {expected}")), "{error}");
     }
 }
@@ -370,7 +374,8 @@ fn names_are_any_scalars() {
         let text = building("9").replace("[0, 0, 9]", &format!("[0, 0, {here}]"));
         let text = text.replace("[50, 50, 9]", &format!("[50, 50, {there}]"));
         let options = ImportOptions { partial: true, ..tiny(&[]) };
-        let error = layout(InputFormat::Rmf, &text, &options, &mut Warnings::default()).unwrap_err().to_string();
+        let error =
+            layout(InputFormat::Rmf, &text, &options, &mut Warnings::default()).unwrap_err().problem().to_owned();
         assert!(error.contains("the programs of Open-RMF differ"), "{error}");
     }
     // Navigation graphs, and fleets.
@@ -405,8 +410,9 @@ fn longitudes_and_latitudes_are_projected() {
         }
         assert_eq!(warnings.iter().any(|line| line.contains("easting for a northing")), is_mirrored, "{warnings:?}");
     }
-    let failed =
-        |text: &str| layout(InputFormat::Rmf, text, &tiny(&[]), &mut Warnings::default()).unwrap_err().to_string();
+    let failed = |text: &str| {
+        layout(InputFormat::Rmf, text, &tiny(&[]), &mut Warnings::default()).unwrap_err().problem().to_owned()
+    };
     let unknown = failed(&campus("EPSG:4326"));
     assert!(unknown.starts_with("building, parameters, generate_crs: EPSG:4326 is not read; EPSG:326xx"), "{unknown}");
     let none = campus("EPSG:3414").replace("generate_crs", "other");

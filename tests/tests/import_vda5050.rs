@@ -21,7 +21,8 @@ pub(crate) fn options() -> ImportOptions {
 
 pub(crate) fn read(text: &str, options: &ImportOptions) -> Result<(Scenario, Vec<String>), String> {
     let mut warnings = Warnings::default();
-    let scenario = scenario(InputFormat::Vda5050, text, options, &mut warnings).map_err(|error| error.to_string())?;
+    let scenario =
+        scenario(InputFormat::Vda5050, text, options, &mut warnings).map_err(|error| error.problem().to_owned())?;
     Ok((scenario, warnings.lines()))
 }
 

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::PathBuf;
 
 fn value(text: &str) -> Result<Value, String> {
-    YamlDocument::read(text).and_then(|document| document.value()).map_err(|error| error.to_string())
+    YamlDocument::read(text).and_then(|document| Ok(document.value()?.to_value())).map_err(|error| error.to_string())
 }
 
 /// What the other reader says, as text: then the kinds of numbers count, too.

@@ -99,7 +99,7 @@ pub(crate) fn write(imported: &ImportedLayout, locks: &ExclusionTable) -> Result
 
 /// Reads the locks.
 pub(crate) fn read(text: &str, imported: &ImportedLayout) -> Result<ExclusionRules, ImportError> {
-    let json = |error: serde_json::Error| ImportError::of_json(text, &error, "JSON of the expected form");
+    let json = |error: serde_json::Error| ImportError::of_serde(text, &error, "JSON of the expected form");
     let said: LockFileHeader = serde_json::from_str(text).map_err(json)?;
     if said.format != FORMAT || said.version != 1 {
         return Err(ImportError::new(format!("format, version: {FORMAT}, 1 are expected")));

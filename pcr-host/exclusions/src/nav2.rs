@@ -45,7 +45,8 @@ fn is_node(feature: &Value) -> Option<bool> {
 
 /// Reads the lists.
 pub(crate) fn read(text: &str, imported: &ImportedLayout) -> Result<ExclusionRules, ImportError> {
-    let (root, places) = both(text)?;
+    let places = parse_json(text)?;
+    let root = places.to_value();
     let mut lists: [BTreeMap<u64, BTreeSet<u64>>; 2] = Default::default();
     let mut groups = Vec::new();
     for (feature, place) in features(&root, &places) {
@@ -111,7 +112,8 @@ pub(crate) fn write(text: &str, imported: &ImportedLayout, locks: &ExclusionTabl
     if let Some((large, _)) = closed[0].iter().find(|(id, _)| **id > LARGEST) {
         return Err(unknown(*large));
     }
-    let (root, places) = both(text)?;
+    let places = parse_json(text)?;
+    let root = places.to_value();
     let mut edits = TextEdits::default();
     for (feature, place) in features(&root, &places) {
         let (Some(node), Some(id)) = (is_node(feature), graph_id(&feature["properties"]["id"])) else { continue };
@@ -122,7 +124,7 @@ pub(crate) fn write(text: &str, imported: &ImportedLayout, locks: &ExclusionTabl
     }
     let stamp = VehicleStamp::of(imported).text();
     match (places.get(MEMBER), places.end_of_members()) {
-        (Some(old), _) => edits.replace(old.span.clone(), stamp),
+        (Some(old), _) => edits.replace(old.span(), stamp),
         (None, Some((at, comma))) => edits.insert(at, format!("{comma}\"{MEMBER}\": {stamp}")),
         (None, None) => return Err(ImportError::new("graph: an object is expected")),
     }
@@ -133,25 +135,18 @@ pub(crate) fn write(text: &str, imported: &ImportedLayout, locks: &ExclusionTabl
 fn set(edits: &mut TextEdits, properties: &JsonNode<'_>, list: &str) {
     let metadata = properties.get("metadata");
     if let Some(old) = metadata.and_then(|metadata| metadata.get(KEY)) {
-        return edits.replace(old.span.clone(), list);
+        return edits.replace(old.span(), list);
     }
     match metadata.map(|metadata| (metadata, metadata.end_of_members())) {
         Some((_, Some((at, comma)))) => edits.insert(at, format!("{comma}\"{KEY}\": {list}")),
         // `null`, or what is no metadata.
-        Some((other, None)) => edits.replace(other.span.clone(), format!("{{ \"{KEY}\": {list} }}")),
+        Some((other, None)) => edits.replace(other.span(), format!("{{ \"{KEY}\": {list} }}")),
         None => {
             if let Some((at, comma)) = properties.end_of_members() {
                 edits.insert(at, format!("{comma}\"metadata\": {{ \"{KEY}\": {list} }}"));
             }
         }
     }
-}
-
-/// The values of a text, and where they are in it.
-fn both(text: &str) -> Result<(Value, JsonNode<'_>), ImportError> {
-    let root = parse_json(text)?;
-    let places = json::parse(text).map_err(|error| ImportError::in_json(error.position, error.problem))?;
-    Ok((root, places))
 }
 
 fn features<'a>(root: &'a Value, places: &'a JsonNode<'a>) -> impl Iterator<Item = (&'a Value, &'a JsonNode<'a>)> {
@@ -161,7 +156,8 @@ fn features<'a>(root: &'a Value, places: &'a JsonNode<'a>) -> impl Iterator<Item
 
 /// Cuts edges into equal parts no longer than this \[m\]; returns the text, and which edges are left whole, and why.
 pub(crate) fn split(text: &str, most: f64) -> Result<(String, Vec<String>), ImportError> {
-    let (root, places) = both(text)?;
+    let places = parse_json(text)?;
+    let root = places.to_value();
     let mut cutter = Nav2EdgeSplitter::new(&root, &places)?;
     let (mut edits, mut whole_ones) = (TextEdits::default(), Vec::new());
     let end = ending(text);
@@ -191,7 +187,7 @@ pub(crate) fn split(text: &str, most: f64) -> Result<(String, Vec<String>), Impo
             continue;
         }
         let chain = cutter.chain(ends, at, parts as usize, &mut nodes);
-        let own = &text[place.span.clone()];
+        let own = &text[place.span()];
         let copies = chain.windows(2).enumerate().map(|(k, pair)| {
             let id = if k == 0 { graph_id(id)? } else { cutter.new_edge() };
             copy(own, id, [&pair[0], &pair[1]])
@@ -200,12 +196,12 @@ pub(crate) fn split(text: &str, most: f64) -> Result<(String, Vec<String>), Impo
         let copies = copies.ok_or_else(|| {
             ImportError::in_json(place.position, format!("edge {id}: a field that an edge needs is missing"))
         })?;
-        edits.replace(place.span.clone(), copies.join(&format!(",{end}")));
+        edits.replace(place.span(), copies.join(&format!(",{end}")));
     }
     if let Some(list) = places.get("features")
         && let Some(last) = list.list().last()
     {
-        edits.insert(last.span.end, nodes.iter().map(|node| format!(",{end}{node}")).collect::<String>());
+        edits.insert(last.span().end, nodes.iter().map(|node| format!(",{end}{node}")).collect::<String>());
     }
     Ok((edits.apply(text), whole_ones))
 }
@@ -290,14 +286,14 @@ fn copy(text: &str, id: u64, [from, to]: [&SplitEdge; 2]) -> Option<String> {
     let properties = spans.get("properties")?;
     let mut edits = TextEdits::default();
     for (name, value) in [("id", id), ("startid", from.0), ("endid", to.0)] {
-        edits.replace(properties.get(name)?.span.clone(), value.to_string());
+        edits.replace(properties.get(name)?.span(), value.to_string());
     }
     let geometry = spans.get("geometry")?;
     let (kind, line) = (geometry.get("type")?, json!([from.1, to.1]));
-    edits.replace(kind.span.clone(), "\"LineString\"");
+    edits.replace(kind.span(), "\"LineString\"");
     let drawn = geometry.get("coordinates")?;
     if let JsonData::Array(_) = drawn.data {
-        edits.replace(drawn.span.clone(), line.to_string());
+        edits.replace(drawn.span(), line.to_string());
     }
     Some(edits.apply(text))
 }

@@ -21,6 +21,7 @@ use crate::text_edits::{TextEdits, column, ending};
 use crate::{ExclusionRules, ResourceClaim};
 use mutex_groups::united;
 use pcr_formats::import::{ElementId, ImportError, ImportedLayout, is_navigation_graph};
+use pcr_formats::json::JsonNode;
 use pcr_formats::warning::WarningCode;
 use pcr_formats::yaml::{CollectionStyle, YamlDocument, YamlNode, YamlValue as Kind};
 use pcr_planning::exclusion_table::ExclusionTable;
@@ -44,7 +45,7 @@ struct RmfDialect {
 impl RmfDialect {
     const LANE: usize = 2;
 
-    fn of(text: &str, root: &Value) -> Self {
+    fn of(text: &str, root: &JsonNode<'_>) -> Self {
         let quoted = serde_json::from_str::<serde::de::IgnoredAny>(text).is_ok();
         let graph = is_navigation_graph(root);
         Self { vertex: if graph { 2 } else { 4 }, typed: !graph, quoted }
@@ -117,7 +118,7 @@ pub(crate) fn read(text: &str, imported: &ImportedLayout) -> Result<ExclusionRul
 fn opened(text: &str) -> Result<(RmfDialect, Value, YamlDocument<'_>), ImportError> {
     let document = YamlDocument::read(text).map_err(ImportError::of_yaml)?;
     let root = document.value().map_err(ImportError::of_yaml)?;
-    Ok((RmfDialect::of(text, &root), root, document))
+    Ok((RmfDialect::of(text, &root), root.to_value(), document))
 }
 
 /// A file to change: its form, and its values with their places.

@@ -261,7 +261,7 @@ fn tokens(
 /// Reads the zones.
 pub(crate) fn read(text: &str, imported: &ImportedLayout) -> Result<ExclusionRules, ImportError> {
     let layout = &imported.layout;
-    let root = parse_json(text)?;
+    let root = parse_json(text)?.to_value();
     let (zones, mut groups, warnings) = zones_of(&root, layout)?;
     let said = messages(&root).into_iter().filter_map(|message| message["zoneSet"]["zoneSetDescriptor"].as_str());
     // A descriptor may be anybody's.

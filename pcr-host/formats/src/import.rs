@@ -1,38 +1,40 @@
 //! Reads layouts, orders and plans in the formats that fleets use, leniently.
 //!
 //! ```text
-//! nav2        route graphs of the nav2 route server (GeoJSON)
-//! lif         layouts of the VDMA (JSON)
-//! vda5050     orders and states (JSON)
-//! updates     orders and their updates
-//! loads       the load that a vehicle of VDA 5050 carries
-//! facing      which way vehicles face on their paths
-//! corridor    room beside an edge that a vehicle may use
-//! factsheet   contours and limits of vehicles of VDA 5050 (JSON)
-//! rmf         buildings and fleets of Open-RMF (YAML)
-//! levels      where the levels of such a building are
-//! projection  longitudes and latitudes to metres
-//! opendrive   reference lines of roads (XML)
-//! opentcs     plant models (XML)
-//! ccbs        roadmaps and plans of Continuous-CBS (XML)
-//! grid        plans on grids (text)                                          GridPlan
-//! trajectory  NURBS as in VDA 5050 and LIF
-//! nurbs       NURBS to Bézier curves
-//! biarc       curves to lines and arcs, with a certified distance
-//! clothoid    clothoids to arcs, with a proven distance
-//! polynomial  parametric cubic curves of OpenDRIVE to Bézier curves
-//! samples     paths by their points (text)
-//! timed       plans of points and times
-//! stamp       time stamps
-//! layout      the common form: nodes, and edges of lines and arcs            Layout
-//! trace       lines and arcs anywhere in the plane to one path
-//! speed       the fastest motion under changing limits
-//! route       the shortest way between nodes, corners rounded
-//! vehicle     radius, speeds, and the options of the command line            Vehicle, Options
-//! names       unique names for nodes and edges with the same name
-//! keys        the keys that objects of a format may have
-//! useful      which options have an effect on which files                    Kind
-//! warnings    faults that were read nevertheless                             Warnings
+//! nav2                route graphs of the nav2 route server (GeoJSON)
+//! lif                 layouts of the VDMA (JSON)
+//! vda5050             orders and states (JSON)
+//! order_updates       orders and their updates
+//! vehicle_loads       the load that a vehicle of VDA 5050 carries
+//! vehicle_heading     which way vehicles face on their paths
+//! heading_error       the rotation beside the path of an outline that faces along it
+//! corridor            room beside an edge that a vehicle may use
+//! factsheet           contours and limits of vehicles of VDA 5050 (JSON)
+//! rmf                 buildings and fleets of Open-RMF (YAML)
+//! levels              where the levels of such a building are
+//! projection          longitudes and latitudes to metres
+//! opendrive           reference lines of roads (XML)
+//! opentcs             plant models (XML)
+//! ccbs                roadmaps and plans of Continuous-CBS (XML)
+//! grid                plans on grids (text)                                   GridPlan
+//! trajectory          NURBS as in VDA 5050 and LIF
+//! nurbs, bernstein    NURBS to Bézier curves
+//! biarc               curves to lines and arcs, with a certified distance
+//! clothoid            clothoids to arcs, with a proven distance
+//! polynomial          parametric cubic curves of OpenDRIVE to Bézier curves
+//! sampled_paths       paths by their points (text)
+//! timed_paths         plans of points and times
+//! timestamp           time stamps
+//! layout              the common form: nodes, and edges of lines and arcs     Layout
+//! path_builder        lines and arcs anywhere in the plane to one path
+//! speed               the fastest motion under changing limits
+//! route               the shortest way between nodes, corners rounded
+//! vehicle             radius, speeds, and the options of the command line     VehicleTraits, ImportOptions
+//! unique_names        unique names for nodes and edges with the same name
+//! json_access, xml    members and attributes, with errors that say where they are
+//! keys                the keys that objects of a format may have
+//! applicable_options  which options have an effect on which files             InputKind
+//! warnings            faults that were read nevertheless                      Warnings
 //! ```
 //!
 //! A reader either reads everything in a file, or refuses it with an [`ImportError`] that names all parts that would be
@@ -91,11 +93,10 @@ pub use warnings::{Warnings, shortened};
 use crate::answer_files;
 use crate::byte_order_mark::unmarked;
 use crate::footprint::Footprint;
-use crate::json::Position;
+use crate::json::{self, JsonNode, Position, SyntaxError};
 use crate::scenario::{Agent, Scenario};
 use crate::warning::WarningCode;
 use crate::yaml::{self, YamlDocument};
-use serde_json::Value;
 use std::path::Path;
 use std::{fmt, fs};
 use unique_names::name_printably;
@@ -181,7 +182,22 @@ impl ImportError {
 
     /// For the value at a place of a JSON text.
     pub fn in_json(at: Position, problem: impl Into<String>) -> Self {
-        Self::at(at.line, Some(at.column), problem)
+        Self::at(at.line as usize, Some(at.column as usize), problem)
+    }
+
+    /// Returns the error with this place, unless it has one.
+    pub(crate) fn or_in_json(self, at: Position) -> Self {
+        if self.line.is_some() { self } else { Self::in_json(at, self.problem) }
+    }
+
+    /// Returns what is wrong, without its place.
+    pub fn problem(&self) -> &str {
+        &self.problem
+    }
+
+    /// For what is no JSON.
+    pub fn of_json(error: SyntaxError) -> Self {
+        Self::in_json(error.position, format!("not JSON: {}", error.problem))
     }
 
     /// For what is wrong in YAML. (With `From`, the compiler could no longer infer errors of many closures.)
@@ -206,7 +222,7 @@ impl ImportError {
     }
 
     /// For what is wrong in the JSON of a text, which ought to be `what`.
-    pub fn of_json(text: &str, error: &serde_json::Error, what: &str) -> Self {
+    pub fn of_serde(text: &str, error: &serde_json::Error, what: &str) -> Self {
         let whole = error.to_string();
         let (line, byte) = (error.line(), error.column());
         let problem = whole.strip_suffix(&format!(" at line {line} column {byte}"));
@@ -277,8 +293,8 @@ impl InputFormat {
         if answer_files::has_agents(text) {
             return None;
         }
-        let root = serde_json::Deserializer::from_str(unmarked(text)).into_iter::<Value>().next()?.ok()?;
-        if root.get("format").and_then(Value::as_str).and_then(answer_files::described).is_some() {
+        let root = json::parse_first(text)?;
+        if root.get("format").and_then(|format| format.as_str()).and_then(answer_files::described).is_some() {
             return None;
         }
         match () {
@@ -390,7 +406,9 @@ fn read_complete<T>(
     match &warnings.lost()[before..] {
         // What would be left out says more than what is missing without it.
         lost if !lost.is_empty() && !options.partial => {
-            Err(ImportError::new(format!("{}; --partial leaves that out", listed(lost, "; "))))
+            let problems: Vec<String> = lost.iter().map(|error| error.problem.clone()).collect();
+            let problem = format!("{}; --partial leaves that out", listed(&problems, "; "));
+            Err(ImportError { problem, ..lost.first().cloned().unwrap_or_else(|| ImportError::new("")) })
         }
         _ => outcome,
     }
@@ -433,22 +451,20 @@ fn grown(agent: &Agent, radius: f64, vehicle: &VehicleTraits) -> f64 {
 /// What the configuration of a fleet or a factsheet says.
 fn of_fleet(text: &str, warnings: &mut Warnings) -> Result<FileVehicleTraits, ImportError> {
     // JSON is YAML, too, but says better what is wrong with it.
-    let json = unmarked(text).trim_start().starts_with('{');
-    let of_yaml = || {
-        let document = YamlDocument::read(text)?;
-        Ok((document.value()?, document.texts()?))
+    let mut read = |value: &JsonNode<'_>, texts: &JsonNode<'_>| {
+        if factsheet::is_factsheet(value) {
+            factsheet::read(value, warnings)
+        } else {
+            rmf::fleet(value, texts, warnings)
+        }
     };
-    let (value, texts) = if json {
+    if unmarked(text).trim_start().starts_with('{') {
         let value = json_access::parse(text)?;
-        (value.clone(), value)
-    } else {
-        of_yaml().map_err(ImportError::of_yaml)?
-    };
-    if factsheet::is_factsheet(&value) {
-        factsheet::read(&value, warnings)
-    } else {
-        rmf::fleet(&value, &texts, warnings)
+        return read(&value, &value);
     }
+    let document = YamlDocument::read(text).map_err(ImportError::of_yaml)?;
+    let [value, texts] = [document.value(), document.texts()].map(|read| read.map_err(ImportError::of_yaml));
+    read(&value?, &texts?)
 }
 
 /// Reads the vehicle of a fleet: the configuration of Open-RMF, or a factsheet of VDA 5050.

@@ -158,7 +158,7 @@ pub fn ask(bytes: u64, what: impl FnOnce() -> String) -> Result<(), MemoryError>
 }
 
 /// Bytes of a tree for each byte of its text.
-const OF_TREE: u64 = 56;
+const OF_TREE: u64 = 80;
 
 /// Asks for some bytes and keeps no reserve: for estimates that are high, or while no other thread takes addresses.
 fn ask_for_all_left(bytes: u64, what: impl FnOnce() -> String) -> Result<(), MemoryError> {

@@ -138,15 +138,19 @@ fn every_real_file_is_read_or_refused_by_name() {
 fn damaged_files_are_refused_by_name() {
     let part = |name: &str, bytes: usize| std::fs::read_to_string(real(name)).unwrap()[..bytes].to_owned();
     let cases = [
-        ("a.geojson", part("nav2/warehouse_graph.geojson", 3000), "not JSON: EOF while parsing"),
-        ("a.lif.json", part("lif/example_07.lif.json", 2000), "not JSON: EOF while parsing"),
+        ("a.geojson", part("nav2/warehouse_graph.geojson", 3000), "not JSON: the text ends w"),
+        ("a.lif.json", part("lif/example_07.lif.json", 2000), "not JSON: the text ends w"),
         ("a.building.yaml", part("rmf/office.building.yaml", 3000), "a.building.yaml:44:"),
         ("a.xodr", part("opendrive/Town01.planview.xodr", 4000), "not XML: unexpected end of stream"),
         ("a.xml", part("opentcs/Demo-01.xml", 5000), "not XML: unexpected end of stream"),
-        ("b.geojson", part("opentcs/Demo-01.xml", 5000), "not JSON: expected value"),
+        ("b.geojson", part("opentcs/Demo-01.xml", 5000), "where a value is expected"),
         ("b.xodr", part("nav2/warehouse_graph.geojson", 3000), "not XML"),
         ("b.building.yaml", "levels: 7".to_owned(), "building, levels: a number where an object is expected"),
-        ("c.geojson", "{\"features\": [{\"properties\": {\"id\": 1e400}}]}".to_owned(), "number out of range"),
+        (
+            "c.geojson",
+            "{\"features\": [{\"properties\": {\"id\": 1e400}}]}".to_owned(),
+            "not JSON: 1e400 is not a finite number",
+        ),
         ("empty.geojson", String::new(), "empty (read as nav2)"),
         ("empty.building.yaml", " \n".to_owned(), "empty (read as rmf)"),
         ("empty.json", "\u{feff}".to_owned(), "empty; a layout is expected"),
@@ -158,8 +162,7 @@ fn damaged_files_are_refused_by_name() {
         // The line and the column of what is wrong in the text are where editors and terminals look for them.
         let place = failed.strip_prefix(&format!("pcr: {name}:")).unwrap_or_else(|| panic!("{failed}"));
         let is_placed = place.split(':').take(2).all(|number| number.parse::<usize>().is_ok());
-        let is_text =
-            ["not JSON", "not YAML", "not XML", "number out of range"].iter().any(|fault| failed.contains(fault));
+        let is_text = !expected.starts_with("empty") && !expected.starts_with("not known");
         assert!(failed.contains(expected) && is_placed == is_text, "{failed}");
     }
     let huge = file("damaged", "huge.path", "0 0\n1e308 0\n");

@@ -109,7 +109,7 @@ fn vehicles_are_written_as_they_are_read() {
     for (from, to, reason) in [
         ("pcr-vehicles", "pcr-plan", "format: \"pcr-plan\" where pcr-vehicles is expected"),
         ("\"version\":1", "\"version\":2", "version: 2 where 1 is expected"),
-        ("\"radius\":", "\"radius\":0.1,\"radius\":", "\"radius\" is there twice at line 2 column 77"),
+        ("\"radius\":", "\"radius\":0.1,\"radius\":", "not JSON: \"radius\" is there twice"),
         ("\"version\"", "\"versions\"", "versions: unknown; format, version and vehicles are read"),
     ] {
         let changed = text.replacen(from, to, 1);

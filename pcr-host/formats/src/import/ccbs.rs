@@ -86,7 +86,7 @@ pub(super) fn roadmap(text: &str, warnings: &mut Warnings) -> Result<Layout, Imp
         let ends = match end("source").and_then(|from| Ok([from, end("target")?])) {
             Ok(ends) => ends,
             Err(problem) => {
-                warnings.lose(problem);
+                warnings.lose(format_args!("{problem}"));
                 continue;
             }
         };

@@ -27,7 +27,7 @@ pub(super) fn read(
         let widths = [first?, second?];
         let width = widths.into_iter().flatten().reduce(f64::max).ok_or_else(|| corridor.missing(names[0]))?;
         if widths.into_iter().flatten().any(|width| width < 0.0) {
-            return Err(ImportError::new(format!("{}: a width of {width} m; widths are from 0", corridor.name)));
+            return Err(corridor.error(format_args!("a width of {width} m; widths are from 0")));
         }
         Ok(width)
     };
@@ -38,7 +38,7 @@ pub(super) fn read(
             None => continue,
             Some("KINEMATICCENTER" | "KINEMATIC_CENTER") => false,
             Some("CONTOUR") => true,
-            Some(other) => return Err(ImportError::new(format!("{}, {name}: {other} is not read", corridor.name))),
+            Some(other) => return Err(corridor.field_error(name, format_args!("{other} is not read"))),
         };
         // Of two that differ the one counts that leaves more room.
         is_of_contour = Some(of_contour && is_of_contour.unwrap_or(true));

@@ -5,8 +5,8 @@ use super::keys::Keys;
 use super::vehicle::FileVehicleTraits;
 use super::{ImportError, WarningCode, Warnings};
 use crate::footprint::Footprint;
+use crate::json::JsonNode;
 use crate::plane_geometry::hull;
-use serde_json::Value;
 
 /// Names of a member in versions 3 and 2.
 type FieldNames = [&'static str; 2];
@@ -79,12 +79,12 @@ const ENVELOPE: Keys = Keys::new(&["vertices", "polygonPoints"], &["set", "envel
 const POINT: Keys = Keys::new(&["x", "y"], &[]);
 
 /// Whether a JSON value looks like one.
-pub(super) fn is_factsheet(root: &Value) -> bool {
+pub(super) fn is_factsheet(root: &JsonNode<'_>) -> bool {
     ["physicalParameters", "mobileRobotGeometry", "agvGeometry"].iter().any(|member| root.get(member).is_some())
 }
 
 /// Reads one: the contour in it, the hull of several or, if there is none, the rectangle of length and width around the reference point.
-pub(super) fn read(value: &Value, warnings: &mut Warnings) -> Result<FileVehicleTraits, ImportError> {
+pub(super) fn read(value: &JsonNode<'_>, warnings: &mut Warnings) -> Result<FileVehicleTraits, ImportError> {
     let root = JsonObject::new("factsheet", value)?;
     ROOT.check(&root, warnings)?;
     let mut given = FileVehicleTraits::default();
@@ -118,15 +118,15 @@ pub(super) fn read(value: &Value, warnings: &mut Warnings) -> Result<FileVehicle
             );
             let corners = several.iter().map(|one| polygon(one, warnings)).collect::<Result<Vec<_>, _>>()?;
             if let Some(empty) = corners.iter().position(Vec::is_empty) {
-                return Err(ImportError::new(format!("factsheet, envelopes2d {}: 0 corners", empty + 1)));
+                let at = several.get(empty).map_or(value.position, |one| one.position);
+                return Err(ImportError::in_json(at, format!("factsheet, envelopes2d {}: 0 corners", empty + 1)));
             }
             Some(hull(corners.concat()))
         }
     };
     if let Some(polygon) = polygon {
         let footprint = Footprint::new(polygon);
-        given.footprint =
-            Some(footprint.map_err(|problem| ImportError::new(format!("factsheet, envelopes2d: {problem}")))?);
+        given.footprint = Some(footprint.map_err(|problem| root.field_error("envelopes2d", problem))?);
     }
     Ok(given)
 }
@@ -141,12 +141,12 @@ fn either(object: &JsonObject<'_>, names: FieldNames) -> Result<Option<f64>, Imp
     }
     if other.is_some_and(|other| found != Some(other)) {
         let [third, second] = names;
-        return Err(ImportError::new(format!("{}: its {third} is not its {second}", object.name)));
+        return Err(object.error(format_args!("its {third} is not its {second}")));
     }
     Ok(found)
 }
 
-fn polygon(envelope: &Value, warnings: &mut Warnings) -> Result<Vec<[f64; 2]>, ImportError> {
+fn polygon(envelope: &JsonNode<'_>, warnings: &mut Warnings) -> Result<Vec<[f64; 2]>, ImportError> {
     let envelope = JsonObject::new("factsheet, envelopes2d", envelope)?;
     ENVELOPE.check(&envelope, warnings)?;
     let points = match envelope.list("vertices")? {

@@ -1,10 +1,9 @@
 //! Lenient reading of JSON: `null` counts as missing, and errors name a value of the wrong type.
 
 use super::ImportError;
-use crate::byte_order_mark::unmarked;
+use crate::json::{self, JsonData, JsonMember, JsonNode, Position};
 use crate::scenario::LIMIT;
-use crate::unique_keys::UniqueKeysJson;
-use serde_json::{Map, Value};
+use std::fmt;
 
 /// Whether the last line of a text does not end, as where the text was cut within it.
 pub(super) fn is_open(text: &str) -> bool {
@@ -12,37 +11,35 @@ pub(super) fn is_open(text: &str) -> bool {
 }
 
 /// The values in a text of several, one after the other. An object with a key twice is refused.
-pub(super) fn several(text: &str) -> impl Iterator<Item = Result<Value, ImportError>> + use<'_> {
-    let values = serde_json::Deserializer::from_str(unmarked(text)).into_iter::<UniqueKeysJson>();
-    values.map(move |value| value.map(|once| once.0).map_err(|error| not_json(text, &error)))
+pub(super) fn several(text: &str) -> impl Iterator<Item = Result<JsonNode<'_>, ImportError>> {
+    json::parse_sequence(text).map(|value| value.map_err(ImportError::of_json))
 }
 
-fn not_json(text: &str, error: &serde_json::Error) -> ImportError {
-    ImportError::of_json(unmarked(text), error, "JSON")
-}
-
-/// The value in a JSON text; a byte order mark at its start is skipped. An object with a key twice is refused.
+/// Parses the value in a JSON text; a byte order mark at its start is skipped. An object with a key twice is refused.
 ///
 /// # Errors
 /// Why it cannot be read.
-pub fn parse(text: &str) -> Result<Value, ImportError> {
-    let value: Result<UniqueKeysJson, _> = serde_json::from_str(unmarked(text));
-    value.map(|once| once.0).map_err(|error| not_json(text, &error))
+pub fn parse(text: &str) -> Result<JsonNode<'_>, ImportError> {
+    json::parse_strict(text).map_err(ImportError::of_json)
 }
 
 /// An object and how messages name it.
 #[derive(Clone, Debug)]
 pub(super) struct JsonObject<'j> {
     pub(super) name: String,
-    members: &'j Map<String, Value>,
+    position: Position,
+    members: &'j [JsonMember<'j>],
 }
 
 impl<'j> JsonObject<'j> {
-    pub(super) fn new(name: impl Into<String>, value: &'j Value) -> Result<Self, ImportError> {
+    pub(super) fn new(name: impl Into<String>, value: &'j JsonNode<'j>) -> Result<Self, ImportError> {
         let name = name.into();
-        match value {
-            Value::Object(members) => Ok(Self { name, members }),
-            other => Err(ImportError::new(format!("{name}: {} where an object is expected", kind(other)))),
+        match &value.data {
+            JsonData::Object(members) => Ok(Self { name, position: value.position, members }),
+            other => {
+                let problem = format!("{name}: {} where an object is expected", kind(other));
+                Err(ImportError::in_json(value.position, problem))
+            }
         }
     }
 
@@ -52,21 +49,38 @@ impl<'j> JsonObject<'j> {
     }
 
     /// All members with their names.
-    pub(super) fn members(&self) -> impl Iterator<Item = (&'j String, &'j Value)> + use<'j> {
-        self.members.iter()
+    pub(super) fn members(&self) -> impl Iterator<Item = (&'j str, &'j JsonNode<'j>)> + use<'j> {
+        self.members.iter().map(|(key, value)| (&**key, value))
     }
 
     /// A member that is there and not `null`.
-    pub(super) fn get(&self, field: &str) -> Option<&'j Value> {
-        self.members.get(field).filter(|value| !value.is_null())
+    pub(super) fn get(&self, field: &str) -> Option<&'j JsonNode<'j>> {
+        self.members().find(|(key, value)| *key == field && !value.is_null()).map(|(_, value)| value)
+    }
+
+    /// The error about the object.
+    pub(super) fn error(&self, problem: impl fmt::Display) -> ImportError {
+        ImportError::in_json(self.position, format!("{}: {problem}", self.name))
+    }
+
+    /// The error about a field, at its value if it is there.
+    pub(super) fn field_error(&self, field: &str, problem: impl fmt::Display) -> ImportError {
+        let position = self.get(field).map_or(self.position, |value| value.position);
+        ImportError::in_json(position, format!("{}, {field}: {problem}", self.name))
+    }
+
+    /// The error about a key.
+    pub(super) fn key_error(&self, key: &str, problem: impl fmt::Display) -> ImportError {
+        let position = self.get(key).map_or(self.position, |value| value.position);
+        ImportError::in_json(position, format!("{}: its key {key} {problem}", self.name))
     }
 
     pub(super) fn missing(&self, field: &str) -> ImportError {
-        ImportError::new(format!("{}, {field}: missing", self.name))
+        self.field_error(field, "missing")
     }
 
-    fn unexpected(&self, field: &str, found: &Value, expected: &str) -> ImportError {
-        ImportError::new(format!("{}, {field}: {} where {expected} is expected", self.name, kind(found)))
+    fn unexpected(&self, field: &str, found: &JsonNode<'_>, expected: &str) -> ImportError {
+        self.field_error(field, format_args!("{} where {expected} is expected", kind(&found.data)))
     }
 
     pub(super) fn object(&self, field: &str) -> Result<Option<JsonObject<'j>>, ImportError> {
@@ -74,12 +88,9 @@ impl<'j> JsonObject<'j> {
     }
 
     /// The elements of a list; none where it is missing.
-    pub(super) fn list(&self, field: &str) -> Result<&'j [Value], ImportError> {
-        match self.get(field) {
-            None => Ok(&[]),
-            Some(Value::Array(elements)) => Ok(elements),
-            Some(other) => Err(self.unexpected(field, other, "a list")),
-        }
+    pub(super) fn list(&self, field: &str) -> Result<&'j [JsonNode<'j>], ImportError> {
+        let Some(value) = self.get(field) else { return Ok(&[]) };
+        value.as_array().ok_or_else(|| self.unexpected(field, value, "a list"))
     }
 
     /// A number of a magnitude that can be computed with.
@@ -91,10 +102,7 @@ impl<'j> JsonObject<'j> {
         if number.abs() <= LIMIT {
             Ok(Some(number))
         } else {
-            Err(ImportError::new(format!(
-                "{}, {field}: {number:e} is out of range; allowed is up to {LIMIT:e}",
-                self.name
-            )))
+            Err(self.field_error(field, format_args!("{number:e} is out of range; allowed is up to {LIMIT:e}")))
         }
     }
 
@@ -106,7 +114,7 @@ impl<'j> JsonObject<'j> {
     pub(super) fn positive(&self, field: &str) -> Result<Option<f64>, ImportError> {
         match self.number(field)? {
             Some(number) if number <= 0.0 => {
-                Err(ImportError::new(format!("{}, {field}: {number} where a number above 0 is expected", self.name)))
+                Err(self.field_error(field, format_args!("{number} where a number above 0 is expected")))
             }
             number => Ok(number),
         }
@@ -119,14 +127,15 @@ impl<'j> JsonObject<'j> {
     /// A name: a text, or a number as some tools write one.
     pub(super) fn label(&self, field: &str) -> Result<Option<String>, ImportError> {
         match self.get(field) {
-            Some(Value::Number(number)) => Ok(Some(number.to_string())),
+            Some(number) if matches!(number.data, JsonData::Number(_)) => Ok(Some(number.to_string())),
             _ => self.text(field).map(|text| text.map(str::to_owned)),
         }
     }
 
     /// True or false.
     pub(super) fn flag(&self, field: &str) -> Result<Option<bool>, ImportError> {
-        let flag = |value: &'j Value| value.as_bool().ok_or_else(|| self.unexpected(field, value, "true or false"));
+        let flag =
+            |value: &'j JsonNode<'j>| value.as_bool().ok_or_else(|| self.unexpected(field, value, "true or false"));
         self.get(field).map(flag).transpose()
     }
 
@@ -136,31 +145,53 @@ impl<'j> JsonObject<'j> {
     }
 }
 
-fn kind(value: &Value) -> &'static str {
-    match value {
-        Value::Null => "null",
-        Value::Bool(_) => "true or false",
-        Value::Number(_) => "a number",
-        Value::String(_) => "a text",
-        Value::Array(_) => "a list",
-        Value::Object(_) => "an object",
+fn kind(data: &JsonData<'_>) -> &'static str {
+    match data {
+        JsonData::Null => "null",
+        JsonData::Bool(_) => "true or false",
+        JsonData::Number(_) => "a number",
+        JsonData::Text(_) => "a text",
+        JsonData::Array(_) => "a list",
+        JsonData::Object(_) => "an object",
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::{ImportOptions, InputFormat, Warnings, layout, scenario};
     use super::*;
 
     #[test]
-    fn a_mark_before_the_text_is_skipped_and_what_is_there_twice_is_refused() {
-        let text = r#"{"a": [1, 0.5, null], "b": {"a": "x"}}"#;
-        let expected: Value = serde_json::from_str(text).unwrap();
-        assert_eq!(parse(text).unwrap(), expected);
-        assert_eq!(parse(&format!("\u{feff}{text}")).unwrap(), expected);
-        let error = parse(r#"{"a": 1, "a": 1}"#).unwrap_err().to_string();
-        assert_eq!(error, "line 1, column 12: not JSON: \"a\" is there twice");
+    fn errors_say_where_in_the_file_they_are() {
         let error = parse("{\"a\": 1,\n\"é\": x}").unwrap_err();
-        assert_eq!(error.in_file("f.json"), "f.json:2:6: not JSON: expected value");
-        assert!(parse("{\"a\": 1} x").is_err() && parse("{\"a\": 1").is_err());
+        assert_eq!(error.in_file("f.json"), "f.json:2:6: not JSON: x where a value is expected");
+        for (format, text, expected) in [
+            (
+                InputFormat::Nav2,
+                "{\"type\": \"FeatureCollection\", \"features\": [\n  {\"geometry\": {\"type\": \"Point\",\n    \"coordinates\": [0]}, \"properties\": {\"id\": 1}}]}",
+                "f:3:20: feature 1, geometry, coordinates: two numbers are expected; --partial leaves that out",
+            ),
+            (
+                InputFormat::Lif,
+                "{\"metaInformation\": {\"lifVersion\": \"1.0.0\"}, \"layouts\": [{\"nodes\": [\n{\"nodeId\": \"A\", \"mapId\": \"m\",\n \"nodePosition\": {\"x\": 0, \"y\": \"1\"}}], \"edges\": []}]}",
+                "f:3:32: node A, nodePosition, y: a text where a number is expected; --partial leaves that out",
+            ),
+            (
+                InputFormat::Rmf,
+                "name: b\ncoordinate_system: cartesian_meters\nlevels:\n  L1:\n    vertices:\n      - [0, 0, 0]\n    lanes:\n      - [0, 7]\n",
+                "f:8:9: lane L1/0: there is no vertex 7; --partial leaves that out",
+            ),
+        ] {
+            let error = layout(format, text, &ImportOptions::default(), &mut Warnings::default()).unwrap_err();
+            assert_eq!(error.in_file("f"), expected);
+        }
+        let order = "[{\"orderId\": \"o\", \"orderUpdateId\": 0, \"nodes\": [\n  {\"nodeId\": \"A\", \"sequenceId\": 0, \"released\": true,\n   \"nodePosition\": {\"x\": 0, \"y\": 0, \"mapId\": \"m\", \"theta\": \"north\"}}], \"edges\": []}]";
+        let refusal = |order: &str| {
+            let options = ImportOptions { radius: Some(0.5), ..ImportOptions::default() };
+            scenario(InputFormat::Vda5050, order, &options, &mut Warnings::default()).unwrap_err().in_file("f")
+        };
+        assert_eq!(refusal(order), "f:3:60: order o, node A, nodePosition, theta: a text where a number is expected");
+        let typed = refusal(&order.replace("\"x\": 0", "\"x\": \"0\""));
+        assert!(typed.starts_with("f:3:26: order o, nodes[0].nodePosition.x: "), "{typed}");
     }
 }

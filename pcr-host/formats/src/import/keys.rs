@@ -45,8 +45,9 @@ impl Keys {
     /// [`ImportError`] with a key that is nearly one that is read, or that stands in the wrong object.
     pub(super) fn check(&self, object: &JsonObject<'_>, warnings: &mut Warnings) -> Result<(), ImportError> {
         // What is null counts as missing everywhere.
-        let keys = object.members().filter(|(_, value)| !value.is_null()).map(|(key, _)| key.as_str());
+        let keys = object.members().filter(|(_, value)| !value.is_null()).map(|(key, _)| key);
         self.check_all(&object.name, keys, &|key| object.get(key).is_some(), warnings)
+            .map_err(|(key, problem)| object.key_error(key, problem))
     }
 
     /// Checks the attributes of an element, which has a name in messages, in the same way.
@@ -62,24 +63,25 @@ impl Keys {
         let keys = element.attributes().filter(|attribute| attribute.namespace().is_none());
         let has = |key: &str| element.has_attribute(key);
         self.check_all(name, keys.map(|attribute| attribute.name()), &has, warnings)
+            .map_err(|(key, problem)| ImportError::new(format!("{name}: its key {key} {problem}")))
     }
 
+    /// Fails with a key, and what is wrong with it.
     fn check_all<'k>(
         &self,
         name: &str,
         keys: impl Iterator<Item = &'k str>,
         has: &dyn Fn(&str) -> bool,
         warnings: &mut Warnings,
-    ) -> Result<(), ImportError> {
+    ) -> Result<(), (&'k str, String)> {
         for key in keys.filter(|key| !self.read.contains(key) && !self.passed.contains(key)) {
-            let refused = |problem: String| Err(ImportError::new(format!("{name}: its key {key} {problem}")));
             let same = self.read.iter().find(|known| letters(known) == letters(key));
             let missing = self.read.iter().filter(|known| !has(known));
             if let Some(meant) = same.copied().or_else(|| nearest(key, missing.copied())) {
-                return refused(format!("is not known here; it may be meant for {meant}"));
+                return Err((key, format!("is not known here; it may be meant for {meant}")));
             }
             if self.elsewhere.contains(&key) {
-                return refused("is read in other objects of the format and not in this one".to_owned());
+                return Err((key, "is read in other objects of the format and not in this one".to_owned()));
             }
             if !self.free {
                 warnings.add(WarningCode::UnknownKey, name, format!("its key {key} is not known, and not read"));
@@ -132,14 +134,17 @@ fn distance(a: &[char], b: &[char]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::json::{JsonNode, Position};
     use serde_json::json;
 
     const KEYS: Keys = Keys::new(&["trajectory", "theta", "x", "nodeId"], &["height"]).not(&["corridor"]);
 
-    fn check(value: &serde_json::Value, keys: Keys) -> (Result<(), String>, Vec<String>) {
+    fn check(value: serde_json::Value, keys: Keys) -> (Result<(), String>, Vec<String>) {
+        let value = JsonNode::from_value(value, Position::START);
+        let value = &value;
         let mut warnings = Warnings::default();
         let object = JsonObject::new("edge e", value).unwrap();
-        let checked = keys.check(&object, &mut warnings).map_err(|error| error.to_string());
+        let checked = keys.check(&object, &mut warnings).map_err(|error| error.problem().to_owned());
         (checked, warnings.lines())
     }
 
@@ -155,32 +160,32 @@ mod tests {
             ("node_id", "nodeId"),
             ("X", "x"),
         ] {
-            let (checked, _) = check(&json!({ key: 1 }), KEYS);
+            let (checked, _) = check(json!({ key: 1 }), KEYS);
             let expected = format!("edge e: its key {key} is not known here; it may be meant for {meant}");
             assert_eq!(checked, Err(expected));
             // What is null is missing.
-            assert_eq!(check(&json!({ key: null }), KEYS), (Ok(()), Vec::new()));
+            assert_eq!(check(json!({ key: null }), KEYS), (Ok(()), Vec::new()));
         }
     }
 
     #[test]
     fn other_unknown_keys_are_told_unless_anybody_may_add_some() {
         for key in ["z", "colour", "nodes", "heights", "length"] {
-            let (checked, warnings) = check(&json!({ key: 1 }), KEYS);
+            let (checked, warnings) = check(json!({ key: 1 }), KEYS);
             assert_eq!(checked, Ok(()), "{key}");
             assert_eq!(warnings, [format!("edge e: its key {key} is not known, and not read")]);
-            assert_eq!(check(&json!({ key: 1 }), KEYS.free()), (Ok(()), Vec::new()));
+            assert_eq!(check(json!({ key: 1 }), KEYS.free()), (Ok(()), Vec::new()));
         }
-        assert_eq!(check(&json!({ "trajectory": 1, "height": 2 }), KEYS), (Ok(()), Vec::new()));
+        assert_eq!(check(json!({ "trajectory": 1, "height": 2 }), KEYS), (Ok(()), Vec::new()));
         // Beside the one that it is near it is another one, unless it is the same in other letters.
-        let (checked, warnings) = check(&json!({ "trajectory": 1, "trajectory2": 1 }), KEYS);
+        let (checked, warnings) = check(json!({ "trajectory": 1, "trajectory2": 1 }), KEYS);
         assert_eq!((checked, warnings.len()), (Ok(()), 1));
-        assert!(check(&json!({ "trajectory": 1, "Trajectory": 1 }), KEYS).0.is_err());
+        assert!(check(json!({ "trajectory": 1, "Trajectory": 1 }), KEYS).0.is_err());
     }
 
     #[test]
     fn a_key_in_the_wrong_object_is_refused() {
-        let (checked, _) = check(&json!({ "corridor": {} }), KEYS.free());
+        let (checked, _) = check(json!({ "corridor": {} }), KEYS.free());
         assert_eq!(
             checked,
             Err("edge e: its key corridor is read in other objects of the format and not in this one".into())

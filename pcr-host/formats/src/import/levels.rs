@@ -8,7 +8,7 @@
 use super::json_access::JsonObject;
 use super::projection::Projection;
 use super::{ImportError, WarningCode, Warnings};
-use serde_json::Value;
+use crate::json::JsonNode;
 
 /// Relative difference of two scales of a level that goes without a warning.
 const SPREAD: f64 = 0.01;
@@ -81,7 +81,7 @@ struct Fiducial<'j> {
     /// Its name as it is written.
     name: &'j str,
     /// The value that its name stands for.
-    value: &'j Value,
+    value: &'j JsonNode<'j>,
     /// In pixels.
     at: [f64; 2],
 }
@@ -90,7 +90,7 @@ impl Fiducial<'_> {
     /// Whether both have the same name; nothing if programs differ about it, which compare texts (C++) or values (Python: `1`, `1.0` and
     /// `true` are equal, `1` and `"1"` are not).
     fn is_called_as(&self, other: &Self) -> Option<bool> {
-        let number = |value: &Value| value.as_f64().or_else(|| value.as_bool().map(f64::from));
+        let number = |value: &JsonNode<'_>| value.as_f64().or_else(|| value.as_bool().map(f64::from));
         let by_value = match [self.value, other.value].map(number) {
             [Some(a), Some(b)] => a == b,
             _ => self.value == other.value,
@@ -137,10 +137,11 @@ impl<'j> ReferenceLevel<'j> {
                     Some(false) => {}
                     None => {
                         let [there, here] = [known, own].map(|fiducial| fiducial.value);
-                        return Err(ImportError::new(format!(
-                            "{}, fiducials: {here}, and {there} in level {}; the programs of Open-RMF differ on whether these are one name",
-                            level.object.name, self.name
-                        )));
+                        let problem = format!(
+                            "{here}, and {there} in level {}; the programs of Open-RMF differ on whether these are one name",
+                            self.name
+                        );
+                        return Err(level.object.field_error("fiducials", problem));
                     }
                 }
             }
@@ -217,17 +218,19 @@ impl<'j> ReferenceLevel<'j> {
 }
 
 fn no_scale(level: &BuildingLevel<'_>) -> ImportError {
-    ImportError::new(format!("{}, measurements: none that gives the scale of its pixels", level.object.name))
+    level.object.field_error("measurements", "none that gives the scale of its pixels")
 }
 
 /// The fiducials of a level. One that cannot be read is an error even if parts may be left out: the level would have another scale.
 fn fiducials<'j>(level: &BuildingLevel<'j>) -> Result<Vec<Fiducial<'j>>, ImportError> {
     let mut all: Vec<Fiducial<'j>> = Vec::new();
     for (k, value) in level.object.list("fiducials")?.iter().enumerate() {
-        let refused =
-            |problem: String| Err(ImportError::new(format!("{}, fiducial {k}: {problem}", level.object.name)));
-        let number = |place: usize| value.get(place).and_then(Value::as_f64);
-        let name = level.text(&["fiducials"], &[k, 2]).zip(value.get(2));
+        let refused = |problem: String| {
+            let problem = format!("{}, fiducial {k}: {problem}", level.object.name);
+            Err(ImportError::in_json(value.position, problem))
+        };
+        let number = |place: usize| value.element(place).and_then(JsonNode::as_f64);
+        let name = level.text(&["fiducials"], &[k, 2]).zip(value.element(2));
         let (Some(x), Some(y), Some((name, value))) = (number(0), number(1), name) else {
             return refused("no place and name".into());
         };
@@ -243,7 +246,8 @@ fn fiducials<'j>(level: &BuildingLevel<'j>) -> Result<Vec<Fiducial<'j>>, ImportE
 pub(super) struct BuildingLevel<'j> {
     pub(super) name: &'j str,
     pub(super) object: JsonObject<'j>,
-    texts: &'j Value,
+    /// `None` where the file has no level of this name.
+    texts: Option<&'j JsonNode<'j>>,
     pub(super) vertices: Vec<PlacedVertex>,
 }
 
@@ -252,7 +256,12 @@ pub(super) type PlacedVertex = Option<([f64; 2], Option<String>)>;
 
 impl<'j> BuildingLevel<'j> {
     /// A level of a building, or of a `graph` for navigation.
-    pub(super) fn new(name: &'j str, value: &'j Value, texts: &'j Value, graph: bool) -> Result<Self, ImportError> {
+    pub(super) fn new(
+        name: &'j str,
+        value: &'j JsonNode<'j>,
+        texts: Option<&'j JsonNode<'j>>,
+        graph: bool,
+    ) -> Result<Self, ImportError> {
         let object = JsonObject::new(format!("level {name}"), value)?;
         let mut level = Self { name, object, texts, vertices: Vec::new() };
         let all = level.object.list("vertices")?.iter().enumerate();
@@ -262,17 +271,17 @@ impl<'j> BuildingLevel<'j> {
 
     /// A scalar as it is written, by its member and its places in lists.
     fn text(&self, members: &[&str], places: &[usize]) -> Option<&'j str> {
-        let member = members.iter().try_fold(self.texts, |value, member| value.get(member))?;
-        places.iter().try_fold(member, |value, place| value.get(place))?.as_str()
+        let member = members.iter().try_fold(self.texts?, |value, member| value.get(member))?;
+        places.iter().try_fold(member, |value, place| value.element(*place))?.as_str()
     }
 
     /// A vertex, whose name may be any scalar.
-    fn vertex(&self, k: usize, value: &Value, graph: bool) -> PlacedVertex {
+    fn vertex(&self, k: usize, value: &JsonNode<'_>, graph: bool) -> PlacedVertex {
         let list = value.as_array()?;
         let number = |k: usize| list.get(k)?.as_f64().filter(|x| x.abs() <= crate::scenario::LIMIT);
         let name = if graph {
-            let parameters = self.texts.get("vertices").and_then(|list| list.get(k)?.get(2)?.get("name"));
-            parameters.and_then(Value::as_str)
+            let parameters = self.texts.and_then(|texts| texts.get("vertices")?.element(k)?.element(2)?.get("name"));
+            parameters.and_then(JsonNode::as_str)
         } else {
             self.text(&["vertices"], &[k, 3])
         };
@@ -281,17 +290,17 @@ impl<'j> BuildingLevel<'j> {
 }
 
 /// The value of a parameter, which is a list of its type and itself; a list without it is no value, and given as it is.
-pub(super) fn parameter<'j>(parameters: Option<&'j Value>, name: &str) -> Option<&'j Value> {
+pub(super) fn parameter<'j>(parameters: Option<&'j JsonNode<'j>>, name: &str) -> Option<&'j JsonNode<'j>> {
     let given = parameters?.get(name)?;
     Some(given.as_array().and_then(|typed| typed.get(1)).unwrap_or(given))
 }
 
 /// Ends of a lane, a wall or a measurement.
-pub(super) fn ends(value: &Value, vertices: &[PlacedVertex]) -> Result<[(usize, [f64; 2]); 2], String> {
+pub(super) fn ends(value: &JsonNode<'_>, vertices: &[PlacedVertex]) -> Result<[(usize, [f64; 2]); 2], String> {
     let list = value.as_array().ok_or("not a list")?;
     let mut ends = [(0, [0.0; 2]); 2];
     for (k, end) in ends.iter_mut().enumerate() {
-        let place = list.get(k).and_then(Value::as_u64).ok_or("two numbers of vertices are expected")?;
+        let place = list.get(k).and_then(JsonNode::as_u64).ok_or("two numbers of vertices are expected")?;
         let vertex =
             usize::try_from(place).ok().and_then(|place| vertices.get(place)?.as_ref().map(|vertex| (place, vertex.0)));
         *end = vertex.ok_or(format!("there is no vertex {place}"))?;
@@ -303,7 +312,7 @@ pub(super) fn ends(value: &Value, vertices: &[PlacedVertex]) -> Result<[(usize, 
 fn scale(level: &BuildingLevel<'_>, warnings: &mut Warnings) -> Result<Option<f64>, ImportError> {
     let mut scales = Vec::new();
     for (k, value) in level.object.list("measurements")?.iter().enumerate() {
-        let metres = parameter(value.get(2), "distance").and_then(Value::as_f64);
+        let metres = parameter(value.element(2), "distance").and_then(JsonNode::as_f64);
         let scale = ends(value, &level.vertices)
             .ok()
             .zip(metres)
@@ -313,7 +322,8 @@ fn scale(level: &BuildingLevel<'_>, warnings: &mut Warnings) -> Result<Option<f6
             // The building tools do not leave it out: they count a distance of 0, and stop if there is none. Without it the level would have
             // another scale, so that it is an error even if parts may be left out.
             None => {
-                return Err(ImportError::new(format!("{}, measurement {k}: it gives no scale", level.object.name)));
+                let problem = format!("{}, measurement {k}: it gives no scale", level.object.name);
+                return Err(ImportError::in_json(value.position, problem));
             }
         }
     }

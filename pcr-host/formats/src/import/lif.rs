@@ -19,9 +19,9 @@ use super::{
     ImportError, ImportOptions, WarningCode, Warnings, corridor, json_access, route, trajectory, vehicle_heading,
 };
 use crate::footprint::Footprint;
+use crate::json::JsonNode;
 use crate::plane_geometry::distance;
 use crate::scenario::PlacedSegment;
-use serde_json::Value;
 use std::collections::BTreeSet;
 use version::LifVersion;
 
@@ -32,8 +32,8 @@ const GAP: f64 = 1e-3;
 const CLOSED: f64 = 1e-9;
 
 /// Whether a JSON value looks like a layout.
-pub(super) fn is_layout(root: &Value) -> bool {
-    let of_origins = || root.get("origins").and_then(Value::as_array);
+pub(super) fn is_layout(root: &JsonNode<'_>) -> bool {
+    let of_origins = || root.get("origins").and_then(JsonNode::as_array);
     root.get("layouts").is_some() || of_origins().is_some_and(|all| all.iter().any(|one| one.get("layouts").is_some()))
 }
 
@@ -96,7 +96,7 @@ pub(super) fn read(
     }
     for (k, value) in edges.into_iter().enumerate() {
         if let Err(error) = reader.edge(k, value) {
-            reader.warnings.lose(error);
+            reader.warnings.lose(error.or_in_json(value.position));
         }
     }
     let LifReader { levels, nodes, edges, types, thetas, outline, of_speeds, .. } = reader;
@@ -104,7 +104,7 @@ pub(super) fn read(
     vehicle_heading::turn_at_nodes(&thetas, &mut edges, outline);
     let vehicle_types = types.iter().cloned().collect();
     if nodes.list().is_empty() {
-        return Err(ImportError::new("LIF, layouts: there is no node in them"));
+        return Err(root.field_error("layouts", "there is no node in them"));
     }
     match &options.vehicle {
         Some(asked) if !types.contains(asked) => {
@@ -136,7 +136,7 @@ pub(super) fn read(
 struct Origin<'j> {
     /// None in LIF 1, where all layouts have the same.
     id: Option<&'j str>,
-    layouts: Vec<&'j Value>,
+    layouts: Vec<&'j JsonNode<'j>>,
 }
 
 /// The layouts of a file by their origins.
@@ -146,7 +146,7 @@ fn origins<'j>(
     warnings: &mut Warnings,
 ) -> Result<Vec<Origin<'j>>, ImportError> {
     let mut all: Vec<Origin<'j>> = Vec::new();
-    let own: Vec<&Value> = root.list("layouts")?.iter().collect();
+    let own: Vec<&'j JsonNode<'j>> = root.list("layouts")?.iter().collect();
     if version == LifVersion::First {
         return if root.get("layouts").is_some() {
             Ok(vec![Origin { id: None, layouts: own }])
@@ -163,9 +163,7 @@ fn origins<'j>(
         return Ok(vec![Origin { id: None, layouts: own }]);
     }
     if !own.is_empty() {
-        return Err(ImportError::new(
-            "LIF: it has layouts in origins and besides them; which origin those have is not said",
-        ));
+        return Err(root.error("it has layouts in origins and besides them; which origin those have is not said"));
     }
     if root.get("origins").is_none() {
         return Err(root.missing("origins"));
@@ -212,7 +210,7 @@ impl LifReader<'_> {
     fn unnamed(
         &mut self,
         layout: &JsonObject<'_>,
-        layouts: &[&Value],
+        layouts: &[&JsonNode<'_>],
         maps: &BTreeSet<&str>,
     ) -> Result<Option<String>, ImportError> {
         let nodes = layout.list("nodes")?;
@@ -240,7 +238,7 @@ impl LifReader<'_> {
     }
 
     /// Reads a node; with several origins levels are named by them as well.
-    fn node(&mut self, k: usize, value: &Value, unnamed: Option<&str>, origin: Option<&str>) {
+    fn node(&mut self, k: usize, value: &JsonNode<'_>, unnamed: Option<&str>, origin: Option<&str>) {
         match self.read_node(k, value, unnamed) {
             Err(error) => self.warnings.lose(error),
             Ok(LifNode { object, id, name, level, at }) => {
@@ -301,7 +299,7 @@ impl LifReader<'_> {
         self.options.vehicle.as_ref().is_none_or(|asked| types.is_empty() || types.contains(asked))
     }
 
-    fn edge(&mut self, k: usize, value: &Value) -> Result<(), ImportError> {
+    fn edge(&mut self, k: usize, value: &JsonNode<'_>) -> Result<(), ImportError> {
         let object = JsonObject::new(format!("edge at place {}", k + 1), value)?;
         let id = object.text("edgeId")?.ok_or_else(|| object.missing("edgeId"))?.to_owned();
         let object = object.called(format!("edge {id}"));
@@ -309,12 +307,12 @@ impl LifReader<'_> {
         let place = |field: &str| {
             let node = object.text(field)?.ok_or_else(|| object.missing(field))?;
             let place = self.nodes.index_of(&ElementId::Text(node.to_owned()));
-            place.map_err(|unclear| ImportError::new(format!("edge {id}, {field}: {unclear}")))
+            place.map_err(|unclear| object.field_error(field, unclear))
         };
         let ends = [place("startNodeId")?, place("endNodeId")?];
         if self.origins.get(ends[0]) != self.origins.get(ends[1]) {
             let problem = "its nodes have different origins of coordinates, and where it leads is not in the file";
-            return Err(ImportError::new(format!("edge {id}: {problem}")));
+            return Err(object.error(problem));
         }
         let mut edges: Vec<LayoutEdge> = Vec::new();
         let properties = object.list(self.names.edge_properties)?;
@@ -415,10 +413,8 @@ impl LifReader<'_> {
             orientations.extend(property.number(field)?);
         } else {
             for value in property.list(field)? {
-                let orientation = value.as_f64().ok_or_else(|| {
-                    ImportError::new(format!("{}, {field}: {value} where a number is expected", property.name))
-                })?;
-                orientations.push(orientation);
+                let problem = || property.field_error(field, format_args!("{value} where a number is expected"));
+                orientations.push(value.as_f64().ok_or_else(problem)?);
             }
         }
         let said = vehicle_heading::of_edge(property, field, &orientations, heading)?;
@@ -468,8 +464,8 @@ impl LifReader<'_> {
 }
 
 /// Maps that nodes name.
-fn maps<'v>(nodes: impl Iterator<Item = &'v Value>) -> BTreeSet<&'v str> {
-    nodes.filter_map(Value::as_array).flatten().filter_map(|node| node.get("mapId")?.as_str()).collect()
+fn maps<'v>(nodes: impl Iterator<Item = &'v JsonNode<'v>>) -> BTreeSet<&'v str> {
+    nodes.filter_map(JsonNode::as_array).flatten().filter_map(|node| node.get("mapId")?.as_str()).collect()
 }
 
 /// How far a vehicle may be from either node of a trajectory that is a point \[m\]: it counts as a way from node to node only if both nodes
@@ -496,7 +492,12 @@ struct LifNode<'j> {
 
 impl LifReader<'_> {
     /// Reads a node; `unnamed` is the level if it names no map.
-    fn read_node<'j>(&mut self, k: usize, value: &'j Value, unnamed: Option<&str>) -> Result<LifNode<'j>, ImportError> {
+    fn read_node<'j>(
+        &mut self,
+        k: usize,
+        value: &'j JsonNode<'j>,
+        unnamed: Option<&str>,
+    ) -> Result<LifNode<'j>, ImportError> {
         let object = JsonObject::new(format!("node at place {}", k + 1), value)?;
         let id = object.text("nodeId")?.ok_or_else(|| object.missing("nodeId"))?.to_owned();
         let object = object.called(format!("node {id}"));
@@ -510,7 +511,7 @@ impl LifReader<'_> {
 }
 
 /// Whether an allowed deviation, the half axes of an ellipse, allows any.
-fn allows(deviation: &Value) -> bool {
-    let above = |axis: &&str| deviation.get(axis).and_then(Value::as_f64).is_some_and(|allowed| allowed > 0.0);
+fn allows(deviation: &JsonNode<'_>) -> bool {
+    let above = |axis: &&str| deviation.get(axis).and_then(JsonNode::as_f64).is_some_and(|allowed| allowed > 0.0);
     ["aMaximum", "bMaximum", "aMinimum", "bMinimum", "a", "b"].iter().any(above)
 }

@@ -9,6 +9,7 @@ use super::keys::Keys;
 use super::layout::{ElementId, Layout, LayoutEdge, LayoutNode};
 use super::unique_names::UniqueNames;
 use super::{ImportError, WarningCode, Warnings, json_access};
+use crate::json::JsonNode;
 use crate::scenario::PlacedSegment;
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -29,8 +30,8 @@ const EDGE: Keys = Keys::new(&["id", "startid", "endid", "metadata"], &[]).free(
 const METADATA: Keys = Keys::new(&["speed_limit"], &[]).free();
 
 /// Whether a JSON value looks like a graph.
-pub(super) fn is_graph(root: &Value) -> bool {
-    root.get("type").and_then(Value::as_str) == Some("FeatureCollection")
+pub(super) fn is_graph(root: &JsonNode<'_>) -> bool {
+    root.get("type").and_then(JsonNode::as_str) == Some("FeatureCollection")
 }
 
 /// Reads a graph. `full_speed` is what fractions in `speed_limit` refer to \[m/s\].
@@ -68,7 +69,7 @@ pub(super) fn read(text: &str, full_speed: f64, warnings: &mut Warnings) -> Resu
     }
     let Nav2Graph { nodes, edges, frames, .. } = graph;
     if nodes.list().is_empty() {
-        return Err(ImportError::new("graph, features: no node (a Point with an id in its properties) among them"));
+        return Err(root.field_error("features", "no node (a Point with an id in its properties) among them"));
     }
     if frames.len() > 1 {
         let frames = frames.into_iter().collect::<Vec<_>>().join(", ");
@@ -89,7 +90,7 @@ pub(super) fn read(text: &str, full_speed: f64, warnings: &mut Warnings) -> Resu
 /// would have the length of a hand.
 fn refuse_degrees(root: &JsonObject<'_>) -> Result<(), ImportError> {
     let system = root.get("crs");
-    let name = system.and_then(|system| system.as_str().or_else(|| system.pointer("/properties/name")?.as_str()));
+    let name = system.and_then(|system| system.as_str().or_else(|| system.get("properties")?.get("name")?.as_str()));
     let of_degrees = ["CRS84", "EPSG::4326", "EPSG:4326", "WGS84", "WGS 84"];
     match name.filter(|name| of_degrees.iter().any(|system| name.to_ascii_uppercase().contains(system))) {
         Some(name) => Err(ImportError::new(format!(
@@ -129,17 +130,17 @@ pub fn graph_id(value: &Value) -> Option<u64> {
 
 fn id(object: &JsonObject<'_>, field: &str) -> Result<u64, ImportError> {
     let value = object.get(field).ok_or_else(|| object.missing(field))?;
-    graph_id(value).ok_or_else(|| ImportError::new(format!("{}, {field}: not a whole number from 0", object.name)))
+    graph_id(&value.to_value()).ok_or_else(|| object.field_error(field, "not a whole number from 0"))
 }
 
-fn point(value: &Value) -> Option<[f64; 2]> {
+fn point(value: &JsonNode<'_>) -> Option<[f64; 2]> {
     let pair = value.as_array()?;
     let number = |k: usize| pair.get(k)?.as_f64().filter(|x| x.abs() <= crate::scenario::LIMIT);
     Some([number(0)?, number(1)?])
 }
 
 /// First and last point of a LineString or a MultiLineString.
-fn ends(value: &Value) -> Option<[[f64; 2]; 2]> {
+fn ends(value: &JsonNode<'_>) -> Option<[[f64; 2]; 2]> {
     let first = value.as_array()?.first()?;
     let last = value.as_array()?.last()?;
     match (point(first), point(last)) {
@@ -150,7 +151,7 @@ fn ends(value: &Value) -> Option<[[f64; 2]; 2]> {
 
 impl<'j> GeoJsonFeature<'j> {
     /// A node or an edge; nothing of another geometry, which the route server passes over as well.
-    fn read(k: usize, value: &'j Value, warnings: &mut Warnings) -> Result<Option<Self>, ImportError> {
+    fn read(k: usize, value: &'j JsonNode<'j>, warnings: &mut Warnings) -> Result<Option<Self>, ImportError> {
         let feature = JsonObject::new(format!("feature {}", k + 1), value)?;
         FEATURE.check(&feature, warnings)?;
         let geometry = feature.object("geometry")?.ok_or_else(|| feature.missing("geometry"))?;
@@ -164,9 +165,10 @@ impl<'j> GeoJsonFeature<'j> {
         let id = id(&properties, "id")?;
         let coordinates = geometry.get("coordinates").ok_or_else(|| geometry.missing("coordinates"))?;
         let geometry = match kind {
-            "Point" => GeoJsonGeometry::Point(point(coordinates).ok_or_else(|| {
-                ImportError::new(format!("{}, coordinates: two numbers are expected", geometry.name))
-            })?),
+            "Point" => {
+                let problem = || geometry.field_error("coordinates", "two numbers are expected");
+                GeoJsonGeometry::Point(point(coordinates).ok_or_else(problem)?)
+            }
             _ => GeoJsonGeometry::Line(ends(coordinates)),
         };
         Ok(Some(Self { id, properties, geometry }))
@@ -194,7 +196,8 @@ impl Nav2Graph<'_> {
         let named = format!("edge {id}");
         let place = |field: &str| {
             let node = ElementId::Number(self::id(properties, field)?);
-            self.nodes.last_place(&node).map_err(|unclear| ImportError::new(format!("{named}, {field}: {unclear}")))
+            let properties = properties.clone().called(named.clone());
+            self.nodes.last_place(&node).map_err(|unclear| properties.field_error(field, unclear))
         };
         let ends = [place("startid")?, place("endid")?];
         let at = ends.map(|node| self.nodes.list()[node].point);

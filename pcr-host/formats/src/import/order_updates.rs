@@ -7,6 +7,7 @@
 
 use super::json_access::JsonObject;
 use super::{ImportError, WarningCode, Warnings};
+use crate::json::{JsonData, JsonNode, Position};
 use crate::vda5050::decode::{DecodeError, from_value};
 use crate::vda5050::order::Order;
 use crate::vda5050::order_state::OrderState;
@@ -15,7 +16,7 @@ use serde_json::Value;
 use std::collections::{HashMap, HashSet};
 
 /// Who a message is about: manufacturer and serial number. Nobody is told apart from others by anything else than texts.
-fn vehicle(message: &Value) -> Result<Option<[&str; 2]>, ImportError> {
+fn vehicle<'j>(message: &'j JsonNode<'j>) -> Result<Option<[&'j str; 2]>, ImportError> {
     let message = JsonObject::new("message", message)?;
     let text = |field: &str| message.text(field).map(Option::unwrap_or_default);
     Ok(Some([text("manufacturer")?, text("serialNumber")?]).filter(|[_, serial]| !serial.is_empty()))
@@ -23,8 +24,11 @@ fn vehicle(message: &Value) -> Result<Option<[&str; 2]>, ImportError> {
 
 /// Joins the messages so that no two are about one vehicle; in the order of the first ones. With `--partial` updates that are refused are
 /// left out.
-pub(super) fn joined(messages: Vec<Value>, warnings: &mut Warnings) -> Result<Vec<Value>, ImportError> {
-    let mut vehicles: Vec<Vec<Value>> = Vec::new();
+pub(super) fn joined<'t>(
+    messages: Vec<JsonNode<'t>>,
+    warnings: &mut Warnings,
+) -> Result<Vec<JsonNode<'t>>, ImportError> {
+    let mut vehicles: Vec<Vec<JsonNode<'t>>> = Vec::new();
     let mut places = HashMap::new();
     for message in messages {
         let place = vehicle(&message)?.map(|names| names.map(str::to_owned));
@@ -44,12 +48,12 @@ pub(super) fn joined(messages: Vec<Value>, warnings: &mut Warnings) -> Result<Ve
 }
 
 /// Joins the messages about one vehicle to one.
-fn of_one(messages: Vec<Value>, warnings: &mut Warnings) -> Result<Value, ImportError> {
+fn of_one<'t>(messages: Vec<JsonNode<'t>>, warnings: &mut Warnings) -> Result<JsonNode<'t>, ImportError> {
     let serial = messages.first().map_or(Ok(None), vehicle)?.unwrap_or_default()[1].to_owned();
     if let Some(problem) = messages.iter().find_map(other_way) {
         return Err(ImportError::new(format!("vehicle {serial}: {problem}")));
     }
-    let order = |message: &Value| message.get("nodes").and(message.get("orderId")).cloned();
+    let order = |message: &JsonNode<'t>| message.get("nodes").and(message.get("orderId")).cloned();
     let all: Vec<_> = messages.iter().map(order).collect();
     match all.first() {
         Some(None) if all.len() == 1 => messages.into_iter().next().ok_or_else(none),
@@ -66,7 +70,7 @@ fn none() -> ImportError {
 }
 
 /// Says why a vehicle does not travel its order as it is written, if a message that is no order changes that.
-fn other_way(message: &Value) -> Option<String> {
+fn other_way(message: &JsonNode<'_>) -> Option<String> {
     if message.get("zoneSet").is_some() {
         return Some(
             "a zone set is sent to it, which is not read: in its zones it may be slower, wait or leave its way".into(),
@@ -74,8 +78,8 @@ fn other_way(message: &Value) -> Option<String> {
     }
     let lists = ["actions", "instantActions"].into_iter().filter_map(|name| message.get(name)?.as_array());
     let types =
-        lists.flatten().filter_map(|action| ["actionType", "actionName"].iter().find_map(|name| action.get(*name)));
-    types.filter_map(Value::as_str).find_map(|name| match name {
+        lists.flatten().filter_map(|action| ["actionType", "actionName"].iter().find_map(|name| action.get(name)));
+    types.filter_map(JsonNode::as_str).find_map(|name| match name {
         "cancelOrder" | "startPause" => {
             Some(format!("{name} is sent to it; where it stops then is not in the file: give its state instead"))
         }
@@ -87,7 +91,7 @@ fn other_way(message: &Value) -> Option<String> {
 }
 
 /// Joins an order with its updates, which may be in any order.
-fn with_updates(messages: Vec<Value>, warnings: &mut Warnings) -> Result<Value, ImportError> {
+fn with_updates<'t>(messages: Vec<JsonNode<'t>>, warnings: &mut Warnings) -> Result<JsonNode<'t>, ImportError> {
     let is_single = messages.len() == 1;
     let mut orders = messages.into_iter().map(|message| decoded(message, is_single)).collect::<Result<Vec<_>, _>>()?;
     orders.sort_by_key(|(_, order)| order.order_update_id);
@@ -126,20 +130,22 @@ fn with_updates(messages: Vec<Value>, warnings: &mut Warnings) -> Result<Value, 
         ("nodes", written(serde_json::to_value(&state.nodes))?),
         ("edges", written(serde_json::to_value(&state.edges))?),
     ];
-    if let Value::Object(members) = &mut whole {
-        members.extend(lists.map(|(name, list)| (name.to_owned(), list)));
+    let position = whole.position;
+    if let JsonData::Object(members) = &mut whole.data {
+        members.retain(|(name, _)| lists.iter().all(|(list, _)| name != list));
+        members.extend(lists.map(|(name, list)| (name.into(), JsonNode::from_value(list, position))));
     }
     Ok(whole)
 }
 
 /// Reads an order, and keeps its tree. One that is the only message may leave out what tells it apart from others: its number, and its map.
-fn decoded(message: Value, is_single: bool) -> Result<(Value, Order), ImportError> {
-    let refused = |refusal| {
-        let id = message.get("orderId").and_then(Value::as_str).unwrap_or_default();
-        let update = message.get("orderUpdateId").and_then(Value::as_u64).unwrap_or_default();
-        ImportError::new(format!("{}, {refusal}", name(id, update)))
+fn decoded(message: JsonNode<'_>, is_single: bool) -> Result<(JsonNode<'_>, Order), ImportError> {
+    let refused = |refusal: DecodeError| {
+        let id = message.get("orderId").and_then(JsonNode::as_str).unwrap_or_default();
+        let update = message.get("orderUpdateId").and_then(JsonNode::as_u64).unwrap_or_default();
+        ImportError::in_json(position_of(&message, &refusal.field), format!("{}, {refusal}", name(id, update)))
     };
-    let mut whole = message.clone();
+    let mut whole = message.to_value();
     if is_single {
         let set = |place: &mut Value, field: &str, value: Value| {
             if let Some(missing) = place.as_object_mut().filter(|members| members.get(field).is_none_or(Value::is_null))
@@ -157,6 +163,17 @@ fn decoded(message: Value, is_single: bool) -> Result<(Value, Order), ImportErro
         order.header.edition().map_err(refused)?;
     }
     Ok((message, order))
+}
+
+/// Returns where a field such as `nodes[2].nodePosition.x` is in a message, or the innermost object or list on the way to it that is there.
+fn position_of(message: &JsonNode<'_>, field: &str) -> Position {
+    let mut node = message;
+    for part in field.split(['.', '[', ']']).filter(|part| !part.is_empty()) {
+        let element = || node.element(part.parse().ok()?);
+        let Some(next) = node.get(part).or_else(element) else { break };
+        node = next;
+    }
+    node.position
 }
 
 /// Returns how messages name an order or an update.

@@ -15,9 +15,9 @@ use super::projection::Projection;
 use super::vehicle::{Facing, FileVehicleTraits};
 use super::{ImportError, ImportOptions, WarningCode, Warnings};
 use crate::footprint::Footprint;
+use crate::json::JsonNode;
 use crate::scenario::PlacedSegment;
 use crate::yaml::YamlDocument;
-use serde_json::Value;
 use std::collections::{BTreeSet, HashMap};
 
 const ROOT: Keys = Keys::new(
@@ -69,15 +69,19 @@ const LIMITS: Keys = Keys::new(&["linear", "angular"], &[]);
 
 /// Reads the vehicles from the configuration of a fleet: the footprint is the radius, and the vicinity beyond it is the margin.
 /// `texts` has its scalars as they are written: a name may be any of them.
-pub(super) fn fleet(value: &Value, texts: &Value, warnings: &mut Warnings) -> Result<FileVehicleTraits, ImportError> {
+pub(super) fn fleet(
+    value: &JsonNode<'_>,
+    texts: &JsonNode<'_>,
+    warnings: &mut Warnings,
+) -> Result<FileVehicleTraits, ImportError> {
     let root = JsonObject::new("fleet", value)?;
     let fleet = root.object("rmf_fleet")?.ok_or_else(|| root.missing("rmf_fleet"))?;
     FLEET.check(&fleet, warnings)?;
     let name = match fleet.get("name") {
         None => None,
         Some(_) => {
-            let text = texts["rmf_fleet"]["name"].as_str();
-            Some(text.ok_or_else(|| ImportError::new("fleet, rmf_fleet, name: a name is expected"))?.to_owned())
+            let text = texts.get("rmf_fleet").and_then(|fleet| fleet.get("name")?.as_str());
+            Some(text.ok_or_else(|| fleet.field_error("name", "a name is expected"))?.to_owned())
         }
     };
     let mut given = FileVehicleTraits { name, ..FileVehicleTraits::default() };
@@ -90,16 +94,13 @@ pub(super) fn fleet(value: &Value, texts: &Value, warnings: &mut Warnings) -> Re
     if let Some(limits) = fleet.object("limits")? {
         LIMITS.check(&limits, warnings)?;
         let pair = |field: &str| {
-            let number = |value: &Value| value.as_f64().filter(|x| *x > 0.0 && *x < 1e6);
+            let number = |value: &JsonNode<'_>| value.as_f64().filter(|x| *x > 0.0 && *x < 1e6);
             match limits.list(field)? {
                 [] => Ok((None, None)),
                 [speed, acceleration] if number(speed).is_some() && number(acceleration).is_some() => {
                     Ok((number(speed), number(acceleration)))
                 }
-                _ => Err(ImportError::new(format!(
-                    "{}, {field}: speed and acceleration above 0 are expected",
-                    limits.name
-                ))),
+                _ => Err(limits.field_error(field, "speed and acceleration above 0 are expected")),
             }
         };
         (given.speed, given.acceleration) = pair("linear")?;
@@ -109,11 +110,11 @@ pub(super) fn fleet(value: &Value, texts: &Value, warnings: &mut Warnings) -> Re
 }
 
 /// Whether it is a navigation graph, and not a building: the third element of a vertex has its parameters, and not its height.
-pub fn is_navigation_graph(root: &Value) -> bool {
-    let levels = root.get("levels").and_then(Value::as_object);
-    let vertices =
-        levels.into_iter().flat_map(|levels| levels.values()).filter_map(|level| level.get("vertices")?.as_array());
-    root.get("building_name").is_some() || vertices.flatten().any(|vertex| vertex.get(2).is_some_and(Value::is_object))
+pub fn is_navigation_graph(root: &JsonNode<'_>) -> bool {
+    let levels = root.get("levels").map_or(&[][..], JsonNode::members);
+    let vertices = levels.iter().filter_map(|(_, level)| level.get("vertices")?.as_array());
+    root.get("building_name").is_some()
+        || vertices.flatten().any(|vertex| vertex.element(2).is_some_and(JsonNode::is_object))
 }
 
 /// Reads a building, or a navigation graph.
@@ -142,25 +143,27 @@ pub(super) fn read(
     }
     let texts = document.texts().map_err(ImportError::of_yaml)?;
     let text = |field: &str| root.get(field).and_then(|_| texts.get(field)?.as_str());
-    let all: Vec<levels::BuildingLevel<'_>> = levels
+    let texts_of = |name: &str| texts.get("levels").and_then(|levels| levels.get(name));
+    let mut all: Vec<levels::BuildingLevel<'_>> = levels
         .members()
-        .map(|(name, value)| levels::BuildingLevel::new(name, value, &texts["levels"][name], graph))
+        .map(|(name, value)| levels::BuildingLevel::new(name, value, texts_of(name), graph))
         .collect::<Result<_, _>>()?;
+    all.sort_by_key(|level| level.name);
     let frame = match root.text("coordinate_system")? {
         None if graph => RmfFrame::Metres,
         None | Some("reference_image") => {
-            // The first one of the file, whose order a value of JSON does not have; a level may also be called null.
-            let first = document.names("levels").map_err(ImportError::of_yaml)?.into_iter().next();
+            // The first one of the file; a level may also be called null.
+            let first = levels.members().next().map(|(name, _)| name);
             let null =
                 || texts.get("reference_level_name")?.as_str().filter(|name| all.iter().any(|it| it.name == *name));
-            let named = text("reference_level_name").or_else(null).or(first.as_deref());
+            let named = text("reference_level_name").or_else(null).or(first);
             RmfFrame::Images(ReferenceLevel::new(&all, named, warnings)?)
         }
         Some("cartesian_meters") => RmfFrame::Metres,
         // The building tools write metres into navigation graphs of such buildings, and no name of a system.
         Some("wgs84") if graph => RmfFrame::Metres,
         Some("wgs84") => RmfFrame::Earth(earth(&root, outline, warnings)?),
-        Some(other) => return Err(ImportError::new(format!("building, coordinate_system: {other} is not read"))),
+        Some(other) => return Err(root.field_error("coordinate_system", format_args!("{other} is not read"))),
     };
     let mut layout = Layout {
         name: text(if graph { "building_name" } else { "name" }).unwrap_or_default().to_owned(),
@@ -185,7 +188,9 @@ pub(super) fn read(
             match level.lane(k, lane, options, &mut graphs, warnings) {
                 Ok(Some((code, problem))) => warnings.add(code, format_args!("lane {name}/{k}"), problem),
                 Ok(None) => {}
-                Err(problem) => warnings.lose(format_args!("lane {name}/{k}: {problem}")),
+                Err(problem) => {
+                    warnings.lose(ImportError::in_json(lane.position, format!("lane {name}/{k}: {problem}")));
+                }
             }
         }
         layout.levels.push(name.to_owned());
@@ -226,10 +231,10 @@ fn earth(
     outline: Option<&Footprint>,
     warnings: &mut Warnings,
 ) -> Result<Projection, ImportError> {
-    let refused = |problem: String| ImportError::new(format!("building, parameters, generate_crs: {problem}"));
     let parameters = root.object("parameters")?.ok_or_else(|| root.missing("parameters"))?;
+    let refused = |problem: String| parameters.field_error("generate_crs", problem);
     let value = parameters.get("generate_crs").ok_or_else(|| parameters.missing("generate_crs"))?;
-    let name = value.as_array().and_then(|typed| typed.get(1)).unwrap_or(value);
+    let name = value.element(1).unwrap_or(value);
     let name = name.as_str().ok_or_else(|| refused(format!("{name} where a name such as EPSG:3414 is expected")))?;
     let projection = Projection::named(name).map_err(refused)?;
     if projection.is_mirrored() {
@@ -277,35 +282,36 @@ impl RmfLevel<'_> {
     fn lane(
         &mut self,
         k: usize,
-        value: &Value,
+        value: &JsonNode<'_>,
         options: &ImportOptions,
         graphs: &mut BTreeSet<u64>,
         warnings: &mut Warnings,
     ) -> Result<Option<(WarningCode, &'static str)>, String> {
-        let parameters = value.get(2).filter(|parameters| !parameters.is_null());
+        let parameters = value.element(2).filter(|parameters| !parameters.is_null());
         if let Some(odd) = parameters.filter(|parameters| !parameters.is_object()) {
             return Err(format!("its parameters {odd} are not read"));
         }
         if let Some(parameters) = parameters {
             // A message of a lane names it anyway.
-            let parameters = JsonObject::new("its parameters", parameters).map_err(|error| error.to_string())?;
+            let parameters =
+                JsonObject::new("its parameters", parameters).map_err(|error| error.problem().to_owned())?;
             let mut odd = Warnings::default();
             let keys = if self.graph { GRAPH_LANE } else { LANE };
-            keys.check(&parameters, &mut odd).map_err(|error| error.to_string())?;
+            keys.check(&parameters, &mut odd).map_err(|error| error.problem().to_owned())?;
             odd.iter().for_each(|(code, problem, _)| {
                 warnings.add(code, format_args!("lane {}/{k}", self.source.name), problem)
             });
         }
         // A parameter that is there and has the wrong type is not left aside.
         fn typed<T>(
-            value: Option<&Value>,
+            value: Option<&JsonNode<'_>>,
             name: &str,
-            read: impl Fn(&Value) -> Option<T>,
+            read: impl Fn(&JsonNode<'_>) -> Option<T>,
         ) -> Result<Option<T>, String> {
             let read = |value| read(value).ok_or_else(|| format!("{name}: {value} is not read"));
             parameter(value, name).map(read).transpose()
         }
-        let graph = typed(parameters, "graph_idx", Value::as_u64)?.unwrap_or(0);
+        let graph = typed(parameters, "graph_idx", |value| value.as_u64())?.unwrap_or(0);
         if options.graph.is_some_and(|asked| asked != graph) {
             return Ok(None);
         }
@@ -316,7 +322,8 @@ impl RmfLevel<'_> {
         let line = PlacedSegment::line(at[0], at[1]);
         let straight = line.shape.length() > 0.0;
         // Fleet adapters take a lane of a navigation graph one way, whatever else it says.
-        let two_way = typed(parameters, if self.graph { "is_bidirectional" } else { "bidirectional" }, Value::as_bool)?;
+        let two_way =
+            typed(parameters, if self.graph { "is_bidirectional" } else { "bidirectional" }, |value| value.as_bool())?;
         let both_ways = two_way.unwrap_or(false);
         let mut facing = [Facing::Ahead; 2];
         if self.outline.is_some() {
@@ -330,7 +337,7 @@ impl RmfLevel<'_> {
             };
         }
         // 0 is what the editor writes where there is no limit.
-        let not_negative = |value: &Value| value.as_f64().filter(|speed| *speed >= 0.0);
+        let not_negative = |value: &JsonNode<'_>| value.as_f64().filter(|speed| *speed >= 0.0);
         let speed = typed(parameters, "speed_limit", not_negative)?.filter(|speed| *speed > 0.0);
         let curve = if straight { vec![line] } else { Vec::new() };
         self.layout.edges.push(LayoutEdge {

@@ -29,7 +29,7 @@ pub(super) fn read(
     tolerance: f64,
     warnings: &mut Warnings,
 ) -> Result<FittedTrajectory, ImportError> {
-    let named = |error: ImportError| ImportError::new(format!("{}: {error}", object.name));
+    let named = |error: ImportError| object.error(error);
     KEYS.check(object, warnings)?;
     let mut points = Vec::new();
     for (k, value) in object.list("controlPoints")?.iter().enumerate() {
@@ -39,23 +39,22 @@ pub(super) fn read(
     }
     let mut knots = Vec::new();
     for value in object.list("knotVector")? {
-        let knot = value.as_f64().ok_or_else(|| named(ImportError::new("a knot that is not a number")))?;
+        let knot = value.as_f64().ok_or_else(|| object.error("a knot that is not a number"))?;
         // Differences of larger ones are no numbers.
         if knot.abs() > LIMIT {
-            let problem = format!("a knot of {knot:e} is out of range; allowed is up to {LIMIT:e}");
-            return Err(named(ImportError::new(problem)));
+            return Err(object.error(format_args!("a knot of {knot:e} is out of range; allowed is up to {LIMIT:e}")));
         }
         knots.push(knot);
     }
     let mut degree = match object.number("degree")? {
         None => 1,
         Some(degree) if degree.fract() == 0.0 && (1.0..=64.0).contains(&degree) => degree as usize,
-        Some(degree) => return Err(named(ImportError::new(format!("degree {degree}, which is no degree")))),
+        Some(degree) => return Err(object.error(format_args!("degree {degree}, which is no degree"))),
     };
     // Senders that mean a straight edge write an empty object, or a type.
     if points.is_empty() {
         let problem = "it has no controlPoints; a straight edge has no trajectory, or null in its place";
-        return Err(named(ImportError::new(problem)));
+        return Err(object.error(problem));
     }
     if degree > 1 && !knots.is_empty() && knots.len() == points.len() + degree {
         warnings.add(

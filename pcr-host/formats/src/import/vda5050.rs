@@ -23,9 +23,9 @@ use super::{
     ImportError, ImportOptions, VehicleTraits, WarningCode, Warnings, order_updates, trajectory, vehicle_heading,
     vehicle_loads,
 };
+use crate::json::{JsonData, JsonNode};
 use crate::scenario::{Agent, LONGEST_LABEL, Scenario, label};
 use agent_start::AgentStart;
-use serde_json::Value;
 use std::collections::BTreeSet;
 
 /// Largest gap between the end of a path and its node, or the vehicle: it counts as deviation of the path \[m\].
@@ -38,20 +38,17 @@ const ACTIONS: &str = "its actions take no time here: the file does not say how 
 const CLOSED: f64 = 1e-9;
 
 /// Whether a JSON value looks like an order or a state.
-pub(super) fn is_message(root: &Value) -> bool {
-    let one = match root {
-        Value::Array(messages) => messages.first(),
-        one => Some(one),
-    };
+pub(super) fn is_message(root: &JsonNode<'_>) -> bool {
+    let one = root.as_array().map_or(Some(root), |messages| messages.first());
     one.is_some_and(|one| one.get("orderId").is_some() || one.get("nodeStates").is_some())
 }
 
 /// The messages in a text: one, a list of them, or several one after the other.
-fn messages(text: &str, warnings: &mut Warnings) -> Result<Vec<Value>, ImportError> {
+fn messages<'t>(text: &'t str, warnings: &mut Warnings) -> Result<Vec<JsonNode<'t>>, ImportError> {
     let mut messages = Vec::new();
     for value in json_access::several(text) {
         match value? {
-            Value::Array(several) => messages.extend(several),
+            JsonNode { data: JsonData::Array(several), .. } => messages.extend(several),
             one => messages.push(one),
         }
     }
@@ -74,7 +71,8 @@ pub(super) fn read(
     let mut radii = Vec::new();
     for (k, value) in messages.iter().enumerate() {
         let message = JsonObject::new(format!("message {}", k + 1), value)?;
-        let (agent, radius) = reader.message(k as u64 + 1, &message)?;
+        let (agent, radius) =
+            reader.message(k as u64 + 1, &message).map_err(|error| error.or_in_json(value.position))?;
         scenario.agents.push(agent);
         radii.push(radius);
         // Several have no name in common.

@@ -111,8 +111,8 @@ pub(super) fn warn_of_half_turns<'a>(agents: impl Iterator<Item = (&'a str, &'a 
 }
 
 /// Adds the message about an orientation that was not read.
-pub(super) fn lose(of: &str, field: &str, value: f64, warnings: &mut Warnings) {
-    warnings.lose(format_args!("{of}: its {field} {value}, as outlines face along their paths here"));
+pub(super) fn lose(of: &JsonObject<'_>, field: &str, value: f64, warnings: &mut Warnings) {
+    warnings.lose(of.error(format_args!("its {field} {value}, as outlines face along their paths here")));
 }
 
 /// Returns an angle of a file that can be one in radians.
@@ -123,7 +123,7 @@ fn in_radians(object: &JsonObject<'_>, field: &str, angle: f64) -> Result<f64, I
     if angle.abs() <= TAU + ROUNDING {
         return Ok(angle);
     }
-    Err(ImportError::new(format!("{}, {field}: {angle} is more than one turn; the format has radians", object.name)))
+    Err(object.field_error(field, format_args!("{angle} is more than one turn; the format has radians")))
 }
 
 /// Returns the heading `theta` of an object, if it has one \[rad\].
@@ -150,8 +150,7 @@ pub(super) fn of_edge(
         Some(kind) if kind.eq_ignore_ascii_case("TANGENTIAL") => false,
         Some(kind) if kind.eq_ignore_ascii_case("GLOBAL") => true,
         Some(other) => {
-            let problem = format!("{}, orientationType: {other} is neither TANGENTIAL nor GLOBAL", edge.name);
-            return Err(ImportError::new(problem));
+            return Err(edge.field_error("orientationType", format_args!("{other} is neither TANGENTIAL nor GLOBAL")));
         }
     };
     orientations.iter().try_for_each(|orientation| in_radians(edge, field, *orientation).map(drop))?;
@@ -194,7 +193,7 @@ pub(super) fn along_trajectory(
             _ => pieces.any(|piece| turns_through(piece, outline, orientation)),
         };
         if !fits {
-            lose(&point.name, "orientation", orientation, warnings);
+            lose(&point, "orientation", orientation, warnings);
             break;
         }
     }

@@ -29,8 +29,8 @@ pub(super) fn loaded(
         if let Some(size) = &size {
             SIZE.check(size, warnings)?;
         }
-        let size = size.map(|size| Ok([size.number("length")?, size.number("width")?]));
-        let Some([Some(length), Some(width)]) = size.transpose()? else {
+        let given = |field: &str| size.as_ref().map_or(Ok(None), |size| size.number(field));
+        let (Some(length), Some(width)) = (given("length")?, given("width")?) else {
             warnings.add(
                 WarningCode::AssumedSize,
                 &load.name,
@@ -73,7 +73,7 @@ pub(super) fn loaded(
     };
     corners.extend(footprint.polygon());
     let outline = Footprint::new(hull(corners));
-    let outline = outline.map_err(|problem| ImportError::new(format!("{}, loads: {problem}", state.name)))?;
+    let outline = outline.map_err(|problem| state.field_error("loads", problem))?;
     let outline = outline.inflated(footprint.growth());
     Ok(VehicleTraits { radius: outline.circumscribed_radius(), footprint: Some(outline), ..vehicle.clone() })
 }

@@ -1,6 +1,7 @@
 //! What there is to say about a file that is read: warnings about parts that were not read exactly as written, parts that could not be
 //! read, and the options that had an effect on it.
 
+use super::ImportError;
 use crate::warning::WarningCode;
 use std::collections::{HashMap, HashSet};
 use std::fmt;
@@ -28,13 +29,31 @@ impl WarningGroup {
     }
 }
 
+/// Something in a file that is not in what is read. (With `From`, the compiler could no longer infer errors of many closures.)
+pub(crate) trait LostPart {
+    /// Returns the error with which the file is refused for it.
+    fn into_error(self) -> ImportError;
+}
+
+impl LostPart for ImportError {
+    fn into_error(self) -> ImportError {
+        self
+    }
+}
+
+impl LostPart for fmt::Arguments<'_> {
+    fn into_error(self) -> ImportError {
+        ImportError::new(self.to_string())
+    }
+}
+
 /// Warnings, each with the names of what it is about.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Warnings {
     list: Vec<WarningGroup>,
     /// Places in the list by the code and the words.
     places: HashMap<(WarningCode, String), usize>,
-    unread_parts: Vec<String>,
+    unread_parts: Vec<ImportError>,
     /// Fields of options that had an effect.
     used: HashSet<&'static str>,
 }
@@ -54,9 +73,10 @@ impl Warnings {
 
     /// Adds a warning about something in the file that is not in what is read: the file is refused for it, unless the rest is
     /// asked for.
-    pub(crate) fn lose(&mut self, problem: impl fmt::Display) {
-        self.unread_parts.push(problem.to_string());
-        self.add(WarningCode::LeftOut, problem, "left out");
+    pub(crate) fn lose(&mut self, part: impl LostPart) {
+        let problem = part.into_error();
+        self.add(WarningCode::LeftOut, problem.problem(), "left out");
+        self.unread_parts.push(problem);
     }
 
     /// Notes that the option of this field had an effect.
@@ -101,7 +121,7 @@ impl Warnings {
     }
 
     /// Parts of the file that were not read.
-    pub(super) fn lost(&self) -> &[String] {
+    pub(super) fn lost(&self) -> &[ImportError] {
         &self.unread_parts
     }
 

@@ -134,7 +134,7 @@ pub(super) fn astray<'a, 'i>(
 
 /// Loses such elements.
 pub(super) fn lose_astray(home: Node<'_, '_>, names: &'static [&'static str], warnings: &mut Warnings) {
-    astray(home, names).for_each(|(_, problem)| warnings.lose(problem));
+    astray(home, names).for_each(|(_, problem)| warnings.lose(format_args!("{problem}")));
 }
 
 /// Says which elements are not known, and hence not read.

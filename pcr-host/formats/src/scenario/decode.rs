@@ -57,7 +57,7 @@ impl Scenario {
     /// # Errors
     /// As [`Scenario::from_json`].
     pub fn from_value(value: &Value) -> Result<Self, ScenarioError> {
-        let (json, mut agents) = (JsonNode::from(value), AgentsVisitor::default());
+        let (json, mut agents) = (JsonNode::from_value(value.clone(), Position::START), AgentsVisitor::default());
         if let JsonData::Object(members) = &json.data
             && let Some((_, JsonNode { data: JsonData::Array(list), .. })) =
                 members.iter().find(|(key, _)| key == "agents")

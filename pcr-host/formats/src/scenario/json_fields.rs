@@ -93,8 +93,8 @@ impl<'n> DecodeLocation<'n> {
         let about = ErrorLocation { agent: self.agent.map(str::to_owned), part: self.part, field };
         ScenarioError {
             scenario: String::new(),
-            line: at.line,
-            column: Some(at.column),
+            line: at.line as usize,
+            column: Some(at.column as usize),
             about: Box::new(about),
             message,
         }

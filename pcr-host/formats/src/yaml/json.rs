@@ -2,18 +2,23 @@
 
 use super::scalar::{self, integer, is_null};
 use super::{ScalarTag, YamlDocument, YamlError, YamlNode, YamlValue, deeper, error_at};
-use serde_json::{Map, Number, Value as Json};
+use crate::json::{JsonData, JsonNode, Position};
+use serde_json::Number;
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
 /// How many times the length of the text, in values and bytes of texts, a document may stand for. Without aliases it is less than 3.
 const REPETITION: usize = 10;
+
+/// Bytes of the text between those whose characters are counted beforehand.
+const BLOCK: usize = 1024;
 
 impl<'t> YamlDocument<'t> {
     /// All of it, with what aliases and merge keys stand for.
     ///
     /// # Errors
     /// [`YamlError`] where a value or a name cannot be one of JSON, a name is there twice, or aliases repeat too much.
-    pub fn value(&self) -> Result<Json, YamlError> {
+    pub fn value(&self) -> Result<JsonNode<'_>, YamlError> {
         AliasResolver::of(self).value(&self.root, 0)
     }
 
@@ -22,19 +27,8 @@ impl<'t> YamlDocument<'t> {
     ///
     /// # Errors
     /// As [`YamlDocument::value`].
-    pub fn texts(&self) -> Result<Json, YamlError> {
+    pub fn texts(&self) -> Result<JsonNode<'_>, YamlError> {
         AliasResolver { as_texts: true, ..AliasResolver::of(self) }.value(&self.root, 0)
-    }
-
-    /// The names of the members of a member, in the order of the text; what is merged comes last.
-    ///
-    /// # Errors
-    /// As [`YamlDocument::value`].
-    pub fn names(&self, name: &str) -> Result<Vec<String>, YamlError> {
-        let mut resolver = AliasResolver::of(self);
-        let all = resolver.members(&self.root, 0)?;
-        let Some(member) = all.into_iter().find(|member| member.name == name) else { return Ok(Vec::new()) };
-        Ok(resolver.members(member.value, 1)?.into_iter().map(|member| member.name.to_owned()).collect())
     }
 }
 
@@ -69,6 +63,10 @@ impl<'d> MappingKeys<'d> {
 struct AliasResolver<'d, 't> {
     text: &'t str,
     anchors: HashMap<usize, &'d YamlNode<'t>>,
+    /// The first bytes of its lines.
+    line_starts: Vec<usize>,
+    /// Numbers of characters before every [`BLOCK`] bytes, so that no long line is counted once for each of its values.
+    characters: Vec<usize>,
     /// Values and bytes that may still be read.
     left: usize,
     /// Whether scalars are read as their texts.
@@ -80,7 +78,15 @@ impl<'d, 't> AliasResolver<'d, 't> {
         let mut anchors = HashMap::new();
         collect(&document.root, &mut anchors);
         let left = document.text.len().saturating_mul(REPETITION).saturating_add(1024);
-        Self { text: document.text, anchors, left, as_texts: false }
+        let newlines = document.text.match_indices('\n').map(|(byte, _)| byte + 1);
+        let line_starts = std::iter::once(0).chain(newlines).collect();
+        let blocks = document.text.as_bytes().chunks(BLOCK).chain([&[][..]]).scan(0, |before, block| {
+            let here = *before;
+            *before += characters_of(block);
+            Some(here)
+        });
+        let characters = blocks.collect();
+        Self { text: document.text, anchors, line_starts, characters, left, as_texts: false }
     }
 
     fn error(&self, node: &YamlNode<'_>, problem: impl Into<String>) -> YamlError {
@@ -107,34 +113,49 @@ impl<'d, 't> AliasResolver<'d, 't> {
         Ok(target)
     }
 
-    fn value(&mut self, node: &'d YamlNode<'t>, depth: usize) -> Result<Json, YamlError> {
+    fn value(&mut self, node: &'d YamlNode<'t>, depth: usize) -> Result<JsonNode<'d>, YamlError> {
         let node = self.target(node)?;
-        match &node.value {
+        let data = match &node.value {
             YamlValue::Scalar(text) => {
                 self.count(node, text.len())?;
                 if self.as_texts {
-                    let text = if is_nothing(node, text) { NULL } else { &**text };
-                    return Ok(Json::String(text.to_owned()));
+                    JsonData::Text(if is_nothing(node, text) { NULL } else { &**text }.into())
+                } else {
+                    let value = scalar::value(node.kind, text).map_err(|problem| self.error(node, problem))?;
+                    JsonNode::from_value(value, Position::START).data
                 }
-                scalar::value(node.kind, text).map_err(|problem| self.error(node, problem))
             }
             YamlValue::Sequence(_, elements) => {
                 self.count(node, 0)?;
                 let depth = deeper(self.text, node.span.start, depth)?;
-                elements.iter().map(|element| self.value(element, depth)).collect()
+                let elements = elements.iter().map(|element| self.value(element, depth));
+                JsonData::Array(elements.collect::<Result<_, _>>()?)
             }
             YamlValue::Mapping(..) => {
                 self.count(node, 0)?;
                 let below = deeper(self.text, node.span.start, depth)?;
-                let mut object = Map::new();
-                for member in self.members(node, depth)? {
-                    let value = self.value(member.value, below)?;
-                    object.insert(member.name.to_owned(), value);
-                }
-                Ok(Json::Object(object))
+                let members = self.members(node, depth)?.into_iter();
+                let members = members.map(|member| Ok((Cow::Borrowed(member.name), self.value(member.value, below)?)));
+                JsonData::Object(members.collect::<Result<_, _>>()?)
             }
-            YamlValue::Alias(_) => Err(self.error(node, "an alias for an alias")),
-        }
+            YamlValue::Alias(_) => return Err(self.error(node, "an alias for an alias")),
+        };
+        Ok(JsonNode::new(self.position(node.span.start), node.span.clone(), data))
+    }
+
+    /// The position of a byte of the text.
+    fn position(&self, byte: usize) -> Position {
+        let line = self.line_starts.partition_point(|start| *start <= byte);
+        let start = line.checked_sub(1).and_then(|line| self.line_starts.get(line)).copied().unwrap_or(0);
+        let column = self.characters_before(byte).saturating_sub(self.characters_before(start)) + 1;
+        Position { line: line as u32, column: column as u32 }
+    }
+
+    /// The number of characters before a byte of the text.
+    fn characters_before(&self, byte: usize) -> usize {
+        let block = byte / BLOCK;
+        let within = self.text.as_bytes().get(block * BLOCK..byte).unwrap_or_default();
+        self.characters.get(block).copied().unwrap_or_default() + characters_of(within)
     }
 
     /// The members of a mapping, then those that are merged into it and have other names; none of anything else.
@@ -208,6 +229,11 @@ fn is_nothing(node: &YamlNode<'_>, text: &str) -> bool {
         || matches!(node.kind, ScalarTag::Any | ScalarTag::Unknown | ScalarTag::Merge) && is_null(text)
 }
 
+/// The number of characters that begin in some bytes of a text.
+fn characters_of(bytes: &[u8]) -> usize {
+    bytes.iter().filter(|byte| **byte & 0b1100_0000 != 0b1000_0000).count()
+}
+
 /// What has an anchor.
 fn collect<'d, 't>(node: &'d YamlNode<'t>, anchors: &mut HashMap<usize, &'d YamlNode<'t>>) {
     if !node.shared {
@@ -227,10 +253,28 @@ fn collect<'d, 't>(node: &'d YamlNode<'t>, anchors: &mut HashMap<usize, &'d Yaml
 mod tests {
     use super::super::DEEPEST;
     use super::*;
-    use serde_json::json;
+    use serde_json::{Value, json};
 
-    fn value(text: &str) -> Result<Json, String> {
-        YamlDocument::read(text).and_then(|document| document.value()).map_err(|error| error.to_string())
+    fn value(text: &str) -> Result<Value, String> {
+        let value = YamlDocument::read(text).and_then(|document| Ok(document.value()?.to_value()));
+        value.map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn values_know_their_positions() {
+        let document = YamlDocument::read("é: [ä, {b: *x}]\n".replace("ä", "&x ä").leak()).unwrap();
+        let value = document.value().unwrap();
+        let list = value.get("é").unwrap();
+        let alias = list.element(1).unwrap().get("b").unwrap();
+        let positions = [list, &list.list()[0], &list.list()[1], alias].map(|node| node.position);
+        assert_eq!(positions.map(|at| [at.line, at.column]), [[1, 4], [1, 8], [1, 11], [1, 8]]);
+        // Behind lines and lists that are longer than a block.
+        let text = format!("# {}\n[{}x]", "ü".repeat(3 * BLOCK), "é, ".repeat(2 * BLOCK));
+        let document = YamlDocument::read(&text).unwrap();
+        let value = document.value().unwrap();
+        let places: Vec<_> = value.list().iter().map(|node| [node.position.line, node.position.column]).collect();
+        let expected: Vec<_> = (0..=2 * BLOCK as u32).map(|element| [2, 2 + 3 * element]).collect();
+        assert_eq!(places, expected);
     }
 
     #[test]
@@ -296,19 +340,17 @@ mod tests {
 
     #[test]
     fn texts_are_those_of_the_scalars() {
-        let texts = |text: &str| YamlDocument::read(text).unwrap().texts();
+        let texts = |text: &str| YamlDocument::read(text).unwrap().texts().map(|texts| texts.to_value());
         let all = json!({"a": ["007", "1.0", "true", "null", "null", "", "x y", "0x10"], "b": {"c": "1"}});
         assert_eq!(texts("a: [007, 1.0, true, ~, null, '', \"x y\", &n 0x10]\nb: {c: 1}"), Ok(all));
         assert_eq!(texts("a: &x 1.50\nb: *x\n<<: {c: .nan}"), Ok(json!({"a": "1.50", "b": "1.50", "c": ".nan"})));
     }
 
     #[test]
-    fn names_have_the_order_of_the_text() {
-        let names = |text: &str| YamlDocument::read(text).unwrap().names("levels");
-        assert_eq!(names("levels: {b: 1, a: 2, <<: {c: 3, a: 4}}"), Ok(["b", "a", "c"].map(str::to_owned).to_vec()));
-        assert_eq!(names("more: &l {z: 1, a: 2}\nlevels: *l"), Ok(["z", "a"].map(str::to_owned).to_vec()));
-        assert_eq!(names("<<: {levels: {z: 1, a: 2}}"), Ok(["z", "a"].map(str::to_owned).to_vec()));
-        assert_eq!((names("levels:"), names("[1]"), names("")), (Ok(vec![]), Ok(vec![]), Ok(vec![])));
+    fn members_have_the_order_of_the_text() {
+        let document = YamlDocument::read("{b: 1, a: 2, <<: {c: 3, a: 4}}").unwrap();
+        let names: Vec<String> = document.value().unwrap().members().iter().map(|(name, _)| name.to_string()).collect();
+        assert_eq!(names, ["b", "a", "c"]);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::super::brokers::{VEHICLES, broker, interfaces};
 use super::super::{CliError, NOT_WRITTEN, WRONG_INPUT};
 use super::ServeArgs;
-use pcr_formats::unique_keys::UniqueKeysJson;
+use pcr_formats::import::parse_json;
 use pcr_formats::vda5050::decode::MessageLimits;
 use pcr_formats::vda5050::topics::{TopicInterface, VehicleId};
 use pcr_serve::log::{LogLevel, LogWriter};
@@ -65,7 +65,7 @@ fn listed(value: &Value) -> Result<&Vec<Value>, String> {
 /// The vehicles in a file.
 fn profiles(file: &Path) -> Result<Vec<VehicleConfig>, CliError> {
     let text = std::fs::read_to_string(file).map_err(|error| CliError::wrong(file, error))?;
-    let UniqueKeysJson(value) = serde_json::from_str(&text).map_err(|error| CliError::wrong(file, error))?;
+    let value = parse_json(&text).map_err(|error| CliError::refused(file, &error))?.to_value();
     let list = listed(&value).map_err(|why| CliError::wrong(file, why))?;
     let profile = |(k, value): (usize, &Value)| {
         profile(value).map_err(|why| CliError::wrong(file, format!("vehicles[{k}]: {why}")))

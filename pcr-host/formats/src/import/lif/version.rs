@@ -6,7 +6,7 @@
 use super::super::json_access::JsonObject;
 use super::super::keys::{Keys, nearest};
 use super::super::{ImportError, WarningCode, Warnings};
-use serde_json::Value;
+use crate::json::{JsonData, JsonNode};
 
 /// A version of the format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -180,7 +180,11 @@ impl LifVersion {
     ///
     /// # Errors
     /// [`ImportError`] for a version that is not known, and for names of another version than the file says, or of both.
-    pub(super) fn of(root: &JsonObject<'_>, value: &Value, warnings: &mut Warnings) -> Result<Self, ImportError> {
+    pub(super) fn of(
+        root: &JsonObject<'_>,
+        value: &JsonNode<'_>,
+        warnings: &mut Warnings,
+    ) -> Result<Self, ImportError> {
         let meta = root.object("metaInformation")?;
         let said = meta.as_ref().map_or(Ok(None), |meta| meta.text("lifVersion"))?;
         if let Some(meta) = &meta {
@@ -194,7 +198,10 @@ impl LifVersion {
             Some([2, ..]) => Some(Self::Second),
             Some(_) => {
                 let problem = "is not known; versions 0.11 to 2.0 are read";
-                return Err(ImportError::new(format!("LIF, lifVersion: {} {problem}", said.unwrap_or_default())));
+                let problem = format!("LIF, lifVersion: {} {problem}", said.unwrap_or_default());
+                let position =
+                    meta.as_ref().and_then(|meta| meta.get("lifVersion")).map_or(value.position, |it| it.position);
+                return Err(ImportError::in_json(position, problem));
             }
         };
         if let (Some(said), Some([major @ (1 | 2), 1..=u64::MAX, ..])) = (said, number.as_deref()) {
@@ -257,13 +264,13 @@ struct VersionEvidence {
 }
 
 impl VersionEvidence {
-    fn search(&mut self, value: &Value) {
-        match value {
-            Value::Array(elements) => elements.iter().for_each(|element| self.search(element)),
-            Value::Object(members) => {
+    fn search(&mut self, value: &JsonNode<'_>) {
+        match &value.data {
+            JsonData::Array(elements) => elements.iter().for_each(|element| self.search(element)),
+            JsonData::Object(members) => {
                 for (key, value) in members.iter().filter(|(_, value)| !value.is_null()) {
                     self.name(key);
-                    if !OTHERS.contains(&key.as_str()) {
+                    if !OTHERS.contains(&&**key) {
                         self.search(value);
                     }
                 }

@@ -158,7 +158,7 @@ fn largest(all: &[OpenTcsVehicle], options: &ImportOptions, warnings: &mut Warni
                 largest = Some([0, 1].map(|k| half[k].max(before[k])));
             }
             _ if options.radius.is_some() => {}
-            Some(Err(problem)) => warnings.lose(problem),
+            Some(Err(problem)) => warnings.lose(format_args!("{problem}")),
             None => warnings.lose(format_args!("{}, boundingBox: missing, and others have one", vehicle.name)),
         }
     }

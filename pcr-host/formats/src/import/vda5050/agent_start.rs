@@ -39,7 +39,8 @@ pub(super) fn set(agents: &mut [Agent], begins: &[(String, AgentStart)]) -> Resu
 pub(super) fn stamp(object: &JsonObject<'_>, field: &str) -> Result<Timestamp, ImportError> {
     match object.text(field)? {
         None => Err(object.missing(field)),
-        Some(text) => Timestamp::read(text)
-            .ok_or_else(|| ImportError::new(format!("{}, {field}: {text:?} is not a time stamp", object.name))),
+        Some(text) => {
+            Timestamp::read(text).ok_or_else(|| object.field_error(field, format_args!("{text:?} is not a time stamp")))
+        }
     }
 }

@@ -9,9 +9,9 @@ use super::super::{ImportError, WarningCode, corridor, route, vehicle_heading};
 use super::order_element::{OrderElement, check, parts};
 use super::{ACTIONS, GAP, Vda5050Reader, gap, keys};
 use crate::footprint::Footprint;
+use crate::json::JsonNode;
 use crate::scenario::{Agent, PlacedSegment};
 use crate::vda5050::version::ProtocolVersion;
-use serde_json::Value;
 use std::f64::consts::PI;
 
 /// How an order is travelled up to some node.
@@ -209,7 +209,7 @@ impl Vda5050Reader<'_> {
             let is_there =
                 |heading: f64| turned.iter().any(|turned| vehicle_heading::is_ahead(outline, theta - heading - turned));
             if !arrives.into_iter().chain(departs).any(is_there) {
-                vehicle_heading::lose(&node.object.name, "theta", theta, self.warnings);
+                vehicle_heading::lose(&node.object, "theta", theta, self.warnings);
             }
         }
         Ok(())
@@ -240,10 +240,7 @@ impl OrderPathBuilder {
         for (point, node, place) in [(*begin, self.position, "begins"), (*end, target, "ends")] {
             let gap = node.map_or(0.0, |node| gap(point, node));
             if gap > GAP {
-                return Err(ImportError::new(format!(
-                    "{}: its trajectory {place} {gap:.3} m from its node",
-                    edge.name
-                )));
+                return Err(edge.error(format_args!("its trajectory {place} {gap:.3} m from its node")));
             }
             widest = widest.max(gap);
         }
@@ -283,8 +280,8 @@ fn either(edge: &JsonObject<'_>, names: [&str; 2]) -> Result<Option<f64>, Import
 }
 
 /// Whether an allowed deviation, a number or the half axes of an ellipse, allows any.
-fn allows(deviation: &Value) -> bool {
-    let above = |value: &Value| value.as_f64().is_some_and(|allowed| allowed > 0.0);
+fn allows(deviation: &JsonNode<'_>) -> bool {
+    let above = |value: &JsonNode<'_>| value.as_f64().is_some_and(|allowed| allowed > 0.0);
     above(deviation) || ["a", "b"].iter().any(|axis| deviation.get(axis).is_some_and(above))
 }
 

@@ -4,7 +4,7 @@ use super::super::json_access::JsonObject;
 use super::super::keys::Keys;
 use super::super::{ImportError, Warnings, vehicle_heading};
 use super::keys::NODE_POSITION;
-use serde_json::Value;
+use crate::json::JsonNode;
 
 /// A node or an edge.
 pub(super) struct OrderElement<'j> {
@@ -14,7 +14,13 @@ pub(super) struct OrderElement<'j> {
 }
 
 impl<'j> OrderElement<'j> {
-    fn new(list: &JsonObject<'j>, what: &str, place: usize, value: &'j Value, id: &str) -> Result<Self, ImportError> {
+    fn new(
+        list: &JsonObject<'j>,
+        what: &str,
+        place: usize,
+        value: &'j JsonNode<'j>,
+        id: &str,
+    ) -> Result<Self, ImportError> {
         let object = JsonObject::new(format!("{}, {what} {}", list.name, place + 1), value)?;
         let name = object.text(id)?.ok_or_else(|| object.missing(id))?;
         let object = object.called(format!("{}, {what} {name}", list.name));
@@ -47,8 +53,7 @@ pub(super) fn parts<'j>(
     // Which of two comes first could not be told.
     let again = parts.iter().zip(parts.iter().skip(1)).find(|(before, after)| before.sequence == after.sequence);
     if let Some((_, again)) = again {
-        let problem = format!("{}, sequenceId: {} is there twice", again.object.name, again.sequence);
-        return Err(ImportError::new(problem));
+        return Err(again.object.field_error("sequenceId", format_args!("{} is there twice", again.sequence)));
     }
     Ok(parts)
 }

@@ -8,8 +8,8 @@ use super::agent_start::{AgentStart, stamp};
 use super::order_element::{OrderElement, check, parts};
 use super::{ACTIONS, GAP, Vda5050Reader, gap, keys};
 use crate::footprint::Footprint;
+use crate::json::JsonNode;
 use crate::scenario::{Agent, MotionSpec, PlacedSegment};
-use serde_json::Value;
 use std::f64::consts::PI;
 
 /// Angle between a vehicle and its path that is taken for the error of its localization \[rad\].
@@ -45,7 +45,7 @@ impl Vda5050Reader<'_> {
         if let Some(path) = timed_path(state)? {
             if planned.is_some() {
                 let problem = "its plannedPath, which goes on where the times of its intermediatePath end";
-                self.warnings.lose(format_args!("{}: {problem}", state.name));
+                self.warnings.lose(state.error(format_args!("{problem}")));
             }
             return self.timed(id, state, &path, &pose, vehicle);
         }
@@ -59,8 +59,7 @@ impl Vda5050Reader<'_> {
     fn pose(&mut self, state: &JsonObject<'_>) -> Result<ReportedPose, ImportError> {
         let Some(pose) = position(state)? else { return Ok(ReportedPose { at: None, heading: None }) };
         keys::POSITION.check(&pose, self.warnings)?;
-        let unknown =
-            |field: &str| Err(ImportError::new(format!("{}, {field}: it does not know where it is", pose.name)));
+        let unknown = |field: &str| Err(pose.field_error(field, "it does not know where it is"));
         for field in ["localized", "positionInitialized"] {
             if pose.flag(field)? == Some(false) {
                 return unknown(field);
@@ -94,7 +93,7 @@ impl Vda5050Reader<'_> {
         let begin = stops.first().map(|(_, time)| *time).unwrap_or_default();
         let stops: Vec<timed_paths::TimedPoint> = stops.into_iter().map(|(at, time)| (at, time.since(begin))).collect();
         let end = stops.last().map_or([0.0; 2], |(end, _)| *end);
-        let named = |error| ImportError::new(format!("{}: {error}", path.name));
+        let named = |error| path.error(error);
         let agent = timed_paths::agent(id, vehicle.radius, &stops).map_err(named)?;
         self.leads_somewhere(state, agent.path.is_empty())?;
         self.goes(state)?;
@@ -117,7 +116,7 @@ impl Vda5050Reader<'_> {
         let [begin, end] = read.ends;
         let before = pose.at.map_or(0.0, |at| gap(at, begin));
         if before > GAP {
-            return Err(ImportError::new(format!("{}: it begins {before:.3} m from where the vehicle is", path.name)));
+            return Err(path.error(format_args!("it begins {before:.3} m from where the vehicle is")));
         }
         let pieces = &read.fit.pieces;
         self.leads_somewhere(state, pieces.is_empty())?;
@@ -159,8 +158,7 @@ impl Vda5050Reader<'_> {
     ) -> Result<Agent, ImportError> {
         let [x, y] = pose.at.ok_or_else(|| state.missing("mobileRobotPosition"))?;
         if !state.list("nodeStates")?.is_empty() {
-            self.warnings
-                .lose(format_args!("{}: its way is told by nodeStates only, give its order instead", state.name));
+            self.warnings.lose(state.error(format_args!("its way is told by nodeStates only, give its order instead")));
         } else if moves(state)? || !state.list("edgeStates")?.is_empty() {
             self.lose_way(state);
         }
@@ -183,7 +181,7 @@ impl Vda5050Reader<'_> {
     /// What is halted does not say when it goes on along its path; actions may halt it.
     fn goes(&mut self, state: &JsonObject<'_>) -> Result<(), ImportError> {
         if let Some(halt) = halt(state)? {
-            self.warnings.lose(format_args!("{}: when it goes on along its path, as {halt}", state.name));
+            self.warnings.lose(state.error(format_args!("when it goes on along its path, as {halt}")));
         }
         let mut acts = false;
         for (k, action) in state.list("actionStates")?.iter().enumerate() {
@@ -197,7 +195,7 @@ impl Vda5050Reader<'_> {
     }
 
     fn lose_way(&mut self, state: &JsonObject<'_>) {
-        self.warnings.lose(format_args!("{}: its way, as it moves and does not say where to", state.name));
+        self.warnings.lose(state.error(format_args!("its way, as it moves and does not say where to")));
     }
 
     /// Which way an outline faces on its planned path: along it, or backward if the vehicle does so where it is. Returns by how much it
@@ -223,7 +221,7 @@ impl Vda5050Reader<'_> {
         };
         let mut askew = off(turned);
         if askew > SEEN {
-            vehicle_heading::lose(&state.name, "theta", pose.heading.unwrap_or_default(), self.warnings);
+            vehicle_heading::lose(state, "theta", pose.heading.unwrap_or_default(), self.warnings);
             askew = 0.0;
         }
         for node in parts(state, "nodeStates", "node", "nodeId")?.iter().filter(|node| node.released) {
@@ -232,14 +230,14 @@ impl Vda5050Reader<'_> {
             let mut passes =
                 pieces.iter().filter_map(|piece| vehicle_heading::heading_beside(piece, at, GAP)).peekable();
             if passes.peek().is_none() && !pieces.is_empty() {
-                let name = &node.object.name;
-                self.warnings.lose(format_args!("{name}: its theta {theta}, as the planned path does not pass it"));
+                let problem = format_args!("its theta {theta}, as the planned path does not pass it");
+                self.warnings.lose(node.object.error(problem));
             } else if !passes.any(|heading| {
                 let either =
                     facing == Facing::Either && vehicle_heading::is_ahead(outline, theta - heading - turned - PI);
                 either || vehicle_heading::is_ahead(outline, theta - heading - turned)
             }) {
-                vehicle_heading::lose(&node.object.name, "theta", theta, self.warnings);
+                vehicle_heading::lose(&node.object, "theta", theta, self.warnings);
             }
         }
         Ok((facing, askew))
@@ -247,7 +245,12 @@ impl Vda5050Reader<'_> {
 
     /// How far the last node that is released is from the end of a path \[m\], which has to be there: the vehicle does not stand where it
     /// ends else.
-    fn goes_on(&mut self, state: &JsonObject<'_>, end: [f64; 2], traversed: &[Value]) -> Result<f64, ImportError> {
+    fn goes_on(
+        &mut self,
+        state: &JsonObject<'_>,
+        end: [f64; 2],
+        traversed: &[JsonNode<'_>],
+    ) -> Result<f64, ImportError> {
         let nodes = parts(state, "nodeStates", "node", "nodeId")?;
         let Some(last) = nodes.iter().take_while(|node| node.released).last() else {
             self.no_edge(state, &nodes)?;
@@ -262,7 +265,7 @@ impl Vda5050Reader<'_> {
         };
         if behind.is_none() {
             let problem = "its way on to there, as its path ends before or elsewhere; give its order instead";
-            self.warnings.lose(format_args!("{}: {problem}", last.object.name));
+            self.warnings.lose(last.object.error(format_args!("{problem}")));
         }
         Ok(behind.unwrap_or(0.0))
     }
@@ -271,7 +274,7 @@ impl Vda5050Reader<'_> {
     fn no_edge(&mut self, state: &JsonObject<'_>, nodes: &[OrderElement<'_>]) -> Result<(), ImportError> {
         let edges = parts(state, "edgeStates", "edge", "edgeId")?;
         if let Some(edge) = edges.iter().find(|edge| edge.released && nodes.is_empty()) {
-            self.warnings.lose(format_args!("{}: where it leads, as there is no node in nodeStates", edge.object.name));
+            self.warnings.lose(edge.object.error(format_args!("where it leads, as there is no node in nodeStates")));
         }
         Ok(())
     }
