@@ -111,3 +111,53 @@ pub fn earliest_departure<'a, S: Scalar>(
     let longest = regions.map(|region| region.longest_wait(length)).fold(S::LIMIT, S::min);
     (wait <= S::ZERO || wait <= longest).then_some(wait)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Ecm, EcmEntry, Motion, Path, Piece, Point, Pose, Profile, Radians};
+
+    /// The least wait from each of some, 1 m from the start of an ego that is up to 0.25 s late and travels as far to the east from (-2, 0),
+    /// beside an agent that is up to 0.5 s late and travels to the north from 5 s on, between two distances from where they cross. Discs of
+    /// 0.25 m, 1 m/s: the ego is near the crossing from 1.5 to 2.5 m of its path.
+    fn waits<const N: usize>(far: f64, [from, to]: [f64; 2], waits: [f64; N]) -> [Option<f64>; N] {
+        let east = Pose { position: Point::new(-2.0, 0.0), heading: Radians(0.0) };
+        let north = Pose { position: Point::new(0.0, from), heading: Radians(core::f64::consts::FRAC_PI_2) };
+        let paths = [(east, far), (north, to - from)]
+            .map(|(start, long)| Path::<f64, 1>::starting_at(start).unwrap().line(long).unwrap());
+        let profiles = [far, to - from].map(|long| Profile::<f64, 1>::from_pieces(1.0, [(long, 0.0)]).unwrap());
+        let motion = |agent: usize, start: f64, late: f64| {
+            let motion = Motion::new(paths[agent].as_path(), profiles[agent].as_profile(), 0.25, start).unwrap();
+            motion.with_lateness(late).unwrap()
+        };
+        let fleet = [motion(0, 0.0, 0.25), motion(1, 5.0, 0.5)];
+        let ecm = Ecm::build([EcmEntry::EMPTY; 4], [Piece::EMPTY; 4], &fleet).unwrap();
+        waits.map(|wait| earliest_departure(ecm.row(&fleet, 0).unwrap(), 1.0, wait))
+    }
+
+    #[track_caller]
+    fn assert_close<const N: usize>(found: [Option<f64>; N], expected: [Option<f64>; N]) {
+        let is_close = |(found, expected): (&Option<f64>, &Option<f64>)| match (found, expected) {
+            (Some(found), Some(expected)) => (found - expected).abs() < 1e-6,
+            (found, expected) => found == expected,
+        };
+        assert!(found.iter().zip(&expected).all(is_close), "{found:?} {expected:?}");
+    }
+
+    #[test]
+    fn waits_of_agents_that_may_be_late_are_outside_of_what_their_ranges_allow() {
+        // The other agent is near the crossing from 6.5 to 7.5 s: forbidden are the waits from 6.5 - 2.5 - 0.25 to 7.5 - 1.5 + 0.5 s.
+        let found = waits(4.0, [-2.0, 2.0], [0.0, 3.7, 3.8, 6.4, 6.6]);
+        assert_close(found, [Some(0.0), Some(3.7), Some(6.5), Some(6.5), Some(6.6)]);
+    }
+
+    #[test]
+    fn nobody_who_may_be_late_goes_before_where_one_of_them_stands() {
+        // The ego ends in the middle of the crossing, and stands there as the other one comes.
+        assert_close(waits(2.0, [-2.0, 2.0], [0.0, 3.8, 6.6]), [Some(6.5), Some(6.5), Some(6.6)]);
+        // The other one stands there before it sets off; it is 0.5 m away at 5.5 s.
+        assert_close(waits(4.0, [0.0, 2.0], [0.0, 2.4, 4.6]), [Some(4.5), Some(4.5), Some(4.6)]);
+        // It stands there from 7 s on, so that only going before it helps.
+        assert_close(waits(4.0, [-2.0, 0.0], [0.0, 3.7, 3.8, 9.0]), [Some(0.0), Some(3.7), None, None]);
+    }
+}
