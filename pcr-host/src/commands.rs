@@ -76,13 +76,13 @@ const UNITS: &str = "Units: metres, seconds, radians (heading_deg, sweep_deg: de
 
 const EXAMPLES: &str = "\
 Examples:
-  pcr                                      the paper's 12 agents: its tables beside ours, pictures in pcr-out/
-  pcr regions fleet.json                   where and when every agent must not be, as a table
-  pcr regions fleet.json --json            the same for programs
-  pcr map fleet.json -o pictures           the same as pictures
-  pcr check fleet.json                     whether the agents collide, moving as the file says
-  pcr plan fleet.json -o plan.json         later starts, so that they do not collide
-  pcr plan fleet.json -o - | pcr check     without a FILE, scenarios come from standard input";
+  pcr                                   the paper's 12 agents, with pictures
+  pcr regions fleet.json                where and when each must not be
+  pcr regions fleet.json --json         the same for programs
+  pcr map fleet.json -o pictures        the same as pictures
+  pcr check fleet.json                  whether they collide, moving as it says
+  pcr plan fleet.json -o plan.json      later starts, so that they do not collide
+  pcr plan fleet.json -o - | pcr check  of standard input, without a FILE";
 
 /// Exact collision regions of discs on paths of lines and arcs.
 ///
@@ -94,11 +94,8 @@ pub(crate) struct Cli {
     /// Only errors, JSON and CSV; no tables or warnings
     #[arg(short, long, global = true, overrides_with = "quiet")]
     quiet: bool,
-    /// Print the progress of long work also where standard error is no terminal
-    #[arg(long, global = true, overrides_with = "progress", hide_short_help = true)]
-    progress: bool,
     #[command(flatten)]
-    warnings: printed::Judgement,
+    shared: printed::SharedOptions,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -141,8 +138,7 @@ pub(crate) fn run(words: Vec<OsString>) -> Result<ExitCode, CliError> {
     let Some(arguments) = help::parse(words)? else { return Ok(ExitCode::SUCCESS) };
     let left = memory_budget::available_bytes();
     abort::watch(left);
-    arguments.warnings.apply();
-    if arguments.progress {
+    if arguments.shared.apply() {
         progress::request();
     }
     if arguments.quiet {

@@ -285,3 +285,18 @@ fn where_a_physical_line_leads_is_told_or_refused() {
         "{error}"
     );
 }
+
+#[test]
+fn files_of_both_versions_are_known_by_what_they_have() {
+    let detect = |value: &Value| InputFormat::detect("layout.json".as_ref(), &value.to_string());
+    for value in [first(json!({ "vehicleTypeId": "t" })), second(json!({ "mobileRobotTypes": robots() }))] {
+        assert_eq!(detect(&value), Some(InputFormat::Lif), "{value}");
+    }
+    // One origin with layouts is enough; what has none is no LIF.
+    let layouts = json!({ "originId": "o", "layouts": [] });
+    assert_eq!(detect(&json!({ "origins": [{ "originId": "p" }, layouts] })), Some(InputFormat::Lif));
+    for other in [json!({ "origins": [] }), json!({ "origins": [{ "originId": "p" }] }), json!({ "origins": layouts })]
+    {
+        assert_eq!(detect(&other), None, "{other}");
+    }
+}

@@ -5,7 +5,7 @@
 
 use super::argument_rules::{ruled, unmet};
 use super::error_hints::with_tip;
-use super::printed::Judgement;
+use super::printed::SharedOptions;
 use super::{Cli, CliError, UNITS};
 use clap::{Arg, ArgAction, Command, CommandFactory, FromArgMatches};
 use std::ffi::OsString;
@@ -43,7 +43,7 @@ pub(super) fn parse(mut words: Vec<OsString>) -> Result<Option<Cli>, CliError> {
         Ok(matches) => {
             let mut cli = Cli::from_arg_matches(&matches).map_err(|error| CliError::Usage(Box::new(error)))?;
             if let Some((_, after)) = matches.subcommand() {
-                cli.warnings.extend(after);
+                cli.shared.extend(after);
             }
             Ok(Some(cli))
         }
@@ -65,12 +65,17 @@ pub(super) fn parse(mut words: Vec<OsString>) -> Result<Option<Cli>, CliError> {
 pub(super) fn command(long: bool) -> Command {
     let command = Cli::command();
     let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
-    let is_everywhere = |argument: &&Arg| Judgement::EVERYWHERE.contains(&argument.get_id().as_str());
-    let everywhere: Vec<Arg> = command.get_arguments().filter(is_everywhere).cloned().collect();
-    let tailored = names.iter().fold(command, |command, name| {
-        command.mut_subcommand(name, |own| tailored(own, long).args(everywhere.clone()))
+    let is_shared = |argument: &&Arg| SharedOptions::NAMES.contains(&argument.get_id().as_str());
+    let shared: Vec<Arg> = command.get_arguments().filter(is_shared).cloned().collect();
+    let tailored = names
+        .iter()
+        .fold(command, |command, name| command.mut_subcommand(name, |own| tailored(own, long).args(shared.clone())));
+    // Both texts are in the short form.
+    let tailored = tailored.mut_args(|argument| {
+        let is_of_long = argument.is_hide_short_help_set() && !long;
+        argument.hide_short_help(is_of_long)
     });
-    let tailored = with_help(tailored, long);
+    let tailored = with_help(tailored, if long { "Print help" } else { MORE });
     match tailored.get_long_about().cloned() {
         Some(about) if long => tailored.about(about),
         // That there is more is said at `--help` already, and all commands need their lines.
@@ -95,7 +100,14 @@ fn tailored(command: Command, long: bool) -> Command {
         let is_value = !argument.is_positional() && argument.get_action().takes_values();
         argument.allow_negative_numbers(is_value)
     });
-    let command = with_help(command, long);
+    let command = with_help(
+        command,
+        match name.as_str() {
+            _ if !long => MORE,
+            "completions" | "man" => "Print help",
+            _ => "Print help (--allow, --deny, --progress: pcr --help)",
+        },
+    );
     match (long, layouts) {
         (true, _) if READ_SCENARIOS.contains(&name.as_str()) => {
             let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
@@ -111,9 +123,11 @@ fn tailored(command: Command, long: bool) -> Command {
 /// Commands that read scenarios, whose units their help has.
 const READ_SCENARIOS: [&str; 7] = ["regions", "certify", "check", "plan", "map", "simulate", "compare"];
 
-/// With the option for help, which says of itself that there is more only where there is.
-fn with_help(command: Command, long: bool) -> Command {
-    let text = if long { "Print help" } else { "Print help (see more with '--help')" };
+/// The help of the option for help where there is more.
+const MORE: &str = "Print help (see more with '--help')";
+
+/// With the option for help, which says of itself where there is more.
+fn with_help(command: Command, text: &'static str) -> Command {
     let help =
         Arg::new("help").short('h').long("help").action(ArgAction::HelpShort).help(text).help_heading(None::<&str>);
     command.disable_help_flag(true).arg(help)

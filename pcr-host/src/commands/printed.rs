@@ -12,26 +12,28 @@ static QUIET: AtomicBool = AtomicBool::new(false);
 static TO_THE_END: AtomicBool = AtomicBool::new(false);
 static GONE: AtomicBool = AtomicBool::new(false);
 
-static JUDGEMENT: OnceLock<Judgement> = OnceLock::new();
+static SHARED: OnceLock<SharedOptions> = OnceLock::new();
 static DENIED: Mutex<BTreeSet<WarningCode>> = Mutex::new(BTreeSet::new());
 
 /// Lines of warnings about one file that people read; the others are counted.
 const FEW: usize = 4;
 
-/// What is done with warnings.
+/// The options that may stand before and after the name of a command: of warnings, and of progress.
 #[derive(Args, Debug, Default)]
-pub(super) struct Judgement {
-    /// Acknowledge warnings of these codes: they are not printed and not in the answer. With commas, or several times
+pub(super) struct SharedOptions {
+    /// Show progress also if standard error is no terminal
+    #[arg(long, overrides_with = "progress", hide_short_help = true)]
+    progress: bool,
+    /// Leave warnings of these codes out of all answers
     #[arg(long, value_name = "CODE", action = ArgAction::Append, value_delimiter = ',', hide_short_help = true, value_parser = code)]
     allow: Vec<WarningCode>,
-    /// End with status 2 after the answer if there are warnings of these codes; `warnings` stands for all
+    /// Status 2 if there are such warnings; `warnings`: any
     #[arg(long, value_name = "CODE", action = ArgAction::Append, value_delimiter = ',', hide_short_help = true, value_parser = denied)]
     deny: Vec<Denied>,
-    /// Print `all` warnings, or only a `few` of each file [default: few]
+    /// Print `all` warnings, or a `few` a file [default: few]
     #[arg(
         long,
         value_name = "MANY",
-        global = true,
         value_enum,
         overrides_with = "warnings",
         hide_short_help = true,
@@ -65,22 +67,25 @@ fn denied(name: &str) -> Result<Denied, String> {
     if name == "warnings" { Ok(Denied::All) } else { code(name).map(Denied::Code) }
 }
 
-impl Judgement {
-    /// The options that may stand before and after the name of a command, and count in both places. (Of options that are `global` for
-    /// `clap`, those after the name replace those before it.)
-    pub(super) const EVERYWHERE: [&'static str; 2] = ["allow", "deny"];
+impl SharedOptions {
+    /// Their names. Codes count in both places. (Of options that are `global` for `clap`, those after the name replace those before it.)
+    pub(super) const NAMES: [&'static str; 4] = ["progress", "allow", "deny", "warnings"];
 
-    /// Adds the codes that stand after the name of a command.
+    /// Adds those that stand after the name of a command.
     pub(super) fn extend(&mut self, after: &ArgMatches) {
-        let [allow, deny] = Self::EVERYWHERE;
+        let [progress, allow, deny, warnings] = Self::NAMES;
+        self.progress |= after.get_flag(progress);
         self.allow.extend(after.get_many::<WarningCode>(allow).into_iter().flatten());
         self.deny.extend(after.get_many::<Denied>(deny).into_iter().flatten());
+        self.warnings = after.get_one::<Many>(warnings).copied().or(self.warnings);
     }
 
-    /// Holds for all that is printed from now on.
-    pub(super) fn apply(self) {
+    /// Applies those of warnings to all that is printed from now on. Returns whether progress is to be shown.
+    pub(super) fn apply(self) -> bool {
+        let progress = self.progress;
         // Once for each run of the program.
-        let _ = JUDGEMENT.set(self);
+        let _ = SHARED.set(self);
+        progress
     }
 
     fn denies(&self, code: WarningCode) -> bool {
@@ -90,9 +95,9 @@ impl Judgement {
 
 /// Removes the warnings that are acknowledged, and notes those that are denied.
 pub(super) fn acknowledge(warnings: &mut Vec<String>) {
-    let Some(judgement) = JUDGEMENT.get() else { return };
-    warnings.retain(|warning| !judgement.allow.contains(&WarningCode::of(warning)));
-    let denied = warnings.iter().map(|warning| WarningCode::of(warning)).filter(|code| judgement.denies(*code));
+    let Some(shared) = SHARED.get() else { return };
+    warnings.retain(|warning| !shared.allow.contains(&WarningCode::of(warning)));
+    let denied = warnings.iter().map(|warning| WarningCode::of(warning)).filter(|code| shared.denies(*code));
     DENIED.lock().unwrap_or_else(PoisonError::into_inner).extend(denied);
 }
 
@@ -126,7 +131,7 @@ pub(super) fn refuse_denied() -> Result<(), String> {
 
 /// The lines that are printed of some warnings: one for each code, and of no more than a few codes, unless all are asked for.
 pub(super) fn few(warnings: Vec<String>) -> Vec<String> {
-    if JUDGEMENT.get().is_some_and(|judgement| judgement.warnings == Some(Many::All)) {
+    if SHARED.get().is_some_and(|shared| shared.warnings == Some(Many::All)) {
         return warnings;
     }
     let mut codes: Vec<(WarningCode, String, usize)> = Vec::new();

@@ -82,6 +82,15 @@ fn options_are_listed_where_they_do_something() {
         !help("check").contains("--margin") && !help("map").contains("--margin") && help("plan").contains("--margin")
     );
     assert!(!help("demo").contains("--radius"));
+    // What all commands take is explained once, and named where it does something.
+    let [short, all] = ["-h", "--help"].map(|option| run(&[option]).ok());
+    for option in ["--allow <CODE>", "--deny <CODE>", "--progress", "--warnings <MANY>"] {
+        assert!(all.contains(&format!("      {option} ")) && !short.contains(option), "{option}\n{all}");
+    }
+    for command in COMMANDS {
+        let is_named = help(command).contains("(--allow, --deny, --progress: pcr --help)");
+        assert_eq!(is_named, !["completions", "man"].contains(&command), "{command}");
+    }
 }
 
 #[test]

@@ -120,7 +120,7 @@ fn what_memory_does_not_hold_is_refused_with_a_number() {
     // Wherever the limit is, there is an answer or a number.
     let building = file("large", "large.building.yaml", lanes(20_000));
     for (arguments, limits) in
-        [(["check", &many, "-q"], 50_000..140_000), (["nodes", &building, "-q"], 120_000..340_000)]
+        [(["check", &many, "-q"], 50_000..140_000), (["nodes", &building, "-q"], 120_000..400_000)]
     {
         let (mut answered, mut refused) = (0, 0);
         for limit in limits.step_by(10_000) {

@@ -74,10 +74,13 @@ impl Keys {
         has: &dyn Fn(&str) -> bool,
         warnings: &mut Warnings,
     ) -> Result<(), (&'k str, String)> {
+        // Found once: an object may have any number of unknown keys.
+        let mut missing = None;
         for key in keys.filter(|key| !self.read.contains(key) && !self.passed.contains(key)) {
             let same = self.read.iter().find(|known| letters(known) == letters(key));
-            let missing = self.read.iter().filter(|known| !has(known));
-            if let Some(meant) = same.copied().or_else(|| nearest(key, missing.copied())) {
+            let missing: &Vec<_> =
+                missing.get_or_insert_with(|| self.read.iter().copied().filter(|known| !has(known)).collect());
+            if let Some(meant) = same.copied().or_else(|| nearest(key, missing.iter().copied())) {
                 return Err((key, format!("is not known here; it may be meant for {meant}")));
             }
             if self.elsewhere.contains(&key) {
