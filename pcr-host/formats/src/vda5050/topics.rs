@@ -84,6 +84,12 @@ impl TopicKind {
     /// Kinds of messages to vehicles.
     pub const TO_VEHICLES: [Self; 4] = [Self::Order, Self::InstantActions, Self::Responses, Self::ZoneSet];
 
+    /// Returns the kind of messages on a topic, whatever the prefix of its interface; `None` for a kind that is not known.
+    pub fn of_topic(topic: &str) -> Option<Self> {
+        let last = topic.rsplit('/').next()?;
+        Self::ALL.into_iter().find(|kind| kind.text() == last)
+    }
+
     /// Its name in topics.
     pub fn text(self) -> &'static str {
         match self {
@@ -153,8 +159,7 @@ impl TopicInterface {
             _ => return None,
         };
         let key = VehicleId::new(levels.next()?, levels.next()?).ok()?;
-        let kind = levels.next()?;
-        let kind = TopicKind::ALL.into_iter().find(|known| known.text() == kind)?;
+        let kind = TopicKind::of_topic(levels.next()?)?;
         levels.next().is_none().then_some((is_third, key, kind))
     }
 }
@@ -184,6 +189,8 @@ mod tests {
         for other in ["site/uagv/v2/KIT/0001/order/x", "site/uagv/v2/KIT/0001", "site/uagv/v2//0001/order"] {
             assert_eq!(interface.parse(other), None, "{other}");
         }
+        assert_eq!(TopicKind::of_topic("any/prefix/v2/KIT/0001/zoneSet"), Some(TopicKind::ZoneSet));
+        assert_eq!(TopicKind::of_topic("site/uagv/v2/KIT/0001/states"), None);
         for wrong in ["", "a//b", "a/+", "#", "$SYS"] {
             assert!(TopicInterface::new(wrong).is_err(), "{wrong}");
         }

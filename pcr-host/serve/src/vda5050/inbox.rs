@@ -129,15 +129,13 @@ impl InboxState {
 
 /// Whether messages on a topic tell vehicles to stop, or who is there: other supervisors, too.
 fn is_urgent(topic: &str) -> bool {
-    let kind = topic.rsplit('/').next();
-    [TopicKind::InstantActions, TopicKind::Connection].iter().any(|urgent| kind == Some(urgent.text()))
+    matches!(TopicKind::of_topic(topic), Some(TopicKind::InstantActions | TopicKind::Connection))
 }
 
 /// The topic of a message with a position that is so now.
 fn position(news: &LinkEvent) -> Option<&str> {
     let LinkEvent::Message { topic, kept: false, .. } = news else { return None };
-    let kind = topic.rsplit('/').next()?;
-    [TopicKind::State, TopicKind::Visualization].iter().any(|with| with.text() == kind).then_some(topic)
+    matches!(TopicKind::of_topic(topic), Some(TopicKind::State | TopicKind::Visualization)).then_some(topic.as_str())
 }
 
 fn size(news: &LinkEvent) -> usize {

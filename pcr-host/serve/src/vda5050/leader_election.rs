@@ -1,6 +1,7 @@
 //! Which of several bridges at a broker is the active one.
 
 use super::bridge::MqttMessage;
+use pcr_formats::vda5050::decode::{self, MessageLimits};
 use pcr_formats::vda5050::header::MessageHeader;
 use pcr_formats::vda5050::messages::Connection;
 use pcr_formats::vda5050::timestamp;
@@ -46,7 +47,7 @@ impl LeaderMessage {
         if payload.is_empty() {
             return Ok(Self::Nothing);
         }
-        let message: Connection = serde_json::from_slice(payload).map_err(|error| error.to_string())?;
+        let message: Connection = decode::read(payload, MessageLimits::default()).map_err(|error| error.to_string())?;
         let session = message.rest.get("session").and_then(Value::as_str).ok_or("session: missing")?.to_owned();
         let insists = message.rest.get("insists") == Some(&Value::Bool(true));
         match message.connection_state.as_str() {

@@ -7,6 +7,7 @@ use super::release::AGAIN;
 use crate::robot::SupervisedRobot;
 use crate::supervisor::{JournalError, Supervisor};
 use pcr_formats::vda5050::decode::DecodeError;
+use pcr_formats::vda5050::decode::{self, MessageLimits};
 use pcr_formats::vda5050::messages::{Action, InstantActions};
 use pcr_formats::vda5050::state::ActionState;
 use serde::{Deserialize, Serialize};
@@ -169,7 +170,7 @@ impl VehicleAdapter {
 
     /// Holds back the `stopPause` actions of the manager in a message that is not sent, because the vehicle was told to stop since.
     pub(crate) fn withhold_stop_pause(&mut self, payload: &[u8]) {
-        let Ok(message) = serde_json::from_slice::<InstantActions>(payload) else { return };
+        let Ok(message) = decode::read::<InstantActions>(payload, MessageLimits::default()) else { return };
         // One that the manager has overtaken by a pause is void.
         let is_void = matches!(self.pauses.wish, Some((true, _)));
         let is_ours = |action: &Action| OURS.iter().any(|own| action.action_id.starts_with(own));
