@@ -180,7 +180,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
         Ok(Self { extent, lever, drift, allowance, digest, ..self })
     }
 
-    /// The same motion with a margin \[m\] around the disc, for localization errors, latency or comfort. Margins do not
+    /// Returns the motion with a margin \[m\] around the disc, for localization errors, latency or comfort. Margins do not
     /// change regions of contact; regions in which margins overlap are those of [`Motion::inflated`] motions.
     ///
     /// # Errors
@@ -191,7 +191,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
         Ok(Self { margin, ..self })
     }
 
-    /// The same motion of an agent that may be late by up to `lateness` \[s\]: at any time it is at a place where the
+    /// Returns the motion of an agent that may be late by up to `lateness` \[s\]: at any time it is at a place where the
     /// motion has been at some time within the last `lateness` seconds. Queries for planning take this into account,
     /// for the ego and for the others: blocked windows and safe intervals, forbidden delays, durations and waits, speed
     /// plans. Regions, conflicts and the closest approach are still those of the motion itself.
@@ -208,7 +208,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
         self.lateness
     }
 
-    /// The same motion of a disc that is larger by the margin, with a margin of 0. A table of such motions holds the
+    /// Returns the motion of a disc that is larger by the margin, with a margin of 0. A table of such motions holds the
     /// regions in which margins overlap; keep it beside the table of contacts.
     ///
     /// ```
@@ -232,7 +232,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
         Self { radius, reach, extent: self.extent + self.margin.double(), margin: S::ZERO, ..self }
     }
 
-    /// The same disc on the same path with another profile and start time \[s\]. A table of the motion holds for it, too, unless its
+    /// Returns the motion of the disc on its path with another profile and start time \[s\]. A table of the motion holds for it, too, unless its
     /// [`Motion::lag`] is larger than that for which the regions were computed ([`Motion::with_longest`]).
     ///
     /// # Errors
@@ -243,7 +243,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
         Self { allowance, ..motion }.with_margin(self.margin)?.with_lateness(self.lateness)
     }
 
-    /// The same motion, whose regions also hold for profiles that take up to `longest` \[s\] and are not faster
+    /// Returns the motion whose regions also hold for profiles that take up to `longest` \[s\] and are not faster
     /// ([`Motion::with_profile`]). Their error bound ([`excess`](crate::excess)) grows with that time, in fixed point not. For plans in which
     /// agents wait, give it to the motions before the table is made.
     ///
@@ -256,7 +256,7 @@ impl<'a, S: Scalar> Motion<'a, S> {
         Ok(Self { allowance: self.allowance.max(lag), ..self })
     }
 
-    /// The same motion, later by `delay` \[s\].
+    /// Returns the motion later by `delay` \[s\].
     ///
     /// # Errors
     /// [`InvalidInput::NonFinite`], [`InvalidInput::OutOfRange`].

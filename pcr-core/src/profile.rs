@@ -316,7 +316,7 @@ impl<S: Scalar, const N: usize> Profile<S, N> {
         Ok(Self { phases })
     }
 
-    /// The same profile with another capacity, for example to store the profiles of a fleet as one type.
+    /// Returns the profile with another capacity, for example to store the profiles of a fleet as one type.
     ///
     /// # Errors
     /// [`InvalidInput::Full`] for more than `N` phases.

@@ -115,7 +115,7 @@ impl<'a, S: Scalar> RegionRef<'a, S> {
         self.agents[usize::from(!self.transposed)]
     }
 
-    /// The same region seen by the other agent, which becomes the ego.
+    /// Returns this region as the other agent sees it, which becomes the ego.
     #[must_use]
     pub fn swapped(self) -> Self {
         Self { transposed: !self.transposed, ..self }

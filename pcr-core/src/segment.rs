@@ -207,7 +207,7 @@ impl<S: Scalar> Segment<S> {
         segment.checked()
     }
 
-    /// The same segment, followed by a turn in place by an angle, to the left if it is positive: the next segment
+    /// Returns the segment with a turn in place after it, by an angle, to the left if it is positive: the next segment
     /// begins with the new heading. A disc does not move while it turns, so a turn has no length.
     ///
     /// # Errors

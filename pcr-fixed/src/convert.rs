@@ -55,7 +55,7 @@ impl<const F: u32> Q<F> {
         Self::from_f64(value as f64)
     }
 
-    /// The same number, exactly.
+    /// Converts the number exactly.
     pub const fn to_f64(self) -> f64 {
         self.to_bits() as f64 / Self::DIGITS_OF_ONE
     }
@@ -87,7 +87,7 @@ impl<const F: u32> From<Q<F>> for f64 {
 }
 
 impl Sine {
-    /// The same number, exactly.
+    /// Converts the number exactly.
     pub const fn to_f64(self) -> f64 {
         self.to_bits() as f64 / (1_i64 << Self::FRACTION_BITS) as f64
     }

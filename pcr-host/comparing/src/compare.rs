@@ -52,10 +52,10 @@ pub struct ComparisonInput {
     fixed: Result<Fleet<Q16>, FormatRangeError>,
 }
 
-/// The same, ready to use.
+/// A fleet in the form that each of the methods takes, ready to use.
 #[derive(Debug)]
 pub struct ComparisonFleet<'a> {
-    /// As plain numbers.
+    /// The discs and their paths as plain numbers.
     pub tracks: &'a [DiscTrack],
     double: Vec<Motion<'a, f64>>,
     single: Vec<Motion<'a, f32>>,

@@ -45,7 +45,7 @@ pub struct ExclusionAudit {
     pub needless: Vec<NeedlessExclusion>,
     /// Area of the pairs of lengths, over all pairs of edges, at which the rules do not let two vehicles be at the same time \[m²\].
     pub excluded: f64,
-    /// The same area, excluded by the table of locks \[m²\].
+    /// Area of the pairs of lengths, over all pairs of edges, that the table of locks excludes \[m²\].
     pub needed: f64,
     /// Warnings about input that was changed or left out when it was read: of the layout, then of the exclusions.
     pub warnings: Vec<String>,

@@ -133,7 +133,7 @@ pub fn read(file: &Path, options: &ImportOptions) -> Result<(Scenario, Warnings)
     read_from(file, text(file)?.1, options)
 }
 
-/// The same in a text that is read already.
+/// Reads the scenario in the text of a file.
 ///
 /// # Errors
 /// As [`read`].
@@ -143,7 +143,7 @@ pub fn read_from(file: &Path, text: String, options: &ImportOptions) -> Result<(
     Ok(read)
 }
 
-/// The same for one of several files: an option may have had its effect on another one.
+/// Reads the scenario in the text of one of several files: an option without effect on it is no error, as it may have one on another file.
 ///
 /// # Errors
 /// As [`read`].
@@ -297,7 +297,7 @@ pub fn read_layout(
     read_layout_from(file, &text(file)?.1, options, moves)
 }
 
-/// The same in a text that is read already.
+/// Reads the scenario in the text of a file.
 ///
 /// # Errors
 /// As [`read_layout`].

@@ -112,7 +112,7 @@ pub fn write(file: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
     stream(file, |out| out.write_all(content.as_ref()))
 }
 
-/// The same for content of the kind that is in the file already, which may be one that is kept.
+/// Writes a file whose content is already of this kind, which may be one that is kept (else [`write()`] refuses it).
 ///
 /// # Errors
 /// Errors of the file system.
@@ -120,7 +120,7 @@ pub fn write_over(file: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
     stream_over(file, |out| out.write_all(content.as_ref()))
 }
 
-/// The same with what is written bit by bit.
+/// Writes a file as [`write()`] does, with content that `fill` makes part by part.
 ///
 /// # Errors
 /// As [`write()`], and what `fill` refuses.

@@ -181,7 +181,7 @@ impl CheckReport {
         })
     }
 
-    /// The same with a certificate.
+    /// Computes the report as [`CheckReport::compute`] does, with a certificate that a checker proved.
     ///
     /// # Errors
     /// As [`CheckReport::compute`], and [`ComputationError::NoPair`].

@@ -75,11 +75,11 @@ pub enum MemoryDemand<'a> {
     ForbiddenDelays(usize),
     /// The proof of as many conflicts: in the checker, while its list grows, and in the answer.
     ConflictProof(usize),
-    /// As many segments in a table and in the checker.
+    /// The proof for as many segments: in a table and in the checker.
     SegmentProof(usize),
-    /// As many pairs of discs in a certificate and in the checker.
+    /// The proof for as many pairs of discs: in a certificate and in the checker.
     PairProof(u64),
-    /// As many motions along edges in the proof of delays.
+    /// The proof of delays of as many motions along edges.
     TraversalProof(usize),
     /// The rules made of a table of as many locks: names, and members of groups.
     Exclusions(usize),

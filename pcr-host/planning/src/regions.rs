@@ -38,7 +38,7 @@ pub struct RegionsReport {
     pub agent: Option<u64>,
     /// Sorted by `i`, `j`, start time and start length.
     pub regions: Vec<RegionEntry>,
-    /// The same for the discs with their margins, if any agent has one.
+    /// Regions of the discs with their margins, sorted like `regions`, if any agent has a margin.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub margin_regions: Option<Vec<RegionEntry>>,
     /// The bodies of the agents that are several ones, or whose path has lengths for turns in place, if there are any.

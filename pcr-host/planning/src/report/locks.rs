@@ -68,7 +68,7 @@ pub fn locks_csv(
     sweep.each(told, &lines, |text| Ok::<(), ExclusionOutputError>(out.write_all(text.as_bytes())?))
 }
 
-/// The same of a table that is in memory, in its order.
+/// Writes the locks of a table in memory as CSV, in its order.
 ///
 /// # Errors
 /// Errors of the writer.

@@ -27,7 +27,7 @@ pub fn nodes_csv(listing: &LayoutReport<'_>, out: &mut dyn Write) -> io::Result<
     Ok(())
 }
 
-/// The same in columns.
+/// Writes the nodes and edges of a layout as tables for people.
 ///
 /// # Errors
 /// Errors of the writer.

@@ -45,7 +45,7 @@ impl TextTable {
         Ok(())
     }
 
-    /// The same as a table of Markdown.
+    /// Writes the table as one of Markdown.
     ///
     /// # Errors
     /// Errors of the writer.
