@@ -71,6 +71,7 @@ mod orders_brakes;
 mod orders_check;
 mod orders_fleet;
 mod orders_hold;
+mod orders_joint;
 mod orders_places;
 mod orders_run;
 mod outward;

@@ -1,11 +1,14 @@
-//! Admission of a new path: chooses orders with which its agent can finish, and that keep no other agent from
+//! Admission of new paths: chooses orders with which their agents can finish, and that keep no other agent from
 //! finishing.
 //!
-//! For each region of the new path where both orders are possible, the caller says which agent goes first. If the
-//! agent would then wait for ever, orders that keep an agent stuck are reversed, one after the other, each at most once.
-//! If it can finish, it keeps no other agent from that: an agent goes first only in regions that it leaves. Choosing
-//! orders is NP-hard in general. Hence a path that is refused may be possible, but one that is admitted is safe and free
-//! of deadlock.
+//! For each region of a new path where both orders are possible, the caller says which agent goes first. If an
+//! agent with a new path would then wait for ever, orders that keep an agent stuck are reversed, one after the other,
+//! each at most once. If it can finish, it keeps no other agent from that: an agent goes first only in regions that it
+//! leaves. Choosing orders is NP-hard in general. Hence paths that are refused may be possible, but those that are
+//! admitted are safe and free of deadlock.
+//!
+//! Paths of several agents are admitted together or not at all: all of them are exchanged before any order is chosen, so
+//! each agent may end where another one stands that goes on (docs/theory/joint.md).
 
 use crate::ecm::EcmEntry;
 use crate::error::{CapacityError, EcmError, MismatchError};
@@ -29,6 +32,15 @@ pub struct PathProposal<'a, S: Scalar> {
     pub motion: Motion<'a, S>,
     /// Where the agent is on the new path.
     pub progress: Progress<S>,
+}
+
+impl<S: Scalar> PathProposal<'_, S> {
+    /// Exchanges its progress for the one that is stored for its agent.
+    fn exchange_progress(&mut self, progress: &mut [Progress<S>]) {
+        if let Some(place) = progress.get_mut(self.agent) {
+            core::mem::swap(place, &mut self.progress);
+        }
+    }
 }
 
 impl<S, R, P, O> PrecedenceTable<S, R, P, O>
@@ -96,28 +108,174 @@ where
         reaches: &mut [CheckState<S>],
         prefer: impl FnMut(&RegionRef<'_, S>) -> PassingState,
     ) -> Result<(), AdmissionError> {
-        let PathProposal { agent, motion, progress: own } = mission;
+        self.admit_all(fleet, progress, &mut [mission], tolerances, reaches, prefer)
+    }
+
+    /// Gives several agents new paths at once, or none of them: agents that move up together, each to where the next one
+    /// stands. With the orders that are chosen all of them can finish, and so can every agent that could if they were not
+    /// there. The orders between all other agents stay as they are.
+    ///
+    /// The paths in `fleet`, the entries in `progress` and those in `proposals` are exchanged, so `proposals` has what the
+    /// agents had before; on an error all three are as they were. `prefer` is called as by [`PrecedenceTable::admit`]. The ego of
+    /// a region of two agents with new paths is the one that comes first in `proposals`.
+    ///
+    /// Agents that follow one another around a circle gain little in each sweep of the check. A coarse
+    /// [`CheckTolerances::gain`] therefore refuses circles that are nearly full.
+    ///
+    /// Storage: as many additional orders as the agents have regions with their old paths. Cost: that of
+    /// [`Ecm::replace`](crate::Ecm::replace) for each path, two to four holds for each region of the new paths, and at most one check
+    /// more than these have regions.
+    ///
+    /// # Errors
+    /// As [`PrecedenceTable::admit`], and [`AdmissionError::Repeated`] for two paths of one agent.
+    ///
+    /// ```
+    /// use pcr_core::{
+    ///     AdmissionError, CheckState, CheckTolerances, EcmEntry, Limits, Motion, PassingState, Path, PathProposal, Piece, Point, Pose,
+    ///     PrecedenceTable, Profile, Progress, Radians, RegionPrecedence,
+    /// };
+    /// // Three robots stand at the corners of a triangle of 4 m, and each is to go to the next corner.
+    /// let corners = [(0.0, 0.0), (4.0, 0.0), (2.0, 3.464)];
+    /// let side = |k: usize| {
+    ///     let heading = Radians(k as f64 * core::f64::consts::TAU / 3.0);
+    ///     Path::<f64, 1>::starting_at(Pose { position: Point::new(corners[k].0, corners[k].1), heading })
+    /// };
+    /// let stands = [side(0)?, side(1)?, side(2)?];
+    /// let sides = [side(0)?.line(4.0)?, side(1)?.line(4.0)?, side(2)?.line(4.0)?];
+    /// let standing = Profile::<f64, 1>::standing();
+    /// let profile = Profile::rest_to_rest(4.0, Limits { speed: 1.0, acceleration: 1.0 })?;
+    /// let stand = |k: usize| Motion::new(stands[k].as_path(), standing.as_profile(), 0.25, 0.0);
+    /// let motion = |k: usize| Motion::new(sides[k].as_path(), profile.as_profile(), 0.25, 0.0);
+    /// let mission = |agent| Ok::<_, pcr_core::InvalidInput>(PathProposal { agent, motion: motion(agent)?, progress: Progress::at_rest(0.0) });
+    ///
+    /// let mut fleet = [stand(0)?, stand(1)?, stand(2)?];
+    /// let mut progress = [Progress::at_rest(0.0); 3];
+    /// let mut orders = PrecedenceTable::build([EcmEntry::EMPTY; 8], [Piece::EMPTY; 16], [RegionPrecedence::EMPTY; 16], &fleet)?;
+    /// let (tolerances, mut reaches) = (CheckTolerances { width: 0.01, gain: 0.001 }, [CheckState::EMPTY; 3]);
+    /// // None of them can go alone, but all of them together.
+    /// let alone = orders.admit(&mut fleet, &mut progress, mission(0)?, tolerances, &mut reaches, |_| PassingState::First);
+    /// assert_eq!(alone, Err(AdmissionError::Blocked { agent: 0, by: 1 }));
+    /// let mut all = [mission(0)?, mission(1)?, mission(2)?];
+    /// orders.admit_all(&mut fleet, &mut progress, &mut all, tolerances, &mut reaches, |_| PassingState::First)?;
+    /// assert_eq!(fleet[2].path().length(), 4.0);
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
+    /// ```
+    pub fn admit_all<'m>(
+        &mut self,
+        fleet: &mut [Motion<'m, S>],
+        progress: &mut [Progress<S>],
+        proposals: &mut [PathProposal<'m, S>],
+        tolerances: CheckTolerances<S>,
+        reaches: &mut [CheckState<S>],
+        mut prefer: impl FnMut(&RegionRef<'_, S>) -> PassingState,
+    ) -> Result<(), AdmissionError> {
         let tolerances = tolerances.limited();
         self.ecm.holds_all(fleet)?;
-        let (Some(&before), Some(place)) = (fleet.get(agent), progress.get_mut(agent)) else {
-            return Err(MismatchError::NoSuchAgent(agent).into());
-        };
-        let stood = core::mem::replace(place, own);
-        let replaced = self.exchange(fleet, agent, motion).map_err(AdmissionError::from);
-        let admitted = replaced.and_then(|saved| {
-            let chosen = self.choose(fleet, progress, agent, tolerances.width, prefer);
-            let found = chosen.and_then(|()| self.repair(fleet, progress, agent, tolerances, reaches));
-            if found.is_err() {
-                self.restore(fleet, agent, before, saved)?;
+        for (count, &PathProposal { agent, .. }) in (0..proposals.len()).zip(&*proposals) {
+            if agent >= fleet.len().min(progress.len()) {
+                return Err(MismatchError::NoSuchAgent(agent).into());
             }
-            found
-        });
-        if admitted.is_err()
-            && let Some(place) = progress.get_mut(agent)
-        {
-            *place = stood;
+            if proposals.iter().take(count).any(|earlier| earlier.agent == agent) {
+                return Err(AdmissionError::Repeated(agent));
+            }
         }
-        admitted
+        let (mut exchanged, mut low) = (0_usize, self.orders.as_ref().len());
+        let mut found = Ok(());
+        for proposal in proposals.iter_mut() {
+            let Some(&before) = fleet.get(proposal.agent) else { break };
+            match self.exchange(fleet, proposal.agent, proposal.motion, low) {
+                Ok(saved) => {
+                    (exchanged, low) = (exchanged.saturating_add(1), low.saturating_sub(saved));
+                    proposal.motion = before;
+                    proposal.exchange_progress(progress);
+                }
+                Err(error) => {
+                    found = Err(error.into());
+                    break;
+                }
+            }
+        }
+        for (count, proposal) in (0..proposals.len()).zip(&*proposals) {
+            let earlier = |other: usize| proposals.iter().take(count).any(|earlier| earlier.agent == other);
+            found = found
+                .and_then(|()| self.choose(fleet, progress, proposal.agent, tolerances.width, earlier, &mut prefer));
+        }
+        found = found.and_then(|()| self.repair(fleet, progress, proposals, tolerances, reaches));
+        if found.is_err() {
+            let mut restored = Ok(());
+            for proposal in proposals.iter_mut().take(exchanged).rev() {
+                let Some(place) = fleet.get_mut(proposal.agent) else { continue };
+                let (before, motion) = (proposal.motion, *place);
+                match restored {
+                    Ok(()) => restored = self.restore(fleet, proposal.agent, before, &mut low),
+                    // The table is empty.
+                    Err(_) => *place = before,
+                }
+                proposal.motion = motion;
+                proposal.exchange_progress(progress);
+            }
+            restored?;
+        }
+        found
+    }
+
+    /// Gives an agent a new path, or the first of `shorter` that can be admitted: beginnings of the path, the longest first,
+    /// each up to a place where the agent can stand, for example behind one that stands on its way. Returns the number of
+    /// paths that were refused before: 0 if the whole path was admitted.
+    ///
+    /// The path that is granted keeps what [`PrecedenceTable::admit`] promises: the agent gets to its end, and no other agent is
+    /// kept from its own. Whether the agent gets further from there depends on the site (docs/theory/joint.md).
+    ///
+    /// Storage: that of [`PrecedenceTable::admit`]. Cost: that of [`PrecedenceTable::admit`] for each path that is tried.
+    ///
+    /// # Errors
+    /// As [`PrecedenceTable::admit`], with the reason why the whole path was refused; everything is then unchanged.
+    ///
+    /// ```
+    /// use pcr_core::{
+    ///     CheckState, CheckTolerances, EcmEntry, Limits, Motion, PassingState, Path, PathProposal, Piece, Point, Pose, PrecedenceTable,
+    ///     Profile, Progress, Radians, RegionPrecedence,
+    /// };
+    /// let at = |x| Pose { position: Point::new(x, 0.0), heading: Radians(0.0) };
+    /// // A lane with places at 0, 2, 4 and 6 m; another robot stands at 4 m.
+    /// let lane = Path::<f64, 3>::starting_at(at(0.0))?.line(2.0)?.line(2.0)?.line(2.0)?;
+    /// let (short, waits, stands) = (Path::<f64, 1>::starting_at(at(0.0))?.line(2.0)?, Path::<f64, 1>::starting_at(at(0.0))?, Path::<f64, 1>::starting_at(at(4.0))?);
+    /// let (standing, limits) = (Profile::<f64, 1>::standing(), Limits { speed: 1.0, acceleration: 1.0 });
+    /// let (whole, first) = (Profile::rest_to_rest(6.0, limits)?, Profile::rest_to_rest(2.0, limits)?);
+    /// let mut fleet =
+    ///     [Motion::new(waits.as_path(), standing.as_profile(), 0.25, 0.0)?, Motion::new(stands.as_path(), standing.as_profile(), 0.25, 0.0)?];
+    /// let mut progress = [Progress::at_rest(0.0); 2];
+    /// let mut orders = PrecedenceTable::build([EcmEntry::EMPTY; 4], [Piece::EMPTY; 8], [RegionPrecedence::EMPTY; 8], &fleet)?;
+    /// let mission = PathProposal { agent: 0, motion: Motion::new(lane.as_path(), whole.as_profile(), 0.25, 0.0)?, progress: progress[0] };
+    /// let shorter = [Motion::new(short.as_path(), first.as_profile(), 0.25, 0.0)?];
+    /// let (tolerances, mut reaches) = (CheckTolerances { width: 0.01, gain: 0.001 }, [CheckState::EMPTY; 2]);
+    /// let granted = orders.admit_longest(&mut fleet, &mut progress, mission, &shorter, tolerances, &mut reaches, |_| PassingState::Second)?;
+    /// assert_eq!((granted, fleet[0].path().length()), (1, 2.0));
+    /// # Ok::<(), Box<dyn core::error::Error>>(())
+    /// ```
+    #[expect(clippy::too_many_arguments, reason = "the storage and the fleet belong to the caller")]
+    pub fn admit_longest<'m>(
+        &mut self,
+        fleet: &mut [Motion<'m, S>],
+        progress: &mut [Progress<S>],
+        mission: PathProposal<'m, S>,
+        shorter: &[Motion<'m, S>],
+        tolerances: CheckTolerances<S>,
+        reaches: &mut [CheckState<S>],
+        mut prefer: impl FnMut(&RegionRef<'_, S>) -> PassingState,
+    ) -> Result<usize, AdmissionError> {
+        let mut refused = None;
+        for (count, &motion) in (0_usize..).zip(core::iter::once(&mission.motion).chain(shorter)) {
+            let part = PathProposal { motion, ..mission };
+            match self.admit(fleet, progress, part, tolerances, reaches, &mut prefer) {
+                Ok(()) => return Ok(count),
+                Err(
+                    error @ (AdmissionError::Blocked { .. } | AdmissionError::Stuck { .. } | AdmissionError::Late { .. }),
+                ) => refused = refused.or(Some(error)),
+                Err(error) => return Err(error),
+            }
+        }
+        Err(refused.unwrap_or(MismatchError::NoSuchAgent(mission.agent).into()))
     }
 
     /// Replaces the path of an agent and leaves all its regions undecided. The orders between the other agents stay as
@@ -133,24 +291,26 @@ where
         motion: Motion<'m, S>,
     ) -> Result<(), EcmError> {
         self.ecm.holds_all(fleet)?;
-        self.exchange(fleet, agent, motion).map(drop)
+        let end = self.orders.as_ref().len();
+        self.exchange(fleet, agent, motion, end).map(drop)
     }
 
-    /// Replaces the path. The old orders of the agent are kept at the end of the storage, the last one first. Returns
+    /// Replaces the path. The old orders of the agent are kept in the storage before `end`, the last one first. Returns
     /// the number of these orders.
     fn exchange<'m>(
         &mut self,
         fleet: &mut [Motion<'m, S>],
         agent: usize,
         motion: Motion<'m, S>,
+        end: usize,
     ) -> Result<usize, EcmError> {
-        let saved = self.places(agent).fold(0_usize, |count, _| count.saturating_add(1));
-        let room = self.orders.as_ref().len().saturating_sub(saved);
+        let saved = self.count(agent);
+        let room = end.saturating_sub(saved);
         let Some(&before) = fleet.get(agent) else { return Err(MismatchError::NoSuchAgent(agent).into()) };
         if self.ecm.len() > room {
             return Err(CapacityError::Orders.into());
         }
-        let mut last = self.orders.as_ref().len();
+        let mut last = end;
         let kept = self.gather(agent, |orders, order| {
             last = last.saturating_sub(1);
             if let Some(place) = orders.get_mut(last) {
@@ -165,22 +325,29 @@ where
         if replaced.is_ok() {
             self.put_back(fleet, agent, before)?;
         }
-        self.spread_saved(agent, kept, saved);
+        self.spread_saved(agent, kept, room);
         replaced?;
         Err(CapacityError::Orders.into())
     }
 
-    /// Undoes an exchange.
+    /// The number of regions of an agent.
+    fn count(&self, agent: usize) -> usize {
+        self.places(agent).fold(0_usize, |count, _| count.saturating_add(1))
+    }
+
+    /// Undoes the last exchange, whose old orders are kept from `low` on. `low` is then where those of the exchange before it
+    /// are kept: an agent has as many regions as it had before.
     fn restore<'m>(
         &mut self,
         fleet: &mut [Motion<'m, S>],
         agent: usize,
         before: Motion<'m, S>,
-        saved: usize,
+        low: &mut usize,
     ) -> Result<(), AdmissionError> {
         let kept = self.gather(agent, |_, _| {});
         self.put_back(fleet, agent, before)?;
-        self.spread_saved(agent, kept, saved);
+        self.spread_saved(agent, kept, *low);
+        *low = low.saturating_add(self.count(agent));
         Ok(())
     }
 
@@ -202,8 +369,8 @@ where
         outcome
     }
 
-    fn spread_saved(&mut self, agent: usize, kept: usize, saved: usize) {
-        let mut next = self.orders.as_ref().len().saturating_sub(saved);
+    /// Moves orders to the indices of their regions. Those of the agent are kept from `next` on.
+    fn spread_saved(&mut self, agent: usize, kept: usize, mut next: usize) {
         self.spread(agent, kept, |orders| {
             let order = orders.get(next).copied().unwrap_or_default();
             next = next.saturating_add(1);
@@ -211,14 +378,15 @@ where
         });
     }
 
-    /// Chooses orders for all regions of an agent: the preferred ones where both are possible.
+    /// Chooses orders for all regions of an agent but those with `earlier` agents: the preferred ones where both are possible.
     fn choose(
         &mut self,
         fleet: &[Motion<'_, S>],
         progress: &[Progress<S>],
         agent: usize,
         width: S,
-        mut prefer: impl FnMut(&RegionRef<'_, S>) -> PassingState,
+        earlier: impl Fn(usize) -> bool,
+        prefer: &mut impl FnMut(&RegionRef<'_, S>) -> PassingState,
     ) -> Result<(), AdmissionError> {
         for (place, order) in (0..self.ecm.len()).zip(self.orders.as_mut()) {
             if !self.ecm.agents_at(place).is_some_and(|agents| agents.contains(&agent)) {
@@ -226,6 +394,9 @@ where
             }
             let Some(region) = self.ecm.at(fleet, place, agent) else { continue };
             let by = region.other();
+            if earlier(by) {
+                continue;
+            }
             let [own, their] = [agent, by].map(|agent| Progress::of(progress, agent));
             if region.is_over(progress) {
                 *order = RegionPrecedence::new(&region, PassingState::Over, S::ZERO);
@@ -245,44 +416,50 @@ where
         Ok(())
     }
 
-    /// Checks the orders, and reverses some orders of the agent while it would wait for ever.
+    /// Checks the orders, and reverses some orders of the agents with new paths while one of these would wait for ever.
     fn repair(
         &mut self,
         fleet: &[Motion<'_, S>],
         progress: &[Progress<S>],
-        agent: usize,
+        proposals: &[PathProposal<'_, S>],
         tolerances: CheckTolerances<S>,
         reaches: &mut [CheckState<S>],
     ) -> Result<(), AdmissionError> {
         loop {
             let found = self.check(fleet, progress, tolerances, reaches);
-            let reach = reaches.get(agent).copied().unwrap_or_default();
             if !matches!(found, Err(AdmissionError::Stuck { .. })) {
                 return found;
             }
-            if !reach.is_stuck() {
-                // The agent arrives, so it is in no other agent's way: agents that are stuck would be stuck without it.
+            let reach = |agent: usize| reaches.get(agent).copied().unwrap_or_default();
+            let Some(PathProposal { agent: stuck, .. }) = proposals.iter().find(|it| reach(it.agent).is_stuck()) else {
+                // They all arrive, so they are in no other agent's way: agents that are stuck would be stuck without them.
                 return Ok(());
-            }
-            let Some(place) = self.culprit(agent, tolerances.gain, reaches) else {
-                return Err(self.stuck(agent, reach));
+            };
+            let Some((agent, place)) = self.culprit(proposals, tolerances.gain, reaches) else {
+                return Err(self.stuck(*stuck, reach(*stuck)));
             };
             self.turn(fleet, progress, agent, place);
         }
     }
 
-    /// An order of the agent that keeps some agent stuck and can be reversed: preferably one where the agent goes
-    /// first, otherwise one where it is stuck itself.
-    fn culprit(&self, agent: usize, gain: S, reaches: &[CheckState<S>]) -> Option<usize> {
-        let holds = |pass: PassingState| {
+    /// An order of an agent with a new path that keeps some agent stuck and can be reversed: preferably one where the agent
+    /// with the new path goes first, otherwise one where it is stuck itself.
+    fn culprit(
+        &self,
+        proposals: &[PathProposal<'_, S>],
+        gain: S,
+        reaches: &[CheckState<S>],
+    ) -> Option<(usize, usize)> {
+        let holds = |agent: usize, pass: PassingState| {
             self.places(agent).find_map(|(place, agents, order)| {
                 let held = if pass == PassingState::First { other(agents, agent) } else { agent };
                 let held = reaches.get(held).filter(|reach| reach.is_stuck())?;
                 let counts = order.open && order.pass_of(agent, agents) == pass && order.hold <= held.at + gain;
-                counts.then_some(place)
+                counts.then_some((agent, place))
             })
         };
-        holds(PassingState::First).or_else(|| holds(PassingState::Second))
+        let of = |pass: PassingState| proposals.iter().find_map(|it| holds(it.agent, pass));
+        of(PassingState::First).or_else(|| of(PassingState::Second))
     }
 
     fn turn(&mut self, fleet: &[Motion<'_, S>], progress: &[Progress<S>], agent: usize, place: usize) {

@@ -34,6 +34,8 @@ pub enum AdmissionError {
         /// The agent that is in its way.
         by: usize,
     },
+    /// Two new paths were given for this agent.
+    Repeated(usize),
     /// According to their motions these two agents meet, or pass so close that it cannot be decided which one is first.
     Meeting([usize; 2]),
     /// The fleet is not that of the table, or has no such agent.
@@ -48,6 +50,7 @@ impl core::fmt::Display for AdmissionError {
             Self::Stuck { agent, by, .. } => write!(f, "agent {agent} would wait for agent {by} for ever"),
             Self::Late { agent, by, .. } => write!(f, "agent {agent} is where agent {by} was to go first"),
             Self::Blocked { agent, by } => write!(f, "agent {by} is in the way of agent {agent}, whoever goes first"),
+            Self::Repeated(agent) => write!(f, "two new paths were given for agent {agent}"),
             Self::Meeting([a, b]) => write!(f, "agents {a} and {b} meet"),
             Self::Mismatch(mismatch) => mismatch.fmt(f),
             Self::Full(full) => full.fmt(f),

@@ -34,6 +34,7 @@
 //! dispatch   ways and orders for a mission
 //! switching  orders that are reversed while robots drive
 //! clearing   moves robots out of the way of a mission
+//! joint      robots that move up together
 //! record     motions of the robots, for the independent checker   Certificate
 //! outcome    results of a run                                     Outcome
 //! draws      random goals, delays and starts
@@ -49,6 +50,7 @@
 mod endpoints;
 mod forecast;
 mod gates;
+mod joint_advance;
 mod kinematic_limits;
 mod lifelong_report;
 mod motion_record;

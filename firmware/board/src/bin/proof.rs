@@ -365,6 +365,27 @@ fn orders<S: Scalar>(fleet: &mut [Motion<'_, S>], progress: &mut [Progress<S>], 
             any(PassingState::First)
         })
         .is_ok());
+        any(PrecedenceTable::admit_all(
+            &mut orders,
+            fleet,
+            progress,
+            any(&mut [mission; 2]),
+            tolerances,
+            reaches,
+            |_| any(PassingState::First),
+        )
+        .is_ok());
+        any(PrecedenceTable::admit_longest(
+            &mut orders,
+            fleet,
+            progress,
+            any(mission),
+            any(&[motion; 2]),
+            tolerances,
+            reaches,
+            |_| any(PassingState::First),
+        )
+        .is_ok());
     }
     let Ok::<MovementAuthority<S>, MismatchError>(hold) = PrecedenceTable::hold(&orders, fleet, agent, progress) else {
         return;

@@ -182,6 +182,11 @@ impl RegionTable {
             self.robots_by_element[*atom].retain(|(other, _)| *other != robot);
         }
         self.occupy(robot, new);
+        self.add(regions);
+    }
+
+    /// Adds regions of ways that it has already.
+    pub(super) fn add(&mut self, regions: Vec<RouteRegion>) {
         for region in regions {
             let place = self.free.pop().unwrap_or(self.regions.len());
             if place == self.regions.len() {

@@ -2,6 +2,7 @@
 
 use super::endpoints::{Endpoints, WellFormedness};
 use super::forecast::WHOLE;
+use super::joint_advance::JointPhase;
 use super::kinematic_limits::KinematicLimits;
 use super::motion_record::RunCertificate;
 use super::outcome::{LifelongResult, TimeShares};
@@ -72,6 +73,8 @@ pub(super) struct LifelongState {
     pub(super) last_arrival: f64,
     /// Time for which all robots have stood at their ends while missions wait \[s\].
     pub(super) quiet: f64,
+    /// When robots are moved up together.
+    pub(super) joint: JointPhase,
     /// Tasks that are not done yet, if the robots share them.
     pub(super) tasks: Option<TaskQueue>,
 }
@@ -160,6 +163,7 @@ impl LifelongState {
             steady: 0,
             last_arrival: 0.0,
             quiet: 0.0,
+            joint: JointPhase::default(),
             tasks: tasks.map(TaskQueue::of),
         })
     }

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 const PATIENCE: f64 = 2.0;
 
 /// A mission overtaken by this many missions per robot is the only one that is admitted, apart from those of robots in its way.
-const ROUNDS: usize = 4;
+pub(super) const ROUNDS: usize = 4;
 
 /// Largest number of robots that are asked to go elsewhere for one mission at a time.
 const MOVES: usize = 4;
@@ -110,7 +110,7 @@ impl LifelongState {
     }
 
     /// Begins the mission of a robot, if it is admitted.
-    fn is_begun(&mut self, robot: usize, now: f64) -> bool {
+    pub(super) fn is_begun(&mut self, robot: usize, now: f64) -> bool {
         let Some(mission) = self.missions[robot].filter(|mission| !mission.admitted) else { return false };
         let begin = Instant::now();
         let found = self.scene(now).dispatch(robot, &[mission.goal]);
