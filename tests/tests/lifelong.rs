@@ -5,6 +5,7 @@ use pcr_execution::lifelong::{
     well_formedness,
 };
 use pcr_formats::import::{self, ImportOptions, ImportedLayout, InputFormat, Warnings};
+use std::f64::consts::TAU;
 
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
 
@@ -179,20 +180,23 @@ fn a_fleet_in_which_nobody_can_do_anything_says_why() {
 
 /// A layout of nav2 with these points, and a two-way edge between each of these pairs of them.
 fn graph(points: &[[f64; 2]], edges: &[[usize; 2]]) -> String {
+    one_way(points, &edges.iter().flat_map(|&[a, b]| [[a, b], [b, a]]).collect::<Vec<_>>())
+}
+
+/// A layout of nav2 with these points, and an edge from the first to the second of each of these pairs.
+fn one_way(points: &[[f64; 2]], edges: &[[usize; 2]]) -> String {
     let feature = |properties: String, kind: &str, at: String| {
         let geometry = format!(r#"{{"type":"{kind}","coordinates":{at}}}"#);
         format!(r#"{{"type":"Feature","properties":{{{properties}}},"geometry":{geometry}}}"#)
     };
     let node =
         |(k, [x, y]): (usize, &[f64; 2])| feature(format!(r#""id":{k},"frame":"map""#), "Point", format!("[{x},{y}]"));
-    let there_and_back = edges.iter().flat_map(|&[a, b]| [[a, b], [b, a]]);
-    let edge = |(k, [a, b]): (usize, [usize; 2])| {
+    let edge = |(k, &[a, b]): (usize, &[usize; 2])| {
         let [[x, y], [u, v]] = [points[a], points[b]];
         let properties = format!(r#""id":{},"startid":{a},"endid":{b}"#, 1000 + k);
         feature(properties, "MultiLineString", format!("[[[{x},{y}],[{u},{v}]]]"))
     };
-    let features: Vec<String> =
-        points.iter().enumerate().map(node).chain(there_and_back.enumerate().map(edge)).collect();
+    let features: Vec<String> = points.iter().enumerate().map(node).chain(edges.iter().enumerate().map(edge)).collect();
     format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, features.join(","))
 }
 
@@ -233,6 +237,36 @@ fn as_many_robots_as_safe_ends_go_on_or_say_why_not() {
     // A robot at one of two nodes leaves none that could be reached.
     let two = layout(InputFormat::Nav2, &graph(&points[..2], &[[0, 1]]), 0.4);
     assert_eq!(well_formedness(&two, 1).expect("a site").safe_ends.len(), 1);
+}
+
+/// On a round every robot is in the way of the one behind it, and nobody can make way but by going on.
+#[test]
+fn rounds_without_bays_go_on_also_when_all_places_are_taken() {
+    let minutes = if cfg!(optimized) { 15.0 } else { 3.0 };
+    let square = |k: usize| {
+        [[0.0, 0.0], [5.0, 0.0], [10.0, 0.0], [10.0, 5.0], [10.0, 10.0], [5.0, 10.0], [0.0, 10.0], [0.0, 5.0]][k]
+    };
+    let around = |k: usize| (TAU * k as f64 / 16.0).sin_cos();
+    let ring: Vec<[f64; 2]> = (0..16).map(|k| [12.0 * around(k).1, 12.0 * around(k).0]).collect();
+    let next = |count: usize| -> Vec<[usize; 2]> { (0..count).map(|k| [k, (k + 1) % count]).collect() };
+    let eight: Vec<[f64; 2]> = (0..8).map(square).collect();
+    let four: Vec<[f64; 2]> = [0, 2, 4, 6].map(square).to_vec();
+    let sites = [
+        (one_way(&four, &next(4)), vec![(2, 100.0), (4, 200.0)]),
+        (one_way(&eight, &next(8)), vec![(2, 100.0), (4, 200.0), (8, 200.0)]),
+        (one_way(&ring, &next(16)), vec![(8, 150.0)]),
+        (graph(&ring, &next(16)), vec![(4, 80.0)]),
+    ];
+    for (text, fleets) in sites {
+        let imported = layout(InputFormat::Nav2, &text, 0.4);
+        for (agents, least) in fleets {
+            let outcome = driven(&imported, agents, minutes, 0.02, CoordinationMethod::Orders);
+            assert_eq!((outcome.robots, outcome.starved), (agents, 0), "{outcome:?}");
+            // Short runs only show that somebody arrives.
+            let least = if minutes < 10.0 { 1.0 } else { least };
+            assert!(outcome.missions_per_hour >= least, "{agents}: {outcome:?}");
+        }
+    }
 }
 
 /// Short edges, on which the largest speed is not reached.

@@ -71,10 +71,11 @@ impl<S: HostScalar> Batch<S> {
         };
         let before = (all(&table), lengths(&mut fleet.iter().copied()));
         let asked = lengths(&mut proposals.iter().map(|it| it.motion));
-        let found = table.admit_all(&mut fleet, &mut progress, &mut proposals, tolerances(gain), &mut reaches, |region| {
-            assert!(region.ego() < region.other(), "the ego is the one that comes first");
-            prefer
-        });
+        let found =
+            table.admit_all(&mut fleet, &mut progress, &mut proposals, tolerances(gain), &mut reaches, |region| {
+                assert!(region.ego() < region.other(), "the ego is the one that comes first");
+                prefer
+            });
         let after = (all(&table), lengths(&mut fleet.iter().copied()));
         let left = lengths(&mut proposals.iter().map(|it| it.motion));
         match found {
@@ -157,9 +158,8 @@ fn nobody_of_a_round_can_go_alone() {
         assert_eq!(found, Err(AdmissionError::Blocked { agent, by: (agent + 1) % 4 }));
         // Nor can three of the four.
         let mut three: Vec<_> = batch.proposals().into_iter().filter(|it| it.agent != agent).collect();
-        let found = table.admit_all(&mut fleet, &mut progress, &mut three, tolerances(1e-6), &mut reaches, |_| {
-            PassingState::First
-        });
+        let found = table
+            .admit_all(&mut fleet, &mut progress, &mut three, tolerances(1e-6), &mut reaches, |_| PassingState::First);
         assert_eq!(found, Err(AdmissionError::Blocked { agent: (agent + 3) % 4, by: agent }));
     }
 }
@@ -273,10 +273,15 @@ fn a_path_is_granted_up_to_the_last_place_that_is_free() {
         let whole = PathProposal { agent: 0, motion: parts[0].motion(), progress: progress[0] };
         let mut ask = |shorter: &[Motion<'_, f64>]| {
             let mut fleet = fleet.clone();
-            let found =
-                table.clone().admit_longest(&mut fleet, &mut progress, whole, shorter, tolerances(1e-6), &mut reaches, |_| {
-                    PassingState::Second
-                });
+            let found = table.clone().admit_longest(
+                &mut fleet,
+                &mut progress,
+                whole,
+                shorter,
+                tolerances(1e-6),
+                &mut reaches,
+                |_| PassingState::Second,
+            );
             (found, fleet[0].path().length())
         };
         let refused = Err(AdmissionError::Blocked { agent: 0, by: 1 });

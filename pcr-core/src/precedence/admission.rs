@@ -270,7 +270,9 @@ where
             match self.admit(fleet, progress, part, tolerances, reaches, &mut prefer) {
                 Ok(()) => return Ok(count),
                 Err(
-                    error @ (AdmissionError::Blocked { .. } | AdmissionError::Stuck { .. } | AdmissionError::Late { .. }),
+                    error @ (AdmissionError::Blocked { .. }
+                    | AdmissionError::Stuck { .. }
+                    | AdmissionError::Late { .. }),
                 ) => refused = refused.or(Some(error)),
                 Err(error) => return Err(error),
             }
@@ -444,12 +446,7 @@ where
 
     /// An order of an agent with a new path that keeps some agent stuck and can be reversed: preferably one where the agent
     /// with the new path goes first, otherwise one where it is stuck itself.
-    fn culprit(
-        &self,
-        proposals: &[PathProposal<'_, S>],
-        gain: S,
-        reaches: &[CheckState<S>],
-    ) -> Option<(usize, usize)> {
+    fn culprit(&self, proposals: &[PathProposal<'_, S>], gain: S, reaches: &[CheckState<S>]) -> Option<(usize, usize)> {
         let holds = |agent: usize, pass: PassingState| {
             self.places(agent).find_map(|(place, agents, order)| {
                 let held = if pass == PassingState::First { other(agents, agent) } else { agent };

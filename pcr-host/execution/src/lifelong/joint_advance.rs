@@ -9,20 +9,23 @@ use super::region_table::{RegionTable, RouteRegion};
 use super::region_waits::FleetWaits;
 use super::robot::LifelongRobot;
 use super::route::{CommittedRoute, Route};
-use super::route_graph::RouteGraph;
+use super::route_graph::{DeparturePose, RouteGraph};
 use super::run_state::{LifelongState, RobotMission};
 use super::scheduling::{AGAIN, TRIES};
 use super::starvation::ROUNDS;
 use std::time::{Duration, Instant};
 
-/// If all robots have stood at their ends for this long while missions wait, they are moved up together \[s\].
-const QUIET: f64 = 3.0;
+/// Robots are moved up together if all of them have stood at their ends for the first time while missions wait, or if nobody has
+/// had a goal on its way for the second \[s\].
+const QUIET: [f64; 2] = [3.0, 6.0];
 
 /// A robot gets more way when less than this is left besides its stopping way \[m\].
 const LOOK: f64 = 1.5;
 
-/// First time for which robots are moved up together; it is doubled if whole routes are refused again soon after it \[s\].
-const PERIOD: f64 = 20.0;
+/// First time for which robots are moved up together; it is doubled each time if whole routes do not go on for longer than
+/// the second, or twice the time before, and is the first again otherwise \[s\].
+const PERIOD: f64 = 60.0;
+const SOON: f64 = 300.0;
 
 /// When robots are moved up together.
 #[derive(Clone, Debug, Default)]
@@ -31,6 +34,8 @@ pub(super) struct JointPhase {
     until: f64,
     /// Duration of the present or last time \[s\].
     period: f64,
+    /// Time since which nobody has a goal on its way; `None` if somebody has \[s\].
+    idle_since: Option<f64>,
     /// Time of the next attempt after one without success \[s\].
     next_try: f64,
     /// For each atom whether a robot at its end can come back to its beginning over other edges.
@@ -57,12 +62,16 @@ struct JointAdmission {
 impl LifelongState {
     /// Moves robots up together, if whole routes have been refused for some time. Returns whether it does that at present.
     pub(super) fn moves_up(&mut self, now: f64) -> bool {
-        if now < self.joint.until && self.quiet <= QUIET {
+        let has_goal = self.missions.iter().flatten().any(|mission| mission.admitted);
+        self.joint.idle_since = if has_goal { None } else { self.joint.idle_since.or(Some(now)) };
+        let is_joint = now < self.joint.until && self.quiet <= QUIET[0];
+        if is_joint {
             self.advance_together(now);
             self.try_whole_routes(now);
             return true;
         }
-        if self.quiet <= QUIET || now < self.joint.next_try {
+        let idle = self.joint.idle_since.map_or(0.0, |since| now - since);
+        if (self.quiet <= QUIET[0] && idle <= QUIET[1]) || now < self.joint.next_try {
             return false;
         }
         self.joint.next_try = now + AGAIN;
@@ -74,7 +83,7 @@ impl LifelongState {
         if self.advance_together(now) == 0 {
             return false;
         }
-        let is_soon = now < self.joint.until + 2.0 * self.joint.period;
+        let is_soon = now < self.joint.until + SOON.max(2.0 * self.joint.period);
         self.joint.period = if is_soon { 2.0 * self.joint.period.max(0.5 * PERIOD) } else { PERIOD };
         self.joint.until = now + self.joint.period;
         self.reserved.clear();
@@ -95,9 +104,13 @@ impl LifelongState {
         waiting
     }
 
-    /// Tries whole routes as well.
+    /// Tries whole routes for robots that come no nearer to their goals where a way leads back.
     fn try_whole_routes(&mut self, now: f64) {
-        let due = |robot: &usize| self.missions[*robot].is_some_and(|mission| mission.next_try <= now);
+        let is_moved = vec![false; self.robots.len()];
+        let due = |robot: &usize| {
+            let is_due = self.missions[*robot].is_some_and(|mission| mission.next_try <= now);
+            is_due && self.needs_way(*robot) && Push::new(self, &is_moved, *robot).candidates(*robot).is_empty()
+        };
         let waiting: Vec<usize> = self.waiting().into_iter().filter(due).take(TRIES).collect();
         for robot in waiting {
             if !self.is_begun(robot, now) {
@@ -162,25 +175,27 @@ impl LifelongState {
             kept_atoms.push(kept.atoms.len());
         }
         // By time of arrival; or the robots that were there before first.
-        [true, false].into_iter().find_map(|by_time| {
-            let mut book = book.clone();
-            for (place, Stretch { robot, .. }) in batch.iter().enumerate() {
-                let it = &robots[*robot];
-                let mut regions = book.regions(&self.site, &robots, *robot, &it.way, it.at);
-                let is_earlier = |other: usize| batch[..place].iter().any(|earlier| earlier.robot == other);
-                regions.retain(|region| !is_earlier(region.robots[1]));
-                for region in &mut regions {
-                    region.first = self.first(region, &robots, by_time)?;
+        [true, false]
+            .into_iter()
+            .find_map(|by_time| {
+                let mut book = book.clone();
+                for (place, Stretch { robot, .. }) in batch.iter().enumerate() {
+                    let it = &robots[*robot];
+                    let mut regions = book.regions(&self.site, &robots, *robot, &it.way, it.at);
+                    let is_earlier = |other: usize| batch[..place].iter().any(|earlier| earlier.robot == other);
+                    regions.retain(|region| !is_earlier(region.robots[1]));
+                    for region in &mut regions {
+                        region.first = self.first(region, &robots, by_time)?;
+                    }
+                    book.add(regions);
                 }
-                book.add(regions);
-            }
-            let waits = &FleetWaits::of(&robots, &book);
-            let (abilities, earlier) = (&self.abilities, self.scene(now).earlier());
-            let trial =
-                ForecastInput { robots: &robots, waits, abilities, time: now, changed: None, earlier, kept: None };
-            trial.forecast().ok().map(|forecast| (book, forecast))
-        })
-        .map(|(book, forecast)| JointAdmission { robots, book, forecast, kept: kept_atoms })
+                let waits = &FleetWaits::of(&robots, &book);
+                let (abilities, earlier) = (&self.abilities, self.scene(now).earlier());
+                let trial =
+                    ForecastInput { robots: &robots, waits, abilities, time: now, changed: None, earlier, kept: None };
+                trial.forecast().ok().map(|forecast| (book, forecast))
+            })
+            .map(|(book, forecast)| JointAdmission { robots, book, forecast, kept: kept_atoms })
     }
 
     /// Which of the two robots of a region goes first; `None` if neither can.
@@ -257,15 +272,14 @@ struct Push<'s> {
 }
 
 impl<'s> Push<'s> {
+    fn new(state: &'s LifelongState, is_moved: &[bool], root: usize) -> Self {
+        let (is_asked, moves) = (is_moved.to_vec(), vec![None; is_moved.len()]);
+        Self { state, root, is_asked, moves, asked: Vec::new() }
+    }
+
     /// More way for a robot towards its goal, and for all robots that have to make way for it.
     fn of(state: &'s LifelongState, is_moved: &[bool], root: usize) -> Option<Vec<Stretch>> {
-        let mut push = Self {
-            state,
-            root,
-            is_asked: is_moved.to_vec(),
-            moves: vec![None; is_moved.len()],
-            asked: Vec::new(),
-        };
+        let mut push = Self::new(state, is_moved, root);
         push.advances(root).then(|| {
             let moves = push.asked.iter().filter_map(|&robot| Some((robot, push.moves[robot]?)));
             // Whoever makes way goes first.
@@ -298,7 +312,7 @@ impl<'s> Push<'s> {
         let cost = |atom: usize| {
             let it = &site.atoms[atom];
             let heading = it.headings.map(|headings| headings[1]).or(pose.heading);
-            (left(super::route_graph::DeparturePose { node: it.ends[1], heading }), it.length / it.speed)
+            (left(DeparturePose { node: it.ends[1], heading }), it.length / it.speed)
         };
         let open = site.leaving[pose.node].iter().filter(|&&atom| joint.is_round[atom]);
         let mut found: Vec<(f64, f64, usize)> = open.map(|&atom| (cost(atom).0, cost(atom).1, atom)).collect();
@@ -312,11 +326,12 @@ impl<'s> Push<'s> {
     /// Lets a robot go on along an atom, if all robots in its way can make way.
     fn goes(&mut self, robot: usize, atom: usize) -> bool {
         let LifelongState { site, robots, .. } = self.state;
-        let target = site.atoms[atom].ends[1];
-        for (other, moved) in self.moves.iter().enumerate() {
-            if other != robot && moved.is_some_and(|moved| site.collide(site.atoms[moved].ends[1], target)) {
-                return false;
-            }
+        let [from, target] = site.atoms[atom].ends;
+        // Two robots cannot change places, nor come to the same one.
+        let excludes = |[other, end]: [usize; 2]| (end, other) == (from, target) || site.collide(end, target);
+        let mut others = self.moves.iter().enumerate().filter(|(other, _)| *other != robot);
+        if others.any(|(_, moved)| moved.is_some_and(|moved| excludes(site.atoms[moved].ends))) {
+            return false;
         }
         self.moves[robot] = Some(atom);
         self.asked.push(robot);
