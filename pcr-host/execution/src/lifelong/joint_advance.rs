@@ -335,8 +335,8 @@ impl<'s> Push<'s> {
         }
         self.moves[robot] = Some(atom);
         self.asked.push(robot);
-        for other in 0..robots.len() {
-            let end = robots[other].way.end();
+        for (other, it) in robots.iter().enumerate() {
+            let end = it.way.end();
             let is_in_the_way = other != robot && site.passes(atom, end);
             if !is_in_the_way || self.moves[other].is_some() {
                 continue;
