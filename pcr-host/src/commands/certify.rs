@@ -125,8 +125,7 @@ impl CertifyArgs {
                 let imported = layout_from(file, &text, &self.import, STANDING, false)?;
                 warnings.extend(imported.layout.warnings.iter().cloned());
                 acknowledge(&mut warnings);
-                let levels = exclusion_table::scenarios(&imported).map_err(|error| CliError::wrong(file, error))?;
-                levels
+                exclusion_table::scenarios(&imported).map_err(|error| CliError::wrong(file, error))?
             }
             _ => vec![scenario_from(file, text, &self.import)?],
         };

@@ -80,7 +80,7 @@ fn several_orders_or_paths_are_agents_of_one_scenario() {
     assert_eq!(read(&["import", "path", &one, &two, "--radius", "0.3"])["agents"].as_array().unwrap().len(), 2);
     let damaged = file("several", "c.json", "{ \"orderId\": \"c\", \"nodes\": [] }");
     let failed = run(&["import", "vda5050", &a, &damaged, "--radius", "0.3"]).failed(2);
-    assert!(failed.contains("c.json: order c, missing field `edges`"), "{failed}");
+    assert!(failed.contains("c.json:1:1: order c, missing field `edges`"), "{failed}");
     let layouts = run(&["import", "nav2", &a, &b, "--radius", "0.3"]).failed(2);
     assert!(layouts.contains("a.json: only orders and states"), "{layouts}");
 }
@@ -126,7 +126,7 @@ fn what_would_be_left_out_is_refused_unless_it_is_asked_for() {
     graph["features"][7]["properties"]["endid"] = json!(44);
     let name = file("import", "lost.geojson", graph.to_string());
     let expected =
-        format!("pcr: {name}: edge 100, endid: there is no node 44; --partial leaves that out (read as nav2)\n");
+        format!("pcr: {name}:1:862: edge 100, endid: there is no node 44; --partial leaves that out (read as nav2)\n");
     assert_eq!(run(&["locks", &name, "--radius", "0.4"]).failed(2), expected);
     let partly = run(&["locks", &name, "--radius", "0.4", "--partial", "--format", "json"]);
     assert_eq!(partly.status, 0, "{}", partly.err);

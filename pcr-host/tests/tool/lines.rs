@@ -64,7 +64,7 @@ fn every_answer_is_there_before_the_next_line_is_read() {
         let mut line = String::new();
         output.read_line(&mut line).unwrap();
         assert!(
-            line.starts_with(&format!("{{\"format\":\"pcr-regions\",\"version\":1,\"name\":\"{name}\",")),
+            line.starts_with(&format!("{{\"format\":\"pcr-regions\",\"version\":2,\"name\":\"{name}\",")),
             "{line}"
         );
     }

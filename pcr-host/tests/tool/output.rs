@@ -308,7 +308,7 @@ fn fleets_of_none_and_of_one_have_no_regions() {
         assert_eq!(
             json,
             format!(
-                "{{\"format\":\"pcr-regions\",\"version\":1,\"name\":\"{name}\",\"scalar\":\"f64\",\"regions\":[],\"error\":null,\"warnings\":[]}}\n"
+                "{{\"format\":\"pcr-regions\",\"version\":2,\"name\":\"{name}\",\"scalar\":\"f64\",\"regions\":[],\"error\":null,\"warnings\":[]}}\n"
             )
         );
         assert_eq!(run(&["regions", &scenario]).ok(), format!("{name}: 0 collision regions, 0 crossings (f64)\n"));

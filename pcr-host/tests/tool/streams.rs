@@ -17,7 +17,7 @@ fn a_reader_that_has_seen_enough_is_no_error() {
     let mut first = [0; 35];
     child.stdout.take().unwrap().read_exact(&mut first).unwrap();
     let output = child.wait_with_output().unwrap();
-    assert_eq!(&first, b"{\"format\":\"pcr-regions\",\"version\":1");
+    assert_eq!(&first, b"{\"format\":\"pcr-regions\",\"version\":2");
     assert_eq!((output.status.code(), String::from_utf8(output.stderr).unwrap().as_str()), (Some(0), ""));
 }
 
