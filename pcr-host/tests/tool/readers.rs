@@ -202,7 +202,10 @@ fn an_outline_with_parts_without_width_is_refused_by_its_file() {
         "agvGeometry": { "envelopes2d": [{ "set": "a", "polygonPoints": fork.map(point) }] } });
     let fleet = file("readers", "fork.json", sheet.to_string());
     let refused = run(&["locks", LIF, "--vehicle", "Vehicle_Type_1", "--fleet", &fleet]).failed(2);
-    assert!(refused.contains("fork.json:1:1: factsheet, envelopes2d: the side from corner 2 to 3 touches"), "{refused}");
+    assert!(
+        refused.contains("fork.json:1:1: factsheet, envelopes2d: the side from corner 2 to 3 touches"),
+        "{refused}"
+    );
     let mut scenario = crossing();
     let corner = |[ahead, left]: [f64; 2]| json!({ "ahead": ahead, "left": left });
     scenario["agents"][0].as_object_mut().unwrap().remove("radius");
