@@ -161,7 +161,8 @@ fn a_fleet_in_which_nobody_can_do_anything_says_why() {
     let imported = layout(InputFormat::Nav2, include_str!("../data/real/nav2/sample_graph.geojson"), 0.3);
     let request = LifelongOptions {
         agents: 10,
-        duration: 60.0,
+        // Together they move up for some minutes, until all have gone round.
+        duration: 600.0,
         delays: DelayModel::default(),
         seed: 1,
         method: CoordinationMethod::Orders,

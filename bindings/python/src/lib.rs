@@ -10,7 +10,6 @@ use layout::{Choices, Layout};
 use pcr_core::{AdmissionError, Encounter, Interval, Motion, MovementAuthority, PassingState, Progress};
 use pcr_formats::input::{self, InputError};
 use pcr_formats::scenario::{Scenario, ScenarioError};
-use pcr_planning::bodies::has_parts;
 use pcr_planning::check::CheckReport;
 use pcr_planning::fleet::{Fleet as Parts, HostPrecedenceTable, build_ecm_of};
 use pcr_planning::plan::{self, PlanMethod, PlanReport};
@@ -72,7 +71,7 @@ impl Fleet {
 
     /// Refuses fleets with agents that are several bodies: their motions here are those of convex hulls.
     fn single_bodies(&self) -> PyResult<()> {
-        match self.scenario.agents.iter().find(|agent| has_parts(agent)) {
+        match self.scenario.agents.iter().find(|agent| agent.has_parts()) {
             Some(agent) => {
                 let who = agent.display_name();
                 Err(refused(format!(

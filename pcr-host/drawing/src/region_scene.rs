@@ -4,8 +4,7 @@ use super::contour::{RegionOutline, trace};
 use super::layout::LayoutLevelView;
 use super::palette::{Colour, colour};
 use pcr_core::{Aabb, Crossing, Interval, Motion, PieceRef, PieceType, RegionRef, crossings};
-use pcr_formats::scenario::Scenario;
-use pcr_planning::bodies::has_parts;
+use pcr_formats::scenario::{Agent, Scenario};
 use pcr_planning::fleet::HostEcm;
 use std::collections::HashMap;
 
@@ -80,7 +79,7 @@ impl RegionScene<'_> {
 
     /// Whether an agent is more than one convex outline: maps show the regions of convex hulls.
     pub(super) fn has_hulls(&self) -> bool {
-        self.scenario.agents.iter().any(has_parts)
+        self.scenario.agents.iter().any(Agent::has_parts)
     }
 
     /// Colour of the agent at this place of the scenario.

@@ -51,6 +51,7 @@ mod endpoints;
 mod forecast;
 mod gates;
 mod joint_advance;
+mod joint_phase;
 mod kinematic_limits;
 mod lifelong_report;
 mod motion_record;

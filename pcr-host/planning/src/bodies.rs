@@ -155,11 +155,6 @@ impl<S: HostScalar> BodyFleet<S> {
     }
 }
 
-/// Whether an agent is several bodies, or a body on a part of its path only.
-pub fn has_parts(agent: &Agent) -> bool {
-    !agent.loads.is_empty() || agent.footprint.as_ref().is_some_and(|footprint| footprint.parts().nth(1).is_some())
-}
-
 /// The bodies of an agent, each as an agent with a convex outline or a disc.
 fn parts<S: HostScalar>(agent: &Agent) -> Vec<(Agent, Option<Stretch>)> {
     let outlines = agent.outlines();

@@ -11,7 +11,7 @@ mod region_job;
 mod tests;
 
 pub use crate::agent_regions::ProgressFn;
-use crate::bodies::{self, Body};
+use crate::bodies::Body;
 use crate::certify::CertificateTable;
 use crate::failure::ComputationError;
 use crate::fleet::{HostEcm, HostPrecedenceTable, HostScalar, build_ecm, build_orders};
@@ -172,7 +172,7 @@ impl AgentBodies {
         let mut first = None;
         for (body, agent) in bodies.iter().zip(&agents.agents) {
             let own = &scenario.agents[body.agent];
-            if body.is_whole() && !bodies::has_parts(own) {
+            if body.is_whole() && !own.has_parts() {
                 continue;
             }
             let shape = BodyShape::of(agent);

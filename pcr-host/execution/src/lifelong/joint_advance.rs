@@ -5,11 +5,12 @@
 //! moves along edges from which a way leads back that does not turn round on them, so that it can make way again.
 
 use super::forecast::{Forecast, ForecastInput};
+use super::joint_phase::rounds;
 use super::region_table::{RegionTable, RouteRegion};
 use super::region_waits::FleetWaits;
 use super::robot::LifelongRobot;
 use super::route::{CommittedRoute, Route};
-use super::route_graph::{DeparturePose, RouteGraph};
+use super::route_graph::DeparturePose;
 use super::run_state::{LifelongState, RobotMission};
 use super::scheduling::{AGAIN, TRIES};
 use super::starvation::ROUNDS;
@@ -26,23 +27,6 @@ const LOOK: f64 = 1.5;
 /// the second, or twice the time before, and is the first again otherwise \[s\].
 const PERIOD: f64 = 60.0;
 const SOON: f64 = 300.0;
-
-/// When robots are moved up together.
-#[derive(Clone, Debug, Default)]
-pub(super) struct JointPhase {
-    /// Time until which they are \[s\].
-    until: f64,
-    /// Duration of the present or last time \[s\].
-    period: f64,
-    /// Time since which nobody has a goal on its way; `None` if somebody has \[s\].
-    idle_since: Option<f64>,
-    /// Time of the next attempt after one without success \[s\].
-    next_try: f64,
-    /// For each atom whether a robot at its end can come back to its beginning over other edges.
-    is_round: Vec<bool>,
-    /// For each robot the time before which it is not tried again \[s\].
-    again: Vec<f64>,
-}
 
 /// More way for a robot.
 struct Stretch {
@@ -237,25 +221,6 @@ impl LifelongState {
             }
         }
     }
-}
-
-/// For each atom whether a way leads from its end to its beginning that does not go back on it.
-fn rounds(site: &RouteGraph) -> Vec<bool> {
-    let is_round = |&[from, to]: &[usize; 2]| {
-        let mut found = vec![false; site.points.len()];
-        let mut left = vec![to];
-        found[to] = true;
-        while let Some(node) = left.pop() {
-            for &atom in &site.leaving[node] {
-                let next = site.atoms[atom].ends[1];
-                if (node, next) != (to, from) && !std::mem::replace(&mut found[next], true) {
-                    left.push(next);
-                }
-            }
-        }
-        found[from]
-    };
-    site.atoms.iter().map(|atom| atom.edge.is_some() && atom.ends[0] != atom.ends[1] && is_round(&atom.ends)).collect()
 }
 
 /// A search for robots that make way for one another.

@@ -2,7 +2,7 @@
 
 use super::endpoints::{Endpoints, WellFormedness};
 use super::forecast::WHOLE;
-use super::joint_advance::JointPhase;
+use super::joint_phase::JointPhase;
 use super::kinematic_limits::KinematicLimits;
 use super::motion_record::RunCertificate;
 use super::outcome::{LifelongResult, TimeShares};

@@ -28,6 +28,11 @@ impl Agent {
         self.loads.iter().map(|load| load.radius).fold(self.radius, f64::max)
     }
 
+    /// Whether it is more than one convex outline: its outline is concave or has too many corners, or it has loads.
+    pub fn has_parts(&self) -> bool {
+        !self.loads.is_empty() || self.footprint.as_ref().is_some_and(|footprint| footprint.parts().nth(1).is_some())
+    }
+
     /// The outlines on all stretches of the path, one after the other.
     pub fn outlines(&self) -> Vec<SpanOutline<'_>> {
         let last = self.path.len().saturating_sub(1);

@@ -1,7 +1,6 @@
 //! An agent as one body that never changes: for what moves one body, and not a list of parts that come and go.
 
 use super::outline::CORNERS;
-use crate::bodies::has_parts;
 use pcr_core::{InvalidInput, Motion, Outline, PathRef, ProfileRef, Vector};
 use pcr_formats::footprint::Footprint;
 use pcr_formats::plane_geometry::{from_segment, hull, turn};
@@ -110,7 +109,7 @@ impl ConvexBody {
 
     /// The convex hull of what an agent is, where that is no disc and more than one convex outline.
     pub(super) fn hull_of(agent: &Agent) -> Result<Option<Footprint>, InvalidInput> {
-        if !has_parts(agent) {
+        if !agent.has_parts() {
             return Ok(None);
         }
         match Self::of_agent(agent)? {

@@ -6,10 +6,10 @@ use super::forbidden_delays::{AgentWithoutDelay, DelaySchedule, ForbiddenDelays}
 use super::plan_context::Planner;
 use super::plan_progress::PlanStage;
 use super::{PriorityRule, UnplannedAgents, failure_reason};
-use crate::bodies;
 use crate::failure::ComputationError;
 use crate::parallel;
 use pcr_core::Motion;
+use pcr_formats::scenario::Agent;
 use std::collections::HashSet;
 
 /// Delays of some agents of a fleet, in the order of the fleet.
@@ -68,7 +68,7 @@ impl StartDelayResult {
         let DelayResult { delays, bound, proved, conflicts, fewest } =
             delays::best(&problem, &known, request.effort, request.leave_out, told);
         let seconds = |delay: &Option<i64>| delay.map(|delay| ticks.seconds(i128::from(delay)));
-        let covered = scenario.agents.iter().any(bodies::has_parts);
+        let covered = scenario.agents.iter().any(Agent::has_parts);
         let found = Self {
             delays: delays.map(|delays| delays.iter().map(seconds).collect()),
             order: Vec::new(),
