@@ -235,6 +235,8 @@ impl<S: HostScalar> Fleet<S> {
             })?;
             fleet.append(match hull {
                 Some(hull) => Self::body(&Agent { footprint: Some(hull), loads: Vec::new(), ..agent.clone() })?,
+                // Of a disc a turn in place sweeps nothing.
+                None if agent.footprint.is_none() => Self::new(&Scenario::new("", vec![agent.clone()]))?,
                 None => Self::body(agent)?,
             });
         }

@@ -11,8 +11,8 @@ use crate::certify::MotionCertificate;
 use crate::check::CheckReport;
 use crate::failure::ComputationError;
 use crate::parallel;
-use pcr_core::{Motion, PlanError as Never, SpeedPlanLimits};
-use pcr_formats::scenario::{Labels, MotionSpec, Scenario};
+use pcr_core::{Curve, Motion, PlanError as Never, SpeedPlanLimits};
+use pcr_formats::scenario::{Labels, MotionSpec, Scenario, TURN};
 use pcr_formats::warning::WarningCode;
 
 /// Costs that differ by less are printed alike \[s\].
@@ -252,11 +252,88 @@ impl<'m> Planner<'_, 'm> {
             let phases = motion.profile().phases();
             if phases != given.profile().phases() {
                 let v0 = phases.first().map_or(0.0, |first| first.speed()[0]);
-                let pieces = phases.iter().map(|phase| (phase.time().length(), phase.acceleration()));
-                let pieces = pieces.filter(|(duration, _)| *duration > ROUNDED);
+                let pieces = scenario_pieces(motion).into_iter().filter(|(duration, _)| *duration > ROUNDED);
                 agent.motion = MotionSpec::Profile { v0, pieces: pieces.collect() };
             }
         }
         solved
+    }
+}
+
+/// Durations and accelerations of a motion on the path of the scenario, on which turns in place have almost no length. A planned motion
+/// is nowhere faster than that of the file, so it stands before and after such a turn, or passes it in next to no time.
+fn scenario_pieces(motion: &Motion<'_, f64>) -> Vec<(f64, f64)> {
+    let turns = motion.path().segments().iter().filter_map(|segment| match segment.curve() {
+        Curve::Pivot { lever, .. } => Some((segment.from(), segment.from() + segment.length(), lever)),
+        _ => None,
+    });
+    let turns: Vec<(f64, f64, f64)> = turns.collect();
+    let mut pieces = Vec::new();
+    for phase in motion.profile().phases() {
+        let (mut rest, acceleration) = (phase.time().length(), phase.acceleration());
+        let ([mut speed, _], mut at) = (phase.speed(), phase.length().lo);
+        let ends = turns.iter().flat_map(|&(from, to, _)| [from, to]);
+        // Ends of phases are at ends of turns but for rounding.
+        let lengths = phase.length();
+        let near = ROUNDED * (1.0 + lengths.hi);
+        let ends = ends.filter(|end| lengths.lo + near < *end && *end < lengths.hi - near).chain([lengths.hi]);
+        for end in ends {
+            let after = (speed * speed + 2.0 * acceleration * (end - at)).max(0.0).sqrt();
+            let time = if end >= lengths.hi { rest } else { (2.0 * (end - at) / (speed + after)).min(rest) };
+            let middle = 0.5 * (at + end);
+            match turns.iter().find(|(from, to, _)| (*from..=*to).contains(&middle)) {
+                None => pieces.push((time, acceleration)),
+                Some((.., lever)) if *lever >= 1.0 => pieces.push((time, acceleration * TURN / lever)),
+                // It is passed without a stop.
+                Some(_) => {}
+            }
+            (rest, speed, at) = (rest - time, after, end);
+        }
+    }
+    pieces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fleet::Fleet;
+
+    /// What is written of a motion with a turn, which it waits before, in and after, is read as the same motion.
+    #[test]
+    fn motions_with_turns_are_written_as_they_are_read() {
+        let corner = |[ahead, left]: [f64; 2]| serde_json::json!({ "ahead": ahead, "left": left });
+        let polygon = [[-0.6, -0.4], [0.6, -0.4], [0.6, 0.4], [-0.6, 0.4]].map(corner);
+        let piece = |duration: f64, accel: f64| serde_json::json!({ "duration": duration, "accel": accel });
+        let turn = 1e-9 * std::f64::consts::FRAC_PI_2;
+        let pieces = [
+            piece(2.0, 0.5),
+            piece(2.0, -0.5),
+            piece(3.0, 0.0),
+            piece(1.0, 0.5 * turn),
+            piece(1.0, -0.5 * turn),
+            piece(0.7, 0.0),
+            piece(1.0, 0.5 * turn),
+            piece(1.0, -0.5 * turn),
+            piece(0.3, 0.0),
+            piece(2.0, 0.5),
+            piece(2.0, -0.5),
+        ];
+        let line = serde_json::json!({ "kind": "line", "length": 2.0 });
+        let path = serde_json::json!([line, { "kind": "turn", "sweep": std::f64::consts::FRAC_PI_2 }, line]);
+        let agent = serde_json::json!({ "id": 1, "footprint": { "polygon": polygon }, "path": path,
+            "start": { "x": 0.0, "y": 0.0, "heading": 0.0 }, "profile": { "v0": 0.0, "pieces": pieces } });
+        let mut scenario = Scenario::from_value(&serde_json::json!({ "agents": [agent] })).expect("a scenario");
+        let fleet = Fleet::<f64>::of_bodies(&scenario).expect("it fits");
+        let motions = fleet.motions();
+        assert!(motions[0].path().segments().iter().any(|segment| matches!(segment.curve(), Curve::Pivot { .. })));
+        scenario.agents[0].motion = MotionSpec::Profile { v0: 0.0, pieces: scenario_pieces(&motions[0]) };
+        let read = Scenario::from_json(&scenario.to_json()).expect("what was written");
+        let again = Fleet::<f64>::of_bodies(&read).expect("it fits");
+        let again = again.motions();
+        for step in 0..=1_600 {
+            let time = f64::from(step) / 100.0;
+            let apart = motions[0].length_at(time) - again[0].length_at(time);
+            assert!(apart.abs() < 1e-6, "{time}: {apart}");
+        }
     }
 }
