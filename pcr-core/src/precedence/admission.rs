@@ -265,7 +265,7 @@ where
         mut prefer: impl FnMut(&RegionRef<'_, S>) -> PassingState,
     ) -> Result<usize, AdmissionError> {
         let mut refused = None;
-        for (count, &motion) in (0_usize..).zip(core::iter::once(&mission.motion).chain(shorter)) {
+        for (count, &motion) in (0..=shorter.len()).zip(core::iter::once(&mission.motion).chain(shorter)) {
             let part = PathProposal { motion, ..mission };
             match self.admit(fleet, progress, part, tolerances, reaches, &mut prefer) {
                 Ok(()) => return Ok(count),
