@@ -3,7 +3,7 @@
 mod convex_parts;
 mod simple_polygon;
 
-use crate::plane_geometry::{from_segment, hull};
+use crate::plane_geometry::{drop_needless, from_segment, hull};
 use convex_parts::convex_parts;
 use serde::Serialize;
 use serde::ser::{SerializeStruct, Serializer};
@@ -58,13 +58,6 @@ impl Footprint {
         self.parts.iter().map(part)
     }
 
-    /// Returns the convex hull.
-    pub fn convex_hull(&self) -> Self {
-        let corners = hull(self.polygon.clone());
-        let parts = convex_parts(&corners).unwrap_or_else(|| vec![corners.clone()]);
-        Self { polygon: corners, growth: self.growth, parts }
-    }
-
     /// Returns the same outline, larger by a distance from 0 all around \[m\].
     #[must_use]
     pub fn inflated(&self, by: f64) -> Self {
@@ -105,13 +98,7 @@ impl Footprint {
         if self.polygon.iter().any(|&corner| depth(&corners, corner) > rounding(&corners)) {
             return None;
         }
-        while corners.len() > 3 {
-            let count = corners.len();
-            let off = |k: usize| from_segment(corners[k], [corners[(k + count - 1) % count], corners[(k + 1) % count]]);
-            let least = (0..count).min_by(|&a, &b| off(a).total_cmp(&off(b))).filter(|&k| off(k) <= near);
-            let Some(needless) = least else { break };
-            corners.remove(needless);
-        }
+        drop_needless(&mut corners, near);
         Some(corners)
     }
 
@@ -255,15 +242,6 @@ mod tests {
                 check(&footprint.backward());
             }
         }
-    }
-
-    #[test]
-    fn the_hull_of_a_fork_is_a_rectangle() {
-        let fork =
-            vec![[0.0, -0.5], [1.5, -0.5], [1.5, -0.3], [0.3, -0.3], [0.3, 0.3], [1.5, 0.3], [1.5, 0.5], [0.0, 0.5]];
-        let hull = Footprint::new(fork).unwrap().inflated(0.1).convex_hull();
-        assert_eq!(hull.polygon(), [[0.0, -0.5], [1.5, -0.5], [1.5, 0.5], [0.0, 0.5]]);
-        assert_eq!(hull.growth(), 0.1);
     }
 
     #[test]

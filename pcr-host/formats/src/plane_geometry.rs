@@ -54,6 +54,18 @@ pub fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     whole
 }
 
+/// Leaves out the corners of a convex polygon that are no farther than `near` \[m\] from the line between their neighbours, one after the
+/// other, as long as there are more than three.
+pub fn drop_needless(corners: &mut Vec<[f64; 2]>, near: f64) {
+    while corners.len() > 3 {
+        let count = corners.len();
+        let off = |k: usize| from_segment(corners[k], [corners[(k + count - 1) % count], corners[(k + 1) % count]]);
+        let least = (0..count).min_by(|&a, &b| off(a).total_cmp(&off(b))).filter(|&k| off(k) <= near);
+        let Some(needless) = least else { break };
+        corners.remove(needless);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -37,7 +37,7 @@ pub struct CertifyReport {
     pub verdict: Option<&'static str>,
     /// Number of discs.
     pub discs: usize,
-    /// Number of outlines that were proved as they are, and not as covers.
+    /// Number of outlines that were proved.
     #[serde(skip_serializing_if = "is_zero")]
     pub outlines: usize,
     /// Number of pairs of discs and outlines of different agents, also those far apart: the verdict is about these.
@@ -214,7 +214,7 @@ impl<T: DeserializeOwned + Into<CertificateTable>> RegionsAnswer<T> {
         }
         let lists = [("regions", &regions), ("margin_regions", &margin_regions)];
         let is_told = lists.iter().any(|(_, list)| list.is_some());
-        let asked = RegionScope { agent, covers: &told };
+        let asked = RegionScope { agent, bodies: &told };
         for (place, (name, list)) in lists.into_iter().enumerate() {
             match (list, paths.get(place)) {
                 (Some(list), Some(table)) => reported::compare(name, list, table, asked)?,

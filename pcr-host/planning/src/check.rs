@@ -55,7 +55,7 @@ pub struct ConflictEntry {
     pub j: u64,
     /// Begin and end \[s\].
     pub t: [f64; 2],
-    /// Largest overlap: the length of the least translation that separates the two, or of two of their discs \[m\].
+    /// Largest overlap: the length of the least translation that separates the two, or of two of their convex parts \[m\].
     pub depth: f64,
     /// Lengths along the path of `i` meanwhile \[m\].
     pub l_i: [f64; 2],
@@ -81,7 +81,7 @@ pub struct ClosestApproachEntry {
     pub j: u64,
     /// First time of the closest approach \[s\].
     pub t: f64,
-    /// Distance of the reference points, for covers that of the centres of the nearest discs \[m\].
+    /// Distance of the reference points \[m\].
     pub separation: f64,
     /// Distance of the outlines, below 0 that of the least translation that separates them \[m\].
     pub clearance: f64,
@@ -128,7 +128,7 @@ impl CheckReport {
         Ok(false)
     }
 
-    /// Overlaps of margins: the conflicts of discs enlarged by their margins.
+    /// Overlaps of margins: the conflicts of bodies enlarged by their margins.
     ///
     /// # Errors
     /// As [`CheckReport::compute`].
@@ -212,8 +212,8 @@ impl CheckReport {
     }
 }
 
-/// A disc of an agent, and its motion.
-type DiscMotion<'a, S> = (&'a Body, &'a Motion<'a, S>);
+/// A body of an agent, and its motion.
+type BodyMotion<'a, S> = (&'a Body, &'a Motion<'a, S>);
 
 /// Number of agents between two reports of progress.
 const STRETCH: usize = 1024;
@@ -222,11 +222,11 @@ const STRETCH: usize = 1024;
 struct PairFinder<'a, S: HostScalar> {
     /// Numbers of the agents.
     ids: Vec<u64>,
-    /// The discs of all agents, one agent after the other.
-    bodies: Vec<DiscMotion<'a, S>>,
-    /// For each agent the index of its first disc, and the total number of discs.
+    /// The bodies of all agents, one agent after the other.
+    bodies: Vec<BodyMotion<'a, S>>,
+    /// For each agent the index of its first body, and the total number of bodies.
     begins: Vec<usize>,
-    /// For each disc the rank of its agent.
+    /// For each body the rank of its agent.
     ranks: Vec<usize>,
     grid: BoxGrid,
     /// From the first start to the last arrival \[s\].
@@ -234,24 +234,24 @@ struct PairFinder<'a, S: HostScalar> {
 }
 
 impl<'a, S: HostScalar> PairFinder<'a, S> {
-    fn new(scenario: &Scenario, discs: &'a [Body], motions: &'a [Motion<'a, S>]) -> Self {
+    fn new(scenario: &Scenario, bodies: &'a [Body], motions: &'a [Motion<'a, S>]) -> Self {
         let time = Motion::span(motions);
         let order = by_number(scenario);
         let ids = order.iter().map(|&agent| scenario.agents[agent].id).collect();
         let mut rank_of = vec![0; order.len()];
         order.iter().enumerate().for_each(|(rank, &agent)| rank_of[agent] = rank);
-        let ranks: Vec<usize> = discs.iter().map(|disc| rank_of[disc.agent]).collect();
+        let ranks: Vec<usize> = bodies.iter().map(|body| rank_of[body.agent]).collect();
         let places = by_rank(&ranks);
         let mut begins = vec![0; order.len() + 1];
         ranks.iter().for_each(|rank| begins[rank + 1] += 1);
         (1..begins.len()).for_each(|rank| begins[rank] += begins[rank - 1]);
-        let bodies = places.iter().map(|&disc| (&discs[disc], &motions[disc])).collect();
+        let bodies = places.iter().map(|&body| (&bodies[body], &motions[body])).collect();
         let grid = BoxGrid::new(motions.iter().map(area).collect());
         Self { ids, bodies, begins, ranks, grid, time }
     }
 
-    /// The number of an agent, and its discs.
-    fn agent(&self, rank: usize) -> (u64, &[DiscMotion<'a, S>]) {
+    /// The number of an agent, and its bodies.
+    fn agent(&self, rank: usize) -> (u64, &[BodyMotion<'a, S>]) {
         (self.ids[rank], &self.bodies[self.begins[rank]..self.begins[rank + 1]])
     }
 
@@ -260,7 +260,7 @@ impl<'a, S: HostScalar> PairFinder<'a, S> {
         let (mut near, mut after) = (Vec::new(), Vec::new());
         for (_, motion) in self.agent(agent).1 {
             self.grid.meeting(&area(motion), &mut near);
-            after.extend(near.iter().map(|&disc| self.ranks[disc as usize]));
+            after.extend(near.iter().map(|&body| self.ranks[body as usize]));
         }
         after.retain(|&other| other > agent);
         after.sort_unstable();
@@ -297,14 +297,14 @@ fn by_number(scenario: &Scenario) -> Vec<usize> {
     order
 }
 
-/// The discs in the order of the ranks of their agents.
+/// The bodies in the order of the ranks of their agents.
 fn by_rank(ranks: &[usize]) -> Vec<usize> {
     let mut places: Vec<usize> = (0..ranks.len()).collect();
-    places.sort_by_key(|&disc| ranks[disc]);
+    places.sort_by_key(|&body| ranks[body]);
     places
 }
 
-/// The area outside of which a disc is in no contact.
+/// The area outside of which a body is in no contact.
 fn area<S: HostScalar>(motion: &Motion<'_, S>) -> [f64; 4] {
     let reach = (motion.radius() + Encounter::new(motion, motion).tolerance()).to_f64();
     expanded_box(motion, reach)
@@ -312,15 +312,15 @@ fn area<S: HostScalar>(motion: &Motion<'_, S>) -> [f64; 4] {
 
 /// The conflicts of two agents, and their closest approach if requested.
 fn encounters<S: HostScalar>(
-    (i, first): (u64, &[DiscMotion<'_, S>]),
-    (j, second): (u64, &[DiscMotion<'_, S>]),
+    (i, first): (u64, &[BodyMotion<'_, S>]),
+    (j, second): (u64, &[BodyMotion<'_, S>]),
     time: Interval<S>,
     closest: bool,
 ) -> (Vec<ConflictEntry>, Option<ClosestApproachEntry>) {
     let mut found: Vec<ConflictEntry> = Vec::new();
     let mut closest_of: Option<ClosestApproachEntry> = None;
     for (own, other) in first.iter().flat_map(|own| second.iter().map(move |other| (own, other))) {
-        let [own_time, their_time] = [own, other].map(|(disc, motion)| disc.time(motion, time));
+        let [own_time, their_time] = [own, other].map(|(body, motion)| body.time(motion, time));
         let time = Interval { lo: own_time.lo.max(their_time.lo), hi: own_time.hi.min(their_time.hi) };
         if time.lo > time.hi {
             continue;
@@ -365,7 +365,7 @@ fn separation<S: HostScalar>(motions: [&Motion<'_, S>; 2], approach: &ClosestApp
 /// Times that differ by less are equal, for rounding \[s\].
 const NEAR: f64 = 1e-9;
 
-/// The conflicts of two agents from those of their discs; successive contacts are joined.
+/// The conflicts of two agents from those of their bodies; successive contacts are joined.
 fn joined(mut conflicts: Vec<ConflictEntry>) -> Vec<ConflictEntry> {
     conflicts.sort_by(|a, b| a.t[0].total_cmp(&b.t[0]));
     let hull = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];

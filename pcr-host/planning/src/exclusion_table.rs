@@ -1,10 +1,10 @@
 //! The table of locks for fleet control: which edges of a layout must not be used at the same time, and on which
 //! lengths.
 //!
-//! Let two vehicles be anywhere on two edges. The lengths (l₁, l₂) at which their discs overlap are the collision
+//! Let two vehicles be anywhere on two edges. The lengths (l₁, l₂) at which they overlap are the collision
 //! regions of the two edges in coordination space, which the kernels of the library compute, whatever the motions. The
 //! ranges of a connected region are the lengths on which one edge is blocked while the other is used. They contain the
-//! exact ones, including the deviation of arcs from the curves of the file. A footprint is the union of its discs in
+//! exact ones, including the deviation of arcs from the curves of the file. An outline sweeps what it is in
 //! every pose that the vehicle has on an edge, including its turns at both ends. Ranges that overlap are joined, so the
 //! locks of two edges are disjoint. A vehicle that stops or turns at a node is at the end of an edge, so nodes are part
 //! of their edges; locks of nodes alone can be requested, too.

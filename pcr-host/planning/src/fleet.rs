@@ -227,11 +227,11 @@ impl<S: HostScalar> Fleet<S> {
     pub fn of_bodies(scenario: &Scenario) -> Result<Self, FormatRangeError> {
         let mut fleet = Self { agents: Vec::with_capacity(scenario.agents.len()) };
         for agent in &scenario.agents {
-            let hull = ConvexBody::hull_of(agent).map_err(|reason| FormatRangeError {
+            let hull = ConvexBody::hull_of(agent).map_err(|problem| FormatRangeError {
                 agent: agent.display_name(),
                 part: None,
                 format: S::NAME,
-                problem: derived::<S>(reason),
+                problem: format!("convex hull of its outlines: {problem}"),
             })?;
             fleet.append(match hull {
                 Some(hull) => Self::body(&Agent { footprint: Some(hull), loads: Vec::new(), ..agent.clone() })?,

@@ -36,17 +36,17 @@ struct ReportedPiece {
 }
 
 /// Two bodies with one number are parts of one agent: as many as are told of it.
-pub(super) fn bodies(table: &RawTable, covers: &[ReportedBodies]) -> Result<(), String> {
+pub(super) fn bodies(table: &RawTable, reported: &[ReportedBodies]) -> Result<(), String> {
     let mut told: HashMap<u64, usize> = HashMap::new();
-    covers.iter().for_each(|cover| *told.entry(cover.id).or_default() += cover.parts.len());
+    reported.iter().for_each(|bodies| *told.entry(bodies.id).or_default() += bodies.parts.len());
     let counts = counts(table);
-    for (&id, &discs) in &counts {
+    for (&id, &count) in &counts {
         match told.get(&id) {
-            None if discs > 1 => {
-                return Err(format!("{discs} bodies have the number {id}, and bodies tell of no agent of this number"));
+            None if count > 1 => {
+                return Err(format!("{count} bodies have the number {id}, and bodies tell of no agent of this number"));
             }
-            Some(&there) if there != discs => {
-                return Err(format!("{discs} bodies have the number {id}, and bodies tell of {there}"));
+            Some(&there) if there != count => {
+                return Err(format!("{count} bodies have the number {id}, and bodies tell of {there}"));
             }
             _ => {}
         }
@@ -123,7 +123,7 @@ type RegionsByPair<R> = BTreeMap<[u64; 2], Vec<(usize, R)>>;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RegionScope<'a> {
     pub(super) agent: Option<u64>,
-    pub(super) covers: &'a [ReportedBodies],
+    pub(super) bodies: &'a [ReportedBodies],
 }
 
 /// Compares the regions in the list of this name with a table.
@@ -154,7 +154,7 @@ pub(super) fn compare(
     for (place, region) in told.iter().enumerate() {
         there.entry([region.i, region.j]).or_default().push((place, region));
     }
-    let outlined: HashSet<u64> = asked.covers.iter().map(|cover| cover.id).collect();
+    let outlined: HashSet<u64> = asked.bodies.iter().map(|bodies| bodies.id).collect();
     let pairs: BTreeSet<[u64; 2]> = held.keys().chain(there.keys()).copied().collect();
     for [i, j] in pairs {
         let mut own = there.remove(&[i, j]).unwrap_or_default();

@@ -23,10 +23,10 @@ pub struct TouchingAreas {
     pub lengths: LengthRanges,
 }
 
-/// Number of pieces of two discs for which there is room at first; it grows.
+/// Number of pieces of two bodies for which there is room at first; it grows.
 pub(super) const PIECES: usize = 16;
 
-/// Reports progress: examined pairs of discs, and all pairs.
+/// Reports progress: examined pairs of bodies, and all pairs.
 pub type SyncProgressFn<'t> = &'t (dyn Fn(usize, usize) + Sync);
 
 /// A pass over all pairs.
@@ -34,7 +34,7 @@ pub(super) struct AreaPairSearch<'a> {
     sweep: &'a SweptLayout,
     motions: Vec<Motion<'a, f64>>,
     grid: BoxGrid,
-    /// For each disc the number of discs near it.
+    /// For each body the number of bodies near it.
     pub(super) counts: Vec<u32>,
 }
 
@@ -52,8 +52,8 @@ impl<'a> AreaPairSearch<'a> {
         take: impl FnMut(T) -> Result<(), E>,
     ) -> Result<(), E> {
         let work = |track: usize| {
-            let discs = self.sweep.tracks[track].discs.clone();
-            1 + self.counts[discs].iter().map(|&count| count as usize).sum::<usize>()
+            let bodies = self.sweep.tracks[track].bodies.clone();
+            1 + self.counts[bodies].iter().map(|&count| count as usize).sum::<usize>()
         };
         in_stretches(self.sweep.tracks.len(), work, told, row, take)
     }
@@ -64,20 +64,20 @@ impl<'a> AreaPairSearch<'a> {
         let sweep = self.sweep;
         let own = &sweep.tracks[track];
         let (mut near, mut pairs) = (Vec::new(), Vec::new());
-        for disc in own.discs.clone() {
+        for body in own.bodies.clone() {
             if both {
-                self.grid.around(disc, &mut near)
+                self.grid.around(body, &mut near)
             } else {
-                self.grid.after(disc, &mut near)
+                self.grid.after(body, &mut near)
             }
-            let others = near.iter().map(|&other| (sweep.track_of(other as usize), [disc, other as usize]));
+            let others = near.iter().map(|&other| (sweep.track_of(other as usize), [body, other as usize]));
             pairs.extend(others.filter(|&(other, _)| other != track && own.shares_a_level(&sweep.tracks[other])));
         }
         if own.members.len() > 1 {
-            pairs.extend(own.discs.clone().map(|disc| (track, [disc, disc])));
+            pairs.extend(own.bodies.clone().map(|body| (track, [body, body])));
         }
         pairs.sort_unstable();
-        sweep.grouped(&pairs, |disc| self.motions.get(disc).copied())
+        sweep.grouped(&pairs, |body| self.motions.get(body).copied())
     }
 }
 
@@ -119,7 +119,7 @@ impl SweptLayout {
     ) -> Result<(), E> {
         let pass = AreaPairSearch::new(self);
         let most =
-            |track: &SharedCurve| pass.counts[track.discs.clone()].iter().map(|&count| count as usize).sum::<usize>();
+            |track: &SharedCurve| pass.counts[track.bodies.clone()].iter().map(|&count| count as usize).sum::<usize>();
         let expected: usize = self.tracks.iter().map(|track| most(track) * track.members.len().pow(2) / 2).sum();
         let find = |track: usize| Ok(self.found(track, &pass.row(track, false)?));
         if expected > HELD {
@@ -171,7 +171,7 @@ impl SweptLayout {
         all
     }
 
-    /// The extents of pairs of discs, by the other track.
+    /// The extents of pairs of bodies, by the other track.
     pub(super) fn grouped<'m>(
         &self,
         pairs: &[(usize, [usize; 2])],
@@ -180,17 +180,17 @@ impl SweptLayout {
         let (mut row, mut pieces) = (Vec::new(), vec![Piece::EMPTY; PIECES]);
         for group in pairs.chunk_by(|a, b| a.0 == b.0) {
             let Some(&(other, _)) = group.first() else { continue };
-            let extents = self.extents(group.iter().map(|&(_, discs)| discs), motion, &mut pieces)?;
+            let extents = self.extents(group.iter().map(|&(_, bodies)| bodies), motion, &mut pieces)?;
             row.extend(extents.into_iter().map(|extents| (other, extents)));
         }
         Ok(row)
     }
 
-    pub(super) fn track_of(&self, disc: usize) -> usize {
-        self.discs.get(disc).and_then(|disc| self.rides.get(disc.agent)).map_or(usize::MAX, |ride| ride.1 as usize)
+    pub(super) fn track_of(&self, body: usize) -> usize {
+        self.bodies.get(body).and_then(|body| self.rides.get(body.agent)).map_or(usize::MAX, |ride| ride.1 as usize)
     }
 
-    /// The extents of the regions of some pairs of discs of two tracks, of which those that overlap are one. The room for pieces grows.
+    /// The extents of the regions of some pairs of bodies of two tracks, of which those that overlap are one. The room for pieces grows.
     fn extents<'m>(
         &self,
         pairs: impl Iterator<Item = [usize; 2]>,
@@ -202,9 +202,9 @@ impl SweptLayout {
             let swap = other < own;
             let [first, second] = if swap { [other, own] } else { [own, other] };
             let (Some(a), Some(b)) = (motion(first), motion(second)) else { continue };
-            let on = |disc: usize, range: Interval<f64>| {
-                let disc = &self.discs[disc];
-                self.rides[disc.agent].0.on_edge(disc.on_agent([range.lo, range.hi]))
+            let on = |body: usize, range: Interval<f64>| {
+                let body = &self.bodies[body];
+                self.rides[body.agent].0.on_edge(body.on_agent([range.lo, range.hi]))
             };
             while let Err(full) = overlaps(&a, &b, pieces, |region| {
                 let lengths = [on(first, region.length()), on(second, region.other_length())];
@@ -214,7 +214,7 @@ impl SweptLayout {
                 memory_budget::ask(bytes, || "a pair of edges".into())
                     .map_err(|large| ImportError::new(large.to_string()))?;
                 if full != CapacityError::Pieces {
-                    let names = [own, other].map(|disc| self.name(disc));
+                    let names = [own, other].map(|body| self.name(body));
                     let problem = "more than 32767 pieces (pairs of segments within reach of one another)";
                     return Err(ImportError::new(format!("{} and {}: {problem}", names[0], names[1])));
                 }
@@ -224,9 +224,9 @@ impl SweptLayout {
         Ok(if extents.len() > 1 { joined(extents) } else { extents })
     }
 
-    /// Id of the edge or node of a disc, for messages.
-    fn name(&self, disc: usize) -> String {
-        let member = self.tracks.get(self.track_of(disc)).and_then(|track| track.members.first());
+    /// Id of the edge or node of a body, for messages.
+    fn name(&self, body: usize) -> String {
+        let member = self.tracks.get(self.track_of(body)).and_then(|track| track.members.first());
         member.and_then(|&(place, _)| self.ids.get(place)).map_or_else(String::new, ElementId::to_string)
     }
 }

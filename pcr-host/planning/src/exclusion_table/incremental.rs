@@ -23,7 +23,7 @@ pub struct ExclusionChange {
     pub edges: Vec<ElementId>,
     /// The present locks of these edges, each once.
     pub locks: Vec<EdgeExclusion>,
-    /// Number of pairs of discs that were near enough to be computed.
+    /// Number of pairs of bodies that were near enough to be computed.
     pub looked: usize,
 }
 

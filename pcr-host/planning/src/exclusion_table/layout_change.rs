@@ -41,7 +41,7 @@ impl SweptLayout {
         own.members.retain(|&(place, _)| self.ids.get(place).is_some_and(|there| there != id));
         if own.members.is_empty() {
             let [nowhere, never] = [f64::INFINITY, f64::NEG_INFINITY];
-            self.areas[own.discs.clone()].fill([nowhere, nowhere, never, never]);
+            self.areas[own.bodies.clone()].fill([nowhere, nowhere, never, never]);
         }
     }
 
@@ -51,20 +51,20 @@ impl SweptLayout {
         members.filter_map(|&(place, turned)| Some((self.ids.get(place)?, turned)))
     }
 
-    /// The tracks that touch a track, with the lengths of both, and the number of pairs of discs that were examined.
+    /// The tracks that touch a track, with the lengths of both, and the number of pairs of bodies that were examined.
     pub(super) fn row_of(&self, track: usize) -> Result<(Vec<(usize, LengthRanges)>, usize), ImportError> {
         let own = &self.tracks[track];
         let meet = |a: &[f64; 4], b: &[f64; 4]| a[0] <= b[2] && b[0] <= a[2] && a[1] <= b[3] && b[1] <= a[3];
         let mut pairs = Vec::new();
-        for disc in own.discs.clone() {
-            let near = self.areas.iter().enumerate().filter(|(_, other)| meet(&self.areas[disc], other));
-            let near = near.map(|(other, _)| (self.track_of(other), [disc, other]));
+        for body in own.bodies.clone() {
+            let near = self.areas.iter().enumerate().filter(|(_, other)| meet(&self.areas[body], other));
+            let near = near.map(|(other, _)| (self.track_of(other), [body, other]));
             pairs.extend(near.filter(|&(other, _)| other != track && own.shares_a_level(&self.tracks[other])));
         }
         if own.members.len() > 1 {
-            pairs.extend(own.discs.clone().map(|disc| (track, [disc, disc])));
+            pairs.extend(own.bodies.clone().map(|body| (track, [body, body])));
         }
         pairs.sort_unstable();
-        Ok((self.grouped(&pairs, |disc| self.fleet.motion(disc))?, pairs.len()))
+        Ok((self.grouped(&pairs, |body| self.fleet.motion(body))?, pairs.len()))
     }
 }

@@ -14,7 +14,7 @@ use pcr_formats::scenario::{Agent, PathSegment, Scenario, label};
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Number of tracks, pairs of discs or locks that are computed on all cores before they are passed on.
+/// Number of tracks, pairs of bodies or locks that are computed on all cores before they are passed on.
 pub(super) const STRETCH: usize = 1 << 16;
 
 /// The swept areas of vehicles on a layout.
@@ -27,8 +27,8 @@ pub struct SweptLayout {
     /// For each ride the meaning of lengths on its path, and its track.
     pub(super) rides: Vec<(LengthMapping, u32)>,
     pub(super) fleet: Fleet<f64>,
-    pub(super) discs: Vec<Body>,
-    /// For each disc the box of its swept area.
+    pub(super) bodies: Vec<Body>,
+    /// For each body the box of its swept area.
     pub(super) areas: Vec<[f64; 4]>,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct SharedCurve {
     /// \[m\]
     pub(super) length: f64,
     levels: [usize; 2],
-    pub(super) discs: Range<usize>,
+    pub(super) bodies: Range<usize>,
 }
 
 impl SharedCurve {
@@ -54,7 +54,7 @@ impl SharedCurve {
     }
 }
 
-/// A track before its discs are made.
+/// A track before its bodies are made.
 pub(super) struct CurveTraversals {
     pub(super) members: Vec<(usize, bool)>,
     pub(super) length: f64,
@@ -102,7 +102,7 @@ impl SweptLayout {
             tracks: Vec::with_capacity(plans.len()),
             rides: Vec::new(),
             fleet: Fleet::new(&Scenario::default()).map_err(|refused| ImportError::new(refused.to_string()))?,
-            discs: Vec::new(),
+            bodies: Vec::new(),
             areas: Vec::new(),
         };
         for stretch in plans.chunks(STRETCH) {
@@ -120,13 +120,13 @@ impl SweptLayout {
     }
 
     pub(super) fn add(&mut self, plan: CurveTraversals, bodies: BodyFleet<f64>) {
-        let (first, before, track) = (self.rides.len(), self.discs.len(), self.tracks.len() as u32);
+        let (first, before, track) = (self.rides.len(), self.bodies.len(), self.tracks.len() as u32);
         self.rides.extend(plan.rides.into_iter().map(|ride| (ride.lengths, track)));
         self.areas.extend(bodies.fleet.motions().iter().map(area));
         self.fleet.append(bodies.fleet);
-        self.discs.extend(bodies.bodies.into_iter().map(|disc| disc.moved(first)));
+        self.bodies.extend(bodies.bodies.into_iter().map(|body| body.moved(first)));
         let CurveTraversals { members, length, levels, .. } = plan;
-        self.tracks.push(SharedCurve { members, length, levels, discs: before..self.discs.len() });
+        self.tracks.push(SharedCurve { members, length, levels, bodies: before..self.bodies.len() });
     }
 
     /// Names of the edges in their order, then of the nodes in theirs.
@@ -140,7 +140,7 @@ impl SweptLayout {
     }
 }
 
-/// The discs of a track.
+/// The bodies of a track.
 pub(super) fn bodies(plan: &CurveTraversals, ids: &[ElementId]) -> Result<BodyFleet<f64>, ImportError> {
     let name = plan.members.first().and_then(|&(place, _)| ids.get(place)).map(|id| label(&id.to_string()));
     let agents = plan.rides.iter().enumerate().map(|(k, ride)| Agent {

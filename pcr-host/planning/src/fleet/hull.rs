@@ -3,7 +3,7 @@
 use super::outline::CORNERS;
 use pcr_core::{InvalidInput, Motion, Outline, PathRef, ProfileRef, Vector};
 use pcr_formats::footprint::Footprint;
-use pcr_formats::plane_geometry::{from_segment, hull, turn};
+use pcr_formats::plane_geometry::{drop_needless, from_segment, hull, turn};
 use pcr_formats::scenario::Agent;
 use std::f64::consts::PI;
 
@@ -108,13 +108,16 @@ impl ConvexBody {
     }
 
     /// The convex hull of what an agent is, where that is no disc and more than one convex outline.
-    pub(super) fn hull_of(agent: &Agent) -> Result<Option<Footprint>, InvalidInput> {
+    ///
+    /// # Errors
+    /// What is wrong, in words.
+    pub(super) fn hull_of(agent: &Agent) -> Result<Option<Footprint>, String> {
         if !agent.has_parts() {
             return Ok(None);
         }
-        match Self::of_agent(agent)? {
+        match Self::of_agent(agent).map_err(|reason| reason.to_string())? {
             Self::Disc(_) => Ok(None),
-            Self::Outline(hull) => Ok(Footprint::new(hull.corners).ok().map(|it| it.inflated(hull.radius))),
+            Self::Outline(hull) => Footprint::new(hull.corners).map(|it| Some(it.inflated(hull.radius))),
         }
     }
 
@@ -216,13 +219,7 @@ fn outside(corners: &[[f64; 2]], point: [f64; 2]) -> f64 {
 fn fewer(mut corners: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let size = corners.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
     let near = 16.0 * f64::EPSILON * size;
-    while corners.len() > 3 {
-        let count = corners.len();
-        let off = |k: usize| from_segment(corners[k], [corners[(k + count - 1) % count], corners[(k + 1) % count]]);
-        let least = (0..count).min_by(|&a, &b| off(a).total_cmp(&off(b))).filter(|&k| off(k) <= near);
-        let Some(needless) = least else { break };
-        corners.remove(needless);
-    }
+    drop_needless(&mut corners, near);
     while corners.len() > CORNERS {
         let count = corners.len();
         let meeting = |k: usize| {

@@ -47,7 +47,7 @@ pub(super) struct StartDelayResult {
     /// Agents that cannot start in the requested order.
     out: Vec<AgentWithoutDelay>,
     /// Whether agents were planned as several bodies, of which speed plans take the convex hull.
-    pub(super) covered: bool,
+    pub(super) has_parts: bool,
 }
 
 impl StartDelayResult {
@@ -68,7 +68,7 @@ impl StartDelayResult {
         let DelayResult { delays, bound, proved, conflicts, fewest } =
             delays::best(&problem, &known, request.effort, request.leave_out, told);
         let seconds = |delay: &Option<i64>| delay.map(|delay| ticks.seconds(i128::from(delay)));
-        let covered = scenario.agents.iter().any(Agent::has_parts);
+        let has_parts = scenario.agents.iter().any(Agent::has_parts);
         let found = Self {
             delays: delays.map(|delays| delays.iter().map(seconds).collect()),
             order: Vec::new(),
@@ -77,7 +77,7 @@ impl StartDelayResult {
             conflicts,
             fewest,
             out: Vec::new(),
-            covered,
+            has_parts,
         };
         if is_best {
             return Ok(found);
@@ -119,10 +119,10 @@ impl StartDelayResult {
     /// Adds reasons why no speed plan was found. A reason about convex hulls is dropped if there are start delays for
     /// the outlines themselves; with `leave_out` the reasons are for all agents that are left out.
     pub(super) fn added(&self, planner: &Planner<'_, '_>, found: Vec<UnplannedAgents>) -> Vec<UnplannedAgents> {
-        if self.of_all().is_some() || !(self.covered || planner.request.leave_out) {
+        if self.of_all().is_some() || !(self.has_parts || planner.request.leave_out) {
             return found;
         }
-        let mut all = if self.covered { Vec::new() } else { found };
+        let mut all = if self.has_parts { Vec::new() } else { found };
         let sorted = |unsolved: &UnplannedAgents| {
             let mut ids = unsolved.ids.clone();
             ids.sort_unstable();
@@ -141,7 +141,7 @@ impl StartDelayResult {
         let ids = |agents: &[usize]| agents.iter().map(|&agent| planner.id(agent)).collect::<Vec<_>>();
         let mut unsolved: Vec<UnplannedAgents> = Vec::new();
         // For convex hulls it would not be a proof: they may have to wait where the outlines need not.
-        let circle = if self.covered { None } else { planner.circle() };
+        let circle = if self.has_parts { None } else { planner.circle() };
         if let Some(circle) = &circle {
             unsolved.push(UnplannedAgents::nowhere(ids(circle), CIRCULAR_WAIT));
         }

@@ -221,7 +221,7 @@ fn margins_are_around_the_outline() {
 }
 
 #[test]
-fn what_cannot_be_computed_as_it_is_has_a_cover() {
+fn agents_of_several_bodies_and_with_turns_are_listed() {
     let truck = Outline::polygon(&TRUCK);
     let concave = [[-0.6, -0.4], [0.6, -0.4], [0.2, 0.0], [0.6, 0.4], [-0.6, 0.4]];
     let round: Vec<Point> = (0..17).map(|k| TAU * f64::from(k) / 17.0).map(|at| [at.cos(), at.sin()]).collect();
@@ -239,8 +239,8 @@ fn what_cannot_be_computed_as_it_is_has_a_cover() {
         agent(8, &Outline::polygon(&HEXAGON), [1.0, -3.0, 0.5 * PI], &[]),
     ];
     let answer = RegionsReport::compute::<f64>(&read(&agents), RegionOptions::default()).unwrap();
-    let covered: Vec<u64> = answer.bodies.iter().map(|bodies| bodies.id).collect();
-    assert_eq!(covered, [1, 2, 4, 4, 5]);
+    let listed: Vec<u64> = answer.bodies.iter().map(|bodies| bodies.id).collect();
+    assert_eq!(listed, [1, 2, 4, 4, 5]);
     let pair = |i: u64, j: u64| answer.regions.iter().find(|region| [region.i, region.j] == [i, j]);
     assert!([1, 2, 4, 5].iter().all(|&lane| pair(lane, 6).is_some() && pair(6, lane).is_some()));
     assert!([1, 2, 4].iter().all(|&lane| pair(lane, 7).is_some()));
@@ -249,8 +249,8 @@ fn what_cannot_be_computed_as_it_is_has_a_cover() {
     // Also with a certificate.
     let certified = RegionOptions { certificate: true, ..RegionOptions::default() };
     let answer = RegionsReport::compute::<f64>(&read(&agents), certified).unwrap();
-    let covered: Vec<u64> = answer.bodies.iter().map(|bodies| bodies.id).collect();
-    assert_eq!(covered, [1, 2, 4, 4, 5]);
+    let listed: Vec<u64> = answer.bodies.iter().map(|bodies| bodies.id).collect();
+    assert_eq!(listed, [1, 2, 4, 4, 5]);
 }
 
 #[test]
