@@ -2,20 +2,27 @@
 # Builds the library for C and puts it where compilers find it:
 #   install.sh PREFIX            for this machine
 #   install.sh PREFIX TARGET     for a target, such as thumbv7em-none-eabihf
+#   install.sh PREFIX "" discs   for discs only, without the code of outlines; with a target, too
 # PREFIX/include has the headers, PREFIX/lib the static library, with files for pkg-config and CMake.
 set -euo pipefail
-[ $# -ge 1 ] || { sed -n '2,5s/^# //p' "$0" >&2; exit 2; }
+[ $# -ge 1 ] || { sed -n '2,6s/^# //p' "$0" >&2; exit 2; }
 mkdir -p "$1"
 prefix=$(cd "$1" && pwd)
 target=${2:-}
+features=()
+case ${3:-} in
+  "") ;;
+  discs) features=(--no-default-features) ;;
+  *) echo "install.sh: $3 is neither nothing nor discs" >&2; exit 2 ;;
+esac
 cd "$(dirname "$0")/../.."
 built=${CARGO_TARGET_DIR:-$PWD/target}
 if [ -n "$target" ]; then
-  firmware/cross.sh "$target" build --quiet --locked --profile ffi -p pcr-ffi
+  firmware/cross.sh "$target" build --quiet --locked --profile ffi -p pcr-ffi "${features[@]}"
   built+=/$target
   needs="" libraries=""
 else
-  cargo build --quiet --locked --profile ffi -p pcr-ffi
+  cargo build --quiet --locked --profile ffi -p pcr-ffi "${features[@]}"
   # What a static library of Rust needs on Unix.
   needs="-lpthread -ldl -lm" libraries="pthread;dl;m"
 fi

@@ -277,6 +277,38 @@ where
         })
     }
 
+    /// Makes this table a copy of another one, in its own storage: to move a table to larger storage, or to hand it to another task while
+    /// the next one is computed. O(regions + pieces).
+    ///
+    /// # Errors
+    /// [`CapacityError::Regions`], [`CapacityError::Pieces`] if the storage is smaller than what the other table uses; this table is then unchanged.
+    ///
+    /// ```
+    /// # use pcr_core::{Ecm, EcmEntry, Motion, Path, Piece, Point, Pose, Profile, Radians};
+    /// # let stands = Path::<f64, 1>::starting_at(Pose { position: Point::new(0.0, 0.0), heading: Radians(0.0) })?;
+    /// # let profile = Profile::<f64, 1>::standing();
+    /// # let fleet = [Motion::new(stands.as_path(), profile.as_profile(), 0.25, 0.0)?; 2];
+    /// let small = Ecm::build([EcmEntry::EMPTY; 1], [Piece::EMPTY; 1], &fleet)?;
+    /// let mut large = Ecm::new([EcmEntry::EMPTY; 8], [Piece::EMPTY; 8]);
+    /// large.copy_from(&small)?;
+    /// assert_eq!(large.row(&fleet, 0)?.count(), 1);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn copy_from<R2, P2>(&mut self, other: &Ecm<S, R2, P2>) -> Result<(), CapacityError>
+    where
+        R2: AsRef<[EcmEntry]>,
+        P2: AsRef<[Piece<S>]>,
+    {
+        let (room, used) = (self.regions.as_mut().iter_mut(), other.entries().iter());
+        if room.len() < used.len() {
+            return Err(CapacityError::Regions);
+        }
+        self.pieces.copy_from(&other.pieces)?;
+        room.zip(used).for_each(|(slot, entry)| *slot = *entry);
+        (self.len, self.fleet, self.only) = (other.len, other.fleet, other.only);
+        Ok(())
+    }
+
     /// Computes the regions of one agent with all others, in the existing storage. The table can then be queried for
     /// that agent only.
     ///

@@ -26,9 +26,8 @@ pub struct Corner<S: Scalar> {
 }
 
 impl<S: Scalar> Corner<S> {
-    /// The reference point as the only corner, that of a disc.
-    pub(crate) const CENTRE: Self =
-        Self { at: Vector { x: S::ZERO, y: S::ZERO }, outward: Direction::X, length: S::ZERO };
+    /// The reference point as the only corner, that of a disc; also to fill storage for corners with.
+    pub const CENTRE: Self = Self { at: Vector { x: S::ZERO, y: S::ZERO }, outward: Direction::X, length: S::ZERO };
 
     /// Returns the place of the corner in the frame of the agent \[m\].
     pub fn at(&self) -> Vector<S> {
@@ -166,6 +165,35 @@ pub struct OutlineRef<'a, S: Scalar> {
 }
 
 impl<'a, S: Scalar> OutlineRef<'a, S> {
+    /// Returns the outline with these corners, taken in their order from an outline that was checked: for a program that keeps the corners of
+    /// many outlines in memory of its own, as [`PathRef::new`](crate::PathRef::new) does for segments.
+    ///
+    /// Cost: the square of the number of corners.
+    ///
+    /// # Errors
+    /// As [`Outline::polygon`]; [`InvalidInput::Disconnected`] if they are not all corners of one outline.
+    ///
+    /// ```
+    /// use pcr_core::{Outline, OutlineRef};
+    /// let truck = Outline::<f64, 4>::rectangle(0.6, 0.6, 0.4, 0.4, 0.0)?;
+    /// let mut kept = truck.as_outline().corners().to_vec();
+    /// assert_eq!(OutlineRef::new(&kept, 0.0)?.reach(), truck.as_outline().reach());
+    /// kept.swap(0, 1);
+    /// assert!(OutlineRef::new(&kept, 0.0).is_err());
+    /// # Ok::<(), pcr_core::InvalidInput>(())
+    /// ```
+    pub fn new(corners: &'a [Corner<S>], radius: S) -> Result<Self, InvalidInput> {
+        if corners.is_empty() {
+            return Ok(Self::disc(error::radius(radius)?));
+        }
+        let checked = Outline::<S, MOST_CORNERS>::polygon(corners.iter().map(|corner| corner.at), radius)?;
+        if checked.corners.as_slice() == corners {
+            Ok(Self { corners, radius, spread: checked.spread })
+        } else {
+            Err(InvalidInput::Disconnected("corner"))
+        }
+    }
+
     /// The outline with these corners, which were checked.
     pub(crate) const fn of(corners: &'a [Corner<S>], radius: S, spread: S) -> Self {
         Self { corners, radius, spread }

@@ -186,6 +186,17 @@ impl<S, P: AsRef<[Piece<S>]>> PieceStore<S, P> {
 }
 
 impl<S: Scalar, P: AsMut<[Piece<S>]>> PieceStore<S, P> {
+    /// Stores the same pieces as another storage, at the same indices; this one is unchanged if they do not fit.
+    pub(crate) fn copy_from<O: AsRef<[Piece<S>]>>(&mut self, other: &PieceStore<S, O>) -> Result<(), CapacityError> {
+        let (room, used) = (self.slots.as_mut().iter_mut(), other.slots().iter().take(other.fresh as usize));
+        if room.len() < used.len() {
+            return Err(CapacityError::Pieces);
+        }
+        room.zip(used).for_each(|(slot, piece)| *slot = *piece);
+        (self.fresh, self.free, self.used, self.pending) = (other.fresh, other.free, other.used, other.pending);
+        Ok(())
+    }
+
     /// Adds a piece to the pending list, with a group of its own.
     pub(crate) fn push(&mut self, piece: Piece<S>) -> Result<u32, CapacityError> {
         let PendingPieces { first, last, groups } = self.pending;

@@ -237,6 +237,17 @@ impl<S: Scalar> Segment<S> {
         self.faced(Direction::at(angle))
     }
 
+    /// Returns this segment for a body whose heading is opposite to the one it has now. It is the first segment after a change of gear, at
+    /// which the direction of travel turns by half a turn ([`Segment::turned`]) and the heading of the body stays. Paths that are built in a
+    /// fixed array by [`Path`](crate::Path) have [`Path::reverse`](crate::Path::reverse) for both.
+    ///
+    /// # Errors
+    /// [`InvalidInput::NeedsOutlines`].
+    pub fn facing_opposite(self) -> Result<Self, InvalidInput> {
+        let facing = self.body();
+        self.faced(Direction { cos: -facing.cos, sin: -facing.sin })
+    }
+
     /// Returns this segment for a body whose heading is at the angle of `facing` to the direction of travel.
     #[cfg(feature = "outlines")]
     pub(crate) fn faced(self, facing: Direction<S>) -> Result<Self, InvalidInput> {

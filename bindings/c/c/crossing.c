@@ -30,10 +30,18 @@ static int conflicts(void) {
 }
 
 int main(void) {
-  const PcrMemory memory = {segments, 4, phases, 6, motions, 2, entries, 4, pieces, 8, NULL, 0, NULL};
+  const PcrMemory memory = {
+      .segments = segments, .segment_count = 4,
+      .phases = phases, .phase_count = 6,
+      .motions = motions, .motion_count = 2,
+      .entries = entries, .entry_count = 4,
+      .pieces = pieces, .piece_count = 8,
+  };
   const PcrAgent agents[] = {
-      {-2.0f, 0.0f, 0.0f, 0.25f, 0.0f, east, 1, 1.0f, 1.0f, NULL, 0},
-      {-1.0f, -2.0f, 0.0f, 0.25f, 0.0f, north, 2, 1.0f, 1.0f, NULL, 0},
+      {.x = -2.0f, .y = 0.0f, .heading = 0.0f, .radius = 0.25f, .start = 0.0f,
+       .legs = east, .leg_count = 1, .speed = 1.0f, .acceleration = 1.0f},
+      {.x = -1.0f, .y = -2.0f, .heading = 0.0f, .radius = 0.25f, .start = 0.0f,
+       .legs = north, .leg_count = 2, .speed = 1.0f, .acceleration = 1.0f},
   };
   if (failed("init", pcr_fleet_init(&fleet, &memory))) return 1;
   for (size_t k = 0; k < 2; k++)

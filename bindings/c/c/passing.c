@@ -40,12 +40,21 @@ static int holds(void) {
 static PcrProgress at(float length) { return (PcrProgress){{length, length}, length}; }
 
 int main(void) {
-  const PcrMemory memory = {segments, 4, phases, 12, motions, 3, entries, 8, pieces, 8, orders, 8, robots};
+  const PcrMemory memory = {
+      .segments = segments, .segment_count = 4,
+      .phases = phases, .phase_count = 12,
+      .motions = motions, .motion_count = 3,
+      .entries = entries, .entry_count = 8,
+      .pieces = pieces, .piece_count = 8,
+      .orders = orders, .order_count = 8, .robots = robots,
+  };
   /* West to east; south to north, 3 s later; and one that stands aside. */
   const PcrAgent agents[] = {
-      {-2.0f, 0.0f, 0.0f, 0.25f, 0.0f, line, 1, 1.0f, 1.0f, NULL, 0},
-      {0.0f, -2.0f, 1.5707963f, 0.25f, 3.0f, line, 1, 1.0f, 1.0f, NULL, 0},
-      {1.0f, 2.0f, -1.5707963f, 0.25f, 0.0f, NULL, 0, 1.0f, 1.0f, NULL, 0},
+      {.x = -2.0f, .y = 0.0f, .heading = 0.0f, .radius = 0.25f, .start = 0.0f,
+       .legs = line, .leg_count = 1, .speed = 1.0f, .acceleration = 1.0f},
+      {.x = 0.0f, .y = -2.0f, .heading = 1.5707963f, .radius = 0.25f, .start = 3.0f,
+       .legs = line, .leg_count = 1, .speed = 1.0f, .acceleration = 1.0f},
+      {.x = 1.0f, .y = 2.0f, .heading = -1.5707963f, .radius = 0.25f, .start = 0.0f, .speed = 1.0f, .acceleration = 1.0f},
   };
   const PcrCheckTolerances tolerances = {0.01f, 0.001f};
   const PcrProgress start = at(0.0f);

@@ -26,11 +26,20 @@ static int hold(void) {
 }
 
 int main(void) {
-  const PcrQ16Memory memory = {segments, 3, phases, 6, motions, 2, entries, 2, pieces, 4, orders, 2, robots};
+  const PcrQ16Memory memory = {
+      .segments = segments, .segment_count = 3,
+      .phases = phases, .phase_count = 6,
+      .motions = motions, .motion_count = 2,
+      .entries = entries, .entry_count = 2,
+      .pieces = pieces, .piece_count = 4,
+      .orders = orders, .order_count = 2, .robots = robots,
+  };
   const int32_t radius = PCR_Q16(0.25), one = PCR_Q16(1.0);
   const PcrQ16Agent agents[] = {
-      {PCR_Q16(-2.0), 0, 0, radius, 0, east, 1, one, one, NULL, 0},
-      {PCR_Q16(-1.0), PCR_Q16(-2.0), PCR_Q16_RADIANS(0.0), radius, 0, north, 2, one, one, NULL, 0},
+      {.x = PCR_Q16(-2.0), .y = 0, .heading = 0, .radius = radius, .start = 0,
+       .legs = east, .leg_count = 1, .speed = one, .acceleration = one},
+      {.x = PCR_Q16(-1.0), .y = PCR_Q16(-2.0), .heading = PCR_Q16_RADIANS(0.0), .radius = radius, .start = 0,
+       .legs = north, .leg_count = 2, .speed = one, .acceleration = one},
   };
   if (pcr_q16_fleet_init(&fleet, &memory) != PCR_STATUS_OK) return 1;
   for (size_t k = 0; k < 2; k++)

@@ -24,7 +24,7 @@ bindings/c/install.sh "$build/host"
 bindings/c/install.sh "$build/target" $target
 flags() { PKG_CONFIG_PATH=$build/$1/lib/pkgconfig pkg-config "${@:2}" pcr; }
 warnings=(-O2 -Wall -Wextra -Wpedantic -Werror)
-for program in crossing resolve passing robot_q16; do
+for program in crossing trucks resolve passing robot_q16; do
   cc -std=c11 "${warnings[@]}" $(flags host --cflags) bindings/c/c/$program.c $(flags host --libs) -o "$build/$program"
   arm-none-eabi-gcc -std=c11 "${warnings[@]}" $(flags target --cflags) -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard \
     -ffunction-sections -fdata-sections -Wl,--gc-sections -nostartfiles -T bindings/c/c/m4.ld bindings/c/c/start.c \
@@ -40,6 +40,13 @@ for program in crossing resolve passing robot_q16; do
   cat "$build/target.out"
 done
 echo "bindings/c: the same on the host and on a Cortex-M4F"
+# Without outlines a program is smaller, and says that it needs them.
+bindings/c/install.sh "$build/discs" "" discs
+cc -std=c11 "${warnings[@]}" $(flags discs --cflags) bindings/c/c/trucks.c $(flags discs --libs) -o "$build/trucks"
+if "$build/trucks" >"$build/host.out" || ! grep PCR_STATUS_NEEDS_OUTLINES "$build/host.out"; then
+  echo "a library for discs took a polygon" >&2
+  exit 1
+fi
 c++ -std=c++17 "${warnings[@]}" $(flags host --cflags) bindings/c/c/wrapper.cpp $(flags host --libs) -o "$build/wrapper"
 "$build/wrapper"
 cmake -S bindings/c/c/cmake -B "$build/cmake" -DCMAKE_PREFIX_PATH="$build/host" >"$build/cmake.log" || { cat "$build/cmake.log" >&2; exit 1; }

@@ -15,7 +15,10 @@ void crossing(const char *name, Make real, Back back, typename F::Agent quarter)
   using Fleet = pcr::BasicFleet<F>;
   const auto one = real(1.0);
   auto agent = [&](double x, double y, decltype(quarter.heading) turned, decltype(quarter.legs) legs, std::size_t count) {
-    return typename F::Agent{real(x), real(y), turned, real(0.25), real(0.0), legs, count, one, one, nullptr, 0};
+    typename F::Agent agent{};
+    agent.x = real(x), agent.y = real(y), agent.heading = turned, agent.radius = real(0.25);
+    agent.legs = legs, agent.leg_count = count, agent.speed = one, agent.acceleration = one;
+    return agent;
   };
   static const std::remove_const_t<std::remove_pointer_t<decltype(quarter.legs)>> line[] = {{PCR_LINE, real(4.0), real(0.0)}};
   const auto east = agent(-2.0, 0.0, 0, line, 1);
@@ -71,26 +74,45 @@ void crossing(const char *name, Make real, Back back, typename F::Agent quarter)
   EXPECT(fleet.size() == 2 && fleet.passings(1).size() == 1 && fleet.passings(1)[0].pass == PCR_SECOND);
   fleet.build_row(1);
   EXPECT(fleet.regions(1).size() == 1);
-  pcr::Capacity small;
-  small.agents = 1;
+  // What is full is doubled: agents, regions and orders of 40 robots that all meet.
+  pcr::Capacity small{1, 1, 3, 1, 1, 1, 0};
   Fleet full(small);
-  full.add(east);
+  for (std::size_t k = 0; k < 40; k++) EXPECT(full.add(k % 2 ? north : east) == k);
+  full.build();
+  EXPECT(full.size() == 40 && full.regions(0).size() >= 39 && full.passings(1).size() >= 39);
+  auto wrong = north;
+  wrong.legs = nullptr;
   try {
-    full.add(north);
-    EXPECT(!"there is no room");
-  } catch (const pcr::Error &error) { EXPECT(error.status == PCR_STATUS_NO_ROOM); }
+    full.add(wrong);
+    EXPECT(!"it has no legs");
+  } catch (const pcr::Error &error) { EXPECT(error.status == PCR_STATUS_NULL && full.size() == 40); }
+  const std::decay_t<decltype(line[0])> bent[] = {line[0], {PCR_LEFT, real(1.0), real(-1.0)}};
+  try {
+    full.replace(0, agent(0.0, 0.0, 0, bent, 2));
+    EXPECT(!"a radius below 0");
+  } catch (const pcr::Error &error) { EXPECT(std::string(error.what()).find("legs[1].radius") != std::string::npos); }
+  // Two trucks, 1.2 m long and 0.8 m wide, in lanes that are 0.81 m apart, and 0.79 m.
+  const typename Fleet::Corner truck[] = {{real(-0.6), real(-0.4)}, {real(0.6), real(-0.4)}, {real(0.6), real(0.4)}, {real(-0.6), real(0.4)}};
+  for (const double apart : {0.81, 0.79}) {
+    Fleet lanes(pcr::Capacity{0, 0, 0, 0, 0, 0, 0});
+    for (const double y : {0.0, apart}) {
+      auto one_way = agent(-2.0, y, 0, line, 1);
+      one_way.radius = real(0.0), one_way.corners = truck, one_way.corner_count = 4;
+      one_way.start = real(y);
+      lanes.add(one_way);
+    }
+    lanes.build();
+    EXPECT(lanes.regions(0).size() == (apart > 0.8 ? 0 : 1));
+  }
   try {
     fleet.conflicts(1, 1);
     EXPECT(!"nobody is in conflict with itself");
   } catch (const pcr::Error &error) { EXPECT(error.status == PCR_STATUS_NO_SUCH_AGENT); }
   // Vectors without elements have null pointers.
-  Fleet empty(pcr::Capacity{0, 0, 0, 0, 0, 0});
+  Fleet empty(pcr::Capacity{0, 0, 0, 0, 0, 0, 0});
   EXPECT(empty.size() == 0);
   empty.build();
-  try {
-    empty.add(east);
-    EXPECT(!"there is no room at all");
-  } catch (const pcr::Error &error) { EXPECT(error.status == PCR_STATUS_NO_ROOM); }
+  EXPECT(empty.add(east) == 0);
   std::printf("%s: %s\n", name, failures == 0 ? "passed" : "failed");
 }
 

@@ -18,7 +18,7 @@
  A fleet and the table of its regions.
  */
 typedef struct PcrFleet {
-  size_t opaque[32];
+  size_t opaque[40];
 } PcrFleet;
 
 /*
@@ -40,7 +40,7 @@ typedef struct PcrPhaseStorage {
  */
 typedef struct PcrMotionStorage {
   size_t pointers[6];
-  float opaque[17];
+  float opaque[18];
 } PcrMotionStorage;
 
 /*
@@ -70,6 +70,13 @@ typedef struct PcrPrecedenceStorage {
 typedef struct PcrCheckStorage {
   float opaque[7];
 } PcrCheckStorage;
+
+/*
+ Memory for a corner of an outline.
+ */
+typedef struct PcrCornerStorage {
+  float opaque[5];
+} PcrCornerStorage;
 
 /*
  Memory for a fleet. It belongs to the fleet from `pcr_fleet_init` on.
@@ -128,22 +135,32 @@ typedef struct PcrMemory {
    Memory for the progress of the agents, as many as `motions`; null if no orders are used.
    */
   struct PcrCheckStorage *robots;
+  /*
+   Memory for the corners of outlines; null if all agents are discs.
+   */
+  struct PcrCornerStorage *corners;
+  /*
+   Number of corners.
+   */
+  size_t corner_count;
 } PcrMemory;
 
 /*
- A line or an arc of a path. It begins where the one before it ends, with the same heading.
+ A line, an arc or a turn in place of a path. It begins where the one before it ends, in the same direction of travel.
  */
 typedef struct PcrPathSegment {
   /*
-   PCR_LINE, PCR_LEFT or PCR_RIGHT.
+   PCR_LINE, PCR_LEFT, PCR_RIGHT, PCR_PIVOT_LEFT, PCR_PIVOT_RIGHT or PCR_REVERSE.
    */
   uint8_t curve;
   /*
-   Length (m); of an arc at most one turn. A leg of length 0 adds nothing.
+   Length (m); of an arc at most one turn. For a turn in place, its angle times the radius. A leg of length 0 adds
+   nothing. Ignored for PCR_REVERSE.
    */
   float length;
   /*
-   Radius of an arc (m), above 0; ignored for a line.
+   Radius of an arc (m), above 0. For a turn in place, the lever: the distance from the reference point at which a point
+   of the agent moves at the speed of the profile. Ignored for a line and for PCR_REVERSE.
    */
   float radius;
 } PcrPathSegment;
@@ -163,7 +180,21 @@ typedef struct PcrProfilePhase {
 } PcrProfilePhase;
 
 /*
- A disc, its path and its motion along the path.
+ A corner of an outline, in the frame of the agent: the reference point, which follows the path, is the origin.
+ */
+typedef struct PcrCorner {
+  /*
+   Distance ahead of the reference point (m).
+   */
+  float x;
+  /*
+   Distance to the left of the reference point (m).
+   */
+  float y;
+} PcrCorner;
+
+/*
+ A disc or a convex outline, its path and its motion along the path.
  */
 typedef struct PcrAgent {
   /*
@@ -179,7 +210,7 @@ typedef struct PcrAgent {
    */
   float heading;
   /*
-   Radius of the disc (m), above 0.
+   Radius of the disc (m), above 0. With corners, the radius by which the polygon is rounded, 0 or more.
    */
   float radius;
   /*
@@ -210,6 +241,20 @@ typedef struct PcrAgent {
    Number of stretches.
    */
   size_t stretch_count;
+  /*
+   Corners of a convex polygon, counter-clockwise, at most 16; none for a disc about the reference point. Two make a
+   capsule.
+   */
+  const struct PcrCorner *corners;
+  /*
+   Number of corners.
+   */
+  size_t corner_count;
+  /*
+   Angle from the direction of travel to the heading of the outline at the start, counter-clockwise (rad, or in the unit
+   of headings): 0 for an agent that looks ahead, half a turn in reverse gear. Ignored for a disc.
+   */
+  float facing;
 } PcrAgent;
 
 /*
@@ -395,6 +440,20 @@ PcrStatus pcr_fleet_init(struct PcrFleet *place, const struct PcrMemory *memory)
  Adds an agent; agents are numbered from 0. The table does not include it before `pcr_fleet_build`.
  */
 PcrStatus pcr_fleet_add(struct PcrFleet *place, const struct PcrAgent *agent);
+
+/*
+ Moves a fleet, with its table and orders, into other memory, which must not overlap the memory that it has; that is free
+ afterwards. A fleet that had no memory for orders, and has it now, must be built again. PCR_STATUS_NO_ROOM or
+ PCR_STATUS_TABLE_FULL if it does not fit; the fleet is unchanged then.
+ */
+PcrStatus pcr_fleet_move(struct PcrFleet *place,
+                         const struct PcrMemory *memory);
+
+/*
+ Says why the last agent was refused that was given to `pcr_fleet_add`, `pcr_fleet_replace` or `pcr_fleet_admit`.
+ */
+PcrStatus pcr_fleet_input_error(const struct PcrFleet *place,
+                                PcrInputError *out);
 
 /*
  Number of agents; 0 for a null pointer.

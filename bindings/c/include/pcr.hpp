@@ -1,5 +1,5 @@
-// C++17 wrapper of the C interface: it owns the memory and reports errors as exceptions. pcr::Fleet uses double,
-// pcr::FleetF32 float, pcr::FleetQ16 fixed point in 1/65536. Indices and units are those of pcr.h.
+// C++17 wrapper of the C interface: it owns the memory, which grows as needed, and reports errors as exceptions. pcr::Fleet uses
+// double, pcr::FleetF32 float, pcr::FleetQ16 fixed point in 1/65536. Indices and units are those of pcr.h.
 #ifndef PCR_HPP
 #define PCR_HPP
 
@@ -15,23 +15,27 @@
 
 namespace pcr {
 
-// A call did not return PCR_STATUS_OK.
+// A call did not return PCR_STATUS_OK. what() says which call, why, and which number of an agent is wrong.
 struct Error : std::runtime_error {
-  Error(const char *call, PcrStatus status)
-      : std::runtime_error(std::string(call) + ": pcr status " + std::to_string(static_cast<int>(status))),
+  Error(const char *call, PcrStatus status, const std::string &where = {})
+      : std::runtime_error(std::string(call) + ": " + pcr_status_text(status) + where + " (" + pcr_status_name(status) + ")"),
         status(status) {}
   const PcrStatus status;
 };
 
 // PCR_STATUS_REFUSED, with the reason and the agents concerned.
 struct Refused : Error {
-  Refused(const char *call, PcrAdmissionError why) : Error(call, PCR_STATUS_REFUSED), why(why) {}
+  Refused(const char *call, PcrAdmissionError why)
+      : Error(call, PCR_STATUS_REFUSED, ": agents " + std::to_string(why.agents[0]) + " and " + std::to_string(why.agents[1])),
+        why(why) {}
   const PcrAdmissionError why;
 };
 
 // PCR_STATUS_NO_PLAN, with the reason and the agents concerned.
 struct Unsolved : Error {
-  Unsolved(const char *call, PcrPlanError why) : Error(call, PCR_STATUS_NO_PLAN), why(why) {}
+  Unsolved(const char *call, PcrPlanError why)
+      : Error(call, PCR_STATUS_NO_PLAN, ": agents " + std::to_string(why.agents[0]) + " and " + std::to_string(why.agents[1])),
+        why(why) {}
   const PcrPlanError why;
 };
 
@@ -39,9 +43,18 @@ inline void check(const char *call, PcrStatus status) {
   if (status != PCR_STATUS_OK) throw Error(call, status);
 }
 
-// Capacities of a fleet. While an agent is replaced, its old and new segments and phases need room at the same time.
+// Such as ", legs[1].radius".
+inline std::string where(const PcrInputError &error) {
+  static const char *const lists[] = {"", "legs", "stretches", "corners"};
+  const std::string list = lists[error.list], field = error.field;
+  const std::string entry = list.empty() ? "" : list + "[" + std::to_string(error.index) + "]";
+  if (entry.empty() && field.empty()) return "";
+  return ", " + entry + (entry.empty() || field.empty() ? "" : ".") + field;
+}
+
+// Capacities with which a fleet begins. What is full is doubled.
 struct Capacity {
-  std::size_t agents = 16, segments = 96, phases = 64, regions = 256, pieces = 512, orders = 512;
+  std::size_t agents = 16, segments = 96, phases = 64, regions = 256, pieces = 512, orders = 512, corners = 64;
 };
 
 // Gives the types and functions of a number format the names that they have in pcr.h, without prefixes.
@@ -53,6 +66,10 @@ struct Capacity {
     using Passing = Types##RegionPrecedence; using Progress = Types##Progress; using Region = Types##Region;           \
     using Tolerances = Types##CheckTolerances;                                                                         \
     struct Storage {                                                                                                   \
+      explicit Storage(const Capacity &most)                                                                           \
+          : segments(most.segments), phases(most.phases), motions(most.agents), room(most.agents),                     \
+            entries(most.regions), pieces(most.pieces), orders(most.orders), robots(most.agents),                      \
+            corners(most.corners) {}                                                                                   \
       std::vector<Types##SegmentStorage> segments;                                                                     \
       std::vector<Types##PhaseStorage> phases;                                                                         \
       std::vector<Motion> motions, room;                                                                               \
@@ -60,13 +77,15 @@ struct Capacity {
       std::vector<Types##PieceStorage> pieces;                                                                         \
       std::vector<Types##PrecedenceStorage> orders;                                                                    \
       std::vector<Types##CheckStorage> robots;                                                                         \
-      Handle handle;                                                                                                   \
+      std::vector<Types##CornerStorage> corners;                                                                       \
       Types##Memory memory() {                                                                                         \
         return {segments.data(), segments.size(), phases.data(),  phases.size(),  motions.data(),                      \
                 motions.size(),  entries.data(),  entries.size(), pieces.data(),  pieces.size(),                       \
-                orders.data(),   orders.size(),   robots.data()};                                                      \
+                orders.data(),   orders.size(),   robots.data(),  corners.data(), corners.size()};                     \
       }                                                                                                                \
     };                                                                                                                 \
+    using Corner = Types##Corner; using Leg = Types##PathSegment; using Stretch = Types##ProfilePhase;                 \
+    static constexpr auto move = functions##move; static constexpr auto input_error = functions##input_error;          \
     static constexpr auto init = functions##init; static constexpr auto add = functions##add;                          \
     static constexpr auto agents = functions##agents; static constexpr auto build = functions##build;                  \
     static constexpr auto build_row = functions##build_row; static constexpr auto delay = functions##delay;            \
@@ -90,9 +109,37 @@ PCR_FORMAT(Fixed, PcrQ16, pcr_q16_fleet_, std::int32_t);
 
 // A fleet with its memory. Methods throw an Error if the C function fails, or if the fleet was moved away; `size` is 0 then.
 template <class F> class BasicFleet {
-  std::unique_ptr<typename F::Storage> own;
+  struct Own {
+    typename F::Handle handle;
+    Capacity most;
+    std::unique_ptr<typename F::Storage> storage;
+  };
+  std::unique_ptr<Own> own;
   typename F::Handle *at() { return own ? &own->handle : nullptr; }
   const typename F::Handle *at() const { return own ? &own->handle : nullptr; }
+
+  // Calls until nothing is full any more: what was full is doubled, and the fleet moves there.
+  template <class Call> PcrStatus growing(Call call) {
+    for (;;) {
+      const PcrStatus status = call();
+      if (!own || (status != PCR_STATUS_NO_ROOM && status != PCR_STATUS_TABLE_FULL)) return status;
+      Capacity most = own->most;
+      const auto twice = [](std::size_t &room) { room = 2 * room + 1; };
+      if (status == PCR_STATUS_NO_ROOM) twice(most.agents), twice(most.segments), twice(most.phases), twice(most.corners);
+      else twice(most.regions), twice(most.pieces), twice(most.orders);
+      auto larger = std::make_unique<typename F::Storage>(most);
+      const auto memory = larger->memory();
+      pcr::check("move", F::move(at(), &memory));
+      own->most = most, own->storage = std::move(larger);
+    }
+  }
+  // For calls that take an agent.
+  void given(const char *call, PcrStatus status) const {
+    PcrInputError error{PCR_STATUS_OK, PCR_INPUT_LIST_AGENT, 0, ""};
+    if (status == PCR_STATUS_OK) return;
+    if (at() && F::input_error(at(), &error) == PCR_STATUS_OK && error.status == status) throw Error(call, status, where(error));
+    throw Error(call, status);
+  }
 
   // Asks for the count first, then for all results.
   template <class T, class Ask> static std::vector<T> list(const char *call, Ask ask) {
@@ -110,24 +157,28 @@ template <class F> class BasicFleet {
 
 public:
   using Agent = typename F::Agent;
+  using Corner = typename F::Corner;
+  using Leg = typename F::Leg;
+  using Stretch = typename F::Stretch;
   using Interval = typename F::Interval;
   using Progress = typename F::Progress;
   using Real = typename F::Real;
   using Tolerances = typename F::Tolerances;
 
-  explicit BasicFleet(const Capacity &most = {}) : own(new typename F::Storage()) {
-    own->segments.resize(most.segments), own->phases.resize(most.phases), own->entries.resize(most.regions);
-    own->motions.resize(most.agents), own->room.resize(most.agents), own->robots.resize(most.agents);
-    own->pieces.resize(most.pieces), own->orders.resize(most.orders);
-    const auto memory = own->memory();
+  explicit BasicFleet(const Capacity &first = {}) : own(new Own{{}, first, std::make_unique<typename F::Storage>(first)}) {
+    const auto memory = own->storage->memory();
     pcr::check("init", F::init(at(), &memory));
   }
-  std::size_t add(const Agent &agent) { return pcr::check("add", F::add(at(), &agent)), size() - 1; }
+  std::size_t add(const Agent &agent) {
+    return given("add", growing([&] { return F::add(at(), &agent); })), size() - 1;
+  }
   std::size_t size() const { return F::agents(at()); }
-  void build() { pcr::check("build", F::build(at())); }
-  void build_row(std::size_t agent) { pcr::check("build_row", F::build_row(at(), agent)); }
+  void build() { pcr::check("build", growing([&] { return F::build(at()); })); }
+  void build_row(std::size_t agent) { pcr::check("build_row", growing([&] { return F::build_row(at(), agent); })); }
   void delay(std::size_t agent, Real by) { pcr::check("delay", F::delay(at(), agent, by)); }
-  void replace(std::size_t agent, const Agent &by) { pcr::check("replace", F::replace(at(), agent, &by)); }
+  void replace(std::size_t agent, const Agent &by) {
+    given("replace", growing([&] { return F::replace(at(), agent, &by); }));
+  }
   void remove(std::size_t agent) { pcr::check("remove", F::remove(at(), agent)); }
 
   std::vector<typename F::Region> regions(std::size_t ego) const {
@@ -157,7 +208,7 @@ public:
   std::vector<std::size_t> plan_delays(std::vector<std::size_t> order) {
     if (!own) throw Error("plan_delays", PCR_STATUS_NULL);
     PcrPlanError why{};
-    const auto status = F::plan_delays(at(), order.data(), order.size(), own->room.data(), own->room.size(), &why);
+    const auto status = F::plan_delays(at(), order.data(), order.size(), own->storage->room.data(), own->storage->room.size(), &why);
     if (status == PCR_STATUS_NO_PLAN) throw Unsolved("plan_delays", why);
     return pcr::check("plan_delays", status), order;
   }
@@ -188,7 +239,9 @@ public:
     if (!prefer.empty() && prefer.size() != size()) throw Error("admit", PCR_STATUS_BAD_ORDER);
     PcrAdmissionError why{};
     const auto wanted = prefer.empty() ? nullptr : prefer.data();
-    settle("admit", F::admit(at(), agent, &by, &where, &accepted, wanted, &why), why);
+    const auto status = growing([&] { return F::admit(at(), agent, &by, &where, &accepted, wanted, &why); });
+    if (status == PCR_STATUS_REFUSED) throw Refused("admit", why);
+    given("admit", status);
   }
   void passed() { pcr::check("passed", F::passed(at())); }
 };

@@ -18,7 +18,7 @@
  A fleet and the table of its regions.
  */
 typedef struct PcrF64Fleet {
-  size_t opaque[32];
+  size_t opaque[40];
 } PcrF64Fleet;
 
 /*
@@ -70,6 +70,13 @@ typedef struct PcrF64PrecedenceStorage {
 typedef struct PcrF64CheckStorage {
   double opaque[7];
 } PcrF64CheckStorage;
+
+/*
+ Memory for a corner of an outline.
+ */
+typedef struct PcrF64CornerStorage {
+  double opaque[5];
+} PcrF64CornerStorage;
 
 /*
  Memory for a fleet. It belongs to the fleet from `pcr_f64_fleet_init` on.
@@ -128,22 +135,32 @@ typedef struct PcrF64Memory {
    Memory for the progress of the agents, as many as `motions`; null if no orders are used.
    */
   struct PcrF64CheckStorage *robots;
+  /*
+   Memory for the corners of outlines; null if all agents are discs.
+   */
+  struct PcrF64CornerStorage *corners;
+  /*
+   Number of corners.
+   */
+  size_t corner_count;
 } PcrF64Memory;
 
 /*
- A line or an arc of a path. It begins where the one before it ends, with the same heading.
+ A line, an arc or a turn in place of a path. It begins where the one before it ends, in the same direction of travel.
  */
 typedef struct PcrF64PathSegment {
   /*
-   PCR_LINE, PCR_LEFT or PCR_RIGHT.
+   PCR_LINE, PCR_LEFT, PCR_RIGHT, PCR_PIVOT_LEFT, PCR_PIVOT_RIGHT or PCR_REVERSE.
    */
   uint8_t curve;
   /*
-   Length (m); of an arc at most one turn. A leg of length 0 adds nothing.
+   Length (m); of an arc at most one turn. For a turn in place, its angle times the radius. A leg of length 0 adds
+   nothing. Ignored for PCR_REVERSE.
    */
   double length;
   /*
-   Radius of an arc (m), above 0; ignored for a line.
+   Radius of an arc (m), above 0. For a turn in place, the lever: the distance from the reference point at which a point
+   of the agent moves at the speed of the profile. Ignored for a line and for PCR_REVERSE.
    */
   double radius;
 } PcrF64PathSegment;
@@ -163,7 +180,21 @@ typedef struct PcrF64ProfilePhase {
 } PcrF64ProfilePhase;
 
 /*
- A disc, its path and its motion along the path.
+ A corner of an outline, in the frame of the agent: the reference point, which follows the path, is the origin.
+ */
+typedef struct PcrF64Corner {
+  /*
+   Distance ahead of the reference point (m).
+   */
+  double x;
+  /*
+   Distance to the left of the reference point (m).
+   */
+  double y;
+} PcrF64Corner;
+
+/*
+ A disc or a convex outline, its path and its motion along the path.
  */
 typedef struct PcrF64Agent {
   /*
@@ -179,7 +210,7 @@ typedef struct PcrF64Agent {
    */
   double heading;
   /*
-   Radius of the disc (m), above 0.
+   Radius of the disc (m), above 0. With corners, the radius by which the polygon is rounded, 0 or more.
    */
   double radius;
   /*
@@ -210,6 +241,20 @@ typedef struct PcrF64Agent {
    Number of stretches.
    */
   size_t stretch_count;
+  /*
+   Corners of a convex polygon, counter-clockwise, at most 16; none for a disc about the reference point. Two make a
+   capsule.
+   */
+  const struct PcrF64Corner *corners;
+  /*
+   Number of corners.
+   */
+  size_t corner_count;
+  /*
+   Angle from the direction of travel to the heading of the outline at the start, counter-clockwise (rad, or in the unit
+   of headings): 0 for an agent that looks ahead, half a turn in reverse gear. Ignored for a disc.
+   */
+  double facing;
 } PcrF64Agent;
 
 /*
@@ -396,6 +441,20 @@ PcrStatus pcr_f64_fleet_init(struct PcrF64Fleet *place, const struct PcrF64Memor
  */
 PcrStatus pcr_f64_fleet_add(struct PcrF64Fleet *place,
                             const struct PcrF64Agent *agent);
+
+/*
+ Moves a fleet, with its table and orders, into other memory, which must not overlap the memory that it has; that is free
+ afterwards. A fleet that had no memory for orders, and has it now, must be built again. PCR_STATUS_NO_ROOM or
+ PCR_STATUS_TABLE_FULL if it does not fit; the fleet is unchanged then.
+ */
+PcrStatus pcr_f64_fleet_move(struct PcrF64Fleet *place,
+                             const struct PcrF64Memory *memory);
+
+/*
+ Says why the last agent was refused that was given to `pcr_f64_fleet_add`, `pcr_f64_fleet_replace` or `pcr_f64_fleet_admit`.
+ */
+PcrStatus pcr_f64_fleet_input_error(const struct PcrF64Fleet *place,
+                                    PcrInputError *out);
 
 /*
  Number of agents; 0 for a null pointer.

@@ -21,7 +21,7 @@
  A fleet and the table of its regions.
  */
 typedef struct PcrQ16Fleet {
-  size_t opaque[32];
+  size_t opaque[40];
 } PcrQ16Fleet;
 
 /*
@@ -43,7 +43,7 @@ typedef struct PcrQ16PhaseStorage {
  */
 typedef struct PcrQ16MotionStorage {
   size_t pointers[6];
-  int32_t opaque[17];
+  int32_t opaque[18];
 } PcrQ16MotionStorage;
 
 /*
@@ -73,6 +73,13 @@ typedef struct PcrQ16PrecedenceStorage {
 typedef struct PcrQ16CheckStorage {
   int32_t opaque[7];
 } PcrQ16CheckStorage;
+
+/*
+ Memory for a corner of an outline.
+ */
+typedef struct PcrQ16CornerStorage {
+  int32_t opaque[5];
+} PcrQ16CornerStorage;
 
 /*
  Memory for a fleet. It belongs to the fleet from `pcr_q16_fleet_init` on.
@@ -131,22 +138,32 @@ typedef struct PcrQ16Memory {
    Memory for the progress of the agents, as many as `motions`; null if no orders are used.
    */
   struct PcrQ16CheckStorage *robots;
+  /*
+   Memory for the corners of outlines; null if all agents are discs.
+   */
+  struct PcrQ16CornerStorage *corners;
+  /*
+   Number of corners.
+   */
+  size_t corner_count;
 } PcrQ16Memory;
 
 /*
- A line or an arc of a path. It begins where the one before it ends, with the same heading.
+ A line, an arc or a turn in place of a path. It begins where the one before it ends, in the same direction of travel.
  */
 typedef struct PcrQ16PathSegment {
   /*
-   PCR_LINE, PCR_LEFT or PCR_RIGHT.
+   PCR_LINE, PCR_LEFT, PCR_RIGHT, PCR_PIVOT_LEFT, PCR_PIVOT_RIGHT or PCR_REVERSE.
    */
   uint8_t curve;
   /*
-   Length (m); of an arc at most one turn. A leg of length 0 adds nothing.
+   Length (m); of an arc at most one turn. For a turn in place, its angle times the radius. A leg of length 0 adds
+   nothing. Ignored for PCR_REVERSE.
    */
   int32_t length;
   /*
-   Radius of an arc (m), above 0; ignored for a line.
+   Radius of an arc (m), above 0. For a turn in place, the lever: the distance from the reference point at which a point
+   of the agent moves at the speed of the profile. Ignored for a line and for PCR_REVERSE.
    */
   int32_t radius;
 } PcrQ16PathSegment;
@@ -166,7 +183,21 @@ typedef struct PcrQ16ProfilePhase {
 } PcrQ16ProfilePhase;
 
 /*
- A disc, its path and its motion along the path.
+ A corner of an outline, in the frame of the agent: the reference point, which follows the path, is the origin.
+ */
+typedef struct PcrQ16Corner {
+  /*
+   Distance ahead of the reference point (m).
+   */
+  int32_t x;
+  /*
+   Distance to the left of the reference point (m).
+   */
+  int32_t y;
+} PcrQ16Corner;
+
+/*
+ A disc or a convex outline, its path and its motion along the path.
  */
 typedef struct PcrQ16Agent {
   /*
@@ -182,7 +213,7 @@ typedef struct PcrQ16Agent {
    */
   int32_t heading;
   /*
-   Radius of the disc (m), above 0.
+   Radius of the disc (m), above 0. With corners, the radius by which the polygon is rounded, 0 or more.
    */
   int32_t radius;
   /*
@@ -213,6 +244,20 @@ typedef struct PcrQ16Agent {
    Number of stretches.
    */
   size_t stretch_count;
+  /*
+   Corners of a convex polygon, counter-clockwise, at most 16; none for a disc about the reference point. Two make a
+   capsule.
+   */
+  const struct PcrQ16Corner *corners;
+  /*
+   Number of corners.
+   */
+  size_t corner_count;
+  /*
+   Angle from the direction of travel to the heading of the outline at the start, counter-clockwise (rad, or in the unit
+   of headings): 0 for an agent that looks ahead, half a turn in reverse gear. Ignored for a disc.
+   */
+  int32_t facing;
 } PcrQ16Agent;
 
 /*
@@ -399,6 +444,20 @@ PcrStatus pcr_q16_fleet_init(struct PcrQ16Fleet *place, const struct PcrQ16Memor
  */
 PcrStatus pcr_q16_fleet_add(struct PcrQ16Fleet *place,
                             const struct PcrQ16Agent *agent);
+
+/*
+ Moves a fleet, with its table and orders, into other memory, which must not overlap the memory that it has; that is free
+ afterwards. A fleet that had no memory for orders, and has it now, must be built again. PCR_STATUS_NO_ROOM or
+ PCR_STATUS_TABLE_FULL if it does not fit; the fleet is unchanged then.
+ */
+PcrStatus pcr_q16_fleet_move(struct PcrQ16Fleet *place,
+                             const struct PcrQ16Memory *memory);
+
+/*
+ Says why the last agent was refused that was given to `pcr_q16_fleet_add`, `pcr_q16_fleet_replace` or `pcr_q16_fleet_admit`.
+ */
+PcrStatus pcr_q16_fleet_input_error(const struct PcrQ16Fleet *place,
+                                    PcrInputError *out);
 
 /*
  Number of agents; 0 for a null pointer.

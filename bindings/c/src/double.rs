@@ -18,6 +18,8 @@ mod number {
     pub(crate) const MOTION: usize = 17;
     pub(crate) const PIECE: usize = 6;
 
+    pub(crate) const HALF_TURN: Heading = core::f64::consts::PI;
+
     pub(crate) const fn inner(real: Real) -> S {
         real
     }

@@ -15,8 +15,10 @@ mod number {
     pub(crate) type Heading = i32;
 
     pub(crate) const SEGMENT: usize = 32;
-    pub(crate) const MOTION: usize = 17;
+    pub(crate) const MOTION: usize = 18;
     pub(crate) const PIECE: usize = 7;
+
+    pub(crate) const HALF_TURN: Heading = i32::MIN;
 
     pub(crate) const fn inner(real: Real) -> S {
         Q16::from_bits(real)

@@ -20,6 +20,10 @@
 //! pcr_fleet_regions(&fleet, 0, regions, 8, &count);
 //! ```
 //!
+//! An agent is a disc, or a convex polygon of up to 16 corners, rounded by its radius; it may turn in place and change gear:
+//! see `c/trucks.c`. `pcr_status_name` and `pcr_status_text` say what a status means, `pcr_fleet_input_error` which number
+//! of an agent was wrong. A fleet that has become too large for its memory goes on in a larger one (`pcr_fleet_move`).
+//!
 //! `c/resolve.c` shows the functions that resolve conflicts: `pcr_fleet_first_conflict`, `pcr_fleet_earliest_start`,
 //! `pcr_fleet_safe_intervals`, `pcr_fleet_plan_delays`, `pcr_fleet_replace`, `pcr_fleet_remove`. `c/passing.c` shows
 //! passing orders, which robots keep whatever their delays: `pcr_fleet_orders_as_planned`, `pcr_fleet_admit`,

@@ -136,6 +136,12 @@ impl<R: Copy + 'static> Arena<R> {
         self.part(self.len, count)
     }
 
+    /// Copies values into the next part, which is not in use until [`Arena::take`] is called; `None` without room.
+    pub(crate) fn copied(&mut self, values: &[R]) -> Option<&'static [R]> {
+        self.free().get_mut(..values.len())?.iter_mut().zip(values).for_each(|(slot, value)| *slot = *value);
+        Some(self.next(values.len()))
+    }
+
     /// Marks the next part as in use.
     pub(crate) fn take(&mut self, count: usize) {
         self.len = self.len.saturating_add(count).min(self.room);
@@ -154,6 +160,11 @@ impl<R: Copy + 'static> Arena<R> {
             unsafe { self.first.add(from).copy_to(self.first.add(to), count) };
         }
         self.part(to, count)
+    }
+
+    /// Number of values that are in use.
+    pub(crate) fn len(&self) -> usize {
+        self.len
     }
 
     /// Gives back all values from an index on.

@@ -15,8 +15,10 @@ mod number {
     pub(crate) type Heading = f32;
 
     pub(crate) const SEGMENT: usize = 32;
-    pub(crate) const MOTION: usize = 17;
+    pub(crate) const MOTION: usize = 18;
     pub(crate) const PIECE: usize = 7;
+
+    pub(crate) const HALF_TURN: Heading = core::f32::consts::PI;
 
     pub(crate) const fn inner(real: Real) -> S {
         real

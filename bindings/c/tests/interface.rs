@@ -23,6 +23,8 @@ fn memory(agents: usize, entries: usize, pieces: usize) -> PcrMemory {
         orders: null_mut(),
         order_count: 0,
         robots: null_mut(),
+        corners: slots(PcrCornerStorage::EMPTY, 4 * agents),
+        corner_count: 4 * agents,
     }
 }
 
@@ -42,6 +44,9 @@ fn agent(heading: f32) -> PcrAgent {
         acceleration: 1.0,
         stretches: null(),
         stretch_count: 0,
+        corners: null(),
+        corner_count: 0,
+        facing: Default::default(),
     }
 }
 
@@ -129,7 +134,7 @@ fn what_is_wrong_is_told_and_changes_nothing() {
     let mut fleet = fleet(&memory(2, 4, 4), &[good]);
     let legs = |curve, length, radius| [PcrPathSegment { curve, length, radius }];
     let cases = [
-        (legs(3, 4.0, 0.0), PcrStatus::NoSuchCurve),
+        (legs(6, 4.0, 0.0), PcrStatus::NoSuchCurve),
         (legs(PCR_LINE, -1.0, 0.0), PcrStatus::Negative),
         (legs(PCR_LINE, f32::NAN, 0.0), PcrStatus::NonFinite),
         (legs(PCR_LINE, 1e7, 0.0), PcrStatus::OutOfRange),
@@ -398,4 +403,142 @@ fn a_plan_delays_the_fleet_and_none_leaves_it() {
     let mut unbuilt = star(&[agent(0.0)]);
     assert_eq!(pcr_fleet_add(Some(&mut unbuilt), Some(&agent(0.7))), PcrStatus::Ok);
     assert_eq!(plan(&mut unbuilt, &mut [0, 1], 2, &mut why), PcrStatus::NotBuilt);
+}
+
+/// A truck, 1.2 m long and 0.8 m wide, that drives 6 m.
+const TRUCK: [PcrCorner; 4] = [
+    PcrCorner { x: -0.6, y: -0.4 },
+    PcrCorner { x: 0.6, y: -0.4 },
+    PcrCorner { x: 0.6, y: 0.4 },
+    PcrCorner { x: -0.6, y: 0.4 },
+];
+
+fn truck(x: f32, y: f32, heading: f32, legs: &[PcrPathSegment]) -> PcrAgent {
+    let corners = (TRUCK.as_ptr(), TRUCK.len());
+    let (legs, leg_count) = (legs.as_ptr(), legs.len());
+    PcrAgent { x, y, radius: 0.0, legs, leg_count, corners: corners.0, corner_count: corners.1, ..agent(heading) }
+}
+
+fn line(length: f32) -> PcrPathSegment {
+    PcrPathSegment { curve: PCR_LINE, length, radius: 0.0 }
+}
+
+#[test]
+fn trucks_pass_each_other_a_millimetre_apart_and_not_closer() {
+    let ahead = [line(6.0)];
+    for (apart, expected) in [(0.801, 0), (0.799, 1)] {
+        let agents = [truck(0.0, 0.0, 0.0, &ahead), truck(6.0, apart, std::f32::consts::PI, &ahead)];
+        let mut fleet = fleet(&memory(2, 4, 8), &agents);
+        assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
+        assert_eq!(regions(&fleet, 0).len(), expected, "{apart} m apart");
+    }
+}
+
+#[test]
+fn turns_in_place_gears_and_gaps_in_the_memory() {
+    use std::f32::consts::{FRAC_PI_2, PI};
+    // It turns by a quarter on the spot: its corners are 0.7211 m away from its centre, and 0.7 m is in their way.
+    let pivot = [PcrPathSegment { curve: PCR_PIVOT_LEFT, length: 0.5 * FRAC_PI_2, radius: 0.5 }];
+    let post = |y| PcrAgent { x: 0.0, y, radius: 0.05, legs: null(), leg_count: 0, ..agent(0.0) };
+    // Reverse gear: from 2 m on it goes back, and its front stays behind the post beside its rear.
+    let gears = [line(2.0), PcrPathSegment { curve: PCR_REVERSE, length: 0.0, radius: 0.0 }, line(3.0)];
+    for (distance, expected) in [(0.7712, 0), (0.771, 1)] {
+        let agents = [truck(9.0, 9.0, 0.0, &gears), truck(0.0, 0.0, 0.0, &pivot), post(distance)];
+        let mut fleet = fleet(&memory(3, 8, 16), &agents);
+        assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
+        assert_eq!(regions(&fleet, 1).len(), expected, "{distance} m away");
+        // What is behind the removed truck moves down, with its corners, and the room is free again.
+        assert_eq!(pcr_fleet_remove(Some(&mut fleet), 0), PcrStatus::Ok);
+        assert_eq!(regions(&fleet, 0).len(), expected, "{distance} m away");
+        assert_eq!(pcr_fleet_replace(Some(&mut fleet), 0, Some(&agents[1])), PcrStatus::Ok);
+        assert_eq!(pcr_fleet_add(Some(&mut fleet), Some(&truck(0.0, 5.0, 0.0, &gears))), PcrStatus::Ok);
+        assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
+        assert_eq!(regions(&fleet, 0).len(), expected, "{distance} m away");
+    }
+    // It drives on in reverse with its fork, 2 m long, ahead of its rear all the time: at its end, its fork is in front of it.
+    let fork = [
+        PcrCorner { x: 0.0, y: -0.1 },
+        PcrCorner { x: 2.0, y: -0.1 },
+        PcrCorner { x: 2.0, y: 0.1 },
+        PcrCorner { x: 0.0, y: 0.1 },
+    ];
+    for (facing, expected) in [(0.0, 1), (PI, 0)] {
+        let forklift = PcrAgent { corners: fork.as_ptr(), facing, ..truck(-4.0, 0.0, 0.0, &gears[..1]) };
+        let mut post = post(0.0);
+        post.x = -0.5;
+        let mut fleet = fleet(&memory(2, 8, 16), &[forklift, post]);
+        assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
+        assert_eq!(regions(&fleet, 0).len(), expected, "facing {facing}");
+    }
+}
+
+#[test]
+fn a_refused_agent_is_told_with_the_entry_and_the_field() {
+    let mut fleet = fleet(&memory(2, 4, 4), &[]);
+    let mut told = PcrInputError { status: PcrStatus::Null, list: PcrInputList::Corners, index: 9, field: null() };
+    let mut refused = |agent: PcrAgent| {
+        let status = pcr_fleet_add(Some(&mut fleet), Some(&agent));
+        assert_eq!(pcr_fleet_input_error(Some(&fleet), Some(&mut told)), PcrStatus::Ok);
+        assert_eq!(told.status, status);
+        // SAFETY: the field is never null, and ended by a zero.
+        let field = unsafe { std::ffi::CStr::from_ptr(told.field) };
+        (status, told.list, told.index, field.to_str().expect("ASCII"))
+    };
+    let legs = [line(4.0)];
+    let far = [TRUCK[0], PcrCorner { x: f32::NAN, y: 0.0 }];
+    let mut clockwise = TRUCK;
+    clockwise.reverse();
+    let sharp = [line(1.0), PcrPathSegment { curve: PCR_LEFT, length: 1.0, radius: 0.0 }];
+    let stretches = [PcrProfilePhase { duration: -1.0, acceleration: 0.0 }];
+    let good = truck(0.0, 0.0, 0.0, &legs);
+    let outlined = |corners: &[PcrCorner]| PcrAgent { corners: corners.as_ptr(), corner_count: corners.len(), ..good };
+    assert_eq!(refused(outlined(&far)), (PcrStatus::NonFinite, PcrInputList::Corners, 1, "x"));
+    assert_eq!(refused(outlined(&clockwise)), (PcrStatus::NotConvex, PcrInputList::Agent, 0, ""));
+    assert_eq!(refused(PcrAgent { radius: -1.0, ..good }), (PcrStatus::Negative, PcrInputList::Agent, 0, "radius"));
+    assert_eq!(refused(truck(0.0, 0.0, 0.0, &sharp)), (PcrStatus::NonPositive, PcrInputList::Legs, 1, "radius"));
+    let late = PcrAgent { stretches: stretches.as_ptr(), stretch_count: 1, ..good };
+    assert_eq!(refused(late), (PcrStatus::Negative, PcrInputList::Stretches, 0, "duration"));
+    assert_eq!(refused(good), (PcrStatus::Ok, PcrInputList::Agent, 0, ""));
+}
+
+#[test]
+fn every_status_has_its_name_and_a_sentence() {
+    let header =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/include/pcr_common.h")).expect("a header");
+    // SAFETY: both functions return strings that end with a zero.
+    let text = |status| unsafe { std::ffi::CStr::from_ptr(pcr_status_text(status)) }.to_str().expect("ASCII");
+    // SAFETY: as above.
+    let name = |status| unsafe { std::ffi::CStr::from_ptr(pcr_status_name(status)) }.to_str().expect("ASCII");
+    let declared: Vec<_> = header
+        .lines()
+        .filter_map(|line| line.trim().strip_suffix(',').unwrap_or(line.trim()).split_once(" = "))
+        .filter(|(name, _)| name.starts_with("PCR_STATUS_"))
+        .collect();
+    assert_eq!(declared.len(), 27);
+    for (declared, number) in declared {
+        let status = number.parse().expect("a number");
+        assert_eq!(name(status), declared);
+        assert!(text(status).len() > 10 && text(status) != text(-1));
+    }
+    assert_eq!((name(27), name(-1)), ("PCR_STATUS_?", "PCR_STATUS_?"));
+}
+
+#[test]
+fn a_fleet_moves_to_larger_memory_with_its_table() {
+    let ahead = [line(6.0)];
+    let agents = [truck(0.0, 0.0, 0.0, &ahead), truck(6.0, 0.3, std::f32::consts::PI, &ahead)];
+    let small = memory(2, 1, 4);
+    let mut fleet = fleet(&small, &agents);
+    assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
+    let before = regions(&fleet, 0);
+    assert_eq!(pcr_fleet_add(Some(&mut fleet), Some(&agents[0])), PcrStatus::NoRoom);
+    for (less, expected) in [(memory(1, 1, 4), PcrStatus::NoRoom), (memory(2, 0, 4), PcrStatus::TableFull)] {
+        assert_eq!(pcr_fleet_move(Some(&mut fleet), Some(&less)), expected);
+        assert_eq!(regions(&fleet, 0), before);
+    }
+    assert_eq!(pcr_fleet_move(Some(&mut fleet), Some(&memory(4, 8, 16))), PcrStatus::Ok);
+    assert_eq!(regions(&fleet, 0), before);
+    assert_eq!(pcr_fleet_add(Some(&mut fleet), Some(&truck(0.0, -0.5, 0.0, &ahead))), PcrStatus::Ok);
+    assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
+    assert_eq!(regions(&fleet, 1).len(), 2);
 }

@@ -37,6 +37,8 @@ macro_rules! formats {
                     orders: if orders == 0 { null_mut() } else { slots(PcrPrecedenceStorage::EMPTY, orders) },
                     order_count: orders,
                     robots: if orders == 0 { null_mut() } else { slots(PcrCheckStorage::EMPTY, agents) },
+                    corners: null_mut(),
+                    corner_count: 0,
                 }
             }
 
@@ -57,6 +59,9 @@ macro_rules! formats {
                     acceleration: real(1.0),
                     stretches: null(),
                     stretch_count: 0,
+                    corners: null(),
+                    corner_count: 0,
+                    facing: Default::default(),
                 }
             }
 

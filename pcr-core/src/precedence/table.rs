@@ -226,6 +226,25 @@ where
         Err(CapacityError::Orders)
     }
 
+    /// Makes this table a copy of another one, with its orders, in its own storage, like [`Ecm::copy_from`].
+    ///
+    /// # Errors
+    /// As [`Ecm::copy_from`], and [`CapacityError::Orders`]; this table is then unchanged.
+    pub fn copy_from<R2, P2, O2>(&mut self, other: &PrecedenceTable<S, R2, P2, O2>) -> Result<(), CapacityError>
+    where
+        R2: AsRef<[EcmEntry]>,
+        P2: AsRef<[Piece<S>]>,
+        O2: AsRef<[RegionPrecedence<S>]>,
+    {
+        let (room, used) = (self.orders.as_mut().iter_mut(), other.orders.as_ref().iter().take(other.ecm.len()));
+        if room.len() < used.len() {
+            return Err(CapacityError::Orders);
+        }
+        self.ecm.copy_from(&other.ecm)?;
+        room.zip(used).for_each(|(slot, order)| *slot = *order);
+        Ok(())
+    }
+
     /// Adds the regions of one agent with all others of the fleet, like [`Ecm::insert`], with no order decided.
     ///
     /// # Errors

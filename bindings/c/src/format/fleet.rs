@@ -1,13 +1,19 @@
 //! A fleet in the memory of the caller, in safe Rust.
 
-use super::number::{S, angle, inner};
-use super::types::{PcrAgent, PcrMemory};
+use super::number::{HALF_TURN, Real, S, angle, inner};
+use super::points::number;
+use super::types::{PcrAgent, PcrMemory, PcrPathSegment};
 use crate::memory::{Arena, Stack, both, values};
-use crate::status::{PCR_LEFT, PCR_LINE, PCR_RIGHT, PcrStatus, given};
+use crate::status::{
+    PCR_LEFT, PCR_LINE, PCR_PIVOT_LEFT, PCR_PIVOT_RIGHT, PCR_REVERSE, PCR_RIGHT, PcrInputError, PcrInputList,
+    PcrStatus, field, given,
+};
+use core::ffi::CStr;
 use pcr_core::{
-    AdmissionError, CapacityError, CheckState, CheckTolerances, Ecm, EcmEntry, EcmError, Interval, Limits,
-    MismatchError, Motion, PassingState, PathProposal, PathRef, Phase, Piece, PlanError, Point, Pose, PrecedenceTable,
-    Profile, ProfileRef, Progress, RegionPrecedence, RegionRef, Scalar, Segment, TurnSide, excess, plan_delays,
+    AdmissionError, CapacityError, CheckState, CheckTolerances, Corner, Ecm, EcmEntry, EcmError, Interval,
+    InvalidInput, Limits, MismatchError, Motion, Outline, OutlineRef, PassingState, PathProposal, PathRef, Phase,
+    Piece, PlanError, Point, Pose, PrecedenceTable, Profile, ProfileRef, Progress, RegionPrecedence, RegionRef, Scalar,
+    Segment, TurnSide, Vector, excess, plan_delays,
 };
 
 /// The table of regions of a fleet, in the memory of the caller.
@@ -66,16 +72,55 @@ impl Table {
     }
 }
 
+/// Why an agent was refused.
+#[derive(Clone, Copy)]
+pub(super) struct Fault {
+    status: PcrStatus,
+    list: PcrInputList,
+    index: usize,
+    field: &'static CStr,
+}
+
+impl Fault {
+    const NONE: Self = Self { status: PcrStatus::Ok, list: PcrInputList::Agent, index: 0, field: c"" };
+
+    /// The same fault, in an entry of a list.
+    fn at(self, list: PcrInputList, index: usize) -> Self {
+        Self { list, index, ..self }
+    }
+}
+
+impl From<PcrStatus> for Fault {
+    fn from(status: PcrStatus) -> Self {
+        Self { status, ..Self::NONE }
+    }
+}
+
+impl From<InvalidInput> for Fault {
+    fn from(invalid: InvalidInput) -> Self {
+        Self { field: field(invalid), ..Self::from(PcrStatus::from(invalid)) }
+    }
+}
+
+impl From<Fault> for PcrInputError {
+    fn from(fault: Fault) -> Self {
+        Self { status: fault.status, list: fault.list, index: fault.index, field: fault.field.as_ptr() }
+    }
+}
+
 /// Agents, and the table of their regions.
 pub(crate) struct Fleet {
     /// Segments of all agents, without gaps, in the order of the agents.
     segments: Arena<Segment<S>>,
     phases: Arena<Phase<S>>,
+    corners: Arena<Corner<S>>,
     motions: Stack<Motion<'static, S>>,
     table: Table,
     /// Progress of the agents, and room for a check: as many entries as motions, or none without orders.
     progress: Stack<Progress<S>>,
     reaches: &'static mut [CheckState<S>],
+    /// Why the last agent was refused that was given to the fleet.
+    fault: Fault,
 }
 
 impl Fleet {
@@ -85,6 +130,7 @@ impl Fleet {
         let rest = Phase::starting_at(zero, zero, zero)?;
         let segments = given(Stack::new(memory.segments, memory.segment_count))?;
         let phases = given(Stack::new(memory.phases, memory.phase_count))?;
+        let corners = given(Stack::new(memory.corners, memory.corner_count))?;
         let motions = given(Stack::new(memory.motions, memory.motion_count))?;
         let entries = given(Stack::new(memory.entries, memory.entry_count))?;
         let pieces = given(Stack::new(memory.pieces, memory.piece_count))?;
@@ -100,7 +146,41 @@ impl Fleet {
         };
         let reaches = reaches.filled(CheckState::EMPTY);
         let (segments, phases) = (Arena::new(segments, origin), Arena::new(phases, rest));
-        Ok(Self { segments, phases, motions, table, progress, reaches })
+        let corners = Arena::new(corners, Corner::CENTRE);
+        Ok(Self { segments, phases, corners, motions, table, progress, reaches, fault: Fault::NONE })
+    }
+
+    /// The same fleet in other memory: agents, table, orders and progress.
+    pub(super) fn copied(&self, memory: &PcrMemory) -> Result<Self, PcrStatus> {
+        let mut new = Self::new(memory)?;
+        for own in self.motions() {
+            let path = PathRef::new(new.segments.copied(own.path().segments()).ok_or(PcrStatus::NoRoom)?)?;
+            let profile = ProfileRef::new(new.phases.copied(own.profile().phases()).ok_or(PcrStatus::NoRoom)?)?;
+            let corners = new.corners.copied(own.outline().corners()).ok_or(PcrStatus::NoRoom)?;
+            let outline = OutlineRef::new(corners, own.outline().radius())?;
+            let copy = motion(path, profile, outline, own.time().lo)?;
+            if !new.motions.push(copy) {
+                return Err(PcrStatus::NoRoom);
+            }
+            new.take(&copy);
+        }
+        match (&mut new.table, &self.table) {
+            (Table::Regions(new), Table::Regions(own)) => new.copy_from(own)?,
+            (Table::Ordered(new), Table::Ordered(own)) => new.copy_from(own)?,
+            (Table::Regions(_), Table::Ordered(_)) => return Err(PcrStatus::NoOrders),
+            // There is memory for orders now, and no order yet: the table is built again.
+            (Table::Ordered(_), Table::Regions(_)) => {}
+        }
+        for index in 0..self.motions().len() {
+            let progress = self.progress.values().get(index).copied().unwrap_or_default();
+            let _ = new.progress.push(progress);
+        }
+        Ok(new)
+    }
+
+    /// Why the last agent was refused.
+    pub(super) fn fault(&self) -> Fault {
+        self.fault
     }
 
     pub(super) fn motions(&self) -> &[Motion<'static, S>] {
@@ -152,6 +232,7 @@ impl Fleet {
     pub(super) fn add(&mut self, agent: &PcrAgent) -> Result<(), PcrStatus> {
         let motion = self.placed(agent)?;
         if !self.motions.push(motion) {
+            self.fault = PcrStatus::NoRoom.into();
             return Err(PcrStatus::NoRoom);
         }
         // There are as many entries as motions; none without orders.
@@ -162,15 +243,25 @@ impl Fleet {
 
     /// Builds the motion of an agent in free memory. The caller takes that memory once nothing can fail any more.
     fn placed(&mut self, agent: &PcrAgent) -> Result<Motion<'static, S>, PcrStatus> {
+        let placed = self.built(agent);
+        self.fault = placed.as_ref().err().copied().unwrap_or(Fault::NONE);
+        placed.map_err(|fault| fault.status)
+    }
+
+    fn built(&mut self, agent: &PcrAgent) -> Result<Motion<'static, S>, Fault> {
         let segments = place(agent, self.segments.free())?;
         let path = PathRef::new(self.segments.next(segments))?;
         let phases = profile(agent, path.length(), self.phases.free())?;
-        Ok(Motion::new(path, ProfileRef::new(self.phases.next(phases))?, inner(agent.radius), inner(agent.start))?)
+        let profile = ProfileRef::new(self.phases.next(phases))?;
+        let corners = corners(agent, self.corners.free())?;
+        let outline = OutlineRef::new(self.corners.next(corners), inner(agent.radius))?;
+        Ok(motion(path, profile, outline, inner(agent.start))?)
     }
 
     fn take(&mut self, motion: &Motion<'static, S>) {
         self.segments.take(motion.path().segments().len());
         self.phases.take(motion.profile().phases().len());
+        self.corners.take(motion.outline().corners().len());
     }
 
     /// Replaces an agent. If the table of all pairs was built, it is so afterwards.
@@ -231,7 +322,8 @@ impl Fleet {
     /// Closes the gap that a motion leaves: the parts behind it move down, one after the other, so that each is read
     /// before it is overwritten.
     fn close(&mut self, gone: &Motion<'static, S>) -> Result<(), PcrStatus> {
-        let (path, profile) = (gone.path().segments(), gone.profile().phases());
+        let (path, profile, corners) =
+            (gone.path().segments(), gone.profile().phases(), gone.outline().corners().len());
         let mut to = [self.segments.place(path), self.phases.place(profile)];
         let mut from = [to[0].saturating_add(path.len()), to[1].saturating_add(profile.len())];
         let (motions, segments, phases) = (&mut self.motions, &mut self.segments, &mut self.phases);
@@ -242,7 +334,15 @@ impl Fleet {
             let counts = [motion.path().segments().len(), motion.profile().phases().len()];
             let path = PathRef::new(segments.moved(from[0], to[0], counts[0]))?;
             let profile = ProfileRef::new(phases.moved(from[1], to[1], counts[1]))?;
-            *motion = Motion::new(path, profile, motion.radius(), motion.time().lo)?;
+            let outline = match motion.outline().corners() {
+                [] => motion.outline(),
+                own => {
+                    let at = self.corners.place(own);
+                    let own = self.corners.moved(at, at.saturating_sub(corners), own.len());
+                    OutlineRef::new(own, motion.outline().radius())?
+                }
+            };
+            *motion = self::motion(path, profile, outline, motion.time().lo)?;
             for kind in 0..2 {
                 from[kind] = from[kind].saturating_add(counts[kind]);
                 to[kind] = to[kind].saturating_add(counts[kind]);
@@ -250,6 +350,7 @@ impl Fleet {
         }
         segments.give_back(to[0]);
         phases.give_back(to[1]);
+        self.corners.give_back(self.corners.len().saturating_sub(corners));
         Ok(())
     }
 
@@ -308,35 +409,105 @@ pub(super) fn on_path(progress: Progress<S>, own: &Motion<'_, S>) -> Result<Prog
 }
 
 /// Builds the path of an agent in the first slots; returns the number of slots.
-fn place(agent: &PcrAgent, slots: &mut [Segment<S>]) -> Result<usize, PcrStatus> {
+fn place(agent: &PcrAgent, slots: &mut [Segment<S>]) -> Result<usize, Fault> {
     let legs = given(values(agent.legs, agent.leg_count))?;
     let position = Point::new(inner(agent.x), inner(agent.y));
-    let origin = Segment::standing(Pose { position, heading: angle(agent.heading) })?;
-    *slots.first_mut().ok_or(PcrStatus::NoRoom)? = origin;
-    let (mut last, mut count) = (origin, 0);
-    for leg in legs {
-        let next = match leg.curve {
-            PCR_LINE => last.then_line(inner(leg.length))?,
-            PCR_LEFT => last.then_arc(inner(leg.radius), TurnSide::Left, inner(leg.length))?,
-            PCR_RIGHT => last.then_arc(inner(leg.radius), TurnSide::Right, inner(leg.length))?,
-            _ => return Err(PcrStatus::NoSuchCurve),
+    let mut last = Segment::standing(Pose { position, heading: angle(agent.heading) })?;
+    if agent.facing != Real::default() && agent.corner_count > 0 {
+        last = last.facing(angle(agent.facing))?;
+    }
+    *slots.first_mut().ok_or(PcrStatus::NoRoom)? = last;
+    let mut path = PathInSlots { slots, count: 0, last, reversed: false };
+    for (index, leg) in legs.iter().enumerate() {
+        path.push(leg).map_err(|fault| fault.at(PcrInputList::Legs, index))?;
+    }
+    Ok(path.count.max(1))
+}
+
+/// A path that is built in memory of the caller, one leg after the other.
+struct PathInSlots<'a> {
+    slots: &'a mut [Segment<S>],
+    count: usize,
+    last: Segment<S>,
+    /// Whether the next segment is the first one after a change of gear.
+    reversed: bool,
+}
+
+impl PathInSlots<'_> {
+    fn push(&mut self, leg: &PcrPathSegment) -> Result<(), Fault> {
+        let (length, radius) = (inner(leg.length), inner(leg.radius));
+        let mut next = match leg.curve {
+            PCR_LINE => self.last.then_line(length)?,
+            PCR_LEFT => self.last.then_arc(radius, TurnSide::Left, length)?,
+            PCR_RIGHT => self.last.then_arc(radius, TurnSide::Right, length)?,
+            PCR_PIVOT_LEFT => self.last.then_pivot(radius, TurnSide::Left, length)?,
+            PCR_PIVOT_RIGHT => self.last.then_pivot(radius, TurnSide::Right, length)?,
+            PCR_REVERSE => return self.reverse(),
+            _ => return Err(PcrStatus::NoSuchCurve.into()),
         };
         if next.length() > S::ZERO {
-            *slots.get_mut(count).ok_or(PcrStatus::NoRoom)? = next;
-            (last, count) = (next, count + 1);
+            if core::mem::take(&mut self.reversed) {
+                next = next.facing_opposite()?;
+            }
+            *self.slots.get_mut(self.count).ok_or(PcrStatus::NoRoom)? = next;
+            (self.last, self.count) = (next, self.count.saturating_add(1));
         }
+        Ok(())
     }
-    Ok(count.max(1))
+
+    /// The segment before a change of gear ends with the new direction of travel.
+    fn reverse(&mut self) -> Result<(), Fault> {
+        self.last = self.last.turned(angle(HALF_TURN))?;
+        self.reversed = !self.reversed;
+        if let Some(before) = self.count.checked_sub(1) {
+            *self.slots.get_mut(before).ok_or(PcrStatus::NoRoom)? = self.last;
+        }
+        Ok(())
+    }
+}
+
+/// Builds the corners of an agent in the first slots; returns the number of slots.
+fn corners(agent: &PcrAgent, slots: &mut [Corner<S>]) -> Result<usize, Fault> {
+    let given = given(values(agent.corners, agent.corner_count))?;
+    if given.is_empty() {
+        return Ok(0);
+    }
+    for (index, corner) in given.iter().enumerate() {
+        let number = |value, field| number(value).map_err(|status| Fault { field, ..status.into() });
+        let checked = number(corner.x, c"x").and_then(|_| number(corner.y, c"y"));
+        checked.map_err(|fault| fault.at(PcrInputList::Corners, index))?;
+    }
+    let corners = given.iter().map(|corner| Vector { x: inner(corner.x), y: inner(corner.y) });
+    let outline = Outline::<S, 16>::polygon(corners, inner(agent.radius))?;
+    let corners = outline.as_outline().corners();
+    slots.get_mut(..corners.len()).ok_or(PcrStatus::NoRoom)?.copy_from_slice(corners);
+    Ok(corners.len())
+}
+
+fn motion(
+    path: PathRef<'static, S>,
+    profile: ProfileRef<'static, S>,
+    outline: OutlineRef<'static, S>,
+    start: S,
+) -> Result<Motion<'static, S>, InvalidInput> {
+    #[cfg(feature = "outlines")]
+    return Motion::with_outline(path, profile, outline, start);
+    #[cfg(not(feature = "outlines"))]
+    if outline.corners().is_empty() {
+        Motion::new(path, profile, outline.radius(), start)
+    } else {
+        Err(InvalidInput::NeedsOutlines)
+    }
 }
 
 /// Builds the profile of an agent in the first slots; returns the number of slots.
-fn profile(agent: &PcrAgent, length: S, slots: &mut [Phase<S>]) -> Result<usize, PcrStatus> {
+fn profile(agent: &PcrAgent, length: S, slots: &mut [Phase<S>]) -> Result<usize, Fault> {
     let stretches = given(values(agent.stretches, agent.stretch_count))?;
     let mut count = 0;
     let mut push = |phase| {
         *slots.get_mut(count).ok_or(PcrStatus::NoRoom)? = phase;
         count += 1;
-        Ok::<(), PcrStatus>(())
+        Ok::<(), Fault>(())
     };
     if stretches.is_empty() {
         let limits = Limits { speed: inner(agent.speed), acceleration: inner(agent.acceleration) };
@@ -345,12 +516,15 @@ fn profile(agent: &PcrAgent, length: S, slots: &mut [Phase<S>]) -> Result<usize,
         }
     }
     let mut last: Option<Phase<S>> = None;
-    for stretch in stretches {
+    for (index, stretch) in stretches.iter().enumerate() {
+        let (duration, acceleration) = (inner(stretch.duration), inner(stretch.acceleration));
         let next = match last {
-            None => Phase::starting_at(inner(agent.speed), inner(stretch.duration), inner(stretch.acceleration))?,
-            Some(last) => last.then(inner(stretch.duration), inner(stretch.acceleration))?,
+            None => Phase::starting_at(inner(agent.speed), duration, acceleration),
+            Some(last) => last.then(duration, acceleration),
         };
-        push(next)?;
+        let at = |fault: Fault| fault.at(PcrInputList::Stretches, index);
+        let next = next.map_err(|invalid| at(invalid.into()))?;
+        push(next).map_err(at)?;
         last = Some(next);
     }
     Ok(count)

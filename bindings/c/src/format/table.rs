@@ -5,7 +5,7 @@ use super::number::Real;
 use super::points::{Room, ask, change, interval, number, short, status};
 use super::types::{PcrAgent, PcrFleet, PcrInterval, PcrMemory, PcrRegion};
 use crate::memory::{get, put};
-use crate::status::{PcrStatus, given};
+use crate::status::{PcrInputError, PcrStatus, given};
 use pcr_core::RegionRef;
 
 /// Creates a fleet without agents in the memory of the caller.
@@ -21,6 +21,26 @@ pub extern "C" fn pcr_fleet_init(place: Option<&mut PcrFleet>, memory: Option<&P
 #[unsafe(export_name = name!("fleet_add"))]
 pub extern "C" fn pcr_fleet_add(place: Option<&mut PcrFleet>, agent: Option<&PcrAgent>) -> PcrStatus {
     change(place, |fleet| fleet.add(given(agent)?))
+}
+
+/// Moves a fleet, with its table and orders, into other memory, which must not overlap the memory that it has; that is free
+/// afterwards. A fleet that had no memory for orders, and has it now, must be built again. PCR_STATUS_NO_ROOM or
+/// PCR_STATUS_TABLE_FULL if it does not fit; the fleet is unchanged then.
+#[unsafe(export_name = name!("fleet_move"))]
+pub extern "C" fn pcr_fleet_move(place: Option<&mut PcrFleet>, memory: Option<&PcrMemory>) -> PcrStatus {
+    change(place, |fleet| {
+        *fleet = fleet.copied(given(memory)?)?;
+        Ok(())
+    })
+}
+
+/// Says why the last agent was refused that was given to `pcr_fleet_add`, `pcr_fleet_replace` or `pcr_fleet_admit`.
+#[unsafe(export_name = name!("fleet_input_error"))]
+pub extern "C" fn pcr_fleet_input_error(place: Option<&PcrFleet>, out: Option<&mut PcrInputError>) -> PcrStatus {
+    ask(place, |fleet| {
+        *given(out)? = fleet.fault().into();
+        Ok(())
+    })
 }
 
 /// Number of agents; 0 for a null pointer.

@@ -4,16 +4,28 @@
 use super::number::{Heading, MOTION, PIECE, Real, SEGMENT, ZERO};
 use crate::status::PcrAuthorityKind;
 
-/// A line or an arc of a path. It begins where the one before it ends, with the same heading.
+/// A line, an arc or a turn in place of a path. It begins where the one before it ends, in the same direction of travel.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrPathSegment {
-    /// PCR_LINE, PCR_LEFT or PCR_RIGHT.
+    /// PCR_LINE, PCR_LEFT, PCR_RIGHT, PCR_PIVOT_LEFT, PCR_PIVOT_RIGHT or PCR_REVERSE.
     pub curve: u8,
-    /// Length (m); of an arc at most one turn. A leg of length 0 adds nothing.
+    /// Length (m); of an arc at most one turn. For a turn in place, its angle times the radius. A leg of length 0 adds
+    /// nothing. Ignored for PCR_REVERSE.
     pub length: Real,
-    /// Radius of an arc (m), above 0; ignored for a line.
+    /// Radius of an arc (m), above 0. For a turn in place, the lever: the distance from the reference point at which a point
+    /// of the agent moves at the speed of the profile. Ignored for a line and for PCR_REVERSE.
     pub radius: Real,
+}
+
+/// A corner of an outline, in the frame of the agent: the reference point, which follows the path, is the origin.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PcrCorner {
+    /// Distance ahead of the reference point (m).
+    pub x: Real,
+    /// Distance to the left of the reference point (m).
+    pub y: Real,
 }
 
 /// A part of a profile with constant acceleration.
@@ -26,7 +38,7 @@ pub struct PcrProfilePhase {
     pub acceleration: Real,
 }
 
-/// A disc, its path and its motion along the path.
+/// A disc or a convex outline, its path and its motion along the path.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PcrAgent {
@@ -36,7 +48,7 @@ pub struct PcrAgent {
     pub y: Real,
     /// Direction of travel at the start (rad, or in the unit of headings that is given above).
     pub heading: Heading,
-    /// Radius of the disc (m), above 0.
+    /// Radius of the disc (m), above 0. With corners, the radius by which the polygon is rounded, 0 or more.
     pub radius: Real,
     /// Time at which the agent sets off (s). It stands before that, and after its arrival.
     pub start: Real,
@@ -52,6 +64,14 @@ pub struct PcrAgent {
     pub stretches: *const PcrProfilePhase,
     /// Number of stretches.
     pub stretch_count: usize,
+    /// Corners of a convex polygon, counter-clockwise, at most 16; none for a disc about the reference point. Two make a
+    /// capsule.
+    pub corners: *const PcrCorner,
+    /// Number of corners.
+    pub corner_count: usize,
+    /// Angle from the direction of travel to the heading of the outline at the start, counter-clockwise (rad, or in the unit
+    /// of headings): 0 for an agent that looks ahead, half a turn in reverse gear. Ignored for a disc.
+    pub facing: Heading,
 }
 
 /// A closed interval of times or of lengths.
@@ -115,6 +135,13 @@ pub struct PcrAgentConflict {
 #[derive(Clone, Copy, Debug)]
 pub struct PcrSegmentStorage {
     opaque: [Real; SEGMENT],
+}
+
+/// Memory for a corner of an outline.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct PcrCornerStorage {
+    opaque: [Real; 5],
 }
 
 /// Memory for a phase of a profile: three for each agent, or one for each stretch.
@@ -249,23 +276,32 @@ pub struct PcrMemory {
     pub order_count: usize,
     /// Memory for the progress of the agents, as many as `motions`; null if no orders are used.
     pub robots: *mut PcrCheckStorage,
+    /// Memory for the corners of outlines; null if all agents are discs.
+    pub corners: *mut PcrCornerStorage,
+    /// Number of corners.
+    pub corner_count: usize,
 }
 
 /// A fleet and the table of its regions.
 #[repr(C)]
 #[derive(Debug)]
 pub struct PcrFleet {
-    opaque: [usize; 32],
+    opaque: [usize; 40],
 }
 
 impl PcrFleet {
     /// Memory for a fleet, not initialized.
-    pub const EMPTY: Self = Self { opaque: [0; 32] };
+    pub const EMPTY: Self = Self { opaque: [0; 40] };
 }
 
 impl PcrSegmentStorage {
     /// An unused slot.
     pub const EMPTY: Self = Self { opaque: [ZERO; SEGMENT] };
+}
+
+impl PcrCornerStorage {
+    /// An unused slot.
+    pub const EMPTY: Self = Self { opaque: [ZERO; 5] };
 }
 
 impl PcrPhaseStorage {

@@ -285,6 +285,9 @@ fn table<S: Scalar>(fleet: &mut [Motion<'_, S>], agents: &[usize]) {
         any(Ecm::erase(&mut ecm, fleet, agent).is_ok());
         any(Ecm::fill_row(&mut ecm, fleet, agent).is_ok());
         any(Ecm::fill(&mut ecm, fleet).is_ok());
+        let mut copy = any(Ecm::<S, _, _>::new([EcmEntry::EMPTY; 4], [Piece::EMPTY; 8]));
+        any(Ecm::copy_from(&mut copy, &ecm).is_ok());
+        any(copy.len());
         Ecm::clear(any(&mut ecm));
         if let Some(&motion) = any(fleet.first()) {
             any(Ecm::replace(&mut ecm, fleet, agent, motion).is_ok());
@@ -407,6 +410,9 @@ fn orders<S: Scalar>(fleet: &mut [Motion<'_, S>], progress: &mut [Progress<S>], 
     any(PrecedenceTable::remove(&mut orders, fleet, agent).is_ok());
     any(PrecedenceTable::erase(&mut orders, fleet, agent).is_ok());
     any(PrecedenceTable::fill(&mut orders, fleet).is_ok());
+    let mut copy = any(PrecedenceTable::new([EcmEntry::EMPTY; 4], [Piece::EMPTY; 8], [RegionPrecedence::EMPTY; 4]));
+    any(PrecedenceTable::copy_from(&mut copy, &orders).is_ok());
+    any(PrecedenceTable::ecm(&copy).len());
     if let Some(&motion) = any(fleet.first()) {
         any(PrecedenceTable::replace(&mut orders, fleet, agent, motion).is_ok());
     }
