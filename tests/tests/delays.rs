@@ -237,6 +237,37 @@ fn a_crossing_at_constant_speeds_forbids_the_interval_of_the_closed_form() {
 }
 
 #[test]
+fn where_the_format_ends_before_the_region_the_last_delay_under_way_is_told() {
+    // One crosses the line of the other and then stands for 3000 s; the other stops there for 500 s. Times up to 4096 s can be represented,
+    // so that no delay beyond 1096 s can be tried, and at that there is a contact.
+    let motion = |start: [f64; 3], from: f64, speed: f64, pieces: &[(f64, f64)]| {
+        let disc = Disc { start, legs: vec![Leg::Line(4.0)], radius: 0.25 };
+        Course::<Q16>::driven(&disc, &Drive::Pieces(speed, pieces.to_vec()), from).expect("a motion")
+    };
+    let brief = |from| motion([-2.0, 0.0, 0.0], from, 1.0, &[(3.5, 0.0), (1.0, -1.0), (2990.0, 0.0)]);
+    let late = |from| motion([-2.0, 0.0, 0.0], from, 0.0, &[(1000.0, 0.0), (1.0, 1.0), (3.0, 0.0), (1.0, -1.0)]);
+    let stops = [(1.5, 0.0), (1.0, -1.0), (500.0, 0.0), (1.0, 1.0), (1.5, 0.0)];
+    let long = |from| motion([0.0, -2.0, FRAC_PI_2], from, 1.0, &stops);
+    let near = |value: Q16, expected: f64| (value.to_f64() - expected).abs() < 0.01;
+    let fleet = [brief(0.0), long(1000.0)];
+    let fleet = [fleet[0].motion(), fleet[1].motion()];
+    let ecm = build_ecm(&fleet).expect("a small table");
+    let [delays] = ecm.row(&fleet, 0).expect("its row").map(|region| region.forbidden_delays()).collect::<Vec<_>>()[..]
+    else {
+        panic!("one region")
+    };
+    assert!(near(delays.hi, 1505.0), "until the other has arrived: {delays:?}");
+    assert!(delays.lo.to_f64() > 990.0 && delays.lo.to_f64() < 1001.0, "{delays:?}");
+    // One that first stands for 1000 s would have to start before the times of the format.
+    let fleet = [long(-3400.0), late(-3000.0)];
+    let fleet = [fleet[0].motion(), fleet[1].motion()];
+    let ecm = build_ecm(&fleet).expect("a small table");
+    let region = ecm.row(&fleet, 1).expect("its row").next().expect("a region");
+    let delays = region.forbidden_delays();
+    assert!(near(delays.lo, -1405.0), "before the other has started: {delays:?}");
+}
+
+#[test]
 fn agents_head_on_on_one_line_are_never_free() {
     let found = forbidden([&line([0.0, 0.0, 0.0], 4.0, 1.0), &line([4.0, 0.0, PI], 4.0, 1.0)]);
     // Late, the ego is met at its start; early, the other is.
