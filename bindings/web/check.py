@@ -8,6 +8,7 @@
 - delays that the page plans leave no conflict for the tool;
 - a saved file is the scenario, for the page and for the tool; plans that the tool writes are loaded, and what is no scenario is refused with a reason;
 - what the tool refuses is refused, in files and in fields, and what it takes is taken, with the reason said and nothing of it drawn;
+- a disc becomes a convex polygon, whose corners are dragged and added, and the tool says the same of it, bit for bit;
 - an agent is removed, and the others keep their colours and can be edited;
 - a link that is copied opens the scenario, in a new window and in one that shows the page.
 
@@ -259,6 +260,36 @@ def removals(browser):
     return wrong + ([] if alone["removable"] and alone["sliders"] and alone["which"] else [f"an agent that is added to none: {alone}"])
 
 
+def outlines(tool, folder, browser):
+    """A disc becomes a convex polygon, its corners are dragged and added, and the tool says the same of it."""
+    wrong = []
+    browser.value("open(START); for (const k of [0, 3, 5]) { chosen = k; edit(); $('shape').value = 'polygon'; $('shape').dispatchEvent(new Event('change')); } 0")
+    wrong += same(tool, folder, browser, "with three polygons")
+    before = browser.value("JSON.stringify(scenario.agents[5].footprint)")
+    drag(browser, "corner", (14, -10))
+    if browser.value("JSON.stringify(scenario.agents[5].footprint)") == before:
+        wrong.append("a corner that is dragged stays")
+    wrong += same(tool, folder, browser, "after dragging a corner")
+    drag(browser, "corner", (-260, 200), moves=40)
+    wrong += [] if browser.value("convex(polygon(scenario.agents[5])) && answers.valid") else ["a corner that is dragged across leaves a concave outline"]
+    for count in (5, 6, 7):
+        browser.value("$('corner').click(); 0")
+        if browser.value("scenario.agents[5].footprint.polygon.length") != count:
+            wrong.append(f"no corner {count} is added")
+    browser.value("scenario.agents[5].footprint.growth = 0.1; update(); 0")
+    wrong += same(tool, folder, browser, "with more corners, rounded")
+    browser.screenshot(folder / "playground-outlines.png")
+    concave = [{"ahead": x, "left": y} for x, y in ((0, 0), (1, 0), (0.2, 0.2), (0, 1))]
+    for polygon, reason in ((concave, "only convex outlines"), (concave[:2], "3 to 16 corners")):
+        agent = {key: value for key, value in ONE["agents"][0].items() if key != "radius"}
+        agent["footprint"] = {"polygon": polygon}
+        said = browser.value(f"(() => {{ try {{ read({json.dumps({'agents': [agent]})}); return 'taken'; }} catch (e) {{ return e.message; }} }})()")
+        wrong += [] if reason in said else [f"{polygon}: {said}"]
+    browser.value("$('shape').value = 'disc'; $('shape').dispatchEvent(new Event('change')); 0")
+    wrong += [] if browser.value("scenario.agents[5].radius > 0 && !scenario.agents[5].footprint") else ["a polygon does not become a disc again"]
+    return wrong
+
+
 def links(browser, page):
     """Copies a link and opens it, in a page that is newly opened and in one that shows something else."""
     wrong = []
@@ -348,7 +379,7 @@ def main(tool, page, folder):
         drag(browser, "leg", (90, -60), moves=40)
         took = sorted(browser.value("update = inner, took"))
         print(f"a drag with {browser.value('scenario.agents.length')} agents, regions and pictures: {len(took)} frames of {took[len(took) // 2]:.1f} ms, {took[-1]:.1f} ms at most")
-        wrong += snapping(browser) + keys(browser) + files(tool, folder, browser) + refusals(tool, folder, browser) + fields(browser) + removals(browser) + links(browser, page)
+        wrong += snapping(browser) + keys(browser) + files(tool, folder, browser) + refusals(tool, folder, browser) + fields(browser) + removals(browser) + outlines(tool, folder, browser) + links(browser, page)
         wrong += browser.noise()
         browser.open(page, 390, "dark")
         ready(browser)

@@ -16,7 +16,7 @@ function fit(canvas) {
 /** The part of the plane that is shown: kept while something is dragged. */
 function frame(width, height) {
   if (!grabbed || !view) {
-    const points = scenario.agents.flatMap((agent) => joints(agent).map(({ x, y }) => [x, y, agent.radius]));
+    const points = scenario.agents.flatMap((agent) => joints(agent).map(({ x, y }) => [x, y, reach(agent)]));
     const low = (axis) => Math.min(...points.map((p) => p[axis] - p[2])), high = (axis) => Math.max(...points.map((p) => p[axis] + p[2]));
     const [x0, x1, y0, y1] = points.length ? [low(0), high(0), low(1), high(1)] : [-4, 4, -3, 3];
     view = { x: (x0 + x1) / 2, y: (y0 + y1) / 2, zoom: 0.86 / Math.max((x1 - x0) / width, (y1 - y0) / height, 1e-6) };
@@ -30,7 +30,31 @@ const TIP = 34, LINES = 400;
 function handles(agent, at) {
   const poses = joints(agent), [x, y] = at(poses[0]);
   const tip = { kind: "heading", x: x + TIP * Math.cos(agent.start.heading), y: y - TIP * Math.sin(agent.start.heading) };
-  return [tip, ...poses.slice(1).map((pose, k) => ({ kind: "leg", leg: k, x: at(pose)[0], y: at(pose)[1] })), { kind: "start", x, y }];
+  const corners = polygon(agent).map((corner, k) => {
+    const [px, py] = at(placed(agent.start, corner));
+    return { kind: "corner", corner: k, x: px, y: py };
+  });
+  return [...corners, tip, ...poses.slice(1).map((pose, k) => ({ kind: "leg", leg: k, x: at(pose)[0], y: at(pose)[1] })), { kind: "start", x, y }];
+}
+
+/** A point ahead and to the left of a pose. */
+const placed = ({ x, y, heading }, [ahead, left]) => ({
+  x: x + ahead * Math.cos(heading) - left * Math.sin(heading), y: y + ahead * Math.sin(heading) + left * Math.cos(heading),
+});
+
+/** The outline of an agent at a pose, as a path of the pen. */
+function outline(pen, agent, pose, at) {
+  pen.beginPath();
+  if (!agent.footprint) return pen.arc(...at(pose), Math.max(2, agent.radius * view.zoom), 0, 7);
+  const growth = agent.footprint.growth ?? 0, corners = ordered(polygon(agent));
+  corners.forEach((corner, k) => {
+    // The corner is rounded by the growth: from the normal of the edge before it to that of the edge behind it.
+    const normal = (a, b) => Math.atan2(a[0] - b[0], b[1] - a[1]);
+    const before = corners[(k + corners.length - 1) % corners.length], next = corners[(k + 1) % corners.length];
+    if (growth) pen.arc(...at(placed(pose, corner)), growth * view.zoom, -(pose.heading + normal(before, corner)), -(pose.heading + normal(corner, next)), true);
+    else pen.lineTo(...at(placed(pose, corner)));
+  });
+  pen.closePath();
 }
 
 function trace(pen, agent, at) {
@@ -73,10 +97,9 @@ function drawPlane() {
     trace(pen, agent, at);
     pen.stroke();
   });
-  places.forEach(([x, y], k) => {
+  places.forEach(([x, y, heading], k) => {
     const [px, py] = at({ x, y });
-    pen.beginPath();
-    pen.arc(px, py, Math.max(2, scenario.agents[k].radius * view.zoom), 0, 7);
+    outline(pen, scenario.agents[k], { x, y, heading }, at);
     pen.globalAlpha = 0.28;
     pen.fillStyle = hit.has(k) ? tint("--hit") : colour(k);
     pen.fill();
@@ -104,12 +127,20 @@ function drawPlane() {
   pen.lineWidth = 1.5;
   const all = handles(agent, at), [x, y] = at(agent.start);
   pen.beginPath();
+  const tip = all.find((handle) => handle.kind === "heading");
   pen.moveTo(x, y);
-  pen.lineTo(all[0].x, all[0].y);
+  pen.lineTo(tip.x, tip.y);
   pen.stroke();
+  if (agent.footprint) {
+    outline(pen, agent, agent.start, at);
+    pen.setLineDash([3, 3]);
+    pen.stroke();
+    pen.setLineDash([]);
+  }
   for (const handle of all) {
     pen.beginPath();
-    if (handle.kind === "leg") pen.rect(handle.x - 6, handle.y - 6, 12, 12);
+    if (handle.kind === "corner") pen.arc(handle.x, handle.y, 4, 0, 7);
+    else if (handle.kind === "leg") pen.rect(handle.x - 6, handle.y - 6, 12, 12);
     else pen.arc(handle.x, handle.y, handle.kind === "start" ? 8 : 5, 0, 7);
     pen.fillStyle = tint("--paper");
     pen.fill();

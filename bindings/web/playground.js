@@ -1,6 +1,6 @@
 // The page: a scenario in the format of the tool, drawn and edited; every number of the answers comes from the module.
 const $ = (id) => document.getElementById(id);
-const AGENTS = 24, LEGS = 32, COLUMNS = 360;
+const AGENTS = 24, LEGS = 32, CORNERS = 16, COLUMNS = 360;
 // The palette of pictures, told apart by brightness as well.
 const colour = (k) => `hsl(${(hue(scenario.agents[k]) * 137.5 + 210) % 360} 65% ${dark() ? 62 : 42}%)`;
 const dark = () => matchMedia("(prefers-color-scheme: dark)").matches;
@@ -122,7 +122,11 @@ function edit() {
     });
     return input;
   };
-  $("sliders").replaceChildren(...(agent ? SLIDERS : []).map(([field, text, min, max]) => {
+  $("shape").disabled = !agent;
+  $("shape").value = agent?.footprint ? "polygon" : "disc";
+  $("corner").disabled = !agent?.footprint || agent.footprint.polygon.length >= CORNERS;
+  const sliders = SLIDERS.filter(([field]) => !(field === "radius" && agent?.footprint));
+  $("sliders").replaceChildren(...(agent ? sliders : []).map(([field, text, min, max]) => {
     const label = document.createElement("label"), slider = document.createElement("input");
     Object.assign(slider, { type: "range", min, max, step: "any", value: agent[field] });
     const exact = number(agent, field, text);
@@ -151,6 +155,30 @@ function pointer(event) {
   return { px, py, x: view.x + (px - box.width / 2) / view.zoom, y: view.y - (py - box.height / 2) / view.zoom };
 }
 
+/** Moves a corner of an outline to a point of the plane, where the outline stays convex. */
+function move(agent, index, { x, y }) {
+  const { x: x0, y: y0, heading } = agent.start, dx = x - x0, dy = y - y0;
+  const corner = { ahead: dx * Math.cos(heading) + dy * Math.sin(heading), left: dy * Math.cos(heading) - dx * Math.sin(heading) };
+  const before = agent.footprint.polygon[index];
+  agent.footprint.polygon[index] = corner;
+  if (!convex(polygon(agent))) agent.footprint.polygon[index] = before;
+}
+
+/** Puts a corner beside the middle of the longest edge. */
+function bulge(agent) {
+  const corners = ordered(polygon(agent)), ends = corners.map((corner, k) => [corner, corners[(k + 1) % corners.length]]);
+  const long = ([a, b]) => Math.hypot(b[0] - a[0], b[1] - a[1]);
+  const at = ends.reduce((best, edge, k) => (long(edge) > long(ends[best]) ? k : best), 0), [a, b] = ends[at];
+  // Outward by less and less, until it is on the inner side of the edges beside it.
+  for (let part = 0.1; part > 1e-6; part /= 2) {
+    const corner = [(a[0] + b[0]) / 2 + part * (b[1] - a[1]), (a[1] + b[1]) / 2 - part * (b[0] - a[0])];
+    const all = [...corners.slice(0, at + 1), corner, ...corners.slice(at + 1)];
+    if (!convex(all)) continue;
+    agent.footprint.polygon = all.map(([ahead, left]) => ({ ahead, left }));
+    return;
+  }
+}
+
 function listen() {
   const plane = $("plane");
   plane.addEventListener("pointerdown", (event) => {
@@ -176,6 +204,7 @@ function listen() {
     const point = pointer(event);
     if (grabbed.kind === "start") Object.assign(agent.start, { x: point.x, y: point.y });
     else if (grabbed.kind === "heading") agent.start.heading = snapped(Math.atan2(point.y - agent.start.y, point.x - agent.start.x));
+    else if (grabbed.kind === "corner") move(agent, grabbed.corner, point);
     else agent.path[grabbed.leg] = legTo(joints(agent)[grabbed.leg], point);
     later();
   });
@@ -205,6 +234,21 @@ function listen() {
     update();
   });
   $("remove").addEventListener("click", () => { scenario.agents.splice(chosen, 1); edit(); update(); });
+  $("shape").addEventListener("change", () => {
+    const agent = scenario.agents[chosen];
+    if ($("shape").value === "disc") {
+      agent.radius = +reach(agent).toPrecision(12);
+      delete agent.footprint;
+    } else if (!agent.footprint) {
+      // Twice as long as wide, with the reference point in its middle.
+      const ahead = agent.radius, left = agent.radius / 2;
+      agent.footprint = { polygon: [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([x, y]) => ({ ahead: x * ahead, left: y * left })) };
+      delete agent.radius;
+    }
+    edit();
+    update();
+  });
+  $("corner").addEventListener("click", () => { bulge(scenario.agents[chosen]); edit(); update(); });
   $("line").addEventListener("click", () => { scenario.agents[chosen].path.push({ kind: "line", length: 1 }); edit(); update(); });
   $("arc").addEventListener("click", () => { scenario.agents[chosen].path.push({ kind: "arc", radius: 1, sweep: Math.PI / 2 }); edit(); update(); });
   $("plan").addEventListener("click", () => {

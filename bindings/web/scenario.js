@@ -16,18 +16,45 @@ const parts = (path) => path.flatMap((leg) => (turns(leg) === 1 ? [leg] : Array(
 
 const pair = (leg) => (leg.kind === "line" ? [leg.length, 0] : [leg.radius, leg.sweep]);
 
+/** The corners of an agent's outline, ahead and left of its reference point; none for a disc. */
+const polygon = (agent) => (agent.footprint?.polygon ?? []).map(({ ahead, left }) => [ahead, left]);
+
+/** How far an agent reaches from its reference point. */
+const reach = (agent) => (agent.footprint ? Math.max(...polygon(agent).map(([x, y]) => Math.hypot(x, y))) + (agent.footprint.growth ?? 0) : agent.radius);
+
+/** Twice the area on the left of the way from one corner over the next to a third. */
+const bend = ([ax, ay], [bx, by], [cx, cy]) => (bx - ax) * (cy - by) - (by - ay) * (cx - bx);
+
+/** Whether all corners bend to one side, once around, by more than rounding. */
+function convex(corners) {
+  const at = (k) => corners[k % corners.length], size = Math.max(...corners.flat().map(Math.abs));
+  const side = Math.sign(bend(at(0), at(1), at(2)));
+  // Every corner is on the same side of every edge: this excludes polygons that wind around twice.
+  return side !== 0 && corners.every((a, k) => corners.every((other, j) => j === k || j === (k + 1) % corners.length || side * bend(a, at(k + 1), other) > 1e-9 * size * size));
+}
+
+/** Counter-clockwise, from the hindmost corner on, as the tool has them: with another first corner the last digits may differ. */
+function ordered(corners) {
+  if (corners.length < 3) return corners;
+  const left = bend(...corners) > 0 ? corners : [...corners].reverse();
+  const first = left.reduce((best, corner, k) => (corner[0] < left[best][0] || (corner[0] === left[best][0] && corner[1] < left[best][1]) ? k : best), 0);
+  return [...left.slice(first), ...left.slice(0, first)];
+}
+
 function write(agents) {
   const stride = pcr.pcr_stride(), input = new Float64Array(pcr.memory.buffer, pcr.pcr_input(), AGENTS * stride);
   agents.forEach((a, k) => {
     // The tool leaves out what has no length.
     const legs = parts(a.path).filter((leg) => whole(leg) !== 0);
-    input.set([a.start.x, a.start.y, a.start.heading, a.radius, a.t_start, a.v_max, a.a_max, legs.length, ...legs.flatMap(pair)], k * stride);
+    const corners = ordered(polygon(a)), radius = a.footprint ? a.footprint.growth ?? 0 : a.radius;
+    input.set([a.start.x, a.start.y, a.start.heading, radius, a.t_start, a.v_max, a.a_max, legs.length, ...legs.flatMap(pair)], k * stride);
+    input.set([corners.length, ...corners.flat()], k * stride + 8 + 2 * LEGS);
   });
 }
 
 const KEYS = {
-  top: ["format", "version", "name", "agents", "warnings"], agent: ["id", "label", "radius", "v_max", "a_max", "t_start", "start", "path"],
-  start: ["x", "y", "heading"], line: ["kind", "length"], arc: ["kind", "radius", "sweep"],
+  top: ["format", "version", "name", "agents", "warnings"], agent: ["id", "label", "radius", "footprint", "v_max", "a_max", "t_start", "start", "path"],
+  footprint: ["polygon", "growth"], corner: ["ahead", "left"], start: ["x", "y", "heading"], line: ["kind", "length"], arc: ["kind", "radius", "sweep"],
 };
 
 // As the tool: the largest magnitude of a number, the longest label, and what would end a line or turn around what is beside it.
@@ -76,7 +103,16 @@ function read(found) {
     ids.add(agent.id);
     if (agent.label !== undefined) printable(text(agent.label, `${name}, label`), `${name}, label`);
     if (!Array.isArray(agent.path) || agent.path.length > LEGS) refuse(`${name}: 0 to ${LEGS} legs`);
-    for (const field of ["radius", "v_max", "a_max"]) number(agent[field], `${name}, ${field}`, RANGE_OF[field]);
+    for (const field of ["v_max", "a_max"]) number(agent[field], `${name}, ${field}`, RANGE_OF[field]);
+    if (agent.footprint === undefined) number(agent.radius, `${name}, radius`, RANGE_OF.radius);
+    else {
+      if (agent.radius !== undefined) refuse(`${name}: there is a radius or a footprint, not both`);
+      const { polygon: corners, growth } = object(agent.footprint, KEYS.footprint, `${name}, footprint: `);
+      if (growth !== undefined) number(growth, `${name}, growth`, "from 0");
+      if (!Array.isArray(corners) || corners.length < 3 || corners.length > CORNERS) refuse(`${name}: 3 to ${CORNERS} corners can be edited here`);
+      for (const corner of corners) for (const field of KEYS.corner) number(object(corner, KEYS.corner, `${name}, corner: `)[field], `${name}, ${field}`);
+      if (!convex(polygon(agent))) refuse(`${name}: only convex outlines, without straight corners, can be edited here`);
+    }
     object(agent.start, KEYS.start, `${name}, start: `);
     for (const field of KEYS.start) number(agent.start[field], `${name}, ${field}`);
     const path = agent.path.map((leg, at) => {
@@ -92,7 +128,9 @@ function read(found) {
     const duration = length && length / peak + peak / agent.a_max;
     if (length > LIMIT) refuse(`${name}, path: ${length} m long; allowed is up to 1e10`);
     if (!(duration <= LIMIT && Math.abs(t_start + duration) <= LIMIT)) refuse(`${name}: the motion takes ${duration} s from ${t_start} s; allowed is up to 1e10 s`);
-    return { ...agent, t_start, start: { ...agent.start }, path };
+    const copy = { ...agent, t_start, start: { ...agent.start }, path };
+    if (agent.footprint) copy.footprint = { ...agent.footprint, polygon: agent.footprint.polygon.map((corner) => ({ ...corner })) };
+    return copy;
   });
   return { format: "pcr-scenario", version: 1, name: found.name === undefined ? "playground" : text(found.name, "the name"), agents };
 }

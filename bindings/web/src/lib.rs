@@ -9,7 +9,8 @@
 //! ```text
 //! pcr_input()                          -> address of 24 rows of pcr_stride() numbers, one for each agent:
 //!                                         x, y, heading, radius, start, v_max, a_max, number of legs, then two for each leg:
-//!                                         length, 0 for a line; radius, sweep (left is positive) for an arc
+//!                                         length, 0 for a line; radius, sweep (left is positive) for an arc; behind
+//!                                         room for 32 legs the number of corners, then two for each corner: ahead, left
 //! pcr_build(agents)                    -> regions      reads them and computes the table
 //! pcr_regions()                        -> rows of 10   ego, other, times, lengths of the ego, lengths of the other (from, to);
 //!                                                      1 if the other forbids the same while it stands before, after

@@ -1,6 +1,6 @@
 //! Errors as sentences. Agents and legs are counted from 1.
 
-use crate::limits::{AGENTS, LEGS};
+use crate::limits::{AGENTS, CORNERS, LEGS};
 use core::fmt;
 use pcr_core::{AdmissionError, CapacityError, InvalidInput, MismatchError, PlanError};
 
@@ -11,6 +11,8 @@ pub enum Fault {
     Agents(usize),
     /// The number of legs of this agent is invalid.
     Legs(usize),
+    /// The number of corners of this agent is invalid.
+    Corners(usize),
     /// This agent, or its leg, is invalid.
     Invalid(usize, Option<usize>, InvalidInput),
     /// No fleet was built, or the last one was refused.
@@ -73,6 +75,7 @@ impl fmt::Display for Fault {
         match *self {
             Self::Agents(count) => write!(f, "{count} agents: there is room for {}", AGENTS),
             Self::Legs(agent) => write!(f, "agent {}: 0 to {} legs", number(agent), LEGS),
+            Self::Corners(agent) => write!(f, "agent {}: 0 to {} corners", number(agent), CORNERS),
             Self::Invalid(agent, None, why) => write!(f, "agent {}: {why}", number(agent)),
             Self::Invalid(agent, Some(leg), why) => write!(f, "agent {}, leg {}: {why}", number(agent), number(leg)),
             Self::NotBuilt => f.write_str("there is no fleet: none was built, or the last one was refused"),
