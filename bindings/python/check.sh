@@ -12,7 +12,7 @@ if ! "$python" -m venv "$environment" >/dev/null 2>&1; then
   "$python" -m venv "$environment"
 fi
 bin=$environment/bin
-"$bin/pip" install -q --disable-pip-version-check "maturin>=1.9,<2" numpy mypy matplotlib abi3audit
+"$bin/pip" install -q --disable-pip-version-check "maturin>=1.9,<2" numpy mypy matplotlib shapely abi3audit
 rm -rf "$wheels"
 "$bin/maturin" build -q -m bindings/python/Cargo.toml --profile wheel --locked --out "$wheels"
 wheel=$(ls "$wheels"/pcr_py-*.whl)

@@ -1,6 +1,6 @@
 //! Layouts, and the options with which files of others are read.
 
-use crate::{json, refused};
+use crate::{json, refused, unreadable};
 use pcr_formats::import::{ImportOptions, ImportedLayout, InputFormat};
 use pcr_formats::input;
 use pcr_planning::exclusion_table::{EdgeDriving, ExclusionTable, UnsafeDelayModel};
@@ -92,7 +92,7 @@ impl Layout {
         }
         py.detach(|| {
             let moves = options.acceleration.is_some();
-            let (imported, warnings) = input::read_layout(&path, &options, moves).map_err(refused)?;
+            let (imported, warnings) = input::read_layout(&path, &options, moves).map_err(|error| unreadable(&error))?;
             Ok((Self(imported), warnings.all()))
         })
     }

@@ -12,21 +12,40 @@ use pcr_formats::input::{self, InputError};
 use pcr_formats::scenario::{Scenario, ScenarioError};
 use pcr_planning::check::CheckReport;
 use pcr_planning::fleet::{Fleet as Parts, HostPrecedenceTable, build_ecm_of};
-use pcr_planning::plan::{self, PlanMethod, PlanReport};
+use pcr_planning::plan::{DelaySearchOptions, Objective, PlanMethod, PlanOptions, PlanReport, PriorityRule};
 use pcr_planning::regions::{RegionOptions, RegionsReport, orders, table};
 use pcr_planning::report::{self, VersionedReport};
 use pcr_planning::safe_windows::safe_intervals;
 use pyo3::create_exception;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyBytes;
+use pyo3::types::{PyBytes, PyTuple};
+use rayon::prelude::*;
 use std::fmt::Display;
 use std::path::PathBuf;
+use std::time::Duration;
 
 create_exception!(pcr, Error, PyValueError, "What was asked for cannot be answered, with the reason.");
 
 fn refused(reason: impl Display) -> PyErr {
     Error::new_err(reason.to_string())
+}
+
+/// A file that cannot be read is an error of the system, as everywhere in Python: `FileNotFoundError` and its like.
+pub(crate) fn unreadable(error: &InputError) -> PyErr {
+    match error {
+        InputError::Unreadable(Some(path), reason) => match reason.raw_os_error() {
+            Some(number) => {
+                // The number is told beside it.
+                let text = reason.to_string();
+                let text = text.split_once(" (os error").map_or(text.as_str(), |(text, _)| text);
+                PyOSError::new_err((number, text.to_owned(), path.display().to_string()))
+            }
+            None => refused(error),
+        },
+        InputError::Refused(_, error) => misread(error),
+        error => refused(error),
+    }
 }
 
 /// The message, the line, and the place of the fault: agent, part and field.
@@ -157,8 +176,7 @@ impl Fleet {
         let options = options.options()?;
         py.detach(|| match input::read(&path, &options) {
             Ok((scenario, _)) => Self::new(scenario),
-            Err(InputError::Refused(_, error)) => Err(misread(&error)),
-            Err(error) => Err(refused(error)),
+            Err(error) => Err(unreadable(&error)),
         })
     }
 
@@ -295,11 +313,10 @@ impl Fleet {
     }
 
     /// The plan as JSON, and the planned fleet if there is one.
-    fn plan(&self, py: Python<'_>, speeds: bool) -> PyResult<(String, Option<Self>)> {
+    fn plan(&self, py: Python<'_>, options: PlanChoices) -> PyResult<(String, Option<Self>)> {
+        let options = options.options(&self.scenario)?;
         py.detach(|| {
-            let method = if speeds { PlanMethod::Speed } else { PlanMethod::Delay };
-            let (plan, scenario) =
-                PlanReport::compute(&self.scenario, &plan::PlanOptions::new(method)).map_err(refused)?;
+            let (plan, scenario) = PlanReport::compute(&self.scenario, &options).map_err(refused)?;
             // As a file of it is read: the same bits as the tool's.
             let read = |scenario: Scenario| Scenario::from_json(&scenario.to_json()).map_err(|error| misread(&error));
             Ok((json(&plan)?, scenario.map(|scenario| Self::new(read(scenario)?)).transpose()?))
@@ -354,10 +371,82 @@ impl Fleet {
     }
 }
 
+/// The options of a plan, by their names on the command line.
+#[derive(FromPyObject)]
+struct PlanChoices {
+    #[pyo3(item)]
+    speeds: bool,
+    #[pyo3(item)]
+    makespan: bool,
+    #[pyo3(item)]
+    leave_out: bool,
+    #[pyo3(item)]
+    prove: bool,
+    #[pyo3(item)]
+    time_limit: Option<f64>,
+    /// A rule by its name, or numbers of agents.
+    #[pyo3(item)]
+    rule: String,
+    #[pyo3(item)]
+    first: Vec<u64>,
+}
+
+impl PlanChoices {
+    fn options(self, scenario: &Scenario) -> PyResult<PlanOptions> {
+        let priority = match self.rule.as_str() {
+            "longest" => PriorityRule::Longest,
+            "crowded" => PriorityRule::Crowded,
+            "best" => PriorityRule::Best,
+            _ => PriorityRule::Given(self.first),
+        };
+        if let PriorityRule::Given(ids) = &priority
+            && let Some(id) = ids.iter().find(|id| scenario.agents.iter().all(|agent| agent.id != **id))
+        {
+            return Err(refused(format!("priority: no agent {id}")));
+        }
+        let time = match self.time_limit.map(Duration::try_from_secs_f64) {
+            None => None,
+            Some(Ok(time)) => Some(time),
+            Some(Err(_)) => return Err(refused("time_limit: it is not a number of seconds")),
+        };
+        Ok(PlanOptions {
+            method: if self.speeds { PlanMethod::Speed } else { PlanMethod::Delay },
+            priority,
+            objective: if self.makespan { Objective::Makespan } else { Objective::Sum },
+            leave_out: self.leave_out,
+            effort: DelaySearchOptions { prove: self.prove, time },
+        })
+    }
+}
+
+/// The output of `pcr check --json` for each of these texts of scenario files, on so many threads, or as many as there are cores. The first
+/// fault, in the order of the texts, is that of the call; the number of its text is the last part of it.
+#[pyfunction]
+fn check_all(py: Python<'_>, texts: Vec<String>, threads: Option<usize>) -> PyResult<Vec<String>> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build().map_err(refused)?;
+    let one = |text: &String| -> PyResult<String> {
+        let scenario = Scenario::from_json(text).map_err(|error| misread(&error))?;
+        json(&CheckReport::compute::<f64>(&scenario, false).map_err(refused)?)
+    };
+    let answers: Vec<PyResult<String>> = py.detach(|| pool.install(|| texts.par_iter().map(one).collect()));
+    answers.into_iter().enumerate().map(|(at, answer)| answer.map_err(|fault| numbered(py, &fault, at))).collect()
+}
+
+/// The same fault, with a number as the last part of it.
+fn numbered(py: Python<'_>, fault: &PyErr, number: usize) -> PyErr {
+    let parts = || -> PyResult<Py<PyTuple>> {
+        let mut parts: Vec<Bound<'_, PyAny>> = fault.value(py).getattr("args")?.try_iter()?.collect::<PyResult<_>>()?;
+        parts.push(number.into_pyobject(py)?.into_any());
+        Ok(PyTuple::new(py, parts)?.unbind())
+    };
+    parts().map_or_else(|other| other, Error::new_err)
+}
+
 #[pymodule]
 fn _pcr(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("Error", module.py().get_type::<Error>())?;
     module.add_class::<Fleet>()?;
     module.add_class::<Layout>()?;
+    module.add_function(wrap_pyfunction!(check_all, module)?)?;
     module.add("version", env!("CARGO_PKG_VERSION"))
 }

@@ -32,6 +32,10 @@ def crossing(first: int, second: int) -> pcr.Fleet:
     return pcr.Fleet([dict(CROSSING[0], id=first), dict(CROSSING[1], id=second)])
 
 
+def fleet_place(fleet: pcr.Fleet, number: int) -> int:
+    return [agent["id"] for agent in fleet].index(number)
+
+
 def tool(*arguments: Any) -> Any:
     run = subprocess.run([TOOL, *map(str, arguments), "--json", "-q"], capture_output=True, text=True, check=False)
     return json.loads(run.stdout)
@@ -255,6 +259,74 @@ class Answers(unittest.TestCase):
         with self.assertRaisesRegex(pcr.Error, "meet"):
             pcr.Fleet.read(TWELVE).holds([0.0] * 12)
 
+    def test_files_that_cannot_be_read_are_errors_of_the_system(self) -> None:
+        for read in (pcr.Fleet.read, pcr.Layout.read):
+            with self.assertRaises(FileNotFoundError) as caught:
+                read("no such file.json")
+            self.assertEqual((caught.exception.filename, caught.exception.strerror), ("no such file.json", "No such file or directory"))
+            with self.assertRaises(IsADirectoryError):
+                read(str(TOP / "docs"))
+
+    def test_plans_have_the_options_of_the_tool(self) -> None:
+        fleet = pcr.Fleet.read(TWELVE)
+        for options, arguments in (({"objective": "makespan"}, ["--objective", "makespan"]), ({"priority": "longest"}, ["--priority", "longest"]),
+                                   ({"priority": [7, 3]}, ["--priority", "7,3"]), ({"prove": True}, ["--prove"]),
+                                   ({"leave_out": True}, ["--leave-out"]), ({"method": "speed", "priority": "crowded"}, ["--method", "speed", "--priority", "crowded"])):
+            with self.subTest(options=options):
+                self.assertEqual(fleet.plan(**options).report, tool("plan", TWELVE, *arguments))
+
+    def test_fleets_are_sequences_of_agents(self) -> None:
+        fleet = pcr.Fleet.read(TWELVE)
+        self.assertEqual(list(fleet), fleet.agents)
+        self.assertEqual((len(fleet), fleet[0]["id"], fleet[-1]["id"]), (12, 1, 12))
+        with self.assertRaises(IndexError):
+            fleet[12]
+
+    def test_collision_maps_are_those_of_the_slices(self) -> None:
+        import numpy
+
+        fleet = pcr.Fleet.read(TWELVE)
+        times, lengths, blocked = fleet.collision_map(6, columns=50, rows=70)
+        self.assertEqual(blocked.shape, (70, 50))
+        for column in range(0, 50, 7):
+            rows = [row for row in fleet.map(6, times[0], times[1] - times[0], 50) if row[0] == column]
+            for at, length in enumerate(lengths):
+                inside = [other for _, other, lo, hi in rows if lo <= length <= hi]
+                self.assertEqual(blocked[at, column], min((fleet_place(fleet, other) for other in inside), default=-1))
+        self.assertTrue(numpy.any(blocked >= 0))
+        with self.assertRaises(pcr.Error):
+            fleet.collision_map(99)
+        with self.assertRaises(pcr.Error):
+            fleet.collision_map(1, rows=1)
+
+    def test_regions_and_agents_have_polygons(self) -> None:
+        from shapely.geometry import Point, Polygon  # type: ignore[import-untyped]
+
+        fleet = pcr.Fleet.read(TWELVE)
+        for region in fleet.regions()[:40]:
+            whole = [Polygon(points) for points in region.polygons(200)]
+            for t, lo, hi in region.outline(7):
+                for length in (0.9 * lo + 0.1 * hi, 0.1 * lo + 0.9 * hi):
+                    self.assertTrue(any(polygon.distance(Point(t, length)) < 0.02 for polygon in whole), (region, t, length))
+            self.assertTrue(all(region.t[0] <= x <= region.t[1] for polygon in whole for x, _ in polygon.exterior.coords))
+        crossing_docs = pcr.Fleet.read(TOP / "docs/forklift.json")
+        bodies = crossing_docs.shapes(0.0)
+        self.assertEqual([round(body.area, 3) for body in bodies], [0.96, 0.502])
+        self.assertFalse(bodies[0].intersects(bodies[1]))
+        conflict = crossing_docs.conflicts()[0]
+        first, second = crossing_docs.shapes(sum(conflict.t) / 2)
+        self.assertTrue(first.intersects(second))
+
+    def test_many_scenarios_are_checked_at_once(self) -> None:
+        fleets: list[Any] = [pcr.Fleet.read(TWELVE), crossing(1, 2), TWELVE.read_text()] * 20
+        for threads in (None, 1, 3):
+            found = pcr.check_all(fleets, threads=threads)
+            self.assertEqual(found, [fleets[0].conflicts(), fleets[1].conflicts(), fleets[0].conflicts()] * 20)
+        with self.assertRaisesRegex(pcr.ScenarioError, "scenario 2: .*radius") as caught:
+            pcr.check_all([fleets[0], fleets[1], json.dumps({"agents": [dict(CROSSING[0], radius=-1)]})])
+        self.assertEqual((caught.exception.agent, caught.exception.field), ("agent 1", "radius"))
+        self.assertEqual(pcr.check_all([]), [])
+
     def test_arrays(self) -> None:
         try:
             import numpy
@@ -438,7 +510,8 @@ class Refusals(unittest.TestCase):
         for ask in (lambda: fleet.map(99, 0.0, 1.0, 5), lambda: fleet.map(1, math.nan, 1.0, 5), lambda: fleet.places(math.inf),
                     lambda: fleet.safe_intervals(1, math.nan, (0.0, 1.0)), lambda: fleet.safe_intervals(1, 1.0, (2.0, 1.0)),
                     lambda: fleet.safe_intervals(99, 1.0, (0.0, 1.0)), lambda: fleet.holds([0.0]), lambda: fleet.plan("fast"),
-                    lambda: fleet.closest(1, 99), lambda: pcr.Fleet.read("no such file"), lambda: pcr.Layout.read(TWELVE),
+                    lambda: fleet.closest(1, 99), lambda: fleet.plan(objective="fast"), lambda: fleet.plan(priority="first"), lambda: fleet.plan(priority=[99]),
+                    lambda: fleet.plan("speed", prove=True), lambda: fleet.plan(time_limit=-1.0), lambda: pcr.Layout.read(TWELVE),
                     lambda: pcr.Layout.read(GRAPH, radius=-1.0), lambda: pcr.Layout.read(GRAPH, radius=0.4).delays(0.4, 0.0),
                     lambda: pcr.Layout.read(GRAPH, radius=0.4).delays(0.4, math.nan), lambda: pcr.Layout.read(GRAPH).delays(0.4, 1.0, acceleration=-1.0),
                     lambda: pcr.Fleet.read(TWELVE, radius=0.5), lambda: pcr.Fleet.read(TWELVE, format="xml"), lambda: pcr.Layout.read(GRAPH, tolerance=2e6),

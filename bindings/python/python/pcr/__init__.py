@@ -20,14 +20,14 @@ during a computation.
 
 from . import _pcr
 from ._errors import Error, ScenarioError
-from ._fleet import Conflict, Fleet, Passing, Plan
+from ._fleet import Conflict, Fleet, Passing, Plan, check_all
 from ._layout import Delay, Layout, Lock
 from ._regions import Region, Regions
 
-__all__ = ["Conflict", "Delay", "Error", "Fleet", "Layout", "Lock", "Passing", "Plan", "Region", "Regions", "ScenarioError"]
+__all__ = ["Conflict", "Delay", "Error", "Fleet", "Layout", "Lock", "Passing", "Plan", "Region", "Regions", "ScenarioError", "check_all"]
 __version__ = _pcr.version
 
 # They are of this module for whoever reads a message or a pickle.
-for _public in (Conflict, Delay, Fleet, Layout, Lock, Passing, Plan, Region, Regions, ScenarioError):
+for _public in (Conflict, Delay, Fleet, Layout, Lock, Passing, Plan, Region, Regions, ScenarioError, check_all):
     _public.__module__ = __name__
 del _public

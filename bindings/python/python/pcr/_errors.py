@@ -40,6 +40,9 @@ def scenario(make: Any, *arguments: Any) -> Any:
     try:
         return make(*arguments)
     except Error as error:
-        if len(error.args) == 5:
-            raise ScenarioError(*error.args) from None
-        raise
+        # Of many scenarios, the last part is the place of the one with the fault.
+        parts, number = (error.args[:-1], error.args[-1]) if len(error.args) in (2, 6) else (error.args, None)
+        message = parts[0] if number is None else f"scenario {number}: {parts[0]}"
+        if len(parts) == 5:
+            raise ScenarioError(message, *parts[1:]) from None
+        raise Error(message) from None

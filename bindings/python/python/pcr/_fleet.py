@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import math
 import struct
-from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, Optional, SupportsFloat, SupportsIndex
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, SupportsFloat, SupportsIndex, Union
 
-from . import _pcr
+from . import _drawing, _pcr
 from ._errors import Error, scenario
-from ._numbers import Ranged, Span, finite, ordered, plain, span, whole
+from ._numbers import Ranged, Span, finite, ordered, plain, span, truth, whole
 from ._options import Options, Path, checked
 from ._regions import Regions
 
@@ -126,8 +126,7 @@ class Fleet:
 
     def conflicts(self) -> list[Conflict]:
         """Who collides, moving as given: sorted by the begin. An empty list is the answer "nobody touches"."""
-        found = json.loads(self._fleet.check_json())["conflicts"]
-        return [Conflict(c["i"], c["j"], tuple(c["t"]), c["depth"], tuple(c["l_i"]), tuple(c["l_j"]), c["touching"]) for c in found]
+        return _conflicts(self._fleet.check_json())
 
     def map(self, agent: SupportsIndex, start: SupportsFloat, step: SupportsFloat, times: SupportsIndex) -> list[tuple[int, int, float, float]]:
         """The collision map of an agent at ``times`` times: number of the time, other agent, and the lengths forbidden then, from, to."""
@@ -136,6 +135,53 @@ class Fleet:
             raise Error(f"times: the last one, {begin} + {count - 1} * {by}, is too large")
         rows = self._fleet.map(whole("agent", agent), begin, by, count)
         return list(struct.iter_unpack("<QQ2d", rows))
+
+    def collision_map(self, agent: SupportsIndex, *, columns: SupportsIndex = 400, rows: SupportsIndex = 400) -> tuple[Any, Any, Any]:
+        """The collision map of an agent as NumPy arrays: times [s], travelled lengths [m], and for each length (row) and time (column) the
+        place of the first agent in :attr:`agents` that blocks it, or -1 where nobody does. Each entry is exact at its time and length.
+        """
+        import numpy
+
+        count, steps = whole("columns", columns, SLICES), whole("rows", rows, SLICES)
+        if count < 2 or steps < 2:
+            raise Error("columns, rows: at least two of each")
+        agents = self.agents
+        numbers = [a["id"] for a in agents]
+        own = whole("agent", agent)
+        if own not in numbers:
+            raise Error(f"no agent {own}")
+        times = numpy.linspace(*self._span(), count)
+        lengths = numpy.linspace(0.0, agents[numbers.index(own)]["length"], steps)
+        blocked = numpy.full((steps, count), -1, dtype=numpy.int32)
+        places = {number: place for place, number in enumerate(numbers)}
+        for column, other, lo, hi in self.map(own, times[0], times[1] - times[0], count):
+            stretch = blocked[numpy.searchsorted(lengths, lo):numpy.searchsorted(lengths, hi, side="right"), column]
+            place = places[other]
+            stretch[(stretch < 0) | (stretch > place)] = place
+        return times, lengths, blocked
+
+    def _span(self) -> Span:
+        """From 0, or from the first start where that is before it, to the last arrival."""
+        agents = self.agents
+        return min((min(a["start"], 0.0) for a in agents), default=0.0), max((a["arrival"] for a in agents), default=1.0)
+
+    @property
+    def scenario(self) -> dict[str, Any]:
+        """What :meth:`to_json` has, as mappings and lists."""
+        found: dict[str, Any] = json.loads(self.to_json())
+        return found
+
+    def shapes(self, time: SupportsFloat) -> list[Any]:
+        """The agents at a time as polygons of Shapely, in the order of :attr:`agents`: discs as circles of 128 points, outlines as they are."""
+        from shapely.geometry import Point, Polygon  # type: ignore[import-untyped, import-not-found, unused-ignore]
+
+        found = []
+        for agent, place in zip(self.scenario["agents"], self.places(time)):
+            if "footprint" in agent:
+                found.append(Polygon(_drawing.body(agent, place)).buffer(agent["footprint"].get("growth", 0.0)))
+            else:
+                found.append(Point(*place[:2]).buffer(agent["radius"], quad_segs=32))
+        return found
 
     def places(self, time: SupportsFloat) -> list[tuple[float, float, float, float]]:
         """Where every agent is at a time: x, y, heading, travelled length."""
@@ -149,11 +195,29 @@ class Fleet:
         """The least distance of two agents' centres, or of the polygons of their outlines, the first time of it, and the sum of their radii."""
         return self._fleet.closest(whole("agent", i), whole("agent", j))
 
-    def plan(self, method: str = "delay") -> Plan:
-        """Later starts (``"delay"``), or waits and other speeds on the way (``"speed"``), so that nobody collides."""
-        if method not in ("delay", "speed"):
-            raise Error(f'method "{method}": it is "delay" or "speed"')
-        report, fleet = self._fleet.plan(method == "speed")
+    def plan(self, method: str = "delay", *, priority: Union[str, Iterable[SupportsIndex]] = "best", objective: str = "sum",
+             leave_out: bool = False, prove: bool = False, time_limit: Optional[SupportsFloat] = None) -> Plan:
+        """Later starts (``"delay"``), or waits and other speeds on the way (``"speed"``), so that nobody collides.
+
+        The options are those of ``pcr plan``: ``priority`` is ``"best"``, ``"longest"``, ``"crowded"`` or numbers of agents that go first;
+        ``objective`` ``"sum"`` or ``"makespan"``; ``leave_out`` leaves agents out if need be; ``prove`` searches until no plan is better;
+        ``time_limit`` ends the search after so many seconds.
+
+        >>> Fleet([]).plan(objective="shortest")
+        Traceback (most recent call last):
+        pcr.Error: objective "shortest": it is "sum" or "makespan"
+        """
+        for name, value, known in (("method", method, ("delay", "speed")), ("objective", objective, ("sum", "makespan"))):
+            if value not in known:
+                raise Error(f'{name} "{value}": it is {" or ".join(f"{chr(34)}{one}{chr(34)}" for one in known)}')
+        if isinstance(priority, str) and priority not in ("best", "longest", "crowded"):
+            raise Error(f'priority "{priority}": it is "best", "longest", "crowded" or numbers of agents')
+        if method == "speed" and (truth("prove", prove) or time_limit is not None):
+            raise Error('prove and time_limit are for the method "delay"')
+        report, fleet = self._fleet.plan({
+            "speeds": method == "speed", "makespan": objective == "makespan", "leave_out": truth("leave_out", leave_out), "prove": truth("prove", prove),
+            "time_limit": None if time_limit is None else finite("time_limit", time_limit), "rule": priority if isinstance(priority, str) else "given",
+            "first": [] if isinstance(priority, str) else [whole("priority", number) for number in ordered("priority", priority)]})
         return Plan(None if fleet is None else Fleet._of(fleet), json.loads(report))
 
     def passings(self, agent: SupportsIndex) -> list[Passing]:
@@ -182,37 +246,26 @@ class Fleet:
         return self._fleet.holds(spans)
 
     def plot(self, ax: Any = None, *, agent: Optional[SupportsIndex] = None, columns: SupportsIndex = 400) -> Any:
-        """Draws the paths, or with ``agent`` its collision map, on matplotlib's ``ax``; returns it."""
+        """Draws the paths with the agents at their starts, or with ``agent`` its collision map, on matplotlib's ``ax``; returns it."""
         import matplotlib.pyplot as plt  # type: ignore[import-not-found, import-untyped, unused-ignore]
 
-        columns = whole("columns", columns, SLICES)
-        if columns == 0:
+        count = whole("columns", columns, SLICES)
+        if count == 0:
             raise Error("columns: 0 times draw nothing")
+        own = None if agent is None else whole("agent", agent)
+        if own is not None and own not in [a["id"] for a in self.agents]:
+            raise Error(f"no agent {own}")
         axes = plt.subplots()[1] if ax is None else ax
-        agents = self.agents
-        numbers = [a["id"] for a in agents]
-        # From 0, or from the first start where that is before it.
-        first = min((a["start"] for a in agents), default=0.0)
-        first, last = min(first, 0.0), max((a["arrival"] for a in agents), default=1.0)
-        step = (last - first) / columns
-        times = [first + step * k for k in range(columns + 1)]
-        tracks = list(zip(*(self.places(time) for time in times)))
-        if agent is None:
-            for number, track in zip(numbers, tracks):
-                axes.plot([p[0] for p in track], [p[1] for p in track], label=str(number))
-            axes.set(aspect="equal", xlabel="x [m]", ylabel="y [m]")
-            return axes
-        if agent not in numbers:
-            raise Error(f"no agent {agent}")
-        rows = self.map(agent, first, step, columns + 1)
-        for other in numbers:
-            bars = [(times[k], lo, hi) for k, j, lo, hi in rows if j == other]
-            if bars:
-                axes.bar([t for t, _, _ in bars], [hi - lo for _, lo, hi in bars], bottom=[lo for _, lo, _ in bars], width=step, label=str(other), alpha=0.6)
-        own = tracks[numbers.index(agent)]
-        axes.plot(times, [p[3] for p in own], color="black")
-        axes.set(xlabel="time [s]", ylabel="travelled length [m]")
-        return axes
+        first, last = self._span()
+        times = [first + (last - first) / count * k for k in range(count + 1)]
+        return _drawing.paths(self, axes, times) if own is None else _drawing.collision_map(self, own, axes, times)
+
+    def __iter__(self) -> Iterator[dict[str, Any]]:
+        return iter(self.agents)
+
+    def __getitem__(self, place: SupportsIndex) -> dict[str, Any]:
+        """An entry of :attr:`agents`."""
+        return self.agents[place]
 
     def __len__(self) -> int:
         return len(self._fleet.agents())
@@ -225,3 +278,23 @@ class Fleet:
 
     def __repr__(self) -> str:
         return f"<fleet {self.name!r} of {len(self)}>"
+
+
+def check_all(scenarios: Iterable[Union[Fleet, str]], *, threads: Optional[SupportsIndex] = None) -> list[list[Conflict]]:
+    """What :meth:`Fleet.conflicts` says of each of many fleets, or texts of scenario files, in their order: on all cores, or so many
+    ``threads``, while other threads of Python run. The first fault is raised, with the place of its scenario.
+
+    >>> check_all([Fleet([]), '{"agents": []}'])
+    [[], []]
+    >>> check_all([Fleet([]), "{}"])
+    Traceback (most recent call last):
+    pcr.ScenarioError: scenario 1: agents: missing
+    """
+    texts = [one.to_json() if isinstance(one, Fleet) else one for one in ordered("scenarios", scenarios)]
+    answers = scenario(_pcr.check_all, texts, None if threads is None else whole("threads", threads, 4096))
+    return [_conflicts(text) for text in answers]
+
+
+def _conflicts(text: str) -> list[Conflict]:
+    found = json.loads(text)["conflicts"]
+    return [Conflict(c["i"], c["j"], tuple(c["t"]), c["depth"], tuple(c["l_i"]), tuple(c["l_j"]), c["touching"]) for c in found]

@@ -6,7 +6,8 @@ import struct
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, SupportsIndex, Union, overload
 
-from ._numbers import Span, whole
+from ._drawing import chains
+from ._numbers import Span
 from ._pcr import Error
 
 if TYPE_CHECKING:
@@ -53,16 +54,24 @@ class Region(_Ranges):
             raise Error("this region is not one of its fleet")
         return [(slice["t"], lo, hi) for slice in own[0]["slices"] for lo, hi in slice["l"]]
 
+    def polygons(self, n: SupportsIndex = 60) -> list[list[tuple[float, float]]]:
+        """The corners (time, length) of polygons around it, through what it covers at ``n`` times inside; none where the other agent stands
+        all the time, because it has no end then."""
+        if self.t[0] == self.t[1]:
+            return []
+        columns: dict[float, list[Span]] = {}
+        for t, lo, hi in self.outline(n):
+            columns.setdefault(t, []).append((lo, hi))
+        return chains(list(columns.items()), self.t)
+
     def plot(self, ax: Any, *, columns: SupportsIndex = 60, **style: Any) -> Any:
-        """Draws it on matplotlib's ``ax``, which it returns: time to the right, length upwards. ``style`` goes to ``ax.bar``."""
-        rows = self.outline(columns)
+        """Draws it on matplotlib's ``ax``, which it returns: time to the right, length upwards. ``style`` goes to ``ax.fill``."""
         if self.t[0] == self.t[1]:
             # The other stands all the time.
-            for lo, hi in sorted({(lo, hi) for _, lo, hi in rows}):
+            for lo, hi in sorted({(lo, hi) for _, lo, hi in self.outline(columns)}):
                 ax.axhspan(lo, hi, **style)
-            return ax
-        width = (self.t[1] - self.t[0]) / (whole("columns", columns) + 1)
-        ax.bar([t for t, _, _ in rows], [hi - lo for _, lo, hi in rows], bottom=[lo for _, lo, _ in rows], width=width, **style)
+        for points in self.polygons(columns):
+            ax.fill([t for t, _ in points], [l for _, l in points], **style)
         return ax
 
 
