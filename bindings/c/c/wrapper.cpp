@@ -42,6 +42,7 @@ void crossing(const char *name, Make real, Back back, typename F::Agent quarter)
   EXPECT(regions.size() == 1 && std::abs(back(regions[0].length.lo) - 1.5) < 1e-3);
   EXPECT(fleet.conflicts(0, 1).size() == 1 && fleet.first_conflict(1) && !fleet.first_conflict(2));
   EXPECT(fleet.slices(0, 1, real(2.5)).size() == 1);
+  EXPECT(fleet.forbidden_delays(0, 1).size() == 1 && fleet.forbidden_delays(0, 1, true).size() == 1);
   EXPECT(fleet.safe_intervals(0, {real(2.0), real(2.0)}, {real(0.0), real(9.0)}).size() == 2);
   try {
     fleet.safe_intervals(0, {real(5.0), real(6.0)}, {real(0.0), real(9.0)});

@@ -92,6 +92,7 @@ struct Capacity {
     static constexpr auto replace = functions##replace; static constexpr auto remove = functions##remove;              \
     static constexpr auto regions = functions##regions; static constexpr auto slices = functions##slices;              \
     static constexpr auto conflicts = functions##conflicts;                                                            \
+    static constexpr auto forbidden_delays = functions##forbidden_delays;                                              \
     static constexpr auto first_conflict = functions##first_conflict;                                                  \
     static constexpr auto earliest_start = functions##earliest_start;                                                  \
     static constexpr auto safe_intervals = functions##safe_intervals;                                                  \
@@ -189,6 +190,10 @@ public:
   }
   std::vector<typename F::Conflict> conflicts(std::size_t ego, std::size_t other) const {
     return list<typename F::Conflict>("conflicts", [&](auto... out) { return F::conflicts(at(), ego, other, out...); });
+  }
+  std::vector<Interval> forbidden_delays(std::size_t ego, std::size_t other, bool passing = false) const {
+    auto ask = [&](auto... out) { return F::forbidden_delays(at(), ego, other, passing, out...); };
+    return list<Interval>("forbidden_delays", ask);
   }
   std::vector<Interval> safe_intervals(std::size_t ego, Interval length, Interval during) const {
     auto ask = [&](auto... out) { return F::safe_intervals(at(), ego, length, during, out...); };

@@ -537,6 +537,20 @@ PcrStatus pcr_q16_fleet_conflicts(const struct PcrQ16Fleet *place,
                                   size_t *count);
 
 /*
+ The delays of the start of the ego with which it would meet the other agent, one interval for each region of the two, rounded
+ outward; negative ones are earlier starts, and the largest magnitude of the format stands for infinity. With `passing`, only
+ meetings while both are under way: the unsafe intervals that solvers such as CCBS and SIPP ask for, for two edges of a
+ roadmap. A fleet of the two edges is enough: `pcr_q16_fleet_replace` puts another edge in the place of one of them.
+ */
+PcrStatus pcr_q16_fleet_forbidden_delays(const struct PcrQ16Fleet *place,
+                                         size_t ego,
+                                         size_t other,
+                                         bool passing,
+                                         struct PcrQ16Interval *out,
+                                         size_t capacity,
+                                         size_t *count);
+
+/*
  The earliest conflict of an agent with any other, from the first start of any agent to the last arrival, and whether
  there is one. Mere touches are skipped unless `touches` is set, because plans make agents touch on purpose.
  */

@@ -542,3 +542,38 @@ fn a_fleet_moves_to_larger_memory_with_its_table() {
     assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
     assert_eq!(regions(&fleet, 1).len(), 2);
 }
+
+#[test]
+fn two_edges_have_their_unsafe_intervals() {
+    // At 1 m/s on both: the crossing is 2 m from both starts, and discs of 0.25 m are in contact up to sqrt(2) * 0.5 m apart in time.
+    let steady = [PcrProfilePhase { duration: 4.0, acceleration: 0.0 }];
+    let edge = |heading| PcrAgent { stretches: steady.as_ptr(), stretch_count: 1, ..agent(heading) };
+    let mut fleet = fleet(&memory(2, 4, 4), &[edge(0.0), edge(std::f32::consts::FRAC_PI_2)]);
+    let mut found = [PcrInterval::default(); 4];
+    let mut count = 0;
+    let mut ask = |fleet: &PcrFleet, passing| {
+        let status =
+            pcr_fleet_forbidden_delays(Some(fleet), 0, 1, passing, found.as_mut_ptr(), found.len(), Some(&mut count));
+        (status, found[..count].to_vec())
+    };
+    assert_eq!(ask(&fleet, true).0, PcrStatus::NotBuilt);
+    assert_eq!(pcr_fleet_build(Some(&mut fleet)), PcrStatus::Ok);
+    for passing in [false, true] {
+        let (status, delays) = ask(&fleet, passing);
+        assert_eq!(status, PcrStatus::Ok);
+        let [delays] = delays[..] else { panic!("one interval") };
+        let exact = 0.5 * 2.0_f32.sqrt();
+        assert!(
+            (exact..exact + 1e-3).contains(&-delays.lo) && (exact..exact + 1e-3).contains(&delays.hi),
+            "{delays:?}"
+        );
+    }
+    // Another edge, which begins where the first one ends: who stands there is in its way at all times, but not in passing.
+    let mut next = edge(0.0);
+    next.x = 2.0;
+    assert_eq!(pcr_fleet_replace(Some(&mut fleet), 1, Some(&next)), PcrStatus::Ok);
+    let (_, delays) = ask(&fleet, false);
+    assert!(delays.iter().any(|delays| delays.lo.abs() > 1e5 || delays.hi.abs() > 1e5), "{delays:?}");
+    let (_, delays) = ask(&fleet, true);
+    assert!(delays.iter().all(|delays| delays.lo.abs() < 10.0 && delays.hi.abs() < 10.0), "{delays:?}");
+}

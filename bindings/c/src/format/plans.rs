@@ -5,7 +5,7 @@ use super::points::{Room, ask, change, interval, number, range};
 use super::types::{PcrAgentConflict, PcrConflict, PcrFleet, PcrInterval, PcrMotionStorage};
 use crate::memory::{Stack, places};
 use crate::status::{PcrPlanError, PcrStatus, given};
-use pcr_core::{Conflict, Encounter, earliest_start, excess, first_conflict, first_overlap, safe_intervals};
+use pcr_core::{Conflict, Encounter, RegionRef, earliest_start, excess, first_conflict, first_overlap, safe_intervals};
 
 fn record(conflict: &Conflict<S>) -> PcrConflict {
     PcrConflict {
@@ -33,6 +33,31 @@ pub extern "C" fn pcr_fleet_conflicts(
         let [own, others] = fleet.two(ego, other)?;
         let encounter = Encounter::new(own, others);
         room.fill(encounter.conflicts(fleet.duration()).map(|conflict| record(&conflict)))
+    })
+}
+
+/// The delays of the start of the ego with which it would meet the other agent, one interval for each region of the two, rounded
+/// outward; negative ones are earlier starts, and the largest magnitude of the format stands for infinity. With `passing`, only
+/// meetings while both are under way: the unsafe intervals that solvers such as CCBS and SIPP ask for, for two edges of a
+/// roadmap. A fleet of the two edges is enough: `pcr_fleet_replace` puts another edge in the place of one of them.
+#[unsafe(export_name = name!("fleet_forbidden_delays"))]
+pub extern "C" fn pcr_fleet_forbidden_delays(
+    place: Option<&PcrFleet>,
+    ego: usize,
+    other: usize,
+    passing: bool,
+    out: *mut PcrInterval,
+    capacity: usize,
+    count: Option<&mut usize>,
+) -> PcrStatus {
+    ask(place, |fleet| {
+        let room = Room::new(out, capacity, count)?;
+        fleet.two(ego, other)?;
+        let regions = fleet.table().pair(fleet.motions(), ego, other)?;
+        let delays = |region: RegionRef<'_, S>| {
+            if passing { region.passing_delays() } else { region.forbidden_delays() }
+        };
+        room.fill(regions.map(delays).map(interval))
     })
 }
 
