@@ -62,7 +62,7 @@ build() {
   ./cross.sh "$target" build --locked --release --quiet --no-default-features --features "$format" "${bins[@]}"
 }
 
-# Outlines are in the proof that nothing panics, and in no other program: the figures are those of discs.
+# Outlines are in the proof that nothing panics, and in the program that is measured for them; all other figures are those of discs.
 prove() { build "$1" "$2,outlines" proof; }
 
 # The proof of the proof: what has a division by a number that is not known does not link.
@@ -151,6 +151,18 @@ measured_stack() {
   sed -n 's/.*stack_used \([0-9]*\).*/\1/p;q' "$scratch/plugin"
 }
 
+# The table of 12 rectangles: the same bits as on the host, and what it takes.
+rectangles() {
+  local target=$1 format=$2 program=$out/$1/release/rectangles
+  build "$target" "$format,outlines" rectangles
+  ICOUNT=7 ./qemu-run.sh "$program" >"$scratch/rectangles"
+  link rectangles "$format" >"$scratch/rectangles-host"
+  grep -v "  table of" "$scratch/rectangles" | diff "$scratch/rectangles-host" - >&2 || fail "the table of rectangles differs from the host's"
+  printf '%9d  bytes of code of the library with outlines\n' "$(tools/codesize.py "$program")"
+  printf '%9d  bytes of stack of a row of rectangles, bound\n' "$(tools/fwcheck.py "$program" --root rectangles::insert 2>/dev/null)"
+  sed -n 's/^\( *[0-9]*  \)table of/\1instructions: table of/p' "$scratch/rectangles"
+}
+
 # The figures of a build, a line each: number, what.
 figures() {
   local target=$1 format=$2 programs=$out/$1/release
@@ -183,6 +195,7 @@ figures() {
   sed 's/^\( *[0-9]*  \)/\1instructions: /' "$scratch/robot"
   ICOUNT=7 ./qemu-run.sh "$programs/measure" | sed 's/^\( *[0-9]*  \)/\1instructions: /'
   ICOUNT=7 ./qemu-run.sh "$programs/worst"
+  if [ "$target:$format" = thumbv7em-none-eabihf:f32 ]; then rectangles "$target" "$format"; fi
 }
 
 # object ELF NAME: bytes of a static.

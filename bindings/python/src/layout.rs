@@ -92,7 +92,8 @@ impl Layout {
         }
         py.detach(|| {
             let moves = options.acceleration.is_some();
-            let (imported, warnings) = input::read_layout(&path, &options, moves).map_err(|error| unreadable(&error))?;
+            let (imported, warnings) =
+                input::read_layout(&path, &options, moves).map_err(|error| unreadable(&error))?;
             Ok((Self(imported), warnings.all()))
         })
     }

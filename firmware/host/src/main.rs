@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! pcr-link table FORMAT              the table that the demo prints, computed here
+//! pcr-link rectangles FORMAT         the same of rectangles, as the program `rectangles` prints it
 //! pcr-link certify                   proves the table that it prints, from the standard input
 //! pcr-link serial FORMAT COMMAND...  talks to the supervisor over the standard streams of COMMAND and checks its answers
 //! pcr-link robot FORMAT COMMAND...   is the supervisor of the robot behind COMMAND, and the 29 others; f32 or q16
@@ -16,7 +17,7 @@ mod robot;
 mod serial;
 
 use pcr_certify::table::{Checker, CoverageMargin};
-use pcr_core::{Ecm, EcmEntry, Piece};
+use pcr_core::{Ecm, EcmEntry, Motion, Outline, Piece};
 use pcr_supervisor::scenario::{self, AGENTS, PIECES, REGIONS, SEGMENTS};
 use pcr_supervisor::{Agent, Number, Step, Store, dump};
 use std::error::Error;
@@ -41,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 }
 
-const USAGE: &str = "usage: pcr-link table FORMAT | pcr-link certify | pcr-link serial FORMAT COMMAND... | pcr-link passing FORMAT RUNS [COMMAND...] \
+const USAGE: &str = "usage: pcr-link table FORMAT | pcr-link rectangles FORMAT | pcr-link certify | pcr-link serial FORMAT COMMAND... | pcr-link passing FORMAT RUNS [COMMAND...] \
      | pcr-link robot FORMAT COMMAND...; \
      formats: f32, micro, q12, q16, q20";
 
@@ -69,6 +70,7 @@ fn pass<S: passing::Rounded>(runs: &str, command: &[&str]) -> Result<(), Box<dyn
 fn run<S: Number>(what: &str, agents: BuiltIn<S>, rest: &[&str]) -> Result<(), Box<dyn Error>> {
     match (what, rest) {
         ("table", []) => table(agents),
+        ("rectangles", []) => rectangles(agents),
         ("serial", command) => serial::check(agents, command),
         _ => Err(USAGE.into()),
     }
@@ -84,6 +86,28 @@ fn store<S: Number>(agents: BuiltIn<S>) -> Result<Store<S, AGENTS, SEGMENTS>, Bo
         store.add(agent)?;
     }
     Ok(store)
+}
+
+/// Prints what the program `rectangles` prints, but for its figures.
+fn rectangles<S: Number>(agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
+    let store = store(agents)?;
+    let discs = store.motions()?;
+    let outline = |disc: &Motion<'_, S>| {
+        let (length, width) = (disc.radius(), disc.radius().half());
+        Outline::<S, 4>::rectangle(length, length, width, width, S::ZERO)
+    };
+    let outlines = discs.iter().map(outline).collect::<Result<Vec<_>, _>>()?;
+    let fleet = discs.iter().zip(&outlines).map(|(disc, outline)| {
+        Motion::with_outline(disc.path(), disc.profile(), outline, disc.time().lo)
+    });
+    let fleet = fleet.collect::<Result<Vec<_>, _>>()?;
+    let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; 2 * PIECES], &fleet)?;
+    let mut out = io::stdout().lock();
+    for region in ecm.regions(&fleet)? {
+        out.write_all(dump::region(&region).as_bytes())?;
+    }
+    writeln!(out, "{} regions, {} pieces", ecm.len(), ecm.pieces())?;
+    Ok(())
 }
 
 /// Prints what the demo prints.

@@ -460,6 +460,38 @@ mod tests {
     }
 
     #[test]
+    fn the_least_of_a_quadratic_is_below_all_of_it_and_reached_by_convex_ones() {
+        let mut state = 5;
+        let mut reached = 0;
+        for _ in 0..400 {
+            let [one, t, s, tt, ts, ss] = core::array::from_fn(|_| 4.0 * dice(&mut state) - 2.0);
+            let tt = if dice(&mut state) < 0.7 { tt.abs() } else { tt };
+            let (k, h) = (0.1 + dice(&mut state), if dice(&mut state) < 0.5 { 0.0 } else { dice(&mut state) });
+            let value = |x: f64, y: f64| one + t * x + s * y + tt * x * x + ts * x * y + ss * y * y;
+            let at = |place: i32, most: f64| most * f64::from(place) / 40.0;
+            let all = (-40..=40).flat_map(|x| (-40..=40).map(move |y| (x, y)));
+            let sampled = all.map(|(x, y)| value(at(x, k), at(y, h))).fold(f64::INFINITY, f64::min);
+            let quadratic = Quadratic::<f64> {
+                one: one.into(),
+                t: t.into(),
+                s: s.into(),
+                tt: tt.into(),
+                ts: ts.into(),
+                ss: ss.into(),
+            };
+            let bound = quadratic.least(k.into(), h.into()).to_f64();
+            assert!(bound <= sampled + 1e-12, "{bound} is above {sampled}");
+            // Of one variable, the exact least value where it is bent upward.
+            if h == 0.0 && tt > 0.0 {
+                let exact = value((-t / (2.0 * tt)).clamp(-k, k), 0.0);
+                assert!((bound - exact).abs() < 1e-9, "{bound} is not {exact}");
+                reached += 1;
+            }
+        }
+        assert!(reached > 100);
+    }
+
+    #[test]
     fn neighbours_have_boxes_that_meet() {
         let all = [line([0.0, 0.0], 0.0), line([0.0, 0.5], 0.0), line([0.0, 1.2], 0.0), line([4.4, 0.0], 0.25)];
         let near = Neighbours::new(&all);

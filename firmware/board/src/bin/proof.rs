@@ -170,6 +170,7 @@ fn constructors<S: Scalar>() -> Result<(), InvalidInput> {
     let segment = any(Segment::then_pivot(&segment, number(), any(TurnSide::Right), number())?);
     let segment = any(Segment::turned(segment, angle::<S>())?);
     let segment = any(Segment::facing(segment, angle::<S>())?);
+    let segment = any(Segment::facing_opposite(segment)?);
     let curve: Curve<S> = Segment::curve(&segment);
     any((curve, Segment::length(&segment), Segment::from(&segment), Segment::bounds(&segment)));
     any((Segment::point_at(&segment, number()), Segment::heading_at(&segment, number())));
@@ -201,6 +202,7 @@ fn outlines<S: Scalar>() -> Result<(), InvalidInput> {
     any(Outline::as_outline(&outline));
     let outline = any(<OutlineRef<'_, S> as From<&Outline<S, 16>>>::from(&outline));
     any((OutlineRef::radius(outline), OutlineRef::reach(outline)));
+    any(OutlineRef::new(any(OutlineRef::corners(outline)), number())?.reach());
     if let [corner, ..] = OutlineRef::corners(outline) {
         any(Corner::at(corner));
     }

@@ -421,3 +421,77 @@ fn files_may_say_what_they_are() {
     let message = file("pcr-scenario", 2).unwrap_err().to_string();
     assert_eq!(message, "version: 2 where 1, all that this pcr knows, is expected");
 }
+
+#[test]
+fn a_margin_is_given_to_those_that_have_none() {
+    let mut scenario = Scenario::from_value(&json!({ "agents": [agent(3), agent(7)] })).unwrap();
+    scenario.agents[1].margin = 0.25;
+    scenario.give_margin(0.1);
+    assert_eq!(scenario.agents.iter().map(|agent| agent.margin).collect::<Vec<_>>(), [0.1, 0.25]);
+}
+
+#[test]
+fn a_full_turn_may_be_rounded_and_no_more() {
+    let turns = |sweep| PathSegment::Arc { radius: 1.0, sweep }.turns();
+    assert_eq!([turns(2.0 * PI * (1.0 + 5e-13)), turns(-2.0 * PI), turns(2.0 * PI * (1.0 + 1e-11))], [1.0, 1.0, 2.0]);
+    assert_eq!([turns(0.0), turns(4.0 * PI), turns(-13.0)], [1.0, 2.0, 3.0]);
+}
+
+#[test]
+fn a_path_without_length_takes_no_time() {
+    assert_eq!(MotionSpec::RestToRest { v_max: 1.0, a_max: 0.5 }.pieces(0.0), (0.0, Vec::new()));
+}
+
+#[test]
+fn headings_accumulate_along_arcs() {
+    let scenario = Scenario::from_value(&json!({ "agents": [agent(3)] })).unwrap();
+    let at = |length| scenario.agents[0].heading_at(length);
+    // A line of 2 m, then 1.5 rad to the right with a radius of 1 m.
+    assert_eq!([at(0.0), at(2.0), at(2.5), at(3.5), at(9.0)], [0.0, 0.0, -0.5, -1.5, -1.5]);
+}
+
+#[test]
+fn only_loads_and_what_is_not_convex_make_several_bodies() {
+    let mut scenario = with("/loads", &json!([{ "segments": [2, 2], "radius": 0.6 }]));
+    let concave = json!([[1.0, 0.0], [0.0, 0.3], [-1.0, 0.0], [0.0, 1.0]]);
+    let corners = |all: &Value| -> Value {
+        all.as_array().unwrap().iter().map(|corner| json!({ "ahead": corner[0], "left": corner[1] })).collect()
+    };
+    for polygon in [&concave, &json!([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0]])] {
+        let mut other = agent(11 + scenario["agents"].as_array().unwrap().len() as u64);
+        other.as_object_mut().unwrap().remove("radius");
+        other["footprint"] = json!({ "polygon": corners(polygon) });
+        scenario["agents"].as_array_mut().unwrap().push(other);
+    }
+    let read = Scenario::from_value(&scenario).unwrap();
+    assert_eq!(read.agents.iter().map(Agent::has_parts).collect::<Vec<_>>(), [false, true, true, false]);
+    // What once said how far discs could reach out is still checked.
+    scenario["agents"][2]["footprint"]["overhang"] = json!(-0.1);
+    refused(&scenario, "agent 13, footprint.overhang: -0.1 is out of range; allowed is above 0, up to 1e10");
+}
+
+#[test]
+fn a_stretch_ends_with_its_wait_and_nothing_of_what_follows() {
+    // 1 m, a wait of 5 s at the joint, and 1 m more.
+    let mut other = agent(7);
+    other["path"] = json!([{ "kind": "line", "length": 1.0 }, { "kind": "line", "length": 1.0 }]);
+    let pieces: Value = [(1.0, 1.0), (1.0, -1.0), (5.0, 0.0), (1.0, 1.0), (1.0, -1.0)]
+        .iter()
+        .map(|(duration, acceleration)| json!({ "duration": duration, "accel": acceleration }))
+        .collect();
+    other["profile"] = json!({ "v0": 0.0, "pieces": pieces });
+    for key in ["v_max", "a_max"] {
+        other.as_object_mut().unwrap().remove(key);
+    }
+    let scenario = Scenario::from_value(&json!({ "agents": [other] })).unwrap();
+    let durations = |first, last| -> Vec<f64> {
+        let MotionSpec::Profile { pieces, .. } = scenario.agents[0].stretch(first, last).agent.motion else {
+            panic!("a profile")
+        };
+        pieces.into_iter().map(|(duration, _)| duration).collect()
+    };
+    assert_eq!(durations(0, 0), [1.0, 1.0, 5.0]);
+    assert_eq!(durations(1, 1), [5.0, 1.0, 1.0]);
+    assert_eq!(durations(0, 1), [1.0, 1.0, 5.0, 1.0, 1.0]);
+    assert_eq!(scenario.agents[0].stretch(1, 1).agent.t_start, 2.0);
+}
