@@ -97,9 +97,10 @@ fn rectangles<S: Number>(agents: BuiltIn<S>) -> Result<(), Box<dyn Error>> {
         Outline::<S, 4>::rectangle(length, length, width, width, S::ZERO)
     };
     let outlines = discs.iter().map(outline).collect::<Result<Vec<_>, _>>()?;
-    let fleet = discs.iter().zip(&outlines).map(|(disc, outline)| {
-        Motion::with_outline(disc.path(), disc.profile(), outline, disc.time().lo)
-    });
+    let fleet = discs
+        .iter()
+        .zip(&outlines)
+        .map(|(disc, outline)| Motion::with_outline(disc.path(), disc.profile(), outline, disc.time().lo));
     let fleet = fleet.collect::<Result<Vec<_>, _>>()?;
     let ecm = Ecm::build([EcmEntry::EMPTY; REGIONS], [Piece::EMPTY; 2 * PIECES], &fleet)?;
     let mut out = io::stdout().lock();
