@@ -5,8 +5,9 @@ mod simple_polygon;
 
 use crate::plane_geometry::{drop_needless, from_segment, hull};
 use convex_parts::convex_parts;
-use serde::Serialize;
+use serde::de::{Deserializer, Error};
 use serde::ser::{SerializeStruct, Serializer};
+use serde::{Deserialize, Serialize};
 
 /// Corners of a polygon at most.
 const CORNERS: usize = 256;
@@ -119,14 +120,37 @@ impl Footprint {
     }
 }
 
+/// A corner in files.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Corner {
+    ahead: f64,
+    left: f64,
+}
+
+/// As in scenario files.
+impl<'de> Deserialize<'de> for Footprint {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct FootprintRecord {
+            polygon: Vec<Corner>,
+            #[serde(default)]
+            growth: f64,
+        }
+        let FootprintRecord { polygon, growth } = FootprintRecord::deserialize(deserializer)?;
+        if !(growth >= 0.0 && growth.is_finite()) {
+            return Err(D::Error::custom(format!("footprint: growth: {growth} is out of range; allowed is 0 or more")));
+        }
+        let outline = Self::new(polygon.iter().map(|corner| [corner.ahead, corner.left]).collect());
+        let outline = outline.map_err(|why| D::Error::custom(format!("footprint: {why}")))?;
+        Ok(Self { growth, ..outline })
+    }
+}
+
 /// As in scenario files.
 impl Serialize for Footprint {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Corner {
-            ahead: f64,
-            left: f64,
-        }
         let corners: Vec<Corner> = self.polygon.iter().map(|&[ahead, left]| Corner { ahead, left }).collect();
         let mut fields = serializer.serialize_struct("Footprint", 2)?;
         fields.serialize_field("polygon", &corners)?;

@@ -26,8 +26,10 @@ pub type DrawFn = fn(&[RobotDrawing], usize) -> Result<String, String>;
 pub struct RobotDrawing {
     /// Name of the robot.
     pub name: String,
-    /// Its abilities.
+    /// Its outline and abilities.
     pub abilities: crate::robot::RobotTraits,
+    /// Whether it may have any heading.
+    pub any_heading: bool,
     /// The rest of its path.
     pub course: crate::owned_path::OwnedPath,
 }
@@ -160,7 +162,12 @@ fn map(handle: &ServerHandle, site: &HttpContent, query: &str) -> (&'static str,
         let drawn = supervisor.robots().iter().map(|robot| {
             let course = robot.course.part(robot.arc_length, robot.course.length());
             let course = course.map_err(|why| format!("{}: {why}", robot.name))?;
-            Ok(RobotDrawing { name: robot.name.clone(), abilities: robot.abilities, course })
+            Ok(RobotDrawing {
+                name: robot.name.clone(),
+                abilities: robot.abilities.clone(),
+                any_heading: robot.any_heading,
+                course,
+            })
         });
         Some(drawn.collect::<Result<Vec<_>, String>>().map(|fleet| (fleet, place)))
     });

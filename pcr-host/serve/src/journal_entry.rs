@@ -74,6 +74,9 @@ pub struct StoredRobot {
     pub name: String,
     /// Its abilities.
     pub abilities: RobotTraits,
+    /// Whether it may have any heading on its present path.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub any_heading: bool,
     /// Its present path.
     pub course: OwnedPath,
     /// What is missing from the start of the path.

@@ -194,7 +194,11 @@ pub fn carry_out(supervisor: &mut Supervisor, request: RequestLine, came: f64, n
         Request::Add(AddRobot { robot, start, abilities }) => {
             supervisor.add(&robot, abilities, start)?;
             let robot = supervisor.robot(&robot)?;
-            Ok(json!({ "path": robot.path }))
+            let mut added = json!({ "path": robot.path });
+            if robot.body.excess() > 0.0 {
+                added["hull_excess"] = json!(robot.body.excess());
+            }
+            Ok(added)
         }
         Request::Replace(proposal) if proposal.after.is_none() => {
             Err(malformed("replace needs `after`: the length of the path from which on it is another one"))

@@ -1,6 +1,12 @@
 //! Owned paths of lines, arcs and turns in place, and the part that is kept when a path is changed.
+//!
+//! A robot with an outline sweeps an area while it turns in place. So its turns say with `lever` how long the path is for each radian, and all
+//! lengths (of positions, authorities, missions and regions, in messages and in the journal) are lengths of the path with its turns: an
+//! authority may end within a turn, and a robot says how far it has turned. A disc sweeps nothing, so its turns need no length, and
+//! paths of discs are what they were before there were outlines.
 
 use pcr_core::{InvalidInput, Motion, PathRef, Phase, Point, Pose, ProfileRef, Radians, Segment, TurnSide};
+use pcr_planning::fleet::ConvexBody;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -93,7 +99,7 @@ fn led(start: StartPose, rest: PathRounding, shapes: impl Iterator<Item = PathEl
         let (chord, sweep) = match shape {
             PathElement::Line { length } => (length, 0.0),
             PathElement::Arc { radius, sweep } => (2.0 * radius * (0.5 * sweep.abs()).sin(), sweep),
-            PathElement::Turn { sweep } => (0.0, sweep),
+            PathElement::Turn { sweep, .. } => (0.0, sweep),
         };
         let CompensatedSum(along, small) = heading.and(0.5 * sweep);
         let (sin, cos) = along.sin_cos();
@@ -124,10 +130,13 @@ pub enum PathElement {
         /// \[rad\], left positive.
         sweep: f64,
     },
-    /// In place: it has no length.
+    /// In place.
     Turn {
         /// \[rad\], left positive.
         sweep: f64,
+        /// Length of the path for each radian \[m\]; without it the turn has no length, and is no path for an outline.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        lever: Option<f64>,
     },
 }
 
@@ -137,7 +146,7 @@ impl PathElement {
         match self {
             Self::Line { length } => length,
             Self::Arc { radius, sweep } => radius * sweep.abs(),
-            Self::Turn { .. } => 0.0,
+            Self::Turn { sweep, lever } => lever.map_or(0.0, |lever| lever * sweep.abs()),
         }
     }
 
@@ -145,7 +154,8 @@ impl PathElement {
     fn extent(self) -> f64 {
         match self {
             Self::Arc { radius, .. } => self.length().min(2.0 * radius),
-            _ => self.length(),
+            Self::Line { length } => length,
+            Self::Turn { .. } => 0.0,
         }
     }
 
@@ -154,7 +164,10 @@ impl PathElement {
         match self {
             Self::Line { .. } => Self::Line { length },
             Self::Arc { radius, sweep } => Self::Arc { radius, sweep: (length / radius).copysign(sweep) },
-            Self::Turn { .. } => self,
+            Self::Turn { sweep, lever: Some(lever) } => {
+                Self::Turn { sweep: (length / lever).copysign(sweep), lever: Some(lever) }
+            }
+            Self::Turn { lever: None, .. } => self,
         }
     }
 }
@@ -215,7 +228,7 @@ impl OwnedPath {
         for &shape in &shapes {
             before.push(segments.len());
             let next = match shape {
-                PathElement::Turn { sweep } => {
+                PathElement::Turn { sweep, lever: None } => {
                     last = last.turned(Radians(sweep))?;
                     if let Some(segment) = segments.last_mut() {
                         *segment = last;
@@ -223,11 +236,9 @@ impl OwnedPath {
                     continue;
                 }
                 PathElement::Line { length } => last.then_line(length)?,
-                PathElement::Arc { radius, sweep } => {
-                    if !sweep.is_finite() {
-                        return Err(InvalidInput::NonFinite("sweep"));
-                    }
-                    last.then_arc(radius, if sweep < 0.0 { TurnSide::Right } else { TurnSide::Left }, shape.length())?
+                PathElement::Arc { radius, sweep } => last.then_arc(radius, side(sweep)?, shape.length())?,
+                PathElement::Turn { sweep, lever: Some(lever) } => {
+                    last.then_pivot(lever, side(sweep)?, shape.length())?
                 }
             };
             if next.length() > 0.0 {
@@ -271,24 +282,42 @@ impl OwnedPath {
         StartPose { x: pose.position.x, y: pose.position.y, heading: pose.heading.0 }
     }
 
-    /// The motion of a disc of this radius \[m\] at 1 m/s: passing orders need no times.
+    /// The motion of a disc or an outline at 1 m/s: passing orders need no times.
     ///
     /// # Errors
-    /// [`InvalidInput`] for the radius.
-    pub fn motion(&self, radius: f64) -> Result<Motion<'_, f64>, InvalidInput> {
-        self.motion_by(ProfileRef::new(&self.phases)?, radius)
+    /// [`InvalidInput`] for the radius, and for an outline if a turn in place has no length.
+    pub fn motion<'a>(&'a self, body: &'a ConvexBody) -> Result<Motion<'a, f64>, InvalidInput> {
+        self.motion_by(ProfileRef::new(&self.phases)?, body)
     }
 
-    /// The motion of a disc by a profile, from the time 0 on.
+    /// The motion of a disc or an outline by a profile, from the time 0 on.
     ///
     /// # Errors
-    /// [`InvalidInput`] for the radius, and a profile of another length.
+    /// As [`OwnedPath::motion`], and for a profile of another length.
     pub(crate) fn motion_by<'a>(
         &'a self,
         profile: ProfileRef<'a, f64>,
-        radius: f64,
+        body: &'a ConvexBody,
     ) -> Result<Motion<'a, f64>, InvalidInput> {
-        Motion::new(PathRef::new(&self.segments)?, profile, radius, 0.0)
+        // The path does not show it where the robot begins with such a turn.
+        let moves = |shape: &PathElement| match *shape {
+            PathElement::Turn { sweep, lever: None } => sweep.abs() * body.reach() > JOINT,
+            _ => false,
+        };
+        if !body.is_disc() && self.shapes.iter().any(moves) {
+            return Err(InvalidInput::TurnInPlace);
+        }
+        body.motion(PathRef::new(&self.segments)?, profile, 0.0)
+    }
+
+    /// Bound on how far a point moves that is within `spread` of the reference point \[m\], for each metre of the path.
+    pub(crate) fn stretch(&self, spread: f64) -> f64 {
+        let of = |shape: &PathElement| match *shape {
+            PathElement::Line { .. } | PathElement::Turn { lever: None, .. } => 1.0,
+            PathElement::Arc { radius, .. } => 1.0 + spread / radius,
+            PathElement::Turn { lever: Some(lever), .. } => spread / lever,
+        };
+        self.shapes.iter().map(of).fold(1.0, f64::max)
     }
 
     /// The end of a shape that is within rounding of this length, otherwise the length itself \[m\].
@@ -343,8 +372,8 @@ impl OwnedPath {
         if let Some(cut) = self.cut(to) {
             let rounding = 2.0 * f64::EPSILON * to;
             rest.distance_bound += rounding;
-            if let PathElement::Arc { radius, sweep } = cut {
-                rest.angle_bound += rounding / radius + f64::EPSILON * sweep.abs();
+            if let PathElement::Arc { radius: lever, sweep } | PathElement::Turn { lever: Some(lever), sweep } = cut {
+                rest.angle_bound += rounding / lever + f64::EPSILON * sweep.abs();
             }
         }
         Ok((Self::new(start, kept)?, dropped, rest))
@@ -356,7 +385,7 @@ impl OwnedPath {
         self.offsets.windows(2).zip(&self.shapes).find(|(ends, _)| is_cut(ends)).map(|(_, shape)| *shape)
     }
 
-    /// The first shape, other than a turn in place, that goes beyond `from`, if it begins before `to`.
+    /// The first shape, other than a turn without a length, that goes beyond `from`, if it begins before `to`.
     fn ahead(&self, from: f64, to: f64) -> Option<usize> {
         let first = (0..self.shapes.len()).find(|&k| self.offsets[k + 1] > from.max(0.0) + JOINT)?;
         (from < to && self.offsets[first] < to).then_some(first)
@@ -382,10 +411,19 @@ impl OwnedPath {
         (first..self.shapes.len()).filter_map(move |k| {
             let (begin, end, shape) = (self.offsets[k], self.offsets[k + 1], self.shapes[k]);
             match shape {
-                PathElement::Turn { .. } => (begin < to || to >= self.length()).then_some(shape),
+                PathElement::Turn { lever: None, .. } => (begin < to || to >= self.length()).then_some(shape),
                 _ if to >= end => (end > begin).then_some(shape),
                 _ => (to > begin).then(|| shape.of_length(to - begin)),
             }
         })
+    }
+}
+
+/// The side to which an angle turns.
+fn side(sweep: f64) -> Result<TurnSide, InvalidInput> {
+    match sweep.is_finite() {
+        false => Err(InvalidInput::NonFinite("sweep")),
+        true if sweep < 0.0 => Ok(TurnSide::Right),
+        true => Ok(TurnSide::Left),
     }
 }

@@ -6,6 +6,8 @@ use crate::request_error::RequestError;
 use crate::robot::{Alarm, ROOM, SupervisedRobot};
 use crate::supervisor::Supervisor;
 use pcr_core::{Encounter, Interval, Limits, Motion, Profile};
+use pcr_formats::footprint::Footprint;
+use pcr_planning::fleet::ConvexBody;
 use pcr_planning::safe_windows::safe_intervals;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -53,6 +55,10 @@ pub(crate) struct RobotView<'a> {
     origin: f64,
     length: f64,
     radius: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    footprint: Option<&'a Footprint>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    any_heading: bool,
     at: [f64; 2],
     hold: f64,
     /// Hold that it needs so that it does not have to brake \[m\].
@@ -82,6 +88,8 @@ impl<'a> RobotView<'a> {
             origin: robot.origin,
             length: robot.course.length(),
             radius: robot.abilities.radius,
+            footprint: robot.abilities.footprint.as_ref(),
+            any_heading: robot.any_heading,
             at: [extent.lo, extent.hi],
             hold: robot.granted,
             wanted: robot.wanted(supervisor.settings().lookahead, supervisor.settings().position_uncertainty),
@@ -182,7 +190,7 @@ pub fn answer(supervisor: &Supervisor, question: &Query, now: f64) -> Result<Val
 struct RemainingPath {
     course: OwnedPath,
     profile: Profile<f64, 3>,
-    radius: f64,
+    body: ConvexBody,
 }
 
 fn ways(robots: &[SupervisedRobot]) -> Result<Vec<RemainingPath>, RequestError> {
@@ -191,13 +199,13 @@ fn ways(robots: &[SupervisedRobot]) -> Result<Vec<RemainingPath>, RequestError> 
         let limits = Limits { speed: robot.abilities.speed, acceleration: robot.abilities.acceleration };
         let length = course.length();
         let profile = if length > 0.0 { Profile::rest_to_rest(length, limits)? } else { Profile::standing() };
-        Ok(RemainingPath { course, profile, radius: robot.abilities.radius_with_margin() - ROOM })
+        Ok(RemainingPath { course, profile, body: robot.body.inflated(-ROOM)? })
     };
     robots.iter().map(way).collect::<Result<_, pcr_core::InvalidInput>>().map_err(RequestError::invalid)
 }
 
 fn motions(ways: &[RemainingPath]) -> Result<Vec<Motion<'_, f64>>, RequestError> {
     ways.iter()
-        .map(|way| way.course.motion_by(way.profile.as_profile(), way.radius).map_err(RequestError::invalid))
+        .map(|way| way.course.motion_by(way.profile.as_profile(), &way.body).map_err(RequestError::invalid))
         .collect()
 }

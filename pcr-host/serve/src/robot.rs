@@ -2,31 +2,70 @@
 
 use crate::owned_path::{OwnedPath, PathElement, PathRounding};
 use pcr_core::{Interval, InvalidInput, Motion, MovementAuthority, Progress};
+use pcr_formats::footprint::Footprint;
+use pcr_planning::fleet::ConvexBody;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Additional radius of all discs \[m\]: for the rounding of paths that are cut and joined, and of lengths in messages.
+/// Additional radius of all discs and outlines \[m\]: for the rounding of paths that are cut and joined, and of lengths in messages.
 pub const ROOM: f64 = 1e-6;
 
 /// If a robot is behind a length that it had passed by more than this plus twice its margin, it counts as having gone back
 /// \[m\].
 pub const BACK: f64 = 0.05;
 
-/// The abilities of a robot.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+/// The outline and the abilities of a robot.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "TraitsRecord", into = "TraitsRecord")]
 pub struct RobotTraits {
-    /// Radius of the disc that contains it, also while it turns in place \[m\].
+    /// Radius of the disc that contains it, also while it turns in place \[m\]: with a footprint that of the disc around all of it.
     pub radius: f64,
-    /// Distance by which it may be off its path; kept free around it \[m\].
-    #[serde(default)]
+    /// Its outline; `None` for a disc. It faces along its path.
+    pub footprint: Option<Footprint>,
+    /// Distance by which any of its points may be off, because it is off its path or turned; kept free around it \[m\].
     pub margin: f64,
     /// Largest speed \[m/s\].
     pub speed: f64,
     /// Deceleration with which it stops \[m/s²\].
     pub acceleration: f64,
+}
+
+/// The traits in messages and in the journal: a radius or a footprint.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TraitsRecord {
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    radius: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    footprint: Option<Footprint>,
+    #[serde(default)]
+    margin: f64,
+    speed: f64,
+    acceleration: f64,
+}
+
+impl TryFrom<TraitsRecord> for RobotTraits {
+    type Error = &'static str;
+
+    fn try_from(record: TraitsRecord) -> Result<Self, &'static str> {
+        let TraitsRecord { radius, footprint, margin, speed, acceleration } = record;
+        let radius = match (radius, &footprint) {
+            (Some(radius), None) => radius,
+            (None, Some(footprint)) => footprint.circumscribed_radius(),
+            (Some(_), Some(_)) => return Err("a robot has a radius or a footprint, not both"),
+            (None, None) => return Err("a robot has a radius or a footprint"),
+        };
+        Ok(Self { radius, footprint, margin, speed, acceleration })
+    }
+}
+
+impl From<RobotTraits> for TraitsRecord {
+    fn from(traits: RobotTraits) -> Self {
+        let RobotTraits { radius, footprint, margin, speed, acceleration } = traits;
+        Self { radius: footprint.is_none().then_some(radius), footprint, margin, speed, acceleration }
+    }
 }
 
 /// Largest value of each trait, in its unit.
@@ -76,6 +115,18 @@ impl RobotTraits {
         self.radius + self.margin + ROOM
     }
 
+    /// Returns what has to be kept free of others: its disc, or the convex hull of its outline, larger by its margin. Where its heading is
+    /// not known, that is the disc around its outline.
+    ///
+    /// # Errors
+    /// [`InvalidInput`] where it is out of range.
+    pub fn body(&self, any_heading: bool) -> Result<ConvexBody, InvalidInput> {
+        match self.footprint.as_ref().filter(|_| !any_heading) {
+            None => Ok(ConvexBody::Disc(self.radius_with_margin())),
+            outline => ConvexBody::of_vehicle(outline, self.radius)?.inflated(self.margin + ROOM),
+        }
+    }
+
     /// Distance in which it stops from its largest speed \[m\].
     pub fn braking(&self) -> f64 {
         self.speed * self.speed / (2.0 * self.acceleration)
@@ -121,6 +172,9 @@ pub struct PendingMission {
     pub path: u64,
     /// Shapes of the mission's path.
     pub shapes: Vec<PathElement>,
+    /// Whether the robot may have any heading on them.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub any_heading: bool,
     /// Number in the queue: missions with lower numbers are tried first.
     pub turn: u64,
 }
@@ -132,6 +186,9 @@ pub struct MissionFingerprint {
     pub after: f64,
     /// Number of shapes at the end of the path that belong to the mission.
     pub shapes: usize,
+    /// Whether the robot may have any heading on them.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub any_heading: bool,
 }
 
 /// How far the passing orders allow a robot to go, for the positions of the others at the time of the computation.
@@ -165,6 +222,10 @@ pub struct SupervisedRobot {
     pub name: String,
     /// Its abilities.
     pub abilities: RobotTraits,
+    /// What is kept free of others: [`RobotTraits::body`].
+    pub(crate) body: ConvexBody,
+    /// Whether it may have any heading on its present path.
+    pub any_heading: bool,
     /// Its present path.
     pub course: OwnedPath,
     /// What is missing from the start of the path.
@@ -217,10 +278,20 @@ pub struct SupervisedRobot {
 
 impl SupervisedRobot {
     /// A robot that stands at the start of its path. Other robots may still have the right to go there.
-    pub fn new(name: String, abilities: RobotTraits, course: OwnedPath) -> Self {
-        Self {
+    ///
+    /// # Errors
+    /// [`InvalidInput`] for an outline that is out of range.
+    pub fn new(
+        name: String,
+        abilities: RobotTraits,
+        any_heading: bool,
+        course: OwnedPath,
+    ) -> Result<Self, InvalidInput> {
+        Ok(Self {
             name,
+            body: abilities.body(any_heading)?,
             abilities,
+            any_heading,
             course,
             rest: PathRounding::default(),
             path: 1,
@@ -244,14 +315,14 @@ impl SupervisedRobot {
             moved: None,
             stands: false,
             notes: RobotNotes::new(),
-        }
+        })
     }
 
-    /// Request of its mission: length of the path before, and shapes; `None` if it is not known.
-    pub(crate) fn mission_request(&self) -> Option<(f64, &[PathElement])> {
-        let MissionFingerprint { after, shapes } = self.asked?;
+    /// Request of its mission: length of the path before, shapes, and whether it may have any heading; `None` if it is not known.
+    pub(crate) fn mission_request(&self) -> Option<(f64, &[PathElement], bool)> {
+        let MissionFingerprint { after, shapes, any_heading } = self.asked?;
         let all = self.course.shapes();
-        Some((after, all.get(all.len().checked_sub(shapes)?..)?))
+        Some((after, all.get(all.len().checked_sub(shapes)?..)?, any_heading))
     }
 
     /// Stores the id of a mission that is over.
@@ -263,12 +334,22 @@ impl SupervisedRobot {
         past.drain(..first);
     }
 
-    /// The motion of its disc on its path.
+    /// The motion of its disc or outline on its path.
     ///
     /// # Errors
-    /// [`InvalidInput`] for a radius; it was checked when the robot was added.
+    /// [`InvalidInput`] for a radius, and for an outline that would turn in no time; both were checked when the robot got its path.
     pub fn motion(&self) -> Result<Motion<'_, f64>, InvalidInput> {
-        self.course.motion(self.abilities.radius_with_margin())
+        self.course.motion(&self.body)
+    }
+
+    /// Distance from the reference point within which a turn moves its points \[m\]; 0 for a disc.
+    pub(crate) fn spread(&self) -> f64 {
+        if self.body.is_disc() { 0.0 } else { self.body.reach() }
+    }
+
+    /// How much further than what it was told it may be by its margin \[m\]: where its path bends, its corners go further than it does.
+    pub(crate) fn allowance(&self) -> f64 {
+        (self.abilities.margin + ROOM) / self.course.stretch(self.spread())
     }
 
     /// Its position, and where it can come to rest: it may go up to `told` without asking again.

@@ -7,6 +7,8 @@ mod admission;
 mod alarms;
 mod authority;
 mod deadlock_report;
+#[cfg(test)]
+mod outline_tests;
 mod positions;
 mod restore;
 mod robot_notes;
@@ -250,7 +252,7 @@ impl Supervisor {
         self.works()?;
         let place = self.robot_index(name)?;
         let robot = &self.robots[place];
-        let mut new = standing(name, robot.abilities, start)?;
+        let mut new = standing(name, robot.abilities.clone(), start)?;
         new.path = robot.path + 1;
         new.past.clone_from(&robot.past);
         let waiting = robot.waiting.as_ref().map(|waiting| &waiting.mission);
@@ -456,7 +458,7 @@ impl Supervisor {
 /// A robot that stands, without a mission.
 fn standing(name: &str, abilities: RobotTraits, start: StartPose) -> Result<SupervisedRobot, RequestError> {
     let course = OwnedPath::new(start, Vec::new()).map_err(RequestError::invalid)?;
-    let robot = SupervisedRobot::new(name.into(), abilities, course);
+    let robot = SupervisedRobot::new(name.into(), abilities, false, course).map_err(RequestError::invalid)?;
     robot.motion().map_err(RequestError::invalid)?;
     Ok(robot)
 }

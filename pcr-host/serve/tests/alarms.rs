@@ -8,7 +8,8 @@ use pcr_serve::robot::{Alarm, RobotTraits};
 use pcr_serve::supervisor::{AdmissionResult, MissionRequest, PositionReport, Supervisor, SupervisorConfig};
 use std::f64::consts::FRAC_PI_2;
 
-const ABILITIES: RobotTraits = RobotTraits { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+const ABILITIES: RobotTraits =
+    RobotTraits { radius: 0.25, footprint: None, margin: 0.0, speed: 1.0, acceleration: 0.5 };
 
 fn place(x: f64, y: f64, heading: f64) -> StartPose {
     StartPose { x, y, heading }
@@ -16,7 +17,15 @@ fn place(x: f64, y: f64, heading: f64) -> StartPose {
 
 fn mission(robot: &str, name: &str, length: f64) -> MissionRequest {
     let path = vec![PathElement::Line { length }];
-    MissionRequest { robot: robot.into(), mission: name.into(), after: None, expected_path: None, start: None, path }
+    MissionRequest {
+        robot: robot.into(),
+        mission: name.into(),
+        after: None,
+        expected_path: None,
+        any_heading: false,
+        start: None,
+        path,
+    }
 }
 
 fn report(robot: &str, path: u64, lo: f64, hi: f64) -> PositionReport {
@@ -452,7 +461,7 @@ fn a_robot_that_cannot_be_moved_keeps_its_place() {
     own.position(&report("east", 2, 1.0, 1.0), 1.0).unwrap();
     own.settle(1.0).unwrap();
     // So often past one place that no table has the regions of who stands there.
-    let shuttle = PathElement::Turn { sweep: std::f64::consts::PI };
+    let shuttle = PathElement::Turn { sweep: std::f64::consts::PI, lever: None };
     own.add("shuttle", ABILITIES, place(99.0, 99.0, 0.0)).unwrap();
     let path = (0..40_000).flat_map(|_| [PathElement::Line { length: 0.25 }, shuttle]).collect();
     let verdict = own.mission(&MissionRequest { path, ..mission("shuttle", "1", 0.0) }, 1.0).unwrap();

@@ -8,11 +8,18 @@ use std::f64::consts::FRAC_PI_2;
 
 fn lone(settings: SupervisorConfig, speed: f64, length: f64) -> Supervisor {
     let mut own = Supervisor::new(settings, Box::new(NullStore));
-    let abilities = RobotTraits { radius: 0.4, margin: 0.0, speed, acceleration: 1.0 };
+    let abilities = RobotTraits { radius: 0.4, footprint: None, margin: 0.0, speed, acceleration: 1.0 };
     own.add("a", abilities, StartPose { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
     let path = vec![PathElement::Line { length }];
-    let proposal =
-        MissionRequest { robot: "a".into(), mission: "m".into(), after: None, expected_path: None, start: None, path };
+    let proposal = MissionRequest {
+        robot: "a".into(),
+        mission: "m".into(),
+        after: None,
+        expected_path: None,
+        any_heading: false,
+        start: None,
+        path,
+    };
     own.mission(&proposal, 0.0).unwrap();
     own.settle(0.0).unwrap();
     own
@@ -50,7 +57,7 @@ fn slow_robots_come_to_their_ends() {
 fn who_has_passed_what_kept_it_goes_on() {
     let mut own = lone(SupervisorConfig::default(), 1.0, 20.0);
     at(&mut own, [2.0, 2.05], 1.0);
-    let abilities = own.robot("a").unwrap().abilities;
+    let abilities = own.robot("a").unwrap().abilities.clone();
     own.add("b", abilities, StartPose { x: 3.5, y: 0.0, heading: FRAC_PI_2 }).unwrap();
     own.settle(1.5).unwrap();
     let told = own.robot("a").unwrap().notified_limit;

@@ -10,9 +10,9 @@ use pcr_serve::robot::RobotTraits;
 use pcr_serve::supervisor::{AdmissionResult, MissionRequest, PositionReport, Supervisor, SupervisorConfig};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-const CAN: RobotTraits = RobotTraits { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+const CAN: RobotTraits = RobotTraits { radius: 0.25, footprint: None, margin: 0.0, speed: 1.0, acceleration: 0.5 };
 const ORIGIN: StartPose = StartPose { x: 0.0, y: 0.0, heading: 0.0 };
-const CORNER: PathElement = PathElement::Turn { sweep: FRAC_PI_2 };
+const CORNER: PathElement = PathElement::Turn { sweep: FRAC_PI_2, lever: None };
 
 fn line(length: f64) -> PathElement {
     PathElement::Line { length }
@@ -25,7 +25,7 @@ fn hundredths(dice: &mut SplitMix64, from: u32, to: u32) -> f64 {
 
 fn proposal(mission: &str, path: &[PathElement]) -> MissionRequest {
     let (robot, mission, path) = ("a".into(), mission.into(), path.to_vec());
-    MissionRequest { robot, mission, after: None, expected_path: None, start: None, path }
+    MissionRequest { robot, mission, after: None, expected_path: None, any_heading: false, start: None, path }
 }
 
 fn supervisor(start: StartPose) -> Supervisor {
@@ -53,7 +53,7 @@ fn the_turn_at_the_end_of_a_path_is_done() {
             path = vec![line(3.58), line(1.39), line(0.89)];
         }
         let x = 100.0 + path.iter().map(|shape| shape.length()).sum::<f64>();
-        path.push(PathElement::Turn { sweep: 1.5 });
+        path.push(PathElement::Turn { sweep: 1.5, lever: None });
         let mut own = supervisor(StartPose { x: 100.0, ..ORIGIN });
         assert!(is_admitted(&mut own, &proposal("m", &path)));
         let next = |heading| {
@@ -76,7 +76,7 @@ fn courses_that_are_cut_at_a_joint_lead_where_they_did() {
     for _ in 0..3_000 {
         let shapes: Vec<PathElement> = (0..2 + dice.below(6))
             .map(|_| match dice.below(3) {
-                0 => PathElement::Turn { sweep: dice.uniform(-PI, PI) },
+                0 => PathElement::Turn { sweep: dice.uniform(-PI, PI), lever: None },
                 1 => PathElement::Arc { radius: hundredths(&mut dice, 30, 100), sweep: dice.uniform(-PI, PI) },
                 _ => line(hundredths(&mut dice, 1, 200)),
             })
@@ -177,7 +177,7 @@ fn rounding_does_not_add_up_from_mission_to_mission() {
 fn headings_do_not_add_up_rounding() {
     let mut own = supervisor(ORIGIN);
     let turns = 3000;
-    done(&mut own, 0, turns, &[line(0.5), PathElement::Turn { sweep: PI }]);
+    done(&mut own, 0, turns, &[line(0.5), PathElement::Turn { sweep: PI, lever: None }]);
     // So much is missing from `PI` to half a turn.
     let missing = 1.224_646_799_147_353_2e-16;
     let robot = own.robot("a").unwrap();
@@ -256,7 +256,12 @@ fn lengths_are_converted_from_path_to_path() {
         });
         let after = old - origin.unwrap();
         moved += u32::from(after != own.robot("a").unwrap().course.length());
-        let replace = MissionRequest { after: Some(after), expected_path: Some(3), ..proposal("o", &[line(4.0)]) };
+        let replace = MissionRequest {
+            after: Some(after),
+            expected_path: Some(3),
+            any_heading: false,
+            ..proposal("o", &[line(4.0)])
+        };
         assert!(is_admitted(&mut own, &replace), "{lengths:?}");
         // Whoever asks again may have added up in another order.
         let again = MissionRequest { after: Some(after.next_up()), ..replace };

@@ -175,7 +175,8 @@ fn a_list_that_grows_is_written_once_and_is_there_after_a_restart() {
     let disc = Disc::new();
     let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(disc.clone()));
     let start = StartPose { x: 0.0, y: 0.0, heading: 0.0 };
-    own.add("a", RobotTraits { radius: 0.4, margin: 0.0, speed: 1.0, acceleration: 0.5 }, start).unwrap();
+    own.add("a", RobotTraits { radius: 0.4, footprint: None, margin: 0.0, speed: 1.0, acceleration: 0.5 }, start)
+        .unwrap();
     own.note("a", "list", json!([0])).unwrap();
     own.settle(0.0).unwrap();
     let mut sizes = Vec::new();
@@ -206,7 +207,8 @@ fn a_list_that_grows_is_written_once_and_is_there_after_a_restart() {
 fn after_a_note_that_is_no_json_nothing_is_told() {
     let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(NullStore));
     let start = StartPose { x: 0.0, y: 0.0, heading: 0.0 };
-    own.add("a", RobotTraits { radius: 0.4, margin: 0.0, speed: 1.0, acceleration: 0.5 }, start).unwrap();
+    own.add("a", RobotTraits { radius: 0.4, footprint: None, margin: 0.0, speed: 1.0, acceleration: 0.5 }, start)
+        .unwrap();
     let note = HashMap::from([([1, 2], 3)]);
     assert!(matches!(own.note("a", "order", note), Err(RequestError::Broken { .. })));
     assert!(matches!(own.settle(0.0), Err(RequestError::Broken { .. })));
@@ -386,11 +388,15 @@ fn a_journal_begun_anew_that_was_cut_is_damaged() {
     let _ = std::fs::remove_dir_all(&folder);
 }
 
-const CAN: RobotTraits = RobotTraits { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+const CAN: RobotTraits = RobotTraits { radius: 0.25, footprint: None, margin: 0.0, speed: 1.0, acceleration: 0.5 };
 
 fn mission(own: &mut Supervisor, robot: &str, mission: &str, length: f64, now: f64) -> AdmissionResult {
     let (robot, mission, path) = (robot.into(), mission.into(), vec![PathElement::Line { length }]);
-    own.mission(&MissionRequest { robot, mission, after: None, expected_path: None, start: None, path }, now).unwrap()
+    own.mission(
+        &MissionRequest { robot, mission, after: None, expected_path: None, any_heading: false, start: None, path },
+        now,
+    )
+    .unwrap()
 }
 
 /// Robots go as far as they may, and nobody is stopped.

@@ -16,7 +16,7 @@ const SLOW: f64 = 0.1;
 #[test]
 fn a_slow_robot_gets_its_turn() {
     let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(NullStore));
-    let abilities = |speed| RobotTraits { radius: 0.4, margin: 0.0, speed, acceleration: 5.0 };
+    let abilities = |speed| RobotTraits { radius: 0.4, footprint: None, margin: 0.0, speed, acceleration: 5.0 };
     own.add("fast", abilities(FAST), StartPose { x: 0.0, y: 4.0, heading: FRAC_PI_2 }).unwrap();
     own.add("slow", abilities(SLOW), StartPose { x: -4.0, y: 0.0, heading: 0.0 }).unwrap();
     // Turns round, 4 m to the passage, 12 m through it and 4 m out of it. It turns by a little more than half a turn, because the lines of
@@ -24,12 +24,20 @@ fn a_slow_robot_gets_its_turn() {
     const HALF: f64 = PI + 1e-12;
     let trip = |trips: u32| {
         let sweep = if trips.is_multiple_of(2) { FRAC_PI_2 } else { -FRAC_PI_2 };
-        let (bend, line) = (PathElement::Turn { sweep }, |length| PathElement::Line { length });
-        vec![PathElement::Turn { sweep: HALF }, line(4.0), bend, line(12.0), bend, line(4.0)]
+        let (bend, line) = (PathElement::Turn { sweep, lever: None }, |length| PathElement::Line { length });
+        vec![PathElement::Turn { sweep: HALF, lever: None }, line(4.0), bend, line(12.0), bend, line(4.0)]
     };
     let ask = |own: &mut Supervisor, robot: &str, mission: String, path: Vec<PathElement>, now: f64| {
         own.mission(
-            &MissionRequest { robot: robot.into(), mission, after: None, expected_path: None, start: None, path },
+            &MissionRequest {
+                robot: robot.into(),
+                mission,
+                after: None,
+                expected_path: None,
+                any_heading: false,
+                start: None,
+                path,
+            },
             now,
         )
         .unwrap();
@@ -66,7 +74,7 @@ fn a_slow_robot_gets_its_turn() {
 #[test]
 fn one_that_stands_does_not_put_others_last() {
     let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(NullStore));
-    let abilities = |speed| RobotTraits { radius: 0.4, margin: 0.0, speed, acceleration: 1.0 };
+    let abilities = |speed| RobotTraits { radius: 0.4, footprint: None, margin: 0.0, speed, acceleration: 1.0 };
     let starts = [
         ("slow", 0.01, [-1.2, 0.0], 0.0),
         ("held", 1.0, [0.0, -4.0], FRAC_PI_2),
@@ -85,6 +93,7 @@ fn one_that_stands_does_not_put_others_last() {
             mission: "1".into(),
             after: None,
             expected_path: None,
+            any_heading: false,
             start: None,
             path,
         };
@@ -130,7 +139,7 @@ fn one_that_stands_does_not_put_others_last() {
 fn a_mission_is_tried_however_many_others_wait() {
     const ROW: u32 = 60;
     let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(NullStore));
-    let abilities = RobotTraits { radius: 0.4, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+    let abilities = RobotTraits { radius: 0.4, footprint: None, margin: 0.0, speed: 1.0, acceleration: 0.5 };
     let ask = |own: &mut Supervisor, robot: &str| {
         let path = vec![PathElement::Line { length: 5.0 }];
         let proposal = MissionRequest {
@@ -138,13 +147,14 @@ fn a_mission_is_tried_however_many_others_wait() {
             mission: "1".into(),
             after: None,
             expected_path: None,
+            any_heading: false,
             start: None,
             path,
         };
         own.mission(&proposal, 0.0).unwrap()
     };
     for k in 0..ROW {
-        own.add(&k.to_string(), abilities, StartPose { x: 5.0 * f64::from(k), y: 0.0, heading: 0.0 }).unwrap();
+        own.add(&k.to_string(), abilities.clone(), StartPose { x: 5.0 * f64::from(k), y: 0.0, heading: 0.0 }).unwrap();
     }
     own.add("in the way", abilities, StartPose { x: 5.0 * f64::from(ROW), y: 0.0, heading: 0.0 }).unwrap();
     for k in 0..ROW {

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-const CAN: RobotTraits = RobotTraits { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+const CAN: RobotTraits = RobotTraits { radius: 0.25, footprint: None, margin: 0.0, speed: 1.0, acceleration: 0.5 };
 
 /// A robot under way, and a disk that no longer writes.
 fn driving() -> Office {
@@ -114,7 +114,15 @@ fn supervisor() -> Supervisor {
 
 fn mission(robot: &str, name: &str, length: f64) -> MissionRequest {
     let path = vec![PathElement::Line { length }];
-    MissionRequest { robot: robot.into(), mission: name.into(), after: None, expected_path: None, start: None, path }
+    MissionRequest {
+        robot: robot.into(),
+        mission: name.into(),
+        after: None,
+        expected_path: None,
+        any_heading: false,
+        start: None,
+        path,
+    }
 }
 
 /// Its length stays a little before the end of its path, so it counted as one that drives.

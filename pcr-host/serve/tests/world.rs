@@ -174,7 +174,7 @@ fn path(pieces: &[OwnedPath], length: f64) -> raw::RawPath {
         heading = piece.start().heading;
         for shape in piece.shapes() {
             let (long, radius) = match *shape {
-                PathElement::Turn { sweep } => {
+                PathElement::Turn { sweep, .. } => {
                     turns.push(RawAngle::Radians(sweep));
                     heading += sweep;
                     continue;
@@ -253,12 +253,13 @@ impl World {
             let radius = dice.uniform(0.15, 0.35);
             let abilities = RobotTraits {
                 radius,
+                footprint: None,
                 margin: 0.0,
                 speed: dice.uniform(0.5, 1.5),
                 acceleration: dice.uniform(0.4, 1.0),
             };
             let name = format!("robot {k}");
-            supervisor.add(&name, abilities, start).unwrap();
+            supervisor.add(&name, abilities.clone(), start).unwrap();
             let course = OwnedPath::new(start, Vec::new()).unwrap();
             let doubt = [dice.uniform(0.0, 0.03), dice.uniform(0.0, 0.03)];
             vehicles.push(Vehicle {
@@ -336,7 +337,7 @@ impl World {
     fn shapes(&mut self, start: StartPose) -> Option<Vec<PathElement>> {
         let dice = &mut self.dice;
         let shapes = (0..1 + dice.below(4)).map(|_| match dice.below(3) {
-            0 => PathElement::Turn { sweep: dice.uniform(-PI, PI) },
+            0 => PathElement::Turn { sweep: dice.uniform(-PI, PI), lever: None },
             1 => PathElement::Arc { radius: dice.uniform(0.3, 1.0), sweep: dice.uniform(-PI, PI) },
             _ => PathElement::Line { length: dice.uniform(0.3, 4.0) },
         });
@@ -367,6 +368,7 @@ impl World {
             mission: format!("mission {}", self.proposals),
             after: (!arrives).then_some(after),
             expected_path: None,
+            any_heading: false,
             start: Some(start),
             path,
         };

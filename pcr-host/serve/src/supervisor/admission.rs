@@ -6,8 +6,9 @@ use crate::event::{CancelCause, SupervisorEvent};
 use crate::journal_entry::{JournalEntry, StoredPrecedence, StoredRobot};
 use crate::owned_path::{JOINT, OwnedPath, PathElement, PathRounding, StartPose, WORN, extent};
 use crate::request_error::RequestError;
-use crate::robot::{MissionFingerprint, PendingMission, SupervisedRobot};
-use pcr_core::{AdmissionError, Interval, PassingState, PathProposal, Progress, RegionRef};
+use crate::robot::{MissionFingerprint, PendingMission, ROOM, SupervisedRobot};
+use pcr_core::{AdmissionError, Interval, InvalidInput, PassingState, PathProposal, Progress, RegionRef};
+use pcr_planning::fleet::ConvexBody;
 use serde::{Deserialize, Serialize};
 
 /// Length of the longest id of a mission \[bytes\].
@@ -33,6 +34,9 @@ pub struct MissionRequest {
     pub start: Option<StartPose>,
     /// Shapes of the new path.
     pub path: Vec<PathElement>,
+    /// Whether the robot may have any heading on it: then it is the disc around its outline.
+    #[serde(default)]
+    pub any_heading: bool,
 }
 
 /// The result of a request for a mission.
@@ -60,6 +64,14 @@ pub enum AdmissionResult {
     },
 }
 
+/// A path with which a mission was admitted, and what moves along it.
+struct AdmittedPath {
+    course: OwnedPath,
+    rest: PathRounding,
+    body: ConvexBody,
+    any_heading: bool,
+}
+
 /// The attempts to admit a waiting mission.
 #[derive(Clone, Debug, Default)]
 pub(super) struct AdmissionRetry {
@@ -76,8 +88,10 @@ const JOIN: f64 = 1e-3;
 
 impl MissionRequest {
     /// Whether it is a request for a path that begins at this length of the path before, along these shapes.
-    fn asks_for(&self, after: f64, shapes: &[PathElement]) -> bool {
-        self.path == shapes && self.after.is_none_or(|own| (own - after).abs() <= JOINT)
+    fn asks_for(&self, after: f64, shapes: &[PathElement], any_heading: bool) -> bool {
+        self.path == shapes
+            && self.any_heading == any_heading
+            && self.after.is_none_or(|own| (own - after).abs() <= JOINT)
     }
 }
 
@@ -97,7 +111,7 @@ impl Supervisor {
         let robot = &self.robots[place];
         let waiting = robot.waiting.as_ref().filter(|waiting| waiting.mission == proposal.mission);
         if let Some(waiting) = waiting {
-            if !proposal.asks_for(waiting.after, &waiting.shapes) {
+            if !proposal.asks_for(waiting.after, &waiting.shapes, waiting.any_heading) {
                 return Err(RequestError::MissionExists);
             }
             let why = "it is tried again".into();
@@ -105,7 +119,7 @@ impl Supervisor {
             return Ok(last.unwrap_or(AdmissionResult::Waiting { by: None, why }));
         }
         if robot.mission.as_ref() == Some(&proposal.mission) {
-            let is_same = |(after, shapes): (f64, &[PathElement])| proposal.asks_for(after, shapes);
+            let is_same = |(after, shapes, any): (f64, &[PathElement], bool)| proposal.asks_for(after, shapes, any);
             if !robot.mission_request().is_none_or(is_same) {
                 return Err(RequestError::MissionExists);
             }
@@ -120,6 +134,7 @@ impl Supervisor {
             after,
             path: robot.path,
             shapes: proposal.path.clone(),
+            any_heading: proposal.any_heading,
             turn: self.turn,
         };
         // A length of another path means another place.
@@ -128,7 +143,7 @@ impl Supervisor {
         }
         let joint = joint(robot, after)?;
         if let Some(start) = proposal.start {
-            is_there(robot, joint, start, extent(&proposal.path))?;
+            is_there(robot, joint, start, extent(&proposal.path) + robot.spread())?;
         }
         self.counts.missions += 1;
         // Removed now, because a robot with a newly admitted path has no waiting mission.
@@ -220,14 +235,21 @@ impl Supervisor {
         }
         let rejoined = robot.course.rejoined(robot.arc_length, joint, &mission.shapes, robot.rest);
         let (course, dropped, rest) = rejoined.map_err(RequestError::invalid)?;
-        if rest.worn(course.length()) > WORN {
-            let why = "the rounding of all its missions is more than the discs have room for: remove the robot, and add it anew";
+        // Where it has come to the end of its path, it faces as the mission says.
+        let stands = robot.arc_length >= joint - 2.0 * ROOM;
+        let any_heading = mission.any_heading || robot.any_heading && !stands;
+        let body = match any_heading == robot.any_heading {
+            true => robot.body.clone(),
+            false => robot.abilities.body(any_heading).map_err(RequestError::invalid)?,
+        };
+        if rest.worn(course.length() + robot.spread()) > WORN {
+            let why = "the rounding of all its missions is more than the outlines have room for: remove the robot, and add it anew";
             return Err(RequestError::invalid(why));
         }
         let shifted = |length: f64| (length - dropped).max(0.0).min(course.length());
         let (at, told) = (shifted(robot.arc_length), shifted(robot.notified_limit));
         let own = Progress { at: Interval::new(at, told), stop: told };
-        let motion = course.motion(robot.abilities.radius_with_margin()).map_err(RequestError::invalid)?;
+        let motion = course.motion(&body).map_err(turning)?;
         let (mut progress, tolerances) = (self.progress(), self.tolerances());
         self.orders.passed(&progress);
         let mut fleet = fleet(&self.robots)?;
@@ -243,7 +265,8 @@ impl Supervisor {
         });
         drop(fleet);
         let Err(refused) = admission else {
-            return self.commit(place, mission, (course.clone(), rest), dropped).map(|()| None);
+            let path = AdmittedPath { course: course.clone(), rest, body: body.clone(), any_heading };
+            return self.commit(place, mission, path, dropped).map(|()| None);
         };
         self.counts.refused += 1;
         let name = |agent: usize| self.robots.get(agent).map_or_else(String::new, |robot| robot.name.clone());
@@ -265,7 +288,7 @@ impl Supervisor {
         &mut self,
         place: usize,
         mission: &PendingMission,
-        (course, rest): (OwnedPath, PathRounding),
+        AdmittedPath { course, rest, body, any_heading }: AdmittedPath,
         dropped: f64,
     ) -> Result<(), RequestError> {
         let robot = &mut self.robots[place];
@@ -281,10 +304,12 @@ impl Supervisor {
         robot.path += 1;
         robot.origin += dropped;
         (robot.course, robot.rest) = (course, rest);
+        (robot.body, robot.any_heading) = (body, any_heading);
         if let Some(before) = robot.mission.replace(mission.mission.clone()) {
             SupervisedRobot::outlives(&mut robot.past, before);
         }
-        robot.asked = Some(MissionFingerprint { after: mission.after, shapes: mission.shapes.len() });
+        let PendingMission { after, any_heading, .. } = *mission;
+        robot.asked = Some(MissionFingerprint { after, shapes: mission.shapes.len(), any_heading });
         robot.waiting = None;
         let event = SupervisorEvent::Admitted {
             robot: robot.name.clone(),
@@ -330,7 +355,8 @@ impl Supervisor {
         });
         Ok(StoredRobot {
             name: robot.name.clone(),
-            abilities: robot.abilities,
+            abilities: robot.abilities.clone(),
+            any_heading: robot.any_heading,
             course: robot.course.clone(),
             rest: robot.rest,
             path: robot.path,
@@ -412,6 +438,17 @@ fn is_there(robot: &SupervisedRobot, after: f64, start: StartPose, extent: f64) 
     // Written so that NaN is not near.
     let is_near = angle <= JOIN && distance + angle * extent <= JOIN;
     if is_near { Ok(()) } else { Err(RequestError::Apart { distance, angle }) }
+}
+
+/// Why there is no motion along a path: says what to do where an outline would turn in no time.
+fn turning(reason: InvalidInput) -> RequestError {
+    match reason {
+        InvalidInput::TurnInPlace => RequestError::invalid(
+            "path: a robot with a footprint sweeps an area as it turns in place: give each turn its `lever`, the length of the path for each \
+             radian [m], or the mission `any_heading`",
+        ),
+        reason => RequestError::invalid(reason),
+    }
 }
 
 fn admitted(robot: &SupervisedRobot) -> AdmissionResult {

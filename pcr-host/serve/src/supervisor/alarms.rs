@@ -5,6 +5,7 @@ use crate::event::SupervisorEvent;
 use crate::owned_path::{OwnedPath, StartPose};
 use crate::robot::{Alarm, ROOM};
 use pcr_core::{Ecm, MovementAuthority, PassingState, RegionRef};
+use pcr_planning::fleet::ConvexBody;
 
 /// A limit to how far a robot may go, whatever its orders say, because another one is not where it may be.
 #[derive(Clone, Copy, Debug, Default)]
@@ -84,7 +85,8 @@ impl Supervisor {
         let robot = &self.robots[place];
         let found = || -> Option<Option<f64>> {
             let disc = OwnedPath::new(StartPose { x, y, heading: 0.0 }, Vec::new()).ok()?;
-            let fleet = [robot.motion().ok()?, disc.motion(radius).ok()?];
+            let body = ConvexBody::Disc(radius);
+            let fleet = [robot.motion().ok()?, disc.motion(&body).ok()?];
             let ecm = Ecm::grown(&fleet).ok()?;
             let regions = ecm.pair(&fleet, 0, 1).ok()?;
             let ahead = regions.map(|region| region.length()).filter(|length| length.hi >= robot.arc_length);
@@ -135,16 +137,19 @@ mod tests {
     #[test]
     fn where_the_table_is_not_that_of_the_robots_nobody_goes_on() {
         let mut own = Supervisor::new(SupervisorConfig::default(), Box::new(NullStore));
-        let can = RobotTraits { radius: 0.25, margin: 0.0, speed: 1.0, acceleration: 0.5 };
-        own.add("east", can, StartPose { x: -3.0, y: 0.0, heading: 0.0 }).unwrap();
+        let can = RobotTraits { radius: 0.25, footprint: None, margin: 0.0, speed: 1.0, acceleration: 0.5 };
+        own.add("east", can.clone(), StartPose { x: -3.0, y: 0.0, heading: 0.0 }).unwrap();
         let path = vec![PathElement::Line { length: 6.0 }];
         let (robot, mission) = ("east".into(), "1".into());
-        own.mission(&MissionRequest { robot, mission, after: None, expected_path: None, start: None, path }, 0.0)
-            .unwrap();
+        own.mission(
+            &MissionRequest { robot, mission, after: None, expected_path: None, any_heading: false, start: None, path },
+            0.0,
+        )
+        .unwrap();
         own.settle(0.0).unwrap();
         assert!(own.robots[0].granted > 0.0);
         own.add("new", can, StartPose { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
-        own.robots[1].abilities.radius = 0.3;
+        own.robots[1].body = ConvexBody::Disc(0.3);
         let limits = own.limits(1.0);
         assert!(
             limits

@@ -50,7 +50,8 @@ impl Supervisor {
         let begun = self.begun(now);
         let robot = &self.robots[place];
         let (is_new, told, passed) = (is_new(robot, time, begun), robot.notified_limit, robot.arc_length);
-        if *hi > told + robot.abilities.margin + ROOM {
+        // What bends makes a path's corners go further: only those that are beyond what was told pay for the search.
+        if *hi > told && *hi > told + robot.allowance() {
             if is_new {
                 self.alarm(place, Some(Alarm::Beyond { notified_limit: told, at: *hi }), time);
             }

@@ -200,7 +200,9 @@ const MOST: u64 = 1 << 53;
 
 fn robot(known: StoredRobot) -> Result<SupervisedRobot, JournalError> {
     let abilities = known.abilities.checked().map_err(|why| JournalError(format!("{}: {why}", known.name)))?;
-    let mut robot = SupervisedRobot::new(known.name, abilities, known.course);
+    let (name, refused) = (known.name.clone(), known.name);
+    let robot = SupervisedRobot::new(name, abilities, known.any_heading, known.course);
+    let mut robot = robot.map_err(|why| JournalError(format!("{refused}: {why}")))?;
     let end = robot.course.length();
     let counts = known.path < MOST && known.waiting.as_ref().is_none_or(|waiting| waiting.turn < MOST);
     if !counts

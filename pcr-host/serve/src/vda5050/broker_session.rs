@@ -295,7 +295,8 @@ mod tests {
         let key = VehicleId::new("m", "1").unwrap();
         let topic = vehicles.topic(ProtocolVersion::V2_1, &key, TopicKind::State);
         let mut supervisor = Supervisor::new(Default::default(), Box::new(crate::journal_entry::NullStore));
-        let abilities = crate::robot::RobotTraits { radius: 0.4, margin: 0.1, speed: 1.0, acceleration: 0.5 };
+        let abilities =
+            crate::robot::RobotTraits { radius: 0.4, footprint: None, margin: 0.1, speed: 1.0, acceleration: 0.5 };
         let settings = super::super::bridge::BridgeConfig { manager, vehicles, limits: Default::default() };
         let profile = super::super::vehicle_adapter::VehicleConfig { key, abilities, split: true };
         let mut bridge = Vda5050Bridge::new(settings, vec![profile], &supervisor).unwrap();

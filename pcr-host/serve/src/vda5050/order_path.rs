@@ -154,7 +154,7 @@ impl OrderPath {
     fn push(&mut self, placed: PlacedSegment) {
         let sweep = (placed.heading - self.heading + PI).rem_euclid(TAU) - PI;
         if sweep.abs() > STRAIGHT {
-            self.shapes.push(PathElement::Turn { sweep });
+            self.shapes.push(PathElement::Turn { sweep, lever: None });
         }
         self.pieces.push(OrderPathSegment { from: self.length(), placed });
         self.shapes.push(match placed.shape {

@@ -67,6 +67,12 @@ pub fn profile(key: VehicleId, can: &SimulatedTraits) -> VehicleConfig {
     // Distance from its way, error of its position counted twice (in what it reports and in its reported deviation), and an
     // allowance for motion between two steps.
     let margin = TOLERANCE + can.drift + 2.0 * can.noise + 0.01;
-    let abilities = robot::RobotTraits { radius: can.radius, margin, speed: can.speed, acceleration: can.acceleration };
+    let abilities = robot::RobotTraits {
+        radius: can.radius,
+        footprint: None,
+        margin,
+        speed: can.speed,
+        acceleration: can.acceleration,
+    };
     VehicleConfig { key, abilities, split: true }
 }

@@ -129,7 +129,7 @@ fn corner(way: &OrderPath, held: &OrderState, at: f64, turned: f64) -> Option<(f
     /// Largest corner that is driven without a stop \[rad\].
     const SLIGHT: f64 = 0.01;
     let angle = |shapes: &[PathElement]| match shapes.first() {
-        Some(PathElement::Turn { sweep }) if sweep.abs() > SLIGHT => Some(sweep.abs()),
+        Some(PathElement::Turn { sweep, .. }) if sweep.abs() > SLIGHT => Some(sweep.abs()),
         _ => None,
     };
     if at <= NEAR

@@ -150,7 +150,7 @@ fn a_second_cancellation_is_no_storm() {
 fn a_pause_that_begins_after_it_was_ended_is_ended_again() {
     for status in ["FAILED", "FINISHED"] {
         let mut own = driving();
-        let abilities = own.robot().abilities;
+        let abilities = own.robot().abilities.clone();
         let start = pcr_serve::owned_path::StartPose { x: 6.0, y: 0.0, heading: 0.0 };
         own.supervisor.add("new", abilities, start).unwrap();
         own.lasts(0.5);

@@ -334,13 +334,14 @@ fn who_gets_nowhere_is_said_and_why() {
         mission: "1".into(),
         after: None,
         expected_path: None,
+        any_heading: false,
         start: None,
         path: vec![PathElement::Line { length }],
     };
     let at = |x, heading| StartPose { x, y: 0.0, heading };
     let mut own = Supervisor::new(settings(), Box::new(NullStore));
-    own.add("a", abilities, at(0.0, 0.0)).unwrap();
-    own.add("b", abilities, at(6.0, std::f64::consts::PI)).unwrap();
+    own.add("a", abilities.clone(), at(0.0, 0.0)).unwrap();
+    own.add("b", abilities.clone(), at(6.0, std::f64::consts::PI)).unwrap();
     let all = |own: &mut Supervisor, times: std::ops::Range<u32>| -> Vec<String> {
         let mut said = Vec::new();
         for time in times {
@@ -374,7 +375,7 @@ fn the_way_of_a_cancelled_order_is_its_own_until_it_stands() {
     let start = StartPose { x: 8.0, y: 0.0, heading: 0.0 };
     let name = own.bridge.lanes().next().unwrap().name().to_owned();
     own.lasts(1.5);
-    let abilities = own.supervisor.robot(&name).unwrap().abilities;
+    let abilities = own.supervisor.robot(&name).unwrap().abilities.clone();
     own.supervisor.add("other", abilities, start).unwrap();
     own.says(TopicKind::Order, order("a", 1, 2, &[[4.0, 0.0], [8.0, 0.0]], 2));
     own.lasts(0.1);
@@ -400,6 +401,7 @@ fn the_way_of_a_cancelled_order_is_its_own_until_it_stands() {
         mission: "mine".into(),
         after: None,
         expected_path: None,
+        any_heading: false,
         start: None,
         path,
     };

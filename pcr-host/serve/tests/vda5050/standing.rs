@@ -8,7 +8,7 @@ use pcr_serve::supervisor::{AdmissionResult, MissionRequest, PositionReport, Sup
 
 #[test]
 fn a_place_that_is_taken_is_nobodys_end() {
-    let abilities = |radius| RobotTraits { radius, margin: 0.072, speed: 1.0, acceleration: 0.5 };
+    let abilities = |radius| RobotTraits { radius, footprint: None, margin: 0.072, speed: 1.0, acceleration: 0.5 };
     for k in 0..200 {
         let mut supervisor = Supervisor::new(settings(), Box::new(NullStore));
         let off = 0.001 * f64::from(k);
@@ -16,13 +16,14 @@ fn a_place_that_is_taken_is_nobodys_end() {
         supervisor.add("a", abilities(0.3), StartPose { x: 0.1 * off, y: 30.0, heading: 0.3 * off }).unwrap();
         let path: Vec<_> = lengths
             .iter()
-            .flat_map(|&length| [PathElement::Turn { sweep: 0.7 }, PathElement::Line { length }])
+            .flat_map(|&length| [PathElement::Turn { sweep: 0.7, lever: None }, PathElement::Line { length }])
             .collect();
         let mission = |robot: &str, name: &str, path| MissionRequest {
             robot: robot.into(),
             mission: name.into(),
             after: None,
             expected_path: None,
+            any_heading: false,
             start: None,
             path,
         };
@@ -47,16 +48,17 @@ fn a_place_that_is_taken_is_nobodys_end() {
 fn a_path_that_goes_on_goes_on_where_it_was() {
     for at in [0.0, 1.0, 4.999_999_999, 5.0, 5.000_000_001, 7.0, 9.9, 10.0, 10.000_000_001, 14.0, 15.0] {
         let mut supervisor = Supervisor::new(settings(), Box::new(NullStore));
-        let abilities = RobotTraits { radius: 0.3, margin: 0.1, speed: 1.0, acceleration: 0.5 };
+        let abilities = RobotTraits { radius: 0.3, footprint: None, margin: 0.1, speed: 1.0, acceleration: 0.5 };
         supervisor.add("a", abilities, StartPose { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
         let (line, turn) =
-            (PathElement::Line { length: 5.0 }, PathElement::Turn { sweep: std::f64::consts::FRAC_PI_2 });
+            (PathElement::Line { length: 5.0 }, PathElement::Turn { sweep: std::f64::consts::FRAC_PI_2, lever: None });
         let path = vec![turn, line, turn, line, turn, line];
         let mission = |name: &str, path| MissionRequest {
             robot: "a".into(),
             mission: name.into(),
             after: None,
             expected_path: None,
+            any_heading: false,
             start: None,
             path,
         };
@@ -77,7 +79,7 @@ fn a_path_that_goes_on_goes_on_where_it_was() {
 fn after(mut end: StartPose, shapes: &[PathElement]) -> StartPose {
     for shape in shapes {
         match *shape {
-            PathElement::Turn { sweep } => end.heading += sweep,
+            PathElement::Turn { sweep, .. } => end.heading += sweep,
             PathElement::Line { length } => {
                 end.x += length * end.heading.cos();
                 end.y += length * end.heading.sin();
@@ -96,7 +98,7 @@ fn missions_begin_where_the_one_before_ends_wherever_the_robot_is() {
     let mut random = SplitMix64(5);
     for run in 0..100 {
         let mut supervisor = Supervisor::new(settings(), Box::new(NullStore));
-        let abilities = RobotTraits { radius: 0.3, margin: 0.1, speed: 1.0, acceleration: 0.5 };
+        let abilities = RobotTraits { radius: 0.3, footprint: None, margin: 0.1, speed: 1.0, acceleration: 0.5 };
         let mut end = StartPose { x: 0.0, y: 0.0, heading: 0.0 };
         supervisor.add("a", abilities, end).unwrap();
         for mission in 0..20 {
@@ -105,7 +107,7 @@ fn missions_begin_where_the_one_before_ends_wherever_the_robot_is() {
             let lengths: Vec<f64> = (0..count).map(|_| one(&[5.25, 1.75, 0.02, 3.85, 20.35])).collect();
             let mut path = Vec::new();
             for &length in &lengths {
-                path.push(PathElement::Turn { sweep: one(&[0.0, FRAC_PI_2, -FRAC_PI_2, PI, -PI]) });
+                path.push(PathElement::Turn { sweep: one(&[0.0, FRAC_PI_2, -FRAC_PI_2, PI, -PI]), lever: None });
                 path.push(PathElement::Line { length });
             }
             end = after(end, &path);
@@ -115,6 +117,7 @@ fn missions_begin_where_the_one_before_ends_wherever_the_robot_is() {
                 mission: name,
                 after: None,
                 expected_path: None,
+                any_heading: false,
                 start: None,
                 path,
             };

@@ -18,7 +18,7 @@ const WAY: [[f64; 2]; 3] = [[0.0, 0.0], [5.0, 0.0], [10.0, 0.0]];
 impl Puppet {
     /// Somebody is added on its way.
     fn stops(&mut self) {
-        let abilities = self.robot().abilities;
+        let abilities = self.robot().abilities.clone();
         self.supervisor.add("new", abilities, StartPose { x: 6.0, y: 0.0, heading: 0.0 }).unwrap();
     }
 

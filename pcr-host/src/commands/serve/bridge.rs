@@ -3,6 +3,7 @@
 use super::super::brokers::{VEHICLES, broker, interfaces};
 use super::super::{CliError, NOT_WRITTEN, WRONG_INPUT};
 use super::ServeArgs;
+use pcr_formats::footprint::Footprint;
 use pcr_formats::import::parse_json;
 use pcr_formats::vda5050::decode::MessageLimits;
 use pcr_formats::vda5050::topics::{TopicInterface, VehicleId};
@@ -81,18 +82,24 @@ fn profiles(file: &Path) -> Result<Vec<VehicleConfig>, CliError> {
 
 fn profile(value: &Value) -> Result<VehicleConfig, String> {
     let Value::Object(members) = value else { return Err("an object is expected".into()) };
-    const KNOWN: [&str; 7] = ["manufacturer", "serialNumber", "radius", "margin", "speed", "acceleration", "split"];
+    const KNOWN: [&str; 8] =
+        ["manufacturer", "serialNumber", "radius", "footprint", "margin", "speed", "acceleration", "split"];
     if let Some(unknown) = members.keys().find(|name| !KNOWN.contains(&name.as_str())) {
         return Err(format!("{unknown}: unknown; {} are read", KNOWN.join(", ")));
     }
     let text = |name: &str| value.get(name).and_then(Value::as_str).ok_or(format!("{name}: a text is expected"));
     let number = |name: &str| value.get(name).and_then(Value::as_f64).ok_or(format!("{name}: a number is expected"));
-    let abilities = RobotTraits {
-        radius: number("radius")?,
-        margin: number("margin")?,
-        speed: number("speed")?,
-        acceleration: number("acceleration")?,
+    let footprint: Option<Footprint> =
+        value.get("footprint").cloned().map(serde_json::from_value).transpose().map_err(|why| why.to_string())?;
+    let radius = match &footprint {
+        None => number("radius")?,
+        Some(_) if members.contains_key("radius") => {
+            return Err("radius: there is a radius or a footprint, not both".into());
+        }
+        Some(footprint) => footprint.circumscribed_radius(),
     };
+    let [margin, speed, acceleration] = [number("margin")?, number("speed")?, number("acceleration")?];
+    let abilities = RobotTraits { radius, footprint, margin, speed, acceleration };
     let abilities = abilities.checked().map_err(|error| error.to_string())?;
     // As much of the margin is for curves, so nothing would be left for the vehicle: each of its positions would be off its way.
     if abilities.margin <= TOLERANCE {
@@ -114,7 +121,7 @@ fn known(supervisor: &Supervisor, profiles: &[VehicleConfig], log: LogWriter) ->
         match profiles.iter().find(|profile| profile.key.to_string() == robot.name) {
             Some(profile) if profile.abilities != robot.abilities => {
                 return Err(CliError::arguments(format!(
-                    "{}: radius, margin, speed or acceleration are others in the journal; remove it there (verb `remove`), or begin another \
+                    "{}: radius, footprint, margin, speed or acceleration are others in the journal; remove it there (verb `remove`), or begin another \
                      journal while all vehicles stand",
                     robot.name
                 )));

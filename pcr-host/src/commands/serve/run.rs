@@ -255,13 +255,14 @@ fn draw(fleet: &[RobotDrawing], ego: usize) -> Result<String, String> {
         let path = robot.course.shapes().iter().map(|shape| match *shape {
             PathElement::Line { length } => PathSegment::Line { length },
             PathElement::Arc { radius, sweep } => PathSegment::Arc { radius, sweep },
-            PathElement::Turn { sweep } => PathSegment::Arc { radius: TURN, sweep },
+            PathElement::Turn { sweep, .. } => PathSegment::Arc { radius: TURN, sweep },
         });
         let start = robot.course.start();
         let motion = MotionSpec::RestToRest { v_max: robot.abilities.speed, a_max: robot.abilities.acceleration };
         let radius = robot.abilities.radius;
         let agent = Agent::disc(id, radius, [start.x, start.y, start.heading], path.collect(), motion);
-        Agent { label: robot.name.clone(), ..agent }
+        let footprint = robot.abilities.footprint.clone().filter(|_| !robot.any_heading);
+        Agent { label: robot.name.clone(), footprint, ..agent }
     });
     let scenario = Scenario::new("fleet", agents.collect());
     fleet_page::map(&scenario, ego).map_err(|error| error.to_string())

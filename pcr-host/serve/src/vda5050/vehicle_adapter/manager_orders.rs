@@ -276,6 +276,7 @@ impl VehicleAdapter {
             mission: mission(&job.order, job.order.base),
             after: None,
             expected_path: None,
+            any_heading: false,
             start: None,
             path,
         };

@@ -167,7 +167,7 @@ impl VehicleAdapter {
                 self.shares(supervisor, &pose.map_id)?;
                 let start = StartPose { x: pose.x, y: pose.y, heading: pose.theta };
                 // If it cannot stand there, the next state is tried again. An order that it had is void.
-                if supervisor.add(&self.name, self.profile.abilities, start).is_ok() {
+                if supervisor.add(&self.name, self.profile.abilities.clone(), start).is_ok() {
                     (self.job, self.astray) = (None, None);
                     self.note_anew(supervisor);
                     self.note(supervisor, MAP, &pose.map_id);
