@@ -30,6 +30,7 @@ const EDGE: f64 = 2.0;
 const BEHIND: f64 = 4.0;
 const CAN: SimulatedTraits = SimulatedTraits {
     radius: 0.4,
+    rectangle: None,
     speed: 1.0,
     acceleration: 0.5,
     rotation: 1.0,

@@ -1,4 +1,4 @@
-//! Owned paths of lines, arcs and turns in place, and the part that is kept when a path is changed.
+//! Owned paths of lines, arcs, shifts and turns in place, and the part that is kept when a path is changed.
 //!
 //! A robot with an outline sweeps an area while it turns in place. So its turns say with `lever` how long the path is for each radian, and all
 //! lengths (of positions, authorities, missions and regions, in messages and in the journal) are lengths of the path with its turns: an
@@ -100,8 +100,9 @@ fn led(start: StartPose, rest: PathRounding, shapes: impl Iterator<Item = PathEl
             PathElement::Line { length } => (length, 0.0),
             PathElement::Arc { radius, sweep } => (2.0 * radius * (0.5 * sweep.abs()).sin(), sweep),
             PathElement::Turn { sweep, .. } => (0.0, sweep),
+            PathElement::Shift { .. } => (shape.length(), 0.0),
         };
-        let CompensatedSum(along, small) = heading.and(0.5 * sweep);
+        let CompensatedSum(along, small) = heading.and(0.5 * sweep + shape.side());
         let (sin, cos) = along.sin_cos();
         // The small rest of the angle turns the chord by so much.
         (x, y) = (x.and(chord * cos).and(-chord * small * sin), y.and(chord * sin).and(chord * small * cos));
@@ -130,6 +131,13 @@ pub enum PathElement {
         /// \[rad\], left positive.
         sweep: f64,
     },
+    /// Straight, in a direction from the heading, which stays as it is: backward, sideways.
+    Shift {
+        /// \[m\]
+        ahead: f64,
+        /// \[m\]
+        left: f64,
+    },
     /// In place.
     Turn {
         /// \[rad\], left positive.
@@ -146,6 +154,7 @@ impl PathElement {
         match self {
             Self::Line { length } => length,
             Self::Arc { radius, sweep } => radius * sweep.abs(),
+            Self::Shift { ahead, left } => ahead.hypot(left),
             Self::Turn { sweep, lever } => lever.map_or(0.0, |lever| lever * sweep.abs()),
         }
     }
@@ -154,14 +163,26 @@ impl PathElement {
     fn extent(self) -> f64 {
         match self {
             Self::Arc { radius, .. } => self.length().min(2.0 * radius),
-            Self::Line { length } => length,
+            Self::Line { .. } | Self::Shift { .. } => self.length(),
             Self::Turn { .. } => 0.0,
+        }
+    }
+
+    /// The angle from the heading to the direction of travel \[rad\].
+    fn side(self) -> f64 {
+        match self {
+            Self::Shift { ahead, left } => left.atan2(ahead),
+            _ => 0.0,
         }
     }
 
     /// The shape cut to this length \[m\].
     fn of_length(self, length: f64) -> Self {
         match self {
+            Self::Shift { ahead, left } => {
+                let share = length / ahead.hypot(left);
+                Self::Shift { ahead: ahead * share, left: left * share }
+            }
             Self::Line { .. } => Self::Line { length },
             Self::Arc { radius, sweep } => Self::Arc { radius, sweep: (length / radius).copysign(sweep) },
             Self::Turn { sweep, lever: Some(lever) } => {
@@ -225,8 +246,16 @@ impl OwnedPath {
         let pose = Pose { position: Point::new(start.x, start.y), heading: Radians(start.heading) };
         let mut last = Segment::standing(pose)?;
         let (mut segments, mut before): (Vec<Segment<f64>>, _) = (Vec::new(), Vec::with_capacity(shapes.len()));
+        let (shifts, mut side) = (shapes.iter().any(|shape| shape.side() != 0.0), 0.0);
         for &shape in &shapes {
             before.push(segments.len());
+            // The direction of travel becomes another one, and the heading does not.
+            let sideways = shape.side() - side;
+            if sideways != 0.0 && shape.length() > 0.0 {
+                last = last.turned(Radians(sideways))?;
+                segments.last_mut().into_iter().for_each(|segment| *segment = last);
+                side = shape.side();
+            }
             let next = match shape {
                 PathElement::Turn { sweep, lever: None } => {
                     last = last.turned(Radians(sweep))?;
@@ -235,15 +264,15 @@ impl OwnedPath {
                     }
                     continue;
                 }
-                PathElement::Line { length } => last.then_line(length)?,
-                PathElement::Arc { radius, sweep } => last.then_arc(radius, side(sweep)?, shape.length())?,
+                PathElement::Line { .. } | PathElement::Shift { .. } => last.then_line(shape.length())?,
+                PathElement::Arc { radius, sweep } => last.then_arc(radius, turn_side(sweep)?, shape.length())?,
                 PathElement::Turn { sweep, lever: Some(lever) } => {
-                    last.then_pivot(lever, side(sweep)?, shape.length())?
+                    last.then_pivot(lever, turn_side(sweep)?, shape.length())?
                 }
             };
             if next.length() > 0.0 {
-                last = next;
-                segments.push(next);
+                last = if shifts { next.facing(Radians(-side))? } else { next };
+                segments.push(last);
             }
         }
         if segments.is_empty() {
@@ -279,7 +308,15 @@ impl OwnedPath {
         // The constructor has checked them.
         let pose = PathRef::new(&self.segments).map(|path| path.pose_at(length));
         let pose = pose.unwrap_or(Pose { position: Point::default(), heading: Radians(self.start.heading) });
-        StartPose { x: pose.position.x, y: pose.position.y, heading: pose.heading.0 }
+        StartPose { x: pose.position.x, y: pose.position.y, heading: pose.heading.0 - self.side(length) }
+    }
+
+    /// The angle from the heading to the direction of travel from a length on, and at the end that with which it is reached \[rad\].
+    fn side(&self, length: f64) -> f64 {
+        let there = |k: &usize| self.offsets[*k] < self.offsets[k + 1];
+        let ahead = (0..self.shapes.len()).filter(there).find(|k| length < self.offsets[k + 1]);
+        let shape = ahead.or_else(|| (0..self.shapes.len()).rfind(there)).and_then(|k| self.shapes.get(k));
+        shape.map_or(0.0, |shape| shape.side())
     }
 
     /// The motion of a disc or an outline at 1 m/s: passing orders need no times.
@@ -313,7 +350,7 @@ impl OwnedPath {
     /// Bound on how far a point moves that is within `spread` of the reference point \[m\], for each metre of the path.
     pub(crate) fn stretch(&self, spread: f64) -> f64 {
         let of = |shape: &PathElement| match *shape {
-            PathElement::Line { .. } | PathElement::Turn { lever: None, .. } => 1.0,
+            PathElement::Line { .. } | PathElement::Shift { .. } | PathElement::Turn { lever: None, .. } => 1.0,
             PathElement::Arc { radius, .. } => 1.0 + spread / radius,
             PathElement::Turn { lever: Some(lever), .. } => spread / lever,
         };
@@ -420,7 +457,7 @@ impl OwnedPath {
 }
 
 /// The side to which an angle turns.
-fn side(sweep: f64) -> Result<TurnSide, InvalidInput> {
+fn turn_side(sweep: f64) -> Result<TurnSide, InvalidInput> {
     match sweep.is_finite() {
         false => Err(InvalidInput::NonFinite("sweep")),
         true if sweep < 0.0 => Ok(TurnSide::Right),

@@ -127,6 +127,11 @@ impl RobotTraits {
         }
     }
 
+    /// Distance from the reference point within which a turn moves its points \[m\]; 0 for a disc.
+    pub(crate) fn spread(&self) -> f64 {
+        if self.footprint.is_some() { self.radius } else { 0.0 }
+    }
+
     /// Distance in which it stops from its largest speed \[m\].
     pub fn braking(&self) -> f64 {
         self.speed * self.speed / (2.0 * self.acceleration)

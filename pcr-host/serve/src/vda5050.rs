@@ -15,6 +15,7 @@
 pub mod bridge;
 #[cfg(feature = "mqtt")]
 pub mod broker_session;
+mod edge_orientation;
 #[cfg(feature = "mqtt")]
 mod inbox;
 #[cfg(feature = "mqtt")]

@@ -180,6 +180,7 @@ fn path(pieces: &[OwnedPath], length: f64) -> raw::RawPath {
                     continue;
                 }
                 PathElement::Line { length } => (length, None),
+                PathElement::Shift { .. } => unreachable!("this world has none"),
                 PathElement::Arc { radius, sweep } => {
                     heading += sweep;
                     (shape.length(), Some(radius.copysign(sweep)))

@@ -293,6 +293,10 @@ impl Vda5050Bridge {
 
     fn collect(&mut self, places: &BTreeSet<usize>) {
         let Self { settings, lanes, out, large, log, .. } = self;
+        for &place in places {
+            let lane = &mut lanes[place];
+            log.extend(lane.remarks().iter().map(|remark| format!("{}: {remark}", lane.name())));
+        }
         let posts = places.iter().flat_map(|&place| lanes[place].posts().into_iter().map(move |post| (place, post)));
         for (place, OutboundMessage { to, key, version, kind, payload, due }) in posts {
             let interface = if to == Recipient::Vehicle { &settings.vehicles } else { &settings.manager };

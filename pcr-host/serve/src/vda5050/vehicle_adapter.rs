@@ -87,7 +87,7 @@ pub(crate) struct OutboundMessage {
     pub due: SendCondition,
 }
 
-/// Key of the note with the radius of the disc that a vehicle needs.
+/// Key of the note with what a vehicle needs, according to its own data.
 const NEEDS: &str = "needs";
 
 /// Key of the note that a vehicle was seated by a state that may be from before the start.
@@ -121,12 +121,14 @@ pub struct VehicleAdapter {
     posts: Vec<OutboundMessage>,
     /// The nodes and edges ahead, as they were last sent to the manager.
     ahead: Option<manager_state::CachedRemaining>,
-    /// Radius of the disc that the vehicle needs, according to its own data \[m\].
+    /// What the vehicle needs, according to its own data: the radius of its disc, or how far it reaches beyond its outline \[m\].
     needs: Option<f64>,
     /// Why its position is ignored: it is on another map than the other vehicles.
     elsewhere: Option<String>,
     /// Whether it was seated by a state that may be from before the start.
     is_doubtful: bool,
+    /// What is to be told of its orders in the log.
+    remarks: Vec<String>,
 }
 
 impl VehicleAdapter {
@@ -167,6 +169,7 @@ impl VehicleAdapter {
             needs,
             elsewhere: None,
             is_doubtful,
+            remarks: Vec::new(),
         })
     }
 
@@ -190,16 +193,25 @@ impl VehicleAdapter {
         self.state.as_deref()
     }
 
-    /// Why the vehicle does not fit into its configured disc, according to its own data.
+    /// Why the vehicle does not fit into its configured disc or outline, according to its own data.
     pub fn misfit(&self) -> Option<String> {
-        let own = self.profile.abilities.radius;
+        let RobotTraits { radius, footprint, .. } = &self.profile.abilities;
+        let own = if footprint.is_some() { 0.0 } else { *radius };
         let needs = self.needs.filter(|needs| *needs > own + 1e-9)?;
-        Some(format!("the vehicle needs a disc of {needs} m, not {own}"))
+        Some(match footprint {
+            Some(_) => format!("the vehicle reaches {needs:.3} m beyond its outline"),
+            None => format!("the vehicle needs a disc of {needs} m, not {own}"),
+        })
     }
 
     /// Whether its place may be one from before the start of the supervisor.
     pub(crate) fn is_doubtful(&self) -> bool {
         self.is_doubtful
+    }
+
+    /// Takes what is to be told in the log.
+    pub(crate) fn remarks(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.remarks)
     }
 
     /// Takes the messages to be sent.

@@ -130,21 +130,25 @@ impl SimulatedVehicle {
     }
 
     fn contour(&self) -> Vec<Value> {
-        // The square inside its disc.
-        let half = self.abilities.radius * 0.5_f64.sqrt();
+        let half = self.sides().map(|side| 0.5 * side);
         [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]
-            .map(|[x, y]| json!({ "x": x * half, "y": y * half }))
+            .map(|[x, y]| json!({ "x": x * half[0], "y": y * half[1] }))
             .into()
+    }
+
+    /// Length and width of its rectangle, or of the square inside its disc \[m\].
+    fn sides(&self) -> [f64; 2] {
+        self.abilities.rectangle.unwrap_or([self.abilities.radius * 2.0_f64.sqrt(); 2])
     }
 
     fn sheet_second(&self) -> Value {
         let can = self.abilities;
-        let side = can.radius * 2.0_f64.sqrt();
+        let [length, width] = self.sides();
         json!({
             "typeSpecification": { "seriesName": "pcr fleet", "agvKinematic": "DIFF", "agvClass": "CARRIER", "maxLoadMass": 100,
                 "localizationTypes": ["NATURAL"], "navigationTypes": ["VIRTUAL_LINE_GUIDED"] },
             "physicalParameters": { "speedMin": 0.0, "speedMax": can.speed, "accelerationMax": can.acceleration,
-                "decelerationMax": can.acceleration, "heightMax": 1.0, "width": side, "length": side },
+                "decelerationMax": can.acceleration, "heightMax": 1.0, "width": width, "length": length },
             "protocolLimits": { "maxStringLens": {}, "maxArrayLens": {}, "timing": { "minOrderInterval": 0.0, "minStateInterval": 0.0 } },
             "protocolFeatures": { "optionalParameters": [], "agvActions": [] },
             "agvGeometry": { "envelopes2d": [ { "set": "contour", "polygonPoints": self.contour() } ] },
@@ -154,14 +158,14 @@ impl SimulatedVehicle {
 
     fn sheet_third(&self) -> Value {
         let can = self.abilities;
-        let side = can.radius * 2.0_f64.sqrt();
+        let [length, width] = self.sides();
         json!({
             // Both names: the schema of 3.0.0 requires one and describes the other.
             "typeSpecification": { "seriesName": "pcr fleet", "mobileRobotKinematic": "DIFFERENTIAL", "mobileRobotKinematics": "DIFFERENTIAL",
                 "mobileRobotClass": "CARRIER", "maximumLoadMass": 100, "localizationTypes": ["NATURAL"],
                 "navigationTypes": ["VIRTUAL_LINE_GUIDED"] },
             "physicalParameters": { "minimumSpeed": 0.0, "maximumSpeed": can.speed, "maximumAcceleration": can.acceleration,
-                "maximumDeceleration": can.acceleration, "minimumHeight": 1.0, "maximumHeight": 1.0, "width": side, "length": side },
+                "maximumDeceleration": can.acceleration, "minimumHeight": 1.0, "maximumHeight": 1.0, "width": width, "length": length },
             "protocolLimits": { "maximumStringLengths": {}, "maximumArrayLengths": {},
                 "timing": { "minimumOrderInterval": 0.0, "minimumStateInterval": 0.0 } },
             "protocolFeatures": { "optionalParameters": [], "mobileRobotActions": [] },

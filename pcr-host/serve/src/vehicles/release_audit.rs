@@ -65,7 +65,12 @@ impl<'a> ReleasedPath<'a> {
     }
 
     fn meets(&self, other: &Self) -> bool {
-        let apart = self.vehicle.abilities().radius + other.vehicle.abilities().radius - ROUNDING;
+        // Of a rectangle the disc inside of it, which it is whatever its heading is.
+        let inner = |way: &Self| match way.vehicle.abilities().rectangle {
+            Some(sides) => 0.5 * sides[0].min(sides[1]),
+            None => way.vehicle.abilities().radius,
+        };
+        let apart = inner(self) + inner(other) - ROUNDING;
         let far = |axis: usize| {
             self.span[0][axis] > other.span[1][axis] + apart || other.span[0][axis] > self.span[1][axis] + apart
         };

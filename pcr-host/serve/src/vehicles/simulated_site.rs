@@ -8,6 +8,7 @@ use crate::robot;
 use crate::setup_error::SetupError;
 use crate::vda5050::order_path::TOLERANCE;
 use crate::vda5050::vehicle_adapter::VehicleConfig;
+use pcr_formats::footprint::Footprint;
 use pcr_formats::import::Layout;
 use pcr_formats::vda5050::topics::VehicleId;
 use pcr_formats::vda5050::version::ProtocolVersion;
@@ -67,12 +68,8 @@ pub fn profile(key: VehicleId, can: &SimulatedTraits) -> VehicleConfig {
     // Distance from its way, error of its position counted twice (in what it reports and in its reported deviation), and an
     // allowance for motion between two steps.
     let margin = TOLERANCE + can.drift + 2.0 * can.noise + 0.01;
-    let abilities = robot::RobotTraits {
-        radius: can.radius,
-        footprint: None,
-        margin,
-        speed: can.speed,
-        acceleration: can.acceleration,
-    };
+    let footprint = can.footprint();
+    let radius = footprint.as_ref().map_or(can.radius, Footprint::circumscribed_radius);
+    let abilities = robot::RobotTraits { radius, footprint, margin, speed: can.speed, acceleration: can.acceleration };
     VehicleConfig { key, abilities, split: true }
 }

@@ -182,7 +182,8 @@ impl SimulatedVehicle {
 
     /// Its heading \[rad\].
     pub(super) fn heading(&self) -> f64 {
-        self.task.as_ref().map_or(self.start.heading, |task| task.way.pose(task.drive.at).heading)
+        let heading = |task: &OrderExecution| task.drive.heading(&task.way, &self.abilities);
+        self.task.as_ref().map_or(self.start.heading, heading)
     }
 
     /// Takes a message.
@@ -237,7 +238,7 @@ impl SimulatedVehicle {
             let nodes = order.nodes.iter().flat_map(|node| &node.actions);
             nodes.chain(order.edges.iter().flat_map(|edge| &edge.actions)).map(waiting).collect()
         };
-        let new = actions(&order);
+        let (new, heading) = (actions(&order), self.heading());
         match &mut self.task {
             Some(task) if task.held.order_id == order.order_id && !task.cancelled => {
                 let mut held = task.held.clone();
@@ -262,8 +263,9 @@ impl SimulatedVehicle {
                     return Err(RejectedOrder::new(OrderRejection::Order, "orderId", "it was there before"));
                 }
                 let start = task.as_ref().map_or(self.start, |task| task.way.pose(task.drive.at));
+                let start = StartPose { heading, ..start };
                 let held = OrderState::new(order)?;
-                let way = OrderPath::new(start, &held)
+                let way = OrderPath::new(start, &held, 0.0)
                     .map_err(|refusal| RejectedOrder { error: OrderRejection::Order, refusal })?;
                 let begins = way.node(0).unwrap_or(0.0);
                 if begins > BEGINS {
@@ -335,7 +337,7 @@ impl SimulatedVehicle {
         let base = task.way.node(task.held.base).unwrap_or(0.0);
         if self.cancel.is_some() || self.paused {
             task.drive.brake(base, &can, time);
-            if let Some(id) = self.cancel.take_if(|_| task.drive.speed == 0.0) {
+            if let Some(id) = self.cancel.take_if(|_| !task.drive.is_driving()) {
                 task.cancelled = true;
                 self.acting = 0.0;
                 for action in &mut self.actions {

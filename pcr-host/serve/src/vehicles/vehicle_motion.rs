@@ -1,7 +1,8 @@
 //! The motion of a vehicle along a way: it stops where it has to, and turns in place at corners.
 
 use crate::owned_path::PathElement;
-use crate::vda5050::order_path::OrderPath;
+use crate::vda5050::order_path::{OrderPath, wrapped};
+use pcr_formats::footprint::Footprint;
 use pcr_formats::splitmix64::SplitMix64;
 use pcr_formats::vda5050::order_state::OrderState;
 use serde::{Deserialize, Serialize};
@@ -10,8 +11,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SimulatedTraits {
-    /// Radius of the disc that contains it \[m\].
+    /// Radius of the disc that contains it \[m\]; of no meaning for a rectangle.
     pub radius: f64,
+    /// Length and width of a rectangle about its reference point \[m\]; `None` for a disc.
+    pub rectangle: Option<[f64; 2]>,
     /// \[m/s\]
     pub speed: f64,
     /// Acceleration and deceleration \[m/s²\].
@@ -32,6 +35,7 @@ impl Default for SimulatedTraits {
     fn default() -> Self {
         Self {
             radius: 0.4,
+            rectangle: None,
             speed: 1.0,
             acceleration: 0.5,
             rotation: 1.0,
@@ -40,6 +44,14 @@ impl Default for SimulatedTraits {
             noise: 0.02,
             delay: 2.0,
         }
+    }
+}
+
+impl SimulatedTraits {
+    /// Its outline, if it is no disc.
+    pub fn footprint(&self) -> Option<Footprint> {
+        let [ahead, left] = self.rectangle?.map(|side| 0.5 * side);
+        Footprint::new(vec![[-ahead, -left], [ahead, -left], [ahead, left], [-ahead, left]]).ok()
     }
 }
 
@@ -57,6 +69,9 @@ pub(crate) struct DriveState {
     /// Length up to which all turns are done \[m\].
     turned: f64,
 }
+
+/// Largest corner that is driven without a stop \[rad\].
+const SLIGHT: f64 = 0.01;
 
 /// Lengths that differ by at most this are equal \[m\].
 const NEAR: f64 = 1e-6;
@@ -120,14 +135,26 @@ impl DriveState {
         let after = (self.speed - can.acceleration * time).max(0.0);
         self.at = (self.at + 0.5 * (self.speed + after) * time).min(end);
         self.speed = after;
-        self.turns = 0.0;
+        // A turn is done to its end.
+        self.turns = (self.turns - time).max(0.0);
+    }
+
+    /// Heading at its place on a way \[rad\].
+    pub(crate) fn heading(&self, way: &OrderPath, can: &SimulatedTraits) -> f64 {
+        let [before, after] = [way.reached(self.at).heading, way.pose(self.at).heading];
+        let sweep = wrapped(after - before);
+        if sweep.abs() <= SLIGHT {
+            after
+        } else if self.turned < self.at - NEAR {
+            before
+        } else {
+            after - (self.turns * can.rotation).min(sweep.abs()).copysign(sweep)
+        }
     }
 }
 
 /// Length and angle of the next corner at which the vehicle has not turned yet \[m, rad\].
 fn corner(way: &OrderPath, held: &OrderState, at: f64, turned: f64) -> Option<(f64, f64)> {
-    /// Largest corner that is driven without a stop \[rad\].
-    const SLIGHT: f64 = 0.01;
     let angle = |shapes: &[PathElement]| match shapes.first() {
         Some(PathElement::Turn { sweep, .. }) if sweep.abs() > SLIGHT => Some(sweep.abs()),
         _ => None,

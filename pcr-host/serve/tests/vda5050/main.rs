@@ -9,6 +9,7 @@ mod following;
 mod lanes;
 mod long;
 mod maps;
+mod outlines;
 mod pair;
 mod puppet;
 mod refusals;

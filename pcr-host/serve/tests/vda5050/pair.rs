@@ -16,6 +16,7 @@ use serde_json::{Value, json};
 
 pub(crate) const CAN: SimulatedTraits = SimulatedTraits {
     radius: 0.4,
+    rectangle: None,
     speed: 1.0,
     acceleration: 0.5,
     rotation: 1.0,

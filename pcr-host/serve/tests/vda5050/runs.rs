@@ -16,6 +16,7 @@ pub(crate) const FAIR: Scene<'_> = Scene {
     versions: &[ProtocolVersion::V2_1],
     abilities: &[SimulatedTraits {
         radius: 0.4,
+        rectangle: None,
         speed: 1.0,
         acceleration: 0.5,
         rotation: 1.0,

@@ -84,7 +84,7 @@ fn after(mut end: StartPose, shapes: &[PathElement]) -> StartPose {
                 end.x += length * end.heading.cos();
                 end.y += length * end.heading.sin();
             }
-            PathElement::Arc { .. } => unreachable!("there are none here"),
+            PathElement::Arc { .. } | PathElement::Shift { .. } => unreachable!("there are none here"),
         }
     }
     end

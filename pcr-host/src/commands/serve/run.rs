@@ -252,17 +252,26 @@ fn site(listener: &TcpListener) -> HttpContent {
 /// The collision map of a robot, if all set off now.
 fn draw(fleet: &[RobotDrawing], ego: usize) -> Result<String, String> {
     let agents = fleet.iter().zip(1..).map(|(robot, id)| {
-        let path = robot.course.shapes().iter().map(|shape| match *shape {
-            PathElement::Line { length } => PathSegment::Line { length },
-            PathElement::Arc { radius, sweep } => PathSegment::Arc { radius, sweep },
-            PathElement::Turn { sweep, .. } => PathSegment::Arc { radius: TURN, sweep },
+        let turn = |sweep| PathSegment::Arc { radius: TURN, sweep };
+        let path = robot.course.shapes().iter().flat_map(|shape| match *shape {
+            PathElement::Line { length } => vec![PathSegment::Line { length }],
+            PathElement::Arc { radius, sweep } => vec![PathSegment::Arc { radius, sweep }],
+            PathElement::Turn { sweep, .. } => vec![turn(sweep)],
+            PathElement::Shift { ahead, left } => {
+                let side = left.atan2(ahead);
+                vec![turn(side), PathSegment::Line { length: shape.length() }, turn(-side)]
+            }
         });
+        let shifts = robot.course.shapes().iter().any(|shape| matches!(shape, PathElement::Shift { .. }));
         let start = robot.course.start();
         let motion = MotionSpec::RestToRest { v_max: robot.abilities.speed, a_max: robot.abilities.acceleration };
         let radius = robot.abilities.radius;
         let agent = Agent::disc(id, radius, [start.x, start.y, start.heading], path.collect(), motion);
-        let footprint = robot.abilities.footprint.clone().filter(|_| !robot.any_heading);
-        Agent { label: robot.name.clone(), footprint, ..agent }
+        // Agents of scenarios face along their paths.
+        let footprint = robot.abilities.footprint.clone().filter(|_| !robot.any_heading && !shifts);
+        let is_disc = footprint.is_none() && robot.abilities.footprint.is_some();
+        let label = if is_disc { format!("{} (drawn as a disc)", robot.name) } else { robot.name.clone() };
+        Agent { label, footprint, ..agent }
     });
     let scenario = Scenario::new("fleet", agents.collect());
     fleet_page::map(&scenario, ego).map_err(|error| error.to_string())

@@ -126,7 +126,8 @@ impl ActiveOrder {
     pub(super) fn remembered(robot: Option<&SupervisedRobot>) -> Result<Option<Self>, JournalError> {
         let Some(given) = noted::<StoredOrder>(robot, "order")? else { return Ok(None) };
         let StoredOrder { held, start, version, cancel } = given;
-        let way = OrderPath::new(start, &held)
+        let spread = robot.map_or(0.0, |robot| robot.abilities.spread());
+        let way = OrderPath::new(start, &held, spread)
             .map_err(|fault| JournalError(format!("the order {}: {fault}", held.order_id)))?;
         let mut job = Self { cancel, ..Self::new(held, way, version) };
         if let Some(stops) = noted(robot, "stops")? {
@@ -237,6 +238,10 @@ impl ActiveOrder {
         length: f64,
         version: String,
     ) -> Option<(Self, usize)> {
+        // An outline may turn where the new order begins, over other lengths than before.
+        if self.path.spread() > 0.0 {
+            return None;
+        }
         /// Largest distance of equal nodes \[m\].
         const SAME: f64 = 1e-6;
         let place = |node: &OrderNode| node.node_position.as_ref().map(|at| [at.x, at.y]);
@@ -261,7 +266,7 @@ impl ActiveOrder {
             let first = held.nodes.first_mut()?.node_position.as_mut()?;
             (first.x, first.y) = (start.x, start.y);
         }
-        let way = OrderPath::new(start, &held)
+        let way = OrderPath::new(start, &held, 0.0)
             .ok()
             .filter(|way| follows && way.node(0).is_some_and(|begins| begins <= BEGINS))?;
         Some((Self::new(held, way, version), joins))
@@ -317,7 +322,7 @@ impl ActiveOrder {
     pub(super) fn id(&self, stop: ReleasePoint) -> String {
         let node = self.order.nodes.get(stop.node).map_or("", |node| node.node_id.as_str());
         if stop.between {
-            format!("{node}+{:.3}", stop.length - self.path.node(stop.node).unwrap_or(0.0))
+            format!("{node}+{:.3}", stop.length - self.path.departure(stop.node).unwrap_or(0.0))
         } else {
             node.into()
         }

@@ -161,8 +161,8 @@ impl VehicleAdapter {
         let start =
             course.arrival(course.length()).map_err(|fault| RejectedOrder::new(OrderRejection::Order, "", fault))?;
         let held = OrderState::new(order)?;
-        let way =
-            OrderPath::new(start, &held).map_err(|refusal| RejectedOrder { error: OrderRejection::Order, refusal })?;
+        let way = OrderPath::new(start, &held, self.profile.abilities.spread())
+            .map_err(|refusal| RejectedOrder { error: OrderRejection::Order, refusal })?;
         let begins = way.node(0).unwrap_or(0.0);
         if begins > BEGINS {
             return Err(RejectedOrder::new(
@@ -264,19 +264,20 @@ impl VehicleAdapter {
 
     /// Requests a mission from a node, or from where the vehicle stands, to the end of the base.
     fn ask(
-        &self,
+        &mut self,
         supervisor: &mut Supervisor,
         job: &mut ActiveOrder,
         from: Option<usize>,
         now: f64,
     ) -> Result<(), RejectedOrder> {
         let path = job.path.shapes(from, job.order.base).to_vec();
+        let why = job.path.unknown_heading(from).map(|why| format!("order {:?}: its heading is not known, as {why}: until it is done it counts as the disc around its outline", job.order.order_id));
         let proposal = MissionRequest {
             robot: self.name.clone(),
             mission: mission(&job.order, job.order.base),
             after: None,
             expected_path: None,
-            any_heading: false,
+            any_heading: why.is_some(),
             start: None,
             path,
         };
@@ -286,6 +287,7 @@ impl VehicleAdapter {
             return Err(was_there());
         }
         job.requested_node = job.order.base;
+        self.remarks.extend(why);
         Ok(())
     }
 

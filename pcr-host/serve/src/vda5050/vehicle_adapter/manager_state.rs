@@ -11,6 +11,7 @@ use pcr_formats::vda5050::messages::{Connection, Factsheet, Responses};
 use pcr_formats::vda5050::state::{EdgeState, NodeState, PartialList, State};
 use pcr_formats::vda5050::topics::TopicKind;
 use pcr_formats::vda5050::version::ProtocolVersion;
+use pcr_planning::fleet::ConvexBody;
 use serde_json::Value;
 
 /// The nodes and edges ahead, as JSON. It is kept because most states of a vehicle are between the same two nodes.
@@ -157,8 +158,13 @@ impl VehicleAdapter {
         let text = String::from_utf8_lossy(payload);
         let vehicle = import::vehicle(&text, &ImportOptions::default(), &mut Warnings::default());
         let vehicle = vehicle.map_err(|error| DecodeError::new("", error))?;
-        // The disc around the contour is compared. Speeds do not matter for safety.
-        let needs = vehicle.footprint.is_some().then_some(vehicle.radius);
+        // The contour is compared with what is kept free. Speeds do not matter for safety.
+        let own = self.profile.abilities.footprint.as_ref();
+        let hull = own.and_then(|own| ConvexBody::of_vehicle(Some(own), 0.0).ok()).map(|hull| hull.corners());
+        let needs = vehicle.footprint.as_ref().map(|contour| match &hull {
+            None => vehicle.radius,
+            Some((corners, radius)) => contour.beyond(corners) + contour.growth() - radius,
+        });
         if needs != self.needs {
             self.needs = needs;
             self.note(supervisor, NEEDS, needs);
@@ -185,7 +191,7 @@ impl VehicleAdapter {
         if stop.between
             && let Some(since) = state.rest.get("distanceSinceLastNode").and_then(Value::as_f64)
         {
-            let since = since + stop.length - job.path.node(stop.node).unwrap_or(stop.length);
+            let since = since + stop.length - job.path.departure(stop.node).unwrap_or(stop.length);
             state.rest.insert("distanceSinceLastNode".into(), since.into());
         }
         // A vehicle without nodes has completed the cancellation, or has dropped the order.

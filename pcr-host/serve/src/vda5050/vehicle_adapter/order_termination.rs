@@ -132,7 +132,9 @@ impl VehicleAdapter {
         // On its way it is as far off as before, and not farther by the error of this position.
         let on_way = self.job.as_ref().zip(supervisor.robot(&self.name).ok()).and_then(|(job, robot)| {
             let within = self.on_its_way(job, robot, pose).filter(|_| robot.alarm.is_none())?;
-            Some(nearest(job, within, [pose.x, pose.y]))
+            let there = nearest(job, within, [pose.x, pose.y]);
+            // It may be anywhere in a turn.
+            Some(if job.path.spread() > 0.0 { StartPose { heading: pose.theta, ..there } } else { there })
         });
         let start = on_way.unwrap_or(StartPose { x: pose.x, y: pose.y, heading: pose.theta });
         if self.shares(supervisor, &map).is_err() {

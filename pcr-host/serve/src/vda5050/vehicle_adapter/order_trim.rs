@@ -21,7 +21,7 @@ impl ActiveOrder {
         let (from, start) = (self.path.node(node)?, self.path.arrival(node)?);
         let mut job = self.clone();
         job.order.forget(node);
-        job.path = OrderPath::new(start, &job.order).ok()?;
+        job.path = OrderPath::new(start, &job.order, self.path.spread()).ok()?;
         job.requested_node = job.requested_node.checked_sub(node)?;
         job.sent = Some(SentUpdate { from: sent.from.checked_sub(first)?, ..sent });
         let moved = |stop: &ReleasePoint| {

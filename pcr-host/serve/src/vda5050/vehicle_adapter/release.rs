@@ -114,7 +114,9 @@ impl ActiveOrder {
         let from = stops.last().map_or(last.length, |stop| stop.length);
         let is_short = from - (robot.up_to + offset) < 2.0 * robot.abilities.braking() + 2.0 * robot.abilities.speed;
         let next = self.path.node(reached + 1).filter(|_| reached < planned);
-        if split && is_short && self.can_split(reached) && next.is_some() && hold - from >= PART {
+        // It has to come out of its turns first.
+        let turned = self.path.departure(reached).unwrap_or(from).max(from);
+        if split && is_short && self.can_split(reached) && next.is_some() && hold - turned >= PART {
             push(&mut stops, hold, reached, true);
         }
         stops

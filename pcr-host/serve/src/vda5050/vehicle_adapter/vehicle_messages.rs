@@ -205,7 +205,7 @@ impl VehicleAdapter {
                 let from = job.stops[place].length;
                 let to = job.stops.get(place + 1).map_or(from, |next| next.length);
                 // Vehicles report a node as passed when they are near it, so the search begins before the node.
-                let near = job.path.near(at, [from - reach.max(0.0), to], reach);
+                let near = job.path.near(pose, [from - reach.max(0.0), to], reach);
                 near.map(|lengths| lengths.map(|length| (length - offset).clamp(0.0, end)))
             }
             _ if !alarms => return Ok(()),
@@ -214,11 +214,13 @@ impl VehicleAdapter {
             }
             Some(job) => {
                 let start = (0.0 - offset).clamp(0.0, end);
-                job.path.near(at, [0.0, 0.0], reach).map(|_| [start; 2])
+                job.path.near(pose, [0.0, 0.0], reach).map(|_| [start; 2])
             }
             None => {
                 let there = robot.course.pose(end);
-                ((there.x - at[0]).hypot(there.y - at[1]) <= reach).then_some([end; 2])
+                let turned = 2.0 * (0.5 * (pose.theta - there.heading)).sin().abs();
+                let off = (there.x - at[0]).hypot(there.y - at[1]) + robot.spread() * turned;
+                (off <= reach).then_some([end; 2])
             }
         };
         match found {
@@ -259,11 +261,7 @@ impl VehicleAdapter {
         pose: &VehiclePosition,
     ) -> Option<[f64; 2]> {
         let (offset, reach) = (job.offset(robot)?, self.remaining_margin(pose));
-        job.path.near(
-            [pose.x, pose.y],
-            [robot.arc_length + offset - reach.max(0.0), robot.notified_limit + offset],
-            reach,
-        )
+        job.path.near(pose, [robot.arc_length + offset - reach.max(0.0), robot.notified_limit + offset], reach)
     }
 
     /// Part of the margin that is left for being off the path \[m\].
