@@ -100,8 +100,7 @@ impl<W: Write> OfflineSimulation<W> {
         record: W,
     ) -> io::Result<Self> {
         let SimulatedSite { profiles, vehicles, manager } = world;
-        let names =
-            vehicles.iter().map(|it| RecordVehicle { name: it.key().to_string(), radius: it.abilities().radius });
+        let names = vehicles.iter().map(RecordVehicle::of);
         let record = RecordWriter::new(record, &names.collect::<Vec<_>>())?;
         let bridge = bridge(&interfaces, &profiles, &supervisor).map_err(io::Error::other)?;
         let OfflineConfig { method, climate, seed, .. } = settings;
@@ -144,7 +143,8 @@ impl<W: Write> OfflineSimulation<W> {
         let (now, step) = (own.time, own.settings.step);
         for (k, member) in own.members.iter_mut().enumerate() {
             member.vehicle.advance(step);
-            own.record.push(k, now, member.vehicle.true_position()).map_err(StepError::Record)?;
+            let (place, heading) = (member.vehicle.true_position(), member.vehicle.heading());
+            own.record.push(k, now, place, heading).map_err(StepError::Record)?;
             if now >= member.away && own.random.happens(own.settings.drops, step) {
                 member.away = now + AWAY * own.random.unit();
                 own.drops += 1;

@@ -80,9 +80,7 @@ impl<W: Write> SimulatedFleet<W> {
     /// # Errors
     /// Those of the writer of the record, or invalid settings of the broker.
     pub fn new(settings: SimulatedFleetConfig, vehicles: Vec<SimulatedVehicle>, record: W) -> io::Result<Self> {
-        let names = vehicles
-            .iter()
-            .map(|vehicle| RecordVehicle { name: vehicle.key().to_string(), radius: vehicle.abilities().radius });
+        let names = vehicles.iter().map(RecordVehicle::of);
         let record = RecordWriter::new(record, &names.collect::<Vec<_>>())?;
         let (sender, news) = channel();
         let random = SplitMix64(settings.seed);
@@ -177,7 +175,7 @@ impl<W: Write> SimulatedFleet<W> {
             self.time += step;
             for (k, member) in self.members.iter_mut().enumerate() {
                 member.vehicle.advance(step);
-                self.record.push(k, self.time, member.vehicle.true_position())?;
+                self.record.push(k, self.time, member.vehicle.true_position(), member.vehicle.heading())?;
             }
         }
         for k in 0..self.members.len() {

@@ -1,8 +1,10 @@
 //! The proof that the vehicles of a record never touched: window by window, by the independent checker.
 
 use super::RecordVehicle;
+use super::outline_body::{bodies, unwound};
 use super::read::{RecordContents, read};
-use pcr_certify::motion::{Mover, meetings};
+use pcr_certify::motion::{MotionFindings, Mover, meetings};
+use pcr_certify::outline::{self, Body, motion::Driven};
 use pcr_certify::raw::{RawAgent, RawAngle, RawMotion, RawPath, RawPhase, RawSegment};
 use serde::Serialize;
 use std::io::{self, BufRead};
@@ -38,7 +40,7 @@ pub struct VehicleContact {
     pub vehicles: [String; 2],
     /// Time of the contact \[s\].
     pub time: f64,
-    /// Distance of the centres less the radii \[m\].
+    /// Distance of the discs or outlines, negative where they overlap \[m\].
     pub clearance: f64,
 }
 
@@ -59,7 +61,7 @@ pub fn certify(text: impl BufRead) -> io::Result<RecordCertificate> {
     Ok(RecordCertificate { vehicles: count, ..checked(&there, &tracks, cut) })
 }
 
-fn checked(vehicles: &[RecordVehicle], tracks: &[Vec<[f64; 3]>], error: Option<String>) -> RecordCertificate {
+fn checked(vehicles: &[RecordVehicle], tracks: &[Vec<[f64; 4]>], error: Option<String>) -> RecordCertificate {
     let mut times: Vec<f64> = tracks.iter().flatten().map(|point| point[0]).collect();
     times.sort_by(f64::total_cmp);
     let (begin, end) = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
@@ -69,16 +71,13 @@ fn checked(vehicles: &[RecordVehicle], tracks: &[Vec<[f64; 3]>], error: Option<S
     let (count, time) = (vehicles.len(), end - begin);
     let mut found =
         RecordCertificate { format, version, vehicles: count, time, travelled, error, ..RecordCertificate::default() };
-    let far = |track: &Vec<[f64; 3]>| track.iter().flat_map(|[_, x, y]| [x.abs(), y.abs()]).fold(1.0, f64::max);
+    let far = |track: &Vec<[f64; 4]>| track.iter().flat_map(|[_, x, y, _]| [x.abs(), y.abs()]).fold(1.0, f64::max);
     let far: Vec<f64> = tracks.iter().map(far).collect();
+    let tracks: Vec<Vec<[f64; 4]>> = tracks.iter().map(|track| unwound(track)).collect();
     for [from, to] in windows(&times) {
-        let movers = vehicles.iter().zip(tracks).zip(&far).enumerate();
-        let movers = movers.map(|(id, ((vehicle, track), &far))| {
-            Mover::new(&agent(id as u64, vehicle.radius, &track_between(track, from, to), far), [from, to])
-        });
-        match movers.collect::<Result<Vec<_>, _>>() {
-            Ok(movers) => {
-                let met = meetings(&movers);
+        let parts: Vec<_> = tracks.iter().map(|track| track_between(track, from, to)).collect();
+        match met(vehicles, &parts, &far, [from, to]) {
+            Ok(met) => {
                 found.undecided += met.undecided.len();
                 let name = |id: u64| vehicles.get(id as usize).map_or_else(String::new, |vehicle| vehicle.name.clone());
                 found.contacts.extend(met.contacts.iter().map(|meeting| VehicleContact {
@@ -100,6 +99,32 @@ fn checked(vehicles: &[RecordVehicle], tracks: &[Vec<[f64; 3]>], error: Option<S
     found
 }
 
+/// The contacts of vehicles with these parts of their tracks in a window of time.
+///
+/// # Errors
+/// What is no motion, in words.
+fn met(
+    vehicles: &[RecordVehicle],
+    parts: &[Vec<[f64; 4]>],
+    far: &[f64],
+    window: [f64; 2],
+) -> Result<MotionFindings, String> {
+    let all = || vehicles.iter().zip(parts).zip(far).enumerate();
+    if let Some(discs) = vehicles.iter().map(|vehicle| vehicle.radius).collect::<Option<Vec<f64>>>() {
+        let movers = all()
+            .zip(discs)
+            .map(|((id, ((_, part), &far)), radius)| Mover::new(&agent(id as u64, radius, part, far), window));
+        return Ok(meetings(&movers.collect::<Result<Vec<_>, _>>()?));
+    }
+    let mut raw = Vec::new();
+    for (id, ((vehicle, part), &far)) in all() {
+        raw.extend(bodies(id as u64, vehicle, part, far)?);
+    }
+    let placed = raw.iter().map(Body::new).collect::<Result<Vec<_>, _>>()?;
+    let driven = placed.iter().map(|body| Driven::new(body, window)).collect::<Result<Vec<_>, _>>()?;
+    Ok(outline::motion::meetings(&driven))
+}
+
 /// The windows from the first of these times to the last one, at most one a time: times are in order.
 pub(super) fn windows(times: &[f64]) -> Vec<[f64; 2]> {
     let (Some(&begin), Some(&end)) = (times.first(), times.last()) else { return Vec::new() };
@@ -116,16 +141,16 @@ pub(super) fn windows(times: &[f64]) -> Vec<[f64; 2]> {
 }
 
 /// The part of a track between two times.
-fn track_between(track: &[[f64; 3]], from: f64, to: f64) -> Vec<[f64; 3]> {
+fn track_between(track: &[[f64; 4]], from: f64, to: f64) -> Vec<[f64; 4]> {
     let at = |time: f64| {
         let next = track.partition_point(|point| point[0] <= time);
         match (next.checked_sub(1).and_then(|last| track.get(last)), track.get(next)) {
             (Some(a), Some(b)) => {
                 let part = (time - a[0]) / (b[0] - a[0]);
-                [time, a[1] + part * (b[1] - a[1]), a[2] + part * (b[2] - a[2])]
+                [time, a[1] + part * (b[1] - a[1]), a[2] + part * (b[2] - a[2]), a[3] + part * (b[3] - a[3])]
             }
-            (Some(only), None) | (None, Some(only)) => [time, only[1], only[2]],
-            (None, None) => [time, 0.0, 0.0],
+            (Some(only), None) | (None, Some(only)) => [time, only[1], only[2], only[3]],
+            (None, None) => [time, 0.0, 0.0, 0.0],
         }
     };
     let [first, last] = [track.partition_point(|point| point[0] <= from), track.partition_point(|point| point[0] < to)];
@@ -134,7 +159,7 @@ fn track_between(track: &[[f64; 3]], from: f64, to: f64) -> Vec<[f64; 3]> {
 }
 
 /// A disc that goes from point to point; `far` is the largest coordinate of those that they were taken from \[m\].
-fn agent(id: u64, radius: f64, points: &[[f64; 3]], far: f64) -> RawAgent {
+fn agent(id: u64, radius: f64, points: &[[f64; 4]], far: f64) -> RawAgent {
     let [first, last] = [points.first(), points.last()].map(|end| end.copied().unwrap_or_default());
     let (mut segments, mut phases): (Vec<RawSegment>, Vec<RawPhase>) = (Vec::new(), Vec::new());
     let (mut length, mut fastest, mut heading, mut initial) = (0.0, 0.0_f64, 0.0, None);

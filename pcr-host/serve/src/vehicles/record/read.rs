@@ -1,6 +1,6 @@
 //! Reads a record, line by line, and finds out whether it is as it was written.
 
-use super::{RecordHeader, RecordTrailer, RecordVehicle, VERSION};
+use super::{RecordHeader, RecordTrailer, RecordVehicle, VERSIONS};
 use crc32fast::Hasher;
 use serde::de::IgnoredAny;
 use std::io::{self, BufRead};
@@ -10,8 +10,11 @@ const FARTHEST: f64 = 1e7;
 const FASTEST: f64 = 1e3;
 const LATEST: f64 = 1e10;
 
-/// Positions of a vehicle: time \[s\], x and y \[m\].
-type RecordedTrack = Vec<[f64; 3]>;
+/// Largest heading \[rad\].
+const MOST_TURNED: f64 = 1e4;
+
+/// Positions of a vehicle: time \[s\], x and y \[m\], and heading \[rad\], which is 0 for a disc.
+type RecordedTrack = Vec<[f64; 4]>;
 
 /// The contents of a record.
 pub(super) struct RecordContents {
@@ -51,7 +54,7 @@ pub(super) fn read(mut text: impl BufRead) -> io::Result<RecordContents> {
         }
         count += 1;
         add(&mut sum, &text);
-        point(&text, &mut tracks).map_err(|why| wrong(line + 1, why))?;
+        point(&text, &vehicles, &mut tracks).map_err(|why| wrong(line + 1, why))?;
     }
     let cut = cut(end, count, sum);
     if let Some(none) = tracks.iter().position(Vec::is_empty).filter(|_| cut.is_none()) {
@@ -63,8 +66,14 @@ pub(super) fn read(mut text: impl BufRead) -> io::Result<RecordContents> {
 /// The vehicles that the first line names.
 fn head(text: &str) -> Result<Vec<RecordVehicle>, String> {
     let RecordHeader { format, version, vehicles } = serde_json::from_str(text).map_err(|error| error.to_string())?;
-    if (format.as_str(), version) != ("pcr-record", VERSION) {
-        return Err(format!("a record of version {VERSION} is expected"));
+    if format != "pcr-record" || !VERSIONS.contains(&version) {
+        return Err(format!("a record of version {} or {} is expected", VERSIONS[0], VERSIONS[1]));
+    }
+    if let Some(early) = vehicles.iter().find(|it| it.footprint.is_some() && version == VERSIONS[0]) {
+        return Err(format!("a footprint of {} in a record of version {version}", early.name));
+    }
+    if let Some(both) = vehicles.iter().find(|it| it.footprint.is_some() == it.radius.is_some()) {
+        return Err(format!("a radius or a footprint of {} is expected", both.name));
     }
     match vehicles.len() {
         0 => return Err("no vehicles".into()),
@@ -72,23 +81,39 @@ fn head(text: &str) -> Result<Vec<RecordVehicle>, String> {
         _ => {}
     }
     // Discs of radius 0 would never overlap, wherever they are.
-    match vehicles.iter().find(|vehicle| vehicle.radius <= 0.0) {
-        Some(none) => Err(format!("a radius above 0 is expected, not {} of {}", none.radius, none.name)),
+    let none = vehicles.iter().find_map(|it| Some((it.radius.filter(|radius| *radius <= 0.0)?, &it.name)));
+    match none {
+        Some((radius, name)) => Err(format!("a radius above 0 is expected, not {radius} of {name}")),
         None => Ok(vehicles),
     }
 }
 
 /// Adds a position to its track.
-fn point(text: &str, tracks: &mut [RecordedTrack]) -> Result<(), String> {
-    let (vehicle, time, x, y): (usize, f64, f64, f64) = serde_json::from_str(text).map_err(|it| it.to_string())?;
-    let track = tracks.get_mut(vehicle).ok_or("no such vehicle")?;
+fn point(text: &str, vehicles: &[RecordVehicle], tracks: &mut [RecordedTrack]) -> Result<(), String> {
+    let plain =
+        serde_json::from_str::<(usize, f64, f64, f64)>(text).map(|(vehicle, time, x, y)| (vehicle, time, x, y, None));
+    let posed = || serde_json::from_str::<(usize, f64, f64, f64, f64)>(text).ok();
+    let posed = |why: serde_json::Error| match posed() {
+        Some((vehicle, time, x, y, heading)) => Ok((vehicle, time, x, y, Some(heading))),
+        None => Err(why.to_string()),
+    };
+    let (vehicle, time, x, y, heading) = plain.or_else(posed)?;
+    let (track, is_posed) =
+        tracks.get_mut(vehicle).zip(vehicles.get(vehicle).map(|it| it.footprint.is_some())).ok_or("no such vehicle")?;
+    if heading.is_some() != is_posed {
+        return Err(if is_posed { "the heading is missing" } else { "a disc has no heading" }.to_owned());
+    }
+    let heading = heading.unwrap_or(0.0);
+    if heading.abs() > MOST_TURNED {
+        return Err(format!("headings up to {MOST_TURNED:e} rad are expected, not {heading:e}"));
+    }
     if let Some(far) = [x, y].into_iter().find(|it| it.abs() > FARTHEST) {
         return Err(format!("coordinates up to {FARTHEST:e} m are expected, not {far:e}"));
     }
     if time.abs() > LATEST {
         return Err(format!("times up to {LATEST:e} s are expected, not {time:e}"));
     }
-    if let Some([before, x0, y0]) = track.last() {
+    if let Some([before, x0, y0, _]) = track.last() {
         if *before >= time {
             return Err("not later than the line before of this vehicle".to_owned());
         }
@@ -97,7 +122,7 @@ fn point(text: &str, tracks: &mut [RecordedTrack]) -> Result<(), String> {
             return Err(format!("speeds up to {FASTEST:e} m/s are expected, not {speed:e}"));
         }
     }
-    track.push([time, x, y]);
+    track.push([time, x, y, heading]);
     Ok(())
 }
 

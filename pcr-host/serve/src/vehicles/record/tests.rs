@@ -1,15 +1,16 @@
 use super::certify::windows;
 use super::*;
+use std::f64::consts::PI;
 
 fn record(apart: f64) -> String {
-    let vehicles = ["a", "b"].map(|name| RecordVehicle { name: name.into(), radius: 0.5 });
+    let vehicles = ["a", "b"].map(|name| RecordVehicle { name: name.into(), radius: Some(0.5), footprint: None });
     let mut record = RecordWriter::new(Vec::new(), &vehicles).unwrap();
     // Past one another with a distance of `apart`, there and back.
     for k in 0..=600 {
         let time = f64::from(k) * 0.1;
         let x = if k <= 300 { time } else { 60.0 - time };
-        record.push(0, time, [x, 0.0]).unwrap();
-        record.push(1, time, [20.0 - x.min(20.0), apart]).unwrap();
+        record.push(0, time, [x, 0.0], 0.0).unwrap();
+        record.push(1, time, [20.0 - x.min(20.0), apart], 0.0).unwrap();
     }
     String::from_utf8(record.finish().unwrap()).unwrap()
 }
@@ -155,4 +156,74 @@ fn what_is_no_record_is_refused() {
     assert!(certify(&b""[..]).is_err());
     let nowhere = certify(format!("{}\n{{\"lines\":0}}", text.lines().next().unwrap()).as_bytes()).unwrap_err();
     assert_eq!(nowhere.to_string(), "line 1: nothing about a");
+}
+
+/// A truck, 1.2 m long and 0.8 m wide, and what passes it.
+fn beside_a_truck(other: RecordVehicle, points: impl Fn(f64) -> [f64; 3]) -> RecordCertificate {
+    let truck = Footprint::new(vec![[-0.6, -0.4], [0.6, -0.4], [0.6, 0.4], [-0.6, 0.4]]).unwrap();
+    let truck = RecordVehicle { name: "truck".into(), radius: None, footprint: Some(truck) };
+    let mut record = RecordWriter::new(Vec::new(), &[truck, other]).unwrap();
+    for k in 0..=600 {
+        let time = f64::from(k) * 0.1;
+        record.push(0, time, [0.5 * time - 15.0, 0.0], 0.0).unwrap();
+        let [x, y, heading] = points(time);
+        record.push(1, time, [x, y], heading).unwrap();
+    }
+    certify(record.finish().unwrap().as_slice()).unwrap()
+}
+
+fn truck() -> RecordVehicle {
+    let footprint = Footprint::new(vec![[-0.6, -0.4], [0.6, -0.4], [0.6, 0.4], [-0.6, 0.4]]).unwrap();
+    RecordVehicle { name: "other".into(), radius: None, footprint: Some(footprint) }
+}
+
+#[test]
+fn outlines_are_judged_as_they_are() {
+    let disc = || RecordVehicle { name: "disc".into(), radius: Some(0.5), footprint: None };
+    for (apart, verdict) in [(0.001, "proved"), (-0.001, "contact")] {
+        // In the opposite lane, with its heading half a turn beyond the largest one that is written.
+        let passes =
+            beside_a_truck(truck(), |time| [15.0 - 0.5 * time, 0.8 + apart, if time < 30.0 { PI } else { -PI }]);
+        assert_eq!((passes.verdict, passes.undecided), (verdict, 0), "{passes:?}");
+        let passes = beside_a_truck(disc(), |time| [15.0 - 0.5 * time, 0.9 + apart, 0.0]);
+        assert_eq!((passes.verdict, passes.undecided), (verdict, 0), "{passes:?}");
+        // It stands and turns, on and on: its corners are up to 0.7211 m from where it stands.
+        let corner = 0.6_f64.hypot(0.4);
+        let turns = beside_a_truck(truck(), |time| [0.0, 0.4 + corner + apart, (2.9 * time) % 6.0]);
+        assert_eq!((turns.verdict, turns.undecided), (verdict, 0), "{turns:?}");
+    }
+    // It goes round a corner with its heading, and turns while it moves.
+    let bends = beside_a_truck(truck(), |time| {
+        let (sin, cos) = (0.05 * time).sin_cos();
+        [20.0 * sin, 25.0 - 20.0 * cos, 0.05 * time]
+    });
+    assert_eq!(bends.verdict, "proved", "{bends:?}");
+    assert!((bends.travelled - 90.0).abs() < 0.1, "{}", bends.travelled);
+    // The truck drives between the prongs of a fork, which is concave.
+    let fork = vec![[0.0, -1.5], [3.0, -1.5], [3.0, -0.5], [0.3, -0.5], [0.3, 0.5], [3.0, 0.5], [3.0, 1.5], [0.0, 1.5]];
+    let fork = RecordVehicle { name: "fork".into(), radius: None, footprint: Some(Footprint::new(fork).unwrap()) };
+    let inside = beside_a_truck(fork.clone(), |_| [16.0, 0.0, PI]);
+    assert_eq!((inside.verdict, inside.undecided), ("proved", 0), "{inside:?}");
+    let struck = beside_a_truck(fork, |_| [15.8, 0.0, PI]);
+    assert_eq!(struck.verdict, "contact", "{struck:?}");
+}
+
+#[test]
+fn headings_belong_to_outlines() {
+    let mut record = RecordWriter::new(Vec::new(), &[truck(), truck()]).unwrap();
+    (0..2).for_each(|k| record.push(k, 0.0, [3.0 * k as f64, 0.0], 0.5).unwrap());
+    let text = String::from_utf8(record.finish().unwrap()).unwrap();
+    assert!(text.contains("\n[1,0.0,3.0,0.0,0.5]\n"), "{text}");
+    let head = text.lines().next().unwrap();
+    let read = |head: &str, line: &str| {
+        certify(format!("{head}\n{line}\n{{\"lines\":1}}").as_bytes()).unwrap_err().to_string()
+    };
+    assert_eq!(read(head, "[0,0,0,0]"), "line 2: the heading is missing");
+    assert_eq!(read(head, "[0,0,0,0,1e5]"), "line 2: headings up to 1e4 rad are expected, not 1e5");
+    let early = read(&head.replace("\"version\":3", "\"version\":2"), "[0,0,0,0,0]");
+    assert_eq!(early, "line 1: a footprint of other in a record of version 2");
+    let discs = record(1.001);
+    assert_eq!(read(discs.lines().next().unwrap(), "[0,0,0,0,0]"), "line 2: a disc has no heading");
+    let both = head.replacen("\"footprint\"", "\"radius\":1,\"footprint\"", 1);
+    assert_eq!(read(&both, "[0,0,0,0,0]"), "line 1: a radius or a footprint of other is expected");
 }
