@@ -10,12 +10,22 @@ function readTheme() {
 }
 const hue = (k) => `hsl(${(k * 137.5) % 360} 70% ${dark.matches ? 65 : 38}%)`;
 
-/** Points [x, y, length] along shapes. */
+/** Points [x, y, length, heading] along shapes. */
 function points({ start, shapes }) {
   let { x, y, heading } = start, length = 0;
-  const all = [[x, y, 0]];
+  const all = [[x, y, 0, heading]];
   for (const shape of shapes) {
-    if (shape.kind === "turn") { heading += shape.sweep; continue; }
+    if (shape.kind === "turn") {
+      const steps = Math.max(1, Math.ceil(Math.abs(shape.sweep) / 0.1)), part = (shape.lever ?? 0) * Math.abs(shape.sweep) / steps;
+      for (let k = 0; k < steps; k++) { heading += shape.sweep / steps; length += part; all.push([x, y, length, heading]); }
+      continue;
+    }
+    if (shape.kind === "shift") {
+      const long = Math.hypot(shape.ahead, shape.left), way = heading + Math.atan2(shape.left, shape.ahead);
+      x += long * Math.cos(way); y += long * Math.sin(way); length += long;
+      all.push([x, y, length, heading]);
+      continue;
+    }
     const long = shape.kind === "line" ? shape.length : shape.radius * Math.abs(shape.sweep);
     const steps = shape.kind === "line" ? 1 : Math.max(2, Math.ceil(Math.abs(shape.sweep) / 0.1));
     const bend = shape.kind === "line" ? 0 : shape.sweep / steps;
@@ -23,7 +33,7 @@ function points({ start, shapes }) {
       const part = long / steps, chord = bend ? 2 * shape.radius * Math.sin(Math.abs(bend) / 2) : part;
       x += chord * Math.cos(heading + bend / 2); y += chord * Math.sin(heading + bend / 2);
       heading += bend; length += part;
-      all.push([x, y, length]);
+      all.push([x, y, length, heading]);
     }
   }
   return all;
@@ -34,7 +44,7 @@ function part(all, from, to) {
     const k = all.findIndex((point) => point[2] >= length);
     if (k <= 0) return k === 0 ? all[0] : all[all.length - 1];
     const [a, b] = [all[k - 1], all[k]], t = (length - a[2]) / (b[2] - a[2] || 1);
-    return [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), length];
+    return [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), length, a[3] + t * (b[3] - a[3])];
   };
   return [at(from), ...all.filter((point) => point[2] > from && point[2] < to), at(to)];
 }
@@ -78,9 +88,20 @@ function draw() {
     c.setLineDash([]);
     c.lineWidth = 4;
     line(part(all, robot.at[0], robot.hold));
-    const [px, py] = robot.alarm && "x" in robot.alarm ? [robot.alarm.x, robot.alarm.y] : part(all, robot.at[0], robot.at[1]).at(-1);
+    const lost = robot.alarm && "x" in robot.alarm;
+    const [px, py, , heading] = lost ? [robot.alarm.x, robot.alarm.y] : part(all, robot.at[0], robot.at[1]).at(-1);
     place.set(robot.robot, [px, py]);
-    c.beginPath(); c.arc(x(px), y(py), Math.max(3, robot.radius * scale), 0, 7); c.globalAlpha *= 0.8; c.fill();
+    c.globalAlpha *= 0.8;
+    c.beginPath();
+    if (robot.footprint && !robot.any_heading && !lost && robot.radius * scale > 3) {
+      const [cos, sin] = [Math.cos(heading), Math.sin(heading)], { polygon, growth } = robot.footprint;
+      polygon.forEach(({ ahead, left }) => c.lineTo(x(px + ahead * cos - left * sin), y(py + ahead * sin + left * cos)));
+      c.closePath();
+      if (growth) { c.lineJoin = "round"; c.lineWidth = 2 * growth * scale; c.stroke(); }
+    } else {
+      c.arc(x(px), y(py), Math.max(3, robot.radius * scale), 0, 7);
+    }
+    c.fill();
     c.globalAlpha = 1;
   });
   c.strokeStyle = theme.dim;

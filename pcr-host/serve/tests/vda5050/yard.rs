@@ -115,6 +115,26 @@ fn work_goes_on_whatever_is_lost() {
     }
 }
 
+/// Rectangles of two sizes among discs turn at nodes, with bad messages and restarts: their outlines never touch, which the record proves.
+#[test]
+fn rectangles_do_their_missions_and_never_touch() {
+    let long = SimulatedTraits { rectangle: Some([0.7, 0.36]), ..FAIR.abilities[0] };
+    let small = SimulatedTraits { rectangle: Some([0.5, 0.4]), ..SLOW };
+    let scene = Scene { abilities: &[long, FAIR.abilities[0], small], ..MIXED };
+    for seed in seeds("0..2") {
+        let mut yard = open(scene, seed, VehicleCoordination::Supervisor, Box::new(NullStore));
+        for k in 1..=4 {
+            until(&mut yard, 8 * k, |_| unreachable!());
+            restart(&mut yard);
+        }
+        eprintln!("seed {seed}: {} missions in {:.0} s", yard.manager().done(), yard.time());
+        let (supervisor, _) = yard.supervised_by();
+        assert!(supervisor.robots().iter().all(|robot| !robot.any_heading));
+        assert_eq!(supervisor.robots().iter().filter(|robot| robot.abilities.footprint.is_some()).count(), 5);
+        close(yard);
+    }
+}
+
 #[test]
 fn goals_on_the_ways_of_others_are_refused() {
     let layout = warehouse();

@@ -375,9 +375,13 @@ impl FleetRunSummary {
 fn profiles(world: &SimulatedSite) -> String {
     let vehicle = |profile: &VehicleConfig| {
         let (key, can) = (&profile.key, &profile.abilities);
-        serde_json::json!({ "manufacturer": key.manufacturer, "serialNumber": key.serial_number, "radius": can.radius,
-            "margin": can.margin, "speed": can.speed, "acceleration": can.acceleration, "split": profile.split })
-        .to_string()
+        let mut all = serde_json::json!({ "manufacturer": key.manufacturer, "serialNumber": key.serial_number,
+            "margin": can.margin, "speed": can.speed, "acceleration": can.acceleration, "split": profile.split });
+        match &can.footprint {
+            Some(footprint) => all["footprint"] = serde_json::json!(footprint),
+            None => all["radius"] = can.radius.into(),
+        }
+        all.to_string()
     };
     let list: Vec<String> = world.profiles.iter().map(vehicle).collect();
     let (format, version) = VEHICLES;

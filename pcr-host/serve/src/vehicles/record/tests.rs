@@ -210,9 +210,9 @@ fn outlines_are_judged_as_they_are() {
 
 #[test]
 fn headings_belong_to_outlines() {
-    let mut record = RecordWriter::new(Vec::new(), &[truck(), truck()]).unwrap();
-    (0..2).for_each(|k| record.push(k, 0.0, [3.0 * k as f64, 0.0], 0.5).unwrap());
-    let text = String::from_utf8(record.finish().unwrap()).unwrap();
+    let mut own = RecordWriter::new(Vec::new(), &[truck(), truck()]).unwrap();
+    (0..2).for_each(|k| own.push(k, 0.0, [3.0 * k as f64, 0.0], 0.5).unwrap());
+    let text = String::from_utf8(own.finish().unwrap()).unwrap();
     assert!(text.contains("\n[1,0.0,3.0,0.0,0.5]\n"), "{text}");
     let head = text.lines().next().unwrap();
     let read = |head: &str, line: &str| {
