@@ -10,6 +10,7 @@ use crate::request_error::RequestError;
 use crate::server::{ServerHandle, ServerInput};
 use crate::sockets::{Listener, Stream};
 use crate::token::Token;
+use crate::unanswered_lines::UnansweredLines;
 use socket2::{SockRef, TcpKeepalive};
 use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, ErrorKind, Read, Write};
@@ -61,10 +62,11 @@ pub fn serve(
     lost: impl FnOnce(io::Error) + Send + 'static,
 ) -> io::Result<()> {
     converse(handle, output, lost, |number| {
+        let unanswered = UnansweredLines::default();
         // An error of reading counts as the end.
         let _ = read(&mut BufReader::new(input), |_, _, request| {
             handle.send(match request {
-                Some(request) => ServerInput::Line(number, request),
+                Some(request) => ServerInput::Line(number, request.counted(unanswered.add())),
                 None => ServerInput::Answer(number, lines::too_long()),
             })
         });
@@ -203,12 +205,15 @@ fn welcome(
     stream.set_read_timeout(None)?;
     // A connection that cannot be written to has ended: then its input ends, too.
     converse(handle, Shut(stream.try_clone()?), drop, |number| {
-        if !handle.send(ServerInput::Line(number, first)) {
+        let unanswered = UnansweredLines::default();
+        if !handle.send(ServerInput::Line(number, first.counted(unanswered.add()))) {
             return;
         }
         let _ = read(&mut input, |line, behind, request| {
             let refusal = match request {
-                Some(request) if request.is_object() => return handle.send(ServerInput::Line(number, request)),
+                Some(request) if request.is_object() => {
+                    return handle.send(ServerInput::Line(number, request.counted(unanswered.add())));
+                }
                 Some(request) => hello::no_object(line, behind, &request),
                 None => ConnectionRefusal::TooLong(LONGEST),
             };

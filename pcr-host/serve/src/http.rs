@@ -10,13 +10,17 @@ use crate::sockets::{Listener, Stream};
 use serde_json::json;
 use std::io::{self, Read, Write};
 use std::net::{Ipv4Addr, Ipv6Addr};
-use std::time::Duration;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Largest length of a request \[bytes\].
 const LONGEST: usize = 8192;
 
 /// Largest number of connections at a time.
 const MOST: usize = 32;
+
+/// Time in which a request has to come, and its answer has to be read: in which a connection that is slow on purpose keeps its place.
+const WITHIN: Duration = Duration::from_secs(5);
 
 /// A function that draws the regions of a robot in its fleet.
 pub type DrawFn = fn(&[RobotDrawing], usize) -> Result<String, String>;
@@ -46,6 +50,23 @@ pub struct HttpContent {
     /// Whether every address is accepted as a host, because the page is at all addresses of the machine. A foreign page needs a name that it
     /// can point here.
     pub addresses: bool,
+    /// Why others than the supervisor itself keep it from granting authority; `None` if nobody else does.
+    pub unready: Option<Readiness>,
+}
+
+/// Why nothing is granted yet, if so: told by who knows, and shown at `/readyz`.
+#[derive(Clone, Debug, Default)]
+pub struct Readiness(Arc<Mutex<Option<String>>>);
+
+impl Readiness {
+    /// Tells why nothing is granted; `None`: it is.
+    pub fn tell(&self, why: Option<String>) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = why;
+    }
+
+    fn why(&self) -> Option<String> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
 }
 
 impl HttpContent {
@@ -67,10 +88,40 @@ pub fn listen(handle: &ServerHandle, listener: &Listener, site: HttpContent, log
     });
 }
 
-fn converse(handle: &ServerHandle, site: &HttpContent, mut stream: Stream) -> io::Result<()> {
-    let patience = Some(Duration::from_secs(5));
-    stream.set_read_timeout(patience)?;
-    stream.set_write_timeout(patience)?;
+/// A connection that ends at a time, however often a byte comes or goes.
+struct TimedStream {
+    stream: Stream,
+    until: Instant,
+}
+
+impl TimedStream {
+    /// Time that is left.
+    fn left(&self) -> io::Result<Option<Duration>> {
+        let left = self.until.saturating_duration_since(Instant::now());
+        if left.is_zero() { Err(io::ErrorKind::TimedOut.into()) } else { Ok(Some(left)) }
+    }
+}
+
+impl Read for TimedStream {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        self.stream.set_read_timeout(self.left()?)?;
+        self.stream.read(bytes)
+    }
+}
+
+impl Write for TimedStream {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream.set_write_timeout(self.left()?)?;
+        self.stream.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream.flush()
+    }
+}
+
+fn converse(handle: &ServerHandle, site: &HttpContent, stream: Stream) -> io::Result<()> {
+    let mut stream = TimedStream { stream, until: Instant::now() + WITHIN };
     let mut bytes = Vec::new();
     let mut part = [0; 1024];
     while !bytes.windows(4).any(|end| end == b"\r\n\r\n") {
@@ -81,11 +132,12 @@ fn converse(handle: &ServerHandle, site: &HttpContent, mut stream: Stream) -> io
         }
     }
     let (status, kind, body) = answer(handle, site, &bytes);
+    stream.until = Instant::now() + WITHIN;
     let has_body = !bytes.starts_with(b"HEAD ");
     respond(&mut stream, status, kind, &body, has_body)
 }
 
-fn respond(stream: &mut Stream, status: &str, kind: &str, body: &str, has_body: bool) -> io::Result<()> {
+fn respond(stream: &mut TimedStream, status: &str, kind: &str, body: &str, has_body: bool) -> io::Result<()> {
     let allow = if status.starts_with("405") { "Allow: GET, HEAD\r\n" } else { "" };
     let head = format!(
         "HTTP/1.1 {status}\r\n{allow}Content-Type: {kind}; charset=utf-8\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
@@ -143,7 +195,19 @@ pub fn answer(handle: &ServerHandle, site: &HttpContent, request: &[u8]) -> (&'s
             None => ended(),
         },
         "/map" => map(handle, site, query),
-        _ => plain("404 Not Found", "there is /, /state, /layout, /map?robot=NAME and /metrics"),
+        "/healthz" => match handle.ask(|_, _, _| ()) {
+            Some(()) => plain("200 OK", "it decides"),
+            None => ended(),
+        },
+        "/readyz" => match handle.ask(|supervisor, _, _| supervisor.broken().map(str::to_owned)) {
+            Some(None) => match site.unready.as_ref().and_then(Readiness::why) {
+                None => plain("200 OK", "it grants authority"),
+                Some(why) => plain("503 Service Unavailable", &why),
+            },
+            Some(Some(why)) => plain("503 Service Unavailable", &why),
+            None => ended(),
+        },
+        _ => plain("404 Not Found", "there is /, /state, /layout, /map?robot=NAME, /metrics, /healthz and /readyz"),
     }
 }
 
@@ -204,4 +268,37 @@ fn decoded(text: &str) -> String {
         }
     }
     String::from_utf8_lossy(&bytes).into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::net::{TcpListener, TcpStream};
+
+    /// A client that sent a byte from time to time kept its place for ever: 32 of them closed page and metrics.
+    #[test]
+    fn a_connection_ends_in_time_however_often_a_byte_comes() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let mut client = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+        let (stream, _) = listener.accept().unwrap();
+        let drips = std::thread::spawn(move || {
+            while client.write_all(b"x").is_ok() {
+                std::thread::sleep(Duration::from_millis(5));
+            }
+        });
+        let until = Instant::now() + Duration::from_millis(200);
+        let mut stream = TimedStream { stream: Stream::Tcp(stream), until };
+        let mut part = [0; 16];
+        let mut count = 0;
+        let error = loop {
+            match stream.read(&mut part) {
+                Ok(more) => count += more,
+                Err(error) => break error,
+            }
+        };
+        assert!(count > 0 && matches!(error.kind(), io::ErrorKind::TimedOut | io::ErrorKind::WouldBlock), "{error}");
+        assert_eq!(stream.write(b"x").unwrap_err().kind(), io::ErrorKind::TimedOut);
+        drop(stream);
+        drips.join().unwrap();
+    }
 }

@@ -62,7 +62,7 @@ pub struct JournalContents {
 pub struct Journal {
     folder: PathBuf,
     file: File,
-    _lock: FolderLock,
+    lock: FolderLock,
     /// End of its frames \[bytes\].
     len: u64,
     /// End of the state with which it was begun \[bytes\].
@@ -98,12 +98,13 @@ impl Journal {
         // The bytes of an incomplete frame are removed, because the next frame begins there.
         file.set_len(len).and_then(|()| file.sync_all()).map_err(of(&path))?;
         file.seek(SeekFrom::Start(len))?;
-        let own = Self { folder: folder.into(), file, _lock: lock, len, first, sum, end: len, failed: false };
+        let own = Self { folder: folder.into(), file, lock, len, first, sum, end: len, failed: false };
         Ok((own, JournalContents { entries, torn }))
     }
 
     /// Adds a frame, and returns when it is on the disk. After an error any part of it may be there.
     fn add(&mut self, frame: &[u8]) -> io::Result<()> {
+        self.lock.check()?;
         let len = self.len + frame.len() as u64;
         if len > self.end {
             let end = len + ROOM;
@@ -142,6 +143,7 @@ impl JournalStore for Journal {
         }
         let (frame, sum) = frame(entries, FIRST)?;
         self.failed = true;
+        self.lock.check()?;
         let bytes = [ANEW.as_slice(), &frame].concat();
         written(&self.folder, &bytes)?;
         (self.len, self.sum) = (bytes.len() as u64, sum);
@@ -335,5 +337,29 @@ fn is_torn(bytes: &[u8], at: usize) -> bool {
             let (head, next) = bytes.split_at((SECTOR - at % SECTOR).min(BEGIN).min(bytes.len()));
             is_missing(after) || is_missing(head) || (head.len() < BEGIN && is_missing(&next[..BEGIN - head.len()]))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// It went on, and so did another one.
+    #[test]
+    fn nothing_is_written_without_the_lock() {
+        let folder = std::env::temp_dir().join(format!("pcr-journal-unlocked-{}", std::process::id()));
+        let (mut journal, _) = Journal::open(&folder).unwrap();
+        journal.keep(&[JournalEntry::Spent { path: 1 }]).unwrap();
+        fs::remove_file(folder.join("lock")).unwrap();
+        let (mut other, contents) = Journal::open(&folder).unwrap();
+        assert_eq!(contents.entries.len(), 1);
+        let why = journal.keep(&[JournalEntry::Spent { path: 2 }]).unwrap_err().to_string();
+        assert!(why.contains("another supervisor"), "{why}");
+        assert!(journal.restart(&[]).is_err());
+        other.keep(&[JournalEntry::Spent { path: 3 }]).unwrap();
+        drop((journal, other));
+        let (_journal, contents) = Journal::open(&folder).unwrap();
+        assert!(matches!(contents.entries[..], [JournalEntry::Spent { path: 1 }, JournalEntry::Spent { path: 3 }]));
+        let _ = fs::remove_dir_all(&folder);
     }
 }

@@ -18,6 +18,7 @@
 //! log               log on standard error                              LogWriter
 //! telemetry         data that the supervisor's thread publishes        Telemetry
 //! outbox            lines that wait for a client                       Outbox
+//! unanswered_lines  lines of a client without an answer, up to a number
 //! server            the thread that owns the supervisor                serve, ServerHandle
 //! connection_limit  connections, up to a number at a time              ConnectionPermit
 //! clients           standard input and output, and TCP
@@ -55,5 +56,6 @@ pub mod sockets;
 pub mod supervisor;
 pub mod telemetry;
 pub mod token;
+mod unanswered_lines;
 pub mod vda5050;
 pub mod vehicles;

@@ -10,6 +10,7 @@ use crate::query::{self, Query};
 use crate::request_error::RequestError;
 use crate::robot::RobotTraits;
 use crate::supervisor::{MissionRequest, PositionReport, Supervisor};
+use crate::unanswered_lines::UnansweredLine;
 use pcr_formats::unique_keys::UniqueKeysJson;
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
@@ -92,8 +93,10 @@ fn yes() -> bool {
 }
 
 /// The result of a line.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct LineReply {
+    /// Counts the line as one without an answer, until this is dropped.
+    pub unanswered: Option<UnansweredLine>,
     /// The answer. It may be sent after the next [`Supervisor::settle`].
     pub answer: Value,
     /// Whether the client wants events from now on; `None`: no change.
@@ -101,8 +104,9 @@ pub struct LineReply {
 }
 
 /// A line, read.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct RequestLine {
+    unanswered: Option<UnansweredLine>,
     id: Value,
     verb: Result<Request, RequestError>,
     has_version: bool,
@@ -112,7 +116,8 @@ pub struct RequestLine {
 impl RequestLine {
     /// Reads a line. An error in it becomes the answer.
     pub fn read(line: &[u8]) -> Self {
-        let mut own = Self { id: Value::Null, verb: Err(malformed("")), has_version: false, is_object: false };
+        let mut own =
+            Self { unanswered: None, id: Value::Null, verb: Err(malformed("")), has_version: false, is_object: false };
         let value: Result<UniqueKeysJson, _> = serde_json::from_slice(line);
         // JSON that is an error has a name twice.
         own.is_object = matches!(&value, Ok(UniqueKeysJson(Value::Object(_))))
@@ -147,6 +152,11 @@ impl RequestLine {
         }
         line_angles::to_radians(&mut object)?;
         serde_json::from_value(Value::Object(object)).map_err(|error| malformed(error.to_string()))
+    }
+
+    /// Returns the line with what counts it as one without an answer.
+    pub(crate) fn counted(self, unanswered: UnansweredLine) -> Self {
+        Self { unanswered: Some(unanswered), ..self }
     }
 
     /// Whether the line is a JSON object.
@@ -186,7 +196,7 @@ pub fn handle(supervisor: &mut Supervisor, line: &[u8], came: f64, now: f64) -> 
 
 /// Carries out a request. Ages count from the time `came` \[s\]; the line may have waited since.
 pub fn carry_out(supervisor: &mut Supervisor, request: RequestLine, came: f64, now: f64) -> LineReply {
-    let RequestLine { id, verb, .. } = request;
+    let RequestLine { id, verb, unanswered, .. } = request;
     let mut watches = None;
     let done = verb.and_then(|verb| match verb {
         Request::Hello(_) => Ok(json!({ "version": VERSION, "fleet": Census::of(supervisor) })),
@@ -217,7 +227,7 @@ pub fn carry_out(supervisor: &mut Supervisor, request: RequestLine, came: f64, n
             Ok(json!({}))
         }
     });
-    LineReply { answer: answer(id, done), watches }
+    LineReply { unanswered, answer: answer(id, done), watches }
 }
 
 /// The answer to a line longer than [`LONGEST`].

@@ -3,6 +3,7 @@
 
 use crate::lines;
 use crate::request_error::RequestError;
+use crate::unanswered_lines::UnansweredLine;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvError, RecvTimeoutError, Sender, TryRecvError, channel};
@@ -17,14 +18,14 @@ const BATCH: usize = 1 << 16;
 /// The end into which lines are written.
 #[derive(Debug)]
 pub struct OutboxSender {
-    sender: Sender<String>,
+    sender: Sender<(String, Option<UnansweredLine>)>,
     shared: Arc<OutboxState>,
 }
 
 /// The end from which lines are read.
 #[derive(Debug)]
 pub struct OutboxReceiver {
-    receiver: Receiver<String>,
+    receiver: Receiver<(String, Option<UnansweredLine>)>,
     shared: Arc<OutboxState>,
 }
 
@@ -58,19 +59,27 @@ impl OutboxSender {
     /// # Errors
     /// [`DisconnectReason`]: nothing more may be sent to this client.
     pub fn send(&self, line: String) -> Result<(), DisconnectReason> {
+        self.send_answer(line, None)
+    }
+
+    /// The same for the answer to a line of the client, which counts as one without an answer until the answer is taken.
+    ///
+    /// # Errors
+    /// As [`OutboxSender::send`].
+    pub(crate) fn send_answer(&self, line: String, unanswered: Option<UnansweredLine>) -> Result<(), DisconnectReason> {
         let waiting = self.shared.bytes.load(Ordering::Relaxed);
         if waiting > 0 && waiting.saturating_add(line.len()) > BACKLOG {
             // This may fail if the client has disconnected as well.
-            let _ = self.put(format!("{}\n", lines::refusal(&RequestError::Slow { bytes: waiting })));
+            let _ = self.put(format!("{}\n", lines::refusal(&RequestError::Slow { bytes: waiting })), None);
             return Err(DisconnectReason::Slow);
         }
-        self.put(line).map_err(|()| DisconnectReason::Gone)
+        self.put(line, unanswered).map_err(|()| DisconnectReason::Gone)
     }
 
-    fn put(&self, line: String) -> Result<(), ()> {
+    fn put(&self, line: String, unanswered: Option<UnansweredLine>) -> Result<(), ()> {
         let length = line.len();
         self.shared.bytes.fetch_add(length, Ordering::Relaxed);
-        self.sender.send(line).map_err(drop)
+        self.sender.send((line, unanswered)).map_err(drop)
     }
 }
 
@@ -86,7 +95,7 @@ impl OutboxReceiver {
     /// # Errors
     /// No more lines will come.
     pub fn recv(&self) -> Result<String, RecvError> {
-        self.receiver.recv().inspect(|line| self.taken(line))
+        self.receiver.recv().map(|(line, _)| self.taken(line))
     }
 
     /// The next line, if it comes within a time.
@@ -94,7 +103,7 @@ impl OutboxReceiver {
     /// # Errors
     /// No line has come.
     pub fn recv_timeout(&self, time: Duration) -> Result<String, RecvTimeoutError> {
-        self.receiver.recv_timeout(time).inspect(|line| self.taken(line))
+        self.receiver.recv_timeout(time).map(|(line, _)| self.taken(line))
     }
 
     /// The next line, if it is there.
@@ -102,7 +111,7 @@ impl OutboxReceiver {
     /// # Errors
     /// There is no line.
     pub fn try_recv(&self) -> Result<String, TryRecvError> {
-        self.receiver.try_recv().inspect(|line| self.taken(line))
+        self.receiver.try_recv().map(|(line, _)| self.taken(line))
     }
 
     /// The next lines, to be written together; waits for the first. `None`: no more will come.
@@ -121,7 +130,8 @@ impl OutboxReceiver {
         self.shared.is_closed.load(Ordering::Relaxed)
     }
 
-    fn taken(&self, line: &str) {
+    fn taken(&self, line: String) -> String {
         self.shared.bytes.fetch_sub(line.len(), Ordering::Relaxed);
+        line
     }
 }

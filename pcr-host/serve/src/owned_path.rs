@@ -464,3 +464,81 @@ fn turn_side(sweep: f64) -> Result<TurnSide, InvalidInput> {
         true => Ok(TurnSide::Left),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pcr_formats::splitmix64::SplitMix64;
+    use std::f64::consts::PI;
+
+    fn shape(random: &mut SplitMix64) -> PathElement {
+        match random.below(4) {
+            0 => PathElement::Line { length: random.uniform(0.1, 3.0) },
+            1 => PathElement::Arc { radius: random.uniform(0.5, 3.0), sweep: random.uniform(-PI, PI) },
+            2 => PathElement::Shift { ahead: random.uniform(-2.0, 2.0), left: random.uniform(-2.0, 2.0) },
+            _ => PathElement::Turn { sweep: random.uniform(-PI, PI), lever: Some(random.uniform(0.02, 2.0)) },
+        }
+    }
+
+    fn same(a: StartPose, b: StartPose) -> bool {
+        (a.x - b.x).hypot(a.y - b.y) < 1e-9
+            && (a.heading - b.heading).sin().hypot(1.0 - (a.heading - b.heading).cos()) < 1e-9
+    }
+
+    /// Where a body is after some shapes, computed with nothing of the library.
+    fn after(mut pose: StartPose, shapes: &[PathElement]) -> StartPose {
+        for shape in shapes {
+            let (sin, cos) = pose.heading.sin_cos();
+            let (ahead, left, sweep) = match *shape {
+                PathElement::Line { length } => (length, 0.0, 0.0),
+                PathElement::Shift { ahead, left } => (ahead, left, 0.0),
+                PathElement::Turn { sweep, .. } => (0.0, 0.0, sweep),
+                PathElement::Arc { radius, sweep } => {
+                    (radius * sweep.abs().sin(), (radius * (1.0 - sweep.cos())).copysign(sweep), sweep)
+                }
+            };
+            pose.x += ahead * cos - left * sin;
+            pose.y += ahead * sin + left * cos;
+            pose.heading += sweep;
+        }
+        pose
+    }
+
+    /// Parts and new paths of a robot are where the whole path is, with its heading, wherever they begin and end.
+    #[test]
+    fn parts_of_paths_with_shifts_and_turns_have_their_poses() {
+        let mut random = SplitMix64(3);
+        let start = StartPose { x: 1.0, y: -2.0, heading: 0.7 };
+        let square = pcr_formats::footprint::Footprint::new(vec![[-0.3, -0.4], [0.6, -0.4], [0.6, 0.4], [-0.3, 0.4]]);
+        let body = ConvexBody::of_vehicle(Some(&square.unwrap()), 0.0).unwrap();
+        for _ in 0..300 {
+            let shapes: Vec<PathElement> = (0..=random.below(7)).map(|_| shape(&mut random)).collect();
+            let path = OwnedPath::new(start, shapes.clone()).unwrap();
+            // An outline never jumps along it.
+            path.motion(&body).unwrap();
+            assert!(same(path.pose(path.length()), after(start, &shapes)), "{shapes:?}");
+            assert!(same(path.arrival(path.length()).unwrap(), after(start, &shapes)), "{shapes:?}");
+            for (k, &length) in path.offsets.iter().enumerate() {
+                assert!(same(path.pose(length), after(start, &shapes[..k])), "{k}: {shapes:?}");
+            }
+            let mut ends = [0.0, 1.0].map(|_| random.uniform(0.0, path.length()));
+            ends.sort_by(f64::total_cmp);
+            let [from, to] = ends;
+            let part = path.part(from, to).unwrap();
+            assert!((part.length() - (to - from)).abs() < 1e-9, "{from} {to} {shapes:?}");
+            let more = shape(&mut random);
+            let (next, dropped, _) = path.rejoined(from, to, &[more], PathRounding::default()).unwrap();
+            assert!((next.length() - (to - dropped + more.length())).abs() < 1e-9, "{from} {to} {shapes:?}");
+            next.motion(&body).unwrap();
+            assert!(
+                same(next.pose(next.length()), after(path.arrival(to).unwrap(), &[more])),
+                "{to} {shapes:?} {more:?}"
+            );
+            for _ in 0..5 {
+                let at = random.uniform(from, to);
+                assert!(same(part.pose(at - from), path.pose(at)), "{from} {to} {at} {shapes:?}");
+                assert!(same(next.pose(at - dropped), path.pose(at)), "{from} {to} {at} {shapes:?}");
+            }
+        }
+    }
+}

@@ -3,12 +3,13 @@
 
 use crate::event::SupervisorEvent;
 use crate::journal_writer::WriteProgress;
-use crate::lines::{self, RequestLine};
+use crate::lines::{self, LineReply, RequestLine};
 use crate::log::{LogLevel, LogWriter};
 use crate::outbox::{DisconnectReason, OutboxSender};
 use crate::request_error::RequestError;
 use crate::supervisor::Supervisor;
 use crate::telemetry::Telemetry;
+use crate::unanswered_lines::UnansweredLine;
 use serde_json::Value;
 use std::collections::{BTreeSet, HashMap, VecDeque};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
@@ -117,6 +118,13 @@ struct LineClient {
     watches: bool,
 }
 
+/// An answer to a client.
+struct PendingAnswer {
+    client: u64,
+    answer: Value,
+    unanswered: Option<UnansweredLine>,
+}
+
 /// Messages that may be sent once this number of batches is on the disk.
 #[derive(Default)]
 struct PendingBatch {
@@ -124,7 +132,7 @@ struct PendingBatch {
     /// Size of all of it \[bytes\].
     bytes: usize,
     now: f64,
-    answers: Vec<(u64, Value)>,
+    answers: Vec<PendingAnswer>,
     events: Vec<SupervisorEvent>,
     thens: Vec<AfterCommit>,
     closed: Vec<u64>,
@@ -237,13 +245,16 @@ impl ClientHub {
                 }
                 // Its earlier requests are answered.
                 ServerInput::Closed(client) => told.closed.push(client),
-                ServerInput::Answer(client, answer) => told.answers.push((client, answer)),
+                ServerInput::Answer(client, answer) => {
+                    told.answers.push(PendingAnswer { client, answer, unanswered: None });
+                }
                 ServerInput::Line(number, request) => {
                     // One that was let go does not learn what becomes of its requests: those that still wait are not carried out.
                     if let Some(client) = self.clients.get_mut(&number) {
                         let reply = lines::carry_out(supervisor, request, time, now);
                         client.watches = reply.watches.unwrap_or(client.watches);
-                        told.answers.push((number, reply.answer));
+                        let LineReply { answer, unanswered, .. } = reply;
+                        told.answers.push(PendingAnswer { client: number, answer, unanswered });
                         told.times.push(came);
                     }
                 }
@@ -294,8 +305,8 @@ impl ClientHub {
     }
 
     fn deliver(&mut self, told: PendingBatch) {
-        for (client, answer) in told.answers {
-            send(&mut self.clients, client, &answer, self.log);
+        for PendingAnswer { client, answer, unanswered } in told.answers {
+            send(&mut self.clients, client, &answer, unanswered, self.log);
         }
         for event in &told.events {
             match event {
@@ -332,23 +343,29 @@ impl ClientHub {
             clients.iter().filter(|(_, client)| client.watches).map(|(number, _)| *number).collect();
         let news = if watching.is_empty() { Value::Null } else { lines::news(event) };
         for client in watching {
-            send(clients, client, &news, *log);
+            send(clients, client, &news, None, *log);
         }
     }
 
     /// After a failed write of the journal: answers errors in place of the results.
     fn withdraw(&mut self, waiting: VecDeque<PendingBatch>, fault: RequestError) -> RequestError {
-        for (client, answer) in waiting.into_iter().flat_map(|told| told.answers) {
-            send(&mut self.clients, client, &lines::withdrawn(&answer, &fault), self.log);
+        for PendingAnswer { client, answer, unanswered } in waiting.into_iter().flat_map(|told| told.answers) {
+            send(&mut self.clients, client, &lines::withdrawn(&answer, &fault), unanswered, self.log);
         }
         self.log.write(LogLevel::Error, "stopped", &[("why", &fault)]);
         fault
     }
 }
 
-fn send(clients: &mut HashMap<u64, LineClient>, number: u64, line: &Value, log: LogWriter) {
+fn send(
+    clients: &mut HashMap<u64, LineClient>,
+    number: u64,
+    line: &Value,
+    unanswered: Option<UnansweredLine>,
+    log: LogWriter,
+) {
     let Some(client) = clients.get(&number) else { return };
-    match client.out.send(format!("{line}\n")) {
+    match client.out.send_answer(format!("{line}\n"), unanswered) {
         // One that has gone may have left requests, which are carried out: it is removed when its input has ended.
         Ok(()) | Err(DisconnectReason::Gone) => {}
         Err(DisconnectReason::Slow) => {

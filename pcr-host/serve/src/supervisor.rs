@@ -334,6 +334,11 @@ impl Supervisor {
         self.names.get(name).copied().ok_or(RequestError::NoSuchRobot)
     }
 
+    /// Why the journal could not be written: nothing is told any more but stops.
+    pub(crate) fn broken(&self) -> Option<&str> {
+        self.broken.as_deref()
+    }
+
     fn works(&self) -> Result<(), RequestError> {
         self.broken.clone().map_or(Ok(()), |why| Err(RequestError::Broken { why }))
     }

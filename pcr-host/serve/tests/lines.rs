@@ -380,11 +380,13 @@ fn clients_over_tcp_and_the_page() {
     let (lines, page) = (TcpListener::bind("127.0.0.1:0").unwrap(), TcpListener::bind("127.0.0.1:0").unwrap());
     let (at, shown) = (lines.local_addr().unwrap(), page.local_addr().unwrap());
     let draw: http::DrawFn = |fleet, place| Ok(format!("<svg>{}</svg>", fleet[place].name));
+    let unready = http::Readiness::default();
     let site = http::HttpContent {
         page: "<p>here</p>".into(),
         draw: Some(draw),
         hosts: vec![shown.to_string()],
         addresses: false,
+        unready: Some(unready.clone()),
     };
     let own = handle.clone();
     thread::spawn(move || clients::listen(&own, &lines.into(), Access::new(None), LogWriter::new(LogLevel::Error)));
@@ -438,6 +440,12 @@ fn clients_over_tcp_and_the_page() {
     // The page asks with the time, so that no old picture is shown: that was taken for a part of the name.
     assert!(ask("/map?robot=b&1795457224920").ends_with("<svg>b</svg>"));
     assert!(ask("/map?robot=nobody").starts_with("HTTP/1.1 404") && ask("/map").starts_with("HTTP/1.1 400"));
+    assert!(ask("/healthz").starts_with("HTTP/1.1 200"));
+    assert!(ask("/readyz").starts_with("HTTP/1.1 200"));
+    unready.tell(Some("kit/1 has not said where it stands".into()));
+    let told = ask("/readyz");
+    assert!(told.starts_with("HTTP/1.1 503") && told.ends_with("kit/1 has not said where it stands\n"), "{told}");
+    assert!(ask("/healthz").starts_with("HTTP/1.1 200"));
     assert!(ask("/favicon.ico").starts_with("HTTP/1.1 204"));
     assert!(ask("/etc/passwd").starts_with("HTTP/1.1 404"));
     assert!(get(&format!("POST / HTTP/1.1\r\nHost: {shown}\r\n\r\n")).starts_with("HTTP/1.1 405"));
@@ -447,7 +455,7 @@ fn clients_over_tcp_and_the_page() {
     handle.send(ServerInput::Stop);
     server.join().unwrap().unwrap();
     // The picture of a robot said that there was no such robot.
-    for path in ["/state", "/metrics", "/layout", "/map?robot=b"] {
+    for path in ["/state", "/metrics", "/layout", "/map?robot=b", "/healthz", "/readyz"] {
         assert!(ask(path).starts_with("HTTP/1.1 503"), "{path}");
     }
 }
@@ -462,6 +470,7 @@ fn a_page_at_all_addresses_is_shown_under_any_address_and_no_other_name() {
         draw: None,
         hosts: vec!["localhost:8080".into()],
         addresses,
+        unready: None,
     };
     let status = |addresses, host: &str| {
         let request = format!("GET / HTTP/1.1\r\nHost: {host}\r\n\r\n");
@@ -535,6 +544,43 @@ fn a_client_that_never_reads_is_let_go_and_told_why() {
     other.write_all(b"{\"id\": 1, \"verb\": \"query\", \"what\": \"counts\"}\n").unwrap();
     let answered: Vec<String> = BufReader::new(other).lines().take(2).map(Result::unwrap).collect();
     assert!(answered.iter().all(|line| line.contains("\"ok\"")), "{answered:?}");
+    handle.send(ServerInput::Stop);
+    server.join().unwrap().unwrap();
+}
+
+/// It was let go, and until then nobody else was answered for seconds: now it is not read until it reads.
+#[test]
+fn a_client_that_reads_late_gets_all_its_answers() {
+    const REQUESTS: usize = 30_000;
+    let mut supervisor = supervisor();
+    let (handle, inputs) = queue();
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let at = listener.local_addr().unwrap();
+    let own = handle.clone();
+    thread::spawn(move || clients::listen(&own, &listener.into(), Access::new(None), LogWriter::new(LogLevel::Error)));
+    let server = thread::spawn(move || {
+        serve(&mut supervisor, &inputs, &WriteProgress::default(), LogWriter::new(LogLevel::Error))
+    });
+    let late = TcpStream::connect(at).unwrap();
+    let mut writes = late.try_clone().unwrap();
+    // More bytes of answers than connections hold and the server keeps.
+    let request = format!("{{\"id\": \"{}\", \"verb\": \"watch\", \"events\": false}}\n", "x".repeat(1_000));
+    let writer = thread::spawn(move || {
+        writes.write_all(HELLO.as_bytes()).unwrap();
+        (0..REQUESTS).for_each(|_| writes.write_all(request.as_bytes()).unwrap());
+    });
+    // Another client is answered meanwhile, whatever waits.
+    let mut other = TcpStream::connect(at).unwrap();
+    other.write_all(HELLO.as_bytes()).unwrap();
+    let mut answers = BufReader::new(other.try_clone().unwrap()).lines();
+    for _ in 0..200 {
+        other.write_all(b"{\"verb\": \"query\", \"what\": \"counts\"}\n").unwrap();
+        assert!(answers.next().unwrap().unwrap().contains("\"ok\""));
+    }
+    let told: Vec<String> = BufReader::new(late).lines().take(REQUESTS + 1).map(Result::unwrap).collect();
+    assert_eq!(told.len(), REQUESTS + 1);
+    assert!(told.iter().all(|line| line.contains("\"ok\"")), "{:?}", told.iter().find(|line| !line.contains("\"ok\"")));
+    writer.join().unwrap();
     handle.send(ServerInput::Stop);
     server.join().unwrap().unwrap();
 }

@@ -410,6 +410,7 @@ fn the_page_answers_get_and_changes_nothing_by_any_method() {
         draw: Some(draw),
         hosts: vec![at.to_string()],
         addresses: false,
+        unready: None,
     };
     let own = handle.clone();
     thread::spawn(move || http::listen(&own, &Listener::from(listener), site, LogWriter::new(LogLevel::Error)));

@@ -3,10 +3,10 @@
 use super::of;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 #[derive(Debug)]
-pub(super) struct FolderLock(File);
+pub(super) struct FolderLock(File, PathBuf);
 
 impl FolderLock {
     /// # Errors
@@ -17,7 +17,29 @@ impl FolderLock {
             TryLockError::WouldBlock => io::Error::new(ErrorKind::WouldBlock, "another supervisor has it open"),
             TryLockError::Error(error) => error,
         })?;
-        Ok(Self(file))
+        Ok(Self(file, path.to_owned()))
+    }
+
+    /// Whether the locked file is still the one with its name. Otherwise another process may have locked another one.
+    ///
+    /// # Errors
+    /// [`ErrorKind::NotFound`] if it was removed or replaced, and other errors of files.
+    pub(super) fn check(&self) -> io::Result<()> {
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::MetadataExt;
+            let id = |file: std::fs::Metadata| (file.dev(), file.ino());
+            let is_same = match std::fs::metadata(&self.1) {
+                Ok(named) => id(named) == id(self.0.metadata()?),
+                Err(error) if error.kind() == ErrorKind::NotFound => false,
+                Err(error) => return Err(of(&self.1)(error)),
+            };
+            if !is_same {
+                let why = "removed while the journal is open: another supervisor may be at work in the same folder";
+                return Err(of(&self.1)(io::Error::new(ErrorKind::NotFound, why)));
+            }
+        }
+        Ok(())
     }
 }
 
@@ -39,8 +61,24 @@ mod tests {
         let lock = FolderLock::acquire(&path).unwrap();
         assert_eq!(FolderLock::acquire(&path).unwrap_err().kind(), ErrorKind::WouldBlock);
         let _copy = lock.0.try_clone().unwrap();
+        lock.check().unwrap();
         drop(lock);
         let _again = FolderLock::acquire(&path).unwrap();
+        let _ = std::fs::remove_file(&path);
+    }
+
+    /// A second supervisor could lock the new file, and both worked with one journal.
+    #[test]
+    #[cfg(unix)]
+    fn a_file_that_was_removed_or_replaced_is_noticed() {
+        let path = std::env::temp_dir().join(format!("pcr-lock-removed-{}", std::process::id()));
+        let lock = FolderLock::acquire(&path).unwrap();
+        lock.check().unwrap();
+        std::fs::remove_file(&path).unwrap();
+        let why = lock.check().unwrap_err();
+        assert!(why.kind() == ErrorKind::NotFound && why.to_string().contains("another supervisor"), "{why}");
+        let _other = FolderLock::acquire(&path).unwrap();
+        assert_eq!(lock.check().unwrap_err().kind(), ErrorKind::NotFound);
         let _ = std::fs::remove_file(&path);
     }
 }

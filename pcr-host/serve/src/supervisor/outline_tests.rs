@@ -299,3 +299,49 @@ fn a_lost_truck_is_kept_away_from_with_any_heading() {
     own.settle(1.0).unwrap();
     assert_eq!(own.robot("east").unwrap().stopped.as_deref(), Some("west"));
 }
+
+/// What the orders prevent, and when a part of a path is free, are asked with outlines, too.
+#[test]
+fn queries_know_outlines() {
+    for (apart, meets) in [(0.801, false), (0.799, true)] {
+        let mut own = supervisor();
+        own.add("east", rectangle(TRUCK), StartPose { x: 0.0, y: 0.0, heading: 0.0 }).unwrap();
+        own.add("west", rectangle(TRUCK), StartPose { x: 10.0, y: apart, heading: PI }).unwrap();
+        own.mission(&request("east", vec![line(4.0)]), 0.0).unwrap();
+        own.mission(&request("west", vec![line(4.0)]), 0.0).unwrap();
+        let conflicts = ask(&mut own, json!({ "verb": "query", "what": "conflicts", "robot": "east" }));
+        assert_eq!(conflicts["conflicts"], json!([]), "{conflicts}");
+        own.remove("west").unwrap();
+        own.add("west", rectangle(TRUCK), StartPose { x: 3.0, y: apart, heading: PI }).unwrap();
+        let conflicts = ask(&mut own, json!({ "verb": "query", "what": "conflicts", "robot": "east" }));
+        assert_eq!(conflicts["conflicts"] == json!([]), !meets, "{conflicts}");
+        let safe = json!({ "verb": "query", "what": "safe", "robot": "east", "length": [2.0, 4.0], "until": 60.0 });
+        assert_eq!(ask(&mut own, safe)["safe"] == json!([[0.0, 60.0]]), !meets);
+        let robots = ask(&mut own, json!({ "verb": "query", "what": "robots", "robot": "east" }));
+        assert_eq!(robots["robots"][0]["footprint"]["polygon"][1], json!({ "ahead": 0.6, "left": -0.4 }));
+    }
+}
+
+/// A truck backs out of where it stands between two others, which it could not turn in.
+#[test]
+fn a_truck_backs_out_of_a_gap() {
+    let mut own = supervisor();
+    for (robot, y) in [("left", 0.9), ("own", 0.0), ("right", -0.9)] {
+        own.add(robot, rectangle(TRUCK), StartPose { x: 0.0, y, heading: 0.0 }).unwrap();
+    }
+    let turn = PathElement::Turn { sweep: FRAC_PI_2, lever: Some(1.0) };
+    own.mission(&request("own", vec![PathElement::Shift { ahead: -3.0, left: 0.0 }, turn, line(2.0)]), 0.0).unwrap();
+    own.settle(0.0).unwrap();
+    let robot = own.robot("own").unwrap();
+    assert_eq!(robot.granted, robot.course.length());
+    let end = robot.course.pose(robot.course.length());
+    assert!((end.x + 3.0).abs() < 1e-12 && (end.y - 2.0).abs() < 1e-12, "{end:?}");
+    own.mission(&MissionRequest { after: Some(robot.course.length()), ..request("own", vec![turn]) }, 0.0).unwrap();
+    // Where they stand it cannot turn.
+    let mut own = supervisor();
+    for (robot, y) in [("left", 0.9), ("own", 0.0), ("right", -0.9)] {
+        own.add(robot, rectangle(TRUCK), StartPose { x: 0.0, y, heading: 0.0 }).unwrap();
+    }
+    let refused = own.mission(&request("own", vec![turn, line(2.0)]), 0.0).unwrap();
+    assert!(matches!(&refused, AdmissionResult::Waiting { by: Some(_), .. }), "{refused:?}");
+}

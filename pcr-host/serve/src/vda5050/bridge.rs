@@ -89,6 +89,8 @@ pub struct Vda5050Bridge {
     said: f64,
     /// Time at which all lanes were last handled \[s\].
     looked: f64,
+    /// Why no vehicle is released anything.
+    unready: Option<String>,
 }
 
 /// Time between two reminders of missing vehicles \[s\].
@@ -121,6 +123,7 @@ impl Vda5050Bridge {
             counts: BridgeCounters::default(),
             log: Vec::new(),
             said: 0.0,
+            unready: Some("the broker has not been reached, or another supervisor is at work".into()),
             looked: f64::NEG_INFINITY,
         })
     }
@@ -245,6 +248,7 @@ impl Vda5050Bridge {
             }
         }
         self.collect(&touched);
+        self.unready = (!is_known).then(|| self.why_unready());
         if !is_known && now >= self.said + REMINDER {
             self.said = now;
             let doubtful = self.lanes.iter().filter(|lane| lane.is_doubtful());
@@ -261,6 +265,19 @@ impl Vda5050Bridge {
                 self.log.push(format!("nobody is released anything: {name}: {why}"));
             }
         }
+    }
+
+    /// Returns why no vehicle is released anything, if so.
+    pub fn unready(&self) -> Option<String> {
+        self.unready.clone()
+    }
+
+    fn why_unready(&self) -> String {
+        let doubtful = self.lanes.iter().filter(|lane| lane.is_doubtful()).map(VehicleAdapter::name);
+        let unknown = self.seen.unknown.iter().map(|&place| self.lanes[place].name());
+        let unplaced = unknown.chain(doubtful).map(|name| format!("{name} has not said where it stands"));
+        let misfits = self.lanes.iter().filter_map(|lane| Some(format!("{}: {}", lane.name(), lane.misfit()?)));
+        unplaced.chain(misfits).collect::<Vec<_>>().join("; ")
     }
 
     /// Compares the rights of all robots with those seen before, and finds the vehicles that are not in the supervisor.

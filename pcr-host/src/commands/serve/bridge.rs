@@ -7,6 +7,7 @@ use pcr_formats::footprint::Footprint;
 use pcr_formats::import::parse_json;
 use pcr_formats::vda5050::decode::MessageLimits;
 use pcr_formats::vda5050::topics::{TopicInterface, VehicleId};
+use pcr_serve::http::Readiness;
 use pcr_serve::log::{LogLevel, LogWriter};
 use pcr_serve::robot::RobotTraits;
 use pcr_serve::server::{ServerHandle, ServerInput};
@@ -20,7 +21,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::sync_channel;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -139,6 +140,7 @@ fn known(supervisor: &Supervisor, profiles: &[VehicleConfig], log: LogWriter) ->
 
 /// The bridge at work.
 pub(super) struct BridgeThread {
+    readiness: Readiness,
     stop: Arc<AtomicBool>,
     thread: JoinHandle<Result<(), SessionEnd>>,
 }
@@ -152,6 +154,16 @@ pub(super) fn start(
 ) -> Result<BridgeThread, CliError> {
     let BridgeFleetConfig { broker, interfaces: [manager, vehicles], profiles } = fleet;
     known(supervisor, &profiles, log)?;
+    for profile in &profiles {
+        let excess =
+            profile.abilities.body(false).map_err(|why| CliError::arguments(format!("{}: {why}", profile.key)))?;
+        let excess = excess.excess();
+        if excess > 0.0 {
+            let name = profile.key.to_string();
+            let why = format!("{excess:.3} m larger than its outline, which is concave");
+            log.write(LogLevel::Warn, "the convex hull is kept free", &[("robot", &name), ("why", &why)]);
+        }
+    }
     let settings = BridgeConfig { manager, vehicles: vehicles.clone(), limits: MessageLimits::default() };
     let bridge = Vda5050Bridge::new(settings, profiles, supervisor)
         .map_err(|why| CliError::arguments(format!("the journal: {why}")))?;
@@ -159,7 +171,9 @@ pub(super) fn start(
     let session = format!("{}-{now:x}", std::process::id());
     let mut station = BrokerSession::open(&broker, &vehicles, &bridge, &session)
         .map_err(|error| CliError::arguments(error.to_string()))?;
-    let stop = Arc::new(AtomicBool::new(false));
+    let (stop, readiness) = (Arc::new(AtomicBool::new(false)), Readiness::default());
+    let told = readiness.clone();
+    told.tell(bridge.unready());
     let (ended, handle) = (stop.clone(), handle.clone());
     let (sender, events) = sync_channel(EVENTS);
     handle.send(ServerInput::Tell(sender));
@@ -171,6 +185,7 @@ pub(super) fn start(
             match station.turn(&end.0, &bridge, &events) {
                 Ok(lines) => {
                     lines.iter().for_each(|line| log.write(LogLevel::Warn, "bridge", &[("why", line)]));
+                    told.tell(bridge.lock().unwrap_or_else(PoisonError::into_inner).unready());
                 }
                 Err(_) if ended.load(Ordering::Relaxed) => break,
                 Err(why) => return Err(why),
@@ -179,10 +194,15 @@ pub(super) fn start(
         station.close();
         Ok(())
     })?;
-    Ok(BridgeThread { stop, thread })
+    Ok(BridgeThread { readiness, stop, thread })
 }
 
 impl BridgeThread {
+    /// Why no vehicle is released anything, as it changes.
+    pub(super) fn readiness(&self) -> Readiness {
+        self.readiness.clone()
+    }
+
     /// Ends it in order; an error is why it had ended by itself.
     pub(super) fn end(self) -> Result<(), CliError> {
         self.stop.store(true, Ordering::Relaxed);

@@ -8,7 +8,7 @@ use super::threads::thread;
 use super::{ServeArgs, bound, bridge, listen};
 use pcr_drawing::fleet_page;
 use pcr_formats::scenario::{Agent, MotionSpec, PathSegment, Scenario, TURN};
-use pcr_serve::http::{HttpContent, RobotDrawing};
+use pcr_serve::http::{HttpContent, Readiness, RobotDrawing};
 use pcr_serve::journal::Journal;
 use pcr_serve::journal_entry::{JournalStore, NullStore};
 use pcr_serve::journal_writer::{JournalWriter, WriteProgress};
@@ -46,7 +46,7 @@ pub(super) fn run(arguments: ServeArgs) -> Result<ExitCode, CliError> {
             Some(_) => writeln!(notes(), "pcr: open {url} in a browser; Ctrl-C ends the demo")?,
             None => log.write(LogLevel::Info, "page", &[("url", &url)]),
         }
-        let site = site(&listener);
+        let site = site(&listener, ends.as_ref().map(bridge::BridgeThread::readiness));
         let handle = handle.clone();
         thread("page", move || http::listen(&handle, &listener.into(), site, log))?;
     }
@@ -236,7 +236,7 @@ fn shown(place: &str, log: LogWriter) -> Result<TcpListener, CliError> {
     Ok(listener)
 }
 
-fn site(listener: &TcpListener) -> HttpContent {
+fn site(listener: &TcpListener, unready: Option<Readiness>) -> HttpContent {
     let address = listener.local_addr().ok();
     let port = address.map_or(0, |address| address.port());
     let mut hosts: Vec<String> = ["localhost", "127.0.0.1", "[::1]"].map(|host| format!("{host}:{port}")).into();
@@ -246,7 +246,7 @@ fn site(listener: &TcpListener) -> HttpContent {
     hosts.extend(hosts.iter().filter_map(short).collect::<Vec<_>>());
     // At 0.0.0.0 it is reached by any address of the machine.
     let addresses = address.is_some_and(|address| address.ip().is_unspecified());
-    HttpContent { page: fleet_page::page(), draw: Some(draw), hosts, addresses }
+    HttpContent { page: fleet_page::page(), draw: Some(draw), hosts, addresses, unready }
 }
 
 /// The collision map of a robot, if all set off now.
