@@ -345,15 +345,32 @@ impl OrderPath {
         piece.pose((length - piece.from).min(piece.length()))
     }
 
-    /// How far any point of the vehicle is from where it would be at a pose of the way, at most \[m\].
-    fn off(&self, at: &VehiclePosition, there: StartPose) -> f64 {
-        let turned = 2.0 * (0.5 * wrapped(at.theta - there.heading)).sin().abs();
-        distance([there.x, there.y], [at.x, at.y]) + self.spread * turned
+    /// How far any point of a vehicle is from where it would be at a pose of the way, at most \[m\]; where it may have any heading, only its
+    /// reference point.
+    fn off(&self, at: &VehiclePosition, there: StartPose, any_heading: bool) -> f64 {
+        let turned = if any_heading { 0.0 } else { self.moved_by(at.theta - there.heading) };
+        distance([there.x, there.y], [at.x, at.y]) + turned
+    }
+
+    /// How far a turn moves any point of the vehicle at most \[m\].
+    pub(crate) fn moved_by(&self, angle: f64) -> f64 {
+        self.spread * 2.0 * (0.5 * wrapped(angle)).sin().abs()
+    }
+
+    /// Notes that the heading of the vehicle is not known from its start on.
+    pub(crate) fn starts_turned(&mut self, why: String) {
+        self.unknown.push((0, why));
     }
 
     /// The least and the largest length within a window at which a piece of the way is nearest to a reported pose, of the pieces that
     /// come within `reach` of it \[m\]. `None`: no piece does. While an outline turns, it has any heading and is anywhere in the turn.
-    pub(crate) fn near(&self, at: &VehiclePosition, window: [f64; 2], reach: f64) -> Option<[f64; 2]> {
+    pub(crate) fn near(
+        &self,
+        at: &VehiclePosition,
+        window: [f64; 2],
+        reach: f64,
+        any_heading: bool,
+    ) -> Option<[f64; 2]> {
         let point = [at.x, at.y];
         let mut found: Option<[f64; 2]> = None;
         let mut consider = |length: f64, off: f64| {
@@ -362,7 +379,7 @@ impl OrderPath {
             }
         };
         if self.pieces.is_empty() {
-            consider(0.0, self.off(at, self.start));
+            consider(0.0, self.off(at, self.start, any_heading));
         }
         for piece in &self.pieces {
             let to = piece.from + piece.length();
@@ -373,11 +390,11 @@ impl OrderPath {
             match piece.shape {
                 OrderPathShape::Drive(placed, _) => {
                     let length = within(piece.from + along(&placed, point));
-                    consider(length, self.off(at, self.pose(length.clamp(piece.from, to))));
+                    consider(length, self.off(at, self.pose(length.clamp(piece.from, to)), any_heading));
                 }
                 // It may not have begun to turn.
                 OrderPathShape::Turn(from, _) if piece.from >= window[1] => {
-                    consider(within(piece.from), self.off(at, from))
+                    consider(within(piece.from), self.off(at, from, any_heading))
                 }
                 OrderPathShape::Turn(from, _) => {
                     let off = distance([from.x, from.y], point);
@@ -501,11 +518,11 @@ mod tests {
     fn a_place_is_found_where_the_window_is() {
         // There and back again: the same place twice.
         let way = OrderPath::new(ORIGIN, &order_with_points(&[[0.0, 0.0], [4.0, 0.0], [0.0, 0.0]], None), 0.0).unwrap();
-        assert_eq!(way.near(&at([1.0, 0.05]), [0.0, 4.0], 0.1), Some([1.0, 1.0]));
-        assert_eq!(way.near(&at([1.0, 0.05]), [4.0, 8.0], 0.1), Some([7.0, 7.0]));
-        assert_eq!(way.near(&at([1.0, 0.05]), [0.0, 8.0], 0.1), Some([1.0, 7.0]));
-        assert_eq!(way.near(&at([1.0, 0.05]), [0.0, 8.0], 0.04), None);
-        assert_eq!(way.near(&at([1.0, 0.0]), [2.0, 3.0], 0.1), None, "outside of the window");
+        assert_eq!(way.near(&at([1.0, 0.05]), [0.0, 4.0], 0.1, false), Some([1.0, 1.0]));
+        assert_eq!(way.near(&at([1.0, 0.05]), [4.0, 8.0], 0.1, false), Some([7.0, 7.0]));
+        assert_eq!(way.near(&at([1.0, 0.05]), [0.0, 8.0], 0.1, false), Some([1.0, 7.0]));
+        assert_eq!(way.near(&at([1.0, 0.05]), [0.0, 8.0], 0.04, false), None);
+        assert_eq!(way.near(&at([1.0, 0.0]), [2.0, 3.0], 0.1, false), None, "outside of the window");
     }
 
     #[test]
@@ -565,7 +582,7 @@ mod tests {
             let length = way.length() * f64::from(k) / 20.0;
             let pose = way.pose(length);
             assert!((pose.x.hypot(pose.y - 2.0) - 2.0).abs() < TOLERANCE, "{pose:?}");
-            let [lo, hi] = way.near(&at([pose.x, pose.y]), [0.0, 4.0], 1e-6).unwrap();
+            let [lo, hi] = way.near(&at([pose.x, pose.y]), [0.0, 4.0], 1e-6, false).unwrap();
             assert!((lo - length).abs() < 1e-5 && (hi - length).abs() < 1e-5, "{lo} {hi} {length}");
         }
         let nonsense = order_with_points(&[[0.0, 0.0], [2.0, 2.0]], Some(json!({ "degree": 2, "controlPoints": [] })));
@@ -619,7 +636,7 @@ mod tests {
         let owned = crate::owned_path::OwnedPath::new(ORIGIN, way.shapes(None, 2).to_vec()).unwrap();
         assert!((owned.length() - way.length()).abs() < 1e-9);
         // While it turns, it has any heading and may be anywhere in the turn; on an edge it has that of the edge.
-        let near = |pose: VehiclePosition, window| way.near(&pose, window, 0.05);
+        let near = |pose: VehiclePosition, window| way.near(&pose, window, 0.05, false);
         let found = near(posed(4.0, 0.0, 2.0), [0.0, way.length()]).unwrap();
         assert!((found[0] - 4.0).abs() < 1e-12 && (found[1] - 4.0 - turn).abs() < 1e-12, "{found:?}");
         assert_eq!(near(posed(4.0, 0.0, 2.0), [0.0, 4.0]), None, "it may not turn yet");
@@ -648,7 +665,7 @@ mod tests {
                 "{fields}"
             );
             assert_eq!((way.length(), way.unknown_heading(None)), (4.0, None));
-            assert_eq!(way.near(&posed(1.0, 0.0, heading), [0.0, 4.0], 0.05), Some([1.0, 1.0]));
+            assert_eq!(way.near(&posed(1.0, 0.0, heading), [0.0, 4.0], 0.05, false), Some([1.0, 1.0]));
             let owned = crate::owned_path::OwnedPath::new(start, way.shapes(None, 1).to_vec()).unwrap();
             let end = owned.arrival(owned.length()).unwrap();
             assert!(

@@ -31,6 +31,8 @@ struct Trucks {
     log: Vec<String>,
     time: f64,
     header: u64,
+    /// By how much the reported headings are wrong \[rad\].
+    lies: f64,
 }
 
 fn key(place: usize) -> VehicleId {
@@ -50,6 +52,13 @@ fn bridge_of(profiles: &[VehicleConfig], supervisor: &Supervisor) -> Vda5050Brid
     Vda5050Bridge::new(settings, profiles.to_vec(), supervisor).unwrap()
 }
 
+/// A state with another heading.
+fn turned(payload: &[u8], by: f64) -> Vec<u8> {
+    let mut state: Value = serde_json::from_slice(payload).unwrap();
+    state["agvPosition"]["theta"] = (state["agvPosition"]["theta"].as_f64().unwrap() + by).into();
+    state.to_string().into_bytes()
+}
+
 impl Trucks {
     fn new(starts: &[[f64; 3]]) -> Self {
         let vehicle = |(place, &[x, y, heading]): (usize, &[f64; 3])| {
@@ -60,7 +69,8 @@ impl Trucks {
         let profiles: Vec<_> = (0..starts.len()).map(truck).collect();
         let bridge = bridge_of(&profiles, &supervisor);
         let states = vec![None; starts.len()];
-        let mut own = Self { vehicles, profiles, supervisor, bridge, states, log: Vec::new(), time: 0.0, header: 0 };
+        let mut own =
+            Self { vehicles, profiles, supervisor, bridge, states, log: Vec::new(), time: 0.0, header: 0, lies: 0.0 };
         own.lasts(1.0);
         assert_eq!(own.supervisor.robots().len(), starts.len(), "{:?}", own.log);
         own
@@ -75,6 +85,7 @@ impl Trucks {
                 vehicle.advance(STEP);
                 vehicle.tell_state();
                 for (kind, payload) in vehicle.out() {
+                    let payload = if kind == TopicKind::State { turned(&payload, self.lies) } else { payload };
                     let topic = vehicles.topic(VERSION, vehicle.key(), kind);
                     self.bridge.receive(&mut self.supervisor, &topic, &payload, self.time);
                 }
@@ -247,4 +258,29 @@ fn a_truck_that_reaches_beyond_its_outline_keeps_all_from_moving() {
         "{:?}",
         own.log
     );
+}
+
+/// While its heading is not known, it raises no alarm; the next order has an outline again only if the truck stands as its path has led it.
+#[test]
+fn a_truck_is_an_outline_again_when_it_says_how_it_stands() {
+    for (turned, is_disc) in [(0.0, false), (1.0, true)] {
+        let mut own = Trucks::new(&[[0.0, 0.0, 0.0]]);
+        let mut free = order("a", 0, 0, &[[0.0, 0.0], [4.0, 0.0]], 2);
+        free["edges"][0]["rotationAllowed"] = true.into();
+        own.says(0, free);
+        own.lasts(2.0);
+        assert!(own.robot(0).any_heading);
+        own.lies = turned;
+        own.lasts(10.0);
+        own.no_alarms();
+        assert!(own.is_done(0, "a") && own.robot(0).any_heading, "{:?}", own.states);
+        own.order(0, "b", &[[4.0, 0.0], [8.0, 0.0]]);
+        own.lasts(0.2);
+        let is_said = own.log.iter().any(|line| line.contains("it does not stand as its path has led it"));
+        assert_eq!(is_said, is_disc, "{:?}", own.log);
+        assert!(own.robot(0).any_heading || !is_disc);
+        own.lasts(12.0);
+        own.no_alarms();
+        assert!(own.is_done(0, "b"));
+    }
 }

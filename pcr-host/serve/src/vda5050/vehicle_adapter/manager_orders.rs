@@ -161,8 +161,14 @@ impl VehicleAdapter {
         let start =
             course.arrival(course.length()).map_err(|fault| RejectedOrder::new(OrderRejection::Order, "", fault))?;
         let held = OrderState::new(order)?;
-        let way = OrderPath::new(start, &held, self.profile.abilities.spread())
+        let mut way = OrderPath::new(start, &held, self.profile.abilities.spread())
             .map_err(|refusal| RejectedOrder { error: OrderRejection::Order, refusal })?;
+        // Where its heading was not known until now, only its own word tells how it stands.
+        let theta = self.state.as_ref().and_then(|state| state.position()).map(|pose| pose.theta);
+        let turned = theta.map_or(f64::INFINITY, |theta| way.moved_by(theta - start.heading));
+        if way.spread() > 0.0 && turned > self.deviation() && (theta.is_some() || robot.any_heading) {
+            way.starts_turned("it does not stand as its path has led it".into());
+        }
         let begins = way.node(0).unwrap_or(0.0);
         if begins > BEGINS {
             return Err(RejectedOrder::new(

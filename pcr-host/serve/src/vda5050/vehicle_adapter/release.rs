@@ -15,7 +15,7 @@ pub(super) const AGAIN: f64 = 1.0;
 /// The same for what the vehicle refuses.
 const REFUSED: f64 = 5.0;
 
-/// A hold that is lower than a node by at most this counts as at the node \[m\]. Discs are larger by more than this: by the part of the
+/// A hold that is lower than a node by at most this counts as at the node \[m\], or by less, where points of an outline go further than its path. Discs are larger by more than this: by the part of the
 /// margin (`TOLERANCE`) that no vehicle may use.
 const ROUNDING: f64 = 1e-4;
 
@@ -58,7 +58,7 @@ impl VehicleAdapter {
         let is_first = job.sent.is_none();
         // With its first order the vehicle goes to its first node.
         let Some(offset) = job.offset(robot) else { return };
-        let may_begin = allowed + offset + ROUNDING >= job.last().length;
+        let may_begin = allowed + offset + rounding(robot) >= job.last().length;
         if is_first && !(may_begin && state.node_states.is_empty()) {
             return;
         }
@@ -91,6 +91,11 @@ impl VehicleAdapter {
     }
 }
 
+/// The same on the path of a robot \[m\].
+fn rounding(robot: &SupervisedRobot) -> f64 {
+    ROUNDING / robot.course.stretch(robot.spread())
+}
+
 impl ActiveOrder {
     /// The stops up to the granted length that have not been sent; empty if there are none.
     fn next(&self, robot: &SupervisedRobot, allowed: f64, split: bool) -> Vec<ReleasePoint> {
@@ -106,7 +111,7 @@ impl ActiveOrder {
         };
         let mut reached = last.node;
         for node in last.node + 1..=planned {
-            let Some(length) = self.path.node(node).filter(|length| *length <= hold + ROUNDING) else { break };
+            let Some(length) = self.path.node(node).filter(|length| *length <= hold + rounding(robot)) else { break };
             push(&mut stops, length, node, false);
             reached = node;
         }

@@ -205,7 +205,7 @@ impl VehicleAdapter {
                 let from = job.stops[place].length;
                 let to = job.stops.get(place + 1).map_or(from, |next| next.length);
                 // Vehicles report a node as passed when they are near it, so the search begins before the node.
-                let near = job.path.near(pose, [from - reach.max(0.0), to], reach);
+                let near = job.path.near(pose, [from - reach.max(0.0), to], reach, robot.any_heading);
                 near.map(|lengths| lengths.map(|length| (length - offset).clamp(0.0, end)))
             }
             _ if !alarms => return Ok(()),
@@ -214,7 +214,7 @@ impl VehicleAdapter {
             }
             Some(job) => {
                 let start = (0.0 - offset).clamp(0.0, end);
-                job.path.near(pose, [0.0, 0.0], reach).map(|_| [start; 2])
+                job.path.near(pose, [0.0, 0.0], reach, robot.any_heading).map(|_| [start; 2])
             }
             None => {
                 let there = robot.course.pose(end);
@@ -261,7 +261,8 @@ impl VehicleAdapter {
         pose: &VehiclePosition,
     ) -> Option<[f64; 2]> {
         let (offset, reach) = (job.offset(robot)?, self.remaining_margin(pose));
-        job.path.near(pose, [robot.arc_length + offset - reach.max(0.0), robot.notified_limit + offset], reach)
+        let window = [robot.arc_length + offset - reach.max(0.0), robot.notified_limit + offset];
+        job.path.near(pose, window, reach, robot.any_heading)
     }
 
     /// Part of the margin that is left for being off the path \[m\].
