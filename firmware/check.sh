@@ -91,6 +91,7 @@ behaviour() {
   local target=$1 format=$2 programs=$out/$1/release
   table "$target" "$format"
   SERIAL=stdio link serial "$format" ./qemu-run.sh "$programs/supervisor"
+  SERIAL=stdio tools/client.py "$format" ./qemu-run.sh "$programs/supervisor"
   # The Cortex-M0 has no memory for orders of a fleet.
   case $target:$format in
     *:micro | thumbv6m*) ;;

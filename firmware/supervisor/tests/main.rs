@@ -6,3 +6,4 @@ mod line;
 mod service;
 mod traffic;
 mod wire;
+mod wire_format;
