@@ -2,7 +2,8 @@
 
 mod fill;
 mod fleet_checksum;
-#[cfg(feature = "std")]
+#[cfg(feature = "alloc")]
+#[cfg_attr(docsrs, doc(cfg(feature = "alloc")))]
 mod vec_storage;
 
 use crate::error::{CapacityError, EcmError, MismatchError};
@@ -61,7 +62,7 @@ impl Default for EcmEntry {
 /// anew by [`Motion::new`] has the lag of its own profile, and is refused also where that is smaller.
 ///
 /// [`Ecm::replace`] replaces one agent. [`Ecm::insert`] and [`Ecm::remove`] are for fleets to which agents are added,
-/// or from which they are removed, at the end. On a host, with the feature `std`, a table that stores vectors can grow:
+/// or from which they are removed, at the end. On a host, with the feature `alloc`, a table that stores vectors can grow:
 /// see `Ecm::grown`.
 ///
 /// ```

@@ -23,7 +23,7 @@
 //! ecm        table of all regions of a fleet                Ecm
 //! overlaps   regions of two agents, without a table         overlaps
 //! query      conflicts, safe intervals, delays, waits       Encounter, BroadPhase, safe_intervals, earliest_start
-//! orders     passing orders, safe under any delays          Orders, Hold
+//! precedence who passes first, safe under any delays        PrecedenceTable, MovementAuthority
 //! plan       start delays and speed plans by priority       plan_delays, plan_speed, plan_speeds
 //! crossing   the paper's descriptors (Table VII)            Crossing, crossings
 //! ```
@@ -33,10 +33,13 @@
 //!
 //! # Features
 //! - `libm` (default): implements [`Scalar`] for `f32` and `f64`;
-//! - `std`: takes square roots from the standard library and inlines functions that are called often, for which a host
+//! - `outlines` (default): agents that are convex outlines; without it all are discs, and programs are smaller;
+//! - `alloc`: tables whose storage grows ([`Ecm`]);
+//! - `std`: `alloc`, takes square roots from the standard library and inlines functions that are called often, for which a host
 //!   has enough memory; results have the same bits and take less time;
 //! - `micromath`: adds `scalar::Micro`, an `f32` that uses the approximations of the crate micromath and refines them;
 //! - `defmt`, `serde`: implement the traits of these crates for the public data types.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]
 
 pub mod scalar;

@@ -147,7 +147,7 @@ impl<S, P> PieceStore<S, P> {
     }
 
     /// The container of the slots; more slots may be added at its end.
-    #[cfg(feature = "std")]
+    #[cfg(feature = "alloc")]
     pub(crate) fn storage(&mut self) -> &mut P {
         &mut self.slots
     }

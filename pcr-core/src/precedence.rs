@@ -21,7 +21,8 @@ mod decision_log;
 mod entry;
 mod error;
 mod table;
-#[cfg(feature = "std")]
+#[cfg(feature = "alloc")]
+#[cfg_attr(docsrs, doc(cfg(feature = "alloc")))]
 mod vec_storage;
 
 pub use admission::PathProposal;

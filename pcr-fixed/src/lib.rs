@@ -32,7 +32,13 @@
 //! # Features
 //! `serde`, `defmt`: implement the traits of these crates for the number types. A number is serialized as its bits, an
 //! `i32`.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]
+
+/// The program of the README is run by the tests of the documentation.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 mod convert;
 mod display;

@@ -1,18 +1,18 @@
 //! Tables on a host, whose storage grows as needed.
 
-extern crate std;
+extern crate alloc;
 
 use crate::ecm::{Ecm, EcmEntry};
 use crate::error::CapacityError;
 use crate::motion::Motion;
 use crate::piece_store::Piece;
 use crate::scalar::Scalar;
-use std::collections::TryReserveError;
-use std::vec::Vec;
+use alloc::collections::TryReserveError;
+use alloc::vec::Vec;
 
 impl<S: Scalar> Ecm<S, Vec<EcmEntry>, Vec<Piece<S>>> {
     /// Computes the table of a whole fleet, like [`Ecm::build`], in vectors that grow until all regions fit (feature
-    /// `std`).
+    /// `alloc`).
     ///
     /// Cost: at most twice that of [`Ecm::build`], because a table that does not fit is computed again with twice the
     /// room. The first attempt has room for 16 regions and 32 pieces for each agent, more than the fleets of
@@ -32,7 +32,7 @@ impl<S: Scalar> Ecm<S, Vec<EcmEntry>, Vec<Piece<S>>> {
         Ok(ecm)
     }
 
-    /// Doubles the storage that was full. The regions stay. Afterwards repeat the call that failed (feature `std`):
+    /// Doubles the storage that was full. The regions stay. Afterwards repeat the call that failed (feature `alloc`):
     ///
     /// ```
     /// # use pcr_core::{Ecm, Limits, Motion, Path, Piece, Point, Pose, Profile, Radians, EcmEntry, EcmError};

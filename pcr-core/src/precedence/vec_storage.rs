@@ -1,6 +1,6 @@
 //! Orders on a host, whose storage grows as needed.
 
-extern crate std;
+extern crate alloc;
 
 use crate::ecm::{Ecm, EcmEntry};
 use crate::error::CapacityError;
@@ -9,11 +9,11 @@ use crate::piece_store::Piece;
 use crate::precedence::entry::RegionPrecedence;
 use crate::precedence::table::PrecedenceTable;
 use crate::scalar::Scalar;
-use std::vec::Vec;
+use alloc::vec::Vec;
 
 impl<S: Scalar> PrecedenceTable<S, Vec<EcmEntry>, Vec<Piece<S>>, Vec<RegionPrecedence<S>>> {
     /// Computes the table of a whole fleet, with no order decided, like [`PrecedenceTable::build`], in vectors that grow until all
-    /// regions fit (feature `std`).
+    /// regions fit (feature `alloc`).
     ///
     /// Cost: that of [`Ecm::grown`], and one [`RegionPrecedence`] for each region.
     ///
@@ -36,7 +36,7 @@ impl<S: Scalar> PrecedenceTable<S, Vec<EcmEntry>, Vec<Piece<S>>, Vec<RegionPrece
     }
 
     /// Doubles the storage that was full, like [`Ecm::grow`](crate::Ecm::grow). The regions and orders stay. Afterwards
-    /// repeat the call that failed (feature `std`).
+    /// repeat the call that failed (feature `alloc`).
     ///
     /// # Errors
     /// Returns `full` itself if more storage does not help, or if the allocation of memory fails.
