@@ -618,6 +618,47 @@ fn what_a_client_has_sent_that_was_let_go_is_not_carried_out() {
     server.join().unwrap().unwrap();
 }
 
+/// Robots with outlines, shifts, turns with a length and missions of any heading, as the schema describes them.
+#[test]
+fn lines_about_outlines_fit_the_schema() {
+    let schema: Value = serde_json::from_str(&document("reference/schema/pcr-serve.schema.json")).unwrap();
+    let corner = |[ahead, left]: [f64; 2]| json!({ "ahead": ahead, "left": left });
+    let outline = |corners: &[[f64; 2]]| json!({ "polygon": corners.iter().map(|at| corner(*at)).collect::<Vec<_>>(), "growth": 0.01 });
+    let truck = outline(&[[-0.6, -0.4], [0.6, -0.4], [0.6, 0.4], [-0.6, 0.4]]);
+    let angle = outline(&[[-0.6, -0.4], [0.6, -0.4], [0.6, 0.0], [0.0, 0.0], [0.0, 0.4], [-0.6, 0.4]]);
+    let add = |robot: &str, y: f64, outline: &Value| {
+        json!({ "verb": "add", "robot": robot, "start": { "x": 0, "y": y, "heading": 0 },
+            "abilities": { "footprint": outline, "speed": 1, "acceleration": 0.5 } })
+    };
+    let path = json!([{ "kind": "shift", "ahead": -1, "left": 0.5 }, { "kind": "turn", "sweep": 1, "lever": 0.5 }]);
+    let mission = |robot: &str, any: bool| json!({ "verb": "mission", "robot": robot, "mission": "m", "path": path, "any_heading": any });
+    let mut supervisor = supervisor();
+    let mut say = |request: Value| {
+        fits(&schema, &request);
+        let answer = handle(&mut supervisor, request.to_string().as_bytes(), 0.0, 0.0).answer;
+        fits(&schema, &answer);
+        assert!(answer["ok"].is_object(), "{answer}");
+        supervisor.settle(0.0).unwrap().iter().for_each(|event| fits(&schema, &news(event)));
+        answer["ok"].clone()
+    };
+    assert_eq!(say(add("truck", 0.0, &truck)), json!({ "path": 1 }));
+    assert!(say(add("angle", 9.0, &angle))["hull_excess"].as_f64().is_some_and(|excess| excess > 0.1));
+    assert_eq!(say(mission("truck", false))["verdict"], "admitted");
+    assert_eq!(say(mission("angle", true))["verdict"], "admitted");
+    let robots = say(json!({ "verb": "query", "what": "robots" }));
+    assert_eq!((&robots["robots"][0]["footprint"], &robots["robots"][1]["any_heading"]), (&truck, &json!(true)));
+    say(json!({ "verb": "query", "what": "conflicts", "robot": "truck" }));
+    // Neither a radius nor a footprint, or both, fits.
+    for (missing, more) in [("footprint", None), ("none", Some(1.0))] {
+        let mut wrong = add("other", 20.0, &truck);
+        wrong["abilities"].as_object_mut().unwrap().remove(missing);
+        more.into_iter().for_each(|radius| wrong["abilities"]["radius"] = json!(radius));
+        assert!(!jsonschema::draft202012::new(&schema).unwrap().is_valid(&wrong), "{wrong}");
+        let answer = handle(&mut self::supervisor(), wrong.to_string().as_bytes(), 0.0, 0.0).answer;
+        assert_eq!(answer["error"]["code"], "malformed", "{answer}");
+    }
+}
+
 /// Names were limited in bytes, and large ids came back as other numbers.
 #[test]
 fn names_are_limited_in_characters_and_ids_come_back_as_they_were() {

@@ -110,6 +110,16 @@ fn vehicles_are_written_as_they_are_read() {
         ("pcr-vehicles", "pcr-plan", "format: \"pcr-plan\" where pcr-vehicles is expected"),
         ("\"version\":1", "\"version\":2", "version: 2 where 1 is expected"),
         ("\"radius\":", "\"radius\":0.1,\"radius\":", "not JSON: \"radius\" is there twice"),
+        (
+            "\"radius\":",
+            "\"footprint\":{\"polygon\":[]},\"radius\":",
+            "vehicles[0]: footprint: 0 corners; allowed are 3 to 256",
+        ),
+        (
+            "\"radius\":",
+            "\"footprint\":{\"polygon\":[{\"ahead\":1,\"left\":0},{\"ahead\":0,\"left\":1},{\"ahead\":0,\"left\":0}]},\"radius\":",
+            "vehicles[0]: radius: there is a radius or a footprint, not both",
+        ),
         ("\"version\"", "\"versions\"", "versions: unknown; format, version and vehicles are read"),
     ] {
         let changed = text.replacen(from, to, 1);
