@@ -284,3 +284,24 @@ fn a_truck_is_an_outline_again_when_it_says_how_it_stands() {
         assert!(own.is_done(0, "b"));
     }
 }
+
+/// It had an alarm for ever, and so no other order.
+#[test]
+fn a_truck_that_turns_at_the_end_of_its_order_stands_as_it_says() {
+    let mut own = Trucks::new(&[[0.0, 0.0, 0.0], [4.0, 0.9, PI]]);
+    own.order(0, "a", &[[0.0, 0.0], [4.0, 0.0]]);
+    own.lasts(8.0);
+    assert!(own.is_done(0, "a"));
+    own.lies = 0.3;
+    own.lasts(1.0);
+    assert!(matches!(own.robot(0).alarm, Some(Alarm::Off { .. })), "{:?}", own.robot(0).alarm);
+    own.lasts(3.0);
+    own.no_alarms();
+    assert!((own.robot(0).course.start().heading - 0.3).abs() < 1e-9, "{:?}", own.robot(0).course);
+    own.lies = 0.0;
+    own.lasts(5.0);
+    own.no_alarms();
+    own.order(0, "b", &[[4.0, 0.0], [8.0, 0.0]]);
+    own.lasts(10.0);
+    assert!(own.is_done(0, "b"), "{:?}", own.log);
+}

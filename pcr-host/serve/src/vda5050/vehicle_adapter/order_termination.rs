@@ -36,7 +36,10 @@ impl VehicleAdapter {
         let Some(state) = self.state.clone() else { return };
         let Ok(robot) = supervisor.robot(&self.name) else { return };
         let is_off = robot.alarm.is_some();
-        let Some(job) = &self.job else {
+        // An outline may have turned where its order has ended, for an action, or was turned by hand.
+        let has_turned = is_off && self.profile.abilities.footprint.is_some() && self.is_free(supervisor);
+        let is_over = |job: &&ActiveOrder| has_turned && job.cancel.is_none();
+        let Some(job) = self.job.as_ref().filter(|job| !is_over(job)) else {
             // It was moved by hand, or to another map: its reported position counts.
             let map = state.position().map(|pose| pose.map_id.as_str());
             let is_elsewhere = map_of(robot).is_some_and(|known| map.is_some_and(|map| known != map));
