@@ -1,7 +1,6 @@
 //! A fleet in the memory of the caller, in safe Rust.
 
 use super::number::{HALF_TURN, Real, S, angle, inner};
-use super::points::number;
 use super::types::{PcrAgent, PcrMemory, PcrPathSegment};
 use crate::memory::{Arena, Stack, both, values};
 use crate::status::{
@@ -463,6 +462,16 @@ impl PathInSlots<'_> {
             *self.slots.get_mut(before).ok_or(PcrStatus::NoRoom)? = self.last;
         }
         Ok(())
+    }
+}
+
+/// Checks that a number is valid in the format.
+pub(super) fn number(value: Real) -> Result<S, PcrStatus> {
+    let value = inner(value);
+    match value {
+        _ if !Scalar::is_finite(value) => Err(PcrStatus::NonFinite),
+        _ if !(-S::LIMIT..=S::LIMIT).contains(&value) => Err(PcrStatus::OutOfRange),
+        _ => Ok(value),
     }
 }
 

@@ -1,9 +1,9 @@
 //! Passing orders: which agent passes a region first. Agents that keep their holds do not touch one another, whatever
 //! their delays.
 
-use super::fleet::{OrderedMut, on_path};
+use super::fleet::{OrderedMut, number, on_path};
 use super::number::{Real, S, inner, plain};
-use super::points::{Room, ask, change, interval, number, range, short, status};
+use super::points::{Room, ask, change, interval, range, short, status};
 use super::types::{
     PcrAgent, PcrBrakingModel, PcrCheckTolerances, PcrFleet, PcrMovementAuthority, PcrProgress, PcrRegionPrecedence,
 };

@@ -1,7 +1,8 @@
 //! Conflicts of motions, and functions that resolve them.
 
+use super::fleet::number;
 use super::number::{Real, S, plain};
-use super::points::{Room, ask, change, interval, number, range};
+use super::points::{Room, ask, change, interval, range};
 use super::types::{PcrAgentConflict, PcrConflict, PcrFleet, PcrInterval, PcrMotionStorage};
 use crate::memory::{Stack, places};
 use crate::status::{PcrPlanError, PcrStatus, given};

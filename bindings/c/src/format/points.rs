@@ -1,11 +1,11 @@
 //! Handles the arguments of all functions: reports null pointers, checks numbers, and counts results that do not fit.
 
-use super::fleet::Fleet;
-use super::number::{Real, S, inner, plain};
+use super::fleet::{Fleet, number};
+use super::number::{S, plain};
 use super::types::{PcrFleet, PcrInterval};
 use crate::memory::{self, Place};
 use crate::status::{PcrStatus, given};
-use pcr_core::{Interval, Scalar};
+use pcr_core::Interval;
 
 // SAFETY: the type consists of integers and is opaque.
 unsafe impl Place for PcrFleet {
@@ -54,16 +54,6 @@ impl<'a, T: Copy> Room<'a, T> {
             *self.count = self.count.saturating_add(1);
         }
         if fits { Ok(()) } else { Err(PcrStatus::BufferTooSmall) }
-    }
-}
-
-/// Checks that a number is valid in the format.
-pub(super) fn number(value: Real) -> Result<S, PcrStatus> {
-    let value = inner(value);
-    match value {
-        _ if !Scalar::is_finite(value) => Err(PcrStatus::NonFinite),
-        _ if !(-S::LIMIT..=S::LIMIT).contains(&value) => Err(PcrStatus::OutOfRange),
-        _ => Ok(value),
     }
 }
 

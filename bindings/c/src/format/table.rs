@@ -1,8 +1,8 @@
 //! Functions for a fleet and its table of regions.
 
-use super::fleet::Fleet;
+use super::fleet::{Fleet, number};
 use super::number::Real;
-use super::points::{Room, ask, change, interval, number, short, status};
+use super::points::{Room, ask, change, interval, short, status};
 use super::types::{PcrAgent, PcrFleet, PcrInterval, PcrMemory, PcrRegion};
 use crate::memory::{get, put};
 use crate::status::{PcrInputError, PcrStatus, given};
