@@ -167,8 +167,7 @@ fn zones_hold_whatever_the_margin_the_outline_and_the_cut() {
     for (options, splits) in [
         (disc(0.3), &[None, Some(0.7)][..]),
         (ImportOptions { margin: Some(0.5), ..disc(0.3) }, &[None, Some(0.7)]),
-        // Of edges that are cut, outlines touch on parts that do not exclude one another: such files are not written.
-        (outline, &[None]),
+        (outline, &[None, Some(0.7)]),
     ] {
         for &split in splits {
             let settings = WriteOptions { target: ExclusionFormat::Vda5050, split, envelopes: None };

@@ -1,17 +1,20 @@
 //! Locks of vehicles with outlines, against their polygons in many poses on the edges and in the turns at their ends.
 
+use pcr_exclusions::{ExclusionAudit, ExclusionFormat, LayoutElementId, WriteOptions, write};
 use pcr_formats::footprint::Footprint;
 use pcr_formats::import::{
-    ElementId, ImportOptions, ImportedLayout, InputFormat, Layout, LayoutEdge, Warnings, layout,
+    ElementId, Facing, ImportOptions, ImportedLayout, InputFormat, Layout, LayoutEdge, Warnings, layout,
 };
 use pcr_formats::scenario::{KINK, PathSegment, PlacedSegment};
 use pcr_planning::exclusion_table::{EdgeExclusion, ExclusionTable};
 use pcr_tests::polygons::{Point, Polygon, apart, placed};
-use serde_json::json;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 const WAREHOUSE: &str = include_str!("../data/real/nav2/warehouse_graph.geojson");
 const SAMPLE: &str = include_str!("../data/real/nav2/sample_graph.geojson");
+const DEMO: &str = include_str!("../data/real/opentcs/Demo-01.xml");
 const CURVES: &str = include_str!("../data/real/lif/example_17.lif.json");
 const OFFICE: &str = include_str!("../data/real/rmf/office.building.yaml");
 
@@ -73,8 +76,13 @@ fn within_half_turn(angle: f64) -> f64 {
 
 /// Poses on an edge, those of both directions, and those of the turns from and to the edges at its ends.
 fn poses(layout: &Layout, edge: &LayoutEdge) -> Vec<Pose> {
+    many_poses(layout, edge, POSES)
+}
+
+/// The same, so many steps of each.
+fn many_poses(layout: &Layout, edge: &LayoutEdge, steps: usize) -> Vec<Pose> {
     let length = edge.length();
-    let steps = || (0..=POSES).map(|k| k as f64 / POSES as f64);
+    let steps = || (0..=steps).map(move |k| k as f64 / steps as f64);
     let mut poses = Vec::new();
     for ([from, to], [start, end]) in ways(edge) {
         let backward = from != edge.ends[0];
@@ -311,4 +319,184 @@ fn a_vehicle_at_a_node_may_have_any_heading() {
             }
         }
     }
+}
+
+/// A factsheet of a vehicle with this contour.
+fn factsheet(name: &str, contour: &[Point]) -> ImportOptions {
+    let points: Vec<_> = contour.iter().map(|[x, y]| json!({ "x": x, "y": y })).collect();
+    let sheet = json!({ "headerId": 1, "version": "2.1.0", "manufacturer": "m", "serialNumber": "7",
+        "physicalParameters": { "speedMax": 1.5, "accelerationMax": 0.6, "width": 0.6, "length": 1.0 },
+        "agvGeometry": { "envelopes2d": [{ "set": "all", "polygonPoints": points }] } });
+    let file = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::write(&file, sheet.to_string()).unwrap();
+    ImportOptions { fleet: Some(file), ..ImportOptions::default() }
+}
+
+/// How far a point is beyond a convex polygon at most, its corners to the left about.
+fn outside(polygon: &[Point], [x, y]: Point) -> f64 {
+    let sides = polygon.iter().zip(polygon.iter().cycle().skip(1));
+    let beyond = sides.map(|(a, b)| {
+        let [u, v] = [b[0] - a[0], b[1] - a[1]];
+        ((x - a[0]) * v - (y - a[1]) * u) / u.hypot(v)
+    });
+    beyond.fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Whoever is somewhere is in a zone as a whole; and every corner of a zone is where a vehicle may be.
+#[test]
+fn zones_are_what_an_outline_sweeps() {
+    let options = factsheet("zones.json", &FORK);
+    let reach = fork().circumscribed_radius();
+    for (format, text) in [(InputFormat::Nav2, SAMPLE), (InputFormat::Lif, CURVES), (InputFormat::Rmf, OFFICE)] {
+        let imported = layout(format, text, &options, &mut Warnings::default()).unwrap();
+        assert_eq!(imported.vehicle.footprint, Some(fork()));
+        let site = &imported.layout;
+        let edges: Vec<&LayoutEdge> = site.edges.iter().filter(|edge| edge.length() > 0.0).collect();
+        let steps = 60;
+        let swept: Vec<Vec<Polygon>> = edges
+            .iter()
+            .map(|edge| many_poses(site, edge, steps).iter().map(|pose| placed(&FORK, pose.1, pose.2)).collect())
+            .collect();
+        let spacing = edges.iter().map(|edge| edge.length()).fold(0.0, f64::max).max(PI * reach) / steps as f64;
+        for split in [None, Some(0.7)] {
+            let settings = WriteOptions { target: ExclusionFormat::Vda5050, split, envelopes: None };
+            let (written, report, audit) = write(format, text, &options, "site", &settings).unwrap();
+            assert!(audit.suffices() && report.warnings.iter().all(|text| !text.contains("disc-around")), "{report:?}");
+            let sets: Value = serde_json::from_str(&written).unwrap();
+            let zones = sets["zoneSet"]["zones"].as_array().unwrap();
+            let zones: Vec<Polygon> = zones
+                .iter()
+                .map(|zone| {
+                    let corners = zone["vertices"].as_array().unwrap().iter();
+                    corners.map(|corner| ["x", "y"].map(|axis| corner[axis].as_f64().unwrap())).collect()
+                })
+                .collect();
+            for (edge, polygons) in edges.iter().zip(&swept) {
+                for polygon in polygons {
+                    let is_in = |zone: &Polygon| polygon.iter().all(|&corner| outside(zone, corner) <= 1e-9);
+                    assert!(zones.iter().any(is_in), "{format}: {} {polygon:?}", edge.id);
+                }
+            }
+            let deviation = edges.iter().map(|edge| edge.position_error(&imported.vehicle)).fold(0.0, f64::max);
+            // Which way a vehicle faces is not known of all edges: then there are zones for discs.
+            let is_known = edges.iter().all(|edge| edge.facing == [Facing::Ahead; 2]);
+            assert!(is_known || format == InputFormat::Lif);
+            for corner in zones.iter().flatten().filter(|_| is_known) {
+                let near =
+                    swept.iter().flatten().map(|polygon| outside(polygon, *corner)).fold(f64::INFINITY, f64::min);
+                let most = spacing + 0.01 * reach + 1.5 * deviation;
+                assert!(near <= most, "{format}: {corner:?} is {near} of {most} beyond all poses");
+            }
+        }
+    }
+}
+
+/// Two lanes of 0.6 m wide vehicles, 0.61 m apart, have zones apart; the disc around them would fill both.
+#[test]
+fn zones_of_narrow_lanes_leave_one_another_free() {
+    let place = |x: f64, y: f64| json!({ "type": "Point", "coordinates": [x, y] });
+    let node =
+        |id: u32, x: f64, y: f64| json!({ "type": "Feature", "properties": { "id": id }, "geometry": place(x, y) });
+    let edge = |id: u32, from: u32, to: u32| {
+        json!({ "type": "Feature", "properties": { "id": id, "startid": from, "endid": to },
+            "geometry": { "type": "LineString", "coordinates": [] } })
+    };
+    let features = json!([
+        node(0, 0.0, 0.0),
+        node(1, 9.0, 0.0),
+        node(2, 9.0, 0.61),
+        node(3, 0.0, 0.61),
+        edge(10, 0, 1),
+        edge(11, 2, 3)
+    ]);
+    let text = json!({ "type": "FeatureCollection", "features": features }).to_string();
+    let options = factsheet("lanes.json", &FORK);
+    let settings = WriteOptions { target: ExclusionFormat::Vda5050, split: None, envelopes: None };
+    let (written, report, audit) = write(InputFormat::Nav2, &text, &options, "site", &settings).unwrap();
+    assert!(audit.suffices() && report.needless == 0 && report.groups == 2 && report.excluded == 0.0, "{report:?}");
+    // The same zones, each as much narrower as its outline is: what is not enough is told.
+    let mut sets: Value = serde_json::from_str(&written).unwrap();
+    for zone in sets["zoneSet"]["zones"].as_array_mut().unwrap() {
+        let corners = zone["vertices"].as_array_mut().unwrap();
+        for corner in corners {
+            let y = corner["y"].as_f64().unwrap();
+            let middle = if y > 0.305 { 0.61 } else { 0.0 };
+            corner["y"] = json!(middle + 0.99 * (y - middle));
+        }
+    }
+    let imported = layout(InputFormat::Nav2, &text, &options, &mut Warnings::default()).unwrap();
+    let locks = ExclusionTable::compute(&imported, true).unwrap();
+    let rules = pcr_exclusions::read(ExclusionFormat::Vda5050, &sets.to_string(), &imported).unwrap();
+    let narrow = ExclusionAudit::run(&imported, &locks, &rules, ExclusionFormat::Vda5050).unwrap();
+    // Two on one lane are in its zone in part, wherever they are. One that stands at an end of a lane may have turned there, and nobody on
+    // the other lane is within a zone as a whole.
+    let of_nodes =
+        narrow.gaps.iter().filter(|gap| matches!(gap.a, LayoutElementId::Node(_)) && gap.relation == "apart");
+    assert_eq!([of_nodes.count(), narrow.gaps.len()], [4; 2], "{:?}", narrow.gaps);
+    let beside = sets.to_string().replace("\"RELEASE\"", "\"SPEED_LIMIT\"");
+    let rules = pcr_exclusions::read(ExclusionFormat::Vda5050, &beside, &imported).unwrap();
+    let none = ExclusionAudit::run(&imported, &locks, &rules, ExclusionFormat::Vda5050).unwrap();
+    assert!(none.gaps.len() > 4 && none.gaps.iter().any(|gap| gap.relation == "same"), "{:?}", none.gaps);
+}
+
+/// The envelopes of a key in a plant model, by the names of points and paths.
+fn envelopes(model: &str, key: &str) -> BTreeMap<String, Polygon> {
+    let attribute = |tag: &str, name: &str| {
+        let from = tag.find(&format!("{name}=\""))? + name.len() + 2;
+        Some(tag[from..from + tag[from..].find('"')?].to_owned())
+    };
+    let (mut all, mut name, mut open) = (BTreeMap::<String, Polygon>::new(), String::new(), false);
+    for tag in model.split('<') {
+        if tag.starts_with("point ") || tag.starts_with("path ") {
+            name = attribute(tag, " name").unwrap();
+        } else if tag.starts_with("vehicleEnvelope ") {
+            open = attribute(tag, "key").as_deref() == Some(key);
+        } else if open && tag.starts_with("vertex ") {
+            let corner = ["x", "y"].map(|axis| attribute(tag, axis).unwrap().parse::<f64>().unwrap() / 1e3);
+            all.entry(name.clone()).or_default().push(corner);
+        }
+    }
+    for polygon in all.values_mut() {
+        polygon.pop();
+    }
+    all
+}
+
+/// Whoever is on a path is within its envelope and those of its points.
+#[test]
+fn envelopes_hold_what_an_outline_sweeps() {
+    const BOX: [Point; 4] = [[-0.5, -0.2], [0.5, -0.2], [0.5, 0.2], [-0.5, 0.2]];
+    let options = factsheet("envelopes.json", &BOX);
+    let settings = WriteOptions { target: ExclusionFormat::OpenTcs, split: None, envelopes: Some("box".into()) };
+    let (model, report, audit) = write(InputFormat::OpenTcs, DEMO, &options, "site", &settings).unwrap();
+    assert!(audit.suffices() && report.groups > 10, "{report:?}");
+    let imported = layout(InputFormat::OpenTcs, DEMO, &options, &mut Warnings::default()).unwrap();
+    let site = &imported.layout;
+    let envelopes = envelopes(&model, "box");
+    let area = |polygon: &Polygon| {
+        let sides = polygon.iter().zip(polygon.iter().cycle().skip(1));
+        0.5 * sides.map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>()
+    };
+    let mut narrow = 0;
+    for edge in site.edges.iter().filter(|edge| edge.length() > 0.0) {
+        let own = &envelopes[&edge.id.to_string()];
+        let points = edge.ends.map(|node| &envelopes[&site.nodes[node].id.to_string()]);
+        for Pose(_, at, heading) in many_poses(site, edge, 30) {
+            let corners = placed(&BOX, at, heading);
+            for (a, b) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+                for share in 0..4 {
+                    let point = [0, 1].map(|k| a[k] + (b[k] - a[k]) * f64::from(share) / 4.0);
+                    let is_in = [own, points[0], points[1]].iter().any(|polygon| outside(polygon, point) <= 0.0);
+                    assert!(is_in, "{}: {point:?}", edge.id);
+                }
+            }
+        }
+        if let [PlacedSegment { shape: PathSegment::Line { length }, .. }] = edge.curve[..] {
+            // Nothing but the lane, and millimetres.
+            let most = (length + 1.0 + 0.01) * (0.4 + 0.01);
+            assert!(area(own) <= most, "{}: {} of {most}", edge.id, area(own));
+            narrow += 1;
+        }
+    }
+    assert!(narrow > 5, "{narrow}");
 }

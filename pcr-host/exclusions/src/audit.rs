@@ -10,10 +10,10 @@ use crate::token_conflicts::TokenConflicts;
 use crate::{
     DirectedEdgeRules, ExclusionFormat, ExclusionGroup, ExclusionRules, Selection, VehicleStamp, nearest, stretch,
 };
-use pcr_formats::import::{ElementId, ImportError, ImportedLayout, Layout, LayoutEdge};
-use pcr_formats::scenario::PlacedSegment;
+use pcr_formats::import::{ElementId, ImportError, ImportedLayout, Layout, LayoutEdge, RouteStep};
+use pcr_formats::scenario::{Agent, PlacedSegment};
 use pcr_planning::exclusion_table::{
-    EdgeExclusion, EdgeTraversals, ExclusionTable, ExclusionVehicle, NodeExclusion, SweptShape, corridor,
+    EdgeExclusion, EdgeTraversals, ExclusionTable, ExclusionVehicle, NodeExclusion, SweptShape, can_touch, corridor,
 };
 use serde::Serialize;
 use std::cell::LazyCell;
@@ -89,7 +89,7 @@ pub struct MissingExclusion {
     pub b_length: [f64; 2],
     /// Point between the two centres where they come nearest \[m\].
     pub at: [f64; 2],
-    /// Largest overlap of the vehicles there \[m\]; for an outline that of its discs.
+    /// Largest overlap of the vehicles there \[m\]; for an outline that of all it sweeps on both edges.
     pub depth: f64,
     /// Floor or map.
     pub level: String,
@@ -309,17 +309,18 @@ impl<'a> Auditor<'a> {
         let mut seen = BTreeSet::new();
         let tokens = self.tokens(pair);
         // The same for all lengths; computed only if needed, because it is slow.
-        let discs = LazyCell::new(|| self.overlap(pair));
-        for ([own, other], tokens) in
+        let deepest = LazyCell::new(|| self.overlap(pair));
+        for ([own_way, other_way], tokens) in
             self.both_ways(pair).flat_map(|ways| tokens.iter().map(move |tokens| (ways, tokens)))
         {
-            let [sections, others] = DirectedEdgeRules::between(own, other, tokens.iter().copied());
+            let [sections, others] = DirectedEdgeRules::between(own_way, other_way, tokens.iter().copied());
             for own in &sections {
                 let Some(own_length) = common(own.length, a_length) else { continue };
                 for other in others.iter().filter(|other| !own.claim.excludes(&other.claim)) {
                     let Some(other_length) = common(other.length, b_length) else { continue };
                     if seen.insert([own_length, other_length].map(|range| range.map(f64::to_bits))) {
-                        let gap = self.touching(pair, [own_length, other_length], &|| *discs);
+                        let sides = [own_way, other_way].map(DirectedEdgeRules::is_backward);
+                        let gap = self.touching(pair, sides, [own_length, other_length], &|| *deepest);
                         if gap.as_ref().is_some_and(|gap| worst.as_ref().is_none_or(|worst| worst.depth < gap.depth)) {
                             worst = gap;
                         }
@@ -334,6 +335,7 @@ impl<'a> Auditor<'a> {
     fn touching(
         &self,
         [a, b]: [usize; 2],
+        backward: [bool; 2],
         lengths: [[f64; 2]; 2],
         overlap: &dyn Fn() -> Option<(f64, [f64; 2])>,
     ) -> Option<MissingExclusion> {
@@ -343,6 +345,13 @@ impl<'a> Auditor<'a> {
             let reach = 2.0 * self.radius + edges[0].deviation + edges[1].deviation;
             near(&curves[0], &curves[1], reach)
         } else {
+            let agents = [0, 1].map(|k| {
+                let rides = self.rides.in_direction(RouteStep { edge: edges[k], backward: backward[k] });
+                rides.iter().filter_map(|ride| ride.within(lengths[k])).collect::<Vec<Agent>>()
+            });
+            if !can_touch(&agents[0], &agents[1]) {
+                return None;
+            }
             overlap()
         };
         // If the depth cannot be determined, the largest possible one is reported.
@@ -401,10 +410,20 @@ impl<'a> Auditor<'a> {
             return None;
         }
         let (own, stands) = (&self.layout().edges[edge], [PlacedSegment::line(there.point, there.point)]);
-        let sections = self.ways(edge).flat_map(|way| way.excluded_spans(claim));
-        let open = sections.filter(|section| !claim.keeps_out(&section.claim));
-        let ranges = open.filter_map(|section| common(section.length, length));
-        let gaps = ranges.filter_map(|range| {
+        let sections = self.ways(edge).flat_map(|way| {
+            let back = way.is_backward();
+            way.excluded_spans(claim).into_iter().map(move |section| (back, section))
+        });
+        let open = sections.filter(|(_, section)| !claim.keeps_out(&section.claim));
+        let ranges = open.filter_map(|(back, section)| Some((back, common(section.length, length)?)));
+        let gaps = ranges.filter_map(|(back, range)| {
+            if self.imported.vehicle.footprint.is_some() {
+                let rides = self.rides.in_direction(RouteStep { edge: own, backward: back });
+                let agents: Vec<Agent> = rides.iter().filter_map(|ride| ride.within(range)).collect();
+                if !can_touch(&[self.rides.at_node(node).agent], &agents) {
+                    return None;
+                }
+            }
             let near = near(&stands, &self.stretch(own, range), 2.0 * self.radius + own.deviation);
             let (depth, at) = near.unwrap_or((2.0 * self.radius, there.point));
             // For an outline, the lock shows that there is contact.

@@ -3,10 +3,14 @@
 use pcr_formats::plane_geometry::{hull, turn};
 use pcr_formats::scenario::PathSegment;
 use pcr_formats::scenario::PlacedSegment;
+use pcr_planning::exclusion_table::SweptShape;
 use std::f64::consts::{PI, TAU};
 
 /// Corners of the polygon around a disc.
 const CORNERS: usize = 16;
+
+/// Discs of a smaller radius have squares around them \[m\].
+const SMALL: f64 = 2e-3;
 
 /// Arcs are cut into parts that turn by no more than this \[rad\].
 const TURN: f64 = PI / 12.0;
@@ -14,14 +18,33 @@ const TURN: f64 = PI / 12.0;
 /// The convex polygon around discs of this radius \[m\] everywhere on a curve, counter-clockwise. It contains them all, and reaches no
 /// farther than 2 % of the radius beyond the hull of a straight corridor.
 pub(crate) fn around(curve: &[PlacedSegment], radius: f64) -> Vec<[f64; 2]> {
-    let reach = radius / (PI / CORNERS as f64).cos();
-    let disc = |[x, y]: [f64; 2]| {
-        (0..CORNERS).map(move |k| {
-            let angle = TAU * (k as f64 + 0.5) / CORNERS as f64;
-            [x + reach * angle.cos(), y + reach * angle.sin()]
-        })
-    };
-    hull(curve.iter().flat_map(corners).flat_map(disc).collect())
+    hull(curve.iter().flat_map(corners).flat_map(|at| disc(at, radius, CORNERS)).collect())
+}
+
+/// The corners of a regular polygon around a disc.
+fn disc([x, y]: [f64; 2], radius: f64, corners: usize) -> impl Iterator<Item = [f64; 2]> {
+    let reach = radius / (PI / corners as f64).cos();
+    (0..corners).map(move |k| {
+        let angle = TAU * (k as f64 + 0.5) / corners as f64;
+        [x + reach * angle.cos(), y + reach * angle.sin()]
+    })
+}
+
+/// The convex polygon around some swept shapes and all within a distance of them \[m\], counter-clockwise. It reaches beyond their hull by
+/// no more than 2 % of the distance and of their growth, or by half of both where these are less than 2 mm.
+pub(crate) fn around_swept(shapes: &[SweptShape], distance: f64) -> Vec<[f64; 2]> {
+    let mut points = Vec::new();
+    for shape in shapes {
+        let (corners, radius): (Vec<[f64; 2]>, f64) = match shape {
+            SweptShape::Stroke(curve, radius) => (curve.iter().flat_map(corners).collect(), *radius),
+            SweptShape::Area(polygon, growth) => (polygon.clone(), *growth),
+        };
+        let far = radius + distance;
+        // What is hardly larger than its corners needs no round ones.
+        let count = if far < SMALL { 4 } else { CORNERS };
+        points.extend(corners.into_iter().flat_map(|at| disc(at, far, count)));
+    }
+    hull(points)
 }
 
 /// Points whose convex hull contains a piece.
@@ -67,8 +90,13 @@ pub(crate) fn depth(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
 /// Whether two polygons of any shape have a point in common.
 pub(crate) fn intersect(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
     let (Some(&first_a), Some(&first_b)) = (a.first(), b.first()) else { return false };
-    if distance(a, first_b) <= 0.0 || distance(b, first_a) <= 0.0 {
-        return true;
+    distance(a, first_b) <= 0.0 || distance(b, first_a) <= 0.0 || sides_meet(a, b)
+}
+
+/// Whether sides of two polygons of any shape have a point in common.
+pub(crate) fn sides_meet(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
+    if a.is_empty() || b.is_empty() {
+        return false;
     }
     let sides = |polygon: &'_ [[f64; 2]]| {
         let last = polygon.len() - 1;

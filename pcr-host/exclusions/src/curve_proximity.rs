@@ -7,7 +7,7 @@
 use crate::convex_outline::depth;
 use crate::nearest::point;
 use pcr_formats::scenario::{PathSegment, PlacedSegment};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Roots that differ by at most this are equal \[m\].
 const SAME: f64 = 1e-9;
@@ -38,6 +38,92 @@ pub(crate) fn lengths_near_polygon(curve: &[PlacedSegment], polygon: &[[f64; 2]]
         before += length;
     }
     ranges
+}
+
+/// Lengths of a path at which the placed outline of a vehicle that faces along it passes a test; in ascending order, ranges of successive
+/// pieces are joined. `path` is where the reference point goes, and the corners of the outline are ahead and left of it. What is tested
+/// may change only where a corner of the outline is at one of the distances `far` from a side or corner of the polygon, or a corner of the
+/// polygon from one of the outline.
+pub(crate) fn lengths_of_outline(
+    path: &[PlacedSegment],
+    outline: &[[f64; 2]],
+    polygon: &[[f64; 2]],
+    far: &[f64],
+    passes: impl Fn(&[[f64; 2]]) -> bool,
+) -> Vec<[f64; 2]> {
+    let mut ranges: Vec<[f64; 2]> = Vec::new();
+    let mut before = 0.0;
+    for piece in path {
+        let length = piece.shape.length();
+        let mut cuts = Vec::new();
+        for &far in far {
+            let mut add = |ways: &mut dyn Iterator<Item = PlacedSegment>, other: &[[f64; 2]]| {
+                for way in ways {
+                    let share = length / way.shape.length();
+                    if share.is_finite() {
+                        cuts.extend(roots(&way, other, far.abs()).into_iter().map(|at| at * share));
+                    }
+                }
+            };
+            add(&mut outline.iter().map(|&corner| carried(piece, corner)), polygon);
+            add(&mut polygon.iter().map(|&corner| seen(piece, corner)), outline);
+        }
+        let same = SAME.min(length / 1e6);
+        cuts.retain(|cut| *cut > same && *cut < length - same);
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup_by(|next, last| *next - *last < same);
+        cuts.insert(0, 0.0);
+        cuts.push(length);
+        for pair in cuts.windows(2) {
+            let part = piece.part(0.0, (pair[0] + pair[1]) / 2.0);
+            let (at, heading) = (part.end(), part.heading_at_end());
+            let placed: Vec<[f64; 2]> = outline.iter().map(|&corner| moved(at, turned(corner, heading))).collect();
+            if !passes(&placed) {
+                continue;
+            }
+            let [from, to] = [before + pair[0], before + pair[1]];
+            match ranges.last_mut() {
+                Some(last) if last[1] == from => last[1] = to,
+                _ => ranges.push([from, to]),
+            }
+        }
+        before += length;
+    }
+    ranges
+}
+
+fn moved([x, y]: [f64; 2], by: [f64; 2]) -> [f64; 2] {
+    [x + by[0], y + by[1]]
+}
+
+fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
+    let (sin, cos) = angle.sin_cos();
+    [x * cos - y * sin, x * sin + y * cos]
+}
+
+/// The way of a corner of the outline where its reference point travels a piece.
+fn carried(piece: &PlacedSegment, corner: [f64; 2]) -> PlacedSegment {
+    let start = moved(piece.start, turned(corner, piece.heading));
+    match piece.shape {
+        PathSegment::Line { .. } => PlacedSegment { start, ..*piece },
+        PathSegment::Arc { sweep, .. } => about(start, centre(piece), sweep),
+    }
+}
+
+/// The way of a point as it is seen from a vehicle that travels a piece.
+fn seen(piece: &PlacedSegment, point: [f64; 2]) -> PlacedSegment {
+    let from = |at: [f64; 2]| turned([at[0] - piece.start[0], at[1] - piece.start[1]], -piece.heading);
+    match piece.shape {
+        PathSegment::Line { .. } => PlacedSegment { start: from(point), heading: PI, shape: piece.shape },
+        PathSegment::Arc { sweep, .. } => about(from(point), from(centre(piece)), -sweep),
+    }
+}
+
+/// The arc of a point that is turned about another one.
+fn about(start: [f64; 2], centre: [f64; 2], sweep: f64) -> PlacedSegment {
+    let away = [start[0] - centre[0], start[1] - centre[1]];
+    let heading = away[1].atan2(away[0]) + FRAC_PI_2.copysign(sweep);
+    PlacedSegment { start, heading, shape: PathSegment::Arc { radius: away[0].hypot(away[1]), sweep } }
 }
 
 /// Lengths of a piece at which its distance from the line of a side, beside the side, or from a corner is `far`.

@@ -36,10 +36,21 @@ pub struct DirectedEdgeRules {
 
 impl DirectedEdgeRules {
     /// Both directions of an edge with the same marks.
-    pub(crate) fn both(length: f64, mut marks: Vec<TokenSpan>, closed: Vec<[f64; 2]>) -> [Self; 2] {
+    pub(crate) fn both(length: f64, marks: Vec<TokenSpan>, closed: Vec<[f64; 2]>) -> [Self; 2] {
+        let ahead = Self::one_way(length, false, marks, closed);
+        let back = Self { back: true, ..ahead.clone() };
+        [ahead, back]
+    }
+
+    /// One direction of an edge.
+    pub(crate) fn one_way(length: f64, back: bool, mut marks: Vec<TokenSpan>, closed: Vec<[f64; 2]>) -> Self {
         marks.sort_by(|a, b| (a.token, a.bars).cmp(&(b.token, b.bars)).then(a.range[0].total_cmp(&b.range[0])));
-        let (marks, closed) = (Arc::new(marks), Arc::new(closed));
-        [false, true].map(|back| Self { length, back, marks: Arc::clone(&marks), closed: Arc::clone(&closed) })
+        Self { length, back, marks: Arc::new(marks), closed: Arc::new(closed) }
+    }
+
+    /// Whether it is travelled from its end to its start.
+    pub(crate) fn is_backward(&self) -> bool {
+        self.back
     }
 
     /// One claim on all of an edge.

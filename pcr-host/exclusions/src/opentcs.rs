@@ -20,7 +20,7 @@ pub(crate) use path_splitter::split;
 
 use crate::audit::groups;
 use crate::clique_cover::cover;
-use crate::convex_outline::{around, intersect};
+use crate::convex_outline::{around, around_swept, depth, intersect};
 use crate::options::{WriteNotes, WriteOptions};
 use crate::stamp::{PROPERTY, VehicleStamp};
 use crate::text_edits::{TextEdits, ending, indent};
@@ -30,7 +30,7 @@ use pcr_formats::import::{ElementId, ImportError, ImportedLayout, Layout};
 use pcr_formats::plane_geometry::hull;
 use pcr_formats::scenario::PlacedSegment;
 use pcr_formats::warning::WarningCode;
-use pcr_planning::exclusion_table::ExclusionTable;
+use pcr_planning::exclusion_table::{EdgeTraversals, ExclusionTable, SweptShape, corridor};
 use roxmltree::{Document, Node};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::fmt::Write as _;
@@ -401,31 +401,57 @@ fn escaped(text: &str) -> String {
     text.replace('"', "&quot;").replace('\'', "&apos;")
 }
 
+/// The envelope of each point and path, by name: all that a vehicle may sweep there. Turns at the ends of a path are in the envelopes of its
+/// points, which a vehicle on it holds as well.
+fn envelope_outlines(imported: &ImportedLayout) -> BTreeMap<String, Vec<[f64; 2]>> {
+    let (layout, rides) = (&imported.layout, EdgeTraversals::new(imported));
+    let mut outlines: BTreeMap<String, Vec<[f64; 2]>> = BTreeMap::new();
+    let has_outline = imported.vehicle.footprint.is_some();
+    let standing = |node: usize| match has_outline {
+        true => around_swept(&corridor(&[rides.at_node(node)]), ROUNDING),
+        false => {
+            let at = layout.position(node);
+            around(&[PlacedSegment::line(at, at)], imported.vehicle.radius + imported.vehicle.margin + ROUNDING)
+        }
+    };
+    for edge in &layout.edges {
+        let outline = if has_outline {
+            let points: Vec<Vec<[f64; 2]>> = edge.ends.map(standing).into();
+            let is_held = |shape: &SweptShape| {
+                let outline = around_swept(std::slice::from_ref(shape), 0.0);
+                points.iter().any(|point| outline.iter().all(|&corner| depth(point, corner) >= 0.0))
+            };
+            let mut shapes = corridor(&rides.on_edge(edge));
+            shapes.retain(|shape| !is_held(shape));
+            // Of a path that hardly leads away from its points nothing else is left.
+            if shapes.is_empty() { hull(points.concat()) } else { around_swept(&shapes, ROUNDING) }
+        } else {
+            let ends = edge.ends.map(|end| layout.position(end));
+            let straight = || vec![PlacedSegment::line(ends[0], ends[1])];
+            let curve = if edge.curve.is_empty() { straight() } else { edge.curve.clone() };
+            around(&curve, imported.vehicle.radius + imported.vehicle.margin + edge.deviation + ROUNDING)
+        };
+        outlines.insert(edge.id.to_string(), outline);
+    }
+    outlines.extend((0..layout.nodes.len()).map(|node| (layout.nodes[node].id.to_string(), standing(node))));
+    outlines
+}
+
 fn write_envelopes(
     &Model { text, offset, root, .. }: &Model<'_, '_>,
     imported: &ImportedLayout,
     key: &str,
     edits: &mut TextEdits,
 ) -> Result<usize, ImportError> {
-    let (layout, vehicle) = (&imported.layout, &imported.vehicle);
     if elements(root, "vehicle").next().is_none() {
         return Err(ImportError::new("envelopes: there is no vehicle in the model that could have their key"));
     }
-    let radius = vehicle.radius + vehicle.margin;
-    let curves: BTreeMap<String, (Vec<PlacedSegment>, f64)> = (layout.nodes.iter())
-        .map(|node| (node.id.to_string(), (vec![PlacedSegment::line(node.point, node.point)], 0.0)))
-        .chain(layout.edges.iter().map(|edge| {
-            let place =
-                || vec![PlacedSegment::line(layout.nodes[edge.ends[0]].point, layout.nodes[edge.ends[1]].point)];
-            let curve = if edge.curve.is_empty() { place() } else { edge.curve.clone() };
-            (edge.id.to_string(), (curve, edge.deviation))
-        }))
-        .collect();
+    let envelopes = envelope_outlines(imported);
     let mut count = 0;
     for element in root.children().filter(|child| child.has_tag_name("point") || child.has_tag_name("path")) {
-        let Some((curve, deviation)) = curves.get(name(element)) else { continue };
+        let Some(envelope) = envelopes.get(name(element)) else { continue };
         count += 1;
-        let mut outline = millimetres(&around(curve, radius + deviation + ROUNDING));
+        let mut outline = millimetres(envelope);
         outline.extend(outline.first().copied());
         let vertices = outline.iter().map(|[x, y]| format!("<vertex x=\"{x}\" y=\"{y}\"/>")).collect::<String>();
         let envelope = format!("<vehicleEnvelope key=\"{}\">{vertices}</vehicleEnvelope>", escaped(key));

@@ -10,17 +10,21 @@
 //! is kept off by whoever can reach into the zone at all: where they touch, both are in it. By the second rule the
 //! zones that are written here suffice, whatever the deviations and the outlines.
 
-use crate::convex_outline::{around, depth};
-use crate::curve_proximity::lengths_near_polygon;
+use crate::convex_outline::{around, around_swept, depth, distance, sides_meet};
+use crate::curve_proximity::{lengths_near_polygon, lengths_of_outline};
 use crate::options::{WriteNotes, WriteOptions};
 use crate::stamp::VehicleStamp;
 use crate::{DirectedEdgeRules, ExclusionGroup, ExclusionRules, ResourceClaim, TokenSpan, stretch};
-use pcr_formats::import::{ImportError, ImportedLayout, Layout, parse_json};
+use pcr_formats::import::{
+    Facing, ImportError, ImportedLayout, Layout, LayoutEdge, RouteStep, VehicleTraits, parse_json,
+};
 use pcr_formats::plane_geometry::hull;
-use pcr_formats::scenario::PlacedSegment;
-use pcr_formats::scenario::{LIMIT, PathSegment};
+use pcr_formats::scenario::{Agent, LIMIT, PathSegment, PlacedSegment};
 use pcr_formats::warning::WarningCode;
 use pcr_planning::checksum::crc32;
+use pcr_planning::exclusion_table::{
+    EdgeTraversal, EdgeTraversals, SweptShape, corridor, is_turn, placed_pieces, swept,
+};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_4;
@@ -80,6 +84,15 @@ struct ZoneIntervals {
     possible: Vec<[f64; 2]>,
 }
 
+/// Where on an edge a vehicle with an outline turns in place, its presence there is said of so much of the edge on both sides \[m\].
+const TURNING: f64 = 1e-4;
+
+/// So much of the edge on both sides of it is in the zone of a turn in place \[m\].
+const BESIDE_TURN: f64 = 1e-3;
+
+/// Lengths that differ by no more are the end of an edge \[m\].
+const SAME: f64 = 1e-9;
+
 /// Bounds on how far vehicles reach from their centres.
 struct OutlineRadii {
     /// All points at most this far from the centre are in the contour \[m\]; `None` if the centre is outside, because then
@@ -119,6 +132,144 @@ impl OutlineRadii {
             possible: within(far),
         }
     }
+}
+
+/// The lengths of an edge in one direction at which a vehicle with an outline is in zones.
+struct OutlinePresence<'a> {
+    rides: &'a EdgeTraversals<'a>,
+    vehicle: &'a VehicleTraits,
+    inner: Option<f64>,
+}
+
+impl OutlinePresence<'_> {
+    /// The rides in one direction, each with where it goes.
+    fn ways(&self, step: RouteStep<'_>) -> Vec<(EdgeTraversal, Vec<PlacedSegment>)> {
+        let rides = self.rides.in_direction(step).into_iter();
+        rides.map(|ride| (placed_pieces(&ride.agent), ride)).map(|(path, ride)| (ride, path)).collect()
+    }
+
+    fn entered(
+        &self,
+        step: RouteStep<'_>,
+        ways: &[(EdgeTraversal, Vec<PlacedSegment>)],
+        zone: &ReleaseZone,
+    ) -> ZoneIntervals {
+        let length = step.edge.length();
+        let mut all = ZoneIntervals::default();
+        let (mut uncertain, mut not_whole) = (Vec::new(), Vec::new());
+        for (ride, path) in ways {
+            let here = self.of_ride(step, ride, path, zone);
+            match ride.turns_at() {
+                None => {
+                    let enclosed = |ranges: Vec<[f64; 2]>| {
+                        let inner = ranges.into_iter().filter_map(|range| ride.enclosed_lengths(range));
+                        inner.map(|[from, to]| [from, if to >= length - SAME { length } else { to }]).collect()
+                    };
+                    all.certain = enclosed(here.certain);
+                    all.whole = enclosed(here.whole);
+                    let touched = here.possible.into_iter().map(|range| ride.touched_lengths(range));
+                    all.possible.extend(touched.map(|[from, to]| [from, to.min(length)]));
+                }
+                Some(at) => {
+                    let beside = [at - TURNING, at + TURNING];
+                    let is_all =
+                        |ranges: &[[f64; 2]]| ranges.iter().any(|&range| ride.enclosed_lengths(range).is_some());
+                    if !is_all(&here.certain) {
+                        uncertain.push(beside);
+                    }
+                    if !is_all(&here.whole) {
+                        not_whole.push(beside);
+                    }
+                    if !here.possible.is_empty() {
+                        all.possible.push(beside.map(|end| end.clamp(0.0, length)));
+                    }
+                }
+            }
+        }
+        all.certain = without(all.certain, &uncertain);
+        all.whole = without(all.whole, &not_whole);
+        all
+    }
+
+    /// The same as lengths on the path of a ride.
+    fn of_ride(
+        &self,
+        step: RouteStep<'_>,
+        ride: &EdgeTraversal,
+        path: &[PlacedSegment],
+        zone: &ReleaseZone,
+    ) -> ZoneIntervals {
+        let agent = &ride.agent;
+        if !near(path, agent.radius + POSSIBLE, zone.bounds) {
+            return ZoneIntervals::default();
+        }
+        let (corners, growth) = match &agent.footprint {
+            Some(footprint) => (footprint.polygon(), footprint.growth()),
+            None => (&[[0.0; 2]][..], agent.radius),
+        };
+        let (far, deep) = (growth + POSSIBLE, growth + SURE);
+        let polygon = &zone.polygon[..];
+        let touches = |placed: &[[f64; 2]]| {
+            let is_near =
+                |own: &[[f64; 2]], other: &[[f64; 2]]| own.iter().any(|&corner| distance(other, corner) <= far);
+            is_near(placed, polygon) || is_near(polygon, placed) || sides_meet(placed, polygon)
+        };
+        let encloses = |placed: &[[f64; 2]]| {
+            placed.iter().all(|&corner| depth(polygon, corner) >= deep)
+                && polygon.iter().all(|&corner| depth(placed, corner) <= -deep)
+                && !sides_meet(placed, polygon)
+        };
+        // What the vehicle itself covers, of which the agent has the hull if it may face either way, and the margin with other
+        // deviations.
+        let contour = match (&self.vehicle.footprint, step.facing()) {
+            (Some(footprint), Facing::Ahead) => Some(footprint.clone()),
+            (Some(footprint), Facing::Backward) => Some(footprint.backward()),
+            _ => None,
+        };
+        let contour = contour.filter(|_| agent.footprint.is_some());
+        let off = agent.radius - self.vehicle.radius + SURE;
+        let mut certain = Vec::new();
+        if let Some(contour) = &contour {
+            let room = off - contour.growth();
+            certain.extend(lengths_of_outline(path, contour.polygon(), polygon, &[room], |placed| {
+                placed.iter().any(|&corner| depth(polygon, corner) >= room)
+                    || polygon.iter().any(|&corner| depth(placed, corner) >= room)
+            }));
+        }
+        if let Some(inner) = self.inner {
+            let room = off - inner;
+            certain.extend(lengths_of_outline(path, &[[0.0; 2]], polygon, &[room], |placed| {
+                placed.iter().all(|&centre| depth(polygon, centre) >= room)
+            }));
+        }
+        ZoneIntervals {
+            certain: joined(certain),
+            whole: lengths_of_outline(path, corners, polygon, &[deep], encloses),
+            possible: lengths_of_outline(path, corners, polygon, &[far], touches),
+        }
+    }
+}
+
+/// Ranges in ascending order, those that meet as one.
+fn joined(mut ranges: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    ranges.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut all: Vec<[f64; 2]> = Vec::new();
+    for next in ranges {
+        match all.last_mut() {
+            Some(last) if next[0] <= last[1] => last[1] = last[1].max(next[1]),
+            _ => all.push(next),
+        }
+    }
+    all
+}
+
+/// Ranges without what is in others.
+fn without(ranges: Vec<[f64; 2]>, others: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let cut = |ranges: Vec<[f64; 2]>, &[from, to]: &[f64; 2]| {
+        let rest = ranges.into_iter().flat_map(|[lo, hi]| [[lo, hi.min(from)], [lo.max(to), hi]]);
+        rest.filter(|[lo, hi]| lo < hi).collect()
+    };
+    others.iter().fold(ranges, cut)
 }
 
 /// Whether a curve can come so near a box.
@@ -268,7 +419,28 @@ pub(crate) fn read(text: &str, imported: &ImportedLayout) -> Result<ExclusionRul
     let stamp = said.filter_map(VehicleStamp::read).next();
     let (reach, count) = (OutlineRadii::of(imported), zones.len());
     let there = |zone: &ReleaseZone, level: usize| map(layout, level) == zone.map;
+    let rides = EdgeTraversals::new(imported);
+    let presence = OutlinePresence { rides: &rides, vehicle: &imported.vehicle, inner: reach.inner };
+    let of_outline = |edge: &LayoutEdge, backward: bool| {
+        let ends = edge.ends.map(|end| layout.level_of(end));
+        let step = RouteStep { edge, backward };
+        let ways = presence.ways(step);
+        let (mut marks, mut closed): (Vec<TokenSpan>, [Vec<[f64; 2]>; 2]) = Default::default();
+        for (k, zone) in zones.iter().enumerate().filter(|(_, zone)| ends.iter().any(|&end| there(zone, end))) {
+            let entered = presence.entered(step, &ways, zone);
+            if zone.blocked {
+                let on = (0..2).filter(|&end| there(zone, ends[end]));
+                on.for_each(|end| closed[end].extend_from_slice(&entered.certain));
+            } else {
+                marks.extend(tokens(k, count, entered));
+            }
+        }
+        DirectedEdgeRules::one_way(edge.length(), backward, marks, both(&closed[0], &closed[1]))
+    };
     let edges = layout.edges.iter().map(|edge| {
+        if imported.vehicle.footprint.is_some() && edge.length() > 0.0 {
+            return [false, true].map(|backward| of_outline(edge, backward));
+        }
         let ends = edge.ends.map(|end| layout.level_of(end));
         let curve = match &edge.curve[..] {
             // Without a length an edge is a point.
@@ -310,7 +482,11 @@ pub(crate) fn read(text: &str, imported: &ImportedLayout) -> Result<ExclusionRul
     let mut members: BTreeMap<usize, BTreeSet<String>> = BTreeMap::new();
     for (edge, ways) in layout.edges.iter().zip(&edges) {
         // Vehicles that may reach into it.
-        for mark in ways[0].marks().iter().filter(|mark| !mark.bars && (count..2 * count).contains(&mark.token)) {
+        for mark in ways
+            .iter()
+            .flat_map(|way| way.marks())
+            .filter(|mark| !mark.bars && (count..2 * count).contains(&mark.token))
+        {
             members.entry(mark.token - count).or_default().insert(edge.id.to_string());
         }
     }
@@ -363,24 +539,105 @@ type ZoneOutline = (String, Vec<[f64; 2]>);
 /// The zones of the edges of a level, by the name of the first edge that they are of.
 fn zones(imported: &ImportedLayout, level: usize, split: Option<f64>) -> Vec<ZoneOutline> {
     let layout = &imported.layout;
+    let edges = layout.edges.iter().filter(|edge| layout.is_on(edge, level));
+    if imported.vehicle.footprint.is_some() {
+        return outline_zones(imported, edges, split);
+    }
     let radius = imported.vehicle.radius + imported.vehicle.margin;
     let mut zones: Vec<ZoneOutline> = Vec::new();
     let mut known = BTreeSet::new();
-    for edge in layout.edges.iter().filter(|edge| layout.is_on(edge, level)) {
+    for edge in edges {
         let parts = parts(&edge.curve, split);
         for (k, part) in parts.iter().enumerate() {
             // The way back is the same zone, and so is another edge on the same line.
-            let steps = |point: [f64; 2]| point.map(|x| (x * 1e6).round() as i64);
-            let middle = stretch(std::slice::from_ref(part), [part.shape.length() / 2.0; 2])[0].start;
-            let mut ends = [steps(part.start), steps(part.end())];
-            ends.sort_unstable();
-            if known.insert((ends, steps(middle), edge.deviation.to_bits())) {
-                let name = if parts.len() == 1 { edge.id.to_string() } else { format!("{} ({})", edge.id, k + 1) };
-                zones.push((name, around(std::slice::from_ref(part), radius + edge.deviation + BEYOND)));
+            if known.insert((place(part), edge.deviation.to_bits())) {
+                zones.push((
+                    part_name(edge, k, parts.len()),
+                    around(std::slice::from_ref(part), radius + edge.deviation + BEYOND),
+                ));
             }
         }
     }
     zones
+}
+
+fn part_name(edge: &LayoutEdge, part: usize, count: usize) -> String {
+    if count == 1 { edge.id.to_string() } else { format!("{} ({})", edge.id, part + 1) }
+}
+
+/// Where a part of a curve is, in steps of a micrometre: the same in both directions.
+fn place(part: &PlacedSegment) -> [[i64; 2]; 3] {
+    let steps = |point: [f64; 2]| point.map(|x| (x * 1e6).round() as i64);
+    let middle = stretch(std::slice::from_ref(part), [part.shape.length() / 2.0; 2])[0].start;
+    let [a, b] = [part.start, part.end()].map(steps);
+    [a.min(b), a.max(b), steps(middle)]
+}
+
+/// The zones of what an outline sweeps: of each part of an edge in all directions in which it is travelled, and of the turns in place at
+/// each point.
+fn outline_zones<'e>(
+    imported: &ImportedLayout,
+    edges: impl Iterator<Item = &'e LayoutEdge>,
+    split: Option<f64>,
+) -> Vec<ZoneOutline> {
+    let rides = EdgeTraversals::new(imported);
+    let mut zones: Vec<(String, Vec<SweptShape>)> = Vec::new();
+    let mut known: BTreeMap<[[i64; 2]; 3], usize> = BTreeMap::new();
+    let mut add = |key: [[i64; 2]; 3], name: &dyn Fn() -> String, shapes: Vec<SweptShape>| {
+        let zone = *known.entry(key).or_insert_with(|| {
+            zones.push((name(), Vec::new()));
+            zones.len() - 1
+        });
+        zones[zone].1.extend(shapes);
+    };
+    for edge in edges {
+        let parts = parts(&edge.curve, split);
+        for step in edge.steps() {
+            let all = rides.in_direction(step);
+            let along = |lengths: [f64; 2]| {
+                let agents =
+                    all.iter().filter(|ride| ride.turns_at().is_none()).filter_map(|ride| ride.within(lengths));
+                agents.collect::<Vec<Agent>>()
+            };
+            let driven = |lengths: [f64; 2]| {
+                let swept_by = |agent: &Agent| {
+                    let driven = placed_pieces(agent).into_iter().filter(|piece| !is_turn(piece)).collect::<Vec<_>>();
+                    swept(agent, &driven)
+                };
+                along(lengths).iter().flat_map(swept_by).collect::<Vec<SweptShape>>()
+            };
+            let mut before = 0.0;
+            for (k, part) in parts.iter().enumerate() {
+                let after = before + part.shape.length();
+                add(place(part), &|| part_name(edge, k, parts.len()), driven([before, after]));
+                before = after;
+            }
+            let name = || format!("{} (turn)", edge.id);
+            let mut turn = |at: f64, point: [f64; 2], shapes: Vec<SweptShape>| {
+                let point = place(&PlacedSegment::line(point, point));
+                add(point, &name, shapes);
+                add(point, &name, driven([at - BESIDE_TURN, at + BESIDE_TURN]));
+            };
+            for ride in &all {
+                let pieces = placed_pieces(&ride.agent);
+                if let Some(at) = ride.turns_at() {
+                    turn(at, [ride.agent.start[0], ride.agent.start[1]], swept(&ride.agent, &pieces));
+                    continue;
+                }
+                let mut travelled = 0.0;
+                for piece in pieces {
+                    let length = piece.shape.length();
+                    if is_turn(&piece) {
+                        let [lo, hi] = ride.touched_lengths([travelled, travelled + length]);
+                        turn((lo + hi) / 2.0, piece.start, swept(&ride.agent, &[piece]));
+                    }
+                    travelled += length;
+                }
+            }
+        }
+    }
+    let around = |(name, shapes): (String, Vec<SweptShape>)| (name, around_swept(&shapes, BEYOND));
+    zones.into_iter().map(around).collect()
 }
 
 /// Gives zones of one name different ones.
@@ -401,12 +658,10 @@ fn lone_nodes(imported: &ImportedLayout, level: usize) -> Vec<ZoneOutline> {
     let layout = &imported.layout;
     let used: BTreeSet<usize> =
         layout.edges.iter().filter(|edge| !edge.curve.is_empty()).flat_map(|edge| edge.ends).collect();
-    let radius = imported.vehicle.radius + imported.vehicle.margin;
+    let rides = EdgeTraversals::new(imported);
     let lone = layout.nodes.iter().enumerate().filter(|(k, node)| node.level == level && !used.contains(k));
-    lone.map(|(_, node)| {
-        (format!("node {}", node.id), around(&[PlacedSegment::line(node.point, node.point)], radius + BEYOND))
-    })
-    .collect()
+    let zone = |node: usize| around_swept(&corridor(&[rides.at_node(node)]), BEYOND);
+    lone.map(|(k, node)| (format!("node {}", node.id), zone(k))).collect()
 }
 
 /// Lines and arcs, cut into equal parts no longer than asked for and that turn no farther than [`TURN`].

@@ -177,10 +177,6 @@ impl LayoutSource<'_> {
         settings: &WriteOptions,
     ) -> Result<(String, ImportedLayout, WriteNotes), ImportError> {
         let mut notes = WriteNotes::default();
-        if imported.vehicle.footprint.is_some() && settings.target == ExclusionFormat::Vda5050 {
-            let text = "zones: they are for the disc around the outline";
-            notes.warnings.push(WarningCode::DiscAroundOutline.text(text));
-        }
         if let Some(most) = settings.split {
             let parts = imported.layout.edges.iter().map(|edge| (edge.length() / most).ceil()).sum::<f64>() as u64;
             MemoryDemand::EdgeParts { longest: most, parts }

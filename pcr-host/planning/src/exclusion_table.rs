@@ -10,6 +10,7 @@
 //! of their edges; locks of nodes alone can be requested, too.
 
 mod area_pair_search;
+mod contact;
 mod edge_traversals;
 mod incremental;
 mod index;
@@ -21,8 +22,9 @@ mod unsafe_delays;
 
 use crate::memory_budget;
 pub use area_pair_search::{SyncProgressFn, TouchingAreas};
-use edge_traversals::EdgeTraversal;
-pub use edge_traversals::{EdgeTraversals, SweptShape, corridor};
+pub use contact::can_touch;
+pub use edge_traversals::EdgeTraversal;
+pub use edge_traversals::{EdgeTraversals, SweptShape, corridor, is_turn, placed_pieces, swept};
 pub use incremental::{ExclusionChange, IncrementalExclusions};
 pub use index::{ExclusionIndex, ExclusionIndexError, ExclusionPartner, write_index};
 pub use origin::origin;
