@@ -18,7 +18,7 @@
 //! reach beyond it.
 
 use crate::ball::{Ball, BallReal, Ternary};
-use crate::box_index::BoxIndex;
+use crate::box_index::{BoxIndex, PlainBox};
 use crate::double_double::DoubleDouble;
 use crate::motion::least;
 use crate::moving_disc::{LegMotion, Mover, MoverLeg};
@@ -86,68 +86,92 @@ impl Traversal {
     }
 
     /// The legs and the clock times of each. Of a motion that takes no time, its end.
-    fn legs(&self) -> Vec<([f64; 2], &MoverLeg)> {
-        let all = &self.mover.legs;
-        let own = all.windows(2).skip(1).map(|pair| ([pair[0].0, pair[1].0], &pair[0].1));
-        let own: Vec<_> = own.filter(|([from, to], _)| from < to).collect();
-        match (own.is_empty(), all.last()) {
-            (true, Some((_, last))) => vec![([0.0, self.duration], last)],
-            _ => own,
-        }
+    fn legs(&self) -> Vec<TimedLeg<'_>> {
+        legs(&self.mover, self.duration)
     }
 
     /// Whether two discs touch with any delay outside of closed intervals that are disjoint and in increasing order \[s\], while both
     /// agents are under way. Returns the number of cells, too.
     pub fn outside(&self, second: &Self, forbidden: &[[f64; 2]]) -> (Verdict, usize) {
-        let mut cells = 0;
-        let mut from = -second.duration;
-        let last = [self.duration, self.duration];
-        for [lo, hi] in forbidden.iter().chain([&last]) {
-            if from < *lo {
-                let verdict = self.between(second, [from, *lo], &mut cells);
-                if verdict != Verdict::Free {
-                    return (verdict, cells);
-                }
-            }
-            // What is no number forbids nothing.
-            from = from.max(*hi);
-        }
-        (Verdict::Free, cells)
-    }
-
-    fn between(&self, second: &Self, delay: [f64; 2], cells: &mut usize) -> Verdict {
         let radius = [self.mover.radius, second.mover.radius];
-        let (own, their) = (self.legs(), second.legs());
-        let mut rest = VecDeque::new();
-        for (first_time, first) in &own {
-            for (second_time, second) in &their {
-                let legs = LegPair { legs: [first, second], times: [*first_time, *second_time], radius };
-                // On the clock of the shorter leg: a motion may change fast within it, and then no bound on it holds for long.
-                let times = [*first_time, *second_time];
-                let [own, their] = times.map(|[from, to]| to - from);
-                let clock = usize::from(their < own);
-                let cell = Cell { clock, time: times[clock], delay };
-                rest.extend(legs.within(cell).map(|cell| (legs, cell)));
+        let look = |legs: &LegPair<'_>, cell: &Cell| legs.look(cell, radius);
+        outside([self, second].map(|one| (one.duration, one.legs())), forbidden, &look)
+    }
+}
+
+/// Whether two agents touch with any delay outside of closed intervals, each given by its duration and legs: `look` looks at cells. Returns the
+/// number of cells, too.
+pub(crate) fn outside(
+    agents: [(f64, Vec<TimedLeg<'_>>); 2],
+    forbidden: &[[f64; 2]],
+    look: &dyn Fn(&LegPair<'_>, &Cell) -> Seen,
+) -> (Verdict, usize) {
+    let [(duration, own), (other_duration, their)] = &agents;
+    let mut cells = 0;
+    let mut from = -other_duration;
+    let last = [*duration, *duration];
+    for [lo, hi] in forbidden.iter().chain([&last]) {
+        if from < *lo {
+            let verdict = between([own, their], [from, *lo], look, &mut cells);
+            if verdict != Verdict::Free {
+                return (verdict, cells);
             }
         }
-        // In the order of their sizes: where a contact is, a large cell shows it.
-        while let Some((legs, cell)) = rest.pop_front() {
-            *cells += 1;
-            let seen = legs.look(&cell);
-            if seen.clear {
-                continue;
-            }
-            let approach = cell.approach(seen.clearance);
-            if seen.meets.is_certain() && legs.has(&cell) {
-                return Verdict::Contact(approach);
-            }
-            let halves = legs.cut(&cell, seen.by_delay);
-            if halves.is_empty() || *cells >= MOST {
-                return Verdict::Undecided(approach);
-            }
-            rest.extend(halves.into_iter().filter_map(|half| legs.within(half)).map(|half| (legs, half)));
+        // What is no number forbids nothing.
+        from = from.max(*hi);
+    }
+    (Verdict::Free, cells)
+}
+
+/// A leg of a motion, and the clock times from and to which it lasts \[s\].
+pub(crate) type TimedLeg<'a> = ([f64; 2], &'a MoverLeg);
+
+fn between(
+    [own, their]: [&[TimedLeg<'_>]; 2],
+    delay: [f64; 2],
+    look: &dyn Fn(&LegPair<'_>, &Cell) -> Seen,
+    cells: &mut usize,
+) -> Verdict {
+    let mut rest = VecDeque::new();
+    for (first_time, first) in own {
+        for (second_time, second) in their {
+            let legs = LegPair { legs: [first, second], times: [*first_time, *second_time] };
+            // On the clock of the shorter leg: a motion may change fast within it, and then no bound on it holds for long.
+            let times = [*first_time, *second_time];
+            let [own, their] = times.map(|[from, to]| to - from);
+            let clock = usize::from(their < own);
+            let cell = Cell { clock, time: times[clock], delay };
+            rest.extend(legs.within(cell).map(|cell| (legs, cell)));
         }
-        Verdict::Free
+    }
+    // In the order of their sizes: where a contact is, a large cell shows it.
+    while let Some((legs, cell)) = rest.pop_front() {
+        *cells += 1;
+        let seen = look(&legs, &cell);
+        if seen.clear {
+            continue;
+        }
+        let approach = cell.approach(seen.clearance);
+        if seen.meets.is_certain() && legs.has(&cell) {
+            return Verdict::Contact(approach);
+        }
+        let halves = legs.cut(&cell, seen.by_delay);
+        if halves.is_empty() || *cells >= MOST {
+            return Verdict::Undecided(approach);
+        }
+        rest.extend(halves.into_iter().filter_map(|half| legs.within(half)).map(|half| (legs, half)));
+    }
+    Verdict::Free
+}
+
+/// The legs of a motion on a clock of its own, and the clock times of each. Of a motion that takes no time, its end.
+pub(crate) fn legs(mover: &Mover, duration: f64) -> Vec<TimedLeg<'_>> {
+    let all = &mover.legs;
+    let own = all.windows(2).skip(1).map(|pair| ([pair[0].0, pair[1].0], &pair[0].1));
+    let own: Vec<_> = own.filter(|([from, to], _)| from < to).collect();
+    match (own.is_empty(), all.last()) {
+        (true, Some((_, last))) => vec![([0.0, duration], last)],
+        _ => own,
     }
 }
 
@@ -155,9 +179,14 @@ impl Traversal {
 pub struct Neighbours(BoxIndex);
 
 impl Neighbours {
+    /// An index of boxes around all that each of them passes.
+    pub(crate) fn of(areas: Vec<PlainBox>) -> Self {
+        Self(BoxIndex::new(areas))
+    }
+
     /// An index of them.
     pub fn new(traversals: &[Traversal]) -> Self {
-        Self(BoxIndex::new(traversals.iter().map(|traversal| traversal.mover.area).collect()))
+        Self::of(traversals.iter().map(|traversal| traversal.mover.area).collect())
     }
 
     /// The indices behind this one of those whose boxes meet its own, in order.
@@ -168,19 +197,19 @@ impl Neighbours {
 
 /// Times of one of the clocks, and delays.
 #[derive(Clone, Copy, Debug)]
-struct Cell {
+pub(crate) struct Cell {
     /// Of the first agent 0, of the second one 1.
-    clock: usize,
-    time: [f64; 2],
-    delay: [f64; 2],
+    pub(crate) clock: usize,
+    pub(crate) time: [f64; 2],
+    pub(crate) delay: [f64; 2],
 }
 
-fn middle([lo, hi]: [f64; 2]) -> f64 {
+pub(crate) fn middle([lo, hi]: [f64; 2]) -> f64 {
     lo + 0.5 * (hi - lo)
 }
 
 /// The distance from the middle to the farther end, rounded up.
-fn half([lo, hi]: [f64; 2]) -> f64 {
+pub(crate) fn half([lo, hi]: [f64; 2]) -> f64 {
     let middle = middle([lo, hi]);
     (hi - middle).max(middle - lo) * (1.0 + 4.0 * f64::EPSILON) + f64::MIN_POSITIVE
 }
@@ -199,20 +228,19 @@ impl Cell {
 }
 
 /// What one look at a cell shows.
-struct Seen {
-    clear: bool,
-    meets: Ternary,
-    clearance: f64,
+pub(crate) struct Seen {
+    pub(crate) clear: bool,
+    pub(crate) meets: Ternary,
+    pub(crate) clearance: f64,
     /// Whether half of the delays would do more for the bound than half of the times, if that is known.
-    by_delay: Option<bool>,
+    pub(crate) by_delay: Option<bool>,
 }
 
 /// A leg of each agent.
 #[derive(Clone, Copy)]
-struct LegPair<'a> {
-    legs: [&'a MoverLeg; 2],
+pub(crate) struct LegPair<'a> {
+    pub(crate) legs: [&'a MoverLeg; 2],
     times: [[f64; 2]; 2],
-    radius: [f64; 2],
 }
 
 impl LegPair<'_> {
@@ -268,16 +296,21 @@ impl LegPair<'_> {
         halves.into()
     }
 
-    fn look(&self, cell: &Cell) -> Seen {
-        let near = self.look_with::<f64>(cell, |leg| &leg.near);
+    fn look(&self, cell: &Cell, radius: [f64; 2]) -> Seen {
+        let near = self.look_with::<f64>(cell, radius, |leg| &leg.near);
         match near.0 {
             Ternary::Yes => near.1,
             Ternary::No if near.1.meets != Ternary::Doubt => near.1,
-            _ => self.look_with::<DoubleDouble>(cell, |leg| &leg.exact).1,
+            _ => self.look_with::<DoubleDouble>(cell, radius, |leg| &leg.exact).1,
         }
     }
 
-    fn look_with<R: BallReal>(&self, cell: &Cell, course: impl Fn(&MoverLeg) -> &LegMotion<R>) -> (Ternary, Seen) {
+    fn look_with<R: BallReal>(
+        &self,
+        cell: &Cell,
+        radius: [f64; 2],
+        course: impl Fn(&MoverLeg) -> &LegMotion<R>,
+    ) -> (Ternary, Seen) {
         let number = Ball::<R>::from;
         let legs = [self.legs[cell.clock], self.legs[1 - cell.clock]];
         let courses = legs.map(&course);
@@ -289,7 +322,7 @@ impl LegPair<'_> {
         let [[p, v, a], [q, w, b]] = [0, 1].map(|one| courses[one].at(times[one]));
         let [r, u, c] = [p - q, v - w, a - b];
         let off = number(legs[0].off) + number(legs[1].off);
-        let radius = number(self.radius[0]) + number(self.radius[1]);
+        let radius = number(radius[0]) + number(radius[1]);
         let distance = r.norm();
         let between = distance - radius;
         let clearance = Ball { err: between.err + off.to_f64(), ..between }.display_length();

@@ -6,6 +6,7 @@
 //! separation   bounds on the distance of two polygons            Taylor, levers, witnesses
 //! cover        all contacts are in rectangles, and nothing else
 //! motion       no contact in an interval of time, a contact at a time
+//! delays       no contact with any start delay of an interval
 //! ranks        a piece stands for the interval that holds its contacts
 //! table        all pairs, segments and regions
 //! ```
@@ -53,6 +54,7 @@
 pub mod body;
 pub mod cover;
 pub mod data;
+pub mod delays;
 pub mod motion;
 pub mod ranks;
 pub mod separation;

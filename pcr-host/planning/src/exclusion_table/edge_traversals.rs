@@ -249,7 +249,7 @@ impl<'a> EdgeTraversals<'a> {
         EdgeTraversal { agent, lengths }
     }
 
-    /// A disc with other limits of its motion, along an edge.
+    /// A vehicle with other limits of its motion, along an edge.
     pub(super) fn along_with(&self, vehicle: &VehicleTraits, step: RouteStep<'_>) -> Agent {
         match ends(step) {
             Some(_) => ride(vehicle, step),
@@ -258,7 +258,7 @@ impl<'a> EdgeTraversals<'a> {
     }
 
     /// The vehicle as it is where it faces as on this way.
-    fn facing(&self, step: RouteStep<'_>) -> &VehicleTraits {
+    pub(super) fn facing(&self, step: RouteStep<'_>) -> &VehicleTraits {
         self.outlines.get(&step.facing()).unwrap_or(&self.vehicle)
     }
 

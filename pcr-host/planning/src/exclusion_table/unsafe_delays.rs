@@ -6,7 +6,8 @@
 //! edge that may be travelled in both directions counts as two *ways*. A way also has delays with itself, for two
 //! vehicles that follow each other.
 //!
-//! Straight ways at constant speed have a closed form (`straight`); for all others the library brackets the ends.
+//! Straight ways of discs at constant speed have a closed form (`straight`); for all others the library brackets the ends. An outline turns at
+//! nodes before it departs, or after it has arrived.
 
 mod proof;
 
@@ -16,7 +17,8 @@ use super::straight_edges::StraightEdge;
 use super::swept_areas::straight_ends;
 use super::{edges_by_id, nodes_by_id};
 use crate::agent_regions::{BoxGrid, area};
-use crate::checker_input;
+use crate::bodies::{Body, BodyFleet};
+use crate::checker_input::{self, outlines};
 use crate::fleet::Fleet;
 use crate::memory_budget;
 use crate::parallel;
@@ -26,6 +28,7 @@ use pcr_formats::scenario::{Agent, MotionSpec, Scenario, label};
 pub(crate) use proof::ForbiddenDelays;
 pub use proof::{DelayApproach, DelayProof};
 use serde::Serialize;
+use std::ops::Range;
 
 /// Number of agents that are built at a time.
 const STRETCH: usize = 1 << 12;
@@ -72,8 +75,10 @@ pub struct UnsafeDelayModel {
     beside: Vec<f64>,
     /// Sum of the radii of two vehicles on straight ways \[m\].
     reach: f64,
-    /// Ways, then nodes; empty if all ways are straight and driven at constant speed.
+    /// The bodies of ways, then of nodes; none if all ways are straight and driven at constant speed by a disc.
     fleet: Fleet<f64>,
+    /// For each way and node its bodies in the fleet: several if its outline is concave.
+    bodies: Vec<Range<usize>>,
     areas: Vec<[f64; 4]>,
 }
 
@@ -81,16 +86,12 @@ impl UnsafeDelayModel {
     /// The unsafe delays of the vehicle with its margin.
     ///
     /// # Errors
-    /// [`ImportError`] for a vehicle that is no disc, whose turns at the nodes take a time that no file tells, and for coordinates,
-    /// speeds and durations beyond what can be computed with.
+    /// [`ImportError`] for an outline that turns in place on an edge in no time, and for coordinates, speeds and durations beyond what can be
+    /// computed with.
     pub fn new(imported: &ImportedLayout, driving: EdgeDriving, nodes: bool) -> Result<Self, ImportError> {
         let (layout, rides) = (&imported.layout, EdgeTraversals::new(imported));
         layout.one_speed()?;
-        if rides.vehicle().footprint.is_some() {
-            let problem =
-                "delays are of discs: when an outline turns at a node is not known; --radius takes it as a disc";
-            return Err(ImportError::new(problem));
-        }
+        let has_outline = rides.vehicle().footprint.is_some();
         let steps: Vec<RouteStep<'_>> = edges_by_id(layout).into_iter().flat_map(LayoutEdge::steps).collect();
         let places = if nodes { nodes_by_id(layout) } else { Vec::new() };
         let level = |node: usize| layout.level_of(node);
@@ -107,13 +108,15 @@ impl UnsafeDelayModel {
             beside: places.iter().map(|&node| rides.node_tolerance(node)).collect(),
             reach: 2.0 * rides.vehicle().radius,
             fleet: Fleet::new(&Scenario::default()).map_err(|refused| ImportError::new(refused.to_string()))?,
+            bodies: Vec::new(),
             areas: Vec::new(),
         };
         let speed = |step: RouteStep<'_>| step.steady(driving.speed);
         all.straight = steps
             .iter()
             .map(|step| {
-                let [from, to] = straight_ends(layout, step.edge).filter(|_| driving.acceleration.is_none())?;
+                let is_steady = driving.acceleration.is_none() && !has_outline;
+                let [from, to] = straight_ends(layout, step.edge).filter(|_| is_steady)?;
                 let [from, to] = if step.backward { [to, from] } else { [from, to] };
                 StraightEdge::new(from, to, speed(*step))
             })
@@ -125,33 +128,51 @@ impl UnsafeDelayModel {
             all.areas = ends.map(|ends| around(ends, half)).collect();
             return Ok(all);
         }
-        let vehicle = VehicleTraits {
+        let vehicle = |step: RouteStep<'_>| VehicleTraits {
             speed: driving.speed,
             acceleration: driving.acceleration.unwrap_or(rides.vehicle().acceleration),
-            ..rides.vehicle().clone()
+            ..rides.facing(step).clone()
         };
-        let agent = |place: usize| match steps.get(place) {
-            Some(&step) => driven(rides.along_with(&vehicle, step), step.edge, driving, speed(step)),
-            None => rides.at_node(places[place - steps.len()]).agent,
+        let agent = |place: usize| {
+            let Some(&step) = steps.get(place) else { return Ok(rides.at_node(places[place - steps.len()]).agent) };
+            let agent = rides.along_with(&vehicle(step), step);
+            if agent.footprint.is_some() && agent.turns_in_place() && driving.acceleration.is_none() {
+                let problem = "its outline turns in place there, which takes no time at constant speed";
+                return Err(ImportError::new(format!("edge {}: {problem}; give --acceleration", step.edge.id)));
+            }
+            Ok(driven(agent, step.edge, driving, speed(step)))
         };
         let units: Vec<usize> = (0..all.levels.len()).collect();
         for stretch in units.chunks(STRETCH) {
             let parts: Vec<&[usize]> = stretch.chunks(64).collect();
             let fleets = parallel::map_parallel(0..parts.len(), &|part| {
                 let units = parts[part];
-                let agents = units.iter().map(|&unit| Agent { id: unit as u64, ..agent(unit) });
-                let scenario = import::checked(&Scenario::new("", agents.collect()))?;
-                let fleet = Fleet::<f64>::new(&scenario).map_err(|refused| ImportError::new(refused.to_string()))?;
+                let agents = units.iter().map(|&unit| Ok(Agent { id: unit as u64, ..agent(unit)? }));
+                let scenario = import::checked(&Scenario::new("", agents.collect::<Result<_, ImportError>>()?))?;
+                let (fleet, bodies, parts) =
+                    BodyFleet::<f64>::moving(&scenario).map_err(|refused| ImportError::new(refused.to_string()))?;
                 // What is computed, and proved, is about these motions.
-                let ids: Vec<u64> = units.iter().map(|&unit| unit as u64).collect();
-                let held = checker_input::agents(&fleet, &fleet.motions(), &ids);
-                checker_input::as_given::<f64>(&scenario, &held)
-                    .map_err(|misread| ImportError::new(misread.to_string()))?;
-                Ok(fleet)
+                let ids: Vec<u64> = parts.agents.iter().map(|agent| agent.id).collect();
+                let motions = fleet.motions();
+                let held = checker_input::agents(&fleet, &motions, &ids);
+                if motions.iter().any(outlines::is_body) {
+                    outlines::as_given::<f64>(&parts, &held, &outlines::bodies(held.clone(), &motions))
+                } else {
+                    checker_input::as_given::<f64>(&parts, &held)
+                }
+                .map_err(|misread| ImportError::new(misread.to_string()))?;
+                drop(motions);
+                let counts = bodies.chunk_by(|a, b| a.agent == b.agent).map(<[Body]>::len).collect::<Vec<_>>();
+                Ok((fleet, counts))
             });
-            for fleet in fleets {
-                let fleet = fleet?;
-                all.areas.extend(fleet.motions().iter().map(area));
+            for made in fleets {
+                let (fleet, counts) = made?;
+                let mut areas = fleet.motions().iter().map(area).collect::<Vec<_>>().into_iter();
+                for count in counts {
+                    let first = all.bodies.last().map_or(0, |bodies| bodies.end);
+                    all.bodies.push(first..first + count);
+                    all.areas.extend(areas.by_ref().take(count).reduce(joint));
+                }
                 all.fleet.append(fleet);
             }
         }
@@ -227,21 +248,24 @@ impl UnsafeDelayModel {
             }
             _ => {}
         }
-        let (Some(own), Some(their)) = (motions.get(a), motions.get(b)) else {
+        let of = |unit: usize| self.bodies.get(unit).and_then(|bodies| motions.get(bodies.clone()));
+        let (Some(own), Some(their)) = (of(a), of(b)) else {
             return Err(ImportError::new(format!("{} and {}: no motions", self.name(a), self.name(b))));
         };
         let mut all = Vec::new();
-        self.regions(own, their, [a, b], |region| {
-            all.push(if b < ways {
-                // `passing_delays` delays the ego, which is on the first way; hence the changed sign.
-                let Interval { lo, hi } = region.passing_delays();
-                Interval::new(-hi, -lo)
-            } else {
-                // A vehicle that hardly moves may be at a length much earlier than it is computed to be.
-                let Interval { lo, hi } = region.length();
-                own.time_in(Interval::new(lo - own.lag(), hi + own.lag()))
-            });
-        })?;
+        for (own, their) in own.iter().flat_map(|own| their.iter().map(move |their| (own, their))) {
+            self.regions(own, their, [a, b], |region| {
+                all.push(if b < ways {
+                    // `passing_delays` delays the ego, which is on the first way; hence the changed sign.
+                    let Interval { lo, hi } = region.passing_delays();
+                    Interval::new(-hi, -lo)
+                } else {
+                    // A vehicle that hardly moves may be at a length much earlier than it is computed to be.
+                    let Interval { lo, hi } = region.length();
+                    own.time_in(Interval::new(lo - own.lag(), hi + own.lag()))
+                });
+            })?;
+        }
         found.extend(union(all.into_iter()).map(|Interval { lo, hi }| match b < ways {
             true => UnsafeRelation::Delays([a, b], [lo, hi]),
             false => UnsafeRelation::Times(b - ways, a, [lo, hi]),
@@ -296,6 +320,11 @@ fn driven(agent: Agent, edge: &LayoutEdge, driving: EdgeDriving, speed: f64) -> 
         _ => agent.motion,
     };
     Agent { label: label(&edge.id.to_string()), motion, ..agent }
+}
+
+/// The box around two boxes.
+fn joint(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+    [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])]
 }
 
 /// The box around a segment, enlarged by a reach \[m\] and its rounding.

@@ -22,10 +22,10 @@ const MOST: usize = 1_000_000;
 /// A body in motion.
 #[derive(Clone, Debug)]
 pub struct Driven<'a> {
-    body: &'a Body<'a>,
-    mover: Mover,
+    pub(super) body: &'a Body<'a>,
+    pub(super) mover: Mover,
     /// Bound on the speed of each of its points, for a speed of 1 along the path.
-    lever: f64,
+    pub(super) lever: f64,
 }
 
 /// What has come of a claim about times.
@@ -74,10 +74,23 @@ impl<'a> Driven<'a> {
         };
         Ok(Self { body, mover: Mover::new(&agent, time)?, lever: body.lever() })
     }
+
+    /// A body under way on a clock of its own, which shows 0 when it sets off, and how long that takes \[s\].
+    ///
+    /// # Errors
+    /// As [`Driven::new`].
+    pub(super) fn on_own_clock(body: &'a Body<'a>) -> Result<(Self, f64), String> {
+        let mut travel = body.raw.travel.clone().ok_or_else(|| format!("body {}: no motion", body.raw.id))?;
+        travel.start = 0.0;
+        let duration = travel.phases.last().map_or(0.0, |last| last.time[1]);
+        let (radius, path) = (body.raw.outline.radius, body.lengths.clone());
+        let agent = RawAgent { id: body.raw.id, radius, path, travel: Some(travel) };
+        Ok((Self { body, mover: Mover::new(&agent, [0.0, duration])?, lever: body.lever() }, duration))
+    }
 }
 
 /// A type of number that legs are computed in.
-trait Precision: BallReal {
+pub(super) trait Precision: BallReal {
     fn carried<'b>(body: &'b Body<'_>, place: usize) -> &'b Carried<Self>;
     fn ramp(leg: &MoverLeg) -> &BallRamp<Self>;
 }

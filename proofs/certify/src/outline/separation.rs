@@ -13,7 +13,7 @@
 //! or, over large boxes, the distance in the middle less the ways that any point of the two bodies goes: lever times length, for each.
 //!
 //! *From above.* The distance is no more than that of any two points of the polygons. They have a point in common if a corner of one lies in a
-//! triangle of corners of the other one, or if two edges cross. Then the distance counts as negative: minus the length of the least translation that
+//! triangle of corners of the other one, if two edges cross, or if no normal of an edge parts them and neither is flat. Then the distance counts as negative: minus the length of the least translation that
 //! separates them, which is that along the normal of some edge. It changes no faster than the bodies go, as the distance does.
 //!
 //! *Second derivative.* A corner goes `x = z + Rot(θ) w` ([`super::body`]) or along a line. In a frame that turns by φ about c,
@@ -42,6 +42,18 @@ pub enum Change<R> {
         accelerations: [Ball<R>; 2],
         /// Half the duration.
         half: Ball<R>,
+    },
+    /// Each on a clock of its own, with a speed in the middle and an acceleration: the first clock by so much before and after, the second one
+    /// by as much, and by a shift besides.
+    Clocks {
+        /// First derivatives.
+        speeds: [Ball<R>; 2],
+        /// Second derivatives, constant.
+        accelerations: [Ball<R>; 2],
+        /// Bound on the change of the first clock.
+        half: Ball<R>,
+        /// Bound on the shift.
+        shift: Ball<R>,
     },
 }
 
@@ -82,8 +94,32 @@ impl<R: BallReal> Change<R> {
                     half: *half,
                 }
             }
+            // Along the line from the middle to any two clock times, each length has these bounds on its derivatives.
+            Self::Clocks { speeds, accelerations, half, shift } => {
+                let spans = [*half, *half + *shift];
+                let squares = squares(*half, *shift);
+                let turns = [0, 1].map(|k| [bodies[k].rate() * speeds[k], bodies[k].rate() * accelerations[k]]);
+                let bound = |k: usize, [first, second]: [Ball<R>; 2]| {
+                    let second = second.abs() * spans[k] * spans[k];
+                    [first.abs() * spans[k] + second, second]
+                };
+                let second = (turns[0][1] - turns[1][1]).abs() * squares[0] + turns[1][1].abs() * squares[1];
+                let first = (turns[0][0] - turns[1][0]).abs() * *half + turns[1][0].abs() * *shift;
+                Rates {
+                    own: bound(own, turns[own]),
+                    frame: bound(frame, turns[frame]),
+                    apart: [first + second, second],
+                    length: bound(own, [speeds[own], accelerations[own]]),
+                    half: Ball::from(1.0),
+                }
+            }
         }
     }
+}
+
+/// Bounds on the square of the change of the first clock, and on what that of the second one is more or less.
+fn squares<R: BallReal>(half: Ball<R>, shift: Ball<R>) -> [Ball<R>; 2] {
+    [half * half, (Ball::from(2.0) * half + shift) * shift]
 }
 
 /// Bound on the second derivative of the way of a corner of one body, seen from the other one, which is the `frame`.
@@ -115,10 +151,19 @@ fn bend<R: BallReal>(
             Change::Line { accelerations, .. } => {
                 (own_along.times(accelerations[1 - frame]) - along.times(accelerations[frame])).norm()
             }
+            Change::Clocks { accelerations, half, shift, .. } => {
+                let squares = squares(*half, *shift);
+                let both = (own_along.times(accelerations[1 - frame]) - along.times(accelerations[frame])).norm();
+                both * squares[0] + bodies[1].lever * accelerations[1].abs() * squares[1]
+            }
         },
         (Sweep::Line { .. }, _) => match change {
             Change::Box(_) => by_itself(),
             Change::Line { accelerations, .. } => by_itself() + owner.lever * accelerations[frame].abs(),
+            Change::Clocks { accelerations, half, shift, .. } => {
+                let span = if frame == 0 { *half } else { *half + *shift };
+                by_itself() + owner.lever * accelerations[frame].abs() * span * span
+            }
         },
         (Sweep::Circle { arm, .. }, _) => by_itself() + turns(rates.frame) * arm.norm(),
     }
@@ -173,6 +218,11 @@ pub fn below<R: BallReal>(bodies: [&Carried<R>; 2], postures: [&Posture<R>; 2], 
         Change::Line { speeds, accelerations, half } => {
             let way = |k: usize| bodies[k].lever * (speeds[k].abs() + accelerations[k].abs() * *half) * *half;
             way(0) + way(1)
+        }
+        Change::Clocks { speeds, accelerations, half, shift } => {
+            let way =
+                |k: usize, span: Ball<R>| bodies[k].lever * (speeds[k].abs() + accelerations[k].abs() * span) * span;
+            way(0, *half) + way(1, *half + *shift)
         }
     };
     found.anywhere = greater(found.anywhere, found.middle - ways);
@@ -269,6 +319,16 @@ fn along<R: BallReal>(
             Change::Line { speeds, half, .. } => {
                 let slope = by_own * speeds[own] + by_owner * speeds[owner];
                 (slope.abs() * *half + (second * *half * *half).half(), [1.0; 2])
+            }
+            Change::Clocks { speeds, half, shift, .. } => {
+                let [first, second_clock] = if own == 0 { [by_own, by_owner] } else { [by_owner, by_own] };
+                let by_shift = second_clock * speeds[1];
+                let ways = [(first * speeds[0] + by_shift).abs() * *half, by_shift.abs() * *shift];
+                let [time, delay] = [half, shift].map(|span| span.to_f64());
+                let share = if time + delay > 0.0 { time / (time + delay) } else { 0.5 };
+                let bent = 0.5 * second.to_f64();
+                let weights = [ways[0].to_f64() + bent * share, ways[1].to_f64() + bent * (1.0 - share)];
+                (ways[0] + ways[1] + second.half(), weights)
             }
         };
         let mut slopes = [0.0; 2];
@@ -462,7 +522,24 @@ pub fn meet<R: BallReal>(postures: [&Posture<R>; 2]) -> Ternary {
             }
         }
     }
+    // Corners and edges that lie on one another say nothing. But two polygons without a common point are parted by the line of an edge of
+    // one of them; a flat one has ends besides.
+    let has_area = postures.iter().all(|posture| posture.normals.len() > 2);
+    if has_area && gaps(postures).all(|gap| (-gap).is_positive().is_certain()) {
+        return Ternary::Yes;
+    }
     Ternary::Doubt
+}
+
+/// How far two polygons are apart along the normals of the edges of both; negative where a normal does not part them \[m\].
+fn gaps<R: BallReal>(postures: [&Posture<R>; 2]) -> impl Iterator<Item = Ball<R>> {
+    [[0, 1], [1, 0]].into_iter().flat_map(move |[own, other]| {
+        postures[own].normals.iter().filter_map(move |&normal| {
+            let [own, other] = [own, other].map(|k| postures[k].corners.iter().map(move |&corner| normal.dot(corner)));
+            let (far, near) = (own.reduce(Ball::max)?, other.reduce(Ball::min)?);
+            Some(near - far)
+        })
+    })
 }
 
 /// An upper bound on the signed distance of the polygons \[m\].
@@ -472,15 +549,7 @@ pub fn above<R: BallReal>(postures: [&Posture<R>; 2]) -> Ball<R> {
 
 /// An upper bound on the signed distance of two polygons that have a point in common \[m\]; at most 0.
 pub fn overlap<R: BallReal>(postures: [&Posture<R>; 2]) -> Ball<R> {
-    let mut most: Option<Ball<R>> = None;
-    for [own, other] in [[0, 1], [1, 0]] {
-        for &normal in &postures[own].normals {
-            let [own, other] = [own, other].map(|k| postures[k].corners.iter().map(move |&corner| normal.dot(corner)));
-            let (Some(far), Some(near)) = (own.reduce(Ball::max), other.reduce(Ball::min)) else { continue };
-            let gap = near - far;
-            most = Some(most.map_or(gap, |most| most.max(gap)));
-        }
-    }
+    let most = gaps(postures).reduce(Ball::max);
     let zero = Ball::from(0.0);
     most.map_or(zero, |most| most.min(zero))
 }

@@ -1,6 +1,7 @@
 //! Bounds, claims and motions against computations that share nothing with them: plain `f64`, densely sampled.
 
 mod decisions;
+mod delays;
 mod tables;
 mod wall;
 

@@ -4,14 +4,17 @@
 //! motions from which the library has computed the delays. Which pairs come near one another, the checker finds itself.
 
 use super::UnsafeDelayModel;
-use crate::checker_input;
+use crate::checker_input::{self, outlines};
 use crate::exclusion_table::area_pair_search::{SyncProgressFn, in_stretches};
 use crate::memory_budget::MemoryDemand;
 use crate::parallel;
 use pcr_certify::delays::{Neighbours, Traversal, Verdict};
+use pcr_certify::outline::Body as OutlineBody;
+use pcr_certify::outline::delays::{Traversal as OutlineTraversal, neighbours};
 use pcr_formats::import::{ElementId, ImportError};
 use serde::Serialize;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
+use std::ops::Range;
 
 /// Number of pairs without a proof that are listed, of each kind.
 const LISTED: usize = 10;
@@ -55,7 +58,7 @@ pub struct DelayApproach {
     pub delay: f64,
     /// Time since the departure on `a` \[s\].
     pub time: f64,
-    /// Distance of the centres less the radii \[m\]; NaN where it is not known, in JSON `null`.
+    /// Distance of the centres less the radii, or of the outlines \[m\]; NaN where it is not known, in JSON `null`.
     pub clearance: f64,
 }
 
@@ -69,8 +72,17 @@ struct Traversals {
     ways: Vec<usize>,
     /// The index of each way among the lines.
     line: Vec<Option<usize>>,
-    /// All as motions; empty if all are lines.
+    /// All as motions of discs; empty if all are lines, and for outlines.
     motions: Vec<Traversal>,
+}
+
+/// Ways that may come near one another, each with its motions as bodies.
+struct OutlineTraversals<'a> {
+    all: Vec<OutlineTraversal<'a>>,
+    /// For each way those of its bodies.
+    of: &'a [Range<usize>],
+    /// For each way the later ones near it, in order.
+    near: Vec<Vec<usize>>,
 }
 
 impl UnsafeDelayModel {
@@ -84,6 +96,9 @@ impl UnsafeDelayModel {
         told: SyncProgressFn<'_>,
     ) -> Result<DelayProof, ImportError> {
         MemoryDemand::TraversalProof(2 * self.ways.len()).ask().map_err(|large| ImportError::new(large.to_string()))?;
+        if self.fleet.motions().iter().any(outlines::is_body) {
+            return self.proof_of_outlines(forbidden, told);
+        }
         let traversals = self.traversals()?;
         let near = [&traversals.lines, &traversals.motions].map(|all| Neighbours::new(all));
         // Of two lines the lines count, of all others the motions.
@@ -104,6 +119,63 @@ impl UnsafeDelayModel {
                 let [first, second] = traversals.pair([way, other]);
                 let intervals = forbidden.get(&[way, other]).map_or(&[][..], Vec::as_slice);
                 let (verdict, cells) = first.outside(second, intervals);
+                found.add([way, other], verdict, cells);
+            }
+            Ok(found)
+        };
+        let mut all = Found::default();
+        in_stretches(
+            self.ways.len(),
+            |_| 1,
+            told,
+            &row,
+            |found: Found| {
+                all.append(found);
+                Ok::<(), ImportError>(())
+            },
+        )?;
+        Ok(all.proof(self))
+    }
+
+    /// The same of outlines, each of whose bodies is proved by itself.
+    fn proof_of_outlines(
+        &self,
+        forbidden: &ForbiddenDelays,
+        told: SyncProgressFn<'_>,
+    ) -> Result<DelayProof, ImportError> {
+        let motions = self.fleet.motions();
+        let ids: Vec<u64> = (0..motions.len() as u64).collect();
+        let raw = outlines::bodies(checker_input::agents(&self.fleet, &motions, &ids), &motions);
+        let of = self.bodies.get(..self.ways.len()).unwrap_or_default();
+        let way_of = |body: usize| of.partition_point(|bodies| bodies.end <= body);
+        let refused =
+            |body: usize, problem: String| ImportError::new(format!("{}: {problem}", self.name(way_of(body))));
+        let count = of.last().map_or(0, |last| last.end);
+        let placed = parallel::map_parallel(0..count, &|body| {
+            OutlineBody::new(&raw[body]).map_err(|problem| refused(body, problem))
+        });
+        let placed: Vec<OutlineBody<'_>> = placed.into_iter().collect::<Result<_, _>>()?;
+        let all = placed
+            .iter()
+            .enumerate()
+            .map(|(body, placed)| OutlineTraversal::new(placed).map_err(|problem| refused(body, problem)));
+        let all: Vec<OutlineTraversal<'_>> = all.collect::<Result<_, _>>()?;
+        let index = neighbours(&all);
+        let mut near = vec![BTreeSet::new(); of.len()];
+        for body in 0..count {
+            for other in index.after(body) {
+                // Bodies of a way are one after the other.
+                near[way_of(body)].insert(way_of(other));
+            }
+        }
+        let near = near.into_iter().map(|ways| ways.into_iter().collect()).collect();
+        let traversals = OutlineTraversals { all, of, near };
+        let row = |way: usize| {
+            let mut found = Found::default();
+            let others = traversals.near[way].iter().copied().filter(|&other| other != way);
+            for other in std::iter::once(way).chain(others).filter(|&other| self.share_a_level([way, other])) {
+                let intervals = forbidden.get(&[way, other]).map_or(&[][..], Vec::as_slice);
+                let (verdict, cells) = traversals.outside([way, other], intervals);
                 found.add([way, other], verdict, cells);
             }
             Ok(found)
@@ -144,6 +216,24 @@ impl UnsafeDelayModel {
             all.motions = traversals.into_iter().collect::<Result<_, _>>()?;
         }
         Ok(all)
+    }
+}
+
+impl OutlineTraversals<'_> {
+    /// The first verdict about two bodies of two ways that is none of freedom.
+    fn outside(&self, ways: [usize; 2], forbidden: &[[f64; 2]]) -> (Verdict, usize) {
+        let [own, their] = ways.map(|way| &self.all[self.of[way].clone()]);
+        let (mut worst, mut cells) = (Verdict::Free, 0);
+        for (first, second) in own.iter().flat_map(|first| their.iter().map(move |second| (first, second))) {
+            let (verdict, more) = first.outside(second, forbidden);
+            cells += more;
+            match verdict {
+                Verdict::Free => {}
+                Verdict::Contact(_) => return (verdict, cells),
+                Verdict::Undecided(_) => worst = verdict,
+            }
+        }
+        (worst, cells)
     }
 }
 
@@ -220,7 +310,9 @@ mod tests {
     use super::*;
     use crate::exclusion_table::{EdgeDriving, ExclusionTable};
     use crate::report::UnsafeDelayReport;
-    use pcr_formats::import::{ImportOptions, ImportedLayout, InputFormat, Warnings, layout};
+    use pcr_formats::footprint::Footprint;
+    use pcr_formats::import::{ImportOptions, ImportedLayout, InputFormat, VehicleTraits, Warnings, layout};
+    use pcr_formats::scenario::PlacedSegment;
     use std::path::Path;
 
     const DRIVING: [EdgeDriving; 2] =
@@ -279,6 +371,74 @@ mod tests {
                 assert!(table.delays.len() >= rows && found.pairs >= delays.ways().len(), "{found:?}");
             }
         }
+    }
+
+    /// A vehicle longer than wide; and one with a notch ahead, of two bodies or more.
+    fn outlines() -> [Footprint; 2] {
+        let fork =
+            [[-0.3, -0.25], [0.7, -0.25], [0.7, -0.1], [0.2, -0.1], [0.2, 0.1], [0.7, 0.1], [0.7, 0.25], [-0.3, 0.25]];
+        [vec![[-0.3, -0.25], [0.7, -0.25], [0.7, 0.25], [-0.3, 0.25]], fork.to_vec()]
+            .map(|corners| Footprint::new(corners).expect("a footprint"))
+    }
+
+    fn with(footprint: Footprint, imported: ImportedLayout) -> ImportedLayout {
+        let ImportedLayout { layout, vehicle } = imported;
+        let radius = footprint.circumscribed_radius();
+        ImportedLayout { layout, vehicle: VehicleTraits { radius, footprint: Some(footprint), ..vehicle } }
+    }
+
+    #[test]
+    fn delays_of_outlines_are_proved_and_shorter_ones_refuted() {
+        for footprint in outlines() {
+            let parts = footprint.parts().count();
+            for (imported, rows) in [(grid(0.8), 20), (curves(), 1)] {
+                let imported = with(footprint.clone(), imported);
+                for driving in DRIVING {
+                    let (delays, table) = table(&imported, driving);
+                    assert_eq!(delays.bodies.iter().map(Range::len).max(), Some(parts));
+                    let found = proof(&delays, &table);
+                    assert_eq!((found.verdict, &found.open[..]), ("proved", &[][..]), "{driving:?} {found:?}");
+                    assert!(table.delays.len() >= rows && found.pairs >= delays.ways().len(), "{found:?}");
+                    for row in 0..table.delays.len().min(4) {
+                        let [lo, hi] = table.delays[row].delay;
+                        let mut altered = table.clone();
+                        altered.delays[row].delay = [lo + 0.2 * (hi - lo), hi];
+                        let found = proof(&delays, &altered);
+                        assert_eq!((found.verdict, found.refuted), ("refuted", 1), "{found:?}");
+                        let delay = found.open[0].delay;
+                        assert!((lo..=hi).contains(&delay) && found.open[0].clearance < 0.0, "{found:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// Behind one another on one line, the longer vehicle has to leave more room than the disc of its width, and less than the disc around it.
+    #[test]
+    fn an_outline_behind_another_leaves_its_length() {
+        let [footprint, _] = outlines();
+        let imported = with(footprint, grid(2.0));
+        let (delays, table) = table(&imported, DRIVING[0]);
+        let own = table.delays.iter().filter(|row| row.a == row.b && row.a_backward == row.b_backward);
+        let mut count = 0;
+        for row in own {
+            let [lo, hi] = row.delay;
+            assert!((lo + 1.0).abs() < 1e-7 && (hi - 1.0).abs() < 1e-7 && lo <= -1.0 && hi >= 1.0, "{row:?}");
+            count += 1;
+        }
+        assert_eq!(count, delays.ways().len());
+    }
+
+    #[test]
+    fn an_outline_that_turns_in_no_time_is_refused() {
+        let [footprint, _] = outlines();
+        let mut imported = with(footprint, grid(2.0));
+        let corner = [PlacedSegment::line([0.0, 0.0], [0.0, 1.0]), PlacedSegment::line([0.0, 1.0], [1.0, 1.0])];
+        imported.layout.edges[0].curve = corner.to_vec();
+        let refused = UnsafeDelayModel::new(&imported, DRIVING[0], false).err().expect("no time").to_string();
+        assert!(refused.contains("turns in place") && refused.contains("--acceleration"), "{refused}");
+        let (delays, table) = table(&imported, DRIVING[1]);
+        assert_eq!(proof(&delays, &table).verdict, "proved");
     }
 
     #[test]
