@@ -144,6 +144,7 @@ fn back(agent: &Agent) -> SpeedLimitedPath {
         pose = [x, y, placed.heading_at_end()];
     }
     let turned = agent.path.iter().rev().map(|segment| match *segment {
+        PathSegment::Cusp => panic!("a change of gear"),
         PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: -sweep },
         line => line,
     });

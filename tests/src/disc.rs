@@ -101,6 +101,7 @@ impl Disc {
         for segment in &agent.path {
             match *segment {
                 PathSegment::Line { length } => legs.push(Leg::Line(length)),
+                PathSegment::Cusp => panic!("a change of gear"),
                 PathSegment::Arc { radius, sweep } => {
                     let turns = (sweep.abs() / TAU).ceil().max(1.0);
                     legs.extend(std::iter::repeat_n(Leg::arc(radius, sweep / turns), turns as usize));

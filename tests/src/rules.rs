@@ -408,7 +408,7 @@ fn agent(vehicle: &Vehicle, radius: f64) -> RawAgent {
         let length = piece.shape.length();
         let turn = heading.map(|heading| piece.heading - heading).filter(|turn| *turn != 0.0);
         let bend = match piece.shape {
-            PathSegment::Line { .. } => None,
+            PathSegment::Line { .. } | PathSegment::Cusp => None,
             PathSegment::Arc { radius, sweep } => Some(radius * sweep.signum()),
         };
         let turns = turn.map(RawAngle::Radians).into_iter().collect();
@@ -434,7 +434,7 @@ fn bounds(curve: &[PlacedSegment], radius: f64) -> [[f64; 2]; 2] {
     for piece in curve {
         // No point of a piece is farther from where it begins than its length.
         let room = match piece.shape {
-            PathSegment::Line { .. } => 0.0,
+            PathSegment::Line { .. } | PathSegment::Cusp => 0.0,
             PathSegment::Arc { .. } => piece.shape.length(),
         };
         for point in [piece.start, piece.end()] {

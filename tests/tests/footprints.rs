@@ -2,7 +2,8 @@
 
 use pcr_core::Motion;
 use pcr_fixed::{Q12, Q16, Q20};
-use pcr_formats::scenario::Scenario;
+use pcr_formats::scenario::{Agent, PathSegment, Scenario};
+use pcr_planning::certify::{CertifyInput, CertifyReport};
 use pcr_planning::check::CheckReport;
 use pcr_planning::fleet::{Fleet, HostScalar};
 use pcr_planning::regions::{RegionEntry, RegionOptions, RegionsReport};
@@ -37,12 +38,40 @@ fn arc(radius: f64, sweep: f64) -> Value {
 }
 
 fn read(agents: &[Value]) -> Scenario {
-    Scenario::from_json(&json!({ "name": "outlines", "agents": agents }).to_string()).unwrap()
+    Scenario::from_json(&json!({ "name": "outlines", "version": 2, "agents": agents }).to_string()).unwrap()
 }
 
-/// The polygon of a vehicle in a pose.
-fn placed(polygon: &[Point], pose: pcr_core::Pose<f64>) -> Polygon {
-    polygons::placed(polygon, [pose.position.x, pose.position.y], pose.heading.0)
+/// A segment in reverse gear.
+fn reverse(mut segment: Value) -> Value {
+    segment["gear"] = json!("reverse");
+    segment
+}
+
+/// The polygon of a vehicle at a length of its path, from the path of the scenario alone.
+fn placed(polygon: &[Point], agent: &Agent, length: f64) -> Polygon {
+    let [mut x, mut y, mut heading] = agent.start;
+    let (mut rest, mut gear) = (length, 1.0);
+    for segment in &agent.path {
+        let own = rest.clamp(0.0, segment.length());
+        match *segment {
+            // At the change itself it does not matter.
+            PathSegment::Cusp => gear = -gear,
+            PathSegment::Line { .. } => {
+                x += gear * own * heading.cos();
+                y += gear * own * heading.sin();
+            }
+            PathSegment::Arc { radius, sweep } => {
+                // The centre is beside the vehicle.
+                let side = gear * radius.copysign(sweep);
+                let after = heading + (own / radius).copysign(sweep);
+                x += side * (after.sin() - heading.sin());
+                y -= side * (after.cos() - heading.cos());
+                heading = after;
+            }
+        }
+        rest -= own;
+    }
+    polygons::placed(polygon, [x, y], heading)
 }
 
 /// The reference points alone.
@@ -75,26 +104,29 @@ fn compare_in<S: HostScalar>(agents: &[Value], polygons: [&[Point]; 2], slack: f
             .unwrap();
     let mut counts = [0, 0];
     for (own, other) in [(0, 1), (1, 0)] {
-        let (ego, them): (&Motion<'_, f64>, &Motion<'_, f64>) = (&motions[own], &motions[other]);
+        let them: &Motion<'_, f64> = &motions[other];
         let id = scenario.agents[own].id;
         let regions: Vec<RegionEntry> = answer.regions.iter().filter(|region| region.i == id).cloned().collect();
         // At the times of the slices of each region, that of all regions then.
         for region in &regions {
             for slice in region.slices.iter().flatten() {
-                let there = them.path().pose_at(them.length_at(slice.t));
-                let [far, inner] = [placed(polygons[other], there), placed(&smaller[other], there)];
+                let there = them.length_at(slice.t);
+                let far = placed(polygons[other], &scenario.agents[other], there);
+                let inner = placed(&smaller[other], &scenario.agents[other], there);
                 for step in 0..=LENGTHS {
                     let length = scenario.agents[own].length() * (step as f64 / LENGTHS as f64);
-                    let here = ego.path().pose_at(length);
-                    let distance = apart(&placed(polygons[own], here), &far);
+                    let here = |polygon: &[Point]| placed(polygon, &scenario.agents[own], length);
+                    let distance = apart(&here(polygons[own]), &far);
                     let in_slice = |by: f64| slice.l.iter().any(|[lo, hi]| within([lo - by, hi + by], length));
                     // On a turn in place, a whole turn is no longer than what the format may lose.
                     let covered = in_slice(lost);
                     assert!(!in_slice(0.0) || distance <= 3.0 * slack, "t {} l {length}: {distance}", slice.t);
                     // What no other region may hold is in this one.
                     let others = regions.iter().filter(|other| *other != region);
-                    let alone = others.clone().all(|other| !within(other.t, slice.t) || !within(other.l, length));
-                    let is_free = || apart(&placed(&smaller[own], here), &inner) > 0.0;
+                    let alone = others.clone().all(|other| {
+                        !within(other.t, slice.t) || !within([other.l[0] - lost, other.l[1] + lost], length)
+                    });
+                    let is_free = || apart(&here(&smaller[own]), &inner) > 0.0;
                     assert!(covered || !alone || is_free(), "{} t {} l {length}: not covered", S::NAME, slice.t);
                     counts[usize::from(distance > 0.0)] += 1;
                 }
@@ -104,10 +136,10 @@ fn compare_in<S: HostScalar>(agents: &[Value], polygons: [&[Point]; 2], slack: f
         let time = them.time();
         for step in 0..=120 {
             let t = time.lo + (time.hi - time.lo) * f64::from(step) / 120.0;
-            let far = placed(&smaller[other], them.path().pose_at(them.length_at(t)));
+            let far = placed(&smaller[other], &scenario.agents[other], them.length_at(t));
             for step in 0..=LENGTHS {
                 let length = scenario.agents[own].length() * (step as f64 / LENGTHS as f64);
-                if apart(&placed(&smaller[own], ego.path().pose_at(length)), &far) == 0.0 {
+                if apart(&placed(&smaller[own], &scenario.agents[own], length), &far) == 0.0 {
                     // With fewer digits the other agent may arrive a little earlier.
                     let there = |region: &RegionEntry| within(region.t, t) || (region.open_end && t > region.t[1]);
                     let inside = regions
@@ -131,7 +163,7 @@ fn conflicts<S: HostScalar>(
 ) {
     let verdict = CheckReport::compute::<S>(scenario, true).unwrap();
     let between = |polygons: [&[Point]; 2], t: f64| {
-        let [a, b] = [0, 1].map(|k| placed(polygons[k], motions[k].path().pose_at(motions[k].length_at(t))));
+        let [a, b] = [0, 1].map(|k| placed(polygons[k], &scenario.agents[k], motions[k].length_at(t)));
         apart(&a, &b)
     };
     let end = motions.iter().map(|motion| motion.time().hi).fold(0.0, f64::max);
@@ -187,6 +219,89 @@ fn the_centre_of_an_arc_may_be_inside_the_outline() {
     ];
     let [inside, outside] = compare(&agents, [&TRUCK, &TRUCK]);
     assert!(inside > 100 && outside > 100, "{inside} {outside}");
+}
+
+/// A truck that backs out of a bay and drives on, with its nose ahead all the time; and one that begins in reverse gear.
+fn reversing() -> [Value; 2] {
+    let out = json!([line(2.0), reverse(arc(1.5, 1.1)), reverse(line(1.3)), line(0.7), arc(1.2, -0.9)]);
+    let back = json!([reverse(line(1.1)), reverse(arc(0.8, -1.2)), arc(0.9, 0.4), line(1.5)]);
+    [agent(1, &TRUCK, [-1.5, 0.3, 0.1], &out), agent(2, &SQUARE, [0.6, -0.4, 1.3], &back)]
+}
+
+#[test]
+fn vehicles_in_reverse_gear() {
+    let agents = reversing();
+    let [inside, outside] = compare(&agents, [&TRUCK, &SQUARE]);
+    assert!(inside > 100 && outside > 100, "{inside} {outside}");
+    for counts in [
+        compare_in::<f32>(&agents, [&TRUCK, &SQUARE], 0.01),
+        compare_in::<Q20>(&agents, [&TRUCK, &SQUARE], 0.02),
+        compare_in::<Q16>(&agents, [&TRUCK, &SQUARE], 0.02),
+        compare_in::<Q12>(&agents, [&TRUCK, &SQUARE], 0.1),
+    ] {
+        assert!(counts.iter().all(|count| *count > 100), "{counts:?}");
+    }
+    // Without its gear the truck would be elsewhere, and so it would if it turned round at its cusps.
+    let scenario = read(&agents);
+    let mut turning = agents.clone();
+    turning[0]["path"] = json!([line(2.0), { "kind": "turn", "sweep": PI }, arc(1.5, 1.1), line(1.3),
+        { "kind": "turn", "sweep": -PI }, line(0.7), arc(1.2, -0.9)]);
+    (turning[0]["turn_v_max"], turning[0]["turn_a_max"]) = (json!(1.0), json!(1.0));
+    let lengths = |scenario: &Scenario| {
+        let options = RegionOptions { agent: Some(1), slices: None, certificate: false };
+        let answer = RegionsReport::compute::<f64>(scenario, options).unwrap();
+        answer.regions.iter().map(|region| region.l).collect::<Vec<_>>()
+    };
+    assert_ne!(lengths(&scenario), lengths(&read(&turning)));
+}
+
+/// Segments are numbered as in the file, where a change of gear is none.
+#[test]
+fn tables_and_motions_in_reverse_gear_are_proved() {
+    fn proved<S: HostScalar>(scenario: &Scenario) {
+        let options = RegionOptions { agent: None, slices: None, certificate: true };
+        let answer = RegionsReport::compute::<S>(scenario, options).unwrap();
+        let segments = answer.regions.iter().flat_map(|region| &region.pieces).filter_map(|piece| piece.i_segment);
+        let segments: Vec<usize> = segments.collect();
+        assert!(!segments.is_empty() && segments.iter().all(|segment| (1..=5).contains(segment)), "{segments:?}");
+        let mut text = Vec::new();
+        pcr_planning::report::json(&answer, &mut text).unwrap();
+        let input = CertifyInput::of_json(std::str::from_utf8(&text).unwrap()).unwrap();
+        let report = CertifyReport::prove("", &input.certificate[0], false);
+        assert_eq!((report.verdict, report.outlines), (Some("proved"), 2), "{} {report:?}", S::NAME);
+    }
+    let scenario = read(&reversing());
+    assert_eq!(scenario.agents[0].structure(), "SCASCSA");
+    proved::<f64>(&scenario);
+    proved::<f32>(&scenario);
+    proved::<Q20>(&scenario);
+    proved::<Q16>(&scenario);
+    // As its file says it, and no other.
+    assert_eq!(Scenario::from_json(&scenario.to_json()), Ok(scenario));
+}
+
+#[test]
+fn random_vehicles_in_reverse_gear() {
+    const PAIRS: u64 = if cfg!(optimized) { 30 } else { 5 };
+    let mut met = 0;
+    for seed in 0..PAIRS {
+        let mut dice = Dice::seeded(1000 + seed);
+        let mut path = || {
+            let legs = (0..4).map(|_| {
+                let leg = match dice.chance(0.5) {
+                    true => line(dice.range(0.5, 2.0)),
+                    false => arc(dice.range(0.3, 2.0), dice.range(-2.0, 2.0)),
+                };
+                if dice.chance(0.5) { reverse(leg) } else { leg }
+            });
+            legs.collect::<Vec<_>>()
+        };
+        let paths = [path(), path()].map(Value::from);
+        let place = |dice: &mut Dice| [dice.range(-1.0, 1.0), dice.range(-1.0, 1.0), dice.range(-PI, PI)];
+        let agents = [agent(1, &TRUCK, place(&mut dice), &paths[0]), agent(2, &TRUCK, place(&mut dice), &paths[1])];
+        met += usize::from(compare(&agents, [&TRUCK, &TRUCK])[0] > 0);
+    }
+    assert!(met > 2, "{met}");
 }
 
 /// In formats with fewer digits regions contain the polygons as well.

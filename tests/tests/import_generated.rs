@@ -283,7 +283,7 @@ fn points(pieces: &[PlacedSegment]) -> Vec<Point> {
     let mut corners: Vec<Point> = pieces.first().map(|first| first.start).into_iter().collect();
     for piece in pieces {
         let count = match piece.shape {
-            PathSegment::Line { .. } => 1,
+            PathSegment::Line { .. } | PathSegment::Cusp => 1,
             PathSegment::Arc { .. } => 4,
         };
         let length = piece.shape.length();

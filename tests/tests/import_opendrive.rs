@@ -193,7 +193,7 @@ fn place(curve: &[PlacedSegment], length: f64) -> [f64; 2] {
     for piece in curve {
         if rest < piece.shape.length() {
             let shape = match piece.shape {
-                PathSegment::Line { .. } => PathSegment::Line { length: rest },
+                PathSegment::Line { .. } | PathSegment::Cusp => PathSegment::Line { length: rest },
                 PathSegment::Arc { radius, sweep } => {
                     PathSegment::Arc { radius, sweep: (rest / radius).copysign(sweep) }
                 }
@@ -221,7 +221,7 @@ fn open_joints_are_closed_and_count_as_deviation_along_and_across() {
     let written = records.map(|PlacedSegment { start: [x, y], heading, shape }| {
         let length = shape.length();
         let shape = match shape {
-            PathSegment::Line { .. } => "<line/>".to_owned(),
+            PathSegment::Line { .. } | PathSegment::Cusp => "<line/>".to_owned(),
             PathSegment::Arc { radius, sweep } => format!("<arc curvature=\"{}\"/>", sweep.signum() / radius),
         };
         format!("<geometry x=\"{x}\" y=\"{y}\" hdg=\"{heading}\" length=\"{length}\">{shape}</geometry>")

@@ -82,8 +82,9 @@ fn agent(scene: &RegionScene<'_>, place: usize, motion: &Motion<'_, f64>) -> Val
         let acceleration = if time.length() > 0.0 { (speeds[1] - speeds[0]) / time.length() } else { 0.0 };
         json!([time.lo, time.length(), length.lo, speeds[0], speeds[1], acceleration])
     });
+    let reverse = scene.reverse(place);
     let parts = scene.scenario.agents.get(place).map_or_else(Vec::new, |agent| parts(agent, motion));
-    json!({
+    let mut agent = json!({
         // Beyond 2⁵³ a number would lose its last digits in the browser.
         "id": scene.id(place).to_string(),
         "name": scene.display_name(place),
@@ -95,7 +96,11 @@ fn agent(scene: &RegionScene<'_>, place: usize, motion: &Motion<'_, f64>) -> Val
         "length": motion.path().length(),
         "segments": segments.collect::<Vec<_>>(),
         "phases": phases.collect::<Vec<_>>(),
-    })
+    });
+    if !reverse.is_empty() {
+        agent["reverse"] = json!(reverse);
+    }
+    agent
 }
 
 /// The convex shapes by which contacts are told, as \[corners, radius, from, to\]: on which lengths of the path each of them is there. Where a

@@ -3,10 +3,12 @@
 use super::contour::{RegionOutline, trace};
 use super::layout::LayoutLevelView;
 use super::palette::{Colour, colour};
-use pcr_core::{Aabb, Crossing, Interval, Motion, PieceRef, PieceType, RegionRef, crossings};
+use pcr_core::{Aabb, Crossing, Interval, Motion, PieceRef, PieceType, Pose, Radians, RegionRef, crossings};
+use pcr_formats::plane_geometry::wrapped;
 use pcr_formats::scenario::{Agent, Scenario};
 use pcr_planning::fleet::HostEcm;
 use std::collections::HashMap;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A fleet with its regions.
 pub(super) struct RegionScene<'a> {
@@ -75,6 +77,29 @@ impl RegionScene<'_> {
                 corners.iter().map(|corner| [corner.at().x, corner.at().y]).collect()
             }
         }
+    }
+
+    /// Whether an agent drives backward, on each segment of its motion; empty if it never does.
+    pub(super) fn reverse(&self, place: usize) -> Vec<bool> {
+        let agent = self.scenario.agents.get(place).filter(|agent| agent.changes_gear());
+        let (Some(agent), Some(motion)) = (agent, self.motions.get(place)) else { return Vec::new() };
+        // The direction of travel turns by half a turn where the gear changes, and nowhere else without a length: an outline stands and turns.
+        let (mut heading, mut reverse) = (agent.start[2], false);
+        let segments = motion.path().segments().iter().map(|segment| {
+            reverse ^= wrapped(segment.heading_at(0.0).0 - heading).abs() > FRAC_PI_2;
+            heading = segment.heading_at(segment.length()).0;
+            reverse
+        });
+        segments.collect()
+    }
+
+    /// Where an agent is at a length of its path \[m\], with the heading of its body.
+    pub(super) fn pose_at(&self, place: usize, length: f64) -> Option<Pose<f64>> {
+        let motion = self.motions.get(place)?;
+        let Pose { position, heading } = motion.path().pose_at(length);
+        let after = motion.path().segments().partition_point(|segment| segment.from() <= length).saturating_sub(1);
+        let is_backward = self.reverse(place).get(after).copied().unwrap_or_default();
+        Some(Pose { position, heading: Radians(if is_backward { heading.0 + PI } else { heading.0 }) })
     }
 
     /// Whether an agent is more than one convex outline: maps show the regions of convex hulls.

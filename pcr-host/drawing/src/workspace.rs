@@ -5,7 +5,7 @@ use super::labels::{LabelPlacer, SPACING, around};
 use super::map::Legend;
 use super::region_scene::RegionScene;
 use super::svg::{PathData, PixelCoordinate, SvgWriter, text_width};
-use pcr_core::{Aabb, Curve, Interval, Motion, Pose, Segment, TurnSide};
+use pcr_core::{Aabb, Curve, Interval, Motion, Segment, TurnSide};
 use std::f64::consts::PI;
 
 /// Size of the numbers of agents \[px\].
@@ -86,9 +86,9 @@ pub(super) fn draw(svg: &mut SvgWriter, scene: &RegionScene<'_>, frame: &PlotAre
         let length = motion.path().length();
         if length > 0.0 {
             let dashed: SvgAttributes<'_> = &[("stroke-dasharray", &"2.5 2"), ("stroke-width", &"0.9")];
-            body(svg, scene, place, motion.path().pose_at(length), frame, dashed);
+            body(svg, scene, place, length, frame, dashed);
         }
-        body(svg, scene, place, motion.path().pose_at(0.0), frame, &[("fill", &colour), ("fill-opacity", &"0.35")]);
+        body(svg, scene, place, 0.0, frame, &[("fill", &colour), ("fill-opacity", &"0.35")]);
         svg.end();
     }
     names.draw(svg, scene);
@@ -98,15 +98,16 @@ pub(super) fn draw(svg: &mut SvgWriter, scene: &RegionScene<'_>, frame: &PlotAre
 /// Attributes.
 type SvgAttributes<'a> = &'a [(&'a str, &'a dyn std::fmt::Display)];
 
-/// The disc or the outline of an agent in a pose.
+/// The disc or the outline of an agent at a length of its path.
 fn body(
     svg: &mut SvgWriter,
     scene: &RegionScene<'_>,
     place: usize,
-    pose: Pose<f64>,
+    length: f64,
     frame: &PlotArea,
     style: SvgAttributes<'_>,
 ) {
+    let Some(pose) = scene.pose_at(place, length) else { return };
     let at = |ahead: f64, left: f64| {
         let (sin, cos) = pose.heading.0.sin_cos();
         frame.at([pose.position.x + ahead * cos - left * sin, pose.position.y + ahead * sin + left * cos])

@@ -105,7 +105,7 @@ fn turned([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
 fn carried(piece: &PlacedSegment, corner: [f64; 2]) -> PlacedSegment {
     let start = moved(piece.start, turned(corner, piece.heading));
     match piece.shape {
-        PathSegment::Line { .. } => PlacedSegment { start, ..*piece },
+        PathSegment::Line { .. } | PathSegment::Cusp => PlacedSegment { start, ..*piece },
         PathSegment::Arc { sweep, .. } => about(start, centre(piece), sweep),
     }
 }
@@ -114,7 +114,9 @@ fn carried(piece: &PlacedSegment, corner: [f64; 2]) -> PlacedSegment {
 fn seen(piece: &PlacedSegment, point: [f64; 2]) -> PlacedSegment {
     let from = |at: [f64; 2]| turned([at[0] - piece.start[0], at[1] - piece.start[1]], -piece.heading);
     match piece.shape {
-        PathSegment::Line { .. } => PlacedSegment { start: from(point), heading: PI, shape: piece.shape },
+        PathSegment::Line { .. } | PathSegment::Cusp => {
+            PlacedSegment { start: from(point), heading: PI, shape: piece.shape }
+        }
         PathSegment::Arc { sweep, .. } => about(from(point), from(centre(piece)), -sweep),
     }
 }
@@ -161,6 +163,7 @@ fn roots(piece: &PlacedSegment, polygon: &[[f64; 2]], far: f64) -> Vec<f64> {
 fn on_line(piece: &PlacedSegment, through: [f64; 2], normal: [f64; 2]) -> Vec<f64> {
     let off = |[x, y]: [f64; 2]| normal[0] * (x - through[0]) + normal[1] * (y - through[1]);
     match piece.shape {
+        PathSegment::Cusp => Vec::new(),
         PathSegment::Line { length } => {
             let slope = normal[0] * piece.heading.cos() + normal[1] * piece.heading.sin();
             let at = -off(piece.start) / slope;
@@ -181,6 +184,7 @@ fn on_line(piece: &PlacedSegment, through: [f64; 2], normal: [f64; 2]) -> Vec<f6
 /// Lengths at which a piece meets a circle.
 fn on_circle(piece: &PlacedSegment, [x, y]: [f64; 2], far: f64) -> Vec<f64> {
     match piece.shape {
+        PathSegment::Cusp => Vec::new(),
         PathSegment::Line { length } => {
             let (gap, along) = ([x - piece.start[0], y - piece.start[1]], [piece.heading.cos(), piece.heading.sin()]);
             let middle = gap[0] * along[0] + gap[1] * along[1];

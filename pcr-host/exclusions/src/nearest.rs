@@ -79,6 +79,7 @@ fn pieces(a: &PlacedSegment, b: &PlacedSegment) -> NearestPoints {
     let best = all.min_by(|x, y| x.distance.total_cmp(&y.distance)).expect("four candidates at least");
     let reach = |piece: &PlacedSegment| match piece.shape {
         PathSegment::Line { length } => length,
+        PathSegment::Cusp => 0.0,
         PathSegment::Arc { radius, .. } => radius,
     };
     let far = [a, b].iter().map(|piece| piece.start[0].abs() + piece.start[1].abs() + reach(piece)).sum::<f64>();
@@ -98,7 +99,7 @@ impl SupportCurve {
     fn of(piece: &PlacedSegment) -> Self {
         let (sin, cos) = piece.heading.sin_cos();
         match piece.shape {
-            PathSegment::Line { .. } => Self::Line(piece.start, [cos, sin]),
+            PathSegment::Line { .. } | PathSegment::Cusp => Self::Line(piece.start, [cos, sin]),
             PathSegment::Arc { radius, sweep } => Self::Circle(centre(piece, radius, sweep), radius),
         }
     }
@@ -158,6 +159,7 @@ fn length_near(piece: &PlacedSegment, at: [f64; 2]) -> f64 {
             let (sin, cos) = piece.heading.sin_cos();
             ((at[0] - piece.start[0]) * cos + (at[1] - piece.start[1]) * sin).clamp(0.0, length)
         }
+        PathSegment::Cusp => 0.0,
         PathSegment::Arc { radius, sweep } => {
             let centre = centre(piece, radius, sweep);
             let angle = |[x, y]: [f64; 2]| (y - centre[1]).atan2(x - centre[0]);

@@ -278,7 +278,7 @@ fn near(curve: &[PlacedSegment], far: f64, [lo, hi]: [[f64; 2]; 2]) -> bool {
         let ends = [piece.start, piece.end()];
         // No point of a piece is farther from both ends than half its length.
         let room = match piece.shape {
-            PathSegment::Line { .. } => 0.0,
+            PathSegment::Line { .. } | PathSegment::Cusp => 0.0,
             PathSegment::Arc { .. } => piece.shape.length() / 2.0,
         };
         (0..2).all(|x| {
@@ -671,7 +671,7 @@ fn parts(curve: &[PlacedSegment], split: Option<f64>) -> Vec<PlacedSegment> {
         let length = piece.shape.length();
         let by_length = split.map_or(1.0, |most| (length / most - 1e-9).ceil());
         let by_turn = match piece.shape {
-            PathSegment::Line { .. } => 1.0,
+            PathSegment::Line { .. } | PathSegment::Cusp => 1.0,
             PathSegment::Arc { sweep, .. } => (sweep.abs() / TURN - 1e-9).ceil(),
         };
         let count = by_length.max(by_turn).max(1.0);

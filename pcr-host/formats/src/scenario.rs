@@ -33,6 +33,8 @@
 //! - `"margin": 0.05` is a distance to be kept around the disc; 0 if left out.
 //! - `"label": "AGV-7"` is what people call the agent. Ids may be texts, too, if all are: then the agents are numbered from 1 in the
 //!   order of the file, and the texts are their labels.
+//! - `"gear": "reverse"` in a line or arc: the vehicle drives backward. It comes to rest where the gear changes, and does not turn there. An
+//!   arc turns it by `sweep`, whatever the gear. Files with it have `"version": 2`.
 //! - `"format": "pcr-scenario"` and `"version": 1` are what files of the tool begin with; they may be left out.
 //!
 //! Whatever is out of range, missing, unknown, repeated or not finite is refused by a [`ScenarioError`] that names the
@@ -43,6 +45,7 @@ mod agent_parts;
 mod angles;
 mod decode;
 mod encode;
+mod gear;
 mod json_fields;
 mod labels;
 mod load_outline;
@@ -95,7 +98,8 @@ pub struct Agent {
     pub margin: f64,
     /// When it sets off \[s\].
     pub t_start: f64,
-    /// Abscissa \[m\], ordinate \[m\] and heading \[rad\] at the start of the path.
+    /// Abscissa \[m\], ordinate \[m\] and heading \[rad\] of the vehicle at the start of the path, which leads ahead unless it begins with a
+    /// change of gear.
     pub start: [f64; 3],
     /// The path.
     pub path: Vec<PathSegment>,
@@ -103,7 +107,7 @@ pub struct Agent {
     pub motion: MotionSpec,
 }
 
-/// A line or an arc.
+/// A line, an arc, or a change of gear between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PathSegment {
     /// Straight, with its length \[m\].
@@ -118,6 +122,8 @@ pub enum PathSegment {
         /// \[rad\], left positive.
         sweep: f64,
     },
+    /// A change of gear: the way goes on in the opposite direction, and the vehicle neither moves nor turns. It has no length.
+    Cusp,
 }
 
 impl Scenario {
@@ -140,6 +146,7 @@ impl PathSegment {
         match *self {
             Self::Line { length } => length,
             Self::Arc { radius, sweep } => radius * sweep.abs(),
+            Self::Cusp => 0.0,
         }
     }
 
@@ -148,7 +155,7 @@ impl PathSegment {
         /// A full turn may come in with the rounding of 2π to a dozen digits.
         const SHORTENED: f64 = 1.0 - 1e-12;
         match *self {
-            Self::Line { .. } => 1.0,
+            Self::Line { .. } | Self::Cusp => 1.0,
             Self::Arc { sweep, .. } => (sweep.abs() / TAU * SHORTENED).ceil().max(1.0),
         }
     }
@@ -158,6 +165,7 @@ impl PathSegment {
         match self {
             Self::Line { .. } => 'S',
             Self::Arc { .. } => 'A',
+            Self::Cusp => 'C',
         }
     }
 }
@@ -228,7 +236,7 @@ impl Agent {
         self.path.iter().map(PathSegment::letter).collect()
     }
 
-    /// Heading at a travelled length \[rad\], accumulated along the arcs and not reduced to one turn.
+    /// Heading of the vehicle at a travelled length \[rad\], accumulated along the arcs and not reduced to one turn.
     pub fn heading_at(&self, length: f64) -> f64 {
         let (mut heading, mut rest) = (self.start[2], length);
         for segment in &self.path {

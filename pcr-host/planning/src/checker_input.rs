@@ -148,7 +148,7 @@ fn same_motion<S: HostScalar>(given: &Agent, held: &RawAgent, turned: Vec<f64>) 
     // A length is rounded for each segment, and for each turn of an arc; the rounding of a radius is in it once for each radian.
     let bends = given.path.iter().map(|segment| match segment {
         PathSegment::Arc { sweep, .. } => sweep.abs(),
-        PathSegment::Line { .. } => 0.0,
+        PathSegment::Line { .. } | PathSegment::Cusp => 0.0,
     });
     let parts = (held.path.segments.len() + given.path.len() + 1) as f64 + bends.sum::<f64>();
     let numbers = [

@@ -377,9 +377,26 @@ fn place_path<S: HostScalar>(agent: &Agent, levers: Option<&[f64]>) -> Result<Pl
     let count = agent.path.len();
     let mut segments: Vec<Segment<S>> = Vec::with_capacity(count.max(1));
     let (mut sources, mut turns) = (Vec::with_capacity(count), Vec::new());
-    for (source, segment) in agent.path.iter().enumerate().filter(|(_, segment)| segment.length() > 0.0) {
+    // Angle from the direction of travel to the heading of the body, from the first change of gear on.
+    let (mut facing, mut cusps) = (None, 0);
+    for (source, segment) in agent.path.iter().enumerate() {
+        if *segment == PathSegment::Cusp {
+            // There and back by the same number, so that the heading of the body is the same one.
+            let half = if facing == Some(-PI) { -PI } else { PI };
+            let by = angle::<S>("gear", half).map_err(of_agent)?;
+            let last = segments.last_mut().unwrap_or(&mut origin);
+            *last = last.turned(by).map_err(|reason| of_agent(derived::<S>(reason)))?;
+            turns.push((segments.len(), by));
+            (facing, cusps) = (Some(if half > 0.0 { -half } else { 0.0 }), cusps + 1);
+            continue;
+        }
+        if segment.length() <= 0.0 {
+            continue;
+        }
+        // In the file.
+        let source = source - cusps;
         let at = |problem| (Some(("segment", source)), problem);
-        let lever = levers.and_then(|levers| levers.get(source).copied()).filter(|lever| *lever > 0.0);
+        let lever = levers.and_then(|levers| levers.get(source + cusps).copied()).filter(|lever| *lever > 0.0);
         let turn = match *segment {
             PathSegment::Arc { radius: TURN, sweep } if levers.is_some() => Some(sweep),
             _ => turn_in_place::<S>(segment),
@@ -393,7 +410,7 @@ fn place_path<S: HostScalar>(agent: &Agent, levers: Option<&[f64]>) -> Result<Pl
         }
         let whole = segment.turns();
         let curve = match *segment {
-            PathSegment::Line { .. } => None,
+            PathSegment::Line { .. } | PathSegment::Cusp => None,
             PathSegment::Arc { radius, sweep } => Some((
                 number("radius", lever.unwrap_or(radius)).map_err(at)?,
                 if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right },
@@ -411,6 +428,10 @@ fn place_path<S: HostScalar>(agent: &Agent, levers: Option<&[f64]>) -> Result<Pl
                 Some((lever, turn)) if is_turn => last.then_pivot(lever, turn, length),
                 Some((radius, turn)) => last.then_arc(radius, turn, length),
             };
+            let next = next.and_then(|next| match facing {
+                Some(facing) => next.facing(S::angle(facing).ok_or(InvalidInput::NonFinite("gear"))?),
+                None => Ok(next),
+            });
             let next = next.map_err(|reason| at(format!("at its end: {}", derived::<S>(reason))))?;
             if next.length() > S::ZERO {
                 segments.push(next);

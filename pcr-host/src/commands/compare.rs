@@ -8,6 +8,7 @@ use pcr_comparing::compare::{self, Comparison, MeasurementBudget, MethodQuestion
 use pcr_comparing::report;
 use pcr_formats::import::ImportOptions;
 use pcr_formats::output;
+use pcr_formats::scenario::Agent;
 use pcr_planning::failure::ComputationError;
 use pcr_planning::memory_budget::MemoryDemand;
 use pcr_planning::report::{counted, heading, json};
@@ -90,6 +91,12 @@ impl CompareArgs {
             let mut scenario = source.scenario(&self.import)?;
             scenario.name = source.display_name(&scenario.name);
             let agents = scenario.agents.len();
+            let outlined = |agent: &&Agent| agent.footprint.is_some() || !agent.loads.is_empty();
+            if let Some(agent) = scenario.agents.iter().find(outlined) {
+                let problem =
+                    "it has a footprint or loads, and the methods beside pcr are compared on discs; give it a radius";
+                return Err(CliError::wrong(source.file(), format!("agent {}: {problem}", agent.display_name())));
+            }
             MemoryDemand::Comparison(agents).ask().map_err(|large| CliError::wrong(source.file(), large))?;
             let progress = ProgressLine::new("methods");
             let refused = |refused| CliError::wrong(source.file(), ComputationError::Refused(refused));

@@ -180,6 +180,9 @@ fn schema_and_tool_refuse_the_same_scenarios() {
         ("/version", json!(1)),
         ("/version", json!(1.0)),
         ("/version", json!(2)),
+        ("/version", json!(3)),
+        ("/agents/0/path", json!([{ "kind": "line", "length": 1, "gear": "reverse" }])),
+        ("/agents/0/path", json!([{ "kind": "arc", "radius": 1, "sweep": 1, "gear": "forward" }])),
         ("/units", json!("m")),
         ("/agents", json!([])),
         ("/agents", json!({})),
@@ -251,6 +254,13 @@ fn schema_and_tool_refuse_the_same_scenarios() {
         if faults.is_empty() { accepted += 1 } else { refused += 1 }
     }
     assert!(accepted > 8 && refused > 25, "{accepted} accepted, {refused} refused");
+    for (gear, is_one) in [("reverse", true), ("forward", true), ("neutral", false)] {
+        let mut scenario = crossing();
+        scenario["version"] = json!(2);
+        scenario["agents"][0]["path"] = json!([{ "kind": "arc", "radius": 1, "sweep": 1, "gear": gear }]);
+        let run = run_with(&["regions", "-q"], scenario.to_string().as_bytes());
+        assert_eq!([run.status == 0, faults(&schema, &scenario).is_empty()], [is_one; 2], "{gear}: {}", run.err);
+    }
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //! pcr-core.
 
 use pcr_formats::scenario::{Agent, PathSegment};
+use std::f64::consts::PI;
 
 /// A point \[m\].
 pub type Xy = [f64; 2];
@@ -106,6 +107,10 @@ impl DiscTrack {
             let (length, curvature) = match *segment {
                 PathSegment::Line { length } => (length, 0.0),
                 PathSegment::Arc { radius, sweep } => (radius * sweep.abs(), sweep.signum() / radius),
+                PathSegment::Cusp => {
+                    heading += PI;
+                    continue;
+                }
             };
             if length > 0.0 {
                 let way = TrackSegment::new(from, length, start, heading, curvature);

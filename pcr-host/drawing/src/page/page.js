@@ -29,7 +29,7 @@ function lengthAt(agent, time) {
   return length + Math.min(Math.max(slows ? all - way : way, 0), all);
 }
 
-// Point and heading at a length of the path: on an arc over its half chord.
+// Point, and heading of the body, at a length of the path: on an arc over its half chord.
 function poseAt(agent, length) {
   let low = 0;
   for (let high = agent.segments.length; high - low > 1;) {
@@ -38,11 +38,12 @@ function poseAt(agent, length) {
   }
   const [from, whole, x, y, heading, bend, lever] = agent.segments[low];
   const u = Math.min(Math.max(length - from, 0), whole);
-  if (lever !== undefined) return [x, y, heading + u / lever];
-  if (bend === 0) return [x + u * Math.cos(heading), y + u * Math.sin(heading), heading];
+  const facing = agent.reverse?.[low] ? Math.PI : 0;
+  if (lever !== undefined) return [x, y, heading + u / lever + facing];
+  if (bend === 0) return [x + u * Math.cos(heading), y + u * Math.sin(heading), heading + facing];
   const half = u / bend / 2;
   const chord = 2 * bend * Math.sin(half);
-  return [x + chord * Math.cos(heading + half), y + chord * Math.sin(heading + half), heading + 2 * half];
+  return [x + chord * Math.cos(heading + half), y + chord * Math.sin(heading + half), heading + 2 * half + facing];
 }
 
 // Least distance of a point from the segment between two points.

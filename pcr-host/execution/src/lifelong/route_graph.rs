@@ -522,6 +522,8 @@ fn path(
         }
         last = match placed.shape {
             PathSegment::Line { length } => last.then_line(length)?,
+            // A route is of lines and arcs of edges.
+            PathSegment::Cusp => return Err(InvalidInput::Disconnected("path in reverse gear")),
             PathSegment::Arc { radius, sweep } => last.then_arc(radius, side(sweep), radius * sweep.abs())?,
         };
         heading = placed.heading_at_end();
@@ -539,7 +541,7 @@ fn bounds(shapes: &[PlacedSegment], at: [f64; 2]) -> [[f64; 2]; 2] {
     for placed in shapes {
         // No point of an arc is farther from its ends than its length.
         let (ends, room) = match placed.shape {
-            PathSegment::Line { .. } => ([placed.start, placed.end()], 0.0),
+            PathSegment::Line { .. } | PathSegment::Cusp => ([placed.start, placed.end()], 0.0),
             PathSegment::Arc { .. } => ([placed.start, placed.end()], 0.5 * placed.shape.length()),
         };
         for end in ends {

@@ -33,6 +33,9 @@ pub(super) struct TurnInPlace {
     pub(super) duration: f64,
 }
 
+/// Robots of a simulation drive ahead.
+const GEAR: InvalidInput = InvalidInput::Disconnected("path in reverse gear");
+
 impl SpeedLimitedPath {
     /// A course along these segments from a pose.
     ///
@@ -43,6 +46,7 @@ impl SpeedLimitedPath {
         for segment in path {
             match *segment {
                 PathSegment::Line { length } => course.push(Curve::Line, length, f64::INFINITY)?,
+                PathSegment::Cusp => return Err(GEAR),
                 PathSegment::Arc { radius, sweep } => {
                     let turn = if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right };
                     course.push(Curve::Arc { radius, turn }, radius * sweep.abs(), f64::INFINITY)?;
@@ -66,6 +70,7 @@ impl SpeedLimitedPath {
             let whole = segment.turns();
             let (curve, length, top) = match *segment {
                 PathSegment::Line { length } => (Curve::Line, length, top),
+                PathSegment::Cusp => return Err(GEAR),
                 PathSegment::Arc { radius, sweep } => {
                     let turn = if sweep > 0.0 { TurnSide::Left } else { TurnSide::Right };
                     if radius <= TURN {

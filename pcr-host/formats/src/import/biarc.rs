@@ -131,7 +131,7 @@ fn point_at(begin: [f64; 2], pieces: &[PlacedSegment], length: f64) -> [f64; 2] 
         let own = piece.shape.length();
         if rest < own {
             let shape = match piece.shape {
-                PathSegment::Line { .. } => PathSegment::Line { length: rest.max(0.0) },
+                PathSegment::Line { .. } | PathSegment::Cusp => PathSegment::Line { length: rest.max(0.0) },
                 PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: sweep * rest.max(0.0) / own },
             };
             return PlacedSegment { shape, ..*piece }.end();
@@ -338,7 +338,7 @@ fn parameter(curve: &RationalBezier, second: &PlacedSegment) -> f64 {
 /// the curve is too far from it to tell.
 pub(super) fn distance(curve: &RationalBezier, piece: &PlacedSegment) -> f64 {
     let curvature = match piece.shape {
-        PathSegment::Line { .. } => 0.0,
+        PathSegment::Line { .. } | PathSegment::Cusp => 0.0,
         PathSegment::Arc { sweep, .. } if sweep.abs() > SWEEP => return f64::INFINITY,
         PathSegment::Arc { radius, sweep } => 1.0_f64.copysign(sweep) / radius,
     };
@@ -386,6 +386,7 @@ mod tests {
                     let across = (y - piece.start[1]) * cos - (x - piece.start[0]) * sin;
                     (0.0..=length).contains(&along).then_some(across.abs())
                 }
+                PathSegment::Cusp => None,
                 PathSegment::Arc { radius, sweep } => {
                     let side = radius.copysign(sweep);
                     let from = [x - piece.start[0] + side * sin, y - piece.start[1] - side * cos];

@@ -47,7 +47,7 @@ const WINDINGS: f64 = 100.0;
 
 fn windings(shape: &PathSegment) -> f64 {
     match shape {
-        PathSegment::Line { .. } => 0.0,
+        PathSegment::Line { .. } | PathSegment::Cusp => 0.0,
         PathSegment::Arc { sweep, .. } => sweep.abs() / TAU,
     }
 }
@@ -307,7 +307,7 @@ fn close(curve: &mut Vec<PlacedSegment>) -> [f64; 3] {
         let asked = *piece;
         if distance(at, asked.start) > CLOSED {
             *piece = match asked.shape {
-                PathSegment::Line { .. } => PlacedSegment::line(at, asked.end()),
+                PathSegment::Line { .. } | PathSegment::Cusp => PlacedSegment::line(at, asked.end()),
                 PathSegment::Arc { .. } => PlacedSegment { start: at, ..asked },
             };
         }

@@ -87,6 +87,8 @@ impl LimitedPathBuilder {
     pub(super) fn follow(&mut self, piece: &PlacedSegment) {
         match piece.shape {
             PathSegment::Line { .. } => self.line(piece.start, piece.end()),
+            // No file of another format has one.
+            PathSegment::Cusp => {}
             PathSegment::Arc { radius, sweep } => {
                 if radius * sweep == 0.0 {
                     return;

@@ -203,7 +203,7 @@ pub(super) fn along_trajectory(
 /// Whether an outline faces so somewhere on a line or an arc.
 fn turns_through(piece: &PlacedSegment, outline: &Footprint, orientation: f64) -> bool {
     let sweep = match piece.shape {
-        PathSegment::Line { .. } => 0.0,
+        PathSegment::Line { .. } | PathSegment::Cusp => 0.0,
         PathSegment::Arc { sweep, .. } => sweep,
     };
     let passes = |orientation: f64| {
@@ -220,7 +220,7 @@ pub(super) fn heading_beside(piece: &PlacedSegment, point: [f64; 2], within: f64
     let (ahead, left) = (x * cos + y * sin, y * cos - x * sin);
     let whole = piece.shape.length();
     let along = match piece.shape {
-        PathSegment::Line { .. } => ahead,
+        PathSegment::Line { .. } | PathSegment::Cusp => ahead,
         PathSegment::Arc { radius, sweep } => {
             // The centre is to the left of an arc that turns left. Half of what is missing to a full turn is before its begin.
             let angle = ahead.atan2(radius - left * sweep.signum());
@@ -230,7 +230,7 @@ pub(super) fn heading_beside(piece: &PlacedSegment, point: [f64; 2], within: f64
     };
     let along = along.clamp(0.0, whole);
     let shape = match piece.shape {
-        PathSegment::Line { .. } => PathSegment::Line { length: along },
+        PathSegment::Line { .. } | PathSegment::Cusp => PathSegment::Line { length: along },
         PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: (along / radius).copysign(sweep) },
     };
     let part = PlacedSegment { shape, ..*piece };

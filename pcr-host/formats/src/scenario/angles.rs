@@ -113,7 +113,7 @@ impl Scenario {
     pub(super) fn has_doubted_angles(&self) -> bool {
         self.agents.iter().any(|agent| {
             let sweep = |segment: &PathSegment| match segment {
-                PathSegment::Line { .. } => 0.0,
+                PathSegment::Line { .. } | PathSegment::Cusp => 0.0,
                 PathSegment::Arc { sweep, .. } => *sweep,
             };
             agent.path.iter().map(sweep).chain([agent.start[2]]).any(|angle| angle.abs() > DOUBTED)

@@ -2,6 +2,7 @@
 
 use super::agent_name::AgentName;
 use super::angles::{AngleField, Doubts, RADIANS, UNIT};
+use super::gear;
 use super::json_fields::{
     DecodeLocation, LIMIT, NumberRange, ObjectFields, ScenarioError, brief, figure, parse_integer,
 };
@@ -30,6 +31,8 @@ pub(crate) const MOST_SEGMENTS: usize = u16::MAX as usize;
 /// Name of the format.
 pub(super) const FORMAT: &str = "pcr-scenario";
 pub(super) const VERSION: u64 = 1;
+/// The version of files in which segments have gears.
+pub(super) const GEARS: u64 = 2;
 
 impl Scenario {
     /// The scenario in a JSON text; a byte order mark at its start is skipped.
@@ -115,10 +118,14 @@ impl Scenario {
         is_scenario(json)?;
         let fields = DecodeLocation::default().fields(json, &FIELDS)?;
         match fields.get("version").map(|version| (version, &version.data)) {
-            Some((_, JsonData::Number(version))) if parse_integer(version) == Some(VERSION) => {}
-            None => {}
+            Some((_, JsonData::Number(version))) if parse_integer(version) == Some(GEARS) => {}
+            None => agents.without_gears()?,
+            Some((_, JsonData::Number(version))) if parse_integer(version) == Some(VERSION) => {
+                agents.without_gears()?
+            }
             Some((version, _)) => {
-                return Err(fields.unexpected("version", version, &format!("{VERSION}, all that this pcr knows,")));
+                let known = format!("{VERSION} or {GEARS}, all that this pcr knows,");
+                return Err(fields.unexpected("version", version, &known));
             }
         }
         match fields.get("name").map(|name| (name, &name.data)) {
@@ -174,9 +181,17 @@ struct AgentsVisitor {
     doubts: Doubts,
     /// The error of the first agent that is refused; later agents are not read.
     fault: Option<ScenarioError>,
+    /// The error of the first gear, in a file of a version that has none.
+    gear: Option<ScenarioError>,
 }
 
 impl AgentsVisitor {
+    /// Refuses gears.
+    fn without_gears(&self) -> Result<(), ScenarioError> {
+        // An agent before it may be refused for another reason.
+        self.gear.clone().map_or(Ok(()), Err)
+    }
+
     fn add(&mut self, json: &JsonNode<'_>) {
         if self.fault.is_none()
             && let Err(fault) = self.decode(json)
@@ -186,7 +201,7 @@ impl AgentsVisitor {
     }
 
     fn decode(&mut self, json: &JsonNode<'_>) -> Result<(), ScenarioError> {
-        let (agent, text) = Agent::decode(json, self.all.len(), &mut self.doubts)?;
+        let (agent, text) = Agent::decode(json, self.all.len(), &mut self.doubts, &mut self.gear)?;
         let refused = |problem: &dyn fmt::Display| {
             let called = format!("agent {}", agent.display_name());
             let at = json.get("id").map_or(json.position, |id| id.position);
@@ -208,7 +223,12 @@ impl AgentsVisitor {
 
 impl Agent {
     /// The agent at a place, and whether its id is a text.
-    fn decode(json: &JsonNode<'_>, index: usize, doubts: &mut Doubts) -> Result<(Self, bool), ScenarioError> {
+    fn decode(
+        json: &JsonNode<'_>,
+        index: usize,
+        doubts: &mut Doubts,
+        gear: &mut Option<ScenarioError>,
+    ) -> Result<(Self, bool), ScenarioError> {
         const KNOWN: [&str; 16] = [
             "id",
             "label",
@@ -241,12 +261,23 @@ impl Agent {
             start.number("y", NumberRange::Any)?,
             doubts.angle(&start, AngleField::Heading)?,
         ];
-        let path = path(&fields, place, doubts)?;
+        let path = path(&fields, place, doubts, gear)?;
         let motion = motion(&fields, &path, doubts)?;
         let loads = loads(&fields, path.len())?;
+        if !loads.is_empty() && path.contains(&PathSegment::Cusp) {
+            return Err(fields.refused("loads", "there are none yet on a path with reverse gear"));
+        }
         let AgentName { label, is_text, .. } = name;
         let agent = Self { id, label, radius, footprint, loads, margin, t_start, start, path, motion };
         agent.ends_in_time(&fields)?;
+        if let Some((segment, speed)) = agent.speed_at_cusp() {
+            let problem = format!(
+                "{} m/s at the end of segment {}; allowed is 0, because the gear changes there",
+                figure(speed),
+                segment + 1
+            );
+            return Err(fields.refused("profile", problem));
+        }
         Ok((agent, is_text))
     }
 
@@ -274,11 +305,26 @@ fn path(
     fields: &ObjectFields<'_>,
     place: DecodeLocation<'_>,
     doubts: &mut Doubts,
+    gear: &mut Option<ScenarioError>,
 ) -> Result<Vec<PathSegment>, ScenarioError> {
     let given = fields.array("path")?;
     let mut path = Vec::with_capacity(given.len());
+    let mut reverse = false;
     for (index, json) in given.iter().enumerate() {
-        path.push(PathSegment::decode(json, place.part("segment", index), doubts)?);
+        let place = place.part("segment", index);
+        let (segment, own) = PathSegment::decode(json, place, doubts)?;
+        if let Some((at, _)) = own {
+            let problem = format!("there are gears from version {GEARS} on; give \"version\": {GEARS}");
+            gear.get_or_insert_with(|| place.error(at, "gear", problem));
+        }
+        // A turn in place has no gear.
+        let is_turn = matches!(segment, PathSegment::Arc { radius: TURN, .. });
+        let next = if is_turn { reverse } else { own.is_some_and(|(_, reverse)| reverse) };
+        if next != reverse {
+            path.push(PathSegment::Cusp);
+            reverse = next;
+        }
+        path.push(segment);
     }
     let length: f64 = path.iter().map(PathSegment::length).sum();
     let segments: f64 = path.iter().map(PathSegment::turns).sum();
@@ -306,6 +352,9 @@ fn motion(fields: &ObjectFields<'_>, path: &[PathSegment], doubts: &mut Doubts) 
     };
     let of_turns = [of_turns(AngleField::TurnSpeed)?, of_turns(AngleField::TurnAcceleration)?];
     Ok(match (limit("v_max")?, limit("a_max")?) {
+        (Some(v_max), Some(a_max)) if moves && path.contains(&PathSegment::Cusp) => {
+            gear::motion(path, [v_max, a_max], of_turns)
+        }
         (Some(v_max), Some(a_max)) if turns => turns::motion(path, [v_max, a_max], of_turns),
         (Some(v_max), Some(a_max)) if moves => MotionSpec::RestToRest { v_max, a_max },
         _ => MotionSpec::decode(fields, path.iter().map(PathSegment::length).sum())?,
@@ -313,27 +362,38 @@ fn motion(fields: &ObjectFields<'_>, path: &[PathSegment], doubts: &mut Doubts) 
 }
 
 impl PathSegment {
-    fn decode(json: &JsonNode<'_>, place: DecodeLocation<'_>, doubts: &mut Doubts) -> Result<Self, ScenarioError> {
+    /// The segment, and its gear if it is given: where, and whether it is reverse.
+    fn decode(
+        json: &JsonNode<'_>,
+        place: DecodeLocation<'_>,
+        doubts: &mut Doubts,
+    ) -> Result<(Self, Option<(Position, bool)>), ScenarioError> {
+        let gear = |fields: &ObjectFields<'_>| match fields.get("gear").map(|gear| (gear, &gear.data)) {
+            None => Ok(None),
+            Some((gear, JsonData::Text(name))) if name == "reverse" => Ok(Some((gear.position, true))),
+            Some((gear, JsonData::Text(name))) if name == "forward" => Ok(Some((gear.position, false))),
+            Some((gear, _)) => Err(fields.unexpected("gear", gear, "\"forward\" or \"reverse\"")),
+        };
         let kind = match &json.data {
             JsonData::Object(members) => members.iter().find(|(key, _)| key == "kind").map(|(_, kind)| kind),
             _ => None,
         };
         match kind.map(|kind| &kind.data) {
             Some(JsonData::Text(kind)) if kind == "line" => {
-                let fields = place.fields(json, &["kind", "length"])?;
-                Ok(Self::Line { length: fields.number("length", NumberRange::NotNegative)? })
+                let fields = place.fields(json, &["kind", "length", "gear"])?;
+                Ok((Self::Line { length: fields.number("length", NumberRange::NotNegative)? }, gear(&fields)?))
             }
             Some(JsonData::Text(kind)) if kind == "arc" => {
-                let fields = place.fields(json, &["kind", "radius", "sweep", "sweep_deg"])?;
+                let fields = place.fields(json, &["kind", "radius", "sweep", "sweep_deg", "gear"])?;
                 let radius = fields.number("radius", NumberRange::Positive)?;
-                Ok(Self::Arc { radius, sweep: doubts.angle(&fields, AngleField::Sweep)? })
+                Ok((Self::Arc { radius, sweep: doubts.angle(&fields, AngleField::Sweep)? }, gear(&fields)?))
             }
             Some(JsonData::Text(kind)) if kind == "turn" => {
                 let fields = place.fields(json, &["kind", "sweep", "sweep_deg"])?;
-                Ok(Self::Arc { radius: TURN, sweep: doubts.angle(&fields, AngleField::Sweep)? })
+                Ok((Self::Arc { radius: TURN, sweep: doubts.angle(&fields, AngleField::Sweep)? }, None))
             }
             _ => {
-                let fields = place.fields(json, &["kind", "length", "radius", "sweep", "sweep_deg"])?;
+                let fields = place.fields(json, &["kind", "length", "radius", "sweep", "sweep_deg", "gear"])?;
                 let kind = fields.required("kind")?;
                 Err(fields.error(
                     kind.position,

@@ -1,7 +1,8 @@
 //! Encodes a scenario as a file.
 
 use super::angles::{RADIANS, UNIT};
-use super::decode::{FORMAT, VERSION};
+use super::decode::{FORMAT, GEARS, VERSION};
+use super::gear::GearShifts;
 use super::{Agent, LoadOutline, MotionSpec, PathSegment, Scenario, TURN};
 use crate::footprint::Footprint;
 use serde_json::Value;
@@ -19,8 +20,9 @@ impl Scenario {
         };
         let name = Value::from(self.name.as_str());
         let unit = if self.has_doubted_angles() { format!("  \"{UNIT}\": \"{RADIANS}\",\n") } else { String::new() };
+        let version = if self.agents.iter().any(Agent::changes_gear) { GEARS } else { VERSION };
         format!(
-            "{{ \"format\": \"{FORMAT}\", \"version\": {VERSION}, \"name\": {name},\n{unit}{warnings}  \"agents\": {agents} }}\n"
+            "{{ \"format\": \"{FORMAT}\", \"version\": {version}, \"name\": {name},\n{unit}{warnings}  \"agents\": {agents} }}\n"
         )
     }
 
@@ -55,15 +57,19 @@ impl Display for AsJson<&Agent> {
         }
         write!(f, "\"t_start\": {t_start:?}, ")?;
         write!(f, "\"start\": {{ \"x\": {x:?}, \"y\": {y:?}, \"heading\": {heading:?} }}, \"path\": [")?;
-        for (k, segment) in path.iter().enumerate() {
+        for (k, (segment, reverse)) in path.in_gear().enumerate() {
             let comma = if k > 0 { "," } else { "" };
+            let gear = if reverse { ", \"gear\": \"reverse\"" } else { "" };
             match segment {
-                PathSegment::Line { length } => write!(f, "{comma} {{ \"kind\": \"line\", \"length\": {length:?} }}")?,
+                PathSegment::Cusp => {}
+                PathSegment::Line { length } => {
+                    write!(f, "{comma} {{ \"kind\": \"line\", \"length\": {length:?}{gear} }}")?;
+                }
                 PathSegment::Arc { radius: TURN, sweep } if matches!(motion, MotionSpec::Profile { .. }) => {
                     write!(f, "{comma} {{ \"kind\": \"turn\", \"sweep\": {sweep:?} }}")?;
                 }
                 PathSegment::Arc { radius, sweep } => {
-                    write!(f, "{comma} {{ \"kind\": \"arc\", \"radius\": {radius:?}, \"sweep\": {sweep:?} }}")?;
+                    write!(f, "{comma} {{ \"kind\": \"arc\", \"radius\": {radius:?}, \"sweep\": {sweep:?}{gear} }}")?;
                 }
             }
         }

@@ -31,6 +31,7 @@ impl PlacedSegment {
     pub fn heading_at_end(&self) -> f64 {
         match self.shape {
             PathSegment::Line { .. } => self.heading,
+            PathSegment::Cusp => self.heading + std::f64::consts::PI,
             PathSegment::Arc { sweep, .. } => self.heading + sweep,
         }
     }
@@ -39,6 +40,7 @@ impl PlacedSegment {
     pub fn end(&self) -> [f64; 2] {
         let (chord, direction) = match self.shape {
             PathSegment::Line { length } => (length, self.heading),
+            PathSegment::Cusp => (0.0, self.heading),
             PathSegment::Arc { radius, sweep } => {
                 (2.0 * radius * (sweep.abs() / 2.0).sin(), self.heading + sweep / 2.0)
             }
@@ -55,6 +57,7 @@ impl PlacedSegment {
             match self.shape {
                 PathSegment::Line { length } => PathSegment::Line { length: length * share },
                 PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: sweep * share },
+                PathSegment::Cusp => PathSegment::Line { length: 0.0 },
             }
         };
         let before = Self { shape: cut(from), ..*self };
@@ -64,7 +67,7 @@ impl PlacedSegment {
     /// Radius \[m\], if it is an arc.
     pub(crate) fn radius(&self) -> Option<f64> {
         match self.shape {
-            PathSegment::Line { .. } => None,
+            PathSegment::Line { .. } | PathSegment::Cusp => None,
             PathSegment::Arc { radius, .. } => Some(radius),
         }
     }
@@ -72,7 +75,7 @@ impl PlacedSegment {
     /// The same, travelled the other way.
     pub fn reversed(&self) -> Self {
         let shape = match self.shape {
-            PathSegment::Line { .. } => self.shape,
+            PathSegment::Line { .. } | PathSegment::Cusp => self.shape,
             PathSegment::Arc { radius, sweep } => PathSegment::Arc { radius, sweep: -sweep },
         };
         Self { start: self.end(), heading: self.heading_at_end() + std::f64::consts::PI, shape }

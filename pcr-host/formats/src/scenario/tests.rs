@@ -55,9 +55,9 @@ fn missing_fields_are_named() {
 fn unknown_keys_are_refused_with_those_that_are_known() {
     refused(
         &with("/path/1/length", &json!(1)),
-        "agent 7, segment 2, length: unknown key; known are kind, radius, sweep, sweep_deg",
+        "agent 7, segment 2, length: unknown key; known are kind, radius, sweep, sweep_deg, gear",
     );
-    refused(&with("/path/0/sweep", &json!(1)), "agent 7, segment 1, sweep: unknown key; known are kind, length");
+    refused(&with("/path/0/sweep", &json!(1)), "agent 7, segment 1, sweep: unknown key; known are kind, length, gear");
     refused(&with("/start/z", &json!(1)), "agent 7, start.z: unknown key; known are x, y, heading, heading_deg");
     refused(
         &with("/speed", &json!(1)),
@@ -413,13 +413,13 @@ fn files_may_say_what_they_are() {
     let file = |format: &str, version: u32| {
         Scenario::from_value(&json!({ "format": format, "version": version, "agents": [] }))
     };
-    assert!(file("pcr-scenario", 1).is_ok());
+    assert!(file("pcr-scenario", 1).is_ok() && file("pcr-scenario", 2).is_ok());
     let message = file("other", 1).unwrap_err().to_string();
     assert_eq!(message, "format: \"other\" where \"pcr-scenario\" is expected");
     let message = file("pcr-locks", 1).unwrap_err().to_string();
     assert_eq!(message, "this is pcr-locks, an answer of pcr; a scenario is expected");
-    let message = file("pcr-scenario", 2).unwrap_err().to_string();
-    assert_eq!(message, "version: 2 where 1, all that this pcr knows, is expected");
+    let message = file("pcr-scenario", 3).unwrap_err().to_string();
+    assert_eq!(message, "version: 3 where 1 or 2, all that this pcr knows, is expected");
 }
 
 #[test]

@@ -16,11 +16,11 @@ fn is_turn(segment: &PathSegment) -> bool {
 }
 
 impl Agent {
-    /// Whether its path has a turn in place, not counting joints that are passed without a stop.
+    /// Whether its path has a turn in place, not counting joints that are passed without a stop, or a change of gear: there it stands.
     pub fn turns_in_place(&self) -> bool {
         let turns =
             |segment: &PathSegment| matches!(segment, PathSegment::Arc { radius: TURN, sweep } if sweep.abs() > KINK);
-        self.path.iter().any(turns)
+        self.changes_gear() || self.path.iter().any(turns)
     }
 }
 

@@ -8,7 +8,7 @@ use pcr_certify::outline::{
 use pcr_certify::raw::{RawAgent, RawAngle, RawBranch, RawPair};
 use pcr_core::{Curve, Motion, RegionRef, TurnSide, excess};
 use pcr_formats::scenario::{Agent, Scenario};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// What headings on both sides of a joint may differ by: they are one number, but for the rounding of the checker \[rad\].
 const JUMP: f64 = 1e-12;
@@ -32,24 +32,38 @@ fn body<S: HostScalar>(agent: RawAgent, motion: &Motion<'_, S>) -> RawBody {
     let outline = motion.outline();
     let corners = outline.corners().iter().map(|corner| [corner.at().x.to_f64(), corner.at().y.to_f64()]);
     let corners: Vec<[f64; 2]> = if is_outline(motion) { corners.collect() } else { vec![[0.0; 2]] };
-    // Turns without a length are those that move no point by more than rounding does.
-    let turned = agent.path.segments.iter().flat_map(|segment| &segment.turns).map(|turn| match turn {
+    // Turns without a length are those that move no point by more than rounding does, and half turns of the path where the gear changes,
+    // where the body keeps its heading.
+    let cusps = [PI, -PI].map(|half| S::angle(half).map(S::held_angle));
+    let is_cusp = |turn: &RawAngle| cusps.contains(&Some(*turn));
+    let turned = agent.path.segments.iter().flat_map(|segment| &segment.turns).filter(|turn| !is_cusp(turn));
+    let turned = turned.map(|turn| match turn {
         RawAngle::Radians(radians) => radians.abs(),
         RawAngle::Turns(turns) => turns.abs() * TAU,
     });
+    let mut facing = RawAngle::Turns(0.0);
     let jump = turned.fold(0.0, f64::max) * (1.0 + 1e-9) + JUMP;
     let curves = motion.path().segments().iter().map(|segment| segment.curve());
-    let segments = agent.path.segments.into_iter().zip(curves).map(|(segment, curve)| RawBodySegment {
-        course: match curve {
-            Curve::Pivot { lever, turn: TurnSide::Left } => RawCourse::Pivot { lever: lever.to_f64() },
-            Curve::Pivot { lever, turn: TurnSide::Right } => RawCourse::Pivot { lever: -lever.to_f64() },
-            _ => segment.radius.map_or(RawCourse::Line, |radius| RawCourse::Arc { radius }),
-        },
-        length: segment.length,
-        turns: segment.turns,
-        heading: RawHeading::Along(RawAngle::Turns(0.0)),
-        from: segment.from,
-        to: segment.to,
+    let segments = agent.path.segments.into_iter().zip(curves).map(|(segment, curve)| {
+        for turn in segment.turns.iter().filter(|turn| is_cusp(turn)) {
+            facing = match (facing, *turn) {
+                (RawAngle::Turns(0.0), RawAngle::Radians(by)) => RawAngle::Radians(-by),
+                (RawAngle::Turns(0.0), RawAngle::Turns(by)) => RawAngle::Turns(-by),
+                _ => RawAngle::Turns(0.0),
+            };
+        }
+        RawBodySegment {
+            course: match curve {
+                Curve::Pivot { lever, turn: TurnSide::Left } => RawCourse::Pivot { lever: lever.to_f64() },
+                Curve::Pivot { lever, turn: TurnSide::Right } => RawCourse::Pivot { lever: -lever.to_f64() },
+                _ => segment.radius.map_or(RawCourse::Line, |radius| RawCourse::Arc { radius }),
+            },
+            length: segment.length,
+            turns: segment.turns,
+            heading: RawHeading::Along(facing),
+            from: segment.from,
+            to: segment.to,
+        }
     });
     RawBody {
         id: agent.id,

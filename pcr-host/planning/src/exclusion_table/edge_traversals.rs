@@ -407,7 +407,7 @@ pub fn swept(agent: &Agent, pieces: &[PlacedSegment]) -> Vec<SweptShape> {
     let mut shapes = Vec::new();
     for piece in pieces {
         let (steps, half) = match piece.shape {
-            PathSegment::Line { .. } => (1.0, 0.0),
+            PathSegment::Line { .. } | PathSegment::Cusp => (1.0, 0.0),
             PathSegment::Arc { sweep, .. } => {
                 let steps = (sweep.abs() / STEP).ceil().max(1.0);
                 (steps, sweep / steps / 2.0)

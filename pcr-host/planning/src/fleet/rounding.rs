@@ -93,7 +93,7 @@ fn of_path<S: HostScalar>(agent: &Agent) -> RoundingBounds {
             let turns = segment.turns();
             let kept = representable::<S>(length / turns) * turns;
             next.shape = match segment {
-                PathSegment::Line { .. } => PathSegment::Line { length: kept },
+                PathSegment::Line { .. } | PathSegment::Cusp => PathSegment::Line { length: kept },
                 PathSegment::Arc { radius, sweep } => {
                     let radius = representable::<S>(radius);
                     let rounded = if radius > 0.0 { (kept / radius).copysign(sweep) } else { 0.0 };

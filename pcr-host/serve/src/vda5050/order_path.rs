@@ -219,7 +219,7 @@ impl OrderPath {
 
     fn follow(&mut self, placed: PlacedSegment) {
         match placed.shape {
-            PathSegment::Line { .. } => self.line(placed.end(), 0.0),
+            PathSegment::Line { .. } | PathSegment::Cusp => self.line(placed.end(), 0.0),
             PathSegment::Arc { .. } => {
                 self.line(placed.start, 0.0);
                 self.push(placed, 0.0);
@@ -242,6 +242,8 @@ impl OrderPath {
             PathSegment::Line { length } => {
                 PathElement::Shift { ahead: length * side.cos(), left: length * side.sin() }
             }
+            // Of an order there are lines and arcs; this one turns the way as a cusp does.
+            PathSegment::Cusp => PathElement::Turn { sweep: PI, lever: None },
             PathSegment::Arc { radius, sweep } => PathElement::Arc { radius, sweep },
         });
         (self.at, self.heading) = (placed.end(), placed.heading_at_end() - side);
@@ -418,6 +420,7 @@ fn along(placed: &PlacedSegment, point: [f64; 2]) -> f64 {
     let (ahead, left) = (x * cos + y * sin, y * cos - x * sin);
     match placed.shape {
         PathSegment::Line { length } => ahead.clamp(0.0, length),
+        PathSegment::Cusp => 0.0,
         PathSegment::Arc { radius, sweep } => {
             // The centre is to the left of an arc that turns left.
             let towards = if sweep < 0.0 { -left } else { left };
