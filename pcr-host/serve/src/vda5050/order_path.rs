@@ -105,7 +105,7 @@ impl OrderPathSegment {
         let shape = match self.shape {
             OrderPathShape::Drive(placed, side) => {
                 let shape = match placed.shape {
-                    PathSegment::Line { .. } => PathSegment::Line { length: along },
+                    PathSegment::Line { .. } | PathSegment::Cusp => PathSegment::Line { length: along },
                     PathSegment::Arc { radius, sweep } => {
                         PathSegment::Arc { radius, sweep: (along / radius).copysign(sweep) }
                     }
