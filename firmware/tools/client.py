@@ -5,6 +5,7 @@ FORMAT is f32, micro or that of fixed point. All that it knows of frames and mes
 built-in fleet, computes its table, asks for all rows, sends damaged frames and frames of other versions, and adds an agent that is wrong."""
 import os
 import re
+import signal
 import struct
 import subprocess
 import sys
@@ -43,7 +44,8 @@ class Line:
     def __init__(self, form, command):
         self.types, self.choices = formats()
         self.is_float, self.sequence = form in ("f32", "micro"), 0
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        # A group of its own, because a script may start the emulator.
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True)
 
     def varint(self, value):
         more = bytearray()
@@ -156,8 +158,7 @@ class Line:
                 return answers
 
 
-def main(form, command):
-    line = Line(form, command)
+def main(line, form):
     [(kind, hello)] = line.ask("Hello")
     assert kind == "Hello" and bytes(hello["format"]).decode().lower() == form, hello
     line.sequence = hello["next"] - 1
@@ -188,12 +189,14 @@ def main(form, command):
         assert (sequence, kind) == (0, "Refused") and refused["0"][0] == "Frame" and refused["0"][1]["0"][0] == reason[0], refused
     [(kind, again)] = line.ask("Hello")
     assert kind == "Hello" and again["next"] == line.sequence + 1, again
-    line.process.stdin.close()
-    line.process.kill()
     print(f"a client made from the documents: 12 agents, {regions // 2} regions, {len(conflicts)} conflicts, and all that is wrong is refused by its name")
 
 
 if __name__ == "__main__":
     if len(sys.argv) < 3:
         raise SystemExit(__doc__)
-    main(sys.argv[1], sys.argv[2:])
+    line = Line(sys.argv[1], sys.argv[2:])
+    try:
+        main(line, sys.argv[1])
+    finally:
+        os.killpg(line.process.pid, signal.SIGKILL)
