@@ -7,6 +7,9 @@ use crate::metrics;
 use crate::query::RobotView;
 use crate::server::ServerHandle;
 use crate::sockets::{Listener, Stream};
+use crate::supervisor::Supervisor;
+use crate::telemetry::Telemetry;
+use crate::vda5050::bridge::BridgeStatus;
 use serde_json::json;
 use std::io::{self, Read, Write};
 use std::net::{Ipv4Addr, Ipv6Addr};
@@ -54,18 +57,22 @@ pub struct HttpContent {
     pub unready: Option<Readiness>,
 }
 
-/// Why nothing is granted yet, if so: told by who knows, and shown at `/readyz`.
+/// Why nothing is granted yet, if so: told by the bridge to the vehicles, and shown at `/readyz`; and its part of `/metrics`.
 #[derive(Clone, Debug, Default)]
-pub struct Readiness(Arc<Mutex<Option<String>>>);
+pub struct Readiness(Arc<Mutex<(Option<String>, BridgeStatus)>>);
 
 impl Readiness {
-    /// Tells why nothing is granted; `None`: it is.
-    pub fn tell(&self, why: Option<String>) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = why;
+    /// Tells why nothing is granted (`None`: it is), and the status for the metrics.
+    pub fn tell(&self, why: Option<String>, status: BridgeStatus) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = (why, status);
     }
 
     fn why(&self) -> Option<String> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).0.clone()
+    }
+
+    fn status(&self) -> BridgeStatus {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).1.clone()
     }
 }
 
@@ -178,10 +185,16 @@ pub fn answer(handle: &ServerHandle, site: &HttpContent, request: &[u8]) -> (&'s
         "/" => ("200 OK", "text/html", site.page.clone()),
         // Browsers request it with every page.
         "/favicon.ico" => ("204 No Content", "text/plain", String::new()),
-        "/metrics" => match handle.ask(|supervisor, board, _| metrics::text(supervisor, &board.latency)) {
-            Some(text) => ("200 OK", "text/plain; version=0.0.4", text),
-            None => ended(),
-        },
+        "/metrics" => {
+            let bridge = site.unready.as_ref().map(Readiness::status);
+            let text = move |supervisor: &mut Supervisor, board: &Telemetry, _| {
+                metrics::text(supervisor, &board.latency, bridge.as_ref())
+            };
+            match handle.ask(text) {
+                Some(text) => ("200 OK", "text/plain; version=0.0.4", text),
+                None => ended(),
+            }
+        }
         "/state" => match handle.ask(|supervisor, board, now| {
             let robots = supervisor.robots().iter();
             let views: Vec<RobotView<'_>> = robots.map(|robot| RobotView::new(supervisor, robot, now)).collect();

@@ -1,6 +1,8 @@
 //! Metrics in the text format of Prometheus.
 
+use crate::robot::SupervisedRobot;
 use crate::supervisor::Supervisor;
+use crate::vda5050::bridge::BridgeStatus;
 use serde::Serialize;
 use std::fmt::Write;
 use std::time::Duration;
@@ -45,9 +47,7 @@ impl Census {
     /// Counts the robots of a supervisor.
     pub(crate) fn of(supervisor: &Supervisor) -> Self {
         let robots = supervisor.robots();
-        let count = |which: fn(&crate::robot::SupervisedRobot) -> bool| {
-            robots.iter().filter(|robot| which(robot)).count() as u64
-        };
+        let count = |which: fn(&SupervisedRobot) -> bool| robots.iter().filter(|robot| which(robot)).count() as u64;
         Self {
             robots: robots.len() as u64,
             waiting: count(|robot| robot.waiting.is_some()),
@@ -58,8 +58,8 @@ impl Census {
     }
 }
 
-/// The page `/metrics`.
-pub(crate) fn text(supervisor: &Supervisor, latency: &LatencyHistogram) -> String {
+/// The page `/metrics`; that of the bridge where there is one.
+pub(crate) fn text(supervisor: &Supervisor, latency: &LatencyHistogram, bridge: Option<&BridgeStatus>) -> String {
     let mut text = String::new();
     let counts = supervisor.counts();
     let census = Census::of(supervisor);
@@ -90,7 +90,8 @@ pub(crate) fn text(supervisor: &Supervisor, latency: &LatencyHistogram) -> Strin
         let _ = writeln!(text, "# HELP pcr_{name} {help}\n# TYPE pcr_{name} {kind}\npcr_{name} {value}");
     }
     let name = "pcr_latency_seconds";
-    let help = "Time from a request to its answer and all that follows from it.";
+    let help =
+        "Time from a request, or from a message of a vehicle or the manager, until all that follows from it was sent.";
     let _ = writeln!(text, "# HELP {name} {help}\n# TYPE {name} histogram");
     let mut sum = 0;
     for (end, class) in CLASSES.iter().zip(latency.classes) {
@@ -99,5 +100,49 @@ pub(crate) fn text(supervisor: &Supervisor, latency: &LatencyHistogram) -> Strin
     }
     let LatencyHistogram { count, sum, .. } = latency;
     let _ = writeln!(text, "{name}_bucket{{le=\"+Inf\"}} {count}\n{name}_sum {sum}\n{name}_count {count}");
+    of_robots(&mut text, supervisor);
+    if let Some(bridge) = bridge {
+        of_bridge(&mut text, bridge);
+    }
     text
+}
+
+fn of_robots(text: &mut String, supervisor: &Supervisor) {
+    let gauges: [(&str, &str, fn(&SupervisedRobot) -> bool); 4] = [
+        ("waiting", "Whether its mission is not admitted yet.", |robot| robot.waiting.is_some()),
+        ("alarmed", "Whether it is not where it may be.", |robot| robot.alarm.is_some()),
+        ("stopped", "Whether it has to stop for one that is not where it may be.", |robot| robot.stopped.is_some()),
+        ("silent", "Whether it is not heard.", |robot| robot.silent),
+    ];
+    for (name, help, is) in gauges {
+        let _ = writeln!(text, "# HELP pcr_robot_{name} {help}\n# TYPE pcr_robot_{name} gauge");
+        for robot in supervisor.robots() {
+            let _ = writeln!(text, "pcr_robot_{name}{{robot=\"{}\"}} {}", escaped(&robot.name), u8::from(is(robot)));
+        }
+    }
+}
+
+fn of_bridge(text: &mut String, bridge: &BridgeStatus) {
+    let BridgeStatus { connected, active, counts, unplaced } = bridge;
+    for (name, kind, help, value) in [
+        ("broker_connected", "gauge", "Whether the broker is connected.", u64::from(*connected)),
+        ("broker_active", "gauge", "Whether this is the supervisor at work at the broker.", u64::from(*active)),
+        ("messages_read_total", "counter", "Messages of vehicles and of the manager.", counts.read),
+        ("messages_refused_total", "counter", "Messages that were refused; the log says why.", counts.refused),
+        ("messages_foreign_total", "counter", "Messages of vehicles that are not in the file.", counts.foreign),
+        ("messages_sent_total", "counter", "Messages to vehicles and to the manager.", counts.sent),
+        ("vehicles_unplaced", "gauge", "Vehicles that everybody waits for.", unplaced.len() as u64),
+    ] {
+        let _ = writeln!(text, "# HELP pcr_{name} {help}\n# TYPE pcr_{name} {kind}\npcr_{name} {value}");
+    }
+    let name = "pcr_vehicle_unplaced";
+    let _ = writeln!(text, "# HELP {name} 1: it has not said where it stands.\n# TYPE {name} gauge");
+    for vehicle in unplaced {
+        let _ = writeln!(text, "{name}{{robot=\"{}\"}} 1", escaped(vehicle));
+    }
+}
+
+/// A value of a label, as the format has it.
+fn escaped(value: &str) -> String {
+    value.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n")
 }

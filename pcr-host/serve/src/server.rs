@@ -33,13 +33,20 @@ const USUAL: usize = 512;
 /// An action for when all earlier decisions are in the journal.
 pub struct AfterCommit {
     bytes: usize,
+    /// When the messages came from which it follows: their latency ends with it.
+    times: Vec<Instant>,
     act: Box<dyn FnOnce() + Send>,
 }
 
 impl AfterCommit {
     /// An action that holds so many bytes until then.
     pub fn new(bytes: usize, act: impl FnOnce() + Send + 'static) -> Self {
-        Self { bytes, act: Box::new(act) }
+        Self { bytes, times: Vec::new(), act: Box::new(act) }
+    }
+
+    /// Returns the same action, as what follows from messages that came at these times.
+    pub(crate) fn for_messages(self, times: Vec<Instant>) -> Self {
+        Self { times, ..self }
     }
 }
 
@@ -141,7 +148,7 @@ struct PendingBatch {
 
 impl PendingBatch {
     fn size(&self) -> usize {
-        let acts: usize = self.thens.iter().map(|then| then.bytes).sum();
+        let acts: usize = self.thens.iter().map(|then| then.bytes + size_of_val(&*then.times)).sum();
         acts + USUAL * (1 + self.answers.len() + self.events.len() + self.thens.len())
     }
 }
@@ -315,7 +322,10 @@ impl ClientHub {
                 event => self.announce(told.now, event),
             }
         }
-        told.thens.into_iter().for_each(|then| (then.act)());
+        for then in told.thens {
+            (then.act)();
+            then.times.into_iter().for_each(|came| self.telemetry.latency.add(came.elapsed()));
+        }
         for client in told.closed {
             self.clients.remove(&client);
         }

@@ -9,6 +9,7 @@ use pcr_serve::log::{LogLevel, LogWriter};
 use pcr_serve::outbox::{BACKLOG, DisconnectReason, outbox};
 use pcr_serve::server::{ServerInput, SupervisorCall, queue, serve};
 use pcr_serve::supervisor::{Supervisor, SupervisorConfig};
+use pcr_serve::vda5050::bridge::BridgeStatus;
 use pcr_serve::{clients, http};
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};
@@ -442,9 +443,21 @@ fn clients_over_tcp_and_the_page() {
     assert!(ask("/map?robot=nobody").starts_with("HTTP/1.1 404") && ask("/map").starts_with("HTTP/1.1 400"));
     assert!(ask("/healthz").starts_with("HTTP/1.1 200"));
     assert!(ask("/readyz").starts_with("HTTP/1.1 200"));
-    unready.tell(Some("kit/1 has not said where it stands".into()));
+    let status = BridgeStatus { connected: true, unplaced: vec!["kit/1".into()], ..BridgeStatus::default() };
+    unready.tell(Some("kit/1 has not said where it stands".into()), status);
     let told = ask("/readyz");
     assert!(told.starts_with("HTTP/1.1 503") && told.ends_with("kit/1 has not said where it stands\n"), "{told}");
+    let metrics = ask("/metrics");
+    for line in [
+        "pcr_broker_connected 1",
+        "pcr_broker_active 0",
+        "pcr_vehicles_unplaced 1",
+        "pcr_vehicle_unplaced{robot=\"kit/1\"} 1",
+        "pcr_robot_waiting{robot=\"a\"} 0",
+        "pcr_robot_alarmed{robot=\"b\"} 0",
+    ] {
+        assert!(metrics.contains(&format!("\n{line}\n")), "{line}: {metrics}");
+    }
     assert!(ask("/healthz").starts_with("HTTP/1.1 200"));
     assert!(ask("/favicon.ico").starts_with("HTTP/1.1 204"));
     assert!(ask("/etc/passwd").starts_with("HTTP/1.1 404"));

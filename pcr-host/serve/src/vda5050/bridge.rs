@@ -58,6 +58,19 @@ pub struct BridgeCounters {
     pub sent: u64,
 }
 
+/// What a bridge and its connection say of themselves.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct BridgeStatus {
+    /// Whether it is connected to the broker.
+    pub connected: bool,
+    /// Whether it is the active one at the broker.
+    pub active: bool,
+    /// Numbers of messages since the start.
+    pub counts: BridgeCounters,
+    /// Names of the vehicles that have not said where they stand, so that no vehicle is released anything.
+    pub unplaced: Vec<String>,
+}
+
 /// The state of a robot on which the messages to its vehicle depend: number of its path, hold, whether it is stopped.
 type RobotAuthority = (u64, f64, bool);
 
@@ -91,6 +104,8 @@ pub struct Vda5050Bridge {
     looked: f64,
     /// Why no vehicle is released anything.
     unready: Option<String>,
+    /// Names of the vehicles that have not said where they stand.
+    unplaced: Vec<String>,
 }
 
 /// Time between two reminders of missing vehicles \[s\].
@@ -124,6 +139,7 @@ impl Vda5050Bridge {
             log: Vec::new(),
             said: 0.0,
             unready: Some("the broker has not been reached, or another supervisor is at work".into()),
+            unplaced: Vec::new(),
             looked: f64::NEG_INFINITY,
         })
     }
@@ -248,14 +264,12 @@ impl Vda5050Bridge {
             }
         }
         self.collect(&touched);
+        self.unplaced = if is_known { Vec::new() } else { self.names_unplaced() };
         self.unready = (!is_known).then(|| self.why_unready());
         if !is_known && now >= self.said + REMINDER {
             self.said = now;
-            let doubtful = self.lanes.iter().filter(|lane| lane.is_doubtful());
-            let unknown = self.seen.unknown.iter().map(|&place| &self.lanes[place]);
-            let names: Vec<&str> = unknown.chain(doubtful).map(VehicleAdapter::name).collect();
-            if !names.is_empty() {
-                let names = names.join(", ");
+            if !self.unplaced.is_empty() {
+                let names = self.unplaced.join(", ");
                 self.log.push(format!("nobody is released anything until these have said where they stand: {names}"));
             }
             let unknown = self.seen.unknown.iter().map(|&place| &self.lanes[place]);
@@ -272,10 +286,19 @@ impl Vda5050Bridge {
         self.unready.clone()
     }
 
-    fn why_unready(&self) -> String {
+    /// Returns the names of the vehicles that have not said where they stand, as of the last time that it settled.
+    pub fn unplaced(&self) -> &[String] {
+        &self.unplaced
+    }
+
+    fn names_unplaced(&self) -> Vec<String> {
         let doubtful = self.lanes.iter().filter(|lane| lane.is_doubtful()).map(VehicleAdapter::name);
         let unknown = self.seen.unknown.iter().map(|&place| self.lanes[place].name());
-        let unplaced = unknown.chain(doubtful).map(|name| format!("{name} has not said where it stands"));
+        unknown.chain(doubtful).map(str::to_owned).collect()
+    }
+
+    fn why_unready(&self) -> String {
+        let unplaced = self.unplaced.iter().map(|name| format!("{name} has not said where it stands"));
         let misfits = self.lanes.iter().filter_map(|lane| Some(format!("{}: {}", lane.name(), lane.misfit()?)));
         unplaced.chain(misfits).collect::<Vec<_>>().join("; ")
     }

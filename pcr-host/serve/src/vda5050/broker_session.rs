@@ -5,7 +5,7 @@
 //! retained message may be missing, or be that of another bridge, although a bridge is active. Therefore the active
 //! bridge then repeats its message, and a claim counts only if no other bridge has objected for a while.
 
-use super::bridge::{PendingPublish, Vda5050Bridge};
+use super::bridge::{BridgeStatus, PendingPublish, Vda5050Bridge};
 use super::inbox::{DroppedCounters, InboxReceiver, inbox};
 use super::leader_election::{LeaderState, claim};
 use super::mqtt::{BrokerAddress, LinkEvent, MqttLink, Publisher};
@@ -55,6 +55,8 @@ pub struct BrokerSession {
     key: VehicleId,
     /// Whether the vehicles have to be asked for their states and factsheets.
     greets: bool,
+    /// Why it is not connected, as was told last.
+    down: String,
     log: Vec<String>,
 }
 
@@ -105,12 +107,46 @@ impl BrokerSession {
         let link = MqttLink::open(broker, &name, Some(will), filters, move |it| feeder.put(it))?;
         let now = Instant::now();
         let (session, claim) = (session.into(), LeaderState::Asking(now));
-        Ok(Self { link, news, session, topic, claim, key, greets: false, log: Vec::new() })
+        Ok(Self {
+            link,
+            news,
+            session,
+            topic,
+            claim,
+            key,
+            greets: false,
+            down: "it has not been reached yet".into(),
+            log: Vec::new(),
+        })
     }
 
     /// Whether this bridge is active.
     pub fn is_ours(&self) -> bool {
         self.claim == LeaderState::Ours
+    }
+
+    /// Returns why no vehicle is released anything, if so: because of the connection, or else of the bridge.
+    pub fn unready(&self, bridge: &Vda5050Bridge) -> Option<String> {
+        if !self.link.is_up() {
+            return Some(format!("no broker: {}", self.down));
+        }
+        match &self.claim {
+            LeaderState::Ours => bridge.unready(),
+            LeaderState::Theirs(_, session) => Some(format!("another supervisor, {session}, may be at work")),
+            LeaderState::Asking(_) | LeaderState::Sent | LeaderState::Seen(_) => {
+                Some("it is being asked whether another supervisor is at work at the broker".into())
+            }
+        }
+    }
+
+    /// Returns what the metrics say of the connection and of the bridge.
+    pub fn status(&self, bridge: &Vda5050Bridge) -> BridgeStatus {
+        BridgeStatus {
+            connected: self.link.is_up(),
+            active: self.works(),
+            counts: bridge.counts(),
+            unplaced: bridge.unplaced().to_vec(),
+        }
     }
 
     /// Waits for messages and handles them. Another thread owns the supervisor, whose events come by a queue. Returns messages for the log:
@@ -131,7 +167,8 @@ impl BrokerSession {
         let answer = move |supervisor: &mut Supervisor, board: &Telemetry, now: f64| {
             let messages = timed(&messages, board, now);
             let out = answered(supervisor, &mut locked(&own), &messages, flags, &told, now);
-            ((), sent(out, own, mouth))
+            let times = messages.iter().map(|(message, _)| message.received_at).collect();
+            ((), Some(sent(out, own, mouth).for_messages(times)))
         };
         handle.ask_then(answer).ok_or(SessionEnd::Ended)?;
         if is_deaf {
@@ -154,7 +191,10 @@ impl BrokerSession {
         while messages.len() < MOST {
             match self.news.next(patience) {
                 Ok(LinkEvent::Up) => self.claim = LeaderState::Asking(Instant::now()),
-                Ok(LinkEvent::Down(why)) => self.log.push(format!("no broker: {why}")),
+                Ok(LinkEvent::Down(why)) => {
+                    self.log.push(format!("no broker: {why}"));
+                    self.down = why;
+                }
                 Ok(LinkEvent::Message { topic, payload, .. }) if topic == self.topic => self.heard(&payload)?,
                 Ok(LinkEvent::Message { topic, payload, kept, came }) => {
                     messages.push(ReceivedMessage { topic, payload, retained: kept, received_at: came });
@@ -265,7 +305,7 @@ fn drained(events: &Receiver<SupervisorEvent>) -> (Vec<SupervisorEvent>, bool) {
 
 /// Sends what may be sent at once; the rest is sent by the action for when all of it is in the journal. An unsent message is sent again
 /// later.
-fn sent(out: Vec<PendingPublish>, bridge: Arc<Mutex<Vda5050Bridge>>, mouth: Publisher) -> Option<AfterCommit> {
+fn sent(out: Vec<PendingPublish>, bridge: Arc<Mutex<Vda5050Bridge>>, mouth: Publisher) -> AfterCommit {
     let (now, later): (Vec<PendingPublish>, Vec<PendingPublish>) =
         out.into_iter().partition(|out| out.due == SendCondition::AtOnce);
     now.into_iter().for_each(|out| _ = mouth.publish(out.message));
@@ -274,7 +314,7 @@ fn sent(out: Vec<PendingPublish>, bridge: Arc<Mutex<Vda5050Bridge>>, mouth: Publ
         let mut bridge = locked(&bridge);
         later.into_iter().filter(|out| !bridge.withholds(out)).for_each(|out| _ = mouth.publish(out.message));
     };
-    Some(AfterCommit::new(bytes, send))
+    AfterCommit::new(bytes, send)
 }
 
 /// Locks the bridge. A thread that panicked leaves it at worst between two messages.

@@ -37,10 +37,15 @@ pub(super) struct BridgeFleetConfig {
 
 impl BridgeFleetConfig {
     /// What the command line says, if it does.
-    pub(super) fn of(arguments: &ServeArgs) -> Result<Option<Self>, CliError> {
+    pub(super) fn of(arguments: &ServeArgs, log: LogWriter) -> Result<Option<Self>, CliError> {
         let (Some(place), Some(file)) = (&arguments.broker, &arguments.fleet) else { return Ok(None) };
         let broker = broker(place)?;
         let broker = BrokerAddress { authority: arguments.authority.clone(), ..broker };
+        if broker.login.is_none() {
+            let what = "no user for the broker (PCR_BROKER_USER): where the broker asks nobody for a name, everybody in its network can give orders \
+                        to vehicles";
+            log.write(LogLevel::Warn, what, &[("broker", place)]);
+        }
         let interfaces = interfaces(&arguments.topics)?;
         Ok(Some(Self { broker, interfaces, profiles: profiles(file)? }))
     }
@@ -173,7 +178,7 @@ pub(super) fn start(
         .map_err(|error| CliError::arguments(error.to_string()))?;
     let (stop, readiness) = (Arc::new(AtomicBool::new(false)), Readiness::default());
     let told = readiness.clone();
-    told.tell(bridge.unready());
+    told.tell(station.unready(&bridge), station.status(&bridge));
     let (ended, handle) = (stop.clone(), handle.clone());
     let (sender, events) = sync_channel(EVENTS);
     handle.send(ServerInput::Tell(sender));
@@ -185,7 +190,8 @@ pub(super) fn start(
             match station.turn(&end.0, &bridge, &events) {
                 Ok(lines) => {
                     lines.iter().for_each(|line| log.write(LogLevel::Warn, "bridge", &[("why", line)]));
-                    told.tell(bridge.lock().unwrap_or_else(PoisonError::into_inner).unready());
+                    let bridge = bridge.lock().unwrap_or_else(PoisonError::into_inner);
+                    told.tell(station.unready(&bridge), station.status(&bridge));
                 }
                 Err(_) if ended.load(Ordering::Relaxed) => break,
                 Err(why) => return Err(why),

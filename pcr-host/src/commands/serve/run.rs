@@ -35,7 +35,7 @@ pub(super) fn run(arguments: ServeArgs) -> Result<ExitCode, CliError> {
     }
     let ends = match &demo {
         Some(demo) => Some(bridge::start(&handle, &supervisor, demo.fleet(), log)?),
-        None => bridge::BridgeFleetConfig::of(&arguments)?
+        None => bridge::BridgeFleetConfig::of(&arguments, log)?
             .map(|fleet| bridge::start(&handle, &supervisor, fleet, log))
             .transpose()?,
     };
