@@ -2,6 +2,7 @@
 
 mod alarms;
 mod asked;
+mod deploy;
 mod holds;
 mod joints;
 mod kills;

@@ -31,7 +31,7 @@ impl Mosquitto {
     /// Which lets in a user with a password only.
     pub(crate) fn guarded(name: &str, user: &str, password: &str) -> Self {
         let folder = folder(&format!("broker-{name}"));
-        let access = Self::passwords(&folder, user, password);
+        let access = Self::passwords(&folder, &[[user, password]]);
         let mut broker = Self::with(folder, &access);
         broker.login = Some((user.into(), password.into()));
         broker
@@ -41,7 +41,7 @@ impl Mosquitto {
     #[cfg(feature = "tls")]
     pub(crate) fn secured(name: &str, user: &str, password: &str) -> Self {
         let folder = folder(&format!("broker-{name}"));
-        let access = Self::passwords(&folder, user, password);
+        let access = Self::passwords(&folder, &[[user, password]]);
         let authority = crate::tls::authority(&folder, "authority");
         let made = crate::tls::certificate(&folder, "authority");
         let [certificate, key] = made.each_ref().map(|file| file.display());
@@ -50,10 +50,24 @@ impl Mosquitto {
         broker
     }
 
-    fn passwords(folder: &Path, user: &str, password: &str) -> String {
+    /// With the files of `deploy`, and the rights of one more user.
+    pub(crate) fn deployed(name: &str, users: &[[&str; 2]], more: &str) -> Self {
+        let folder = folder(&format!("broker-{name}"));
+        Self::passwords(&folder, users);
+        std::fs::write(folder.join("mosquitto.acl"), crate::deploy_runs::file("mosquitto.acl") + more).unwrap();
+        let config = crate::deploy_runs::file("mosquitto.conf");
+        assert!(config.contains("\nlistener 1883\n") && config.contains(" /etc/mosquitto/"));
+        let config = config.replace("/etc/mosquitto", folder.to_str().unwrap());
+        Self::configured(folder, |port| config.replace("\nlistener 1883\n", &format!("\nlistener {port} 127.0.0.1\n")))
+    }
+
+    fn passwords(folder: &Path, users: &[[&str; 2]]) -> String {
         let file = folder.join("passwords");
-        let made = Command::new("mosquitto_passwd").args(["-b", "-c"]).arg(&file).args([user, password]).status();
-        assert!(made.is_ok_and(|status| status.success()), "mosquitto_passwd comes with mosquitto");
+        std::fs::write(&file, "").unwrap();
+        for login in users {
+            let made = Command::new("mosquitto_passwd").arg("-b").arg(&file).args(login).status();
+            assert!(made.is_ok_and(|status| status.success()), "mosquitto_passwd comes with mosquitto");
+        }
         // It gives up the rights of root, which has written the file.
         let permissions = std::os::unix::fs::PermissionsExt::from_mode(0o644);
         std::fs::set_permissions(&file, permissions).unwrap();
@@ -61,9 +75,12 @@ impl Mosquitto {
     }
 
     fn with(folder: PathBuf, access: &str) -> Self {
+        Self::configured(folder, |port| format!("listener {port} 127.0.0.1\nset_tcp_nodelay true\n{access}\n"))
+    }
+
+    fn configured(folder: PathBuf, config: impl FnOnce(u16) -> String) -> Self {
         let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-        let config = format!("listener {port} 127.0.0.1\nset_tcp_nodelay true\nlog_dest none\n{access}\n");
-        std::fs::write(folder.join("mosquitto.conf"), config).unwrap();
+        std::fs::write(folder.join("mosquitto.conf"), config(port) + "\nlog_dest none\n").unwrap();
         let child = Self::spawn(&folder);
         let broker = Self { child, folder, port, login: None, authority: None };
         broker.wait();

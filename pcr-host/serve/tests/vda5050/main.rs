@@ -2,6 +2,7 @@
 
 mod broker;
 mod cancels;
+mod deploy_runs;
 mod doubt;
 mod dump;
 mod faults;

@@ -167,12 +167,17 @@ pub(crate) struct Scene<'a> {
 impl Site {
     /// At the safe ends of the warehouse.
     pub(crate) fn open(broker: &Mosquitto, scene: Scene<'_>) -> (Self, Vec<VehicleConfig>) {
+        Self::at([&broker.address(), &broker.address()], scene)
+    }
+
+    /// The same with logins of the vehicles and of the manager.
+    pub(crate) fn at([of_vehicles, of_manager]: [&BrokerAddress; 2], scene: Scene<'_>) -> (Self, Vec<VehicleConfig>) {
         let layout = warehouse();
         let goals = nodes(&layout, &SAFE);
         let world = SimulatedSite::new(layout, goals, scene.count, scene.versions, scene.abilities, 1).unwrap();
         let [manager, interface] = interfaces();
         let settings = simulated_fleet::SimulatedFleetConfig {
-            broker: broker.address(),
+            broker: of_vehicles.clone(),
             interface,
             pace: scene.pace,
             positions: 10.0,
@@ -182,7 +187,7 @@ impl Site {
             seed: 1,
         };
         let fleet = SimulatedFleet::new(settings, world.vehicles, Vec::new()).unwrap();
-        let office = ManagerClient::open(&broker.address(), manager, world.manager).unwrap();
+        let office = ManagerClient::open(of_manager, manager, world.manager).unwrap();
         (Self { fleet, office }, world.profiles)
     }
 
