@@ -122,6 +122,7 @@ schemas() {
 serve() {
   step "VDA 5050 over mosquitto, messages by the published schemas"
   command -v mosquitto >/dev/null || [ -x /usr/sbin/mosquitto ] || .ci/install.sh mosquitto
+  command -v systemd-analyze >/dev/null || .ci/install.sh systemd
   ignored runs::
   if [ -n "${PCR_FAULTS:-}" ]; then
     cargo test -q "${checked[@]}" "${targets[@]}" -- --ignored --exact --nocapture faults::faults_one_after_the_other \
