@@ -22,7 +22,7 @@ pub(crate) type ArgumentRule =
     (&'static str, &'static [&'static str], ArgumentRelation, &'static [&'static str], &'static str);
 
 /// All of them.
-pub(crate) const RULES: [ArgumentRule; 31] = [
+pub(crate) const RULES: [ArgumentRule; 32] = [
     ("", &["json"], Excludes, &["format"], "--json is --format json; give one of them"),
     ("demo", &["scenario"], Excludes, &["output"], "--scenario prints the scenario and draws no pictures"),
     (
@@ -155,6 +155,13 @@ pub(crate) const RULES: [ArgumentRule; 31] = [
         "only --demo simulates vehicles; those at a broker are described in --fleet FILE",
     ),
     ("serve", &["demo"], Excludes, &["stay"], "--demo always goes on when standard input ends"),
+    (
+        "serve",
+        &["check"],
+        Excludes,
+        &["demo"],
+        "--demo has a broker and a file of vehicles of its own: there is nothing to check",
+    ),
     ("serve", &["demo"], Excludes, &["broker", "fleet"], "--demo starts a broker and vehicles of its own"),
     ("fleet", &["streets"], Excludes, &["layout"], "--streets makes a layout; give one of them"),
     ("fleet", &["alone"], Excludes, &["broker", "topics"], "--alone has no broker"),

@@ -1,6 +1,7 @@
 //! `pcr serve`.
 
 mod bridge;
+mod check;
 mod demo;
 mod listen;
 mod run;
@@ -16,7 +17,8 @@ use std::process::ExitCode;
 
 const STATUSES: &str = "\
 Exit status:
-  0  ended by the end of standard input (without --stay), or by Ctrl-C
+  0  ended by the end of standard input (without --stay), or by Ctrl-C;
+     with --check: nothing is wrong
   2  wrong arguments, a journal that is damaged or in use, or another
      supervisor at work at the broker
   3  the journal could not be opened or written, after which no robot was
@@ -36,6 +38,9 @@ Examples:
 #[derive(Args)]
 #[command(after_help = format!("{EXAMPLES}\n\n{STATUSES}"))]
 pub(super) struct ServeArgs {
+    /// Only say what would be wrong at the start
+    #[arg(long)]
+    check: bool,
     /// Directory of the journal; the next start goes on from it
     #[arg(long, value_name = "DIR")]
     journal: Option<PathBuf>,
@@ -113,6 +118,6 @@ fn bound(
 
 impl ServeArgs {
     pub(super) fn run(self) -> Result<ExitCode, CliError> {
-        run::run(self)
+        if self.check { check::check(&self) } else { run::run(self) }
     }
 }

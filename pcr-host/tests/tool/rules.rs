@@ -15,7 +15,7 @@ fn given(command: &str, name: &str) -> Vec<String> {
     let value = match name {
         "certify" if command == "locks" => return vec!["--certify".to_owned()],
         "file" | "layout" => return vec!["some-file".to_owned()],
-        "audit" | "compare" | "delays" | "finish" | "foraging" | "json" | "lines" | "manager" | "nodes"
+        "audit" | "check" | "compare" | "delays" | "finish" | "foraging" | "json" | "lines" | "manager" | "nodes"
         | "scenario" | "stay" => {
             return vec![format!("--{name}")];
         }

@@ -523,3 +523,115 @@ fn vehicles_without_a_broker_say_so() {
     assert!(lines[1].starts_with("pcr: no vehicle has reached a broker: "), "{}", lines[1]);
     assert!(!std::path::Path::new(record).exists());
 }
+
+/// A broker that answers all who come with this code: 0 lets them in.
+fn broker(code: u8) -> String {
+    use std::io::{Read, Write};
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let place = listener.local_addr().unwrap().to_string();
+    std::thread::spawn(move || {
+        for stream in listener.incoming() {
+            let (mut stream, mut packet) = (stream.unwrap(), [0; 1024]);
+            let _ = stream.read(&mut packet);
+            let _ = stream.write_all(&[0x20, 2, 0, code]);
+            // Until the other end closes.
+            while stream.read(&mut packet).is_ok_and(|count| count > 0) {}
+        }
+    });
+    place
+}
+
+const VEHICLES: &str =
+    r#"{"vehicles":[{"manufacturer":"m","serialNumber":"1","radius":0.4,"margin":0.1,"speed":1,"acceleration":1}]}"#;
+
+#[test]
+fn what_would_be_wrong_is_said_before_the_start() {
+    let folder = directory("serve-check");
+    let _ = std::fs::remove_dir_all(folder.join("state"));
+    let name = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let vehicles = file("serve-check", "vehicles.json", VEHICLES);
+    let (journal, open) = (name("state"), broker(0));
+    let check = |more: &[&str]| run(&[&["serve", "--check"][..], more].concat());
+    let at_broker = ["--fleet", &vehicles, "--broker", &open];
+    let right = check(&[&at_broker[..], &["--journal", &journal, "--page", "0", "--listen"]].concat());
+    assert_eq!(right.status, 0, "{} {}", right.out, right.err);
+    assert_eq!(
+        right.out,
+        "vehicles: 1\nthe broker lets it in\njournal: there is none yet; robots must stand at the start\nnothing is wrong\n"
+    );
+    assert!(right.err.contains("no user for the broker"), "{}", right.err);
+    // It has written nothing.
+    assert!(!folder.join("state").exists());
+
+    let wrong = |more: &[&str], reason: &str| {
+        let run = check(more);
+        let is_said = run.out.lines().any(|line| line.starts_with("wrong: ") && line.contains(reason));
+        assert!(
+            run.status == 2 && is_said && !run.out.contains("nothing is wrong"),
+            "{reason}: {} {}",
+            run.out,
+            run.err
+        );
+        run.out
+    };
+    wrong(&["--fleet", &vehicles, "--broker", &broker(5)], "NotAuthorized");
+    wrong(&["--fleet", &name("none.json"), "--broker", &open], "none.json: ");
+    for (from, to, reason) in [
+        ("\"speed\"", "\"pace\"", "vehicles[0]: pace: unknown"),
+        ("\"radius\":0.4,", "", "vehicles[0]: radius: a number is expected"),
+    ] {
+        let changed = file("serve-check", "changed.json", &VEHICLES.replace(from, to));
+        wrong(&["--fleet", &changed, "--broker", &open], reason);
+    }
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = taken.local_addr().unwrap().port().to_string();
+    run_with(&["serve", "--log", "error", "--journal", &journal], ADD.as_bytes()).ok();
+    assert_eq!(check(&["--journal", &journal]).out, "journal: 1 robots\nnothing is wrong\n");
+    // All that is wrong is said at once, and the journal stays as it is.
+    let file = folder.join("state/journal");
+    let bytes = std::fs::read(&file).unwrap();
+    let mut other = bytes.clone();
+    other[12] = 99;
+    std::fs::write(&file, &other).unwrap();
+    let said = wrong(&["--journal", &journal, "--page", &port], "it is of version 99, and ");
+    assert!(said.contains("wrong: --page: ") && said.lines().count() == 2, "{said}");
+    assert_eq!(std::fs::read(&file).unwrap(), other);
+    let mut damaged = bytes;
+    damaged[40] ^= 1;
+    std::fs::write(&file, &damaged).unwrap();
+    wrong(&["--journal", &journal], "state: ");
+    let lock = std::fs::File::open(folder.join("state/lock")).unwrap();
+    lock.try_lock().unwrap();
+    wrong(&["--journal", &journal], "another supervisor has it open");
+}
+
+/// The options of the unit and of the container are those of this program.
+#[test]
+fn deployment_files_start_this_program() {
+    let deploy =
+        |name: &str| std::fs::read_to_string(format!("{}/serve/deploy/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let unit = deploy("pcr-serve.service");
+    let unit: Vec<&str> =
+        unit.lines().find_map(|line| line.strip_prefix("ExecStart=/usr/local/bin/pcr ")).unwrap().split(' ').collect();
+    let container = deploy("Containerfile");
+    let listed = |key: &str| -> Vec<String> {
+        serde_json::from_str(container.lines().find_map(|line| line.strip_prefix(key)).unwrap()).unwrap()
+    };
+    let container = [listed("ENTRYPOINT "), listed("CMD ")].concat();
+    let container: Vec<&str> = container.iter().skip(1).map(String::as_str).collect();
+    let vehicles = file("deployment", "vehicles.json", VEHICLES);
+    let (open, journal) = (broker(0), directory("deployment").join("state").to_string_lossy().into_owned());
+    for words in [unit, container] {
+        // Places of this test instead of those of a machine.
+        let words = words.iter().map(|word| match *word {
+            "/etc/pcr/vehicles.json" => &vehicles,
+            "localhost:1883" | "broker:1883" => &open,
+            "127.0.0.1:8080" | "0.0.0.0:8080" => "0",
+            "${STATE_DIRECTORY}/journal" | "/var/lib/pcr-serve/journal" => &journal,
+            word => word,
+        });
+        let words: Vec<&str> = words.chain(["--check"]).collect();
+        let run = run(&words);
+        assert!(run.status == 0 && run.out.ends_with("nothing is wrong\n"), "{words:?}: {} {}", run.out, run.err);
+    }
+}

@@ -122,7 +122,7 @@ fn profile(value: &Value) -> Result<VehicleConfig, String> {
 }
 
 /// Whether the journal knows the vehicles as the file does: orders were made for discs as they were.
-fn known(supervisor: &Supervisor, profiles: &[VehicleConfig], log: LogWriter) -> Result<(), CliError> {
+pub(super) fn known(supervisor: &Supervisor, profiles: &[VehicleConfig], log: LogWriter) -> Result<(), CliError> {
     for robot in supervisor.robots() {
         match profiles.iter().find(|profile| profile.key.to_string() == robot.name) {
             Some(profile) if profile.abilities != robot.abilities => {

@@ -125,7 +125,7 @@ impl StopOnStdoutError {
 }
 
 /// What the command line says, and what is usual where it says nothing.
-fn settings(arguments: &ServeArgs) -> Result<SupervisorConfig, CliError> {
+pub(super) fn settings(arguments: &ServeArgs) -> Result<SupervisorConfig, CliError> {
     let usual = SupervisorConfig::default();
     let at_broker = arguments.broker.is_some() || arguments.demo.is_some();
     let (width, lookahead) = if at_broker { AT_BROKERS } else { (usual.position_uncertainty, usual.lookahead) };
@@ -145,7 +145,7 @@ fn settings(arguments: &ServeArgs) -> Result<SupervisorConfig, CliError> {
     })
 }
 
-fn log_of(arguments: &ServeArgs) -> Result<LogWriter, CliError> {
+pub(super) fn log_of(arguments: &ServeArgs) -> Result<LogWriter, CliError> {
     let level = match &arguments.log {
         Some(_) if quiet() => {
             return Err(CliError::arguments("--log has no effect: with --quiet only errors are told"));
