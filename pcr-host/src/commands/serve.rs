@@ -41,7 +41,7 @@ pub(super) struct ServeArgs {
     /// Only say what would be wrong at the start
     #[arg(long)]
     check: bool,
-    /// Directory of the journal; the next start goes on from it
+    /// Directory of the journal; a start goes on from it
     #[arg(long, value_name = "DIR")]
     journal: Option<PathBuf>,
     /// Clients of the lines: at the socket DIR/socket, at unix:PATH, or over TCP at PORT or ADDRESS:PORT
